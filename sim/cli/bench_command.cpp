@@ -182,6 +182,16 @@ void measure_bench_skips(const BenchCommand& options, const Config& config, Benc
   plan.repeat = options.repeat;
   if (!options.wants_all) plan.scenes = options.scenes;
   plan.load = [&](const std::string& name, bool culls) { return scenes.load(name, config, culls ? "box" : "none"); };
+  plan.open = [&](const std::string& name, bool has_nodes) {
+    auto one = std::make_shared<CommonOptions>(options);
+    one->scene = name;
+    one->cull_objects = "box";
+    one->leaves_out = one->has_tree = has_nodes;
+    const auto source = std::make_shared<const MovingScene>(open_scene(*one, config));
+    const Moment moment = moment_of(*one);
+    return SkipMaker{[=] { return prepared(source->at(moment), *one, config); },
+                     [=] { return source->work ? source->work->vertices_skipped : 0; }};
+  };
   plan.progress = [&progress](double fraction) { progress(fraction); };
   study.skips = measure_skips(plan);
 }

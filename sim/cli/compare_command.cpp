@@ -43,6 +43,22 @@ Json moments_json(const ErrorMoments& s) {
   return json;
 }
 
+Json host_errors_json(const HostErrors& errors) {
+  return {{"pixels", moments_json(errors.pixels)}, {"depth_lsb", moments_json(errors.depth_lsb)}};
+}
+
+Json transform_json(const std::string& numbers, const TransformErrors& errors) {
+  Json json = host_errors_json(errors.whole);
+  json["numbers"] = numbers;
+  json["parts"] = {{"transform", host_errors_json(errors.transform)},
+                   {"clip", host_errors_json(errors.clip)},
+                   {"divide", host_errors_json(errors.divide)}};
+  json["cut"] = errors.cut;
+  json["cut_otherwise"] = errors.cut_otherwise;
+  json["without_w"] = errors.without_w;
+  return json;
+}
+
 Json stats_json(const ErrorStats& s) {
   Json json = moments_json(s);
   json["p999"] = figure_of(s, s.p999);
@@ -143,6 +159,13 @@ std::string rms_text(const Stats& s) {
 template <class Stats>
 std::string row(const std::string& name, const Stats& s) {
   return name + "\t" + max_text(s) + "\t" + rms_text(s);
+}
+
+/// Of places, whose errors in binary32 are small.
+std::string two_digits(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2g", value);
+  return text;
 }
 
 /// Below a picture: the same figures as in the row, each on one line with its name.
@@ -312,8 +335,11 @@ int run(const CompareCommand& options) {
   if (options.transform != "binary64") {
     CommonOptions exact = options;
     exact.transform = "binary64";
-    double exact_s = 0;
-    transform = transform_errors(scene, load_scene(exact, config, exact_s), config);
+    const auto in_clip_space = [&config](const CommonOptions& o) {
+      return prepared_in_clip_space(open_scene(o, config).at(moment_of(o)), o, config);
+    };
+    transform =
+        transform_errors(in_clip_space(options), in_clip_space(exact), parse_transform(options.transform), config);
   }
   std::optional<ForeignImage> foreign;
   if (!options.against_path.empty()) foreign = read_foreign_image(options.against_path, scene.width, scene.height);
@@ -342,8 +368,16 @@ int run(const CompareCommand& options) {
   if (transform) {
     lines.emplace_back();
     lines.push_back("vertices in " + options.transform + "\tmax\trms");
-    lines.push_back(row("position, pixels", transform->pixels));
-    lines.push_back(row("depth, LSB", transform->depth_lsb));
+    for (const auto& [name, part] :
+         {std::pair("whole", &transform->whole), std::pair("transform", &transform->transform),
+          std::pair("clip", &transform->clip), std::pair("divide", &transform->divide)}) {
+      if (part->pixels.count == 0) continue;  // nothing is cut
+      const auto& at = part->pixels;
+      lines.push_back(std::string(name) + ", position, pixels\t" + two_digits(at.max) + "\t" + two_digits(at.rms));
+      lines.push_back(row(std::string(name) + ", depth, LSB", part->depth_lsb));
+    }
+    if (transform->without_w > 0)
+      lines.push_back("corners whose w is 0 or below, held to the smallest\t" + with_commas(transform->without_w));
   }
   std::string title = options.scene + ", " + std::to_string(scene.width) + "x" + std::to_string(scene.height) + ", " +
                       label(config) + ", seed " + std::to_string(options.seed);
@@ -377,10 +411,7 @@ int run(const CompareCommand& options) {
     against = compare_against(scene, config, c, rules, *foreign);
     result["against"] = against_json(options.against_path, *foreign, *against);
   }
-  result["transform"] = transform ? Json{{"numbers", options.transform},
-                                         {"pixels", moments_json(transform->pixels)},
-                                         {"depth_lsb", moments_json(transform->depth_lsb)}}
-                                  : Json(nullptr);
+  result["transform"] = transform ? transform_json(options.transform, *transform) : Json(nullptr);
   result["broken_bounds"] = broken;
   result["bounds"] = {{"broken", broken}, {"given_up", given_up}};
   result["wall_s"] = seconds_since(start);

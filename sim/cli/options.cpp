@@ -14,6 +14,7 @@
 #include "sim/config_json.hpp"
 #include "sim/scene/convention.hpp"
 #include "sim/scene/depth_mapping.hpp"
+#include "sim/scene/host_geometry.hpp"
 #include "sim/scene/text_cursor.hpp"
 #include "sim/show/image/whole_file.hpp"
 
@@ -91,8 +92,8 @@ void add_scene_options(CLI::App& app, CommonOptions& options) {
       ->check(refuse_empty)
       ->allow_extra_args(false);
   app.add_option("--transform", options.transform,
-                 "numbers that a mesh is taken to clip space in: binary64, binary32 or s15.16; compare says what the "
-                 "smaller ones cost (docs/light.md)")
+                 "numbers that a mesh is taken to clip space in, clipped, divided by w and mapped to the window: "
+                 "binary64, binary32 or s15.16; compare says what the smaller ones cost (docs/light.md)")
       ->capture_default_str();
   app.add_option("--time", options.time,
                  "seconds into the animation of a glTF file (without it: as the file is at rest)")
@@ -187,11 +188,20 @@ std::optional<TimeSpan> parse_time(const std::string& text) {
   return TimeSpan{*from, dots == std::string::npos ? std::nullopt : to};
 }
 
+Moment moment_of(const CommonOptions& options) {
+  const std::optional<TimeSpan> time = parse_time(options.time);
+  if (time && time->to)
+    throw InputError("--time: '" + options.time + "' is a span of time, for render --frames; give one time");
+  return {time ? std::optional(time->from) : std::nullopt};
+}
+
 MovingScene open_scene(const CommonOptions& options, const Config& config) {
   const Size size = parse_size(options.size);
   SceneRequest request{options.scene, size.width, size.height, options.camera, options.seed, options.animation};
   request.lights = options.lights;
   request.transform = options.transform;
+  if (options.leaves_out) request.leaves_out = parse_cull_objects(options.cull_objects);
+  request.has_tree = options.has_tree;
   if (options.size.empty() && !is_capture(options.scene)) {
     request.width = std::min(640, config.target_width);
     request.height = std::min(480, config.target_height);
@@ -202,7 +212,7 @@ MovingScene open_scene(const CommonOptions& options, const Config& config) {
   return source;
 }
 
-Scene prepared(Scene scene, const CommonOptions& options, const Config& config, ObjectCounts* objects) {
+Scene prepared_in_clip_space(Scene scene, const CommonOptions& options, const Config& config, ObjectCounts* objects) {
   const Convention convention = parse_convention(options.convention);
   const ObjectCounts counts = select_object_culling(scene, parse_cull_objects(options.cull_objects));
   if (objects != nullptr) *objects = counts;
@@ -213,17 +223,40 @@ Scene prepared(Scene scene, const CommonOptions& options, const Config& config, 
   return in_depth_mapping(std::move(scene), config.depth_mapping);
 }
 
+Scene prepared(Scene scene, const CommonOptions& options, const Config& config, ObjectCounts* objects) {
+  const TransformNumbers numbers = parse_transform(options.transform);
+  return in_host_numbers(prepared_in_clip_space(std::move(scene), options, config, objects), numbers, config);
+}
+
 Scene load_scene(const CommonOptions& options, const Config& config, double& load_s, ObjectCounts* objects) {
   (void)parse_convention(options.convention);  // before a long file is read
   (void)parse_cull_objects(options.cull_objects);
-  const std::optional<TimeSpan> time = parse_time(options.time);
-  if (time && time->to)
-    throw InputError("--time: '" + options.time + "' is a span of time, for render --frames; give one time");
+  const Moment moment = moment_of(options);
   const auto start = std::chrono::steady_clock::now();
-  const Moment moment{time ? std::optional(time->from) : std::nullopt};
-  Scene scene = prepared(open_scene(options, config).at(moment), options, config, objects);
+  const MovingScene source = open_scene(options, config);
+  Scene scene = prepared(source.at(moment), options, config, objects);
+  if (objects != nullptr) add_work(*objects, source);
   load_s = seconds_since(start);
   return scene;
+}
+
+void add_work(ObjectCounts& objects, const MovingScene& source) {
+  if (!source.work) return;
+  objects.tests = source.work->bounds.tests;
+  objects.nodes_outside = source.work->bounds.nodes_outside;
+  objects.nodes_inside = source.work->bounds.nodes_inside;
+  objects.vertices_skipped = source.work->vertices_skipped;
+}
+
+Json objects_json(const ObjectCounts& objects) {
+  return {{"in", objects.in},
+          {"culled_sphere", objects.culled_sphere},
+          {"culled_box", objects.culled_box},
+          {"primitives_skipped", objects.primitives_skipped},
+          {"tests", objects.tests},
+          {"nodes_outside", objects.nodes_outside},
+          {"nodes_inside", objects.nodes_inside},
+          {"vertices_skipped", objects.vertices_skipped}};
 }
 
 Json result_head(const std::string& command, const CommonOptions& options, const Config& config) {

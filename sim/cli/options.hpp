@@ -45,7 +45,9 @@ struct CommonOptions {
   std::string skip = "all";
   std::string convention = "gl";
   std::string cull_objects = "box";
-  std::string json;  ///< empty: none, "-": stdout, else a file
+  bool leaves_out = false;  ///< what `cull_objects` finds outside is not computed: for commands that draw, and no more
+  bool has_tree = true;     ///< false: each object is asked by itself
+  std::string json;         ///< empty: none, "-": stdout, else a file
   bool quiet = false;
 };
 
@@ -86,11 +88,18 @@ struct TimeSpan {
 /// Nothing for an empty text. Throws InputError.
 [[nodiscard]] std::optional<TimeSpan> parse_time(const std::string& text);
 
+/// The moment of `--time`, one time. Throws InputError for a span.
+[[nodiscard]] Moment moment_of(const CommonOptions& options);
+
 /// What the options ask for, before a moment is chosen. Prints warnings to stderr. See load_scene().
 [[nodiscard]] MovingScene open_scene(const CommonOptions& options, const Config& config);
 
-/// A scene of open_scene() as the engines take it: objects outside the view left out, in the options' convention and the
+/// A scene of open_scene() before it is projected: objects outside the view left out, in the options' convention and the
 /// configuration's mapping of depth.
+[[nodiscard]] Scene prepared_in_clip_space(Scene scene, const CommonOptions& options, const Config& config,
+                                           ObjectCounts* objects = nullptr);
+
+/// The same as the engines take it: with --transform clipped, divided and mapped in smaller numbers.
 [[nodiscard]] Scene prepared(Scene scene, const CommonOptions& options, const Config& config,
                              ObjectCounts* objects = nullptr);
 
@@ -98,6 +107,12 @@ struct TimeSpan {
 /// Prints warnings to stderr, sets `load_s`, and `objects` if there is one.
 [[nodiscard]] Scene load_scene(const CommonOptions& options, const Config& config, double& load_s,
                                ObjectCounts* objects = nullptr);
+
+/// Adds what the last scene of `source` took.
+void add_work(ObjectCounts& objects, const MovingScene& source);
+
+/// {in, culled_sphere, ...}: `objects` of a result.
+[[nodiscard]] Json objects_json(const ObjectCounts& objects);
 
 /// {schema, config, scene, seed}: the head of every result; the last two are null for a command without a scene.
 /// `command` as in "render".

@@ -249,10 +249,12 @@ void print_result(const RenderCommand& options, const Config& config, const Rend
       << (result["depth_hash"].is_null() ? "not stored" : result["depth_hash"].get<std::string>()) << '\n';
 }
 
-int run(const RenderCommand& options) {
+int run(const RenderCommand& given) {
   const auto start = std::chrono::steady_clock::now();
-  const Config config = effective_config(options);
-  check_options(options, config);
+  const Config config = effective_config(given);
+  check_options(given, config);
+  RenderCommand options = given;
+  options.leaves_out = !options.engine.starts_with("golden");  // golden draws what is marked, too
   if (options.frames > 0) return run_frames(options, config);
   double load_s = 0;
   ObjectCounts objects;
@@ -268,10 +270,7 @@ int run(const RenderCommand& options) {
   result["height"] = scene.height;
   result["threads"] = options.engine == "functional" ? options.threads : 1;  // the others have one
   result["supersample"] = options.supersample.empty() ? Json(nullptr) : Json(options.supersample);
-  result["objects"] = {{"in", objects.in},
-                       {"culled_sphere", objects.culled_sphere},
-                       {"culled_box", objects.culled_box},
-                       {"primitives_skipped", objects.primitives_skipped}};
+  result["objects"] = objects_json(objects);
   if (options.engine == "scalar") add_study_json(result, study_rules(options.study), scene, config);
   if (options.engine == "scalar" || options.engine == "golden")
     result["bounds"]["given_up"] = given_up_bounds(study_rules(options.study));

@@ -214,13 +214,19 @@ int run_frames(const RenderCommand& options, const Config& config) {
       part(0);
       const Moment& moment = all[static_cast<std::size_t>(i)];
       const RenderCommand own = options_of(options, i);
-      const Scene scene = prepared(source.at(moment), options, config);
+      const auto scene_start = std::chrono::steady_clock::now();
+      ObjectCounts objects;
+      const Scene scene = prepared(source.at(moment), options, config, &objects);
+      add_work(objects, source);
+      const double scene_s = seconds_since(scene_start);
       CycleFacts facts;
       const Rendering rendering = drawer.draw(own, scene, config, facts, part);
       width = scene.width;
       height = scene.height;
       write_files(own, rendering, config, "frame " + std::to_string(i) + ", engine " + options.engine);
       rows.push_back(frame_row(i, moment, rendering, facts, options, config));
+      rows.back()["objects"] = objects_json(objects);
+      rows.back()["time_s"]["scene"] = scene_s;
     }
   } catch (const Interrupted&) {  // the frames so far count
     if (rows.empty()) throw;

@@ -343,8 +343,8 @@ CameraRequest hidden_camera() {
 Scene make_work_scene(std::string_view name, int size, int width, int height, const CameraRequest& camera,
                       std::uint64_t seed, const MeshOptions& options) {
   const double aspect = static_cast<double>(width) / height;
-  const auto view = [&](const Mesh& mesh, const CameraRequest& own, Cull cull) {
-    return mesh_scene(mesh, merged(camera, own), width, height, cull, options);
+  const auto view = [&](auto&& make, const CameraRequest& own, Cull cull) {
+    return kept_mesh_scene(make, merged(camera, own), width, height, cull, options);
   };
   if (name == "layers" || name == "layers_front") return layers_scene(width, height, size, name == "layers_front");
   if (name == "layers_nearest" || name == "layers_nearest_front")
@@ -355,21 +355,21 @@ Scene make_work_scene(std::string_view name, int size, int width, int height, co
   if (name == "layers_leaves") return leaves_scene(width, height, size);
   if (name == "scratches") return scratches_scene(width, height, size, seed);
   if (name == "dust") return dust_scene(width, height, size, seed);
-  if (name == "objects") return view(objects_mesh(size, seed), objects_camera(aspect), Cull::back);
-  if (name == "hidden") return view(hidden_mesh(size, seed, aspect), hidden_camera(), Cull::back);
+  if (name == "objects") return view([&] { return objects_mesh(size, seed); }, objects_camera(aspect), Cull::back);
+  if (name == "hidden") return view([&] { return hidden_mesh(size, seed, aspect); }, hidden_camera(), Cull::back);
   if (name == "blocks" || name == "blocks_depth") {
     const CameraRequest own = straight_on({2, 13, 38}, {0, 0, 6}, 50);
-    Scene scene = view(blocks_mesh(size, seed, camera.eye.value_or(*own.eye)), own, Cull::back);
+    Scene scene = view([&] { return blocks_mesh(size, seed, camera.eye.value_or(*own.eye)); }, own, Cull::back);
     for (State& state : scene.states) state.color_write = name == "blocks";
     return scene;
   }
   if (name == "ball") {
     CameraRequest own;
     own.fov = 20;  // nearly half of the ball faces the eye
-    return view(ball_mesh(size), own, Cull::back);
+    return view([&] { return ball_mesh(size); }, own, Cull::back);
   }
   const double fov = std::max(22.0, fov_across(47, aspect));  // both bowls, at any aspect
-  return view(shell_mesh(size), straight_on({0, 3.2, 5}, {0, -0.45, 0}, fov), Cull::none);
+  return view([&] { return shell_mesh(size); }, straight_on({0, 3.2, 5}, {0, -0.45, 0}, fov), Cull::none);
 }
 
 }  // namespace halfplane

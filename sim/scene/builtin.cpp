@@ -248,22 +248,25 @@ Scene make_builtin(std::string_view name, int width, int height, const CameraReq
                      " is made with the colours that it has; leave the light out");
   if (!builtin->has_camera && options.transform != TransformNumbers::binary64)
     throw InputError("--transform: the scene " + in_quotes(name) + " is made in clip space; leave the transform out");
-  const auto view = [&](const Mesh& mesh, const CameraRequest& own, Cull cull) {
-    return mesh_scene(mesh, merged(camera, own), width, height, cull, options);
-  };
   const std::string_view base = builtin->name;
+  MeshOptions own_options = options;
+  if (base == "wireframe") own_options.leaves_out = CullObjects::none;  // its lines may reach into the view
+  const auto view = [&](auto&& make, const CameraRequest& own, Cull cull) {
+    return kept_mesh_scene(make, merged(camera, own), width, height, cull, own_options);
+  };
   const bool is_work = builtin - kBuiltins.data() >= static_cast<std::ptrdiff_t>(kPictures);
-  Scene scene = is_work               ? make_work_scene(base, size, width, height, camera, seed, options)
-                : base == "teapot"    ? view(teapot_mesh(size), {}, Cull::none)
-                : base == "city"      ? view(city_mesh(size, seed), {}, Cull::back)
-                : base == "knot"      ? view(knot_mesh(size), {}, Cull::back)
-                : base == "coplanar"  ? view(coplanar_mesh(), coplanar_camera(), Cull::none)
-                : base == "walk"      ? view(corridor_mesh(), walk_camera(width, height), Cull::none)
-                : base == "star"      ? star_scene(width, height, size)
-                : base == "wires"     ? view(wires_mesh(size), {}, Cull::none)
-                : base == "wireframe" ? with_hidden_lines_removed(view(teapot_mesh(size), {}, Cull::none))
-                : base == "slivers"   ? slivers_scene(width, height, size, seed)
-                                      : triangle_scene(width, height);
+  Scene scene = is_work              ? make_work_scene(base, size, width, height, camera, seed, options)
+                : base == "teapot"   ? view([&] { return teapot_mesh(size); }, {}, Cull::none)
+                : base == "city"     ? view([&] { return city_mesh(size, seed); }, {}, Cull::back)
+                : base == "knot"     ? view([&] { return knot_mesh(size); }, {}, Cull::back)
+                : base == "coplanar" ? view([&] { return coplanar_mesh(); }, coplanar_camera(), Cull::none)
+                : base == "walk"     ? view([&] { return corridor_mesh(); }, walk_camera(width, height), Cull::none)
+                : base == "star"     ? star_scene(width, height, size)
+                : base == "wires"    ? view([&] { return wires_mesh(size); }, {}, Cull::none)
+                : base == "wireframe"
+                    ? with_hidden_lines_removed(view([&] { return teapot_mesh(size); }, {}, Cull::none))
+                : base == "slivers" ? slivers_scene(width, height, size, seed)
+                                    : triangle_scene(width, height);
   scene.name = std::string(name);
   return scene;
 }

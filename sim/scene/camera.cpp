@@ -107,6 +107,11 @@ Vec3 turned_about(const Vec3& axis, double degrees, const Vec3& v) {
 
 // near and far around the vertices' depths along the view, with some room.
 void fit_planes(Camera& camera, const CameraRequest& request, const Mesh& mesh, const Vec3& forward, double radius) {
+  if (request.near && request.far) {  // nothing to be found
+    camera.near = *request.near;
+    camera.far = *request.far;
+    return;
+  }
   double front = dot(subtract(mesh.vertices.front().position, camera.eye), forward), back = front;
   for (const MeshVertex& vertex : mesh.vertices) {
     const double depth = dot(subtract(vertex.position, camera.eye), forward);
@@ -163,7 +168,8 @@ Camera frame(const CameraRequest& request, const Mesh& mesh, double aspect) {
   if (request.name) {
     fail("name=" + printable(*request.name) + ": this scene has no cameras of its own", kCameraParts.example);
   }
-  const Sphere bounds = bounding_sphere(mesh);
+  const bool is_all_given = request.eye && request.target && request.near && request.far;
+  const Sphere bounds = is_all_given ? Sphere{} : bounding_sphere(mesh);
   Camera camera;
   camera.target = request.target.value_or(bounds.center);
   camera.fov = request.fov.value_or(camera.fov);

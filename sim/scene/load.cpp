@@ -93,8 +93,16 @@ MovingScene still(const SceneRequest& request, bool has_orbit, std::function<Sce
   return {at, [] { return std::optional<double>(); }, has_orbit};
 }
 
-MovingScene open_gltf(const SceneRequest& request, const CameraRequest& camera, const MeshOptions& options, int width,
-                      int height, std::vector<std::string>& warnings) {
+/// A glTF scene at rest, and where its objects lie.
+struct RestingModel {
+  explicit RestingModel(GltfModel of) : model(std::move(of)), places(model.mesh) {}
+  GltfModel model;
+  MeshPlaces places;
+};
+
+MovingScene open_gltf(const SceneRequest& request, const CameraRequest& camera, const MeshOptions& options,
+                      const std::shared_ptr<MeshWork>& work, int width, int height,
+                      std::vector<std::string>& warnings) {
   const auto world = std::make_shared<const GltfWorld>(read_gltf_world(request.name, warnings));
   // Read when it is asked for: a scene at rest needs none.
   const auto animation = [world, name = request.animation, known = std::make_shared<std::optional<GltfAnimation>>()] {
@@ -107,11 +115,17 @@ MovingScene open_gltf(const SceneRequest& request, const CameraRequest& camera, 
     return &**known;
   };
   if (!request.animation.empty()) (void)animation();
-  const auto at = [=, name = request.name](const Moment& moment) {
-    const GltfModel model = moment.time ? posed(*world, animation(), *moment.time) : posed(*world);
+  const auto at = [=, name = request.name,
+                   rest = std::make_shared<std::optional<RestingModel>>()](const Moment& moment) {
+    if (!moment.time && !*rest) rest->emplace(posed(*world));
+    const GltfModel moved = moment.time ? posed(*world, animation(), *moment.time) : GltfModel();
+    const GltfModel& model = moment.time ? moved : (*rest)->model;
+    MeshOptions own = options;
+    own.work = work.get();
+    if (!moment.time) own.places = &(*rest)->places;
     const CameraRequest chosen = choose_camera(model.cameras, camera);
     const bool is_framed = !(chosen.eye && chosen.target && chosen.near && chosen.far);
-    Scene scene = mesh_scene(model.mesh, at_turn(chosen, moment.turn), width, height, Cull::none, options,
+    Scene scene = mesh_scene(model.mesh, at_turn(chosen, moment.turn), width, height, Cull::none, own,
                              moment.time && is_framed ? extent() : nullptr);
     scene.name = name;
     return scene;
@@ -119,7 +133,7 @@ MovingScene open_gltf(const SceneRequest& request, const CameraRequest& camera, 
   const auto end = [=] {
     return world->file->count("animations") > 0 ? std::optional(animation()->end) : std::nullopt;
   };
-  return {at, end, camera.orbit.has_value()};
+  return {at, end, camera.orbit.has_value(), work};
 }
 
 }  // namespace
@@ -137,20 +151,34 @@ MovingScene open_scene(const SceneRequest& request, std::vector<std::string>& wa
   const bool is_gltf = extension == ".gltf" || extension == ".glb";
   if (!is_gltf && extension != ".obj" && find_builtin(request.name) == nullptr) fail_unknown(request.name);
   const CameraRequest camera = parse_camera(request.camera);  // before a long file is read
-  const MeshOptions options{parse_lights(request.lights), parse_transform(request.transform)};
+  MeshOptions options{parse_lights(request.lights), parse_transform(request.transform)};
+  options.leaves_out = request.leaves_out;
+  options.has_tree = request.has_tree;
   const bool has_orbit = camera.orbit.has_value();
-  if (is_gltf) return open_gltf(request, camera, options, width, height, warnings);
+  const auto work = std::make_shared<MeshWork>();
+  if (is_gltf) return open_gltf(request, camera, options, work, width, height, warnings);
+  MovingScene scene;
   if (extension == ".obj") {
-    const auto mesh = std::make_shared<const Mesh>(read_obj_file(request.name, warnings));
-    return still(request, has_orbit, [=, name = request.name](const Moment& moment) {
-      Scene scene = mesh_scene(*mesh, at_turn(camera, moment.turn), width, height, Cull::none, options);
-      scene.name = name;
-      return scene;
+    const auto placed = std::make_shared<const PlacedMesh>(read_obj_file(request.name, warnings));
+    scene = still(request, has_orbit, [=, name = request.name](const Moment& moment) {
+      MeshOptions own = options;
+      own.work = work.get();
+      own.places = &placed->places;
+      Scene made = mesh_scene(placed->mesh, at_turn(camera, moment.turn), width, height, Cull::none, own);
+      made.name = name;
+      return made;
+    });
+  } else {
+    const auto kept = std::make_shared<std::optional<PlacedMesh>>();
+    scene = still(request, has_orbit, [=, name = request.name, seed = request.seed](const Moment& moment) {
+      MeshOptions own = options;
+      own.work = work.get();
+      own.kept = kept.get();
+      return make_builtin(name, width, height, at_turn(camera, moment.turn), seed, own);
     });
   }
-  return still(request, has_orbit, [=, name = request.name, seed = request.seed](const Moment& moment) {
-    return make_builtin(name, width, height, at_turn(camera, moment.turn), seed, options);
-  });
+  scene.work = work;
+  return scene;
 }
 
 Scene load_scene(const SceneRequest& request, std::vector<std::string>& warnings) {

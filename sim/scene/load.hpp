@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "model/scene.hpp"
+#include "sim/scene/mesh_scene.hpp"
 
 namespace halfplane {
 
@@ -26,6 +28,8 @@ struct SceneRequest {
   Moment moment{};                     ///< for load_scene()
   std::vector<std::string> lights{};   ///< as `--light` takes them; empty: the file's own, or the light at the eye
   std::string transform = "binary64";  ///< as `--transform` takes it
+  CullObjects leaves_out = CullObjects::none;  ///< MeshOptions::leaves_out
+  bool has_tree = true;                        ///< MeshOptions::has_tree
 };
 
 /// A scene that has been read and can be seen at several moments.
@@ -34,7 +38,8 @@ struct MovingScene {
   std::function<Scene(const Moment&)> at;
   /// Of the animation, seconds; nothing: nothing is animated. Throws as `at`.
   std::function<std::optional<double>()> end;
-  bool has_orbit = false;  ///< the camera moves
+  bool has_orbit = false;                  ///< the camera moves
+  std::shared_ptr<const MeshWork> work{};  ///< of the last scene that was made; null: it is no mesh's
 };
 
 /// Reads what does not depend on the moment. Warnings are one line each. A size given with a capture replaces its target if

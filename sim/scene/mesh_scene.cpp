@@ -103,6 +103,62 @@ void set_normals(const Mesh& mesh, const Mat4& view, bool is_ortho, Scene& scene
   }
 }
 
+/// Which tests find each object outside.
+std::vector<std::uint8_t> objects_outside(const std::vector<ObjectBounds>& bounds, const BoundsTree* tree,
+                                          const Mat4& to_clip, std::uint8_t tests, BoundsWork& work) {
+  if (tree != nullptr) return tree->outside_view(to_clip, tests, work);
+  std::vector<std::uint8_t> outside;
+  for (const ObjectBounds& object : bounds) outside.push_back(outside_view(object, to_clip) & tests);
+  work.tests = outside.size();
+  return outside;
+}
+
+/// What of a mesh belongs to objects that may be seen.
+struct SeenMesh {
+  Mesh mesh;                            ///< vertices, triangles, indices and materials; no parts
+  std::vector<std::uint32_t> vertices;  ///< their numbers in the whole mesh
+  std::vector<std::size_t> first;       ///< of each part of the whole mesh: the first of its triangles
+  std::size_t most_left_out = 0;        ///< triangles of a part
+};
+
+SeenMesh seen_of(const Mesh& mesh, const std::vector<std::uint8_t>& outside) {
+  constexpr std::uint32_t kNone = ~0U;
+  SeenMesh seen;
+  seen.mesh.materials = mesh.materials;
+  seen.mesh.lights = mesh.lights;
+  seen.mesh.lit = mesh.lit;
+  seen.mesh.is_linear = mesh.is_linear;
+  std::size_t triangles = 0;
+  for (const MeshPart& part : mesh.parts)
+    if (part.topology == Topology::triangles && outside[part.object] == 0) triangles += part.count;
+  seen.mesh.triangles.reserve(triangles);
+  seen.vertices.reserve(std::min(triangles, mesh.vertices.size()));
+  seen.mesh.vertices.reserve(std::min(triangles, mesh.vertices.size()));
+  std::vector<std::uint32_t> number(mesh.vertices.size(), kNone);
+  const auto add = [&](std::uint32_t vertex) {
+    if (number[vertex] == kNone) {
+      number[vertex] = static_cast<std::uint32_t>(seen.vertices.size());
+      seen.vertices.push_back(vertex);
+      seen.mesh.vertices.push_back(mesh.vertices[vertex]);
+    }
+    return number[vertex];
+  };
+  for (const MeshPart& part : mesh.parts) {
+    seen.first.push_back(seen.mesh.triangles.size());
+    if (part.topology != Topology::triangles) continue;
+    if (outside[part.object] != 0) {
+      seen.most_left_out = std::max(seen.most_left_out, part.count);
+      continue;
+    }
+    for (std::size_t t = part.first; t < part.first + part.count; ++t) {
+      const auto& [a, b, c] = mesh.triangles[t];
+      seen.mesh.triangles.push_back({add(a), add(b), add(c)});
+    }
+  }
+  for (const std::uint32_t index : mesh.indices) seen.mesh.indices.push_back(index == kRestart ? index : add(index));
+  return seen;
+}
+
 bool finite(const Vertex& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z) && std::isfinite(v.w);
 }
@@ -127,37 +183,54 @@ Scene mesh_scene(const Mesh& mesh, const CameraRequest& request, int width, int 
   Scene scene = cleared_scene(width, height);
   scene.states[0].cull = cull;
   if (camera.ortho == 0) scene.planes = {camera.near, camera.far};
-  scene.vertices.reserve(mesh.vertices.size());
+  const Mat4 to_clip = product(projection, view);
+  const auto found = options.places == nullptr ? object_bounds(mesh) : std::vector<ObjectBounds>();
+  const std::vector<ObjectBounds>& bounds = options.places != nullptr ? options.places->bounds : found;
+  const BoundsTree* const tree = options.places != nullptr && options.has_tree ? &options.places->tree : nullptr;
+  const bool leaves_out = options.leaves_out != CullObjects::none;
+  MeshWork work;
+  const std::vector<std::uint8_t> outside =
+      objects_outside(bounds, tree, to_clip, bits_of(leaves_out ? options.leaves_out : CullObjects::both), work.bounds);
+  const bool is_reduced = leaves_out && std::ranges::any_of(outside, [](std::uint8_t bits) { return bits != 0; });
+  const std::optional<SeenMesh> reduced = is_reduced ? std::optional(seen_of(mesh, outside)) : std::nullopt;
+  const Mesh& seen = reduced ? reduced->mesh : mesh;
+  work.vertices_skipped = mesh.vertices.size() - seen.vertices.size();
+  if (options.work != nullptr) *options.work = work;
+
+  scene.vertices.reserve(seen.vertices.size());
   const VertexTransform to_clip_space(view, projection, options.transform);
-  for (const MeshVertex& in : mesh.vertices) {
+  for (const MeshVertex& in : seen.vertices) {
     const Vec4 clip = to_clip_space.clip(in.position);
     const Vertex out{clip[0], clip[1], clip[2], clip[3], in.rgba, in.u, in.v};
     if (!finite(out)) throw InputError("--camera: a vertex leaves binary64; bring eye and fov nearer to the mesh");
     scene.vertices.push_back(out);
   }
-  const auto colors = lit_colors(mesh, options.light, view, camera.ortho > 0);
-  for (std::size_t i = 0; i < colors.size(); ++i) scene.vertices[i].rgba = colors[i];
-  const std::size_t corners = mesh.triangles.size() * 3;  // the indices of lines and points follow those of triangles
-  scene.indices.reserve(corners + mesh.indices.size());
-  for (const auto& triangle : mesh.triangles) {
+  const bool is_lit_by_all = reduced && (options.light.is_given() || !mesh.lights.empty());
+  const auto colors = lit_colors(is_lit_by_all ? mesh : seen, options.light, view, camera.ortho > 0);
+  for (std::size_t i = 0; i < scene.vertices.size(); ++i)
+    scene.vertices[i].rgba = colors[is_lit_by_all ? reduced->vertices[i] : i];
+  const std::size_t corners = seen.triangles.size() * 3;  // the indices of lines and points follow those of triangles
+  scene.indices.reserve(corners + seen.indices.size());
+  for (const auto& triangle : seen.triangles) {
     scene.indices.insert(scene.indices.end(), triangle.begin(), triangle.end());
   }
-  scene.indices.insert(scene.indices.end(), mesh.indices.begin(), mesh.indices.end());
+  scene.indices.insert(scene.indices.end(), seen.indices.begin(), seen.indices.end());
   const bool is_phong = options.light.is_phong && !options.light.is_off;
-  if (is_phong) set_normals(mesh, view, camera.ortho > 0, scene);
+  if (is_phong) set_normals(seen, view, camera.ortho > 0, scene);
+  const std::size_t left_out = scene.indices.size();  // all triangles that are left out: as many as one draw has
+  if (reduced) {
+    scene.indices.resize(left_out + 3 * reduced->most_left_out, static_cast<std::uint32_t>(scene.vertices.size()));
+    scene.vertices.push_back({0, 0, 0, 1});
+  }
   // Object 0 of a scene is the unnamed one; a mesh's own unnamed part becomes it.
   std::vector<std::uint32_t> numbers;
   for (const std::string& name : mesh.objects) {
     numbers.push_back(name.empty() ? 0 : static_cast<std::uint32_t>(scene.objects.size()));
     if (!name.empty()) scene.objects.push_back(name);
   }
-  const Mat4 to_clip = product(projection, view);
   scene.textures = mesh.textures;
   using Look = std::tuple<bool, std::optional<MeshSampler>, AlphaMode, double, std::optional<std::uint32_t>>;
   std::map<Look, std::uint32_t> states{{{false, std::nullopt, AlphaMode::opaque, 0.0, std::nullopt}, 0}};
-  std::vector<std::uint8_t> outside;
-  const std::vector<ObjectBounds> bounds = object_bounds(mesh);
-  for (const ObjectBounds& object : bounds) outside.push_back(outside_view(object, to_clip));
   for (const MeshPart* const at : drawing_order(mesh, bounds, to_clip, camera.ortho > 0)) {
     const MeshPart& part = *at;
     const std::uint32_t object = numbers[part.object];
@@ -176,7 +249,11 @@ Scene mesh_scene(const Mesh& mesh, const CameraRequest& request, int width, int 
         set_opacity(made, part.alpha, part.alpha_cutoff);
         if (run.material) made = phong_state(made, mesh, mesh.materials[*run.material], options.light, view);
       }
-      const std::size_t first = is_filled ? run.first * 3 : corners + run.first;
+      std::size_t first = is_filled ? run.first * 3 : corners + run.first;
+      if (reduced && is_filled) {
+        const auto part_number = static_cast<std::size_t>(at - mesh.parts.data());
+        first = is_outside != 0 ? left_out : 3 * (reduced->first[part_number] + run.first - part.first);
+      }
       const std::size_t count = is_filled ? run.count * 3 : run.count;
       scene.commands.push_back(Draw{state->second, object, part.topology, first, count, part.line, is_outside});
     }

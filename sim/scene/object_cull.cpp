@@ -22,16 +22,6 @@ constexpr std::array<std::pair<std::string_view, CullObjects>, 4> kNames{{{"none
 
 constexpr double kRoundingMargin = 1e-12;  // of the sum of a distance's terms
 
-std::uint8_t bits_of(CullObjects tests) {
-  switch (tests) {
-    case CullObjects::none: return 0;
-    case CullObjects::sphere: return kSphereOutside;
-    case CullObjects::box: return kBoxOutside;
-    case CullObjects::both: break;
-  }
-  return kSphereOutside | kBoxOutside;
-}
-
 /// One bit per plane that the vertex lies outside of by more than rounding: the scene may yet be restated in another
 /// convention, whose sums round otherwise.
 unsigned clearly_outside(const ClipPlanes& planes, const Vertex& v) {
@@ -54,6 +44,35 @@ bool is_outside(const Scene& scene, const Draw& draw) {
     if (index != kRestart) common &= clearly_outside(planes, scene.vertices[index]);
   }
   return common != 0;
+}
+
+/// How bounds lie to one plane of the view volume, in distances of any one unit: below 0 is outside.
+struct Side {
+  double sphere, box;  ///< what of them is farthest inside
+  double far_corner;   ///< of the box, what is farthest outside
+  double margin;       ///< far above the rounding of these
+};
+
+template <class Visit>
+void for_each_side(const ObjectBounds& bounds, const Mat4& to_clip, Visit&& visit) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const double sign : {1.0, -1.0}) {
+      Vec4 plane{};  // inside: plane . (p, 1) >= 0, which says w + x >= 0 or w - x >= 0
+      for (std::size_t i = 0; i < 4; ++i) plane[i] = to_clip[3][i] + sign * to_clip[axis][i];
+      const Vec3 normal{plane[0], plane[1], plane[2]};
+      Vec3 near{}, far{}, size{};  // the corner farthest inside, the other, and what coordinates may be as large as
+      for (std::size_t i = 0; i < 3; ++i) {
+        near[i] = normal[i] > 0 ? bounds.high[i] : bounds.low[i];
+        far[i] = normal[i] > 0 ? bounds.low[i] : bounds.high[i];
+        size[i] = (std::abs(to_clip[3][i]) + std::abs(to_clip[axis][i])) *
+                  std::max(std::abs(bounds.low[i]), std::abs(bounds.high[i]));
+      }
+      const double margin =
+          kRoundingMargin * (size[0] + size[1] + size[2] + std::abs(to_clip[3][3]) + std::abs(to_clip[axis][3]));
+      visit(Side{dot(normal, bounds.center) + plane[3] + bounds.radius * length(normal), dot(normal, near) + plane[3],
+                 dot(normal, far) + plane[3], margin});
+    }
+  }
 }
 
 template <class Visit>
@@ -101,24 +120,31 @@ std::vector<ObjectBounds> object_bounds(const Mesh& mesh) {
 std::uint8_t outside_view(const ObjectBounds& bounds, const Mat4& to_clip) {
   std::uint8_t outside = 0;
   if (bounds.radius < 0) return outside;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (const double sign : {1.0, -1.0}) {
-      Vec4 plane{};  // inside: plane . (p, 1) >= 0, which says w + x >= 0 or w - x >= 0
-      for (std::size_t i = 0; i < 4; ++i) plane[i] = to_clip[3][i] + sign * to_clip[axis][i];
-      const Vec3 normal{plane[0], plane[1], plane[2]};
-      Vec3 corner{}, size{};  // the corner farthest inside, and what its coordinates may be as large as
-      for (std::size_t i = 0; i < 3; ++i) {
-        corner[i] = normal[i] > 0 ? bounds.high[i] : bounds.low[i];
-        size[i] = (std::abs(to_clip[3][i]) + std::abs(to_clip[axis][i])) *
-                  std::max(std::abs(bounds.low[i]), std::abs(bounds.high[i]));
-      }
-      const double margin =
-          kRoundingMargin * (size[0] + size[1] + size[2] + std::abs(to_clip[3][3]) + std::abs(to_clip[axis][3]));
-      if (dot(normal, bounds.center) + plane[3] + bounds.radius * length(normal) < -margin) outside |= kSphereOutside;
-      if (dot(normal, corner) + plane[3] < -margin) outside |= kBoxOutside;
-    }
-  }
+  for_each_side(bounds, to_clip, [&outside](const Side& side) {
+    if (side.sphere < -side.margin) outside |= kSphereOutside;
+    if (side.box < -side.margin) outside |= kBoxOutside;
+  });
   return outside;
+}
+
+NodeView node_view(const ObjectBounds& bounds, const Mat4& to_clip) {
+  NodeView view{0, true};
+  for_each_side(bounds, to_clip, [&view](const Side& side) {
+    if (side.sphere < -2 * side.margin) view.outside |= kSphereOutside;
+    if (side.box < -2 * side.margin) view.outside |= kBoxOutside;
+    view.is_inside &= side.far_corner > side.margin;
+  });
+  return view;
+}
+
+std::uint8_t bits_of(CullObjects tests) {
+  switch (tests) {
+    case CullObjects::none: return 0;
+    case CullObjects::sphere: return kSphereOutside;
+    case CullObjects::box: return kBoxOutside;
+    case CullObjects::both: break;
+  }
+  return kSphereOutside | kBoxOutside;
 }
 
 void mark_outside_objects(Scene& scene) {

@@ -40,15 +40,31 @@ struct ObjectBounds {
 /// inside: a test must pass by 10^-12 of its terms, which is far above their rounding.
 [[nodiscard]] std::uint8_t outside_view(const ObjectBounds& bounds, const Mat4& to_clip);
 
+/// The same of bounds that hold those of several objects.
+struct NodeView {
+  std::uint8_t outside = 0;  ///< tests that find each of the objects outside
+  bool is_inside = false;    ///< no test finds any of them outside
+};
+
+/// What outside_view() says of everything inside the bounds, if it says the same of all: it is asked by twice the margin,
+/// so that what it says of each of them cannot round otherwise.
+[[nodiscard]] NodeView node_view(const ObjectBounds& bounds, const Mat4& to_clip);
+
 /// Marks the draws of every object all of whose draws lie outside one plane of the view volume each, by the vertices
 /// themselves. Window space is never outside; of lines and points, whose pixels can reach beyond their vertices, only
 /// near and far planes are asked. Linear in the indices at worst; a draw in view stops at its first few.
 void mark_outside_objects(Scene& scene);
 
+/// The bits of Draw::outside that stand for those tests.
+[[nodiscard]] std::uint8_t bits_of(CullObjects tests);
+
 struct ObjectCounts {
   std::size_t in = 0;                             ///< objects with a draw
   std::size_t culled_sphere = 0, culled_box = 0;  ///< of those, what each test that was asked for found outside
   std::size_t primitives_skipped = 0;
+  /// Of a mesh, whose objects are asked by a tree (bounds_tree.hpp): tests against the view, nodes of several objects that
+  /// one of them decided, vertices that were neither transformed nor lit.
+  std::size_t tests = 0, nodes_outside = 0, nodes_inside = 0, vertices_skipped = 0;
 };
 
 /// Leaves the marks of those tests only that may cull, and counts.

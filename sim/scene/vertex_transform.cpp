@@ -10,23 +10,12 @@ namespace {
 
 constexpr int kFractionBits = 16;
 
-/// The nearest s15.16.
-std::int64_t to_s15_16(double v) {
-  const double scaled = std::floor(std::ldexp(v, kFractionBits) + 0.5);
-  if (!(scaled >= -2147483648.0 && scaled <= 2147483647.0))
-    throw InputError(
-        "--transform s15.16: a coordinate of this scene or camera is beyond +-32768; scale the model down, " +
-        std::string("or take binary32"));
-  return static_cast<std::int64_t>(scaled);
-}
-
 Vec4 times_s15_16(const Mat4& matrix, const Vec4& point) {
   Vec4 result{};
   for (std::size_t row = 0; row < 4; ++row) {
     int128 sum = 0;
     for (std::size_t i = 0; i < 4; ++i) sum += int128{to_s15_16(matrix[row][i])} * to_s15_16(point[i]);
-    const auto rounded = static_cast<double>((sum + (int128{1} << (kFractionBits - 1))) >> kFractionBits);
-    result[row] = std::ldexp(rounded, -kFractionBits);
+    result[row] = from_s15_16(static_cast<std::int64_t>((sum + (int128{1} << (kFractionBits - 1))) >> kFractionBits));
   }
   return result;
 }
@@ -52,6 +41,17 @@ TransformNumbers parse_transform(std::string_view text) {
   if (text == "s15.16") return TransformNumbers::s15_16;
   throw InputError("--transform: " + in_quotes(text) + " is unknown; write binary64, binary32 or s15.16");
 }
+
+std::int64_t to_s15_16(double v) {
+  const double scaled = std::floor(std::ldexp(v, kFractionBits) + 0.5);
+  if (!(scaled >= -2147483648.0 && scaled <= 2147483647.0))
+    throw InputError(
+        "--transform s15.16: a coordinate of this scene or camera is beyond +-32768; scale the model down, " +
+        std::string("or take binary32"));
+  return static_cast<std::int64_t>(scaled);
+}
+
+double from_s15_16(std::int64_t v) { return std::ldexp(static_cast<double>(v), -kFractionBits); }
 
 VertexTransform::VertexTransform(const Mat4& view, const Mat4& projection, TransformNumbers numbers)
     : view_(view), projection_(projection), numbers_(numbers) {}

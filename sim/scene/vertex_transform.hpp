@@ -1,5 +1,5 @@
-// From world to clip space in the numbers that a host may have: binary64, binary32, or fixed point of 32 bits. What the
-// smaller ones cost is sim/study/compare/transform_errors.hpp.
+// From world to clip space in the numbers that a host may have: binary64, binary32, or fixed point of 32 bits. What comes
+// behind it is host_geometry.hpp, what the smaller ones cost sim/study/compare/transform_errors.hpp.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +14,10 @@ enum class TransformNumbers : std::uint8_t { binary64, binary32, s15_16 };
 
 /// Reads --transform: `binary64`, `binary32` or `s15.16`. Throws InputError for anything else.
 [[nodiscard]] TransformNumbers parse_transform(std::string_view text);
+
+/// The nearest s15.16, halves up: a sign, 15 bits, 16 behind the point. Throws InputError beyond them.
+[[nodiscard]] std::int64_t to_s15_16(double v);
+[[nodiscard]] double from_s15_16(std::int64_t v);
 
 /// View and projection, one after the other, as fixed-function hardware had them. Matrices and vertices are rounded once,
 /// and so is every result: of binary32 each product and sum, of s15.16 (a sign, 15 bits, 16 behind the point) the sum of

@@ -132,7 +132,7 @@ TEST_F(BenchCommandLine, SkipsAreMeasuredOnEachSceneThatIsGiven) {
       EXPECT_GT(row["counter"], 0) << "a triangle of half the picture";
     }
   }
-  EXPECT_EQ(names.size(), 18u);
+  EXPECT_EQ(names.size(), 19u);
   EXPECT_EQ(names.count("objects"), 1u);
 }
 

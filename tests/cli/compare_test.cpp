@@ -41,7 +41,13 @@ TEST_F(CompareCommand, SmallerNumbersOfTheHostAreShownBesideTheRest) {
     EXPECT_GT(json["transform"]["pixels"]["max"], before);
     before = json["transform"]["pixels"]["max"].get<double>();
     EXPECT_NE(json["transform"]["depth_lsb"]["max"], 0);
+    EXPECT_GT(json["transform"]["parts"]["divide"]["pixels"]["max"], 0);
+    EXPECT_EQ(json["transform"]["cut"], 0);
     EXPECT_TRUE(json["broken_bounds"].empty()) << "golden and model are given the same vertices";
+    const Json cut = result({"compare", "walk", "--size", "64x48", "--transform", numbers});
+    EXPECT_GT(cut["transform"]["cut"], 0);
+    EXPECT_GT(cut["transform"]["parts"]["clip"]["pixels"]["max"], 0);
+    EXPECT_TRUE(cut["broken_bounds"].empty());
   }
 }
 

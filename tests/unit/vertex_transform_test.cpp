@@ -53,19 +53,25 @@ Scene teapot(TransformNumbers numbers) {
   return make_builtin("teapot", 640, 480, {}, 1, options);
 }
 
-TEST(TransformErrors, TheSmallerTheNumbersTheLargerTheErrors) {
+TransformErrors errors_of(TransformNumbers numbers, const Config& config) {
+  return transform_errors(teapot(numbers), teapot(TransformNumbers::binary64), numbers, config);
+}
+
+TEST(TransformErrors, TheSmallerTheNumbersTheLargerTheErrorsOfEachStep) {
   const Config config = preset("full");
-  const Scene exact = teapot(TransformNumbers::binary64);
-  const TransformErrors none = transform_errors(exact, exact, config);
-  EXPECT_GT(none.pixels.count, 1000U);
-  EXPECT_EQ(none.pixels.max, 0);
-  const TransformErrors single = transform_errors(teapot(TransformNumbers::binary32), exact, config);
-  const TransformErrors fixed = transform_errors(teapot(TransformNumbers::s15_16), exact, config);
-  EXPECT_GT(single.pixels.max, 0);
-  EXPECT_LT(single.pixels.max, 0.001);
-  EXPECT_GT(fixed.pixels.max, 4 * single.pixels.max);
-  EXPECT_LT(fixed.pixels.max, 0.1);
-  EXPECT_GT(fixed.depth_lsb.max, single.depth_lsb.max);
+  const TransformErrors single = errors_of(TransformNumbers::binary32, config);
+  const TransformErrors fixed = errors_of(TransformNumbers::s15_16, config);
+  for (const auto step : {&TransformErrors::whole, &TransformErrors::transform, &TransformErrors::divide}) {
+    EXPECT_GT((single.*step).pixels.count, 1000U);
+    EXPECT_GT((single.*step).pixels.max, 0);
+    EXPECT_LT((single.*step).pixels.max, 0.001);
+  }
+  EXPECT_GT(fixed.whole.pixels.max, 4 * single.whole.pixels.max);
+  EXPECT_LT(fixed.whole.pixels.max, 0.1);
+  EXPECT_LT(fixed.divide.pixels.max, std::hypot(0x1p-17, 0x1p-17) + 1e-9) << "one rounding of 16 bits along each axis";
+  EXPECT_GT(fixed.whole.depth_lsb.max, single.whole.depth_lsb.max);
+  EXPECT_EQ(fixed.clip.pixels.count, 0U) << "nothing is cut";
+  EXPECT_EQ(fixed.without_w, 0U);
 }
 
 }  // namespace

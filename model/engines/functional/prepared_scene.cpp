@@ -66,6 +66,10 @@ PreparedScene::PreparedScene(const Scene& scene) : draws(scene.commands.size()),
     if (type == PrimitiveType::point || drawn_as(state, draw->topology) != type) continue;
     DrawChunks& of_draw = draws[i];
     of_draw.first = chunks.size();
+    if (draw->outside != 0) {  // only numbered
+      of_draw.primitives = primitive_count(scene, *draw);
+      continue;
+    }
     const std::size_t first = index[0].size();
     const auto add = [this](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
       index[0].push_back(a);

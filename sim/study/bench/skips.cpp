@@ -15,14 +15,14 @@
 namespace halfplane {
 namespace {
 
-constexpr std::string_view kObjects = "objects", kBins = "bins";
+constexpr std::string_view kObjects = "objects", kNodes = "nodes", kBins = "bins";
 // No built-ins: they show nothing that others do not.
 constexpr std::string_view kFineGrid = "grid below a subpixel", kGlassBehind = "glass behind a wall",
                            kFaint = "layers that fade out", kOpaqueGlass = "opaque glass", kMasked = "masked glass",
                            kOneMoves = "city, one house moves", kAllMove = "city, everything moves";
 constexpr std::array kOwn{kFineGrid, kGlassBehind, kFaint, kOpaqueGlass, kMasked, kOneMoves, kAllMove};
 
-/// Why the pairs are what they are. frustum: nearly all of `objects` lies outside, and the teapot inside. backface: a
+/// Why the pairs are what they are. objects, nodes and frustum: nearly all of `objects` lies outside, and the teapot inside. backface: a
 /// closed mesh, and triangles of which none faces away. zero_area and empty: triangles smaller than the snap grid and
 /// smaller than a pixel, and half-screen ones. objects_hiz: whole objects behind a wall, and objects drawn from front
 /// to back that mostly show. tiles_hiz: the same layers in either order. attributes: layers, and triangles that take no tile as a whole. tiles_outside: long diagonal
@@ -33,7 +33,8 @@ constexpr std::array kOwn{kFineGrid, kGlassBehind, kFaint, kOpaqueGlass, kMasked
 /// alpha of their vertices, and by that of a texture. opaque_blends: layers that blend, of alpha 1 and of less.
 /// masked_draws: blended layers whose channels are masked, and layers that write all. bins: of two pictures in turns one object
 /// is elsewhere, or all are; any other scene is at rest.
-constexpr std::array<SkipPair, 18> kPairs{{{kObjects, "objects", "teapot"},
+constexpr std::array<SkipPair, 19> kPairs{{{kObjects, "objects", "teapot"},
+                                           {kNodes, "objects", "teapot"},
                                            {"frustum", "objects", "teapot"},
                                            {"backface", "ball", "layers"},
                                            {"zero_area", kFineGrid, "layers"},
@@ -70,6 +71,19 @@ Frame skip_frame(const std::vector<std::shared_ptr<const Scene>>& scenes, const 
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (counters != nullptr) *counters = rendering.counters;
     return FrameCost{seconds, 0};
+  };
+}
+
+/// The same from the mesh on.
+Frame whole_frame(const SkipMaker& maker, const SkipPlan& plan) {
+  RenderOptions options;
+  options.threads = plan.threads;
+  return [engine = std::make_shared<FunctionalEngine>(plan.config), maker, options]() {
+    const auto start = std::chrono::steady_clock::now();
+    const Scene scene = maker.make();
+    const PreparedScene prepared(scene);
+    (void)engine->render(prepared, options);
+    return FrameCost{std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 0};
   };
 }
 
@@ -150,7 +164,22 @@ class SceneShelf {
   std::map<std::pair<std::string, bool>, SkipScene> scenes_;
 };
 
+void take_times(SkipRow& row, std::vector<FrameTimes> times) {
+  for (const FrameTimes& one : times)
+    if (one.refusal) std::rethrow_exception(one.refusal);
+  row.with = std::move(times[0]);
+  row.without = std::move(times[1]);
+}
+
+void measure_nodes(SkipRow& row, const SkipPlan& plan, const std::function<void(double)>& progress) {
+  const SkipMaker with = plan.open(row.scene, true);
+  const std::array<Frame, 2> frames{whole_frame(with, plan), whole_frame(plan.open(row.scene, false), plan)};
+  take_times(row, measure_in_turns(frames, plan.repeat, progress));
+  row.counter = with.vertices_skipped();
+}
+
 void measure_skip(SkipRow& row, SceneShelf& shelf, const SkipPlan& plan, const std::function<void(double)>& progress) {
+  if (row.skip == kNodes) return measure_nodes(row, plan, progress);
   const bool is_objects = row.skip == kObjects;
   // Objects that were culled have no triangles left for the frustum test to drop.
   const SkipScene with = shelf.get(row.scene, row.skip != "frustum");
@@ -162,11 +191,7 @@ void measure_skip(SkipRow& row, SceneShelf& shelf, const SkipPlan& plan, const s
   const std::array<Frame, 2> frames{
       skip_frame(scenes, plan, row.skip, true, &counters),
       skip_frame(is_objects ? std::vector{without.scene} : scenes, plan, row.skip, false, nullptr)};
-  auto times = measure_in_turns(frames, plan.repeat, progress);
-  for (const FrameTimes& one : times)
-    if (one.refusal) std::rethrow_exception(one.refusal);
-  row.with = std::move(times[0]);
-  row.without = std::move(times[1]);
+  take_times(row, measure_in_turns(frames, plan.repeat, progress));
   if (is_objects) row.counter = with.primitives_culled;
   for (const SkipName& entry : kSkipNames)
     if (entry.name == row.skip) row.counter = counters.skipped.*entry.counter;

@@ -16,7 +16,8 @@
 namespace halfplane {
 
 /// A kind of skipping, and the scenes that show what it is worth. `objects` is the culling of whole objects,
-/// which happens when a scene is loaded; the others are those of kSkipNames.
+/// which happens when a scene is loaded, `nodes` that their vertices are not computed and that a tree of them is asked, frame
+/// by frame, where a mesh becomes a scene; the others are those of kSkipNames.
 struct SkipPair {
   std::string_view skip, made_for, cannot_help;
 };
@@ -30,11 +31,18 @@ struct SkipScene {
 /// Loads a scene by name, with or without culling of whole objects.
 using SkipSceneLoader = std::function<SkipScene(const std::string& name, bool culls_objects)>;
 
+/// Makes a scene anew, of a mesh that is there. `vertices_skipped`: of the last one.
+struct SkipMaker {
+  std::function<Scene()> make;
+  std::function<std::size_t()> vertices_skipped;
+};
+using SkipSceneOpener = std::function<SkipMaker(const std::string& name, bool has_nodes)>;
+
 struct SkipRow {
   std::string skip, scene;
   bool is_made_for = false;   ///< by the table of pairs
   FrameTimes with, without;   ///< this one skipping on and off, all others on
-  std::uint64_t counter = 0;  ///< of that name, with everything on; of `objects`, primitives
+  std::uint64_t counter = 0;  ///< of that name, with everything on; of `objects`, primitives, of `nodes`, vertices
   /// Share of the frame time that it saves; below 0 where it costs more than it saves.
   [[nodiscard]] double saved() const { return 1 - with.median() / without.median(); }
 };
@@ -45,6 +53,7 @@ struct SkipPlan {
   int threads = 1, repeat = 5;
   std::vector<std::string> scenes;  ///< every skip on each of them; empty: by the table of pairs
   SkipSceneLoader load;
+  SkipSceneOpener open;
   std::function<void(double)> progress;  ///< 0...1; may be empty. Interrupted, thrown there, ends the study
 };
 

@@ -1,0 +1,47 @@
+// Bounding volumes over a mesh's objects, as a binary tree: what lies outside of the view as a whole costs one test, and so
+// does what lies inside it.
+//
+// Built by halves: the objects of a node are split at the median of their middles, along the axis on which those reach
+// farthest. It is of the objects as they stand, whatever they were made of: groups of an OBJ, nodes of a glTF file (whose own
+// tree is one of structure, not of space), or something that a skin has moved. A node's box holds its objects' boxes, its
+// sphere their spheres.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sim/scene/object_cull.hpp"
+
+namespace halfplane {
+
+/// What one look through a tree took.
+struct BoundsWork {
+  std::size_t tests = 0;          ///< of nodes and objects against the view
+  std::size_t nodes_outside = 0;  ///< of several objects, all outside by one test
+  std::size_t nodes_inside = 0;   ///< of several objects, all inside by one test
+};
+
+class BoundsTree {
+ public:
+  BoundsTree() = default;
+  explicit BoundsTree(std::span<const ObjectBounds> objects);
+
+  /// Object by object what outside_view() says, of `tests` (bits of Draw::outside): the same bits, whatever the tree.
+  [[nodiscard]] std::vector<std::uint8_t> outside_view(const Mat4& to_clip, std::uint8_t tests, BoundsWork& work) const;
+
+ private:
+  struct Node {
+    ObjectBounds bounds;
+    std::size_t first = 0, count = 0;  ///< in order_
+    std::size_t right = 0;             ///< the left half is the next node; 0: one object
+  };
+  std::size_t build(std::span<const ObjectBounds> objects, std::size_t first, std::size_t count);
+
+  std::size_t objects_ = 0;
+  std::vector<Node> nodes_;           ///< each before its halves
+  std::vector<std::uint32_t> order_;  ///< objects, so that a node's stand beside each other
+};
+
+}  // namespace halfplane
