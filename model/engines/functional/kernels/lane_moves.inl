@@ -537,10 +537,9 @@ HALFPLANE_INLINE Columns turned_rows(RowAt&& row_at) {
   return to;
 }
 
-/// The other way round: lane i to the row at `to` + i * `stride` bytes.
-HALFPLANE_INLINE void store_rows(const Columns& from, void* to, std::size_t stride) {
-  const auto row_at = [=](int i)
-                          HALFPLANE_LAMBDA { return static_cast<char*>(to) + static_cast<std::size_t>(i) * stride; };
+/// The other way round: lane i to the row at row_at(i).
+template <class RowAt>
+HALFPLANE_INLINE void store_rows(const Columns& from, RowAt&& row_at) {
 #if defined(__x86_64__)
   for (int part = 0; part < I16::kParts; ++part) {
     const auto put = [&](int i, const I16::Register& quarters) HALFPLANE_LAMBDA {  // i, i + 4, ...
@@ -574,6 +573,62 @@ HALFPLANE_INLINE void store_rows(const Columns& from, void* to, std::size_t stri
     std::memcpy(row_at(i), row.data(), sizeof row);
   }
 #endif
+}
+/// At `to` + i * `stride` bytes.
+HALFPLANE_INLINE void store_rows(const Columns& from, void* to, std::size_t stride) {
+  store_rows(from, [=](int i) HALFPLANE_LAMBDA {
+    return static_cast<char*>(to) + static_cast<std::size_t>(i) * stride;
+  });
+}
+
+/// Two columns of sixteen rows of two numbers.
+struct DoubleColumns {
+  D16 first, second;
+};
+
+/// Lane i: the row at row_at(i).
+template <class RowAt>
+HALFPLANE_INLINE DoubleColumns turned_doubles(RowAt&& row_at) {
+  DoubleColumns to;
+#if defined(__x86_64__)
+  for (int part = 0; part < D16::kParts; ++part) {
+    const auto row = [&](int i) HALFPLANE_LAMBDA {
+      return _mm_loadu_pd(reinterpret_cast<const double*>(row_at(part * D16::kLanes + i)));
+    };
+    const auto rows = [&](int i) HALFPLANE_LAMBDA {  // i, i + 2, ...
+#if HALFPLANE_ISA == 512
+      const __m512d two = _mm512_insertf64x2(_mm512_castpd128_pd512(row(i)), row(i + 2), 1);
+      return _mm512_insertf64x2(_mm512_insertf64x2(two, row(i + 4), 2), row(i + 6), 3);
+#elif HALFPLANE_ISA == 256
+      return _mm256_insertf128_pd(_mm256_castpd128_pd256(row(i)), row(i + 2), 1);
+#else
+      return row(i);
+#endif
+    };
+    const auto a = rows(0), b = rows(1);
+#if HALFPLANE_ISA == 512
+    to.first.part[part] = (D16::Register)_mm512_unpacklo_pd(a, b);
+    to.second.part[part] = (D16::Register)_mm512_unpackhi_pd(a, b);
+#elif HALFPLANE_ISA == 256
+    to.first.part[part] = (D16::Register)_mm256_unpacklo_pd(a, b);
+    to.second.part[part] = (D16::Register)_mm256_unpackhi_pd(a, b);
+#else
+    to.first.part[part] = (D16::Register)_mm_unpacklo_pd(a, b);
+    to.second.part[part] = (D16::Register)_mm_unpackhi_pd(a, b);
+#endif
+  }
+#else
+  const auto column = [&](int at) HALFPLANE_LAMBDA {
+    return D16::of([&](int i) HALFPLANE_LAMBDA {
+      double value;
+      std::memcpy(&value, reinterpret_cast<const char*>(row_at(i)) + 8 * at, sizeof value);
+      return value;
+    });
+  };
+  to.first = column(0);
+  to.second = column(1);
+#endif
+  return to;
 }
 
 /// Four rows of four pixels of an image.
