@@ -121,7 +121,7 @@ struct SurfaceStyle {
   SurfaceStyle(const FrameContext& frame, const DrawContext& draw);
 
   const DrawContext* context;
-  bool is_in_lanes = false;          ///< else there is nothing more to know
+  bool is_in_lanes = false;  ///< else there is nothing more to know
   Sampling sampling = Sampling::none;
   bool is_affine = false;            ///< w makes no difference to coordinates
   bool is_tame = true;               ///< so are the coordinates of all that have been set up: LaneAttribute

@@ -114,7 +114,8 @@ struct alignas(64) PieceConstants {
   /// In a tile. A window has one with even column and even row, and so on.
   struct Tile {
     std::array<std::int32_t, 4> coordinates{};  ///< anchors of Q and of P of u and v, in lanes; u_ref of v
-    std::array<std::int32_t, 4> colors{};  ///< anchors of red and green, blue and alpha; codes of the vertices, lowest, highest
+    std::array<std::int32_t, 4>
+        colors{};  ///< anchors of red and green, blue and alpha; codes of the vertices, lowest, highest
   };
   std::array<std::int32_t, 4> step_x{};  ///< of Q and P; and, a byte each, what LaneAttribute drops: narrow, drop
   std::array<std::int32_t, 4> step_y{};  ///< of Q and P; u_ref of u
@@ -142,12 +143,13 @@ struct BinMemory {
   std::vector<DrawnSurface> drawn;
   // Pieces that wait, from 1 on; a pixel of one has its number and this beside it.
   static constexpr std::size_t kFirstPiece = kSurfaces;
-  enum : std::uint8_t { kUnseen = 0, kSeen = 1, kSetUp = 2, kAlone = 4 };  ///< bits
-  std::vector<Piece> pieces;                ///< kSurfaces, where there are any
-  std::vector<std::uint8_t> piece_states;   ///< likewise, of each
-  std::vector<PieceConstants> constants;    ///< likewise; the first is nobody's
-  std::vector<PieceLevels> levels;          ///< likewise, where a style asks
-  std::vector<SurfaceStyle> styles;         ///< of pieces that follow each other
+  enum : std::uint8_t { kUnseen, kSetUp, kAlone };
+  std::vector<Piece> pieces;               ///< kSurfaces, where there are any
+  std::vector<std::uint8_t> piece_states;  ///< likewise, of each
+  std::vector<std::uint8_t> seen_numbers;  ///< by what pixels have: those of pieces are 0 but while they are looked at
+  std::vector<PieceConstants> constants;   ///< likewise; the first is nobody's
+  std::vector<PieceLevels> levels;         ///< likewise, where a style asks
+  std::vector<SurfaceStyle> styles;        ///< of pieces that follow each other
 
   static BinMemory& of_thread() {
     static thread_local BinMemory memory;

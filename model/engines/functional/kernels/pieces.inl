@@ -2,9 +2,7 @@
 // and shaded sixteen pixels at a time, whosever they are: a lane fetches what it needs of the triangle that it shows.
 // A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
 
-HALFPLANE_INLINE D16 magnitude(const D16& v) {
-  return as<D16>(as<L16>(v) & std::int64_t{0x7fffffffffffffff});
-}
+HALFPLANE_INLINE D16 magnitude(const D16& v) { return as<D16>(as<L16>(v) & std::int64_t{0x7fffffffffffffff}); }
 /// The exponent of numbers without a sign, as binary64 has it.
 HALFPLANE_INLINE I16 exponent_field(const D16& v) { return upper_halves(as<L16>(v)) >> 20; }
 /// The other way round: 2^(field - 1023).
@@ -156,10 +154,11 @@ HALFPLANE_NOINLINE std::uint32_t set_up_levels(const SmallCorners& corners, cons
     row[axis] = sum(y, 0);
     column[axis] = sum(x, 0);
     for (std::size_t i = 0; i < 3; ++i)
-      largest = max(largest, max(magnitude(i == 0 ? row[axis] : sum(y, i)), magnitude(i == 0 ? column[axis] : sum(x, i))));
+      largest =
+          max(largest, max(magnitude(i == 0 ? row[axis] : sum(y, i)), magnitude(i == 0 ? column[axis] : sum(x, i))));
   }
-  const D16 to_pixels = D16(static_cast<double>(std::int64_t{1} << grid_bits)) /
-                        convert<double>(max(corners.area, I16(1)));
+  const D16 to_pixels =
+      D16(static_cast<double>(std::int64_t{1} << grid_bits)) / convert<double>(max(corners.area, I16(1)));
   const I16 is_flat = convert<std::int32_t>(largest == 0.0);
   const I16 up = 30 + kDoubleBias - exponent_field(largest * to_pixels);  // g
   const D16 scale = to_pixels * power_of_field(select(is_flat, I16(0), up) + kDoubleBias);
@@ -197,9 +196,9 @@ HALFPLANE_NOINLINE std::uint32_t set_up_levels(const SmallCorners& corners, cons
 struct PiecePlanes {
   const Widths& widths;
   const PerspectiveFormat& format;
-  L16 ax, ay, bx, by;            ///< the corners from the base
-  L16 to_x, to_y;                ///< the anchor of the tile of even column and row from it
-  L16 is_odd_column, is_odd_row; ///< masks: of the window's first tile
+  L16 ax, ay, bx, by;             ///< the corners from the base
+  L16 to_x, to_y;                 ///< the anchor of the tile of even column and row from it
+  L16 is_odd_column, is_odd_row;  ///< masks: of the window's first tile
   GradientLanes gradient;
 
   /// In lanes, `up` bits below its values.
@@ -217,8 +216,8 @@ struct PiecePlanes {
     const auto turned_where = [](const L16& v, const L16& mask) HALFPLANE_LAMBDA { return (v ^ mask) - mask; };
     const L16 aside = turned_where(step_x << to_tile, is_odd_column),
               below = turned_where(step_y << to_tile, is_odd_row);
-    const L16 first = (convert<std::int64_t>(code.a) << fraction) + step_x * to_x + step_y * to_y +
-                      (std::int64_t{1} << (drop - 1));
+    const L16 first =
+        (convert<std::int64_t>(code.a) << fraction) + step_x * to_x + step_y * to_y + (std::int64_t{1} << (drop - 1));
     const auto narrow = [drop, up](const L16& v)
                             HALFPLANE_LAMBDA { return convert<std::int32_t>(shift_right_logical(v, drop)) << up; };
     Plane plane;
@@ -312,10 +311,16 @@ HALFPLANE_NOINLINE std::uint32_t set_up_pieces(Bin& bin, SurfaceStyle& style,
   std::uint32_t alone = 0;
   {
     const auto fetch = [&](std::size_t k, D16& its_w, D16& its_u, D16& its_v) HALFPLANE_LAMBDA {
+      static_assert(sizeof(VertexRow) == 16);
+      alignas(64) std::array<std::int32_t, 16> place;  // of bytes, from those of rows
+      (shift_right_logical(I16::load(batch.corner[k].data()), 4) * static_cast<std::int32_t>(sizeof(SurfaceVertex)))
+          .store(place.data());
       const auto vertex = [&](int i) HALFPLANE_LAMBDA {
-        return slice.surface.data() + batch.records[static_cast<std::size_t>(i)]->v[k];
+        return reinterpret_cast<const SurfaceVertex*>(reinterpret_cast<const char*>(slice.surface.data()) +
+                                                      static_cast<std::uint32_t>(place[static_cast<std::size_t>(i)]));
       };
-      static_assert(offsetof(SurfaceVertex, w) == 0 && offsetof(SurfaceVertex, u) == 8 && offsetof(SurfaceVertex, v) == 16);
+      static_assert(offsetof(SurfaceVertex, w) == 0 && offsetof(SurfaceVertex, u) == 8 &&
+                    offsetof(SurfaceVertex, v) == 16);
       const DoubleColumns first = turned_doubles([&](int i) HALFPLANE_LAMBDA { return &vertex(i)->w; }),
                           second = turned_doubles([&](int i) HALFPLANE_LAMBDA { return &vertex(i)->v; });
       its_w = style.is_affine ? D16(1.0) : first.first;
@@ -350,8 +355,7 @@ HALFPLANE_NOINLINE std::uint32_t set_up_pieces(Bin& bin, SurfaceStyle& style,
   };
   const I16 reference_u = reference(along_u, 0), reference_v = reference(along_v, 1);
   const auto byte = [](const I16& value, int at) HALFPLANE_LAMBDA { return (value & 255) << at; };
-  const I16 drops =
-      byte(scale_u.narrow, 0) | byte(scale_v.narrow, 8) | byte(scale_u.drop, 16) | (scale_v.drop << 24);
+  const I16 drops = byte(scale_u.narrow, 0) | byte(scale_v.narrow, 8) | byte(scale_u.drop, 16) | (scale_v.drop << 24);
 
   const FirstCorner first(corners);
   if (style.sampling == Sampling::any) {
@@ -386,7 +390,8 @@ HALFPLANE_NOINLINE std::uint32_t set_up_pieces(Bin& bin, SurfaceStyle& style,
                            wide(is_odd_column),
                            wide(is_odd_row),
                            {reciprocal, shift}};
-  const auto turn = [&order](const OfCorners<I16>& of) HALFPLANE_LAMBDA { return order.turned_to_base(of.a, of.b, of.c); };
+  const auto turn = [&order](const OfCorners<I16>& of)
+                        HALFPLANE_LAMBDA { return order.turned_to_base(of.a, of.b, of.c); };
   const PiecePlanes::Plane of_q = over_w(turn(q.code), style.division.up),
                            of_u = over_w(turn(along_u.p), style.of_coordinate.up),
                            of_v = over_w(turn(along_v.p), style.of_coordinate.up);
@@ -400,8 +405,8 @@ HALFPLANE_NOINLINE std::uint32_t set_up_pieces(Bin& bin, SurfaceStyle& style,
 }
 
 /// over_q(), `value`: P. Lanes have what LaneAttribute has. `is_tame`: as there, of all.
-HALFPLANE_INLINE I16 over_q(const I16& value, const ReciprocalsOfQ& q, const I16& narrow, const I16& drop,
-                            bool is_tame, const LaneOverW& format) {
+HALFPLANE_INLINE I16 over_q(const I16& value, const ReciprocalsOfQ& q, const I16& narrow, const I16& drop, bool is_tame,
+                            const LaneOverW& format) {
   const I16 down = q.exponent + narrow - PieceScale::kNarrowLess;
   I16 number;
   if (is_tame) {
@@ -417,8 +422,8 @@ HALFPLANE_INLINE I16 over_q(const I16& value, const ReciprocalsOfQ& q, const I16
 }
 
 /// Levels of detail at pixels, by the rows of PieceLevels. `q`: float_bits() of Q.
-HALFPLANE_INLINE I16 piece_lod(const Columns& at_zero, const Columns& step, const I16& offset, const I16& x, const I16& y,
-                               const I16& q) {
+HALFPLANE_INLINE I16 piece_lod(const Columns& at_zero, const Columns& step, const I16& offset, const I16& x,
+                               const I16& y, const I16& q) {
   const auto at = [](const I16& zero, const I16& of_pixel, const I16& pixel)
                       HALFPLANE_LAMBDA { return as<W16>(magnitude(zero + pixel * of_pixel)); };
   const W16 to_right = octagon_length(at(at_zero.first, step.first, y), at(at_zero.second, step.second, y)),
@@ -446,13 +451,13 @@ HALFPLANE_NOINLINE void shade_pieces(Bin& bin, const SurfaceStyle& style, int ti
     static_assert(sizeof(PieceConstants) == 3 * 64);
     const I16 whose = select_by_bits(bits, number, I16(0), position.to_sign) << 6;
     const Places place(whose + (whose << 1));
-    const auto row = [&place](const char* from, std::size_t offset) HALFPLANE_LAMBDA {
-      return turned_rows([&place, from, offset](int i) HALFPLANE_LAMBDA { return from + place[i] + offset; });
-    };
+    ColumnsOfRows<3> of_all;
+    ColumnsOfRows<2> here;
+    turned_rows([&place, shared](int i) HALFPLANE_LAMBDA { return shared + place[i]; }, of_all);
+    turned_rows([&place, of_tile](int i) HALFPLANE_LAMBDA { return of_tile + place[i]; }, here);
+    const Columns &step_x = of_all.row[0], &step_y = of_all.row[1], &step = of_all.row[2], &anchor = here.row[0],
+                  &from = here.row[1];
     const std::size_t right = block & 1, below = block >> 1;
-    const Columns step_x = row(shared, offsetof(PieceConstants, step_x)),
-                  step_y = row(shared, offsetof(PieceConstants, step_y)),
-                  anchor = row(of_tile, offsetof(PieceConstants::Tile, coordinates));
     const I16 &column = position.column[right], &line = position.row[below];
     const ReciprocalsOfQ q(anchor.first + column * step_x.first + line * step_y.first, style.division);
     const auto along = [&](const I16& at_anchor, const I16& of_x, const I16& of_y, const I16& narrow, const I16& drop,
@@ -468,26 +473,26 @@ HALFPLANE_NOINLINE void shade_pieces(Bin& bin, const SurfaceStyle& style, int ti
         along(anchor.third, step_x.third, step_y.third, drops << 16 >> 24, drops >> 24, anchor.fourth, 1)};
     const ColorPairs texels = [&]() HALFPLANE_LAMBDA {
       if constexpr (kSampling == Sampling::linear) return filter_linear(texture, at, BaseLevel(texture));
-      if constexpr (kSampling == Sampling::nearest)
-        return ColorPairs(filter_nearest(texture, at, BaseLevel(texture)));
+      if constexpr (kSampling == Sampling::nearest) return ColorPairs(filter_nearest(texture, at, BaseLevel(texture)));
       const Places of_levels(whose);
       const auto level_row = [&](std::size_t offset) HALFPLANE_LAMBDA {
         const char* const levels = reinterpret_cast<const char*>(bin.memory.levels.data()) + offset;
         return turned_rows([&of_levels, levels](int i) HALFPLANE_LAMBDA { return levels + of_levels[i]; });
       };
-      const I16 x = position.block_x + (bin.first_x + tile % kBinTiles * kTileSize + static_cast<int>(right) * kBlockSize),
-                y = position.block_y + (bin.first_y + tile / kBinTiles * kTileSize + static_cast<int>(below) * kBlockSize);
-      const Columns at_zero = level_row(offsetof(PieceLevels, at_zero)), step = level_row(offsetof(PieceLevels, step)),
-                    offset = level_row(offsetof(PieceLevels, offset));
-      return sample(texture, at, piece_lod(at_zero, step, offset.first, x, y, q.bits));
+      const I16 x = position.block_x +
+                    (bin.first_x + tile % kBinTiles * kTileSize + static_cast<int>(right) * kBlockSize),
+                y = position.block_y +
+                    (bin.first_y + tile / kBinTiles * kTileSize + static_cast<int>(below) * kBlockSize);
+      const Columns at_zero = level_row(offsetof(PieceLevels, at_zero)),
+                    of_pixel = level_row(offsetof(PieceLevels, step)), less = level_row(offsetof(PieceLevels, offset));
+      return sample(texture, at, piece_lod(at_zero, of_pixel, less.first, x, y, q.bits));
     }();
-    const Columns step = row(shared, offsetof(PieceConstants, color)),
-                  from = row(of_tile, offsetof(PieceConstants::Tile, colors));
     const S32 column_pair = as<S32>(position.column_pair[right]), row_pair = as<S32>(position.row_pair[below]);
     const auto pair = [&](const I16& at_anchor, const I16& of_x, const I16& of_y, std::size_t which) HALFPLANE_LAMBDA {
       const S32 value = column_pair * as<S32>(of_x) + row_pair * as<S32>(of_y) + as<S32>(at_anchor);
       const S32 code = (value >> color_down) + static_cast<std::int16_t>(0x80);
-      return as<I16>(min(max(code, as<S32>(channel_pair(from.third, which))), as<S32>(channel_pair(from.fourth, which))));
+      return as<I16>(
+          min(max(code, as<S32>(channel_pair(from.third, which))), as<S32>(channel_pair(from.fourth, which))));
     };
     const I16 red_green = pair(from.first, step.first, step.third, 0),
               blue_alpha = pair(from.second, step.second, step.fourth, 1);

@@ -55,17 +55,12 @@ HALFPLANE_INLINE std::uint64_t pixels_of_pieces(const Bin& bin, const U64& surfa
 HALFPLANE_NOINLINE void set_up_seen(Bin& bin, std::uint64_t tiles) {
   BinMemory& memory = bin.memory;
   std::uint8_t* const states = memory.piece_states.data();
-  std::size_t lowest = bin.piece_count + 1, highest = 0;
+  std::uint8_t* const seen = memory.seen_numbers.data();  // by the number of a pixel, whoever has it
   for (; tiles != 0; tiles &= tiles - 1) {
     const int tile = std::countr_zero(tiles);
     if (bin.color_owner[tile] != Bin::kSurfaces) continue;
     const std::uint16_t* const numbers = memory.surface.data() + first_of(tile);
-    for (std::uint64_t rest = pixels_of_pieces(bin, U64::load(numbers)); rest != 0; rest &= rest - 1) {
-      const std::size_t number = numbers[std::countr_zero(rest)] - BinMemory::kFirstPiece;
-      states[number] |= BinMemory::kSeen;
-      lowest = std::min(lowest, number);
-      highest = std::max(highest, number);
-    }
+    for (int i = 0; i < kTileSize * kTileSize; ++i) seen[numbers[i]] = 1;
   }
   std::array<std::uint16_t, 16> numbers{};
   std::size_t style = 0;
@@ -85,8 +80,8 @@ HALFPLANE_NOINLINE void set_up_seen(Bin& bin, std::uint64_t tiles) {
     }
     count = 0;
   };
-  for (std::size_t number = lowest; number <= highest; ++number) {
-    if (states[number] != BinMemory::kSeen) continue;
+  const auto add = [&](std::size_t number) {
+    if (states[number] != BinMemory::kUnseen) return;
     const auto style_ends = [&]() {
       return style + 1 < memory.styles.size() && static_cast<std::size_t>(memory.styles[style + 1].first) <= number;
     };
@@ -94,6 +89,16 @@ HALFPLANE_NOINLINE void set_up_seen(Bin& bin, std::uint64_t tiles) {
     while (style_ends()) ++style;
     numbers[static_cast<std::size_t>(count)] = static_cast<std::uint16_t>(number);
     if (++count == 16) set_up_those();
+  };
+  constexpr std::size_t kWord = 8;
+  for (std::size_t first = 0; first <= bin.piece_count; first += kWord) {
+    std::uint8_t* const word = seen + BinMemory::kFirstPiece + first;
+    std::uint64_t any;
+    std::memcpy(&any, word, kWord);
+    if (any == 0) continue;
+    for (std::size_t i = 0; i < kWord; ++i)
+      if (word[i] != 0) add(first + i);
+    std::memset(word, 0, kWord);
   }
   set_up_those();
 }
@@ -106,7 +111,7 @@ HALFPLANE_NOINLINE std::uint64_t shade_pieces_of(Bin& bin, int tile, std::uint64
   if (bin.has_lone_pieces) {
     for (std::uint64_t rest = pieces; rest != 0; rest &= rest - 1) {
       std::uint16_t& number = numbers[std::countr_zero(rest)];
-      if ((memory.piece_states[number - BinMemory::kFirstPiece] & BinMemory::kAlone) == 0) continue;
+      if (memory.piece_states[number - BinMemory::kFirstPiece] != BinMemory::kAlone) continue;
       number = memory.pieces[number - BinMemory::kFirstPiece].alone;
       pieces &= ~(rest & -rest);
     }
@@ -173,6 +178,7 @@ inline bool has_style(Bin& bin, const Slice& slice) {
   if (memory.styles.back().is_in_lanes && memory.pieces.empty()) {
     memory.pieces.resize(BinMemory::kSurfaces);
     memory.piece_states.resize(BinMemory::kSurfaces);
+    memory.seen_numbers.resize(BinMemory::kFirstPiece + BinMemory::kSurfaces);
     memory.constants.resize(BinMemory::kSurfaces);
   }
   if (memory.styles.back().sampling == Sampling::any && memory.levels.empty())

@@ -321,5 +321,7 @@ HALFPLANE_NOINLINE void set_up_small(SmallBatch& batch, const Slice& slice, cons
   const FromOrigin to = anchor_from_origin(corners, I16::load(batch.left.data()), I16::load(batch.top.data()),
                                            widths.grid_bits, first_x, first_y);
   set_up_small_depth(batch, planes, to, depth_format, samples);
-  if (slice.state.color_write) set_up_small_colors(batch, planes, to, color_format, slice.state.is_flat, samples);
+  // Those of surfaces wait until they are seen.
+  if (slice.state.color_write && !slice.state.has_surface)
+    set_up_small_colors(batch, planes, to, color_format, slice.state.is_flat, samples);
 }
