@@ -50,6 +50,17 @@ Scene layers_scene(int width, int height, int layers, bool is_front_first) {
   return scene;
 }
 
+// A texture of lines for all that is drawn.
+void add_grid(Scene& scene, int side, bool is_linear) {
+  scene.textures.push_back(
+      make_texture("grid", pattern_image(TexturePattern::grid, side, side), TextureFormat::rgba8888, Mips::none));
+  for (State& state : scene.states) {
+    state.texture = 0;
+    state.texture_min = is_linear ? TextureMin::linear : TextureMin::nearest;
+    state.texture_mag = is_linear ? TextureMag::linear : TextureMag::nearest;
+  }
+}
+
 // The layers with a texture, seen in perspective: w is 1, 2 and 4 at their corners, and a texel about a pixel large.
 Scene textured_layers_scene(int width, int height, int layers, bool is_front_first, bool is_linear) {
   constexpr int kSide = 256;  // texels
@@ -61,11 +72,7 @@ Scene textured_layers_scene(int width, int height, int layers, bool is_front_fir
     const double w = static_cast<double>(1 << (i + i / 3) % 3);
     v = {v.x * w, v.y * w, v.z * w, w, v.rgba, v.u, v.v};
   }
-  scene.textures.push_back(
-      make_texture("grid", pattern_image(TexturePattern::grid, kSide, kSide), TextureFormat::rgba8888, Mips::none));
-  scene.states[0].texture = 0;
-  scene.states[0].texture_min = is_linear ? TextureMin::linear : TextureMin::nearest;
-  scene.states[0].texture_mag = is_linear ? TextureMag::linear : TextureMag::nearest;
+  add_grid(scene, kSide, is_linear);
   return scene;
 }
 
@@ -170,6 +177,17 @@ Mesh ball_mesh(int rings) {
   mesh.lit = false;
   add_sphere(mesh, {}, rings, 2 * rings, 0, std::numbers::pi);
   close_object(mesh, "ball", true);
+  return mesh;
+}
+
+// The ball with a texture, eight times around it and four times from pole to pole.
+Mesh textured_ball_mesh(int rings) {
+  Mesh mesh = ball_mesh(rings);
+  const std::size_t around = 2 * static_cast<std::size_t>(rings);
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    mesh.vertices[i].u = 8.0 * static_cast<double>(i % around) / static_cast<double>(around);
+    mesh.vertices[i].v = 4.0 * static_cast<double>(i / around) / rings;
+  }
   return mesh;
 }
 
@@ -363,10 +381,13 @@ Scene make_work_scene(std::string_view name, int size, int width, int height, co
     for (State& state : scene.states) state.color_write = name == "blocks";
     return scene;
   }
-  if (name == "ball") {
+  if (name == "ball" || name == "ball_nearest" || name == "ball_linear") {
     CameraRequest own;
     own.fov = 20;  // nearly half of the ball faces the eye
-    return view([&] { return ball_mesh(size); }, own, Cull::back);
+    if (name == "ball") return view([&] { return ball_mesh(size); }, own, Cull::back);
+    Scene scene = view([&] { return textured_ball_mesh(size); }, own, Cull::back);
+    add_grid(scene, 256, name == "ball_linear");
+    return scene;
   }
   const double fov = std::max(22.0, fov_across(47, aspect));  // both bowls, at any aspect
   return view([&] { return shell_mesh(size); }, straight_on({0, 3.2, 5}, {0, -0.45, 0}, fov), Cull::none);

@@ -18,7 +18,7 @@ namespace halfplane {
 namespace {
 
 constexpr std::size_t kPictures = 10;  // the others are work
-constexpr std::array<Builtin, kPictures + 16> kBuiltins{{
+constexpr std::array<Builtin, kPictures + 18> kBuiltins{{
     {"teapot", "the Utah teapot from its 32 Bezier patches", "segments along a patch side", 10, 1, 128, true},
     {"city", "boxes of random height, back faces culled", "boxes", 400, 1, 65536, true},
     {"knot", "a torus knot in all hues", "segments along the tube", 256, 16, 4096, true},
@@ -39,6 +39,8 @@ constexpr std::array<Builtin, kPictures + 16> kBuiltins{{
     {"layers_glass", "layers that are blended over each other", "triangles", 64, 1, 8192, false},
     {"layers_leaves", "layers with a texture, of which an alpha test drops half", "triangles", 64, 1, 8192, false},
     {"ball", "a sphere of small triangles, back faces culled", "rings", 160, 2, 1024, true},
+    {"ball_nearest", "the same with a texture, nearest texels", "rings", 160, 2, 1024, true},
+    {"ball_linear", "the same, linear filter", "rings", 160, 2, 1024, true},
     {"blocks", "boxes that hide each other, front to back, back faces culled", "boxes", 2000, 1, 65536, true},
     {"blocks_depth", "the same without colour: depth only", "boxes", 2000, 1, 65536, true},
     {"scratches", "lines of about 60 pixels", "lines", 50000, 1, 4000000, false},

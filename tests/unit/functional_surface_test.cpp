@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string>
 
 #include "../functional_case.hpp"
@@ -180,6 +181,34 @@ TEST(FunctionalSurface, TheSmallestAndTheLargestTexturesAreTheSameOnEveryPath) {
       }
 }
 
+/// Small triangles, which are set up sixteen at a time: coordinates from a texel to more than 32 bits count, and vertices
+/// behind each other by more than Q tells apart, so that some lanes are left to the stages.
+TEST(FunctionalSurface, SmallTrianglesOfEveryReachAreTheSameOnEveryPath) {
+  std::uint32_t seed = 300;
+  for (const char* name : {"small", "embedded", "full"})
+    for (const TextureWrap wrap : {TextureWrap::repeat, TextureWrap::clamp, TextureWrap::mirror})
+      for (const TextureMin min : {TextureMin::nearest, TextureMin::linear, TextureMin::linear_mipmap_linear}) {
+        SCOPED_TRACE(std::string(name) + ", wrap " + std::to_string(static_cast<int>(wrap)) + ", min " +
+                     std::to_string(static_cast<int>(min)) + ", seed " + std::to_string(seed));
+        Random random(seed++);
+        SceneBuilder builder(kWidth, kHeight);
+        State state = SceneBuilder::window_state();
+        state.texture = 0;
+        state.texture_wrap = {wrap, wrap};
+        state.texture_min = min;
+        state.texture_mag = min == TextureMin::nearest ? TextureMag::nearest : TextureMag::linear;
+        builder.scene.textures.push_back(noise(random, 64, 16, TextureFormat::rgba8888, Mips::box));
+        for (const TextureInterp interp : {TextureInterp::perspective, TextureInterp::affine}) {
+          state.texture_interp = interp;
+          builder.scene.states.push_back(state);
+          for (const double texels : {0.01, 30.0, 5000.0, 3e6, 1e8, 1e11})
+            for (const double octaves : {0.0, 3.0, 60.0, 600.0})
+              add_triangles(builder.scene, random, 12, 2 + 4 * random.index(5), octaves, texels);
+        }
+        expect_all_same(builder.scene, with_colors(name));
+      }
+}
+
 /// More triangles of a pixel or two in each bin than there are numbers for.
 TEST(FunctionalSurface, MoreSurfacesThanNumbersAreTheSameOnEveryPath) {
   Random random(7);
@@ -268,6 +297,31 @@ TEST(FunctionalSurface, WhatIsUsualIsDrawnInLanes) {
   }
   EXPECT_EQ(in_lanes, 200);
   EXPECT_EQ(narrow, 200);
+}
+
+TEST(FunctionalSurface, SmallTrianglesOfUsualDrawsAreSetUpInLanes) {
+  const auto is_in_lanes = [](const char* name, int width, const std::function<void(State&)>& change) {
+    Random random(1);
+    SceneBuilder builder(kWidth, kHeight);
+    State state = SceneBuilder::window_state();
+    state.texture = 0;
+    change(state);
+    builder.scene.states.push_back(state);
+    builder.scene.textures.push_back(noise(random, width, 64, TextureFormat::rgba8888, Mips::none));
+    add_triangles(builder.scene, random, 1, 5, 1, 50);
+    const Config config = with_colors(name);
+    const Widths widths = derive_widths(config);
+    const PreparedScene prepared(builder.scene);
+    const functional::FrameContext frame{prepared, config, widths, {}, 0, 0};
+    const DrawContext context(builder.scene, config, std::get<Draw>(builder.scene.commands.back()), 0);
+    return functional::SurfaceStyle(frame, context).is_in_lanes;
+  };
+  const auto keep = [](State&) {};
+  for (const char* name : {"tiny", "small", "embedded"}) EXPECT_TRUE(is_in_lanes(name, 64, keep)) << name;
+  EXPECT_FALSE(is_in_lanes("full", 64, keep));  // numerators of more than 64 bits
+  EXPECT_FALSE(is_in_lanes("embedded", 60, keep));
+  EXPECT_FALSE(is_in_lanes("embedded", 64, [](State& s) { s.color_interp = ColorInterp::perspective; }));
+  EXPECT_FALSE(is_in_lanes("embedded", 64, [](State& s) { s.fog = Fog{}; }));
 }
 
 }  // namespace

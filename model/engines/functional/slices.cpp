@@ -66,14 +66,14 @@ void find_surface_vertices(const FrameContext& frame, Slice& slice) {
     const auto normal = is_lit ? normal_codes(unit_normal(scene.normal(i))) : Normal{};
     return {v.w, v.u, v.v, normal};
   };
-  slice.surface.clear();
+  slice.surface.resize(slice.vertices.size());
+  SurfaceVertex* to = slice.surface.data();
   if (!slice.is_wide)
-    for (std::size_t i = slice.low_index; i <= slice.high_index; ++i) slice.surface.push_back(surface_of(i));
+    for (std::size_t i = slice.low_index; i <= slice.high_index; ++i) *to++ = surface_of(i);
   else
     for (const Slice::Part& part : slice.parts)
       for (std::size_t t = part.first; t < part.first + part.count; ++t)
-        for (const auto& corner : frame.prepared.index) slice.surface.push_back(surface_of(corner[t]));
-  slice.surface.resize(slice.vertices.size());
+        for (const auto& corner : frame.prepared.index) *to++ = surface_of(corner[t]);
 }
 
 /// The pixels of a line, as a box.

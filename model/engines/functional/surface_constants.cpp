@@ -91,6 +91,56 @@ LaneOverW::LaneOverW(const OverWFormat& attribute, const PerspectiveFormat& form
       split(std::max(format.mantissa_bits + attribute.narrow_bits - 30, 0)),
       lower_bits((1 << split) - 1) {}
 
+LaneTexture texture_lanes(const Sampler& sampler, const TexelBlocks& texels, TextureCombine combine,
+                          int fraction_bits) {
+  LaneTexture lanes;
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    lanes.bits[axis] = floor_log2(static_cast<unsigned>(sampler.axes[axis].size));
+    lanes.last[axis] = sampler.axes[axis].size - 1;
+    lanes.wrap[axis] = sampler.axes[axis].wrap;
+  }
+  lanes.texels = texels.blocks.data();
+  lanes.quads = texels.quads(lanes.wrap);
+  lanes.pitch = std::max(lanes.bits[0], TexelBlocks::kShift);
+  lanes.first = texels.first;
+  lanes.up = kTexelFraction - fraction_bits;
+  lanes.min = sampler.min;
+  lanes.mag = sampler.mag;
+  lanes.last_level = sampler.texture->last_level();
+  lanes.bias = sampler.bias;
+  lanes.least = sampler.least;
+  lanes.largest = sampler.largest;
+  const bool has_levels = sampler.min != TextureMin::nearest && sampler.min != TextureMin::linear;
+  lanes.magnified = sampler.mag == TextureMag::linear && is_nearest(sampler.min) && has_levels ? 128 : 0;
+  lanes.combine = combine;
+  lanes.has_alpha = has_alpha(sampler.texture->format);
+  return lanes;
+}
+
+/// The bounds: P less P of another vertex has a bit more than P, a numerator is the difference of two products of such a
+/// number and a side, and the reciprocal is at most 2^r. Where a product gains bits, they are those of F beyond r.
+SurfaceStyle::SurfaceStyle(const FrameContext& frame, const DrawContext& draw)
+    : context(&draw),
+      format(perspective_format(frame.config)),
+      division(format),
+      of_coordinate(format.coordinate, format) {
+  const State& state = draw.state;
+  if (!state.texture || state.color_interp == ColorInterp::perspective || draw.fog || draw.phong) return;
+  const Widths& widths = frame.widths;
+  const int numerator = std::max(format.q_bits, format.coordinate.bits) + 2 + extent_bits(kMediumPixelBits, widths),
+            gained = std::max(widths.plane_fraction - format.reciprocal_bits, 0);
+  if (numerator + format.reciprocal_bits + gained > 61 || division.up < 1 || of_coordinate.up < 1) return;
+  const Sampler sampler(draw.scene.textures[*state.texture], state);
+  for (const TextureAxis& axis : sampler.axes)
+    if (!axis.is_power_of_two()) return;
+  is_in_lanes = true;
+  is_affine = state.texture_interp == TextureInterp::affine;
+  for (std::size_t axis = 0; axis < 2; ++axis) size[axis] = sampler.axes[axis].size;
+  texture = texture_lanes(sampler, frame.prepared.textures[*state.texture], state.texture_combine,
+                          format.coordinate.fraction_bits);
+  sampling = sampling_of(texture);
+}
+
 SurfaceConstants::SurfaceConstants(const StageSurface& from, const FrameContext& frame, const TexelBlocks* texels)
     : division(from.surface.format()),
       of_coordinate(from.surface.format().coordinate, from.surface.format()),
@@ -164,31 +214,14 @@ void SurfaceConstants::set_texture(const StageSurface& from, const Widths& width
   const Surface::Divisor& divisor = *surface.texture_divisor();
   const Sampler& sampler = surface.sampler();
   coordinate.q = lanes_of(divisor.plane, from.setup, format.guard_bits, division.up, widths);
+  texture = texture_lanes(sampler, texels, surface.combine(), format.coordinate.fraction_bits);
   for (std::size_t axis = 0; axis < 2; ++axis) {
     coordinate.attribute[axis] =
         attribute_of(surface.coordinate(axis), format.coordinate, of_coordinate, divisor, from, widths);
     are_in_lanes &= sampler.axes[axis].is_power_of_two();
-    texture.bits[axis] = floor_log2(static_cast<unsigned>(sampler.axes[axis].size));
-    texture.last[axis] = sampler.axes[axis].size - 1;
-    texture.wrap[axis] = sampler.axes[axis].wrap;
     texture.reference[axis] = surface.reference(axis) * (1 << kTexelFraction);
   }
-  texture.texels = texels.blocks.data();
-  texture.quads = texels.quads(texture.wrap);
-  texture.pitch = std::max(texture.bits[0], TexelBlocks::kShift);
-  texture.first = texels.first;
-  texture.up = kTexelFraction - format.coordinate.fraction_bits;
-  texture.min = sampler.min;
-  texture.mag = sampler.mag;
-  texture.last_level = sampler.texture->last_level();
   texture.lod = surface.lod();
-  texture.bias = sampler.bias;
-  texture.least = sampler.least;
-  texture.largest = sampler.largest;
-  const bool has_levels = sampler.min != TextureMin::nearest && sampler.min != TextureMin::linear;
-  texture.magnified = sampler.mag == TextureMag::linear && is_nearest(sampler.min) && has_levels ? 128 : 0;
-  texture.combine = surface.combine();
-  texture.has_alpha = has_alpha(sampler.texture->format);
 }
 
 void SurfaceConstants::set_light(const StageSurface& from, const Widths& widths) {

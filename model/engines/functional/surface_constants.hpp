@@ -103,6 +103,36 @@ struct LaneTexture {
   bool has_alpha = false;
 };
 
+/// How much of sample() there is to do.
+enum class Sampling { none, nearest, linear, any };
+[[nodiscard]] inline Sampling sampling_of(const LaneTexture& texture) {
+  if (texture.min == TextureMin::nearest && texture.mag == TextureMag::nearest) return Sampling::nearest;
+  if (texture.min == TextureMin::linear && texture.mag == TextureMag::linear) return Sampling::linear;
+  return Sampling::any;
+}
+
+/// Those of a texture and its sampler. `combine`: with the primitive's colour; `fraction_bits`: of a coordinate.
+[[nodiscard]] LaneTexture texture_lanes(const Sampler& sampler, const TexelBlocks& texels, TextureCombine combine,
+                                        int fraction_bits);
+
+/// What the surfaces of a draw have in common, where lanes set up sixteen of them at a time and shade pixels whosever
+/// they are: one texture and affine colours.
+struct SurfaceStyle {
+  SurfaceStyle(const FrameContext& frame, const DrawContext& draw);
+
+  const DrawContext* context;
+  bool is_in_lanes = false;  ///< else there is nothing more to know
+  Sampling sampling = Sampling::none;
+  bool is_affine = false;            ///< w makes no difference to coordinates
+  bool is_tame = true;               ///< so are the coordinates of all that have been set up: LaneAttribute
+  std::int32_t first = 0;            ///< number of the first that has it
+  std::array<double, 2> size{1, 1};  ///< texels along the texture's sides
+  PerspectiveFormat format;
+  LaneDivision division;
+  LaneOverW of_coordinate;
+  LaneTexture texture;
+};
+
 /// How a fog is looked up, from Q in binary32 whose exponent and upper mantissa are one number.
 struct LaneFog {
   LanePlane q;

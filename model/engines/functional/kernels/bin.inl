@@ -101,6 +101,35 @@ struct SeenSurface {
   std::int32_t drawn;  ///< into BinMemory::drawn, when it is set up; else -1
 };
 
+/// A small or medium triangle, as much of it as lies in a window of two by two tiles.
+struct Piece {
+  const Slice* slice;
+  const Record* record;
+  std::int32_t window;  ///< as SmallBatch has it
+  std::uint16_t alone;  ///< its number in BinMemory::seen, where lanes do not set it up
+};
+
+/// What a pixel looks at of the piece that it shows: rows of four words, a word of a row a lane.
+struct alignas(64) PieceConstants {
+  /// In a tile. A window has one with even column and even row, and so on.
+  struct Tile {
+    std::array<std::int32_t, 4> coordinates{};  ///< anchors of Q and of P of u and v, in lanes; u_ref of v
+    std::array<std::int32_t, 4>
+        colors{};  ///< anchors of red and green, blue and alpha; codes of the vertices, lowest, highest
+  };
+  std::array<std::int32_t, 4> step_x{};  ///< of Q and P; and, a byte each, what LaneAttribute drops: narrow, drop
+  std::array<std::int32_t, 4> step_y{};  ///< of Q and P; u_ref of u
+  std::array<std::int32_t, 4> color{};   ///< steps in x, red and green first, and in y
+  std::array<std::int32_t, 4> unused{};
+  std::array<Tile, 4> tile{};  ///< by the lowest bit of its column, and that of its row
+};
+
+/// The same of its level of detail: lines of u and v along y, and along x.
+struct alignas(64) PieceLevels {
+  std::array<std::int32_t, 4> at_zero{}, step{};
+  std::array<std::int32_t, 4> offset{};  ///< the first of them
+};
+
 /// The pixels of a bin: tile after tile, block after block, row after row. And the triangles that have taken tiles.
 struct BinMemory {
   static constexpr std::size_t kPlanes = 256;  ///< triangles that wait at most: more than two for each tile
@@ -112,6 +141,15 @@ struct BinMemory {
   alignas(64) std::array<std::uint16_t, kBinSize * kBinSize> surface;  ///< into `seen`, 0: the colour is there
   std::array<SeenSurface, kSurfaces> seen;                             ///< from 1 on
   std::vector<DrawnSurface> drawn;
+  // Pieces that wait, from 1 on; a pixel of one has its number and this beside it.
+  static constexpr std::size_t kFirstPiece = kSurfaces;
+  enum : std::uint8_t { kUnseen, kSetUp, kAlone };
+  std::vector<Piece> pieces;               ///< kSurfaces, where there are any
+  std::vector<std::uint8_t> piece_states;  ///< likewise, of each
+  std::vector<std::uint8_t> seen_numbers;  ///< by what pixels have: those of pieces are 0 but while they are looked at
+  std::vector<PieceConstants> constants;   ///< likewise; the first is nobody's
+  std::vector<PieceLevels> levels;         ///< likewise, where a style asks
+  std::vector<SurfaceStyle> styles;        ///< of pieces that follow each other
 
   static BinMemory& of_thread() {
     static thread_local BinMemory memory;
@@ -211,6 +249,8 @@ struct Bin {
   bool falls = false, rises = false;  ///< what a passing depth may do to the stored one
   std::size_t plane_count = 0;
   std::size_t surface_count = 0;  ///< of BinMemory::seen
+  std::size_t piece_count = 0;    ///< of BinMemory::pieces
+  bool has_lone_pieces = false;   ///< some that lanes did not set up
   std::size_t layer_count = 0;    ///< of LayerMemory
   bool is_range_old = true;       ///< low, high and lowest_high: found when somebody asks
   std::uint64_t split = 0;        ///< tiles of which the samples of a pixel may differ in colour

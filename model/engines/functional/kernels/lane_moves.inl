@@ -537,10 +537,61 @@ HALFPLANE_INLINE Columns turned_rows(RowAt&& row_at) {
   return to;
 }
 
-/// The other way round: lane i to the row at `to` + i * `stride` bytes.
-HALFPLANE_INLINE void store_rows(const Columns& from, void* to, std::size_t stride) {
-  const auto row_at = [=](int i)
-                          HALFPLANE_LAMBDA { return static_cast<char*>(to) + static_cast<std::size_t>(i) * stride; };
+/// So many rows that lie one behind the other.
+template <std::size_t N>
+struct ColumnsOfRows {
+  Columns row[N];
+};
+
+/// Lane i: those that begin at row_at(i), which is asked once.
+template <std::size_t N, class RowAt>
+HALFPLANE_INLINE void turned_rows(RowAt&& row_at, ColumnsOfRows<N>& to) {
+#if defined(__x86_64__)
+  typedef std::int32_t Row __attribute__((vector_size(16), aligned(16), may_alias));
+  for (int part = 0; part < I16::kParts; ++part) {
+    I16::Register quarters[N][4];
+    for (int i = 0; i < 4; ++i)
+      for (int k = 0; k < I16::kLanes / 4; ++k) {
+        const Row* const from = reinterpret_cast<const Row*>(row_at(part * I16::kLanes + i + 4 * k));
+        for (std::size_t n = 0; n < N; ++n) {
+          const auto row = (__m128i)from[n];
+          I16::Register& into = quarters[n][i];
+#if HALFPLANE_ISA == 512
+          const auto old = (__m512i)into;
+          into = (I16::Register)(k == 0   ? _mm512_castsi128_si512(row)
+                                 : k == 1 ? _mm512_inserti32x4(old, row, 1)
+                                 : k == 2 ? _mm512_inserti32x4(old, row, 2)
+                                          : _mm512_inserti32x4(old, row, 3));
+#elif HALFPLANE_ISA == 256
+          into = (I16::Register)(k == 0 ? _mm256_castsi128_si256(row) : _mm256_inserti128_si256((__m256i)into, row, 1));
+#else
+          into = (I16::Register)row;
+#endif
+        }
+      }
+    for (std::size_t n = 0; n < N; ++n) {
+      turn_quarters(quarters[n][0], quarters[n][1], quarters[n][2], quarters[n][3]);
+      to.row[n].first.part[part] = quarters[n][0];
+      to.row[n].second.part[part] = quarters[n][1];
+      to.row[n].third.part[part] = quarters[n][2];
+      to.row[n].fourth.part[part] = quarters[n][3];
+    }
+  }
+#else
+  for (std::size_t n = 0; n < N; ++n) {
+    const Columns columns =
+        turned_rows([&](int i) HALFPLANE_LAMBDA { return reinterpret_cast<const char*>(row_at(i)) + 16 * n; });
+    to.row[n].first = columns.first;
+    to.row[n].second = columns.second;
+    to.row[n].third = columns.third;
+    to.row[n].fourth = columns.fourth;
+  }
+#endif
+}
+
+/// The other way round: lane i to the row at row_at(i).
+template <class RowAt>
+HALFPLANE_INLINE void store_rows(const Columns& from, RowAt&& row_at) {
 #if defined(__x86_64__)
   for (int part = 0; part < I16::kParts; ++part) {
     const auto put = [&](int i, const I16::Register& quarters) HALFPLANE_LAMBDA {  // i, i + 4, ...
@@ -574,6 +625,61 @@ HALFPLANE_INLINE void store_rows(const Columns& from, void* to, std::size_t stri
     std::memcpy(row_at(i), row.data(), sizeof row);
   }
 #endif
+}
+/// At `to` + i * `stride` bytes.
+HALFPLANE_INLINE void store_rows(const Columns& from, void* to, std::size_t stride) {
+  store_rows(from,
+             [=](int i) HALFPLANE_LAMBDA { return static_cast<char*>(to) + static_cast<std::size_t>(i) * stride; });
+}
+
+/// Two columns of sixteen rows of two numbers.
+struct DoubleColumns {
+  D16 first, second;
+};
+
+/// Lane i: the row at row_at(i).
+template <class RowAt>
+HALFPLANE_INLINE DoubleColumns turned_doubles(RowAt&& row_at) {
+  DoubleColumns to;
+#if defined(__x86_64__)
+  for (int part = 0; part < D16::kParts; ++part) {
+    const auto row = [&](int i) HALFPLANE_LAMBDA {
+      return _mm_loadu_pd(reinterpret_cast<const double*>(row_at(part * D16::kLanes + i)));
+    };
+    const auto rows = [&](int i) HALFPLANE_LAMBDA {  // i, i + 2, ...
+#if HALFPLANE_ISA == 512
+      const __m512d two = _mm512_insertf64x2(_mm512_castpd128_pd512(row(i)), row(i + 2), 1);
+      return _mm512_insertf64x2(_mm512_insertf64x2(two, row(i + 4), 2), row(i + 6), 3);
+#elif HALFPLANE_ISA == 256
+      return _mm256_insertf128_pd(_mm256_castpd128_pd256(row(i)), row(i + 2), 1);
+#else
+      return row(i);
+#endif
+    };
+    const auto a = rows(0), b = rows(1);
+#if HALFPLANE_ISA == 512
+    to.first.part[part] = (D16::Register)_mm512_unpacklo_pd(a, b);
+    to.second.part[part] = (D16::Register)_mm512_unpackhi_pd(a, b);
+#elif HALFPLANE_ISA == 256
+    to.first.part[part] = (D16::Register)_mm256_unpacklo_pd(a, b);
+    to.second.part[part] = (D16::Register)_mm256_unpackhi_pd(a, b);
+#else
+    to.first.part[part] = (D16::Register)_mm_unpacklo_pd(a, b);
+    to.second.part[part] = (D16::Register)_mm_unpackhi_pd(a, b);
+#endif
+  }
+#else
+  const auto column = [&](int at) HALFPLANE_LAMBDA {
+    return D16::of([&](int i) HALFPLANE_LAMBDA {
+      double value;
+      std::memcpy(&value, reinterpret_cast<const char*>(row_at(i)) + 8 * at, sizeof value);
+      return value;
+    });
+  };
+  to.first = column(0);
+  to.second = column(1);
+#endif
+  return to;
 }
 
 /// Four rows of four pixels of an image.

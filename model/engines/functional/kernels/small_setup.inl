@@ -259,16 +259,13 @@ struct SmallChannels {
   I16 step_x, step_y;
 };
 
+/// Red and green, blue and alpha.
 template <class Arithmetic, class Samples>
-HALFPLANE_INLINE void set_up_small_colors(SmallBatch& batch, const SmallPlanes<Arithmetic>& planes,
-                                          const FromOrigin& to, const LaneFormat& format, bool is_flat,
-                                          Samples& samples) {
+HALFPLANE_INLINE void find_small_colors(const SmallPlanes<Arithmetic>& planes, const FromOrigin& to,
+                                        const LaneFormat& format, bool is_flat, const ColorRange& range,
+                                        Samples& samples, std::array<SmallChannels, 2>& colors) {
   const Widths& widths = planes.widths;
-  const ColorRange range(planes.corners, is_flat);
-  range.low.store(batch.c_low.data());
-  range.high.store(batch.c_high.data());
   const auto gradient = planes.color();
-  std::array<SmallChannels, 2> colors;
   for (std::size_t p = 0; p < 2; ++p) {
     const PairCodes codes(planes.corners, p, is_flat);
     std::array<SmallChannels, 2> halves;
@@ -294,6 +291,17 @@ HALFPLANE_INLINE void set_up_small_colors(SmallBatch& batch, const SmallPlanes<A
     pair.step_x = pairs(halves[0].step_x, halves[1].step_x);
     pair.step_y = pairs(halves[0].step_y, halves[1].step_y);
   }
+}
+
+template <class Arithmetic, class Samples>
+HALFPLANE_INLINE void set_up_small_colors(SmallBatch& batch, const SmallPlanes<Arithmetic>& planes,
+                                          const FromOrigin& to, const LaneFormat& format, bool is_flat,
+                                          Samples& samples) {
+  const ColorRange range(planes.corners, is_flat);
+  range.low.store(batch.c_low.data());
+  range.high.store(batch.c_high.data());
+  std::array<SmallChannels, 2> colors;
+  find_small_colors(planes, to, format, is_flat, range, samples, colors);
   for (std::size_t i = 0; i < SmallBatch::kTiles; ++i)
     store_interleaved(colors[0].at[i], colors[1].at[i], batch.tile[i].color.data());
   store_interleaved(colors[0].step_x, colors[1].step_x, batch.c_step_x.data());
@@ -313,5 +321,7 @@ HALFPLANE_NOINLINE void set_up_small(SmallBatch& batch, const Slice& slice, cons
   const FromOrigin to = anchor_from_origin(corners, I16::load(batch.left.data()), I16::load(batch.top.data()),
                                            widths.grid_bits, first_x, first_y);
   set_up_small_depth(batch, planes, to, depth_format, samples);
-  if (slice.state.color_write) set_up_small_colors(batch, planes, to, color_format, slice.state.is_flat, samples);
+  // Those of surfaces wait until they are seen.
+  if (slice.state.color_write && !slice.state.has_surface)
+    set_up_small_colors(batch, planes, to, color_format, slice.state.is_flat, samples);
 }

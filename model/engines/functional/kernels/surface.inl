@@ -31,14 +31,8 @@ HALFPLANE_INLINE ColorPairs combined(const ColorPairs& color, const ColorPairs& 
   }
 }
 
-/// How much of sample() there is to do.
-enum class Sampling { none, nearest, linear, any };
-
 HALFPLANE_INLINE Sampling sampling_of(const SurfaceConstants& of) {
-  if (!of.has_texture) return Sampling::none;
-  if (of.texture.min == TextureMin::nearest && of.texture.mag == TextureMag::nearest) return Sampling::nearest;
-  if (of.texture.min == TextureMin::linear && of.texture.mag == TextureMag::linear) return Sampling::linear;
-  return Sampling::any;
+  return of.has_texture ? sampling_of(of.texture) : Sampling::none;
 }
 
 /// The surface of a tile.

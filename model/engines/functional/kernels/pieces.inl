@@ -1,0 +1,513 @@
+// Surfaces of small and medium triangles: set up sixteen at a time, a triangle a lane, once it is known that they are seen;
+// and shaded sixteen pixels at a time, whosever they are: a lane fetches what it needs of the triangle that it shows.
+// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+
+HALFPLANE_INLINE D16 magnitude(const D16& v) { return as<D16>(as<L16>(v) & std::int64_t{0x7fffffffffffffff}); }
+/// The exponent of numbers without a sign, as binary64 has it.
+HALFPLANE_INLINE I16 exponent_field(const D16& v) { return upper_halves(as<L16>(v)) >> 20; }
+/// The other way round: 2^(field - 1023).
+HALFPLANE_INLINE D16 power_of_field(const I16& field) { return as<D16>(convert<std::int64_t>(field) << 52); }
+constexpr std::int32_t kDoubleBias = 1023;
+
+/// snap(): floor(v + 1/2), where that sum itself would round.
+HALFPLANE_INLINE D16 snapped(const D16& v) {
+  const D16 whole = floor(v);
+  return whole + as<D16>(as<L16>(D16(1.0)) & (v - whole >= 0.5));
+}
+
+/// What the three corners have of something.
+template <class Lanes>
+struct OfCorners {
+  Lanes a, b, c;
+};
+
+/// quantize_q().
+struct QLanes {
+  OfCorners<D16> number;
+  OfCorners<I16> code;
+
+  HALFPLANE_INLINE QLanes(const OfCorners<D16>& w, int bits) {
+    const OfCorners<I16> field{exponent_field(w.a), exponent_field(w.b), exponent_field(w.c)};
+    const I16 nearest = min(min(field.a, field.b), field.c) + (bits - 1);
+    const auto scaled = [&nearest](const D16& of, const I16& its_field) HALFPLANE_LAMBDA {
+      constexpr std::int64_t kMantissa = (std::int64_t{1} << 52) - 1, kHalf = std::int64_t{kDoubleBias - 1} << 52;
+      const D16 mantissa = as<D16>((as<L16>(of) & kMantissa) | kHalf);
+      constexpr std::int32_t kNothing = -100;  // far below any code
+      return D16(1.0) / mantissa * power_of_field(max(nearest - its_field, I16(kNothing)) + kDoubleBias);
+    };
+    const D16 a = scaled(w.a, field.a), b = scaled(w.b, field.b), c = scaled(w.c, field.c);
+    // The nearest may round to a bit more than there are.
+    const D16 whole(static_cast<double>(std::int64_t{1} << bits) - 0.5);
+    const D16 fit = select(max(max(a, b), c) >= whole, D16(0.5), D16(1.0));
+    number.a = max(snapped(a * fit), D16(1.0));
+    number.b = max(snapped(b * fit), D16(1.0));
+    number.c = max(snapped(c * fit), D16(1.0));
+    code.a = convert<std::int32_t>(number.a);
+    code.b = convert<std::int32_t>(number.b);
+    code.c = convert<std::int32_t>(number.c);
+  }
+};
+
+/// quantize_over_w() of a coordinate.
+struct OverWLanes {
+  OfCorners<I16> p;
+  I16 reach, exponent;
+  D16 reference;
+
+  HALFPLANE_INLINE OverWLanes(const OfCorners<D16>& texels, const QLanes& q, const OverWFormat& format) {
+    const D16 low = min(min(texels.a, texels.b), texels.c), high = max(max(texels.a, texels.b), texels.c);
+    reference = floor(low * 0.5 + high * 0.5);
+    const double limit = static_cast<double>(1 << kMaxReach) * (1 - 0x1p-9);
+    const auto from_reference = [&](const D16& of)
+                                    HALFPLANE_LAMBDA { return min(max(of - reference, D16(-limit)), D16(limit)); };
+    const D16 ua = from_reference(texels.a), ub = from_reference(texels.b), uc = from_reference(texels.c);
+    const D16 a = ua * q.number.a, b = ub * q.number.b, c = uc * q.number.c;
+    const auto largest_of = [](const D16& x, const D16& y, const D16& z)
+                                HALFPLANE_LAMBDA { return max(max(magnitude(x), magnitude(y)), magnitude(z)); };
+    const auto bits_above_point = [](const D16& number)
+                                      HALFPLANE_LAMBDA { return exponent_field(number) - (kDoubleBias - 1); };
+    reach = max(bits_above_point(largest_of(ua, ub, uc) * (1 + 0x1p-10)), I16(0));
+    exponent = max(bits_above_point(largest_of(a, b, c)), reach - 1) - format.bits;
+    const auto find_codes = [&]() HALFPLANE_LAMBDA {
+      const D16 scale = power_of_field(kDoubleBias - exponent);
+      p.a = convert<std::int32_t>(snapped(a * scale));
+      p.b = convert<std::int32_t>(snapped(b * scale));
+      p.c = convert<std::int32_t>(snapped(c * scale));
+    };
+    find_codes();
+    const I16 is_too_large = max(max(magnitude(p.a), magnitude(p.b)), magnitude(p.c)) >= 1 << format.bits;
+    if (!is_any(is_too_large)) return;
+    exponent = exponent - is_too_large;
+    find_codes();
+  }
+};
+
+/// Which corner planes over w start from: base_vertex(), of equal ones the first in canonical order; and which follow it.
+struct PieceOrder {
+  I16 is_b, is_c;  ///< masks; else a
+
+  HALFPLANE_INLINE PieceOrder(const I16& first_is_b, const I16& first_is_c, const I16& is_turned,
+                              const OfCorners<I16>& q) {
+    // How many corners after the first, and where that is in canonical order.
+    const auto ranked = [&](const I16& code, std::int32_t if_a, std::int32_t if_b, std::int32_t if_c) HALFPLANE_LAMBDA {
+      const I16 after = select(first_is_c, I16(if_c), select(first_is_b, I16(if_b), I16(if_a)));
+      return (code << 2) | (after ^ (is_turned & (after != 0) & 3));
+    };
+    const I16 a = ranked(q.a, 0, 2, 1), b = ranked(q.b, 1, 0, 2), c = ranked(q.c, 2, 1, 0);
+    is_c = c < min(a, b);
+    is_b = ~is_c & (b < a);
+  }
+
+  /// The base, the next one, the last.
+  HALFPLANE_INLINE OfCorners<I16> turned_to_base(const I16& a, const I16& b, const I16& c) const {
+    return {select(is_c, c, select(is_b, b, a)), select(is_c, a, select(is_b, c, b)),
+            select(is_c, b, select(is_b, a, c))};
+  }
+};
+
+/// Which corner is the first in the order of (Y, X): masks; else a.
+struct FirstCorner {
+  I16 is_b, is_c;
+
+  HALFPLANE_INLINE explicit FirstCorner(const SmallCorners& t) {
+    const I16 b_key = (t.ay << 16) + t.ax, c_key = (t.by << 16) + t.bx;  // from a, as one number
+    is_c = c_key < min(b_key, I16(0));
+    is_b = ~is_c & (b_key < 0);
+  }
+};
+
+/// setup_lod(). Returns the lanes that it does not have, a bit each.
+HALFPLANE_NOINLINE std::uint32_t set_up_levels(const SmallCorners& corners, const FirstCorner& first, const QLanes& q,
+                                               const OfCorners<D16>& u, const OfCorners<D16>& v,
+                                               const PerspectiveFormat& format, int grid_bits,
+                                               const std::array<PieceLevels*, 16>& to) {
+  const L16 first_is_b = convert<std::int64_t>(first.is_b), first_is_c = convert<std::int64_t>(first.is_c),
+            is_turned = convert<std::int64_t>(corners.is_turned);
+  // Corners in canonical order, in which sums are rounded.
+  const auto in_order = [&](const OfCorners<D16>& of, D16* ordered) HALFPLANE_LAMBDA {
+    ordered[0] = select(first_is_c, of.c, select(first_is_b, of.b, of.a));
+    const D16 next = select(first_is_c, of.a, select(first_is_b, of.c, of.b)),
+              last = select(first_is_c, of.b, select(first_is_b, of.a, of.c));
+    ordered[1] = select(is_turned, last, next);
+    ordered[2] = select(is_turned, next, last);
+  };
+  const auto numbers_of = [&](const I16& a, const I16& b, const I16& c, D16* ordered) HALFPLANE_LAMBDA {
+    in_order(OfCorners<D16>{convert<double>(a), convert<double>(b), convert<double>(c)}, ordered);
+  };
+  D16 codes[3], texels[2][3], x[3], y[3];
+  in_order(q.number, codes);
+  in_order(u, texels[0]);
+  in_order(v, texels[1]);
+  numbers_of(corners.a.x, corners.b.x, corners.c.x, x);
+  numbers_of(corners.a.y, corners.b.y, corners.c.y, y);
+  D16 slope[2], row[2], column[2], largest(0.0);
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    D16 part[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+      part[k] = codes[i] * codes[j] * (texels[axis][i] - texels[axis][j]);
+    }
+    slope[axis] = part[0] + part[1] + part[2];
+    const auto sum = [&part](const D16* at, std::size_t i) HALFPLANE_LAMBDA {
+      return part[0] * (at[i] - at[0]) + part[1] * (at[i] - at[1]) + part[2] * (at[i] - at[2]);
+    };
+    row[axis] = sum(y, 0);
+    column[axis] = sum(x, 0);
+    for (std::size_t i = 0; i < 3; ++i)
+      largest =
+          max(largest, max(magnitude(i == 0 ? row[axis] : sum(y, i)), magnitude(i == 0 ? column[axis] : sum(x, i))));
+  }
+  const D16 to_pixels =
+      D16(static_cast<double>(std::int64_t{1} << grid_bits)) / convert<double>(max(corners.area, I16(1)));
+  const I16 is_flat = convert<std::int32_t>(largest == 0.0);
+  const I16 up = 30 + kDoubleBias - exponent_field(largest * to_pixels);  // g
+  const D16 scale = to_pixels * power_of_field(select(is_flat, I16(0), up) + kDoubleBias);
+  const auto residue = [](const D16& number) HALFPLANE_LAMBDA {
+    const D16 whole = floor(number + 0.5), rest = whole - floor(whole * 0x1p-32) * 0x1p32;
+    return convert<std::int32_t>(rest - 0x1p31) ^ static_cast<std::int32_t>(0x80000000U);
+  };
+  const double pixel_size = static_cast<double>(std::int64_t{1} << grid_bits);
+  I16 at_zero[4], step[4];
+  const auto find_line = [&](std::size_t line, const D16& value, const D16& of_slope, const D16& position)
+                             HALFPLANE_LAMBDA {
+                               const D16 pixel = floor(position * (1 / pixel_size));
+                               const D16 centre = (pixel + 0.5) * pixel_size;
+                               step[line] = residue(of_slope * scale * pixel_size);
+                               at_zero[line] = residue((value + of_slope * (centre - position)) * scale) -
+                                               convert<std::int32_t>(pixel) * step[line];
+                             };
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    find_line(axis, row[axis], slope[axis], y[0]);
+    find_line(2 + axis, column[axis], slope[axis], x[0]);
+  }
+  const I16 offset = select(is_flat, I16(-64), 2 * format.guard_bits - up) << kLodFraction;
+  const auto store = [&to](const I16& a, const I16& b, const I16& c, const I16& d, std::size_t at) HALFPLANE_LAMBDA {
+    store_rows(Columns{a, b, c, d}, [&to, at](int i) HALFPLANE_LAMBDA {
+      return reinterpret_cast<char*>(to[static_cast<std::size_t>(i)]) + at;
+    });
+  };
+  store(at_zero[0], at_zero[1], at_zero[2], at_zero[3], offsetof(PieceLevels, at_zero));
+  store(step[0], step[1], step[2], step[3], offsetof(PieceLevels, step));
+  store(offset, offset, offset, offset, offsetof(PieceLevels, offset));
+  return bits_of(~is_flat & convert<std::int32_t>(largest < 0x1p-500));
+}
+
+/// Planes over w of sixteen triangles, at the anchors of their windows' tiles.
+struct PiecePlanes {
+  const Widths& widths;
+  const PerspectiveFormat& format;
+  L16 ax, ay, bx, by;             ///< the corners from the base
+  L16 to_x, to_y;                 ///< the anchor of the tile of even column and row from it
+  L16 is_odd_column, is_odd_row;  ///< masks: of the window's first tile
+  GradientLanes gradient;
+
+  /// In lanes, `up` bits below its values.
+  struct Plane {
+    I16 at[4];  ///< as PieceConstants has its tiles
+    I16 step_x, step_y;
+  };
+
+  HALFPLANE_INLINE Plane operator()(const OfCorners<I16>& code, int up) const {
+    const L16 ac = convert<std::int64_t>(code.b - code.a), bc = convert<std::int64_t>(code.c - code.a);
+    const L16 step_x = gradient(multiply_narrow(ac, by) - multiply_narrow(bc, ay)),
+              step_y = gradient(multiply_narrow(ax, bc) - multiply_narrow(bx, ac));
+    const int fraction = widths.plane_fraction, drop = fraction - format.guard_bits,
+              to_tile = kTileShift + widths.grid_bits;
+    const auto turned_where = [](const L16& v, const L16& mask) HALFPLANE_LAMBDA { return (v ^ mask) - mask; };
+    const L16 aside = turned_where(step_x << to_tile, is_odd_column),
+              below = turned_where(step_y << to_tile, is_odd_row);
+    const L16 first =
+        (convert<std::int64_t>(code.a) << fraction) + step_x * to_x + step_y * to_y + (std::int64_t{1} << (drop - 1));
+    const auto narrow = [drop, up](const L16& v)
+                            HALFPLANE_LAMBDA { return convert<std::int32_t>(shift_right_logical(v, drop)) << up; };
+    Plane plane;
+    plane.at[0] = narrow(first);
+    plane.at[1] = narrow(first + aside);
+    plane.at[2] = narrow(first + below);
+    plane.at[3] = narrow(first + aside + below);
+    plane.step_x = round_shift_lanes(step_x, drop - widths.grid_bits) << up;
+    plane.step_y = round_shift_lanes(step_y, drop - widths.grid_bits) << up;
+    return plane;
+  }
+};
+
+/// How a coordinate's P is divided: LaneAttribute.
+struct PieceScale {
+  I16 narrow;   ///< but for kNarrowLess
+  I16 drop;     ///< less 1
+  I16 is_tame;  ///< a mask
+  static constexpr std::int32_t kNarrowLess = 128;
+
+  HALFPLANE_INLINE PieceScale(const OverWLanes& of, const OfCorners<D16>& q, const SurfaceStyle& style) {
+    const PerspectiveFormat& all = style.format;
+    const OverWFormat& format = all.coordinate;
+    const I16 to_narrow = of.reach - of.exponent + (1 - format.narrow_bits);
+    narrow = to_narrow + (style.of_coordinate.up - 1 - kFloatBias + kNarrowLess);
+    drop = (all.mantissa_bits + format.narrow_bits - 2 - format.fraction_bits - style.of_coordinate.split) - of.reach;
+    const D16 least = min(min(q.a, q.b), q.c), most = max(max(q.a, q.b), q.c);
+    const I16 smallest = exponent_field(least) - (kDoubleBias - all.guard_bits + 1),
+              largest = exponent_field(most) - (kDoubleBias - all.guard_bits - 1);
+    constexpr int kNarrowBits = 12, kReciprocalBits = 14, kCodes = 11;  // SurfaceConstants::is_never_held()
+    const bool may_be = format.narrow_bits >= kNarrowBits && all.reciprocal_bits >= kReciprocalBits;
+    const std::int32_t enough = std::int32_t{1} << (kCodes + all.q_bits - format.bits);
+    is_tame = may_be ? (smallest + to_narrow >= 1) & (largest + to_narrow <= 32 - style.of_coordinate.up) &
+                           (convert<std::int32_t>(least) >= enough)
+                     : I16(0);
+  }
+};
+
+/// Constants of up to sixteen pieces of one slice, by their numbers. Returns those that lanes do not have, a bit each.
+template <class Arithmetic>
+HALFPLANE_NOINLINE std::uint32_t set_up_pieces(Bin& bin, SurfaceStyle& style,
+                                               const std::array<std::uint16_t, 16>& numbers, int count) {
+  BinMemory& memory = bin.memory;
+  const Widths& widths = bin.widths;
+  SmallBatch batch;
+  batch.count = count;
+  std::array<PieceConstants*, 16> to;
+  for (std::size_t i = 0; i < 16; ++i) {
+    const bool is_there = static_cast<int>(i) < count;
+    to[i] = &memory.constants[is_there ? numbers[i] : 0];
+    if (!is_there) continue;
+    batch.records[i] = memory.pieces[numbers[i]].record;
+    batch.window[i] = memory.pieces[numbers[i]].window;
+  }
+  load_records(batch, bin.first_x, bin.first_y);
+  const Slice& slice = *memory.pieces[numbers[0]].slice;
+  const SmallCorners corners = small_corners(batch, slice);
+  const SmallPlanes<Arithmetic> planes(corners, widths);
+  const I16 left = I16::load(batch.left.data()), top = I16::load(batch.top.data());
+  const FromOrigin from_origin = anchor_from_origin(corners, left, top, widths.grid_bits, bin.first_x, bin.first_y);
+  const auto is_odd = [](const I16& pixel) HALFPLANE_LAMBDA { return -((pixel >> kTileShift) & 1); };
+  const I16 is_odd_column = is_odd(left), is_odd_row = is_odd(top);
+  const auto store = [&to](const I16& a, const I16& b, const I16& c, const I16& d, std::size_t offset)
+                         HALFPLANE_LAMBDA {
+                           store_rows(Columns{a, b, c, d}, [&to, offset](int i) HALFPLANE_LAMBDA {
+                             return reinterpret_cast<char*>(to[static_cast<std::size_t>(i)]) + offset;
+                           });
+                         };
+  {
+    const ColorRange range(corners, slice.state.is_flat);
+    std::array<SmallChannels, 2> colors;
+    OnlyCentres centres;
+    find_small_colors(planes, from_origin, bin.centred_color, slice.state.is_flat, range, centres, colors);
+    store(colors[0].step_x, colors[1].step_x, colors[0].step_y, colors[1].step_y, offsetof(PieceConstants, color));
+    I16 at[2][4];
+    for (std::size_t p = 0; p < 2; ++p) {
+      const Anchors& from = colors[p].at;
+      const I16 even_column[2] = {select(is_odd_column, from[1], from[0]), select(is_odd_column, from[3], from[2])},
+                odd_column[2] = {select(is_odd_column, from[0], from[1]), select(is_odd_column, from[2], from[3])};
+      at[p][0] = select(is_odd_row, even_column[1], even_column[0]);
+      at[p][1] = select(is_odd_row, odd_column[1], odd_column[0]);
+      at[p][2] = select(is_odd_row, even_column[0], even_column[1]);
+      at[p][3] = select(is_odd_row, odd_column[0], odd_column[1]);
+    }
+    for (std::size_t i = 0; i < 4; ++i)
+      store(at[0][i], at[1][i], range.low, range.high,
+            offsetof(PieceConstants, tile) + i * sizeof(PieceConstants::Tile) + offsetof(PieceConstants::Tile, colors));
+  }
+
+  OfCorners<D16> w, u, v;
+  std::uint32_t alone = 0;
+  {
+    const auto fetch = [&](std::size_t k, D16& its_w, D16& its_u, D16& its_v) HALFPLANE_LAMBDA {
+      static_assert(sizeof(VertexRow) == 16);
+      alignas(64) std::array<std::int32_t, 16> place;  // of bytes, from those of rows
+      (shift_right_logical(I16::load(batch.corner[k].data()), 4) * static_cast<std::int32_t>(sizeof(SurfaceVertex)))
+          .store(place.data());
+      const auto vertex = [&](int i) HALFPLANE_LAMBDA {
+        return reinterpret_cast<const SurfaceVertex*>(reinterpret_cast<const char*>(slice.surface.data()) +
+                                                      static_cast<std::uint32_t>(place[static_cast<std::size_t>(i)]));
+      };
+      static_assert(offsetof(SurfaceVertex, w) == 0 && offsetof(SurfaceVertex, u) == 8 &&
+                    offsetof(SurfaceVertex, v) == 16);
+      const DoubleColumns first = turned_doubles([&](int i) HALFPLANE_LAMBDA { return &vertex(i)->w; }),
+                          second = turned_doubles([&](int i) HALFPLANE_LAMBDA { return &vertex(i)->v; });
+      its_w = style.is_affine ? D16(1.0) : first.first;
+      its_u = first.second * style.size[0];
+      its_v = second.first * style.size[1];
+    };
+    fetch(0, w.a, u.a, v.a);
+    fetch(1, w.b, u.b, v.b);
+    fetch(2, w.c, u.c, v.c);
+    const auto all_below = [](const OfCorners<D16>& of, double limit) HALFPLANE_LAMBDA {
+      const D16 bound(limit);
+      return (magnitude(of.a) < bound) & (magnitude(of.b) < bound) & (magnitude(of.c) < bound);
+    };
+    const L16 is_usual = all_below(u, 0x1p30) & all_below(v, 0x1p30) & all_below(w, 0x1p500) & (w.a > 0x1p-500) &
+                         (w.b > 0x1p-500) & (w.c > 0x1p-500);
+    alone = ~bits_of(convert<std::int32_t>(is_usual)) & 0xffff;
+  }
+  const QLanes q(w, style.format.q_bits);
+  const OverWLanes along_u(u, q, style.format.coordinate), along_v(v, q, style.format.coordinate);
+  const PieceScale scale_u(along_u, q.number, style), scale_v(along_v, q.number, style);
+  alone |= bits_of((scale_u.drop < 0) | (scale_v.drop < 0));
+  style.is_tame = style.is_tame && (bits_of(scale_u.is_tame & scale_v.is_tame) | alone) == 0xffff;
+
+  const auto reference = [&style](const OverWLanes& along, std::size_t axis) HALFPLANE_LAMBDA {
+    const I16 whole = convert<std::int32_t>(along.reference);
+    const TextureWrap wrap = style.texture.wrap[axis];
+    constexpr std::int32_t kFar = 1 << (kMaxReach + 2);
+    const std::int32_t last = style.texture.last[axis];
+    return (wrap == TextureWrap::clamp ? min(max(whole, I16(-kFar)), I16(kFar))
+                                       : whole & (wrap == TextureWrap::mirror ? 2 * last + 1 : last))
+           << kTexelFraction;
+  };
+  const I16 reference_u = reference(along_u, 0), reference_v = reference(along_v, 1);
+  const auto byte = [](const I16& value, int at) HALFPLANE_LAMBDA { return (value & 255) << at; };
+  const I16 drops = byte(scale_u.narrow, 0) | byte(scale_v.narrow, 8) | byte(scale_u.drop, 16) | (scale_v.drop << 24);
+
+  const FirstCorner first(corners);
+  if (style.sampling == Sampling::any) {
+    std::array<PieceLevels*, 16> levels;
+    for (std::size_t i = 0; i < 16; ++i) levels[i] = memory.levels.data() + (to[i] - memory.constants.data());
+    alone |= set_up_levels(corners, first, q, u, v, style.format, widths.grid_bits, levels);
+  }
+  const PieceOrder order(first.is_b, first.is_c, corners.is_turned, q.code);
+  const auto x = order.turned_to_base(corners.a.x, corners.b.x, corners.c.x),
+             y = order.turned_to_base(corners.a.y, corners.b.y, corners.c.y);
+  const int tile = kTileSize << widths.grid_bits;
+  const auto wide = [](const I16& lanes) HALFPLANE_LAMBDA { return convert<std::int64_t>(lanes); };
+  const int bits = style.format.reciprocal_bits, less = widths.reciprocal_bits() - bits;
+  I16 reciprocal, shift;
+  const auto take = [&](const QuotientLanes& quotient, int dropped) HALFPLANE_LAMBDA {
+    const ReciprocalLanes of(quotient, dropped);
+    reciprocal = turned(of.value, corners.is_turned);
+    shift = of.shift - widths.plane_fraction;
+  };
+  if (less >= 0)
+    take(planes.quotient, less);
+  else
+    take(quotient_lanes(corners.area, bits), 0);
+  const PiecePlanes over_w{widths,
+                           style.format,
+                           wide(x.b - x.a),
+                           wide(y.b - y.a),
+                           wide(x.c - x.a),
+                           wide(y.c - y.a),
+                           wide(from_origin.x + corners.origin.x - x.a + (is_odd_column & tile)),
+                           wide(from_origin.y + corners.origin.y - y.a + (is_odd_row & tile)),
+                           wide(is_odd_column),
+                           wide(is_odd_row),
+                           {reciprocal, shift}};
+  const auto turn = [&order](const OfCorners<I16>& of)
+                        HALFPLANE_LAMBDA { return order.turned_to_base(of.a, of.b, of.c); };
+  const PiecePlanes::Plane of_q = over_w(turn(q.code), style.division.up),
+                           of_u = over_w(turn(along_u.p), style.of_coordinate.up),
+                           of_v = over_w(turn(along_v.p), style.of_coordinate.up);
+  store(of_q.step_x, of_u.step_x, of_v.step_x, drops, offsetof(PieceConstants, step_x));
+  store(of_q.step_y, of_u.step_y, of_v.step_y, reference_u, offsetof(PieceConstants, step_y));
+  for (std::size_t i = 0; i < 4; ++i)
+    store(of_q.at[i], of_u.at[i], of_v.at[i], reference_v,
+          offsetof(PieceConstants, tile) + i * sizeof(PieceConstants::Tile) +
+              offsetof(PieceConstants::Tile, coordinates));
+  return alone & ((1U << count) - 1);
+}
+
+/// over_q(), `value`: P. Lanes have what LaneAttribute has. `is_tame`: as there, of all.
+HALFPLANE_INLINE I16 over_q(const I16& value, const ReciprocalsOfQ& q, const I16& narrow, const I16& drop, bool is_tame,
+                            const LaneOverW& format) {
+  const I16 down = q.exponent + narrow - PieceScale::kNarrowLess;
+  I16 number;
+  if (is_tame) {
+    number = ((value >> down) + 1) >> 1;
+  } else {
+    const I16 dropped = down - format.up;
+    const I16 p = with_more_bits(value >> format.up, max(-dropped, I16(0))) >> min(max(dropped, I16(0)), I16(31));
+    number = min(max((p + 1) >> 1, I16(format.lowest)), I16(format.highest));
+  }
+  const I16 lower = q.reciprocal & format.lower_bits;
+  const I16 product = number * (q.reciprocal >> format.split) + ((number * lower) >> format.split);
+  return ((product >> drop) + 1) >> 1;
+}
+
+/// Levels of detail at pixels, by the rows of PieceLevels. `q`: float_bits() of Q.
+HALFPLANE_INLINE I16 piece_lod(const Columns& at_zero, const Columns& step, const I16& offset, const I16& x,
+                               const I16& y, const I16& q) {
+  const auto at = [](const I16& zero, const I16& of_pixel, const I16& pixel)
+                      HALFPLANE_LAMBDA { return as<W16>(magnitude(zero + pixel * of_pixel)); };
+  const W16 to_right = octagon_length(at(at_zero.first, step.first, y), at(at_zero.second, step.second, y)),
+            down = octagon_length(at(at_zero.third, step.third, x), at(at_zero.fourth, step.fourth, x));
+  return log2_code_of(max(to_right, down)) - (log2_code(q) << 1) + offset;
+}
+
+/// The colours of a tile's pixels that show pieces of one style.
+template <Sampling kSampling>
+HALFPLANE_NOINLINE void shade_pieces(Bin& bin, const SurfaceStyle& style, int tile, std::uint64_t pixels) {
+  const LaneTexture& texture = style.texture;
+  const LanePositions& position = bin.position;
+  const std::uint16_t* const numbers = bin.memory.surface.data() + first_of(tile);
+  std::uint32_t* const colors = bin.memory.color.data() + first_of(tile);
+  const char* const shared = reinterpret_cast<const char*>(bin.memory.constants.data());
+  const auto parity = static_cast<std::size_t>((tile & 1) | (tile / kBinTiles & 1) << 1);
+  const char* const of_tile = shared + offsetof(PieceConstants, tile) + parity * sizeof(PieceConstants::Tile);
+  const ColorFormat format = bin.config.color_format;
+  const bool is_tame = style.is_tame;
+  const int color_down = bin.centred_color.down;
+  for (std::size_t block = 0; block < 4; ++block) {
+    const std::uint32_t bits = block_bits(pixels, block);
+    if (bits == 0) continue;
+    const I16 number = load_narrow(numbers + block * kBlockPixels) - static_cast<std::int32_t>(BinMemory::kFirstPiece);
+    static_assert(sizeof(PieceConstants) == 3 * 64);
+    const I16 whose = select_by_bits(bits, number, I16(0), position.to_sign) << 6;
+    const Places place(whose + (whose << 1));
+    ColumnsOfRows<3> of_all;
+    ColumnsOfRows<2> here;
+    turned_rows([&place, shared](int i) HALFPLANE_LAMBDA { return shared + place[i]; }, of_all);
+    turned_rows([&place, of_tile](int i) HALFPLANE_LAMBDA { return of_tile + place[i]; }, here);
+    const Columns &step_x = of_all.row[0], &step_y = of_all.row[1], &step = of_all.row[2], &anchor = here.row[0],
+                  &from = here.row[1];
+    const std::size_t right = block & 1, below = block >> 1;
+    const I16 &column = position.column[right], &line = position.row[below];
+    const ReciprocalsOfQ q(anchor.first + column * step_x.first + line * step_y.first, style.division);
+    const auto along = [&](const I16& at_anchor, const I16& of_x, const I16& of_y, const I16& narrow, const I16& drop,
+                           const I16& reference, std::size_t axis) HALFPLANE_LAMBDA {
+      const I16 u = over_q(at_anchor + column * of_x + line * of_y, q, narrow, drop, is_tame, style.of_coordinate);
+      const I16 sum = (texture.up == 0 ? u : u << texture.up) + reference;
+      constexpr std::int32_t kFar = 1 << 22;  // as find_coordinates() has it
+      return texture.wrap[axis] == TextureWrap::clamp ? min(max(sum, I16(-kFar)), I16(kFar)) : sum;
+    };
+    const I16& drops = step_x.fourth;
+    const CoordinateLanes at{
+        along(anchor.second, step_x.second, step_y.second, drops << 24 >> 24, drops << 8 >> 24, step_y.fourth, 0),
+        along(anchor.third, step_x.third, step_y.third, drops << 16 >> 24, drops >> 24, anchor.fourth, 1)};
+    const ColorPairs texels = [&]() HALFPLANE_LAMBDA {
+      if constexpr (kSampling == Sampling::linear) return filter_linear(texture, at, BaseLevel(texture));
+      if constexpr (kSampling == Sampling::nearest) return ColorPairs(filter_nearest(texture, at, BaseLevel(texture)));
+      const Places of_levels(whose);
+      const auto level_row = [&](std::size_t offset) HALFPLANE_LAMBDA {
+        const char* const levels = reinterpret_cast<const char*>(bin.memory.levels.data()) + offset;
+        return turned_rows([&of_levels, levels](int i) HALFPLANE_LAMBDA { return levels + of_levels[i]; });
+      };
+      const I16 x = position.block_x +
+                    (bin.first_x + tile % kBinTiles * kTileSize + static_cast<int>(right) * kBlockSize),
+                y = position.block_y +
+                    (bin.first_y + tile / kBinTiles * kTileSize + static_cast<int>(below) * kBlockSize);
+      const Columns at_zero = level_row(offsetof(PieceLevels, at_zero)),
+                    of_pixel = level_row(offsetof(PieceLevels, step)), less = level_row(offsetof(PieceLevels, offset));
+      return sample(texture, at, piece_lod(at_zero, of_pixel, less.first, x, y, q.bits));
+    }();
+    const S32 column_pair = as<S32>(position.column_pair[right]), row_pair = as<S32>(position.row_pair[below]);
+    const auto pair = [&](const I16& at_anchor, const I16& of_x, const I16& of_y, std::size_t which) HALFPLANE_LAMBDA {
+      const S32 value = column_pair * as<S32>(of_x) + row_pair * as<S32>(of_y) + as<S32>(at_anchor);
+      const S32 code = (value >> color_down) + static_cast<std::int16_t>(0x80);
+      return as<I16>(
+          min(max(code, as<S32>(channel_pair(from.third, which))), as<S32>(channel_pair(from.fourth, which))));
+    };
+    const I16 red_green = pair(from.first, step.first, step.third, 0),
+              blue_alpha = pair(from.second, step.second, step.fourth, 1);
+    const ColorPairs own(pairs(red_green, blue_alpha),
+                         shift_right_logical(red_green, 16) | (blue_alpha & static_cast<std::int32_t>(0xffff0000U)));
+    const ColorPairs mixed = combined(own, texels, texture);
+    const I16 color = packed(mixed.red_blue, mixed.green_alpha, format);
+    std::uint32_t* const to = colors + block * kBlockPixels;
+    (bits == 0xffff ? color : select_by_bits(bits, color, I16::load(to), position.to_sign)).store(to);
+  }
+}
+HALFPLANE_INLINE void shade_pieces(Bin& bin, const SurfaceStyle& style, int tile, std::uint64_t pixels) {
+  switch (style.sampling) {
+    case Sampling::nearest: return shade_pieces<Sampling::nearest>(bin, style, tile, pixels);
+    case Sampling::linear: return shade_pieces<Sampling::linear>(bin, style, tile, pixels);
+    default: return shade_pieces<Sampling::any>(bin, style, tile, pixels);
+  }
+}
