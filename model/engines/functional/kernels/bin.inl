@@ -157,11 +157,33 @@ struct BinMemory {
   }
 };
 
+/// Pixels of a tile at each sample, a bit each.
+using PixelsOfSamples = std::array<std::uint64_t, kMaxPixelSamples>;
+
+/// A triangle's part in a tile, which waits: cutouts.inl.
+struct Cutout {
+  std::int16_t plane;       ///< into BinMemory::planes
+  std::uint16_t low, high;  ///< range of its depths, where they wait
+  std::uint64_t centre;     ///< pixels that it covers there
+  PixelsOfSamples covered, passed;
+};
+/// Those of a tile, the last one on top.
+struct TileCutouts {
+  static constexpr std::size_t kMost = 8;
+  std::size_t count, first_depth;         ///< from first_depth on depths wait as well, if Bin::depth_owner says so
+  std::int16_t color_below, depth_below;  ///< owners of what lies below
+  bool is_split_below;
+  std::uint16_t low_below, high_below;  ///< range of the depths there
+  PixelsOfSamples below;                ///< what of it is seen, once drop_hidden() has said so
+  std::array<Cutout, kMost> cutout;
+};
+
 /// What a bin keeps by sample where a pixel has several, each laid out as BinMemory is; colours of tiles that are split.
 struct SampleMemory {
   alignas(64) std::int32_t depth[kMaxPixelSamples][kBinSize * kBinSize];
   alignas(64) std::uint16_t narrow_depth[kMaxPixelSamples][kBinSize * kBinSize];
   alignas(64) std::uint32_t color[kMaxPixelSamples][kBinSize * kBinSize];
+  TileCutouts cutouts[kBinTiles * kBinTiles];
 
   static SampleMemory& of_thread() {
     static thread_local SampleMemory memory;
@@ -174,7 +196,8 @@ struct Bin {
   // Who holds a tile's depths or colours; 0 and more: a triangle of BinMemory::planes.
   static constexpr std::int32_t kInMemory = -1, kCleared = -2, kInTarget = -3,
                                 kSurfaces = -4,  ///< pixel by pixel: BinMemory::surface
-      kLayers = -5;                              ///< in memory, but for those that wait: layers.inl
+      kLayers = -5,                              ///< in memory, but for those that wait: layers.inl
+      kCutouts = -6;                             ///< SampleMemory::cutouts
 
   explicit Bin(BinJob& job_)
       : job(job_),
@@ -253,8 +276,10 @@ struct Bin {
   bool has_lone_pieces = false;   ///< some that lanes did not set up
   std::size_t layer_count = 0;    ///< of LayerMemory
   bool is_range_old = true;       ///< low, high and lowest_high: found when somebody asks
-  std::uint64_t split = 0;        ///< tiles of which the samples of a pixel may differ in colour
-  std::uint64_t in_memory = 0;    ///< tiles whose depths and colours are in memory, as far as small triangles know
+  /// Cutouts that others have hidden, less those whose colours somebody has asked for before the end: below zero, none wait.
+  int cutouts_saved = 1;
+  std::uint64_t split = 0;      ///< tiles of which the samples of a pixel may differ in colour
+  std::uint64_t in_memory = 0;  ///< tiles whose depths and colours are in memory, as far as small triangles know
   std::array<std::uint8_t, kTiles> touches{};  ///< of each tile by batches, since its range was found
   alignas(64) std::array<std::int16_t, kTiles> depth_owner, color_owner;
   // What a clear leaves, to be read as if it were in memory: of a tile where 16 bits suffice, of a block.

@@ -105,25 +105,11 @@ HALFPLANE_INLINE void write_color_rows(const Bin& bin, const BinTriangle& left, 
   }
 }
 
-/// The mean of the samples' colours: mean_color().
+/// The mean of the samples' colours.
 HALFPLANE_INLINE I16 mean_colors(const Bin& bin, std::size_t at) {
-  const std::uint32_t(*const colors)[kBinSize * kBinSize] = bin.sample_memory.color;
-  const bool is_short = bin.config.color_format == ColorFormat::rgb565;
-  // Two sums a lane: of red and blue, of green and alpha.
-  const int apart = is_short ? 11 : 16, down = is_short ? 5 : 8, log = std::countr_zero(bin.samples);
-  const std::int32_t outer = is_short ? 0xf81f : 0xff00ff, inner = is_short ? 0x3f : 0xff00ff,
-                     code = is_short ? 0x1f : 0xff, half = static_cast<std::int32_t>(bin.samples / 2);
-  I16 outer_sum(half | half << apart), inner_sum(half | half << 16);
-  for (unsigned k = 0; k < bin.samples; ++k) {
-    const I16 color = I16::load(colors[k] + at);
-    outer_sum += color & outer;
-    inner_sum += shift_right_logical(color, down) & inner;
-  }
-  const auto mean = [log](const I16& sum, int from, std::int32_t bits)
-                        HALFPLANE_LAMBDA { return shift_right_logical(sum, from + log) & bits; };
-  const I16 rest =
-      is_short ? mean(inner_sum, 0, 0x3f) << 5 : mean(inner_sum, 0, 0xff) << 8 | mean(inner_sum, 16, 0xff) << 24;
-  return mean(outer_sum, 0, code) | mean(outer_sum, apart, code) << apart | rest;
+  ColorSums sums(bin);
+  for (unsigned k = 0; k < bin.samples; ++k) sums.add(I16::load(bin.sample_memory.color[k] + at));
+  return sums.mean(bin);
 }
 
 /// A tile's colours at sample k, or its resolved ones.
@@ -170,6 +156,7 @@ inline void finish(Bin& bin) {
   const int columns = tiles_along(bin.job.target.width - bin.first_x),
             rows = tiles_along(bin.job.target.height - bin.first_y);
   if (bin.samples > 1) {
+    bin.job.keeps_samples ? finish_cutouts(bin) : resolve_all_cutouts(bin);
     for (int row = 0; row < rows; ++row) finish_samples(bin, row * kBinTiles, columns);
     finish_lines();
     return;

@@ -1,7 +1,7 @@
 // Several samples a pixel: depths are kept by sample, colours once a pixel while all samples of it have the same one. Only a
 // tile in which they differ is split, into n images; one that a triangle takes as a whole is whole again. So what is far from
 // edges costs what one sample costs, but for depths: those of a triangle that has taken a tile are computed when somebody needs
-// them, at whichever sample.
+// them, at whichever sample. Where its edges cut a tile, a triangle waits as a cutout: cutouts.inl.
 //
 // An edge at a sample is the edge at the centre plus a constant, and so is a depth (multisample.hpp).
 // A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
@@ -64,56 +64,8 @@ struct SeveralSamples {
   }
   template <class Fragments>
   HALFPLANE_INLINE void draw(Bin& bin, const Slice& slice, const Record& record, const BinTriangle& t,
-                             std::uint64_t tiles, std::uint64_t full, std::uint64_t in_front) const;
-};
-
-/// Depths of the samples of a tile: in memory.
-HALFPLANE_NOINLINE void need_sample_depths(Bin& bin, int tile) {
-  if (bin.depth_owner[tile] == Bin::kInMemory) return;
-  for (unsigned k = 0; k < bin.samples; ++k) {
-    const TileBlocks blocks = sample_depths(bin, tile, k);
-    for (std::size_t i = 0; i < 4; ++i)
-      store_sample(bin, k, static_cast<std::size_t>(first_of(tile)) + kBlockPixels * i, blocks[i]);
-  }
-  bin.depth_owner[tile] = Bin::kInMemory;
-}
-
-/// Colours of a tile, of whichever owner: in memory, split where they are the target's.
-HALFPLANE_NOINLINE void need_sample_colors(Bin& bin, int tile) {
-  if (bin.color_owner[tile] != Bin::kInTarget) return need_color(bin, tile);
-  for (unsigned k = 0; k < bin.samples; ++k) {
-    const TileBlocks blocks = fetched(bin, tile, false, 0, bin.job.target.samples[k].color);
-    std::uint32_t* const to = bin.sample_memory.color[k] + first_of(tile);
-    for (std::size_t i = 0; i < 4; ++i) blocks[i].store(to + kBlockPixels * i);
-  }
-  bin.color_owner[tile] = Bin::kInMemory;
-  bin.split |= std::uint64_t{1} << tile;
-}
-
-HALFPLANE_NOINLINE void split_tile(Bin& bin, int tile) {
-  need_sample_colors(bin, tile);
-  if ((bin.split >> tile & 1) != 0) return;
-  const std::uint32_t* const from = bin.memory.color.data() + first_of(tile);
-  for (unsigned k = 0; k < bin.samples; ++k)
-    for (std::size_t i = 0; i < 4; ++i)
-      I16::load(from + kBlockPixels * i).store(bin.sample_memory.color[k] + first_of(tile) + kBlockPixels * i);
-  bin.split |= std::uint64_t{1} << tile;
-}
-
-/// What a triangle covers of a tile, and what of that has passed the depth test: a bit a pixel.
-struct SamplePixels {
-  std::uint64_t centre = ~std::uint64_t{0};
-  std::array<std::uint64_t, kMaxPixelSamples> covered, passed{};
-  std::uint64_t any = 0, all = ~std::uint64_t{0};  ///< of `passed`
-
-  HALFPLANE_INLINE void find_any_and_all(unsigned samples) {
-    any = 0;
-    all = ~std::uint64_t{0};
-    for (unsigned k = 0; k < samples; ++k) {
-      any |= passed[k];
-      all &= passed[k];
-    }
-  }
+                             const TileDepths& depths, std::uint64_t tiles, std::uint64_t full,
+                             std::uint64_t in_front) const;
 };
 
 /// The colours of a tile's pixels as they are stored or, of 8 bits a channel, before they are.
@@ -125,7 +77,8 @@ struct PixelColors {
   }
 };
 
-/// One triangle in its tiles.
+/// One triangle in its tiles. `kSamples`: how many a pixel has, or 0, if Bin::samples says it.
+template <unsigned kSamples>
 struct SampledTriangle {
   Bin& bin;
   const Slice& slice;
@@ -133,23 +86,37 @@ struct SampledTriangle {
   const BinTriangle& t;
   const SeveralSamples& at;
   const TileConstants constants;
-  std::array<std::int32_t, kMaxPixelSamples> surface{};   ///< its number where a sample shades; 0: none yet
-  std::array<ChannelPairs, kMaxPixelSamples> color_gain;  ///< from the centre to each sample: once somebody asks
-  bool has_gains = false;
+  SampledColors<kSamples> planes;
+  std::array<std::int32_t, kMaxPixelSamples> surface{};  ///< its number where a sample shades; 0: none yet
+  bool can_wait;                                         ///< its colours
+  std::int16_t plane_number = -1;                        ///< into BinMemory::planes, once it waits
 
   HALFPLANE_INLINE SampledTriangle(Bin& bin_, const Slice& slice_, const Record& record_, const BinTriangle& t_,
                                    const SeveralSamples& at_)
-      : bin(bin_), slice(slice_), record(record_), t(t_), at(at_), constants(bin_, t_) {}
+      : bin(bin_), slice(slice_), record(record_), t(t_), at(at_), constants(bin_, t_), planes(bin_, t_) {
+    can_wait = bin.state.color_write && bin.skip.attributes && !bin.has_operations && t.surface == 0;
+  }
 
-  /// Takes the pixels outside an edge out of what is covered. `smallest`: its value at the centre where it is least.
-  HALFPLANE_INLINE void leave_out(std::size_t e, std::int32_t smallest, SamplePixels& pixels) const {
-    const std::int32_t below = constants.below[e], to_first = constants.to_smallest[e];
-    // As in outside_edges().
-    const auto first = [&](std::int32_t moved)
-                           HALFPLANE_LAMBDA { return std::min(std::max(smallest + moved, below), 0) - to_first; };
+  HALFPLANE_INLINE unsigned count() const { return samples_of<kSamples>(bin); }
+
+  /// What edges have at the first pixel of a tile, at the centre and from there on at each sample, less than the limit for
+  /// what is outside. As in outside_edges().
+  using FirstValues = std::array<std::array<std::int32_t, 4>, 1 + kMaxPixelSamples>;
+  HALFPLANE_INLINE FirstValues first_values(const EdgeWords& smallest) const {
+    FirstValues first;
+    const auto at_place = [&](const EdgeWords& value) HALFPLANE_LAMBDA {
+      return stored(smaller(larger(value, constants.below), EdgeWords{}) - constants.to_smallest);
+    };
+    first[0] = at_place(smallest);
+    for (unsigned k = 0; k < count(); ++k) first[1 + k] = at_place(smallest + at.edge[k]);
+    return first;
+  }
+
+  /// Takes the pixels outside an edge out of what is covered.
+  HALFPLANE_INLINE void leave_out(std::size_t e, const FirstValues& first, SamplePixels& pixels) const {
     const auto each = [&](auto&& outside) HALFPLANE_LAMBDA {
-      pixels.centre &= ~outside(first(0));
-      for (unsigned k = 0; k < bin.samples; ++k) pixels.covered[k] &= ~outside(first(at.edge[k][e]));
+      pixels.centre &= ~outside(first[0][e]);
+      for (unsigned k = 0; k < count(); ++k) pixels.covered[k] &= ~outside(first[1 + k][e]);
     };
     if (constants.is_steep)
       return each([&](std::int32_t from) HALFPLANE_LAMBDA { return bits_of(constants.steep_edges[e](from)); });
@@ -163,35 +130,37 @@ struct SampledTriangle {
     const int x = tile % kBinTiles, y = tile / kBinTiles;
     if (!is_full && !constants.is_whole) in_box = ~bits_of(outside_box(bin, t.box, x, y));
     pixels.centre = in_box;
-    for (unsigned k = 0; k < bin.samples; ++k) pixels.covered[k] = in_box;
+    for (unsigned k = 0; k < count(); ++k) pixels.covered[k] = in_box;
     if (is_full) return true;
     const EdgeWords smallest = constants.edge + constants.to_smallest + (y * constants.tile_dx - x * constants.tile_dy);
-    const auto at_centre = stored(smallest), at_least = stored(smallest + at.edge_least);
+    const FirstValues first = first_values(smallest);
+    const auto at_least = stored(smallest + at.edge_least);
     for (std::size_t e = 0; e < 3; ++e)
-      if (at_least[e] < 0) leave_out(e, at_centre[e], pixels);
+      if (at_least[e] < 0) leave_out(e, first, pixels);
     std::uint64_t any = 0;
-    for (unsigned k = 0; k < bin.samples; ++k) any |= pixels.covered[k];
+    for (unsigned k = 0; k < count(); ++k) any |= pixels.covered[k];
     return any != 0;
   }
 
   template <class Fragments>
   HALFPLANE_INLINE void test(int tile, SamplePixels& pixels) const {
-    need_sample_depths(bin, tile);
+    for (unsigned k = 0; k < count(); ++k) pixels.passed[k] = 0;
+    if (bin.depth_owner[tile] != Bin::kInMemory) need_sample_depths(bin, tile);
     const std::int32_t anchor = depth_anchor(bin, t, tile % kBinTiles, tile / kBinTiles);
     const auto first = static_cast<std::size_t>(first_of(tile));
     const bool writes = bin.state.depth_write;
     if (constants.is_narrow) {
       std::uint16_t* const depths = bin.sample_memory.narrow_depth[0] + first;
       const DepthLanes limits(constants.z_low, constants.z_high, constants.middle);
-      const unsigned samples = bin.samples;
+      const unsigned samples = count();
       U64 low(0xffff), high(0);
       for (unsigned k = 0; k < samples; ++k) {
         std::uint16_t* const to = depths + k * std::size_t{kBinSize * kBinSize};
         const U64 stored = U64::load(to);
         U64 now = stored;
         if ((at.drawn >> k & 1) != 0) {
-          const TestedTile result = tested<Fragments>(bin, constants, limits, wrapped_sum(anchor, at.depth[k]),
-                                                      ~lanes_of(pixels.covered[k]), stored);
+          const TestedTile result = tested_by_bits<Fragments>(bin, constants, limits, wrapped_sum(anchor, at.depth[k]),
+                                                              pixels.covered[k], stored);
           pixels.passed[k] = result.passed;
           now = result.now;
           if (writes && result.passed != 0) now.store(to);
@@ -199,13 +168,13 @@ struct SampledTriangle {
         low = min(low, now);
         high = max(high, now);
       }
-      pixels.find_any_and_all(bin.samples);
+      pixels.find_any_and_all(count());
       if (!writes || pixels.any == 0) return;
       bin.tile_low[tile] = static_cast<std::uint16_t>(min_lane(low));
       bin.tile_high[tile] = static_cast<std::uint16_t>(max_lane(high));
       return;
     }
-    for (unsigned k = 0; k < bin.samples; ++k) {
+    for (unsigned k = 0; k < count(); ++k) {
       if ((at.drawn >> k & 1) == 0) continue;
       const BlockRamp<I16> plane = depth_ramp(bin, t, wrapped_sum(anchor, at.depth[k]));
       for_each_block([&](auto block) HALFPLANE_LAMBDA {
@@ -218,7 +187,7 @@ struct SampledTriangle {
         if (writes) store_sample(bin, k, place, select_by_bits(passed, depths, stored, bin.position.to_sign));
       });
     }
-    pixels.find_any_and_all(bin.samples);
+    pixels.find_any_and_all(count());
     if (writes && pixels.any != 0) find_sample_range(bin, tile);
   }
 
@@ -226,7 +195,7 @@ struct SampledTriangle {
   template <class Visit>
   HALFPLANE_INLINE void for_each_place(const SamplePixels& pixels, Visit&& visit) const {
     std::uint64_t rest = pixels.any & ~pixels.centre;
-    for (unsigned m = 0; rest != 0 && m < bin.samples; ++m) {
+    for (unsigned m = 0; rest != 0 && m < count(); ++m) {
       const std::uint64_t here = rest & pixels.covered[m];
       rest &= ~here;
       if (here != 0) visit(m, here);
@@ -240,34 +209,9 @@ struct SampledTriangle {
   HALFPLANE_INLINE ChannelPairs anchor_of(int tile) const {
     return color_anchor(bin, t, tile % kBinTiles, tile / kBinTiles);
   }
-  HALFPLANE_INLINE const ChannelPairs& gain_at(unsigned m) {
-    if (!has_gains)
-      for (unsigned k = 0; k < bin.samples; ++k) color_gain[k] = color_at_sample(bin, t, k);
-    has_gains = true;
-    return color_gain[m];
-  }
   HALFPLANE_INLINE ChannelPairs anchor_at(unsigned m, int tile) {
-    const ChannelPairs centre = anchor_of(tile), gain = gain_at(m);
+    const ChannelPairs centre = anchor_of(tile), gain = planes.gain_at(m);
     return {sum_of_pairs(centre[0], gain[0]), sum_of_pairs(centre[1], gain[1])};
-  }
-
-  /// Colours of a block's pixels with a sample that has passed, `any` of them. `plane`: at the centres.
-  HALFPLANE_INLINE I16 colors_of_block(const ColorRamp& plane, const SamplePixels& pixels, std::size_t block,
-                                       std::uint32_t any, ColorFormat format) {
-    I16 color = block_colors(t.color, plane, block, bin.color_format, format);
-    std::uint32_t rest = any & ~block_bits(pixels.centre, block);
-    for (unsigned m = 0; rest != 0 && m < bin.samples; ++m) {
-      const std::uint32_t here = rest & block_bits(pixels.covered[m], block);
-      if (here == 0) continue;
-      rest &= ~here;
-      const ChannelPairs& gain = gain_at(m);
-      const auto pair = [&](std::size_t p) HALFPLANE_LAMBDA {
-        return color_codes(plane[p](block) + as<S32>(I16(gain[p])), I16(t.color.low[p]), I16(t.color.high[p]),
-                           bin.color_format);
-      };
-      color = select_by_bits(here, packed(pair(0), pair(1), format), color, bin.position.to_sign);
-    }
-    return color;
   }
 
   /// Colours of all pixels with a sample that has passed, of a surface or of planes.
@@ -282,25 +226,20 @@ struct SampledTriangle {
     const ColorRamp plane = color_ramp(bin, t.color, anchor_of(tile));
     for_each_block([&](auto block) HALFPLANE_LAMBDA {
       const std::uint32_t any = block_bits(pixels.any, block);
-      if (any != 0) colors_of_block(plane, pixels, block, any, format).store(colors.code.data() + block * kBlockPixels);
+      if (any != 0)
+        planes.of_block(plane, pixels.centre, pixels.covered, block, any, format)
+            .store(colors.code.data() + block * kBlockPixels);
     });
-  }
-
-  /// Colours of a block to the samples that have passed.
-  HALFPLANE_INLINE void store_samples(int tile, const SamplePixels& pixels, std::size_t block, const I16& color) const {
-    std::uint32_t* const to = bin.sample_memory.color[0] + first_of(tile) + block * kBlockPixels;
-    for (unsigned k = 0; k < bin.samples; ++k) {
-      std::uint32_t* const at_sample = to + k * std::size_t{kBinSize * kBinSize};
-      select_by_bits(block_bits(pixels.passed[k], block), color, I16::load(at_sample), bin.position.to_sign)
-          .store(at_sample);
-    }
   }
 
   /// Whether the pixels of a tile have one colour each, before and after; what is all covered is so in any case.
   HALFPLANE_INLINE bool stays_whole(int tile, const SamplePixels& pixels) const {
     const std::uint64_t bit = std::uint64_t{1} << tile;
     if (bin.color_owner[tile] == Bin::kInTarget) need_sample_colors(bin, tile);
-    if (pixels.all == ~std::uint64_t{0} && !bin.has_operations) bin.split &= ~bit;
+    if (pixels.all == ~std::uint64_t{0} && !bin.has_operations) {
+      bin.split &= ~bit;
+      if (bin.color_owner[tile] == Bin::kCutouts) bin.color_owner[tile] = Bin::kInMemory;  // all of it is written next
+    }
     return pixels.any == pixels.all && (bin.split & bit) == 0;
   }
 
@@ -317,29 +256,25 @@ struct SampledTriangle {
                      [&](unsigned m, std::uint64_t here) { color_tile(bin, t, tile, anchor_at(m, tile), here); });
       return;
     }
-    split_tile(bin, tile);
+    if (bin.color_owner[tile] != Bin::kInMemory || (bin.split >> tile & 1) == 0) split_tile(bin, tile);
     if (t.surface != 0) {
       PixelColors colors;
       find_colors(tile, pixels, bin.config.color_format, colors);
       for_each_block([&](auto block) HALFPLANE_LAMBDA {
         if (block_bits(pixels.any, block) != 0)
-          store_samples(tile, pixels, block, I16::load(colors.code.data() + block * kBlockPixels));
+          store_samples<kSamples>(bin, tile, pixels.passed, block,
+                                  I16::load(colors.code.data() + block * kBlockPixels));
       });
       return;
     }
-    const ColorRamp plane = color_ramp(bin, t.color, anchor_of(tile));
-    for_each_block([&](auto block) HALFPLANE_LAMBDA {
-      const std::uint32_t any = block_bits(pixels.any, block);
-      if (any != 0)
-        store_samples(tile, pixels, block, colors_of_block(plane, pixels, block, any, bin.config.color_format));
-    });
+    planes.store(tile, pixels.centre, pixels.covered, pixels.passed, pixels.any);
   }
 
   /// Depths of what has passed every test.
   HALFPLANE_INLINE void write_depths(int tile, const SamplePixels& pixels) const {
     if (pixels.any == 0) return;
     const std::int32_t anchor = depth_anchor(bin, t, tile % kBinTiles, tile / kBinTiles);
-    for (unsigned k = 0; k < bin.samples; ++k) {
+    for (unsigned k = 0; k < count(); ++k) {
       const BlockRamp<I16> plane = depth_ramp(bin, t, wrapped_sum(anchor, at.depth[k]));
       for_each_block([&](auto block) HALFPLANE_LAMBDA {
         const std::size_t place = static_cast<std::size_t>(first_of(tile)) + block * kBlockPixels;
@@ -354,12 +289,12 @@ struct SampledTriangle {
   /// operate_on_tile() of samples.
   HALFPLANE_NOINLINE void operate(int tile, SamplePixels& pixels) {
     const FragmentOps& ops = *bin.ops;
-    const auto count = [&] {
+    const auto passed_samples = [&] {
       unsigned sum = 0;
-      for (unsigned k = 0; k < bin.samples; ++k) sum += static_cast<unsigned>(std::popcount(pixels.passed[k]));
+      for (unsigned k = 0; k < count(); ++k) sum += static_cast<unsigned>(std::popcount(pixels.passed[k]));
       return sum;
     };
-    if (bin.is_killed) return count_killed(bin, count());
+    if (bin.is_killed) return count_killed(bin, passed_samples());
     if (!bin.tests_alpha && !ops.state.color_write) return;
     if (!bin.tests_alpha && stays_whole(tile, pixels) && (pixels.any & ~pixels.centre) == 0)
       return operate_on_tile(bin, t, tile, pixels.any);
@@ -367,10 +302,10 @@ struct SampledTriangle {
     find_colors(tile, pixels, ColorFormat::rgba8888, colors);
     if (bin.tests_alpha) {
       const std::uint64_t kept = test_alpha(bin, pixels.any, colors);
-      const unsigned before = count();
-      for (unsigned k = 0; k < bin.samples; ++k) pixels.passed[k] &= kept;
-      pixels.find_any_and_all(bin.samples);
-      count_killed(bin, before - count());
+      const unsigned before = passed_samples();
+      for (unsigned k = 0; k < count(); ++k) pixels.passed[k] &= kept;
+      pixels.find_any_and_all(count());
+      count_killed(bin, before - passed_samples());
       if (ops.state.depth_write) write_depths(tile, pixels);
     }
     if (!ops.state.color_write || pixels.any == 0) return;
@@ -379,38 +314,93 @@ struct SampledTriangle {
       return store_colors(bin, bin.memory.color.data() + first_of(tile), pixels.any, colors);
     }
     split_tile(bin, tile);
-    for (unsigned k = 0; k < bin.samples; ++k)
+    for (unsigned k = 0; k < count(); ++k)
       if (pixels.passed[k] != 0)
         store_colors(bin, bin.sample_memory.color[k] + first_of(tile), pixels.passed[k], colors);
   }
 
+  /// Its number among the triangles that wait.
+  HALFPLANE_INLINE std::int16_t plane() {
+    if (plane_number < 0) plane_number = add_plane(bin, t);
+    return plane_number;
+  }
+
+  /// Whether the colours of what has passed wait.
+  HALFPLANE_INLINE bool waits(int tile, const SamplePixels& pixels) const {
+    if (!can_wait || !may_wait(tile) || pixels.all == ~std::uint64_t{0}) return false;
+    return pixels.any != pixels.all || (bin.split >> tile & 1) != 0;
+  }
+
+  /// Whether a cutout waits in a tile: where samples have been stored one by one, others will be as well, and where cutouts are
+  /// asked for before others hide them, they had better not wait.
+  HALFPLANE_INLINE bool may_wait(int tile) const {
+    return bin.color_owner[tile] == Bin::kCutouts || (bin.cutouts_saved > 0 && (bin.split >> tile & 1) == 0);
+  }
+
+  /// What passes, where ranges of depths say it: nobody looks at a depth, and these wait too.
   template <class Fragments>
-  HALFPLANE_INLINE void draw(int tile, bool is_full, PixelCounts& counts) {
+  HALFPLANE_INLINE bool passes_by_ranges_alone(int tile, bool is_ahead, const CutoutRange& range,
+                                               SamplePixels& pixels) const {
+    const bool asks_cutouts = Fragments::kIsLess && can_wait && bin.depth_owner[tile] == Bin::kCutouts;
+    if (!asks_cutouts && (!is_ahead || !may_wait(tile))) return false;
+    for (unsigned k = 0; k < count(); ++k) pixels.passed[k] = (at.drawn >> k & 1) != 0 ? pixels.covered[k] : 0;
+    return is_ahead || passes_by_ranges<kSamples>(bin, tile, range, pixels);
+  }
+
+  /// What they let through.
+  HALFPLANE_INLINE void wait_with_depths(int tile, const SamplePixels& pixels, const CutoutRange& range) {
+    if (!bin.state.depth_write) return add_cutout<kSamples>(bin, tile, plane(), pixels, nullptr);
+    if ((pixels.all & pixels.centre) != ~std::uint64_t{0})
+      return add_cutout<kSamples>(bin, tile, plane(), pixels, &range);
+    const std::uint64_t bit = std::uint64_t{1} << tile;
+    bin.depth_owner[tile] = bin.color_owner[tile] = plane();
+    bin.split &= ~bit;
+    bin.in_memory &= ~bit;
+    bin.tile_low[tile] = range.low;
+    bin.tile_high[tile] = range.high;
+  }
+
+  template <class Fragments>
+  HALFPLANE_INLINE void draw(int tile, bool is_full, bool is_ahead, const TileBounds& bounds, PixelCounts& counts) {
     SamplePixels pixels;
     if (!cover(tile, is_full, pixels)) return;
-    test<Fragments>(tile, pixels);
-    for (unsigned k = 0; k < bin.samples; ++k) {
+    const auto at_tile = static_cast<std::size_t>(tile);
+    const CutoutRange range{bounds.low[at_tile], bounds.high[at_tile]};
+    const bool by_ranges = passes_by_ranges_alone<Fragments>(tile, is_ahead, range, pixels);
+    by_ranges ? pixels.find_any_and_all(count()) : test<Fragments>(tile, pixels);
+    for (unsigned k = 0; k < count(); ++k) {
       if ((at.drawn >> k & 1) == 0) continue;
       counts.covered += static_cast<unsigned>(std::popcount(pixels.covered[k]));
       counts.passed += static_cast<unsigned>(std::popcount(pixels.passed[k]));
     }
     if (pixels.any == 0) return;
-    if (bin.has_operations)
+    if (by_ranges)
+      wait_with_depths(tile, pixels, range);
+    else if (bin.has_operations)
       operate(tile, pixels);
+    else if (waits(tile, pixels))
+      add_cutout<kSamples>(bin, tile, plane(), pixels, nullptr);
     else if (bin.state.color_write)
       color(tile, pixels);
   }
 };
 
-template <class Fragments>
+template <class Fragments, unsigned kSamples>
 HALFPLANE_NOINLINE void draw_sampled_tiles(Bin& bin, const Slice& slice, const Record& record, const BinTriangle& t,
-                                           const SeveralSamples& at, std::uint64_t tiles, std::uint64_t full,
-                                           std::uint64_t in_front) {
-  SampledTriangle drawn(bin, slice, record, t, at);
+                                           const SeveralSamples& at, const TileDepths& depths, std::uint64_t tiles,
+                                           std::uint64_t full, std::uint64_t in_front) {
+  SampledTriangle<kSamples> drawn(bin, slice, record, t, at);
   PixelCounts pixels;
   constexpr std::uint64_t kPixels = kTileSize * kTileSize;
   bin.job.counters.skipped.trivially_accepted += static_cast<unsigned>(std::popcount(tiles & full));
   bin.job.counters.samples_tested += kPixels * bin.samples * static_cast<unsigned>(std::popcount(tiles & ~full));
+  std::uint64_t ahead = 0;
+  TileBounds bounds;
+  if (drawn.can_wait) {
+    ahead = tiles & Fragments::tiles_in_front(bin, depths);
+    depths.low().store(bounds.low.data());
+    depths.high().store(bounds.high.data());
+  }
   for (; tiles != 0; tiles &= tiles - 1) {
     const int tile = std::countr_zero(tiles);
     if ((in_front >> tile & 1) != 0) {
@@ -420,13 +410,15 @@ HALFPLANE_NOINLINE void draw_sampled_tiles(Bin& bin, const Slice& slice, const R
       pixels.passed += kPixels * bin.samples;
       continue;
     }
-    drawn.draw<Fragments>(tile, (full >> tile & 1) != 0, pixels);
+    drawn.template draw<Fragments>(tile, (full >> tile & 1) != 0, (ahead >> tile & 1) != 0, bounds, pixels);
   }
   count_fragments(bin, pixels.covered, pixels.passed);
 }
 
 template <class Fragments>
 HALFPLANE_INLINE void SeveralSamples::draw(Bin& bin, const Slice& slice, const Record& record, const BinTriangle& t,
-                                           std::uint64_t tiles, std::uint64_t full, std::uint64_t in_front) const {
-  draw_sampled_tiles<Fragments>(bin, slice, record, t, *this, tiles, full, in_front);
+                                           const TileDepths& depths, std::uint64_t tiles, std::uint64_t full,
+                                           std::uint64_t in_front) const {
+  bin.samples == 4 ? draw_sampled_tiles<Fragments, 4>(bin, slice, record, t, *this, depths, tiles, full, in_front)
+                   : draw_sampled_tiles<Fragments, 0>(bin, slice, record, t, *this, depths, tiles, full, in_front);
 }

@@ -7,6 +7,7 @@
 template <class Fragments>
 HALFPLANE_INLINE bool touch_sampled_tiles(Bin& bin, std::uint64_t tiles) {
   const bool is_color = bin.state.color_write;
+  bin.cutouts_saved = std::min(bin.cutouts_saved, 0);  // small triangles will ask for more of them
   for (std::uint64_t rest = tiles & ~(bin.in_memory & bin.split); rest != 0; rest &= rest - 1) {
     const int at = std::countr_zero(rest);
     need_sample_depths(bin, at);
@@ -107,7 +108,7 @@ struct SampledCoverage {
   }
 };
 
-template <bool kShort>
+template <unsigned kSamples, bool kShort>
 HALFPLANE_INLINE void find_sampled(const Bin& bin, const SmallSamples& samples, std::uint64_t quads,
                                    SampledCoverage& covered) {
   std::size_t at = 0;
@@ -117,7 +118,7 @@ HALFPLANE_INLINE void find_sampled(const Bin& bin, const SmallSamples& samples, 
     const std::uint64_t in_box = kWindowQuads.in_box[static_cast<std::size_t>(bin.small.columns_rows[i])][q];
     const QuadEdges<kShort> edges(bin, i, q);
     std::uint64_t any = 0;
-    for (std::size_t k = 0; k < samples.count; ++k) {
+    for (std::size_t k = 0; k < samples_of<kSamples>(bin); ++k) {
       const std::uint64_t bits = in_box & ~edges.outside(samples.edge[k], i);
       SampledCoverage::set(covered.sample[k], at, bits);
       any |= bits;
@@ -130,15 +131,17 @@ HALFPLANE_INLINE void find_sampled(const Bin& bin, const SmallSamples& samples, 
   covered.any.quads = at;
   covered.samples = sum;
 }
+template <unsigned kSamples>
 HALFPLANE_INLINE void find_sampled(Bin& bin, const SmallSamples& samples, SampledCoverage& covered) {
   const std::uint64_t quads = live_quads(bin);
-  bin.has_short_edges ? find_sampled<true>(bin, samples, quads, covered)
-                      : find_sampled<false>(bin, samples, quads, covered);
+  bin.has_short_edges ? find_sampled<kSamples, true>(bin, samples, quads, covered)
+                      : find_sampled<kSamples, false>(bin, samples, quads, covered);
   bin.job.counters.samples_tested +=
       Quad::kBlocks * kBlockPixels * bin.samples * static_cast<unsigned>(std::popcount(quads));
 }
 
 /// Colours of a block of lane i: at the centre, or where that is not covered at the first covered sample.
+template <unsigned kSamples>
 HALFPLANE_INLINE I16 sampled_colors(const Bin& bin, const SmallSamples& samples, const SampledCoverage& covered,
                                     std::size_t number, std::size_t i, const SmallBatch::Tile& tile,
                                     const LanePositions::Block& block, int down) {
@@ -150,7 +153,7 @@ HALFPLANE_INLINE I16 sampled_colors(const Bin& bin, const SmallSamples& samples,
   const I16 low(batch.c_low[i]), high(batch.c_high[i]);
   I16 rgba = ColorRange::clamped(saturated(left >> down, right >> down), low, high);
   std::uint32_t rest = covered.any.block[number] & ~std::uint32_t{covered.centre[number]};
-  for (std::size_t k = 0; k < samples.count; ++k) {
+  for (std::size_t k = 0; rest != 0 && k < samples_of<kSamples>(bin); ++k) {
     const std::uint32_t here = rest & covered.sample[k][number];
     rest &= ~here;
     const S32 gain = repeated(samples.color[k][i]);
@@ -160,8 +163,55 @@ HALFPLANE_INLINE I16 sampled_colors(const Bin& bin, const SmallSamples& samples,
   return bin.config.color_format == ColorFormat::rgba8888 ? rgba : packed(rgba, bin.config.color_format);
 }
 
+#if HALFPLANE_ISA == 512
+/// NarrowTest where registers are larger: the codes of a block are half of one, masks are bits.
+struct NarrowSamples {
+  static constexpr unsigned kCount = 1;
+  using Passed = std::uint32_t;
+  const Bin& bin;
+  std::uint16_t* depths;
+  __m256i bias;
+
+  HALFPLANE_INLINE NarrowSamples(const Bin& bin_, SampleMemory& memory)
+      : bin(bin_),
+        depths(memory.narrow_depth[0]),
+        bias(_mm256_set1_epi16(static_cast<std::int16_t>(bin_.depth_format.bias))) {}
+  HALFPLANE_INLINE static __m256i codes(const I16& code, std::int32_t low, std::int32_t high) {
+    const __m256i saturated = _mm512_cvtsepi32_epi16((__m512i)code.part[0]);
+    return _mm256_min_epi16(_mm256_max_epi16(saturated, _mm256_set1_epi16(static_cast<std::int16_t>(low))),
+                            _mm256_set1_epi16(static_cast<std::int16_t>(high)));
+  }
+  HALFPLANE_INLINE __m256i load(std::size_t at) const {
+    return _mm256_sub_epi16(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(depths + at)), bias);
+  }
+  HALFPLANE_INLINE void store(std::size_t at, const __m256i& depth) const {
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(depths + at), _mm256_add_epi16(depth, bias));
+  }
+  template <class Fragments>
+  HALFPLANE_INLINE static std::uint32_t passed(const SliceState& state, std::uint32_t covered, const __m256i& depth,
+                                               const __m256i& stored) {
+    if (Fragments::kIsLess) return _mm256_mask_cmplt_epi16_mask(static_cast<__mmask16>(covered), depth, stored);
+    const auto lanes = [](const __m256i& of) HALFPLANE_LAMBDA {
+      I16 r;
+      r.part[0] = (I16::Register)_mm512_cvtepi16_epi32(of);
+      return r;
+    };
+    return covered & bits_of(Fragments::passes(state, lanes(depth), lanes(stored)));
+  }
+  HALFPLANE_INLINE static unsigned count(std::uint32_t pixels) { return static_cast<unsigned>(std::popcount(pixels)); }
+  HALFPLANE_INLINE static __m256i choose(std::uint32_t pixels, const __m256i& a, const __m256i& b) {
+    return _mm256_mask_mov_epi16(b, static_cast<__mmask16>(pixels), a);
+  }
+  HALFPLANE_INLINE I16 choose_color(std::uint32_t pixels, const I16& a, const I16& b) const {
+    return select_by_bits(pixels, a, b, bin.position.to_sign);
+  }
+};
+#else
+using NarrowSamples = NarrowTest;
+#endif
+
 /// Depth, test and colour of the blocks of which samples are covered.
-template <class Fragments, class Test>
+template <class Fragments, class Test, unsigned kSamples>
 HALFPLANE_NOINLINE void draw_sampled_blocks(Bin& bin, const SmallSamples& samples, const SampledCoverage& covered) {
   constexpr std::size_t kPixels = kBinSize * kBinSize;
   const SmallBatch& batch = bin.small;
@@ -171,8 +221,9 @@ HALFPLANE_NOINLINE void draw_sampled_blocks(Bin& bin, const SmallSamples& sample
   const Test test(bin, memory);
   std::uint32_t* const colors = memory.color[0];
   const int depth_down = bin.centred_depth.down, color_down = bin.centred_color.down;
-  const std::size_t count = samples.count;
+  const std::size_t count = samples_of<kSamples>(bin);
   const std::uint32_t drawn = bin.drawn_samples;
+  const bool has_depth = state.depth_write, has_color = state.color_write;
   unsigned passed_pixels = 0;
   for (std::size_t first = 0; first < covered.any.quads; first += 16)
     for (std::uint64_t rest = covered.any.blocks(first); rest != 0; rest &= rest - 1) {
@@ -193,17 +244,26 @@ HALFPLANE_NOINLINE void draw_sampled_blocks(Bin& bin, const SmallSamples& sample
                    depth = test.codes((value + samples.depth[k][i]) >> depth_down, batch.z_low[i], batch.z_high[i]);
         passed[k] = test.template passed<Fragments>(state, bits, depth, stored);
         some += test.count(passed[k]);
-        if (state.depth_write) test.store(to, test.choose(passed[k], depth, stored));
+        if (has_depth) test.store(to, test.choose(passed[k], depth, stored));
       }
       passed_pixels += some;
-      if (some == 0 || !state.color_write) continue;
-      const I16 color = sampled_colors(bin, samples, covered, number, i, tile, block, color_down);
+      if (some == 0 || !has_color) continue;
+      const I16 color = sampled_colors<kSamples>(bin, samples, covered, number, i, tile, block, color_down);
       for (std::size_t k = 0; k < count; ++k) {
         std::uint32_t* const to = colors + k * kPixels + at;
         test.choose_color(passed[k], color, I16::load(to)).store(to);
       }
     }
   count_fragments(bin, covered.samples, passed_pixels / Test::kCount);
+}
+
+/// A batch that is set up, in tiles that are ready for it.
+template <class Fragments, unsigned kSamples>
+HALFPLANE_NOINLINE void draw_sampled(Bin& bin, const SmallSamples& samples) {
+  SampledCoverage covered;
+  find_sampled<kSamples>(bin, samples, covered);
+  bin.is_narrow ? draw_sampled_blocks<Fragments, NarrowSamples, kSamples>(bin, samples, covered)
+                : draw_sampled_blocks<Fragments, WideTest, kSamples>(bin, samples, covered);
 }
 
 /// Draws a batch whose records are loaded, of no operations and no surfaces.
@@ -215,10 +275,7 @@ HALFPLANE_NOINLINE void draw_sampled_batch(Bin& bin, const Slice& slice) {
                 : set_up_small<LongArithmetic, SmallSamples>)(bin.small, slice, bin.widths, bin.centred_depth,
                                                               bin.centred_color, bin.first_x, bin.first_y, samples);
   const bool is_changed = touch_sampled_tiles<Fragments>(bin, tiles);
-  SampledCoverage covered;
-  find_sampled(bin, samples, covered);
-  bin.is_narrow ? draw_sampled_blocks<Fragments, NarrowTest>(bin, samples, covered)
-                : draw_sampled_blocks<Fragments, WideTest>(bin, samples, covered);
+  bin.samples == 4 ? draw_sampled<Fragments, 4>(bin, samples) : draw_sampled<Fragments, 0>(bin, samples);
   bin.small.count = 0;
   if (is_changed || (!Fragments::kIsLess && bin.state.depth_write)) find_bin_range(bin);
 }

@@ -146,11 +146,13 @@ HALFPLANE_NOINLINE void fetch_depth(Bin& bin, int tile) {
 HALFPLANE_INLINE bool is_waiting(const Bin& bin, int tile);
 HALFPLANE_NOINLINE void shade_tile(Bin& bin, int tile);
 HALFPLANE_NOINLINE void lay_tile(Bin& bin, int tile);
+HALFPLANE_NOINLINE void color_cutouts(Bin& bin, int tile);
 
 HALFPLANE_NOINLINE void fetch_color(Bin& bin, int tile) {
   if (is_waiting(bin, tile)) return shade_tile(bin, tile);
   const std::int32_t owner = bin.color_owner[tile];
   if (owner == Bin::kLayers) return lay_tile(bin, tile);
+  if (owner == Bin::kCutouts) return color_cutouts(bin, tile);
   const TileBlocks blocks = owner >= 0
                                 ? colors_of(bin, tile)
                                 : fetched(bin, tile, owner == Bin::kCleared, bin.job.clear_color, bin.job.target.color);

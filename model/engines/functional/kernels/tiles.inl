@@ -155,8 +155,11 @@ inline std::uint64_t tiles_inside(const BinBounds& box) {
   return inner.left > inner.right || inner.top > inner.bottom ? 0 : tiles_of(inner);
 }
 
+HALFPLANE_NOINLINE void finish_cutouts(Bin& bin);
+
 /// Forgets the triangles of which no tile is left.
 HALFPLANE_NOINLINE void drop_planes(Bin& bin) {
+  if (bin.samples > 1) finish_cutouts(bin);
   std::array<std::int16_t, BinMemory::kPlanes> moved;
   moved.fill(-1);
   for (const auto* owners : {&bin.depth_owner, &bin.color_owner})
@@ -283,6 +286,27 @@ HALFPLANE_INLINE TestedTile tested(const Bin& bin, const TileConstants& t, const
     const S64 passes = ~outside & Fragments::passes(bin.state, depth, stored);
     return {select(passes, depth, stored), bits_of(passes)};
   }
+}
+
+/// The same of pixels whose bits are set.
+template <class Fragments>
+HALFPLANE_INLINE TestedTile tested_by_bits(const Bin& bin, const TileConstants& t, const DepthLanes& limits,
+                                           std::int32_t anchor, std::uint64_t covered, const U64& stored) {
+#if HALFPLANE_ISA == 512
+  if constexpr (Fragments::kIsLess) {
+    const U64 depth = limits.clamped(t.depth((anchor >> bin.depth_format.up) + t.z_first));
+    U64 now;
+    std::uint64_t passed = 0;
+    for (int i = 0; i < 2; ++i) {
+      const auto code = (__m512i)depth.part[i], old = (__m512i)stored.part[i];
+      const __mmask32 passes = _mm512_mask_cmplt_epu16_mask(static_cast<__mmask32>(covered >> 32 * i), code, old);
+      now.part[i] = (U64::Register)_mm512_mask_mov_epi16(old, passes, code);
+      passed |= std::uint64_t{passes} << 32 * i;
+    }
+    return {now, passed};
+  }
+#endif
+  return tested<Fragments>(bin, t, limits, anchor, ~lanes_of(covered), stored);
 }
 
 /// The same in memory, or where it is cleared. Returns what passed.
@@ -420,8 +444,8 @@ struct OneSample {
   HALFPLANE_INLINE static std::uint64_t takeable() { return ~std::uint64_t{0}; }
   HALFPLANE_INLINE static std::uint64_t as_one(const Bin&) { return ~std::uint64_t{0}; }
   template <class Fragments>
-  HALFPLANE_INLINE static void draw(Bin& bin, const Slice&, const Record&, const BinTriangle& t, std::uint64_t tiles,
-                                    std::uint64_t full, std::uint64_t in_front) {
+  HALFPLANE_INLINE static void draw(Bin& bin, const Slice&, const Record&, const BinTriangle& t, const TileDepths&,
+                                    std::uint64_t tiles, std::uint64_t full, std::uint64_t in_front) {
     draw_tiles<Fragments>(bin, t, tiles, full, in_front);
   }
 };
@@ -481,6 +505,7 @@ HALFPLANE_INLINE void draw_large(Bin& bin, const Slice& slice, const Record& rec
     if (bin.state.depth_write) in_front = 0;  // pixel by pixel
   }
   if (taken != 0) take_tiles(bin, t, taken, depths);
-  if ((live & ~taken) != 0) samples.template draw<Fragments>(bin, slice, record, t, live & ~taken, full, in_front);
+  if ((live & ~taken) != 0)
+    samples.template draw<Fragments>(bin, slice, record, t, depths, live & ~taken, full, in_front);
   if (bin.state.depth_write) bin.is_range_old = true;
 }
