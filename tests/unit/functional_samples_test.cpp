@@ -162,6 +162,58 @@ TEST(FunctionalSamples, SmallTrianglesAreTheScalarEngines) {
     }
 }
 
+/// Large triangles one behind the other, half of them along one diagonal, a small one now and then: in tiles that they cut they
+/// wait, hide each other from front, from behind and in parts, and are asked for before the end.
+Scene large_triangles(std::uint64_t seed) {
+  constexpr int kWidth = 150, kHeight = 140, kDraws = 8, kOfDraw = 40;
+  Scene scene = cleared_scene(kWidth, kHeight);
+  stress::Random random(seed);
+  for (int draw = 0; draw < kDraws; ++draw) {
+    State state;
+    if (draw >= kDraws / 2) {
+      state.depth_test = static_cast<DepthFunc>(random.index(8));
+      state.depth_write = random.index(4) != 0;
+      state.color_write = random.index(4) != 0;
+      if (random.index(3) == 0) state.sample_mask = static_cast<std::uint32_t>(random.index(256));
+    }
+    const auto number = static_cast<std::uint32_t>(scene.states.size());
+    scene.states.push_back(state);
+    const std::size_t first = scene.indices.size(), order = random.index(3);
+    for (int i = 0; i < kOfDraw; ++i) {
+      const int rank = order == 0 ? i : order == 1 ? kOfDraw - 1 - i : static_cast<int>(random.index(kOfDraw));
+      const double z = -0.9 + 1.8 * rank / kOfDraw, tilt = random.index(4) == 0 ? 0.3 : 0.01;
+      const bool is_small = i % 13 == 12, is_half = random.index(2) == 0;
+      const double x = random.between(-1, 1), y = random.between(-1, 1), size = is_small ? 0.05 : 1.2,
+                   side = random.index(2) == 0 ? 1 : -1;
+      for (int corner = 0; corner < 3; ++corner) {
+        const double at_x = corner == 1 ? side : -side, at_y = corner == 2 ? side : -side;
+        scene.indices.push_back(static_cast<std::uint32_t>(scene.vertices.size()));
+        scene.vertices.push_back({is_half && !is_small ? at_x : x + size * random.between(-1, 1),
+                                  is_half && !is_small ? at_y : y + size * random.between(-1, 1),
+                                  z + tilt * random.between(-0.3, 0.3),
+                                  1,
+                                  {random.between(0, 255), random.between(0, 255), random.between(0, 255), 255},
+                                  0,
+                                  0});
+      }
+    }
+    scene.commands.push_back(Draw{number, 0, Topology::triangles, first, scene.indices.size() - first, 0});
+  }
+  validate(scene);
+  return scene;
+}
+
+TEST(FunctionalSamples, LargeTrianglesAreTheScalarEngines) {
+  std::uint64_t seed = 1;
+  for (const char* name : {"embedded", "full"})
+    for (const int samples : {2, 4, 8})
+      for (int scene = 0; scene < 4; ++scene) {
+        SCOPED_TRACE(std::string(name) + ", " + std::to_string(samples) + " samples, seed " + std::to_string(seed));
+        expect_scalar_bits(large_triangles(seed++), sampled(name, samples));
+        if (HasFatalFailure()) return;
+      }
+}
+
 TEST(FunctionalSamples, BuiltInScenesAreTheScalarEngines) {
   const Config config = sampled("embedded", 4);
   for (const char* name : {"teapot", "city", "knot", "coplanar", "slivers", "triangle", "layers", "layers_nearest",
