@@ -33,7 +33,7 @@ namespace {
 #include "kernels/samples.inl"          // small triangles: samples
 #include "kernels/small.inl"            // and blocks
 #include "kernels/tiles.inl"            // large triangles: tiles
-#include "kernels/cutouts.inl"           // cut ones that wait where pixels have several samples
+#include "kernels/cutouts.inl"          // cut ones that wait where pixels have several samples
 #include "kernels/multisample.inl"      // the same where pixels have several samples
 #include "kernels/sampled_blocks.inl"   // blocks of small triangles where they have
 #include "kernels/lines.inl"            // pixels of lines
