@@ -175,7 +175,7 @@ struct TileCutouts {
   bool is_split_below;
   std::uint16_t low_below, high_below;  ///< range of the depths there
   PixelsOfSamples below;                ///< what of it is seen, once drop_hidden() has said so
-  std::array<Cutout, kMost> cutout;
+  Cutout cutout[kMost];  // GCC 12 takes an access to a std::array of these for one of another array
 };
 
 /// What a bin keeps by sample where a pixel has several, each laid out as BinMemory is; colours of tiles that are split.
