@@ -104,7 +104,7 @@ class BlockBits {
 
 class ClearFlags {
  public:
-  explicit ClearFlags(const Widths& widths) : flags_{BlockBits(widths), BlockBits(widths)} {}
+  explicit ClearFlags(const Widths& widths) : depth_(widths), color_(widths) {}
 
   [[nodiscard]] bool is_set(TilePlane plane, const BlockAddress& block) const { return of(plane).is_set(block); }
   /// Memory holds the block from now on.
@@ -113,7 +113,7 @@ class ClearFlags {
   /// A fast clear of the planes in `clears`, tiles (0, 0) to (last_x, last_y).
   void mark(int last_x, int last_y, const std::array<bool, 2>& clears) {
     for (const TilePlane plane : kTilePlanes)
-      if (clears[number(plane)]) of(plane).set_tiles(last_x, last_y, true);
+      if (clears[static_cast<std::size_t>(plane)]) of(plane).set_tiles(last_x, last_y, true);
   }
   /// A fast clear of the colours of the blocks `first` to `last`.
   void mark_colors(const BlockAddress& first, const BlockAddress& last) {
@@ -129,11 +129,10 @@ class ClearFlags {
   }
 
  private:
-  [[nodiscard]] static constexpr std::size_t number(TilePlane plane) { return static_cast<std::size_t>(plane); }
-  [[nodiscard]] const BlockBits& of(TilePlane plane) const { return flags_[number(plane)]; }
-  [[nodiscard]] BlockBits& of(TilePlane plane) { return flags_[number(plane)]; }
+  [[nodiscard]] const BlockBits& of(TilePlane plane) const { return plane == TilePlane::depth ? depth_ : color_; }
+  [[nodiscard]] BlockBits& of(TilePlane plane) { return plane == TilePlane::depth ? depth_ : color_; }
 
-  std::array<BlockBits, 2> flags_;  ///< by plane
+  BlockBits depth_, color_;
 };
 
 }  // namespace halfplane
