@@ -1,16 +1,66 @@
 // halfplane bench --antialiasing: how far each kind is from the exact area, and what a frame of it takes.
 #include <iostream>
+#include <optional>
 
 #include "sim/cli/bench_study.hpp"
 #include "sim/cli/progress.hpp"
+#include "sim/show/image/whole_file.hpp"
 #include "sim/study/antialiasing/study.hpp"
+#include "sim/study/space/front.hpp"
+#include "sim/study/space/gates.hpp"
+#include "sim/study/space/report.hpp"
 
 namespace halfplane {
 
 namespace {
 
-/// Measures one scene, into an object of the result and a table.
-Json measured(const CommonOptions& options, const Config& config, int repeat, const Scene& scene, const char* name) {
+/// Figures beside the error, each with a front of its own, as a row of the result has them.
+constexpr std::array<const char*, 4> kCosts{"frame_s", "cycles", "bytes", "ecp5.places"};
+
+/// Which of them no other kind has both lower and nearer.
+Json fronts_of(const Json& rows, std::size_t at) {
+  Json fronts = Json::array();
+  const double rms = rows[at].at("rms");
+  for (const char* name : kCosts) {
+    const auto cost = figure(rows[at], name);
+    if (!cost) continue;
+    bool is_beaten = false;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const auto other = figure(rows[i], name);
+      const double error = rows[i].at("rms");
+      is_beaten |= other && error <= rms && *other <= *cost && (error < rms || *other < *cost);
+    }
+    if (!is_beaten) fronts.push_back(name);
+  }
+  return fronts;
+}
+
+std::string cell(const Json& row, const char* name, double scale) {
+  const auto value = figure(row, name);
+  return value ? with_commas(static_cast<std::uint64_t>(*value * scale + 0.5)) : "-";
+}
+
+void print(std::ostream& out, const Json& rows) {
+  std::vector<std::vector<std::string>> lines{
+      {"kind", "samples", "rms", "worst", "mean", "ms a frame", "cycles", "KB", "ECP5 places", "block RAM", ""}};
+  for (const Json& row : rows) {
+    const int samples = row.at("samples");
+    std::string fronts;
+    for (const std::string name : row.at("fronts"))
+      fronts += (fronts.empty() ? "" : ", ") + (name == "frame_s"       ? std::string("ms")
+                                                : name == "ecp5.places" ? std::string("places")
+                                                                        : name);
+    lines.push_back({row.at("kind"), samples == 0 ? "area" : std::to_string(samples), fixed(row.at("rms"), 4),
+                     fixed(row.at("max"), 4), fixed(row.at("mean"), 4), fixed(1e3 * row.at("frame_s").get<double>(), 2),
+                     cell(row, "cycles", 1), cell(row, "bytes", 1.0 / 1024), cell(row, "ecp5.places", 1),
+                     cell(row, "ecp5.block_rams", 1), fronts.empty() ? "" : "front: " + fronts});
+  }
+  print_bench_table(out, lines, 1);
+}
+
+/// Measures one scene, into an object of the result and a table. `gates`: null where they are not counted.
+Json measured(const CommonOptions& options, const Config& config, int repeat, const Scene& scene, const char* name,
+              const Gates* gates) {
   antialiasing::AreaStudy study;
   {
     Progress progress(options, std::string("measuring areas of ") + name);
@@ -18,34 +68,75 @@ Json measured(const CommonOptions& options, const Config& config, int repeat, co
   }
   Json json = {
       {"width", scene.width}, {"height", scene.height}, {"edge_pixels", study.edge_pixels}, {"rows", Json::array()}};
-  std::vector<std::vector<std::string>> lines{{"kind", "samples", "ms a frame", "rms", "worst", "mean", ""}};
+  Json& rows = json["rows"];
+  std::optional<Progress> counting;
+  if (gates != nullptr) counting.emplace(options, std::string("counting gates of ") + name);
   for (const antialiasing::AreaRow& row : study.rows) {
-    json["rows"].push_back({{"kind", row.kind},
-                            {"samples", row.samples},
-                            {"frame_s", row.frame_s},
-                            {"rms", row.rms},
-                            {"max", row.max},
-                            {"mean", row.mean},
-                            {"is_front", row.is_front}});
-    lines.push_back({row.kind, row.samples == 0 ? "area" : std::to_string(row.samples), fixed(1e3 * row.frame_s, 2),
-                     fixed(row.rms, 4), fixed(row.max, 4), fixed(row.mean, 4), row.is_front ? "front" : ""});
+    Json entry = {{"kind", row.kind}, {"samples", row.samples}, {"frame_s", row.frame_s},  {"rms", row.rms},
+                  {"max", row.max},   {"mean", row.mean},       {"is_front", row.is_front}};
+    if (row.hardware) {
+      entry["hardware"] = label(row.hardware->config);
+      entry["cycles"] = row.hardware->cycles;
+      entry["bytes"] = row.hardware->bytes;
+      if (gates != nullptr) entry.update(gates->of(row.hardware->config));
+    }
+    rows.push_back(entry);
+    if (counting) (*counting)(static_cast<double>(rows.size()) / static_cast<double>(study.rows.size()));
   }
+  counting.reset();
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i]["fronts"] = fronts_of(rows, i);
   std::ostream& out = human(options);
   out << label(config) << ", " << name << ", " << scene.width << "x" << scene.height << ", "
       << with_commas(study.edge_pixels) << " pixels covered in part; errors are parts of a pixel\n";
-  print_bench_table(out, lines, 1);
+  print(out, rows);
   return json;
+}
+
+/// The kinds as points of a space, for its page.
+void add_points(Json& points, const std::string& scene, const Json& rows) {
+  for (const Json& row : rows) {
+    Json point = {{"scene", scene},
+                  {"label", row.at("kind")},
+                  {"settings", {{"kind", row.at("kind")}}},
+                  {"coverage_rms", row.at("rms")},
+                  {"coverage_max", row.at("max")},
+                  {"functional_ms", 1e3 * row.at("frame_s").get<double>()}};
+    for (const char* key : {"cycles", "bytes", "ecp5"})
+      if (row.contains(key)) point[key] = row.at(key);
+    point["abilities"] = Json::object();
+    points.push_back(point);
+  }
 }
 
 }  // namespace
 
-void measure_antialiasing(const CommonOptions& options, const Config& config, int repeat, Json& result) {
+void measure_antialiasing(const CommonOptions& options, const Config& config, int repeat, const Gates* gates,
+                          Json& result) {
   const Size size = options.size.empty() ? Size{640, 480} : parse_size(options.size);
   const int width = std::min(size.width, config.target_width), height = std::min(size.height, config.target_height);
   Json& json = result["antialiasing"];
-  json = measured(options, config, repeat, antialiasing::blades(width, height, options.seed), "blades");
-  json["lines"] = measured(options, config, repeat, antialiasing::spokes(width, height, options.seed), "lines");
-  human(options) << "front: no other kind is both as near and as fast.\n";
+  json = measured(options, config, repeat, antialiasing::blades(width, height, options.seed), "blades", gates);
+  json["lines"] = measured(options, config, repeat, antialiasing::spokes(width, height, options.seed), "lines", gates);
+  human(options) << "front: no other kind has both a lower rms and less of that.\n";
+}
+
+void write_antialiasing_page(const std::string& path, const Json& result, const std::string& command) {
+  Json page = result;
+  const Json& study = result.at("antialiasing");
+  Json& points = page["points"] = Json::array();
+  add_points(points, "blades", study.at("rows"));
+  add_points(points, "lines", study.at("lines").at("rows"));
+  std::vector<std::string> axes{"coverage_rms"};
+  for (const std::string& name : figures_of(points))
+    if (name == "cycles" || name == "bytes" || name == "ecp5.places") axes.push_back(name);
+  if (axes.size() == 1) axes.emplace_back("functional_ms");
+  mark_front(points, axes);
+  page["front_axes"] = axes;
+  page["title"] = "Antialiasing";
+  page["version"] = HALFPLANE_VERSION;
+  page["command"] = command;
+  const std::string text = space_report(page.dump(-1, ' ', false, Json::error_handler_t::replace));
+  write_whole_file(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
 }
 
 }  // namespace halfplane

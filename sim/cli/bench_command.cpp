@@ -5,6 +5,7 @@
 #include <iostream>
 #include <map>
 #include <memory>
+#include <optional>
 #include <thread>
 #include <tuple>
 
@@ -15,6 +16,7 @@
 #include "sim/config_file.hpp"
 #include "sim/show/report/page.hpp"
 #include "sim/study/bench/engines.hpp"
+#include "sim/study/space/gates.hpp"
 
 namespace halfplane {
 namespace {
@@ -228,9 +230,10 @@ void check_bench_options(const BenchCommand& options) {
   if (is_space && (options.wants_all || options.wants_skips || options.wants_growth || !options.engines.empty()))
     throw InputError("--area and --space measure the hardware; leave out --engines, --skips, --growth and --all");
   if (options.wants_antialiasing &&
-      (is_space || options.wants_all || options.wants_skips || options.wants_growth || !options.scenes.empty() ||
-       !options.engines.empty() || !options.variations.empty() || !options.page.empty()))
-    throw InputError("--antialiasing has a scene of its own, the functional engine and no page; leave the other out");
+      (options.wants_all || options.wants_skips || options.wants_growth || !options.scenes.empty() ||
+       !options.engines.empty() || !options.variations.empty() || options.space.wants_more_than_area()))
+    throw InputError(
+        "--antialiasing has scenes and engines of its own, and --area and --page alone; leave the other out");
   check_space_options(options, options.space, options.page);
   check_output(options.page, ".html");
   check_distinct({options.json, options.page});
@@ -317,7 +320,10 @@ int run_antialiasing(const BenchCommand& options, const Config& config, std::chr
   result["repeat"] = options.repeat;
   result["label"] = label(config);
   add_bench_json(result, {});
-  measure_antialiasing(options, config, options.repeat, result);
+  std::optional<Gates> gates;
+  if (options.space.wants_area) gates.emplace(options.space.rtl, options.space.cache, std::vector<std::string>{"ecp5"});
+  measure_antialiasing(options, config, options.repeat, gates ? &*gates : nullptr, result);
+  if (!options.page.empty()) write_antialiasing_page(options.page, result, bench_command_line(options));
   result["wall_s"] = seconds_since(start);
   write_json(options, result);
   return exit_ok;
@@ -327,8 +333,8 @@ int run_bench(const BenchCommand& options) {
   const auto start = std::chrono::steady_clock::now();
   const Config config = effective_config(options);
   check_bench_options(options);
-  if (options.space.is_wanted()) return run_space(options, config, start);
   if (options.wants_antialiasing) return run_antialiasing(options, config, start);
+  if (options.space.is_wanted()) return run_space(options, config, start);
   const auto configs = varied_configs(config, parse_variations(options.variations, config), true);
   BenchStudy study;
   if (options.wants_rows()) measure_bench_rows(options, configs, study);
@@ -396,8 +402,8 @@ void add_bench_command(CLI::App& app, Action& selected) {
       ->capture_default_str();
   command->add_flag(
       "--antialiasing", options->wants_antialiasing,
-      "instead: error against the exact area of triangles in pixels, and time, of 1 to 8 samples a pixel and "
-      "of supersampling");
+      "instead: error against the exact area of triangles in pixels, and time, cycles and bytes, of 1 to 8 samples a "
+      "pixel, supersampling and smooth lines; with --area gates, too");
   command->add_flag("--all", options->wants_all, "rows of SCENES, and --skips and --growth on scenes of their own");
   add_space_options(*command, options->space);
   add_file_option(*command, "-o", options->page, "everything as one HTML page, .html");

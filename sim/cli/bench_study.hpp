@@ -19,9 +19,15 @@ struct BenchStudy {
   std::vector<GrowthRow> growth;
 };
 
-/// `bench --antialiasing`: error against the exact area and time of each kind of antialiasing. `size`, `repeat`, `seed` are the
-/// command's. Adds to `result` and prints.
-void measure_antialiasing(const CommonOptions& options, const Config& config, int repeat, Json& result);
+class Gates;
+
+/// `bench --antialiasing`: error against the exact area, and time, cycles and bytes of each kind of antialiasing; `gates`: and
+/// those of its hardware, unless it is null. `size`, `repeat`, `seed` are the command's. Adds to `result` and prints.
+void measure_antialiasing(const CommonOptions& options, const Config& config, int repeat, const Gates* gates,
+                          Json& result);
+
+/// Its page, of such a result.
+void write_antialiasing_page(const std::string& path, const Json& result, const std::string& command);
 
 /// Adds rows, skips and growth, the last two when they were measured.
 void add_bench_json(Json& result, const BenchStudy& study);

@@ -19,8 +19,9 @@ struct SpaceOptions {
   std::vector<std::string> collect;  ///< folders
   MemorySettings memory;
 
-  [[nodiscard]] bool is_wanted() const {
-    return wants_area || wants_space || !csv.empty() || !front.empty() || !slurm.empty() || !collect.empty();
+  [[nodiscard]] bool is_wanted() const { return wants_area || wants_more_than_area(); }
+  [[nodiscard]] bool wants_more_than_area() const {
+    return wants_space || !csv.empty() || !front.empty() || !slurm.empty() || !collect.empty();
   }
 };
 

@@ -1,4 +1,8 @@
 // Several samples a pixel from the command line: what draws them, and who refuses them by name.
+#include <map>
+#include <string>
+#include <utility>
+
 #include "program.hpp"
 
 namespace halfplane::cli {
@@ -36,7 +40,33 @@ TEST_F(AntialiasingCommand, SupersampledPicturesAreTheMeanOfWholeOnes) {
   expect_refused({"render", "teapot", "--supersample", "2x3"}, "--supersample");
   expect_refused({"render", "teapot", "--supersample", "4x4", "--engine", "cycle"}, "--supersample");
   expect_refused({"bench", "teapot", "--antialiasing"}, "--antialiasing");
+  expect_refused({"bench", "--antialiasing", "--space"}, "--antialiasing");
   expect_refused({"bench", "--antialiasing", "--set", "msaa.samples=2"}, "msaa.samples");
+}
+
+// The mean leaves the chip, so several samples move the bytes of one; N x N pictures take as many frames and more bytes.
+TEST_F(AntialiasingCommand, HardwareOfEachKindIsMeasured) {
+  const Json study = result({"bench", "--antialiasing", "--size", "96x72", "--repeat", "1"})["antialiasing"];
+  std::map<std::string, Json> kinds;
+  for (const Json& row : study["rows"]) kinds[row["kind"]] = row;
+  const auto one = [&](const char* key) { return kinds["1 sample"][key].get<double>(); };
+  for (const char* kind : {"msaa 2", "msaa 4", "msaa 8"}) {
+    EXPECT_LE(kinds[kind]["bytes"].get<double>(), 1.15 * one("bytes")) << kind;
+    EXPECT_LT(kinds[kind]["rms"].get<double>(), one("rms")) << kind;
+  }
+  for (const auto& [kind, frames] : {std::pair("supersample 2x2", 4), std::pair("supersample 4x4", 16)}) {
+    EXPECT_GT(kinds[kind]["cycles"].get<double>(), 0.8 * frames * one("cycles")) << kind;
+    EXPECT_GT(kinds[kind]["bytes"].get<double>(), frames * one("bytes") + (frames + 1) * 2.0 * 96 * 72 - 1) << kind;
+  }
+  EXPECT_TRUE(kinds["msaa 8"]["hardware"].get<std::string>().find("resolve.unit=1") != std::string::npos);
+  for (const auto& name : kinds["1 sample"]["fronts"]) EXPECT_NE(name, "ecp5.places") << "gates are not counted";
+  EXPECT_FALSE(kinds["1 sample"]["fronts"].empty()) << "nothing costs less";
+  const Json smooth = study["lines"]["rows"].back();
+  EXPECT_EQ(smooth["kind"], "smooth");
+  EXPECT_GT(smooth["cycles"], 0);
+  for (const Json& row : result({"bench", "--antialiasing", "--size", "48x32", "--repeat", "1", "--config",
+                                 "small"})["antialiasing"]["rows"])
+    EXPECT_FALSE(row.contains("cycles")) << "a serial setup has no bins";
 }
 
 TEST_F(AntialiasingCommand, WhoHasOneSampleAPixelSaysSo) {

@@ -44,6 +44,7 @@
       assume (request_i.run != '0 && request_i.run <= RUN'(STAMPS_I));
       if (!request_i.is_write)
         assume (request_i.plane == raster_pkg::TILE_PLANE_DEPTH && request_i.strobe == '0 && request_i.data == '0);
+      assume (!request_i.plane[2]);  // without COMPRESS_UNIT
       if (request_i.plane[1]) assume (request_i.strobe == '1);
       if (run_left_q != '0)
         assume (request_i.is_write && request_i.run == run_left_q && request_i.plane == run_plane_q &&

@@ -6,10 +6,12 @@
 #include <optional>
 
 #include "model/engines/functional.hpp"
+#include "model/engines/hardware.hpp"
 #include "model/golden/golden.hpp"
 #include "model/widths.hpp"
 #include "sim/scene/random.hpp"
 #include "sim/scene/scene_builder.hpp"
+#include "sim/show/report/hardware.hpp"
 #include "sim/study/antialiasing/exact_area.hpp"
 
 namespace halfplane::antialiasing {
@@ -43,6 +45,49 @@ Scene smooth(Scene scene) {
     state.blend = BlendFactors{BlendFactor::src_alpha, BlendFactor::one_minus_src_alpha};
   }
   return scene;
+}
+
+/// The hardware that draws a kind; none: this configuration has none.
+std::optional<Config> hardware_of(Config config, const Kind& kind, const Scene& scene) {
+  config.frame_order = FrameOrder::bins;
+  config.frame_store = FrameStore::color;
+  config.frame_clears = FrameClears::flags;
+  config.msaa_samples = kind.msaa;
+  config.resolve_units = kind.msaa > 1 ? 1 : 0;
+  while (config.stamp_size * config.stamp_size * config.msaa_samples > 64) config.stamp_size /= 2;
+  if (kind.is_smooth) {
+    config.alpha_units = 1;
+    config.blend_lanes = std::max(1, config.blend_lanes);
+  }
+  try {
+    validate(config);
+    check_hardware_scene(scene, config);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+  return config;
+}
+
+/// A frame of it in the cycle engine.
+std::optional<AreaHardware> hardware_frame(const Scene& scene, const Config& config, const Kind& kind) {
+  const auto own = hardware_of(config, kind, scene);
+  if (!own) return std::nullopt;
+  AreaHardware result{*own, 0, 0};
+  const auto draw = [&result](const Scene& of) {
+    CycleRendering frame = run_cycles(of, {result.config, {}, {}});
+    result.cycles += frame.run.cycles;
+    result.bytes += traffic(frame.run, result.config).total();
+    return std::move(frame.rendering);
+  };
+  if (!kind.grid) {
+    (void)draw(scene);
+    return result;
+  }
+  (void)supersampled(scene, result.config, *kind.grid, draw);
+  const int pictures = kind.grid->side * kind.grid->side + 1;  // read, and the one that is written
+  const std::uint64_t pixel = derive_widths(result.config).stored_color.bits <= 16 ? 2 : 4;
+  result.bytes += static_cast<std::uint64_t>(pictures) * static_cast<std::uint64_t>(scene.width * scene.height) * pixel;
+  return result;
 }
 
 /// How much of a pixel is white, 0 to 1, in the stored format.
@@ -147,7 +192,9 @@ AreaStudy measure_areas(const Scene& scene, const Config& config, int repeat,
     Config own = config;
     own.msaa_samples = kind.msaa;
     if (own.stamp_size * own.stamp_size * own.msaa_samples > 64) own.stamp_size = 2;  // no matter to a picture
-    AreaRow row{.kind = kind.name, .samples = kind.samples()};
+    AreaRow row;
+    row.kind = kind.name;
+    row.samples = kind.samples();
     Frames frames(scene, own, kind);
     judge(frames.draw().frame, own.color_format, area, row);
     std::vector<double> times;
@@ -159,6 +206,7 @@ AreaStudy measure_areas(const Scene& scene, const Config& config, int repeat,
     }
     std::ranges::nth_element(times, times.begin() + repeat / 2);
     row.frame_s = times[static_cast<std::size_t>(repeat / 2)];
+    row.hardware = hardware_frame(kind.is_smooth ? smooth(scene) : scene, config, kind);
     study.rows.push_back(row);
   }
   for (AreaRow& row : study.rows)
