@@ -17,22 +17,19 @@ namespace {
 /// Figures beside the error, each with a front of its own, as a row of the result has them.
 constexpr std::array<const char*, 4> kCosts{"frame_s", "cycles", "bytes", "ecp5.places"};
 
-/// Which of them no other kind has both lower and nearer.
-Json fronts_of(const Json& rows, std::size_t at) {
-  Json fronts = Json::array();
-  const double rms = rows[at].at("rms");
-  for (const char* name : kCosts) {
-    const auto cost = figure(rows[at], name);
-    if (!cost) continue;
-    bool is_beaten = false;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      const auto other = figure(rows[i], name);
-      const double error = rows[i].at("rms");
-      is_beaten |= other && error <= rms && *other <= *cost && (error < rms || *other < *cost);
-    }
-    if (!is_beaten) fronts.push_back(name);
+/// Of each kind, the figures of which no other one has less at an rms as low.
+void mark_fronts(Json& rows) {
+  Json points = rows;
+  for (Json& point : points) {
+    point["scene"] = "";
+    point["abilities"] = Json::object();
   }
-  return fronts;
+  for (Json& row : rows) row["fronts"] = Json::array();
+  for (const char* name : kCosts) {
+    mark_front(points, {"rms", name});
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      if (points[i].at("on_front").get<bool>()) rows[i]["fronts"].push_back(name);
+  }
 }
 
 std::string cell(const Json& row, const char* name, double scale) {
@@ -84,7 +81,7 @@ Json measured(const CommonOptions& options, const Config& config, int repeat, co
     if (counting) (*counting)(static_cast<double>(rows.size()) / static_cast<double>(study.rows.size()));
   }
   counting.reset();
-  for (std::size_t i = 0; i < rows.size(); ++i) rows[i]["fronts"] = fronts_of(rows, i);
+  mark_fronts(rows);
   std::ostream& out = human(options);
   out << label(config) << ", " << name << ", " << scene.width << "x" << scene.height << ", "
       << with_commas(study.edge_pixels) << " pixels covered in part; errors are parts of a pixel\n";

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "../random_camera.hpp"
 #include "model/config.hpp"
 #include "model/engines/functional.hpp"
 #include "model/engines/scalar.hpp"
@@ -25,23 +26,6 @@ namespace halfplane {
 namespace {
 
 constexpr std::array kTests{CullObjects::sphere, CullObjects::box, CullObjects::both};
-
-CameraRequest random_camera(Random& random, double size) {
-  const auto point = [&] {
-    const double x = random.uniform(-size, size), y = random.uniform(-0.3, 0.5) * size;
-    return Vec3{x, y, random.uniform(-size, size)};
-  };
-  CameraRequest camera;
-  camera.eye = point();
-  camera.target = point();
-  camera.near = random.uniform(0.05, 1);
-  camera.far = random.uniform(2, 3 * size);
-  if (random.uniform(0, 4) < 1)
-    camera.ortho = random.uniform(1, size);
-  else
-    camera.fov = random.uniform(10, 120);
-  return camera;
-}
 
 Mat4 matrix_of(const CameraRequest& request) {
   Mesh point;
@@ -92,7 +76,7 @@ TEST(BoundsTree, SaysOfEachObjectWhatItsOwnTestSays) {
     Random again = same;
     const BoundsTree wrong(random_bounds(again, count, 0.5));
     for (int view = 0; view < 20; ++view) {
-      CameraRequest camera = random_camera(random, 20);
+      CameraRequest camera = test::random_camera(random, 20, -0.3, 0.5, 10);
       if (view % 4 == 0) {  // planes through whole numbers
         camera = {};
         camera.eye = Vec3{0, 0, std::floor(random.uniform(-10, 10))};
@@ -202,7 +186,7 @@ TEST(BoundsTree, LeavingVerticesOutChangesNoPixelIdOrCounter) {
   for (const char* name : {"city:60", "objects:200", "teapot:2", "wires", "wireframe:2", "walk"}) {
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
       Random random(seed);
-      const CameraRequest camera = random_camera(random, 12);
+      const CameraRequest camera = test::random_camera(random, 12, -0.3, 0.5, 10);
       const auto make = [&](MeshOptions options) {
         options.light = parse_lights(lights[seed % lights.size()]);
         return make_builtin(name, 120, 90, camera, 1, options);
@@ -217,7 +201,7 @@ TEST(BoundsTree, SmallerNumbersOfTheHostTakeWhatIsLeft) {
   for (const TransformNumbers numbers : {TransformNumbers::binary32, TransformNumbers::s15_16}) {
     Random random(3);
     for (int i = 0; i < 5; ++i) {
-      const CameraRequest camera = random_camera(random, 12);
+      const CameraRequest camera = test::random_camera(random, 12, -0.3, 0.5, 10);
       const auto make = [&](MeshOptions options) {
         options.transform = numbers;
         return make_builtin("city:60", 120, 90, camera, 1, options);
@@ -257,7 +241,7 @@ TEST(BoundsTree, WhatBendsIsAskedWhereItIsNow) {
   for (int frame = 0; frame < 12; ++frame) {
     const Mesh mesh = bent_chain(0.5 * frame, 60);
     Random random(static_cast<std::uint64_t>(frame) + 1);
-    const CameraRequest camera = random_camera(random, 8);
+    const CameraRequest camera = test::random_camera(random, 8, -0.3, 0.5, 10);
     const MeshPlaces places(mesh);
     const auto make = [&](MeshOptions options) {
       options.places = frame % 2 == 0 ? &places : nullptr;
@@ -274,7 +258,7 @@ TEST(BoundsTree, PlacesThatAreTooSmallAreSeenInThePicture) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const Mesh mesh = bent_chain(0.3, 60);
     Random random(seed);
-    const CameraRequest camera = random_camera(random, 8);
+    const CameraRequest camera = test::random_camera(random, 8, -0.3, 0.5, 10);
     MeshPlaces wrong(mesh);
     for (ObjectBounds& of : wrong.bounds) {
       of.radius *= 0.1;

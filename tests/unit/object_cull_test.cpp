@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <string>
 
+#include "../random_camera.hpp"
 #include "model/capture/capture.hpp"
 #include "model/engines/functional.hpp"
 #include "model/golden/golden.hpp"
@@ -37,22 +38,6 @@ void expect_same_picture(const Rendering& a, const Rendering& b, const std::stri
 }
 
 /// Eye and target anywhere in and round the scene: inside of objects, behind them, beside them.
-CameraRequest random_camera(Random& random, double size) {
-  const auto point = [&] {
-    return Vec3{random.uniform(-size, size), random.uniform(0, size), random.uniform(-size, size)};
-  };
-  CameraRequest camera;
-  camera.eye = point();
-  camera.target = point();
-  camera.near = random.uniform(0.05, 1);
-  camera.far = random.uniform(2, 3 * size);
-  if (random.uniform(0, 4) < 1)
-    camera.ortho = random.uniform(1, size);
-  else
-    camera.fov = random.uniform(20, 120);
-  return camera;
-}
-
 TEST(ObjectCull, NoTestChangesAPixelOfAnyBuiltinSceneFromAnyCamera) {
   ObjectCounts all;
   std::size_t in_sphere = 0, in_box = 0;
@@ -62,7 +47,7 @@ TEST(ObjectCull, NoTestChangesAPixelOfAnyBuiltinSceneFromAnyCamera) {
       const std::string name = builtin.name == "city"   ? "city:120"
                                : builtin.name == "knot" ? "knot:32"
                                                         : std::string(builtin.name);
-      const CameraRequest camera = builtin.has_camera ? random_camera(random, 12) : CameraRequest{};
+      const CameraRequest camera = builtin.has_camera ? test::random_camera(random, 12, 0, 1, 20) : CameraRequest{};
       const Scene marked = make_builtin(name, 120, 90, camera, 1);
       Scene none = marked;
       EXPECT_EQ(select_object_culling(none, CullObjects::none).primitives_skipped, 0u);
