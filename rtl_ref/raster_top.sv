@@ -267,19 +267,37 @@ module raster_top (
   assign writes_context = setup_valid && setup_accepted;
   generate
     if (raster_pkg::SETUP_KIND == 0) begin : gen_context
+      // The range is wanted for colours over w alone: no other code is clamped.
+      localparam int FRAME = raster_pkg::COORDINATE_FRAME_BITS;
+      localparam int RANGE = 2 * raster_pkg::ALL_AFFINE_CODE_BITS;
+      localparam int HEAD = raster_pkg::CONTEXT_PACKET_BITS - RANGE - FRAME;  // state and steps
+      localparam int KEPT = raster_pkg::COLORS_OVER_W != 0 ? RANGE : 0;       // of the range
+      logic [HEAD+KEPT+FRAME-1:0] entering, kept;
       sram #(
-          .WIDTH(raster_pkg::CONTEXT_PACKET_BITS),
+          .WIDTH(HEAD + KEPT + FRAME),
           .DEPTH(raster_pkg::CONTEXT_SLOTS),
           .READS_OLD(0)
       ) u_context (
           .clk_i,
           .read_i         (context_read),
           .read_address_i (read_slot),
-          .data_o         (stamp_context),
+          .data_o         (kept),
           .write_i        (writes_context),
           .write_address_i(context_slot),
-          .data_i         (context_data)
+          .data_i         (entering)
       );
+      assign entering[KEPT+FRAME+:HEAD] = {context_data.state, context_data.step_x, context_data.step_y};
+      assign {stamp_context.state, stamp_context.step_x, stamp_context.step_y} = kept[KEPT+FRAME+:HEAD];
+      if (KEPT != 0) begin : gen_range
+        assign entering[FRAME+:KEPT] = context_data.range;
+        assign stamp_context.range   = kept[FRAME+:KEPT];
+      end else begin : gen_no_range
+        assign stamp_context.range = '0;
+      end
+      if (FRAME != 0) begin : gen_frame
+        assign entering[0+:FRAME]        = context_data.coordinates;
+        assign stamp_context.coordinates = kept[0+:FRAME];
+      end
     end else begin : gen_contexts
       localparam int STEP = raster_pkg::ALL_LOCAL_BITS;
       localparam int REST = raster_pkg::CONTEXT_PACKET_BITS - 2 * STEP;
