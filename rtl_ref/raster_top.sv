@@ -79,7 +79,10 @@ module raster_top (
   raster_pkg::edge_context_t    edges_data;
   logic [3*raster_pkg::TILE_EDGE_BITS-1:0] visit_edges;
   raster_pkg::stamp_packet_t    stamp_data;
+  raster_pkg::fragment_packet_t fragment;  // without the constants of its triangle where they are apart
+  /* verilator lint_off UNUSEDSIGNAL */    // for the co-simulation
   raster_pkg::fragment_packet_t fragment_data;
+  /* verilator lint_on UNUSEDSIGNAL */
   raster_pkg::memory_request_t      request;  // of the cache of blocks without its data
   /* verilator lint_off UNUSEDSIGNAL */  // for the co-simulation
   raster_pkg::memory_request_t      request_data;
@@ -247,7 +250,7 @@ module raster_top (
           .pixel_i         (line_pixel_data),
           .fragment_valid_o(fragment_offered),
           .fragment_ready_i(fragment_ready),
-          .fragment_o      (fragment_data)
+          .fragment_o      (fragment)
       );
     end else begin : gen_no_lines
       assign line_ready_o     = 1'b0;
@@ -257,7 +260,7 @@ module raster_top (
       assign lines_are_done   = 1'b1;
       assign fragment_offered = shaded_valid;
       assign shaded_ready     = fragment_ready;
-      assign fragment_data    = shaded_data;
+      assign fragment         = shaded_data;
     end
   endgenerate
 
@@ -265,13 +268,27 @@ module raster_top (
   // it is free, nor read before the first stamp is there.
   logic writes_context;
   assign writes_context = setup_valid && setup_accepted;
+
+  // With planes over w and one sample a pixel, what a triangle's fragments share lies apart from them until they are tested:
+  // the steps of those planes, and the frame of coordinates, by a number that goes along. As many numbers as triangles that
+  // can be between setup and test: those in slots of contexts, and one for each fragment behind that.
+  localparam bit APART = raster_pkg::COORDINATES != 0 && raster_pkg::MSAA_SAMPLES == 1;
+  localparam int NUMBER = $clog2(raster_pkg::CONTEXT_SLOTS + raster_pkg::CACHE_QUEUE + 16);
+  /* verilator lint_off UNUSEDSIGNAL */  // without such planes
+  logic [NUMBER-1:0]           number_q;  // of the next triangle
+  raster_pkg::context_packet_t tested_context;
+  /* verilator lint_on UNUSEDSIGNAL */
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) number_q <= '0;
+    else if (APART) number_q <= number_q + NUMBER'(writes_context);
+  end
   generate
     if (raster_pkg::SETUP_KIND == 0) begin : gen_context
-      // The range is wanted for colours over w alone: no other code is clamped.
-      localparam int FRAME = raster_pkg::COORDINATE_FRAME_BITS;
+      // The range is wanted for colours over w alone: no other code is clamped. Of constants that are apart there is a number.
+      localparam int FRAME = APART ? NUMBER : raster_pkg::COORDINATE_FRAME_BITS;
       localparam int RANGE = 2 * raster_pkg::ALL_AFFINE_CODE_BITS;
-      localparam int HEAD = raster_pkg::CONTEXT_PACKET_BITS - RANGE - FRAME;  // state and steps
-      localparam int KEPT = raster_pkg::COLORS_OVER_W != 0 ? RANGE : 0;       // of the range
+      localparam int HEAD = raster_pkg::CONTEXT_PACKET_BITS - RANGE - raster_pkg::COORDINATE_FRAME_BITS;  // state and steps
+      localparam int KEPT = raster_pkg::COLORS_OVER_W != 0 ? RANGE : 0;  // of the range
       logic [HEAD+KEPT+FRAME-1:0] entering, kept;
       sram #(
           .WIDTH(HEAD + KEPT + FRAME),
@@ -294,7 +311,10 @@ module raster_top (
       end else begin : gen_no_range
         assign stamp_context.range = '0;
       end
-      if (FRAME != 0) begin : gen_frame
+      if (APART) begin : gen_number
+        assign entering[0+:FRAME]        = number_q;
+        assign stamp_context.coordinates = raster_pkg::COORDINATE_FRAME_BITS'(kept[0+:FRAME]);
+      end else if (FRAME != 0) begin : gen_frame
         assign entering[0+:FRAME]        = context_data.coordinates;
         assign stamp_context.coordinates = kept[0+:FRAME];
       end
@@ -412,6 +432,61 @@ module raster_top (
       .killed_o        (tested_killed)
   );
 
+  generate
+    if (APART) begin : gen_apart
+      localparam int FRAME = raster_pkg::COORDINATE_FRAME_BITS;
+      localparam int AT = raster_pkg::STEP_AT[32*raster_pkg::AFFINE_PLANES+:32];
+      localparam int STEP = raster_pkg::ALL_STEP_BITS - AT;
+      localparam int CODES = raster_pkg::ALL_FRAGMENT_BITS;
+      localparam int AFFINE = raster_pkg::ALL_AFFINE_CODE_BITS;
+      logic [2*STEP+FRAME-1:0] entering, constants;
+      assign entering = {context_data.step_y[AT+:STEP], context_data.step_x[AT+:STEP], context_data.coordinates};
+      sram #(
+          .WIDTH    (2 * STEP + FRAME),
+          .DEPTH    (1 << NUMBER),
+          .READS_OLD(0),
+          .BLOCK    (1)
+      ) u_constants (
+          .clk_i,
+          .read_i         (tested_valid),
+          .read_address_i (NUMBER'(tested.coordinates)),
+          .data_o         (constants),
+          .write_i        (writes_context),
+          .write_address_i(number_q),
+          .data_i         (entering)
+      );
+      always_comb begin
+        tested_context             = '0;
+        tested_context.coordinates = constants[0+:FRAME];
+        tested_context.step_x      = raster_pkg::ALL_STEP_BITS'(constants[FRAME+:STEP]) << AT;
+        tested_context.step_y      = raster_pkg::ALL_STEP_BITS'(constants[FRAME+STEP+:STEP]) << AT;
+      end
+
+      // For the co-simulation the packet as it is specified: whole, and of lines nothing behind the colours.
+      raster_pkg::context_packet_t  contexts_q[0:(1<<NUMBER)-1];
+      raster_pkg::context_packet_t  fragment_context;
+      raster_pkg::fragment_packet_t whole;
+      always_ff @(posedge clk_i) if (writes_context) contexts_q[number_q] <= context_data;
+      assign fragment_context = contexts_q[NUMBER'(fragment.coordinates)];
+      whole_fragment #(
+          .APART(1)
+      ) u_whole (
+          .fragment_i(fragment),
+          .context_i (fragment_context),
+          .fragment_o(whole)
+      );
+      always_comb begin
+        fragment_data = whole;
+        for (int i = 0; i < raster_pkg::PIXELS; i++)
+          if (fragment.kind == raster_pkg::PRIMITIVE_KIND_LINE)
+            fragment_data.code[i*CODES+AFFINE+:CODES-AFFINE] = '0;
+      end
+    end else begin : gen_together
+      assign tested_context = '0;
+      assign fragment_data  = fragment;
+    end
+  endgenerate
+
   // The packet as it is specified: words where they are written.
   localparam int WORD = raster_pkg::STORED_DEPTH_BITS;
   always_comb begin
@@ -424,7 +499,7 @@ module raster_top (
     if (raster_pkg::CACHE_KIND == 0) begin : gen_tiles
       assign tested_valid      = fragment_valid;
       assign fragment_accepted = tested_ready;
-      assign tested            = fragment_data;
+      assign tested            = fragment;
 
       framebuffer u_framebuffer (
           .clk_i,
@@ -476,10 +551,11 @@ module raster_top (
           .rst_ni,
           .fragment_valid_i(fragment_valid),
           .fragment_ready_o(fragment_accepted),
-          .fragment_i      (fragment_data),
+          .fragment_i      (fragment),
           .tested_valid_o  (tested_valid),
           .tested_o        (tested),
           .stored_depth_o  (stored_depth),
+          .context_i       (tested_context),
           .write_valid_i   (write_valid),
           .write_i         (write_data),
           .word_i          (word),
@@ -553,7 +629,7 @@ module raster_top (
   logic [UNDER_WAY-1:0] under_way_q;
   logic                 enters, ends;
   assign enters = primitive_valid_i && primitive_ready_o;
-  assign ends   = fragment_valid && fragment_accepted && fragment_data.ends_primitive;
+  assign ends   = fragment_valid && fragment_accepted && fragment.ends_primitive;
   assign idle_o = under_way_q == '0 && visits_are_done && framebuffer_idle && port_idle && lines_are_done;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin

@@ -26,6 +26,8 @@ module block_cache (
     output logic                                                       tested_valid_o,
     output raster_pkg::fragment_packet_t                               tested_o,
     output logic [raster_pkg::SAMPLES*raster_pkg::STORED_DEPTH_BITS-1:0] stored_depth_o,
+    // And the constants of its triangle, where they are apart from fragments
+    input  raster_pkg::context_packet_t                                context_i,
 
     // From depth_test: the write of the fragment of the cycle before
     /* verilator lint_off UNUSEDSIGNAL */  // where it goes is known here
@@ -103,7 +105,12 @@ module block_cache (
   localparam int LINE_Y = raster_pkg::LINE_Y_BITS;
   localparam int TAG_X = (BLOCK_X > LINE_X) ? BLOCK_X - LINE_X : 1;
   localparam int TAG_Y = (BLOCK_Y > LINE_Y) ? BLOCK_Y - LINE_Y : 1;
-  localparam int ITEM = raster_pkg::FRAGMENT_PACKET_BITS + LINE + STAMP + 3 + 1 + TAG_X + TAG_Y + 2 * STAMPS + 2;
+  localparam bit APART = raster_pkg::COORDINATES != 0 && raster_pkg::MSAA_SAMPLES == 1;  // constants of triangles
+  localparam int NUMBER = $clog2(raster_pkg::CONTEXT_SLOTS + QUEUE + 16);                // of raster_top
+  localparam int STORED = raster_pkg::FRAGMENT_PACKET_BITS -
+                          (APART ? raster_pkg::COORDINATE_FRAME_BITS - NUMBER +
+                                   (PIXELS - 1) * (CODES - raster_pkg::ALL_AFFINE_CODE_BITS) : 0);
+  localparam int ITEM = STORED + LINE + STAMP + 3 + 1 + TAG_X + TAG_Y + 2 * STAMPS + 2;
   localparam bit PACKS = raster_pkg::COORDINATES == 0 && raster_pkg::BLEND_LANES == 0 && raster_pkg::DITHER_UNIT == 0 &&
                          raster_pkg::ALPHA_UNIT == 0;  // items have colours as they are stored
   localparam int ORDER = WRITES + 1 + raster_pkg::TILE_X_BITS + raster_pkg::TILE_Y_BITS + INDEX;
@@ -242,9 +249,20 @@ module block_cache (
   logic [LINE-1:0]  line_above_x;
   /* verilator lint_on UNUSEDSIGNAL */
   assign made_bits[ITEM-1:0] = {made_line, made_stamp, made_source, made_starts_color, made_evicts, TAG_X'(made_x >> LINE_X),
-                                TAG_Y'(made_y >> LINE_Y), made_depth, made_color, made_fills, made_packed};
+                                TAG_Y'(made_y >> LINE_Y), made_depth, made_color, made_fills, made_stored};
   assign {item_line, item_stamp, source, starts_color, evicts, evicts_tag_x, evicts_tag_y, evicts_depth, evicts_color, fills,
-          item} = item_bits[ITEM-1:0];
+          item_stored} = item_bits[ITEM-1:0];
+  logic [STORED-1:0] made_stored, item_stored;
+  stored_fragment #(
+      .APART (APART),
+      .NUMBER(NUMBER),
+      .WIDTH (STORED)
+  ) u_stored (
+      .fragment_i(made_packed),
+      .bits_o    (made_stored),
+      .bits_i    (item_stored),
+      .fragment_o(item)
+  );
   assign line_above_x = item_line >> LINE_X;
   assign evicts_x = (BLOCK_X'(evicts_tag_x) << LINE_X) | (BLOCK_X'(item_line) & BLOCK_X'((1 << LINE_X) - 1));
   assign evicts_y = (BLOCK_Y'(evicts_tag_y) << LINE_Y) | BLOCK_Y'(line_above_x);
@@ -602,6 +620,16 @@ module block_cache (
       assign w_source = raster_pkg::DEPTH_SOURCE_NONE;
     end
   endgenerate
+  /* verilator lint_off UNUSEDSIGNAL */  // as above
+  raster_pkg::fragment_packet_t x1_item;
+  /* verilator lint_on UNUSEDSIGNAL */
+  whole_fragment #(
+      .APART(APART)
+  ) u_whole (
+      .fragment_i(x1_item_q),
+      .context_i,
+      .fragment_o(x1_item)
+  );
   colored_stamps #(
       .CARRIED(ALL_CARRIED),
       .PLACES (PLACES)
@@ -613,7 +641,7 @@ module block_cache (
       .carried_i      (x1_carried),
       .writes_i       ({SAMPLES{write_valid_i}} & (tests_alpha ? looked_at : write_i.write_color)),
       .color_i        (write_i.color),
-      .fragment_i     (x1_item_q),
+      .fragment_i     (x1_item),
       .stamp_valid_o  (w_valid),
       .stamp_ready_i  (colors_done),
       .carried_o      (w_carried),

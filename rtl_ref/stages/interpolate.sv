@@ -3,8 +3,8 @@
 // In: a stamp packet, and from the context RAM what its slot holds. Out: a fragment packet. A sample's value is the closed
 // form anchor + i step_x + j step_y (i, j pixels from pixel (T/2, T/2)), modulo the local width; its code is the bits above
 // the fraction, and at a covered sample in the range of the vertices by the bounds of the widths: nothing clamps it. Planes
-// behind depth and colours, 1/w and what lies over it, stay as they are. Latency 6 cycles,
-// one stamp per cycle. Nothing waits on the way: a stamp enters when there is a place for its fragment in the FIFO at the
+// behind depth and colours, 1/w and what lies over it, stay as they are; where triangles' constants are APART (raster_top) a
+// fragment has them of its first pixel alone (stored_fragment.sv). Latency 6 cycles, one stamp per cycle. Nothing waits on the way: a stamp enters when there is a place for its fragment in the FIFO at the
 // end. A cycle each:
 //   context  the context is read
 //   x, y     from the anchor to the stamp's first sample
@@ -48,6 +48,11 @@ module interpolate (
   localparam int PIXEL = raster_pkg::TILE_PIXEL_BITS;
   localparam int L = raster_pkg::PLANE_LOCAL_GUARD_BITS;
   localparam int PER_ROW_BITS = PIXEL - STAMP_SHIFT;
+  localparam bit APART = raster_pkg::COORDINATES != 0 && N == 1;
+  localparam int NUMBER = $clog2(raster_pkg::CONTEXT_SLOTS + raster_pkg::CACHE_QUEUE + 16);  // of raster_top
+  localparam int STORED = raster_pkg::FRAGMENT_PACKET_BITS -
+                          (APART ? raster_pkg::COORDINATE_FRAME_BITS - NUMBER +
+                                   (PIXELS - 1) * (CODES - raster_pkg::ALL_AFFINE_CODE_BITS) : 0);
 
   /* verilator lint_off UNUSEDSIGNAL */  // anchors end after the step x
   raster_pkg::stamp_packet_t context_stamp_q, x_stamp_q, y_stamp_q, samples_stamp_q;
@@ -220,7 +225,7 @@ module interpolate (
         if (p < raster_pkg::AFFINE_PLANES) begin : gen_code
           assign code[s*CODES+CODE+:B] = {!value_q[L+B-1], value_q[L+:B-1]};
         end else begin : gen_over_w
-          assign code[s*CODES+CODE+:B] = value_q;
+          assign code[s*CODES+CODE+:B] = APART && s != 0 ? '0 : value_q;
         end
         if (p == 0) begin : gen_depth  // of its other samples
           for (k = 1; k < N; k++) begin : gen_further
@@ -261,18 +266,29 @@ module interpolate (
   /* verilator lint_off UNUSEDSIGNAL */  // there is a place
   logic made_ready, is_empty;
   /* verilator lint_on UNUSEDSIGNAL */
+  logic [STORED-1:0] made_bits, fragment_bits;
+  stored_fragment #(
+      .APART (APART),
+      .NUMBER(NUMBER),
+      .WIDTH (STORED)
+  ) u_stored (
+      .fragment_i(made),
+      .bits_o    (made_bits),
+      .bits_i    (fragment_bits),
+      .fragment_o
+  );
   registered_fifo #(
-      .WIDTH(raster_pkg::FRAGMENT_PACKET_BITS),
+      .WIDTH(STORED),
       .DEPTH(ROOM)
   ) u_fragments (
       .clk_i,
       .rst_ni,
       .valid_i   (samples_valid_q),
       .ready_o   (made_ready),
-      .data_i    (made),
+      .data_i    (made_bits),
       .valid_o   (fragment_valid_o),
       .ready_i   (fragment_ready_i),
-      .data_o    (fragment_o),
+      .data_o    (fragment_bits),
       .is_empty_o(is_empty)
   );
 

@@ -31,6 +31,9 @@ module primitive_join (
   localparam int STAMP = raster_pkg::STAMP_INDEX_BITS;
   localparam int TX = raster_pkg::TILE_X_BITS;
   localparam int TY = raster_pkg::TILE_Y_BITS;
+  localparam int CODES = raster_pkg::ALL_FRAGMENT_BITS;  // of a pixel
+  // Of a line's pixel there is nothing behind the colours; where triangles' constants are apart, nobody looks there.
+  localparam int JOINED = raster_pkg::COORDINATES != 0 && N == 1 ? raster_pkg::ALL_AFFINE_CODE_BITS : CODES;
 
   logic is_line;
   assign is_line          = fragment_i.kind == raster_pkg::PRIMITIVE_KIND_LINE;
@@ -70,9 +73,7 @@ module primitive_join (
       joined.key.tile_y     = TY'(pixel_i.y >> TS);
       joined.stamp          = stamp;
       joined.mask           = mask;
-      for (int i = 0; i < raster_pkg::PIXELS; i++)  // nothing behind the colours
-        joined.code[i*raster_pkg::ALL_FRAGMENT_BITS+:raster_pkg::ALL_FRAGMENT_BITS] =
-            raster_pkg::ALL_FRAGMENT_BITS'(pixel_i.code);
+      for (int i = 0; i < raster_pkg::PIXELS; i++) joined.code[i*CODES+:JOINED] = JOINED'(pixel_i.code);
     end
   end
   generate

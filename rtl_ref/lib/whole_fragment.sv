@@ -1,0 +1,57 @@
+// Whole fragment: a fragment that a queue held (stored_fragment.sv), and what its triangle's context says: the frame of
+// coordinates, and the values over w at all pixels, which lie a step apart.
+module whole_fragment #(
+    parameter bit APART = 0  // else the fragment is whole
+) (
+    input  raster_pkg::fragment_packet_t fragment_i,
+    /* verilator lint_off UNUSEDSIGNAL */
+    input  raster_pkg::context_packet_t  context_i,
+    /* verilator lint_on UNUSEDSIGNAL */
+    output raster_pkg::fragment_packet_t fragment_o
+);
+
+  localparam int CODES = raster_pkg::ALL_FRAGMENT_BITS;  // of a pixel
+  localparam int AFFINE = raster_pkg::AFFINE_PLANES;
+  localparam int AFFINE_BITS = raster_pkg::ALL_AFFINE_CODE_BITS;
+  localparam int PIXELS = raster_pkg::PIXELS;
+  localparam int STAMP = raster_pkg::STAMP_SIZE;
+  localparam int PIXEL = raster_pkg::TILE_PIXEL_BITS;
+  localparam int PLANES = raster_pkg::PLANES;
+  localparam logic [32*PLANES-1:0] BITS_OF = raster_pkg::LOCAL_BITS_OF;  // of a value over w as of its steps
+  localparam logic [32*PLANES-1:0] STEP_AT = raster_pkg::STEP_AT;
+  localparam logic [32*PLANES-1:0] FRAGMENT_AT = raster_pkg::FRAGMENT_AT;
+
+  genvar p, s;
+  generate
+    if (APART) begin : gen_apart
+      logic [PIXELS*CODES-1:0] code;
+      for (s = 0; s < PIXELS; s++) begin : gen_pixel
+        assign code[s*CODES+:AFFINE_BITS] = fragment_i.code[s*CODES+:AFFINE_BITS];
+        for (p = AFFINE; p < PLANES; p++) begin : gen_plane
+          localparam int W = BITS_OF[32*p+:32];
+          localparam int STEP = STEP_AT[32*p+:32];
+          localparam int AT = FRAGMENT_AT[32*p+:32];
+          edge_offset #(
+              .WIDTH (W),
+              .OFFSET(PIXEL)
+          ) u_value (
+              .value_i (fragment_i.code[AT+:W]),
+              .step_x_i(context_i.step_x[STEP+:W]),
+              .step_y_i(context_i.step_y[STEP+:W]),
+              .x_i     (PIXEL'(s % STAMP)),
+              .y_i     (PIXEL'(s / STAMP)),
+              .value_o (code[s*CODES+AT+:W])
+          );
+        end
+      end
+      always_comb begin
+        fragment_o             = fragment_i;
+        fragment_o.coordinates = context_i.coordinates;
+        fragment_o.code        = code;
+      end
+    end else begin : gen_whole
+      assign fragment_o = fragment_i;
+    end
+  endgenerate
+
+endmodule
