@@ -270,7 +270,8 @@ module raster_top (
   assign writes_context = setup_valid && setup_accepted;
 
   // With planes over w and one sample a pixel, what a triangle's fragments share lies apart from them until they are tested:
-  // the steps of those planes, and the frame of coordinates, by a number that goes along. As many numbers as triangles that
+  // the steps of those planes, and the frame of coordinates, by a number that goes along. Only then are those planes moved to
+  // the pixels. As many numbers as triangles that
   // can be between setup and test: those in slots of contexts, and one for each fragment behind that.
   localparam bit APART = raster_pkg::COORDINATES != 0 && raster_pkg::MSAA_SAMPLES == 1;
   localparam int NUMBER = $clog2(raster_pkg::CONTEXT_SLOTS + raster_pkg::CACHE_QUEUE + 16);
@@ -287,7 +288,10 @@ module raster_top (
       // The range is wanted for colours over w alone: no other code is clamped. Of constants that are apart there is a number.
       localparam int FRAME = APART ? NUMBER : raster_pkg::COORDINATE_FRAME_BITS;
       localparam int RANGE = 2 * raster_pkg::ALL_AFFINE_CODE_BITS;
-      localparam int HEAD = raster_pkg::CONTEXT_PACKET_BITS - RANGE - raster_pkg::COORDINATE_FRAME_BITS;  // state and steps
+      localparam int STEPS = raster_pkg::ALL_STEP_BITS;
+      localparam int KEPT_STEPS = APART ? raster_pkg::STEP_AT[32*(APART ? raster_pkg::AFFINE_PLANES : 0)+:32] : STEPS;
+      localparam int HEAD = raster_pkg::CONTEXT_PACKET_BITS - RANGE - raster_pkg::COORDINATE_FRAME_BITS -
+                            2 * (STEPS - KEPT_STEPS);  // state and steps
       localparam int KEPT = raster_pkg::COLORS_OVER_W != 0 ? RANGE : 0;  // of the range
       logic [HEAD+KEPT+FRAME-1:0] entering, kept;
       sram #(
@@ -303,8 +307,12 @@ module raster_top (
           .write_address_i(context_slot),
           .data_i         (entering)
       );
-      assign entering[KEPT+FRAME+:HEAD] = {context_data.state, context_data.step_x, context_data.step_y};
-      assign {stamp_context.state, stamp_context.step_x, stamp_context.step_y} = kept[KEPT+FRAME+:HEAD];
+      logic [KEPT_STEPS-1:0] step_x, step_y;
+      assign entering[KEPT+FRAME+:HEAD] = {context_data.state, context_data.step_x[0+:KEPT_STEPS],
+                                           context_data.step_y[0+:KEPT_STEPS]};
+      assign {stamp_context.state, step_x, step_y} = kept[KEPT+FRAME+:HEAD];
+      assign stamp_context.step_x = STEPS'(step_x);
+      assign stamp_context.step_y = STEPS'(step_y);
       if (KEPT != 0) begin : gen_range
         assign entering[FRAME+:KEPT] = context_data.range;
         assign stamp_context.range   = kept[FRAME+:KEPT];

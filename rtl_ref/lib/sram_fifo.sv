@@ -2,7 +2,8 @@
 // taken last, from the cycle after that on.
 module sram_fifo #(
     parameter int WIDTH = 1,
-    parameter int DEPTH = 2  // a power of two
+    parameter int DEPTH = 2,  // a power of two
+    parameter bit BLOCK = 1   // in block RAM even where it fills little of it
 ) (
     input logic clk_i,
     input logic rst_ni,
@@ -43,7 +44,7 @@ module sram_fifo #(
       .WIDTH    (WIDTH),
       .DEPTH    (DEPTH),
       .READS_OLD(0),
-      .BLOCK    (1)
+      .BLOCK    (BLOCK)
   ) u_items (
       .clk_i,
       .read_i         (leaves),

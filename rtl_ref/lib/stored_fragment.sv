@@ -1,6 +1,6 @@
 // Stored fragment: a fragment as queues hold it. Where the triangle's constants are APART, in a RAM by the triangle's number, it
-// has of planes over w the value at its first pixel alone, and the number in place of the frame of coordinates, lowest. Else
-// it is the fragment as it is. Bits that are not stored come back as 0; whole_fragment.sv makes them.
+// has of planes over w the anchors of its tile, in its first pixel, and the number in place of the frame of coordinates, lowest.
+// Else it is the fragment as it is. Bits that are not stored come back as 0; whole_fragment.sv makes them.
 module stored_fragment #(
     parameter bit APART  = 0,
     parameter int NUMBER = 1,  // bits of a triangle's number
@@ -20,7 +20,7 @@ module stored_fragment #(
   localparam int FRAME = raster_pkg::COORDINATE_FRAME_BITS;
   localparam int FRAME_AT = PIXELS * CODES + (raster_pkg::COLORS_OVER_W != 0 ? 2 * raster_pkg::VERTEX_COLOR_BITS : 0);
   localparam int HEADER = FRAGMENT - FRAME_AT - FRAME;        // kind to state
-  localparam int FIRST = CODES - AFFINE;                      // values over w of the first pixel
+  localparam int FIRST = CODES - AFFINE;                      // anchors over w, in the first pixel
   localparam int RANGE = FRAME_AT - PIXELS * CODES;
   localparam int RANGE_AT = PIXELS * AFFINE + FIRST;          // in the bits; below it are the codes
 

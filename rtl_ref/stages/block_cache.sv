@@ -348,7 +348,8 @@ module block_cache (
   logic [raster_pkg::DEPTH_SOURCE_BITS-1:0] color_source;  // of the item at the head
   sram_fifo #(
       .WIDTH(SAMPLES * CODE),
-      .DEPTH(QUEUE)
+      .DEPTH(QUEUE),
+      .BLOCK(!APART)  // whose constants want the block RAMs that an ECP5-25F has left
   ) u_answers (
       .clk_i,
       .rst_ni,

@@ -3,8 +3,8 @@
 // In: a stamp packet, and from the context RAM what its slot holds. Out: a fragment packet. A sample's value is the closed
 // form anchor + i step_x + j step_y (i, j pixels from pixel (T/2, T/2)), modulo the local width; its code is the bits above
 // the fraction, and at a covered sample in the range of the vertices by the bounds of the widths: nothing clamps it. Planes
-// behind depth and colours, 1/w and what lies over it, stay as they are; where triangles' constants are APART (raster_top) a
-// fragment has them of its first pixel alone (stored_fragment.sv). Latency 6 cycles, one stamp per cycle. Nothing waits on the way: a stamp enters when there is a place for its fragment in the FIFO at the
+// behind depth and colours, 1/w and what lies over it, stay as they are; where triangles' constants are APART (raster_top) the
+// anchors of the tile go on in place of them (stored_fragment.sv). Latency 6 cycles, one stamp per cycle. Nothing waits on the way: a stamp enters when there is a place for its fragment in the FIFO at the
 // end. A cycle each:
 //   context  the context is read
 //   x, y     from the anchor to the stamp's first sample
@@ -54,7 +54,7 @@ module interpolate (
                           (APART ? raster_pkg::COORDINATE_FRAME_BITS - NUMBER +
                                    (PIXELS - 1) * (CODES - raster_pkg::ALL_AFFINE_CODE_BITS) : 0);
 
-  /* verilator lint_off UNUSEDSIGNAL */  // anchors end after the step x
+  /* verilator lint_off UNUSEDSIGNAL */  // anchors end after the step x, or go on
   raster_pkg::stamp_packet_t context_stamp_q, x_stamp_q, y_stamp_q, samples_stamp_q;
   /* verilator lint_on UNUSEDSIGNAL */
   /* verilator lint_off UNUSEDSIGNAL */  // steps end after the step samples
@@ -225,7 +225,7 @@ module interpolate (
         if (p < raster_pkg::AFFINE_PLANES) begin : gen_code
           assign code[s*CODES+CODE+:B] = {!value_q[L+B-1], value_q[L+:B-1]};
         end else begin : gen_over_w
-          assign code[s*CODES+CODE+:B] = APART && s != 0 ? '0 : value_q;
+          assign code[s*CODES+CODE+:B] = !APART ? value_q : s == 0 ? samples_stamp_q.anchor[LOCAL+:W] : '0;
         end
         if (p == 0) begin : gen_depth  // of its other samples
           for (k = 1; k < N; k++) begin : gen_further
