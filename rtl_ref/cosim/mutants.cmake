@@ -8,7 +8,7 @@ mutant(2 stages/cull.sv "sign: the front face is the other one"
 mutant(3 stages/cull.sv "off by one: the box loses a first column whose centre is on the leftmost vertex"
   [=[(B'(x_min_q) + TO_FIRST) >>> S]=] [=[(B'(x_min_q) + HALF) >>> S]=])
 mutant(4 stages/cull.sv "order: of vertices 1 and 2 the larger one comes first"
-  [=[key1 <= key2]=] [=[key1 >= key2]=])
+  [=[!(key2 < key1)]=] [=[!(key1 < key2)]=])
 mutant(5 stages/cull.sv "carry: turned edges gain the +1 of a negation"
   [=[~edge_q[(2-i)*V+:V]]=] [=[-edge_q[(2-i)*V+:V]]=])
 mutant(6 stages/cull.sv "counter: empty triangles count when they face away, too"
@@ -639,7 +639,7 @@ mutant(421 stages/fine_raster.sv "samples: pattern: the bits below an edge's val
 mutant(451 lib/colored_stamps.sv "samples, textures: a pixel lives by its first sample"
   [=[writes_i[s*N+:N] != '0]=] [=[writes_i[s*N]]=])
 mutant(452 lib/colored_stamps.sv "samples, textures: a pixel's colour goes to its first sample"
-  [=[{N{packed_color & {COLOR{mask[s]}}}}]=] [=[{N{packed_color & {COLOR{mask[s]}}}} & ~({(N * COLOR) {1'b1}} << COLOR)]=])
+  [=[{N{packed_color & {COLOR{mask[s] || !CLEANS}}}}]=] [=[{N{packed_color & {COLOR{mask[s] || !CLEANS}}}} & ~({(N * COLOR) {1'b1}} << COLOR)]=])
 mutant(453 stages/block_cache.sv "samples, textures: alpha behind the texture covers all samples or none"
   [=[raster_pkg::MSAA_SAMPLES > 1 && w_word[11]]=] [=[1'b0]=])
 mutant(454 stages/block_cache.sv "samples, textures: what alpha does not cover is not late"

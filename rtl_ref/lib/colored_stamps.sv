@@ -98,6 +98,8 @@ module colored_stamps #(
       localparam int L = raster_pkg::PERSPECTIVE_GUARD_BITS;
       localparam int AFFINE_BITS = raster_pkg::ALL_AFFINE_CODE_BITS;
       localparam int NARROW = raster_pkg::PERSPECTIVE_MANTISSA_BITS - 1;  // k_P
+      // A sample that is not written has colour 0, in the packet always, to W where that looks at more than its mask.
+      localparam bit CLEANS = N > 1 || raster_pkg::BLEND_LANES != 0;
       localparam int WORD = raster_pkg::TEXTURE_UNIT != 3 ? 46 : raster_pkg::STATE_WORD_BITS >= 104 ? 104 : 70;
       localparam int PIXEL = 12;
       localparam int TOKEN = 43;  // of tokens of fog and of light
@@ -238,7 +240,8 @@ module colored_stamps #(
           );
         end
         assign alpha_o[s*8+:8] = rgba[(s+1)*8*CHANNELS-1-:8];
-        assign color_o[s*N*COLOR+:N*COLOR]  = {N{packed_color & {COLOR{mask[s]}}}};
+        assign color_o[s*N*COLOR+:N*COLOR]  = {N{packed_color & {COLOR{mask[s] || !CLEANS}}}};
+        assign packet_o.color[s*N*COLOR+:N*COLOR] = {N{packed_color & {COLOR{mask[s]}}}};
         assign packet_o.mask[s*N+:N]        = {N{mask[s]}};
       end
 
@@ -375,7 +378,6 @@ module colored_stamps #(
         );
       end
       assign packet_valid_o = stamp_valid_o && mask != '0;
-      assign packet_o.color = color_o;
     end
   endgenerate
 

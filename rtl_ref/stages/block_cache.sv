@@ -558,7 +558,8 @@ module block_cache (
       );
       assign strobe = v_fills_q || dirty;
       assign v_depth_strobe[s] = strobe;
-      assign v_depth[s*CODE+:CODE] = code & {CODE{strobe}};
+      assign v_depth[s*CODE+:CODE] = code;
+      assign lent_depth[s*CODE+:CODE] = sent_depth[s*CODE+:CODE] & {CODE{sent_depth_strobe[s]}};
     end
   endgenerate
 
@@ -829,7 +830,7 @@ module block_cache (
   logic [STAMP-1:0]            sent_stamp;
   logic [BLOCK_X-1:0]          sent_x;
   logic [BLOCK_Y-1:0]          sent_y;
-  logic [SAMPLES*CODE-1:0]     sent_depth;
+  logic [SAMPLES*CODE-1:0]     sent_depth, lent_depth;  // as it is in its slot; and 0 where it is not written
   logic [SAMPLES*COLOR-1:0]    sent_color;
   logic [SAMPLES-1:0]          sent_depth_strobe, sent_color_strobe;
 
@@ -988,7 +989,7 @@ module block_cache (
       .sends_depth_i  (sends && !is_color),
       .sends_color_i  (sends && is_color),
       .is_here_i      (is_here),
-      .depth_i        (sent_depth),
+      .depth_i        (lent_depth),
       .color_i        (sent_color),
       .color_strobe_i (sent_color_strobe),
       .of_pixels_i    (of_pixels),

@@ -89,8 +89,8 @@ module cull (
   assign key0 = {~y0[C-1], y0[0+:C-1], ~x0[C-1], x0[0+:C-1], p_q.vertex.code[0+:Z]};
   assign key1 = {~y1[C-1], y1[0+:C-1], ~x1[C-1], x1[0+:C-1], p_q.vertex.code[CODES+:Z]};
   assign key2 = {~y2[C-1], y2[0+:C-1], ~x2[C-1], x2[0+:C-1], p_q.vertex.code[2*CODES+:Z]};
-  assign is_0_first = key0 <= key1 && key0 <= key2;
-  assign is_1_first = key1 <= key2;
+  assign is_0_first = !(key1 < key0) && !(key2 < key0);  // <= would be a comparison for equality beside the carry
+  assign is_1_first = !(key2 < key1);
 
   // --- Meanwhile and in step 1 the box: pixel centres within the vertices' bounds, cut by the scissor.
   localparam int B = C + 1;  // a coordinate plus half a pixel
@@ -385,7 +385,18 @@ module cull (
   assign triangle_o.kind         = kind_q;
   assign triangle_o.primitive_id = id_q;
   assign triangle_o.box          = d_box_q;
-  assign triangle_o.area         = A'(is_negative ? -area_q : area_q);
+  /* verilator lint_off UNUSEDSIGNAL */  // one that is not negative has no sign
+  logic [E-1:0] size;
+  /* verilator lint_on UNUSEDSIGNAL */
+  add_or_subtract #(
+      .WIDTH(E)
+  ) u_size (
+      .subtracts_i(is_negative),
+      .a_i        ('0),
+      .b_i        (area_q),
+      .sum_o      (size)
+  );
+  assign triangle_o.area = A'(size);
 
   // With a stencil a triangle says which side it shows.
   raster_pkg::primitive_state_t state;
