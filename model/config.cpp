@@ -68,6 +68,9 @@ const std::array kSettings{
             &Config::frame_store},
     Setting{"setup.kind", "pipelined|serial", "RTL triangle setup: several multipliers, or one", 0, 0,
             &Config::setup_kind},
+    Setting{"setup.plane_clocks", "clocks",
+            "that the RTL's pipelined triangle setup takes for a plane: 1, or 2 with half of the multipliers", 1, 2,
+            &Config::setup_plane_clocks},
     Setting{"texture.unit", "off|nearest|bilinear|trilinear", "what the RTL's texture unit can do; off: it has none", 0,
             0, &Config::texture_unit},
     Setting{"texture.lanes", "pixels", "that the RTL's texture unit divides, addresses and filters in a clock: 1 or 4",
@@ -336,6 +339,9 @@ void validate(const Config& config) {
   refuse_unless(is_power_of_two(config.memory_port_bits), "memory.port_bits must be 16, 32, 64, 128, 256 or 512");
   refuse_unless(is_power_of_two(config.texture_cache_kb), "texture.cache_kb must be a power of two");
   refuse_unless(is_power_of_two(config.texture_queue), "texture.queue must be a power of two");
+  refuse_unless(config.setup_plane_clocks == 1 || config.setup_kind == SetupKind::pipelined,
+                "the serial setup takes as many clocks for a plane as its bits want: use setup.plane_clocks=1, or "
+                "setup.kind=pipelined");
   if (config.texture_unit != TextureUnitKind::off) {
     refuse_unless(config.cache_kind == CacheKind::blocks && config.setup_kind == SetupKind::pipelined,
                   "a texture unit stands behind the depth test of blocks, and its planes want the pipelined setup: use "

@@ -75,6 +75,7 @@ struct Config {
   FrameStore frame_store = FrameStore::all;      ///< likewise: a bit of fast clears and flushes says it
   int memory_port_bits = 64;                     ///< data of one beat of the memory port; a power of two
   SetupKind setup_kind = SetupKind::pipelined;
+  int setup_plane_clocks = 1;  ///< that the pipelined setup takes for a plane: 1, or 2 with half of the multipliers
   TextureUnitKind texture_unit = TextureUnitKind::off;
   int texture_lanes = 1;     ///< samples that go through it together: 1, or 4 of a stamp
   int texture_cache_kb = 4;  ///< texels on the chip, KB; a power of two

@@ -189,7 +189,9 @@ inline Config config_from(ByteSource& bytes) {
   if (bytes.byte() % 4 == 1) config.stamp_size = 1 << bytes.between(0, 2);
   if (bytes.byte() % 4 == 1) config.hiz_bits = bytes.between(0, config.depth_bits);
   if (bytes.byte() % 4 == 1) config.color_format = ColorFormat::rgba8888;
-  if (bytes.byte() % 4 == 1) config.setup_kind = SetupKind::serial;
+  const std::uint8_t setup = bytes.byte() % 4;
+  if (setup == 1) config.setup_kind = SetupKind::serial;
+  if (setup == 2) config.setup_plane_clocks = 2;
   try {
     validate(config);
   } catch (const InputError&) {

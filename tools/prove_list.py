@@ -37,6 +37,7 @@ class Proof:
 
 
 TINY = ('tiny',)
+CLOCKS_2 = (('SETUP_PLANE_CLOCKS', 2),)
 MULTIPLIERS = ('$mul',)
 SRAMS = ('*sram*',)
 OFFSETS = ('*edge_offset*',)
@@ -207,6 +208,13 @@ PROOFS = [
           cuts=(*MULTIPLIERS, '$sshr'), inputs='triangle_setup_parts',
           twins=(('flows[i] = moves[i+:STEPS]', 'flows[i] = at_q[i+:STEPS]'),
                  ('if (moves[ROUND-1]) quotient_q', 'if (flows[ROUND]) quotient_q'))),
+    Proof('triangle_setup_stream_2_clocks', 'f', 'stages/triangle_setup.sv', 'the same with two cycles a plane', k=2,
+          cuts=(*MULTIPLIERS, '$sshr'), inputs='triangle_setup_parts', file='triangle_setup_stream', package=CLOCKS_2, cover_depth=60,
+          twins=(('at_q[i*STEPS+STEPS-1] && ready_q[i+1]', 'at_q[i*STEPS+STEPS-1]'),)),
+    Proof('triangle_setup_chains_2_clocks', 'f', 'stages/triangle_setup.sv', 'the same with two cycles a plane', k=2,
+          cuts=(*MULTIPLIERS, '$sshr'), inputs='triangle_setup_parts', file='triangle_setup_chains', package=CLOCKS_2,
+          twins=(473, ('if (moves[ROUND-1]) quotient_q', 'if (flows[ROUND]) quotient_q'),
+                 ('if (moves[RANGED]) ranges_q', 'if (at_q[RANGED+1]) ranges_q'))),
     Proof('framebuffer_data', 'd, f', 'stages/framebuffer.sv', 'an access reads what was written last, or cleared; after a flush '
           'memory holds it', cuts=SRAMS, inputs='framebuffer_inputs', package=TILES, twins=(37, 38, 55, 121, 122, 123, 125)),
     Proof('framebuffer_data_4_stamps', 'd, f', 'stages/framebuffer.sv', 'the same with 4 stamps a tile: what is claimed happens',

@@ -18,14 +18,15 @@ mutant(6 stages/cull.sv "counter: empty triangles count when they face away, too
 mutant(7 stages/triangle_setup.sv "rounding: the reciprocal is truncated"
   [=[R'(quotient_q[QUOTIENT-B-1])]=] [=[R'(0)]=])
 mutant(8 stages/triangle_setup.sv "rounding: the x gradient is truncated"
-  [=[P'(shifted_x[0])]=] [=[P'(0)]=])
+  [=[P'(shifted[0])]=] [=[lane == 0 ? P'(0) : P'(shifted[0])]=])
 mutant(9 stages/triangle_setup.sv "divider: an area that is a power of two has no quotient"
   [=[{2'b00, highest}]=] [=[first_area == highest ? '0 : {2'b00, highest}]=])
 mutant(10 stages/triangle_setup.sv "range: the lower clamp overlooks the third vertex"
   [=[is_1_below_0 ? (is_2_below_1 ? c2 : c1) : (is_2_below_0 ? c2 : c0)]=]
   [=[is_1_below_0 ? (is_2_below_1 ? c2 : c1) : c0]=])
 mutant(11 stages/triangle_setup.sv "carry: planes start half a local unit low"
-  [=[start_value + move_x_q + move_y_q]=] [=[start_value + move_x_q + move_y_q - (P'(1) << (F - L - 1))]=])
+  [=[start_value + move_q[0+:P] + move_q[(LANES-1)*P+:P]]=]
+  [=[start_value + move_q[0+:P] + move_q[(LANES-1)*P+:P] - (P'(1) << (F - L - 1))]=])
 
 # coarse_raster
 mutant(12 stages/coarse_raster.sv "trivial reject: a tile whose best sample is on the edge is skipped"
@@ -305,7 +306,8 @@ mutant(141 stages/triangle_setup.sv "texture: planes over w start at vertex 0"
 mutant(142 stages/triangle_setup.sv "texture: planes over w have the window of codes"
   [=[sums_over_w ? HALVES_OVER_W : HALVES]=] [=[HALVES]=])
 mutant(143 stages/triangle_setup.sv "texture: the way to the anchor is that of vertex 0"
-  [=[moves_over_w ? to_base_x_q : to_anchor_x_q]=] [=[to_anchor_x_q]=])
+  [=[moves_over_w ? {to_base_y_q, to_base_x_q} : {to_anchor_y_q, to_anchor_x_q}]=]
+  [=[moves_over_w ? {to_base_y_q, to_anchor_x_q} : {to_anchor_y_q, to_anchor_x_q}]=])
 mutant(144 stages/cull.sv "texture: a triangle has the coordinate frame of the one that comes"
   [=[raster_pkg::COORDINATE_FRAME_BITS'(coordinates_q)]=] [=[raster_pkg::COORDINATE_FRAME_BITS'(p_q.coordinates)]=])
 mutant(145 lib/colored_stamps.sv "texture: points and clears have it too"
@@ -699,3 +701,13 @@ mutant(461 stages/cache_tags.sv "samples, compression: a cleared block keeps its
   [=[pixel_word_i & ~marks & {WORD{clears_bin}}]=] [=[pixel_word_i]=])
 mutant(462 stages/memory_port.sv "samples, compression: pixels lie as far apart as all their samples"
   [=[PLANE'(place & IN_BLOCK) << PIXEL_SHIFT]=] [=[PLANE'(place & IN_BLOCK) << COLOR_SHIFT]=])
+
+# triangle_setup with two cycles a plane
+mutant(470 stages/triangle_setup.sv "two clocks: the way to the anchor is that along x in both"
+  [=[is_y ? anchor_q[C+1+:C+1] : anchor_q[0+:C+1]]=] [=[anchor_q[0+:C+1]]=])
+mutant(471 stages/triangle_setup.sv "two clocks: no plane over w starts at the third vertex"
+  [=[(differs_over_w && base_q[1])]=] [=[1'b0]=])
+mutant(472 stages/triangle_setup.sv "two clocks: the upper clamp overlooks a third vertex above a second that is below the first"
+  [=[is_1_below_0_q ? !difference[DC-1] : !is_2_below_1]=] [=[!is_1_below_0_q && !is_2_below_1]=])
+mutant(473 stages/triangle_setup.sv "two clocks, dropped stall: a plane begins whether its triangle goes on or not"
+  [=[begins | moves[START+i]]=] [=[begins | at_q[START+i]]=])

@@ -1,19 +1,23 @@
 // Triangle setup: everything that stays constant over the triangle, from its three vertices: the reciprocal of its area,
 // and for each plane two gradients and the value at the anchor of its first tile.
 //
-// A triangle goes from phase to phase, a cycle each. PLANES phases are a part; a part holds one triangle, which waits in its
-// last phase until the next part is free. Whatever is done for each plane is done p phases later for plane p than for plane
-// 0, so that planes come one a cycle, those of one triangle behind those of the other:
+// A triangle goes from phase to phase, a cycle each. What all planes take, a cycle each or two (setup.plane_clocks), is a
+// part; a part holds one triangle, which waits in its last phase until the next part is free. Whatever is done for plane p is
+// done p or 2 p phases later than for plane 0, so that planes come one behind the other, those of one triangle behind those
+// of the other:
 //   divide       the highest bit of the area; R = floor(2^k / A + 1/2), two quotient bits a cycle
 //                (of each plane as many bits of R as its codes need, rounded for themselves)
 //   differences  of the codes, and their ranges
 //   numerators   N_x, N_y
 //   gradients    round(N * R * 2^(F-k))
 //   values       c_0 + g_x (x - x_0) + g_y (y - y_0)
+// With a cycle a plane there are two lanes, for x and for y. With two there is one, which has x in a plane's first cycle and y
+// in its second: half of the multipliers, one shifter.
 // What a plane leaves behind in a phase stands in one register until the next one. Such a register moves while any plane is
 // in the phases around it, in whichever part: nobody is overwritten, because a triangle is never a step behind the one in
 // the part before.
-// Occupancy: a cycle a plane. Latency (embedded): 21. As many triangles are under way as there are parts, six.
+// Occupancy: the cycles of all planes. Latency (embedded): 21, with two cycles a plane 25. As many triangles are under way as
+// there are parts, six or four.
 // With the planes of a texture unit states go beside the parts (setup_states.sv), a cycle each.
 // Specification: model/stages/triangle_setup.hpp.
 module triangle_setup (
@@ -34,6 +38,8 @@ module triangle_setup (
   localparam int D = raster_pkg::DELTA_BITS;
   localparam int C = raster_pkg::COORDINATE_BITS;
   localparam int PLANES = raster_pkg::PLANES;
+  localparam int CLOCKS = raster_pkg::SETUP_PLANE_CLOCKS;  // of a plane
+  localparam int LANES = 2 / CLOCKS;                       // x and y, or x and then y
   localparam logic [32*PLANES-1:0] CODE_BITS_OF = raster_pkg::CODE_BITS_OF;
   localparam logic [32*PLANES-1:0] CODE_AT = raster_pkg::CODE_AT;
   localparam logic [32*PLANES-1:0] RECIPROCAL_BITS_OF = raster_pkg::RECIPROCAL_BITS_OF;
@@ -43,6 +49,7 @@ module triangle_setup (
   localparam int T = raster_pkg::TRIANGLE_PACKET_BITS;
   // The parts have the width of the widest plane, whichever is at work.
   localparam int Z = raster_pkg::MAX_CODE_BITS;
+  localparam int ZA = raster_pkg::MAX_AFFINE_CODE_BITS;  // of the planes that have a range
   localparam int DC = raster_pkg::MAX_DELTA_BITS;
   localparam int N = raster_pkg::MAX_NUMERATOR_BITS;
   localparam int P = raster_pkg::MAX_PLANE_BITS;
@@ -72,7 +79,7 @@ module triangle_setup (
   // ----------------------------------------------------------------------------------------------------------- phases
   // Phase 0 finds the highest bit. The quotient has one bit before the point and R after it, one more than is kept, for
   // the rounding.
-  localparam int STEPS = PLANES;  // of a part
+  localparam int STEPS = PLANES * CLOCKS;  // of a part
   localparam int BITS_PER_CYCLE = 2;
   localparam int DIVIDE_CYCLES = (R + BITS_PER_CYCLE) / BITS_PER_CYCLE;
   localparam int DIVIDERS = (DIVIDE_CYCLES + STEPS - 1) / STEPS;
@@ -83,10 +90,13 @@ module triangle_setup (
   localparam int SHIFT = PRODUCT + 1;  // the gradient
   localparam int MOVE = SHIFT + 1;     // to the anchor
   localparam int SUM = MOVE + 1;
-  localparam int NUMERATOR = PRODUCT - 2;  // and the phase behind it
-  localparam int DELTA_PART = (NUMERATOR - 1) / STEPS;
-  localparam int DELTA = DELTA_PART * STEPS;  // differences of codes, in a part of their own
-  localparam int OFFER = SUM + PLANES;
+  localparam int NUMERATOR = PRODUCT - 2;        // and the phase behind it
+  localparam int CORNERS = NUMERATOR + 1 - CLOCKS;  // from here on the corners' differences are known
+  // Differences of codes; where a plane takes two cycles, both of them in one part.
+  localparam int DELTA = (NUMERATOR - CLOCKS) / CLOCKS * CLOCKS;
+  localparam int DELTA_PART = DELTA / STEPS;      // and the next one
+  localparam int DELTA_LEFT = NUMERATOR - CLOCKS - DELTA;  // 1 if they wait a cycle for that
+  localparam int OFFER = SUM + STEPS;
   localparam int LAST_PART = OFFER / STEPS;
   localparam int PARTS = LAST_PART + 1;
 
@@ -122,12 +132,13 @@ module triangle_setup (
 
   /* verilator lint_off UNUSEDSIGNAL */  // what a part does not look at ends in the part before
   logic [PARTS*T-1:0] packets_q;  // of each part
-  raster_pkg::triangle_packet_t first_packet, delta_packet, corner_packet, anchor_packet, last_packet;
+  raster_pkg::triangle_packet_t first_packet, delta_packet, behind_packet, corner_packet, anchor_packet, last_packet;
   /* verilator lint_on UNUSEDSIGNAL */
   assign first_packet  = packets_q[0+:T];
   assign delta_packet  = packets_q[DELTA_PART*T+:T];
-  assign corner_packet = packets_q[(NUMERATOR-1)/STEPS*T+:T];
-  assign anchor_packet = packets_q[(MOVE-1)/STEPS*T+:T];
+  assign behind_packet = packets_q[(DELTA_PART+1)*T+:T];  // of planes that come when the triangle has gone on
+  assign corner_packet = packets_q[(CORNERS-1)/STEPS*T+:T];
+  assign anchor_packet = packets_q[(MOVE-CLOCKS)/STEPS*T+:T];
   assign last_packet   = packets_q[LAST_PART*T+:T];
   always_ff @(posedge clk_i) begin
     if (ready_q[0]) packets_q[0+:T] <= triangle_i;
@@ -135,19 +146,14 @@ module triangle_setup (
   end
 
   // ----------------------------------------------------------------------------------------------------------- divide
-  // The highest set bit of the area: 2^m and m.
-  logic [A-1:0] first_area, highest;
-  logic [M-1:0] log2_area;
+  // The highest set bit of the area, 2^m: of the mirrored area the lowest one, which a carry finds.
+  logic [A-1:0] first_area, mirrored, least, highest;
   assign first_area = first_packet.area;
+  assign least      = mirrored & -mirrored;
   always_comb begin
-    highest   = '0;
-    log2_area = '0;
-    for (int b = 0; b < A; b++) begin
-      if (first_area[b]) begin
-        highest    = '0;
-        highest[b] = 1'b1;
-        log2_area  = M'(b);
-      end
+    for (int i = 0; i < A; i++) begin
+      mirrored[i] = first_area[A-1-i];
+      highest[i]  = least[A-1-i];
     end
   end
 
@@ -215,170 +221,276 @@ module triangle_setup (
     end
   endgenerate
 
+  // m, when 2^m stands in the first divider.
+  logic [M-1:0] log2_area;
+  always_comb begin
+    log2_area = '0;
+    for (int i = 0; i < A; i++) if (gen_divider[0].remainder_q[i]) log2_area = log2_area | M'(i);
+  end
+
   // Of each plane the upper bits, rounded by the next one; what is below is dropped, spare bits with it.
   /* verilator lint_off UNUSEDSIGNAL */
   logic [QUOTIENT-1:0] quotient_q;
   /* verilator lint_on UNUSEDSIGNAL */
-  logic [PLANES*R-1:0] upper, halves;
-  logic [R-1:0]        reciprocal, reciprocal_q;
+  logic [PLANES*R-1:0] uppers, halves;
+  logic [R-1:0]        upper, half, reciprocal, reciprocal_q;
   genvar p;
   generate
     for (p = 0; p < PLANES; p++) begin : gen_reciprocal
       localparam int B = RECIPROCAL_BITS_OF[32*p+:32];
-      assign upper[p*R+:R]  = R'(quotient_q[QUOTIENT-B+:B]) << (R - B);
+      assign uppers[p*R+:R] = R'(quotient_q[QUOTIENT-B+:B]) << (R - B);
       assign halves[p*R+:R] = R'(quotient_q[QUOTIENT-B-1]) << (R - B);
     end
   endgenerate
   always_comb begin
-    reciprocal = upper[0+:R] + halves[0+:R];
-    for (int i = 1; i < PLANES; i++) if (at_q[ROUND+i]) reciprocal = upper[i*R+:R] + halves[i*R+:R];
+    upper = '0;
+    half  = '0;
+    for (int i = 0; i < PLANES; i++) begin
+      if (at_q[ROUND+CLOCKS*i+:CLOCKS] != '0) begin
+        upper = upper | uppers[i*R+:R];
+        half  = half | halves[i*R+:R];
+      end
+    end
   end
+  assign reciprocal = upper + half;
   always_ff @(posedge clk_i) begin
     if (moves[ROUND-1]) quotient_q <= quotients[(DIVIDERS-1)*QUOTIENT+:QUOTIENT];
     if (flows[ROUND]) reciprocal_q <= reciprocal;
   end
 
   // ------------------------------------------------------------------------------------------------------- differences
-  // One plane a step: its code at each vertex, the differences from vertex 0, the range.
+  // A plane's code at each vertex, the differences from vertex 0, the range. Its cycles are in one part.
   localparam int CZ = Z + 1;  // with a sign
-  logic [PLANES*CZ-1:0]    codes_0, codes_1, codes_2;
-  logic [PLANES*(Z+1)-1:0] starts;
-  /* verilator lint_off UNUSEDSIGNAL */  // ranges are of codes without a sign
-  logic signed [CZ-1:0]    c0, c1, c2, low, high;
+  logic [PLANES*CZ-1:0]        codes_0, codes_1, codes_2;
+  logic [PLANES-1:0]           plane_differs;  // its differences are made
+  /* verilator lint_off UNUSEDSIGNAL */  // without planes over w nobody asks
+  logic [1:0]                  base, base_q;   // see base_of
+  logic                        differs_over_w;
   /* verilator lint_on UNUSEDSIGNAL */
-  logic [Z:0]              start;
-  logic signed [DC-1:0]    ac, bc;
-  logic                    is_1_below_0, is_2_below_0, is_2_below_1;
   generate
     for (p = 0; p < PLANES; p++) begin : gen_codes
       localparam int B = CODE_BITS_OF[32*p+:32];
       localparam int AT = CODE_AT[32*p+:32];
       localparam bit SIGNED = p > AFFINE;  // u and v
+      localparam bit IS_BEHIND = (DELTA + CLOCKS * p) / STEPS != DELTA_PART;
       logic [B-1:0] code_0, code_1, code_2;
-      assign code_0             = delta_packet.vertex.code[AT+:B];
-      assign code_1             = delta_packet.vertex.code[CODES+AT+:B];
-      assign code_2             = delta_packet.vertex.code[2*CODES+AT+:B];
+      assign code_0            = IS_BEHIND ? behind_packet.vertex.code[AT+:B] : delta_packet.vertex.code[AT+:B];
+      assign code_1            = IS_BEHIND ? behind_packet.vertex.code[CODES+AT+:B] :
+                                 delta_packet.vertex.code[CODES+AT+:B];
+      assign code_2            = IS_BEHIND ? behind_packet.vertex.code[2*CODES+AT+:B] :
+                                 delta_packet.vertex.code[2*CODES+AT+:B];
       assign codes_0[p*CZ+:CZ] = {{(CZ - B) {SIGNED && code_0[B-1]}}, code_0};
       assign codes_1[p*CZ+:CZ] = {{(CZ - B) {SIGNED && code_1[B-1]}}, code_1};
       assign codes_2[p*CZ+:CZ] = {{(CZ - B) {SIGNED && code_2[B-1]}}, code_2};
-      if (p < AFFINE) begin : gen_start  // see values
-        assign starts[p*(Z+1)+:Z+1] = (Z + 1)'({code_0[B-1], !code_0[B-1], code_0[0+:B-1]});
-      end else begin : gen_start_over_w
-        logic [1:0] base;
-        assign base = base_of(delta_packet.vertex.code);
-        assign starts[p*(Z+1)+:Z+1] = base[1] ? codes_2[p*CZ+:CZ] : base[0] ? codes_1[p*CZ+:CZ] :
-                                      codes_0[p*CZ+:CZ];
+      assign plane_differs[p]  = at_q[DELTA+CLOCKS*p+:CLOCKS] != '0;
+    end
+    if (PLANES > AFFINE) begin : gen_base
+      assign base           = base_of(delta_packet.vertex.code);
+      assign differs_over_w = plane_differs[PLANES-1:AFFINE] != '0;
+      always_ff @(posedge clk_i) if (moves[DELTA]) base_q <= base;
+    end else begin : gen_no_base
+      assign base           = 2'b00;
+      assign base_q         = 2'b00;
+      assign differs_over_w = 1'b0;
+    end
+  endgenerate
+
+  // Where a plane starts: the code at vertex 0, with the offset of its window added (see values), or at the vertex of the
+  // smallest 1/w.
+  function automatic [Z:0] window_of(input [CZ-1:0] code, input [PLANES-1:0] plane);
+    window_of = code;
+    for (int i = 0; i < AFFINE; i++) begin
+      if (plane[i]) begin
+        window_of[CODE_BITS_OF[32*i+:32]]   = code[CODE_BITS_OF[32*i+:32]-1];
+        window_of[CODE_BITS_OF[32*i+:32]-1] = !code[CODE_BITS_OF[32*i+:32]-1];
+      end
+    end
+  endfunction
+
+  // What later phases need of a plane goes along: the differences up to the numerators, the start up to the values.
+  localparam int START = SUM + 1 - CLOCKS;               // takes it
+  localparam int TO_START = START - DELTA - CLOCKS + 1;  // registers
+  /* verilator lint_off UNUSEDSIGNAL */  // ranges are of codes without a sign
+  logic signed [CZ-1:0]    c0;
+  logic [CZ-1:0]           low, high;
+  /* verilator lint_on UNUSEDSIGNAL */
+  logic [DC-1:0]           ac_q, bc_q;
+  logic [TO_START*(Z+1)-1:0] start_q;  // the newest is the lowest
+  logic [Z:0]              start;
+  logic                    starts;     // is valid, and goes there
+  always_comb begin
+    c0 = '0;
+    for (int i = 0; i < PLANES; i++) if (plane_differs[i]) c0 = c0 | codes_0[i*CZ+:CZ];
+  end
+  always_ff @(posedge clk_i) begin
+    if (starts) start_q[0+:Z+1] <= start;
+    for (int i = 1; i < TO_START; i++)
+      if (flows[DELTA+CLOCKS-1+i]) start_q[i*(Z+1)+:Z+1] <= start_q[(i-1)*(Z+1)+:Z+1];
+  end
+  generate
+    if (CLOCKS == 1) begin : gen_differences
+      logic signed [CZ-1:0] c1, c2;
+      logic signed [DC-1:0] ac, bc;
+      logic                 is_1_below_0, is_2_below_0, is_2_below_1;
+      always_comb begin
+        c1 = '0;
+        c2 = '0;
+        for (int i = 0; i < PLANES; i++) begin
+          if (plane_differs[i]) begin
+            c1 = c1 | codes_1[i*CZ+:CZ];
+            c2 = c2 | codes_2[i*CZ+:CZ];
+          end
+        end
+      end
+      assign ac           = $signed(DC'(c1) - DC'(c0));
+      assign bc           = $signed(DC'(c2) - DC'(c0));
+      assign is_1_below_0 = ac[DC-1];
+      assign is_2_below_0 = bc[DC-1];
+      assign is_2_below_1 = c2[ZA-1:0] < c1[ZA-1:0];
+      assign low          = is_1_below_0 ? (is_2_below_1 ? c2 : c1) : (is_2_below_0 ? c2 : c0);
+      assign high         = is_1_below_0 ? (is_2_below_0 ? c0 : c2) : (is_2_below_1 ? c1 : c2);
+      assign start        = differs_over_w && base_q[1] ? c2 : differs_over_w && base_q[0] ? c1 :
+                            window_of(c0, plane_differs);
+      assign starts       = flows[DELTA];
+      always_ff @(posedge clk_i) begin
+        if (flows[DELTA]) begin
+          ac_q <= ac;
+          bc_q <= bc;
+        end
+      end
+    end else begin : gen_shared_differences
+      // Vertex 1, then vertex 2; what is known of the first two waits in registers.
+      logic signed [CZ-1:0] other;
+      logic signed [DC-1:0] difference;
+      logic [DC-1:0]        first_q, pair_a_q, pair_b_q;
+      logic [CZ-1:0]        least_q, most_q;
+      logic [ZA-1:0]        code_1_q;
+      logic                 is_1_below_0_q, is_2_below_1, is_least, is_most, is_second;
+      always_comb begin
+        other     = '0;
+        is_second = 1'b0;
+        for (int i = 0; i < PLANES; i++) begin
+          if (at_q[DELTA+CLOCKS*i]) other = other | codes_1[i*CZ+:CZ];
+          if (at_q[DELTA+CLOCKS*i+1]) other = other | codes_2[i*CZ+:CZ];
+          is_second = is_second | at_q[DELTA+CLOCKS*i+1];
+        end
+      end
+      assign difference   = $signed(DC'(other) - DC'(c0));
+      assign is_2_below_1 = other[ZA-1:0] < code_1_q;
+      assign is_least     = is_1_below_0_q ? is_2_below_1 : difference[DC-1];
+      assign is_most      = is_1_below_0_q ? !difference[DC-1] : !is_2_below_1;
+      assign low          = is_least ? other : least_q;
+      assign high         = is_most ? other : most_q;
+      assign start        = differs_over_w && (is_second || base_q[0]) ? other : window_of(c0, plane_differs);
+      assign starts       = flows[DELTA] && (!is_second || (differs_over_w && base_q[1]));
+      always_ff @(posedge clk_i) begin
+        if (flows[DELTA]) begin
+          if (is_second) begin
+            pair_a_q <= first_q;
+            pair_b_q <= difference;
+          end else begin
+            first_q        <= difference;
+            is_1_below_0_q <= difference[DC-1];
+            code_1_q       <= other[ZA-1:0];
+            least_q        <= difference[DC-1] ? other : c0;
+            most_q         <= difference[DC-1] ? c0 : other;
+          end
+        end
+      end
+      if (DELTA_LEFT == 0) begin : gen_at_once
+        assign ac_q = pair_a_q;
+        assign bc_q = pair_b_q;
+      end else begin : gen_waits
+        always_ff @(posedge clk_i) begin
+          if (flows[NUMERATOR-1]) begin
+            ac_q <= pair_a_q;
+            bc_q <= pair_b_q;
+          end
+        end
       end
     end
   endgenerate
+
+  // The ranges of a triangle stay with the parts behind. Planes over w have none.
+  localparam int RANGES = 2 * AFFINE * ZA;
+  localparam int RANGED = DELTA + CLOCKS * AFFINE - 1;  // the last one is found
+  localparam int RANGE_PART = (RANGED + 1) / STEPS;
+  logic                    finds_range;
+  logic [(AFFINE-1)*ZA-1:0] low_q, high_q;  // the newest is the highest
+  logic [(PARTS-RANGE_PART)*RANGES-1:0] ranges_q;
   always_comb begin
-    c0    = codes_0[0+:CZ];
-    c1    = codes_1[0+:CZ];
-    c2    = codes_2[0+:CZ];
-    start = starts[0+:Z+1];
-    for (int i = 1; i < PLANES; i++) begin
-      if (at_q[DELTA+i]) begin
-        c0    = codes_0[i*CZ+:CZ];
-        c1    = codes_1[i*CZ+:CZ];
-        c2    = codes_2[i*CZ+:CZ];
-        start = starts[i*(Z+1)+:Z+1];
-      end
-    end
+    finds_range = 1'b0;
+    for (int i = 0; i < AFFINE; i++) finds_range = finds_range | moves[DELTA+CLOCKS*i+CLOCKS-1];
   end
-  assign ac           = $signed(DC'(c1) - DC'(c0));
-  assign bc           = $signed(DC'(c2) - DC'(c0));
-  assign is_1_below_0 = ac[DC-1];
-  assign is_2_below_0 = bc[DC-1];
-  assign is_2_below_1 = c2 < c1;
-  assign low          = is_1_below_0 ? (is_2_below_1 ? c2 : c1) : (is_2_below_0 ? c2 : c0);
-  assign high         = is_1_below_0 ? (is_2_below_0 ? c0 : c2) : (is_2_below_1 ? c1 : c2);
-
-  // What later phases need of a plane goes along: the differences up to the numerators, the code up to the values.
-  localparam int TO_NUMERATOR = NUMERATOR - DELTA;  // registers
-  localparam int TO_SUM = SUM - DELTA;
-  logic [TO_NUMERATOR*DC-1:0] ac_q, bc_q;  // the newest is the lowest
-  logic [TO_SUM*(Z+1)-1:0]    start_q;
   always_ff @(posedge clk_i) begin
-    for (int i = 0; i < TO_NUMERATOR; i++) begin
-      if (flows[DELTA+i]) begin
-        ac_q[i*DC+:DC] <= i == 0 ? ac : ac_q[(i==0?0:i-1)*DC+:DC];
-        bc_q[i*DC+:DC] <= i == 0 ? bc : bc_q[(i==0?0:i-1)*DC+:DC];
-      end
+    if (finds_range) begin
+      low_q  <= {low[ZA-1:0], low_q[(AFFINE-1)*ZA-1:ZA]};
+      high_q <= {high[ZA-1:0], high_q[(AFFINE-1)*ZA-1:ZA]};
     end
-    for (int i = 0; i < TO_SUM; i++) begin
-      if (flows[DELTA+i]) start_q[i*(Z+1)+:Z+1] <= i == 0 ? start : start_q[(i==0?0:i-1)*(Z+1)+:Z+1];
-    end
-  end
-
-  // The ranges of all planes stay with the parts behind.
-  localparam int RANGES = 2 * PLANES * Z;
-  logic [(PLANES-1)*Z-1:0]               low_q, high_q;  // the newest is the highest
-  logic [(PARTS-DELTA_PART-1)*RANGES-1:0] ranges_q;
-  always_ff @(posedge clk_i) begin
-    if (flows[DELTA]) begin
-      low_q  <= {low[Z-1:0], low_q[(PLANES-1)*Z-1:Z]};
-      high_q <= {high[Z-1:0], high_q[(PLANES-1)*Z-1:Z]};
-    end
-    for (int i = DELTA_PART + 1; i < PARTS; i++) begin
-      if (ready_q[i]) begin
-        if (i == DELTA_PART + 1) ranges_q[0+:RANGES] <= {high[Z-1:0], high_q, low[Z-1:0], low_q};
-        else ranges_q[(i-DELTA_PART-1)*RANGES+:RANGES] <= ranges_q[(i-DELTA_PART-2)*RANGES+:RANGES];
-      end
-    end
+    if (moves[RANGED]) ranges_q[0+:RANGES] <= {high[ZA-1:0], high_q, low[ZA-1:0], low_q};
+    for (int i = RANGE_PART + 1; i < PARTS; i++)
+      if (ready_q[i]) ranges_q[(i-RANGE_PART)*RANGES+:RANGES] <= ranges_q[(i-RANGE_PART-1)*RANGES+:RANGES];
   end
 
   // -------------------------------------------------------------------------------------------------------- numerators
-  // N_x = ac by - bc ay, N_y = ax bc - bx ac.
-  logic signed [D-1:0] ax_q, ay_q, bx_q, by_q;
-  logic signed [N-1:0] numerator_x, numerator_y;
-  logic                multiplies;
+  // N_x = ac by - bc ay, N_y = ac (-bx) - bc (-ax).
+  logic signed [D-1:0]       minus_ax_q, ay_q, minus_bx_q, by_q;
+  logic [LANES*2*D-1:0]      factors;  // {-bx, -ax} or {by, ay}
+  logic [LANES*N-1:0]        numerator;
+  logic                      multiplies;
   assign multiplies = flows[NUMERATOR] || flows[NUMERATOR+1];
   always_ff @(posedge clk_i) begin
-    if (moves[NUMERATOR-1]) begin
-      ax_q <= D'($signed(corner_packet.vertex.x[C+:C])) - D'($signed(corner_packet.vertex.x[0+:C]));
-      ay_q <= D'($signed(corner_packet.vertex.y[C+:C])) - D'($signed(corner_packet.vertex.y[0+:C]));
-      bx_q <= D'($signed(corner_packet.vertex.x[2*C+:C])) - D'($signed(corner_packet.vertex.x[0+:C]));
-      by_q <= D'($signed(corner_packet.vertex.y[2*C+:C])) - D'($signed(corner_packet.vertex.y[0+:C]));
+    if (moves[CORNERS-1]) begin
+      minus_ax_q <= D'($signed(corner_packet.vertex.x[0+:C])) - D'($signed(corner_packet.vertex.x[C+:C]));
+      ay_q       <= D'($signed(corner_packet.vertex.y[C+:C])) - D'($signed(corner_packet.vertex.y[0+:C]));
+      minus_bx_q <= D'($signed(corner_packet.vertex.x[0+:C])) - D'($signed(corner_packet.vertex.x[2*C+:C]));
+      by_q       <= D'($signed(corner_packet.vertex.y[2*C+:C])) - D'($signed(corner_packet.vertex.y[0+:C]));
     end
   end
 
-  cross_product #(
-      .A_BITS  (DC),
-      .D_BITS  (D),
-      .OUT_BITS(N)
-  ) u_numerator_x (
-      .clk_i,
-      .enable_i(multiplies),
-      .a_i     (ac_q[(TO_NUMERATOR-1)*DC+:DC]),
-      .b_i     (bc_q[(TO_NUMERATOR-1)*DC+:DC]),
-      .c_i     (ay_q),
-      .d_i     (by_q),
-      .bias_i  (1'b0),
-      .result_o(numerator_x)
-  );
+  // The second cycle of some plane is in the phases from there on.
+  function automatic is_y_in(input [STEPS-1:0] phases);
+    is_y_in = 1'b0;
+    for (int i = CLOCKS - 1; i < STEPS; i += CLOCKS) is_y_in = is_y_in | phases[i];
+  endfunction
 
-  cross_product #(
-      .A_BITS  (D),
-      .D_BITS  (DC),
-      .OUT_BITS(N)
-  ) u_numerator_y (
-      .clk_i,
-      .enable_i(multiplies),
-      .a_i     (ax_q),
-      .b_i     (bx_q),
-      .c_i     (ac_q[(TO_NUMERATOR-1)*DC+:DC]),
-      .d_i     (bc_q[(TO_NUMERATOR-1)*DC+:DC]),
-      .bias_i  (1'b0),
-      .result_o(numerator_y)
-  );
+  genvar lane;
+  generate
+    if (LANES == 2) begin : gen_factors
+      assign factors = {minus_bx_q, minus_ax_q, by_q, ay_q};
+    end else begin : gen_shared_factors
+      logic [2*D-1:0] factors_q;
+      assign factors = factors_q;
+      always_ff @(posedge clk_i)
+        if (flows[NUMERATOR-1])
+          factors_q <= is_y_in(at_q[NUMERATOR-1+:STEPS]) ? {minus_bx_q, minus_ax_q} : {by_q, ay_q};
+    end
+    for (lane = 0; lane < LANES; lane++) begin : gen_numerator
+      cross_product #(
+          .A_BITS  (DC),
+          .D_BITS  (D),
+          .OUT_BITS(N)
+      ) u_numerator (
+          .clk_i,
+          .enable_i(multiplies),
+          .a_i     (ac_q),
+          .b_i     (bc_q),
+          .c_i     (factors[2*lane*D+:D]),
+          .d_i     (factors[(2*lane+1)*D+:D]),
+          .bias_i  (1'b0),
+          .result_o(numerator[lane*N+:N])
+      );
+    end
+  endgenerate
 
   // The edges' directions, in the part that is entered meanwhile and those behind.
-  localparam int EDGE_PART = NUMERATOR / STEPS + 1;
+  localparam int EDGE_PART = CORNERS / STEPS + 1;
   logic [(PARTS-EDGE_PART)*6*D-1:0] edges_q;
   always_ff @(posedge clk_i) begin
     for (int i = EDGE_PART; i < PARTS; i++) begin
       if (ready_q[i]) begin
-        if (i == EDGE_PART) edges_q[0+:6*D] <= {-by_q, by_q - ay_q, ay_q, -bx_q, bx_q - ax_q, ax_q};
+        if (i == EDGE_PART)
+          edges_q[0+:6*D] <= {-by_q, by_q - ay_q, ay_q, minus_bx_q, minus_ax_q - minus_bx_q, -minus_ax_q};
         else edges_q[(i-EDGE_PART)*6*D+:6*D] <= edges_q[(i-EDGE_PART-1)*6*D+:6*D];
       end
     end
@@ -396,99 +508,154 @@ module triangle_setup (
 
   logic [(LOG2_PART+1)*M-1:0]         log2_q;  // of each part
   logic [SHIFT_BITS-1:0]              shift_q;
-  logic signed [PRODUCT_BITS-1:0]     product_x_q, product_y_q;
-  /* verilator lint_off UNUSEDSIGNAL */  // planes live modulo 2^P
-  logic signed [PRODUCT_BITS+LEFT-1:0] shifted_x, shifted_y;
-  /* verilator lint_on UNUSEDSIGNAL */
-  logic [P-1:0]                       step_x_q, step_y_q;  // per subpixel
-  assign shifted_x = $signed({product_x_q, {LEFT{1'b0}}}) >>> shift_q;
-  assign shifted_y = $signed({product_y_q, {LEFT{1'b0}}}) >>> shift_q;
+  logic [LANES*PRODUCT_BITS-1:0]      product_q;
+  logic [LANES*P-1:0]                 step_q;  // per subpixel
 
   always_ff @(posedge clk_i) begin
-    if (moves[0]) log2_q[0+:M] <= log2_area;
+    if (moves[1]) log2_q[0+:M] <= log2_area;
     for (int i = 1; i <= LOG2_PART; i++) if (ready_q[i]) log2_q[i*M+:M] <= log2_q[(i-1)*M+:M];
     if (moves[SHIFT-1]) shift_q <= SHIFT_BITS'(log2_q[LOG2_PART*M+:M]) + SHIFT_BITS'(SHIFT_BASE);
-    if (flows[PRODUCT]) begin
-      product_x_q <= numerator_x * $signed({1'b0, reciprocal_q});
-      product_y_q <= numerator_y * $signed({1'b0, reciprocal_q});
-    end
-    if (flows[SHIFT]) begin
-      step_x_q <= shifted_x[1+:P] + P'(shifted_x[0]);
-      step_y_q <= shifted_y[1+:P] + P'(shifted_y[0]);
-    end
   end
+  generate
+    for (lane = 0; lane < LANES; lane++) begin : gen_gradient
+      /* verilator lint_off UNUSEDSIGNAL */  // planes live modulo 2^P
+      logic signed [PRODUCT_BITS+LEFT-1:0] shifted;
+      /* verilator lint_on UNUSEDSIGNAL */
+      assign shifted = $signed({product_q[lane*PRODUCT_BITS+:PRODUCT_BITS], {LEFT{1'b0}}}) >>> shift_q;
+      always_ff @(posedge clk_i) begin
+        if (flows[PRODUCT])
+          product_q[lane*PRODUCT_BITS+:PRODUCT_BITS] <= $signed(numerator[lane*N+:N]) * $signed({1'b0, reciprocal_q});
+        if (flows[SHIFT]) step_q[lane*P+:P] <= shifted[1+:P] + P'(shifted[0]);
+      end
+    end
+  endgenerate
 
   // ----------------------------------------------------------------------------------------------------------- values
-  // From vertex 0 to the centre of pixel (T/2, T/2) of the first tile, subpixels.
+  // The centre of pixel (T/2, T/2) of the first tile, subpixels.
   logic signed [C:0]   anchor_x, anchor_y;
-  logic signed [D-1:0] to_anchor_x_q, to_anchor_y_q;
   assign anchor_x = $signed((C + 1)'({anchor_packet.box.left[PX-1:TS], 1'b1, {(TS - 1) {1'b0}}}) << S) +
                     $signed((C + 1)'(1 << (S - 1)));
   assign anchor_y = $signed((C + 1)'({anchor_packet.box.top[PY-1:TS], 1'b1, {(TS - 1) {1'b0}}}) << S) +
                     $signed((C + 1)'(1 << (S - 1)));
 
-  // The same from the vertex of the smallest 1/w, for the planes over it.
-  logic                sums_over_w, moves_over_w;  // such a plane is in the phase
-  logic signed [D-1:0] to_base_x_q, to_base_y_q, to_x, to_y;
-  assign to_x = moves_over_w ? to_base_x_q : to_anchor_x_q;
-  assign to_y = moves_over_w ? to_base_y_q : to_anchor_y_q;
-  generate
-    if (PLANES > AFFINE) begin : gen_over_w
-      logic [1:0]          base;
-      logic signed [C-1:0] base_x, base_y;
-      assign base         = base_of(anchor_packet.vertex.code);
-      assign base_x       = base[1] ? anchor_packet.vertex.x[2*C+:C] :
-                            base[0] ? anchor_packet.vertex.x[C+:C] : anchor_packet.vertex.x[0+:C];
-      assign base_y       = base[1] ? anchor_packet.vertex.y[2*C+:C] :
-                            base[0] ? anchor_packet.vertex.y[C+:C] : anchor_packet.vertex.y[0+:C];
-      assign sums_over_w  = at_q[SUM+AFFINE+:PLANES-AFFINE] != '0;
-      assign moves_over_w = at_q[MOVE+AFFINE+:PLANES-AFFINE] != '0;
-      always_ff @(posedge clk_i) begin
-        if (moves[MOVE-1]) begin
-          to_base_x_q <= D'(anchor_x) - D'(base_x);
-          to_base_y_q <= D'(anchor_y) - D'(base_y);
-        end
-      end
-    end else begin : gen_affine
-      assign sums_over_w  = 1'b0;
-      assign moves_over_w = 1'b0;
-      assign to_base_x_q  = '0;
-      assign to_base_y_q  = '0;
-    end
-  endgenerate
-
-  // A plane at vertex 0: its code with F fraction bits, half a unit of the local plane's last place, and the offset of its
+  // A plane at its vertex: its code with F fraction bits, half a unit of the local plane's last place, and the offset of its
   // window (LocalFormat), 2^(B-1), so that a tile's anchor is a shift.
   localparam logic [F-1:0] HALVES = F'(1) << (F - L - 1) | F'(1) << (F - 1);
   localparam logic [F-1:0] HALVES_OVER_W = F'(1) << (F - raster_pkg::PERSPECTIVE_GUARD_BITS - 1);  // has no window
-  logic [P-1:0]        move_x_q, move_y_q, start_value, sum;  // modulo 2^P
-  logic [PLANES*P-1:0] steps_x_q, steps_y_q;  // the newest is the highest
-  logic [(PLANES-1)*P-1:0] sums_q;            // likewise
-  assign start_value = P'({start_q[(TO_SUM-1)*(Z+1)+:Z+1], sums_over_w ? HALVES_OVER_W : HALVES});
-  assign sum         = start_value + move_x_q + move_y_q;
+  logic                    sums_over_w;         // such a plane starts
+  logic [LANES*D-1:0]      to;                  // the anchor, from the plane's vertex
+  logic [LANES*P-1:0]      move_q;
+  logic [P-1:0]            start_value, sum;    // modulo 2^P
+  logic                    sums;                // is a plane's value
+  logic [2*PLANES*P-1:0]   steps_q;             // {y, x}, the newest is the highest
+  logic [(PLANES-1)*P-1:0] sums_q;              // likewise
+  assign start_value = P'({start_q[(TO_START-1)*(Z+1)+:Z+1], sums_over_w ? HALVES_OVER_W : HALVES});
+  generate
+    if (PLANES > AFFINE) begin : gen_over_w
+      assign sums_over_w = at_q[START+CLOCKS*AFFINE+:CLOCKS*(PLANES-AFFINE)] != '0;
+    end else begin : gen_affine
+      assign sums_over_w = 1'b0;
+    end
+    for (lane = 0; lane < LANES; lane++) begin : gen_move
+      always_ff @(posedge clk_i)
+        if (flows[MOVE]) move_q[lane*P+:P] <= $signed(step_q[lane*P+:P]) * $signed(to[lane*D+:D]);
+    end
+    if (CLOCKS == 1) begin : gen_values
+      logic signed [D-1:0] to_anchor_x_q, to_anchor_y_q;
+      always_ff @(posedge clk_i) begin
+        if (moves[MOVE-1]) begin
+          to_anchor_x_q <= D'(anchor_x) - D'($signed(anchor_packet.vertex.x[0+:C]));
+          to_anchor_y_q <= D'(anchor_y) - D'($signed(anchor_packet.vertex.y[0+:C]));
+        end
+      end
+      // The same from the vertex of the smallest 1/w, for the planes over it.
+      if (PLANES > AFFINE) begin : gen_base
+        logic                moves_over_w;
+        logic signed [C-1:0] base_x, base_y;
+        logic signed [D-1:0] to_base_x_q, to_base_y_q;
+        assign base_x       = base_q[1] ? anchor_packet.vertex.x[2*C+:C] :
+                              base_q[0] ? anchor_packet.vertex.x[C+:C] : anchor_packet.vertex.x[0+:C];
+        assign base_y       = base_q[1] ? anchor_packet.vertex.y[2*C+:C] :
+                              base_q[0] ? anchor_packet.vertex.y[C+:C] : anchor_packet.vertex.y[0+:C];
+        assign moves_over_w = at_q[MOVE+AFFINE+:PLANES-AFFINE] != '0;
+        assign to           = moves_over_w ? {to_base_y_q, to_base_x_q} : {to_anchor_y_q, to_anchor_x_q};
+        always_ff @(posedge clk_i) begin
+          if (moves[MOVE-1]) begin
+            to_base_x_q <= D'(anchor_x) - D'(base_x);
+            to_base_y_q <= D'(anchor_y) - D'(base_y);
+          end
+        end
+      end else begin : gen_vertex_0
+        assign to = {to_anchor_y_q, to_anchor_x_q};
+      end
+      assign sum  = start_value + move_q[0+:P] + move_q[(LANES-1)*P+:P];
+      assign sums = flows[SUM];
+    end else begin : gen_shared_values
+      // The way to the anchor from one corner after the other: what they need of the packet waits beside the parts.
+      localparam int WAY = MOVE - 1;
+      /* verilator lint_off UNUSEDSIGNAL */  // without planes over w only the first
+      logic [6*C-1:0]      corners_q;  // {y, x} of vertex 2, 1, 0
+      /* verilator lint_on UNUSEDSIGNAL */
+      logic [2*(C+1)-1:0]  anchor_q;   // {y, x}
+      logic [D-1:0]        to_q;
+      logic                is_y;
+      logic [C-1:0]        from_0, from;
+      logic [C:0]          anchor;
+      assign is_y   = is_y_in(at_q[WAY+:STEPS]);
+      assign from_0 = is_y ? corners_q[C+:C] : corners_q[0+:C];
+      assign anchor = is_y ? anchor_q[C+1+:C+1] : anchor_q[0+:C+1];
+      assign to     = to_q;
+      if (PLANES > AFFINE) begin : gen_base
+        logic       is_over_w;
+        logic [1:0] vertex_q, vertex;
+        logic [C-1:0] from_1, from_2;
+        assign from_1    = is_y ? corners_q[3*C+:C] : corners_q[2*C+:C];
+        assign from_2    = is_y ? corners_q[5*C+:C] : corners_q[4*C+:C];
+        assign is_over_w = at_q[WAY+CLOCKS*AFFINE+:CLOCKS*(PLANES-AFFINE)] != '0;
+        assign vertex    = vertex_q & {2{is_over_w}};
+        assign from      = vertex[1] ? from_2 : vertex[0] ? from_1 : from_0;
+        always_ff @(posedge clk_i) if (moves[WAY-1]) vertex_q <= base_q;
+      end else begin : gen_vertex_0
+        assign from = from_0;
+      end
+      always_ff @(posedge clk_i) begin
+        if (moves[WAY-1]) begin
+          corners_q <= {anchor_packet.vertex.y[2*C+:C], anchor_packet.vertex.x[2*C+:C],
+                        anchor_packet.vertex.y[C+:C], anchor_packet.vertex.x[C+:C],
+                        anchor_packet.vertex.y[0+:C], anchor_packet.vertex.x[0+:C]};
+          anchor_q  <= {anchor_y, anchor_x};
+        end
+        if (flows[WAY]) to_q <= D'($signed(anchor)) - D'($signed(from));
+      end
+      // One adder: what a plane starts with waits in the register of the sum.
+      logic         begins;
+      logic [P-1:0] rest_q;
+      always_comb begin
+        begins = 1'b0;
+        for (int i = 0; i < STEPS; i += CLOCKS) begins = begins | moves[START+i];
+      end
+      assign sum  = rest_q + move_q;
+      assign sums = flows[SUM] && is_y_in(at_q[SUM+:STEPS]);
+      always_ff @(posedge clk_i) begin
+        if (begins) rest_q <= start_value;
+        else if (flows[SUM]) rest_q <= sum;
+      end
+    end
+  endgenerate
   always_ff @(posedge clk_i) begin
-    if (moves[MOVE-1]) begin
-      to_anchor_x_q <= D'(anchor_x) - D'($signed(anchor_packet.vertex.x[0+:C]));
-      to_anchor_y_q <= D'(anchor_y) - D'($signed(anchor_packet.vertex.y[0+:C]));
-    end
-    if (flows[MOVE]) begin
-      move_x_q  <= $signed(step_x_q) * to_x;
-      move_y_q  <= $signed(step_y_q) * to_y;
-      steps_x_q <= {step_x_q, steps_x_q[PLANES*P-1:P]};
-      steps_y_q <= {step_y_q, steps_y_q[PLANES*P-1:P]};
-    end
-    if (flows[SUM]) sums_q <= {sum, sums_q[(PLANES-1)*P-1:P]};
+    if (flows[MOVE]) steps_q <= {step_q, steps_q[2*PLANES*P-1:LANES*P]};
+    if (sums) sums_q <= {sum, sums_q[(PLANES-1)*P-1:P]};
   end
 
   // ------------------------------------------------------------------------------------------------------------ packet
   /* verilator lint_off UNUSEDSIGNAL */  // most planes have fewer bits than the widest
-  logic [PLANES*P-1:0] setup_steps_x_q, setup_steps_y_q, setup_values_q;
+  logic [2*PLANES*P-1:0] setup_steps_q;
+  logic [PLANES*P-1:0]   setup_values_q;
   /* verilator lint_on UNUSEDSIGNAL */
   always_ff @(posedge clk_i) begin
     if (moves[OFFER-1]) begin
-      setup_steps_x_q <= steps_x_q;
-      setup_steps_y_q <= steps_y_q;
-      setup_values_q  <= {sum, sums_q};
+      setup_steps_q  <= steps_q;
+      setup_values_q <= {sum, sums_q};
     end
   end
 
@@ -510,13 +677,13 @@ module triangle_setup (
       localparam int AT = PLANE_AT[32*p+:32];
       localparam int CB = CODE_BITS_OF[32*p+:32];
       localparam int CODE = CODE_AT[32*p+:32];
-      localparam int RANGE = (LAST_PART - DELTA_PART - 1) * RANGES;
+      localparam int RANGE = (LAST_PART - RANGE_PART) * RANGES;
       assign made.value[AT+:B]         = setup_values_q[p*P+:B];
-      assign made.step_x[AT+:B]        = setup_steps_x_q[p*P+:B];
-      assign made.step_y[AT+:B]        = setup_steps_y_q[p*P+:B];
+      assign made.step_x[AT+:B]        = setup_steps_q[2*p*P+:B];
+      assign made.step_y[AT+:B]        = setup_steps_q[(2*p+1)*P+:B];
       if (p < AFFINE) begin : gen_range
-        assign made.range.low[CODE+:CB]  = ranges_q[RANGE+p*Z+:CB];
-        assign made.range.high[CODE+:CB] = ranges_q[RANGE+(PLANES+p)*Z+:CB];
+        assign made.range.low[CODE+:CB]  = ranges_q[RANGE+p*ZA+:CB];
+        assign made.range.high[CODE+:CB] = ranges_q[RANGE+(AFFINE+p)*ZA+:CB];
       end
     end
     if (raster_pkg::COORDINATES != 0) begin : gen_coordinates

@@ -328,6 +328,7 @@ TEST(Cosim, EveryMutantIsCaughtByTheRandomRun) {
   with_stencil.alpha_units = with_stencil.dither_units = 1;
   with_stencil.blend_lanes = 4;
   with_stencil.stencil_bits = 8;
+  with_stencil.setup_plane_clocks = 2;
   with_stencil.fog_units = with_stencil.shade_units = 1;
   Config with_samples = preset("embedded");
   with_samples.msaa_samples = 4;
@@ -357,7 +358,7 @@ TEST(Cosim, EveryMutantIsCaughtByTheRandomRun) {
     return (mutant.what.starts_with("texture") && is_caught(textured, mutant, 0.2, true)) ||
            (is_of_operations(mutant) && (is_caught(blended, mutant, 0.2) || is_caught(blended, mutant, 0))) ||
            ((is_of_operations(mutant) || mutant.what.starts_with("stencil") || mutant.what.starts_with("fog") ||
-             mutant.what.starts_with("light")) &&
+             mutant.what.starts_with("light") || mutant.what.starts_with("two clocks")) &&
             (is_caught(stencilled, mutant, 0.2) || is_caught(stencilled, mutant, 0))) ||
            is_caught(embedded, mutant, 0.2) || is_caught(tiny, mutant, 0.2) || is_caught(tiny, mutant, 0) ||
            is_caught(embedded, mutant, 0.2, true);

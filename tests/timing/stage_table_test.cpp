@@ -21,5 +21,21 @@ TEST(StageTable, TheOnesInThePipelinePageAreThoseOfTheCode) {
   }
 }
 
+// The figures of rtl_ref/stages/triangle_setup.sv: phases up to the offer, and as many triangles as parts.
+TEST(StageTable, TwoClocksAPlaneMakeASetupHalfAsOftenInFewerParts) {
+  const auto setup = [](const char* unit, int clocks) {
+    Config config = preset("embedded");
+    set(config, "texture.unit", unit);
+    config.setup_plane_clocks = clocks;
+    for (const StageRow& row : stage_table(config))
+      if (row.stage == Stage::triangle_setup) return row.latency + "; " + row.interval + "; " + row.holds;
+    return std::string("none");
+  };
+  EXPECT_EQ(setup("off", 1), "21; 4; 6");
+  EXPECT_EQ(setup("off", 2), "25; 8; 4");
+  EXPECT_EQ(setup("nearest", 1), "25; 7, of a state 1; 4, 8 states, 1 of either");
+  EXPECT_EQ(setup("nearest", 2), "32; 14, of a state 1; 3, 8 states, 1 of either");
+}
+
 }  // namespace
 }  // namespace halfplane

@@ -77,6 +77,15 @@ TEST(Config, RefusedAreATargetBeyondTheGuardBandAStampBeyondTheTileAndAnOddGuard
   EXPECT_NE(refusal(config).find("power of two"), std::string::npos);
 }
 
+TEST(Config, TheSerialSetupHasNoClocksOfAPlane) {
+  Config config = preset("small");
+  set(config, "setup.plane_clocks", "2");
+  EXPECT_NE(refusal(config).find("use setup.plane_clocks=1, or setup.kind=pipelined"), std::string::npos)
+      << refusal(config);
+  config.setup_kind = SetupKind::pipelined;
+  EXPECT_EQ(refusal(config), "");
+}
+
 TEST(Config, PlaneTooCoarseForOneLsbIsRefused) {
   Config config;
   config.tile_size = 32;
@@ -159,6 +168,7 @@ TEST(RasterPkg, CommittedPackagesAreWhatTheConfigurationYields) {
   stencilled.texture_unit = TextureUnitKind::nearest;
   stencilled.texture_lanes = 1;
   stencilled.stencil_bits = 8;
+  stencilled.setup_plane_clocks = 2;
   stencilled.fog_units = stencilled.shade_units = 1;
   EXPECT_EQ(file_text("presets/stencilled/raster_pkg.sv"), raster_pkg(stencilled));
   Config sampled;

@@ -17,7 +17,7 @@ class PipelinedTiming : public BackTiming {
   PipelinedTiming(const Config& config, const Widths& widths, const Stalls& stalls, MemoryTiming& memory,
                   const TimingParameters& parameters, TransferSink* sink, const MemorySettings& textures)
       : BackTiming(config, widths, stalls, memory, sink, textures),
-        setup_(widths, parameters.divide_bits),
+        setup_(config, widths, parameters.divide_bits),
         parts_(static_cast<std::size_t>(setup_.parts), Station(1, setup_.part, 0)),
         offer_setup_(1, setup_.last, 1),
         slots_(config.context_slots, 0, 2),

@@ -11,7 +11,7 @@ std::vector<StageRow> front_of(const Config& config, const Widths& widths, const
   const std::string stamps = text(static_cast<std::uint64_t>(parameters.stamp_queue));
   const auto number = [](int value) { return text(static_cast<std::uint64_t>(value)); };
   if (config.setup_kind == SetupKind::pipelined) {
-    const SetupCycles setup(widths, parameters.divide_bits);
+    const SetupCycles setup(config, widths, parameters.divide_bits);
     const int sort = PipelinedCycles::cull_sort, decide = PipelinedCycles::cull_decide;
     const std::string state = setup.has_state_lane ? ", of a state 1" : "";
     return {{Stage::cull, number(sort + decide), number(std::max(sort, decide)) + state, "2"},

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cstdint>
 
+#include "../../config.hpp"
 #include "../../timing/stalls.hpp"
 #include "../../widths.hpp"
 
@@ -44,17 +45,17 @@ struct TileVisitWork {
 
 /// The phases of the pipelined triangle_setup, a cycle each, and its parts, which hold a triangle each.
 struct SetupCycles {
-  int part;             ///< phases of a part
+  int part;             ///< phases of a part: the clocks of all planes
   int parts;            ///< but for the last, from which the setup is on offer
   int last;             ///< from entering the last one to the offer
   int latency;          ///< from the triangle in to the offer
   bool has_state_lane;  ///< states go beside the phases; what they and the triangles make waits in one more register
   static constexpr int kStates = 8;  ///< that wait there
-  SetupCycles(const Widths& widths, int divide_bits)
-      : part(widths.planes), has_state_lane(halfplane::has_state_lane(widths)) {
+  SetupCycles(const Config& config, const Widths& widths, int divide_bits)
+      : part(widths.planes * config.setup_plane_clocks), has_state_lane(halfplane::has_state_lane(widths)) {
     const int divide = (widths.reciprocal.bits + divide_bits) / divide_bits;  // a bit more, for the rounding
-    // The highest bit, the quotient; rounding, product, shift, move; then a plane's value in each.
-    const int offer = 1 + divide + 4 + widths.planes;
+    // The highest bit, the quotient; rounding, product, shift, move; then the values of all planes.
+    const int offer = 1 + divide + 4 + part;
     parts = offer / part;
     last = offer % part + 1;
     latency = offer + (has_state_lane ? 2 : 1);

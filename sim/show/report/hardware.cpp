@@ -159,6 +159,7 @@ std::vector<Trial> try_reliefs(const Scene& scene, const Hardware& hardware, con
   if (is_pipelined) {
     for (const char* key : {"queue.tile", "queue.stamp", "queue.fragment"}) trials.push_back({key, "16", 0});
     times("divide.bits", 2);
+    if (hardware.config.setup_plane_clocks != 1) trials.push_back({"setup.plane_clocks", "1", 0});
   } else {
     trials.push_back({"setup.kind", "pipelined", 0});
   }
