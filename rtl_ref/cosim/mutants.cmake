@@ -25,8 +25,8 @@ mutant(10 stages/triangle_setup.sv "range: the lower clamp overlooks the third v
   [=[is_1_below_0 ? (is_2_below_1 ? c2 : c1) : (is_2_below_0 ? c2 : c0)]=]
   [=[is_1_below_0 ? (is_2_below_1 ? c2 : c1) : c0]=])
 mutant(11 stages/triangle_setup.sv "carry: planes start half a local unit low"
-  [=[start_value + move_q[0+:P] + move_q[(LANES-1)*P+:P]]=]
-  [=[start_value + move_q[0+:P] + move_q[(LANES-1)*P+:P] - (P'(1) << (F - L - 1))]=])
+  [=[moved + move_q[(LANES-1)*P+:P]]=]
+  [=[moved + move_q[(LANES-1)*P+:P] - (P'(1) << (F - L - 1))]=])
 
 # coarse_raster
 mutant(12 stages/coarse_raster.sv "trivial reject: a tile whose best sample is on the edge is skipped"
@@ -706,8 +706,10 @@ mutant(462 stages/memory_port.sv "samples, compression: pixels lie as far apart 
 mutant(470 stages/triangle_setup.sv "two clocks: the way to the anchor is that along x in both"
   [=[is_y ? anchor_q[C+1+:C+1] : anchor_q[0+:C+1]]=] [=[anchor_q[0+:C+1]]=])
 mutant(471 stages/triangle_setup.sv "two clocks: no plane over w starts at the third vertex"
-  [=[(differs_over_w && base_q[1])]=] [=[1'b0]=])
+  [=[(differs_over_w && starts_at_2)]=] [=[1'b0]=])
 mutant(472 stages/triangle_setup.sv "two clocks: the upper clamp overlooks a third vertex above a second that is below the first"
   [=[is_1_below_0_q ? !difference[DC-1] : !is_2_below_1]=] [=[!is_1_below_0_q && !is_2_below_1]=])
 mutant(473 stages/triangle_setup.sv "two clocks, dropped stall: a plane begins whether its triangle goes on or not"
   [=[begins | moves[START+i]]=] [=[begins | at_q[START+i]]=])
+mutant(474 lib/long_product.sv "products: the last digit of the left number has no sign"
+  [=[i == LEFT_DIGITS - 1 && left[i*DIGIT+DIGIT]]=] [=[1'b0]=])

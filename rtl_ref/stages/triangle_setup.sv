@@ -47,9 +47,12 @@ module triangle_setup (
   localparam logic [32*PLANES-1:0] PLANE_AT = raster_pkg::PLANE_AT;
   localparam int CODES = raster_pkg::ALL_CODE_BITS;  // of a vertex
   localparam int T = raster_pkg::TRIANGLE_PACKET_BITS;
+  localparam int AFFINE = raster_pkg::AFFINE_PLANES;  // the planes behind them start at the vertex of the smallest 1/w
   // The parts have the width of the widest plane, whichever is at work.
   localparam int Z = raster_pkg::MAX_CODE_BITS;
   localparam int ZA = raster_pkg::MAX_AFFINE_CODE_BITS;  // of the planes that have a range
+  localparam int ZW = CODE_BITS_OF[32*(PLANES>AFFINE?AFFINE:0)+:32];  // of 1/w
+  localparam int ZC = ZW > ZA ? ZW : ZA;  // that are compared
   localparam int DC = raster_pkg::MAX_DELTA_BITS;
   localparam int N = raster_pkg::MAX_NUMERATOR_BITS;
   localparam int P = raster_pkg::MAX_PLANE_BITS;
@@ -58,23 +61,10 @@ module triangle_setup (
   localparam int R = raster_pkg::RECIPROCAL_BITS;
   localparam int F = raster_pkg::PLANE_FRACTION;
   localparam int L = raster_pkg::PLANE_LOCAL_GUARD_BITS;
-  localparam int AFFINE = raster_pkg::AFFINE_PLANES;  // the planes behind them start at the vertex of the smallest 1/w
   localparam int S = raster_pkg::GRID_BITS;
   localparam int TS = raster_pkg::TILE_SHIFT;
   localparam int PX = raster_pkg::PIXEL_X_BITS;
   localparam int PY = raster_pkg::PIXEL_Y_BITS;
-
-  // The vertex of the smallest 1/w, the first of several: 2, 1, none of the two.
-  /* verilator lint_off UNUSEDSIGNAL */
-  function automatic [1:0] base_of(input [3*CODES-1:0] code);
-    localparam int AT = raster_pkg::CODE_AT[32*(PLANES>AFFINE?AFFINE:0)+:32];
-    localparam int B = CODE_BITS_OF[32*(PLANES>AFFINE?AFFINE:0)+:32];
-    logic is_1_less, is_2_less;
-    is_1_less = code[CODES+AT+:B] < code[AT+:B];
-    is_2_less = code[2*CODES+AT+:B] < (is_1_less ? code[CODES+AT+:B] : code[AT+:B]);
-    base_of   = {is_2_less, is_1_less && !is_2_less};
-  endfunction
-  /* verilator lint_on UNUSEDSIGNAL */
 
   // ----------------------------------------------------------------------------------------------------------- phases
   // Phase 0 finds the highest bit. The quotient has one bit before the point and R after it, one more than is kept, for
@@ -96,6 +86,7 @@ module triangle_setup (
   localparam int DELTA = (NUMERATOR - CLOCKS) / CLOCKS * CLOCKS;
   localparam int DELTA_PART = DELTA / STEPS;      // and the next one
   localparam int DELTA_LEFT = NUMERATOR - CLOCKS - DELTA;  // 1 if they wait a cycle for that
+  localparam int BASE = MOVE + AFFINE - 1;  // with a cycle a plane: the vertex of the smallest 1/w counts from here on
   localparam int OFFER = SUM + STEPS;
   localparam int LAST_PART = OFFER / STEPS;
   localparam int PARTS = LAST_PART + 1;
@@ -132,13 +123,15 @@ module triangle_setup (
 
   /* verilator lint_off UNUSEDSIGNAL */  // what a part does not look at ends in the part before
   logic [PARTS*T-1:0] packets_q;  // of each part
-  raster_pkg::triangle_packet_t first_packet, delta_packet, behind_packet, corner_packet, anchor_packet, last_packet;
+  raster_pkg::triangle_packet_t first_packet, delta_packet, behind_packet, corner_packet, anchor_packet, base_packet,
+      last_packet;
   /* verilator lint_on UNUSEDSIGNAL */
   assign first_packet  = packets_q[0+:T];
   assign delta_packet  = packets_q[DELTA_PART*T+:T];
   assign behind_packet = packets_q[(DELTA_PART+1)*T+:T];  // of planes that come when the triangle has gone on
   assign corner_packet = packets_q[(CORNERS-1)/STEPS*T+:T];
   assign anchor_packet = packets_q[(MOVE-CLOCKS)/STEPS*T+:T];
+  assign base_packet   = packets_q[(PLANES>AFFINE?BASE/STEPS:0)*T+:T];
   assign last_packet   = packets_q[LAST_PART*T+:T];
   always_ff @(posedge clk_i) begin
     if (ready_q[0]) packets_q[0+:T] <= triangle_i;
@@ -263,9 +256,10 @@ module triangle_setup (
   localparam int CZ = Z + 1;  // with a sign
   logic [PLANES*CZ-1:0]        codes_0, codes_1, codes_2;
   logic [PLANES-1:0]           plane_differs;  // its differences are made
-  /* verilator lint_off UNUSEDSIGNAL */  // without planes over w nobody asks
-  logic [1:0]                  base, base_q;   // see base_of
-  logic                        differs_over_w;
+  // Planes over w start at the vertex of the smallest 1/w, the first of several: 2, 1, none of the two. Plane AFFINE is 1/w.
+  /* verilator lint_off UNUSEDSIGNAL */  // without such planes nobody asks
+  logic [1:0]                  base, base_q;
+  logic                        differs_over_w, differs_in_w;
   /* verilator lint_on UNUSEDSIGNAL */
   generate
     for (p = 0; p < PLANES; p++) begin : gen_codes
@@ -285,13 +279,13 @@ module triangle_setup (
       assign plane_differs[p]  = at_q[DELTA+CLOCKS*p+:CLOCKS] != '0;
     end
     if (PLANES > AFFINE) begin : gen_base
-      assign base           = base_of(delta_packet.vertex.code);
       assign differs_over_w = plane_differs[PLANES-1:AFFINE] != '0;
-      always_ff @(posedge clk_i) if (moves[DELTA]) base_q <= base;
+      assign differs_in_w   = plane_differs[AFFINE];
+      always_ff @(posedge clk_i) if (moves[DELTA+CLOCKS*AFFINE+CLOCKS-1]) base_q <= base;
     end else begin : gen_no_base
-      assign base           = 2'b00;
-      assign base_q         = 2'b00;
       assign differs_over_w = 1'b0;
+      assign differs_in_w   = 1'b0;
+      assign base_q         = 2'b00;
     end
   endgenerate
 
@@ -331,7 +325,8 @@ module triangle_setup (
     if (CLOCKS == 1) begin : gen_differences
       logic signed [CZ-1:0] c1, c2;
       logic signed [DC-1:0] ac, bc;
-      logic                 is_1_below_0, is_2_below_0, is_2_below_1;
+      logic                 is_1_below_0, is_2_below_0, is_2_below_1, is_1_less, is_2_less;
+      logic [1:0]           vertex;
       always_comb begin
         c1 = '0;
         c2 = '0;
@@ -346,11 +341,14 @@ module triangle_setup (
       assign bc           = $signed(DC'(c2) - DC'(c0));
       assign is_1_below_0 = ac[DC-1];
       assign is_2_below_0 = bc[DC-1];
-      assign is_2_below_1 = c2[ZA-1:0] < c1[ZA-1:0];
+      assign is_2_below_1 = c2[ZC-1:0] < c1[ZC-1:0];
       assign low          = is_1_below_0 ? (is_2_below_1 ? c2 : c1) : (is_2_below_0 ? c2 : c0);
       assign high         = is_1_below_0 ? (is_2_below_0 ? c0 : c2) : (is_2_below_1 ? c1 : c2);
-      assign start        = differs_over_w && base_q[1] ? c2 : differs_over_w && base_q[0] ? c1 :
-                            window_of(c0, plane_differs);
+      assign is_1_less    = is_1_below_0;
+      assign is_2_less    = is_1_below_0 ? is_2_below_1 : is_2_below_0;
+      assign base         = {is_2_less, is_1_less && !is_2_less};
+      assign vertex       = differs_in_w ? base : base_q & {2{differs_over_w}};
+      assign start        = vertex[1] ? c2 : vertex[0] ? c1 : window_of(c0, plane_differs);
       assign starts       = flows[DELTA];
       always_ff @(posedge clk_i) begin
         if (flows[DELTA]) begin
@@ -364,8 +362,8 @@ module triangle_setup (
       logic signed [DC-1:0] difference;
       logic [DC-1:0]        first_q, pair_a_q, pair_b_q;
       logic [CZ-1:0]        least_q, most_q;
-      logic [ZA-1:0]        code_1_q;
-      logic                 is_1_below_0_q, is_2_below_1, is_least, is_most, is_second;
+      logic [ZC-1:0]        code_1_q;
+      logic                 is_1_below_0_q, is_2_below_1, is_least, is_most, is_second, starts_at_1, starts_at_2;
       always_comb begin
         other     = '0;
         is_second = 1'b0;
@@ -376,13 +374,16 @@ module triangle_setup (
         end
       end
       assign difference   = $signed(DC'(other) - DC'(c0));
-      assign is_2_below_1 = other[ZA-1:0] < code_1_q;
+      assign is_2_below_1 = other[ZC-1:0] < code_1_q;
       assign is_least     = is_1_below_0_q ? is_2_below_1 : difference[DC-1];
       assign is_most      = is_1_below_0_q ? !difference[DC-1] : !is_2_below_1;
       assign low          = is_least ? other : least_q;
       assign high         = is_most ? other : most_q;
-      assign start        = differs_over_w && (is_second || base_q[0]) ? other : window_of(c0, plane_differs);
-      assign starts       = flows[DELTA] && (!is_second || (differs_over_w && base_q[1]));
+      assign base         = {is_least, is_1_below_0_q && !is_least};
+      assign starts_at_1  = differs_in_w ? difference[DC-1] : base_q[0];
+      assign starts_at_2  = differs_in_w ? is_least : base_q[1];
+      assign start        = differs_over_w && (is_second || starts_at_1) ? other : window_of(c0, plane_differs);
+      assign starts       = flows[DELTA] && (!is_second || (differs_over_w && starts_at_2));
       always_ff @(posedge clk_i) begin
         if (flows[DELTA]) begin
           if (is_second) begin
@@ -391,7 +392,7 @@ module triangle_setup (
           end else begin
             first_q        <= difference;
             is_1_below_0_q <= difference[DC-1];
-            code_1_q       <= other[ZA-1:0];
+            code_1_q       <= other[ZC-1:0];
             least_q        <= difference[DC-1] ? other : c0;
             most_q         <= difference[DC-1] ? c0 : other;
           end
@@ -521,10 +522,20 @@ module triangle_setup (
       /* verilator lint_off UNUSEDSIGNAL */  // planes live modulo 2^P
       logic signed [PRODUCT_BITS+LEFT-1:0] shifted;
       /* verilator lint_on UNUSEDSIGNAL */
+      logic [PRODUCT_BITS-1:0] product;
+      long_product #(
+          .LEFT        (N),
+          .RIGHT       (R),
+          .RIGHT_SIGNED(0),
+          .OUT         (PRODUCT_BITS)
+      ) u_product (
+          .left_i   (numerator[lane*N+:N]),
+          .right_i  (reciprocal_q),
+          .product_o(product)
+      );
       assign shifted = $signed({product_q[lane*PRODUCT_BITS+:PRODUCT_BITS], {LEFT{1'b0}}}) >>> shift_q;
       always_ff @(posedge clk_i) begin
-        if (flows[PRODUCT])
-          product_q[lane*PRODUCT_BITS+:PRODUCT_BITS] <= $signed(numerator[lane*N+:N]) * $signed({1'b0, reciprocal_q});
+        if (flows[PRODUCT]) product_q[lane*PRODUCT_BITS+:PRODUCT_BITS] <= product;
         if (flows[SHIFT]) step_q[lane*P+:P] <= shifted[1+:P] + P'(shifted[0]);
       end
     end
@@ -532,11 +543,15 @@ module triangle_setup (
 
   // ----------------------------------------------------------------------------------------------------------- values
   // The centre of pixel (T/2, T/2) of the first tile, subpixels.
-  logic signed [C:0]   anchor_x, anchor_y;
-  assign anchor_x = $signed((C + 1)'({anchor_packet.box.left[PX-1:TS], 1'b1, {(TS - 1) {1'b0}}}) << S) +
-                    $signed((C + 1)'(1 << (S - 1)));
-  assign anchor_y = $signed((C + 1)'({anchor_packet.box.top[PY-1:TS], 1'b1, {(TS - 1) {1'b0}}}) << S) +
-                    $signed((C + 1)'(1 << (S - 1)));
+  function automatic signed [C:0] centre_x(input [PX-TS-1:0] tile);
+    centre_x = $signed((C + 1)'({tile, 1'b1, {(TS - 1) {1'b0}}}) << S) + $signed((C + 1)'(1 << (S - 1)));
+  endfunction
+  function automatic signed [C:0] centre_y(input [PY-TS-1:0] tile);
+    centre_y = $signed((C + 1)'({tile, 1'b1, {(TS - 1) {1'b0}}}) << S) + $signed((C + 1)'(1 << (S - 1)));
+  endfunction
+  logic signed [C:0] anchor_x, anchor_y;
+  assign anchor_x = centre_x(anchor_packet.box.left[PX-1:TS]);
+  assign anchor_y = centre_y(anchor_packet.box.top[PY-1:TS]);
 
   // A plane at its vertex: its code with F fraction bits, half a unit of the local plane's last place, and the offset of its
   // window (LocalFormat), 2^(B-1), so that a tile's anchor is a shift.
@@ -557,8 +572,18 @@ module triangle_setup (
       assign sums_over_w = 1'b0;
     end
     for (lane = 0; lane < LANES; lane++) begin : gen_move
-      always_ff @(posedge clk_i)
-        if (flows[MOVE]) move_q[lane*P+:P] <= $signed(step_q[lane*P+:P]) * $signed(to[lane*D+:D]);
+      logic [P-1:0] move;
+      long_product #(
+          .LEFT        (P),
+          .RIGHT       (D),
+          .RIGHT_SIGNED(1),
+          .OUT         (P)
+      ) u_move (
+          .left_i   (step_q[lane*P+:P]),
+          .right_i  (to[lane*D+:D]),
+          .product_o(move)
+      );
+      always_ff @(posedge clk_i) if (flows[MOVE]) move_q[lane*P+:P] <= move;
     end
     if (CLOCKS == 1) begin : gen_values
       logic signed [D-1:0] to_anchor_x_q, to_anchor_y_q;
@@ -573,22 +598,32 @@ module triangle_setup (
         logic                moves_over_w;
         logic signed [C-1:0] base_x, base_y;
         logic signed [D-1:0] to_base_x_q, to_base_y_q;
-        assign base_x       = base_q[1] ? anchor_packet.vertex.x[2*C+:C] :
-                              base_q[0] ? anchor_packet.vertex.x[C+:C] : anchor_packet.vertex.x[0+:C];
-        assign base_y       = base_q[1] ? anchor_packet.vertex.y[2*C+:C] :
-                              base_q[0] ? anchor_packet.vertex.y[C+:C] : anchor_packet.vertex.y[0+:C];
+        assign base_x       = base_q[1] ? base_packet.vertex.x[2*C+:C] :
+                              base_q[0] ? base_packet.vertex.x[C+:C] : base_packet.vertex.x[0+:C];
+        assign base_y       = base_q[1] ? base_packet.vertex.y[2*C+:C] :
+                              base_q[0] ? base_packet.vertex.y[C+:C] : base_packet.vertex.y[0+:C];
         assign moves_over_w = at_q[MOVE+AFFINE+:PLANES-AFFINE] != '0;
         assign to           = moves_over_w ? {to_base_y_q, to_base_x_q} : {to_anchor_y_q, to_anchor_x_q};
         always_ff @(posedge clk_i) begin
-          if (moves[MOVE-1]) begin
-            to_base_x_q <= D'(anchor_x) - D'(base_x);
-            to_base_y_q <= D'(anchor_y) - D'(base_y);
+          if (moves[BASE]) begin
+            to_base_x_q <= D'(centre_x(base_packet.box.left[PX-1:TS])) - D'(base_x);
+            to_base_y_q <= D'(centre_y(base_packet.box.top[PY-1:TS])) - D'(base_y);
           end
         end
       end else begin : gen_vertex_0
         assign to = {to_anchor_y_q, to_anchor_x_q};
       end
-      assign sum  = start_value + move_q[0+:P] + move_q[(LANES-1)*P+:P];
+      // One sum behind the other: as one sum of three Yosys has full adders in front of a carry chain.
+      logic [P-1:0] moved;
+      add_or_subtract #(
+          .WIDTH(P)
+      ) u_moved (
+          .subtracts_i(1'b0),
+          .a_i        (start_value),
+          .b_i        (move_q[0+:P]),
+          .sum_o      (moved)
+      );
+      assign sum  = moved + move_q[(LANES-1)*P+:P];
       assign sums = flows[SUM];
     end else begin : gen_shared_values
       // The way to the anchor from one corner after the other: what they need of the packet waits beside the parts.
@@ -606,15 +641,14 @@ module triangle_setup (
       assign anchor = is_y ? anchor_q[C+1+:C+1] : anchor_q[0+:C+1];
       assign to     = to_q;
       if (PLANES > AFFINE) begin : gen_base
-        logic       is_over_w;
-        logic [1:0] vertex_q, vertex;
+        logic         is_over_w;
+        logic [1:0]   vertex;
         logic [C-1:0] from_1, from_2;
         assign from_1    = is_y ? corners_q[3*C+:C] : corners_q[2*C+:C];
         assign from_2    = is_y ? corners_q[5*C+:C] : corners_q[4*C+:C];
         assign is_over_w = at_q[WAY+CLOCKS*AFFINE+:CLOCKS*(PLANES-AFFINE)] != '0;
-        assign vertex    = vertex_q & {2{is_over_w}};
+        assign vertex    = base_q & {2{is_over_w}};
         assign from      = vertex[1] ? from_2 : vertex[0] ? from_1 : from_0;
-        always_ff @(posedge clk_i) if (moves[WAY-1]) vertex_q <= base_q;
       end else begin : gen_vertex_0
         assign from = from_0;
       end

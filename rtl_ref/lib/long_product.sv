@@ -1,0 +1,91 @@
+// Product of two numbers that are longer than a multiplier takes, digits of 17 bits at a time, added one behind the other.
+//
+// Yosys splits a long product itself, but it adds three numbers by full adders in front of a carry chain, three places a bit
+// where two chains take two. Where the right number has no sign the products of a digit of its with every other digit of the
+// left one lie beside each other, and are one number.
+module long_product #(
+    parameter int LEFT = 18,
+    parameter int RIGHT = 18,
+    parameter bit RIGHT_SIGNED = 1,
+    parameter int OUT = 36
+) (
+    input  logic [LEFT-1:0]  left_i,    // signed
+    input  logic [RIGHT-1:0] right_i,
+    output logic [OUT-1:0]   product_o  // modulo 2^OUT, of which it may be shorter
+);
+
+  localparam int DIGIT = 17;
+  // The last digit keeps the sign.
+  localparam int LEFT_DIGITS = LEFT > DIGIT + 1 ? (LEFT - 2) / DIGIT + 1 : 1;
+  localparam int RIGHT_DIGITS = RIGHT > (RIGHT_SIGNED ? DIGIT + 1 : DIGIT) ?
+                                (RIGHT - (RIGHT_SIGNED ? 2 : 1)) / DIGIT + 1 : 1;
+  localparam int PARTS = LEFT_DIGITS * RIGHT_DIGITS;
+
+  // Both with a sign, as long as all digits.
+  localparam int LEFT_LONG = LEFT_DIGITS * DIGIT + 1;
+  localparam int RIGHT_LONG = RIGHT_DIGITS * DIGIT + 1;
+  logic signed [LEFT_LONG-1:0]  left;
+  logic signed [RIGHT_LONG-1:0] right;
+  assign left  = LEFT_LONG'($signed(left_i));
+  assign right = RIGHT_SIGNED ? RIGHT_LONG'($signed(right_i)) : RIGHT_LONG'(right_i);
+
+  localparam int PART = 2 * DIGIT + 2;
+  logic [PARTS*PART-1:0] parts;
+  genvar i, j, b;
+  generate
+    for (j = 0; j < RIGHT_DIGITS; j++) begin : gen_right
+      localparam bit HAS_SIGN = RIGHT_SIGNED && j == RIGHT_DIGITS - 1;
+      logic signed [DIGIT:0] right_digit;
+      assign right_digit = {HAS_SIGN && right[j*DIGIT+DIGIT], right[j*DIGIT+:DIGIT]};
+      for (i = 0; i < LEFT_DIGITS; i++) begin : gen_left
+        localparam int N = j * LEFT_DIGITS + i;
+        localparam int AT = DIGIT * (i + j);
+        logic signed [DIGIT:0]  left_digit;
+        logic signed [PART-1:0] part;
+        logic [OUT-1:0]         sum;     // with it
+        /* verilator lint_off UNUSEDSIGNAL */
+        logic [OUT-1:0]         so_far;  // without it
+        /* verilator lint_on UNUSEDSIGNAL */
+        assign left_digit = {i == LEFT_DIGITS - 1 && left[i*DIGIT+DIGIT], left[i*DIGIT+:DIGIT]};
+        assign part       = left_digit * right_digit;
+        assign parts[N*PART+:PART] = part;
+        if (i > 0) begin : gen_behind
+          assign so_far = gen_left[i-1].sum;
+        end else if (j > 0) begin : gen_below
+          assign so_far = gen_right[j-1].gen_left[LEFT_DIGITS-1].sum;
+        end else begin : gen_zero
+          assign so_far = '0;
+        end
+        if ((i > 1 && !HAS_SIGN) || AT >= OUT) begin : gen_no_term  // stands above another one, or above all
+          assign sum = so_far;
+        end else begin : gen_term
+          logic [OUT-AT-1:0] term;
+          for (b = AT; b < OUT; b++) begin : gen_bit
+            localparam int ABOVE = HAS_SIGN ? 0 : (b - AT) / (2 * DIGIT);
+            localparam int LAST = (LEFT_DIGITS - 1 - i) / 2;
+            localparam int WHICH = 2 * (ABOVE < LAST ? ABOVE : LAST);
+            localparam int BIT = b - AT - DIGIT * WHICH;
+            assign term[b-AT] = parts[(N+WHICH)*PART+(BIT<PART?BIT:PART-1)];
+          end
+          if (N == 0) begin : gen_first
+            assign sum = term;
+          end else begin : gen_sum
+            if (AT > 0) begin : gen_low
+              assign sum[AT-1:0] = so_far[AT-1:0];
+            end
+            add_or_subtract #(
+                .WIDTH(OUT - AT)
+            ) u_sum (
+                .subtracts_i(1'b0),
+                .a_i        (so_far[OUT-1:AT]),
+                .b_i        (term),
+                .sum_o      (sum[OUT-1:AT])
+            );
+          end
+        end
+      end
+    end
+  endgenerate
+  assign product_o = gen_right[RIGHT_DIGITS-1].gen_left[LEFT_DIGITS-1].sum;
+
+endmodule
