@@ -12,11 +12,11 @@ namespace {
 /// What shapes time and gates and no pixel. Points that differ in nothing else, and whose hardware drew the same bits, have
 /// the same errors, which are then found once.
 constexpr std::array<std::string_view, 26> kNoPixel{
-    "stamp.size",       "key.primitive_bits", "context.slots",      "hiz.bits",      "hiz.lag",
-    "cache.kind",       "cache.lines",        "cache.queue",        "cache.victims", "frame.clears",
-    "frame.order",      "frame.store",        "setup.kind",         "texture.unit",  "texture.cache_kb",
-    "texture.queue",    "blend.lanes",        "lines.unit",         "counters.unit", "counters.bits",
-    "memory.port_bits", "reciprocal.kind",    "perspective.colors", "texture.lanes", "texture.ways",
+    "stamp.size",        "key.primitive_bits", "context.slots",      "hiz.bits",      "hiz.lag",
+    "cache.kind",        "cache.lines",        "cache.queue",        "cache.victims", "frame.clears",
+    "frame.order",       "frame.store",        "setup.kind",         "texture.unit",  "texture.cache_kb",
+    "texture.queue",     "blend.lanes",        "lines.unit",         "counters.unit", "counters.bits",
+    "memory.port_bits",  "reciprocal.kind",    "perspective.colors", "texture.lanes", "texture.ways",
     "setup.plane_clocks"};
 
 SpaceJson number_or_null(const std::optional<double>& value) { return value ? SpaceJson(*value) : SpaceJson(nullptr); }
