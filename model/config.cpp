@@ -350,9 +350,6 @@ void validate(const Config& config) {
   }
   refuse_unless(config.texture_lanes == 1 || config.texture_lanes == 4, "texture.lanes must be 1 or 4");
   if (config.texture_lanes != 1) {
-    refuse_unless(config.texture_unit != TextureUnitKind::trilinear,
-                  "four lanes of a texture unit have one level: use texture.unit=bilinear or nearest, or "
-                  "texture.lanes=1");
     refuse_unless(config.stamp_size >= 2, "four lanes of a texture unit take 2x2 samples of a stamp: raise stamp.size");
   }
   refuse_unless(

@@ -14,7 +14,8 @@
 // Of four lanes the live samples of 2x2 go together. Their texels come from 16 banks, by the two lowest bits of column and row,
 // and their lines from four, by the lowest bits of the blocks'. So a clock gives those of samples that agree: along either axis
 // no two of their texels are in one bank unless in one block, nor their blocks. Where not all agree, the first of those that are
-// left takes with it, in order, each that agrees with all before, and the others follow.
+// left takes with it, in order, each that agrees with all before, and the others follow. With levels samples agree only on one
+// level; those between two go once more behind all others, on their upper ones.
 //
 // Colours over w are divided here, by the reciprocal that the coordinates have; what the texture is combined with is the
 // quotient. A triangle says so by itself.
@@ -83,7 +84,7 @@ struct TextureSettings {
   bool has_linear = false;  ///< FILTER: four texels a sample, lines in four banks
   bool has_levels = false;  ///< likewise: more than level 0; has_linear as well
   int line_bits = 104;      ///< of a TextureLines in a token
-  int lanes = 1;            ///< LANES: samples that go together, 1 or 4; those without levels
+  int lanes = 1;            ///< LANES: samples that go together, 1 or 4
   int stamp_size = 2;       ///< of several lanes: samples along a stamp's side
   int ways = 1;             ///< places in the cache where a line may lie: 1, or 2 where lines are in banks
   /// Lines in four banks, asked for one by one.
@@ -102,8 +103,9 @@ struct TextureLookup {
   std::size_t sample = 0;  ///< of the stamp: the first that wants it
   bool ends = true;        ///< the last of the lines that are looked up together
   bool continues = false;  ///< and more come of the sample, of another level, or of those that go together
-  int samples = 0;         ///< of the last: samples that are through
-  int hits = 0;            ///< of those, whose lines were all there
+  bool turns = false;  ///< of those that go together: and what comes of them looks at upper levels, this at lower ones
+  int samples = 0;     ///< of the last: samples that are through
+  int hits = 0;        ///< of those, whose lines were all there
 };
 
 /// What samples made of the cache, each counted once however many levels it looked at.
@@ -347,7 +349,7 @@ class TextureUnit {
     };
     const Sums lower = look_up_on(levels.lower);
     Sums upper = lower;
-    if (filter.is_between && levels.part != 0 && levels.upper != levels.lower) {
+    if (has_two(filter)) {
       lookups_.back().continues = true;
       upper = look_up_on(levels.upper);
     }
@@ -355,50 +357,98 @@ class TextureUnit {
     last.samples = last.hits = 1;
     for (std::size_t n = first; n < lookups_.size(); ++n)
       if (lookups_[n].is_miss) last.hits = 0;
-    Texel texel{};
-    for (std::size_t c = 0; c < 4; ++c)
-      texel[c] = filter.is_between ? blend_levels(round_shift(lower[c], 8), round_shift(upper[c], 8), levels.part)
-                                   : static_cast<std::uint8_t>(round_shift(lower[c], 16));
-    colors[s] = combined(colors[s], texel, state_.combine, has_alpha(state_.format));
+    colors[s] = combined(colors[s], texel_of(filter, lower, upper), state_.combine, has_alpha(state_.format));
   }
 
-  /// Samples of a square, those together that agree.
+  /// Samples of a square, those together that agree: all on their only or lower level, then those between two on the upper.
   template <class Read>
   void take_group(SampleMask group, std::span<const TextureSample> samples, const TextureFrame& frame,
                   std::span<Texel> colors, Read&& read) {
-    std::array<TexturePlace, kMaxSamples> place;
-    std::array<Texels, kMaxSamples> texels;
+    GroupPlaces at;
+    SampleMask between;
     group.for_each([&](std::size_t s) {
-      place[s] = place_of(samples[s], frame);
-      texels[s] = texels_of(place[s], state_.is_linear, 0);
+      at.place[s] = place_of(samples[s], frame);
+      at.filter[s] = filter_at(samples[s]);
+      if (has_two(at.filter[s])) between.set(static_cast<int>(s));
     });
-    for (SampleMask left = group; left.any();) {
+    for (const bool is_upper : {false, true}) {
+      SampleMask left = is_upper ? between : group;
+      left.for_each([&](std::size_t s) {
+        const LevelPair& levels = at.filter[s].levels;
+        at.level[s] = is_upper ? levels.upper : levels.lower;
+        at.texels[s] = texels_of(at.place[s], at.filter[s].is_linear, at.level[s]);
+      });
+      while (left.any()) {
+        const SampleMask pass = at.agreeing(left);
+        left = SampleMask(left.bits() & ~pass.bits());
+        take_pass(at, pass, is_upper ? SampleMask{} : SampleMask(pass.bits() & between.bits()), colors, read);
+        lookups_.back().turns = !is_upper && between.any() && !left.any();
+        lookups_.back().continues = left.any() || lookups_.back().turns;
+      }
+    }
+  }
+
+  /// What the samples of a square look at; by their numbers in their stamp, which has 4x4 at most.
+  struct GroupPlaces {
+    std::array<TexturePlace, 16> place;
+    std::array<SampleFilter, 16> filter;
+    std::array<int, 16> level{};  ///< the one of the two that is looked at
+    std::array<Texels, 16> texels;
+    std::array<Sums, 16> lower{};
+    SampleMask lacked;  ///< those between two levels whose lower one had not all lines there
+
+    /// Of `left` the first, and each that agrees with all before.
+    [[nodiscard]] SampleMask agreeing(SampleMask left) const {
       SampleMask pass;
       left.for_each([&](std::size_t s) {
         bool joins = true;
         pass.for_each([&](std::size_t other) {
-          joins = joins && agree(texels[s][0], texels[other][0]) && agree(texels[s][1], texels[other][1]);
+          joins = joins && level[s] == level[other] && agree(texels[s][0], texels[other][0]) &&
+                  agree(texels[s][1], texels[other][1]);
         });
         if (joins) pass.set(static_cast<int>(s));
       });
-      const std::size_t first = lookups_.size();
-      look_up(
-          0, pass, [&](std::size_t s) { return texels[s]; }, read);
-      TextureLookup& last = lookups_.back();
-      left = SampleMask(left.bits() & ~pass.bits());
-      last.continues = left.any();
-      last.samples = last.hits = pass.count();
-      pass.for_each([&](std::size_t s) {
-        bool lacks = false;
-        for (std::size_t n = first; n < lookups_.size(); ++n)
-          lacks = lacks || (lookups_[n].is_miss && wants(texels[s], lookups_[n].bank));
-        if (lacks) --last.hits;
-        const Sums sum = sums(place[s], state_.is_linear, 0);
-        Texel texel{};
-        for (std::size_t c = 0; c < 4; ++c) texel[c] = static_cast<std::uint8_t>(round_shift(sum[c], 16));
-        colors[s] = combined(colors[s], texel, state_.combine, has_alpha(state_.format));
-      });
+      return pass;
     }
+  };
+
+  /// Samples that agree, of which `waiting` look at another level later.
+  template <class Read>
+  void take_pass(GroupPlaces& at, SampleMask pass, SampleMask waiting, std::span<Texel> colors, Read&& read) {
+    const std::size_t first = lookups_.size();
+    look_up(
+        at.level[static_cast<std::size_t>(pass.first())], pass, [&](std::size_t s) { return at.texels[s]; }, read);
+    TextureLookup& last = lookups_.back();
+    pass.for_each([&](std::size_t s) {
+      bool lacks = at.lacked.has(s);
+      for (std::size_t n = first; n < lookups_.size(); ++n)
+        lacks = lacks || (lookups_[n].is_miss && wants(at.texels[s], lookups_[n].bank));
+      const SampleFilter& filter = at.filter[s];
+      const Sums sum = sums(at.place[s], filter.is_linear, at.level[s]);
+      if (waiting.has(s)) {
+        at.lower[s] = sum;
+        if (lacks) at.lacked.set(static_cast<int>(s));
+        return;
+      }
+      ++last.samples;
+      if (!lacks) ++last.hits;
+      colors[s] = combined(colors[s], texel_of(filter, has_two(filter) ? at.lower[s] : sum, sum), state_.combine,
+                           has_alpha(state_.format));
+    });
+  }
+
+  /// Whether the upper level says anything of its own.
+  [[nodiscard]] static bool has_two(const SampleFilter& filter) {
+    return filter.is_between && filter.levels.part != 0 && filter.levels.upper != filter.levels.lower;
+  }
+  /// What a filter gives of its sums.
+  [[nodiscard]] static Texel texel_of(const SampleFilter& filter, const Sums& lower, const Sums& upper) {
+    Texel texel{};
+    for (std::size_t c = 0; c < 4; ++c)
+      texel[c] = filter.is_between
+                     ? blend_levels(round_shift(lower[c], 8), round_shift(upper[c], 8), filter.levels.part)
+                     : static_cast<std::uint8_t>(round_shift(lower[c], 16));
+    return texel;
   }
 
   /// Whether one of those texels lies in a block of that bank.

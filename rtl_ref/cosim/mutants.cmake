@@ -541,16 +541,26 @@ mutant(449 lib/root_table.sv "light: the root has the line of the other octave"
   [=[!zeros[0]]=] [=[zeros[0]]=])
 
 # Four lanes of a texture unit.
-mutant(340 stages/texture_lanes.sv "lanes: two texels of one bank go together"
+mutant(340 lib/texture_agree.sv "lanes: two texels of one bank go together"
   [=[a[1:0] != b[1:0]]=] [=[1'b1]=])
-mutant(341 stages/texture_lanes.sv "lanes: two lines of one bank go together"
+mutant(341 lib/texture_agree.sv "lanes: two lines of one bank go together"
   [=[a[2] != b[2]]=] [=[1'b1]=])
 mutant(342 stages/texture_lanes.sv "lanes: a pass begins again with samples that have been"
   [=[done_q | joins]=] [=[joins]=])
 mutant(343 stages/texture_lanes.sv "lanes: counter: a sample finds its lines only where all beside it do"
-  [=[(t_uses[4*lane+:4] & lacks) == '0]=] [=[lacks == '0]=])
-mutant(344 stages/texture_unit.sv "lanes: the last pass colours all samples"
-  [=[e_lanes_q[i%LANES]]=] [=[1'b1]=])
+  [=[(t_uses[4*l+:4] & lacks) == '0]=] [=[lacks == '0]=])
+mutant(344 stages/texture_unit.sv "lanes: a pass colours what it brings only where that is the first sample, too"
+  [=[e_lanes_q[i%LANES]]=] [=[e_lanes_q[0]]=])
+mutant(463 lib/texture_sides.sv "texture: levels of oblong textures begin where those of square ones do"
+  [=[(21'h155555 << new_odds)]=] [=[21'h155555]=])
+mutant(464 stages/texture_rounds.sv "lanes: the second round is on the first one's levels"
+  [=[level_i[4*l+:4] + 4'(is_second_q)]=] [=[level_i[4*l+:4]]=])
+mutant(465 stages/texture_rounds.sv "lanes: samples of two levels go together"
+  [=[wrapped_level_q[4*l+:4] == wrapped_level_q[4*m+:4]]=] [=[1'b1]=])
+mutant(466 stages/texture_lanes.sv "lanes: of upper levels there is as much as of the first sample's"
+  [=[sum_level_part[8*l+:8]]=] [=[sum_level_part[7:0]]=])
+mutant(467 stages/texture_lanes.sv "lanes: a sum that waits for its upper level is replaced by another sample's"
+  [=[sum_joins[l]]=] [=[1'b1]=])
 
 # Two ways of the texture cache.
 mutant(345 stages/texture_tags.sv "texture, two ways: the line that was looked up last goes"

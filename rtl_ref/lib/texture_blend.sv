@@ -1,6 +1,7 @@
 // Texture blend: what a linear filter gave on one level becomes a texel, or waits for what it gives on the next, and both become
 // one. One register. A sum that is blended keeps 8 fraction bits, and is rounded a second time, as is one of two levels that has
-// the other's weight. Specification: blend_levels of model/stages/texture_filter.hpp.
+// the other's weight. Of several lanes each has its own, and all of them move as one; a pass brings sums to some.
+// Specification: blend_levels of model/stages/texture_filter.hpp.
 module texture_blend #(
     parameter int TAIL = 1  // bits that go along
 ) (
@@ -9,9 +10,10 @@ module texture_blend #(
 
     input  logic            valid_i,
     output logic            ready_o,
+    input  logic            takes_i,       // it brings a sum to this sample
     input  logic [95:0]     sum_i,         // 24 bits a channel, 16 of them behind the point
     input  logic            is_between_i,  // two levels are asked for
-    input  logic            is_first_i,    // of two that come
+    input  logic            is_first_i,    // of two that come; of several lanes, of all that it brings sums to
     input  logic            is_second_i,
     input  logic [7:0]      part_i,        // of the second, in 256ths; 0 where there is none
     input  logic [TAIL-1:0] tail_i,
@@ -53,7 +55,7 @@ module texture_blend #(
       /* verilator lint_on UNUSEDSIGNAL */
       assign rounded    = sum_i[24*n+8+:16] + 16'(sum_i[24*n+7]);
       always_ff @(posedge clk_i)
-        if (valid_i && ready_o) begin
+        if (valid_i && ready_o && takes_i) begin
           if (!is_second_i) lower_q[24*n+:24] <= is_between_i ? {rounded, 8'd0} : sum_i[24*n+:24];
           upper_q[16*n+:16] <= rounded;
         end

@@ -1,21 +1,25 @@
-// Texture lanes: the texels of four samples at a time, nearest or linear, on one level.
+// Texture lanes: the texels of four samples at a time, nearest or linear, on one level or between two.
 //
 //   groups -> [queue] -> passes of samples that agree -> texture_tags -> texels of 16 banks -> texture_filter, four -> texels
+//                  '-> texture_rounds -^ (FILTER 2)                      texture_blend, four (FILTER 2) -^
 //
 // Texels lie in 16 banks, by the two lowest bits of their columns and rows; a bank gives one texel a clock, of whichever of the
 // (up to four) lines. Lines lie in four, by the lowest bits of their blocks'. So of each axis a pass has one line for each lowest
 // bit of a block, and each two lowest bits of a texel say which of the two. Samples agree where that holds along both axes; those
-// of a group that do not go one pass behind the other. What a stamp shows at one texel a pixel, or larger, agrees.
+// of a group that do not go one pass behind the other. What a stamp shows at one texel a pixel, or larger, agrees. With levels
+// they agree on one alone, and a group goes by again on the upper ones: what the lower gave of a sample waits in its lane's blend.
 // Specification: take_group() of model/stages/texture_unit.hpp; times: model/engines/cycle/texture_timing.hpp.
 module texture_lanes #(
-    parameter int LINEAR = 0,
+    parameter int FILTER = 0,           // 0 nearest, 1 linear as well, 2 levels as well
+    parameter int REFERENCE_BITS = 24,  // of FILTER 2
     parameter int SIDE_BITS = 12,
     parameter int AHEAD = 16,      // groups
     parameter int LINES = 64,      // a power of two, at least 16
     parameter int WAYS = 1,        // 1 or 2
     parameter int PORT_BITS = 64,  // 16, 32 or 64
     parameter int IN_FLIGHT = 32,  // passes that wait; a power of two
-    parameter int TAIL = 1         // bits that go along with a group
+    parameter int TAIL = 1,        // bits that go along with a group
+    parameter int PLACE = REFERENCE_BITS + 8  // derived; not to be set
 ) (
     input logic clk_i,
     input logic rst_ni,
@@ -24,19 +28,30 @@ module texture_lanes #(
     // Groups of samples, of which some live: texels, x lowest; no more than AHEAD between here and pops_o
     input  logic                     valid_i,
     input  logic [3:0]               live_i,
+    /* verilator lint_off UNUSEDSIGNAL */  // texels without levels, coordinates with them
     input  logic [4*2*SIDE_BITS-1:0] texel_i,
-    /* verilator lint_off UNUSEDSIGNAL */  // LINEAR 0
     input  logic [4*2*SIDE_BITS-1:0] next_i,
     input  logic [4*16-1:0]          part_i,
+    input  logic [4*2*PLACE-1:0]     coordinate_i,
+    input  logic [15:0]              level_i,
+    input  logic [31:0]              level_part_i,
+    input  logic [3:0]               is_linear_i,
+    input  logic [3:0]               is_between_i,
     /* verilator lint_on UNUSEDSIGNAL */
     input  logic [TAIL-1:0]          tail_i,
     output logic                     pops_o,  // one has left the queue
 
     // The texture: stays while samples are in front of the tags
+    /* verilator lint_off UNUSEDSIGNAL */
+    input logic        sets_state_i,
+    input logic [7:0]  log2_size_i,
+    input logic [3:0]  wrap_i,
+    input logic [3:0]  row_i,
+    input logic        shares_i,
+    /* verilator lint_on UNUSEDSIGNAL */
     input logic [2:0]  format_i,
     input logic [25:0] base_i,
     input logic [1:0]  size_i,
-    input logic [3:0]  row_i,
 
     input  logic drop_i,
     output logic tags_are_empty_o,
@@ -58,7 +73,7 @@ module texture_lanes #(
     output logic                 answer_ready_o,
     input  logic [PORT_BITS-1:0] answer_data_i,
 
-    output logic [2:0] sample_o,  // so many have been looked up
+    output logic [2:0] sample_o,  // so many have been looked up, on all of their levels
     output logic [2:0] hit_o,     // and of so many all lines were there
     output logic       miss_o,    // a line has been asked for
     output logic       idle_o
@@ -70,82 +85,152 @@ module texture_lanes #(
   localparam int BANK_X = LINE_X - 1;
   localparam int BANK_Y = LINE_Y - 1;
   localparam int BLOCK = SIDE_BITS - 2;
-  localparam int PARTS = (LINEAR != 0) ? 64 : 1;  // bits of what a filter is told
+  localparam int LEVELS = (FILTER == 2) ? 1 : 0;
+  localparam int LINEAR = (FILTER != 0) ? 1 : 0;
+  localparam int LEVEL_PARTS = 32 + 4 + 1;  // of the upper levels, whether there are two, whether this is the second
+  localparam int PARTS = (LEVELS != 0) ? 64 + LEVEL_PARTS : (LINEAR != 0) ? 64 : 1;  // bits of what a filter is told
   localparam int ENDS = (LINEAR != 0) ? 2 : 1;    // texels of a sample along an axis
   localparam int TEXELS = 4 * ENDS * 2 * SIDE_BITS;
 
-  function automatic [0:0] agree(input [SIDE_BITS-1:0] a, input [SIDE_BITS-1:0] b);
-    agree = a[SIDE_BITS-1:2] == b[SIDE_BITS-1:2] || (a[2] != b[2] && a[1:0] != b[1:0]);
-  endfunction
-
-  // ------------------------------------------------------------------------------------------- which agree, as they come
-  // Texel e of lane l along axis d: entering[((l*ENDS + e)*2 + d)*SIDE_BITS+:SIDE_BITS].
-  logic [TEXELS-1:0] entering, waiting;
-  logic [5:0]        agrees, agree_q;  // 0 and 1, 0 and 2, 1 and 2, 0 and 3, 1 and 3, 2 and 3
-  genvar l, m, e, f, d;
-  generate
-    for (l = 0; l < 4; l++) begin : gen_entering
-      assign entering[l*ENDS*2*SIDE_BITS+:2*SIDE_BITS] = texel_i[l*2*SIDE_BITS+:2*SIDE_BITS];
-      if (LINEAR != 0) begin : gen_next
-        assign entering[(l*ENDS+1)*2*SIDE_BITS+:2*SIDE_BITS] = next_i[l*2*SIDE_BITS+:2*SIDE_BITS];
-      end
-    end
-    for (m = 1; m < 4; m++) begin : gen_second
-      for (l = 0; l < m; l++) begin : gen_first
-        logic [2*ENDS*ENDS-1:0] agree_at;
-        for (e = 0; e < ENDS; e++) begin : gen_end
-          for (f = 0; f < ENDS; f++) begin : gen_other_end
-            for (d = 0; d < 2; d++) begin : gen_axis
-              assign agree_at[(e*ENDS+f)*2+d] = agree(entering[((l*ENDS+e)*2+d)*SIDE_BITS+:SIDE_BITS],
-                                                      entering[((m*ENDS+f)*2+d)*SIDE_BITS+:SIDE_BITS]);
-            end
-          end
-        end
-        assign agrees[m*(m-1)/2+l] = &agree_at;
-      end
-    end
-  endgenerate
-
-  logic                         found_valid, p_moves, p_ready, ends;
-  logic [3:0]                   live, done_q, left, joins;
-  logic [PARTS-1:0]             parts, entering_parts;
-  logic [TAIL-1:0]              found_tail;
+  // ----------------------------------------------------------------------------- groups wait, or rounds of them; which agree
+  // Texel e of lane l along axis d: waiting[((l*ENDS + e)*2 + d)*SIDE_BITS+:SIDE_BITS].
+  logic [TEXELS-1:0] waiting;
+  logic [5:0]        agree_q;
+  logic              found_valid, found_moves, found_ends, p_moves, p_ready, ends, rounds_are_empty;
+  logic [3:0]        live, waits, done_q, left, joins;  // of those that live the ones whose upper level comes later
+  logic [1:0]        lowest;
+  logic [PARTS-1:0]  parts;
+  logic [TAIL-1:0]   found_tail;
+  logic [23:0]       offset;
+  logic [3:0]        row;
+  logic              is_odd;
   /* verilator lint_off UNUSEDSIGNAL */  // there is room: those ahead are counted
-  logic                         found_has_room;
+  logic              found_has_room;
   /* verilator lint_on UNUSEDSIGNAL */
+  genvar l, e;
   generate
-    if (LINEAR != 0) begin : gen_parts
-      assign entering_parts = part_i;
-    end else begin : gen_no_parts
-      assign entering_parts = '0;
+    if (LEVELS != 0) begin : gen_rounds
+      logic               group_valid, is_second;
+      logic [8*PLACE-1:0] group_coordinate;
+      logic [15:0]        group_level;
+      logic [31:0]        group_part, level_part;
+      logic [3:0]         group_is_linear, group_is_between, group_live, is_between;
+      logic [TAIL-1:0]    group_tail;
+      logic [63:0]        part;
+      fifo #(
+          .WIDTH(8 * PLACE + 16 + 32 + 12 + TAIL),
+          .DEPTH(AHEAD)
+      ) u_groups (
+          .clk_i,
+          .rst_ni,
+          .valid_i,
+          .ready_o(found_has_room),
+          .data_i ({coordinate_i, level_i, level_part_i, is_linear_i, is_between_i, live_i, tail_i}),
+          .valid_o(group_valid),
+          .ready_i(pops_o),
+          .data_o ({group_coordinate, group_level, group_part, group_is_linear, group_is_between, group_live, group_tail})
+      );
+      texture_rounds #(
+          .REFERENCE_BITS(REFERENCE_BITS),
+          .SIDE_BITS     (SIDE_BITS),
+          .TAIL          (TAIL)
+      ) u_rounds (
+          .clk_i,
+          .rst_ni,
+          .valid_i     (group_valid),
+          .ready_o     (pops_o),
+          .live_i      (group_live),
+          .coordinate_i(group_coordinate),
+          .level_i     (group_level),
+          .part_i      (group_part),
+          .is_linear_i (group_is_linear),
+          .is_between_i(group_is_between),
+          .tail_i      (group_tail),
+          .sets_state_i,
+          .log2_size_i,
+          .wrap_i,
+          .size_i,
+          .valid_o     (found_valid),
+          .ready_i     (found_moves),
+          .live_o      (live),
+          .waits_o     (waits),
+          .ends_o      (found_ends),
+          .is_second_o (is_second),
+          .texel_o     (waiting),
+          .part_o      (part),
+          .agree_o     (agree_q),
+          .level_part_o(level_part),
+          .is_between_o(is_between),
+          .tail_o      (found_tail),
+          .first_i     (lowest),
+          .offset_o    (offset),
+          .row_o       (row),
+          .is_odd_o    (is_odd),
+          .is_empty_o  (rounds_are_empty)
+      );
+      assign parts = {level_part, is_between, is_second, part};
+    end else begin : gen_groups
+      logic [TEXELS-1:0] entering;
+      logic [5:0]        agree;
+      logic [PARTS-1:0]  entering_parts;
+      for (l = 0; l < 4; l++) begin : gen_entering
+        assign entering[l*ENDS*2*SIDE_BITS+:2*SIDE_BITS] = texel_i[l*2*SIDE_BITS+:2*SIDE_BITS];
+        if (LINEAR != 0) begin : gen_next
+          assign entering[(l*ENDS+1)*2*SIDE_BITS+:2*SIDE_BITS] = next_i[l*2*SIDE_BITS+:2*SIDE_BITS];
+        end
+      end
+      if (LINEAR != 0) begin : gen_parts
+        assign entering_parts = part_i;
+      end else begin : gen_no_parts
+        assign entering_parts = '0;
+      end
+      texture_agree #(
+          .ENDS     (ENDS),
+          .SIDE_BITS(SIDE_BITS)
+      ) u_agree (
+          .texel_i(entering),
+          .agree_o(agree)
+      );
+      fifo #(
+          .WIDTH(TEXELS + PARTS + 6 + 4 + TAIL),
+          .DEPTH(AHEAD)
+      ) u_groups (
+          .clk_i,
+          .rst_ni,
+          .valid_i,
+          .ready_o(found_has_room),
+          .data_i ({entering, entering_parts, agree, live_i, tail_i}),
+          .valid_o(found_valid),
+          .ready_i(pops_o),
+          .data_o ({waiting, parts, agree_q, live, found_tail})
+      );
+      assign pops_o           = found_moves;
+      assign waits            = '0;
+      assign found_ends       = 1'b1;
+      assign offset           = '0;
+      assign row              = row_i;
+      assign is_odd           = 1'b0;
+      assign rounds_are_empty = 1'b1;
+      /* verilator lint_off UNUSEDSIGNAL */
+      logic unused;
+      assign unused = &{lowest, 1'b0};
+      /* verilator lint_on UNUSEDSIGNAL */
     end
   endgenerate
-  fifo #(
-      .WIDTH(TEXELS + PARTS + 6 + 4 + TAIL),
-      .DEPTH(AHEAD)
-  ) u_groups (
-      .clk_i,
-      .rst_ni,
-      .valid_i,
-      .ready_o(found_has_room),
-      .data_i ({entering, entering_parts, agrees, live_i, tail_i}),
-      .valid_o(found_valid),
-      .ready_i(pops_o),
-      .data_o ({waiting, parts, agree_q, live, found_tail})
-  );
 
   // -------------------------------------------------------------------------------------------------------- the next pass
   // The first that is left takes with it, in order, each that agrees with all before.
   assign left     = live & ~done_q;
+  assign lowest   = left[0] ? 2'd0 : left[1] ? 2'd1 : left[2] ? 2'd2 : 2'd3;
   always_comb begin
     joins = left;
     for (int second = 1; second < 4; second++)
       for (int first = 0; first < second; first++)
         joins[second] = joins[second] && (agree_q[second*(second-1)/2+first] || !joins[first]);
   end
-  assign ends     = joins == left;
-  assign p_moves  = found_valid && p_ready;
-  assign pops_o   = p_moves && ends;
+  assign ends        = joins == left;
+  assign p_moves     = found_valid && p_ready;
+  assign found_moves = p_moves && ends;
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) done_q <= '0;
     else if (p_moves) done_q <= ends ? '0 : done_q | joins;
@@ -195,10 +280,14 @@ module texture_lanes #(
   logic [7:0]           p_odd_q;
   logic [3:0]           p_used_q, p_joins_q;
   logic [4*4*ENDS-1:0]  p_low_q;
-  logic [PARTS-1:0] p_parts_q;
+  logic [3:0]           p_waits_q;
+  logic [PARTS-1:0]     p_parts_q;
   logic [TAIL-1:0]      p_tail_q;
+  logic [23:0]          p_offset_q;
+  logic [3:0]           p_row_q;
+  logic                 p_is_odd_q;
   assign p_ready          = !p_valid_q || tags_ready;
-  assign tags_are_empty_o = tags_are_empty && !p_valid_q;
+  assign tags_are_empty_o = tags_are_empty && !p_valid_q && rounds_are_empty;
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) p_valid_q <= 1'b0;
     else p_valid_q <= p_moves || (p_valid_q && !tags_ready);
@@ -209,18 +298,25 @@ module texture_lanes #(
       p_odd_q   <= odd;
       p_used_q  <= used;
       p_joins_q <= joins;
-      p_ends_q  <= ends;
+      p_waits_q <= joins & waits;
+      p_ends_q  <= ends && found_ends;
       p_low_q   <= low;
       p_parts_q <= parts;
       p_tail_q  <= found_tail;
+      if (LEVELS != 0) begin
+        p_offset_q <= offset;
+        p_row_q    <= row;
+        p_is_odd_q <= is_odd;
+      end
     end
 
   // ----------------------------------------------------------------------------------------------------------------- tags
   localparam int WAY_AT = (LINE % 2 == 0 ? LINE : LINE_X) - 1;  // of a line's number the bit that is the way: texture_tags.sv
   localparam logic [LINE-1:0] FIRST = ~(LINE'(WAYS - 1) << WAY_AT);
   localparam int PLACES = 2 * (BANK_X + BANK_Y);  // of the lines, what says where in their bank they lie
-  localparam int SHAPE = 8 + 16 * ENDS + 4;     // odd, low, joins
-  localparam int REST = 1 + 3 + PARTS + TAIL;
+  localparam int SHAPE = 8 + 16 * ENDS + 4 + 4;   // odd, low, joins, waits
+  localparam int REST = 1 + 3 + TAIL;
+  localparam logic [BANK_Y-1:0] HALF = BANK_Y'(WAYS == 1) << (BANK_Y - 1);  // of a bank, for odd levels
   logic               fills_word, tags_are_idle, looked_up, found, reads;
   logic [LINE-1:0]    fill_line;
   logic [1:0]         fill_size;
@@ -231,24 +327,26 @@ module texture_lanes #(
   logic [3:0]         found_ways;
   logic [7:0]         t_odd, odd_at;
   logic [16*ENDS-1:0] t_low, low_at;
-  logic [3:0]         t_joins, joins_at;
+  logic [3:0]         t_joins, joins_at, t_waits, waits_at;
   logic               ends_at;
   logic [2:0]         format;
-  logic [PARTS-1:0] parts_at;
+  logic [PARTS-1:0]   parts_at;
   logic [TAIL-1:0]    tail;
   /* verilator lint_off UNUSEDSIGNAL */
   logic [PLACES-1:0]  t_places;
+  logic [PARTS-1:0]   t_parts;
   logic [REST-1:0]    t_rest;
   /* verilator lint_on UNUSEDSIGNAL */
-  logic               d_valid_q, d_ready;
-  assign p_places = {p_block_q[3*BLOCK+1+:BANK_Y], p_block_q[2*BLOCK+1+:BANK_Y],
-                     p_block_q[BLOCK+1+:BANK_X], p_block_q[1+:BANK_X]};
+  logic               d_valid_q, d_ready, shares;
+  assign shares   = LEVELS != 0 && shares_i;
+  assign p_places = {({p_block_q[3*BLOCK+1+:BANK_Y], p_block_q[2*BLOCK+1+:BANK_Y]} & ~{2{HALF & {BANK_Y{shares}}}}) |
+                     {2{HALF & {BANK_Y{shares && p_is_odd_q}}}}, p_block_q[BLOCK+1+:BANK_X], p_block_q[1+:BANK_X]};
   texture_tags #(
       .LINES    (LINES),
       .WAYS     (WAYS),
       .PORT_BITS(PORT_BITS),
       .IN_FLIGHT(IN_FLIGHT),
-      .CARRIED  (PLACES + SHAPE + REST),
+      .CARRIED  (PLACES + SHAPE + PARTS + REST),
       .SIDE_BITS(SIDE_BITS)
   ) u_tags (
       .clk_i,
@@ -259,22 +357,22 @@ module texture_lanes #(
       .used_i             (p_used_q),
       .block_x_i          (p_block_q[2*BLOCK-1:0]),
       .block_y_i          (p_block_q[4*BLOCK-1:2*BLOCK]),
-      .carried_i          ({p_places, p_odd_q, p_low_q, p_joins_q, p_ends_q, format_i, p_parts_q, p_tail_q}),
-      .offset_i           (24'd0),
-      .row_i,
-      .is_odd_i           (1'b0),
+      .carried_i          ({p_places, p_odd_q, p_low_q, p_joins_q, p_waits_q, p_parts_q, p_ends_q, format_i, p_tail_q}),
+      .offset_i           (LEVELS != 0 ? p_offset_q : 24'd0),
+      .row_i              (LEVELS != 0 ? p_row_q : row_i),
+      .is_odd_i           (LEVELS != 0 && p_is_odd_q),
       .base_i,
       .size_i,
-      .shares_i           (1'b0),
+      .shares_i           (shares),
       .drop_i,
       .tags_are_empty_o   (tags_are_empty),
       .looked_up_o        (looked_up),
       .lacks_o            (lacks),
-      .looked_up_carried_o({t_places, t_odd, t_low, t_joins, t_rest}),
+      .looked_up_carried_o({t_places, t_odd, t_low, t_joins, t_waits, t_parts, t_rest}),
       .miss_o,
       .found_valid_o      (found),
       .found_ready_i      (d_ready),
-      .found_carried_o    ({places, odd_at, low_at, joins_at, ends_at, format, parts_at, tail}),
+      .found_carried_o    ({places, odd_at, low_at, joins_at, waits_at, parts_at, ends_at, format, tail}),
       .found_ways_o       (found_ways),
       .word_valid_o       (fills_word),
       .word_o             (fill_word),
@@ -292,7 +390,7 @@ module texture_lanes #(
   );
   assign reads = found && d_ready;
 
-  // A sample has found all of its lines where none is lacking in a bank that it uses.
+  // A sample has found all of its lines where none is lacking in a bank that it uses; between two levels on neither.
   logic [4*2*ENDS-1:0] t_odd_texel;
   logic [15:0]         t_uses;
   generate
@@ -310,21 +408,39 @@ module texture_lanes #(
       );
     end
   endgenerate
+  logic [3:0] finds, misses_first_q;
+  logic       is_second_look;
+  generate
+    for (l = 0; l < 4; l++) begin : gen_finds
+      assign finds[l] = (t_uses[4*l+:4] & lacks) == '0;
+      if (LEVELS != 0) begin : gen_first
+        always_ff @(posedge clk_i) if (looked_up && t_waits[l]) misses_first_q[l] <= !finds[l];
+      end else begin : gen_only
+        assign misses_first_q[l] = 1'b0;
+      end
+    end
+    if (LEVELS != 0) begin : gen_second_look
+      assign is_second_look = t_parts[64];
+    end else begin : gen_only_look
+      assign is_second_look = 1'b0;
+    end
+  endgenerate
   always_comb begin
     sample_o = '0;
     hit_o    = '0;
     for (int lane = 0; lane < 4; lane++) begin
-      sample_o = sample_o + 3'(looked_up && t_joins[lane]);
-      hit_o    = hit_o + 3'(looked_up && t_joins[lane] && (t_uses[4*lane+:4] & lacks) == '0);
+      sample_o = sample_o + 3'(looked_up && t_joins[lane] && !t_waits[lane]);
+      hit_o    = hit_o + 3'(looked_up && t_joins[lane] && !t_waits[lane] && finds[lane] &&
+                            !(is_second_look && misses_first_q[lane]));
     end
   end
 
   // --------------------------------------------------------------------------------------------------------------- texels
   logic [16*ENDS-1:0] d_low_q;
-  logic [3:0]         d_joins_q;
+  logic [3:0]         d_joins_q, d_waits_q;
   logic               d_ends_q;
   logic [2:0]         d_format_q;
-  logic [PARTS-1:0] d_parts_q;
+  logic [PARTS-1:0]   d_parts_q;
   logic [TAIL-1:0]    d_tail_q;
   /* verilator lint_off UNUSEDSIGNAL */  // all four go together
   logic [3:0]         filter_ready;
@@ -338,6 +454,7 @@ module texture_lanes #(
     if (reads) begin
       d_low_q    <= low_at;
       d_joins_q  <= joins_at;
+      d_waits_q  <= waits_at;
       d_ends_q   <= ends_at;
       d_format_q <= format;
       d_parts_q  <= parts_at;
@@ -380,7 +497,29 @@ module texture_lanes #(
   endgenerate
 
   // Of each lane the texels of its even and its odd column and row, then in their order. Of one texel a sample one alone.
+  localparam int ALONG = 4 + 1 + TAIL + ((LEVELS != 0) ? 4 + LEVEL_PARTS : 0);  // through the filters, beside the first lane
+  /* verilator lint_off UNUSEDSIGNAL */  // of FILTER 0; all four go together
+  logic [ALONG-1:0] along, filtered;
+  logic [3:0]       sum_ready;
+  /* verilator lint_on UNUSEDSIGNAL */
+  /* verilator lint_off UNUSEDSIGNAL */  // of FILTER 2
+  logic [3:0]       sum_joins, sum_leaves, sum_is_between;  // of them those whose upper level does not come later
+  logic [31:0]      sum_level_part;
+  logic             sum_is_second;
+  logic [TAIL:0]    sum_rest;
+  /* verilator lint_on UNUSEDSIGNAL */
   generate
+    if (LEVELS != 0) begin : gen_along_levels
+      assign along = {d_parts_q[64+:LEVEL_PARTS], d_joins_q, d_joins_q & ~d_waits_q, d_ends_q, d_tail_q};
+      assign {sum_level_part, sum_is_between, sum_is_second, sum_joins, sum_leaves, sum_rest} = filtered;
+    end else begin : gen_along_level
+      assign along = {d_joins_q, d_ends_q, d_tail_q};
+      assign {sum_level_part, sum_is_between, sum_is_second, sum_joins, sum_leaves, sum_rest} = '0;
+      /* verilator lint_off UNUSEDSIGNAL */
+      logic unused;
+      assign unused = &d_waits_q;
+      /* verilator lint_on UNUSEDSIGNAL */
+    end
     for (l = 0; l < 4; l++) begin : gen_lane
       logic [127:0] corner, banks;  // first row, second row; even row, odd row
       logic [3:0]   first, second;  // lowest bits of the first texel and of the next, x lowest
@@ -407,15 +546,16 @@ module texture_lanes #(
                                              (is_odd_x ? banks[32+:32] : banks[0+:32]);
       end
       if (LINEAR != 0) begin : gen_linear
-        localparam int ALONG = (l == 0) ? 5 + TAIL : 1;
-        logic [ALONG-1:0] along, filtered;
+        localparam int BESIDE = (l == 0) ? ALONG : 1;
+        logic [BESIDE-1:0] beside, came;
         /* verilator lint_off UNUSEDSIGNAL */
-        logic [95:0]      sum;
-        logic             valid;
+        logic [95:0]       sum;
+        logic [31:0]       sum_texel;
+        logic              sum_valid;
         /* verilator lint_on UNUSEDSIGNAL */
         texture_filter #(
-            .LEVELS(0),
-            .TAIL  (ALONG)
+            .LEVELS(LEVELS),
+            .TAIL  (BESIDE)
         ) u_filter (
             .clk_i,
             .rst_ni,
@@ -424,23 +564,66 @@ module texture_lanes #(
             .code_i  (corner),
             .format_i(d_format_q),
             .part_i  (d_parts_q[16*l+:16]),
-            .tail_i  (along),
-            .valid_o (valid),
-            .ready_i (texel_ready_i),
+            .tail_i  (beside),
+            .valid_o (sum_valid),
+            .ready_i (sum_ready[0]),
             .sum_o   (sum),
-            .texel_o (texel_o[32*l+:32]),
-            .tail_o  (filtered)
+            .texel_o (sum_texel),
+            .tail_o  (came)
         );
         if (l == 0) begin : gen_along
-          assign along         = {d_joins_q, d_ends_q, d_tail_q};
-          assign texel_valid_o = valid;
-          assign {texel_lanes_o, texel_ends_o, texel_tail_o} = filtered;
+          assign beside   = along;
+          assign filtered = came;
         end else begin : gen_beside
-          assign along = 1'b0;
+          assign beside = 1'b0;
           /* verilator lint_off UNUSEDSIGNAL */
           logic unused;
-          assign unused = filtered[0];
+          assign unused = came[0];
           /* verilator lint_on UNUSEDSIGNAL */
+        end
+        if (LEVELS != 0) begin : gen_blend
+          localparam int KEPT = (l == 0) ? 5 + TAIL : 1;
+          logic [KEPT-1:0] kept, leaving;
+          /* verilator lint_off UNUSEDSIGNAL */
+          logic            texel_valid;
+          /* verilator lint_on UNUSEDSIGNAL */
+          texture_blend #(
+              .TAIL(KEPT)
+          ) u_blend (
+              .clk_i,
+              .rst_ni,
+              .valid_i     (sum_valid),
+              .ready_o     (sum_ready[l]),
+              .takes_i     (sum_joins[l]),
+              .sum_i       (sum),
+              .is_between_i(sum_is_between[l]),
+              .is_first_i  (sum_leaves == '0),
+              .is_second_i (sum_is_second),
+              .part_i      (sum_level_part[8*l+:8]),
+              .tail_i      (kept),
+              .valid_o     (texel_valid),
+              .ready_i     (texel_ready_i),
+              .texel_o     (texel_o[32*l+:32]),
+              .tail_o      (leaving)
+          );
+          if (l == 0) begin : gen_kept
+            assign kept          = {sum_leaves, sum_rest};
+            assign texel_valid_o = texel_valid;
+            assign {texel_lanes_o, texel_ends_o, texel_tail_o} = leaving;
+          end else begin : gen_not_kept
+            assign kept = 1'b0;
+            /* verilator lint_off UNUSEDSIGNAL */
+            logic unused;
+            assign unused = leaving[0];
+            /* verilator lint_on UNUSEDSIGNAL */
+          end
+        end else begin : gen_level
+          assign texel_o[32*l+:32] = sum_texel;
+          assign sum_ready[l]      = texel_ready_i;
+          if (l == 0) begin : gen_texels
+            assign texel_valid_o = sum_valid;
+            assign {texel_lanes_o, texel_ends_o, texel_tail_o} = filtered;
+          end
         end
       end else begin : gen_nearest
         texture_decode u_decode (
@@ -449,11 +632,13 @@ module texture_lanes #(
             .texel_o (texel_o[32*l+:32])
         );
         assign filter_ready[l] = texel_ready_i;
+        assign sum_ready[l]    = texel_ready_i;
         /* verilator lint_off UNUSEDSIGNAL */
         logic unused;
         assign unused = &{corner, d_parts_q};
         /* verilator lint_on UNUSEDSIGNAL */
         if (l == 0) begin : gen_along
+          assign filtered      = along;
           assign texel_valid_o = d_valid_q;
           assign texel_lanes_o = d_joins_q;
           assign texel_ends_o  = d_ends_q;
@@ -463,6 +648,6 @@ module texture_lanes #(
     end
   endgenerate
 
-  assign idle_o = !p_valid_q && tags_are_idle && !d_valid_q;
+  assign idle_o = rounds_are_empty && !p_valid_q && tags_are_idle && !d_valid_q;
 
 endmodule

@@ -50,33 +50,23 @@ module texture_levels #(
 );
 
   // --------------------------------------------------------------------------------------------------------- the texture
-  function automatic [3:0] blocks_of(input [3:0] log2_size);  // log2
-    blocks_of = log2_size[3:1] == '0 ? 4'd0 : log2_size - 4'd2;
-  endfunction
   function automatic [3:0] less(input [3:0] from, input [3:0] by);  // not below 0
     less = from > by ? from - by : 4'd0;
   endfunction
 
   logic [7:0]  log2_size_q;
-  logic [3:0]  new_wide, new_high, wide_q, high_q, first_of_one_q;  // log2 of blocks along the sides; the first level of one
-  logic [3:0]  new_longer, new_shorter, new_odds;
-  logic [4:0]  new_blocks;
+  logic [3:0]  wide_q, high_q, first_of_one_q;  // log2 of blocks along the sides; the first level of one
   logic [20:0] ones_q;
-  assign new_wide    = blocks_of(log2_size_i[3:0]);
-  assign new_high    = blocks_of(log2_size_i[7:4]);
-  assign new_longer  = new_wide > new_high ? new_wide : new_high;
-  assign new_shorter = new_wide > new_high ? new_high : new_wide;
-  assign new_odds    = new_longer - new_shorter;
-  assign new_blocks  = {1'b0, new_wide} + {1'b0, new_high};
-  always_ff @(posedge clk_i)
-    if (sets_state_i) begin
-      log2_size_q    <= log2_size_i;
-      wide_q         <= new_wide;
-      high_q         <= new_high;
-      first_of_one_q <= new_longer;
-      // From that of level 0 down every second bit, as long as both sides are halved; then every one.
-      ones_q         <= ((21'h155555 << new_odds) | ~(21'h1ffffe << new_odds)) & ~(21'h1ffffe << new_blocks);
-    end
+  texture_sides u_sides (
+      .clk_i,
+      .sets_state_i,
+      .log2_size_i,
+      .log2_size_o   (log2_size_q),
+      .wide_o        (wide_q),
+      .high_o        (high_q),
+      .first_of_one_o(first_of_one_q),
+      .ones_o        (ones_q)
+  );
 
   // ------------------------------------------------------------------------------------------------------------ two registers
   logic               is_second_q, has_second, scales, wraps, scaled_valid_q, wrapped_valid_q;

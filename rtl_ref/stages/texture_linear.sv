@@ -176,6 +176,7 @@ module texture_linear #(
           .rst_ni,
           .valid_i     (sum_valid),
           .ready_o     (sum_ready),
+          .takes_i     (1'b1),
           .sum_i       (sum),
           .is_between_i(sum_is_between),
           .is_first_i  (sum_is_first),

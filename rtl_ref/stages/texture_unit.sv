@@ -13,7 +13,7 @@
 // Specification: model/stages/texture_unit.hpp; the times are those of model/engines/cycle/texture_timing.hpp.
 module texture_unit #(
     parameter int SAMPLES = 4,          // of a stamp; a power of two
-    parameter int LANES = 1,            // samples that go together, 1 or 4; 4 without levels
+    parameter int LANES = 1,            // samples that go together, 1 or 4
     parameter int Q_BITS = 27,          // of q in a tile, without sign; at most 32
     parameter int P_BITS = 28,          // of u and v over w in a tile, with their signs
     parameter int MANTISSA = 18,        // k
@@ -309,13 +309,14 @@ module texture_unit #(
   logic [LANES*2*SIDE_BITS-1:0] next;
   logic [LANES*16-1:0]        part;
   logic [LANES*(2*REFERENCE_BITS+16)-1:0] place;  // of levels, as far as the level
-  logic [2*REFERENCE_BITS+15:0] coordinate;
+  logic [LANES*(2*REFERENCE_BITS+16)-1:0] coordinate;
   logic [LANES*5-1:0]         exponent;
   logic [LANES*(MANTISSA-1)-1:0] reciprocal;
   logic [LANES*8-1:0]         below;
-  logic [7:0]                 level_part;
-  logic [3:0]                 level;
-  logic                       level_is_linear, level_is_between, shares;
+  logic [LANES*8-1:0]         level_part;
+  logic [LANES*4-1:0]         level;
+  logic [LANES-1:0]           level_is_linear, level_is_between;
+  logic                       shares;
   /* verilator lint_on UNUSEDSIGNAL */
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) valid_q <= '0;
@@ -390,19 +391,21 @@ module texture_unit #(
 
   generate
     if (FILTER == 2) begin : gen_level_of_detail
+      localparam int ROW = (LANES == 1) ? SIDE : SIDE - 1;  // log2 of the groups in a row of the stamp
       logic [PIXEL-1:0]             x_q, y_q;
-      logic [2*REFERENCE_BITS+15:0] place_1_q, place_2_q;
+      logic [LANES*(2*REFERENCE_BITS+16)-1:0] place_1_q, place_2_q;
       assign moves_in = waits && waiting_token[2];
       always_ff @(posedge clk_i) begin
-        x_q       <= waiting[COORDINATES+:PIXEL] | (PIXEL'(group) & PIXEL'((1 << SIDE) - 1));
-        y_q       <= waiting[COORDINATES+PIXEL+:PIXEL] | (PIXEL'(group) >> SIDE);
+        x_q       <= waiting[COORDINATES+:PIXEL] | (PIXEL'(group) & PIXEL'((1 << ROW) - 1)) << (SIDE - ROW);
+        y_q       <= waiting[COORDINATES+PIXEL+:PIXEL] | (PIXEL'(group) >> ROW) << (SIDE - ROW);
         place_1_q <= place;
         place_2_q <= place_1_q;
       end
       assign coordinate = place_2_q;
       level_of_detail #(
           .PART (WORD),
-          .PIXEL(PIXEL)
+          .PIXEL(PIXEL),
+          .LANES(LANES)
       ) u_level_of_detail (
           .clk_i,
           .moves_in_i     (moves_in),
@@ -425,8 +428,8 @@ module texture_unit #(
       assign coordinate       = '0;
       assign level            = '0;
       assign level_part       = '0;
-      assign level_is_linear  = 1'b0;
-      assign level_is_between = 1'b0;
+      assign level_is_linear  = '0;
+      assign level_is_between = '0;
       assign shares           = 1'b0;
     end
   endgenerate
@@ -441,14 +444,15 @@ module texture_unit #(
   generate
     if (LANES != 1) begin : gen_lanes
       texture_lanes #(
-          .LINEAR   (FILTER),
-          .SIDE_BITS(SIDE_BITS),
-          .AHEAD    (AHEAD),
-          .LINES    (LINES),
-          .WAYS     (WAYS),
-          .PORT_BITS(PORT_BITS),
-          .IN_FLIGHT(IN_FLIGHT),
-          .TAIL     (TAIL)
+          .FILTER        (FILTER),
+          .REFERENCE_BITS(REFERENCE_BITS),
+          .SIDE_BITS     (SIDE_BITS),
+          .AHEAD         (AHEAD),
+          .LINES         (LINES),
+          .WAYS          (WAYS),
+          .PORT_BITS     (PORT_BITS),
+          .IN_FLIGHT     (IN_FLIGHT),
+          .TAIL          (TAIL)
       ) u_texture_lanes (
           .clk_i,
           .rst_ni,
@@ -458,12 +462,21 @@ module texture_unit #(
           .texel_i         (texel),
           .next_i          (next),
           .part_i          (part),
+          .coordinate_i    (coordinate),
+          .level_i         (level),
+          .level_part_i    (level_part),
+          .is_linear_i     (level_is_linear),
+          .is_between_i    (level_is_between),
           .tail_i          (tail_q[AHEAD_TAIL*CLOCKS+:TAIL]),
           .pops_o          (leaves_queue),
+          .sets_state_i    (sets_state),
+          .log2_size_i     (waiting[18:11]),
+          .wrap_i          (wrap_q),
+          .row_i           (row_q),
+          .shares_i        (shares),
           .format_i        (format_q),
           .base_i          (base_q),
           .size_i          (size_q),
-          .row_i           (row_q),
           .drop_i          (drops),
           .tags_are_empty_o(tags_are_empty),
           .texel_valid_o   (texel_valid),

@@ -319,7 +319,7 @@ TEST(Cosim, EveryMutantIsCaughtByTheRandomRun) {
   with_textures.perspective_colors = 1;
   with_textures.texture_ways = 2;
   Config with_operations = preset("embedded");
-  with_operations.texture_unit = TextureUnitKind::bilinear;
+  with_operations.texture_unit = TextureUnitKind::trilinear;
   with_operations.texture_lanes = 4;
   with_operations.alpha_units = with_operations.dither_units = 1;
   with_operations.blend_lanes = 4;

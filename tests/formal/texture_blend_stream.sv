@@ -11,6 +11,7 @@
     if (valid_i && ready_o && is_first_i) first_value_q <= sum_i[23:8] + 16'(sum_i[7]);
   end
   always_comb begin
+    assume (takes_i);  // of one lane
     if (valid_i) begin
       assume (is_second_i == first_waits_q && !(is_first_i && is_second_i));  // texture_levels_stream
       assume (!(is_first_i || is_second_i) || is_between_i);

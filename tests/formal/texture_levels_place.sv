@@ -1,6 +1,9 @@
 
   // Where a level begins: the sum of the blocks of all larger ones, and a block more behind the first of one; whatever the
   // sides, 2^0 to 2^12 texels, and the level. The image lies below it, so that the two are or'ed.
+  function automatic [3:0] blocks_of(input [3:0] log2_size);  // log2
+    blocks_of = log2_size[3:1] == '0 ? 4'd0 : log2_size - 4'd2;
+  endfunction
   (* anyconst *) logic [3:0] any_wide, any_high;
   logic       is_set_q;
   logic [3:0] scaled_level_q;

@@ -144,6 +144,36 @@ TEST(TextureRate, FourLanesTakeAStampAClock) {
       }
 }
 
+// With levels a stamp takes a clock where its samples look at one, and two where they look at two, up to more than a texel a
+// pixel. What is lacking there is lines: they come at four beats each.
+TEST(TextureRate, FourLanesBetweenLevels) {
+  Config config;
+  config.memory_port_bits = 64;
+  for (const TextureMin min : {TextureMin::linear_mipmap_nearest, TextureMin::linear_mipmap_linear})
+    for (const Lod lod : {-256, 0, 64, 128, 192})
+      for (const double degrees : {0.0, 30.0}) {
+        const bool is_between = min == TextureMin::linear_mipmap_linear && lod > 0;
+        std::array<Rate, 2> of_lanes{};
+        for (const int lanes : {1, 4}) {
+          TextureSettings settings{64, 64, lanes == 1 ? 16 : 32, 32, true, true};
+          settings.ways = 2;
+          settings.lanes = lanes;
+          const auto memory = make_memory({MemoryKind::ddr3, 0, 50}, config);
+          of_lanes[lanes == 1 ? 0 : 1] = rate(TextureFormat::rgb565, *memory, settings, degrees, 8, min, lod);
+        }
+        const auto& [one, four] = of_lanes;
+        EXPECT_EQ(one.passes, is_between ? 8 : 4);
+        if (lod <= 128) {
+          EXPECT_EQ(four.passes, is_between ? 2 : 1) << "no two samples are in each other's way";
+        }
+        EXPECT_GE(four.samples, (lod <= 64 ? 1.8 : 1.4) * one.samples);
+        std::cout << (min == TextureMin::linear_mipmap_linear ? "two levels, " : "one level, ")
+                  << std::exp2(lod / 256.0) << " texels a pixel, " << degrees << " degrees: one lane " << one.samples
+                  << " samples a clock, four " << four.samples << "; " << four.passes << " passes a stamp, "
+                  << four.bytes << " bytes a sample\n";
+      }
+}
+
 // Where two levels' lines want one place each, again and again, a second place keeps both.
 TEST(TextureRate, TwoWaysHoldTwoLevels) {
   Config config;

@@ -106,6 +106,7 @@ class Program {
     stamp.is_triangle = pick(random_, 0, 15) != 0;
     const std::uint64_t all = SampleMask::all(format_.samples).bits();
     stamp.mask = SampleMask(pick(random_, 0, 2) != 0 ? all : random_() & all);
+    if (pick(random_, 0, 15) == 0) stamp.mask = SampleMask::only(pick(random_, 0, format_.samples - 1));
     if (pick(random_, 0, 15) == 0) stamp.mask = {};
     stamp.frame = frame_;
     for (std::size_t s = 0; s < static_cast<std::size_t>(format_.samples); ++s) {

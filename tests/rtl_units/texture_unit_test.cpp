@@ -15,6 +15,9 @@
 #include "VTextureUnitLanes.h"
 #include "VTextureUnitLanesFaults.h"
 #include "VTextureUnitLanesFull.h"
+#include "VTextureUnitLanesLevels.h"
+#include "VTextureUnitLanesLevelsFaults.h"
+#include "VTextureUnitLanesLevelsFull.h"
 #include "VTextureUnitLevels.h"
 #include "VTextureUnitLevelsFaults.h"
 #include "VTextureUnitLevelsTiny.h"
@@ -38,6 +41,9 @@ const UnitFormat kLevelsWays{1, 3, {16, 16, 4, 8, true, true, 70, 1, 1, 2}, kTin
 const UnitFormat kLanes{4, 4, {64, 64, 32, 32, true, false, 104, 4, 2}, kEmbeddedPerspective, true};
 const UnitFormat kLanesWays{4, 4, {16, 64, 32, 32, true, false, 104, 4, 2, 2}, kEmbeddedPerspective, true};
 const UnitFormat kLanesFull{16, 4, {256, 16, 8, 8, false, false, 104, 4, 4, 2}, kFullPerspective, true};
+const UnitFormat kLanesLevels{4, 4, {64, 64, 32, 32, true, true, 104, 4, 2}, kEmbeddedPerspective, true};
+const UnitFormat kLanesLevelsFull{16, 4, {16, 16, 8, 8, true, true, 104, 4, 4, 2}, kFullPerspective};
+const UnitFormat kLanesLevelsFaults{16, 4, {64, 64, 8, 32, true, true, 104, 4, 4}, kFullPerspective};
 const UnitFormat kFull{16, 4, {256, 128, 16, 64}, kFullPerspective, true};
 
 std::uint64_t seed_of_run() {
@@ -292,6 +298,13 @@ TEST(TextureUnit, OfFourLanesFullIsItsSpecificationInEveryCycle) {
   expect_right<VTextureUnitLanesFull>(kLanesFull, 200'000);
 }
 
+TEST(TextureUnit, OfFourLanesWithLevelsItIsItsSpecificationInEveryCycle) {
+  expect_right<VTextureUnitLanesLevels>(kLanesLevels, 400'000);
+}
+TEST(TextureUnit, OfFourLanesWithLevelsFullIsItsSpecificationInEveryCycle) {
+  expect_right<VTextureUnitLanesLevelsFull>(kLanesLevelsFull, 200'000);
+}
+
 /// Faults `first` to `last`, and none.
 template <class Dut>
 void expect_found(const UnitFormat& format, int first, int last) {
@@ -318,7 +331,10 @@ TEST(TextureUnit, FaultsOfColorsOverWAreFound) {
   expect_found<VTextureUnitFaults>(kEmbedded, TEXTURE_LEVELS_FAULTS + 1, TEXTURE_COLORS_FAULTS);
 }
 TEST(TextureUnit, FaultsOfLanesAndWaysAreFound) {
-  expect_found<VTextureUnitLanesFaults>(kLanesWays, TEXTURE_COLORS_FAULTS + 1, TEXTURE_FAULTS);
+  expect_found<VTextureUnitLanesFaults>(kLanesWays, TEXTURE_COLORS_FAULTS + 1, TEXTURE_WAYS_FAULTS);
+}
+TEST(TextureUnit, FaultsOfLanesWithLevelsAreFound) {
+  expect_found<VTextureUnitLanesLevelsFaults>(kLanesLevelsFaults, TEXTURE_WAYS_FAULTS + 1, TEXTURE_FAULTS);
 }
 
 }  // namespace

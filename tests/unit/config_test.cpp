@@ -159,7 +159,7 @@ TEST(RasterPkg, CommittedPackagesAreWhatTheConfigurationYields) {
   textured.texture_ways = 2;
   EXPECT_EQ(file_text("presets/textured/raster_pkg.sv"), raster_pkg(textured));
   Config blended;
-  blended.texture_unit = TextureUnitKind::bilinear;
+  blended.texture_unit = TextureUnitKind::trilinear;
   blended.texture_lanes = 4;
   blended.alpha_units = blended.dither_units = 1;
   blended.blend_lanes = 4;

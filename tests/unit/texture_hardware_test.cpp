@@ -46,6 +46,9 @@ const std::vector<Config>& configurations() {
       with("embedded", {{"texture.unit", "trilinear"}, {"texture.cache_kb", "1"}, {"texture.ways", "2"}}),
       with("full",
            {{"texture.unit", "bilinear"}, {"texture.lanes", "4"}, {"texture.cache_kb", "2"}, {"texture.ways", "2"}}),
+      with("embedded", {{"texture.unit", "trilinear"}, {"texture.lanes", "4"}, {"perspective.colors", "1"}}),
+      with("full",
+           {{"texture.unit", "trilinear"}, {"texture.lanes", "4"}, {"texture.cache_kb", "1"}, {"texture.ways", "2"}}),
       with("full", {{"texture.unit", "nearest"}, {"perspective.colors", "1"}, {"stamp.size", "1"}}),
       with("tiny", {{"texture.unit", "nearest"},
                     {"perspective.colors", "1"},
@@ -383,7 +386,7 @@ TEST(TexturedHardware, RefusesByNameWhatTheUnitLacks) {
   EXPECT_THROW(validate(with("embedded", {{"texture.unit", "nearest"}, {"texture.ways", "2"}})), InputError);
   EXPECT_NO_THROW(
       validate(with("embedded", {{"texture.unit", "nearest"}, {"texture.lanes", "4"}, {"texture.ways", "2"}})));
-  EXPECT_THROW(validate(with("embedded", {{"texture.unit", "trilinear"}, {"texture.lanes", "4"}})), InputError);
+  EXPECT_NO_THROW(validate(with("embedded", {{"texture.unit", "trilinear"}, {"texture.lanes", "4"}})));
   EXPECT_THROW(validate(with("embedded", {{"texture.unit", "nearest"}, {"texture.lanes", "4"}, {"stamp.size", "1"}})),
                InputError);
 }

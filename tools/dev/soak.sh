@@ -63,6 +63,7 @@ soak_cosim() {
   local sizes=('embedded stamp.size=1' 'embedded stamp.size=4' 'full stamp.size=2' 'embedded texture.unit=bilinear'
     'embedded texture.unit=nearest' 'embedded texture.unit=bilinear texture.lanes=4 perspective.colors=1'
     'embedded hiz.bits=8 texture.unit=nearest setup.plane_clocks=2'
+    'embedded texture.unit=trilinear texture.lanes=4'
     'embedded msaa.samples=2' 'embedded msaa.samples=8' 'embedded msaa.samples=4 compress.unit=1')
   # Each of the sizes that the RTL takes at a second value, for the cycles as well as for the bits.
   local corners=('embedded tile.size=16 stamp.size=4 cache.lines=4 context.slots=2 hiz.bits=6 depth.bits=24'
@@ -76,6 +77,8 @@ soak_cosim() {
     'embedded texture.unit=trilinear alpha.unit=1 blend.lanes=4 fog.unit=1 shade.unit=1'
     'embedded setup.plane_clocks=2' 'full setup.plane_clocks=2' 'tiny setup.plane_clocks=2'
     'embedded texture.unit=trilinear perspective.colors=1 setup.plane_clocks=2'
+    'embedded texture.unit=trilinear texture.lanes=4 texture.ways=2 texture.cache_kb=1 memory.port_bits=32 perspective.colors=1 fog.unit=1 alpha.unit=1 blend.lanes=4 stencil.bits=8 msaa.samples=4'
+    'full texture.unit=trilinear texture.lanes=4 texture.cache_kb=1 memory.port_bits=128 perspective.colors=1'
     'full texture.unit=trilinear' 'full texture.unit=nearest texture.lanes=4 texture.cache_kb=1 texture.ways=2 texture.queue=8')
   [[ $primitives =~ ^[1-9][0-9]*$ ]] || { say "./dev soak-cosim: N is a whole number, not '$primitives'"; exit 2; }
   ensure "${everyday[@]}"

@@ -34,6 +34,17 @@
 //   a(i) = max(f(i) + 1, t(i-1), tags swept)
 //
 // e is that of a pass, and c that of a group.
+//
+// Of four lanes with levels a group leaves its queue once or twice, of all samples' lower levels and of the upper ones. Of such
+// a round r, and of its pass i:
+//
+//   f(r) = max(s(n) + 12, b(r-1))       with its last round the group leaves the queue
+//   b(r) = max(f(r) + 1, c(r-1))        its coordinates are on their levels
+//   c(r) = max(b(r) + 1, p(r-1, last))  who agrees is known
+//   p(i) = max(c(r) + 1, a(i-1))        a pass in front of the tags
+//   a(i) = max(p(i) + 1, t(i-1), tags swept)
+//
+// A pass whose samples all wait for their upper level waits in no e.
 #pragma once
 
 #include <algorithm>
@@ -175,9 +186,10 @@ class TextureTiming {
 
   [[nodiscard]] std::uint64_t last_group() const { return (count_ - 1) >> kGroup; }
 
-  /// When the tags of the next pass are read.
-  Cycle tags_read(bool is_last) {
+  /// When the tags of the next pass are read. `is_last` of its sample or group; `turns`: of its group's lower levels.
+  Cycle tags_read(bool is_last, bool turns) {
     Cycle at = ahead_.ready(split_);
+    if (has_lanes_ && has_levels_) return tags_read_of_round(is_last, turns, at);
     if (has_lanes_) {
       at = std::max(at, tag_read_);
       if (is_last) ahead_.leave(at);
@@ -196,12 +208,25 @@ class TextureTiming {
     return tag_read_;
   }
 
+  Cycle tags_read_of_round(bool is_last, bool turns, Cycle at) {
+    if (is_next_round_) {
+      at = std::max(at, on_level_);
+      on_level_ = std::max(at + 1, agreed_);
+      agreed_ = std::max(on_level_ + 1, passed_);
+      round_left_ = at;
+    }
+    is_next_round_ = is_last || turns;
+    if (is_last) ahead_.leave(round_left_);
+    passed_ = std::max({agreed_ + 1, tag_read_});
+    tag_read_ = std::max({passed_ + 1, looked_up_, swept_});
+    return tag_read_;
+  }
+
   /// The way through cache and filter of a sample on one level, or of those that agree.
   template <class Ask>
   void pass(std::span<const TextureLookup> lookups, Ask&& ask) {
-    const bool is_last = !lookups.back().continues;  // of its sample or group
-    const bool is_combined = is_last || has_lanes_;
-    const Cycle tag_read = tags_read(is_last);
+    const bool is_combined = lookups.back().samples != 0;
+    const Cycle tag_read = tags_read(!lookups.back().continues, lookups.back().turns);
     Cycle t = tag_read + 1, next = t, answered = 0;
     for (const TextureLookup& lookup : lookups) {
       if (lookup.is_miss) {
@@ -246,6 +271,8 @@ class TextureTiming {
   Cycle split_ = 0, looked_up_ = 0, combined_ = 0;  ///< of the last sample
   Cycle divided_ = 0;                               ///< of the last one that has a colour and no texture
   Cycle on_level_ = 0, tag_read_ = 0;               ///< of the last pass, with levels
+  Cycle round_left_ = 0, agreed_ = 0, passed_ = 0;  ///< of the last round f and c, of the last pass p
+  bool is_next_round_ = true;                       ///< the next pass is the first of a round
   std::array<Cycle, 4>
       stages_{};  ///< of the last sample, when it left the data RAM, and what a linear filter has behind it
   Cycle gone_ = 0, left_ = 0;         ///< of the last stamp
