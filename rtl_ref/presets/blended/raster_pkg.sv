@@ -27,6 +27,7 @@ package raster_pkg;
   localparam int FRAME_CLEARS = 0;  // 0 resolve, 1 flags: what a flush writes of cleared blocks or tiles: colours, or flags
   localparam int MEMORY_PORT_BITS = 64;  // data that the memory port moves in a cycle; a power of two
   localparam int SETUP_KIND = 0;  // 0 pipelined, 1 serial: RTL triangle setup: several multipliers, or one
+  localparam int SETUP_PLANE_CLOCKS = 1;  // that the RTL's pipelined triangle setup takes for a plane: 1, or 2 with half of the multipliers
   localparam int TEXTURE_UNIT = 3;  // 0 off, 1 nearest, 2 bilinear, 3 trilinear: what the RTL's texture unit can do; off: it has none
   localparam int TEXTURE_LANES = 4;  // that the RTL's texture unit divides, addresses and filters in a clock: 1 or 4
   localparam int TEXTURE_CACHE_KB = 4;  // texels that the texture unit holds on the chip; a power of two
@@ -47,7 +48,7 @@ package raster_pkg;
   localparam logic [32*MSAA_SAMPLES-1:0] MSAA_Y = {32'sd0};  // and down
   localparam int RESOLVE_UNIT = 0;  // 1: the RTL stores the mean of a pixel's samples as its block leaves the chip, of frames in bins that store colours alone; 0: it stores all samples
   localparam int COMPRESS_UNIT = 0;  // 1: the RTL stores one colour a pixel, not one a sample, of blocks whose pixels have one each, and a flag; 0: it stores all samples
-  localparam logic [63:0] CONFIG_ID = 64'h6affa07bf8af74e0;  // hash of the above
+  localparam logic [63:0] CONFIG_ID = 64'h44c25d93c2efd883;  // hash of the above
 
   // Derived constants.
   localparam int GRID_BITS = 4;  // s: fraction bits of a coordinate, at least 1
