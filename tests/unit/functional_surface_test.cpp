@@ -275,8 +275,9 @@ functional::SurfaceConstants constants_of(const Scene& scene, const Config& conf
     record.v[i] = i;
     const WindowPosition at = window_position(v, context.state, kHeight);
     slice.vertices.push_back(functional::row_of(snap_vertex(at, v.rgba, config, {"", 0, i})));
-    slice.surface.push_back({v.w, v.u, v.v});
+    slice.own_surface.push_back(surface_row(v.w, v.u, v.v));
   }
+  slice.surface = slice.own_surface.data();
   return {functional::StageSurface(frame, slice, record, kAtCentre), frame, texels};
 }
 

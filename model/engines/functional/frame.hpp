@@ -113,9 +113,14 @@ struct Slice {
   std::uint32_t low_index = 0, high_index = 0;
   bool is_wide = false;
   std::vector<VertexRow> vertices;
-  std::vector<SurfaceVertex> surface;  ///< of each vertex, where the state has surfaces
-  std::vector<std::uint32_t> codes;    ///< kVolume and kSlow bits of each vertex
-  std::uint32_t any_code = 0;          ///< their union
+  /// Of each vertex, where the state has surfaces; normals where it is lit by fragments. They are the prepared scene's, as
+  /// long as those are the slice's vertices, one for one.
+  const SurfaceRow* surface = nullptr;
+  const Normal* normals = nullptr;
+  std::vector<SurfaceRow> own_surface;  ///< else these
+  std::vector<Normal> own_normals;
+  std::vector<std::uint32_t> codes;  ///< kVolume and kSlow bits of each vertex
+  std::uint32_t any_code = 0;        ///< their union
   std::vector<Record> records;
   std::size_t record_count = 0;
   std::vector<LineSetup> lines;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "../../pipeline.hpp"
+#include "../../stages/surface.hpp"
 
 namespace halfplane {
 
@@ -30,6 +31,21 @@ void find_box(PreparedScene::DrawChunks& draw, const PreparedScene& prepared, st
       }
     }
   draw.has_box = true;
+}
+
+/// What of the vertices lives over w, where a state asks for it.
+void find_surface(PreparedScene& prepared, std::size_t spare) {
+  const Scene& scene = prepared.scene();
+  if (std::ranges::none_of(scene.states, [](const State& s) { return has_surface(s); })) return;
+  prepared.surface.resize(scene.vertices.size() + spare);
+  for (std::size_t i = 0; i < scene.vertices.size(); ++i) {
+    const Vertex& v = scene.vertices[i];
+    prepared.surface[i] = surface_row(v.w, v.u, v.v);
+  }
+  if (std::ranges::none_of(scene.states, [](const State& s) { return s.shade == Shade::phong; })) return;
+  prepared.normals.resize(prepared.surface.size());
+  for (std::size_t i = 0; i < scene.vertices.size(); ++i)
+    prepared.normals[i] = normal_codes(unit_normal(scene.normal(i)));
 }
 
 /// Whether a texture's texels may be mixed with those beside them.
@@ -58,6 +74,7 @@ PreparedScene::PreparedScene(const Scene& scene) : draws(scene.commands.size()),
     w[i] = v.w;
     for (std::size_t c = 0; c < 4; ++c) rgba[i] |= std::uint32_t{snap_color(v.rgba[c])} << 8 * c;
   }
+  find_surface(*this, kSpare);
   for (std::size_t i = 0; i < scene.commands.size(); ++i) {
     const auto* draw = std::get_if<Draw>(&scene.commands[i]);
     if (draw == nullptr) continue;

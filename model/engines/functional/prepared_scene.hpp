@@ -6,11 +6,21 @@
 #include <cstdint>
 #include <vector>
 
+#include "../../packets.hpp"
 #include "../../scene.hpp"
+#include "../../stages/phong.hpp"
 #include "../../stages/primitive_assembly.hpp"
 #include "texel_blocks.hpp"
 
 namespace halfplane {
+
+/// What of a vertex lives over w, as lanes fetch it: half a cache line.
+struct alignas(32) SurfaceRow {
+  double w = 1;         ///< clip-space w
+  double u = 0, v = 0;  ///< 0 and 1 are the sides of a texture
+  double inverse = 1;   ///< 1 / w
+};
+[[nodiscard]] inline SurfaceRow surface_row(double w, double u, double v) { return {w, u, v, 1 / w}; }
 
 /// Holds on to the scene, which must not change. Its colours are snapped; nothing else is computed.
 class PreparedScene {
@@ -29,6 +39,8 @@ class PreparedScene {
   // Vertices, and a few more of nothing so that the last ones may be read as many at a time.
   std::vector<double> x, y, z, w;
   std::vector<std::uint32_t> rgba;  ///< snapped, R lowest
+  std::vector<SurfaceRow> surface;  ///< where a state has surfaces
+  std::vector<Normal> normals;      ///< where one is lit by fragments
   // Triangles of the draws that are filled, the provoking vertex first; lines of those that are drawn as such: start,
   // end, the provoking vertex. Likewise a few more.
   std::array<std::vector<std::uint32_t>, 3> index;

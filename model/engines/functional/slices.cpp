@@ -31,15 +31,29 @@ void add_record(Slice& slice, const Record& record, std::size_t room) {
   slice.records[slice.record_count++] = record;
 }
 
+/// Appends what of a triangle's vertices lives over w, before the vertices. Those of the scene are copied then.
+void add_surface_vertices(Slice& slice, const Triangle& triangle) {
+  const bool is_lit = slice.normals != nullptr;
+  if (slice.surface != slice.own_surface.data()) {
+    slice.own_surface.assign(slice.surface, slice.surface + slice.vertices.size());
+    if (is_lit) slice.own_normals.assign(slice.normals, slice.normals + slice.vertices.size());
+  }
+  for (const SurfaceVertex& v : triangle.surface) {
+    slice.own_surface.push_back(surface_row(v.w, v.u, v.v));
+    if (is_lit) slice.own_normals.push_back(v.normal);
+  }
+  slice.surface = slice.own_surface.data();
+  if (is_lit) slice.normals = slice.own_normals.data();
+}
+
 /// Appends a triangle of the host side, if there may be a sample in its box.
 void add_triangle(Slice& slice, const Triangle& triangle, const Rect& rect, const Widths& widths, std::size_t room) {
   const PixelBounds box = sample_bounds(triangle.v, {rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1},
                                         widths.grid_bits, widths.pixel_samples);
   if (box.is_empty()) return;
+  if (slice.state.has_surface) add_surface_vertices(slice, triangle);
   const auto first = static_cast<std::uint32_t>(slice.vertices.size());
   for (const SnappedVertex& v : triangle.v) slice.vertices.push_back(row_of(v));
-  if (slice.state.has_surface)
-    slice.surface.insert(slice.surface.end(), triangle.surface.begin(), triangle.surface.end());
   const auto [low, high] = std::minmax({triangle.v[0].depth(), triangle.v[1].depth(), triangle.v[2].depth()});
   add_record(slice, record_of({first, first + 1, first + 2}, low, high, box, RecordKind::triangle), room);
 }
@@ -60,20 +74,24 @@ void draw_slowly(const FrameContext& frame, Slice& slice, const Slice::Part& par
 
 /// What of a slice's vertices lives over w.
 void find_surface_vertices(const FrameContext& frame, Slice& slice) {
+  const PreparedScene& prepared = frame.prepared;
   const bool is_lit = slice.context->phong != nullptr;
-  const auto surface_of = [is_lit, &scene = frame.prepared.scene()](std::size_t i) -> SurfaceVertex {
-    const Vertex& v = scene.vertices[i];
-    const auto normal = is_lit ? normal_codes(unit_normal(scene.normal(i))) : Normal{};
-    return {v.w, v.u, v.v, normal};
-  };
-  slice.surface.resize(slice.vertices.size());
-  SurfaceVertex* to = slice.surface.data();
-  if (!slice.is_wide)
-    for (std::size_t i = slice.low_index; i <= slice.high_index; ++i) *to++ = surface_of(i);
-  else
-    for (const Slice::Part& part : slice.parts)
-      for (std::size_t t = part.first; t < part.first + part.count; ++t)
-        for (const auto& corner : frame.prepared.index) *to++ = surface_of(corner[t]);
+  slice.own_surface.clear();
+  slice.own_normals.clear();
+  slice.surface = prepared.surface.data() + slice.low_index;
+  slice.normals = is_lit ? prepared.normals.data() + slice.low_index : nullptr;
+  if (!slice.is_wide) return;
+  for (const Slice::Part& part : slice.parts)
+    for (std::size_t t = part.first; t < part.first + part.count; ++t)
+      for (const auto& corner : prepared.index) {
+        slice.own_surface.push_back(prepared.surface[corner[t]]);
+        if (is_lit) slice.own_normals.push_back(prepared.normals[corner[t]]);
+      }
+  slice.own_surface.resize(slice.vertices.size());
+  slice.surface = slice.own_surface.data();
+  if (!is_lit) return;
+  slice.own_normals.resize(slice.vertices.size());
+  slice.normals = slice.own_normals.data();
 }
 
 /// The pixels of a line, as a box.
@@ -177,11 +195,12 @@ void FrameRenderer::sign(Slice& slice) const {
         hash.add(pair(row.x, row.y));
         hash.add(pair(row.z, row.rgba));
         if (!slice.state.has_surface) continue;
-        const SurfaceVertex& surface = slice.surface[v];
+        const SurfaceRow& surface = slice.surface[v];
         for (const double value : {surface.w, surface.u, surface.v}) hash.add(std::bit_cast<std::uint64_t>(value));
-        if (slice.context->phong == nullptr) continue;
-        hash.add(pair(surface.normal[0], surface.normal[1]));
-        hash.add(static_cast<std::uint32_t>(surface.normal[2]));
+        if (slice.normals == nullptr) continue;
+        const Normal& normal = slice.normals[v];
+        hash.add(pair(normal[0], normal[1]));
+        hash.add(static_cast<std::uint32_t>(normal[2]));
       }
     }
     slice.signatures[i] = hash.signature();

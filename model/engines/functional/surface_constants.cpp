@@ -24,7 +24,9 @@ Triangle triangle_of(const Slice& slice, const Record& record, const Widths& wid
     const VertexRow& row = slice.vertices[record.v[i]];
     const std::uint32_t rgba = slice.vertices[record.v[slice.state.is_flat ? 0 : i]].rgba;
     triangle.v[i] = vertex_of(row, rgba, widths);
-    triangle.surface[i] = slice.surface[record.v[i]];
+    const SurfaceRow& over_w = slice.surface[record.v[i]];
+    triangle.surface[i] = {over_w.w, over_w.u, over_w.v,
+                           slice.normals != nullptr ? slice.normals[record.v[i]] : Normal{}};
   }
   return triangle;
 }

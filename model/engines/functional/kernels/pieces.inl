@@ -26,16 +26,12 @@ struct QLanes {
   OfCorners<D16> number;
   OfCorners<I16> code;
 
-  HALFPLANE_INLINE QLanes(const OfCorners<D16>& w, int bits) {
+  /// `inverse`: 1 / w.
+  HALFPLANE_INLINE QLanes(const OfCorners<D16>& w, const OfCorners<D16>& inverse, int bits) {
     const OfCorners<I16> field{exponent_field(w.a), exponent_field(w.b), exponent_field(w.c)};
-    const I16 nearest = min(min(field.a, field.b), field.c) + (bits - 1);
-    const auto scaled = [&nearest](const D16& of, const I16& its_field) HALFPLANE_LAMBDA {
-      constexpr std::int64_t kMantissa = (std::int64_t{1} << 52) - 1, kHalf = std::int64_t{kDoubleBias - 1} << 52;
-      const D16 mantissa = as<D16>((as<L16>(of) & kMantissa) | kHalf);
-      constexpr std::int32_t kNothing = -100;  // far below any code
-      return D16(1.0) / mantissa * power_of_field(max(nearest - its_field, I16(kNothing)) + kDoubleBias);
-    };
-    const D16 a = scaled(w.a, field.a), b = scaled(w.b, field.b), c = scaled(w.c, field.c);
+    // The quotient of a mantissa is that of w, moved.
+    const D16 scale = power_of_field(min(min(field.a, field.b), field.c) + bits);
+    const D16 a = inverse.a * scale, b = inverse.b * scale, c = inverse.c * scale;
     // The nearest may round to a bit more than there are.
     const D16 whole(static_cast<double>(std::int64_t{1} << bits) - 0.5);
     const D16 fit = select(max(max(a, b), c) >= whole, D16(0.5), D16(1.0));
@@ -307,29 +303,27 @@ HALFPLANE_NOINLINE std::uint32_t set_up_pieces(Bin& bin, SurfaceStyle& style,
             offsetof(PieceConstants, tile) + i * sizeof(PieceConstants::Tile) + offsetof(PieceConstants::Tile, colors));
   }
 
-  OfCorners<D16> w, u, v;
+  OfCorners<D16> w, inverse, u, v;
   std::uint32_t alone = 0;
   {
-    const auto fetch = [&](std::size_t k, D16& its_w, D16& its_u, D16& its_v) HALFPLANE_LAMBDA {
-      static_assert(sizeof(VertexRow) == 16);
-      alignas(64) std::array<std::int32_t, 16> place;  // of bytes, from those of rows
-      (shift_right_logical(I16::load(batch.corner[k].data()), 4) * static_cast<std::int32_t>(sizeof(SurfaceVertex)))
-          .store(place.data());
-      const auto vertex = [&](int i) HALFPLANE_LAMBDA {
-        return reinterpret_cast<const SurfaceVertex*>(reinterpret_cast<const char*>(slice.surface.data()) +
-                                                      static_cast<std::uint32_t>(place[static_cast<std::size_t>(i)]));
+    const auto fetch = [&](std::size_t k, D16& its_w, D16& its_inverse, D16& its_u, D16& its_v) HALFPLANE_LAMBDA {
+      static_assert(sizeof(SurfaceRow) == 2 * sizeof(VertexRow));
+      const Places place(I16::load(batch.corner[k].data()) << 1);  // of bytes, from those of rows
+      const auto half = [&](int i, std::size_t offset) HALFPLANE_LAMBDA {
+        return reinterpret_cast<const char*>(slice.surface) + offset + place[i];
       };
-      static_assert(offsetof(SurfaceVertex, w) == 0 && offsetof(SurfaceVertex, u) == 8 &&
-                    offsetof(SurfaceVertex, v) == 16);
-      const DoubleColumns first = turned_doubles([&](int i) HALFPLANE_LAMBDA { return &vertex(i)->w; }),
-                          second = turned_doubles([&](int i) HALFPLANE_LAMBDA { return &vertex(i)->v; });
+      static_assert(offsetof(SurfaceRow, u) == 8 && offsetof(SurfaceRow, v) == 16 &&
+                    offsetof(SurfaceRow, inverse) == 24);
+      const DoubleColumns first = turned_doubles([&](int i) HALFPLANE_LAMBDA { return half(i, 0); }),
+                          second = turned_doubles([&](int i) HALFPLANE_LAMBDA { return half(i, 16); });
       its_w = style.is_affine ? D16(1.0) : first.first;
+      its_inverse = style.is_affine ? D16(1.0) : second.second;
       its_u = first.second * style.size[0];
       its_v = second.first * style.size[1];
     };
-    fetch(0, w.a, u.a, v.a);
-    fetch(1, w.b, u.b, v.b);
-    fetch(2, w.c, u.c, v.c);
+    fetch(0, w.a, inverse.a, u.a, v.a);
+    fetch(1, w.b, inverse.b, u.b, v.b);
+    fetch(2, w.c, inverse.c, u.c, v.c);
     const auto all_below = [](const OfCorners<D16>& of, double limit) HALFPLANE_LAMBDA {
       const D16 bound(limit);
       return (magnitude(of.a) < bound) & (magnitude(of.b) < bound) & (magnitude(of.c) < bound);
@@ -338,7 +332,7 @@ HALFPLANE_NOINLINE std::uint32_t set_up_pieces(Bin& bin, SurfaceStyle& style,
                          (w.b > 0x1p-500) & (w.c > 0x1p-500);
     alone = ~bits_of(convert<std::int32_t>(is_usual)) & 0xffff;
   }
-  const QLanes q(w, style.format.q_bits);
+  const QLanes q(w, inverse, style.format.q_bits);
   const OverWLanes along_u(u, q, style.format.coordinate), along_v(v, q, style.format.coordinate);
   const PieceScale scale_u(along_u, q.number, style), scale_v(along_v, q.number, style);
   alone |= bits_of((scale_u.drop < 0) | (scale_v.drop < 0));
@@ -431,7 +425,8 @@ HALFPLANE_INLINE I16 piece_lod(const Columns& at_zero, const Columns& step, cons
   return log2_code_of(max(to_right, down)) - (log2_code(q) << 1) + offset;
 }
 
-/// The colours of a tile's pixels that show pieces of one style.
+/// The colours of a tile's pixels that show pieces of one style. One step after the other for all four blocks, as shade()
+/// has it: texels are on their way while the next block's are looked for.
 template <Sampling kSampling>
 HALFPLANE_NOINLINE void shade_pieces(Bin& bin, const SurfaceStyle& style, int tile, std::uint64_t pixels) {
   const LaneTexture& texture = style.texture;
@@ -444,19 +439,21 @@ HALFPLANE_NOINLINE void shade_pieces(Bin& bin, const SurfaceStyle& style, int ti
   const ColorFormat format = bin.config.color_format;
   const bool is_tame = style.is_tame;
   const int color_down = bin.centred_color.down;
-  for (std::size_t block = 0; block < 4; ++block) {
+  alignas(64) std::uint32_t place[4][kBlockPixels];  // of constants, in bytes
+  alignas(64) std::array<std::uint32_t, kTileSize * kTileSize> nearest;
+  CoordinateLanes at[4];
+  I16 lod[4], red_blue[4], green_alpha[4];
+  for_each_block([&](auto block) HALFPLANE_LAMBDA {
     const std::uint32_t bits = block_bits(pixels, block);
-    if (bits == 0) continue;
+    if (bits == 0) return;
     const I16 number = load_narrow(numbers + block * kBlockPixels) - static_cast<std::int32_t>(BinMemory::kFirstPiece);
-    static_assert(sizeof(PieceConstants) == 3 * 64);
+    static_assert(sizeof(PieceConstants) == 3 * 64 && sizeof(PieceLevels) == 64);
     const I16 whose = select_by_bits(bits, number, I16(0), position.to_sign) << 6;
-    const Places place(whose + (whose << 1));
-    ColumnsOfRows<3> of_all;
-    ColumnsOfRows<2> here;
-    turned_rows([&place, shared](int i) HALFPLANE_LAMBDA { return shared + place[i]; }, of_all);
-    turned_rows([&place, of_tile](int i) HALFPLANE_LAMBDA { return of_tile + place[i]; }, here);
-    const Columns &step_x = of_all.row[0], &step_y = of_all.row[1], &step = of_all.row[2], &anchor = here.row[0],
-                  &from = here.row[1];
+    (whose + (whose << 1)).store(place[block]);
+    ColumnsOfRows<2> step;
+    turned_rows([&](int i) HALFPLANE_LAMBDA { return shared + word_at(place[block], i); }, step);
+    const Columns anchor = turned_rows([&](int i) HALFPLANE_LAMBDA { return of_tile + word_at(place[block], i); });
+    const Columns &step_x = step.row[0], &step_y = step.row[1];
     const std::size_t right = block & 1, below = block >> 1;
     const I16 &column = position.column[right], &line = position.row[below];
     const ReciprocalsOfQ q(anchor.first + column * step_x.first + line * step_y.first, style.division);
@@ -468,12 +465,14 @@ HALFPLANE_NOINLINE void shade_pieces(Bin& bin, const SurfaceStyle& style, int ti
       return texture.wrap[axis] == TextureWrap::clamp ? min(max(sum, I16(-kFar)), I16(kFar)) : sum;
     };
     const I16& drops = step_x.fourth;
-    const CoordinateLanes at{
-        along(anchor.second, step_x.second, step_y.second, drops << 24 >> 24, drops << 8 >> 24, step_y.fourth, 0),
-        along(anchor.third, step_x.third, step_y.third, drops << 16 >> 24, drops >> 24, anchor.fourth, 1)};
-    const ColorPairs texels = [&]() HALFPLANE_LAMBDA {
-      if constexpr (kSampling == Sampling::linear) return filter_linear(texture, at, BaseLevel(texture));
-      if constexpr (kSampling == Sampling::nearest) return ColorPairs(filter_nearest(texture, at, BaseLevel(texture)));
+    at[block].u =
+        along(anchor.second, step_x.second, step_y.second, drops << 24 >> 24, drops << 8 >> 24, step_y.fourth, 0);
+    at[block].v = along(anchor.third, step_x.third, step_y.third, drops << 16 >> 24, drops >> 24, anchor.fourth, 1);
+    if constexpr (kSampling == Sampling::nearest) {
+      const Places texels(nearest_places(texture, at[block], BaseLevel(texture)));
+      fetch_texels(texture.texels, texels, nearest.data() + block * kBlockPixels);
+    }
+    if constexpr (kSampling == Sampling::any) {
       const Places of_levels(whose);
       const auto level_row = [&](std::size_t offset) HALFPLANE_LAMBDA {
         const char* const levels = reinterpret_cast<const char*>(bin.memory.levels.data()) + offset;
@@ -485,8 +484,26 @@ HALFPLANE_NOINLINE void shade_pieces(Bin& bin, const SurfaceStyle& style, int ti
                     (bin.first_y + tile / kBinTiles * kTileSize + static_cast<int>(below) * kBlockSize);
       const Columns at_zero = level_row(offsetof(PieceLevels, at_zero)),
                     of_pixel = level_row(offsetof(PieceLevels, step)), less = level_row(offsetof(PieceLevels, offset));
-      return sample(texture, at, piece_lod(at_zero, of_pixel, less.first, x, y, q.bits));
-    }();
+      lod[block] = piece_lod(at_zero, of_pixel, less.first, x, y, q.bits);
+    }
+  });
+  if constexpr (kSampling != Sampling::nearest) {
+    for_each_block([&](auto block) HALFPLANE_LAMBDA {
+      if (block_bits(pixels, block) == 0) return;
+      const ColorPairs texels = texels_at<kSampling>(texture, at[block], lod[block]);
+      red_blue[block] = texels.red_blue;
+      green_alpha[block] = texels.green_alpha;
+    });
+  }
+  for_each_block([&](auto block) HALFPLANE_LAMBDA {
+    const std::uint32_t bits = block_bits(pixels, block);
+    if (bits == 0) return;
+    const std::size_t right = block & 1, below = block >> 1;
+    const Columns step = turned_rows(
+        [&](int i) HALFPLANE_LAMBDA { return shared + offsetof(PieceConstants, color) + word_at(place[block], i); });
+    const Columns from = turned_rows([&](int i) HALFPLANE_LAMBDA {
+      return of_tile + offsetof(PieceConstants::Tile, colors) + word_at(place[block], i);
+    });
     const S32 column_pair = as<S32>(position.column_pair[right]), row_pair = as<S32>(position.row_pair[below]);
     const auto pair = [&](const I16& at_anchor, const I16& of_x, const I16& of_y, std::size_t which) HALFPLANE_LAMBDA {
       const S32 value = column_pair * as<S32>(of_x) + row_pair * as<S32>(of_y) + as<S32>(at_anchor);
@@ -498,11 +515,15 @@ HALFPLANE_NOINLINE void shade_pieces(Bin& bin, const SurfaceStyle& style, int ti
               blue_alpha = pair(from.second, step.second, step.fourth, 1);
     const ColorPairs own(pairs(red_green, blue_alpha),
                          shift_right_logical(red_green, 16) | (blue_alpha & static_cast<std::int32_t>(0xffff0000U)));
+    const ColorPairs texels = [&]() HALFPLANE_LAMBDA {
+      if constexpr (kSampling == Sampling::nearest) return ColorPairs(I16::load(nearest.data() + block * kBlockPixels));
+      return ColorPairs(red_blue[block], green_alpha[block]);
+    }();
     const ColorPairs mixed = combined(own, texels, texture);
     const I16 color = packed(mixed.red_blue, mixed.green_alpha, format);
     std::uint32_t* const to = colors + block * kBlockPixels;
     (bits == 0xffff ? color : select_by_bits(bits, color, I16::load(to), position.to_sign)).store(to);
-  }
+  });
 }
 HALFPLANE_INLINE void shade_pieces(Bin& bin, const SurfaceStyle& style, int tile, std::uint64_t pixels) {
   switch (style.sampling) {

@@ -100,13 +100,14 @@ HALFPLANE_INLINE I16 filter_nearest(const LaneTexture& texture, const Coordinate
 
 /// Numbers that lanes have stored, each to be an address. Read as they stand in memory: GCC would take them out of the lanes
 /// one by one instead, by shuffles and moves of which the lanes themselves have need.
+HALFPLANE_INLINE std::size_t word_at(const std::uint32_t* words, int i) {
+  return static_cast<const volatile std::uint32_t&>(words[i]);
+}
 struct Places {
   alignas(64) std::array<std::uint32_t, 16> place;
 
   HALFPLANE_INLINE explicit Places(const I16& lanes) { lanes.store(place.data()); }
-  HALFPLANE_INLINE std::size_t operator[](int i) const {
-    return static_cast<const volatile std::uint32_t&>(place[static_cast<std::size_t>(i)]);
-  }
+  HALFPLANE_INLINE std::size_t operator[](int i) const { return word_at(place.data(), i); }
 };
 
 /// Texels by loads and stores of one word each, beside which lanes go on: half the time of a gather. Whoever loads them as
