@@ -143,6 +143,81 @@ TEST(FunctionalSurface, FragmentOperationsOnSurfacesAreTheSameOnEveryPath) {
   EXPECT_GT(killed, 1000U);
 }
 
+/// Patches of texels that are clear or not: then whole tiles pass an alpha test, and whole tiles fail.
+TEST(FunctionalSurface, AlphaOfPatchesIsTheSameOnEveryPath) {
+  std::uint64_t tiles = 0, without = 0;
+  for (const char* name : {"small", "embedded", "full"})
+    for (std::uint32_t seed = 1; seed <= 24; ++seed) {
+      SCOPED_TRACE(std::string(name) + ", seed " + std::to_string(seed));
+      Random random(seed);
+      SceneBuilder builder(kWidth, kHeight);
+      const int patch = 1 << random.index(5), width = 1 << random.index(8), height = 1 << random.index(8);
+      Texture texture = noise(random, width, height, TextureFormat::rgba8888, Mips::none);
+      for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+          std::uint32_t& code = texture.level[0].code[static_cast<std::size_t>(y * width + x)];
+          code = (code & ~255U) | ((x / patch + y / patch) % 2 == 0 ? 255U - seed : seed);  // A
+        }
+      builder.scene.textures.push_back(texture);
+      State state = random_surface(random);
+      state.texture = 0;
+      state.texture_min = random.index(2) == 0 ? TextureMin::linear : TextureMin::nearest;
+      state.texture_mag = state.texture_min == TextureMin::linear ? TextureMag::linear : TextureMag::nearest;
+      state.alpha_test = {random.index(2) == 0 ? DepthFunc::gequal : DepthFunc::less, 128};
+      state.depth_write = random.index(2) == 0;
+      builder.scene.states.push_back(state);
+      add_triangles(builder.scene, random, 12, 200, random.index(3) * 3.0, std::exp2(random.between(0, 9)));
+      const Config config = with_colors(name);
+      expect_all_same(builder.scene, config);
+      RenderOptions off;
+      off.skip.alpha_tiles = false;
+      tiles += render_functional(builder.scene, config).counters.skipped.alpha_tiles;
+      without += render_functional(builder.scene, config, off).counters.skipped.alpha_tiles;
+    }
+  EXPECT_GT(tiles, 500U);
+  EXPECT_EQ(without, 0U);
+}
+
+TEST(TexelBlocks, AlphaRangesHoldEveryTexel) {
+  std::uint64_t exact = 0, all = 0;
+  for (std::uint32_t seed = 1; seed <= 400; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const std::array<int, 2> side{1 << random.index(7), 1 << random.index(7)};
+    const Texture texture = noise(random, side[0], side[1], TextureFormat::rgba8888, Mips::none);
+    TexelBlocks texels(texture);
+    texels.add_alphas();
+    ASSERT_NE(texels.alpha_ranges(), nullptr);
+    std::array<TextureWrap, 2> wrap;
+    std::array<std::int32_t, 2> low, high;
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      wrap[axis] = std::array{TextureWrap::repeat, TextureWrap::clamp, TextureWrap::mirror}[random.index(3)];
+      low[axis] = static_cast<std::int32_t>(random.between(-300, 300));
+      high[axis] = low[axis] + static_cast<std::int32_t>(std::exp2(random.between(0, 8))) - 1;
+    }
+    const auto wrapped = [&](std::int32_t i, std::size_t axis) {
+      const int n = side[axis];
+      if (wrap[axis] == TextureWrap::clamp) return std::clamp(i, 0, n - 1);
+      if (wrap[axis] == TextureWrap::repeat) return ((i % n) + n) % n;
+      const int rest = ((i % (2 * n)) + 2 * n) % (2 * n);
+      return rest < n ? rest : 2 * n - 1 - rest;
+    };
+    std::uint8_t least = 255, most = 0;
+    for (std::int32_t y = low[1]; y <= high[1]; ++y)
+      for (std::int32_t x = low[0]; x <= high[0]; ++x) {
+        const std::uint8_t alpha = texture.texel(0, wrapped(x, 0), wrapped(y, 1))[3];
+        least = std::min(least, alpha);
+        most = std::max(most, alpha);
+      }
+    const auto range = texels.alpha_ranges()->range(low, high, wrap);
+    EXPECT_LE(range.low, least);
+    EXPECT_GE(range.high, most);
+    exact += range.low == least && range.high == most ? 1U : 0U;
+    ++all;
+  }
+  EXPECT_GT(exact, all / 5);
+}
+
 /// Every number of bits that a configuration may give to 1/w and its reciprocal.
 TEST(FunctionalSurface, EveryPrecisionIsTheSameOnEveryPath) {
   std::uint32_t seed = 100;
@@ -261,24 +336,81 @@ TEST(FunctionalSurfaceMustFail, WrongTexelsAndShorterReciprocalsAreSeen) {
   EXPECT_NE(render_functional(scene, shorter).frame.color, scalar.frame.color);
 }
 
-/// A record of one slice, as the engine makes them.
-functional::SurfaceConstants constants_of(const Scene& scene, const Config& config, const TexelBlocks* texels) {
-  const Widths widths = derive_widths(config);
-  const PreparedScene prepared(scene);
-  const functional::FrameContext frame{prepared, config, widths, {}, 0, 0};
-  const DrawContext context(scene, config, std::get<Draw>(scene.commands.back()), 0);
+/// The first three vertices of a scene as a slice of the draw, and their record.
+functional::Slice slice_of(const DrawContext& context, const Config& config) {
   functional::Slice slice;
   slice.context = &context;
-  functional::Record record;
   for (std::uint32_t i = 0; i < 3; ++i) {
-    const Vertex& v = scene.vertices[i];
-    record.v[i] = i;
+    const Vertex& v = context.scene.vertices[i];
     const WindowPosition at = window_position(v, context.state, kHeight);
     slice.vertices.push_back(functional::row_of(snap_vertex(at, v.rgba, config, {"", 0, i})));
     slice.own_surface.push_back(surface_row(v.w, v.u, v.v));
   }
   slice.surface = slice.own_surface.data();
-  return {functional::StageSurface(frame, slice, record, kAtCentre), frame, texels};
+  return slice;
+}
+functional::Record first_record() {
+  functional::Record record;
+  record.v = {0, 1, 2};
+  return record;
+}
+
+functional::SurfaceConstants constants_of(const Scene& scene, const Config& config, const TexelBlocks* texels) {
+  const Widths widths = derive_widths(config);
+  const PreparedScene prepared(scene);
+  const functional::FrameContext frame{prepared, config, widths, {}, 0, 0};
+  const DrawContext context(scene, config, std::get<Draw>(scene.commands.back()), 0);
+  const functional::Slice slice = slice_of(context, config);
+  return {functional::StageSurface(frame, slice, first_record(), kAtCentre), frame, texels};
+}
+
+/// coordinates_margin(): what the pixels of a covered tile look at lies between what its corners do, and that much more.
+TEST(FunctionalSurface, CoordinatesOfATileLieBetweenThoseOfItsCorners) {
+  double nearest_to_margin = 0;
+  int tiles = 0;
+  for (const char* name : {"small", "embedded", "full"})
+    for (std::uint32_t seed = 1; seed <= 60; ++seed) {
+      SCOPED_TRACE(std::string(name) + ", seed " + std::to_string(seed));
+      Random random(seed);
+      SceneBuilder builder(kWidth, kHeight);
+      State state = SceneBuilder::window_state();
+      state.texture = 0;
+      builder.scene.states.push_back(state);
+      builder.scene.textures.push_back(noise(random, 64, 64, TextureFormat::rgba8888, Mips::none));
+      add_triangles(builder.scene, random, 1, 200, random.between(0, 10), std::exp2(random.between(0, 12)));
+      const Config config = with_colors(name);
+      const Widths widths = derive_widths(config);
+      const PreparedScene prepared(builder.scene);
+      const functional::FrameContext frame{prepared, config, widths, {}, 0, 0};
+      const DrawContext context(builder.scene, config, std::get<Draw>(builder.scene.commands.back()), 0);
+      const functional::Slice slice = slice_of(context, config);
+      const functional::StageSurface stage(frame, slice, first_record(), kAtCentre);
+      const Surface& surface = stage.surface;
+      const Framebuffer drawn = render_scalar(builder.scene, config).frame;
+      const std::uint32_t nothing = render_scalar(SceneBuilder(kWidth, kHeight).scene, config).frame.depth.front();
+      const auto is_covered = [&](int x, int y) { return drawn.depth[drawn.at(x, y)] != nothing; };
+      for (int top = 0; top + 8 <= kHeight; top += 8)
+        for (int left = 0; left + 8 <= kWidth; left += 8) {
+          if (!is_covered(left, top) || !is_covered(left + 7, top) || !is_covered(left, top + 7) ||
+              !is_covered(left + 7, top + 7))
+            continue;
+          ++tiles;
+          for (std::size_t axis = 0; axis < 2; ++axis) {
+            const auto at = [&](int x, int y) { return surface.at(x, y).coordinate[axis]; };
+            const auto [low, high] =
+                std::minmax({at(left, top), at(left + 7, top), at(left, top + 7), at(left + 7, top + 7)});
+            const double margin =
+                functional::coordinates_margin(surface.coordinate(axis).over_w.reach, surface.format()) / 256.0;
+            for (int i = 0; i < 64; ++i) {
+              const double u = at(left + i % 8, top + i / 8), off = std::max(low - u, u - high);
+              EXPECT_LE(off, margin);
+              nearest_to_margin = std::max(nearest_to_margin, off / margin);
+            }
+          }
+        }
+    }
+  EXPECT_GT(tiles, 300);
+  RecordProperty("nearest_to_margin", std::to_string(nearest_to_margin));
 }
 
 TEST(FunctionalSurface, WhatIsUsualIsDrawnInLanes) {

@@ -61,7 +61,10 @@ PreparedScene::PreparedScene(const Scene& scene) : draws(scene.commands.size()),
   validate(scene);
   for (const Texture& texture : scene.textures) textures.emplace_back(texture);
   for (const State& state : scene.states)
-    if (state.texture && is_linear(state)) textures[*state.texture].add_quads(state.texture_wrap);
+    if (state.texture) {
+      if (is_linear(state)) textures[*state.texture].add_quads(state.texture_wrap);
+      if (state.alpha_test.func != DepthFunc::always) textures[*state.texture].add_alphas();
+    }
   constexpr std::size_t kSpare = 16;
   const std::size_t vertices = scene.vertices.size();
   for (auto* attribute : {&x, &y, &z, &w}) attribute->resize(vertices + kSpare);

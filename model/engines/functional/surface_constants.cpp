@@ -103,6 +103,7 @@ LaneTexture texture_lanes(const Sampler& sampler, const TexelBlocks& texels, Tex
   }
   lanes.texels = texels.blocks.data();
   lanes.quads = texels.quads(lanes.wrap);
+  lanes.alpha_quads = texels.alpha_quads(lanes.wrap);
   lanes.pitch = std::max(lanes.bits[0], TexelBlocks::kShift);
   lanes.first = texels.first;
   lanes.up = kTexelFraction - fraction_bits;
@@ -217,7 +218,9 @@ void SurfaceConstants::set_texture(const StageSurface& from, const Widths& width
   const Sampler& sampler = surface.sampler();
   coordinate.q = lanes_of(divisor.plane, from.setup, format.guard_bits, division.up, widths);
   texture = texture_lanes(sampler, texels, surface.combine(), format.coordinate.fraction_bits);
+  texture.alpha_ranges = texels.alpha_ranges();
   for (std::size_t axis = 0; axis < 2; ++axis) {
+    texture.margin[axis] = coordinates_margin(surface.coordinate(axis).over_w.reach, format);
     coordinate.attribute[axis] =
         attribute_of(surface.coordinate(axis), format.coordinate, of_coordinate, divisor, from, widths);
     are_in_lanes &= sampler.axes[axis].is_power_of_two();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 
@@ -101,6 +102,9 @@ struct LaneTexture {
   Lod magnified = 0;  ///< up to here mag counts
   TextureCombine combine = TextureCombine::modulate;
   bool has_alpha = false;
+  const std::uint32_t* alpha_quads = nullptr;              ///< TexelBlocks, if there are
+  const TexelBlocks::AlphaRanges* alpha_ranges = nullptr;  ///< of level 0, if there are
+  std::array<std::int32_t, 2> margin{};                    ///< coordinates_margin(), 2^-8 texels
 };
 
 /// How much of sample() there is to do.
@@ -109,6 +113,17 @@ enum class Sampling { none, nearest, linear, any };
   if (texture.min == TextureMin::nearest && texture.mag == TextureMag::nearest) return Sampling::nearest;
   if (texture.min == TextureMin::linear && texture.mag == TextureMag::linear) return Sampling::linear;
   return Sampling::any;
+}
+
+/// No coordinate of a pixel of a tile is that much less (more) than the least (the greatest) of those of its corners, 2^-8
+/// texels, if all four are covered. P and Q are linear over the pixels, so P / Q has its extremes in corners, as Q > 0. What
+/// a pixel makes of it is off by less than 2^x (2^(2-k) + 2^(1-k_P)), for the reciprocal and for Pn, and 2^-f for what is
+/// rounded last; twice that, and a last bit each.
+[[nodiscard]] inline std::int32_t coordinates_margin(int reach, const PerspectiveFormat& format) {
+  const int k = format.mantissa_bits, narrow = format.coordinate.narrow_bits;
+  const double off = std::ldexp(1.0, reach) * (std::ldexp(1.0, 2 - k) + std::ldexp(1.0, 1 - narrow)) +
+                     std::ldexp(1.0, -format.coordinate.fraction_bits);
+  return static_cast<std::int32_t>(std::ceil(2 * off * (1 << kTexelFraction))) + 2;
 }
 
 /// Those of a texture and its sampler. `combine`: with the primitive's colour; `fraction_bits`: of a coordinate.

@@ -1,6 +1,7 @@
 #include "texel_blocks.hpp"
 
 #include <algorithm>
+#include <bit>
 
 namespace halfplane {
 namespace {
@@ -61,6 +62,84 @@ void TexelBlocks::add_quads(const std::array<TextureWrap, 2>& wrap) {
 const TexelBlocks::Quad* TexelBlocks::quads(const std::array<TextureWrap, 2>& wrap) const {
   const std::vector<Quad>& quads = quads_[index_of(wrap)];
   return is_mirrored(wrap) || quads.empty() ? nullptr : quads.data();
+}
+
+const std::uint32_t* TexelBlocks::alpha_quads(const std::array<TextureWrap, 2>& wrap) const {
+  const std::vector<std::uint32_t>& alphas = alpha_quads_[index_of(wrap)];
+  return is_mirrored(wrap) || alphas.empty() ? nullptr : alphas.data();
+}
+
+void TexelBlocks::add_alphas() {
+  for (std::size_t i = 0; i < quads_.size(); ++i) {
+    if (alpha_quads_[i].size() == quads_[i].size()) continue;
+    alpha_quads_[i].clear();
+    for (const Quad& quad : quads_[i])
+      alpha_quads_[i].push_back(quad[0] >> 24 | quad[1] >> 24 << 8 | quad[2] >> 24 << 16 | quad[3] >> 24 << 24);
+  }
+  const auto [width, height] = size_[0];
+  const auto is_power = [](int side) { return std::has_single_bit(static_cast<unsigned>(side)); };
+  if (alpha_ranges_ || !is_power(width) || !is_power(height)) return;
+  alpha_ranges_.emplace(*this, std::array{std::countr_zero(static_cast<unsigned>(width)),
+                                          std::countr_zero(static_cast<unsigned>(height))});
+}
+
+TexelBlocks::AlphaRanges::AlphaRanges(const TexelBlocks& texels, const std::array<int, 2>& bits) : bits_(bits) {
+  const auto add = [](Range& to, std::uint8_t low, std::uint8_t high) {
+    to.low = std::min(to.low, low);
+    to.high = std::max(to.high, high);
+  };
+  for (int shift = kShift;; ++shift) {
+    const int columns = bits_along(0, shift), rows = bits_along(1, shift);
+    std::vector<Range> squares(std::size_t{1} << (columns + rows));
+    const auto square = [&](int x, int y) -> Range& { return squares[static_cast<std::size_t>(y << columns | x)]; };
+    if (squares_.empty()) {
+      for (int y = 0; y < 1 << bits[1]; ++y)
+        for (int x = 0; x < 1 << bits[0]; ++x) {
+          const auto alpha = static_cast<std::uint8_t>(texels.texel(texels.place_of(0, x, y)) >> 24);
+          add(square(x >> shift, y >> shift), alpha, alpha);
+        }
+    } else {
+      const std::vector<Range>& finer = squares_.back();
+      const int finer_columns = bits_along(0, shift - 1), finer_rows = bits_along(1, shift - 1);
+      for (int y = 0; y < 1 << finer_rows; ++y)
+        for (int x = 0; x < 1 << finer_columns; ++x) {
+          const Range& from = finer[static_cast<std::size_t>(y << finer_columns | x)];
+          add(square(std::min(x >> 1, (1 << columns) - 1), std::min(y >> 1, (1 << rows) - 1)), from.low, from.high);
+        }
+    }
+    squares_.push_back(std::move(squares));
+    if (columns == 0 && rows == 0) return;
+  }
+}
+
+TexelBlocks::AlphaRanges::Range TexelBlocks::AlphaRanges::range(const std::array<std::int32_t, 2>& low,
+                                                                const std::array<std::int32_t, 2>& high,
+                                                                const std::array<TextureWrap, 2>& wrap) const {
+  // Squares of which two along each axis hold them.
+  std::size_t level = 0;
+  const auto is_more_than_two = [&](std::size_t axis) {
+    const auto shift = static_cast<int>(level) + kShift;
+    return (high[axis] >> shift) - (low[axis] >> shift) > 1;
+  };
+  while (level + 1 < squares_.size() && (is_more_than_two(0) || is_more_than_two(1))) ++level;
+  if (is_more_than_two(0) || is_more_than_two(1)) return squares_.back().front();
+  const auto shift = static_cast<int>(level) + kShift;
+  const auto along = [&](std::size_t axis, std::int32_t texel) -> std::size_t {
+    const std::int32_t square = texel >> shift, last = (1 << bits_along(axis, shift)) - 1, period = 2 * last + 1;
+    switch (wrap[axis]) {
+      case TextureWrap::repeat: return static_cast<std::size_t>(square & last);
+      case TextureWrap::clamp: return static_cast<std::size_t>(std::clamp(square, 0, last));
+      default: return static_cast<std::size_t>((square & period) > last ? period - (square & period) : square & period);
+    }
+  };
+  Range all;
+  for (const std::int32_t y : {low[1], high[1]})
+    for (const std::int32_t x : {low[0], high[0]}) {
+      const Range& one = squares_[level][along(1, y) << bits_along(0, shift) | along(0, x)];
+      all.low = std::min(all.low, one.low);
+      all.high = std::max(all.high, one.high);
+    }
+  return all;
 }
 
 }  // namespace halfplane

@@ -5,8 +5,10 @@
 // takes four times the memory, and one load a pixel in place of four.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "../../scene.hpp"
@@ -31,6 +33,30 @@ class TexelBlocks {
   /// Place by place as in `blocks`; null where there are none.
   [[nodiscard]] const Quad* quads(const std::array<TextureWrap, 2>& wrap) const;
 
+  /// The least and the largest alpha of level 0 in squares of 4, 8, ... texels, down to one that holds them all.
+  class AlphaRanges {
+   public:
+    struct Range {
+      std::uint8_t low = 255, high = 0;
+    };
+    /// `bits`: log2 of its sides.
+    AlphaRanges(const TexelBlocks& texels, const std::array<int, 2>& bits);
+    /// Of columns and rows `low` to `high`, which an image may end between: of what lies in squares that meet them.
+    [[nodiscard]] Range range(const std::array<std::int32_t, 2>& low, const std::array<std::int32_t, 2>& high,
+                              const std::array<TextureWrap, 2>& wrap) const;
+
+   private:
+    /// Squares along an axis, as bits.
+    [[nodiscard]] int bits_along(std::size_t axis, int shift) const { return std::max(bits_[axis] - shift, 0); }
+    std::array<int, 2> bits_;
+    std::vector<std::vector<Range>> squares_;  ///< of 4, 8, ... texels, row after row
+  };
+  /// Makes them, where its sides are powers of two; and the alphas of the footprints that there are, by themselves.
+  void add_alphas();
+  /// A footprint's four in a word, place by place; null where there are none.
+  [[nodiscard]] const std::uint32_t* alpha_quads(const std::array<TextureWrap, 2>& wrap) const;
+  [[nodiscard]] const AlphaRanges* alpha_ranges() const { return alpha_ranges_ ? &*alpha_ranges_ : nullptr; }
+
   std::vector<Block> blocks;                  ///< level after level, row of blocks after row
   std::array<std::int32_t, kLevels> first{};  ///< texel of each level
 
@@ -43,6 +69,8 @@ class TexelBlocks {
 
   std::vector<Size> size_;                  ///< of each level
   std::array<std::vector<Quad>, 4> quads_;  ///< by what repeats: u, v
+  std::array<std::vector<std::uint32_t>, 4> alpha_quads_;
+  std::optional<AlphaRanges> alpha_ranges_;
 };
 
 }  // namespace halfplane

@@ -127,14 +127,14 @@ struct TileColors {
   }
 };
 
-/// Of `pixels`, those that the alpha test lets pass. `colors`: of a block, as in TileColors.
-template <class Colors>
-HALFPLANE_INLINE std::uint64_t test_alpha(const Bin& bin, std::uint64_t pixels, const Colors& colors) {
+/// Of `pixels`, those that the alpha test lets pass. `alpha_of`: those of a block.
+template <class AlphaOf>
+HALFPLANE_INLINE std::uint64_t test_alphas(const Bin& bin, std::uint64_t pixels, AlphaOf&& alpha_of) {
   const DepthFunc func = bin.ops->alpha.func;
   const I16 reference(bin.ops->alpha.reference);
   std::uint64_t passed = 0;
   for_each_block([&](auto block) HALFPLANE_LAMBDA {
-    const I16 alpha = shift_right_logical(colors[block].green_alpha, 16);
+    const I16 alpha = alpha_of(block);
     const I16 less = alpha < reference, equal = alpha == reference;
     I16 passes(0);
     if (depth_passes(func, 0, 1)) passes |= less;
@@ -143,6 +143,45 @@ HALFPLANE_INLINE std::uint64_t test_alpha(const Bin& bin, std::uint64_t pixels, 
     passed |= std::uint64_t{bits_of(passes)} << (kBlockPixels * block);
   });
   return passed & pixels;
+}
+/// `colors`: of a block, as in TileColors.
+template <class Colors>
+HALFPLANE_INLINE std::uint64_t test_alpha(const Bin& bin, std::uint64_t pixels, const Colors& colors) {
+  return test_alphas(bin, pixels, [&colors](auto block) HALFPLANE_LAMBDA {
+    return shift_right_logical(colors[block].green_alpha, 16);
+  });
+}
+
+/// Whether the alpha of a surface's linear filter may be had without its colours.
+HALFPLANE_INLINE bool has_alpha_alone(const DrawnSurface& surface) {
+  const SurfaceConstants& of = surface.constants;
+  return of.are_in_lanes && of.has_texture && !of.light && of.texture.alpha_quads != nullptr &&
+         sampling_of(of.texture) == Sampling::linear &&
+         (!of.has_color || of.texture.combine == TextureCombine::modulate);
+}
+
+/// test_alpha() of such a surface in a tile.
+HALFPLANE_NOINLINE std::uint64_t test_linear_alpha(const Bin& bin, const DrawnSurface& surface, int tile,
+                                                   std::uint64_t pixels) {
+  const SurfaceConstants& of = surface.constants;
+  const LaneTexture& texture = of.texture;
+  const SurfaceRamps<Sampling::linear> ramps(bin, surface, tile % kBinTiles, tile / kBinTiles, of.has_color);
+  alignas(64) std::array<std::uint32_t, kTileSize * kTileSize> quads;
+  CoordinateLanes from_middle[4];
+  for_each_block([&](auto block) HALFPLANE_LAMBDA {
+    CoordinateLanes at;
+    (void)ramps.find_coordinates(of, block, at);
+    from_middle[block].u = at.u - 128;
+    from_middle[block].v = at.v - 128;
+    const Places places(footprint_places(texture, from_middle[block], BaseLevel(texture)));
+    fetch_texels(texture.alpha_quads, places, quads.data() + block * kBlockPixels);
+  });
+  return test_alphas(bin, pixels, [&](auto block) HALFPLANE_LAMBDA {
+    const I16 texel = linear_alpha(texture, from_middle[block], I16::load(quads.data() + block * kBlockPixels));
+    if (!of.has_color) return texel;
+    const I16 own = shift_right_logical(ramps.own(bin, surface, block).green_alpha, 16);
+    return as<I16>(divide_by_255(as<S32>(own) * as<S32>(texel)));
+  });
 }
 
 /// Depths of `pixels`, which have passed every test.
@@ -205,12 +244,58 @@ HALFPLANE_NOINLINE void lay_over(Bin& bin, const BinTriangle& t, int tile, std::
   });
 }
 
+/// What the alpha test comes to for all pixels of a tile that a textured triangle covers at its corners, as far as the alphas
+/// say it of all texels that may be looked at: level 0 alone.
+HALFPLANE_NOINLINE Outcome texture_outcome(Bin& bin, const BinTriangle& t, int tile, std::uint64_t pixels) {
+  constexpr std::uint64_t kCorners =
+      1 | std::uint64_t{1} << (kBlockPixels + 3) | std::uint64_t{1} << (2 * kBlockPixels + 12) | std::uint64_t{1} << 63;
+  if ((pixels & kCorners) != kCorners || bin.samples != 1) return Outcome::some_pass;
+  const SurfaceConstants& of = drawn_surface(bin, static_cast<std::size_t>(t.surface)).constants;
+  const LaneTexture& texture = of.texture;
+  if (!of.are_in_lanes || !of.has_texture || of.light || texture.alpha_ranges == nullptr) return Outcome::some_pass;
+  const Sampling sampling = sampling_of(texture);
+  if (sampling == Sampling::any) return Outcome::some_pass;
+  const int tile_x = (bin.first_x >> kTileShift) + tile % kBinTiles,
+            tile_y = (bin.first_y >> kTileShift) + tile / kBinTiles;
+  // Corner after corner, over and over.
+  const I16 column = I16::of([](int i) { return (i & 1) != 0 ? kTileSize / 2 - 1 : -kTileSize / 2; }),
+            row = I16::of([](int i) { return (i & 2) != 0 ? kTileSize / 2 - 1 : -kTileSize / 2; });
+  const auto at_corners = [&](const LanePlane& plane) HALFPLANE_LAMBDA {
+    return column * plane.step_x + row * plane.step_y + plane.anchor(tile_x, tile_y);
+  };
+  const ReciprocalsOfQ q(at_corners(of.coordinate.q), of.division);
+  std::array<std::int32_t, 2> low, high;
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const LaneAttribute& attribute = of.coordinate.attribute[axis];
+    const I16 u = over_q(at_corners(attribute.p), q, attribute, of.of_coordinate);
+    const I16 sum = (texture.up == 0 ? u : u << texture.up) + texture.reference[axis];
+    alignas(64) std::array<std::int32_t, kBlockPixels> corner;
+    sum.store(corner.data());
+    const auto [least, most] = std::minmax({corner[0], corner[1], corner[2], corner[3]});
+    const std::int32_t half = sampling == Sampling::linear ? 1 << (kTexelFraction - 1) : 0;  // to the texels around
+    low[axis] = (least - texture.margin[axis] - half) >> kTexelFraction;
+    high[axis] = (most + texture.margin[axis] + half) >> kTexelFraction;
+  }
+  const TexelBlocks::AlphaRanges::Range texel = texture.alpha_ranges->range(low, high, texture.wrap);
+  const auto result = [&](std::uint32_t own, std::uint32_t of_texel) HALFPLANE_LAMBDA -> std::uint32_t {
+    if (!of.has_color) return of_texel;
+    switch (texture.combine) {
+      case TextureCombine::replace: return texture.has_alpha ? of_texel : own;
+      case TextureCombine::decal: return own;
+      default: return halfplane::divide_by_255(own * of_texel);
+    }
+  };
+  return test_outcome(bin.ops->alpha.func, bin.ops->alpha.reference, result(of.color_low[3], texel.low),
+                      result(of.color_high[3], texel.high));
+}
+
 /// What the alpha test comes to for all pixels of a tile, as far as the alpha of a triangle's plane says it: what lanes
 /// compute from the tile's anchor, where nothing of it wraps.
-HALFPLANE_INLINE Outcome alpha_outcome(const Bin& bin, const BinTriangle& t, int tile) {
+HALFPLANE_INLINE Outcome alpha_outcome(Bin& bin, const BinTriangle& t, int tile, std::uint64_t pixels) {
   if (!bin.tests_alpha) return Outcome::all_pass;
   if (bin.is_killed) return Outcome::none_passes;
-  if (!bin.skip.alpha_tiles || t.surface != 0) return Outcome::some_pass;
+  if (!bin.skip.alpha_tiles) return Outcome::some_pass;
+  if (t.surface != 0) return texture_outcome(bin, t, tile, pixels);
   const LaneFormat& format = bin.color_format;
   const auto upper = [](std::int32_t pair) HALFPLANE_LAMBDA { return pair >> 16; };
   const int step_x = upper(t.color.step_x[1]), step_y = upper(t.color.step_y[1]);
@@ -239,7 +324,7 @@ HALFPLANE_NOINLINE void operate_on_tile(Bin& bin, const BinTriangle& t, int tile
     return;
   }
   if (!bin.tests_alpha && !ops.state.color_write && bin.skip.masked_draws) return;
-  const Outcome alpha = alpha_outcome(bin, t, tile);
+  const Outcome alpha = alpha_outcome(bin, t, tile, passed);
   if (alpha == Outcome::none_passes) {
     count_killed(bin, static_cast<unsigned>(std::popcount(passed)));
     ++bin.job.counters.skipped.alpha_tiles;
@@ -248,13 +333,26 @@ HALFPLANE_NOINLINE void operate_on_tile(Bin& bin, const BinTriangle& t, int tile
   if (bin.lays_over)
     return bin.config.color_format == ColorFormat::rgb565 ? lay_over<ColorFormat::rgb565>(bin, t, tile, passed)
                                                           : lay_over<ColorFormat::rgba8888>(bin, t, tile, passed);
-  const TileColors colors(bin, t, tile, passed);
   std::uint64_t kept = passed;
-  if (alpha == Outcome::some_pass) {
-    kept = test_alpha(bin, passed, colors);
+  const auto keep = [&](std::uint64_t those) HALFPLANE_LAMBDA {
+    kept = those;
     count_killed(bin, static_cast<unsigned>(std::popcount(passed & ~kept)));
+    if (bin.tests_alpha && ops.state.depth_write) write_depths(bin, t, tile, kept);
+  };
+  // What passes replaces what is stored: its colour waits as any other surface's, and is computed if it is seen.
+  if (t.surface != 0 && bin.samples == 1 && bin.skip.attributes && bin.sees_surfaces() && ops.color.is_plain()) {
+    if (alpha == Outcome::some_pass) {
+      const DrawnSurface& surface = drawn_surface(bin, static_cast<std::size_t>(t.surface));
+      keep(has_alpha_alone(surface) ? test_linear_alpha(bin, surface, tile, passed)
+                                    : test_alpha(bin, passed, TileColors(bin, t, tile, passed)));
+    } else {
+      keep(passed);
+    }
+    if (kept != 0) see(bin, t.surface, tile, kept);
+    return;
   }
-  if (bin.tests_alpha && ops.state.depth_write) write_depths(bin, t, tile, kept);
+  const TileColors colors(bin, t, tile, passed);
+  keep(alpha == Outcome::some_pass ? test_alpha(bin, passed, colors) : passed);
   if ((!ops.state.color_write && bin.skip.masked_draws) || (kept == 0 && bin.skip.operations_early_z)) return;
   need_color(bin, tile);
   store_colors(bin, bin.memory.color.data() + first_of(tile), kept, colors);

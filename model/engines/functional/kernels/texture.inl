@@ -139,26 +139,35 @@ HALFPLANE_INLINE Footprints gathered_footprints(const LaneTexture& texture, cons
           fetch(right + lower), from_middle.u & 255,  from_middle.v & 255};
 }
 
-/// All four at once. Before the first of a clamped image there is it alone.
+/// Of texels before the first of a clamped image there is none but that.
+HALFPLANE_INLINE I16 part_of(const I16& coordinate, TextureWrap wrap) {
+  const I16 bits = coordinate & 255;
+  return wrap == TextureWrap::clamp ? bits & ~(coordinate >> 31) : bits;
+}
+
+/// Where the footprints of a linear filter begin, `from_middle`: less half a texel.
+template <class Level>
+HALFPLANE_INLINE I16 footprint_places(const LaneTexture& texture, const CoordinateLanes& from_middle,
+                                      const Level& level) {
+  const I16 x = wrapped_texel(from_middle.u >> kTexelFraction, texture.wrap[0], level.template last<0>()),
+            y = wrapped_texel(from_middle.v >> kTexelFraction, texture.wrap[1], level.template last<1>());
+  return level.first() + column_place(x) + row_place(y, level.pitch());
+}
+
+/// All four at once.
 template <class Level>
 HALFPLANE_INLINE Footprints footprints_of_quads(const LaneTexture& texture, const CoordinateLanes& from_middle,
                                                 const Level& level) {
-  const auto part = [](const I16& coordinate, TextureWrap wrap) HALFPLANE_LAMBDA {
-    const I16 bits = coordinate & 255;
-    return wrap == TextureWrap::clamp ? bits & ~(coordinate >> 31) : bits;
-  };
-  const I16 x = wrapped_texel(from_middle.u >> kTexelFraction, texture.wrap[0], level.template last<0>()),
-            y = wrapped_texel(from_middle.v >> kTexelFraction, texture.wrap[1], level.template last<1>());
   constexpr int kQuadShift = 4;  // bytes
-  const Places place((level.first() + column_place(x) + row_place(y, level.pitch())) << kQuadShift);
+  const Places place(footprint_places(texture, from_middle, level) << kQuadShift);
   const auto* const quads = reinterpret_cast<const char*>(texture.quads);
   const Columns texels = turned_rows([&](int i) HALFPLANE_LAMBDA { return quads + place[i]; });
   return {texels.first,
           texels.second,
           texels.third,
           texels.fourth,
-          part(from_middle.u, texture.wrap[0]),
-          part(from_middle.v, texture.wrap[1])};
+          part_of(from_middle.u, texture.wrap[0]),
+          part_of(from_middle.v, texture.wrap[1])};
 }
 
 /// Sums of R, G, B and A.
@@ -200,6 +209,14 @@ HALFPLANE_INLINE ChannelSums linear_sums(const LaneTexture& texture, const Coord
   };
   return {{first(above.red_blue, below.red_blue), first(above.green_alpha, below.green_alpha),
            second(above.red_blue, below.red_blue), second(above.green_alpha, below.green_alpha)}};
+}
+
+/// linear_sums() of alpha alone, as an integer. `quads`: of the lanes' footprints; `from_middle`: where they are.
+HALFPLANE_INLINE I16 linear_alpha(const LaneTexture& texture, const CoordinateLanes& from_middle, const I16& quads) {
+  const auto left = as<S32>(quads & 0xff00ff), right = as<S32>(shift_right_logical(quads, 8) & 0xff00ff);
+  const auto across = as<S32>(doubled(part_of(from_middle.u, texture.wrap[0])));
+  const auto rows = as<I16>((left << 8) + (right - left) * across);
+  return weighted(rows, weights_of(part_of(from_middle.v, texture.wrap[1])), 16) >> 16;
 }
 
 /// Of sums with 16 fraction bits the integers.
