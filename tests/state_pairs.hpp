@@ -34,6 +34,7 @@ inline Config all_operations() {
   config.blend_lanes = 4;
   config.stencil_bits = 8;
   config.fog_units = config.shade_units = 1;
+  config.setup_plane_clocks = 2;
   return config;
 }
 

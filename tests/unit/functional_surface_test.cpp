@@ -165,6 +165,8 @@ TEST(FunctionalSurface, AlphaOfPatchesIsTheSameOnEveryPath) {
       state.texture_mag = state.texture_min == TextureMin::linear ? TextureMag::linear : TextureMag::nearest;
       state.alpha_test = {random.index(2) == 0 ? DepthFunc::gequal : DepthFunc::less, 128};
       state.depth_write = random.index(2) == 0;
+      state.color_write = seed % 3 != 0;
+      if (seed % 5 == 0) state.fog = Fog{};
       builder.scene.states.push_back(state);
       add_triangles(builder.scene, random, 12, 200, random.index(3) * 3.0, std::exp2(random.between(0, 9)));
       const Config config = with_colors(name);

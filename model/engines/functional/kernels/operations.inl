@@ -340,7 +340,8 @@ HALFPLANE_NOINLINE void operate_on_tile(Bin& bin, const BinTriangle& t, int tile
     if (bin.tests_alpha && ops.state.depth_write) write_depths(bin, t, tile, kept);
   };
   // What passes replaces what is stored: its colour waits as any other surface's, and is computed if it is seen.
-  if (t.surface != 0 && bin.samples == 1 && bin.skip.attributes && bin.sees_surfaces() && ops.color.is_plain()) {
+  // bin.state.color_write says as well that alpha is looked at.
+  if (t.surface != 0 && bin.samples == 1 && bin.skip.attributes && ops.state.color_write && ops.color.is_plain()) {
     if (alpha == Outcome::some_pass) {
       const DrawnSurface& surface = drawn_surface(bin, static_cast<std::size_t>(t.surface));
       keep(has_alpha_alone(surface) ? test_linear_alpha(bin, surface, tile, passed)
