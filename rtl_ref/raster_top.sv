@@ -271,8 +271,8 @@ module raster_top (
 
   // With planes over w and one sample a pixel, what a triangle's fragments share lies apart from them until they are tested:
   // the steps of those planes, and the frame of coordinates, by a number that goes along. Only then are those planes moved to
-  // the pixels. As many numbers as triangles that
-  // can be between setup and test: those in slots of contexts, and one for each fragment behind that.
+  // the pixels. There are as many numbers as triangles can be between setup and test: those in slots of contexts, and one for
+  // each fragment behind that, since a triangle's end goes as one.
   localparam bit APART = raster_pkg::COORDINATES != 0 && raster_pkg::MSAA_SAMPLES == 1;
   localparam int NUMBER = $clog2(raster_pkg::CONTEXT_SLOTS + raster_pkg::CACHE_QUEUE + 16);
   /* verilator lint_off UNUSEDSIGNAL */  // without such planes

@@ -4,7 +4,8 @@
 // form anchor + i step_x + j step_y (i, j pixels from pixel (T/2, T/2)), modulo the local width; its code is the bits above
 // the fraction, and at a covered sample in the range of the vertices by the bounds of the widths: nothing clamps it. Planes
 // behind depth and colours, 1/w and what lies over it, stay as they are; where triangles' constants are APART (raster_top) the
-// anchors of the tile go on in place of them (stored_fragment.sv). Latency 6 cycles, one stamp per cycle. Nothing waits on the way: a stamp enters when there is a place for its fragment in the FIFO at the
+// anchors of the tile go on in place of them (stored_fragment.sv). Latency 6 cycles, one stamp per cycle. Nothing waits on the
+// way: a stamp enters when there is a place for its fragment in the FIFO at the
 // end. A cycle each:
 //   context  the context is read
 //   x, y     from the anchor to the stamp's first sample

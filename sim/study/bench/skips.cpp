@@ -30,9 +30,9 @@ constexpr std::array kOwn{kFineGrid, kGlassBehind, kFaint, kOpaqueGlass, kMasked
 /// that fill no tile. fragments_early_z: overlap that tiles alone do not decide, and layers of which each passes.
 /// clear: a mesh that leaves most tiles alone, and triangles that need every pixel of them. operations_early_z: blended
 /// layers behind opaque ones, and layers that all are seen. alpha_tiles: layers of which an alpha test drops one half by the
-/// alpha of their vertices, and by that of a texture, of which it decides half of the tiles. opaque_blends: layers that blend, of alpha 1 and of less.
-/// masked_draws: blended layers whose channels are masked, and layers that write all. bins: of two pictures in turns one object
-/// is elsewhere, or all are; any other scene is at rest.
+/// alpha of their vertices, and by that of a texture, where it decides half of the tiles. opaque_blends: layers that blend,
+/// of alpha 1 and of less. masked_draws: blended layers whose channels are masked, and layers that write all. bins: of two
+/// pictures in turns one object is elsewhere, or all are; any other scene is at rest.
 constexpr std::array<SkipPair, 19> kPairs{{{kObjects, "objects", "teapot"},
                                            {kNodes, "objects", "teapot"},
                                            {"frustum", "objects", "teapot"},
