@@ -268,9 +268,8 @@ HALFPLANE_NOINLINE Outcome texture_outcome(Bin& bin, const BinTriangle& t, int t
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const LaneAttribute& attribute = of.coordinate.attribute[axis];
     const I16 u = over_q(at_corners(attribute.p), q, attribute, of.of_coordinate);
-    const I16 sum = (texture.up == 0 ? u : u << texture.up) + texture.reference[axis];
     alignas(64) std::array<std::int32_t, kBlockPixels> corner;
-    sum.store(corner.data());
+    on_axis(texture, axis, u, texture.reference[axis]).store(corner.data());
     const auto [least, most] = std::minmax({corner[0], corner[1], corner[2], corner[3]});
     const std::int32_t half = sampling == Sampling::linear ? 1 << (kTexelFraction - 1) : 0;  // to the texels around
     low[axis] = (least - texture.margin[axis] - half) >> kTexelFraction;

@@ -460,9 +460,7 @@ HALFPLANE_NOINLINE void shade_pieces(Bin& bin, const SurfaceStyle& style, int ti
     const auto along = [&](const I16& at_anchor, const I16& of_x, const I16& of_y, const I16& narrow, const I16& drop,
                            const I16& reference, std::size_t axis) HALFPLANE_LAMBDA {
       const I16 u = over_q(at_anchor + column * of_x + line * of_y, q, narrow, drop, is_tame, style.of_coordinate);
-      const I16 sum = (texture.up == 0 ? u : u << texture.up) + reference;
-      constexpr std::int32_t kFar = 1 << 22;  // as find_coordinates() has it
-      return texture.wrap[axis] == TextureWrap::clamp ? min(max(sum, I16(-kFar)), I16(kFar)) : sum;
+      return on_axis(texture, axis, u, reference);
     };
     const I16& drops = step_x.fourth;
     at[block].u =

@@ -82,10 +82,7 @@ struct SurfaceRamps {
     const ReciprocalsOfQ q(coordinate.q(block), of.division);
     const auto along = [&](std::size_t axis) HALFPLANE_LAMBDA {
       const I16 u = over_q(coordinate.p[axis](block), q, of.coordinate.attribute[axis], of.of_coordinate);
-      const I16 sum = (texture.up == 0 ? u : u << texture.up) + texture.reference[axis];
-      // Far beyond the image one texel is like the next, and so 32 bits hold twice that.
-      constexpr std::int32_t kFar = 1 << 22;
-      return texture.wrap[axis] == TextureWrap::clamp ? min(max(sum, I16(-kFar)), I16(kFar)) : sum;
+      return on_axis(texture, axis, u, texture.reference[axis]);
     };
     at.u = along(0);
     at.v = along(1);

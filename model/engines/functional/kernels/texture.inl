@@ -6,6 +6,15 @@ struct CoordinateLanes {
   I16 u, v;
 };
 
+/// Of a quotient of over_q() the coordinate along an axis. Far beyond the image one texel is like the next, and so 32 bits hold
+/// twice that.
+template <class Reference>
+HALFPLANE_INLINE I16 on_axis(const LaneTexture& texture, std::size_t axis, const I16& u, const Reference& reference) {
+  const I16 sum = (texture.up == 0 ? u : u << texture.up) + reference;
+  constexpr std::int32_t kFar = 1 << 22;
+  return texture.wrap[axis] == TextureWrap::clamp ? min(max(sum, I16(-kFar)), I16(kFar)) : sum;
+}
+
 /// Level 0 in all lanes.
 struct BaseLevel {
   const LaneTexture& texture;
