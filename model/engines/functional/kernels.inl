@@ -27,6 +27,7 @@ namespace {
 #include "kernels/light.inl"            // light of sixteen pixels
 #include "kernels/surface.inl"          // colours of a tile's pixels from them
 #include "kernels/pieces.inl"           // surfaces of small triangles, sixteen at a time
+#include "kernels/piece_colors.inl"     // colours of pixels that show them
 #include "kernels/seen.inl"             // whose colours wait
 #include "kernels/layers.inl"           // blended triangles that wait on whole tiles
 #include "kernels/operations.inl"       // alpha test, blending, masks

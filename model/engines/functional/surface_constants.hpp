@@ -140,7 +140,6 @@ struct SurfaceStyle {
   Sampling sampling = Sampling::none;
   bool is_affine = false;            ///< w makes no difference to coordinates
   bool is_tame = true;               ///< so are the coordinates of all that have been set up: LaneAttribute
-  std::int32_t first = 0;            ///< number of the first that has it
   std::array<double, 2> size{1, 1};  ///< texels along the texture's sides
   PerspectiveFormat format;
   LaneDivision division;

@@ -101,33 +101,43 @@ struct SeenSurface {
   std::int32_t drawn;  ///< into BinMemory::drawn, when it is set up; else -1
 };
 
-/// A small or medium triangle, as much of it as lies in a window of two by two tiles.
-struct Piece {
+/// Sixteen small or medium triangles of a batch, as much of each as lies in its window of two by two tiles, whose colours
+/// wait. Each is a piece; those beyond the batch are never seen.
+struct PieceGroup {
   const Slice* slice;
-  const Record* record;
-  std::int32_t window;  ///< as SmallBatch has it
-  std::uint16_t alone;  ///< its number in BinMemory::seen, where lanes do not set it up
+  std::size_t style;                      ///< in BinMemory::styles
+  std::array<const Record*, 16> records;  ///< and what follows: as SmallBatch has them
+  alignas(64) SmallBatch::LaneArray<3> corner;
+  alignas(64) SmallBatch::Lane left, top;
+  std::uint32_t live;
+  bool is_set_up;
+  std::uint32_t alone;                    ///< those that lanes have not set up, a bit each
+  std::array<std::uint16_t, 16> surface;  ///< their numbers in BinMemory::seen
 };
 
-/// What a pixel looks at of the piece that it shows: rows of four words, a word of a row a lane.
-struct alignas(64) PieceConstants {
+/// Four numbers of each piece of a group: column after column where a register of sixteen numbers can be asked for any of
+/// them, else piece after piece.
+struct alignas(64) PieceRow {
+  std::array<std::int32_t, 4 * 16> number{};
+};
+
+/// What a pixel looks at of the piece that it shows; of a group.
+struct PieceConstants {
   /// In a tile. A window has one with even column and even row, and so on.
   struct Tile {
-    std::array<std::int32_t, 4> coordinates{};  ///< anchors of Q and of P of u and v, in lanes; u_ref of v
-    std::array<std::int32_t, 4>
-        colors{};  ///< anchors of red and green, blue and alpha; codes of the vertices, lowest, highest
+    PieceRow coordinates;  ///< anchors of Q and of P of u and v, in lanes; u_ref of v
+    PieceRow colors;       ///< anchors of red and green, blue and alpha; codes of the vertices, lowest, highest
   };
-  std::array<std::int32_t, 4> step_x{};  ///< of Q and P; and, a byte each, what LaneAttribute drops: narrow, drop
-  std::array<std::int32_t, 4> step_y{};  ///< of Q and P; u_ref of u
-  std::array<std::int32_t, 4> color{};   ///< steps in x, red and green first, and in y
-  std::array<std::int32_t, 4> unused{};
-  std::array<Tile, 4> tile{};  ///< by the lowest bit of its column, and that of its row
+  PieceRow step_x;           ///< of Q and P; and, a byte each, what LaneAttribute drops: narrow, drop
+  PieceRow step_y;           ///< of Q and P; u_ref of u
+  PieceRow color;            ///< steps in x, red and green first, and in y
+  std::array<Tile, 4> tile;  ///< by the lowest bit of its column, and that of its row
 };
 
 /// The same of its level of detail: lines of u and v along y, and along x.
-struct alignas(64) PieceLevels {
-  std::array<std::int32_t, 4> at_zero{}, step{};
-  std::array<std::int32_t, 4> offset{};  ///< the first of them
+struct PieceLevels {
+  PieceRow at_zero, step;
+  PieceRow offset;  ///< the first column
 };
 
 /// The pixels of a bin: tile after tile, block after block, row after row. And the triangles that have taken tiles.
@@ -141,15 +151,12 @@ struct BinMemory {
   alignas(64) std::array<std::uint16_t, kBinSize * kBinSize> surface;  ///< into `seen`, 0: the colour is there
   std::array<SeenSurface, kSurfaces> seen;                             ///< from 1 on
   std::vector<DrawnSurface> drawn;
-  // Pieces that wait, from 1 on; a pixel of one has its number and this beside it.
-  static constexpr std::size_t kFirstPiece = kSurfaces;
-  enum : std::uint8_t { kUnseen, kSetUp, kAlone };
-  std::vector<Piece> pieces;               ///< kSurfaces, where there are any
-  std::vector<std::uint8_t> piece_states;  ///< likewise, of each
-  std::vector<std::uint8_t> seen_numbers;  ///< by what pixels have: those of pieces are 0 but while they are looked at
-  std::vector<PieceConstants> constants;   ///< likewise; the first is nobody's
-  std::vector<PieceLevels> levels;         ///< likewise, where a style asks
-  std::vector<SurfaceStyle> styles;        ///< of pieces that follow each other
+  // Pieces that wait, by group, from 1 on; a pixel of one has 16 times the group's number, its own, and this beside it.
+  static constexpr std::size_t kFirstPiece = kSurfaces, kGroups = kSurfaces / 16;
+  std::vector<PieceGroup> groups;         ///< kGroups, where there are any
+  std::vector<PieceConstants> constants;  ///< likewise; the first group is nobody's
+  std::vector<PieceLevels> levels;        ///< likewise, where a style asks
+  std::vector<SurfaceStyle> styles;
 
   static BinMemory& of_thread() {
     static thread_local BinMemory memory;
@@ -175,7 +182,7 @@ struct TileCutouts {
   bool is_split_below;
   std::uint16_t low_below, high_below;  ///< range of the depths there
   PixelsOfSamples below;                ///< what of it is seen, once drop_hidden() has said so
-  Cutout cutout[kMost];  // GCC 12 takes an access to a std::array of these for one of another array
+  Cutout cutout[kMost];                 // GCC 12 takes an access to a std::array of these for one of another array
 };
 
 /// What a bin keeps by sample where a pixel has several, each laid out as BinMemory is; colours of tiles that are split.
@@ -272,8 +279,7 @@ struct Bin {
   bool falls = false, rises = false;  ///< what a passing depth may do to the stored one
   std::size_t plane_count = 0;
   std::size_t surface_count = 0;  ///< of BinMemory::seen
-  std::size_t piece_count = 0;    ///< of BinMemory::pieces
-  bool has_lone_pieces = false;   ///< some that lanes did not set up
+  std::size_t group_count = 0;    ///< of BinMemory::groups
   std::size_t layer_count = 0;    ///< of LayerMemory
   bool is_range_old = true;       ///< low, high and lowest_high: found when somebody asks
   /// Cutouts that others have hidden, less those whose colours somebody has asked for before the end: below zero, none wait.

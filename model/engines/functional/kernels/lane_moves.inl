@@ -632,9 +632,9 @@ HALFPLANE_INLINE void store_rows(const Columns& from, void* to, std::size_t stri
              [=](int i) HALFPLANE_LAMBDA { return static_cast<char*>(to) + static_cast<std::size_t>(i) * stride; });
 }
 
-/// Two columns of sixteen rows of two numbers.
+/// Four columns of sixteen rows of four numbers.
 struct DoubleColumns {
-  D16 first, second;
+  D16 first, second, third, fourth;
 };
 
 /// Lane i: the row at row_at(i).
@@ -643,41 +643,44 @@ HALFPLANE_INLINE DoubleColumns turned_doubles(RowAt&& row_at) {
   DoubleColumns to;
 #if defined(__x86_64__)
   for (int part = 0; part < D16::kParts; ++part) {
-    const auto row = [&](int i) HALFPLANE_LAMBDA {
-      return _mm_loadu_pd(reinterpret_cast<const double*>(row_at(part * D16::kLanes + i)));
-    };
-    const auto rows = [&](int i) HALFPLANE_LAMBDA {  // i, i + 2, ...
+    const auto row = [&](int i) HALFPLANE_LAMBDA { return static_cast<const double*>(row_at(part * D16::kLanes + i)); };
 #if HALFPLANE_ISA == 512
-      const __m512d two = _mm512_insertf64x2(_mm512_castpd128_pd512(row(i)), row(i + 2), 1);
-      return _mm512_insertf64x2(_mm512_insertf64x2(two, row(i + 4), 2), row(i + 6), 3);
-#elif HALFPLANE_ISA == 256
-      return _mm256_insertf128_pd(_mm256_castpd128_pd256(row(i)), row(i + 2), 1);
-#else
-      return row(i);
-#endif
+    const auto rows = [&](int i) HALFPLANE_LAMBDA {  // i and i + 2
+      return _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(row(i))), _mm256_loadu_pd(row(i + 2)), 1);
     };
-    const auto a = rows(0), b = rows(1);
-#if HALFPLANE_ISA == 512
-    to.first.part[part] = (D16::Register)_mm512_unpacklo_pd(a, b);
-    to.second.part[part] = (D16::Register)_mm512_unpackhi_pd(a, b);
+    const __m512d a = rows(0), b = rows(1), c = rows(4), d = rows(5);
+    const __m512d ab_low = _mm512_unpacklo_pd(a, b), ab_high = _mm512_unpackhi_pd(a, b),
+                  cd_low = _mm512_unpacklo_pd(c, d), cd_high = _mm512_unpackhi_pd(c, d);
+    to.first.part[part] = (D16::Register)_mm512_shuffle_f64x2(ab_low, cd_low, 0x88);
+    to.second.part[part] = (D16::Register)_mm512_shuffle_f64x2(ab_high, cd_high, 0x88);
+    to.third.part[part] = (D16::Register)_mm512_shuffle_f64x2(ab_low, cd_low, 0xdd);
+    to.fourth.part[part] = (D16::Register)_mm512_shuffle_f64x2(ab_high, cd_high, 0xdd);
 #elif HALFPLANE_ISA == 256
-    to.first.part[part] = (D16::Register)_mm256_unpacklo_pd(a, b);
-    to.second.part[part] = (D16::Register)_mm256_unpackhi_pd(a, b);
+    const __m256d a = _mm256_loadu_pd(row(0)), b = _mm256_loadu_pd(row(1)), c = _mm256_loadu_pd(row(2)),
+                  d = _mm256_loadu_pd(row(3));
+    const __m256d ab_low = _mm256_unpacklo_pd(a, b), ab_high = _mm256_unpackhi_pd(a, b),
+                  cd_low = _mm256_unpacklo_pd(c, d), cd_high = _mm256_unpackhi_pd(c, d);
+    to.first.part[part] = (D16::Register)_mm256_permute2f128_pd(ab_low, cd_low, 0x20);
+    to.second.part[part] = (D16::Register)_mm256_permute2f128_pd(ab_high, cd_high, 0x20);
+    to.third.part[part] = (D16::Register)_mm256_permute2f128_pd(ab_low, cd_low, 0x31);
+    to.fourth.part[part] = (D16::Register)_mm256_permute2f128_pd(ab_high, cd_high, 0x31);
 #else
+    const __m128d a = _mm_loadu_pd(row(0)), b = _mm_loadu_pd(row(1)), c = _mm_loadu_pd(row(0) + 2),
+                  d = _mm_loadu_pd(row(1) + 2);
     to.first.part[part] = (D16::Register)_mm_unpacklo_pd(a, b);
     to.second.part[part] = (D16::Register)_mm_unpackhi_pd(a, b);
+    to.third.part[part] = (D16::Register)_mm_unpacklo_pd(c, d);
+    to.fourth.part[part] = (D16::Register)_mm_unpackhi_pd(c, d);
 #endif
   }
 #else
   const auto column = [&](int at) HALFPLANE_LAMBDA {
-    return D16::of([&](int i) HALFPLANE_LAMBDA {
-      double value;
-      std::memcpy(&value, reinterpret_cast<const char*>(row_at(i)) + 8 * at, sizeof value);
-      return value;
-    });
+    return D16::of([&](int i) HALFPLANE_LAMBDA { return static_cast<const double*>(row_at(i))[at]; });
   };
   to.first = column(0);
   to.second = column(1);
+  to.third = column(2);
+  to.fourth = column(3);
 #endif
   return to;
 }

@@ -1,5 +1,5 @@
-// Surfaces of small and medium triangles: set up sixteen at a time, a triangle a lane, once it is known that they are seen;
-// and shaded sixteen pixels at a time, whosever they are: a lane fetches what it needs of the triangle that it shows.
+// Surfaces of small and medium triangles: set up sixteen at a time, a triangle a lane, once it is known that one of them is
+// seen.
 // A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
 
 HALFPLANE_INLINE D16 magnitude(const D16& v) { return as<D16>(as<L16>(v) & std::int64_t{0x7fffffffffffffff}); }
@@ -9,10 +9,32 @@ HALFPLANE_INLINE I16 exponent_field(const D16& v) { return upper_halves(as<L16>(
 HALFPLANE_INLINE D16 power_of_field(const I16& field) { return as<D16>(convert<std::int64_t>(field) << 52); }
 constexpr std::int32_t kDoubleBias = 1023;
 
-/// snap(): floor(v + 1/2), where that sum itself would round.
+/// snap(): floor(v + 1/2). Where that sum itself would round it does so downwards, which leaves its floor what it is.
 HALFPLANE_INLINE D16 snapped(const D16& v) {
-  const D16 whole = floor(v);
+#if HALFPLANE_ISA == 512
+  D16 r;
+  for (int i = 0; i < D16::kParts; ++i)
+    r.part[i] = (D16::Register)_mm512_add_round_pd((__m512d)v.part[i], _mm512_set1_pd(0.5),
+                                                   _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
+  return floor(r);
+#else
+  const D16 whole = floor(v);  // or it is not computed
   return whole + as<D16>(as<L16>(D16(1.0)) & (v - whole >= 0.5));
+#endif
+}
+/// The same in 32 bits.
+HALFPLANE_INLINE I16 snapped_codes(const D16& v) {
+#if HALFPLANE_ISA == 512
+  const auto half = [&v](int i) HALFPLANE_LAMBDA {
+    constexpr int kDown = _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC;
+    return _mm512_cvt_roundpd_epi32(_mm512_add_round_pd((__m512d)v.part[i], _mm512_set1_pd(0.5), kDown), kDown);
+  };
+  I16 r;
+  r.part[0] = (I16::Register)_mm512_inserti64x4(_mm512_castsi256_si512(half(0)), half(1), 1);
+  return r;
+#else
+  return convert<std::int32_t>(snapped(v));
+#endif
 }
 
 /// What the three corners have of something.
@@ -66,9 +88,9 @@ struct OverWLanes {
     exponent = max(bits_above_point(largest_of(a, b, c)), reach - 1) - format.bits;
     const auto find_codes = [&]() HALFPLANE_LAMBDA {
       const D16 scale = power_of_field(kDoubleBias - exponent);
-      p.a = convert<std::int32_t>(snapped(a * scale));
-      p.b = convert<std::int32_t>(snapped(b * scale));
-      p.c = convert<std::int32_t>(snapped(c * scale));
+      p.a = snapped_codes(a * scale);
+      p.b = snapped_codes(b * scale);
+      p.c = snapped_codes(c * scale);
     };
     find_codes();
     const I16 is_too_large = max(max(magnitude(p.a), magnitude(p.b)), magnitude(p.c)) >= 1 << format.bits;
@@ -112,11 +134,22 @@ struct FirstCorner {
   }
 };
 
+/// Four numbers of each piece of a group, a piece a lane.
+HALFPLANE_INLINE void store_row(const Columns& from, PieceRow& to) {
+#if HALFPLANE_ISA == 512
+  from.first.store(to.number.data());
+  from.second.store(to.number.data() + 16);
+  from.third.store(to.number.data() + 32);
+  from.fourth.store(to.number.data() + 48);
+#else
+  store_rows(from, to.number.data(), 4 * sizeof to.number[0]);
+#endif
+}
+
 /// setup_lod(). Returns the lanes that it does not have, a bit each.
 HALFPLANE_NOINLINE std::uint32_t set_up_levels(const SmallCorners& corners, const FirstCorner& first, const QLanes& q,
                                                const OfCorners<D16>& u, const OfCorners<D16>& v,
-                                               const PerspectiveFormat& format, int grid_bits,
-                                               const std::array<PieceLevels*, 16>& to) {
+                                               const PerspectiveFormat& format, int grid_bits, PieceLevels& to) {
   const L16 first_is_b = convert<std::int64_t>(first.is_b), first_is_c = convert<std::int64_t>(first.is_c),
             is_turned = convert<std::int64_t>(corners.is_turned);
   // Corners in canonical order, in which sums are rounded.
@@ -177,14 +210,9 @@ HALFPLANE_NOINLINE std::uint32_t set_up_levels(const SmallCorners& corners, cons
     find_line(2 + axis, column[axis], slope[axis], x[0]);
   }
   const I16 offset = select(is_flat, I16(-64), 2 * format.guard_bits - up) << kLodFraction;
-  const auto store = [&to](const I16& a, const I16& b, const I16& c, const I16& d, std::size_t at) HALFPLANE_LAMBDA {
-    store_rows(Columns{a, b, c, d}, [&to, at](int i) HALFPLANE_LAMBDA {
-      return reinterpret_cast<char*>(to[static_cast<std::size_t>(i)]) + at;
-    });
-  };
-  store(at_zero[0], at_zero[1], at_zero[2], at_zero[3], offsetof(PieceLevels, at_zero));
-  store(step[0], step[1], step[2], step[3], offsetof(PieceLevels, step));
-  store(offset, offset, offset, offset, offsetof(PieceLevels, offset));
+  store_row({at_zero[0], at_zero[1], at_zero[2], at_zero[3]}, to.at_zero);
+  store_row({step[0], step[1], step[2], step[3]}, to.step);
+  store_row({offset, offset, offset, offset}, to.offset);
   return bits_of(~is_flat & convert<std::int32_t>(largest < 0x1p-500));
 }
 
@@ -252,42 +280,31 @@ struct PieceScale {
   }
 };
 
-/// Constants of up to sixteen pieces of one slice, by their numbers. Returns those that lanes do not have, a bit each.
+/// Constants of a group. Those that lanes do not have are PieceGroup::alone.
 template <class Arithmetic>
-HALFPLANE_NOINLINE std::uint32_t set_up_pieces(Bin& bin, SurfaceStyle& style,
-                                               const std::array<std::uint16_t, 16>& numbers, int count) {
+HALFPLANE_NOINLINE void set_up_pieces(Bin& bin, std::size_t number) {
   BinMemory& memory = bin.memory;
+  PieceGroup& group = memory.groups[number];
+  PieceConstants& to = memory.constants[number];
+  SurfaceStyle& style = memory.styles[group.style];
   const Widths& widths = bin.widths;
-  SmallBatch batch;
-  batch.count = count;
-  std::array<PieceConstants*, 16> to;
-  for (std::size_t i = 0; i < 16; ++i) {
-    const bool is_there = static_cast<int>(i) < count;
-    to[i] = &memory.constants[is_there ? numbers[i] : 0];
-    if (!is_there) continue;
-    batch.records[i] = memory.pieces[numbers[i]].record;
-    batch.window[i] = memory.pieces[numbers[i]].window;
-  }
-  load_records(batch, bin.first_x, bin.first_y);
-  const Slice& slice = *memory.pieces[numbers[0]].slice;
-  const SmallCorners corners = small_corners(batch, slice);
+  const Slice& slice = *group.slice;
+  const auto* const vertices = reinterpret_cast<const char*>(slice.surface);
+  static_assert(sizeof(SurfaceRow) == 2 * sizeof(VertexRow));  // `corner` is of those
+  for (const SmallBatch::Lane& corner : group.corner)          // they are asked for below: until then they are there
+    for (const std::int32_t place : corner) __builtin_prefetch(vertices + 2 * static_cast<std::uint32_t>(place));
+  const SmallCorners corners = small_corners(group.corner, group.live, slice);
   const SmallPlanes<Arithmetic> planes(corners, widths);
-  const I16 left = I16::load(batch.left.data()), top = I16::load(batch.top.data());
+  const I16 left = I16::load(group.left.data()), top = I16::load(group.top.data());
   const FromOrigin from_origin = anchor_from_origin(corners, left, top, widths.grid_bits, bin.first_x, bin.first_y);
   const auto is_odd = [](const I16& pixel) HALFPLANE_LAMBDA { return -((pixel >> kTileShift) & 1); };
   const I16 is_odd_column = is_odd(left), is_odd_row = is_odd(top);
-  const auto store = [&to](const I16& a, const I16& b, const I16& c, const I16& d, std::size_t offset)
-                         HALFPLANE_LAMBDA {
-                           store_rows(Columns{a, b, c, d}, [&to, offset](int i) HALFPLANE_LAMBDA {
-                             return reinterpret_cast<char*>(to[static_cast<std::size_t>(i)]) + offset;
-                           });
-                         };
   {
     const ColorRange range(corners, slice.state.is_flat);
     std::array<SmallChannels, 2> colors;
     OnlyCentres centres;
     find_small_colors(planes, from_origin, bin.centred_color, slice.state.is_flat, range, centres, colors);
-    store(colors[0].step_x, colors[1].step_x, colors[0].step_y, colors[1].step_y, offsetof(PieceConstants, color));
+    store_row({colors[0].step_x, colors[1].step_x, colors[0].step_y, colors[1].step_y}, to.color);
     I16 at[2][4];
     for (std::size_t p = 0; p < 2; ++p) {
       const Anchors& from = colors[p].at;
@@ -298,28 +315,22 @@ HALFPLANE_NOINLINE std::uint32_t set_up_pieces(Bin& bin, SurfaceStyle& style,
       at[p][2] = select(is_odd_row, even_column[0], even_column[1]);
       at[p][3] = select(is_odd_row, odd_column[0], odd_column[1]);
     }
-    for (std::size_t i = 0; i < 4; ++i)
-      store(at[0][i], at[1][i], range.low, range.high,
-            offsetof(PieceConstants, tile) + i * sizeof(PieceConstants::Tile) + offsetof(PieceConstants::Tile, colors));
+    for (std::size_t i = 0; i < 4; ++i) store_row({at[0][i], at[1][i], range.low, range.high}, to.tile[i].colors);
   }
 
   OfCorners<D16> w, inverse, u, v;
   std::uint32_t alone = 0;
   {
     const auto fetch = [&](std::size_t k, D16& its_w, D16& its_inverse, D16& its_u, D16& its_v) HALFPLANE_LAMBDA {
-      static_assert(sizeof(SurfaceRow) == 2 * sizeof(VertexRow));
-      const Places place(I16::load(batch.corner[k].data()) << 1);  // of bytes, from those of rows
-      const auto half = [&](int i, std::size_t offset) HALFPLANE_LAMBDA {
-        return reinterpret_cast<const char*>(slice.surface) + offset + place[i];
-      };
-      static_assert(offsetof(SurfaceRow, u) == 8 && offsetof(SurfaceRow, v) == 16 &&
+      const Places place(I16::load(group.corner[k].data()) << 1);
+      static_assert(offsetof(SurfaceRow, w) == 0 && offsetof(SurfaceRow, u) == 8 && offsetof(SurfaceRow, v) == 16 &&
                     offsetof(SurfaceRow, inverse) == 24);
-      const DoubleColumns first = turned_doubles([&](int i) HALFPLANE_LAMBDA { return half(i, 0); }),
-                          second = turned_doubles([&](int i) HALFPLANE_LAMBDA { return half(i, 16); });
-      its_w = style.is_affine ? D16(1.0) : first.first;
-      its_inverse = style.is_affine ? D16(1.0) : second.second;
-      its_u = first.second * style.size[0];
-      its_v = second.first * style.size[1];
+      const DoubleColumns rows =
+          turned_doubles([&](int i) HALFPLANE_LAMBDA -> const void* { return vertices + place[i]; });
+      its_w = style.is_affine ? D16(1.0) : rows.first;
+      its_inverse = style.is_affine ? D16(1.0) : rows.fourth;
+      its_u = rows.second * style.size[0];
+      its_v = rows.third * style.size[1];
     };
     fetch(0, w.a, inverse.a, u.a, v.a);
     fetch(1, w.b, inverse.b, u.b, v.b);
@@ -336,7 +347,7 @@ HALFPLANE_NOINLINE std::uint32_t set_up_pieces(Bin& bin, SurfaceStyle& style,
   const OverWLanes along_u(u, q, style.format.coordinate), along_v(v, q, style.format.coordinate);
   const PieceScale scale_u(along_u, q.number, style), scale_v(along_v, q.number, style);
   alone |= bits_of((scale_u.drop < 0) | (scale_v.drop < 0));
-  style.is_tame = style.is_tame && (bits_of(scale_u.is_tame & scale_v.is_tame) | alone) == 0xffff;
+  style.is_tame = style.is_tame && (~(bits_of(scale_u.is_tame & scale_v.is_tame) | alone) & group.live) == 0;
 
   const auto reference = [&style](const OverWLanes& along, std::size_t axis) HALFPLANE_LAMBDA {
     const I16 whole = convert<std::int32_t>(along.reference);
@@ -352,11 +363,8 @@ HALFPLANE_NOINLINE std::uint32_t set_up_pieces(Bin& bin, SurfaceStyle& style,
   const I16 drops = byte(scale_u.narrow, 0) | byte(scale_v.narrow, 8) | byte(scale_u.drop, 16) | (scale_v.drop << 24);
 
   const FirstCorner first(corners);
-  if (style.sampling == Sampling::any) {
-    std::array<PieceLevels*, 16> levels;
-    for (std::size_t i = 0; i < 16; ++i) levels[i] = memory.levels.data() + (to[i] - memory.constants.data());
-    alone |= set_up_levels(corners, first, q, u, v, style.format, widths.grid_bits, levels);
-  }
+  if (style.sampling == Sampling::any)
+    alone |= set_up_levels(corners, first, q, u, v, style.format, widths.grid_bits, memory.levels[number]);
   const PieceOrder order(first.is_b, first.is_c, corners.is_turned, q.code);
   const auto x = order.turned_to_base(corners.a.x, corners.b.x, corners.c.x),
              y = order.turned_to_base(corners.a.y, corners.b.y, corners.c.y);
@@ -389,144 +397,10 @@ HALFPLANE_NOINLINE std::uint32_t set_up_pieces(Bin& bin, SurfaceStyle& style,
   const PiecePlanes::Plane of_q = over_w(turn(q.code), style.division.up),
                            of_u = over_w(turn(along_u.p), style.of_coordinate.up),
                            of_v = over_w(turn(along_v.p), style.of_coordinate.up);
-  store(of_q.step_x, of_u.step_x, of_v.step_x, drops, offsetof(PieceConstants, step_x));
-  store(of_q.step_y, of_u.step_y, of_v.step_y, reference_u, offsetof(PieceConstants, step_y));
+  store_row({of_q.step_x, of_u.step_x, of_v.step_x, drops}, to.step_x);
+  store_row({of_q.step_y, of_u.step_y, of_v.step_y, reference_u}, to.step_y);
   for (std::size_t i = 0; i < 4; ++i)
-    store(of_q.at[i], of_u.at[i], of_v.at[i], reference_v,
-          offsetof(PieceConstants, tile) + i * sizeof(PieceConstants::Tile) +
-              offsetof(PieceConstants::Tile, coordinates));
-  return alone & ((1U << count) - 1);
-}
-
-/// over_q(), `value`: P. Lanes have what LaneAttribute has. `is_tame`: as there, of all.
-HALFPLANE_INLINE I16 over_q(const I16& value, const ReciprocalsOfQ& q, const I16& narrow, const I16& drop, bool is_tame,
-                            const LaneOverW& format) {
-  const I16 down = q.exponent + narrow - PieceScale::kNarrowLess;
-  I16 number;
-  if (is_tame) {
-    number = ((value >> down) + 1) >> 1;
-  } else {
-    const I16 dropped = down - format.up;
-    const I16 p = with_more_bits(value >> format.up, max(-dropped, I16(0))) >> min(max(dropped, I16(0)), I16(31));
-    number = min(max((p + 1) >> 1, I16(format.lowest)), I16(format.highest));
-  }
-  const I16 lower = q.reciprocal & format.lower_bits;
-  const I16 product = number * (q.reciprocal >> format.split) + ((number * lower) >> format.split);
-  return ((product >> drop) + 1) >> 1;
-}
-
-/// Levels of detail at pixels, by the rows of PieceLevels. `q`: float_bits() of Q.
-HALFPLANE_INLINE I16 piece_lod(const Columns& at_zero, const Columns& step, const I16& offset, const I16& x,
-                               const I16& y, const I16& q) {
-  const auto at = [](const I16& zero, const I16& of_pixel, const I16& pixel)
-                      HALFPLANE_LAMBDA { return as<W16>(magnitude(zero + pixel * of_pixel)); };
-  const W16 to_right = octagon_length(at(at_zero.first, step.first, y), at(at_zero.second, step.second, y)),
-            down = octagon_length(at(at_zero.third, step.third, x), at(at_zero.fourth, step.fourth, x));
-  return log2_code_of(max(to_right, down)) - (log2_code(q) << 1) + offset;
-}
-
-/// The colours of a tile's pixels that show pieces of one style. One step after the other for all four blocks, as shade()
-/// has it: texels are on their way while the next block's are looked for.
-template <Sampling kSampling>
-HALFPLANE_NOINLINE void shade_pieces(Bin& bin, const SurfaceStyle& style, int tile, std::uint64_t pixels) {
-  const LaneTexture& texture = style.texture;
-  const LanePositions& position = bin.position;
-  const std::uint16_t* const numbers = bin.memory.surface.data() + first_of(tile);
-  std::uint32_t* const colors = bin.memory.color.data() + first_of(tile);
-  const char* const shared = reinterpret_cast<const char*>(bin.memory.constants.data());
-  const auto parity = static_cast<std::size_t>((tile & 1) | (tile / kBinTiles & 1) << 1);
-  const char* const of_tile = shared + offsetof(PieceConstants, tile) + parity * sizeof(PieceConstants::Tile);
-  const ColorFormat format = bin.config.color_format;
-  const bool is_tame = style.is_tame;
-  const int color_down = bin.centred_color.down;
-  alignas(64) std::uint32_t place[4][kBlockPixels];  // of constants, in bytes
-  alignas(64) std::array<std::uint32_t, kTileSize * kTileSize> nearest;
-  CoordinateLanes at[4];
-  I16 lod[4], red_blue[4], green_alpha[4];
-  for_each_block([&](auto block) HALFPLANE_LAMBDA {
-    const std::uint32_t bits = block_bits(pixels, block);
-    if (bits == 0) return;
-    const I16 number = load_narrow(numbers + block * kBlockPixels) - static_cast<std::int32_t>(BinMemory::kFirstPiece);
-    static_assert(sizeof(PieceConstants) == 3 * 64 && sizeof(PieceLevels) == 64);
-    const I16 whose = select_by_bits(bits, number, I16(0), position.to_sign) << 6;
-    (whose + (whose << 1)).store(place[block]);
-    ColumnsOfRows<2> step;
-    turned_rows([&](int i) HALFPLANE_LAMBDA { return shared + word_at(place[block], i); }, step);
-    const Columns anchor = turned_rows([&](int i) HALFPLANE_LAMBDA { return of_tile + word_at(place[block], i); });
-    const Columns &step_x = step.row[0], &step_y = step.row[1];
-    const std::size_t right = block & 1, below = block >> 1;
-    const I16 &column = position.column[right], &line = position.row[below];
-    const ReciprocalsOfQ q(anchor.first + column * step_x.first + line * step_y.first, style.division);
-    const auto along = [&](const I16& at_anchor, const I16& of_x, const I16& of_y, const I16& narrow, const I16& drop,
-                           const I16& reference, std::size_t axis) HALFPLANE_LAMBDA {
-      const I16 u = over_q(at_anchor + column * of_x + line * of_y, q, narrow, drop, is_tame, style.of_coordinate);
-      return on_axis(texture, axis, u, reference);
-    };
-    const I16& drops = step_x.fourth;
-    at[block].u =
-        along(anchor.second, step_x.second, step_y.second, drops << 24 >> 24, drops << 8 >> 24, step_y.fourth, 0);
-    at[block].v = along(anchor.third, step_x.third, step_y.third, drops << 16 >> 24, drops >> 24, anchor.fourth, 1);
-    if constexpr (kSampling == Sampling::nearest) {
-      const Places texels(nearest_places(texture, at[block], BaseLevel(texture)));
-      fetch_texels(texture.texels, texels, nearest.data() + block * kBlockPixels);
-    }
-    if constexpr (kSampling == Sampling::any) {
-      const Places of_levels(whose);
-      const auto level_row = [&](std::size_t offset) HALFPLANE_LAMBDA {
-        const char* const levels = reinterpret_cast<const char*>(bin.memory.levels.data()) + offset;
-        return turned_rows([&of_levels, levels](int i) HALFPLANE_LAMBDA { return levels + of_levels[i]; });
-      };
-      const I16 x = position.block_x +
-                    (bin.first_x + tile % kBinTiles * kTileSize + static_cast<int>(right) * kBlockSize),
-                y = position.block_y +
-                    (bin.first_y + tile / kBinTiles * kTileSize + static_cast<int>(below) * kBlockSize);
-      const Columns at_zero = level_row(offsetof(PieceLevels, at_zero)),
-                    of_pixel = level_row(offsetof(PieceLevels, step)), less = level_row(offsetof(PieceLevels, offset));
-      lod[block] = piece_lod(at_zero, of_pixel, less.first, x, y, q.bits);
-    }
-  });
-  if constexpr (kSampling != Sampling::nearest) {
-    for_each_block([&](auto block) HALFPLANE_LAMBDA {
-      if (block_bits(pixels, block) == 0) return;
-      const ColorPairs texels = texels_at<kSampling>(texture, at[block], lod[block]);
-      red_blue[block] = texels.red_blue;
-      green_alpha[block] = texels.green_alpha;
-    });
-  }
-  for_each_block([&](auto block) HALFPLANE_LAMBDA {
-    const std::uint32_t bits = block_bits(pixels, block);
-    if (bits == 0) return;
-    const std::size_t right = block & 1, below = block >> 1;
-    const Columns step = turned_rows(
-        [&](int i) HALFPLANE_LAMBDA { return shared + offsetof(PieceConstants, color) + word_at(place[block], i); });
-    const Columns from = turned_rows([&](int i) HALFPLANE_LAMBDA {
-      return of_tile + offsetof(PieceConstants::Tile, colors) + word_at(place[block], i);
-    });
-    const S32 column_pair = as<S32>(position.column_pair[right]), row_pair = as<S32>(position.row_pair[below]);
-    const auto pair = [&](const I16& at_anchor, const I16& of_x, const I16& of_y, std::size_t which) HALFPLANE_LAMBDA {
-      const S32 value = column_pair * as<S32>(of_x) + row_pair * as<S32>(of_y) + as<S32>(at_anchor);
-      const S32 code = (value >> color_down) + static_cast<std::int16_t>(0x80);
-      return as<I16>(
-          min(max(code, as<S32>(channel_pair(from.third, which))), as<S32>(channel_pair(from.fourth, which))));
-    };
-    const I16 red_green = pair(from.first, step.first, step.third, 0),
-              blue_alpha = pair(from.second, step.second, step.fourth, 1);
-    const ColorPairs own(pairs(red_green, blue_alpha),
-                         shift_right_logical(red_green, 16) | (blue_alpha & static_cast<std::int32_t>(0xffff0000U)));
-    const ColorPairs texels = [&]() HALFPLANE_LAMBDA {
-      if constexpr (kSampling == Sampling::nearest) return ColorPairs(I16::load(nearest.data() + block * kBlockPixels));
-      return ColorPairs(red_blue[block], green_alpha[block]);
-    }();
-    const ColorPairs mixed = combined(own, texels, texture);
-    const I16 color = packed(mixed.red_blue, mixed.green_alpha, format);
-    std::uint32_t* const to = colors + block * kBlockPixels;
-    (bits == 0xffff ? color : select_by_bits(bits, color, I16::load(to), position.to_sign)).store(to);
-  });
-}
-HALFPLANE_INLINE void shade_pieces(Bin& bin, const SurfaceStyle& style, int tile, std::uint64_t pixels) {
-  switch (style.sampling) {
-    case Sampling::nearest: return shade_pieces<Sampling::nearest>(bin, style, tile, pixels);
-    case Sampling::linear: return shade_pieces<Sampling::linear>(bin, style, tile, pixels);
-    default: return shade_pieces<Sampling::any>(bin, style, tile, pixels);
-  }
+    store_row({of_q.at[i], of_u.at[i], of_v.at[i], reference_v}, to.tile[i].coordinates);
+  group.alone = alone & group.live;
+  group.is_set_up = true;
 }

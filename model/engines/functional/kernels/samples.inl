@@ -90,7 +90,7 @@ HALFPLANE_INLINE void sample_pair(const Bin& bin, const SmallPlanes<Arithmetic>&
 /// Depths and colours of the samples of a batch, from the planes at the anchors of their tiles.
 template <class Arithmetic>
 HALFPLANE_NOINLINE void set_up_samples(Bin& bin, const Slice& slice, SampleRounds& rounds) {
-  const SmallCorners corners = small_corners(bin.small, slice);
+  const SmallCorners corners = small_corners(bin.small.corner, bin.small.live, slice);
   const SmallPlanes<Arithmetic> planes(corners, bin.widths);
   find_samples(bin, corners, rounds);
   sample_depths(bin, planes, rounds);

@@ -47,88 +47,65 @@ inline std::uint16_t add_surface(Bin& bin, const Slice& slice, const Record& rec
 
 /// The pixels of a tile that show pieces, where it waits pixel by pixel.
 HALFPLANE_INLINE std::uint64_t pixels_of_pieces(const Bin& bin, const U64& surface) {
-  if (bin.piece_count == 0) return 0;
+  if (bin.group_count == 0) return 0;
   return bits_at_least(surface, U64(static_cast<std::uint16_t>(BinMemory::kFirstPiece)));
 }
 
-/// Sets up the pieces that tiles show.
-HALFPLANE_NOINLINE void set_up_seen(Bin& bin, std::uint64_t tiles) {
-  BinMemory& memory = bin.memory;
-  std::uint8_t* const states = memory.piece_states.data();
-  std::uint8_t* const seen = memory.seen_numbers.data();  // by the number of a pixel, whoever has it
-  for (; tiles != 0; tiles &= tiles - 1) {
-    const int tile = std::countr_zero(tiles);
-    if (bin.color_owner[tile] != Bin::kSurfaces) continue;
-    const std::uint16_t* const numbers = memory.surface.data() + first_of(tile);
-    for (int i = 0; i < kTileSize * kTileSize; ++i) seen[numbers[i]] = 1;
-  }
-  std::array<std::uint16_t, 16> numbers{};
-  std::size_t style = 0;
-  int count = 0;
-  const auto set_up_those = [&]() {
-    if (count == 0) return;
-    SurfaceStyle& of = memory.styles[style];
-    const std::uint32_t alone = bin.is_short ? set_up_pieces<ShortArithmetic>(bin, of, numbers, count)
-                                             : set_up_pieces<LongArithmetic>(bin, of, numbers, count);
-    for (int i = 0; i < count; ++i) {
-      const std::size_t number = numbers[static_cast<std::size_t>(i)];
-      Piece& piece = memory.pieces[number];
-      const bool is_alone = (alone >> i & 1) != 0;
-      states[number] = is_alone ? BinMemory::kAlone : BinMemory::kSetUp;
-      bin.has_lone_pieces |= is_alone;
-      if (is_alone) piece.alone = add_surface(bin, *piece.slice, *piece.record);
-    }
-    count = 0;
-  };
-  const auto add = [&](std::size_t number) {
-    if (states[number] != BinMemory::kUnseen) return;
-    const auto style_ends = [&]() {
-      return style + 1 < memory.styles.size() && static_cast<std::size_t>(memory.styles[style + 1].first) <= number;
-    };
-    if (style_ends() || (count != 0 && memory.pieces[numbers[0]].slice != memory.pieces[number].slice)) set_up_those();
-    while (style_ends()) ++style;
-    numbers[static_cast<std::size_t>(count)] = static_cast<std::uint16_t>(number);
-    if (++count == 16) set_up_those();
-  };
-  constexpr std::size_t kWord = 8;
-  for (std::size_t first = 0; first <= bin.piece_count; first += kWord) {
-    std::uint8_t* const word = seen + BinMemory::kFirstPiece + first;
-    std::uint64_t any;
-    std::memcpy(&any, word, kWord);
-    if (any == 0) continue;
-    for (std::size_t i = 0; i < kWord; ++i)
-      if (word[i] != 0) add(first + i);
-    std::memset(word, 0, kWord);
-  }
-  set_up_those();
+/// A group that is set up when the first of its pieces is seen.
+HALFPLANE_INLINE const PieceGroup& group_set_up(Bin& bin, std::size_t number) {
+  const PieceGroup& group = bin.memory.groups[number];
+  if (!group.is_set_up)
+    bin.is_short ? set_up_pieces<ShortArithmetic>(bin, number) : set_up_pieces<LongArithmetic>(bin, number);
+  return group;
 }
 
-/// Shades those `pixels` of a tile that show pieces which are set up; returns the others.
+/// Gives pixels of pieces that lanes have not set up the numbers of surfaces; returns the other ones.
+HALFPLANE_NOINLINE std::uint64_t without_lone(Bin& bin, PieceGroup& group, std::uint16_t* numbers,
+                                              std::uint64_t pixels) {
+  for (std::uint64_t rest = pixels; rest != 0; rest &= rest - 1) {
+    std::uint16_t& number = numbers[std::countr_zero(rest)];
+    const std::size_t i = number % 16;
+    if ((group.alone >> i & 1) == 0) continue;
+    if (group.surface[i] == 0) group.surface[i] = add_surface(bin, *group.slice, *group.records[i]);
+    number = group.surface[i];
+    pixels &= ~(rest & -rest);
+  }
+  return pixels;
+}
+
+/// Shades those `pixels` of a tile that show pieces; returns the others.
 HALFPLANE_NOINLINE std::uint64_t shade_pieces_of(Bin& bin, int tile, std::uint64_t pixels) {
   BinMemory& memory = bin.memory;
   std::uint16_t* const numbers = memory.surface.data() + first_of(tile);
-  std::uint64_t pieces = pixels_of_pieces(bin, U64::load(numbers));
-  if (bin.has_lone_pieces) {
-    for (std::uint64_t rest = pieces; rest != 0; rest &= rest - 1) {
-      std::uint16_t& number = numbers[std::countr_zero(rest)];
-      if (memory.piece_states[number - BinMemory::kFirstPiece] != BinMemory::kAlone) continue;
-      number = memory.pieces[number - BinMemory::kFirstPiece].alone;
-      pieces &= ~(rest & -rest);
-    }
+  const U64 surface = U64::load(numbers), group = surface & U64(0xfff0);
+  TilePieces shown;
+  std::uint64_t pieces = 0;
+  for (std::uint64_t rest = pixels_of_pieces(bin, surface); rest != 0;) {
+    const auto first = static_cast<std::uint16_t>(numbers[std::countr_zero(rest)] & 0xfff0);
+    const std::size_t number = (first - BinMemory::kFirstPiece) / 16;
+    std::uint64_t here = bits_equal(group, U64(first));
+    rest &= ~here;
+    if (group_set_up(bin, number).alone != 0) here = without_lone(bin, memory.groups[number], numbers, here);
+    if (here == 0) continue;
+    shown.add(number, here);
+    pieces |= here;
   }
-  const U64 surface = U64::load(numbers);
+  const auto style_of = [&](std::size_t i) { return memory.groups[shown.group[i]].style; };
   std::uint64_t rest = pieces;
-  for (std::size_t style = memory.styles.size(); rest != 0 && style-- != 0;) {
-    const auto first = static_cast<std::uint16_t>(memory.styles[style].first + BinMemory::kFirstPiece);
-    const std::uint64_t here = rest & bits_at_least(surface, U64(first));
-    if (here != 0) shade_pieces(bin, memory.styles[style], tile, here);
+  for (std::size_t i = 0; rest != 0; ++i) {
+    if ((shown.pixels[i] & rest) == 0) continue;
+    const std::size_t style = style_of(i);
+    std::uint64_t here = 0;
+    for (std::size_t k = i; k < shown.count; ++k)
+      if (style_of(k) == style) here |= shown.pixels[k];
+    shade_pieces(bin, memory.styles[style], tile, shown, here);
     rest &= ~here;
   }
   return pixels & ~pieces;
 }
 
-/// Colours of a tile of which pixels wait: then they are in memory. Its pieces are set up.
-HALFPLANE_NOINLINE void shade_set_up_tile(Bin& bin, int tile) {
+/// Colours of a tile of which pixels wait: then they are in memory.
+HALFPLANE_NOINLINE void shade_tile(Bin& bin, int tile) {
   const std::int32_t owner = std::exchange(bin.color_owner[tile], std::int16_t{Bin::kInMemory});
   if (owner >= 0) {
     const std::int32_t number = bin.memory.planes[static_cast<std::size_t>(owner)].surface;
@@ -136,7 +113,7 @@ HALFPLANE_NOINLINE void shade_set_up_tile(Bin& bin, int tile) {
   }
   const std::uint16_t* const numbers = bin.memory.surface.data() + first_of(tile);
   std::uint64_t rest = ~bits_equal(U64::load(numbers), U64(0));
-  if (bin.piece_count != 0) rest = shade_pieces_of(bin, tile, rest);
+  if (bin.group_count != 0) rest = shade_pieces_of(bin, tile, rest);
   const U64 surface = U64::load(numbers);
   while (rest != 0) {
     const std::uint16_t number = numbers[std::countr_zero(rest)];
@@ -147,25 +124,22 @@ HALFPLANE_NOINLINE void shade_set_up_tile(Bin& bin, int tile) {
 }
 
 inline void shade_tiles(Bin& bin, std::uint64_t tiles) {
-  if (bin.piece_count != 0) set_up_seen(bin, tiles);
   for (; tiles != 0; tiles &= tiles - 1)
-    if (is_waiting(bin, std::countr_zero(tiles))) shade_set_up_tile(bin, std::countr_zero(tiles));
+    if (is_waiting(bin, std::countr_zero(tiles))) shade_tile(bin, std::countr_zero(tiles));
 }
-HALFPLANE_NOINLINE void shade_tile(Bin& bin, int tile) { shade_tiles(bin, std::uint64_t{1} << tile); }
 
 /// Nobody waits any longer: numbers begin anew.
 HALFPLANE_NOINLINE void shade_all(Bin& bin) {
   shade_tiles(bin, ~std::uint64_t{0});
   bin.surface_count = 0;
   bin.memory.drawn.clear();
-  bin.piece_count = 0;
-  bin.has_lone_pieces = false;
+  bin.group_count = 0;
   bin.memory.styles.clear();
 }
 
 /// Numbers for so many triangles, at most 16.
 HALFPLANE_INLINE void need_surfaces(Bin& bin, std::size_t count) {
-  if (bin.surface_count + bin.piece_count + count >= BinMemory::kSurfaces) shade_all(bin);
+  if (bin.surface_count + 16 * bin.group_count + count >= BinMemory::kSurfaces) shade_all(bin);
 }
 
 /// Whether lanes set up the surfaces of a slice: the last of BinMemory::styles is theirs.
@@ -173,34 +147,36 @@ inline bool has_style(Bin& bin, const Slice& slice) {
   BinMemory& memory = bin.memory;
   if (memory.styles.empty() || memory.styles.back().context != slice.context) {
     memory.styles.emplace_back(bin.job.frame, *slice.context);
-    memory.styles.back().first = static_cast<std::int32_t>(bin.piece_count + 1);
   }
-  if (memory.styles.back().is_in_lanes && memory.pieces.empty()) {
-    memory.pieces.resize(BinMemory::kSurfaces);
-    memory.piece_states.resize(BinMemory::kSurfaces);
-    memory.seen_numbers.resize(BinMemory::kFirstPiece + BinMemory::kSurfaces);
-    memory.constants.resize(BinMemory::kSurfaces);
+  if (memory.styles.back().is_in_lanes && memory.groups.empty()) {
+    memory.groups.resize(BinMemory::kGroups);
+    memory.constants.resize(BinMemory::kGroups);
   }
-  if (memory.styles.back().sampling == Sampling::any && memory.levels.empty())
-    memory.levels.resize(BinMemory::kSurfaces);
+  if (memory.styles.back().sampling == Sampling::any && memory.levels.empty()) memory.levels.resize(BinMemory::kGroups);
   return memory.styles.back().is_in_lanes;
 }
 
 /// Those of a batch, one after the other.
 HALFPLANE_NOINLINE void add_surfaces(Bin& bin, const Slice& slice) {
-  need_surfaces(bin, bin.small.records.size());
+  const SmallBatch& batch = bin.small;
+  need_surfaces(bin, batch.records.size());
   if (!has_style(bin, slice)) {
     bin.batch_surface = static_cast<std::int32_t>(bin.surface_count + 1);
-    for (int i = 0; i < bin.small.count; ++i) add_surface(bin, slice, *bin.small.records[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < batch.count; ++i) add_surface(bin, slice, *batch.records[static_cast<std::size_t>(i)]);
     return;
   }
-  const std::size_t first = bin.piece_count + 1;
-  bin.batch_surface = static_cast<std::int32_t>(BinMemory::kFirstPiece + first);
-  bin.piece_count += static_cast<std::size_t>(bin.small.count);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(bin.small.count); ++i) {
-    bin.memory.pieces[first + i] = {&slice, bin.small.records[i], bin.small.window[i], 0};
-    bin.memory.piece_states[first + i] = BinMemory::kUnseen;
-  }
+  const std::size_t number = ++bin.group_count;
+  bin.batch_surface = static_cast<std::int32_t>(BinMemory::kFirstPiece + 16 * number);
+  PieceGroup& group = bin.memory.groups[number];
+  group.slice = &slice;
+  group.style = bin.memory.styles.size() - 1;
+  group.records = batch.records;
+  group.corner = batch.corner;
+  group.left = batch.left;
+  group.top = batch.top;
+  group.live = batch.live;
+  group.is_set_up = false;
+  group.surface = {};
 }
 
 /// Makes the tile's pixels have numbers. Those of nobody have their colours in memory, and 0.

@@ -209,6 +209,10 @@ struct WideTest {
   HALFPLANE_INLINE I16 choose(std::uint32_t pixels, const I16& a, const I16& b) const {
     return select_by_bits(pixels, a, b, bin.position.to_sign);
   }
+  /// A triangle's number. What was there is not looked at: the next triangle need not wait for it.
+  HALFPLANE_INLINE static void put_number(std::uint32_t pixels, std::int32_t number, std::uint16_t* to) {
+    _mm256_mask_storeu_epi16(to, static_cast<__mmask16>(pixels), _mm256_set1_epi16(static_cast<std::int16_t>(number)));
+  }
 #else
   using Passed = I16;
   /// What is covered and passes: the signs of lanes.
@@ -222,6 +226,10 @@ struct WideTest {
   }
   HALFPLANE_INLINE static I16 choose(const I16& pixels, const I16& a, const I16& b) {
     return select_by_sign(pixels, a, b);
+  }
+  /// A triangle's number.
+  HALFPLANE_INLINE static void put_number(const I16& pixels, std::int32_t number, std::uint16_t* to) {
+    store_narrow(choose(pixels, I16(number), load_narrow(to)), to);
   }
 #endif
   template <class Pixels>
@@ -258,6 +266,9 @@ struct NarrowTest {
   HALFPLANE_INLINE static S16 choose(const S16& pixels, const S16& a, const S16& b) { return select(pixels, a, b); }
   HALFPLANE_INLINE static I16 choose_color(const S16& pixels, const I16& a, const I16& b) {
     return select(widened(pixels), a, b);
+  }
+  HALFPLANE_INLINE static void put_number(const S16& pixels, std::int32_t number, std::uint16_t* to) {
+    store_narrow(choose_color(pixels, I16(number), load_narrow(to)), to);
   }
 };
 #endif
@@ -331,8 +342,7 @@ HALFPLANE_INLINE void draw_blocks(Bin& bin, const Coverage& covered) {
       if (kDepth) test.store(at, test.choose(passed, depth, stored));
       if (kColor == Writes::nothing) continue;
       if (kColor == Writes::surface) {
-        const I16 surface(bin.batch_surface + static_cast<std::int32_t>(i));
-        store_narrow(test.choose_color(passed, surface, load_narrow(surfaces + at)), surfaces + at);
+        test.put_number(passed, bin.batch_surface + static_cast<std::int32_t>(i), surfaces + at);
         continue;
       }
       const I16 color = small_colors<kColor>(bin, i, tile, block, color_down), old = I16::load(colors + at);

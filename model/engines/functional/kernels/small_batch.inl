@@ -117,12 +117,13 @@ struct SmallCorners {
   I16 z_low, z_high;
 };
 
-/// Takes those of no area out of batch.live. Extents of less than 2^14 subpixels.
-HALFPLANE_INLINE SmallCorners small_corners(SmallBatch& batch, const Slice& slice) {
-  const auto fetch = [&batch, vertices = reinterpret_cast<const char*>(slice.vertices.data())](std::size_t k)
+/// `corner`, `live`: as SmallBatch has them; takes those of no area out of `live`. Extents of less than 2^14 subpixels.
+HALFPLANE_INLINE SmallCorners small_corners(const SmallBatch::LaneArray<3>& corner, std::uint32_t& live,
+                                            const Slice& slice) {
+  const auto fetch = [&corner, vertices = reinterpret_cast<const char*>(slice.vertices.data())](std::size_t k)
                          HALFPLANE_LAMBDA {
-                           return load_vertices([&batch, vertices, k](int i) HALFPLANE_LAMBDA {
-                             return vertices + static_cast<std::uint32_t>(batch.corner[k][static_cast<std::size_t>(i)]);
+                           return load_vertices([&corner, vertices, k](int i) HALFPLANE_LAMBDA {
+                             return vertices + static_cast<std::uint32_t>(corner[k][static_cast<std::size_t>(i)]);
                            });
                          };
   const auto choose = [](const I16& sign, const SnappedLanes& p, const SnappedLanes& q) HALFPLANE_LAMBDA {
@@ -132,7 +133,7 @@ HALFPLANE_INLINE SmallCorners small_corners(SmallBatch& batch, const Slice& slic
   const SnappedLanes a = fetch(0), b = fetch(1), c = fetch(2);
   const I16 ax = b.x - a.x, ay = b.y - a.y, bx = c.x - a.x, by = c.y - a.y;
   const I16 area = cross(ax, ay, bx, by), is_turned = area >> 31;
-  batch.live &= ~bits_of(area == 0);
+  live &= ~bits_of(area == 0);
   // (Y, X) from a, as one number.
   const I16 b_key = (ay << 16) + ax, c_key = (by << 16) + bx;
   return {a,

@@ -314,7 +314,7 @@ template <class Arithmetic, class Samples>
 HALFPLANE_NOINLINE void set_up_small(SmallBatch& batch, const Slice& slice, const Widths& widths,
                                      const LaneFormat& depth_format, const LaneFormat& color_format, int first_x,
                                      int first_y, Samples& samples) {
-  const SmallCorners corners = small_corners(batch, slice);
+  const SmallCorners corners = small_corners(batch.corner, batch.live, slice);
   set_up_small_edges(batch, corners, widths.grid_bits, are_short_edges(widths), first_x, first_y, samples);
   find_places(batch);
   const SmallPlanes<Arithmetic> planes(corners, widths);
