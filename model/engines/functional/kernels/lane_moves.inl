@@ -49,9 +49,9 @@ HALFPLANE_INLINE std::uint64_t or_of_bits(const I16& bits, const I16& by, std::u
 }
 
 #if HALFPLANE_ISA == 512
-/// One bit for each lane with a < b. Not by way of a mask in lanes, as GCC takes bits_of().
-HALFPLANE_INLINE std::uint32_t bits_below(const I16& a, const I16& b) {
-  return _mm512_cmplt_epi32_mask((__m512i)a.part[0], (__m512i)b.part[0]);
+/// Those of sixteen bits where a < b. Not by way of a mask in lanes, as GCC takes bits_of().
+HALFPLANE_INLINE std::uint32_t bits_below(std::uint32_t bits, const I16& a, const I16& b) {
+  return _mm512_mask_cmplt_epi32_mask(static_cast<__mmask16>(bits), (__m512i)a.part[0], (__m512i)b.part[0]);
 }
 #endif
 

@@ -330,7 +330,16 @@ HALFPLANE_INLINE D16 floor(const D16& v) {
 }
 
 /// The upper 32 bits of each lane.
-HALFPLANE_INLINE I16 upper_halves(const L16& v) { return convert<std::int32_t>(shift_right_logical(v, 32)); }
+HALFPLANE_INLINE I16 upper_halves(const L16& v) {
+#if HALFPLANE_ISA == 512
+  I16 r;
+  const I16 odd = I16::of([](int i) { return 2 * i + 1; });
+  r.part[0] = (I16::Register)_mm512_permutex2var_epi32((__m512i)v.part[0], (__m512i)odd.part[0], (__m512i)v.part[1]);
+  return r;
+#else
+  return convert<std::int32_t>(shift_right_logical(v, 32));
+#endif
+}
 
 /// Two values of 16 bits in the halves of each lane.
 HALFPLANE_INLINE I16 pairs(const I16& low, const I16& high) { return (low & 0xffff) | (high << 16); }

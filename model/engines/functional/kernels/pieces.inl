@@ -43,6 +43,22 @@ struct OfCorners {
   Lanes a, b, c;
 };
 
+/// Of finite numbers.
+HALFPLANE_INLINE D16 least_of(const OfCorners<D16>& of) { return min(min(of.a, of.b), of.c); }
+HALFPLANE_INLINE D16 largest_magnitude(const OfCorners<D16>& of) {
+#if HALFPLANE_ISA == 512
+  D16 r;
+  constexpr int kLargestMagnitude = 0b1011;
+  for (int i = 0; i < D16::kParts; ++i)
+    r.part[i] =
+        (D16::Register)_mm512_range_pd(_mm512_range_pd((__m512d)of.a.part[i], (__m512d)of.b.part[i], kLargestMagnitude),
+                                       (__m512d)of.c.part[i], kLargestMagnitude);
+  return r;
+#else
+  return max(max(magnitude(of.a), magnitude(of.b)), magnitude(of.c));
+#endif
+}
+
 /// quantize_q().
 struct QLanes {
   OfCorners<D16> number;
@@ -50,9 +66,8 @@ struct QLanes {
 
   /// `inverse`: 1 / w.
   HALFPLANE_INLINE QLanes(const OfCorners<D16>& w, const OfCorners<D16>& inverse, int bits) {
-    const OfCorners<I16> field{exponent_field(w.a), exponent_field(w.b), exponent_field(w.c)};
     // The quotient of a mantissa is that of w, moved.
-    const D16 scale = power_of_field(min(min(field.a, field.b), field.c) + bits);
+    const D16 scale = power_of_field(exponent_field(least_of(w)) + bits);
     const D16 a = inverse.a * scale, b = inverse.b * scale, c = inverse.c * scale;
     // The nearest may round to a bit more than there are.
     const D16 whole(static_cast<double>(std::int64_t{1} << bits) - 0.5);
@@ -73,19 +88,17 @@ struct OverWLanes {
   D16 reference;
 
   HALFPLANE_INLINE OverWLanes(const OfCorners<D16>& texels, const QLanes& q, const OverWFormat& format) {
-    const D16 low = min(min(texels.a, texels.b), texels.c), high = max(max(texels.a, texels.b), texels.c);
+    const D16 low = least_of(texels), high = max(max(texels.a, texels.b), texels.c);
     reference = floor(low * 0.5 + high * 0.5);
     const double limit = static_cast<double>(1 << kMaxReach) * (1 - 0x1p-9);
     const auto from_reference = [&](const D16& of)
                                     HALFPLANE_LAMBDA { return min(max(of - reference, D16(-limit)), D16(limit)); };
     const D16 ua = from_reference(texels.a), ub = from_reference(texels.b), uc = from_reference(texels.c);
     const D16 a = ua * q.number.a, b = ub * q.number.b, c = uc * q.number.c;
-    const auto largest_of = [](const D16& x, const D16& y, const D16& z)
-                                HALFPLANE_LAMBDA { return max(max(magnitude(x), magnitude(y)), magnitude(z)); };
     const auto bits_above_point = [](const D16& number)
                                       HALFPLANE_LAMBDA { return exponent_field(number) - (kDoubleBias - 1); };
-    reach = max(bits_above_point(largest_of(ua, ub, uc) * (1 + 0x1p-10)), I16(0));
-    exponent = max(bits_above_point(largest_of(a, b, c)), reach - 1) - format.bits;
+    reach = max(bits_above_point(largest_magnitude({ua, ub, uc}) * (1 + 0x1p-10)), I16(0));
+    exponent = max(bits_above_point(largest_magnitude({a, b, c})), reach - 1) - format.bits;
     const auto find_codes = [&]() HALFPLANE_LAMBDA {
       const D16 scale = power_of_field(kDoubleBias - exponent);
       p.a = snapped_codes(a * scale);
@@ -268,7 +281,7 @@ struct PieceScale {
     const I16 to_narrow = of.reach - of.exponent + (1 - format.narrow_bits);
     narrow = to_narrow + (style.of_coordinate.up - 1 - kFloatBias + kNarrowLess);
     drop = (all.mantissa_bits + format.narrow_bits - 2 - format.fraction_bits - style.of_coordinate.split) - of.reach;
-    const D16 least = min(min(q.a, q.b), q.c), most = max(max(q.a, q.b), q.c);
+    const D16 least = least_of(q), most = max(max(q.a, q.b), q.c);
     const I16 smallest = exponent_field(least) - (kDoubleBias - all.guard_bits + 1),
               largest = exponent_field(most) - (kDoubleBias - all.guard_bits - 1);
     constexpr int kNarrowBits = 12, kReciprocalBits = 14, kCodes = 11;  // SurfaceConstants::is_never_held()
@@ -335,12 +348,8 @@ HALFPLANE_NOINLINE void set_up_pieces(Bin& bin, std::size_t number) {
     fetch(0, w.a, inverse.a, u.a, v.a);
     fetch(1, w.b, inverse.b, u.b, v.b);
     fetch(2, w.c, inverse.c, u.c, v.c);
-    const auto all_below = [](const OfCorners<D16>& of, double limit) HALFPLANE_LAMBDA {
-      const D16 bound(limit);
-      return (magnitude(of.a) < bound) & (magnitude(of.b) < bound) & (magnitude(of.c) < bound);
-    };
-    const L16 is_usual = all_below(u, 0x1p30) & all_below(v, 0x1p30) & all_below(w, 0x1p500) & (w.a > 0x1p-500) &
-                         (w.b > 0x1p-500) & (w.c > 0x1p-500);
+    const L16 is_usual = (max(largest_magnitude(u), largest_magnitude(v)) < D16(0x1p30)) &
+                         (largest_magnitude(w) < D16(0x1p500)) & (least_of(w) > D16(0x1p-500));
     alone = ~bits_of(convert<std::int32_t>(is_usual)) & 0xffff;
   }
   const QLanes q(w, inverse, style.format.q_bits);

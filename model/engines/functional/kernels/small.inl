@@ -168,7 +168,7 @@ HALFPLANE_INLINE Depth* first_depth(Depth (*samples)[N]) {
   return samples[0];
 }
 
-/// A block's depths in lanes of 32 bits, centred, while they are tested. `Memory`: BinMemory or SampleMemory.
+/// A block's depths in lanes of 32 bits while they are tested. `Memory`: BinMemory or SampleMemory.
 struct WideTest {
   static constexpr unsigned kCount = 1;  ///< what count() says of a pixel
   const Bin& bin;
@@ -184,17 +184,18 @@ struct WideTest {
         is_narrow(bin_.is_narrow),
         narrow(first_depth(memory.narrow_depth)),
         wide(first_depth(memory.depth)) {}
-  HALFPLANE_INLINE static I16 codes(const I16& code, std::int32_t low, std::int32_t high) {
-    return min(max(code, I16(low)), I16(high));
+  /// All three centred.
+  HALFPLANE_INLINE I16 codes(const I16& code, std::int32_t low, std::int32_t high) const {
+    return min(max(code, I16(low)), I16(high)) + bias;
   }
   HALFPLANE_INLINE I16 load(std::size_t at) const {
-    return (is_narrow ? load_narrow(narrow + at) : I16::load(wide + at)) - bias;
+    return is_narrow ? load_narrow(narrow + at) : I16::load(wide + at);
   }
   HALFPLANE_INLINE void store(std::size_t at, const I16& depth) const {
     if (is_narrow)
-      store_narrow(depth + bias, narrow + at);
+      store_narrow(depth, narrow + at);
     else
-      (depth + bias).store(wide + at);
+      depth.store(wide + at);
   }
 #if HALFPLANE_ISA == 512
   using Passed = std::uint32_t;
@@ -202,7 +203,7 @@ struct WideTest {
   template <class Fragments>
   HALFPLANE_INLINE static std::uint32_t passed(const SliceState& state, std::uint32_t covered, const I16& depth,
                                                const I16& stored) {
-    if (Fragments::kIsLess) return covered & bits_below(depth, stored);
+    if (Fragments::kIsLess) return bits_below(covered, depth, stored);
     return covered & bits_of(Fragments::passes(state, depth, stored));
   }
   HALFPLANE_INLINE static unsigned count(std::uint32_t pixels) { return static_cast<unsigned>(std::popcount(pixels)); }
