@@ -537,57 +537,11 @@ HALFPLANE_INLINE Columns turned_rows(RowAt&& row_at) {
   return to;
 }
 
-/// So many rows that lie one behind the other.
+/// The same of so many rows.
 template <std::size_t N>
 struct ColumnsOfRows {
   Columns row[N];
 };
-
-/// Lane i: those that begin at row_at(i), which is asked once.
-template <std::size_t N, class RowAt>
-HALFPLANE_INLINE void turned_rows(RowAt&& row_at, ColumnsOfRows<N>& to) {
-#if defined(__x86_64__)
-  typedef std::int32_t Row __attribute__((vector_size(16), aligned(16), may_alias));
-  for (int part = 0; part < I16::kParts; ++part) {
-    I16::Register quarters[N][4];
-    for (int i = 0; i < 4; ++i)
-      for (int k = 0; k < I16::kLanes / 4; ++k) {
-        const Row* const from = reinterpret_cast<const Row*>(row_at(part * I16::kLanes + i + 4 * k));
-        for (std::size_t n = 0; n < N; ++n) {
-          const auto row = (__m128i)from[n];
-          I16::Register& into = quarters[n][i];
-#if HALFPLANE_ISA == 512
-          const auto old = (__m512i)into;
-          into = (I16::Register)(k == 0   ? _mm512_castsi128_si512(row)
-                                 : k == 1 ? _mm512_inserti32x4(old, row, 1)
-                                 : k == 2 ? _mm512_inserti32x4(old, row, 2)
-                                          : _mm512_inserti32x4(old, row, 3));
-#elif HALFPLANE_ISA == 256
-          into = (I16::Register)(k == 0 ? _mm256_castsi128_si256(row) : _mm256_inserti128_si256((__m256i)into, row, 1));
-#else
-          into = (I16::Register)row;
-#endif
-        }
-      }
-    for (std::size_t n = 0; n < N; ++n) {
-      turn_quarters(quarters[n][0], quarters[n][1], quarters[n][2], quarters[n][3]);
-      to.row[n].first.part[part] = quarters[n][0];
-      to.row[n].second.part[part] = quarters[n][1];
-      to.row[n].third.part[part] = quarters[n][2];
-      to.row[n].fourth.part[part] = quarters[n][3];
-    }
-  }
-#else
-  for (std::size_t n = 0; n < N; ++n) {
-    const Columns columns =
-        turned_rows([&](int i) HALFPLANE_LAMBDA { return reinterpret_cast<const char*>(row_at(i)) + 16 * n; });
-    to.row[n].first = columns.first;
-    to.row[n].second = columns.second;
-    to.row[n].third = columns.third;
-    to.row[n].fourth = columns.fourth;
-  }
-#endif
-}
 
 /// The other way round: lane i to the row at row_at(i).
 template <class RowAt>

@@ -174,7 +174,7 @@ HALFPLANE_NOINLINE std::uint64_t test_linear_alpha(const Bin& bin, const DrawnSu
     from_middle[block].u = at.u - 128;
     from_middle[block].v = at.v - 128;
     const Places places(footprint_places(texture, from_middle[block], BaseLevel(texture)));
-    fetch_texels(texture.alpha_quads, places, quads.data() + block * kBlockPixels);
+    fetch_texels(texture.alpha_quads, places.place.data(), quads.data() + block * kBlockPixels);
   });
   return test_alphas(bin, pixels, [&](auto block) HALFPLANE_LAMBDA {
     const I16 texel = linear_alpha(texture, from_middle[block], I16::load(quads.data() + block * kBlockPixels));

@@ -129,7 +129,7 @@ HALFPLANE_INLINE I16 piece_lod(const Columns& at_zero, const Columns& step, cons
 }
 
 /// The colours of a tile's pixels that show pieces of one style. One step after the other for all four blocks, as shade()
-/// has it: texels are on their way while the next block's are looked for.
+/// has it: what a step waits for is short, and that of four blocks goes side by side.
 template <Sampling kSampling>
 HALFPLANE_NOINLINE void shade_pieces(Bin& bin, const SurfaceStyle& style, int tile, const TilePieces& shown,
                                      std::uint64_t pixels) {
@@ -186,8 +186,7 @@ HALFPLANE_NOINLINE void shade_pieces(Bin& bin, const SurfaceStyle& style, int ti
     for_each_block([&](auto block) HALFPLANE_LAMBDA {
       if (block_bits(pixels, block) == 0) return;
       std::uint32_t* const of_block = nearest.data() + block * kBlockPixels;
-      for (int i = 0; i < kBlockPixels; ++i)
-        of_block[i] = static_cast<const std::uint32_t*>(texture.texels)[word_at(of_block, i)];
+      fetch_texels(texture.texels, of_block, of_block);
     });
   } else {
     for_each_block([&](auto block) HALFPLANE_LAMBDA {

@@ -113,7 +113,7 @@ HALFPLANE_NOINLINE void shade(Bin& bin, const DrawnSurface& surface, int tile, s
       if (block_bits(pixels, block) == 0) return;
       (void)ramps.find_coordinates(of, block, at[block]);
       const Places places(nearest_places(of.texture, at[block], BaseLevel(of.texture)));
-      fetch_texels(of.texture.texels, places, nearest.data() + block * kBlockPixels);
+      fetch_texels(of.texture.texels, places.place.data(), nearest.data() + block * kBlockPixels);
     });
   } else if constexpr (kHasTexture) {
     for_each_block([&](auto block) HALFPLANE_LAMBDA {

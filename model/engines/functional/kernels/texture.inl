@@ -120,9 +120,9 @@ struct Places {
 };
 
 /// Texels by loads and stores of one word each, beside which lanes go on: half the time of a gather. Whoever loads them as
-/// lanes waits until they are in the cache, and so does something else first.
-HALFPLANE_INLINE void fetch_texels(const void* texels, const Places& from, std::uint32_t* to) {
-  for (int i = 0; i < kBlockPixels; ++i) to[i] = static_cast<const std::uint32_t*>(texels)[from[i]];
+/// lanes waits until they are in the cache, and so does something else first. `places` may be `to`.
+HALFPLANE_INLINE void fetch_texels(const void* texels, const std::uint32_t* places, std::uint32_t* to) {
+  for (int i = 0; i < kBlockPixels; ++i) to[i] = static_cast<const std::uint32_t*>(texels)[word_at(places, i)];
 }
 
 /// What a linear filter looks at: left and right texels of two rows, R lowest, and how much there is of the second column
