@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <string>
-#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -27,69 +26,61 @@ template <class T>
   return static_cast<T>(bits);
 }
 
-/// Elements of a field in one configuration; 1 for a plain one, 0 if the configuration does not have it. Of an array with an element for each plane: those of its
-/// outermost dimension, if there is another one, else 1.
+/// Elements of a member that is an array of them; 0 for one that is an element itself. Where each plane has a width of its
+/// own, an element is an array over the planes.
+template <class Member, class Place>
+inline constexpr std::size_t kElements = kArraySize<Member>;
+template <class Member>
+inline constexpr std::size_t kElements<Member, Width AttributeWidths::*> =
+    kArraySize<typename Member::value_type> == 0 ? 0 : kArraySize<Member>;
+
+/// Elements of a field in one configuration; 1 for a plain one, 0 if the configuration does not have it.
 template <class Packet, class Member, class Place>
 [[nodiscard]] constexpr std::size_t element_count(const Field<Packet, Member, Place>& field, const Widths& widths) {
   if (field.count != nullptr) return static_cast<std::size_t>(widths.*field.count);
-  if constexpr (std::is_same_v<Place, Width AttributeWidths::*>)
-    return kArraySize<std::remove_cvref_t<decltype(std::declval<Member>()[0])>> == 0 ? 1 : kArraySize<Member>;
-  else
-    return std::max<std::size_t>(1, kArraySize<Member>);
+  return std::max<std::size_t>(1, kElements<Member, Place>);
 }
 
-/// Calls visit(value, width) for every element of every field, the first field first or the last one, which is the lowest;
-/// elements of an array in order. Packet: const or not.
-template <bool kIsUpwards, class Packet, class Visit>
-constexpr void for_each_value_in_order(Packet& packet, const Widths& widths, Visit&& visit) {
-  constexpr auto fields = std::remove_const_t<Packet>::fields();
-  const auto planes = [&](auto& values, Width AttributeWidths::*width) {
-    for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p)
-      if ((widths.of_plane(p).*width).bits != 0) visit(values[p], widths.of_plane(p).*width);
-  };
-  const auto elements = [&](auto& member, const Width& width, std::size_t count) {
-    if constexpr (kArraySize<std::remove_cvref_t<decltype(member)>> != 0)
-      for (std::size_t i = 0; i < count; ++i) visit(member[i], width);
-    else if (count != 0)
-      visit(member, width);
-  };
-  const auto one = [&](const auto& field) {
-    auto& member = packet.*field.member;
-    using Member = std::remove_cvref_t<decltype(member)>;
-    using Place = std::remove_cvref_t<decltype(field.width)>;
-    const std::size_t count = element_count(field, widths);
-    if constexpr (std::is_same_v<Place, Nested>) {
-      for_each_value_in_order<kIsUpwards>(member, widths, visit);
-    } else if constexpr (std::is_same_v<Place, Width Widths::*>) {
-      elements(member, widths.*field.width, count);
-    } else if constexpr (kArraySize<std::remove_cvref_t<decltype(std::declval<Member>()[0])>> == 0) {
-      planes(member, field.width);
-    } else {
-      for (std::size_t i = 0; i < count; ++i) planes(member[i], field.width);
-    }
-  };
-  [&]<std::size_t... I>(std::index_sequence<I...>) {
-    (one(std::get < kIsUpwards ? sizeof...(I) - 1 - I : I > (fields)), ...);
-  }
-  (std::make_index_sequence<std::tuple_size_v<decltype(fields)>>{});
+namespace packet_detail {
+
+/// Calls visit(value, width) for an element, or for that of every plane that has one.
+template <class Value, class Visit>
+constexpr void visit_element(Value& value, const Widths& widths, Width Widths::*width, Visit& visit) {
+  visit(value, widths.*width);
 }
+template <class Values, class Visit>
+constexpr void visit_element(Values& values, const Widths& widths, Width AttributeWidths::*width, Visit& visit) {
+  for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p)
+    if ((widths.of_plane(p).*width).bits != 0) visit(values[p], widths.of_plane(p).*width);
+}
+
+/// Likewise for an array of elements. It has no type of its own: arrays of all sizes share this function.
+template <class Value, class Place, class Visit>
+constexpr void visit_array(Value* values, std::size_t count, const Widths& widths, Place width, Visit& visit) {
+  for (std::size_t i = 0; i < count; ++i) visit_element(values[i], widths, width, visit);
+}
+
+/// Likewise for what a member has of them.
+template <class Member, class Place, class Visit>
+constexpr void visit_member(Member& member, std::size_t count, const Widths& widths, Place width, Visit& visit) {
+  if constexpr (kElements<std::remove_const_t<Member>, Place> != 0)
+    visit_array(member.data(), count, widths, width, visit);
+  else if (count != 0)
+    visit_element(member, widths, width, visit);
+}
+
+}  // namespace packet_detail
+
+/// Calls visit(value, width) for every element of every field, the first field first; elements of an array in order.
+/// Packet: const or not.
 template <class Packet, class Visit>
 constexpr void for_each_value(Packet& packet, const Widths& widths, Visit&& visit) {
-  for_each_value_in_order<false>(packet, widths, visit);
-}
-/// From the lowest bit up.
-template <class Packet, class Visit>
-constexpr void for_each_value_upwards(Packet& packet, const Widths& widths, Visit&& visit) {
-  for_each_value_in_order<true>(packet, widths, visit);
-}
-
-/// Bits of the packed struct.
-template <class Packet>
-[[nodiscard]] constexpr int packet_bits(const Widths& widths) {
-  int bits = 0;
-  const Packet packet;
-  for_each_value_upwards(packet, widths, [&bits](const auto&, const Width& width) { bits += width.bits; });
-  return bits;
+  for_each_field<std::remove_const_t<Packet>>([&](const auto& field) {
+    if constexpr (std::is_same_v<decltype(field.width), Nested>)
+      for_each_value(packet.*field.member, widths, visit);
+    else
+      packet_detail::visit_member(packet.*field.member, element_count(field, widths), widths, field.width, visit);
+  });
 }
 
 /// Words that hold `bits`.
@@ -102,10 +93,14 @@ class WordWriter {
   /// `bits` of 1 to 64.
   void put(std::uint64_t value, int bits) {
     if (bits > 32) {
-      put(value & 0xffffffffU, 32);
+      put_word(value, 32);
       value >>= 32;
       bits -= 32;
     }
+    put_word(value, bits);
+  }
+  /// `bits` of 1 to 32.
+  void put_word(std::uint64_t value, int bits) {
     pending_ |= (value & (~0ULL >> (64 - bits))) << filled_;  // filled_ < 32: nothing is lost
     filled_ += bits;
     if (filled_ >= 32) {
@@ -130,10 +125,12 @@ class WordReader {
   explicit WordReader(const std::uint32_t* in) : in_(in) {}
   /// `bits` of 1 to 64.
   std::uint64_t take(int bits) {
-    if (bits > 32) {
-      const std::uint64_t low = take(32);
-      return low | take(bits - 32) << 32;
-    }
+    if (bits <= 32) return take_word(bits);
+    const std::uint64_t low = take_word(32);
+    return low | take_word(bits - 32) << 32;
+  }
+  /// `bits` of 1 to 32.
+  std::uint64_t take_word(int bits) {
     if (held_ < bits) {
       pending_ |= std::uint64_t{*in_++} << held_;
       held_ += 32;
@@ -150,14 +147,15 @@ class WordReader {
   int held_ = 0;
 };
 
+// Templates without a body are compiled in packet_words.cpp, for the packets and parts of packets that it lists.
+
+/// Bits of the packed struct.
+template <class Packet>
+[[nodiscard]] int packet_bits(const Widths& widths);
+
 /// Writes the packed struct to `out`, words_of(packet_bits) of them.
 template <class Packet>
-void pack_words(const Packet& packet, const Widths& widths, std::uint32_t* out) {
-  WordWriter writer(out);
-  for_each_value_upwards(packet, widths,
-                         [&writer](const auto& value, const Width& width) { writer.put(to_bits(value), width.bits); });
-  writer.finish();
-}
+void pack_words(const Packet& packet, const Widths& widths, std::uint32_t* out);
 
 template <class Packet>
 [[nodiscard]] std::vector<std::uint32_t> packed(const Packet& packet, const Widths& widths) {
@@ -167,14 +165,7 @@ template <class Packet>
 }
 
 template <class Packet>
-[[nodiscard]] Packet unpack_words(const std::uint32_t* words, const Widths& widths) {
-  Packet packet;
-  WordReader reader(words);
-  for_each_value_upwards(packet, widths, [&reader](auto& value, const Width& width) {
-    value = from_bits<std::remove_reference_t<decltype(value)>>(reader.take(width.bits), width);
-  });
-  return packet;
-}
+[[nodiscard]] Packet unpack_words(const std::uint32_t* words, const Widths& widths);
 
 /// One element of a packet, as a reader sees it.
 struct ElementName {
@@ -184,43 +175,10 @@ struct ElementName {
 
 /// Every element of a packet type that has bits, the highest field first, elements of an array in order.
 template <class Packet>
-[[nodiscard]] std::vector<ElementName> element_names(const Widths& widths) {
-  std::vector<ElementName> names;
-  const auto planes = [&](const std::string& name, Width AttributeWidths::*width) {
-    for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p)
-      if ((widths.of_plane(p).*width).bits != 0)
-        names.push_back({name + "[" + std::string(widths.plane_name(p)) + "]", widths.of_plane(p).*width});
-  };
-  const auto one = [&]<class P, class Member, class Place>(const Field<P, Member, Place>& field) {
-    const std::string name(field.name);
-    if constexpr (std::is_same_v<Place, Nested>) {
-      const auto inner = element_names<Member>(widths);
-      names.insert(names.end(), inner.begin(), inner.end());
-    } else {
-      const bool is_array = !std::is_same_v<Place, Width AttributeWidths::*> && kArraySize<Member> != 0;
-      const std::size_t count = element_count(field, widths);
-      for (std::size_t i = 0; i < count; ++i) {
-        const std::string numbered = is_array || count > 1 ? name + "[" + std::to_string(i) + "]" : name;
-        if constexpr (std::is_same_v<Place, Width Widths::*>)
-          names.push_back({numbered, widths.*field.width});
-        else
-          planes(numbered, field.width);
-      }
-    }
-  };
-  std::apply([&](const auto&... field) { (one(field), ...); }, Packet::fields());
-  return names;
-}
+[[nodiscard]] std::vector<ElementName> element_names(const Widths& widths);
 
 /// The bits of every element, in the order of element_names().
 template <class Packet>
-[[nodiscard]] std::vector<std::uint64_t> element_values(const std::uint32_t* words, const Widths& widths) {
-  const auto packet = unpack_words<Packet>(words, widths);
-  std::vector<std::uint64_t> values;
-  for_each_value(packet, widths, [&values](const auto& value, const Width& width) {
-    values.push_back(wrap_unsigned(to_bits(value), width.bits));
-  });
-  return values;
-}
+[[nodiscard]] std::vector<std::uint64_t> element_values(const std::uint32_t* words, const Widths& widths);
 
 }  // namespace halfplane

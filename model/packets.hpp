@@ -11,6 +11,7 @@
 #include <string_view>
 #include <tuple>
 #include <type_traits>
+#include <utility>
 
 #include "samples.hpp"
 #include "scene.hpp"
@@ -52,18 +53,53 @@ namespace packet_detail {
 template <int N>
 struct Line {};
 
-/// The fields that a packet declares on the lines First...Last of this file, in order.
-template <class Packet, int First, int Last>
-constexpr auto fields_between() {
-  if constexpr (First > Last)
-    return std::tuple{};
-  else if constexpr (requires { Packet::field(Line<First>{}); })
-    return std::tuple_cat(std::tuple{Packet::field(Line<First>{})}, fields_between<Packet, First + 1, Last>());
-  else
-    return fields_between<Packet, First + 1, Last>();
+template <class Packet, int N>
+concept HasFieldOn = requires {
+  Packet::field(Line<N>{});
+};
+
+/// Lines of this file.
+template <std::size_t N>
+struct Lines {
+  int line[N]{};
+  std::size_t count = 0;
+};
+
+/// Those on which a packet declares a field, in order.
+template <class Packet, int... I>
+consteval auto field_lines(std::integer_sequence<int, I...>) {
+  constexpr bool kHasField[] = {HasFieldOn<Packet, Packet::kFirstLine + I>...};
+  Lines<sizeof...(I)> lines;
+  for (int i = 0; const bool has_field : kHasField) {
+    if (has_field) lines.line[lines.count++] = Packet::kFirstLine + i;
+    ++i;
+  }
+  return lines;
 }
+template <class Packet>
+inline constexpr auto kFieldLines =
+    field_lines<Packet>(std::make_integer_sequence<int, Packet::kLastLine - Packet::kFirstLine>{});
 
 }  // namespace packet_detail
+
+/// Calls visit(field) for every Field of a packet type, the first one first.
+template <class Packet, class Visit>
+constexpr void for_each_field(Visit&& visit) {
+  [&]<std::size_t... I>(std::index_sequence<I...>) {
+    constexpr auto& lines = packet_detail::kFieldLines<Packet>;
+    (visit(Packet::field(packet_detail::Line<lines.line[I]>{})), ...);
+  }
+  (std::make_index_sequence<packet_detail::kFieldLines<Packet>.count>{});
+}
+/// The last one first: from the lowest bit up.
+template <class Packet, class Visit>
+constexpr void for_each_field_upwards(Visit&& visit) {
+  [&]<std::size_t... I>(std::index_sequence<I...>) {
+    constexpr auto& lines = packet_detail::kFieldLines<Packet>;
+    (visit(Packet::field(packet_detail::Line<lines.line[lines.count - 1 - I]>{})), ...);
+  }
+  (std::make_index_sequence<packet_detail::kFieldLines<Packet>.count>{});
+}
 
 // PACKET, FIELDs, each on a line of its own, PACKET_END: a struct that knows its fields. FIELD(type, name, width[, count]).
 #define PACKET(Type, text)                       \
@@ -75,12 +111,7 @@ constexpr auto fields_between() {
   static constexpr auto field(packet_detail::Line<__LINE__>) {                                  \
     return ::halfplane::Field{std::string_view(#member_name), &Self::member_name, __VA_ARGS__}; \
   }
-#define PACKET_END                                                                         \
-  static constexpr int kLastLine = __LINE__;                                               \
-  template <class Packet = Self>                                                           \
-  static constexpr auto fields() {                                                         \
-    return packet_detail::fields_between<Packet, Packet::kFirstLine, Packet::kLastLine>(); \
-  }
+#define PACKET_END static constexpr int kLastLine = __LINE__;
 
 // ------------------------------------------------------------------------------------------------------- parts of packets
 

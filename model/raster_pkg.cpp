@@ -136,7 +136,7 @@ template <class Packet>
 void print_struct(std::ostream& out, const Widths& widths) {
   if (packet_bits<Packet>(widths) == 0) return;
   out << "\n  typedef struct packed {\n";
-  std::apply([&](const auto&... field) { (print_field(out, field, widths), ...); }, Packet::fields());
+  for_each_field<Packet>([&](const auto& field) { print_field(out, field, widths); });
   out << "  } " << Packet::name << "_t;\n";
 }
 
