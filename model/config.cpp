@@ -1,6 +1,5 @@
 #include "config.hpp"
 
-#include <array>
 #include <bit>
 #include <charconv>
 #include <cstdio>
@@ -10,132 +9,9 @@
 namespace halfplane {
 namespace {
 
-constexpr std::array<std::string_view, 2> kColorFormatNames{"rgb565", "rgba8888"};
-constexpr std::array<std::string_view, 2> kCacheKindNames{"tiles", "blocks"};
-constexpr std::array<std::string_view, 2> kFrameClearsNames{"resolve", "flags"};
-constexpr std::array<std::string_view, 2> kFrameOrderNames{"program", "bins"};
-constexpr std::array<std::string_view, 2> kFrameStoreNames{"all", "color"};
-constexpr std::array<std::string_view, 2> kSetupKindNames{"pipelined", "serial"};
-constexpr std::array<std::string_view, 4> kTextureUnitNames{"off", "nearest", "bilinear", "trilinear"};
-constexpr std::array<std::string_view, 2> kReciprocalKindNames{"table", "restoring"};
-
-const std::array kSettings{
-    Setting{"subpixel.bits", "bits", "fraction bits S of a snapped window coordinate", 0, 12, &Config::subpixel_bits},
-    Setting{"guard.band", "pixels", "window coordinates lie in [-band, band); a power of two", 16, 1 << 20,
-            &Config::guard_band},
-    Setting{"target.width", "pixels", "widest target", 1, 16384, &Config::target_width},
-    Setting{"target.height", "pixels", "highest target", 1, 16384, &Config::target_height},
-    Setting{"depth.bits", "bits", "bits B of an interpolated depth, and of its stored code", 8, 32,
-            &Config::depth_bits},
-    Setting{"plane.local_guard_bits", "bits", "fraction bits of a plane stepped inside one tile", 4, 12,
-            &Config::local_guard_bits},
-    Setting{"reciprocal.extra_bits", "bits", "significant bits of 1/area beyond depth.bits", 2, 12,
-            &Config::reciprocal_extra_bits},
-    Setting{"perspective.bits", "bits", "bits N of 1/w, and of what is interpolated over w", 12, 26,
-            &Config::perspective_bits},
-    Setting{"perspective.mantissa_bits", "bits", "bits k of 1/w that a pixel's reciprocal looks at", 8, 20,
-            &Config::perspective_mantissa_bits},
-    Setting{"perspective.colors", "units",
-            "1: the RTL's texture unit also interpolates colours over w; 0: colours are affine in the RTL", 0, 1,
-            &Config::perspective_colors},
-    Setting{"color.format", "rgb565|rgba8888", "layout of a stored colour", 0, 0, &Config::color_format},
-    Setting{"tile.size", "pixels", "side of a tile: 4, 8, 16 or 32", 4, 32, &Config::tile_size},
-    Setting{"stamp.size", "pixels", "side of the stamp tested in one clock: 1, 2, 4 or 8", 1, 8, &Config::stamp_size},
-    Setting{"key.primitive_bits", "bits", "bits of the primitive number in an RTL packet key", 4, 32,
-            &Config::primitive_id_bits},
-    Setting{"context.slots", "slots", "triangles whose constants the context RAM holds; a power of two", 2, 64,
-            &Config::context_slots},
-    Setting{"hiz.bits", "bits", "bits of a tile's HiZ bound, or all of a depth code; 0: no HiZ", 0, 32,
-            &Config::hiz_bits},
-    Setting{"hiz.lag", "visits", "tile visits behind which a HiZ update is seen, and under way at most; a power of two",
-            2, 64, &Config::hiz_lag},
-    Setting{"cache.kind", "tiles|blocks", "what a line of the on-chip RAM is: a tile, or 4x4 pixels fetched ahead", 0,
-            0, &Config::cache_kind},
-    Setting{"cache.lines", "lines", "tiles or blocks that the on-chip depth and colour RAM holds; a power of two", 1,
-            4096, &Config::cache_lines},
-    Setting{"cache.queue", "fragments", "blocks: between tags and depth test; a power of two", 4, 128,
-            &Config::cache_queue},
-    Setting{"cache.victims", "blocks", "blocks: evicted and not yet written; a power of two", 2, 32,
-            &Config::cache_victims},
-    Setting{"frame.clears", "resolve|flags", "what a flush writes of cleared blocks or tiles: colours, or flags", 0, 0,
-            &Config::frame_clears},
-    Setting{"memory.port_bits", "bits", "data that the memory port moves in a cycle; a power of two", 16, 512,
-            &Config::memory_port_bits},
-    Setting{"frame.order", "program|bins",
-            "blocks: order in which the host sends a frame: as named, or by parts that fit the chip", 0, 0,
-            &Config::frame_order},
-    Setting{"frame.store", "all|color", "blocks: planes of a frame that come to memory; color: its depth is lost", 0, 0,
-            &Config::frame_store},
-    Setting{"setup.kind", "pipelined|serial", "RTL triangle setup: several multipliers, or one", 0, 0,
-            &Config::setup_kind},
-    Setting{"setup.plane_clocks", "clocks",
-            "that the RTL's pipelined triangle setup takes for a plane: 1, or 2 with half of the multipliers", 1, 2,
-            &Config::setup_plane_clocks},
-    Setting{"texture.unit", "off|nearest|bilinear|trilinear", "what the RTL's texture unit can do; off: it has none", 0,
-            0, &Config::texture_unit},
-    Setting{"texture.lanes", "pixels", "that the RTL's texture unit divides, addresses and filters in a clock: 1 or 4",
-            1, 4, &Config::texture_lanes},
-    Setting{"texture.cache_kb", "KB", "texels that the texture unit holds on the chip; a power of two", 1, 64,
-            &Config::texture_cache_kb},
-    Setting{"texture.ways", "places",
-            "in the texture unit's cache where a block may lie: 1, or 2, of which the one used longer ago is replaced",
-            1, 2, &Config::texture_ways},
-    Setting{"texture.queue", "samples",
-            "between their coordinates and their texels in the texture unit; a power of two", 8, 128,
-            &Config::texture_queue},
-    Setting{
-        "reciprocal.kind", "table|restoring",
-        "what the texture unit divides by 1/w with: a RAM and two multipliers, or subtractions; the same bits and time",
-        0, 0, &Config::reciprocal_kind},
-    Setting{"alpha.unit", "units",
-            "1: the RTL interpolates alpha, whatever color.format keeps, and (blocks, pipelined) tests it; 0: neither",
-            0, 1, &Config::alpha_units},
-    Setting{"blend.lanes", "samples",
-            "blended in a clock by the RTL, 1 or 4; 0: it has neither blending nor partial color masks", 0, 4,
-            &Config::blend_lanes},
-    Setting{"dither.unit", "units", "1: the RTL dithers colours of rgb565; 0: it rounds them", 0, 1,
-            &Config::dither_units},
-    Setting{"fog.unit", "units", "1: the RTL fogs triangles behind its texture unit; 0: it has no fog", 0, 1,
-            &Config::fog_units},
-    Setting{"shade.unit", "units",
-            "1: the RTL lights the fragments of shade phong in front of its texture unit; 0: it lights none", 0, 1,
-            &Config::shade_units},
-    Setting{
-        "stencil.bits", "bits",
-        "of the stencil that the RTL keeps above each stored depth: 8, or 0 (blocks, pipelined; depth.bits up to 24)",
-        0, 8, &Config::stencil_bits},
-    Setting{"lines.unit", "units", "1: the RTL has the unit that draws lines; 0: it takes none", 0, 1,
-            &Config::line_units},
-    Setting{"counters.unit", "units", "1: the RTL has performance counters; 0: it has none", 0, 1,
-            &Config::counter_units},
-    Setting{"counters.bits", "bits", "of a performance counter of the RTL; a sticky bit tells that one has wrapped", 16,
-            32, &Config::counter_bits},
-    Setting{"msaa.samples", "samples", "of a pixel, 1, 2, 4 or 8: coverage, depth, stencil and colour each", 1,
-            kMaxPixelSamples, &Config::msaa_samples},
-    Setting{"msaa.pattern", "standard|<X>,<Y>;...",
-            "where they lie: as Direct3D and Vulkan have it, or places in pixels from the upper left corner", 0, 0,
-            &Config::msaa_pattern},
-    Setting{
-        "resolve.unit", "units",
-        "1: the RTL stores the mean of a pixel's samples as its block leaves the chip, of frames in bins that store "
-        "colours alone; 0: it stores all samples",
-        0, 1, &Config::resolve_units},
-    Setting{"compress.unit", "units",
-            "1: the RTL stores one colour a pixel, not one a sample, of blocks whose pixels have one each, and a flag; "
-            "0: it stores all samples",
-            0, 1, &Config::compress_units},
-    Setting{"depth.mapping", "projection|std|rev|stdinf|revinf|w|log",
-            "what a depth means: as the scene's projection has it, or one of these (docs/depth.md)", 0, 0,
-            &Config::depth_mapping},
-    Setting{"depth.format", "plane|u<b>|bins<b>|f16|f32|uf<e>.<m>",
-            "how a depth is stored; plane: the depth.bits that are interpolated", 0, 0, &Config::depth_format},
-};
-
-constexpr std::array<std::string_view, 4> kPresetNames{"tiny", "small", "embedded", "full"};
-
-std::string joined(std::span<const std::string_view> names) {
+std::string joined(std::span<const std::string_view> names, std::string_view separator) {
   std::string text;
-  for (const auto name : names) text += (text.empty() ? "" : ", ") + std::string(name);
+  for (const auto name : names) text.append(text.empty() ? "" : separator).append(name);
   return text;
 }
 
@@ -150,27 +26,188 @@ int parse_int(const Setting& setting, std::string_view text) {
   return value;
 }
 
-int parse_name(std::string_view key, std::string_view value, std::span<const std::string_view> names) {
-  for (std::size_t i = 0; i < names.size(); ++i)
-    if (names[i] == value) return static_cast<int>(i);
-  throw InputError(std::string(key) + ": no value '" + std::string(value) + "'; give " + joined(names));
+std::size_t parse_name(const Setting& setting, std::string_view text) {
+  const auto name = std::ranges::find(setting.names, text);
+  if (name != setting.names.end()) return static_cast<std::size_t>(name - setting.names.begin());
+  throw InputError(std::string(setting.key) + ": no value '" + std::string(text) + "'; give " +
+                   joined(setting.names, ", "));
 }
 
-DepthFormat depth_format_of(std::string_view key, std::string_view value) {
-  try {
-    return parse_depth_format(value);
-  } catch (const InputError& error) {
-    throw InputError(std::string(key) + ": " + error.what());
-  }
+void parse_text(std::string_view text, DepthFormat& format) { format = parse_depth_format(text); }
+void parse_text(std::string_view text, SamplePattern& pattern) { pattern = parse_sample_pattern(text); }
+
+template <int Config::*member>
+Setting number(std::string_view key, std::string unit, std::string_view meaning, int min, int max) {
+  return {.key = key,
+          .unit = std::move(unit),
+          .meaning = meaning,
+          .min = min,
+          .max = max,
+          .read = [](const Config& config, const Setting&) { return std::to_string(config.*member); },
+          .write = [](Config& config, const Setting& setting,
+                      std::string_view text) { config.*member = parse_int(setting, text); }};
 }
 
-SamplePattern pattern_of(std::string_view key, std::string_view value) {
-  try {
-    return parse_sample_pattern(value);
-  } catch (const InputError& error) {
-    throw InputError(std::string(key) + ": " + error.what());
-  }
+/// One of an enumeration's values.
+template <auto member>
+Setting choice(std::string_view key, std::vector<std::string_view> names, std::string_view meaning) {
+  return {.key = key,
+          .unit = joined(names, "|"),
+          .meaning = meaning,
+          .names = std::move(names),
+          .read =
+              [](const Config& config, const Setting& setting) {
+                return std::string(setting.names[static_cast<std::size_t>(config.*member)]);
+              },
+          .write =
+              [](Config& config, const Setting& setting, std::string_view text) {
+                auto& value = config.*member;
+                value = static_cast<std::remove_reference_t<decltype(value)>>(parse_name(setting, text));
+              }};
 }
+
+/// What has a notation of its own.
+template <auto member>
+Setting text(std::string_view key, std::string unit, std::string_view meaning) {
+  return {.key = key,
+          .unit = std::move(unit),
+          .meaning = meaning,
+          .read = [](const Config& config, const Setting&) { return to_string(config.*member); },
+          .write =
+              [](Config& config, const Setting& setting, std::string_view text) {
+                try {
+                  parse_text(text, config.*member);
+                } catch (const InputError& error) {
+                  throw InputError(std::string(setting.key) + ": " + error.what());
+                }
+              }};
+}
+
+Setting of_host(Setting setting) {
+  setting.is_host = true;
+  return setting;
+}
+
+std::vector<Setting> all_settings() {
+  return {
+      number<&Config::subpixel_bits>("subpixel.bits", "bits", "fraction bits S of a snapped window coordinate", 0, 12),
+      number<&Config::guard_band>("guard.band", "pixels", "window coordinates lie in [-band, band); a power of two", 16,
+                                  1 << 20),
+      number<&Config::target_width>("target.width", "pixels", "widest target", 1, 16384),
+      number<&Config::target_height>("target.height", "pixels", "highest target", 1, 16384),
+      number<&Config::depth_bits>("depth.bits", "bits", "bits B of an interpolated depth, and of its stored code", 8,
+                                  32),
+      number<&Config::local_guard_bits>("plane.local_guard_bits", "bits",
+                                        "fraction bits of a plane stepped inside one tile", 4, 12),
+      number<&Config::reciprocal_extra_bits>("reciprocal.extra_bits", "bits",
+                                             "significant bits of 1/area beyond depth.bits", 2, 12),
+      number<&Config::perspective_bits>("perspective.bits", "bits", "bits N of 1/w, and of what is interpolated over w",
+                                        12, 26),
+      number<&Config::perspective_mantissa_bits>("perspective.mantissa_bits", "bits",
+                                                 "bits k of 1/w that a pixel's reciprocal looks at", 8, 20),
+      number<&Config::perspective_colors>(
+          "perspective.colors", "units",
+          "1: the RTL's texture unit also interpolates colours over w; 0: colours are affine in the RTL", 0, 1),
+      choice<&Config::color_format>("color.format", {"rgb565", "rgba8888"}, "layout of a stored colour"),
+      number<&Config::tile_size>("tile.size", "pixels", "side of a tile: 4, 8, 16 or 32", 4, 32),
+      number<&Config::stamp_size>("stamp.size", "pixels", "side of the stamp tested in one clock: 1, 2, 4 or 8", 1, 8),
+      number<&Config::primitive_id_bits>("key.primitive_bits", "bits",
+                                         "bits of the primitive number in an RTL packet key", 4, 32),
+      number<&Config::context_slots>("context.slots", "slots",
+                                     "triangles whose constants the context RAM holds; a power of two", 2, 64),
+      number<&Config::hiz_bits>("hiz.bits", "bits", "bits of a tile's HiZ bound, or all of a depth code; 0: no HiZ", 0,
+                                32),
+      number<&Config::hiz_lag>("hiz.lag", "visits",
+                               "tile visits behind which a HiZ update is seen, and under way at most; a power of two",
+                               2, 64),
+      choice<&Config::cache_kind>("cache.kind", {"tiles", "blocks"},
+                                  "what a line of the on-chip RAM is: a tile, or 4x4 pixels fetched ahead"),
+      number<&Config::cache_lines>("cache.lines", "lines",
+                                   "tiles or blocks that the on-chip depth and colour RAM holds; a power of two", 1,
+                                   4096),
+      number<&Config::cache_queue>("cache.queue", "fragments", "blocks: between tags and depth test; a power of two", 4,
+                                   128),
+      number<&Config::cache_victims>("cache.victims", "blocks", "blocks: evicted and not yet written; a power of two",
+                                     2, 32),
+      choice<&Config::frame_clears>("frame.clears", {"resolve", "flags"},
+                                    "what a flush writes of cleared blocks or tiles: colours, or flags"),
+      number<&Config::memory_port_bits>("memory.port_bits", "bits",
+                                        "data that the memory port moves in a cycle; a power of two", 16, 512),
+      of_host(choice<&Config::frame_order>(
+          "frame.order", {"program", "bins"},
+          "blocks: order in which the host sends a frame: as named, or by parts that fit the chip")),
+      of_host(choice<&Config::frame_store>("frame.store", {"all", "color"},
+                                           "blocks: planes of a frame that come to memory; color: its depth is lost")),
+      choice<&Config::setup_kind>("setup.kind", {"pipelined", "serial"},
+                                  "RTL triangle setup: several multipliers, or one"),
+      number<&Config::setup_plane_clocks>(
+          "setup.plane_clocks", "clocks",
+          "that the RTL's pipelined triangle setup takes for a plane: 1, or 2 with half of the multipliers", 1, 2),
+      choice<&Config::texture_unit>("texture.unit", {"off", "nearest", "bilinear", "trilinear"},
+                                    "what the RTL's texture unit can do; off: it has none"),
+      number<&Config::texture_lanes>("texture.lanes", "pixels",
+                                     "that the RTL's texture unit divides, addresses and filters in a clock: 1 or 4", 1,
+                                     4),
+      number<&Config::texture_cache_kb>("texture.cache_kb", "KB",
+                                        "texels that the texture unit holds on the chip; a power of two", 1, 64),
+      number<&Config::texture_ways>(
+          "texture.ways", "places",
+          "in the texture unit's cache where a block may lie: 1, or 2, of which the one used longer ago is replaced", 1,
+          2),
+      number<&Config::texture_queue>("texture.queue", "samples",
+                                     "between their coordinates and their texels in the texture unit; a power of two",
+                                     8, 128),
+      choice<&Config::reciprocal_kind>("reciprocal.kind", {"table", "restoring"},
+                                       "what the texture unit divides by 1/w with: a RAM and two multipliers, or "
+                                       "subtractions; the same bits and time"),
+      number<&Config::alpha_units>(
+          "alpha.unit", "units",
+          "1: the RTL interpolates alpha, whatever color.format keeps, and (blocks, pipelined) tests it; 0: neither", 0,
+          1),
+      number<&Config::blend_lanes>(
+          "blend.lanes", "samples",
+          "blended in a clock by the RTL, 1 or 4; 0: it has neither blending nor partial color masks", 0, 4),
+      number<&Config::dither_units>("dither.unit", "units", "1: the RTL dithers colours of rgb565; 0: it rounds them",
+                                    0, 1),
+      number<&Config::fog_units>("fog.unit", "units",
+                                 "1: the RTL fogs triangles behind its texture unit; 0: it has no fog", 0, 1),
+      number<&Config::shade_units>(
+          "shade.unit", "units",
+          "1: the RTL lights the fragments of shade phong in front of its texture unit; 0: it lights none", 0, 1),
+      number<&Config::stencil_bits>(
+          "stencil.bits", "bits",
+          "of the stencil that the RTL keeps above each stored depth: 8, or 0 (blocks, pipelined; depth.bits up to 24)",
+          0, 8),
+      number<&Config::line_units>("lines.unit", "units", "1: the RTL has the unit that draws lines; 0: it takes none",
+                                  0, 1),
+      number<&Config::counter_units>("counters.unit", "units", "1: the RTL has performance counters; 0: it has none", 0,
+                                     1),
+      number<&Config::counter_bits>("counters.bits", "bits",
+                                    "of a performance counter of the RTL; a sticky bit tells that one has wrapped", 16,
+                                    32),
+      number<&Config::msaa_samples>("msaa.samples", "samples",
+                                    "of a pixel, 1, 2, 4 or 8: coverage, depth, stencil and colour each", 1,
+                                    kMaxPixelSamples),
+      text<&Config::msaa_pattern>(
+          "msaa.pattern", "standard|<X>,<Y>;...",
+          "where they lie: as Direct3D and Vulkan have it, or places in pixels from the upper left corner"),
+      number<&Config::resolve_units>("resolve.unit", "units",
+                                     "1: the RTL stores the mean of a pixel's samples as its block leaves the chip, of "
+                                     "frames in bins that store colours alone; 0: it stores all samples",
+                                     0, 1),
+      number<&Config::compress_units>("compress.unit", "units",
+                                      "1: the RTL stores one colour a pixel, not one a sample, of blocks whose pixels "
+                                      "have one each, and a flag; 0: it stores all samples",
+                                      0, 1),
+      of_host(choice<&Config::depth_mapping>(
+          "depth.mapping", {depth_mapping_names().begin(), depth_mapping_names().end()},
+          "what a depth means: as the scene's projection has it, or one of these (docs/depth.md)")),
+      of_host(text<&Config::depth_format>("depth.format", "plane|u<b>|bins<b>|f16|f32|uf<e>.<m>",
+                                          "how a depth is stored; plane: the depth.bits that are interpolated")),
+  };
+}
+
+constexpr std::array<std::string_view, 4> kPresetNames{"tiny", "small", "embedded", "full"};
 
 void refuse_unless(bool holds, const std::string& message) {
   if (!holds) throw InputError("configuration refused: " + message);
@@ -187,7 +224,10 @@ bool is_power_of_two(int value) { return std::has_single_bit(static_cast<unsigne
 
 }  // namespace
 
-std::span<const Setting> settings() { return kSettings; }
+std::span<const Setting> settings() {
+  static const std::vector<Setting> all = all_settings();
+  return all;
+}
 
 std::span<const std::string_view> preset_names() { return kPresetNames; }
 
@@ -238,75 +278,25 @@ Config preset(std::string_view name) {
     config.memory_port_bits = 512;  // a stamp of either plane
     return config;
   }
-  throw InputError("no preset '" + std::string(name) + "'; the presets are " + joined(kPresetNames));
+  throw InputError("no preset '" + std::string(name) + "'; the presets are " + joined(kPresetNames, ", "));
 }
 
-std::string get(const Config& config, const Setting& setting) {
-  if (const auto* number = std::get_if<int Config::*>(&setting.member)) return std::to_string(config.**number);
-  if (const auto* format = std::get_if<ColorFormat Config::*>(&setting.member))
-    return std::string(kColorFormatNames[static_cast<std::size_t>(config.**format)]);
-  if (const auto* mapping = std::get_if<DepthMapping Config::*>(&setting.member))
-    return std::string(depth_mapping_names()[static_cast<std::size_t>(config.**mapping)]);
-  if (const auto* stored = std::get_if<DepthFormat Config::*>(&setting.member)) return to_string(config.**stored);
-  if (const auto* pattern = std::get_if<SamplePattern Config::*>(&setting.member)) return to_string(config.**pattern);
-  if (const auto* cache = std::get_if<CacheKind Config::*>(&setting.member))
-    return std::string(kCacheKindNames[static_cast<std::size_t>(config.**cache)]);
-  if (const auto* clears = std::get_if<FrameClears Config::*>(&setting.member))
-    return std::string(kFrameClearsNames[static_cast<std::size_t>(config.**clears)]);
-  if (const auto* order = std::get_if<FrameOrder Config::*>(&setting.member))
-    return std::string(kFrameOrderNames[static_cast<std::size_t>(config.**order)]);
-  if (const auto* store = std::get_if<FrameStore Config::*>(&setting.member))
-    return std::string(kFrameStoreNames[static_cast<std::size_t>(config.**store)]);
-  if (const auto* kind = std::get_if<ReciprocalKind Config::*>(&setting.member))
-    return std::string(kReciprocalKindNames[static_cast<std::size_t>(config.**kind)]);
-  if (const auto* unit = std::get_if<TextureUnitKind Config::*>(&setting.member))
-    return std::string(kTextureUnitNames[static_cast<std::size_t>(config.**unit)]);
-  const auto kind = config.*std::get<SetupKind Config::*>(setting.member);
-  return std::string(kSetupKindNames[static_cast<std::size_t>(kind)]);
-}
+std::string get(const Config& config, const Setting& setting) { return setting.read(config, setting); }
 
 std::string label(const Config& config, std::string_view separator) {
   const Config base = preset(config.preset);
   std::string text = config.preset;
-  for (const Setting& setting : kSettings)
+  for (const Setting& setting : settings())
     if (get(config, setting) != get(base, setting))
       text.append(separator).append(setting.key).append(1, '=').append(get(config, setting));
   return text;
 }
 
 void set(Config& config, std::string_view key, std::string_view value) {
-  for (const Setting& setting : kSettings) {
-    if (setting.key != key) continue;
-    if (const auto* number = std::get_if<int Config::*>(&setting.member)) {
-      config.** number = parse_int(setting, value);
-      return;
-    }
-    if (const auto* format = std::get_if<ColorFormat Config::*>(&setting.member))
-      config.** format = static_cast<ColorFormat>(parse_name(key, value, kColorFormatNames));
-    else if (const auto* cache = std::get_if<CacheKind Config::*>(&setting.member))
-      config.** cache = static_cast<CacheKind>(parse_name(key, value, kCacheKindNames));
-    else if (const auto* clears = std::get_if<FrameClears Config::*>(&setting.member))
-      config.** clears = static_cast<FrameClears>(parse_name(key, value, kFrameClearsNames));
-    else if (const auto* order = std::get_if<FrameOrder Config::*>(&setting.member))
-      config.** order = static_cast<FrameOrder>(parse_name(key, value, kFrameOrderNames));
-    else if (const auto* store = std::get_if<FrameStore Config::*>(&setting.member))
-      config.** store = static_cast<FrameStore>(parse_name(key, value, kFrameStoreNames));
-    else if (const auto* unit = std::get_if<TextureUnitKind Config::*>(&setting.member))
-      config.** unit = static_cast<TextureUnitKind>(parse_name(key, value, kTextureUnitNames));
-    else if (const auto* kind = std::get_if<ReciprocalKind Config::*>(&setting.member))
-      config.** kind = static_cast<ReciprocalKind>(parse_name(key, value, kReciprocalKindNames));
-    else if (const auto* mapping = std::get_if<DepthMapping Config::*>(&setting.member))
-      config.** mapping = static_cast<DepthMapping>(parse_name(key, value, depth_mapping_names()));
-    else if (const auto* stored = std::get_if<DepthFormat Config::*>(&setting.member))
-      config.** stored = depth_format_of(key, value);
-    else if (const auto* pattern = std::get_if<SamplePattern Config::*>(&setting.member))
-      config.** pattern = pattern_of(key, value);
-    else
-      config.*std::get<SetupKind Config::*>(setting.member) =
-          static_cast<SetupKind>(parse_name(key, value, kSetupKindNames));
-    return;
-  }
-  throw InputError("no setting '" + std::string(key) + "'; `halfplane config --list` shows them all");
+  const auto setting = std::ranges::find(settings(), key, &Setting::key);
+  if (setting == settings().end())
+    throw InputError("no setting '" + std::string(key) + "'; `halfplane config --list` shows them all");
+  setting->write(config, *setting, value);
 }
 
 void require_one_sample(const Config& config, std::string_view who) {
@@ -325,9 +315,8 @@ void require_sampled_hardware(const Config& config, std::string_view who) {
 }
 
 void validate(const Config& config) {
-  for (const Setting& setting : kSettings)  // a Config built in code has not passed through set()
-    if (const auto* number = std::get_if<int Config::*>(&setting.member))
-      (void)parse_int(setting, std::to_string(config.**number));
+  for (const Setting& setting : settings())  // a Config built in code has not passed through set()
+    if (setting.is_number()) (void)parse_int(setting, get(config, setting));
   refuse_unless(is_power_of_two(config.guard_band), "guard.band must be a power of two");
   refuse_unless(is_power_of_two(config.tile_size), "tile.size must be 4, 8, 16 or 32");
   refuse_unless(is_power_of_two(config.stamp_size), "stamp.size must be 1, 2, 4 or 8");

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <variant>
+#include <vector>
 
 #include "depth_format.hpp"
 #include "sample_pattern.hpp"
@@ -125,25 +125,20 @@ void require_sampled_hardware(const Config& config, std::string_view who);
   return config.tile_size + (config.msaa_samples > 1 ? 2 : 0);
 }
 
-/// One setting: its key in TOML and `--set`, its range, and where it lives.
+/// One setting: its key in TOML and `--set`, its values, and how its member of Config is read and written.
 struct Setting {
-  std::string_view key;      ///< "depth.bits"
-  std::string_view unit;     ///< "bits", "pixels", ...
-  std::string_view meaning;  ///< one line for `halfplane config --list`
-  int min;                   ///< smallest legal value (numbers only)
-  int max;                   ///< largest legal value (numbers only)
-  std::variant<int Config::*, ColorFormat Config::*, CacheKind Config::*, FrameClears Config::*, FrameOrder Config::*,
-               FrameStore Config::*, SetupKind Config::*, TextureUnitKind Config::*, ReciprocalKind Config::*,
-               DepthMapping Config::*, DepthFormat Config::*, SamplePattern Config::*>
-      member;
+  std::string_view key;                      ///< "depth.bits"
+  std::string unit;                          ///< "bits", "pixels", ...; of names all of them: "rgb565|rgba8888"
+  std::string_view meaning;                  ///< one line for `halfplane config --list`
+  int min = 0;                               ///< smallest legal value (numbers only)
+  int max = 0;                               ///< largest legal value (numbers only)
+  std::vector<std::string_view> names = {};  ///< of an enumeration's values, in their order
+  bool is_host = false;                      ///< the RTL does not depend on it
+  std::string (*read)(const Config&, const Setting&) = nullptr;
+  void (*write)(Config&, const Setting&, std::string_view) = nullptr;
 
-  /// Whether the RTL depends on it.
-  [[nodiscard]] bool is_hardware() const {
-    return !std::holds_alternative<DepthMapping Config::*>(member) &&
-           !std::holds_alternative<DepthFormat Config::*>(member) &&
-           !std::holds_alternative<FrameOrder Config::*>(member) &&
-           !std::holds_alternative<FrameStore Config::*>(member);
-  }
+  [[nodiscard]] bool is_number() const { return max > min; }
+  [[nodiscard]] bool is_hardware() const { return !is_host; }
 };
 
 /// Every setting, in the order in which `config --list` prints them.

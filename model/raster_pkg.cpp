@@ -146,6 +146,18 @@ void print_packet(std::ostream& out, const Widths& widths) {
   print_constant(out, constant_name(Packet::name) + "_BITS", packet_bits<Packet>(widths), "of the struct above");
 }
 
+/// A value that has a name is its number there.
+void print_setting(std::ostream& out, const Setting& setting, const std::string& value) {
+  long long number = setting.is_number() ? std::stoll(value) : 0;
+  std::string names;
+  for (std::size_t i = 0; i < setting.names.size(); ++i) {
+    if (setting.names[i] == value) number = static_cast<long long>(i);
+    names += (i == 0 ? "" : ", ") + std::to_string(i) + " " + std::string(setting.names[i]);
+  }
+  print_constant(out, constant_name(setting.key), number,
+                 names + (names.empty() ? "" : ": ") + std::string(setting.meaning));
+}
+
 }  // namespace
 
 std::uint64_t config_id(const Config& config) {
@@ -175,28 +187,10 @@ std::string raster_pkg(const Config& config) {
          "  // The configuration.\n";
   for (const Setting& setting : settings()) {
     if (!setting.is_hardware()) continue;
-    if (std::holds_alternative<ColorFormat Config::*>(setting.member))
-      print_constant(out, constant_name(setting.key), static_cast<int>(config.color_format),
-                     "0 rgb565, 1 rgba8888: " + std::string(setting.meaning));
-    else if (std::holds_alternative<CacheKind Config::*>(setting.member))
-      print_constant(out, constant_name(setting.key), static_cast<int>(config.cache_kind),
-                     "0 tiles, 1 blocks: " + std::string(setting.meaning));
-    else if (std::holds_alternative<FrameClears Config::*>(setting.member))
-      print_constant(out, constant_name(setting.key), static_cast<int>(config.frame_clears),
-                     "0 resolve, 1 flags: " + std::string(setting.meaning));
-    else if (std::holds_alternative<TextureUnitKind Config::*>(setting.member))
-      print_constant(out, constant_name(setting.key), static_cast<int>(config.texture_unit),
-                     "0 off, 1 nearest, 2 bilinear, 3 trilinear: " + std::string(setting.meaning));
-    else if (std::holds_alternative<ReciprocalKind Config::*>(setting.member))
-      print_constant(out, constant_name(setting.key), static_cast<int>(config.reciprocal_kind),
-                     "0 table, 1 restoring: " + std::string(setting.meaning));
-    else if (std::holds_alternative<SetupKind Config::*>(setting.member))
-      print_constant(out, constant_name(setting.key), static_cast<int>(config.setup_kind),
-                     "0 pipelined, 1 serial: " + std::string(setting.meaning));
-    else if (std::holds_alternative<SamplePattern Config::*>(setting.member))
+    if (setting.key == "msaa.pattern")
       print_sample_places(out, widths);
     else
-      print_constant(out, constant_name(setting.key), std::stoll(get(config, setting)), std::string(setting.meaning));
+      print_setting(out, setting, get(config, setting));
   }
   char id[17];
   std::snprintf(id, sizeof id, "%016llx", static_cast<unsigned long long>(config_id(config)));

@@ -144,7 +144,7 @@ const Setting* find_setting(std::string_view key) {
 
 // The value as `--set` would take it.
 std::string value_text(const Entry& entry, const Setting& setting, const Place& place) {
-  if (std::holds_alternative<int Config::*>(setting.member)) {
+  if (setting.is_number()) {
     if (const auto* number = entry.value->as_integer()) return std::to_string(number->get());
     fail(place, entry.key + ": give a whole number " + std::to_string(setting.min) + "..." +
                     std::to_string(setting.max) + ", without quotes");
@@ -234,7 +234,7 @@ std::string config_toml(const Config& config) {
       const auto dot = setting.key.find('.');
       if (setting.key.substr(0, dot) != table) continue;
       const std::string value = get(config, setting);
-      const bool is_number = std::holds_alternative<int Config::*>(setting.member);
+      const bool is_number = setting.is_number();
       text += std::string(setting.key.substr(dot + 1)) + " = " + (is_number ? value : '"' + value + '"') + "  # " +
               (is_number ? std::to_string(setting.min) + "..." + std::to_string(setting.max) + " " : std::string()) +
               std::string(setting.unit) + ": " + std::string(setting.meaning) + '\n';

@@ -6,7 +6,7 @@ nlohmann::ordered_json config_json(const Config& config) {
   nlohmann::ordered_json json{{"preset", config.preset}};
   for (const Setting& setting : settings()) {
     const std::string value = get(config, setting);
-    if (std::holds_alternative<int Config::*>(setting.member))
+    if (setting.is_number())
       json[std::string(setting.key)] = std::stoi(value);
     else
       json[std::string(setting.key)] = value;

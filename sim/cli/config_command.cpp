@@ -23,7 +23,7 @@ using Row = std::array<std::string, 4>;
 std::vector<Row> setting_rows(const Config& config) {
   std::vector<Row> rows;
   for (const Setting& setting : settings()) {
-    const bool is_number = std::holds_alternative<int Config::*>(setting.member);
+    const bool is_number = setting.is_number();
     const std::string range =
         is_number ? std::to_string(setting.min) + "..." + std::to_string(setting.max) + " " : std::string();
     rows.push_back({std::string(setting.key), get(config, setting), range + std::string(setting.unit),
@@ -136,7 +136,7 @@ int run(const ConfigOptions& options) {
     Json list = Json::array();
     for (const Setting& setting : settings()) {
       Json entry{{"key", setting.key}, {"value", result["config"][std::string(setting.key)]}, {"unit", setting.unit}};
-      if (std::holds_alternative<int Config::*>(setting.member)) entry["range"] = {setting.min, setting.max};
+      if (setting.is_number()) entry["range"] = {setting.min, setting.max};
       entry["meaning"] = setting.meaning;
       list.push_back(entry);
     }

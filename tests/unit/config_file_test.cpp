@@ -29,7 +29,7 @@ TEST(ConfigFile, EverySettingCanBeWritten) {
   Config expected = preset("full");
   std::string text;
   for (const Setting& setting : settings()) {
-    const bool number = std::holds_alternative<int Config::*>(setting.member);
+    const bool number = setting.is_number();
     const std::string value = get(expected, setting);
     text += std::string(setting.key) + " = " + (number ? value : '"' + value + '"') + "\n";
   }

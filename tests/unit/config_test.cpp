@@ -44,7 +44,11 @@ TEST(Config, EverySettingReadsBackWhatWasSetAndRefusesWhatLiesOutside) {
     const std::string own = get(config, setting);
     set(config, setting.key, own);
     EXPECT_EQ(config, Config()) << setting.key;
-    if (!std::holds_alternative<int Config::*>(setting.member)) continue;
+    for (const std::string_view name : setting.names) {
+      set(config, setting.key, name);
+      EXPECT_EQ(get(config, setting), name);
+    }
+    if (!setting.is_number()) continue;
     set(config, setting.key, std::to_string(setting.max));
     EXPECT_EQ(get(config, setting), std::to_string(setting.max));
     const Config before = config;
@@ -185,31 +189,17 @@ TEST(RasterTaps, TheCommittedOnesAreWhatTheGraphYields) { EXPECT_EQ(file_text("c
 TEST(RasterPkg, AnyOtherSettingGivesAnotherIdentity) {
   for (const Setting& setting : settings()) {
     Config config;
-    if (std::holds_alternative<ColorFormat Config::*>(setting.member))
-      config.color_format = ColorFormat::rgba8888;
-    else if (std::holds_alternative<SetupKind Config::*>(setting.member))
-      config.setup_kind = SetupKind::serial;
-    else if (std::holds_alternative<CacheKind Config::*>(setting.member))
-      config.cache_kind = CacheKind::tiles;
-    else if (std::holds_alternative<FrameClears Config::*>(setting.member))
-      config.frame_clears = FrameClears::flags;
-    else if (std::holds_alternative<TextureUnitKind Config::*>(setting.member))
-      config.texture_unit = TextureUnitKind::nearest;
-    else if (std::holds_alternative<ReciprocalKind Config::*>(setting.member))
-      config.reciprocal_kind = ReciprocalKind::restoring;
-    else if (std::holds_alternative<FrameOrder Config::*>(setting.member))
-      config.frame_order = FrameOrder::bins;
-    else if (std::holds_alternative<FrameStore Config::*>(setting.member))
-      config.frame_store = FrameStore::color;
-    else if (std::holds_alternative<SamplePattern Config::*>(setting.member))
-      config.msaa_pattern = parse_sample_pattern("0.25,0.25;0.75,0.75");
+    const std::string own = get(config, setting);
+    if (setting.key == "msaa.pattern")
+      set(config, setting.key, "0.25,0.25;0.75,0.75");
     else if (setting.key == "msaa.samples")
-      config.msaa_samples = 2;
-    else if (!setting.is_hardware())
-      set(config, setting.key, setting.key == "depth.mapping" ? "rev" : "f16");
+      set(config, setting.key, "2");
+    else if (setting.key == "depth.format")
+      set(config, setting.key, "f16");
+    else if (setting.is_number())
+      set(config, setting.key, std::to_string(own == std::to_string(setting.max) ? setting.min : setting.max));
     else
-      set(config, setting.key,
-          std::to_string(get(config, setting) == std::to_string(setting.max) ? setting.min : setting.max));
+      set(config, setting.key, setting.names[setting.names.front() == own ? 1 : 0]);
     EXPECT_NE(config, Config()) << setting.key;
     EXPECT_EQ(config_id(config) != config_id(Config()), setting.is_hardware()) << setting.key;
   }
