@@ -207,8 +207,6 @@ std::vector<Setting> all_settings() {
   };
 }
 
-constexpr std::array<std::string_view, 4> kPresetNames{"tiny", "small", "embedded", "full"};
-
 void refuse_unless(bool holds, const std::string& message) {
   if (!holds) throw InputError("configuration refused: " + message);
 }
@@ -227,58 +225,6 @@ bool is_power_of_two(int value) { return std::has_single_bit(static_cast<unsigne
 std::span<const Setting> settings() {
   static const std::vector<Setting> all = all_settings();
   return all;
-}
-
-std::span<const std::string_view> preset_names() { return kPresetNames; }
-
-Config preset(std::string_view name) {
-  Config config;
-  if (name == "embedded") return config;
-  config.preset = name;
-  if (name == "tiny") {
-    config.subpixel_bits = 2;
-    config.guard_band = 32;
-    config.target_width = config.target_height = 16;
-    config.depth_bits = 8;
-    config.perspective_bits = 16;
-    config.perspective_mantissa_bits = 14;
-    config.stamp_size = 1;
-    config.hiz_bits = 8;
-    config.cache_kind = CacheKind::tiles;
-    config.cache_lines = 2;
-    config.memory_port_bits = 16;
-    config.counter_bits = 16;  // so few that tests see one wrap
-    return config;
-  }
-  if (name == "small") {  // what fits an FPGA without multipliers
-    config.guard_band = 512;
-    config.target_width = 320;
-    config.target_height = 240;
-    config.stamp_size = 1;
-    config.primitive_id_bits = 8;
-    config.context_slots = 2;
-    config.hiz_bits = 8;
-    config.cache_kind = CacheKind::tiles;
-    config.hiz_lag = 4;  // of which its serial stages do not take more
-    config.cache_lines = 4;
-    config.memory_port_bits = 16;
-    config.setup_kind = SetupKind::serial;
-    config.line_units = 0;  // with it 60 MHz are out of reach there: docs/area.md
-    config.counter_units = 0;
-    return config;
-  }
-  if (name == "full") {
-    config.subpixel_bits = 8;
-    config.guard_band = 8192;
-    config.target_width = config.target_height = 4096;
-    config.depth_bits = 24;
-    config.perspective_bits = 26;
-    config.color_format = ColorFormat::rgba8888;
-    config.stamp_size = 4;
-    config.memory_port_bits = 512;  // a stamp of either plane
-    return config;
-  }
-  throw InputError("no preset '" + std::string(name) + "'; the presets are " + joined(kPresetNames, ", "));
 }
 
 std::string get(const Config& config, const Setting& setting) { return setting.read(config, setting); }

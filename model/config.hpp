@@ -144,11 +144,26 @@ struct Setting {
 /// Every setting, in the order in which `config --list` prints them.
 [[nodiscard]] std::span<const Setting> settings();
 
-/// The names that preset() takes: tiny, small, embedded, full.
+/// A configuration that has a name: a row of model/designs.toml.
+struct Design {
+  std::string_view name;   ///< "textured"
+  std::string_view label;  ///< of a preset its name, of others a preset and settings: "embedded texture.unit=trilinear"
+  Config config;
+
+  [[nodiscard]] bool is_preset() const { return name == config.preset; }
+};
+
+/// All of them, the presets first.
+[[nodiscard]] std::span<const Design> designs();
+
+/// Those of the presets: tiny, small, embedded, full.
 [[nodiscard]] std::span<const std::string_view> preset_names();
 
-/// The preset of that name. Throws InputError when there is none.
+/// The preset of that name, or another design. Throws InputError when there is none.
 [[nodiscard]] Config preset(std::string_view name);
+
+/// A name that preset() takes, and settings that differ, with blanks between: "embedded stamp.size=4". Throws InputError.
+[[nodiscard]] Config labelled(std::string_view label);
 
 /// The value of one setting, as it is written in TOML and on the command line.
 [[nodiscard]] std::string get(const Config& config, const Setting& setting);

@@ -251,7 +251,7 @@ void set_by_key(Config& config, std::string_view key, std::string_view value) {
 Config read_config_file(const std::string& path) { return read_config_toml(read_text(path), path); }
 
 Config config_from_option(const std::string& option) {
-  if (std::ranges::find(preset_names(), option) != preset_names().end()) return preset(option);
+  if (std::ranges::find(designs(), option, &Design::name) != designs().end()) return preset(option);
   const bool is_file = std::filesystem::path(option).extension() == ".toml" || option.find('/') != std::string::npos;
   if (is_file) return read_config_file(option);
   throw InputError("--config: no preset " + shown(option) + ";" + did_you_mean(option, preset_names()) +

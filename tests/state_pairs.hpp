@@ -26,18 +26,6 @@ struct Dimension {
   std::string_view part_of = {};  ///< the state that has it; where that is off there is none of it
 };
 
-/// All units of fragment operations, and textures.
-inline Config all_operations() {
-  Config config = preset("embedded");
-  config.texture_unit = TextureUnitKind::nearest;
-  config.alpha_units = config.dither_units = 1;
-  config.blend_lanes = 4;
-  config.stencil_bits = 8;
-  config.fog_units = config.shade_units = 1;
-  config.setup_plane_clocks = 2;
-  return config;
-}
-
 inline std::vector<Dimension> dimensions() {
   /// A member, by the number of its enumerator.
   const auto direct = [](std::string_view name, int values, auto member) {

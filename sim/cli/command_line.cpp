@@ -60,7 +60,7 @@ std::map<std::string, Completion> known_completions() {
   const Words keys = names_of(settings(), &Setting::key), timing = names_of(timing_settings(), &TimingSetting::key);
   const Words mappings = words_of(depth_mapping_names().subspan(1));  // the first is the scene's own
   return {
-      {"--config", {Kind::preset, words_of(preset_names()), {".toml"}}},
+      {"--config", {Kind::preset, names_of(designs(), &Design::name), {".toml"}}},
       {"--set", {Kind::setting, {}, {}}},
       {"--vary", {Kind::key, keys, {}}},
       {"--what-if", {Kind::key, with(with(keys, timing), {"memory", "memory.latency", "mhz"}), {}}},

@@ -1,5 +1,4 @@
 // The Verilated designs of this build: rtl_ref/CMakeLists.txt makes the classes.
-#include <sstream>
 #include <stdexcept>
 #include <type_traits>
 
@@ -19,16 +18,6 @@ namespace halfplane {
 namespace {
 
 #ifdef HALFPLANE_HAS_RTL
-/// `label`: a preset and the settings that differ from it, with blanks between.
-Config labelled(const std::string& label) {
-  std::istringstream words(label);
-  std::string word;
-  words >> word;
-  Config config = preset(word);
-  while (words >> word) set(config, word.substr(0, word.find('=')), word.substr(word.find('=') + 1));
-  return config;
-}
-
 #ifdef HALFPLANE_RTL_COVERAGE  // built without waveforms
 template <class V>
 using Instance = VerilatedDut<V>;

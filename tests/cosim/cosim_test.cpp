@@ -128,7 +128,7 @@ TEST(Cosim, StencilsAreDrawnInRandomScenes) {
 
 // Fragment operations together with textures: each pair of values of two states (tests/state_pairs.hpp lists them).
 TEST(Cosim, EveryPairOfValuesOfTwoStatesIsEqualInEveryPacket) {
-  const Config config = test::all_operations();
+  const Config config = preset("stencilled");
   const auto scenes = test::paired_scenes(config, test::dimensions(), 1);
   for (const double stalls : {0.0, 0.3}) {
     LockstepOptions options;
@@ -314,38 +314,10 @@ TEST(Cosim, EveryMutantIsCaughtByTheRandomRun) {
     const auto scenes = random_scenes(factory.config, options.seed, 6000);
     return run_session(*dut, factory.config, options, scenes, HostOrders::drawn).result.mismatch.has_value();
   };
-  Config with_textures = preset("embedded");
-  with_textures.texture_unit = TextureUnitKind::trilinear;
-  with_textures.perspective_colors = 1;
-  with_textures.texture_ways = 2;
-  Config with_operations = preset("embedded");
-  with_operations.texture_unit = TextureUnitKind::trilinear;
-  with_operations.texture_lanes = 4;
-  with_operations.alpha_units = with_operations.dither_units = 1;
-  with_operations.blend_lanes = 4;
-  Config with_stencil = preset("embedded");
-  with_stencil.texture_unit = TextureUnitKind::nearest;
-  with_stencil.alpha_units = with_stencil.dither_units = 1;
-  with_stencil.blend_lanes = 4;
-  with_stencil.stencil_bits = 8;
-  with_stencil.setup_plane_clocks = 2;
-  with_stencil.fog_units = with_stencil.shade_units = 1;
-  Config with_samples = preset("embedded");
-  with_samples.msaa_samples = 4;
-  with_samples.compress_units = 1;
-  with_samples.alpha_units = with_samples.dither_units = 1;
-  with_samples.blend_lanes = 4;
-  with_samples.stencil_bits = 8;
-  Config with_means = preset("tiny");
-  with_means.cache_kind = CacheKind::blocks;
-  with_means.msaa_samples = 2;
-  with_means.texture_unit = TextureUnitKind::nearest;
-  with_means.alpha_units = 1;
-  with_means.resolve_units = 1;
-  const DutFactory &embedded = find_dut(preset("embedded")), &tiny = find_dut(preset("tiny")),
-                   &textured = find_dut(with_textures), &blended = find_dut(with_operations),
-                   &stencilled = find_dut(with_stencil), &sampled = find_dut(with_samples),
-                   &resolved = find_dut(with_means);
+  const auto design = [](std::string_view name) -> const DutFactory& { return find_dut(preset(name)); };
+  const DutFactory &embedded = design("embedded"), &tiny = design("tiny"), &textured = design("textured"),
+                   &blended = design("blended"), &stencilled = design("stencilled"), &sampled = design("sampled"),
+                   &resolved = design("resolved");
   ASSERT_TRUE(embedded.has_mutants && tiny.has_mutants && textured.has_mutants && blended.has_mutants &&
               stencilled.has_mutants && sampled.has_mutants && resolved.has_mutants);
   const auto is_of_operations = [](const Mutant& mutant) {

@@ -24,7 +24,7 @@ std::string refusal(const Config& config) {
 }
 
 std::string file_text(const std::string& path) {
-  std::ifstream file(std::string(HALFPLANE_SOURCE_DIR) + "/rtl_ref/" + path);
+  std::ifstream file(std::string(HALFPLANE_SOURCE_DIR) + "/" + path);
   std::stringstream text;
   text << file.rdbuf();
   return text.str();
@@ -36,6 +36,41 @@ TEST(Config, EveryPresetIsValidAndKnowsItsName) {
     EXPECT_EQ(preset(name).preset, name);
   }
   EXPECT_THROW((void)preset("huge"), InputError);
+}
+
+TEST(Designs, EachIsValidAndFoundByItsNameAndItsLabel) {
+  for (const Design& design : designs()) {
+    EXPECT_EQ(refusal(design.config), "") << design.name;
+    EXPECT_EQ(preset(design.name), design.config);
+    EXPECT_EQ(labelled(design.label), design.config) << design.label;
+  }
+  EXPECT_EQ(label(labelled("textured stamp.size=4")),
+            "embedded, perspective.colors=1, stamp.size=4, texture.unit=trilinear, texture.ways=2");
+  EXPECT_THROW((void)labelled("huge stamp.size=4"), InputError);
+  EXPECT_THROW((void)labelled("tiny stamp.size"), InputError);
+}
+
+TEST(Designs, EverySettingDiffersFromWhatIsThereWithoutIt) {
+  std::istringstream file(file_text("model/designs.toml"));
+  std::size_t rows = 0;
+  for (std::string line; std::getline(file, line);) {
+    const auto quote = line.find(" = \"");
+    if (line.starts_with('#') || quote == std::string::npos) continue;
+    ++rows;
+    std::istringstream words(line.substr(quote + 4, line.size() - quote - 5));
+    Config config;
+    for (std::string word; words >> word;) {
+      const auto equals = word.find('=');
+      if (equals == std::string::npos) {
+        config = preset(word);
+        continue;
+      }
+      const Config before = config;
+      set(config, word.substr(0, equals), word.substr(equals + 1));
+      EXPECT_NE(config, before) << word << " in " << line;
+    }
+  }
+  EXPECT_EQ(rows, designs().size());
 }
 
 TEST(Config, EverySettingReadsBackWhatWasSetAndRefusesWhatLiesOutside) {
@@ -153,38 +188,16 @@ TEST(Widths, TilesNarrowPlanesByAtLeastOneBitInEveryLegalConfiguration) {
 }
 
 TEST(RasterPkg, CommittedPackagesAreWhatTheConfigurationYields) {
-  EXPECT_EQ(file_text("raster_pkg.sv"), raster_pkg(preset("embedded")));
-  EXPECT_EQ(file_text("presets/tiny/raster_pkg.sv"), raster_pkg(preset("tiny")));
-  EXPECT_EQ(file_text("presets/small/raster_pkg.sv"), raster_pkg(preset("small")));
-  EXPECT_EQ(file_text("presets/full/raster_pkg.sv"), raster_pkg(preset("full")));
-  Config textured;
-  textured.texture_unit = TextureUnitKind::trilinear;
-  textured.perspective_colors = 1;
-  textured.texture_ways = 2;
-  EXPECT_EQ(file_text("presets/textured/raster_pkg.sv"), raster_pkg(textured));
-  Config blended;
-  blended.texture_unit = TextureUnitKind::trilinear;
-  blended.texture_lanes = 4;
-  blended.alpha_units = blended.dither_units = 1;
-  blended.blend_lanes = 4;
-  EXPECT_EQ(file_text("presets/blended/raster_pkg.sv"), raster_pkg(blended));
-  Config stencilled = blended;
-  stencilled.texture_unit = TextureUnitKind::nearest;
-  stencilled.texture_lanes = 1;
-  stencilled.stencil_bits = 8;
-  stencilled.setup_plane_clocks = 2;
-  stencilled.fog_units = stencilled.shade_units = 1;
-  EXPECT_EQ(file_text("presets/stencilled/raster_pkg.sv"), raster_pkg(stencilled));
-  Config sampled;
-  sampled.alpha_units = sampled.dither_units = 1;
-  sampled.blend_lanes = 4;
-  sampled.stencil_bits = 8;
-  sampled.msaa_samples = 4;
-  sampled.compress_units = 1;
-  EXPECT_EQ(file_text("presets/sampled/raster_pkg.sv"), raster_pkg(sampled));
+  EXPECT_EQ(file_text("rtl_ref/raster_pkg.sv"), raster_pkg(preset("embedded")));
+  for (const Design& design : designs())
+    if (design.name != "embedded" && design.name != "resolved")
+      EXPECT_EQ(file_text("rtl_ref/presets/" + std::string(design.name) + "/raster_pkg.sv"), raster_pkg(design.config))
+          << design.name;
 }
 
-TEST(RasterTaps, TheCommittedOnesAreWhatTheGraphYields) { EXPECT_EQ(file_text("cosim/taps.svh"), raster_taps()); }
+TEST(RasterTaps, TheCommittedOnesAreWhatTheGraphYields) {
+  EXPECT_EQ(file_text("rtl_ref/cosim/taps.svh"), raster_taps());
+}
 
 TEST(RasterPkg, AnyOtherSettingGivesAnotherIdentity) {
   for (const Setting& setting : settings()) {

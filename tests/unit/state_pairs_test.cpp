@@ -17,7 +17,6 @@
 namespace halfplane {
 namespace {
 
-using test::all_operations;
 using test::Dimension;
 using test::dimensions;
 using test::PairCounts;
@@ -33,7 +32,7 @@ std::size_t expect_all(const std::vector<Dimension>& all, const PairCounts& coun
 }
 
 TEST(StatePairs, RandomScenesDrawEveryPairOfValues) {
-  const Config config = all_operations();
+  const Config config = preset("stencilled");
   const std::vector<Dimension> all = dimensions();
   PairCounts counts(all);
   constexpr std::uint64_t kFirstSeed = 33,
@@ -52,7 +51,7 @@ TEST(StatePairs, RandomScenesDrawEveryPairOfValues) {
 }
 
 TEST(StatePairs, AFewScenesDrawEveryPairAndAllEnginesDrawThemAlike) {
-  const Config config = all_operations();
+  const Config config = preset("stencilled");
   const std::vector<Dimension> all = dimensions();
   PairCounts counts(all);
   std::size_t draws = 0;
