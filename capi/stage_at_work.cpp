@@ -33,7 +33,7 @@ StageAtWork::StageAtWork(const Config& config, std::string_view name)
       out_(out_ports_.size()),
       process_(getpid()) {
   vectors::require_stage(stage_, config_);
-  if (stage_.run == nullptr)
+  if (!stage_.can_run())
     throw InputError("stage " + std::string(name) + " cannot be run by itself: " + std::string(stage_.why_not));
   thread_ = std::thread([this] { run(); });
   go_on();
@@ -55,7 +55,7 @@ StageAtWork::~StageAtWork() {
 void StageAtWork::run() {
   stage_turn_.acquire();
   try {
-    stage_.run(*this, config_, widths_);
+    run_stage(stage_, *this, config_, widths_);
   } catch (...) {
     error_ = std::current_exception();
   }

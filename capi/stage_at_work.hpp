@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "sim/vectors/stages.hpp"
+#include "model/vectors/stages.hpp"
 
 namespace halfplane::capi {
 

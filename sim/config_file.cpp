@@ -10,7 +10,7 @@
 #include <memory>
 #include <vector>
 
-#include "sim/nearest_word.hpp"
+#include "model/nearest_word.hpp"
 
 namespace halfplane {
 namespace {

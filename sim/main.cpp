@@ -3,13 +3,13 @@
 #include <csignal>
 #include <iostream>
 
+#include "model/nearest_word.hpp"
 #include "sim/cli/build_info.hpp"
 #include "sim/cli/command_line.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/options.hpp"
 #include "sim/cosim/dut.hpp"
 #include "sim/interrupt.hpp"
-#include "sim/nearest_word.hpp"
 #include "sim/show/image/whole_file.hpp"
 
 namespace {

@@ -7,17 +7,6 @@
 
 namespace halfplane {
 
-PerspectiveFormat perspective_format(const Config& config) {
-  const int bits = config.perspective_bits, mantissa = config.perspective_mantissa_bits;
-  constexpr int kShortMantissa = 16;
-  return {bits,
-          kPerspectiveGuardBits,
-          mantissa,
-          bits - kPerspectiveReciprocalLess,
-          {bits, mantissa - 1, mantissa < kShortMantissa ? 6 : 8, true},
-          {color_over_w_bits(config), kColorNarrowBits, 0, false}};
-}
-
 TextureCoordinates texture_coordinates(const std::array<SurfaceVertex, 3>& surface, const State& state,
                                        const Texture& texture, const PerspectiveFormat& format) {
   const bool is_affine = state.texture_interp == TextureInterp::affine;

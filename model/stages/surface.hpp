@@ -12,6 +12,7 @@
 #include <array>
 #include <optional>
 
+#include "../attributes.hpp"
 #include "../config.hpp"
 #include "fog.hpp"
 #include "level_of_detail.hpp"
@@ -22,7 +23,16 @@
 namespace halfplane {
 
 /// How precise the attributes over w of a configuration are.
-[[nodiscard]] PerspectiveFormat perspective_format(const Config& config);
+[[nodiscard]] constexpr PerspectiveFormat perspective_format(const Config& config) {
+  const int bits = config.perspective_bits, mantissa = config.perspective_mantissa_bits;
+  constexpr int kShortMantissa = 16;
+  return {bits,
+          kPerspectiveGuardBits,
+          mantissa,
+          bits - kPerspectiveReciprocalLess,
+          {bits, mantissa - 1, mantissa < kShortMantissa ? 6 : 8, true},
+          {color_over_w_bits(config), kColorNarrowBits, 0, false}};
+}
 
 /// Whether the filled triangles of a draw need one.
 [[nodiscard]] constexpr bool has_surface(const State& state) {

@@ -8,12 +8,12 @@
 #include "model/counters.hpp"
 #include "model/rules.hpp"
 #include "model/timing/memory.hpp"
+#include "model/vectors/stages.hpp"
 #include "sim/scene/builtin.hpp"
 #include "sim/scene/convention.hpp"
 #include "sim/show/report/hardware.hpp"
 #include "sim/study/bench/engines.hpp"
 #include "sim/study/stress/cases.hpp"
-#include "sim/vectors/stages.hpp"
 
 namespace halfplane {
 namespace {

@@ -7,12 +7,12 @@
 #include "model/engines/cycle/stage_table.hpp"
 #include "model/raster_pkg.hpp"
 #include "model/raster_taps.hpp"
+#include "model/vectors/dpi_package.hpp"
 #include "model/widths.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/options.hpp"
 #include "sim/config_file.hpp"
 #include "sim/show/image/whole_file.hpp"
-#include "sim/vectors/dpi_package.hpp"
 
 namespace halfplane {
 namespace {

@@ -6,8 +6,8 @@
 #include <ostream>
 #include <utility>
 
+#include "model/nearest_word.hpp"
 #include "sim/cli/progress.hpp"
-#include "sim/nearest_word.hpp"
 #include "sim/show/image/framebuffer_files.hpp"
 #include "sim/show/image/panel.hpp"
 #include "sim/show/image/png.hpp"

@@ -3,10 +3,10 @@
 #include <iostream>
 #include <memory>
 
+#include "model/nearest_word.hpp"
 #include "sim/cli/command_line.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/options.hpp"
-#include "sim/nearest_word.hpp"
 #include "sim/show/image/whole_file.hpp"
 
 namespace halfplane {

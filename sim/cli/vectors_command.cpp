@@ -66,7 +66,7 @@ int run(const VectorsOptions& options) {
   result["random"] = options.random != 0 ? Json(options.random) : Json(nullptr);
   result["stage"] = options.stage;
   result["format"] = options.format;
-  result["can_be_checked"] = stage.run != nullptr;
+  result["can_be_checked"] = stage.can_run();
   result["in"] = port_counts(stage.in, packets.in);
   result["out"] = port_counts(stage.out, packets.out);
   result["files"] = Json::array();
@@ -79,7 +79,7 @@ int run(const VectorsOptions& options) {
       << "in   " << ports_text(stage.in, packets.in) << '\n'
       << "out  " << ports_text(stage.out, packets.out) << '\n';
   for (const auto& [path, bytes] : written) out << path << "  " << with_commas(bytes) << " bytes\n";
-  if (stage.run == nullptr) out << "`halfplane check` cannot judge this stage: " << stage.why_not << '\n';
+  if (!stage.can_run()) out << "`halfplane check` cannot judge this stage: " << stage.why_not << '\n';
   return exit_ok;
 }
 

@@ -10,7 +10,7 @@
 
 #include "model/capture/capture.hpp"
 #include "model/config.hpp"
-#include "sim/nearest_word.hpp"
+#include "model/nearest_word.hpp"
 #include "sim/scene/builtin.hpp"
 #include "sim/scene/camera.hpp"
 #include "sim/scene/gltf.hpp"

@@ -77,12 +77,12 @@ std::size_t Judgement::total_compared() const { return sum_of(compared); }
 std::size_t Judgement::total_differing() const { return sum_of(differing); }
 
 Judgement judge(const JudgedStage& stage, const Config& config, const StagePackets& packets) {
-  if (stage.run == nullptr)
+  if (!stage.can_run())
     throw InputError("stage " + std::string(info(stage.stage).name) +
                      " cannot be judged: " + std::string(stage.why_not));
   const Widths widths = derive_widths(config);
   Judge judge(stage, widths, packets);
-  stage.run(judge, config, widths);
+  run_stage(stage, judge, config, widths);
   return judge.finish();
 }
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "stages.hpp"
+#include "model/vectors/stages.hpp"
 
 namespace halfplane::vectors {
 

@@ -103,7 +103,7 @@ StagePackets record_stage(const JudgedStage& stage, const Config& config, const 
 }
 
 void replay_stage(const JudgedStage& stage, const Config& config, const StagePackets& packets, const Visit& visit) {
-  if (stage.run == nullptr) {
+  if (!stage.can_run()) {
     for (std::size_t port = 0; port < packets.in.size(); ++port)
       for (std::size_t n = 0; n < packets.in[port].size(); ++n) visit(false, port, n, packets.in[port][n]);
     for (std::size_t port = 0; port < packets.out.size(); ++port)
@@ -111,7 +111,7 @@ void replay_stage(const JudgedStage& stage, const Config& config, const StagePac
     return;
   }
   Replay replay(packets, visit);
-  stage.run(replay, config, derive_widths(config));
+  run_stage(stage, replay, config, derive_widths(config));
   replay.finish();
 }
 

@@ -130,7 +130,7 @@ TEST(Vectors, WhatAStageGaveIsJudgedEqualWhateverTheFile) {
         EXPECT_EQ(file.stage, &stage);
         EXPECT_EQ(file.config, config);
         for (std::size_t p = 0; p < stage.in.size(); ++p) EXPECT_EQ(file.packets.in[p].size(), packets.in[p].size());
-        if (stage.run == nullptr) {
+        if (!stage.can_run()) {
           EXPECT_THROW((void)judge(stage, config, file.packets), InputError);
           continue;
         }
@@ -154,7 +154,7 @@ TEST(Vectors, AFaultInAnyFieldOfAnyStageIsFound) {
   for (const Config& config : configurations()) {
     const Widths widths = derive_widths(config);
     for (const JudgedStage& stage : judged_stages()) {
-      if (!is_of(stage, config) || stage.run == nullptr) continue;
+      if (!is_of(stage, config) || !stage.can_run()) continue;
       StagePackets packets = record_stage(stage, config, scenes_of(config));
       for (std::size_t p = 0; p < stage.out.size(); ++p) {
         const auto fields = fields_of(stage.out[p].like, widths);
@@ -188,13 +188,13 @@ TEST(Vectors, AFaultInAnyFieldOfAnyStageIsFound) {
   EXPECT_GT(faults, 500U);
   for (const JudgedStage& stage : judged_stages())
     for (const Port& port : stage.out)
-      EXPECT_TRUE(stage.run == nullptr || seen.contains(port.name)) << port.name << " never came";
+      EXPECT_TRUE(!stage.can_run() || seen.contains(port.name)) << port.name << " never came";
 }
 
 TEST(Vectors, PacketsThatAreMissingOrTooManyAreFound) {
   const Config config = preset("embedded");
   for (const JudgedStage& stage : judged_stages()) {
-    if (stage.run == nullptr || !is_of(stage, config)) continue;
+    if (!stage.can_run() || !is_of(stage, config)) continue;
     SCOPED_TRACE(info(stage.stage).name);
     const StagePackets packets = record_stage(stage, config, scenes_of(config));
     for (std::size_t p = 0; p < stage.out.size(); ++p) {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/nearest_word.hpp"
+#include "model/nearest_word.hpp"
 
 namespace halfplane {
 namespace {

@@ -1,4 +1,4 @@
-#include "sim/nearest_word.hpp"
+#include "nearest_word.hpp"
 
 #include <algorithm>
 #include <numeric>

@@ -1,3 +1,4 @@
+// Each stage at work, from the packets that go in.
 #include "stages.hpp"
 
 #include <algorithm>
@@ -5,21 +6,20 @@
 #include <type_traits>
 #include <variant>
 
-#include "model/engines/hardware.hpp"
-#include "model/packet_words.hpp"
-#include "model/stages/coarse_raster.hpp"
-#include "model/stages/color_packets.hpp"
-#include "model/stages/cull.hpp"
-#include "model/stages/depth_test.hpp"
-#include "model/stages/fine_raster.hpp"
-#include "model/stages/interpolate.hpp"
-#include "model/stages/primitive_join.hpp"
-#include "model/stages/rop.hpp"
-#include "model/stages/state_packets.hpp"
-#include "model/stages/surface.hpp"
-#include "model/stages/texture_stage.hpp"
-#include "model/stages/triangle_setup.hpp"
-#include "sim/nearest_word.hpp"
+#include "../engines/hardware.hpp"
+#include "../packet_words.hpp"
+#include "../stages/coarse_raster.hpp"
+#include "../stages/color_packets.hpp"
+#include "../stages/cull.hpp"
+#include "../stages/depth_test.hpp"
+#include "../stages/fine_raster.hpp"
+#include "../stages/interpolate.hpp"
+#include "../stages/primitive_join.hpp"
+#include "../stages/rop.hpp"
+#include "../stages/state_packets.hpp"
+#include "../stages/surface.hpp"
+#include "../stages/texture_stage.hpp"
+#include "../stages/triangle_setup.hpp"
 
 namespace halfplane::vectors {
 namespace {
@@ -334,125 +334,25 @@ void run_texture_unit(StageIo& io, const Config& config, const Widths& widths) {
   }
 }
 
-constexpr Port port(Arrow arrow) { return {info(arrow).name, arrow}; }
-constexpr Port kInterpolated{"interpolated", Arrow::fragment}, kTested{"tested", Arrow::write};
-constexpr std::string_view kOfHost = "it is the host's: what goes into it is a scene, no packets";
-
 }  // namespace
 
-std::span<const JudgedStage> judged_stages() {
-  using enum Arrow;
-  static const std::vector<JudgedStage> all{
-      {Stage::viewport, {}, {port(primitive)}, nullptr, kOfHost},
-      {Stage::line_setup, {}, {port(line)}, nullptr, kOfHost},
-      {Stage::cull, {port(primitive)}, {port(triangle)}, run_cull},
-      {Stage::triangle_setup, {port(triangle)}, {port(setup)}, run_triangle_setup},
-      {Stage::coarse_raster, {port(setup), port(retire)}, {port(context), port(tile), port(edges)}, run_coarse_raster},
-      {Stage::fine_raster, {port(tile), port(edges)}, {port(stamp)}, run_fine_raster},
-      {Stage::interpolate, {port(stamp), port(context)}, {kInterpolated}, run_interpolate},
-      {Stage::line_raster, {port(line)}, {port(line_pixel)}, run_line_raster},
-      {Stage::primitive_join, {kInterpolated, port(line_pixel)}, {port(fragment)}, run_primitive_join},
-      {Stage::depth_test, {port(fragment), port(color)}, {kTested, port(retire)}, run_depth_test},
-      {Stage::rop, {port(fragment), kTested}, {port(write)}, run_rop},
-      {Stage::texture_unit, {port(fragment), port(write), port(texel)}, {port(texture), port(color)}, run_texture_unit},
-      {Stage::framebuffer,
-       {port(fragment), port(write), port(response), port(color)},
-       {port(request)},
-       run_framebuffer},
-      {Stage::memory_port, {port(request), port(answer)}, {port(beat), port(response)}, run_memory_port},
-      {Stage::memory, {port(beat)}, {port(answer)}, run_memory},
-      {Stage::texture_memory,
-       {port(texture)},
-       {port(texel)},
-       nullptr,
-       "its texels are the scene's, which the file does not hold"}};
-  return all;
-}
-
-const JudgedStage& judged_stage(std::string_view name) {
-  std::vector<std::string_view> names;
-  for (const JudgedStage& stage : judged_stages()) {
-    if (info(stage.stage).name == name) return stage;
-    names.push_back(info(stage.stage).name);
+void run_stage(const JudgedStage& stage, StageIo& io, const Config& config, const Widths& widths) {
+  switch (stage.stage) {
+    case Stage::cull: return run_cull(io, config, widths);
+    case Stage::triangle_setup: return run_triangle_setup(io, config, widths);
+    case Stage::coarse_raster: return run_coarse_raster(io, config, widths);
+    case Stage::fine_raster: return run_fine_raster(io, config, widths);
+    case Stage::interpolate: return run_interpolate(io, config, widths);
+    case Stage::line_raster: return run_line_raster(io, config, widths);
+    case Stage::primitive_join: return run_primitive_join(io, config, widths);
+    case Stage::depth_test: return run_depth_test(io, config, widths);
+    case Stage::rop: return run_rop(io, config, widths);
+    case Stage::framebuffer: return run_framebuffer(io, config, widths);
+    case Stage::memory_port: return run_memory_port(io, config, widths);
+    case Stage::memory: return run_memory(io, config, widths);
+    case Stage::texture_unit: return run_texture_unit(io, config, widths);
+    default: break;  // can_run() is false
   }
-  std::string list;
-  for (const std::string_view word : names) list += (list.empty() ? "" : ", ") + std::string(word);
-  throw InputError("no stage '" + std::string(name) + "' sends packets;" + did_you_mean(name, names) + " give one of " +
-                   list);
-}
-
-void require_stage(const JudgedStage& stage, const Config& config) {
-  require_sampled_hardware(config, "the RTL");
-  const bool is_of_texture = stage.stage == Stage::texture_unit || stage.stage == Stage::texture_memory;
-  if (is_of_texture && !has_texture_planes(config))
-    throw InputError("stage " + std::string(info(stage.stage).name) +
-                     ": this hardware has no texture unit; set texture.unit to nearest, bilinear or trilinear");
-  const bool is_of_lines = stage.stage == Stage::line_setup || stage.stage == Stage::line_raster;
-  if (is_of_lines && config.line_units == 0)
-    throw InputError("stage " + std::string(info(stage.stage).name) +
-                     ": this hardware has no unit that draws lines; set lines.unit to 1");
-}
-
-std::vector<FieldName> fields_of(Arrow like, const Widths& widths) {
-  return with_packet_type(like, [&]<class Packet>(std::type_identity<Packet>) {
-    std::vector<FieldName> fields;
-    for (const auto& [name, width] : element_names<Packet>(widths))
-      fields.push_back({name, width.bits, width.is_signed});
-    return fields;
-  });
-}
-
-int bits_of(Arrow like, const Widths& widths) {
-  return with_packet_type(like, [&]<class Packet>(std::type_identity<Packet>) { return packet_bits<Packet>(widths); });
-}
-
-std::size_t packet_words(Arrow like, const Widths& widths) { return words_of(bits_of(like, widths)); }
-
-std::vector<std::uint64_t> values_of(Arrow like, const Widths& widths, std::span<const std::uint32_t> words) {
-  return with_packet_type(
-      like, [&]<class Packet>(std::type_identity<Packet>) { return element_values<Packet>(words.data(), widths); });
-}
-
-namespace {
-
-/// "code[3][red]" in its parts: "code", then what stands in brackets.
-std::string_view stem_of(std::string_view name) { return name.substr(0, name.find('[')); }
-
-}  // namespace
-
-std::vector<std::uint32_t> words_from(std::span<const FieldName> fields, std::span<const std::uint64_t> values) {
-  // Fields go highest first; the elements of one array lie lowest first.
-  int bits = 0;
-  for (const FieldName& field : fields) bits += field.bits;
-  std::vector<std::uint32_t> words(words_of(bits));
-  WordWriter writer(words.data());
-  for (std::size_t end = fields.size(); end > 0;) {
-    std::size_t first = end - 1;
-    const bool is_array = fields[first].name.find('[') != std::string::npos;
-    while (is_array && first > 0 && stem_of(fields[first - 1].name) == stem_of(fields[end - 1].name)) --first;
-    for (std::size_t i = first; i < end; ++i) writer.put(values[i], fields[i].bits);
-    end = first;
-  }
-  writer.finish();
-  return words;
-}
-
-std::string place_fault(std::span<const FieldName> fields, std::span<const std::uint64_t> values, const Config& config,
-                        const Widths& widths) {
-  const auto limit_of = [&](std::string_view name) {
-    const bool is_x = name == "x" || name == "left" || name == "right";
-    const bool is_y = name == "y" || name == "top" || name == "bottom";
-    if (name == "tile_x") return widths.tiles_x;
-    if (name == "tile_y") return widths.tiles_y;
-    return is_x ? config.target_width : is_y ? config.target_height : 0;
-  };
-  for (std::size_t i = 0; i < fields.size(); ++i) {
-    const int limit = limit_of(fields[i].name);
-    if (limit != 0 && values[i] >= static_cast<std::uint64_t>(limit))
-      return "'" + fields[i].name + "' is " + std::to_string(values[i]) + ", and the largest target ends at " +
-             std::to_string(limit - 1);
-  }
-  return {};
 }
 
 }  // namespace halfplane::vectors

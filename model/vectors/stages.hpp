@@ -12,9 +12,9 @@
 #include <string_view>
 #include <vector>
 
-#include "model/config.hpp"
-#include "model/pipeline_graph.hpp"
-#include "model/widths.hpp"
+#include "../config.hpp"
+#include "../pipeline_graph.hpp"
+#include "../widths.hpp"
 
 namespace halfplane::vectors {
 
@@ -37,11 +37,14 @@ class StageIo {
 struct JudgedStage {
   Stage stage;
   std::vector<Port> in, out;
-  /// Runs the stage from reset until its first port ends. Throws InputError when another port ends before. None: its packets
-  /// cannot be judged from what goes in.
-  void (*run)(StageIo& io, const Config& config, const Widths& widths) = nullptr;
-  std::string_view why_not{};  ///< with no `run`
+  std::string_view why_not = {};  ///< its packets cannot be judged from what goes in; empty: they can
+
+  [[nodiscard]] bool can_run() const { return why_not.empty(); }
 };
+
+/// Runs the stage from reset until its first port ends. Throws InputError when another port ends before. Precondition:
+/// stage.can_run().
+void run_stage(const JudgedStage& stage, StageIo& io, const Config& config, const Widths& widths);
 
 /// Every stage of the graph that sends packets.
 [[nodiscard]] std::span<const JudgedStage> judged_stages();

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "model/config.hpp"
+#include "../config.hpp"
 
 namespace halfplane::vectors {
 

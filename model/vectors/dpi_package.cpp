@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "model/packets.hpp"
+#include "../packets.hpp"
 #include "stages.hpp"
 
 namespace halfplane::vectors {
@@ -15,7 +15,7 @@ std::string type_of(Arrow arrow) {
 }
 
 bool is_there(const JudgedStage& stage, const Config& config) {
-  if (stage.run == nullptr) return false;
+  if (!stage.can_run()) return false;
   try {
     require_stage(stage, config);
     return true;
