@@ -20,12 +20,13 @@ import signal
 import subprocess
 import sys
 import time
+import tomllib
 
 from prove_list import PROOFS
 
 RTL = pathlib.Path('rtl_ref')
 FORMAL = pathlib.Path('tests/formal')
-PACKAGES = {'embedded': RTL / 'raster_pkg.sv', **{p: RTL / f'presets/{p}/raster_pkg.sv' for p in ('tiny', 'small', 'full', 'stencilled')}}
+DESIGNS = [name for table in tomllib.loads(pathlib.Path('model/designs.toml').read_text(encoding='utf-8')).values() for name in table]
 ENUMERATIONS = 'Proofs.*'
 
 
@@ -88,9 +89,9 @@ def hierarchy(proof):
     return found
 
 
-def sources(proof, preset, folder, twin):
+def sources(proof, package, folder, twin):
     """Writes package, library and stages into `folder`, the properties inside the module that they are about."""
-    package = PACKAGES[preset].read_text(encoding='utf-8')
+    preset, package = package.parent.name, package.read_text(encoding='utf-8')
     for name, value, *only in proof.package:
         if only and preset not in only:
             continue
@@ -163,10 +164,10 @@ def run(command, log, seconds):
             RUNNING.discard(process.pid)
 
 
-def front_end(proof, preset, folder, twin):
+def front_end(proof, package, folder, twin):
     """Yosys commands that give the flat design of a proof or of its twin."""
     folder.mkdir(parents=True, exist_ok=True)
-    files = sources(proof, preset, folder, twin)
+    files = sources(proof, package, folder, twin)
     # What is cut out may give any result: what is shown then holds for the right one, too.
     cut = ''.join(f'cutpoint t:{cells}; ' for cells in proof.cuts)
     top = pathlib.Path(proof.module).stem
@@ -238,9 +239,9 @@ def solve_by_minisat(front, folder, calls, limit):
     return results
 
 
-def prove(proof, preset, limit, solver):
+def prove(proof, package, limit, solver):
     """The proof, then its twins."""
-    began = time.monotonic()
+    began, preset = time.monotonic(), package.parent.name
     base = pathlib.Path('build/prove') / f'{proof.name}-{preset}'
     shutil.rmtree(base, ignore_errors=True)
     outcome = Outcome(proof, preset, False, [], 0, 0)
@@ -248,10 +249,10 @@ def prove(proof, preset, limit, solver):
         calls = {'base': 1} if proof.is_combinational else {'base': proof.depth, 'step': proof.k}
         if proof.is_bounded:
             del calls['step']
-        results = solver(front_end(proof, preset, base, None), base, calls, limit)
+        results = solver(front_end(proof, package, base, None), base, calls, limit)
         if proof.cover_depth and 'FAILED' not in results.values():
             folder = base / 'cover'
-            results |= solve_by_minisat(front_end(proof, preset, folder, None), folder, {'cover': proof.cover_depth}, limit)
+            results |= solve_by_minisat(front_end(proof, package, folder, None), folder, {'cover': proof.cover_depth}, limit)
         failed = {name: result for name, result in results.items() if result != 'PASSED'}
         outcome.remark = ', '.join(f'{name}: {result}' for name, result in failed.items()) + f', see {base}' if failed else ''
         outcome.proven = not failed
@@ -263,7 +264,7 @@ def prove(proof, preset, limit, solver):
             outcome.caught.append(None)
             for name, cycles in calls.items():
                 folder = base / f'twin{number}'
-                if solver(front_end(proof, preset, folder, twin), folder, {name: cycles}, limit)[name] == 'FAILED':
+                if solver(front_end(proof, package, folder, twin), folder, {name: cycles}, limit)[name] == 'FAILED':
                     outcome.caught[-1] = name
                     break
         outcome.twin_seconds = time.monotonic() - began - outcome.seconds
@@ -304,7 +305,9 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('--quick', action='store_true', help='the proofs that take a few seconds')
     parser.add_argument('--only', metavar='NAME', help='proofs whose name contains this')
-    parser.add_argument('--preset', choices=sorted(PACKAGES), help='with the widths of this preset alone')
+    parser.add_argument('--preset', choices=DESIGNS, help='with the widths of this preset alone')
+    parser.add_argument('--packages', type=pathlib.Path, default='build/release/rtl/packages', metavar='DIR',
+                        help='where NAME/raster_pkg.sv of each design lies')
     parser.add_argument('--list', action='store_true', help='what there is to prove')
     parser.add_argument('--jobs', type=int, default=os.cpu_count(), metavar='N', help='solvers at a time')
     parser.add_argument('--limit', type=float, default=600, metavar='SECONDS', help='time-out of each call of the solver')
@@ -316,7 +319,7 @@ def main():
     if options.program and not os.access(options.program, os.X_OK):
         parser.error(f'--program: {options.program} is no program')
 
-    chosen = [(proof, preset) for proof in PROOFS
+    chosen = [(proof, options.packages / preset / 'raster_pkg.sv') for proof in PROOFS
               for preset in proof.presets + (proof.no_answer if options.only else ())
               if (not options.only or options.only in proof.name) and options.preset in (None, preset)
               and (not options.quick or preset in proof.quick)]
@@ -330,6 +333,9 @@ def main():
     if not chosen:
         print('prove: nothing of that name and preset', file=sys.stderr)
         return 2
+    for _, package in chosen:
+        if not package.is_file():
+            parser.error(f'--packages: there is no {package}; a build writes it')
     missing = [tool for tool in ('yosys', *(['z3'] if options.z3 else [])) if shutil.which(tool) is None]
     if missing:
         print(f'prove: not installed: {" ".join(missing)} (apt-get install {" ".join(missing)})', file=sys.stderr)
