@@ -4,7 +4,7 @@
 A proof is a file of tests/formal, put in front of `endmodule` of a module of rtl_ref, with the package of a preset. The
 MiniSat inside Yosys (or z3, --z3) then shows that no assertion fails in the first cycles (the base) and that none can fail
 when none has failed for k cycles (the step). Together: never. The twin is the same with one fault in the RTL. What cannot
-be shown so is enumerated: Proofs.* of halfplane_tests (--program).
+be shown so is enumerated: Proofs.* of halfplane_unit_tests (--program).
 
 Runs in the repository's root; build/prove keeps every design and log. Exit status: 0 all proven and every twin caught,
 1 not so, 2 wrong usage, 3 a tool is missing.
@@ -304,22 +304,23 @@ def enumerate_cases(program, whole):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('--quick', action='store_true', help='the proofs that take a few seconds')
+    parser.add_argument('--twins', type=int, metavar='N', help='the first N twins of each proof alone')
     parser.add_argument('--only', metavar='NAME', help='proofs whose name contains this')
     parser.add_argument('--preset', choices=DESIGNS, help='with the widths of this preset alone')
-    parser.add_argument('--packages', type=pathlib.Path, default='build/release/rtl/packages', metavar='DIR',
+    parser.add_argument('--packages', type=pathlib.Path, default='build/release/rtl_ref/packages', metavar='DIR',
                         help='where NAME/raster_pkg.sv of each design lies')
     parser.add_argument('--list', action='store_true', help='what there is to prove')
     parser.add_argument('--jobs', type=int, default=os.cpu_count(), metavar='N', help='solvers at a time')
     parser.add_argument('--limit', type=float, default=600, metavar='SECONDS', help='time-out of each call of the solver')
     parser.add_argument('--z3', action='store_true', help='z3 instead of the MiniSat of Yosys: a second opinion, far slower')
-    parser.add_argument('--program', metavar='FILE', help='halfplane_tests, whose enumerations run as well')
+    parser.add_argument('--program', metavar='FILE', help='halfplane_unit_tests, whose enumerations run as well')
     options = parser.parse_args()
     if options.jobs < 1 or not options.limit >= 1:
         parser.error('--jobs and --limit begin at 1')
     if options.program and not os.access(options.program, os.X_OK):
         parser.error(f'--program: {options.program} is no program')
 
-    chosen = [(proof, options.packages / preset / 'raster_pkg.sv') for proof in PROOFS
+    chosen = [(dataclasses.replace(proof, twins=proof.twins[:options.twins]), options.packages / preset / 'raster_pkg.sv') for proof in PROOFS
               for preset in proof.presets + (proof.no_answer if options.only else ())
               if (not options.only or options.only in proof.name) and options.preset in (None, preset)
               and (not options.quick or preset in proof.quick)]

@@ -1,5 +1,6 @@
-# cmake -DSOURCE= -DWORK= -DGENERATOR= -DCOMPILER= -DLAUNCHER= -P run.cmake
-# The steps of a stranger who uses the library; the first that fails stops the script, and so the test.
+# cmake -DSOURCE= -DWORK= -DGENERATOR= -DCOMPILER= -DLAUNCHER= [-DBUILD=] -P run.cmake
+# The steps of a stranger who uses the library; the first that fails stops the script, and so the test. BUILD: a build whose
+# library is installed; without it the library is built, alone.
 
 file(REMOVE_RECURSE "${WORK}")
 # Unoptimised: what is looked at is whether it is found, links and runs.
@@ -10,10 +11,13 @@ macro(step)
   execute_process(COMMAND ${ARGN} COMMAND_ERROR_IS_FATAL ANY COMMAND_ECHO STDOUT)
 endmacro()
 
-step("${CMAKE_COMMAND}" -S "${SOURCE}" -B "${WORK}/library" ${common} -DHALFPLANE_RTL=OFF -DHALFPLANE_BUILD_SIM=OFF
-  -DHALFPLANE_BUILD_TESTS=OFF)
-step("${CMAKE_COMMAND}" --build "${WORK}/library" --parallel 2)
-step("${CMAKE_COMMAND}" --install "${WORK}/library" --prefix "${WORK}/prefix")
+if(NOT BUILD)
+  set(BUILD "${WORK}/library")
+  step("${CMAKE_COMMAND}" -S "${SOURCE}" -B "${BUILD}" ${common} -DHALFPLANE_RTL=OFF -DHALFPLANE_BUILD_SIM=OFF
+    -DHALFPLANE_BUILD_TESTS=OFF)
+  step("${CMAKE_COMMAND}" --build "${BUILD}" --parallel 2)
+endif()
+step("${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${WORK}/prefix")
 step("${CMAKE_COMMAND}" -S "${SOURCE}/tests/consumer" -B "${WORK}/consumer" ${common}
   "-DCMAKE_PREFIX_PATH=${WORK}/prefix")
 step("${CMAKE_COMMAND}" --build "${WORK}/consumer")

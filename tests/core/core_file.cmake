@@ -6,7 +6,7 @@ set(listed)
 foreach(line IN LISTS lines)
   string(REGEX REPLACE "^      - " "" file "${line}")
   list(APPEND listed "${file}")
-  if(NOT EXISTS "${SOURCE}/${file}")
+  if(NOT EXISTS "${SOURCE}/${file}" AND NOT file MATCHES "^rtl_ref/presets/")  # which the build makes: tests/install looks
     message(SEND_ERROR "halfplane.core lists ${file}, which is not there")
   endif()
 endforeach()

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "../tier.hpp"
 #include "halfplane_paths.hpp"
 #include "model/raster_pkg.hpp"
 #include "sim/scene/random.hpp"
@@ -67,7 +68,7 @@ std::string lint(const std::string& package) {
   return status == 0 ? "" : text.str().empty() ? "verilator_bin failed" : text.str();
 }
 
-/// Fifty; with HALFPLANE_SOAK=SECONDS a hundred, and more while there is time.
+/// Eight, of all tests fifty; with HALFPLANE_SOAK=SECONDS a hundred, and more while there is time.
 TEST(StressRtlLint, EveryAcceptedConfigurationIsReadWithoutAWarning) {
   const char* soak = std::getenv("HALFPLANE_SOAK");
   const std::uint64_t seed =
@@ -75,7 +76,8 @@ TEST(StressRtlLint, EveryAcceptedConfigurationIsReadWithoutAWarning) {
   std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
   Random random(seed);
   const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(soak == nullptr ? 0 : std::atoi(soak));
-  for (int done = 0; done < (soak == nullptr ? 50 : 100) || std::chrono::steady_clock::now() < until; ++done) {
+  for (int done = 0; done < (soak == nullptr ? test::cases(8, 50) : 100) || std::chrono::steady_clock::now() < until;
+       ++done) {
     const Config config = random_config(random);
     ASSERT_EQ(lint(raster_pkg(config)), "") << label(config, " --set ");
   }

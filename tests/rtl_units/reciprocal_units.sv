@@ -1,4 +1,4 @@
-// The reciprocal units of several widths side by side, and the same with a fault each (RECIPROCAL_FAULTS of CMakeLists.txt).
+// The reciprocal units of several widths side by side, and the same with a fault each (faults.cmake).
 module reciprocal_units (
     input logic clk_i,
     input logic rst_ni,

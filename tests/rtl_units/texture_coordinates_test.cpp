@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <random>
 
+#include "../tier.hpp"
 #include "VTextureCoordinates.h"
 #include "VTextureCoordinatesFull.h"
 #include "VTextureCoordinatesTiny.h"
@@ -141,7 +142,7 @@ template <class Dut>
 void expect_right(const PerspectiveFormat& format, std::uint64_t samples) {
   const std::uint64_t seed = seed_of_run();
   Coordinates<Dut> coordinates(format, seed);
-  EXPECT_EQ(coordinates.run(samples), 0U) << "HALFPLANE_SEED=" << seed;
+  EXPECT_EQ(coordinates.run(test::cases(samples / 8, samples)), 0U) << "HALFPLANE_SEED=" << seed;
 }
 
 TEST(TextureCoordinates, Embedded) { expect_right<VTextureCoordinates>(kEmbeddedPerspective, 2'000'000); }

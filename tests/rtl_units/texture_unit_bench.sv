@@ -1,4 +1,4 @@
-// The texture unit as a bench drives it. FAULTS of CMakeLists.txt look at fault_i; the unit as it is does not.
+// The texture unit as a bench drives it. The faults of faults.cmake read fault_i; the unit as it is does not.
 module texture_unit_bench #(
     parameter int SAMPLES = 4,
     parameter int LANES = 1,

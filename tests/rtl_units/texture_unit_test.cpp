@@ -9,23 +9,22 @@
 #include <optional>
 #include <string>
 
+#include "../tier.hpp"
 #include "VTextureUnit.h"
-#include "VTextureUnitFaults.h"
 #include "VTextureUnitFull.h"
 #include "VTextureUnitLanes.h"
-#include "VTextureUnitLanesFaults.h"
 #include "VTextureUnitLanesFull.h"
 #include "VTextureUnitLanesLevels.h"
-#include "VTextureUnitLanesLevelsFaults.h"
 #include "VTextureUnitLanesLevelsFull.h"
+#include "VTextureUnitLanesLevelsQueue.h"
+#include "VTextureUnitLanesWays.h"
 #include "VTextureUnitLevels.h"
-#include "VTextureUnitLevelsFaults.h"
 #include "VTextureUnitLevelsTiny.h"
 #include "VTextureUnitLevelsWays.h"
 #include "VTextureUnitLinear.h"
-#include "VTextureUnitLinearFaults.h"
 #include "VTextureUnitLinearTiny.h"
 #include "VTextureUnitTiny.h"
+#include "texture_faults.hpp"
 #include "texture_unit_plan.hpp"
 
 namespace halfplane::texture_test {
@@ -266,7 +265,8 @@ class Bench {
 };
 
 template <class Dut>
-void expect_right(const UnitFormat& format, std::uint64_t samples) {
+void expect_right(const UnitFormat& format, std::uint64_t all_samples) {
+  const std::uint64_t samples = test::cases(all_samples / 4, all_samples);
   std::uint64_t seed = seed_of_run(), done = 0, cycles = 0;
   while (done < samples) {
     Bench<Dut> bench(format);
@@ -320,21 +320,21 @@ void expect_found(const UnitFormat& format, int first, int last) {
     EXPECT_NE(run(fault), "") << "fault " << fault << " is not found, HALFPLANE_SEED=" << seed;
 }
 
-TEST(TextureUnit, FaultsAreFound) { expect_found<VTextureUnitFaults>(kEmbedded, 1, TEXTURE_NEAREST_FAULTS); }
+TEST(TextureUnit, FaultsAreFound) { expect_found<VTextureUnit>(kEmbedded, 1, kNearestFaults); }
 TEST(TextureUnit, FaultsOfTheLinearFilterAreFound) {
-  expect_found<VTextureUnitLinearFaults>(kLinear, TEXTURE_NEAREST_FAULTS + 1, TEXTURE_LINEAR_FAULTS);
+  expect_found<VTextureUnitLinear>(kLinear, kNearestFaults + 1, kLinearFaults);
 }
 TEST(TextureUnit, FaultsOfLevelsAreFound) {
-  expect_found<VTextureUnitLevelsFaults>(kLevels, TEXTURE_LINEAR_FAULTS + 1, TEXTURE_LEVELS_FAULTS);
+  expect_found<VTextureUnitLevels>(kLevels, kLinearFaults + 1, kLevelsFaults);
 }
 TEST(TextureUnit, FaultsOfColorsOverWAreFound) {
-  expect_found<VTextureUnitFaults>(kEmbedded, TEXTURE_LEVELS_FAULTS + 1, TEXTURE_COLORS_FAULTS);
+  expect_found<VTextureUnit>(kEmbedded, kLevelsFaults + 1, kColorsFaults);
 }
 TEST(TextureUnit, FaultsOfLanesAndWaysAreFound) {
-  expect_found<VTextureUnitLanesFaults>(kLanesWays, TEXTURE_COLORS_FAULTS + 1, TEXTURE_WAYS_FAULTS);
+  expect_found<VTextureUnitLanesWays>(kLanesWays, kColorsFaults + 1, kWaysFaults);
 }
 TEST(TextureUnit, FaultsOfLanesWithLevelsAreFound) {
-  expect_found<VTextureUnitLanesLevelsFaults>(kLanesLevelsFaults, TEXTURE_WAYS_FAULTS + 1, TEXTURE_FAULTS);
+  expect_found<VTextureUnitLanesLevelsQueue>(kLanesLevelsFaults, kWaysFaults + 1, kTextureFaults);
 }
 
 }  // namespace

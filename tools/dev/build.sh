@@ -1,8 +1,6 @@
 # shellcheck shell=bash
 # Part of ./dev: configuring and building.
 
-readonly rtl_presets='embedded;tiny;small;full;textured;blended;stencilled;sampled;resolved'
-
 # configure PRESET [ARGS]: Ninja or, without it, make; what is not installed is left out.
 configure() {
   local cache=build/$1/CMakeCache.txt generator=Ninja fresh=() rtl=REQUIRED tests=ON
@@ -33,27 +31,22 @@ build_program() {
   link_program release
 }
 
-# rtl_package CONFIG [--set K=V...]: writes what CMake needs to Verilate this configuration, prints its folder.
-rtl_package() {
-  local text label folder
+# rtl_label CONFIG [--set K=V...]: that configuration as CMake takes it, "embedded stamp.size=4".
+rtl_label() {
+  local text
   text=$(build/halfplane config --config "$@" --sv) || return 2  # errexit is off where the caller tests this
-  label=$(sed -n '1s/.*--config \(.*\) --sv.*/\1/p' <<<"$text" | sed 's/--set //g')
-  folder=$PWD/build/rtl/${label// /,}
-  mkdir -p "$folder"
-  printf '%s\n' "$label" >"$folder/label.txt"
-  cmp -s "$folder/raster_pkg.sv" <(printf '%s\n' "$text") || printf '%s\n' "$text" >"$folder/raster_pkg.sv"
-  printf '%s\n' "$folder"
+  sed -n '1s/.*--config \(.*\) --sv.*/\1/p' <<<"$text" | sed 's/--set //g'
 }
 
-# build_release [--config C [--set K=V...]]: the program with every preset's RTL, and with that of C; the C interface, which
+# build_release [--config C [--set K=V...]]: the program with the RTL of every design, and with that of C; the C interface, which
 # test benches link with (docs/your-rtl.md).
 build_release() {
   (($# == 0)) || [[ $1 == --config && $# -ge 2 ]] || { say "./dev build: --config C [--set K=V...], not '$*'"; exit 2; }
-  build_program "-DHALFPLANE_RTL_CONFIGS=$rtl_presets"
+  build_program -DHALFPLANE_RTL_CONFIGS=
   step 'build the C interface' build release halfplane_c
   (($# > 0)) || return 0
   insist rtl
   local extra
-  extra=$(rtl_package "${@:2}") || exit 2
+  extra=$(rtl_label "${@:2}") || exit 2
   build_program "-DHALFPLANE_RTL_EXTRA=$extra"
 }

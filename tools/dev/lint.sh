@@ -15,13 +15,13 @@ changed_sources() {
 # Switches that clang-format 14 does not know, because more than the words themselves stands in the comment.
 format_switches() { ! sources | xargs grep -nE '// clang-format (on|off).+'; }
 
-# Each module with the widths of `embedded`, the whole design with those of every preset.
+# Each module with the widths of `embedded`, the whole design with those of every design of model/designs.toml.
 lint_rtl() {
   local file package status=0
   for file in rtl_ref/stages/*.sv rtl_ref/lib/*.sv; do
     verilate_lint rtl_ref/raster_pkg.sv "$file" || status=1
   done
-  for package in rtl_ref/raster_pkg.sv rtl_ref/presets/*/raster_pkg.sv; do
+  for package in build/release/rtl_ref/packages/*/raster_pkg.sv; do
     verilate_lint "$package" rtl_ref/raster_top.sv || status=1
     verilate_lint "$package" rtl_ref/cosim/raster_cosim.sv || status=1
   done
@@ -40,8 +40,9 @@ lint() {
   step 'shellcheck' shellcheck --external-sources --check-sourced dev .ci/run tools/mesa/run
   step "clang-format's switches" format_switches
   step 'clang-format' xargs -a <(sources) clang-format --dry-run -Werror
-  step 'verilator --lint-only' lint_rtl
   step 'configure' configure release
+  step 'generate the packages' build release halfplane_packages
+  step 'verilator --lint-only' lint_rtl
   ((${#changed[@]} > 0)) || return 0
   # clang-tidy refuses options that only GCC knows.
   mkdir -p build/lint

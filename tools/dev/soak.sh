@@ -20,13 +20,13 @@ soak() {
   ensure "${everyday[@]}" soak
   insist build sim test rtl
   step 'configure' configure release
-  step 'build program and tests' build release halfplane_tests
+  step 'build program and tests' build release halfplane_unit_tests
   step 'build the tests of the RTL' build release halfplane_cosim_tests
   link_program release
   step "the stress list for $seconds s" build/halfplane stress --seconds "$seconds" --threads "$(jobs)" \
     --seed "$(date +%s)" --json=build/stress.json
   step "stress tests for $seconds s" env HALFPLANE_SOAK="$seconds" \
-    build/release/tests/halfplane_tests --gtest_filter='Stress*' --gtest_brief=1
+    build/release/tests/halfplane_unit_tests --gtest_filter='Stress*' --gtest_brief=1
   step 'lint of random configurations' env HALFPLANE_SOAK="$seconds" \
     build/release/tests/halfplane_cosim_tests --gtest_filter='Stress*' --gtest_brief=1
   [[ -z $(lacking soak) ]] || { say "Fuzzers left out: clang is not installed"; return; }
@@ -59,7 +59,7 @@ soak_run() {
 # In pieces of 100,000 primitives, each with its own seed, half of them with stalls. `full`, whose stamp of 4x4 is wide,
 # gets a twentieth.
 soak_cosim() {
-  local primitives=${1:-1150000} config i words folders=() left piece seed status=0
+  local primitives=${1:-1150000} config i words labels=() left piece seed status=0
   local sizes=('embedded stamp.size=1' 'embedded stamp.size=4' 'full stamp.size=2' 'embedded texture.unit=bilinear'
     'embedded texture.unit=nearest' 'embedded texture.unit=bilinear texture.lanes=4 perspective.colors=1'
     'embedded hiz.bits=8 texture.unit=nearest setup.plane_clocks=2'
@@ -86,10 +86,10 @@ soak_cosim() {
   build_program
   for config in "${sizes[@]}" "${corners[@]}"; do
     read -ra words <<<"${config// / --set }"
-    folders+=("$(rtl_package "${words[@]}")") || exit 2
+    labels+=("$(rtl_label "${words[@]}")") || exit 2
   done
-  step "configure ${#folders[@]} more configurations" configure release -B build/soak \
-    "-DHALFPLANE_RTL_CONFIGS=$rtl_presets" "-DHALFPLANE_RTL_EXTRA=$(IFS=';' && echo "${folders[*]}")"
+  step "configure ${#labels[@]} more configurations" configure release -B build/soak \
+    -DHALFPLANE_RTL_CONFIGS= "-DHALFPLANE_RTL_EXTRA=$(IFS=';' && echo "${labels[*]}")"
   step 'build them' cmake --build build/soak --parallel "$(jobs)" --target halfplane_program
   say "== $primitives random primitives per configuration; a twentieth of it for full with its stamp of 4, and for corners"
   local whole=(small tiny embedded 'embedded perspective.colors=1 texture.unit=trilinear texture.ways=2' "${sizes[@]}") all

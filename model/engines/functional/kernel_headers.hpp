@@ -23,6 +23,13 @@
 #include "kernels.hpp"
 #include "surface_constants.hpp"
 
-#define HALFPLANE_INLINE inline __attribute__((always_inline))
 #define HALFPLANE_NOINLINE __attribute__((noinline))
+// HALFPLANE_SMALL_KERNELS: the compiler chooses what it inlines. Inlining all of it, where a vector is four registers, makes
+// four times the code and takes ten times as long to compile.
+#ifdef HALFPLANE_SMALL_KERNELS
+#define HALFPLANE_INLINE inline
+#define HALFPLANE_LAMBDA
+#else
+#define HALFPLANE_INLINE inline __attribute__((always_inline))
 #define HALFPLANE_LAMBDA __attribute__((always_inline))
+#endif

@@ -1,0 +1,16 @@
+# What model/designs.toml lists, for CMake. Out: HALFPLANE_DESIGNS, the names of presets and designs in the order of the file;
+# HALFPLANE_LABEL_<name>, a preset and the settings that differ from it: "embedded stamp.size=4".
+file(STRINGS "${PROJECT_SOURCE_DIR}/model/designs.toml" lines REGEX "^(\\[|[a-z])")
+set(HALFPLANE_DESIGNS "")
+set(table "")
+foreach(line IN LISTS lines)
+  if(line MATCHES "^\\[([a-z]+)\\]")
+    set(table ${CMAKE_MATCH_1})
+  elseif(line MATCHES "^([a-z_]+) *= *\"([^\"]*)\"")
+    list(APPEND HALFPLANE_DESIGNS ${CMAKE_MATCH_1})
+    set(HALFPLANE_LABEL_${CMAKE_MATCH_1} "${CMAKE_MATCH_2}")
+    if(table STREQUAL "presets")
+      set(HALFPLANE_LABEL_${CMAKE_MATCH_1} ${CMAKE_MATCH_1})
+    endif()
+  endif()
+endforeach()

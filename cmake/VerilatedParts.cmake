@@ -1,0 +1,18 @@
+# What Verilator wrote of class PREFIX in FOLDER, as one source for each of PARTS (fast, slow, trace), which includes the
+# others: cmake -DFOLDER=DIR -DPREFIX=Class "-DPARTS=fast;slow" -P ...
+cmake_policy(VERSION 3.25)
+include("${FOLDER}/${PREFIX}.cmake")
+foreach(kind fast slow)
+  string(TOUPPER ${kind} upper)
+  set(${kind} ${${PREFIX}_CLASSES_${upper}} ${${PREFIX}_SUPPORT_${upper}})
+endforeach()
+set(trace ${fast} ${slow})
+list(FILTER trace INCLUDE REGEX "__Trace__")
+foreach(part IN LISTS PARTS)
+  if(NOT part STREQUAL "trace")
+    list(FILTER ${part} EXCLUDE REGEX "__Trace__")
+  endif()
+  list(TRANSFORM ${part} REPLACE "(.+)" "#include \"\\1\"" OUTPUT_VARIABLE lines)
+  list(JOIN lines "\n" text)
+  file(WRITE "${FOLDER}/${PREFIX}_${part}.cpp" "${text}\n")
+endforeach()
