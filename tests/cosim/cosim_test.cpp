@@ -45,7 +45,7 @@ std::string describe(const Session& session) {
 /// Small targets and slow setup cost more cycles a triangle.
 std::uint64_t triangles_for(const DutFactory& factory) {
   const std::uint64_t all = factory.config.stamp_size == 1 ? 2000 : factory.config.stamp_size == 4 ? 1500 : 6000;
-  return test::cases(all / 4, all);
+  return test::cases(all / 8, all);
 }
 
 bool has_lines(const Scene& scene) {
@@ -60,6 +60,7 @@ TEST(Cosim, ThisBuildHasRtl) { ASSERT_GE(verilated_duts().size(), 3u); }
 TEST(Cosim, EveryPacketOfRandomScenesIsEqualWithAndWithoutStalls) {
   for (const DutFactory& factory : verilated_duts()) {
     for (const double stalls : {0.0, 0.2, 0.6}) {
+      if (stalls == 0.2 && !test::runs_all()) continue;
       LockstepOptions options;
       options.seed = 30;
       options.stall_probability = stalls;
@@ -67,8 +68,8 @@ TEST(Cosim, EveryPacketOfRandomScenesIsEqualWithAndWithoutStalls) {
       const Session session =
           run(factory, options, random_scenes(factory.config, options.seed, triangles_for(factory)), HostOrders::drawn);
       EXPECT_EQ(describe(session), "");
-      EXPECT_GT(session.result.total(), test::cases(2500u, 10000u));
-      EXPECT_GT(session.result.total_cycles_compared(), test::cases(2500u, 10000u));
+      EXPECT_GT(session.result.total(), test::cases(1250u, 10000u));
+      EXPECT_GT(session.result.total_cycles_compared(), test::cases(1250u, 10000u));
       EXPECT_EQ(session.result.model_cycles, session.result.cycles);
       EXPECT_EQ(session.result.model_raster_cycles, session.result.raster_cycles);
       EXPECT_EQ(session.result.model_tile_cycles, session.result.tile_cycles);
@@ -83,11 +84,11 @@ TEST(Cosim, TexturesAreLookedUpInRandomScenes) {
     if (!has_texture_planes(factory.config)) continue;
     ++units;
     const std::uint64_t count = factory.config.target_width < 100 ? 12'000 : 3000;  // of few stamps each
-    const Session session = run(factory, {}, random_scenes(factory.config, 31, test::cases(count / 4, count)));
+    const Session session = run(factory, {}, random_scenes(factory.config, 31, test::cases(count / 8, count)));
     EXPECT_EQ(describe(session), "");
     EXPECT_GT(session.result.compared[index(Arrow::texture)],
-              test::cases(35u, 150u));  // fewer where a stencil test is in front
-    EXPECT_GT(session.result.compared[index(Arrow::color)], test::cases(2500u, 10000u));
+              test::cases(15u, 150u));  // fewer where a stencil test is in front
+    EXPECT_GT(session.result.compared[index(Arrow::color)], test::cases(1250u, 10000u));
   }
   EXPECT_GT(units, 0u);
 }
@@ -103,10 +104,10 @@ TEST(Cosim, ColoursAreBlendedInRandomScenes) {
       options.seed = 32;
       options.stall_probability = stalls;
       const Session session =
-          run(factory, options, random_scenes(factory.config, 32, test::cases(750, 3000)), HostOrders::drawn);
+          run(factory, options, random_scenes(factory.config, 32, test::cases(400, 3000)), HostOrders::drawn);
       EXPECT_EQ(describe(session), "") << factory.name;
       if (factory.config.frame_store == FrameStore::color) continue;  // bins, which read nothing
-      EXPECT_GT(session.result.compared[index(Arrow::response)], test::cases(125u, 500u));
+      EXPECT_GT(session.result.compared[index(Arrow::response)], test::cases(60u, 500u));
     }
   }
   EXPECT_GT(units, 0u);
@@ -123,9 +124,9 @@ TEST(Cosim, StencilsAreDrawnInRandomScenes) {
       options.seed = 33;
       options.stall_probability = stalls;
       const Session session =
-          run(factory, options, random_scenes(factory.config, 33, test::cases(750, 3000)), HostOrders::drawn);
+          run(factory, options, random_scenes(factory.config, 33, test::cases(400, 3000)), HostOrders::drawn);
       EXPECT_EQ(describe(session), "") << factory.name;
-      EXPECT_GT(session.result.compared[index(Arrow::write)], test::cases(25'000u, 100'000u));
+      EXPECT_GT(session.result.compared[index(Arrow::write)], test::cases(12'000u, 100'000u));
     }
   }
   EXPECT_GT(units, 0u);
@@ -152,21 +153,24 @@ TEST(Cosim, EveryPairOfValuesOfTwoStatesIsEqualInEveryPacket) {
   }
 }
 
+// Every day each design with one or two of the memories.
 TEST(Cosim, EveryMemoryKeepsRtlAndCycleModelTogether) {
+  std::size_t number = 0;
   for (const DutFactory& factory : verilated_duts())
     for (const MemoryKind kind :
          {MemoryKind::fixed, MemoryKind::sram, MemoryKind::sdram, MemoryKind::psram, MemoryKind::ddr3}) {
+      if (number++ % 3 != 0 && !test::runs_all()) continue;
       LockstepOptions options;
       options.memory.kind = kind;
       options.memory.latency = 40;
       options.stall_probability = 0.1;
       SCOPED_TRACE(factory.name + ", " + std::string(kMemoryKinds[static_cast<std::size_t>(kind)]));
-      const Session session = run(factory, options, random_scenes(factory.config, 8, test::cases(80, 250)));
+      const Session session = run(factory, options, random_scenes(factory.config, 8, 250));
       EXPECT_EQ(describe(session), "");
       if (factory.config.resolve_units == 0) {  // else nothing is read
-        EXPECT_GT(session.result.cycles_compared[index(Arrow::response)], test::cases(250u, 1000u));
+        EXPECT_GT(session.result.cycles_compared[index(Arrow::response)], 1000u);
       } else {
-        EXPECT_GT(session.result.cycles_compared[index(Arrow::beat)], test::cases(30u, 100u));
+        EXPECT_GT(session.result.cycles_compared[index(Arrow::beat)], 100u);
       }
     }
 }
@@ -216,11 +220,11 @@ TEST(Cosim, AResetInTheMiddleOfAnythingLeavesNothingBehind) {
       LockstepOptions options;
       options.seed = 11;
       options.stall_probability = stalls;
-      options.resets = test::cases(12, 40);
+      options.resets = test::cases(6, 40);
       options.memory.latency = 30;
-      const Session session = run(factory, options, random_scenes(factory.config, 5, test::cases(100, 300)));
+      const Session session = run(factory, options, random_scenes(factory.config, 5, test::cases(60, 300)));
       EXPECT_EQ(describe(session), "");
-      EXPECT_GT(session.result.cycles_compared[index(Arrow::beat)], test::cases(30u, 100u));
+      EXPECT_GT(session.result.cycles_compared[index(Arrow::beat)], test::cases(10u, 100u));
     }
 }
 
