@@ -244,7 +244,7 @@ PROOFS = [
           twins=(70, 72, 73, 75, 91, 92, 93, 94, 95, 220, 221, 222, 223)),
     Proof('cache_tags_bins', 'd, f', 'stages/cache_tags.sv', 'the same where bins share words of flags: a clear of one leaves the others as '
           'they are', cuts=(*SRAMS, '*clear_flags*'), inputs='cache_tags_inputs cache_tags_data', package=BINS_IN_WORDS, cover_depth=32,
-          presets=('embedded',), quick=('embedded',), twins=(404, 405, 406)),
+          presets=('embedded',), twins=(404, 405, 406)),
     Proof('cache_tags_data_in_tiles', 'd, f', 'stages/cache_tags.sv', 'the same with blocks in tiles, and frame.clears=flags',
           cuts=(*SRAMS, '*clear_flags*'), inputs='cache_tags_inputs', package=BLOCKS_IN_TILES, file='cache_tags_data', presets=('embedded',),
           quick=('embedded',), twins=(70, 74, 75)),
@@ -254,7 +254,7 @@ PROOFS = [
                                           'color_known | stamp_bit'))),
     Proof('cache_tags_stencil', 'd, f', 'stages/cache_tags.sv', 'with a stencil: a word of which a draw keeps a part is asked for, one that it '
           'replaces is not; a clear has the value of the front', cuts=(*SRAMS, '*clear_flags*'), inputs='cache_tags_inputs cache_tags_data',
-          package=STENCIL, cover_depth=32, presets=('stencilled',), quick=('stencilled',), twins=(216, 217, 322, 323,
+          package=STENCIL, cover_depth=32, presets=('stencilled',), twins=(216, 217, 322, 323,
           ('replaces_q[fragment_q.state.is_back]', 'replaces_q[0]'))),
     Proof('color_write_data', 'd, f', 'stages/color_write.sv', 'with blending: a stamp reads what those before it have written; an '
           'eviction takes along what was there; no deadlock', cuts=(*SRAMS, '*blend_lane*', '*rop*'), package=BLENDING,
@@ -267,14 +267,14 @@ PROOFS = [
                  ('RESOLVE && (!bits_q[0] || ends_block)) bits_q', 'RESOLVE && ends_block) bits_q'))),
     Proof('block_cache_data', 'd, f', 'stages/block_cache.sv', 'the test sees what was written last, up to the clock before; an '
           'eviction takes it to memory, once', cuts=(*SRAMS, *QUEUES), inputs='block_cache_inputs block_cache_parts', package=BLOCKS,
-          wires=COLOR_WRITE, quick=TINY, cover_depth=22,
+          wires=COLOR_WRITE, cover_depth=22,
           twins=(76, ("x1_line_q == item_line && x1_writes_q;", "1'b0;"), ('on_chip && !is_forwarded', 'on_chip'), 77, 78, 79, 80, 261, 263, 264)),
     Proof('block_cache_stencil', 'd, f', 'stages/block_cache.sv', 'the same where a stencil is above the depth, and changes without it',
           cuts=(*SRAMS, *QUEUES), inputs='block_cache_inputs block_cache_parts', file='block_cache_data', package=STENCIL_BIT,
           wires=COLOR_WRITE, presets=('stencilled',), cover_depth=22,
           twins=(76, 78, 218, ('on_chip && !is_forwarded', 'on_chip'))),
     Proof('block_cache_stream', 'f', 'stages/block_cache.sv', 'requests stable; no read overtakes its eviction\'s write; no deadlock',
-          k=2, cuts=(*SRAMS, *QUEUES), inputs='block_cache_inputs block_cache_parts', package=BLOCKS, wires=COLOR_WRITE, quick=TINY, cover_depth=22,
+          k=2, cuts=(*SRAMS, *QUEUES), inputs='block_cache_inputs block_cache_parts', package=BLOCKS, wires=COLOR_WRITE, cover_depth=22,
           twins=(("'0 && color_ready_q != '0", "'0"), ('order_valid && written_q == order_writes;', 'order_valid && !sends && order_reads;'))),
     Proof('block_cache_whole', 'd, f', 'stages/block_cache.sv', 'tags and all: the test sees what was written last, or cleared',
           is_bounded=True, depth=10, starts=(('lib/sram.sv', 'block_cache_start'),), inputs='block_cache_inputs', package=BLOCKS,
@@ -286,7 +286,7 @@ PROOFS = [
           'nothing stale; no deadlock', has_reset=False, inputs='memory_port_inputs', k=2, quick=TINY, cover_depth=9, cuts=MULTIPLIERS,
           twins=(104, 105, 106, 107, ("recovers_q <= !rst_ni ||", "recovers_q <= rst_ni &&"), ("length_q   <= length_q - 1'b1;", ''))),
     Proof('memory_port_data', 'f', 'stages/memory_port.sv', 'each byte of a stamp goes out once, to its address; what is read is what '
-          'memory answered', has_reset=False, inputs='memory_port_inputs memory_port_stream', k=2, quick=TINY, cover_depth=9,
+          'memory answered', has_reset=False, inputs='memory_port_inputs memory_port_stream', k=2, cover_depth=9,
           twins=(102, ("color_offset = PLANE'(place) << COLOR_SHIFT;", "color_offset = PLANE'(place);"))),
     Proof('cull_stream', 'f', 'stages/cull.sv', 'each primitive is offered or dropped once, in its turn', cover_depth=14, k=2,
           cuts=MULTIPLIERS, twins=(('&& (triangle_ready_i || is_dropped)', ''),)),
