@@ -24,12 +24,14 @@
 #include "surface_constants.hpp"
 
 #define HALFPLANE_NOINLINE __attribute__((noinline))
-// HALFPLANE_SMALL_KERNELS: the compiler chooses what it inlines. Inlining all of it, where a vector is four registers, makes
-// four times the code and takes ten times as long to compile.
+// HALFPLANE_LEAF is inlined always: operations on lanes, and the leaf arithmetic of the stages. HALFPLANE_SMALL_KERNELS: of
+// what is made of them the compiler chooses. Inlining all of it, where a vector is two or four registers, makes twice or four
+// times the code and takes twice or ten times as long to compile.
+#define HALFPLANE_LEAF inline __attribute__((always_inline))
 #ifdef HALFPLANE_SMALL_KERNELS
 #define HALFPLANE_INLINE inline
 #define HALFPLANE_LAMBDA
 #else
-#define HALFPLANE_INLINE inline __attribute__((always_inline))
+#define HALFPLANE_INLINE HALFPLANE_LEAF
 #define HALFPLANE_LAMBDA __attribute__((always_inline))
 #endif

@@ -2,7 +2,7 @@
 // One room of the kernels, compiled once for each instruction set: see ../kernels.inl.
 
 /// One bit for each lane whose sign bit is set.
-HALFPLANE_INLINE std::uint32_t bits_of(const I16& mask) {
+HALFPLANE_LEAF std::uint32_t bits_of(const I16& mask) {
 #if HALFPLANE_ISA == 512
   return _mm512_movepi32_mask((__m512i)mask.part[0]);
 #elif HALFPLANE_ISA == 256
@@ -20,7 +20,7 @@ HALFPLANE_INLINE std::uint32_t bits_of(const I16& mask) {
 }
 
 /// The bits of all lanes together, of each lane `by` places up, of the lanes whose bit is set in `lanes`.
-HALFPLANE_INLINE std::uint64_t or_of_bits(const I16& bits, const I16& by, std::uint32_t lanes) {
+HALFPLANE_LEAF std::uint64_t or_of_bits(const I16& bits, const I16& by, std::uint32_t lanes) {
 #if HALFPLANE_ISA == 512
   const auto half = [](std::uint32_t mask, const __m256i& b, const __m256i& places) HALFPLANE_LAMBDA {
     return _mm512_maskz_sllv_epi64(static_cast<__mmask8>(mask), _mm512_cvtepi32_epi64(b),
@@ -50,13 +50,13 @@ HALFPLANE_INLINE std::uint64_t or_of_bits(const I16& bits, const I16& by, std::u
 
 #if HALFPLANE_ISA == 512
 /// Those of sixteen bits where a < b. Not by way of a mask in lanes, as GCC takes bits_of().
-HALFPLANE_INLINE std::uint32_t bits_below(std::uint32_t bits, const I16& a, const I16& b) {
+HALFPLANE_LEAF std::uint32_t bits_below(std::uint32_t bits, const I16& a, const I16& b) {
   return _mm512_mask_cmplt_epi32_mask(static_cast<__mmask16>(bits), (__m512i)a.part[0], (__m512i)b.part[0]);
 }
 #endif
 
 /// Sixteen numbers of four bits, one behind the other.
-HALFPLANE_INLINE std::uint64_t nibbles_of(const I16& values) {
+HALFPLANE_LEAF std::uint64_t nibbles_of(const I16& values) {
   const I16 placed = values << I16::of([](int i) { return 4 * (i % 8); });
 #if HALFPLANE_ISA == 512
   const auto all = (__m512i)placed.part[0];
@@ -82,13 +82,13 @@ HALFPLANE_INLINE std::uint64_t nibbles_of(const I16& values) {
   return low | std::uint64_t{high} << 32;
 }
 
-HALFPLANE_INLINE bool is_any(const I16& mask) { return bits_of(mask) != 0; }
+HALFPLANE_LEAF bool is_any(const I16& mask) { return bits_of(mask) != 0; }
 
 /// One bit for each of 32 lanes whose sign bit is set.
 #if HALFPLANE_ISA == 512
-HALFPLANE_INLINE std::uint32_t bits_of(const S32& mask) { return _mm512_movepi16_mask((__m512i)mask.part[0]); }
+HALFPLANE_LEAF std::uint32_t bits_of(const S32& mask) { return _mm512_movepi16_mask((__m512i)mask.part[0]); }
 #else
-HALFPLANE_INLINE std::uint32_t bits_of(const S16& low, const S16& high) {
+HALFPLANE_LEAF std::uint32_t bits_of(const S16& low, const S16& high) {
 #if HALFPLANE_ISA == 256
   const __m256i bytes = _mm256_packs_epi16((__m256i)low.part[0], (__m256i)high.part[0]);  // back in order:
   return static_cast<std::uint32_t>(_mm256_movemask_epi8(_mm256_permute4x64_epi64(bytes, 0xd8)));
@@ -109,7 +109,7 @@ HALFPLANE_INLINE std::uint32_t bits_of(const S16& low, const S16& high) {
 #endif
 
 /// One bit for each of 64 lanes whose sign bit is set.
-HALFPLANE_INLINE std::uint64_t bits_of(const S64& mask) {
+HALFPLANE_LEAF std::uint64_t bits_of(const S64& mask) {
 #if HALFPLANE_ISA == 512
   return _mm512_movepi16_mask((__m512i)mask.part[0]) | std::uint64_t{_mm512_movepi16_mask((__m512i)mask.part[1])} << 32;
 #elif HALFPLANE_ISA == 256
@@ -133,7 +133,7 @@ HALFPLANE_INLINE std::uint64_t bits_of(const S64& mask) {
 }
 
 /// One bit for each lane with a <= b.
-HALFPLANE_INLINE std::uint64_t bits_at_most(const S64& a, std::int16_t b) {
+HALFPLANE_LEAF std::uint64_t bits_at_most(const S64& a, std::int16_t b) {
 #if HALFPLANE_ISA == 512
   const __m512i most = _mm512_set1_epi16(b);
   return _mm512_cmple_epi16_mask((__m512i)a.part[0], most) |
@@ -144,7 +144,7 @@ HALFPLANE_INLINE std::uint64_t bits_at_most(const S64& a, std::int16_t b) {
 }
 
 /// The other way round: a mask.
-HALFPLANE_INLINE S64 lanes_of(std::uint64_t bits) {
+HALFPLANE_LEAF S64 lanes_of(std::uint64_t bits) {
   S64 r;
 #if HALFPLANE_ISA == 512
   for (int i = 0; i < 2; ++i) r.part[i] = (S64::Register)_mm512_movm_epi16(static_cast<__mmask32>(bits >> 32 * i));
@@ -162,13 +162,13 @@ HALFPLANE_INLINE S64 lanes_of(std::uint64_t bits) {
 
 #if HALFPLANE_ISA <= 256
 /// The other way round, of sixteen lanes.
-HALFPLANE_INLINE S16 block_lanes_of(std::uint32_t bits) {
+HALFPLANE_LEAF S16 block_lanes_of(std::uint32_t bits) {
   const S16 bit = S16::of([](int i) { return static_cast<std::int16_t>(1U << i); });
   return (S16(static_cast<std::int16_t>(bits)) & bit) == bit;
 }
 
 /// A mask for lanes of 32 bits.
-HALFPLANE_INLINE I16 widened(const S16& mask) {
+HALFPLANE_LEAF I16 widened(const S16& mask) {
 #if HALFPLANE_ISA == 256
   I16 r;
   r.part[0] = (I16::Register)_mm256_cvtepi16_epi32(_mm256_castsi256_si128((__m256i)mask.part[0]));
@@ -181,7 +181,7 @@ HALFPLANE_INLINE I16 widened(const S16& mask) {
 
 /// How many lanes of a mask are set, times kCountOfLane.
 constexpr unsigned kCountOfLane = HALFPLANE_ISA == 256 ? 2 : 1;
-HALFPLANE_INLINE unsigned count_of(const S16& mask) {
+HALFPLANE_LEAF unsigned count_of(const S16& mask) {
 #if HALFPLANE_ISA == 256
   return static_cast<unsigned>(std::popcount(static_cast<unsigned>(_mm256_movemask_epi8((__m256i)mask.part[0]))));
 #elif defined(__x86_64__)
@@ -195,7 +195,7 @@ HALFPLANE_INLINE unsigned count_of(const S16& mask) {
 }
 
 /// To 16 bits; what does not fit becomes the nearest that does.
-HALFPLANE_INLINE S16 saturated(const I16& v) {
+HALFPLANE_LEAF S16 saturated(const I16& v) {
   S16 r;
 #if HALFPLANE_ISA == 256
   const __m256i both = _mm256_packs_epi32((__m256i)v.part[0], (__m256i)v.part[1]);
@@ -212,7 +212,7 @@ HALFPLANE_INLINE S16 saturated(const I16& v) {
 #endif
 
 /// Eight lanes of `left` and eight of `right` in turns, to bytes; what does not fit becomes the nearest signed one.
-HALFPLANE_INLINE B64 saturated(const S32& left, const S32& right) {
+HALFPLANE_LEAF B64 saturated(const S32& left, const S32& right) {
   B64 r;
 #if HALFPLANE_ISA == 512
   r.part[0] = (B64::Register)_mm512_packs_epi16((__m512i)left.part[0], (__m512i)right.part[0]);
@@ -235,14 +235,14 @@ HALFPLANE_INLINE B64 saturated(const S32& left, const S32& right) {
 
 /// Two numbers of 16 bits in turns.
 template <class Lanes>
-HALFPLANE_INLINE Lanes repeated(std::int32_t two) {
+HALFPLANE_LEAF Lanes repeated(std::int32_t two) {
   typedef std::int32_t Wide __attribute__((vector_size(sizeof(typename Lanes::Register))));
   Lanes r;
   HALFPLANE_EACH_PART(Lanes::kParts, i, r.part[i] = (typename Lanes::Register)(Wide{} + two))
   return r;
 }
 /// Four.
-HALFPLANE_INLINE S32 repeated(std::uint64_t four) {
+HALFPLANE_LEAF S32 repeated(std::uint64_t four) {
   typedef std::uint64_t Wide __attribute__((vector_size(HALFPLANE_ISA / 8)));
   S32 r;
   HALFPLANE_EACH_PART(S32::kParts, i, r.part[i] = (S32::Register)(Wide{} + four))
@@ -250,7 +250,7 @@ HALFPLANE_INLINE S32 repeated(std::uint64_t four) {
 }
 
 /// Bytes 0 and 1 of each lane, or 2 and 3, as pairs.
-HALFPLANE_INLINE I16 channel_pair(const I16& rgba, std::size_t pair) {
+HALFPLANE_LEAF I16 channel_pair(const I16& rgba, std::size_t pair) {
 #if HALFPLANE_ISA >= 256
   typedef std::int8_t Bytes __attribute__((vector_size(HALFPLANE_ISA / 8)));
   Bytes from;
@@ -270,7 +270,7 @@ HALFPLANE_INLINE I16 channel_pair(const I16& rgba, std::size_t pair) {
 }
 
 /// The lower half of each lane in both halves.
-HALFPLANE_INLINE I16 doubled(const I16& v) {
+HALFPLANE_LEAF I16 doubled(const I16& v) {
   I16 r;
 #if HALFPLANE_ISA == 512
   const __m512i order = _mm512_broadcast_i32x4(_mm_setr_epi8(0, 1, 0, 1, 4, 5, 4, 5, 8, 9, 8, 9, 12, 13, 12, 13));
@@ -285,7 +285,7 @@ HALFPLANE_INLINE I16 doubled(const I16& v) {
 }
 
 /// Of each eight numbers of 16 bits the first four and the last four in turns.
-HALFPLANE_INLINE B64 turns_of_halves(const B64& v) {
+HALFPLANE_LEAF B64 turns_of_halves(const B64& v) {
   B64 r;
 #if HALFPLANE_ISA == 512
   const __m512i order = _mm512_broadcast_i32x4(_mm_setr_epi8(0, 1, 8, 9, 2, 3, 10, 11, 4, 5, 12, 13, 6, 7, 14, 15));
@@ -304,7 +304,7 @@ HALFPLANE_INLINE B64 turns_of_halves(const B64& v) {
 
 /// Lane by lane the 64 bits that begin with `low`, to memory.
 template <class Element>
-HALFPLANE_INLINE void store_interleaved(const I16& low, const I16& high, Element* to) {
+HALFPLANE_LEAF void store_interleaved(const I16& low, const I16& high, Element* to) {
   static_assert(sizeof(Element) == 8);
 #if HALFPLANE_ISA == 512
   const auto &a = low.part[0], &b = high.part[0];
@@ -330,7 +330,7 @@ HALFPLANE_INLINE void store_interleaved(const I16& low, const I16& high, Element
 }
 
 /// One bit for each lane with a >= b.
-HALFPLANE_INLINE std::uint64_t bits_at_least(const U64& a, const U64& b) {
+HALFPLANE_LEAF std::uint64_t bits_at_least(const U64& a, const U64& b) {
 #if HALFPLANE_ISA == 512
   return _mm512_cmpge_epu16_mask((__m512i)a.part[0], (__m512i)b.part[0]) |
          std::uint64_t{_mm512_cmpge_epu16_mask((__m512i)a.part[1], (__m512i)b.part[1])} << 32;
@@ -340,7 +340,7 @@ HALFPLANE_INLINE std::uint64_t bits_at_least(const U64& a, const U64& b) {
 }
 
 /// One bit for each lane with a == b.
-HALFPLANE_INLINE std::uint64_t bits_equal(const U64& a, const U64& b) {
+HALFPLANE_LEAF std::uint64_t bits_equal(const U64& a, const U64& b) {
 #if HALFPLANE_ISA == 512
   return _mm512_cmpeq_epu16_mask((__m512i)a.part[0], (__m512i)b.part[0]) |
          std::uint64_t{_mm512_cmpeq_epu16_mask((__m512i)a.part[1], (__m512i)b.part[1])} << 32;
@@ -350,7 +350,7 @@ HALFPLANE_INLINE std::uint64_t bits_equal(const U64& a, const U64& b) {
 }
 
 /// a in the lanes whose bit is set, b elsewhere. `to_sign`: 31 - lane.
-HALFPLANE_INLINE I16 select_by_bits(std::uint32_t bits, const I16& a, const I16& b,
+HALFPLANE_LEAF I16 select_by_bits(std::uint32_t bits, const I16& a, const I16& b,
                                     [[maybe_unused]] const I16& to_sign) {
 #if HALFPLANE_ISA == 512
   I16 r;
@@ -363,7 +363,7 @@ HALFPLANE_INLINE I16 select_by_bits(std::uint32_t bits, const I16& a, const I16&
 }
 
 /// 32 bits from base + 4 index, lane by lane.
-HALFPLANE_INLINE I16 gather(const void* base, const I16& index) {
+HALFPLANE_LEAF I16 gather(const void* base, const I16& index) {
   I16 r;
 #if HALFPLANE_ISA == 512
   r.part[0] = (I16::Register)_mm512_i32gather_epi32((__m512i)index.part[0], base, 4);
@@ -379,7 +379,7 @@ HALFPLANE_INLINE I16 gather(const void* base, const I16& index) {
 }
 
 /// One number in the lower eight lanes, another in the upper.
-HALFPLANE_INLINE I16 halves(std::int32_t low, std::int32_t high) {
+HALFPLANE_LEAF I16 halves(std::int32_t low, std::int32_t high) {
   I16 r;
 #if HALFPLANE_ISA == 512
   r.part[0] = (I16::Register)_mm512_inserti64x4(_mm512_set1_epi32(low), _mm256_set1_epi32(high), 1);
@@ -390,7 +390,7 @@ HALFPLANE_INLINE I16 halves(std::int32_t low, std::int32_t high) {
 }
 
 /// The smallest lane.
-HALFPLANE_INLINE std::int32_t min_lane(const I16& v) {
+HALFPLANE_LEAF std::int32_t min_lane(const I16& v) {
 #if HALFPLANE_ISA == 512
   return _mm512_reduce_min_epi32((__m512i)v.part[0]);
 #else
@@ -408,10 +408,10 @@ HALFPLANE_INLINE std::int32_t min_lane(const I16& v) {
   return std::min(two[0], two[1]);
 #endif
 }
-HALFPLANE_INLINE std::int32_t max_lane(const I16& v) { return ~min_lane(~v); }
+HALFPLANE_LEAF std::int32_t max_lane(const I16& v) { return ~min_lane(~v); }
 
 /// The lanes' bits together.
-HALFPLANE_INLINE std::int32_t or_of_lanes(const I16& v) {
+HALFPLANE_LEAF std::int32_t or_of_lanes(const I16& v) {
 #if HALFPLANE_ISA == 512
   return _mm512_reduce_or_epi32((__m512i)v.part[0]);
 #else
@@ -428,7 +428,7 @@ HALFPLANE_INLINE std::int32_t or_of_lanes(const I16& v) {
 #endif
 }
 
-HALFPLANE_INLINE std::uint32_t min_lane(const U64& v) {
+HALFPLANE_LEAF std::uint32_t min_lane(const U64& v) {
 #if HALFPLANE_ISA == 128
   U64::Register all = v.part[0];
   for (int i = 1; i < 8; ++i) all = all < v.part[i] ? all : v.part[i];
@@ -447,10 +447,10 @@ HALFPLANE_INLINE std::uint32_t min_lane(const U64& v) {
   return static_cast<std::uint32_t>(_mm_cvtsi128_si32(_mm_minpos_epu16(eight))) & 0xffff;
 #endif
 }
-HALFPLANE_INLINE std::uint32_t max_lane(const U64& v) { return 0xffff - min_lane(~v); }
+HALFPLANE_LEAF std::uint32_t max_lane(const U64& v) { return 0xffff - min_lane(~v); }
 
 /// Sixteen numbers below 2^16 from and to memory.
-HALFPLANE_INLINE I16 load_narrow(const std::uint16_t* from) {
+HALFPLANE_LEAF I16 load_narrow(const std::uint16_t* from) {
   I16 r;
 #if HALFPLANE_ISA == 512
   r.part[0] = (I16::Register)_mm512_cvtepu16_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(from)));
@@ -462,7 +462,7 @@ HALFPLANE_INLINE I16 load_narrow(const std::uint16_t* from) {
 #endif
   return r;
 }
-HALFPLANE_INLINE void store_narrow(const I16& value, std::uint16_t* to) {
+HALFPLANE_LEAF void store_narrow(const I16& value, std::uint16_t* to) {
 #if HALFPLANE_ISA == 512
   _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm512_cvtepi32_epi16((__m512i)value.part[0]));
 #elif HALFPLANE_ISA == 256
@@ -480,7 +480,7 @@ struct Columns {
 
 #if defined(__x86_64__)
 /// Four registers, of which each quarter holds a row of four numbers: columns to rows and rows to columns.
-HALFPLANE_INLINE void turn_quarters(I16::Register& a, I16::Register& b, I16::Register& c, I16::Register& d) {
+HALFPLANE_LEAF void turn_quarters(I16::Register& a, I16::Register& b, I16::Register& c, I16::Register& d) {
 #if HALFPLANE_ISA == 512
 #define HALFPLANE_UNPACK(half, a, b, bits) _mm512_unpack##half##_epi##bits((__m512i)(a), (__m512i)(b))
 #elif HALFPLANE_ISA == 256
@@ -500,7 +500,7 @@ HALFPLANE_INLINE void turn_quarters(I16::Register& a, I16::Register& b, I16::Reg
 
 /// Lane i: the row at row_at(i). Cheaper than a gather for each column.
 template <class RowAt>
-HALFPLANE_INLINE Columns turned_rows(RowAt&& row_at) {
+HALFPLANE_LEAF Columns turned_rows(RowAt&& row_at) {
   Columns to;
 #if defined(__x86_64__)
   for (int part = 0; part < I16::kParts; ++part) {
@@ -545,7 +545,7 @@ struct ColumnsOfRows {
 
 /// The other way round: lane i to the row at row_at(i).
 template <class RowAt>
-HALFPLANE_INLINE void store_rows(const Columns& from, RowAt&& row_at) {
+HALFPLANE_LEAF void store_rows(const Columns& from, RowAt&& row_at) {
 #if defined(__x86_64__)
   for (int part = 0; part < I16::kParts; ++part) {
     const auto put = [&](int i, const I16::Register& quarters) HALFPLANE_LAMBDA {  // i, i + 4, ...
@@ -581,7 +581,7 @@ HALFPLANE_INLINE void store_rows(const Columns& from, RowAt&& row_at) {
 #endif
 }
 /// At `to` + i * `stride` bytes.
-HALFPLANE_INLINE void store_rows(const Columns& from, void* to, std::size_t stride) {
+HALFPLANE_LEAF void store_rows(const Columns& from, void* to, std::size_t stride) {
   store_rows(from,
              [=](int i) HALFPLANE_LAMBDA { return static_cast<char*>(to) + static_cast<std::size_t>(i) * stride; });
 }
@@ -593,7 +593,7 @@ struct DoubleColumns {
 
 /// Lane i: the row at row_at(i).
 template <class RowAt>
-HALFPLANE_INLINE DoubleColumns turned_doubles(RowAt&& row_at) {
+HALFPLANE_LEAF DoubleColumns turned_doubles(RowAt&& row_at) {
   DoubleColumns to;
 #if defined(__x86_64__)
   for (int part = 0; part < D16::kParts; ++part) {
@@ -641,7 +641,7 @@ HALFPLANE_INLINE DoubleColumns turned_doubles(RowAt&& row_at) {
 
 /// Four rows of four pixels of an image.
 template <class Element>
-HALFPLANE_INLINE I16 load_block(const Element* from, int stride) {
+HALFPLANE_LEAF I16 load_block(const Element* from, int stride) {
   typedef std::int32_t Row __attribute__((vector_size(16), aligned(1), may_alias));
   typedef std::int32_t Four __attribute__((vector_size(16)));
   std::array<Four, 4> row;
@@ -665,7 +665,7 @@ HALFPLANE_INLINE I16 load_block(const Element* from, int stride) {
 }
 /// Two blocks, side by side, as four rows of eight pixels.
 template <class Element>
-HALFPLANE_INLINE void store_blocks(Element* to, int stride, const I16& left, const I16& right) {
+HALFPLANE_LEAF void store_blocks(Element* to, int stride, const I16& left, const I16& right) {
 #if HALFPLANE_ISA == 512
   typedef std::int32_t Row __attribute__((vector_size(32), aligned(4), may_alias));
   const auto &a = left.part[0], &b = right.part[0];
@@ -695,7 +695,7 @@ HALFPLANE_INLINE void store_blocks(Element* to, int stride, const I16& left, con
 /// Sixteen pixels past the caches to the beginning of a cache line: what is written whole need not be read first.
 /// Behind the last: finish_lines().
 template <class Element>
-HALFPLANE_INLINE void stream_line(Element* to, const I16& row) {
+HALFPLANE_LEAF void stream_line(Element* to, const I16& row) {
 #if HALFPLANE_ISA == 512
   _mm512_stream_si512(reinterpret_cast<__m512i*>(to), (__m512i)row.part[0]);
 #elif HALFPLANE_ISA == 256
@@ -708,7 +708,7 @@ HALFPLANE_INLINE void stream_line(Element* to, const I16& row) {
 #endif
 }
 
-HALFPLANE_INLINE void finish_lines() {
+HALFPLANE_LEAF void finish_lines() {
 #if defined(__x86_64__)
   _mm_sfence();
 #endif

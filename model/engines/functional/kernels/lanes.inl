@@ -36,46 +36,46 @@ struct Pack {
 
   Register part[kParts];
 
-  HALFPLANE_INLINE Pack() = default;
-  HALFPLANE_INLINE Pack(const Pack& from) { *this = from; }
-  HALFPLANE_INLINE Pack& operator=(const Pack& from) {
+  HALFPLANE_LEAF Pack() = default;
+  HALFPLANE_LEAF Pack(const Pack& from) { *this = from; }
+  HALFPLANE_LEAF Pack& operator=(const Pack& from) {
     for (int i = 0; i < kParts; ++i) part[i] = from.part[i];
     return *this;
   }
-  HALFPLANE_INLINE Pack(T value) {  // NOLINT: a number is the same in all lanes
+  HALFPLANE_LEAF Pack(T value) {  // NOLINT: a number is the same in all lanes
     HALFPLANE_EACH_PART(kParts, i, part[i] = Register{} + value)
   }
   template <class Lane>
-  HALFPLANE_INLINE static Pack of(Lane&& lane) {
+  HALFPLANE_LEAF static Pack of(Lane&& lane) {
     Pack pack;
     for (int i = 0; i < N; ++i) pack.part[i / kLanes][i % kLanes] = lane(i);
     return pack;
   }
   template <class Element>
-  HALFPLANE_INLINE static Pack load(const Element* from) {
+  HALFPLANE_LEAF static Pack load(const Element* from) {
     Pack pack;
     HALFPLANE_EACH_PART(kParts, i, pack.part[i] = reinterpret_cast<const InMemory*>(from)[i])
     return pack;
   }
   template <class Element>
-  HALFPLANE_INLINE void store(Element* to) const {
+  HALFPLANE_LEAF void store(Element* to) const {
     HALFPLANE_EACH_PART(kParts, i, reinterpret_cast<InMemory*>(to)[i] = part[i])
   }
 };
 
 #define HALFPLANE_PACK_OPERATOR(op)                                                         \
   template <class T, int N>                                                                 \
-  HALFPLANE_INLINE Pack<T, N> operator op(const Pack<T, N>& a, const Pack<T, N>& b) {       \
+  HALFPLANE_LEAF Pack<T, N> operator op(const Pack<T, N>& a, const Pack<T, N>& b) {       \
     Pack<T, N> r;                                                                           \
     HALFPLANE_EACH_PART((Pack<T, N>::kParts), i, r.part[i] = a.part[i] op b.part[i])        \
     return r;                                                                               \
   }                                                                                         \
   template <class T, int N>                                                                 \
-  HALFPLANE_INLINE Pack<T, N> operator op(const Pack<T, N>& a, std::type_identity_t<T> b) { \
+  HALFPLANE_LEAF Pack<T, N> operator op(const Pack<T, N>& a, std::type_identity_t<T> b) { \
     return a op Pack<T, N>(b);                                                              \
   }                                                                                         \
   template <class T, int N>                                                                 \
-  HALFPLANE_INLINE Pack<T, N> operator op(std::type_identity_t<T> a, const Pack<T, N>& b) { \
+  HALFPLANE_LEAF Pack<T, N> operator op(std::type_identity_t<T> a, const Pack<T, N>& b) { \
     return Pack<T, N>(a) op b;                                                              \
   }
 HALFPLANE_PACK_OPERATOR(+)
@@ -88,58 +88,58 @@ HALFPLANE_PACK_OPERATOR(^)
 #undef HALFPLANE_PACK_OPERATOR
 
 template <class T, int N>
-HALFPLANE_INLINE Pack<T, N> operator~(const Pack<T, N>& a) {
+HALFPLANE_LEAF Pack<T, N> operator~(const Pack<T, N>& a) {
   Pack<T, N> r;
   HALFPLANE_EACH_PART((Pack<T, N>::kParts), i, r.part[i] = ~a.part[i])
   return r;
 }
 template <class T, int N>
-HALFPLANE_INLINE Pack<T, N> operator-(const Pack<T, N>& a) {
+HALFPLANE_LEAF Pack<T, N> operator-(const Pack<T, N>& a) {
   Pack<T, N> r;
   HALFPLANE_EACH_PART((Pack<T, N>::kParts), i, r.part[i] = -a.part[i])
   return r;
 }
 template <class T, int N>
-HALFPLANE_INLINE Pack<T, N> operator<<(const Pack<T, N>& a, int bits) {
+HALFPLANE_LEAF Pack<T, N> operator<<(const Pack<T, N>& a, int bits) {
   Pack<T, N> r;
   HALFPLANE_EACH_PART((Pack<T, N>::kParts), i, r.part[i] = a.part[i] << bits)
   return r;
 }
 template <class T, int N>
-HALFPLANE_INLINE Pack<T, N> operator>>(const Pack<T, N>& a, int bits) {
+HALFPLANE_LEAF Pack<T, N> operator>>(const Pack<T, N>& a, int bits) {
   Pack<T, N> r;
   HALFPLANE_EACH_PART((Pack<T, N>::kParts), i, r.part[i] = a.part[i] >> bits)
   return r;
 }
 /// Lane by lane.
 template <class T, int N>
-HALFPLANE_INLINE Pack<T, N> operator<<(const Pack<T, N>& a, const Pack<T, N>& bits) {
+HALFPLANE_LEAF Pack<T, N> operator<<(const Pack<T, N>& a, const Pack<T, N>& bits) {
   Pack<T, N> r;
   HALFPLANE_EACH_PART((Pack<T, N>::kParts), i, r.part[i] = a.part[i] << bits.part[i])
   return r;
 }
 template <class T, int N>
-HALFPLANE_INLINE Pack<T, N> operator>>(const Pack<T, N>& a, const Pack<T, N>& bits) {
+HALFPLANE_LEAF Pack<T, N> operator>>(const Pack<T, N>& a, const Pack<T, N>& bits) {
   Pack<T, N> r;
   HALFPLANE_EACH_PART((Pack<T, N>::kParts), i, r.part[i] = a.part[i] >> bits.part[i])
   return r;
 }
 template <class T, int N>
-HALFPLANE_INLINE Pack<T, N>& operator+=(Pack<T, N>& a, const Pack<T, N>& b) {
+HALFPLANE_LEAF Pack<T, N>& operator+=(Pack<T, N>& a, const Pack<T, N>& b) {
   return a = a + b;
 }
 template <class T, int N>
-HALFPLANE_INLINE Pack<T, N>& operator|=(Pack<T, N>& a, const Pack<T, N>& b) {
+HALFPLANE_LEAF Pack<T, N>& operator|=(Pack<T, N>& a, const Pack<T, N>& b) {
   return a = a | b;
 }
 template <class T, int N>
-HALFPLANE_INLINE Pack<T, N>& operator&=(Pack<T, N>& a, const Pack<T, N>& b) {
+HALFPLANE_LEAF Pack<T, N>& operator&=(Pack<T, N>& a, const Pack<T, N>& b) {
   return a = a & b;
 }
 
 /// Shift without a sign.
 template <int N>
-HALFPLANE_INLINE Pack<std::int32_t, N> shift_right_logical(const Pack<std::int32_t, N>& a, int bits) {
+HALFPLANE_LEAF Pack<std::int32_t, N> shift_right_logical(const Pack<std::int32_t, N>& a, int bits) {
   using P = Pack<std::int32_t, N>;
   using Unsigned = typename Pack<std::uint32_t, N>::Register;
   P r;
@@ -154,14 +154,14 @@ using MaskOf =
 
 #define HALFPLANE_PACK_COMPARISON(op)                                                                \
   template <class T, int N>                                                                          \
-  HALFPLANE_INLINE Pack<MaskOf<T>, N> operator op(const Pack<T, N>& a, const Pack<T, N>& b) {        \
+  HALFPLANE_LEAF Pack<MaskOf<T>, N> operator op(const Pack<T, N>& a, const Pack<T, N>& b) {        \
     Pack<MaskOf<T>, N> r;                                                                            \
     HALFPLANE_EACH_PART((Pack<T, N>::kParts), i,                                                     \
                         r.part[i] = (typename Pack<MaskOf<T>, N>::Register)(a.part[i] op b.part[i])) \
     return r;                                                                                        \
   }                                                                                                  \
   template <class T, int N>                                                                          \
-  HALFPLANE_INLINE Pack<MaskOf<T>, N> operator op(const Pack<T, N>& a, std::type_identity_t<T> b) {  \
+  HALFPLANE_LEAF Pack<MaskOf<T>, N> operator op(const Pack<T, N>& a, std::type_identity_t<T> b) {  \
     return a op Pack<T, N>(b);                                                                       \
   }
 HALFPLANE_PACK_COMPARISON(<)
@@ -174,7 +174,7 @@ HALFPLANE_PACK_COMPARISON(!=)
 
 /// a where the mask is set, b elsewhere.
 template <class T, int N>
-HALFPLANE_INLINE Pack<T, N> select(const Pack<MaskOf<T>, N>& mask, const Pack<T, N>& a, const Pack<T, N>& b) {
+HALFPLANE_LEAF Pack<T, N> select(const Pack<MaskOf<T>, N>& mask, const Pack<T, N>& a, const Pack<T, N>& b) {
   Pack<T, N> r;
 #if HALFPLANE_ISA == 256  // GCC would ask first where the mask is 0
   using Register = typename Pack<T, N>::Register;
@@ -188,7 +188,7 @@ HALFPLANE_INLINE Pack<T, N> select(const Pack<MaskOf<T>, N>& mask, const Pack<T,
 }
 /// a where the sign of the mask is set, b elsewhere.
 template <int N>
-HALFPLANE_INLINE Pack<std::int32_t, N> select_by_sign(const Pack<std::int32_t, N>& mask, const Pack<std::int32_t, N>& a,
+HALFPLANE_LEAF Pack<std::int32_t, N> select_by_sign(const Pack<std::int32_t, N>& mask, const Pack<std::int32_t, N>& a,
                                                       const Pack<std::int32_t, N>& b) {
 #if HALFPLANE_ISA == 256
   using P = Pack<std::int32_t, N>;
@@ -201,13 +201,13 @@ HALFPLANE_INLINE Pack<std::int32_t, N> select_by_sign(const Pack<std::int32_t, N
 #endif
 }
 template <class T, int N>
-HALFPLANE_INLINE Pack<T, N> min(const Pack<T, N>& a, const Pack<T, N>& b) {
+HALFPLANE_LEAF Pack<T, N> min(const Pack<T, N>& a, const Pack<T, N>& b) {
   Pack<T, N> r;
   HALFPLANE_EACH_PART((Pack<T, N>::kParts), i, r.part[i] = a.part[i] < b.part[i] ? a.part[i] : b.part[i])
   return r;
 }
 template <class T, int N>
-HALFPLANE_INLINE Pack<T, N> max(const Pack<T, N>& a, const Pack<T, N>& b) {
+HALFPLANE_LEAF Pack<T, N> max(const Pack<T, N>& a, const Pack<T, N>& b) {
   Pack<T, N> r;
   HALFPLANE_EACH_PART((Pack<T, N>::kParts), i, r.part[i] = a.part[i] > b.part[i] ? a.part[i] : b.part[i])
   return r;
@@ -215,19 +215,19 @@ HALFPLANE_INLINE Pack<T, N> max(const Pack<T, N>& a, const Pack<T, N>& b) {
 
 /// Lanes 0, 1, ... of two vectors behind each other, from lane `First` on.
 template <class Result, int First, class Vector, std::size_t... I>
-HALFPLANE_INLINE Result lanes_from(const Vector& low, const Vector& high, std::index_sequence<I...>) {
+HALFPLANE_LEAF Result lanes_from(const Vector& low, const Vector& high, std::index_sequence<I...>) {
   return __builtin_shufflevector(low, high, (First + static_cast<int>(I))...);
 }
 
 /// Every second lane of them, from the first on.
 template <class Result, class Vector, std::size_t... I>
-HALFPLANE_INLINE Result even_lanes(const Vector& low, const Vector& high, std::index_sequence<I...>) {
+HALFPLANE_LEAF Result even_lanes(const Vector& low, const Vector& high, std::index_sequence<I...>) {
   return __builtin_shufflevector(low, high, (2 * static_cast<int>(I))...);
 }
 
 /// Lane by lane to another type, as static_cast has it; where one type is twice as wide, half a register at a time.
 template <class To, class From, int N>
-HALFPLANE_INLINE Pack<To, N> convert(const Pack<From, N>& from) {
+HALFPLANE_LEAF Pack<To, N> convert(const Pack<From, N>& from) {
   constexpr int kLanes = std::min(Pack<To, N>::kLanes, Pack<From, N>::kLanes);
   static_assert(std::max(Pack<To, N>::kLanes, Pack<From, N>::kLanes) <= 2 * kLanes);
   typedef From FromLanes __attribute__((vector_size(kLanes * sizeof(From))));
@@ -259,7 +259,7 @@ HALFPLANE_INLINE Pack<To, N> convert(const Pack<From, N>& from) {
 
 /// The same bits as lanes of another type.
 template <class To, class From>
-HALFPLANE_INLINE To as(const From& from) {
+HALFPLANE_LEAF To as(const From& from) {
   static_assert(sizeof(To) == sizeof(From) && To::kParts == From::kParts);
   To to;
   HALFPLANE_EACH_PART(To::kParts, i, to.part[i] = (typename To::Register)from.part[i])
@@ -279,21 +279,21 @@ using F16 = Pack<float, 16>;
 using L16 = Pack<std::int64_t, 16>;
 using D16 = Pack<double, 16>;
 
-HALFPLANE_INLINE S32 shift_right_logical(const S32& a, int bits) {
+HALFPLANE_LEAF S32 shift_right_logical(const S32& a, int bits) {
   typedef std::uint16_t Unsigned __attribute__((vector_size(HALFPLANE_ISA / 8)));
   S32 r;
   for (int i = 0; i < S32::kParts; ++i) r.part[i] = (S32::Register)((Unsigned)a.part[i] >> bits);
   return r;
 }
 
-HALFPLANE_INLINE L16 shift_right_logical(const L16& a, int bits) {
+HALFPLANE_LEAF L16 shift_right_logical(const L16& a, int bits) {
   typedef std::uint64_t Unsigned __attribute__((vector_size(HALFPLANE_ISA / 8)));
   L16 r;
   for (int i = 0; i < L16::kParts; ++i) r.part[i] = (L16::Register)((Unsigned)a.part[i] >> bits);
   return r;
 }
 
-HALFPLANE_INLINE L16 shift_right_logical(const L16& a, const L16& bits) {
+HALFPLANE_LEAF L16 shift_right_logical(const L16& a, const L16& bits) {
   typedef std::uint64_t Unsigned __attribute__((vector_size(HALFPLANE_ISA / 8)));
   L16 r;
   for (int i = 0; i < L16::kParts; ++i) r.part[i] = (L16::Register)((Unsigned)a.part[i] >> (Unsigned)bits.part[i]);
@@ -301,7 +301,7 @@ HALFPLANE_INLINE L16 shift_right_logical(const L16& a, const L16& bits) {
 }
 
 /// Products of numbers of 32 bits in lanes of 64.
-HALFPLANE_INLINE L16 multiply_narrow(const L16& a, const L16& b) {
+HALFPLANE_LEAF L16 multiply_narrow(const L16& a, const L16& b) {
 #if HALFPLANE_ISA == 128
   return a * b;
 #else
@@ -316,7 +316,7 @@ HALFPLANE_INLINE L16 multiply_narrow(const L16& a, const L16& b) {
 #endif
 }
 
-HALFPLANE_INLINE D16 floor(const D16& v) {
+HALFPLANE_LEAF D16 floor(const D16& v) {
   D16 r;
 #if HALFPLANE_ISA == 512
   for (int i = 0; i < D16::kParts; ++i) r.part[i] = (D16::Register)_mm512_floor_pd((__m512d)v.part[i]);
@@ -330,7 +330,7 @@ HALFPLANE_INLINE D16 floor(const D16& v) {
 }
 
 /// The upper 32 bits of each lane.
-HALFPLANE_INLINE I16 upper_halves(const L16& v) {
+HALFPLANE_LEAF I16 upper_halves(const L16& v) {
 #if HALFPLANE_ISA == 512
   I16 r;
   const I16 odd = I16::of([](int i) { return 2 * i + 1; });
@@ -342,10 +342,10 @@ HALFPLANE_INLINE I16 upper_halves(const L16& v) {
 }
 
 /// Two values of 16 bits in the halves of each lane.
-HALFPLANE_INLINE I16 pairs(const I16& low, const I16& high) { return (low & 0xffff) | (high << 16); }
+HALFPLANE_LEAF I16 pairs(const I16& low, const I16& high) { return (low & 0xffff) | (high << 16); }
 
 /// The upper halves of products of numbers without a sign.
-HALFPLANE_INLINE S32 multiply_upper(const S32& a, std::uint16_t b) {
+HALFPLANE_LEAF S32 multiply_upper(const S32& a, std::uint16_t b) {
   S32 r;
   const S32 factor(static_cast<std::int16_t>(b));
 #if HALFPLANE_ISA == 512
@@ -365,7 +365,7 @@ HALFPLANE_INLINE S32 multiply_upper(const S32& a, std::uint16_t b) {
 }
 
 /// a.low b.low + a.high b.high, lane by lane, of 16-bit pairs.
-HALFPLANE_INLINE I16 multiply_add_pairs(const I16& a, const I16& b) {
+HALFPLANE_LEAF I16 multiply_add_pairs(const I16& a, const I16& b) {
   I16 r;
 #if HALFPLANE_ISA == 512
   r.part[0] = (I16::Register)_mm512_madd_epi16((__m512i)a.part[0], (__m512i)b.part[0]);

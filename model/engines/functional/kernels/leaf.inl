@@ -7,20 +7,20 @@
 
 /// The fill rule: a sample on an edge belongs to the triangle where the edge is a left or a top one. A mask.
 template <class Lanes>
-HALFPLANE_INLINE auto is_top_left(const Lanes& dx, const Lanes& dy) {
+HALFPLANE_LEAF auto is_top_left(const Lanes& dx, const Lanes& dy) {
   return (dy < 0) | ((dy == 0) & (dx > 0));
 }
 
 /// Of two vectors: twice the area that they span, and on which side of an edge a point lies.
 template <class Lanes>
-HALFPLANE_INLINE Lanes cross(const Lanes& ax, const Lanes& ay, const Lanes& bx, const Lanes& by) {
+HALFPLANE_LEAF Lanes cross(const Lanes& ax, const Lanes& ay, const Lanes& bx, const Lanes& by) {
   return ax * by - ay * bx;
 }
 
-HALFPLANE_INLINE I16 magnitude(const I16& v) { return max(v, -v); }
+HALFPLANE_LEAF I16 magnitude(const I16& v) { return max(v, -v); }
 
 /// -v where the mask is set.
-HALFPLANE_INLINE I16 turned(const I16& v, const I16& mask) { return (v ^ mask) - mask; }
+HALFPLANE_LEAF I16 turned(const I16& v, const I16& mask) { return (v ^ mask) - mask; }
 
 /// How the values of a tile are held and read back: in the upper bits of a lane, so that they wrap by themselves.
 struct LaneFormat {
@@ -57,7 +57,7 @@ struct LaneFormat {
 template <class Lanes>
 constexpr int block_rows = 4 / Lanes::kParts;  ///< of a register
 template <class Lanes>
-HALFPLANE_INLINE Lanes block_plane(const Lanes& column, const Lanes& row, const Lanes& step_x, const Lanes& step_y,
+HALFPLANE_LEAF Lanes block_plane(const Lanes& column, const Lanes& row, const Lanes& step_x, const Lanes& step_y,
                                    const Lanes& below, const Lanes& first) {
   Lanes plane;
   plane.part[0] = column.part[0] * step_x.part[0] + row.part[0] * step_y.part[0] + first.part[0];
@@ -69,24 +69,24 @@ HALFPLANE_INLINE Lanes block_plane(const Lanes& column, const Lanes& row, const 
 using ChannelPairs = std::array<std::int32_t, 2>;
 
 /// Of each half by itself.
-HALFPLANE_INLINE std::int32_t sum_of_pairs(std::int32_t a, std::int32_t b) {
+HALFPLANE_LEAF std::int32_t sum_of_pairs(std::int32_t a, std::int32_t b) {
   const auto first = static_cast<std::uint32_t>(a), second = static_cast<std::uint32_t>(b);
   return static_cast<std::int32_t>(((first + second) & 0xffff) | ((first & 0xffff0000) + (second & 0xffff0000)));
 }
 
 /// The codes of values in lanes, clamped to those of the vertices.
-HALFPLANE_INLINE I16 decode(const I16& value, const LaneFormat& format, const I16& low, const I16& high) {
+HALFPLANE_LEAF I16 decode(const I16& value, const LaneFormat& format, const I16& low, const I16& high) {
   return min(max(shift_right_logical(value, format.down) - format.bias, low), high);
 }
 
-[[nodiscard]] HALFPLANE_INLINE I16 color_codes(const S32& value, const I16& low, const I16& high,
+[[nodiscard]] HALFPLANE_LEAF I16 color_codes(const S32& value, const I16& low, const I16& high,
                                                const LaneFormat& format) {
   const S32 code = shift_right_logical(value, format.down) - static_cast<std::int16_t>(format.bias);
   return as<I16>(min(max(code, as<S32>(low)), as<S32>(high)));
 }
 
 /// Codes of 8 bits, red with blue and green with alpha, as the target has them.
-[[nodiscard]] HALFPLANE_INLINE I16 packed(const I16& red_blue, const I16& green_alpha, ColorFormat format) {
+[[nodiscard]] HALFPLANE_LEAF I16 packed(const I16& red_blue, const I16& green_alpha, ColorFormat format) {
   if (format == ColorFormat::rgba8888) return red_blue | green_alpha << 8;
   // 16 bits suffice: 255 * 253 + 1014 < 2^16.
   const auto rounded = [](const I16& codes, std::int16_t factor, std::int16_t addend, int drop) HALFPLANE_LAMBDA {
@@ -96,12 +96,12 @@ HALFPLANE_INLINE I16 decode(const I16& value, const LaneFormat& format, const I1
          multiply_add_pairs(rounded(green_alpha, 253, 505, 10), I16(1 << 5));
 }
 /// R lowest, A highest.
-[[nodiscard]] HALFPLANE_INLINE I16 packed(const I16& rgba, ColorFormat format) {
+[[nodiscard]] HALFPLANE_LEAF I16 packed(const I16& rgba, ColorFormat format) {
   return packed(rgba & 0xff00ff, shift_right_logical(rgba, 8) & 0xff00ff, format);
 }
 
 /// area_quotient() by a division in binary64, put right by its remainder: exact.
-HALFPLANE_INLINE AreaQuotient fast_area_quotient(std::int64_t area, int significant_bits) {
+HALFPLANE_LEAF AreaQuotient fast_area_quotient(std::int64_t area, int significant_bits) {
   const int shift = 63 - std::countl_zero(static_cast<std::uint64_t>(area)) + significant_bits;
   double power;
   const std::uint64_t bits = static_cast<std::uint64_t>(1023 + shift + 1) << 52;
@@ -122,14 +122,14 @@ struct QuotientLanes {
 [[nodiscard]] constexpr bool is_exact_division(int area_bits, int significant_bits) {
   return area_bits + significant_bits + 2 <= 52;
 }
-HALFPLANE_INLINE QuotientLanes exact_quotient_lanes(const I16& area, int significant_bits) {
+HALFPLANE_LEAF QuotientLanes exact_quotient_lanes(const I16& area, int significant_bits) {
   const D16 divisor = convert<double>(max(area, I16(1)));
   const L16 exponent = as<L16>(divisor) & (std::int64_t{0x7ff} << 52);  // of 2^m
   const auto power = as<D16>(exponent + (static_cast<std::int64_t>(significant_bits + 1) << 52));
   return {convert<std::int32_t>(power / divisor), (upper_halves(exponent) >> 20) + (significant_bits - 1023)};
 }
 /// Of areas below 2^31. significant_bits <= 29: a quotient fits 31 bits.
-HALFPLANE_INLINE QuotientLanes quotient_lanes(const I16& area, int significant_bits) {
+HALFPLANE_LEAF QuotientLanes quotient_lanes(const I16& area, int significant_bits) {
   const D16 divisor = convert<double>(max(area, I16(1)));
   const auto bits = as<L16>(divisor);
   const L16 shift = shift_right_logical(bits, 52) - (1023 - significant_bits);
@@ -143,7 +143,7 @@ HALFPLANE_INLINE QuotientLanes quotient_lanes(const I16& area, int significant_b
 /// Their reciprocals, without the lowest `dropped` bits.
 struct ReciprocalLanes {
   I16 value, shift;
-  HALFPLANE_INLINE ReciprocalLanes(const QuotientLanes& quotient, int dropped)
+  HALFPLANE_LEAF ReciprocalLanes(const QuotientLanes& quotient, int dropped)
       : value(shift_right_logical(shift_right_logical(quotient.value, dropped) + 1, 1)),
         shift(quotient.shift - dropped) {}
 };
@@ -155,19 +155,19 @@ struct GradientLanes {
   L16 addend, lowered;
 
   /// `k`: bits that a product drops; negative: gains.
-  HALFPLANE_INLINE GradientLanes(const I16& reciprocal_, const I16& k)
+  HALFPLANE_LEAF GradientLanes(const I16& reciprocal_, const I16& k)
       : reciprocal(convert<std::int64_t>(reciprocal_)),
         left(convert<std::int64_t>(max(-k, I16(0)))),
         right(convert<std::int64_t>(max(k, I16(0)))),
         addend(shift_right_logical(L16(1) << right, 1) + kRaise),
         lowered(shift_right_logical(L16(kRaise), right)) {}
 
-  HALFPLANE_INLINE L16 operator()(const I16& numerator) const {
+  HALFPLANE_LEAF L16 operator()(const I16& numerator) const {
     return rounded(multiply_narrow(convert<std::int64_t>(numerator), reciprocal));
   }
-  HALFPLANE_INLINE L16 operator()(const L16& numerator) const { return rounded(numerator * reciprocal); }
+  HALFPLANE_LEAF L16 operator()(const L16& numerator) const { return rounded(numerator * reciprocal); }
 
-  HALFPLANE_INLINE L16 rounded(const L16& product) const {
+  HALFPLANE_LEAF L16 rounded(const L16& product) const {
     return shift_right_logical((product << left) + addend, right) - lowered;
   }
 };
@@ -176,17 +176,17 @@ struct GradientLanes {
 struct SplitLanes {
   I16 upper, lower;
 
-  HALFPLANE_INLINE SplitLanes(const I16& upper_, const I16& lower_) : upper(upper_), lower(lower_) {}
-  HALFPLANE_INLINE SplitLanes(const SplitLanes& from) : SplitLanes(from.upper, from.lower) {}
-  HALFPLANE_INLINE SplitLanes& operator=(const SplitLanes& from) {
+  HALFPLANE_LEAF SplitLanes(const I16& upper_, const I16& lower_) : upper(upper_), lower(lower_) {}
+  HALFPLANE_LEAF SplitLanes(const SplitLanes& from) : SplitLanes(from.upper, from.lower) {}
+  HALFPLANE_LEAF SplitLanes& operator=(const SplitLanes& from) {
     upper = from.upper;
     lower = from.lower;
     return *this;
   }
-  HALFPLANE_INLINE friend SplitLanes operator+(const SplitLanes& a, const SplitLanes& b) {
+  HALFPLANE_LEAF friend SplitLanes operator+(const SplitLanes& a, const SplitLanes& b) {
     return {a.upper + b.upper, a.lower + b.lower};
   }
-  HALFPLANE_INLINE friend SplitLanes operator<<(const SplitLanes& a, int bits) {
+  HALFPLANE_LEAF friend SplitLanes operator<<(const SplitLanes& a, int bits) {
     return {a.upper << bits, a.lower << bits};
   }
 };
@@ -196,13 +196,13 @@ struct ExactGradientLanes {
   D16 factor;  ///< R 2^-k
   int place;   ///< where a gradient is split
 
-  HALFPLANE_INLINE ExactGradientLanes(const I16& reciprocal, const I16& k, int place_) : place(place_) {
+  HALFPLANE_LEAF ExactGradientLanes(const I16& reciprocal, const I16& k, int place_) : place(place_) {
     const L16 power = convert<std::int64_t>(1023 - k) << 52;
     factor = convert<double>(reciprocal) * as<D16>(power);
   }
 
-  HALFPLANE_INLINE SplitLanes operator()(const I16& numerator) const { return (*this)(convert<double>(numerator)); }
-  HALFPLANE_INLINE SplitLanes operator()(const D16& numerator) const {
+  HALFPLANE_LEAF SplitLanes operator()(const I16& numerator) const { return (*this)(convert<double>(numerator)); }
+  HALFPLANE_LEAF SplitLanes operator()(const D16& numerator) const {
     constexpr double kInteger = 0x1.8p52;  // what is added to it is an integer in the lower bits
     const auto bits = as<L16>(floor(numerator * factor + 0.5) + kInteger);
     return {convert<std::int32_t>(shift_right_logical(bits, place)),
@@ -214,44 +214,44 @@ struct ExactGradientLanes {
 struct NarrowGradientLanes {
   I16 reciprocal, right, addend;
 
-  HALFPLANE_INLINE NarrowGradientLanes(const I16& reciprocal_, const I16& k)
+  HALFPLANE_LEAF NarrowGradientLanes(const I16& reciprocal_, const I16& k)
       : reciprocal(reciprocal_ << max(-k, I16(0))),  // where a product gains bits
         right(max(k, I16(0))),
         addend((I16(1) << right) >> 1) {}
 
-  HALFPLANE_INLINE I16 operator()(const I16& numerator) const { return (numerator * reciprocal + addend) >> right; }
+  HALFPLANE_LEAF I16 operator()(const I16& numerator) const { return (numerator * reciprocal + addend) >> right; }
 };
 
 /// round_shift(), the lower 32 bits. bits <= 32.
-HALFPLANE_INLINE I16 round_shift_lanes(const L16& value, int bits) {
+HALFPLANE_LEAF I16 round_shift_lanes(const L16& value, int bits) {
   if (bits <= 0) return convert<std::int32_t>(value << -bits);
   return convert<std::int32_t>(shift_right_logical(value + (std::int64_t{1} << (bits - 1)), bits));
 }
 
 /// A number for each channel.
 typedef std::int64_t Channels __attribute__((vector_size(32)));
-HALFPLANE_INLINE Channels load(const std::array<std::int64_t, 4>& from) {
+HALFPLANE_LEAF Channels load(const std::array<std::int64_t, 4>& from) {
   typedef std::int64_t InMemory __attribute__((vector_size(32), aligned(8), may_alias));
   return *reinterpret_cast<const InMemory*>(from.data());
 }
-HALFPLANE_INLINE void store(std::array<std::int64_t, 4>& to, const Channels& value) {
+HALFPLANE_LEAF void store(std::array<std::int64_t, 4>& to, const Channels& value) {
   typedef std::int64_t InMemory __attribute__((vector_size(32), aligned(8), may_alias));
   *reinterpret_cast<InMemory*>(to.data()) = value;
 }
 /// Those of a colour, R lowest.
-HALFPLANE_INLINE Channels channels_of(std::uint32_t rgba) {
+HALFPLANE_LEAF Channels channels_of(std::uint32_t rgba) {
   typedef std::uint64_t Unsigned __attribute__((vector_size(32)));
   return (Channels)((Unsigned{} + rgba) >> Unsigned{0, 8, 16, 24}) & 255;
 }
 /// Of the lower halves: red with blue, green with alpha.
-HALFPLANE_INLINE ChannelPairs channel_pairs(const Channels& value) {
+HALFPLANE_LEAF ChannelPairs channel_pairs(const Channels& value) {
   typedef std::int32_t Codes __attribute__((vector_size(16)));
   const Codes code = __builtin_convertvector(value, Codes);
   const Codes pair = (code & 0xffff) | __builtin_shufflevector(code, code, 2, 3, 0, 1) << 16;
   return {pair[0], pair[1]};
 }
 /// round_shift(). The lanes have no signed shift: what is left of the sign bit goes through all bits above it.
-HALFPLANE_INLINE Channels round_shift_channels(const Channels& value, int bits) {
+HALFPLANE_LEAF Channels round_shift_channels(const Channels& value, int bits) {
   if (bits <= 0) return value << -bits;
   typedef std::uint64_t Unsigned __attribute__((vector_size(32)));
   const Channels half = (Channels)((Unsigned)value >> (bits - 1)) & 1;
