@@ -15,6 +15,7 @@
 #include "model/engines/functional.hpp"
 #include "model/engines/scalar.hpp"
 #include "model/golden/golden.hpp"
+#include "model/raster_pkg.hpp"
 #include "stage_at_work.hpp"
 
 using namespace halfplane;
@@ -226,6 +227,13 @@ int halfplane_config_get(const halfplane_config* config, const char* key, char* 
       value[length] = '\0';
     }
     return static_cast<int>(got.size());
+  });
+}
+uint64_t halfplane_config_id(const halfplane_config* config) {
+  return guarded(std::uint64_t{0}, [&] {
+    const Config& known = required(config, "the configuration").config;
+    validate(known);
+    return config_id(known);
   });
 }
 void halfplane_config_free(halfplane_config* config) { delete config; }

@@ -39,6 +39,8 @@ HALFPLANE_API halfplane_config* halfplane_config_new(const char* preset);
 HALFPLANE_API int halfplane_config_set(halfplane_config* config, const char* key, const char* value);
 /* Writes the value of a key and a 0, cut to `bytes`. Returns the length of the whole value. */
 HALFPLANE_API int halfplane_config_get(const halfplane_config* config, const char* key, char* value, size_t bytes);
+/* raster_pkg::CONFIG_ID of the hardware's settings: equal for equal hardware. 0: they do not go together. */
+HALFPLANE_API uint64_t halfplane_config_id(const halfplane_config* config);
 HALFPLANE_API void halfplane_config_free(halfplane_config* config);
 
 /* --- scenes and images --------------------------------------------------------------------------------------------------- */
@@ -92,7 +94,8 @@ HALFPLANE_API int halfplane_stage_ports(const halfplane_stage* stage, int is_out
 /* A port's name, and its packets' size in bits. */
 HALFPLANE_API const char* halfplane_stage_port_name(const halfplane_stage* stage, int is_out, int port);
 HALFPLANE_API int halfplane_stage_port_bits(const halfplane_stage* stage, int is_out, int port);
-/* The fields of its packets, highest bits first: "edge_value[0]"; bits, negative for a signed field. */
+/* The fields of its packets, highest bits first, so the last element of an array before its first: "edge_value[2]",
+ * "edge_value[1]", "edge_value[0]"; bits, negative for a signed field. */
 HALFPLANE_API int halfplane_stage_fields(const halfplane_stage* stage, int is_out, int port);
 HALFPLANE_API const char* halfplane_stage_field_name(const halfplane_stage* stage, int is_out, int port, int field);
 HALFPLANE_API int halfplane_stage_field_bits(const halfplane_stage* stage, int is_out, int port, int field);

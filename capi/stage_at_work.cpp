@@ -9,8 +9,11 @@ namespace {
 
 std::vector<StageAtWork::PortInfo> described(const std::vector<vectors::Port>& ports, const Widths& widths) {
   std::vector<StageAtWork::PortInfo> all;
-  for (const vectors::Port& port : ports)
-    all.push_back({std::string(port.name), vectors::bits_of(port.like, widths), vectors::fields_of(port.like, widths)});
+  for (const vectors::Port& port : ports) {
+    const auto elements = vectors::fields_of(port.like, widths);
+    all.push_back(
+        {std::string(port.name), vectors::bits_of(port.like, widths), elements, vectors::highest_first(elements)});
+  }
   return all;
 }
 
@@ -92,7 +95,7 @@ void StageAtWork::put(std::size_t port, const std::uint32_t* words) {
   Packet packet(words, words + words_of(info));
   if (info.bits % 32 != 0) packet.back() &= ~0U >> (32 - info.bits % 32);
   const auto values = vectors::values_of(stage_.in[port].like, widths_, packet);
-  if (const std::string fault = vectors::place_fault(info.fields, values, config_, widths_); !fault.empty())
+  if (const std::string fault = vectors::place_fault(info.elements, values, config_, widths_); !fault.empty())
     throw InputError(fault);
   in_[port].push_back(std::move(packet));
   if (!has_ended_ && port == waits_for_) go_on();

@@ -26,7 +26,8 @@ class StageAtWork final : vectors::StageIo {
   struct PortInfo {
     std::string name;
     int bits = 0;
-    std::vector<vectors::FieldName> fields;  ///< highest first
+    std::vector<vectors::FieldName> elements;  ///< in the order of values_of()
+    std::vector<vectors::FieldName> fields;    ///< the same, highest bits first
   };
   [[nodiscard]] const std::vector<PortInfo>& ports(bool is_out) const { return is_out ? out_ports_ : in_ports_; }
 

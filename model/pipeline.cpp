@@ -71,7 +71,7 @@ void require_precision(std::span<const Vertex> clipped, std::span<const Vertex> 
 /// A vertex that a cut made, or one that another cut beside it left alone.
 SnappedVertex snap_clipped(const Vertex& v, const DrawContext& context, std::uint32_t number) {
   return snap_vertex(to_window(v, context.state, context.viewport), v.rgba, context.config,
-                     {context.scene.name, context.draw.line, number});
+                     {context.scene.name, context.draw.line, number}, snap_origin(context.state, context.config));
 }
 
 SurfaceVertex surface_vertex(const Vertex& v) { return {v.w, v.u, v.v, {}}; }
@@ -339,7 +339,8 @@ class OutlineBuilder {
     v.y = p.y;
   }
   [[nodiscard]] SnappedVertex snap_window(const Vertex& v, std::uint32_t number) const {
-    return snap_vertex({v.x, v.y, v.z}, v.rgba, context_.config, {context_.scene.name, context_.draw.line, number});
+    return snap_vertex({v.x, v.y, v.z}, v.rgba, context_.config, {context_.scene.name, context_.draw.line, number},
+                       snap_origin(context_.state, context_.config));
   }
   [[nodiscard]] bool drops_last() const {
     const State& state = context_.state;
@@ -459,7 +460,8 @@ const VertexCache::Entry& VertexCache::get(const DrawContext& context, std::uint
     const WindowPosition p = context.state.space == Space::clip
                                  ? to_window(v, context.state, context.viewport)
                                  : window_position(v, context.state, context.scene.height);
-    entry.snapped = snap_vertex(p, v.rgba, context.config, {context.scene.name, context.draw.line, index});
+    entry.snapped = snap_vertex(p, v.rgba, context.config, {context.scene.name, context.draw.line, index},
+                                snap_origin(context.state, context.config));
   }
   entry.state = context.draw.state;
   return entry;

@@ -10,6 +10,8 @@
 #define STB_IMAGE_IMPLEMENTATION
 #define STBI_ONLY_PNG
 #define STBI_ONLY_JPEG
+#define STBI_ONLY_BMP
+#define STBI_ONLY_TGA
 #define STBI_NO_STDIO
 #include <stb_image.h>
 
@@ -26,7 +28,7 @@ TexelImage read_image(std::string_view bytes, const std::string& what) {
   const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
   const auto size = static_cast<int>(std::min<std::size_t>(bytes.size(), 1U << 30));
   if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0)
-    throw InputError(what + ": no PNG or JPEG image (" + stbi_failure_reason() + "); give one");
+    throw InputError(what + ": no PNG, JPEG, BMP or TGA image (" + stbi_failure_reason() + "); give one");
   if (width > kLargestTexture || height > kLargestTexture)
     throw InputError(what + ": " + std::to_string(width) + "x" + std::to_string(height) +
                      " texels; give an image of at most 4096x4096");

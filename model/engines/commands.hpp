@@ -82,16 +82,17 @@ inline void tap_samples(TappedFragment fragment, int samples, const FragmentTap&
   for (fragment.sample = 0; fragment.sample < samples; ++fragment.sample) tap(fragment);
 }
 
-/// The surface of a triangle whose setup is not empty, if its draw has one. Throws InputError for a vertex that is not in
+/// The surface of a triangle whose setup is not empty, if its draw has one; at a sample, if `setup` is there. Throws InputError for a vertex that is not in
 /// front of the eye, as only window space can give one.
 [[nodiscard]] inline std::optional<Surface> surface_of(const DrawContext& context, const Triangle& triangle,
-                                                       const TriangleSetup& setup, const Widths& widths) {
+                                                       const TriangleSetup& setup, const Widths& widths,
+                                                       const SampleOffset& offset = {}) {
   const State& state = context.state;
   if (!has_surface(state)) return std::nullopt;
   require_positive_w(context, triangle);
   const Texture* texture = state.texture ? &context.scene.textures[*state.texture] : nullptr;
   return std::optional<Surface>(std::in_place, triangle, setup, state, texture, context.fog.get(), context.phong.get(),
-                                context.config, widths);
+                                context.config, widths, offset);
 }
 
 /// Its colour as codes.

@@ -125,7 +125,7 @@ class SampledTriangle {
     for (int k = kAtCentre; k < engine.widths.pixel_samples; ++k) {
       const SampleOffset o = k == kAtCentre ? SampleOffset{} : engine.widths.sample_offset[static_cast<std::size_t>(k)];
       const TriangleSetup& at = setups_.at(k);
-      places_.push_back({at, surface_of(context, moved_to_sample(t.triangle, o), at, engine.widths)});
+      places_.push_back({at, surface_of(context, t.triangle, at, engine.widths, o)});
     }
     const auto& v = t.triangle.v;
     is_back_ = context.fragment_ops.stencil && shows_back(signed_area(v[0], v[1], v[2]), context.state.front);

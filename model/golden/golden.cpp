@@ -279,7 +279,7 @@ class Renderer {
   /// `normals`: of the polygon's corners, as colours; empty: its fragments are not lit.
   void draw_fan(std::span<const ScreenVertex<Real>> polygon, std::span<const ScreenVertex<Real>> normals,
                 DrawAtWork& d) {
-    const std::size_t start = polygon.size() > 3 ? fan_start(polygon) : 0;
+    const std::size_t start = polygon.size() > 3 ? fan_start(polygon, d.state) : 0;
     const auto place = [&](std::size_t k) { return (start + k) % polygon.size(); };
     const auto corner = [&](std::size_t k) { return polygon[place(k)]; };
     for (std::size_t k = 1; k + 1 < polygon.size(); ++k) {
@@ -408,14 +408,15 @@ class Renderer {
 
   /// The corner that a clipped polygon's fan starts at: the smallest (Y, X, Z) after the snap. Where the diagonals lie
   /// shows in affine colours, and the real coordinates of a level edge tie only up to rounding.
-  std::size_t fan_start(std::span<const ScreenVertex<Real>> polygon) const {
+  std::size_t fan_start(std::span<const ScreenVertex<Real>> polygon, const State& state) const {
     std::array<std::array<double, 3>, 9> key{};
     for (std::size_t i = 0; i < polygon.size(); ++i) {
       const auto& v = polygon[i];
-      const auto snapped = [](Real value, int bits) {
-        return std::floor(std::ldexp(static_cast<double>(value), bits) + 0.5);
+      const double origin = config_.subpixel_bits == 0 ? first_pixel_offset(state) : 0;
+      const auto snapped = [this, origin](Real value) {
+        return std::floor(std::ldexp(static_cast<double>(value) - origin, config_.subpixel_bits) + 0.5);
       };
-      key[i] = {snapped(v.y, config_.subpixel_bits), snapped(v.x, config_.subpixel_bits),
+      key[i] = {snapped(v.y), snapped(v.x),
                 std::floor(static_cast<double>(v.z) * (std::ldexp(1.0, config_.depth_bits) - 1) + 0.5)};
     }
     return static_cast<std::size_t>(

@@ -68,6 +68,16 @@ template <class SignedLane, class Lane>
   return round_shift(step_x * o.x + step_y * o.y, grid_bits);
 }
 
+/// A plane at a sample, modulo 2^64: at pixel centres lies what it has there. `guard_bits`: l, which its tiles keep.
+[[nodiscard]] inline Plane plane_at_sample(Plane plane, int guard_bits, const SampleOffset& o, const Widths& widths) {
+  const int drop = widths.plane_fraction - guard_bits;
+  const auto step = [&](PlaneValue per_subpixel) { return round_shift(per_subpixel, drop - widths.grid_bits); };
+  const std::int64_t offset = sample_plane_offset(step(plane.step_x), step(plane.step_y), o, widths.grid_bits);
+  plane.value = static_cast<PlaneValue>(static_cast<std::uint64_t>(plane.value) +
+                                        (static_cast<std::uint64_t>(offset) << drop));
+  return plane;
+}
+
 /// Where a pixel is: its tile, and how many pixels it lies from the tile's anchor, modulo 2^64.
 struct PixelPlace {
   TileOffset tile;

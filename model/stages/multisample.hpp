@@ -28,13 +28,9 @@ namespace halfplane {
     setup.edge[i].value +=
         sample_edge_offset(setup.edge[i].low, -EdgeValue{setup.edge[i].dy}, setup.edge[i].dx, o, widths.grid_bits);
   for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p) {
+    const AttributeWidths& of = widths.of_plane(p);
     Plane& plane = setup.plane[p];
-    const int drop = widths.plane_fraction - widths.of_plane(p).guard_bits();  // bits that a tile does not keep
-    const auto step = [&](PlaneValue per_subpixel) { return round_shift(per_subpixel, drop - widths.grid_bits); };
-    const std::int64_t offset = sample_plane_offset(step(plane.step_x), step(plane.step_y), o, widths.grid_bits);
-    plane.value = wrap_signed(static_cast<std::int64_t>(static_cast<std::uint64_t>(plane.value) +
-                                                        (static_cast<std::uint64_t>(offset) << drop)),
-                              widths.of_plane(p).plane.bits);
+    plane.value = wrap_signed(plane_at_sample(plane, of.guard_bits(), o, widths).value, of.plane.bits);
   }
   return setup;
 }

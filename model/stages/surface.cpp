@@ -28,8 +28,9 @@ TextureCoordinates texture_coordinates(const std::array<SurfaceVertex, 3>& surfa
 }
 
 Surface::Surface(const Triangle& triangle, const TriangleSetup& setup, const State& state, const Texture* texture,
-                 const FogTable* fog, const PhongLight* phong, const Config& config, const Widths& widths)
-    : setup_(setup), widths_(widths), format_(perspective_format(config)), fog_(fog), phong_(phong) {
+                 const FogTable* fog, const PhongLight* phong, const Config& config, const Widths& widths,
+                 const SampleOffset& offset)
+    : setup_(setup), widths_(widths), offset_(offset), format_(perspective_format(config)), fog_(fog), phong_(phong) {
   order_ = canonical_order(triangle.v, signed_area(triangle.v[0], triangle.v[1], triangle.v[2]));
   std::array<double, 3> w{};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -54,6 +55,11 @@ Surface::Surface(const Triangle& triangle, const TriangleSetup& setup, const Sta
   fog_scale_ = q_exponent(w, format_.q_bits) + format_.guard_bits;
 }
 
+/// All planes over w have the guard bits of Q.
+Plane Surface::at_sample(const Plane& plane) const {
+  return plane_at_sample(plane, format_.guard_bits, offset_, widths_);
+}
+
 /// Q of fog and normals is that of colours or coordinates over w, where there are some: the same codes, and the same plane.
 Surface::Divisor Surface::true_divisor(const std::array<double, 3>& w, bool is_over_w) const {
   if (color_divisor_) return *color_divisor_;
@@ -64,8 +70,8 @@ Surface::Divisor Surface::true_divisor(const std::array<double, 3>& w, bool is_o
 void Surface::set_normals(const Triangle& triangle, const Divisor& divisor) {
   for (std::size_t c = 0; c < 3; ++c) {
     const auto of = [&](std::size_t i) { return triangle.surface[order_[i]].normal[c]; };
-    normal_[c] = setup_over_w(quantize_normal({of(0), of(1), of(2)}, divisor.q, format_), divisor.frame,
-                              normal_format(format_), widths_);
+    normal_[c] = at_sample(setup_over_w(quantize_normal({of(0), of(1), of(2)}, divisor.q, format_), divisor.frame,
+                                        normal_format(format_), widths_));
   }
 }
 
@@ -76,8 +82,9 @@ void Surface::set_texture(const Triangle& triangle, const State& state, const Te
       {triangle.surface[order_[0]], triangle.surface[order_[1]], triangle.surface[order_[2]]}, state, texture, format_);
   texture_divisor_ = make_divisor(coordinates.q);
   for (const std::size_t axis : {0U, 1U})
-    coordinate_[axis] = {coordinates.over_w[axis],
-                         setup_over_w(coordinates.over_w[axis], texture_divisor_->frame, format_.coordinate, widths_)};
+    coordinate_[axis] = {
+        coordinates.over_w[axis],
+        at_sample(setup_over_w(coordinates.over_w[axis], texture_divisor_->frame, format_.coordinate, widths_))};
   reference_ = coordinates.reference;
   lod_ =
       setup_lod(vertex_, setup_.area, texture_divisor_->q, coordinates.texels, format_.guard_bits, widths_.grid_bits);
@@ -87,14 +94,14 @@ Surface::Divisor Surface::make_divisor(const QCodes& q) const {
   Divisor divisor;
   divisor.q = q;
   divisor.frame = perspective_frame(vertex_, base_vertex(divisor.q), setup_, format_, widths_);
-  divisor.plane = setup_q(divisor.q, divisor.frame, format_, widths_);
+  divisor.plane = at_sample(setup_q(divisor.q, divisor.frame, format_, widths_));
   return divisor;
 }
 
 Surface::Attribute Surface::make_attribute(const std::array<double, 3>& value, const Divisor& divisor,
                                            const OverWFormat& attribute) const {
   const OverW over_w = quantize_over_w(value, divisor.q, attribute);
-  return {over_w, setup_over_w(over_w, divisor.frame, attribute, widths_)};
+  return {over_w, at_sample(setup_over_w(over_w, divisor.frame, attribute, widths_))};
 }
 
 std::uint64_t Surface::q_of(const Divisor& divisor, const PixelPlace& place) const {

@@ -4,7 +4,8 @@
 //   colours      affine codes, or P / Q (perspective.hpp)
 //   light        phong.hpp, from normals over w
 //   coordinates  u, v over w, or affine: the same planes with Q the same at all vertices
-//   level        level_of_detail.hpp, from the coordinates' planes
+//   level        level_of_detail.hpp, from the coordinates' planes; where a sample of several is shaded, from Q there and the
+//                row and column of its pixel's centre
 //   texel        texture_sample.hpp
 //   fog          fog.hpp, from Q
 #pragma once
@@ -79,10 +80,12 @@ class Surface {
     Plane plane;
   };
 
-  /// `setup` of `triangle`, not empty; `texture`, `fog`, `phong`: those of the state, or none. Every w > 0
+  /// At pixel centres; or at a sample of each pixel, `offset` from there, and then `setup` is the one at that sample
+  /// (setup_at_sample). `setup` of `triangle`, not empty; `texture`, `fog`, `phong`: those of the state, or none. Every w > 0
   /// (require_positive_w).
   Surface(const Triangle& triangle, const TriangleSetup& setup, const State& state, const Texture* texture,
-          const FogTable* fog, const PhongLight* phong, const Config& config, const Widths& widths);
+          const FogTable* fog, const PhongLight* phong, const Config& config, const Widths& widths,
+          const SampleOffset& offset = {});
 
   [[nodiscard]] SurfaceSample at(int x, int y, int weight_bits = kTexelFraction) const;
   /// R, G, B, A at a covered sample.
@@ -114,6 +117,7 @@ class Surface {
   [[nodiscard]] std::uint64_t q_of(const Divisor& divisor, const PixelPlace& place) const;
   [[nodiscard]] std::int64_t value_of(const Attribute& attribute, const OverWFormat& of, const PixelReciprocal& q,
                                       const PixelPlace& place) const;
+  [[nodiscard]] Plane at_sample(const Plane& plane) const;
   void set_texture(const Triangle& triangle, const State& state, const Texture& texture);
   [[nodiscard]] Divisor true_divisor(const std::array<double, 3>& w, bool is_over_w) const;
   void set_normals(const Triangle& triangle, const Divisor& divisor);
@@ -123,6 +127,7 @@ class Surface {
 
   const TriangleSetup& setup_;
   const Widths& widths_;
+  SampleOffset offset_;
   PerspectiveFormat format_;
   std::array<std::size_t, 3> order_{};                      ///< canonical
   std::array<SnappedVertex, 3> vertex_{};                   ///< in that order

@@ -99,14 +99,17 @@ PerPlane<std::uint32_t> snap_codes(double z, const std::array<double, 4>& rgba, 
 }
 
 SnappedVertex snap_vertex(const WindowPosition& p, const std::array<double, 4>& rgba, const Config& config,
-                          const VertexSource& source) {
+                          const VertexSource& source, double origin) {
   const double band = config.guard_band;
   // The comparisons are false for a NaN, and coarse enough that the conversions below are in range.
   if (!(std::abs(p.x) <= 2 * band && std::abs(p.y) <= 2 * band && p.z >= -1 && p.z <= 2))
     refuse_vertex(p, source, config);
   const int S = config.subpixel_bits, grid_bits = coordinate_grid_bits(config);
   const double scale = static_cast<double>(std::int64_t{1} << S);
-  const std::int64_t x = snap(p.x, scale) << (grid_bits - S), y = snap(p.y, scale) << (grid_bits - S);
+  const auto on_grid = [&](double position) {  // an origin of 1/2 has a place on the grid, which has a bit at least
+    return (snap(position - origin, scale) << (grid_bits - S)) + (origin != 0 ? std::int64_t{1} << (grid_bits - 1) : 0);
+  };
+  const std::int64_t x = on_grid(p.x), y = on_grid(p.y);
   const std::int64_t z =
       snap(p.z, static_cast<double>((std::int64_t{1} << config.depth_bits) - 1));  // may be out of range
   const std::int64_t limit = static_cast<std::int64_t>(config.guard_band) << grid_bits;

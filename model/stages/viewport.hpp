@@ -41,9 +41,15 @@ struct VertexSource {
 /// "file: draw from line 7", for messages about a draw.
 [[nodiscard]] std::string place_of_draw(std::string_view file, std::uint32_t line);
 
+/// Where the grid of the snap begins, in pixels along x and y: at 1/2 where pixels are not divided and a state counts their
+/// centres from integers, so that an integer stays the centre that it is; else at 0, and every centre is on the grid.
+[[nodiscard]] constexpr double snap_origin(const State& state, const Config& config) {
+  return config.subpixel_bits == 0 && state.pixel_center == PixelCenter::integer ? 0.5 : 0.0;
+}
+
 /// The snap. Throws InputError naming the vertex when it is outside the guard band or the depth range.
 [[nodiscard]] SnappedVertex snap_vertex(const WindowPosition& p, const std::array<double, 4>& rgba,
-                                        const Config& config, const VertexSource& source);
+                                        const Config& config, const VertexSource& source, double origin = 0);
 
 /// The codes of every plane: window depth in [0, 1], colour 0...255 a channel. A plane more gets its codes here.
 [[nodiscard]] PerPlane<std::uint32_t> snap_codes(double z, const std::array<double, 4>& rgba, const Config& config);

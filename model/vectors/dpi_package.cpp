@@ -38,6 +38,7 @@ constexpr std::string_view kImports = R"(
   import "DPI-C" function string halfplane_last_error();
   import "DPI-C" function chandle halfplane_config_new(input string preset);
   import "DPI-C" function int halfplane_config_set(input chandle config_i, input string key, input string value);
+  import "DPI-C" function longint unsigned halfplane_config_id(input chandle config_i);
   import "DPI-C" function void halfplane_config_free(input chandle config_i);
   import "DPI-C" function chandle halfplane_stage_new(input chandle config_i, input string name);
   import "DPI-C" function int halfplane_stage_put(input chandle stage, input int port, input bit [PACKET_BITS-1:0] words);
@@ -79,7 +80,10 @@ void print_config(std::ostream& out, const Config& config) {
     if (const std::string value = get(config, setting); value != get(base, setting))
       out << "    if (failed == 0) failed = halfplane_config_set(made, \"" << setting.key << "\", \"" << value
           << "\");\n";
-  out << "    if (failed != 0) $fatal(1, \"%s\", halfplane_last_error());\n    return made;\n  endfunction\n";
+  out << "    if (failed != 0) $fatal(1, \"%s\", halfplane_last_error());\n"
+         "    if (halfplane_config_id(made) != CONFIG_ID)\n"
+         "      $fatal(1, \"raster_pkg is of another configuration than halfplane_dpi and its library\");\n"
+         "    return made;\n  endfunction\n";
 }
 
 void print_stage(std::ostream& out, const JudgedStage& stage) {

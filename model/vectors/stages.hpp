@@ -58,9 +58,12 @@ struct FieldName {
   std::string name;
   int bits = 0;
   bool is_signed = false;
+  int low = 0;  ///< its lowest bit in the packed struct
 };
-/// Those of a packet type, highest first.
+/// Those of a packet type, as files list them: the highest field first, elements of an array by their number.
 [[nodiscard]] std::vector<FieldName> fields_of(Arrow like, const Widths& widths);
+/// The same by place, highest bits first: elements of an array by falling number, because element 0 is the lowest.
+[[nodiscard]] std::vector<FieldName> highest_first(std::vector<FieldName> fields);
 [[nodiscard]] std::size_t packet_words(Arrow like, const Widths& widths);
 [[nodiscard]] int bits_of(Arrow like, const Widths& widths);
 /// The bits of every field of a packet, and back. Precondition of the way back: each value fits its field.

@@ -59,7 +59,8 @@ Session run_stimulus(const CosimOptions& options, const Config& config, Dut& dut
     const double done = static_cast<double>(before) + fraction * static_cast<double>(primitives - before);
     return progress.goes_on(done / total, static_cast<std::uint64_t>(done));
   };
-  return run_session(dut, config, lockstep, counted, options.random != 0 ? HostOrders::drawn : HostOrders::configured);
+  const bool is_random = options.random != 0;
+  return run_session(dut, config, lockstep, counted, is_random ? HostOrders::drawn : HostOrders::configured, is_random);
 }
 
 Json session_json(const CosimOptions& options, const Config& config, const DutFactory& factory,
@@ -92,6 +93,9 @@ Json session_json(const CosimOptions& options, const Config& config, const DutFa
   result["scenes"] = session.scenes;
   result["mismatches"] = r.mismatch ? 1 : 0;  // the run stops at the first
   result["first_mismatch"] = nullptr;
+  result["specification"] = options.random == 0            ? Json(nullptr)
+                            : session.disagreement.empty() ? Json("equal")
+                                                           : Json(session.disagreement);
   Json crossings = Json::object();
   for (const Arrow boundary : kBoundaries)
     crossings[std::string(info(boundary).name)] = r.cycles_compared[index(boundary)];
@@ -205,7 +209,7 @@ int run(const CosimOptions& options) {
 
   Json result = session_json(options, config, factory, session);
   std::optional<SavedFinding> saved;
-  if (session.failed) {
+  if (session.result.mismatch) {
     saved = save_finding(options, session.config, *dut, *session.failed, *session.result.mismatch, kReduceSeconds);
     result["first_mismatch"] = mismatch_json(
         *session.result.mismatch,
@@ -226,14 +230,18 @@ int run(const CosimOptions& options) {
   }
   std::ostream& out = human(options);
   print_equal(out, options, config, session);
-  if (saved) {
+  if (!session.disagreement.empty()) {
+    out << "DIFFERENT   " << session.disagreement << "\n            the RTL is the model's; scene saved in "
+        << save_scene(options, *session.failed) << '\n';
+  } else if (saved) {
     out << "first seen  " << mismatch_line(*session.result.mismatch) << "\n\n";
     print_finding(out, *saved);
   } else {
     out << (is_empty ? std::string("FAILED: nothing was compared\n")
                      : std::string(is_partial ? "equal so far" : "equal      ") +
                            " every bit of every packet, of memory and counters; the cycle of each of " +
-                           with_commas(session.result.total_cycles_compared()) + " crossings\n");
+                           with_commas(session.result.total_cycles_compared()) + " crossings" +
+                           (options.random != 0 ? "; and the model's pictures the scalar engine's\n" : "\n"));
   }
   if (is_whole_run_traced) out << "waveform    " << trace_text(options, factory, session) << '\n';
   if (!options.junit_path.empty()) write_junit(options, config, session, saved ? &*saved : nullptr, is_partial);

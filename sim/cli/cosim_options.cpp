@@ -116,6 +116,16 @@ std::string repeat_command(const CosimOptions& options, const Config& config, co
   return command;
 }
 
+std::string save_scene(const CosimOptions& options, const Scene& scene) {
+  const std::string path = options.save_path.empty() ? default_save_path(options) : options.save_path;
+  if (options.save_path.empty()) create_folder_of(path);
+  std::ostringstream text;
+  write_capture(scene, text);
+  const std::string bytes = text.str();
+  write_whole_file(path, {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+  return path;
+}
+
 SavedFinding save_finding(const CosimOptions& options, const Config& config, Dut& dut, const Scene& failed,
                           const Mismatch& mismatch, double seconds) {
   SavedFinding saved;

@@ -34,6 +34,9 @@ void add_cosim_options(CLI::App& app, CosimOptions& options);
 [[nodiscard]] std::string repeat_command(const CosimOptions& options, const Config& config, const std::string& capture,
                                          const LockstepOptions& lockstep);
 
+/// Writes a scene as `--save` says, or to the default path; returns the path.
+std::string save_scene(const CosimOptions& options, const Scene& scene);
+
 /// Reduces the failing scene, saves it to `save_path` (creating its folder) and its waveform beside it.
 struct SavedFinding {
   Finding finding;

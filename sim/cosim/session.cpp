@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "sim/cosim/random_scene.hpp"
+#include "sim/cosim/specification.hpp"
 #include "sim/interrupt.hpp"
 #include "sim/scene/random.hpp"
 
@@ -46,26 +47,28 @@ SceneSource random_scenes(const Config& config, std::uint64_t seed, std::uint64_
 }
 
 Session run_session(Dut& dut, const Config& config, const LockstepOptions& options, const SceneSource& next,
-                    HostOrders orders) {
+                    HostOrders orders, bool holds_model) {
   const auto start = std::chrono::steady_clock::now();
   Session session;
   session.config = config;
   const bool is_drawn = orders == HostOrders::drawn, draws = is_drawn && has_orders(config);
   Lockstep lockstep(dut, config, options);
   Random random(options.seed);
-  const auto run = [&](Scene scene) {
+  const auto run = [&](Scene scene, bool is_alone) {
     const LockstepResult result = lockstep.run(scene, session.config);
     session.result.add(result);
     session.counters = lockstep.host_counters();
     ++session.scenes;
-    if (result.mismatch) session.failed = std::move(scene);
-    return !result.mismatch && !result.is_stopped;
+    const bool goes_on = !result.mismatch && !result.is_stopped;
+    if (goes_on && is_alone && holds_model) session.disagreement = difference_from_specification(scene, session.config);
+    if (result.mismatch || !session.disagreement.empty()) session.failed = std::move(scene);
+    return goes_on && session.disagreement.empty();
   };
   while (auto scene = next()) {
     if (draws) draw_order(random, session.config);
     std::optional<Scene> second;  // a frame behind it, some of whose bins hold what they held
     if (is_drawn && compares_bins(session.config)) second = next_frame(*scene, random.next());
-    if (!run(std::move(*scene)) || (second && !run(std::move(*second)))) break;
+    if (!run(std::move(*scene), true) || (second && !run(std::move(*second), false))) break;
   }
   session.has_trace = lockstep.has_traced();
   session.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

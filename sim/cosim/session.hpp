@@ -25,7 +25,8 @@ enum class HostOrders { configured, drawn };
 
 struct Session {
   LockstepResult result;        ///< of all scenes together
-  std::optional<Scene> failed;  ///< the scene with the mismatch
+  std::optional<Scene> failed;  ///< the scene with the mismatch, or whose model is not the specification's
+  std::string disagreement;     ///< difference_from_specification() of it
   Config config;                ///< with which the last scene was sent
   Counters counters;            ///< the host's, of that scene
   std::uint64_t scenes = 0;
@@ -33,10 +34,12 @@ struct Session {
   double seconds = 0;      ///< the model's work included
 };
 
-/// Runs all scenes without a reset between them, up to the first mismatch. `options.progress` gets the part of the scene
+/// Runs all scenes without a reset between them, up to the first mismatch. With `holds_model` the model
+/// of each scene is held to the scalar engine's picture, too. `options.progress` gets the part of the scene
 /// at work.
 [[nodiscard]] Session run_session(Dut& dut, const Config& config, const LockstepOptions& options,
-                                  const SceneSource& next, HostOrders orders = HostOrders::configured);
+                                  const SceneSource& next, HostOrders orders = HostOrders::configured,
+                                  bool holds_model = false);
 
 /// A failing scene made small, with its waveform.
 struct Finding {

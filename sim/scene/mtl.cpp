@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "model/config.hpp"
 #include "sim/scene/mesh.hpp"
 #include "sim/scene/text_cursor.hpp"
 
@@ -51,7 +52,7 @@ void read_pair(TextCursor& cursor, std::string_view option, std::array<double, 2
 }
 
 // Options, each a word and what follows it; then the file's name, which may hold blanks.
-MtlTexture read_map(TextCursor& cursor, std::string_view folder) {
+MtlTexture read_map(TextCursor& cursor, std::string_view key, std::string_view folder) {
   MtlTexture map;
   map.place = cursor.file() + ":" + std::to_string(cursor.line());
   std::array<double, 2> unused{};
@@ -67,52 +68,85 @@ MtlTexture read_map(TextCursor& cursor, std::string_view folder) {
     if (option == "-mm") (void)cursor.next_word();  // base and gain; all others have one word
     if (option == "-clamp") map.wrap = value == "on" ? TextureWrap::clamp : TextureWrap::repeat;
   }
-  std::string name(cursor.rest_of_line());
-  if (name.empty()) cursor.fail("map_Kd without a file", "write map_Kd FILE, or delete the line");
+  const std::string name = cursor.name();
+  if (name.empty()) cursor.fail(std::string(key) + " without a file", "give it one, or delete the line");
   map.file = name.front() == '/' ? name : std::string(folder) + name;
   std::ranges::replace(map.file, '\\', '/');  // written on Windows
   return map;
 }
 
-}  // namespace
+class MtlReader {
+ public:
+  MtlReader(std::string_view text, const std::string& file, MaterialTable& materials, Warnings& warnings)
+      : cursor_(text, printable(file)),
+        folder_(std::string_view(file).substr(0, file.find_last_of("/\\") + 1)),
+        materials_(materials),
+        warnings_(warnings) {}
 
-void parse_mtl(std::string_view text, const std::string& file, MaterialTable& materials) {
-  TextCursor cursor(text, printable(file));
-  const std::string_view folder = std::string_view(file).substr(0, file.find_last_of("/\\") + 1);
-  constexpr std::array<double, 4> kDefault{204, 204, 204, 255};  // a newmtl without Kd
-  constexpr std::array<std::string_view, 9> kKeys{"Ka", "Kd", "Ks", "Ke", "Ns", "illum", "d", "Tr", "map_Kd"};
-  MtlMaterial* current = nullptr;
-  bool has_color = false;
-  while (cursor.next_line()) {
-    const std::string_view key = cursor.next_word();
-    if (key == "newmtl") {
-      const std::string name(cursor.rest_of_line());
-      if (name.empty()) cursor.fail("newmtl without a name", "write newmtl NAME");
-      current = &(materials[name] = {.rgba = kDefault});
-      has_color = false;
-    } else if (std::ranges::find(kKeys, key) != kKeys.end()) {
-      if (current == nullptr) cursor.fail(in_quotes(key) + " before any newmtl", "start the material with newmtl NAME");
-      has_color = has_color || key == "Kd";
-      if (read_colors(cursor, key, *current)) continue;
-      if (key == "Ns") {
-        current->surface.shininess = std::clamp(cursor.number("exponent Ns", kLargestCoordinate), 0.0, kMostShininess);
-        continue;
+  void run() {
+    while (cursor_.next_line()) {
+      const std::string_view key = cursor_.next_word();
+      try {
+        read_line(key);
+      } catch (const InputError& error) {
+        warnings_.once("mtl " + std::string(key), std::string(error.what()) + "; the line is passed over");
       }
-      if (key == "illum") {
-        current->has_highlight = cursor.number("illum", kLargestCoordinate) >= 2;
-        continue;
-      }
-      if (key == "map_Kd") {
-        current->texture = read_map(cursor, folder);
-        if (!has_color) std::fill_n(current->rgba.begin(), 3, 255.0);  // as it is
-        continue;
-      }
-      TextCursor ahead = cursor;
-      if (ahead.next_word() == "-halo") cursor = ahead;
-      const double value = channel(cursor, key == "d" ? "opacity d" : "transparency Tr");
-      current->rgba[3] = key == "d" ? value : 255 - value;
     }
   }
+
+ private:
+  void read_line(std::string_view key) {
+    constexpr std::array<std::string_view, 10> kKeys{"Ka",    "Kd", "Ks", "Ke",     "Ns",
+                                                     "illum", "d",  "Tr", "map_Kd", "map_d"};
+    if (key == "newmtl") return begin(cursor_.name());
+    if (std::ranges::find(kKeys, key) == kKeys.end()) return;
+    if (current_ == nullptr) cursor_.fail(in_quotes(key) + " before any newmtl", "start the material with newmtl NAME");
+    has_color_ = has_color_ || key == "Kd";
+    if (read_colors(cursor_, key, *current_)) return;
+    if (key == "Ns") {
+      current_->surface.shininess = std::clamp(cursor_.number("exponent Ns", kLargestCoordinate), 0.0, kMostShininess);
+    } else if (key == "illum") {
+      current_->has_highlight = cursor_.number("illum", kLargestCoordinate) >= 2;
+    } else if (key == "map_Kd") {
+      current_->texture = read_map(cursor_, key, folder_);
+      if (!has_color_) std::fill_n(current_->rgba.begin(), 3, 255.0);  // as it is
+    } else if (key == "map_d") {
+      current_->opacity_map = read_map(cursor_, key, folder_);
+    } else {
+      read_opacity(key == "d");
+    }
+  }
+
+  void begin(const std::string& name) {
+    constexpr std::array<double, 4> kDefault{204, 204, 204, 255};  // a newmtl without Kd
+    current_ = name.empty() ? &unnamed_ : &materials_[name];
+    *current_ = {.rgba = kDefault};
+    has_color_ = false;
+    if (name.empty()) cursor_.fail("newmtl without a name", "write newmtl NAME");
+  }
+
+  // Exporters that mean an opaque material by `Tr 1` write `d 1` beside it.
+  void read_opacity(bool is_opacity) {
+    TextCursor ahead = cursor_;
+    if (ahead.next_word() == "-halo") cursor_ = ahead;
+    const double value = channel(cursor_, is_opacity ? "opacity d" : "transparency Tr");
+    if (is_opacity || !current_->has_opacity) current_->rgba[3] = is_opacity ? value : 255 - value;
+    current_->has_opacity = current_->has_opacity || is_opacity;
+  }
+
+  TextCursor cursor_;
+  std::string_view folder_;
+  MaterialTable& materials_;
+  Warnings& warnings_;
+  MtlMaterial* current_ = nullptr;
+  MtlMaterial unnamed_;
+  bool has_color_ = false;
+};
+
+}  // namespace
+
+void parse_mtl(std::string_view text, const std::string& file, MaterialTable& materials, Warnings& warnings) {
+  MtlReader(text, file, materials, warnings).run();
 }
 
 }  // namespace halfplane

@@ -1,7 +1,8 @@
 // Wavefront OBJ files into meshes.
 //
 // Read: v (with a colour after the place, 0...1 or 0...255), vt, vn, f (a, a/b, a//c, a/b/c; negative counts back),
-// o, g, s, usemtl, mtllib. Other keywords are passed over; points and lines with a warning.
+// o, g, s, usemtl, mtllib, l, p. Other keywords are passed over. A place that cannot be read is an error; what is damaged or
+// missing beside places is a warning, one for each kind.
 //
 // Not read through tinyobjloader 2.0rc10: libFuzzer under UBSan finds undefined behaviour in it within seconds (any
 // weight line, `vw`, with an index beyond int), and it takes damaged files for good ones: NaN, "abc" and "3x4" become
@@ -22,14 +23,15 @@ namespace halfplane {
 /// The bytes of a material library or of an image by its name beside the OBJ, or nothing when there is none.
 using MaterialSource = std::function<std::optional<std::string>(const std::string& name)>;
 
-/// Reads a mesh from text. `file` is the name for messages. Materials give the colours unless the vertices have their
-/// own (then the mesh is not lit). Corners without a normal get one smoothed over the faces of their smoothing group,
-/// weighted by the angle at the corner; `s off` makes flat ones; without any `s` line the whole file is one group.
+/// Reads a mesh from text. `file` is the name for messages. Materials give the colours, but of faces whose corners all have
+/// their own (which are not lit). Opacity (d, Tr, map_d) blends or cuts out. Corners without a normal get one smoothed over
+/// the faces of their smoothing group, weighted by the angle at the corner; `s off` makes flat ones; without any `s` line the
+/// whole file is one group.
 /// A missing library, material or image is a warning. Throws InputError "file:line: what; the mend".
 [[nodiscard]] Mesh parse_obj(std::string_view text, const std::string& file, const MaterialSource& materials,
                              std::vector<std::string>& warnings);
 
-/// Reads an OBJ file; material libraries and images are looked for beside it.
+/// Reads an OBJ file; material libraries and images are looked for beside it, by their whole names, then without folders.
 [[nodiscard]] Mesh read_obj_file(const std::string& path, std::vector<std::string>& warnings);
 
 }  // namespace halfplane

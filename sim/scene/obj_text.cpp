@@ -1,8 +1,8 @@
 #include "sim/scene/obj_text.hpp"
 
 #include <charconv>
-#include <unordered_set>
 
+#include "model/config.hpp"
 #include "sim/scene/text_cursor.hpp"
 
 namespace halfplane {
@@ -28,23 +28,37 @@ class ObjReader {
     } else if (key == "f" || key == "fo") {  // fo: the old spelling
       read_face();
     } else if (key == "vn") {
-      const double x = coordinate("x of vn"), y = coordinate("y of vn");
-      out_.normals.push_back({x, y, coordinate("z of vn")});
+      forgive("vn", "it is taken as missing", [&] {
+        out_.normals.emplace_back();
+        const double x = coordinate("x of vn"), y = coordinate("y of vn");
+        out_.normals.back() = {x, y, coordinate("z of vn")};
+      });
     } else if (key == "vt") {
-      const double u = coordinate("u of vt");
-      out_.uvs.push_back({u, cursor_.more() ? coordinate("v of vt") : 0.0});
+      forgive("vt", "it is taken as 0 0", [&] {
+        out_.uvs.emplace_back();
+        const double u = coordinate("u of vt");
+        out_.uvs.back() = {u, cursor_.more() ? coordinate("v of vt") : 0.0};
+      });
     } else if (key == "o" || key == "g") {
-      face_.object = number_of(std::string(cursor_.rest_of_line()), out_.object_names, objects_);
+      face_.object = number_of(cursor_.name(), out_.object_names, objects_);
     } else if (key == "usemtl") {
-      face_.material = number_of(std::string(cursor_.rest_of_line()), out_.material_names, materials_);
+      face_.material = number_of(cursor_.name(), out_.material_names, materials_);
     } else if (key == "mtllib") {
-      read_libraries();
+      forgive("mtllib", "the line is passed over", [&] { read_libraries(); });
     } else if (key == "s") {
-      read_smoothing();
-    } else if ((key == "l" || key == "p") && !warned_of_lines_) {
-      warned_of_lines_ = true;
-      warnings_.push_back(out_.file + ":" + std::to_string(cursor_.line()) +
-                          ": lines and points of an OBJ are left out; only its faces are drawn");
+      forgive("s", "the line is passed over", [&] { read_smoothing(); });
+    } else if (key == "l" || key == "p") {
+      read_line_element(key == "p");
+    }
+  }
+
+  // What positions do not depend on: a warning for each kind, and the reader goes on.
+  template <class Read>
+  void forgive(const std::string& kind, const std::string& how, Read read) {
+    try {
+      read();
+    } catch (const InputError& error) {
+      warnings_.once(kind, std::string(error.what()) + "; " + how);
     }
   }
 
@@ -54,25 +68,24 @@ class ObjReader {
   void read_position() {
     const double x = coordinate("x of v"), y = coordinate("y of v"), z = coordinate("z of v");
     out_.positions.push_back({x, y, z});
-    std::array<double, 4> extra{};
+    forgive("colour", "the vertex has no colour", [&] { read_vertex_color(); });
+  }
+
+  void read_vertex_color() {
+    std::array<double, 4> extra{-1, -1, -1, -1};
     std::size_t count = 0;
     while (cursor_.more()) {
       if (count == 4) cursor_.fail("v with more than 7 numbers", "write v x y z or v x y z r g b");
       extra[count++] = coordinate("a number after x y z");
     }
     if (count == 2) cursor_.fail("v with 5 numbers", "write v x y z or v x y z r g b");
-    const bool colored = count >= 3;
-    if (!colored && out_.colors.empty()) return;
-    constexpr std::array<double, 4> kUncolored{-1, -1, -1, -1};  // turned white when the range is known
-    out_.colors.resize(out_.positions.size() - 1, kUncolored);
-    if (count == 3) extra[3] = -1;
-    out_.colors.push_back(colored ? extra : kUncolored);
-    if (!colored) return;
+    if (count < 3) return;
     for (std::size_t i = 0; i < count; ++i) {
-      if (extra[i] < 0 || extra[i] > 255) {
+      if (extra[i] < 0 || extra[i] > 255)
         cursor_.fail("a colour of " + std::to_string(extra[i]) + " is out of range", "use 0 to 1, or 0 to 255");
-      }
     }
+    out_.colors.resize(out_.positions.size() - 1, {-1, -1, -1, -1});
+    out_.colors.push_back(extra);
   }
 
   void read_face() {
@@ -83,11 +96,26 @@ class ObjReader {
     }
     face_.count = out_.corners.size() - face_.first;
     face_.line = cursor_.line();
-    if (face_.count < 3) {
-      cursor_.fail("a face of " + std::to_string(face_.count) + " corners", "give it 3 or more, or delete the line");
-    }
-    out_.faces.push_back(face_);
+    if (face_.count >= 3) return out_.faces.push_back(face_);
+    out_.corners.resize(face_.first);
+    warnings_.once("corners", at_line() + "a face of " + std::to_string(face_.count) + " corners is left out");
   }
+
+  void read_line_element(bool is_points) {
+    const std::size_t first = out_.corners.size();
+    while (cursor_.more()) {
+      const std::string_view word = cursor_.next_word();
+      out_.corners.push_back(read_corner(word));
+    }
+    const std::size_t count = out_.corners.size() - first;
+    if (count >= (is_points ? 1u : 2u))
+      return out_.lines.push_back({first, count, cursor_.line(), face_.material, face_.object, is_points});
+    out_.corners.resize(first);
+    warnings_.once("ends",
+                   at_line() + (is_points ? "a p without points" : "a line of fewer than two points") + " is left out");
+  }
+
+  [[nodiscard]] std::string at_line() const { return out_.file + ":" + std::to_string(cursor_.line()) + ": "; }
 
   // a, a/b, a//c or a/b/c; a trailing slash is forgiven.
   ObjCorner read_corner(std::string_view word) {
@@ -97,7 +125,12 @@ class ObjReader {
     for (std::size_t part = 0; part < 3; ++part) {
       const std::size_t slash = left.find('/');
       const std::string_view field = left.substr(0, slash);
-      if (!field.empty() || part == 0) index[part] = read_index(field, word, counts[part]);
+      if (part == 0) {
+        index[part] = read_index(field, word, counts[part]);
+      } else if (!field.empty()) {
+        forgive(part == 1 ? "vt index" : "vn index", "it is taken as missing",
+                [&] { index[part] = read_index(field, word, counts[part]); });
+      }
       if (slash == std::string_view::npos) return {index[0], index[1], index[2]};
       left.remove_prefix(slash + 1);
     }
@@ -137,9 +170,10 @@ class ObjReader {
 
   // A name may hold blanks, or the line may hold several names: the whole line is tried first.
   void read_libraries() {
-    const std::string all(cursor_.rest_of_line());
+    const std::string all = cursor_.name();
     if (all.empty()) cursor_.fail("mtllib without a name", "write mtllib FILE, or delete the line");
     if (load_library(all)) return;
+    if (const std::string name = without_comment(all); !name.empty() && load_library(name)) return;
     TextCursor names(all, out_.file);
     if (!names.next_line()) return;
     bool several = false;
@@ -147,9 +181,8 @@ class ObjReader {
       const bool whole = name.size() == all.size();
       several = several || !whole;
       if (!whole && load_library(std::string(name))) continue;
-      if (!warned_libraries_.insert(std::string(name)).second) continue;
-      warnings_.push_back(out_.file + ":" + std::to_string(cursor_.line()) + ": no material library " +
-                          in_quotes(name) + " beside the file; default colours are used");
+      warnings_.once("library " + std::string(name), at_line() + "no material library " + in_quotes(name) +
+                                                         " beside the file; default colours are used");
     }
   }
 
@@ -158,7 +191,7 @@ class ObjReader {
     if (const auto known = libraries_.find(name); known != libraries_.end()) return known->second;
     const std::optional<std::string> text = source_(name);
     libraries_.emplace(name, text.has_value());
-    if (text) parse_mtl(*text, name, out_.materials);
+    if (text) parse_mtl(*text, name, out_.materials, warnings_);
     return text.has_value();
   }
 
@@ -171,13 +204,11 @@ class ObjReader {
 
   TextCursor cursor_;
   const MaterialSource& source_;
-  std::vector<std::string>& warnings_;
+  Warnings warnings_;
   ObjText out_;
   ObjFace face_{.smoothing = 1};  // what the next face inherits
   std::unordered_map<std::string, std::uint32_t> objects_{{"", 0}}, materials_{{"", 0}};
   std::unordered_map<std::string, bool> libraries_;  // name -> whether it was found
-  std::unordered_set<std::string> warned_libraries_;
-  bool warned_of_lines_ = false;
 };
 
 }  // namespace

@@ -27,18 +27,26 @@ struct ObjFace {
   std::uint32_t smoothing = 0;       ///< smoothing group; 0 is flat
 };
 
+/// An `l` or a `p` line.
+struct ObjLine {
+  std::size_t first = 0, count = 0;  ///< its run of ObjText::corners
+  std::uint32_t line = 0, material = 0, object = 0;
+  bool is_points = false;
+};
+
 struct ObjText {
   std::string file;
-  std::vector<Vec3> positions, normals;
+  std::vector<Vec3> positions, normals;  ///< a normal that cannot be read is zero
   std::vector<std::array<double, 2>> uvs;
-  std::vector<std::array<double, 4>> colors;  ///< as written; empty, or one for each position
+  std::vector<std::array<double, 4>> colors;  ///< as written, -1 without one; of positions up to the last that has one
   std::vector<ObjCorner> corners;
   std::vector<ObjFace> faces;
+  std::vector<ObjLine> lines;
   std::vector<std::string> material_names{""}, object_names{""};  ///< 0: what comes before any usemtl, o or g
   MaterialTable materials;
 };
 
-/// Reads the lines. Indices are not checked against the counts yet.
+/// Reads the lines. Indices are not checked against the counts yet. What is damaged beside positions is a warning.
 [[nodiscard]] ObjText parse_obj_text(std::string_view text, const std::string& file, const MaterialSource& materials,
                                      std::vector<std::string>& warnings);
 

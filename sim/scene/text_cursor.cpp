@@ -22,6 +22,13 @@ void fail_at(const std::string& file, std::uint32_t line, const std::string& wha
 
 void TextCursor::fail(const std::string& what, const std::string& mend) const { fail_at(file_, line_, what, mend); }
 
+TextCursor::TextCursor(std::string_view text, std::string file) : text_(text), file_(std::move(file)) {
+  if (text_.starts_with("\xEF\xBB\xBF")) at_ = 3;
+  const bool has_mark = text_.starts_with("\xFF\xFE") || text_.starts_with("\xFE\xFF");
+  if (has_mark || (text_.size() > 1 && (text_[0] == '\0') != (text_[1] == '\0')))
+    fail_at(file_, 1, "the text is in UTF-16", "save it in UTF-8");
+}
+
 std::string printable(std::string_view word) {
   constexpr std::size_t kLongest = 60;  // characters
   std::string result;
@@ -117,6 +124,28 @@ std::string_view TextCursor::rest_of_line() {
   std::string_view rest = text_.substr(start, at_ - start);
   while (!rest.empty() && is_space(rest.back())) rest.remove_suffix(1);
   return rest;
+}
+
+std::string TextCursor::name() {
+  skip_blanks();
+  const std::size_t start = at_;
+  while (at_ < text_.size() && !is_line_end(text_[at_])) ++at_;
+  std::string_view rest = text_.substr(start, at_ - start);
+  while (!rest.empty() && is_space(rest.back())) rest.remove_suffix(1);
+  if (const std::size_t end = rest.starts_with('"') ? rest.find('"', 1) : std::string_view::npos;
+      end != std::string_view::npos)
+    return std::string(rest.substr(1, end - 1));
+  std::string plain;
+  for (std::size_t i = 0; i < rest.size(); ++i)
+    if (rest[i] != '\\' || i + 1 == rest.size() || rest[i + 1] != ' ') plain += rest[i];
+  return plain;
+}
+
+std::string without_comment(std::string_view name) {
+  std::size_t end = 0;
+  while (end < name.size() && !(name[end] == '#' && (end == 0 || is_space(name[end - 1])))) ++end;
+  while (end > 0 && is_space(name[end - 1])) --end;
+  return std::string(name.substr(0, end));
 }
 
 double TextCursor::number(std::string_view what, double limit) {

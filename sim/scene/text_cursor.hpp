@@ -5,14 +5,17 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <unordered_set>
+#include <vector>
 
 namespace halfplane {
 
 /// A position in a text whose lines are words between blanks. Lines end in LF, CR LF or CR; `#` starts a comment; a
-/// backslash just before a line's end joins the next line on.
+/// backslash just before a line's end joins the next line on. A byte order mark in front is passed over.
 class TextCursor {
  public:
-  TextCursor(std::string_view text, std::string file) : text_(text), file_(std::move(file)) {}
+  /// Throws InputError for text in UTF-16.
+  TextCursor(std::string_view text, std::string file);
 
   /// Goes to the start of the next line that holds a word. False at the end of the text.
   [[nodiscard]] bool next_line();
@@ -22,6 +25,9 @@ class TextCursor {
 
   /// What is left of this line, without blanks around it: names may contain blanks.
   std::string_view rest_of_line();
+
+  /// What is left of this line as a name, which may hold blanks and `#`: without the quotes around it, `\\ ` is a blank.
+  std::string name();
 
   /// The next word as a number. Throws InputError naming `what` if it is missing, no number, NaN, infinite, or beyond
   /// `limit` in size.
@@ -50,6 +56,22 @@ class TextCursor {
 /// Throws InputError "file:line: what; mend".
 [[noreturn]] void fail_at(const std::string& file, std::uint32_t line, const std::string& what,
                           const std::string& mend);
+
+/// A name up to the ` #` of a comment; all of it where it has none. Names hold `#` as well: the whole is tried first.
+[[nodiscard]] std::string without_comment(std::string_view name);
+
+/// What a reader can go on behind: said once for each kind.
+class Warnings {
+ public:
+  explicit Warnings(std::vector<std::string>& all) : all_(all) {}
+  void once(const std::string& kind, const std::string& text) {
+    if (kinds_.insert(kind).second) all_.push_back(text);
+  }
+
+ private:
+  std::vector<std::string>& all_;
+  std::unordered_set<std::string> kinds_;
+};
 
 /// A word for a one-line message: unprintable bytes become '?', long words are cut.
 [[nodiscard]] std::string printable(std::string_view word);

@@ -155,7 +155,7 @@ TEST_F(BadInput, BrokenMeshIsNamedWithItsLine) {
   expect_file_refused("bad.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", "bad.obj:4: ");
   expect_file_refused("bad.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -4\n", "bad.obj:4: ");
   expect_file_refused("bad.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 0 1 2\n", "bad.obj:4: ");
-  expect_file_refused("bad.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\n", "bad.obj:4: ");
+  expect_file_refused("bad.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\n", "no faces (f lines), lines or points");
   expect_file_refused("bad.obj", "", "bad.obj:1: ");
   expect_file_refused("bad.obj", "\x89PNG\r\n\x1a\n", "bad.obj:1: ");
 }

@@ -21,12 +21,12 @@
 namespace halfplane {
 namespace {
 
-/// Compares cycles as well.
+/// Compares cycles as well, and in a random run (drawn orders) the model with the specification.
 Session run(const DutFactory& factory, LockstepOptions options, const SceneSource& scenes,
             HostOrders orders = HostOrders::configured) {
   const auto dut = make_dut(factory);
   options.compares_cycles = true;
-  Session session = run_session(*dut, factory.config, options, scenes, orders);
+  Session session = run_session(*dut, factory.config, options, scenes, orders, orders == HostOrders::drawn);
   std::printf("%s: %llu cycles, %llu crossings, %s\n", factory.name.c_str(),
               static_cast<unsigned long long>(session.result.cycles),
               static_cast<unsigned long long>(session.result.total_cycles_compared()),
@@ -36,7 +36,7 @@ Session run(const DutFactory& factory, LockstepOptions options, const SceneSourc
 
 std::string describe(const Session& session) {
   const auto& mismatch = session.result.mismatch;
-  if (!mismatch) return "";
+  if (!mismatch) return session.disagreement;
   std::string text = mismatch->stage + ", arrow " + mismatch->arrow + ", cycle " + std::to_string(mismatch->cycle);
   for (const std::string& field : mismatch->differing()) text += " " + field;
   return text;
@@ -53,6 +53,17 @@ bool has_lines(const Scene& scene) {
     const auto* draw = std::get_if<Draw>(&command);
     return draw != nullptr && drawn_as(scene.states[draw->state], draw->topology) == PrimitiveType::line;
   });
+}
+
+// What `./dev test --quick` has of them.
+TEST(CosimOfEmbedded, ThousandRandomPrimitivesAreEqualInEveryPacketAndCycle) {
+  LockstepOptions options;
+  options.seed = 29;
+  options.stall_probability = 0.3;
+  const DutFactory& factory = find_dut(preset("embedded"));
+  const Session session = run(factory, options, random_scenes(factory.config, 29, 1000), HostOrders::drawn);
+  EXPECT_EQ(describe(session), "");
+  EXPECT_GT(session.result.total_cycles_compared(), 5000u);
 }
 
 TEST(Cosim, ThisBuildHasRtl) { ASSERT_GE(verilated_duts().size(), 3u); }

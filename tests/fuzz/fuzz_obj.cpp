@@ -17,13 +17,16 @@ void require(bool holds) {
 }
 
 void check_mesh(const halfplane::Mesh& mesh) {
-  std::size_t covered = 0;
+  std::size_t triangles = 0, indices = 0;
   for (const auto& part : mesh.parts) {
+    std::size_t& covered = part.topology == halfplane::Topology::triangles ? triangles : indices;
     require(part.first == covered && part.object < mesh.objects.size());
-    covered += part.count;
+    covered = part.first + part.count;
     require(!part.sampler || part.sampler->texture < mesh.textures.size());
   }
-  require(covered == mesh.triangles.size() && covered > 0);
+  require(triangles == mesh.triangles.size() && indices == mesh.indices.size() && triangles + indices > 0);
+  for (const std::uint32_t index : mesh.indices)
+    require(index < mesh.vertices.size() || index == halfplane::kRestart);
   for (const auto& triangle : mesh.triangles) {
     for (const std::uint32_t index : triangle) require(index < mesh.vertices.size());
   }

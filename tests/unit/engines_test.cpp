@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "../scene_builder.hpp"
+#include "model/capture/capture.hpp"
 #include "model/engines/functional.hpp"
+#include "model/engines/hardware.hpp"
 #include "model/engines/scalar.hpp"
 #include "sim/scene/builtin.hpp"
 
@@ -52,6 +54,39 @@ void expect_same_image(const Rendering& a, const Rendering& b) {
   EXPECT_EQ(a.counters.drawn, b.counters.drawn);
   EXPECT_EQ(a.counters.culled, b.counters.culled);
   EXPECT_EQ(a.counters.clipped, b.counters.clipped);
+}
+
+/// A rectangle of 5 by 3 pixels whose corners are centres counted from integers, a line along its diagonal and a point.
+std::string on_integer_centres(std::string_view origin) {
+  return "halfplane 1\ntarget 16 16\nclear color 0 0 0 255 depth 1\nspace window\nstate pixel_center integer\nstate "
+         "origin " +
+         std::string(origin) +
+         "\nv 3 4 0.5 1 255 0 0 255\nv 8 4 0.5 1 255 0 0 255\nv 8 7 0.5 1 255 0 0 255\nv 3 7 0.5 1 255 0 0 255\n"
+         "v 10 10 0.5 1 0 255 0 255\nv 14 12 0.5 1 0 255 0 255\nv 1 2 0.5 1 0 0 255 255\n"
+         "state cull none\nt 0 1 2\nt 0 2 3\nl 4 5\np 6\n";
+}
+
+TEST(Engines, IntegerCentresStayCentresWherePixelsAreNotDivided) {
+  for (const std::string_view origin : {"top_left", "bottom_left"}) {
+    const Scene scene = read_capture(on_integer_centres(origin), "integers");
+    Config config = preset("embedded");
+    config.color_format = ColorFormat::rgba8888;
+    const Rendering divided = render_functional(scene, config);
+    config.subpixel_bits = 0;
+    const Rendering whole = render_functional(scene, config);
+    EXPECT_EQ(whole.frame.color, divided.frame.color) << origin;
+    EXPECT_EQ(render_scalar(scene, config).frame.color, whole.frame.color) << origin;
+    EXPECT_EQ(render_hardware(scene, config).frame.color, whole.frame.color) << origin;
+    int red = 0, green = 0;
+    for (const std::uint32_t code : whole.frame.color) {
+      red += code == 0xff0000ff ? 1 : 0;
+      green += code == 0xff00ff00 ? 1 : 0;
+    }
+    EXPECT_EQ(red, 5 * 3) << "left and one of the level edges belong to it";
+    EXPECT_EQ(green, 4) << "without its last pixel";
+    const auto at_point = whole.frame.at(1, origin == "top_left" ? 2 : 13);
+    EXPECT_EQ(whole.frame.color[at_point], 0xffff0000u) << origin;
+  }
 }
 
 /// A triangle just beyond the right or the lower edge of a viewport, which lies `beyond` subpixels from pixel centres.

@@ -188,20 +188,126 @@ TEST(Obj, AMissingLibraryOrMaterialIsOneWarningEach) {
 
 TEST(Obj, ABrokenMaterialNamesTheLibraryAndTheLine) {
   const std::string text = "mtllib a.mtl\n" + kSquare + "f 1 2 3\n";
-  EXPECT_EQ(refusal(text, "newmtl a\nKd 1 x 0\n").find("a.mtl:2: green of Kd 'x'"), 0u)
-      << refusal(text, "newmtl a\nKd 1 x 0\n");
-  EXPECT_EQ(refusal(text, "Kd 1 1 0\n").find("a.mtl:1: "), 0u);
-  EXPECT_EQ(refusal(text, "newmtl a\nKd 1 1\n").find("a.mtl:2: blue of Kd is missing"), 0u);
-  EXPECT_EQ(refusal(text, "newmtl a\nd nan\n").find("a.mtl:2: "), 0u);
+  const auto warning = [&text](const std::string& library) {
+    const auto [mesh, warnings] = parse(text, library);
+    EXPECT_EQ(mesh.triangles.size(), 1u);
+    EXPECT_EQ(warnings.size(), 1u) << library;
+    return warnings.empty() ? "" : warnings[0];
+  };
+  EXPECT_EQ(warning("newmtl a\nKd 1 x 0\nKd y\n").find("a.mtl:2: green of Kd 'x'"), 0u);
+  EXPECT_EQ(warning("Kd 1 1 0\n").find("a.mtl:1: "), 0u);
+  EXPECT_EQ(warning("newmtl a\nKd 1 1\n").find("a.mtl:2: blue of Kd is missing"), 0u);
+  EXPECT_EQ(warning("newmtl a\nd nan\n").find("a.mtl:2: "), 0u);
+  EXPECT_EQ(warning("newmtl a\nNs nan\n").find("a.mtl:2: exponent Ns 'nan'"), 0u);
+  EXPECT_EQ(warning("newmtl a\nmap_Kd\n").find("a.mtl:2: map_Kd without a file"), 0u);
+  EXPECT_EQ(warning("newmtl \nKd 1 0 0\n").find("a.mtl:1: newmtl without a name"), 0u);
 }
 
 TEST(Obj, VertexColoursAreTakenAsTheyAreInEitherRange) {
   for (const char* color : {" 1 0 0.2", " 255 0 51"}) {
-    const Mesh mesh = parse(std::string("v 0 0 0") + color + "\nv 1 0 0\nv 0 1 0 0 0 0\nf 1 2 3\n").mesh;
+    const Mesh mesh = parse(std::string("v 0 0 0") + color + "\nv 1 0 0 0 0 1\nv 0 1 0 0 0 0\nf 1 2 3\n").mesh;
     EXPECT_FALSE(mesh.lit);
     EXPECT_EQ(mesh.vertices[0].rgba, (std::array<double, 4>{255, 0, 51, 255})) << color;
-    EXPECT_EQ(mesh.vertices[1].rgba, (std::array<double, 4>{255, 255, 255, 255})) << color;
+    EXPECT_EQ(mesh.vertices[1].rgba,
+              (std::array<double, 4>{0, 0, color[1] == '1' && color[2] == ' ' ? 255.0 : 1.0, 255}))
+        << color;
   }
+}
+
+TEST(Obj, OnlyFacesWhoseCornersAllHaveColoursShowThem) {
+  const std::string text = "mtllib a.mtl\nusemtl red\nv 0 0 0 1 1 0\nv 1 0 0 1 1 0\nv 0 1 0 1 1 0\nv 1 1 0\n";
+  const Mesh mesh = parse(text + "f 1 2 3\nf 2 4 3\n", "newmtl red\nKd 1 0 0\n").mesh;
+  EXPECT_TRUE(mesh.lit);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const MeshVertex &colored = mesh.vertices[mesh.triangles[0][i]], &plain = mesh.vertices[mesh.triangles[1][i]];
+    EXPECT_EQ(colored.rgba, (std::array<double, 4>{255, 255, 0, 255}));
+    EXPECT_FALSE(mesh.materials[colored.material].has_header_light);
+    EXPECT_EQ(plain.rgba, (std::array<double, 4>{255, 0, 0, 255}));
+    EXPECT_TRUE(mesh.materials[plain.material].has_header_light);
+  }
+}
+
+TEST(Obj, WhatIsDamagedBesidePlacesIsOneWarningAKind) {
+  const std::string at5 = "test.obj:5: ";
+  const std::pair<std::string, std::string> damaged[] = {
+      {"f 1/1 2/1 3/1\nf 1/1 3/1 4/2\n", "vt index 1 of 0; it is taken as missing"},
+      {"f 1//1 2//1 3//1\n", "vn index 1 of 0; it is taken as missing"},
+      {"f 1/0 2 3\n", "index 0 in '1/0'"},
+      {"f 1//0 2 3\n", "index 0 in '1//0'"},
+      {"f 1/-1 2 3\n", "beyond the first of 0"},
+      {"vn nan nan nan\nf 1//1 2//1 3//1\n", "x of vn 'nan'"},
+      {"vt\nf 1/1 2/1 3/1\n", "u of vt is missing"},
+      {"f 1 2\nf 3\nf 1 2 3\n", "a face of 2 corners is left out"},
+      {"l 1\nf 1 2 3\n", "a line of fewer than two points is left out"},
+      {"v 0 0 0 1 1\nf 1 2 3\n", "5 numbers"},
+      {"v 0 0 0 1 1 256\nf 1 2 3\n", "colour of 256"},
+      {"s x\nf 1 2 3\n", "smoothing group"},
+      {"mtllib\nf 1 2 3\n", "mtllib without a name"}};
+  for (const auto& [text, part] : damaged) {
+    const auto [mesh, warnings] = parse(kSquare + text);
+    ASSERT_EQ(warnings.size(), 1u) << text;
+    EXPECT_EQ(warnings[0].find(at5), 0u) << warnings[0];
+    EXPECT_NE(warnings[0].find(part), std::string::npos) << warnings[0];
+    EXPECT_GE(mesh.triangles.size(), 1u);
+    for (const MeshVertex& vertex : mesh.vertices) EXPECT_EQ(length(vertex.normal), 1) << text;
+  }
+}
+
+TEST(Obj, LinesAndPointsAreDrawnInTheColourOfTheirMaterial) {
+  const std::string text = "mtllib a.mtl\n" + kSquare + "usemtl red\nl 1 2/7 3\nl 3 -1\np 1 2\nf 1 2 3\n";
+  const auto [mesh, warnings] = parse(text, "newmtl red\nKd 1 0 0\n");
+  EXPECT_TRUE(warnings.empty());
+  ASSERT_EQ(mesh.parts.size(), 3u);
+  EXPECT_EQ(mesh.parts[1].topology, Topology::line_strip);
+  EXPECT_EQ(mesh.parts[1].count, 6u) << "with the restart between them";
+  EXPECT_EQ(mesh.indices[3], kRestart);
+  EXPECT_EQ(mesh.parts[2].topology, Topology::points);
+  EXPECT_EQ(mesh.parts[2].count, 2u);
+  const MeshVertex& vertex = mesh.vertices[mesh.indices[5]];
+  EXPECT_EQ(vertex.position, (Vec3{0, 1, 0}));
+  EXPECT_EQ(vertex.normal, Vec3{}) << "not lit";
+  EXPECT_EQ(vertex.rgba, (std::array<double, 4>{255, 0, 0, 255}));
+  EXPECT_EQ(parse(kSquare + "l 1 2\n").mesh.parts.size(), 1u) << "without a face";
+  expect_refusal(kSquare + "l 1 5\n", "test.obj:5: ", "v index 5 of 4");
+}
+
+TEST(Obj, NamesMayHoldHashesQuotesAndBlanks) {
+  const std::string faces = "usemtl Material #1\nf 1 2 3\nusemtl Material #2\nf 1 3 4\nusemtl red # of all\nf 1 2 4\n";
+  const auto [mesh, warnings] =
+      parse("mtllib \"a.mtl\"\n" + kSquare + faces,
+            "newmtl Material #1\nKd 1 0 0\nnewmtl Material #2\nKd 0 1 0\nnewmtl red\nKd 0 0 1\n");
+  EXPECT_TRUE(warnings.empty());
+  ASSERT_EQ(mesh.triangles.size(), 3u);
+  for (std::size_t t = 0; t < 3; ++t) {
+    std::array<double, 4> color{0, 0, 0, 255};
+    color[t] = 255;
+    EXPECT_EQ(mesh.vertices[mesh.triangles[t][0]].rgba, color);
+  }
+}
+
+TEST(Obj, AByteOrderMarkIsPassedOverAndUtf16IsNamed) {
+  const std::string mark = "\xEF\xBB\xBF";
+  const auto [mesh, warnings] =
+      parse(mark + "mtllib a.mtl\nusemtl red\n" + kSquare + "f 1 2 3\n", mark + "newmtl red\nKd 1 0 0\n");
+  EXPECT_TRUE(warnings.empty());
+  EXPECT_EQ(mesh.vertices[0].rgba, (std::array<double, 4>{255, 0, 0, 255}));
+  expect_refusal(std::string("\xFF\xFEv\0 \0", 6), "test.obj:1: ", "UTF-16");
+  expect_refusal(std::string("\0v\0 ", 4), "test.obj:1: ", "UTF-16");
+}
+
+TEST(Obj, OpacityBlendsAndDOverrulesTr) {
+  const std::string text = "mtllib a.mtl\n" + kSquare + "usemtl m\nf 1 2 3\n";
+  const auto alpha = [&text](const std::string& lines) {
+    const Mesh mesh = parse(text, "newmtl m\nKd 1 0 0\n" + lines).mesh;
+    EXPECT_EQ(mesh.parts[0].alpha, mesh.vertices[0].rgba[3] < 255 ? AlphaMode::blend : AlphaMode::opaque);
+    return mesh.vertices[0].rgba[3];
+  };
+  EXPECT_EQ(alpha(""), 255);
+  EXPECT_EQ(alpha("d 0.4\n"), 102);
+  EXPECT_EQ(alpha("Tr 0.4\n"), 153);
+  EXPECT_EQ(alpha("Tr 0\n"), 255);
+  EXPECT_EQ(alpha("d 1\nTr 1\n"), 255);
+  EXPECT_EQ(alpha("Tr 1\nd 1\n"), 255);
 }
 
 TEST(Obj, ObjectsBecomePartsWithTheirNames) {
@@ -226,14 +332,11 @@ TEST(Obj, NumbersAreRoundedToTheNearestBinary64) {
 
 TEST(Obj, BadFilesAreRefusedWithLineAndMend) {
   const std::string at5 = "test.obj:5: ";
-  expect_refusal(kSquare + "f 1 2\n", at5, "2 corners");
   expect_refusal(kSquare + "f 1 2 5\n", at5, "v index 5 of 4");
   expect_refusal(kSquare + "f 1 2 -5\n", at5, "beyond the first of 4");
   expect_refusal(kSquare + "f 0 1 2\n", at5, "index 0");
   expect_refusal(kSquare + "f 1 2 3x4\n", at5, "'3x4'");
   expect_refusal(kSquare + "f 1/1/1/1 2 3\n", at5, "three parts");
-  expect_refusal(kSquare + "f 1/1 2/1 3/1\n", at5, "vt index 1 of 0");
-  expect_refusal(kSquare + "f 1//1 2//1 3//1\n", at5, "vn index 1 of 0");
   expect_refusal(kSquare + "f 1 2 99999999999999999999\n", at5, "whole numbers");
   expect_refusal(kSquare, "test.obj:1: ", "no faces");
   expect_refusal("", "test.obj:1: ", "no faces");
@@ -242,9 +345,6 @@ TEST(Obj, BadFilesAreRefusedWithLineAndMend) {
   expect_refusal("v 0 0 1e999\n", "test.obj:1: ", "'1e999'");
   expect_refusal("v 0 0 1e31\n", "test.obj:1: ", "beyond");
   expect_refusal("v 0 0\n", "test.obj:1: ", "z of v is missing");
-  expect_refusal("v 0 0 0 1 1\n", "test.obj:1: ", "5 numbers");
-  expect_refusal("v 0 0 0 1 1 256\n", "test.obj:1: ", "colour");
-  expect_refusal("s x\n", "test.obj:1: ", "smoothing group");
   expect_refusal(std::string("v \x1b[31m\x01 0 0\n"), "test.obj:1: ", "?[31m?");
 }
 
@@ -256,6 +356,36 @@ TEST(Obj, AConcavePolygonOfTooManyCornersIsRefusedByItsSize) {
     face += " " + std::to_string(i + 1);
   }
   expect_refusal(text + face + "\n", "test.obj:5001: ", "5000 corners");
+}
+
+/// A TGA of 2x2 texels, uncompressed, 24 bits: blue, green, red; the lower row first.
+std::string tga(const std::array<std::array<char, 3>, 4>& rgb) {
+  std::string bytes("\0\0\2\0\0\0\0\0\0\0\0\0\2\0\2\0\x18\0", 18);
+  for (const auto& [r, g, b] : rgb) bytes += {b, g, r};
+  return bytes;
+}
+
+TEST(Obj, ImagesAreFoundByTheirLastPartAndMapDBecomesAlpha) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "halfplane obj maps";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "a.obj") << "mtllib C:\\models\\a.mtl\n" + kSquare +
+                                         "vt 0 0\nvt 1 0\nvt 1 1\nusemtl m\nf 1/1 2/2 3/3\n";
+  std::ofstream(folder / "a.mtl") << "newmtl m\nmap_Kd /somewhere/t#1.tga\nmap_d cut.tga\n";
+  constexpr char kAll = '\xff';
+  std::ofstream(folder / "t#1.tga", std::ios::binary) << tga({{{kAll, 0, 0}, {0, kAll, 0}, {0, 0, kAll}, {1, 2, 3}}});
+  for (const bool is_smooth : {false, true}) {
+    const char half = is_smooth ? '\x40' : kAll;
+    std::ofstream(folder / "cut.tga", std::ios::binary)
+        << tga({{{0, 0, 0}, {kAll, kAll, kAll}, {half, half, half}, {kAll, kAll, kAll}}});
+    std::vector<std::string> warnings;
+    const Mesh mesh = read_obj_file((folder / "a.obj").string(), warnings);
+    EXPECT_EQ(warnings, std::vector<std::string>{});
+    ASSERT_EQ(mesh.textures.size(), 1u);
+    EXPECT_EQ(mesh.parts[0].alpha, is_smooth ? AlphaMode::blend : AlphaMode::mask);
+    const auto& codes = mesh.textures[0].level.front().code;
+    EXPECT_EQ(codes,
+              (std::vector<std::uint32_t>{0xff000000, 0x00ff00ff, is_smooth ? 0x0000ff40u : 0x0000ffffu, 0x010203ff}));
+  }
 }
 
 TEST(Obj, FilesFindTheirLibraryBesideThemselvesAndMissingFilesAreNamed) {

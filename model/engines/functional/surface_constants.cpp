@@ -62,21 +62,19 @@ bool is_nearest(TextureMin min) {
          min == TextureMin::nearest_mipmap_linear;
 }
 
-/// Moves a triangle and its setup to a sample; returns the triangle.
-const Triangle& at_place(int place, const Widths& widths, Triangle& triangle, TriangleSetup& setup) {
-  if (place == kAtCentre) return triangle;
-  const SampleOffset& o = widths.sample_offset[static_cast<std::size_t>(place)];
-  setup = setup_at_sample(setup, o, widths);
-  return triangle = moved_to_sample(triangle, o);
+/// From the centre to where a pixel is shaded.
+SampleOffset offset_of(int place, const Widths& widths) {
+  return place == kAtCentre ? SampleOffset{} : widths.sample_offset[static_cast<std::size_t>(place)];
 }
 
 }  // namespace
 
 StageSurface::StageSurface(const FrameContext& frame, const Slice& slice, const Record& record, int place)
     : triangle(triangle_of(slice, record, frame.widths)),
-      setup(setup_triangle(triangle, frame.config, frame.widths, slice.context->rect)),
-      surface(at_place(place, frame.widths, triangle, setup), setup, slice.context->state, texture_of(*slice.context),
-              slice.context->fog.get(), slice.context->phong.get(), frame.config, frame.widths) {}
+      setup(setup_at_sample(setup_triangle(triangle, frame.config, frame.widths, slice.context->rect),
+                            offset_of(place, frame.widths), frame.widths)),
+      surface(triangle, setup, slice.context->state, texture_of(*slice.context), slice.context->fog.get(),
+              slice.context->phong.get(), frame.config, frame.widths, offset_of(place, frame.widths)) {}
 
 LaneDivision::LaneDivision(const PerspectiveFormat& format)
     : up(32 - q_local_bits(format)),

@@ -71,7 +71,7 @@ class SampledTiles {
     surfaces_.reserve(samples_ + 1);
     for (int k = kAtCentre; k < widths.pixel_samples; ++k) {
       const SampleOffset o = k == kAtCentre ? SampleOffset{} : widths.sample_offset[static_cast<std::size_t>(k)];
-      surfaces_.push_back(surface_of(context, moved_to_sample(triangle_, o), setups_.at(k), widths));
+      surfaces_.push_back(surface_of(context, triangle_, setups_.at(k), widths, o));
     }
   }
 

@@ -235,7 +235,7 @@ class AttributeComparison {
       const Triangle shaded = seen_triangle(f, f.shaded_at);
       color_oracle_.emplace(shaded, widths_.grid_bits);
       surface_oracle_.reset();
-      if (f.surface) surface_oracle_.emplace(scene_, config_, shaded);
+      if (f.surface) surface_oracle_.emplace(scene_, config_, shaded, offset_of(f.shaded_at));
       shaded_at_ = f.shaded_at;
     }
     if (f.surface) pixel.surface = &*f.surface;
@@ -248,11 +248,13 @@ class AttributeComparison {
     return pixel;
   }
 
-  /// The triangle of a fragment as a sample sees it; -1: as the centre does.
+  /// From the centre to a sample; -1: the centre.
+  [[nodiscard]] SampleOffset offset_of(int place) const {
+    return place < 0 || frames_.size() == 1 ? SampleOffset{} : widths_.sample_offset[static_cast<std::size_t>(place)];
+  }
+  /// The triangle of a fragment as it is seen from there.
   [[nodiscard]] Triangle seen_triangle(const TappedFragment& f, int place) const {
-    const SampleOffset offset =
-        place < 0 || frames_.size() == 1 ? SampleOffset{} : widths_.sample_offset[static_cast<std::size_t>(place)];
-    return exact::seen_from(made_.triangles[f.item], offset);
+    return exact::seen_from(made_.triangles[f.item], offset_of(place));
   }
 
   [[nodiscard]] exact::Rational exact_value(const TappedFragment& f, const exact::PlaneWeights& weights,

@@ -69,7 +69,7 @@ void FragmentJudge::begin_triangle(const TappedFragment& fragment) {
     const SampleOffset offset = place == 0 ? SampleOffset{} : widths_.sample_offset[place - 1];
     const Triangle seen = exact::seen_from(*fragment.triangle, offset);
     oracles_.emplace_back(seen, widths_.grid_bits, rule_);
-    if (fragment.surface) surfaces_.emplace_back(scene_, config_, seen);
+    if (fragment.surface) surfaces_.emplace_back(scene_, config_, seen, offset);
   }
 }
 

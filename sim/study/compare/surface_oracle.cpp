@@ -54,11 +54,13 @@ double over_w_bound(double extent, double w_ratio, const PerspectiveFormat& form
 
 double largest_level_w_ratio(const PerspectiveFormat& format) { return std::ldexp(1.0, format.q_bits - 10); }
 
-SurfaceOracle::SurfaceOracle(const Scene& scene, const Config& config, const Triangle& triangle)
+SurfaceOracle::SurfaceOracle(const Scene& scene, const Config& config, const Triangle& triangle,
+                             const SampleOffset& offset)
     : state_(scene.states[std::get<Draw>(scene.commands[triangle.draw]).state]),
       texture_(state_.texture ? &scene.textures[*state_.texture] : nullptr),
       rules_{state_.color_interp, state_.texture_interp} {
   const Widths widths = derive_widths(config);
+  offset_ = {std::ldexp(offset.x, -widths.grid_bits), std::ldexp(offset.y, -widths.grid_bits)};
   const PerspectiveFormat format = perspective_format(config);
   std::array<golden::ScreenVertex<double>, 3> v;
   std::array<double, 3> w{};
@@ -115,21 +117,36 @@ void SurfaceOracle::set_q(const std::array<double, 3>& w, const PerspectiveForma
   normal_lost_ = std::sqrt(3.0) * (0.5 + delta) + std::ldexp(smallest < 0.5 ? 1 : 0.5, -less);
 }
 
+golden::Fragment<double> SurfaceOracle::exact_at(double x, double y, const golden::Setup<double>& setup,
+                                                 const golden::InterpolationRules& rules) const {
+  return golden::interpolate(
+      setup, std::array{setup_.edge[0].value(x, y), setup_.edge[1].value(x, y), setup_.edge[2].value(x, y)}, rules);
+}
+
+/// u_x is N_x(y) / Q^2 (level_of_detail.hpp): N in the row and column of the pixel's centre, Q at the sample.
+double SurfaceOracle::exact_level(golden::Fragment<double> exact, int x, int y) const {
+  if (rules_.texture == TextureInterp::perspective && offset_ != std::array{0.0, 0.0}) {
+    const auto centre = exact_at(x + 0.5 - offset_[0], y + 0.5 - offset_[1], setup_, rules_);
+    const double ratio = centre.inverse_w / exact.inverse_w, by = ratio * ratio;
+    const golden::TextureCoordinates& t = centre.texture;
+    exact.texture = {exact.texture.u, exact.texture.v, t.u_x * by, t.u_y * by, t.v_x * by, t.v_y * by};
+  }
+  return golden::level_of_detail(*texture_, exact.texture);
+}
+
 SurfaceErrors SurfaceOracle::errors(const SurfaceSample& sample, int x, int y) const {
   const double px = x + 0.5, py = y + 0.5;
-  const std::array e{setup_.edge[0].value(px, py), setup_.edge[1].value(px, py), setup_.edge[2].value(px, py)};
-  const golden::Fragment<double> exact = golden::interpolate(setup_, e, rules_);
+  const golden::Fragment<double> exact = exact_at(px, py, setup_, rules_);
   SurfaceErrors errors;
   errors.exact = exact.rgba;
   errors.color.bound = color_bound_;
   for (std::size_t c = 0; c < 4 && color_bound_ < HUGE_VAL; ++c)
     errors.color.value = std::max(errors.color.value, std::abs(sample.primitive[c] - exact.rgba[c]));
   if (phong_) {
-    const golden::Color n =
-        golden::interpolate(normals_, e, {ColorInterp::perspective, TextureInterp::perspective}).rgba;
+    const golden::Color n = exact_at(px, py, normals_, {ColorInterp::perspective, TextureInterp::perspective}).rgba;
     compare_light(sample, {n[0], n[1], n[2]}, exact.inverse_w, errors);
   }
-  if (texture_ != nullptr) compare_texels(sample, exact, errors);
+  if (texture_ != nullptr) compare_texels(sample, exact, exact_level(exact, x, y), errors);
   if (fog_) compare_fog(sample, exact.inverse_w, errors);
   return errors;
 }
@@ -178,14 +195,13 @@ void SurfaceOracle::compare_fog(const SurfaceSample& sample, double inverse_w, S
   errors.exact = golden::in_fog(state_, errors.exact, part);
 }
 
-void SurfaceOracle::compare_texels(const SurfaceSample& sample, const golden::Fragment<double>& exact,
+void SurfaceOracle::compare_texels(const SurfaceSample& sample, const golden::Fragment<double>& exact, double lod,
                                    SurfaceErrors& errors) const {
   errors.has_texture = true;
   const golden::TexelPlace place{exact.texture.u * texture_->width(), exact.texture.v * texture_->height()};
   const std::array off{std::abs(sample.coordinate[0] - place.x), std::abs(sample.coordinate[1] - place.y)};
   errors.coordinate = {off[0], coordinate_bound_[0]};
   if (const Held v{off[1], coordinate_bound_[1]}; !(v.ratio() <= errors.coordinate.ratio())) errors.coordinate = v;
-  const double lod = golden::level_of_detail(*texture_, exact.texture);
   const double worse = std::max(off[0], off[1]);
   errors.footprints = std::isfinite(lod) ? worse / std::exp2(lod) : 0;
   const double least = -1 - state_.texture_lod[0], model_lod = std::ldexp(sample.lod, -kLodFraction);

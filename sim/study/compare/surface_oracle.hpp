@@ -56,8 +56,9 @@ struct SurfaceErrors {
 
 class SurfaceOracle {
  public:
-  /// A triangle of `scene` with has_surface(), not of zero area.
-  SurfaceOracle(const Scene& scene, const Config& config, const Triangle& triangle);
+  /// A triangle of `scene` with has_surface(), not of zero area; at a sample, `offset` from pixel centres, the triangle moved
+  /// there (moved_to_sample).
+  SurfaceOracle(const Scene& scene, const Config& config, const Triangle& triangle, const SampleOffset& offset = {});
   [[nodiscard]] SurfaceErrors errors(const SurfaceSample& sample, int x, int y) const;
 
  private:
@@ -65,12 +66,17 @@ class SurfaceOracle {
   void compare_light(const SurfaceSample& sample, const std::array<double, 3>& normal, double inverse_w,
                      SurfaceErrors& errors) const;
   void compare_fog(const SurfaceSample& sample, double inverse_w, SurfaceErrors& errors) const;
-  void compare_texels(const SurfaceSample& sample, const golden::Fragment<double>& exact, SurfaceErrors& errors) const;
+  void compare_texels(const SurfaceSample& sample, const golden::Fragment<double>& exact, double lod,
+                      SurfaceErrors& errors) const;
+  [[nodiscard]] golden::Fragment<double> exact_at(double x, double y, const golden::Setup<double>& setup,
+                                                  const golden::InterpolationRules& rules) const;
+  [[nodiscard]] double exact_level(golden::Fragment<double> exact, int x, int y) const;
 
   const State& state_;
   const Texture* texture_;
   Sampler sampler_;
   golden::InterpolationRules rules_;
+  std::array<double, 2> offset_{};         ///< of the sample, pixels
   golden::Setup<double> setup_, normals_;  ///< the latter with normals as colours, where there is light
   double color_bound_ = HUGE_VAL, level_bound_ = HUGE_VAL;
   std::array<double, 2> coordinate_bound_{};

@@ -83,9 +83,9 @@ SurfaceFigure surface_figure(const DrawContext& context, const Surface& surface,
 }
 
 std::optional<Surface> made_surface(const DrawContext& context, const Triangle& triangle, const TriangleSetup& setup,
-                                    const Widths& widths) {
+                                    const Widths& widths, const SampleOffset& offset) {
   if (setup.is_empty()) return std::nullopt;
-  return surface_of(context, triangle, setup, widths);
+  return surface_of(context, triangle, setup, widths, offset);
 }
 
 }  // namespace
@@ -122,11 +122,11 @@ TrianglePiece::TrianglePiece(const DrawContext& context, const Widths& widths, c
       setup_(setup_at_sample(setup_triangle(triangle, context.config, widths, context.rect), offset, widths)),
       whole_(setup_at_sample(setup_triangle(triangle, context.config, widths), offset, widths)),
       oracle_(triangle_, widths.grid_bits),
-      surface_(made_surface(context, triangle_, setup_, widths)) {
+      surface_(made_surface(context, triangle, setup_, widths, offset)) {
   const auto& v = triangle_.v;
   order_ = canonical_order(v, signed_area(v[0], v[1], v[2]));
   for (std::size_t i = 0; i < 3; ++i) corner_[i] = v[order_[i]];
-  if (surface_) surface_oracle_.emplace(context.scene, context.config, triangle_);
+  if (surface_) surface_oracle_.emplace(context.scene, context.config, triangle_, offset_);
 }
 
 /// As coarse_raster and fine_raster step them, from the first tile of the whole triangle.

@@ -26,6 +26,7 @@ struct Projection {
   double range_from, range_by;
   double offset_x, offset_y, scale_y;  ///< of window space
   double grid, codes;                  ///< subpixels in a pixel; largest depth code
+  double grid_origin;                  ///< snap_origin()
   int coordinate_shift;
   double reach;        ///< pixels
   std::int32_t limit;  ///< subpixels
@@ -48,6 +49,7 @@ struct Projection {
     offset_x = offset_y = state.pixel_center == PixelCenter::integer ? 0.5 : 0.0;
     scale_y = state.origin == Origin::bottom_left ? -1 : 1;
     grid = static_cast<double>(std::int64_t{1} << config.subpixel_bits);
+    grid_origin = snap_origin(state, config);
     codes = static_cast<double>((std::int64_t{1} << config.depth_bits) - 1);
     coordinate_shift = widths.grid_bits - config.subpixel_bits;
     reach = 2.0 * config.guard_band;
@@ -95,7 +97,16 @@ HALFPLANE_INLINE I16 project_lanes(const VertexLanes& v, const Projection& p, in
   x = select(fits, x, D16(0.0));
   y = select(fits, y, D16(0.0));
   z = select(fits, z, D16(0.0));
-  const I16 sx = snap_lanes(x, p.grid) << p.coordinate_shift, sy = snap_lanes(y, p.grid) << p.coordinate_shift;
+  if (p.grid_origin != 0) {
+    x = x - p.grid_origin;
+    y = y - p.grid_origin;
+  }
+  I16 sx = snap_lanes(x, p.grid) << p.coordinate_shift, sy = snap_lanes(y, p.grid) << p.coordinate_shift;
+  if (p.grid_origin != 0) {
+    const std::int32_t half = 1 << (p.coordinate_shift - 1);
+    sx = sx + half;
+    sy = sy + half;
+  }
   const I16 sz = snap_lanes(z, p.codes);
   const I16 is_legal = (sx >= -p.limit) & (sx < p.limit) & (sy >= -p.limit) & (sy < p.limit) & (sz >= 0) &
                        (sz <= static_cast<std::int32_t>(p.codes)) & convert<std::int32_t>(fits);
