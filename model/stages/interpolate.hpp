@@ -73,8 +73,8 @@ template <class SignedLane, class Lane>
   const int drop = widths.plane_fraction - guard_bits;
   const auto step = [&](PlaneValue per_subpixel) { return round_shift(per_subpixel, drop - widths.grid_bits); };
   const std::int64_t offset = sample_plane_offset(step(plane.step_x), step(plane.step_y), o, widths.grid_bits);
-  plane.value = static_cast<PlaneValue>(static_cast<std::uint64_t>(plane.value) +
-                                        (static_cast<std::uint64_t>(offset) << drop));
+  plane.value =
+      static_cast<PlaneValue>(static_cast<std::uint64_t>(plane.value) + (static_cast<std::uint64_t>(offset) << drop));
   return plane;
 }
 

@@ -25,8 +25,7 @@ void check_mesh(const halfplane::Mesh& mesh) {
     require(!part.sampler || part.sampler->texture < mesh.textures.size());
   }
   require(triangles == mesh.triangles.size() && indices == mesh.indices.size() && triangles + indices > 0);
-  for (const std::uint32_t index : mesh.indices)
-    require(index < mesh.vertices.size() || index == halfplane::kRestart);
+  for (const std::uint32_t index : mesh.indices) require(index < mesh.vertices.size() || index == halfplane::kRestart);
   for (const auto& triangle : mesh.triangles) {
     for (const std::uint32_t index : triangle) require(index < mesh.vertices.size());
   }

@@ -350,8 +350,7 @@ HALFPLANE_LEAF std::uint64_t bits_equal(const U64& a, const U64& b) {
 }
 
 /// a in the lanes whose bit is set, b elsewhere. `to_sign`: 31 - lane.
-HALFPLANE_LEAF I16 select_by_bits(std::uint32_t bits, const I16& a, const I16& b,
-                                    [[maybe_unused]] const I16& to_sign) {
+HALFPLANE_LEAF I16 select_by_bits(std::uint32_t bits, const I16& a, const I16& b, [[maybe_unused]] const I16& to_sign) {
 #if HALFPLANE_ISA == 512
   I16 r;
   r.part[0] =

@@ -63,20 +63,20 @@ struct Pack {
   }
 };
 
-#define HALFPLANE_PACK_OPERATOR(op)                                                         \
-  template <class T, int N>                                                                 \
+#define HALFPLANE_PACK_OPERATOR(op)                                                       \
+  template <class T, int N>                                                               \
   HALFPLANE_LEAF Pack<T, N> operator op(const Pack<T, N>& a, const Pack<T, N>& b) {       \
-    Pack<T, N> r;                                                                           \
-    HALFPLANE_EACH_PART((Pack<T, N>::kParts), i, r.part[i] = a.part[i] op b.part[i])        \
-    return r;                                                                               \
-  }                                                                                         \
-  template <class T, int N>                                                                 \
+    Pack<T, N> r;                                                                         \
+    HALFPLANE_EACH_PART((Pack<T, N>::kParts), i, r.part[i] = a.part[i] op b.part[i])      \
+    return r;                                                                             \
+  }                                                                                       \
+  template <class T, int N>                                                               \
   HALFPLANE_LEAF Pack<T, N> operator op(const Pack<T, N>& a, std::type_identity_t<T> b) { \
-    return a op Pack<T, N>(b);                                                              \
-  }                                                                                         \
-  template <class T, int N>                                                                 \
+    return a op Pack<T, N>(b);                                                            \
+  }                                                                                       \
+  template <class T, int N>                                                               \
   HALFPLANE_LEAF Pack<T, N> operator op(std::type_identity_t<T> a, const Pack<T, N>& b) { \
-    return Pack<T, N>(a) op b;                                                              \
+    return Pack<T, N>(a) op b;                                                            \
   }
 HALFPLANE_PACK_OPERATOR(+)
 HALFPLANE_PACK_OPERATOR(-)
@@ -154,14 +154,14 @@ using MaskOf =
 
 #define HALFPLANE_PACK_COMPARISON(op)                                                                \
   template <class T, int N>                                                                          \
-  HALFPLANE_LEAF Pack<MaskOf<T>, N> operator op(const Pack<T, N>& a, const Pack<T, N>& b) {        \
+  HALFPLANE_LEAF Pack<MaskOf<T>, N> operator op(const Pack<T, N>& a, const Pack<T, N>& b) {          \
     Pack<MaskOf<T>, N> r;                                                                            \
     HALFPLANE_EACH_PART((Pack<T, N>::kParts), i,                                                     \
                         r.part[i] = (typename Pack<MaskOf<T>, N>::Register)(a.part[i] op b.part[i])) \
     return r;                                                                                        \
   }                                                                                                  \
   template <class T, int N>                                                                          \
-  HALFPLANE_LEAF Pack<MaskOf<T>, N> operator op(const Pack<T, N>& a, std::type_identity_t<T> b) {  \
+  HALFPLANE_LEAF Pack<MaskOf<T>, N> operator op(const Pack<T, N>& a, std::type_identity_t<T> b) {    \
     return a op Pack<T, N>(b);                                                                       \
   }
 HALFPLANE_PACK_COMPARISON(<)
@@ -189,7 +189,7 @@ HALFPLANE_LEAF Pack<T, N> select(const Pack<MaskOf<T>, N>& mask, const Pack<T, N
 /// a where the sign of the mask is set, b elsewhere.
 template <int N>
 HALFPLANE_LEAF Pack<std::int32_t, N> select_by_sign(const Pack<std::int32_t, N>& mask, const Pack<std::int32_t, N>& a,
-                                                      const Pack<std::int32_t, N>& b) {
+                                                    const Pack<std::int32_t, N>& b) {
 #if HALFPLANE_ISA == 256
   using P = Pack<std::int32_t, N>;
   P r;

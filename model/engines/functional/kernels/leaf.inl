@@ -58,7 +58,7 @@ template <class Lanes>
 constexpr int block_rows = 4 / Lanes::kParts;  ///< of a register
 template <class Lanes>
 HALFPLANE_LEAF Lanes block_plane(const Lanes& column, const Lanes& row, const Lanes& step_x, const Lanes& step_y,
-                                   const Lanes& below, const Lanes& first) {
+                                 const Lanes& below, const Lanes& first) {
   Lanes plane;
   plane.part[0] = column.part[0] * step_x.part[0] + row.part[0] * step_y.part[0] + first.part[0];
   HALFPLANE_EACH_PART(Lanes::kParts - 1, i, plane.part[i + 1] = plane.part[i] + below.part[0])
@@ -80,7 +80,7 @@ HALFPLANE_LEAF I16 decode(const I16& value, const LaneFormat& format, const I16&
 }
 
 [[nodiscard]] HALFPLANE_LEAF I16 color_codes(const S32& value, const I16& low, const I16& high,
-                                               const LaneFormat& format) {
+                                             const LaneFormat& format) {
   const S32 code = shift_right_logical(value, format.down) - static_cast<std::int16_t>(format.bias);
   return as<I16>(min(max(code, as<S32>(low)), as<S32>(high)));
 }
