@@ -56,12 +56,19 @@ struct TexelPlace {
   double x = 0, y = 0;
 };
 
+/// A place that binary64 has left within its error beside a border of texels, 2^-40 of the texels that it has been taken
+/// from, is on the border: a sprite whose coordinates lie on borders shows the texel that begins there.
+[[nodiscard]] inline double on_border(double place, double extent) {
+  const double border = std::round(place);
+  return std::abs(place - border) <= std::ldexp(std::max(std::abs(place), extent), -40) ? border : place;
+}
+
 /// One level: its nearest texel, or the four around the place by their distances.
 [[nodiscard]] inline Color filtered_level(const Texture& texture, const State& state, const TexelPlace& at, int n,
                                           bool is_linear) {
   const TextureLevel& level = texture.level[static_cast<std::size_t>(n)];
   const auto on_level = [is_linear](double texels, int size, int whole) {
-    const double place = texels * size / whole - (is_linear ? 0.5 : 0.0);
+    const double place = is_linear ? texels * size / whole - 0.5 : on_border(texels * size / whole, size);
     return std::isfinite(place) ? place : 0;  // what has left binary64 is nowhere
   };
   const double x = on_level(at.x, level.width, texture.width()), y = on_level(at.y, level.height, texture.height());

@@ -60,6 +60,9 @@ class GltfMeshBuilder {
 
   /// `world` gets all but its file.
   void run(GltfWorld& world) {
+    for (const std::string& extension : file_.passed_over())
+      warnings_.push_back(file_.name() + ": " + in_quotes(extension) +
+                          " is used and not read here; what it changes is not seen");
     world.nodes = walk_nodes(file_, warnings_);
     has_lights_ = !world.nodes.lights.empty();
     mesh_.is_linear = true;

@@ -76,7 +76,8 @@ std::optional<GltfSkin> read_skin(GltfFile& file, const GltfNodes& nodes, std::s
   const JsonPlace place = file.item("skins", number), joints = place.at("joints");
   if (joints.size() == 0) joints.fail("no joints", "export the file again");
   std::vector<std::size_t> at(file.count("nodes"), nodes.nodes.size());
-  for (std::size_t i = 0; i < nodes.nodes.size(); ++i) at[nodes.nodes[i].number] = i;
+  for (std::size_t i = 0; i < nodes.nodes.size(); ++i)
+    if (!nodes.nodes[i].is_copy) at[nodes.nodes[i].number] = i;
   GltfSkin skin;
   const std::optional<JsonPlace> inverse = place.find("inverseBindMatrices");
   const GltfAccessor* matrices = inverse ? &wide_accessor(file, *inverse, 16, joints.size()) : nullptr;

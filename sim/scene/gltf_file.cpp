@@ -10,10 +10,11 @@
 namespace halfplane {
 namespace {
 
-// Quantization only allows more kinds of number. The others are about what is not read, or say nothing of the picture.
-constexpr std::array<std::string_view, 7> kKnownExtensions{
-    "KHR_mesh_quantization",  "KHR_animation_pointer", "KHR_xmp", "KHR_xmp_json_ld", "MSFT_texture_dds",
-    "KHR_node_selectability", "KHR_node_hoverability"};
+// Quantization only allows more kinds of number; visibility and instances are read (gltf_nodes.cpp). The others are about what is not read, or say nothing of the picture.
+constexpr std::array<std::string_view, 9> kKnownExtensions{
+    "KHR_mesh_quantization", "KHR_animation_pointer", "KHR_xmp",
+    "KHR_xmp_json_ld",       "MSFT_texture_dds",      "KHR_node_selectability",
+    "KHR_node_hoverability", "KHR_node_visibility",   "EXT_mesh_gpu_instancing"};
 // Of materials base colour, sides and `unlit` are read, of textures their transform, of lights nothing.
 constexpr std::array<std::string_view, 5> kKnownFamilies{"KHR_materials_", "KHR_texture_", "EXT_texture_",
                                                          "KHR_lights_", "EXT_lights_"};
@@ -141,6 +142,16 @@ void GltfFile::check_head() const {
       (*required)[i].fail("the file needs " + in_quotes(extension) + ", which is not read here",
                           way_without(extension));
   }
+}
+
+std::vector<std::string> GltfFile::passed_over() const {
+  std::vector<std::string> result;
+  const std::optional<JsonPlace> used = root().find("extensionsUsed");
+  for (std::size_t i = 0; used && i < used->size(); ++i) {
+    std::string extension = (*used)[i].text();
+    if (concerns_what_is_drawn(extension)) result.push_back(std::move(extension));
+  }
+  return result;
 }
 
 std::size_t GltfFile::count(std::string_view list) const {

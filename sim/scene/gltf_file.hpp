@@ -57,6 +57,8 @@ class GltfFile {
   [[nodiscard]] JsonPlace root() const { return {*json_, name_}; }
   /// How many entries a top-level list ("nodes") has; 0 when it is left out.
   [[nodiscard]] std::size_t count(std::string_view list) const;
+  /// Extensions that the file uses, can do without, and that concern what is drawn and are not read here.
+  [[nodiscard]] std::vector<std::string> passed_over() const;
   /// Entry i < count(list) of a top-level list.
   [[nodiscard]] JsonPlace item(std::string_view list, std::size_t i) const { return root().at(list)[i]; }
   /// The entry of `list` that an index stands for.

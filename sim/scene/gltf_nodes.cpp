@@ -27,13 +27,16 @@ std::array<double, N> numbers_of(const JsonPlace& place) {
 }
 
 // A quaternion x, y, z, w, taken to length 1: exporters write binary32.
-std::array<double, 4> read_rotation(const JsonPlace& place) {
-  std::array<double, 4> q = numbers_of<4>(place);
+constexpr std::uint64_t kMostCopies = std::uint64_t{1} << 20;
+
+std::array<double, 4> unit_rotation(std::array<double, 4> q, const JsonPlace& place) {
   const double norm = std::hypot(std::hypot(q[0], q[1]), std::hypot(q[2], q[3]));
   if (!(norm > 0)) place.fail("a rotation of length 0", "write 0, 0, 0, 1 for none");
   for (double& part : q) part /= norm;
   return q;
 }
+
+std::array<double, 4> read_rotation(const JsonPlace& place) { return unit_rotation(numbers_of<4>(place), place); }
 
 Mat4 rotation_matrix(const std::array<double, 4>& q) {
   const double x = q[0], y = q[1], z = q[2], w = q[3];
@@ -130,7 +133,7 @@ Light read_light(const JsonPlace& place) {
 
 class Walker {
  public:
-  Walker(const GltfFile& file, std::vector<std::string>& warnings) : file_(file), warnings_(warnings) {}
+  Walker(GltfFile& file, std::vector<std::string>& warnings) : file_(file), warnings_(warnings) {}
 
   GltfNodes run() {
     reached_.assign(file_.count("nodes"), false);
@@ -147,6 +150,7 @@ class Walker {
   struct Entry {
     std::size_t node = 0;               // in the file
     std::optional<std::size_t> parent;  // in result_.nodes
+    bool is_hidden = false;
   };
 
   // The stack gives back what was pushed last, so lists are pushed from their ends.
@@ -161,7 +165,7 @@ class Walker {
         }
       }
       for (std::size_t i = nodes; i-- > 0;) {
-        if (!is_child[i]) stack_.push_back({i, std::nullopt});
+        if (!is_child[i]) stack_.push_back({i, std::nullopt, false});
       }
       return;
     }
@@ -171,11 +175,13 @@ class Walker {
       warnings_.push_back(file_.name() + ": scene " + std::to_string(number) + " of " + std::to_string(scenes) +
                           " is drawn, the file's default");
     }
-    if (const std::optional<JsonPlace> roots = file_.item("scenes", number).find("nodes")) push(*roots, std::nullopt);
+    if (const std::optional<JsonPlace> roots = file_.item("scenes", number).find("nodes"))
+      push(*roots, std::nullopt, false);
   }
 
-  void push(const JsonPlace& list, std::optional<std::size_t> parent) {
-    for (std::size_t i = list.size(); i-- > 0;) stack_.push_back({list[i].index(reached_.size(), "nodes"), parent});
+  void push(const JsonPlace& list, std::optional<std::size_t> parent, bool is_hidden) {
+    for (std::size_t i = list.size(); i-- > 0;)
+      stack_.push_back({list[i].index(reached_.size(), "nodes"), parent, is_hidden});
   }
 
   void visit(const Entry& entry) {
@@ -187,17 +193,67 @@ class Walker {
     made.number = entry.node;
     made.parent = entry.parent;
     read_local(node, made);
-    if (const std::optional<JsonPlace> index = node.find("mesh")) {
-      const std::size_t mesh = index->index(file_.count("meshes"), "meshes");
-      const std::string name = node.text_or("name", file_.item("meshes", mesh).text_or("name", ""));
-      GltfInstance& instance = result_.instances.emplace_back(GltfInstance{mesh, number, name, {}});
-      if (const std::optional<JsonPlace> skin = node.find("skin"))
-        instance.skin = skin->index(file_.count("skins"), "skins");
+    const std::optional<JsonPlace> extensions = node.find("extensions");
+    const auto extension = [&extensions](std::string_view name) {
+      return extensions ? extensions->find(name) : std::optional<JsonPlace>();
+    };
+    const auto visibility = extension("KHR_node_visibility");
+    const bool is_hidden = entry.is_hidden || (visibility && !visibility->flag_or("visible", true));
+    const std::optional<JsonPlace> mesh = node.find("mesh");
+    if (mesh && !is_hidden) {
+      const auto copies = extension("EXT_mesh_gpu_instancing");
+      copies ? add_copies(*copies, node, *mesh, number) : add_mesh(node, *mesh, number);
     }
     if (const std::optional<JsonPlace> index = node.find("camera")) add_camera(node, *index, number);
-    if (const auto extensions = node.find("extensions"))
-      if (const auto punctual = extensions->find("KHR_lights_punctual")) add_light(punctual->at("light"), number);
-    if (const std::optional<JsonPlace> children = node.find("children")) push(*children, number);
+    if (const auto punctual = extension("KHR_lights_punctual"); punctual && !is_hidden)
+      add_light(punctual->at("light"), number);
+    if (const std::optional<JsonPlace> children = node.find("children")) push(*children, number, is_hidden);
+  }
+
+  void add_mesh(const JsonPlace& node, const JsonPlace& index, std::size_t number) {
+    const std::size_t mesh = index.index(file_.count("meshes"), "meshes");
+    const std::string name = node.text_or("name", file_.item("meshes", mesh).text_or("name", ""));
+    GltfInstance& instance = result_.instances.emplace_back(GltfInstance{mesh, number, name, {}});
+    if (const std::optional<JsonPlace> skin = node.find("skin"))
+      instance.skin = skin->index(file_.count("skins"), "skins");
+  }
+
+  // EXT_mesh_gpu_instancing: the mesh once for each element of the attributes, a node below this one each.
+  void add_copies(const JsonPlace& copies, const JsonPlace& node, const JsonPlace& index, std::size_t number) {
+    const JsonPlace attributes = copies.at("attributes");
+    const auto accessor = [&](std::string_view name, int width) -> const GltfAccessor* {
+      const std::optional<JsonPlace> given = attributes.find(name);
+      if (!given) return nullptr;
+      const GltfAccessor& found = file_.accessor(*given);
+      if (found.width != width)
+        given->fail("elements of " + std::to_string(found.width) + " numbers",
+                    "it has " + std::to_string(width) + " each");
+      return &found;
+    };
+    const std::array all{accessor("TRANSLATION", 3), accessor("ROTATION", 4), accessor("SCALE", 3)};
+    std::optional<std::uint64_t> count;
+    for (const GltfAccessor* const of : all) {
+      if (of == nullptr) continue;
+      if (count && *count != of->count) attributes.fail("attributes of different counts", "export the file again");
+      count = of->count;
+    }
+    if (!count) return add_mesh(node, index, number);
+    if (*count > kMostCopies)
+      attributes.fail(std::to_string(*count) + " instances", "draw at most " + std::to_string(kMostCopies));
+    for (std::uint64_t i = 0; i < *count; ++i) {
+      GltfNode& made = result_.nodes.emplace_back();
+      made.number = result_.nodes[number].number;
+      made.parent = number;
+      made.is_copy = true;
+      const auto three = [i](const GltfAccessor& of) {
+        const auto e = read_element(of, i);
+        return std::array{e[0], e[1], e[2]};
+      };
+      if (all[0] != nullptr) made.local.translation = three(*all[0]);
+      if (all[1] != nullptr) made.local.rotation = unit_rotation(read_element(*all[1], i), attributes);
+      if (all[2] != nullptr) made.local.scale = three(*all[2]);
+      add_mesh(node, index, result_.nodes.size() - 1);
+    }
   }
 
   void add_light(const JsonPlace& index, std::size_t number) {
@@ -218,7 +274,7 @@ class Walker {
     read_lens(camera, made.lens);
   }
 
-  const GltfFile& file_;
+  GltfFile& file_;
   std::vector<std::string>& warnings_;
   std::vector<Entry> stack_;
   std::vector<bool> reached_;
@@ -231,7 +287,7 @@ bool is_called(const GltfCamera& camera, const std::string& name) {
 
 }  // namespace
 
-GltfNodes walk_nodes(const GltfFile& file, std::vector<std::string>& warnings) { return Walker(file, warnings).run(); }
+GltfNodes walk_nodes(GltfFile& file, std::vector<std::string>& warnings) { return Walker(file, warnings).run(); }
 
 std::vector<Mat4> world_matrices(const GltfFile& file, const GltfNodes& nodes, const GltfAnimation* animation,
                                  double time) {
@@ -239,7 +295,7 @@ std::vector<Mat4> world_matrices(const GltfFile& file, const GltfNodes& nodes, c
   std::vector<NodeTransform> locals;
   locals.reserve(nodes.nodes.size());
   for (const GltfNode& node : nodes.nodes) {
-    place[node.number] = locals.size();
+    if (!node.is_copy) place[node.number] = locals.size();
     locals.push_back(node.local);
   }
   if (animation != nullptr) {

@@ -14,6 +14,7 @@ struct GltfNode {
   std::optional<std::size_t> parent;  ///< in GltfNodes::nodes, before this one
   std::optional<Mat4> matrix;         ///< instead of `local`
   NodeTransform local;
+  bool is_copy = false;  ///< one of EXT_mesh_gpu_instancing, below the node that the file has
 };
 
 /// A mesh at a node.
@@ -54,9 +55,9 @@ struct GltfCamera {
   CameraRequest request;
 };
 
-/// Walks the default scene: `scene`, else the first one, else (a file without scenes) every node that is no child.
+/// Walks the default scene, without what KHR_node_visibility hides: `scene`, else the first one, else (a file without scenes) every node that is no child.
 /// Throws InputError when the nodes are no forest, and for a camera that shows nothing.
-[[nodiscard]] GltfNodes walk_nodes(const GltfFile& file, std::vector<std::string>& warnings);
+[[nodiscard]] GltfNodes walk_nodes(GltfFile& file, std::vector<std::string>& warnings);
 
 /// From each node's space to the world's; with an animation, as it is at `time`. Throws InputError for what leaves binary64.
 [[nodiscard]] std::vector<Mat4> world_matrices(const GltfFile& file, const GltfNodes& nodes,

@@ -281,6 +281,47 @@ TEST(Gltf, QuantizedPlacesAreReadAsTheirComponentsSay) {
   EXPECT_EQ(places(mesh_of(builder))[0], (std::array<Vec3, 3>{Vec3{0, 0, -1}, Vec3{1, 0, 0}, Vec3{0, 1, 0}}));
 }
 
+TEST(Gltf, HiddenNodesAndWhatIsBelowThemAreNotDrawn) {
+  GltfBuilder builder = test::one_triangle();
+  builder.json["nodes"][0].update({{"extensions", {{"KHR_node_visibility", {{"visible", false}}}}}, {"children", {1}}});
+  builder.json["nodes"].push_back({{"mesh", 0}, {"translation", {0, 0, 1}}});
+  builder.mesh(builder.accessor(kF32, 3, {0, 0, 5, 1, 0, 5, 0, 1, 5}),
+               {{"extensions", {{"KHR_node_visibility", {{"visible", true}}}}}});
+  for (const char* list : {"extensionsUsed", "extensionsRequired"}) {
+    builder.json[list] = {"KHR_node_visibility"};
+    const Parsed read = parse(builder.text());
+    EXPECT_TRUE(read.warnings.empty());
+    ASSERT_EQ(read.model.mesh.triangles.size(), 1u);
+    EXPECT_EQ(places(read.model.mesh)[0][0][2], 5);
+  }
+}
+
+TEST(Gltf, InstancesAreTheMeshAtEachPlace) {
+  GltfBuilder builder = test::one_triangle();
+  const std::size_t translation = builder.accessor(kF32, 3, {0, 0, 0, 5, 0, 0}),
+                    rotation = builder.accessor(GltfBuilder::i8, 4, {0, 0, 0, 127, 0, 0, 127, 0}, true),
+                    scale = builder.accessor(kF32, 3, {1, 1, 1, 2, 2, 2});
+  builder.json["nodes"][0].update(
+      {{"translation", {0, 0, 3}},
+       {"extensions",
+        {{"EXT_mesh_gpu_instancing",
+          {{"attributes", {{"TRANSLATION", translation}, {"ROTATION", rotation}, {"SCALE", scale}}}}}}}});
+  builder.json["extensionsRequired"] = {"EXT_mesh_gpu_instancing"};
+  const auto corners = places(mesh_of(builder));
+  ASSERT_EQ(corners.size(), 2u);
+  EXPECT_EQ(corners[0], (std::array<Vec3, 3>{Vec3{0, 0, 3}, Vec3{1, 0, 3}, Vec3{0, 1, 3}}));
+  const std::array<Vec3, 3> turned{Vec3{5, 0, 3}, Vec3{3, 0, 3}, Vec3{5, -2, 3}};  // by half a turn, twice as large
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_LT(length(subtract(corners[1][i], turned[i])), 1e-12) << i;
+}
+
+TEST(Gltf, AnExtensionOfWhatIsDrawnThatIsNotReadIsNamed) {
+  GltfBuilder builder = test::one_triangle();
+  builder.json["extensionsUsed"] = {"EXT_other_geometry", "KHR_xmp"};
+  EXPECT_EQ(parse(builder.text()).warnings,
+            std::vector<std::string>{
+                "test.gltf: 'EXT_other_geometry' is used and not read here; what it changes is not seen"});
+}
+
 TEST(Gltf, TheDefaultSceneIsReadAndSeveralAreMentioned) {
   GltfBuilder builder = test::one_triangle();
   builder.mesh(builder.accessor(kF32, 3, {0, 0, 5, 1, 0, 5, 0, 1, 5}));
