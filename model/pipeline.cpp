@@ -53,8 +53,9 @@ int fan_start(const SnappedPolygon& polygon, std::int64_t area) {
 }
 
 /// Clipping cancels digits: a corner is as exact as binary64 is at the size of the primitive's coordinates. Refuses one
-/// that could be off by more than a pixel.
-void require_precision(std::span<const Vertex> clipped, std::span<const Vertex> v, const DrawContext& context) {
+/// that could be off by more than a pixel; false where nobody would see it.
+bool require_precision(std::span<const Vertex> clipped, std::span<const Vertex> v, const DrawContext& context,
+                       bool is_outside = false) {
   double largest = 0;
   for (const Vertex& vertex : v)
     for (const double c : {vertex.x, vertex.y, vertex.z, vertex.w}) largest = std::max(largest, std::abs(c));
@@ -62,16 +63,19 @@ void require_precision(std::span<const Vertex> clipped, std::span<const Vertex> 
   const double error = largest * pixels * std::numeric_limits<double>::epsilon();
   char text[32];
   std::snprintf(text, sizeof text, "%.3g", largest);
-  for (const Vertex& corner : clipped)
-    if (!(error <= corner.w))
-      throw InputError(place_of_draw(context.scene.name, context.draw.line) + ": clip coordinates as large as " + text +
-                       " leave less than a pixel of precision where the primitive is cut; use smaller coordinates");
+  if (std::ranges::all_of(clipped, [error](const Vertex& corner) { return error <= corner.w; })) return true;
+  if (is_outside) return false;
+  throw InputError(place_of_draw(context.scene.name, context.draw.line) + ": clip coordinates as large as " + text +
+                   " leave less than a pixel of precision where the primitive is cut; use smaller coordinates");
 }
 
-/// A vertex that a cut made, or one that another cut beside it left alone.
+/// A vertex that a cut made, or one that another cut beside it left alone: in the guard band, but for what binary64 rounds.
 SnappedVertex snap_clipped(const Vertex& v, const DrawContext& context, std::uint32_t number) {
-  return snap_vertex(to_window(v, context.state, context.viewport), v.rgba, context.config,
-                     {context.scene.name, context.draw.line, number}, snap_origin(context.state, context.config));
+  WindowPosition p = to_window(v, context.state, context.viewport);
+  p.x = std::clamp(p.x, -context.band, context.band);
+  p.y = std::clamp(p.y, -context.band, context.band);
+  return snap_vertex(p, v.rgba, context.config, {context.scene.name, context.draw.line, number},
+                     snap_origin(context.state, context.config));
 }
 
 SurfaceVertex surface_vertex(const Vertex& v) { return {v.w, v.u, v.v, {}}; }
@@ -90,13 +94,14 @@ void clip_normals(const DrawContext& context, const std::array<std::uint32_t, 3>
   }
 }
 
-SnappedPolygon clip_and_snap(const DrawContext& context, const std::array<std::uint32_t, 3>& index) {
+/// `is_outside`: the triangle is outside the view, so corners that are not exact enough to draw are none.
+SnappedPolygon clip_and_snap(const DrawContext& context, const std::array<std::uint32_t, 3>& index, bool is_outside) {
   const auto& vertices = context.scene.vertices;
   std::array<Vertex, 3> v{vertices[index[0]], vertices[index[1]], vertices[index[2]]};
   const ClipPolygon clipped = clip(context.guard_band, v[0], v[1], v[2]);
   const auto corners = std::span(clipped.v).first(static_cast<std::size_t>(clipped.size));
-  require_precision(corners, v, context);
   SnappedPolygon polygon;
+  if (!require_precision(corners, v, context, is_outside)) return polygon;
   polygon.size = clipped.size;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     polygon.v[i] = snap_clipped(corners[i], context, index[0]);
@@ -130,7 +135,8 @@ Projected project(const DrawContext& context, VertexCache& cache, const std::arr
   ++counters.primitives_in;
   const auto &a = cache.get(context, index[0]), &b = cache.get(context, index[1]), &c = cache.get(context, index[2]);
   Projected result;
-  if (skip.frustum && (a.outside_frustum & b.outside_frustum & c.outside_frustum) != 0) {
+  const bool is_outside = (a.outside_frustum & b.outside_frustum & c.outside_frustum) != 0;
+  if (skip.frustum && is_outside) {
     ++counters.skipped.frustum;
     ++counters.culled;
     return result;
@@ -138,7 +144,7 @@ Projected project(const DrawContext& context, VertexCache& cache, const std::arr
   SnappedPolygon& polygon = result.polygon;
   result.is_cut = (a.outside_guard_band | b.outside_guard_band | c.outside_guard_band) != 0;
   if (result.is_cut) {
-    polygon = clip_and_snap(context, index);
+    polygon = clip_and_snap(context, index, is_outside);
   } else {
     polygon.size = 3;
     polygon.v[0] = a.snapped;
@@ -241,7 +247,7 @@ class OutlineBuilder {
     if (crosses) {
       const auto clipped = clip(context_.guard_band, v[0], v[1]);
       if (!clipped) return;
-      require_precision(*clipped, v, context_);
+      (void)require_precision(*clipped, v, context_);
       line.start = snap_clipped((*clipped)[0], context_, a);
       line.end = snap_clipped((*clipped)[1], context_, b);
       v = *clipped;

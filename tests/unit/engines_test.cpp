@@ -282,6 +282,36 @@ TEST(Engines, BothRefuseAnInvalidConfiguration) {
   EXPECT_THROW((void)render_scalar(scene, config), InputError);
 }
 
+// The golden draws three pixels of it. One of 40,000 such had a corner that the program itself had cut 0.002 pixels outside.
+TEST(Engines, ACornerThatTheClipperRoundsOutOfTheGuardBandIsOnItsBorder) {
+  const Scene scene = read_capture(
+      "halfplane 1\ntarget 16 16\n"
+      "v 3.8848831263828816e-07 -3.510037437943299e-07 1.1609329471181735e-06 -5.155110394473423e-06\n"
+      "v -204.2553592437494 317.08618782150154 -1276.382921277757 1001.7115690340133\n"
+      "v -0.1543629653230717 0.14469632534883003 0.7722145815094605\nspace clip\nt 0 1 2\n",
+      "corner");
+  const Config config = preset("full");
+  EXPECT_EQ(render_scalar(scene, config).counters.covered, 3u);
+  EXPECT_EQ(render_functional(scene, config).counters.covered, 3u);
+  EXPECT_EQ(render_hardware(scene, config).counters.covered, 3u);
+}
+
+// A triangle left of the view is cut by the near plane, at coordinates too large for a pixel of precision.
+TEST(Engines, WhatMayBeSkippedDoesNotDecideWhatIsAccepted) {
+  const auto scene = [](double x) {
+    const std::string at = std::to_string(x);
+    return read_capture("halfplane 1\ntarget 64 64\nclear color 0 0 0 255 depth 1\nv " + at + " 0 0 1e-12\nv " + at +
+                            " 1 0 1e-12\nv " + at + " 0 -1 -1\nt 0 1 2\n",
+                        "beside");
+  };
+  RenderOptions none;
+  none.skip.frustum = false;
+  for (const RenderOptions& options : {RenderOptions{}, none}) {
+    EXPECT_EQ(render_scalar(scene(-1e9), preset("embedded"), options).counters.covered, 0u);
+    EXPECT_EQ(render_functional(scene(-1e9), preset("embedded"), options).counters.covered, 0u);
+  }
+}
+
 TEST(Engines, ATargetAsWideAsTheGuardBandLosesNoColumnToTheClipper) {
   for (const int subpixel_bits : {2, 4, 8}) {
     Config config = preset("embedded");

@@ -167,6 +167,22 @@ TEST(GoldenTexture, CombinesColourAndTexel) {
 }
 
 // The same picture with and without geometric clipping: the ground from the eye to the horizon.
+// Coordinates lie exactly on borders, where binary64 falls to either side: pixel (x, y) shows texel (x, y).
+TEST(GoldenTexture, ASpriteWhosePixelsLieOnBordersOfTexelsShowsEachOnce) {
+  State state = textured();
+  state.pixel_center = PixelCenter::integer;
+  state.texture_mag = TextureMag::nearest;
+  for (const int side : {10, 100, 224}) {
+    const Texture texture = gradient(side, side);
+    const Image image = golden::render(square(side, state, texture), preset("full"));
+    int wrong = 0;
+    for (int y = 0; y < side; ++y)
+      for (int x = 0; x < side; ++x)
+        for (std::size_t c = 0; c < 3; ++c) wrong += color_at(image, x, y)[c] != texture.texel(0, x, y)[c] ? 1 : 0;
+    EXPECT_EQ(wrong, 0) << side;
+  }
+}
+
 TEST(GoldenTexture, ClippingDoesNotMoveTheTexture) {
   State state;
   state.texture = 0;
