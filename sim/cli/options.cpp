@@ -13,6 +13,7 @@
 #include "sim/config_file.hpp"
 #include "sim/config_json.hpp"
 #include "sim/scene/convention.hpp"
+#include "sim/scene/depth_collision.hpp"
 #include "sim/scene/depth_mapping.hpp"
 #include "sim/scene/host_geometry.hpp"
 #include "sim/scene/text_cursor.hpp"
@@ -226,6 +227,11 @@ Scene prepared_in_clip_space(Scene scene, const CommonOptions& options, const Co
 Scene prepared(Scene scene, const CommonOptions& options, const Config& config, ObjectCounts* objects) {
   const TransformNumbers numbers = parse_transform(options.transform);
   return in_host_numbers(prepared_in_clip_space(std::move(scene), options, config, objects), numbers, config);
+}
+
+void warn_of_depths(const Scene& scene, const Config& config) {
+  if (const auto collision = depth_collision(scene, config))
+    std::cerr << "halfplane: warning: " << text(*collision) << '\n';
 }
 
 Scene load_scene(const CommonOptions& options, const Config& config, double& load_s, ObjectCounts* objects) {
