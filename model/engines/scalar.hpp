@@ -1,4 +1,5 @@
-// The scalar engine: the stages, one packet at a time. Slow, short, and the specification of every other engine.
+// The scalar engine: the stages, one primitive and one sample at a time. Slow, short, and the specification of every other
+// engine.
 #pragma once
 
 #include "render.hpp"

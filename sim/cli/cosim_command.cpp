@@ -1,5 +1,8 @@
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
+#include <cstdio>
+#include <cstring>
 #include <iostream>
 #include <memory>
 #include <sstream>
@@ -35,6 +38,15 @@ TraceWindow trace_window(const CosimOptions& options) {
   if (!has_colon || last_error != std::errc() || rest != end || window.first > window.last)
     throw InputError("--trace-cycles: '" + text + "' is no window; give FIRST:LAST, both included, as in 0:999");
   return window;
+}
+
+/// Before a long run: a waveform that cannot be written is an error.
+void require_writable(const std::string& path) {
+  const std::string part = path + ".part";
+  std::FILE* const file = std::fopen(part.c_str(), "wb");
+  if (file == nullptr) throw InputError("cannot write '" + path + "': " + std::strerror(errno));
+  (void)std::fclose(file);
+  (void)std::remove(part.c_str());
 }
 
 /// Runs the whole stimulus, with progress over all of it.
@@ -194,6 +206,7 @@ int run(const CosimOptions& options) {
   check_distinct({options.scene, options.json, options.save_path, options.junit_path, options.trace_path});
   check_output(options.junit_path);
   (void)trace_window(options);
+  if (!options.trace_path.empty()) require_writable(options.trace_path);
   const DutFactory& factory = dut_for(options, config);
   double load_s = 0;
   std::optional<Scene> scene;

@@ -40,12 +40,18 @@ std::string lower_extension(const std::string& name) {
   return extension;
 }
 
+constexpr std::size_t kMostStdin = std::size_t{1} << 30;  // a pipe may have no end
+
 // Read once: some commands ask for a scene more than once.
 const std::string& stdin_text() {
   static const std::string text = [] {
     std::string all;
     std::array<char, 1 << 16> block{};
-    while (const std::size_t size = std::fread(block.data(), 1, block.size(), stdin)) all.append(block.data(), size);
+    while (const std::size_t size = std::fread(block.data(), 1, block.size(), stdin)) {
+      all.append(block.data(), size);
+      if (all.size() > kMostStdin)
+        throw InputError("stdin: more than 2^30 bytes; give a capture, or a file in its place");
+    }
     if (std::ferror(stdin) != 0)
       throw InputError("stdin cannot be read; give a capture there, or a file in place of -");
     return all;

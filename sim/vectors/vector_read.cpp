@@ -238,10 +238,11 @@ VectorFile read_csv(std::istream& in, const std::string& path) {
   return std::move(reader.file_);
 }
 
-/// A packed packet, the highest digit first; '_' and comments as $readmemh has them.
+/// A packed packet, the highest digit first, with 0x or without; '_' and comments as $readmemh has them.
 void read_hex_line(Reader& reader, std::string text, int bits, const Reader::Place& place, const SourceLine& at) {
   text = text.substr(0, text.find("//"));
   std::erase_if(text, [](unsigned char c) { return c == '_' || std::isspace(c) != 0; });
+  if (text.starts_with("0x") || text.starts_with("0X")) text.erase(0, 2);
   if (text.empty()) return;
   if (text.front() == '@') at.fail("addresses are not read; give the packets in order");
   std::vector<std::uint32_t> words(static_cast<std::size_t>((bits + 31) / 32));

@@ -151,6 +151,8 @@ TEST_F(RtlCommands, TheWindowOfAWaveformIsChecked) {
     expect_refused({"cosim", "triangle", "--trace", "w.fst", "--trace-cycles", window}, "--trace-cycles: ");
   expect_refused({"cosim", "triangle", "--trace-cycles", "0:9"}, "add --trace FILE.fst");
   expect_refused({"cosim", "triangle", "--trace", "-"}, "a waveform cannot go to stdout");
+  std::filesystem::create_directory(folder_ / "taken.fst.part");  // for root, too, nothing can be written there
+  expect_refused({"cosim", "triangle", "--trace", "taken.fst"}, "cannot write 'taken.fst'");
 }
 
 TEST_F(RtlCommands, EveryCommandPrintedToRepeatRepeatsWhenPasted) {

@@ -132,7 +132,8 @@ Json Cli::result(Arguments arguments) const {
   arguments.insert(arguments.end(), {"--quiet", "--json"});
   const Outcome outcome = run(arguments);
   EXPECT_EQ(outcome.status, 0) << testing::PrintToString(arguments);
-  EXPECT_EQ(outcome.err, "");
+  // Few bits of depth may not tell a scene's places apart, and then a line says so.
+  EXPECT_EQ(outcome.err.starts_with("halfplane: warning: distances ") ? "" : outcome.err, "");
   const Json json = Json::parse(outcome.out, nullptr, false);
   EXPECT_FALSE(json.is_discarded()) << "not JSON alone: " << outcome.out;
   return json;

@@ -71,7 +71,7 @@ TEST_F(VectorsCommand, HexIsWhatReadmemhReads) {
   ASSERT_FALSE(lines.empty());
   for (const std::string& line : lines) EXPECT_EQ(line.size(), (bits + 3) / 4);
   std::string spaced = "// by hand\n";
-  for (const std::string& line : lines) spaced += line.substr(0, 4) + "_" + line.substr(4) + " // a packet\n";
+  for (const std::string& line : lines) spaced += "0x" + line.substr(0, 4) + "_" + line.substr(4) + " // a packet\n";
   write("v/triangle.hex", spaced);
   EXPECT_EQ(run({"check", "--stage", "cull", "v"}).status, 0);
 }
