@@ -34,6 +34,10 @@ vectors::VectorFile checked_file(const CheckOptions& options) {
 }
 
 std::string difference_text(const vectors::JudgedStage& stage, const vectors::FirstDifference& first) {
+  for (const vectors::FieldDifference& field : first.fields)
+    if (field.undefined != 0)
+      return "undefined bits in field " + field.name + " of " + std::string(stage.out[first.port].name) + " " +
+             std::to_string(first.number);
   return std::string(stage.out[first.port].name) + " " + std::to_string(first.number) + " " +
          std::string(first.kind == vectors::FirstDifference::Kind::differs   ? "differs"
                      : first.kind == vectors::FirstDifference::Kind::missing ? "is missing"
@@ -41,6 +45,9 @@ std::string difference_text(const vectors::JudgedStage& stage, const vectors::Fi
 }
 
 std::string field_text(const vectors::FieldDifference& field) {
+  if (field.undefined != 0)
+    return left_aligned(field.name, 24) + "expected " + explain::hex_text(field.expected, field.bits) +
+           "  got x or z in bits " + explain::hex_text(field.undefined, field.bits);
   const std::uint64_t flipped = field.expected ^ field.got;
   return left_aligned(field.name, 24) + "expected " + explain::hex_text(field.expected, field.bits) + "  got " +
          explain::hex_text(field.got, field.bits) + "  bits " + explain::hex_text(flipped, field.bits);
@@ -57,11 +64,13 @@ Json judgement_json(const vectors::JudgedStage& stage, const vectors::Judgement&
   json["first_mismatch"] = nullptr;
   if (!judgement.first) return json;
   Json fields = Json::array();
-  for (const auto& [name, bits, expected, got] : judgement.first->fields)
+  for (const auto& [name, bits, expected, got, undefined] : judgement.first->fields) {
     fields.push_back({{"field", name},
                       {"bits", bits},
                       {"expected", explain::hex_text(expected, bits)},
                       {"got", explain::hex_text(got, bits)}});
+    if (undefined != 0) fields.back()["undefined"] = explain::hex_text(undefined, bits);
+  }
   json["first_mismatch"] = {{"kind", vectors::kDifferenceKinds[static_cast<std::size_t>(judgement.first->kind)]},
                             {"packet", stage.out[judgement.first->port].name},
                             {"n", judgement.first->number},

@@ -317,6 +317,7 @@ void print_against(std::ostream& out, const std::string& path, const ForeignImag
   if (r.first)
     out << "  first at " << r.first->x << ' ' << r.first->y << "; why the model has it so says `" << explain << ' '
         << r.first->x << ' ' << r.first->y << "`\n";
+  if (r.different != 0) out << "FAILED: the image differs from the model's, whose own bounds are above\n";
 }
 
 int run(const CompareCommand& options) {

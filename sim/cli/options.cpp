@@ -142,6 +142,34 @@ void check_output(const std::string& path, const std::string& extension) {
     throw InputError("cannot write '" + path + "': it is a folder; choose another file");
 }
 
+namespace {
+
+/// Bits of the interpolated depth for a stored format of its own: as many where it is stored as it is; else four more, of
+/// floats 32; and under w and log, whose codes far away lie between few of the plane's, as many as the fast path has.
+int interpolated_bits(const Config& config) {
+  const DepthFormat& format = config.depth_format;
+  if (format.is_float()) return 32;
+  if (!is_screen_linear(config.depth_mapping)) return 30;
+  const bool is_plane = format.kind == DepthFormat::Kind::unorm && format.bits >= 8;
+  return is_plane ? format.bits : std::clamp(format.bits + 4, 8, 32);
+}
+
+/// Where nobody says depth.bits, those of a depth.format are chosen, and said.
+void choose_depth_bits(const CommonOptions& options, Config& config) {
+  const bool is_said =
+      options.config.find('.') != std::string::npos ||  // a file
+      std::ranges::any_of(options.settings, [](const std::string& s) { return s.starts_with("depth.bits="); });
+  if (is_said || config.depth_format.kind == DepthFormat::Kind::plane) return;
+  const int bits = interpolated_bits(config);
+  if (bits == config.depth_bits) return;
+  config.depth_bits = bits;
+  if (!options.quiet)
+    std::cerr << "halfplane: depth.bits=" << bits << ": depths of depth.format=" << to_string(config.depth_format)
+              << " are made from a plane of so many; --set depth.bits=N says others\n";
+}
+
+}  // namespace
+
 Config effective_config(const CommonOptions& options) {
   check_output(options.json);
   Config config = config_from_option(options.config);
@@ -151,6 +179,7 @@ Config effective_config(const CommonOptions& options) {
       throw InputError("--set: '" + setting + "' has no '='; give key=value, as in depth.bits=20");
     set_by_key(config, setting.substr(0, equals), setting.substr(equals + 1));
   }
+  choose_depth_bits(options, config);
   validate(config);
   return config;
 }

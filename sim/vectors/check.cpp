@@ -13,6 +13,7 @@ class Judge final : public StageIo {
     result_.in.resize(packets.in.size());
     result_.compared.resize(packets.out.size());
     result_.differing.resize(packets.out.size());
+    places_.resize(packets.out.size());
   }
 
   std::span<const std::uint32_t> take(std::size_t port) override {
@@ -21,50 +22,74 @@ class Judge final : public StageIo {
   }
 
   void send(std::size_t port, std::span<const std::uint32_t> expected) override {
+    Place& at = places_[port];
     const PacketList& list = packets_.out[port];
-    const std::size_t number = result_.compared[port]++;
-    if (hints_at_ && result_.first->port == port) {  // the packet behind the first that differs
-      if (std::ranges::equal(expected, list[result_.first->number]))
-        result_.first->hint = "what comes here is the packet that should come next: this one was lost";
-      hints_at_ = false;
+    ++result_.compared[port];
+    if (is_equal(list, at.next, expected)) {
+      at.is_behind_difference = false;
+      ++at.next;
+      return;
     }
-    const bool is_missing = number >= list.size();
-    if (!is_missing && std::ranges::equal(expected, list[number])) return;
+    if (at.is_behind_difference && is_equal(list, at.next - 1, expected)) {  // it was due before: one was lost
+      if (result_.first->port == port && result_.first->number == at.next - 1)
+        result_.first->hint = "what comes here is the packet that should come next: this one was lost";
+      at.is_behind_difference = false;
+      return;
+    }
     ++result_.differing[port];
-    if (result_.first) return;
-    FirstDifference& first = result_.first.emplace();
-    first.kind = is_missing ? FirstDifference::Kind::missing : FirstDifference::Kind::differs;
-    first.port = port;
-    first.number = number;
-    if (is_missing) return;
-    const auto names = fields_of(stage_.out[port].like, widths_);
-    const auto want = values_of(stage_.out[port].like, widths_, expected),
-               got = values_of(stage_.out[port].like, widths_, list[number]);
-    for (std::size_t i = 0; i < names.size(); ++i)
-      if (want[i] != got[i]) first.fields.push_back({names[i].name, names[i].bits, want[i], got[i]});
-    hints_at_ = true;
-    if (number + 1 < list.size() && std::ranges::equal(expected, list[number + 1]))
-      first.hint = "the next packet is what should come here: this one is too much";
+    const bool is_extra = is_equal(list, at.next + 1, expected);
+    if (!result_.first) add_first(port, at.next, expected, is_extra);
+    at.is_behind_difference = !is_extra;
+    at.next += is_extra ? 2 : 1;
   }
 
   Judgement finish() {
     for (std::size_t port = 0; port < packets_.out.size(); ++port) {
-      const std::size_t size = packets_.out[port].size();
-      if (size <= result_.compared[port]) continue;
-      if (!result_.first)
-        result_.first = FirstDifference{FirstDifference::Kind::extra, port, result_.compared[port], {}, {}};
-      result_.differing[port] += size - result_.compared[port];
-      result_.compared[port] = size;
+      const std::size_t size = packets_.out[port].size(), next = places_[port].next;
+      if (size <= next) continue;
+      if (!result_.first) result_.first = FirstDifference{FirstDifference::Kind::extra, port, next, {}, {}};
+      result_.differing[port] += size - next;
+      result_.compared[port] += size - next;
     }
     return std::move(result_);
   }
 
  private:
+  /// Where the judge is in the packets that came out of a port.
+  struct Place {
+    std::size_t next = 0;
+    bool is_behind_difference = false;
+  };
+
+  [[nodiscard]] static bool is_equal(const PacketList& list, std::size_t number,
+                                     std::span<const std::uint32_t> expected) {
+    return number < list.size() && list.undefined(number).empty() && std::ranges::equal(expected, list[number]);
+  }
+
+  void add_first(std::size_t port, std::size_t number, std::span<const std::uint32_t> expected, bool is_extra) {
+    const PacketList& list = packets_.out[port];
+    FirstDifference& first = result_.first.emplace();
+    const bool is_missing = number >= list.size();
+    first.kind = is_missing ? FirstDifference::Kind::missing : FirstDifference::Kind::differs;
+    first.port = port;
+    first.number = number;
+    if (is_missing) return;
+    const Arrow like = stage_.out[port].like;
+    const auto names = fields_of(like, widths_);
+    const auto want = values_of(like, widths_, expected), got = values_of(like, widths_, list[number]);
+    const auto mask = list.undefined(number);
+    const auto undefined = mask.empty() ? std::vector<std::uint64_t>(names.size()) : values_of(like, widths_, mask);
+    for (std::size_t i = 0; i < names.size(); ++i)
+      if (want[i] != got[i] || undefined[i] != 0)
+        first.fields.push_back({names[i].name, names[i].bits, want[i], got[i], undefined[i]});
+    if (is_extra) first.hint = "the next packet is what should come here: this one is too much";
+  }
+
   const JudgedStage& stage_;
   const Widths& widths_;
   const StagePackets& packets_;
   Judgement result_;
-  bool hints_at_ = false;  ///< the next packet of that port may tell more of the first that differs
+  std::vector<Place> places_;
 };
 
 std::size_t sum_of(const std::vector<std::size_t>& list) {

@@ -12,6 +12,7 @@ struct FieldDifference {
   std::string name;
   int bits = 0;
   std::uint64_t expected = 0, got = 0;  ///< two's complement
+  std::uint64_t undefined = 0;          ///< bits of `got` that have no value, and are 0 there
 };
 
 /// The first packet that is not as it should be, of those that differ the one that the stage gives first.
@@ -26,7 +27,7 @@ inline constexpr std::array<std::string_view, 3> kDifferenceKinds{"differs", "mi
 
 struct Judgement {
   std::vector<std::size_t> in;                   ///< packets taken, by port
-  std::vector<std::size_t> compared, differing;  ///< packets that come out, by port; missing and extra ones differ
+  std::vector<std::size_t> compared, differing;  ///< packets that come out, by port; a lost or an extra one is one
   std::optional<FirstDifference> first;
 
   [[nodiscard]] std::size_t total_compared() const;

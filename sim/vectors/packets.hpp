@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <map>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "model/vectors/stages.hpp"
@@ -14,7 +16,15 @@ namespace halfplane::vectors {
 class PacketList {
  public:
   explicit PacketList(std::size_t words = 1) : per_(words) {}
-  void push(std::span<const std::uint32_t> words) { words_.insert(words_.end(), words.begin(), words.end()); }
+  /// `undefined`: which bits have no value, x or z of a simulator; empty: all have one.
+  void push(std::span<const std::uint32_t> words, std::vector<std::uint32_t> undefined = {}) {
+    if (!undefined.empty()) undefined_[size()] = std::move(undefined);
+    words_.insert(words_.end(), words.begin(), words.end());
+  }
+  [[nodiscard]] std::span<const std::uint32_t> undefined(std::size_t n) const {
+    const auto found = undefined_.find(n);
+    return found == undefined_.end() ? std::span<const std::uint32_t>() : std::span(found->second);
+  }
   [[nodiscard]] std::size_t size() const { return words_.size() / per_; }
   [[nodiscard]] std::span<const std::uint32_t> operator[](std::size_t n) const {
     return std::span(words_).subspan(n * per_, per_);
@@ -25,6 +35,7 @@ class PacketList {
  private:
   std::size_t per_;
   std::vector<std::uint32_t> words_;
+  std::map<std::size_t, std::vector<std::uint32_t>> undefined_;
 };
 
 /// In the order of the stage's ports.

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "sim/config_file.hpp"
 #include "sim/scene/text_cursor.hpp"
@@ -47,18 +48,33 @@ std::vector<std::string_view> split_at_commas(std::string_view text) {
   }
 }
 
-/// A hexadecimal number of at most `bits` bits, with 0x or without.
-std::uint64_t parse_hex(std::string_view text, const FieldName& field, const SourceLine& at) {
+struct HexValue {
+  std::uint64_t value = 0, undefined = 0;  ///< undefined bits are 0 in `value`
+};
+
+/// A hexadecimal number of at most `bits` bits, with 0x or without; x and z are digits whose bits are undefined.
+HexValue parse_hex(std::string_view text, const FieldName& field, const SourceLine& at) {
   std::string_view digits = text;
   if (digits.starts_with("0x") || digits.starts_with("0X")) digits.remove_prefix(2);
-  std::uint64_t value = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value, 16);
-  if (digits.empty() || error != std::errc() || end != digits.data() + digits.size())
+  std::string known(digits), undefined(digits);
+  for (std::size_t i = 0; i < digits.size(); ++i) {
+    const bool is_undefined = std::string_view("xXzZ").find(digits[i]) != std::string_view::npos;
+    undefined[i] = is_undefined ? 'f' : '0';
+    if (is_undefined) known[i] = '0';
+  }
+  const auto number = [](const std::string& word) -> std::optional<std::uint64_t> {
+    std::uint64_t value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value, 16);
+    if (word.empty() || error != std::errc() || end != word.data() + word.size()) return std::nullopt;
+    return value;
+  };
+  const auto value = number(known), mask = number(undefined);
+  if (!value || !mask)
     at.fail("'" + field.name + "' is " + in_quotes(text) + ", which is no hexadecimal number; give one as 0x1f");
-  if (field.bits < 64 && value >> field.bits != 0)
+  if (field.bits < 64 && *value >> field.bits != 0)
     at.fail("'" + field.name + "' has " + std::to_string(field.bits) + " bits, and " + in_quotes(text) +
             " needs more; give it in two's complement");
-  return value;
+  return {*value, field.bits < 64 ? *mask & ((std::uint64_t{1} << field.bits) - 1) : *mask};
 }
 
 /// What of a header goes into messages stays one line, and a short one.
@@ -129,15 +145,30 @@ class Reader {
 
   /// A packet that is read. The specification is given what goes in, and has no tile or pixel outside the largest target; what
   /// comes out is only compared, and may be as wrong as it likes.
-  void add(const Place& place, std::span<const std::uint64_t> values, const SourceLine& at) {
+  void add(const Place& place, std::span<const HexValue> given, const SourceLine& at) {
     const auto& names = fields(place);
-    if (!place.is_out)
+    std::vector<std::uint64_t> values, undefined;
+    for (const HexValue& one : given) {
+      values.push_back(one.value);
+      undefined.push_back(one.undefined);
+    }
+    const auto first = std::ranges::find_if(undefined, [](std::uint64_t mask) { return mask != 0; });
+    if (!place.is_out) {
+      if (first != undefined.end())
+        at.fail("'" + names[static_cast<std::size_t>(first - undefined.begin())].name +
+                "' has undefined bits, and the specification takes none");
       if (const std::string fault = place_fault(names, values, file_.config, widths_); !fault.empty()) at.fail(fault);
-    list(place).push(words_from(names, values));
+    }
+    list(place).push(words_from(names, values),
+                     first == undefined.end() ? std::vector<std::uint32_t>() : words_from(names, undefined));
   }
-  void add_words(const Place& place, std::span<const std::uint32_t> words, const SourceLine& at) {
+  void add_words(const Place& place, std::span<const std::uint32_t> words, std::span<const std::uint32_t> undefined,
+                 const SourceLine& at) {
     const Port& port = (place.is_out ? file_.stage->out : file_.stage->in)[place.port];
-    add(place, values_of(port.like, widths_, words), at);
+    const auto values = values_of(port.like, widths_, words), masks = values_of(port.like, widths_, undefined);
+    std::vector<HexValue> given;
+    for (std::size_t i = 0; i < values.size(); ++i) given.push_back({values[i], masks[i]});
+    add(place, given, at);
   }
 
   VectorFile file_;
@@ -168,7 +199,7 @@ void read_jsonl_packet(Reader& reader, const Json& line, const SourceLine& at) {
   if (!line.contains("n") || !line["n"].is_number_unsigned()) at.fail("there is no \"n\", the packet's number");
   reader.check_number(place, line["n"].get<std::uint64_t>(), at);
   const auto& fields = reader.fields(place);
-  std::vector<std::uint64_t> values;
+  std::vector<HexValue> values;
   for (const FieldName& field : fields) values.push_back(parse_hex(word(field.name.c_str()), field, at));
   if (line.size() != fields.size() + 3) {
     for (const auto& [key, value] : line.items())
@@ -203,7 +234,7 @@ void read_csv_row(Reader& reader, const std::vector<std::string_view>& cells, co
   const auto& fields = reader.fields(place);
   if (cells.size() != fields.size() + 3)
     at.fail(std::to_string(cells.size() - 3) + " values where " + std::to_string(fields.size()) + " are due");
-  std::vector<std::uint64_t> values;
+  std::vector<HexValue> values;
   for (std::size_t i = 0; i < fields.size(); ++i) values.push_back(parse_hex(cells[i + 3], fields[i], at));
   reader.add(place, values, at);
 }
@@ -245,16 +276,18 @@ void read_hex_line(Reader& reader, std::string text, int bits, const Reader::Pla
   if (text.starts_with("0x") || text.starts_with("0X")) text.erase(0, 2);
   if (text.empty()) return;
   if (text.front() == '@') at.fail("addresses are not read; give the packets in order");
-  std::vector<std::uint32_t> words(static_cast<std::size_t>((bits + 31) / 32));
+  std::vector<std::uint32_t> words(static_cast<std::size_t>((bits + 31) / 32)), undefined = words;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const std::string_view digit(&text[text.size() - 1 - i], 1);
-    const std::uint64_t value = parse_hex(digit, {"packet", 4, false}, at);
+    const auto [value, mask] = parse_hex(digit, {"packet", 4, false}, at);
     const int low = static_cast<int>(4 * i);
     const bool fits = low < bits && (low + 4 <= bits || value >> (bits - low) == 0);
     if (!fits && value != 0) at.fail("a packet of " + std::to_string(bits) + " bits, and this line has more");
-    if (fits) words[i / 8] |= static_cast<std::uint32_t>(value << 4 * (i % 8));
+    if (low >= bits) continue;
+    words[i / 8] |= static_cast<std::uint32_t>(value << 4 * (i % 8));
+    undefined[i / 8] |= static_cast<std::uint32_t>((mask & (~0ULL >> (64 - std::min(4, bits - low)))) << 4 * (i % 8));
   }
-  reader.add_words(place, words, at);
+  reader.add_words(place, words, undefined, at);
 }
 
 VectorFile read_hex(const std::string& folder, const FileSource& open, bool needs_in) {

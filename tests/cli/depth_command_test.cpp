@@ -233,6 +233,23 @@ TEST_F(DepthCommandLine, BadQuestionsGetOneLine) {
   expect_refused({"render", "teapot", "--set", "depth.format=f16", "--engine", "cycle"}, "this hardware");
 }
 
+// A plane of 16 bits has 253 codes where the format has 5,050.
+TEST_F(DepthCommandLine, AFormatIsMadeFromAPlaneThatHasItsCodes) {
+  const Arguments render{"render", "coplanar", "--set", "depth.mapping=w", "--set", "depth.format=u16"};
+  const auto with = [&render](const char* bits) {
+    Arguments all = render;
+    all.insert(all.end(), {"--set", bits});
+    return all;
+  };
+  const Json chosen = result(render);
+  EXPECT_EQ(chosen["config"]["depth.bits"], 30);
+  EXPECT_EQ(chosen["depth_hash"], result(with("depth.bits=30"))["depth_hash"]);
+  EXPECT_NE(chosen["depth_hash"], result(with("depth.bits=16"))["depth_hash"]);
+  EXPECT_NE(run(render).err.find("depth.bits=30: depths of depth.format=u16"), std::string::npos);
+  EXPECT_EQ(run(with("depth.bits=16")).err, "") << "nothing is chosen";
+  EXPECT_EQ(result({"render", "coplanar", "--set", "depth.format=u12"})["config"]["depth.bits"], 12);
+}
+
 TEST_F(DepthCommandLine, EveryMappingAndFormatDrawsTheSamePicture) {
   const Json plain = result({"render", "teapot", "--size", "120x90", "--set", "depth.bits=24"});
   for (const char* setting :

@@ -53,6 +53,30 @@ TEST_F(VectorsCommand, AForeignBitIsFoundByFieldAndBits) {
   EXPECT_NE(text("j.xml").find("failures=\"1\""), std::string::npos);
 }
 
+TEST_F(VectorsCommand, BitsWithoutAValueAreNamedByTheirField) {
+  const Arguments vectors{"vectors", "triangle", "--size", "16x16", "--stage", "fine_raster"};
+  Arguments lines = vectors, hex = vectors;
+  lines.insert(lines.end(), {"-o", "v.jsonl"});
+  hex.insert(hex.end(), {"--format", "hex", "-o", "v"});
+  ASSERT_EQ(run(lines).status, 0);
+  ASSERT_EQ(run(hex).status, 0);
+  change("v.jsonl", "bad.jsonl", "\"mask\":\"0xf\"", "\"mask\":\"0xX\"", 0);
+  const Outcome outcome = run({"check", "--stage", "fine_raster", "bad.jsonl", "--json=r.json"});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_NE(outcome.out.find("DIFFERENT  1 packets; the first: undefined bits in field mask of stamp "),
+            std::string::npos)
+      << outcome.out;
+  EXPECT_EQ(Json::parse(text("r.json"))["packets"]["first_mismatch"]["fields"][0]["undefined"], "0xf");
+  std::string stamps = text("v/stamp.hex");
+  stamps[0] = 'x';
+  write("v/stamp.hex", stamps);
+  const Outcome of_hex = run({"check", "--stage", "fine_raster", "v"});
+  EXPECT_EQ(of_hex.status, 1);
+  EXPECT_NE(of_hex.out.find("undefined bits in field kind of stamp 0"), std::string::npos) << of_hex.out;
+  change("v.jsonl", "in.jsonl", "\"right\":\"0x7\"", "\"right\":\"0xz\"", 0);
+  expect_refused({"check", "--stage", "fine_raster", "in.jsonl"}, "'right' has undefined bits");
+}
+
 TEST_F(VectorsCommand, OutAloneIsJudgedBesideTheVectorsItWasMadeFrom) {
   ASSERT_EQ(run({"vectors", "triangle", "--size", "16x16", "--stage", "cull", "-o", "v.jsonl"}).status, 0);
   std::string mine;

@@ -224,6 +224,8 @@ TEST(Vectors, PacketsThatAreMissingOrTooManyAreFound) {
       ASSERT_TRUE(judgement.first);
       EXPECT_EQ(judgement.first->number, 1U);
       EXPECT_NE(judgement.first->hint.find("was lost"), std::string::npos);
+      EXPECT_EQ(judgement.total_differing(), 1U) << "behind it the judge finds its place again";
+      EXPECT_EQ(judge(stage, config, twice).total_differing(), 1U);
     }
   }
 }

@@ -304,6 +304,11 @@ Scene textured_scene() {
   return builder.scene;
 }
 
+TEST(Smallest, TheCacheIsCountedAsWhatALineOfItHolds) {
+  EXPECT_EQ(hardware_bits(preset("embedded")).tiles, 256 * 4 * 4 * (16 + 16)) << "blocks of 4x4 pixels";
+  EXPECT_EQ(hardware_bits(preset("tiny")).tiles, 2 * 8 * 8 * (8 + 16)) << "whole tiles";
+}
+
 TEST(SmallestConfiguration, BitsOverWAreThoseThatATextureNeeds) {
   const Scene scene = textured_scene();
   ErrorBounds bounds;

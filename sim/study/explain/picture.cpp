@@ -164,7 +164,7 @@ void draw_samples(Canvas& canvas, const Explanation& around, const std::vector<S
   constexpr std::array<std::array<int, 2>, 8> kPlaces{
       {{-1, -1}, {1, -1}, {-1, 1}, {1, 1}, {0, -1}, {0, 1}, {-1, 0}, {1, 0}}};
   const int room = around.samples == 1 ? canvas.scale : canvas.scale / (around.samples < 8 ? 2 : 3);
-  const int mark = std::max(3, room / 8), step = room / 4;
+  const int mark = std::max(3, room / 12), step = mark + 2;  // beside the dot
   for (const PixelHistory& pixel : around.pixels) {
     const int x = canvas.at_x(pixel.at.x + std::ldexp(pixel.place.x, -kPatternFraction)),
               y = canvas.at_y(pixel.at.y + std::ldexp(pixel.place.y, -kPatternFraction));

@@ -254,8 +254,8 @@ HardwareBits hardware_bits(const Config& config, bool has_over_w) {
   bits.context = config.context_slots * (packet_bits<ContextPacket>(w) + packet_bits<EdgeContext>(w));
   bits.products = 2 * (w.edge_product.bits + widest(w, &AttributeWidths::numerator).bits +
                        widest(w, &AttributeWidths::product).bits);
-  bits.tiles =
-      long{config.cache_lines} * config.tile_size * config.tile_size * (w.stored_depth.bits + w.stored_color.bits);
+  bits.tiles = long{config.cache_lines} * w.blocks.stamps() * w.samples *
+               (w.stored_depth.bits + w.stored_color.bits + config.stencil_bits);
   if (has_over_w) {
     const PerspectiveFormat format = perspective_format(config);
     constexpr long kValues = 3, kCoordinates = 2;  // of a plane: anchor and two steps

@@ -33,7 +33,7 @@ struct HardwareBits {
   long packets = 0;   ///< one register for every packet between stages
   long context = 0;   ///< the context RAM: context.slots times what a primitive keeps there
   long products = 0;  ///< outputs of the multipliers of cull and triangle_setup, two of each kind
-  long tiles = 0;     ///< depth and colour of cache.lines tiles
+  long tiles = 0;     ///< depth, stencil and colour of cache.lines blocks, or tiles with cache.kind tiles
   long over_w = 0;    ///< planes of Q, u, v and the colours over w in the context RAM, and their divisions' products
   [[nodiscard]] long total() const { return packets + context + products + tiles + over_w; }
 };
