@@ -322,7 +322,7 @@ void print_against(std::ostream& out, const std::string& path, const ForeignImag
 
 int run(const CompareCommand& options) {
   const auto start = std::chrono::steady_clock::now();
-  const Config config = effective_config(options);
+  const Config config = drawing_config(options);
   const StudyRules rules = study_rules(options.study);
   if (!options.against_path.empty()) require_one_sample(config, "compare --against");
   for (const std::string* path : {&options.sheet_path, &options.model_path, &options.golden_path})

@@ -134,7 +134,7 @@ int run(const ExplainOptions& options) {
   if (options.skip != "all") throw InputError("--skip: explain tells what the default leaves out; leave it out");
   check_distinct({options.scene, options.json, options.output});
   check_picture(options);
-  const Config config = effective_config(options);
+  const Config config = drawing_config(options);
   const std::unique_ptr<Dut> dut = explained_rtl(options, config);
   double load_s = 0;
   const Scene scene = load_scene(options, config, load_s);

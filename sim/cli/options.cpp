@@ -179,6 +179,12 @@ Config effective_config(const CommonOptions& options) {
       throw InputError("--set: '" + setting + "' has no '='; give key=value, as in depth.bits=20");
     set_by_key(config, setting.substr(0, equals), setting.substr(equals + 1));
   }
+  validate(config);
+  return config;
+}
+
+Config drawing_config(const CommonOptions& options) {
+  Config config = effective_config(options);
   choose_depth_bits(options, config);
   validate(config);
   return config;

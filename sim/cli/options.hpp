@@ -76,6 +76,9 @@ struct Size {
 
 /// Preset or file, then every --set, validated. Throws InputError.
 [[nodiscard]] Config effective_config(const CommonOptions& options);
+/// The same for a picture: a depth.format is made from a plane that has its codes, unless somebody says depth.bits; it is said
+/// which.
+[[nodiscard]] Config drawing_config(const CommonOptions& options);
 
 /// `--skip all|none|NAME,NAME...`. Throws InputError naming the legal names.
 [[nodiscard]] Skip parse_skip(const std::string& text);

@@ -251,7 +251,7 @@ void print_result(const RenderCommand& options, const Config& config, const Rend
 
 int run(const RenderCommand& given) {
   const auto start = std::chrono::steady_clock::now();
-  const Config config = effective_config(given);
+  const Config config = drawing_config(given);
   check_options(given, config);
   RenderCommand options = given;
   options.leaves_out = !options.engine.starts_with("golden");  // golden draws what is marked, too
