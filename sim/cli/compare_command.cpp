@@ -332,6 +332,7 @@ int run(const CompareCommand& options) {
   check_distinct({options.against_path, options.sheet_path, options.model_path, options.golden_path, options.json});
   double load_s = 0;
   const Scene scene = load_scene(options, config, load_s);
+  warn_of_depth_bits(options, config);
   warn_of_depths(scene, config);
   std::optional<TransformErrors> transform;
   if (options.transform != "binary64") {

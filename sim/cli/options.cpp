@@ -154,18 +154,12 @@ int interpolated_bits(const Config& config) {
   return is_plane ? format.bits : std::clamp(format.bits + 4, 8, 32);
 }
 
-/// Where nobody says depth.bits, those of a depth.format are chosen, and said.
-void choose_depth_bits(const CommonOptions& options, Config& config) {
+/// Whether depth.bits follow from a depth.format, because nobody says them.
+bool chooses_depth_bits(const CommonOptions& options, const Config& config) {
   const bool is_said =
       options.config.find('.') != std::string::npos ||  // a file
       std::ranges::any_of(options.settings, [](const std::string& s) { return s.starts_with("depth.bits="); });
-  if (is_said || config.depth_format.kind == DepthFormat::Kind::plane) return;
-  const int bits = interpolated_bits(config);
-  if (bits == config.depth_bits) return;
-  config.depth_bits = bits;
-  if (!options.quiet)
-    std::cerr << "halfplane: depth.bits=" << bits << ": depths of depth.format=" << to_string(config.depth_format)
-              << " are made from a plane of so many; --set depth.bits=N says others\n";
+  return !is_said && config.depth_format.kind != DepthFormat::Kind::plane;
 }
 
 }  // namespace
@@ -185,9 +179,16 @@ Config effective_config(const CommonOptions& options) {
 
 Config drawing_config(const CommonOptions& options) {
   Config config = effective_config(options);
-  choose_depth_bits(options, config);
+  if (chooses_depth_bits(options, config)) config.depth_bits = interpolated_bits(config);
   validate(config);
   return config;
+}
+
+void warn_of_depth_bits(const CommonOptions& options, const Config& config) {
+  if (!options.quiet && chooses_depth_bits(options, config))
+    std::cerr << "halfplane: depth.bits=" << config.depth_bits
+              << ": depths of depth.format=" << to_string(config.depth_format)
+              << " are made from a plane of so many; --set depth.bits=N says others\n";
 }
 
 Skip parse_skip(const std::string& text) {

@@ -76,9 +76,10 @@ struct Size {
 
 /// Preset or file, then every --set, validated. Throws InputError.
 [[nodiscard]] Config effective_config(const CommonOptions& options);
-/// The same for a picture: a depth.format is made from a plane that has its codes, unless somebody says depth.bits; it is said
-/// which.
+/// The same for a picture: a depth.format is made from a plane that has its codes, unless somebody says depth.bits.
 [[nodiscard]] Config drawing_config(const CommonOptions& options);
+/// Says which bits those are.
+void warn_of_depth_bits(const CommonOptions& options, const Config& config);
 
 /// `--skip all|none|NAME,NAME...`. Throws InputError naming the legal names.
 [[nodiscard]] Skip parse_skip(const std::string& text);

@@ -259,6 +259,7 @@ int run(const RenderCommand& given) {
   double load_s = 0;
   ObjectCounts objects;
   const Scene scene = load_scene(options, config, load_s, &objects);
+  warn_of_depth_bits(options, config);
   warn_of_depths(scene, config);
   CycleFacts facts;
   const Rendering rendering = [&] {

@@ -25,27 +25,32 @@ class Judge final : public StageIo {
     Place& at = places_[port];
     const PacketList& list = packets_.out[port];
     ++result_.compared[port];
+    const bool is_behind = std::exchange(at.is_behind_difference, false),
+               may_be_extra = std::exchange(at.may_be_extra, false);
     if (is_equal(list, at.next, expected)) {
-      at.is_behind_difference = false;
       ++at.next;
       return;
     }
-    if (at.is_behind_difference && is_equal(list, at.next - 1, expected)) {  // it was due before: one was lost
+    if (is_behind && is_equal(list, at.next - 1, expected)) {  // it was due before: one was lost
       if (result_.first->port == port && result_.first->number == at.next - 1)
         result_.first->hint = "what comes here is the packet that should come next: this one was lost";
-      at.is_behind_difference = false;
+      return;
+    }
+    if (may_be_extra && is_equal(list, at.next + 1, expected)) {  // so was the one before: one was too much
+      at.next += 2;
       return;
     }
     ++result_.differing[port];
-    const bool is_extra = is_equal(list, at.next + 1, expected);
-    if (!result_.first) add_first(port, at.next, expected, is_extra);
-    at.is_behind_difference = !is_extra;
-    at.next += is_extra ? 2 : 1;
+    at.is_behind_difference = true;
+    at.may_be_extra = is_equal(list, at.next + 1, expected);
+    if (!result_.first) add_first(port, at.next, expected, at.may_be_extra);
+    ++at.next;
   }
 
   Judgement finish() {
     for (std::size_t port = 0; port < packets_.out.size(); ++port) {
-      const std::size_t size = packets_.out[port].size(), next = places_[port].next;
+      const Place& at = places_[port];
+      const std::size_t size = packets_.out[port].size(), next = at.next + (at.may_be_extra ? 1 : 0);
       if (size <= next) continue;
       if (!result_.first) result_.first = FirstDifference{FirstDifference::Kind::extra, port, next, {}, {}};
       result_.differing[port] += size - next;
@@ -59,6 +64,7 @@ class Judge final : public StageIo {
   struct Place {
     std::size_t next = 0;
     bool is_behind_difference = false;
+    bool may_be_extra = false;  ///< the packet of that difference, if all behind it comes a packet later
   };
 
   [[nodiscard]] static bool is_equal(const PacketList& list, std::size_t number,
