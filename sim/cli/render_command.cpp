@@ -259,13 +259,13 @@ int run(const RenderCommand& given) {
   double load_s = 0;
   ObjectCounts objects;
   const Scene scene = load_scene(options, config, load_s, &objects);
-  warn_of_depth_bits(options, config);
   warn_of_depths(scene, config);
   CycleFacts facts;
   const Rendering rendering = [&] {
     Progress progress(options, "rendering");
     return run_engine(options, scene, config, &facts, [&progress](double fraction) { progress(fraction); });
   }();
+  warn_of_depth_bits(options, config);
   Json result = result_head("render", options, config);
   result["engine"] = options.engine;
   result["width"] = scene.width;
