@@ -52,19 +52,24 @@ int fan_start(const SnappedPolygon& polygon, std::int64_t area) {
   return best;
 }
 
-/// Clipping cancels digits: a corner is as exact as binary64 is at the size of the primitive's coordinates. Refuses one
-/// that could be off by more than a pixel; false where nobody would see it.
-bool require_precision(std::span<const Vertex> clipped, std::span<const Vertex> v, const DrawContext& context,
-                       bool is_outside = false) {
+double largest_coordinate(std::span<const Vertex> v) {
   double largest = 0;
   for (const Vertex& vertex : v)
     for (const double c : {vertex.x, vertex.y, vertex.z, vertex.w}) largest = std::max(largest, std::abs(c));
+  return largest;
+}
+
+/// Clipping cancels digits: a corner is as exact as binary64 is at the size of the primitive's coordinates. Whether none is off
+/// by more than a pixel.
+bool is_precise(std::span<const Vertex> clipped, std::span<const Vertex> v, const DrawContext& context) {
   const double pixels = std::max(context.viewport.width, context.viewport.height);
-  const double error = largest * pixels * std::numeric_limits<double>::epsilon();
+  const double error = largest_coordinate(v) * pixels * std::numeric_limits<double>::epsilon();
+  return std::ranges::all_of(clipped, [error](const Vertex& corner) { return error <= corner.w; });
+}
+
+[[noreturn]] void refuse_imprecise(std::span<const Vertex> v, const DrawContext& context) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.3g", largest);
-  if (std::ranges::all_of(clipped, [error](const Vertex& corner) { return error <= corner.w; })) return true;
-  if (is_outside) return false;
+  std::snprintf(text, sizeof text, "%.3g", largest_coordinate(v));
   throw InputError(place_of_draw(context.scene.name, context.draw.line) + ": clip coordinates as large as " + text +
                    " leave less than a pixel of precision where the primitive is cut; use smaller coordinates");
 }
@@ -101,7 +106,10 @@ SnappedPolygon clip_and_snap(const DrawContext& context, const std::array<std::u
   const ClipPolygon clipped = clip(context.guard_band, v[0], v[1], v[2]);
   const auto corners = std::span(clipped.v).first(static_cast<std::size_t>(clipped.size));
   SnappedPolygon polygon;
-  if (!require_precision(corners, v, context, is_outside)) return polygon;
+  if (!is_precise(corners, v, context)) {
+    if (is_outside) return polygon;
+    refuse_imprecise(v, context);
+  }
   polygon.size = clipped.size;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     polygon.v[i] = snap_clipped(corners[i], context, index[0]);
@@ -247,7 +255,7 @@ class OutlineBuilder {
     if (crosses) {
       const auto clipped = clip(context_.guard_band, v[0], v[1]);
       if (!clipped) return;
-      (void)require_precision(*clipped, v, context_);
+      if (!is_precise(*clipped, v, context_)) refuse_imprecise(v, context_);
       line.start = snap_clipped((*clipped)[0], context_, a);
       line.end = snap_clipped((*clipped)[1], context_, b);
       v = *clipped;

@@ -123,9 +123,8 @@ class SampledTriangle {
         edges_(make_edge_context(setup)) {
     places_.reserve(setups_.sample.size() + 1);
     for (int k = kAtCentre; k < engine.widths.pixel_samples; ++k) {
-      const SampleOffset o = k == kAtCentre ? SampleOffset{} : engine.widths.sample_offset[static_cast<std::size_t>(k)];
       const TriangleSetup& at = setups_.at(k);
-      places_.push_back({at, surface_of(context, t.triangle, at, engine.widths, o)});
+      places_.push_back({at, surface_of(context, t.triangle, at, engine.widths, offset_of(k, engine.widths))});
     }
     const auto& v = t.triangle.v;
     is_back_ = context.fragment_ops.stencil && shows_back(signed_area(v[0], v[1], v[2]), context.state.front);

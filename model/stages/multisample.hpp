@@ -47,6 +47,11 @@ namespace halfplane {
 /// Where a pixel is shaded: -1 at its centre, otherwise the number of a sample.
 inline constexpr int kAtCentre = -1;
 
+/// From the centre to there.
+[[nodiscard]] inline SampleOffset offset_of(int place, const Widths& widths) {
+  return place == kAtCentre ? SampleOffset{} : widths.sample_offset[static_cast<std::size_t>(place)];
+}
+
 /// A triangle at the centre of pixels and at each of their samples.
 struct SampledSetup {
   TriangleSetup centre;

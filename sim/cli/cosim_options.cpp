@@ -16,6 +16,13 @@ namespace halfplane {
 namespace {
 
 /// "out/cosim-teapot.hpt", "out/cosim-random-7.hpt".
+void write_scene(const std::string& path, const Scene& scene) {
+  std::ostringstream text;
+  write_capture(scene, text);
+  const std::string bytes = text.str();
+  write_whole_file(path, {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+}
+
 std::string default_save_path(const CosimOptions& options) {
   std::string name = options.random != 0    ? "random-" + std::to_string(options.seed)
                      : options.scene == "-" ? "stdin"
@@ -119,10 +126,7 @@ std::string repeat_command(const CosimOptions& options, const Config& config, co
 std::string save_scene(const CosimOptions& options, const Scene& scene) {
   const std::string path = options.save_path.empty() ? default_save_path(options) : options.save_path;
   if (options.save_path.empty()) create_folder_of(path);
-  std::ostringstream text;
-  write_capture(scene, text);
-  const std::string bytes = text.str();
-  write_whole_file(path, {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+  write_scene(path, scene);
   return path;
 }
 
@@ -140,11 +144,8 @@ SavedFinding save_finding(const CosimOptions& options, const Config& config, Dut
   reducing.progress = [&progress](double fraction) { progress(fraction); };
   saved.finding = investigate(dut, config, lockstep_options(options), failed, mismatch, saved.trace, reducing);
   if (!saved.finding.has_trace) saved.trace.clear();
-  std::ostringstream text;
-  write_capture(saved.finding.scene, text);
-  const std::string bytes = text.str();
   try {
-    write_whole_file(saved.capture, {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+    write_scene(saved.capture, saved.finding.scene);
   } catch (const std::exception& error) {  // the mismatch is worth more than the file
     saved.failure = error.what();
   }

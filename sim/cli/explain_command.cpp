@@ -152,6 +152,7 @@ int run(const ExplainOptions& options) {
   const explain::Window window = explain::window_around(told_box, draws ? options.margin : 0, scene);
   explain::Explanation told =
       explain::explain(scene, config, box_pixels(window.left, window.top, window.width, window.height), how);
+  warn_of_depth_bits(options, config);
   if (draws) write_picture(options, told_box, window, told, scene, config);
   std::erase_if(told.pixels, [&](const explain::PixelHistory& p) { return !explain::is_in(told_box, p.at); });
   Json result = explain_json(options, config, scene, told);

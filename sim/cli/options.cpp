@@ -18,6 +18,7 @@
 #include "sim/scene/host_geometry.hpp"
 #include "sim/scene/text_cursor.hpp"
 #include "sim/show/image/whole_file.hpp"
+#include "sim/study/depth/variant.hpp"
 
 namespace halfplane {
 namespace {
@@ -144,16 +145,6 @@ void check_output(const std::string& path, const std::string& extension) {
 
 namespace {
 
-/// Bits of the interpolated depth for a stored format of its own: as many where it is stored as it is; else four more, of
-/// floats 32; and under w and log, whose codes far away lie between few of the plane's, as many as the fast path has.
-int interpolated_bits(const Config& config) {
-  const DepthFormat& format = config.depth_format;
-  if (format.is_float()) return 32;
-  if (!is_screen_linear(config.depth_mapping)) return 30;
-  const bool is_plane = format.kind == DepthFormat::Kind::unorm && format.bits >= 8;
-  return is_plane ? format.bits : std::clamp(format.bits + 4, 8, 32);
-}
-
 /// Whether depth.bits follow from a depth.format, because nobody says them.
 bool chooses_depth_bits(const CommonOptions& options, const Config& config) {
   const bool is_said =
@@ -179,7 +170,12 @@ Config effective_config(const CommonOptions& options) {
 
 Config drawing_config(const CommonOptions& options) {
   Config config = effective_config(options);
-  if (chooses_depth_bits(options, config)) config.depth_bits = interpolated_bits(config);
+  if (chooses_depth_bits(options, config)) {
+    const bool is_linear = is_screen_linear(config.depth_mapping);
+    constexpr int kMostOfFastPath = 30;  // under w and log, whose codes far away lie between few of the plane's
+    const int bits = interpolated_bits(config.depth_format, is_linear, is_linear ? 0 : kMostOfFastPath);
+    config.depth_bits = is_linear || config.depth_format.is_float() ? bits : std::min(bits, kMostOfFastPath);
+  }
   validate(config);
   return config;
 }

@@ -38,6 +38,10 @@ struct Distances {
 
 std::optional<DepthCollision> depth_collision(const Scene& scene, const Config& config) {
   if (config.depth_mapping != DepthMapping::projection || config.depth_format != DepthFormat()) return {};
+  // Places w and more than w r apart have one code only where w > near (1 - 1/r) (2^B - 1): most scenes end before that.
+  if (const double least = (1 - 1 / kLeastRatio) * (std::ldexp(1.0, config.depth_bits) - 1);
+      scene.planes && (*scene.planes)[1] < least * (*scene.planes)[0])
+    return {};
   std::unordered_map<std::uint32_t, Distances> of_code;
   std::vector<std::uint32_t> seen_in(scene.vertices.size(), ~0U);  // the state it was last looked at in
   for (const Command& command : scene.commands) {

@@ -65,6 +65,7 @@ class MeshBuilder {
       materials_.push_back(found == in_.materials.end() ? plain : found->second);
       material_known_.push_back(found != in_.materials.end() || name.empty());
     }
+    texture_of_material_.resize(materials_.size());
     mesh_.materials.clear();
     for (const MtlMaterial& material : materials_) {
       MeshMaterial& surface = mesh_.materials.emplace_back(material.surface);
@@ -103,6 +104,7 @@ class MeshBuilder {
 
   void warn_of_material(const auto& element) {
     if (material_known_[element.material]) return;
+    material_known_[element.material] = true;  // one warning a name
     warnings_.once("material " + in_.material_names[element.material],
                    in_.file + ":" + std::to_string(element.line) + ": no material " +
                        in_quotes(in_.material_names[element.material]) + "; the default colour is used");
@@ -219,14 +221,21 @@ class MeshBuilder {
     const MtlMaterial& material = materials_[face.material];
     if (!material.texture && !material.opacity_map) return std::nullopt;
     if (std::ranges::find(corners_, kNoIndex, &ObjCorner::uv) != corners_.end()) return std::nullopt;
-    const auto name = [](const std::optional<MtlTexture>& map) { return map ? map->file : ""; };
-    const auto [place, is_new] = texture_of_files_.try_emplace({name(material.texture), name(material.opacity_map)});
-    if (is_new) place->second = load_texture(material);
-    if (!place->second) return std::nullopt;
-    MeshSampler sampler{.texture = *place->second};
+    auto& texture = texture_of_material_[face.material];
+    if (!texture) texture = texture_of(material);
+    if (!*texture) return std::nullopt;
+    MeshSampler sampler{.texture = **texture};
     const TextureWrap wrap = map_of(material).wrap;
     sampler.wrap = {wrap, wrap};
     return sampler;
+  }
+
+  // Materials that name the same files share a texture.
+  std::optional<std::uint32_t> texture_of(const MtlMaterial& material) {
+    const auto name = [](const std::optional<MtlTexture>& map) { return map ? map->file : ""; };
+    const auto [place, is_new] = texture_of_files_.try_emplace({name(material.texture), name(material.opacity_map)});
+    if (is_new) place->second = load_texture(material);
+    return place->second;
   }
 
   static const MtlTexture& map_of(const MtlMaterial& material) {
@@ -301,9 +310,9 @@ class MeshBuilder {
     if (corner.uv != kNoIndex) {
       const auto& [u, v] = in_.uvs[static_cast<std::size_t>(corner.uv)];
       const MtlMaterial& of = materials_[material];
-      const MtlTexture map = of.texture || of.opacity_map ? map_of(of) : MtlTexture();
-      made.u = u * map.scale[0] + map.offset[0];
-      made.v = v * map.scale[1] + map.offset[1];
+      const MtlTexture* const map = of.texture || of.opacity_map ? &map_of(of) : nullptr;
+      made.u = map != nullptr ? u * map->scale[0] + map->offset[0] : u;
+      made.v = map != nullptr ? v * map->scale[1] + map->offset[1] : v;
     }
     made.rgba = shows_colors ? own_color(position) : materials_[material].rgba;
     made.material = surface;
@@ -361,7 +370,8 @@ class MeshBuilder {
   std::vector<MtlMaterial> materials_;  // for each of in_.material_names
   std::vector<bool> material_known_;
   std::map<std::pair<std::string, std::string>, std::optional<std::uint32_t>> texture_of_files_;
-  std::vector<AlphaMode> texture_alpha_;  // of those with a map_d
+  std::vector<std::optional<std::optional<std::uint32_t>>> texture_of_material_;  // nothing: not looked for yet
+  std::vector<AlphaMode> texture_alpha_;                                          // of those with a map_d
   std::optional<std::uint32_t> no_normal_;
   std::uint32_t shown_as_is_ = 0;  // what a coloured face adds to the number of its material
   std::vector<std::uint32_t> object_number_;

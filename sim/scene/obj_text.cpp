@@ -54,11 +54,11 @@ class ObjReader {
 
   // What positions do not depend on: a warning for each kind, and the reader goes on.
   template <class Read>
-  void forgive(const std::string& kind, const std::string& how, Read read) {
+  void forgive(std::string_view kind, std::string_view how, Read read) {
     try {
       read();
     } catch (const InputError& error) {
-      warnings_.once(kind, std::string(error.what()) + "; " + how);
+      warnings_.once(std::string(kind), std::string(error.what()) + "; " + std::string(how));
     }
   }
 

@@ -62,11 +62,6 @@ bool is_nearest(TextureMin min) {
          min == TextureMin::nearest_mipmap_linear;
 }
 
-/// From the centre to where a pixel is shaded.
-SampleOffset offset_of(int place, const Widths& widths) {
-  return place == kAtCentre ? SampleOffset{} : widths.sample_offset[static_cast<std::size_t>(place)];
-}
-
 }  // namespace
 
 StageSurface::StageSurface(const FrameContext& frame, const Slice& slice, const Record& record, int place)

@@ -70,8 +70,7 @@ class SampledTiles {
     if (!has_surface(context.state)) return;
     surfaces_.reserve(samples_ + 1);
     for (int k = kAtCentre; k < widths.pixel_samples; ++k) {
-      const SampleOffset o = k == kAtCentre ? SampleOffset{} : widths.sample_offset[static_cast<std::size_t>(k)];
-      surfaces_.push_back(surface_of(context, triangle_, setups_.at(k), widths, o));
+      surfaces_.push_back(surface_of(context, triangle_, setups_.at(k), widths, offset_of(k, widths)));
     }
   }
 

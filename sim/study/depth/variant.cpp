@@ -9,17 +9,20 @@ std::string DepthVariant::name() const {
   return std::string(depth_mapping_names()[static_cast<std::size_t>(mapping)]) + " " + to_string(format);
 }
 
+int interpolated_bits(const DepthFormat& format, bool is_linear, int more) {
+  if (is_linear && format.kind == DepthFormat::Kind::unorm && format.bits >= 8) return format.bits;
+  return std::clamp((format.is_float() ? 32 : format.bits + 4) + more, 8, 32);
+}
+
 DepthVariant make_variant(const Config& config, DepthMapping mapping, const DepthFormat& format,
                           const DepthPlanes& planes) {
   DepthVariant variant{mapping, format, planes, config};
-  const bool is_plane = is_screen_linear(mapping) && format.kind == DepthFormat::Kind::unorm && format.bits >= 8;
-  int bits = format.bits + 4;
-  if (format.is_float()) bits = 32;
   // The std depth has far / near fewer steps for an eye-space length at far than at near.
-  if (!is_screen_linear(mapping)) bits += static_cast<int>(std::ceil(std::log2(planes[1] / planes[0])));
+  const bool is_linear = is_screen_linear(mapping);
+  const int more = is_linear ? 0 : static_cast<int>(std::ceil(std::log2(planes[1] / planes[0])));
   variant.config.depth_mapping = mapping;
   variant.config.depth_format = format;
-  variant.config.depth_bits = is_plane ? format.bits : std::clamp(bits, 8, 32);
+  variant.config.depth_bits = interpolated_bits(format, is_linear, more);
   validate(variant.config);
   return variant;
 }
