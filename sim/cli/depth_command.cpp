@@ -24,6 +24,7 @@ struct DepthCommand : CommonOptions {
   std::string near, far, mappings, formats, z, range;
   std::string error;  ///< a length: where bins exceed it, and what it takes
   std::string slope;  ///< of two surfaces: their minimum separation
+  std::string fight_rate = "0.01";  ///< of the overlapping pairs, for the fewest bits
   double fov = 45;    ///< degrees, vertical
   int bits = 0;       ///< short for --format u<bits>
   bool sweeps = false;
@@ -65,6 +66,7 @@ DepthQuestion read_question(const DepthCommand& options, const Config& config,
   DepthQuestion question;
   question.config = config;
   question.seed = options.seed;
+  question.fight_rate = parse_part(options.fight_rate, "--fight-rate");
   const auto plane = [&](const char* name, const std::string& given, std::size_t which) {
     if (!given.empty()) return given;
     if (!scene_planes)
@@ -143,6 +145,7 @@ std::string command_line(const DepthCommand& options, const DepthQuestion& quest
                                       {" --slope ", options.slope},
                                       {" --size ", options.size}})
     if (!value.empty()) text += option + value;
+  if (options.fight_rate != "0.01") text += " --fight-rate " + options.fight_rate;
   if (options.fov != 45) text += " --fov " + depth_number(options.fov);
   if (!options.camera.empty()) text += " --camera " + quoted(options.camera);
   if (options.config != "embedded") text += " --config " + quoted(options.config);
@@ -177,7 +180,7 @@ SceneStudy study_scene(const DepthCommand& options, const DepthQuestion& questio
   };
   MeasureOptions measure;
   measure.wants_maps = has_report || !options.paths.heat.empty() || !options.paths.fights.empty();
-  measure.progress = part(0, 0.2);
+  measure.progress = part(0, 0.15);
   study.measured = measure_depths(scene, variants, measure, threads);
   keep_whole(variants, study.measured);
   if (study.measured.empty()) return study;
@@ -188,8 +191,14 @@ SceneStudy study_scene(const DepthCommand& options, const DepthQuestion& questio
     study.answers = depth_answers(variants[0], study.measured[0], {});
     return study;
   }
-  study.trials = try_changes(scene, variants[0], study.measured[0], threads, part(0.2, 0.4));
+  study.trials = try_changes(scene, variants[0], study.measured[0], threads, part(0.15, 0.3));
   study.answers = depth_answers(variants[0], study.measured[0], study.trials);
+  if (study.measured[0].order.pairs > 0 && !is_interrupted())
+    study.fewest = fewest_depth_bits(scene, question.config, question.mappings, variants[0].planes,
+                                     question.fight_rate, threads, part(0.3, 0.4));
+  if (!study.fewest.empty())
+    study.answers.insert(study.answers.begin(),
+                         fewest_bits_answer(study.fewest, variants[0].planes, question.fight_rate));
   // At the size of the scene: at another one the rate where sweep and table meet would be another.
   if (has_sweeps && !is_interrupted())
     study.sweeps = sweep_depth(scene, question.config, question.mappings, variants[0].format.bits, variants[0].planes,
@@ -299,6 +308,7 @@ int run_depth(const DepthCommand& options) {
   const bool is_partial = is_interrupted(), is_measured = !study.measured.empty();
   for (std::size_t i = 0; i < study.measured.size(); ++i)
     add_measured_rows(question, variants[i], study.measured[i], rows);
+  add_fewest_rows(question, study.fewest, rows);
   if (question.length)
     for (const std::string& answer : length_answers(question)) study.answers.push_back(answer);
 
@@ -325,10 +335,12 @@ int run_depth(const DepthCommand& options) {
   }
   std::ostream& out = human(options);
   out << title << '\n';
+  const std::size_t first = study.fewest.empty() ? 0 : 1;  // the answer to how many bits comes before all tables
+  if (first == 1) out << study.answers[0] << "\n\n";
   print_theory(out, theory_rows);
   if (is_measured) print_measured(out, variants, study);
-  if (!study.answers.empty()) out << '\n';
-  for (const std::string& answer : study.answers) out << answer << '\n';
+  if (study.answers.size() > first) out << '\n';
+  for (std::size_t i = first; i < study.answers.size(); ++i) out << study.answers[i] << '\n';
   if (is_partial) print_partial(out);
   return status;
 }
@@ -362,6 +374,12 @@ void add_depth_command(CLI::App& app, Action& selected) {
                    "also the minimum separation of two surfaces that recede so many units for each unit across (0: "
                    "facing), tried on such surfaces")
       ->type_name("S");
+  command
+      ->add_option("--fight-rate", options->fight_rate,
+                   "with --scene: the fewest bits with which less than this part of the overlapping pairs of fragments "
+                   "fights: '0.01' or '1%'")
+      ->type_name("PART")
+      ->capture_default_str();
   command->add_option("--fov", options->fov, "for --slope: vertical, degrees")
       ->check(CLI::Range(0.01, 179.0))
       ->check(is_number)

@@ -196,10 +196,20 @@ Json study_json(const DepthQuestion& question, const std::vector<DepthRow>& rows
     for (const auto& line : sweep.lines) lines.push_back({{"name", line.name}, {"x", line.x}, {"rate", line.rate}});
     sweeps.push_back({{"what", sweep.what}, {"unit", sweep.unit}, {"lines", lines}});
   }
+  Json fewest = Json::array();
+  for (const FewestBits& f : study.fewest)
+    fewest.push_back({{"mapping", mapping_name(f.mapping)},
+                      {"bits", f.bits ? Json(*f.bits) : Json(nullptr)},
+                      {"pairs", f.pairs},
+                      {"rate", f.rate},
+                      {"rate_one_less", f.one_less ? Json(*f.one_less) : Json(nullptr)},
+                      {"rtl", f.is_in_rtl}});
   return {{"rows", rows_json(rows)},
           {"series", series},
           {"trials", trials},
           {"sweeps", sweeps},
+          {"fight_rate", question.fight_rate},
+          {"fewest_bits", fewest},
           {"answers", study.answers}};
 }
 

@@ -106,6 +106,14 @@ void add_measured_rows(const DepthQuestion& question, const DepthVariant& varian
   }
 }
 
+void add_fewest_rows(const DepthQuestion& question, const std::vector<FewestBits>& fewest,
+                     std::vector<DepthRow>& rows) {
+  for (const FewestBits& f : fewest)
+    if (f.bits)
+      rows.push_back({mapping_name(f.mapping), "u" + std::to_string(*f.bits), question.near_text, question.far_text, "",
+                      "fewest_bits_in_order", static_cast<double>(*f.bits)});
+}
+
 std::vector<std::string> length_answers(const DepthQuestion& question) {
   const Rational low = question.low.value_or(question.near), high = question.high.value_or(question.far);
   std::vector<std::pair<int, std::string>> needs;  // bits, who

@@ -33,6 +33,7 @@ struct DepthQuestion {
   std::vector<std::string> z;
   std::optional<Rational> low, high;  ///< --range
   std::optional<double> length;       ///< --error
+  double fight_rate = 0.01;           ///< --fight-rate
   std::optional<SurfaceView> view;    ///< --slope
   std::uint64_t seed = 1;
 };
@@ -42,7 +43,8 @@ struct SceneStudy {
   std::vector<DepthMeasurement> measured;
   std::vector<DepthTrial> trials;
   std::vector<DepthSweep> sweeps;
-  std::vector<std::string> answers;
+  std::vector<FewestBits> fewest;    ///< of each mapping; empty where nothing overlaps
+  std::vector<std::string> answers;  ///< with the fewest bits first, where they are known
 };
 
 // depth_rows.cpp
@@ -58,6 +60,7 @@ void add_theory_rows(const DepthQuestion& question, DepthMapping mapping, const 
                      const std::function<void(double)>& progress, std::vector<DepthRow>& rows);
 void add_measured_rows(const DepthQuestion& question, const DepthVariant& variant, const DepthMeasurement& m,
                        std::vector<DepthRow>& rows);
+void add_fewest_rows(const DepthQuestion& question, const std::vector<FewestBits>& fewest, std::vector<DepthRow>& rows);
 
 /// Which mapping keeps every step of the range below the length with the fewest bits: as integers, and as reversed floats.
 [[nodiscard]] std::vector<std::string> length_answers(const DepthQuestion& question);

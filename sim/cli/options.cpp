@@ -127,6 +127,17 @@ Size parse_size(const std::string& text) {
   return size;
 }
 
+double parse_part(const std::string& text, const std::string& option) {
+  const bool is_percent = text.ends_with('%');
+  const char* const end = text.data() + text.size() - (is_percent ? 1 : 0);
+  double value = 0;
+  const auto [read, error] = std::from_chars(text.data(), end, value);
+  if (is_percent) value /= 100;
+  if (error != std::errc() || read != end || !(value > 0 && value <= 1))
+    throw InputError(option + ": '" + text + "' is no part of a whole; give more than 0 and at most 1, as in 0.01 or 1%");
+  return value;
+}
+
 void check_output(const std::string& path, const std::string& extension) {
   if (path.empty() || path == "-") return;
   namespace fs = std::filesystem;

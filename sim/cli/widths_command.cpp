@@ -318,6 +318,12 @@ void add_widths_command(CLI::App& app, Action& selected) {
                    "'1e-4' of the depth range")
       ->needs(smallest);
   command
+      ->add_option("--fight-rate", options->fight_rate,
+                   "with --smallest: less than this part of the overlapping pairs of fragments may be stored out of "
+                   "order or alike: '0.01' or '1%'")
+      ->type_name("PART")
+      ->needs(smallest);
+  command
       ->add_option("--coverage-error", options->coverage_error,
                    "with --smallest: at most so many pixels missing or extra a scene, against unsnapped vertices")
       ->needs(smallest);

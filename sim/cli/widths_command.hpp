@@ -11,7 +11,7 @@ struct WidthsCommand : CommonOptions {
   std::string captures;  ///< folder
   bool smallest = false;
   std::vector<std::string> scenes;
-  std::string depth_error, coverage_error, color_error, texture_error;
+  std::string depth_error, coverage_error, color_error, texture_error, fight_rate;
 };
 
 /// `widths --smallest`. Returns the exit status.

@@ -56,8 +56,10 @@ ErrorBounds parse_bounds(const WidthsCommand& options, const Config& start) {
     if (!bounds.texture)
       throw InputError("--texture-error: '" + options.texture_error + "' is no bound; give texels, as in 0.0625");
   }
-  if (!bounds.depth && !bounds.color && !bounds.coverage && !bounds.texture)
-    throw InputError("--smallest: no bound; give --depth-error, --color-error, --coverage-error or --texture-error");
+  if (!options.fight_rate.empty()) bounds.fights = parse_part(options.fight_rate, "--fight-rate");
+  if (!bounds.depth && !bounds.color && !bounds.coverage && !bounds.texture && !bounds.fights)
+    throw InputError(
+        "--smallest: no bound; give --fight-rate, --depth-error, --color-error, --coverage-error or --texture-error");
   return bounds;
 }
 
@@ -66,7 +68,8 @@ Json errors_json(const SceneErrors& errors, const Config& config) {
           {"depth_lsb", errors.depth / one_lsb(config)},
           {"coverage", errors.coverage},
           {"color_lsb", errors.color},
-          {"texture_texels", errors.texture}};
+          {"texture_texels", errors.texture},
+          {"fight_rate", errors.fights ? Json(*errors.fights) : Json(nullptr)}};
 }
 
 Json bits_json(const HardwareBits& bits) {
@@ -133,6 +136,12 @@ void print_found(std::ostream& out, const Smallest& smallest, const Config& star
   const double lsb = one_lsb(found.config);
   char line[160];
   out << "error             measured        bound\n";
+  if (worst.fights) {
+    std::snprintf(line, sizeof line, "fights          %10s %12s   of the overlapping pairs, the worst scene%s\n",
+                  part_text(*worst.fights).c_str(), bounds.fights ? part_text(*bounds.fights).c_str() : "-",
+                  bounds.fights ? "" : "; --fight-rate bounds them");
+    out << line;
+  }
   std::snprintf(line, sizeof line,
                 "depth           %10.4g %12s   of the depth range; %.3f LSB of %d bits, proven %.3f (lines %.3f)\n",
                 worst.depth, bounds.depth ? part_text(*bounds.depth).c_str() : "-", worst.depth / lsb,
@@ -197,7 +206,8 @@ int run_smallest(const WidthsCommand& options) {
   result["bounds"] = {{"depth", bounds.depth ? Json(*bounds.depth) : Json(nullptr)},
                       {"coverage", bounds.coverage ? Json(*bounds.coverage) : Json(nullptr)},
                       {"color_lsb", bounds.color ? Json(*bounds.color) : Json(nullptr)},
-                      {"texture_texels", bounds.texture ? Json(*bounds.texture) : Json(nullptr)}};
+                      {"texture_texels", bounds.texture ? Json(*bounds.texture) : Json(nullptr)},
+                      {"fight_rate", bounds.fights ? Json(*bounds.fights) : Json(nullptr)}};
   result["trials"] = smallest.trials;
   result["start_bits"] = bits_json(hardware_bits(start, has_over_w));
   result["widest"] = smallest.trials > 0 ? trial_json(smallest.widest, options.scenes, has_over_w) : Json(nullptr);

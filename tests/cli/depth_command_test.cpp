@@ -1,5 +1,6 @@
 // `depth`: what it says, writes and refuses.
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "program.hpp"
@@ -37,7 +38,7 @@ TEST_F(DepthCommandLine, JsonHasRowsSeriesAndNoPictures) {
   EXPECT_GT(measured["rate"], 0.0);
   EXPECT_LE(measured["worst_share_of_bound"], 1.0);
   EXPECT_EQ(measured["stage_mismatches"], 0);
-  EXPECT_EQ(scene["answers"].size(), 3U);
+  EXPECT_EQ(scene["answers"].size(), 4U);
   EXPECT_FALSE(scene["trials"].empty());
 }
 
@@ -60,6 +61,35 @@ TEST_F(DepthCommandLine, EachTrialComesOutTheSameWhenItsOptionsAreTyped) {
     EXPECT_EQ(again["series"][0]["measured"]["rate"], trial["measured"]["rate"]) << trial["options"];
     EXPECT_EQ(again["series"][0]["measured"]["parts"], trial["measured"]["parts"]) << trial["options"];
   }
+}
+
+// Two squares face the camera, so each has one depth, and all pairs fight or none: by the formula of the std mapping.
+TEST_F(DepthCommandLine, FewestBitsAreThoseWhereTheCodesOfTwoSquaresBegin) {
+  const double z[] = {10, 10.003}, near = 1, far = 1000;
+  const auto mapped = [&](double depth) { return far * (depth - near) / (depth * (far - near)); };
+  const auto code = [&](double depth, int bits) { return std::floor(mapped(depth) * (std::ldexp(1.0, bits) - 1) + 0.5); };
+  std::string text = "halfplane 1\ntarget 64 64\nspace clip\nplanes 1 1000\n";
+  for (const double depth : z)
+    for (const char* corner : {"-5 -5 ", "5 -5 ", "5 5 ", "-5 5 "})
+      text += std::string("v ") + corner + Json(mapped(depth) * depth).dump() + " " + Json(depth).dump() + "\n";
+  write("squares.hpt", text + "t 0 1 2\nt 0 2 3\nt 4 5 6\nt 4 6 7\n");
+  int expected = 32;
+  while (expected > 8 && code(z[0], expected - 1) < code(z[1], expected - 1)) --expected;
+  ASSERT_EQ(expected, 13);
+  const Json json = result({"depth", "--scene", "squares.hpt", "--mapping", "std,w"});
+  const Json& fewest = json["fewest_bits"];
+  ASSERT_EQ(fewest.size(), 2U);
+  EXPECT_EQ(fewest[0]["bits"], expected);
+  EXPECT_EQ(fewest[0]["rate"], 0.0);
+  EXPECT_EQ(fewest[0]["rate_one_less"], 1.0);
+  EXPECT_EQ(fewest[0]["rtl"], true);
+  EXPECT_EQ(fewest[1]["rtl"], false);
+  const auto answer = json["answers"][0].get<std::string>();
+  EXPECT_NE(answer.find("For fewer than 1 %"), std::string::npos) << answer;
+  EXPECT_NE(answer.find("near 1: 13 bits of std"), std::string::npos) << answer;
+  const Json smallest = result({"widths", "--smallest", "--scene", "squares.hpt", "--fight-rate", "1%"});
+  EXPECT_NE(smallest["smallest"]["set"].get<std::string>().find("depth.bits=13"), std::string::npos);
+  EXPECT_EQ(smallest["smallest"]["scenes"][0]["fight_rate"], 0.0);
 }
 
 TEST_F(DepthCommandLine, SeparationIsPredictedAndTried) {

@@ -112,6 +112,9 @@ TEST_F(WidthsCommandLine, BadInputIsRefusedWithTheMend) {
   for (const char* error : {"-1", "0", "1lsb", "x"})
     expect_refused(smallest("--texture-error", error), "--texture-error");
   expect_refused(smallest("--texture-error", "0.1"), "no scene has a texture");
+  for (const char* part : {"0", "2", "1%%", "-1%", "few", "nan"})
+    expect_refused(smallest("--fight-rate", part), "--fight-rate");
+  expect_refused({"widths", "--smallest", "--scene", "triangle", "--fight-rate", "0.5"}, "near and far plane");
   for (const char* error : {"-1", "1.5", "many"})
     expect_refused(smallest("--coverage-error", error), "--coverage-error");
   expect_refused({"widths", "--smallest", "--scene", "nosuch", "--depth-error", "1lsb"}, "nosuch");

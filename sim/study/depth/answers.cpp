@@ -71,7 +71,22 @@ std::string fights(const DepthMeasurement& m) {
   return (m.order.fights() == 0 ? "" : percent(m.order.rate()) + " fighting, ") + "rms error " + number(m.total.rms);
 }
 
+std::string bits_of(const FewestBits& fewest) {
+  const std::string name(depth_mapping_names()[static_cast<std::size_t>(fewest.mapping)]);
+  if (!fewest.bits) return "32 bits of " + name + " are not enough (" + percent(fewest.rate) + " fight)";
+  std::string text = std::to_string(*fewest.bits) + " bits of " + name + " (" + percent(fewest.rate) + " fight";
+  if (fewest.one_less) text += "; with " + std::to_string(*fewest.bits - 1) + " bits " + percent(*fewest.one_less);
+  return text + ")" + (fewest.is_in_rtl ? "" : ", which the RTL does not store");
+}
+
 }  // namespace
+
+std::string fewest_bits_answer(std::span<const FewestBits> fewest, const DepthPlanes& planes, double rate) {
+  std::string text = "For fewer than " + percent(rate) + " of " + std::to_string(fewest[0].pairs) +
+                     " overlapping pairs of fragments to fight at near " + number(planes[0]) + ": " + bits_of(fewest[0]);
+  for (const FewestBits& other : fewest.subspan(1)) text += "; or " + bits_of(other);
+  return text + ". Measured on this view: another may need more.";
+}
 
 std::vector<DepthTrial> try_changes(const Scene& scene, const DepthVariant& base, const DepthMeasurement& measured,
                                     int threads, const std::function<void(double fraction)>& progress) {

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "sim/study/depth/fewest_bits.hpp"
 #include "sim/study/depth/measure.hpp"
 
 namespace halfplane {
@@ -24,7 +26,11 @@ struct DepthTrial {
                                                   const DepthMeasurement& measured, int threads,
                                                   const std::function<void(double fraction)>& progress);
 
-/// Two or three sentences.
+/// How many bits are enough, of the first mapping and then of the others: at which near plane, what one bit less costs, whether
+/// the RTL stores them. One sentence, and that another view may need more.
+[[nodiscard]] std::string fewest_bits_answer(std::span<const FewestBits> fewest, const DepthPlanes& planes, double rate);
+
+/// What a variant loses and what would help: two or three sentences.
 [[nodiscard]] std::vector<std::string> depth_answers(const DepthVariant& base, const DepthMeasurement& measured,
                                                      const std::vector<DepthTrial>& trials);
 

@@ -10,6 +10,7 @@
 #include "model/widths.hpp"
 #include "sim/interrupt.hpp"
 #include "sim/study/compare/compare.hpp"
+#include "sim/study/depth/fewest_bits.hpp"
 
 namespace halfplane {
 namespace {
@@ -57,6 +58,10 @@ class Search {
             is_any_state(scenes, [](const State& state) { return state.color_interp == ColorInterp::perspective; })) {
     if (bounds.texture && !is_any_state(scenes, [](const State& state) { return state.texture.has_value(); }))
       throw InputError("--texture-error: no scene has a texture; leave it out, or add a scene that has one");
+    for (const Scene& scene : scenes)
+      if (bounds.fights && !scene.planes)
+        throw InputError("--fight-rate: the near and far plane of " + scene.name +
+                         " are not known, so no eye depths are; leave it out, or give scenes seen in perspective");
     for (std::size_t a = 0; a < kAxes.size(); ++a) {
       const int value = value_of(start_, a);
       low_[a] = high_[a] = value;
@@ -77,6 +82,8 @@ class Search {
         raise_lower_ends();
         const Point found = cheapest();
         result.found = trial(found);
+        for (std::size_t i = 0; i < scenes_.size(); ++i)
+          result.found->scenes[i].fights = fights(scenes_[i], result.found->config);
         for (std::size_t a = 0; a < kAxes.size(); ++a)
           if (!is_over_w(a) || !is_fixed(a)) result.one_less.push_back(one_less(found, a));
       }
@@ -113,10 +120,10 @@ class Search {
 
   [[nodiscard]] bool is_fixed(std::size_t a) const {
     if (kAxes[a].member == &Config::subpixel_bits) return !bounds_.coverage;
-    if (kAxes[a].member == &Config::depth_bits) return !bounds_.depth;
+    if (kAxes[a].member == &Config::depth_bits) return !bounds_.depth && !bounds_.fights;
     if (is_over_w(a)) return !bounds_.texture && !(bounds_.color && has_colors_over_w_);
     if (kAxes[a].is_logarithm) return false;
-    return !bounds_.depth && !bounds_.color;
+    return !bounds_.depth && !bounds_.color && !bounds_.fights;
   }
 
   static int value_of(const Config& config, std::size_t a) {
@@ -138,6 +145,16 @@ class Search {
     return config;
   }
 
+  /// The part of the overlapping pairs that fights, if there are any and their eye depths are known.
+  [[nodiscard]] std::optional<double> fights(const Scene& scene, const Config& config) const {
+    if (!scene.planes) return std::nullopt;
+    MeasureOptions options;
+    options.wants_errors = false;
+    options.progress = [this](double) { report(); };
+    const DepthOrder order = measure_depth(scene, stored_plane(config, *scene.planes), options).order;
+    return order.pairs == 0 ? std::nullopt : std::optional(order.rate());
+  }
+
   /// Measures one scene. Returns what is broken.
   [[nodiscard]] std::string measure(const Scene& scene, const Config& config, SceneErrors& errors) const {
     CompareOptions options;
@@ -156,6 +173,9 @@ class Search {
       return broken_line("colour", errors.color, " LSB", *bounds_.color);
     if (bounds_.texture && errors.texture > *bounds_.texture)
       return broken_line("texture coordinate", errors.texture, " texels", *bounds_.texture);
+    if (bounds_.fights) errors.fights = fights(scene, config);
+    if (errors.fights && *errors.fights >= *bounds_.fights)
+      return broken_line("fights", 100 * *errors.fights, " % of the overlapping pairs", 100 * *bounds_.fights);
     return "";
   }
 
@@ -275,6 +295,7 @@ SceneErrors TriedConfig::worst() const {
     worst.color = std::max(worst.color, scene.color);
     worst.texture = std::max(worst.texture, scene.texture);
     worst.coverage = std::max(worst.coverage, scene.coverage);
+    if (scene.fights) worst.fights = std::max(worst.fights.value_or(0), *scene.fights);
   }
   return worst;
 }

@@ -20,12 +20,14 @@ struct ErrorBounds {
   std::optional<double>
       color;  ///< against the exact plane, LSB of the stored colour; over w, LSB of 8 bits before that
   std::optional<double> texture;  ///< of texture coordinates against the exact ones, texels
+  std::optional<double> fights;   ///< less than this part of the overlapping pairs of fragments may be out of order
 };
 
 /// What a configuration does on one scene, or the worst of several. Units as above.
 struct SceneErrors {
   double depth = 0, color = 0, texture = 0;
   std::uint64_t coverage = 0;
+  std::optional<double> fights;  ///< none: not measured, or the scene has no eye depths or no overlapping pairs
 };
 
 /// What a configuration costs, in bits that widths decide.
