@@ -333,7 +333,7 @@ int run(const CompareCommand& options) {
   double load_s = 0;
   const Scene scene = load_scene(options, config, load_s);
   warn_of_depth_bits(options, config);
-  warn_of_depths(scene, config);
+  warn_of_scene(scene, config);
   std::optional<TransformErrors> transform;
   if (options.transform != "binary64") {
     CommonOptions exact = options;
@@ -365,6 +365,11 @@ int run(const CompareCommand& options) {
   for (const std::string& name : options.panels)
     if (!c.texture && std::ranges::find(kTexturePanelNames, name) != kTexturePanelNames.end())
       throw InputError("--panels: " + name + " is about textures, and no pixel shows one; leave it out");
+  if (c.texture && c.texture->footprints.max > 1)
+    std::cerr << "halfplane: warning: texture coordinates are off by up to " << fixed(c.texture->footprints.max, 1)
+              << " extents of a pixel, so borders of texels lie in other pixels; raise perspective.mantissa_bits (now "
+              << config.perspective_mantissa_bits << ") or perspective.bits (" << config.perspective_bits
+              << "), or split large triangles\n";
   const std::vector<std::string> broken = broken_bounds(c, config);
   const std::vector<std::string> given_up = given_up_bounds(rules);
   auto lines = summary_lines(c, cycles, bound_lines(broken, given_up));

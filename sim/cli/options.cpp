@@ -14,6 +14,7 @@
 #include "sim/config_json.hpp"
 #include "sim/scene/convention.hpp"
 #include "sim/scene/depth_collision.hpp"
+#include "sim/scene/texture_reach.hpp"
 #include "sim/scene/depth_mapping.hpp"
 #include "sim/scene/host_geometry.hpp"
 #include "sim/scene/text_cursor.hpp"
@@ -272,9 +273,10 @@ Scene prepared(Scene scene, const CommonOptions& options, const Config& config, 
   return in_host_numbers(prepared_in_clip_space(std::move(scene), options, config, objects), numbers, config);
 }
 
-void warn_of_depths(const Scene& scene, const Config& config) {
+void warn_of_scene(const Scene& scene, const Config& config) {
   if (const auto collision = depth_collision(scene, config))
     std::cerr << "halfplane: warning: " << text(*collision) << '\n';
+  if (const auto beyond = beyond_reach(scene)) std::cerr << "halfplane: warning: " << text(*beyond) << '\n';
 }
 
 Scene load_scene(const CommonOptions& options, const Config& config, double& load_s, ObjectCounts* objects) {

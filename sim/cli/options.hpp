@@ -115,8 +115,8 @@ struct TimeSpan {
 [[nodiscard]] Scene load_scene(const CommonOptions& options, const Config& config, double& load_s,
                                ObjectCounts* objects = nullptr);
 
-/// A warning where the scene's own depths collide (depth_collision()).
-void warn_of_depths(const Scene& scene, const Config& config);
+/// A warning where the scene's own depths collide (depth_collision()), and of coordinates out of reach (beyond_reach()).
+void warn_of_scene(const Scene& scene, const Config& config);
 
 /// Adds what the last scene of `source` took.
 void add_work(ObjectCounts& objects, const MovingScene& source);

@@ -259,7 +259,7 @@ int run(const RenderCommand& given) {
   double load_s = 0;
   ObjectCounts objects;
   const Scene scene = load_scene(options, config, load_s, &objects);
-  warn_of_depths(scene, config);
+  warn_of_scene(scene, config);
   CycleFacts facts;
   const Rendering rendering = [&] {
     Progress progress(options, "rendering");

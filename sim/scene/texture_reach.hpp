@@ -1,0 +1,25 @@
+// Triangles on which texture coordinates go farther than the pipeline counts.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "model/scene.hpp"
+
+namespace halfplane {
+
+/// Filled triangles of textured draws with a corner more than 2^20 texels (kMaxReach) from the middle of its coordinates, where
+/// the pipeline holds it: between the corners the texture is elsewhere.
+struct BeyondReach {
+  std::uint64_t triangles = 0;
+  double span = 0;  ///< the most that a triangle spans, texels of level 0
+};
+
+/// Nothing where every triangle is counted as it is. Whole triangles: one that is cut may be within reach. Linear in the scene.
+[[nodiscard]] std::optional<BeyondReach> beyond_reach(const Scene& scene);
+
+/// One line.
+[[nodiscard]] std::string text(const BeyondReach& beyond);
+
+}  // namespace halfplane
