@@ -12,6 +12,7 @@
 #include "sim/cli/cosim_options.hpp"
 #include "sim/cli/progress.hpp"
 #include "sim/cosim/report.hpp"
+#include "sim/cosim/specification.hpp"
 #include "sim/show/image/whole_file.hpp"
 
 namespace halfplane {
@@ -244,8 +245,16 @@ int run(const CosimOptions& options) {
   std::ostream& out = human(options);
   print_equal(out, options, config, session);
   if (!session.disagreement.empty()) {
-    out << "DIFFERENT   " << session.disagreement << "\n            the RTL is the model's; scene saved in "
-        << save_scene(options, *session.failed) << '\n';
+    Progress progress(options, "reducing");
+    ReduceOptions reducing;
+    reducing.seconds = kReduceSeconds;
+    reducing.progress = [&progress](double fraction) { progress(fraction); };
+    const auto reduced = reduce(*session.failed, session.config, {}, specification_test(session.config), reducing);
+    const Scene& smallest = reduced ? reduced->scene : *session.failed;
+    out << "DIFFERENT   " << (reduced ? reduced->mismatch.hint : session.disagreement)
+        << "\n            the RTL is the model's; scene saved in " << save_scene(options, smallest);
+    if (reduced) out << ", " << reduced->primitives_after << " of " << reduced->primitives_before << " primitives";
+    out << '\n';
   } else if (saved) {
     out << "first seen  " << mismatch_line(*session.result.mismatch) << "\n\n";
     print_finding(out, *saved);

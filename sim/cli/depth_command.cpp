@@ -22,11 +22,11 @@ namespace {
 
 struct DepthCommand : CommonOptions {
   std::string near, far, mappings, formats, z, range;
-  std::string error;  ///< a length: where bins exceed it, and what it takes
-  std::string slope;  ///< of two surfaces: their minimum separation
+  std::string error;                ///< a length: where bins exceed it, and what it takes
+  std::string slope;                ///< of two surfaces: their minimum separation
   std::string fight_rate = "0.01";  ///< of the overlapping pairs, for the fewest bits
-  double fov = 45;    ///< degrees, vertical
-  int bits = 0;       ///< short for --format u<bits>
+  double fov = 45;                  ///< degrees, vertical
+  int bits = 0;                     ///< short for --format u<bits>
   bool sweeps = false;
   std::string csv_path;
   DepthPaths paths;
@@ -194,8 +194,8 @@ SceneStudy study_scene(const DepthCommand& options, const DepthQuestion& questio
   study.trials = try_changes(scene, variants[0], study.measured[0], threads, part(0.15, 0.3));
   study.answers = depth_answers(variants[0], study.measured[0], study.trials);
   if (study.measured[0].order.pairs > 0 && !is_interrupted())
-    study.fewest = fewest_depth_bits(scene, question.config, question.mappings, variants[0].planes,
-                                     question.fight_rate, threads, part(0.3, 0.4));
+    study.fewest = fewest_depth_bits(scene, question.config, question.mappings, variants[0].planes, question.fight_rate,
+                                     threads, part(0.3, 0.4));
   if (!study.fewest.empty())
     study.answers.insert(study.answers.begin(),
                          fewest_bits_answer(study.fewest, variants[0].planes, question.fight_rate));

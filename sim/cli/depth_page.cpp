@@ -204,13 +204,8 @@ Json study_json(const DepthQuestion& question, const std::vector<DepthRow>& rows
                       {"rate", f.rate},
                       {"rate_one_less", f.one_less ? Json(*f.one_less) : Json(nullptr)},
                       {"rtl", f.is_in_rtl}});
-  return {{"rows", rows_json(rows)},
-          {"series", series},
-          {"trials", trials},
-          {"sweeps", sweeps},
-          {"fight_rate", question.fight_rate},
-          {"fewest_bits", fewest},
-          {"answers", study.answers}};
+  return {{"rows", rows_json(rows)},           {"series", series},      {"trials", trials},        {"sweeps", sweeps},
+          {"fight_rate", question.fight_rate}, {"fewest_bits", fewest}, {"answers", study.answers}};
 }
 
 void write_depth_files(const DepthPaths& paths, const std::string& title, const DepthQuestion& question,

@@ -14,10 +14,10 @@
 #include "sim/config_json.hpp"
 #include "sim/scene/convention.hpp"
 #include "sim/scene/depth_collision.hpp"
-#include "sim/scene/texture_reach.hpp"
 #include "sim/scene/depth_mapping.hpp"
 #include "sim/scene/host_geometry.hpp"
 #include "sim/scene/text_cursor.hpp"
+#include "sim/scene/texture_reach.hpp"
 #include "sim/show/image/whole_file.hpp"
 #include "sim/study/depth/variant.hpp"
 
@@ -135,7 +135,8 @@ double parse_part(const std::string& text, const std::string& option) {
   const auto [read, error] = std::from_chars(text.data(), end, value);
   if (is_percent) value /= 100;
   if (error != std::errc() || read != end || !(value > 0 && value <= 1))
-    throw InputError(option + ": '" + text + "' is no part of a whole; give more than 0 and at most 1, as in 0.01 or 1%");
+    throw InputError(option + ": '" + text +
+                     "' is no part of a whole; give more than 0 and at most 1, as in 0.01 or 1%");
   return value;
 }
 

@@ -1,5 +1,6 @@
 #include "sim/cosim/specification.hpp"
 
+#include <array>
 #include <cstdio>
 
 #include "model/engines/hardware.hpp"
@@ -36,13 +37,49 @@ std::string difference(const Framebuffer& model, const Framebuffer& specificatio
 
 }  // namespace
 
-std::string difference_from_specification(const Scene& scene, const Config& config) {
-  const Framebuffer model = render_hardware(scene, config).frame, scalar = render_scalar(scene, config).frame;
-  for (std::size_t k = 0; k < model.samples.size(); ++k) {
-    const std::string text = difference(model.samples[k], scalar.samples[k], config, ", sample " + std::to_string(k));
+Framebuffer hardware_picture(const Scene& scene, const Config& config) { return render_hardware(scene, config).frame; }
+
+std::string difference_from_specification(const Scene& scene, const Config& config, const PictureOf& model) {
+  const Framebuffer drawn = model(scene, config), scalar = render_scalar(scene, config).frame;
+  for (std::size_t k = 0; k < drawn.samples.size(); ++k) {
+    const std::string text = difference(drawn.samples[k], scalar.samples[k], config, ", sample " + std::to_string(k));
     if (!text.empty()) return text;
   }
-  return difference(model, scalar, config, "");
+  return difference(drawn, scalar, config, "");
+}
+
+FailTest specification_test(const Config& config, const PictureOf& model) {
+  return [config, model](const Scene& scene, const LockstepOptions&) -> std::optional<Mismatch> {
+    Mismatch mismatch;
+    mismatch.stage = "specification";
+    mismatch.hint = difference_from_specification(scene, config, model);
+    return mismatch.hint.empty() ? std::nullopt : std::optional(mismatch);
+  };
+}
+
+Config random_shading_config(Random& random) {
+  constexpr std::array kNames{"tiny", "embedded", "full"};
+  constexpr std::array kUnits{TextureUnitKind::nearest, TextureUnitKind::bilinear, TextureUnitKind::trilinear};
+  while (true) {
+    Config config = preset(kNames[random.next() % 3]);
+    config.msaa_samples = 2 << (random.next() % 3);
+    config.cache_kind = CacheKind::blocks;  // before a texture unit
+    config.color_format = random.next() % 2 != 0 ? ColorFormat::rgba8888 : config.color_format;
+    config.texture_unit = kUnits[random.next() % 3];
+    config.perspective_colors = static_cast<int>(random.next() % 2);
+    config.fog_units = static_cast<int>(random.next() % 2);
+    config.shade_units = static_cast<int>(random.next() % 2);
+    config.alpha_units = static_cast<int>(random.next() % 2);
+    config.stamp_size = 1 << (random.next() % 3);
+    while (config.stamp_size * config.stamp_size * config.msaa_samples > 64) config.stamp_size /= 2;
+    if (config.stamp_size == 2 && config.texture_unit != TextureUnitKind::nearest && random.next() % 2 != 0)
+      config.texture_lanes = 4;
+    try {
+      validate(config);
+      return config;
+    } catch (const InputError&) {  // they do not go together
+    }
+  }
 }
 
 }  // namespace halfplane

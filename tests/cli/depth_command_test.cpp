@@ -67,7 +67,9 @@ TEST_F(DepthCommandLine, EachTrialComesOutTheSameWhenItsOptionsAreTyped) {
 TEST_F(DepthCommandLine, FewestBitsAreThoseWhereTheCodesOfTwoSquaresBegin) {
   const double z[] = {10, 10.003}, near = 1, far = 1000;
   const auto mapped = [&](double depth) { return far * (depth - near) / (depth * (far - near)); };
-  const auto code = [&](double depth, int bits) { return std::floor(mapped(depth) * (std::ldexp(1.0, bits) - 1) + 0.5); };
+  const auto code = [&](double depth, int bits) {
+    return std::floor(mapped(depth) * (std::ldexp(1.0, bits) - 1) + 0.5);
+  };
   std::string text = "halfplane 1\ntarget 64 64\nspace clip\nplanes 1 1000\n";
   for (const double depth : z)
     for (const char* corner : {"-5 -5 ", "5 -5 ", "5 5 ", "-5 5 "})

@@ -69,7 +69,8 @@ TEST_F(Pages, CommandsPrintWhatStandsBelowThem) {
     Outcome& outcome = known->second;
     if (is_new) outcome = paste("'" HALFPLANE_PROGRAM "' " + transcript.command);
     EXPECT_EQ(first_difference(transcript.lines, lines_of(outcome.out)), "")
-        << transcript.page << ": halfplane " << transcript.command << "\n" << outcome.out << outcome.err;
+        << transcript.page << ": halfplane " << transcript.command << "\n"
+        << outcome.out << outcome.err;
   }
 }
 

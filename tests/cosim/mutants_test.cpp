@@ -87,11 +87,16 @@ std::map<int, Run> known_runs() {
   return runs;
 }
 
-/// The run that catches the fault, looked for.
+/// The run that catches the fault, looked for: many short runs before the long ones, so that the line of mutant_runs.txt is one
+/// that shows the fault early.
 std::optional<Run> search(const Mutant& mutant) {
-  for (std::uint64_t seed = 1; seed <= 3; ++seed)  // what needs three things at once is rare
-    for (const Run& run : runs_for(mutant, seed))
-      if (catches(run, mutant)) return run;
+  struct Effort {
+    std::uint64_t primitives, seeds;
+  };
+  for (const Effort effort : {Effort{50, 8}, Effort{250, 8}, Effort{1000, 4}, Effort{6000, 3}})
+    for (std::uint64_t seed = 1; seed <= effort.seeds; ++seed)
+      for (const Run& run : runs_for(mutant, seed))
+        if (catches(run, mutant, effort.primitives)) return run;
   return std::nullopt;
 }
 

@@ -83,7 +83,8 @@ std::string bits_of(const FewestBits& fewest) {
 
 std::string fewest_bits_answer(std::span<const FewestBits> fewest, const DepthPlanes& planes, double rate) {
   std::string text = "For fewer than " + percent(rate) + " of " + std::to_string(fewest[0].pairs) +
-                     " overlapping pairs of fragments to fight at near " + number(planes[0]) + ": " + bits_of(fewest[0]);
+                     " overlapping pairs of fragments to fight at near " + number(planes[0]) + ": " +
+                     bits_of(fewest[0]);
   for (const FewestBits& other : fewest.subspan(1)) text += "; or " + bits_of(other);
   return text + ". Measured on this view: another may need more.";
 }

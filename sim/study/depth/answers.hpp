@@ -28,7 +28,8 @@ struct DepthTrial {
 
 /// How many bits are enough, of the first mapping and then of the others: at which near plane, what one bit less costs, whether
 /// the RTL stores them. One sentence, and that another view may need more.
-[[nodiscard]] std::string fewest_bits_answer(std::span<const FewestBits> fewest, const DepthPlanes& planes, double rate);
+[[nodiscard]] std::string fewest_bits_answer(std::span<const FewestBits> fewest, const DepthPlanes& planes,
+                                             double rate);
 
 /// What a variant loses and what would help: two or three sentences.
 [[nodiscard]] std::vector<std::string> depth_answers(const DepthVariant& base, const DepthMeasurement& measured,

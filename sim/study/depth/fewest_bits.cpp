@@ -25,7 +25,8 @@ struct Bisection {
 }  // namespace
 
 DepthVariant stored_plane(const Config& config, const DepthPlanes& planes) {
-  return unorm_variant(config, std::isinf(planes[1]) ? DepthMapping::stdinf : DepthMapping::std, config.depth_bits, planes);
+  return unorm_variant(config, std::isinf(planes[1]) ? DepthMapping::stdinf : DepthMapping::std, config.depth_bits,
+                       planes);
 }
 
 std::vector<FewestBits> fewest_depth_bits(const Scene& scene, const Config& config,
@@ -55,7 +56,9 @@ std::vector<FewestBits> fewest_depth_bits(const Scene& scene, const Config& conf
   }
   std::vector<FewestBits> list;
   for (std::size_t i = 0; i < mappings.size(); ++i) {
-    const auto order = [&](int bits) -> const DepthOrder& { return searches[i].orders[static_cast<std::size_t>(bits)]; };
+    const auto order = [&](int bits) -> const DepthOrder& {
+      return searches[i].orders[static_cast<std::size_t>(bits)];
+    };
     FewestBits fewest;
     fewest.mapping = mappings[i];
     const int enough = searches[i].holds;

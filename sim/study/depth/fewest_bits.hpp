@@ -13,11 +13,11 @@ namespace halfplane {
 /// The fewest bits of one mapping, stored as `u<bits>`.
 struct FewestBits {
   DepthMapping mapping = DepthMapping::std;
-  std::optional<int> bits;        ///< 8 to 32; none: 32 are not enough
-  std::uint64_t pairs = 0;        ///< overlapping pairs of fragments
-  double rate = 0;                ///< the part of them that fights with `bits`; with 32 where there are none
-  std::optional<double> one_less; ///< the part that fights with a bit less; none: 8 are enough
-  bool is_in_rtl = false;         ///< the RTL stores this mapping
+  std::optional<int> bits;         ///< 8 to 32; none: 32 are not enough
+  std::uint64_t pairs = 0;         ///< overlapping pairs of fragments
+  double rate = 0;                 ///< the part of them that fights with `bits`; with 32 where there are none
+  std::optional<double> one_less;  ///< the part that fights with a bit less; none: 8 are enough
+  bool is_in_rtl = false;          ///< the RTL stores this mapping
 };
 
 /// The interpolated depth as the pipeline stores it without `depth.format`: `u<depth.bits>`, mapped by `std`, or by `stdinf`

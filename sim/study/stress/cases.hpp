@@ -91,6 +91,7 @@ void fill_rules(Unit& unit);
 void full_guard_band(Unit& unit);
 void stalls(Unit& unit);
 void frames(Unit& unit);
+void hardware_surfaces(Unit& unit);
 // search.cpp
 void adversarial_depth(Unit& unit);
 void adversarial_interpolation(Unit& unit);

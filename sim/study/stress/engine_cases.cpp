@@ -7,6 +7,7 @@
 #include "model/stages/interpolate.hpp"
 #include "model/stages/traversal.hpp"
 #include "sim/cosim/random_scene.hpp"
+#include "sim/cosim/specification.hpp"
 #include "sim/study/stress/cases.hpp"
 #include "sim/study/stress/shapes.hpp"
 #include "sim/study/stress/triangle_families.hpp"
@@ -160,6 +161,17 @@ void stalls(Unit& unit) {
   options.textures = memory;
   const CycleRendering cycle = render_cycle(scene, unit.config, *timing, {}, options);
   expect_same_image(unit, scene, functional, cycle.rendering);
+}
+
+void hardware_surfaces(Unit& unit) {
+  // The hardware model, which co-simulation holds the RTL to, against the scalar engine.
+  const Config config = random_shading_config(unit.random);
+  unit.count_config(std::hash<std::string>()(label(config, " --set ")));
+  const Scene scene = random_scene(config, unit.random.next(), 24);
+  Unit shaded(unit, config);
+  shaded.count_triangles(24);
+  const std::string difference = difference_from_specification(scene, config);
+  (void)shaded.require(difference.empty(), "hardware model", scene, difference);
 }
 
 void frames(Unit& unit) {
