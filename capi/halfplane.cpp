@@ -1,16 +1,11 @@
-#include "halfplane.h"
-
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <exception>
-#include <map>
 #include <memory>
-#include <new>
-#include <string>
 
+#include "handles.hpp"
+#include "input.hpp"
 #include "model/capture/capture.hpp"
-#include "model/capture/capture_lines.hpp"
 #include "model/engines/cycle/cycle_model.hpp"
 #include "model/engines/functional.hpp"
 #include "model/engines/scalar.hpp"
@@ -19,51 +14,15 @@
 #include "stage_at_work.hpp"
 
 using namespace halfplane;
+using namespace halfplane::capi;
 
-struct halfplane_config {
-  Config config;
-};
-struct halfplane_scene {
-  Scene scene;
-  State state{};  ///< of the next draw from arrays
-};
-struct halfplane_frame {
-  Framebuffer frame;
-  std::map<std::string, std::uint64_t, std::less<>> counters;
-  std::map<std::string, std::vector<double>, std::less<>> reals;  ///< of the golden
-};
 struct halfplane_stage {
-  capi::StageAtWork at_work;
+  StageAtWork at_work;
 };
 
 namespace {
 
 thread_local std::string last_error;  // NOLINT: what errno is to C
-
-/// What `work` returns, or `failure`, when it throws; then last_error says why.
-template <class Failure, class Work>
-auto guarded(Failure failure, Work&& work) noexcept -> decltype(work()) {
-  try {
-    try {
-      return work();
-    } catch (const std::bad_alloc&) {
-      last_error = "there is not enough memory";
-    } catch (const std::exception& error) {
-      last_error = error.what();
-      std::ranges::replace_if(
-          last_error, [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
-    }
-  } catch (...) {  // of the assignments
-  }
-  return failure;
-}
-
-template <class T>
-T& required(T* pointer, const char* what) {
-  if (pointer == nullptr) throw InputError(std::string(what) + " is NULL");
-  return *pointer;
-}
-std::string_view text(const char* word, const char* what) { return &required(word, what); }
 
 const Setting& setting_of(std::string_view key) {
   for (const Setting& setting : settings())
@@ -71,83 +30,60 @@ const Setting& setting_of(std::string_view key) {
   throw InputError("there is no setting '" + std::string(key) + "'");
 }
 
-Topology topology_of(std::string_view name) {
-  static constexpr std::array<std::string_view, 7> kNames{"triangles",  "triangle_strip", "triangle_fan", "lines",
-                                                          "line_strip", "line_loop",      "points"};
-  const auto found = std::ranges::find(kNames, name);
-  if (found == kNames.end())
-    throw InputError("there is no topology '" + std::string(name) + "'; give triangles, lines...");
-  return static_cast<Topology>(found - kNames.begin());
-}
-
-/// Lines of a capture, read by the one reader of captures: as the head of one with a single draw, whose state is taken.
 void say(halfplane_scene& made, std::string_view lines) {
   Scene& scene = made.scene;
-  const std::string head =
-      "halfplane 1\ntarget " + std::to_string(scene.width) + " " + std::to_string(scene.height) + "\n";
-  const Scene said = read_capture_lines(head + std::string(lines) + "\nv 0 0 0 1\np 0\n", "lines", 2);
-  if (said.vertices.size() != 1) throw InputError("lines: vertices are given by halfplane_scene_vertices");
-  if (said.width != scene.width || said.height != scene.height)
-    throw InputError("lines: the size of the target is given by halfplane_scene_new");
-  const auto first_texture = static_cast<std::uint32_t>(scene.textures.size());
-  made.state = said.states.at(std::get<Draw>(said.commands.back()).state);
-  if (made.state.texture) *made.state.texture += first_texture;
-  scene.textures.insert(scene.textures.end(), said.textures.begin(), said.textures.end());
-  scene.commands.insert(scene.commands.end(), said.commands.begin(), said.commands.end() - 1);
-  if (said.planes) scene.planes = said.planes;
-}
-
-std::size_t add_vertices(Scene& scene, const double* values, int numbers, std::size_t count) {
-  if (numbers != 4 && numbers != 8 && numbers != 10)
-    throw InputError("a vertex has 4, 8 or 10 numbers, not " + std::to_string(numbers));
-  const std::size_t first = scene.vertices.size();
-  for (std::size_t i = 0; i < count; ++i, values += numbers) {
-    Vertex v{values[0], values[1], values[2], values[3]};
-    if (numbers >= 8) std::copy_n(values + 4, 4, v.rgba.begin());
-    if (numbers == 10) {
-      v.u = values[8];
-      v.v = values[9];
-    }
-    scene.vertices.push_back(v);
+  const Said said = read_lines(scene.width, scene.height, scene.textures, lines);
+  made.state = said.state;
+  scene.textures.insert(scene.textures.end(),
+                        said.scene.textures.begin() + static_cast<std::ptrdiff_t>(scene.textures.size()),
+                        said.scene.textures.end());
+  if (said.scene.planes) scene.planes = said.scene.planes;
+  for (const Command& command : said.scene.commands) {
+    const auto* clear = std::get_if<Clear>(&command);
+    if (clear == nullptr) continue;
+    Clear own = *clear;
+    own.state = static_cast<std::uint32_t>(scene.states.size());
+    scene.states.push_back(said.scene.states[clear->state]);
+    scene.commands.emplace_back(own);
   }
-  return first;
 }
 
-void add_draw(halfplane_scene& made, Topology topology, const std::uint32_t* indices, std::size_t count) {
+std::int64_t add_vertices(Scene& scene, const Vertices& given) {
+  const std::size_t first = scene.vertices.size();
+  scene.vertices.insert(scene.vertices.end(), given.vertices.begin(), given.vertices.end());
+  if (!given.normals.empty()) {
+    scene.normals.resize(first);
+    scene.normals.insert(scene.normals.end(), given.normals.begin(), given.normals.end());
+  }
+  return static_cast<std::int64_t>(first);
+}
+
+void add_draw(halfplane_scene& made, Topology topology, std::span<const std::uint32_t> indices) {
   Scene& scene = made.scene;
-  for (std::size_t i = 0; i < count; ++i)
-    if (indices[i] != kRestart && indices[i] >= scene.vertices.size())
-      throw InputError("index " + std::to_string(i) + " of the draw is " + std::to_string(indices[i]) +
-                       ", and the scene has " + std::to_string(scene.vertices.size()) + " vertices");
+  check_indices(indices, scene.vertices.size(), "scene");
   if (scene.states.empty() || scene.states.back() != made.state) scene.states.push_back(made.state);
   Draw draw;
   draw.topology = topology;
   draw.first = scene.indices.size();
-  draw.count = count;
+  draw.count = indices.size();
   draw.state = static_cast<std::uint32_t>(scene.states.size() - 1);
-  scene.indices.insert(scene.indices.end(), indices, indices + count);
+  scene.indices.insert(scene.indices.end(), indices.begin(), indices.end());
   scene.commands.emplace_back(draw);
 }
 
-void count(halfplane_frame& made, const Counters& counters) {
-  made.counters = {{"primitives_in", counters.primitives_in},
-                   {"drawn", counters.drawn},
-                   {"covered", counters.covered},
-                   {"depth_passed", counters.depth_passed},
-                   {"alpha_killed", counters.alpha_killed},
-                   {"written", counters.written}};
+void add_texture(Scene& scene, Texture texture) {
+  if (std::ranges::find(scene.textures, texture.name, &Texture::name) != scene.textures.end())
+    throw InputError("the scene has a texture '" + texture.name + "' already");
+  scene.textures.push_back(std::move(texture));
 }
 
 halfplane_frame taken_from(Rendering&& rendering) {
-  halfplane_frame made{std::move(rendering.frame), {}, {}};
-  count(made, rendering.counters);
-  return made;
+  return {std::move(rendering.frame), named(rendering.counters), {}};
 }
 
 halfplane_frame golden_frame(const Scene& scene, const Config& config) {
   golden::Image image = golden::render(scene, config);
-  halfplane_frame made{std::move(image.frame), {}, {}};
-  count(made, image.counters);
+  halfplane_frame made{std::move(image.frame), named(image.counters), {}};
   made.reals["depth"] = std::move(image.depth);
   auto& color = made.reals["color"];
   for (const auto& channels : image.color) color.insert(color.end(), channels.begin(), channels.end());
@@ -162,9 +98,14 @@ halfplane_frame cycle_frame(const Scene& scene, const Config& config) {
   return made;
 }
 
-halfplane_frame rendered(const Scene& scene, const Config& config, std::string_view engine) {
+halfplane_frame rendered(const Scene& scene, const Config& config, std::string_view engine, int threads) {
   validate(config);
-  if (engine == "functional") return taken_from(render_functional(scene, config));
+  constexpr int kMostThreads = 1024;
+  if (threads < 1 || threads > kMostThreads)
+    throw InputError(std::to_string(threads) + " threads; give 1 to " + std::to_string(kMostThreads));
+  RenderOptions options;
+  options.threads = threads;
+  if (engine == "functional") return taken_from(render_functional(scene, config, options));
   if (engine == "scalar") return taken_from(render_scalar(scene, config));
   if (engine == "cycle") return cycle_frame(scene, config);
   if (engine == "golden") return golden_frame(scene, config);
@@ -176,17 +117,7 @@ void require_room(std::size_t needed, std::size_t count) {
     throw InputError("there is room for " + std::to_string(count) + " values of " + std::to_string(needed));
 }
 
-template <class Plane>
-std::int64_t copied(const Framebuffer& frame, const Plane& plane, std::uint32_t* values, std::size_t count) {
-  const std::size_t width = static_cast<std::size_t>(frame.width),
-                    pixels = width * static_cast<std::size_t>(frame.height);
-  require_room(pixels, count);
-  for (int y = 0; y < frame.height; ++y)
-    values = std::copy_n(plane.begin() + static_cast<std::ptrdiff_t>(frame.at(0, y)), width, values);
-  return static_cast<std::int64_t>(pixels);
-}
-
-const capi::StageAtWork::PortInfo& port_of(const halfplane_stage* stage, int is_out, int port) {
+const StageAtWork::PortInfo& port_of(const halfplane_stage* stage, int is_out, int port) {
   const auto& ports = required(stage, "the stage").at_work.ports(is_out != 0);
   if (port < 0 || static_cast<std::size_t>(port) >= ports.size())
     throw InputError("there is no port " + std::to_string(port) + "; the stage has " + std::to_string(ports.size()) +
@@ -203,6 +134,43 @@ const vectors::FieldName& field_of(const halfplane_stage* stage, int is_out, int
 }
 
 }  // namespace
+
+void halfplane::capi::set_last_error(std::string_view text) {
+  last_error = text;
+  std::ranges::replace_if(
+      last_error, [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
+}
+
+CounterNames halfplane::capi::named(const Counters& counters) {
+  return {{"primitives_in", counters.primitives_in},
+          {"drawn", counters.drawn},
+          {"covered", counters.covered},
+          {"depth_passed", counters.depth_passed},
+          {"alpha_killed", counters.alpha_killed},
+          {"written", counters.written}};
+}
+
+std::int64_t halfplane::capi::counter(const CounterNames& counters, std::string_view name) {
+  const auto found = counters.find(name);
+  if (found == counters.end()) throw InputError("this frame has no counter '" + std::string(name) + "'");
+  return static_cast<std::int64_t>(found->second);
+}
+
+std::int64_t halfplane::capi::copy_plane(const Framebuffer& frame, std::string_view plane, std::uint32_t* values,
+                                         std::size_t count) {
+  const std::size_t width = static_cast<std::size_t>(frame.width),
+                    pixels = width * static_cast<std::size_t>(frame.height);
+  const auto copied = [&](const auto& from) {
+    require_room(pixels, count);
+    for (int y = 0; y < frame.height; ++y)
+      values = std::copy_n(from.begin() + static_cast<std::ptrdiff_t>(frame.at(0, y)), width, values);
+    return static_cast<std::int64_t>(pixels);
+  };
+  if (plane == "depth") return copied(frame.depth);
+  if (plane == "color") return copied(frame.color);
+  if (plane == "stencil") return copied(frame.stencil);
+  throw InputError("there is no plane '" + std::string(plane) + "'; give depth, color or stencil");
+}
 
 extern "C" {
 
@@ -261,24 +229,45 @@ int halfplane_scene_say(halfplane_scene* scene, const char* lines, size_t bytes)
 }
 int64_t halfplane_scene_vertices(halfplane_scene* scene, const double* values, int numbers, size_t count) {
   return guarded(std::int64_t{-1}, [&] {
-    return static_cast<std::int64_t>(
-        add_vertices(required(scene, "the scene").scene, &required(values, "the array of vertices"), numbers, count));
+    return add_vertices(required(scene, "the scene").scene,
+                        {read_vertices(&required(values, "the array of vertices"), numbers, count), {}});
+  });
+}
+int64_t halfplane_scene_records(halfplane_scene* scene, const halfplane_layout* layout, const void* data, size_t bytes,
+                                size_t count) {
+  return guarded(std::int64_t{-1}, [&] {
+    return add_vertices(required(scene, "the scene").scene,
+                        read_vertices(required(layout, "the layout"), data, bytes, count));
+  });
+}
+int halfplane_scene_texture(halfplane_scene* scene, const char* name, int width, int height, const uint8_t* rgba,
+                            const char* format, const char* mips) {
+  return guarded(-1, [&] {
+    add_texture(required(scene, "the scene").scene,
+                read_texture(text(name, "the texture's name"), width, height, rgba, text(format, "the format"),
+                             text(mips, "the kind of mips")));
+    return 0;
   });
 }
 int halfplane_scene_draw(halfplane_scene* scene, const char* topology, const uint32_t* indices, size_t count) {
   return guarded(-1, [&] {
     add_draw(required(scene, "the scene"), topology_of(text(topology, "the topology")),
-             &required(indices, "the array of indices"), count);
+             std::span(&required(indices, "the array of indices"), count));
     return 0;
   });
 }
 void halfplane_scene_free(halfplane_scene* scene) { delete scene; }
 
-halfplane_frame* halfplane_render(const halfplane_scene* scene, const halfplane_config* config, const char* engine) {
+halfplane_frame* halfplane_render_threads(const halfplane_scene* scene, const halfplane_config* config,
+                                          const char* engine, int threads) {
   return guarded(nullptr, [&] {
     return new halfplane_frame(rendered(required(scene, "the scene").scene,
-                                        required(config, "the configuration").config, text(engine, "the engine")));
+                                        required(config, "the configuration").config, text(engine, "the engine"),
+                                        threads));
   });
+}
+halfplane_frame* halfplane_render(const halfplane_scene* scene, const halfplane_config* config, const char* engine) {
+  return halfplane_render_threads(scene, config, engine, 1);
 }
 int halfplane_frame_width(const halfplane_frame* frame) {
   return guarded(-1, [&] { return required(frame, "the frame").frame.width; });
@@ -288,13 +277,8 @@ int halfplane_frame_height(const halfplane_frame* frame) {
 }
 int64_t halfplane_frame_plane(const halfplane_frame* frame, const char* plane, uint32_t* values, size_t count) {
   return guarded(std::int64_t{-1}, [&] {
-    const Framebuffer& from = required(frame, "the frame").frame;
-    const std::string_view name = text(plane, "the plane");
-    (void)required(values, "the room for the values");
-    if (name == "depth") return copied(from, from.depth, values, count);
-    if (name == "color") return copied(from, from.color, values, count);
-    if (name == "stencil") return copied(from, from.stencil, values, count);
-    throw InputError("there is no plane '" + std::string(name) + "'; give depth, color or stencil");
+    return copy_plane(required(frame, "the frame").frame, text(plane, "the plane"),
+                      &required(values, "the room for the values"), count);
   });
 }
 int64_t halfplane_frame_reals(const halfplane_frame* frame, const char* plane, double* values, size_t count) {
@@ -308,12 +292,8 @@ int64_t halfplane_frame_reals(const halfplane_frame* frame, const char* plane, d
   });
 }
 int64_t halfplane_frame_counter(const halfplane_frame* frame, const char* name) {
-  return guarded(std::int64_t{-1}, [&] {
-    const auto& counters = required(frame, "the frame").counters;
-    const auto found = counters.find(text(name, "the counter"));
-    if (found == counters.end()) throw InputError("this frame has no counter '" + std::string(name) + "'");
-    return static_cast<std::int64_t>(found->second);
-  });
+  return guarded(std::int64_t{-1},
+                 [&] { return counter(required(frame, "the frame").counters, text(name, "the counter")); });
 }
 void halfplane_frame_free(halfplane_frame* frame) { delete frame; }
 

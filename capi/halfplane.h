@@ -51,14 +51,40 @@ typedef struct halfplane_frame halfplane_frame;
 /* A capture (docs/capture.md) that lies in memory: exact to the bit, any state. The files of its
  * textures are looked for in the current folder; inline ones need none. */
 HALFPLANE_API halfplane_scene* halfplane_scene_read(const char* text, size_t bytes);
-/* An empty scene of width * height pixels, to be filled by the three below. */
+/* An empty scene of width * height pixels, to be filled by those below. */
 HALFPLANE_API halfplane_scene* halfplane_scene_new(int width, int height);
 /* Lines of a capture that hold from here on: clears, and what a draw depends on (space, state, texture, texels, planes). Each
- * call begins with a capture's defaults: what an earlier one set is set no more. Returns 0. */
+ * call begins with a capture's defaults: what an earlier one set is set no more, but its textures keep their names.
+ * Returns 0. */
 HALFPLANE_API int halfplane_scene_say(halfplane_scene* scene, const char* lines, size_t bytes);
+/* A texture of that name for `state texture NAME`, from width * height texels of R, G, B, A, a byte each, the row of v = 0 first.
+ * `format`: as which its texels are stored, "rgba8888", "rgb565"...; `mips`: "none", "box" or "box_linear" (docs/capture.md).
+ * A texture that has the name already is an error. Returns 0. */
+HALFPLANE_API int halfplane_scene_texture(halfplane_scene* scene, const char* name, int width, int height,
+                                          const uint8_t* rgba, const char* format, const char* mips);
 /* `count` vertices from an array: x y z w, and where `numbers` is 8 r g b a (0 to 255), where it is 10 u v too. Returns the
  * index of the first. */
 HALFPLANE_API int64_t halfplane_scene_vertices(halfplane_scene* scene, const double* values, int numbers, size_t count);
+
+/* Where a vertex in memory has an attribute. A component is taken as the number that it is: 255 of a byte is 255. */
+enum { HALFPLANE_NONE = 0, HALFPLANE_F64 = 1, HALFPLANE_F32 = 2, HALFPLANE_U8 = 3, HALFPLANE_I16 = 4 };
+typedef struct halfplane_attribute {
+  int type;       /* one of the above; HALFPLANE_NONE: the vertices do not have it */
+  int components; /* one after the other, without gaps */
+  size_t offset;  /* bytes from the vertex's first byte; no alignment is asked for */
+} halfplane_attribute;
+/* Vertices as they lie in memory, for example x y z w as floats with 8-bit colours behind them:
+ *   {20, {HALFPLANE_F32, 4, 0}, {HALFPLANE_U8, 4, 16}, {HALFPLANE_NONE, 0, 0}, {HALFPLANE_NONE, 0, 0}} */
+typedef struct halfplane_layout {
+  size_t stride;                /* bytes from one vertex to the next */
+  halfplane_attribute position; /* 2 to 4: x y, then z (else 0), then w (else 1) */
+  halfplane_attribute color;    /* 3 or 4: r g b, then a (else 255), 0 to 255; without it white */
+  halfplane_attribute texcoord; /* 2: u v; without it 0 0 */
+  halfplane_attribute normal;   /* 3, of any length; without it none. Of `state shade phong` */
+} halfplane_layout;
+/* As halfplane_scene_vertices, of `count` vertices that lie in `bytes` bytes at `data`. */
+HALFPLANE_API int64_t halfplane_scene_records(halfplane_scene* scene, const halfplane_layout* layout, const void* data,
+                                              size_t bytes, size_t count);
 /* A draw: "triangles", "triangle_strip", "triangle_fan", "lines", "line_strip", "line_loop" or "points" of indices that count
  * from 0 over the whole scene; 0xffffffff starts a strip, fan or loop anew. Returns 0. */
 HALFPLANE_API int halfplane_scene_draw(halfplane_scene* scene, const char* topology, const uint32_t* indices,
@@ -69,6 +95,9 @@ HALFPLANE_API void halfplane_scene_free(halfplane_scene* scene);
  * "cycle" runs with an ideal memory, from reset to the answer to the last write. */
 HALFPLANE_API halfplane_frame* halfplane_render(const halfplane_scene* scene, const halfplane_config* config,
                                                 const char* engine);
+/* The same with that many threads, 1 to 1024, where the engine has them ("functional"); no bit depends on it. */
+HALFPLANE_API halfplane_frame* halfplane_render_threads(const halfplane_scene* scene, const halfplane_config* config,
+                                                        const char* engine, int threads);
 HALFPLANE_API int halfplane_frame_width(const halfplane_frame* frame); /* pixels */
 HALFPLANE_API int halfplane_frame_height(const halfplane_frame* frame);
 /* Copies a plane, row by row from the top, width * height values, and returns their number. Planes: "depth" (codes), "color"
@@ -81,6 +110,45 @@ HALFPLANE_API int64_t halfplane_frame_reals(const halfplane_frame* frame, const 
 /* "primitives_in", "drawn", "covered", "depth_passed", "alpha_killed", "written"; of "cycle" also "cycles". */
 HALFPLANE_API int64_t halfplane_frame_counter(const halfplane_frame* frame, const char* name);
 HALFPLANE_API void halfplane_frame_free(halfplane_frame* frame);
+
+/* --- targets ------------------------------------------------------------------------------------------------------------- */
+
+/* A frame that stays: cleared and drawn on call by call, by the functional engine, as a driver does. The picture is that of a
+ * scene with the same commands. A call that fails leaves frame, textures and state as they were. */
+typedef struct halfplane_target halfplane_target;
+
+/* Black and as far as can be. `planes`: the near and the far distance of a capture's `planes` line; NULL: none. */
+HALFPLANE_API halfplane_target* halfplane_target_new(const halfplane_config* config, int width, int height,
+                                                     const double* planes);
+/* Threads of the draws that follow, 1 to 1024, 1 at first; no bit depends on it. Returns 0. */
+HALFPLANE_API int halfplane_target_set_threads(halfplane_target* target, int threads);
+/* As halfplane_scene_say; clears are done at once. */
+HALFPLANE_API int halfplane_target_say(halfplane_target* target, const char* lines, size_t bytes);
+/* As halfplane_scene_texture, but a texture that has the name already is replaced. */
+HALFPLANE_API int halfplane_target_texture(halfplane_target* target, const char* name, int width, int height,
+                                           const uint8_t* rgba, const char* format, const char* mips);
+/* Clears inside the scissor of the state that was said. `color`: r g b a, 0 to 255, or NULL; `depth`: a window z, or NULL;
+ * `stencil`: 0 to 255, or -1. What is NULL or -1 stays. Returns 0. */
+HALFPLANE_API int halfplane_target_clear(halfplane_target* target, const double* color, const double* depth,
+                                         int stencil);
+/* Draws `vertices` vertices that lie in `bytes` bytes at `data`, in the state that was said. Topologies and indices as of
+ * halfplane_scene_draw, from 0 over these vertices; NULL: in their order. Returns 0. */
+HALFPLANE_API int halfplane_target_draw(halfplane_target* target, const char* topology, const halfplane_layout* layout,
+                                        const void* data, size_t bytes, size_t vertices, const uint32_t* indices,
+                                        size_t count);
+/* Every command of a scene of this size and these planes. Returns 0. One that fails midway has drawn what comes before. */
+HALFPLANE_API int halfplane_target_draw_scene(halfplane_target* target, const halfplane_scene* scene);
+/* As halfplane_frame_plane and halfplane_frame_counter: the frame so far, and what the last call that drew counted. */
+HALFPLANE_API int64_t halfplane_target_plane(const halfplane_target* target, const char* plane, uint32_t* values,
+                                             size_t count);
+HALFPLANE_API int64_t halfplane_target_counter(const halfplane_target* target, const char* name);
+/* Copies the frame to memory of the caller's, or takes it over from there: `color` with 2 bytes a pixel (rgb565) or 4, `depth`
+ * with 4; pitches are bytes from one row to the next. NULL leaves a buffer out. Returns 0. */
+HALFPLANE_API int halfplane_target_copy_to(const halfplane_target* target, void* color, size_t color_pitch,
+                                           uint32_t* depth, size_t depth_pitch);
+HALFPLANE_API int halfplane_target_copy_from(halfplane_target* target, const void* color, size_t color_pitch,
+                                             const uint32_t* depth, size_t depth_pitch);
+HALFPLANE_API void halfplane_target_free(halfplane_target* target);
 
 /* --- a stage by itself --------------------------------------------------------------------------------------------------- */
 

@@ -154,17 +154,19 @@ inline ApiCase api_case(std::span<const std::uint8_t> data) {
   return {config, SceneFromBytes(bytes, config).scene()};
 }
 
-/// The scene through a Target, command by command.
+/// The scene through a Target, command by command, by one to three threads.
 inline Rendering by_target(const Scene& scene, const Config& config) {
   validate(scene);  // as a whole, as the others do: a Target has drawn what comes before a bad command
   check_scene(scene, config);
   Target target(config, scene.width, scene.height, scene.planes);
+  target.set_threads(1 + static_cast<int>(scene.vertices.size() % 3));
+  for (const Texture& texture : scene.textures) (void)target.add_texture(texture);
   Counters sum;
   for (const Command& command : scene.commands) {
     if (const auto* clear = std::get_if<Clear>(&command)) target.clear(*clear, scene.states[clear->state]);
     if (const auto* draw = std::get_if<Draw>(&command)) {
       const std::span indices = std::span(scene.indices).subspan(draw->first, draw->count);
-      const Counters c = target.draw(scene.states[draw->state], draw->topology, scene.vertices, indices);
+      const Counters c = target.draw(scene.states[draw->state], draw->topology, scene.vertices, indices, scene.normals);
       sum.primitives_in += c.primitives_in;
       sum.depth_passed += c.depth_passed;
       sum.written += c.written;

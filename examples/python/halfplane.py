@@ -2,8 +2,12 @@
 
 The library is looked for at HALFPLANE_LIBRARY, then as libhalfplane_c where the system looks. Everything that fails raises
 halfplane.Error with the library's one line. With cocotb, make a Stage in the test and give it what the bus carries.
+
+Vertices, indices and texels may be lists, or any buffer: bytes, array.array, memoryview, ctypes and NumPy arrays. Planes are
+memoryviews of 32-bit words, which numpy.asarray() takes without copying: numpy.asarray(frame.plane("depth")).reshape(h, w).
 """
 
+import array
 import ctypes
 import ctypes.util
 import os
@@ -22,9 +26,11 @@ def _load():
     library = ctypes.CDLL(path)
     for name in ("last_error", "stage_port_name", "stage_field_name"):
         getattr(library, "halfplane_" + name).restype = ctypes.c_char_p
-    for name in ("config_new", "scene_read", "scene_new", "render", "stage_new"):
+    for name in ("config_new", "scene_read", "scene_new", "render_threads", "target_new", "stage_new"):
         getattr(library, "halfplane_" + name).restype = ctypes.c_void_p
-    for name in ("scene_vertices", "frame_plane", "frame_reals", "frame_counter"):
+    for name in (
+        "scene_vertices scene_records frame_plane frame_reals frame_counter target_plane target_counter".split()
+    ):
         getattr(library, "halfplane_" + name).restype = ctypes.c_int64
     if library.halfplane_abi() != ABI:
         raise Error(f"the library has ABI {library.halfplane_abi()}, this module speaks {ABI}")
@@ -39,6 +45,88 @@ def _checked(result):
     if result is None or result < 0:
         raise Error(_c.halfplane_last_error().decode(errors="replace"))
     return result
+
+
+def _bytes_of(buffer):
+    """A pointer to what a buffer holds, and its size in bytes. Copies only what is read-only or has gaps."""
+    view = memoryview(buffer)
+    if not view.c_contiguous:
+        view = memoryview(view.tobytes())
+    if view.nbytes == 0:
+        return None, 0
+    view = view.cast("B") if view.format != "B" or view.ndim != 1 else view
+    kind = ctypes.c_char * view.nbytes
+    return (kind.from_buffer_copy if view.readonly else kind.from_buffer)(view), view.nbytes
+
+
+def _indices(values):
+    """Indices as 32-bit words, and how many. A buffer of 32-bit words is taken as it is."""
+    if isinstance(values, (list, tuple, range)):
+        values = array.array("I", values)
+    view = memoryview(values)
+    if view.itemsize != 4 or view.format in ("f", "<f"):
+        view = memoryview(array.array("I", view.tolist()))
+    return _bytes_of(view)[0], view.nbytes // 4
+
+
+class _Attribute(ctypes.Structure):
+    _fields_ = [("type", ctypes.c_int), ("components", ctypes.c_int), ("offset", ctypes.c_size_t)]
+
+
+class Layout(ctypes.Structure):
+    """Vertices as they lie in memory: `stride` bytes from one to the next, and for each attribute that they have its type,
+    "f64", "f32", "u8" or "i16", its number of components and its place, in bytes. Four floats with a colour of 8 bits a
+    channel behind them: Layout(20, position=("f32", 4, 0), color=("u8", 4, 16)).
+    """
+
+    _fields_ = [("stride", ctypes.c_size_t)] + [
+        (name, _Attribute) for name in ("position", "color", "texcoord", "normal")
+    ]
+    TYPES = {"f64": 1, "f32": 2, "u8": 3, "i16": 4}
+
+    def __init__(self, stride, **attributes):
+        super().__init__(stride)
+        for name, (kind, components, offset) in attributes.items():
+            if kind not in self.TYPES:
+                raise Error(f"there is no type {kind!r}; give one of {', '.join(self.TYPES)}")
+            setattr(self, name, _Attribute(self.TYPES[kind], components, offset))
+
+
+def _vertices(vertices, layout):
+    """Layout, pointer, bytes and number of vertices. Without a layout, rows of x y z w [r g b a [u v]]: lists, or a buffer of
+    floats or doubles with a row for each vertex.
+    """
+    if layout is not None:
+        pointer, size = _bytes_of(vertices)
+        return layout, pointer, size, size // layout.stride if layout.stride else 0
+    if isinstance(vertices, (list, tuple)):
+        width, rows, kind = len(vertices[0]) if vertices else 4, len(vertices), "f64"
+        if any(len(row) != width for row in vertices):
+            raise Error("rows of vertices have different lengths")
+        vertices = array.array("d", (value for row in vertices for value in row))
+    else:
+        view = memoryview(vertices)
+        kind = {"d": "f64", "<d": "f64", "f": "f32", "<f": "f32"}.get(view.format)
+        if view.ndim != 2 or kind is None:
+            raise Error("give a layout: these vertices are not rows of floats or doubles")
+        rows, width = view.shape
+    if width not in (4, 8, 10):
+        raise Error(f"a vertex has 4, 8 or 10 numbers, not {width}")
+    size = 8 if kind == "f64" else 4
+    attributes = {"position": (kind, 4, 0), "color": (kind, 4, 4 * size), "texcoord": (kind, 2, 8 * size)}
+    made = Layout(width * size, **dict(list(attributes.items())[: {4: 1, 8: 2, 10: 3}[width]]))
+    return made, *_bytes_of(vertices), rows
+
+
+def _plane(function, handle, name, count, into):
+    """A plane as 32-bit words, in `into` or in memory of its own."""
+    if into is None:
+        into = (ctypes.c_uint32 * count)()
+    view = memoryview(into)
+    if view.readonly or not view.c_contiguous:
+        raise Error("a plane needs a buffer that can be written, without gaps")
+    _checked(function(handle, name.encode(), _bytes_of(view)[0], ctypes.c_size_t(view.nbytes // 4)))
+    return view.cast("B").cast("I")
 
 
 class _Handle:
@@ -81,7 +169,9 @@ class Scene(_Handle):
 
 
 class ArrayScene(_Handle):
-    """A scene from arrays: vertices [x, y, z, w], [..., r, g, b, a] or [..., u, v], and draws of their indices."""
+    """A scene from arrays: vertices [x, y, z, w], [..., r, g, b, a] or [..., u, v] or as a Layout says, and draws of their
+    indices.
+    """
 
     kind = "scene"
 
@@ -94,15 +184,86 @@ class ArrayScene(_Handle):
         text = lines.encode()
         _checked(_c.halfplane_scene_say(self, text, ctypes.c_size_t(len(text))))
 
-    def vertices(self, rows):
+    def texture(self, name, width, height, rgba, texel_format="rgba8888", mips="none"):
+        """A texture for `state texture NAME`, from a buffer of R, G, B, A, a byte each."""
+        _give_texture(_c.halfplane_scene_texture, self, name, width, height, rgba, texel_format, mips)
+
+    def vertices(self, vertices, layout=None):
         """Adds vertices; returns the index of the first."""
-        flat = [float(value) for row in rows for value in row]
-        array = (ctypes.c_double * len(flat))(*flat)
-        return _checked(_c.halfplane_scene_vertices(self, array, len(rows[0]), ctypes.c_size_t(len(rows))))
+        used, pointer, size, count = _vertices(vertices, layout)
+        return _checked(
+            _c.halfplane_scene_records(
+                self, ctypes.byref(used), pointer, ctypes.c_size_t(size), ctypes.c_size_t(count)
+            )
+        )
 
     def draw(self, indices, topology="triangles"):
-        array = (ctypes.c_uint32 * len(indices))(*indices)
-        _checked(_c.halfplane_scene_draw(self, topology.encode(), array, ctypes.c_size_t(len(indices))))
+        pointer, count = _indices(indices)
+        _checked(_c.halfplane_scene_draw(self, topology.encode(), pointer, ctypes.c_size_t(count)))
+
+
+def _give_texture(function, handle, name, width, height, rgba, texel_format, mips):
+    pointer, size = _bytes_of(rgba)
+    if size != 4 * width * height:
+        raise Error(f"texture {name}: {size} bytes for {width}x{height} texels; give 4 for each")
+    _checked(function(handle, name.encode(), width, height, pointer, texel_format.encode(), mips.encode()))
+
+
+class Target(_Handle):
+    """A frame that stays: cleared and drawn on call by call. `planes`: near and far, where the depth mapping needs them."""
+
+    kind = "target"
+
+    def __init__(self, config, width, height, planes=None, threads=1):
+        near_far = (ctypes.c_double * 2)(*planes) if planes else None
+        super().__init__(_c.halfplane_target_new(config, width, height, near_far))
+        self.width, self.height = width, height
+        _checked(_c.halfplane_target_set_threads(self, threads))
+
+    def say(self, lines):
+        """Lines of a capture for the draws that follow: "space window", "state cull back"."""
+        text = lines.encode()
+        _checked(_c.halfplane_target_say(self, text, ctypes.c_size_t(len(text))))
+
+    def texture(self, name, width, height, rgba, texel_format="rgba8888", mips="none"):
+        """As ArrayScene.texture(); one that has the name already is replaced."""
+        _give_texture(_c.halfplane_target_texture, self, name, width, height, rgba, texel_format, mips)
+
+    def clear(self, color=None, depth=None, stencil=None):
+        """Clears what is given, inside the scissor that was said: r g b a of 0 to 255, a window z, 0 to 255."""
+        channels = (ctypes.c_double * 4)(*color) if color is not None else None
+        z = ctypes.byref(ctypes.c_double(depth)) if depth is not None else None
+        _checked(_c.halfplane_target_clear(self, channels, z, -1 if stencil is None else stencil))
+
+    def draw(self, vertices, layout=None, indices=None, topology="triangles"):
+        """Draws vertices as of ArrayScene.vertices(), in their order or as `indices` say."""
+        used, pointer, size, count = _vertices(vertices, layout)
+        index, indexed = _indices(indices) if indices is not None else (None, 0)
+        if indices is not None and indexed == 0:
+            return
+        _checked(
+            _c.halfplane_target_draw(
+                self,
+                topology.encode(),
+                ctypes.byref(used),
+                pointer,
+                ctypes.c_size_t(size),
+                ctypes.c_size_t(count),
+                index,
+                ctypes.c_size_t(indexed),
+            )
+        )
+
+    def draw_scene(self, scene):
+        _checked(_c.halfplane_target_draw_scene(self, scene))
+
+    def plane(self, name, into=None):
+        """As Frame.plane(), of the frame so far."""
+        return _plane(_c.halfplane_target_plane, self, name, self.width * self.height, into)
+
+    def counter(self, name):
+        """Of the last draw."""
+        return _checked(_c.halfplane_target_counter(self, name.encode()))
 
 
 class Frame(_Handle):
@@ -110,16 +271,16 @@ class Frame(_Handle):
 
     kind = "frame"
 
-    def __init__(self, scene, config, engine="functional"):
-        super().__init__(_c.halfplane_render(scene, config, engine.encode()))
+    def __init__(self, scene, config, engine="functional", threads=1):
+        super().__init__(_c.halfplane_render_threads(scene, config, engine.encode(), threads))
         self.width = _checked(_c.halfplane_frame_width(self))
         self.height = _checked(_c.halfplane_frame_height(self))
 
-    def plane(self, name):
-        """Codes, row by row from the top: "depth", "color" or "stencil"."""
-        values = (ctypes.c_uint32 * (self.width * self.height))()
-        _checked(_c.halfplane_frame_plane(self, name.encode(), values, ctypes.c_size_t(len(values))))
-        return list(values)
+    def plane(self, name, into=None):
+        """Codes, row by row from the top: "depth", "color" or "stencil". A memoryview of 32-bit words: of `into`, a buffer that
+        can be written and holds them, or of memory of its own.
+        """
+        return _plane(_c.halfplane_frame_plane, self, name, self.width * self.height, into)
 
     def counter(self, name):
         return _checked(_c.halfplane_frame_counter(self, name.encode()))

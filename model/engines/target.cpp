@@ -11,21 +11,67 @@
 
 namespace halfplane {
 
+namespace {
+
+/// The scene of one clear or draw, whose memory is used again. It keeps its texture, which is decoded once and not for
+/// each draw.
+struct Canvas {
+  Scene scene;
+  std::vector<TexelBlocks> texels;  ///< of its texture, once it has been drawn with
+
+  /// The scene with nothing but the texture and one state.
+  Scene& with(const State& state) {
+    scene.vertices.clear();
+    scene.normals.clear();
+    scene.indices.clear();
+    scene.states.assign(1, state);
+    if (state.texture) scene.states[0].texture = 0;
+    scene.commands.clear();
+    return scene;
+  }
+};
+
+}  // namespace
+
 struct Target::Memory {
-  Memory(const Config& config_, Scene empty_) : config(config_), engine(config_), empty(std::move(empty_)) {}
+  Memory(const Config& config_, Scene empty) : config(config_), engine(config_), plain{std::move(empty), {}} {}
 
   const Config config;
   FunctionalEngine engine;
-  const Scene empty;                   ///< the target alone: what every scene drawn here begins as
+  Canvas plain;                        ///< of draws without a texture
+  std::vector<Canvas> textured;        ///< of draws with one, by its number
   Framebuffer taken;                   ///< from the caller's memory; drawn on next
   const Framebuffer* frame = nullptr;  ///< `taken`, or the engine's
+  int threads = 1;
 
-  Counters render(const Scene& scene) {
+  template <class Drawn>
+  Counters render(const Drawn& scene) {
     RenderOptions options;
     options.onto = frame;
+    options.threads = threads;
     const Rendering& rendering = engine.render(scene, options);
     frame = &rendering.frame;
     return rendering.counters;
+  }
+
+  [[nodiscard]] Canvas canvas_with(Texture texture) const {
+    const Scene& size = plain.scene;
+    Canvas canvas;
+    canvas.scene.name = size.name;
+    canvas.scene.width = size.width;
+    canvas.scene.height = size.height;
+    canvas.scene.planes = size.planes;
+    canvas.scene.textures.push_back(std::move(texture));
+    validate(canvas.scene);
+    return canvas;
+  }
+
+  [[nodiscard]] Canvas& canvas_of(const State& state) {
+    if (!state.texture) return plain;
+    if (*state.texture >= textured.size())
+      throw InputError("target: texture " + std::to_string(*state.texture) + ", but there are " +
+                       std::to_string(textured.size()));
+    return textured[*state.texture];
   }
 };
 
@@ -36,28 +82,52 @@ Target::Target(const Config& config, int width, int height, std::optional<std::a
   empty.height = height;
   empty.planes = planes;
   memory_ = std::make_unique<Memory>(config, std::move(empty));
-  (void)memory_->render(memory_->empty);
+  (void)memory_->render(memory_->plain.scene);
 }
 
 Target::~Target() = default;
 Target::Target(Target&&) noexcept = default;
 Target& Target::operator=(Target&&) noexcept = default;
 
+void Target::set_threads(int threads) {
+  constexpr int kMost = 1024;
+  if (threads < 1 || threads > kMost)
+    throw InputError("target: " + std::to_string(threads) + " threads; give 1 to " + std::to_string(kMost));
+  memory_->threads = threads;
+}
+
+std::uint32_t Target::add_texture(Texture texture) {
+  memory_->textured.push_back(memory_->canvas_with(std::move(texture)));
+  return static_cast<std::uint32_t>(memory_->textured.size() - 1);
+}
+
+void Target::replace_texture(std::uint32_t number, Texture texture) {
+  State names;
+  names.texture = number;
+  memory_->canvas_of(names) = memory_->canvas_with(std::move(texture));
+}
+
 void Target::clear(const Clear& what, const State& state) {
-  Scene scene = memory_->empty;
-  scene.states.push_back(state);
-  scene.commands.emplace_back(Clear{0, what.color, what.depth});
+  State untextured = state;
+  untextured.texture.reset();
+  Scene& scene = memory_->plain.with(untextured);
+  scene.commands.emplace_back(Clear{0, what.color, what.depth, what.stencil});
   (void)memory_->render(scene);
 }
 
 Counters Target::draw(const State& state, Topology topology, std::span<const Vertex> vertices,
-                      std::span<const std::uint32_t> indices) {
-  Scene scene = memory_->empty;
+                      std::span<const std::uint32_t> indices, std::span<const std::array<double, 3>> normals) {
+  Canvas& canvas = memory_->canvas_of(state);
+  Scene& scene = canvas.with(state);
   scene.vertices.assign(vertices.begin(), vertices.end());
+  scene.normals.assign(normals.begin(), normals.end());
   scene.indices.assign(indices.begin(), indices.end());
-  scene.states.push_back(state);
   scene.commands.emplace_back(Draw{.topology = topology, .count = indices.size()});
-  return memory_->render(scene);
+  if (!state.texture) return memory_->render(scene);
+  PreparedScene prepared(scene, std::move(canvas.texels));
+  const Counters counters = memory_->render(prepared);
+  canvas.texels = std::move(prepared.textures);
+  return counters;
 }
 
 Counters Target::draw(const State& state, Topology topology, std::span<const Vertex> vertices) {
@@ -67,7 +137,7 @@ Counters Target::draw(const State& state, Topology topology, std::span<const Ver
 }
 
 Counters Target::draw(const Scene& scene) {
-  if (scene.planes != memory_->empty.planes)
+  if (scene.planes != memory_->plain.scene.planes)
     throw InputError((scene.name.empty() ? "scene" : scene.name) +
                      ": its planes are not those of the target; give both the same, or none");
   return memory_->render(scene);
@@ -124,7 +194,7 @@ void Target::copy_from(const PixelMemory& memory) {
   const Config& config = memory_->config;
   check_memory(memory, config, onto.width);
   const std::size_t bytes = color_bytes(config);
-  const std::uint32_t largest = DepthEncode(config, memory_->empty.planes).of_window(1.0);
+  const std::uint32_t largest = DepthEncode(config, memory_->plain.scene.planes).of_window(1.0);
   for (int y = 0; y < onto.height; ++y) {
     std::uint32_t *color = &onto.color[onto.at(0, y)], *depth = &onto.depth[onto.at(0, y)];
     if (memory.depth != nullptr)

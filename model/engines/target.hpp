@@ -28,18 +28,28 @@ class Target {
   Target(Target&&) noexcept;
   Target& operator=(Target&&) noexcept;
 
+  /// Threads of the draws that follow, 1 at first; no bit depends on it. Throws InputError outside 1...1024.
+  void set_threads(int threads);
+
+  /// Keeps a texture for the draws that follow and returns its number, which State::texture names. Throws InputError for a
+  /// texture that validate() refuses.
+  std::uint32_t add_texture(Texture texture);
+  /// Puts another texture in the place of one. Throws likewise, and the one before stays.
+  void replace_texture(std::uint32_t number, Texture texture);
+
   /// Clears inside the scissor of `state`; Clear::state means nothing here. Throws InputError for numbers outside their
   /// range; the frame is then what it was.
   void clear(const Clear& what, const State& state = {});
 
   /// Draws at once; counts this draw alone. Without indices the vertices are taken in their order; what makes no whole
-  /// primitive at their end is left out, as in a scene. Throws InputError as
+  /// primitive at their end is left out, as in a scene. `normals`: as Scene::normals. Throws InputError as
   /// FunctionalEngine::render(); the frame is then what it was.
   Counters draw(const State& state, Topology topology, std::span<const Vertex> vertices,
-                std::span<const std::uint32_t> indices);
+                std::span<const std::uint32_t> indices, std::span<const std::array<double, 3>> normals = {});
   Counters draw(const State& state, Topology topology, std::span<const Vertex> vertices);
 
-  /// Every command of a scene of this size, without the clear that render_functional() begins with. Throws as above.
+  /// Every command of a scene of this size, without the clear that render_functional() begins with. Its textures are its
+  /// own. Throws as above.
   Counters draw(const Scene& scene);
 
   /// What has been drawn so far. Valid until the next call.

@@ -95,6 +95,17 @@ TEST_F(Capi, ArraysThatAreNoSceneAreRefusedAndLeaveItAsItWas) {
   EXPECT_EQ(plane("functional", "color"), before);
 }
 
+TEST_F(Capi, AClearThatIsSaidHasTheScissorOfItsOwnLines) {
+  halfplane_scene_free(scene);
+  scene = halfplane_scene_new(16, 16);
+  const std::string lines = "clear color 0 0 0 255 depth 1\nstate scissor 2 3 4 5\nclear color 255 255 255 255\n";
+  ASSERT_EQ(halfplane_scene_say(scene, lines.data(), lines.size()), 0) << halfplane_last_error();
+  const auto drawn = plane("functional", "color");
+  for (unsigned y = 0; y < 16; ++y)
+    for (unsigned x = 0; x < 16; ++x)
+      EXPECT_EQ(drawn[y * 16 + x], x >= 2 && x < 6 && y >= 3 && y < 8 ? 0xffffu : 0u) << x << ", " << y;
+}
+
 TEST_F(Capi, EnginesDrawTheSameBits) {
   for (const char* name : {"depth", "color", "stencil"}) {
     const auto functional = plane("functional", name);
@@ -102,6 +113,11 @@ TEST_F(Capi, EnginesDrawTheSameBits) {
     if (std::strcmp(name, "stencil") != 0) {
       EXPECT_EQ(plane("cycle", name), functional) << name;
     }
+    halfplane_frame* frame = halfplane_render_threads(scene, config, "functional", 4);
+    std::vector<std::uint32_t> values(256);
+    EXPECT_EQ(halfplane_frame_plane(frame, name, values.data(), values.size()), 256) << halfplane_last_error();
+    EXPECT_EQ(values, functional) << name;
+    halfplane_frame_free(frame);
   }
   EXPECT_EQ(plane("functional", "stencil")[0], 7u);
 }
@@ -148,6 +164,7 @@ TEST_F(Capi, WhatIsWrongIsSaidInOneLine) {
   expect_error(halfplane_scene_read("halfplane 1\nnothing\n", 20), "scene:2: ");
   expect_error(halfplane_render(scene, config, "gpu"), "no engine 'gpu'");
   expect_error(halfplane_render(nullptr, config, "scalar"), "the scene is NULL");
+  expect_error(halfplane_render_threads(scene, config, "functional", 0), "0 threads; give 1 to 1024");
   expect_error(halfplane_stage_new(config, "fine_rast"), "did you mean fine_raster?");
   expect_error(halfplane_stage_new(config, "viewport"), "cannot be run by itself");
   expect_error(halfplane_stage_new(config, "texture_unit"), "no texture unit");

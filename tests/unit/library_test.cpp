@@ -8,7 +8,10 @@
 #include <vector>
 
 #include "../api_case.hpp"
+#include "../hardware_scene.hpp"
+#include "model/engines/scalar.hpp"
 #include "model/engines/target.hpp"
+#include "sim/cosim/random_scene.hpp"
 #include "sim/scene/builtin.hpp"
 #include "sim/scene/random.hpp"
 
@@ -113,6 +116,94 @@ TEST(Library, ATargetDrawnCommandByCommandIsTheSceneDrawnAtOnce) {
     }
 }
 
+/// Textures, light, fog, blending and stencil, by the engine that draws packet after packet: another way altogether.
+TEST(Library, ATargetDrawsRandomStatesAndTexturesAsTheScalarEngineDoes) {
+  std::size_t textured = 0, stenciled = 0, lit = 0;
+  for (const char* format : {"rgb565", "rgba8888"}) {
+    const Config config = test::with("embedded", {{"texture.unit", "trilinear"},
+                                                  {"stencil.bits", "8"},
+                                                  {"fog.unit", "1"},
+                                                  {"shade.unit", "1"},
+                                                  {"alpha.unit", "1"},
+                                                  {"blend.lanes", "4"},
+                                                  {"color.format", format}});
+    for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+      const Scene scene = random_scene(config, seed, 40);
+      const Rendering parts = test::by_target(scene, config), whole = render_scalar(scene, config);
+      ASSERT_EQ(parts.frame.depth, whole.frame.depth) << "seed " << seed << ", " << format;
+      ASSERT_EQ(parts.frame.color, whole.frame.color) << "seed " << seed << ", " << format;
+      ASSERT_EQ(parts.frame.stencil, whole.frame.stencil) << "seed " << seed << ", " << format;
+      for (const State& state : scene.states) {
+        textured += state.texture ? 1 : 0;
+        stenciled += state.stencil ? 1 : 0;
+        lit += state.shade == Shade::phong ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(std::min({textured, stenciled, lit}), 20u) << textured << " " << stenciled << " " << lit;
+}
+
+/// A square of 4 x 2 texels on 4 x 2 pixels: each pixel shows its texel.
+TEST(Library, ATargetKeepsItsTexturesAndRefusesThoseThatAreNone) {
+  const auto texture = [](std::uint8_t first) {
+    TexelImage image{4, 2, {}};
+    for (std::uint8_t i = 0; i < 8; ++i) image.texel.push_back({static_cast<std::uint8_t>(first + i), i, 7, 255});
+    return make_texture("t", image, TextureFormat::rgba8888, Mips::none);
+  };
+  Target target(preset("full"), 4, 2);
+  const std::uint32_t number = target.add_texture(texture(10));
+  EXPECT_EQ(target.add_texture(texture(50)), number + 1);
+  State state;
+  state.space = Space::window;
+  state.depth_test = DepthFunc::always;
+  state.texture_combine = TextureCombine::replace;
+  std::vector<Vertex> square{{0, 0, 0.5}, {4, 0, 0.5}, {0, 2, 0.5}, {4, 2, 0.5}};
+  for (Vertex& v : square) {
+    v.u = v.x / 4;
+    v.v = v.y / 2;
+  }
+  const auto shown = [&](std::uint32_t which) {
+    state.texture = which;
+    (void)target.draw(state, Topology::triangle_strip, square);
+    std::vector<std::uint32_t> pixels(8);
+    target.copy_to({pixels.data(), 16, nullptr, 0});
+    return pixels;
+  };
+  const auto texels = [](std::uint32_t first) {  // R in the lowest byte
+    std::vector<std::uint32_t> codes(8);
+    for (std::uint32_t i = 0; i < 8; ++i) codes[i] = (first + i) | i << 8 | 7U << 16 | 255U << 24;
+    return codes;
+  };
+  EXPECT_EQ(shown(number), texels(10));
+  EXPECT_EQ(shown(number + 1), texels(50));
+  EXPECT_EQ(shown(number), texels(10));
+  target.replace_texture(number, texture(100));
+  EXPECT_EQ(shown(number), texels(100));
+  Texture damaged = texture(200);
+  damaged.level[0].code.pop_back();
+  EXPECT_THROW(target.replace_texture(number, damaged), InputError);
+  EXPECT_THROW((void)target.add_texture(damaged), InputError);
+  EXPECT_THROW(target.replace_texture(9, texture(1)), InputError);
+  EXPECT_THROW((void)shown(2), InputError);
+  EXPECT_EQ(shown(number), texels(100));
+  square[0].u = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW((void)shown(number + 1), InputError);
+  square[0].u = 0;
+  EXPECT_EQ(shown(number + 1), texels(50));
+  EXPECT_THROW(target.set_threads(0), InputError);
+}
+
+TEST(Library, ATargetClearsItsStencilInsideTheScissor) {
+  Target target(preset("embedded"), 5, 3);
+  State state;
+  state.scissor = Rect{1, 1, 3, 1};
+  target.clear({.stencil = 9}, state);
+  const Framebuffer& frame = target.frame();
+  for (int y = 0; y < 3; ++y)
+    for (int x = 0; x < 5; ++x)
+      EXPECT_EQ(frame.stencil[frame.at(x, y)], y == 1 && x >= 1 && x < 4 ? 9 : 0) << x << ", " << y;
+}
+
 TEST(Library, ATargetGoesOnInTheCallersMemory) {
   for (const Config& config : target_configs()) {
     const int width = std::min(50, config.target_width), height = std::min(37, config.target_height);
@@ -159,6 +250,8 @@ TEST(Library, ARefusedDrawLeavesTheTargetAsItWas) {
     EXPECT_THROW((void)target.draw(scene.states[0], Topology::triangles, vertices), InputError);
     EXPECT_EQ(target.frame().color, before.color);
     EXPECT_EQ(target.frame().depth, before.depth);
+    target.clear({.depth = 1.0});  // nothing of what was refused is left
+    EXPECT_EQ(target.frame().color, before.color);
     EXPECT_GT(target.draw(scene.states[0], Topology::triangles, std::span(scene.vertices)).written, 0u);
     EXPECT_NE(target.frame().color, before.color);
   }

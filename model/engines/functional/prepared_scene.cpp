@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "../../pipeline.hpp"
 #include "../../stages/surface.hpp"
@@ -57,9 +58,10 @@ bool is_linear(const State& state) {
 
 }  // namespace
 
-PreparedScene::PreparedScene(const Scene& scene) : draws(scene.commands.size()), scene_(&scene) {
+PreparedScene::PreparedScene(const Scene& scene, std::vector<TexelBlocks> known)
+    : draws(scene.commands.size()), textures(std::move(known)), scene_(&scene) {
   validate(scene);
-  for (const Texture& texture : scene.textures) textures.emplace_back(texture);
+  for (std::size_t i = textures.size(); i < scene.textures.size(); ++i) textures.emplace_back(scene.textures[i]);
   for (const State& state : scene.states)
     if (state.texture) {
       if (is_linear(state)) textures[*state.texture].add_quads(state.texture_wrap);

@@ -25,8 +25,9 @@ struct alignas(32) SurfaceRow {
 /// Holds on to the scene, which must not change. Its colours are snapped; nothing else is computed.
 class PreparedScene {
  public:
-  /// Throws InputError for a scene that is not valid.
-  explicit PreparedScene(const Scene& scene);
+  /// `known`: `textures` of an earlier one whose scene had the same textures, so that they need not be decoded again. Throws
+  /// InputError for a scene that is not valid.
+  explicit PreparedScene(const Scene& scene, std::vector<TexelBlocks> known = {});
   [[nodiscard]] const Scene& scene() const { return *scene_; }
 
   /// Primitives of a draw that lie one behind the other, at most kChunk of them.
