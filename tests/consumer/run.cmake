@@ -21,5 +21,9 @@ step("${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${WORK}/prefix")
 step("${CMAKE_COMMAND}" -S "${SOURCE}/tests/consumer" -B "${WORK}/consumer" ${common}
   "-DCMAKE_PREFIX_PATH=${WORK}/prefix")
 step("${CMAKE_COMMAND}" --build "${WORK}/consumer")
+step("${CMAKE_COMMAND}" -S "${SOURCE}/examples/turning_cube" -B "${WORK}/cube" ${common}
+  "-DCMAKE_PREFIX_PATH=${WORK}/prefix")
+step("${CMAKE_COMMAND}" --build "${WORK}/cube")
+step("${WORK}/cube/turning_cube" 2)
 step("${WORK}/consumer/consumer")
 step("${WORK}/consumer/c_consumer")

@@ -13,6 +13,8 @@ foreach(file IN ITEMS
     share/halfplane/rtl_ref/stages/cull.sv
     share/halfplane/rtl_ref/area/gates.py
     share/halfplane/rtl_ref/presets/tiny/raster_pkg.sv
+    share/doc/halfplane/README.md
+    share/doc/halfplane/docs/images/teapot.png
     share/man/man1/halfplane.1
     share/man/man1/halfplane-render.1)
   if(NOT EXISTS "${WORK}/${file}")
@@ -29,6 +31,30 @@ file(READ "${WORK}/share/bash-completion/completions/halfplane" installed)
 if(NOT said STREQUAL installed)
   message(SEND_ERROR "the completion that is installed is not what the program says")
 endif()
+
+# Every page and schema, and every command's manual page, which says what --help says.
+file(GLOB_RECURSE pages RELATIVE "${SOURCE}" "${SOURCE}/docs/*.md" "${SOURCE}/docs/*.json")
+list(LENGTH pages count)
+if(count LESS 50)
+  message(SEND_ERROR "only ${count} pages in ${SOURCE}/docs")
+endif()
+foreach(page IN LISTS pages)
+  if(NOT EXISTS "${WORK}/share/doc/halfplane/${page}")
+    message(SEND_ERROR "not installed: ${page}")
+  endif()
+endforeach()
+execute_process(COMMAND "${WORK}/bin/halfplane" --help OUTPUT_VARIABLE help COMMAND_ERROR_IS_FATAL ANY)
+string(REGEX MATCHALL "\n  [a-z]+ " commands "${help}")
+list(LENGTH commands count)
+if(count LESS 15)
+  message(SEND_ERROR "--help lists ${count} commands")
+endif()
+foreach(command IN LISTS commands)
+  string(STRIP "${command}" command)
+  if(NOT EXISTS "${WORK}/share/man/man1/halfplane-${command}.1")
+    message(SEND_ERROR "no manual page of ${command}")
+  endif()
+endforeach()
 
 # The FuseSoC core finds its files where it lies.
 file(STRINGS "${WORK}/share/halfplane/halfplane.core" lines REGEX "^      - [a-z_]+/")

@@ -7,7 +7,9 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -189,6 +191,48 @@ TEST(Docs, PathsAndLinksThatAreNotThereAreFound) {
   EXPECT_EQ(
       untrue_links("# A `b`: c\n[1](#a-b-c) [2](#a) [3](docs/spec.md#lines) [4](docs/spec.md#none) [5](no.md)", kRoot),
       (Texts{"#a", "docs/spec.md#none", "no.md"}));
+}
+
+/// The lines of a page's code between a phrase and the end of the block that follows it.
+Texts block_after(const std::string& page, const std::string& phrase) {
+  const std::size_t begin = page.find("```cpp\n", page.find(phrase)) + 7, end = page.find("```", begin);
+  Texts lines;
+  std::istringstream text(page.substr(begin, end - begin));
+  for (std::string line; std::getline(text, line);) lines.push_back(line);
+  return lines;
+}
+
+TEST(Docs, TheLoopWithMatricesIsThatOfItsExample) {
+  const std::string source = read(kRoot / "examples/turning_cube/turning_cube.cpp");
+  const Texts lines = block_after(read(kRoot / "docs/library.md"), "## A loop with matrices");
+  EXPECT_GT(lines.size(), 5u);
+  for (std::string line : lines) {
+    line.erase(0, line.find_first_not_of(' '));
+    EXPECT_NE(source.find(line), std::string::npos) << line;
+  }
+}
+
+TEST(Docs, EveryPresetIsInATableOfTheReadme) {
+  const std::string page = read(kRoot / "README.md");
+  const auto is_in_a_row = [&page](const std::string& name) {
+    std::istringstream text(page);
+    for (std::string line; std::getline(text, line);)
+      if (line.starts_with("| `") && line.substr(0, line.find('|', 1)).find("`" + name + "`") != std::string::npos)
+        return true;
+    return false;
+  };
+  const auto presets = nlohmann::json::parse(read(kRoot / "CMakePresets.json")).at("configurePresets");
+  for (const auto& preset : presets)
+    EXPECT_TRUE(preset.value("hidden", false) || is_in_a_row(preset.at("name"))) << preset.at("name");
+  std::istringstream designs(read(kRoot / "model/designs.toml"));
+  int count = 0;
+  for (std::string line; std::getline(designs, line);)
+    if (const std::size_t equals = line.find(" = \""); equals != std::string::npos && line[0] != '#') {
+      EXPECT_TRUE(is_in_a_row(line.substr(0, equals))) << line;
+      ++count;
+    }
+  EXPECT_GT(count, 5);
+  EXPECT_FALSE(is_in_a_row("large"));
 }
 
 /// Stems of the files in a folder.
