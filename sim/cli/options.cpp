@@ -54,9 +54,9 @@ std::uint64_t parse_seed(const std::string& text) {
   return seed;
 }
 
-bool is_capture(const std::string& name) { return name == "-" || (name.size() > 4 && name.ends_with(".hpt")); }
-
 }  // namespace
+
+bool is_capture(const std::string& name) { return name == "-" || (name.size() > 4 && name.ends_with(".hpt")); }
 
 void add_output_options(CLI::App& app, CommonOptions& options) {
   app.add_option("--config", options.config, "preset (tiny, small, embedded, full) or FILE.toml")

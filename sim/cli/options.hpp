@@ -77,6 +77,9 @@ struct Size {
 /// A part of a whole, above 0 and at most 1: "0.01" or "1%". Throws InputError, which begins with `option`.
 [[nodiscard]] double parse_part(const std::string& text, const std::string& option);
 
+/// Whether a scene of that name is read as a capture.
+[[nodiscard]] bool is_capture(const std::string& name);
+
 /// Preset or file, then every --set, validated. Throws InputError.
 [[nodiscard]] Config effective_config(const CommonOptions& options);
 /// The same for a picture: a depth.format is made from a plane that has its codes, unless somebody says depth.bits.

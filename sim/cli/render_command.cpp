@@ -42,15 +42,16 @@ Rendering render_golden(const Scene& scene, const Config& config, golden::Precis
 
 /// One picture of run_engine().
 Rendering draw_once(const RenderCommand& options, const Scene& scene, const Config& config, CycleFacts* facts,
-                    const std::function<void(double)>& progress) {
+                    const std::function<void(double)>& progress, const Framebuffer* onto, bool keeps_samples) {
   RenderOptions render;
+  render.onto = onto;
   render.skip = parse_skip(options.skip);
   render.threads = options.threads;
   render.rules = study_rules(options.study);
   render.want_count = !options.count_path.empty() || !options.draws_path.empty();
   render.want_ids = !options.ids_path.empty();
   render.progress = progress;
-  render.resolved_only = true;
+  render.resolved_only = !keeps_samples;
   if (options.engine == "functional") return render_functional(scene, config, render);
   if (options.engine == "scalar") return render_scalar(scene, config, render);
   if (options.engine == "rtl") {
@@ -71,16 +72,17 @@ Rendering draw_once(const RenderCommand& options, const Scene& scene, const Conf
 }  // namespace
 
 Rendering run_engine(const RenderCommand& options, const Scene& scene, const Config& config, CycleFacts* facts,
-                     const std::function<void(double)>& progress) {
-  if (options.supersample.empty()) return draw_once(options, scene, config, facts, progress);
+                     const std::function<void(double)>& progress, const Framebuffer* onto, bool keeps_samples) {
+  if (options.supersample.empty()) return draw_once(options, scene, config, facts, progress, onto, keeps_samples);
   const antialiasing::SupersampleGrid grid = antialiasing::parse_supersample(options.supersample);
   const double pictures = grid.side * grid.side;
   int done = 0;
   return antialiasing::supersampled(scene, config, grid, [&](const Scene& moved) {
     const int at = done++;
-    return draw_once(options, moved, config, facts, [&progress, at, pictures](double part) {
+    const auto part_of_all = [&progress, at, pictures](double part) {
       if (progress) progress((at + part) / pictures);
-    });
+    };
+    return draw_once(options, moved, config, facts, part_of_all, nullptr, false);
   });
 }
 
@@ -100,7 +102,7 @@ void check_options(const RenderCommand& options, const Config& config) {
     throw InputError(
         "--draws: the engine rtl is hardware, which keeps no counts; leave out --draws, or use another --engine");
   const bool chooses_bins =
-      options.frames > 0 && compares_bins(config) && (options.skip == "none" || options.skip == "bins");
+      options.frames != 0 && compares_bins(config) && (options.skip == "none" || options.skip == "bins");
   if ((options.engine == "rtl" || options.engine == "cycle") && options.skip != "all" && !chooses_bins)
     throw InputError(
         "--skip: the engine " + options.engine +
@@ -255,7 +257,7 @@ int run(const RenderCommand& given) {
   check_options(given, config);
   RenderCommand options = given;
   options.leaves_out = !options.engine.starts_with("golden");  // golden draws what is marked, too
-  if (options.frames > 0) return run_frames(options, config);
+  if (options.frames != 0) return run_frames(options, config);
   double load_s = 0;
   ObjectCounts objects;
   const Scene scene = load_scene(options, config, load_s, &objects);
@@ -351,7 +353,8 @@ void add_render_command(CLI::App& app, Action& selected) {
   command->footer(
       "\nExample:\n  halfplane render teapot --size 1280x720 -o teapot.png --depth teapot.npy --json\n"
       "  halfplane render city --engine cycle --what-if cache.lines=16,64,256 --trace city.json\n"
-      "  halfplane render teapot --size 160x120 --frames 12 --camera orbit --engine cycle --csv turn.csv");
+      "  halfplane render teapot --size 160x120 --frames 12 --camera orbit --engine cycle --csv turn.csv\n"
+      "  halfplane render game.hpt --frames all -o game.png");
   command->callback([&selected, options] { selected = [options] { return run(*options); }; });
 }
 

@@ -5,6 +5,7 @@
 
 #include "model/engines/functional.hpp"
 #include "sim/cli/progress.hpp"
+#include "sim/scene/capture_frames.hpp"
 #include "sim/show/image/framebuffer_files.hpp"
 #include "sim/show/image/whole_file.hpp"
 #include "sim/show/report/page.hpp"
@@ -14,6 +15,14 @@ namespace halfplane {
 namespace {
 
 constexpr int kMostFrames = 100'000;
+
+/// A frame to be drawn.
+struct PlannedFrame {
+  Moment moment;
+  std::function<Scene()> scene;
+  bool is_of_capture = false;
+  bool goes_on = false;  ///< with the picture of the frame before
+};
 
 /// One frame's figures, in the order of the columns of --csv: those of `halfplane render`.
 Json frame_row(int frame, const Moment& moment, const Rendering& rendering, const CycleFacts& facts,
@@ -67,28 +76,65 @@ void print_range(std::ostream& out, const Json& rows, const std::string& name, c
       << with_commas(values[values.size() / 2]) << ", most " << with_commas(values.back()) << " a frame\n";
 }
 
-/// The moments of all frames.
-std::vector<Moment> moments(const RenderCommand& options, const MovingScene& source) {
+/// Throws InputError where a frame goes on with the picture of the one before, and the engine has it no more.
+void refuse_to_go_on(const RenderCommand& options, std::size_t frame) {
+  const bool keeps = options.engine == "functional" || options.engine == "scalar";
+  if (keeps && options.supersample.empty()) return;
+  const std::string number = std::to_string(frame);
+  throw InputError(options.scene + ": frame " + number + " goes on with the picture of frame " +
+                   std::to_string(frame - 1) + " (it does not begin with a clear of all that it looks at), which " +
+                   (keeps ? "--supersample" : "the engine " + options.engine) +
+                   " does not keep; begin it with `clear color ... depth ...`, or use --engine functional or scalar" +
+                   (keeps ? " without --supersample" : ""));
+}
+
+/// The first frames of a capture, or all of them.
+std::vector<PlannedFrame> capture_frames(const RenderCommand& options, Scene scene) {
+  const auto whole = std::make_shared<const Scene>(std::move(scene));
+  std::vector<FrameCommands> parts = frames_of(*whole);
+  const std::string count = std::to_string(parts.size());
+  if (options.frames > 0 && static_cast<std::size_t>(options.frames) > parts.size())
+    throw InputError("--frames " + std::to_string(options.frames) + ": " + options.scene + " has " + count +
+                     (parts.size() == 1 ? " frame" : " frames") +
+                     "; give at most so many, or all, or more `frame` lines");
+  if (parts.size() > kMostFrames)
+    throw InputError("--frames: " + options.scene + " has " + count + " frames; give at most " +
+                     std::to_string(kMostFrames));
+  if (options.frames > 0) parts.resize(static_cast<std::size_t>(options.frames));
+  std::vector<PlannedFrame> frames;
+  for (const FrameCommands& part : parts) {
+    const bool has_picture_before = !frames.empty() && goes_on(*whole, part);
+    if (has_picture_before) refuse_to_go_on(options, frames.size());
+    frames.push_back({{}, [whole, part] { return frame_scene(*whole, part); }, true, has_picture_before});
+  }
+  return frames;
+}
+
+/// What moves, at its moments.
+std::vector<PlannedFrame> moving_frames(const RenderCommand& options, const MovingScene& source) {
+  if (options.frames == kAllFrames)
+    throw InputError("--frames all: that is for captures, and " + options.scene + " is none; give a number");
   std::optional<TimeSpan> time = parse_time(options.time);
   if (const std::optional<double> end = time ? std::nullopt : source.end()) time = TimeSpan{0, *end};
   if (!time && !source.has_orbit)
     throw InputError("--frames: nothing moves in " + options.scene +
                      "; add --camera orbit, or give a glTF file with an animation");
-  std::vector<Moment> result;
+  std::vector<PlannedFrame> result;
   for (int i = 0; i < options.frames; ++i) {
-    Moment& moment = result.emplace_back();
+    Moment moment;
     moment.turn = static_cast<double>(i) / options.frames;
     if (time) moment.time = time->from + (time->to.value_or(time->from) - time->from) * moment.turn;
+    result.push_back({moment, [&source, moment] { return source.at(moment); }});
   }
   return result;
 }
 
 /// The options of one frame: its own files.
-RenderCommand options_of(const RenderCommand& options, int frame) {
+RenderCommand options_of(const RenderCommand& options, int frame, int frames) {
   RenderCommand own = options;
   for (std::string* path : {&own.color_path, &own.depth_path, &own.count_path, &own.ids_path, &own.draws_path,
                             &own.cycle.primitives_path, &own.cycle.trace_path, &own.cycle.heat_path})
-    *path = numbered(*path, frame, options.frames);
+    *path = numbered(*path, frame, frames);
   return own;
 }
 
@@ -115,14 +161,16 @@ class FrameDrawer {
     }
   }
 
+  /// `onto`: the picture that the frame goes on with; null: it begins with nothing. `keeps_samples`: as run_engine().
   Rendering draw(const RenderCommand& own, const Scene& scene, const Config& config, CycleFacts& facts,
-                 const std::function<void(double)>& progress) {
-    if (!functional_ && !cycle_ && !rtl_) return run_engine(own, scene, config, &facts, progress);
+                 const std::function<void(double)>& progress, const Framebuffer* onto, bool keeps_samples) {
+    if (!functional_ && !cycle_ && !rtl_) return run_engine(own, scene, config, &facts, progress, onto, keeps_samples);
     RenderOptions render;
     render.skip = parse_skip(options_.skip);
     render.progress = progress;
     render.threads = options_.threads;
-    render.follows = true;
+    render.follows = onto == nullptr;
+    render.onto = onto;
     if (functional_) return functional_->render(scene, render);
     if (rtl_) {
       RtlRendering rtl = rtl_->draw(scene, render);
@@ -162,11 +210,16 @@ void print_bins(std::ostream& out, const Json& rows) {
 }  // namespace
 
 void add_frames_options(CLI::App& app, RenderCommand& options) {
+  const auto number = [range = CLI::Range(1, kMostFrames)](std::string& word) {
+    if (word != "all") return range(word);
+    word = std::to_string(kAllFrames);
+    return std::string();
+  };
   app.add_option(
          "--frames", options.frames,
-         "N pictures of a scene that moves: --time A..B of its animation (without it: all), --camera orbit; files "
-         "get a number each")
-      ->check(CLI::Range(1, kMostFrames));
+         "N pictures of a scene that moves: --time A..B of its animation (without it: all), --camera orbit; or the "
+         "first N that the `frame` lines of a capture end, or all of those; files get a number each")
+      ->transform(CLI::Validator(number, "N or all"));
   add_file_option(app, "--csv", options.csv_path, "of --frames: a row of figures for each, .csv");
   add_file_option(app, "--chart", options.chart_path, "of --frames: the figures over time, .html");
 }
@@ -201,30 +254,34 @@ std::string numbered(const std::string& path, int frame, int frames) {
 int run_frames(const RenderCommand& options, const Config& config) {
   const auto start = std::chrono::steady_clock::now();
   const MovingScene source = open_scene(options, config);
-  const std::vector<Moment> all = moments(options, source);
+  const bool is_of_capture = is_capture(options.scene) && parse_time(options.time) == std::nullopt && !source.has_orbit;
+  const std::vector<PlannedFrame> all =
+      is_of_capture ? capture_frames(options, source.at({})) : moving_frames(options, source);
+  const int frames = static_cast<int>(all.size());
   Json rows = Json::array();
   int width = 0, height = 0;
   FrameDrawer drawer(options, config);
+  Rendering rendering;  // of the frame before
   try {
     Progress progress(options, "rendering", "frames");
-    for (int i = 0; i < options.frames; ++i) {
-      const auto part = [&](double fraction) {
-        progress((i + fraction) / options.frames, static_cast<std::uint64_t>(i));
-      };
+    for (int i = 0; i < frames; ++i) {
+      const auto part = [&](double fraction) { progress((i + fraction) / frames, static_cast<std::uint64_t>(i)); };
       part(0);
-      const Moment& moment = all[static_cast<std::size_t>(i)];
-      const RenderCommand own = options_of(options, i);
+      const PlannedFrame& frame = all[static_cast<std::size_t>(i)];
+      const RenderCommand own = options_of(options, i, frames);
       const auto scene_start = std::chrono::steady_clock::now();
       ObjectCounts objects;
-      const Scene scene = prepared(source.at(moment), options, config, &objects);
+      const Scene scene = prepared(frame.scene(), options, config, &objects);
       add_work(objects, source);
       const double scene_s = seconds_since(scene_start);
       CycleFacts facts;
-      const Rendering rendering = drawer.draw(own, scene, config, facts, part);
+      rendering =
+          drawer.draw(own, scene, config, facts, part, frame.goes_on ? &rendering.frame : nullptr, frame.is_of_capture);
       width = scene.width;
       height = scene.height;
       write_files(own, rendering, config, "frame " + std::to_string(i) + ", engine " + options.engine);
-      rows.push_back(frame_row(i, moment, rendering, facts, options, config));
+      rows.push_back(frame_row(i, frame.moment, rendering, facts, options, config));
+      if (frame.is_of_capture) rows.back()["goes_on"] = frame.goes_on;
       rows.back()["objects"] = objects_json(objects);
       rows.back()["time_s"]["scene"] = scene_s;
     }
@@ -246,14 +303,15 @@ int run_frames(const RenderCommand& options, const Config& config) {
   out << options.scene << ", " << width << "x" << height << ", " << label(config) << ", engine " << options.engine
       << ", seed " << options.seed << '\n'
       << "frames      " << rows.size() << " in " << fixed(result["wall_s"].get<double>(), 2) << " s";
-  if (all.front().time) out << ", time " << fixed(*all.front().time, 3) << " to " << fixed(*all.back().time, 3) << " s";
+  if (all.front().moment.time)
+    out << ", time " << fixed(*all.front().moment.time, 3) << " to " << fixed(*all.back().moment.time, 3) << " s";
   out << '\n';
   if (!rows[0]["cycles"].is_null()) print_range(out, rows, "cycles", "cycles");
   if (!rows[0]["bytes"].is_null()) print_range(out, rows, "bytes", "bytes");
   print_bins(out, rows);
   if (!options.color_path.empty())
-    out << "pictures    " << numbered(options.color_path, 0, options.frames) << " to "
-        << numbered(options.color_path, static_cast<int>(rows.size()) - 1, options.frames) << '\n';
+    out << "pictures    " << numbered(options.color_path, 0, frames) << " to "
+        << numbered(options.color_path, static_cast<int>(rows.size()) - 1, frames) << '\n';
   if (is_partial) print_partial(out);
   return is_partial ? exit_interrupted : exit_ok;
 }

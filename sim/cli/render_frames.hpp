@@ -11,6 +11,8 @@
 
 namespace halfplane {
 
+inline constexpr int kAllFrames = -1;
+
 struct RenderCommand : CommonOptions {
   std::string engine = "functional";
   StudyOptions study;
@@ -18,7 +20,7 @@ struct RenderCommand : CommonOptions {
   std::string color_path, depth_path, count_path, ids_path, draws_path;
   std::string supersample;  ///< "4x4": so many pictures, each moved by a part of a pixel, and their mean; empty: one
   int repeat = 0;
-  int frames = 0;                    ///< 0: one picture
+  int frames = 0;                    ///< 0: one picture; kAllFrames: those of a capture
   std::string csv_path, chart_path;  ///< of frames
 };
 
@@ -28,9 +30,11 @@ struct CycleFacts {
   std::optional<CycleResult> cycle;
 };
 
-/// `facts` is set by the engines cycle and rtl; null: the picture alone is wanted. `progress` may throw Interrupted.
+/// `facts` is set by the engines cycle and rtl; null: the picture alone is wanted. `progress` may throw Interrupted. `onto`: as
+/// RenderOptions::onto, of the engines functional and scalar. `keeps_samples`: another frame may be drawn on the result.
 [[nodiscard]] Rendering run_engine(const RenderCommand& options, const Scene& scene, const Config& config,
-                                   CycleFacts* facts, const std::function<void(double)>& progress);
+                                   CycleFacts* facts, const std::function<void(double)>& progress,
+                                   const Framebuffer* onto = nullptr, bool keeps_samples = false);
 
 /// primitives, fragments, samples_tested, tiles_visited and skipped of a result.
 [[nodiscard]] Json counters_json(const Counters& counters);
@@ -50,7 +54,8 @@ void check_frames(const RenderCommand& options);
 [[nodiscard]] std::string numbered(const std::string& path, int frame, int frames);
 
 /// Frame i of N shows `--time A..B` at A + i (B - A) / N, and the camera when i/N of its orbit is done, so that what ends as
-/// it began is shown without a frame twice. Without --time all of the animation. Returns the exit status.
+/// it began is shown without a frame twice. Without --time all of the animation. Of a capture with `frame` lines, frame i is the
+/// picture at the end of its frame i. Returns the exit status.
 [[nodiscard]] int run_frames(const RenderCommand& options, const Config& config);
 
 }  // namespace halfplane

@@ -123,5 +123,117 @@ TEST_F(Frames, TheOtherCommandsSeeTheSceneAtATime) {
   EXPECT_EQ(result({"compare", "move.gltf", "--size", "32x32", "--time", "1.5"})["coverage"]["oracle_mismatches"], 0);
 }
 
+/// Three frames, whose areas are counted by hand: a square of 20 x 10 pixels; beside it, on the same picture, one of 5 x 4; a
+/// new picture with one of 8 x 8.
+class CaptureFrames : public Frames {
+ protected:
+  static constexpr const char* kHead = "halfplane 1\ntarget 48 40\nspace window\n";
+  static constexpr const char* kFirst =
+      "clear color 10 20 30 255 depth 1\nv 4 4 0.5 1 255 0 0 255\nv 24 4 0.5 1 255 0 0 255\nv 4 14 0.5 1 255 0 0 255\n"
+      "v 24 14 0.5 1 0 255 0 255\nts 0 1 2 3\n";
+  static constexpr const char* kSecond =
+      "v 30 4 0.25\nv 35 4 0.25\nv 30 8 0.25\nv 35 8 0.25\nstate depth_test lequal\nts 4 5 6 7\nl 4 3\n";
+  /// The first texture and the first vertices are none of its own.
+  static constexpr const char* kThird =
+      "clear color 0 0 0 255\nclear depth 1\nv 20 20 0.5\na normal 0 0 1\nv 28 20 0.5\na normal 1 0 1\nv 20 28 0.5\n"
+      "v 28 28 0.5\na normal 0 1 1\ntexture A inline l8 1 1\ntexels 40\ntexture B inline l8 2 1\ntexels 80ff\n"
+      "state texture B\nstate shade phong\nts 8 9 10 11\n";
+
+  void write_captures() const {
+    const std::string head = kHead, first = kFirst, second = kSecond, third = kThird;
+    write("game.hpt", head + first + "frame\n" + second + "frame\n" + third + "frame\n");
+    write("open.hpt", head + first + "frame\n" + second + "frame\n" + third);
+    write("cleared.hpt", head + first + "frame\n" + "clear color 1 2 3 255 depth 1\n" + second + "frame\n");
+    write("one.hpt", head + first);
+    write("two.hpt", head + first + second);
+    write("three.hpt", head + first + second + third);
+    write("second.hpt", head + first + "clear color 1 2 3 255 depth 1\n" + second);
+  }
+};
+
+TEST_F(CaptureFrames, EachIsThePictureAtItsEnd) {
+  write_captures();
+  const std::vector<std::string> wholes{"one.hpt", "two.hpt", "three.hpt"};
+  const std::vector<std::vector<std::string>> variants{
+      {}, {"--threads", "3"}, {"--engine", "scalar"}, {"--ids", "ids.npy"}, {"--set", "msaa.samples=4"}};
+  for (const std::string capture : {"game.hpt", "open.hpt"})
+    for (const std::vector<std::string>& variant : variants) {
+      const auto with = [&variant](std::vector<std::string> arguments) {
+        arguments.insert(arguments.end(), variant.begin(), variant.end());
+        return arguments;
+      };
+      const Json all = result(with({"render", capture, "--frames", "all", "-o", "a.png"}));
+      ASSERT_EQ(all["frames"].size(), 3u) << capture;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Json one = result(with({"render", wholes[i], "-o", "one.png"}));
+        const Json& frame = all["frames"][i];
+        EXPECT_EQ(frame["color_hash"], one["color_hash"]) << capture << i << testing::PrintToString(variant);
+        EXPECT_EQ(frame["depth_hash"], one["depth_hash"]) << capture << i << testing::PrintToString(variant);
+        EXPECT_EQ(text_of("a-000" + std::to_string(i) + ".png"), text_of("one.png"));
+        EXPECT_EQ(frame["goes_on"], i == 1);
+        EXPECT_EQ(frame["frame"], i);
+        EXPECT_TRUE(frame["time"].is_null());
+      }
+      EXPECT_EQ(all["frames"][0]["primitives"]["in"], 2);
+      EXPECT_EQ(all["frames"][1]["primitives"]["in"], 3);
+      if (!variant.empty() && variant.back() == "msaa.samples=4") continue;  // fragments are then samples
+      EXPECT_EQ(all["frames"][0]["fragments"]["written"], 20 * 10);
+      EXPECT_EQ(all["frames"][2]["fragments"]["written"], 8 * 8);
+    }
+  EXPECT_EQ(result({"render", "game.hpt"})["color_hash"], result({"render", "three.hpt"})["color_hash"])
+      << "without --frames the picture at the end";
+  const Json two = result({"render", "game.hpt", "--frames", "2"});
+  EXPECT_EQ(two["frames"].size(), 2u);
+}
+
+TEST_F(CaptureFrames, TheStencilOfTheFrameBeforeIsKept) {
+  const std::string head = kHead, first = kFirst;
+  // The second frame clears colour and depth, and draws where the first one has left 7.
+  const std::string mark = "clear stencil 0\nstate stencil always 7 255 255 keep keep replace\n" + first,
+                    use =
+                        "clear color 9 9 9 255 depth 1\nstate stencil equal 7 255 255 keep keep keep\n"
+                        "v 0 0 0.5\nv 48 0 0.5\nv 0 40 0.5\nv 48 40 0.5\nts 4 5 6 7\n";
+  write("marked.hpt", head + mark + "frame\n" + use);
+  const Json all = result({"render", "marked.hpt", "--frames", "all"});
+  EXPECT_EQ(all["frames"][1]["goes_on"], true);
+  EXPECT_EQ(all["frames"][1]["fragments"]["written"], 20 * 10);
+}
+
+TEST_F(CaptureFrames, HardwareAndGoldenDrawThoseThatBeginWithAClear) {
+  write_captures();
+  const Json cleared = result({"render", "second.hpt"});
+  for (const char* engine : {"cycle", "golden"}) {
+    const Json all = result({"render", "cleared.hpt", "--frames", "2", "--engine", engine});
+    EXPECT_EQ(all["frames"][0]["fragments"]["written"], 20 * 10) << engine;
+    EXPECT_EQ(all["frames"][1]["goes_on"], false);
+    if (engine != std::string("golden")) {
+      EXPECT_EQ(all["frames"][1]["color_hash"], cleared["color_hash"]) << engine;
+      EXPECT_GT(all["frames"][1]["cycles"], 0);
+    }
+    expect_refused({"render", "game.hpt", "--frames", "all", "-o", "a.png", "--engine", engine},
+                   "game.hpt: frame 1 goes on with the picture of frame 0");
+  }
+  expect_refused({"render", "game.hpt", "--frames", "2", "--supersample", "2x2"}, "without --supersample");
+}
+
+TEST_F(CaptureFrames, TheRtlDrawsThoseThatBeginWithAClear) {
+  skip_without_rtl();
+  if (IsSkipped()) return;
+  write_captures();
+  const Json all = result({"render", "cleared.hpt", "--frames", "all", "--engine", "rtl"});
+  EXPECT_EQ(all["frames"][1]["color_hash"], result({"render", "second.hpt"})["color_hash"]);
+  expect_refused({"render", "game.hpt", "--frames", "all", "--engine", "rtl"}, "which the engine rtl does not keep");
+}
+
+TEST_F(CaptureFrames, ANumberThatItDoesNotHaveIsRefused) {
+  write_captures();
+  expect_refused({"render", "game.hpt", "--frames", "4"}, "--frames 4: game.hpt has 3 frames; give at most so many");
+  expect_refused({"render", "one.hpt", "--frames", "2"}, "--frames 2: one.hpt has 1 frame;");
+  expect_refused({"render", "teapot:2", "--frames", "all", "--camera", "orbit"}, "--frames all: that is for captures");
+  expect_refused({"render", "game.hpt", "--frames", "-1"}, "--frames");
+  expect_refused({"render", "game.hpt", "--frames", "some"}, "--frames");
+  EXPECT_EQ(result({"render", "one.hpt", "--frames", "all"})["frames"].size(), 1u);
+}
+
 }  // namespace
 }  // namespace halfplane::cli

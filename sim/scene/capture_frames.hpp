@@ -1,0 +1,27 @@
+// The frames of a capture: what its `frame` lines end, each as a scene of its own.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "model/scene.hpp"
+
+namespace halfplane {
+
+/// Commands from `first` to before `end`, without the line that ends them.
+struct FrameCommands {
+  std::size_t first = 0, end = 0;
+};
+
+/// A frame ends at each `frame` line, and the last one where the scene ends, if something is drawn or cleared behind the last
+/// line.
+[[nodiscard]] std::vector<FrameCommands> frames_of(const Scene& scene);
+
+/// One frame, with the vertices and textures that it uses. Its primitives count from 0.
+[[nodiscard]] Scene frame_scene(const Scene& scene, const FrameCommands& frame);
+
+/// Whether a frame shows something of the picture that it is drawn on: it does not begin with clears of all that it looks at,
+/// on the whole target.
+[[nodiscard]] bool goes_on(const Scene& scene, const FrameCommands& frame);
+
+}  // namespace halfplane
