@@ -353,8 +353,7 @@ void add_render_command(CLI::App& app, Action& selected) {
   command->footer(
       "\nExample:\n  halfplane render teapot --size 1280x720 -o teapot.png --depth teapot.npy --json\n"
       "  halfplane render city --engine cycle --what-if cache.lines=16,64,256 --trace city.json\n"
-      "  halfplane render teapot --size 160x120 --frames 12 --camera orbit --engine cycle --csv turn.csv\n"
-      "  halfplane render game.hpt --frames all -o game.png");
+      "  halfplane render teapot --size 160x120 --frames 12 --camera orbit --engine cycle --csv turn.csv");
   command->callback([&selected, options] { selected = [options] { return run(*options); }; });
 }
 
