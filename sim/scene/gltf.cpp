@@ -23,6 +23,11 @@ struct Attributes {
   const GltfAccessor* indices = nullptr;
 };
 
+// Corners of a primitive, one after the other.
+struct CornerRun {
+  std::uint64_t first = 0, count = 0;
+};
+
 // A transform of places and of directions that stand on faces.
 struct Placing {
   Mat4 world{};
@@ -120,13 +125,7 @@ class GltfMeshBuilder {
       warn("primitives without POSITION are passed over");
       return;
     }
-    if (const auto extensions = place.find("extensions");
-        extensions && extensions->find("KHR_draco_mesh_compression")) {
-      if (!file_.follow(attributes.at("POSITION"), "accessors").find("bufferView")) {
-        place.fail("compressed with KHR_draco_mesh_compression, which is not read here",
-                   way_without("KHR_draco_mesh_compression"));
-      }
-    }
+    file_.unpack(place);
     material_ = materials_.of(place);
     attributes_ = read_attributes(place, attributes);
     MeshMaterial surface = surface_of(material_);
@@ -173,13 +172,39 @@ class GltfMeshBuilder {
     left_ -= static_cast<std::size_t>(count);
   }
 
-  void add_triangles(const JsonPlace& place, std::uint64_t mode) {
+  /// Corners between two indices of the largest value of their type, which start strips, fans, loops and lists anew: the format
+  /// has none of them, but exporters write them, because graphics APIs read them so.
+  std::vector<CornerRun> runs() {
     const GltfAccessor* indices = attributes_.indices;
     const std::uint64_t corners = indices != nullptr ? indices->count : attributes_.position->count;
-    if (corners < 3 || (mode == 4 && corners % 3 != 0)) {
-      place.fail(std::to_string(corners) + " corners make no whole triangles", "export the file again");
+    std::vector<CornerRun> result{{0, 0}};
+    const double restart = indices == nullptr                         ? -1
+                           : indices->component == GltfComponent::u8  ? 255
+                           : indices->component == GltfComponent::u16 ? 65535
+                                                                      : 4294967295.0;
+    for (std::uint64_t i = 0; i < corners; ++i) {
+      if (indices == nullptr || read_element(*indices, i)[0] != restart) {
+        ++result.back().count;
+        continue;
+      }
+      result.push_back({i + 1, 0});
+      warn("indices of " + std::to_string(static_cast<std::uint64_t>(restart)) +
+           " start primitives anew, as graphics APIs do; glTF 2.0 does not allow them");
     }
-    const std::uint64_t count = mode == 4 ? corners / 3 : corners - 2;
+    return result;
+  }
+
+  void add_triangles(const JsonPlace& place, std::uint64_t mode) {
+    const std::vector<CornerRun> all = runs();
+    if (all.size() == 1 && (all[0].count < 3 || (mode == 4 && all[0].count % 3 != 0))) {
+      place.fail(std::to_string(all[0].count) + " corners make no whole triangles", "export the file again");
+    }
+    const auto triangles_of = [mode](const CornerRun& run) {
+      return mode == 4 ? run.count / 3 : std::max<std::uint64_t>(run.count, 2) - 2;
+    };
+    std::uint64_t count = 0;
+    for (const CornerRun& run : all) count += triangles_of(run);
+    if (count == 0) place.fail("its corners make no whole triangles", "export the file again");
     spend(place, count);
     MeshPart& part = mesh_.parts.emplace_back();
     part.object = object_;
@@ -193,31 +218,37 @@ class GltfMeshBuilder {
       warn("primitives without " + material_.uv_set + " are shown without their texture");
     }
     new_index_ = {};  // clear() would keep a table as long as the largest primitive
-    for (std::uint64_t i = 0; i < count; ++i) {
-      // A strip turns every other triangle round; a fan keeps its first vertex, as its last corner.
-      std::array<std::uint64_t, 3> at{3 * i, 3 * i + 1, 3 * i + 2};
-      if (mode == 5) at = {i, i + 1 + i % 2, i + 2 - i % 2};
-      if (mode == 6) at = {i + 1, i + 2, 0};
-      for (std::uint64_t& corner : at) corner = source_vertex(corner);
-      add_triangle(at);
-    }
+    for (const CornerRun& run : all)
+      for (std::uint64_t i = 0; i < triangles_of(run); ++i) {
+        // A strip turns every other triangle round; a fan keeps its first vertex, as its last corner.
+        std::array<std::uint64_t, 3> at{3 * i, 3 * i + 1, 3 * i + 2};
+        if (mode == 5) at = {i, i + 1 + i % 2, i + 2 - i % 2};
+        if (mode == 6) at = {i + 1, i + 2, 0};
+        for (std::uint64_t& corner : at) corner = source_vertex(run.first + corner);
+        add_triangle(at);
+      }
   }
 
   // Points, lines, line loops and line strips, in that order of `mode`. Without normals they are shown unlit.
   void add_outline(const JsonPlace& place, std::uint64_t mode) {
     constexpr std::array<Topology, 4> kTopologies{Topology::points, Topology::lines, Topology::line_loop,
                                                   Topology::line_strip};
-    const GltfAccessor* indices = attributes_.indices;
-    const std::uint64_t corners = indices != nullptr ? indices->count : attributes_.position->count;
-    if (corners < (mode == 0 ? 1U : 2U) || (mode == 1 && corners % 2 != 0)) {
+    const std::uint64_t least = mode == 0 ? 1 : 2;
+    const std::vector<CornerRun> all = runs();
+    if (const std::uint64_t corners = all[0].count;
+        all.size() == 1 && (corners < least || (mode == 1 && corners % 2 != 0))) {
       place.fail(std::to_string(corners) + (corners == 1 ? " corner makes" : " corners make") + " no whole lines",
                  "export the file again");
     }
-    spend(place, corners);
-    mesh_.parts.push_back({object_, mesh_.indices.size(), static_cast<std::size_t>(corners), 0, true,
-                           kTopologies[static_cast<std::size_t>(mode)]});
     new_index_ = {};
-    for (std::uint64_t i = 0; i < corners; ++i) mesh_.indices.push_back(shared_vertex(source_vertex(i)));
+    for (const CornerRun& run : all) {
+      const std::uint64_t corners = mode == 1 ? run.count / 2 * 2 : run.count;
+      if (corners < least) continue;
+      spend(place, corners);
+      mesh_.parts.push_back({object_, mesh_.indices.size(), static_cast<std::size_t>(corners), 0, true,
+                             kTopologies[static_cast<std::size_t>(mode)]});
+      for (std::uint64_t i = 0; i < corners; ++i) mesh_.indices.push_back(shared_vertex(source_vertex(run.first + i)));
+    }
   }
 
   std::uint64_t source_vertex(std::uint64_t corner) const {

@@ -5,6 +5,7 @@
 
 #include "model/capture/capture_text.hpp"
 #include "model/config.hpp"
+#include "sim/scene/gltf_codecs.hpp"
 #include "sim/scene/text_cursor.hpp"
 
 namespace halfplane {
@@ -18,10 +19,13 @@ constexpr std::array<std::string_view, 9> kKnownExtensions{
 // Of materials base colour, sides and `unlit` are read, of textures their transform, of lights nothing.
 constexpr std::array<std::string_view, 5> kKnownFamilies{"KHR_materials_", "KHR_texture_", "EXT_texture_",
                                                          "KHR_lights_", "EXT_lights_"};
+constexpr std::string_view kDraco = "KHR_draco_mesh_compression", kMeshopt = "EXT_meshopt_compression";
 // Its base colour stands in the extension alone.
 constexpr std::string_view kOtherBaseColor = "KHR_materials_pbrSpecularGlossiness";
 
 bool concerns_what_is_drawn(std::string_view extension) {
+  if (extension == kDraco) return !can_read(GltfCodec::draco);
+  if (extension == kMeshopt) return !can_read(GltfCodec::meshopt);
   if (extension == kOtherBaseColor) return true;
   if (std::find(kKnownExtensions.begin(), kKnownExtensions.end(), extension) != kKnownExtensions.end()) return false;
   return std::none_of(kKnownFamilies.begin(), kKnownFamilies.end(),
@@ -92,9 +96,8 @@ std::optional<std::string> decode_base64(std::string_view text) {
 }
 
 std::string way_without(std::string_view extension) {
-  if (extension == "KHR_draco_mesh_compression")
-    return "unpack it with `gltf-transform cp IN.glb OUT.glb`, or export it without compression";
-  if (extension == "EXT_meshopt_compression" || extension == "KHR_meshopt_compression")
+  if (extension == kDraco) return "unpack it with `gltf-transform cp IN.glb OUT.glb`, or export it without compression";
+  if (extension == kMeshopt || extension == "KHR_meshopt_compression")
     return "unpack it with `gltfpack -noq -i IN.glb -o OUT.glb`, or export it without compression";
   return "export it without that extension";
 }
@@ -198,6 +201,86 @@ std::string GltfFile::resource(const JsonPlace& uri) const {
 }
 
 ByteSpan GltfFile::view(const JsonPlace& view_place) {
+  const std::optional<JsonPlace> extensions = view_place.find("extensions");
+  const std::optional<JsonPlace> packed = extensions ? extensions->find(kMeshopt) : std::nullopt;
+  if (packed && can_read(GltfCodec::meshopt)) return unpacked_view(view_place, *packed);
+  if (packed) {  // the file may do without: then the same bytes stand in its buffer
+    const JsonPlace holder = follow(view_place.at("buffer"), "buffers");
+    const std::optional<JsonPlace> of_holder = holder.find("extensions");
+    if (!holder.find("uri") && of_holder && of_holder->find(kMeshopt))
+      view_place.fail("compressed with " + std::string(kMeshopt) + ", which this build does not read",
+                      way_without(kMeshopt));
+  }
+  return packed_view(view_place);
+}
+
+ByteSpan GltfFile::unpacked_view(const JsonPlace& view_place, const JsonPlace& packed) {
+  const auto known = unpacked_.find(view_place.path());
+  const auto span = [](const std::string& bytes) {
+    return ByteSpan(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+  };
+  if (known != unpacked_.end()) return span(known->second);
+  constexpr std::uint64_t kMostCount = 0xffffffff, kMostStride = 256;
+  const MeshoptStream stream{packed.at("mode").text(), packed.text_or("filter", "NONE"),
+                             packed.at("count").whole(kMostCount), packed.at("byteStride").whole(kMostStride)};
+  const std::uint64_t length = view_place.at("byteLength").whole(std::uint64_t{1} << 40);
+  if (length < stream.count * stream.stride)
+    view_place.fail("byteLength " + std::to_string(length) + " for " + std::to_string(stream.count) + " elements of " +
+                        std::to_string(stream.stride) + " bytes",
+                    "export the file again");
+  std::string fault;
+  std::optional<std::string> bytes = decode_meshopt(stream, packed_view(packed), fault);
+  if (!bytes) packed.fail(fault, "export the file again, or unpack it: " + way_without(kMeshopt));
+  return span(unpacked_.emplace(view_place.path(), std::move(*bytes)).first->second);
+}
+
+void GltfFile::unpack(const JsonPlace& primitive) {
+  const std::optional<JsonPlace> extensions = primitive.find("extensions");
+  const std::optional<JsonPlace> packed = extensions ? extensions->find(kDraco) : std::nullopt;
+  if (!packed) return;
+  const JsonPlace attributes = primitive.at("attributes");
+  if (follow(attributes.at("POSITION"), "accessors").find("bufferView")) return;  // there it is as well, as it was
+  if (!can_read(GltfCodec::draco))
+    primitive.fail("compressed with " + std::string(kDraco) + ", which this build does not read", way_without(kDraco));
+  const std::string way = "unpack it: " + way_without(kDraco);
+  const std::optional<JsonPlace> indices = primitive.find("indices");
+  if (!indices || primitive.whole_or("mode", 6, 4) != 4)
+    primitive.fail("compressed with Draco, and no indexed list of triangles", way);
+  constexpr std::uint64_t kMostId = 0xffffffff;
+  std::vector<DracoAttribute> wanted;
+  std::vector<JsonPlace> places;
+  for (const std::string& name : packed->at("attributes").keys()) {
+    const std::optional<JsonPlace> index = attributes.find(name);
+    if (!index) continue;
+    const GltfAccessor accessor = make_accessor(follow(*index, "accessors"));
+    wanted.push_back({packed->at("attributes").at(name).whole(kMostId), accessor.component, accessor.width, {}});
+    places.push_back(*index);
+  }
+  std::string fault;
+  const std::optional<DracoMesh> mesh =
+      decode_draco(packed_view(follow(packed->at("bufferView"), "bufferViews")), wanted, fault);
+  if (!mesh) packed->fail(fault, way);
+  for (std::size_t i = 0; i < wanted.size(); ++i)
+    set_unpacked(places[i], wanted[i].component, mesh->vertices, std::move(wanted[i].bytes));
+  set_unpacked(*indices, GltfComponent::u32, mesh->indices.size() / sizeof(std::uint32_t), mesh->indices);
+}
+
+/// The accessor that an index stands for, whose elements stand in `bytes`, packed, as numbers of that kind.
+void GltfFile::set_unpacked(const JsonPlace& index, GltfComponent component, std::uint64_t elements,
+                            std::string bytes) {
+  const JsonPlace place = follow(index, "accessors");
+  GltfAccessor made = make_accessor(place);
+  if (made.count != elements)
+    place.fail(std::to_string(made.count) + " elements, and " + std::to_string(elements) + " were compressed",
+               "export the file again");
+  const std::string& kept = unpacked_[place.path()] = std::move(bytes);
+  made.component = component;
+  made.stride = kept.size() / static_cast<std::size_t>(elements);
+  made.bytes = ByteSpan(reinterpret_cast<const std::uint8_t*>(kept.data()), kept.size());
+  accessors_[index.index(count("accessors"), "accessors")] = made;
+}
+
+ByteSpan GltfFile::packed_view(const JsonPlace& view_place) {
   constexpr std::uint64_t kMost = std::uint64_t{1} << 40;  // so that a sum of two is exact
   const std::string& data = buffer(view_place.at("buffer"));
   const std::uint64_t offset = view_place.whole_or("byteOffset", kMost, 0);

@@ -67,8 +67,11 @@ class GltfFile {
   }
   /// The accessor that an index stands for. Buffers are loaded when first used. The reference holds as long as this.
   [[nodiscard]] const GltfAccessor& accessor(const JsonPlace& index);
-  /// The bytes of an entry of `bufferViews`. They hold as long as this.
+  /// The bytes of an entry of `bufferViews`, unpacked where they are compressed. They hold as long as this.
   [[nodiscard]] ByteSpan view(const JsonPlace& view_place);
+  /// Unpacks a primitive that is compressed with KHR_draco_mesh_compression, if it is: its accessors are then those of what
+  /// was in it. Throws InputError for one that is damaged, or that this build cannot read.
+  void unpack(const JsonPlace& primitive);
   /// The bytes that a `uri` stands for: those in it (data:), or those of a file beside this one.
   [[nodiscard]] std::string resource(const JsonPlace& uri) const;
 
@@ -78,6 +81,9 @@ class GltfFile {
   [[nodiscard]] GltfAccessor make_accessor(const JsonPlace& place);
   void add_sparse(GltfAccessor& accessor, const JsonPlace& place);
   [[nodiscard]] const std::string& buffer(const JsonPlace& index);
+  [[nodiscard]] ByteSpan packed_view(const JsonPlace& view_place);
+  [[nodiscard]] ByteSpan unpacked_view(const JsonPlace& view_place, const JsonPlace& packed);
+  void set_unpacked(const JsonPlace& index, GltfComponent component, std::uint64_t elements, std::string bytes);
 
   std::string bytes_;  // the whole file
   std::string name_;
@@ -87,6 +93,7 @@ class GltfFile {
   std::shared_ptr<const nlohmann::json> json_;
   std::map<std::size_t, std::string> buffers_;  // those that were used; maps keep what they hold in place
   std::map<std::size_t, GltfAccessor> accessors_;
+  std::map<std::string, std::string> unpacked_;  // views and accessors that were compressed, by their places
 };
 
 /// What to do about a file that needs this extension, which is not read here: for compressed ones the tool that unpacks

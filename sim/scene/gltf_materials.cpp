@@ -5,6 +5,7 @@
 
 #include "model/capture/capture_textures.hpp"
 #include "model/config.hpp"
+#include "sim/scene/gltf_codecs.hpp"
 #include "sim/scene/mesh_textures.hpp"
 #include "sim/scene/text_cursor.hpp"
 
@@ -132,10 +133,15 @@ std::optional<MeshSampler> GltfMaterials::sampler(const GltfMaterial& material) 
   const JsonPlace texture = file_.follow(*material.texture, "textures");
   MeshSampler sampler;
   if (const auto index = texture.find("sampler")) sampler = read_sampler(file_.follow(*index, "samplers"));
-  const std::optional<JsonPlace> source = texture.find("source");
+  const std::optional<JsonPlace> extensions = texture.find("extensions");
+  const std::optional<JsonPlace> webp =
+      extensions && can_read(GltfCodec::webp) ? extensions->find("EXT_texture_webp") : std::nullopt;
+  const std::optional<JsonPlace> source = webp ? webp->find("source") : texture.find("source");
   const std::string kind = source ? file_.follow(*source, "images").text_or("mimeType", "image/png") : "";
-  if (kind != "image/png" && kind != "image/jpeg") {
-    warn_("textures that are neither PNG nor JPEG are not read: their base colours are shown without them");
+  if (kind != "image/png" && kind != "image/jpeg" && (kind != "image/webp" || !can_read(GltfCodec::webp))) {
+    warn_(std::string("textures that are neither PNG nor JPEG ") +
+          (can_read(GltfCodec::webp) ? "nor WebP" : "(WebP: this build is without libwebp)") +
+          " are not read: their base colours are shown without them");
     return std::nullopt;
   }
   sampler.texture = image(*source);
@@ -149,13 +155,12 @@ std::uint32_t GltfMaterials::image(const JsonPlace& index) {
   const JsonPlace place = file_.item("images", number);
   const std::string where = file_.name() + ": " + place.path();
   const std::optional<JsonPlace> uri = place.find("uri");
-  TexelImage image;
-  if (uri) {
-    image = read_image(file_.resource(*uri), where);
-  } else {
-    const ByteSpan bytes = file_.view(file_.follow(place.at("bufferView"), "bufferViews"));
-    image = read_image({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, where);
-  }
+  const std::string beside = uri ? file_.resource(*uri) : "";
+  const ByteSpan bytes = uri ? ByteSpan(reinterpret_cast<const std::uint8_t*>(beside.data()), beside.size())
+                             : file_.view(file_.follow(place.at("bufferView"), "bufferViews"));
+  const TexelImage image = is_webp(bytes)
+                               ? decode_webp(bytes, where)
+                               : read_image({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, where);
   const std::string name = place.text_or("name", uri && !uri->text().starts_with("data:") ? uri->text() : "");
   return texture_of_image_[number] = add_texture(textures_, image, name, where);
 }

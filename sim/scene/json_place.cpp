@@ -40,6 +40,13 @@ JsonPlace JsonPlace::at(std::string_view key) const {
   return *found;
 }
 
+std::vector<std::string> JsonPlace::keys() const {
+  require_object();
+  std::vector<std::string> names;
+  for (const auto& [name, member] : value_->items()) names.push_back(name);
+  return names;
+}
+
 std::size_t JsonPlace::size() const {
   if (!value_->is_array()) fail("not a list", "write [...] there");
   return value_->size();

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace halfplane {
 
@@ -24,6 +25,8 @@ class JsonPlace {
   [[nodiscard]] std::optional<JsonPlace> find(std::string_view key) const;
   /// A member that must be there.
   [[nodiscard]] JsonPlace at(std::string_view key) const;
+  /// The names of this object's members.
+  [[nodiscard]] std::vector<std::string> keys() const;
   /// How many elements this array has.
   [[nodiscard]] std::size_t size() const;
   /// An element of this array; i < size().

@@ -136,6 +136,47 @@ TEST(Gltf, StripsAndFansKeepTheWindingOfTheirTriangles) {
   EXPECT_EQ(signed_areas(rim, 6), (std::vector<double>{0.5, 0.5}));
 }
 
+/// Six corners of which the fourth is none, but the end of a strip, fan or loop: what graphics APIs make of it.
+TEST(Gltf, TheLargestIndexStartsPrimitivesAnew) {
+  const std::vector<double> corners{0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 2, 1, 0, 2, 2, 0};
+  const auto drawn = [&](GltfBuilder::Component component, double largest, int mode, std::vector<double> indices) {
+    GltfBuilder b;
+    Json& primitive = b.mesh(b.accessor(kF32, 3, corners));
+    for (double& index : indices)
+      if (index < 0) index = largest;
+    primitive["indices"] = b.accessor(component, 1, indices);
+    primitive["mode"] = mode;
+    const Parsed parsed = parse(b.text());
+    EXPECT_EQ(parsed.warnings.size(), 1u);
+    EXPECT_NE(parsed.warnings.front().find(std::to_string(static_cast<std::uint64_t>(largest)) + " start"),
+              std::string::npos)
+        << parsed.warnings.front();
+    return parsed.model.mesh;
+  };
+  const auto corner = [&](std::size_t i) { return Vec3{corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]}; };
+  const auto triangle = [&](std::size_t a, std::size_t b, std::size_t c) {
+    return std::array{corner(a), corner(b), corner(c)};
+  };
+  using Triangles = std::vector<std::array<Vec3, 3>>;
+  for (const auto& [component, largest] :
+       {std::pair{GltfBuilder::u8, 255.0}, {GltfBuilder::u16, 65535.0}, {GltfBuilder::u32, 4294967295.0}}) {
+    // Strips 0 1 2 3 and 3 4 5, whose second begins with the winding of a first one.
+    EXPECT_EQ(places(drawn(component, largest, 5, {0, 1, 2, 3, -1, 3, 4, 5})),
+              (Triangles{triangle(0, 1, 2), triangle(1, 3, 2), triangle(3, 4, 5)}));
+    // Fans 0 1 3 2 and 3 4 5; a corner too few makes none.
+    EXPECT_EQ(places(drawn(component, largest, 6, {0, 1, 3, 2, -1, 0, 1, -1, 3, 4, 5})),
+              (Triangles{triangle(1, 3, 0), triangle(3, 2, 0), triangle(4, 5, 3)}));
+    // Of a list what is not whole is left out.
+    EXPECT_EQ(places(drawn(component, largest, 4, {0, 1, 2, 3, 4, -1, 3, 4, 5})),
+              (Triangles{triangle(0, 1, 2), triangle(3, 4, 5)}));
+    const Mesh lines = drawn(component, largest, 3, {0, 1, 3, -1, 5, -1, 4, 5});
+    std::vector<std::size_t> counts;
+    for (const MeshPart& part : lines.parts) counts.push_back(part.count);
+    EXPECT_EQ(counts, (std::vector<std::size_t>{3, 2})) << "line strips";
+    EXPECT_EQ(lines.vertices[lines.indices.back()].position, corner(5));
+  }
+}
+
 TEST(Gltf, PointsAndLinesOfEveryModeAreDrawn) {
   const std::vector<double> rim{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
   const auto drawn = [&rim](int mode) {

@@ -204,7 +204,7 @@ TEST(GltfTexture, WhatCannotBeShownIsShownWithoutItsTextureAndSaidSo) {
   builder.json["textures"] = {{{"extensions", {{"KHR_texture_basisu", {{"source", 0}}}}}}};
   expect_plain(builder, "neither PNG nor JPEG");
   builder = textured();
-  builder.json["images"][0]["mimeType"] = "image/webp";
+  builder.json["images"][0]["mimeType"] = "image/ktx2";
   expect_plain(builder, "neither PNG nor JPEG");
 }
 

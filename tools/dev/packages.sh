@@ -2,7 +2,8 @@
 # Part of ./dev: what it needs installed, how that is asked and installed.
 
 # The one list of packages: name (Debian 12, Ubuntu 24.04), what needs it, how we know that it is there (a command or
-# a header). build: anything at all; sim: the program; speed: only time; report: HTML reports; test, rtl, coverage, prove, lint,
+# a header). build: anything at all; sim: the program; speed: only time; report: HTML reports;
+# gltf: compressed glTF files; test, rtl, coverage, prove, lint,
 # soak, docs: those commands.
 readonly packages='
 build-essential      build c++
@@ -16,6 +17,9 @@ libtomlplusplus-dev  sim   toml++/toml.h
 libstb-dev           sim   stb/stb_image.h
 libpng-dev           sim   png.h
 libgmp-dev           sim   gmpxx.h
+libdraco-dev         gltf  draco/compression/decode.h
+libmeshoptimizer-dev gltf  meshoptimizer.h
+libwebp-dev          gltf  webp/decode.h
 libjs-chart.js       report /usr/share/javascript/chart.js/chart.min.js
 libgtest-dev         test  gtest/gtest.h
 python3-jsonschema   test  /usr/lib/python3/dist-packages/jsonschema/__init__.py
@@ -33,7 +37,7 @@ nextpnr-ice40        area  nextpnr-ice40
 python3              area  python3
 clang                soak  clang++
 doxygen              docs  doxygen'
-readonly everyday=(build sim speed report test rtl coverage)
+readonly everyday=(build sim speed report gltf test rtl coverage)
 
 # present PROBE: a header is looked for where compilers and CMake look, a command in the path, a file at its path.
 present() {

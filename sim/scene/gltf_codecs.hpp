@@ -1,0 +1,48 @@
+// What unpacks compressed parts of glTF files: other people's libraries, each of which a build may do without.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/texture.hpp"
+#include "sim/scene/gltf_file.hpp"
+
+namespace halfplane {
+
+enum class GltfCodec { draco, meshopt, webp };
+
+/// Whether this build has the library. Without it the functions below find everything damaged.
+[[nodiscard]] bool can_read(GltfCodec codec);
+
+/// A buffer view of EXT_meshopt_compression: `count` elements of `stride` bytes.
+struct MeshoptStream {
+  std::string mode, filter;
+  std::uint64_t count = 0, stride = 0;
+};
+/// count * stride bytes; or nothing, and `fault` says why.
+[[nodiscard]] std::optional<std::string> decode_meshopt(const MeshoptStream& stream, ByteSpan packed,
+                                                        std::string& fault);
+
+/// An attribute of a primitive of KHR_draco_mesh_compression.
+struct DracoAttribute {
+  std::uint64_t id = 0;     ///< as it is called in what is compressed
+  GltfComponent component;  ///< of the accessor, as are the next
+  int width = 1;
+  std::string bytes{};  ///< the result: an element for each vertex, packed
+};
+struct DracoMesh {
+  std::uint64_t vertices = 0;
+  std::string indices;  ///< of triangles, 32 bits each
+};
+/// Fills in the attributes; or nothing, and `fault` says why.
+[[nodiscard]] std::optional<DracoMesh> decode_draco(ByteSpan packed, std::vector<DracoAttribute>& attributes,
+                                                    std::string& fault);
+
+/// Whether these are the bytes of a WebP image.
+[[nodiscard]] bool is_webp(ByteSpan bytes);
+/// Its texels. Throws InputError: "`what`: what is wrong".
+[[nodiscard]] TexelImage decode_webp(ByteSpan bytes, const std::string& what);
+
+}  // namespace halfplane
