@@ -230,7 +230,7 @@ ByteSpan GltfFile::unpacked_view(const JsonPlace& view_place, const JsonPlace& p
                     "export the file again");
   std::string fault;
   std::optional<std::string> bytes = decode_meshopt(stream, packed_view(packed), fault);
-  if (!bytes) packed.fail(fault, "export the file again, or unpack it: " + way_without(kMeshopt));
+  if (!bytes) packed.fail(fault, "export the file again");
   return span(unpacked_.emplace(view_place.path(), std::move(*bytes)).first->second);
 }
 
@@ -242,10 +242,9 @@ void GltfFile::unpack(const JsonPlace& primitive) {
   if (follow(attributes.at("POSITION"), "accessors").find("bufferView")) return;  // there it is as well, as it was
   if (!can_read(GltfCodec::draco))
     primitive.fail("compressed with " + std::string(kDraco) + ", which this build does not read", way_without(kDraco));
-  const std::string way = "unpack it: " + way_without(kDraco);
   const std::optional<JsonPlace> indices = primitive.find("indices");
   if (!indices || primitive.whole_or("mode", 6, 4) != 4)
-    primitive.fail("compressed with Draco, and no indexed list of triangles", way);
+    primitive.fail("compressed with Draco, and no indexed list of triangles", way_without(kDraco));
   constexpr std::uint64_t kMostId = 0xffffffff;
   std::vector<DracoAttribute> wanted;
   std::vector<JsonPlace> places;
@@ -259,7 +258,7 @@ void GltfFile::unpack(const JsonPlace& primitive) {
   std::string fault;
   const std::optional<DracoMesh> mesh =
       decode_draco(packed_view(follow(packed->at("bufferView"), "bufferViews")), wanted, fault);
-  if (!mesh) packed->fail(fault, way);
+  if (!mesh) packed->fail(fault, "export the file again");
   for (std::size_t i = 0; i < wanted.size(); ++i)
     set_unpacked(places[i], wanted[i].component, mesh->vertices, std::move(wanted[i].bytes));
   set_unpacked(*indices, GltfComponent::u32, mesh->indices.size() / sizeof(std::uint32_t), mesh->indices);
