@@ -87,44 +87,44 @@ l 0 3
 class CapiTarget : public testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
-    config = halfplane_config_new("embedded");
-    ASSERT_EQ(halfplane_config_set(config, "color.format", GetParam()), 0);
-    target = halfplane_target_new(config, kWidth, kHeight, nullptr);
-    ASSERT_NE(target, nullptr) << halfplane_last_error();
+    config_ = halfplane_config_new("embedded");
+    ASSERT_EQ(halfplane_config_set(config_, "color.format", GetParam()), 0);
+    target_ = halfplane_target_new(config_, kWidth, kHeight, nullptr);
+    ASSERT_NE(target_, nullptr) << halfplane_last_error();
   }
   void TearDown() override {
-    halfplane_target_free(target);
-    halfplane_config_free(config);
+    halfplane_target_free(target_);
+    halfplane_config_free(config_);
   }
-  int say(const std::string& lines) { return halfplane_target_say(target, lines.data(), lines.size()); }
+  int say(const std::string& lines) { return halfplane_target_say(target_, lines.data(), lines.size()); }
   int draw(const char* topology, const std::vector<std::uint32_t>& indices) {
-    return halfplane_target_draw(target, topology, &kSmall, kSquare.data(), sizeof kSquare, kSquare.size(),
+    return halfplane_target_draw(target_, topology, &kSmall, kSquare.data(), sizeof kSquare, kSquare.size(),
                                  indices.data(), indices.size());
   }
   void draw_all() {
     const std::array<std::uint8_t, 16> texels{255, 0, 0, 255, 0, 255, 0, 192, 0, 0, 255, 128, 255, 255, 255, 64};
-    ASSERT_EQ(halfplane_target_texture(target, "T", 2, 2, texels.data(), "rgba8888", "box"), 0)
+    ASSERT_EQ(halfplane_target_texture(target_, "T", 2, 2, texels.data(), "rgba8888", "box"), 0)
         << halfplane_last_error();
     const std::array<double, 4> color{20, 30, 40, 255};
     const double far = 1, nearer = 0.9;
-    ASSERT_EQ(halfplane_target_clear(target, color.data(), &far, 3), 0) << halfplane_last_error();
+    ASSERT_EQ(halfplane_target_clear(target_, color.data(), &far, 3), 0) << halfplane_last_error();
     ASSERT_EQ(say("space window\nstate depth_test always\n"), 0) << halfplane_last_error();
-    ASSERT_EQ(halfplane_target_draw(target, "triangle_strip", &kSmall, kSquare.data(), sizeof kSquare, kSquare.size(),
+    ASSERT_EQ(halfplane_target_draw(target_, "triangle_strip", &kSmall, kSquare.data(), sizeof kSquare, kSquare.size(),
                                     nullptr, 0),
               0)
         << halfplane_last_error();
     ASSERT_EQ(say("state scissor 10 10 20 20\n"), 0);
-    ASSERT_EQ(halfplane_target_clear(target, nullptr, &nearer, 7), 0);
+    ASSERT_EQ(halfplane_target_clear(target_, nullptr, &nearer, 7), 0);
     ASSERT_EQ(say("state texture T\nstate texture_mag linear\nstate blend src_alpha one_minus_src_alpha\n"
                   "state stencil equal 7 255 255 keep keep incr\nstate shade phong\n"),
               0)
         << halfplane_last_error();
     const std::array<std::uint32_t, 3> indices{0, 1, 2};
-    ASSERT_EQ(halfplane_target_draw(target, "triangles", &kFloat, kTriangle.data(), sizeof kTriangle, kTriangle.size(),
+    ASSERT_EQ(halfplane_target_draw(target_, "triangles", &kFloat, kTriangle.data(), sizeof kTriangle, kTriangle.size(),
                                     indices.data(), indices.size()),
               0)
         << halfplane_last_error();
-    EXPECT_GT(halfplane_target_counter(target, "written"), 50);
+    EXPECT_GT(halfplane_target_counter(target_, "written"), 50);
     ASSERT_EQ(say("space window\nstate depth_test always\n"), 0);
     ASSERT_EQ(draw("points", {1, 3}), 0) << halfplane_last_error();
     ASSERT_EQ(draw("lines", {0, 3}), 0) << halfplane_last_error();
@@ -135,14 +135,14 @@ class CapiTarget : public testing::TestWithParam<const char*> {
     constexpr std::array<const char*, 3> kNames{"color", "depth", "stencil"};
     for (std::size_t i = 0; i < 3; ++i) {
       all[i].resize(kPixels);
-      EXPECT_EQ(halfplane_target_plane(target, kNames[i], all[i].data(), kPixels), static_cast<std::int64_t>(kPixels));
+      EXPECT_EQ(halfplane_target_plane(target_, kNames[i], all[i].data(), kPixels), static_cast<std::int64_t>(kPixels));
     }
     return all;
   }
   [[nodiscard]] Planes capture_planes(const char* engine) const {
     halfplane_scene* scene = halfplane_scene_read(kCapture, std::strlen(kCapture));
     EXPECT_NE(scene, nullptr) << halfplane_last_error();
-    halfplane_frame* frame = halfplane_render(scene, config, engine);
+    halfplane_frame* frame = halfplane_render(scene, config_, engine);
     EXPECT_NE(frame, nullptr) << halfplane_last_error();
     Planes all;
     constexpr std::array<const char*, 3> kNames{"color", "depth", "stencil"};
@@ -155,8 +155,8 @@ class CapiTarget : public testing::TestWithParam<const char*> {
     return all;
   }
 
-  halfplane_config* config = nullptr;
-  halfplane_target* target = nullptr;
+  halfplane_config* config_ = nullptr;
+  halfplane_target* target_ = nullptr;
 };
 
 TEST_P(CapiTarget, CallByCallItIsTheCaptureOfTheSameCommands) {
@@ -164,14 +164,14 @@ TEST_P(CapiTarget, CallByCallItIsTheCaptureOfTheSameCommands) {
   const Planes drawn = planes();
   EXPECT_EQ(drawn, capture_planes("functional"));
   EXPECT_EQ(drawn, capture_planes("scalar"));
-  ASSERT_EQ(halfplane_target_set_threads(target, 3), 0);
+  ASSERT_EQ(halfplane_target_set_threads(target_, 3), 0);
   draw_all();
   EXPECT_EQ(planes(), drawn) << "three threads";
 }
 
 TEST_P(CapiTarget, AWholeSceneIsDrawnOnWhatIsThere) {
   halfplane_scene* scene = halfplane_scene_read(kCapture, std::strlen(kCapture));
-  ASSERT_EQ(halfplane_target_draw_scene(target, scene), 0) << halfplane_last_error();
+  ASSERT_EQ(halfplane_target_draw_scene(target_, scene), 0) << halfplane_last_error();
   EXPECT_EQ(planes(), capture_planes("functional"));
   halfplane_scene_free(scene);
 }
@@ -182,15 +182,15 @@ TEST_P(CapiTarget, ItsFrameGoesToTheCallersMemoryAndComesBack) {
   const std::size_t bytes = std::strcmp(GetParam(), "rgb565") == 0 ? 2 : 4, pitch = bytes * 80;
   std::vector<std::uint8_t> color(pitch * kHeight);
   std::vector<std::uint32_t> depth(kPixels);
-  ASSERT_EQ(halfplane_target_copy_to(target, color.data(), pitch, depth.data(), std::size_t{kWidth} * 4), 0);
+  ASSERT_EQ(halfplane_target_copy_to(target_, color.data(), pitch, depth.data(), std::size_t{kWidth} * 4), 0);
   EXPECT_EQ(depth, drawn[1]);
   std::uint32_t code = 0;  // of the pixel 12, 11, whose lowest byte comes first here and there
   std::memcpy(&code, &color[pitch * 11 + bytes * 12], bytes);
   EXPECT_EQ(code, drawn[0][11 * kWidth + 12]);
   const double near = 0;
-  ASSERT_EQ(halfplane_target_clear(target, nullptr, &near, -1), 0);
+  ASSERT_EQ(halfplane_target_clear(target_, nullptr, &near, -1), 0);
   EXPECT_NE(planes()[1], drawn[1]);
-  ASSERT_EQ(halfplane_target_copy_from(target, color.data(), pitch, depth.data(), std::size_t{kWidth} * 4), 0);
+  ASSERT_EQ(halfplane_target_copy_from(target_, color.data(), pitch, depth.data(), std::size_t{kWidth} * 4), 0);
   EXPECT_EQ(planes(), drawn);
 }
 
@@ -204,7 +204,7 @@ TEST_P(CapiTarget, WhatIsRefusedIsSaidInALineAndLeavesItAsItWas) {
     EXPECT_EQ(planes(), before) << part;
   };
   const auto refuse_layout = [&](const halfplane_layout& layout, std::size_t bytes, const std::string& part) {
-    expect_refusal(halfplane_target_draw(target, "triangles", &layout, kSquare.data(), bytes, 4, nullptr, 0), part);
+    expect_refusal(halfplane_target_draw(target_, "triangles", &layout, kSquare.data(), bytes, 4, nullptr, 0), part);
   };
   halfplane_layout layout = kSmall;
   refuse_layout(layout, sizeof kSquare - 1, "layout: color of 4 vertices ends beyond the 31 bytes");
@@ -223,41 +223,41 @@ TEST_P(CapiTarget, WhatIsRefusedIsSaidInALineAndLeavesItAsItWas) {
   refuse_layout(layout, sizeof kSquare, "colour component outside 0...255");
   expect_refusal(draw("triangles", {0, 1, 4}), "index 2 of the draw is 4, and the draw has 4 vertices");
   expect_refusal(draw("hexagons", {0, 1, 2}), "no topology 'hexagons'; give one of triangles, triangle_strip");
-  expect_refusal(halfplane_target_draw(target, "triangles", nullptr, nullptr, 0, 0, nullptr, 0), "the layout is NULL");
-  expect_refusal(halfplane_target_draw(target, "triangles", &kSmall, nullptr, sizeof kSquare, 4, nullptr, 0),
+  expect_refusal(halfplane_target_draw(target_, "triangles", nullptr, nullptr, 0, 0, nullptr, 0), "the layout is NULL");
+  expect_refusal(halfplane_target_draw(target_, "triangles", &kSmall, nullptr, sizeof kSquare, 4, nullptr, 0),
                  "is NULL");
   expect_refusal(say("clear color 255 255 255 255\nstate cul none\n"), "lines:2: ");
   expect_refusal(say("clear color 255 255 255 255\nplanes 1 2\n"), "the planes of the target are given by");
   expect_refusal(say("state texture U\n"), "lines:1: ");
   const double wrong = 1.5;
-  expect_refusal(halfplane_target_clear(target, nullptr, &wrong, -1), "a depth outside 0...1");
-  expect_refusal(halfplane_target_clear(target, nullptr, nullptr, 256), "a stencil of 256");
+  expect_refusal(halfplane_target_clear(target_, nullptr, &wrong, -1), "a depth outside 0...1");
+  expect_refusal(halfplane_target_clear(target_, nullptr, nullptr, 256), "a stencil of 256");
   const std::array<std::uint8_t, 4> texel{};
-  expect_refusal(halfplane_target_texture(target, "two words", 1, 1, texel.data(), "l8", "none"),
+  expect_refusal(halfplane_target_texture(target_, "two words", 1, 1, texel.data(), "l8", "none"),
                  "no word of a capture");
-  expect_refusal(halfplane_target_texture(target, "U", 0, 1, texel.data(), "l8", "none"), "sides of 1 to 4096");
-  expect_refusal(halfplane_target_texture(target, "U", 1, 1, texel.data(), "l9", "none"), "no texture format 'l9'");
-  expect_refusal(halfplane_target_texture(target, "U", 1, 1, nullptr, "l8", "none"), "is NULL");
-  expect_refusal(halfplane_target_set_threads(target, 0), "0 threads");
+  expect_refusal(halfplane_target_texture(target_, "U", 0, 1, texel.data(), "l8", "none"), "sides of 1 to 4096");
+  expect_refusal(halfplane_target_texture(target_, "U", 1, 1, texel.data(), "l9", "none"), "no texture format 'l9'");
+  expect_refusal(halfplane_target_texture(target_, "U", 1, 1, nullptr, "l8", "none"), "is NULL");
+  expect_refusal(halfplane_target_set_threads(target_, 0), "0 threads");
   std::vector<std::uint32_t> memory(kPixels);
-  expect_refusal(halfplane_target_copy_to(target, memory.data(), 3, nullptr, 0), "color_pitch of 3 bytes");
-  expect_refusal(halfplane_target_plane(target, "colour", memory.data(), kPixels), "no plane 'colour'");
-  expect_refusal(halfplane_target_plane(target, "color", memory.data(), 3), "room for 3 values");
-  expect_refusal(halfplane_target_draw_scene(target, nullptr), "the scene is NULL");
-  EXPECT_EQ(halfplane_target_new(config, 0, 4, nullptr), nullptr);
+  expect_refusal(halfplane_target_copy_to(target_, memory.data(), 3, nullptr, 0), "color_pitch of 3 bytes");
+  expect_refusal(halfplane_target_plane(target_, "colour", memory.data(), kPixels), "no plane 'colour'");
+  expect_refusal(halfplane_target_plane(target_, "color", memory.data(), 3), "room for 3 values");
+  expect_refusal(halfplane_target_draw_scene(target_, nullptr), "the scene is NULL");
+  EXPECT_EQ(halfplane_target_new(config_, 0, 4, nullptr), nullptr);
   EXPECT_EQ(halfplane_target_new(nullptr, 4, 4, nullptr), nullptr);
   const std::array<double, 2> planes_of_nothing{2, 1};
-  EXPECT_EQ(halfplane_target_new(config, 4, 4, planes_of_nothing.data()), nullptr);
+  EXPECT_EQ(halfplane_target_new(config_, 4, 4, planes_of_nothing.data()), nullptr);
   // The state that was said last holds, and a texture is what it was.
   ASSERT_EQ(draw("triangle_strip", {0, 1, 2, 3}), 0) << halfplane_last_error();
-  const auto written = halfplane_target_counter(target, "written");
+  const auto written = halfplane_target_counter(target_, "written");
   EXPECT_GT(written, 1000);
   ASSERT_EQ(say("space window\nstate depth_test always\nstate texture T\n"), 0) << halfplane_last_error();
 }
 
 TEST_P(CapiTarget, ATextureOfTheSameNameTakesTheOthersPlace) {
   const std::array<std::uint8_t, 4> red{255, 0, 0, 255}, blue{0, 0, 255, 255};
-  ASSERT_EQ(halfplane_target_texture(target, "T", 1, 1, red.data(), "rgba8888", "none"), 0);
+  ASSERT_EQ(halfplane_target_texture(target_, "T", 1, 1, red.data(), "rgba8888", "none"), 0);
   ASSERT_EQ(say("space window\nstate depth_test always\nstate texture_combine replace\nstate texture T\n"), 0);
   const auto pixel = [&] {
     EXPECT_EQ(draw("triangle_strip", {0, 1, 2, 3}), 0) << halfplane_last_error();
@@ -265,7 +265,7 @@ TEST_P(CapiTarget, ATextureOfTheSameNameTakesTheOthersPlace) {
   };
   const bool is_565 = std::strcmp(GetParam(), "rgb565") == 0;
   EXPECT_EQ(pixel(), is_565 ? 0xf800u : 0xff0000ffu);
-  ASSERT_EQ(halfplane_target_texture(target, "T", 1, 1, blue.data(), "rgba8888", "none"), 0);
+  ASSERT_EQ(halfplane_target_texture(target_, "T", 1, 1, blue.data(), "rgba8888", "none"), 0);
   EXPECT_EQ(pixel(), is_565 ? 0x001fu : 0xffff0000u);
 }
 
@@ -280,15 +280,15 @@ TEST_P(CapiTarget, ASceneTakesTheSameVerticesAndTextures) {
   ASSERT_EQ(halfplane_scene_records(scene, &kFloat, kTriangle.data(), sizeof kTriangle, 3), 4);
   const std::array<std::uint32_t, 3> indices{4, 5, 6};
   ASSERT_EQ(halfplane_scene_draw(scene, "triangles", indices.data(), 3), 0) << halfplane_last_error();
-  halfplane_frame* frame = halfplane_render(scene, config, "functional");
+  halfplane_frame* frame = halfplane_render(scene, config_, "functional");
   ASSERT_NE(frame, nullptr) << halfplane_last_error();
   std::vector<std::uint32_t> color(kPixels);
   EXPECT_EQ(halfplane_frame_plane(frame, "color", color.data(), kPixels), static_cast<std::int64_t>(kPixels));
   halfplane_frame_free(frame);
   halfplane_scene_free(scene);
-  ASSERT_EQ(halfplane_target_texture(target, "T", 2, 2, texels.data(), "rgba8888", "box"), 0);
+  ASSERT_EQ(halfplane_target_texture(target_, "T", 2, 2, texels.data(), "rgba8888", "box"), 0);
   ASSERT_EQ(say(lines), 0);
-  ASSERT_EQ(halfplane_target_draw(target, "triangles", &kFloat, kTriangle.data(), sizeof kTriangle, 3, nullptr, 0), 0);
+  ASSERT_EQ(halfplane_target_draw(target_, "triangles", &kFloat, kTriangle.data(), sizeof kTriangle, 3, nullptr, 0), 0);
   EXPECT_EQ(planes()[0], color);
 }
 

@@ -168,7 +168,7 @@ std::string draco_file(bool has_fallback = false) {
   const int position = soup.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32),
             color = soup.AddAttribute(draco::GeometryAttribute::COLOR, 4, draco::DT_UINT8);
   for (std::uint32_t f = 0; f < 8; ++f) {
-    const auto corner = [f](std::size_t k) { return kFaces[3 * f + k]; };
+    const auto corner = [f](std::size_t k) { return kFaces[std::size_t{3} * f + k]; };
     soup.SetAttributeValuesForFace(position, draco::FaceIndex(f), kCorners[corner(0)].data(),
                                    kCorners[corner(1)].data(), kCorners[corner(2)].data());
     soup.SetAttributeValuesForFace(color, draco::FaceIndex(f), kColors[corner(0)].data(), kColors[corner(1)].data(),
