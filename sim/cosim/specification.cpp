@@ -20,7 +20,7 @@ std::string difference(const char* plane, const Plane& model, const Plane& speci
       std::snprintf(codes, sizeof codes, "0x%x, the scalar engine 0x%x", static_cast<unsigned>(model[at]),
                     static_cast<unsigned>(specification[at]));
       return std::string(plane) + " of pixel (" + std::to_string(x) + ", " + std::to_string(y) + ")" + sample +
-             ": the hardware model has " + codes;
+             ": the model has " + codes;
     }
   return {};
 }

@@ -166,7 +166,7 @@ TEST(SampledHardware, ADisagreementWithTheSpecificationIsReduced) {
     reduced = reduce(random_scene(config, seed, 40), config, {}, specification_test(config, faulty));
   ASSERT_TRUE(reduced);
   EXPECT_EQ(reduced->primitives_after, 1U);
-  EXPECT_NE(reduced->mismatch.hint.find("colour of pixel (20, 20): the hardware model has"), std::string::npos)
+  EXPECT_NE(reduced->mismatch.hint.find("colour of pixel (20, 20): the model has"), std::string::npos)
       << reduced->mismatch.hint;
 }
 

@@ -98,12 +98,13 @@ SurfaceOracle::SurfaceOracle(const Scene& scene, const Config& config, const Tri
   for (const std::size_t axis : {0U, 1U}) {
     const auto [low, high] = std::minmax({v[0].uv[axis], v[1].uv[axis], v[2].uv[axis]});
     const double extent = (high - low) * sampler_.axes[axis].size;
-    // A corner farther than 2^20 from u_ref is held there; weighted means of corners are off by no more than the corners.
-    const double reach = std::ldexp(1 - std::ldexp(1.0, -9), kMaxReach),
-                 held_off = std::max(0.0, extent / 2 + 1 - reach);
-    coordinate_bound_[axis] =
-        over_w_bound(std::min(extent, 2 * reach), w_ratio, format, format.coordinate, plane_roundings(config)) +
-        held_off;
+    // A corner farther than 2^20 from u_ref is held there; weighted means of corners are off by no more than the corners,
+    // and the real coordinate by the rounding of binary64, in which beyond 2^900 it overflows.
+    const double reach = std::ldexp(1 - std::ldexp(1.0, -9), kMaxReach), farthest = extent / 2 + 1;
+    const double held_off = farthest > reach ? farthest - reach + std::ldexp(extent, -40) : 0;
+    const double within =
+        over_w_bound(std::min(extent, 2 * reach), w_ratio, format, format.coordinate, plane_roundings(config));
+    coordinate_bound_[axis] = farthest < std::ldexp(1.0, 900) ? within + held_off : HUGE_VAL;
   }
 }
 

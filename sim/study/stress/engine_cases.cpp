@@ -164,14 +164,19 @@ void stalls(Unit& unit) {
 }
 
 void hardware_surfaces(Unit& unit) {
-  // The hardware model, which co-simulation holds the RTL to, against the scalar engine.
+  // The hardware model, which co-simulation holds the RTL to, and the engine against the scalar one.
   const Config config = random_shading_config(unit.random);
   unit.count_config(std::hash<std::string>()(label(config, " --set ")));
   const Scene scene = random_scene(config, unit.random.next(), 24);
   Unit shaded(unit, config);
   shaded.count_triangles(24);
-  const std::string difference = difference_from_specification(scene, config);
-  (void)shaded.require(difference.empty(), "hardware model", scene, difference);
+  const std::string of_hardware = difference_from_specification(scene, config);
+  (void)shaded.require(of_hardware.empty(), "hardware model", scene, of_hardware);
+  const std::string of_engine =
+      difference_from_specification(scene, config, [&unit](const Scene& drawn, const Config& with) {
+        return unit.engine(drawn, with, render_options()).frame;
+      });
+  (void)shaded.require(of_engine.empty(), "engine", scene, of_engine);
 }
 
 void frames(Unit& unit) {
