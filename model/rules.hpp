@@ -12,7 +12,8 @@ namespace halfplane {
 enum class FillRule {
   top_left,      ///< those on top and left edges: the pipeline's own rule
   offset_point,  ///< those on edges that have the point (-1, -1) on the triangle's side: Shirley's rule
-  inclusive      ///< all
+  inclusive,     ///< all: those on a shared edge are drawn twice
+  exclusive      ///< none (E > 0 on all three edges): those on a shared edge are a crack
 };
 
 /// In which order, and by what arithmetic, the samples of a triangle are found.
@@ -49,7 +50,7 @@ enum class Weights {
 };
 
 /// By enumerator, as typed on the command line and printed in results.
-inline constexpr std::array<std::string_view, 3> kFillRuleNames{"top_left", "offset_point", "inclusive"};
+inline constexpr std::array<std::string_view, 4> kFillRuleNames{"top_left", "offset_point", "inclusive", "exclusive"};
 inline constexpr std::array<std::string_view, 4> kTraversalNames{"tiled", "bbox", "scanline", "brute"};
 inline constexpr std::array<std::string_view, 2> kClippingNames{"polygon", "homogeneous"};
 inline constexpr std::array<std::string_view, 3> kGradientsNames{"one_reciprocal", "two_reciprocals", "truncated"};

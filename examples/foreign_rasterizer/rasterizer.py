@@ -7,7 +7,7 @@ Written from docs/spec.md and docs/capture.md alone, in whole numbers of its own
 
 --bug edge_rule  a sample on any border belongs to the triangle
 --bug snap       vertices are cut to the grid, not rounded
---bug depth      what is as far away replaces what is there
+--bug depth_func what is as far away replaces what is there
 --bug color      colours are cut to 5 and 6 bits, not rounded
 """
 import argparse
@@ -17,7 +17,7 @@ import zlib
 
 SUBPIXEL = 4  # bits of `embedded`
 DEPTH_MAX = 2**16 - 1
-BUGS = ('edge_rule', 'snap', 'depth', 'color')
+BUGS = ('edge_rule', 'snap', 'depth_func', 'color')
 
 
 def read_capture(path):
@@ -73,7 +73,7 @@ def draw(triangle, width, height, color, depth, bug):
         for x in range(max(0, min(ax, bx, cx) // one), min(width, max(ax, bx, cx) // one + 1)):
             sx, sy = x * one + half, y * one + half
             if all(dx * (sy - py) - dy * (sx - px) >= least for px, py, dx, dy, least in sides):
-                if z < depth[x, y] or (bug == 'depth' and z == depth[x, y]):
+                if z < depth[x, y] or (bug == 'depth_func' and z == depth[x, y]):
                     depth[x, y], color[x, y] = z, code
 
 

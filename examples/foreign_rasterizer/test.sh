@@ -10,7 +10,7 @@ python3 "$here/rasterizer.py" "$here/scene.hpt" "$folder/right.png"
 "$halfplane" compare "$here/scene.hpt" --against "$folder/right.png" --quiet --json="$folder/right.json" ||
   { echo 'test.sh: the picture without a bug is not equal' >&2; exit 1; }
 
-for bug in edge_rule snap depth color; do
+for bug in edge_rule snap depth_func color; do
   python3 "$here/rasterizer.py" "$here/scene.hpt" "$folder/$bug.png" --bug "$bug"
   status=0
   "$halfplane" compare "$here/scene.hpt" --against "$folder/$bug.png" --quiet --json="$folder/$bug.json" || status=$?
@@ -23,7 +23,7 @@ def against(name):
     with open(f'{sys.argv[1]}/{name}.json', encoding='utf-8') as file:
         return json.load(file)['against']
 assert against('right')['different'] == 0
-for bug in ('edge_rule', 'snap', 'depth', 'color'):
+for bug in ('edge_rule', 'snap', 'depth_func', 'color'):
     found = against(bug)
     named = found['kinds'][bug]['pixels']
     print(f"{bug}: {found['different']} pixels differ, {named} of them put down to it", {k: v for k, v in found['kinds'].items() if v['pixels']})

@@ -475,7 +475,8 @@ class Renderer {
   }
 
   [[nodiscard]] InterpolationRules rules_of(const DrawAtWork& d) const {
-    return {options_.color_interp.value_or(d.state.color_interp), d.state.texture_interp};
+    return {options_.color_interp.value_or(d.state.color_interp),
+            options_.texture_interp.value_or(d.state.texture_interp)};
   }
 
   /// What is interpolated of a triangle, in its light if it has one.

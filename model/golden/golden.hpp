@@ -64,9 +64,10 @@ struct TappedFragment {
 struct Options {
   Precision precision = Precision::binary64;
   Clipping clipping = Clipping::polygon;
-  std::optional<ColorInterp> color_interp;  ///< in place of what the states say
-  bool want_outlines = false;               ///< none are kept of triangles that are drawn without clipping
-  std::optional<Rect> only;                 ///< draws touch these pixels alone; clears touch all
+  std::optional<ColorInterp> color_interp;      ///< in place of what the states say
+  std::optional<TextureInterp> texture_interp;  ///< likewise
+  bool want_outlines = false;                   ///< none are kept of triangles that are drawn without clipping
+  std::optional<Rect> only;                     ///< draws touch these pixels alone; clears touch all
   std::function<void(const TappedFragment&)> fragment_tap;  ///< in program order; may be empty
   std::function<void(double fraction)> progress;  ///< 0...1, called once per 64 primitives or so; may be empty
 };

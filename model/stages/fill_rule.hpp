@@ -21,6 +21,7 @@ namespace halfplane {
     case FillRule::top_left: return is_top_left(from, to) ? 0 : 1;
     case FillRule::offset_point: return dx * (offset - from.y) - dy * (offset - from.x) > 0 ? 0 : 1;
     case FillRule::inclusive: break;
+    case FillRule::exclusive: return 1;
   }
   return 0;
 }

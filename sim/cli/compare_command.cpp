@@ -1,4 +1,3 @@
-#include "sim/study/compare/against.hpp"
 #include "sim/study/compare/compare.hpp"
 #include "sim/study/compare/per_vertex_cycles.hpp"
 #include "sim/study/compare/transform_errors.hpp"
@@ -6,15 +5,18 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <iterator>
 #include <memory>
 
 #include "sim/cli/commands.hpp"
+#include "sim/cli/compare_against.hpp"
 #include "sim/cli/progress.hpp"
 #include "sim/cli/study_options.hpp"
 #include "sim/show/image/framebuffer_files.hpp"
 #include "sim/show/image/panel.hpp"
 #include "sim/show/image/png.hpp"
 #include "sim/show/image/terminal.hpp"
+#include "sim/show/image/whole_file.hpp"
 
 namespace halfplane {
 namespace {
@@ -22,7 +24,8 @@ namespace {
 struct CompareCommand : CommonOptions {
   std::string golden = "binary64";
   StudyOptions study;
-  std::string sheet_path, model_path, golden_path, against_path;
+  AgainstWords against;
+  std::string sheet_path, model_path, golden_path, junit_path;
   std::vector<std::string> panels;
 };
 
@@ -126,6 +129,7 @@ Json comparison_json(const Comparison& c) {
               {"interpolation", part_json(c.parts.interpolation)},
               {"storage", part_json(c.parts.storage)},
               {"affine", part_json(c.affine)}}},
+            {"affine_coordinate_texels", part_json(c.affine_coordinate)},
             {"color_parts",
              {{"snap", part_json(c.color_parts.snap)},
               {"interpolation", part_json(c.color_parts.interpolation)},
@@ -221,6 +225,7 @@ std::vector<std::string> summary_lines(const Comparison& c, const std::optional<
                                row("  level of detail", t.part_level), row("  weights", t.part_weights),
                                row("  rounding", t.part_rounding), row("coordinate, texels", t.coordinate),
                                row("coordinate, footprints", t.footprints), row("level of detail, levels", t.level)});
+    if (c.affine_coordinate.max > 0) lines.push_back(row("affine - perspective, texels", c.affine_coordinate));
   }
   if (!c.per_vertex.empty()) lines.emplace_back("light at vertices - at fragments, by pixels of a triangle");
   for (const PerVertexRow& of : c.per_vertex)
@@ -256,10 +261,11 @@ void print_lines(std::ostream& out, const std::vector<std::string>& lines) {
 }
 
 /// As kTexturePanelNames has them.
-std::vector<Panel> texture_panels(const TextureErrors& t, int width, int height) {
+std::vector<NamedPanel> texture_panels(const TextureErrors& t, int width, int height) {
+  std::size_t next = 0;
   const auto panel = [&](const char* caption, const std::vector<float>& errors, const char* unit, bool diverging,
                          const std::string& note) {
-    return error_panel(caption, width, height, errors, unit, diverging, note);
+    return NamedPanel{kTexturePanelNames[next++], error_panel(caption, width, height, errors, unit, diverging, note)};
   };
   return {panel("texture coordinate error", t.picture.coordinate, "texels", false, figures(t.coordinate)),
           panel("texture coordinate error", t.picture.footprints, "footprints", false, figures(t.footprints)),
@@ -284,54 +290,63 @@ ComparisonSheet make_sheet(const Comparison& c, const Scene& scene, const Config
   sheet.depth_figures = figures(c.depth_lsb) + "  mean\u00a0" + fixed(c.depth_lsb.mean, 4);
   sheet.color_figures = figures(c.color_lsb) + " of all channels";
   sheet.summary = std::move(summary);
-  if (c.texture) sheet.texture = texture_panels(*c.texture, scene.width, scene.height);
+  if (c.texture) sheet.more = texture_panels(*c.texture, scene.width, scene.height);
   return sheet;
 }
 
-Json against_json(const std::string& path, const ForeignImage& image, const AgainstResult& r) {
-  Json kinds = Json::object();
-  for (std::size_t k = 0; k < r.kinds.size(); ++k)
-    kinds[std::string(kForeignDifferences[k])] = {
-        {"pixels", r.kinds[k].pixels}, {"max", r.kinds[k].max}, {"rms", r.kinds[k].rms()}};
-  Json first = nullptr;
-  if (r.first)
-    first = {{"x", r.first->x},
-             {"y", r.first->y},
-             {"kind", kForeignDifferences[static_cast<std::size_t>(r.first->kind)]},
-             {"expected", r.first->expected},
-             {"got", r.first->got}};
-  return {{"file", path},       {"image", image.is_depth ? "depth" : "color"},
-          {"pixels", r.pixels}, {"different", r.different},
-          {"kinds", kinds},     {"first", first}};
+/// As kAffinePanelNames has them: of an affine picture the perspective one, and how far it is off.
+std::vector<NamedPanel> affine_panels(const Comparison& c, const Config& config) {
+  const int width = c.perspective.width, height = c.perspective.height;
+  std::vector<NamedPanel> panels{
+      {"perspective", picture_panel("golden in perspective", color_picture(c.perspective, config.color_format))},
+      {"affine", error_panel("affine - perspective, worst channel", width, height, c.affine_error_lsb, "LSB", false,
+                             figures(c.affine) + " of all channels")}};
+  if (c.affine_coordinate.count > 0)
+    panels.push_back(
+        {"affine_coordinate", error_panel("affine - perspective, texture coordinate", width, height, c.affine_texels,
+                                          "texels", false, figures(c.affine_coordinate))});
+  return panels;
 }
 
-void print_against(std::ostream& out, const std::string& path, const ForeignImage& image, const AgainstResult& r,
-                   const std::string& explain) {
-  out << "\nagainst " << path << ": " << with_commas(r.different) << " of " << with_commas(r.pixels) << " pixels differ"
-      << (r.different == 0 ? "\n" : ", by what explains them\n");
-  for (std::size_t k = 0; k < r.kinds.size(); ++k)
-    if (r.kinds[k].pixels != 0)
-      out << "  " << left_aligned(std::string(kForeignDifferences[k]), 12)
-          << right_aligned(with_commas(r.kinds[k].pixels), 10) << " pixels, by at most " << fixed(r.kinds[k].max, 0)
-          << ", rms " << fixed(r.kinds[k].rms(), 2) << (image.is_depth ? " depth codes\n" : " LSB of 8 bits\n");
-  if (r.first)
-    out << "  first at " << r.first->x << ' ' << r.first->y << "; why the model has it so says `" << explain << ' '
-        << r.first->x << ' ' << r.first->y << "`\n";
-  if (r.different != 0) out << "FAILED: the image differs from the model's, whose own bounds are above\n";
+void write_compare_junit(const CompareCommand& options, const Config& config, const std::vector<std::string>& broken,
+                         const Comparison& c, const std::optional<JudgedImage>& judged, double seconds) {
+  if (options.junit_path.empty()) return;
+  JunitCase bounds;
+  bounds.name = "bounds";
+  if (broken.empty())
+    bounds.output = with_commas(c.compared_pixels) + " pixels compared with the golden, every bound holds";
+  else
+    bounds.failure = broken.front();
+  for (const std::string& bound : broken) bounds.details += bound + "\n";
+  std::vector<JunitCase> cases{bounds};
+  if (judged) cases.push_back(against_case(*judged));
+  const std::string xml = junit_xml("compare." + label(config), cases, seconds);
+  write_whole_file(options.junit_path, {reinterpret_cast<const std::uint8_t*>(xml.data()), xml.size()});
+}
+
+/// What the options can be refused for before a scene is read.
+void check_compare(const CompareCommand& options, const Config& config) {
+  if (!options.against.path.empty()) require_one_sample(config, "compare --against");
+  for (const std::string* path : {&options.sheet_path, &options.model_path, &options.golden_path})
+    check_output(*path, ".png");
+  check_output(options.junit_path);
+  if (!options.panels.empty() && options.sheet_path.empty())
+    throw InputError("--panels: there is no sheet to choose from; add -o FILE.png");
+  for (const std::string& name : options.panels)
+    if (options.against.path.empty() && std::ranges::find(kAgainstPanelNames, name) != kAgainstPanelNames.end())
+      throw InputError("--panels: " + name + " is about another image; add --against FILE");
+  check_distinct({options.against.path, options.sheet_path, options.model_path, options.golden_path, options.json,
+                  options.junit_path});
 }
 
 int run(const CompareCommand& options) {
   const auto start = std::chrono::steady_clock::now();
   const Config config = drawing_config(options);
   const StudyRules rules = study_rules(options.study);
-  if (!options.against_path.empty()) require_one_sample(config, "compare --against");
-  for (const std::string* path : {&options.sheet_path, &options.model_path, &options.golden_path})
-    check_output(*path, ".png");
-  if (!options.panels.empty() && options.sheet_path.empty())
-    throw InputError("--panels: there is no sheet to choose from; add -o FILE.png");
-  check_distinct({options.against_path, options.sheet_path, options.model_path, options.golden_path, options.json});
+  const Tolerance tolerance = parse_tolerance(options.against);
+  check_compare(options, config);
   double load_s = 0;
-  const Scene scene = load_scene(options, config, load_s);
+  const Scene scene = interpolated(load_scene(options, config, load_s), options.study.interpolation);
   warn_of_depth_bits(options, config);
   warn_of_scene(scene, config);
   std::optional<TransformErrors> transform;
@@ -344,8 +359,9 @@ int run(const CompareCommand& options) {
     transform =
         transform_errors(in_clip_space(options), in_clip_space(exact), parse_transform(options.transform), config);
   }
-  std::optional<ForeignImage> foreign;
-  if (!options.against_path.empty()) foreign = read_foreign_image(options.against_path, scene.width, scene.height);
+  std::optional<JudgedImage> judged;
+  if (!options.against.path.empty())
+    judged = {options.against.path, read_foreign_image(options.against.path, scene.width, scene.height), tolerance, {}};
   Comparison c;
   {
     Progress progress(options, "comparing");
@@ -362,8 +378,15 @@ int run(const CompareCommand& options) {
     Progress progress(options, "counting cycles");
     cycles = per_vertex_cycles(scene, config, [&progress](double fraction) { progress(fraction); });
   }
+  if (judged) {
+    Progress progress(options, "explaining differences");
+    judged->result = compare_against(scene, config, c, judged->image,
+                                     {rules, tolerance, static_cast<std::size_t>(options.against.listed),
+                                      [&progress](double fraction) { progress(fraction); }});
+  }
   for (const std::string& name : options.panels)
-    if (!c.texture && std::ranges::find(kTexturePanelNames, name) != kTexturePanelNames.end())
+    if (!c.texture &&
+        (name == "affine_coordinate" || std::ranges::find(kTexturePanelNames, name) != kTexturePanelNames.end()))
       throw InputError("--panels: " + name + " is about textures, and no pixel shows one; leave it out");
   if (c.texture && c.texture->footprints.max > 1)
     std::cerr << "halfplane: warning: texture coordinates are off by up to " << fixed(c.texture->footprints.max, 1)
@@ -389,18 +412,25 @@ int run(const CompareCommand& options) {
   }
   std::string title = options.scene + ", " + std::to_string(scene.width) + "x" + std::to_string(scene.height) + ", " +
                       label(config) + ", seed " + std::to_string(options.seed);
+  if (judged) std::ranges::move(against_lines(*judged), std::back_inserter(lines));
   Json study;
-  add_study_json(study, rules, scene, config);
+  add_study_json(study, options.study, scene, config);
   const bool is_study = rules != StudyRules{};
-  if (is_study) title += ", " + study_text(study);
+  const std::string unusual = study_text(study);
+  if (!unusual.empty()) title += ", " + unusual;
   if (!options.model_path.empty()) write_png(options.model_path, color_picture(c.rendering.frame, config.color_format));
   if (!options.golden_path.empty()) write_png(options.golden_path, color_picture(c.golden.frame, config.color_format));
   if (!options.sheet_path.empty()) {
     ComparisonSheet sheet = make_sheet(c, scene, config, title, lines);
     sheet.panels = options.panels;
+    const auto add = [&sheet](std::vector<NamedPanel> panels) {
+      std::ranges::move(panels, std::back_inserter(sheet.more));
+    };
+    if (judged) add(against_panels(*judged));
+    if (options.study.interpolation == "affine" || !options.panels.empty()) add(affine_panels(c, config));
     if (!options.panels.empty())  // room for less
       sheet.title = std::filesystem::path(options.scene).filename().string() + ", " + label(config) +
-                    (is_study ? ", " + study_text(study) : "");
+                    (unusual.empty() ? "" : ", " + unusual);
     write_png(options.sheet_path, comparison_sheet(sheet));
   }
 
@@ -414,15 +444,13 @@ int run(const CompareCommand& options) {
   result["time_s"] = {{"load", load_s}, {"geometry", c.rendering.geometry_s}, {"raster", c.rendering.raster_s}};
   result.update(comparison_json(c));
   result["per_vertex_cycles"] = cycles_json(cycles);
-  std::optional<AgainstResult> against;
-  if (foreign) {
-    against = compare_against(scene, config, c, rules, *foreign);
-    result["against"] = against_json(options.against_path, *foreign, *against);
-  }
+  if (judged) result["against"] = against_json(*judged);
   result["transform"] = transform ? transform_json(options.transform, *transform) : Json(nullptr);
   result["broken_bounds"] = broken;
   result["bounds"] = {{"broken", broken}, {"given_up", given_up}};
-  result["wall_s"] = seconds_since(start);
+  const double wall_s = seconds_since(start);
+  result["wall_s"] = wall_s;
+  write_compare_junit(options, config, broken, c, judged, wall_s);
   write_json(options, result);
 
   std::ostream& out = human(options);
@@ -430,12 +458,15 @@ int run(const CompareCommand& options) {
     out << terminal_preview(color_picture(c.rendering.frame, config.color_format), terminal_size(1, 24),
                             TerminalStyle::color);
   out << title << "; model (" << result["engine"].get<std::string>() << ") against golden (" << options.golden << ")\n";
+  if (judged) {
+    const std::string explain = program_word() + " explain" + scene_arguments(options, config) + " --seed " +
+                                std::to_string(options.seed) + study_arguments(options.study) + " " +
+                                quoted(options.scene);
+    const std::vector<std::string> pixels = difference_lines(*judged, explain);
+    lines.insert(lines.end() - (pixels.empty() ? 0 : 1), pixels.begin(), pixels.end());  // before the verdict
+  }
   print_lines(out, lines);
-  if (against)
-    print_against(out, options.against_path, *foreign, *against,
-                  program_word() + " explain" + scene_arguments(options, config) + " --seed " +
-                      std::to_string(options.seed) + " " + quoted(options.scene));
-  return broken.empty() && (!against || against->different == 0) ? exit_ok : exit_mismatch;
+  return broken.empty() && (!judged || judged->result.different == 0) ? exit_ok : exit_mismatch;
 }
 
 }  // namespace
@@ -449,6 +480,7 @@ void add_compare_command(CLI::App& app, Action& selected) {
       ->check(CLI::IsMember({"binary64", "binary32"}))
       ->capture_default_str();
   add_study_options(*command, options->study);
+  add_interpolation_option(*command, options->study);
   add_file_option(*command, "-o", options->sheet_path,
                   "one sheet: model, golden, coverage, depth and colour difference, .png");
   command->add_option("--panels", options->panels, "which panels of the sheet, and their order: model,depth")
@@ -456,11 +488,8 @@ void add_compare_command(CLI::App& app, Action& selected) {
       ->check(CLI::IsMember(panel_names()));
   add_file_option(*command, "--model", options->model_path, "the model's picture alone, .png");
   add_file_option(*command, "--golden-picture", options->golden_path, "the golden's picture alone, .png");
-  command
-      ->add_option("--against", options->against_path,
-                   "another rasterizer's image: the model against it too, colours .png or depth codes .npy")
-      ->check(refuse_empty)
-      ->type_name("FILE");
+  add_against_options(*command, options->against);
+  add_file_option(*command, "--junit", options->junit_path, "result as JUnit XML");
   command->footer("\nExample:\n  halfplane compare teapot --config full -o compare.png --json=compare.json");
   command->callback([&selected, options] { selected = [options] { return run(*options); }; });
 }

@@ -8,6 +8,7 @@
 #include "sim/cli/explain_page.hpp"
 #include "sim/cli/options.hpp"
 #include "sim/cli/progress.hpp"
+#include "sim/cli/study_options.hpp"
 #include "sim/cosim/dut.hpp"
 #include "sim/show/image/png.hpp"
 #include "sim/show/image/whole_file.hpp"
@@ -24,6 +25,7 @@ struct ExplainOptions : CommonOptions {
   int x = 0, y = 0;  ///< pixels
   std::string box = "1x1";
   double near = 1;  ///< pixels
+  StudyOptions study;
   bool rtl = false, steps = false;
   int mutant = 0;
   std::string output;  ///< .png or .html
@@ -58,6 +60,7 @@ Json explain_json(const ExplainOptions& options, const Config& config, const Sce
   result["height"] = scene.height;
   result["primitives"] = told.primitives;
   result["near"] = options.near;
+  add_rules_json(result, options.study);
   result["hardware"] = {{"has_scene", told.no_hardware.empty()},
                         {"why_not", told.no_hardware.empty() ? Json(nullptr) : Json(told.no_hardware)}};
   result["checks"] = told.checks;
@@ -73,6 +76,9 @@ void print_explanation(std::ostream& out, const ExplainOptions& options, const C
   out << options.scene << ", " << scene.width << "x" << scene.height << ", " << label(config) << ": "
       << with_commas(told.primitives) << " primitives; those that pass within " << options.near
       << " pixels, in program order\n";
+  Json rules;
+  add_rules_json(rules, options.study);
+  if (const std::string study = study_text(rules); !study.empty()) out << "study: " << study << '\n';
   if (!told.no_hardware.empty()) out << "without hardware: " << told.no_hardware << '\n';
   for (const explain::PixelSamples& pixel : explain::pixels_of(told))
     explain::print_pixel(out, pixel, told, scene, config);
@@ -98,6 +104,7 @@ std::string explain_repeat(const ExplainOptions& options, const Config& config) 
   if (options.box != defaults.box) command += " --box " + quoted(options.box);
   if (options.near != defaults.near) command += " --near " + Json(options.near).dump();
   if (options.rtl) command += " --rtl";
+  command += study_arguments(options.study);
   if (options.steps) command += " --steps";
   if (options.mutant != defaults.mutant) command += " --mutant " + std::to_string(options.mutant);
   if (options.margin != defaults.margin) command += " --margin " + std::to_string(options.margin);
@@ -137,10 +144,11 @@ int run(const ExplainOptions& options) {
   const Config config = drawing_config(options);
   const std::unique_ptr<Dut> dut = explained_rtl(options, config);
   double load_s = 0;
-  const Scene scene = load_scene(options, config, load_s);
+  const Scene scene = interpolated(load_scene(options, config, load_s), options.study.interpolation);
   Progress progress(options, "explaining");
   explain::Options how;
   how.near = options.near;
+  how.rules = study_rules(options.study);
   how.wants_steps = options.steps;
   how.rtl = dut.get();
   how.mutant = static_cast<std::uint16_t>(options.mutant);
@@ -168,6 +176,8 @@ void add_explain_command(CLI::App& app, Action& selected) {
   CLI::App* command = app.add_subcommand("explain", "one pixel's history: what touched it, and why it is what it is");
   auto options = std::make_shared<ExplainOptions>();
   add_scene_options(*command, *options);
+  add_study_options(*command, options->study);
+  add_interpolation_option(*command, options->study);
   command->add_option("X", options->x, "column of the pixel; the top left one is 0 0")->required();
   command->add_option("Y", options->y, "row of the pixel")->required();
   command->add_option("--box", options->box, "WxH pixels with X Y as the top left one")

@@ -60,7 +60,7 @@ void print_corners(std::ostream& out, const Entry& entry, const Widths& widths, 
         << " as seen\n";
 }
 
-void print_edges(std::ostream& out, const Entry& entry, const Widths& widths) {
+void print_edges(std::ostream& out, const Entry& entry, const Widths& widths, FillRule rule) {
   for (std::size_t i = 0; i < entry.edges.size(); ++i) {
     const EdgeFigure& e = entry.edges[i];
     out << label_text(i == 0 ? "edges" : "") << e.from << "->" << e.to << ' ' << left_aligned(std::string(e.side), 7)
@@ -69,7 +69,7 @@ void print_edges(std::ostream& out, const Entry& entry, const Widths& widths) {
         << (e.value >= 0 ? "inside" : "outside");
     if (e.is_tie())
       out << ": exactly on it; a " << e.side << " edge " << (e.owns_ties ? "owns" : "does not own")
-          << " its samples (top-left rule)";
+          << " its samples (fill rule " << name_of(rule) << ")";
     out << '\n';
   }
   if (entry.golden && !entry.golden->edges.empty()) {
@@ -210,7 +210,7 @@ void print_sample(std::ostream& out, const Entry& entry, const PixelHistory& sam
     out << label_text("sample " + std::to_string(sample.sample)) << "at " << place_text(sample) << ": "
         << info(entry.outcome.verdict).name << " at " << info(entry.outcome.stage).name << ", " << entry.outcome.why
         << '\n';
-  print_edges(out, entry, widths);
+  print_edges(out, entry, widths, all.fill_rule);
   if (entry.oracle)
     out << label_text("oracle") << (entry.oracle->covers ? "covers" : "does not cover")
         << (entry.oracle->is_on_border ? ", on the border" : "") << "; golden "

@@ -214,6 +214,23 @@ std::string tested_text(const Counters& c) {
   return text;
 }
 
+/// ", 12 dropped: 5 outside the view, 7 facing away": why each primitive that is not drawn is not.
+std::string dropped_text(const Counters& c) {
+  if (c.culled == 0) return "";
+  const auto& skipped = c.skipped;
+  const std::uint64_t others = skipped.frustum + skipped.backface + skipped.zero_area + skipped.empty;
+  std::string reasons;
+  const auto add = [&reasons](std::uint64_t count, const char* reason) {
+    if (count > 0) reasons += (reasons.empty() ? ": " : ", ") + with_commas(count) + " " + reason;
+  };
+  add(skipped.frustum, "outside the view");
+  add(skipped.backface, "facing the culled side");
+  add(skipped.zero_area, "without area");
+  add(skipped.empty, "with no pixel centre in their box");
+  if (others < c.culled) add(c.culled - others, "of objects outside the view");
+  return ", " + with_commas(c.culled) + " dropped" + reasons;
+}
+
 /// What people read; the figures are those of `result`.
 void print_result(const RenderCommand& options, const Config& config, const Rendering& rendering,
                   const CycleFacts& facts, const Json& result) {
@@ -224,8 +241,8 @@ void print_result(const RenderCommand& options, const Config& config, const Rend
                             TerminalStyle::color);
   out << options.scene << ", " << rendering.frame.width << "x" << rendering.frame.height << ", " << label(config)
       << ", engine " << options.engine << ", seed " << options.seed << '\n'
-      << "primitives  " << with_commas(c.primitives_in) << " in, " << with_commas(c.culled) << " culled, "
-      << with_commas(c.drawn) << " drawn (" << with_commas(c.clipped) << " clipped)\n"
+      << "primitives  " << with_commas(c.primitives_in) << " in, " << with_commas(c.drawn) << " drawn ("
+      << with_commas(c.clipped) << " clipped)" << dropped_text(c) << '\n'
       << "fragments   " << with_commas(c.covered) << " covered, " << with_commas(c.depth_passed) << " passed, "
       << with_commas(c.written) << " written; " << tested_text(c) << '\n'
       << "time        load " << fixed(1e3 * result["time_s"]["load"].get<double>(), 1) << " ms, geometry "
@@ -234,7 +251,7 @@ void print_result(const RenderCommand& options, const Config& config, const Rend
     out << "objects     " << objects["in"] << " in, outside the view by sphere " << objects["culled_sphere"]
         << ", by box " << objects["culled_box"] << ": "
         << with_commas(objects["primitives_skipped"].get<std::uint64_t>()) << " primitives skipped\n";
-  if (study_rules(options.study) != StudyRules{}) out << "study       " << study_text(result) << '\n';
+  if (!study_text(result).empty()) out << "study       " << study_text(result) << '\n';
   for (const std::string& bound : given_up_bounds(study_rules(options.study))) out << "given up    " << bound << '\n';
   if (config.frame_order == FrameOrder::bins && result.contains("frame"))
     out << "bins        " << with_commas(c.pairs) << " primitives sent in " << with_commas(c.bins) << " bins\n";
@@ -260,7 +277,7 @@ int run(const RenderCommand& given) {
   if (options.frames != 0) return run_frames(options, config);
   double load_s = 0;
   ObjectCounts objects;
-  const Scene scene = load_scene(options, config, load_s, &objects);
+  const Scene scene = interpolated(load_scene(options, config, load_s, &objects), options.study.interpolation);
   warn_of_scene(scene, config);
   CycleFacts facts;
   const Rendering rendering = [&] {
@@ -275,10 +292,11 @@ int run(const RenderCommand& given) {
   result["threads"] = options.engine == "functional" ? options.threads : 1;  // the others have one
   result["supersample"] = options.supersample.empty() ? Json(nullptr) : Json(options.supersample);
   result["objects"] = objects_json(objects);
-  if (options.engine == "scalar") add_study_json(result, study_rules(options.study), scene, config);
+  if (options.engine == "scalar") add_study_json(result, options.study, scene, config);
   if (options.engine == "scalar" || options.engine == "golden")
     result["bounds"]["given_up"] = given_up_bounds(study_rules(options.study));
   if (options.engine == "golden") result["clipping"] = options.study.clipping;
+  result["interpolation"] = options.study.interpolation;
   result.update(counters_json(rendering.counters));
   result["time_s"] = {{"load", load_s}, {"geometry", rendering.geometry_s}, {"raster", rendering.raster_s}};
   if (options.engine == "cycle" || options.engine == "rtl")
@@ -334,6 +352,7 @@ void add_render_command(CLI::App& app, Action& selected) {
       ->capture_default_str();
   add_study_options(*command, options->study);
   add_clipping_option(*command, options->study);
+  add_interpolation_option(*command, options->study);
   add_cycle_options(*command, options->cycle);
   add_file_option(*command, "-o", options->color_path, "colour picture, .png");
   add_file_option(*command, "--depth", options->depth_path, "depth codes, .npy or (up to 16 bits) .png");

@@ -50,6 +50,41 @@ void add_clipping_option(CLI::App& app, StudyOptions& options) {
       ->capture_default_str();
 }
 
+void add_interpolation_option(CLI::App& app, StudyOptions& options) {
+  app.add_option(
+         "--interpolation", options.interpolation,
+         "study, every engine: all colours and texture coordinates affine on the screen, or over w, in place of "
+         "what the scene's states say")
+      ->check(CLI::IsMember({"scene", "affine", "perspective"}))
+      ->capture_default_str();
+}
+
+Scene interpolated(Scene scene, const std::string& interpolation) {
+  if (interpolation == "scene") return scene;
+  const bool is_affine = interpolation == "affine";
+  for (State& state : scene.states) {
+    state.color_interp = is_affine ? ColorInterp::affine : ColorInterp::perspective;
+    state.texture_interp = is_affine ? TextureInterp::affine : TextureInterp::perspective;
+  }
+  return scene;
+}
+
+std::string study_arguments(const StudyOptions& options) {
+  const StudyOptions usual;
+  std::string text;
+  const auto add = [&](const char* name, std::string StudyOptions::*value) {
+    if (options.*value != usual.*value) text += std::string(" ") + name + " " + options.*value;
+  };
+  add("--traversal", &StudyOptions::traversal);
+  add("--fill-rule", &StudyOptions::fill_rule);
+  add("--clipping", &StudyOptions::clipping);
+  add("--gradients", &StudyOptions::gradients);
+  add("--accumulator", &StudyOptions::accumulator);
+  add("--weights", &StudyOptions::weights);
+  add("--interpolation", &StudyOptions::interpolation);
+  return text;
+}
+
 StudyRules study_rules(const StudyOptions& options) {
   return {enumerator<Traversal>(kTraversalNames, options.traversal),
           enumerator<FillRule>(kFillRuleNames, options.fill_rule),
@@ -83,14 +118,21 @@ void check_study_rules(const StudyRules& rules, const std::string& engine) {
   if (rules.weights != Weights::eight) throw InputError("--weights " + std::string(name_of(rules.weights)) + rest);
 }
 
-void add_study_json(Json& result, const StudyRules& rules, const Scene& scene, const Config& config) {
-  result["traversal"] = name_of(rules.traversal);
-  result["fill_rule"] = name_of(rules.fill_rule);
-  result["clipping"] = name_of(rules.clipping);
-  result["gradients"] = name_of(rules.gradients);
-  result["accumulator"] = name_of(rules.accumulator);
-  result["weights"] = name_of(rules.weights);
-  result["double_draws"] = count_double_draws(scene, config, rules);
+void add_rules_json(Json& result, const StudyOptions& options) {
+  result["traversal"] = options.traversal;
+  result["fill_rule"] = options.fill_rule;
+  result["clipping"] = options.clipping;
+  result["gradients"] = options.gradients;
+  result["accumulator"] = options.accumulator;
+  result["weights"] = options.weights;
+  result["interpolation"] = options.interpolation;
+}
+
+void add_study_json(Json& result, const StudyOptions& options, const Scene& scene, const Config& config) {
+  add_rules_json(result, options);
+  const DrawsOfRule draws = count_draws(scene, config, study_rules(options));
+  result["double_draws"] = draws.doubled;
+  result["undrawn_samples"] = draws.undrawn;
 }
 
 std::string study_text(const Json& result) {
@@ -103,7 +145,8 @@ std::string study_text(const Json& result) {
                                {"clipping", "clipping", name_of(Clipping::polygon)}};
   constexpr Rule kPlanes[] = {{"gradients", "gradients", name_of(Gradients::one_reciprocal)},
                               {"accumulator", "accumulator", name_of(Accumulator::wrap)},
-                              {"weights", "weights", name_of(Weights::eight)}};
+                              {"weights", "weights", name_of(Weights::eight)},
+                              {"interpolation", "interpolation", "scene"}};
   std::vector<std::string> parts;
   const auto add_unusual = [&](const auto& rules) {
     for (const Rule& rule : rules)
@@ -111,8 +154,14 @@ std::string study_text(const Json& result) {
         parts.push_back(std::string(rule.label) + " " + result[rule.key].get<std::string>());
   };
   add_unusual(kSamples);
-  if (!parts.empty() && result.contains("double_draws"))
-    parts.push_back(with_commas(result["double_draws"].get<std::uint64_t>()) + " double draws");
+  const auto add_count = [&](const char* key, const char* label) {
+    if (result.contains(key)) parts.push_back(with_commas(result[key].get<std::uint64_t>()) + label);
+  };
+  if (!parts.empty()) {
+    add_count("double_draws", " double draws");
+    if (result.contains("undrawn_samples") && result["undrawn_samples"] != 0)
+      add_count("undrawn_samples", " undrawn samples");
+  }
   add_unusual(kPlanes);
   std::string line;
   for (const std::string& part : parts) line += (line.empty() ? "" : ", ") + part;

@@ -16,6 +16,7 @@ struct StudyOptions {
   std::string gradients{name_of(Gradients::one_reciprocal)};
   std::string accumulator{name_of(Accumulator::wrap)};
   std::string weights{name_of(Weights::eight)};
+  std::string interpolation = "scene";  ///< a change of the scene's states: every engine has it
 };
 
 /// Adds --traversal, --fill-rule, --gradients, --accumulator and --weights.
@@ -24,16 +25,28 @@ void add_study_options(CLI::App& app, StudyOptions& options);
 /// Adds --clipping: for commands that need no snapped triangles.
 void add_clipping_option(CLI::App& app, StudyOptions& options);
 
+/// Adds --interpolation.
+void add_interpolation_option(CLI::App& app, StudyOptions& options);
+
+/// The scene with all colours and texture coordinates interpolated so: "affine", "perspective", or as it is, "scene".
+[[nodiscard]] Scene interpolated(Scene scene, const std::string& interpolation);
+
+/// " --fill-rule NAME ...": those that are not as usual, as a shell takes them.
+[[nodiscard]] std::string study_arguments(const StudyOptions& options);
+
 [[nodiscard]] StudyRules study_rules(const StudyOptions& options);
 
 /// Throws InputError, naming the option, when an engine is asked for what it does not have.
 void check_study_rules(const StudyRules& rules, const std::string& engine);
 
-/// Adds {traversal, fill_rule, clipping, gradients, accumulator, weights, double_draws} to a result.
-void add_study_json(Json& result, const StudyRules& rules, const Scene& scene, const Config& config);
+/// Adds {traversal, fill_rule, clipping, gradients, accumulator, weights, interpolation} to a result.
+void add_rules_json(Json& result, const StudyOptions& options);
+
+/// Adds those, and {double_draws, undrawn_samples}.
+void add_study_json(Json& result, const StudyOptions& options, const Scene& scene, const Config& config);
 
 /// "traversal bbox, fill rule inclusive, 12 double draws": the same for people, without what is as usual, from what
-/// add_study_json() added, or from "clipping" alone.
+/// add_study_json() added, from "clipping" alone, or from "interpolation".
 [[nodiscard]] std::string study_text(const Json& result);
 
 }  // namespace halfplane

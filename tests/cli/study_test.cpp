@@ -41,6 +41,103 @@ const char* const kSquare =
     "halfplane 1\ntarget 24 24\nclear color 0 0 0 255 depth 1\nspace window\n"
     "v 2 2 .5\nv 20 20 .5\nv 20 2 .5\nv 2 20 .5\nt 0 1 2 1 0 3\n";
 
+TEST_F(StudyRules, ExplainFollowsTheFillRule) {
+  write("square.hpt", kSquare);
+  // Pixel 9 9 lies on the diagonal that both triangles have: one owns it, both, none.
+  const auto verdicts = [this](const char* rule) {
+    const Json told = result({"explain", "square.hpt", "9", "9", "--fill-rule", rule});
+    EXPECT_EQ(told["fill_rule"], rule);
+    EXPECT_EQ(told["differences"], Json::array()) << rule;
+    std::string text;
+    for (const Json& entry : told["pixels"][0]["history"])
+      if (entry["kind"] == "triangle") text += entry["verdict"].get<std::string>() + " ";
+    return text;
+  };
+  EXPECT_EQ(verdicts("top_left"), "written uncovered ");
+  EXPECT_EQ(verdicts("inclusive"), "written depth ");
+  EXPECT_EQ(verdicts("exclusive"), "uncovered uncovered ");
+  EXPECT_EQ(verdicts("offset_point"), "uncovered uncovered ") << "the diagonal runs through (-1, -1)";
+  const Outcome outcome = run({"explain", "square.hpt", "9", "9", "--fill-rule", "exclusive"});
+  EXPECT_NE(outcome.out.find("does not own its samples (fill rule exclusive)"), std::string::npos) << outcome.out;
+  expect_refused({"explain", "square.hpt", "9", "9", "--fill-rule", "exclusive", "--rtl"},
+                 "hardware has its own rules");
+}
+
+TEST_F(StudyRules, ExplainIsWhatTheScalarEngineDrawsByEveryRule) {
+  for (const char* rules : {"--traversal scanline", "--gradients truncated", "--gradients two_reciprocals",
+                            "--accumulator saturate", "--fill-rule inclusive --traversal bbox"}) {
+    Arguments arguments = split_words("explain teapot:2 40 30 --size 96x72 --box 8x8 --seed 1 " + std::string(rules));
+    const Json told = result(arguments);  // the status is 1 where specification and engine differ
+    EXPECT_GT(told["checks"], 300) << rules;
+  }
+  const Outcome page = run(split_words("explain teapot:2 40 30 --size 96x72 --traversal bbox --quiet -o p.html"));
+  EXPECT_EQ(page.status, 0) << page.err;
+  const Bytes bytes = read("p.html");
+  EXPECT_NE(std::string(bytes.begin(), bytes.end()).find("--traversal bbox"), std::string::npos) << "to be repeated";
+}
+
+TEST_F(StudyRules, AffineTextureCoordinatesAreOffByAThirdAtMostWhereWGrowsFourfold) {
+  // v is 0 where w is 1, and 1 where w is 4: affine it is s, in perspective s / (s + 4 (1 - s)) at a part s of the way up
+  // the screen. The difference is largest at s = 2/3, 1/3: 64/3 texels.
+  write("t.hpt",
+        "halfplane 1\ntarget 96 96\nclear color 0 0 0 255 depth 1\ntexture t pattern grid 64 64\nspace window\n"
+        "state texture t\nv 0 95 .5 1 255 255 255 255 .05 0\nv 95 95 .5 1 255 255 255 255 .05 0\n"
+        "v 48 1 .5 4 255 255 255 255 .05 1\nt 0 1 2\n");
+  const Json affine = result({"compare", "t.hpt", "--interpolation", "affine"});
+  EXPECT_EQ(affine["interpolation"], "affine");
+  EXPECT_LE(affine["affine_coordinate_texels"]["max"], 64 / 3.0);
+  EXPECT_GT(affine["affine_coordinate_texels"]["max"], 64 / 3.0 - 0.01);
+  EXPECT_GT(affine["parts"]["affine"]["max"], 10);
+  EXPECT_EQ(affine["bounds"]["broken"], Json::array());
+  const Json perspective = result({"compare", "t.hpt", "--interpolation", "perspective"});
+  EXPECT_EQ(perspective["affine_coordinate_texels"]["max"], 0);
+  EXPECT_EQ(perspective["parts"]["affine"]["max"], 0);
+  // The same as the states of a capture.
+  const Bytes text = read("t.hpt");
+  std::string states(text.begin(), text.end());
+  states.insert(states.find("state texture t"), "state texture_interp affine\n");
+  write("s.hpt", states);
+  const auto hash = [this](const Arguments& words) { return result(words)["color_hash"]; };
+  EXPECT_EQ(hash({"render", "t.hpt", "--interpolation", "affine"}), hash({"render", "s.hpt"}));
+  EXPECT_NE(hash({"render", "t.hpt"}), hash({"render", "s.hpt"}));
+  EXPECT_EQ(result({"explain", "t.hpt", "48", "30", "--interpolation", "affine"})["pixels"][0]["final"]["model"],
+            result({"explain", "s.hpt", "48", "30"})["pixels"][0]["final"]["model"]);
+}
+
+TEST_F(StudyRules, TheFiguresOfTheRulesPageAreThoseOfItsScenes) {
+  const std::string rules = HALFPLANE_SOURCE_DIR "/docs/rules/";
+  const auto square = [&](const char* rule) {
+    return result({"render", rules + "square.hpt", "--engine", "scalar", "--fill-rule", rule});
+  };
+  EXPECT_EQ(square("inclusive")["double_draws"], 36);
+  EXPECT_EQ(square("exclusive")["undrawn_samples"], 36);
+  EXPECT_EQ(square("offset_point")["undrawn_samples"], 18);
+  const Json floor = result(split_words("compare " + rules + "floor.hpt --interpolation affine"));
+  EXPECT_NEAR(floor["affine_coordinate_texels"]["max"], 44.6, 0.05);
+  EXPECT_EQ(run(split_words("compare " + rules +
+                            "floor.hpt --interpolation affine --quiet -o a.png --panels "
+                            "model,perspective,affine,affine_coordinate"))
+                .status,
+            0);
+  expect_refused({"compare", "triangle", "--size", "16x16", "-o", "a.png", "--panels", "affine_coordinate"},
+                 "is about textures");
+}
+
+TEST_F(StudyRules, RenderSaysWhyAPrimitiveIsDropped) {
+  write("t.hpt",
+        "halfplane 1\ntarget 32 32\nspace window\nv 1 1 .5\nv 9 9 .5\nv 17 17 .5\nv 1 20 .5\nv 1.1 1.1 .5\n"
+        "v 1.3 1.1 .5\nv 1.2 1.3 .5\nt 0 1 2 0 1 3 4 5 6\n");
+  const Outcome outcome = run({"render", "t.hpt"});
+  EXPECT_NE(
+      outcome.out.find("3 in, 1 drawn (0 clipped), 2 dropped: 1 without area, 1 with no pixel centre in their box"),
+      std::string::npos)
+      << outcome.out;
+  write("u.hpt",
+        "halfplane 1\ntarget 32 32\nspace window\nstate cull back\nv 1 1 .5\nv 9 1 .5\nv 1 9 .5\nt 0 1 2 0 2 1\n");
+  EXPECT_NE(run({"render", "u.hpt"}).out.find("2 in, 1 drawn (0 clipped), 1 dropped: 1 facing the culled side"),
+            std::string::npos);
+}
+
 TEST_F(StudyRules, FillRulesShowInTheResultOfRenderAndCompare) {
   write("square.hpt", kSquare);
   const Json inclusive = result({"render", "square.hpt", "--engine", "scalar", "--fill-rule", "inclusive"});
@@ -53,7 +150,14 @@ TEST_F(StudyRules, FillRulesShowInTheResultOfRenderAndCompare) {
   EXPECT_EQ(offset["coverage"]["missing"], 18u);
   EXPECT_EQ(offset["coverage"]["oracle_mismatches"], 0u);  // the oracle has the same rule
   EXPECT_EQ(offset["samples_tested"], 2u * 18u * 18u);
+  const Json exclusive = result({"compare", "square.hpt", "--fill-rule", "exclusive", "--traversal", "scanline"});
+  EXPECT_EQ(exclusive["coverage"]["missing"], 18u);
+  EXPECT_EQ(exclusive["coverage"]["oracle_mismatches"], 0u);
+  EXPECT_EQ(exclusive["undrawn_samples"], 18u);
+  EXPECT_EQ(exclusive["double_draws"], 0u);
+  EXPECT_EQ(exclusive["bounds"]["given_up"].size(), 1u);
   const Json plain = result({"compare", "square.hpt"});
+  EXPECT_EQ(plain["undrawn_samples"], 0u);
   EXPECT_EQ(plain["engine"], "functional");
   EXPECT_EQ(plain["fill_rule"], "top_left");
   EXPECT_EQ(plain["coverage"]["missing"], 0u);

@@ -421,7 +421,7 @@ TEST(Homogeneous, ScenesDifferFromClippingOnlyAlongEdges) {
         differ[1] += polygon.count[p] != real.count[p] || polygon.ids[p] != real.ids[p] ? 1 : 0;
         differ[2] += whole.count[p] != real.count[p] || whole.ids[p] != real.ids[p] ? 1 : 0;
       }
-      const std::uint64_t doubles = count_double_draws(scene, config, {.clipping = Clipping::homogeneous});
+      const std::uint64_t doubles = count_draws(scene, config, {.clipping = Clipping::homogeneous}).doubled;
       std::cout << preset_name << ' ' << name << ": " << differ[0] << " differ; from the golden " << differ[1]
                 << " clipped, " << differ[2] << " homogeneous; " << doubles << " double draws, "
                 << polygon.counters.clipped << " clipped, tested " << polygon.counters.samples_tested << " and "
@@ -443,7 +443,7 @@ TEST(Homogeneous, DoubleDrawsAreCountedAgainstTheClippedMesh) {
   std::uint64_t expected = 0;
   for (const std::uint32_t n : model_by(scene, config, Clipping::homogeneous).count) expected += n > 1 ? n - 1 : 0;
   EXPECT_GT(expected, 10u);
-  EXPECT_EQ(count_double_draws(scene, config, {.clipping = Clipping::homogeneous}), expected);
+  EXPECT_EQ(count_draws(scene, config, {.clipping = Clipping::homogeneous}).doubled, expected);
 }
 
 TEST(Homogeneous, WindowSpaceLinesAndPointsAreDrawnAsEver) {

@@ -42,13 +42,16 @@ TEST(ColorMap, DivergingErrorsOfEqualSizeAreEquallyLight) {
 }
 
 TEST(ColorMap, ScaleEndsAreRoundAndHoldTheValue) {
-  EXPECT_DOUBLE_EQ(nice_ceiling(0.71), 1);
+  EXPECT_DOUBLE_EQ(nice_ceiling(0.71), 0.8);
   EXPECT_DOUBLE_EQ(nice_ceiling(0.2), 0.2);
-  EXPECT_DOUBLE_EQ(nice_ceiling(0.0201), 0.05);
-  EXPECT_DOUBLE_EQ(nice_ceiling(340), 500);
+  EXPECT_DOUBLE_EQ(nice_ceiling(0.0201), 0.024);
+  EXPECT_DOUBLE_EQ(nice_ceiling(340), 400);
   EXPECT_DOUBLE_EQ(nice_ceiling(0), 1);
   EXPECT_DOUBLE_EQ(nice_ceiling(std::nan("")), 1);
-  for (double value = 1e-6; value < 1e6; value *= 1.37) EXPECT_GE(nice_ceiling(value) * (1 + 1e-8), value);
+  for (double value = 1e-6; value < 1e6; value *= 1.37) {
+    EXPECT_GE(nice_ceiling(value) * (1 + 1e-8), value);
+    EXPECT_LE(nice_ceiling(value) * 0.75 * (1 - 1e-8), value) << "of a scale no more than a quarter is unused";
+  }
 }
 
 bool has_ink(const Picture& picture, const Rect& rect) {
@@ -134,12 +137,12 @@ TEST(Panel, CoverageClassesAreCountedAndTakeTheirLegendsColor) {
 }
 
 TEST(Panel, ErrorsAreSignedSymmetricAndDarkWhereNotCompared) {
-  const std::vector<float> errors{0.7f, -0.7f, 0.0f, kNan};
+  const std::vector<float> errors{0.75f, -0.75f, 0.0f, kNan};
   const Panel panel = error_panel("depth error", 4, 1, errors, "LSB", true);
-  EXPECT_DOUBLE_EQ(std::get<ScaleLegend>(panel.legend).range, 1);
+  EXPECT_DOUBLE_EQ(std::get<ScaleLegend>(panel.legend).range, 0.8);
   EXPECT_EQ(panel.caption, "depth error, LSB");
-  EXPECT_EQ(panel.picture.get(0, 0), diverging_color(static_cast<double>(0.7f)));
-  EXPECT_EQ(panel.picture.get(1, 0), diverging_color(-static_cast<double>(0.7f)));
+  EXPECT_EQ(panel.picture.get(0, 0), diverging_color(0.75 / 0.8));
+  EXPECT_EQ(panel.picture.get(1, 0), diverging_color(-0.75 / 0.8));
   EXPECT_EQ(panel.picture.get(2, 0), diverging_color(0));
   EXPECT_EQ(panel.picture.get(3, 0), kNotCompared);
 }
@@ -148,7 +151,7 @@ TEST(Panel, OutlierDoesNotFlattenTheScaleButIsCounted) {
   std::vector<float> errors(1000, 0.3f);
   errors[500] = -5000;
   const Panel panel = error_panel("depth error", 100, 10, errors, "LSB", true);
-  EXPECT_DOUBLE_EQ(std::get<ScaleLegend>(panel.legend).range, 0.5);
+  EXPECT_DOUBLE_EQ(std::get<ScaleLegend>(panel.legend).range, 0.4);
   EXPECT_NE(panel.note.find("max 5e+03"), std::string::npos) << panel.note;
   EXPECT_NE(panel.note.find("beyond scale: 1"), std::string::npos) << panel.note;
 }

@@ -106,6 +106,7 @@ TEST(FillRules, EachRuleOwnsTheEdgesThatItsDefinitionNames) {
   EXPECT_EQ(edge_bias(at(-16, 0), at(-16, 64), FillRule::offset_point, 4), 1) << "through the point: nobody's";
   EXPECT_EQ(edge_bias(at(-16, 64), at(-16, 0), FillRule::offset_point, 4), 1);
   EXPECT_EQ(edge_bias(right, a, FillRule::inclusive, 4), 0);
+  EXPECT_EQ(edge_bias(a, right, FillRule::exclusive, 4), 1);
 }
 
 /// By its definition, sample by sample, over small triangles everywhere: in the middle of the target, at its border, and in

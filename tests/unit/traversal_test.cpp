@@ -22,7 +22,7 @@ using test::Random;
 using test::SceneBuilder;
 
 constexpr std::array kTraversals{Traversal::tiled, Traversal::bbox, Traversal::scanline, Traversal::brute};
-constexpr std::array kFillRules{FillRule::top_left, FillRule::offset_point, FillRule::inclusive};
+constexpr std::array kFillRules{FillRule::top_left, FillRule::offset_point, FillRule::inclusive, FillRule::exclusive};
 
 Rendering render_by(const Scene& scene, const Config& config, Traversal traversal, FillRule rule) {
   RenderOptions options;
@@ -319,9 +319,9 @@ TEST(FillRules, OppositeWindingsAgreeByEveryRule) {
 TEST(FillRules, DoubleDrawsAreTheSamplesOnTheEdgesThatAMeshShares) {
   const Config config = preset("embedded");
   const Scene square = shared_edge(at(2, 2), at(20, 20), at(20, 2), at(2, 20), false);
-  EXPECT_EQ(count_double_draws(square, config, {Traversal::tiled, FillRule::inclusive}), 18u);
-  EXPECT_EQ(count_double_draws(square, config, {Traversal::tiled, FillRule::offset_point}), 0u);
-  EXPECT_EQ(count_double_draws(square, config, {Traversal::tiled, FillRule::top_left}), 0u);
+  EXPECT_EQ(count_draws(square, config, {Traversal::tiled, FillRule::inclusive}).doubled, 18u);
+  EXPECT_EQ(count_draws(square, config, {Traversal::tiled, FillRule::offset_point}).doubled, 0u);
+  EXPECT_EQ(count_draws(square, config, {Traversal::tiled, FillRule::top_left}).doubled, 0u);
   SceneBuilder fan(24, 24);  // round a pixel centre: the hub is drawn by all six
   for (int i = 0; i < 6; ++i) {
     const auto rim = [](int k) {
@@ -329,7 +329,24 @@ TEST(FillRules, DoubleDrawsAreTheSamplesOnTheEdgesThatAMeshShares) {
     };
     fan.triangle(at(12.5, 12.5), rim(i), rim((i + 1) % 6));
   }
-  EXPECT_EQ(count_double_draws(fan.scene, config, {Traversal::tiled, FillRule::inclusive}), 5u);
+  EXPECT_EQ(count_draws(fan.scene, config, {Traversal::tiled, FillRule::inclusive}).doubled, 5u);
+}
+
+TEST(FillRules, ExclusiveLeavesASharedEdgeThroughPixelCentresUndrawn) {
+  const Config config = preset("embedded");
+  // 18 x 18 pixels. The diagonal goes through the centres of those from (2, 2) to (19, 19); the sides through none.
+  const Scene square = shared_edge(at(2, 2), at(20, 20), at(20, 2), at(2, 20), false);
+  const auto undrawn = [&](FillRule rule) { return count_draws(square, config, {Traversal::tiled, rule}).undrawn; };
+  EXPECT_EQ(undrawn(FillRule::exclusive), 18U);
+  EXPECT_EQ(undrawn(FillRule::offset_point), 18U) << "the line through (-1, -1)";
+  EXPECT_EQ(undrawn(FillRule::inclusive), 0U);
+  EXPECT_EQ(count_draws(square, config, {Traversal::tiled, FillRule::exclusive}).doubled, 0U);
+  for (const Traversal traversal : kTraversals) {
+    const Rendering r = render_by(square, config, traversal, FillRule::exclusive);
+    EXPECT_EQ(draws(r), 18U * 18U - 18U) << name_of(traversal);
+    for (int i = 2; i < 20; ++i)
+      EXPECT_EQ(r.count[static_cast<std::size_t>(i * square.width + i)], 0U) << name_of(traversal) << ' ' << i;
+  }
 }
 
 TEST(FillRules, DoubleDrawsAreCountedMeshByMesh) {
@@ -342,9 +359,9 @@ TEST(FillRules, DoubleDrawsAreCountedMeshByMesh) {
   two.objects.push_back("other");
   std::get<Draw>(two.commands[2]).object = 1;
   cleared.commands.insert(cleared.commands.begin() + 2, cleared.commands[0]);
-  EXPECT_EQ(count_double_draws(one, config, {Traversal::tiled, FillRule::inclusive}), 18u);
-  EXPECT_EQ(count_double_draws(two, config, {Traversal::tiled, FillRule::inclusive}), 0u);
-  EXPECT_EQ(count_double_draws(cleared, config, {Traversal::tiled, FillRule::inclusive}), 0u);
+  EXPECT_EQ(count_draws(one, config, {Traversal::tiled, FillRule::inclusive}).doubled, 18u);
+  EXPECT_EQ(count_draws(two, config, {Traversal::tiled, FillRule::inclusive}).doubled, 0u);
+  EXPECT_EQ(count_draws(cleared, config, {Traversal::tiled, FillRule::inclusive}).doubled, 0u);
 }
 
 TEST(FillRules, InclusiveDrawsTiesOfAMeshTwiceAndTopLeftOnce) {
@@ -354,7 +371,7 @@ TEST(FillRules, InclusiveDrawsTiesOfAMeshTwiceAndTopLeftOnce) {
   EXPECT_EQ(std::count(once.count.begin(), once.count.end(), 1u), static_cast<std::ptrdiff_t>(once.count.size()));
   const Rendering twice = render_by(mesh, config, Traversal::scanline, FillRule::inclusive);
   EXPECT_EQ(std::count(twice.count.begin(), twice.count.end(), 0u), 0);
-  EXPECT_EQ(count_double_draws(mesh, config, {Traversal::tiled, FillRule::inclusive}), draws(twice) - draws(once));
+  EXPECT_EQ(count_draws(mesh, config, {Traversal::tiled, FillRule::inclusive}).doubled, draws(twice) - draws(once));
   EXPECT_GT(draws(twice) - draws(once), 100u);
 }
 

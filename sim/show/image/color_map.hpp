@@ -15,7 +15,7 @@ namespace halfplane {
 /// the OKLab space by Ottosson, 2020).
 [[nodiscard]] Rgb diverging_color(double t);
 
-/// The smallest of 1, 2, 5 times a power of ten that is >= value; 1 for zero.
+/// The end of a scale up to `value`: a short number that is >= value and at most 4/3 of it; 1 for zero.
 [[nodiscard]] double nice_ceiling(double value);
 
 /// As short as it can be said: "-0.5", "20", "1e+06".

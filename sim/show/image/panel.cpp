@@ -9,18 +9,12 @@
 namespace halfplane {
 namespace {
 
-struct ClassStyle {
-  Rgb color;
-  std::string_view label;
-  int rank;  // the higher one wins when a block is reduced to one pixel
-};
-
 // Indexed by CoverageClass. The three faults: hues of Okabe and Ito's palette, told apart by colour-blind readers too.
-constexpr std::array<ClassStyle, 5> kClasses{{{kNotCompared, "neither", 0},
-                                              {{0x6e, 0x75, 0x80}, "both", 1},
-                                              {{0xf0, 0x6a, 0x1e}, "missing", 3},
-                                              {{0x56, 0xb4, 0xe9}, "extra", 4},
-                                              {{0xf0, 0xe4, 0x42}, "other primitive", 2}}};
+constexpr std::array<PixelKind, 5> kClasses{{{kNotCompared, "neither", 0},
+                                             {{0x6e, 0x75, 0x80}, "both", 1},
+                                             {{0xf0, 0x6a, 0x1e}, "missing", 3},
+                                             {{0x56, 0xb4, 0xe9}, "extra", 4},
+                                             {{0xf0, 0xe4, 0x42}, "other primitive", 2}}};
 
 int reduction(int width, int height) { return (std::max(width, height) + kMaxPanelSide - 1) / kMaxPanelSide; }
 
@@ -95,24 +89,41 @@ std::string error_note(const ErrorStatistics& statistics, bool diverging, std::s
 
 }  // namespace
 
-Panel coverage_panel(int width, int height, std::span<const CoverageClass> classes) {
+Panel kinds_panel(std::string_view caption, int width, int height, std::span<const std::uint8_t> kinds,
+                  std::span<const PixelKind> styles) {
   const int factor = reduction(width, height);
   Panel panel;
-  panel.caption = "coverage difference, pixels" + reduction_note(factor);
+  panel.caption = std::string(caption) + reduction_note(factor);
   panel.picture = reduced_canvas(width, height, factor);
-  std::array<std::size_t, kClasses.size()> counts{};
+  std::vector<std::size_t> counts(styles.size());
   std::vector<int> ranks(panel.picture.rgb.size() / 3, -1);
   for_each_in_blocks(width, height, factor, [&](std::size_t target, std::size_t source) {
-    const auto value = static_cast<std::size_t>(classes[source]);
-    ++counts[value];
-    if (kClasses[value].rank <= ranks[target]) return;
-    ranks[target] = kClasses[value].rank;
-    store(panel.picture, target, kClasses[value].color);
+    const PixelKind& kind = styles[kinds[source]];
+    ++counts[kinds[source]];
+    if (kind.rank <= ranks[target]) return;
+    ranks[target] = kind.rank;
+    store(panel.picture, target, kind.color);
   });
   std::vector<LegendEntry> entries;
-  for (std::size_t i = 0; i < kClasses.size(); ++i)
-    entries.push_back({kClasses[i].color, std::string(kClasses[i].label) + " " + std::to_string(counts[i])});
+  for (std::size_t i = 0; i < styles.size(); ++i)
+    if (styles[i].is_listed || counts[i] > 0)
+      entries.push_back({styles[i].color, std::string(styles[i].label) + " " + std::to_string(counts[i])});
   panel.legend = std::move(entries);
+  return panel;
+}
+
+Panel coverage_panel(int width, int height, std::span<const CoverageClass> classes) {
+  std::vector<std::uint8_t> kinds(classes.size());
+  std::ranges::transform(classes, kinds.begin(), [](CoverageClass of) { return static_cast<std::uint8_t>(of); });
+  return kinds_panel("coverage difference, pixels", width, height, kinds, kClasses);
+}
+
+Panel picture_panel(std::string_view caption, const Picture& picture) {
+  const int factor = reduction(picture.width, picture.height);
+  Panel panel;
+  panel.caption = caption;
+  if (factor > 1) panel.caption += ", reduced 1:" + std::to_string(factor);
+  panel.picture = factor > 1 ? shrink(picture, factor) : picture;
   return panel;
 }
 
@@ -179,42 +190,38 @@ Panel log_panel(std::string_view caption, int width, int height, std::span<const
 
 std::vector<std::string> panel_names() {
   std::vector<std::string> names(kPanelNames.begin(), kPanelNames.end());
-  names.insert(names.end(), kTexturePanelNames.begin(), kTexturePanelNames.end());
+  const auto add = [&names](const auto& more) { names.insert(names.end(), more.begin(), more.end()); };
+  add(kTexturePanelNames);
+  add(kAgainstPanelNames);
+  add(kAffinePanelNames);
   return names;
 }
 
 Picture comparison_sheet(const ComparisonSheet& sheet) {
   const int width = sheet.width, height = sheet.height;
-  const int factor = reduction(width, height);
-  const auto view = [factor](const char* caption, const Picture& picture) {
-    Panel panel;
-    panel.caption = caption;
-    if (factor > 1) panel.caption += ", reduced 1:" + std::to_string(factor);
-    panel.picture = factor > 1 ? shrink(picture, factor) : picture;
-    return panel;
-  };
-  std::vector<Panel> panels{
-      view("model", sheet.model), view("golden", sheet.golden), coverage_panel(width, height, sheet.coverage),
-      error_panel("depth error", width, height, sheet.depth_error, "LSB", true, sheet.depth_figures),
-      error_panel("colour error, worst channel", width, height, sheet.color_error, "LSB", false, sheet.color_figures)};
+  std::vector<NamedPanel> panels{
+      {"model", picture_panel("model", sheet.model)},
+      {"golden", picture_panel("golden", sheet.golden)},
+      {"coverage", coverage_panel(width, height, sheet.coverage)},
+      {"depth", error_panel("depth error", width, height, sheet.depth_error, "LSB", true, sheet.depth_figures)},
+      {"color", error_panel("colour error, worst channel", width, height, sheet.color_error, "LSB", false,
+                            sheet.color_figures)}};
   if (!sheet.summary.empty()) {
-    Panel text;
-    text.caption = "summary";
-    text.lines = sheet.summary;
+    NamedPanel text{"summary", {}};
+    text.panel.caption = "summary";
+    text.panel.lines = sheet.summary;
     panels.push_back(std::move(text));
   }
-  panels.insert(panels.end(), sheet.texture.begin(), sheet.texture.end());
-  if (!sheet.panels.empty()) {
-    const std::vector<std::string> names = panel_names();
-    std::vector<Panel> chosen;
-    for (const std::string& name : sheet.panels) {
-      const auto at = std::find(names.begin(), names.end(), name) - names.begin();
-      if (static_cast<std::size_t>(at) < panels.size()) chosen.push_back(panels[static_cast<std::size_t>(at)]);
-    }
-    return compose_sheet(sheet.title, chosen, std::min(3, static_cast<int>(chosen.size())));
+  panels.insert(panels.end(), sheet.more.begin(), sheet.more.end());
+  std::vector<Panel> shown;
+  if (sheet.panels.empty())
+    for (NamedPanel& one : panels) shown.push_back(std::move(one.panel));
+  for (const std::string& name : sheet.panels) {
+    const auto at = std::ranges::find(panels, name, &NamedPanel::name);
+    if (at != panels.end()) shown.push_back(at->panel);
   }
-  const int columns = width > 2 * height ? 2 : 3;
-  return compose_sheet(sheet.title, panels, columns);
+  const int columns = sheet.panels.empty() ? (width > 2 * height ? 2 : 3) : std::min(3, static_cast<int>(shown.size()));
+  return compose_sheet(sheet.title, shown, columns);
 }
 
 }  // namespace halfplane

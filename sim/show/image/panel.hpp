@@ -60,6 +60,18 @@ struct Panel {
   std::vector<std::string> lines;
 };
 
+/// A kind of pixels, as a panel shows it.
+struct PixelKind {
+  Rgb color;
+  std::string_view label;
+  int rank = 0;           ///< the higher one wins when a block is reduced to one pixel
+  bool is_listed = true;  ///< in the legend even where no pixel is of it
+};
+
+/// Colours and counts of kinds. `kinds` holds width * height places in `styles`.
+[[nodiscard]] Panel kinds_panel(std::string_view caption, int width, int height, std::span<const std::uint8_t> kinds,
+                                std::span<const PixelKind> styles);
+
 /// Colours and counts of the classes. `classes` holds width * height values.
 [[nodiscard]] Panel coverage_panel(int width, int height, std::span<const CoverageClass> classes);
 
@@ -80,8 +92,17 @@ struct Panel {
 /// How often each sample was drawn: cracks and double draws at a glance. `counts` holds width * height values.
 [[nodiscard]] Panel draws_panel(int width, int height, std::span<const std::uint32_t> counts);
 
+/// A picture alone; one that is too large is reduced, which the caption says.
+[[nodiscard]] Panel picture_panel(std::string_view caption, const Picture& picture);
+
 /// Panels in rows of `columns`, aligned, under one title. Columns share a width and rows a height.
 [[nodiscard]] Picture compose_sheet(std::string_view title, std::span<const Panel> panels, int columns);
+
+/// A panel that can be chosen by its name.
+struct NamedPanel {
+  std::string_view name;  ///< one of panel_names()
+  Panel panel;
+};
 
 /// Everything that `compare` shows of one scene. All vectors hold width * height values, row 0 at the top.
 struct ComparisonSheet {
@@ -93,15 +114,18 @@ struct ComparisonSheet {
   std::vector<float> color_error;            ///< largest absolute error of the channels, LSB; NaN where not compared
   std::string depth_figures, color_figures;  ///< what `summary` says of the errors; empty: the pixels' own
   std::vector<std::string> summary;          ///< the sixth cell: figures and bounds, one per line; left out when empty
-  std::vector<Panel> texture;                ///< as kTexturePanelNames has them; empty: nothing is textured
+  std::vector<NamedPanel> more;              ///< textures, another image, interpolation; shown after the six
   std::vector<std::string> panels;           ///< of panel_names(), those to show, in this order; empty: all
 };
 
-/// The panels of a comparison sheet, and those that it has besides where something is textured.
+/// The panels of a comparison sheet, and those that it has besides: where something is textured, of another image, of
+/// affine interpolation.
 inline constexpr std::array<std::string_view, 6> kPanelNames{"model", "golden", "coverage",
                                                              "depth", "color",  "summary"};
 inline constexpr std::array<std::string_view, 5> kTexturePanelNames{"coordinate", "footprints", "level", "weights",
                                                                     "rounding"};
+inline constexpr std::array<std::string_view, 3> kAgainstPanelNames{"against", "difference", "kinds"};
+inline constexpr std::array<std::string_view, 3> kAffinePanelNames{"perspective", "affine", "affine_coordinate"};
 
 /// All of them.
 [[nodiscard]] std::vector<std::string> panel_names();

@@ -8,8 +8,8 @@
 #include <map>
 #include <optional>
 
+#include "against_hypotheses.hpp"
 #include "model/capture/capture_textures.hpp"
-#include "model/engines/functional.hpp"
 #include "model/engines/scalar.hpp"
 #include "model/golden/exact.hpp"
 #include "model/stages/depth_encode.hpp"
@@ -18,20 +18,10 @@
 namespace halfplane {
 namespace {
 
-constexpr int kMostSubpixelBits = 8;       // of the variants that a pixel is put down to the snap by
 constexpr std::uint32_t kDepthCodes = 16;  // so far a depth may be off and still be of the same fragment
+constexpr std::uint64_t kProof = 3;  // pixels that a hypothesis predicts for each that it gets wrong, to be believed
 
 std::uint32_t packed_rgb(Rgb c) { return c.r | std::uint32_t{c.g} << 8 | std::uint32_t{c.b} << 16; }
-
-/// An image of ours in the form of the foreign one.
-std::vector<std::uint32_t> values_of(const Framebuffer& frame, ColorFormat format, bool is_depth) {
-  if (is_depth) return depth_codes(frame);
-  const Picture picture = color_picture(frame, format);
-  std::vector<std::uint32_t> values;
-  for (int y = 0; y < picture.height; ++y)
-    for (int x = 0; x < picture.width; ++x) values.push_back(packed_rgb(picture.get(x, y)));
-  return values;
-}
 
 std::uint32_t shown_color(std::uint32_t stored, ColorFormat format) {
   Framebuffer one(1, 1, 1);
@@ -39,24 +29,53 @@ std::uint32_t shown_color(std::uint32_t stored, ColorFormat format) {
   return packed_rgb(color_picture(one, format).get(0, 0));
 }
 
-double distance_between(std::uint32_t a, std::uint32_t b, bool is_depth) {
-  if (is_depth) return std::abs(static_cast<double>(a) - static_cast<double>(b));
-  int worst = 0;
-  for (int shift = 0; shift < 24; shift += 8)
-    worst = std::max(worst, std::abs(static_cast<int>(a >> shift & 255) - static_cast<int>(b >> shift & 255)));
-  return worst;
-}
+/// How far apart two values are, and whether that is within a tolerance.
+class Judge {
+ public:
+  Judge(const ForeignImage& image, ColorFormat format, const Tolerance& tolerance)
+      : is_depth_(image.is_depth), tolerance_(tolerance) {
+    if (format == ColorFormat::rgb565) largest_ = {31, 63, 31};
+  }
+
+  [[nodiscard]] double distance(std::uint32_t a, std::uint32_t b) const { return distance_between(a, b, is_depth_); }
+  [[nodiscard]] bool is_same(std::uint32_t a, std::uint32_t b) const {
+    if (a == b) return true;
+    if (is_depth_) return (a < b ? b - a : a - b) <= tolerance_.depth;
+    if (tolerance_.color == 0) return false;
+    for (int c = 0; c < 3; ++c)
+      if (std::abs(code(a, c) - code(b, c)) > static_cast<int>(tolerance_.color)) return false;
+    return true;
+  }
+
+ private:
+  /// The code nearest to a channel of 8 bits.
+  [[nodiscard]] int code(std::uint32_t rgb, int channel) const {
+    return (static_cast<int>(rgb >> 8 * channel & 255) * largest_[static_cast<std::size_t>(channel)] * 2 + 255) / 510;
+  }
+
+  bool is_depth_;
+  Tolerance tolerance_;
+  std::array<int, 3> largest_{255, 255, 255};  // codes of R, G, B
+};
 
 /// What may show at a pixel that differs.
 struct Candidates {
-  std::vector<std::uint32_t> fragments;  ///< of samples inside a triangle, of lines and points
-  std::vector<std::uint32_t> border;     ///< of samples exactly on a border
+  std::vector<std::uint32_t> fragments;      ///< of samples inside a triangle, of lines and points
+  std::vector<std::uint32_t> border;         ///< of samples exactly on a border
+  std::optional<std::uint32_t> shown_state;  ///< of the fragment that the model shows
+};
+
+struct CandidatePixels {
+  std::map<std::size_t, Candidates> at;
+  std::vector<bool> is_touched;  ///< by state: a fragment is among them
 };
 
 /// The scene's fragments at some pixels, those on borders too whoever owns them.
-std::map<std::size_t, Candidates> candidates_at(const Scene& scene, const Config& config, const StudyRules& rules,
-                                                const std::vector<std::uint32_t>& differing, bool is_depth) {
-  std::map<std::size_t, Candidates> found;
+CandidatePixels candidates_at(const Scene& scene, const Config& config, const StudyRules& rules,
+                              const std::vector<std::uint32_t>& differing, bool is_depth,
+                              const std::vector<std::int32_t>& owners) {
+  CandidatePixels result{{}, std::vector<bool>(scene.states.size())};
+  std::map<std::size_t, Candidates>& found = result.at;
   for (const std::uint32_t p : differing) found[p];
   const Widths widths = derive_widths(config);
   const DepthEncode encode(config, scene.planes);
@@ -68,6 +87,9 @@ std::map<std::size_t, Candidates> candidates_at(const Scene& scene, const Config
     const auto at = found.find(static_cast<std::size_t>(fragment.y) * static_cast<std::size_t>(scene.width) +
                                static_cast<std::size_t>(fragment.x));
     if (at == found.end()) return;
+    const std::uint32_t state = std::get<Draw>(scene.commands[fragment.draw]).state;
+    result.is_touched[state] = true;
+    if (owners[at->first] == static_cast<std::int32_t>(fragment.primitive)) at->second.shown_state = state;
     const auto code = [&](std::size_t p) { return fragment.plane[p].code; };
     std::array<std::uint32_t, 4> color{code(1), code(2), code(3), code(4)};
     if (fragment.surface)
@@ -79,7 +101,7 @@ std::map<std::size_t, Candidates> candidates_at(const Scene& scene, const Config
     (is_on_border ? at->second.border : at->second.fragments).push_back(value);
   };
   (void)render_scalar(scene, config, options);
-  return found;
+  return result;
 }
 
 /// What clears leave, and an empty target.
@@ -126,35 +148,82 @@ std::vector<bool> pixels_at_sides(const std::vector<Triangle>& triangles, const 
   return is_near;
 }
 
-/// The scene with another snap, if one is the foreign image but for a quarter as many pixels as differ: it explains most of
-/// what differs and changes little that does not, which is no coincidence. The golden, which snaps nothing, and other
-/// subpixel bits, where the scene can be drawn so.
-std::optional<std::vector<std::uint32_t>> common_variant(const Scene& scene, const Config& config,
-                                                         const Comparison& comparison, const StudyRules& rules,
-                                                         const std::vector<std::uint32_t>& differing,
-                                                         const ForeignImage& image) {
-  const auto explains = [&](const std::vector<std::uint32_t>& variant) {
-    std::size_t left = 0;
-    for (std::size_t p = 0; p < variant.size(); ++p) left += variant[p] != image.value[p] ? 1 : 0;
-    return 4 * left <= differing.size();
-  };
-  if (auto unsnapped = values_of(comparison.golden.frame, config.color_format, image.is_depth); explains(unsnapped))
-    return unsnapped;
-  for (int bits = 0; bits <= kMostSubpixelBits; ++bits) {
-    if (bits == config.subpixel_bits) continue;
-    Config other = config;
-    other.subpixel_bits = bits;
-    try {
-      RenderOptions options;
-      options.rules = rules;
-      const Rendering drawn =
-          rules == StudyRules{} ? render_functional(scene, other) : render_scalar(scene, other, options);
-      if (auto variant = values_of(drawn.frame, config.color_format, image.is_depth); explains(variant)) return variant;
-    } catch (const InputError&) {  // too wide together with the rest of this configuration
+/// What a hypothesis says of the pixels that differ.
+struct Prediction {
+  ForeignDifference kind = ForeignDifference::other;
+  std::string change;
+  std::vector<std::uint32_t> right;  ///< those that it predicts
+  std::uint64_t wrong = 0;           ///< pixels that it changes and does not predict
+};
+
+/// Draws hypotheses and puts pixels down to those that are no coincidence.
+class HypothesisTest {
+ public:
+  HypothesisTest(const HypothesisScene& of, const ImageValues& expected, const ForeignImage& image, const Judge& judge,
+                 std::uint64_t different)
+      : of_(of), expected_(expected), image_(image), judge_(judge), different_(different) {}
+
+  void run(const std::function<void(double fraction)>& progress) {
+    const std::vector<Hypothesis> list = hypotheses(of_);
+    const std::vector<ReplayGroup> groups = replay_groups(of_);
+    std::size_t done = 0;
+    const auto count = [&] {
+      if (progress) progress(static_cast<double>(done++) / static_cast<double>(list.size() + groups.size()));
+    };
+    for (const Hypothesis& one : list) {
+      count();
+      if (const auto values = one.draw()) judge(one.kind, one.change, *values);
+      if (is_certain_) return;
+    }
+    for (const ReplayGroup& group : groups) {
+      count();
+      const auto images = replay(of_, expected_, group.arithmetic);
+      for (std::size_t i = 0; images && i < images->size(); ++i) judge(group.kind[i], group.change[i], (*images)[i]);
+      if (!images || is_certain_) return;
     }
   }
-  return {};
-}
+
+  /// The kinds of pixels, by the hypothesis that explains most first; the rest stays as it is.
+  std::vector<Explanation> explain(std::vector<std::uint8_t>& kind_of) && {
+    std::vector<Explanation> explanations;
+    while (true) {
+      const auto best = std::ranges::max_element(predictions_, {}, [](const Prediction& p) { return p.right.size(); });
+      if (best == predictions_.end() || best->right.empty()) return explanations;
+      explanations.push_back({best->kind, best->change, best->right.size()});
+      for (const std::uint32_t p : best->right)
+        kind_of[p] = static_cast<std::uint8_t>(1 + static_cast<int>(best->kind));
+      for (Prediction& other : predictions_) {
+        std::erase_if(other.right, [&kind_of](std::uint32_t p) { return kind_of[p] != 0; });
+        if (!is_believed(other)) other.right.clear();
+      }
+    }
+  }
+
+ private:
+  static bool is_believed(const Prediction& p) { return p.right.size() >= kProof * p.wrong; }
+
+  void judge(ForeignDifference kind, const std::string& change, const ImageValues& values) {
+    Prediction prediction{kind, change, {}, 0};
+    for (std::size_t p = 0; p < values.size(); ++p) {
+      if (values[p] == expected_[p]) continue;
+      if (!judge_.is_same(values[p], image_.value[p]))
+        ++prediction.wrong;
+      else if (!judge_.is_same(expected_[p], image_.value[p]))
+        prediction.right.push_back(static_cast<std::uint32_t>(p));
+    }
+    if (prediction.right.empty() || !is_believed(prediction)) return;
+    is_certain_ = prediction.wrong == 0 && prediction.right.size() == different_;
+    predictions_.push_back(std::move(prediction));
+  }
+
+  const HypothesisScene& of_;
+  const ImageValues& expected_;
+  const ForeignImage& image_;
+  const Judge& judge_;
+  std::uint64_t different_;
+  std::vector<Prediction> predictions_;
+  bool is_certain_ = false;  // the last one predicts all of it
+};
 
 /// Whether a pixel beside this one shows about the same: a primitive that ends there with us may end here with others.
 bool is_beside(const std::vector<std::uint32_t>& ours, int width, std::uint32_t p, std::uint32_t got, bool is_depth,
@@ -175,55 +244,142 @@ bool holds(const std::vector<std::uint32_t>& values, std::uint32_t value) {
   return std::ranges::find(values, value) != values.end();
 }
 
+/// The operation that made the colour of a fragment, and may have been off by a code: of several the last.
+ForeignDifference last_operation(const Scene& scene, const std::optional<std::uint32_t>& state, ColorFormat format) {
+  if (!state) return ForeignDifference::color;
+  const State& of = scene.states[*state];
+  if (of.dither && format == ColorFormat::rgb565) return ForeignDifference::dither;
+  if (of.blend) return ForeignDifference::blend;
+  return of.texture ? ForeignDifference::texture : ForeignDifference::color;
+}
+
+/// The kind of one pixel that no hypothesis explains.
+class PixelKinds {
+ public:
+  PixelKinds(const Scene& scene, const Config& config, const AgainstResult& result, const ForeignImage& image,
+             const Judge& judge, const CandidatePixels& candidates, const std::vector<bool>& is_at_side)
+      : scene_(scene),
+        config_(config),
+        result_(result),
+        image_(image),
+        judge_(judge),
+        candidates_(candidates),
+        is_at_side_(is_at_side),
+        cleared_(cleared_values(scene, config, image.is_depth)),
+        // A code of 5 bits is 8 or 9 of 8 bits.
+        near_(image.is_depth                               ? kDepthCodes
+              : config.color_format == ColorFormat::rgb565 ? 9
+                                                           : 1) {}
+
+  [[nodiscard]] ForeignDifference at(std::uint32_t p) const {
+    const std::uint32_t found = image_.value[p];
+    const Candidates& here = candidates_.at.at(p);
+    const bool is_another = holds(here.fragments, found) || holds(cleared_, found);
+    const double distance = judge_.distance(result_.expected[p], found);
+    if (!here.border.empty() && (is_another || holds(here.border, found))) return ForeignDifference::edge_rule;
+    if (is_another && is_at_side_[p]) return ForeignDifference::snap;
+    if (is_another && (holds(here.fragments, found) || distance > near_)) return ForeignDifference::depth;
+    if (distance <= near_)
+      return image_.is_depth ? ForeignDifference::depth
+                             : last_operation(scene_, here.shown_state, config_.color_format);
+    if (is_at_side_[p] && is_beside(result_.expected, scene_.width, p, found, image_.is_depth, near_))
+      return ForeignDifference::snap;
+    return ForeignDifference::other;
+  }
+
+ private:
+  const Scene& scene_;
+  const Config& config_;
+  const AgainstResult& result_;
+  const ForeignImage& image_;
+  const Judge& judge_;
+  const CandidatePixels& candidates_;
+  const std::vector<bool>& is_at_side_;
+  const std::vector<std::uint32_t> cleared_;
+  const double near_;
+};
+
+/// Kinds of the pixels that have none yet. Where a colour with no operation is off, operations are not to blame for others.
+void classify_rest(const PixelKinds& kinds, const std::vector<std::uint32_t>& differing,
+                   std::vector<std::uint8_t>& kind_of) {
+  constexpr auto is_operation = [](ForeignDifference kind) {
+    return kind == ForeignDifference::texture || kind == ForeignDifference::blend || kind == ForeignDifference::dither;
+  };
+  std::vector<std::uint32_t> of_operations;
+  bool has_color = false;
+  for (const std::uint32_t p : differing) {
+    if (kind_of[p] != 0) continue;
+    const ForeignDifference kind = kinds.at(p);
+    kind_of[p] = static_cast<std::uint8_t>(1 + static_cast<int>(kind));
+    has_color = has_color || kind == ForeignDifference::color;
+    if (is_operation(kind)) of_operations.push_back(p);
+  }
+  if (!has_color) return;
+  for (const std::uint32_t p : of_operations) kind_of[p] = 1 + static_cast<std::uint8_t>(ForeignDifference::color);
+}
+
 }  // namespace
 
 double DifferenceStats::rms() const {
   return pixels == 0 ? 0 : std::sqrt(sum_of_squares / static_cast<double>(pixels));
 }
 
+double distance_between(std::uint32_t a, std::uint32_t b, bool is_depth) {
+  if (is_depth) return std::abs(static_cast<double>(a) - static_cast<double>(b));
+  int worst = 0;
+  for (int shift = 0; shift < 24; shift += 8)
+    worst = std::max(worst, std::abs(static_cast<int>(a >> shift & 255) - static_cast<int>(b >> shift & 255)));
+  return worst;
+}
+
+ImageValues image_values(const Framebuffer& frame, ColorFormat format, bool is_depth) {
+  if (is_depth) return depth_codes(frame);
+  const Picture picture = color_picture(frame, format);
+  ImageValues values;
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x) values.push_back(packed_rgb(picture.get(x, y)));
+  return values;
+}
+
 AgainstResult compare_against(const Scene& scene, const Config& config, const Comparison& comparison,
-                              const StudyRules& rules, const ForeignImage& image) {
-  const std::vector<std::uint32_t> ours = values_of(comparison.rendering.frame, config.color_format, image.is_depth);
+                              const ForeignImage& image, const AgainstOptions& options) {
   AgainstResult result;
-  result.pixels = ours.size();
+  result.expected = image_values(comparison.rendering.frame, config.color_format, image.is_depth);
+  result.pixels = result.expected.size();
+  result.kind_of.assign(result.expected.size(), 0);
+  const Judge judge(image, config.color_format, options.tolerance);
   std::vector<std::uint32_t> differing;
-  for (std::size_t p = 0; p < ours.size(); ++p)
-    if (ours[p] != image.value[p]) differing.push_back(static_cast<std::uint32_t>(p));
+  for (std::size_t p = 0; p < result.expected.size(); ++p) {
+    if (result.expected[p] == image.value[p]) continue;
+    if (judge.is_same(result.expected[p], image.value[p]))
+      ++result.within_tolerance;
+    else
+      differing.push_back(static_cast<std::uint32_t>(p));
+  }
   result.different = differing.size();
   if (differing.empty()) return result;
-  const auto candidates = candidates_at(scene, config, rules, differing, image.is_depth);
-  const auto cleared = cleared_values(scene, config, image.is_depth);
-  const auto variant = common_variant(scene, config, comparison, rules, differing, image);
-  const auto is_at_side = pixels_at_sides(comparison.rendering.triangles, differing, scene.width, scene.height,
-                                          derive_widths(config).grid_bits);
-  // A code of 5 bits is 8 or 9 of 8 bits.
-  const double near = image.is_depth ? kDepthCodes : config.color_format == ColorFormat::rgb565 ? 9 : 1;
+  const CandidatePixels candidates =
+      candidates_at(scene, config, options.rules, differing, image.is_depth, comparison.rendering.ids);
+  const HypothesisScene of{
+      scene, config, options.rules, comparison.golden.frame, image.is_depth, candidates.is_touched};
+  HypothesisTest test(of, result.expected, image, judge, result.different);
+  test.run(options.progress);
+  result.explanations = std::move(test).explain(result.kind_of);
+  const std::vector<bool> is_at_side = pixels_at_sides(comparison.rendering.triangles, differing, scene.width,
+                                                       scene.height, derive_widths(config).grid_bits);
+  classify_rest(PixelKinds(scene, config, result, image, judge, candidates, is_at_side), differing, result.kind_of);
   for (const std::uint32_t p : differing) {
-    const std::uint32_t got = image.value[p];
-    const Candidates& here = candidates.at(p);
-    const bool is_another = holds(here.fragments, got) || holds(cleared, got);
-    const double distance = distance_between(ours[p], got, image.is_depth);
-    ForeignDifference kind = ForeignDifference::other;
-    if (variant && (*variant)[p] == got)
-      kind = ForeignDifference::snap;
-    else if (!here.border.empty() && (is_another || holds(here.border, got)))
-      kind = ForeignDifference::edge_rule;
-    else if (is_another && is_at_side[p])
-      kind = ForeignDifference::snap;
-    else if (is_another && (holds(here.fragments, got) || distance > near))
-      kind = ForeignDifference::depth;
-    else if (distance <= near)
-      kind = image.is_depth ? ForeignDifference::depth : ForeignDifference::color;
-    else if (is_at_side[p] && is_beside(ours, scene.width, p, got, image.is_depth, near))
-      kind = ForeignDifference::snap;
+    const auto kind = static_cast<ForeignDifference>(result.kind_of[p] - 1);
+    const double distance = judge.distance(result.expected[p], image.value[p]);
     DifferenceStats& stats = result.kinds[static_cast<std::size_t>(kind)];
     ++stats.pixels;
     stats.max = std::max(stats.max, distance);
     stats.sum_of_squares += distance * distance;
-    if (!result.first) {
-      const auto width = static_cast<std::uint32_t>(scene.width);
-      result.first = {static_cast<int>(p % width), static_cast<int>(p / width), kind, ours[p], got};
-    }
+    const auto width = static_cast<std::uint32_t>(scene.width);
+    const ForeignPixel pixel{static_cast<int>(p % width), static_cast<int>(p / width), kind, result.expected[p],
+                             image.value[p]};
+    if (!result.first_pixel) result.first_pixel = pixel;
+    if (result.first.size() < options.listed) result.first.push_back(pixel);
   }
   return result;
 }

@@ -1,9 +1,7 @@
 #include "compare.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <limits>
 #include <utility>
@@ -128,6 +126,7 @@ class AttributeComparison {
     result_.parts = depth_parts_.stats();
     result_.color_parts = color_parts_.stats();
     result_.affine = affine_.stats();
+    result_.affine_coordinate = affine_coordinate_.stats();
     result_.datapath = datapath_.stats();
     result_.line_datapath = line_datapath_.stats();
     result_.color_datapath = color_datapath_.stats();
@@ -306,6 +305,25 @@ class AttributeComparison {
     }
   }
 
+  /// What affine interpolation costs one channel, whose value is `u`.
+  void affine(std::size_t p, std::int64_t u, int channel) {
+    if (view_->perspective.color.empty()) return;
+    const auto c = static_cast<std::size_t>(channel);
+    const std::int64_t cost =
+        u - on_grid(view_->perspective.color[p][c] * golden::channel_max(config_.color_format)[c] / 255);
+    affine_.add(cost);
+    if (sample_ != 0) return;
+    float& worst = result_.affine_error_lsb[p];
+    const auto error = static_cast<float>(to_lsb(cost));
+    if (channel == 0 || std::abs(error) > std::abs(worst)) worst = error;
+  }
+
+  void affine_texels(std::size_t p, double texels) {
+    if (view_->perspective.color.empty()) return;
+    affine_coordinate_.add(texels);
+    if (sample_ == 0) result_.affine_texels[p] = static_cast<float>(texels);
+  }
+
   /// A colour of several fragments: what of its error is the operations'.
   void layered_color(const OwnedPixel& pixel, std::uint32_t stored, bool same_visible) {
     layers_->judge(pixel.p, stored);
@@ -344,8 +362,7 @@ class AttributeComparison {
       if (!same_visible) continue;
       v.u = on_grid(view_->golden.color[pixel.p][c] * max[c] / 255);
       color_parts_.add(v);
-      if (!view_->perspective.color.empty())
-        affine_.add(v.u - on_grid(view_->perspective.color[pixel.p][c] * max[c] / 255));
+      affine(pixel.p, v.u, channel);
       if (frames_.size() > 1) continue;  // the pixel's one colour is compared, when all samples have been looked at
       const double error = to_lsb(v.d - v.u);
       color_.add(error);
@@ -362,7 +379,10 @@ class AttributeComparison {
     if (errors.has_fog) fog_.add(errors.fog.value);
     if (errors.is_lit) light_.add(errors.light.value);
     has_texture_ = has_texture_ || errors.has_texture;
-    if (errors.has_texture) texture_.add(pixel.p, errors);
+    if (errors.has_texture) {
+      texture_.add(pixel.p, errors);
+      affine_texels(pixel.p, surface_oracle_->affine_texels(f.x, f.y));
+    }
     return errors.exact;
   }
 
@@ -394,6 +414,7 @@ class AttributeComparison {
   bool has_texture_ = false;
   PartSets depth_parts_, color_parts_;
   PartSet affine_;
+  MomentSet affine_coordinate_;
 };
 
 CoverageClass classify(std::uint32_t golden_count, std::uint32_t model_count, bool same_visible) {
@@ -417,12 +438,6 @@ std::uint64_t different_pixels(const Scene& scene, const Framebuffer& a, const F
 /// Whether the planes are made as the pipeline makes them.
 bool has_own_planes(const StudyRules& rules) {
   return rules.gradients == Gradients::one_reciprocal && rules.accumulator == Accumulator::wrap;
-}
-
-std::string line(const char* format, double value, double bound) {
-  std::array<char, 160> text{};
-  std::snprintf(text.data(), text.size(), format, value, bound);
-  return text.data();
 }
 
 /// Draws by the specification, whose every fragment goes to the judge, and through the golden's operations.
@@ -482,12 +497,15 @@ Comparison compare(const Scene& scene, const Config& plain_config, const Compare
   golden::Image perspective;
   if (options.wants_affine_cost) {
     golden_options.color_interp = ColorInterp::perspective;
+    golden_options.texture_interp = TextureInterp::perspective;
     golden_options.want_outlines = false;
     golden_options.progress = part(0.6, 0.8);
     perspective = golden::render(scene, config, golden_options);
+    result.perspective = perspective.frame;
   }
   if (has_light_of_fragments(scene)) {
     golden_options.color_interp.reset();
+    golden_options.texture_interp.reset();
     golden_options.want_outlines = false;
     golden_options.progress = part(0.8, 0.8);
     const golden::Image at_vertices = golden::render(lit_at_vertices(scene), config, golden_options);
@@ -516,59 +534,9 @@ Comparison compare(const Scene& scene, const Config& plain_config, const Compare
   }
   result.depth_error_lsb.assign(pixels, std::numeric_limits<float>::quiet_NaN());
   result.color_error_lsb = result.depth_error_lsb;
+  if (options.wants_affine_cost) result.affine_error_lsb = result.affine_texels = result.depth_error_lsb;
   AttributeComparison(scene, config, frames, made, perspective, result).run(part(0.8, 1));
   return result;
-}
-
-std::vector<std::string> broken_bounds(const Comparison& c, const Config& config) {
-  std::vector<std::string> broken = broken_fragment_bounds(c.fragments, config);
-  const auto require = [&broken](bool holds, const char* format, double value, double bound) {
-    if (!holds) broken.push_back(line(format, value, bound));
-  };
-  if (c.rendering.counters.covered == 0) broken.push_back("nothing was compared: no primitive covers a sample");
-  const double depth_bound = depth_error_bound(config);
-  // The mean is a property of many triangles: one alone has the error of its own reciprocal, up to 1/16 LSB.
-  const bool has_population = c.visible_triangles >= 100;
-
-  require(c.oracle.mismatches == 0, "coverage: %.0f samples differ from the exact oracle (bound %.0f)",
-          static_cast<double>(c.oracle.mismatches), 0);
-  require(c.stage_mismatches == 0, "engine: %.0f stored values differ from what the stages compute (bound %.0f)",
-          static_cast<double>(c.stage_mismatches), 0);
-  require(c.datapath.max <= depth_bound,
-          "depth: %.3f LSB from the exact plane through the snapped vertices (bound %.2f)", c.datapath.max,
-          depth_bound);
-  require(c.line_datapath.max <= line_depth_error_bound(config),
-          "depth of lines: %.3f LSB from the exact value between the snapped ends (bound %.2f)", c.line_datapath.max,
-          line_depth_error_bound(config));
-  require(!has_population || std::abs(c.datapath_bias.mean) < 0.05,
-          "depth: mean error %.4f LSB before rounding (bound %.2f)", c.datapath_bias.mean, 0.05);
-  for (const LayerRow& row : c.layers)
-    require(row.part_of_bound <= 1, "colour under layers: an error of %.3f of its bound (largest bound %.3f LSB)",
-            row.part_of_bound, row.bound);
-  require(c.color_datapath.max <= 1, "colour: %.3f LSB from the exact plane through the snapped vertices (bound %.0f)",
-          c.color_datapath.max, 1);
-  return broken;
-}
-
-std::vector<std::string> given_up_bounds(const StudyRules& rules) {
-  std::vector<std::string> bounds;
-  if (rules.fill_rule == FillRule::inclusive)
-    bounds.emplace_back(
-        "a sample of a closed mesh or on a shared edge is drawn once: fill rule inclusive draws it twice");
-  if (rules.fill_rule == FillRule::offset_point)
-    bounds.emplace_back(
-        "a sample of a closed mesh or on a shared edge is drawn once: fill rule offset_point may leave it out");
-  if (rules.clipping == Clipping::homogeneous)
-    bounds.emplace_back(
-        "a sample at a shared vertex is drawn once: clipping homogeneous may draw it twice or leave it out");
-  const auto planes = [&](bool is_unusual, std::string_view what, std::string_view name) {
-    if (!is_unusual) return;
-    bounds.push_back("planes of each fragment before depth test and packing: " + std::string(what) + " " +
-                     std::string(name) + " is a fault, judged by what is stored");
-  };
-  planes(rules.gradients != Gradients::one_reciprocal, "gradients", name_of(rules.gradients));
-  planes(rules.accumulator != Accumulator::wrap, "accumulator", name_of(rules.accumulator));
-  return bounds;
 }
 
 }  // namespace halfplane

@@ -59,7 +59,8 @@ struct Comparison {
   std::optional<ErrorStats> depth_eye;  ///< eye-space units; none where no perspective projection is to be found
   std::uint64_t beyond_eye = 0;         ///< pixels left out of depth_eye: the stored code lies at or beyond infinity
   ErrorParts parts, color_parts;        ///< of a colour, interpolation is all that comes before storage
-  PartStats affine;                     ///< what affine colour costs: U less U with all colours perspective
+  PartStats affine;  ///< what affine interpolation costs: U less U with all colours and textures perspective
+  ErrorMoments affine_coordinate;  ///< likewise, how far texture coordinates are off, texels
 
   // Against S, over every pixel that the model owns, whatever U shows there: the datapath alone. Colours of planes only:
   // what a surface shows has bounds of its own.
@@ -78,10 +79,12 @@ struct Comparison {
 
   // Per pixel, width * height, rows from the top. NaN where not compared. Signed; of a colour, its worst channel.
   std::vector<float> depth_error_lsb, color_error_lsb;
+  std::vector<float> affine_error_lsb, affine_texels;  ///< of `affine`, `affine_coordinate`; empty: not asked for
   std::vector<CoverageClass> coverage_class;
 
-  Rendering rendering;   ///< with count, ids, visible, triangles, lines and points
-  golden::Image golden;  ///< with outlines
+  Rendering rendering;      ///< with count, ids, visible, triangles, lines and points
+  golden::Image golden;     ///< with outlines
+  Framebuffer perspective;  ///< of the golden with all colours and textures perspective, if `affine` was asked for
 };
 
 /// Runs engine and golden on the scene. Throws InputError as the engine does.

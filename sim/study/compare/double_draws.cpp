@@ -30,18 +30,17 @@ class MeshCounts {
                 std::max(touched_.bottom, box.bottom)};
   }
 
-  /// Ends the mesh: its double draws. The next one starts at 0.
-  std::uint64_t finish() {
-    std::uint64_t sum = 0;
+  /// Ends the mesh and adds its draws. The next one starts at 0.
+  void finish(DrawsOfRule& sum) {
     for (int y = touched_.top; y <= touched_.bottom; ++y)
       for (int x = touched_.left; x <= touched_.right; ++x) {
         std::uint32_t &rule = by_rule_[at(x, y)], &top_left = by_top_left_[at(x, y)];
         const std::uint32_t due = std::max(1U, top_left);
-        if (rule > due) sum += rule - due;
+        if (rule > due) sum.doubled += rule - due;
+        if (rule == 0 && top_left > 0) ++sum.undrawn;
         rule = top_left = 0;
       }
     touched_ = {};
-    return sum;
   }
 
  private:
@@ -65,18 +64,18 @@ bool is_another_mesh(const Scene& scene, std::uint32_t last, std::uint32_t next)
 
 }  // namespace
 
-std::uint64_t count_double_draws(const Scene& scene, const Config& config, const StudyRules& rules) {
+DrawsOfRule count_draws(const Scene& scene, const Config& config, const StudyRules& rules) {
   const FillRule rule = rules.fill_rule;
   const bool is_homogeneous = rules.clipping == Clipping::homogeneous;
-  if (rule == FillRule::top_left && !is_homogeneous) return 0;
+  if (rule == FillRule::top_left && !is_homogeneous) return {};
   validate(config);
   const Widths widths = derive_widths(config);
   check_scene(scene, config);  // before the counts are as large as it says
   MeshCounts counts(scene.width, scene.height);
   std::optional<std::uint32_t> last_draw;
-  std::uint64_t sum = 0;
+  DrawsOfRule sum;
   const auto begin_draw = [&](const DrawContext& context) {
-    if (last_draw && is_another_mesh(scene, *last_draw, context.command)) sum += counts.finish();
+    if (last_draw && is_another_mesh(scene, *last_draw, context.command)) counts.finish(sum);
     last_draw = context.command;
   };
   (void)run_commands(
@@ -103,7 +102,8 @@ std::uint64_t count_double_draws(const Scene& scene, const Config& config, const
         });
         return false;  // the clipped triangles are what it is compared with
       });
-  return sum + counts.finish();
+  counts.finish(sum);
+  return sum;
 }
 
 }  // namespace halfplane

@@ -1,5 +1,5 @@
-// Double draws: how often a mesh draws a sample again that it should draw once, because of a fill rule,
-// or of edges that are rounded one by one.
+// How often a mesh draws a sample again that it should draw once, and how many it leaves out, because of a fill rule, or of
+// edges that are rounded one by one.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,15 @@
 
 namespace halfplane {
 
-/// Counts the draws of every sample under `rules` and under the pipeline's own, mesh by mesh, before the depth test,
-/// and sums max(0, under `rules` - max(1, under its own)): draws beyond the first that the pipeline does not make. A
-/// mesh is a run of draws of one object without a clear or the end of a frame between them. The traversal changes nothing.
-[[nodiscard]] std::uint64_t count_double_draws(const Scene& scene, const Config& config, const StudyRules& rules);
+/// Draws of samples under some rules beside those under the pipeline's own, summed over meshes.
+struct DrawsOfRule {
+  std::uint64_t doubled =
+      0;  ///< max(0, n - max(1, n of its own)): draws beyond the first that the pipeline does not make
+  std::uint64_t undrawn = 0;  ///< samples that the pipeline draws and these rules do not: cracks, and the outline
+};
+
+/// Counts mesh by mesh, before the depth test. A mesh is a run of draws of one object without a clear or the end of a
+/// frame between them. The traversal changes nothing.
+[[nodiscard]] DrawsOfRule count_draws(const Scene& scene, const Config& config, const StudyRules& rules);
 
 }  // namespace halfplane

@@ -155,6 +155,16 @@ SurfaceErrors SurfaceOracle::errors(const SurfaceSample& sample, int x, int y) c
   return errors;
 }
 
+double SurfaceOracle::affine_texels(int x, int y) const {
+  if (texture_ == nullptr || rules_.texture == TextureInterp::perspective) return 0;
+  const auto at = [&](TextureInterp interp) {
+    return exact_at(x + 0.5, y + 0.5, setup_, {rules_.color, interp}).texture;
+  };
+  const golden::TextureCoordinates affine = at(TextureInterp::affine), perspective = at(TextureInterp::perspective);
+  return std::hypot((affine.u - perspective.u) * sampler_.axes[0].size,
+                    (affine.v - perspective.v) * sampler_.axes[1].size);
+}
+
 /// Of the model's own colour before the light.
 void SurfaceOracle::compare_light(const SurfaceSample& sample, const std::array<double, 3>& normal, double inverse_w,
                                   SurfaceErrors& errors) const {

@@ -60,6 +60,8 @@ class SurfaceOracle {
   /// there (moved_to_sample).
   SurfaceOracle(const Scene& scene, const Config& config, const Triangle& triangle, const SampleOffset& offset = {});
   [[nodiscard]] SurfaceErrors errors(const SurfaceSample& sample, int x, int y) const;
+  /// How far coordinates that are affine on the screen lie from those over w, texels; 0 where the state has the latter.
+  [[nodiscard]] double affine_texels(int x, int y) const;
 
  private:
   void set_q(const std::array<double, 3>& w, const PerspectiveFormat& format, int roundings);

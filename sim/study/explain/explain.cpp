@@ -7,6 +7,7 @@
 #include "hardware_record.hpp"
 #include "model/engines/functional.hpp"
 #include "model/engines/hardware.hpp"
+#include "model/engines/scalar.hpp"
 #include "model/stages/resolve.hpp"
 #include "specification.hpp"
 #include "verify.hpp"
@@ -20,7 +21,11 @@ Stored stored_at(const Framebuffer& frame, Pixel pixel) {
 }
 
 /// Why the hardware cannot draw the scene; empty: it can.
-std::string hardware_refusal(const Scene& scene, const Config& config) {
+std::string hardware_refusal(const Scene& scene, const Config& config, const StudyRules& rules) {
+  if (rules != StudyRules{})
+    return "hardware has its own rules for traversal, fill rule, gradients, accumulator and weights; leave them as "
+           "they "
+           "are for its record";
   try {
     require_one_sample(config, "the hardware whose record is kept here");
     check_hardware_scene(scene, config);
@@ -37,10 +42,12 @@ std::function<void(double)> part_of(const Options& options, double from, double 
   };
 }
 
-void add_engine(const Scene& scene, const Config& config, Explanation& result) {
+void add_engine(const Scene& scene, const Config& config, const StudyRules& rules, Explanation& result) {
   RenderOptions options;
   options.want_ids = true;
-  const Rendering rendering = render_functional(scene, config, options);
+  options.rules = rules;
+  const Rendering rendering =
+      rules == StudyRules{} ? render_functional(scene, config, options) : render_scalar(scene, config, options);
   const auto stored = [&](const Framebuffer& frame, const Owners& owners, Pixel at) {
     Stored of = stored_at(frame, at);
     of.owner = owners.ids[static_cast<std::size_t>(at.y) * static_cast<std::size_t>(scene.width) +
@@ -88,13 +95,14 @@ Explanation explain(const Scene& scene, const Config& config, const std::vector<
       record_specification(scene, with_alpha(config, scene), pixels, options, result.differences, result.checks);
   result.pixels = std::move(record.pixels);
   result.samples = config.msaa_samples;
+  result.fill_rule = options.rules.fill_rule;
   resolve(config, result);
   result.primitives = record.primitives;
-  result.no_hardware = hardware_refusal(scene, config);
+  result.no_hardware = hardware_refusal(scene, config, options.rules);
   if (options.rtl != nullptr && !result.no_hardware.empty()) throw InputError(result.no_hardware);
   const double golden_ends = options.rtl == nullptr ? 0.5 : 0.1, hardware_ends = 2 * golden_ends;
   record_golden(scene, config, part_of(options, 0, golden_ends), result);
-  add_engine(scene, config, result);
+  add_engine(scene, config, options.rules, result);
   if (result.no_hardware.empty()) {
     const HardwareRecord hardware = record_hardware(scene, config, pixels, record.near,
                                                     part_of(options, golden_ends, hardware_ends), result.packets);

@@ -5,12 +5,14 @@
 #include <functional>
 
 #include "history.hpp"
+#include "model/rules.hpp"
 #include "sim/cosim/dut.hpp"
 
 namespace halfplane::explain {
 
 struct Options {
   double near = 1;           ///< pixels: how far from the pixel a primitive may pass and still be told of; at least 1
+  StudyRules rules;          ///< of the specification; the hardware has none but its own, the golden its own fill rule
   bool wants_steps = false;  ///< of lines and triangles: every pixel
   Dut* rtl = nullptr;        ///< of exactly this configuration
   std::uint16_t mutant = 0;  ///< the fault in it
@@ -21,7 +23,7 @@ struct Options {
 void require_inside(const Scene& scene, const std::vector<Pixel>& pixels);
 
 /// Throws InputError for a pixel outside the target, for a scene that the engines refuse and, with an RTL, for one that the
-/// hardware does.
+/// hardware does, or for rules that it does not have.
 [[nodiscard]] Explanation explain(const Scene& scene, const Config& config, const std::vector<Pixel>& pixels,
                                   const Options& options = {});
 

@@ -5,9 +5,11 @@
 #include "line_walk.hpp"
 #include "model/engines/commands.hpp"
 #include "model/golden/exact_line.hpp"
+#include "model/stages/fill_rule.hpp"
 #include "model/stages/fine_raster.hpp"
 #include "model/stages/interpolate.hpp"
 #include "model/stages/multisample.hpp"
+#include "model/stages/plane_rules.hpp"
 #include "model/texture_memory.hpp"
 
 namespace halfplane::explain {
@@ -41,6 +43,9 @@ PlaneFigure plane_figure(const Widths& widths, std::size_t plane, int guard_bits
 
 constexpr std::uint32_t kWhole = 1U << 24;  ///< a weight of 1
 
+/// Of a linear filter's weight.
+int weight_bits(const StudyRules& rules) { return rules.weights == Weights::four ? 4 : kTexelFraction; }
+
 /// Four texels of a linear filter, or the one of a nearest filter, on one level.
 void add_texels(const Sampler& sampler, const SurfaceSample& sample, bool is_linear, int level, std::uint32_t part,
                 std::vector<TexelFigure>& texels) {
@@ -65,9 +70,9 @@ void add_texels(const Sampler& sampler, const SurfaceSample& sample, bool is_lin
 }
 
 SurfaceFigure surface_figure(const DrawContext& context, const Surface& surface, const SurfaceOracle& oracle,
-                             Pixel pixel) {
+                             Pixel pixel, const StudyRules& rules) {
   SurfaceFigure figure;
-  figure.sample = surface.at(pixel.x, pixel.y);
+  figure.sample = surface.at(pixel.x, pixel.y, weight_bits(rules));
   figure.is_lit = surface.is_lit();
   figure.errors = oracle.errors(figure.sample, pixel.x, pixel.y);
   if (!context.state.texture) return figure;
@@ -80,6 +85,16 @@ SurfaceFigure surface_figure(const DrawContext& context, const Surface& surface,
   for (TexelFigure& texel : figure.texels)
     texel.address = texel_address(context.scene, context.config, *context.state.texture, texel.level, texel.x, texel.y);
   return figure;
+}
+
+/// By other rules, if they are.
+TriangleSetup by_rules(TriangleSetup setup, const Triangle& triangle, const StudyRules& rules, const Config& config,
+                       const Widths& widths) {
+  if (rules == StudyRules{} || setup.area == 0) return setup;
+  const auto v = canonical(triangle.v, signed_area(triangle.v[0], triangle.v[1], triangle.v[2]));
+  set_fill_rule(setup, v, rules.fill_rule, widths);
+  set_planes(setup, v, rules, config, widths);
+  return setup;
 }
 
 std::optional<Surface> made_surface(const DrawContext& context, const Triangle& triangle, const TriangleSetup& setup,
@@ -113,15 +128,18 @@ std::optional<std::uint32_t> texel_address(const Scene& scene, const Config& con
   return memory.base(texture) + (texel << texel_size_log2(stored_format(image.format)));
 }
 
-TrianglePiece::TrianglePiece(const DrawContext& context, const Widths& widths, const Triangle& triangle,
-                             const SampleOffset& offset)
+TrianglePiece::TrianglePiece(const DrawContext& context, const Widths& widths, const StudyRules& rules,
+                             const Triangle& triangle, const SampleOffset& offset)
     : context_(context),
       widths_(widths),
+      rules_(rules),
       triangle_(moved_to_sample(triangle, offset)),
       offset_(offset),
-      setup_(setup_at_sample(setup_triangle(triangle, context.config, widths, context.rect), offset, widths)),
-      whole_(setup_at_sample(setup_triangle(triangle, context.config, widths), offset, widths)),
-      oracle_(triangle_, widths.grid_bits),
+      setup_(by_rules(setup_at_sample(setup_triangle(triangle, context.config, widths, context.rect), offset, widths),
+                      triangle_, rules, context.config, widths)),
+      whole_(by_rules(setup_at_sample(setup_triangle(triangle, context.config, widths), offset, widths), triangle_,
+                      rules, context.config, widths)),
+      oracle_(triangle_, widths.grid_bits, rules.fill_rule),
       surface_(made_surface(context, triangle, setup_, widths, offset)) {
   const auto& v = triangle_.v;
   order_ = canonical_order(v, signed_area(v[0], v[1], v[2]));
@@ -158,7 +176,8 @@ Outcome TrianglePiece::outcome_at(Pixel pixel, const EdgeValues& edges) const {
     return {Verdict::uncovered, Stage::cull, "the pixel's centre lies outside its box"};
   const int shift = widths_.tile_shift;
   const EdgeValues at_tile = edges_at_tile(setup_, pixel.x >> shift, pixel.y >> shift, widths_);
-  if (classify(setup_, at_tile, 1 << shift) == TileClass::outside) return Outcome(Verdict::tiles_outside);
+  const bool has_tiles = rules_.traversal == Traversal::tiled;
+  if (has_tiles && classify(setup_, at_tile, 1 << shift) == TileClass::outside) return Outcome(Verdict::tiles_outside);
   return is_covered(pixel) ? Outcome(Verdict::written) : Outcome(Verdict::uncovered);
 }
 
@@ -180,12 +199,12 @@ Entry TrianglePiece::at(Pixel pixel) const {
     const SnappedVertex &from = corner_[i], &to = corner_[(i + 1) % 3];
     entry.edges.push_back({order_[i], order_[(i + 1) % 3], edges[i],
                            exact_edge(from, to, pixel.x, pixel.y, widths_.grid_bits, 0), widths_.edge_value.bits,
-                           is_top_left(from, to), side_of(from, to)});
+                           edge_bias(from, to, rules_.fill_rule, widths_.grid_bits) == 0, side_of(from, to)});
   }
   entry.oracle = OracleFigure{oracle_.covers(pixel.x, pixel.y),
                               exact::is_on_border(triangle_, pixel.x, pixel.y, widths_.grid_bits)};
   entry.specification = outcome_at(pixel, edges);
-  if (holds(entry.box, pixel)) {
+  if (holds(entry.box, pixel) && rules_.traversal == Traversal::tiled) {
     const int shift = widths_.tile_shift;
     entry.tile = classify(setup_, edges_at_tile(setup_, pixel.x >> shift, pixel.y >> shift, widths_), 1 << shift);
   }
@@ -196,7 +215,7 @@ Entry TrianglePiece::at(Pixel pixel) const {
 bool TrianglePiece::covers(Pixel pixel) const { return has_fragment(outcome_at(pixel, edges_at(pixel)).verdict); }
 
 void TrianglePiece::add_attributes(Pixel pixel, Entry& entry) const {
-  const Interpolated value = interpolate_at(setup_, widths_, pixel.x, pixel.y);
+  const Interpolated value = interpolate_by_rules(setup_, rules_, widths_, pixel.x, pixel.y);
   const exact::PlaneWeights weights = oracle_.weights_at(pixel.x, pixel.y);
   // Colours over w are no planes of their own codes.
   const bool is_affine = context_.state.color_interp == ColorInterp::affine;
@@ -207,7 +226,13 @@ void TrianglePiece::add_attributes(Pixel pixel, Entry& entry) const {
     entry.planes.push_back(
         plane_figure(widths_, p, context_.config.local_guard_bits, {value.unrounded[p], value.code[p]}, oracle));
   }
-  if (surface_) entry.surface = surface_figure(context_, *surface_, *surface_oracle_, pixel);
+  if (surface_) entry.surface = surface_figure(context_, *surface_, *surface_oracle_, pixel, rules_);
+}
+
+PlaneSample TrianglePiece::depth_at(int x, int y) const {
+  if (rules_ == StudyRules{}) return plane_at(setup_, kDepthPlane, widths_, x, y);
+  const Interpolated value = interpolate_by_rules(setup_, rules_, widths_, x, y);
+  return {value.unrounded[kDepthPlane], value.code[kDepthPlane]};
 }
 
 std::vector<TriangleStep> TrianglePiece::steps() const {
@@ -222,17 +247,18 @@ std::vector<TriangleStep> TrianglePiece::steps() const {
                         false,
                         {}};
       step.covered = is_covered({x, y});
-      if (step.covered) step.depth = plane_at(setup_, kDepthPlane, widths_, x, y);
+      if (step.covered) step.depth = depth_at(x, y);
       steps.push_back(step);
     }
   return steps;
 }
 
-SampledPiece::SampledPiece(const DrawContext& context, const Widths& widths, const Triangle& triangle)
-    : centre_(context, widths, triangle) {
+SampledPiece::SampledPiece(const DrawContext& context, const Widths& widths, const StudyRules& rules,
+                           const Triangle& triangle)
+    : centre_(context, widths, rules, triangle) {
   if (widths.pixel_samples == 1) return;
   for (std::size_t k = 0; k < static_cast<std::size_t>(widths.pixel_samples); ++k)
-    samples_.push_back(std::make_unique<TrianglePiece>(context, widths, triangle, widths.sample_offset[k]));
+    samples_.push_back(std::make_unique<TrianglePiece>(context, widths, rules, triangle, widths.sample_offset[k]));
 }
 
 const TrianglePiece& SampledPiece::piece(int place) const {

@@ -6,14 +6,15 @@
 
 #include "history.hpp"
 #include "model/pipeline.hpp"
+#include "model/rules.hpp"
 
 namespace halfplane::explain {
 
 /// A triangle that the host side has left, at any pixel: at its centre, or at another place of it.
 class TrianglePiece {
  public:
-  /// `context` must outlive it. `offset`: of the place from the centre, 2^-s pixel.
-  TrianglePiece(const DrawContext& context, const Widths& widths, const Triangle& triangle,
+  /// `context` and `rules` must outlive it. `offset`: of the place from the centre, 2^-s pixel; none by study rules.
+  TrianglePiece(const DrawContext& context, const Widths& widths, const StudyRules& rules, const Triangle& triangle,
                 const SampleOffset& offset = {});
   TrianglePiece(const TrianglePiece&) = delete;  // its surface points into it
   TrianglePiece& operator=(const TrianglePiece&) = delete;
@@ -30,9 +31,11 @@ class TrianglePiece {
   [[nodiscard]] EdgeValues edges_at(Pixel pixel) const;
   [[nodiscard]] bool is_covered(Pixel pixel) const;
   [[nodiscard]] Outcome outcome_at(Pixel pixel, const EdgeValues& edges) const;
+  [[nodiscard]] PlaneSample depth_at(int x, int y) const;
 
   const DrawContext& context_;
   const Widths& widths_;
+  const StudyRules& rules_;
   Triangle triangle_;    ///< moved so that the place lies at the centre
   SampleOffset offset_;  ///< by which it has been
   TriangleSetup setup_;  ///< inside the rectangle that may be drawn
@@ -47,7 +50,7 @@ class TrianglePiece {
 /// A triangle at each sample of a pixel; where a pixel has one, that is its centre.
 class SampledPiece {
  public:
-  SampledPiece(const DrawContext& context, const Widths& widths, const Triangle& triangle);
+  SampledPiece(const DrawContext& context, const Widths& widths, const StudyRules& rules, const Triangle& triangle);
 
   /// An entry at a sample, likewise without operations: its depth is the sample's, its colour from where the pixel is shaded.
   [[nodiscard]] Entry at(Pixel pixel, int sample) const;

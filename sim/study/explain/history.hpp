@@ -16,6 +16,7 @@
 #include "model/golden/exact.hpp"
 #include "model/golden/golden.hpp"
 #include "model/packets.hpp"
+#include "model/rules.hpp"
 #include "model/sample_pattern.hpp"
 #include "model/stages/coarse_raster.hpp"
 #include "model/stages/surface.hpp"
@@ -212,20 +213,21 @@ struct PixelHistory {
   SampleOffset place;  ///< of the sample, from the pixel's upper left corner, 2^-8 pixel
   std::vector<Entry> history;
   Stored model;   ///< what the operations leave
-  Stored engine;  ///< what the functional engine rendered
+  Stored engine;  ///< what the functional engine rendered, or by study rules the scalar one
   GoldenStored golden;
   std::optional<Stored> hardware, rtl;
   std::optional<Resolved> resolved;  ///< with sample 0 of several
 };
 
 struct Explanation {
-  std::vector<PixelHistory> pixels;      ///< in the order asked for, each sample by itself
-  int samples = 1;                       ///< of a pixel
-  PacketStore packets;                   ///< those that a history names
-  std::uint64_t primitives = 0;          ///< of the scene
-  std::string no_hardware;               ///< why the hardware cannot draw the scene; empty: it can
-  std::uint64_t checks = 0;              ///< figures that were held against each other
-  std::vector<std::string> differences;  ///< those that differ, a line each
+  std::vector<PixelHistory> pixels;         ///< in the order asked for, each sample by itself
+  int samples = 1;                          ///< of a pixel
+  FillRule fill_rule = FillRule::top_left;  ///< of the specification
+  PacketStore packets;                      ///< those that a history names
+  std::uint64_t primitives = 0;             ///< of the scene
+  std::string no_hardware;                  ///< why the hardware cannot draw the scene; empty: it can
+  std::uint64_t checks = 0;                 ///< figures that were held against each other
+  std::vector<std::string> differences;     ///< those that differ, a line each
 };
 
 /// The histories of one pixel: one a sample.

@@ -224,7 +224,7 @@ class SpecificationWalk {
       ++piece;
     };
     for (const Triangle& triangle : pieces_) {
-      const SampledPiece at_pixels(context, widths_, triangle);
+      const SampledPiece at_pixels(context, widths_, options_.rules, triangle);
       for_each_near(shape_of({triangle.v[0], triangle.v[1], triangle.v[2]}, 0, s), [&](Pixel pixel, int sample) {
         Entry entry = at_pixels.at(pixel, sample);
         if (options_.wants_steps) entry.steps = at_pixels.steps(sample);

@@ -79,6 +79,7 @@ void fill_rules(Unit& unit) {
   const Scene scene = family_scene(unit, unit.width(24), unit.height(24), 6);
   (void)check_scene(unit, scene, FillRule::offset_point);
   (void)check_scene(unit, scene, FillRule::inclusive);
+  (void)check_scene(unit, scene, FillRule::exclusive);
 }
 
 void full_guard_band(Unit& unit) {
