@@ -156,8 +156,8 @@ std::vector<std::string> difference_lines(const JudgedImage& judged, const std::
     lines.push_back(pixels_heading(is_depth));
     for (const ForeignPixel& pixel : r.first) lines.push_back(pixel_text(pixel, is_depth));
   }
-  lines.push_back("why the model has the first so says `" + explain + " " + std::to_string(r.first_pixel->x) + " " +
-                  std::to_string(r.first_pixel->y) + "`");
+  lines.push_back("`" + explain + " " + std::to_string(r.first_pixel->x) + " " + std::to_string(r.first_pixel->y) +
+                  "` explains the model's first pixel that differs");
   return lines;
 }
 

@@ -271,8 +271,7 @@ int run_frames(const RenderCommand& options, const Config& config) {
       const RenderCommand own = options_of(options, i, frames);
       const auto scene_start = std::chrono::steady_clock::now();
       ObjectCounts objects;
-      const Scene scene =
-          interpolated(prepared(frame.scene(), options, config, &objects), options.study.interpolation);
+      const Scene scene = interpolated(prepared(frame.scene(), options, config, &objects), options.study.interpolation);
       add_work(objects, source);
       const double scene_s = seconds_since(scene_start);
       CycleFacts facts;

@@ -47,7 +47,7 @@ std::uint64_t serpentine_errors(const TriangleSetup& setup, const Triangle& tria
       errors += (value[0] >= 0 && value[1] >= 0 && value[2] >= 0) != oracle.covers(x, y) ? 1 : 0;
       ++samples;
       if (x == (way > 0 ? setup.right : setup.left)) break;
-      for (std::size_t i = 0; i < 3; ++i) value[i] -= way * setup.edge[i].dy;
+      for (std::size_t i = 0; i < 3; ++i) value[i] -= EdgeValue{way} * setup.edge[i].dy;
       x += way;
     }
     for (std::size_t i = 0; i < 3; ++i) value[i] += setup.edge[i].dx;
@@ -173,10 +173,9 @@ void hardware_surfaces(Unit& unit) {
   shaded.count_triangles(24);
   const std::string of_hardware = difference_from_specification(scene, config);
   (void)shaded.require(of_hardware.empty(), "hardware model", scene, of_hardware);
-  const std::string of_engine =
-      difference_from_specification(scene, config, [&unit](const Scene& drawn, const Config& with) {
-        return unit.engine(drawn, with, render_options()).frame;
-      });
+  const std::string of_engine = difference_from_specification(
+      scene, config,
+      [&unit](const Scene& drawn, const Config& with) { return unit.engine(drawn, with, render_options()).frame; });
   (void)shaded.require(of_engine.empty(), "engine", scene, of_engine);
 }
 
