@@ -23,14 +23,21 @@ endif()
 # The run time that all Verilated classes share.
 function(halfplane_verilator_runtime)
   find_package(Threads REQUIRED)
+  set(cosim "${PROJECT_SOURCE_DIR}/rtl_ref/cosim")
   set(sources verilated.cpp verilated_threads.cpp)
   if(HALFPLANE_RTL_COVERAGE)
     list(APPEND sources verilated_cov.cpp)
-  else()
-    list(APPEND sources verilated_fst_c.cpp)
   endif()
   list(TRANSFORM sources PREPEND "${VERILATOR_FOLDER}/include/")
+  list(APPEND sources "${cosim}/verilated_messages.cpp")
+  if(NOT HALFPLANE_RTL_COVERAGE)
+    list(APPEND sources "${cosim}/fst_files.cpp")  # verilated_fst_c.cpp, which looks at its files
+  endif()
   add_library(halfplane_verilator STATIC ${sources})
+  # What failed assertions say goes to the harness, not to stdout.
+  set_source_files_properties("${VERILATOR_FOLDER}/include/verilated.cpp" PROPERTIES
+    COMPILE_OPTIONS "-include;${cosim}/verilated_messages.hpp"
+    COMPILE_DEFINITIONS "VL_PRINTF=halfplane_verilated_print;VL_USER_FATAL")
   # Verilator's headers warn under our flags: their users see them as system headers.
   target_include_directories(halfplane_verilator SYSTEM PUBLIC
     "${VERILATOR_FOLDER}/include" "${VERILATOR_FOLDER}/include/vltstd")

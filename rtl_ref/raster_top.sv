@@ -57,7 +57,9 @@ module raster_top (
     // The counters of one cycle: while hold is high they stay, to be read word by word, and counting goes on
     input  logic                        counters_hold_i,
     output raster_pkg::counter_packet_t counters_o,
-    output logic                        idle_o  // nothing is under way, and all is written to memory
+    // Nothing is under way: every primitive of the cycles before has been drawn, and memory has answered everything. What was
+    // drawn may lie on the chip alone; after a flush all of it is in memory.
+    output logic                        idle_o
 );
 
   localparam int COUNTER = raster_pkg::COUNTER_BITS;

@@ -5,6 +5,8 @@
 // Every input is registered: what lies here at a clock edge is what the design sees in the cycle that begins with it. So
 // no logic hangs on a port, and Verilator settles the design once a cycle, at the edge.
 `include "cosim/taps.svh"
+bind raster_top primitive_stream_checker u_primitive_stream_checker (.*);
+
 module raster_cosim (
     input logic clk_i,
     input logic rst_ni,

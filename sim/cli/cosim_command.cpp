@@ -1,8 +1,5 @@
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
-#include <cstdio>
-#include <cstring>
 #include <iostream>
 #include <memory>
 #include <sstream>
@@ -39,15 +36,6 @@ TraceWindow trace_window(const CosimOptions& options) {
   if (!has_colon || last_error != std::errc() || rest != end || window.first > window.last)
     throw InputError("--trace-cycles: '" + text + "' is no window; give FIRST:LAST, both included, as in 0:999");
   return window;
-}
-
-/// Before a long run: a waveform that cannot be written is an error.
-void require_writable(const std::string& path) {
-  const std::string part = path + ".part";
-  std::FILE* const file = std::fopen(part.c_str(), "wb");
-  if (file == nullptr) throw InputError("cannot write '" + path + "': " + std::strerror(errno));
-  (void)std::fclose(file);
-  (void)std::remove(part.c_str());
 }
 
 /// Runs the whole stimulus, with progress over all of it.
@@ -191,9 +179,7 @@ std::string trace_text(const CosimOptions& options, const DutFactory& factory, c
            with_commas(std::min(window.last, clocks - 1)) + " (cycle c begins at time 2 c)" +
            (options.trace_cycles.empty() && clocks > window.last ? "; --trace-cycles FIRST:LAST takes others" : "");
   if (!factory.has_trace) return "none: this design is built without tracing";
-  if (window.first >= clocks)
-    return "none: the run has " + with_commas(clocks) + " cycles, and --trace-cycles begins behind them";
-  return "none: " + options.trace_path + " cannot be written";
+  return "none: the run has " + with_commas(clocks) + " cycles, and --trace-cycles begins behind them";
 }
 
 int run(const CosimOptions& options) {
@@ -207,7 +193,7 @@ int run(const CosimOptions& options) {
   check_distinct({options.scene, options.json, options.save_path, options.junit_path, options.trace_path});
   check_output(options.junit_path);
   (void)trace_window(options);
-  if (!options.trace_path.empty()) require_writable(options.trace_path);
+  if (!options.trace_path.empty()) (void)PartFile(options.trace_path);  // before a long run
   const DutFactory& factory = dut_for(options, config);
   double load_s = 0;
   std::optional<Scene> scene;
@@ -265,7 +251,8 @@ int run(const CosimOptions& options) {
                            with_commas(session.result.total_cycles_compared()) + " crossings" +
                            (options.random != 0 ? "; and the model's pictures the scalar engine's\n" : "\n"));
   }
-  if (is_whole_run_traced) out << "waveform    " << trace_text(options, factory, session) << '\n';
+  if (is_whole_run_traced && session.trace_failure.empty())
+    out << "waveform    " << trace_text(options, factory, session) << '\n';
   if (!options.junit_path.empty()) write_junit(options, config, session, saved ? &*saved : nullptr, is_partial);
   result["wall_s"] = seconds_since(start);
   if (is_partial) mark_partial(result);
@@ -274,7 +261,9 @@ int run(const CosimOptions& options) {
     print_partial(out);
     return exit_interrupted;
   }
-  return session.failed || is_empty ? exit_mismatch : exit_ok;
+  if (session.failed || is_empty) return exit_mismatch;
+  if (!session.trace_failure.empty()) throw InputError(session.trace_failure);
+  return exit_ok;
 }
 
 }  // namespace

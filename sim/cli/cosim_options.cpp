@@ -176,7 +176,8 @@ void print_finding(std::ostream& out, const SavedFinding& saved) {
   out << "  waveform  "
       << (saved.trace.empty() && is_interrupted()       ? "none: interrupted"
           : saved.trace.empty() && saved.capture == "-" ? "none beside a capture on stdout: add --trace FILE.fst"
-          : saved.trace.empty() ? "none: this design is built without tracing, or the file cannot be written"
+          : !f.trace_failure.empty()                    ? "none: " + f.trace_failure
+          : saved.trace.empty()                         ? "none: this design is built without tracing"
                                 : saved.trace + ", mismatch at time " + std::to_string(2 * f.mismatch.cycle))
       << '\n'
       << "  repeat    " << saved.repeat << '\n';

@@ -25,6 +25,7 @@ struct DutOutputs {
   std::uint32_t stream_valid = 0, stream_ready = 0;  ///< bit i: kStreams[i]
   std::array<const void*, kArrows> packet{};  ///< little-endian bytes of what the RTL sends, rounded up; by Arrow
   const void* counters = nullptr;             ///< CounterPacket, likewise
+  std::string failure;                        ///< message of an assertion that failed at the edge; empty: none has
 };
 
 class Dut {
@@ -50,9 +51,9 @@ class Dut {
   virtual const DutOutputs& evaluate(std::uint32_t stalls, bool beat_ready, bool texture_ready) = 0;
   virtual void clock() = 0;
   [[nodiscard]] virtual bool can_trace() const { return false; }
-  /// Records a waveform from here to close_trace(); false when the design was built without. Closing flushes the file.
-  [[nodiscard]] virtual bool open_trace(const std::string&) { return false; }
-  virtual void close_trace() {}
+  /// Records a waveform from here to close_trace(), if it can. Each: 0, or the errno of what could not be written so far.
+  [[nodiscard]] virtual int open_trace(const std::string&) { return 0; }
+  virtual int close_trace() { return 0; }
 };
 
 /// A design that this program was built with.

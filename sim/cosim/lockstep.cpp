@@ -142,7 +142,7 @@ void Lockstep::start_models(TileMemory memory) {
 }
 
 Lockstep::~Lockstep() {
-  if (is_tracing_) dut_.close_trace();
+  if (waveform_) dut_.close_trace();  // it is not wanted
 }
 
 void Lockstep::begin(const Scene& scene) {
@@ -222,7 +222,7 @@ LockstepResult Lockstep::run(const Scene& scene, const Config& host_config, bool
     if (options_.compares && !result_.mismatch) compare_counters();
     if (!result_.mismatch) report_missing_cycle();
   }
-  for (; result_.mismatch && is_tracing_ && cycle_ <= options_.trace_last; ++cycle_) {  // what the fault leads to
+  for (; result_.mismatch && waveform_ && cycle_ <= options_.trace_last; ++cycle_) {  // what the fault leads to
     (void)dut_.evaluate(0, true, true);
     dut_.clock();
   }
@@ -308,6 +308,7 @@ void Lockstep::step(HostStream& host) {
   }
   const bool texture_ready = textures_.is_ready(cycle_);
   const DutOutputs& out = dut_.evaluate(stalls, beat_ready, texture_ready);
+  if (!out.failure.empty()) fail_protocol("host", out.failure);
 
   if (all_sent_ && cycle_ == snapshot_at_) snapshot_ = words_from(out.counters, counter_bytes_);
 
@@ -476,8 +477,30 @@ void Lockstep::count_use(const DutOutputs& out) {
 
 void Lockstep::trace() {
   if (options_.trace.empty()) return;
-  if (cycle_ == options_.trace_first) is_tracing_ = has_traced_ = dut_.open_trace(options_.trace);
-  if (is_tracing_ && cycle_ == options_.trace_last + 1) dut_.close_trace();
+  if (cycle_ == options_.trace_first && dut_.can_trace()) begin_trace();
+  if (waveform_ && cycle_ == options_.trace_last + 1) (void)finish_trace();
+}
+
+void Lockstep::begin_trace() {
+  try {
+    waveform_.emplace(options_.trace);
+  } catch (const InputError& error) {
+    trace_failure_ = error.what();
+    return;
+  }
+  if (dut_.open_trace(waveform_->name()) != 0) (void)finish_trace();
+}
+
+bool Lockstep::finish_trace() {
+  if (!waveform_) return has_traced_;
+  try {
+    waveform_->finish(dut_.close_trace());
+    has_traced_ = true;
+  } catch (const InputError& error) {
+    trace_failure_ = error.what();
+  }
+  waveform_.reset();
+  return has_traced_;
 }
 
 Mismatch Lockstep::packet_mismatch(Mismatch::Kind kind, Arrow arrow, const std::uint32_t* model,

@@ -20,6 +20,7 @@
 #include "sim/cosim/memory_model.hpp"
 #include "sim/cosim/mismatch.hpp"
 #include "sim/cosim/stalls.hpp"
+#include "sim/show/image/whole_file.hpp"
 
 namespace halfplane {
 
@@ -119,7 +120,10 @@ class Lockstep {
   [[nodiscard]] const TileMemory& memory() const { return memory_.tiles(); }  ///< the RTL's
   [[nodiscard]] CounterPacket counters();                                     ///< the RTL's, of all that was done
   [[nodiscard]] const Counters& host_counters() const { return host_counters_; }
-  [[nodiscard]] bool has_traced() const { return has_traced_; }  ///< the waveform's file was opened
+  /// Ends the waveform, which takes its place. Whether there is one.
+  bool finish_trace();
+  /// Why there is none, one line; empty where none could not be written. The run goes on without.
+  [[nodiscard]] const std::string& trace_failure() const { return trace_failure_; }
 
  private:
   void start_models(TileMemory memory);
@@ -136,6 +140,7 @@ class Lockstep {
   void watch_beat(const DutOutputs& out, std::uint32_t stalls, bool taken);
   void count_use(const DutOutputs& out);
   void trace();
+  void begin_trace();
   [[nodiscard]] bool has_finished() const;
   void report_missing();
   void explain_standstill(Mismatch& mismatch);
@@ -173,7 +178,9 @@ class Lockstep {
   bool has_primitive_ = false, has_line_ = false, all_sent_ = false, has_answer_ = false, has_held_ = false;
   bool has_texel_ = false;
   bool is_first_ = true;  // no primitive since reset
-  bool is_tracing_ = false, has_traced_ = false, was_idle_ = false, drains_ = false;
+  bool has_traced_ = false, was_idle_ = false, drains_ = false;
+  std::optional<PartFile> waveform_;  // while it is recorded
+  std::string trace_failure_;
   std::uint64_t cycle_ = 0;           // since reset
   std::uint64_t first_taken_ = 0;     // cycle of the first primitive that counts
   std::uint64_t tile_cycles_ = 0;     // since then

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <memory>
 #include <utility>
 
@@ -70,14 +69,15 @@ Session run_session(Dut& dut, const Config& config, const LockstepOptions& optio
     if (is_drawn && compares_bins(session.config)) second = next_frame(*scene, random.next());
     if (!run(std::move(*scene), true) || (second && !run(std::move(*second), false))) break;
   }
-  session.has_trace = lockstep.has_traced();
+  session.has_trace = lockstep.finish_trace();
+  session.trace_failure = lockstep.trace_failure();
   session.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return session;
 }
 
 Finding investigate(Dut& dut, const Config& config, const LockstepOptions& options, const Scene& failed,
                     const Mismatch& mismatch, const std::string& trace, const ReduceOptions& reducing) {
-  Finding finding{failed, options, mismatch, {}};
+  Finding finding{failed, options, mismatch, {}, false, false, {}};
   try {
     finding.reduced = reduce(failed, config, options, lockstep_test(dut, config), reducing);
   } catch (const Interrupted&) {
@@ -90,17 +90,14 @@ Finding investigate(Dut& dut, const Config& config, const LockstepOptions& optio
   if (trace.empty() || !dut.can_trace()) return finding;
   LockstepOptions traced = finding.lockstep;
   traced.progress = {};
-  traced.trace = trace + ".part";
+  traced.trace = trace;
   traced.trace_first = finding.mismatch.cycle - std::min(finding.mismatch.cycle, kTraceBefore);
   traced.trace_last = finding.mismatch.cycle + kTraceAfter;
   if (is_interrupted() && traced.trace_last > kQuickTrace) return finding;
-  const HalfWrittenFile half_written(traced.trace);
-  {
-    Lockstep rerun(dut, config, traced);
-    (void)rerun.run(finding.scene);
-    finding.has_trace = rerun.has_traced();
-  }
-  finding.has_trace = finding.has_trace && std::rename(traced.trace.c_str(), trace.c_str()) == 0;
+  Lockstep rerun(dut, config, traced);
+  (void)rerun.run(finding.scene);
+  finding.has_trace = rerun.finish_trace();
+  finding.trace_failure = rerun.trace_failure();
   return finding;
 }
 

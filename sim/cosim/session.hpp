@@ -30,8 +30,9 @@ struct Session {
   Config config;                ///< with which the last scene was sent
   Counters counters;            ///< the host's, of that scene
   std::uint64_t scenes = 0;
-  bool has_trace = false;  ///< `options.trace` has been written
-  double seconds = 0;      ///< the model's work included
+  bool has_trace = false;     ///< `options.trace` has been written
+  std::string trace_failure;  ///< why it could not be
+  double seconds = 0;         ///< the model's work included
 };
 
 /// Runs all scenes without a reset between them, up to the first mismatch. With `holds_model` the model
@@ -49,6 +50,7 @@ struct Finding {
   std::optional<Reduced> reduced;  ///< none: after a reset the scene alone does not fail, or nobody had the time to see
   bool is_stopped = false;         ///< by reducing.progress, before that was known
   bool has_trace = false;          ///< `trace` has been written
+  std::string trace_failure;       ///< why it could not be
 };
 
 /// Reduces, and writes, whole or not at all, the waveform around the mismatch to `trace` (empty: none, likewise when the design has none).

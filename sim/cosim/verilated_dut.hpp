@@ -11,6 +11,8 @@
 #include <string>
 #include <type_traits>
 
+#include "rtl_ref/cosim/fst_files.hpp"
+#include "rtl_ref/cosim/verilated_messages.hpp"
 #include "sim/cosim/dut.hpp"
 
 namespace halfplane {
@@ -22,6 +24,7 @@ class VerilatedDut final : public Dut {
   explicit VerilatedDut(std::uint64_t seed = 1) { build(seed, 0); }
   ~VerilatedDut() override {
     VerilatedDut::close_trace();
+    enter_context();
     if (top_) top_->final();
     write_coverage();
   }
@@ -60,8 +63,11 @@ class VerilatedDut final : public Dut {
     top_->beat_ready_i = beat_ready;
     top_->texture_ready_i = texture_ready;
     top_->clk_i = 1;
+    enter_context();
     top_->eval();
     dump();
+    out_.failure.clear();
+    if (context_->gotError()) note_failure();
     out_.fired = top_->fire_o;
     out_.primitive_ready = top_->primitive_ready_o != 0;
     out_.line_ready = top_->line_ready_o != 0;
@@ -79,18 +85,25 @@ class VerilatedDut final : public Dut {
   void clock() override { fall(); }
 
   [[nodiscard]] bool can_trace() const override { return !std::is_void_v<Trace>; }
-  [[nodiscard]] bool open_trace([[maybe_unused]] const std::string& path) override {
+  [[nodiscard]] int open_trace([[maybe_unused]] const std::string& path) override {
     if constexpr (!std::is_void_v<Trace>) {
       close_trace();
+      begin_fst(path.substr(0, path.find_last_of('/') + 1));
       trace_ = std::make_unique<TraceFile>();
       top_->trace(&trace_->fst, 99);
       trace_->fst.open(path.c_str());
-      return trace_->fst.isOpen();
+      return fst_error();
     }
-    return false;
+    return 0;
   }
-  void close_trace() override {
-    if (trace_) trace_->fst.close();
+  int close_trace() override {
+    if constexpr (!std::is_void_v<Trace>) {
+      if (!trace_) return 0;
+      if (trace_->fst.isOpen()) trace_->fst.close();
+      trace_.reset();
+      return fst_error();
+    }
+    return 0;
   }
 
  private:
@@ -104,14 +117,16 @@ class VerilatedDut final : public Dut {
   void build(std::uint64_t seed, std::uint16_t mutant) {
     close_trace();
     write_coverage();
+    enter_context();
     top_.reset();
-    trace_.reset();
+    (void)take_verilated_text();  // of the one before
     context_ = std::make_unique<VerilatedContext>();
 #ifdef HALFPLANE_RTL_COVERAGE
     context_->randReset(0);  // otherwise the reset itself would toggle half of the bits
 #else
     context_->randReset(2);  // random start values: a register that needs a reset and has none shows
 #endif
+    context_->fatalOnError(false);  // a failed assertion is reported, and ends nothing
     context_->randSeed(static_cast<int>(seed % 0x7fffffff + 1));
     if constexpr (!std::is_void_v<Trace>) context_->traceEverOn(true);
     top_ = std::make_unique<V>(context_.get());
@@ -152,6 +167,17 @@ class VerilatedDut final : public Dut {
   template <Arrow A, class Port>
   void connect([[maybe_unused]] Port port) {
     if constexpr (is_compared(A)) out_.packet[index(A)] = port(*top_);
+  }
+
+  /// Verilator keeps one context a thread, which may be another instance's, or that of one which is gone: failed assertions
+  /// are noted there, and scopes are given back to it.
+  void enter_context() {
+    if (context_) Verilated::threadContextp(context_.get());
+  }
+
+  void note_failure() {
+    out_.failure = assertion_message(take_verilated_text());
+    context_->gotError(false);
   }
 
   void fall() {

@@ -151,8 +151,37 @@ TEST_F(RtlCommands, TheWindowOfAWaveformIsChecked) {
     expect_refused({"cosim", "triangle", "--trace", "w.fst", "--trace-cycles", window}, "--trace-cycles: ");
   expect_refused({"cosim", "triangle", "--trace-cycles", "0:9"}, "add --trace FILE.fst");
   expect_refused({"cosim", "triangle", "--trace", "-"}, "a waveform cannot go to stdout");
-  std::filesystem::create_directory(folder_ / "taken.fst.part");  // for root, too, nothing can be written there
-  expect_refused({"cosim", "triangle", "--trace", "taken.fst"}, "cannot write 'taken.fst'");
+  // For root, too, nothing can be written there.
+  expect_refused({"cosim", "triangle", "--trace", "/proc/self/w.fst"}, "cannot write '/proc/self/w.fst'");
+}
+
+// No file may grow beyond so many bytes: every write of the waveform's writer that a full disk can refuse is refused at one of
+// these.
+TEST_F(RtlCommands, AWaveformThatTheDiskHasNoRoomForIsOneLineAndNoFile) {
+  Surroundings full;
+  for (const std::size_t bytes : {1'000, 5'000, 20'000, 100'000}) {
+    full.file_bytes = bytes;
+    expect_refused({"cosim", "triangle", "--size", "32x32", "--trace", "w.fst", "--quiet"}, "cannot write 'w.fst': ", 2,
+                   full);
+  }
+  full.file_bytes = 10'000'000;
+  EXPECT_EQ(run({"cosim", "triangle", "--size", "32x32", "--trace", "w.fst", "--quiet"}, full).status, 0);
+  const Bytes whole = read("w.fst");
+  EXPECT_GT(whole.size(), 10'000u);
+  full.file_bytes = 20'000;
+  EXPECT_EQ(run({"cosim", "triangle", "--size", "32x32", "--trace", "w.fst", "--quiet"}, full).status, 2);
+  EXPECT_EQ(read("w.fst"), whole) << "the file of before stays";
+  EXPECT_EQ(listing().size(), 1u);
+}
+
+TEST_F(RtlCommands, AMismatchIsWorthMoreThanItsWaveform) {
+  Surroundings full;
+  full.file_bytes = 20'000;
+  const Outcome outcome = run({"cosim", "triangle", "--size", "32x32", "--mutant", "11", "--trace", "w.fst"}, full);
+  EXPECT_EQ(outcome.status, 1) << outcome.err;
+  EXPECT_NE(outcome.out.find("MISMATCH in "), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("waveform  none: cannot write 'w.fst': "), std::string::npos) << outcome.out;
+  EXPECT_FALSE(exists("w.fst"));
 }
 
 TEST_F(RtlCommands, EveryCommandPrintedToRepeatRepeatsWhenPasted) {

@@ -10,6 +10,7 @@ foreach(file IN ITEMS
     share/fish/vendor_completions.d/halfplane.fish
     share/halfplane/rtl_ref/raster_top.sv
     share/halfplane/rtl_ref/raster_pkg.sv
+    share/halfplane/rtl_ref/primitive_stream_checker.sv
     share/halfplane/rtl_ref/stages/cull.sv
     share/halfplane/rtl_ref/area/gates.py
     share/halfplane/rtl_ref/presets/tiny/raster_pkg.sv

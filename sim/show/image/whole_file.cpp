@@ -13,7 +13,6 @@
 #include <system_error>
 
 #include "model/config.hpp"
-#include "sim/interrupt.hpp"
 
 namespace halfplane {
 namespace {
@@ -49,35 +48,48 @@ std::FILE* open_temporary(const fs::path& folder, fs::path& name) {
 
 }  // namespace
 
-void write_whole_file(const std::string& path, std::span<const std::uint8_t> bytes) {
+PartFile::PartFile(const std::string& path) : path_(path), target_(path) {
   if (path.empty()) throw InputError("cannot write to an empty file name; give a file");
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (fs::is_directory(status)) fail(path, EISDIR);
+  if (fs::exists(status)) target_ = fs::canonical(path, error).string();
+  if (error && fs::exists(status)) fail(path, error.value());
+  fs::path temporary;
+  std::FILE* file = open_temporary(fs::path(target_).parent_path(), temporary);
+  if (file == nullptr) fail(path, errno);
+  name_ = temporary.string();
+  half_written_.emplace(name_);
+  (void)std::fclose(file);
+}
+
+PartFile::~PartFile() {
+  if (half_written_) std::remove(name_.c_str());
+}
+
+void PartFile::finish(int error) {
+  std::error_code ignored;
+  const fs::file_status status = fs::status(target_, ignored);
+  if (error == 0 && fs::exists(status)) fs::permissions(name_, status.permissions(), ignored);  // as they were
+  if (error == 0 && std::rename(name_.c_str(), target_.c_str()) != 0) error = errno;
+  if (error != 0) std::remove(name_.c_str());
+  half_written_.reset();
+  if (error != 0) fail(path_, error);
+}
+
+void write_whole_file(const std::string& path, std::span<const std::uint8_t> bytes) {
   if (path == "-" && isatty(STDOUT_FILENO) != 0 && std::find(bytes.begin(), bytes.end(), 0) != bytes.end())
     throw InputError("-: this file is no text, and stdout is a terminal; give a pipe, or a file in place of -");
   if (path == "-") return write_stdout(bytes, "-", "give a place that takes it, or a file in place of -");
-  fs::path target(path);
   std::error_code error;
-  const fs::file_status status = fs::status(target, error);
-  if (fs::is_directory(status)) fail(path, EISDIR);
-  if (fs::exists(status) && !fs::is_regular_file(status)) {  // renaming would replace the device itself
-    std::FILE* device = std::fopen(target.c_str(), "wb");
-    if (device == nullptr) fail(path, errno);
-    if (const int reason = write_all(device, bytes)) fail(path, reason);
-    return;
-  }
-  if (fs::exists(status)) target = fs::canonical(target, error);
-  if (error && fs::exists(status)) fail(path, error.value());
-
-  fs::path temporary;
-  std::FILE* file = open_temporary(target.parent_path(), temporary);
-  if (file == nullptr) fail(path, errno);
-  const HalfWrittenFile half_written(temporary.string());
-  int reason = write_all(file, bytes);
-  if (reason == 0 && fs::exists(status)) fs::permissions(temporary, status.permissions(), error);  // as they were
-  if (reason == 0 && std::rename(temporary.c_str(), target.c_str()) != 0) reason = errno;
-  if (reason != 0) {
-    std::remove(temporary.c_str());
-    fail(path, reason);
-  }
+  const fs::file_status status = fs::status(path, error);
+  const bool is_device = fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+  std::optional<PartFile> part;  // of a device there is none: renaming would replace it
+  if (!is_device) part.emplace(path);
+  std::FILE* file = std::fopen(part ? part->name().c_str() : path.c_str(), "wb");
+  const int reason = file == nullptr ? errno : write_all(file, bytes);
+  if (part) return part->finish(reason);
+  if (reason != 0) fail(path, reason);
 }
 
 bool is_stdout_unread() {

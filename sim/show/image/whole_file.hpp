@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
+
+#include "sim/interrupt.hpp"
 
 namespace halfplane {
 
@@ -11,6 +14,25 @@ namespace halfplane {
 /// old file or the new one. A symbolic link keeps pointing at its target; a device or pipe is written directly; "-" is
 /// stdout. Throws InputError naming path and reason; nothing half-written is left.
 void write_whole_file(const std::string& path, std::span<const std::uint8_t> bytes);
+
+/// A file that other code writes, under a temporary name in the same folder until it is whole. While it lives, a signal that
+/// ends the program removes it.
+class PartFile {
+ public:
+  /// Creates the temporary file. Throws InputError naming path and reason.
+  explicit PartFile(const std::string& path);
+  ~PartFile();
+  PartFile(const PartFile&) = delete;
+  PartFile& operator=(const PartFile&) = delete;
+
+  [[nodiscard]] const std::string& name() const { return name_; }  ///< the temporary one
+  /// It is whole: it takes its place. With `error`, an errno of writing it, or where that fails, throws InputError.
+  void finish(int error = 0);
+
+ private:
+  std::string path_, target_, name_;
+  std::optional<HalfWrittenFile> half_written_;
+};
 
 /// Writes to stdout and flushes. A reader that went away is no error: std::cout stays bad, for main() to end silently.
 /// Throws InputError for any other failure, beginning with `what` and ending with `mend`.
