@@ -112,7 +112,7 @@ int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   catch_signals();
-  set_program_word(argv[0]);
+  set_command_line(argc, argv);
   try {
     const int status = run(argc, argv);
     if (!std::cout.flush() && is_stdout_unread()) return status == exit_ok ? int{exit_unread} : status;

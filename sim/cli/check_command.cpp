@@ -80,7 +80,7 @@ Json judgement_json(const vectors::JudgedStage& stage, const vectors::Judgement&
 }
 
 void write_check_junit(const CheckOptions& options, const vectors::VectorFile& file,
-                       const vectors::Judgement& judgement, double seconds) {
+                       const vectors::Judgement& judgement, const Json& result) {
   if (options.junit.empty()) return;
   std::vector<JunitCase> cases;
   for (std::size_t p = 0; p < file.stage->out.size(); ++p) {
@@ -96,7 +96,8 @@ void write_check_junit(const CheckOptions& options, const vectors::VectorFile& f
       for (const auto& field : judgement.first->fields) one.details += field_text(field) + "\n";
     }
   }
-  const std::string xml = junit_xml("check." + options.stage, cases, seconds);
+  const std::string xml = junit_xml("check." + options.stage, cases, result["wall_s"].get<double>(),
+                                    junit_properties(result, &file.config));
   write_whole_file(options.junit, {reinterpret_cast<const std::uint8_t*>(xml.data()), xml.size()});
 }
 
@@ -134,12 +135,13 @@ int run(const CheckOptions& options) {
     throw InputError(options.file + ": " + error.what());
   }
   Json result = result_head("check", options, file.config);
+  result["scene"] = file.source.text;
+  result["seed"] = file.source.seed ? Json(*file.source.seed) : Json(nullptr);
   result["stage"] = options.stage;
   result["file"] = options.file;
   result["packets"] = judgement_json(*file.stage, judgement);
-  const double seconds = seconds_since(start);
-  result["wall_s"] = seconds;
-  write_check_junit(options, file, judgement, seconds);
+  result["wall_s"] = seconds_since(start);
+  write_check_junit(options, file, judgement, result);
   write_json(options, result);
   print_judgement(human(options), file, judgement);
   return judgement.first || judgement.total_compared() == 0 ? exit_mismatch : exit_ok;

@@ -155,7 +155,7 @@ void print_equal(std::ostream& out, const CosimOptions& options, const Config& c
 
 /// The result as JUnit: of a failure what the terminal says, paths and the repeat command too.
 void write_junit(const CosimOptions& options, const Config& config, const Session& session, const SavedFinding* saved,
-                 bool is_partial) {
+                 const std::vector<JunitProperty>& properties) {
   std::vector<JunitCase> cases;
   if (saved != nullptr) {
     std::ostringstream report;
@@ -166,7 +166,7 @@ void write_junit(const CosimOptions& options, const Config& config, const Sessio
   } else {
     cases = junit_cases(session.result);
   }
-  const std::string xml = junit_xml("cosim." + label(config), cases, session.seconds, is_partial);
+  const std::string xml = junit_xml("cosim." + label(config), cases, session.seconds, properties);
   write_whole_file(options.junit_path, {reinterpret_cast<const std::uint8_t*>(xml.data()), xml.size()});
 }
 
@@ -253,7 +253,8 @@ int run(const CosimOptions& options) {
   }
   if (is_whole_run_traced && session.trace_failure.empty())
     out << "waveform    " << trace_text(options, factory, session) << '\n';
-  if (!options.junit_path.empty()) write_junit(options, config, session, saved ? &*saved : nullptr, is_partial);
+  if (!options.junit_path.empty())
+    write_junit(options, config, session, saved ? &*saved : nullptr, junit_properties(result, &config, is_partial));
   result["wall_s"] = seconds_since(start);
   if (is_partial) mark_partial(result);
   write_json(options, result);

@@ -40,9 +40,10 @@ std::function<void(std::string)> claim_stdout(const std::string& option) {
   };
 }
 
-std::string& called_as() {
-  static std::string word = "halfplane";
-  return word;
+/// Each as a shell takes it, the program first.
+std::vector<std::string>& typed_words() {
+  static std::vector<std::string> words{"halfplane"};
+  return words;
 }
 
 // Decimal, as it is printed; CLI11 would take -1, 010 and what is too large for another number.
@@ -326,8 +327,10 @@ std::ostream& human(const CommonOptions& options) {
 
 void write_json(const CommonOptions& options, const Json& result) {
   if (options.json.empty()) return;
+  Json whole = result;
+  whole["command"] = typed_command();
   // Names of files may be any bytes, JSON is UTF-8.
-  const std::string text = result.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  const std::string text = whole.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   const std::span bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
   if (options.json == "-") {
     write_stdout(bytes, "--json", "give a place that takes it, or --json=FILE");
@@ -379,10 +382,27 @@ std::string quoted(const std::string& word) {
   return text + "'";
 }
 
-const std::string& program_word() { return called_as(); }
+const std::string& program_word() { return typed_words().front(); }
 
-void set_program_word(const char* name) {
-  if (name != nullptr && *name != 0) called_as() = quoted(name);
+void set_command_line(int argc, char** argv) {
+  if (argc > 0 && *argv[0] != 0) typed_words() = {quoted(argv[0])};
+  for (int i = 1; i < argc; ++i) typed_words().push_back(quoted(argv[i]));
+}
+
+std::string typed_command() {
+  std::string text;
+  for (const std::string& word : typed_words()) text += (text.empty() ? "" : " ") + word;
+  return text;
+}
+
+std::vector<JunitProperty> junit_properties(const Json& result, const Config* config, bool is_partial) {
+  std::vector<JunitProperty> properties;
+  if (result["scene"].is_string()) properties.push_back({"scene", result["scene"].get<std::string>()});
+  if (!result["seed"].is_null()) properties.push_back({"seed", result["seed"].dump()});
+  if (config != nullptr) properties.push_back({"config", config_arguments(*config).substr(1)});
+  properties.push_back({"command", typed_command()});
+  if (is_partial) properties.push_back({"partial", "true"});
+  return properties;
 }
 
 std::string config_arguments(const Config& config) {

@@ -13,6 +13,7 @@
 #include "model/config.hpp"
 #include "model/engines/render.hpp"
 #include "model/scene.hpp"
+#include "sim/cosim/junit.hpp"
 #include "sim/scene/load.hpp"
 #include "sim/scene/object_cull.hpp"
 
@@ -134,7 +135,7 @@ void add_work(ObjectCounts& objects, const MovingScene& source);
 /// The stream for human text: stdout, or stderr when a result or a file is on stdout; a null stream with --quiet.
 [[nodiscard]] std::ostream& human(const CommonOptions& options);
 
-/// Writes the result where --json says. Call it before the human text: if it fails, its one line stands alone.
+/// Writes the result where --json says, with `command`, which gives it again. Call it before the human text: if it fails, its one line stands alone.
 void write_json(const CommonOptions& options, const Json& result);
 
 /// Seconds since `start`.
@@ -162,8 +163,15 @@ void check_distinct(const std::vector<std::string>& paths);
 /// The program as it was called, as a shell takes it: the first word of every command that is printed to be repeated.
 [[nodiscard]] const std::string& program_word();
 
-/// To be called once, with argv[0] (null: "halfplane").
-void set_program_word(const char* name);
+/// To be called once, with what main() got.
+void set_command_line(int argc, char** argv);
+
+/// The command as it was typed, as a shell takes it: in the same folder, and with the same stdin, it gives the same result.
+[[nodiscard]] std::string typed_command();
+
+/// Scene and seed of a result, the configuration (null: many), and the command that repeats it, for JUnit.
+[[nodiscard]] std::vector<JunitProperty> junit_properties(const Json& result, const Config* config,
+                                                          bool is_partial = false);
 
 /// " --config PRESET --set KEY=VALUE ..." for exactly this configuration, as a shell takes it.
 [[nodiscard]] std::string config_arguments(const Config& config);

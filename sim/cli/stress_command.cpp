@@ -147,7 +147,8 @@ void print_failure(std::ostream& out, const Json& row, const stress::Failure& fa
         << config_arguments(failure.place.config) << '\n';
 }
 
-std::string junit(const std::vector<stress::CaseResult>& results, double seconds, bool is_partial) {
+std::string junit(const std::vector<stress::CaseResult>& results, double seconds, bool is_partial,
+                  const std::vector<JunitProperty>& properties) {
   std::vector<JunitCase> rows;
   for (const stress::CaseResult& r : results) {
     JunitCase row{std::string(r.about->name), "", "", ""};
@@ -159,7 +160,7 @@ std::string junit(const std::vector<stress::CaseResult>& results, double seconds
       row.output = with_commas(r.tally.checks) + " checks; " + worst_text(r);
     rows.push_back(std::move(row));
   }
-  return junit_xml("stress", rows, seconds, is_partial);
+  return junit_xml("stress", rows, seconds, properties);
 }
 
 struct Totals {
@@ -248,7 +249,8 @@ int run(const StressCommand& options) {
   result["wall_s"] = wall_s;
   if (is_partial) mark_partial(result);
   if (!options.junit_path.empty()) {
-    const std::string xml = junit(results, wall_s, is_partial);
+    const std::string xml = junit(results, wall_s, is_partial,
+                                  junit_properties(result, options.has_config ? &config : nullptr, is_partial));
     write_whole_file(options.junit_path, {reinterpret_cast<const std::uint8_t*>(xml.data()), xml.size()});
   }
   write_json(options, result);

@@ -34,9 +34,8 @@ std::string ports_text(const std::vector<vectors::Port>& ports, const std::vecto
   return text.empty() ? "nothing" : text;
 }
 
-std::string vector_source(const VectorsOptions& options) {
-  return options.random == 0 ? options.scene
-                             : "random " + std::to_string(options.random) + " seed " + std::to_string(options.seed);
+vectors::VectorSource vector_source(const VectorsOptions& options) {
+  return {options.random == 0 ? options.scene : "random " + std::to_string(options.random), options.seed};
 }
 
 int run(const VectorsOptions& options) {
@@ -74,8 +73,8 @@ int run(const VectorsOptions& options) {
   result["wall_s"] = seconds_since(start);
   write_json(options, result);
   std::ostream& out = human(options);
-  out << options.stage << " of " << vector_source(options) << ", " << label(config)
-      << (options.random != 0 ? "" : ", seed " + std::to_string(options.seed)) << '\n'
+  out << options.stage << " of " << vector_source(options).text << ", " << label(config) << ", seed " << options.seed
+      << '\n'
       << "in   " << ports_text(stage.in, packets.in) << '\n'
       << "out  " << ports_text(stage.out, packets.out) << '\n';
   for (const auto& [path, bytes] : written) out << path << "  " << with_commas(bytes) << " bytes\n";

@@ -30,7 +30,8 @@ std::string escaped(const std::string& text) {
 
 }  // namespace
 
-std::string junit_xml(const std::string& suite, const std::vector<JunitCase>& cases, double seconds, bool is_partial) {
+std::string junit_xml(const std::string& suite, const std::vector<JunitCase>& cases, double seconds,
+                      const std::vector<JunitProperty>& properties) {
   const auto failures =
       std::count_if(cases.begin(), cases.end(), [](const JunitCase& c) { return !c.failure.empty(); });
   const auto skipped = std::count_if(cases.begin(), cases.end(), [](const JunitCase& c) { return !c.skipped.empty(); });
@@ -41,7 +42,10 @@ std::string junit_xml(const std::string& suite, const std::vector<JunitCase>& ca
                     "\" tests=\"" + std::to_string(cases.size()) + "\" failures=\"" + std::to_string(failures) +
                     "\" errors=\"0\"" + (skipped > 0 ? " skipped=\"" + std::to_string(skipped) + "\"" : std::string()) +
                     " time=\"" + time + "\">\n";
-  if (is_partial) xml += "    <properties><property name=\"partial\" value=\"true\"/></properties>\n";
+  if (!properties.empty()) xml += "    <properties>\n";
+  for (const JunitProperty& p : properties)
+    xml += "      <property name=\"" + escaped(p.name) + "\" value=\"" + escaped(p.value) + "\"/>\n";
+  if (!properties.empty()) xml += "    </properties>\n";
   for (const JunitCase& c : cases) {
     xml += "    <testcase classname=\"" + name + "\" name=\"" + escaped(c.name) + "\"";
     if (c.failure.empty() && c.output.empty() && c.skipped.empty()) {

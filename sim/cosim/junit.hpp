@@ -14,8 +14,13 @@ struct JunitCase {
   std::string skipped{};  ///< why it was not run; empty: it was
 };
 
-/// One test suite as XML; `is_partial`: it was ended early, which a property says. Bytes that XML cannot hold are replaced.
+/// What holds for the whole suite.
+struct JunitProperty {
+  std::string name, value;
+};
+
+/// One test suite as XML. Bytes that XML cannot hold are replaced.
 [[nodiscard]] std::string junit_xml(const std::string& suite, const std::vector<JunitCase>& cases, double seconds,
-                                    bool is_partial = false);
+                                    const std::vector<JunitProperty>& properties = {});
 
 }  // namespace halfplane

@@ -10,6 +10,7 @@
 #include <functional>
 #include <iosfwd>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,14 +28,21 @@ struct WrittenFile {
   std::size_t bytes = 0;
 };
 
-/// Replays the stage into `path`, a file or for hex a folder, whole or not at all. `source`: for people.
+/// What the packets are of: a scene, or "random N".
+struct VectorSource {
+  std::string text;
+  std::optional<std::uint64_t> seed;  ///< none: an older file, which does not say
+};
+
+/// Replays the stage into `path`, a file or for hex a folder, whole or not at all.
 std::vector<WrittenFile> write_vectors(const std::string& path, Format format, const JudgedStage& stage,
-                                       const Config& config, const StagePackets& packets, const std::string& source);
+                                       const Config& config, const StagePackets& packets, const VectorSource& source);
 
 /// What a file holds.
 struct VectorFile {
   const JudgedStage* stage = nullptr;
   Config config;
+  VectorSource source;
   StagePackets packets;
 };
 

@@ -188,6 +188,8 @@ void read_header(Reader& reader, const Json& header, const SourceLine& at) {
   for (const auto& [key, value] : header["config"].items())
     config[key] = value.is_string() ? value.get<std::string>() : value.dump();
   reader.begin(header["stage"].get<std::string>(), config, at);
+  if (header.contains("source") && header["source"].is_string()) reader.file_.source.text = header["source"];
+  if (header.contains("seed") && header["seed"].is_number_unsigned()) reader.file_.source.seed = header["seed"];
 }
 
 void read_jsonl_packet(Reader& reader, const Json& line, const SourceLine& at) {
@@ -239,9 +241,23 @@ void read_csv_row(Reader& reader, const std::vector<std::string_view>& cells, co
   reader.add(place, values, at);
 }
 
+/// Of the first row: halfplane.vectors/1,STAGE,SOURCE,seed=N.
+VectorSource csv_source(const std::vector<std::string_view>& cells) {
+  VectorSource source;
+  if (cells.size() > 2) source.text = cells[2];
+  constexpr std::string_view kSeed = "seed=";
+  if (cells.size() < 4 || !cells.back().starts_with(kSeed)) return source;
+  const char* const end = cells.back().data() + cells.back().size();
+  std::uint64_t seed = 0;
+  if (std::from_chars(cells.back().data() + kSeed.size(), end, seed) == std::from_chars_result{end, std::errc()})
+    source.seed = seed;
+  return source;
+}
+
 VectorFile read_csv(std::istream& in, const std::string& path) {
   Reader reader;
   std::string text, stage;
+  VectorSource source;
   for (std::size_t number = 1; next_line(in, text, {path, number}); ++number) {
     const SourceLine at{path, number};
     if (text.ends_with('\r')) text.pop_back();
@@ -251,6 +267,7 @@ VectorFile read_csv(std::istream& in, const std::string& path) {
       if (cells[0] != "halfplane.vectors/1" || cells.size() < 2)
         at.fail("these are no vectors: the first line must begin with halfplane.vectors/1,STAGE");
       stage = cells[1];
+      source = csv_source(cells);
     } else if (cells[0] == "config") {
       if (reader.has_begun()) at.fail("a second line begins with config; a file has one");
       std::map<std::string, std::string> config;
@@ -260,6 +277,7 @@ VectorFile read_csv(std::istream& in, const std::string& path) {
         config[std::string(cells[i].substr(0, equals))] = cells[i].substr(equals + 1);
       }
       reader.begin(stage, config, at);
+      reader.file_.source = source;
     } else if (cells[0] != "fields") {
       if (!reader.has_begun()) at.fail("a packet comes before the line that begins with config");
       read_csv_row(reader, cells, at);

@@ -28,10 +28,11 @@ Json ports_json(const std::vector<Port>& ports, const Widths& widths) {
   return list;
 }
 
-Json header_json(const JudgedStage& stage, const Config& config, const Widths& widths, const std::string& source) {
+Json header_json(const JudgedStage& stage, const Config& config, const Widths& widths, const VectorSource& source) {
   return {{"schema", kSchema},
           {"stage", info(stage.stage).name},
-          {"source", source},
+          {"source", source.text},
+          {"seed", source.seed ? Json(*source.seed) : Json(nullptr)},
           {"config", config_json(config)},
           {"in", ports_json(stage.in, widths)},
           {"out", ports_json(stage.out, widths)}};
@@ -48,7 +49,7 @@ struct PortFields {
 };
 
 std::string jsonl_text(const JudgedStage& stage, const Config& config, const StagePackets& packets,
-                       const std::string& source) {
+                       const VectorSource& source) {
   const Widths widths = derive_widths(config);
   const PortFields fields(stage, widths);
   std::string text =
@@ -71,9 +72,10 @@ std::string jsonl_text(const JudgedStage& stage, const Config& config, const Sta
 }
 
 std::string csv_text(const JudgedStage& stage, const Config& config, const StagePackets& packets,
-                     const std::string& source) {
+                     const VectorSource& source) {
   const Widths widths = derive_widths(config);
-  std::string text = std::string(kSchema) + "," + std::string(info(stage.stage).name) + "," + source +
+  std::string text = std::string(kSchema) + "," + std::string(info(stage.stage).name) + "," + source.text +
+                     (source.seed ? ",seed=" + std::to_string(*source.seed) : std::string()) +
                      "\nconfig,preset=" + config.preset;
   for (const Setting& setting : settings()) text += "," + std::string(setting.key) + "=" + get(config, setting);
   text += '\n';
@@ -124,7 +126,7 @@ std::string hex_text(const Port& port, const PacketList& list, const Widths& wid
 }  // namespace
 
 std::vector<WrittenFile> write_vectors(const std::string& path, Format format, const JudgedStage& stage,
-                                       const Config& config, const StagePackets& packets, const std::string& source) {
+                                       const Config& config, const StagePackets& packets, const VectorSource& source) {
   if (format == Format::jsonl) return {write_text(path, jsonl_text(stage, config, packets, source))};
   if (format == Format::csv) return {write_text(path, csv_text(stage, config, packets, source))};
   const Widths widths = derive_widths(config);

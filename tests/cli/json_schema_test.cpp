@@ -176,7 +176,7 @@ TEST_F(JsonSchema, EveryCommandWithAResultHasASchema) {
       ASSERT_FALSE(schema.is_discarded()) << command;
       EXPECT_EQ(schema["properties"]["schema"]["const"], "halfplane." + command + "/1");
       EXPECT_EQ(schema["additionalProperties"], true) << command << ": keys may be added";
-      for (const char* key : {"schema", "config", "scene", "seed", "wall_s"})
+      for (const char* key : {"schema", "config", "scene", "seed", "wall_s", "command"})
         EXPECT_NE(std::find(schema["required"].begin(), schema["required"].end(), key), schema["required"].end())
             << command << " " << key;
     }

@@ -125,7 +125,7 @@ TEST(Vectors, WhatAStageGaveIsJudgedEqualWhateverTheFile) {
       for (const Format format : {Format::jsonl, Format::csv, Format::hex}) {
         if (config.preset != "tiny" && format != next) continue;  // each in its turn: files of other presets are long
         const std::string path = folder / kFormats[static_cast<std::size_t>(format)];
-        (void)write_vectors(path, format, stage, config, packets, "random");
+        (void)write_vectors(path, format, stage, config, packets, {"random", 1});
         const VectorFile file = read_vectors(path);
         EXPECT_EQ(file.stage, &stage);
         EXPECT_EQ(file.config, config);
