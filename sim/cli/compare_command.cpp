@@ -309,7 +309,7 @@ std::vector<NamedPanel> affine_panels(const Comparison& c, const Config& config)
 }
 
 void write_compare_junit(const CompareCommand& options, const Config& config, const std::vector<std::string>& broken,
-                         const Comparison& c, const std::optional<JudgedImage>& judged, double seconds) {
+                         const Comparison& c, const std::optional<JudgedImage>& judged, const Json& result) {
   if (options.junit_path.empty()) return;
   JunitCase bounds;
   bounds.name = "bounds";
@@ -320,7 +320,8 @@ void write_compare_junit(const CompareCommand& options, const Config& config, co
   for (const std::string& bound : broken) bounds.details += bound + "\n";
   std::vector<JunitCase> cases{bounds};
   if (judged) cases.push_back(against_case(*judged));
-  const std::string xml = junit_xml("compare." + label(config), cases, seconds);
+  const std::string xml = junit_xml("compare." + label(config), cases, result["wall_s"].get<double>(),
+                                    junit_properties(result, &config));
   write_whole_file(options.junit_path, {reinterpret_cast<const std::uint8_t*>(xml.data()), xml.size()});
 }
 
@@ -448,9 +449,8 @@ int run(const CompareCommand& options) {
   result["transform"] = transform ? transform_json(options.transform, *transform) : Json(nullptr);
   result["broken_bounds"] = broken;
   result["bounds"] = {{"broken", broken}, {"given_up", given_up}};
-  const double wall_s = seconds_since(start);
-  result["wall_s"] = wall_s;
-  write_compare_junit(options, config, broken, c, judged, wall_s);
+  result["wall_s"] = seconds_since(start);
+  write_compare_junit(options, config, broken, c, judged, result);
   write_json(options, result);
 
   std::ostream& out = human(options);
