@@ -224,8 +224,7 @@ void coarse_raster(const SetupPacket& setup, std::uint8_t slot, Hiz& hiz, const 
       if (packet.is_inside != 0)
         ++count.trivially_accepted;
       else
-        count.samples_tested +=
-            to_bounds(packet.box).samples() * static_cast<std::uint64_t>(widths.pixel_samples);
+        count.samples_tested += to_bounds(packet.box).samples() * static_cast<std::uint64_t>(widths.pixel_samples);
       emit(packet);
     }
   } while (walk.next(outside));

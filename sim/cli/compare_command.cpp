@@ -320,8 +320,8 @@ void write_compare_junit(const CompareCommand& options, const Config& config, co
   for (const std::string& bound : broken) bounds.details += bound + "\n";
   std::vector<JunitCase> cases{bounds};
   if (judged) cases.push_back(against_case(*judged));
-  const std::string xml = junit_xml("compare." + label(config), cases, result["wall_s"].get<double>(),
-                                    junit_properties(result, &config));
+  const std::string xml =
+      junit_xml("compare." + label(config), cases, result["wall_s"].get<double>(), junit_properties(result, &config));
   write_whole_file(options.junit_path, {reinterpret_cast<const std::uint8_t*>(xml.data()), xml.size()});
 }
 
