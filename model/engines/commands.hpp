@@ -82,9 +82,8 @@ inline void tap_samples(TappedFragment fragment, int samples, const FragmentTap&
   for (fragment.sample = 0; fragment.sample < samples; ++fragment.sample) tap(fragment);
 }
 
-/// The surface of a triangle whose setup is not empty, if its draw has one; at a sample, `offset` from pixel centres, if `setup`
-/// is there. Throws InputError for a vertex that is not in
-/// front of the eye, as only window space can give one.
+/// The surface of a triangle whose setup is not empty, if its draw has one; at a sample, `offset` from pixel centres, if
+/// `setup` is there. Throws InputError for a vertex that is not in front of the eye, as only window space can give one.
 [[nodiscard]] inline std::optional<Surface> surface_of(const DrawContext& context, const Triangle& triangle,
                                                        const TriangleSetup& setup, const Widths& widths,
                                                        const SampleOffset& offset = {}) {

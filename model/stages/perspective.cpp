@@ -61,11 +61,10 @@ OverW quantize_over_w(const std::array<double, 3>& value, const QCodes& q, const
   OverW result;
   const auto [low, high] = std::minmax({value[0], value[1], value[2]});
   if (attribute.is_centred) result.reference = std::floor(low / 2 + high / 2);
-  const double limit = std::ldexp(1.0, kMaxReach) * (1 - std::ldexp(1.0, -9));
   std::array<double, 3> product{};  // u'_i Q_i
   double farthest = 0, largest = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    const double u = std::clamp(value[i] - result.reference, -limit, limit);
+    const double u = std::clamp(value[i] - result.reference, -kFarthestCoordinate, kFarthestCoordinate);
     product[i] = u * q[i];
     farthest = std::max(farthest, std::abs(u));
     largest = std::max(largest, std::abs(product[i]));

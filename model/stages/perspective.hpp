@@ -54,6 +54,8 @@ inline constexpr PerspectiveFormat kFull4096Perspective{26, 4, 20, 28, {26, 19, 
 
 /// Largest x: what lies farther than 2^20 from u_ref is held there. A pixel's result is then 16 texels coarse or worse.
 inline constexpr int kMaxReach = 20;
+/// Where it is held: so far below that rounding stays within the reach.
+inline constexpr double kFarthestCoordinate = (1 << kMaxReach) * (1 - 0x1p-9);
 
 /// The bits that Q and P live in, over the whole triangle and inside a tile.
 [[nodiscard]] constexpr int q_plane_bits(const PerspectiveFormat& format, const Widths& widths) {

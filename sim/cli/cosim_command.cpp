@@ -166,6 +166,11 @@ void write_junit(const CosimOptions& options, const Config& config, const Sessio
   } else {
     cases = junit_cases(session.result);
   }
+  if (!session.disagreement.empty()) {
+    cases.emplace_back();
+    cases.back().name = "specification";
+    cases.back().failure = session.disagreement;
+  }
   const std::string xml = junit_xml("cosim." + label(config), cases, session.seconds, properties);
   write_whole_file(options.junit_path, {reinterpret_cast<const std::uint8_t*>(xml.data()), xml.size()});
 }
@@ -180,6 +185,19 @@ std::string trace_text(const CosimOptions& options, const DutFactory& factory, c
            (options.trace_cycles.empty() && clocks > window.last ? "; --trace-cycles FIRST:LAST takes others" : "");
   if (!factory.has_trace) return "none: this design is built without tracing";
   return "none: the run has " + with_commas(clocks) + " cycles, and --trace-cycles begins behind them";
+}
+
+/// The scene that the model draws unlike the scalar engine, with the fewest primitives; none: interrupted before it was known.
+std::optional<Reduced> smallest_disagreement(const CosimOptions& options, const Session& session) {
+  Progress progress(options, "reducing");
+  ReduceOptions reducing;
+  reducing.seconds = kReduceSeconds;
+  reducing.progress = [&progress](double fraction) { progress(fraction); };
+  try {
+    return reduce(*session.failed, session.config, {}, specification_test(session.config), reducing);
+  } catch (const Interrupted&) {
+    return std::nullopt;
+  }
 }
 
 int run(const CosimOptions& options) {
@@ -220,6 +238,8 @@ int run(const CosimOptions& options) {
     result["reduced"]["triangles"] =
         saved->finding.reduced ? Json(saved->finding.reduced->primitives_after) : Json(nullptr);
   }
+  std::optional<Reduced> reduced;
+  if (!session.disagreement.empty()) reduced = smallest_disagreement(options, session);
   const bool is_partial = is_interrupted();
   const bool is_whole_run_traced = !options.trace_path.empty() && (!saved || saved->trace.empty());
   if (is_whole_run_traced) {
@@ -231,11 +251,6 @@ int run(const CosimOptions& options) {
   std::ostream& out = human(options);
   print_equal(out, options, config, session);
   if (!session.disagreement.empty()) {
-    Progress progress(options, "reducing");
-    ReduceOptions reducing;
-    reducing.seconds = kReduceSeconds;
-    reducing.progress = [&progress](double fraction) { progress(fraction); };
-    const auto reduced = reduce(*session.failed, session.config, {}, specification_test(session.config), reducing);
     const Scene& smallest = reduced ? reduced->scene : *session.failed;
     out << "DIFFERENT   " << (reduced ? reduced->mismatch.hint : session.disagreement)
         << "\n            the RTL is the model's; scene saved in " << save_scene(options, smallest);

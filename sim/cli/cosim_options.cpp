@@ -15,7 +15,6 @@
 namespace halfplane {
 namespace {
 
-/// "out/cosim-teapot.hpt", "out/cosim-random-7.hpt".
 void write_scene(const std::string& path, const Scene& scene) {
   std::ostringstream text;
   write_capture(scene, text);
@@ -23,6 +22,7 @@ void write_scene(const std::string& path, const Scene& scene) {
   write_whole_file(path, {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
 }
 
+/// "out/cosim-teapot.hpt", "out/cosim-random-7.hpt".
 std::string default_save_path(const CosimOptions& options) {
   std::string name = options.random != 0    ? "random-" + std::to_string(options.seed)
                      : options.scene == "-" ? "stdin"
@@ -78,8 +78,12 @@ const DutFactory& dut_for(const CosimOptions& options, const Config& config) {
       {"--transform", options.transform != "binary64", "are in window space"}};
   for (const auto& [name, is_given, what] : of_scenes)
     if (options.random != 0 && is_given)
-      throw InputError(name + ": the scenes of --random " + what + "; leave " + name +
-                       " out, or give a SCENE in place of --random");
+      throw InputError(std::string(name)
+                           .append(": the scenes of --random ")
+                           .append(what)
+                           .append("; leave ")
+                           .append(name)
+                           .append(" out, or give a SCENE in place of --random"));
   if (options.trace_path == "-") throw InputError("--trace: a waveform cannot go to stdout; give a file, .fst");
   check_output(options.trace_path, ".fst");
   const DutFactory& factory = find_dut(config);
@@ -124,7 +128,7 @@ std::string repeat_command(const CosimOptions& options, const Config& config, co
 }
 
 std::string save_scene(const CosimOptions& options, const Scene& scene) {
-  const std::string path = options.save_path.empty() ? default_save_path(options) : options.save_path;
+  std::string path = options.save_path.empty() ? default_save_path(options) : options.save_path;
   if (options.save_path.empty()) create_folder_of(path);
   write_scene(path, scene);
   return path;

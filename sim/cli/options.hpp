@@ -135,7 +135,8 @@ void add_work(ObjectCounts& objects, const MovingScene& source);
 /// The stream for human text: stdout, or stderr when a result or a file is on stdout; a null stream with --quiet.
 [[nodiscard]] std::ostream& human(const CommonOptions& options);
 
-/// Writes the result where --json says, with `command`, which gives it again. Call it before the human text: if it fails, its one line stands alone.
+/// Writes the result where --json says, with `command`, which gives it again. Call it before the human text: if it fails, its
+/// one line stands alone.
 void write_json(const CommonOptions& options, const Json& result);
 
 /// Seconds since `start`.

@@ -13,11 +13,12 @@
 
 namespace halfplane {
 
-/// Where the pictures differ first, in words: the plane, the pixel, the sample and both codes; empty: nowhere. Colours, and
-/// where all planes are stored depths and stencils. A scene of its own: what a frame before it left is not there.
-/// `model` draws; a test puts a faulty one here.
+/// Draws what is held to the specification: the hardware model, or another engine; a test puts a faulty one here.
 using PictureOf = std::function<Framebuffer(const Scene&, const Config&)>;
 [[nodiscard]] Framebuffer hardware_picture(const Scene& scene, const Config& config);
+
+/// Where the pictures differ first, in words: the plane, the pixel, the sample and both codes; empty: nowhere. Colours, and
+/// where all planes are stored depths and stencils. A scene of its own: what a frame before it left is not there.
 [[nodiscard]] std::string difference_from_specification(const Scene& scene, const Config& config,
                                                         const PictureOf& model = hardware_picture);
 

@@ -12,8 +12,7 @@ namespace halfplane {
 
 /// Draws of samples under some rules beside those under the pipeline's own, summed over meshes.
 struct DrawsOfRule {
-  std::uint64_t doubled =
-      0;  ///< max(0, n - max(1, n of its own)): draws beyond the first that the pipeline does not make
+  std::uint64_t doubled = 0;  ///< max(0, n - max(1, n of its own)): beyond the first, and not made by the pipeline
   std::uint64_t undrawn = 0;  ///< samples that the pipeline draws and these rules do not: cracks, and the outline
 };
 

@@ -100,10 +100,11 @@ SurfaceOracle::SurfaceOracle(const Scene& scene, const Config& config, const Tri
     const double extent = (high - low) * sampler_.axes[axis].size;
     // A corner farther than 2^20 from u_ref is held there; weighted means of corners are off by no more than the corners,
     // and the real coordinate by the rounding of binary64, in which beyond 2^900 it overflows.
-    const double reach = std::ldexp(1 - std::ldexp(1.0, -9), kMaxReach), farthest = extent / 2 + 1;
-    const double held_off = farthest > reach ? farthest - reach + std::ldexp(extent, -40) : 0;
+    constexpr double kReach = kFarthestCoordinate;
+    const double farthest = extent / 2 + 1;
+    const double held_off = farthest > kReach ? farthest - kReach + std::ldexp(extent, -40) : 0;
     const double within =
-        over_w_bound(std::min(extent, 2 * reach), w_ratio, format, format.coordinate, plane_roundings(config));
+        over_w_bound(std::min(extent, 2 * kReach), w_ratio, format, format.coordinate, plane_roundings(config));
     coordinate_bound_[axis] = farthest < std::ldexp(1.0, 900) ? within + held_off : HUGE_VAL;
   }
 }

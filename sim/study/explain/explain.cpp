@@ -23,9 +23,8 @@ Stored stored_at(const Framebuffer& frame, Pixel pixel) {
 /// Why the hardware cannot draw the scene; empty: it can.
 std::string hardware_refusal(const Scene& scene, const Config& config, const StudyRules& rules) {
   if (rules != StudyRules{})
-    return "hardware has its own rules for traversal, fill rule, gradients, accumulator and weights; leave them as "
-           "they "
-           "are for its record";
+    return "hardware has its own rules for traversal, fill rule, gradients, accumulator and weights; "
+           "leave them as they are for its record";
   try {
     require_one_sample(config, "the hardware whose record is kept here");
     check_hardware_scene(scene, config);

@@ -90,7 +90,7 @@ struct OverWLanes {
   HALFPLANE_INLINE OverWLanes(const OfCorners<D16>& texels, const QLanes& q, const OverWFormat& format) {
     const D16 low = least_of(texels), high = max(max(texels.a, texels.b), texels.c);
     reference = floor(low * 0.5 + high * 0.5);
-    const double limit = static_cast<double>(1 << kMaxReach) * (1 - 0x1p-9);
+    constexpr double limit = kFarthestCoordinate;
     const auto from_reference = [&](const D16& of)
                                     HALFPLANE_LAMBDA { return min(max(of - reference, D16(-limit)), D16(limit)); };
     const D16 ua = from_reference(texels.a), ub = from_reference(texels.b), uc = from_reference(texels.c);
