@@ -10,7 +10,7 @@
 #include "model/engines/functional.hpp"
 #include "model/engines/scalar.hpp"
 #include "model/golden/golden.hpp"
-#include "model/raster_pkg.hpp"
+#include "model/generate/raster_pkg.hpp"
 #include "stage_at_work.hpp"
 
 using namespace halfplane;

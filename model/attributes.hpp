@@ -1,6 +1,6 @@
 // What is interpolated over a primitive: the one list of planes. Plane 0 is depth, colours follow.
 //
-// A plane is authored here and in what snaps its codes (stages/viewport.cpp). From this list follow its widths
+// A plane is authored here and in what snaps its codes (host/viewport.cpp). From this list follow its widths
 // (widths.hpp), the arrays in the packets (packets.hpp), the tables and generate loops of the RTL (raster_pkg.hpp), and what
 // observer, random scenes and comparison loop over. Planes of one attribute are alike: they share its widths.
 #pragma once

@@ -4,7 +4,6 @@
 #include <charconv>
 #include <cstdio>
 
-#include "widths.hpp"
 
 namespace halfplane {
 namespace {
@@ -207,19 +206,6 @@ std::vector<Setting> all_settings() {
   };
 }
 
-void refuse_unless(bool holds, const std::string& message) {
-  if (!holds) throw InputError("configuration refused: " + message);
-}
-
-void require_bits(const Width& width, int bits, std::string_view holder) {
-  refuse_unless(width.bits <= bits, std::string(width.name) + " needs " + std::to_string(width.bits) +
-                                        " bits (bound: " + std::string(width.bound) + "), but " + std::string(holder) +
-                                        " has " + std::to_string(bits) +
-                                        "; lower subpixel.bits, guard.band or depth.bits");
-}
-
-bool is_power_of_two(int value) { return std::has_single_bit(static_cast<unsigned>(value)); }
-
 }  // namespace
 
 std::span<const Setting> settings() {
@@ -258,109 +244,6 @@ void require_sampled_hardware(const Config& config, std::string_view who) {
         "msaa.samples: " + std::string(who) +
         " has one sample a pixel with setup.kind=serial; use msaa.samples=1 or setup.kind=pipelined, or the "
         "functional, scalar or golden engine");
-}
-
-void validate(const Config& config) {
-  for (const Setting& setting : settings())  // a Config built in code has not passed through set()
-    if (setting.is_number()) (void)parse_int(setting, get(config, setting));
-  refuse_unless(is_power_of_two(config.guard_band), "guard.band must be a power of two");
-  refuse_unless(is_power_of_two(config.tile_size), "tile.size must be 4, 8, 16 or 32");
-  refuse_unless(is_power_of_two(config.stamp_size), "stamp.size must be 1, 2, 4 or 8");
-  refuse_unless(is_power_of_two(config.context_slots), "context.slots must be a power of two");
-  refuse_unless(is_power_of_two(config.hiz_lag), "hiz.lag must be a power of two");
-  refuse_unless(is_power_of_two(config.cache_lines), "cache.lines must be a power of two");
-  refuse_unless(is_power_of_two(config.cache_queue), "cache.queue must be a power of two");
-  refuse_unless(is_power_of_two(config.cache_victims), "cache.victims must be a power of two");
-  refuse_unless(is_power_of_two(config.memory_port_bits), "memory.port_bits must be 16, 32, 64, 128, 256 or 512");
-  refuse_unless(is_power_of_two(config.texture_cache_kb), "texture.cache_kb must be a power of two");
-  refuse_unless(is_power_of_two(config.texture_queue), "texture.queue must be a power of two");
-  refuse_unless(config.setup_plane_clocks == 1 || config.setup_kind == SetupKind::pipelined,
-                "the serial setup takes as many clocks for a plane as its bits want: use setup.plane_clocks=1, or "
-                "setup.kind=pipelined");
-  if (config.texture_unit != TextureUnitKind::off) {
-    refuse_unless(config.cache_kind == CacheKind::blocks && config.setup_kind == SetupKind::pipelined,
-                  "a texture unit stands behind the depth test of blocks, and its planes want the pipelined setup: use "
-                  "cache.kind=blocks and setup.kind=pipelined, or texture.unit=off");
-    refuse_unless(config.stamp_size <= 4, "a texture unit takes stamps of at most 4x4 samples: lower stamp.size");
-  }
-  refuse_unless(config.texture_lanes == 1 || config.texture_lanes == 4, "texture.lanes must be 1 or 4");
-  if (config.texture_lanes != 1) {
-    refuse_unless(config.stamp_size >= 2, "four lanes of a texture unit take 2x2 samples of a stamp: raise stamp.size");
-  }
-  refuse_unless(
-      config.texture_ways == 1 || config.texture_unit != TextureUnitKind::nearest || config.texture_lanes != 1,
-      "a texture unit with one nearest texel a clock has one way: use texture.unit=bilinear or trilinear, "
-      "texture.lanes=4, or texture.ways=1");
-  refuse_unless(config.fog_units == 0 || config.texture_unit != TextureUnitKind::off,
-                "fog looks at the plane of 1/w, which a texture unit brings: use texture.unit=nearest, or fog.unit=0");
-  refuse_unless(config.shade_units == 0 || config.texture_unit != TextureUnitKind::off,
-                "normals lie over w and start where 1/w is smallest, which a texture unit's planes say: use "
-                "texture.unit=nearest, or shade.unit=0");
-  refuse_unless(config.shade_units == 0 || config.perspective_colors == 0,
-                "fragments are lit in front of the texture unit, which divides colours over w: use "
-                "perspective.colors=0, or shade.unit=0");
-  refuse_unless(config.perspective_colors == 0 || config.texture_unit != TextureUnitKind::off,
-                "colours over w are divided by the texture unit's 1/w: use texture.unit=nearest, or "
-                "perspective.colors=0");
-  refuse_unless(config.blend_lanes == 0 || config.blend_lanes == 1 || config.blend_lanes == 4,
-                "blend.lanes must be 0, 1 or 4");
-  refuse_unless(
-      !packs_at_write(config) || (config.cache_kind == CacheKind::blocks && config.setup_kind == SetupKind::pipelined),
-      "colours are blended and dithered where the framebuffer of blocks writes them, by states that the pipelined "
-      "setup lets through: use cache.kind=blocks and setup.kind=pipelined, or blend.lanes=0 and dither.unit=0");
-  refuse_unless(config.stencil_bits == 0 || config.stencil_bits == 8, "stencil.bits must be 0 or 8");
-  refuse_unless(
-      config.stencil_bits == 0 || (config.cache_kind == CacheKind::blocks &&
-                                   config.setup_kind == SetupKind::pipelined && config.depth_bits <= 24),
-      "a stencil stands above the depth in one word of 32 bits at most, in the framebuffer of blocks, by states "
-      "that the pipelined setup lets through: use cache.kind=blocks, setup.kind=pipelined and depth.bits up to "
-      "24, or stencil.bits=0");
-  refuse_unless(config.cache_kind == CacheKind::blocks || config.cache_lines <= 256,
-                "a cache of tiles holds at most 256: lower cache.lines");
-  refuse_unless(config.cache_kind == CacheKind::blocks || config.frame_order == FrameOrder::program,
-                "a cache of tiles has no bins: use frame.order=program or cache.kind=blocks");
-  refuse_unless(config.cache_kind == CacheKind::blocks || config.frame_store == FrameStore::all,
-                "a cache of tiles stores both planes: use frame.store=all or cache.kind=blocks");
-  refuse_unless(config.stamp_size <= config.tile_size, "a stamp must fit into a tile: stamp.size <= tile.size");
-  refuse_unless(config.target_width <= config.guard_band && config.target_height <= config.guard_band,
-                "the target must lie inside the guard band: target.width and target.height <= guard.band");
-  refuse_unless(is_power_of_two(config.msaa_samples), "msaa.samples must be 1, 2, 4 or 8");
-  refuse_unless(config.stamp_size * config.stamp_size * config.msaa_samples <= 64,
-                "a stamp holds at most 64 samples, stamp.size^2 * msaa.samples: lower one of them");
-  refuse_unless(config.msaa_samples > 1 || config.msaa_pattern == SamplePattern{},
-                "the one sample of a pixel is its centre: raise msaa.samples, or leave msaa.pattern out");
-  refuse_unless(config.resolve_units == 0 || (config.msaa_samples > 1 && config.cache_kind == CacheKind::blocks),
-                "a mean is taken of several samples, in the framebuffer of blocks: raise msaa.samples and use "
-                "cache.kind=blocks, or resolve.unit=0");
-  refuse_unless(
-      config.resolve_units == 0 || (config.frame_order == FrameOrder::bins && config.frame_store == FrameStore::color),
-      "a pixel's samples become one colour as their block leaves the chip, so they must leave it once, in bins, "
-      "and without their depths: use frame.order=bins and frame.store=color, or resolve.unit=0");
-  refuse_unless(
-      config.compress_units == 0 ||
-          (config.msaa_samples > 1 && config.cache_kind == CacheKind::blocks && config.resolve_units == 0),
-      "blocks whose pixels have one colour are told from others where pixels have several samples in memory, in the "
-      "framebuffer of blocks: raise msaa.samples, use cache.kind=blocks and resolve.unit=0, or compress.unit=0");
-  refuse_unless(config.msaa_pattern.count == 0 || config.msaa_pattern.count == config.msaa_samples,
-                "msaa.pattern has " + std::to_string(config.msaa_pattern.count) + " places, but msaa.samples is " +
-                    std::to_string(config.msaa_samples) + ": give as many");
-  const Widths widths = derive_widths(config);
-  require_bits(widths.coordinate, 32, "a packet's coordinate");
-  require_bits(widths.area, 63, "a 64-bit lane");
-  require_bits(widths.edge_value, 64, "a 64-bit lane");
-  require_bits(widths.sample_edge, 32, "a 32-bit lane");
-  for (int a = 0; a < widths.attributes.attributes; ++a) {
-    const AttributeWidths& attribute = widths.attribute[static_cast<std::size_t>(a)];
-    require_bits(attribute.plane, 64, "a 64-bit lane");
-    require_bits(attribute.product, 127, "a 128-bit product");
-  }
-  const double bound = depth_error_bound(config);
-  char text[16];
-  std::snprintf(text, sizeof text, "%.2f", bound);
-  refuse_unless(bound <= 1.0, std::string("the depth error may reach ") + text + " LSB (bound: 1/2 + 2^-extra + (T+" +
-                                  (config.msaa_samples > 1 ? "3" : "1") +
-                                  ") 2^-(l+1) + 2^-5, at most 1); raise "
-                                  "plane.local_guard_bits or reciprocal.extra_bits, or lower tile.size");
 }
 
 }  // namespace halfplane

@@ -4,20 +4,15 @@
 
 #include <algorithm>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "depth_format.hpp"
-#include "sample_pattern.hpp"
+#include "formats/depth_format.hpp"
+#include "formats/sample_pattern.hpp"
+#include "input_error.hpp"
 
 namespace halfplane {
-
-/// Thrown where input enters (files, options, configurations); what() is one line that names the place and the mend.
-struct InputError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
 
 /// Layout of a stored colour. rgb565: R in bits 15...11. rgba8888: R in the lowest byte, so memory order is R, G, B, A.
 enum class ColorFormat : int { rgb565, rgba8888 };

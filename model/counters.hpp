@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "packets.hpp"
+#include "packets/packets.hpp"
 
 namespace halfplane {
 

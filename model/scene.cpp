@@ -8,7 +8,6 @@
 
 #include "config.hpp"
 #include "draw_states.hpp"
-#include "stages/viewport.hpp"
 
 namespace halfplane {
 namespace {
@@ -132,6 +131,12 @@ void check_draw(const Scene& scene, std::size_t command, const Draw& draw, const
 }
 
 }  // namespace
+
+std::string place_of_draw(std::string_view file, std::uint32_t line) {
+  std::string place(file);
+  if (line != 0) place += ": draw from line " + std::to_string(line);
+  return place;
+}
 
 void validate(const Scene& scene) {
   const Place place(scene);

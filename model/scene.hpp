@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "texture.hpp"
+#include "formats/texture.hpp"
 
 namespace halfplane {
 
@@ -238,6 +238,9 @@ struct Scene {
   std::vector<std::string> objects{""};
   std::vector<Command> commands;
 };
+
+/// "file: draw from line 7", for messages about a draw.
+[[nodiscard]] std::string place_of_draw(std::string_view file, std::uint32_t line);
 
 /// Checks what no reader would make and whoever fills in the struct may: numbers that are finite and in their range
 /// (colours 0...255, depths 0...1, states as their table has them), draws inside the indices, indices < vertices.size()

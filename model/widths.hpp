@@ -11,7 +11,7 @@
 #include "attributes.hpp"
 #include "config.hpp"
 #include "fixed.hpp"
-#include "samples.hpp"
+#include "stages/samples.hpp"
 
 namespace halfplane {
 

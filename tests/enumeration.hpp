@@ -13,7 +13,7 @@
 #include <string_view>
 
 #include "model/config.hpp"
-#include "model/packets.hpp"
+#include "model/packets/packets.hpp"
 #include "model/widths.hpp"
 
 namespace halfplane::test {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "model/engines/hardware.hpp"
-#include "model/host_stream.hpp"
+#include "model/host/primitive_stream.hpp"
 
 namespace halfplane::test {
 

@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "model/packet_words.hpp"
+#include "model/packets/packet_words.hpp"
 
 namespace halfplane::test {
 

@@ -23,6 +23,8 @@ import sys
 from collections import Counter, defaultdict
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+HOST_STAGES = ('primitive_assembly', 'clip', 'viewport', 'line_setup', 'point_raster', 'smooth_raster')
+OPERATIONS = ('color_ops', 'fragment_ops', 'stencil_ops', 'samples')  # arithmetic that stages and engines share
 
 
 def read(path):
@@ -92,12 +94,19 @@ class Table:
         return '\n'.join(row.rstrip() for row in rows) + '\n'
 
 
+def is_stage(path):
+    """Whether a file is measured: of the host's those are the stages, not what sends their packets."""
+    if path.parent == ROOT / 'model/host':
+        return path.stem in HOST_STAGES
+    return path.parent in (ROOT / 'model/stages', ROOT / 'model/study') and path.stem not in OPERATIONS
+
+
 def gcov(data):
-    """What gcov says of one .gcda file: the files of model/stages in it."""
+    """What gcov says of one .gcda file: the stages in it, of the hardware, of the host, for study."""
     report = subprocess.run(['gcov', '--json-format', '--stdout', '--branch-probabilities', data.name], cwd=data.parent,
                             check=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True).stdout
     return [file for text in report.splitlines() if text for file in json.loads(text)['files']
-            if (ROOT / file['file']).resolve().is_relative_to(ROOT / 'model/stages')]
+            if is_stage((ROOT / file['file']).resolve())]
 
 
 def branch_counts(branches):

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "../texture.hpp"
+#include "../formats/texture.hpp"
 #include "capture_text.hpp"
 
 namespace halfplane {

@@ -6,7 +6,7 @@
 #include <ostream>
 #include <span>
 
-#include "../stages/primitive_assembly.hpp"
+#include "../host/primitive_assembly.hpp"
 #include "capture.hpp"
 #include "capture_states.hpp"
 #include "capture_text.hpp"

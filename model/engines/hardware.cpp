@@ -5,7 +5,7 @@
 #include <chrono>
 #include <utility>
 
-#include "../packet_words.hpp"
+#include "../packets/packet_words.hpp"
 #include "../stages/coarse_raster.hpp"
 #include "../stages/cull.hpp"
 #include "../stages/depth_test.hpp"
@@ -14,7 +14,7 @@
 #include "../stages/primitive_join.hpp"
 #include "../stages/resolve.hpp"
 #include "../stages/rop.hpp"
-#include "../stages/state_packets.hpp"
+#include "../packets/state_packets.hpp"
 #include "../stages/surface.hpp"
 #include "../stages/texture_stage.hpp"
 #include "../stages/triangle_setup.hpp"

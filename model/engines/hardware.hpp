@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "../host_stream.hpp"
+#include "../host/primitive_stream.hpp"
 #include "../pipeline_graph.hpp"
 #include "../stages/block_cache.hpp"
 #include "../stages/depth_test.hpp"
@@ -16,7 +16,7 @@
 #include "../stages/memory_port.hpp"
 #include "../stages/texture_unit.hpp"
 #include "../stages/tile_cache.hpp"
-#include "../texture_memory.hpp"
+#include "../host/texture_memory.hpp"
 #include "render.hpp"
 
 namespace halfplane {

@@ -11,8 +11,8 @@
 
 #include "../config.hpp"
 #include "../counters.hpp"
-#include "../packets.hpp"
-#include "../rules.hpp"
+#include "../packets/packets.hpp"
+#include "../study/rules.hpp"
 #include "../scene.hpp"
 #include "../stages/framebuffer.hpp"
 #include "../stages/surface.hpp"

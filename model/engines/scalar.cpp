@@ -6,11 +6,11 @@
 
 #include "../stages/coarse_raster.hpp"
 #include "../stages/fine_raster.hpp"
-#include "../stages/homogeneous_setup.hpp"
+#include "../study/homogeneous_setup.hpp"
 #include "../stages/interpolate.hpp"
 #include "../stages/multisample.hpp"
-#include "../stages/plane_rules.hpp"
-#include "../stages/traversal.hpp"
+#include "../study/plane_rules.hpp"
+#include "../study/traversal.hpp"
 #include "commands.hpp"
 
 namespace halfplane {

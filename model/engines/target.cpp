@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "../pipeline.hpp"
+#include "../host/primitives.hpp"
 #include "functional.hpp"
 
 namespace halfplane {

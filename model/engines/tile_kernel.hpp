@@ -5,7 +5,7 @@
 #include <bit>
 #include <cstring>
 
-#include "../fragment_ops.hpp"
+#include "../stages/fragment_ops.hpp"
 #include "../stages/depth_encode.hpp"
 #include "../stages/interpolate.hpp"
 #include "render.hpp"

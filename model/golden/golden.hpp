@@ -12,7 +12,7 @@
 
 #include "../config.hpp"
 #include "../counters.hpp"
-#include "../rules.hpp"
+#include "../study/rules.hpp"
 #include "../scene.hpp"
 #include "../stages/framebuffer.hpp"
 #include "fragment_buffer.hpp"

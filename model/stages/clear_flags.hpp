@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "../packets.hpp"
+#include "../packets/packets.hpp"
 
 namespace halfplane {
 

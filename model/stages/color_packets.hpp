@@ -4,8 +4,8 @@
 
 #include <optional>
 
-#include "../fragment_ops.hpp"
-#include "state_packets.hpp"
+#include "fragment_ops.hpp"
+#include "../packets/state_packets.hpp"
 
 namespace halfplane {
 

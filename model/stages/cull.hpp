@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "../packets.hpp"
+#include "../packets/packets.hpp"
 #include "../scene.hpp"
 #include "../widths.hpp"
 #include "edge_function.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "viewport.hpp"
+#include "../fixed.hpp"
 
 namespace halfplane {
 

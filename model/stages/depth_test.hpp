@@ -11,8 +11,8 @@
 #include <algorithm>
 #include <span>
 
-#include "../fragment_ops.hpp"
-#include "../packets.hpp"
+#include "fragment_ops.hpp"
+#include "../packets/packets.hpp"
 #include "stencil_packets.hpp"
 
 namespace halfplane {

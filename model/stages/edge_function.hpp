@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "../packets.hpp"
+#include "../packets/packets.hpp"
 
 namespace halfplane {
 

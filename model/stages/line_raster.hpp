@@ -5,7 +5,7 @@
 // fits, with one half LSB already added, so that a code is the register's upper bits: no rounding, no clamp.
 #pragma once
 
-#include "line_setup.hpp"
+#include "../packets/packets.hpp"
 
 namespace halfplane {
 

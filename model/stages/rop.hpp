@@ -4,8 +4,8 @@
 // colours are blended or dithered, written_colors() once more as they are written. The arithmetic is color_ops.hpp's.
 #pragma once
 
-#include "../fragment_ops.hpp"
-#include "../packets.hpp"
+#include "fragment_ops.hpp"
+#include "../packets/packets.hpp"
 #include "clear_flags.hpp"
 
 namespace halfplane {

@@ -16,7 +16,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "../color_ops.hpp"
+#include "color_ops.hpp"
 #include "../fixed.hpp"
 #include "../scene.hpp"
 #include "level_of_detail.hpp"

@@ -1,8 +1,8 @@
 // What the texture unit sees of the packets: samples and their frame.
 #pragma once
 
-#include "../packets.hpp"
-#include "state_packets.hpp"
+#include "../packets/packets.hpp"
+#include "../packets/state_packets.hpp"
 #include "texture_unit.hpp"
 
 namespace halfplane {

@@ -6,7 +6,7 @@
 // it looks at; all samples of a pixel have its colour.
 #pragma once
 
-#include "../packets.hpp"
+#include "../packets/packets.hpp"
 #include "color_packets.hpp"
 #include "depth_test.hpp"
 #include "texture_packets.hpp"

@@ -30,9 +30,9 @@
 #include <vector>
 
 #include "../fixed.hpp"
-#include "../samples.hpp"
+#include "samples.hpp"
 #include "../scene.hpp"
-#include "../texture.hpp"
+#include "../formats/texture.hpp"
 #include "fog_unit.hpp"
 #include "light_unit.hpp"
 #include "perspective.hpp"

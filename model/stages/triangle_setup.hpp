@@ -15,7 +15,7 @@
 #include <array>
 #include <cstdint>
 
-#include "../packets.hpp"
+#include "../packets/packets.hpp"
 #include "../scene.hpp"
 #include "../widths.hpp"
 #include "edge_function.hpp"

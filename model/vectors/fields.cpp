@@ -3,7 +3,7 @@
 #include <numeric>
 #include <type_traits>
 
-#include "../packet_words.hpp"
+#include "../packets/packet_words.hpp"
 #include "stages.hpp"
 
 namespace halfplane::vectors {

@@ -7,7 +7,7 @@
 #include <variant>
 
 #include "../engines/hardware.hpp"
-#include "../packet_words.hpp"
+#include "../packets/packet_words.hpp"
 #include "../stages/coarse_raster.hpp"
 #include "../stages/color_packets.hpp"
 #include "../stages/cull.hpp"
@@ -16,7 +16,7 @@
 #include "../stages/interpolate.hpp"
 #include "../stages/primitive_join.hpp"
 #include "../stages/rop.hpp"
-#include "../stages/state_packets.hpp"
+#include "../packets/state_packets.hpp"
 #include "../stages/surface.hpp"
 #include "../stages/texture_stage.hpp"
 #include "../stages/triangle_setup.hpp"

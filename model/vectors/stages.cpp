@@ -4,7 +4,7 @@
 #include <type_traits>
 
 #include "../nearest_word.hpp"
-#include "../packet_words.hpp"
+#include "../packets/packet_words.hpp"
 
 namespace halfplane::vectors {
 namespace {

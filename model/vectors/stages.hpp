@@ -24,7 +24,7 @@ struct Port {
   Arrow like;             ///< whose packet type it has
 };
 
-/// The packets of a stage's ports, as its specification takes and gives them: packed words (model/packet_words.hpp).
+/// The packets of a stage's ports, as its specification takes and gives them: packed words (model/packets/packet_words.hpp).
 class StageIo {
  public:
   virtual ~StageIo() = default;

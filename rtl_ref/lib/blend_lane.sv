@@ -5,7 +5,7 @@
 //
 // min and max are sums too: of 255 times the smaller or larger one and 0 times the other. What of the factors is the same for
 // all lanes comes from blend_setup.sv.
-// Specification: blended of model/color_ops.hpp.
+// Specification: blended of model/stages/color_ops.hpp.
 module blend_lane #(
     parameter int CHANNELS = 4  // that are stored: 3 or 4
 ) (

@@ -3,7 +3,7 @@
 // A factor is one of the fragment's and the stored colours, which a lane chooses, or known here: a constant or 0. "One minus"
 // is the complement, which for codes of 8 bits is an exclusive or with ones, of 0 as well. min and max have 0 from here: a
 // lane sees which colour it takes. Where nothing is blended the factors are 1 and 0, and the sum is the fragment's colour.
-// Specification: blend_factor of model/color_ops.hpp.
+// Specification: blend_factor of model/stages/color_ops.hpp.
 module blend_setup #(
     parameter int CHANNELS = 4  // that are stored: 3 or 4
 ) (

@@ -1,7 +1,7 @@
 // ROP with ordered dithering: packs the colour of one sample into the stored format, rounded or by a threshold. Combinational.
 //
 // rgb565 keeps floor(c * 31 / 255 + (threshold + 1/2) / 16) = (c * 249 + threshold * 128 + 64) >> 11, for green (c * 253 +
-// threshold * 64 + 32) >> 10; rounded as rop.sv has it. Specification: pack_rgb565_dithered of model/color_ops.hpp.
+// threshold * 64 + 32) >> 10; rounded as rop.sv has it. Specification: pack_rgb565_dithered of model/stages/color_ops.hpp.
 module dithered_rop (
     /* verilator lint_off UNUSEDSIGNAL */  // rgb565 keeps no alpha, rgba8888 has nothing to dither
     input  logic [raster_pkg::VERTEX_COLOR_BITS-1:0] rgba_i,  // 8 bits a channel, R lowest

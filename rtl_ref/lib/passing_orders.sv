@@ -1,5 +1,5 @@
 // A comparison function as the three orders in which it lets a value pass: it is less than the other one, equal, greater.
-// Combinational. Specification: DepthOutcomes of model/fragment_ops.hpp.
+// Combinational. Specification: DepthOutcomes of model/stages/fragment_ops.hpp.
 module passing_orders (
     input  logic [raster_pkg::DEPTH_FUNC_BITS-1:0] func_i,
     output logic                                   less_o,

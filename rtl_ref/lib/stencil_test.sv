@@ -1,5 +1,5 @@
 // Stencil test of the samples of a stamp, and what becomes of the values that are stored under them. Combinational.
-// Specification: test_sample of model/stages/depth_test.hpp, model/stencil_ops.hpp.
+// Specification: test_sample of model/stages/depth_test.hpp, model/stages/stencil_ops.hpp.
 module stencil_test (
     // The side that the triangle shows
     input logic [raster_pkg::DEPTH_FUNC_BITS-1:0] func_i,

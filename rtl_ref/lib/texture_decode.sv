@@ -1,4 +1,4 @@
-// A texel's code becomes a colour. Combinational. Specification: decode_texel of model/texture.hpp.
+// A texel's code becomes a colour. Combinational. Specification: decode_texel of model/formats/texture.hpp.
 module texture_decode (
     input  logic [31:0] code_i,
     input  logic [2:0]  format_i,  // 0 l8, 1 la88, 2 rgb565, 3 rgba5551, 4 rgba4444, 5 rgba8888

@@ -5,9 +5,9 @@
 #include <memory>
 
 #include "model/engines/cycle/stage_table.hpp"
-#include "model/raster_pkg.hpp"
-#include "model/raster_taps.hpp"
-#include "model/vectors/dpi_package.hpp"
+#include "model/generate/raster_pkg.hpp"
+#include "model/generate/raster_taps.hpp"
+#include "model/generate/dpi_package.hpp"
 #include "model/widths.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/options.hpp"

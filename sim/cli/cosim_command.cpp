@@ -4,7 +4,7 @@
 #include <memory>
 #include <sstream>
 
-#include "model/stages/primitive_assembly.hpp"
+#include "model/host/primitive_assembly.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/cosim_options.hpp"
 #include "sim/cli/progress.hpp"

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "model/draw_states.hpp"
-#include "model/packet_words.hpp"
+#include "model/packets/packet_words.hpp"
 #include "model/stages/multisample.hpp"
 #include "sim/cli/explain_output.hpp"
 #include "sim/study/explain/verify.hpp"

@@ -3,12 +3,12 @@
 
 #include <string>
 
-#include "model/rules.hpp"
+#include "model/study/rules.hpp"
 #include "sim/cli/options.hpp"
 
 namespace halfplane {
 
-/// As typed; the names are those of model/rules.hpp.
+/// As typed; the names are those of model/study/rules.hpp.
 struct StudyOptions {
   std::string traversal{name_of(Traversal::tiled)};
   std::string fill_rule{name_of(FillRule::top_left)};

@@ -1,6 +1,6 @@
 #include "sim/cosim/arrows.hpp"
 
-#include "model/packet_words.hpp"
+#include "model/packets/packet_words.hpp"
 
 namespace halfplane {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "model/packets.hpp"
+#include "model/packets/packets.hpp"
 #include "model/pipeline_graph.hpp"
 
 namespace halfplane {

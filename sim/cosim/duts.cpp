@@ -2,7 +2,7 @@
 #include <stdexcept>
 #include <type_traits>
 
-#include "model/raster_pkg.hpp"
+#include "model/generate/raster_pkg.hpp"
 #include "sim/cosim/dut.hpp"
 
 #ifdef HALFPLANE_HAS_RTL

@@ -14,7 +14,7 @@
 
 #include "model/engines/cycle/cycle_model.hpp"
 #include "model/engines/hardware.hpp"
-#include "model/host_stream.hpp"
+#include "model/host/primitive_stream.hpp"
 #include "model/timing/stream.hpp"
 #include "sim/cosim/dut.hpp"
 #include "sim/cosim/memory_model.hpp"

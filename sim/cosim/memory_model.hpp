@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "model/engines/hardware.hpp"
-#include "model/texture_memory.hpp"
+#include "model/host/texture_memory.hpp"
 #include "model/timing/memory.hpp"
 #include "sim/cosim/packet_queue.hpp"
 

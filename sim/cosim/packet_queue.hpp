@@ -1,11 +1,11 @@
-// A queue of packets as packed 32-bit words (model/packet_words.hpp), without an allocation a packet.
+// A queue of packets as packed 32-bit words (model/packets/packet_words.hpp), without an allocation a packet.
 #pragma once
 
 #include <bit>
 #include <cstdint>
 #include <vector>
 
-#include "model/packet_words.hpp"
+#include "model/packets/packet_words.hpp"
 
 namespace halfplane {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "model/pipeline.hpp"
+#include "model/host/primitives.hpp"
 #include "model/widths.hpp"
 #include "sim/scene/random.hpp"
 #include "sim/scene/random_state.hpp"

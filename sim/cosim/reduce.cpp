@@ -6,7 +6,7 @@
 #include <span>
 
 #include "model/draw_states.hpp"
-#include "model/host_stream.hpp"
+#include "model/host/primitive_stream.hpp"
 #include "model/stages/line_raster.hpp"
 #include "sim/interrupt.hpp"
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <utility>
 
-#include "model/pipeline.hpp"
+#include "model/host/primitives.hpp"
 
 namespace halfplane {
 namespace {

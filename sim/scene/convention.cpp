@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "model/config.hpp"
-#include "model/stages/primitive_assembly.hpp"
+#include "model/host/primitive_assembly.hpp"
 #include "sim/scene/text_cursor.hpp"
 
 namespace halfplane {

@@ -6,7 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "model/stages/viewport.hpp"
+#include "model/host/viewport.hpp"
 
 namespace halfplane {
 namespace {

@@ -2,7 +2,7 @@
 // matrix, depth test and clear value.
 #pragma once
 
-#include "model/depth_format.hpp"
+#include "model/formats/depth_format.hpp"
 #include "model/scene.hpp"
 
 namespace halfplane {

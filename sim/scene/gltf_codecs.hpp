@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "model/texture.hpp"
+#include "model/formats/texture.hpp"
 #include "sim/scene/gltf_file.hpp"
 
 namespace halfplane {

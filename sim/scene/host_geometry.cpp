@@ -9,7 +9,7 @@
 #include <string>
 
 #include "model/fixed.hpp"
-#include "model/stages/primitive_assembly.hpp"
+#include "model/host/primitive_assembly.hpp"
 
 namespace halfplane {
 namespace {

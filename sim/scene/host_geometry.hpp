@@ -1,5 +1,5 @@
 // What a host does between clip space and the snap, in the numbers that it has: clip, division by w, viewport. Binary64 is
-// the pipeline's own (model/stages/clip.hpp, viewport.hpp); here are binary32 and s15.16.
+// the pipeline's own (model/host/clip.hpp, viewport.hpp); here are binary32 and s15.16.
 //
 // binary32: the same formulas, each operation rounded. s15.16 (32-bit integers, products and sums exact in 64 bits):
 //   distance    a x + b y + c z + d w, exact
@@ -22,8 +22,8 @@
 
 #include "model/config.hpp"
 #include "model/scene.hpp"
-#include "model/stages/clip.hpp"
-#include "model/stages/viewport.hpp"
+#include "model/host/clip.hpp"
+#include "model/host/viewport.hpp"
 #include "sim/scene/vec3.hpp"
 #include "sim/scene/vertex_transform.hpp"
 

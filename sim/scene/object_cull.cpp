@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "model/config.hpp"
-#include "model/stages/clip.hpp"
-#include "model/stages/primitive_assembly.hpp"
-#include "model/stages/viewport.hpp"
+#include "model/host/clip.hpp"
+#include "model/host/primitive_assembly.hpp"
+#include "model/host/viewport.hpp"
 #include "sim/scene/text_cursor.hpp"
 
 namespace halfplane {

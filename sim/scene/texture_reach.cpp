@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "model/stages/perspective.hpp"
-#include "model/stages/primitive_assembly.hpp"
+#include "model/host/primitive_assembly.hpp"
 
 namespace halfplane {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include "model/packets.hpp"
+#include "model/packets/packets.hpp"
 
 namespace halfplane {
 

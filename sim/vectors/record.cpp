@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "model/engines/hardware.hpp"
-#include "model/packet_words.hpp"
+#include "model/packets/packet_words.hpp"
 #include "model/stages/color_packets.hpp"
 #include "model/stages/interpolate.hpp"
 

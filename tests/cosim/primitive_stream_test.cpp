@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "model/packet_words.hpp"
+#include "model/packets/packet_words.hpp"
 #include "rtl_ref/cosim/verilated_messages.hpp"
 #include "sim/cosim/dut.hpp"
 #include "sim/cosim/memory_model.hpp"

@@ -11,7 +11,7 @@
 
 #include "../tier.hpp"
 #include "halfplane_paths.hpp"
-#include "model/raster_pkg.hpp"
+#include "model/generate/raster_pkg.hpp"
 #include "sim/scene/random.hpp"
 
 namespace halfplane {

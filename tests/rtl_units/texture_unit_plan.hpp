@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "model/engines/cycle/texture_timing.hpp"
-#include "model/packets.hpp"
+#include "model/packets/packets.hpp"
 #include "model/stages/texture_unit.hpp"
 
 namespace halfplane::texture_test {

@@ -13,7 +13,7 @@
 #include "model/capture/capture.hpp"
 #include "model/config.hpp"
 #include "model/engines/functional.hpp"
-#include "model/stages/primitive_assembly.hpp"
+#include "model/host/primitive_assembly.hpp"
 #include "sim/scene/builtin.hpp"
 #include "sim/scene/object_cull.hpp"
 

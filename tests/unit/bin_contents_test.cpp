@@ -6,7 +6,7 @@
 
 #include "model/engines/cycle/cycle_model.hpp"
 #include "model/engines/functional.hpp"
-#include "model/packet_words.hpp"
+#include "model/packets/packet_words.hpp"
 #include "sim/cosim/random_scene.hpp"
 #include "tests/hardware_scene.hpp"
 #include "tests/scene_builder.hpp"

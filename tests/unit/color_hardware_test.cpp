@@ -10,7 +10,7 @@
 #include "model/engines/cycle/cycle_model.hpp"
 #include "model/engines/hardware.hpp"
 #include "model/engines/scalar.hpp"
-#include "model/host_stream.hpp"
+#include "model/host/primitive_stream.hpp"
 #include "model/stages/color_packets.hpp"
 #include "sim/cosim/random_scene.hpp"
 

@@ -6,8 +6,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "model/raster_pkg.hpp"
-#include "model/raster_taps.hpp"
+#include "model/generate/raster_pkg.hpp"
+#include "model/generate/raster_taps.hpp"
 #include "model/stages/triangle_setup.hpp"
 #include "model/widths.hpp"
 

@@ -13,7 +13,7 @@
 #include "model/engines/functional.hpp"
 #include "model/engines/scalar.hpp"
 #include "model/golden/golden.hpp"
-#include "model/stages/viewport.hpp"
+#include "model/host/viewport.hpp"
 #include "sim/scene/builtin.hpp"
 #include "sim/scene/random.hpp"
 #include "sim/scene/random_state.hpp"

@@ -9,7 +9,7 @@
 #include "model/engines/functional.hpp"
 #include "model/engines/scalar.hpp"
 #include "model/golden/golden.hpp"
-#include "model/host_stream.hpp"
+#include "model/host/primitive_stream.hpp"
 #include "model/stages/depth_encode.hpp"
 #include "sim/scene/builtin.hpp"
 #include "sim/scene/depth_mapping.hpp"

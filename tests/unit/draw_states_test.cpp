@@ -15,7 +15,7 @@
 
 #include "model/capture/capture.hpp"
 #include "model/capture/capture_states.hpp"
-#include "model/packet_words.hpp"
+#include "model/packets/packet_words.hpp"
 #include "sim/cosim/random_scene.hpp"
 #include "sim/cosim/reduce.hpp"
 #include "sim/scene/random.hpp"

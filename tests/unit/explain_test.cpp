@@ -13,7 +13,7 @@
 #include "model/engines/hardware.hpp"
 #include "model/engines/scalar.hpp"
 #include "model/golden/golden.hpp"
-#include "model/texture_memory.hpp"
+#include "model/host/texture_memory.hpp"
 #include "sim/config_file.hpp"
 #include "sim/cosim/random_scene.hpp"
 #include "sim/scene/load.hpp"

@@ -11,7 +11,7 @@
 #include "model/capture/capture.hpp"
 #include "model/golden/fog.hpp"
 #include "model/golden/golden.hpp"
-#include "model/host_stream.hpp"
+#include "model/host/primitive_stream.hpp"
 #include "model/stages/fog.hpp"
 #include "sim/scene/builtin.hpp"
 #include "sim/scene/random_state.hpp"

@@ -1,5 +1,5 @@
 // Alpha test, stencil, blending, dithering and masks: the arithmetic against real numbers and against tables of its own.
-#include "model/fragment_ops.hpp"
+#include "model/stages/fragment_ops.hpp"
 
 #include <gtest/gtest.h>
 

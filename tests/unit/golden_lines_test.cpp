@@ -6,7 +6,7 @@
 #include "model/golden/golden.hpp"
 #include "model/golden/line.hpp"
 #include "model/golden/primitive_assembly.hpp"
-#include "model/stages/primitive_assembly.hpp"
+#include "model/host/primitive_assembly.hpp"
 
 namespace halfplane {
 namespace {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "model/engines/functional.hpp"
-#include "model/host_stream.hpp"
+#include "model/host/primitive_stream.hpp"
 #include "model/stages/primitive_join.hpp"
 #include "sim/cosim/random_scene.hpp"
 #include "tests/hardware_scene.hpp"

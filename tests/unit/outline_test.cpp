@@ -10,7 +10,7 @@
 #include "model/engines/functional.hpp"
 #include "model/engines/scalar.hpp"
 #include "model/golden/golden.hpp"
-#include "model/pipeline.hpp"
+#include "model/host/primitives.hpp"
 
 namespace halfplane {
 namespace {

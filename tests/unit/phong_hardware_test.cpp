@@ -9,9 +9,9 @@
 #include "model/engines/cycle/cycle_model.hpp"
 #include "model/engines/hardware.hpp"
 #include "model/engines/scalar.hpp"
-#include "model/host_stream.hpp"
+#include "model/host/primitive_stream.hpp"
 #include "model/stages/light_unit.hpp"
-#include "model/stages/state_packets.hpp"
+#include "model/packets/state_packets.hpp"
 #include "sim/cosim/random_scene.hpp"
 
 namespace halfplane {

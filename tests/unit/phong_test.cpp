@@ -15,7 +15,7 @@
 #include "model/draw_states.hpp"
 #include "model/golden/golden.hpp"
 #include "model/golden/phong.hpp"
-#include "model/host_stream.hpp"
+#include "model/host/primitive_stream.hpp"
 #include "sim/scene/builtin.hpp"
 #include "sim/scene/mesh_scene.hpp"
 #include "sim/study/compare/compare.hpp"

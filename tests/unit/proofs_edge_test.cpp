@@ -6,7 +6,7 @@
 
 #include "../enumeration.hpp"
 #include "model/stages/cull.hpp"
-#include "model/stages/fill_rule.hpp"
+#include "model/study/fill_rule.hpp"
 #include "model/stages/triangle_setup.hpp"
 
 namespace halfplane {

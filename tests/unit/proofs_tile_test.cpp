@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "../enumeration.hpp"
-#include "model/fragment_ops.hpp"
+#include "model/stages/fragment_ops.hpp"
 #include "model/stages/coarse_raster.hpp"
 #include "model/stages/fine_raster.hpp"
 

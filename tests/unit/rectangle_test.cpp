@@ -9,8 +9,8 @@
 #include "model/engines/hardware.hpp"
 #include "model/engines/scalar.hpp"
 #include "model/golden/golden.hpp"
-#include "model/host_stream.hpp"
-#include "model/pipeline.hpp"
+#include "model/host/primitive_stream.hpp"
+#include "model/host/primitives.hpp"
 #include "sim/study/compare/compare.hpp"
 
 namespace halfplane {

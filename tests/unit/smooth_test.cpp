@@ -11,8 +11,8 @@
 #include "model/engines/scalar.hpp"
 #include "model/golden/golden.hpp"
 #include "model/golden/line.hpp"
-#include "model/stages/line_setup.hpp"
-#include "model/stages/smooth_raster.hpp"
+#include "model/host/line_setup.hpp"
+#include "model/host/smooth_raster.hpp"
 #include "sim/study/antialiasing/exact_area.hpp"
 #include "sim/study/compare/compare.hpp"
 

@@ -4,15 +4,15 @@
 #include <limits>
 
 #include "../scene_builder.hpp"
-#include "model/packet_words.hpp"
-#include "model/stages/clip.hpp"
+#include "model/packets/packet_words.hpp"
+#include "model/host/clip.hpp"
 #include "model/stages/cull.hpp"
-#include "model/stages/fill_rule.hpp"
+#include "model/study/fill_rule.hpp"
 #include "model/stages/hiz.hpp"
-#include "model/stages/homogeneous_setup.hpp"
+#include "model/study/homogeneous_setup.hpp"
 #include "model/stages/line_raster.hpp"
 #include "model/stages/triangle_setup.hpp"
-#include "model/stages/viewport.hpp"
+#include "model/host/viewport.hpp"
 
 namespace halfplane {
 namespace {

@@ -10,7 +10,7 @@
 #include "model/engines/functional.hpp"
 #include "model/engines/hardware.hpp"
 #include "model/engines/scalar.hpp"
-#include "model/host_stream.hpp"
+#include "model/host/primitive_stream.hpp"
 #include "sim/cosim/random_scene.hpp"
 
 namespace halfplane {

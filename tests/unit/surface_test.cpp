@@ -12,7 +12,7 @@
 #include "model/engines/hardware.hpp"
 #include "model/engines/scalar.hpp"
 #include "model/golden/golden.hpp"
-#include "model/host_stream.hpp"
+#include "model/host/primitive_stream.hpp"
 
 namespace halfplane {
 namespace {

@@ -1,5 +1,5 @@
 // Textures by themselves: formats, mipmaps, patterns; and their lines in captures.
-#include "model/texture.hpp"
+#include "model/formats/texture.hpp"
 
 #include <gtest/gtest.h>
 

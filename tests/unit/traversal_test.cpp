@@ -7,7 +7,7 @@
 #include "../triangle_families.hpp"
 #include "model/engines/functional.hpp"
 #include "model/engines/scalar.hpp"
-#include "model/stages/traversal.hpp"
+#include "model/study/traversal.hpp"
 #include "sim/scene/builtin.hpp"
 #include "sim/study/compare/compare.hpp"
 #include "sim/study/compare/double_draws.hpp"

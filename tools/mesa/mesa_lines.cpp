@@ -10,7 +10,7 @@
 #include <stdexcept>
 
 #include "model/engines/functional.hpp"
-#include "model/stages/primitive_assembly.hpp"
+#include "model/host/primitive_assembly.hpp"
 #include "sim/scene/load.hpp"
 #include "sim/show/image/framebuffer_files.hpp"
 #include "sim/show/image/panel.hpp"

@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "../../host_stream.hpp"
+#include "../../host/primitive_stream.hpp"
 #include "../../timing/memory.hpp"
 #include "../../timing/stream.hpp"
 #include "../render.hpp"

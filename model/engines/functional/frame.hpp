@@ -11,8 +11,8 @@
 #include <span>
 #include <vector>
 
-#include "../../fragment_ops.hpp"
-#include "../../pipeline.hpp"
+#include "../../stages/fragment_ops.hpp"
+#include "../../host/primitives.hpp"
 #include "../render.hpp"
 #include "prepared_scene.hpp"
 

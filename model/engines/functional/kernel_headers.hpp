@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "../../fragment_ops.hpp"
+#include "../../stages/fragment_ops.hpp"
 #include "../../stages/triangle_setup.hpp"
 #include "frame.hpp"
 #include "kernels.hpp"

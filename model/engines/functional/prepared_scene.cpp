@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "../../pipeline.hpp"
+#include "../../host/primitives.hpp"
 #include "../../stages/surface.hpp"
 
 namespace halfplane {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "../../draw_states.hpp"
-#include "../../packet_words.hpp"
+#include "../../packets/packet_words.hpp"
 #include "frame_renderer.hpp"
 
 namespace halfplane::functional {

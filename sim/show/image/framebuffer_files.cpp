@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "model/fragment_ops.hpp"
+#include "model/stages/fragment_ops.hpp"
 #include "png.hpp"
 #include "whole_file.hpp"
 

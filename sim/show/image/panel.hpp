@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "sim/show/image/picture.hpp"
-#include "sim/study/compare/coverage_class.hpp"
+#include "sim/show/image/coverage_class.hpp"
 
 namespace halfplane {
 

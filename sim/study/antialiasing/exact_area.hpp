@@ -8,7 +8,7 @@
 
 #include <vector>
 
-#include "model/packets.hpp"
+#include "model/packets/packets.hpp"
 #include "model/scene.hpp"
 
 namespace halfplane::antialiasing {

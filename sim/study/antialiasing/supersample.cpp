@@ -5,7 +5,7 @@
 #include <string>
 
 #include "model/golden/golden.hpp"
-#include "model/pipeline.hpp"
+#include "model/host/primitives.hpp"
 
 namespace halfplane::antialiasing {
 namespace {

@@ -8,7 +8,7 @@
 #include "model/engines/functional.hpp"
 #include "model/engines/scalar.hpp"
 #include "model/golden/golden.hpp"
-#include "model/host_stream.hpp"
+#include "model/host/primitive_stream.hpp"
 #include "sim/cosim/rtl_engine.hpp"
 #include "sim/show/report/hardware.hpp"
 #include "sim/study/bench/mesa_peer.hpp"

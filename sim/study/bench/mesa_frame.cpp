@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "model/config.hpp"
-#include "model/pipeline.hpp"
+#include "model/host/primitives.hpp"
 #include "sim/study/bench/mesa_operations.hpp"
 #include "sim/study/bench/mesa_texture.hpp"
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "coverage.hpp"
-#include "coverage_class.hpp"
+#include "../../show/image/coverage_class.hpp"
 #include "fragment_judge.hpp"
 #include "layers.hpp"
 #include "model/config.hpp"

@@ -9,7 +9,7 @@
 #include "line_coverage.hpp"
 #include "model/golden/exact.hpp"
 #include "model/golden/viewport.hpp"
-#include "model/pipeline.hpp"
+#include "model/host/primitives.hpp"
 #include "model/widths.hpp"
 
 namespace halfplane {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "model/engines/commands.hpp"
-#include "model/stages/homogeneous_setup.hpp"
-#include "model/stages/traversal.hpp"
+#include "model/study/homogeneous_setup.hpp"
+#include "model/study/traversal.hpp"
 
 namespace halfplane {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "model/config.hpp"
-#include "model/rules.hpp"
+#include "model/study/rules.hpp"
 #include "model/scene.hpp"
 
 namespace halfplane {

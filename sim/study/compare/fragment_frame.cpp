@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "model/fragment_ops.hpp"
+#include "model/stages/fragment_ops.hpp"
 #include "model/golden/viewport.hpp"
-#include "model/pipeline.hpp"
+#include "model/host/primitives.hpp"
 
 namespace halfplane {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/fragment_ops.hpp"
+#include "model/stages/fragment_ops.hpp"
 #include "model/golden/golden.hpp"
 
 namespace halfplane {

@@ -7,7 +7,7 @@
 #include <unordered_map>
 
 #include "model/golden/phong.hpp"
-#include "model/pipeline.hpp"
+#include "model/host/primitives.hpp"
 #include "model/stages/cull.hpp"
 
 namespace halfplane {

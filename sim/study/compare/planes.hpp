@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "model/attributes.hpp"
-#include "model/packets.hpp"
+#include "model/packets/packets.hpp"
 
 namespace halfplane {
 

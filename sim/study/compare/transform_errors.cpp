@@ -3,9 +3,9 @@
 #include <cmath>
 #include <vector>
 
-#include "model/stages/clip.hpp"
-#include "model/stages/primitive_assembly.hpp"
-#include "model/stages/viewport.hpp"
+#include "model/host/clip.hpp"
+#include "model/host/primitive_assembly.hpp"
+#include "model/host/viewport.hpp"
 #include "sim/scene/host_geometry.hpp"
 
 namespace halfplane {

@@ -2,7 +2,7 @@
 // the reference.
 #pragma once
 
-#include "model/depth_format.hpp"
+#include "model/formats/depth_format.hpp"
 
 namespace halfplane {
 

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "model/depth_format.hpp"
+#include "model/formats/depth_format.hpp"
 
 namespace halfplane {
 

@@ -1,6 +1,6 @@
 #include "sim/study/depth/eye_planes.hpp"
 
-#include "model/pipeline.hpp"
+#include "model/host/primitives.hpp"
 
 namespace halfplane {
 namespace {

@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "history.hpp"
-#include "model/rules.hpp"
+#include "model/study/rules.hpp"
 #include "sim/cosim/dut.hpp"
 
 namespace halfplane::explain {

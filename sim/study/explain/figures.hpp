@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "history.hpp"
-#include "model/pipeline.hpp"
-#include "model/rules.hpp"
+#include "model/host/primitives.hpp"
+#include "model/study/rules.hpp"
 
 namespace halfplane::explain {
 

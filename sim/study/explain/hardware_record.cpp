@@ -7,7 +7,7 @@
 
 #include "model/engines/cycle/cycle_model.hpp"
 #include "model/engines/hardware.hpp"
-#include "model/packet_words.hpp"
+#include "model/packets/packet_words.hpp"
 #include "sim/cosim/lockstep.hpp"
 
 namespace halfplane::explain {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "history.hpp"
-#include "model/host_stream.hpp"
+#include "model/host/primitive_stream.hpp"
 #include "sim/cosim/dut.hpp"
 
 namespace halfplane::explain {

@@ -15,9 +15,9 @@
 
 #include "model/golden/exact.hpp"
 #include "model/golden/golden.hpp"
-#include "model/packets.hpp"
-#include "model/rules.hpp"
-#include "model/sample_pattern.hpp"
+#include "model/packets/packets.hpp"
+#include "model/study/rules.hpp"
+#include "model/formats/sample_pattern.hpp"
 #include "model/stages/coarse_raster.hpp"
 #include "model/stages/surface.hpp"
 #include "sim/study/compare/surface_oracle.hpp"

@@ -6,7 +6,7 @@
 #pragma once
 
 #include "history.hpp"
-#include "model/pipeline.hpp"
+#include "model/host/primitives.hpp"
 
 namespace halfplane::explain {
 

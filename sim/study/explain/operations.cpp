@@ -1,7 +1,7 @@
 #include "operations.hpp"
 
 #include "model/draw_states.hpp"
-#include "model/fragment_ops.hpp"
+#include "model/stages/fragment_ops.hpp"
 
 namespace halfplane::explain {
 namespace {

@@ -1,9 +1,9 @@
 // The operations on a fragment, one after the other, with what each finds and leaves: the table behind "colours before and
-// after". The arithmetic is the model's own (model/fragment_ops.hpp); what all of them leave is held against it.
+// after". The arithmetic is the model's own (model/stages/fragment_ops.hpp); what all of them leave is held against it.
 #pragma once
 
 #include "history.hpp"
-#include "model/pipeline.hpp"
+#include "model/host/primitives.hpp"
 
 namespace halfplane::explain {
 

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <optional>
 
-#include "model/fragment_ops.hpp"
+#include "model/stages/fragment_ops.hpp"
 #include "model/widths.hpp"
 
 namespace halfplane::explain {

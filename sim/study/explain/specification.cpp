@@ -6,7 +6,7 @@
 #include "figures.hpp"
 #include "model/engines/commands.hpp"
 #include "model/engines/render.hpp"
-#include "model/stages/smooth_raster.hpp"
+#include "model/host/smooth_raster.hpp"
 #include "operations.hpp"
 
 namespace halfplane::explain {

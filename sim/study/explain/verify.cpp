@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "model/packet_words.hpp"
+#include "model/packets/packet_words.hpp"
 #include "model/stages/depth_test.hpp"
 #include "model/stages/line_raster.hpp"
 #include "sim/cosim/arrows.hpp"

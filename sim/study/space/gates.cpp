@@ -10,7 +10,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "model/raster_pkg.hpp"
+#include "model/generate/raster_pkg.hpp"
 #include "sim/interrupt.hpp"
 
 namespace halfplane {

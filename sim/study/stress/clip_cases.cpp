@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/pipeline.hpp"
+#include "model/host/primitives.hpp"
 #include "sim/study/stress/cases.hpp"
 #include "sim/study/stress/shapes.hpp"
 

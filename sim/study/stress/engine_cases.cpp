@@ -5,7 +5,7 @@
 #include "model/engines/scalar.hpp"
 #include "model/golden/exact.hpp"
 #include "model/stages/interpolate.hpp"
-#include "model/stages/traversal.hpp"
+#include "model/study/traversal.hpp"
 #include "sim/cosim/random_scene.hpp"
 #include "sim/cosim/specification.hpp"
 #include "sim/study/stress/cases.hpp"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/fragment_ops.hpp"
+#include "model/stages/fragment_ops.hpp"
 #include "model/golden/exact.hpp"
 #include "model/stages/interpolate.hpp"
 #include "sim/study/stress/cases.hpp"

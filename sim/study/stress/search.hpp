@@ -2,7 +2,7 @@
 // the grid of snapped values.
 #pragma once
 
-#include "model/packets.hpp"
+#include "model/packets/packets.hpp"
 #include "sim/study/stress/unit.hpp"
 
 namespace halfplane::stress {

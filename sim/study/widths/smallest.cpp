@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <map>
 
-#include "model/packet_words.hpp"
+#include "model/packets/packet_words.hpp"
 #include "model/stages/surface.hpp"
 #include "model/widths.hpp"
 #include "sim/interrupt.hpp"

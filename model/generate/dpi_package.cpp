@@ -1,0 +1,127 @@
+#include "dpi_package.hpp"
+
+#include <algorithm>
+#include <sstream>
+
+#include "../packets/packets.hpp"
+#include "../vectors/stages.hpp"
+
+namespace halfplane::vectors {
+namespace {
+
+std::string type_of(Arrow arrow) {
+  return with_packet_type(arrow,
+                          []<class Packet>(std::type_identity<Packet>) { return std::string(Packet::name) + "_t"; });
+}
+
+bool is_there(const JudgedStage& stage, const Config& config) {
+  if (!stage.can_run()) return false;
+  try {
+    require_stage(stage, config);
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+/// The widest packet: SystemVerilog gives an imported function one type.
+int widest(const Widths& widths) {
+  int bits = 0;
+  for (const JudgedStage& stage : judged_stages())
+    for (const auto* ports : {&stage.in, &stage.out})
+      for (const Port& port : *ports) bits = std::max(bits, bits_of(port.like, widths));
+  return bits;
+}
+
+constexpr std::string_view kImports = R"(
+  import "DPI-C" function int halfplane_abi();
+  import "DPI-C" function string halfplane_last_error();
+  import "DPI-C" function chandle halfplane_config_new(input string preset);
+  import "DPI-C" function int halfplane_config_set(input chandle config_i, input string key, input string value);
+  import "DPI-C" function longint unsigned halfplane_config_id(input chandle config_i);
+  import "DPI-C" function void halfplane_config_free(input chandle config_i);
+  import "DPI-C" function chandle halfplane_stage_new(input chandle config_i, input string name);
+  import "DPI-C" function int halfplane_stage_put(input chandle stage, input int port, input bit [PACKET_BITS-1:0] words);
+  import "DPI-C" function int halfplane_stage_get(input chandle stage, input int port, output bit [PACKET_BITS-1:0] words);
+  import "DPI-C" function void halfplane_stage_free(input chandle stage);
+)";
+
+constexpr std::string_view kHelpers = R"(
+  // A stage from reset; halfplane_stage_free() gives it back. An error ends the simulation with its one line.
+  function automatic chandle new_stage(string name);
+    chandle made;
+    chandle settings = new_config();
+    made = halfplane_stage_new(settings, name);
+    halfplane_config_free(settings);
+    if (made == null) $fatal(1, "%s", halfplane_last_error());
+    return made;
+  endfunction
+
+  function automatic void put(chandle stage, int port, bit [PACKET_BITS-1:0] words);
+    if (halfplane_stage_put(stage, port, words) != 0) $fatal(1, "%s", halfplane_last_error());
+  endfunction
+
+  function automatic bit get(chandle stage, int port, output bit [PACKET_BITS-1:0] words);
+    int got = halfplane_stage_get(stage, port, words);
+    if (got < 0) $fatal(1, "%s", halfplane_last_error());
+    return got == 1;
+  endfunction
+)";
+
+void print_config(std::ostream& out, const Config& config) {
+  const Config base = preset(config.preset);
+  out << "\n  // The configuration of raster_pkg.\n  function automatic chandle new_config();\n"
+         "    chandle made = halfplane_config_new(\""
+      << config.preset
+      << "\");\n    int failed = 0;\n"
+         "    if (halfplane_abi() != 1) $fatal(1, \"libhalfplane_c has another ABI than this package\");\n"
+         "    if (made == null) $fatal(1, \"%s\", halfplane_last_error());\n";
+  for (const Setting& setting : settings())
+    if (const std::string value = get(config, setting); value != get(base, setting))
+      out << "    if (failed == 0) failed = halfplane_config_set(made, \"" << setting.key << "\", \"" << value
+          << "\");\n";
+  out << "    if (failed != 0) $fatal(1, \"%s\", halfplane_last_error());\n"
+         "    if (halfplane_config_id(made) != CONFIG_ID)\n"
+         "      $fatal(1, \"raster_pkg is of another configuration than halfplane_dpi and its library\");\n"
+         "    return made;\n  endfunction\n";
+}
+
+void print_stage(std::ostream& out, const JudgedStage& stage) {
+  const std::string name(info(stage.stage).name);
+  out << "\n  // " << name << "\n  function automatic chandle new_" << name << "();\n    return new_stage(\"" << name
+      << "\");\n  endfunction\n";
+  for (std::size_t i = 0; i < stage.in.size(); ++i)
+    out << "  function automatic void put_" << name << "_" << stage.in[i].name << "(chandle stage, "
+        << type_of(stage.in[i].like) << " packet);\n    put(stage, " << i
+        << ", PACKET_BITS'(packet));\n  endfunction\n";
+  for (std::size_t i = 0; i < stage.out.size(); ++i) {
+    const std::string type = type_of(stage.out[i].like);
+    out << "  function automatic bit get_" << name << "_" << stage.out[i].name << "(chandle stage, output " << type
+        << " packet);\n    bit [PACKET_BITS-1:0] words;\n    bit is_there = get(stage, " << i
+        << ", words);\n    packet = " << type << "'(words[$bits(" << type
+        << ")-1:0]);\n    return is_there;\n  endfunction\n";
+  }
+}
+
+}  // namespace
+
+std::string dpi_package(const Config& config) {
+  validate(config);
+  require_sampled_hardware(config, "the RTL");
+  std::ostringstream out;
+  out << "// Generated by `halfplane config --dpi`; do not edit. The specification of every stage, through DPI-C: link "
+         "with\n"
+         "// libhalfplane_c. put_STAGE_PACKET gives a stage its next packet; get_STAGE_PACKET is 1 if one has come "
+         "out.\n"
+         "package halfplane_dpi;\n  import raster_pkg::*;\n\n  localparam int PACKET_BITS = "
+      << widest(derive_widths(config)) << ";  // the widest packet\n"
+      << kImports;
+  print_config(out, config);
+  out << kHelpers;
+  for (const JudgedStage& stage : judged_stages())
+    if (is_there(stage, config)) print_stage(out, stage);
+  out << "\nendpackage\n";
+  return out.str();
+}
+
+}  // namespace halfplane::vectors

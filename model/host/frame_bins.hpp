@@ -1,0 +1,133 @@
+// The primitives of a frame, sorted by bin (frame.order bins).
+//
+// A bin is an aligned rectangle of pixels whose blocks have a cache line each: nothing leaves the chip while it is drawn.
+// In: primitives in program order. Out: bin by bin, those that touch it, in program order, each cut to the bin. A pixel lies
+// in one bin, so everything that happens to it keeps its order, and the picture is that of program order.
+//
+// All of a frame must be here before the first primitive goes: memory is primitives, and 4 bytes for each of their bins.
+//
+// A bin in which the same is drawn as in the frame before holds the same picture, and is left alone (BinContents): its
+// signature is over everything that its pixels depend on, in order. Signatures of 128 bits (signature.hpp) are equal by
+// chance once in 2^128 comparisons.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "../config.hpp"
+#include "host_primitive.hpp"
+#include "../signature.hpp"
+#include "line_setup.hpp"
+
+namespace halfplane {
+
+/// What line_setup needs to begin a line again in each bin.
+struct WholeLine {
+  SnappedVertex start, end;
+  LineRule rule = LineRule::diamond;
+  bool drops_last = false;
+  PixelBounds limit;  ///< the scissor, inside the target
+};
+
+/// What memory holds of a target that was drawn in bins.
+struct BinContents {
+  int width = 0, height = 0;   ///< of the target, pixels
+  std::vector<Signature> bin;  ///< row by row; empty: nobody knows
+  void forget() { bin.clear(); }
+};
+
+/// Whether frames that follow each other are compared bin by bin: no bin has depths to be kept.
+[[nodiscard]] inline bool compares_bins(const Config& config) {
+  return config.frame_order == FrameOrder::bins && config.frame_store == FrameStore::color;
+}
+
+/// The signature of what draws share, made again only where another one comes.
+template <class Shared>
+class SharedSignature {
+ public:
+  /// `add`: adds what counts of it to a hash.
+  [[nodiscard]] const Signature& signature_of(const std::shared_ptr<const Shared>& shared, const auto& add) {
+    if (shared != last_) {
+      last_ = shared;
+      SignatureHash hash;
+      add(*shared, hash);
+      signature_ = hash.signature();
+    }
+    return signature_;
+  }
+
+ private:
+  std::shared_ptr<const Shared> last_;
+  Signature signature_;
+};
+
+class FrameBins {
+ public:
+  /// Of a target of width x height pixels. `compares`: bins are told from those of the frame before, on hardware with these clears.
+  FrameBins(const Widths& widths, int width, int height, std::optional<FrameClears> compares = {});
+
+  /// Whether bins are made of whole tiles, as a clear of one of them needs it.
+  [[nodiscard]] static bool has_whole_tiles(const Widths& widths);
+
+  /// Nothing has been added since the last primitive went.
+  [[nodiscard]] bool is_empty() const { return items_.empty(); }
+
+  /// A triangle that faces the right way, a point, or a rectangle. Returns whether it may cover a sample.
+  bool add(const HostPrimitive& primitive);
+
+  /// A line with a pixel inside its limit; `primitive` without its setup.
+  void add(const HostPrimitive& primitive, const WholeLine& line);
+
+  /// The frame is complete. `drops_depth`: nobody looks at the depths that it leaves behind. With `held`: bins that hold what
+  /// is drawn in them over `clears` are left out, where that is worth it; then it is what memory holds behind this frame.
+  void close(bool drops_depth, BinContents* held = nullptr, const Signature& clears = {});
+
+  /// Behind close(): the boxes of the bins that must be cleared, each by itself; none: all of the target at once.
+  [[nodiscard]] const std::optional<std::vector<PixelBounds>>& cleared() const { return cleared_; }
+  /// Something will come of next().
+  [[nodiscard]] bool has_next() const;
+
+  /// Behind close(): the next primitive; none behind the last, and then a new frame may be added.
+  [[nodiscard]] std::optional<HostPrimitive> next();
+
+  [[nodiscard]] std::uint64_t bins() const { return bins_; }    ///< with something in them, of all frames closed so far
+  [[nodiscard]] std::uint64_t pairs() const { return pairs_; }  ///< triangles, lines and points in them
+  /// Bins with something in them that were left alone.
+  [[nodiscard]] std::uint64_t left_out() const { return left_out_; }
+
+ private:
+  static constexpr std::uint32_t kNoLine = ~0U;
+  struct Item {
+    PrimitivePacket packet;
+    std::uint32_t primitive = 0, command = 0;
+    std::uint32_t line = kNoLine;  ///< index into lines_
+    UnitWords units{};
+    Signature signature{};  ///< where bins are compared
+  };
+
+  [[nodiscard]] PixelBounds box_of(std::size_t bin) const;
+  template <class Touches>
+  bool add_to_bins(const PixelBounds& box, Touches&& touches);
+  [[nodiscard]] HostPrimitive part(const Item& item, const PixelBounds& bin) const;
+  [[nodiscard]] Signature signature_of(const HostPrimitive& primitive, const WholeLine* line);
+  void leave_out_equal(BinContents& held, const Signature& clears);
+  [[nodiscard]] std::uint64_t least_cycles(std::size_t bin) const;
+
+  Widths widths_;
+  int target_width_, target_height_;
+  std::optional<FrameClears> compares_;
+  int width_, height_;  ///< of a bin, pixels
+  std::size_t columns_;
+  std::vector<Item> items_;
+  std::vector<WholeLine> lines_;
+  std::vector<std::vector<std::uint32_t>> bin_;  ///< row by row: indices into items_
+  bool is_closed_ = false;
+  std::size_t bin_next_ = 0, item_next_ = 0;  ///< what goes next
+  std::uint64_t bins_ = 0, pairs_ = 0, left_out_ = 0;
+  std::optional<std::vector<PixelBounds>> cleared_;
+  SharedSignature<FogTable> fog_;
+  SharedSignature<PhongLight> light_;
+};
+
+}  // namespace halfplane

@@ -1,0 +1,584 @@
+#include "primitive_stream.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "../stages/fragment_ops.hpp"
+#include "../stages/color_packets.hpp"
+#include "../packets/state_packets.hpp"
+#include "../stages/surface.hpp"
+#include "../stages/texture_packets.hpp"
+
+namespace halfplane {
+namespace {
+
+/// A primitive without vertices: one depth and one colour over its whole box.
+PrimitivePacket flat_packet(PrimitiveKind kind, const Rect& rect) {
+  PrimitivePacket packet;
+  packet.kind = kind;
+  packet.state.depth_test = DepthFunc::always;
+  packet.box = to_box({rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1});
+  return packet;
+}
+
+void clear_depth(PrimitivePacket& packet, double z, const Config& config) {
+  packet.state.depth_write = true;
+  for (auto& code : packet.vertex.code) code[kDepthPlane] = snap_depth(z, config.depth_bits);
+}
+
+void clear_color(PrimitivePacket& packet, const std::array<double, 4>& color, const Config& config) {
+  packet.state.color_write = true;
+  for (auto& code : packet.vertex.code) copy_color(code, snap_codes(0, color, config), config);
+}
+
+/// The command if it is a clear of the whole target.
+const Clear* whole_clear(const Scene& scene, const Command& command) {
+  const auto* clear = std::get_if<Clear>(&command);
+  return clear != nullptr && clear_rect(scene, *clear) == Rect{0, 0, scene.width, scene.height} ? clear : nullptr;
+}
+
+}  // namespace
+
+/// Whether all clears of the whole target are in front of everything else, but for those of colours alone: then its bins begin
+/// once.
+bool begins_once(const Scene& scene) {
+  bool is_first = true;
+  for (const Command& command : scene.commands) {
+    const Clear* clear = whole_clear(scene, command);
+    if (!is_first && clear != nullptr && (clear->depth || clear->stencil)) return false;
+    is_first = is_first && clear != nullptr;
+  }
+  return true;
+}
+
+std::string stream_fault(const HostPrimitive& primitive, bool is_first) {
+  const PrimitivePacket& packet = primitive.packet;
+  if (is_first && packet.kind == PrimitiveKind::state) return "";
+  if (is_first && (packet.kind != PrimitiveKind::fast_clear || !packet.state.depth_write || !packet.state.color_write))
+    return "the stream does not begin with a fast clear of depth and colour: the flags of tiles are undefined";
+  if (packet.kind == PrimitiveKind::fast_clear && packet.state.clears_bin() && packet.state.depth_write)
+    return "a fast clear of one bin clears depth, too: that is of the whole target";
+  if (packet.kind == PrimitiveKind::line && !primitive.line)
+    return "the place of a line comes without its setup: primitive_join would wait for its pixels for good";
+  return "";
+}
+
+HostStream::HostStream(const Scene& scene, const Config& config, BinContents* held)
+    : scene_(scene), config_(config), vertices_(scene.vertices.size()) {
+  validate(config);
+  check_hardware_scene(scene, config);
+  widths_ = derive_widths(config);
+  if (has_texture_planes(config)) textures_.emplace(scene, config);
+  if (config.frame_order == FrameOrder::bins) {
+    const bool compares =
+        held != nullptr && compares_bins(config) && FrameBins::has_whole_tiles(widths_) && begins_once(scene);
+    if (compares) held_ = held;
+    bins_.emplace(widths_, scene.width, scene.height, compares ? std::optional(config.frame_clears) : std::nullopt);
+    counters_.bins = 0;
+  }
+  if (held != nullptr && held_ == nullptr) held->forget();
+  const Clear* clear = scene.commands.empty() ? nullptr : whole_clear(scene, scene.commands.front());
+  if (clear != nullptr && clear->depth && clear->color) return;
+  PrimitivePacket first = fast_clear();
+  clear_depth(first, 1.0, config);
+  clear_color(first, {0, 0, 0, 255}, config);
+  HostPrimitive out = host_primitive(first, 0);
+  if (has_stencil(config)) out.units.stencil.test[0] = pack_test(replacing_stencil(0));
+  out.command = HostPrimitive::kNoCommand;
+  send(out);
+}
+
+std::optional<HostPrimitive> HostStream::next() {
+  if (in_front_.empty()) {
+    std::optional<HostPrimitive> primitive = next_primitive();
+    if (!primitive) return primitive;
+    set_colors(*primitive);
+    set_stencil(*primitive);
+    if (textures_ && primitive->packet.kind == PrimitiveKind::triangle) {
+      set_light(*primitive);
+      set_texture(*primitive);
+      set_fog(*primitive);
+    }
+    in_front_.push_back(std::move(*primitive));
+  }
+  HostPrimitive first = std::move(in_front_.front());
+  in_front_.pop_front();
+  return first;
+}
+
+/// The registers of colours that have another value than wanted. At the start of a scene nobody knows what they hold.
+void HostStream::set_colors(const HostPrimitive& primitive) {
+  const auto set = [&](StateRegister which, std::optional<std::uint32_t> ColorWords::*word) {
+    const auto& wanted = primitive.units.colors.*word;
+    if (!wanted || wanted == colors_.*word) return;
+    colors_.*word = wanted;
+    in_front_.push_back(state_token(which, *wanted, primitive));
+  };
+  set(StateRegister::color_ops, &ColorWords::ops);
+  set(StateRegister::blend_constant, &ColorWords::constant);
+  set(StateRegister::alpha_test, &ColorWords::alpha);
+}
+
+/// Likewise those of the stencil. What is the same for both sides goes in one token.
+void HostStream::set_stencil(const HostPrimitive& primitive) {
+  const auto set = [&](StateRegister which, auto member) {
+    const auto& wanted = primitive.units.stencil.*member;
+    auto& held = stencil_.*member;
+    std::uint32_t sides = 0;
+    for (const std::size_t n : {0U, 1U})
+      if (wanted[n] && wanted[n] != held[n]) sides |= 1U << n;
+    if (sides == 3 && wanted[0] == wanted[1])
+      in_front_.push_back(state_token(which, with_sides(which, *wanted[0], sides), primitive));
+    else
+      for (const std::size_t n : {0U, 1U})
+        if ((sides >> n & 1) != 0)
+          in_front_.push_back(state_token(which, with_sides(which, *wanted[n], 1U << n), primitive));
+    for (const std::size_t n : {0U, 1U})
+      if (wanted[n]) held[n] = wanted[n];
+  };
+  set(StateRegister::stencil_test, &StencilWords::test);
+  set(StateRegister::stencil_update, &StencilWords::update);
+}
+
+/// What the texture unit must be told in front of a triangle. The first state of a scene drops what is left of another one's
+/// texels.
+void HostStream::set_texture(const HostPrimitive& triangle) {
+  if (triangle.units.texture_state != texture_state_) {
+    TextureState next = TextureState::unpack(triangle.units.texture_state);
+    next.invalidates = !texture_state_;
+    texture_state_ = triangle.units.texture_state;
+    in_front_.push_back(state_token(StateRegister::texture, next.pack(), triangle));
+  }
+  if (config_.texture_unit != TextureUnitKind::trilinear || !TextureState::unpack(triangle.units.texture_state).enable)
+    return;
+  if (triangle.units.texture_levels != texture_levels_) {
+    texture_levels_ = triangle.units.texture_levels;
+    in_front_.push_back(state_token(StateRegister::texture_levels, triangle.units.texture_levels, triangle));
+  }
+  if (!triangle.units.texture_lines || triangle.units.texture_lines == texture_lines_) return;
+  texture_lines_ = triangle.units.texture_lines;
+  const int part_bits = line_part_bits(state_word_bits(widths_));
+  for (int n = 0; n < line_parts(part_bits); ++n)
+    in_front_.push_back(
+        state_token(StateRegister::texture_lines, line_part(*triangle.units.texture_lines, part_bits, n), triangle));
+}
+
+/// The fog of a triangle, and those lines of its table that differ from what the unit has.
+void HostStream::set_fog(const HostPrimitive& triangle) {
+  if (!triangle.units.looks_at_fog) return;
+  const FogTable* table = triangle.units.fog.get();
+  const FogState next = table != nullptr ? FogState{true, table->octave_bits(), table->color()} : FogState{};
+  const auto send_word = [&](std::uint64_t word) {
+    in_front_.push_back(state_token(StateRegister::texture_levels, word, triangle));
+  };
+  if (fog_state_ != next) send_word(next.pack());
+  fog_state_ = next;
+  if (table == nullptr) return;
+  for (std::size_t n = 0; n < table->lines().size(); ++n) {
+    if (fog_line_[n] == table->lines()[n]) continue;
+    fog_line_[n] = table->lines()[n];
+    send_word(fog_line_word(n, *fog_line_[n]));
+  }
+}
+
+/// The light of a triangle: what differs from what the unit has, of its registers and of the lines of its table.
+void HostStream::set_light(const HostPrimitive& triangle) {
+  if (!triangle.units.looks_at_light) return;
+  const PhongLight* light = triangle.units.light.get();
+  const auto send_word = [&](std::uint64_t word) {
+    in_front_.push_back(state_token(StateRegister::texture_levels, word, triangle));
+  };
+  const auto set = [&](auto& held, const auto& wanted, std::uint64_t word) {
+    if (held == wanted) return;
+    held = wanted;
+    send_word(word);
+  };
+  if (light == nullptr) return set(light_word_[0], no_light_word(), no_light_word());
+  const auto words = light_words(light->registers());
+  for (std::size_t n = 0; n < words.size(); ++n) set(light_word_[n], words[n], words[n]);
+  for (std::size_t n = 0; n < light->lines().size(); ++n)
+    set(light_line_[n], light->lines()[n], light_line_word(n, light->lines()[n]));
+}
+
+/// A register of a unit has its value from here on.
+HostPrimitive HostStream::state_token(StateRegister which, uint128 word, const HostPrimitive& in_front_of) const {
+  PrimitivePacket packet;
+  packet.kind = PrimitiveKind::state;
+  packet.state = sets_register(which);
+  for (auto& code : packet.vertex.code) set_state_word(code, word, widths_);
+  HostPrimitive out = host_primitive(packet, in_front_of.primitive);
+  out.command = in_front_of.command;
+  return out;
+}
+
+std::optional<HostPrimitive> HostStream::next_primitive() {
+  while (pending_first_ == pending_.size()) {
+    if (bins_)
+      if (auto part = bins_->next()) return part;
+    if (is_finished_) return std::nullopt;
+    pending_.clear();
+    pending_first_ = 0;
+    advance();
+  }
+  return pending_[pending_first_++];
+}
+
+/// Does the next piece of work; it may send nothing.
+void HostStream::advance() {
+  if (assembled_next_ < assembled_.size()) {
+    send_next_primitive();
+  } else if (bins_ && (!bins_->is_empty() || !clears_.empty()) &&
+             (command_ == scene_.commands.size() || (!held_ && begins_bins(scene_.commands[command_])))) {
+    close_bins();
+  } else if (command_ < scene_.commands.size()) {
+    const Command& command = scene_.commands[command_++];
+    if (const auto* clear = std::get_if<Clear>(&command)) send_clear(*clear);
+    if (const auto* draw = std::get_if<Draw>(&command)) start_draw(*draw);
+  } else {
+    PrimitivePacket flush = flat_packet(PrimitiveKind::flush, {0, 0, scene_.width, scene_.height});
+    if (config_.frame_store == FrameStore::color) flush.state.depth_test = DepthFunc::never;  // drops_depth()
+    send(host_primitive(flush, primitive_));
+    pending_.back().command = HostPrimitive::kNoCommand;
+    is_finished_ = true;
+  }
+}
+
+void HostStream::close_bins() {
+  SignatureHash clears;
+  for (const HostPrimitive& clear : clears_) {
+    for (const std::uint32_t code : clear.packet.vertex.code[0]) clears.add(code);
+    clears.add(clear.packet.state.depth_write);
+    clears.add(clear.packet.state.color_write);
+    clears.add(clear.units.stencil.test[0].value_or(0));
+  }
+  bins_->close(config_.frame_store == FrameStore::color, held_, clears.signature());
+  counters_.bins = bins_->bins();
+  counters_.pairs = bins_->pairs();
+  counters_.skipped.bins = bins_->left_out();
+  send_clears();
+}
+
+/// The clears that waited for the bins: as they came, or, where some bins stay as they are, the last colour in each of the
+/// others, and then depth, if anything comes behind it.
+void HostStream::send_clears() {
+  if (!bins_->cleared()) {
+    pending_.insert(pending_.end(), clears_.begin(), clears_.end());
+  } else {
+    const auto has_color = [](const HostPrimitive& clear) { return clear.packet.state.color_write; };
+    if (const auto last = std::find_if(clears_.rbegin(), clears_.rend(), has_color); last != clears_.rend()) {
+      HostPrimitive part = *last;
+      part.packet.state.depth_test = DepthFunc::equal;  // clears_bin()
+      part.packet.state.depth_write = false;
+      part.units.stencil = {};
+      for (const PixelBounds& box : *bins_->cleared()) {
+        part.packet.box = to_box(box);
+        pending_.push_back(part);
+      }
+    }
+    for (HostPrimitive& clear : clears_) {
+      if (!clear.packet.state.depth_write || !bins_->has_next()) continue;
+      clear.packet.state.color_write = false;
+      pending_.push_back(clear);
+    }
+  }
+  clears_.clear();
+}
+
+/// Of a texture, all that can be read of it.
+Signature HostStream::texels_of(std::size_t texture) {
+  texels_.resize(scene_.textures.size());
+  std::optional<Signature>& known = texels_[texture];
+  if (!known) known = signature_of(scene_.textures[texture]);
+  return *known;
+}
+
+void HostStream::start_draw(const Draw& draw) {
+  if (draw.outside != 0) {
+    const std::size_t count = primitive_count(scene_, draw);
+    primitive_ += static_cast<std::uint32_t>(count);
+    counters_.primitives_in += count;
+    counters_.culled += count;
+    return;
+  }
+  context_.emplace(scene_, config_, draw, static_cast<std::uint32_t>(command_ - 1));
+  note_words(draw_packet(PrimitiveKind::triangle, {}).state);
+  assembled_.clear();
+  assembled_next_ = 0;
+  for_each_primitive(scene_, draw, context_->state.provoking,
+                     [this](const AssembledPrimitive& assembled) { assembled_.push_back(assembled); });
+}
+
+void HostStream::send_next_primitive() {
+  const AssembledPrimitive& assembled = assembled_[assembled_next_++];
+  if (drawn_as(context_->state, context_->draw.topology) != PrimitiveType::triangle) {
+    send_outline(assembled);
+  } else {
+    pieces_.clear();
+    bool is_culled =
+        true;  // nothing is left to cull: no packet can say that a rectangle is empty, and bins hold no others
+    if (!bins_ && context_->rect.width > 0 && context_->rect.height > 0)
+      is_culled = geometry_for_hardware(*context_, vertices_, assembled.index, primitive_, counters_, pieces_);
+    else
+      geometry(*context_, vertices_, assembled.index, primitive_, Skip{}, counters_, pieces_);
+    for (const Triangle& piece : pieces_) send_triangle(piece, is_culled);
+  }
+  ++primitive_;
+}
+
+/// Lines go beside a packet that holds their place, strand by strand, rectangles as triangles, points as boxes: lines
+/// and points with a pixel at least.
+void HostStream::send_outline(const AssembledPrimitive& assembled) {
+  outline_.clear();
+  geometry(*context_, widths_, vertices_, assembled, primitive_, counters_, outline_);
+  if (!bins_ && !outline_.triangles.empty()) --counters_.drawn;  // in program order the hardware counts triangles
+  for (const LinePrimitive& line : outline_.lines) send_line(line);
+  for (const Triangle& triangle : outline_.triangles) send_triangle(triangle, true);
+  for (const PointPrimitive& point : outline_.points)
+    for_each_run(point, widths_.grid_bits, [&](const PixelBounds& box) {
+      PrimitivePacket packet = draw_packet(PrimitiveKind::point, box);
+      packet.vertex.code.fill(point.drawn.at.code);
+      send(drawn_primitive(packet, primitive_));
+    });
+}
+
+void HostStream::send_line(const LinePrimitive& line) {
+  const LineSetup& setup = line.setup;
+  HostPrimitive place =
+      drawn_primitive(draw_packet(PrimitiveKind::line, {setup.x, setup.y, setup.x, setup.y}), primitive_);
+  if (bins_) {
+    const Rect& rect = context_->rect;
+    bins_->add(place, {line.drawn.start,
+                       line.drawn.end,
+                       context_->state.line_rule,
+                       line.drawn.drops_last,
+                       {rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1}});
+    return;
+  }
+  place.line = setup;
+  place.line->primitive_id = place.packet.primitive_id;
+  send(place);
+}
+
+PrimitivePacket HostStream::draw_packet(PrimitiveKind kind, const PixelBounds& box) const {
+  const State& state = context_->state;
+  PrimitivePacket packet;
+  packet.kind = kind;
+  packet.state = fragment_state(state, config_.color_format);
+  if (const auto& sides = context_->fragment_ops.stencil) (void)set_stencil_flags(packet.state, *sides);
+  if (widths_.has_samples != 0)
+    packet.state.masked_samples =
+        static_cast<std::uint8_t>(~drawn_samples(state) & ((1U << widths_.pixel_samples) - 1));
+  packet.box = to_box(box);
+  return packet;
+}
+
+void HostStream::send_triangle(const Triangle& triangle, bool is_culled) {
+  const State& state = context_->state;
+  const Rect& rect = context_->rect;
+  PrimitivePacket packet =
+      draw_packet(PrimitiveKind::triangle, {rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1});
+  packet.cull = is_culled ? Cull::none : state.cull;
+  packet.front_cw = state.front == FrontFace::cw;
+  set_vertices(packet.vertex, triangle.v);
+  HostPrimitive out = drawn_primitive(packet, triangle.primitive);
+  out.units.looks_at_fog = config_.fog_units != 0 && state.color_write;
+  if (out.units.looks_at_fog && state.fog) out.units.fog = context_->fog;
+  out.units.looks_at_light = config_.shade_units != 0 && state.color_write;
+  if (out.units.looks_at_light) out.units.light = context_->phong;
+  if (textures_ && state.texture) set_coordinates(triangle, out);
+  if (state.color_interp == ColorInterp::perspective) set_colors_over_w(triangle, out.packet);
+  if (out.units.fog) set_distance(triangle, out);
+  if (out.units.light) set_normals(triangle, out.packet);
+  send(out);
+}
+
+/// Codes of a plane at the vertices, in the bits that a packet has for them.
+void HostStream::set_plane(std::size_t plane, const auto& codes, PrimitivePacket& packet) const {
+  for (std::size_t i = 0; i < 3; ++i)
+    packet.vertex.code[i][plane] = static_cast<std::uint32_t>(
+        wrap_unsigned(static_cast<std::uint64_t>(codes[i]), widths_.of_plane(plane).code.bits));
+}
+
+/// Q and P of the vertices, how to read them back, and what the texture unit must be set to.
+void HostStream::set_coordinates(const Triangle& triangle, HostPrimitive& out) {
+  const State& state = context_->state;
+  require_positive_w(*context_, triangle);
+  const Texture& texture = scene_.textures[*state.texture];
+  const PerspectiveFormat format = perspective_format(config_);
+  const TextureCoordinates coordinates = texture_coordinates(triangle.surface, state, texture, format);
+  PrimitivePacket& packet = out.packet;
+  set_plane(widths_.q_plane, coordinates.q, packet);
+  for (const std::size_t axis : {0U, 1U}) {
+    const OverW& over_w = coordinates.over_w[axis];
+    set_plane(widths_.q_plane + 1 + axis, over_w.p, packet);
+    const OverWScale scale = over_w_scale(over_w, format.coordinate);
+    packet.coordinates.shift[axis] = scale.shift;
+    packet.coordinates.reach[axis] = scale.reach;
+    packet.coordinates.origin[axis] = coordinates.reference[axis];
+  }
+  out.units.texture_state = texture_state(texture, state, textures_->base(*state.texture)).pack();
+  if (held_ != nullptr) out.units.texels = texels_of(*state.texture);
+  if (config_.texture_unit == TextureUnitKind::trilinear) set_levels(triangle, coordinates, format, out);
+}
+
+/// Q of the vertices, and where in the fog's table it lies. A texture has brought the same Q.
+void HostStream::set_distance(const Triangle& triangle, HostPrimitive& out) const {
+  require_positive_w(*context_, triangle);
+  const PerspectiveFormat format = perspective_format(config_);
+  const std::array<double, 3> w{triangle.surface[0].w, triangle.surface[1].w, triangle.surface[2].w};
+  const QCodes q = quantize_q(w, format.q_bits);
+  set_plane(widths_.q_plane, q, out.packet);
+  out.packet.coordinates.fog_octave = fog_octave(*context_->fog, q_exponent(w, format.q_bits) + format.guard_bits);
+}
+
+/// P of the normals, and Q, where their planes start. A texture and a fog have brought the same Q.
+void HostStream::set_normals(const Triangle& triangle, PrimitivePacket& packet) const {
+  require_positive_w(*context_, triangle);
+  const PerspectiveFormat format = perspective_format(config_);
+  const QCodes q = quantize_q({triangle.surface[0].w, triangle.surface[1].w, triangle.surface[2].w}, format.q_bits);
+  set_plane(widths_.q_plane, q, packet);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto component = [&](std::size_t i) { return triangle.surface[i].normal[c]; };
+    const OverW over_w = quantize_normal({component(0), component(1), component(2)}, q, format);
+    set_plane(widths_.normal_plane() + c, over_w.p, packet);
+  }
+}
+
+/// Q and P of the colours, and how to read them back. With a texture over w Q is that of its coordinates, to the bit.
+void HostStream::set_colors_over_w(const Triangle& triangle, PrimitivePacket& packet) const {
+  require_positive_w(*context_, triangle);
+  const PerspectiveFormat format = perspective_format(config_);
+  const QCodes q = quantize_q({triangle.surface[0].w, triangle.surface[1].w, triangle.surface[2].w}, format.q_bits);
+  set_plane(widths_.q_plane, q, packet);
+  packet.coordinates.divides_colors = true;
+  for (std::size_t c = 0; c < static_cast<std::size_t>(widths_.colors_over_w); ++c) {
+    std::array<double, 3> value{};
+    for (std::size_t i = 0; i < 3; ++i) value[i] = triangle.v[i].code[kColorPlane + c];
+    const OverW over_w = quantize_over_w(value, q, format.color);
+    set_plane(widths_.color_over_w_plane() + c, over_w.p, packet);
+    const OverWScale scale = over_w_scale(over_w, format.color);
+    packet.coordinates.color_shift[c] = scale.shift;
+    packet.coordinates.color_reach[c] = scale.reach;
+  }
+}
+
+/// And what it must know of levels. A triangle that the hardware drops needs none.
+void HostStream::set_levels(const Triangle& triangle, const TextureCoordinates& coordinates,
+                            const PerspectiveFormat& format, HostPrimitive& out) const {
+  const State& state = context_->state;
+  const TextureLevels levels = texture_levels(scene_.textures[*state.texture], state);
+  out.units.texture_levels = levels.pack();
+  const std::int64_t area = signed_area(triangle.v[0], triangle.v[1], triangle.v[2]);
+  if (!needs_level(levels, state.texture_mag) || cull(area, out.packet.cull, state.front) != CullResult::keep) return;
+  const auto order = canonical_order(triangle.v, area);
+  std::array<SnappedVertex, 3> v;
+  QCodes q{};
+  std::array<std::array<double, 3>, 2> texels{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    v[i] = triangle.v[order[i]];
+    q[i] = coordinates.q[order[i]];
+    for (const std::size_t axis : {0U, 1U}) texels[axis][i] = coordinates.texels[axis][order[i]];
+  }
+  const LodSetup lod = setup_lod(v, std::abs(area), q, texels, format.guard_bits, widths_.grid_bits);
+  out.units.texture_lines = TextureLines::pack(lod, Sampler(scene_.textures[*state.texture], state).bias);
+}
+
+/// Of the whole target; of no plane so far.
+PrimitivePacket HostStream::fast_clear() const {
+  PrimitivePacket packet = flat_packet(PrimitiveKind::fast_clear, {0, 0, scene_.width, scene_.height});
+  if (bins_ && config_.frame_store == FrameStore::color) packet.state.depth_test = DepthFunc::never;  // drops_depth()
+  return packet;
+}
+
+/// Depth and stencil are one word of memory. A clear of one of them clears both where the host knows what the other is.
+void HostStream::fill_word(Clear& clear) const {
+  if (!has_stencil(config_)) {
+    clear.stencil.reset();
+    return;
+  }
+  if (clear.depth && !clear.stencil) clear.stencil = stencil_everywhere_;
+  if (clear.stencil && !clear.depth) clear.depth = depth_everywhere_;
+}
+
+/// Whether new bins begin with a command: with a fast clear of depth.
+bool HostStream::begins_bins(const Command& command) const {
+  const Clear* whole = whole_clear(scene_, command);
+  if (whole == nullptr) return false;
+  Clear clear = *whole;
+  fill_word(clear);
+  return clear.depth && clear.stencil.has_value() == has_stencil(config_);
+}
+
+void HostStream::send_clear(const Clear& command) {
+  const Rect rect = clear_rect(scene_, command);
+  Clear clear = command;
+  const bool is_whole = rect == Rect{0, 0, scene_.width, scene_.height};
+  if (is_whole || !has_stencil(config_)) fill_word(clear);
+  if (rect.width <= 0 || rect.height <= 0 || (!clear.depth && !clear.color && !clear.stencil)) return;
+  const bool is_word = !has_stencil(config_) || clear.depth.has_value() == clear.stencil.has_value();
+  const bool is_fast = is_whole && is_word && (!bins_ || bins_->is_empty());
+  PrimitivePacket packet = is_fast ? fast_clear() : flat_packet(PrimitiveKind::rectangle, rect);
+  if (clear.depth) clear_depth(packet, *clear.depth, config_);
+  if (clear.color) clear_color(packet, *clear.color, config_);
+  HostPrimitive out = host_primitive(packet, primitive_);
+  if (!is_fast) out.units.colors = color_words({packet.state, {}, {}, {}}, config_);  // whatever has been drawn before
+  if (clear.stencil && is_fast) out.units.stencil.test[0] = pack_test(replacing_stencil(*clear.stencil));
+  if (clear.stencil && !is_fast) {
+    const Stencil replacing = replacing_stencil(*clear.stencil);
+    (void)set_stencil_flags(out.packet.state, {replacing, replacing});
+    out.units.stencil.test[0] = pack_test(replacing);  // a rectangle shows its front
+    out.units.stencil.update[0] = pack_update(replacing);
+  }
+  note_words(out.packet.state);
+  if (is_whole && clear.depth) depth_everywhere_ = clear.depth;
+  if (is_whole && clear.stencil) stencil_everywhere_ = clear.stencil;
+  send(out);
+}
+
+/// Of what a primitive may write nobody knows any more that it is the same everywhere.
+void HostStream::note_words(const PrimitiveState& state) {
+  if (state.depth_write) depth_everywhere_.reset();
+  if (state.writes_stencil) stencil_everywhere_.reset();
+}
+
+HostPrimitive HostStream::host_primitive(const PrimitivePacket& packet, std::uint32_t primitive) const {
+  HostPrimitive out{packet, {}, primitive, static_cast<std::uint32_t>(command_ - 1), false};
+  out.packet.primitive_id = static_cast<std::uint32_t>(wrap_unsigned(primitive, widths_.primitive_id.bits));
+  return out;
+}
+
+/// Of the draw at work.
+HostPrimitive HostStream::drawn_primitive(const PrimitivePacket& packet, std::uint32_t primitive) const {
+  HostPrimitive out = host_primitive(packet, primitive);
+  const FragmentOps& ops = context_->fragment_ops;
+  out.units.colors = color_words(ops, config_);
+  if (packet.state.tests_stencil) out.units.stencil = stencil_words(*ops.stencil);
+  return out;
+}
+
+/// Tokens go at once, and in program order everything does.
+void HostStream::send(const HostPrimitive& primitive) {
+  const PrimitiveKind kind = primitive.packet.kind;
+  if (bins_ && kind != PrimitiveKind::fast_clear && kind != PrimitiveKind::flush) {
+    if (!bins_->add(primitive)) ++counters_.skipped.no_sample;
+    return;
+  }
+  if (held_ != nullptr && kind == PrimitiveKind::fast_clear) {
+    clears_.push_back(primitive);
+    return;
+  }
+  pending_.push_back(primitive);
+  if (is_counted(kind)) ++counters_.pairs;
+}
+
+double HostStream::progress() const {
+  if (is_finished_) return 1;
+  const auto part = [](std::size_t done, std::size_t all) {
+    return all == 0 ? 0.0 : static_cast<double>(done) / static_cast<double>(all);
+  };
+  const auto commands = static_cast<double>(scene_.commands.size());
+  const double left_of_draw = assembled_.empty() ? 0.0 : 1.0 - part(assembled_next_, assembled_.size());
+  return commands == 0 ? 0.0 : (static_cast<double>(command_) - left_of_draw) / commands;
+}
+
+}  // namespace halfplane

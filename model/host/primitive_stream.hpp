@@ -1,0 +1,127 @@
+// What the host sends to the hardware for a scene: snapped primitives with their states, one packet each.
+//
+// First a fast clear of both planes, unless the scene begins with one, then the scene's commands, at the end a flush. In
+// program order (frame.order program) primitives go as they are made: the host clips; facing, area and box are the
+// hardware's to look at, except for a clipped polygon, which is culled as a whole. In bins the host culls, sorts what is
+// left (frame_bins.hpp), and sends it bin by bin: at the flush, and where the depth of the whole target is cleared, which
+// begins new bins. Of all other clears those behind the first primitive of its bins go into them.
+//
+// A frame that follows another one on the same hardware, with BinContents between them, leaves bins alone that hold what is
+// drawn in them. What then remains of the clears that it begins with are colours, bin by bin, and depth as a whole.
+#pragma once
+
+#include <array>
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "frame_bins.hpp"
+#include "host_primitive.hpp"
+#include "primitives.hpp"
+#include "line_setup.hpp"
+#include "../stages/surface.hpp"
+#include "texture_memory.hpp"
+
+namespace halfplane {
+
+/// Whether all clears of the whole target are in front of everything else, but for those of colours alone: then its bins begin
+/// once.
+[[nodiscard]] bool begins_once(const Scene& scene);
+
+/// The primitives of a scene, pulled one at a time. `scene` must outlive the stream.
+class HostStream {
+ public:
+  /// Throws InputError for a scene that the hardware cannot take. `held`: what the memory behind the hardware holds of a target; it
+  /// must outlive the stream, and is what memory holds once all has been drawn. Null: everything is drawn.
+  HostStream(const Scene& scene, const Config& config, BinContents* held = nullptr);
+
+  HostStream(const HostStream&) = delete;  // the draw at work points into config_
+  HostStream& operator=(const HostStream&) = delete;
+
+  /// The next primitive; none after the flush. Throws InputError for a vertex that cannot be snapped.
+  [[nodiscard]] std::optional<HostPrimitive> next();
+
+  /// What the host itself has counted so far: primitives_in, clipped, and what it culled, by reason; bins and pairs.
+  [[nodiscard]] const Counters& counters() const { return counters_; }
+
+  /// 0...1: how much of the scene has been sent, every command counted alike.
+  [[nodiscard]] double progress() const;
+
+ private:
+  void advance();
+  void start_draw(const Draw& draw);
+  void send_next_primitive();
+  void send_outline(const AssembledPrimitive& assembled);
+  void send_clear(const Clear& command);
+  void send_triangle(const Triangle& triangle, bool is_culled);
+  void set_plane(std::size_t plane, const auto& codes, PrimitivePacket& packet) const;
+  void set_coordinates(const Triangle& triangle, HostPrimitive& out);
+  void set_distance(const Triangle& triangle, HostPrimitive& out) const;
+  void set_colors_over_w(const Triangle& triangle, PrimitivePacket& packet) const;
+  void set_normals(const Triangle& triangle, PrimitivePacket& packet) const;
+  void set_colors(const HostPrimitive& primitive);
+  void set_stencil(const HostPrimitive& primitive);
+  void set_levels(const Triangle& triangle, const TextureCoordinates& coordinates, const PerspectiveFormat& format,
+                  HostPrimitive& out) const;
+  void set_texture(const HostPrimitive& triangle);
+  void set_fog(const HostPrimitive& triangle);
+  void set_light(const HostPrimitive& triangle);
+  [[nodiscard]] HostPrimitive state_token(StateRegister which, uint128 word, const HostPrimitive& in_front_of) const;
+  [[nodiscard]] std::optional<HostPrimitive> next_primitive();
+  void send_line(const LinePrimitive& line);
+  [[nodiscard]] PrimitivePacket draw_packet(PrimitiveKind kind, const PixelBounds& box) const;
+  [[nodiscard]] PrimitivePacket fast_clear() const;
+  void fill_word(Clear& clear) const;
+  [[nodiscard]] bool begins_bins(const Command& command) const;
+  void close_bins();
+  void send_clears();
+  [[nodiscard]] Signature texels_of(std::size_t texture);
+  void note_words(const PrimitiveState& state);
+  [[nodiscard]] HostPrimitive host_primitive(const PrimitivePacket& packet, std::uint32_t primitive) const;
+  [[nodiscard]] HostPrimitive drawn_primitive(const PrimitivePacket& packet, std::uint32_t primitive) const;
+  void send(const HostPrimitive& primitive);
+
+  const Scene& scene_;
+  Config config_;
+  Widths widths_;
+  VertexCache vertices_;
+  Counters counters_;
+  std::size_t command_ = 0;                    ///< the next of Scene::commands
+  bool is_finished_ = false;                   ///< the flush has been queued
+  std::uint32_t primitive_ = 0;                ///< number of the next input primitive
+  std::optional<DrawContext> context_;         ///< of the draw at work
+  std::vector<AssembledPrimitive> assembled_;  ///< of the draw at work
+  std::size_t assembled_next_ = 0;             ///< the next of them
+  std::vector<Triangle> pieces_;               ///< scratch
+  Outline outline_;                            ///< scratch
+  std::optional<FrameBins> bins_;              ///< of frame.order bins: what waits for the frame to be complete
+  BinContents* held_ = nullptr;                ///< where bins are compared; then the clears that they begin with wait
+  std::vector<HostPrimitive> clears_;
+  std::vector<std::optional<Signature>> texels_;  ///< of each texture, likewise
+  std::vector<HostPrimitive> pending_;            ///< made but not yet pulled
+  std::size_t pending_first_ = 0;
+  std::optional<TextureMemory> textures_;        ///< with a texture unit
+  std::optional<std::uint64_t> texture_state_;   ///< what the unit was set to since the scene began
+  std::optional<std::uint32_t> texture_levels_;  ///< of one with levels, likewise
+  std::optional<FogState> fog_state_;            ///< likewise, and the lines of its table
+  std::array<std::optional<FogLine>, std::size_t{1} << kFogLines> fog_line_{};
+  std::array<std::optional<std::uint64_t>, kLightWords> light_word_{};  ///< likewise of light
+  std::array<std::optional<FallingLine>, std::size_t{1} << kPowerLines> light_line_{};
+  std::optional<TextureLines> texture_lines_;
+  ColorWords colors_;                             ///< what else has been set since the scene began
+  StencilWords stencil_;                          ///< likewise
+  std::optional<double> depth_everywhere_ = 1.0;  ///< what every pixel holds, as far as the host can tell
+  std::optional<std::uint8_t> stencil_everywhere_ = std::uint8_t{0};  ///< likewise
+  std::deque<HostPrimitive> in_front_;  ///< what does so, and the triangle that waits for it
+};
+
+/// What the hardware relies on and cannot see: behind reset, and states, a fast clear of both planes, without which the flags of tiles are
+/// undefined, and a setup for the place of every line, for which primitive_join would wait for good. What is wrong with a
+/// primitive of a stream, `is_first` behind reset; empty: nothing.
+[[nodiscard]] std::string stream_fault(const HostPrimitive& primitive, bool is_first);
+
+/// Throws InputError, one line naming the state, when `scene` asks for what the hardware does not have.
+void check_hardware_scene(const Scene& scene, const Config& config);
+
+}  // namespace halfplane

@@ -1,0 +1,44 @@
+// The memory of the texture unit: the images of a scene's textures, one behind the other, as the unit reads them.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "../config.hpp"
+#include "../scene.hpp"
+#include "../stages/texture_unit.hpp"
+
+namespace halfplane {
+
+class TextureMemory {
+ public:
+  static constexpr std::uint32_t kAlignment = 64;  ///< bytes, of an image
+
+  TextureMemory() = default;
+  TextureMemory(const Scene& scene, const Config& config) {
+    const bool has_levels = config.texture_unit == TextureUnitKind::trilinear;
+    for (const Texture& texture : scene.textures) {
+      bytes_.resize((bytes_.size() + kAlignment - 1) / kAlignment * kAlignment);
+      base_.push_back(static_cast<std::uint32_t>(bytes_.size()));
+      const auto image = texture_bytes(texture, has_levels);
+      bytes_.insert(bytes_.end(), image.begin(), image.end());
+    }
+  }
+
+  /// Where texture `n` of the scene begins.
+  [[nodiscard]] std::uint32_t base(std::size_t n) const { return base_[n]; }
+  /// Behind the last image: 0.
+  void read(std::uint32_t address, std::span<std::uint8_t> out) const {
+    for (std::uint8_t& byte : out) {
+      byte = address < bytes_.size() ? bytes_[address] : std::uint8_t{0};
+      ++address;
+    }
+  }
+
+ private:
+  std::vector<std::uint8_t> bytes_;
+  std::vector<std::uint32_t> base_;
+};
+
+}  // namespace halfplane

@@ -1,0 +1,63 @@
+// Viewport: clip coordinates in, snapped window coordinates out (perspective divide, viewport, depth range, snap).
+//
+// Host side, binary64. From here on every number is an integer. X, Y: floor(x * 2^S + 1/2), held in units of 2^-s pixel
+// (s = max(S, 1)); Z: floor(z * (2^B - 1) + 1/2); colour: floor(c + 1/2).
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "../config.hpp"
+#include "../packets/packets.hpp"
+#include "../scene.hpp"
+
+namespace halfplane {
+
+/// A vertex in window coordinates before the snap: x, y in pixels (y down), z in [0, 1].
+struct WindowPosition {
+  double x = 0, y = 0, z = 0;
+};
+
+/// A window-space vertex as the rasterizer counts: pixel centres at half-integers, y down from the top.
+[[nodiscard]] WindowPosition window_position(const Vertex& v, const State& state, int target_height);
+
+/// The viewport of a state, its own or the whole target, likewise.
+[[nodiscard]] Viewport effective_viewport(const State& state, int target_width, int target_height);
+
+/// The pixels that a draw may touch: target, scissor and (in clip space) the pixel centres inside the viewport.
+[[nodiscard]] Rect raster_rect(const State& state, int target_width, int target_height);
+
+/// Divide, viewport and depth range of a clipped vertex (w > 0).
+[[nodiscard]] WindowPosition to_window(const Vertex& v, const State& state, const Viewport& viewport);
+
+/// Where a vertex came from: for the message when it does not fit.
+struct VertexSource {
+  std::string_view file;   ///< Scene::name
+  std::uint32_t line = 0;  ///< Draw::line
+  std::size_t number = 0;  ///< index into Scene::vertices
+};
+
+/// Where the grid of the snap begins, in pixels along x and y: at 1/2 where pixels are not divided and a state counts their
+/// centres from integers, so that an integer stays the centre that it is; else at 0, and every centre is on the grid.
+[[nodiscard]] constexpr double snap_origin(const State& state, const Config& config) {
+  return config.subpixel_bits == 0 && state.pixel_center == PixelCenter::integer ? 0.5 : 0.0;
+}
+
+/// The snap. Throws InputError naming the vertex when it is outside the guard band or the depth range.
+[[nodiscard]] SnappedVertex snap_vertex(const WindowPosition& p, const std::array<double, 4>& rgba,
+                                        const Config& config, const VertexSource& source, double origin = 0);
+
+/// The codes of every plane: window depth in [0, 1], colour 0...255 a channel. A plane more gets its codes here.
+[[nodiscard]] PerPlane<std::uint32_t> snap_codes(double z, const std::array<double, 4>& rgba, const Config& config);
+
+/// Gives `to` the colour of `from`.
+constexpr void copy_color(PerPlane<std::uint32_t>& to, const PerPlane<std::uint32_t>& from, const Config& config) {
+  const auto colors = static_cast<std::size_t>(color_planes(attributes_of(config)));
+  for (std::size_t p = kColorPlane; p < kColorPlane + colors; ++p) to[p] = from[p];
+}
+
+/// A colour channel (0...255) as its 8-bit code.
+[[nodiscard]] std::uint8_t snap_color(double channel);
+
+}  // namespace halfplane

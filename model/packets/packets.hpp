@@ -1,0 +1,698 @@
+// The packets on the arrows between the stages. Each field is authored ONCE: name, type and width. From it follow the C++
+// member, the packed SystemVerilog struct (model/generate/raster_pkg.hpp), the bits that go into and come out of the RTL, and the
+// field-by-field diff (model/packets/packet_words.hpp). Which stages an arrow joins is said in model/pipeline_graph.hpp.
+//
+// Units: coordinates in subpixels of 2^-s pixel (s = max(S, 1)), depth and colour in codes (LSB).
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <string_view>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+#include "../stages/samples.hpp"
+#include "../scene.hpp"
+#include "../widths.hpp"
+
+namespace halfplane {
+
+/// The widest memory port.
+inline constexpr std::size_t kMaxPortBytes = 64;
+
+// ------------------------------------------------------------------------------------------------------- what a field is
+
+/// Stands for the width of a member that has fields of its own.
+struct Nested {};
+
+/// One field of a packet. `width`: of an element: a member of Widths, or a member of AttributeWidths for a member that has an
+/// element for each plane, or Nested. An array is packed element 0 lowest; `count` says how many of its elements this
+/// configuration has, none: all of them.
+template <class Packet, class Member, class Place>
+struct Field {
+  std::string_view name;
+  Member Packet::*member;
+  Place width;
+  int Widths::*count = nullptr;
+};
+template <class Packet, class Member, class Place>
+Field(std::string_view, Member Packet::*, Place) -> Field<Packet, Member, Place>;
+template <class Packet, class Member, class Place>
+Field(std::string_view, Member Packet::*, Place, int Widths::*) -> Field<Packet, Member, Place>;
+
+/// Elements of an array member; 0 for a plain one.
+template <class T>
+inline constexpr std::size_t kArraySize = 0;
+template <class T, std::size_t N>
+inline constexpr std::size_t kArraySize<std::array<T, N>> = N;
+
+namespace packet_detail {
+
+template <int N>
+struct Line {};
+
+template <class Packet, int N>
+concept HasFieldOn = requires {
+  Packet::field(Line<N>{});
+};
+
+/// Lines of this file.
+template <std::size_t N>
+struct Lines {
+  int line[N]{};
+  std::size_t count = 0;
+};
+
+/// Those on which a packet declares a field, in order.
+template <class Packet, int... I>
+consteval auto field_lines(std::integer_sequence<int, I...>) {
+  constexpr bool kHasField[] = {HasFieldOn<Packet, Packet::kFirstLine + I>...};
+  Lines<sizeof...(I)> lines;
+  for (int i = 0; const bool has_field : kHasField) {
+    if (has_field) lines.line[lines.count++] = Packet::kFirstLine + i;
+    ++i;
+  }
+  return lines;
+}
+template <class Packet>
+inline constexpr auto kFieldLines =
+    field_lines<Packet>(std::make_integer_sequence<int, Packet::kLastLine - Packet::kFirstLine>{});
+
+}  // namespace packet_detail
+
+/// Calls visit(field) for every Field of a packet type, the first one first.
+template <class Packet, class Visit>
+constexpr void for_each_field(Visit&& visit) {
+  [&]<std::size_t... I>(std::index_sequence<I...>) {
+    constexpr auto& lines = packet_detail::kFieldLines<Packet>;
+    (visit(Packet::field(packet_detail::Line<lines.line[I]>{})), ...);
+  }
+  (std::make_index_sequence<packet_detail::kFieldLines<Packet>.count>{});
+}
+/// The last one first: from the lowest bit up.
+template <class Packet, class Visit>
+constexpr void for_each_field_upwards(Visit&& visit) {
+  [&]<std::size_t... I>(std::index_sequence<I...>) {
+    constexpr auto& lines = packet_detail::kFieldLines<Packet>;
+    (visit(Packet::field(packet_detail::Line<lines.line[lines.count - 1 - I]>{})), ...);
+  }
+  (std::make_index_sequence<packet_detail::kFieldLines<Packet>.count>{});
+}
+
+// PACKET, FIELDs, each on a line of its own, PACKET_END: a struct that knows its fields. FIELD(type, name, width[, count]).
+#define PACKET(Type, text)                       \
+  using Self = Type;                             \
+  static constexpr std::string_view name = text; \
+  static constexpr int kFirstLine = __LINE__
+#define FIELD(Type, member_name, ...)                                                           \
+  Type member_name{};                                                                           \
+  static constexpr auto field(packet_detail::Line<__LINE__>) {                                  \
+    return ::halfplane::Field{std::string_view(#member_name), &Self::member_name, __VA_ARGS__}; \
+  }
+#define PACKET_END static constexpr int kLastLine = __LINE__;
+
+// ------------------------------------------------------------------------------------------------------- parts of packets
+
+/// A vertex after the snap.
+struct SnappedVertex {
+  std::int32_t x = 0, y = 0;       ///< subpixels, y down
+  PerPlane<std::uint32_t> code{};  ///< of each plane
+  bool operator==(const SnappedVertex&) const = default;
+  [[nodiscard]] constexpr std::uint32_t& depth() { return code[kDepthPlane]; }
+  [[nodiscard]] constexpr std::uint32_t depth() const { return code[kDepthPlane]; }
+};
+
+/// The order of vertices on which setup and the fan of a clipped polygon agree: by (Y, X, Z).
+[[nodiscard]] inline bool canonically_before(const SnappedVertex& a, const SnappedVertex& b) {
+  return std::tie(a.y, a.x, a.code[kDepthPlane]) < std::tie(b.y, b.x, b.code[kDepthPlane]);
+}
+
+/// What of a vertex lives over w: host side.
+struct SurfaceVertex {
+  double w = 1;                          ///< clip-space w
+  double u = 0, v = 0;                   ///< 0 and 1 are the sides of a texture
+  std::array<std::int32_t, 3> normal{};  ///< of shade phong: codes of 2^-15
+};
+
+/// A triangle between viewport and triangle_setup: where the RTL starts. One input triangle that was clipped yields
+/// several of these with the same `primitive`.
+struct Triangle {
+  std::uint32_t primitive = 0;  ///< number of the input triangle, over the whole scene
+  std::uint32_t draw = 0;       ///< index into Scene::commands
+  std::array<SnappedVertex, 3> v{};
+  std::array<SurfaceVertex, 3> surface{};  ///< of the same vertices
+};
+
+/// What a primitive is. Rectangles and points cover their whole box with one code a plane. Bit 1 set: a token,
+/// which visits no tile on its way to depth_test.
+enum class PrimitiveKind : std::uint8_t {
+  triangle = 0,
+  rectangle = 1,   ///< a clear inside the scissor: drawn like a triangle that covers every pixel, and not counted
+  fast_clear = 2,  ///< a clear of the whole target: marks tiles, writes no pixel
+  flush = 3,       ///< writes back all that is on the chip; the box is the whole target
+  point = 4,       ///< a rectangle that is counted
+  line = 6,        ///< the place of a line in program order; its pixels come from line_raster
+  state = 7  ///< what a unit behind the depth test does from here on: a StateRegister, which stands in the place of the
+             ///< depth test, and its value, spread over the codes (packets/state_packets.hpp)
+};
+
+/// What a token of kind state sets.
+enum class StateRegister : std::uint8_t {
+  texture = 0,         ///< TextureState
+  texture_levels = 1,  ///< TextureLevels; FogState and a line of its table too, or of light: LevelsWord
+  texture_lines = 2,   ///< a part of a TextureLines, moved in behind those before
+  color_ops = 4,       ///< ColorOps without its constant (packets/color_packets.hpp)
+  blend_constant = 5,  ///< that
+  alpha_test = 6,      ///< AlphaTest
+  stencil_test = 3,    ///< how a side or both are compared (packets/stencil_packets.hpp)
+  stencil_update = 7   ///< what becomes of the stored value, likewise
+};
+
+/// Whether it is one of the texture unit's.
+[[nodiscard]] constexpr bool is_of_texture(StateRegister which) { return which <= StateRegister::texture_lines; }
+
+/// What the counters count; clears and flushes are the host's own.
+[[nodiscard]] constexpr bool is_counted(PrimitiveKind kind) {
+  return kind == PrimitiveKind::triangle || kind == PrimitiveKind::point || kind == PrimitiveKind::line;
+}
+
+/// What visits no tile on its way to depth_test.
+[[nodiscard]] constexpr bool is_token(PrimitiveKind kind) { return (static_cast<unsigned>(kind) & 2U) != 0; }
+
+/// What the end of a tile visit does to the tile's HiZ bound.
+enum class HizUpdate : std::uint8_t { none, set, clear };
+
+/// What a tile has of each pixel; and the flags of its cleared blocks, which a flush writes to memory.
+/// With compress.unit also the colours of blocks that have one a pixel, and the flags that say which.
+enum class TilePlane : std::uint8_t { depth, color, depth_flags, color_flags, pixel_color = 5, pixel_flags = 7 };
+inline constexpr std::array kTilePlanes{TilePlane::depth, TilePlane::color};
+
+/// Where the depth test finds what is stored under a stamp; and where colour operations do.
+enum class DepthSource : std::uint8_t {
+  none,    ///< it does not look: `always`, with a full mask; operations that store the fragment's colour
+  chip,    ///< on the chip
+  clear,   ///< the last fast clear's value
+  memory,  ///< a read
+};
+
+/// An enum as the generated package has it: `depth_func_t` with DEPTH_FUNC_NEVER and so on.
+template <class Enum>
+struct Enumerator {
+  Enum value;
+  std::string_view name;
+};
+template <class Enum>
+struct WireEnum;  // name; width; all: its enumerators
+template <>
+struct WireEnum<PrimitiveKind> {
+  static constexpr std::string_view name = "primitive_kind";
+  static constexpr Width Widths::*width = &Widths::kind;
+  static constexpr Enumerator<PrimitiveKind> all[] = {{PrimitiveKind::triangle, "triangle"},
+                                                      {PrimitiveKind::rectangle, "rectangle"},
+                                                      {PrimitiveKind::fast_clear, "fast_clear"},
+                                                      {PrimitiveKind::flush, "flush"},
+                                                      {PrimitiveKind::point, "point"},
+                                                      {PrimitiveKind::line, "line"},
+                                                      {PrimitiveKind::state, "state"}};
+};
+template <>
+struct WireEnum<StateRegister> {
+  static constexpr std::string_view name = "state_register";
+  static constexpr Width Widths::*width = &Widths::depth_func;  // in whose place it stands
+  static constexpr Enumerator<StateRegister> all[] = {{StateRegister::texture, "texture"},
+                                                      {StateRegister::texture_levels, "texture_levels"},
+                                                      {StateRegister::texture_lines, "texture_lines"},
+                                                      {StateRegister::color_ops, "color_ops"},
+                                                      {StateRegister::blend_constant, "blend_constant"},
+                                                      {StateRegister::alpha_test, "alpha_test"},
+                                                      {StateRegister::stencil_test, "stencil_test"},
+                                                      {StateRegister::stencil_update, "stencil_update"}};
+};
+template <>
+struct WireEnum<DepthFunc> {
+  static constexpr std::string_view name = "depth_func";
+  static constexpr Width Widths::*width = &Widths::depth_func;
+  static constexpr Enumerator<DepthFunc> all[] = {{DepthFunc::never, "never"},       {DepthFunc::less, "less"},
+                                                  {DepthFunc::lequal, "lequal"},     {DepthFunc::equal, "equal"},
+                                                  {DepthFunc::greater, "greater"},   {DepthFunc::gequal, "gequal"},
+                                                  {DepthFunc::notequal, "notequal"}, {DepthFunc::always, "always"}};
+};
+template <>
+struct WireEnum<Cull> {
+  static constexpr std::string_view name = "cull_mode";
+  static constexpr Width Widths::*width = &Widths::cull_mode;
+  static constexpr Enumerator<Cull> all[] = {
+      {Cull::none, "none"}, {Cull::back, "back"}, {Cull::front, "front"}, {Cull::both, "both"}};
+};
+template <>
+struct WireEnum<HizUpdate> {
+  static constexpr std::string_view name = "hiz_update";
+  static constexpr Width Widths::*width = &Widths::hiz_update;
+  static constexpr Enumerator<HizUpdate> all[] = {
+      {HizUpdate::none, "none"}, {HizUpdate::set, "set"}, {HizUpdate::clear, "clear"}};
+};
+
+template <>
+struct WireEnum<TilePlane> {
+  static constexpr std::string_view name = "tile_plane";
+  static constexpr Width Widths::*width = &Widths::tile_plane;
+  static constexpr Enumerator<TilePlane> all[] = {{TilePlane::depth, "depth"},
+                                                  {TilePlane::color, "color"},
+                                                  {TilePlane::depth_flags, "depth_flags"},
+                                                  {TilePlane::color_flags, "color_flags"},
+                                                  {TilePlane::pixel_color, "pixel_color"},
+                                                  {TilePlane::pixel_flags, "pixel_flags"}};
+};
+template <>
+struct WireEnum<DepthSource> {
+  static constexpr std::string_view name = "depth_source";
+  static constexpr Width Widths::*width = &Widths::depth_source;
+  static constexpr Enumerator<DepthSource> all[] = {{DepthSource::none, "none"},
+                                                    {DepthSource::chip, "chip"},
+                                                    {DepthSource::clear, "clear"},
+                                                    {DepthSource::memory, "memory"}};
+};
+
+/// A rectangle of pixels, inclusive; empty when left > right or top > bottom.
+struct PixelBox {
+  PACKET(PixelBox, "pixel_box");
+  FIELD(std::uint16_t, left, &Widths::pixel_x)
+  FIELD(std::uint16_t, top, &Widths::pixel_y)
+  FIELD(std::uint16_t, right, &Widths::pixel_x)
+  FIELD(std::uint16_t, bottom, &Widths::pixel_y)
+  PACKET_END
+};
+
+/// The same inside one tile, from its first pixel.
+struct TileBox {
+  PACKET(TileBox, "tile_box");
+  FIELD(std::uint8_t, left, &Widths::tile_pixel)
+  FIELD(std::uint8_t, top, &Widths::tile_pixel)
+  FIELD(std::uint8_t, right, &Widths::tile_pixel)
+  FIELD(std::uint8_t, bottom, &Widths::tile_pixel)
+  PACKET_END
+};
+
+/// The states that ride with a primitive.
+struct PrimitiveState {
+  PACKET(PrimitiveState, "primitive_state");
+  FIELD(DepthFunc, depth_test,
+        &Widths::depth_func)  ///< for a fast clear or a flush: drops_depth(), clears_bin(); for a state: which
+  FIELD(bool, depth_write, &Widths::flag)                             ///< for a fast clear: clears depth
+  FIELD(bool, color_write, &Widths::flag)                             ///< likewise
+  FIELD(bool, tests_stencil, &Widths::flag, &Widths::stencil_flags)   ///< the stored stencil is looked at, or changes
+  FIELD(bool, writes_stencil, &Widths::flag, &Widths::stencil_flags)  ///< it changes, on a side and of some sample
+  FIELD(bool, marks_failed, &Widths::flag, &Widths::stencil_flags)    ///< also where a sample fails one of the tests
+  FIELD(bool, is_back, &Widths::flag, &Widths::stencil_flags)  ///< of a triangle that shows its back, from cull on
+  FIELD(std::uint8_t, masked_samples, &Widths::masked_samples, &Widths::has_samples)  ///< of each pixel: are not drawn
+  PACKET_END
+  [[nodiscard]] constexpr bool writes() const { return depth_write || color_write; }
+  /// Whether anything of a stored depth may change: it, or the stencil above it.
+  [[nodiscard]] constexpr bool writes_word() const { return depth_write || writes_stencil; }
+  /// Of a fast clear: depth of blocks that leave the chip before the next fast clear or flush is lost. Of a flush: that of
+  /// those on the chip, and its flags are not written. Only in a framebuffer of blocks.
+  [[nodiscard]] constexpr bool drops_depth() const { return depth_test == DepthFunc::never; }
+  /// Of a fast clear of colours alone, behind a flush: of the bin with its last tile.
+  [[nodiscard]] constexpr bool clears_bin() const { return depth_test == DepthFunc::equal; }
+};
+
+/// Whose tile it is.
+struct TileKey {
+  PACKET(TileKey, "tile_key");
+  FIELD(std::uint32_t, primitive_id, &Widths::primitive_id)  ///< Triangle::primitive modulo 2^key.primitive_bits
+  FIELD(std::uint16_t, tile_x, &Widths::tile_x)              ///< tiles
+  FIELD(std::uint16_t, tile_y, &Widths::tile_y)
+  PACKET_END
+};
+
+/// Three vertices, and the codes of each.
+struct TriangleVertices {
+  PACKET(TriangleVertices, "triangle_vertices");
+  using Coordinates = std::array<std::int32_t, 3>;
+  using Codes = std::array<PerPlane<std::uint32_t>, 3>;
+  FIELD(Coordinates, x, &Widths::coordinate)
+  FIELD(Coordinates, y, &Widths::coordinate)
+  FIELD(Codes, code, &AttributeWidths::code)
+  PACKET_END
+};
+
+/// The range of the vertices' codes, to which the final ones are clamped.
+struct CodeRange {
+  PACKET(CodeRange, "code_range");
+  FIELD(PerPlane<std::uint32_t>, low, &AttributeWidths::affine_code)
+  FIELD(PerPlane<std::uint32_t>, high, &AttributeWidths::affine_code)
+  PACKET_END
+};
+
+/// How a triangle's texture coordinates are read back, u and v, and its colours over w (stages/perspective.hpp), and its fog.
+/// Only with a texture unit.
+struct CoordinateFrame {
+  PACKET(CoordinateFrame, "coordinate_frame");
+  using Pair = std::array<std::int32_t, 2>;
+  FIELD(Pair, shift, &Widths::coordinate_shift, &Widths::coordinates)  ///< c = 1 + x - sp - k_P: P goes right by e + c
+  FIELD(Pair, reach, &Widths::coordinate_reach, &Widths::coordinates)  ///< x
+  FIELD(Pair, origin, &Widths::coordinate_reference, &Widths::coordinates)  ///< u_ref, texels: wrapped_reference()
+  FIELD(std::int32_t, fog_octave, &Widths::fog_octave,
+        &Widths::fog_octaves)  ///< of a fog's table, where Q = 1 would lie
+  using Channels = std::array<std::int32_t, 4>;
+  FIELD(bool, divides_colors, &Widths::flag, &Widths::has_colors_over_w)      ///< they are P over Q, not what is affine
+  FIELD(Channels, color_shift, &Widths::color_shift, &Widths::colors_over_w)  ///< c and x of each
+  FIELD(Channels, color_reach, &Widths::color_reach, &Widths::colors_over_w)
+  PACKET_END
+  bool operator==(const CoordinateFrame&) const = default;
+};
+
+/// Where the host has put the planes in memory: bytes. It stays as it is while anything is under way. Bases of tiles and the
+/// stride are multiples of a plane of a tile, those of flags of a row of them (MemoryGrid); lower bits count as 0.
+struct MemoryLayout {
+  PACKET(MemoryLayout, "memory_layout");
+  FIELD(std::uint32_t, depth_base, &Widths::address)
+  FIELD(std::uint32_t, color_base, &Widths::address)
+  FIELD(std::uint32_t, depth_flags_base, &Widths::address)
+  FIELD(std::uint32_t, color_flags_base, &Widths::address)
+  FIELD(std::uint32_t, row_stride, &Widths::row_stride)  ///< from one row of tiles to the next
+  PACKET_END
+  bool operator==(const MemoryLayout&) const = default;
+};
+
+/// One value for each edge of a triangle.
+using EdgeValues = std::array<std::int64_t, 3>;
+using EdgeDeltas = std::array<std::int32_t, 3>;
+using EdgeLows = std::array<std::uint16_t, 3>;
+
+/// Colours of a vertex or a sample, 8 bits a channel, R lowest: what goes into a texture unit, which stands in front of rop.
+[[nodiscard]] constexpr std::uint32_t vertex_color(const PerPlane<std::uint32_t>& code, const Widths& widths) {
+  std::uint32_t color = 0;
+  for (int c = widths.color_planes - 1; c >= 0; --c)
+    color = color << 8 | code[kColorPlane + static_cast<std::size_t>(c)];
+  return color;
+}
+
+// ------------------------------------------------------------------------------------------------------------- the packets
+
+/// host -> cull: a snapped primitive, as it was named.
+struct PrimitivePacket {
+  PACKET(PrimitivePacket, "primitive_packet");
+  FIELD(PrimitiveKind, kind, &Widths::kind)
+  FIELD(std::uint32_t, primitive_id, &Widths::primitive_id)
+  FIELD(PixelBox, box, Nested{})  ///< the scissor, inside the target
+  FIELD(PrimitiveState, state, Nested{})
+  FIELD(Cull, cull, &Widths::cull_mode)
+  FIELD(bool, front_cw, &Widths::flag)  ///< clockwise is the front
+  FIELD(TriangleVertices, vertex, Nested{})
+  FIELD(CoordinateFrame, coordinates, Nested{})
+  PACKET_END
+};
+
+/// cull -> triangle_setup: a triangle that faces the right way and has a pixel centre in its box, in canonical order.
+struct TrianglePacket {
+  PACKET(TrianglePacket, "triangle_packet");
+  FIELD(PrimitiveKind, kind, &Widths::kind)
+  FIELD(std::uint32_t, primitive_id, &Widths::primitive_id)
+  FIELD(PixelBox, box, Nested{})  ///< pixel centres of the triangle inside the scissor
+  FIELD(PrimitiveState, state, Nested{})
+  FIELD(TriangleVertices, vertex, Nested{})
+  FIELD(CoordinateFrame, coordinates, Nested{})
+  FIELD(std::uint64_t, area, &Widths::area)           ///< twice the area, square subpixels; 0 for other kinds
+  FIELD(EdgeValues, edge_value, &Widths::edge_value)  ///< at the first pixel of the first tile; 0 for other kinds
+  FIELD(EdgeLows, edge_low, &Widths::edge_low, &Widths::edge_lows)  ///< edge_low() of each; likewise
+  PACKET_END
+};
+
+/// triangle_setup -> coarse_raster: everything that stays constant over the primitive.
+struct SetupPacket {
+  PACKET(SetupPacket, "setup_packet");
+  FIELD(PrimitiveKind, kind, &Widths::kind)
+  FIELD(std::uint32_t, primitive_id, &Widths::primitive_id)
+  FIELD(PixelBox, box, Nested{})
+  FIELD(PrimitiveState, state, Nested{})
+  FIELD(EdgeDeltas, dx, &Widths::delta)  ///< of each edge, subpixels; 0 for other kinds than triangles
+  FIELD(EdgeDeltas, dy, &Widths::delta)
+  FIELD(EdgeValues, edge_value, &Widths::edge_value)  ///< edge_function at the first pixel of the first tile
+  FIELD(EdgeLows, edge_low, &Widths::edge_low, &Widths::edge_lows)  ///< the bits that it has lost
+  FIELD(PerPlane<std::int64_t>, value, &AttributeWidths::plane)     ///< Plane::value + plane_bias()
+  FIELD(PerPlane<std::int64_t>, step_x, &AttributeWidths::plane)    ///< per subpixel
+  FIELD(PerPlane<std::int64_t>, step_y, &AttributeWidths::plane)
+  FIELD(CodeRange, range, Nested{})
+  FIELD(CoordinateFrame, coordinates, Nested{})
+  PACKET_END
+};
+
+/// The part of a primitive's constants that waits in the context RAM, by slot, until its stamps come to interpolate.
+struct ContextPacket {
+  PACKET(ContextPacket, "context_packet");
+  FIELD(PrimitiveState, state, Nested{})
+  FIELD(PerPlane<std::int64_t>, step_x, &AttributeWidths::step)  ///< LocalPlane steps
+  FIELD(PerPlane<std::int64_t>, step_y, &AttributeWidths::step)
+  FIELD(CodeRange, range, Nested{})
+  FIELD(CoordinateFrame, coordinates, Nested{})
+  PACKET_END
+};
+
+/// coarse_raster -> fine_raster: one tile of one primitive, or (is_visit = 0) only the news that a primitive has ended.
+struct TilePacket {
+  PACKET(TilePacket, "tile_packet");
+  FIELD(PrimitiveKind, kind, &Widths::kind)
+  FIELD(bool, is_visit,
+        &Widths::flag)  ///< 0: no tile; fast clears, flushes, and primitives whose last tile was skipped
+  FIELD(bool, ends_primitive, &Widths::flag)         ///< nothing of this primitive follows
+  FIELD(TileKey, key, Nested{})                      ///< without a visit: the last tile of the box
+  FIELD(std::uint8_t, slot, &Widths::slot)           ///< context RAM slot of the triangle's constants
+  FIELD(TileBox, box, Nested{})                      ///< pixels of the tile inside box and scissor
+  FIELD(bool, is_inside, &Widths::flag)              ///< trivially accepted: every sample of the box is covered
+  FIELD(EdgeDeltas, edge_value, &Widths::tile_edge)  ///< at the tile's first pixel, saturated (coarse_raster.hpp)
+  FIELD(PerPlane<std::int64_t>, anchor, &AttributeWidths::local)  ///< LocalPlane::anchor
+  PACKET_END
+};
+
+/// The part of a triangle's constants that fine_raster reads: what each edge value gains per pixel.
+struct EdgeContext {
+  PACKET(EdgeContext, "edge_context");
+  FIELD(EdgeDeltas, step_x, &Widths::edge_step)                ///< -dy: per pixel to the right
+  FIELD(EdgeDeltas, step_y, &Widths::edge_step)                ///< dx: per pixel down
+  FIELD(EdgeLows, low, &Widths::edge_low, &Widths::edge_lows)  ///< bits below the values
+  PACKET_END
+};
+
+/// fine_raster -> interpolate: one stamp. Sent when a sample is covered or when it ends something.
+struct StampPacket {
+  PACKET(StampPacket, "stamp_packet");
+  FIELD(PrimitiveKind, kind, &Widths::kind)
+  FIELD(bool, ends_visit, &Widths::flag)      ///< the last of its tile visit
+  FIELD(bool, ends_primitive, &Widths::flag)  ///< the last of its primitive
+  FIELD(TileKey, key, Nested{})
+  FIELD(std::uint8_t, slot, &Widths::slot)
+  FIELD(std::uint16_t, stamp, &Widths::stamp_index)                     ///< row-major number of the stamp in its tile
+  FIELD(SampleMask, mask, &Widths::sample_mask)                         ///< covered samples
+  FIELD(SampleMask, centre, &Widths::pixel_mask, &Widths::has_samples)  ///< pixels whose centre is covered
+  FIELD(PerPlane<std::int64_t>, anchor, &AttributeWidths::local)
+  PACKET_END
+};
+
+/// interpolate -> primitive_join -> depth_test: a stamp with its attributes. Samples that are not covered carry values too.
+struct FragmentPacket {
+  PACKET(FragmentPacket, "fragment_packet");
+  using Codes = std::array<PerPlane<std::uint32_t>, kMaxSamples>;
+  FIELD(PrimitiveKind, kind, &Widths::kind)
+  FIELD(bool, ends_visit, &Widths::flag)
+  FIELD(bool, ends_primitive, &Widths::flag)
+  FIELD(TileKey, key, Nested{})
+  FIELD(std::uint16_t, stamp, &Widths::stamp_index)
+  FIELD(SampleMask, mask, &Widths::sample_mask)
+  FIELD(PrimitiveState, state, Nested{})
+  FIELD(CoordinateFrame, coordinates, Nested{})
+  FIELD(std::uint32_t, least_color, &Widths::vertex_color, &Widths::has_colors_over_w)     ///< to which a quotient is
+  FIELD(std::uint32_t, greatest_color, &Widths::vertex_color, &Widths::has_colors_over_w)  ///< held, R lowest
+  using Depths = std::array<std::uint32_t, kMaxSamples>;
+  FIELD(Depths, further_depth, &Widths::further_depth,
+        &Widths::further_samples)  ///< of the samples but the first of each pixel
+  FIELD(Codes, code, &AttributeWidths::fragment,
+        &Widths::pixels)  ///< of each pixel: clamped codes, local Q and P; its depth
+                          ///< is that of its first sample
+  PACKET_END
+};
+
+/// The depth code of sample `s` of a stamp.
+[[nodiscard]] inline std::uint32_t fragment_depth(const FragmentPacket& fragment, std::size_t s, const Widths& widths) {
+  const auto n = static_cast<std::size_t>(widths.pixel_samples), pixel = s / n, k = s % n;
+  return k == 0 ? fragment.code[pixel][kDepthPlane] : fragment.further_depth[pixel * (n - 1) + k - 1];
+}
+
+/// The codes of the pixel of sample `s`. Their depth is that of its first sample.
+[[nodiscard]] inline const PerPlane<std::uint32_t>& fragment_code(const FragmentPacket& fragment, std::size_t s,
+                                                                  const Widths& widths) {
+  return fragment.code[s / static_cast<std::size_t>(widths.pixel_samples)];
+}
+
+/// depth_test, rop -> framebuffer: what is written, and where; sent for every stamp with a covered sample.
+struct WritePacket {
+  PACKET(WritePacket, "write_packet");
+  using Codes = std::array<std::uint32_t, kMaxSamples>;
+  FIELD(TileKey, key, Nested{})
+  FIELD(std::uint16_t, stamp, &Widths::stamp_index)
+  FIELD(SampleMask, passed, &Widths::sample_mask)  ///< samples that passed the depth test
+  FIELD(SampleMask, write_depth,
+        &Widths::sample_mask)  ///< of those, the ones to write; and those whose stencil changes
+  FIELD(SampleMask, write_color, &Widths::sample_mask)
+  FIELD(Codes, depth, &Widths::stored_depth,
+        &Widths::samples)  ///< as they are stored; of samples that are not written, the fragment's codes
+  FIELD(Codes, color, &Widths::written_color,
+        &Widths::samples)  ///< as it is stored, or before the texture or the blend; likewise
+  PACKET_END
+};
+
+/// depth_test -> coarse_raster: a tile visit has retired.
+struct RetirePacket {
+  PACKET(RetirePacket, "retire_packet");
+  FIELD(TileKey, key, Nested{})
+  FIELD(HizUpdate, update, &Widths::hiz_update)
+  FIELD(std::uint32_t, hiz_code, &Widths::hiz_code)  ///< the bound for `set`, all ones for `clear`, 0 for `none`
+  PACKET_END
+};
+
+/// host -> line_raster: a line with at least one pixel inside the scissor; what line_setup makes (host/line_setup.hpp).
+/// The states ride with the line's place in program order, a PrimitivePacket of kind line.
+struct LineSetup {
+  PACKET(LineSetup, "line_setup");
+  FIELD(std::uint32_t, primitive_id, &Widths::primitive_id)  ///< that of the PrimitivePacket; left at 0 by setup_line
+  FIELD(std::int32_t, x, &Widths::pixel_x)  ///< the first pixel; inside the target when it goes to the RTL
+  FIELD(std::int32_t, y, &Widths::pixel_y)
+  FIELD(bool, is_x_major, &Widths::flag)     ///< every step changes x
+  FIELD(bool, is_x_negative, &Widths::flag)  ///< x falls
+  FIELD(bool, is_y_negative, &Widths::flag)  ///< likewise y
+  FIELD(bool, is_before_start,
+        &Widths::flag)  ///< the first pixel's centre lies before the start: it shows the start's codes
+  FIELD(std::uint32_t, remaining, &Widths::line_count)  ///< pixels after the first
+  FIELD(std::int64_t, error, &Widths::line_error)       ///< p: >= 0 when the next pixel lies in the next row
+  FIELD(std::int64_t, step_stay, &Widths::line_stay)    ///< d, added to p after a step along the major axis alone
+  FIELD(std::int64_t, step_move, &Widths::line_move)    ///< d - D, added to p after a step along both
+  FIELD(PerPlane<std::uint64_t>, value,
+        &AttributeWidths::line)  ///< 2^-G' LSB at the first pixel's major coordinate, plus 1/2 LSB
+  FIELD(PerPlane<std::uint64_t>, step, &AttributeWidths::line)          ///< per pixel
+  FIELD(PerPlane<std::uint32_t>, start, &AttributeWidths::affine_code)  ///< codes of the start
+  PACKET_END
+};
+
+/// line_raster -> primitive_join: one covered pixel.
+struct LinePixel {
+  PACKET(LinePixel, "line_pixel");
+  FIELD(std::uint32_t, primitive_id, &Widths::primitive_id)
+  FIELD(std::int32_t, x, &Widths::pixel_x)
+  FIELD(std::int32_t, y, &Widths::pixel_y)
+  FIELD(bool, is_last, &Widths::flag)  ///< the line ends here
+  FIELD(PerPlane<std::uint32_t>, code, &AttributeWidths::affine_code)
+  PACKET_END
+  bool operator==(const LinePixel&) const = default;
+};
+
+/// framebuffer -> memory_port: a write of one stamp of one plane, or a read of `run` of them, one response each. Requests go
+/// in program order; reads are answered in the same order. A run lies one behind the other in memory (stages/memory_port.hpp)
+/// and is one burst: the writes of it follow each other, each with the number of stamps that are left of it.
+/// A word of flags is bits of `data`, flag n of the word bit n; its words lie in rows of blocks: word n of block row y is
+/// asked for as tile_x n and stamp y modulo BlockGrid::per_tile of tile_y.
+struct MemoryRequest {
+  PACKET(MemoryRequest, "memory_request");
+  using Lanes = std::array<std::uint32_t, kMaxSamples>;
+  FIELD(bool, is_write, &Widths::flag)
+  FIELD(TilePlane, plane, &Widths::tile_plane)
+  FIELD(std::uint16_t, tile_x, &Widths::tile_x)
+  FIELD(std::uint16_t, tile_y, &Widths::tile_y)
+  FIELD(std::uint16_t, stamp, &Widths::stamp_index)
+  FIELD(std::uint16_t, run, &Widths::run)                     ///< stamps or words of its burst from this one on
+  FIELD(SampleMask, strobe, &Widths::sample_mask)             ///< the samples to write; 0 for a read
+  FIELD(Lanes, data, &Widths::memory_lane, &Widths::samples)  ///< one code a sample; 0 where none is written
+  PACKET_END
+};
+
+/// memory_port -> framebuffer: a stamp that was read.
+struct MemoryResponse {
+  PACKET(MemoryResponse, "memory_response");
+  FIELD(MemoryRequest::Lanes, data, &Widths::memory_lane, &Widths::samples)
+  PACKET_END
+};
+
+/// memory_port -> memory: a beat of a burst that writes, or all of a burst that reads. Bursts lie in one plane of one tile or
+/// in one row of flags, and their bytes follow each other.
+struct MemoryBeat {
+  PACKET(MemoryBeat, "memory_beat");
+  using Bytes = std::array<std::uint8_t, kMaxPortBytes>;
+  FIELD(bool, is_write, &Widths::flag)
+  FIELD(bool, is_first, &Widths::flag)                         ///< a burst begins
+  FIELD(std::uint32_t, address, &Widths::address)              ///< of its first byte; a multiple of the port's bytes
+  FIELD(std::uint16_t, length, &Widths::burst_length)          ///< beats of the burst from this one on
+  FIELD(std::uint64_t, strobe, &Widths::port_strobe)           ///< the bytes to write; 0 for a read
+  FIELD(Bytes, data, &Widths::port_byte, &Widths::port_bytes)  ///< 0 where none is written
+  PACKET_END
+};
+
+/// memory -> memory_port: a beat that was read, or the news that a burst has been written. In the order of the bursts.
+struct MemoryAnswer {
+  PACKET(MemoryAnswer, "memory_answer");
+  FIELD(bool, is_write, &Widths::flag)
+  FIELD(MemoryBeat::Bytes, data, &Widths::port_byte, &Widths::port_bytes)  ///< 0 for a write
+  PACKET_END
+};
+
+/// texture_unit -> texture_memory: a read of a line of 4x4 texels.
+struct TextureRequest {
+  PACKET(TextureRequest, "texture_request");
+  FIELD(std::uint32_t, address, &Widths::address)      ///< bytes
+  FIELD(std::uint16_t, beats, &Widths::texture_beats)  ///< of it
+  PACKET_END
+};
+
+/// texture_memory -> texture_unit: a beat of a line, in the order of the requests.
+struct TexelBeat {
+  PACKET(TexelBeat, "texel_beat");
+  using Bytes = std::array<std::uint8_t, 8>;
+  FIELD(Bytes, data, &Widths::texture_byte, &Widths::texture_port_bytes)
+  PACKET_END
+};
+
+/// texture_unit, rop -> framebuffer: the colours of a stamp of which any sample lives; of other samples they are 0.
+struct ColorPacket {
+  PACKET(ColorPacket, "color_packet");
+  /// Samples whose colour is written, or looked at by the alpha test; of several in a pixel all, if one is.
+  FIELD(SampleMask, mask, &Widths::sample_mask)
+  FIELD(WritePacket::Codes, color, &Widths::shaded_color,
+        &Widths::samples)  ///< as it is stored, or before it is blended or dithered; 0 where none lives
+  PACKET_END
+};
+
+/// The performance counters of the hardware: items since reset; the RTL has them modulo
+/// 2^counters.bits. Names as in Counters (counters.hpp).
+struct CounterPacket {
+  PACKET(CounterPacket, "counter_packet");
+  FIELD(bool, overflow, &Widths::flag)                   ///< one of the others has passed its largest value in the RTL
+  FIELD(std::uint64_t, primitives_in, &Widths::counter)  ///< triangles, points and lines that came to cull
+  FIELD(std::uint64_t, zero_area, &Widths::counter)
+  FIELD(std::uint64_t, backface, &Widths::counter)
+  FIELD(std::uint64_t, empty, &Widths::counter)
+  FIELD(std::uint64_t, no_sample, &Widths::counter)  ///< small triangles, by the pipelined cull
+  FIELD(std::uint64_t, tiles_visited, &Widths::counter)
+  FIELD(std::uint64_t, tiles_outside, &Widths::counter)
+  FIELD(std::uint64_t, trivially_accepted, &Widths::counter)
+  FIELD(std::uint64_t, tiles_hiz, &Widths::counter)
+  FIELD(std::uint64_t, samples_tested, &Widths::counter)
+  FIELD(std::uint64_t, covered, &Widths::counter)
+  FIELD(std::uint64_t, depth_passed, &Widths::counter)
+  FIELD(std::uint64_t, written, &Widths::counter)
+  FIELD(std::uint64_t, tile_fills,
+        &Widths::counter)  ///< stamps that were read, as the next two; with blending colours too
+  FIELD(std::uint64_t, tile_evictions, &Widths::counter)
+  FIELD(std::uint64_t, tile_clears, &Widths::counter)  ///< of depth alone
+  /// With a texture unit alone: samples that were looked up, those whose lines were all in its cache, lines asked for.
+  FIELD(std::uint64_t, texture_samples, &Widths::counter, &Widths::texture_counters)
+  FIELD(std::uint64_t, texture_hits, &Widths::counter, &Widths::texture_counters)
+  FIELD(std::uint64_t, texture_fills, &Widths::counter, &Widths::texture_counters)
+  FIELD(std::uint64_t, alpha_killed, &Widths::counter, &Widths::alpha_counters)  ///< only with the alpha test
+  PACKET_END
+};
+
+#undef PACKET
+#undef FIELD
+#undef PACKET_END
+
+}  // namespace halfplane

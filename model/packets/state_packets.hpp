@@ -1,0 +1,55 @@
+// State packets: tokens that say what a unit behind the depth test does from here on. They go the way of all packets, in
+// order, so nothing else carries a state. The value lies where a vertex has its codes, and comes out of interpolate as it
+// went in.
+#pragma once
+
+#include "../fixed.hpp"
+#include "packets.hpp"
+
+namespace halfplane {
+
+/// Which register a token of kind state sets; it stands in the place of the depth test.
+[[nodiscard]] constexpr StateRegister state_register(const PrimitiveState& state) {
+  return static_cast<StateRegister>(state.depth_test);
+}
+[[nodiscard]] constexpr PrimitiveState sets_register(StateRegister which) {
+  return {static_cast<DepthFunc>(which), false, false};
+}
+
+/// Bits of a token's codes; of a value, 128 at most.
+[[nodiscard]] inline int state_word_bits(const Widths& widths) {
+  int bits = 0;
+  for (int p = 0; p < widths.token_planes(); ++p) bits += widths.of_plane(static_cast<std::size_t>(p)).code.bits;
+  return bits;
+}
+
+/// A value over the codes of a vertex, lowest plane first, and back from the fragment that it has become.
+inline void set_state_word(PerPlane<std::uint32_t>& code, uint128 word, const Widths& widths) {
+  for (std::size_t p = 0; p < static_cast<std::size_t>(widths.token_planes()); ++p) {
+    const int bits = widths.of_plane(p).code.bits;
+    code[p] = static_cast<std::uint32_t>(wrap_unsigned(static_cast<std::uint64_t>(word), bits));
+    word >>= bits;
+  }
+}
+[[nodiscard]] inline uint128 wide_state_word(const PerPlane<std::uint32_t>& code, const Widths& widths) {
+  uint128 word = 0;
+  for (int p = widths.token_planes() - 1; p >= 0; --p) {
+    const int bits = widths.of_plane(static_cast<std::size_t>(p)).code.bits;
+    word = word << bits | wrap_unsigned(code[static_cast<std::size_t>(p)], bits);
+  }
+  return word;
+}
+[[nodiscard]] inline uint128 wide_state_word(const FragmentPacket& token, const Widths& widths) {
+  PerPlane<std::uint32_t> code = token.code[0];
+  for (auto p = static_cast<std::size_t>(widths.affine_planes); p < static_cast<std::size_t>(widths.token_planes());
+       ++p)
+    code[p] >>= widths.of_plane(p).guard_bits();
+  return wide_state_word(code, widths);
+}
+/// Its lowest 64 bits, which are all that most registers have.
+template <class Codes>
+[[nodiscard]] std::uint64_t state_word(const Codes& token, const Widths& widths) {
+  return static_cast<std::uint64_t>(wide_state_word(token, widths));
+}
+
+}  // namespace halfplane
