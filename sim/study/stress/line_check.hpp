@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "model/golden/exact_line.hpp"
+#include "model/host/line_setup.hpp"
 #include "model/stages/line_raster.hpp"
 #include "sim/study/vertices.hpp"
 
