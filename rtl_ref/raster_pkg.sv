@@ -538,4 +538,63 @@ package raster_pkg;
   } counter_packet_t;
   localparam int COUNTER_PACKET_BITS = 513;  // of the struct above
 
+  // The framebuffer of blocks.
+  localparam int BLOCK_STAMPS = BLOCK_SIDE * BLOCK_SIDE;  // stamps of a block
+  localparam int BLOCK_STAMP_BITS = BLOCK_STAMPS == 1 ? 1 : $clog2(BLOCK_STAMPS);  // a stamp's number in its block
+  localparam int BLOCK_X_BITS = TILE_X_BITS + $clog2(BLOCKS_PER_ROW);  // a block's column in the target
+  localparam int BLOCK_Y_BITS = TILE_Y_BITS + $clog2(BLOCKS_PER_ROW);  // its row
+  localparam int CACHE_LINE_BITS = CACHE_LINES == 1 ? 1 : LINE_X_BITS + LINE_Y_BITS;  // a line's number
+  localparam int TAG_X_BITS = BLOCK_X_BITS > LINE_X_BITS ? BLOCK_X_BITS - LINE_X_BITS : 1;  // of a block's column, its tag
+  localparam int TAG_Y_BITS = BLOCK_Y_BITS > LINE_Y_BITS ? BLOCK_Y_BITS - LINE_Y_BITS : 1;  // of its row
+  localparam int FLAG_WORD_X_BITS = BLOCK_X_BITS > $clog2(FLAG_WORD) ? BLOCK_X_BITS - $clog2(FLAG_WORD) : 1;  // a word's number in its row of flags
+  localparam int VICTIM_SLOT_BITS = $clog2(CACHE_VICTIMS);  // a slot for an evicted block
+  localparam int VICTIM_COUNT_BITS = $clog2(CACHE_VICTIMS + 1);  // so many of them
+  localparam int SHADED_STAMPS = COORDINATES == 0 ? 2 : TEXTURE_STAMPS;  // stamps between depth and colour, at most
+  localparam int APART = COORDINATES != 0 && MSAA_SAMPLES == 1 ? 1 : 0;  // 1: what a triangle's fragments share over w lies in a RAM, by the triangle's number
+  localparam int TRIANGLE_BITS = $clog2(CONTEXT_SLOTS + CACHE_QUEUE + 16);  // that number: of all between setup and depth test
+  localparam int STORED_FRAGMENT_BITS = FRAGMENT_PACKET_BITS - (APART != 0 ? COORDINATE_FRAME_BITS - TRIANGLE_BITS + (PIXELS - 1) * (ALL_FRAGMENT_BITS - ALL_AFFINE_CODE_BITS) : 0);  // a fragment as it waits for memory
+  localparam int LATE_ALPHA = ALPHA_UNIT != 0 && COORDINATES != 0 ? 1 : 0;  // 1: alpha is tested behind the texture
+
+  typedef struct packed {
+    logic [CACHE_LINE_BITS-1:0] line;  // where the fragment's block lies
+    logic [BLOCK_STAMP_BITS-1:0] stamp;  // its stamp there
+    depth_source_t source;  // of the stored depths
+    logic [FLAG_BITS-1:0] starts_color;  // no colour of the stamp is on the chip
+    logic [FLAG_BITS-1:0] evicts;  // another block leaves the line
+    logic [TAG_X_BITS-1:0] tag_x;  // that block's tag
+    logic [TAG_Y_BITS-1:0] tag_y;  // 
+    logic [BLOCK_STAMPS-1:0] depth;  // stamps of it whose depths may have been written
+    logic [BLOCK_STAMPS-1:0] color;  // likewise colours
+    logic [2-1:0] fills;  // colour, depth: memory holds garbage
+  } tag_result_t;
+  localparam int TAG_RESULT_BITS = CACHE_LINE_BITS + BLOCK_STAMP_BITS + DEPTH_SOURCE_BITS + FLAG_BITS + FLAG_BITS + TAG_X_BITS + TAG_Y_BITS + BLOCK_STAMPS + BLOCK_STAMPS + 2;  // of the struct above
+
+  typedef struct packed {
+    logic [VICTIM_COUNT_BITS-1:0] writes;  // so many evicted blocks go to memory first
+    logic [FLAG_BITS-1:0] reads;  // then a stamp of depths is read
+    logic [TILE_X_BITS-1:0] tile_x;  // which stamp
+    logic [TILE_Y_BITS-1:0] tile_y;  // 
+    logic [STAMP_INDEX_BITS-1:0] stamp;  // 
+  } block_order_t;
+  localparam int BLOCK_ORDER_BITS = VICTIM_COUNT_BITS + FLAG_BITS + TILE_X_BITS + TILE_Y_BITS + STAMP_INDEX_BITS;  // of the struct above
+
+  typedef struct packed {
+    logic [BLOCK_X_BITS-1:0] x;  // where the block belongs
+    logic [BLOCK_Y_BITS-1:0] y;  // 
+    logic [BLOCK_STAMPS-1:0] depth;  // stamps whose depths come into its slot
+    logic [BLOCK_STAMPS-1:0] color;  // likewise colours
+  } victim_t;
+  localparam int VICTIM_BITS = BLOCK_X_BITS + BLOCK_Y_BITS + BLOCK_STAMPS + BLOCK_STAMPS;  // of the struct above
+
+  typedef struct packed {
+    logic [CACHE_LINE_BITS-1:0] line;  // where its block lies
+    logic [BLOCK_STAMP_BITS-1:0] stamp;  // 
+    logic [FLAG_BITS-1:0] starts_color;  // no colour of the stamp is on the chip
+    logic [SAMPLE_MASK_BITS-1:0] mask;  // samples whose colour is written
+    logic [FLAG_BITS-1:0] evicts;  // another block leaves the line
+    logic [FLAG_BITS-1:0] fills;  // memory holds garbage of its colours
+    logic [BLOCK_STAMPS-1:0] evicted;  // stamps of it whose colours leave
+  } tested_stamp_t;
+  localparam int TESTED_STAMP_BITS = CACHE_LINE_BITS + BLOCK_STAMP_BITS + FLAG_BITS + SAMPLE_MASK_BITS + FLAG_BITS + FLAG_BITS + BLOCK_STAMPS;  // of the struct above
+
 endpackage

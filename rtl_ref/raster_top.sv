@@ -1,12 +1,28 @@
 // The raster pipeline: snapped primitives in, tiles of depth and colour in memory out.
 //
-//   cull -> triangle_setup -> coarse_raster -> fine_raster -> interpolate -> primitive_join -> depth_test -> framebuffer
-//                                 ^                                   line_raster ^              |              ^ v
-//                                 '-- the retirement of tile visits (HiZ) <----------------------'          memory_port
-//                                                                                                               ^ v
-//                                                                                                             memory
+//   cull -> triangle_setup -> coarse_raster -> fine_raster -> interpolate -.
+//                               ^      '-> context_ram -------^            v
+//                               |                  line_raster -> primitive_join
+//                               |                                          | fragment
+//                               |      .-----------------------------------'
+//                               |      v
+//                               |  cache_tags ----> depth_cache <--> depth_test
+//                               |      |              |   |               |
+//                               '------|--------------|---|-- retire -----'
+//                                      |              |   v
+//                                      |              |  light_stage -> texture_stage -> fog_stage -> stamp_rop
+//                                      | orders       |    with a texture unit; else one queue           |
+//                                      |      victims |                                                  v
+//                                      v              v    victims                            late_test, color_write
+//                                    write_back <---------------------------------------------------'    ^
+//                                      | request                                                         |
+//                                      v             response                                            |
+//                                    memory_port ------------> memory_answers --- stored depths, colours-'
+//                                      | beat ^ answer
+//                                      v      |
+//                                      memory
 //
-// With a texture unit, which stands inside the framebuffer of blocks, a second memory answers it.
+// That is the framebuffer of blocks (cache.kind). The framebuffer of tiles is one stage, behind depth_test.
 //
 // Every arrow that waits is a stream: a packet moves when valid and ready are both high. Bit raster_pkg::STALL_X of stall_i holds
 // arrow X back for a cycle, for tests; hardware ties it to 0. The packets are X_data, X_valid, X_ready: so cosim/taps.svh
@@ -62,46 +78,42 @@ module raster_top (
     output logic                        idle_o
 );
 
-  localparam int COUNTER = raster_pkg::COUNTER_BITS;
-  localparam int COUNT = $clog2(raster_pkg::SAMPLES + 1);
+  localparam int SAMPLES = raster_pkg::SAMPLES;
+  localparam int PIXELS = raster_pkg::PIXELS;
+  localparam int COUNT = $clog2(SAMPLES + 1);
+  localparam int DEPTHS = SAMPLES * raster_pkg::STORED_DEPTH_BITS;  // the words of a stamp
+  localparam bit HAS_TEXTURE = raster_pkg::COORDINATES != 0;
+  localparam bit LATE = raster_pkg::LATE_ALPHA != 0;
+  /* verilator lint_off UNUSEDSIGNAL */  // not every design has every stage, and what only the co-simulation looks at
+  /* verilator lint_off UNDRIVEN */
 
-  // The streams, as the consumer sees them.
-  logic triangle_valid, triangle_ready, setup_valid, setup_ready, tile_valid, tile_ready;
-  logic stamp_valid, stamp_ready, fragment_valid, fragment_ready;
-  /* verilator lint_off UNUSEDSIGNAL */  // for the taps of the co-simulation where there is no unit of lines
-  logic line_pixel_valid, line_pixel_ready;
-  raster_pkg::line_pixel_t      line_pixel_data;
-  /* verilator lint_on UNUSEDSIGNAL */
-  raster_pkg::triangle_packet_t triangle_data;
-  raster_pkg::setup_packet_t    setup_data;
-  /* verilator lint_off UNUSEDSIGNAL */  // serial stages have its steps in another way
-  raster_pkg::context_packet_t  context_data;
-  /* verilator lint_on UNUSEDSIGNAL */
-  raster_pkg::tile_packet_t     tile_data;
-  raster_pkg::edge_context_t    edges_data;
+  // ---------------------------------------------------------------------------------------------------------- the streams
+  // As the consumer sees them.
+  logic triangle_valid, triangle_ready, setup_valid, setup_ready, tile_valid, tile_ready, stamp_valid, stamp_ready;
+  logic line_pixel_valid, line_pixel_ready, fragment_valid, fragment_ready, request_valid, request_ready;
+  logic response_valid, response_ready, write_valid, retire_valid, color_valid, color_ready;
+  raster_pkg::triangle_packet_t            triangle_data;
+  raster_pkg::setup_packet_t               setup_data;
+  raster_pkg::context_packet_t             context_data;
+  raster_pkg::tile_packet_t                tile_data;
+  raster_pkg::edge_context_t               edges_data;
   logic [3*raster_pkg::TILE_EDGE_BITS-1:0] visit_edges;
-  raster_pkg::stamp_packet_t    stamp_data;
-  raster_pkg::fragment_packet_t fragment;  // without the constants of its triangle where they are apart
-  /* verilator lint_off UNUSEDSIGNAL */    // for the co-simulation
-  raster_pkg::fragment_packet_t fragment_data;
-  /* verilator lint_on UNUSEDSIGNAL */
-  raster_pkg::memory_request_t      request;  // of the cache of blocks without its data
-  /* verilator lint_off UNUSEDSIGNAL */  // for the co-simulation
-  raster_pkg::memory_request_t      request_data;
-  /* verilator lint_on UNUSEDSIGNAL */
-  logic [8*raster_pkg::REQUEST_BYTES-1:0] request_bytes;  // its data as they lie in memory
-  raster_pkg::memory_response_t     response_data;
-  logic                             request_valid, request_ready, response_valid, response_ready;
-  logic                             write_valid, retire_valid;
-  raster_pkg::write_packet_t    write_data;
-  raster_pkg::retire_packet_t   retire_data;
+  raster_pkg::stamp_packet_t               stamp_data;
+  raster_pkg::line_pixel_t                 line_pixel_data;
+  raster_pkg::fragment_packet_t            fragment_data;  // without the constants of its triangle where they are apart
+  raster_pkg::write_packet_t               write_data;     // its depths are those of the fragment, its words are beside it
+  logic [DEPTHS-1:0]                       write_word;
+  raster_pkg::retire_packet_t              retire_data;
+  raster_pkg::memory_request_t             request_data;   // of blocks without its data
+  logic [8*raster_pkg::REQUEST_BYTES-1:0]  request_bytes;  // its data as they lie in memory
+  raster_pkg::memory_response_t            response_data;
+  raster_pkg::color_packet_t               color_data;
 
-  // The same at the producer, before a stall.
+  // At the producer, before a stall.
   logic primitive_ready, triangle_offered, setup_offered, tile_offered, stamp_offered, fragment_offered;
-  logic request_offered, response_offered, beat_offered, answer_ready;
+  logic request_offered, response_offered, beat_offered, answer_ready, texture_offered, texel_accepted;
   logic triangle_accepted, setup_accepted, tile_accepted, stamp_accepted, fragment_accepted;
   logic request_accepted, response_accepted;
-
   assign primitive_ready_o = primitive_ready && !stall_i[raster_pkg::STALL_PRIMITIVE];
   assign triangle_valid    = triangle_offered && !stall_i[raster_pkg::STALL_TRIANGLE];
   assign triangle_ready    = triangle_accepted && !stall_i[raster_pkg::STALL_TRIANGLE];
@@ -119,109 +131,198 @@ module raster_top (
   assign response_ready    = response_accepted && !stall_i[raster_pkg::STALL_RESPONSE];
   assign beat_valid_o      = beat_offered && !stall_i[raster_pkg::STALL_BEAT];
   assign answer_ready_o    = answer_ready && !stall_i[raster_pkg::STALL_ANSWER];
+  assign texture_valid_o   = texture_offered && !stall_i[raster_pkg::STALL_TEXTURE];
+  assign texel_ready_o     = texel_accepted && !stall_i[raster_pkg::STALL_TEXEL];
 
+  // Beside the streams: slots of contexts, events for the counters, who is idle.
+  logic [raster_pkg::SLOT_BITS-1:0]                                   context_slot, read_slot;
+  logic                                                               slot_free, context_read;
+  raster_pkg::context_packet_t                                        stamp_context, tested_context;
+  logic [raster_pkg::ALL_LOCAL_BITS-1:0]                              context_step;
+  logic [raster_pkg::TRIANGLE_BITS-1:0]                               triangle_number;
   logic is_primitive, is_zero_area, is_backface, is_empty, is_no_sample, is_dropped;
-  logic [raster_pkg::SLOT_BITS-1:0] context_slot, read_slot;
-  logic                             slot_free;
-  logic is_visited, is_outside, is_accepted, is_hiz, visits_are_done;
+  logic is_visited, is_outside, is_accepted, is_hiz, visits_are_done, lines_are_done;
   logic [2*raster_pkg::TILE_SHIFT+$clog2(raster_pkg::MSAA_SAMPLES):0] samples_tested;
-  logic                              context_read;
-  raster_pkg::context_packet_t   stamp_context;
-  /* verilator lint_off UNUSEDSIGNAL */  // with pipelined stages
-  logic [raster_pkg::ALL_LOCAL_BITS-1:0] context_step;
-  /* verilator lint_on UNUSEDSIGNAL */
+  logic [COUNT-1:0] covered, passed, written, killed, tested_written, tested_killed, late_written, late_killed;
+  logic             is_fill, is_evict, is_clear;
+  logic [6:0]       texture_use;
+  logic             framebuffer_idle, port_idle, moves_tiles;
 
+  // ------------------------------------------------------------------------ primitives to fragments: pipelined, or a step at a time
   logic shaded_valid, shaded_ready;  // what interpolate sends
   raster_pkg::fragment_packet_t shaded_data;
-  logic                             lines_are_done;  // none is in the unit
-
-  // The stages up to the fragments: with a packet in every step, or those for the smallest parts, which look at a packet
-  // until they are through with it and do one thing at a time. The ports are the same.
-`define RASTER_FRONT(CULL, TRIANGLE_SETUP, COARSE_RASTER, FINE_RASTER, INTERPOLATE) \
-    CULL u_cull (                                                                       \
-        .clk_i,                                                                         \
-        .rst_ni,                                                                        \
-        .primitive_valid_i(primitive_valid_i && !stall_i[raster_pkg::STALL_PRIMITIVE]), \
-        .primitive_ready_o(primitive_ready),                                            \
-        .primitive_i,                                                                   \
-        .triangle_valid_o (triangle_offered),                                           \
-        .triangle_ready_i (triangle_ready),                                             \
-        .triangle_o       (triangle_data),                                              \
-        .is_primitive_o   (is_primitive),                                               \
-        .is_zero_area_o   (is_zero_area),                                               \
-        .is_backface_o    (is_backface),                                                \
-        .is_empty_o       (is_empty),                                                   \
-        .is_no_sample_o   (is_no_sample),                                               \
-        .is_dropped_o     (is_dropped)                                                  \
-    );                                                                                  \
-    TRIANGLE_SETUP u_triangle_setup (                                                   \
-        .clk_i,                                                                         \
-        .rst_ni,                                                                        \
-        .triangle_valid_i(triangle_valid),                                              \
-        .triangle_ready_o(triangle_accepted),                                           \
-        .triangle_i      (triangle_data),                                               \
-        .setup_valid_o   (setup_offered),                                               \
-        .setup_ready_i   (setup_ready),                                                 \
-        .setup_o         (setup_data)                                                   \
-    );                                                                                  \
-    COARSE_RASTER u_coarse_raster (                                                     \
-        .clk_i,                                                                         \
-        .rst_ni,                                                                        \
-        .setup_valid_i   (setup_valid),                                                 \
-        .setup_ready_o   (setup_accepted),                                              \
-        .setup_i         (setup_data),                                                  \
-        .context_slot_o  (context_slot),                                                \
-        .context_o       (context_data),                                                \
-        .context_step_o  (context_step),                                                \
-        .slot_free_i     (slot_free),                                                   \
-        .tile_valid_o    (tile_offered),                                                \
-        .tile_ready_i    (tile_ready),                                                  \
-        .tile_o          (tile_data),                                                   \
-        .edges_o         (edges_data),                                                  \
-        .visit_edges_o   (visit_edges),                                                 \
-        .retire_valid_i  (retire_valid),                                                \
-        .retire_i        (retire_data),                                                 \
-        .is_visited_o    (is_visited),                                                  \
-        .is_outside_o    (is_outside),                                                  \
-        .is_accepted_o   (is_accepted),                                                 \
-        .is_hiz_o        (is_hiz),                                                      \
-        .samples_tested_o(samples_tested),                                              \
-        .visits_are_done_o(visits_are_done)                                             \
-    );                                                                                  \
-    FINE_RASTER u_fine_raster (                                                         \
-        .clk_i,                                                                         \
-        .rst_ni,                                                                        \
-        .tile_valid_i (tile_valid),                                                     \
-        .tile_ready_o (tile_accepted),                                                  \
-        .tile_i       (tile_data),                                                      \
-        .edges_i      (edges_data),                                                     \
-        .visit_edges_i(visit_edges),                                                    \
-        .stamp_valid_o(stamp_offered),                                                  \
-        .stamp_ready_i(stamp_ready),                                                    \
-        .stamp_o      (stamp_data)                                                      \
-    );                                                                                  \
-    INTERPOLATE u_interpolate (                                                         \
-        .clk_i,                                                                         \
-        .rst_ni,                                                                        \
-        .stamp_valid_i   (stamp_valid),                                                 \
-        .stamp_ready_o   (stamp_accepted),                                              \
-        .stamp_i         (stamp_data),                                                  \
-        .context_read_o  (context_read),                                                \
-        .context_slot_o  (read_slot),                                                   \
-        .context_i       (stamp_context),                                               \
-        .slot_free_o     (slot_free),                                                   \
-        .fragment_valid_o(shaded_valid),                                                \
-        .fragment_ready_i(shaded_ready),                                                \
-        .fragment_o      (shaded_data)                                                  \
-    );
-
   generate
     if (raster_pkg::SETUP_KIND == 0) begin : gen_pipelined
-      `RASTER_FRONT(cull, triangle_setup, coarse_raster, fine_raster, interpolate)
+      cull u_cull (
+          .clk_i,
+          .rst_ni,
+          .primitive_valid_i(primitive_valid_i && !stall_i[raster_pkg::STALL_PRIMITIVE]),
+          .primitive_ready_o(primitive_ready),
+          .primitive_i,
+          .triangle_valid_o (triangle_offered),
+          .triangle_ready_i (triangle_ready),
+          .triangle_o       (triangle_data),
+          .is_primitive_o   (is_primitive),
+          .is_zero_area_o   (is_zero_area),
+          .is_backface_o    (is_backface),
+          .is_empty_o       (is_empty),
+          .is_no_sample_o   (is_no_sample),
+          .is_dropped_o     (is_dropped)
+      );
+      triangle_setup u_triangle_setup (
+          .clk_i,
+          .rst_ni,
+          .triangle_valid_i(triangle_valid),
+          .triangle_ready_o(triangle_accepted),
+          .triangle_i      (triangle_data),
+          .setup_valid_o   (setup_offered),
+          .setup_ready_i   (setup_ready),
+          .setup_o         (setup_data)
+      );
+      coarse_raster u_coarse_raster (
+          .clk_i,
+          .rst_ni,
+          .setup_valid_i    (setup_valid),
+          .setup_ready_o    (setup_accepted),
+          .setup_i          (setup_data),
+          .context_slot_o   (context_slot),
+          .context_o        (context_data),
+          .context_step_o   (context_step),
+          .slot_free_i      (slot_free),
+          .tile_valid_o     (tile_offered),
+          .tile_ready_i     (tile_ready),
+          .tile_o           (tile_data),
+          .edges_o          (edges_data),
+          .visit_edges_o    (visit_edges),
+          .retire_valid_i   (retire_valid),
+          .retire_i         (retire_data),
+          .is_visited_o     (is_visited),
+          .is_outside_o     (is_outside),
+          .is_accepted_o    (is_accepted),
+          .is_hiz_o         (is_hiz),
+          .samples_tested_o (samples_tested),
+          .visits_are_done_o(visits_are_done)
+      );
+      fine_raster u_fine_raster (
+          .clk_i,
+          .rst_ni,
+          .tile_valid_i (tile_valid),
+          .tile_ready_o (tile_accepted),
+          .tile_i       (tile_data),
+          .edges_i      (edges_data),
+          .visit_edges_i(visit_edges),
+          .stamp_valid_o(stamp_offered),
+          .stamp_ready_i(stamp_ready),
+          .stamp_o      (stamp_data)
+      );
+      interpolate u_interpolate (
+          .clk_i,
+          .rst_ni,
+          .stamp_valid_i   (stamp_valid),
+          .stamp_ready_o   (stamp_accepted),
+          .stamp_i         (stamp_data),
+          .context_read_o  (context_read),
+          .context_slot_o  (read_slot),
+          .context_i       (stamp_context),
+          .slot_free_o     (slot_free),
+          .fragment_valid_o(shaded_valid),
+          .fragment_ready_i(shaded_ready),
+          .fragment_o      (shaded_data)
+      );
     end else begin : gen_serial
-      `RASTER_FRONT(cull_serial, triangle_setup_serial, coarse_raster_serial, fine_raster_serial, interpolate_serial)
+      cull_serial u_cull (
+          .clk_i,
+          .rst_ni,
+          .primitive_valid_i(primitive_valid_i && !stall_i[raster_pkg::STALL_PRIMITIVE]),
+          .primitive_ready_o(primitive_ready),
+          .primitive_i,
+          .triangle_valid_o (triangle_offered),
+          .triangle_ready_i (triangle_ready),
+          .triangle_o       (triangle_data),
+          .is_primitive_o   (is_primitive),
+          .is_zero_area_o   (is_zero_area),
+          .is_backface_o    (is_backface),
+          .is_empty_o       (is_empty),
+          .is_no_sample_o   (is_no_sample),
+          .is_dropped_o     (is_dropped)
+      );
+      triangle_setup_serial u_triangle_setup (
+          .clk_i,
+          .rst_ni,
+          .triangle_valid_i(triangle_valid),
+          .triangle_ready_o(triangle_accepted),
+          .triangle_i      (triangle_data),
+          .setup_valid_o   (setup_offered),
+          .setup_ready_i   (setup_ready),
+          .setup_o         (setup_data)
+      );
+      coarse_raster_serial u_coarse_raster (
+          .clk_i,
+          .rst_ni,
+          .setup_valid_i    (setup_valid),
+          .setup_ready_o    (setup_accepted),
+          .setup_i          (setup_data),
+          .context_slot_o   (context_slot),
+          .context_o        (context_data),
+          .context_step_o   (context_step),
+          .slot_free_i      (slot_free),
+          .tile_valid_o     (tile_offered),
+          .tile_ready_i     (tile_ready),
+          .tile_o           (tile_data),
+          .edges_o          (edges_data),
+          .visit_edges_o    (visit_edges),
+          .retire_valid_i   (retire_valid),
+          .retire_i         (retire_data),
+          .is_visited_o     (is_visited),
+          .is_outside_o     (is_outside),
+          .is_accepted_o    (is_accepted),
+          .is_hiz_o         (is_hiz),
+          .samples_tested_o (samples_tested),
+          .visits_are_done_o(visits_are_done)
+      );
+      fine_raster_serial u_fine_raster (
+          .clk_i,
+          .rst_ni,
+          .tile_valid_i (tile_valid),
+          .tile_ready_o (tile_accepted),
+          .tile_i       (tile_data),
+          .edges_i      (edges_data),
+          .visit_edges_i(visit_edges),
+          .stamp_valid_o(stamp_offered),
+          .stamp_ready_i(stamp_ready),
+          .stamp_o      (stamp_data)
+      );
+      interpolate_serial u_interpolate (
+          .clk_i,
+          .rst_ni,
+          .stamp_valid_i   (stamp_valid),
+          .stamp_ready_o   (stamp_accepted),
+          .stamp_i         (stamp_data),
+          .context_read_o  (context_read),
+          .context_slot_o  (read_slot),
+          .context_i       (stamp_context),
+          .slot_free_o     (slot_free),
+          .fragment_valid_o(shaded_valid),
+          .fragment_ready_i(shaded_ready),
+          .fragment_o      (shaded_data)
+      );
     end
   endgenerate
+  context_ram u_context (
+      .clk_i,
+      .rst_ni,
+      .write_i          (setup_valid && setup_accepted),
+      .write_slot_i     (context_slot),
+      .context_i        (context_data),
+      .step_i           (context_step),
+      .read_i           (context_read),
+      .read_slot_i      (read_slot),
+      .context_o        (stamp_context),
+      .tested_i         (tested_valid),
+      .tested_fragment_i(tested),
+      .tested_context_o (tested_context),
+      .number_o         (triangle_number)
+  );
 
   // Lines: drawn beside all that, joined where their pixels are tested.
   generate
@@ -231,7 +332,6 @@ module raster_top (
       assign line_pixel_valid = pixel_offered && !stall_i[raster_pkg::STALL_LINE_PIXEL];
       assign line_pixel_ready = pixel_accepted && !stall_i[raster_pkg::STALL_LINE_PIXEL];
       assign lines_are_done   = !pixel_offered;
-
       line_raster u_line_raster (
           .clk_i,
           .rst_ni,
@@ -242,7 +342,6 @@ module raster_top (
           .pixel_ready_i(line_pixel_ready),
           .pixel_o      (line_pixel_data)
       );
-
       primitive_join u_primitive_join (
           .fragment_valid_i(shaded_valid),
           .fragment_ready_o(shaded_ready),
@@ -252,7 +351,7 @@ module raster_top (
           .pixel_i         (line_pixel_data),
           .fragment_valid_o(fragment_offered),
           .fragment_ready_i(fragment_ready),
-          .fragment_o      (fragment)
+          .fragment_o      (fragment_data)
       );
     end else begin : gen_no_lines
       assign line_ready_o     = 1'b0;
@@ -262,164 +361,15 @@ module raster_top (
       assign lines_are_done   = 1'b1;
       assign fragment_offered = shaded_valid;
       assign shaded_ready     = fragment_ready;
-      assign fragment         = shaded_data;
+      assign fragment_data    = shaded_data;
     end
   endgenerate
 
-  // The constants of a primitive: a word, or a word for each step, written one after the other. A slot is not written before
-  // it is free, nor read before the first stamp is there.
-  logic writes_context;
-  assign writes_context = setup_valid && setup_accepted;
-
-  // With planes over w and one sample a pixel, what a triangle's fragments share lies apart from them until they are tested:
-  // the steps of those planes, and the frame of coordinates, by a number that goes along. Only then are those planes moved to
-  // the pixels. There are as many numbers as triangles can be between setup and test: those in slots of contexts, and one for
-  // each fragment behind that, since a triangle's end goes as one.
-  localparam bit APART = raster_pkg::COORDINATES != 0 && raster_pkg::MSAA_SAMPLES == 1;
-  localparam int NUMBER = $clog2(raster_pkg::CONTEXT_SLOTS + raster_pkg::CACHE_QUEUE + 16);
-  /* verilator lint_off UNUSEDSIGNAL */  // without such planes
-  logic [NUMBER-1:0]           number_q;  // of the next triangle
-  raster_pkg::context_packet_t tested_context;
-  /* verilator lint_on UNUSEDSIGNAL */
-  always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) number_q <= '0;
-    else if (APART) number_q <= number_q + NUMBER'(writes_context);
-  end
-  generate
-    if (raster_pkg::SETUP_KIND == 0) begin : gen_context
-      // The range is wanted for colours over w alone: no other code is clamped. Of constants that are apart there is a number.
-      localparam int FRAME = APART ? NUMBER : raster_pkg::COORDINATE_FRAME_BITS;
-      localparam int RANGE = 2 * raster_pkg::ALL_AFFINE_CODE_BITS;
-      localparam int STEPS = raster_pkg::ALL_STEP_BITS;
-      localparam int KEPT_STEPS = APART ? raster_pkg::STEP_AT[32*(APART ? raster_pkg::AFFINE_PLANES : 0)+:32] : STEPS;
-      localparam int HEAD = raster_pkg::CONTEXT_PACKET_BITS - RANGE - raster_pkg::COORDINATE_FRAME_BITS -
-                            2 * (STEPS - KEPT_STEPS);  // state and steps
-      localparam int KEPT = raster_pkg::COLORS_OVER_W != 0 ? RANGE : 0;  // of the range
-      logic [HEAD+KEPT+FRAME-1:0] entering, kept;
-      sram #(
-          .WIDTH(HEAD + KEPT + FRAME),
-          .DEPTH(raster_pkg::CONTEXT_SLOTS),
-          .READS_OLD(0)
-      ) u_context (
-          .clk_i,
-          .read_i         (context_read),
-          .read_address_i (read_slot),
-          .data_o         (kept),
-          .write_i        (writes_context),
-          .write_address_i(context_slot),
-          .data_i         (entering)
-      );
-      logic [KEPT_STEPS-1:0] step_x, step_y;
-      assign entering[KEPT+FRAME+:HEAD] = {context_data.state, context_data.step_x[0+:KEPT_STEPS],
-                                           context_data.step_y[0+:KEPT_STEPS]};
-      assign {stamp_context.state, step_x, step_y} = kept[KEPT+FRAME+:HEAD];
-      assign stamp_context.step_x = STEPS'(step_x);
-      assign stamp_context.step_y = STEPS'(step_y);
-      if (KEPT != 0) begin : gen_range
-        assign entering[FRAME+:KEPT] = context_data.range;
-        assign stamp_context.range   = kept[FRAME+:KEPT];
-      end else begin : gen_no_range
-        assign stamp_context.range = '0;
-      end
-      if (APART) begin : gen_number
-        assign entering[0+:FRAME]        = number_q;
-        assign stamp_context.coordinates = raster_pkg::COORDINATE_FRAME_BITS'(kept[0+:FRAME]);
-      end else if (FRAME != 0) begin : gen_frame
-        assign entering[0+:FRAME]        = context_data.coordinates;
-        assign stamp_context.coordinates = kept[0+:FRAME];
-      end
-    end else begin : gen_contexts
-      localparam int STEP = raster_pkg::ALL_LOCAL_BITS;
-      localparam int REST = raster_pkg::CONTEXT_PACKET_BITS - 2 * STEP;
-      logic            writes_step_x_q, writes_step_y_q;
-      logic [STEP-1:0] step_x, step_y;
-      logic [REST-1:0] rest;
-      always_ff @(posedge clk_i or negedge rst_ni) begin
-        if (!rst_ni) begin
-          writes_step_x_q <= 1'b0;
-          writes_step_y_q <= 1'b0;
-        end else begin
-          writes_step_x_q <= writes_context;
-          writes_step_y_q <= writes_step_x_q;
-        end
-      end
-      sram #(
-          .WIDTH    (STEP),
-          .DEPTH    (raster_pkg::CONTEXT_SLOTS),
-          .READS_OLD(0),
-          .BLOCK    (1)
-      ) u_step_x (
-          .clk_i,
-          .read_i         (context_read),
-          .read_address_i (read_slot),
-          .data_o         (step_x),
-          .write_i        (writes_step_x_q),
-          .write_address_i(context_slot),
-          .data_i         (context_step)
-      );
-      sram #(
-          .WIDTH    (STEP),
-          .DEPTH    (raster_pkg::CONTEXT_SLOTS),
-          .READS_OLD(0),
-          .BLOCK    (1)
-      ) u_step_y (
-          .clk_i,
-          .read_i         (context_read),
-          .read_address_i (read_slot),
-          .data_o         (step_y),
-          .write_i        (writes_step_y_q),
-          .write_address_i(context_slot),
-          .data_i         (context_step)
-      );
-      sram #(
-          .WIDTH    (REST),
-          .DEPTH    (raster_pkg::CONTEXT_SLOTS),
-          .READS_OLD(0),
-          .BLOCK    (1)
-      ) u_rest (
-          .clk_i,
-          .read_i         (context_read),
-          .read_address_i (read_slot),
-          .data_o         (rest),
-          .write_i        (writes_context),
-          .write_address_i(context_slot),
-          .data_i         ({context_data.range, context_data.state})
-      );
-      assign stamp_context.step_x = step_x;
-      assign stamp_context.step_y = step_y;
-      assign {stamp_context.range, stamp_context.state} = rest;
-    end
-  endgenerate
-
-  // The test, and what is behind it: whole tiles, looked up when they are tested; or blocks, looked up before.
-  logic                             tested_valid, tested_ready;
-  raster_pkg::fragment_packet_t tested;
-  /* verilator lint_off UNUSEDSIGNAL */  // blocks take no accesses
-  logic                                                       access_valid;
-  raster_pkg::fragment_packet_t                           access;
-  logic [raster_pkg::STORED_COLOR_BITS-1:0]                   access_color;
-  logic                                                       moves_tiles;  // for the co-simulation
-  /* verilator lint_on UNUSEDSIGNAL */
-  logic                                                       access_ready;
-  logic [raster_pkg::SAMPLES*raster_pkg::STORED_DEPTH_BITS-1:0] stored_depth;
-  /* verilator lint_off UNUSEDSIGNAL */  // with tiles
-  logic [raster_pkg::SAMPLES*raster_pkg::STORED_DEPTH_BITS-1:0] word;
-  /* verilator lint_on UNUSEDSIGNAL */
-  raster_pkg::write_packet_t tested_write;
-  logic [COUNT-1:0]                                           covered, passed, written, killed, tested_written, tested_killed;
-  logic [1:0]                                                 fill, evict, clear;
-  /* verilator lint_off UNUSEDSIGNAL */  // without the unit of counters, or of textures
-  logic [6:0]                                                 texture_use;
-  logic [8:0]                                                 texture_use_q;
-  /* verilator lint_on UNUSEDSIGNAL */
-  /* verilator lint_off UNUSEDSIGNAL */  // for the co-simulation
-  logic                                                       color_valid, color_ready;
-  raster_pkg::color_packet_t                                  color_data;
-  /* verilator lint_on UNUSEDSIGNAL */
-  logic                                                       texture_offered, texel_accepted;
-  assign texture_valid_o = texture_offered && !stall_i[raster_pkg::STALL_TEXTURE];
-  assign texel_ready_o   = texel_accepted && !stall_i[raster_pkg::STALL_TEXEL];
-  logic                                                       framebuffer_idle, port_idle;
+  // ---------------------------------------------------------------------------------------------------------------- the test
+  logic                         tested_valid, tested_ready, access_valid, access_ready;
+  raster_pkg::fragment_packet_t tested, access;
+  logic [raster_pkg::STORED_COLOR_BITS-1:0] access_color;
+  logic [DEPTHS-1:0]            stored_depth;
   depth_test u_depth_test (
       .clk_i,
       .rst_ni,
@@ -432,8 +382,8 @@ module raster_top (
       .access_color_o  (access_color),
       .stored_depth_i  (stored_depth),
       .write_valid_o   (write_valid),
-      .write_o         (tested_write),
-      .word_o          (word),
+      .write_o         (write_data),
+      .word_o          (write_word),
       .retire_valid_o  (retire_valid),
       .retire_o        (retire_data),
       .covered_o       (covered),
@@ -442,75 +392,64 @@ module raster_top (
       .killed_o        (tested_killed)
   );
 
-  generate
-    if (APART) begin : gen_apart
-      localparam int FRAME = raster_pkg::COORDINATE_FRAME_BITS;
-      localparam int AT = raster_pkg::STEP_AT[32*raster_pkg::AFFINE_PLANES+:32];
-      localparam int STEP = raster_pkg::ALL_STEP_BITS - AT;
-      localparam int CODES = raster_pkg::ALL_FRAGMENT_BITS;
-      localparam int AFFINE = raster_pkg::ALL_AFFINE_CODE_BITS;
-      logic [2*STEP+FRAME-1:0] entering, constants;
-      assign entering = {context_data.step_y[AT+:STEP], context_data.step_x[AT+:STEP], context_data.coordinates};
-      sram #(
-          .WIDTH    (2 * STEP + FRAME),
-          .DEPTH    (1 << NUMBER),
-          .READS_OLD(0),
-          .BLOCK    (1)
-      ) u_constants (
-          .clk_i,
-          .read_i         (tested_valid),
-          .read_address_i (NUMBER'(tested.coordinates)),
-          .data_o         (constants),
-          .write_i        (writes_context),
-          .write_address_i(number_q),
-          .data_i         (entering)
-      );
-      always_comb begin
-        tested_context             = '0;
-        tested_context.coordinates = constants[0+:FRAME];
-        tested_context.step_x      = raster_pkg::ALL_STEP_BITS'(constants[FRAME+:STEP]) << AT;
-        tested_context.step_y      = raster_pkg::ALL_STEP_BITS'(constants[FRAME+STEP+:STEP]) << AT;
-      end
+  // ----------------------------------------------------------------------------------------------- the framebuffer, and shading
+  logic                         item_valid, item_ready, order_valid, order_ready, flush_valid;
+  raster_pkg::fragment_packet_t item;
+  raster_pkg::tag_result_t      found;
+  raster_pkg::block_order_t     order;
+  raster_pkg::memory_request_t  flush_data;
+  logic [raster_pkg::FLAG_WORD-1:0]         flush_word, pixel_word_new, pixel_word;
+  logic                                     pixel_reads, pixel_writes;
+  logic [raster_pkg::FLAG_WORD_X_BITS-1:0]  pixel_word_x;
+  logic [raster_pkg::BLOCK_Y_BITS-1:0]      pixel_word_y;
+  logic [raster_pkg::STORED_DEPTH_BITS-1:0] clear_depth;
+  logic [raster_pkg::STORED_COLOR_BITS-1:0] clear_color;
+  logic tags_are_idle, depths_are_idle, texture_is_idle, write_is_idle, orders_are_done;
+  logic is_resolved, stores;
 
-      // For the co-simulation the packet as it is specified: whole, and of lines nothing behind the colours.
-      raster_pkg::context_packet_t  contexts_q[0:(1<<NUMBER)-1];
-      raster_pkg::context_packet_t  fragment_context;
-      raster_pkg::fragment_packet_t whole;
-      always_ff @(posedge clk_i) if (writes_context) contexts_q[number_q] <= context_data;
-      assign fragment_context = contexts_q[NUMBER'(fragment.coordinates)];
-      whole_fragment #(
-          .APART(1)
-      ) u_whole (
-          .fragment_i(fragment),
-          .context_i (fragment_context),
-          .fragment_o(whole)
-      );
-      always_comb begin
-        fragment_data = whole;
-        for (int i = 0; i < raster_pkg::PIXELS; i++)
-          if (fragment.kind == raster_pkg::PRIMITIVE_KIND_LINE)
-            fragment_data.code[i*CODES+AFFINE+:CODES-AFFINE] = '0;
-      end
-    end else begin : gen_together
-      assign tested_context = '0;
-      assign fragment_data  = fragment;
+  logic                      evicts, victim_valid, victim_last, slot_free_again;  // depth_cache to write_back
+  logic [raster_pkg::VICTIM_SLOT_BITS-1:0] evicts_slot, victim_slot, left_slot;
+  raster_pkg::victim_t       evicts_block;
+  logic [1:0]                evicts_fills;
+  logic [raster_pkg::BLOCK_STAMP_BITS-1:0] victim_stamp, left_stamp;
+  logic [SAMPLES-1:0]        victim_strobe, left_strobe;
+  logic [DEPTHS-1:0]         victim_depth;
+  logic                      left_valid, left_ready;  // color_write to write_back
+  logic [SAMPLES*raster_pkg::STORED_COLOR_BITS-1:0] left_color;
+  logic                      read_goes, read_color, read_of_pixels, merges;  // write_back to memory_answers
+  logic                      depth_valid, depth_taken, stored_color_valid, stored_color_taken;
+  logic [DEPTHS-1:0]         answered_depth;
+  logic [SAMPLES*raster_pkg::STORED_COLOR_BITS-1:0] stored_color;
+
+  // From depth_cache through light, texture and fog to color_write.
+  localparam int RGBA = 8 * raster_pkg::COLOR_PLANES;
+  localparam int WRITTEN = raster_pkg::WRITTEN_COLOR_BITS;
+  localparam int FOG = raster_pkg::FOG_UNIT == 0 ? 1 : 3 + (19 * PIXELS > 43 ? 19 * PIXELS : 43);
+  logic                         passed_valid, lit_valid, textured_valid, textured_ready, colored_valid, colored_ready;
+  raster_pkg::tested_stamp_t    passed_stamp, lit_stamp, textured_stamp, colored_stamp;
+  raster_pkg::fragment_packet_t passed_fragment, whole_fragment, lit_fragment;
+  logic [SAMPLES-1:0]           passed_samples, opaque;
+  logic [PIXELS-1:0]            passed_pixels, lit_pixels, textured_mask, fogged_mask;
+  logic [PIXELS*WRITTEN-1:0]    passed_color, lit_color;
+  logic [PIXELS*RGBA-1:0]       textured_rgba, fogged_rgba;
+  logic [FOG-1:0]               fog_entering, fog_leaving;
+  logic [SAMPLES*raster_pkg::SHADED_COLOR_BITS-1:0] colored_color;
+  logic [PIXELS*8-1:0]          colored_alpha;
+  logic                         late_valid;
+  logic [SAMPLES-1:0]           late_writes;
+  logic [DEPTHS+SAMPLES-1:0]    late_word;
+
+  genvar s;
+  generate
+    for (s = 0; s < PIXELS; s++) begin : gen_pixel
+      localparam int N = raster_pkg::MSAA_SAMPLES;
+      assign passed_pixels[s] = passed_samples[s*N+:N] != '0;
+      assign passed_color[s*WRITTEN+:WRITTEN] = write_data.color[s*N*WRITTEN+:WRITTEN];
     end
-  endgenerate
-
-  // The packet as it is specified: words where they are written.
-  localparam int WORD = raster_pkg::STORED_DEPTH_BITS;
-  always_comb begin
-    write_data = tested_write;
-    for (int s = 0; s < raster_pkg::SAMPLES; s++)
-      if (tested_write.write_depth[s]) write_data.depth[s*WORD+:WORD] = word[s*WORD+:WORD];
-  end
-
-  generate
     if (raster_pkg::CACHE_KIND == 0) begin : gen_tiles
       assign tested_valid      = fragment_valid;
       assign fragment_accepted = tested_ready;
-      assign tested            = fragment;
-
+      assign tested            = fragment_data;
       framebuffer u_framebuffer (
           .clk_i,
           .rst_ni,
@@ -523,23 +462,298 @@ module raster_top (
           .write_i         (write_data),
           .request_valid_o (request_offered),
           .request_ready_i (request_ready),
-          .request_o       (request),
+          .request_o       (request_data),
           .response_valid_i(response_valid),
           .response_ready_o(response_accepted),
           .response_i      (response_data),
-          .fill_o          (fill),
-          .evict_o         (evict),
-          .clear_o         (clear),
+          .fill_o          (is_fill),
+          .evict_o         (is_evict),
+          .clear_o         (is_clear),
           .moves_tiles_o   (moves_tiles),
           .idle_o          (framebuffer_idle)
       );
       request_bytes u_request_bytes (
-          .request_i(request),
+          .request_i(request_data),
           .bytes_o  (request_bytes)
       );
-      assign request_data    = request;
-      assign written         = tested_written;
-      assign killed          = tested_killed;
+      assign written = tested_written;
+      assign killed  = tested_killed;
+    end else begin : gen_blocks
+      assign access_ready     = 1'b1;
+      assign written          = LATE ? late_written : tested_written;
+      assign killed           = LATE ? late_killed : tested_killed;
+      assign is_evict         = stores || is_resolved;
+      assign framebuffer_idle = tags_are_idle && depths_are_idle && orders_are_done && texture_is_idle && write_is_idle;
+      cache_tags u_tags (
+          .clk_i,
+          .rst_ni,
+          .fragment_valid_i(fragment_valid),
+          .fragment_ready_o(fragment_accepted),
+          .fragment_i      (fragment_data),
+          .item_valid_o    (item_valid),
+          .item_ready_i    (item_ready),
+          .item_o          (item),
+          .found_o         (found),
+          .order_valid_o   (order_valid),
+          .order_ready_i   (order_ready),
+          .order_o         (order),
+          .drained_i       (depths_are_idle && orders_are_done),
+          .request_valid_o (flush_valid),
+          .request_ready_i (request_ready),
+          .request_o       (flush_data),
+          .request_word_o  (flush_word),
+          .pixel_reads_o   (pixel_reads),
+          .pixel_writes_o  (pixel_writes),
+          .pixel_word_x_o  (pixel_word_x),
+          .pixel_word_y_o  (pixel_word_y),
+          .pixel_word_o    (pixel_word_new),
+          .pixel_word_i    (pixel_word),
+          .clear_depth_o   (clear_depth),
+          .clear_color_o   (clear_color),
+          .is_cleared_o    (is_clear),
+          .is_resolved_o   (is_resolved),
+          .at_token_o      (moves_tiles),
+          .idle_o          (tags_are_idle)
+      );
+      depth_cache u_depths (
+          .clk_i,
+          .rst_ni,
+          .made_valid_i    (item_valid),
+          .made_ready_o    (item_ready),
+          .made_i          (item),
+          .made_result_i   (found),
+          .clear_depth_i   (clear_depth),
+          .answer_valid_i  (depth_valid),
+          .takes_answer_o  (depth_taken),
+          .answer_i        (answered_depth),
+          .tested_valid_o  (tested_valid),
+          .tested_o        (tested),
+          .stored_depth_o  (stored_depth),
+          .write_valid_i   (write_valid),
+          .write_i         (write_data),
+          .word_i          (write_word),
+          .stamp_valid_o   (passed_valid),
+          .stamp_o         (passed_stamp),
+          .stamp_fragment_o(passed_fragment),
+          .stamp_writes_o  (passed_samples),
+          .stamp_leaves_i  (colored_ready),
+          .late_valid_i    (late_valid),
+          .late_i          (colored_stamp),
+          .late_writes_i   (late_writes),
+          .late_word_i     (late_word),
+          .evicts_o        (evicts),
+          .evicts_slot_o   (evicts_slot),
+          .evicts_block_o  (evicts_block),
+          .evicts_fills_o  (evicts_fills),
+          .victim_valid_o  (victim_valid),
+          .victim_last_o   (victim_last),
+          .victim_slot_o   (victim_slot),
+          .victim_stamp_o  (victim_stamp),
+          .victim_strobe_o (victim_strobe),
+          .victim_depth_o  (victim_depth),
+          .slot_free_i     (slot_free_again),
+          .idle_o          (depths_are_idle)
+      );
+
+      if (HAS_TEXTURE) begin : gen_shading
+        whole_fragment u_whole (
+            .fragment_i(passed_fragment),
+            .context_i (tested_context),
+            .fragment_o(whole_fragment)
+        );
+        light_stage u_light (
+            .clk_i,
+            .rst_ni,
+            .stamp_valid_i(passed_valid),
+            .stamp_i      (passed_stamp),
+            .fragment_i   (whole_fragment),
+            .writes_i     (passed_pixels),
+            .color_i      (passed_color),
+            .stamp_valid_o(lit_valid),
+            .stamp_o      (lit_stamp),
+            .fragment_o   (lit_fragment),
+            .writes_o     (lit_pixels),
+            .color_o      (lit_color)
+        );
+        fog_lookup u_fog_lookup (
+            .clk_i,
+            .rst_ni,
+            .stamp_valid_i(lit_valid),
+            .fragment_i   (lit_fragment),
+            .word_o       (fog_entering)
+        );
+        texture_stage u_texture (
+            .clk_i,
+            .power_on_ni,
+            .rst_ni,
+            .stamp_valid_i  (lit_valid),
+            .stamp_i        (lit_stamp),
+            .fragment_i     (lit_fragment),
+            .fog_i          (fog_entering),
+            .writes_i       (lit_pixels),
+            .color_i        (lit_color),
+            .stamp_valid_o  (textured_valid),
+            .stamp_ready_i  (textured_ready),
+            .stamp_o        (textured_stamp),
+            .fog_o          (fog_leaving),
+            .mask_o         (textured_mask),
+            .rgba_o         (textured_rgba),
+            .texture_valid_o(texture_offered),
+            .texture_ready_i(texture_ready_i && !stall_i[raster_pkg::STALL_TEXTURE]),
+            .texture_o,
+            .texel_valid_i  (texel_valid_i && !stall_i[raster_pkg::STALL_TEXEL]),
+            .texel_ready_o  (texel_accepted),
+            .texel_i,
+            .use_o          (texture_use),
+            .idle_o         (texture_is_idle)
+        );
+        fog_stage u_fog (
+            .clk_i,
+            .rst_ni,
+            .stamp_valid_i(textured_valid),
+            .stamp_ready_o(textured_ready),
+            .stamp_i      (textured_stamp),
+            .fog_i        (fog_leaving),
+            .mask_i       (textured_mask),
+            .rgba_i       (textured_rgba),
+            .stamp_valid_o(colored_valid),
+            .stamp_ready_i(colored_ready),
+            .stamp_o      (colored_stamp),
+            .mask_o       (fogged_mask),
+            .rgba_o       (fogged_rgba)
+        );
+        stamp_rop u_rop (
+            .mask_i  (fogged_mask),
+            .rgba_i  (fogged_rgba),
+            .color_o (colored_color),
+            .alpha_o (colored_alpha),
+            .packet_o(color_data)
+        );
+        assign color_valid = colored_valid && fogged_mask != '0;
+        assign color_ready = colored_ready;
+      end else begin : gen_unshaded
+        logic                      has_room;  // always: depth_cache counts
+        logic [PIXELS*WRITTEN-1:0] color;
+        skid_buffer #(
+            .WIDTH(raster_pkg::TESTED_STAMP_BITS + PIXELS * WRITTEN)
+        ) u_colored (
+            .clk_i,
+            .rst_ni,
+            .valid_i(passed_valid),
+            .ready_o(has_room),
+            .data_i ({passed_stamp, passed_color}),
+            .valid_o(colored_valid),
+            .ready_i(colored_ready),
+            .data_o ({colored_stamp, color})
+        );
+        for (s = 0; s < SAMPLES; s++) begin : gen_sample
+          assign colored_color[s*WRITTEN+:WRITTEN] = color[s/raster_pkg::MSAA_SAMPLES*WRITTEN+:WRITTEN];
+        end
+        assign colored_alpha   = '0;
+        assign texture_is_idle = 1'b1;
+      end
+
+      late_test u_late_test (
+          .clk_i,
+          .rst_ni,
+          .stamp_leaves_i(colored_ready),
+          .stamp_i       (colored_stamp),
+          .alpha_i       (colored_alpha),
+          .opaque_o      (opaque),
+          .late_valid_o  (late_valid),
+          .late_writes_o (late_writes),
+          .late_word_o   (late_word),
+          .written_o     (late_written),
+          .killed_o      (late_killed)
+      );
+      color_write u_write (
+          .clk_i,
+          .rst_ni,
+          .stamp_valid_i  (colored_valid),
+          .stamp_ready_o  (colored_ready),
+          .tested_i       (colored_stamp),
+          .opaque_i       (opaque),
+          .color_i        (colored_color),
+          .clear_color_i  (clear_color),
+          .answer_valid_i (stored_color_valid),
+          .answer_i       (stored_color),
+          .answer_ready_o (stored_color_taken),
+          .victim_valid_o (left_valid),
+          .victim_slot_o  (left_slot),
+          .victim_stamp_o (left_stamp),
+          .victim_strobe_o(left_strobe),
+          .victim_color_o (left_color),
+          .victim_ready_o (left_ready),
+          .idle_o         (write_is_idle)
+      );
+      write_back u_write_back (
+          .clk_i,
+          .rst_ni,
+          .ordered_valid_i (order_valid),
+          .ordered_ready_o (order_ready),
+          .ordered_i       (order),
+          .flush_valid_i   (flush_valid),
+          .flush_i         (flush_data),
+          .flush_word_i    (flush_word),
+          .clear_depth_i   (clear_depth),
+          .clear_color_i   (clear_color),
+          .evicts_i        (evicts),
+          .evicts_slot_i   (evicts_slot),
+          .evicts_block_i  (evicts_block),
+          .evicts_fills_i  (evicts_fills),
+          .depth_valid_i   (victim_valid),
+          .depth_last_i    (victim_last),
+          .depth_slot_i    (victim_slot),
+          .depth_stamp_i   (victim_stamp),
+          .depth_strobe_i  (victim_strobe),
+          .depth_i         (victim_depth),
+          .slot_free_o     (slot_free_again),
+          .color_valid_i   (left_valid),
+          .color_slot_i    (left_slot),
+          .color_stamp_i   (left_stamp),
+          .color_strobe_i  (left_strobe),
+          .color_i         (left_color),
+          .color_ready_i   (left_ready),
+          .request_valid_o (request_offered),
+          .request_ready_i (request_ready),
+          .request_o       (request_data),
+          .request_bytes_o (request_bytes),
+          .response_valid_i(response_valid),
+          .response_ready_i(response_accepted),
+          .response_i      (response_data),
+          .read_goes_o     (read_goes),
+          .read_color_o    (read_color),
+          .read_of_pixels_o(read_of_pixels),
+          .merges_o        (merges),
+          .token_reads_i   (pixel_reads),
+          .token_writes_i  (pixel_writes),
+          .token_word_x_i  (pixel_word_x),
+          .token_word_y_i  (pixel_word_y),
+          .token_word_i    (pixel_word_new),
+          .token_word_o    (pixel_word),
+          .fills_o         (is_fill),
+          .stores_o        (stores),
+          .idle_o          (orders_are_done)
+      );
+      memory_answers u_answers (
+          .clk_i,
+          .rst_ni,
+          .read_goes_i     (read_goes),
+          .read_color_i    (read_color),
+          .read_of_pixels_i(read_of_pixels),
+          .merges_i        (merges),
+          .response_valid_i(response_valid),
+          .response_ready_o(response_accepted),
+          .response_i      (response_data),
+          .depth_valid_o   (depth_valid),
+          .depth_ready_i   (depth_taken),
+          .depth_o         (answered_depth),
+          .color_valid_o   (stored_color_valid),
+          .color_ready_i   (stored_color_taken),
+          .color_o         (stored_color)
+      );
+    end
+    if (!HAS_TEXTURE) begin : gen_no_texture
       assign color_valid     = 1'b0;
       assign color_ready     = 1'b0;
       assign color_data      = '0;
@@ -547,69 +761,6 @@ module raster_top (
       assign texture_o       = '0;
       assign texel_accepted  = 1'b0;
       assign texture_use     = '0;
-    end else begin : gen_blocks
-      assign access_ready = 1'b1;
-      // Samples are counted where alpha is tested.
-      localparam bit LATE = raster_pkg::ALPHA_UNIT != 0 && raster_pkg::COORDINATES != 0;
-      logic [COUNT-1:0] late_written, late_killed;
-      assign written = LATE ? late_written : tested_written;
-      assign killed  = LATE ? late_killed : tested_killed;
-
-      block_cache u_framebuffer (
-          .clk_i,
-          .power_on_ni,
-          .rst_ni,
-          .fragment_valid_i(fragment_valid),
-          .fragment_ready_o(fragment_accepted),
-          .fragment_i      (fragment),
-          .tested_valid_o  (tested_valid),
-          .tested_o        (tested),
-          .stored_depth_o  (stored_depth),
-          .context_i       (tested_context),
-          .write_valid_i   (write_valid),
-          .write_i         (write_data),
-          .word_i          (word),
-          .request_valid_o (request_offered),
-          .request_ready_i (request_ready),
-          .request_o       (request),
-          .request_bytes_o (request_bytes),
-          .response_valid_i(response_valid),
-          .response_ready_o(response_accepted),
-          .response_i      (response_data),
-          .texture_valid_o (texture_offered),
-          .texture_ready_i (texture_ready_i && !stall_i[raster_pkg::STALL_TEXTURE]),
-          .texture_o,
-          .texel_valid_i   (texel_valid_i && !stall_i[raster_pkg::STALL_TEXEL]),
-          .texel_ready_o   (texel_accepted),
-          .texel_i,
-          .color_valid_o   (color_valid),
-          .color_ready_o   (color_ready),
-          .color_o         (color_data),
-          .fill_o          (fill),
-          .evict_o         (evict),
-          .clear_o         (clear),
-          .written_o       (late_written),
-          .killed_o        (late_killed),
-          .texture_use_o   (texture_use),
-          .at_token_o      (moves_tiles),
-          .idle_o          (framebuffer_idle)
-      );
-
-      logic [raster_pkg::SAMPLES*raster_pkg::MEMORY_LANE_BITS-1:0] request_lanes;
-      request_lanes u_request_lanes (
-          .plane_i(request.plane),
-          .bytes_i(request_bytes),
-          .data_o (request_lanes)
-      );
-      always_comb begin
-        request_data      = request;
-        request_data.data = request_lanes;
-      end
-
-      /* verilator lint_off UNUSEDSIGNAL */
-      logic unused_tested_ready;
-      assign unused_tested_ready = tested_ready;
-      /* verilator lint_on UNUSEDSIGNAL */
     end
   endgenerate
 
@@ -618,94 +769,59 @@ module raster_top (
       .power_on_ni,
       .rst_ni,
       .layout_i,
-      .request_valid_i    (request_valid),
-      .request_ready_o    (request_accepted),
-      .request_i          (request),
-      .bytes_i            (request_bytes),
-      .response_valid_o   (response_offered),
-      .response_ready_i   (response_ready),
-      .response_o         (response_data),
-      .beat_valid_o       (beat_offered),
-      .beat_ready_i       (beat_ready_i && !stall_i[raster_pkg::STALL_BEAT]),
+      .request_valid_i (request_valid),
+      .request_ready_o (request_accepted),
+      .request_i       (request_data),
+      .bytes_i         (request_bytes),
+      .response_valid_o(response_offered),
+      .response_ready_i(response_ready),
+      .response_o      (response_data),
+      .beat_valid_o    (beat_offered),
+      .beat_ready_i    (beat_ready_i && !stall_i[raster_pkg::STALL_BEAT]),
       .beat_o,
-      .answer_valid_i     (answer_valid_i && !stall_i[raster_pkg::STALL_ANSWER]),
-      .answer_ready_o     (answer_ready),
+      .answer_valid_i  (answer_valid_i && !stall_i[raster_pkg::STALL_ANSWER]),
+      .answer_ready_o  (answer_ready),
       .answer_i,
-      .idle_o             (port_idle)
+      .idle_o          (port_idle)
   );
 
+  // -------------------------------------------------------------------------------------------------------- idle, and counters
   // Primitives between the host and the end of their last stamp.
   localparam int UNDER_WAY = $clog2(raster_pkg::CONTEXT_SLOTS + 24);
   logic [UNDER_WAY-1:0] under_way_q;
   logic                 enters, ends;
   assign enters = primitive_valid_i && primitive_ready_o;
-  assign ends   = fragment_valid && fragment_accepted && fragment.ends_primitive;
+  assign ends   = fragment_valid && fragment_accepted && fragment_data.ends_primitive;
   assign idle_o = under_way_q == '0 && visits_are_done && framebuffer_idle && port_idle && lines_are_done;
-
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) under_way_q <= '0;
     else under_way_q <= under_way_q + UNDER_WAY'(enters) - UNDER_WAY'(ends) - UNDER_WAY'(is_dropped);
   end
-
-  // Performance counters: the work of triangles, points and lines, and the tile traffic of everything, since reset. What is
-  // counted comes through a register; a counter whose highest bit falls has wrapped, and `overflow` stays. Without the
-  // unit nothing moves, and nothing is left of it.
-  localparam int COUNTERS = (raster_pkg::COUNTER_PACKET_BITS - 1) / COUNTER;
-  raster_pkg::counter_packet_t counters_q, shown_q;
-  logic [COUNTERS-1:0]         highest, highest_q;
-  logic [1:0]                  fill_q, evict_q, clear_q;
-  localparam int TEXTURE_AT = raster_pkg::COORDINATES != 0 && raster_pkg::ALPHA_UNIT != 0 ? COUNTER : 0;
-  logic                        overflow_q;
-  assign counters_o = shown_q;
-
-  always_comb begin
-    for (int i = 0; i < COUNTERS; i++) highest[i] = counters_q[i*COUNTER+COUNTER-1];
-  end
-
-  always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) begin
-      fill_q     <= '0;
-      evict_q    <= '0;
-      clear_q    <= '0;
-      texture_use_q <= '0;
-      highest_q  <= '0;
-      overflow_q <= 1'b0;
-      counters_q <= '0;
-      shown_q    <= '0;
-    end else if (raster_pkg::COUNTERS_UNIT != 0) begin
-      fill_q     <= fill;
-      evict_q    <= evict;
-      clear_q    <= clear;
-      texture_use_q <= 9'(texture_use);
-      highest_q  <= highest;
-      overflow_q <= overflow_q || (highest_q & ~highest) != '0;
-      counters_q.primitives_in      <= counters_q.primitives_in + COUNTER'(is_primitive);
-      counters_q.zero_area          <= counters_q.zero_area + COUNTER'(is_zero_area);
-      counters_q.backface           <= counters_q.backface + COUNTER'(is_backface);
-      counters_q.empty              <= counters_q.empty + COUNTER'(is_empty);
-      if (raster_pkg::SETUP_KIND == 0) counters_q.no_sample <= counters_q.no_sample + COUNTER'(is_no_sample);
-      counters_q.tiles_visited      <= counters_q.tiles_visited + COUNTER'(is_visited);
-      counters_q.tiles_outside      <= counters_q.tiles_outside + COUNTER'(is_outside);
-      counters_q.trivially_accepted <= counters_q.trivially_accepted + COUNTER'(is_accepted);
-      counters_q.tiles_hiz          <= counters_q.tiles_hiz + COUNTER'(is_hiz);
-      counters_q.samples_tested     <= counters_q.samples_tested + COUNTER'(samples_tested);
-      counters_q.covered            <= counters_q.covered + COUNTER'(covered);
-      counters_q.depth_passed       <= counters_q.depth_passed + COUNTER'(passed);
-      counters_q.written            <= counters_q.written + COUNTER'(written);
-      counters_q.tile_fills         <= counters_q.tile_fills + COUNTER'(fill_q);
-      counters_q.tile_evictions     <= counters_q.tile_evictions + COUNTER'(evict_q);
-      counters_q.tile_clears        <= counters_q.tile_clears + COUNTER'(clear_q);
-      if (raster_pkg::ALPHA_UNIT != 0 && raster_pkg::CACHE_KIND == 1 && raster_pkg::SETUP_KIND == 0)
-        counters_q[COUNTER-1:0] <= counters_q[COUNTER-1:0] + COUNTER'(killed);  // the last is alpha_killed
-      if (raster_pkg::COORDINATES != 0)  // in front of that texture_samples, texture_hits, texture_fills
-        for (int i = 0; i < 3; i++)
-          counters_q[TEXTURE_AT+(2-i)*COUNTER+:COUNTER] <= counters_q[TEXTURE_AT+(2-i)*COUNTER+:COUNTER] +
-                                                           COUNTER'(texture_use_q[3*i+:3]);
-      if (!counters_hold_i) begin
-        shown_q          <= counters_q;
-        shown_q.overflow <= overflow_q;
-      end
-    end
-  end
+  performance_counters u_counters (
+      .clk_i,
+      .rst_ni,
+      .is_primitive_i  (is_primitive),
+      .is_zero_area_i  (is_zero_area),
+      .is_backface_i   (is_backface),
+      .is_empty_i      (is_empty),
+      .is_no_sample_i  (is_no_sample),
+      .is_visited_i    (is_visited),
+      .is_outside_i    (is_outside),
+      .is_accepted_i   (is_accepted),
+      .is_hiz_i        (is_hiz),
+      .samples_tested_i(samples_tested),
+      .covered_i       (covered),
+      .passed_i        (passed),
+      .written_i       (written),
+      .killed_i        (killed),
+      .fill_i          (is_fill),
+      .evict_i         (is_evict),
+      .clear_i         (is_clear),
+      .texture_use_i   (texture_use),
+      .hold_i          (counters_hold_i),
+      .counters_o
+  );
+  /* verilator lint_on UNDRIVEN */
+  /* verilator lint_on UNUSEDSIGNAL */
 
 endmodule

@@ -304,7 +304,7 @@ def ecp5_part(parts, flats, fitted):
     lines += table(['configuration', *head], [[title, *ecp5_cells(count)] for title, count in total.items()])
     lines += ['Which block costs what, in places. `raster_top` is the counters, the context RAM and what joins the '
               'stages; `depth_test` contains `rop`; `framebuffer` is that of tiles; of blocks `cache_tags` has the '
-              'tags and flags, `block_cache` what is behind them.']
+              'tags and flags, `depth_cache`, `color_write`, `memory_answers` and `write_back` what is behind them.']
     lines += table(['block', *parts], [[f'`{name}`', *(places(part[name]) for part in parts.values())] for name in names])
     lines += ['Flip-flops and multipliers (`FF + MULT18X18D`).']
     lines += table(['block', *parts], [[f'`{name}`', *(f"{part[name]['TRELLIS_FF']:,} + {part[name]['MULT18X18D']}"

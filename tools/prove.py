@@ -77,6 +77,23 @@ def properties(proof):
     return re.sub(r'\bcover (\(.*\));', lambda match: f'cover_{match.start()}: assert (!{match[1]});', text)
 
 
+def joined(text, name, module):
+    """`text`, in which the text of `module` takes the place of its instance. Ports become what they are connected to, derived
+    parameters local ones; what both declare alike is declared once."""
+    instance = re.search(rf'^  {name} u_\w+ \((.*?)\n  \);\n', text, flags=re.M | re.S)
+    nets = dict(re.findall(r'\.(\w+)\s*\((\w+)\)', instance[1]))
+    head, body = re.search(rf'^module {name} (.*?)\n\);\n(.*)^endmodule', module, flags=re.M | re.S).groups()
+    parameters = re.findall(r'parameter (int \w+ = .*?)(?:,|$)', head[:head.index(') (')].replace('\n', ',\n'), flags=re.M)
+    body = ''.join(f'  localparam {p.split("//")[0].rstrip(", ")};\n' for p in parameters) + body
+    body = re.sub(r'\.(\w+)(?=,)', lambda port: f'.{port[1]}({nets[port[1]]})' if port[1] in nets else port[0], body)
+    body = re.sub(r'(?<![.\w])\w+', lambda word: nets.get(word[0], word[0]), body)
+    for declared in re.findall(r'^  localparam .*?;|^  function .*?endfunction$', body, flags=re.M | re.S):
+        if re.sub(r'\s+', ' ', declared) in re.sub(r'\s+', ' ', text):
+            body = body.replace(declared, '', 1)
+    body = re.sub(r'^  genvar .*;$', '', body, flags=re.M)
+    return text[:instance.start()] + body + text[instance.end():]
+
+
 def hierarchy(proof):
     """The module, and every module that it or its properties instantiate."""
     files = {path.stem: path for path in [*RTL.glob('lib/*.sv'), *RTL.glob('stages/*.sv')]}
@@ -96,19 +113,31 @@ def sources(proof, package, folder, twin):
         if only and preset not in only:
             continue
         package = re.sub(rf'(localparam int {name} =) \d+;', rf'\1 {value};', package)
+    for struct, kind, name in proof.members:
+        package = once(package, f'  }} {struct};', f'    {kind} {name};\n  }} {struct};', 'raster_pkg')
     (folder / 'raster_pkg.sv').write_text(package, encoding='utf-8')
     files = [folder / 'raster_pkg.sv']
     change = None
     if isinstance(twin, int):
         change = seeded_faults()[twin]
     elif twin is not None:
-        change = (proof.module, *twin)
-    for path in hierarchy(proof):
-        name = str(path.relative_to(RTL))
+        change = (place_of_twin(proof, twin), *twin)
+
+    def read(path):
         text = path.read_text(encoding='utf-8')
-        if change and change[0] == name:
-            text = once(text, change[1], f'({change[2]})' if isinstance(twin, int) else change[2], name)
+        if change and RTL / change[0] == path:
+            text = once(text, change[1], f'({change[2]})' if isinstance(twin, int) else change[2], str(path))
+        return text
+
+    for path in hierarchy(proof):
+        if path.stem in proof.joins:
+            continue
+        name = proof.module if path == RTL / proof.module else str(path.relative_to(RTL))
+        text = read(path)
         if name == proof.module:
+            for module in proof.joins:
+                text = joined(text, module, read(RTL / f'stages/{module}.sv'))
+            text = text.replace(');\n', ');\n  genvar s, v;\n', 1) if proof.joins else text
             for parameter, value in proof.parameters:  # not by -chparam: with it Yosys 0.23 derives no module twice
                 value = value if isinstance(value, int) else package_constant(package, value)
                 text, found = re.subn(rf'(parameter int {parameter} += )\w+', rf'\g<1>{value}', text, count=1)
@@ -126,17 +155,29 @@ def sources(proof, package, folder, twin):
     return files
 
 
+def place_of_twin(proof, twin):
+    """The file of the proof's own text in which a twin changes something."""
+    places = [proof.module, *(f'stages/{name}.sv' for name in proof.joins)]
+    counts = {place: (RTL / place).read_text(encoding='utf-8').count(twin[0]) for place in places}
+    found = [place for place in places if counts[place]]
+    if len(found) != 1 or counts[found[0]] != 1:
+        raise Broken(f'{proof.name}: in {", ".join(places)} this must occur exactly once, not {sum(counts.values())} times: {twin[0]}')
+    return found[0]
+
+
 def stale_twins():
     """Of every proof, run or not, the twins that are none any more, because the module reads otherwise."""
     faults, stale = seeded_faults(), []
     for proof in PROOFS:
-        text = (RTL / proof.module).read_text(encoding='utf-8')
         for twin in proof.twins:
             if isinstance(twin, int):
                 if twin not in faults:
                     stale.append(f'{proof.name}: there is no mutant {twin}')
-            elif text.count(twin[0]) != 1:
-                stale.append(f'{proof.name}: in {proof.module} this must occur exactly once, not {text.count(twin[0])} times: {twin[0]}')
+                continue
+            try:
+                place_of_twin(proof, twin)
+            except Broken as error:
+                stale.append(str(error))
     return stale
 
 

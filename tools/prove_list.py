@@ -7,7 +7,7 @@ class Proof:
     """One file of properties about one module."""
     name: str         # also the file in tests/formal, unless `file` is another
     letter: str       # a stepping, b shared edge, c reject and accept, d HiZ, e ranges, f ready/valid
-    module: str       # in rtl_ref
+    module: str       # in rtl_ref, or in tests/formal one that joins some of those
     claim: str
     twins: tuple      # faults that must break it: numbers of mutants.cmake, or (text, text instead) in the module
     presets: tuple = ('tiny', 'embedded')
@@ -27,6 +27,8 @@ class Proof:
     file: str = ''
     starts: tuple = ()      # what holds at the start of a bounded proof: (module, file that is put into it)
     wires: tuple = ()       # names in the properties for what is inside a module of it: (name, name behind flattening)
+    joins: tuple = ()       # modules whose text takes the place of their instance, so that properties can name what is inside
+    members: tuple = ()     # of structs that the package lacks: (struct, type, name)
     inputs: str = ''        # other files in front of it: what is assumed of the inputs, or of what is cut
 
     @property
@@ -63,6 +65,9 @@ BINS_IN_WORDS = (*BLOCKS, ('LINE_X_BITS', 0), ('LINE_Y_BITS', 1), ('FRAME_CLEARS
 # Blocks with blending, a sample a clock; a word of operations fits a depth code.
 BLENDING = (*BLOCKS, ('BLEND_LANES', 1), ('DEPTH_CODE_BITS', 29), ('STORED_DEPTH_BITS', 29), ('ALL_CODE_BITS', 30), ('ALL_FRAGMENT_BITS', 30),
             ('MEMORY_LANE_BITS', 29), ('FRAGMENT_PACKET_BITS', 46, 'tiny'), ('FRAGMENT_PACKET_BITS', 139, 'embedded'))
+COLOR_SOURCES = (('tag_result_t', 'depth_source_t', 'color_source'), ('block_order_t', 'logic', 'reads_color'))
+TESTED_STATES = (('tested_stamp_t', 'depth_source_t', 'color_source'), ('tested_stamp_t', 'logic', 'sets_state'),
+                 ('tested_stamp_t', 'logic [DEPTH_FUNC_BITS-1:0]', 'state_register'), ('tested_stamp_t', 'logic [31:0]', 'state'))
 # What the properties of texture caches call the registers of texture_answers.
 TEXTURE_ANSWERS = tuple((name, f'u_answers.{name}') for name in
                         ('fills_ready', 'fills_valid', 'request_valid_q', 'recovers_q', 'request_address_q', 'request_size_q', 'beat_q', 'unanswered_q'))
@@ -73,7 +78,7 @@ STENCIL = (*BLOCKS, ('ALPHA_UNIT', 0), ('BLEND_LANES', 0), ('DITHER_UNIT', 0), (
 # The same where nobody looks at such a word: a bit of depth, and one for the stencil.
 STENCIL_BIT = (*STENCIL, ('DEPTH_CODE_BITS', 1), ('STORED_DEPTH_BITS', 2), ('ALL_CODE_BITS', 2), ('ALL_FRAGMENT_BITS', 2), ('MEMORY_LANE_BITS', 2),
                ('FRAGMENT_PACKET_BITS', 105))
-# What block_cache's properties call the registers of color_write.
+# What the properties of blocks call the registers of color_write.
 COLOR_WRITE = tuple((name, f'u_write.{inside}') for name, inside in
                     (('w_first_q', 'first_q'), ('w_first_line_q', 'first_line_q'), ('w_first_slot_q', 'first_slot_q'),
                      ('w_first_fills_q', 'first_fills_q'), ('w_second_q', 'second_q'), ('w_second_line_q', 'second_line_q'),
@@ -84,7 +89,8 @@ COLOR_WRITE = tuple((name, f'u_write.{inside}') for name, inside in
                      ('w_ram_writes', 'writes'), ('w_ram_dirty_new', 'dirty_new'), ('w_ram_code', 'code'),
                      ('w_ram_code_new', 'code_new'), ('w_busy', 'is_busy'), ('w_writes_q', 'gen_replaces.writes_q'),
                      ('w_write_mask_q', 'gen_replaces.write_mask_q')))
-QUEUES = ('*cache_tags*', '*fifo*', '*skid_buffer*', '*colored_stamps*')
+QUEUES = ('*cache_tags*', '*fifo*', '*skid_buffer*')
+JOINED = ('depth_cache', 'write_back', 'memory_answers')
 
 PROOFS = [
     Proof('edge_offset_step', 'a', 'lib/edge_offset.sv', 'value + x step_x + y step_y', is_combinational=True,
@@ -249,7 +255,7 @@ PROOFS = [
           cuts=(*SRAMS, '*clear_flags*'), inputs='cache_tags_inputs', package=BLOCKS_IN_TILES, file='cache_tags_data', presets=('embedded',),
           quick=('embedded',), twins=(70, 74, 75)),
     Proof('cache_tags_color', 'd, f', 'stages/cache_tags.sv', 'with blending: colours are known only if they are on the chip, and '
-          'are asked for where they are not', cuts=(*SRAMS, '*clear_flags*'), inputs='cache_tags_inputs cache_tags_data', package=BLENDING,
+          'are asked for where they are not', cuts=(*SRAMS, '*clear_flags*'), inputs='cache_tags_inputs cache_tags_data', package=BLENDING, members=COLOR_SOURCES,
           presets=TINY, quick=TINY, twins=(196, 197, ("color_known | (color_source != raster_pkg::DEPTH_SOURCE_NONE ? stamp_bit : '0)",
                                           'color_known | stamp_bit'))),
     Proof('cache_tags_stencil', 'd, f', 'stages/cache_tags.sv', 'with a stencil: a word of which a draw keeps a part is asked for, one that it '
@@ -257,7 +263,7 @@ PROOFS = [
           package=STENCIL, cover_depth=32, presets=('stencilled',), twins=(216, 217, 322, 323,
           ('replaces_q[fragment_q.state.is_back]', 'replaces_q[0]'))),
     Proof('color_write_data', 'd, f', 'stages/color_write.sv', 'with blending: a stamp reads what those before it have written; an '
-          'eviction takes along what was there; no deadlock', cuts=(*SRAMS, '*blend_lane*', '*rop*'), package=BLENDING,
+          'eviction takes along what was there; no deadlock', cuts=(*SRAMS, '*blend_lane*', '*rop*'), package=BLENDING, members=TESTED_STATES,
           presets=('embedded',), quick=('embedded',), cover_depth=9,
           twins=(190, 191, 192, 262, 300, ('writes_all && is_first', 'writes_all'), ('is_newer[1] && !is_newer[0]', 'is_newer[1]'),
                  ('dirty_3_q[s], dirty_2_q[s]}', "dirty_3_q[s], 1'b0}"))),
@@ -265,22 +271,22 @@ PROOFS = [
           cuts=(*SRAMS, '*clear_flags*'), inputs='cache_tags_inputs', package=BLOCKS, quick=TINY, cover_depth=24,
           twins=(('is_settled && is_item && order_ready_i', 'is_settled && is_item'), ('if (moves) valid_q <= read_valid_q;', 'valid_q <= read_valid_q;'),
                  ('RESOLVE && (!bits_q[0] || ends_block)) bits_q', 'RESOLVE && ends_block) bits_q'))),
-    Proof('block_cache_data', 'd, f', 'stages/block_cache.sv', 'the test sees what was written last, up to the clock before; an '
-          'eviction takes it to memory, once', cuts=(*SRAMS, *QUEUES), inputs='block_cache_inputs block_cache_parts', package=BLOCKS,
+    Proof('block_cache_data', 'd, f', '../tests/formal/blocks.sv', 'the test sees what was written last, up to the clock before; an '
+          'eviction takes it to memory, once', cuts=(*SRAMS, *QUEUES), joins=JOINED, inputs='block_cache_inputs block_cache_parts', package=BLOCKS,
           wires=COLOR_WRITE, cover_depth=22,
-          twins=(76, ("x1_line_q == item_line && x1_writes_q;", "1'b0;"), ('on_chip && !is_forwarded', 'on_chip'), 77, 78, 79, 80, 261, 263, 264)),
-    Proof('block_cache_stencil', 'd, f', 'stages/block_cache.sv', 'the same where a stencil is above the depth, and changes without it',
-          cuts=(*SRAMS, *QUEUES), inputs='block_cache_inputs block_cache_parts', file='block_cache_data', package=STENCIL_BIT,
+          twins=(76, ("x1_q.line == found.line && x1_writes_q;", "1'b0;"), ('on_chip && !is_forwarded', 'on_chip'), 77, 78, 79, 80, 261, 263, 264)),
+    Proof('block_cache_stencil', 'd, f', '../tests/formal/blocks.sv', 'the same where a stencil is above the depth, and changes without it',
+          cuts=(*SRAMS, *QUEUES), joins=JOINED, inputs='block_cache_inputs block_cache_parts', file='block_cache_data', package=STENCIL_BIT,
           wires=COLOR_WRITE, presets=('stencilled',), cover_depth=22,
           twins=(76, 78, 218, ('on_chip && !is_forwarded', 'on_chip'))),
-    Proof('block_cache_stream', 'f', 'stages/block_cache.sv', 'requests stable; no read overtakes its eviction\'s write; no deadlock',
-          k=2, cuts=(*SRAMS, *QUEUES), inputs='block_cache_inputs block_cache_parts', package=BLOCKS, wires=COLOR_WRITE, cover_depth=22,
-          twins=(("'0 && color_ready_q != '0", "'0"), ('order_valid && written_q == order_writes;', 'order_valid && !sends && order_reads;'))),
-    Proof('block_cache_whole', 'd, f', 'stages/block_cache.sv', 'tags and all: the test sees what was written last, or cleared',
-          is_bounded=True, depth=10, starts=(('lib/sram.sv', 'block_cache_start'),), inputs='block_cache_inputs', package=BLOCKS,
+    Proof('block_cache_stream', 'f', '../tests/formal/blocks.sv', 'requests stable; no read overtakes its eviction\'s write; no deadlock',
+          k=2, cuts=(*SRAMS, *QUEUES), joins=JOINED, inputs='block_cache_inputs block_cache_parts', package=BLOCKS, wires=COLOR_WRITE, cover_depth=22,
+          twins=(("'0 && color_ready_q != '0", "'0"), ('order_valid && written_q == order.writes;', 'order_valid && !sends && order.reads;'))),
+    Proof('block_cache_whole', 'd, f', '../tests/formal/blocks.sv', 'tags and all: the test sees what was written last, or cleared',
+          is_bounded=True, depth=10, starts=(('lib/sram.sv', 'block_cache_start'),), joins=JOINED, inputs='block_cache_inputs', package=BLOCKS,
           presets=TINY, cover_depth=9, twins=(70, 73, 76), twin_depth=10),
-    Proof('block_cache_whole_flags', 'd, f', 'stages/block_cache.sv', 'the same where everything is flagged, frame.clears=flags',
-          is_bounded=True, depth=10, starts=(('lib/sram.sv', 'block_cache_start'),), inputs='block_cache_inputs',
+    Proof('block_cache_whole_flags', 'd, f', '../tests/formal/blocks.sv', 'the same where everything is flagged, frame.clears=flags',
+          is_bounded=True, depth=10, starts=(('lib/sram.sv', 'block_cache_start'),), joins=JOINED, inputs='block_cache_inputs',
           file='block_cache_whole', package=(*BLOCKS, ('FRAME_CLEARS', 1)), presets=TINY, twins=(70, 73, 76), twin_depth=10),
     Proof('memory_port_stream', 'f', 'stages/memory_port.sv', 'bursts as long as they say; each answer counted; a reset leaves '
           'nothing stale; no deadlock', has_reset=False, inputs='memory_port_inputs', k=2, quick=TINY, cover_depth=9, cuts=MULTIPLIERS,

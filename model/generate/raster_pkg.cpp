@@ -146,6 +146,105 @@ void print_packet(std::ostream& out, const Widths& widths) {
   print_constant(out, constant_name(Packet::name) + "_BITS", packet_bits<Packet>(widths), "of the struct above");
 }
 
+/// A member of a struct that only the RTL has.
+struct Member {
+  std::string_view type;  ///< a name of the package, or bits as an expression of its constants
+  std::string_view name;
+  std::string_view what;
+  bool is_there = true;  ///< in this configuration
+};
+
+/// The struct, and its bits.
+void print_members(std::ostream& out, const std::string& name, std::initializer_list<Member> members) {
+  std::string bits;
+  out << "\n  typedef struct packed {\n";
+  for (const Member& member : members) {
+    if (!member.is_there) continue;
+    const bool is_type = member.type.ends_with("_t");
+    out << "    " << (is_type ? std::string(member.type) : "logic [" + std::string(member.type) + "-1:0]") << " "
+        << member.name << ";  // " << member.what << "\n";
+    const std::string of_type = constant_name(member.type.substr(0, member.type.size() - 2)) + "_BITS";
+    bits.append(bits.empty() ? "" : " + ").append(is_type ? of_type : std::string(member.type));
+  }
+  out << "  } " << name << "_t;\n  localparam int " << constant_name(name) << "_BITS = " << bits
+      << ";  // of the struct above\n";
+}
+
+/// The parts of the framebuffer of blocks, and what goes between them: no arrow of the graph.
+void print_blocks(std::ostream& out, const Config& config) {
+  const bool blends = config.blend_lanes != 0, has_stencil = config.stencil_bits != 0;
+  const bool tests_alpha_late = config.alpha_units != 0 && has_texture_planes(config);
+  const bool has_color_states = blends || tests_alpha_late || config.dither_units != 0;
+  const auto constant = [&](const char* name, const char* value, const char* what) {
+    out << "  localparam int " << name << " = " << value << ";  // " << what << "\n";
+  };
+  out << "\n  // The framebuffer of blocks.\n";
+  constant("BLOCK_STAMPS", "BLOCK_SIDE * BLOCK_SIDE", "stamps of a block");
+  constant("BLOCK_STAMP_BITS", "BLOCK_STAMPS == 1 ? 1 : $clog2(BLOCK_STAMPS)", "a stamp's number in its block");
+  constant("BLOCK_X_BITS", "TILE_X_BITS + $clog2(BLOCKS_PER_ROW)", "a block's column in the target");
+  constant("BLOCK_Y_BITS", "TILE_Y_BITS + $clog2(BLOCKS_PER_ROW)", "its row");
+  constant("CACHE_LINE_BITS", "CACHE_LINES == 1 ? 1 : LINE_X_BITS + LINE_Y_BITS", "a line's number");
+  constant("TAG_X_BITS", "BLOCK_X_BITS > LINE_X_BITS ? BLOCK_X_BITS - LINE_X_BITS : 1", "of a block's column, its tag");
+  constant("TAG_Y_BITS", "BLOCK_Y_BITS > LINE_Y_BITS ? BLOCK_Y_BITS - LINE_Y_BITS : 1", "of its row");
+  constant("FLAG_WORD_X_BITS", "BLOCK_X_BITS > $clog2(FLAG_WORD) ? BLOCK_X_BITS - $clog2(FLAG_WORD) : 1",
+           "a word's number in its row of flags");
+  constant("VICTIM_SLOT_BITS", "$clog2(CACHE_VICTIMS)", "a slot for an evicted block");
+  constant("VICTIM_COUNT_BITS", "$clog2(CACHE_VICTIMS + 1)", "so many of them");
+  constant("SHADED_STAMPS", "COORDINATES == 0 ? 2 : TEXTURE_STAMPS", "stamps between depth and colour, at most");
+  constant("APART", "COORDINATES != 0 && MSAA_SAMPLES == 1 ? 1 : 0",
+           "1: what a triangle's fragments share over w lies in a RAM, by the triangle's number");
+  constant("TRIANGLE_BITS", "$clog2(CONTEXT_SLOTS + CACHE_QUEUE + 16)", "that number: of all between setup and depth test");
+  constant("STORED_FRAGMENT_BITS",
+           "FRAGMENT_PACKET_BITS - (APART != 0 ? COORDINATE_FRAME_BITS - TRIANGLE_BITS + (PIXELS - 1) * (ALL_FRAGMENT_BITS - "
+           "ALL_AFFINE_CODE_BITS) : 0)",
+           "a fragment as it waits for memory");
+  constant("LATE_ALPHA", "ALPHA_UNIT != 0 && COORDINATES != 0 ? 1 : 0", "1: alpha is tested behind the texture");
+  print_members(out, "tag_result",
+                {{"CACHE_LINE_BITS", "line", "where the fragment's block lies"},
+                 {"BLOCK_STAMP_BITS", "stamp", "its stamp there"},
+                 {"depth_source_t", "source", "of the stored depths"},
+                 {"depth_source_t", "color_source", "of the stored colours, which operations read", blends},
+                 {"FLAG_BITS", "starts_color", "no colour of the stamp is on the chip"},
+                 {"FLAG_BITS", "evicts", "another block leaves the line"},
+                 {"TAG_X_BITS", "tag_x", "that block's tag"},
+                 {"TAG_Y_BITS", "tag_y", ""},
+                 {"BLOCK_STAMPS", "depth", "stamps of it whose depths may have been written"},
+                 {"BLOCK_STAMPS", "color", "likewise colours"},
+                 {"2", "fills", "colour, depth: memory holds garbage"}});
+  print_members(out, "block_order",
+                {{"FLAG_BITS", "reads_color", "behind that, a stamp of colours is read", blends},
+                 {"VICTIM_COUNT_BITS", "writes", "so many evicted blocks go to memory first"},
+                 {"FLAG_BITS", "reads", "then a stamp of depths is read"},
+                 {"TILE_X_BITS", "tile_x", "which stamp"},
+                 {"TILE_Y_BITS", "tile_y", ""},
+                 {"STAMP_INDEX_BITS", "stamp", ""}});
+  print_members(out, "victim",
+                {{"BLOCK_X_BITS", "x", "where the block belongs"},
+                 {"BLOCK_Y_BITS", "y", ""},
+                 {"BLOCK_STAMPS", "depth", "stamps whose depths come into its slot"},
+                 {"BLOCK_STAMPS", "color", "likewise colours"}});
+  print_members(out, "tested_stamp",
+                {{"depth_source_t", "color_source", "of the stored colours", blends},
+                 {"SAMPLE_MASK_BITS", "changes", "samples whose stencil or depth changes", tests_alpha_late && has_stencil},
+                 {"FLAG_BITS", "is_late", "its depths are written when alpha has been tested", tests_alpha_late},
+                 {"FLAG_BITS", "on_chip", "its depths were", tests_alpha_late},
+                 {"FLAG_BITS", "is_counted", "of a triangle, point or line", tests_alpha_late},
+                 {"FLAG_BITS", "writes", "depth or colour", tests_alpha_late},
+                 {"SAMPLE_MASK_BITS", "passed", "samples that passed depth and stencil test", tests_alpha_late},
+                 {"SAMPLES*STORED_DEPTH_BITS", "word", "what they have from now on", tests_alpha_late},
+                 {"SAMPLES*STORED_DEPTH_BITS", "stored", "and had before", tests_alpha_late},
+                 {"FLAG_BITS", "sets_state", "a token", has_color_states},
+                 {"DEPTH_FUNC_BITS", "state_register", "of these registers one", has_color_states},
+                 {"32", "state", "its value", has_color_states},
+                 {"CACHE_LINE_BITS", "line", "where its block lies"},
+                 {"BLOCK_STAMP_BITS", "stamp", ""},
+                 {"FLAG_BITS", "starts_color", "no colour of the stamp is on the chip"},
+                 {"SAMPLE_MASK_BITS", "mask", "samples whose colour is written"},
+                 {"FLAG_BITS", "evicts", "another block leaves the line"},
+                 {"FLAG_BITS", "fills", "memory holds garbage of its colours"},
+                 {"BLOCK_STAMPS", "evicted", "stamps of it whose colours leave"}});
+}
+
 /// A value that has a name is its number there.
 void print_setting(std::ostream& out, const Setting& setting, const std::string& value) {
   long long number = setting.is_number() ? std::stoll(value) : 0;
@@ -270,6 +369,7 @@ std::string raster_pkg(const Config& config) {
       if (printed.insert(Packet::name).second) print_packet<Packet>(out, widths);
     });
   print_packet<CounterPacket>(out, widths);
+  print_blocks(out, config);
   out << "\nendpackage\n";
   return out.str();
 }

@@ -216,15 +216,15 @@ mutant(74 stages/cache_tags.sv "depth unread: always, with some samples of a sta
   [=[fragment_q.mask == '1]=] [=[1'b1]=])
 mutant(75 stages/cache_tags.sv "fast clear: marks stop at the last whole word"
   [=[~({WORD{1'b1}} << 1 << bit_of(last_x))]=] [=[{WORD{1'b0}}]=])
-mutant(76 stages/block_cache.sv "hazard: a stamp does not have what the one before it writes"
+mutant(76 stages/depth_cache.sv "hazard: a stamp does not have what the one before it writes"
   [=[is_again && writes]=] [=[1'b0]=])
-mutant(77 stages/block_cache.sv "victims: the stamp that is about to be written is not read first"
-  [=[goes && (evicts || left_line_q == item_line) && (left & item_bit) != '0]=] [=[1'b0]=])
-mutant(78 stages/block_cache.sv "strobes: samples count as written that only came from memory"
+mutant(77 stages/depth_cache.sv "victims: the stamp that is about to be written is not read first"
+  [=[goes && (found.evicts || left_line_q == found.line) && (left & item_bit) != '0]=] [=[1'b0]=])
+mutant(78 stages/depth_cache.sv "strobes: samples count as written that only came from memory"
   [=[{write_i.write_depth[s], word_i[s*CODE+:CODE]}]=] [=[{1'b1, word_i[s*CODE+:CODE]}]=])
 mutant(79 stages/color_write.sv "fill: what was not drawn into keeps what the colour RAM had"
   [=[dirty[s] ? code[s*COLOR+:COLOR] : clear_color_i & {COLOR{fills_q}}]=] [=[code[s*COLOR+:COLOR]]=])
-mutant(80 stages/block_cache.sv "victims: a block goes to memory before its colours are here"
+mutant(80 stages/write_back.sv "victims: a block goes to memory before its colours are here"
   [=[depth_ready_q != '0 && color_ready_q != '0]=] [=[depth_ready_q != '0]=])
 
 # two evictions under way in W
@@ -265,13 +265,13 @@ mutant(106 stages/memory_port.sv "reset: answers to what was asked for before it
   [=[is_read && is_whole && !discards]=] [=[is_read && is_whole]=])
 mutant(107 stages/memory_port.sv "reset: a burst that it cuts is never ended"
   [=[in_burst_q && length_q != '0]=] [=[1'b0]=])
-mutant(108 stages/block_cache.sv "runs: a gap counts as a stamp"
+mutant(108 stages/write_back.sv "runs: a gap counts as a stamp"
   [=[(gaps & ((STAMPS'(2) << i) - 1'b1)) == '0]=] [=[1'b1]=])
 mutant(109 lib/stamp_bytes.sv "answers: of those that share a beat always the first stamp"
   [=[(32'(sub_i) & 32'((1 << SHARED) - 1))]=] [=[32'd0]=])
 # clock and area
-mutant(111 raster_top.sv "counters: those that are held go on"
-  [=[!counters_hold_i]=] [=[1'b1]=])
+mutant(111 stages/performance_counters.sv "counters: those that are held go on"
+  [=[!hold_i]=] [=[1'b1]=])
 mutant(112 stages/hiz.sv "HiZ: two groups of tiles share their bounds"
   [=[WORD'({y, x} >> GROUP)]=] [=[WORD'(({y, x} >> GROUP) | (TX + TY)'(1))]=])
 mutant(113 stages/triangle_setup.sv "phases: a part is free when its triangle is in the last phase, whether it goes on or not"
@@ -310,13 +310,13 @@ mutant(143 stages/triangle_setup.sv "texture: the way to the anchor is that of v
   [=[moves_over_w ? {to_base_y_q, to_anchor_x_q} : {to_anchor_y_q, to_anchor_x_q}]=])
 mutant(144 stages/cull.sv "texture: a triangle has the coordinate frame of the one that comes"
   [=[raster_pkg::COORDINATE_FRAME_BITS'(coordinates_q)]=] [=[raster_pkg::COORDINATE_FRAME_BITS'(p_q.coordinates)]=])
-mutant(145 lib/colored_stamps.sv "texture: points and clears have it too"
-  [=[door_fragment.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE]=] [=[door_fragment.kind != raster_pkg::PRIMITIVE_KIND_STATE]=])
-mutant(146 stages/block_cache.sv "texture: samples that fail the depth test are looked up"
+mutant(145 stages/texture_stage.sv "texture: points and clears have it too"
+  [=[fragment_i.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE]=] [=[fragment_i.kind != raster_pkg::PRIMITIVE_KIND_STATE]=])
+mutant(146 stages/depth_cache.sv "texture: samples that fail the depth test are looked up"
   [=[{SAMPLES{write_valid_i}} & (tests_alpha ? looked_at : write_i.write_color)]=] [=[{SAMPLES{write_valid_i}} & x1_item_q.mask]=])
-mutant(147 stages/block_cache.sv "texture: idle though its memory has not answered what was asked for before a reset"
-  [=[tags_are_idle && drained && texture_is_idle]=] [=[tags_are_idle && drained]=])
-mutant(148 stages/block_cache.sv "texture: one stamp more goes in than there is room for"
+mutant(147 raster_top.sv "texture: idle though its memory has not answered what was asked for before a reset"
+  [=[orders_are_done && texture_is_idle]=] [=[orders_are_done]=])
+mutant(148 stages/depth_cache.sv "texture: one stamp more goes in than there is room for"
   [=[behind_q != BEHIND'(PLACES)]=] [=[behind_q <= BEHIND'(PLACES)]=])
 mutant(149 stages/texture_tags.sv "texture: of the tag the lowest bits"
   [=[tag == t_address_q[b*28+:28]]=] [=[tag[5:0] == t_address_q[b*28+:6]]=])
@@ -338,10 +338,10 @@ mutant(157 stages/texture_unit.sv "texture: the frame of a triangle goes with it
   [=[INDEX'(splits && is_last)]=] [=[INDEX'(splits)]=])
 mutant(158 stages/texture_levels.sv "texture: rows of blocks are as long on all levels"
   [=[less(wide_q, level)]=] [=[wide_q]=])
-mutant(159 lib/colored_stamps.sv "texture: a level of detail is that of the tile's first pixel"
-  [=[((PIXEL'(door_fragment.stamp) >> ROW) << STAMP)]=] [=[PIXEL'(0)]=])
-mutant(160 lib/colored_stamps.sv "texture: levels are never set"
-  [=[is_token && door_fragment.state.depth_test == raster_pkg::STATE_REGISTER_TEXTURE_LEVELS]=] [=[1'b0]=])
+mutant(159 stages/texture_stage.sv "texture: a level of detail is that of the tile's first pixel"
+  [=[((PIXEL'(fragment_i.stamp) >> ROW) << STAMP)]=] [=[PIXEL'(0)]=])
+mutant(160 stages/texture_stage.sv "texture: levels are never set"
+  [=[is_token && register == raster_pkg::STATE_REGISTER_TEXTURE_LEVELS]=] [=[1'b0]=])
 mutant(161 stages/level_of_detail.sv "texture: the two slopes are one"
   [=[lines_q[128+32*(n%2)+:32]]=] [=[lines_q[128+:32]]=])
 mutant(162 stages/level_of_detail.sv "texture: the octagon is a square"
@@ -401,43 +401,43 @@ mutant(196 stages/cache_tags.sv "colours: what a clear has left is asked of memo
   [=[cleared[1] ? raster_pkg::DEPTH_SOURCE_CLEAR : raster_pkg::DEPTH_SOURCE_MEMORY]=] [=[raster_pkg::DEPTH_SOURCE_MEMORY]=])
 mutant(197 stages/cache_tags.sv "colours: a block begins with what was known of the one before it"
   [=[hits_q ? line_state_q[KNOWN-1:0] : '0]=] [=[line_state_q[KNOWN-1:0]]=])
-mutant(198 stages/block_cache.sv "colours: asked for ahead of depth"
-  [=[order_reads_color && (!order_reads || depth_asked_q)]=] [=[order_reads_color && !depth_asked_q]=])
-mutant(199 stages/block_cache.sv "colours: an answer goes to the other plane"
-  [=[response_valid_i && !is_color]=] [=[response_valid_i && (!is_color || color_valid)]=])
+mutant(198 stages/write_back.sv "colours: asked for ahead of depth"
+  [=[order_reads_color && (!order.reads || depth_asked_q)]=] [=[order_reads_color && !depth_asked_q]=])
+mutant(199 stages/memory_answers.sv "colours: an answer goes to the other plane"
+  [=[response_valid_i && !is_color]=] [=[response_valid_i && (!is_color || color_valid_o)]=])
 
 # alpha test
 mutant(200 lib/alpha_test.sv "alpha: equal passes for less"
   [=[alpha_i[8*p+:8] < reference_i]=] [=[alpha_i[8*p+:8] <= reference_i]=])
 mutant(201 stages/depth_test.sv "alpha: what may still be dropped sets the bound of HiZ"
   [=[kept == '1 && !is_late]=] [=[kept == '1]=])
-mutant(202 stages/block_cache.sv "alpha: depth is written before it is decided"
+mutant(202 stages/depth_cache.sv "alpha: depth is written before it is decided"
   [=[write_valid_i && writes && !x1_late]=] [=[write_valid_i && writes]=])
-mutant(203 stages/block_cache.sv "alpha: a stamp does not wait for what is decided about it"
+mutant(203 stages/depth_cache.sv "alpha: a stamp does not wait for what is decided about it"
   [=[(pending_here & item_bit) != '0]=] [=[1'b0]=])
-mutant(204 stages/block_cache.sv "alpha: a block leaves before what is decided about it"
-  [=[(evicts && pending_here != '0)]=] [=[1'b0]=])
-mutant(205 stages/block_cache.sv "alpha: what is not tested overtakes what is"
+mutant(204 stages/depth_cache.sv "alpha: a block leaves before what is decided about it"
+  [=[(found.evicts && pending_here != '0)]=] [=[1'b0]=])
+mutant(205 stages/depth_cache.sv "alpha: what is not tested overtakes what is"
   [=[late_behind_q != '0]=] [=[1'b0]=])
 mutant(206 stages/cache_tags.sv "alpha: depth unread where always writes all that alpha lets pass"
   [=[(tests_alpha && fragment_q.state.depth_write)]=] [=[1'b0]=])
-mutant(207 stages/block_cache.sv "alpha: counter: samples that fail the depth test are counted too"
-  [=[popcount(w_passed & ~alpha_passes)]=] [=[popcount(~alpha_passes)]=])
+mutant(207 stages/late_test.sv "alpha: counter: samples that fail the depth test are counted too"
+  [=[popcount(stamp_i.passed & ~alpha_passes)]=] [=[popcount(~alpha_passes)]=])
 mutant(324 lib/alpha_test.sv "alpha: less and greater are exchanged"
   [=[is_less ? less_passes : (is_equal ? equal_passes : greater_passes)]=]
   [=[is_less ? greater_passes : (is_equal ? equal_passes : less_passes)]=])
 mutant(325 lib/alpha_test.sv "alpha: values that differ in the lowest bit are equal"
   [=[alpha_i[8*p+:8] == reference_i]=] [=[alpha_i[8*p+1+:7] == reference_i[7:1]]=])
-mutant(326 stages/block_cache.sv "alpha: the reference is a bit further up in its word"
-  [=[w_word[10:3]]=] [=[w_word[11:4]]=])
-mutant(327 stages/block_cache.sv "alpha: what it drops writes its depth"
-  [=[w_changes[s] && alpha_passes[s]]=] [=[w_changes[s]]=])
-mutant(328 stages/block_cache.sv "alpha: a depth that was read for what it drops does not come into the RAM"
-  [=[is_kept || !w_on_chip]=] [=[is_kept]=])
-mutant(329 stages/block_cache.sv "alpha: counter: what it drops counts as written"
-  [=[popcount(w_passed & alpha_passes)]=] [=[popcount(w_passed)]=])
-mutant(330 stages/block_cache.sv "alpha: what it drops writes its colour"
-  [=[w_mask & w_kept]=] [=[w_mask]=])
+mutant(326 stages/late_test.sv "alpha: the reference is a bit further up in its word"
+  [=[stamp_i.state[10:3]]=] [=[stamp_i.state[11:4]]=])
+mutant(327 stages/late_test.sv "alpha: what it drops writes its depth"
+  [=[changes[s] && alpha_passes[s]]=] [=[changes[s]]=])
+mutant(328 stages/late_test.sv "alpha: a depth that was read for what it drops does not come into the RAM"
+  [=[is_kept || !stamp_i.on_chip]=] [=[is_kept]=])
+mutant(329 stages/late_test.sv "alpha: counter: what it drops counts as written"
+  [=[popcount(stamp_i.passed & alpha_passes)]=] [=[popcount(stamp_i.passed)]=])
+mutant(330 stages/color_write.sv "alpha: what it drops writes its colour"
+  [=[tested_i.mask & opaque_i]=] [=[tested_i.mask]=])
 
 # stencil
 mutant(208 lib/stencil_test.sv "stencil: the reference is compared without the mask"
@@ -460,9 +460,9 @@ mutant(216 stages/cache_tags.sv "stencil: a depth that is overwritten goes unrea
   [=[!(fragment_q.state.tests_stencil && replaces)]=] [=[fragment_q.state.tests_stencil && !replaces]=])
 mutant(217 stages/cache_tags.sv "stencil: a clear takes its value of the back"
   [=[fragment_q.code[SIDES]]=] [=[fragment_q.code[SIDES+1]]=])
-mutant(218 stages/block_cache.sv "stencil: a late alpha test, or an eviction, does not wait for a stamp of which only that changes"
+mutant(218 stages/depth_cache.sv "stencil: a late alpha test, or an eviction, does not wait for a stamp of which only that changes"
   [=[item.state.depth_write || item.state.writes_stencil]=] [=[item.state.depth_write]=])
-mutant(219 stages/block_cache.sv "stencil: with a late alpha test, what has failed keeps its value"
+mutant(219 stages/depth_cache.sv "stencil: with a late alpha test, what has failed keeps its value"
   [=[write_i.passed | write_i.write_depth]=] [=[write_i.passed]=])
 
 mutant(322 stages/cache_tags.sv "stencil: what replaces a part of it goes unread"
@@ -501,10 +501,10 @@ mutant(311 lib/fog_place.sv "fog: what lies farther than the table is at its nea
   [=[octave[7]]=] [=[1'b0]=])
 mutant(312 lib/fog_place.sv "fog: lines are spread as those of 16 octaves"
   [=[(3'd4 - octaves_i)]=] [=[3'd0]=])
-mutant(313 lib/colored_stamps.sv "fog: points and clears are fogged too"
-  [=[enable_q && is_triangle]=] [=[enable_q && !is_token]=])
-mutant(314 lib/colored_stamps.sv "fog: another one has the octaves of the first"
-  [=[is_levels && word[TOKEN+:2] == 2'd1]=] [=[is_levels && word[TOKEN+:2] == 2'd1 && !enable_q]=])
+mutant(313 stages/fog_lookup.sv "fog: points and clears are fogged too"
+  [=[enable_q && fragment_i.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE]=] [=[enable_q && !is_token]=])
+mutant(314 stages/fog_lookup.sv "fog: another one has the octaves of the first"
+  [=[is_token && unit == 2'd1]=] [=[is_token && unit == 2'd1 && !enable_q]=])
 mutant(315 stages/fog_unit.sv "fog: f is that of the line's first place"
   [=[$signed({2'b00, product})]=] [=[30'sd0]=])
 mutant(316 stages/fog_unit.sv "fog: f is cut off"
@@ -591,8 +591,8 @@ mutant(289 stages/texture_unit.sv "texture, colours over w: behind a texel the q
   [=[(e_moves && stamp_divides && e_ends_q)]=] [=[(e_moves && stamp_divides && e_ends_q && !e_last_q)]=])
 mutant(290 stages/interpolate.sv "texture, colours over w: the range ends where it begins"
   [=[samples_context_q.range.high[AT+:8*raster_pkg::COLOR_PLANES]]=] [=[samples_context_q.range.low[AT+:8*raster_pkg::COLOR_PLANES]]=])
-mutant(291 lib/colored_stamps.sv "texture, colours over w: they are affine"
-  [=[door_fragment.coordinates.divides_colors]=] [=[1'b0]=])
+mutant(291 stages/texture_stage.sv "texture, colours over w: they are affine"
+  [=[fragment_i.coordinates.divides_colors]=] [=[1'b0]=])
 
 # Ordered dithering, as 194 and 195.
 mutant(350 lib/dithered_rop.sv "colours: dithering: the half of a threshold is left out"
@@ -628,13 +628,13 @@ mutant(372 stages/color_write.sv "colours: masks: a channel that is left out bec
 mutant(373 stages/color_write.sv "colours: masks: samples that are not drawn lose the channels that are"
   [=[(stored_2_q[s*COLOR+:COLOR] & ~(channels & {COLOR{mask_2_q[s]}}))]=] [=[stored_2_q[s*COLOR+:COLOR] & ~channels]=])
 mutant(375 stages/color_write.sv "colours: masks: a token writes all channels"
-  [=[word_i[BLENDS:0]]=] [=[word_i[BLENDS:0] | (BLENDS + 1)'(15 << WRITES)]=])
+  [=[tested_i.state[BLENDS:0]]=] [=[tested_i.state[BLENDS:0] | (BLENDS + 1)'(15 << WRITES)]=])
 mutant_text(376 stages/color_write.sv "colours: masks: the constant of blending sets them, too"
-  [=[if (register_i == raster_pkg::STATE_REGISTER_COLOR_OPS) ops_q]=]
-  [=[if (register_i == raster_pkg::STATE_REGISTER_COLOR_OPS ||
-              (raster_cosim.mutant_q == 16'd376 && register_i == raster_pkg::STATE_REGISTER_BLEND_CONSTANT)) ops_q]=])
+  [=[if (tested_i.state_register == raster_pkg::STATE_REGISTER_COLOR_OPS) ops_q]=]
+  [=[if (tested_i.state_register == raster_pkg::STATE_REGISTER_COLOR_OPS ||
+              (raster_cosim.mutant_q == 16'd376 && tested_i.state_register == raster_pkg::STATE_REGISTER_BLEND_CONSTANT)) ops_q]=])
 mutant(377 stages/color_write.sv "colours: masks: what memory has of a stamp comes into the RAM only where it is drawn"
-  [=[starts_i || is_fetched]=] [=[starts_i]=])
+  [=[tested_i.starts_color || is_fetched]=] [=[tested_i.starts_color]=])
 mutant(378 stages/cache_tags.sv "colours: masks: what is stored is not read for the channels that stay"
   [=[fragment_q.code[READS]]=] [=[1'b0]=])
 mutant(379 stages/cache_tags.sv "colours: masks: what has been read for the channels that stay is not known to be here"
@@ -648,13 +648,13 @@ mutant(420 lib/sample_offsets.sv "samples: pattern: the way right is the way dow
   [=[times(step_y_i, SIZE_Y)]=] [=[times(step_y_i, SIZE_X)]=])
 mutant(421 stages/fine_raster.sv "samples: pattern: the bits below an edge's value are taken for 0"
   [=[WIDE'(edges_i.low[e*S+:S])]=] [=[WIDE'(0)]=])
-mutant(451 lib/colored_stamps.sv "samples, textures: a pixel lives by its first sample"
-  [=[writes_i[s*N+:N] != '0]=] [=[writes_i[s*N]]=])
-mutant(452 lib/colored_stamps.sv "samples, textures: a pixel's colour goes to its first sample"
-  [=[{N{packed_color & {COLOR{mask[s] || !CLEANS}}}}]=] [=[{N{packed_color & {COLOR{mask[s] || !CLEANS}}}} & ~({(N * COLOR) {1'b1}} << COLOR)]=])
-mutant(453 stages/block_cache.sv "samples, textures: alpha behind the texture covers all samples or none"
-  [=[raster_pkg::MSAA_SAMPLES > 1 && w_word[11]]=] [=[1'b0]=])
-mutant(454 stages/block_cache.sv "samples, textures: what alpha does not cover is not late"
+mutant(451 raster_top.sv "samples, textures: a pixel lives by its first sample"
+  [=[passed_samples[s*N+:N] != '0]=] [=[passed_samples[s*N]]=])
+mutant(452 stages/stamp_rop.sv "samples, textures: a pixel's colour goes to its first sample"
+  [=[{N{packed_color & {COLOR{mask_i[s] || !CLEANS}}}}]=] [=[{N{packed_color & {COLOR{mask_i[s] || !CLEANS}}}} & ~({(N * COLOR) {1'b1}} << COLOR)]=])
+mutant(453 stages/late_test.sv "samples, textures: alpha behind the texture covers all samples or none"
+  [=[raster_pkg::MSAA_SAMPLES > 1 && stamp_i.state[11]]=] [=[1'b0]=])
+mutant(454 stages/depth_cache.sv "samples, textures: what alpha does not cover is not late"
   [=[(raster_pkg::MSAA_SAMPLES > 1 && item.code[11])]=] [=[1'b0]=])
 mutant_text(450 lib/registered_fifo.sv "samples: dropped stall: an item's depths give way before it is taken"
   [=[.ready_i(is_free),
@@ -685,8 +685,8 @@ mutant(432 stages/depth_test.sv "samples: HiZ: a tile's bound is that of its fir
   [=[depths[(i+1)*CODE-1-:HIZ] > farthest]=] [=[1'b0]=])
 mutant(433 stages/cache_tags.sv "samples: alpha: what it may leave out is not asked for"
   [=[(raster_pkg::MSAA_SAMPLES > 1 && fragment_q.code[11])]=] [=[1'b0]=])
-mutant(435 lib/colored_stamps.sv "samples: colours: a pixel has its neighbour's"
-  [=[w_color[s/N*COLOR+:COLOR]]=] [=[w_color[(s/N+N-1)%raster_pkg::PIXELS*COLOR+:COLOR]]=])
+mutant(435 raster_top.sv "samples: colours: a pixel has its neighbour's"
+  [=[color[s/raster_pkg::MSAA_SAMPLES*WRITTEN+:WRITTEN]]=] [=[color[(s/raster_pkg::MSAA_SAMPLES+raster_pkg::MSAA_SAMPLES-1)%PIXELS*WRITTEN+:WRITTEN]]=])
 mutant(436 lib/resolve.sv "resolve: means are cut off instead of rounded"
   [=[(BITS + SHIFT)'(N / 2)]=] [=[(BITS + SHIFT)'(0)]=])
 mutant(437 lib/resolve.sv "resolve: the last sample counts as the first"

@@ -118,6 +118,53 @@ module raster_cosim (
 
   assign config_id_o = raster_pkg::CONFIG_ID;
 
+  // Packets as they are specified, of what raster_top has in parts. A fragment whose triangle's constants are apart: whole, with
+  // what the triangle of its number has, and of lines nothing behind the colours.
+  raster_pkg::fragment_packet_t fragment_data;
+  raster_pkg::write_packet_t    write_data;
+  raster_pkg::memory_request_t  request_data;
+  generate
+    if (raster_pkg::APART != 0) begin : gen_apart
+      localparam int NUMBER = raster_pkg::TRIANGLE_BITS;
+      localparam int CODES = raster_pkg::ALL_FRAGMENT_BITS;
+      localparam int AFFINE = raster_pkg::ALL_AFFINE_CODE_BITS;
+      raster_pkg::context_packet_t  contexts_q[0:(1<<NUMBER)-1];
+      raster_pkg::fragment_packet_t whole;
+      always_ff @(posedge clk_i)
+        if (u_raster.setup_valid && u_raster.setup_ready) contexts_q[u_raster.triangle_number] <= u_raster.context_data;
+      whole_fragment u_whole (
+          .fragment_i(u_raster.fragment_data),
+          .context_i (contexts_q[NUMBER'(u_raster.fragment_data.coordinates)]),
+          .fragment_o(whole)
+      );
+      always_comb begin
+        fragment_data = whole;
+        for (int i = 0; i < raster_pkg::PIXELS; i++)
+          if (whole.kind == raster_pkg::PRIMITIVE_KIND_LINE) fragment_data.code[i*CODES+AFFINE+:CODES-AFFINE] = '0;
+      end
+    end else begin : gen_together
+      assign fragment_data = u_raster.fragment_data;
+    end
+  endgenerate
+  // Words where they are written.
+  localparam int WORD = raster_pkg::STORED_DEPTH_BITS;
+  always_comb begin
+    write_data = u_raster.write_data;
+    for (int s = 0; s < raster_pkg::SAMPLES; s++)
+      if (write_data.write_depth[s]) write_data.depth[s*WORD+:WORD] = u_raster.write_word[s*WORD+:WORD];
+  end
+  // A lane a sample.
+  logic [raster_pkg::SAMPLES*raster_pkg::MEMORY_LANE_BITS-1:0] request_lanes;
+  request_lanes u_request_lanes (
+      .plane_i(u_raster.request_data.plane),
+      .bytes_i(u_raster.request_bytes),
+      .data_o (request_lanes)
+  );
+  always_comb begin
+    request_data = u_raster.request_data;
+    if (raster_pkg::CACHE_KIND == 1) request_data.data = request_lanes;
+  end
+
   `RASTER_TAPS
 
 endmodule

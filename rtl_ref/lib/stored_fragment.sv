@@ -2,9 +2,9 @@
 // has of planes over w the anchors of its tile, in its first pixel, and the number in place of the frame of coordinates, lowest.
 // Else it is the fragment as it is. Bits that are not stored come back as 0; whole_fragment.sv makes them.
 module stored_fragment #(
-    parameter bit APART  = 0,
-    parameter int NUMBER = 1,  // bits of a triangle's number
-    parameter int WIDTH  = raster_pkg::FRAGMENT_PACKET_BITS  // derived: STORED of its users
+    parameter bit APART = raster_pkg::APART != 0,  // derived; not to be set
+    parameter int NUMBER = raster_pkg::TRIANGLE_BITS,
+    parameter int WIDTH = raster_pkg::STORED_FRAGMENT_BITS
 ) (
     input  raster_pkg::fragment_packet_t fragment_i,
     output logic [WIDTH-1:0]             bits_o,

@@ -2,7 +2,7 @@
 // coordinates, and the values over w, from the tile's anchors to the stamp's first pixel and from there to each, as interpolate
 // makes those of other planes.
 module whole_fragment #(
-    parameter bit APART = 0  // else the fragment is whole
+    parameter bit APART = raster_pkg::APART != 0  // derived; else the fragment is whole
 ) (
     input  raster_pkg::fragment_packet_t fragment_i,
     /* verilator lint_off UNUSEDSIGNAL */

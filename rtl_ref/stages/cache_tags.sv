@@ -9,15 +9,13 @@
 // bin shares its words with others: each is read, then written.
 // Specification: model/stages/cache_tags.hpp.
 module cache_tags #(
-    parameter int SIDE_BITS = $clog2(raster_pkg::BLOCK_SIDE),  // derived; not to be set
-    parameter int TILE_BITS = $clog2(raster_pkg::BLOCKS_PER_ROW),
-    parameter int STAMPS = raster_pkg::BLOCK_SIDE * raster_pkg::BLOCK_SIDE,  // of a block
-    parameter int STAMP = (STAMPS == 1) ? 1 : 2 * SIDE_BITS,  // bits of a stamp's number in its block
-    parameter int BLOCK_X = raster_pkg::TILE_X_BITS + TILE_BITS,
-    parameter int BLOCK_Y = raster_pkg::TILE_Y_BITS + TILE_BITS,
-    parameter int LINE = (raster_pkg::CACHE_LINES == 1) ? 1 : raster_pkg::LINE_X_BITS + raster_pkg::LINE_Y_BITS,
-    parameter int WRITES = $clog2(raster_pkg::CACHE_VICTIMS + 1),
-    parameter int WORD_X = (BLOCK_X > $clog2(raster_pkg::FLAG_WORD)) ? BLOCK_X - $clog2(raster_pkg::FLAG_WORD) : 1
+    parameter int STAMPS = raster_pkg::BLOCK_STAMPS,  // derived; not to be set
+    parameter int STAMP = raster_pkg::BLOCK_STAMP_BITS,
+    parameter int BLOCK_X = raster_pkg::BLOCK_X_BITS,
+    parameter int BLOCK_Y = raster_pkg::BLOCK_Y_BITS,
+    parameter int LINE = raster_pkg::CACHE_LINE_BITS,
+    parameter int WRITES = raster_pkg::VICTIM_COUNT_BITS,
+    parameter int WORD_X = raster_pkg::FLAG_WORD_X_BITS
 ) (
     input logic clk_i,
     input logic rst_ni,
@@ -27,32 +25,16 @@ module cache_tags #(
     output logic                         fragment_ready_o,
     input  raster_pkg::fragment_packet_t fragment_i,
 
-    // To the test: the fragment, and where its stamp lies
+    // To depth_cache: the fragment, and what the tags have found
     output logic                         item_valid_o,
     input  logic                         item_ready_i,
     output raster_pkg::fragment_packet_t item_o,
-    output logic [LINE-1:0]              item_line_o,
-    output logic [STAMP-1:0]             item_stamp_o,
-    output raster_pkg::depth_source_t    item_source_o,
-    output logic                         item_starts_color_o,
-    output raster_pkg::depth_source_t    item_color_source_o,  // of stored colours, where operations read them
-    // The block that leaves the line
-    output logic                         evicts_o,
-    output logic [BLOCK_X-1:0]           evicts_x_o,
-    output logic [BLOCK_Y-1:0]           evicts_y_o,
-    output logic [STAMPS-1:0]            evicts_depth_o,  // stamps that may have been written
-    output logic [STAMPS-1:0]            evicts_color_o,
-    output logic [1:0]                   evicts_fills_o,  // colour, depth: memory holds garbage
+    output raster_pkg::tag_result_t      found_o,
 
-    // To memory, in this order: evictions to write, and a read
-    output logic                                    order_valid_o,
-    input  logic                                    order_ready_i,
-    output logic [WRITES-1:0]                       order_writes_o,
-    output logic                                    order_reads_o,
-    output logic                                    order_reads_color_o,
-    output logic [raster_pkg::TILE_X_BITS-1:0]      order_tile_x_o,
-    output logic [raster_pkg::TILE_Y_BITS-1:0]      order_tile_y_o,
-    output logic [raster_pkg::STAMP_INDEX_BITS-1:0] order_stamp_o,
+    // To write_back: blocks that leave, to be written, and a read
+    output logic                     order_valid_o,
+    input  logic                     order_ready_i,
+    output raster_pkg::block_order_t order_o,
 
     // Behind all orders: what a flush writes
     input  logic                        drained_i,  // no item and no order is under way
@@ -86,12 +68,13 @@ module cache_tags #(
   localparam int LINES = raster_pkg::CACHE_LINES;
   localparam int LINE_X = raster_pkg::LINE_X_BITS;  // may be 0, or more than BLOCK_X
   localparam int LINE_Y = raster_pkg::LINE_Y_BITS;
-  localparam int TAG_X = (BLOCK_X > LINE_X) ? BLOCK_X - LINE_X : 1;
-  localparam int TAG_Y = (BLOCK_Y > LINE_Y) ? BLOCK_Y - LINE_Y : 1;
+  localparam int TAG_X = raster_pkg::TAG_X_BITS;
+  localparam int TAG_Y = raster_pkg::TAG_Y_BITS;
+  localparam int TILE_BITS = $clog2(raster_pkg::BLOCKS_PER_ROW);
   localparam int INDEX = raster_pkg::STAMP_INDEX_BITS;
   localparam int RUN = raster_pkg::RUN_BITS;
   localparam int VICTIMS = raster_pkg::CACHE_VICTIMS;
-  localparam int VICTIM = $clog2(VICTIMS);
+  localparam int VICTIM = raster_pkg::VICTIM_SLOT_BITS;
   localparam int WORD = raster_pkg::FLAG_WORD;
   localparam int BIT = $clog2(WORD);
   localparam int KNOWN = raster_pkg::BLEND_LANES == 0 ? 0 : STAMPS;  // with blending: stamps whose colours are here
@@ -489,12 +472,11 @@ module cache_tags #(
   assign item_valid_o   = is_settled && is_item && order_ready_i;
   assign order_valid_o  = state_q == ORDER ? waiting_q != '0 : is_settled && is_order && item_ready_i;
   assign leaves         = is_settled && item_ready_i && order_ready_i;
-  assign order_writes_o = writes;
-  assign order_reads_o  = source == raster_pkg::DEPTH_SOURCE_MEMORY;
-  assign order_reads_color_o = color_source == raster_pkg::DEPTH_SOURCE_MEMORY;
-  assign order_tile_x_o = fragment_q.key.tile_x;
-  assign order_tile_y_o = fragment_q.key.tile_y;
-  assign order_stamp_o  = fragment_q.stamp;
+  assign order_o.writes = writes;
+  assign order_o.reads  = source == raster_pkg::DEPTH_SOURCE_MEMORY;
+  assign order_o.tile_x = fragment_q.key.tile_x;
+  assign order_o.tile_y = fragment_q.key.tile_y;
+  assign order_o.stamp  = fragment_q.stamp;
 
   always_comb begin
     item_o = fragment_q;
@@ -503,18 +485,23 @@ module cache_tags #(
       item_o.ends_visit     = 1'b0;
     end
   end
-  assign item_line_o         = line_q;
-  assign item_stamp_o        = stamp;
-  assign item_source_o       = source;
-  assign item_starts_color_o = starts_color;
-  assign item_color_source_o = color_source;
-  assign evicts_o            = evicts;
-  assign evicts_x_o          = line_x;
-  assign evicts_y_o          = line_y;
-  assign evicts_depth_o      = line_depth;
-  assign evicts_color_o      = line_colored;
-  assign evicts_fills_o      = fills;
-  assign is_cleared_o        = leaves && source == raster_pkg::DEPTH_SOURCE_CLEAR;
+  assign found_o.line         = line_q;
+  assign found_o.stamp        = stamp;
+  assign found_o.source       = source;
+  assign found_o.starts_color = starts_color;
+  assign found_o.evicts       = evicts;
+  assign found_o.tag_x        = TAG_X'(line_x >> LINE_X);
+  assign found_o.tag_y        = TAG_Y'(line_y >> LINE_Y);
+  assign found_o.depth        = line_depth;
+  assign found_o.color        = line_colored;
+  assign found_o.fills        = fills;
+  generate
+    if (raster_pkg::BLEND_LANES != 0) begin : gen_color_source
+      assign found_o.color_source = color_source;
+      assign order_o.reads_color  = color_source == raster_pkg::DEPTH_SOURCE_MEMORY;
+    end
+  endgenerate
+  assign is_cleared_o = leaves && source == raster_pkg::DEPTH_SOURCE_CLEAR;
 
   // Tokens.
   logic [WORD_X-1:0]       first_word, last_word;

@@ -1,4 +1,4 @@
-// Color write (W): what X is through with comes to the colour RAM, a clock later; an evicted block's colours are read out of
+// Color write: what depth_cache is through with comes to the colour RAM, a clock later; an evicted block's colours are read out of
 // it, a stamp a clock, each before it is written.
 //
 // Two evictions may be under way. The RAM is read for the stamp that this clock takes, where that is still to be read, else for
@@ -14,42 +14,34 @@
 // and a clock more. Samples are packed here, rounded or dithered.
 // Specification: model/stages/block_cache.hpp, rop.hpp; the times are those of model/engines/cycle/block_timing.hpp.
 module color_write #(
-    parameter int SIDE_BITS = $clog2(raster_pkg::BLOCK_SIDE),  // derived; not to be set
-    parameter int STAMPS = raster_pkg::BLOCK_SIDE * raster_pkg::BLOCK_SIDE,  // of a block
-    parameter int STAMP = (STAMPS == 1) ? 1 : 2 * SIDE_BITS,
-    parameter int LINE = (raster_pkg::CACHE_LINES == 1) ? 1 : raster_pkg::LINE_X_BITS + raster_pkg::LINE_Y_BITS,
-    parameter int VICTIM = $clog2(raster_pkg::CACHE_VICTIMS)
+    parameter int STAMPS = raster_pkg::BLOCK_STAMPS,  // derived; not to be set
+    parameter int STAMP = raster_pkg::BLOCK_STAMP_BITS,
+    parameter int LINE = raster_pkg::CACHE_LINE_BITS,
+    parameter int SLOT = raster_pkg::VICTIM_SLOT_BITS
 ) (
     input logic clk_i,
     input logic rst_ni,
 
-    // From X and what stands between
-    input  logic                                                        stamp_valid_i,
-    output logic                                                        stamp_ready_o,
-    input  logic [LINE-1:0]                                             line_i,
-    input  logic [STAMP-1:0]                                            stamp_i,
-    input  logic                                                        starts_i,  // nothing of the stamp is in the RAM
-    input  logic [raster_pkg::SAMPLES-1:0]                              mask_i,    // samples whose colour is written
+    // From depth_cache and what stands between
+    input  logic                                                         stamp_valid_i,
+    output logic                                                         stamp_ready_o,
+    /* verilator lint_off UNUSEDSIGNAL */  // what late_test looks at
+    input  raster_pkg::tested_stamp_t                                    tested_i,
+    /* verilator lint_on UNUSEDSIGNAL */
+    input  logic [raster_pkg::SAMPLES-1:0]                               opaque_i,  // samples that alpha keeps
     input  logic [raster_pkg::SAMPLES*raster_pkg::SHADED_COLOR_BITS-1:0] color_i,
-    input  logic                                                        evicts_i,
-    input  logic                                                        fills_i,
-    input  logic [STAMPS-1:0]                                           stamps_i,  // that leave
-    input  logic [raster_pkg::STORED_COLOR_BITS-1:0]                    clear_color_i,
+    input  logic [raster_pkg::STORED_COLOR_BITS-1:0]                     clear_color_i,
 
-    // What is done with colours
-    /* verilator lint_off UNUSEDSIGNAL */  // without units for it
-    input logic                               sets_state_i,  // a token: of these registers one
-    input logic [raster_pkg::DEPTH_FUNC_BITS-1:0]   register_i,
-    input logic [31:0]                        word_i,
-    input logic [raster_pkg::DEPTH_SOURCE_BITS-1:0] source_i,  // of the stored colours
-    input logic                               answer_valid_i,
+    // From memory_answers: stored colours, for those that wait for them
+    /* verilator lint_off UNUSEDSIGNAL */  // without blending
+    input logic                                                         answer_valid_i,
     input logic [raster_pkg::SAMPLES*raster_pkg::STORED_COLOR_BITS-1:0] answer_i,  // that was taken last, from the next clock on
     /* verilator lint_on UNUSEDSIGNAL */
     output logic                              answer_ready_o,
 
     // A stamp that leaves, in a slot for victims; and that all of the next eviction's are there
     output logic                                                        victim_valid_o,
-    output logic [VICTIM-1:0]                                           victim_slot_o,
+    output logic [SLOT-1:0]                                             victim_slot_o,
     output logic [STAMP-1:0]                                            victim_stamp_o,
     output logic [raster_pkg::SAMPLES-1:0]                              victim_strobe_o,
     output logic [raster_pkg::SAMPLES*raster_pkg::STORED_COLOR_BITS-1:0] victim_color_o,
@@ -72,6 +64,9 @@ module color_write #(
     for (int i = 0; i < STAMPS; i++) if (one[i]) number_of = number_of | STAMP'(i);
   endfunction
 
+  logic [SAMPLES-1:0] mask;  // samples whose colour is written
+  assign mask = tested_i.mask & opaque_i;
+
   // What the stamp at the head does: its eviction begins, it goes on to the RAM.
   logic              writes_all;  // all its samples are written into the RAM, that others are known not to be there
   logic              is_busy;     // something is on its way to its line
@@ -80,24 +75,24 @@ module color_write #(
   logic              goes, started_q, starts;
   logic              second_begun_q;  // two evictions are under way
   logic [STAMPS-1:0] own;         // the stamp that is about to be written
-  assign starts = stamp_valid_i && evicts_i && !started_q && !second_begun_q && !is_busy;
-  assign goes   = stamp_valid_i && (!evicts_i || starts || started_q) && !waits;
-  assign own    = goes && (mask_i != '0 || writes_all) ? STAMPS'(1) << stamp_i : '0;
+  assign starts = stamp_valid_i && tested_i.evicts && !started_q && !second_begun_q && !is_busy;
+  assign goes   = stamp_valid_i && (!tested_i.evicts || starts || started_q) && !waits;
+  assign own    = goes && (mask != '0 || writes_all) ? STAMPS'(1) << tested_i.stamp : '0;
   assign stamp_ready_o = goes && ends;
 
   // The evictions under way: stamps that are left to be read, of the older one and of the one behind it, which becomes the older
   // one when nothing of that is left.
   logic [STAMPS-1:0] first_q, first_left, second_q, second, second_left, left, next;
   logic [LINE-1:0]   first_line_q, second_line_q, second_line;
-  logic [VICTIM-1:0] first_slot_q, second_slot_q, second_slot, next_slot_q;
+  logic [SLOT-1:0] first_slot_q, second_slot_q, second_slot, next_slot_q;
   logic              first_fills_q, second_fills_q, second_fills;
   logic              hits_first, hits_second, hits, of_second, moves_up, reads;
-  assign second      = starts ? stamps_i : second_q;
-  assign second_line = starts ? line_i : second_line_q;
+  assign second      = starts ? tested_i.evicted : second_q;
+  assign second_line = starts ? tested_i.line : second_line_q;
   assign second_slot = starts ? next_slot_q : second_slot_q;
-  assign second_fills = starts ? fills_i : second_fills_q;
-  assign hits_first  = first_line_q == line_i && (first_q & own) != '0;
-  assign hits_second = second_line == line_i && (second & own) != '0;
+  assign second_fills = starts ? tested_i.fills : second_fills_q;
+  assign hits_first  = first_line_q == tested_i.line && (first_q & own) != '0;
+  assign hits_second = second_line == tested_i.line && (second & own) != '0;
   assign hits        = hits_first || hits_second;
   assign of_second   = hits_second || (!hits_first && first_q == '0);
   assign left        = first_q != '0 ? first_q : second;  // of the older one
@@ -118,7 +113,7 @@ module color_write #(
       first_q        <= moves_up ? second_left : first_left;
       second_q       <= moves_up ? '0 : second_left;
       second_begun_q <= !moves_up && (starts || second_begun_q);
-      next_slot_q    <= next_slot_q + VICTIM'(starts);
+      next_slot_q    <= next_slot_q + SLOT'(starts);
     end
   end
   always_ff @(posedge clk_i) begin
@@ -137,7 +132,7 @@ module color_write #(
   localparam int DELAY = 3 * STAMPS;
   logic              valid_q, fills_q;
   logic [STAMP-1:0]  stamp_q;
-  logic [VICTIM-1:0] slot_q;
+  logic [SLOT-1:0] slot_q;
   logic [DELAY-1:0]  delay_q;
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
@@ -163,7 +158,7 @@ module color_write #(
   logic [ADDRESS-1:0]       read_address, write_address;
   logic [SAMPLES-1:0]       dirty, writes, dirty_new;
   logic [SAMPLES*COLOR-1:0] code, code_new;
-  assign read_address = looks ? {line_i, stamp_i} : {of_second ? second_line : first_line_q, number_of(next)};
+  assign read_address = looks ? {tested_i.line, tested_i.stamp} : {of_second ? second_line : first_line_q, number_of(next)};
   genvar s;
   generate
     for (s = 0; s < SAMPLES; s++) begin : gen_color
@@ -192,7 +187,7 @@ module color_write #(
 
   generate
     if (LANES == 0) begin : gen_replaces
-      assign writes_all    = starts_i;
+      assign writes_all    = tested_i.starts_color;
       assign waits         = 1'b0;
       assign ends          = 1'b1;
       assign looks         = 1'b0;
@@ -208,13 +203,13 @@ module color_write #(
         else writes_q <= own != '0;
       end
       always_ff @(posedge clk_i) begin
-        write_line_q  <= line_i;
-        write_stamp_q <= stamp_i;
-        mask_q        <= mask_i;
-        write_mask_q  <= mask_i | {SAMPLES{starts_i}};
+        write_line_q  <= tested_i.line;
+        write_stamp_q <= tested_i.stamp;
+        mask_q        <= mask;
+        write_mask_q  <= mask | {SAMPLES{tested_i.starts_color}};
         packed_q      <= packed_color;
       end
-      assign is_busy       = writes_q && write_line_q == line_i;
+      assign is_busy       = writes_q && write_line_q == tested_i.line;
       assign write_address = {write_line_q, write_stamp_q};
       assign dirty_new     = mask_q;
       assign writes        = {SAMPLES{writes_q}} & write_mask_q;
@@ -227,15 +222,15 @@ module color_write #(
         logic dithers_q;
         always_ff @(posedge clk_i or negedge rst_ni) begin
           if (!rst_ni) dithers_q <= 1'b0;
-          else if (stamp_ready_o && sets_state_i && register_i == raster_pkg::STATE_REGISTER_COLOR_OPS)
-            dithers_q <= word_i[DITHERS];
+          else if (stamp_ready_o && tested_i.sets_state && tested_i.state_register == raster_pkg::STATE_REGISTER_COLOR_OPS)
+            dithers_q <= tested_i.state[DITHERS];
         end
         for (s = 0; s < SAMPLES; s++) begin : gen_rop
           logic [1:0] x, y;
           sample_place #(
               .SAMPLE(s)
           ) u_place (
-              .stamp_i,
+              .stamp_i(tested_i.stamp),
               .x_o(x),
               .y_o(y)
           );
@@ -263,9 +258,9 @@ module color_write #(
         if (!rst_ni) begin
           ops_q      <= {2'b00, 4'b1111, WRITES'(0)};
           constant_q <= '0;
-        end else if (stamp_ready_o && sets_state_i) begin
-          if (register_i == raster_pkg::STATE_REGISTER_COLOR_OPS) ops_q <= word_i[BLENDS:0];
-          if (register_i == raster_pkg::STATE_REGISTER_BLEND_CONSTANT) constant_q <= word_i;
+        end else if (stamp_ready_o && tested_i.sets_state) begin
+          if (tested_i.state_register == raster_pkg::STATE_REGISTER_COLOR_OPS) ops_q <= tested_i.state[BLENDS:0];
+          if (tested_i.state_register == raster_pkg::STATE_REGISTER_BLEND_CONSTANT) constant_q <= tested_i.state;
         end
       end
 
@@ -273,12 +268,12 @@ module color_write #(
       logic               is_here, is_fetched, is_first;
       logic [GROUPS-1:0]  wanted, done_q, group;  // groups with a sample to be blended
       logic [SAMPLES-1:0] written;
-      assign is_here    = source_i == raster_pkg::DEPTH_SOURCE_CHIP;
-      assign is_fetched = source_i != raster_pkg::DEPTH_SOURCE_NONE && !is_here;
-      assign writes_all = starts_i || is_fetched;
+      assign is_here    = tested_i.color_source == raster_pkg::DEPTH_SOURCE_CHIP;
+      assign is_fetched = tested_i.color_source != raster_pkg::DEPTH_SOURCE_NONE && !is_here;
+      assign writes_all = tested_i.starts_color || is_fetched;
       for (s = 0; s < GROUPS; s++) begin : gen_group
-        assign wanted[s] = mask_i[s*GROUP+:GROUP] != '0 && !done_q[s];
-        assign written[s*GROUP+:GROUP] = mask_i[s*GROUP+:GROUP] & {GROUP{group[s] || !ops_q[BLENDS]}};
+        assign wanted[s] = mask[s*GROUP+:GROUP] != '0 && !done_q[s];
+        assign written[s*GROUP+:GROUP] = mask[s*GROUP+:GROUP] & {GROUP{group[s] || !ops_q[BLENDS]}};
       end
       assign group     = wanted & (~wanted + 1'b1);
       assign is_first  = done_q == '0;
@@ -312,16 +307,16 @@ module color_write #(
       logic [2:0]           is_same_line;   // of the head
       logic [1:0]           is_same_stamp;  // 2 and 3, of 1
 
-      assign is_same_line = on_way_q & {line_3_q == line_i && writes_3_q != '0, line_2_q == line_i && writes_2_q != '0,
-                                             line_1_q == line_i && writes_1_q != '0};
+      assign is_same_line = on_way_q & {line_3_q == tested_i.line && writes_3_q != '0, line_2_q == tested_i.line && writes_2_q != '0,
+                                             line_1_q == tested_i.line && writes_1_q != '0};
       assign is_same_stamp = on_way_q[2:1] & {{line_3_q, stamp_3_q} == {line_1_q, stamp_1_q},
                                               {line_2_q, stamp_2_q} == {line_1_q, stamp_1_q}};
       assign is_busy  = is_same_line != '0;
       // Where something of the stamp is in the RAM it is read.
-      assign waits = (source_i == raster_pkg::DEPTH_SOURCE_MEMORY && is_first && !answer_valid_i) ||
-                     (source_i != raster_pkg::DEPTH_SOURCE_NONE && !starts_i && left != '0);
-      assign looks = goes && source_i != raster_pkg::DEPTH_SOURCE_NONE && !starts_i;
-      assign answer_ready_o = goes && is_first && source_i == raster_pkg::DEPTH_SOURCE_MEMORY;  // and is here until the next one
+      assign waits = (tested_i.color_source == raster_pkg::DEPTH_SOURCE_MEMORY && is_first && !answer_valid_i) ||
+                     (tested_i.color_source != raster_pkg::DEPTH_SOURCE_NONE && !tested_i.starts_color && left != '0);
+      assign looks = goes && tested_i.color_source != raster_pkg::DEPTH_SOURCE_NONE && !tested_i.starts_color;
+      assign answer_ready_o = goes && is_first && tested_i.color_source == raster_pkg::DEPTH_SOURCE_MEMORY;  // and is here until the next one
       assign idle_o = on_way_q == '0;
 
       always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -329,16 +324,16 @@ module color_write #(
         else on_way_q <= {on_way_q[1:0], goes};
       end
       always_ff @(posedge clk_i) begin
-        line_1_q    <= line_i;
-        stamp_1_q   <= stamp_i;
+        line_1_q    <= tested_i.line;
+        stamp_1_q   <= tested_i.stamp;
         mask_1_q    <= written;
         writes_1_q  <= written | {SAMPLES{writes_all && is_first}};  // else a group would undo what another has made
         color_1_q   <= color_i;
         group_1_q   <= group;
-        starts_1_q  <= starts_i;
+        starts_1_q  <= tested_i.starts_color;
         is_here_1_q <= is_here;
-        is_answered_1_q <= source_i == raster_pkg::DEPTH_SOURCE_MEMORY;
-        clear_color_1_q <= source_i == raster_pkg::DEPTH_SOURCE_MEMORY ? '0 : clear_color_i;
+        is_answered_1_q <= tested_i.color_source == raster_pkg::DEPTH_SOURCE_MEMORY;
+        clear_color_1_q <= tested_i.color_source == raster_pkg::DEPTH_SOURCE_MEMORY ? '0 : clear_color_i;
         blended_1_q <= written & {SAMPLES{ops_q[BLENDS]}};
         line_2_q    <= line_1_q;
         stamp_2_q   <= stamp_1_q;

@@ -32,9 +32,9 @@ module framebuffer (
     /* verilator lint_on UNUSEDSIGNAL */
 
     // Stamps that this cycle adds to the counters
-    output logic [1:0] fill_o,
-    output logic [1:0] evict_o,
-    output logic [1:0] clear_o,
+    output logic fill_o,
+    output logic evict_o,
+    output logic clear_o,
 
     output logic moves_tiles_o,  // no access is served while tiles move, or are marked or looked at
     output logic idle_o          // nothing waits for memory
@@ -307,13 +307,13 @@ module framebuffer (
   // Counters, one cycle late.
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      fill_o  <= '0;
-      evict_o <= '0;
-      clear_o <= '0;
+      fill_o  <= 1'b0;
+      evict_o <= 1'b0;
+      clear_o <= 1'b0;
     end else begin
-      fill_o  <= {1'b0, is_fill && !flag_depth && fill_steps};
-      evict_o <= {1'b0, !is_fill && offers_q && request_ready_i};
-      clear_o <= {1'b0, is_fill && flag_depth};
+      fill_o  <= is_fill && !flag_depth && fill_steps;
+      evict_o <= !is_fill && offers_q && request_ready_i;
+      clear_o <= is_fill && flag_depth;
     end
   end
 

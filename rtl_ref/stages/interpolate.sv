@@ -49,11 +49,8 @@ module interpolate (
   localparam int PIXEL = raster_pkg::TILE_PIXEL_BITS;
   localparam int L = raster_pkg::PLANE_LOCAL_GUARD_BITS;
   localparam int PER_ROW_BITS = PIXEL - STAMP_SHIFT;
-  localparam bit APART = raster_pkg::COORDINATES != 0 && N == 1;
-  localparam int NUMBER = $clog2(raster_pkg::CONTEXT_SLOTS + raster_pkg::CACHE_QUEUE + 16);  // of raster_top
-  localparam int STORED = raster_pkg::FRAGMENT_PACKET_BITS -
-                          (APART ? raster_pkg::COORDINATE_FRAME_BITS - NUMBER +
-                                   (PIXELS - 1) * (CODES - raster_pkg::ALL_AFFINE_CODE_BITS) : 0);
+  localparam bit APART = raster_pkg::APART != 0;
+  localparam int STORED = raster_pkg::STORED_FRAGMENT_BITS;
 
   /* verilator lint_off UNUSEDSIGNAL */  // anchors end after the step x, or go on
   raster_pkg::stamp_packet_t context_stamp_q, x_stamp_q, y_stamp_q, samples_stamp_q;
@@ -268,11 +265,7 @@ module interpolate (
   logic made_ready, is_empty;
   /* verilator lint_on UNUSEDSIGNAL */
   logic [STORED-1:0] made_bits, fragment_bits;
-  stored_fragment #(
-      .APART (APART),
-      .NUMBER(NUMBER),
-      .WIDTH (STORED)
-  ) u_stored (
+  stored_fragment u_stored (
       .fragment_i(made),
       .bits_o    (made_bits),
       .bits_i    (fragment_bits),

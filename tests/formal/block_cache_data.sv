@@ -1,10 +1,10 @@
 
   always_comb if (runs_q) begin
     assert (x1_valid_q == tested_valid_q);
-    if (x1_valid_q && tested_q.mask == '0) assert (x1_source_q == raster_pkg::DEPTH_SOURCE_NONE && !x1_starts_color_q && !x1_writes_q);
+    if (x1_valid_q && tested_q.mask == '0) assert (x1_q.source == raster_pkg::DEPTH_SOURCE_NONE && !x1_q.starts_color && !x1_writes_q);
     if (x1_valid_q && tested_q.mask != '0)
-      assert (x1_writes_q == (tested_writes || (x1_source_q != raster_pkg::DEPTH_SOURCE_CHIP &&
-                                                             x1_source_q != raster_pkg::DEPTH_SOURCE_NONE)));
+      assert (x1_writes_q == (tested_writes || (x1_q.source != raster_pkg::DEPTH_SOURCE_CHIP &&
+                                                             x1_q.source != raster_pkg::DEPTH_SOURCE_NONE)));
   end
 
   // One place of the RAMs, any: a sample m of a stamp of a line.
@@ -20,7 +20,7 @@
   logic [SAMPLES-1:0]       w_mask_q;  // what W took in the clock before
   logic [SAMPLES*COLOR-1:0] w_color_q;
   always_ff @(posedge clk_i) begin
-    w_mask_q  <= w_mask;
+    w_mask_q  <= w.mask;
     w_color_q <= w_color;
   end
   genvar p, m;
@@ -32,15 +32,15 @@
       logic [LINE-1:0] begins_line;
       logic [LINE+STAMP-1:0] write_address, read_address;
       logic            reads, slot_left;
-      assign stamps        = p == 0 ? evicts_depth : w_stamps;
-      assign begins        = p == 0 ? goes && evicts && slot_q == any_slot : w_starts && w_slot_q == any_slot;
-      assign begins_line   = p == 0 ? item_line : w_line;
+      assign stamps        = p == 0 ? found.depth : w.evicted;
+      assign begins        = p == 0 ? goes && found.evicts && slot_q == any_slot : w_starts && w_slot_q == any_slot;
+      assign begins_line   = p == 0 ? found.line : w.line;
       assign reads         = p == 0 ? reads_victim || goes : w_reads;
       assign read_address  = p == 0 ? depth_read_address : w_read_address;
-      assign write_address = p == 0 ? {x1_line_q, x1_stamp_q} : w_write_address;
+      assign write_address = p == 0 ? {x1_q.line, x1_q.stamp} : w_write_address;
       // An eviction that is being read is that of the slot, and its stamp is still to be read, or has been.
       assign is_begun  = p == 0 ? holds_any : any_begun;
-      assign is_left   = is_begun && (p == 0 ? VICTIM'(slot_q - 1'b1) == any_slot && (left_q & any_bit) != '0 :
+      assign is_left   = is_begun && (p == 0 ? SLOT'(slot_q - 1'b1) == any_slot && (left_q & any_bit) != '0 :
                                       (w_first_slot_q == any_slot && (w_first_q & any_bit) != '0) ||
                                       (w_second_slot_q == any_slot && (w_second_q & any_bit) != '0));
       assign is_read   = p == 0 ? v_valid_q && v_slot_q == any_slot && v_stamp_q == any_stamp :
@@ -49,10 +49,10 @@
       always_ff @(posedge clk_i) if (begins) begin
         is_line_q <= begins_line == any_line;
         is_here_q <= (stamps & any_bit) != '0;
-        fills_q   <= p == 0 ? fills[0] : w_fills;
+        fills_q   <= p == 0 ? found.fills[0] : w.fills;
       end
       always_comb if (runs_q && is_begun) begin
-        if (p == 0 && VICTIM'(slot_q - 1'b1) == any_slot && v_valid_q)
+        if (p == 0 && SLOT'(slot_q - 1'b1) == any_slot && v_valid_q)
           assert (is_line_q == (left_line_q == any_line) && fills_q == v_fills_q);
         if (p == 1 && w_first_slot_q == any_slot && w_first_q != '0)
           assert (is_line_q == (w_first_line_q == any_line) && fills_q == w_first_fills_q);
@@ -93,8 +93,8 @@
                                                                             stored_depth_o[m*CODE+:CODE]});
           if (p == 1 && writes) assert (stored == (BITS + 1)'({w_mask_q[m], w_color_q[m*COLOR+:COLOR]}));
           // The test sees what was written last, up to the clock before.
-          if (p == 0 && x1_valid_q && x1_source_q == raster_pkg::DEPTH_SOURCE_CHIP && tested_q.mask != '0 &&
-              {x1_line_q, x1_stamp_q} == {any_line, any_stamp}) begin
+          if (p == 0 && x1_valid_q && x1_q.source == raster_pkg::DEPTH_SOURCE_CHIP && tested_q.mask != '0 &&
+              {x1_q.line, x1_q.stamp} == {any_line, any_stamp}) begin
             assert (read_is_it_q && gen_depth[m].in_ram_q == !collided_q);
             if (!collided_q) assert (read_word_q == word_q);
             assert (stored_depth_o[m*CODE+:CODE] == CODE'(word_q));
@@ -134,5 +134,5 @@
   always_comb if (runs_q) begin
     cover (gen_plane[0].is_begun && gen_plane[0].is_line_q && gen_plane[0].gen_truth[0].owes && sends_any && !is_color);
     cover (gen_plane[1].is_begun && gen_plane[1].is_line_q && gen_plane[1].is_here_q && gen_plane[1].fills_q && sends_any && is_color);
-    cover (x1_valid_q && x1_source_q == raster_pkg::DEPTH_SOURCE_CHIP && tested_q.mask != '0 && is_again && goes && !gen_depth[0].in_ram_q);
+    cover (x1_valid_q && x1_q.source == raster_pkg::DEPTH_SOURCE_CHIP && tested_q.mask != '0 && is_again && goes && !gen_depth[0].in_ram_q);
   end

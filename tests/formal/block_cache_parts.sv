@@ -4,7 +4,7 @@
   localparam int TIME = $clog2(DELAY + 2);
   logic [STAMPS-1:0]        w_first_q, w_second_q, w_next;
   logic [LINE-1:0]          w_first_line_q, w_second_line_q;
-  logic [VICTIM-1:0]        w_first_slot_q, w_second_slot_q, w_slot_q;
+  logic [SLOT-1:0]        w_first_slot_q, w_second_slot_q, w_slot_q;
   logic                     w_first_fills_q, w_second_fills_q, w_two_q, w_moves_up, w_started_q, w_starts, w_reads, c_fills_q;
   logic                     w_busy, w_writes_q;
   logic [DELAY-1:0]         w_delay_q;
@@ -44,18 +44,18 @@
   assign any_begun = holds_any && 32'(taken_q) - 32'(evictions_behind) > 32'(age);
   always_comb if (runs_q) begin
     // An eviction takes what has been written since the last one of its line, which then has been read (cache_tags_data).
-    if (w_starts && w_line == w_first_line_q) assume ((w_stamps & w_first_q) == '0);
+    if (w_starts && w.line == w_first_line_q) assume ((w.evicted & w_first_q) == '0);
     if (w_first_q == '0) assert (w_second_q == '0 && !w_two_q);
     if (!w_two_q) assert (w_second_q == '0);
     if (w_first_q != '0 && w_first_line_q == w_second_line_q) assert ((w_first_q & w_second_q) == '0);
     if (w_first_q != '0) begin
-      assert (w_first_slot_q == VICTIM'(w_slot_q - 1'b1 - VICTIM'(w_two_q)));
+      assert (w_first_slot_q == SLOT'(w_slot_q - 1'b1 - SLOT'(w_two_q)));
       assert (first_time_q != '0 && 32'(first_left) + (w_two_q ? 32'(second_left) : STAMPS) + 32'(first_time_q) <= DELAY);
       assert (w_delay_q[first_time_q-1'b1]);
       if (w_first_slot_q == any_slot) assert (any_time_q == first_time_q);
     end
     if (w_two_q) begin
-      assert (w_second_slot_q == VICTIM'(w_slot_q - 1'b1));
+      assert (w_second_slot_q == SLOT'(w_slot_q - 1'b1));
       assert (second_time_q != '0 && second_time_q < first_time_q);
       assert (32'(first_left) + 32'(second_left) + STAMPS + 32'(second_time_q) <= DELAY);
       assert (w_delay_q[second_time_q-1'b1]);
@@ -68,16 +68,16 @@
     end
     if (c_valid && c_slot == any_slot) assert (any_begun && any_time_q <= TIME'(DELAY));
     // What is still to come into a slot comes before that is said to be all there.
-    if (c_valid) assert (32'(VICTIM'(c_slot - oldest_q)) >= 32'(color_ready_q));
+    if (c_valid) assert (32'(SLOT'(c_slot - oldest_q)) >= 32'(color_ready_q));
     if (w_writes_q) assert (w_write_mask_q != '0);
   end
 
   // Tags and queues are cut out: items, orders and answers may be any, but for what cache_tags_stream, fifo_stream and
   // skid_buffer_stream prove. One slot of the victims, any.
-  (* anyconst *) logic [VICTIM-1:0] any_slot;
+  (* anyconst *) logic [SLOT-1:0] any_slot;
   always_comb if (runs_q) begin
-    if (item_valid && evicts) assume (source != raster_pkg::DEPTH_SOURCE_CHIP);
-    if (item_valid && item.mask == '0) assume (source == raster_pkg::DEPTH_SOURCE_NONE && !starts_color);
+    if (item_valid && found.evicts) assume (found.source != raster_pkg::DEPTH_SOURCE_CHIP);
+    if (item_valid && item.mask == '0) assume (found.source == raster_pkg::DEPTH_SOURCE_NONE && !found.starts_color);
     // A clear and what a flush writes go behind all items and orders (cache_tags_stream: DRAIN).
     if (flush_valid) assume (!order_valid && !item_valid && taken_q == '0 && behind_q == '0);
     if (clear_before_q != {clear_color, clear_depth}) assume (taken_q == '0 && behind_q == '0);
@@ -85,23 +85,22 @@
   logic [COLOR+CODE-1:0] clear_before_q;
   always_ff @(posedge clk_i) clear_before_q <= {clear_color, clear_depth};
 
-  // Between X and W: a queue of two (skid_buffer, in colored_stamps).
-  localparam int COLORED = CARRIED + SAMPLES * COLOR;
+  // Between X and W: a queue of two (skid_buffer).
+  localparam int COLORED = raster_pkg::TESTED_STAMP_BITS + SAMPLES * COLOR;
   logic [COLORED-1:0] first_q, second_q, entering;
   logic [1:0]         count_q;
-  assign entering = {x1_line_q, x1_stamp_q, x1_starts_color_q, write_i.write_color & {SAMPLES{write_valid_i}}, write_i.color,
-                     x1_evicts_q, x1_fills_q, x1_color_q};
+  assign entering = {write_i.color, x1_stamp};
   always_ff @(posedge clk_i) begin
     count_q <= rst_ni ? count_q + 2'(x1_valid_q) - 2'(colors_done) : '0;
     if (x1_valid_q && count_q == 2'(colors_done)) first_q <= entering;
     else if (colors_done) first_q <= second_q;
     if (x1_valid_q) second_q <= entering;
   end
-  logic [COLORED-1:0] leaving;
-  assign leaving = {w_line, w_stamp, w_starts_color, w_mask, w_color, w_evicts, w_fills, w_stamps};
+  logic [COLORED-1:0] leaving_w;
+  assign leaving_w = {w_color, w};
   always_comb if (runs_q) begin
     assume (w_valid == (count_q != '0));
-    if (w_valid) assume (leaving == first_q);
+    if (w_valid) assume (leaving_w == first_q);
     assert (32'(behind_q) == 32'(count_q) + 32'(x1_valid_q) && behind_q <= 2'd2);  // room in it, always
     assert (!(x1_valid_q && count_q == 2'd2));
   end
@@ -109,33 +108,33 @@
   // The slots: given to evictions in turn, written to memory in turn; which are in the queue.
   logic [1:0]      evictions_behind;  // those that W has not begun
   logic            holds_any, first_evicts, second_evicts;
-  logic [VICTIM:0] age;
+  logic [SLOT:0] age;
   assign first_evicts     = count_q != '0 && first_q[STAMPS+1] && !w_started_q;
   assign second_evicts    = count_q == 2'd2 && second_q[STAMPS+1];
-  assign evictions_behind = 2'(x1_valid_q && x1_evicts_q) + 2'(first_evicts) + 2'(second_evicts);
-  assign age              = (VICTIM + 1)'(VICTIM'(any_slot - oldest_q));
+  assign evictions_behind = 2'(x1_valid_q && x1_q.evicts) + 2'(first_evicts) + 2'(second_evicts);
+  assign age              = (SLOT + 1)'(SLOT'(any_slot - oldest_q));
   assign holds_any        = age < taken_q;
   logic [BLOCK_X-1:0] slot_x;
   logic [BLOCK_Y-1:0] slot_y;
   logic [STAMPS-1:0]  here_depth_any, here_color_any;
   assign {slot_x, slot_y, here_depth_any, here_color_any} = victim_q[any_slot];
   always_comb if (runs_q) begin
-    assert (taken_q <= (VICTIM + 1)'(VICTIMS));
-    assert (VICTIM'(taken_q) == VICTIM'(slot_q - oldest_q));
-    assert (VICTIM'(evictions_behind) == VICTIM'(slot_q - w_slot_q) && 32'(evictions_behind) <= 32'(taken_q));
+    assert (taken_q <= (SLOT + 1)'(VICTIMS));
+    assert (SLOT'(taken_q) == SLOT'(slot_q - oldest_q));
+    assert (SLOT'(evictions_behind) == SLOT'(slot_q - w_slot_q) && 32'(evictions_behind) <= 32'(taken_q));
     assert (32'(depth_ready_q) + 32'(v_valid_q) == 32'(taken_q));
     assert (32'(color_ready_q) + 32'(started) + 32'(evictions_behind) == 32'(taken_q));
     if (left_q != '0) assert (v_valid_q);
-    if (v_valid_q) assert (v_last_q == (left_q == '0) && v_slot_q == VICTIM'(slot_q - 1'b1) && v_fills_q == fills_q);
+    if (v_valid_q) assert (v_last_q == (left_q == '0) && v_slot_q == SLOT'(slot_q - 1'b1) && v_fills_q == fills_q);
     assert (!w_started_q);
     // What is about to be written is not still to be read.
     if (w_writes_q && w_first_line_q == w_write_address[STAMP+:LINE]) assert ((w_first_q & (STAMPS'(1) << w_write_address[STAMP-1:0])) == '0);
     if (w_writes_q && w_second_line_q == w_write_address[STAMP+:LINE]) assert ((w_second_q & (STAMPS'(1) << w_write_address[STAMP-1:0])) == '0);
-    if (x1_valid_q && x1_writes_q != '0 && left_line_q == x1_line_q) assert ((left_q & (STAMPS'(1) << x1_stamp_q)) == '0);
+    if (x1_valid_q && x1_writes_q != '0 && left_line_q == x1_q.line) assert ((left_q & (STAMPS'(1) << x1_q.stamp)) == '0);
     // What the queue holds of them is what their slots hold.
-    if (x1_valid_q && x1_evicts_q && VICTIM'(slot_q - 1'b1) == any_slot)
-      assert (x1_color_q == here_color_any && {STAMPS{x1_fills_q}} == color_left_q[any_slot]);
-    if (second_evicts && VICTIM'(w_slot_q + VICTIM'(first_evicts)) == any_slot)
+    if (x1_valid_q && x1_q.evicts && SLOT'(slot_q - 1'b1) == any_slot)
+      assert (x1_q.color == here_color_any && {STAMPS{x1_q.fills[1]}} == color_left_q[any_slot]);
+    if (second_evicts && SLOT'(w_slot_q + SLOT'(first_evicts)) == any_slot)
       assert (second_q[STAMPS-1:0] == here_color_any && {STAMPS{second_q[STAMPS]}} == color_left_q[any_slot]);
     if (first_evicts && w_slot_q == any_slot)
       assert (first_q[STAMPS-1:0] == here_color_any && {STAMPS{first_q[STAMPS]}} == color_left_q[any_slot]);

@@ -1,9 +1,8 @@
 
   // Towards memory: what is offered stays. Offers of tags and queues stay (cache_tags_stream, fifo_stream).
-  logic [ORDER-1:0]                order, order_before_q;
+  raster_pkg::block_order_t        order_before_q;
   var raster_pkg::memory_request_t flush_before_q;
   logic                            order_stays_q, flush_stays_q;
-  assign order = {order_writes, order_reads, order_x, order_y, order_stamp};
   always_ff @(posedge clk_i) begin
     order_before_q <= order;
     flush_before_q <= flush_request;
@@ -15,13 +14,13 @@
     if (flush_stays_q) assume (flush_valid && flush_request == flush_before_q);
     // What a flush writes, beside the request: cache_tags_stream.
     if (flush_valid) assume (flush_request.data == (flush_request.plane[1] ? (8 * raster_pkg::REQUEST_BYTES)'(flush_word) : {SAMPLES{LANE'(clear_color)}}));
-    if (order_valid) assume (order_writes != '0 || order_reads);  // is_order
-    if (order_valid) assert (written_q <= order_writes);
-    if (order_valid && !order_reads) assert (written_q != order_writes);
+    if (order_valid) assume (order.writes != '0 || order.reads);  // is_order
+    if (order_valid) assert (written_q <= order.writes);
+    if (order_valid && !order.reads) assert (written_q != order.writes);
     if (!order_valid) assert (written_q == '0);
     if (!sends && wants_read && takes_request)
-      assert (!request_o.is_write && request_o.tile_x == order_x && request_o.tile_y == order_y &&
-              request_o.stamp == order_stamp && request_o.plane == raster_pkg::TILE_PLANE_DEPTH);
+      assert (!request_o.is_write && request_o.tile_x == order.tile_x && request_o.tile_y == order.tile_y &&
+              request_o.stamp == order.stamp && request_o.plane == raster_pkg::TILE_PLANE_DEPTH);
   end
   always_ff @(posedge clk_i) if (runs_q && $past(runs_q)) begin
     if ($past(request_valid_o && !request_ready_i)) assert (request_valid_o && request_o == $past(request_o) && request_bytes_o == $past(request_bytes_o));
@@ -39,9 +38,9 @@
   logic enters, starts_eviction, starts_reader;
   logic [N-1:0] waiting_q;                    // evictions that are not ordered yet
   assign enters          = ordered_valid && ordered_ready;
-  assign starts_eviction = made_valid && made_ready && made_evicts && is_eviction && !evicted_q;
-  assign starts_reader   = enters && ordered_reads && is_reader && evicted_q && !reader_waits_q;
-  assign asked           = asked_q + (enters ? N'(ordered_writes) : '0);
+  assign starts_eviction = made_valid && made_ready && made_result.evicts && is_eviction && !evicted_q;
+  assign starts_reader   = enters && ordered.reads && is_reader && evicted_q && !reader_waits_q;
+  assign asked           = asked_q + (enters ? N'(ordered.writes) : '0);
   logic [$clog2(QUEUE):0] last;
   assign last = orders_q - ($clog2(QUEUE) + 1)'(takes_order);
   always_ff @(posedge clk_i) begin
@@ -50,7 +49,7 @@
       {evicted_q, unwritten_q, reader_waits_q} <= '0;
     end else begin
       asked_q   <= asked - N'(finishes);
-      waiting_q <= waiting_q - (enters ? N'(ordered_writes) : '0) + N'(made_valid && made_ready && made_evicts);
+      waiting_q <= waiting_q - (enters ? N'(ordered.writes) : '0) + N'(made_valid && made_ready && made_result.evicts);
       orders_q  <= last + ($clog2(QUEUE) + 1)'(enters);
       if (starts_eviction) begin
         {evicted_q, unwritten_q} <= '1;
@@ -74,7 +73,7 @@
   generate
     for (q = 0; q < QUEUE; q++) begin : gen_queue
       always_ff @(posedge clk_i)
-        if (enters && last == q) writes_q[q] <= ordered_writes;
+        if (enters && last == q) writes_q[q] <= ordered.writes;
         else if (takes_order && q + 1 < QUEUE) writes_q[q] <= writes_q[(q + 1) % QUEUE];
     end
   endgenerate
@@ -90,10 +89,10 @@
   always_comb if (runs_q) begin
     // fifo_stream; and tags order what waits, each once.
     assume (order_valid == (orders_q != '0) && ordered_ready == (orders_q != QUEUE));
-    if (order_valid) assume (order_writes == writes_q[0]);
-    if (ordered_valid) assume (N'(ordered_writes) <= waiting_q && waiting_q <= VICTIMS && (ordered_writes != '0 || ordered_reads));
-    if (made_valid && made_ready && made_evicts)
-      assume (waiting_q - (enters ? N'(ordered_writes) : '0) < VICTIMS);
+    if (order_valid) assume (order.writes == writes_q[0]);
+    if (ordered_valid) assume (N'(ordered.writes) <= waiting_q && waiting_q <= VICTIMS && (ordered.writes != '0 || ordered.reads));
+    if (made_valid && made_ready && made_result.evicts)
+      assume (waiting_q - (enters ? N'(ordered.writes) : '0) < VICTIMS);
     if (starts_reader && unwritten_q) assume (ahead_q < asked);
     assert (orders_q <= QUEUE && waiting_q <= VICTIMS);
     for (int i = 0; i < QUEUE; i++) if (i < orders_q) assert (writes_q[i] <= VICTIMS);
@@ -110,14 +109,14 @@
   // for stamps that it reads, and then only for a slot or an answer; memory's next waits only for data on their way from X and W.
   always_comb if (runs_q) begin
     if (item_valid && !goes && left_q == '0 && !x1_valid_q && count_q != 2'd2)
-      assert ((evicts && !slot_free) || (source == raster_pkg::DEPTH_SOURCE_MEMORY && !answer_valid));
+      assert ((found.evicts && !slot_free) || (found.source == raster_pkg::DEPTH_SOURCE_MEMORY && !answer_valid));
     if (order_valid && !request_valid_o) assert (skips || !is_ready);
     if (taken_q != '0 && left_q == '0 && w_delay_q == '0 && !v_valid_q && behind_q == '0) assert (is_ready);
-    cover (reader_waits_q && !unwritten_q && place_q == '0 && wants_read && order_writes != '0);
-    cover (item_valid && evicts && !goes && !slot_free);
+    cover (reader_waits_q && !unwritten_q && place_q == '0 && wants_read && order.writes != '0);
+    cover (item_valid && found.evicts && !goes && !slot_free);
   end
   always_ff @(posedge clk_i) if (runs_q && $past(runs_q)) begin
-    if ($past(left_q != '0 && !(goes && evicts))) assert (left_q < $past(left_q));
+    if ($past(left_q != '0 && !(goes && found.evicts))) assert (left_q < $past(left_q));
     if ($past(x1_valid_q && !goes)) assert (!x1_valid_q);
     if ($past(w_valid && !colors_done)) assert (!w_writes_q && (!w_two_q || ($past(w_two_q) && w_first_q < $past(w_first_q))));
     if ($past(v_valid_q)) assert (left_q != '0 || !v_valid_q || v_last_q);

@@ -76,6 +76,6 @@
         if (raster_pkg::FRAME_CLEARS == 0) assert (truth_color_q == memory_color_q);
         else assert (flag_color_q ? truth_color_q == cleared_color_q : truth_color_q == memory_color_q);
       end
-      cover (tested_is_it_q && looks_q && x1_source_q == raster_pkg::DEPTH_SOURCE_MEMORY && truth_depth_q != cleared_depth_q);
+      cover (tested_is_it_q && looks_q && x1_q.source == raster_pkg::DEPTH_SOURCE_MEMORY && truth_depth_q != cleared_depth_q);
     end
   end

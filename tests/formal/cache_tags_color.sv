@@ -13,17 +13,17 @@
   always_comb if (runs_q && is_known_q) begin
     assert (gen_reads_color.reads_color_q == g_reads_q);
     if (leaves && is_it) begin
-      assert (item_color_source_o == (!reads_it ? raster_pkg::DEPTH_SOURCE_NONE :
+      assert (found_o.color_source == (!reads_it ? raster_pkg::DEPTH_SOURCE_NONE :
                                       here_q && g_color_known_q[stamp] ? raster_pkg::DEPTH_SOURCE_CHIP :
                                       flag_q[1] ? raster_pkg::DEPTH_SOURCE_CLEAR : raster_pkg::DEPTH_SOURCE_MEMORY));
-      assert (order_reads_color_o == (item_color_source_o == raster_pkg::DEPTH_SOURCE_MEMORY));
+      assert (order_o.reads_color == (found_o.color_source == raster_pkg::DEPTH_SOURCE_MEMORY));
       // Known is only what is on the chip, and that leaves with its block.
-      if (item_color_source_o == raster_pkg::DEPTH_SOURCE_CHIP) assert (!item_starts_color_o);
+      if (found_o.color_source == raster_pkg::DEPTH_SOURCE_CHIP) assert (!found_o.starts_color);
     end
     if (here_q) assert ((g_color_known_q & ~colored_q) == '0);
-    if (leaves && !is_access) assert (!order_reads_color_o);
+    if (leaves && !is_access) assert (!order_o.reads_color);
     if (!is_marking && here_q) assert (word_q[KNOWN-1:0] == g_color_known_q);
-    cover (leaves && is_it && order_reads_color_o && order_reads_o);
-    cover (leaves && is_it && item_color_source_o == raster_pkg::DEPTH_SOURCE_CHIP && g_reads_q);
+    cover (leaves && is_it && order_o.reads_color && order_o.reads);
+    cover (leaves && is_it && found_o.color_source == raster_pkg::DEPTH_SOURCE_CHIP && g_reads_q);
   end
   always_comb if (runs_q && !is_known_q) assert (gen_reads_color.reads_color_q == g_reads_q);

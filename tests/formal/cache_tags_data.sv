@@ -114,20 +114,20 @@
   always_comb if (runs_q && is_known_q) begin
     // A fragment of it.
     if (leaves && is_it) begin
-      assert (item_source_o == (here_q && known_q[stamp] ? raster_pkg::DEPTH_SOURCE_CHIP : !is_looked_at ? raster_pkg::DEPTH_SOURCE_NONE :
+      assert (found_o.source == (here_q && known_q[stamp] ? raster_pkg::DEPTH_SOURCE_CHIP : !is_looked_at ? raster_pkg::DEPTH_SOURCE_NONE :
                                 flag_q[0] ? raster_pkg::DEPTH_SOURCE_CLEAR : raster_pkg::DEPTH_SOURCE_MEMORY));
-      assert (item_starts_color_o == (fragment_q.state.color_write && !(here_q && colored_q[stamp])));
-      assert (order_reads_o == (item_source_o == raster_pkg::DEPTH_SOURCE_MEMORY));
+      assert (found_o.starts_color == (fragment_q.state.color_write && !(here_q && colored_q[stamp])));
+      assert (order_o.reads == (found_o.source == raster_pkg::DEPTH_SOURCE_MEMORY));
       assert (!pending);  // what it asks memory for is behind the writes of all that has left the chip of it
     end
     // It leaves when another block comes, or a token walks by, and only then; with all of it.
-    if (leaves) assert ((evicts_o && evicts_x_o == any_x && evicts_y_o == any_y) == evicts_it);
+    if (leaves) assert ((found_o.evicts && line_x == any_x && line_y == any_y) == evicts_it);
     if (leaves && evicts_it) begin
-      assert (evicts_depth_o == (stores_depth ? known_q : '0) && evicts_color_o == colored_q && evicts_fills_o == fills_it);
-      assert (item_line_o == any_line);
+      assert (found_o.depth == (stores_depth ? known_q : '0) && found_o.color == colored_q && found_o.fills == fills_it);
+      assert (found_o.line == any_line);
     end
     if (takes_token) assert (!pending_q && (!here_q || clears_all));
-    cover (leaves && is_it && order_reads_o && order_writes_o != '0);
+    cover (leaves && is_it && order_o.reads && order_o.writes != '0);
     cover (leaves && evicts_it && fills_it == 2'b11);
     cover (leaves && evicts_it && has_depth_q && drops);
     cover (leaves && empties_it && here_q && has_depth_q && !evicts_it);
@@ -293,8 +293,8 @@
   logic [1:0]       flags_sent_q;
   logic             is_sent_q, word_is_it, words_are_behind, has_sent, takes_request;
   localparam int ROW_BITS = $clog2(raster_pkg::STAMPS_PER_ROW);
-  assign any_index     = INDEX'(((((8'(any_y) & 8'((1 << TILE_BITS) - 1)) << SIDE_BITS) | (8'(any_stamp) >> SIDE_BITS)) << ROW_BITS) |
-                                ((8'(any_x) & 8'((1 << TILE_BITS) - 1)) << SIDE_BITS) | (8'(any_stamp) & 8'((1 << SIDE_BITS) - 1)));
+  assign any_index     = INDEX'(((((8'(any_y) & 8'((1 << TILE_BITS) - 1)) << $clog2(raster_pkg::BLOCK_SIDE)) | (8'(any_stamp) >> $clog2(raster_pkg::BLOCK_SIDE))) << ROW_BITS) |
+                                ((8'(any_x) & 8'((1 << TILE_BITS) - 1)) << $clog2(raster_pkg::BLOCK_SIDE)) | (8'(any_stamp) & 8'((1 << $clog2(raster_pkg::BLOCK_SIDE)) - 1)));
   assign takes_request = request_valid_o && request_ready_i;
   assign word_is_it    = word_x_q == WORD_X'(any_x >> BIT) && word_y_q == any_y;
   assign words_are_behind = state_q == DONE || word_y_q > any_y || (word_y_q == any_y && word_x_q > WORD_X'(any_x >> BIT));

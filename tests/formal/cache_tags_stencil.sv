@@ -1,6 +1,6 @@
 
   // With a stencil, in cache_tags_data: a word that is replaced goes unread, and one of which a part stays does not.
   always_comb if (runs_q && is_known_q) begin
-    cover (leaves && is_it && item_source_o == raster_pkg::DEPTH_SOURCE_NONE && changes_word);
-    cover (leaves && is_it && item_source_o == raster_pkg::DEPTH_SOURCE_CLEAR && !fragment_q.state.depth_write && changes_word);
+    cover (leaves && is_it && found_o.source == raster_pkg::DEPTH_SOURCE_NONE && changes_word);
+    cover (leaves && is_it && found_o.source == raster_pkg::DEPTH_SOURCE_CLEAR && !fragment_q.state.depth_write && changes_word);
   end

@@ -8,9 +8,9 @@
     assert (orders_all == (state_q == ORDER && !(order_valid_o && !order_ready_i)));
     if (item_valid_o && item_ready_i && is_order) assert (order_valid_o && order_ready_i);  // together
     if (!walks_q && item_valid_o) assert (item_o == fragment_q);
-    if (walks_q && item_valid_o) assert (item_o.mask == '0 && !item_o.ends_visit && evicts_o && !order_reads_o);
-    if (valid_q && item_valid_o && item_o.mask == '0) assert (item_source_o == raster_pkg::DEPTH_SOURCE_NONE && !item_starts_color_o);
-    if (item_source_o == raster_pkg::DEPTH_SOURCE_CHIP) assert (!evicts_o);
+    if (walks_q && item_valid_o) assert (item_o.mask == '0 && !item_o.ends_visit && found_o.evicts && !order_o.reads);
+    if (valid_q && item_valid_o && item_o.mask == '0) assert (found_o.source == raster_pkg::DEPTH_SOURCE_NONE && !found_o.starts_color);
+    if (found_o.source == raster_pkg::DEPTH_SOURCE_CHIP) assert (!found_o.evicts);
   end
   always_ff @(posedge clk_i) if (runs_q && $past(runs_q)) begin
     if ($past(takes_fragment)) assert (read_valid_q && !read_walks_q && read_q == $past(fragment_i));
@@ -20,10 +20,10 @@
     if ($past(!read_valid_q && leaves)) assert (!valid_q);
     if ($past(valid_q && !leaves)) assert (valid_q && walks_q == $past(walks_q) && fragment_q == $past(fragment_q));
     if ($past(is_stuck))
-      assert (is_settled && item_o == $past(item_o) && item_line_o == $past(item_line_o) && item_stamp_o == $past(item_stamp_o) &&
-              {order_writes_o, order_reads_o, evicts_o} == $past({order_writes_o, order_reads_o, evicts_o}) &&
-              {item_source_o, evicts_depth_o, evicts_color_o, evicts_fills_o} ==
-              $past({item_source_o, evicts_depth_o, evicts_color_o, evicts_fills_o}));
+      assert (is_settled && item_o == $past(item_o) && found_o.line == $past(found_o.line) && found_o.stamp == $past(found_o.stamp) &&
+              {order_o.writes, order_o.reads, found_o.evicts} == $past({order_o.writes, order_o.reads, found_o.evicts}) &&
+              {found_o.source, found_o.depth, found_o.color, found_o.fills} ==
+              $past({found_o.source, found_o.depth, found_o.color, found_o.fills}));
     if ($past(request_valid_o && !request_ready_i)) assert (request_valid_o && request_o == $past(request_o));
   end
   // block_cache puts a request's data together of these.

@@ -5,7 +5,7 @@
   logic waits_q, answer_waits_q, answer_taken_q;
   logic [LINE+STAMP+3+STAMPS+3*SAMPLES+38-1:0] offer, offer_before_q;
   logic [SAMPLES*COLOR-1:0] answer_before_q;
-  assign offer = {line_i, stamp_i, starts_i, evicts_i, fills_i, stamps_i, mask_i, color_i, sets_state_i, register_i, word_i, source_i};
+  assign offer = {tested_i.line, tested_i.stamp, tested_i.starts_color, tested_i.evicts, tested_i.fills, tested_i.evicted, mask, color_i, tested_i.sets_state, tested_i.state_register, tested_i.state, tested_i.color_source};
   always_ff @(posedge clk_i) begin
     waits_q         <= rst_ni && stamp_valid_i && !stamp_ready_o;
     offer_before_q  <= offer;
@@ -17,11 +17,11 @@
     if (waits_q) assume (stamp_valid_i && offer == offer_before_q);
     if (answer_waits_q) assume (answer_valid_i);
     if (!answer_taken_q) assume (answer_i == answer_before_q);
-    if (source_i == raster_pkg::DEPTH_SOURCE_CHIP) assume (!starts_i);
-    if (evicts_i && (mask_i != '0 || source_i != raster_pkg::DEPTH_SOURCE_NONE)) assume (starts_i);
+    if (tested_i.color_source == raster_pkg::DEPTH_SOURCE_CHIP) assume (!tested_i.starts_color);
+    if (tested_i.evicts && (mask != '0 || tested_i.color_source != raster_pkg::DEPTH_SOURCE_NONE)) assume (tested_i.starts_color);
     // An eviction takes what has been written since the last one of its line, which then has been read (cache_tags_data).
-    if (starts && line_i == first_line_q) assume ((stamps_i & first_q) == '0);
-    if (sets_state_i) assume (mask_i == '0 && !evicts_i && !starts_i && source_i == raster_pkg::DEPTH_SOURCE_NONE);
+    if (starts && tested_i.line == first_line_q) assume ((tested_i.evicted & first_q) == '0);
+    if (tested_i.sets_state) assume (mask == '0 && !tested_i.evicts && !tested_i.starts_color && tested_i.color_source == raster_pkg::DEPTH_SOURCE_NONE);
   end
 
   // One sample of one stamp of a line, any; `word` is what its RAM holds, `newest` what it will hold when all that is on its way
@@ -38,7 +38,7 @@
   assign any_bit      = STAMPS'(1) << any_stamp;
   assign ram          = {dirty[any_sample], code[any_sample*COLOR+:COLOR]};
   assign writes_it    = writes[any_sample] && write_address == {any_line, any_stamp};
-  assign looks_at_it  = looks && {line_i, stamp_i} == {any_line, any_stamp};
+  assign looks_at_it  = looks && {tested_i.line, tested_i.stamp} == {any_line, any_stamp};
   assign is_it        = gen_blends.on_way_q & {{gen_blends.line_3_q, gen_blends.stamp_3_q} == {any_line, any_stamp},
                                                {gen_blends.line_2_q, gen_blends.stamp_2_q} == {any_line, any_stamp},
                                                {gen_blends.line_1_q, gen_blends.stamp_1_q} == {any_line, any_stamp}};
@@ -49,8 +49,8 @@
   logic is_left;  // of an eviction its stamp is still to be read
   assign is_left = (first_line_q == any_line && (first_q & any_bit) != '0) || (second_line_q == any_line && (second_q & any_bit) != '0);
   logic             own_is_left;  // likewise of the stamp on offer
-  assign own_is_left = (first_line_q == line_i && (first_q & (STAMPS'(1) << stamp_i)) != '0) ||
-                       (second_line_q == line_i && (second_q & (STAMPS'(1) << stamp_i)) != '0);
+  assign own_is_left = (first_line_q == tested_i.line && (first_q & (STAMPS'(1) << tested_i.stamp)) != '0) ||
+                       (second_line_q == tested_i.line && (second_q & (STAMPS'(1) << tested_i.stamp)) != '0);
   always_ff @(posedge clk_i) begin
     if (writes_it) word_q <= {dirty_new[any_sample], code_new[any_sample*COLOR+:COLOR]};
     if (reads || looks) begin
@@ -61,8 +61,8 @@
     looked_q       <= rst_ni && looks_at_it;
     is_first_q     <= gen_blends.is_first;
     victim_is_it_q <= rst_ni && reads && !looks && read_address == {any_line, any_stamp};
-    if (starts && line_i == any_line) snapshot_q <= word_q;
-    begun_q <= rst_ni && (starts ? line_i == any_line : begun_q);
+    if (starts && tested_i.line == any_line) snapshot_q <= word_q;
+    begun_q <= rst_ni && (starts ? tested_i.line == any_line : begun_q);
     // What stage 1 has found.
     found_2_q <= {gen_blends.held[any_sample], gen_blends.stored[any_sample*COLOR+:COLOR]};
   end
@@ -87,7 +87,7 @@
       if (writes_it) assert (on_way_to_it[1]);
       // An eviction takes along what is there when it begins.
       if (starts) assert (second_q == '0);  // in the place of one that is through
-      if (starts && line_i == any_line) assert (on_way_to_it == '0);
+      if (starts && tested_i.line == any_line) assert (on_way_to_it == '0);
       if (is_left && begun_q) assert (word_q == snapshot_q);
       if (is_left) assert (on_way_to_it == '0);
       if (victim_is_it_q && begun_q) begin
@@ -109,23 +109,23 @@
       if (gen_blends.on_way_q[0]) assert ((gen_blends.mask_1_q & ~gen_blends.writes_1_q) == '0);
       if (gen_blends.on_way_q[1]) assert ((gen_blends.mask_2_q & ~gen_blends.writes_2_q) == '0);
       if (gen_blends.on_way_q[1]) assert ((gen_blends.mask_2_q & ~gen_blends.dirty_2_q) == '0);
-      if (started_q) assert (stamp_valid_i && evicts_i && waits_q);
+      if (started_q) assert (stamp_valid_i && tested_i.evicts && waits_q);
       if (started_q && gen_blends.done_q == '0) assert (!is_busy);
       if (first_q == '0) assert (second_q == '0 && !second_begun_q);
       if (!second_begun_q) assert (second_q == '0);
       if (first_line_q == second_line_q) assert ((first_q & second_q) == '0);
-      if (started_q && line_i == any_line && stamp_i != any_stamp) assert (on_way_to_it == '0);
+      if (started_q && tested_i.line == any_line && tested_i.stamp != any_stamp) assert (on_way_to_it == '0);
       if (gen_blends.done_q != '0) begin
         assert (waits_q && gen_blends.wanted != '0 && gen_blends.ops_q[BLENDS]);
         assert (!own_is_left);
-        if (source_i != raster_pkg::DEPTH_SOURCE_NONE && !starts_i) assert (first_q == '0);
+        if (tested_i.color_source != raster_pkg::DEPTH_SOURCE_NONE && !tested_i.starts_color) assert (first_q == '0);
       end
       // A stamp of an eviction a clock; and the one that is taken was read before it is written.
       if (reads) assert (next != '0 && (next & ~(of_second ? second : first_q)) == '0);
       if (goes && own != '0 && own_is_left) assert (reads && next == own);
       // Nothing waits but for an eviction or an answer: the same stamp goes every clock. So there is no deadlock either.
-      if (stamp_valid_i && !goes && first_q == '0 && (!evicts_i || gen_blends.on_way_q == '0))
-        assert (source_i == raster_pkg::DEPTH_SOURCE_MEMORY && !answer_valid_i);
+      if (stamp_valid_i && !goes && first_q == '0 && (!tested_i.evicts || gen_blends.on_way_q == '0))
+        assert (tested_i.color_source == raster_pkg::DEPTH_SOURCE_MEMORY && !answer_valid_i);
       cover (on_way_to_it == 3'b111 && looked_q && gen_blends.stored[any_sample*COLOR+:COLOR] != word_q[COLOR-1:0]);
       cover (victim_is_it_q && begun_q && snapshot_q[COLOR]);
       cover (gen_blends.done_q != '0 && looks_at_it);

@@ -19,17 +19,20 @@ const std::filesystem::path kRoot = HALFPLANE_SOURCE_DIR;
 
 TEST(PipelineGraph, EveryStageIsAPairOfFilesOfItsNameAndAStageOfTheHostIsOne) {
   for (const StageInfo& stage : kStageInfo) {
-    const std::string stem = "stages/" + std::string(stage.name);
-    EXPECT_EQ(std::filesystem::exists(kRoot / "model" / (stem + ".hpp")), stage.side != Side::memory) << stem;
-    EXPECT_EQ(std::filesystem::exists(kRoot / "rtl_ref" / (stem + ".sv")), stage.side == Side::rtl) << stem;
+    const std::string name(stage.name), room = stage.side == Side::host ? "host" : "stages";
+    EXPECT_EQ(std::filesystem::exists(kRoot / "model" / room / (name + ".hpp")), stage.side != Side::memory) << name;
+    EXPECT_EQ(std::filesystem::exists(kRoot / "rtl_ref" / "stages" / (name + ".sv")), stage.side == Side::rtl) << name;
   }
 }
 
 TEST(PipelineGraph, EveryModuleOfTheRtlIsAStage) {
   std::set<std::string> stages;
   for (const StageInfo& stage : kStageInfo) stages.emplace(stage.name);
+  // Beside the stages: the context RAM and the counters.
+  stages.insert({"context_ram", "performance_counters"});
   // The framebuffer of cache.kind blocks.
-  stages.insert({"block_cache", "cache_tags", "clear_flags", "color_write", "pixel_colors"});
+  stages.insert({"cache_tags", "clear_flags", "depth_cache", "late_test", "color_write", "write_back", "pixel_colors",
+                 "memory_answers"});
   for (const auto& file : std::filesystem::directory_iterator(kRoot / "rtl_ref" / "stages")) {
     std::string stem = file.path().stem().string();
     if (stem.ends_with("_serial")) stem.resize(stem.size() - std::string_view("_serial").size());
@@ -37,7 +40,8 @@ TEST(PipelineGraph, EveryModuleOfTheRtlIsAStage) {
     const std::set<std::string> parts{
         "texture_coordinates", "texture_nearest", "texture_cache", "texture_linear", "texture_cache_linear",
         "level_of_detail",     "texture_levels",  "colors_over_w", "fog_unit",       "texture_lanes",
-        "texture_rounds",      "texture_tags",    "light_unit"};
+        "texture_rounds",      "texture_tags",    "light_unit",    "light_stage", "texture_stage",
+        "fog_lookup",          "fog_stage",       "stamp_rop"};
     if (parts.contains(stem)) continue;  // of texture_unit, behind it, or in front of it
     EXPECT_EQ(stages.count(stem), 1u) << file.path();
   }
@@ -47,7 +51,7 @@ TEST(PipelineGraph, ThePageOfThePipelineListsTheStagesInTheSameOrder) {
   std::ifstream page(kRoot / "docs" / "pipeline.md");
   std::vector<std::string> listed;
   for (std::string line; std::getline(page, line);)
-    if (line.starts_with("| ") && line.find("| `stages/") != std::string::npos)
+    if (line.starts_with("| ") && (line.find("| `stages/") != std::string::npos || line.find("| `host/") != std::string::npos))
       listed.push_back(line.substr(2, line.find(' ', 2) - 2));
   std::vector<std::string> stages;
   for (const StageInfo& stage : kStageInfo)

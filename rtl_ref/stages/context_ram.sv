@@ -1,0 +1,184 @@
+// Context RAM: what the stamps of a primitive share, by the slot that coarse_raster gives it. A slot is not written before it is
+// free, nor read before the first stamp is there. The serial front writes one part a cycle.
+//
+// With planes over w and one sample a pixel (APART) most of it is wanted only behind the depth test: the steps of those planes, and
+// the frame of coordinates. They lie in a RAM of their own by the triangle's number, which goes with the fragments in place of the
+// frame. There are as many numbers as triangles can be between setup and test: those in slots, and one for each fragment behind
+// that, since a triangle's end goes as one.
+// Specification: make_context() of model/stages/interpolate.hpp.
+module context_ram #(
+    parameter int SLOT = raster_pkg::SLOT_BITS  // derived; not to be set
+) (
+    input logic clk_i,
+    /* verilator lint_off UNUSEDSIGNAL */  // with nothing that is apart
+    input logic rst_ni,
+    /* verilator lint_on UNUSEDSIGNAL */
+
+    // From coarse_raster
+    input logic                                  write_i,
+    input logic [SLOT-1:0]                       write_slot_i,
+    /* verilator lint_off UNUSEDSIGNAL */  // the serial front has steps in another way
+    input raster_pkg::context_packet_t           context_i,
+    input logic [raster_pkg::ALL_LOCAL_BITS-1:0] step_i,  // of the serial front: along x a cycle behind write_i, then along y
+    /* verilator lint_on UNUSEDSIGNAL */
+
+    // To interpolate, in the cycle behind the read
+    input  logic                        read_i,
+    input  logic [SLOT-1:0]             read_slot_i,
+    output raster_pkg::context_packet_t context_o,
+
+    // To the fragment at the test, likewise: what is apart
+    /* verilator lint_off UNUSEDSIGNAL */  // without APART
+    input  logic                         tested_i,
+    input  raster_pkg::fragment_packet_t tested_fragment_i,
+    /* verilator lint_on UNUSEDSIGNAL */
+    output raster_pkg::context_packet_t  tested_context_o,
+    output logic [raster_pkg::TRIANGLE_BITS-1:0] number_o  // of the next triangle
+);
+
+  localparam bit APART = raster_pkg::APART != 0;
+  localparam int NUMBER = raster_pkg::TRIANGLE_BITS;
+  localparam int DEPTH = raster_pkg::CONTEXT_SLOTS;
+  generate
+    if (APART) begin : gen_apart
+      localparam int FRAME = raster_pkg::COORDINATE_FRAME_BITS;
+      localparam int AT = raster_pkg::STEP_AT[32*raster_pkg::AFFINE_PLANES+:32];
+      localparam int STEP = raster_pkg::ALL_STEP_BITS - AT;
+      logic [NUMBER-1:0]       number_q;
+      logic [2*STEP+FRAME-1:0] entering, constants;
+      always_ff @(posedge clk_i or negedge rst_ni) begin
+        if (!rst_ni) number_q <= '0;
+        else number_q <= number_q + NUMBER'(write_i);
+      end
+      assign number_o = number_q;
+      assign entering = {context_i.step_y[AT+:STEP], context_i.step_x[AT+:STEP], context_i.coordinates};
+      sram #(
+          .WIDTH    (2 * STEP + FRAME),
+          .DEPTH    (1 << NUMBER),
+          .READS_OLD(0),
+          .BLOCK    (1)
+      ) u_constants (
+          .clk_i,
+          .read_i         (tested_i),
+          .read_address_i (NUMBER'(tested_fragment_i.coordinates)),
+          .data_o         (constants),
+          .write_i,
+          .write_address_i(number_q),
+          .data_i         (entering)
+      );
+      always_comb begin
+        tested_context_o             = '0;
+        tested_context_o.coordinates = constants[0+:FRAME];
+        tested_context_o.step_x      = raster_pkg::ALL_STEP_BITS'(constants[FRAME+:STEP]) << AT;
+        tested_context_o.step_y      = raster_pkg::ALL_STEP_BITS'(constants[FRAME+STEP+:STEP]) << AT;
+      end
+    end else begin : gen_together
+      assign number_o         = '0;
+      assign tested_context_o = '0;
+    end
+
+    if (raster_pkg::SETUP_KIND == 0) begin : gen_context
+      // The range is wanted for colours over w alone: no other code is clamped.
+      localparam int FRAME = APART ? NUMBER : raster_pkg::COORDINATE_FRAME_BITS;
+      localparam int RANGE = 2 * raster_pkg::ALL_AFFINE_CODE_BITS;
+      localparam int STEPS = raster_pkg::ALL_STEP_BITS;
+      localparam int KEPT_STEPS = APART ? raster_pkg::STEP_AT[32*(APART ? raster_pkg::AFFINE_PLANES : 0)+:32] : STEPS;
+      localparam int HEAD = raster_pkg::CONTEXT_PACKET_BITS - RANGE - raster_pkg::COORDINATE_FRAME_BITS -
+                            2 * (STEPS - KEPT_STEPS);  // state and steps
+      localparam int KEPT = raster_pkg::COLORS_OVER_W != 0 ? RANGE : 0;  // of the range
+      logic [HEAD+KEPT+FRAME-1:0] entering, kept;
+      logic [KEPT_STEPS-1:0]      step_x, step_y;
+      sram #(
+          .WIDTH(HEAD + KEPT + FRAME),
+          .DEPTH(DEPTH),
+          .READS_OLD(0)
+      ) u_context (
+          .clk_i,
+          .read_i,
+          .read_address_i (read_slot_i),
+          .data_o         (kept),
+          .write_i,
+          .write_address_i(write_slot_i),
+          .data_i         (entering)
+      );
+      assign entering[KEPT+FRAME+:HEAD] = {context_i.state, context_i.step_x[0+:KEPT_STEPS], context_i.step_y[0+:KEPT_STEPS]};
+      assign {context_o.state, step_x, step_y} = kept[KEPT+FRAME+:HEAD];
+      assign context_o.step_x = STEPS'(step_x);
+      assign context_o.step_y = STEPS'(step_y);
+      if (KEPT != 0) begin : gen_range
+        assign entering[FRAME+:KEPT] = context_i.range;
+        assign context_o.range       = kept[FRAME+:KEPT];
+      end else begin : gen_no_range
+        assign context_o.range = '0;
+      end
+      if (APART) begin : gen_number
+        assign entering[0+:FRAME]    = number_o;
+        assign context_o.coordinates = raster_pkg::COORDINATE_FRAME_BITS'(kept[0+:FRAME]);
+      end else if (FRAME != 0) begin : gen_frame
+        assign entering[0+:FRAME]    = context_i.coordinates;
+        assign context_o.coordinates = kept[0+:FRAME];
+      end
+    end else begin : gen_contexts
+      localparam int STEP = raster_pkg::ALL_LOCAL_BITS;
+      localparam int REST = raster_pkg::CONTEXT_PACKET_BITS - 2 * STEP;
+      logic            writes_step_x_q, writes_step_y_q;
+      logic [STEP-1:0] step_x, step_y;
+      logic [REST-1:0] rest;
+      always_ff @(posedge clk_i or negedge rst_ni) begin
+        if (!rst_ni) begin
+          writes_step_x_q <= 1'b0;
+          writes_step_y_q <= 1'b0;
+        end else begin
+          writes_step_x_q <= write_i;
+          writes_step_y_q <= writes_step_x_q;
+        end
+      end
+      sram #(
+          .WIDTH    (STEP),
+          .DEPTH    (DEPTH),
+          .READS_OLD(0),
+          .BLOCK    (1)
+      ) u_step_x (
+          .clk_i,
+          .read_i,
+          .read_address_i (read_slot_i),
+          .data_o         (step_x),
+          .write_i        (writes_step_x_q),
+          .write_address_i(write_slot_i),
+          .data_i         (step_i)
+      );
+      sram #(
+          .WIDTH    (STEP),
+          .DEPTH    (DEPTH),
+          .READS_OLD(0),
+          .BLOCK    (1)
+      ) u_step_y (
+          .clk_i,
+          .read_i,
+          .read_address_i (read_slot_i),
+          .data_o         (step_y),
+          .write_i        (writes_step_y_q),
+          .write_address_i(write_slot_i),
+          .data_i         (step_i)
+      );
+      sram #(
+          .WIDTH    (REST),
+          .DEPTH    (DEPTH),
+          .READS_OLD(0),
+          .BLOCK    (1)
+      ) u_rest (
+          .clk_i,
+          .read_i,
+          .read_address_i (read_slot_i),
+          .data_o         (rest),
+          .write_i,
+          .write_address_i(write_slot_i),
+          .data_i         ({context_i.range, context_i.state})
+      );
+      assign context_o.step_x = step_x;
+      assign context_o.step_y = step_y;
+      assign {context_o.range, context_o.state} = rest;
+    end
+  endgenerate
+
+endmodule

@@ -1,0 +1,71 @@
+// Fog lookup: where in the table of the fog the pixels of a stamp lie. In front of the texture unit, where Q still is; what it finds
+// goes with the stamp to fog_stage. Combinational but for the table's octaves, which a token sets.
+//
+// The word: from bit 0 the places of the pixels, 19 bits each, or a token's value; above them that there is fog, that a token
+// sets the fog's colour, and that it sets a line of the table.
+// Specification: model/stages/fog_unit.hpp.
+module fog_lookup #(
+    parameter int PLACES = 19 * raster_pkg::PIXELS > 43 ? 19 * raster_pkg::PIXELS : 43,  // derived; not to be set
+    parameter int WORD = raster_pkg::FOG_UNIT == 0 ? 1 : PLACES + 3
+) (
+    /* verilator lint_off UNUSEDSIGNAL */  // without the unit; most of the fragment goes along by itself
+    input  logic                         clk_i,
+    input  logic                         rst_ni,
+    input  logic                         stamp_valid_i,
+    input  raster_pkg::fragment_packet_t fragment_i,
+    /* verilator lint_on UNUSEDSIGNAL */
+    output logic [WORD-1:0]              word_o
+);
+
+  genvar s;
+  generate
+    if (raster_pkg::FOG_UNIT == 0) begin : gen_clear
+      assign word_o = '0;
+    end else begin : gen_fogged
+      localparam int TOKEN = 43;
+      localparam int COLOR_BITS = 24;
+      localparam int FRAGMENT = raster_pkg::ALL_FRAGMENT_BITS;  // of a pixel
+      localparam int Q = raster_pkg::FRAGMENT_BITS_OF[32*raster_pkg::AFFINE_PLANES+:32];
+      localparam int Q_AT = raster_pkg::FRAGMENT_AT[32*raster_pkg::AFFINE_PLANES+:32];
+      logic              enable_q;   // there is fog
+      logic [2:0]        octaves_q;  // of its table
+      logic [PLACES-1:0] places;
+      logic              is_token, sets_color, sets_line;
+      logic [1:0]        unit;
+      /* verilator lint_off UNUSEDSIGNAL */  // longer than a register of the fog
+      logic [raster_pkg::DEPTH_FUNC_BITS-1:0] register;
+      logic [raster_pkg::STATE_WORD_BITS-1:0] word;
+      /* verilator lint_on UNUSEDSIGNAL */
+      state_token u_token (
+          .fragment_i,
+          .is_token_o(is_token),
+          .register_o(register),
+          .word_o    (word),
+          .unit_o    (unit)
+      );
+      assign sets_color = is_token && unit == 2'd1;
+      assign sets_line  = is_token && unit == 2'd2;
+      always_ff @(posedge clk_i or negedge rst_ni) begin
+        if (!rst_ni) enable_q <= 1'b0;
+        else if (stamp_valid_i && sets_color) enable_q <= word[COLOR_BITS+3];
+      end
+      always_ff @(posedge clk_i) if (stamp_valid_i && sets_color) octaves_q <= word[COLOR_BITS+:3];
+      for (s = 0; s < raster_pkg::PIXELS; s++) begin : gen_place
+        fog_place #(
+            .Q_BITS(Q)
+        ) u_place (
+            .q_i      (fragment_i.code[s*FRAGMENT+Q_AT+:Q]),
+            .octave_i (fragment_i.coordinates.fog_octave),
+            .octaves_i(octaves_q),
+            .place_o  (places[19*s+:19])
+        );
+      end
+      if (PLACES > 19 * raster_pkg::PIXELS) begin : gen_rest
+        assign places[PLACES-1:19*raster_pkg::PIXELS] = '0;
+      end
+      assign word_o[PLACES-1:0] = is_token ? PLACES'(word[TOKEN-1:0]) : places;
+      assign word_o[PLACES+:3]  = {sets_line, sets_color, enable_q && fragment_i.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE};
+    end
+  endgenerate
+
+endmodule

@@ -1,0 +1,355 @@
+// Write-back: what goes to memory of the framebuffer of blocks, in the order that cache_tags says: blocks that have left the chip,
+// then the read that an order ends with; and what a flush writes.
+//
+// A block that leaves gets one of VICTIMS slots. Its depths come into it from depth_cache, its colours from color_write, a stamp a
+// cycle; when all of both are there it is written, a stamp a request, depths first. With compress.unit pixel_colors says of each
+// block whether its colours are written, or read, with one a pixel.
+// Specification: model/stages/block_cache.hpp, pixel_colors.hpp; the times are those of model/engines/cycle/block_timing.hpp.
+module write_back #(
+    parameter int SAMPLES = raster_pkg::SAMPLES,  // derived; not to be set
+    parameter int CODE = raster_pkg::STORED_DEPTH_BITS,
+    parameter int COLOR = raster_pkg::STORED_COLOR_BITS,
+    parameter int STAMP = raster_pkg::BLOCK_STAMP_BITS,
+    parameter int SLOT = raster_pkg::VICTIM_SLOT_BITS,
+    parameter int WORD = raster_pkg::FLAG_WORD
+) (
+    input logic clk_i,
+    input logic rst_ni,
+
+    // From cache_tags: orders; behind all of them what a flush writes, whose data are the word, or the clear value
+    input  logic                        ordered_valid_i,
+    output logic                        ordered_ready_o,
+    input  raster_pkg::block_order_t    ordered_i,
+    input  logic                        flush_valid_i,
+    /* verilator lint_off UNUSEDSIGNAL */
+    input  raster_pkg::memory_request_t flush_i,
+    /* verilator lint_on UNUSEDSIGNAL */
+    input  logic [WORD-1:0]             flush_word_i,
+    input  logic [CODE-1:0]             clear_depth_i,
+    input  logic [COLOR-1:0]            clear_color_i,
+
+    // From depth_cache: a block leaves; stamps of its depths
+    input  logic                    evicts_i,
+    input  logic [SLOT-1:0]         evicts_slot_i,
+    input  raster_pkg::victim_t     evicts_block_i,
+    input  logic [1:0]              evicts_fills_i,  // colour, depth: memory holds garbage
+    input  logic                    depth_valid_i,
+    input  logic                    depth_last_i,
+    input  logic [SLOT-1:0]         depth_slot_i,
+    input  logic [STAMP-1:0]        depth_stamp_i,
+    input  logic [SAMPLES-1:0]      depth_strobe_i,
+    input  logic [SAMPLES*CODE-1:0] depth_i,
+    output logic                    slot_free_o,     // the oldest block is in memory
+
+    // From color_write: stamps of its colours; all of the next block's are there
+    input logic                     color_valid_i,
+    input logic [SLOT-1:0]          color_slot_i,
+    input logic [STAMP-1:0]         color_stamp_i,
+    input logic [SAMPLES-1:0]       color_strobe_i,
+    input logic [SAMPLES*COLOR-1:0] color_i,
+    input logic                     color_ready_i,
+
+    // To and from memory_port
+    output logic                         request_valid_o,
+    input  logic                         request_ready_i,
+    output raster_pkg::memory_request_t  request_o,        // without its data
+    output logic [8*raster_pkg::REQUEST_BYTES-1:0] request_bytes_o,  // which are these, as they lie in memory
+    /* verilator lint_off UNUSEDSIGNAL */  // without pixel_colors
+    input  logic                         response_valid_i,
+    input  logic                         response_ready_i,
+    input  raster_pkg::memory_response_t response_i,
+    /* verilator lint_on UNUSEDSIGNAL */
+
+    // To memory_answers: a read goes out, of colours, with one a pixel; answers are those of a merge
+    output logic read_goes_o,
+    output logic read_color_o,
+    output logic read_of_pixels_o,
+    output logic merges_o,
+
+    // Tokens: a word of the bits of blocks with one colour a pixel is read, and there in the next cycle; or written
+    /* verilator lint_off UNUSEDSIGNAL */  // without pixel_colors
+    input  logic                                    token_reads_i,
+    input  logic                                    token_writes_i,
+    input  logic [raster_pkg::FLAG_WORD_X_BITS-1:0] token_word_x_i,
+    input  logic [raster_pkg::BLOCK_Y_BITS-1:0]     token_word_y_i,
+    input  logic [WORD-1:0]                         token_word_i,
+    /* verilator lint_on UNUSEDSIGNAL */
+    output logic [WORD-1:0]                         token_word_o,
+
+    output logic fills_o,   // this cycle asks for a stamp
+    output logic stores_o,  // this cycle writes one
+    output logic idle_o     // no order is under way
+);
+
+  localparam int STAMPS = raster_pkg::BLOCK_STAMPS;
+  localparam int VICTIMS = raster_pkg::CACHE_VICTIMS;
+  localparam int WRITES = raster_pkg::VICTIM_COUNT_BITS;
+  localparam int RUN = raster_pkg::RUN_BITS;
+  localparam bit BLENDS = raster_pkg::BLEND_LANES != 0;
+  localparam bit COMPRESSES = raster_pkg::COMPRESS_UNIT != 0;
+
+  function automatic [STAMPS-1:0] lowest(input [STAMPS-1:0] set);
+    lowest = set & (~set + 1'b1);
+  endfunction
+  function automatic [STAMP-1:0] number_of(input [STAMPS-1:0] one);
+    number_of = '0;
+    for (int i = 0; i < STAMPS; i++) if (one[i]) number_of = number_of | STAMP'(i);
+  endfunction
+
+  // Of the lowest one, how many follow each other without a gap.
+  function automatic [RUN-1:0] run_of(input [STAMPS-1:0] set);
+    logic [STAMPS-1:0] gaps;  // above the lowest, from the first one that is missing on
+    gaps   = ~set & ~(lowest(set) - 1'b1);
+    run_of = '0;
+    for (int i = 0; i < STAMPS; i++)
+      if (set[i] && (gaps & ((STAMPS'(2) << i) - 1'b1)) == '0) run_of = run_of + 1'b1;
+  endfunction
+
+  logic                     order_valid, takes_order, order_reads_color;
+  raster_pkg::block_order_t order;
+  fifo #(
+      .WIDTH(raster_pkg::BLOCK_ORDER_BITS),
+      .DEPTH(raster_pkg::CACHE_QUEUE)
+  ) u_orders (
+      .clk_i,
+      .rst_ni,
+      .valid_i(ordered_valid_i),
+      .ready_o(ordered_ready_o),
+      .data_i (ordered_i),
+      .valid_o(order_valid),
+      .ready_i(takes_order),
+      .data_o (order)
+  );
+  assign idle_o = !order_valid;
+
+  // ------------------------------------------------------------------------------------------------- slots, and which is sent
+  localparam int PLACE = SLOT + STAMP;  // of a stamp in the slots
+  logic [SAMPLES*(CODE+1)-1:0]  victim_depth_q[0:(1<<PLACE)-1];
+  logic [SAMPLES*(COLOR+1)-1:0] victim_color_q[0:(1<<PLACE)-1];
+  logic [raster_pkg::VICTIM_BITS-1:0] victim_q[0:VICTIMS-1];
+  logic [STAMPS-1:0] depth_left_q[0:VICTIMS-1];  // stamps still to be written
+  logic [STAMPS-1:0] color_left_q[0:VICTIMS-1];
+  logic [SLOT-1:0]   oldest_q;  // slot of the next to be written
+  logic [SLOT:0]     depth_ready_q, color_ready_q;  // blocks whose depths, and colours, are all here
+  logic              is_ready;
+  logic [WRITES-1:0] written_q;  // of the order at the head
+  logic              depth_asked_q;  // likewise: its read of depths has been taken, that of colours has not
+
+  logic                     sends, skips, wants_write, wants_read, is_color, ends_victim, is_here, takes_request, finishes;
+  logic                     reads_color, colors_known, asks_pixels;  // how colours are written or read; a read of a merge
+  logic                     of_pixels;  // the colours at work lie in memory with one a pixel
+  logic [STAMP-1:0]         asked_stamp, sent_stamp;
+  logic                     takes_merged;  // all stamps of the block are written, with what was read
+  logic [STAMPS-1:0]        depth_left, color_left, sent;
+  raster_pkg::victim_t      leaving;
+  logic [SAMPLES*CODE-1:0]  sent_depth, lent_depth;  // as it is in its slot; and 0 where it is not written
+  logic [SAMPLES*COLOR-1:0] sent_color;
+  logic [SAMPLES-1:0]       sent_depth_strobe, sent_color_strobe;
+
+  assign leaving     = victim_q[oldest_q];
+  assign depth_left  = depth_left_q[oldest_q];
+  assign color_left  = color_left_q[oldest_q];
+  assign wants_write = order_valid && written_q != order.writes;
+  assign wants_read  = order_valid && written_q == order.writes;  // an order that reads nothing ends with its writes
+  assign is_ready    = depth_ready_q != '0 && color_ready_q != '0;
+  assign sends       = wants_write && is_ready && (depth_left != '0 || (color_left != '0 && colors_known));
+  assign skips       = wants_write && is_ready && depth_left == '0 && color_left == '0;
+  assign is_color    = depth_left == '0;
+  assign sent        = lowest(is_color ? color_left : depth_left);
+  assign sent_stamp  = asks_pixels ? asked_stamp : number_of(sent);
+  assign ends_victim = is_color ? color_left == sent : depth_left == sent && color_left == '0;
+  assign is_here     = (sent & (is_color ? leaving.color : leaving.depth)) != '0;
+  assign finishes    = skips || (sends && takes_request && ends_victim);
+  assign reads_color = order_reads_color && (!order.reads || depth_asked_q);  // behind that of depth
+  assign takes_order = (finishes && written_q + 1'b1 == order.writes && !order.reads && !order_reads_color) ||
+                       (read_goes_o && (reads_color || !order_reads_color));
+  assign request_valid_o = flush_valid_i || sends || asks_pixels || (wants_read && (!reads_color || colors_known));
+  assign takes_request   = request_valid_o && request_ready_i;
+  assign slot_free_o      = finishes;
+  assign read_goes_o      = wants_read && takes_request;
+  assign read_color_o     = reads_color;
+  assign read_of_pixels_o = of_pixels;
+  assign fills_o          = read_goes_o || (asks_pixels && takes_request);
+  assign stores_o         = sends && takes_request;
+  generate
+    if (BLENDS) begin : gen_reads_color
+      assign order_reads_color = order.reads_color;
+      always_ff @(posedge clk_i or negedge rst_ni) begin
+        if (!rst_ni) depth_asked_q <= 1'b0;
+        else if (read_goes_o) depth_asked_q <= !takes_order;
+      end
+    end else begin : gen_reads_no_color
+      assign order_reads_color = 1'b0;
+      assign depth_asked_q     = 1'b0;
+    end
+  endgenerate
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      oldest_q      <= '0;
+      depth_ready_q <= '0;
+      color_ready_q <= '0;
+      written_q     <= '0;
+    end else begin
+      oldest_q      <= oldest_q + SLOT'(finishes);
+      depth_ready_q <= depth_ready_q + (SLOT + 1)'(evicts_i && evicts_block_i.depth == '0) +
+                       (SLOT + 1)'(depth_valid_i && depth_last_i) - (SLOT + 1)'(finishes);
+      color_ready_q <= color_ready_q + (SLOT + 1)'(color_ready_i) - (SLOT + 1)'(finishes);
+      written_q     <= takes_order ? '0 : written_q + WRITES'(finishes);
+    end
+  end
+
+  assign {sent_depth_strobe, sent_depth} = victim_depth_q[{oldest_q, sent_stamp}];
+  assign {sent_color_strobe, sent_color} = victim_color_q[{oldest_q, sent_stamp}];
+  always_ff @(posedge clk_i) begin
+    if (depth_valid_i) victim_depth_q[{depth_slot_i, depth_stamp_i}] <= {depth_strobe_i, depth_i};
+    if (color_valid_i) victim_color_q[{color_slot_i, color_stamp_i}] <= {color_strobe_i, color_i};
+    if (evicts_i) victim_q[evicts_slot_i] <= evicts_block_i;
+  end
+
+  genvar s, v;
+  generate
+    for (v = 0; v < VICTIMS; v++) begin : gen_left
+      logic begins, is_sent;
+      assign begins  = evicts_i && evicts_slot_i == SLOT'(v);
+      assign is_sent = sends && takes_request && oldest_q == SLOT'(v);
+      always_ff @(posedge clk_i) begin
+        if (begins) begin
+          depth_left_q[v] <= {STAMPS{evicts_fills_i[0]}};
+          color_left_q[v] <= {STAMPS{evicts_fills_i[1]}};
+        end else begin
+          if (depth_valid_i && depth_slot_i == SLOT'(v) && depth_strobe_i != '0)
+            depth_left_q[v] <= depth_left_q[v] | (STAMPS'(1) << depth_stamp_i);
+          if (color_valid_i && color_slot_i == SLOT'(v) && color_strobe_i != '0)
+            color_left_q[v] <= color_left_q[v] | (STAMPS'(1) << color_stamp_i);
+          if (is_sent && !is_color) depth_left_q[v] <= depth_left_q[v] & ~sent;
+          if (is_sent && is_color) color_left_q[v] <= color_left_q[v] & ~sent;
+          if (takes_merged && !colors_known && oldest_q == SLOT'(v)) color_left_q[v] <= '1;
+        end
+      end
+    end
+    for (s = 0; s < SAMPLES; s++) begin : gen_lent
+      assign lent_depth[s*CODE+:CODE] = sent_depth[s*CODE+:CODE] & {CODE{sent_depth_strobe[s]}};
+    end
+  endgenerate
+
+  // ------------------------------------------------------------------------------------------------- blocks of one colour a pixel
+  localparam int PIXEL_COLORS = raster_pkg::PIXELS * COLOR;  // of a stamp, one a pixel
+  logic [PIXEL_COLORS-1:0] merged;
+  generate
+    if (COMPRESSES) begin : gen_pixel_colors
+      logic reads_block;  // colours are read
+      assign reads_block = wants_read && reads_color;
+      pixel_colors u_pixel_colors (
+          .clk_i,
+          .rst_ni,
+          .begins_i      (evicts_i),
+          .begin_slot_i  (evicts_slot_i),
+          .begin_fills_i (evicts_fills_i[1]),
+          .comes_i       (color_valid_i),
+          .come_slot_i   (color_slot_i),
+          .come_strobe_i (color_strobe_i),
+          .come_color_i  (color_i),
+          .writes_i      (wants_write && is_ready && is_color && color_left != '0),
+          .slot_i        (oldest_q),
+          .is_every_i    (color_left == '1),
+          .write_x_i     (leaving.x),
+          .write_y_i     (leaving.y),
+          .reads_i       (reads_block),
+          .read_tile_x_i (order.tile_x),
+          .read_tile_y_i (order.tile_y),
+          .read_stamp_i  (order.stamp),
+          .ends_i        (finishes || (reads_block && takes_request)),
+          .is_known_o    (colors_known),
+          .of_pixels_o   (of_pixels),
+          .asks_o        (asks_pixels),
+          .ask_stamp_o   (asked_stamp),
+          .is_asked_i    (asks_pixels && takes_request),
+          .other_asked_i (read_goes_o),
+          .other_answered_i(response_valid_i && response_ready_i && !merges_o),
+          .answers_i     (response_valid_i && response_ready_i && merges_o),
+          .answer_i      (response_i.data),
+          .merges_o      (takes_merged),
+          .takes_answers_o(merges_o),
+          .stamp_i       (sent_stamp),
+          .merged_o      (merged),
+          .token_reads_i,
+          .token_writes_i,
+          .word_x_i      (token_word_x_i),
+          .word_y_i      (token_word_y_i),
+          .word_i        (token_word_i),
+          .word_o        (token_word_o)
+      );
+    end else begin : gen_no_pixel_colors
+      assign colors_known = 1'b1;
+      assign of_pixels    = 1'b0;
+      assign merges_o     = 1'b0;
+      assign takes_merged = 1'b0;
+      assign asks_pixels  = 1'b0;
+      assign asked_stamp  = '0;
+      assign merged       = '0;
+      assign token_word_o = '0;
+    end
+  endgenerate
+
+  // ---------------------------------------------------------------- the request: a victim's stamp, a read, or what a flush writes
+  logic [raster_pkg::TILE_X_BITS-1:0]      sent_tile_x;
+  logic [raster_pkg::TILE_Y_BITS-1:0]      sent_tile_y;
+  logic [raster_pkg::STAMP_INDEX_BITS-1:0] sent_index;
+  stamp_address u_sent_address (
+      .block_x_i(leaving.x),
+      .block_y_i(leaving.y),
+      .stamp_i  (sent_stamp),
+      .tile_x_o (sent_tile_x),
+      .tile_y_o (sent_tile_y),
+      .stamp_o  (sent_index)
+  );
+  logic [raster_pkg::MEMORY_COLORS-1:0] color_strobe;
+  victim_bytes u_bytes (
+      .sends_depth_i  (sends && !is_color),
+      .sends_color_i  (sends && is_color),
+      .is_here_i      (is_here),
+      .depth_i        (lent_depth),
+      .color_i        (sent_color),
+      .color_strobe_i (sent_color_strobe),
+      .of_pixels_i    (of_pixels),
+      .merges_i       (takes_merged),
+      .merged_i       (merged),
+      .sends_flags_i  (flush_valid_i && flush_i.plane[1]),
+      .flags_i        (flush_word_i),
+      .sends_cleared_i(flush_valid_i && !flush_i.plane[1]),
+      .clear_depth_i,
+      .clear_color_i,
+      .bytes_o        (request_bytes_o),
+      .color_strobe_o (color_strobe)
+  );
+
+  raster_pkg::tile_plane_t color_plane;
+  assign color_plane = of_pixels || asks_pixels ? raster_pkg::TILE_PLANE_PIXEL_COLOR : raster_pkg::TILE_PLANE_COLOR;
+  always_comb begin
+    request_o          = '0;
+    request_o.is_write = sends;
+    request_o.plane    = reads_color && !sends ? color_plane : raster_pkg::TILE_PLANE_DEPTH;
+    request_o.tile_x   = order.tile_x;
+    request_o.tile_y   = order.tile_y;
+    request_o.stamp    = order.stamp;
+    request_o.run      = RUN'(1);
+    if (sends) begin
+      request_o.run    = run_of(is_color ? color_left : depth_left);
+      request_o.tile_x = sent_tile_x;
+      request_o.tile_y = sent_tile_y;
+      request_o.stamp  = sent_index;
+      if (is_color) request_o.plane = color_plane;
+      request_o.strobe = is_color ? SAMPLES'(color_strobe) : is_here ? sent_depth_strobe : '1;
+    end
+    if (asks_pixels) begin
+      request_o.tile_x = sent_tile_x;
+      request_o.tile_y = sent_tile_y;
+      request_o.stamp  = sent_index;
+      request_o.plane  = color_plane;
+    end
+    if (flush_valid_i) request_o = flush_i;
+    request_o.data = '0;
+  end
+
+endmodule

@@ -1,0 +1,244 @@
+// The framebuffer of blocks without shading, as raster_top joins its stages, without depth_test: what the proofs block_cache_*
+// are about. tools/prove.py puts depth_cache, memory_answers and write_back into it as text, so that a property can name what is
+// inside them.
+module blocks (
+    input logic clk_i,
+    input logic rst_ni,
+
+    input  logic                         fragment_valid_i,
+    output logic                         fragment_ready_o,
+    input  raster_pkg::fragment_packet_t fragment_i,
+
+    output logic                                                         tested_valid_o,
+    output raster_pkg::fragment_packet_t                                 tested_o,
+    output logic [raster_pkg::SAMPLES*raster_pkg::STORED_DEPTH_BITS-1:0] stored_depth_o,
+    input  logic                                                         write_valid_i,
+    input  raster_pkg::write_packet_t                                    write_i,
+    input  logic [raster_pkg::SAMPLES*raster_pkg::STORED_DEPTH_BITS-1:0] word_i,
+
+    output logic                                   request_valid_o,
+    input  logic                                   request_ready_i,
+    output raster_pkg::memory_request_t            request_o,
+    output logic [8*raster_pkg::REQUEST_BYTES-1:0] request_bytes_o,
+    input  logic                                   response_valid_i,
+    output logic                                   response_ready_o,
+    input  raster_pkg::memory_response_t           response_i
+);
+
+  localparam int SAMPLES = raster_pkg::SAMPLES;
+  localparam int CODE = raster_pkg::STORED_DEPTH_BITS;
+  localparam int COLOR = raster_pkg::STORED_COLOR_BITS;
+  localparam int STAMP = raster_pkg::BLOCK_STAMP_BITS;
+  localparam int SLOT = raster_pkg::VICTIM_SLOT_BITS;
+  localparam int WORD = raster_pkg::FLAG_WORD;
+  localparam int INDEX = raster_pkg::STAMP_INDEX_BITS;
+
+  logic                         made_valid, made_ready, ordered_valid, ordered_ready, flush_valid;
+  raster_pkg::fragment_packet_t made, x1_fragment;
+  raster_pkg::tag_result_t      made_result;
+  raster_pkg::block_order_t     ordered;
+  raster_pkg::memory_request_t  flush_request;
+  logic [WORD-1:0]              flush_word, pixel_word_new, pixel_word;
+  logic [CODE-1:0]              clear_depth;
+  logic [COLOR-1:0]             clear_color;
+  logic                         depths_are_idle, orders_are_done, is_cleared, is_resolved, at_token, tags_are_idle;
+  logic                         pixel_reads, pixel_writes;
+  logic [raster_pkg::FLAG_WORD_X_BITS-1:0] pixel_word_x;
+  logic [raster_pkg::BLOCK_Y_BITS-1:0]     pixel_word_y;
+  cache_tags u_tags (
+      .clk_i,
+      .rst_ni,
+      .fragment_valid_i,
+      .fragment_ready_o,
+      .fragment_i,
+      .item_valid_o   (made_valid),
+      .item_ready_i   (made_ready),
+      .item_o         (made),
+      .found_o        (made_result),
+      .order_valid_o  (ordered_valid),
+      .order_ready_i  (ordered_ready),
+      .order_o        (ordered),
+      .drained_i      (depths_are_idle && orders_are_done),
+      .request_valid_o(flush_valid),
+      .request_ready_i,
+      .request_o      (flush_request),
+      .request_word_o (flush_word),
+      .pixel_reads_o  (pixel_reads),
+      .pixel_writes_o (pixel_writes),
+      .pixel_word_x_o (pixel_word_x),
+      .pixel_word_y_o (pixel_word_y),
+      .pixel_word_o   (pixel_word_new),
+      .pixel_word_i   (pixel_word),
+      .clear_depth_o  (clear_depth),
+      .clear_color_o  (clear_color),
+      .is_cleared_o   (is_cleared),
+      .is_resolved_o  (is_resolved),
+      .at_token_o     (at_token),
+      .idle_o         (tags_are_idle)
+  );
+
+  logic                      answer_valid, answer_taken, x1_valid, colors_done, evicts_now, victim_valid, victim_last, slot_again;
+  logic [SAMPLES*CODE-1:0]   answer, victim_depth;
+  raster_pkg::tested_stamp_t x1_stamp, w;
+  logic [SAMPLES-1:0]        x1_samples, victim_strobe;
+  logic [SLOT-1:0]           evicts_slot, victim_slot;
+  raster_pkg::victim_t       evicts_block;
+  logic [1:0]                evicts_fills;
+  logic [STAMP-1:0]          victim_stamp;
+  logic                      never;
+  logic [SAMPLES-1:0]        no_samples, all_samples;
+  logic [SAMPLES*(CODE+1)-1:0] no_words;
+  assign never       = 1'b0;
+  assign no_samples  = '0;
+  assign all_samples = '1;
+  assign no_words    = '0;
+  depth_cache u_depths (
+      .clk_i           (clk_i),
+      .rst_ni          (rst_ni),
+      .made_valid_i    (made_valid),
+      .made_ready_o    (made_ready),
+      .made_i          (made),
+      .made_result_i   (made_result),
+      .clear_depth_i   (clear_depth),
+      .answer_valid_i  (answer_valid),
+      .takes_answer_o  (answer_taken),
+      .answer_i        (answer),
+      .tested_valid_o  (tested_valid_o),
+      .tested_o        (tested_o),
+      .stored_depth_o  (stored_depth_o),
+      .write_valid_i   (write_valid_i),
+      .write_i         (write_i),
+      .word_i          (word_i),
+      .stamp_valid_o   (x1_valid),
+      .stamp_o         (x1_stamp),
+      .stamp_fragment_o(x1_fragment),
+      .stamp_writes_o  (x1_samples),
+      .stamp_leaves_i  (colors_done),
+      .late_valid_i    (never),
+      .late_i          (w),
+      .late_writes_i   (no_samples),
+      .late_word_i     (no_words),
+      .evicts_o        (evicts_now),
+      .evicts_slot_o   (evicts_slot),
+      .evicts_block_o  (evicts_block),
+      .evicts_fills_o  (evicts_fills),
+      .victim_valid_o  (victim_valid),
+      .victim_last_o   (victim_last),
+      .victim_slot_o   (victim_slot),
+      .victim_stamp_o  (victim_stamp),
+      .victim_strobe_o (victim_strobe),
+      .victim_depth_o  (victim_depth),
+      .slot_free_i     (slot_again),
+      .idle_o          (depths_are_idle)
+  );
+
+  logic                     w_valid, has_room;
+  logic [SAMPLES*COLOR-1:0] w_color;
+  skid_buffer #(
+      .WIDTH(raster_pkg::TESTED_STAMP_BITS + SAMPLES * COLOR)
+  ) u_colored (
+      .clk_i,
+      .rst_ni,
+      .valid_i(x1_valid),
+      .ready_o(has_room),
+      .data_i ({x1_stamp, write_i.color}),
+      .valid_o(w_valid),
+      .ready_i(colors_done),
+      .data_o ({w, w_color})
+  );
+
+  logic                     c_valid, c_ready, write_is_idle, color_answer_valid, color_answer_taken;
+  logic [STAMP-1:0]         c_stamp;
+  logic [SLOT-1:0]          c_slot;
+  logic [SAMPLES*COLOR-1:0] c_color, color_answer;
+  logic [SAMPLES-1:0]       c_color_strobe;
+  color_write u_write (
+      .clk_i,
+      .rst_ni,
+      .stamp_valid_i  (w_valid),
+      .stamp_ready_o  (colors_done),
+      .tested_i       (w),
+      .opaque_i       (all_samples),
+      .color_i        (w_color),
+      .clear_color_i  (clear_color),
+      .answer_valid_i (color_answer_valid),
+      .answer_i       (color_answer),
+      .answer_ready_o (color_answer_taken),
+      .victim_valid_o (c_valid),
+      .victim_slot_o  (c_slot),
+      .victim_stamp_o (c_stamp),
+      .victim_strobe_o(c_color_strobe),
+      .victim_color_o (c_color),
+      .victim_ready_o (c_ready),
+      .idle_o         (write_is_idle)
+  );
+
+  logic read_goes, read_color, read_of_pixels, merges, asks_stamp, writes_stamp;
+  write_back u_write_back (
+      .clk_i           (clk_i),
+      .rst_ni          (rst_ni),
+      .ordered_valid_i (ordered_valid),
+      .ordered_ready_o (ordered_ready),
+      .ordered_i       (ordered),
+      .flush_valid_i   (flush_valid),
+      .flush_i         (flush_request),
+      .flush_word_i    (flush_word),
+      .clear_depth_i   (clear_depth),
+      .clear_color_i   (clear_color),
+      .evicts_i        (evicts_now),
+      .evicts_slot_i   (evicts_slot),
+      .evicts_block_i  (evicts_block),
+      .evicts_fills_i  (evicts_fills),
+      .depth_valid_i   (victim_valid),
+      .depth_last_i    (victim_last),
+      .depth_slot_i    (victim_slot),
+      .depth_stamp_i   (victim_stamp),
+      .depth_strobe_i  (victim_strobe),
+      .depth_i         (victim_depth),
+      .slot_free_o     (slot_again),
+      .color_valid_i   (c_valid),
+      .color_slot_i    (c_slot),
+      .color_stamp_i   (c_stamp),
+      .color_strobe_i  (c_color_strobe),
+      .color_i         (c_color),
+      .color_ready_i   (c_ready),
+      .request_valid_o (request_valid_o),
+      .request_ready_i (request_ready_i),
+      .request_o       (request_o),
+      .request_bytes_o (request_bytes_o),
+      .response_valid_i(response_valid_i),
+      .response_ready_i(response_ready_o),
+      .response_i      (response_i),
+      .read_goes_o     (read_goes),
+      .read_color_o    (read_color),
+      .read_of_pixels_o(read_of_pixels),
+      .merges_o        (merges),
+      .token_reads_i   (pixel_reads),
+      .token_writes_i  (pixel_writes),
+      .token_word_x_i  (pixel_word_x),
+      .token_word_y_i  (pixel_word_y),
+      .token_word_i    (pixel_word_new),
+      .token_word_o    (pixel_word),
+      .fills_o         (asks_stamp),
+      .stores_o        (writes_stamp),
+      .idle_o          (orders_are_done)
+  );
+  memory_answers u_answers (
+      .clk_i           (clk_i),
+      .rst_ni          (rst_ni),
+      .read_goes_i     (read_goes),
+      .read_color_i    (read_color),
+      .read_of_pixels_i(read_of_pixels),
+      .merges_i        (merges),
+      .response_valid_i(response_valid_i),
+      .response_ready_o(response_ready_o),
+      .response_i      (response_i),
+      .depth_valid_o   (answer_valid),
+      .depth_ready_i   (answer_taken),
+      .depth_o         (answer),
+      .color_valid_o   (color_answer_valid),
+      .color_ready_i   (color_answer_taken),
+      .color_o         (color_answer)
+  );
+
+endmodule
