@@ -275,6 +275,11 @@ module cull (
   logic [3:0] has_inside, has_outside, has_inside_q, has_outside_q;  // for each of the four samples: it is inside, outside of some edge
   logic       is_sampleless_q;
   logic       is_front;
+  // A sample is covered when it is on the same side of all edges, whichever way round they run. More than 2x2 samples are
+  // left to fine_raster.
+  logic [2:0] columns, rows;  // less one
+  logic       has_2x2_q, has_column_q, has_row_q;  // at most; a second one
+  logic [3:0] is_missed;
   assign is_front    = area[E] != front_cw_q;  // positive area: clockwise as seen
   assign is_small    = is_small_q && edge_is_short_q;
   assign has_inside  = has_inside_q | ~signs;
@@ -332,10 +337,6 @@ module cull (
   assign is_back       = is_back_q && !is_zero;
   assign is_dropped    = is_zero || is_back_q || d_is_empty_q || is_sampleless_q;
 
-  // A sample is covered when it is on the same side of all edges, whichever way round they run. More than 2x2 samples are
-  // left to fine_raster.
-  logic [2:0] columns, rows;  // less one
-  logic       has_2x2_q, has_column_q, has_row_q;  // at most; a second one
   assign columns       = d_box_q.right[2:0] - d_box_q.left[2:0];
   assign rows          = d_box_q.bottom[2:0] - d_box_q.top[2:0];
   always_ff @(posedge clk_i) begin  // known in the steps before
@@ -343,7 +344,6 @@ module cull (
     has_column_q <= columns != 3'd0;
     has_row_q    <= rows != 3'd0;
   end
-  logic [3:0] is_missed;
   assign is_missed = (has_inside & has_outside) | ~{has_column_q && has_row_q, has_row_q, has_column_q, 1'b1};
 
   assign is_dropped_o   = leaves && is_dropped;

@@ -39,8 +39,8 @@ module interpolate (
   localparam int PIXELS = raster_pkg::PIXELS;  // of a stamp
   localparam int N = raster_pkg::MSAA_SAMPLES;  // of a pixel
   localparam int S = raster_pkg::GRID_BITS;
-  localparam logic [32*PLANES-1:0] STEP_AT = raster_pkg::STEP_AT;
   localparam int PLANES = raster_pkg::PLANES;
+  localparam logic [32*PLANES-1:0] STEP_AT = raster_pkg::STEP_AT;
   localparam logic [32*PLANES-1:0] FRAGMENT_BITS_OF = raster_pkg::FRAGMENT_BITS_OF;
   localparam logic [32*PLANES-1:0] FRAGMENT_AT = raster_pkg::FRAGMENT_AT;
   localparam logic [32*PLANES-1:0] LOCAL_BITS_OF = raster_pkg::LOCAL_BITS_OF;
