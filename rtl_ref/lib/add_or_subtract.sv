@@ -29,9 +29,7 @@ module add_or_subtract #(
       .CO(carry)
   );
 `else
-  /* verilator lint_off UNUSEDSIGNAL */  // the carry's own bit
   logic [WIDTH:0] sum;
-  /* verilator lint_on UNUSEDSIGNAL */
   assign sum   = {a_i, subtracts_i} + {b_i ^ {WIDTH{subtracts_i}}, subtracts_i};
   assign sum_o = sum[WIDTH:1];
 `endif

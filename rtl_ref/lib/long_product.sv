@@ -43,9 +43,7 @@ module long_product #(
         logic signed [DIGIT:0]  left_digit;
         logic signed [PART-1:0] part;
         logic [OUT-1:0]         sum;     // with it
-        /* verilator lint_off UNUSEDSIGNAL */
         logic [OUT-1:0]         so_far;  // without it
-        /* verilator lint_on UNUSEDSIGNAL */
         assign left_digit = {i == LEFT_DIGITS - 1 && left[i*DIGIT+DIGIT], left[i*DIGIT+:DIGIT]};
         assign part       = left_digit * right_digit;
         assign parts[N*PART+:PART] = part;

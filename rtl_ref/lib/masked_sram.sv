@@ -12,9 +12,7 @@ module masked_sram #(
     input  logic [ADDRESS-1:0] read_address_i,
     output logic [WIDTH-1:0]   data_o,
 
-    /* verilator lint_off UNUSEDSIGNAL */  // unless it comes early
     input logic               may_write_i,  // high where a bit of write_i is
-    /* verilator lint_on UNUSEDSIGNAL */
     input logic [WIDTH-1:0]   write_i,
     input logic [ADDRESS-1:0] write_address_i,
     input logic [WIDTH-1:0]   data_i
@@ -29,9 +27,7 @@ module masked_sram #(
 
   (* no_rw_check *)
   logic [BITS-1:0] memory_q[0:DEPTH-1];
-  /* verilator lint_off UNUSEDSIGNAL */  // the bit that nobody reads
   logic [BITS-1:0] data_q;
-  /* verilator lint_on UNUSEDSIGNAL */
 
   assign data_o = data_q[WIDTH-1:0];
 

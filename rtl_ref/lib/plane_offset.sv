@@ -7,18 +7,14 @@ module plane_offset #(
 ) (
     input  logic [WIDTH-1:0]  value_i,
     input  logic [WIDTH-1:0]  step_i,
-    /* verilator lint_off UNUSEDSIGNAL */
     input  logic [OFFSET-1:0] offset_i,
-    /* verilator lint_on UNUSEDSIGNAL */
     output logic [WIDTH-1:0]  value_o
 );
 
   // A negative digit is added as a complement; the 1 that this lacks comes in as a carry from one bit below.
   logic             is_negative, is_odd;
   logic [WIDTH-1:0] digit;
-  /* verilator lint_off UNUSEDSIGNAL */
   logic [WIDTH:0]   total;
-  /* verilator lint_on UNUSEDSIGNAL */
   assign is_negative = offset_i[OFFSET-1];
   assign is_odd      = offset_i[OFFSET-2];
   always_comb begin

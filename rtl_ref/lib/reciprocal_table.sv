@@ -35,9 +35,7 @@ module reciprocal_table #(
 
   logic [BITS+DROP-1:0] line_q;
   logic [BITS-2:0]      line_mantissa_q, guess_mantissa_q;
-  /* verilator lint_off UNUSEDSIGNAL */
   logic [SUM-1:0]       on_line;  // cut off to an integer
-  /* verilator lint_on UNUSEDSIGNAL */
   logic [BITS-1:0]      guess_q, product_guess_q;
   logic                 is_too_large_q;
   logic [CHECK-1:0]     product;

@@ -38,9 +38,7 @@ module registered_fifo #(
   assign leaves     = valid_o && ready_i;
   assign is_free    = !valid_o || ready_i;
 
-  /* verilator lint_off UNUSEDSIGNAL */  // there is a place
   logic waiting_ready;
-  /* verilator lint_on UNUSEDSIGNAL */
   fifo #(
       .WIDTH(WIDTH - STORED),
       .DEPTH(DEPTH)
@@ -70,9 +68,7 @@ module registered_fifo #(
 
   generate
     if (STORED != 0) begin : gen_stored
-      /* verilator lint_off UNUSEDSIGNAL */  // as above
       logic stored_ready, stored_waits;
-      /* verilator lint_on UNUSEDSIGNAL */
       sram_fifo #(
           .WIDTH(STORED),
           .DEPTH(DEPTH)

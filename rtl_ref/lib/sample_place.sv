@@ -4,9 +4,7 @@ module sample_place #(
     parameter int SIDE_BITS = $clog2(raster_pkg::BLOCK_SIDE),  // derived; not to be set
     parameter int STAMP = (SIDE_BITS == 0) ? 1 : 2 * SIDE_BITS
 ) (
-    /* verilator lint_off UNUSEDSIGNAL */  // where a block is a stamp
     input  logic [STAMP-1:0] stamp_i,  // of the block, row by row
-    /* verilator lint_on UNUSEDSIGNAL */
     output logic [1:0]       x_o,
     output logic [1:0]       y_o
 );

@@ -6,11 +6,9 @@
 module sram #(
     parameter int WIDTH = 1,
     parameter int DEPTH = 2,               // words, at least 2
-    /* verilator lint_off UNUSEDPARAM */   // for synthesis only
     parameter bit READS_OLD = 1,
     parameter bit BLOCK = 0,               // 1: in block RAM even where it fills little of it
     parameter int WHOLE = 1024,            // words up to which it is one RAM in any case
-    /* verilator lint_on UNUSEDPARAM */
     parameter int ADDRESS = $clog2(DEPTH)  // derived; not to be set
 ) (
     input logic clk_i,

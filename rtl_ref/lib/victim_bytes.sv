@@ -15,11 +15,9 @@ module victim_bytes #(
     input  logic [SAMPLES*CODE-1:0]  depth_i,
     input  logic [SAMPLES*COLOR-1:0] color_i,
     input  logic [SAMPLES-1:0]       color_strobe_i,  // samples that are there
-    /* verilator lint_off UNUSEDSIGNAL */  // without pixel_colors
     input  logic                     of_pixels_i,     // it is written with one colour a pixel
     input  logic                     merges_i,        // it is written whole: what is not there has the colour of its pixel
     input  logic [PIXELS*COLOR-1:0]  merged_i,
-    /* verilator lint_on UNUSEDSIGNAL */
 
     // A flush: a word of flags, a stamp of colours as cleared
     input logic                             sends_flags_i,

@@ -47,14 +47,12 @@ module clear_flags #(
   localparam int FLAGS = ((raster_pkg::TILES_Y << TILE_BITS) << WORD_X);
   localparam int FLAG = $clog2(FLAGS);
 
-  /* verilator lint_off UNUSEDSIGNAL */  // high bits where a word is wider than a row
   function automatic [FLAG-1:0] word_of(input [BLOCK_X-1:0] x, input [BLOCK_Y-1:0] y);
     word_of = FLAG'({y, WORD_X'(x >> BIT)});
   endfunction
   function automatic [BIT-1:0] bit_of(input [BLOCK_X-1:0] x);
     bit_of = BIT'(x);
   endfunction
-  /* verilator lint_on UNUSEDSIGNAL */
 
   // A fall: its word is read, then written.
   logic               reads_q, writes_q;

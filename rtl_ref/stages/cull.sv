@@ -49,9 +49,7 @@ module cull (
   localparam int NV = S + 7;       // edge_function of such a triangle, at a sample of its box
 
   // ------------------------------------------------------------------------------------------------------------- sort
-  /* verilator lint_off UNUSEDSIGNAL */  // the box ends in box_q
   raster_pkg::primitive_packet_t p_q;
-  /* verilator lint_on UNUSEDSIGNAL */
   logic       sort_busy_q;
   logic [1:0] sort_step_q;
   logic       sort_moves, hands_over, decide_ready;
@@ -231,9 +229,7 @@ module cull (
   );
 
   // The same in fewer bits at the box's first pixel, for a triangle whose sides are shorter than 4 pixels.
-  /* verilator lint_off UNUSEDSIGNAL */  // its low bits are those of the fill rule
   logic signed [S+NV-1:0] corner;
-  /* verilator lint_on UNUSEDSIGNAL */
   cross_product #(
       .A_BITS  (N),
       .D_BITS  (N + 1),
@@ -264,9 +260,7 @@ module cull (
   // Twice the area is the sum of the exact edge functions; the bias comes back as a carry.
   logic [3*V-1:0]      edge_q;  // before orientation; the newest is the highest
   logic signed [E-1:0] area_q;
-  /* verilator lint_off UNUSEDSIGNAL */  // the carry's own bit
   logic signed [E:0]   area;
-  /* verilator lint_on UNUSEDSIGNAL */
   assign area = {area_q, 1'b1} + {edge_value, edge_bias_q};
 
   // What the verdict needs, known a cycle ahead of it.
@@ -385,9 +379,7 @@ module cull (
   assign triangle_o.kind         = kind_q;
   assign triangle_o.primitive_id = id_q;
   assign triangle_o.box          = d_box_q;
-  /* verilator lint_off UNUSEDSIGNAL */  // one that is not negative has no sign
   logic [E-1:0] size;
-  /* verilator lint_on UNUSEDSIGNAL */
   add_or_subtract #(
       .WIDTH(E)
   ) u_size (

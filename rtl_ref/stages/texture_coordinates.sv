@@ -94,18 +94,14 @@ module texture_coordinates #(
   generate
     for (k = 0; k < LANES; k++) begin : gen_lane
       logic [EXPONENT-1:0] zeros;
-      /* verilator lint_off UNUSEDSIGNAL */  // the reciprocal looks at the highest
       logic [30:0]         left;
-      /* verilator lint_on UNUSEDSIGNAL */
       assign {zeros, left} = normalised({q_i[k*Q_BITS+:Q_BITS], {(32 - Q_BITS) {1'b0}}});
 
       logic [MANTISSA-2:0]  mantissa_q;  // below its highest bit
       logic [EXPONENT-1:0]  exponent_q;
       logic [2*P_BITS-1:0]  p_1_q, p_2_q;
       logic [11:0]          amount_q;
-      /* verilator lint_off UNUSEDSIGNAL */  // its highest bit is set
       logic [MANTISSA-1:0]  reciprocal;
-      /* verilator lint_on UNUSEDSIGNAL */
       always_ff @(posedge clk_i) begin
         mantissa_q <= left[30-:MANTISSA-1];
         exponent_q <= EXPONENT'(Q_BITS - 1) - zeros;
@@ -135,9 +131,7 @@ module texture_coordinates #(
       end
 
       for (n = 0; n < 2; n++) begin : gen_axis
-        /* verilator lint_off UNUSEDSIGNAL */  // not negative, less than 64
         logic signed [7:0] amount;
-        /* verilator lint_on UNUSEDSIGNAL */
         assign amount = 8'($signed(shift[n*SHIFT_BITS+:SHIFT_BITS])) + 8'(exponent_q) + 8'(NARROW);
         always_ff @(posedge clk_i) amount_q[6*n+:6] <= amount[5:0];
         texture_axis #(

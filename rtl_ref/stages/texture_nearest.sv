@@ -66,9 +66,7 @@ module texture_nearest #(
   logic [31:0]      code;
   logic [2:0]       code_format;
   logic             found_valid, found_ready;
-  /* verilator lint_off UNUSEDSIGNAL */  // there is room: those ahead are counted
   logic             found_has_room;
-  /* verilator lint_on UNUSEDSIGNAL */
   assign block_x          = texel_i[SIDE_BITS-1:2];
   assign block_y          = texel_i[2*SIDE_BITS-1:SIDE_BITS+2];
   assign texel            = {texel_i[SIDE_BITS+1:SIDE_BITS], texel_i[1:0]};

@@ -24,9 +24,7 @@ module texture_tags #(
     parameter int BLOCK = SIDE_BITS - 2
 ) (
     input logic clk_i,
-    /* verilator lint_off SYNCASYNCNET */
     input logic rst_ni,
-    /* verilator lint_on SYNCASYNCNET */
     input logic power_on_ni,
 
     // Passes: which banks they use, column and row lowest first; the even and the odd block's column and row
@@ -109,9 +107,7 @@ module texture_tags #(
   logic               sweeps_q, is_occupied, blocked, any_asks;
   logic [SET-1:0]     sweep_q;
   logic [COUNT-1:0]   issued_q, read_q;
-  /* verilator lint_off UNUSEDSIGNAL */
   logic [COUNT-1:0]   last;
-  /* verilator lint_on UNUSEDSIGNAL */
   logic [NUMBER-1:0]  last_group, group, oldest_group;
   logic               waiting_ready, waiting_valid, reads, may_ask, answers_are_idle;
 

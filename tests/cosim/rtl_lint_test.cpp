@@ -60,7 +60,7 @@ std::string lint(const std::string& package) {
                     rtl = kRtl.string();
   std::ofstream(file) << package;
   const std::string command = "verilator_bin --lint-only -Wall -I" + rtl + " -I" + rtl + "/lib -I" + rtl +
-                              "/stages --top-module raster_top " + file + " " + rtl + "/raster_top.sv > " + said +
+                              "/stages --top-module raster_top " + rtl + "/lint.vlt " + file + " " + rtl + "/raster_top.sv > " + said +
                               " 2>&1";
   const int status = std::system(command.c_str());
   std::ostringstream text;

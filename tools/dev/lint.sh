@@ -29,7 +29,8 @@ lint_rtl() {
 }
 
 verilate_lint() {
-  verilator_bin --lint-only -Wall -Irtl_ref -Irtl_ref/lib -Irtl_ref/stages --top-module "$(basename "$2" .sv)" "$1" "$2"
+  verilator_bin --lint-only -Wall -Irtl_ref -Irtl_ref/lib -Irtl_ref/stages --top-module "$(basename "$2" .sv)" rtl_ref/lint.vlt \
+    "$1" "$2"
 }
 
 # The same by slang, which is as strict as the compilers of FPGA vendors, and every file by Verible.
