@@ -27,7 +27,7 @@ module reciprocal_table #(
   endfunction
 
   // The highest bit of a start, 2^k halves, is always set and is not stored.
-  (* rom_style = "block" *) logic [BITS+DROP-1:0] line_rom[0:LINES-1];
+  (* rom_style = "block", syn_romstyle = "block_rom" *) logic [BITS+DROP-1:0] line_rom[0:LINES-1];
   initial begin
     for (int n = 0; n < LINES; n++)
       line_rom[n] = {BITS'(node(64'(n)) + 64'd1), DROP'(node(64'(n)) - node(64'(n) + 64'd1))};
