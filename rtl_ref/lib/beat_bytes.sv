@@ -2,9 +2,9 @@
 // wider than a beat, one that it shares with those beside it where it is narrower. Combinational. Specification: BeatShare and
 // put() of model/stages/memory_port.hpp.
 module beat_bytes #(
-    parameter int SAMPLES = 1,
-    parameter int SAMPLE_BYTES = 2,  // of a sample in memory
-    parameter int WORD = 8,          // bytes of word_o: the larger of a stamp and a beat
+    parameter int SAMPLES = 1,                            // samples of a stamp
+    parameter int SAMPLE_BYTES = 2,                       // of a sample in memory
+    parameter int WORD = 8,                               // bytes of word_o: the larger of a stamp and a beat
     parameter int SHIFT = $clog2(SAMPLES * SAMPLE_BYTES)  // derived; not to be set
 ) (
     input  logic [8*WORD-1:0]               bytes_i,   // as they lie in memory, behind them 0

@@ -1,7 +1,7 @@
 // Plane offset, from the centre of a tile to either side: value + offset * step modulo 2^WIDTH, by shifts and adds;
 // offset is two's complement. Its two highest bits together are one digit out of -2, -1, 0, 1: three bits, two adders.
 module plane_offset #(
-    parameter int WIDTH  = 4,
+    parameter int WIDTH  = 4,  // bits of a value
     parameter int OFFSET = 3,  // bits of the offset, at least 2
     parameter int LOWEST = 0   // bits of the offset below this one are 0
 ) (

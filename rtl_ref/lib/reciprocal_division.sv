@@ -4,7 +4,7 @@
 // four clocks from mantissa to result, as reciprocal_table.sv has, without its RAM and multipliers.
 // A fixed pipeline without enables: who uses it counts the clocks. Specification: model/stages/reciprocal.hpp.
 module reciprocal_division #(
-    parameter int BITS = 18
+    parameter int BITS = 18  // k: bits of m and of the reciprocal; a subtraction row each
 ) (
     input logic clk_i,
 

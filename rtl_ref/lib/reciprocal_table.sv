@@ -6,7 +6,7 @@
 //   reciprocal_o
 // A fixed pipeline without enables: who uses it counts the clocks. Specification: model/stages/reciprocal.hpp.
 module reciprocal_table #(
-    parameter int BITS = 18
+    parameter int BITS = 18  // k: bits of m and of the reciprocal; 2^((k + 1) / 2) words of ROM
 ) (
     input logic clk_i,
 

@@ -6,7 +6,7 @@
 // Of wide items the lowest STORED bits, which whoever takes an item does not look far at, may lie in an SRAM: its read is the
 // register.
 module registered_fifo #(
-    parameter int WIDTH = 1,
+    parameter int WIDTH = 1,  // bits of an item
     parameter int DEPTH = 2,  // a power of two
     parameter int STORED = 0  // below WIDTH
 ) (

@@ -4,7 +4,7 @@
 // which is set, 17, and a fall of 11.
 module root_table #(
     parameter int SQUARE = 32,  // bits of |m|^2, whose leading one is one of the four highest
-    parameter int ROOT   = 18
+    parameter int ROOT   = 18   // bits of the reciprocal root
 ) (
     input logic clk_i,
 

@@ -8,11 +8,11 @@
 // Specification: model/stages/clear_flags.hpp; the times are those of model/engines/cycle/block_timing.hpp.
 module clear_flags #(
     parameter int TILE_BITS = $clog2(raster_pkg::BLOCKS_PER_ROW),  // derived; not to be set
-    parameter int BLOCK_X = raster_pkg::TILE_X_BITS + TILE_BITS,
-    parameter int BLOCK_Y = raster_pkg::TILE_Y_BITS + TILE_BITS,
-    parameter int WORD = raster_pkg::FLAG_WORD,
-    parameter int BIT = $clog2(WORD),
-    parameter int WORD_X = (BLOCK_X > BIT) ? BLOCK_X - BIT : 1  // bits of a word's number in its row
+    parameter int BLOCK_X = raster_pkg::TILE_X_BITS + TILE_BITS,   // derived: bits of a block's column
+    parameter int BLOCK_Y = raster_pkg::TILE_Y_BITS + TILE_BITS,   // derived: bits of a block's row
+    parameter int WORD = raster_pkg::FLAG_WORD,                    // derived: flags of a word
+    parameter int BIT = $clog2(WORD),                              // derived: bits of a flag's place in its word
+    parameter int WORD_X = (BLOCK_X > BIT) ? BLOCK_X - BIT : 1     // bits of a word's number in its row
 ) (
     input logic clk_i,
     input logic rst_ni,

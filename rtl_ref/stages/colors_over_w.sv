@@ -8,15 +8,15 @@
 // What a triangle's samples share waits in RAMs, a word for each stamp in the unit, as that of coordinates does.
 // A fixed pipeline without enables. Specification: over_q, color_over_q of model/stages/perspective.hpp.
 module colors_over_w #(
-    parameter int CHANNELS = 3,
-    parameter int P_BITS = 24,     // of P in a tile, with its sign; at least 18
-    parameter int MANTISSA = 18,   // k
-    parameter int NARROW = 13,     // k_P
-    parameter int SHIFT_BITS = 6,  // of c, with its sign
-    parameter int REACH_BITS = 4,  // of x, at most 8
-    parameter int QUEUE = 16,
+    parameter int CHANNELS = 3,           // channels of a colour, a multiplier each
+    parameter int P_BITS = 24,            // of P in a tile, with its sign; at least 18
+    parameter int MANTISSA = 18,          // k
+    parameter int NARROW = 13,            // k_P
+    parameter int SHIFT_BITS = 6,         // of c, with its sign
+    parameter int REACH_BITS = 4,         // of x, at most 8
+    parameter int QUEUE = 16,             // stamps in the unit; a power of two
     parameter int INDEX = $clog2(QUEUE),  // derived; not to be set
-    parameter int EXPONENT = 5
+    parameter int EXPONENT = 5            // bits of e
 ) (
     input logic clk_i,
 

@@ -14,8 +14,8 @@
 // model/stages/level_of_detail.hpp, filter_of of texture_sample.hpp, TextureLevels and TextureLines of texture_levels.hpp.
 module level_of_detail #(
     parameter int PART = 104,  // bits of a part of the lines
-    parameter int PIXEL = 12,
-    parameter int LANES = 1  // 1 or 4
+    parameter int PIXEL = 12,  // bits of a pixel's column and row
+    parameter int LANES = 1    // 1 or 4
 ) (
     input logic clk_i,
 

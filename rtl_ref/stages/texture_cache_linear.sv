@@ -10,7 +10,7 @@ module texture_cache_linear #(
     parameter int IN_FLIGHT = 32,  // samples that wait; a power of two
     parameter int REQUESTS = 16,   // lines that are not answered; a power of two
     parameter int TAIL = 1,        // bits that go along with a sample
-    parameter int SIDE_BITS = 12
+    parameter int SIDE_BITS = 12   // log2 of the longest side, texels
 ) (
     input logic clk_i,
     input logic rst_ni,

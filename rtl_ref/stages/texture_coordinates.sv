@@ -7,21 +7,21 @@
 // that go together are of one stamp, and share nothing else.
 // A fixed pipeline without enables. Specification: divide_by_q of model/stages/perspective.hpp and what texture_axis has.
 module texture_coordinates #(
-    parameter int LANES = 1,
-    parameter int Q_BITS = 27,
-    parameter int P_BITS = 28,
-    parameter int MANTISSA = 18,
-    parameter int NARROW = 17,
-    parameter int FRACTION = 8,
-    parameter int SHIFT_BITS = 6,
-    parameter int REACH_BITS = 5,
-    parameter int REFERENCE_BITS = 24,
-    parameter int QUEUE = 16,
-    parameter int SIDE_BITS = 12,
-    parameter int LINEAR = 0,
-    parameter int RECIPROCAL = 0,  // 0 from a table, 1 by division
+    parameter int LANES = 1,              // samples a clock, each with multipliers of its own: 1 or 4
+    parameter int Q_BITS = 27,            // of q, without sign
+    parameter int P_BITS = 28,            // of u and v over w, with their signs
+    parameter int MANTISSA = 18,          // k: bits of q that its reciprocal looks at
+    parameter int NARROW = 17,            // k_P: bits of P in the product
+    parameter int FRACTION = 8,           // f: fraction bits of a coordinate, texels
+    parameter int SHIFT_BITS = 6,         // of c, with its sign
+    parameter int REACH_BITS = 5,         // of x
+    parameter int REFERENCE_BITS = 24,    // of u_ref, with its sign
+    parameter int QUEUE = 16,             // stamps in the unit; a power of two
+    parameter int SIDE_BITS = 12,         // log2 of the longest side, texels
+    parameter int LINEAR = 0,             // 1: also the two texels whose middles are around the place; 2: the place alone
+    parameter int RECIPROCAL = 0,         // 0 from a table, 1 by division
     parameter int INDEX = $clog2(QUEUE),  // derived; not to be set
-    parameter int EXPONENT = 5
+    parameter int EXPONENT = 5            // bits of e
 ) (
     input logic clk_i,
 

@@ -10,15 +10,15 @@
 // they agree on one alone, and a group goes by again on the upper ones: what the lower gave of a sample waits in its lane's blend.
 // Specification: take_group() of model/stages/texture_unit.hpp; times: model/engines/cycle/texture_timing.hpp.
 module texture_lanes #(
-    parameter int FILTER = 0,           // 0 nearest, 1 linear as well, 2 levels as well
-    parameter int REFERENCE_BITS = 24,  // of FILTER 2
-    parameter int SIDE_BITS = 12,
-    parameter int AHEAD = 16,      // groups
-    parameter int LINES = 64,      // a power of two, at least 16
-    parameter int WAYS = 1,        // 1 or 2
-    parameter int PORT_BITS = 64,  // 16, 32 or 64
-    parameter int IN_FLIGHT = 32,  // passes that wait; a power of two
-    parameter int TAIL = 1,        // bits that go along with a group
+    parameter int FILTER = 0,                 // 0 nearest, 1 linear as well, 2 levels as well
+    parameter int REFERENCE_BITS = 24,        // of FILTER 2
+    parameter int SIDE_BITS = 12,             // log2 of the longest side, texels
+    parameter int AHEAD = 16,                 // groups
+    parameter int LINES = 64,                 // a power of two, at least 16
+    parameter int WAYS = 1,                   // 1 or 2
+    parameter int PORT_BITS = 64,             // 16, 32 or 64
+    parameter int IN_FLIGHT = 32,             // passes that wait; a power of two
+    parameter int TAIL = 1,                   // bits that go along with a group
     parameter int PLACE = REFERENCE_BITS + 8  // derived; not to be set
 ) (
     input logic clk_i,

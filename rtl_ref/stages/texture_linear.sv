@@ -5,15 +5,15 @@
 //
 // Specification: take() of model/stages/texture_unit.hpp; the times are those of model/engines/cycle/texture_timing.hpp.
 module texture_linear #(
-    parameter int LEVELS = 0,
-    parameter int REFERENCE_BITS = 24,
-    parameter int SIDE_BITS = 12,
-    parameter int AHEAD = 16,
-    parameter int LINES = 64,
-    parameter int WAYS = 1,
-    parameter int PORT_BITS = 64,
-    parameter int IN_FLIGHT = 32,
-    parameter int TAIL = 1,
+    parameter int LEVELS = 0,                 // 1: levels, and the blend of two
+    parameter int REFERENCE_BITS = 24,        // of a place's texels, with their sign
+    parameter int SIDE_BITS = 12,             // log2 of the longest side, texels
+    parameter int AHEAD = 16,                 // samples that wait for the cache; a power of two
+    parameter int LINES = 64,                 // of the cache, 64 bytes each; a power of two, at least 16
+    parameter int WAYS = 1,                   // of the cache: 1 or 2
+    parameter int PORT_BITS = 64,             // of a beat: 16, 32 or 64
+    parameter int IN_FLIGHT = 32,             // samples that wait for memory; a power of two
+    parameter int TAIL = 1,                   // bits that go along with a sample
     parameter int PLACE = REFERENCE_BITS + 8  // derived; not to be set
 ) (
     input logic clk_i,

@@ -5,12 +5,12 @@
 //
 // Specification: take() of model/stages/texture_unit.hpp; the times are those of model/engines/cycle/texture_timing.hpp.
 module texture_nearest #(
-    parameter int SIDE_BITS = 12,
-    parameter int AHEAD = 16,
-    parameter int LINES = 64,
-    parameter int PORT_BITS = 64,
-    parameter int IN_FLIGHT = 32,
-    parameter int TAIL = 1
+    parameter int SIDE_BITS = 12,  // log2 of the longest side, texels
+    parameter int AHEAD = 16,      // samples that wait for the cache; a power of two
+    parameter int LINES = 64,      // of the cache, 64 bytes each; a power of two, at least 2
+    parameter int PORT_BITS = 64,  // of a beat: 16 to 128
+    parameter int IN_FLIGHT = 32,  // samples that wait for memory; a power of two
+    parameter int TAIL = 1         // bits that go along with a sample
 ) (
     input logic clk_i,
     input logic rst_ni,
