@@ -12,6 +12,7 @@
 #       the same for what is no expression: `text` reads raster_cosim.mutant_q itself
 
 cmake_policy(VERSION 3.25)
+include("${CMAKE_CURRENT_LIST_DIR}/ReplaceOnce.cmake")
 set(mutant_list "")
 
 function(mutant id file what good bad)
@@ -25,12 +26,7 @@ function(mutant_text id file what good text_with_mutant)
   if(text STREQUAL "")
     message(FATAL_ERROR "mutant ${id}: there is no module ${file}")
   endif()
-  string(FIND "${text}" "${good}" first)
-  string(FIND "${text}" "${good}" last REVERSE)
-  if(first EQUAL -1 OR NOT first EQUAL last)
-    message(FATAL_ERROR "mutant ${id}: in ${file} this must occur exactly once: ${good}")
-  endif()
-  string(REPLACE "${good}" "${text_with_mutant}" text "${text}")
+  replace_once(text "${file}, mutant ${id}," "${good}" "${text_with_mutant}")
   set("text_of_${file}" "${text}" PARENT_SCOPE)
   set(mutant_list "${mutant_list}{${id}, \"${file}\", \"${what}\"},\n" PARENT_SCOPE)
 endfunction()

@@ -77,6 +77,7 @@ function(halfplane_verilate target)
   list(TRANSFORM RTL_INCLUDES PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/" OUTPUT_VARIABLE includes)
   list(TRANSFORM RTL_PARAMS PREPEND -G)
   # Random start values, so that resets are tested. One source a kind: the objects below include them whole.
+  set(waivers "${PROJECT_SOURCE_DIR}/rtl_ref/lint.vlt")
   set(arguments --cc -Wall --assert --x-assign unique --x-initial unique --output-split 0
     "-I${CMAKE_CURRENT_SOURCE_DIR}" ${RTL_PARAMS})
   # What runs in every clock; what runs once, and writes waveforms: there optimisation costs build time and gains little.
@@ -95,10 +96,10 @@ function(halfplane_verilate target)
   list(TRANSFORM parts REPLACE "(.+)" "${folder}/${RTL_PREFIX}_\\1.cpp" OUTPUT_VARIABLE objects)
   add_custom_command(OUTPUT "${folder}/${RTL_PREFIX}.h" ${objects}
     COMMAND "${VERILATOR_BIN_PROGRAM}" ${arguments} --make cmake --prefix ${RTL_PREFIX} --Mdir "${folder}"
-      --top-module ${RTL_TOP} ${sources}
+      --top-module ${RTL_TOP} "${waivers}" ${sources}
     COMMAND "${CMAKE_COMMAND}" -DFOLDER=${folder} -DPREFIX=${RTL_PREFIX} "-DPARTS=${parts}"
       -P "${PROJECT_SOURCE_DIR}/cmake/VerilatedParts.cmake"
-    DEPENDS "${VERILATOR_BIN_PROGRAM}" ${sources} ${includes} "${PROJECT_SOURCE_DIR}/cmake/VerilatedParts.cmake"
+    DEPENDS "${VERILATOR_BIN_PROGRAM}" "${waivers}" ${sources} ${includes} "${PROJECT_SOURCE_DIR}/cmake/VerilatedParts.cmake"
     COMMENT "Verilating ${RTL_PREFIX}" VERBATIM)
   set_source_files_properties(${objects} PROPERTIES COMPILE_OPTIONS "-O0;-w" SKIP_PRECOMPILE_HEADERS ON)
   list(GET objects 0 fast)

@@ -4,7 +4,6 @@
 #include <charconv>
 #include <cstdio>
 
-
 namespace halfplane {
 namespace {
 
@@ -117,17 +116,18 @@ std::vector<Setting> all_settings() {
       number<&Config::hiz_bits>("hiz.bits", "bits", "bits of a tile's HiZ bound, or all of a depth code; 0: no HiZ", 0,
                                 32),
       number<&Config::hiz_lag>("hiz.lag", "visits",
-                               "tile visits behind which a HiZ update is seen, and under way at most; a power of two",
-                               2, 64),
+                               "tile visits after which a HiZ update is seen, and in flight at most; a power of two", 2,
+                               64),
       choice<&Config::cache_kind>("cache.kind", {"tiles", "blocks"},
                                   "what a line of the on-chip RAM is: a tile, or 4x4 pixels fetched ahead"),
       number<&Config::cache_lines>("cache.lines", "lines",
                                    "tiles or blocks that the on-chip depth and colour RAM holds; a power of two", 1,
                                    4096),
-      number<&Config::cache_queue>("cache.queue", "fragments", "blocks: between tags and depth test; a power of two", 4,
-                                   128),
-      number<&Config::cache_victims>("cache.victims", "blocks", "blocks: evicted and not yet written; a power of two",
-                                     2, 32),
+      number<&Config::cache_queue>(
+          "cache.queue", "fragments",
+          "blocks: fragments between tags and depth test, so that misses overlap; a power of two", 4, 128),
+      number<&Config::cache_victims>("cache.victims", "blocks",
+                                     "blocks: evicted blocks that wait to be written; a power of two", 2, 32),
       choice<&Config::frame_clears>("frame.clears", {"resolve", "flags"},
                                     "what a flush writes of cleared blocks or tiles: colours, or flags"),
       number<&Config::memory_port_bits>("memory.port_bits", "bits",
@@ -141,21 +141,20 @@ std::vector<Setting> all_settings() {
                                   "RTL triangle setup: several multipliers, or one"),
       number<&Config::setup_plane_clocks>(
           "setup.plane_clocks", "clocks",
-          "that the RTL's pipelined triangle setup takes for a plane: 1, or 2 with half of the multipliers", 1, 2),
+          "cycles per plane of the RTL's pipelined triangle setup: 1, or 2 with half of the multipliers", 1, 2),
       choice<&Config::texture_unit>("texture.unit", {"off", "nearest", "bilinear", "trilinear"},
                                     "what the RTL's texture unit can do; off: it has none"),
       number<&Config::texture_lanes>("texture.lanes", "pixels",
-                                     "that the RTL's texture unit divides, addresses and filters in a clock: 1 or 4", 1,
+                                     "texture pixels per cycle of the RTL, each with its divider and filter: 1 or 4", 1,
                                      4),
       number<&Config::texture_cache_kb>("texture.cache_kb", "KB",
                                         "texels that the texture unit holds on the chip; a power of two", 1, 64),
       number<&Config::texture_ways>(
           "texture.ways", "places",
-          "in the texture unit's cache where a block may lie: 1, or 2, of which the one used longer ago is replaced", 1,
-          2),
+          "places of a block in the texture cache: 1, or 2, of which the less recently used is replaced", 1, 2),
       number<&Config::texture_queue>("texture.queue", "samples",
-                                     "between their coordinates and their texels in the texture unit; a power of two",
-                                     8, 128),
+                                     "samples that wait for their texels, so that misses overlap; a power of two", 8,
+                                     128),
       choice<&Config::reciprocal_kind>("reciprocal.kind", {"table", "restoring"},
                                        "what the texture unit divides by 1/w with: a RAM and two multipliers, or "
                                        "subtractions; the same bits and time"),
@@ -165,7 +164,7 @@ std::vector<Setting> all_settings() {
           1),
       number<&Config::blend_lanes>(
           "blend.lanes", "samples",
-          "blended in a clock by the RTL, 1 or 4; 0: it has neither blending nor partial color masks", 0, 4),
+          "samples blended per cycle by the RTL, 1 or 4; 0: neither blending nor partial color masks", 0, 4),
       number<&Config::dither_units>("dither.unit", "units", "1: the RTL dithers colours of rgb565; 0: it rounds them",
                                     0, 1),
       number<&Config::fog_units>("fog.unit", "units",
@@ -175,21 +174,21 @@ std::vector<Setting> all_settings() {
           "1: the RTL lights the fragments of shade phong in front of its texture unit; 0: it lights none", 0, 1),
       number<&Config::stencil_bits>(
           "stencil.bits", "bits",
-          "of the stencil that the RTL keeps above each stored depth: 8, or 0 (blocks, pipelined; depth.bits up to 24)",
-          0, 8),
+          "bits of stencil that the RTL stores above each depth: 8, or 0 (blocks, pipelined; depth.bits up to 24)", 0,
+          8),
       number<&Config::line_units>("lines.unit", "units", "1: the RTL has the unit that draws lines; 0: it takes none",
                                   0, 1),
       number<&Config::counter_units>("counters.unit", "units", "1: the RTL has performance counters; 0: it has none", 0,
                                      1),
-      number<&Config::counter_bits>("counters.bits", "bits",
-                                    "of a performance counter of the RTL; a sticky bit tells that one has wrapped", 16,
-                                    32),
+      number<&Config::counter_bits>(
+          "counters.bits", "bits",
+          "bits of each performance counter of the RTL; a sticky bit tells that one has wrapped", 16, 32),
       number<&Config::msaa_samples>("msaa.samples", "samples",
-                                    "of a pixel, 1, 2, 4 or 8: coverage, depth, stencil and colour each", 1,
-                                    kMaxPixelSamples),
+                                    "samples of a pixel, 1, 2, 4 or 8, each with coverage, depth, stencil and colour",
+                                    1, kMaxPixelSamples),
       text<&Config::msaa_pattern>(
           "msaa.pattern", "standard|<X>,<Y>;...",
-          "where they lie: as Direct3D and Vulkan have it, or places in pixels from the upper left corner"),
+          "places of a pixel's samples: those of Direct3D and Vulkan, or pixels from its upper left corner"),
       number<&Config::resolve_units>("resolve.unit", "units",
                                      "1: the RTL stores the mean of a pixel's samples as its block leaves the chip, of "
                                      "frames in bins that store colours alone; 0: it stores all samples",

@@ -15,11 +15,9 @@ module primitive_stream_checker (
     input logic                          primitive_valid_i,
     input logic                          primitive_ready_o,
     input raster_pkg::primitive_packet_t primitive_i,
-    /* verilator lint_off UNUSEDSIGNAL */  // without the unit of lines
     input logic                          line_valid_i,
     input logic                          line_ready_o,
     input raster_pkg::line_setup_t       line_i,
-    /* verilator lint_on UNUSEDSIGNAL */
     input raster_pkg::memory_layout_t    layout_i,
     input logic                          idle_o
 );

@@ -48,12 +48,12 @@ module pin_wrapper (
     if (shift_q) in_q <= {in_q[IN-2:0], data_q} ^ folded;
   end
 
-  raster_pkg::primitive_packet_t primitive;
-  raster_pkg::memory_layout_t    layout;
+  raster_pkg::primitive_packet_t packet;
+  raster_pkg::memory_layout_t   layout;
   always_comb begin
-    {primitive.kind, primitive.box, primitive.state, primitive.cull, primitive.front_cw, primitive.vertex} =
+    {packet.kind, packet.box, packet.state, packet.cull, packet.front_cw, packet.vertex} =
         in_q[PRIMITIVE+:ANSWER-PRIMITIVE];
-    primitive.primitive_id = in_q[ID+:raster_pkg::PRIMITIVE_ID_BITS];
+    packet.primitive_id = in_q[ID+:raster_pkg::PRIMITIVE_ID_BITS];
     layout = '0;
     {layout.depth_base[raster_pkg::ADDRESS_BITS-1-:PLANE], layout.color_base[raster_pkg::ADDRESS_BITS-1-:PLANE],
      layout.depth_flags_base[raster_pkg::ADDRESS_BITS-1-:FLAG_ROW],
@@ -69,7 +69,7 @@ module pin_wrapper (
       .stall_i          ('0),
       .primitive_valid_i(valid_q),
       .primitive_ready_o(out[0]),
-      .primitive_i      (primitive),
+      .primitive_i      (packet),
       .line_valid_i     (valid_q),
       .line_ready_o     (out[1]),
       .line_i           (in_q[LINE+:raster_pkg::LINE_SETUP_BITS]),

@@ -51,9 +51,7 @@ module raster_cosim (
 
   logic [raster_pkg::STALL_BITS-1:0] stall_q;
   logic [15:0]                   mutant_q;
-  /* verilator lint_off SYNCASYNCNET */  // memory_port recovers from it
   logic                          reset_nq;
-  /* verilator lint_on SYNCASYNCNET */
   logic                          primitive_valid_q, line_valid_q, beat_ready_q, answer_valid_q, counters_hold_q;
   logic                          texture_ready_q, texel_valid_q;
   raster_pkg::texel_beat_t       texel_q;
@@ -111,10 +109,8 @@ module raster_cosim (
 
   assign moves_tiles_o = u_raster.moves_tiles;
 
-  /* verilator lint_off UNUSEDSIGNAL */  // the sources as they are have no mutations
   logic unused_mutant;
   assign unused_mutant = ^mutant_q;
-  /* verilator lint_on UNUSEDSIGNAL */
 
   assign config_id_o = raster_pkg::CONFIG_ID;
 

@@ -3,7 +3,7 @@
 // Yosys makes of a choice between a sum and a difference a chain and a gate a bit in front of it; its cell for both, `$alu`,
 // can do without those gates; only a script that says so gets that cell.
 module add_or_subtract #(
-    parameter int WIDTH = 1
+    parameter int WIDTH = 1  // bits of a, b and the result, which wraps
 ) (
     input  logic             subtracts_i,
     input  logic [WIDTH-1:0] a_i,
@@ -29,9 +29,7 @@ module add_or_subtract #(
       .CO(carry)
   );
 `else
-  /* verilator lint_off UNUSEDSIGNAL */  // the carry's own bit
   logic [WIDTH:0] sum;
-  /* verilator lint_on UNUSEDSIGNAL */
   assign sum   = {a_i, subtracts_i} + {b_i ^ {WIDTH{subtracts_i}}, subtracts_i};
   assign sum_o = sum[WIDTH:1];
 `endif

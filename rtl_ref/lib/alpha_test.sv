@@ -4,9 +4,7 @@
 module alpha_test (
     input  logic [raster_pkg::DEPTH_FUNC_BITS-1:0] func_i,
     input  logic [7:0]                             reference_i,
-    /* verilator lint_off UNUSEDSIGNAL */  // where a pixel has one sample
     input  logic                                   covers_i,
-    /* verilator lint_on UNUSEDSIGNAL */
     input  logic [8*raster_pkg::PIXELS-1:0]        alpha_i,
     output logic [raster_pkg::SAMPLES-1:0]         passes_o
 );
@@ -30,9 +28,7 @@ module alpha_test (
       assign is_equal = alpha_i[8*p+:8] == reference_i;
       assign passes   = is_less ? less_passes : (is_equal ? equal_passes : greater_passes);
       if (N > 1) begin : gen_covers
-        /* verilator lint_off UNUSEDSIGNAL */  // a division by 255 keeps the upper bits
         logic [SHIFT+8:0] scaled, divided;
-        /* verilator lint_on UNUSEDSIGNAL */
         logic [SHIFT:0]   count;
         assign scaled  = ((SHIFT + 9)'(alpha_i[8*p+:8]) << SHIFT) + (SHIFT + 9)'(128);
         assign divided = scaled + (scaled >> 8);

@@ -11,10 +11,8 @@ module blend_lane #(
 ) (
     input logic [31:0] source_i,  // 8 bits a channel, R lowest
     input logic [31:0] stored_i,
-    /* verilator lint_off UNUSEDSIGNAL */  // of alpha, where it is not stored
     input logic [23:0] chooses_i,   // as blend_setup gives them
     input logic [5:0]  equation_i,  // 3 bits each: of colour, of alpha
-    /* verilator lint_on UNUSEDSIGNAL */
     input logic [16*CHANNELS-1:0] fixed_i,
 
     output logic [8*CHANNELS-1:0] color_o
@@ -27,9 +25,7 @@ module blend_lane #(
 
   // What of the factors is the same for all channels: an alpha, and whether they are complements.
   logic [7:0] source_alpha, stored_alpha, room;  // above the stored alpha
-  /* verilator lint_off UNUSEDSIGNAL */  // of alpha, where it is not stored
   logic [31:0] alpha;  // for each factor
-  /* verilator lint_on UNUSEDSIGNAL */
   assign source_alpha = source_i[31:24];
   assign stored_alpha = stored_i[31:24];
   assign room         = ~stored_alpha;
@@ -64,9 +60,7 @@ module blend_lane #(
       // One carry chain gives a + b, a - b and, turned around, b - a: that is ~(a - b - 1), and is turned behind the division.
       logic        differs;  // not a sum
       logic [16:0] sum;      // less than 2^17; of a difference the highest bit is the sign
-      /* verilator lint_off UNUSEDSIGNAL */  // its lowest bit makes the carry
       logic [17:0] sum_and_carry;
-      /* verilator lint_on UNUSEDSIGNAL */
       assign subtracts = equation == SUBTRACT;
       assign reverses  = equation == REVERSE_SUBTRACT;
       assign differs   = subtracts || reverses;
@@ -83,9 +77,7 @@ module blend_lane #(
       // floor(v / 255 + 1/2) = (t + (t >> 8)) >> 8, t = v + 128: v + (v >> 8), 128 and a carry where the fraction of v / 256 is a
       // half. Of ~v the quotient is the complement if 128 is taken off instead.
       logic signed [2:0]  upper;  // v >> 15, and 128 more or less, which changes nothing below that
-      /* verilator lint_off UNUSEDSIGNAL */  // the fraction is dropped
       logic [17:0] quotient;  // below that the bit that makes the carry
-      /* verilator lint_on UNUSEDSIGNAL */
       logic        is_negative, is_above;
       assign upper       = {differs && sum[16], sum[16:15]} + (reverses ? 3'b111 : 3'b001);
       assign quotient    = {sum, 1'b1} + {{7{upper[2] && differs}}, upper, sum[14:8], sum[7]};

@@ -8,10 +8,8 @@ module blend_setup #(
     parameter int CHANNELS = 4  // that are stored: 3 or 4
 ) (
     input logic        blends_i,
-    /* verilator lint_off UNUSEDSIGNAL */  // of alpha, where it is not stored
     input logic [15:0] factors_i,   // 4 bits each: source, destination, and of alpha
     input logic [5:0]  equation_i,  // 3 bits each: of colour, of alpha
-    /* verilator lint_on UNUSEDSIGNAL */
     input logic [31:0] constant_i,
 
     // Of each factor, lowest first: it is the source, the stored colour, the alpha of either, src_alpha_saturate; the complement

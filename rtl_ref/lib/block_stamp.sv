@@ -2,8 +2,8 @@
 // stamp_address. Specification: block_stamp() of model/stages/cache_tags.hpp.
 module block_stamp #(
     parameter int TILE_BITS = $clog2(raster_pkg::BLOCKS_PER_ROW),  // derived; not to be set
-    parameter int SIDE_BITS = $clog2(raster_pkg::BLOCK_SIDE),
-    parameter int STAMP = (SIDE_BITS == 0) ? 1 : 2 * SIDE_BITS
+    parameter int SIDE_BITS = $clog2(raster_pkg::BLOCK_SIDE),      // derived: log2 of the stamps along a side of a block
+    parameter int STAMP = (SIDE_BITS == 0) ? 1 : 2 * SIDE_BITS     // derived: bits of a stamp's number in its block
 ) (
     input  logic [raster_pkg::TILE_X_BITS-1:0]           tile_x_i,
     input  logic [raster_pkg::TILE_Y_BITS-1:0]           tile_y_i,

@@ -19,9 +19,7 @@ module cross_product #(
   logic                            bias_q;
 
   // x - y - bias = x + ~y + (1 - bias): the bias is a carry that comes in from one bit below.
-  /* verilator lint_off UNUSEDSIGNAL */  // that bit; and a residue has no high bits
   logic signed [A_BITS+D_BITS+1:0] sum;
-  /* verilator lint_on UNUSEDSIGNAL */
   assign sum = {ad_q[A_BITS+D_BITS-1], ad_q, 1'b1} + {~bc_q[A_BITS+D_BITS-1], ~bc_q, !bias_q};
 
   always_ff @(posedge clk_i) begin

@@ -3,19 +3,15 @@
 // rgb565 keeps floor(c * 31 / 255 + (threshold + 1/2) / 16) = (c * 249 + threshold * 128 + 64) >> 11, for green (c * 253 +
 // threshold * 64 + 32) >> 10; rounded as rop.sv has it. Specification: pack_rgb565_dithered of model/stages/color_ops.hpp.
 module dithered_rop (
-    /* verilator lint_off UNUSEDSIGNAL */  // rgb565 keeps no alpha, rgba8888 has nothing to dither
     input  logic [raster_pkg::VERTEX_COLOR_BITS-1:0] rgba_i,  // 8 bits a channel, R lowest
     input  logic                                     dithers_i,
     input  logic [3:0]                               threshold_i,
-    /* verilator lint_on UNUSEDSIGNAL */
     output logic [raster_pkg::STORED_COLOR_BITS-1:0] color_o
 );
 
   generate
     if (raster_pkg::COLOR_FORMAT == 0) begin : gen_rgb565
-      /* verilator lint_off UNUSEDSIGNAL */  // the fractions are dropped
       logic [15:0] r, g, b;
-      /* verilator lint_on UNUSEDSIGNAL */
       logic [8:0] offset, r_rest, g_rest, b_rest;  // offset - c
       logic [2:0] below;                           // what the offset leaves
 

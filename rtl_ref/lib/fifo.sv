@@ -1,8 +1,8 @@
 // FIFO: DEPTH items, a power of two. An item that enters is on offer from the next cycle on; the place of one that leaves is
 // free from the next cycle on. The memory is read without a clock, as that of LUTs is.
 module fifo #(
-    parameter int WIDTH = 1,
-    parameter int DEPTH = 2
+    parameter int WIDTH = 1,  // bits of an item
+    parameter int DEPTH = 2   // items; a power of two
 ) (
     input logic clk_i,
     input logic rst_ni,

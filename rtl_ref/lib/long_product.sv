@@ -4,10 +4,10 @@
 // where two chains take two. Where the right number has no sign the products of a digit of its with every other digit of the
 // left one lie beside each other, and are one number.
 module long_product #(
-    parameter int LEFT = 18,
-    parameter int RIGHT = 18,
-    parameter bit RIGHT_SIGNED = 1,
-    parameter int OUT = 36
+    parameter int LEFT = 18,         // bits of the left factor, signed
+    parameter int RIGHT = 18,        // bits of the right factor
+    parameter bit RIGHT_SIGNED = 1,  // 0: it has no sign, which saves adders
+    parameter int OUT = 36           // bits of the product that count, from the lowest
 ) (
     input  logic [LEFT-1:0]  left_i,    // signed
     input  logic [RIGHT-1:0] right_i,
@@ -43,9 +43,7 @@ module long_product #(
         logic signed [DIGIT:0]  left_digit;
         logic signed [PART-1:0] part;
         logic [OUT-1:0]         sum;     // with it
-        /* verilator lint_off UNUSEDSIGNAL */
         logic [OUT-1:0]         so_far;  // without it
-        /* verilator lint_on UNUSEDSIGNAL */
         assign left_digit = {i == LEFT_DIGITS - 1 && left[i*DIGIT+DIGIT], left[i*DIGIT+:DIGIT]};
         assign part       = left_digit * right_digit;
         assign parts[N*PART+:PART] = part;

@@ -1,9 +1,10 @@
-// Masked SRAM: an SRAM (sram.sv) with a write enable for each bit of a word, as some block RAMs have. A word that is read
-// while it is written is not to be looked at.
+// Masked SRAM: an SRAM (sram.sv) with a write enable for each bit of a word. A word that is read while it is written is not to be
+// looked at.
 module masked_sram #(
-    parameter int WIDTH = 1,
+    parameter int WIDTH = 1,               // bits of a word
     parameter int DEPTH = 2,               // words, at least 2
     parameter bit EARLY = 0,               // 1: may_write_i comes earlier than write_i
+    parameter int HAS_MASK = 1,            // 1: the part's block RAM has such enables (iCE40); 0: a RAM for each bit, on any part
     parameter int ADDRESS = $clog2(DEPTH)  // derived; not to be set
 ) (
     input logic clk_i,
@@ -12,32 +13,49 @@ module masked_sram #(
     input  logic [ADDRESS-1:0] read_address_i,
     output logic [WIDTH-1:0]   data_o,
 
-    /* verilator lint_off UNUSEDSIGNAL */  // unless it comes early
     input logic               may_write_i,  // high where a bit of write_i is
-    /* verilator lint_on UNUSEDSIGNAL */
     input logic [WIDTH-1:0]   write_i,
     input logic [ADDRESS-1:0] write_address_i,
     input logic [WIDTH-1:0]   data_i
 );
 
-  // Synthesis takes for the enable of a block RAM what any bit of it is enabled by. A bit that nobody reads is written with
-  // may_write_i: then that alone is the enable.
-  localparam int BITS = EARLY ? WIDTH + 1 : WIDTH;
-  logic [BITS-1:0] write, data;
-  assign write = BITS'({may_write_i, write_i});
-  assign data  = BITS'({1'b1, data_i});
+  genvar b;
+  generate
+    if (HAS_MASK != 0) begin : gen_masked
+      // Synthesis takes for the enable of a block RAM what any bit of it is enabled by. A bit that nothing reads is written
+      // with may_write_i: then that alone is the enable.
+      localparam int BITS = EARLY ? WIDTH + 1 : WIDTH;
+      logic [BITS-1:0] write, data;
+      assign write = BITS'({may_write_i, write_i});
+      assign data  = BITS'({1'b1, data_i});
 
-  (* no_rw_check *)
-  logic [BITS-1:0] memory_q[0:DEPTH-1];
-  /* verilator lint_off UNUSEDSIGNAL */  // the bit that nobody reads
-  logic [BITS-1:0] data_q;
-  /* verilator lint_on UNUSEDSIGNAL */
+      (* no_rw_check, ramstyle = "no_rw_check", rw_addr_collision = "no", syn_ramstyle = "no_rw_check" *)
+      logic [BITS-1:0] memory_q[0:DEPTH-1];
+      logic [BITS-1:0] data_q;
 
-  assign data_o = data_q[WIDTH-1:0];
+      assign data_o = data_q[WIDTH-1:0];
 
-  always_ff @(posedge clk_i) begin
-    if (read_i) data_q <= memory_q[read_address_i];
-    for (int i = 0; i < BITS; i++) if (write[i]) memory_q[write_address_i][i] <= data[i];
-  end
+      always_ff @(posedge clk_i) begin
+        if (read_i) data_q <= memory_q[read_address_i];
+        for (int i = 0; i < BITS; i++) if (write[i]) memory_q[write_address_i][i] <= data[i];
+      end
+    end else begin : gen_bits
+      for (b = 0; b < WIDTH; b++) begin : gen_bit
+        sram #(
+            .WIDTH    (1),
+            .DEPTH    (DEPTH),
+            .READS_OLD(0)
+        ) u_ram (
+            .clk_i,
+            .read_i,
+            .read_address_i,
+            .data_o         (data_o[b]),
+            .write_i        (write_i[b]),
+            .write_address_i,
+            .data_i         (data_i[b])
+        );
+      end
+    end
+  endgenerate
 
 endmodule

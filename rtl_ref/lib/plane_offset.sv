@@ -1,24 +1,20 @@
 // Plane offset, from the centre of a tile to either side: value + offset * step modulo 2^WIDTH, by shifts and adds;
 // offset is two's complement. Its two highest bits together are one digit out of -2, -1, 0, 1: three bits, two adders.
 module plane_offset #(
-    parameter int WIDTH  = 4,
+    parameter int WIDTH  = 4,  // bits of a value
     parameter int OFFSET = 3,  // bits of the offset, at least 2
     parameter int LOWEST = 0   // bits of the offset below this one are 0
 ) (
     input  logic [WIDTH-1:0]  value_i,
     input  logic [WIDTH-1:0]  step_i,
-    /* verilator lint_off UNUSEDSIGNAL */
     input  logic [OFFSET-1:0] offset_i,
-    /* verilator lint_on UNUSEDSIGNAL */
     output logic [WIDTH-1:0]  value_o
 );
 
   // A negative digit is added as a complement; the 1 that this lacks comes in as a carry from one bit below.
   logic             is_negative, is_odd;
   logic [WIDTH-1:0] digit;
-  /* verilator lint_off UNUSEDSIGNAL */
   logic [WIDTH:0]   total;
-  /* verilator lint_on UNUSEDSIGNAL */
   assign is_negative = offset_i[OFFSET-1];
   assign is_odd      = offset_i[OFFSET-2];
   always_comb begin

@@ -4,7 +4,7 @@
 // four clocks from mantissa to result, as reciprocal_table.sv has, without its RAM and multipliers.
 // A fixed pipeline without enables: who uses it counts the clocks. Specification: model/stages/reciprocal.hpp.
 module reciprocal_division #(
-    parameter int BITS = 18
+    parameter int BITS = 18  // k: bits of m and of the reciprocal; a subtraction row each
 ) (
     input logic clk_i,
 
@@ -16,10 +16,8 @@ module reciprocal_division #(
   localparam int STEPS = (BITS - 1 + CLOCKS - 1) / CLOCKS;  // of a clock; a bit of the quotient each, the highest is 1
 
   // From clock to clock: the divisor, what is left (below d), the bits that are there behind the highest.
-  /* verilator lint_off UNUSEDSIGNAL */  // behind the last clock nobody takes them
   logic [CLOCKS*(BITS-1)-1:0] mantissa_q;
   logic [CLOCKS*(BITS+1)-1:0] left_q;
-  /* verilator lint_on UNUSEDSIGNAL */
   logic [CLOCKS*(BITS-1)-1:0] bits_q;
   genvar c;
   generate

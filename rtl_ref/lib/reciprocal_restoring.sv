@@ -3,7 +3,7 @@
 // The highest bit of the quotient is always 1: what is left of 2^(k+1) behind it is -d modulo 2^(k+1), and k - 1 bits remain.
 // Taken in one clock, offered k clocks later. Specification: model/stages/reciprocal.hpp.
 module reciprocal_restoring #(
-    parameter int BITS = 18
+    parameter int BITS = 18  // k: bits of m and of the reciprocal; a clock each
 ) (
     input logic clk_i,
     input logic rst_ni,

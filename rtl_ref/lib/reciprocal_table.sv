@@ -6,7 +6,7 @@
 //   reciprocal_o
 // A fixed pipeline without enables: who uses it counts the clocks. Specification: model/stages/reciprocal.hpp.
 module reciprocal_table #(
-    parameter int BITS = 18
+    parameter int BITS = 18  // k: bits of m and of the reciprocal; 2^((k + 1) / 2) words of ROM
 ) (
     input logic clk_i,
 
@@ -27,7 +27,7 @@ module reciprocal_table #(
   endfunction
 
   // The highest bit of a start, 2^k halves, is always set and is not stored.
-  (* rom_style = "block" *) logic [BITS+DROP-1:0] line_rom[0:LINES-1];
+  (* rom_style = "block", syn_romstyle = "block_rom" *) logic [BITS+DROP-1:0] line_rom[0:LINES-1];
   initial begin
     for (int n = 0; n < LINES; n++)
       line_rom[n] = {BITS'(node(64'(n)) + 64'd1), DROP'(node(64'(n)) - node(64'(n) + 64'd1))};
@@ -35,9 +35,7 @@ module reciprocal_table #(
 
   logic [BITS+DROP-1:0] line_q;
   logic [BITS-2:0]      line_mantissa_q, guess_mantissa_q;
-  /* verilator lint_off UNUSEDSIGNAL */
   logic [SUM-1:0]       on_line;  // cut off to an integer
-  /* verilator lint_on UNUSEDSIGNAL */
   logic [BITS-1:0]      guess_q, product_guess_q;
   logic                 is_too_large_q;
   logic [CHECK-1:0]     product;

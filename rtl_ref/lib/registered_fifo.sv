@@ -6,7 +6,7 @@
 // Of wide items the lowest STORED bits, which whoever takes an item does not look far at, may lie in an SRAM: its read is the
 // register.
 module registered_fifo #(
-    parameter int WIDTH = 1,
+    parameter int WIDTH = 1,  // bits of an item
     parameter int DEPTH = 2,  // a power of two
     parameter int STORED = 0  // below WIDTH
 ) (
@@ -38,9 +38,7 @@ module registered_fifo #(
   assign leaves     = valid_o && ready_i;
   assign is_free    = !valid_o || ready_i;
 
-  /* verilator lint_off UNUSEDSIGNAL */  // there is a place
   logic waiting_ready;
-  /* verilator lint_on UNUSEDSIGNAL */
   fifo #(
       .WIDTH(WIDTH - STORED),
       .DEPTH(DEPTH)
@@ -70,9 +68,7 @@ module registered_fifo #(
 
   generate
     if (STORED != 0) begin : gen_stored
-      /* verilator lint_off UNUSEDSIGNAL */  // as above
       logic stored_ready, stored_waits;
-      /* verilator lint_on UNUSEDSIGNAL */
       sram_fifo #(
           .WIDTH(STORED),
           .DEPTH(DEPTH)

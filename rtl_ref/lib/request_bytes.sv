@@ -1,9 +1,7 @@
 // Request bytes: what a request to memory writes, as it lies there: the stamp's samples one behind the other, or a word of flags;
 // behind them 0. Combinational. Specification: put() of model/stages/memory_port.hpp.
 module request_bytes (
-    /* verilator lint_off UNUSEDSIGNAL */  // its plane and its data count
     input  raster_pkg::memory_request_t request_i,
-    /* verilator lint_on UNUSEDSIGNAL */
     output logic [8*raster_pkg::REQUEST_BYTES-1:0] bytes_o
 );
 

@@ -1,10 +1,8 @@
 // Request lanes: what a request to memory writes, a lane a sample, out of the bytes that lie in memory: request_bytes the other way.
 // A word of flags lies in the lanes from the first bit on. Combinational.
 module request_lanes (
-    /* verilator lint_off UNUSEDSIGNAL */  // whether there is a colour a sample; bytes wider than what is stored
     input  raster_pkg::tile_plane_t                                       plane_i,
     input  logic [8*raster_pkg::REQUEST_BYTES-1:0]                        bytes_i,
-    /* verilator lint_on UNUSEDSIGNAL */
     output logic [raster_pkg::SAMPLES*raster_pkg::MEMORY_LANE_BITS-1:0] data_o
 );
 

@@ -16,9 +16,7 @@ module resolve (
       for (c = 0; c < CHANNELS; c++) begin : gen_channel
         localparam int AT = raster_pkg::COLOR_FORMAT != 0 ? 8 * c : c == 0 ? 0 : c == 1 ? 5 : 11;
         localparam int BITS = raster_pkg::COLOR_FORMAT != 0 ? 8 : c == 1 ? 6 : 5;
-        /* verilator lint_off UNUSEDSIGNAL */  // the fraction is dropped
         logic [BITS+SHIFT-1:0] sum;
-        /* verilator lint_on UNUSEDSIGNAL */
         always_comb begin
           sum = (BITS + SHIFT)'(N / 2);
           for (int k = 0; k < N; k++) sum = sum + (BITS + SHIFT)'(color_i[(p*N+k)*COLOR+AT+:BITS]);

@@ -4,13 +4,11 @@
 // which is set, 17, and a fall of 11.
 module root_table #(
     parameter int SQUARE = 32,  // bits of |m|^2, whose leading one is one of the four highest
-    parameter int ROOT   = 18
+    parameter int ROOT   = 18   // bits of the reciprocal root
 ) (
     input logic clk_i,
 
-    /* verilator lint_off UNUSEDSIGNAL */  // what lies below a place
     input  logic [SQUARE-1:0] square_i,
-    /* verilator lint_on UNUSEDSIGNAL */
     output logic [ROOT-1:0]   root_o     // 2^-18 2^-k, k = 14 or 15, half of the leading one's place; a clock later
 );
 
@@ -61,9 +59,7 @@ module root_table #(
   logic [LINE+PLACE-1:0] behind;
   logic [WIDTH-1:0]      line_q;
   logic [PLACE-1:0]      place_q;
-  /* verilator lint_off UNUSEDSIGNAL */  // the fraction is dropped
   logic [FALL+PLACE-1:0] product;
-  /* verilator lint_on UNUSEDSIGNAL */
   assign zeros  = square_i[SQUARE-1] ? 2'd0 : square_i[SQUARE-2] ? 2'd1 : square_i[SQUARE-3] ? 2'd2 : 2'd3;
   assign behind = (LINE + PLACE)'(square_i[SQUARE-2-:LINE+PLACE+3] >> (2'd3 - zeros));
   always_ff @(posedge clk_i) begin

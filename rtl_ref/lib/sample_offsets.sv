@@ -4,7 +4,7 @@
 // Samples lie opposite each other, and their X and Y are few numbers: the way is made as the one to the right, from products
 // of sizes, and a sample to the left goes it backwards. So what is the same for two samples is there once.
 module sample_offsets #(
-    parameter int WIDTH = 1
+    parameter int WIDTH = 1  // bits of a value
 ) (
     input  logic signed [WIDTH-1:0]                          value_i,
     input  logic signed [WIDTH-1:0]                          step_x_i,

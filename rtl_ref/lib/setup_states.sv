@@ -12,9 +12,7 @@ module setup_states (
     // From cull
     input  logic                         triangle_valid_i,
     output logic                         triangle_ready_o,
-    /* verilator lint_off UNUSEDSIGNAL */  // a state has its codes alone
     input  raster_pkg::triangle_packet_t triangle_i,
-    /* verilator lint_on UNUSEDSIGNAL */
 
     // What is no state goes to the first part, and comes from the last one
     input  logic                      part_ready_i,
@@ -43,9 +41,7 @@ module setup_states (
   localparam int NUMBER = 4;   // of a primitive: the parts hold at most 15
 
   logic is_state, enters, waits, is_next, takes_state, takes_made, is_free, valid_q;
-  /* verilator lint_off UNUSEDSIGNAL */
   logic states_ready;
-  /* verilator lint_on UNUSEDSIGNAL */
   logic [NUMBER-1:0] entered_q, left_q, number;
   logic [ID-1:0]     primitive_id;
   raster_pkg::depth_func_t which;  // register it sets, in the place of the depth test

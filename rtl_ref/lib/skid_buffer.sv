@@ -3,7 +3,7 @@
 // Item n enters no earlier than one cycle after item n-2 left; latency 1 cycle. An item that is offered stays offered
 // unchanged until it is taken.
 module skid_buffer #(
-    parameter int WIDTH = 1
+    parameter int WIDTH = 1  // bits of an item; costs two registers of them
 ) (
     input logic clk_i,
     input logic rst_ni,

@@ -4,13 +4,11 @@
 // that is written in the same cycle it gives the old value, which some block RAMs need extra logic for: a user who
 // never looks at such a result sets READS_OLD to 0.
 module sram #(
-    parameter int WIDTH = 1,
+    parameter int WIDTH = 1,               // bits of a word
     parameter int DEPTH = 2,               // words, at least 2
-    /* verilator lint_off UNUSEDPARAM */   // for synthesis only
-    parameter bit READS_OLD = 1,
+    parameter bit READS_OLD = 1,           // 0: nothing looks at a word that is read as it is written; saves a comparator
     parameter bit BLOCK = 0,               // 1: in block RAM even where it fills little of it
     parameter int WHOLE = 1024,            // words up to which it is one RAM in any case
-    /* verilator lint_on UNUSEDPARAM */
     parameter int ADDRESS = $clog2(DEPTH)  // derived; not to be set
 ) (
     input logic clk_i,
@@ -30,11 +28,18 @@ module sram #(
   localparam int HIGH = DEPTH - LOW;  // words from LOW on
   localparam int HIGH_ADDRESS = HIGH < 2 ? 1 : $clog2(HIGH);
 
+  // The same two hints for Yosys (no_rw_check, ram_style), Vivado (rw_addr_collision, ram_style), Quartus (ramstyle, whose block
+  // RAMs have names of the part's: they are left to it), Synplify and Gowin (syn_ramstyle). Yosys takes ram_style before the rest.
+  localparam KIND = BLOCK ? "block" : "auto";
+  localparam COLLISION = READS_OLD ? "auto" : "no";
+  localparam QUARTUS = READS_OLD ? "auto" : "no_rw_check";
+  localparam SYN = BLOCK ? "block_ram" : READS_OLD ? "auto" : "no_rw_check";
+
   generate
     if (DEPTH > WHOLE && HIGH <= LOW / 8) begin : gen_parts
-      (* no_rw_check = !READS_OLD, ram_style = BLOCK ? "block" : "auto" *)
+      (* no_rw_check = !READS_OLD, rw_addr_collision = COLLISION, ram_style = KIND, ramstyle = QUARTUS, syn_ramstyle = SYN *)
       logic [WIDTH-1:0] low_q[0:LOW-1];
-      (* no_rw_check = !READS_OLD, ram_style = "block" *)
+      (* no_rw_check = !READS_OLD, rw_addr_collision = COLLISION, ram_style = "block", ramstyle = QUARTUS, syn_ramstyle = "block_ram" *)
       logic [WIDTH-1:0] high_q[0:HIGH-1];
       logic [WIDTH-1:0] low_data_q, high_data_q;
       logic             is_high_q;
@@ -51,7 +56,7 @@ module sram #(
         if (write_i && write_address_i[ADDRESS-1]) high_q[write_address_i[HIGH_ADDRESS-1:0]] <= data_i;
       end
     end else begin : gen_whole
-      (* no_rw_check = !READS_OLD, ram_style = BLOCK ? "block" : "auto" *)
+      (* no_rw_check = !READS_OLD, rw_addr_collision = COLLISION, ram_style = KIND, ramstyle = QUARTUS, syn_ramstyle = SYN *)
       logic [WIDTH-1:0] memory_q[0:DEPTH-1];
       logic [WIDTH-1:0] data_q;
 

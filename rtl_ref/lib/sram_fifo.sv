@@ -1,7 +1,7 @@
 // FIFO in an SRAM: a fifo (fifo.sv) of wide items that nobody looks at before he has taken them. data_o is the item that was
 // taken last, from the cycle after that on.
 module sram_fifo #(
-    parameter int WIDTH = 1,
+    parameter int WIDTH = 1,  // bits of an item
     parameter int DEPTH = 2,  // a power of two
     parameter bit BLOCK = 1   // in block RAM even where it fills little of it
 ) (

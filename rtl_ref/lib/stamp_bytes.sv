@@ -2,15 +2,13 @@
 // model/stages/memory_port.hpp.
 module stamp_bytes #(
     parameter int CODES = raster_pkg::SAMPLES,  // of a stamp; the lanes behind them are 0
-    parameter int SAMPLE_BYTES = 2,  // of a sample in memory
-    parameter int WORD = 8,          // bytes of word_i
-    parameter int SHARED = 0,        // log2 of the stamps in a beat
-    parameter int PART = 1
+    parameter int SAMPLE_BYTES = 2,             // of a sample in memory
+    parameter int WORD = 8,                     // bytes of word_i
+    parameter int SHARED = 0,                   // log2 of the stamps in a beat
+    parameter int PART = 1                      // bits of a stamp's number in its beat
 ) (
-    /* verilator lint_off UNUSEDSIGNAL */  // of a wider word the last beats matter; of what fills beats all of it
     input  logic [8*WORD-1:0] word_i,  // the last beats, the newest on top
     input  logic [PART-1:0]   sub_i,   // number of the stamp in its beat
-    /* verilator lint_on UNUSEDSIGNAL */
     output logic [raster_pkg::SAMPLES*raster_pkg::MEMORY_LANE_BITS-1:0] data_o
 );
 
@@ -19,9 +17,7 @@ module stamp_bytes #(
   localparam int BYTES = CODES * SAMPLE_BYTES;
   localparam int TAKEN = (LANE < 8 * SAMPLE_BYTES) ? LANE : 8 * SAMPLE_BYTES;
 
-  /* verilator lint_off UNUSEDSIGNAL */  // bits above a code
   logic [8*BYTES-1:0] bytes;
-  /* verilator lint_on UNUSEDSIGNAL */
   genvar s;
   generate
     if (SHARED == 0) begin : gen_whole

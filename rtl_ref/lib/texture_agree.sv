@@ -2,8 +2,8 @@
 // two of their texels, the blocks are the same, or neither the blocks nor the texels are in one bank. Combinational.
 // Specification: agree() of model/stages/texture_unit.hpp.
 module texture_agree #(
-    parameter int ENDS = 1,  // texels of a sample along an axis: 1 or 2
-    parameter int SIDE_BITS = 12
+    parameter int ENDS = 1,       // texels of a sample along an axis: 1 or 2
+    parameter int SIDE_BITS = 12  // log2 of the longest side
 ) (
     // Texel e of lane l along axis d: ((l*ENDS + e)*2 + d)*SIDE_BITS
     input  logic [4*ENDS*2*SIDE_BITS-1:0] texel_i,

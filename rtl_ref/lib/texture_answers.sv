@@ -13,9 +13,7 @@ module texture_answers #(
     parameter int WORDS = 9 - $clog2(WORD_BITS)  // derived: words of a line of 64 bytes, log2
 ) (
     input logic clk_i,
-    /* verilator lint_off SYNCASYNCNET */  // of everything else the reset, here the order to recover
     input logic rst_ni,
-    /* verilator lint_on SYNCASYNCNET */
     input logic power_on_ni,
 
     // A line is asked for, in a cycle in which there is room for it
@@ -54,9 +52,7 @@ module texture_answers #(
   logic [1:0]            request_size_q;
   logic [UNANSWERED-1:0] unanswered_q;
   logic [BEATS-1:0]      beat_q, last_beat;
-  /* verilator lint_off UNUSEDSIGNAL */  // where a beat comes there is a line that it is of
   logic                  fills_valid;
-  /* verilator lint_on UNUSEDSIGNAL */
 
   assign room_o            = fills_ready && !recovers_q && (!request_valid_q || request_ready_i);
   assign request_valid_o   = request_valid_q;

@@ -27,9 +27,7 @@ module texture_axis #(
     // Of the texture: while samples are under way they stay
     input logic [SIDE_BITS-1:0] last_i,   // size - 1
     input logic [1:0]           wrap_i,   // 0 repeat, 1 clamp, 2 mirror
-    /* verilator lint_off UNUSEDSIGNAL */
     input logic                 is_linear_i,
-    /* verilator lint_on UNUSEDSIGNAL */
 
     // Of six clocks ago
     output logic [SIDE_BITS-1:0] texel_o,
@@ -92,17 +90,13 @@ module texture_axis #(
   logic [PLACE-1:0] placed;
   logic [WHOLE-1:0] whole_q;
   logic             carries_q;
-  /* verilator lint_off UNUSEDSIGNAL */  // where only texels count
   logic [FRACTION-1:0] rounded_part;
-  /* verilator lint_on UNUSEDSIGNAL */
   assign rounded_part = placed[FRACTION:1] + FRACTION'(placed[0]);
   generate
     if (BELOW >= 0) begin : gen_zeros
       assign long = {{ABOVE{product_q[PRODUCT-1]}}, product_q, {BELOW{1'b0}}};
     end else begin : gen_cut  // bits that no reach brings up to the half
-      /* verilator lint_off UNUSEDSIGNAL */
       logic [ABOVE+PRODUCT-1:0] all;
-      /* verilator lint_on UNUSEDSIGNAL */
       assign all  = {{ABOVE{product_q[PRODUCT-1]}}, product_q};
       assign long = all[ABOVE+PRODUCT-1-:LONG];
     end
@@ -128,10 +122,8 @@ module texture_axis #(
       assign texel_o = '0;
       assign next_o  = '0;
       assign part_o  = '0;
-      /* verilator lint_off UNUSEDSIGNAL */  // wrapped on its level
       logic unused;
       assign unused = &{last_i, wrap_i, is_linear_i};
-      /* verilator lint_on UNUSEDSIGNAL */
     end else if (LINEAR == 1) begin : gen_linear
       // Less half a texel: from the middle of the texel in front.
       logic [FRACTION-1:0]       part_q;

@@ -49,10 +49,8 @@ module texture_blend #(
     for (n = 0; n < 4; n++) begin : gen_channel
       logic [15:0]        rounded, lower, upper;
       logic signed [16:0] difference;
-      /* verilator lint_off UNUSEDSIGNAL */
       logic signed [25:0] product;
       logic [23:0]        sum;
-      /* verilator lint_on UNUSEDSIGNAL */
       assign rounded    = sum_i[24*n+8+:16] + 16'(sum_i[24*n+7]);
       always_ff @(posedge clk_i)
         if (valid_i && ready_o && takes_i) begin

@@ -28,10 +28,8 @@ module texture_combine #(
       logic [7:0]         color, texel, whole;
       logic [7:0]         left;  // of the product
       logic signed [8:0]  right;
-      /* verilator lint_off UNUSEDSIGNAL */  // cut off
       logic signed [16:0] product;
       logic [15:0]        rounded, quotient;
-      /* verilator lint_on UNUSEDSIGNAL */
       assign color    = color_i[8*n+:8];
       assign texel    = texel_i[8*n+:8];
       assign quotient = rounded + {8'd0, rounded[15:8]};
@@ -62,10 +60,8 @@ module texture_combine #(
       end
     end
     if (CHANNELS == 3) begin : gen_opaque
-      /* verilator lint_off UNUSEDSIGNAL */
       logic unused;
       assign unused = has_alpha_i;
-      /* verilator lint_on UNUSEDSIGNAL */
     end
   endgenerate
 

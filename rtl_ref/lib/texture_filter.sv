@@ -70,9 +70,7 @@ module texture_filter #(
       localparam int CHANNEL = n % 4;
       logic [7:0]         first, second;
       logic signed [8:0]  difference;
-      /* verilator lint_off UNUSEDSIGNAL */
       logic signed [17:0] product;
-      /* verilator lint_on UNUSEDSIGNAL */
       assign first          = texel_q[64*ROW+8*CHANNEL+:8];
       assign second         = texel_q[64*ROW+32+8*CHANNEL+:8];
       assign difference     = $signed({1'b0, second}) - $signed({1'b0, first});
@@ -82,9 +80,7 @@ module texture_filter #(
     for (n = 0; n < 4; n++) begin : gen_channel
       logic [15:0]        first, second;
       logic signed [16:0] difference;
-      /* verilator lint_off UNUSEDSIGNAL */
       logic signed [25:0] product;
-      /* verilator lint_on UNUSEDSIGNAL */
       logic [23:0]        sum;
       assign first           = row_q[16*n+:16];
       assign second          = row_q[64+16*n+:16];

@@ -2,10 +2,10 @@
 // memory. One of five, each by itself, so that nothing is chosen in a row. Colours are those of the samples, or of the pixels:
 // their mean, or the one that each has. Combinational. Specification: capture() and compress() of model/stages/block_cache.cpp.
 module victim_bytes #(
-    parameter int SAMPLES = raster_pkg::SAMPLES,  // derived; not to be set
-    parameter int PIXELS = raster_pkg::PIXELS,
-    parameter int CODE = raster_pkg::STORED_DEPTH_BITS,
-    parameter int COLOR = raster_pkg::STORED_COLOR_BITS,
+    parameter int SAMPLES = raster_pkg::SAMPLES,             // derived; not to be set
+    parameter int PIXELS = raster_pkg::PIXELS,               // derived; not to be set
+    parameter int CODE = raster_pkg::STORED_DEPTH_BITS,      // derived: bits of a stored depth
+    parameter int COLOR = raster_pkg::STORED_COLOR_BITS,     // derived: bits of a stored colour
     parameter int MEMORY_COLORS = raster_pkg::MEMORY_COLORS  // of a stamp: of its samples, or their mean in each pixel
 ) (
     // A stamp of a victim
@@ -15,11 +15,9 @@ module victim_bytes #(
     input  logic [SAMPLES*CODE-1:0]  depth_i,
     input  logic [SAMPLES*COLOR-1:0] color_i,
     input  logic [SAMPLES-1:0]       color_strobe_i,  // samples that are there
-    /* verilator lint_off UNUSEDSIGNAL */  // without pixel_colors
     input  logic                     of_pixels_i,     // it is written with one colour a pixel
     input  logic                     merges_i,        // it is written whole: what is not there has the colour of its pixel
     input  logic [PIXELS*COLOR-1:0]  merged_i,
-    /* verilator lint_on UNUSEDSIGNAL */
 
     // A flush: a word of flags, a stamp of colours as cleared
     input logic                             sends_flags_i,

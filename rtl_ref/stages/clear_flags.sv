@@ -8,11 +8,11 @@
 // Specification: model/stages/clear_flags.hpp; the times are those of model/engines/cycle/block_timing.hpp.
 module clear_flags #(
     parameter int TILE_BITS = $clog2(raster_pkg::BLOCKS_PER_ROW),  // derived; not to be set
-    parameter int BLOCK_X = raster_pkg::TILE_X_BITS + TILE_BITS,
-    parameter int BLOCK_Y = raster_pkg::TILE_Y_BITS + TILE_BITS,
-    parameter int WORD = raster_pkg::FLAG_WORD,
-    parameter int BIT = $clog2(WORD),
-    parameter int WORD_X = (BLOCK_X > BIT) ? BLOCK_X - BIT : 1  // bits of a word's number in its row
+    parameter int BLOCK_X = raster_pkg::TILE_X_BITS + TILE_BITS,   // derived: bits of a block's column
+    parameter int BLOCK_Y = raster_pkg::TILE_Y_BITS + TILE_BITS,   // derived: bits of a block's row
+    parameter int WORD = raster_pkg::FLAG_WORD,                    // derived: flags of a word
+    parameter int BIT = $clog2(WORD),                              // derived: bits of a flag's place in its word
+    parameter int WORD_X = (BLOCK_X > BIT) ? BLOCK_X - BIT : 1     // bits of a word's number in its row
 ) (
     input logic clk_i,
     input logic rst_ni,
@@ -47,14 +47,12 @@ module clear_flags #(
   localparam int FLAGS = ((raster_pkg::TILES_Y << TILE_BITS) << WORD_X);
   localparam int FLAG = $clog2(FLAGS);
 
-  /* verilator lint_off UNUSEDSIGNAL */  // high bits where a word is wider than a row
   function automatic [FLAG-1:0] word_of(input [BLOCK_X-1:0] x, input [BLOCK_Y-1:0] y);
     word_of = FLAG'({y, WORD_X'(x >> BIT)});
   endfunction
   function automatic [BIT-1:0] bit_of(input [BLOCK_X-1:0] x);
     bit_of = BIT'(x);
   endfunction
-  /* verilator lint_on UNUSEDSIGNAL */
 
   // A fall: its word is read, then written.
   logic               reads_q, writes_q;

@@ -73,9 +73,7 @@ module coarse_raster (
   localparam logic [2:0] IDLE = 3'd0, PREPARE = 3'd1, WALK = 3'd2, CLEAR = 3'd3, PASS = 3'd4;
   logic [2:0] state_q;  // of the walk. PASS: a token behind its CLEAR
 
-  /* verilator lint_off UNUSEDSIGNAL */  // the values are in the registers below
   raster_pkg::setup_packet_t s_q;
-  /* verilator lint_on UNUSEDSIGNAL */
   logic [TX-1:0]   tile_x_q;
   logic [TY-1:0]   tile_y_q;
   logic [SLOT-1:0] slot_q;   // of the primitive in s_q, or of the next one
@@ -291,9 +289,7 @@ module coarse_raster (
       localparam int NARROW = P - B - S;  // bits that a local step loses
       localparam int SB = STEP_BITS_OF[32*i+:32];
       localparam int STEP = STEP_AT[32*i+:32];
-      /* verilator lint_off UNUSEDSIGNAL */  // those bits
       logic [P-1:0] value;
-      /* verilator lint_on UNUSEDSIGNAL */
       logic [P-1:0] step_x, step_y;
       logic [M-1:0] value_q, row_q, from, step, next;
       assign value  = setup_i.value[PLANE+:P];

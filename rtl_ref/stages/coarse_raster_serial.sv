@@ -68,9 +68,7 @@ module coarse_raster_serial (
   logic [1:0] turn_q;     // cycle of TURN
   logic       is_new_q;   // TURN for the first tile, without a step
 
-  /* verilator lint_off UNUSEDSIGNAL */  // edges and planes are in the registers below
   raster_pkg::setup_packet_t s_q;  // its box complemented, as cull holds it
-  /* verilator lint_on UNUSEDSIGNAL */
   raster_pkg::pixel_box_t bounds;
   raster_pkg::setup_packet_t setup;  // as it was taken
   logic [TX-1:0]   tile_x_q;
@@ -208,9 +206,7 @@ module coarse_raster_serial (
   logic                moves_ring;
   logic signed [V-1:0] from, next;
   logic signed [D-1:0] step, right;
-  /* verilator lint_off UNUSEDSIGNAL */  // the carry's own bit
   logic [V-TS:0]       sum;
-  /* verilator lint_on UNUSEDSIGNAL */
   assign values     = {~not_value_q, value_q};
   assign moves_ring = state_q == TURN && turn_q != 2'd3;
   assign from       = goes_down_q || turns_back_q ? row_q[0+:V] : value_q[0+:V];
@@ -298,14 +294,10 @@ module coarse_raster_serial (
       localparam int LOCAL = LOCAL_AT[32*i+:32];
       localparam int M = P - TS - S;  // a tile's step leaves the bits below as they are
       localparam int T = NARROW + B;  // bits of a step per pixel; of a step per tile the highest are without effect
-      /* verilator lint_off UNUSEDSIGNAL */
       logic [P-1:0] value, step_x, step_y;
-      /* verilator lint_on UNUSEDSIGNAL */
       logic [M-1:0] plane_q, start_q;
       logic [T-1:0] step_q, other_step_q;
-      /* verilator lint_off UNUSEDSIGNAL */  // the carry's own bit
       logic [T:0]   moved;
-      /* verilator lint_on UNUSEDSIGNAL */
       assign value      = setup_i.value[PLANE+:P];
       assign step_x     = setup_i.step_x[PLANE+:P];
       assign step_y     = setup_i.step_y[PLANE+:P];

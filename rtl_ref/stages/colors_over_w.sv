@@ -8,15 +8,15 @@
 // What a triangle's samples share waits in RAMs, a word for each stamp in the unit, as that of coordinates does.
 // A fixed pipeline without enables. Specification: over_q, color_over_q of model/stages/perspective.hpp.
 module colors_over_w #(
-    parameter int CHANNELS = 3,
-    parameter int P_BITS = 24,     // of P in a tile, with its sign; at least 18
-    parameter int MANTISSA = 18,   // k
-    parameter int NARROW = 13,     // k_P
-    parameter int SHIFT_BITS = 6,  // of c, with its sign
-    parameter int REACH_BITS = 4,  // of x, at most 8
-    parameter int QUEUE = 16,
+    parameter int CHANNELS = 3,           // channels of a colour, a multiplier each
+    parameter int P_BITS = 24,            // of P in a tile, with its sign; at least 18
+    parameter int MANTISSA = 18,          // k
+    parameter int NARROW = 13,            // k_P
+    parameter int SHIFT_BITS = 6,         // of c, with its sign
+    parameter int REACH_BITS = 4,         // of x, at most 8
+    parameter int QUEUE = 16,             // stamps in the unit; a power of two
     parameter int INDEX = $clog2(QUEUE),  // derived; not to be set
-    parameter int EXPONENT = 5
+    parameter int EXPONENT = 5            // bits of e
 ) (
     input logic clk_i,
 
@@ -66,9 +66,7 @@ module colors_over_w #(
   generate
     for (n = 0; n < CHANNELS; n++) begin : gen_channel
       // Below 0 whatever is not 0 is held, as at 0.
-      /* verilator lint_off UNUSEDSIGNAL */  // less than 64
       logic signed [7:0] amount;
-      /* verilator lint_on UNUSEDSIGNAL */
       logic [5:0]        amount_q;
       logic [NARROW:0]   narrow, narrow_q;
       assign amount = 8'($signed(shift[n*SHIFT_BITS+:SHIFT_BITS])) + 8'(exponent_i) + 8'(NARROW);
@@ -95,9 +93,7 @@ module colors_over_w #(
       // The product times 2^x, x up to 8, and a half below the point. What is beyond 2^9 + 1/2 there is none.
       localparam int POINT = MANTISSA + NARROW - 1;
       localparam int WHOLE = 11;  // bits of a code, with its sign
-      /* verilator lint_off UNUSEDSIGNAL */  // what is cut off
       logic signed [POINT+WHOLE-1:0] placed;
-      /* verilator lint_on UNUSEDSIGNAL */
       logic signed [WHOLE-1:0]       code_q;
       logic [7:0]                    held;
       assign placed = (POINT + WHOLE)'(product_q) <<< reach[n*REACH_BITS+:REACH_BITS];

@@ -49,9 +49,7 @@ module cull (
   localparam int NV = S + 7;       // edge_function of such a triangle, at a sample of its box
 
   // ------------------------------------------------------------------------------------------------------------- sort
-  /* verilator lint_off UNUSEDSIGNAL */  // the box ends in box_q
   raster_pkg::primitive_packet_t p_q;
-  /* verilator lint_on UNUSEDSIGNAL */
   logic       sort_busy_q;
   logic [1:0] sort_step_q;
   logic       sort_moves, hands_over, decide_ready;
@@ -231,9 +229,7 @@ module cull (
   );
 
   // The same in fewer bits at the box's first pixel, for a triangle whose sides are shorter than 4 pixels.
-  /* verilator lint_off UNUSEDSIGNAL */  // its low bits are those of the fill rule
   logic signed [S+NV-1:0] corner;
-  /* verilator lint_on UNUSEDSIGNAL */
   cross_product #(
       .A_BITS  (N),
       .D_BITS  (N + 1),
@@ -264,9 +260,7 @@ module cull (
   // Twice the area is the sum of the exact edge functions; the bias comes back as a carry.
   logic [3*V-1:0]      edge_q;  // before orientation; the newest is the highest
   logic signed [E-1:0] area_q;
-  /* verilator lint_off UNUSEDSIGNAL */  // the carry's own bit
   logic signed [E:0]   area;
-  /* verilator lint_on UNUSEDSIGNAL */
   assign area = {area_q, 1'b1} + {edge_value, edge_bias_q};
 
   // What the verdict needs, known a cycle ahead of it.
@@ -275,6 +269,11 @@ module cull (
   logic [3:0] has_inside, has_outside, has_inside_q, has_outside_q;  // for each of the four samples: it is inside, outside of some edge
   logic       is_sampleless_q;
   logic       is_front;
+  // A sample is covered when it is on the same side of all edges, whichever way round they run. More than 2x2 samples are
+  // left to fine_raster.
+  logic [2:0] columns, rows;  // less one
+  logic       has_2x2_q, has_column_q, has_row_q;  // at most; a second one
+  logic [3:0] is_missed;
   assign is_front    = area[E] != front_cw_q;  // positive area: clockwise as seen
   assign is_small    = is_small_q && edge_is_short_q;
   assign has_inside  = has_inside_q | ~signs;
@@ -332,10 +331,6 @@ module cull (
   assign is_back       = is_back_q && !is_zero;
   assign is_dropped    = is_zero || is_back_q || d_is_empty_q || is_sampleless_q;
 
-  // A sample is covered when it is on the same side of all edges, whichever way round they run. More than 2x2 samples are
-  // left to fine_raster.
-  logic [2:0] columns, rows;  // less one
-  logic       has_2x2_q, has_column_q, has_row_q;  // at most; a second one
   assign columns       = d_box_q.right[2:0] - d_box_q.left[2:0];
   assign rows          = d_box_q.bottom[2:0] - d_box_q.top[2:0];
   always_ff @(posedge clk_i) begin  // known in the steps before
@@ -343,7 +338,6 @@ module cull (
     has_column_q <= columns != 3'd0;
     has_row_q    <= rows != 3'd0;
   end
-  logic [3:0] is_missed;
   assign is_missed = (has_inside & has_outside) | ~{has_column_q && has_row_q, has_row_q, has_column_q, 1'b1};
 
   assign is_dropped_o   = leaves && is_dropped;
@@ -385,9 +379,7 @@ module cull (
   assign triangle_o.kind         = kind_q;
   assign triangle_o.primitive_id = id_q;
   assign triangle_o.box          = d_box_q;
-  /* verilator lint_off UNUSEDSIGNAL */  // one that is not negative has no sign
   logic [E-1:0] size;
-  /* verilator lint_on UNUSEDSIGNAL */
   add_or_subtract #(
       .WIDTH(E)
   ) u_size (

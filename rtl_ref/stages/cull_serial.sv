@@ -128,9 +128,7 @@ module cull_serial (
   localparam int B = C + 1;      // a coordinate plus half a pixel
   localparam int N = C - S + 1;  // a pixel in the guard band, or one outside of it
   localparam logic signed [B-1:0] HALF = B'(1 << (S - 1));
-  /* verilator lint_off UNUSEDSIGNAL */  // the fractions end here
   logic signed [B-1:0] above_x, below_x, above_y, below_y;
-  /* verilator lint_on UNUSEDSIGNAL */
   logic signed [N-1:0] first_x, last_x, first_y, last_y, scissor_left, scissor_top, scissor_right, scissor_bottom;
   logic signed [N-1:0] held_left, held_right, held_top, held_bottom;
   logic                cuts_left, cuts_right, cuts_top, cuts_bottom;
@@ -183,9 +181,7 @@ module cull_serial (
   logic [D-1:0]        to_x_q, to_y_q;
   logic signed [D:0]   wide_dx, wide_dy, both_q;  // both: dx - dy
   logic signed [D:0]   addend, acc_q;
-  /* verilator lint_off UNUSEDSIGNAL */
   logic [D+2:0]        total;  // its lowest bit only makes the carry
-  /* verilator lint_on UNUSEDSIGNAL */
   logic                starts, subtracts, bit_out;
   assign starts = multiplies && count_q == '0;
   assign dx     = D'($signed(x1_q)) - D'($signed(x0));

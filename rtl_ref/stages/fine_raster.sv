@@ -17,9 +17,7 @@ module fine_raster (
     output logic                      tile_ready_o,
     input  raster_pkg::tile_packet_t  tile_i,
     input  raster_pkg::edge_context_t edges_i,
-    /* verilator lint_off UNUSEDSIGNAL */  // for the serial stage
     input  logic [3*raster_pkg::TILE_EDGE_BITS-1:0] visit_edges_i,
-    /* verilator lint_on UNUSEDSIGNAL */
 
     // To interpolate
     output logic                      stamp_valid_o,
@@ -44,22 +42,16 @@ module fine_raster (
   localparam int COLUMN = PER_ROW > 1 ? $clog2(PER_ROW) : 1;
 
   // -------------------------------------------------------------------------------------------------------------- rows
-  /* verilator lint_off UNUSEDSIGNAL */  // edge_value is stepped in gen_edge from the moment it enters
   raster_pkg::tile_packet_t  tile_q;
-  /* verilator lint_on UNUSEDSIGNAL */
-  /* verilator lint_off UNUSEDSIGNAL */  // of the bits below the values the sums are kept
   raster_pkg::edge_context_t edges_q;
-  /* verilator lint_on UNUSEDSIGNAL */
   logic             row_valid_q;
   logic [PIXEL-1:0] y_q;  // first pixel row of the current row of stamps
 
   logic             takes_tile, row_leaves, is_last_row, coverage_ready;
   logic [ROW-1:0]   covered;
   logic [3*ROW-1:0] outside;  // by edge
-  /* verilator lint_off UNUSEDSIGNAL */  // where a pixel has one sample, its centre
   logic [3*CENTRES-1:0] centres_outside;
   logic [CENTRES-1:0]   centre;  // pixels whose centres are covered
-  /* verilator lint_on UNUSEDSIGNAL */
   logic [TILE-1:0]  column_in_box;
   logic [STAMP-1:0] row_in_box;
   logic [ROW-1:0]   in_box;
@@ -125,9 +117,7 @@ module fine_raster (
         );
         assign place_q[N*W+:W] = '0;
         for (k = 0; k < N; k++) begin : gen_place
-          /* verilator lint_off UNUSEDSIGNAL */  // narrower where a tile bounds it
           logic signed [WIDE-1:0] gained;
-          /* verilator lint_on UNUSEDSIGNAL */
           assign gained = $signed(ways[k*WIDE+:WIDE]) >>> S;
           logic signed [W-1:0] moved_q;
           always_ff @(posedge clk_i) if (takes_tile) moved_q <= W'(gained);
@@ -176,8 +166,6 @@ module fine_raster (
     end
 
     // The box as columns and rows of pixels, and as samples in the order of `covered`.
-    /* verilator lint_off UNSIGNED */  // the first and the last column compare with a constant
-    /* verilator lint_off CMPCONST */
     for (i = 0; i < TILE; i++) begin : gen_box_column
       assign column_in_box[i] = PIXEL'(i) >= tile_q.box.left && PIXEL'(i) <= tile_q.box.right;
     end
@@ -192,17 +180,13 @@ module fine_raster (
                                    centres_outside[2*CENTRES+(i/STAMP)*PIXELS+j*STAMP+i%STAMP]));
       end
     end
-    /* verilator lint_on CMPCONST */
-    /* verilator lint_on UNSIGNED */
     if (N == 1) begin : gen_no_centres
       assign centres_outside = '0;
     end
   endgenerate
 
   // ---------------------------------------------------------------------------------------------------------- coverage
-  /* verilator lint_off UNUSEDSIGNAL */  // box and edges end in the part above
   raster_pkg::tile_packet_t coverage_tile_q;
-  /* verilator lint_on UNUSEDSIGNAL */
   logic             coverage_valid_q;
   logic             coverage_last_row_q;
   logic [PIXEL-1:0] coverage_y_q;
@@ -227,14 +211,10 @@ module fine_raster (
   end
 
   // ------------------------------------------------------------------------------------------------------------ stamps
-  /* verilator lint_off UNUSEDSIGNAL */
   raster_pkg::tile_packet_t stamp_tile_q;
-  /* verilator lint_on UNUSEDSIGNAL */
   logic             stamps_valid_q;
   logic             stamps_last_row_q;
-  /* verilator lint_off UNUSEDSIGNAL */  // a row of stamps begins at a multiple of their size
   logic [PIXEL-1:0] stamps_y_q;
-  /* verilator lint_on UNUSEDSIGNAL */
   logic [ROW-1:0]   pending_q, pending_d;  // samples of the row not yet sent
 
   logic [COLUMN-1:0]  column;  // of the first stamp with samples left

@@ -15,9 +15,7 @@ module fine_raster_serial (
     // From coarse_raster
     input  logic                      tile_valid_i,
     output logic                      tile_ready_o,
-    /* verilator lint_off UNUSEDSIGNAL */  // is_inside; edge values come by visit_edges_i
     input  raster_pkg::tile_packet_t  tile_i,
-    /* verilator lint_on UNUSEDSIGNAL */
     input  raster_pkg::edge_context_t edges_i,
     input  logic [3*raster_pkg::TILE_EDGE_BITS-1:0] visit_edges_i,  // of a visit
 
@@ -127,14 +125,10 @@ module fine_raster_serial (
         if (STAMP == 1) begin : gen_always
           assign is_sample_in_box = 1'b1;
         end else begin : gen_compare
-          /* verilator lint_off UNSIGNED */  // a stamp as large as a tile has one position
-          /* verilator lint_off CMPCONST */
           logic [PIXEL-1:0] x, y;
           assign x = PIXEL'(column_q) << STAMP_SHIFT | PIXEL'(i);
           assign y = PIXEL'(row_q) << STAMP_SHIFT | PIXEL'(j);
           assign is_sample_in_box = x >= tile_i.box.left && x <= tile_i.box.right && y >= tile_i.box.top && y <= tile_i.box.bottom;
-          /* verilator lint_on CMPCONST */
-          /* verilator lint_on UNSIGNED */
         end
         assign mask[AT] = scans && is_sample_in_box &&
                           !(outside[AT] || outside[SAMPLES+AT] || outside[2*SAMPLES+AT]);
@@ -144,9 +138,7 @@ module fine_raster_serial (
 
   // ------------------------------------------------------------------------------------------------------------- send
   logic               held_valid_q;
-  /* verilator lint_off UNUSEDSIGNAL */  // nor has its one stamp a column
   logic [COLUMN-1:0]  held_column_q, column;
-  /* verilator lint_on UNUSEDSIGNAL */
   logic [SAMPLES-1:0] held_mask_q;
   logic               is_covered, sends_now, sends_held, sends_end, sends_token, uses_held;
   assign is_covered  = mask != '0;

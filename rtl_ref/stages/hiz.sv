@@ -12,7 +12,6 @@ module hiz (
     input logic rst_ni,
 
     // The primitive that coarse_raster has, and the tile at which it is
-    /* verilator lint_off UNUSEDSIGNAL */  // most of it is coarse_raster's own
     input raster_pkg::setup_packet_t          setup_i,
     input logic [raster_pkg::TILE_X_BITS-1:0] tile_x_i,
     input logic [raster_pkg::TILE_Y_BITS-1:0] tile_y_i,
@@ -21,11 +20,8 @@ module hiz (
     input logic                               reads_i,   // that of this tile:
     input logic [raster_pkg::TILE_X_BITS-1:0] read_x_i,
     input logic [raster_pkg::TILE_Y_BITS-1:0] read_y_i,
-    /* verilator lint_on UNUSEDSIGNAL */
     input logic                               starts_visit_i,
-    /* verilator lint_off UNUSEDSIGNAL */  // without HiZ
     input logic                               raises_i,  // and may raise a depth by its state
-    /* verilator lint_on UNUSEDSIGNAL */
 
     output logic is_eligible_o,    // bounds may reject its tiles
     output logic is_settled_o,     // visit n - LAG has been seen: a bound may be read, a visit may start
@@ -35,9 +31,7 @@ module hiz (
 
     // From depth_test: a tile visit has retired
     input logic                       retire_valid_i,
-    /* verilator lint_off UNUSEDSIGNAL */  // without HiZ only its coming counts
     input raster_pkg::retire_packet_t retire_i
-    /* verilator lint_on UNUSEDSIGNAL */
 );
 
   localparam int TX = raster_pkg::TILE_X_BITS;
@@ -87,10 +81,8 @@ module hiz (
       end
       assign can_raise   = setup_i.state.depth_test[2];  // the functions that let a farther sample pass
       assign is_triangle = setup_i.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE;
-      /* verilator lint_off CMPCONST */  // a small target has no such box
       assign is_wide     = setup_i.box.right[PX-1:TS] - setup_i.box.left[PX-1:TS] > TX'(1);
       assign is_high     = setup_i.box.bottom[PY-1:TS] - setup_i.box.top[PY-1:TS] > TY'(1);
-      /* verilator lint_on CMPCONST */
 
       logic         bounds_hold_q;  // no line can have raised a depth since the last fast clear
       logic [N-1:0] quiet_q;        // visits since one that may raise a depth, LAG - 1 at most

@@ -39,8 +39,8 @@ module interpolate (
   localparam int PIXELS = raster_pkg::PIXELS;  // of a stamp
   localparam int N = raster_pkg::MSAA_SAMPLES;  // of a pixel
   localparam int S = raster_pkg::GRID_BITS;
-  localparam logic [32*PLANES-1:0] STEP_AT = raster_pkg::STEP_AT;
   localparam int PLANES = raster_pkg::PLANES;
+  localparam logic [32*PLANES-1:0] STEP_AT = raster_pkg::STEP_AT;
   localparam logic [32*PLANES-1:0] FRAGMENT_BITS_OF = raster_pkg::FRAGMENT_BITS_OF;
   localparam logic [32*PLANES-1:0] FRAGMENT_AT = raster_pkg::FRAGMENT_AT;
   localparam logic [32*PLANES-1:0] LOCAL_BITS_OF = raster_pkg::LOCAL_BITS_OF;
@@ -52,12 +52,8 @@ module interpolate (
   localparam bit APART = raster_pkg::APART != 0;
   localparam int STORED = raster_pkg::STORED_FRAGMENT_BITS;
 
-  /* verilator lint_off UNUSEDSIGNAL */  // anchors end after the step x, or go on
   raster_pkg::stamp_packet_t context_stamp_q, x_stamp_q, y_stamp_q, samples_stamp_q;
-  /* verilator lint_on UNUSEDSIGNAL */
-  /* verilator lint_off UNUSEDSIGNAL */  // steps end after the step samples
   raster_pkg::context_packet_t x_context_q, y_context_q, samples_context_q;
-  /* verilator lint_on UNUSEDSIGNAL */
   logic context_valid_q, x_valid_q, y_valid_q, samples_valid_q;
 
   localparam int ROOM = 8;  // fragments on their way, in the FIFO and on offer: one a step, and two more
@@ -117,9 +113,7 @@ module interpolate (
   raster_pkg::fragment_packet_t made;
 
   // Where each pixel is shaded, a bit for each of its samples: the first that is covered, unless its centre is. None: its centre.
-  /* verilator lint_off UNUSEDSIGNAL */  // where a pixel has one sample
   logic [PIXELS*N-1:0] shaded_at;
-  /* verilator lint_on UNUSEDSIGNAL */
   generate
     if (N > 1) begin : gen_shaded
       always_comb begin
@@ -178,9 +172,7 @@ module interpolate (
       logic [N*W-1:0] to_sample_q;
       if (N > 1) begin : gen_to_sample
         localparam int WIDE = W + S;  // of a step
-        /* verilator lint_off UNUSEDSIGNAL */  // the bits below are rounded off
         logic [N*WIDE-1:0] ways;
-        /* verilator lint_on UNUSEDSIGNAL */
         sample_offsets #(
             .WIDTH(WIDE)
         ) u_ways (
@@ -197,10 +189,8 @@ module interpolate (
       end
 
       for (s = 0; s < PIXELS; s++) begin : gen_pixel
-        /* verilator lint_off UNUSEDSIGNAL */  // the guard bits end here
         logic signed [W-1:0] value, way;
         logic [W-1:0]        value_q;
-        /* verilator lint_on UNUSEDSIGNAL */
         edge_offset #(
             .WIDTH (W),
             .OFFSET(PIXEL)
@@ -227,9 +217,7 @@ module interpolate (
         end
         if (p == 0) begin : gen_depth  // of its other samples
           for (k = 1; k < N; k++) begin : gen_further
-            /* verilator lint_off UNUSEDSIGNAL */
             logic [W-1:0] further_q;
-            /* verilator lint_on UNUSEDSIGNAL */
             always_ff @(posedge clk_i) further_q <= value + to_sample_q[k*W+:W];
             assign made.further_depth[(s*(N-1)+k-1)*B+:B] = {!further_q[L+B-1], further_q[L+:B-1]};
           end
@@ -261,9 +249,7 @@ module interpolate (
     end
   endgenerate
 
-  /* verilator lint_off UNUSEDSIGNAL */  // there is a place
   logic made_ready, is_empty;
-  /* verilator lint_on UNUSEDSIGNAL */
   logic [STORED-1:0] made_bits, fragment_bits;
   stored_fragment u_stored (
       .fragment_i(made),

@@ -19,9 +19,7 @@ module interpolate_serial (
     // Context RAM: a read, and its answer in the next cycle, which stays until the next read
     output logic                             context_read_o,
     output logic [raster_pkg::SLOT_BITS-1:0] context_slot_o,
-    /* verilator lint_off UNUSEDSIGNAL */  // ranges
     input  raster_pkg::context_packet_t      context_i,
-    /* verilator lint_on UNUSEDSIGNAL */
     output logic                             slot_free_o,  // the oldest slot will not be read again
 
     // To primitive_join
@@ -43,9 +41,7 @@ module interpolate_serial (
   localparam int L = raster_pkg::PLANE_LOCAL_GUARD_BITS;
   localparam int PER_ROW_BITS = PIXEL - STAMP_SHIFT;
 
-  /* verilator lint_off UNUSEDSIGNAL */  // anchors end in the step x
   raster_pkg::stamp_packet_t x_stamp_q;
-  /* verilator lint_on UNUSEDSIGNAL */
   localparam int FIRST = raster_pkg::KIND_BITS + raster_pkg::PRIMITIVE_ID_BITS + raster_pkg::TILE_X_BITS + raster_pkg::TILE_Y_BITS +
                          raster_pkg::STAMP_INDEX_BITS + raster_pkg::SAMPLE_MASK_BITS;  // kind, key, stamp, mask
   logic [FIRST-1:0] y_first_q;
@@ -132,9 +128,7 @@ module interpolate_serial (
       always_ff @(posedge clk_i) if (x_ready) x_value_q <= x_value;
 
       for (s = 0; s < SAMPLES; s++) begin : gen_sample
-        /* verilator lint_off UNUSEDSIGNAL */  // the guard bits end here
         logic signed [W-1:0] value;
-        /* verilator lint_on UNUSEDSIGNAL */
         edge_offset #(
             .WIDTH (W),
             .OFFSET(PIXEL)

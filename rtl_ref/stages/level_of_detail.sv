@@ -14,8 +14,8 @@
 // model/stages/level_of_detail.hpp, filter_of of texture_sample.hpp, TextureLevels and TextureLines of texture_levels.hpp.
 module level_of_detail #(
     parameter int PART = 104,  // bits of a part of the lines
-    parameter int PIXEL = 12,
-    parameter int LANES = 1  // 1 or 4
+    parameter int PIXEL = 12,  // bits of a pixel's column and row
+    parameter int LANES = 1    // 1 or 4
 ) (
     input logic clk_i,
 
@@ -44,9 +44,7 @@ module level_of_detail #(
   localparam int LOD = 18;  // 2^-8 levels, with their sign
   localparam int SIDE = (LANES == 1) ? 1 : 2;  // samples along a side
 
-  /* verilator lint_off UNUSEDSIGNAL */  // there may be more than there is to hold
   logic [LINES-1:0] lines_q;
-  /* verilator lint_on UNUSEDSIGNAL */
   logic        is_min_linear_q;
   logic [1:0]  min_levels_q;  // 0 none, 1 the nearest, 2 two
   logic [3:0]  last_q;
@@ -104,9 +102,7 @@ module level_of_detail #(
   endgenerate
 
   function automatic [12:0] normalised(input [31:0] value);  // floor(log2), 8 bits behind the highest
-    /* verilator lint_off UNUSEDSIGNAL */
     logic [31:0] left;
-    /* verilator lint_on UNUSEDSIGNAL */
     logic [4:0]  zeros;
     left = value;
     for (int bits = 4; bits >= 0; bits--) begin
@@ -150,9 +146,7 @@ module level_of_detail #(
       logic [11:0] level_q;
       logic        is_low, is_high, is_magnified, has_upper;
       logic [3:0]  whole, nearest;
-      /* verilator lint_off UNUSEDSIGNAL */
       logic [12:0] to_nearest;
-      /* verilator lint_on UNUSEDSIGNAL */
       assign is_low  = $signed(lambda_q) < $signed(LOD'(least_q));
       assign is_high = $signed(lambda_q) > $signed(LOD'(largest_q));
       always_ff @(posedge clk_i) level_q <= is_low ? least_q : is_high ? largest_q : lambda_q[11:0];

@@ -30,9 +30,7 @@ module line_raster (
   localparam logic [32*PLANES-1:0] LINE_AT = raster_pkg::LINE_AT;
 
   logic valid_q;  // a pixel is on offer
-  /* verilator lint_off UNUSEDSIGNAL */  // what changes is in the registers below
   raster_pkg::line_setup_t line_q;
-  /* verilator lint_on UNUSEDSIGNAL */
   logic [PX-1:0]         x_q;
   logic [PY-1:0]         y_q;
   logic signed [E-1:0]   error_q;      // >= 0: the next pixel lies in the next row

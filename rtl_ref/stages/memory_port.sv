@@ -14,20 +14,14 @@
 module memory_port (
     input logic clk_i,
     input logic power_on_ni,
-    /* verilator lint_off SYNCASYNCNET */  // of everything else the reset, here the order to recover
     input logic rst_ni,
-    /* verilator lint_on SYNCASYNCNET */
 
-    /* verilator lint_off UNUSEDSIGNAL */  // bits below a plane's bytes, which are 0; of flags, without any
     input raster_pkg::memory_layout_t layout_i,
-    /* verilator lint_on UNUSEDSIGNAL */
 
     // From the framebuffer
     input  logic                        request_valid_i,
     output logic                        request_ready_o,
-    /* verilator lint_off UNUSEDSIGNAL */  // its data
     input  raster_pkg::memory_request_t request_i,
-    /* verilator lint_on UNUSEDSIGNAL */
     input  logic [8*raster_pkg::REQUEST_BYTES-1:0] bytes_i,  // which are these, as they lie in memory (request_bytes)
 
     // To the framebuffer
@@ -85,9 +79,7 @@ module memory_port (
 
   // The address: base, row of tiles, tile, stamp.
   logic                     is_color, is_flags, of_pixels;  // of_pixels: with one colour a pixel, or flags that say so
-  /* verilator lint_off UNUSEDSIGNAL */  // inside a beat it is the place that counts
   logic [ADDRESS-1:0]       address;
-  /* verilator lint_on UNUSEDSIGNAL */
   logic [ADDRESS-PLANE-1:0] base, planes;  // planes of tiles up to this one in its row
   logic [ADDRESS-TILE-1:0]  above;         // tiles in the rows above
   logic [PLANE-1:0]         color_offset, offset;
@@ -350,10 +342,8 @@ module memory_port (
     end else begin : gen_stamps
       assign is_last = 1'b1;  // single stamps are read
       if (READS_COLOR) begin : gen_both
-        /* verilator lint_off UNUSEDSIGNAL */  // likewise
         logic read_valid, read_ready;
         logic [PARTS-1:0] place_in_beat;
-        /* verilator lint_on UNUSEDSIGNAL */
         localparam int READ = PARTS + (COMPRESSES ? 2 : 1);
         logic [READ-1:0] asked_read, answered_read;
         if (COMPRESSES) begin : gen_pixels
@@ -382,9 +372,7 @@ module memory_port (
       end else if (DEPTH_SHARED != 0) begin : gen_subs
         assign answers_color  = 1'b0;
         assign answers_pixels = 1'b0;
-        /* verilator lint_off UNUSEDSIGNAL */  // there is one for each answer, and room: the framebuffer waits for no more
         logic sub_valid, sub_ready;
-        /* verilator lint_on UNUSEDSIGNAL */
         logic [DEPTH_SHARED-1:0] place_in_beat;
         assign place_in_beat = place[DEPTH_SHARED-1:0];
         fifo #(

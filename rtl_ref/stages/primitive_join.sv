@@ -13,9 +13,7 @@ module primitive_join (
     // From line_raster
     input  logic                    pixel_valid_i,
     output logic                    pixel_ready_o,
-    /* verilator lint_off UNUSEDSIGNAL */  // primitive_id is the fragment's
     input  raster_pkg::line_pixel_t pixel_i,
-    /* verilator lint_on UNUSEDSIGNAL */
 
     // To depth_test
     output logic                         fragment_valid_o,

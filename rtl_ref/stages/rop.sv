@@ -3,17 +3,13 @@
 // rgb565 keeps the nearest code: floor(c * 31 / 255 + 1/2) = (c * 249 + 1014) >> 11, for green (c * 253 + 505) >> 10,
 // with the products as shifts and adds. Specification: model/stages/rop.hpp.
 module rop (
-    /* verilator lint_off UNUSEDSIGNAL */  // rgb565 keeps no alpha
     input  logic [raster_pkg::VERTEX_COLOR_BITS-1:0] rgba_i,  // 8 bits a channel, R lowest
-    /* verilator lint_on UNUSEDSIGNAL */
     output logic [raster_pkg::STORED_COLOR_BITS-1:0] color_o
 );
 
   generate
     if (raster_pkg::COLOR_FORMAT == 0) begin : gen_rgb565
-      /* verilator lint_off UNUSEDSIGNAL */  // the fractions are dropped
       logic [15:0] r, g, b;
-      /* verilator lint_on UNUSEDSIGNAL */
       logic [8:0] r_rest, g_rest, b_rest;  // 126 - c
 
       // c * 249 + 1014 = c * 257 + (126 - c) * 8 + 6, and c * 257 is c beside itself. Likewise with 4 for green. In the

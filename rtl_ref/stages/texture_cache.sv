@@ -19,9 +19,7 @@ module texture_cache #(
     parameter int LINE = $clog2(LINES)  // derived; not to be set
 ) (
     input logic clk_i,
-    /* verilator lint_off SYNCASYNCNET */  // of everything else the reset, here the order to recover
     input logic rst_ni,
-    /* verilator lint_on SYNCASYNCNET */
     input logic power_on_ni,
 
     // Samples
@@ -83,9 +81,7 @@ module texture_cache #(
   logic [LINE-1:0]   tag_write_line;
   logic [NUMBER+28:0] tag_new;
   logic [COUNT-1:0]  issued_q, read_q;  // samples that have left the tags, and those of them that have been read
-  /* verilator lint_off UNUSEDSIGNAL */
   logic [COUNT-1:0]  last;              // the number of the last that has left
-  /* verilator lint_on UNUSEDSIGNAL */
   logic              waiting_ready, waiting_valid, reads;
   logic              may_ask, answers_are_idle;
 
@@ -157,9 +153,7 @@ module texture_cache #(
   logic [LINE-1:0]      fill_line;
   logic [WORD_BITS-1:0] fill_word;
   logic [WORDS-1:0]     fill_place;
-  /* verilator lint_off UNUSEDSIGNAL */
   logic [1:0]           fill_size;
-  /* verilator lint_on UNUSEDSIGNAL */
   texture_answers #(
       .LINE     (LINE),
       .PORT_BITS(PORT_BITS),

@@ -10,12 +10,10 @@ module texture_cache_linear #(
     parameter int IN_FLIGHT = 32,  // samples that wait; a power of two
     parameter int REQUESTS = 16,   // lines that are not answered; a power of two
     parameter int TAIL = 1,        // bits that go along with a sample
-    parameter int SIDE_BITS = 12
+    parameter int SIDE_BITS = 12   // log2 of the longest side, texels
 ) (
     input logic clk_i,
-    /* verilator lint_off SYNCASYNCNET */
     input logic rst_ni,
-    /* verilator lint_on SYNCASYNCNET */
     input logic power_on_ni,
 
     // Samples: two columns and two rows, the first lowest
@@ -112,9 +110,7 @@ module texture_cache_linear #(
   logic [2:0]         d_format_q;
   logic [TAIL-1:0]    d_tail_q;
   localparam int PLACES = 2 * WAY_X + 2 * WAY_Y + 4 + 3;
-  /* verilator lint_off UNUSEDSIGNAL */
   logic [PLACES-1:0]  looked_up_places;
-  /* verilator lint_on UNUSEDSIGNAL */
   texture_tags #(
       .LINES    (LINES),
       .WAYS     (WAYS),

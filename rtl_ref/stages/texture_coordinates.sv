@@ -7,21 +7,21 @@
 // that go together are of one stamp, and share nothing else.
 // A fixed pipeline without enables. Specification: divide_by_q of model/stages/perspective.hpp and what texture_axis has.
 module texture_coordinates #(
-    parameter int LANES = 1,
-    parameter int Q_BITS = 27,
-    parameter int P_BITS = 28,
-    parameter int MANTISSA = 18,
-    parameter int NARROW = 17,
-    parameter int FRACTION = 8,
-    parameter int SHIFT_BITS = 6,
-    parameter int REACH_BITS = 5,
-    parameter int REFERENCE_BITS = 24,
-    parameter int QUEUE = 16,
-    parameter int SIDE_BITS = 12,
-    parameter int LINEAR = 0,
-    parameter int RECIPROCAL = 0,  // 0 from a table, 1 by division
+    parameter int LANES = 1,              // samples a clock, each with multipliers of its own: 1 or 4
+    parameter int Q_BITS = 27,            // of q, without sign
+    parameter int P_BITS = 28,            // of u and v over w, with their signs
+    parameter int MANTISSA = 18,          // k: bits of q that its reciprocal looks at
+    parameter int NARROW = 17,            // k_P: bits of P in the product
+    parameter int FRACTION = 8,           // f: fraction bits of a coordinate, texels
+    parameter int SHIFT_BITS = 6,         // of c, with its sign
+    parameter int REACH_BITS = 5,         // of x
+    parameter int REFERENCE_BITS = 24,    // of u_ref, with its sign
+    parameter int QUEUE = 16,             // stamps in the unit; a power of two
+    parameter int SIDE_BITS = 12,         // log2 of the longest side, texels
+    parameter int LINEAR = 0,             // 1: also the two texels whose middles are around the place; 2: the place alone
+    parameter int RECIPROCAL = 0,         // 0 from a table, 1 by division
     parameter int INDEX = $clog2(QUEUE),  // derived; not to be set
-    parameter int EXPONENT = 5
+    parameter int EXPONENT = 5            // bits of e
 ) (
     input logic clk_i,
 
@@ -94,18 +94,14 @@ module texture_coordinates #(
   generate
     for (k = 0; k < LANES; k++) begin : gen_lane
       logic [EXPONENT-1:0] zeros;
-      /* verilator lint_off UNUSEDSIGNAL */  // the reciprocal looks at the highest
       logic [30:0]         left;
-      /* verilator lint_on UNUSEDSIGNAL */
       assign {zeros, left} = normalised({q_i[k*Q_BITS+:Q_BITS], {(32 - Q_BITS) {1'b0}}});
 
       logic [MANTISSA-2:0]  mantissa_q;  // below its highest bit
       logic [EXPONENT-1:0]  exponent_q;
       logic [2*P_BITS-1:0]  p_1_q, p_2_q;
       logic [11:0]          amount_q;
-      /* verilator lint_off UNUSEDSIGNAL */  // its highest bit is set
       logic [MANTISSA-1:0]  reciprocal;
-      /* verilator lint_on UNUSEDSIGNAL */
       always_ff @(posedge clk_i) begin
         mantissa_q <= left[30-:MANTISSA-1];
         exponent_q <= EXPONENT'(Q_BITS - 1) - zeros;
@@ -135,9 +131,7 @@ module texture_coordinates #(
       end
 
       for (n = 0; n < 2; n++) begin : gen_axis
-        /* verilator lint_off UNUSEDSIGNAL */  // not negative, less than 64
         logic signed [7:0] amount;
-        /* verilator lint_on UNUSEDSIGNAL */
         assign amount = 8'($signed(shift[n*SHIFT_BITS+:SHIFT_BITS])) + 8'(exponent_q) + 8'(NARROW);
         always_ff @(posedge clk_i) amount_q[6*n+:6] <= amount[5:0];
         texture_axis #(

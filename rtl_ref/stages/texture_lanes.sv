@@ -10,15 +10,15 @@
 // they agree on one alone, and a group goes by again on the upper ones: what the lower gave of a sample waits in its lane's blend.
 // Specification: take_group() of model/stages/texture_unit.hpp; times: model/engines/cycle/texture_timing.hpp.
 module texture_lanes #(
-    parameter int FILTER = 0,           // 0 nearest, 1 linear as well, 2 levels as well
-    parameter int REFERENCE_BITS = 24,  // of FILTER 2
-    parameter int SIDE_BITS = 12,
-    parameter int AHEAD = 16,      // groups
-    parameter int LINES = 64,      // a power of two, at least 16
-    parameter int WAYS = 1,        // 1 or 2
-    parameter int PORT_BITS = 64,  // 16, 32 or 64
-    parameter int IN_FLIGHT = 32,  // passes that wait; a power of two
-    parameter int TAIL = 1,        // bits that go along with a group
+    parameter int FILTER = 0,                 // 0 nearest, 1 linear as well, 2 levels as well
+    parameter int REFERENCE_BITS = 24,        // of FILTER 2
+    parameter int SIDE_BITS = 12,             // log2 of the longest side, texels
+    parameter int AHEAD = 16,                 // groups
+    parameter int LINES = 64,                 // a power of two, at least 16
+    parameter int WAYS = 1,                   // 1 or 2
+    parameter int PORT_BITS = 64,             // 16, 32 or 64
+    parameter int IN_FLIGHT = 32,             // passes that wait; a power of two
+    parameter int TAIL = 1,                   // bits that go along with a group
     parameter int PLACE = REFERENCE_BITS + 8  // derived; not to be set
 ) (
     input logic clk_i,
@@ -28,7 +28,6 @@ module texture_lanes #(
     // Groups of samples, of which some live: texels, x lowest; no more than AHEAD between here and pops_o
     input  logic                     valid_i,
     input  logic [3:0]               live_i,
-    /* verilator lint_off UNUSEDSIGNAL */  // texels without levels, coordinates with them
     input  logic [4*2*SIDE_BITS-1:0] texel_i,
     input  logic [4*2*SIDE_BITS-1:0] next_i,
     input  logic [4*16-1:0]          part_i,
@@ -37,18 +36,15 @@ module texture_lanes #(
     input  logic [31:0]              level_part_i,
     input  logic [3:0]               is_linear_i,
     input  logic [3:0]               is_between_i,
-    /* verilator lint_on UNUSEDSIGNAL */
     input  logic [TAIL-1:0]          tail_i,
     output logic                     pops_o,  // one has left the queue
 
     // The texture: stays while samples are in front of the tags
-    /* verilator lint_off UNUSEDSIGNAL */
     input logic        sets_state_i,
     input logic [7:0]  log2_size_i,
     input logic [3:0]  wrap_i,
     input logic [3:0]  row_i,
     input logic        shares_i,
-    /* verilator lint_on UNUSEDSIGNAL */
     input logic [2:0]  format_i,
     input logic [25:0] base_i,
     input logic [1:0]  size_i,
@@ -104,9 +100,7 @@ module texture_lanes #(
   logic [23:0]       offset;
   logic [3:0]        row;
   logic              is_odd;
-  /* verilator lint_off UNUSEDSIGNAL */  // there is room: those ahead are counted
   logic              found_has_room;
-  /* verilator lint_on UNUSEDSIGNAL */
   genvar l, e;
   generate
     if (LEVELS != 0) begin : gen_rounds
@@ -211,10 +205,8 @@ module texture_lanes #(
       assign row              = row_i;
       assign is_odd           = 1'b0;
       assign rounds_are_empty = 1'b1;
-      /* verilator lint_off UNUSEDSIGNAL */
       logic unused;
       assign unused = &{lowest, 1'b0};
-      /* verilator lint_on UNUSEDSIGNAL */
     end
   endgenerate
 
@@ -332,11 +324,9 @@ module texture_lanes #(
   logic [2:0]         format;
   logic [PARTS-1:0]   parts_at;
   logic [TAIL-1:0]    tail;
-  /* verilator lint_off UNUSEDSIGNAL */
   logic [PLACES-1:0]  t_places;
   logic [PARTS-1:0]   t_parts;
   logic [REST-1:0]    t_rest;
-  /* verilator lint_on UNUSEDSIGNAL */
   logic               d_valid_q, d_ready, shares;
   assign shares   = LEVELS != 0 && shares_i;
   assign p_places = {({p_block_q[3*BLOCK+1+:BANK_Y], p_block_q[2*BLOCK+1+:BANK_Y]} & ~{2{HALF & {BANK_Y{shares}}}}) |
@@ -442,9 +432,7 @@ module texture_lanes #(
   logic [2:0]         d_format_q;
   logic [PARTS-1:0]   d_parts_q;
   logic [TAIL-1:0]    d_tail_q;
-  /* verilator lint_off UNUSEDSIGNAL */  // all four go together
   logic [3:0]         filter_ready;
-  /* verilator lint_on UNUSEDSIGNAL */
   assign d_ready = !d_valid_q || filter_ready[0];
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) d_valid_q <= 1'b0;
@@ -498,16 +486,12 @@ module texture_lanes #(
 
   // Of each lane the texels of its even and its odd column and row, then in their order. Of one texel a sample one alone.
   localparam int ALONG = 4 + 1 + TAIL + ((LEVELS != 0) ? 4 + LEVEL_PARTS : 0);  // through the filters, beside the first lane
-  /* verilator lint_off UNUSEDSIGNAL */  // of FILTER 0; all four go together
   logic [ALONG-1:0] along, filtered;
   logic [3:0]       sum_ready;
-  /* verilator lint_on UNUSEDSIGNAL */
-  /* verilator lint_off UNUSEDSIGNAL */  // of FILTER 2
   logic [3:0]       sum_joins, sum_leaves, sum_is_between;  // of them those whose upper level does not come later
   logic [31:0]      sum_level_part;
   logic             sum_is_second;
   logic [TAIL:0]    sum_rest;
-  /* verilator lint_on UNUSEDSIGNAL */
   generate
     if (LEVELS != 0) begin : gen_along_levels
       assign along = {d_parts_q[64+:LEVEL_PARTS], d_joins_q, d_joins_q & ~d_waits_q, d_ends_q, d_tail_q};
@@ -515,10 +499,8 @@ module texture_lanes #(
     end else begin : gen_along_level
       assign along = {d_joins_q, d_ends_q, d_tail_q};
       assign {sum_level_part, sum_is_between, sum_is_second, sum_joins, sum_leaves, sum_rest} = '0;
-      /* verilator lint_off UNUSEDSIGNAL */
       logic unused;
       assign unused = &d_waits_q;
-      /* verilator lint_on UNUSEDSIGNAL */
     end
     for (l = 0; l < 4; l++) begin : gen_lane
       logic [127:0] corner, banks;  // first row, second row; even row, odd row
@@ -548,11 +530,9 @@ module texture_lanes #(
       if (LINEAR != 0) begin : gen_linear
         localparam int BESIDE = (l == 0) ? ALONG : 1;
         logic [BESIDE-1:0] beside, came;
-        /* verilator lint_off UNUSEDSIGNAL */
         logic [95:0]       sum;
         logic [31:0]       sum_texel;
         logic              sum_valid;
-        /* verilator lint_on UNUSEDSIGNAL */
         texture_filter #(
             .LEVELS(LEVELS),
             .TAIL  (BESIDE)
@@ -576,17 +556,13 @@ module texture_lanes #(
           assign filtered = came;
         end else begin : gen_beside
           assign beside = 1'b0;
-          /* verilator lint_off UNUSEDSIGNAL */
           logic unused;
           assign unused = came[0];
-          /* verilator lint_on UNUSEDSIGNAL */
         end
         if (LEVELS != 0) begin : gen_blend
           localparam int KEPT = (l == 0) ? 5 + TAIL : 1;
           logic [KEPT-1:0] kept, leaving;
-          /* verilator lint_off UNUSEDSIGNAL */
           logic            texel_valid;
-          /* verilator lint_on UNUSEDSIGNAL */
           texture_blend #(
               .TAIL(KEPT)
           ) u_blend (
@@ -612,10 +588,8 @@ module texture_lanes #(
             assign {texel_lanes_o, texel_ends_o, texel_tail_o} = leaving;
           end else begin : gen_not_kept
             assign kept = 1'b0;
-            /* verilator lint_off UNUSEDSIGNAL */
             logic unused;
             assign unused = leaving[0];
-            /* verilator lint_on UNUSEDSIGNAL */
           end
         end else begin : gen_level
           assign texel_o[32*l+:32] = sum_texel;
@@ -633,10 +607,8 @@ module texture_lanes #(
         );
         assign filter_ready[l] = texel_ready_i;
         assign sum_ready[l]    = texel_ready_i;
-        /* verilator lint_off UNUSEDSIGNAL */
         logic unused;
         assign unused = &{corner, d_parts_q};
-        /* verilator lint_on UNUSEDSIGNAL */
         if (l == 0) begin : gen_along
           assign filtered      = along;
           assign texel_valid_o = d_valid_q;

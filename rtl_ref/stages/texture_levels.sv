@@ -7,9 +7,9 @@
 // neither that sum nor a block's place in the level needs an adder. Specification: level_place of
 // model/stages/texture_levels.hpp and texels_of of texture_unit.hpp.
 module texture_levels #(
-    parameter int REFERENCE_BITS = 24,
-    parameter int SIDE_BITS = 12,
-    parameter int TAIL = 1,  // bits that go along
+    parameter int REFERENCE_BITS = 24,        // of a place's texels, with their sign
+    parameter int SIDE_BITS = 12,             // log2 of the longest side, texels
+    parameter int TAIL = 1,                   // bits that go along
     parameter int PLACE = REFERENCE_BITS + 8  // derived; not to be set
 ) (
     input logic clk_i,

@@ -5,15 +5,15 @@
 //
 // Specification: take() of model/stages/texture_unit.hpp; the times are those of model/engines/cycle/texture_timing.hpp.
 module texture_linear #(
-    parameter int LEVELS = 0,
-    parameter int REFERENCE_BITS = 24,
-    parameter int SIDE_BITS = 12,
-    parameter int AHEAD = 16,
-    parameter int LINES = 64,
-    parameter int WAYS = 1,
-    parameter int PORT_BITS = 64,
-    parameter int IN_FLIGHT = 32,
-    parameter int TAIL = 1,
+    parameter int LEVELS = 0,                 // 1: levels, and the blend of two
+    parameter int REFERENCE_BITS = 24,        // of a place's texels, with their sign
+    parameter int SIDE_BITS = 12,             // log2 of the longest side, texels
+    parameter int AHEAD = 16,                 // samples that wait for the cache; a power of two
+    parameter int LINES = 64,                 // of the cache, 64 bytes each; a power of two, at least 16
+    parameter int WAYS = 1,                   // of the cache: 1 or 2
+    parameter int PORT_BITS = 64,             // of a beat: 16, 32 or 64
+    parameter int IN_FLIGHT = 32,             // samples that wait for memory; a power of two
+    parameter int TAIL = 1,                   // bits that go along with a sample
     parameter int PLACE = REFERENCE_BITS + 8  // derived; not to be set
 ) (
     input logic clk_i,
@@ -22,7 +22,6 @@ module texture_linear #(
 
     // Places; no more than AHEAD between here and pops_o
     input  logic                   valid_i,
-    /* verilator lint_off UNUSEDSIGNAL */  // texels without levels, coordinates with them
     input  logic [2*SIDE_BITS-1:0] texel_i,
     input  logic [2*SIDE_BITS-1:0] next_i,
     input  logic [15:0]            part_i,
@@ -31,18 +30,15 @@ module texture_linear #(
     input  logic [7:0]             level_part_i,
     input  logic                   is_linear_i,
     input  logic                   is_between_i,
-    /* verilator lint_on UNUSEDSIGNAL */
     input  logic [TAIL-1:0]        tail_i,
     output logic                   pops_o,  // one has left the queue
 
     // The texture: stays while samples are in front of the tags
-    /* verilator lint_off UNUSEDSIGNAL */
     input logic        sets_state_i,
     input logic [7:0]  log2_size_i,
     input logic [3:0]  wrap_i,
     input logic [3:0]  row_i,
     input logic        shares_i,
-    /* verilator lint_on UNUSEDSIGNAL */
     input logic [2:0]  format_i,
     input logic [25:0] base_i,
     input logic [1:0]  size_i,
@@ -83,16 +79,12 @@ module texture_linear #(
   logic [95:0]            sum;
   logic [31:0]            sum_texel;
   logic [CARRIED-17:0]    sum_carried;
-  /* verilator lint_off UNUSEDSIGNAL */  // there is room: those ahead are counted
   logic                   found_has_room;
-  /* verilator lint_on UNUSEDSIGNAL */
   assign pops_o = found_valid && found_ready;
 
   // What is counted: a sample between two levels once, with its second pass.
   logic               looked_up, finds_all;
-  /* verilator lint_off UNUSEDSIGNAL */  // of it whether it is a first or a second pass
   logic [CARRIED-1:0] looked_up_carried;
-  /* verilator lint_on UNUSEDSIGNAL */
   generate
     if (LEVELS != 0) begin : gen_passes
       logic misses_first_q, ends_first, ends_second;
@@ -188,10 +180,8 @@ module texture_linear #(
           .texel_o,
           .tail_o      (texel_tail_o)
       );
-      /* verilator lint_off UNUSEDSIGNAL */
       logic unused;
       assign unused = &sum_texel;
-      /* verilator lint_on UNUSEDSIGNAL */
     end else begin : gen_level
       logic [15:0]     found_part;
       logic [TAIL-1:0] found_tail;
@@ -219,10 +209,8 @@ module texture_linear #(
       assign sum_ready        = texel_ready_i;
       assign texel_o          = sum_texel;
       assign texel_tail_o     = sum_carried;
-      /* verilator lint_off UNUSEDSIGNAL */
       logic unused;
       assign unused = &sum;
-      /* verilator lint_on UNUSEDSIGNAL */
     end
   endgenerate
 

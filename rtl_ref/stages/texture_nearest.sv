@@ -5,12 +5,12 @@
 //
 // Specification: take() of model/stages/texture_unit.hpp; the times are those of model/engines/cycle/texture_timing.hpp.
 module texture_nearest #(
-    parameter int SIDE_BITS = 12,
-    parameter int AHEAD = 16,
-    parameter int LINES = 64,
-    parameter int PORT_BITS = 64,
-    parameter int IN_FLIGHT = 32,
-    parameter int TAIL = 1
+    parameter int SIDE_BITS = 12,  // log2 of the longest side, texels
+    parameter int AHEAD = 16,      // samples that wait for the cache; a power of two
+    parameter int LINES = 64,      // of the cache, 64 bytes each; a power of two, at least 2
+    parameter int PORT_BITS = 64,  // of a beat: 16 to 128
+    parameter int IN_FLIGHT = 32,  // samples that wait for memory; a power of two
+    parameter int TAIL = 1         // bits that go along with a sample
 ) (
     input logic clk_i,
     input logic rst_ni,
@@ -66,9 +66,7 @@ module texture_nearest #(
   logic [31:0]      code;
   logic [2:0]       code_format;
   logic             found_valid, found_ready;
-  /* verilator lint_off UNUSEDSIGNAL */  // there is room: those ahead are counted
   logic             found_has_room;
-  /* verilator lint_on UNUSEDSIGNAL */
   assign block_x          = texel_i[SIDE_BITS-1:2];
   assign block_y          = texel_i[2*SIDE_BITS-1:SIDE_BITS+2];
   assign texel            = {texel_i[SIDE_BITS+1:SIDE_BITS], texel_i[1:0]};

@@ -8,9 +8,9 @@
 // Where a level lies is said of the one pass that leaves, not of four samples. Specification: take_group() of
 // model/stages/texture_unit.hpp, level_place of texture_levels.hpp.
 module texture_rounds #(
-    parameter int REFERENCE_BITS = 24,
-    parameter int SIDE_BITS = 12,
-    parameter int TAIL = 1,  // bits that go along with a group
+    parameter int REFERENCE_BITS = 24,        // of a place's texels, with their sign
+    parameter int SIDE_BITS = 12,             // log2 of the longest side, texels
+    parameter int TAIL = 1,                   // bits that go along with a group
     parameter int PLACE = REFERENCE_BITS + 8  // derived; not to be set
 ) (
     input logic clk_i,

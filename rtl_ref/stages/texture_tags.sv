@@ -13,20 +13,18 @@
 // the way follows from the data alone. Levels then need no halves of their own.
 // Specification: look_up() of model/stages/texture_unit.hpp; times: model/engines/cycle/texture_timing.hpp.
 module texture_tags #(
-    parameter int LINES = 64,      // a power of two, at least 16
-    parameter int WAYS = 1,        // 1 or 2
-    parameter int PORT_BITS = 64,  // 16, 32 or 64
-    parameter int IN_FLIGHT = 32,  // passes that wait; a power of two
-    parameter int REQUESTS = 16,   // lines that are not answered; a power of two
-    parameter int CARRIED = 1,     // bits that go along with a pass
-    parameter int SIDE_BITS = 12,
+    parameter int LINES = 64,            // a power of two, at least 16
+    parameter int WAYS = 1,              // 1 or 2
+    parameter int PORT_BITS = 64,        // 16, 32 or 64
+    parameter int IN_FLIGHT = 32,        // passes that wait; a power of two
+    parameter int REQUESTS = 16,         // lines that are not answered; a power of two
+    parameter int CARRIED = 1,           // bits that go along with a pass
+    parameter int SIDE_BITS = 12,        // log2 of the longest side, texels
     parameter int LINE = $clog2(LINES),  // derived, not to be set; as what follows
-    parameter int BLOCK = SIDE_BITS - 2
+    parameter int BLOCK = SIDE_BITS - 2  // derived: bits of a block's column and row
 ) (
     input logic clk_i,
-    /* verilator lint_off SYNCASYNCNET */
     input logic rst_ni,
-    /* verilator lint_on SYNCASYNCNET */
     input logic power_on_ni,
 
     // Passes: which banks they use, column and row lowest first; the even and the odd block's column and row
@@ -109,9 +107,7 @@ module texture_tags #(
   logic               sweeps_q, is_occupied, blocked, any_asks;
   logic [SET-1:0]     sweep_q;
   logic [COUNT-1:0]   issued_q, read_q;
-  /* verilator lint_off UNUSEDSIGNAL */
   logic [COUNT-1:0]   last;
-  /* verilator lint_on UNUSEDSIGNAL */
   logic [NUMBER-1:0]  last_group, group, oldest_group;
   logic               waiting_ready, waiting_valid, reads, may_ask, answers_are_idle;
 

@@ -121,11 +121,9 @@ module triangle_setup (
     end
   end
 
-  /* verilator lint_off UNUSEDSIGNAL */  // what a part does not look at ends in the part before
   logic [PARTS*T-1:0] packets_q;  // of each part
   raster_pkg::triangle_packet_t first_packet, delta_packet, behind_packet, corner_packet, anchor_packet, base_packet,
       last_packet;
-  /* verilator lint_on UNUSEDSIGNAL */
   assign first_packet  = packets_q[0+:T];
   assign delta_packet  = packets_q[DELTA_PART*T+:T];
   assign behind_packet = packets_q[(DELTA_PART+1)*T+:T];  // of planes that come when the triangle has gone on
@@ -157,10 +155,8 @@ module triangle_setup (
   localparam int AREA_AT = 3 * raster_pkg::EDGE_VALUE_BITS +  // in a packet
                            (raster_pkg::MSAA_SAMPLES > 1 ? 3 * raster_pkg::GRID_BITS : 0);
   localparam int REMAINDER = A + 2;                          // -2 A <= it < 2 A
-  /* verilator lint_off UNUSEDSIGNAL */  // behind the last divider nobody takes the remainder
   logic [DIVIDERS*REMAINDER-1:0] remainders;
   logic [DIVIDERS*QUOTIENT-1:0]  quotients;
-  /* verilator lint_on UNUSEDSIGNAL */
   genvar d, b;
   generate
     for (d = 0; d < DIVIDERS; d++) begin : gen_divider
@@ -222,9 +218,7 @@ module triangle_setup (
   end
 
   // Of each plane the upper bits, rounded by the next one; what is below is dropped, spare bits with it.
-  /* verilator lint_off UNUSEDSIGNAL */
   logic [QUOTIENT-1:0] quotient_q;
-  /* verilator lint_on UNUSEDSIGNAL */
   logic [PLANES*R-1:0] uppers, halves;
   logic [R-1:0]        upper, half, reciprocal, reciprocal_q;
   genvar p;
@@ -257,10 +251,8 @@ module triangle_setup (
   logic [PLANES*CZ-1:0]        codes_0, codes_1, codes_2;
   logic [PLANES-1:0]           plane_differs;  // its differences are made
   // Planes over w start at the vertex of the smallest 1/w, the first of several: 2, 1, none of the two. Plane AFFINE is 1/w.
-  /* verilator lint_off UNUSEDSIGNAL */  // without such planes nobody asks
   logic [1:0]                  base, base_q;
   logic                        differs_over_w, differs_in_w;
-  /* verilator lint_on UNUSEDSIGNAL */
   generate
     for (p = 0; p < PLANES; p++) begin : gen_codes
       localparam int B = CODE_BITS_OF[32*p+:32];
@@ -304,10 +296,8 @@ module triangle_setup (
   // What later phases need of a plane goes along: the differences up to the numerators, the start up to the values.
   localparam int START = SUM + 1 - CLOCKS;               // takes it
   localparam int TO_START = START - DELTA - CLOCKS + 1;  // registers
-  /* verilator lint_off UNUSEDSIGNAL */  // ranges are of codes without a sign
   logic signed [CZ-1:0]    c0;
   logic [CZ-1:0]           low, high;
-  /* verilator lint_on UNUSEDSIGNAL */
   logic [DC-1:0]           ac_q, bc_q;
   logic [TO_START*(Z+1)-1:0] start_q;  // the newest is the lowest
   logic [Z:0]              start;
@@ -519,9 +509,7 @@ module triangle_setup (
   end
   generate
     for (lane = 0; lane < LANES; lane++) begin : gen_gradient
-      /* verilator lint_off UNUSEDSIGNAL */  // planes live modulo 2^P
       logic signed [PRODUCT_BITS+LEFT-1:0] shifted;
-      /* verilator lint_on UNUSEDSIGNAL */
       logic [PRODUCT_BITS-1:0] product;
       long_product #(
           .LEFT        (N),
@@ -628,9 +616,7 @@ module triangle_setup (
     end else begin : gen_shared_values
       // The way to the anchor from one corner after the other: what they need of the packet waits beside the parts.
       localparam int WAY = MOVE - 1;
-      /* verilator lint_off UNUSEDSIGNAL */  // without planes over w only the first
       logic [6*C-1:0]      corners_q;  // {y, x} of vertex 2, 1, 0
-      /* verilator lint_on UNUSEDSIGNAL */
       logic [2*(C+1)-1:0]  anchor_q;   // {y, x}
       logic [D-1:0]        to_q;
       logic                is_y;
@@ -682,10 +668,8 @@ module triangle_setup (
   end
 
   // ------------------------------------------------------------------------------------------------------------ packet
-  /* verilator lint_off UNUSEDSIGNAL */  // most planes have fewer bits than the widest
   logic [2*PLANES*P-1:0] setup_steps_q;
   logic [PLANES*P-1:0]   setup_values_q;
-  /* verilator lint_on UNUSEDSIGNAL */
   always_ff @(posedge clk_i) begin
     if (moves[OFFER-1]) begin
       setup_steps_q  <= steps_q;

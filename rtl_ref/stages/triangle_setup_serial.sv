@@ -292,15 +292,11 @@ module triangle_setup_serial (
   logic               factor, sign_q, restarts, product, addend, negates, carry_q;
   logic [MOVED-1:0]   moved_q;  // bits of the numerator that have gone by, after LEAD zeros
   logic [ACC-1:0]     operand;
-  /* verilator lint_off UNUSEDSIGNAL */
   logic [ACC+1:0]     total;  // its lowest bit only makes the carry
-  /* verilator lint_on UNUSEDSIGNAL */
   logic [ACC-1:0]     acc_q;
 
   assign has_moved       = moved_q == all_moved;
-  /* verilator lint_off UNSIGNED */  // LEAD may be 0
   assign moves_numerator = is_gradient && moved_q >= MOVED'(LEAD) && !has_moved;
-  /* verilator lint_on UNSIGNED */
   always_comb begin
     case (state_q)
       FIRST: factor = bc;

@@ -17,7 +17,7 @@ foreach(file IN LISTS sources)
   endif()
 endforeach()
 if(VERILATOR)
-  list(FILTER listed INCLUDE REGEX "^rtl_ref/(lib|stages|raster_|primitive_)")
+  list(FILTER listed INCLUDE REGEX "^rtl_ref/(lint|lib|stages|raster_|primitive_)")
   execute_process(COMMAND "${VERILATOR}" --lint-only -Wall --top-module raster_top ${listed}
     WORKING_DIRECTORY "${SOURCE}" COMMAND_ERROR_IS_FATAL ANY)
 endif()

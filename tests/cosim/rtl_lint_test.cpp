@@ -52,7 +52,7 @@ Config random_config(Random& random) {
 }
 
 /// What Verilator says of the design with this package; empty: nothing.
-std::string lint(const std::string& package) {
+std::string lint(const std::string& package, const std::string& top = "raster_top") {
   const std::string test = testing::UnitTest::GetInstance()->current_test_info()->name();  // others run beside it
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / ("halfplane_lint_" + test);
   std::filesystem::create_directories(folder);
@@ -60,8 +60,8 @@ std::string lint(const std::string& package) {
                     rtl = kRtl.string();
   std::ofstream(file) << package;
   const std::string command = "verilator_bin --lint-only -Wall -I" + rtl + " -I" + rtl + "/lib -I" + rtl +
-                              "/stages --top-module raster_top " + file + " " + rtl + "/raster_top.sv > " + said +
-                              " 2>&1";
+                              "/stages --top-module " + top + " " + rtl + "/lint.vlt " + file + " " + rtl +
+                              "/raster_top.sv > " + said + " 2>&1";
   const int status = std::system(command.c_str());
   std::ostringstream text;
   text << std::ifstream(said).rdbuf();
@@ -98,6 +98,13 @@ TEST(RtlLintMustFail, AWireThatNobodyReadsIsFound) {
   const auto at = package.find(bits) + bits.size();
   EXPECT_NE(lint(package.replace(at, package.find(';', at) - at, "3")), "")
       << "pixels of a tile, and no bit for the tile";
+}
+
+TEST(RtlLintMustFail, ASignalThatNothingReadsIsFoundDespiteTheWaivers) {
+  const std::string module =
+      "module forgets (input logic a_i, output logic y_o);\n"
+      "  logic forgotten;\n  assign forgotten = a_i;\n  assign y_o = a_i;\nendmodule\n";
+  EXPECT_NE(lint(raster_pkg(preset("tiny")) + module, "forgets").find("'forgotten'"), std::string::npos);
 }
 
 }  // namespace

