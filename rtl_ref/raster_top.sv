@@ -30,14 +30,10 @@
 // docs/pipeline.md says what each stage takes and how long; the host must clear depth and colour once before it draws.
 module raster_top (
     input logic clk_i,
-    /* verilator lint_off SYNCASYNCNET */  // memory_port recovers from it
     input logic rst_ni,       // at any time, for a cycle at least
-    /* verilator lint_on SYNCASYNCNET */
     input logic power_on_ni,  // with it when power comes: what memory was asked for before is forgotten
 
-    /* verilator lint_off UNUSEDSIGNAL */  // without the unit of lines
     input logic [raster_pkg::STALL_BITS-1:0] stall_i,
-    /* verilator lint_on UNUSEDSIGNAL */
 
     // From the host
     input  logic                          primitive_valid_i,
@@ -45,11 +41,9 @@ module raster_top (
     input  raster_pkg::primitive_packet_t primitive_i,
 
     // From the host: the lines, in the order of the primitives of kind line that hold their places
-    /* verilator lint_off UNUSEDSIGNAL */  // without the unit
     input  logic                    line_valid_i,
     output logic                    line_ready_o,
     input  raster_pkg::line_setup_t line_i,
-    /* verilator lint_on UNUSEDSIGNAL */
 
     // To memory: bursts of beats. Each beat that was read is answered, and each burst that was written, in order
     input  raster_pkg::memory_layout_t layout_i,  // from the host; stays as it is while anything is under way
@@ -61,14 +55,12 @@ module raster_top (
     input  raster_pkg::memory_answer_t answer_i,
 
     // To the memory of textures: reads of lines, answered beat by beat in their order
-    /* verilator lint_off UNUSEDSIGNAL */  // without a texture unit
     output logic                         texture_valid_o,
     input  logic                         texture_ready_i,
     output raster_pkg::texture_request_t texture_o,
     input  logic                         texel_valid_i,
     output logic                         texel_ready_o,
     input  raster_pkg::texel_beat_t      texel_i,
-    /* verilator lint_on UNUSEDSIGNAL */
 
     // The counters of one cycle: while hold is high they stay, to be read word by word, and counting goes on
     input  logic                        counters_hold_i,
@@ -84,8 +76,6 @@ module raster_top (
   localparam int DEPTHS = SAMPLES * raster_pkg::STORED_DEPTH_BITS;  // the words of a stamp
   localparam bit HAS_TEXTURE = raster_pkg::COORDINATES != 0;
   localparam bit LATE = raster_pkg::LATE_ALPHA != 0;
-  /* verilator lint_off UNUSEDSIGNAL */  // not every design has every stage, and what only the co-simulation looks at
-  /* verilator lint_off UNDRIVEN */
 
   // ---------------------------------------------------------------------------------------------------------- the streams
   // As the consumer sees them.
@@ -821,7 +811,5 @@ module raster_top (
       .hold_i          (counters_hold_i),
       .counters_o
   );
-  /* verilator lint_on UNDRIVEN */
-  /* verilator lint_on UNUSEDSIGNAL */
 
 endmodule

@@ -3,9 +3,7 @@
 module state_token #(
     parameter int WORD = raster_pkg::STATE_WORD_BITS  // derived; not to be set
 ) (
-    /* verilator lint_off UNUSEDSIGNAL */  // the rest of it
     input  raster_pkg::fragment_packet_t           fragment_i,
-    /* verilator lint_on UNUSEDSIGNAL */
     output logic                                   is_token_o,
     output logic [raster_pkg::DEPTH_FUNC_BITS-1:0] register_o,
     output logic [WORD-1:0]                        word_o,

@@ -27,9 +27,7 @@ module stored_fragment #(
   genvar s;
   generate
     if (APART) begin : gen_apart
-      /* verilator lint_off UNUSEDSIGNAL */  // what is not stored
       logic [FRAGMENT-1:0] entering;
-      /* verilator lint_on UNUSEDSIGNAL */
       logic [FRAGMENT-1:0] leaving;
       assign entering   = fragment_i;
       assign fragment_o = leaving;

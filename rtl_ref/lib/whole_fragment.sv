@@ -5,9 +5,7 @@ module whole_fragment #(
     parameter bit APART = raster_pkg::APART != 0  // derived; else the fragment is whole
 ) (
     input  raster_pkg::fragment_packet_t fragment_i,
-    /* verilator lint_off UNUSEDSIGNAL */
     input  raster_pkg::context_packet_t  context_i,
-    /* verilator lint_on UNUSEDSIGNAL */
     output raster_pkg::fragment_packet_t fragment_o
 );
 

@@ -104,14 +104,12 @@ module cache_tags #(
   logic [BLOCK_Y-1:0] fragment_y;
   logic [LINE-1:0]    fragment_line;
 
-  /* verilator lint_off UNUSEDSIGNAL */  // high bits where a tile is a block, or a block a stamp
   function automatic [LINE-1:0] line_of(input [BLOCK_X-1:0] x, input [BLOCK_Y-1:0] y);
     line_of = (LINE'(x) & LINE_X_MASK) | ((LINE'(y) & LINE_Y_MASK) << LINE_X);
   endfunction
   function automatic [BIT-1:0] bit_of(input [BLOCK_X-1:0] x);
     bit_of = BIT'(x);
   endfunction
-  /* verilator lint_on UNUSEDSIGNAL */
 
   assign is_clear      = fragment_i.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR;
   assign is_token      = is_clear || fragment_i.kind == raster_pkg::PRIMITIVE_KIND_FLUSH;  // not a pixel of a line
@@ -119,7 +117,6 @@ module cache_tags #(
   assign clears_all    = is_clear && fragment_i.state.depth_write && fragment_i.state.color_write;
   assign skips_walk    = clears_all || clears_bin;  // over the lines: they are dropped, or there is nothing in them
   assign fragment_line = line_of(fragment_x, fragment_y);
-  /* verilator lint_off PINCONNECTEMPTY */  // its number there is looked at a cycle later
   block_stamp u_fragment_stamp (
       .tile_x_i (fragment_i.key.tile_x),
       .tile_y_i (fragment_i.key.tile_y),
@@ -128,7 +125,6 @@ module cache_tags #(
       .block_y_o(fragment_y),
       .stamp_o  ()
   );
-  /* verilator lint_on PINCONNECTEMPTY */
 
   // The fragment, or line of a walk, whose line is being read; its flags are looked at meanwhile. Of a fragment in the block of
   // the one before, which has samples, the line is known to have them, and of one without samples nobody asks.
@@ -184,9 +180,7 @@ module cache_tags #(
   logic [STATE-1:0]   line_read, read_state, line_state_q, line_new, forward_q;
   logic               is_forwarded_q, is_next, line_writes;
   logic [LINE-1:0]    line_read_address, line_write_address;
-  /* verilator lint_off UNUSEDSIGNAL */  // wider than a block's y where the cache is larger than the target
   logic [LINE-1:0]    line_above_x;
-  /* verilator lint_on UNUSEDSIGNAL */
   logic [BLOCK_X-1:0] block_x, line_x;
   logic [BLOCK_Y-1:0] block_y, line_y;
   logic               line_valid, line_dirty, line_falls, line_has_depth;
@@ -204,7 +198,6 @@ module cache_tags #(
       .block_y_o(block_y),
       .stamp_o  (stamp)
   );
-  /* verilator lint_off PINCONNECTEMPTY */
   block_stamp u_read_stamp (
       .tile_x_i (read_q.key.tile_x),
       .tile_y_i (read_q.key.tile_y),
@@ -213,7 +206,6 @@ module cache_tags #(
       .block_y_o(read_y),
       .stamp_o  ()
   );
-  /* verilator lint_on PINCONNECTEMPTY */
 
   assign line_read_address  = state_q == LOOK ? walk_q : fragment_line;
   assign line_write_address = state_q == MARK ? walk_q : line_q;
@@ -294,9 +286,7 @@ module cache_tags #(
   // What the tags find.
   logic is_dirty, evicts, is_full, is_known;
   logic starts_color, uses, stores_depth;
-  /* verilator lint_off UNUSEDSIGNAL */  // without units that have a state
   logic sets_state;
-  /* verilator lint_on UNUSEDSIGNAL */
   logic [1:0] cleared;
   raster_pkg::depth_source_t source;
   logic [STAMPS-1:0] stamp_bit, known, colored, line_depth;

@@ -25,18 +25,14 @@ module color_write #(
     // From depth_cache and what stands between
     input  logic                                                         stamp_valid_i,
     output logic                                                         stamp_ready_o,
-    /* verilator lint_off UNUSEDSIGNAL */  // what late_test looks at
     input  raster_pkg::tested_stamp_t                                    tested_i,
-    /* verilator lint_on UNUSEDSIGNAL */
     input  logic [raster_pkg::SAMPLES-1:0]                               opaque_i,  // samples that alpha keeps
     input  logic [raster_pkg::SAMPLES*raster_pkg::SHADED_COLOR_BITS-1:0] color_i,
     input  logic [raster_pkg::STORED_COLOR_BITS-1:0]                     clear_color_i,
 
     // From memory_answers: stored colours, for those that wait for them
-    /* verilator lint_off UNUSEDSIGNAL */  // without blending
     input logic                                                         answer_valid_i,
     input logic [raster_pkg::SAMPLES*raster_pkg::STORED_COLOR_BITS-1:0] answer_i,  // that was taken last, from the next clock on
-    /* verilator lint_on UNUSEDSIGNAL */
     output logic                              answer_ready_o,
 
     // A stamp that leaves, in a slot for victims; and that all of the next eviction's are there
@@ -301,9 +297,7 @@ module color_write #(
       logic [DITHERS:WRITES] out_2_q;
       logic                 starts_1_q, is_here_1_q, is_answered_1_q;
       logic [COLOR-1:0]     clear_color_1_q;
-      /* verilator lint_off UNUSEDSIGNAL */  // rgb565 has no alpha, rgba8888 no dithering
       logic [4:0]           out;  // of the operations what comes last: channels written, dithers
-      /* verilator lint_on UNUSEDSIGNAL */
       logic [2:0]           is_same_line;   // of the head
       logic [1:0]           is_same_stamp;  // 2 and 3, of 1
 

@@ -10,17 +10,13 @@ module context_ram #(
     parameter int SLOT = raster_pkg::SLOT_BITS  // derived; not to be set
 ) (
     input logic clk_i,
-    /* verilator lint_off UNUSEDSIGNAL */  // with nothing that is apart
     input logic rst_ni,
-    /* verilator lint_on UNUSEDSIGNAL */
 
     // From coarse_raster
     input logic                                  write_i,
     input logic [SLOT-1:0]                       write_slot_i,
-    /* verilator lint_off UNUSEDSIGNAL */  // the serial front has steps in another way
     input raster_pkg::context_packet_t           context_i,
     input logic [raster_pkg::ALL_LOCAL_BITS-1:0] step_i,  // of the serial front: along x a cycle behind write_i, then along y
-    /* verilator lint_on UNUSEDSIGNAL */
 
     // To interpolate, in the cycle behind the read
     input  logic                        read_i,
@@ -28,10 +24,8 @@ module context_ram #(
     output raster_pkg::context_packet_t context_o,
 
     // To the fragment at the test, likewise: what is apart
-    /* verilator lint_off UNUSEDSIGNAL */  // without APART
     input  logic                         tested_i,
     input  raster_pkg::fragment_packet_t tested_fragment_i,
-    /* verilator lint_on UNUSEDSIGNAL */
     output raster_pkg::context_packet_t  tested_context_o,
     output logic [raster_pkg::TRIANGLE_BITS-1:0] number_o  // of the next triangle
 );

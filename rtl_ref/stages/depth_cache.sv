@@ -38,10 +38,8 @@ module depth_cache #(
     output logic [SAMPLES*CODE-1:0]      stored_depth_o,
 
     // From depth_test: the write of the fragment of the cycle before, and what its samples have from now on
-    /* verilator lint_off UNUSEDSIGNAL */  // where it goes is known here; colours go on by themselves
     input logic                      write_valid_i,
     input raster_pkg::write_packet_t write_i,
-    /* verilator lint_on UNUSEDSIGNAL */
     input logic [SAMPLES*CODE-1:0]   word_i,
 
     // To shading: the stamp that was tested; of SHADED_STAMPS at most none has left
@@ -52,12 +50,10 @@ module depth_cache #(
     input  logic                         stamp_leaves_i,  // color_write takes one
 
     // From late_test, in that cycle: depths that it writes, if any are late
-    /* verilator lint_off UNUSEDSIGNAL */  // without LATE_ALPHA; of the stamp its place alone
     input logic                        late_valid_i,
     input raster_pkg::tested_stamp_t   late_i,
     input logic [SAMPLES-1:0]          late_writes_i,
     input logic [SAMPLES*(CODE+1)-1:0] late_word_i,  // of each sample whether memory does not have it, and the word
-    /* verilator lint_on UNUSEDSIGNAL */
 
     // To write_back: a block that leaves gets a slot, and its depths come into it
     output logic                    evicts_o,
@@ -167,9 +163,7 @@ module depth_cache #(
   logic              tests_alpha, x1_late;  // by the register of the alpha test; the item at the test is late
 
   logic                    x1_valid_q, x1_writes_q;  // at the test; it writes the RAM, perhaps
-  /* verilator lint_off UNUSEDSIGNAL */  // of a block that leaves what has a slot by then
   raster_pkg::tag_result_t x1_q;
-  /* verilator lint_on UNUSEDSIGNAL */
   logic                    x1_on_chip;
 
   assign slot_free    = taken_q != (SLOT + 1)'(VICTIMS);
@@ -222,9 +216,7 @@ module depth_cache #(
   logic [STAMP-1:0] v_stamp_q;
   logic [SLOT-1:0] v_slot_q, slot_q;  // of the next one
   logic [LINE+STAMP-1:0] depth_read_address;
-  /* verilator lint_off UNUSEDSIGNAL */  // wider than a block's y where the cache is larger than the target
   logic [LINE-1:0] line_above_x;
-  /* verilator lint_on UNUSEDSIGNAL */
   assign depth_read_address = {left_q != '0 ? left_line_q : found.line, reads_victim ? number_of(next) : found.stamp};
   assign line_above_x         = found.line >> LINE_X;
   assign evicts_o             = goes && found.evicts;
@@ -291,9 +283,7 @@ module depth_cache #(
   endgenerate
 
   // ------------------------------------------------------------------------------------- behind the test, on its way to colour
-  /* verilator lint_off UNUSEDSIGNAL */  // what a texture unit looks at, or operations on colours, if there are any
   raster_pkg::fragment_packet_t x1_item_q;
-  /* verilator lint_on UNUSEDSIGNAL */
   always_ff @(posedge clk_i) x1_item_q <= item;
   assign stamp_valid_o        = x1_valid_q;
   assign stamp_fragment_o     = x1_item_q;

@@ -59,9 +59,7 @@ module depth_test (
 
   // D1: never stalls.
   logic valid_q;
-  /* verilator lint_off UNUSEDSIGNAL */  // kind, ends_primitive and all codes but depth end here
   raster_pkg::fragment_packet_t fragment_q;
-  /* verilator lint_on UNUSEDSIGNAL */
   logic [SAMPLES*COLOR-1:0] color_q;
   logic [SAMPLES*CODE-1:0]  depth;
   logic [SAMPLES-1:0]       is_nearer, passes_stencil;  // passes the depth test; the stencil test
@@ -103,9 +101,7 @@ module depth_test (
 
   // The alpha test, where the colour is known here: without a texture unit. With one W decides, and what writes depth is late.
   // Its register is set by a token.
-  /* verilator lint_off UNUSEDSIGNAL */  // without HiZ
   logic is_late;
-  /* verilator lint_on UNUSEDSIGNAL */
   // An operation of the stencil as stencil_test wants it: what counts has bit 2, down bit 1, and bit 0 where it stops at the end;
   // what does not count keeps, zeroes, replaces, inverts.
   function automatic [2:0] as_bits(input [2:0] op);
@@ -156,10 +152,8 @@ module depth_test (
         assign opaque  = alpha_passes;
         assign is_late = 1'b0;
       end else begin : gen_late
-        /* verilator lint_off UNUSEDSIGNAL */
         logic [7:0] unused;
         assign unused = reference_q;
-        /* verilator lint_on UNUSEDSIGNAL */
         assign opaque  = '1;
         assign is_late = alpha_func_q != raster_pkg::DEPTH_FUNC_ALWAYS || (N > 1 && covers_q);
       end

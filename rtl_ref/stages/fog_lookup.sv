@@ -8,12 +8,10 @@ module fog_lookup #(
     parameter int PLACES = 19 * raster_pkg::PIXELS > 43 ? 19 * raster_pkg::PIXELS : 43,  // derived; not to be set
     parameter int WORD = raster_pkg::FOG_UNIT == 0 ? 1 : PLACES + 3
 ) (
-    /* verilator lint_off UNUSEDSIGNAL */  // without the unit; most of the fragment goes along by itself
     input  logic                         clk_i,
     input  logic                         rst_ni,
     input  logic                         stamp_valid_i,
     input  raster_pkg::fragment_packet_t fragment_i,
-    /* verilator lint_on UNUSEDSIGNAL */
     output logic [WORD-1:0]              word_o
 );
 
@@ -32,14 +30,11 @@ module fog_lookup #(
       logic [PLACES-1:0] places;
       logic              is_token, sets_color, sets_line;
       logic [1:0]        unit;
-      /* verilator lint_off UNUSEDSIGNAL */  // longer than a register of the fog
-      logic [raster_pkg::DEPTH_FUNC_BITS-1:0] register;
       logic [raster_pkg::STATE_WORD_BITS-1:0] word;
-      /* verilator lint_on UNUSEDSIGNAL */
       state_token u_token (
           .fragment_i,
           .is_token_o(is_token),
-          .register_o(register),
+          .register_o(),
           .word_o    (word),
           .unit_o    (unit)
       );

@@ -7,7 +7,6 @@ module fog_stage #(
     parameter int PLACES = 19 * raster_pkg::PIXELS > 43 ? 19 * raster_pkg::PIXELS : 43,
     parameter int WORD = raster_pkg::FOG_UNIT == 0 ? 1 : PLACES + 3
 ) (
-    /* verilator lint_off UNUSEDSIGNAL */  // without the unit
     input logic clk_i,
     input logic rst_ni,
 
@@ -18,7 +17,6 @@ module fog_stage #(
     input  logic [WORD-1:0]           fog_i,   // of fog_lookup
     input  logic [PIXELS-1:0]         mask_i,
     input  logic [COLORS-1:0]         rgba_i,
-    /* verilator lint_on UNUSEDSIGNAL */
 
     // To color_write
     output logic                      stamp_valid_o,

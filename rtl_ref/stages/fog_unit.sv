@@ -24,9 +24,7 @@ module fog_unit #(
     input  logic                          is_fogged_i,
     input  logic                          sets_color_i,  // a token: the word is the colour
     input  logic                          sets_line_i,   // likewise: a line's number, start and rise
-    /* verilator lint_off UNUSEDSIGNAL */  // longer than a colour, than places
     input  logic [WORD-1:0]               word_i,        // of each sample 19 bits, fog_place; or a token's word
-    /* verilator lint_on UNUSEDSIGNAL */
 
     // The same in fog
     output logic                          stamp_valid_o,
@@ -99,9 +97,7 @@ module fog_unit #(
       logic [RISE-1:0]             rise;
       logic [START-1:0]            start;
       logic [RISE+PART-1:0]        product;
-      /* verilator lint_off UNUSEDSIGNAL */  // the fraction is dropped
       logic signed [START+PART:0]  sum;
-      /* verilator lint_on UNUSEDSIGNAL */
       logic signed [15:0]          whole;
       logic [FACTOR-1:0]           factor, factor_q;
 
@@ -130,10 +126,8 @@ module fog_unit #(
         localparam int AT = 8 * (CHANNELS * s + c);
         if (c < 3) begin : gen_mixed
           logic signed [8:0]  difference;
-          /* verilator lint_off UNUSEDSIGNAL */  // likewise
           logic signed [22:0] weighed;
           logic signed [22:0] rounded;
-          /* verilator lint_on UNUSEDSIGNAL */
           assign difference = $signed({1'b0, color_2_q[AT+:8]}) - $signed({1'b0, fog_q[8*c+:8]});
           assign weighed    = 23'(difference * $signed({1'b0, factor_q}));
           assign rounded    = $signed({3'b000, fog_q[8*c+:8], 12'd2048}) + weighed;

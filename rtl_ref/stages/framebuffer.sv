@@ -10,7 +10,6 @@ module framebuffer (
     input logic clk_i,
     input logic rst_ni,
 
-    /* verilator lint_off UNUSEDSIGNAL */  // of the packets only some fields matter here
     // From depth_test: accesses, answered in the next cycle; access_color_i is the stored colour of sample 0 of the cycle before
     input  logic                                                       access_valid_i,
     output logic                                                       access_ready_o,
@@ -29,7 +28,6 @@ module framebuffer (
     input  logic                         response_valid_i,
     output logic                         response_ready_o,
     input  raster_pkg::memory_response_t response_i,
-    /* verilator lint_on UNUSEDSIGNAL */
 
     // Stamps that this cycle adds to the counters
     output logic fill_o,
@@ -95,9 +93,7 @@ module framebuffer (
   logic [TILE_X-1:0] tag_x;
   logic [TILE_Y-1:0] tag_y;
   logic line_depth_dirty, line_color_dirty, is_last_line;
-  /* verilator lint_off UNUSEDSIGNAL */  // wider than a tile's y where the cache is larger than the target
   logic [LINE-1:0]   line_above_x;
-  /* verilator lint_on UNUSEDSIGNAL */
   logic [TILE_X-1:0] tile_x, tile_x_q, victim_x;
   logic [TILE_Y-1:0] tile_y, tile_y_q;
   logic              reads_flags;
@@ -341,9 +337,7 @@ module framebuffer (
   logic [WORD-1:0]    word_depth, word_color, flag_bit;
   logic [BIT-1:0]     bit_x;
   logic [1:0]         flag_write;  // colour, depth
-  /* verilator lint_off UNUSEDSIGNAL */  // no bits are left where a word is a row
   logic [TILE_X-1:0]  word_x, last_word;
-  /* verilator lint_on UNUSEDSIGNAL */
   logic [TILE_Y+WORD_X-1:0] flag_read_address, flag_write_address;
   // Looked at, and written but for MARK, when they have been read: the bit of the tile whose word that is.
   assign bit_x      = BIT'(tile_x_q);
@@ -390,9 +384,7 @@ module framebuffer (
   logic [ADDRESS-1:0]    read_address;
   logic [LINE-1:0]       new_line;  // what is written
   logic [STAMP_BITS-1:0] new_stamp;
-  /* verilator lint_off UNUSEDSIGNAL */  // high bits, which are 0
   logic [STAMP_BITS-1:0] new_row;
-  /* verilator lint_on UNUSEDSIGNAL */
   assign reads        = state_q == SERVE || steps;
   assign read_address = {line, state_q == SERVE ? access_i.stamp : stamp};
   assign new_line     = is_fill ? line_q : write_line;

@@ -7,7 +7,6 @@ module late_test #(
     parameter int CODE = raster_pkg::STORED_DEPTH_BITS,
     parameter int COUNT = $clog2(SAMPLES + 1)
 ) (
-    /* verilator lint_off UNUSEDSIGNAL */  // without LATE_ALPHA
     input logic clk_i,
     input logic rst_ni,
 
@@ -15,7 +14,6 @@ module late_test #(
     input logic                             stamp_leaves_i,
     input raster_pkg::tested_stamp_t        stamp_i,
     input logic [raster_pkg::PIXELS*8-1:0]  alpha_i,
-    /* verilator lint_on UNUSEDSIGNAL */
     output logic [SAMPLES-1:0]              opaque_o,  // samples that alpha keeps
 
     // To depth_cache: of each sample whether memory does not have it, and its word

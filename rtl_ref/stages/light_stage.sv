@@ -6,10 +6,8 @@ module light_stage #(
     parameter int PIXELS = raster_pkg::PIXELS,  // derived; not to be set
     parameter int COLORS = raster_pkg::PIXELS * raster_pkg::WRITTEN_COLOR_BITS
 ) (
-    /* verilator lint_off UNUSEDSIGNAL */  // without normals
     input logic clk_i,
     input logic rst_ni,
-    /* verilator lint_on UNUSEDSIGNAL */
 
     // From depth_cache
     input logic                         stamp_valid_i,
@@ -48,14 +46,11 @@ module light_stage #(
       logic [PIXELS*FRAGMENT-1:0]   code;
       logic                         is_token;
       logic [1:0]                   unit;
-      /* verilator lint_off UNUSEDSIGNAL */  // longer than a register of the light
-      logic [raster_pkg::DEPTH_FUNC_BITS-1:0] register;
       logic [raster_pkg::STATE_WORD_BITS-1:0] word;
-      /* verilator lint_on UNUSEDSIGNAL */
       state_token u_token (
           .fragment_i,
           .is_token_o(is_token),
-          .register_o(register),
+          .register_o(),
           .word_o    (word),
           .unit_o    (unit)
       );

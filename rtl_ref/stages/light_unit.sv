@@ -55,12 +55,8 @@ module light_unit #(
   logic [LOOKS-1:1]     lit_q;
   logic [(STAGES-1)*SAMPLES-1:0] sample_q;  // of stage 1 lowest
   logic                 enable_q;
-  /* verilator lint_off UNUSEDSIGNAL */  // not all of it has a register
   logic [WORD-1:0]      word;
-  /* verilator lint_on UNUSEDSIGNAL */
-  /* verilator lint_off UNUSEDSIGNAL */  // there is room: X counts
   logic waiting_ready, colors_ready, carried_ready, colors_valid, carried_valid;
-  /* verilator lint_on UNUSEDSIGNAL */
 
   fifo #(
       .WIDTH(2 + SAMPLES + NORMALS),
@@ -155,9 +151,7 @@ module light_unit #(
   genvar i;
   generate
     for (i = 0; i < 3; i++) begin : gen_component
-      /* verilator lint_off UNUSEDSIGNAL */  // what is cut off
       logic [P-1:0] moved;
-      /* verilator lint_on UNUSEDSIGNAL */
       logic signed [M-1:0] own;
       assign moved       = p_2_q[P*i+:P] << zeros_2_q;
       assign m[M*i+:M]   = moved[P-1-:M] + M'(moved[P-1-M] && moved[P-1-:M] != {1'b0, {(M - 1) {1'b1}}});
@@ -188,18 +182,14 @@ module light_unit #(
   );
 
   // m.L, m.H in 17 bits and a half for what is dropped; by |m| of 15 bits or of 14.
-  /* verilator lint_off UNUSEDSIGNAL */
   function automatic [ROOT-1:0] part_of(input [2*M-1:0] dot, input is_long);
     part_of = {is_long ? dot[14+:ROOT-1] : dot[13+:ROOT-1], 1'b1};
   endfunction
-  /* verilator lint_on UNUSEDSIGNAL */
   logic            is_long;
   logic [ROOT-1:0] light_6_q, half_6_q, light_7_q, half_7_q;
   logic [8:6]      faces_light_q, faces_half_q;
   logic [2*ROOT-1:0] light_8_q, half_8_q;
-  /* verilator lint_off UNUSEDSIGNAL */  // the fraction is dropped
   logic [2*ROOT-1:0] light_sum, half_sum;
-  /* verilator lint_on UNUSEDSIGNAL */
   logic [ROOT-1:0]   light_cosine, half_cosine;  // 2^-17
   assign is_long = square_5_q[2*M-1:2*M-2] != '0;
   always_ff @(posedge clk_i) begin
@@ -225,10 +215,8 @@ module light_unit #(
   localparam int FALL = 11;
   logic [ROOT-1:0]   away;  // 1 - N.H, 2^-17
   logic [ROOT+6:0]   place;
-  /* verilator lint_off UNUSEDSIGNAL */  // the fraction is dropped
   logic [ROOT-1:0]   diffuse;
   logic signed [START+PART+1:0] sum;
-  /* verilator lint_on UNUSEDSIGNAL */
   logic [FACTOR-1:0] diffuse_9_q, diffuse_10_q, specular, specular_10_q;
   logic              is_dark_9_q;
   logic [PART-1:0]   part_9_q;
@@ -288,10 +276,8 @@ module light_unit #(
   genvar c, s;
   generate
     for (c = 0; c < 3; c++) begin : gen_channel
-      /* verilator lint_off UNUSEDSIGNAL */  // the fraction is dropped
       logic [2*FACTOR-1:0] weighed;
       logic [22:0]         colored;
-      /* verilator lint_on UNUSEDSIGNAL */
       logic [FACTOR:0]     much_11_q;
       logic [20:0]         highlight_11_q;
       assign weighed = (2*FACTOR)'(diffuse_q[FACTOR*c+:FACTOR]) * (2*FACTOR)'(diffuse_10_q) + (2*FACTOR)'(2048);

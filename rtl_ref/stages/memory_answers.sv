@@ -13,28 +13,22 @@ module memory_answers #(
     input logic rst_ni,
 
     // From write_back: a read goes to memory, of colours, with one a pixel; answers are those of a merge
-    /* verilator lint_off UNUSEDSIGNAL */  // without blending
     input logic read_goes_i,
     input logic read_color_i,
     input logic read_of_pixels_i,
-    /* verilator lint_on UNUSEDSIGNAL */
     input logic merges_i,
 
     // From memory_port
     input  logic                         response_valid_i,
     output logic                         response_ready_o,
-    /* verilator lint_off UNUSEDSIGNAL */  // lanes wider than a depth code
     input  raster_pkg::memory_response_t response_i,
-    /* verilator lint_on UNUSEDSIGNAL */
 
     // To depth_cache and to color_write: what is taken is there from the next cycle on
     output logic                     depth_valid_o,
     input  logic                     depth_ready_i,
     output logic [SAMPLES*CODE-1:0]  depth_o,
     output logic                     color_valid_o,
-    /* verilator lint_off UNUSEDSIGNAL */
     input  logic                     color_ready_i,
-    /* verilator lint_on UNUSEDSIGNAL */
     output logic [SAMPLES*COLOR-1:0] color_o
 );
 
@@ -70,9 +64,7 @@ module memory_answers #(
       localparam int READS = 1 << $clog2(2 * QUEUE + PLACES);  // that may not have been answered
       logic                     is_color, color_ready, answers_pixels;  // the next answer
       logic [SAMPLES*COLOR-1:0] response_color;
-      /* verilator lint_off UNUSEDSIGNAL */  // there is room, and one answer for each
       logic                     planes_ready, planes_valid;
-      /* verilator lint_on UNUSEDSIGNAL */
       // Which plane the next answer is of: as the reads went out.
       localparam int PLANE = COMPRESSES ? 2 : 1;
       logic [PLANE-1:0] asked_plane, answered_plane;

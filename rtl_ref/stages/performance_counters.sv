@@ -6,7 +6,6 @@ module performance_counters #(
     parameter int COUNT = $clog2(raster_pkg::SAMPLES + 1),  // derived; not to be set
     parameter int TESTED = 2 * raster_pkg::TILE_SHIFT + $clog2(raster_pkg::MSAA_SAMPLES) + 1
 ) (
-    /* verilator lint_off UNUSEDSIGNAL */  // without the unit, or those that are counted
     input logic clk_i,
     input logic rst_ni,
 
@@ -33,7 +32,6 @@ module performance_counters #(
     input logic [6:0]        texture_use_i,
 
     input  logic                        hold_i,  // what is shown stays, and counting goes on
-    /* verilator lint_on UNUSEDSIGNAL */
     output raster_pkg::counter_packet_t counters_o
 );
 
@@ -43,9 +41,7 @@ module performance_counters #(
   raster_pkg::counter_packet_t counters_q, shown_q;
   logic [COUNTERS-1:0]         highest, highest_q;
   logic                        fill_q, evict_q, clear_q;
-  /* verilator lint_off UNUSEDSIGNAL */
   logic [8:0]                  texture_use_q;
-  /* verilator lint_on UNUSEDSIGNAL */
   logic                        overflow_q;
   assign counters_o = shown_q;
 

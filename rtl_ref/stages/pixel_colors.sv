@@ -60,9 +60,7 @@ module pixel_colors #(
     input  logic                             other_asked_i,  // another read was taken, or answered
     input  logic                             other_answered_i,
     input  logic                             answers_i,
-    /* verilator lint_off UNUSEDSIGNAL */  // lanes of samples
     input  logic [SAMPLES*raster_pkg::MEMORY_LANE_BITS-1:0] answer_i,
-    /* verilator lint_on UNUSEDSIGNAL */
     output logic                             merges_o,  // all stamps are written, with what was read
     output logic                             takes_answers_o,  // none but its own are to come
     input  logic [STAMP-1:0]                 stamp_i,
@@ -111,7 +109,6 @@ module pixel_colors #(
   // The block at work.
   logic [BLOCK_X-1:0] read_x, block_x;
   logic [BLOCK_Y-1:0] read_y, block_y;
-  /* verilator lint_off PINCONNECTEMPTY */
   block_stamp u_read_block (
       .tile_x_i (read_tile_x_i),
       .tile_y_i (read_tile_y_i),
@@ -120,7 +117,6 @@ module pixel_colors #(
       .block_y_o(read_y),
       .stamp_o  ()
   );
-  /* verilator lint_on PINCONNECTEMPTY */
   assign block_x = writes_i ? write_x_i : read_x;
   assign block_y = writes_i ? write_y_i : read_y;
   logic [WORD_X-1:0]  block_word;

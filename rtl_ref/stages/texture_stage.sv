@@ -15,10 +15,8 @@ module texture_stage #(
     // From light_stage and fog_lookup
     input logic                         stamp_valid_i,
     input raster_pkg::tested_stamp_t    stamp_i,
-    /* verilator lint_off UNUSEDSIGNAL */  // most of the fragment has been looked at; without fog
     input raster_pkg::fragment_packet_t fragment_i,
     input logic [FOG-1:0]               fog_i,
-    /* verilator lint_on UNUSEDSIGNAL */
     input logic [PIXELS-1:0]            writes_i,  // pixels that get a colour
     input logic [COLORS-1:0]            color_i,   // of the primitive
 
@@ -54,9 +52,7 @@ module texture_stage #(
   logic                                   is_token, is_levels;
   logic [1:0]                             unit;
   logic [raster_pkg::DEPTH_FUNC_BITS-1:0] register;
-  /* verilator lint_off UNUSEDSIGNAL */  // longer than a state
   logic [raster_pkg::STATE_WORD_BITS-1:0] word;
-  /* verilator lint_on UNUSEDSIGNAL */
   state_token u_token (
       .fragment_i,
       .is_token_o(is_token),

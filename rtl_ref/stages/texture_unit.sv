@@ -57,23 +57,19 @@ module texture_unit #(
     input logic [2*REACH_BITS-1:0]            reach_i,
     input logic [2*REFERENCE_BITS-1:0]        reference_i,
     input logic                               sets_state_i,   // for the stamps behind it; without a mask
-    /* verilator lint_off UNUSEDSIGNAL */  // of FILTER 2
     input logic                               sets_levels_i,
     input logic                               moves_in_i,     // a part of a triangle's lines
     input logic [PIXEL-1:0]                   x_i,            // of the stamp's first sample
     input logic [PIXEL-1:0]                   y_i,
-    /* verilator lint_on UNUSEDSIGNAL */
     input logic [WORD-1:0]                    state_i,        // TextureState::pack, TextureLevels::pack, line_part
 
     // Of OVER_W: the triangle's colours lie over w, and color_i does not count
-    /* verilator lint_off UNUSEDSIGNAL */
     input logic                                     divides_colors_i,
     input logic [SAMPLES*CHANNELS*COLOR_P_BITS-1:0] color_p_i,  // red lowest
     input logic [CHANNELS*COLOR_SHIFT_BITS-1:0]     color_shift_i,
     input logic [CHANNELS*COLOR_REACH_BITS-1:0]     color_reach_i,
     input logic [8*CHANNELS-1:0]                    least_color_i,  // of the vertices
     input logic [8*CHANNELS-1:0]                    greatest_color_i,
-    /* verilator lint_on UNUSEDSIGNAL */
 
     // The same with their colours
     output logic                          stamp_valid_o,
@@ -162,17 +158,13 @@ module texture_unit #(
   logic [WAITING-1:0]     entering, waiting;
   logic [INDEX-1:0]       entered_q, split_q;  // number of the next such stamp at the door, and at the split
   logic                   passes_door, has_alpha, stamp_waits, stamp_is_textured, stamp_has_alpha, stamp_leaves;
-  /* verilator lint_off UNUSEDSIGNAL */  // of OVER_W
   logic                   waiting_divides;
-  /* verilator lint_on UNUSEDSIGNAL */
   logic                   waiting_is_textured, stamp_divides;
   logic [1:0]             stamp_combine;
   logic [PAYLOAD-1:0]     stamp_payload;
   logic [SAMPLES-1:0]     stamp_mask;
   logic [SAMPLES*COLOR-1:0] stamp_color;
-  /* verilator lint_off UNUSEDSIGNAL */  // there is room
   logic                   waiting_ready, stamps_ready;
-  /* verilator lint_on UNUSEDSIGNAL */
   assign passes_door = enters || (stamp_valid_i && token != '0);
   assign has_alpha   = door_format_q != 3'd0 && door_format_q != 3'd2;
   // Of a stamp whether it is textured; and of OVER_W whether its colours are divided.
@@ -305,7 +297,6 @@ module texture_unit #(
   logic [CLOCKS:0]            valid_q;  // of a clock ago lowest
   logic [AHEAD_TAIL*(CLOCKS+1)-1:0] tail_q;
   logic [LANES*2*SIDE_BITS-1:0] texel;
-  /* verilator lint_off UNUSEDSIGNAL */  // of a linear filter
   logic [LANES*2*SIDE_BITS-1:0] next;
   logic [LANES*16-1:0]        part;
   logic [LANES*(2*REFERENCE_BITS+16)-1:0] place;  // of levels, as far as the level
@@ -317,7 +308,6 @@ module texture_unit #(
   logic [LANES*4-1:0]         level;
   logic [LANES-1:0]           level_is_linear, level_is_between;
   logic                       shares;
-  /* verilator lint_on UNUSEDSIGNAL */
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) valid_q <= '0;
     else valid_q <= {valid_q[CLOCKS-1:0], splits && waiting_is_textured};
@@ -337,9 +327,7 @@ module texture_unit #(
 
   logic [LANES*Q_BITS-1:0]  q_lanes;
   logic [LANES*P_BITS-1:0]  u_lanes, v_lanes;
-  /* verilator lint_off UNUSEDSIGNAL */
   logic [LANES*COLOR_P-1:0] color_p_lanes;
-  /* verilator lint_on UNUSEDSIGNAL */
   generate
     for (s = 0; s < LANES; s++) begin : gen_lane
       assign q_lanes[s*Q_BITS+:Q_BITS] = place_q[s*PLACE+:Q_BITS];
@@ -596,9 +584,7 @@ module texture_unit #(
 
   // ------------------------------------------------------------------------------------------------- colours over w, divided
   // As many wait as there are samples in the stamps inside, so that no sample waits for a place.
-  /* verilator lint_off UNUSEDSIGNAL */
   logic              takes_divided;
-  /* verilator lint_on UNUSEDSIGNAL */
   logic              divided_valid, divided_last;
   logic [GROUP-1:0]  divided_group;
   logic [LANES*COLOR-1:0] divided;
@@ -607,9 +593,7 @@ module texture_unit #(
       localparam int COLOR_CLOCKS = 8;  // of colors_over_w
       logic [COLOR_CLOCKS:0] divides_q;  // of a clock ago lowest
       logic [LANES*COLOR-1:0] color;
-      /* verilator lint_off UNUSEDSIGNAL */  // there is room
       logic                  divided_ready;
-      /* verilator lint_on UNUSEDSIGNAL */
       always_ff @(posedge clk_i or negedge rst_ni) begin
         if (!rst_ni) divides_q <= '0;
         else divides_q <= {divides_q[COLOR_CLOCKS-1:0], splits && waiting_divides};

@@ -21,9 +21,7 @@ module write_back #(
     output logic                        ordered_ready_o,
     input  raster_pkg::block_order_t    ordered_i,
     input  logic                        flush_valid_i,
-    /* verilator lint_off UNUSEDSIGNAL */
     input  raster_pkg::memory_request_t flush_i,
-    /* verilator lint_on UNUSEDSIGNAL */
     input  logic [WORD-1:0]             flush_word_i,
     input  logic [CODE-1:0]             clear_depth_i,
     input  logic [COLOR-1:0]            clear_color_i,
@@ -54,11 +52,9 @@ module write_back #(
     input  logic                         request_ready_i,
     output raster_pkg::memory_request_t  request_o,        // without its data
     output logic [8*raster_pkg::REQUEST_BYTES-1:0] request_bytes_o,  // which are these, as they lie in memory
-    /* verilator lint_off UNUSEDSIGNAL */  // without pixel_colors
     input  logic                         response_valid_i,
     input  logic                         response_ready_i,
     input  raster_pkg::memory_response_t response_i,
-    /* verilator lint_on UNUSEDSIGNAL */
 
     // To memory_answers: a read goes out, of colours, with one a pixel; answers are those of a merge
     output logic read_goes_o,
@@ -67,13 +63,11 @@ module write_back #(
     output logic merges_o,
 
     // Tokens: a word of the bits of blocks with one colour a pixel is read, and there in the next cycle; or written
-    /* verilator lint_off UNUSEDSIGNAL */  // without pixel_colors
     input  logic                                    token_reads_i,
     input  logic                                    token_writes_i,
     input  logic [raster_pkg::FLAG_WORD_X_BITS-1:0] token_word_x_i,
     input  logic [raster_pkg::BLOCK_Y_BITS-1:0]     token_word_y_i,
     input  logic [WORD-1:0]                         token_word_i,
-    /* verilator lint_on UNUSEDSIGNAL */
     output logic [WORD-1:0]                         token_word_o,
 
     output logic fills_o,   // this cycle asks for a stamp

@@ -15,11 +15,14 @@ changed_sources() {
 # Switches that clang-format 14 does not know, because more than the words themselves stands in the comment.
 format_switches() { ! sources | xargs grep -nE '// clang-format (on|off).+'; }
 
-# Each module with the widths of `embedded`, the whole design with those of every design of model/designs.toml.
+# Each module with the widths of `embedded`, or with a texture unit if it is about one; the whole design with those of every
+# design of model/designs.toml.
 lint_rtl() {
   local file package status=0
   for file in rtl_ref/stages/*.sv rtl_ref/lib/*.sv; do
-    verilate_lint rtl_ref/raster_pkg.sv "$file" || status=1
+    package=rtl_ref/raster_pkg.sv
+    case $file in */texture_stage.sv | */state_token.sv) package=build/release/rtl_ref/packages/blended/raster_pkg.sv ;; esac
+    verilate_lint "$package" "$file" || status=1
   done
   for package in build/release/rtl_ref/packages/*/raster_pkg.sv; do
     verilate_lint "$package" rtl_ref/raster_top.sv || status=1
