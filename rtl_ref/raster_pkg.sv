@@ -560,8 +560,8 @@ package raster_pkg;
     depth_source_t source;  // of the stored depths
     logic [FLAG_BITS-1:0] starts_color;  // no colour of the stamp is on the chip
     logic [FLAG_BITS-1:0] evicts;  // another block leaves the line
-    logic [TAG_X_BITS-1:0] tag_x;  // that block's tag
-    logic [TAG_Y_BITS-1:0] tag_y;  // 
+    logic [TAG_X_BITS-1:0] tag_x;  // that block's tag: of its column
+    logic [TAG_Y_BITS-1:0] tag_y;  // of its row
     logic [BLOCK_STAMPS-1:0] depth;  // stamps of it whose depths may have been written
     logic [BLOCK_STAMPS-1:0] color;  // likewise colours
     logic [2-1:0] fills;  // colour, depth: memory holds garbage
@@ -571,15 +571,15 @@ package raster_pkg;
   typedef struct packed {
     logic [VICTIM_COUNT_BITS-1:0] writes;  // so many evicted blocks go to memory first
     logic [FLAG_BITS-1:0] reads;  // then a stamp of depths is read
-    logic [TILE_X_BITS-1:0] tile_x;  // which stamp
-    logic [TILE_Y_BITS-1:0] tile_y;  // 
-    logic [STAMP_INDEX_BITS-1:0] stamp;  // 
+    logic [TILE_X_BITS-1:0] tile_x;  // the stamp's tile, its column
+    logic [TILE_Y_BITS-1:0] tile_y;  // its tile's row
+    logic [STAMP_INDEX_BITS-1:0] stamp;  // its number in the tile
   } block_order_t;
   localparam int BLOCK_ORDER_BITS = VICTIM_COUNT_BITS + FLAG_BITS + TILE_X_BITS + TILE_Y_BITS + STAMP_INDEX_BITS;  // of the struct above
 
   typedef struct packed {
-    logic [BLOCK_X_BITS-1:0] x;  // where the block belongs
-    logic [BLOCK_Y_BITS-1:0] y;  // 
+    logic [BLOCK_X_BITS-1:0] x;  // the block's column in the target
+    logic [BLOCK_Y_BITS-1:0] y;  // its row
     logic [BLOCK_STAMPS-1:0] depth;  // stamps whose depths come into its slot
     logic [BLOCK_STAMPS-1:0] color;  // likewise colours
   } victim_t;
@@ -587,7 +587,7 @@ package raster_pkg;
 
   typedef struct packed {
     logic [CACHE_LINE_BITS-1:0] line;  // where its block lies
-    logic [BLOCK_STAMP_BITS-1:0] stamp;  // 
+    logic [BLOCK_STAMP_BITS-1:0] stamp;  // its number in the block
     logic [FLAG_BITS-1:0] starts_color;  // no colour of the stamp is on the chip
     logic [SAMPLE_MASK_BITS-1:0] mask;  // samples whose colour is written
     logic [FLAG_BITS-1:0] evicts;  // another block leaves the line

@@ -98,6 +98,8 @@ module raster_top (
   logic [8*raster_pkg::REQUEST_BYTES-1:0]  request_bytes;  // its data as they lie in memory
   raster_pkg::memory_response_t            response_data;
   raster_pkg::color_packet_t               color_data;
+  logic                                    tested_valid;   // the fragment that is tested, with what is stored under it
+  raster_pkg::fragment_packet_t            tested;
 
   // At the producer, before a stall.
   logic primitive_ready, triangle_offered, setup_offered, tile_offered, stamp_offered, fragment_offered;
@@ -356,8 +358,8 @@ module raster_top (
   endgenerate
 
   // ---------------------------------------------------------------------------------------------------------------- the test
-  logic                         tested_valid, tested_ready, access_valid, access_ready;
-  raster_pkg::fragment_packet_t tested, access;
+  logic                         tested_ready, access_valid, access_ready;
+  raster_pkg::fragment_packet_t access;
   logic [raster_pkg::STORED_COLOR_BITS-1:0] access_color;
   logic [DEPTHS-1:0]            stored_depth;
   depth_test u_depth_test (

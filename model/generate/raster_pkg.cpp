@@ -206,8 +206,8 @@ void print_blocks(std::ostream& out, const Config& config) {
                  {"depth_source_t", "color_source", "of the stored colours, which operations read", blends},
                  {"FLAG_BITS", "starts_color", "no colour of the stamp is on the chip"},
                  {"FLAG_BITS", "evicts", "another block leaves the line"},
-                 {"TAG_X_BITS", "tag_x", "that block's tag"},
-                 {"TAG_Y_BITS", "tag_y", ""},
+                 {"TAG_X_BITS", "tag_x", "that block's tag: of its column"},
+                 {"TAG_Y_BITS", "tag_y", "of its row"},
                  {"BLOCK_STAMPS", "depth", "stamps of it whose depths may have been written"},
                  {"BLOCK_STAMPS", "color", "likewise colours"},
                  {"2", "fills", "colour, depth: memory holds garbage"}});
@@ -215,12 +215,12 @@ void print_blocks(std::ostream& out, const Config& config) {
                 {{"FLAG_BITS", "reads_color", "behind that, a stamp of colours is read", blends},
                  {"VICTIM_COUNT_BITS", "writes", "so many evicted blocks go to memory first"},
                  {"FLAG_BITS", "reads", "then a stamp of depths is read"},
-                 {"TILE_X_BITS", "tile_x", "which stamp"},
-                 {"TILE_Y_BITS", "tile_y", ""},
-                 {"STAMP_INDEX_BITS", "stamp", ""}});
+                 {"TILE_X_BITS", "tile_x", "the stamp's tile, its column"},
+                 {"TILE_Y_BITS", "tile_y", "its tile's row"},
+                 {"STAMP_INDEX_BITS", "stamp", "its number in the tile"}});
   print_members(out, "victim",
-                {{"BLOCK_X_BITS", "x", "where the block belongs"},
-                 {"BLOCK_Y_BITS", "y", ""},
+                {{"BLOCK_X_BITS", "x", "the block's column in the target"},
+                 {"BLOCK_Y_BITS", "y", "its row"},
                  {"BLOCK_STAMPS", "depth", "stamps whose depths come into its slot"},
                  {"BLOCK_STAMPS", "color", "likewise colours"}});
   print_members(out, "tested_stamp",
@@ -237,7 +237,7 @@ void print_blocks(std::ostream& out, const Config& config) {
                  {"DEPTH_FUNC_BITS", "state_register", "of these registers one", has_color_states},
                  {"32", "state", "its value", has_color_states},
                  {"CACHE_LINE_BITS", "line", "where its block lies"},
-                 {"BLOCK_STAMP_BITS", "stamp", ""},
+                 {"BLOCK_STAMP_BITS", "stamp", "its number in the block"},
                  {"FLAG_BITS", "starts_color", "no colour of the stamp is on the chip"},
                  {"SAMPLE_MASK_BITS", "mask", "samples whose colour is written"},
                  {"FLAG_BITS", "evicts", "another block leaves the line"},

@@ -163,6 +163,7 @@ module cache_tags #(
     end
   end
 
+  logic [LINE-1:0] line_read_address;
   always_ff @(posedge clk_i) begin
     if (takes_fragment) read_q <= fragment_i;
     if (takes_fragment || looks) begin
@@ -179,7 +180,7 @@ module cache_tags #(
   // The lines.
   logic [STATE-1:0]   line_read, read_state, line_state_q, line_new, forward_q;
   logic               is_forwarded_q, is_next, line_writes;
-  logic [LINE-1:0]    line_read_address, line_write_address;
+  logic [LINE-1:0]    line_write_address;
   logic [LINE-1:0]    line_above_x;
   logic [BLOCK_X-1:0] block_x, line_x;
   logic [BLOCK_Y-1:0] block_y, line_y;
@@ -308,6 +309,7 @@ module cache_tags #(
   assign colored      = hits_q ? line_colored : '0;
   assign is_known     = (known & stamp_bit) != '0;
   assign starts_color = is_access && fragment_q.state.color_write && (colored & stamp_bit) == '0;
+  logic keeps_part, tests_alpha;  // what is written keeps a part of what was stored; alpha may keep it from being written
   always_comb begin
     source = raster_pkg::DEPTH_SOURCE_NONE;
     if (is_known) source = raster_pkg::DEPTH_SOURCE_CHIP;
@@ -317,7 +319,6 @@ module cache_tags #(
     if (!is_access) source = raster_pkg::DEPTH_SOURCE_NONE;
   end
   // With a stencil: what is written keeps a part of what was stored, the stencil is looked at; a clear has a value of it.
-  logic           keeps_part;   // so it is asked for
   logic           writes_word;  // the depth or the stencil may change
   logic [CODE-1:0] clear_word;
   generate
@@ -357,7 +358,6 @@ module cache_tags #(
   // What is done with colours: a register that tokens set. Where it reads what is stored, a stamp's colours are asked for once;
   // where alpha is tested, what passes the depth test may still not be written, so depths are asked for.
   raster_pkg::depth_source_t color_source;
-  logic                      tests_alpha;
   logic [REST-1:0]           line_rest;
   generate
     if (raster_pkg::BLEND_LANES != 0) begin : gen_reads_color
