@@ -144,9 +144,7 @@ std::vector<Setting> all_settings() {
           "that the RTL's pipelined triangle setup takes for a plane: 1, or 2 with half of the multipliers", 1, 2),
       choice<&Config::texture_unit>("texture.unit", {"off", "nearest", "bilinear", "trilinear"},
                                     "what the RTL's texture unit can do; off: it has none"),
-      number<&Config::texture_lanes>("texture.lanes", "pixels",
-                                     "that the RTL's texture unit divides, addresses and filters in a clock: 1 or 4", 1,
-                                     4),
+      number<&Config::texture_lanes>("texture.lanes", "pixels", "texture pixels per cycle: 1 or 4", 1, 4),
       number<&Config::texture_cache_kb>("texture.cache_kb", "KB",
                                         "texels that the texture unit holds on the chip; a power of two", 1, 64),
       number<&Config::texture_ways>(

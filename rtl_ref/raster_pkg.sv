@@ -29,7 +29,7 @@ package raster_pkg;
   localparam int SETUP_KIND = 0;  // 0 pipelined, 1 serial: RTL triangle setup: several multipliers, or one
   localparam int SETUP_PLANE_CLOCKS = 1;  // that the RTL's pipelined triangle setup takes for a plane: 1, or 2 with half of the multipliers
   localparam int TEXTURE_UNIT = 0;  // 0 off, 1 nearest, 2 bilinear, 3 trilinear: what the RTL's texture unit can do; off: it has none
-  localparam int TEXTURE_LANES = 1;  // that the RTL's texture unit divides, addresses and filters in a clock: 1 or 4
+  localparam int TEXTURE_LANES = 1;  // texture pixels per cycle: 1 or 4
   localparam int TEXTURE_CACHE_KB = 4;  // texels that the texture unit holds on the chip; a power of two
   localparam int TEXTURE_WAYS = 1;  // in the texture unit's cache where a block may lie: 1, or 2, of which the one used longer ago is replaced
   localparam int TEXTURE_QUEUE = 32;  // between their coordinates and their texels in the texture unit; a power of two
@@ -63,8 +63,8 @@ package raster_pkg;
   localparam int COORDINATES = 0;  // of a texture, planes behind that of 1/w
   localparam int PERSPECTIVE_GUARD_BITS = 4;  // l: fraction bits of those inside a tile
   localparam int COORDINATE_FRACTION = 8;  // f: of a texture coordinate, texels
-  localparam int COLORS_OVER_W = 0;  // planes behind those, which the texture unit divides
-  localparam int COLOR_NARROW_BITS = 13;  // k_P of those
+  localparam int COLORS_OVER_W = 0;  // colour planes divided by w
+  localparam int COLOR_NARROW_BITS = 13;  // mantissa bits of the reciprocal of w, for colours
   localparam int NORMALS = 0;  // planes of those, over w; instead of colours
   localparam int STATE_WORD_BITS = 40;  // of a token: the codes of all planes but those
   localparam int TEXTURE_STAMPS = 16;  // between X and W, with a texture unit

@@ -1,4 +1,4 @@
-// Colored stamps: what X is through with, on its way to W with the colours that are written: through the texture unit, where
+// Colored stamps: fragments between depth test and colour write, with the colours that are written: through the texture unit, where
 // there is one, light in front of it, fog and rop behind it; else as they are, two of them at most.
 //
 // A stamp never waits on its way in: X counts those inside, at most PLACES.

@@ -1,5 +1,5 @@
-// Framebuffer of blocks: the depth and colour of blocks of 4x4 pixels on the chip, a direct-mapped write-back cache of the
-// planes in memory whose misses nobody waits for.
+// Framebuffer of blocks: the depth and colour of blocks of 4x4 pixels on the chip, a non-blocking, direct-mapped write-back
+// cache of the buffers in memory.
 //
 //   fragment -> cache_tags -> items -> [X: depth RAM] <-> depth_test -> (texture_unit) -> [W: color_write]
 //                   '------ orders -> requests <- victims -----'------------'
