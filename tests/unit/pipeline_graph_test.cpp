@@ -19,9 +19,9 @@ const std::filesystem::path kRoot = HALFPLANE_SOURCE_DIR;
 
 TEST(PipelineGraph, EveryStageIsAPairOfFilesOfItsNameAndAStageOfTheHostIsOne) {
   for (const StageInfo& stage : kStageInfo) {
-    const std::string stem = "stages/" + std::string(stage.name);
-    EXPECT_EQ(std::filesystem::exists(kRoot / "model" / (stem + ".hpp")), stage.side != Side::memory) << stem;
-    EXPECT_EQ(std::filesystem::exists(kRoot / "rtl_ref" / (stem + ".sv")), stage.side == Side::rtl) << stem;
+    const std::string stem(stage.name), folder = stage.side == Side::host ? "model/host" : "model/stages";
+    EXPECT_EQ(std::filesystem::exists(kRoot / folder / (stem + ".hpp")), stage.side != Side::memory) << stem;
+    EXPECT_EQ(std::filesystem::exists(kRoot / "rtl_ref/stages" / (stem + ".sv")), stage.side == Side::rtl) << stem;
   }
 }
 
