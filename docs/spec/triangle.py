@@ -70,7 +70,8 @@ def draw(path, vertices, edges, is_covered):
     out.append(f'<rect x="{48*(PIXEL[0]//2)}" y="{48*(PIXEL[1]//2)}" width="48" height="48" fill="none" stroke="#c30" '
                f'stroke-width="2" stroke-dasharray="5 3"/>'
                f'<rect x="{24*PIXEL[0]}" y="{24*PIXEL[1]}" width="24" height="24" fill="none" stroke="#c30" stroke-width="3"/>')
-    out.append('<path d="M' + 'L'.join(f'{1.5*x} {1.5*y}' for x, y in vertices) + 'Z" fill="none" stroke="#06c" stroke-width="2"/>')
+    outline = 'L'.join(f'{1.5*x} {1.5*y}' for x, y in vertices)
+    out.append(f'<path d="M{outline}Z" fill="none" stroke="#06c" stroke-width="2"/>')
     for y in range(16):
         for x in range(16):
             is_on_an_edge = any(e.exact(x, y) == 0 for e in edges)
@@ -90,8 +91,9 @@ def main():
     print(f'vertices {vertices}, depths {depths}, area {area}, F {F}')
     for e in edges:
         span = [(T - 1) * (max(e.dx, 0) + max(-e.dy, 0)), (T - 1) * (min(e.dx, 0) + min(-e.dy, 0))]
-        print(f'dx {e.dx}, dy {e.dy}, top-left {e.is_top_left}, E at 0 0 {e.exact(0, 0)}, at PIXEL {e.exact(*PIXEL)}; values at',
-              f'PIXEL {e.value(*PIXEL)}, tiles', [(e.value(x, y), *(e.value(x, y) + s for s in span)) for y in (0, 8) for x in (0, 8)])
+        values = [e.value(x, y) for y in (0, 8) for x in (0, 8)]
+        print(f'dx {e.dx}, dy {e.dy}, top-left {e.is_top_left}, E at 0 0 {e.exact(0, 0)}, at PIXEL {e.exact(*PIXEL)};',
+              f'value at PIXEL {e.value(*PIXEL)}, at tiles with extremes', [(v, *(v + s for s in span)) for v in values])
 
     def is_covered(x, y):
         return all(e.value(x, y) >= 0 for e in edges)
