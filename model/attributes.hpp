@@ -53,7 +53,7 @@ inline constexpr int kColorNarrowBits = 13;
 /// N_P of a normal over w: two bits more than a colour's, and no more than Q has.
 [[nodiscard]] constexpr int normal_over_w_bits(const Config& config) { return std::min(config.perspective_bits, 20); }
 
-/// One value for each plane. Elements from plane_count() on are nobody's.
+/// One value for each plane. Elements from plane_count() on are unused.
 template <class T>
 using PerPlane = std::array<T, kMaxPlanes>;
 

@@ -218,9 +218,9 @@ static_assert(
     "an arrow rides with one that rides itself");
 static_assert(kTapped.size() <= 32 && kStallStreams <= 32, "raster_cosim's fire_o and stall_i are words of 32 bits");
 
-// Whom to blame.
+// Fault attribution.
 
-/// The stage that a crossing's cycle is the work of. Of those of the host nobody knows any: it is "host".
+/// The stage whose timing decides the cycle of a crossing. Host stages have no timing: "host".
 [[nodiscard]] constexpr std::string_view sender_name(Arrow arrow) {
   const StageInfo& stage = info(info(arrow).from);
   return stage.side == Side::host ? "host" : stage.name;

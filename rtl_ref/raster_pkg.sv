@@ -62,8 +62,8 @@ package raster_pkg;
   localparam int COORDINATES = 0;  // of a texture, planes behind that of 1/w
   localparam int PERSPECTIVE_GUARD_BITS = 4;  // l: fraction bits of those inside a tile
   localparam int COORDINATE_FRACTION = 8;  // f: of a texture coordinate, texels
-  localparam int COLORS_OVER_W = 0;  // planes behind those, which the texture unit divides
-  localparam int COLOR_NARROW_BITS = 13;  // k_P of those
+  localparam int COLORS_OVER_W = 0;  // colour planes divided by w
+  localparam int COLOR_NARROW_BITS = 13;  // mantissa bits of the reciprocal of w, for colours
   localparam int NORMALS = 0;  // planes of those, over w; instead of colours
   localparam int STATE_WORD_BITS = 40;  // of a token: the codes of all planes but those
   localparam int TEXTURE_STAMPS = 16;  // between X and W, with a texture unit

@@ -1,5 +1,4 @@
-// A capture whose first lines are not those of whoever gave the rest, such as the head that the C interface puts before lines
-// of its caller's.
+// A capture with a prefix of generated lines, such as the head that the C interface puts before the lines of its caller.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// How a depth in [0, 1] is stored: the formats that depth buffers have, and what a depth means in eye space.
+// Formats of depth buffers for a depth in [0, 1], and the meaning of a depth in eye space.
 #pragma once
 
 #include <cstdint>

@@ -307,8 +307,8 @@ std::string raster_pkg(const Config& config) {
   print_constant(out, "PERSPECTIVE_GUARD_BITS", kPerspectiveGuardBits, "l: fraction bits of those inside a tile");
   print_constant(out, "COORDINATE_FRACTION", perspective_format(config).coordinate.fraction_bits,
                  "f: of a texture coordinate, texels");
-  print_constant(out, "COLORS_OVER_W", widths.colors_over_w, "planes behind those, which the texture unit divides");
-  print_constant(out, "COLOR_NARROW_BITS", kColorNarrowBits, "k_P of those");
+  print_constant(out, "COLORS_OVER_W", widths.colors_over_w, "colour planes divided by w");
+  print_constant(out, "COLOR_NARROW_BITS", kColorNarrowBits, "mantissa bits of the reciprocal of w, for colours");
   print_constant(out, "NORMALS", widths.normals, "planes of those, over w; instead of colours");
   print_constant(out, "STATE_WORD_BITS", state_word_bits(widths), "of a token: the codes of all planes but those");
   print_constant(out, "TEXTURE_STAMPS", texture_stamps(config), "between X and W, with a texture unit");

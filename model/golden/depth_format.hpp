@@ -1,5 +1,5 @@
-// Golden depth formats: what a stored code is worth, and the code nearest to a real depth, found by bisection. Slow and
-// plain on purpose: it judges stages/depth_encode.
+// Golden depth formats: the value of a stored code, and the code nearest to a real depth, by bisection. Slow and plain on
+// purpose: the reference for stages/depth_encode.
 #pragma once
 
 #include <cmath>

@@ -1,5 +1,5 @@
 // The exact oracle: coverage and attribute planes of one snapped triangle in integers and rationals, straight from the
-// definition. No stepping, no canonical order, no shared code with the stages or the golden: it judges both.
+// definition. No stepping, no canonical order, no code shared with the stages or the golden, which it checks.
 //
 // Bounds, with |X|, |Y| < 2^31 subpixels and codes < 2^32: differences < 2^32, products < 2^64, edge values and areas
 // < 2^65, plane numerators < 2^65 * 2^32 * 3 < 2^99, on the grid of 2^-20 LSB < 2^120: all fit int128.

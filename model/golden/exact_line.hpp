@@ -1,5 +1,5 @@
-// The exact oracle for lines: pixel by pixel, straight from each rule's definition. No stepping, no octants, no shared
-// code with the stages: a pixel is asked whether it belongs to the line, whatever its neighbours are.
+// The exact oracle for lines: pixel by pixel, straight from each rule's definition. No stepping, no octants, no code shared
+// with the stages: each pixel is tested independently of its neighbours.
 //
 // Bounds: as in exact.hpp; with |X|, |Y| < 2^31 every product is below 2^70.
 #pragma once

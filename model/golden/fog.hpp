@@ -1,4 +1,4 @@
-// Golden fog: what is left of a colour at a distance, in real arithmetic (OpenGL ES 1.1.12, 3.8).
+// Golden fog: the fraction of a colour that remains at a distance, in real arithmetic (OpenGL ES 1.1.12, 3.8).
 #pragma once
 
 #include <algorithm>

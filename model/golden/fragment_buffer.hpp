@@ -1,8 +1,8 @@
-// Golden framebuffer: what the operations leave of the fragments that came to each pixel, in real arithmetic. It is the
-// last room of the golden and of nobody else: no code of the model's, and nothing is rounded here.
+// Golden framebuffer: the result of the operations on each pixel's fragments, in real arithmetic. The last stage of the golden:
+// no code of the model, no rounding.
 //
-// In: clears and fragments in program order. Out: for each pixel the depth that was written last, the value that came
-// with it, and whose it is. Operations: alpha, stencil and depth test, blending, the write masks.
+// In: clears and fragments in program order. Out: for each pixel the depth that was written last, the value written with it,
+// and its owner. Operations: alpha, stencil and depth test, blending, the write masks.
 #pragma once
 
 #include <array>

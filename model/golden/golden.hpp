@@ -1,7 +1,7 @@
-// The float golden model: what the scene looks like without snap, quantization or fixed-point arithmetic (image U).
+// The float golden model: the scene without snap, quantization or fixed-point arithmetic (image U).
 //
-// Its own code, on purpose: it shares the scene, the configuration and the framebuffer type with the model, and no
-// stage. The docs call the pixel values "real"; here they are binary64, contraction off.
+// Independent code, on purpose: it shares scene, configuration and framebuffer type with the model, but no stage. The docs call
+// the pixel values "real"; here they are binary64, contraction off.
 #pragma once
 
 #include <array>

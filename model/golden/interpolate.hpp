@@ -1,5 +1,5 @@
-// Golden interpolation: barycentric weights at the pixel centre; depth linear on the screen, colours and texture
-// coordinates so or with perspective.
+// Golden interpolation: barycentric weights at the pixel centre; depth linear in the window, colours and
+// texture coordinates linear or over w.
 #pragma once
 
 #include <array>

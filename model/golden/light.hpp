@@ -1,5 +1,5 @@
-// Fixed-function lighting as the textbooks have it, in real arithmetic (binary64). Written for itself: of the integer
-// version it knows the parameters alone.
+// Textbook fixed-function lighting in real arithmetic (binary64). Independent of the integer version except for the parameter
+// structs.
 #pragma once
 
 #include <algorithm>

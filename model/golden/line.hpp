@@ -1,5 +1,5 @@
 // Golden lines and points: coverage straight from each rule's definition, depth and colour along the line, for ends
-// that are not snapped. A pixel is asked whether it belongs to the line, whatever its neighbours are.
+// that are not snapped. Each pixel is tested independently of its neighbours.
 #pragma once
 
 #include <algorithm>

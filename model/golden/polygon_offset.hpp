@@ -1,4 +1,4 @@
-// Golden polygon offset: how far a triangle's plane is moved, from its own slope.
+// Golden polygon offset: the displacement of a triangle's plane, from its slope.
 #pragma once
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // Golden primitive assembly: the vertices of a draw one by one, and a primitive whenever one is complete.
 //
-// In: a draw's indices, kRestart among them. Out: primitives in program order, and which vertex colours each when flat.
+// In: a draw's indices, with kRestart. Out: primitives in program order, and the provoking vertex of each.
 #pragma once
 
 #include <array>

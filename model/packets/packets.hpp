@@ -163,10 +163,10 @@ enum class StateRegister : std::uint8_t {
   texture = 0,         ///< TextureState
   texture_levels = 1,  ///< TextureLevels; FogState and a line of its table too, or of light: LevelsWord
   texture_lines = 2,   ///< a part of a TextureLines, moved in behind those before
-  color_ops = 4,       ///< ColorOps without its constant (packets/color_packets.hpp)
+  color_ops = 4,       ///< ColorOps without its constant (stages/color_packets.hpp)
   blend_constant = 5,  ///< that
   alpha_test = 6,      ///< AlphaTest
-  stencil_test = 3,    ///< how a side or both are compared (packets/stencil_packets.hpp)
+  stencil_test = 3,    ///< how a side or both are compared (stages/stencil_packets.hpp)
   stencil_update = 7   ///< what becomes of the stored value, likewise
 };
 

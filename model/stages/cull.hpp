@@ -114,10 +114,10 @@ template <class Box>
   return {box.left, box.top, box.right, box.bottom};
 }
 
-/// Of pixels with one sample: whether a triangle covers none and is small enough for the pipelined cull to see that: its box has at most 2x2 of
-/// them, and each of its sides, in the order in which `v` came to cull, is in [-4, 4) pixels long in x and in y.
-[[nodiscard]] inline bool is_seen_sampleless(const TrianglePacket& triangle, const std::array<SnappedVertex, 3>& v,
-                                             const Widths& widths) {
+/// One sample a pixel. Whether a triangle covers no sample and is small enough for the pipelined cull to find that: its box has
+/// at most 2x2 samples, and each of its sides, in the order of `v`, the input of cull, is in [-4, 4) pixels long in x and in y.
+[[nodiscard]] inline bool provably_covers_no_sample(const TrianglePacket& triangle,
+                                                    const std::array<SnappedVertex, 3>& v, const Widths& widths) {
   const PixelBox& box = triangle.box;
   if (box.right - box.left > 1 || box.bottom - box.top > 1) return false;
   const std::int32_t limit = std::int32_t{4} << widths.grid_bits;
@@ -188,7 +188,7 @@ template <class Box>
       out.edge_low[i] = static_cast<std::uint16_t>(edge_low(v[from], v[to], widths.grid_bits));
   }
   out.area = static_cast<std::uint64_t>(area < 0 ? -area : area);
-  if (looks_at_samples && widths.has_samples == 0 && is_seen_sampleless(out, v, widths)) {
+  if (looks_at_samples && widths.has_samples == 0 && provably_covers_no_sample(out, v, widths)) {
     ++counters.no_sample;
     kept.reset();
   }

@@ -49,7 +49,7 @@ struct EdgePlaces {
   }
 };
 
-/// Whether pixel (x, y) of the tile is covered at a place of its.
+/// Whether pixel (x, y) of the tile is covered at one sample position.
 [[nodiscard]] inline bool is_covered(const TilePacket& tile, const EdgeContext& edges, const EdgePlace& place, int x,
                                      int y) {
   bool covered = x >= tile.box.left && x <= tile.box.right && y >= tile.box.top && y <= tile.box.bottom;

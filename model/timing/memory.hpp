@@ -1,5 +1,5 @@
-// Memory timing: when the memory behind the chip takes a request, and when it answers a read. No data. The harness puts
-// the same object behind the RTL's memory port, so both see one memory. docs/memory.md gives the sources of the figures.
+// Memory timing: the cycles in which memory accepts a request and answers a read. No data. The harness connects the same object
+// to the RTL's memory port, so both see one memory. docs/memory.md gives the sources of the figures.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Queue: a FIFO in front of a stage, or none.
+// Queue: an optional FIFO before a stage.
 #pragma once
 
 #include <optional>

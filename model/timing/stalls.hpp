@@ -1,5 +1,5 @@
-// Injected back-pressure: a function of seed, stream and cycle, so that whoever knows the seed knows every stall. The
-// co-simulation stalls the RTL by it, the cycle model waits by it.
+// Injected back-pressure: a function of seed, stream and cycle, so that the seed determines every stall. The co-simulation
+// stalls the RTL with it, and the cycle model waits accordingly.
 #pragma once
 
 #include <cmath>

@@ -1,5 +1,5 @@
 // Station: a place in a pipeline that holds a few items in order. A register, a unit that works on one item at a time, a
-// row of registers that wait for each other, a skid buffer, a pool of slots: one rule for all of them.
+// row of registers with back-pressure, a skid buffer, a pool of slots: one rule for all.
 //
 //   item n may enter when item n - capacity has left: in the same cycle (turnaround 0, ready passes through) or so many
 //   cycles later (turnaround 1: ready is a register)

@@ -1,4 +1,4 @@
-// Color write: what depth_cache is through with comes to the colour RAM, a clock later; an evicted block's colours are read out of
+// Color write: tested and shaded stamps are written to the colour RAM, a clock later; an evicted block's colours are read out of
 // it, a stamp a clock, each before it is written.
 //
 // Two evictions may be under way. The RAM is read for the stamp that this clock takes, where that is still to be read, else for

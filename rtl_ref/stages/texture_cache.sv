@@ -1,4 +1,4 @@
-// Texture cache: lines of 4x4 texels, direct mapped, whose misses nobody waits for but the sample itself.
+// Texture cache: lines of 4x4 texels, direct mapped, non-blocking: on a miss only the sample itself waits.
 //
 //   sample -> [tags] -> waiting samples -> [data RAM] -> code
 //                '-> request .. memory .. answers -^

@@ -14,8 +14,8 @@
 // With a cycle a plane there are two lanes, for x and for y. With two there is one, which has x in a plane's first cycle and y
 // in its second: half of the multipliers, one shifter.
 // What a plane leaves behind in a phase stands in one register until the next one. Such a register moves while any plane is
-// in the phases around it, in whichever part: nobody is overwritten, because a triangle is never a step behind the one in
-// the part before.
+// in the phases around it, in whichever part: no register is overwritten while in use, because a triangle is never a step
+// behind the younger one in the part before.
 // Occupancy: the cycles of all planes. Latency (embedded): 21, with two cycles a plane 25. As many triangles are under way as
 // there are parts, six or four.
 // With the planes of a texture unit states go beside the parts (setup_states.sv), a cycle each.

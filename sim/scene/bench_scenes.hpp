@@ -1,4 +1,4 @@
-// The built-in scenes that are work: what software rasterizers are timed on, and what shows what can be skipped.
+// The built-in benchmark scenes: workloads for software rasterizers, and scenes that show what skipping saves.
 #pragma once
 
 #include <cstdint>

@@ -1,8 +1,8 @@
-// Bounding volumes over a mesh's objects, as a binary tree: what lies outside of the view as a whole costs one test, and so
-// does what lies inside it.
+// A binary tree of bounding volumes over a mesh's objects: a subtree that lies wholly outside or inside the view costs one
+// test.
 //
-// Built by halves: the objects of a node are split at the median of their middles, along the axis on which those reach
-// farthest. It is of the objects as they stand, whatever they were made of: groups of an OBJ, nodes of a glTF file (whose own
+// The objects of a node are split at the median of their centres, along the axis of the largest extent. The tree is built
+// over the positions of the objects, of any origin: groups of an OBJ, nodes of a glTF file (whose own
 // tree is one of structure, not of space), or something that a skin has moved. A node's box holds its objects' boxes, its
 // sphere their spheres.
 #pragma once

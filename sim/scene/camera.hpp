@@ -1,4 +1,4 @@
-// Cameras: what `--camera` says, the default framing that fills in the rest, and the matrices. Right-handed, looking
+// Cameras: the option `--camera`, the default framing for its missing parts, and the matrices. Right-handed, looking
 // along -z in eye space; clip space as OpenGL has it: +y up, z in -w...w. All in binary64.
 #pragma once
 

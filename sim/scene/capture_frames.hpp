@@ -1,4 +1,4 @@
-// The frames of a capture: what its `frame` lines end, each as a scene of its own.
+// The frames of a capture, which its `frame` lines end, each as a scene of its own.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Places of a scene that its depth codes do not tell apart.
+// Positions of a scene that have the same depth code.
 #pragma once
 
 #include <optional>

@@ -1,5 +1,4 @@
-// Depth mappings: a scene whose depth means what `depth.mapping` says, as its maker would get it from another projection
-// matrix, depth test and clear value.
+// Depth mappings: restates a scene for `depth.mapping`, as another projection matrix, depth test and clear value would.
 #pragma once
 
 #include "model/formats/depth_format.hpp"

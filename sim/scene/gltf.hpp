@@ -1,7 +1,8 @@
 // glTF 2.0 files into meshes: positions, normals, colours, texture coordinates, indices, triangle modes, base colours
-// and their textures, culling, node transforms and how they are animated, skins, morph targets, cameras. What is left out, and the colour space, is in docs/gltf.md.
+// and their textures, culling, node transforms and their animations, skins, morph targets, cameras. Unsupported features and
+// the colour space: docs/gltf.md.
 //
-// Container, JSON, buffers and accessors are ours, on nlohmann-json: docs/adr/0008-own-gltf-reader.md says why.
+// An own reader on nlohmann-json; reasons: docs/adr/0008-own-gltf-reader.md.
 #pragma once
 
 #include "sim/scene/gltf_deform.hpp"

@@ -1,4 +1,4 @@
-// What unpacks compressed parts of glTF files: other people's libraries, each of which a build may do without.
+// Decoders of compressed parts of glTF files: external libraries, each optional in a build.
 #pragma once
 
 #include <cstdint>

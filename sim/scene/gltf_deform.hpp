@@ -1,4 +1,4 @@
-// What moves the vertices of a glTF mesh beside its node: skins, whose joints carry them along, and morph targets.
+// Deformation of a glTF mesh's vertices: skins with their joints, and morph targets.
 #pragma once
 
 #include "sim/scene/gltf_nodes.hpp"

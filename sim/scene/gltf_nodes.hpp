@@ -1,4 +1,4 @@
-// The scene graph of a glTF file: where each mesh and each camera stands in the world.
+// The scene graph of a glTF file: the world transform of each mesh and camera.
 #pragma once
 
 #include "model/light.hpp"

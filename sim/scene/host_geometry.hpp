@@ -1,17 +1,16 @@
-// What a host does between clip space and the snap, in the numbers that it has: clip, division by w, viewport. Binary64 is
-// the pipeline's own (model/host/clip.hpp, viewport.hpp); here are binary32 and s15.16.
+// The host's geometry between clip space and the snap (clip, division by w, viewport) in smaller numbers: binary32 and s15.16.
+// The pipeline's own is binary64 (model/host/clip.hpp, viewport.hpp).
 //
 // binary32: the same formulas, each operation rounded. s15.16 (32-bit integers, products and sums exact in 64 bits):
 //   distance    a x + b y + c z + d w, exact
 //   cut         t = d_in / (d_in + |d_out|) to 31 bits, the divisor shifted to 32 bits where it has more (one division of
 //               64 by 32 bits); in + t (out - in), rounded once
-//   window x    center + (x half_width) / w, one division of 64 by 32 bits, rounded once to 16 bits behind the point
-//   depth       (z + w) / (2 w), likewise, to 31 bits behind the point
-// What does not fit: a corner whose w comes out at 0 or below has the smallest w there is (2^-16; of binary32 2^-126), a
-// position beyond the guard band is held to it, a depth to 0...1. So no triangle is lost; how many corners had no w is
-// counted. Coordinates beyond +-32768 (of binary32 2^96) are refused.
+//   window x    center + (x half_width) / w, one division of 64 by 32 bits, rounded once to 16 fraction bits
+//   depth       (z + w) / (2 w), likewise, to 31 fraction bits
+// Range: a corner with w <= 0 gets the smallest w (2^-16; binary32: 2^-126) and is counted, a position beyond the guard band
+// is clamped to it, a depth to 0...1. So no triangle is lost. Coordinates beyond +-32768 (binary32: 2^96) are refused.
 //
-// The cut of an edge depends on its ends alone and starts at the one inside, as in the pipeline's clip: both triangles on
+// The cut of an edge depends on its ends alone and starts at the inside end, as in the pipeline's clip: both triangles on
 // an edge get the same corner.
 #pragma once
 

@@ -1,4 +1,4 @@
-// A value in a JSON document that knows where it stands, so that every complaint names file and place.
+// A value in a JSON document with its path, so that every message names file and place.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The one way from what a user typed as SCENE to a Scene.
+// From the argument SCENE of a command to a Scene.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// An indexed mesh in world space, with lines and points beside its triangles: what OBJ and glTF files and the built-in models become before a camera sees them.
+// An indexed mesh in world space of triangles, lines and points: the common form of OBJ and glTF files and the built-in models.
 #pragma once
 
 #include <compare>

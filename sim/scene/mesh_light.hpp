@@ -1,4 +1,4 @@
-// Light on meshes: at the eye, as the file has it, or as --light asks for it; colours of vertices by model/light.hpp.
+// Light on meshes: at the eye, from the file, or from --light; colours of vertices by model/light.hpp.
 #pragma once
 
 #include <optional>

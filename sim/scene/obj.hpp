@@ -1,8 +1,8 @@
 // Wavefront OBJ files into meshes.
 //
-// Read: v (with a colour after the place, 0...1 or 0...255), vt, vn, f (a, a/b, a//c, a/b/c; negative counts back),
-// o, g, s, usemtl, mtllib, l, p. Other keywords are passed over. A place that cannot be read is an error; what is damaged or
-// missing beside places is a warning, one for each kind.
+// Read: v (with a colour after the position, 0...1 or 0...255), vt, vn, f (a, a/b, a//c, a/b/c; negative counts back),
+// o, g, s, usemtl, mtllib, l, p. Other keywords are ignored. An unreadable position is an error; all other damage is a warning,
+// one for each kind.
 //
 // Not read through tinyobjloader 2.0rc10: libFuzzer under UBSan finds undefined behaviour in it within seconds (any
 // weight line, `vw`, with an index beyond int), and it takes damaged files for good ones: NaN, "abc" and "3x4" become

@@ -1,4 +1,4 @@
-// What an OBJ file says, before it is turned into a mesh: the reader's two halves meet here.
+// The contents of an OBJ file before they become a mesh: the interface between the reader's two halves.
 #pragma once
 
 #include <cstdint>

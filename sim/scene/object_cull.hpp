@@ -2,8 +2,8 @@
 //
 // A mesh's objects are tested by their bounding sphere and by their axis-aligned box, in world space, against the six
 // planes of the view volume, which are rows of the matrix that takes points to clip space (Gribb and Hartmann, 2001):
-// nothing is divided by w, so that the near plane and what lies behind the eye need no care of their own. Coordinates
-// that are already homogeneous have no box; there the outcodes of all vertices decide.
+// without a division by w, so that the near plane and points behind the eye need no special case. Homogeneous coordinates
+// have no box; there the outcodes of all vertices decide.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Options that are written as parts, `eye=0,1,3;fov=45`: what --camera and --light have in common.
+// Options of the form `eye=0,1,3;fov=45`: shared by --camera and --light.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Walks through a text file word by word and knows the line: what the OBJ and MTL readers share.
+// Reads a text file word by word and knows the line: shared by the OBJ and MTL readers.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Triangles on which texture coordinates go farther than the pipeline counts.
+// Triangles whose texture coordinates exceed the range of the pipeline.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Vectors of three binary64 numbers: what meshes and cameras are written in.
+// Vectors of three binary64 numbers, for meshes and cameras.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
-// From world to clip space in the numbers that a host may have: binary64, binary32, or fixed point of 32 bits. What comes
-// behind it is host_geometry.hpp, what the smaller ones cost sim/study/compare/transform_errors.hpp.
+// From world to clip space in binary64, binary32, or 32-bit fixed point. The next step is host_geometry.hpp; the errors of the
+// smaller numbers are measured in sim/study/compare/transform_errors.hpp.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Check: what another implementation of a stage gave, judged by the specification of that stage from what went in.
+// Check: compares the output of another implementation of a stage with the specification's output for the same input.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// Vectors of a stage: what the hardware model sends into it and what comes out, over whole scenes.
+// Vectors of a stage: its input and output packets in the hardware model, over whole scenes.
 #pragma once
 
 #include <functional>

@@ -1,7 +1,6 @@
 // Files of vectors: a header that names stage, configuration, fields and widths, then packets, as docs/your-rtl.md has it.
 //
-//   jsonl   a line for the header, then one for each packet, those that go in and those that come out as the stage takes
-//           and gives them
+//   jsonl   a line for the header, then one for each packet, inputs and outputs in the order of the stage
 //   csv     the same as rows
 //   hex     a folder: header.json, and PACKET.hex for each port, a packed packet a line, for $readmemh
 #pragma once

@@ -19,9 +19,9 @@ const std::filesystem::path kRoot = HALFPLANE_SOURCE_DIR;
 
 TEST(PipelineGraph, EveryStageIsAPairOfFilesOfItsNameAndAStageOfTheHostIsOne) {
   for (const StageInfo& stage : kStageInfo) {
-    const std::string name(stage.name), room = stage.side == Side::host ? "host" : "stages";
-    EXPECT_EQ(std::filesystem::exists(kRoot / "model" / room / (name + ".hpp")), stage.side != Side::memory) << name;
-    EXPECT_EQ(std::filesystem::exists(kRoot / "rtl_ref" / "stages" / (name + ".sv")), stage.side == Side::rtl) << name;
+    const std::string stem(stage.name), folder = stage.side == Side::host ? "model/host" : "model/stages";
+    EXPECT_EQ(std::filesystem::exists(kRoot / folder / (stem + ".hpp")), stage.side != Side::memory) << stem;
+    EXPECT_EQ(std::filesystem::exists(kRoot / "rtl_ref/stages" / (stem + ".sv")), stage.side == Side::rtl) << stem;
   }
 }
 
@@ -51,7 +51,8 @@ TEST(PipelineGraph, ThePageOfThePipelineListsTheStagesInTheSameOrder) {
   std::ifstream page(kRoot / "docs" / "pipeline.md");
   std::vector<std::string> listed;
   for (std::string line; std::getline(page, line);)
-    if (line.starts_with("| ") && (line.find("| `stages/") != std::string::npos || line.find("| `host/") != std::string::npos))
+    if (line.starts_with("| ") &&
+        (line.find("| `stages/") != std::string::npos || line.find("| `host/") != std::string::npos))
       listed.push_back(line.substr(2, line.find(' ', 2) - 2));
   std::vector<std::string> stages;
   for (const StageInfo& stage : kStageInfo)

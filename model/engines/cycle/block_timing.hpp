@@ -253,7 +253,7 @@ class BlockTiming {
     return room;
   }
 
-  /// When the item that X is through with is on offer to W.
+  /// The cycle in which the item that the depth stage has finished is offered to the colour stage.
   template <class Ask>
   Cycle shaded(const TextureWork& work, Ask&& ask) {
     if (!texture_) return tested_ + 2;

@@ -1,4 +1,4 @@
-// What model and golden say of one pixel.
+// The class of a pixel by its coverage in model and golden.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// A picture in memory and what draws into it: rectangles, lines, other pictures, text.
+// A picture in memory and functions that draw into it: rectangles, lines, other pictures, text.
 //
 // Drawing clips to the picture, so callers need no bounds checks. Text is UTF-8 in a 7-pixel bitmap font of ASCII: accented
 // Latin letters show without their accents, other characters as one '?' each.

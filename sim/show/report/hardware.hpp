@@ -1,5 +1,4 @@
-// A piece of hardware as the cycle model takes it, and its settings by name: what `render --engine cycle` runs and
-// --what-if varies.
+// The hardware that `render --engine cycle` simulates, and its settings by name, which --what-if varies.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// HTML pages that need nothing beside them: a page that CMake cut where its data go, and the data.
+// Self-contained HTML pages: a template that CMake split at the place of its data, and the data.
 #pragma once
 
 #include <string>

@@ -196,8 +196,8 @@ void draw_legend(Picture& sheet, int x, int y, const std::vector<Shown>& shown, 
     }
   };
   line(samples == 1 ? "white dot: the sample of a pixel" : "white dots: the samples of a pixel", kInk);
-  line("lines: edges behind the snap; dots: before it", kInk);
-  line("squares: who covers the sample, in the colours below, whether it is seen or not", kInk);
+  line("lines: edges after the snap; dots: before it", kInk);
+  line("squares: primitives that cover the sample, in the colours below, visible or hidden", kInk);
   y += text_height(1);
   for (std::size_t n = 0; n < shown.size(); ++n) {
     if (y > height - 3 * text_height(1)) {

@@ -1,4 +1,4 @@
-// The neighbourhood of a pixel, enlarged: grid, samples, edges before and behind the snap, and who covers what.
+// The neighbourhood of a pixel, enlarged: grid, samples, edges before and after the snap, and which primitive covers which sample.
 #pragma once
 
 #include "history.hpp"

@@ -84,7 +84,7 @@ Shape shape_of(const DrawContext& context, const AssembledPrimitive& primitive) 
   return shape;
 }
 
-/// A piece behind the snap.
+/// A piece after the snap.
 Shape shape_of(std::initializer_list<SnappedVertex> corners, double margin, int grid_bits) {
   Shape shape{{}, margin};
   for (const SnappedVertex& v : corners)

@@ -154,7 +154,7 @@ struct BinMemory {
   // Pieces that wait, by group, from 1 on; a pixel of one has 16 times the group's number, its own, and this beside it.
   static constexpr std::size_t kFirstPiece = kSurfaces, kGroups = kSurfaces / 16;
   std::vector<PieceGroup> groups;         ///< kGroups, where there are any
-  std::vector<PieceConstants> constants;  ///< likewise; the first group is nobody's
+  std::vector<PieceConstants> constants;  ///< likewise; the first group is unused
   std::vector<PieceLevels> levels;        ///< likewise, where a style asks
   std::vector<SurfaceStyle> styles;
 

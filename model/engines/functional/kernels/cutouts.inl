@@ -1,4 +1,4 @@
-// Cutouts: what triangles are in tiles that their edges cut, where pixels have several samples. Their colours are put off. A
+// Cutouts: deferred fragments of partially covered tiles, where pixels have several samples. Their colours are deferred. A
 // tile keeps its last cutouts, each as the number of its triangle and the samples that have passed, a bit each; one that others
 // hide sample by sample is dropped, and only of what is left colours are computed, once a pixel and cutout, mostly at the end of
 // the bin. Of a cutout in front of all that the tile has even the depths wait: what it covers passes, and nobody needs them.

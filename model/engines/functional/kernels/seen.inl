@@ -179,7 +179,7 @@ HALFPLANE_NOINLINE void add_surfaces(Bin& bin, const Slice& slice) {
   group.surface = {};
 }
 
-/// Makes the tile's pixels have numbers. Those of nobody have their colours in memory, and 0.
+/// Assigns triangle numbers to the tile's pixels; 0 means already shaded.
 inline void need_numbers(Bin& bin, int tile) {
   const std::int32_t owner = bin.color_owner[tile];
   if (owner == Bin::kSurfaces) return;
