@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <iostream>
 #include <iterator>
-#include <memory>
 
 #include "sim/cli/commands.hpp"
 #include "sim/cli/compare_against.hpp"
@@ -16,7 +15,6 @@
 #include "sim/show/image/panel.hpp"
 #include "sim/show/image/png.hpp"
 #include "sim/show/image/terminal.hpp"
-#include "sim/show/image/whole_file.hpp"
 
 namespace halfplane {
 namespace {
@@ -32,7 +30,7 @@ struct CompareCommand : CommonOptions {
 /// Null: of nothing there is no error. `count` says so.
 template <class Stats>
 Json figure_of(const Stats& s, double value) {
-  return s.count == 0 ? Json(nullptr) : Json(value);
+  return or_null(s.count != 0, value);
 }
 
 template <class Stats>
@@ -166,11 +164,7 @@ std::string row(const std::string& name, const Stats& s) {
 }
 
 /// Of places, whose errors in binary32 are small.
-std::string two_digits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2g", value);
-  return text;
-}
+std::string two_digits(double value) { return formatted("%.2g", value); }
 
 /// Below a picture: the same figures as in the row, each on one line with its name.
 template <class Stats>
@@ -320,9 +314,7 @@ void write_compare_junit(const CompareCommand& options, const Config& config, co
   for (const std::string& bound : broken) bounds.details += bound + "\n";
   std::vector<JunitCase> cases{bounds};
   if (judged) cases.push_back(against_case(*judged));
-  const std::string xml =
-      junit_xml("compare." + label(config), cases, result["wall_s"].get<double>(), junit_properties(result, &config));
-  write_whole_file(options.junit_path, {reinterpret_cast<const std::uint8_t*>(xml.data()), xml.size()});
+  write_junit(options.junit_path, "compare." + label(config), cases, result["wall_s"], result, &config);
 }
 
 /// What the options can be refused for before a scene is read.
@@ -472,9 +464,8 @@ int run(const CompareCommand& options) {
 }  // namespace
 
 void add_compare_command(CLI::App& app, Action& selected) {
-  CLI::App* command =
-      app.add_subcommand("compare", "model against golden: coverage, depth and colour error with its parts");
-  auto options = std::make_shared<CompareCommand>();
+  const auto [command, options] = add_command<CompareCommand>(
+      app, selected, "compare", "model against golden: coverage, depth and colour error with its parts", run);
   add_scene_options(*command, *options);
   command->add_option("--golden", options->golden, "binary64, or binary32 to see what single precision would show")
       ->check(CLI::IsMember({"binary64", "binary32"}))
@@ -491,7 +482,6 @@ void add_compare_command(CLI::App& app, Action& selected) {
   add_against_options(*command, options->against);
   add_file_option(*command, "--junit", options->junit_path, "result as JUnit XML");
   command->footer("\nExample:\n  halfplane compare teapot --config full -o compare.png --json=compare.json");
-  command->callback([&selected, options] { selected = [options] { return run(*options); }; });
 }
 
 }  // namespace halfplane

@@ -28,16 +28,6 @@ std::pair<std::string, std::string> split(const std::string& option, const std::
   return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
-std::vector<std::string> list_of(const std::string& text) {
-  std::vector<std::string> values;
-  for (std::size_t from = 0; from <= text.size();) {
-    const std::size_t comma = std::min(text.find(',', from), text.size());
-    values.push_back(text.substr(from, comma - from));
-    from = comma + 1;
-  }
-  return values;
-}
-
 void change_for(const std::string& option, Hardware& hardware, const std::string& key, const std::string& value) {
   try {
     change(hardware, key, value);
@@ -52,7 +42,7 @@ std::vector<std::pair<std::string, std::string>> variations(const CycleCommandOp
   std::vector<std::pair<std::string, std::string>> all;
   for (const std::string& text : options.what_if) {
     const auto [key, values] = split("--what-if", text);
-    for (const std::string& value : list_of(values)) all.emplace_back(key, value);
+    for (const std::string& value : split_at_commas(values)) all.emplace_back(key, value);
   }
   return all;
 }
@@ -85,10 +75,6 @@ class Tee final : public TransferSink {
   }
   std::array<TransferSink*, 2> sinks_;
 };
-
-void write_text(const std::string& path, const std::string& text) {
-  write_whole_file(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-}
 
 std::string percent(std::uint64_t part, std::uint64_t whole) {
   return whole == 0 ? "-" : fixed(100.0 * static_cast<double>(part) / static_cast<double>(whole), 1) + " %";
@@ -251,8 +237,8 @@ CycleResult run_cycle_engine(const CommonOptions& common, const CycleCommandOpti
   result.frame = run_cycles(scene, hardware, render, cycle);
   const CycleRun& run = result.frame.run;
 
-  if (!options.primitives_path.empty()) write_text(options.primitives_path, spans.finish());
-  if (!options.trace_path.empty()) write_text(options.trace_path, timeline.finish());
+  if (!options.primitives_path.empty()) write_text_file(options.primitives_path, spans.finish());
+  if (!options.trace_path.empty()) write_text_file(options.trace_path, timeline.finish());
   const Framebuffer& frame = result.frame.rendering.frame;
   const auto write_heat = [&](const std::string& path, const std::vector<float>& values, std::string_view unit) {
     if (path.ends_with(".npy"))

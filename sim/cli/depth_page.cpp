@@ -5,9 +5,8 @@
 #include "sim/cli/depth_study.hpp"
 #include "sim/show/image/panel.hpp"
 #include "sim/show/image/png.hpp"
-#include "sim/show/image/whole_file.hpp"
+#include "sim/show/report/page.hpp"
 #include "sim/study/depth/maps.hpp"
-#include "sim/study/depth/report.hpp"
 #include "sim/study/depth/theory.hpp"
 
 namespace halfplane {
@@ -28,7 +27,7 @@ Json rows_json(const std::vector<DepthRow>& rows) {
 
 /// Null where no error was measured.
 Json depth_part_json(const ErrorMoments& m) {
-  const auto known = [&m](double value) { return m.count == 0 ? Json(nullptr) : Json(value); };
+  const auto known = [&m](double value) { return or_null(m.count != 0, value); };
   return {{"max", known(m.max)}, {"rms", known(m.rms)}};
 }
 
@@ -55,10 +54,10 @@ Json measured_json(const DepthMeasurement& m) {
           {"pairs", m.order.pairs},
           {"ties", m.order.ties},
           {"inversions", m.order.inversions},
-          {"rate", m.order.pairs == 0 ? Json(nullptr) : Json(m.order.rate())},
+          {"rate", or_null(m.order.pairs != 0, m.order.rate())},
           {"fighting_pixels", m.order.fighting_pixels},
-          {"nearest_fight", m.order.fights() == 0 ? Json(nullptr) : Json(m.order.nearest_fight)},
-          {"worst_share_of_bound", m.total.count == 0 ? Json(nullptr) : Json(m.worst_share)},
+          {"nearest_fight", or_null(m.order.fights() != 0, m.order.nearest_fight)},
+          {"worst_share_of_bound", or_null(m.total.count != 0, m.worst_share)},
           {"stage_mismatches", m.stage_mismatches},
           {"parts",
            {{"snap", depth_part_json(m.snap)},
@@ -85,7 +84,7 @@ Json series_json(const DepthVariant& variant, const DepthQuestion& question) {
   std::sort(lengths.begin(), lengths.end());
   for (const double length : lengths) {
     const auto z = theory.first_exceeding(length, question.near, question.far);
-    exceeds.push_back({{"length", length}, {"z", z ? Json(*z) : Json(nullptr)}});
+    exceeds.push_back({{"length", length}, {"z", or_null(z)}});
   }
   const DepthEncode encode(variant.config, variant.planes);
   const bool is_turned = is_reversed(variant.mapping);
@@ -135,12 +134,6 @@ const std::vector<std::string> kFightLegend{"grey: two surfaces or more, in orde
 
 const std::vector<std::string> kHeatLegend{"error of the visible surface, in eye depth",
                                            "the scale is logarithmic, and one for all"};
-
-std::string in_one_line(const std::vector<std::string>& lines) {
-  std::string text;
-  for (const std::string& line : lines) text += (text.empty() ? "" : "; ") + line;
-  return text;
-}
 
 /// Pictures of all variants on one sheet, and what their colours mean.
 void write_depth_sheet(const std::string& path, const std::string& title, const std::vector<std::string>& legend,
@@ -199,10 +192,10 @@ Json study_json(const DepthQuestion& question, const std::vector<DepthRow>& rows
   Json fewest = Json::array();
   for (const FewestBits& f : study.fewest)
     fewest.push_back({{"mapping", mapping_name(f.mapping)},
-                      {"bits", f.bits ? Json(*f.bits) : Json(nullptr)},
+                      {"bits", or_null(f.bits)},
                       {"pairs", f.pairs},
                       {"rate", f.rate},
-                      {"rate_one_less", f.one_less ? Json(*f.one_less) : Json(nullptr)},
+                      {"rate_one_less", or_null(f.one_less)},
                       {"rtl", f.is_in_rtl}});
   return {{"rows", rows_json(rows)},           {"series", series},      {"trials", trials},        {"sweeps", sweeps},
           {"fight_rate", question.fight_rate}, {"fewest_bits", fewest}, {"answers", study.answers}};
@@ -223,17 +216,15 @@ void write_depth_files(const DepthPaths& paths, const std::string& title, const 
     page["scene"] = {{"name", result["scene"]},      {"width", scene->width},        {"height", scene->height},
                      {"fragments", first.fragments}, {"triangles", first.triangles}, {"eye_min", first.eye_min},
                      {"eye_max", first.eye_max}};
-    page["heat_legend"] = in_one_line(kHeatLegend);
+    page["heat_legend"] = joined(kHeatLegend, "; ");
     page["heat_scale"] = data_uri(scale_picture(scale, 640));
-    page["fight_legend"] = in_one_line(kFightLegend);
+    page["fight_legend"] = joined(kFightLegend, "; ");
     for (std::size_t i = 0; i < variants.size(); ++i) {
       page["series"][i]["measured"]["heat"] = data_uri(pictures.heats[i]);
       page["series"][i]["measured"]["fight"] = data_uri(pictures.fights[i]);
     }
   }
-  if (paths.page.empty()) return;
-  const std::string html = depth_report(page.dump(-1, ' ', false, Json::error_handler_t::replace));
-  write_whole_file(paths.page, {reinterpret_cast<const std::uint8_t*>(html.data()), html.size()});
+  if (!paths.page.empty()) write_page(paths.page, kDepthPage, page);
 }
 
 }  // namespace halfplane

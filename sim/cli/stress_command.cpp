@@ -2,9 +2,7 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <sstream>
 
-#include "model/capture/capture.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/progress.hpp"
 #include "sim/config_json.hpp"
@@ -96,17 +94,14 @@ std::string save_capture(const std::string& folder, const std::string& name, con
   for (char& c : file)
     if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '-';
   const std::string path = folder + "/" + file + ".hpt";
-  std::ostringstream text;
-  write_capture(scene, text);
-  const std::string bytes = text.str();
-  write_whole_file(path, {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+  write_text_file(path, capture_text(scene));
   return path;
 }
 
 Json worst_json(const StressCommand& options, const stress::CaseResult& result, const WorstEntry& entry) {
   const auto& [property, w] = entry;
   Json row{{"value", w.value}, {"bound", w.bound}, {"unit", w.unit}, {"config", label(w.place.config)}};
-  row["measured"] = w.measured ? Json(*w.measured) : Json(nullptr);
+  row["measured"] = or_null(w.measured);
   row["capture"] = nullptr;
   if (!options.captures.empty() && w.value > 0) {
     const std::string path =
@@ -132,7 +127,7 @@ Json case_json(const StressCommand& options, const stress::CaseResult& result) {
     row["first_failure"] = {{"property", t.first->property},
                             {"what", t.first->what},
                             {"config", label(t.first->place.config)},
-                            {"capture", path.empty() ? Json(nullptr) : Json(path)},
+                            {"capture", or_null(path)},
                             {"repeat", repeat_command(options, result, t.first->property, t.first->place.unit)}};
   }
   return row;
@@ -147,8 +142,7 @@ void print_failure(std::ostream& out, const Json& row, const stress::Failure& fa
         << config_arguments(failure.place.config) << '\n';
 }
 
-std::string junit(const std::vector<stress::CaseResult>& results, double seconds, bool is_partial,
-                  const std::vector<JunitProperty>& properties) {
+std::vector<JunitCase> junit_cases_of(const std::vector<stress::CaseResult>& results, bool is_partial) {
   std::vector<JunitCase> rows;
   for (const stress::CaseResult& r : results) {
     JunitCase row{std::string(r.about->name), "", "", ""};
@@ -160,7 +154,7 @@ std::string junit(const std::vector<stress::CaseResult>& results, double seconds
       row.output = with_commas(r.tally.checks) + " checks; " + worst_text(r);
     rows.push_back(std::move(row));
   }
-  return junit_xml("stress", rows, seconds, properties);
+  return rows;
 }
 
 struct Totals {
@@ -208,10 +202,7 @@ int run(const StressCommand& options) {
   if (options.unit >= 0 && (options.quick || options.seconds > 0))
     throw InputError("--unit: one unit is all that runs; leave out --quick and --seconds");
   check_output(options.junit_path);
-  if (std::error_code error; !options.captures.empty()) {
-    std::filesystem::create_directories(options.captures, error);
-    if (error) throw InputError("--captures: cannot make the folder '" + options.captures + "'; choose another");
-  }
+  make_folder("--captures", options.captures);
   check_distinct({options.json, options.junit_path});
   const Config config = effective_config(options);
   if (config.depth_format != DepthFormat{} || config.depth_mapping != DepthMapping::projection)
@@ -248,11 +239,8 @@ int run(const StressCommand& options) {
   const double wall_s = seconds_since(start);
   result["wall_s"] = wall_s;
   if (is_partial) mark_partial(result);
-  if (!options.junit_path.empty()) {
-    const std::string xml = junit(results, wall_s, is_partial,
-                                  junit_properties(result, options.has_config ? &config : nullptr, is_partial));
-    write_whole_file(options.junit_path, {reinterpret_cast<const std::uint8_t*>(xml.data()), xml.size()});
-  }
+  write_junit(options.junit_path, "stress", junit_cases_of(results, is_partial), wall_s, result,
+              options.has_config ? &config : nullptr, is_partial);
   write_json(options, result);
   std::ostream& out = human(options);
   print_table(out, options, results, sum, wall_s);

@@ -1,7 +1,6 @@
 // The exact eye depth of a scene's triangles at any pixel: what every quantized depth is held against.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "model/scene.hpp"

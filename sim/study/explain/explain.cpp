@@ -1,7 +1,5 @@
 #include "explain.hpp"
 
-#include <algorithm>
-#include <cmath>
 
 #include "golden_record.hpp"
 #include "hardware_record.hpp"

@@ -13,13 +13,13 @@
 #include <utility>
 #include <vector>
 
+#include "model/formats/sample_pattern.hpp"
 #include "model/golden/exact.hpp"
 #include "model/golden/golden.hpp"
 #include "model/packets/packets.hpp"
-#include "model/study/rules.hpp"
-#include "model/formats/sample_pattern.hpp"
 #include "model/stages/coarse_raster.hpp"
 #include "model/stages/surface.hpp"
+#include "model/study/rules.hpp"
 #include "sim/study/compare/surface_oracle.hpp"
 #include "verdict.hpp"
 
@@ -91,6 +91,7 @@ struct LineWalk {
   LineRule rule = LineRule::midpoint;
   std::vector<LineStep> steps;  ///< at the pixel's place along the major axis alone, or all of them
 };
+inline constexpr std::array<std::string_view, 3> kLineRuleNames{"midpoint", "bresenham", "diamond"};
 struct LineFigure {
   LineRule rule = LineRule::midpoint;
   std::int64_t major = 0, minor = 0;  ///< D and d, subpixels

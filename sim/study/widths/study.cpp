@@ -1,7 +1,6 @@
 #include "sim/study/widths/study.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "sim/interrupt.hpp"
 
