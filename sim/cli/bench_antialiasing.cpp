@@ -11,6 +11,10 @@
 
 namespace halfplane {
 
+namespace antialiasing {
+HALFPLANE_JSON_OF_MEMBERS(AreaRow, kind, samples, frame_s, rms, max, mean, is_front)
+}
+
 namespace {
 
 /// Figures beside the error, each with a front of its own, as a row of the result has them.
@@ -67,8 +71,7 @@ Json measured(const CommonOptions& options, const Config& config, int repeat, co
   std::optional<Progress> counting;
   if (gates != nullptr) counting.emplace(options, std::string("counting gates of ") + name);
   for (const antialiasing::AreaRow& row : study.rows) {
-    Json entry = {{"kind", row.kind}, {"samples", row.samples}, {"frame_s", row.frame_s},  {"rms", row.rms},
-                  {"max", row.max},   {"mean", row.mean},       {"is_front", row.is_front}};
+    Json entry = row;
     if (row.hardware) {
       entry["hardware"] = label(row.hardware->config);
       entry["cycles"] = row.hardware->cycles;

@@ -330,8 +330,7 @@ int run_bench(const BenchCommand& options) {
   if (!study.cases.empty()) out << ", " << study.cases[0].scene->width << "x" << study.cases[0].scene->height;
   out << ", median of " << options.repeat << (options.repeat == 1 ? " frame" : " frames") << ", in turns\n";
   print_bench(out, study);
-  if (is_partial) print_partial(out);
-  return is_partial ? exit_interrupted : exit_ok;
+  return ended(out, is_partial, exit_ok);
 }
 
 }  // namespace

@@ -9,6 +9,11 @@
 
 namespace halfplane {
 
+HALFPLANE_JSON_OF_MEMBERS(BenchErrors, depth_lsb_max, depth_lsb_rms, depth_range_max, depth_range_rms, color_lsb_max,
+                          color_lsb_rms, depth_eye_max, depth_eye_rms, coverage_mismatches, coverage_missing,
+                          coverage_extra)
+HALFPLANE_JSON_OF_MEMBERS(GrowthSeries, name, x, meaning)
+
 void print_bench_table(std::ostream& out, const std::vector<std::vector<std::string>>& lines, std::size_t left) {
   std::vector<std::size_t> widths(lines.front().size());
   std::vector<bool> is_used(widths.size());
@@ -48,20 +53,10 @@ Json bench_row_json(const BenchRow& row, const BenchCase& at) {
             {"primitives", row.facts.counters.primitives_in},
             {"fragments", row.facts.counters.covered},
             {"coverage", row.facts.coverage}};
-  const BenchErrors errors = row.facts.errors.value_or(BenchErrors{});
-  const bool has = row.facts.errors.has_value();
   json["depth_bits"] = at.config.depth_bits;
-  json["depth_lsb_max"] = or_null(errors.depth_lsb_max);
-  json["depth_lsb_rms"] = or_null(errors.depth_lsb_rms);
-  json["depth_range_max"] = or_null(errors.depth_range_max);
-  json["depth_range_rms"] = or_null(errors.depth_range_rms);
-  json["color_lsb_max"] = or_null(errors.color_lsb_max);
-  json["color_lsb_rms"] = or_null(errors.color_lsb_rms);
-  json["depth_eye_max"] = or_null(errors.depth_eye_max);
-  json["depth_eye_rms"] = or_null(errors.depth_eye_rms);
-  json["coverage_mismatches"] = or_null(has, errors.coverage_mismatches);
-  json["coverage_missing"] = or_null(has, errors.coverage_missing);
-  json["coverage_extra"] = or_null(has, errors.coverage_extra);
+  // Without errors their keys are null.
+  const Json errors = row.facts.errors.value_or(BenchErrors{});
+  for (const auto& [key, value] : errors.items()) json[key] = or_null(row.facts.errors.has_value(), value);
   return json;
 }
 
@@ -218,9 +213,7 @@ void write_bench_page(const std::string& path, const Json& result, const std::st
   Json page = result;
   page["version"] = HALFPLANE_VERSION;
   page["command"] = command;
-  page["growth_series"] = Json::array();
-  for (const GrowthSeries& series : growth_series())
-    page["growth_series"].push_back({{"name", series.name}, {"x", series.x}, {"meaning", series.meaning}});
+  page["growth_series"] = growth_series();
   write_page(path, kBenchPage, page);
 }
 

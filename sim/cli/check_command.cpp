@@ -132,7 +132,7 @@ int run(const CheckOptions& options) {
   }
   Json result = result_head("check", options, file.config);
   result["scene"] = file.source.text;
-  result["seed"] = or_null(file.source.seed);
+  result["seed"] = file.source.seed;
   result["stage"] = options.stage;
   result["file"] = options.file;
   result["packets"] = judgement_json(*file.stage, judgement);

@@ -5,7 +5,6 @@
 
 #include "model/config.hpp"
 #include "model/counters.hpp"
-#include "model/study/rules.hpp"
 #include "model/timing/memory.hpp"
 #include "model/vectors/stages.hpp"
 #include "sim/scene/builtin.hpp"

@@ -1,5 +1,5 @@
 #include "sim/study/compare/compare.hpp"
-#include "sim/study/compare/per_vertex_cycles.hpp"
+#include "sim/study/compare/per_vertex.hpp"
 #include "sim/study/compare/transform_errors.hpp"
 
 #include <algorithm>
@@ -17,6 +17,10 @@
 #include "sim/show/image/terminal.hpp"
 
 namespace halfplane {
+
+HALFPLANE_JSON_OF_MEMBERS(LayerRow, layers, pixels, max, rms, bound, part_of_bound)
+HALFPLANE_JSON_OF_MEMBERS(PerVertexRow, area, triangles, pixels, max, rms)
+
 namespace {
 
 struct CompareCommand : CommonOptions {
@@ -80,26 +84,6 @@ Json texture_json(const TextureErrors& t) {
             {"rounding", part_json(t.part_rounding)}}}};
 }
 
-Json layers_json(const std::vector<LayerRow>& rows) {
-  Json json = Json::array();
-  for (const LayerRow& row : rows)
-    json.push_back({{"layers", row.layers},
-                    {"pixels", row.pixels},
-                    {"max", row.max},
-                    {"rms", row.rms},
-                    {"bound", row.bound},
-                    {"part_of_bound", row.part_of_bound}});
-  return json;
-}
-
-Json per_vertex_json(const std::vector<PerVertexRow>& rows) {
-  Json json = Json::array();
-  for (const PerVertexRow& row : rows)
-    json.push_back(
-        {{"area", row.area}, {"triangles", row.triangles}, {"pixels", row.pixels}, {"max", row.max}, {"rms", row.rms}});
-  return json;
-}
-
 Json cycles_json(const std::optional<PerVertexCycles>& cycles) {
   if (!cycles || !cycles->refused.empty()) return nullptr;
   return {{"at_vertices", cycles->vertices},
@@ -143,8 +127,8 @@ Json comparison_json(const Comparison& c) {
               {"color_bias", figure_of(c.color_datapath_bias, c.color_datapath_bias.mean)},
               {"stage_mismatches", c.stage_mismatches}}},
             {"texture", c.texture ? texture_json(*c.texture) : Json(nullptr)},
-            {"per_vertex", per_vertex_json(c.per_vertex)},
-            {"layers", layers_json(c.layers)}};
+            {"per_vertex", c.per_vertex},
+            {"layers", c.layers}};
   return json;
 }
 

@@ -12,10 +12,13 @@
 #include "sim/show/image/panel.hpp"
 #include "sim/show/image/png.hpp"
 #include "sim/show/image/whole_file.hpp"
-#include "sim/show/trace/primitive_spans.hpp"
 #include "sim/show/trace/timeline.hpp"
 
 namespace halfplane {
+
+HALFPLANE_JSON_OF_MEMBERS(Trial, key, value, cycles)
+HALFPLANE_JSON_OF_MEMBERS(OrderTrial, order, store, cycles, bytes)
+
 namespace {
 
 constexpr std::uint64_t kFewCycles = 4'000'000;  // of a frame that is explained without being asked
@@ -308,17 +311,11 @@ void add_cycle_json(Json& result, const CycleResult& cycle) {
   }
   result["bottleneck"] = bottleneck(cycle);
   if (cycle.is_explained) {
-    Json reliefs = Json::array(), saved = Json::object();
-    for (const Trial& trial : cycle.reliefs)
-      reliefs.push_back({{"key", trial.key}, {"value", trial.value}, {"cycles", trial.cycles}});
+    Json saved = Json::object();
     for (const Saving& saving : cycle.savings) saved[std::string(saving.name)] = saving.cycles;
-    result["reliefs"] = reliefs;
-    Json orders = Json::array();
-    for (const OrderTrial& trial : cycle.orders)
-      orders.push_back(
-          {{"order", trial.order}, {"store", trial.store}, {"cycles", trial.cycles}, {"bytes", trial.bytes}});
-    result["orders"] = {{"tried", orders},
-                        {"recommended", orders.empty() ? Json(nullptr) : Json(recommended(cycle.orders))}};
+    result["reliefs"] = cycle.reliefs;
+    result["orders"] = {{"tried", cycle.orders},
+                        {"recommended", cycle.orders.empty() ? Json(nullptr) : Json(recommended(cycle.orders))}};
     result["saved_cycles"] = saved;
   }
   Json rows = Json::array();

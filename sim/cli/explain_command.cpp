@@ -16,6 +16,9 @@
 #include "sim/study/explain/picture.hpp"
 
 namespace halfplane {
+
+HALFPLANE_JSON_OF_MEMBERS(Rect, x, y, width, height)
+
 namespace {
 
 constexpr int kMostPixels = 4096;  // of --box: a history of each is kept
@@ -123,7 +126,7 @@ Json page_json(const explain::Explanation& around, const explain::Window& window
             {"differences", around.differences},
             {"color_format", config.color_format == ColorFormat::rgb565 ? "rgb565" : "rgba8888"},
             {"window", {{"x", window.left}, {"y", window.top}, {"width", window.width}, {"height", window.height}}},
-            {"box", {{"x", box.x}, {"y", box.y}, {"width", box.width}, {"height", box.height}}},
+            {"box", box},
             {"empty",
              {{"depth", hex_text(empty.frame.depth[at], depth_bits)},
               {"color", hex_text(empty.frame.color[at], config.color_format == ColorFormat::rgb565 ? 16 : 32)}}}};

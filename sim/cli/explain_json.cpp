@@ -91,7 +91,7 @@ Json surface_json(const SurfaceFigure& figure) {
                       {"x", t.x},
                       {"y", t.y},
                       {"weight", std::ldexp(t.weight, -24)},
-                      {"address", or_null(t.address)},
+                      {"address", t.address},
                       {"color", texel_color(t.color)}});
   json["texels"] = texels;
   json["texel"] = texel_color(s.texel);
@@ -167,8 +167,6 @@ Json fields_json(Arrow arrow, const std::vector<std::uint32_t>& words, const Wid
   });
 }
 
-Json optional_cycle(const std::optional<std::uint64_t>& cycle) { return or_null(cycle); }
-
 Json hardware_json(const HardwareFigure& figure, const PacketStore& store, const Widths& widths) {
   Json json{{"verdict", name_of(figure.outcome.verdict)}, {"stage", name_of(figure.outcome.stage)}};
   json["hiz"] = nullptr;
@@ -183,7 +181,7 @@ Json hardware_json(const HardwareFigure& figure, const PacketStore& store, const
     const RecordedPacket& packet = store.at(id);
     packets.push_back({{"arrow", std::string(info(id.first).name)},
                        {"number", id.second},
-                       {"cycle", optional_cycle(packet.model_cycle)},
+                       {"cycle", packet.model_cycle},
                        {"fields", fields_json(id.first, packet.model, widths)}});
   }
   json["packets"] = packets;
@@ -265,9 +263,7 @@ Json rtl_json(const HardwareFigure& figure, const PacketStore& store, const Widt
   std::size_t differing = 0;
   for (const PacketId& id : figure.packets) {
     const RecordedPacket& packet = store.at(id);
-    Json json{{"arrow", std::string(info(id.first).name)},
-              {"number", id.second},
-              {"cycle", optional_cycle(packet.rtl_cycle)}};
+    Json json{{"arrow", std::string(info(id.first).name)}, {"number", id.second}, {"cycle", packet.rtl_cycle}};
     Json fields = Json::array();
     if (packet.rtl.empty())
       json["missing"] = true;
@@ -282,7 +278,7 @@ Json rtl_json(const HardwareFigure& figure, const PacketStore& store, const Widt
 
 Json entry_json(const Entry& entry, const PixelHistory& pixel, const Explanation& all, const Config& config,
                 const Widths& widths) {
-  Json json{{"primitive", or_null(entry.primitive)},
+  Json json{{"primitive", entry.primitive},
             {"draw", entry.draw},
             {"kind", kKindNames[static_cast<std::size_t>(entry.kind)]},
             {"piece", entry.piece},

@@ -8,7 +8,6 @@
 #include "sim/cli/commands.hpp"
 #include "sim/cli/cosim_options.hpp"
 #include "sim/cli/progress.hpp"
-#include "sim/cosim/report.hpp"
 #include "sim/cosim/rtl_engine.hpp"
 #include "sim/scene/builtin.hpp"
 #include "sim/show/image/framebuffer_files.hpp"
@@ -203,11 +202,7 @@ int run(const MutantsCommand& options) {
   if (options.scenes)
     out << unseen << " of them change no picture of the " << pictures.size() << " built-in scenes at " << options.size
         << ": only the comparison of packets and counters shows them\n";
-  if (is_partial) {
-    print_partial(out);
-    return exit_interrupted;
-  }
-  return all_caught ? exit_ok : exit_mismatch;
+  return ended(out, is_partial, all_caught ? exit_ok : exit_mismatch);
 }
 
 }  // namespace

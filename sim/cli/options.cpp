@@ -13,7 +13,6 @@
 #include "model/capture/capture.hpp"
 #include "sim/cli/progress.hpp"
 #include "sim/config_file.hpp"
-#include "sim/config_json.hpp"
 #include "sim/scene/convention.hpp"
 #include "sim/scene/depth_collision.hpp"
 #include "sim/scene/depth_mapping.hpp"
@@ -295,17 +294,6 @@ void add_work(ObjectCounts& objects, const MovingScene& source) {
   objects.nodes_outside = source.work->bounds.nodes_outside;
   objects.nodes_inside = source.work->bounds.nodes_inside;
   objects.vertices_skipped = source.work->vertices_skipped;
-}
-
-Json objects_json(const ObjectCounts& objects) {
-  return {{"in", objects.in},
-          {"culled_sphere", objects.culled_sphere},
-          {"culled_box", objects.culled_box},
-          {"primitives_skipped", objects.primitives_skipped},
-          {"tests", objects.tests},
-          {"nodes_outside", objects.nodes_outside},
-          {"nodes_inside", objects.nodes_inside},
-          {"vertices_skipped", objects.vertices_skipped}};
 }
 
 Json result_head(const std::string& command, const CommonOptions& options, const Config& config) {

@@ -19,6 +19,22 @@
 #include "sim/scene/load.hpp"
 #include "sim/scene/object_cull.hpp"
 
+/// A value that may be missing is null in JSON.
+template <class T>
+struct nlohmann::adl_serializer<std::optional<T>> {
+  template <class Json>
+  static void to_json(Json& json, const std::optional<T>& value) {
+    json = value ? Json(*value) : Json(nullptr);
+  }
+};
+
+/// Makes JSON of a struct of the namespace it stands in: the members as keys, in this order.
+#define HALFPLANE_JSON_OF_MEMBERS(Struct, ...)                                    \
+  inline void to_json(nlohmann::ordered_json& json, const Struct& of) {           \
+    NLOHMANN_JSON_EXPAND(NLOHMANN_JSON_PASTE(HALFPLANE_JSON_MEMBER, __VA_ARGS__)) \
+  }
+#define HALFPLANE_JSON_MEMBER(name) json[#name] = of.name;
+
 namespace halfplane {
 
 using Json = nlohmann::ordered_json;
@@ -127,8 +143,9 @@ void warn_of_scene(const Scene& scene, const Config& config);
 /// Adds what the last scene of `source` took.
 void add_work(ObjectCounts& objects, const MovingScene& source);
 
-/// {in, culled_sphere, ...}: `objects` of a result.
-[[nodiscard]] Json objects_json(const ObjectCounts& objects);
+/// `objects` of a result.
+HALFPLANE_JSON_OF_MEMBERS(ObjectCounts, in, culled_sphere, culled_box, primitives_skipped, tests, nodes_outside,
+                          nodes_inside, vertices_skipped)
 
 /// {schema, config, scene, seed}: the head of every result; the last two are null for a command without a scene.
 /// `command` as in "render".
@@ -176,11 +193,6 @@ template <class Range>
 
 [[nodiscard]] std::string decimal(int128 value);
 
-/// Null for none.
-template <class T>
-[[nodiscard]] Json or_null(const std::optional<T>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
 [[nodiscard]] inline Json or_null(bool is_known, const Json& value) { return is_known ? value : Json(nullptr); }
 /// Null for an empty text.
 [[nodiscard]] inline Json or_null(const std::string& text) { return or_null(!text.empty(), text); }

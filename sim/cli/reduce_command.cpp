@@ -54,8 +54,7 @@ int run(const ReduceCommand& options) {
   const bool is_partial = is_interrupted();
   finish_json(options, result, start, is_partial);
   print_finding(human(options), saved);
-  if (is_partial) print_partial(human(options));
-  return is_partial ? exit_interrupted : exit_ok;
+  return ended(human(options), is_partial, exit_ok);
 }
 
 }  // namespace

@@ -290,7 +290,7 @@ int run(const RenderCommand& given) {
   result["height"] = scene.height;
   result["threads"] = options.engine == "functional" ? options.threads : 1;  // the others have one
   result["supersample"] = or_null(options.supersample);
-  result["objects"] = objects_json(objects);
+  result["objects"] = objects;
   if (options.engine == "scalar") add_study_json(result, options.study, scene, config);
   if (options.engine == "scalar" || options.engine == "golden")
     result["bounds"]["given_up"] = given_up_bounds(study_rules(options.study));
@@ -332,8 +332,7 @@ int run(const RenderCommand& given) {
   const bool is_partial = is_interrupted();
   finish_json(options, result, start, is_partial);
   print_result(options, config, rendering, facts, result);
-  if (is_partial) print_partial(human(options));
-  return is_partial ? exit_interrupted : exit_ok;
+  return ended(human(options), is_partial, exit_ok);
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ struct PlannedFrame {
 /// One frame's figures, in the order of the columns of --csv: those of `halfplane render`.
 Json frame_row(int frame, const Moment& moment, const Rendering& rendering, const CycleFacts& facts,
                const RenderCommand& options, const Config& config) {
-  Json row{{"frame", frame}, {"time", or_null(moment.time)}, {"turn", moment.turn}};
+  Json row{{"frame", frame}, {"time", moment.time}, {"turn", moment.turn}};
   row.update(counters_json(rendering.counters));
   const bool is_hardware = options.engine == "cycle" || options.engine == "rtl";
   row["bins"] = is_hardware ? Json(rendering.counters.bins) : Json(nullptr);
@@ -277,7 +277,7 @@ int run_frames(const RenderCommand& options, const Config& config) {
       write_files(own, rendering, config, "frame " + std::to_string(i) + ", engine " + options.engine);
       rows.push_back(frame_row(i, frame.moment, rendering, facts, options, config));
       if (frame.is_of_capture) rows.back()["goes_on"] = frame.goes_on;
-      rows.back()["objects"] = objects_json(objects);
+      rows.back()["objects"] = objects;
       rows.back()["time_s"]["scene"] = scene_s;
     }
   } catch (const Interrupted&) {  // the frames so far count
@@ -307,8 +307,7 @@ int run_frames(const RenderCommand& options, const Config& config) {
   if (!options.color_path.empty())
     out << "pictures    " << numbered(options.color_path, 0, frames) << " to "
         << numbered(options.color_path, static_cast<int>(rows.size()) - 1, frames) << '\n';
-  if (is_partial) print_partial(out);
-  return is_partial ? exit_interrupted : exit_ok;
+  return ended(out, is_partial, exit_ok);
 }
 
 }  // namespace halfplane

@@ -5,12 +5,17 @@
 
 #include "sim/cli/commands.hpp"
 #include "sim/cli/progress.hpp"
-#include "sim/config_json.hpp"
+#include "sim/config_file.hpp"
 #include "sim/cosim/junit.hpp"
 #include "sim/show/image/whole_file.hpp"
 #include "sim/study/stress/run.hpp"
 
 namespace halfplane {
+
+namespace stress {
+HALFPLANE_JSON_OF_MEMBERS(Case, name, item, property)
+}
+
 namespace {
 
 struct StressCommand : CommonOptions {
@@ -60,9 +65,7 @@ void print_list(std::ostream& out) {
 }
 
 int list_cases(const StressCommand& options) {
-  Json result{{"schema", "halfplane.stress.list/1"}, {"cases", Json::array()}};
-  for (const stress::Case& c : stress::cases())
-    result["cases"].push_back({{"name", c.name}, {"item", c.item}, {"property", c.property}});
+  const Json result{{"schema", "halfplane.stress.list/1"}, {"cases", stress::cases()}};
   write_json(options, result);
   print_list(human(options));
   return exit_ok;
@@ -101,7 +104,7 @@ std::string save_capture(const std::string& folder, const std::string& name, con
 Json worst_json(const StressCommand& options, const stress::CaseResult& result, const WorstEntry& entry) {
   const auto& [property, w] = entry;
   Json row{{"value", w.value}, {"bound", w.bound}, {"unit", w.unit}, {"config", label(w.place.config)}};
-  row["measured"] = or_null(w.measured);
+  row["measured"] = w.measured;
   row["capture"] = nullptr;
   if (!options.captures.empty() && w.value > 0) {
     const std::string path =
@@ -247,11 +250,7 @@ int run(const StressCommand& options) {
   for (std::size_t i = 0; i < results.size(); ++i)
     if (results[i].tally.first) print_failure(out, result["cases"][i], *results[i].tally.first);
   out << (sum.failures == 0 ? "every bound holds\n" : "");
-  if (is_partial) {
-    print_partial(out);
-    return exit_interrupted;
-  }
-  return sum.failures == 0 ? exit_ok : exit_mismatch;
+  return ended(out, is_partial, sum.failures == 0 ? exit_ok : exit_mismatch);
 }
 
 }  // namespace

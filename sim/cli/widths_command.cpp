@@ -7,13 +7,11 @@
 #include <memory>
 #include <sstream>
 
-#include "model/capture/capture.hpp"
 #include "model/widths.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/progress.hpp"
 #include "sim/show/image/whole_file.hpp"
 #include "sim/study/compare/surface_oracle.hpp"
-#include "sim/study/widths/over_w_range.hpp"
 #include "sim/study/widths/study.hpp"
 
 namespace halfplane {
@@ -94,11 +92,11 @@ Json over_w_json(const Config& config) {
   for (const int texels : kTextureSides)
     coordinate.push_back({{"texels", texels},
                           {"error_texels", kProvenTexels},
-                          {"w_ratio", or_null(proven_w_ratio(texels, format, config.tile_size))}});
+                          {"w_ratio", proven_w_ratio(texels, format, config.tile_size)}});
   return {{"coordinate", coordinate},
           {"color",
            {{"error_lsb", kProvenColor},
-            {"w_ratio", or_null(proven_w_ratio(255, kProvenColor, format, format.color, config.tile_size))}}},
+            {"w_ratio", proven_w_ratio(255, kProvenColor, format, format.color, config.tile_size)}}},
           {"level_of_detail", {{"error_levels", 0.1}, {"w_ratio", largest_level_w_ratio(format)}}}};
 }
 
@@ -252,8 +250,7 @@ int run_table(const WidthsCommand& options) {
       out << "BROKEN: " << row.width.name << " leaves its derived range\n";
       status = exit_mismatch;
     }
-  if (is_partial) print_partial(out);
-  return is_partial ? exit_interrupted : status;
+  return ended(out, is_partial, status);
 }
 
 }  // namespace

@@ -8,8 +8,8 @@
 #include "model/widths.hpp"
 #include "sim/cli/progress.hpp"
 #include "sim/cli/widths_command.hpp"
-#include "sim/study/widths/over_w_range.hpp"
 #include "sim/study/widths/smallest.hpp"
+#include "sim/study/widths/study.hpp"
 
 namespace halfplane {
 namespace {
@@ -69,7 +69,7 @@ Json errors_json(const SceneErrors& errors, const Config& config) {
           {"coverage", errors.coverage},
           {"color_lsb", errors.color},
           {"texture_texels", errors.texture},
-          {"fight_rate", or_null(errors.fights)}};
+          {"fight_rate", errors.fights}};
 }
 
 Json bits_json(const HardwareBits& bits) {
@@ -91,7 +91,7 @@ Json trial_json(const TriedConfig& trial, const std::vector<std::string>& names,
           {"proven",
            {{"depth_lsb", depth_error_bound(trial.config)},
             {"line_depth_lsb", line_depth_error_bound(trial.config)},
-            {"coordinate_w_ratio", or_null(ratio)}}},
+            {"coordinate_w_ratio", ratio}}},
           {"broken", or_null(trial.broken)}};
 }
 
@@ -199,11 +199,11 @@ int run_smallest(const WidthsCommand& options) {
   result["seed"] = options.seed;
   result["scenes"] = options.scenes;
   result["measured"] = true;  // on these scenes; not proven
-  result["bounds"] = {{"depth", or_null(bounds.depth)},
-                      {"coverage", or_null(bounds.coverage)},
-                      {"color_lsb", or_null(bounds.color)},
-                      {"texture_texels", or_null(bounds.texture)},
-                      {"fight_rate", or_null(bounds.fights)}};
+  result["bounds"] = {{"depth", bounds.depth},
+                      {"coverage", bounds.coverage},
+                      {"color_lsb", bounds.color},
+                      {"texture_texels", bounds.texture},
+                      {"fight_rate", bounds.fights}};
   result["trials"] = smallest.trials;
   result["start_bits"] = bits_json(hardware_bits(start, has_over_w));
   result["widest"] = smallest.trials > 0 ? trial_json(smallest.widest, options.scenes, has_over_w) : Json(nullptr);

@@ -1,7 +1,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "sim/config_json.hpp"
+#include "sim/config_file.hpp"
 #include "sim/show/image/whole_file.hpp"
 #include "vector_file.hpp"
 
