@@ -258,4 +258,16 @@ Config config_from_option(const std::string& option) {
                    " give tiny, small, embedded, full or a .toml file");
 }
 
+nlohmann::ordered_json config_json(const Config& config) {
+  nlohmann::ordered_json json{{"preset", config.preset}};
+  for (const Setting& setting : settings()) {
+    const std::string value = get(config, setting);
+    if (setting.is_number())
+      json[std::string(setting.key)] = std::stoi(value);
+    else
+      json[std::string(setting.key)] = value;
+  }
+  return json;
+}
+
 }  // namespace halfplane

@@ -6,6 +6,7 @@
 //   bits = 20
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 
@@ -28,5 +29,8 @@ void set_by_key(Config& config, std::string_view key, std::string_view value);
 
 /// What `--config` takes: the name of a preset, or a file ending in .toml.
 [[nodiscard]] Config config_from_option(const std::string& option);
+
+/// The preset and every effective value, keyed as in --set.
+[[nodiscard]] nlohmann::ordered_json config_json(const Config& config);
 
 }  // namespace halfplane

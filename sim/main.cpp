@@ -30,14 +30,11 @@ void check_command(const CLI::App& app, int argc, char** argv) {
   const std::string word = argv[1];
   if (word.starts_with("-")) return;
   const auto commands = app.get_subcommands({});
-  std::vector<std::string_view> words;
-  std::string names;
-  for (const CLI::App* command : commands) {
-    if (command->get_name() == word) return;
-    names += (names.empty() ? "" : ", ") + command->get_name();
-  }
-  for (const CLI::App* command : commands) words.push_back(command->get_name());
-  throw InputError("no command '" + word + "' in this version;" + did_you_mean(word, words) + " give one of " + names);
+  std::vector<std::string_view> names;
+  for (const CLI::App* command : commands) names.push_back(command->get_name());
+  if (std::find(names.begin(), names.end(), word) != names.end()) return;
+  throw InputError("no command '" + word + "' in this version;" + did_you_mean(word, names) + " give one of " +
+                   joined(names));
 }
 
 /// CLI11 says that a word is unexpected, but not which option it may have been; empty when there is none near.
@@ -59,10 +56,11 @@ std::string option_hint(const CLI::App& app, int argc, char** argv) {
 /// "halfplane 0.1.0 (commit 1a2b3c4, Release, GNU 12.2.0, RTL: embedded, tiny)"
 std::string version_text() {
   const BuildInfo& info = build_info();
-  std::string rtl;
-  for (const DutFactory& dut : verilated_duts()) rtl += (rtl.empty() ? "" : ", ") + dut.name;
+  std::vector<std::string> names;
+  for (const DutFactory& dut : verilated_duts()) names.push_back(dut.name);
+  const std::string rtl = names.empty() ? "none" : joined(names);
   return "halfplane " HALFPLANE_VERSION " (commit " + std::string(info.commit) + ", " + std::string(info.type) + ", " +
-         std::string(info.compiler) + ", RTL: " + (rtl.empty() ? "none" : rtl) + ")";
+         std::string(info.compiler) + ", RTL: " + rtl + ")";
 }
 
 int run(int argc, char** argv) {
@@ -75,23 +73,12 @@ int run(int argc, char** argv) {
       "a broken bound, 2 wrong usage or bad input, 3 something is lacking, 130 interrupted,\n141 nobody reads stdout "
       "any more.");
   Action selected;
-  add_render_command(app, selected);
-  add_compare_command(app, selected);
-  add_cosim_command(app, selected);
-  add_reduce_command(app, selected);
-  add_mutants_command(app, selected);
-  add_depth_command(app, selected);
-  add_bench_command(app, selected);
-  add_stress_command(app, selected);
-  add_scenes_command(app, selected);
-  add_widths_command(app, selected);
-  add_config_command(app, selected);
-  add_convert_command(app, selected);
-  add_explain_command(app, selected);
-  add_vectors_command(app, selected);
-  add_check_command(app, selected);
-  add_completions_command(app, selected);
-  add_man_command(app, selected);
+  for (AddCommand* add :
+       {add_render_command, add_compare_command, add_cosim_command, add_reduce_command, add_mutants_command,
+        add_depth_command, add_bench_command, add_stress_command, add_scenes_command, add_widths_command,
+        add_config_command, add_convert_command, add_explain_command, add_vectors_command, add_check_command,
+        add_completions_command, add_man_command})
+    add(app, selected);
   check_command(app, argc, argv);
   try {
     app.parse(argc, argv);
@@ -122,11 +109,10 @@ int main(int argc, char** argv) {
     return fail(exit_interrupted, "interrupted: this work is whole or nothing, so nothing was written");
   } catch (const InputError& error) {
     return fail(exit_bad_input, error.what());
-  } catch (const std::bad_alloc&) {
-    return fail(exit_missing, "not enough memory for this scene and target; give a smaller --size");
-  } catch (const std::length_error&) {
-    return fail(exit_missing, "not enough memory for this scene and target; give a smaller --size");
   } catch (const std::exception& error) {
-    return fail(exit_missing, error.what());
+    const bool is_of_memory = dynamic_cast<const std::bad_alloc*>(&error) != nullptr ||
+                              dynamic_cast<const std::length_error*>(&error) != nullptr;
+    return fail(exit_missing,
+                is_of_memory ? "not enough memory for this scene and target; give a smaller --size" : error.what());
   }
 }

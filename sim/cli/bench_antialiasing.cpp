@@ -4,13 +4,16 @@
 
 #include "sim/cli/bench_study.hpp"
 #include "sim/cli/progress.hpp"
-#include "sim/show/image/whole_file.hpp"
+#include "sim/show/report/page.hpp"
 #include "sim/study/antialiasing/study.hpp"
 #include "sim/study/space/front.hpp"
 #include "sim/study/space/gates.hpp"
-#include "sim/study/space/report.hpp"
 
 namespace halfplane {
+
+namespace antialiasing {
+HALFPLANE_JSON_OF_MEMBERS(AreaRow, kind, samples, frame_s, rms, max, mean, is_front)
+}
 
 namespace {
 
@@ -42,11 +45,10 @@ void print(std::ostream& out, const Json& rows) {
       {"kind", "samples", "rms", "worst", "mean", "ms a frame", "cycles", "KB", "ECP5 places", "block RAM", ""}};
   for (const Json& row : rows) {
     const int samples = row.at("samples");
-    std::string fronts;
+    std::vector<std::string> names;
     for (const std::string name : row.at("fronts"))
-      fronts += (fronts.empty() ? "" : ", ") + (name == "frame_s"       ? std::string("ms")
-                                                : name == "ecp5.places" ? std::string("places")
-                                                                        : name);
+      names.push_back(name == "frame_s" ? "ms" : name == "ecp5.places" ? "places" : name);
+    const std::string fronts = joined(names);
     lines.push_back({row.at("kind"), samples == 0 ? "area" : std::to_string(samples), fixed(row.at("rms"), 4),
                      fixed(row.at("max"), 4), fixed(row.at("mean"), 4), fixed(1e3 * row.at("frame_s").get<double>(), 2),
                      cell(row, "cycles", 1), cell(row, "bytes", 1.0 / 1024), cell(row, "ecp5.places", 1),
@@ -69,8 +71,7 @@ Json measured(const CommonOptions& options, const Config& config, int repeat, co
   std::optional<Progress> counting;
   if (gates != nullptr) counting.emplace(options, std::string("counting gates of ") + name);
   for (const antialiasing::AreaRow& row : study.rows) {
-    Json entry = {{"kind", row.kind}, {"samples", row.samples}, {"frame_s", row.frame_s},  {"rms", row.rms},
-                  {"max", row.max},   {"mean", row.mean},       {"is_front", row.is_front}};
+    Json entry = row;
     if (row.hardware) {
       entry["hardware"] = label(row.hardware->config);
       entry["cycles"] = row.hardware->cycles;
@@ -132,8 +133,7 @@ void write_antialiasing_page(const std::string& path, const Json& result, const 
   page["title"] = "Antialiasing";
   page["version"] = HALFPLANE_VERSION;
   page["command"] = command;
-  const std::string text = space_report(page.dump(-1, ' ', false, Json::error_handler_t::replace));
-  write_whole_file(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  write_page(path, kSpacePage, page);
 }
 
 }  // namespace halfplane

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <thread>
 #include <tuple>
 
@@ -41,16 +42,6 @@ struct BenchCommand : CommonOptions {
   [[nodiscard]] bool wants_rows() const { return wants_all || !(wants_skips || wants_growth); }
 };
 
-std::vector<std::string> words_between_commas(const std::string& text) {
-  std::vector<std::string> words;
-  for (std::size_t start = 0; start <= text.size();) {
-    const std::size_t end = std::min(text.find(',', start), text.size());
-    words.push_back(text.substr(start, end - start));
-    start = end + 1;
-  }
-  return words;
-}
-
 std::vector<Variation> parse_variations(const std::vector<std::string>& texts, const Config& config) {
   std::vector<Variation> variations;
   for (const std::string& text : texts) {
@@ -58,7 +49,7 @@ std::vector<Variation> parse_variations(const std::vector<std::string>& texts, c
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos || equals + 1 == text.size())
       throw InputError(shown + " names no values; give KEY=VALUE,VALUE... as in subpixel.bits=0,4,8");
-    Variation variation{text.substr(0, equals), words_between_commas(text.substr(equals + 1))};
+    Variation variation{text.substr(0, equals), split_at_commas(text.substr(equals + 1))};
     for (const std::string& value : variation.values) {
       if (value.empty()) throw InputError(shown + " has an empty value; give KEY=VALUE,VALUE...");
       if (std::count(variation.values.begin(), variation.values.end(), value) > 1)
@@ -241,29 +232,18 @@ void check_bench_options(const BenchCommand& options) {
   if (!options.page.empty()) require_chart_library();
 }
 
-template <typename T>
-std::string with_commas_between(const std::vector<T>& words) {
-  std::string text;
-  for (const T& word : words) {
-    if (!text.empty()) text += ',';
-    if constexpr (std::is_same_v<T, int>)
-      text += std::to_string(word);
-    else
-      text += word;
-  }
-  return text;
-}
-
 /// The command that measures the same again.
 std::string bench_command_line(const BenchCommand& options) {
   std::string text = "halfplane bench";
   for (const std::string& scene : options.scenes) text += " " + quoted(scene);
-  if (!options.engines.empty()) text += " --engines " + with_commas_between(options.engines);
+  if (!options.engines.empty()) text += " --engines " + joined(options.engines, ",");
   if (options.config != "embedded") text += " --config " + quoted(options.config);
   for (const std::string& setting : options.settings) text += " --set " + quoted(setting);
   for (const std::string& variation : options.variations) text += " --vary " + quoted(variation);
   if (!options.size.empty()) text += " --size " + options.size;
-  if (options.thread_counts != std::vector<int>{1}) text += " --threads " + with_commas_between(options.thread_counts);
+  std::string threads;
+  for (const int n : options.thread_counts) threads += (threads.empty() ? "" : ",") + std::to_string(n);
+  if (threads != "1") text += " --threads " + threads;
   text += " --repeat " + std::to_string(options.repeat);
   if (options.seed != 1) text += " --seed " + std::to_string(options.seed);
   if (options.has_no_errors) text += " --no-errors";
@@ -274,16 +254,22 @@ std::string bench_command_line(const BenchCommand& options) {
   return text + space_arguments(options.space) + (options.page.empty() ? "" : " -o " + quoted(options.page));
 }
 
+/// What every result of this command begins with.
+Json bench_head(const BenchCommand& options, const Config& config, const BenchStudy& study = {}) {
+  Json result = result_head("bench", options, config);
+  result["seed"] = options.seed;
+  result["repeat"] = options.repeat;
+  result["label"] = label(config);
+  add_bench_json(result, study);
+  return result;
+}
+
 /// --area, --space, --slurm, --collect.
 int run_space(const BenchCommand& options, const Config& config, std::chrono::steady_clock::time_point start) {
   SpaceStudy study;
   study.page = options.page;
   study.command = bench_command_line(options);
-  study.result = result_head("bench", options, config);
-  study.result["seed"] = options.seed;
-  study.result["repeat"] = options.repeat;
-  study.result["label"] = label(config);
-  add_bench_json(study.result, {});
+  study.result = bench_head(options, config);
   study.result["memory"] = memory_json(options.space.memory);
   study.result["points"] = Json::array();
   if (!options.space.collect.empty()) {
@@ -294,11 +280,8 @@ int run_space(const BenchCommand& options, const Config& config, std::chrono::st
     if (!options.space.slurm.empty()) {
       const auto arguments = [&](const BenchCase& at) {
         std::string text = scene_arguments(options, config) + " --seed " + std::to_string(options.seed);
-        for (std::size_t begin = 0; begin < at.variation.size();) {
-          const std::size_t end = std::min(at.variation.find(' ', begin), at.variation.size());
-          text += " --vary " + quoted(at.variation.substr(begin, end - begin));
-          begin = end + 1;
-        }
+        std::istringstream settings(at.variation);
+        for (std::string setting; settings >> setting;) text += " --vary " + halfplane::quoted(setting);
         return text;
       };
       write_cluster(options, options.space, cases, arguments, study);
@@ -315,17 +298,12 @@ int run_space(const BenchCommand& options, const Config& config, std::chrono::st
 /// --antialiasing.
 int run_antialiasing(const BenchCommand& options, const Config& config, std::chrono::steady_clock::time_point start) {
   require_one_sample(config, "bench --antialiasing sets samples itself and");
-  Json result = result_head("bench", options, config);
-  result["seed"] = options.seed;
-  result["repeat"] = options.repeat;
-  result["label"] = label(config);
-  add_bench_json(result, {});
+  Json result = bench_head(options, config);
   std::optional<Gates> gates;
   if (options.space.wants_area) gates.emplace(options.space.rtl, options.space.cache, std::vector<std::string>{"ecp5"});
   measure_antialiasing(options, config, options.repeat, gates ? &*gates : nullptr, result);
   if (!options.page.empty()) write_antialiasing_page(options.page, result, bench_command_line(options));
-  result["wall_s"] = seconds_since(start);
-  write_json(options, result);
+  finish_json(options, result, start);
   return exit_ok;
 }
 
@@ -342,11 +320,7 @@ int run_bench(const BenchCommand& options) {
   if ((options.wants_growth || options.wants_all) && !is_interrupted()) measure_bench_growth(options, config, study);
   const bool is_partial = is_interrupted();
 
-  Json result = result_head("bench", options, config);
-  result["seed"] = options.seed;
-  result["repeat"] = options.repeat;
-  result["label"] = label(config);
-  add_bench_json(result, study);
+  Json result = bench_head(options, config, study);
   result["wall_s"] = seconds_since(start);
   if (is_partial) mark_partial(result);
   write_bench_page(options.page, result, bench_command_line(options));
@@ -356,15 +330,14 @@ int run_bench(const BenchCommand& options) {
   if (!study.cases.empty()) out << ", " << study.cases[0].scene->width << "x" << study.cases[0].scene->height;
   out << ", median of " << options.repeat << (options.repeat == 1 ? " frame" : " frames") << ", in turns\n";
   print_bench(out, study);
-  if (is_partial) print_partial(out);
-  return is_partial ? exit_interrupted : exit_ok;
+  return ended(out, is_partial, exit_ok);
 }
 
 }  // namespace
 
 void add_bench_command(CLI::App& app, Action& selected) {
-  CLI::App* command = app.add_subcommand("bench", "run time against error, engine by engine");
-  auto options = std::make_shared<BenchCommand>();
+  const auto [command, options] =
+      add_command<BenchCommand>(app, selected, "bench", "run time against error, engine by engine", run_bench);
   command->add_option("SCENES", options->scenes, "names or files (default: teapot city)");
   add_output_options(*command, *options);
   command->add_option("--engines", options->engines, "some of functional, scalar, golden, cycle, rtl, llvmpipe")
@@ -413,7 +386,6 @@ void add_bench_command(CLI::App& app, Action& selected) {
       "bench city --size 1280x720 --engines functional,cycle --threads 1,2\n  halfplane bench city --area --vary "
       "depth.bits=16,24 --vary "
       "stamp.size=1,2,4 -o space.html");
-  command->callback([&selected, options] { selected = [options] { return run_bench(*options); }; });
 }
 
 }  // namespace halfplane

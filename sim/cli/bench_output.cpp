@@ -5,18 +5,34 @@
 
 #include "sim/cli/bench_study.hpp"
 #include "sim/show/image/color_map.hpp"
-#include "sim/show/image/whole_file.hpp"
-#include "sim/study/bench/report.hpp"
+#include "sim/show/report/page.hpp"
 
 namespace halfplane {
-namespace {
 
-Json null_or(bool is_known, const Json& value) { return is_known ? value : Json(nullptr); }
+HALFPLANE_JSON_OF_MEMBERS(BenchErrors, depth_lsb_max, depth_lsb_rms, depth_range_max, depth_range_rms, color_lsb_max,
+                          color_lsb_rms, depth_eye_max, depth_eye_rms, coverage_mismatches, coverage_missing,
+                          coverage_extra)
+HALFPLANE_JSON_OF_MEMBERS(GrowthSeries, name, x, meaning)
 
-template <typename T>
-Json null_or(const std::optional<T>& value) {
-  return value ? Json(*value) : Json(nullptr);
+void print_bench_table(std::ostream& out, const std::vector<std::vector<std::string>>& lines, std::size_t left) {
+  std::vector<std::size_t> widths(lines.front().size());
+  std::vector<bool> is_used(widths.size());
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    for (std::size_t k = 0; k < widths.size(); ++k) {
+      widths[k] = std::max(widths[k], lines[i][k].size());
+      is_used[k] = is_used[k] || (i > 0 && !lines[i][k].empty() && lines[i][k] != "-");
+    }
+  for (const auto& line : lines) {
+    std::string text;
+    for (std::size_t k = 0; k < widths.size(); ++k)
+      if (is_used[k])
+        text += k < left ? left_aligned(line[k], widths[k] + 2) : right_aligned(line[k], widths[k]) + "  ";
+    text.erase(text.find_last_not_of(' ') + 1);
+    out << text << '\n';
+  }
 }
+
+namespace {
 
 Json bench_row_json(const BenchRow& row, const BenchCase& at) {
   const bool has_cycles = row.times.cycles != 0;
@@ -32,25 +48,15 @@ Json bench_row_json(const BenchRow& row, const BenchCase& at) {
             {"frame_s_min", row.times.min()},
             {"mtri_s", row.mtri_s()},
             {"mpix_s", row.mpix_s()},
-            {"cycles", null_or(has_cycles, row.times.cycles)},
-            {"cycles_per_s", null_or(has_cycles, row.cycles_per_s())},
+            {"cycles", or_null(has_cycles, row.times.cycles)},
+            {"cycles_per_s", or_null(has_cycles, row.cycles_per_s())},
             {"primitives", row.facts.counters.primitives_in},
             {"fragments", row.facts.counters.covered},
             {"coverage", row.facts.coverage}};
-  const BenchErrors errors = row.facts.errors.value_or(BenchErrors{});
-  const bool has = row.facts.errors.has_value();
   json["depth_bits"] = at.config.depth_bits;
-  json["depth_lsb_max"] = null_or(errors.depth_lsb_max);
-  json["depth_lsb_rms"] = null_or(errors.depth_lsb_rms);
-  json["depth_range_max"] = null_or(errors.depth_range_max);
-  json["depth_range_rms"] = null_or(errors.depth_range_rms);
-  json["color_lsb_max"] = null_or(errors.color_lsb_max);
-  json["color_lsb_rms"] = null_or(errors.color_lsb_rms);
-  json["depth_eye_max"] = null_or(errors.depth_eye_max);
-  json["depth_eye_rms"] = null_or(errors.depth_eye_rms);
-  json["coverage_mismatches"] = null_or(has, errors.coverage_mismatches);
-  json["coverage_missing"] = null_or(has, errors.coverage_missing);
-  json["coverage_extra"] = null_or(has, errors.coverage_extra);
+  // Without errors their keys are null.
+  const Json errors = row.facts.errors.value_or(BenchErrors{});
+  for (const auto& [key, value] : errors.items()) json[key] = or_null(row.facts.errors.has_value(), value);
   return json;
 }
 
@@ -82,28 +88,6 @@ std::string processor_name() {
     if (line.starts_with("model name") && line.find(": ") != std::string::npos) return line.substr(line.find(": ") + 2);
   return "";
 }
-
-}  // namespace
-
-void print_bench_table(std::ostream& out, const std::vector<std::vector<std::string>>& lines, std::size_t left) {
-  std::vector<std::size_t> widths(lines.front().size());
-  std::vector<bool> is_used(widths.size());
-  for (std::size_t i = 0; i < lines.size(); ++i)
-    for (std::size_t k = 0; k < widths.size(); ++k) {
-      widths[k] = std::max(widths[k], lines[i][k].size());
-      is_used[k] = is_used[k] || (i > 0 && !lines[i][k].empty() && lines[i][k] != "-");
-    }
-  for (const auto& line : lines) {
-    std::string text;
-    for (std::size_t k = 0; k < widths.size(); ++k)
-      if (is_used[k])
-        text += k < left ? left_aligned(line[k], widths[k] + 2) : right_aligned(line[k], widths[k]) + "  ";
-    text.erase(text.find_last_not_of(' ') + 1);
-    out << text << '\n';
-  }
-}
-
-namespace {
 
 /// How many times as fast as `engine` on the same scene, with as many threads and the same configuration if it has them.
 std::string times_as_fast(const BenchStudy& study, const BenchRow& row, const std::string& engine) {
@@ -229,11 +213,8 @@ void write_bench_page(const std::string& path, const Json& result, const std::st
   Json page = result;
   page["version"] = HALFPLANE_VERSION;
   page["command"] = command;
-  page["growth_series"] = Json::array();
-  for (const GrowthSeries& series : growth_series())
-    page["growth_series"].push_back({{"name", series.name}, {"x", series.x}, {"meaning", series.meaning}});
-  const std::string html = bench_report(page.dump(-1, ' ', false, Json::error_handler_t::replace));
-  write_whole_file(path, {reinterpret_cast<const std::uint8_t*>(html.data()), html.size()});
+  page["growth_series"] = growth_series();
+  write_page(path, kBenchPage, page);
 }
 
 void print_bench(std::ostream& out, const BenchStudy& study) {

@@ -1,11 +1,9 @@
-#include <memory>
 #include <ostream>
 
 #include "sim/cli/commands.hpp"
 #include "sim/cli/explain_output.hpp"
 #include "sim/cli/options.hpp"
 #include "sim/cosim/junit.hpp"
-#include "sim/show/image/whole_file.hpp"
 #include "sim/vectors/check.hpp"
 #include "sim/vectors/vector_file.hpp"
 
@@ -75,7 +73,7 @@ Json judgement_json(const vectors::JudgedStage& stage, const vectors::Judgement&
                             {"packet", stage.out[judgement.first->port].name},
                             {"n", judgement.first->number},
                             {"fields", fields},
-                            {"hint", judgement.first->hint.empty() ? Json(nullptr) : Json(judgement.first->hint)}};
+                            {"hint", or_null(judgement.first->hint)}};
   return json;
 }
 
@@ -96,9 +94,7 @@ void write_check_junit(const CheckOptions& options, const vectors::VectorFile& f
       for (const auto& field : judgement.first->fields) one.details += field_text(field) + "\n";
     }
   }
-  const std::string xml = junit_xml("check." + options.stage, cases, result["wall_s"].get<double>(),
-                                    junit_properties(result, &file.config));
-  write_whole_file(options.junit, {reinterpret_cast<const std::uint8_t*>(xml.data()), xml.size()});
+  write_junit(options.junit, "check." + options.stage, cases, result["wall_s"], result, &file.config);
 }
 
 void print_judgement(std::ostream& out, const vectors::VectorFile& file, const vectors::Judgement& judgement) {
@@ -136,7 +132,7 @@ int run(const CheckOptions& options) {
   }
   Json result = result_head("check", options, file.config);
   result["scene"] = file.source.text;
-  result["seed"] = file.source.seed ? Json(*file.source.seed) : Json(nullptr);
+  result["seed"] = file.source.seed;
   result["stage"] = options.stage;
   result["file"] = options.file;
   result["packets"] = judgement_json(*file.stage, judgement);
@@ -150,8 +146,8 @@ int run(const CheckOptions& options) {
 }  // namespace
 
 void add_check_command(CLI::App& app, Action& selected) {
-  CLI::App* command = app.add_subcommand("check", "judges what another implementation of a stage gave");
-  auto options = std::make_shared<CheckOptions>();
+  const auto [command, options] =
+      add_command<CheckOptions>(app, selected, "check", "judges what another implementation of a stage gave", run);
   command->add_option("FILE", options->file, "vectors whose `out` is yours: jsonl, csv, or a folder of hex")
       ->required();
   add_output_options(*command, *options);
@@ -171,7 +167,6 @@ void add_check_command(CLI::App& app, Action& selected) {
       "compared. The status is 1 where one differs.\n"
       "\nExample:\n  halfplane vectors triangle --size 64x64 --stage cull -o cull.jsonl\n"
       "  halfplane check --stage cull cull.jsonl");
-  command->callback([&selected, options] { selected = [options] { return run(*options); }; });
 }
 
 }  // namespace halfplane

@@ -1,12 +1,10 @@
 #include "sim/cli/command_line.hpp"
 
-#include <algorithm>
 #include <map>
 #include <sstream>
 
 #include "model/config.hpp"
 #include "model/counters.hpp"
-#include "model/study/rules.hpp"
 #include "model/timing/memory.hpp"
 #include "model/vectors/stages.hpp"
 #include "sim/scene/builtin.hpp"
@@ -70,12 +68,6 @@ std::map<std::string, Completion> known_completions() {
       {"--skip", {Kind::list, with({"all", "none"}, names_of(kSkipNames, &SkipName::name)), {}}},
       {"--convention", {Kind::words, convention_names(), {}}},
       {"--cull-objects", {Kind::words, {"none", "sphere", "box", "both"}, {}}},
-      {"--traversal", {Kind::words, words_of(kTraversalNames), {}}},
-      {"--fill-rule", {Kind::words, words_of(kFillRuleNames), {}}},
-      {"--clipping", {Kind::words, words_of(kClippingNames), {}}},
-      {"--gradients", {Kind::words, words_of(kGradientsNames), {}}},
-      {"--accumulator", {Kind::words, words_of(kAccumulatorNames), {}}},
-      {"--weights", {Kind::words, words_of(kWeightsNames), {}}},
       {"--memory", {Kind::words, words_of(kMemoryKinds), {}}},
       {"--mapping", {Kind::list, mappings, {}}},
       {"--format", {Kind::list, {"u16", "u24", "u32", "bins16", "bins24", "f16", "f32", "uf4.12", "uf5.11"}, {}}},

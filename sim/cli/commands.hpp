@@ -3,30 +3,35 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <memory>
+#include <string>
 
 namespace halfplane {
 
 using Action = std::function<int()>;
 
-/// Each sets `selected` when the user chose the command.
-void add_render_command(CLI::App& app, Action& selected);
-void add_compare_command(CLI::App& app, Action& selected);
-void add_cosim_command(CLI::App& app, Action& selected);
-void add_reduce_command(CLI::App& app, Action& selected);
-void add_mutants_command(CLI::App& app, Action& selected);
-void add_depth_command(CLI::App& app, Action& selected);
-void add_bench_command(CLI::App& app, Action& selected);
-void add_scenes_command(CLI::App& app, Action& selected);
-void add_stress_command(CLI::App& app, Action& selected);
-void add_widths_command(CLI::App& app, Action& selected);
-void add_config_command(CLI::App& app, Action& selected);
-void add_convert_command(CLI::App& app, Action& selected);
-void add_explain_command(CLI::App& app, Action& selected);
-void add_vectors_command(CLI::App& app, Action& selected);
-void add_check_command(CLI::App& app, Action& selected);
+/// Adds a command to `app`, which sets `selected` when the user chose it. Completions and man walk the whole of `app` when
+/// they run.
+using AddCommand = void(CLI::App& app, Action& selected);
+AddCommand add_render_command, add_compare_command, add_cosim_command, add_reduce_command, add_mutants_command,
+    add_depth_command, add_bench_command, add_stress_command, add_scenes_command, add_widths_command,
+    add_config_command, add_convert_command, add_explain_command, add_vectors_command, add_check_command,
+    add_completions_command, add_man_command;
 
-/// These walk the whole of `app` when they run.
-void add_completions_command(CLI::App& app, Action& selected);
-void add_man_command(CLI::App& app, Action& selected);
+template <class Options>
+struct AddedCommand {
+  CLI::App* command;
+  std::shared_ptr<Options> options;
+};
+
+/// A command that calls `run` with its options.
+template <class Options>
+[[nodiscard]] AddedCommand<Options> add_command(CLI::App& app, Action& selected, const std::string& name,
+                                                const std::string& meaning, int (*run)(const Options&)) {
+  CLI::App* command = app.add_subcommand(name, meaning);
+  auto options = std::make_shared<Options>();
+  command->callback([&selected, options, run] { selected = [options, run] { return run(*options); }; });
+  return {command, options};
+}
 
 }  // namespace halfplane

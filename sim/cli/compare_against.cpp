@@ -7,8 +7,6 @@
 #include <filesystem>
 #include <sstream>
 
-#include "sim/show/image/framebuffer_files.hpp"
-
 namespace halfplane {
 namespace {
 

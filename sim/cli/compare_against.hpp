@@ -1,7 +1,6 @@
 // What `compare` says of another rasterizer's image: options, results, panels, JUnit.
 #pragma once
 
-#include <iosfwd>
 #include <string>
 #include <vector>
 

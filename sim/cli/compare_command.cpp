@@ -1,12 +1,11 @@
 #include "sim/study/compare/compare.hpp"
-#include "sim/study/compare/per_vertex_cycles.hpp"
+#include "sim/study/compare/per_vertex.hpp"
 #include "sim/study/compare/transform_errors.hpp"
 
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <iterator>
-#include <memory>
 
 #include "sim/cli/commands.hpp"
 #include "sim/cli/compare_against.hpp"
@@ -16,9 +15,12 @@
 #include "sim/show/image/panel.hpp"
 #include "sim/show/image/png.hpp"
 #include "sim/show/image/terminal.hpp"
-#include "sim/show/image/whole_file.hpp"
 
 namespace halfplane {
+
+HALFPLANE_JSON_OF_MEMBERS(LayerRow, layers, pixels, max, rms, bound, part_of_bound)
+HALFPLANE_JSON_OF_MEMBERS(PerVertexRow, area, triangles, pixels, max, rms)
+
 namespace {
 
 struct CompareCommand : CommonOptions {
@@ -32,7 +34,7 @@ struct CompareCommand : CommonOptions {
 /// Null: of nothing there is no error. `count` says so.
 template <class Stats>
 Json figure_of(const Stats& s, double value) {
-  return s.count == 0 ? Json(nullptr) : Json(value);
+  return or_null(s.count != 0, value);
 }
 
 template <class Stats>
@@ -82,26 +84,6 @@ Json texture_json(const TextureErrors& t) {
             {"rounding", part_json(t.part_rounding)}}}};
 }
 
-Json layers_json(const std::vector<LayerRow>& rows) {
-  Json json = Json::array();
-  for (const LayerRow& row : rows)
-    json.push_back({{"layers", row.layers},
-                    {"pixels", row.pixels},
-                    {"max", row.max},
-                    {"rms", row.rms},
-                    {"bound", row.bound},
-                    {"part_of_bound", row.part_of_bound}});
-  return json;
-}
-
-Json per_vertex_json(const std::vector<PerVertexRow>& rows) {
-  Json json = Json::array();
-  for (const PerVertexRow& row : rows)
-    json.push_back(
-        {{"area", row.area}, {"triangles", row.triangles}, {"pixels", row.pixels}, {"max", row.max}, {"rms", row.rms}});
-  return json;
-}
-
 Json cycles_json(const std::optional<PerVertexCycles>& cycles) {
   if (!cycles || !cycles->refused.empty()) return nullptr;
   return {{"at_vertices", cycles->vertices},
@@ -145,8 +127,8 @@ Json comparison_json(const Comparison& c) {
               {"color_bias", figure_of(c.color_datapath_bias, c.color_datapath_bias.mean)},
               {"stage_mismatches", c.stage_mismatches}}},
             {"texture", c.texture ? texture_json(*c.texture) : Json(nullptr)},
-            {"per_vertex", per_vertex_json(c.per_vertex)},
-            {"layers", layers_json(c.layers)}};
+            {"per_vertex", c.per_vertex},
+            {"layers", c.layers}};
   return json;
 }
 
@@ -166,11 +148,7 @@ std::string row(const std::string& name, const Stats& s) {
 }
 
 /// Of places, whose errors in binary32 are small.
-std::string two_digits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2g", value);
-  return text;
-}
+std::string two_digits(double value) { return formatted("%.2g", value); }
 
 /// Below a picture: the same figures as in the row, each on one line with its name.
 template <class Stats>
@@ -320,9 +298,7 @@ void write_compare_junit(const CompareCommand& options, const Config& config, co
   for (const std::string& bound : broken) bounds.details += bound + "\n";
   std::vector<JunitCase> cases{bounds};
   if (judged) cases.push_back(against_case(*judged));
-  const std::string xml =
-      junit_xml("compare." + label(config), cases, result["wall_s"].get<double>(), junit_properties(result, &config));
-  write_whole_file(options.junit_path, {reinterpret_cast<const std::uint8_t*>(xml.data()), xml.size()});
+  write_junit(options.junit_path, "compare." + label(config), cases, result["wall_s"], result, &config);
 }
 
 /// What the options can be refused for before a scene is read.
@@ -472,9 +448,8 @@ int run(const CompareCommand& options) {
 }  // namespace
 
 void add_compare_command(CLI::App& app, Action& selected) {
-  CLI::App* command =
-      app.add_subcommand("compare", "model against golden: coverage, depth and colour error with its parts");
-  auto options = std::make_shared<CompareCommand>();
+  const auto [command, options] = add_command<CompareCommand>(
+      app, selected, "compare", "model against golden: coverage, depth and colour error with its parts", run);
   add_scene_options(*command, *options);
   command->add_option("--golden", options->golden, "binary64, or binary32 to see what single precision would show")
       ->check(CLI::IsMember({"binary64", "binary32"}))
@@ -491,7 +466,6 @@ void add_compare_command(CLI::App& app, Action& selected) {
   add_against_options(*command, options->against);
   add_file_option(*command, "--junit", options->junit_path, "result as JUnit XML");
   command->footer("\nExample:\n  halfplane compare teapot --config full -o compare.png --json=compare.json");
-  command->callback([&selected, options] { selected = [options] { return run(*options); }; });
 }
 
 }  // namespace halfplane

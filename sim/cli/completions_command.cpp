@@ -1,5 +1,4 @@
 // halfplane completions: what bash, zsh and fish complete, made from the options themselves.
-#include <algorithm>
 #include <iostream>
 #include <memory>
 
@@ -14,9 +13,7 @@ namespace {
 using CompletionKind = Completion::Kind;
 
 std::string spaced(const std::vector<std::string>& words, const std::string& before = " ") {
-  std::string text;
-  for (const std::string& word : words) text += before + word;
-  return text;
+  return words.empty() ? "" : before + joined(words, before);
 }
 
 std::string replaced(std::string text, const std::string& characters, const std::string& before) {

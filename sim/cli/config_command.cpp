@@ -2,12 +2,11 @@
 #include <array>
 #include <iomanip>
 #include <iostream>
-#include <memory>
 
 #include "model/engines/cycle/stage_table.hpp"
+#include "model/generate/dpi_package.hpp"
 #include "model/generate/raster_pkg.hpp"
 #include "model/generate/raster_taps.hpp"
-#include "model/generate/dpi_package.hpp"
 #include "model/widths.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/options.hpp"
@@ -60,10 +59,7 @@ void print_settings(std::ostream& out, const Config& config, bool is_list) {
 }
 
 std::string bound_text(const Width& width) {
-  const auto magnitude = static_cast<double>(std::max(-width.range.lo, width.range.hi));
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", magnitude);
-  return text;
+  return formatted("%.6g", static_cast<double>(std::max(-width.range.lo, width.range.hi)));
 }
 
 /// The hardware's, then those that only the scalar engine has.
@@ -110,7 +106,7 @@ int run(const ConfigOptions& options) {
   std::ostream& out = human(options);
   if (!options.path.empty()) {
     const std::string text = config_toml(config);
-    write_whole_file(options.path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+    write_text_file(options.path, text);
   }
   if (options.toml) {
     std::cout << config_toml(config);
@@ -160,8 +156,7 @@ int run(const ConfigOptions& options) {
                         {"holds", row.holds}});
     result["stages"] = stages;
   }
-  result["wall_s"] = seconds_since(start);
-  write_json(options, result);
+  finish_json(options, result, start);
   print_settings(out, config, options.list);
   if (options.widths) print_widths(out, widths);
   if (options.stages) out << '\n' << stage_table_markdown(config);
@@ -171,8 +166,8 @@ int run(const ConfigOptions& options) {
 }  // namespace
 
 void add_config_command(CLI::App& app, Action& selected) {
-  CLI::App* command = app.add_subcommand("config", "shows or lists the settings and the widths that follow from them");
-  auto options = std::make_shared<ConfigOptions>();
+  const auto [command, options] = add_command<ConfigOptions>(
+      app, selected, "config", "shows or lists the settings and the widths that follow from them", run);
   add_output_options(*command, *options);
   command->add_flag("--list", options->list, "every setting with its range and meaning");
   command->add_flag("--widths", options->widths, "every derived width with its bound");
@@ -194,7 +189,6 @@ void add_config_command(CLI::App& app, Action& selected) {
   command->footer(
       "\nExample:\n  halfplane config --set depth.bits=20 -o mine.toml\n  halfplane config --list\n  halfplane config "
       "--config full --set depth.bits=20 --widths");
-  command->callback([&selected, options] { selected = [options] { return run(*options); }; });
 }
 
 }  // namespace halfplane

@@ -1,9 +1,6 @@
-#include <memory>
 #include <optional>
 #include <ostream>
-#include <sstream>
 
-#include "model/capture/capture.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/options.hpp"
 #include "sim/cosim/session.hpp"
@@ -21,12 +18,6 @@ struct ConvertOptions : CommonOptions {
 std::string numbered(const std::string& path, std::size_t number) {
   const std::size_t stem = path.size() - std::string_view(".hpt").size();
   return path.substr(0, stem) + "-" + std::to_string(number) + path.substr(stem);
-}
-
-std::string capture_text(const Scene& scene) {
-  std::ostringstream text;
-  write_capture(scene, text);
-  return text.str();
 }
 
 /// One scene, or those that `cosim --random` runs one after the other.
@@ -66,28 +57,27 @@ int run(const ConvertOptions& options) {
                      " makes several scenes, and stdout takes one capture; give fewer primitives, or -o FILE.hpt");
   Json result = result_head("convert", options, config);
   result["seed"] = options.seed;
-  result["random"] = options.random != 0 ? Json(options.random) : Json(nullptr);
+  result["random"] = or_null(options.random != 0, options.random);
   result["captures"] = Json::array();
   std::ostream& out = human(options);
   for (std::size_t number = 1; scene; ++number, scene = std::move(following), following = next()) {
     const std::string text = capture_text(*scene);
     const std::string path = is_several ? numbered(options.output, number) : options.output;
-    write_whole_file(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+    write_text_file(path, text);
     result["captures"].push_back(scene_json(path, *scene, text.size()));
     out << (path == "-" ? "stdout" : path) << "  " << scene->width << "x" << scene->height << ", "
         << with_commas(scene->vertices.size()) << " vertices, " << with_commas(scene->commands.size()) << " commands, "
         << with_commas(text.size()) << " bytes\n";
   }
-  result["wall_s"] = seconds_since(start);
-  write_json(options, result);
+  finish_json(options, result, start);
   return exit_ok;
 }
 
 }  // namespace
 
 void add_convert_command(CLI::App& app, Action& selected) {
-  CLI::App* command = app.add_subcommand("convert", "any scene as a capture, exact to the bit");
-  auto options = std::make_shared<ConvertOptions>();
+  const auto [command, options] =
+      add_command<ConvertOptions>(app, selected, "convert", "any scene as a capture, exact to the bit", run);
   add_scene_options(*command, *options);
   command->get_option("SCENE")->required(false);
   command
@@ -102,7 +92,6 @@ void add_convert_command(CLI::App& app, Action& selected) {
       "\nA mesh is written as its camera sees it, in clip space, in the convention gl. --set depth.mapping is not\n"
       "written: give it to the command that draws the capture.\n"
       "\nExample:\n  halfplane convert model.glb --camera name=main --size 320x240 -o model.hpt");
-  command->callback([&selected, options] { selected = [options] { return run(*options); }; });
 }
 
 }  // namespace halfplane

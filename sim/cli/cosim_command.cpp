@@ -69,7 +69,7 @@ Json session_json(const CosimOptions& options, const Config& config, const DutFa
   const LockstepResult& r = session.result;
   Json result = result_head("cosim", options, config);
   result["seed"] = options.seed;
-  result["random"] = options.random != 0 ? Json(options.random) : Json(nullptr);
+  result["random"] = or_null(options.random != 0, options.random);
   result["rtl"] = factory.name;
   result["stalls"] = options.stalls;
   result["memory"] = memory_json(options.memory);
@@ -154,8 +154,8 @@ void print_equal(std::ostream& out, const CosimOptions& options, const Config& c
 }
 
 /// The result as JUnit: of a failure what the terminal says, paths and the repeat command too.
-void write_junit(const CosimOptions& options, const Config& config, const Session& session, const SavedFinding* saved,
-                 const std::vector<JunitProperty>& properties) {
+void write_cosim_junit(const CosimOptions& options, const Config& config, const Session& session,
+                       const SavedFinding* saved, const Json& result) {
   std::vector<JunitCase> cases;
   if (saved != nullptr) {
     std::ostringstream report;
@@ -171,8 +171,7 @@ void write_junit(const CosimOptions& options, const Config& config, const Sessio
     cases.back().name = "specification";
     cases.back().failure = session.disagreement;
   }
-  const std::string xml = junit_xml("cosim." + label(config), cases, session.seconds, properties);
-  write_whole_file(options.junit_path, {reinterpret_cast<const std::uint8_t*>(xml.data()), xml.size()});
+  write_junit(options.junit_path, "cosim." + label(config), cases, session.seconds, result, &config, is_interrupted());
 }
 
 /// What became of the waveform of the whole run, or why there is none.
@@ -234,7 +233,7 @@ int run(const CosimOptions& options) {
         options.scene == "-" ? saved->repeat : repeat_command(options, config, "", lockstep_options(options)));
     result["reduced"] = mismatch_json(saved->finding.mismatch, saved->repeat);
     result["reduced"]["capture"] = saved->capture;
-    result["reduced"]["trace"] = saved->trace.empty() ? Json(nullptr) : Json(saved->trace);
+    result["reduced"]["trace"] = or_null(saved->trace);
     result["reduced"]["triangles"] =
         saved->finding.reduced ? Json(saved->finding.reduced->primitives_after) : Json(nullptr);
   }
@@ -268,11 +267,8 @@ int run(const CosimOptions& options) {
   }
   if (is_whole_run_traced && session.trace_failure.empty())
     out << "waveform    " << trace_text(options, factory, session) << '\n';
-  if (!options.junit_path.empty())
-    write_junit(options, config, session, saved ? &*saved : nullptr, junit_properties(result, &config, is_partial));
-  result["wall_s"] = seconds_since(start);
-  if (is_partial) mark_partial(result);
-  write_json(options, result);
+  if (!options.junit_path.empty()) write_cosim_junit(options, config, session, saved ? &*saved : nullptr, result);
+  finish_json(options, result, start, is_partial);
   if (is_partial) {
     print_partial(out);
     return exit_interrupted;
@@ -285,8 +281,8 @@ int run(const CosimOptions& options) {
 }  // namespace
 
 void add_cosim_command(CLI::App& app, Action& selected) {
-  CLI::App* command = app.add_subcommand("cosim", "RTL against model, packet by packet");
-  auto options = std::make_shared<CosimOptions>();
+  const auto [command, options] =
+      add_command<CosimOptions>(app, selected, "cosim", "RTL against model, packet by packet", run);
   add_scene_options(*command, *options);
   command->get_option("SCENE")->required(false);
   command
@@ -305,7 +301,6 @@ void add_cosim_command(CLI::App& app, Action& selected) {
   command->footer(
       "\nA mismatch is reduced to the fewest primitives, saved as a capture with a waveform, and printed bit by bit.\n"
       "\nExample:\n  halfplane cosim --random 10000 --stalls 0.3 --seed 7");
-  command->callback([&selected, options] { selected = [options] { return run(*options); }; });
 }
 
 }  // namespace halfplane

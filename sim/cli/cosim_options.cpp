@@ -4,23 +4,14 @@
 #include <charconv>
 #include <filesystem>
 #include <ostream>
-#include <sstream>
 #include <tuple>
 
-#include "model/capture/capture.hpp"
 #include "sim/cli/progress.hpp"
 #include "sim/cosim/report.hpp"
 #include "sim/show/image/whole_file.hpp"
 
 namespace halfplane {
 namespace {
-
-void write_scene(const std::string& path, const Scene& scene) {
-  std::ostringstream text;
-  write_capture(scene, text);
-  const std::string bytes = text.str();
-  write_whole_file(path, {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
-}
 
 /// "out/cosim-teapot.hpt", "out/cosim-random-7.hpt".
 std::string default_save_path(const CosimOptions& options) {
@@ -130,7 +121,7 @@ std::string repeat_command(const CosimOptions& options, const Config& config, co
 std::string save_scene(const CosimOptions& options, const Scene& scene) {
   std::string path = options.save_path.empty() ? default_save_path(options) : options.save_path;
   if (options.save_path.empty()) create_folder_of(path);
-  write_scene(path, scene);
+  write_text_file(path, capture_text(scene));
   return path;
 }
 
@@ -149,7 +140,7 @@ SavedFinding save_finding(const CosimOptions& options, const Config& config, Dut
   saved.finding = investigate(dut, config, lockstep_options(options), failed, mismatch, saved.trace, reducing);
   if (!saved.finding.has_trace) saved.trace.clear();
   try {
-    write_scene(saved.capture, saved.finding.scene);
+    write_text_file(saved.capture, capture_text(saved.finding.scene));
   } catch (const std::exception& error) {  // the mismatch is worth more than the file
     saved.failure = error.what();
   }
@@ -188,7 +179,6 @@ void print_finding(std::ostream& out, const SavedFinding& saved) {
 }
 
 Json mismatch_json(const Mismatch& m, const std::string& repeat) {
-  const auto or_null = [](const auto& value) { return value ? Json(*value) : Json(nullptr); };
   Json fields = Json::array();
   for (const FieldPair& field : m.fields)
     if (field.differs())
@@ -198,10 +188,10 @@ Json mismatch_json(const Mismatch& m, const std::string& repeat) {
           {"arrow", m.arrow},
           {"kind", kKinds[static_cast<std::size_t>(m.kind)]},
           {"key",
-           {{"primitive", or_null(m.primitive)},
-            {"tile_x", or_null(m.tile_x)},
-            {"tile_y", or_null(m.tile_y)},
-            {"stamp", or_null(m.stamp)},
+           {{"primitive", m.primitive},
+            {"tile_x", m.tile_x},
+            {"tile_y", m.tile_y},
+            {"stamp", m.stamp},
             {"packet", m.number}}},
           {"cycle", m.cycle},
           {"fields", fields},

@@ -12,10 +12,13 @@
 #include "sim/show/image/panel.hpp"
 #include "sim/show/image/png.hpp"
 #include "sim/show/image/whole_file.hpp"
-#include "sim/show/trace/primitive_spans.hpp"
 #include "sim/show/trace/timeline.hpp"
 
 namespace halfplane {
+
+HALFPLANE_JSON_OF_MEMBERS(Trial, key, value, cycles)
+HALFPLANE_JSON_OF_MEMBERS(OrderTrial, order, store, cycles, bytes)
+
 namespace {
 
 constexpr std::uint64_t kFewCycles = 4'000'000;  // of a frame that is explained without being asked
@@ -26,16 +29,6 @@ std::pair<std::string, std::string> split(const std::string& option, const std::
   if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
     throw InputError(option + ": '" + text + "' is not KEY=VALUE; write it so, as in cache.lines=16");
   return {text.substr(0, equals), text.substr(equals + 1)};
-}
-
-std::vector<std::string> list_of(const std::string& text) {
-  std::vector<std::string> values;
-  for (std::size_t from = 0; from <= text.size();) {
-    const std::size_t comma = std::min(text.find(',', from), text.size());
-    values.push_back(text.substr(from, comma - from));
-    from = comma + 1;
-  }
-  return values;
 }
 
 void change_for(const std::string& option, Hardware& hardware, const std::string& key, const std::string& value) {
@@ -52,7 +45,7 @@ std::vector<std::pair<std::string, std::string>> variations(const CycleCommandOp
   std::vector<std::pair<std::string, std::string>> all;
   for (const std::string& text : options.what_if) {
     const auto [key, values] = split("--what-if", text);
-    for (const std::string& value : list_of(values)) all.emplace_back(key, value);
+    for (const std::string& value : split_at_commas(values)) all.emplace_back(key, value);
   }
   return all;
 }
@@ -85,10 +78,6 @@ class Tee final : public TransferSink {
   }
   std::array<TransferSink*, 2> sinks_;
 };
-
-void write_text(const std::string& path, const std::string& text) {
-  write_whole_file(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-}
 
 std::string percent(std::uint64_t part, std::uint64_t whole) {
   return whole == 0 ? "-" : fixed(100.0 * static_cast<double>(part) / static_cast<double>(whole), 1) + " %";
@@ -251,8 +240,8 @@ CycleResult run_cycle_engine(const CommonOptions& common, const CycleCommandOpti
   result.frame = run_cycles(scene, hardware, render, cycle);
   const CycleRun& run = result.frame.run;
 
-  if (!options.primitives_path.empty()) write_text(options.primitives_path, spans.finish());
-  if (!options.trace_path.empty()) write_text(options.trace_path, timeline.finish());
+  if (!options.primitives_path.empty()) write_text_file(options.primitives_path, spans.finish());
+  if (!options.trace_path.empty()) write_text_file(options.trace_path, timeline.finish());
   const Framebuffer& frame = result.frame.rendering.frame;
   const auto write_heat = [&](const std::string& path, const std::vector<float>& values, std::string_view unit) {
     if (path.ends_with(".npy"))
@@ -322,17 +311,11 @@ void add_cycle_json(Json& result, const CycleResult& cycle) {
   }
   result["bottleneck"] = bottleneck(cycle);
   if (cycle.is_explained) {
-    Json reliefs = Json::array(), saved = Json::object();
-    for (const Trial& trial : cycle.reliefs)
-      reliefs.push_back({{"key", trial.key}, {"value", trial.value}, {"cycles", trial.cycles}});
+    Json saved = Json::object();
     for (const Saving& saving : cycle.savings) saved[std::string(saving.name)] = saving.cycles;
-    result["reliefs"] = reliefs;
-    Json orders = Json::array();
-    for (const OrderTrial& trial : cycle.orders)
-      orders.push_back(
-          {{"order", trial.order}, {"store", trial.store}, {"cycles", trial.cycles}, {"bytes", trial.bytes}});
-    result["orders"] = {{"tried", orders},
-                        {"recommended", orders.empty() ? Json(nullptr) : Json(recommended(cycle.orders))}};
+    result["reliefs"] = cycle.reliefs;
+    result["orders"] = {{"tried", cycle.orders},
+                        {"recommended", cycle.orders.empty() ? Json(nullptr) : Json(recommended(cycle.orders))}};
     result["saved_cycles"] = saved;
   }
   Json rows = Json::array();

@@ -1,12 +1,9 @@
 // halfplane depth: what a depth buffer's mapping, format and planes do, in theory and on a scene.
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <iostream>
-#include <memory>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -33,11 +30,8 @@ struct DepthCommand : CommonOptions {
 };
 
 std::vector<std::string> comma_parts(const std::string& option, const std::string& text) {
-  std::vector<std::string> parts;
-  std::istringstream words(text);
-  std::string part;
-  while (std::getline(words, part, ',')) parts.push_back(part);
-  if (parts.empty() || text.back() == ',' || std::count(parts.begin(), parts.end(), "") != 0)
+  std::vector<std::string> parts = split_at_commas(text);
+  if (std::ranges::find(parts, "") != parts.end())
     throw InputError(option + ": '" + text + "' has an empty part; give a list with commas");
   return parts;
 }
@@ -46,9 +40,7 @@ DepthMapping parse_mapping(const std::string& name) {
   const auto names = depth_mapping_names();
   for (std::size_t i = 1; i < names.size(); ++i)
     if (names[i] == name) return static_cast<DepthMapping>(i);
-  std::string all;
-  for (std::size_t i = 1; i < names.size(); ++i) all += (i == 1 ? "" : ", ") + std::string(names[i]);
-  throw InputError("--mapping: no mapping '" + name + "'; give some of " + all);
+  throw InputError("--mapping: no mapping '" + name + "'; give some of " + joined(names.subspan(1)));
 }
 
 /// near, the powers of ten between, far.
@@ -136,9 +128,9 @@ std::string command_line(const DepthCommand& options, const DepthQuestion& quest
   std::string text = "halfplane depth";
   if (!options.scene.empty()) text += " --scene " + quoted(options.scene);
   text += " --near " + question.near_text + " --far " + question.far_text + " --mapping " + options.mappings;
-  std::string formats;
-  for (const DepthFormat& format : question.formats) formats += (formats.empty() ? "" : ",") + to_string(format);
-  text += " --format " + formats;
+  std::vector<std::string> formats;
+  for (const DepthFormat& format : question.formats) formats.push_back(to_string(format));
+  text += " --format " + joined(formats, ",");
   for (const auto& [option, value] : {std::pair{" --z ", options.z},
                                       {" --error ", options.error},
                                       {" --range ", options.range},
@@ -323,8 +315,7 @@ int run_depth(const DepthCommand& options) {
   write_depth_files(options.paths, title, question, result, is_measured ? &*scene : nullptr, variants, study);
   if (is_partial) rows.push_back({"", "", question.near_text, question.far_text, "", "partial", 1});
   const std::string csv = depth_csv(rows);
-  if (!options.csv_path.empty() && options.csv_path != "-")
-    write_whole_file(options.csv_path, {reinterpret_cast<const std::uint8_t*>(csv.data()), csv.size()});
+  if (!options.csv_path.empty() && options.csv_path != "-") write_text_file(options.csv_path, csv);
   write_json(options, result);
   const bool is_broken = !holds(rows, study);
   if (is_broken) std::cerr << "halfplane: " << kBroken << '\n';
@@ -348,8 +339,8 @@ int run_depth(const DepthCommand& options) {
 }  // namespace
 
 void add_depth_command(CLI::App& app, Action& selected) {
-  CLI::App* command = app.add_subcommand("depth", "depth quantization: theory, and measured on a scene");
-  auto options = std::make_shared<DepthCommand>();
+  const auto [command, options] = add_command<DepthCommand>(
+      app, selected, "depth", "depth quantization: theory, and measured on a scene", run_depth);
   options->threads = 0;
   command->add_option("--near", options->near, "eye depth of the near plane (default: the scene's)")->type_name("Z");
   command->add_option("--far", options->far, "eye depth of the far plane (default: the scene's)")->type_name("Z");
@@ -401,7 +392,6 @@ void add_depth_command(CLI::App& app, Action& selected) {
       "\nExamples:\n  halfplane depth --near 1 --far 1000 --mapping std,rev,w --format u16,u24,uf4.12 --z 10,100,900 "
       "--csv "
       "-\n  halfplane depth --scene coplanar --bits 16 -o report.html");
-  command->callback([&selected, options] { selected = [options] { return run_depth(*options); }; });
 }
 
 }  // namespace halfplane

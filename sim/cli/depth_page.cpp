@@ -1,34 +1,69 @@
 // The JSON of `halfplane depth`, its pictures and its page.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <span>
 
 #include "sim/cli/depth_study.hpp"
+#include "sim/show/image/color_map.hpp"
 #include "sim/show/image/panel.hpp"
+#include "sim/show/image/picture.hpp"
 #include "sim/show/image/png.hpp"
-#include "sim/show/image/whole_file.hpp"
-#include "sim/study/depth/maps.hpp"
-#include "sim/study/depth/report.hpp"
+#include "sim/show/report/page.hpp"
 #include "sim/study/depth/theory.hpp"
 
 namespace halfplane {
+
+HALFPLANE_JSON_OF_MEMBERS(DepthRow, mapping, format, near, far, z, metric, value)  // null for infinity
+HALFPLANE_JSON_OF_MEMBERS(CodeShare, from, to, codes, share)
+HALFPLANE_JSON_OF_MEMBERS(DepthCurve, z, bin_width, max_recon_err, first_order)
+HALFPLANE_JSON_OF_MEMBERS(DepthSweep::Line, name, x, rate)
+HALFPLANE_JSON_OF_MEMBERS(DepthSweep, what, unit, lines)
+
 namespace {
 
-Json rows_json(const std::vector<DepthRow>& rows) {
-  Json list = Json::array();
-  for (const DepthRow& row : rows)
-    list.push_back({{"mapping", row.mapping},
-                    {"format", row.format},
-                    {"near", row.near},
-                    {"far", row.far},
-                    {"z", row.z},
-                    {"metric", row.metric},
-                    {"value", row.value}});  // null for infinity
-  return list;
+constexpr std::array<Rgb, 4> kFightColors{kNotCompared, {0x4a, 0x55, 0x60}, {0xf2, 0xbf, 0x4b}, {0xe0, 0x45, 0x2b}};
+
+/// One pixel per block of factor x factor: color(worst), with `worst` the largest of key(value).
+template <class Value, class Key, class Color>
+Picture reduced(int width, int height, std::span<const Value> values, int max_width, Key&& key, Color&& color) {
+  const int factor = (width + max_width - 1) / max_width;
+  Picture picture((width + factor - 1) / factor, (height + factor - 1) / factor);
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x) {
+      double worst = -1;
+      for (int j = y * factor; j < std::min(height, (y + 1) * factor); ++j)
+        for (int i = x * factor; i < std::min(width, (x + 1) * factor); ++i)
+          worst = std::max(
+              worst,
+              key(values[static_cast<std::size_t>(j) * static_cast<std::size_t>(width) + static_cast<std::size_t>(i)]));
+      set_pixel(picture, x, y, color(worst));
+    }
+  return picture;
+}
+
+/// Magnitudes from `low` (dark) to `high` (bright) by the logarithm; NaN, where nothing was drawn, is grey. A picture
+/// wider than `max_width` is reduced by a whole factor, each pixel then showing the worst of its block.
+Picture error_map(int width, int height, std::span<const float> errors, double low, double high, int max_width) {
+  return reduced(
+      width, height, errors, max_width, [](float e) { return std::isnan(e) ? -1.0 : static_cast<double>(std::abs(e)); },
+      [low, high](double worst) {
+        if (worst < 0) return kNotCompared;
+        return sequential_color(worst <= low ? 0.0 : std::log(worst / low) / std::log(high / low));
+      });
+}
+
+/// 0 background, 1 overlapping and in order, 2 a tie, 3 an inversion; likewise reduced.
+Picture fight_map(int width, int height, std::span<const std::uint8_t> fights, int max_width) {
+  return reduced(
+      width, height, fights, max_width, [](std::uint8_t f) { return static_cast<double>(f); },
+      [](double worst) { return kFightColors[static_cast<std::size_t>(std::max(worst, 0.0))]; });
 }
 
 /// Null where no error was measured.
 Json depth_part_json(const ErrorMoments& m) {
-  const auto known = [&m](double value) { return m.count == 0 ? Json(nullptr) : Json(value); };
+  const auto known = [&m](double value) { return or_null(m.count != 0, value); };
   return {{"max", known(m.max)}, {"rms", known(m.rms)}};
 }
 
@@ -55,10 +90,10 @@ Json measured_json(const DepthMeasurement& m) {
           {"pairs", m.order.pairs},
           {"ties", m.order.ties},
           {"inversions", m.order.inversions},
-          {"rate", m.order.pairs == 0 ? Json(nullptr) : Json(m.order.rate())},
+          {"rate", or_null(m.order.pairs != 0, m.order.rate())},
           {"fighting_pixels", m.order.fighting_pixels},
-          {"nearest_fight", m.order.fights() == 0 ? Json(nullptr) : Json(m.order.nearest_fight)},
-          {"worst_share_of_bound", m.total.count == 0 ? Json(nullptr) : Json(m.worst_share)},
+          {"nearest_fight", or_null(m.order.fights() != 0, m.order.nearest_fight)},
+          {"worst_share_of_bound", or_null(m.total.count != 0, m.worst_share)},
           {"stage_mismatches", m.stage_mismatches},
           {"parts",
            {{"snap", depth_part_json(m.snap)},
@@ -73,10 +108,7 @@ Json series_json(const DepthVariant& variant, const DepthQuestion& question) {
   const ExactDepth theory(variant.mapping, variant.format, question.near, question.far);
   std::vector<NamedDepth> asked;
   for (const std::string& z : question.z) asked.push_back({parse_decimal(z, "--z"), std::stod(z)});
-  const DepthCurve curve = depth_curve(theory, 181, asked);
-  Json decades = Json::array(), exceeds = Json::array();
-  for (const CodeShare& share : codes_by_decade(theory))
-    decades.push_back({{"from", share.from}, {"to", share.to}, {"codes", share.codes}, {"share", share.share}});
+  Json exceeds = Json::array();
   const double far = question.planes[1];
   std::vector<double> lengths;
   for (int power = -6; power <= -2; ++power)
@@ -85,7 +117,7 @@ Json series_json(const DepthVariant& variant, const DepthQuestion& question) {
   std::sort(lengths.begin(), lengths.end());
   for (const double length : lengths) {
     const auto z = theory.first_exceeding(length, question.near, question.far);
-    exceeds.push_back({{"length", length}, {"z", z ? Json(*z) : Json(nullptr)}});
+    exceeds.push_back({{"length", length}, {"z", z}});
   }
   const DepthEncode encode(variant.config, variant.planes);
   const bool is_turned = is_reversed(variant.mapping);
@@ -98,12 +130,8 @@ Json series_json(const DepthVariant& variant, const DepthQuestion& question) {
           {"clear_code", encode.of_window(is_turned ? 0 : 1)},
           {"hardware", hardware_cost(variant)},
           {"codes_used", codes_in_use(theory)},
-          {"curve",
-           {{"z", curve.z},
-            {"bin_width", curve.bin_width},
-            {"max_recon_err", curve.max_recon_err},
-            {"first_order", curve.first_order}}},
-          {"decades", decades},
+          {"curve", depth_curve(theory, 181, asked)},
+          {"decades", codes_by_decade(theory)},
           {"exceeds", exceeds},
           {"measured", nullptr}};
 }
@@ -135,12 +163,6 @@ const std::vector<std::string> kFightLegend{"grey: two surfaces or more, in orde
 
 const std::vector<std::string> kHeatLegend{"error of the visible surface, in eye depth",
                                            "the scale is logarithmic, and one for all"};
-
-std::string in_one_line(const std::vector<std::string>& lines) {
-  std::string text;
-  for (const std::string& line : lines) text += (text.empty() ? "" : "; ") + line;
-  return text;
-}
 
 /// Pictures of all variants on one sheet, and what their colours mean.
 void write_depth_sheet(const std::string& path, const std::string& title, const std::vector<std::string>& legend,
@@ -181,7 +203,7 @@ DepthPictures depth_pictures(const Scene& scene, const SceneStudy& study, const 
 
 Json study_json(const DepthQuestion& question, const std::vector<DepthRow>& rows,
                 const std::vector<DepthVariant>& variants, const SceneStudy& study) {
-  Json series = Json::array(), trials = Json::array(), sweeps = Json::array();
+  Json series = Json::array(), trials = Json::array();
   for (std::size_t i = 0; i < variants.size(); ++i) {
     series.push_back(series_json(variants[i], question));
     if (!study.measured.empty()) series.back()["measured"] = measured_json(study.measured[i]);
@@ -191,21 +213,21 @@ Json study_json(const DepthQuestion& question, const std::vector<DepthRow>& rows
                       {"options", trial.options},
                       {"name", trial.variant.name()},
                       {"measured", measured_json(trial.result)}});
-  for (const DepthSweep& sweep : study.sweeps) {
-    Json lines = Json::array();
-    for (const auto& line : sweep.lines) lines.push_back({{"name", line.name}, {"x", line.x}, {"rate", line.rate}});
-    sweeps.push_back({{"what", sweep.what}, {"unit", sweep.unit}, {"lines", lines}});
-  }
   Json fewest = Json::array();
   for (const FewestBits& f : study.fewest)
     fewest.push_back({{"mapping", mapping_name(f.mapping)},
-                      {"bits", f.bits ? Json(*f.bits) : Json(nullptr)},
+                      {"bits", f.bits},
                       {"pairs", f.pairs},
                       {"rate", f.rate},
-                      {"rate_one_less", f.one_less ? Json(*f.one_less) : Json(nullptr)},
+                      {"rate_one_less", f.one_less},
                       {"rtl", f.is_in_rtl}});
-  return {{"rows", rows_json(rows)},           {"series", series},      {"trials", trials},        {"sweeps", sweeps},
-          {"fight_rate", question.fight_rate}, {"fewest_bits", fewest}, {"answers", study.answers}};
+  return {{"rows", rows},
+          {"series", series},
+          {"trials", trials},
+          {"sweeps", study.sweeps},
+          {"fight_rate", question.fight_rate},
+          {"fewest_bits", fewest},
+          {"answers", study.answers}};
 }
 
 void write_depth_files(const DepthPaths& paths, const std::string& title, const DepthQuestion& question,
@@ -223,17 +245,15 @@ void write_depth_files(const DepthPaths& paths, const std::string& title, const 
     page["scene"] = {{"name", result["scene"]},      {"width", scene->width},        {"height", scene->height},
                      {"fragments", first.fragments}, {"triangles", first.triangles}, {"eye_min", first.eye_min},
                      {"eye_max", first.eye_max}};
-    page["heat_legend"] = in_one_line(kHeatLegend);
+    page["heat_legend"] = joined(kHeatLegend, "; ");
     page["heat_scale"] = data_uri(scale_picture(scale, 640));
-    page["fight_legend"] = in_one_line(kFightLegend);
+    page["fight_legend"] = joined(kFightLegend, "; ");
     for (std::size_t i = 0; i < variants.size(); ++i) {
       page["series"][i]["measured"]["heat"] = data_uri(pictures.heats[i]);
       page["series"][i]["measured"]["fight"] = data_uri(pictures.fights[i]);
     }
   }
-  if (paths.page.empty()) return;
-  const std::string html = depth_report(page.dump(-1, ' ', false, Json::error_handler_t::replace));
-  write_whole_file(paths.page, {reinterpret_cast<const std::uint8_t*>(html.data()), html.size()});
+  if (!paths.page.empty()) write_page(paths.page, kDepthPage, page);
 }
 
 }  // namespace halfplane

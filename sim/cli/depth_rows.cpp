@@ -21,11 +21,7 @@ std::string depth_number(double value) {
   return {text.data(), end};
 }
 
-std::string short_text(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g", value);
-  return text.data();
-}
+std::string short_text(double value) { return formatted("%.3g", value); }
 
 std::string mapping_name(DepthMapping mapping) {
   return std::string(depth_mapping_names()[static_cast<std::size_t>(mapping)]);
@@ -179,9 +175,7 @@ void print_measured(std::ostream& out, const std::vector<DepthVariant>& variants
   for (std::size_t i = 0; i < variants.size(); ++i) {
     const DepthMeasurement& m = study.measured[i];
     const auto with = [](bool is_measured, const char* format, double value) {
-      std::array<char, 32> text{};
-      std::snprintf(text.data(), text.size(), format, value);
-      return is_measured ? std::string(text.data()) : std::string("-");
+      return is_measured ? formatted(format, value) : "-";
     };
     const bool has_pairs = m.order.pairs > 0, has_errors = m.total.count > 0;
     out << left_aligned(variants[i].name(), 13) << right_aligned(with(has_pairs, "%.4f %%", 100 * m.order.rate()), 11)

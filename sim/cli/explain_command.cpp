@@ -1,22 +1,24 @@
-#include <algorithm>
+#include <cmath>
 #include <memory>
-#include <optional>
 #include <ostream>
 
+#include "model/engines/render.hpp"
+#include "model/stages/depth_encode.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/explain_output.hpp"
-#include "sim/cli/explain_page.hpp"
 #include "sim/cli/options.hpp"
 #include "sim/cli/progress.hpp"
 #include "sim/cli/study_options.hpp"
 #include "sim/cosim/dut.hpp"
 #include "sim/show/image/png.hpp"
-#include "sim/show/image/whole_file.hpp"
+#include "sim/show/report/page.hpp"
 #include "sim/study/explain/explain.hpp"
 #include "sim/study/explain/picture.hpp"
-#include "sim/study/explain/report.hpp"
 
 namespace halfplane {
+
+HALFPLANE_JSON_OF_MEMBERS(Rect, x, y, width, height)
+
 namespace {
 
 constexpr int kMostPixels = 4096;  // of --box: a history of each is kept
@@ -61,8 +63,7 @@ Json explain_json(const ExplainOptions& options, const Config& config, const Sce
   result["primitives"] = told.primitives;
   result["near"] = options.near;
   add_rules_json(result, options.study);
-  result["hardware"] = {{"has_scene", told.no_hardware.empty()},
-                        {"why_not", told.no_hardware.empty() ? Json(nullptr) : Json(told.no_hardware)}};
+  result["hardware"] = {{"has_scene", told.no_hardware.empty()}, {"why_not", or_null(told.no_hardware)}};
   result["checks"] = told.checks;
   result["differences"] = told.differences;
   result["pixels"] = Json::array();
@@ -111,6 +112,42 @@ std::string explain_repeat(const ExplainOptions& options, const Config& config) 
   return command + " -o " + quoted(options.output);
 }
 
+/// What the page's script reads (sim/show/report/explain.js). `around`: explained pixels of the window, row by row.
+Json page_json(const explain::Explanation& around, const explain::Window& window, const Rect& box, const Scene& scene,
+               const Config& config) {
+  using namespace explain;
+  const int depth_bits = DepthEncode(config, scene.planes).format().bits;
+  const Rendering empty = make_rendering(scene, config, {});
+  const std::size_t at = empty.frame.at(box.x, box.y);
+  Json page{{"label", label(config)},
+            {"version", HALFPLANE_VERSION},
+            {"primitives", around.primitives},
+            {"checks", around.checks},
+            {"differences", around.differences},
+            {"color_format", config.color_format == ColorFormat::rgb565 ? "rgb565" : "rgba8888"},
+            {"window", {{"x", window.left}, {"y", window.top}, {"width", window.width}, {"height", window.height}}},
+            {"box", box},
+            {"empty",
+             {{"depth", hex_text(empty.frame.depth[at], depth_bits)},
+              {"color", hex_text(empty.frame.color[at], config.color_format == ColorFormat::rgb565 ? 16 : 32)}}}};
+  page["samples"] = Json::array();  // where they lie in each pixel
+  const std::vector<PixelSamples> pixels = pixels_of(around);
+  for (const PixelHistory& sample : pixels.front())
+    page["samples"].push_back(
+        {std::ldexp(sample.place.x, -kPatternFraction), std::ldexp(sample.place.y, -kPatternFraction)});
+  page["pixels"] = Json::array();
+  for (const PixelSamples& pixel : pixels) {
+    Json json = pixel_json(pixel, around, scene, config);
+    for (Json& entry : json["history"]) {
+      Json& hardware = entry["model"]["hardware"];
+      if (hardware.is_object())
+        for (Json& packet : hardware["packets"]) packet.erase("fields");  // most of the bytes, and nobody shows them
+    }
+    page["pixels"].push_back(std::move(json));
+  }
+  return page;
+}
+
 /// Draws the box and what lies around it.
 void write_picture(const ExplainOptions& options, const Rect& box, const explain::Window& window,
                    const explain::Explanation& around, const Scene& scene, const Config& config) {
@@ -120,11 +157,10 @@ void write_picture(const ExplainOptions& options, const Rect& box, const explain
     write_png(options.output, explain::neighbourhood_picture(around, window, box, config, title));
     return;
   }
-  Json page = explain::page_json(around, window, box, scene, config);
+  Json page = page_json(around, window, box, scene, config);
   page["scene"] = options.scene;
   page["command"] = explain_repeat(options, config);
-  const std::string text = explain::explain_report(page.dump(-1, ' ', false, Json::error_handler_t::replace));
-  write_whole_file(options.output, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  write_page(options.output, kExplainPage, page);
 }
 
 int run(const ExplainOptions& options) {
@@ -164,8 +200,7 @@ int run(const ExplainOptions& options) {
   if (draws) write_picture(options, told_box, window, told, scene, config);
   std::erase_if(told.pixels, [&](const explain::PixelHistory& p) { return !explain::is_in(told_box, p.at); });
   Json result = explain_json(options, config, scene, told);
-  result["wall_s"] = seconds_since(start);
-  write_json(options, result);
+  finish_json(options, result, start);
   print_explanation(human(options), options, config, scene, told);
   return told.differences.empty() ? exit_ok : exit_mismatch;
 }
@@ -173,8 +208,8 @@ int run(const ExplainOptions& options) {
 }  // namespace
 
 void add_explain_command(CLI::App& app, Action& selected) {
-  CLI::App* command = app.add_subcommand("explain", "one pixel's history: what touched it, and why it is what it is");
-  auto options = std::make_shared<ExplainOptions>();
+  const auto [command, options] = add_command<ExplainOptions>(
+      app, selected, "explain", "one pixel's history: what touched it, and why it is what it is", run);
   add_scene_options(*command, *options);
   add_study_options(*command, options->study);
   add_interpolation_option(*command, options->study);
@@ -204,7 +239,6 @@ void add_explain_command(CLI::App& app, Action& selected) {
       "\nSpecification, hardware model, functional engine, golden and oracle are held against each other: the status\n"
       "is 1 where they differ.\n"
       "\nExample:\n  halfplane explain teapot 320 240 -o pixel.html");
-  command->callback([&selected, options] { selected = [options] { return run(*options); }; });
 }
 
 }  // namespace halfplane

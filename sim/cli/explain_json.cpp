@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -12,20 +11,9 @@ namespace halfplane::explain {
 namespace {
 
 constexpr std::array<std::string_view, 3> kTileClasses{"outside", "cut", "inside"};
-constexpr std::array<std::string_view, 3> kLineRules{"midpoint", "bresenham", "diamond"};
 
 std::string name_of(Stage stage) { return std::string(info(stage).name); }
 std::string name_of(Verdict verdict) { return std::string(info(verdict).name); }
-
-std::string decimal(int128 value) {
-  if (value == 0) return "0";
-  const bool is_negative = value < 0;
-  std::string digits;
-  for (; value != 0; value /= 10)
-    digits += static_cast<char>('0' + static_cast<int>(value % 10 < 0 ? -(value % 10) : value % 10));
-  if (is_negative) digits += '-';
-  return {digits.rbegin(), digits.rend()};
-}
 
 double grid_to_lsb(std::int64_t value) { return std::ldexp(static_cast<double>(value), -exact::kGridBits); }
 
@@ -103,7 +91,7 @@ Json surface_json(const SurfaceFigure& figure) {
                       {"x", t.x},
                       {"y", t.y},
                       {"weight", std::ldexp(t.weight, -24)},
-                      {"address", t.address ? Json(*t.address) : Json(nullptr)},
+                      {"address", t.address},
                       {"color", texel_color(t.color)}});
   json["texels"] = texels;
   json["texel"] = texel_color(s.texel);
@@ -124,8 +112,8 @@ Json steps_json(const std::vector<LineStep>& steps) {
 Json line_json(const LineFigure& line) {
   Json rules = Json::object();
   for (const LineWalk& walk : line.walks)
-    rules[std::string(kLineRules[static_cast<std::size_t>(walk.rule)])] = steps_json(walk.steps);
-  return {{"rule", kLineRules[static_cast<std::size_t>(line.rule)]},
+    rules[std::string(kLineRuleNames[static_cast<std::size_t>(walk.rule)])] = steps_json(walk.steps);
+  return {{"rule", kLineRuleNames[static_cast<std::size_t>(line.rule)]},
           {"major_axis", line.is_x_major ? "x" : "y"},
           {"major", line.major},
           {"minor", line.minor},
@@ -179,8 +167,6 @@ Json fields_json(Arrow arrow, const std::vector<std::uint32_t>& words, const Wid
   });
 }
 
-Json optional_cycle(const std::optional<std::uint64_t>& cycle) { return cycle ? Json(*cycle) : Json(nullptr); }
-
 Json hardware_json(const HardwareFigure& figure, const PacketStore& store, const Widths& widths) {
   Json json{{"verdict", name_of(figure.outcome.verdict)}, {"stage", name_of(figure.outcome.stage)}};
   json["hiz"] = nullptr;
@@ -195,7 +181,7 @@ Json hardware_json(const HardwareFigure& figure, const PacketStore& store, const
     const RecordedPacket& packet = store.at(id);
     packets.push_back({{"arrow", std::string(info(id.first).name)},
                        {"number", id.second},
-                       {"cycle", optional_cycle(packet.model_cycle)},
+                       {"cycle", packet.model_cycle},
                        {"fields", fields_json(id.first, packet.model, widths)}});
   }
   json["packets"] = packets;
@@ -277,9 +263,7 @@ Json rtl_json(const HardwareFigure& figure, const PacketStore& store, const Widt
   std::size_t differing = 0;
   for (const PacketId& id : figure.packets) {
     const RecordedPacket& packet = store.at(id);
-    Json json{{"arrow", std::string(info(id.first).name)},
-              {"number", id.second},
-              {"cycle", optional_cycle(packet.rtl_cycle)}};
+    Json json{{"arrow", std::string(info(id.first).name)}, {"number", id.second}, {"cycle", packet.rtl_cycle}};
     Json fields = Json::array();
     if (packet.rtl.empty())
       json["missing"] = true;
@@ -294,7 +278,7 @@ Json rtl_json(const HardwareFigure& figure, const PacketStore& store, const Widt
 
 Json entry_json(const Entry& entry, const PixelHistory& pixel, const Explanation& all, const Config& config,
                 const Widths& widths) {
-  Json json{{"primitive", entry.primitive ? Json(*entry.primitive) : Json(nullptr)},
+  Json json{{"primitive", entry.primitive},
             {"draw", entry.draw},
             {"kind", kKindNames[static_cast<std::size_t>(entry.kind)]},
             {"piece", entry.piece},

@@ -134,11 +134,10 @@ void print_line_steps(std::ostream& out, std::string_view name, const std::vecto
 }
 
 void print_line(std::ostream& out, const LineFigure& line) {
-  constexpr std::array<std::string_view, 3> kRules{"midpoint", "bresenham", "diamond"};
-  out << label_text("line") << kRules[static_cast<std::size_t>(line.rule)] << ", along "
+  out << label_text("line") << kLineRuleNames[static_cast<std::size_t>(line.rule)] << ", along "
       << (line.is_x_major ? 'x' : 'y') << ": D " << line.major << ", d " << line.minor << " subpixels\n";
   for (const LineWalk& walk : line.walks)
-    print_line_steps(out, kRules[static_cast<std::size_t>(walk.rule)], walk.steps);
+    print_line_steps(out, kLineRuleNames[static_cast<std::size_t>(walk.rule)], walk.steps);
   print_line_steps(out, "book: p", line.bresenham);
   print_line_steps(out, "book: 2F", line.midpoint);
 }

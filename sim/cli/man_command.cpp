@@ -44,9 +44,9 @@ std::string option_entry(const OptionText& option) {
   using Kind = Completion::Kind;
   const bool is_choice = option.completion.kind == Kind::words || option.completion.kind == Kind::list;
   if (is_choice && !option.names.empty()) {
-    std::string words;
-    for (const std::string& word : option.completion.words) words += (words.empty() ? "" : ", ") + bold(word);
-    text += ".br\nKnown values: " + words + "\n";
+    std::vector<std::string> words;
+    for (const std::string& word : option.completion.words) words.push_back(bold(word));
+    text += ".br\nKnown values: " + joined(words) + "\n";
   }
   return text;
 }
@@ -117,11 +117,10 @@ std::string man_page(const CommandText& command, const std::vector<CommandText>&
   if (!command.examples.empty()) text += ".SH EXAMPLES\n.nf\n";
   for (const std::string& example : command.examples) text += roff(example) + "\n";
   if (!command.examples.empty()) text += ".fi\n";
-  text += ".SH SEE ALSO\n";
-  std::string others;
+  std::vector<std::string> others;
   for (const CommandText& one : all)
-    if (one.name != command.name) others += (others.empty() ? "" : ",\n") + bold(page_name(one)) + "(1)";
-  return text + others + "\n";
+    if (one.name != command.name) others.push_back(bold(page_name(one)) + "(1)");
+  return text + ".SH SEE ALSO\n" + joined(others, ",\n") + "\n";
 }
 
 struct ManOptions {
@@ -132,13 +131,10 @@ int run_man(const CLI::App& program, const ManOptions& options) {
   const auto commands = command_texts(program);
   if (!options.folder.empty()) {
     if (!options.command.empty()) throw InputError("-o writes every page; leave out '" + options.command + "'");
-    std::error_code error;
-    std::filesystem::create_directories(options.folder, error);
-    if (error) throw InputError("-o: cannot make the folder '" + options.folder + "'; choose another");
+    make_folder("-o", options.folder);
     for (const CommandText& command : commands) {
       const std::string page = man_page(command, commands);
-      write_whole_file((std::filesystem::path(options.folder) / (page_name(command) + ".1")).string(),
-                       {reinterpret_cast<const std::uint8_t*>(page.data()), page.size()});
+      write_text_file((std::filesystem::path(options.folder) / (page_name(command) + ".1")).string(), page);
     }
     return exit_ok;
   }

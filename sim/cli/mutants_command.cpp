@@ -8,7 +8,6 @@
 #include "sim/cli/commands.hpp"
 #include "sim/cli/cosim_options.hpp"
 #include "sim/cli/progress.hpp"
-#include "sim/cosim/report.hpp"
 #include "sim/cosim/rtl_engine.hpp"
 #include "sim/scene/builtin.hpp"
 #include "sim/show/image/framebuffer_files.hpp"
@@ -103,17 +102,11 @@ Verdict judge(const MutantsCommand& options, const DutFactory& factory, Dut& dut
   return verdict;
 }
 
-std::string joined(const std::vector<std::string>& words) {
-  if (words.size() == builtin_scenes().size()) return "all";
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
-  return text.empty() ? "none" : text;
+std::string scenes_text(const std::vector<std::string>& names) {
+  return names.empty() ? "none" : names.size() == builtin_scenes().size() ? "all" : joined(names, " ");
 }
 
-std::string column(std::string text, std::size_t width) {
-  text.resize(std::max(width, text.size()), ' ');
-  return text + "  ";
-}
+std::string column(const std::string& text, std::size_t width) { return left_aligned(text, width) + "  "; }
 
 std::string stage_of(const Mutant& mutant) { return std::filesystem::path(mutant.file).stem().string(); }
 
@@ -137,7 +130,7 @@ void print_table(std::ostream& out, const std::vector<Verdict>& verdicts, bool h
     out << right_aligned(std::to_string(v.mutant.id), 3) + "  " << column(stage_of(v.mutant), 14)
         << column(v.mismatch ? where(*v.mismatch) : "NOT CAUGHT", 30)
         << right_aligned(v.mismatch ? with_commas(v.mismatch->cycle) : "", 9) + "  "
-        << (has_pictures ? column(joined(v.pictures), 41) : "") << v.mutant.what << '\n';
+        << (has_pictures ? column(scenes_text(v.pictures), 41) : "") << v.mutant.what << '\n';
 }
 
 Json verdict_json(const Verdict& v, bool has_pictures) {
@@ -199,9 +192,7 @@ int run(const MutantsCommand& options) {
   result["pictures_unchanged"] = options.scenes ? Json(unseen) : Json(nullptr);
   result["mutants"] = Json::array();
   for (const Verdict& verdict : verdicts) result["mutants"].push_back(verdict_json(verdict, options.scenes));
-  result["wall_s"] = seconds_since(start);
-  if (is_partial) mark_partial(result);
-  write_json(options, result);
+  finish_json(options, result, start, is_partial);
 
   std::ostream& out = human(options);
   print_table(out, verdicts, options.scenes);
@@ -211,18 +202,14 @@ int run(const MutantsCommand& options) {
   if (options.scenes)
     out << unseen << " of them change no picture of the " << pictures.size() << " built-in scenes at " << options.size
         << ": only the comparison of packets and counters shows them\n";
-  if (is_partial) {
-    print_partial(out);
-    return exit_interrupted;
-  }
-  return all_caught ? exit_ok : exit_mismatch;
+  return ended(out, is_partial, all_caught ? exit_ok : exit_mismatch);
 }
 
 }  // namespace
 
 void add_mutants_command(CLI::App& app, Action& selected) {
-  CLI::App* command = app.add_subcommand("mutants", "seeded faults of the RTL, each of which co-simulation must catch");
-  auto options = std::make_shared<MutantsCommand>();
+  const auto [command, options] = add_command<MutantsCommand>(
+      app, selected, "mutants", "seeded faults of the RTL, each of which co-simulation must catch", run);
   options->random = 6000;
   options->stalls = 0.2;
   options->size = "160x120";
@@ -238,7 +225,6 @@ void add_mutants_command(CLI::App& app, Action& selected) {
   command->add_flag("--scenes", options->scenes, "also says which pictures of the built-in scenes each mutant changes");
   command->add_option("--size", options->size, "of these pictures, WxH pixels")->capture_default_str();
   command->footer("\nExit status 1 when a mutant is not caught.\n\nExample:\n  halfplane mutants --json=mutants.json");
-  command->callback([&selected, options] { selected = [options] { return run(*options); }; });
 }
 
 }  // namespace halfplane

@@ -7,11 +7,12 @@
 #include <filesystem>
 #include <functional>
 #include <iostream>
-#include <span>
+#include <sstream>
 #include <string_view>
 
+#include "model/capture/capture.hpp"
+#include "sim/cli/progress.hpp"
 #include "sim/config_file.hpp"
-#include "sim/config_json.hpp"
 #include "sim/scene/convention.hpp"
 #include "sim/scene/depth_collision.hpp"
 #include "sim/scene/depth_mapping.hpp"
@@ -206,19 +207,13 @@ Skip parse_skip(const std::string& text) {
   Skip skip = skip_none();
   if (text == "none") return skip;
   std::string names;
-  for (const auto& entry : kSkipNames) {
-    if (!names.empty()) names += ", ";
-    names.append(entry.name);
-  }
-  for (std::size_t start = 0; start <= text.size();) {
-    const std::size_t end = std::min(text.find(',', start), text.size());
-    const std::string name = text.substr(start, end - start);
+  for (const SkipName& entry : kSkipNames) names.append(names.empty() ? "" : ", ").append(entry.name);
+  for (const std::string& name : split_at_commas(text)) {
     const auto* entry = std::find_if(std::begin(kSkipNames), std::end(kSkipNames),
                                      [&name](const SkipName& s) { return name == s.name; });
     if (entry == std::end(kSkipNames))
       throw InputError("--skip: no '" + name + "'; give all, none or some of " + names);
     skip.*(entry->member) = true;
-    start = end + 1;
   }
   return skip;
 }
@@ -301,17 +296,6 @@ void add_work(ObjectCounts& objects, const MovingScene& source) {
   objects.vertices_skipped = source.work->vertices_skipped;
 }
 
-Json objects_json(const ObjectCounts& objects) {
-  return {{"in", objects.in},
-          {"culled_sphere", objects.culled_sphere},
-          {"culled_box", objects.culled_box},
-          {"primitives_skipped", objects.primitives_skipped},
-          {"tests", objects.tests},
-          {"nodes_outside", objects.nodes_outside},
-          {"nodes_inside", objects.nodes_inside},
-          {"vertices_skipped", objects.vertices_skipped}};
-}
-
 Json result_head(const std::string& command, const CommonOptions& options, const Config& config) {
   const bool has_scene = !options.scene.empty();
   return Json{{"schema", "halfplane." + command + "/1"},
@@ -331,22 +315,65 @@ void write_json(const CommonOptions& options, const Json& result) {
   whole["command"] = typed_command();
   // Names of files may be any bytes, JSON is UTF-8.
   const std::string text = whole.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-  const std::span bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
-  if (options.json == "-") {
-    write_stdout(bytes, "--json", "give a place that takes it, or --json=FILE");
-    return;
-  }
-  write_whole_file(options.json, bytes);
+  if (options.json != "-") return write_text_file(options.json, text);
+  write_stdout({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, "--json",
+               "give a place that takes it, or --json=FILE");
 }
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
+double seconds_since(TimePoint start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void finish_json(const CommonOptions& options, Json& result, TimePoint start, bool is_partial) {
+  result["wall_s"] = seconds_since(start);
+  if (is_partial) mark_partial(result);
+  write_json(options, result);
+}
+
+void make_folder(const std::string& option, const std::string& folder) {
+  if (folder.empty()) return;
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw InputError(option + ": cannot make the folder '" + folder + "'; choose another");
+}
+
+std::string capture_text(const Scene& scene) {
+  std::ostringstream text;
+  write_capture(scene, text);
+  return text.str();
 }
 
 std::string with_commas(std::uint64_t value) {
   std::string digits = std::to_string(value);
   for (std::size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, ",");
   return digits;
+}
+
+std::vector<std::string> split_at_commas(const std::string& text) {
+  std::vector<std::string> parts(1);
+  for (const char c : text)
+    if (c == ',')
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  return parts;
+}
+
+std::string formatted(const char* format, double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+std::string decimal(int128 value) {
+  std::string digits;
+  auto rest = static_cast<uint128>(value < 0 ? -value : value);
+  do {
+    digits += static_cast<char>('0' + static_cast<int>(rest % 10));
+    rest /= 10;
+  } while (rest != 0);
+  if (value < 0) digits += '-';
+  return {digits.rbegin(), digits.rend()};
 }
 
 std::string refuse_empty(const std::string& text) { return text.empty() ? "nothing given, where a value is due" : ""; }
@@ -389,20 +416,18 @@ void set_command_line(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) typed_words().push_back(quoted(argv[i]));
 }
 
-std::string typed_command() {
-  std::string text;
-  for (const std::string& word : typed_words()) text += (text.empty() ? "" : " ") + word;
-  return text;
-}
+std::string typed_command() { return joined(typed_words(), " "); }
 
-std::vector<JunitProperty> junit_properties(const Json& result, const Config* config, bool is_partial) {
+void write_junit(const std::string& path, const std::string& suite, const std::vector<JunitCase>& cases, double seconds,
+                 const Json& result, const Config* config, bool is_partial) {
+  if (path.empty()) return;
   std::vector<JunitProperty> properties;
   if (result["scene"].is_string()) properties.push_back({"scene", result["scene"].get<std::string>()});
   if (!result["seed"].is_null()) properties.push_back({"seed", result["seed"].dump()});
   if (config != nullptr) properties.push_back({"config", config_arguments(*config).substr(1)});
   properties.push_back({"command", typed_command()});
   if (is_partial) properties.push_back({"partial", "true"});
-  return properties;
+  write_text_file(path, junit_xml(suite, cases, seconds, properties));
 }
 
 std::string config_arguments(const Config& config) {

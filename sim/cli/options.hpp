@@ -8,14 +8,32 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "model/config.hpp"
 #include "model/engines/render.hpp"
+#include "model/fixed.hpp"
 #include "model/scene.hpp"
 #include "sim/cosim/junit.hpp"
 #include "sim/scene/load.hpp"
 #include "sim/scene/object_cull.hpp"
+
+/// A value that may be missing is null in JSON.
+template <class T>
+struct nlohmann::adl_serializer<std::optional<T>> {
+  template <class Json>
+  static void to_json(Json& json, const std::optional<T>& value) {
+    json = value ? Json(*value) : Json(nullptr);
+  }
+};
+
+/// Makes JSON of a struct of the namespace it stands in: the members as keys, in this order.
+#define HALFPLANE_JSON_OF_MEMBERS(Struct, ...)                                    \
+  inline void to_json(nlohmann::ordered_json& json, const Struct& of) {           \
+    NLOHMANN_JSON_EXPAND(NLOHMANN_JSON_PASTE(HALFPLANE_JSON_MEMBER, __VA_ARGS__)) \
+  }
+#define HALFPLANE_JSON_MEMBER(name) json[#name] = of.name;
 
 namespace halfplane {
 
@@ -125,8 +143,9 @@ void warn_of_scene(const Scene& scene, const Config& config);
 /// Adds what the last scene of `source` took.
 void add_work(ObjectCounts& objects, const MovingScene& source);
 
-/// {in, culled_sphere, ...}: `objects` of a result.
-[[nodiscard]] Json objects_json(const ObjectCounts& objects);
+/// `objects` of a result.
+HALFPLANE_JSON_OF_MEMBERS(ObjectCounts, in, culled_sphere, culled_box, primitives_skipped, tests, nodes_outside,
+                          nodes_inside, vertices_skipped)
 
 /// {schema, config, scene, seed}: the head of every result; the last two are null for a command without a scene.
 /// `command` as in "render".
@@ -139,11 +158,44 @@ void add_work(ObjectCounts& objects, const MovingScene& source);
 /// one line stands alone.
 void write_json(const CommonOptions& options, const Json& result);
 
+using TimePoint = std::chrono::steady_clock::time_point;
 /// Seconds since `start`.
-[[nodiscard]] double seconds_since(std::chrono::steady_clock::time_point start);
+[[nodiscard]] double seconds_since(TimePoint start);
+
+/// Adds `wall_s` and, for work that a signal cut short, `"partial": true`; then write_json().
+void finish_json(const CommonOptions& options, Json& result, TimePoint start, bool is_partial = false);
+
+/// Makes the folder that `option` names, unless it is empty. Throws InputError.
+void make_folder(const std::string& option, const std::string& folder);
+
+/// The scene as a capture.
+[[nodiscard]] std::string capture_text(const Scene& scene);
 
 /// 1234567 as "1,234,567".
 [[nodiscard]] std::string with_commas(std::uint64_t value);
+
+/// The words with `separator` between them.
+template <class Range>
+[[nodiscard]] std::string joined(const Range& words, std::string_view separator = ", ") {
+  std::string text;
+  for (const auto& word : words) {
+    if (&word != &*std::begin(words)) text.append(separator);
+    text.append(word);
+  }
+  return text;
+}
+
+/// What stands between commas, empty parts included.
+[[nodiscard]] std::vector<std::string> split_at_commas(const std::string& text);
+
+/// `printf` of one number.
+[[nodiscard]] std::string formatted(const char* format, double value);
+
+[[nodiscard]] std::string decimal(int128 value);
+
+[[nodiscard]] inline Json or_null(bool is_known, const Json& value) { return is_known ? value : Json(nullptr); }
+/// Null for an empty text.
+[[nodiscard]] inline Json or_null(const std::string& text) { return or_null(!text.empty(), text); }
 
 /// A check for CLI11: an empty word is no value.
 [[nodiscard]] std::string refuse_empty(const std::string& text);
@@ -170,9 +222,10 @@ void set_command_line(int argc, char** argv);
 /// The command as it was typed, as a shell takes it: in the same folder, and with the same stdin, it gives the same result.
 [[nodiscard]] std::string typed_command();
 
-/// Scene and seed of a result, the configuration (null: many), and the command that repeats it, for JUnit.
-[[nodiscard]] std::vector<JunitProperty> junit_properties(const Json& result, const Config* config,
-                                                          bool is_partial = false);
+/// Writes a suite as JUnit XML, unless `path` is empty, with what it was made with: scene and seed of `result`, the
+/// configuration (null: many), the command that repeats it.
+void write_junit(const std::string& path, const std::string& suite, const std::vector<JunitCase>& cases, double seconds,
+                 const Json& result, const Config* config, bool is_partial = false);
 
 /// " --config PRESET --set KEY=VALUE ..." for exactly this configuration, as a shell takes it.
 [[nodiscard]] std::string config_arguments(const Config& config);
@@ -180,7 +233,7 @@ void set_command_line(int argc, char** argv);
 /// That, and --size, --camera and what else made the scene of its source; not the scene's name, nor the seed.
 [[nodiscard]] std::string scene_arguments(const CommonOptions& options, const Config& config);
 
-/// "%.*f" as a string.
+/// `value` with so many decimals.
 [[nodiscard]] std::string fixed(double value, int decimals);
 
 }  // namespace halfplane

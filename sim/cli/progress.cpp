@@ -83,6 +83,11 @@ std::string Progress::line(double fraction, std::uint64_t count, double seconds)
 
 void mark_partial(Json& result) { result["partial"] = true; }
 
+int ended(std::ostream& out, bool is_partial, int status) {
+  if (is_partial) print_partial(out);
+  return is_partial ? int{exit_interrupted} : status;
+}
+
 void print_partial(std::ostream& out) { out << "interrupted: this result is partial, as far as the work came\n"; }
 
 }  // namespace halfplane

@@ -43,5 +43,7 @@ void mark_partial(Json& result);
 
 /// Its last line for people.
 void print_partial(std::ostream& out);
+/// The exit status: `status`, unless a signal cut the work short, which the last line then says.
+[[nodiscard]] int ended(std::ostream& out, bool is_partial, int status);
 
 }  // namespace halfplane

@@ -44,28 +44,24 @@ int run(const ReduceCommand& options) {
   Json result = result_head("reduce", options, config);
   result["first_mismatch"] = mismatch_json(saved.finding.mismatch, saved.repeat);
   result["capture"] = saved.capture;
-  result["trace"] = saved.trace.empty() ? Json(nullptr) : Json(saved.trace);
+  result["trace"] = or_null(saved.trace);
   if (saved.finding.reduced) {
     result["triangles"] = {{"before", saved.finding.reduced->primitives_before},
                            {"after", saved.finding.reduced->primitives_after}};
     result["runs"] = saved.finding.reduced->runs;
     result["minimal"] = saved.finding.reduced->is_minimal;
   }
-  result["wall_s"] = seconds_since(start);
   const bool is_partial = is_interrupted();
-  if (is_partial) mark_partial(result);
-  write_json(options, result);
+  finish_json(options, result, start, is_partial);
   print_finding(human(options), saved);
-  if (is_partial) print_partial(human(options));
-  return is_partial ? exit_interrupted : exit_ok;
+  return ended(human(options), is_partial, exit_ok);
 }
 
 }  // namespace
 
 void add_reduce_command(CLI::App& app, Action& selected) {
-  CLI::App* command =
-      app.add_subcommand("reduce", "the fewest primitives and simplest state with which RTL and model still differ");
-  auto options = std::make_shared<ReduceCommand>();
+  const auto [command, options] = add_command<ReduceCommand>(
+      app, selected, "reduce", "the fewest primitives and simplest state with which RTL and model still differ", run);
   add_scene_options(*command, *options);
   add_cosim_options(*command, *options);
   add_file_option(*command, "-o", options->save_path, "the reduced capture, .hpt (default out/cosim-NAME-reduced.hpt)");
@@ -73,7 +69,6 @@ void add_reduce_command(CLI::App& app, Action& selected) {
       ->check(CLI::Range(1.0, 86400.0))
       ->capture_default_str();
   command->footer("\nExample:\n  halfplane reduce out/cosim-random-7.hpt --mutant 3 -o small.hpt");
-  command->callback([&selected, options] { selected = [options] { return run(*options); }; });
 }
 
 }  // namespace halfplane

@@ -2,7 +2,6 @@
 #include <array>
 #include <chrono>
 #include <iostream>
-#include <memory>
 #include <string_view>
 
 #include "model/engines/functional.hpp"
@@ -93,7 +92,7 @@ void check_options(const RenderCommand& options, const Config& config) {
   if (std::find(kEngines.begin(), kEngines.end(), options.engine) == kEngines.end())
     throw InputError("--engine: no engine '" + options.engine +
                      "' in this version; give functional, scalar, cycle, rtl, golden or golden32");
-  check_study_rules(study_rules(options.study), options.engine);
+  check_study_rules(options.study, options.engine);
   if (options.engine == "rtl" && !(options.count_path.empty() && options.ids_path.empty()))
     throw InputError(
         "--count and --ids: the engine rtl is hardware, which keeps neither; leave out --count and --ids, or use "
@@ -290,8 +289,8 @@ int run(const RenderCommand& given) {
   result["width"] = scene.width;
   result["height"] = scene.height;
   result["threads"] = options.engine == "functional" ? options.threads : 1;  // the others have one
-  result["supersample"] = options.supersample.empty() ? Json(nullptr) : Json(options.supersample);
-  result["objects"] = objects_json(objects);
+  result["supersample"] = or_null(options.supersample);
+  result["objects"] = objects;
   if (options.engine == "scalar") add_study_json(result, options.study, scene, config);
   if (options.engine == "scalar" || options.engine == "golden")
     result["bounds"]["given_up"] = given_up_bounds(study_rules(options.study));
@@ -330,20 +329,16 @@ int run(const RenderCommand& given) {
                                 ? "fill rule " + options.study.fill_rule + ", traversal " + options.study.traversal
                                 : "engine " + options.engine;
   write_files(options, rendering, config, title);
-  result["wall_s"] = seconds_since(start);
   const bool is_partial = is_interrupted();
-  if (is_partial) mark_partial(result);
-  write_json(options, result);
+  finish_json(options, result, start, is_partial);
   print_result(options, config, rendering, facts, result);
-  if (is_partial) print_partial(human(options));
-  return is_partial ? exit_interrupted : exit_ok;
+  return ended(human(options), is_partial, exit_ok);
 }
 
 }  // namespace
 
 void add_render_command(CLI::App& app, Action& selected) {
-  CLI::App* command = app.add_subcommand("render", "one image from one engine");
-  auto options = std::make_shared<RenderCommand>();
+  const auto [command, options] = add_command<RenderCommand>(app, selected, "render", "one image from one engine", run);
   add_scene_options(*command, *options);
   command
       ->add_option("--engine", options->engine,
@@ -373,7 +368,6 @@ void add_render_command(CLI::App& app, Action& selected) {
       "\nExample:\n  halfplane render teapot --size 1280x720 -o teapot.png --depth teapot.npy --json\n"
       "  halfplane render city --engine cycle --what-if cache.lines=16,64,256 --trace city.json\n"
       "  halfplane render teapot --size 160x120 --frames 12 --camera orbit --engine cycle --csv turn.csv");
-  command->callback([&selected, options] { selected = [options] { return run(*options); }; });
 }
 
 }  // namespace halfplane

@@ -9,7 +9,6 @@
 #include "sim/show/image/framebuffer_files.hpp"
 #include "sim/show/image/whole_file.hpp"
 #include "sim/show/report/page.hpp"
-#include "sim/study/frames/report.hpp"
 
 namespace halfplane {
 namespace {
@@ -27,7 +26,7 @@ struct PlannedFrame {
 /// One frame's figures, in the order of the columns of --csv: those of `halfplane render`.
 Json frame_row(int frame, const Moment& moment, const Rendering& rendering, const CycleFacts& facts,
                const RenderCommand& options, const Config& config) {
-  Json row{{"frame", frame}, {"time", moment.time ? Json(*moment.time) : Json(nullptr)}, {"turn", moment.turn}};
+  Json row{{"frame", frame}, {"time", moment.time}, {"turn", moment.turn}};
   row.update(counters_json(rendering.counters));
   const bool is_hardware = options.engine == "cycle" || options.engine == "rtl";
   row["bins"] = is_hardware ? Json(rendering.counters.bins) : Json(nullptr);
@@ -61,10 +60,6 @@ std::string csv_text(const Json& rows) {
     text += values + "\n";
   }
   return text;
-}
-
-void write_text(const std::string& path, const std::string& text) {
-  write_whole_file(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
 }
 
 /// The least, the median and the largest of a figure over the frames.
@@ -282,7 +277,7 @@ int run_frames(const RenderCommand& options, const Config& config) {
       write_files(own, rendering, config, "frame " + std::to_string(i) + ", engine " + options.engine);
       rows.push_back(frame_row(i, frame.moment, rendering, facts, options, config));
       if (frame.is_of_capture) rows.back()["goes_on"] = frame.goes_on;
-      rows.back()["objects"] = objects_json(objects);
+      rows.back()["objects"] = objects;
       rows.back()["time_s"]["scene"] = scene_s;
     }
   } catch (const Interrupted&) {  // the frames so far count
@@ -296,8 +291,8 @@ int run_frames(const RenderCommand& options, const Config& config) {
   result["wall_s"] = seconds_since(start);
   const bool is_partial = is_interrupted();
   if (is_partial) mark_partial(result);
-  if (!options.csv_path.empty()) write_text(options.csv_path, csv_text(rows));
-  if (!options.chart_path.empty()) write_text(options.chart_path, frames_report(result.dump()));
+  if (!options.csv_path.empty()) write_text_file(options.csv_path, csv_text(rows));
+  if (!options.chart_path.empty()) write_page(options.chart_path, kFramesPage, result);
   write_json(options, result);
   std::ostream& out = human(options);
   out << options.scene << ", " << width << "x" << height << ", " << label(config) << ", engine " << options.engine
@@ -312,8 +307,7 @@ int run_frames(const RenderCommand& options, const Config& config) {
   if (!options.color_path.empty())
     out << "pictures    " << numbered(options.color_path, 0, frames) << " to "
         << numbered(options.color_path, static_cast<int>(rows.size()) - 1, frames) << '\n';
-  if (is_partial) print_partial(out);
-  return is_partial ? exit_interrupted : exit_ok;
+  return ended(out, is_partial, exit_ok);
 }
 
 }  // namespace halfplane

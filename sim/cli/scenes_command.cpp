@@ -1,5 +1,4 @@
 #include <iostream>
-#include <memory>
 
 #include "sim/cli/commands.hpp"
 #include "sim/cli/options.hpp"
@@ -34,8 +33,7 @@ int run(const CommonOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   Json result = result_head("scenes", options, effective_config(options));
   result["scenes"] = scenes_json();
-  result["wall_s"] = seconds_since(start);
-  write_json(options, result);
+  finish_json(options, result, start);
   print_scenes(human(options));
   return exit_ok;
 }
@@ -43,11 +41,9 @@ int run(const CommonOptions& options) {
 }  // namespace
 
 void add_scenes_command(CLI::App& app, Action& selected) {
-  CLI::App* command = app.add_subcommand("scenes", "lists the built-in scenes");
-  auto options = std::make_shared<CommonOptions>();
+  const auto [command, options] = add_command<CommonOptions>(app, selected, "scenes", "lists the built-in scenes", run);
   add_output_options(*command, *options);
   command->footer("\nExample:\n  halfplane scenes\n  halfplane render city:32 -o city.png");
-  command->callback([&selected, options] { selected = [options] { return run(*options); }; });
 }
 
 }  // namespace halfplane

@@ -15,10 +15,6 @@ namespace fs = std::filesystem;
 /// Slurm's own limit is 1,001 unless somebody has set MaxArraySize.
 constexpr std::size_t kMostJobs = 1000;
 
-void write_text(const fs::path& path, const std::string& text) {
-  write_whole_file(path.string(), {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-}
-
 std::string point_name(std::size_t index) {
   const std::string digits = std::to_string(index + 1);
   return "points/" + std::string(digits.size() < 5 ? 5 - digits.size() : 0, '0') + digits + ".json";
@@ -82,8 +78,7 @@ void write_cluster(const CommonOptions& common, const SpaceOptions& options, con
     tasks += "test -s " + point_name(i) + " || " + quoted(program.string()) + " bench " +
              quoted(fs::exists(file, error) ? file.string() : at.scene_name) + arguments(at);
     if (options.wants_area) {
-      tasks += " --area --cache " + quoted(cache) + " --parts ";
-      for (std::size_t k = 0; k < options.parts.size(); ++k) tasks += (k == 0 ? "" : ",") + options.parts[k];
+      tasks += " --area --cache " + quoted(cache) + " --parts " + joined(options.parts, ",");
       if (!options.rtl.empty()) tasks += " --rtl " + quoted(fs::absolute(options.rtl).string());
     } else {
       tasks += " --space";
@@ -95,9 +90,9 @@ void write_cluster(const CommonOptions& common, const SpaceOptions& options, con
   manifest["command"] = study.command;
   manifest["labels"] = Json::array();
   for (const BenchCase& at : cases) manifest["labels"].push_back({at.scene_name, at.variation});
-  write_text(folder / "tasks", tasks);
-  write_text(folder / "job.sh", job_script(folder, cases.size()));
-  write_text(folder / "space.json", manifest.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  write_text_file(folder / "tasks", tasks);
+  write_text_file(folder / "job.sh", job_script(folder, cases.size()));
+  write_text_file(folder / "space.json", manifest.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
   if (common.quiet) return;
   std::cout << cases.size() << " tasks. On a cluster: sbatch " << quoted((folder / "job.sh").string()) << "\nHere: (cd "
             << quoted(folder.string()) << " && parallel <tasks)\nThen: " << program_word() << " bench --collect "

@@ -9,7 +9,6 @@
 #include "sim/show/report/page.hpp"
 #include "sim/study/space/gates.hpp"
 #include "sim/study/space/points.hpp"
-#include "sim/study/space/report.hpp"
 
 namespace halfplane {
 namespace {
@@ -43,10 +42,6 @@ std::string csv_of(const Json& points) {
   return text;
 }
 
-void write_text_file(const std::string& path, const std::string& text) {
-  write_whole_file(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-}
-
 std::string short_figure(const Json& point, const std::string& name) {
   const auto value = figure(point, name);
   if (!value) return "-";
@@ -55,7 +50,6 @@ std::string short_figure(const Json& point, const std::string& name) {
              : short_number(*value);
 }
 
-/// The table: columns that nobody has are left out.
 void print_points(std::ostream& out, const Json& points) {
   struct Column {
     const char *head, *name;
@@ -75,31 +69,15 @@ void print_points(std::ostream& out, const Json& points) {
                                      {"FF", "ice40.ff"},
                                      {"RAM", "ice40.block_rams"}};
   std::vector<std::vector<std::string>> lines{{"scene", "configuration"}};
-  std::vector<const char*> names;
-  for (const Column& column : kColumns)
-    if (std::any_of(points.begin(), points.end(),
-                    [&](const Json& point) { return figure(point, column.name).has_value(); })) {
-      lines[0].emplace_back(column.head);
-      names.push_back(column.name);
-    }
+  for (const Column& column : kColumns) lines[0].emplace_back(column.head);
   lines[0].emplace_back("");
   for (const Json& point : points) {
     const std::string label = point.at("label");
     lines.push_back({point.at("scene"), label.empty() ? "as configured" : label});
-    for (const char* name : names) lines.back().push_back(short_figure(point, name));
+    for (const Column& column : kColumns) lines.back().push_back(short_figure(point, column.name));
     lines.back().emplace_back(point.at("on_front").get<bool>() ? "front" : "");
   }
-  std::vector<std::size_t> widths(lines[0].size());
-  for (const auto& line : lines)
-    for (std::size_t k = 0; k < line.size(); ++k) widths[k] = std::max(widths[k], line[k].size());
-  for (const auto& line : lines) {
-    std::string text;
-    for (std::size_t k = 0; k < line.size(); ++k)
-      text += k < 2 || k + 1 == line.size() ? left_aligned(line[k], widths[k] + 2)
-                                            : right_aligned(line[k], widths[k]) + "  ";
-    text.erase(text.find_last_not_of(' ') + 1);
-    out << text << '\n';
-  }
+  print_bench_table(out, lines, 2);
 }
 
 }  // namespace
@@ -143,12 +121,8 @@ void add_space_options(CLI::App& command, SpaceOptions& options) {
 
 std::string space_arguments(const SpaceOptions& options) {
   std::string text = options.wants_area ? " --area" : options.is_wanted() ? " --space" : "";
-  const auto add_list = [&text](const char* option, const std::vector<std::string>& words) {
-    text += option;
-    for (std::size_t i = 0; i < words.size(); ++i) text += (i == 0 ? " " : ",") + words[i];
-  };
-  if (options.wants_area && options.parts != SpaceOptions{}.parts) add_list(" --parts", options.parts);
-  if (!options.front.empty()) add_list(" --front", options.front);
+  if (options.wants_area && options.parts != SpaceOptions{}.parts) text += " --parts " + joined(options.parts, ",");
+  if (!options.front.empty()) text += " --front " + joined(options.front, ",");
   return text + memory_arguments(options.memory);
 }
 
@@ -206,9 +180,7 @@ void finish_space(const CommonOptions& common, const SpaceOptions& options, Spac
     const auto known = figures_of(points);
     for (const std::string& axis : axes)
       if (std::find(known.begin(), known.end(), axis) == known.end() && !options.front.empty()) {
-        std::string list;
-        for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
-        throw InputError("--front: not every point has a figure '" + axis + "'; give some of " + list);
+        throw InputError("--front: not every point has a figure '" + axis + "'; give some of " + joined(known));
       }
   }
   mark_front(points, axes);
@@ -217,7 +189,7 @@ void finish_space(const CommonOptions& common, const SpaceOptions& options, Spac
     Json page = study.result;
     page["version"] = HALFPLANE_VERSION;
     page["command"] = study.command;
-    write_text_file(study.page, space_report(page.dump(-1, ' ', false, Json::error_handler_t::replace)));
+    write_page(study.page, kSpacePage, page);
   }
   if (!options.csv.empty()) write_text_file(options.csv, csv_of(points));
   write_json(common, study.result);
@@ -225,9 +197,8 @@ void finish_space(const CommonOptions& common, const SpaceOptions& options, Spac
   if (common.quiet) return;
   const auto on_front =
       std::count_if(points.begin(), points.end(), [](const Json& p) { return p.at("on_front").get<bool>(); });
-  out << points.size() << (points.size() == 1 ? " point, " : " points, ") << on_front << " on the front of";
-  for (std::size_t i = 0; i < axes.size(); ++i) out << (i == 0 ? " " : ", ") << axes[i];
-  out << '\n';
+  out << points.size() << (points.size() == 1 ? " point, " : " points, ") << on_front << " on the front of "
+      << joined(axes) << '\n';
   print_points(out, points);
   if (study.result.value("missing", 0) > 0)
     out << study.result["missing"] << " points are not there yet; the same job, or parallel, goes on with them\n";

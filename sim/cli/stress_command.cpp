@@ -2,17 +2,20 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <sstream>
 
-#include "model/capture/capture.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/progress.hpp"
-#include "sim/config_json.hpp"
+#include "sim/config_file.hpp"
 #include "sim/cosim/junit.hpp"
 #include "sim/show/image/whole_file.hpp"
 #include "sim/study/stress/run.hpp"
 
 namespace halfplane {
+
+namespace stress {
+HALFPLANE_JSON_OF_MEMBERS(Case, name, item, property)
+}
+
 namespace {
 
 struct StressCommand : CommonOptions {
@@ -62,9 +65,7 @@ void print_list(std::ostream& out) {
 }
 
 int list_cases(const StressCommand& options) {
-  Json result{{"schema", "halfplane.stress.list/1"}, {"cases", Json::array()}};
-  for (const stress::Case& c : stress::cases())
-    result["cases"].push_back({{"name", c.name}, {"item", c.item}, {"property", c.property}});
+  const Json result{{"schema", "halfplane.stress.list/1"}, {"cases", stress::cases()}};
   write_json(options, result);
   print_list(human(options));
   return exit_ok;
@@ -96,17 +97,14 @@ std::string save_capture(const std::string& folder, const std::string& name, con
   for (char& c : file)
     if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '-';
   const std::string path = folder + "/" + file + ".hpt";
-  std::ostringstream text;
-  write_capture(scene, text);
-  const std::string bytes = text.str();
-  write_whole_file(path, {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+  write_text_file(path, capture_text(scene));
   return path;
 }
 
 Json worst_json(const StressCommand& options, const stress::CaseResult& result, const WorstEntry& entry) {
   const auto& [property, w] = entry;
   Json row{{"value", w.value}, {"bound", w.bound}, {"unit", w.unit}, {"config", label(w.place.config)}};
-  row["measured"] = w.measured ? Json(*w.measured) : Json(nullptr);
+  row["measured"] = w.measured;
   row["capture"] = nullptr;
   if (!options.captures.empty() && w.value > 0) {
     const std::string path =
@@ -132,7 +130,7 @@ Json case_json(const StressCommand& options, const stress::CaseResult& result) {
     row["first_failure"] = {{"property", t.first->property},
                             {"what", t.first->what},
                             {"config", label(t.first->place.config)},
-                            {"capture", path.empty() ? Json(nullptr) : Json(path)},
+                            {"capture", or_null(path)},
                             {"repeat", repeat_command(options, result, t.first->property, t.first->place.unit)}};
   }
   return row;
@@ -147,8 +145,7 @@ void print_failure(std::ostream& out, const Json& row, const stress::Failure& fa
         << config_arguments(failure.place.config) << '\n';
 }
 
-std::string junit(const std::vector<stress::CaseResult>& results, double seconds, bool is_partial,
-                  const std::vector<JunitProperty>& properties) {
+std::vector<JunitCase> junit_cases_of(const std::vector<stress::CaseResult>& results, bool is_partial) {
   std::vector<JunitCase> rows;
   for (const stress::CaseResult& r : results) {
     JunitCase row{std::string(r.about->name), "", "", ""};
@@ -160,7 +157,7 @@ std::string junit(const std::vector<stress::CaseResult>& results, double seconds
       row.output = with_commas(r.tally.checks) + " checks; " + worst_text(r);
     rows.push_back(std::move(row));
   }
-  return junit_xml("stress", rows, seconds, properties);
+  return rows;
 }
 
 struct Totals {
@@ -208,10 +205,7 @@ int run(const StressCommand& options) {
   if (options.unit >= 0 && (options.quick || options.seconds > 0))
     throw InputError("--unit: one unit is all that runs; leave out --quick and --seconds");
   check_output(options.junit_path);
-  if (std::error_code error; !options.captures.empty()) {
-    std::filesystem::create_directories(options.captures, error);
-    if (error) throw InputError("--captures: cannot make the folder '" + options.captures + "'; choose another");
-  }
+  make_folder("--captures", options.captures);
   check_distinct({options.json, options.junit_path});
   const Config config = effective_config(options);
   if (config.depth_format != DepthFormat{} || config.depth_mapping != DepthMapping::projection)
@@ -248,22 +242,15 @@ int run(const StressCommand& options) {
   const double wall_s = seconds_since(start);
   result["wall_s"] = wall_s;
   if (is_partial) mark_partial(result);
-  if (!options.junit_path.empty()) {
-    const std::string xml = junit(results, wall_s, is_partial,
-                                  junit_properties(result, options.has_config ? &config : nullptr, is_partial));
-    write_whole_file(options.junit_path, {reinterpret_cast<const std::uint8_t*>(xml.data()), xml.size()});
-  }
+  write_junit(options.junit_path, "stress", junit_cases_of(results, is_partial), wall_s, result,
+              options.has_config ? &config : nullptr, is_partial);
   write_json(options, result);
   std::ostream& out = human(options);
   print_table(out, options, results, sum, wall_s);
   for (std::size_t i = 0; i < results.size(); ++i)
     if (results[i].tally.first) print_failure(out, result["cases"][i], *results[i].tally.first);
   out << (sum.failures == 0 ? "every bound holds\n" : "");
-  if (is_partial) {
-    print_partial(out);
-    return exit_interrupted;
-  }
-  return sum.failures == 0 ? exit_ok : exit_mismatch;
+  return ended(out, is_partial, sum.failures == 0 ? exit_ok : exit_mismatch);
 }
 
 }  // namespace

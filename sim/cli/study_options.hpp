@@ -37,7 +37,7 @@ void add_interpolation_option(CLI::App& app, StudyOptions& options);
 [[nodiscard]] StudyRules study_rules(const StudyOptions& options);
 
 /// Throws InputError, naming the option, when an engine is asked for what it does not have.
-void check_study_rules(const StudyRules& rules, const std::string& engine);
+void check_study_rules(const StudyOptions& options, const std::string& engine);
 
 /// Adds {traversal, fill_rule, clipping, gradients, accumulator, weights, interpolation} to a result.
 void add_rules_json(Json& result, const StudyOptions& options);

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <limits>
-#include <memory>
 #include <ostream>
 
 #include "sim/cli/commands.hpp"
@@ -62,7 +61,7 @@ int run(const VectorsOptions& options) {
   const auto written = vectors::write_vectors(options.output, format, stage, config, packets, vector_source(options));
   Json result = result_head("vectors", options, config);
   result["seed"] = options.seed;
-  result["random"] = options.random != 0 ? Json(options.random) : Json(nullptr);
+  result["random"] = or_null(options.random != 0, options.random);
   result["stage"] = options.stage;
   result["format"] = options.format;
   result["can_be_checked"] = stage.can_run();
@@ -70,8 +69,7 @@ int run(const VectorsOptions& options) {
   result["out"] = port_counts(stage.out, packets.out);
   result["files"] = Json::array();
   for (const auto& [path, bytes] : written) result["files"].push_back({{"path", path}, {"bytes", bytes}});
-  result["wall_s"] = seconds_since(start);
-  write_json(options, result);
+  finish_json(options, result, start);
   std::ostream& out = human(options);
   out << options.stage << " of " << vector_source(options).text << ", " << label(config) << ", seed " << options.seed
       << '\n'
@@ -85,8 +83,8 @@ int run(const VectorsOptions& options) {
 }  // namespace
 
 void add_vectors_command(CLI::App& app, Action& selected) {
-  CLI::App* command = app.add_subcommand("vectors", "what goes into a stage and what must come out, for your own RTL");
-  auto options = std::make_shared<VectorsOptions>();
+  const auto [command, options] = add_command<VectorsOptions>(
+      app, selected, "vectors", "what goes into a stage and what must come out, for your own RTL", run);
   add_scene_options(*command, *options);
   command->get_option("SCENE")->required(false);
   command
@@ -106,7 +104,6 @@ void add_vectors_command(CLI::App& app, Action& selected) {
   command->footer(
       "\nThe hardware model runs from reset. Judge what your implementation gave with `halfplane check`.\n"
       "\nExample:\n  halfplane vectors --random 200 --stage fine_raster -o fine_raster.jsonl");
-  command->callback([&selected, options] { selected = [options] { return run(*options); }; });
 }
 
 }  // namespace halfplane

@@ -7,26 +7,15 @@
 #include <memory>
 #include <sstream>
 
-#include "model/capture/capture.hpp"
 #include "model/widths.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/progress.hpp"
 #include "sim/show/image/whole_file.hpp"
 #include "sim/study/compare/surface_oracle.hpp"
-#include "sim/study/widths/over_w_range.hpp"
 #include "sim/study/widths/study.hpp"
 
 namespace halfplane {
 namespace {
-
-std::string decimal(int128 value) {
-  if (value == 0) return "0";
-  std::string digits;
-  for (auto rest = static_cast<uint128>(value < 0 ? -value : value); rest != 0; rest /= 10)
-    digits += static_cast<char>('0' + static_cast<int>(rest % 10));
-  if (value < 0) digits += '-';
-  return {digits.rbegin(), digits.rend()};
-}
 
 /// A number where every reader of JSON has it exactly, else text.
 Json integer_json(int128 value) {
@@ -39,9 +28,7 @@ Json integer_json(int128 value) {
 std::string short_decimal(int128 value) {
   std::string text = decimal(value);
   if (text.size() <= 11) return text;
-  char rounded[32];
-  std::snprintf(rounded, sizeof rounded, "%.5g", static_cast<double>(value));
-  return rounded;
+  return formatted("%.5g", static_cast<double>(value));
 }
 
 std::string file_name(const Width& width) {
@@ -89,8 +76,7 @@ Json row_json(const WidthRow& row, const Config& config) {
   if (row.overflows) {
     Json overflow{{"value", integer_json(row.overflows->value)}};
     overflow["random_primitives"] = row.overflows->random_probes;
-    overflow["first_random_primitive"] =
-        row.overflows->random_probes == 0 ? Json(nullptr) : Json(row.overflows->first_probe);
+    overflow["first_random_primitive"] = or_null(row.overflows->random_probes != 0, row.overflows->first_probe);
     overflow["input"] = probe_json(row.overflows->probe, config);
     json["overflows_first"] = overflow;
   }
@@ -99,8 +85,6 @@ Json row_json(const WidthRow& row, const Config& config) {
 
 constexpr std::array kTextureSides{256, 1024, 4096};
 
-Json ratio_json(const std::optional<double>& ratio) { return ratio ? Json(*ratio) : Json(nullptr); }
-
 /// To which ratio of w over a triangle errors over w are proven.
 Json over_w_json(const Config& config) {
   const PerspectiveFormat format = perspective_format(config);
@@ -108,11 +92,11 @@ Json over_w_json(const Config& config) {
   for (const int texels : kTextureSides)
     coordinate.push_back({{"texels", texels},
                           {"error_texels", kProvenTexels},
-                          {"w_ratio", ratio_json(proven_w_ratio(texels, format, config.tile_size))}});
+                          {"w_ratio", proven_w_ratio(texels, format, config.tile_size)}});
   return {{"coordinate", coordinate},
           {"color",
            {{"error_lsb", kProvenColor},
-            {"w_ratio", ratio_json(proven_w_ratio(255, kProvenColor, format, format.color, config.tile_size))}}},
+            {"w_ratio", proven_w_ratio(255, kProvenColor, format, format.color, config.tile_size)}}},
           {"level_of_detail", {{"error_levels", 0.1}, {"w_ratio", largest_level_w_ratio(format)}}}};
 }
 
@@ -162,14 +146,10 @@ void print_rows(std::ostream& out, const WidthStudy& study) {
 }
 
 void print_exact(std::ostream& out, const WidthStudy& study) {
-  out << "\nexact by construction, counts of states, slots and numbers:\n ";
-  const char* separator = " ";
-  for (const WidthRow& row : study.rows) {
-    if (row.is_observed) continue;
-    out << separator << row.width.name << ' ' << row.width.bits;
-    separator = ", ";
-  }
-  out << '\n';
+  std::vector<std::string> names;
+  for (const WidthRow& row : study.rows)
+    if (!row.is_observed) names.push_back(std::string(row.width.name) + ' ' + std::to_string(row.width.bits));
+  out << "\nexact by construction, counts of states, slots and numbers:\n  " << joined(names) << '\n';
 }
 
 /// One line: "triangle (-2048, 3.5) (...) ...", pixels.
@@ -196,10 +176,10 @@ void print_overflows(std::ostream& out, const WidthStudy& study, const Config& c
                            : (std::filesystem::path(folder) / file_name(row.width)).string())
         << '\n';
   }
-  std::string spare;
+  std::vector<std::string_view> spare;
   for (const WidthRow& row : study.rows)
-    if (row.is_observed && !row.overflows) spare += (spare.empty() ? "" : ", ") + std::string(row.width.name);
-  if (!spare.empty()) out << "nothing seen overflows with a bit less: " << spare << '\n';
+    if (row.is_observed && !row.overflows) spare.push_back(row.width.name);
+  if (!spare.empty()) out << "nothing seen overflows with a bit less: " << joined(spare) << '\n';
 }
 
 void print_over_w(std::ostream& out, const Config& config) {
@@ -221,23 +201,17 @@ void print_bounds(std::ostream& out, const Config& config) {
       << "the scalar engine's path without clipping (not tried here): edges within "
       << fixed(homogeneous_edge_bound(config), 5) << " pixels;";
   const HomogeneousWidths scalar = derive_homogeneous_widths(config);
-  const char* separator = " ";
-  for (const Width* width : scalar.all()) {
-    out << separator << width->name << ' ' << width->bits;
-    separator = ", ";
-  }
-  out << '\n';
+  std::vector<std::string> names;
+  for (const Width* width : scalar.all()) names.push_back(std::string(width->name) + ' ' + std::to_string(width->bits));
+  out << ' ' << joined(names) << '\n';
   print_over_w(out, config);
 }
 
 void write_captures(const std::string& folder, const WidthStudy& study, const Config& config) {
   for (const WidthRow& row : study.rows) {
     if (!row.overflows) continue;
-    std::ostringstream text;
-    write_capture(probe_scene(row.overflows->probe, config), text);
-    const std::string bytes = text.str();
-    write_whole_file((std::filesystem::path(folder) / file_name(row.width)).string(),
-                     {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+    write_text_file(std::filesystem::path(folder) / file_name(row.width),
+                    capture_text(probe_scene(row.overflows->probe, config)));
   }
 }
 
@@ -245,10 +219,7 @@ int run_table(const WidthsCommand& options) {
   const auto start = std::chrono::steady_clock::now();
   const Config config = effective_config(options);
   require_one_sample(config, "widths");
-  if (std::error_code error; !options.captures.empty()) {
-    std::filesystem::create_directories(options.captures, error);
-    if (error) throw InputError("--captures: cannot make the folder '" + options.captures + "'; choose another");
-  }
+  make_folder("--captures", options.captures);
   WidthStudy study;
   {
     Progress progress(options, "trying widths", "probes");
@@ -264,9 +235,7 @@ int run_table(const WidthsCommand& options) {
   result["seed"] = options.seed;
   result["samples"] = options.samples;
   result.update(study_json(study, config));
-  result["wall_s"] = seconds_since(start);
-  if (is_partial) mark_partial(result);
-  write_json(options, result);
+  finish_json(options, result, start, is_partial);
 
   std::ostream& out = human(options);
   out << label(config) << "; seed " << options.seed << ", " << with_commas(options.samples) << " random primitives, "
@@ -281,8 +250,7 @@ int run_table(const WidthsCommand& options) {
       out << "BROKEN: " << row.width.name << " leaves its derived range\n";
       status = exit_mismatch;
     }
-  if (is_partial) print_partial(out);
-  return is_partial ? exit_interrupted : status;
+  return ended(out, is_partial, status);
 }
 
 }  // namespace

@@ -8,8 +8,8 @@
 #include "model/widths.hpp"
 #include "sim/cli/progress.hpp"
 #include "sim/cli/widths_command.hpp"
-#include "sim/study/widths/over_w_range.hpp"
 #include "sim/study/widths/smallest.hpp"
+#include "sim/study/widths/study.hpp"
 
 namespace halfplane {
 namespace {
@@ -69,7 +69,7 @@ Json errors_json(const SceneErrors& errors, const Config& config) {
           {"coverage", errors.coverage},
           {"color_lsb", errors.color},
           {"texture_texels", errors.texture},
-          {"fight_rate", errors.fights ? Json(*errors.fights) : Json(nullptr)}};
+          {"fight_rate", errors.fights}};
 }
 
 Json bits_json(const HardwareBits& bits) {
@@ -91,8 +91,8 @@ Json trial_json(const TriedConfig& trial, const std::vector<std::string>& names,
           {"proven",
            {{"depth_lsb", depth_error_bound(trial.config)},
             {"line_depth_lsb", line_depth_error_bound(trial.config)},
-            {"coordinate_w_ratio", ratio ? Json(*ratio) : Json(nullptr)}}},
-          {"broken", trial.broken.empty() ? Json(nullptr) : Json(trial.broken)}};
+            {"coordinate_w_ratio", ratio}}},
+          {"broken", or_null(trial.broken)}};
 }
 
 /// The options that make `config` of the start's.
@@ -116,11 +116,7 @@ void print_bits(std::ostream& out, const char* name, const HardwareBits& bits) {
       << cell(bits.tiles) << (bits.over_w != 0 ? cell(bits.over_w) : "") << '\n';
 }
 
-std::string part_text(double part) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", part);
-  return text;
-}
+std::string part_text(double part) { return formatted("%.4g", part); }
 
 void print_found(std::ostream& out, const Smallest& smallest, const Config& start, const ErrorBounds& bounds,
                  bool has_over_w, const WidthsCommand& options) {
@@ -203,11 +199,11 @@ int run_smallest(const WidthsCommand& options) {
   result["seed"] = options.seed;
   result["scenes"] = options.scenes;
   result["measured"] = true;  // on these scenes; not proven
-  result["bounds"] = {{"depth", bounds.depth ? Json(*bounds.depth) : Json(nullptr)},
-                      {"coverage", bounds.coverage ? Json(*bounds.coverage) : Json(nullptr)},
-                      {"color_lsb", bounds.color ? Json(*bounds.color) : Json(nullptr)},
-                      {"texture_texels", bounds.texture ? Json(*bounds.texture) : Json(nullptr)},
-                      {"fight_rate", bounds.fights ? Json(*bounds.fights) : Json(nullptr)}};
+  result["bounds"] = {{"depth", bounds.depth},
+                      {"coverage", bounds.coverage},
+                      {"color_lsb", bounds.color},
+                      {"texture_texels", bounds.texture},
+                      {"fight_rate", bounds.fights}};
   result["trials"] = smallest.trials;
   result["start_bits"] = bits_json(hardware_bits(start, has_over_w));
   result["widest"] = smallest.trials > 0 ? trial_json(smallest.widest, options.scenes, has_over_w) : Json(nullptr);
@@ -215,14 +211,10 @@ int run_smallest(const WidthsCommand& options) {
   if (smallest.found) result["smallest"]["set"] = start_options(options) + set_options(smallest.found->config, start);
   Json one_less = Json::array();
   for (const OneLess& less : smallest.one_less)
-    one_less.push_back({{"key", less.key},
-                        {"value", less.value},
-                        {"searched", !less.is_fixed},
-                        {"broken", less.broken.empty() ? Json(nullptr) : Json(less.broken)}});
+    one_less.push_back(
+        {{"key", less.key}, {"value", less.value}, {"searched", !less.is_fixed}, {"broken", or_null(less.broken)}});
   result["one_less"] = one_less;
-  result["wall_s"] = seconds_since(begin);
-  if (is_partial) mark_partial(result);
-  write_json(options, result);
+  finish_json(options, result, begin, is_partial);
 
   std::ostream& out = human(options);
   std::string names;

@@ -48,62 +48,6 @@ Stage suspect(Arrow arrow, const Mismatch& mismatch) {
 
 }  // namespace
 
-std::uint64_t LockstepResult::total() const {
-  std::uint64_t sum = 0;
-  for (const std::uint64_t n : compared) sum += n;
-  return sum;
-}
-
-std::uint64_t LockstepResult::total_cycles_compared() const {
-  std::uint64_t sum = 0;
-  for (const std::uint64_t n : cycles_compared) sum += n;
-  return sum;
-}
-
-void LockstepResult::add(const LockstepResult& later) {
-  for (std::size_t i = 0; i < kArrows; ++i) {
-    compared[i] += later.compared[i];
-    cycles_compared[i] += later.cycles_compared[i];
-  }
-  memory_compared += later.memory_compared;
-  counters_compared += later.counters_compared;
-  if (!mismatch) mismatch = later.mismatch;
-  is_stopped |= later.is_stopped;
-  triangles += later.triangles;
-  lines += later.lines;
-  points += later.points;
-  cycles += later.cycles;
-  model_cycles += later.model_cycles;
-  model_raster_cycles += later.model_raster_cycles;
-  model_tile_cycles += later.model_tile_cycles;
-  clocks += later.clocks;
-  raster_cycles += later.raster_cycles;
-  tile_cycles += later.tile_cycles;
-  for (std::size_t i = 0; i < use.size(); ++i) {
-    use[i].busy += later.use[i].busy;
-    use[i].stalled += later.use[i].stalled;
-    use[i].starved += later.use[i].starved;
-  }
-}
-
-ExpectedPackets::ExpectedPackets(const Widths& widths) : widths_(widths) {
-  for (std::size_t i = 0; i < kArrows; ++i)
-    queue_.emplace_back(with_packet_type(static_cast<Arrow>(i), [&]<class Packet>(std::type_identity<Packet>) {
-      return words_of(packet_bits<Packet>(widths));
-    }));
-}
-
-void ExpectedPackets::clear() {
-  for (PacketQueue& queue : queue_)
-    while (!queue.empty()) queue.pop();
-}
-
-bool ExpectedPackets::empty() const {
-  for (const PacketQueue& queue : queue_)
-    if (!queue.empty()) return false;
-  return true;
-}
-
 Lockstep::Lockstep(Dut& dut, const Config& config, LockstepOptions options)
     : dut_(dut),
       config_(config),

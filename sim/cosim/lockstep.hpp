@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <deque>
 #include <functional>
 #include <memory>
@@ -13,16 +14,53 @@
 #include <vector>
 
 #include "model/engines/cycle/cycle_model.hpp"
+#include "model/engines/cycle/streams.hpp"
 #include "model/engines/hardware.hpp"
 #include "model/host/primitive_stream.hpp"
 #include "model/timing/stream.hpp"
+#include "sim/cosim/arrows.hpp"
 #include "sim/cosim/dut.hpp"
 #include "sim/cosim/memory_model.hpp"
-#include "sim/cosim/mismatch.hpp"
-#include "sim/cosim/stalls.hpp"
 #include "sim/show/image/whole_file.hpp"
 
 namespace halfplane {
+
+/// The streams of one cycle as raster_top's stall_i.
+[[nodiscard]] constexpr std::uint32_t stall_bits(std::uint64_t seed, std::uint64_t cycle, std::uint64_t threshold) {
+  unsigned bits = 0;
+  if (threshold != 0)
+    for (const Arrow arrow : kElastic)
+      if (is_stalled(seed, info(arrow).flow.stall, cycle, threshold)) bits |= stall_bit(arrow);
+  return bits;
+}
+
+struct Mismatch {
+  enum class Kind {
+    differs,   ///< a packet with other bits
+    extra,     ///< a packet that the model does not send
+    missing,   ///< a packet that the RTL never sends
+    memory,    ///< the final memory image
+    counters,  ///< the performance counters
+    protocol,  ///< valid, ready or idle broke their rule
+    cycle      ///< a packet comes in another cycle than the cycle model says
+  };
+  Kind kind = Kind::differs;
+  std::string stage, arrow;                ///< the first suspect, and where it was seen
+  std::string hint;                        ///< one line more, or empty
+  std::vector<FieldPair> fields;           ///< all of them; one side is 0 when it has no packet
+  std::uint64_t cycle = 0;                 ///< since reset
+  std::uint64_t number = 0;                ///< of the packet on its arrow, from 0 at the scene's beginning
+  std::optional<std::uint32_t> primitive;  ///< number of the input primitive; none for a clear, the flush, or unknown
+  std::optional<std::uint64_t> tile_x, tile_y, stamp;
+
+  /// Names of the fields that differ.
+  [[nodiscard]] std::vector<std::string> differing() const {
+    std::vector<std::string> names;
+    for (const FieldPair& field : fields)
+      if (field.differs()) names.push_back(field.name);
+    return names;
+  }
+};
 
 struct LockstepOptions {
   std::uint64_t seed = 1;        ///< of stalls and start values

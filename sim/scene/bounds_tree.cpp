@@ -1,7 +1,6 @@
 #include "sim/scene/bounds_tree.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace halfplane {
 namespace {

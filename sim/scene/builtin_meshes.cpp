@@ -1,7 +1,6 @@
 #include "sim/scene/builtin_meshes.hpp"
 
 #include <algorithm>
-#include <map>
 #include <numbers>
 
 #include "sim/scene/random.hpp"

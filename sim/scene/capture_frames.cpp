@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <map>
 #include <span>
-#include <utility>
 
 #include "model/host/primitives.hpp"
 

@@ -1,10 +1,8 @@
 #include "sim/scene/depth_mapping.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "model/config.hpp"
 #include "sim/scene/convention.hpp"

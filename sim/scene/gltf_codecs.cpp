@@ -1,10 +1,8 @@
 #include "sim/scene/gltf_codecs.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cstring>
 #include <exception>
-#include <memory>
 
 #ifdef HALFPLANE_HAS_DRACO
 #include <draco/compression/decode.h>

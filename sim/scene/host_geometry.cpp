@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <string>
 
 #include "model/fixed.hpp"
 #include "model/host/primitive_assembly.hpp"

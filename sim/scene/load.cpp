@@ -1,6 +1,5 @@
 #include "sim/scene/load.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <filesystem>

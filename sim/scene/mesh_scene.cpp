@@ -4,7 +4,6 @@
 #include <cmath>
 #include <map>
 #include <tuple>
-#include <utility>
 
 #include "model/config.hpp"
 #include "sim/scene/object_cull.hpp"

@@ -1,5 +1,4 @@
 // The Utah teapot from its Bezier patches.
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <map>

@@ -1,7 +1,6 @@
 // The packets of a stage's ports, one list for each.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <span>

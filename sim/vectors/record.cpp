@@ -1,6 +1,5 @@
 #include "record.hpp"
 
-#include <optional>
 #include <stdexcept>
 
 #include "model/engines/hardware.hpp"

@@ -1,7 +1,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "sim/config_json.hpp"
+#include "sim/config_file.hpp"
 #include "sim/show/image/whole_file.hpp"
 #include "vector_file.hpp"
 
@@ -106,7 +106,7 @@ std::string csv_text(const JudgedStage& stage, const Config& config, const Stage
 }
 
 WrittenFile write_text(const std::string& path, const std::string& text) {
-  write_whole_file(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  write_text_file(path, text);
   return {path, text.size()};
 }
 

@@ -9,7 +9,7 @@
 #include "sim/scene/builtin.hpp"
 #include "sim/show/report/hardware.hpp"
 #include "sim/study/compare/compare.hpp"
-#include "sim/study/compare/per_vertex_cycles.hpp"
+#include "sim/study/compare/per_vertex.hpp"
 
 namespace halfplane {
 namespace {

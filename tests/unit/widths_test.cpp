@@ -8,7 +8,6 @@
 #include "sim/scene/builtin.hpp"
 #include "sim/scene/scene_builder.hpp"
 #include "sim/study/compare/compare.hpp"
-#include "sim/study/widths/over_w_range.hpp"
 #include "sim/study/widths/smallest.hpp"
 #include "sim/study/widths/study.hpp"
 

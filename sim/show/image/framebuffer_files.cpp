@@ -1,7 +1,6 @@
 #include "framebuffer_files.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cctype>
 #include <filesystem>

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "sim/interrupt.hpp"
 
@@ -14,6 +15,9 @@ namespace halfplane {
 /// old file or the new one. A symbolic link keeps pointing at its target; a device or pipe is written directly; "-" is
 /// stdout. Throws InputError naming path and reason; nothing half-written is left.
 void write_whole_file(const std::string& path, std::span<const std::uint8_t> bytes);
+inline void write_text_file(const std::string& path, std::string_view text) {
+  write_whole_file(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
 
 /// A file that other code writes, under a temporary name in the same folder until it is whole. While it lives, a signal that
 /// ends the program removes it.

@@ -2,31 +2,26 @@
 
 #include <stdexcept>
 
+#include "sim/show/image/whole_file.hpp"
+
 namespace halfplane {
 
-extern const bool kHasChartLibrary;  // report.html.cpp.in
-
 void require_chart_library() {
-  if (!kHasChartLibrary)
+  if (!kDepthPage.has_library)
     throw std::runtime_error(
         "this program was built without the chart library of reports; install the package libjs-chart.js, then build "
         "again");
 }
 
-std::string page_with_data(std::string_view head, std::string_view data, std::string_view tail) {
-  require_chart_library();
-  return page_without_charts(head, data, tail);
-}
-
-std::string page_without_charts(std::string_view head, std::string_view data, std::string_view tail) {
-  std::string page(head);
-  for (const char c : data) {  // a script element ends at the first "</", wherever it stands
+void write_page(const std::string& path, const ReportPage& page, const nlohmann::ordered_json& data) {
+  std::string text(page.head);
+  // A script element ends at the first "</", wherever it stands. Names of files may be any bytes.
+  for (const char c : data.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace))
     if (c == '<')
-      page += "\\u003c";
+      text += "\\u003c";
     else
-      page += c;
-  }
-  return page.append(tail);
+      text += c;
+  write_text_file(path, text.append(page.tail));
 }
 
 }  // namespace halfplane

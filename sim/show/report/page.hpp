@@ -1,18 +1,24 @@
 // Self-contained HTML pages: a template that CMake split at the place of its data, and the data.
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 
 namespace halfplane {
 
-/// Throws std::runtime_error when this program was built without the chart library.
+/// The parts of a page before and after its data; page.html with page.css, page.js and the page's own style and script.
+struct ReportPage {
+  std::string_view head, tail;
+  bool has_library;  ///< the chart library, which a page without charts does not need
+};
+extern const ReportPage kBenchPage, kDepthPage, kExplainPage, kFramesPage, kSpacePage;
+
+/// Throws std::runtime_error when this program was built without the chart library, which every page but kExplainPage
+/// draws with.
 void require_chart_library();
 
-/// `head`, `data` (JSON, in the form that the page's script reads), `tail`. Throws as require_chart_library().
-[[nodiscard]] std::string page_with_data(std::string_view head, std::string_view data, std::string_view tail);
-
-/// The same for a page that draws without the chart library, so that it needs none.
-[[nodiscard]] std::string page_without_charts(std::string_view head, std::string_view data, std::string_view tail);
+/// Writes the page with `data`, in the form that its script reads. Throws InputError as write_whole_file().
+void write_page(const std::string& path, const ReportPage& page, const nlohmann::ordered_json& data);
 
 }  // namespace halfplane

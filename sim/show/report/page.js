@@ -1,9 +1,10 @@
-// What the scripts of both reports have in common: text, tables, charts, colours, printing. Goes before a page's own.
+// What the scripts of the pages share: text, tables, charts, colours, printing. Stands before a page's own.
 'use strict';
 const D = JSON.parse(document.getElementById('data').textContent);
 const root = document.documentElement, main = document.getElementById('main');
 
 // ---- text ----
+const distinct = values => [...new Set(values)];
 const known = v => v !== null && v !== undefined;
 const power = e => '10' + String(e).replace(/[-\d]/g, c => c === '-' ? '⁻' : '⁰¹²³⁴⁵⁶⁷⁸⁹'[c]);
 // 4 significant digits
@@ -39,6 +40,21 @@ function table(label, head, body) {
   return h('div', {class: 'scroll', tabindex: 0, role: 'region', 'aria-label': label}, h('table', null,
     h('thead', null, head.map((r, i) => h('tr', null, r.map(c => headCell(c, i))))),
     h('tbody', null, body.map(r => h('tr', null, r.map(cell))))));
+}
+
+// a group of radio buttons that redraw charts
+function choice(name, label, options, chosen, onchange) {
+  return h('div', {class: 'row switch', role: 'radiogroup', 'aria-label': label}, options.map(o => {
+    const input = h('input', {type: 'radio', name, ...(o === chosen && {checked: ''})});
+    input.onchange = () => onchange(o);
+    return h('label', null, input, o[1]);
+  }));
+}
+
+// what the result was made with: command, version, schema, and a fact of the page
+function foot(fact) {
+  const how = D.command ? [h('h2', null, 'How to reproduce'), h('pre', {tabindex: 0}, D.command)] : [];
+  main.append(h('footer', null, how, h('p', {class: 'sub'}, spans([D.version && `Halfplane ${D.version}`, D.schema, fact]))));
 }
 
 // ---- keys: style(name), the page's own, gives {colour, dash, mark} ----

@@ -8,7 +8,6 @@
 #include "model/config.hpp"
 #include "model/host/primitives.hpp"
 #include "sim/study/bench/mesa_operations.hpp"
-#include "sim/study/bench/mesa_texture.hpp"
 
 namespace halfplane {
 namespace {

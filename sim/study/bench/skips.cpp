@@ -4,7 +4,6 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <iterator>
 #include <map>
 #include <utility>
 

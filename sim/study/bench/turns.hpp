@@ -1,7 +1,6 @@
 // How a run time is measured here: frames of everybody in turns, medians.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <exception>
 #include <functional>

@@ -58,33 +58,6 @@ struct OwnedPixel {
   const SurfaceSample* surface = nullptr;  ///< what its colour is, where it is no plane's
 };
 
-/// The numbers of owned pixels, in the order in which errors are summed: by triangle, then by primitive of the lines,
-/// then by primitive of the points.
-struct OwnedPixels {
-  std::vector<std::uint32_t> pixels;  // a target has at most 2^28
-  std::uint64_t triangles = 0;        // that show
-
-  explicit OwnedPixels(const FragmentFrame& frame) {
-    for (std::size_t p = 0; p < frame.owners().size(); ++p)
-      if (frame.owners()[p] >= 0) pixels.push_back(static_cast<std::uint32_t>(p));
-    const auto key = [&frame](std::uint32_t p) {
-      const TappedFragment& f = frame.shown(p);
-      const bool is_triangle = f.kind == PrimitiveKind::triangle;
-      const int rank = is_triangle ? 0 : f.kind == PrimitiveKind::line ? 1 : 2;
-      return std::pair(rank, is_triangle ? f.item : f.primitive);
-    };
-    std::stable_sort(pixels.begin(), pixels.end(),
-                     [&key](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
-    std::optional<std::uint32_t> before;
-    for (const std::uint32_t p : pixels) {
-      const TappedFragment& f = frame.shown(p);
-      if (f.kind != PrimitiveKind::triangle) break;
-      triangles += f.item != before ? 1 : 0;
-      before = f.item;
-    }
-  }
-};
-
 /// Whether model and golden show the same primitive at a pixel, at each of its samples.
 bool shows_same(const Comparison& c, std::size_t p) {
   if (c.golden.samples.empty()) return c.golden.ids[p] == c.rendering.ids[p];
@@ -170,23 +143,7 @@ class AttributeComparison {
       if (i % 4096 == 0) progress(static_cast<double>(i) / static_cast<double>(owned.pixels.size()));
       pixel(owned_pixel(owned.pixels[i]));
     }
-    for (const LayerRow& row : layers_->rows()) add_layers(row);
-  }
-
-  void add_layers(const LayerRow& row) {
-    const auto same = std::ranges::find(layer_rows_, row.layers, &LayerRow::layers);
-    if (same == layer_rows_.end()) {
-      layer_rows_.insert(std::ranges::find_if(layer_rows_, [&](const LayerRow& r) { return r.layers > row.layers; }),
-                         row);
-      return;
-    }
-    const double squares =
-        same->rms * same->rms * static_cast<double>(same->pixels) + row.rms * row.rms * static_cast<double>(row.pixels);
-    same->pixels += row.pixels;
-    same->rms = std::sqrt(squares / static_cast<double>(same->pixels));
-    same->max = std::max(same->max, row.max);
-    same->bound = std::max(same->bound, row.bound);
-    same->part_of_bound = std::max(same->part_of_bound, row.part_of_bound);
+    for (const LayerRow& row : layers_->rows()) add_row(layer_rows_, row);
   }
 
   /// The one colour of each pixel: the mean of its samples, rounded, and against the golden's.

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "coverage.hpp"
 #include "../../show/image/coverage_class.hpp"
+#include "coverage.hpp"
 #include "fragment_judge.hpp"
 #include "layers.hpp"
 #include "model/config.hpp"
@@ -20,8 +20,8 @@
 #include "model/golden/golden.hpp"
 #include "model/scene.hpp"
 #include "per_vertex.hpp"
+#include "sim/study/compare/surface_oracle.hpp"
 #include "statistics.hpp"
-#include "texture_errors.hpp"
 
 namespace halfplane {
 

@@ -1,10 +1,12 @@
 #include "fragment_frame.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 
-#include "model/stages/fragment_ops.hpp"
 #include "model/golden/viewport.hpp"
 #include "model/host/primitives.hpp"
+#include "model/stages/fragment_ops.hpp"
 
 namespace halfplane {
 namespace {
@@ -88,6 +90,25 @@ void FragmentFrame::clear_until(std::size_t command) {
         if (clear->stencil) pixels_.clear_stencil(p, *clear->stencil);
         pixels_.disown(p);
       }
+  }
+}
+
+OwnedPixels::OwnedPixels(const FragmentFrame& frame) {
+  for (std::size_t p = 0; p < frame.owners().size(); ++p)
+    if (frame.owners()[p] >= 0) pixels.push_back(static_cast<std::uint32_t>(p));
+  const auto key = [&frame](std::uint32_t p) {
+    const TappedFragment& f = frame.shown(p);
+    const bool is_triangle = f.kind == PrimitiveKind::triangle;
+    const int rank = is_triangle ? 0 : f.kind == PrimitiveKind::line ? 1 : 2;
+    return std::pair(rank, is_triangle ? f.item : f.primitive);
+  };
+  std::stable_sort(pixels.begin(), pixels.end(), [&key](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+  std::optional<std::uint32_t> before;
+  for (const std::uint32_t p : pixels) {
+    const TappedFragment& f = frame.shown(p);
+    if (f.kind != PrimitiveKind::triangle) break;
+    triangles += f.item != before ? 1 : 0;
+    before = f.item;
   }
 }
 

@@ -46,4 +46,13 @@ class FragmentFrame {
   std::size_t next_command_ = 0;
 };
 
+/// The numbers of owned pixels, in the order in which errors are summed: by triangle, then by primitive of the lines,
+/// then by primitive of the points.
+struct OwnedPixels {
+  std::vector<std::uint32_t> pixels;  // a target has at most 2^28
+  std::uint64_t triangles = 0;        // that show
+
+  explicit OwnedPixels(const FragmentFrame& frame);
+};
+
 }  // namespace halfplane

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/stages/fragment_ops.hpp"
 #include "model/golden/golden.hpp"
+#include "model/stages/fragment_ops.hpp"
 
 namespace halfplane {
 namespace {
@@ -23,6 +23,21 @@ double factor_error(BlendFactor factor, std::size_t channel, double color, doubl
 }
 
 }  // namespace
+
+void add_row(std::vector<LayerRow>& rows, const LayerRow& row) {
+  const auto same = std::ranges::find_if(rows, [&row](const LayerRow& r) { return r.layers >= row.layers; });
+  if (same == rows.end() || same->layers != row.layers) {
+    rows.insert(same, row);
+    return;
+  }
+  const double squares =
+      same->rms * same->rms * static_cast<double>(same->pixels) + row.rms * row.rms * static_cast<double>(row.pixels);
+  same->pixels += row.pixels;
+  same->rms = std::sqrt(squares / static_cast<double>(same->pixels));
+  same->max = std::max(same->max, row.max);
+  same->bound = std::max(same->bound, row.bound);
+  same->part_of_bound = std::max(same->part_of_bound, row.part_of_bound);
+}
 
 LayeredColors::LayeredColors(std::size_t pixels, ColorFormat format)
     : format_(format), most_{}, channels_(static_cast<std::size_t>(golden::channel_count(format))), at_(pixels) {

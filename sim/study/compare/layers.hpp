@@ -29,6 +29,9 @@ struct LayerRow {
   double part_of_bound = 0;  ///< the largest error as a part of its pixel's own bound
 };
 
+/// Adds a row to those of other samples, in the order of their layers.
+void add_row(std::vector<LayerRow>& rows, const LayerRow& row);
+
 class LayeredColors {
  public:
   LayeredColors(std::size_t pixels, ColorFormat format);

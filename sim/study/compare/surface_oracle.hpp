@@ -17,10 +17,12 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 #include "model/golden/interpolate.hpp"
 #include "model/scene.hpp"
 #include "model/stages/surface.hpp"
+#include "sim/study/compare/statistics.hpp"
 
 namespace halfplane {
 
@@ -96,5 +98,37 @@ class SurfaceOracle {
 /// The largest w ratio to which a level of detail is promised to be 0.1 off at most: a code of Q is then 2^-9 of the
 /// smallest or less.
 [[nodiscard]] double largest_level_w_ratio(const PerspectiveFormat& format);
+
+// The errors of the textures that a target shows, taken apart, over its pixels.
+
+struct TextureErrors {
+  std::uint64_t pixels = 0;
+  ErrorMoments coordinate;         ///< the worse of u and v, texels of level 0
+  ErrorMoments footprints;         ///< the same in extents of a pixel on the texture
+  double coordinate_of_bound = 0;  ///< the largest part of its triangle's bound that a coordinate takes up
+  ErrorMoments level;              ///< model less real, levels
+  /// Of the texel's channels, LSB of 8 bits: they sum to `total`, the texel less the exact one.
+  PartStats part_coordinate, part_level, part_weights, part_rounding, total;
+
+  /// Per pixel, rows from the top, NaN without a texture: `coordinate`, `footprints`, `level` as above; of a part its worst
+  /// channel, LSB.
+  struct Pictures {
+    std::vector<float> coordinate, footprints, level, weights, rounding;
+  } picture;
+};
+
+/// Gathers them.
+class TextureErrorSets {
+ public:
+  explicit TextureErrorSets(std::size_t pixels);
+  /// Of pixel y * width + x; `errors` of a sample with a texture.
+  void add(std::size_t pixel, const SurfaceErrors& errors);
+  [[nodiscard]] TextureErrors result() &&;
+
+ private:
+  TextureErrors errors_;
+  MomentSet coordinate_, footprints_, level_;
+  PartSet part_coordinate_, part_level_, part_weights_, part_rounding_, total_;
+};
 
 }  // namespace halfplane

@@ -2,18 +2,156 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
+#include <span>
 
-#include "golden_record.hpp"
 #include "hardware_record.hpp"
 #include "model/engines/functional.hpp"
 #include "model/engines/hardware.hpp"
 #include "model/engines/scalar.hpp"
+#include "model/golden/depth_format.hpp"
+#include "model/scene.hpp"
 #include "model/stages/resolve.hpp"
+#include "model/widths.hpp"
+#include "sim/study/explain/history.hpp"
 #include "specification.hpp"
 #include "verify.hpp"
 
 namespace halfplane::explain {
+
 namespace {
+
+/// How far the corners of a piece lie from those of an outline, the best way round, pixels.
+double distance_between(const Entry& entry, const golden::Outline& outline, int grid_bits) {
+  if (entry.corners.size() != outline.corners) return std::numeric_limits<double>::infinity();
+  double sum = 0;
+  for (const SnappedVertex& v : entry.corners) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < outline.corners; ++i)
+      nearest = std::min(
+          nearest, std::hypot(std::ldexp(v.x, -grid_bits) - outline.x[i], std::ldexp(v.y, -grid_bits) - outline.y[i]));
+    sum += nearest;
+  }
+  return sum;
+}
+
+/// Edge values at the pixel's centre or sample, square pixels, by opposite corner; positive inside.
+std::vector<double> golden_edges(const golden::Outline& o, const PixelHistory& pixel) {
+  if (o.corners != 3) return {};
+  const double px = pixel.at.x + std::ldexp(pixel.place.x, -kPatternFraction),
+               py = pixel.at.y + std::ldexp(pixel.place.y, -kPatternFraction);
+  const auto edge = [&](std::size_t a, std::size_t b) {
+    return (o.x[b] - o.x[a]) * (py - o.y[a]) - (o.y[b] - o.y[a]) * (px - o.x[a]);
+  };
+  const double area = (o.x[1] - o.x[0]) * (o.y[2] - o.y[0]) - (o.y[1] - o.y[0]) * (o.x[2] - o.x[0]);
+  const double sign = area < 0 ? -1 : 1;
+  return {sign * edge(1, 2), sign * edge(2, 0), sign * edge(0, 1)};
+}
+
+void match_outlines(PixelHistory& pixel, std::span<const golden::Outline> outlines, int grid_bits) {
+  for (Entry& entry : pixel.history) {
+    if (!entry.primitive) continue;
+    GoldenFigure& figure = entry.golden.emplace();
+    const golden::Outline* best = nullptr;
+    for (const golden::Outline& outline : outlines) {
+      if (outline.primitive != *entry.primitive || outline.corners != entry.corners.size()) continue;
+      if (best == nullptr || distance_between(entry, outline, grid_bits) < distance_between(entry, *best, grid_bits))
+        best = &outline;
+    }
+    if (best == nullptr) continue;
+    figure.outline = *best;
+    figure.edges = golden_edges(*best, pixel);
+  }
+}
+
+bool is_same(const golden::Outline& a, const golden::Outline& b) { return a.x == b.x && a.y == b.y; }
+
+/// The entry that a fragment belongs to: the one beside its outline, or another one of its primitive that has none.
+Entry* entry_of(PixelHistory& pixel, const golden::TappedFragment& fragment,
+                std::span<const golden::Outline> outlines) {
+  // The strands of a wide line have one outline: the one that draws the pixel comes first.
+  const golden::Outline* own = fragment.outline < outlines.size() ? &outlines[fragment.outline] : nullptr;
+  const auto rank = [own](const Entry& entry) {
+    const bool is_own = own != nullptr && entry.golden->outline && is_same(*entry.golden->outline, *own);
+    return 2 * (is_own ? 1 : 0) + (has_fragment(entry.specification.verdict) ? 1 : 0);
+  };
+  Entry* best = nullptr;
+  for (Entry& entry : pixel.history) {
+    if (!entry.primitive || *entry.primitive != fragment.primitive || entry.golden->fragment) continue;
+    if (best == nullptr || rank(entry) > rank(*best)) best = &entry;
+  }
+  return best;
+}
+
+std::int64_t to_grid(double lsb) {
+  return static_cast<std::int64_t>(std::floor(std::ldexp(lsb, exact::kGridBits) + 0.5));
+}
+
+/// The golden's value beside each plane, and the parts of the difference.
+void add_parts(Entry& entry) {
+  if (!entry.golden || !entry.golden->fragment) return;
+  const golden::TappedFragment& fragment = *entry.golden->fragment;
+  for (std::size_t p = 0; p < entry.planes.size(); ++p) {
+    PlaneFigure& plane = entry.planes[p];
+    if (p != kDepthPlane && entry.surface) continue;  // the golden's colour is that of the whole surface
+    plane.golden = p == kDepthPlane ? fragment.depth : fragment.color[p - kColorPlane];
+    const std::int64_t u = to_grid(*plane.golden), s = exact::on_grid(plane.oracle),
+                       h = exact::on_grid({plane.unrounded, int128{1} << plane.guard_bits}),
+                       d = std::int64_t{plane.code} << exact::kGridBits;
+    plane.parts = Parts{s - u, h - s, d - h};
+  }
+}
+
+/// Draws the golden at the pixels of `result` alone, and puts its triangles, fragments and stored values beside the entries
+/// that they belong to. Clipped triangles fall into other pieces there: a piece is beside the one whose corners lie nearest.
+/// `progress` gets the part done; it may throw.
+void record_golden(const Scene& scene, const Config& config, const std::function<void(double)>& progress,
+                   Explanation& result) {
+  const int grid_bits = derive_widths(config).grid_bits;
+  int left = scene.width, top = scene.height, right = 0, bottom = 0;
+  for (const PixelHistory& pixel : result.pixels) {
+    left = std::min(left, pixel.at.x);
+    top = std::min(top, pixel.at.y);
+    right = std::max(right, pixel.at.x + 1);
+    bottom = std::max(bottom, pixel.at.y + 1);
+  }
+  std::vector<golden::TappedFragment> fragments;
+  golden::Options options;
+  options.want_outlines = true;
+  options.progress = progress;
+  options.only = Rect{left, top, right - left, bottom - top};
+  options.fragment_tap = [&fragments](const golden::TappedFragment& fragment) { fragments.push_back(fragment); };
+  const golden::Image image = golden::render(scene, config, options);
+  const golden::DepthBuffer depth_buffer(config, scene.planes);
+  const double depth_max = std::ldexp(1.0, config.depth_bits) - 1;
+  const auto stored_at = [&](const golden::Samples& of, std::size_t p) {
+    const std::uint32_t code = depth_buffer.code(depth_buffer.stored_depth(of.depth[p] / depth_max));
+    return GoldenStored{
+        of.depth[p], of.color[p], {code, golden::rounded_color(of.color[p], config.color_format), of.ids[p]}};
+  };
+  for (PixelHistory& pixel : result.pixels) {
+    match_outlines(pixel, image.outlines, grid_bits);
+    for (const golden::TappedFragment& fragment : fragments) {
+      if (fragment.x != pixel.at.x || fragment.y != pixel.at.y || fragment.sample != pixel.sample) continue;
+      ++result.checks;
+      if (Entry* entry = entry_of(pixel, fragment, image.outlines))
+        entry->golden->fragment = fragment;
+      else
+        result.differences.push_back("pixel " + std::to_string(fragment.x) + "," + std::to_string(fragment.y) +
+                                     ": the golden draws primitive " + std::to_string(fragment.primitive) +
+                                     ", which passes nowhere near it in the model");
+    }
+    for (Entry& entry : pixel.history) add_parts(entry);
+    const auto p = static_cast<std::size_t>(pixel.at.y) * static_cast<std::size_t>(image.width) +
+                   static_cast<std::size_t>(pixel.at.x);
+    const std::size_t at = image.frame.at(pixel.at.x, pixel.at.y);
+    const GoldenStored whole{
+        image.depth[p], image.color[p], {image.frame.depth[at], image.frame.color[at], image.ids[p]}};
+    pixel.golden = result.samples == 1 ? whole : stored_at(image.samples[static_cast<std::size_t>(pixel.sample)], p);
+    if (pixel.resolved) pixel.resolved->golden = whole;
+  }
+}
 
 Stored stored_at(const Framebuffer& frame, Pixel pixel) {
   const std::size_t at = frame.at(pixel.x, pixel.y);

@@ -1,6 +1,5 @@
 #include "hardware_record.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cstring>
 #include <stdexcept>

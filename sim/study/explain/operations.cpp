@@ -1,4 +1,4 @@
-#include "operations.hpp"
+#include "figures.hpp"
 
 #include "model/draw_states.hpp"
 #include "model/stages/fragment_ops.hpp"

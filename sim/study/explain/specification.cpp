@@ -7,7 +7,6 @@
 #include "model/engines/commands.hpp"
 #include "model/engines/render.hpp"
 #include "model/host/smooth_raster.hpp"
-#include "operations.hpp"
 
 namespace halfplane::explain {
 namespace {

@@ -21,80 +21,28 @@ struct Case {
 /// In the order of the list.
 [[nodiscard]] std::span<const Case> cases();
 
+using RunCase = void(Unit& unit);
 // mesh_cases.cpp
-void pixel_centres(Unit& unit);
-void fans(Unit& unit);
-void delaunay_small(Unit& unit);
-void delaunay_large(Unit& unit);
-void t_junctions(Unit& unit);
-void close_edges(Unit& unit);
+RunCase pixel_centres, fans, delaunay_small, delaunay_large, t_junctions, close_edges;
 // triangle_cases.cpp
-void random_families(Unit& unit);
-void large_target(Unit& unit);
-void vertex_orders(Unit& unit);
-void zero_area(Unit& unit);
-void unit_area_slivers(Unit& unit);
-void snap_flip(Unit& unit);
-void guard_band_corners(Unit& unit);
-void half_subpixel_rounding(Unit& unit);
-void translation(Unit& unit);
+RunCase random_families, large_target, vertex_orders, zero_area, unit_area_slivers, snap_flip, guard_band_corners,
+    half_subpixel_rounding, translation;
 // plane_cases.cpp
-void steep_planes(Unit& unit);
-void cancellation(Unit& unit);
-void coplanar(Unit& unit);
-void separation(Unit& unit);
-void polygon_offset(Unit& unit);
-void mean_bias(Unit& unit);
-void subpixel_sweep(Unit& unit);
-void depth_sweep(Unit& unit);
+RunCase steep_planes, cancellation, coplanar, separation, polygon_offset, mean_bias, subpixel_sweep, depth_sweep;
 // clip_cases.cpp
-void near_plane(Unit& unit);
-void w_ratio(Unit& unit);
-void closed_meshes(Unit& unit);
-void slabs(Unit& unit);
-void scissor(Unit& unit);
-void viewports(Unit& unit);
+RunCase near_plane, w_ratio, closed_meshes, slabs, scissor, viewports;
 // line_cases.cpp
-void lines_random(Unit& unit);
-void lines_octants(Unit& unit);
-void lines_long(Unit& unit);
-void polylines(Unit& unit);
-void wires(Unit& unit);
+RunCase lines_random, lines_octants, lines_long, polylines, wires;
 // texture_cases.cpp
-void textured_w_ratio(Unit& unit);
-void textured_slivers(Unit& unit);
-void texel_borders(Unit& unit);
-void texture_repeats(Unit& unit);
-void texture_mirrors(Unit& unit);
-void texture_of_one_texel(Unit& unit);
-void constant_coordinate(Unit& unit);
-void equal_w(Unit& unit);
-void q_near_one(Unit& unit);
-void wrap_across_a_tile(Unit& unit);
-void levels_along_a_scanline(Unit& unit);
-void texture_viewport(Unit& unit);
+RunCase textured_w_ratio, textured_slivers, texel_borders, texture_repeats, texture_mirrors, texture_of_one_texel,
+    constant_coordinate, equal_w, q_near_one, wrap_across_a_tile, levels_along_a_scanline, texture_viewport;
 // fragment_cases.cpp
-void random_operations(Unit& unit);
-void layers(Unit& unit);
-void opaque_blend(Unit& unit);
-void alpha_parts(Unit& unit);
-void mask_parts(Unit& unit);
-void stencil_counts(Unit& unit);
-void fog(Unit& unit);
-void light(Unit& unit);
+RunCase random_operations, layers, opaque_blend, alpha_parts, mask_parts, stencil_counts, fog, light;
 // sample_cases.cpp
-void samples(Unit& unit);
-void rectangles(Unit& unit);
+RunCase samples, rectangles;
 // engine_cases.cpp
-void traversals(Unit& unit);
-void fill_rules(Unit& unit);
-void full_guard_band(Unit& unit);
-void stalls(Unit& unit);
-void frames(Unit& unit);
-void hardware_surfaces(Unit& unit);
+RunCase traversals, fill_rules, full_guard_band, stalls, frames, hardware_surfaces;
 // search.cpp
-void adversarial_depth(Unit& unit);
-void adversarial_interpolation(Unit& unit);
-void adversarial_color(Unit& unit);
+RunCase adversarial_depth, adversarial_interpolation, adversarial_color;
 
 }  // namespace halfplane::stress

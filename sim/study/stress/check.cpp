@@ -1,10 +1,10 @@
 #include "sim/study/stress/check.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 
 #include "model/engines/functional.hpp"
+#include "model/engines/hardware.hpp"
 #include "model/engines/scalar.hpp"
 #include "model/golden/exact.hpp"
 #include "sim/study/compare/fragment_judge.hpp"
@@ -26,6 +26,16 @@ constexpr std::uint64_t kUnitsPerFragmentCheck = 8;  // the scalar engine is slo
 
 Rendering draw(const Scene& scene, const Config& config, const RenderOptions& options) {
   return options.fragment_tap ? render_scalar(scene, config, options) : render_functional(scene, config, options);
+}
+
+bool is_drawn_by_hardware(const Scene& scene, const Config& config) {
+  try {
+    validate(config);
+    check_hardware_scene(scene, config);
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
 }
 
 RenderOptions render_options() {

@@ -1,9 +1,7 @@
 // What a drawn scene is held against: coverage sample by sample, depth and colour fragment by fragment, counts.
 #pragma once
 
-#include <array>
 #include <span>
-#include <vector>
 
 #include "sim/study/stress/unit.hpp"
 
@@ -35,16 +33,23 @@ struct AttributeErrors {
 /// top-left rule? From the definition, edge by edge.
 [[nodiscard]] bool polygon_covers(std::span<const Point> polygon, int x, int y, int subpixel_bits);
 
-/// Requires that each pixel was covered `expected(x, y)` times; measures "count", the pixels for which this is not so.
-template <class Expected>
-void expect_count(Unit& unit, const Scene& scene, const Rendering& rendering, Expected&& expected) {
+/// Measures `property`: the pixels (x, y), number y * width + x, that are wrong.
+template <class IsWrong>
+void expect_pixels(Unit& unit, std::string_view property, const Scene& scene, IsWrong&& is_wrong) {
   std::uint64_t wrong = 0;
   std::size_t p = 0;
   for (int y = 0; y < scene.height; ++y)
-    for (int x = 0; x < scene.width; ++x, ++p)
-      wrong += rendering.count[p] != static_cast<std::uint32_t>(expected(x, y)) ? 1 : 0;
+    for (int x = 0; x < scene.width; ++x, ++p) wrong += is_wrong(x, y, p) ? 1 : 0;
   unit.count_checks(p);
-  unit.measure("count", "pixels", static_cast<double>(wrong), 0, scene);
+  unit.measure(property, "pixels", static_cast<double>(wrong), 0, scene);
+}
+
+/// Requires that each pixel was covered `expected(x, y)` times; measures "count", the pixels for which this is not so.
+template <class Expected>
+void expect_count(Unit& unit, const Scene& scene, const Rendering& rendering, Expected&& expected) {
+  expect_pixels(unit, "count", scene, [&](int x, int y, std::size_t p) {
+    return rendering.count[p] != static_cast<std::uint32_t>(expected(x, y));
+  });
 }
 
 /// Requires that the pixels of the polygon were covered once and no others.
@@ -52,6 +57,9 @@ void expect_once(Unit& unit, const Scene& scene, const Rendering& rendering, std
 
 /// Requires equal images; measures "image", the pixels whose depth, colour or count differ.
 void expect_same_image(Unit& unit, const Scene& scene, const Rendering& a, const Rendering& b);
+
+/// Whether such hardware can be, and draws the scene.
+[[nodiscard]] bool is_drawn_by_hardware(const Scene& scene, const Config& config);
 
 /// The options with which every scene is drawn here: counts, visible triangles.
 [[nodiscard]] RenderOptions render_options();

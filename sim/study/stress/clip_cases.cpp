@@ -139,17 +139,12 @@ void check_clip(Unit& unit, const std::array<Vertex, 3>& v) {
   unit.measure("corner", "subpixels", farthest, 1, scene);
   unit.measure("corner depth", "LSB", depth, 1, scene);
   if (is_folded(unit.config, scene, v)) return;  // the fan then draws a sliver of itself thrice
-  std::uint64_t wrong = 0;
-  std::size_t p = 0;
-  for (int y = 0; y < scene.height; ++y)
-    for (int x = 0; x < scene.width; ++x, ++p) {
-      const double away =
-          corners.size() < 3 ? HUGE_VAL : outside(corners, (x + 0.5) * unit.pixel(), (y + 0.5) * unit.pixel());
-      // A corner moves by 0.71 subpixels at most, and with it the edges.
-      if (std::abs(away) > 1) wrong += rendering.count[p] != (away < 0 ? 1U : 0U) ? 1 : 0;
-    }
-  unit.count_checks(p);
-  unit.measure("samples off the edges", "pixels", static_cast<double>(wrong), 0, scene);
+  expect_pixels(unit, "samples off the edges", scene, [&](int x, int y, std::size_t p) {
+    const double away =
+        corners.size() < 3 ? HUGE_VAL : outside(corners, (x + 0.5) * unit.pixel(), (y + 0.5) * unit.pixel());
+    // A corner moves by 0.71 subpixels at most, and with it the edges.
+    return std::abs(away) > 1 && rendering.count[p] != (away < 0 ? 1U : 0U);
+  });
 }
 
 }  // namespace
@@ -255,21 +250,15 @@ void slabs(Unit& unit) {
     const double x = 2 * px / width - 1, y = 1 - 2 * py / height, denominator = y - nx * x - nz;
     return h / denominator;
   };
-  std::uint64_t wrong = 0;
-  std::size_t p = 0;
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x, ++p) {
-      int inside = 0;
-      for (const double dx : {-1.5, 1.5})
-        for (const double dy : {-1.5, 1.5}) {
-          const double z = depth(x + 0.5 + dx, y + 0.5 + dy);
-          inside += z > near && z < far ? 1 : 0;
-        }
-      const std::uint32_t count = rendering.count[p];
-      wrong += count > 1 || (inside == 4 && count != 1) ? 1 : 0;
-    }
-  unit.count_checks(p);
-  unit.measure("count", "pixels", static_cast<double>(wrong), 0, builder.scene);
+  expect_pixels(unit, "count", builder.scene, [&](int x, int y, std::size_t p) {
+    int inside = 0;
+    for (const double dx : {-1.5, 1.5})
+      for (const double dy : {-1.5, 1.5}) {
+        const double z = depth(x + 0.5 + dx, y + 0.5 + dy);
+        inside += z > near && z < far ? 1 : 0;
+      }
+    return rendering.count[p] > 1 || (inside == 4 && rendering.count[p] != 1);
+  });
 }
 
 void scissor(Unit& unit) {
@@ -295,21 +284,13 @@ void scissor(Unit& unit) {
     part.triangle(a, b, c);
   }
   const Rendering all = check_scene(unit, whole.scene), cut = check_scene(unit, part.scene);
-  std::uint64_t wrong = 0;
-  std::size_t p = 0;
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x, ++p) {
-      const Rect& r = *state.scissor;
-      const bool is_inside = x >= r.x && x < r.x + r.width && y >= r.y && y < r.y + r.height;
-      const std::size_t at = all.frame.at(x, y), bt = cut.frame.at(x, y);
-      wrong += cut.count[p] != (is_inside ? all.count[p] : 0) ||
-                       (is_inside &&
-                        (all.frame.depth[at] != cut.frame.depth[bt] || all.frame.color[at] != cut.frame.color[bt]))
-                   ? 1
-                   : 0;
-    }
-  unit.count_checks(p);
-  unit.measure("image", "pixels", static_cast<double>(wrong), 0, part.scene);
+  expect_pixels(unit, "image", part.scene, [&](int x, int y, std::size_t p) {
+    const Rect& r = *state.scissor;
+    const bool is_inside = x >= r.x && x < r.x + r.width && y >= r.y && y < r.y + r.height;
+    const std::size_t at = all.frame.at(x, y), bt = cut.frame.at(x, y);
+    return cut.count[p] != (is_inside ? all.count[p] : 0) ||
+           (is_inside && (all.frame.depth[at] != cut.frame.depth[bt] || all.frame.color[at] != cut.frame.color[bt]));
+  });
 }
 
 void viewports(Unit& unit) {

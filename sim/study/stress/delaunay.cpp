@@ -1,6 +1,5 @@
 #include "sim/study/stress/delaunay.hpp"
 
-#include <algorithm>
 #include <cstddef>
 
 namespace halfplane::stress {

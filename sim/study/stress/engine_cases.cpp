@@ -146,11 +146,7 @@ void stalls(Unit& unit) {
   // The cycle engine, exact against the RTL, with random back-pressure on every stream. The RTL itself: `cosim --stalls`.
   Random& random = unit.random;
   const Scene scene = random_scene(unit.config, random.next(), 24);
-  try {
-    check_hardware_scene(scene, unit.config);
-  } catch (const InputError&) {
-    return;  // a configuration that no hardware has
-  }
+  if (!is_drawn_by_hardware(scene, unit.config)) return;
   MemorySettings memory;
   memory.kind = static_cast<MemoryKind>(random.index(5));
   memory.latency = 1 + random.index(40);
@@ -187,22 +183,13 @@ void frames(Unit& unit) {
   bins.frame_order = FrameOrder::bins;
   bins.frame_store = FrameStore::color;
   std::optional<HardwareFrames> hardware;
-  const auto is_drawn_by_hardware = [&bins](const Scene& scene) {
-    try {
-      validate(bins);
-      check_hardware_scene(scene, bins);
-      return true;
-    } catch (const InputError&) {
-      return false;
-    }
-  };
   Scene scene = random_scene(unit.config, random.next(), 8);
   try {
     (void)unit.engine(scene, unit.config, render_options());
   } catch (const InputError&) {
     return;  // a guard band in which no point fits beside the target
   }
-  if (is_drawn_by_hardware(scene)) hardware.emplace(bins);
+  if (is_drawn_by_hardware(scene, bins)) hardware.emplace(bins);
   RenderOptions follows;
   follows.follows = true;
   for (int n = 0; n < 4; ++n) {

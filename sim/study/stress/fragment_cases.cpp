@@ -14,9 +14,7 @@ namespace halfplane::stress {
 namespace {
 
 State with(Unit& unit, State state, std::initializer_list<std::string_view> names) {
-  const auto choose = [&unit](std::uint32_t n) {
-    return static_cast<std::uint32_t>(unit.random.index(static_cast<int>(n)));
-  };
+  const Chooser choose = chooser(unit.random);
   for (const std::string_view name : names) draw_state(name).set(state, random_value(draw_state(name), choose));
   return state;
 }
@@ -44,6 +42,12 @@ Rendering rendered(Unit& unit, const Scene& scene) {
   unit.require(drawn.counters.alpha_killed == expected.counters.alpha_killed, "alpha_killed", scene,
                "the alpha test drops other fragments");
   return drawn;
+}
+
+/// Without taps the engine draws in its own way.
+void check_without_taps(Unit& unit, const Scene& scene) {
+  const Rendering drawn = rendered(unit, scene), plain = unit.engine(scene, unit.config, {});
+  unit.require(plain.frame.color == drawn.frame.color, "plain", scene, "another picture without taps");
 }
 
 /// The same triangles once more, in a state of their own.
@@ -103,11 +107,10 @@ void layers(Unit& unit) {
   frame.finish();
   unit.count_triangles(rendering.triangles.size());
   LayeredColors colors = frame.layers();
+  std::size_t p = 0;
   for (int y = 0; y < scene.height; ++y)
-    for (int x = 0; x < scene.width; ++x) {
-      const auto p = static_cast<std::size_t>(y) * static_cast<std::size_t>(scene.width) + static_cast<std::size_t>(x);
+    for (int x = 0; x < scene.width; ++x, ++p)
       if (frame.owners()[p] >= 0) colors.judge(p, rendering.frame.color[rendering.frame.at(x, y)]);
-    }
   for (const LayerRow& row : colors.rows()) {
     unit.count_checks(row.pixels);
     unit.measure("layers", "of its bound", row.part_of_bound, 1, scene);
@@ -180,17 +183,9 @@ void stencil_counts(Unit& unit) {
   SceneBuilder builder(unit.width(24), unit.height(20), state);
   add_triangles(unit, builder, 1 + unit.random.index(12));
   const Rendering drawn = rendered(unit, builder.scene);
-  std::uint64_t wrong = 0;
-  for (int y = 0; y < drawn.frame.height; ++y)
-    for (int x = 0; x < drawn.frame.width; ++x)
-      wrong += drawn.frame.stencil[drawn.frame.at(x, y)] !=
-                       (drawn.count[static_cast<std::size_t>(y) * static_cast<std::size_t>(drawn.frame.width) +
-                                    static_cast<std::size_t>(x)] &
-                        255U)
-                   ? 1
-                   : 0;
-  unit.count_checks(drawn.count.size());
-  unit.measure("stencil", "pixels", static_cast<double>(wrong), 0, builder.scene);
+  expect_pixels(unit, "stencil", builder.scene, [&](int x, int y, std::size_t p) {
+    return drawn.frame.stencil[drawn.frame.at(x, y)] != (drawn.count[p] & 255U);
+  });
 }
 
 void fog(Unit& unit) {
@@ -215,9 +210,7 @@ void fog(Unit& unit) {
     unit.measure("fog", "LSB", verdict.surfaces.fog.value, verdict.surfaces.fog.bound, scene);
     unit.measure("factor", "LSB", verdict.surfaces.fog_factor.value, verdict.surfaces.fog_factor.bound, scene);
   }
-  const Rendering drawn = rendered(unit, scene);
-  const Rendering plain = unit.engine(scene, unit.config, {});  // without taps, in its own way
-  unit.require(plain.frame.color == drawn.frame.color, "plain", scene, "another picture without taps");
+  check_without_taps(unit, scene);
 }
 
 void light(Unit& unit) {
@@ -249,9 +242,7 @@ void light(Unit& unit) {
   const FragmentVerdict verdict = judged(unit, scene);
   if (verdict.fragments > 0)
     unit.measure("light", "LSB", verdict.surfaces.light.value, verdict.surfaces.light.bound, scene);
-  const Rendering drawn = rendered(unit, scene);
-  const Rendering plain = unit.engine(scene, unit.config, {});  // without taps, in its own way
-  unit.require(plain.frame.color == drawn.frame.color, "plain", scene, "another picture without taps");
+  check_without_taps(unit, scene);
 }
 
 }  // namespace halfplane::stress

@@ -5,9 +5,6 @@
 #include "sim/study/stress/unit.hpp"
 
 namespace halfplane::stress {
-namespace {
-
-constexpr std::size_t kCombinations = 48;
 
 bool is_legal(const Config& config) {
   try {
@@ -17,6 +14,10 @@ bool is_legal(const Config& config) {
     return false;
   }
 }
+
+namespace {
+
+constexpr std::size_t kCombinations = 48;
 
 /// A legal combination of everything that the numbers depend on.
 Config random_config(std::uint64_t seed) {

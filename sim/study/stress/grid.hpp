@@ -8,6 +8,8 @@
 
 namespace halfplane::stress {
 
+[[nodiscard]] bool is_legal(const Config& config);
+
 /// The presets; then each setting through its range by itself: S 0...8, depth 8...32, guard band, local guard bits, bits of
 /// the reciprocal, stamp, tile, colour format; then legal combinations of all of them, the same on every machine.
 [[nodiscard]] const std::vector<Config>& grid();

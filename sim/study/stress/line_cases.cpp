@@ -1,9 +1,9 @@
 // Lines and points: every pixel against the exact oracle, depth and colour against the exact quotients.
 #include <algorithm>
 
-#include "model/engines/functional.hpp"
 #include "sim/study/compare/line_coverage.hpp"
 #include "sim/study/stress/cases.hpp"
+#include "sim/study/stress/grid.hpp"
 #include "sim/study/stress/line_check.hpp"
 #include "sim/study/stress/shapes.hpp"
 
@@ -120,11 +120,7 @@ void lines_long(Unit& unit) {
   // 16384 pixels at the slopes of the list.
   Config config = unit.config;
   config.guard_band = 16384;
-  try {
-    validate(config);
-  } catch (const InputError&) {
-    return;
-  }
+  if (!is_legal(config)) return;
   const LineSpace space(config);
   Random& random = unit.random;
   constexpr std::array<std::array<int, 2>, 5> kSlopes{

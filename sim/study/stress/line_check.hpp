@@ -2,9 +2,7 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -27,12 +25,6 @@ struct LineSpace {
   Widths widths;
 };
 
-/// The vertex at the centre of pixel (x, y).
-inline SnappedVertex centre_of(int x, int y, const LineSpace& space) {
-  const int s = space.widths.grid_bits, half = 1 << (s - 1);
-  return snapped_vertex((x << s) + half, (y << s) + half);
-}
-
 inline std::vector<LinePixel> pixels_of(const exact::Line& line, const LineSpace& space, const PixelBounds& limit) {
   std::vector<LinePixel> pixels;
   const auto setup = setup_line(line.start, line.end, line.rule, line.drops_last, limit, space.widths);
@@ -54,19 +46,7 @@ inline Positions positions(const std::vector<LinePixel>& pixels) {
   return list;
 }
 
-/// Where the oracle says so: every pixel of the box of both ends, one pixel around it included.
-inline Positions oracle_positions(const exact::Line& line) {
-  const int s = line.grid_bits;
-  const auto [left, right] = std::minmax({line.start.x >> s, line.end.x >> s});
-  const auto [top, bottom] = std::minmax({line.start.y >> s, line.end.y >> s});
-  Positions list;
-  for (int x = left - 1; x <= right + 1; ++x)
-    for (int y = top - 1; y <= bottom + 1; ++y)
-      if (exact::covers(line, x, y)) list.emplace_back(x, y);
-  return list;
-}
-
-/// The same for long lines: two pixels to each side of the line, across its major axis, and beyond its ends.
+/// Where the oracle says so: two pixels to each side of the line, across its major axis, and beyond its ends.
 inline Positions oracle_positions_nearby(const exact::Line& line) {
   const int s = line.grid_bits;
   const auto dx = std::int64_t{line.end.x} - line.start.x, dy = std::int64_t{line.end.y} - line.start.y;
@@ -87,23 +67,6 @@ inline Positions oracle_positions_nearby(const exact::Line& line) {
   }
   std::sort(list.begin(), list.end());
   return list;
-}
-
-/// A line in words, for messages.
-inline std::string text(const exact::Line& line) {
-  constexpr std::array<const char*, 3> kNames{"midpoint", "bresenham", "diamond"};
-  return std::string(kNames[static_cast<std::size_t>(line.rule)]) + (line.drops_last ? " " : " (last drawn) ") +
-         std::to_string(line.start.x) + "," + std::to_string(line.start.y) + " -> " + std::to_string(line.end.x) + "," +
-         std::to_string(line.end.y) + ", s = " + std::to_string(line.grid_bits);
-}
-
-/// Every combination of rule and last pixel that means something.
-inline std::vector<std::pair<LineRule, bool>> all_rules() {
-  return {{LineRule::midpoint, false},
-          {LineRule::midpoint, true},
-          {LineRule::bresenham, false},
-          {LineRule::bresenham, true},
-          {LineRule::diamond, true}};
 }
 
 /// Anywhere in `reach` (0...1) of the guard band, random depth and colour; one coordinate in four on a half pixel.

@@ -57,6 +57,18 @@ Pair same_triangle_twice(Unit& unit, int width, int height) {
   return {std::move(builder.scene), func == DepthFunc::lequal || func == DepthFunc::equal || func == DepthFunc::gequal};
 }
 
+/// One step of a sweep: what the comparison finds in this configuration.
+Comparison compared(Unit& unit, Unit& swept, const Scene& scene, int bits) {
+  CompareOptions options;
+  options.wants_affine_cost = false;
+  unit.count_config(static_cast<std::uint64_t>(bits));
+  Comparison c = compare(scene, swept.config, options);
+  unit.count_triangles(c.rendering.triangles.size());
+  unit.count_samples(c.oracle.samples + c.datapath.count);
+  swept.measure("coverage", "samples", static_cast<double>(c.oracle.mismatches), 0, scene);
+  return c;
+}
+
 }  // namespace
 
 void steep_planes(Unit& unit) {
@@ -142,11 +154,9 @@ void coplanar(Unit& unit) {
   const int width = unit.width(32), height = unit.height(32);
   const Pair pair = same_triangle_twice(unit, width, height);
   const Rendering rendering = check_scene(unit, pair.scene);
-  std::uint64_t wrong = 0;
-  for (std::size_t p = 0; p < rendering.count.size(); ++p)
-    wrong += rendering.count[p] == 2 && rendering.ids[p] != (pair.second_wins ? 1 : 0) ? 1 : 0;
-  unit.count_checks(rendering.count.size());
-  unit.measure("order", "pixels", static_cast<double>(wrong), 0, pair.scene);
+  expect_pixels(unit, "order", pair.scene, [&](int, int, std::size_t p) {
+    return rendering.count[p] == 2 && rendering.ids[p] != (pair.second_wins ? 1 : 0);
+  });
 
   // A rectangle in a plane of whole codes at every grid point, cut in two ways: nowhere more than the two bounds apart.
   const std::int64_t max = max_depth(unit.config), side = std::int64_t{std::max(width, height) + 2} * unit.pixel();
@@ -233,15 +243,9 @@ void polygon_offset(Unit& unit) {
   state.polygon_offset = {0.0, static_cast<double>(codes)};
   const Scene plain = single(width, height, v), moved = single(width, height, v, state);
   const Rendering a = check_scene(unit, plain), b = check_scene(unit, moved);
-  std::uint64_t wrong = 0;
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x)
-      wrong += a.count[static_cast<std::size_t>(y * width + x)] == 1 &&
-                       std::int64_t{a.frame.depth[a.frame.at(x, y)]} + codes != b.frame.depth[b.frame.at(x, y)]
-                   ? 1
-                   : 0;
-  unit.count_checks(a.count.size());
-  unit.measure("moved by r", "pixels", static_cast<double>(wrong), 0, moved);
+  expect_pixels(unit, "moved by r", moved, [&](int x, int y, std::size_t at) {
+    return a.count[at] == 1 && std::int64_t{a.frame.depth[a.frame.at(x, y)]} + codes != b.frame.depth[b.frame.at(x, y)];
+  });
 
   // A decal one LSB in front wins everywhere under LESS.
   state.polygon_offset = {0.0, -1.0};
@@ -249,9 +253,7 @@ void polygon_offset(Unit& unit) {
   SceneBuilder decal(width, height);
   decal.triangle(v[0], v[1], v[2]).with_state(state).triangle(v[2], v[0], v[1]);
   const Rendering c = check_scene(unit, decal.scene);
-  const auto lost = std::count(c.ids.begin(), c.ids.end(), 0);
-  unit.count_checks(c.ids.size());
-  unit.measure("decal", "pixels", static_cast<double>(lost), 0, decal.scene);
+  expect_pixels(unit, "decal", decal.scene, [&](int, int, std::size_t at) { return c.ids[at] == 0; });
 
   // The slope factor: floor(f m + c + 1/2) codes at each vertex, in rationals.
   const std::int64_t area = doubled_area(p[0], p[1], p[2]);
@@ -310,17 +312,11 @@ void subpixel_sweep(Unit& unit) {
     };
     builder.triangle(vertex(t[0]), vertex(t[1]), vertex(t[2]));
   }
-  CompareOptions options;
-  options.wants_affine_cost = false;
   double first = 0, last = 0;
   for (int bits = 0; bits <= 8; ++bits) {
     config.subpixel_bits = bits;
-    unit.count_config(static_cast<std::uint64_t>(bits));
     Unit swept(unit, config);
-    const Comparison c = compare(builder.scene, config, options);
-    unit.count_triangles(c.rendering.triangles.size());
-    unit.count_samples(c.oracle.samples + c.datapath.count);
-    swept.measure("coverage", "samples", static_cast<double>(c.oracle.mismatches), 0, builder.scene);
+    const Comparison c = compared(unit, swept, builder.scene, bits);
     swept.require(std::isfinite(c.depth_lsb.rms) && std::isfinite(c.parts.snap.rms), "finite", builder.scene, "a NaN");
     if (bits > 2)
       swept.measure("snap, factor per bit - 1/2", "", std::abs(c.parts.snap.rms / last - 0.5), 0.2, builder.scene);
@@ -341,17 +337,11 @@ void depth_sweep(Unit& unit) {
     const Vertex a = vertex(t[0]), b = vertex(t[1]), c = vertex(t[2]);
     builder.triangle(a, b, c);
   }
-  CompareOptions options;
-  options.wants_affine_cost = false;
   double last = 0;
   for (int bits = 8; bits <= 32; ++bits) {
     config.depth_bits = bits;
-    unit.count_config(static_cast<std::uint64_t>(bits));
     Unit swept(unit, config);
-    const Comparison c = compare(builder.scene, config, options);
-    unit.count_triangles(c.rendering.triangles.size());
-    unit.count_samples(c.oracle.samples + c.datapath.count);
-    swept.measure("coverage", "samples", static_cast<double>(c.oracle.mismatches), 0, builder.scene);
+    const Comparison c = compared(unit, swept, builder.scene, bits);
     swept.measure("depth", "LSB", c.datapath.max, depth_error_bound(config), builder.scene);
     const double error = std::ldexp(c.depth_lsb.rms, -bits);
     swept.require(std::isfinite(error), "finite", builder.scene, "a NaN");

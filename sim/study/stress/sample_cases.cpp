@@ -7,6 +7,8 @@
 #include "sim/scene/random_state.hpp"
 #include "sim/study/compare/fragment_judge.hpp"
 #include "sim/study/stress/cases.hpp"
+#include "sim/study/stress/check.hpp"
+#include "sim/study/stress/grid.hpp"
 #include "sim/study/stress/shapes.hpp"
 #include "sim/study/stress/triangle_families.hpp"
 
@@ -31,16 +33,6 @@ Config with_samples(Unit& unit) {
   return config;
 }
 
-/// Whether the grid of the samples leaves lanes enough for what lives on it.
-bool has_lanes_enough(const Config& config) {
-  try {
-    validate(config);
-    return true;
-  } catch (const InputError&) {
-    return false;
-  }
-}
-
 /// The hardware with every unit that its framebuffer has room for; none: it does not take the scene with several samples.
 std::optional<Config> hardware_of(Config config, const Scene& scene) {
   const bool has_blocks = config.cache_kind == CacheKind::blocks;
@@ -49,13 +41,7 @@ std::optional<Config> hardware_of(Config config, const Scene& scene) {
   config.blend_lanes = has_blocks ? 4 : 0;
   config.compress_units = has_blocks && scene.width % 2 == 0 ? 1 : 0;  // one colour a pixel in memory, or not
   config.stencil_bits = has_blocks && config.depth_bits <= 24 ? 8 : 0;
-  try {
-    validate(config);
-    check_hardware_scene(scene, config);
-    return config;
-  } catch (const InputError&) {
-    return std::nullopt;
-  }
+  return is_drawn_by_hardware(scene, config) ? std::optional(config) : std::nullopt;
 }
 
 /// Every fragment of the specification at each of its samples, and the unit's engine and the hardware against it.
@@ -86,14 +72,12 @@ void check_samples(Unit& here, const Scene& scene) {
 
 void samples(Unit& unit) {
   const Config config = with_samples(unit);
-  if (!has_lanes_enough(config)) return;
+  if (!is_legal(config)) return;  // the grid of the samples leaves too few bits of a lane
   Unit here(unit, config);
   const int width = unit.width(8 + unit.random.index(24)), height = unit.height(8 + unit.random.index(24));
   TriangleFamilies<Random> families(unit.config, width, height, Random(unit.random.next()));
   SceneBuilder builder(width, height);
-  const Chooser choose = [&unit](std::uint32_t count) {
-    return static_cast<std::uint32_t>(unit.random.index(static_cast<int>(count)));
-  };
+  const Chooser choose = chooser(unit.random);
   for (int k = 0; k < 8; ++k) {
     if (k % 2 == 1)
       builder.with_state(random_state(SceneBuilder::window_state(),
@@ -109,7 +93,7 @@ void samples(Unit& unit) {
 void rectangles(Unit& unit) {
   Random& random = unit.random;
   const Config config = random.coin() ? unit.config : with_samples(unit);
-  if (!has_lanes_enough(config)) return;
+  if (!is_legal(config)) return;  // the grid of the samples leaves too few bits of a lane
   Unit here(unit, config);
   const int width = unit.width(8 + random.index(24)), height = unit.height(8 + random.index(24));
   const int widest = std::min(9, config.guard_band - 3 - std::max(width, height));

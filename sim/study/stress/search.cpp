@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/stages/fragment_ops.hpp"
 #include "model/golden/exact.hpp"
+#include "model/stages/fragment_ops.hpp"
 #include "model/stages/interpolate.hpp"
 #include "sim/study/stress/cases.hpp"
 #include "sim/study/stress/independent.hpp"
@@ -149,37 +149,39 @@ Found climb(Unit& unit, Objective objective, int evaluations) {
   return found;
 }
 
-void adversarial_depth(Unit& unit) {
-  const Found found = climb(unit, Objective::depth, 1500);
-  const Scene scene = scene_of(unit, found.triangle);
+namespace {
+
+/// Climbs; the engine must draw the error that the stages have, where it is one of `drawn`.
+std::pair<double, Scene> worst_found(Unit& unit, Objective objective, int evaluations, double AttributeErrors::*drawn) {
+  const Found found = climb(unit, objective, evaluations);
+  Scene scene = scene_of(unit, found.triangle);
   unit.count_triangles(1);
   unit.count_samples(found.samples);
-  const AttributeErrors drawn = attribute_errors(scene, unit.config, unit.engine(scene, unit.config, render_options()));
-  unit.require(drawn.depth == found.error, "engine = stages", scene,
-               "the engine draws another error than the stages have");
-  unit.measure("depth", "LSB", found.error, depth_error_bound(unit.config), scene);
+  if (drawn != nullptr)
+    unit.require(
+        attribute_errors(scene, unit.config, unit.engine(scene, unit.config, render_options())).*drawn == found.error,
+        "engine = stages", scene, "the engine draws another error than the stages have");
+  return {found.error, std::move(scene)};
+}
+
+}  // namespace
+
+void adversarial_depth(Unit& unit) {
+  const auto [error, scene] = worst_found(unit, Objective::depth, 1500, &AttributeErrors::depth);
+  unit.measure("depth", "LSB", error, depth_error_bound(unit.config), scene);
   const auto measured = measured_depth_error(scene, unit.config, unit.engine);
   unit.measure("self-report", "of the measured error",
-               !measured || *measured == found.error ? 0 : std::abs(found.error / *measured - 1), 0.01, scene);
+               !measured || *measured == error ? 0 : std::abs(error / *measured - 1), 0.01, scene);
 }
 
 void adversarial_interpolation(Unit& unit) {
-  const Found found = climb(unit, Objective::interpolation, 1500);
-  unit.count_triangles(1);
-  unit.count_samples(found.samples);
-  unit.measure("before rounding", "LSB", found.error, depth_error_bound(unit.config) - 0.5,
-               scene_of(unit, found.triangle));
+  const auto [error, scene] = worst_found(unit, Objective::interpolation, 1500, nullptr);
+  unit.measure("before rounding", "LSB", error, depth_error_bound(unit.config) - 0.5, scene);
 }
 
 void adversarial_color(Unit& unit) {
-  const Found found = climb(unit, Objective::color, 1000);
-  const Scene scene = scene_of(unit, found.triangle);
-  unit.count_triangles(1);
-  unit.count_samples(found.samples);
-  const AttributeErrors drawn = attribute_errors(scene, unit.config, unit.engine(scene, unit.config, render_options()));
-  unit.require(drawn.color == found.error, "engine = stages", scene,
-               "the engine draws another error than the stages have");
-  unit.measure("color", "LSB", found.error, 1, scene);
+  const auto [error, scene] = worst_found(unit, Objective::color, 1000, &AttributeErrors::color);
+  unit.measure("color", "LSB", error, 1, scene);
 }
 
 }  // namespace halfplane::stress

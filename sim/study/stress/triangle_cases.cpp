@@ -3,8 +3,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "model/engines/functional.hpp"
-#include "model/golden/exact.hpp"
 #include "sim/study/stress/cases.hpp"
 #include "sim/study/stress/shapes.hpp"
 #include "sim/study/stress/triangle_families.hpp"

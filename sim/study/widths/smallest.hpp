@@ -1,7 +1,6 @@
 // The smallest configuration that keeps given errors on given scenes. Measured, not proven: another scene may need more.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>

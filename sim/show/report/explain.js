@@ -1,25 +1,5 @@
-<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>Why is this pixel what it is?</title>
-<style>
-/*@STYLE@*/
-.two { display: grid; gap: 20px; grid-template-columns: minmax(0, 1fr) minmax(0, 1fr); align-items: start; }
-@media (max-width: 860px) { .two { grid-template-columns: 1fr; } }
-#grid { width: 100%; max-width: 640px; border: 1px solid var(--line); touch-action: none; cursor: crosshair; }
-.row button { font: inherit; padding: 4px 12px; border: 1px solid var(--line); border-radius: 4px; background: var(--panel); color: inherit; }
-.row input[type=range] { flex: 1; min-width: 8em; }
-tr.now > * { background: var(--grid); } td.hit { font-weight: 600; } details { margin: 6px 0; } summary { cursor: pointer; }
-</style>
-</head>
-<body>
-<main id="main"><noscript>This page draws itself with JavaScript. Please turn it on.</noscript></main>
-<script id="data" type="application/json">/*@DATA@*/</script>
-<script>
-const Chart = {defaults: {font: {}}};  // what the shared script sets; there are no charts here
-/*@SCRIPT@*/
+// Why is this pixel what it is?
+const Chart = {defaults: {font: {}}};  // what page.js sets; this page has no charts
 const W = D.window, ASKED = D.box, PIXELS = D.pixels;
 const at = (x, y) => PIXELS[(y - W.y) * W.width + x - W.x];
 const keyOf = e => `${e.draw}/${known(e.primitive) ? e.primitive : '-'}/${e.piece}`;
@@ -195,9 +175,5 @@ show([() => main.append(h('h1', null, 'Why is this pixel what it is?'), h('p', {
       h('p', null, stepText),
       note('Point at a pixel to see its history, click to keep it. Step through the primitives: blue their edges after the snap, ' +
         'dotted yellow before it; green samples are written, orange ones are covered and not written.')), history)),
-  () => main.append(h('footer', null, h('h2', null, 'How to reproduce'), h('pre', {tabindex: 0}, D.command),
-    h('p', {class: 'sub'}, `Halfplane ${D.version}`)))]);
+  () => foot()]);
 refresh();
-</script>
-</body>
-</html>

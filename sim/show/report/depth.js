@@ -1,19 +1,4 @@
-<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>Depth precision</title>
-<style>
-/*@STYLE@*/
-</style>
-</head>
-<body>
-<main id="main"><noscript>This report draws itself with JavaScript. Please turn it on.</noscript></main>
-<script>/*@CHART_LIBRARY@*/</script>
-<script id="data" type="application/json">/*@DATA@*/</script>
-<script>
-/*@SCRIPT@*/
+// Depth precision
 const SERIES = D.series || [], MEASURED = SERIES.filter(s => s.measured);
 const range = d => `${fmt(d.from)} – ${known(d.to) ? fmt(d.to) : '∞'}`;
 const code = v => Number.isInteger(v) && v > 9 ? `${v} (0x${v.toString(16).toUpperCase()})` : fmt(v);
@@ -67,11 +52,7 @@ function steps() {
     y: logAxis(`${kind[1]}, scene units`, lo, hi)}, plugins: tips(t => `${t.dataset.label}: ${fmt(t.parsed.y)}`, t =>
     `eye depth ${fmt(t.parsed.x)}`)}});
   const own = charts.length;
-  const pick = h('div', {class: 'row switch', role: 'radiogroup', 'aria-label': 'Quantity'}, kinds.map(k => {
-    const input = h('input', {type: 'radio', name: 'kind', ...(k === kind && {checked: ''})});
-    input.onchange = () => { kind = k; draw(charts[own]); };
-    return h('label', null, input, k[1]);
-  }));
+  const pick = choice('kind', 'Quantity', kinds, kind, k => { kind = k; draw(charts[own]); });
   const remarks = [scene && 'The grey band is the range of eye depth in the scene.',
     cut && 'Lines that leave the chart at the bottom go much lower.',
     values.some(v => !(v > 0)) && 'A gap in a line is a value that is zero or not known.'];
@@ -264,14 +245,6 @@ function pictures() {
         picture(s.measured.fight, `${s.name}: fighting`)))));
 }
 
-// ---- 8: footer ----
-function foot() {
-  const seed = known(D.seed) ? D.seed : ((D.command || '').match(/--seed[ =](\S+)/) || [])[1];
-  const how = D.command ? [h('h2', null, 'How to reproduce'), h('pre', {tabindex: 0}, D.command)] : [];
-  main.append(h('footer', null, how, h('p', {class: 'sub'}, spans([D.version && `Halfplane ${D.version}`,
-    D.schema, known(seed) && `Seed: ${seed}`]))));
-}
-show([title, steps, figures, codes, limits, asked, measured, fighting, pictures, foot]);
-</script>
-</body>
-</html>
+// of a page without a scene the command has it
+const seed = known(D.seed) ? D.seed : ((D.command || '').match(/--seed[ =](\S+)/) || [])[1];
+show([title, steps, figures, codes, limits, asked, measured, fighting, pictures, () => foot(known(seed) && `Seed: ${seed}`)]);

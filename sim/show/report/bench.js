@@ -1,22 +1,5 @@
-<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>Run time against error</title>
-<style>
-/*@STYLE@*/
-.grid.wide { grid-template-columns: repeat(auto-fit, minmax(min(420px, 100%), 1fr)); }
-</style>
-</head>
-<body>
-<main id="main"><noscript>This report draws itself with JavaScript. Please turn it on.</noscript></main>
-<script>/*@CHART_LIBRARY@*/</script>
-<script id="data" type="application/json">/*@DATA@*/</script>
-<script>
-/*@SCRIPT@*/
+// Run time against error
 const ROWS = D.rows || [], SKIPS = D.skips || [], GROWTH = D.growth || [];
-const distinct = values => [...new Set(values)];
 const ENGINES = distinct(ROWS.map(r => r.engine)), SCENES = distinct(ROWS.map(r => r.scene));
 const VARIATIONS = distinct(ROWS.map(r => r.label));
 const ms = v => fmt(v * 1e3);
@@ -33,14 +16,6 @@ const shape = row => SHAPES[VARIATIONS.indexOf(row.label) % SHAPES.length];
 const GLYPHS = ['●', '■', '▲', '◆', '✶', '+', '×'];
 const variation = label => label || 'as configured';
 const rowName = r => `${r.engine}${r.threads > 1 ? ` with ${r.threads} threads` : ''}${r.label ? `, ${r.label}` : ''}`;
-// a group of radio buttons that redraw charts
-function choice(name, label, options, chosen, onchange) {
-  return h('div', {class: 'row switch', role: 'radiogroup', 'aria-label': label}, options.map(o => {
-    const input = h('input', {type: 'radio', name, ...(o === chosen && {checked: ''})});
-    input.onchange = () => onchange(o);
-    return h('label', null, input, o[1]);
-  }));
-}
 
 // ---- 1: title ----
 function title() {
@@ -214,13 +189,4 @@ function growth() {
     h('div', {class: 'grid two'}, groups.map(box)));
 }
 
-// ---- 6: footer ----
-function foot() {
-  const how = D.command ? [h('h2', null, 'How to reproduce'), h('pre', {tabindex: 0}, D.command)] : [];
-  main.append(h('footer', null, how, h('p', {class: 'sub'}, spans([D.version && `Halfplane ${D.version}`, D.schema,
-    known(D.seed) && `Seed: ${D.seed}`]))));
-}
-show([title, pareto, rows, skips, growth, foot]);
-</script>
-</body>
-</html>
+show([title, pareto, rows, skips, growth, () => foot(known(D.seed) && `Seed: ${D.seed}`)]);

@@ -1,19 +1,4 @@
-<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>Frame by frame</title>
-<style>
-/*@STYLE@*/
-</style>
-</head>
-<body>
-<main id="main"><noscript>This report draws itself with JavaScript. Please turn it on.</noscript></main>
-<script>/*@CHART_LIBRARY@*/</script>
-<script id="data" type="application/json">/*@DATA@*/</script>
-<script>
-/*@SCRIPT@*/
+// Frame by frame
 const ROWS = D.frames || [];
 // what is drawn of each frame: unit, then name and figure of each line
 const CHARTS = [
@@ -68,6 +53,3 @@ function rows() {
   main.append(h('details', null, h('summary', null, 'All frames'), table('All frames', head, body)));
 }
 show([title, pictures, rows]);
-</script>
-</body>
-</html>

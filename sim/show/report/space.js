@@ -1,23 +1,4 @@
-<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>Design space</title>
-<style>
-/*@STYLE@*/
-.row label { border: 0; padding: 0; } select { font: inherit; padding: 3px 6px; }
-.facts { min-height: 7.5em; } .facts dl { display: grid; gap: 2px 14px; margin: 6px 0; grid-template-columns: max-content auto; }
-.facts dt { color: var(--muted); } .facts dd { margin: 0; font-variant-numeric: tabular-nums; }
-</style>
-</head>
-<body>
-<main id="main"><noscript>This report draws itself with JavaScript. Please turn it on.</noscript></main>
-<script>/*@CHART_LIBRARY@*/</script>
-<script id="data" type="application/json">/*@DATA@*/</script>
-<script>
-/*@SCRIPT@*/
-const distinct = values => [...new Set(values)];
+// Design space
 const POINTS = D.points || [], SCENES = distinct(POINTS.map(p => p.scene));
 const KEYS = distinct(POINTS.flatMap(p => Object.keys(p.settings)))
   .filter(k => distinct(POINTS.map(p => p.settings[k])).length > 1);
@@ -134,13 +115,4 @@ function rows() {
     table('All points', [head], POINTS.map(line))));
 }
 
-// ---- 4: footer ----
-function foot() {
-  const how = D.command ? [h('h2', null, 'How to reproduce'), h('pre', {tabindex: 0}, D.command)] : [];
-  main.append(h('footer', null, how, h('p', {class: 'sub'}, spans([D.version && `Halfplane ${D.version}`, D.schema,
-    known(D.missing) && D.missing > 0 && `${D.missing} points are missing`]))));
-}
-show([title, picture, rows, foot]);
-</script>
-</body>
-</html>
+show([title, picture, rows, () => foot(D.missing > 0 && `${D.missing} points are missing`)]);
