@@ -103,18 +103,20 @@ Said read_lines(int width, int height, std::span<const Texture> known, std::stri
 }
 
 std::vector<Vertex> read_vertices(const double* values, int numbers, std::size_t count) {
-  if (numbers != 4 && numbers != 8 && numbers != 10)
-    throw InputError("a vertex has 4, 8 or 10 numbers, not " + std::to_string(numbers));
+  const auto parts = std::span(kVertexParts).subspan(1);  // a place has a w here
+  const auto size = static_cast<std::size_t>(numbers);
+  if (std::ranges::find(parts, size, &VertexPart::end) == parts.end()) {
+    std::string sizes;
+    for (const VertexPart& part : parts)
+      sizes += (sizes.empty() ? "" : &part == &parts.back() ? " or " : ", ") + std::to_string(part.end);
+    throw InputError("a vertex has " + sizes + " numbers, not " + std::to_string(numbers));
+  }
   std::vector<Vertex> vertices;
   vertices.reserve(count);
   for (std::size_t i = 0; i < count; ++i, values += numbers) {
-    Vertex v{values[0], values[1], values[2], values[3]};
-    if (numbers >= 8) std::copy_n(values + 4, 4, v.rgba.begin());
-    if (numbers == 10) {
-      v.u = values[8];
-      v.v = values[9];
-    }
-    vertices.push_back(v);
+    VertexNumbers vertex = numbers_of(Vertex{});
+    std::copy_n(values, size, vertex.begin());
+    vertices.push_back(vertex_of(vertex));
   }
   return vertices;
 }

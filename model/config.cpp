@@ -46,6 +46,22 @@ Setting number(std::string_view key, std::string unit, std::string_view meaning,
                       std::string_view text) { config.*member = parse_int(setting, text); }};
 }
 
+/// A number that is one of these.
+template <int Config::*member>
+Setting one_of(std::string_view key, std::string unit, std::string_view meaning, std::vector<int> values) {
+  Setting setting = number<member>(key, std::move(unit), meaning, values.front(), values.back());
+  setting.values = std::move(values);
+  return setting;
+}
+
+/// A power of two, from one of them to another.
+template <int Config::*member>
+Setting powers(std::string_view key, std::string unit, std::string_view meaning, int min, int max) {
+  std::vector<int> values;
+  for (int value = min; value <= max; value *= 2) values.push_back(value);
+  return one_of<member>(key, std::move(unit), meaning, std::move(values));
+}
+
 /// One of an enumeration's values.
 template <auto member>
 Setting choice(std::string_view key, std::vector<std::string_view> names, std::string_view meaning) {
@@ -86,10 +102,15 @@ Setting of_host(Setting setting) {
   return setting;
 }
 
+Setting no_pixel(Setting setting) {
+  setting.may_change_pixels = false;
+  return setting;
+}
+
 std::vector<Setting> all_settings() {
   return {
       number<&Config::subpixel_bits>("subpixel.bits", "bits", "fraction bits S of a snapped window coordinate", 0, 12),
-      number<&Config::guard_band>("guard.band", "pixels", "window coordinates lie in [-band, band); a power of two", 16,
+      powers<&Config::guard_band>("guard.band", "pixels", "window coordinates lie in [-band, band); a power of two", 16,
                                   1 << 20),
       number<&Config::target_width>("target.width", "pixels", "widest target", 1, 16384),
       number<&Config::target_height>("target.height", "pixels", "highest target", 1, 16384),
@@ -103,68 +124,70 @@ std::vector<Setting> all_settings() {
                                         12, 26),
       number<&Config::perspective_mantissa_bits>("perspective.mantissa_bits", "bits",
                                                  "bits k of 1/w that a pixel's reciprocal looks at", 8, 20),
-      number<&Config::perspective_colors>(
+      no_pixel(number<&Config::perspective_colors>(
           "perspective.colors", "units",
-          "1: the RTL's texture unit also interpolates colours over w; 0: colours are affine in the RTL", 0, 1),
+          "1: the RTL's texture unit also interpolates colours over w; 0: colours are affine in the RTL", 0, 1)),
       choice<&Config::color_format>("color.format", {"rgb565", "rgba8888"}, "layout of a stored colour"),
-      number<&Config::tile_size>("tile.size", "pixels", "side of a tile: 4, 8, 16 or 32", 4, 32),
-      number<&Config::stamp_size>("stamp.size", "pixels", "side of the stamp tested in one clock: 1, 2, 4 or 8", 1, 8),
-      number<&Config::primitive_id_bits>("key.primitive_bits", "bits",
-                                         "bits of the primitive number in an RTL packet key", 4, 32),
-      number<&Config::context_slots>("context.slots", "slots",
-                                     "triangles whose constants the context RAM holds; a power of two", 2, 64),
-      number<&Config::hiz_bits>("hiz.bits", "bits", "bits of a tile's HiZ bound, or all of a depth code; 0: no HiZ", 0,
-                                32),
-      number<&Config::hiz_lag>("hiz.lag", "visits",
-                               "tile visits after which a HiZ update is seen, and in flight at most; a power of two", 2,
-                               64),
-      choice<&Config::cache_kind>("cache.kind", {"tiles", "blocks"},
-                                  "what a line of the on-chip RAM is: a tile, or 4x4 pixels fetched ahead"),
-      number<&Config::cache_lines>("cache.lines", "lines",
-                                   "tiles or blocks that the on-chip depth and colour RAM holds; a power of two", 1,
-                                   4096),
-      number<&Config::cache_queue>(
+      powers<&Config::tile_size>("tile.size", "pixels", "side of a tile: 4, 8, 16 or 32", 4, 32),
+      no_pixel(powers<&Config::stamp_size>("stamp.size", "pixels",
+                                           "side of the stamp tested in one clock: 1, 2, 4 or 8", 1, 8)),
+      no_pixel(number<&Config::primitive_id_bits>("key.primitive_bits", "bits",
+                                                  "bits of the primitive number in an RTL packet key", 4, 32)),
+      no_pixel(powers<&Config::context_slots>(
+          "context.slots", "slots", "triangles whose constants the context RAM holds; a power of two", 2, 64)),
+      no_pixel(number<&Config::hiz_bits>("hiz.bits", "bits",
+                                         "bits of a tile's HiZ bound, or all of a depth code; 0: no HiZ", 0, 32)),
+      no_pixel(powers<&Config::hiz_lag>(
+          "hiz.lag", "visits", "tile visits after which a HiZ update is seen, and in flight at most; a power of two", 2,
+          64)),
+      no_pixel(choice<&Config::cache_kind>("cache.kind", {"tiles", "blocks"},
+                                           "what a line of the on-chip RAM is: a tile, or 4x4 pixels fetched ahead")),
+      no_pixel(powers<&Config::cache_lines>(
+          "cache.lines", "lines", "tiles or blocks that the on-chip depth and colour RAM holds; a power of two", 1,
+          4096)),
+      no_pixel(powers<&Config::cache_queue>(
           "cache.queue", "fragments",
-          "blocks: fragments between tags and depth test, so that misses overlap; a power of two", 4, 128),
-      number<&Config::cache_victims>("cache.victims", "blocks",
-                                     "blocks: evicted blocks that wait to be written; a power of two", 2, 32),
-      choice<&Config::frame_clears>("frame.clears", {"resolve", "flags"},
-                                    "what a flush writes of cleared blocks or tiles: colours, or flags"),
-      number<&Config::memory_port_bits>("memory.port_bits", "bits",
-                                        "data that the memory port moves in a cycle; a power of two", 16, 512),
-      of_host(choice<&Config::frame_order>(
+          "blocks: fragments between tags and depth test, so that misses overlap; a power of two", 4, 128)),
+      no_pixel(powers<&Config::cache_victims>("cache.victims", "blocks",
+                                              "blocks: evicted blocks that wait to be written; a power of two", 2, 32)),
+      no_pixel(choice<&Config::frame_clears>("frame.clears", {"resolve", "flags"},
+                                             "what a flush writes of cleared blocks or tiles: colours, or flags")),
+      no_pixel(powers<&Config::memory_port_bits>(
+          "memory.port_bits", "bits", "data that the memory port moves in a cycle; a power of two", 16, 512)),
+      no_pixel(of_host(choice<&Config::frame_order>(
           "frame.order", {"program", "bins"},
-          "blocks: order in which the host sends a frame: as named, or by parts that fit the chip")),
-      of_host(choice<&Config::frame_store>("frame.store", {"all", "color"},
-                                           "blocks: planes of a frame that come to memory; color: its depth is lost")),
-      choice<&Config::setup_kind>("setup.kind", {"pipelined", "serial"},
-                                  "RTL triangle setup: several multipliers, or one"),
-      number<&Config::setup_plane_clocks>(
+          "blocks: order in which the host sends a frame: as named, or by parts that fit the chip"))),
+      no_pixel(of_host(choice<&Config::frame_store>(
+          "frame.store", {"all", "color"}, "blocks: planes of a frame that come to memory; color: its depth is lost"))),
+      no_pixel(choice<&Config::setup_kind>("setup.kind", {"pipelined", "serial"},
+                                           "RTL triangle setup: several multipliers, or one")),
+      no_pixel(number<&Config::setup_plane_clocks>(
           "setup.plane_clocks", "clocks",
-          "cycles per plane of the RTL's pipelined triangle setup: 1, or 2 with half of the multipliers", 1, 2),
-      choice<&Config::texture_unit>("texture.unit", {"off", "nearest", "bilinear", "trilinear"},
-                                    "what the RTL's texture unit can do; off: it has none"),
-      number<&Config::texture_lanes>("texture.lanes", "pixels",
-                                     "texture pixels per cycle of the RTL, each with its divider and filter: 1 or 4", 1,
-                                     4),
-      number<&Config::texture_cache_kb>("texture.cache_kb", "KB",
-                                        "texels that the texture unit holds on the chip; a power of two", 1, 64),
-      number<&Config::texture_ways>(
+          "cycles per plane of the RTL's pipelined triangle setup: 1, or 2 with half of the multipliers", 1, 2)),
+      no_pixel(choice<&Config::texture_unit>("texture.unit", {"off", "nearest", "bilinear", "trilinear"},
+                                             "what the RTL's texture unit can do; off: it has none")),
+      no_pixel(one_of<&Config::texture_lanes>(
+          "texture.lanes", "pixels", "texture pixels per cycle of the RTL, each with its divider and filter: 1 or 4",
+          {1, 4})),
+      no_pixel(powers<&Config::texture_cache_kb>(
+          "texture.cache_kb", "KB", "texels that the texture unit holds on the chip; a power of two", 1, 64)),
+      no_pixel(number<&Config::texture_ways>(
           "texture.ways", "places",
-          "places of a block in the texture cache: 1, or 2, of which the less recently used is replaced", 1, 2),
-      number<&Config::texture_queue>("texture.queue", "samples",
-                                     "samples that wait for their texels, so that misses overlap; a power of two", 8,
-                                     128),
-      choice<&Config::reciprocal_kind>("reciprocal.kind", {"table", "restoring"},
-                                       "what the texture unit divides by 1/w with: a RAM and two multipliers, or "
-                                       "subtractions; the same bits and time"),
+          "places of a block in the texture cache: 1, or 2, of which the less recently used is replaced", 1, 2)),
+      no_pixel(powers<&Config::texture_queue>(
+          "texture.queue", "samples", "samples that wait for their texels, so that misses overlap; a power of two", 8,
+          128)),
+      no_pixel(
+          choice<&Config::reciprocal_kind>("reciprocal.kind", {"table", "restoring"},
+                                           "what the texture unit divides by 1/w with: a RAM and two multipliers, or "
+                                           "subtractions; the same bits and time")),
       number<&Config::alpha_units>(
           "alpha.unit", "units",
           "1: the RTL interpolates alpha, whatever color.format keeps, and (blocks, pipelined) tests it; 0: neither", 0,
           1),
-      number<&Config::blend_lanes>(
+      no_pixel(one_of<&Config::blend_lanes>(
           "blend.lanes", "samples",
-          "samples blended per cycle by the RTL, 1 or 4; 0: neither blending nor partial color masks", 0, 4),
+          "samples blended per cycle by the RTL, 1 or 4; 0: neither blending nor partial color masks", {0, 1, 4})),
       number<&Config::dither_units>("dither.unit", "units", "1: the RTL dithers colours of rgb565; 0: it rounds them",
                                     0, 1),
       number<&Config::fog_units>("fog.unit", "units",
@@ -172,18 +195,18 @@ std::vector<Setting> all_settings() {
       number<&Config::shade_units>(
           "shade.unit", "units",
           "1: the RTL lights the fragments of shade phong in front of its texture unit; 0: it lights none", 0, 1),
-      number<&Config::stencil_bits>(
+      one_of<&Config::stencil_bits>(
           "stencil.bits", "bits",
-          "bits of stencil that the RTL stores above each depth: 8, or 0 (blocks, pipelined; depth.bits up to 24)", 0,
-          8),
-      number<&Config::line_units>("lines.unit", "units", "1: the RTL has the unit that draws lines; 0: it takes none",
-                                  0, 1),
-      number<&Config::counter_units>("counters.unit", "units", "1: the RTL has performance counters; 0: it has none", 0,
-                                     1),
-      number<&Config::counter_bits>(
+          "bits of stencil that the RTL stores above each depth: 8, or 0 (blocks, pipelined; depth.bits up to 24)",
+          {0, 8}),
+      no_pixel(number<&Config::line_units>("lines.unit", "units",
+                                           "1: the RTL has the unit that draws lines; 0: it takes none", 0, 1)),
+      no_pixel(number<&Config::counter_units>("counters.unit", "units",
+                                              "1: the RTL has performance counters; 0: it has none", 0, 1)),
+      no_pixel(number<&Config::counter_bits>(
           "counters.bits", "bits",
-          "bits of each performance counter of the RTL; a sticky bit tells that one has wrapped", 16, 32),
-      number<&Config::msaa_samples>("msaa.samples", "samples",
+          "bits of each performance counter of the RTL; a sticky bit tells that one has wrapped", 16, 32)),
+      powers<&Config::msaa_samples>("msaa.samples", "samples",
                                     "samples of a pixel, 1, 2, 4 or 8, each with coverage, depth, stencil and colour",
                                     1, kMaxPixelSamples),
       text<&Config::msaa_pattern>(

@@ -127,8 +127,10 @@ struct Setting {
   std::string_view meaning;                  ///< one line for `halfplane config --list`
   int min = 0;                               ///< smallest legal value (numbers only)
   int max = 0;                               ///< largest legal value (numbers only)
+  std::vector<int> values = {};              ///< the legal ones, rising; none: all from min to max (numbers only)
   std::vector<std::string_view> names = {};  ///< of an enumeration's values, in their order
   bool is_host = false;                      ///< the RTL does not depend on it
+  bool may_change_pixels = true;             ///< false: it shapes time and gates, and no pixel
   std::string (*read)(const Config&, const Setting&) = nullptr;
   void (*write)(Config&, const Setting&, std::string_view) = nullptr;
 

@@ -1,6 +1,7 @@
 // What no single range of a setting can say: combinations that could overflow, or that no hardware has.
-#include <bit>
+#include <algorithm>
 #include <cstdio>
+#include <span>
 #include <string>
 
 #include "config.hpp"
@@ -20,25 +21,26 @@ void require_bits(const Width& width, int bits, std::string_view holder) {
                                         "; lower subpixel.bits, guard.band or depth.bits");
 }
 
-bool is_power_of_two(int value) { return std::has_single_bit(static_cast<unsigned>(value)); }
+/// "4, 8, 16 or 32"; a longer list is of powers.
+std::string listed(std::span<const int> values) {
+  if (values.size() > 6) return "a power of two";
+  std::string text;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == values.size() ? " or " : ", ") + std::to_string(values[i]);
+  return text;
+}
 
 }  // namespace
 
 void validate(const Config& config) {
   Config copy = config;
-  for (const Setting& setting : settings())  // a Config built in code has not passed through set()
-    if (setting.is_number()) set(copy, setting.key, get(config, setting));
-  refuse_unless(is_power_of_two(config.guard_band), "guard.band must be a power of two");
-  refuse_unless(is_power_of_two(config.tile_size), "tile.size must be 4, 8, 16 or 32");
-  refuse_unless(is_power_of_two(config.stamp_size), "stamp.size must be 1, 2, 4 or 8");
-  refuse_unless(is_power_of_two(config.context_slots), "context.slots must be a power of two");
-  refuse_unless(is_power_of_two(config.hiz_lag), "hiz.lag must be a power of two");
-  refuse_unless(is_power_of_two(config.cache_lines), "cache.lines must be a power of two");
-  refuse_unless(is_power_of_two(config.cache_queue), "cache.queue must be a power of two");
-  refuse_unless(is_power_of_two(config.cache_victims), "cache.victims must be a power of two");
-  refuse_unless(is_power_of_two(config.memory_port_bits), "memory.port_bits must be 16, 32, 64, 128, 256 or 512");
-  refuse_unless(is_power_of_two(config.texture_cache_kb), "texture.cache_kb must be a power of two");
-  refuse_unless(is_power_of_two(config.texture_queue), "texture.queue must be a power of two");
+  for (const Setting& setting : settings()) {  // a Config built in code has not passed through set()
+    if (!setting.is_number()) continue;
+    const std::string value = get(config, setting);
+    set(copy, setting.key, value);
+    refuse_unless(setting.values.empty() || std::ranges::count(setting.values, std::stoi(value)) == 1,
+                  std::string(setting.key) + " must be " + listed(setting.values));
+  }
   refuse_unless(config.setup_plane_clocks == 1 || config.setup_kind == SetupKind::pipelined,
                 "the serial setup takes as many clocks for a plane as its bits want: use setup.plane_clocks=1, or "
                 "setup.kind=pipelined");
@@ -48,7 +50,6 @@ void validate(const Config& config) {
                   "cache.kind=blocks and setup.kind=pipelined, or texture.unit=off");
     refuse_unless(config.stamp_size <= 4, "a texture unit takes stamps of at most 4x4 samples: lower stamp.size");
   }
-  refuse_unless(config.texture_lanes == 1 || config.texture_lanes == 4, "texture.lanes must be 1 or 4");
   if (config.texture_lanes != 1) {
     refuse_unless(config.stamp_size >= 2, "four lanes of a texture unit take 2x2 samples of a stamp: raise stamp.size");
   }
@@ -67,13 +68,10 @@ void validate(const Config& config) {
   refuse_unless(config.perspective_colors == 0 || config.texture_unit != TextureUnitKind::off,
                 "colours over w are divided by the texture unit's 1/w: use texture.unit=nearest, or "
                 "perspective.colors=0");
-  refuse_unless(config.blend_lanes == 0 || config.blend_lanes == 1 || config.blend_lanes == 4,
-                "blend.lanes must be 0, 1 or 4");
   refuse_unless(
       !packs_at_write(config) || (config.cache_kind == CacheKind::blocks && config.setup_kind == SetupKind::pipelined),
       "colours are blended and dithered where the framebuffer of blocks writes them, by states that the pipelined "
       "setup lets through: use cache.kind=blocks and setup.kind=pipelined, or blend.lanes=0 and dither.unit=0");
-  refuse_unless(config.stencil_bits == 0 || config.stencil_bits == 8, "stencil.bits must be 0 or 8");
   refuse_unless(
       config.stencil_bits == 0 || (config.cache_kind == CacheKind::blocks &&
                                    config.setup_kind == SetupKind::pipelined && config.depth_bits <= 24),
@@ -89,7 +87,6 @@ void validate(const Config& config) {
   refuse_unless(config.stamp_size <= config.tile_size, "a stamp must fit into a tile: stamp.size <= tile.size");
   refuse_unless(config.target_width <= config.guard_band && config.target_height <= config.guard_band,
                 "the target must lie inside the guard band: target.width and target.height <= guard.band");
-  refuse_unless(is_power_of_two(config.msaa_samples), "msaa.samples must be 1, 2, 4 or 8");
   refuse_unless(config.stamp_size * config.stamp_size * config.msaa_samples <= 64,
                 "a stamp holds at most 64 samples, stamp.size^2 * msaa.samples: lower one of them");
   refuse_unless(config.msaa_samples > 1 || config.msaa_pattern == SamplePattern{},

@@ -37,16 +37,14 @@ bool is_color(const std::array<double, 4>& rgba) {
   return std::ranges::all_of(rgba, [](double c) { return is_between(c, 0, 255); });
 }
 
-bool is_finite(const Vertex& v) {
-  return std::ranges::all_of(std::array{v.x, v.y, v.z, v.w, v.u, v.v}, [](double c) { return std::isfinite(c); });
-}
-
 void check_vertices(const Scene& scene, const Place& place) {
   if (scene.vertices.size() >= kRestart) place.fail("more vertices than indices can name; give fewer than 4294967295");
   for (std::size_t i = 0; i < scene.vertices.size(); ++i) {
-    const Vertex& v = scene.vertices[i];
-    if (!is_finite(v)) place.fail("vertex " + std::to_string(i) + " has a coordinate that is no finite number");
-    if (!is_color(v.rgba)) place.fail("vertex " + std::to_string(i) + " has a colour component outside 0...255");
+    const VertexPart* const part = part_out_of_bounds(numbers_of(scene.vertices[i]));
+    if (part == nullptr) continue;
+    const bool is_bounded = part->high < std::numeric_limits<double>::max();
+    place.fail("vertex " + std::to_string(i) + " has " + std::string(part->what) +
+               (is_bounded ? " outside " + range_of(*part) : " that is no finite number"));
   }
 }
 
@@ -131,6 +129,10 @@ void check_draw(const Scene& scene, std::size_t command, const Draw& draw, const
 }
 
 }  // namespace
+
+std::string range_of(const VertexPart& part) {
+  return std::to_string(std::lround(part.low)) + "..." + std::to_string(std::lround(part.high));
+}
 
 std::string place_of_draw(std::string_view file, std::uint32_t line) {
   std::string place(file);

@@ -3,9 +3,12 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -119,6 +122,36 @@ struct Vertex {
   std::array<double, 4> rgba{255, 255, 255, 255};  ///< 0...255
   double u = 0, v = 0;                             ///< 0 and 1 are the sides of a texture
 };
+
+/// A vertex as its numbers, in the order of its members, which is that of a capture's `v` line.
+using VertexNumbers = std::array<double, sizeof(Vertex) / sizeof(double)>;
+[[nodiscard]] constexpr VertexNumbers numbers_of(const Vertex& v) { return std::bit_cast<VertexNumbers>(v); }
+[[nodiscard]] constexpr Vertex vertex_of(const VertexNumbers& numbers) { return std::bit_cast<Vertex>(numbers); }
+
+/// Numbers of a vertex that are given together or not at all.
+struct VertexPart {
+  std::string_view names;  ///< "r g b a"
+  std::size_t end;         ///< the first number after it
+  std::string_view what;   ///< one of them, in messages
+  double low = std::numeric_limits<double>::lowest(), high = std::numeric_limits<double>::max();
+};
+/// A `v` line ends with one of these; the numbers after it are those of Vertex{}.
+inline constexpr std::array kVertexParts{VertexPart{"x y z", 3, "a coordinate"}, VertexPart{"w", 4, "a coordinate"},
+                                         VertexPart{"r g b a", 8, "a colour component", 0, 255},
+                                         VertexPart{"u v", 10, "a coordinate"}};
+static_assert(kVertexParts.back().end == VertexNumbers().size(), "a member of Vertex is in no part");
+
+/// "0...255".
+[[nodiscard]] std::string range_of(const VertexPart& part);
+
+/// The first part with a number beyond its bounds, a NaN also; null: all are within.
+[[nodiscard]] constexpr const VertexPart* part_out_of_bounds(const VertexNumbers& numbers) {
+  std::size_t i = 0;
+  for (const VertexPart& part : kVertexParts)
+    for (; i < part.end; ++i)
+      if (!(numbers[i] >= part.low && numbers[i] <= part.high)) return &part;
+  return nullptr;
+}
 
 /// A rectangle of whole pixels: column and row of the corner at the state's origin, width, height.
 struct Rect {

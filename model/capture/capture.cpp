@@ -217,29 +217,30 @@ void CaptureReader::read_object() {
   object_ = place->second;
 }
 
+/// "3 (x y z), 4 (and w), 8 (and r g b a) or 10 (and u v)".
+std::string vertex_forms() {
+  std::string text;
+  for (const VertexPart& part : kVertexParts) {
+    if (!text.empty()) text += part.end == kVertexParts.back().end ? " or " : ", ";
+    text += std::to_string(part.end) + (text.empty() ? " (" : " (and ") + std::string(part.names) + ")";
+  }
+  return text;
+}
+
 void CaptureReader::read_vertex() {
-  std::array<double, 10> values{};
-  const std::size_t count = text_.numbers(values);
-  if (text_.has_word() || (count != 3 && count != 4 && count != 8 && count != 10))
-    text_.fail("a vertex of " + (text_.has_word() ? "more than 10" : std::to_string(count)) +
-               " numbers; write 3 (x y z), 4 (and w), 8 (and r g b a) or 10 (and u v)");
+  VertexNumbers numbers = numbers_of(Vertex{});
+  const std::size_t count = text_.numbers(numbers);
+  if (text_.has_word() || std::ranges::find(kVertexParts, count, &VertexPart::end) == kVertexParts.end())
+    text_.fail(std::string("a vertex of ") + (text_.has_word() ? "more than " : "") + std::to_string(count) +
+               " numbers; write " + vertex_forms());
   // No index can follow the last line, and the number at a cut would be read as a shorter one.
   if (!text_.is_terminated())
     text_.fail("the file ends inside this vertex: it may be cut off; add the rest, or end the line");
-  Vertex vertex{.x = values[0], .y = values[1], .z = values[2]};
-  if (count >= 4) vertex.w = values[3];
-  if (count >= 8) {
-    std::copy_n(values.begin() + 4, 4, vertex.rgba.begin());
-    for (const double component : vertex.rgba)
-      if (!(component >= 0 && component <= 255))
-        text_.fail("a colour component outside 0...255; write r g b a in 0...255");
-  }
-  if (count == 10) {
-    vertex.u = values[8];
-    vertex.v = values[9];
-  }
+  if (const VertexPart* const part = part_out_of_bounds(numbers); part != nullptr)
+    text_.fail(std::string(part->what) + " outside " + range_of(*part) + "; write " + std::string(part->names) +
+               " in " + range_of(*part));
   if (scene_.vertices.size() == scene_.vertices.capacity()) grow_vertices();
-  scene_.vertices.push_back(vertex);
+  scene_.vertices.push_back(vertex_of(numbers));
 }
 
 /// One more attribute of the vertex above.

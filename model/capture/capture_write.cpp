@@ -15,13 +15,6 @@
 namespace halfplane {
 namespace {
 
-using VertexNumbers = std::array<double, 10>;
-
-/// In the order of a `v` line.
-VertexNumbers numbers_of(const Vertex& v) {
-  return {v.x, v.y, v.z, v.w, v.rgba[0], v.rgba[1], v.rgba[2], v.rgba[3], v.u, v.v};
-}
-
 /// Equal in every bit: 0 and -0 differ.
 bool same_bits(std::span<const double> a, std::span<const double> b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) {
@@ -29,14 +22,14 @@ bool same_bits(std::span<const double> a, std::span<const double> b) {
   });
 }
 
-/// How many numbers of a `v` line say more than the defaults do: 3, 4, 8 or 10.
+/// How many numbers of a `v` line are needed: up to the last part that differs from the defaults.
 std::size_t numbers_needed(const VertexNumbers& numbers) {
-  static const VertexNumbers defaults = numbers_of(Vertex{});
-  std::size_t needed = numbers.size();
-  for (const std::size_t shorter : {8u, 4u, 3u}) {
-    const std::span tail = std::span(numbers).subspan(shorter, needed - shorter);
-    if (!same_bits(tail, std::span(defaults).subspan(shorter, needed - shorter))) break;
-    needed = shorter;
+  constexpr VertexNumbers defaults = numbers_of(Vertex{});
+  std::size_t needed = 0, begin = 0;
+  for (const VertexPart& part : kVertexParts) {
+    const auto of_part = [&](const VertexNumbers& all) { return std::span(all).subspan(begin, part.end - begin); };
+    if (begin == 0 || !same_bits(of_part(numbers), of_part(defaults))) needed = part.end;
+    begin = part.end;
   }
   return needed;
 }

@@ -1,5 +1,6 @@
 #include "clip.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace halfplane {
@@ -9,15 +10,9 @@ namespace {
 Vertex cut(const Vertex& in, const Vertex& out, double d_in, double d_out) {
   const double t = d_in / (d_in - d_out);
   const auto mix = [t](double from, double to) { return from + t * (to - from); };
-  Vertex v;
-  v.x = mix(in.x, out.x);
-  v.y = mix(in.y, out.y);
-  v.z = mix(in.z, out.z);
-  v.w = mix(in.w, out.w);
-  for (std::size_t c = 0; c < 4; ++c) v.rgba[c] = mix(in.rgba[c], out.rgba[c]);
-  v.u = mix(in.u, out.u);
-  v.v = mix(in.v, out.v);
-  return v;
+  VertexNumbers made = numbers_of(in);
+  std::ranges::transform(made, numbers_of(out), made.begin(), mix);
+  return vertex_of(made);
 }
 
 /// Cuts a line at a plane that its ends have these distances from. Returns whether anything is left.

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "../stages/fragment_ops.hpp"
-#include "../stages/color_packets.hpp"
 #include "../packets/state_packets.hpp"
+#include "../stages/color_packets.hpp"
+#include "../stages/fragment_ops.hpp"
 #include "../stages/surface.hpp"
 #include "../stages/texture_packets.hpp"
 
@@ -28,7 +28,7 @@ void clear_depth(PrimitivePacket& packet, double z, const Config& config) {
 
 void clear_color(PrimitivePacket& packet, const std::array<double, 4>& color, const Config& config) {
   packet.state.color_write = true;
-  for (auto& code : packet.vertex.code) copy_color(code, snap_codes(0, color, config), config);
+  for (auto& code : packet.vertex.code) copy_color(code, snap_codes(0, {.rgba = color}, config), config);
 }
 
 /// The command if it is a clear of the whole target.

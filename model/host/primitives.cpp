@@ -7,8 +7,8 @@
 #include <optional>
 #include <span>
 
-#include "smooth_raster.hpp"
 #include "../stages/surface.hpp"
+#include "smooth_raster.hpp"
 
 namespace halfplane {
 namespace {
@@ -79,7 +79,7 @@ SnappedVertex snap_clipped(const Vertex& v, const DrawContext& context, std::uin
   WindowPosition p = to_window(v, context.state, context.viewport);
   p.x = std::clamp(p.x, -context.band, context.band);
   p.y = std::clamp(p.y, -context.band, context.band);
-  return snap_vertex(p, v.rgba, context.config, {context.scene.name, context.draw.line, number},
+  return snap_vertex(p, v, context.config, {context.scene.name, context.draw.line, number},
                      snap_origin(context.state, context.config));
 }
 
@@ -128,7 +128,7 @@ bool box_is_empty(const std::array<SnappedVertex, 3>& v, const DrawContext& cont
 
 /// Codes whose colour is the provoking vertex's.
 PerPlane<std::uint32_t> flat_color(const DrawContext& context, std::uint32_t provoking) {
-  return snap_codes(0, context.scene.vertices[provoking].rgba, context.config);
+  return snap_codes(0, context.scene.vertices[provoking], context.config);
 }
 
 /// An input triangle after clip, viewport and snap.
@@ -353,7 +353,7 @@ class OutlineBuilder {
     v.y = p.y;
   }
   [[nodiscard]] SnappedVertex snap_window(const Vertex& v, std::uint32_t number) const {
-    return snap_vertex({v.x, v.y, v.z}, v.rgba, context_.config, {context_.scene.name, context_.draw.line, number},
+    return snap_vertex({v.x, v.y, v.z}, v, context_.config, {context_.scene.name, context_.draw.line, number},
                        snap_origin(context_.state, context_.config));
   }
   [[nodiscard]] bool drops_last() const {
@@ -474,7 +474,7 @@ const VertexCache::Entry& VertexCache::get(const DrawContext& context, std::uint
     const WindowPosition p = context.state.space == Space::clip
                                  ? to_window(v, context.state, context.viewport)
                                  : window_position(v, context.state, context.scene.height);
-    entry.snapped = snap_vertex(p, v.rgba, context.config, {context.scene.name, context.draw.line, index},
+    entry.snapped = snap_vertex(p, v, context.config, {context.scene.name, context.draw.line, index},
                                 snap_origin(context.state, context.config));
   }
   entry.state = context.draw.state;

@@ -80,15 +80,23 @@ std::uint8_t snap_color(double channel) {
   return static_cast<std::uint8_t>(std::clamp<std::int64_t>(snap(std::clamp(channel, 0.0, 255.0), 1.0), 0, 255));
 }
 
-PerPlane<std::uint32_t> snap_codes(double z, const std::array<double, 4>& rgba, const Config& config) {
+PerPlane<std::uint32_t> snap_codes(double z, const Vertex& vertex, const Config& config) {
   PerPlane<std::uint32_t> code{};
   code[kDepthPlane] = snap_depth(z, config.depth_bits);
   const auto colors = static_cast<std::size_t>(color_planes(attributes_of(config)));
-  for (std::size_t c = 0; c < colors; ++c) code[kColorPlane + c] = snap_color(rgba[c]);
+  for (std::size_t c = 0; c < colors; ++c) code[kColorPlane + c] = snap_color(vertex.rgba[c]);
   return code;
 }
 
-SnappedVertex snap_vertex(const WindowPosition& p, const std::array<double, 4>& rgba, const Config& config,
+Vertex vertex_of_codes(const PerPlane<std::uint32_t>& code, const Config& config) {
+  Vertex vertex;
+  vertex.z = code[kDepthPlane] / (std::ldexp(1.0, config.depth_bits) - 1);
+  const auto colors = static_cast<std::size_t>(color_planes(attributes_of(config)));
+  for (std::size_t c = 0; c < colors; ++c) vertex.rgba[c] = code[kColorPlane + c];
+  return vertex;
+}
+
+SnappedVertex snap_vertex(const WindowPosition& p, const Vertex& vertex, const Config& config,
                           const VertexSource& source, double origin) {
   const double band = config.guard_band;
   // The comparisons are false for a NaN, and coarse enough that the conversions below are in range.
@@ -108,7 +116,7 @@ SnappedVertex snap_vertex(const WindowPosition& p, const std::array<double, 4>& 
   SnappedVertex v;
   v.x = static_cast<std::int32_t>(x);
   v.y = static_cast<std::int32_t>(y);
-  v.code = snap_codes(p.z, rgba, config);
+  v.code = snap_codes(p.z, vertex, config);
   return v;
 }
 

@@ -45,11 +45,15 @@ struct VertexSource {
 }
 
 /// The snap. Throws InputError naming the vertex when it is outside the guard band or the depth range.
-[[nodiscard]] SnappedVertex snap_vertex(const WindowPosition& p, const std::array<double, 4>& rgba,
-                                        const Config& config, const VertexSource& source, double origin = 0);
+[[nodiscard]] SnappedVertex snap_vertex(const WindowPosition& p, const Vertex& vertex, const Config& config,
+                                        const VertexSource& source, double origin = 0);
 
-/// The codes of every plane: window depth in [0, 1], colour 0...255 a channel. A plane more gets its codes here.
-[[nodiscard]] PerPlane<std::uint32_t> snap_codes(double z, const std::array<double, 4>& rgba, const Config& config);
+/// The codes of every plane: window depth in [0, 1], colour 0...255 a channel. Another plane gets its codes here, and
+/// its number back in vertex_of_codes().
+[[nodiscard]] PerPlane<std::uint32_t> snap_codes(double z, const Vertex& vertex, const Config& config);
+
+/// A vertex of window space that snaps to these codes; its place is left at 0.
+[[nodiscard]] Vertex vertex_of_codes(const PerPlane<std::uint32_t>& code, const Config& config);
 
 /// Gives `to` the colour of `from`.
 constexpr void copy_color(PerPlane<std::uint32_t>& to, const PerPlane<std::uint32_t>& from, const Config& config) {

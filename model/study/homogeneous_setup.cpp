@@ -4,8 +4,8 @@
 #include <tuple>
 #include <utility>
 
-#include "../stages/cull.hpp"
 #include "../host/viewport.hpp"
+#include "../stages/cull.hpp"
 
 namespace halfplane {
 namespace {
@@ -42,7 +42,7 @@ Corner to_corner(const Vertex& v, int exponent, const HomogeneousFrame& frame) {
   corner.z = low * w + (high - low) * (is_zero_one ? z : (z + w) / 2);
   corner.near = is_zero_one ? z : z + w;
   corner.far = w - z;
-  corner.code = snap_codes(0, v.rgba, frame.config);
+  corner.code = snap_codes(0, v, frame.config);
   return corner;
 }
 

@@ -300,10 +300,17 @@ void Reducer::simplify_vertices() {
     });
   };
   const auto assign = [](auto& value, const auto& to) { return std::exchange(value, to) != to; };
-  for_vertices([&](Vertex& v, const Item&) { return assign(v.rgba, std::array<double, 4>{255, 255, 255, 255}); });
+  for (std::size_t part = 2; part < kVertexParts.size(); ++part)  // colours, and what follows them
+    for_vertices([part](Vertex& v, const Item&) {
+      constexpr VertexNumbers defaults = numbers_of(Vertex{});
+      const VertexNumbers before = numbers_of(v);
+      VertexNumbers after = before;
+      for (std::size_t i = kVertexParts[part - 1].end; i < kVertexParts[part].end; ++i) after[i] = defaults[i];
+      v = vertex_of(after);
+      return after != before;
+    });
   for_vertices([&](Vertex& v, const Item& item) { return item.state.space == Space::window && assign(v.z, 0.5); });
   for_vertices([&](Vertex& v, const Item& item) { return assign(v.z, item.v[0].z); });
-  for_vertices([&](Vertex& v, const Item&) { return (assign(v.u, 0.0) | assign(v.v, 0.0)) != 0; });
   simplify([](Item& item) { return std::exchange(item.normal, {}) != decltype(item.normal){}; });
   for_vertices([&](Vertex& v, const Item& item) {
     if (item.state.space != Space::window) return false;
@@ -329,36 +336,37 @@ std::optional<Reduced> reduce(const Scene& scene, const Config& config, const Lo
   return Reducer(scene, config, lockstep, test, options).run();
 }
 
+namespace {
+
 /// From its first pixel to its last: as good a line as any for looking for a fault, if not always the same pixels.
-template <class Color>
-void to_window_line(Item& item, const LineSetup& line, const Widths& widths, const Color& color) {
+void to_window_line(Item& item, const LineSetup& line, const Config& config, const Widths& widths) {
   item.topology = Topology::lines;
   item.state.line_rule = LineRule::bresenham;
   item.state.scissor.reset();  // its box is where it begins
   bool is_first = true;
   line_raster(line, widths, [&](const LinePixel& pixel) {
-    const Vertex v{pixel.x + 0.5, pixel.y + 0.5,
-                   pixel.code[kDepthPlane] / static_cast<double>(widths.depth().code.range.hi), 1, color(pixel.code)};
-    if (std::exchange(is_first, false)) item.v[0] = v;
-    item.v[1] = v;
+    item.v[1] = vertex_of_codes(pixel.code, config);
+    item.v[1].x = pixel.x + 0.5;
+    item.v[1].y = pixel.y + 0.5;
+    if (std::exchange(is_first, false)) item.v[0] = item.v[1];
   });
 }
 
 /// A square round the middle of its box, which is the scissor.
-template <class Color>
-void to_window_point(Item& item, const PrimitivePacket& p, double largest, const Color& color) {
+void to_window_point(Item& item, const PrimitivePacket& p, const Config& config) {
   item.topology = Topology::points;
   const PixelBox& box = p.box;
-  const auto& code = p.vertex.code[0];
   item.state.point_size = std::max(box.right - box.left, box.bottom - box.top) + 1;
-  item.v[0] = {(box.left + box.right + 1) / 2.0, (box.top + box.bottom + 1) / 2.0, code[kDepthPlane] / largest, 1,
-               color(code)};
+  item.v[0] = vertex_of_codes(p.vertex.code[0], config);
+  item.v[0].x = (box.left + box.right + 1) / 2.0;
+  item.v[0].y = (box.top + box.bottom + 1) / 2.0;
 }
+
+}  // namespace
 
 Scene window_scene(const Scene& scene, const Config& config) {
   const Widths widths = derive_widths(config);
   const double grid = std::ldexp(1.0, std::max(1, config.subpixel_bits));
-  const double largest = std::ldexp(1.0, config.depth_bits) - 1;
   Config in_program_order = config;  // each primitive once
   in_program_order.frame_order = FrameOrder::program;
   in_program_order.resolve_units = 0;
@@ -372,15 +380,11 @@ Scene window_scene(const Scene& scene, const Config& config) {
     const PixelBox& box = p.box;
     if (box.left > 0 || box.top > 0 || box.right + 1 < scene.width || box.bottom + 1 < scene.height)
       item.state.scissor = Rect{box.left, box.top, box.right - box.left + 1, box.bottom - box.top + 1};
-    const auto color = [&](const PerPlane<std::uint32_t>& code) {
-      std::array<double, 4> c{0, 0, 0, 255};
-      for (std::size_t i = 0; i < static_cast<std::size_t>(widths.color_planes); ++i) c[i] = code[kColorPlane + i];
-      return c;
-    };
     if (!is_counted(p.kind)) {
+      const Vertex cleared = vertex_of_codes(p.vertex.code[0], config);
       Clear clear;
-      if (p.state.depth_write) clear.depth = p.vertex.code[0][kDepthPlane] / largest;
-      if (p.state.color_write) clear.color = color(p.vertex.code[0]);
+      if (p.state.depth_write) clear.depth = cleared.z;
+      if (p.state.color_write) clear.color = cleared.rgba;
       item.clear = clear;
     } else {
       const Draw& draw = std::get<Draw>(scene.commands[sent->command]);
@@ -391,15 +395,14 @@ Scene window_scene(const Scene& scene, const Config& config) {
       item.state.cull = p.cull;  // none where it was clipped
       item.state.front = p.front_cw ? FrontFace::cw : FrontFace::ccw;
       if (p.kind == PrimitiveKind::line)
-        to_window_line(item, *sent->line, widths, color);
+        to_window_line(item, *sent->line, config, widths);
       else if (p.kind == PrimitiveKind::point)
-        to_window_point(item, p, largest, color);
+        to_window_point(item, p, config);
       else
         for (std::size_t i = 0; i < 3; ++i) {
+          item.v[i] = vertex_of_codes(p.vertex.code[i], config);
           item.v[i].x = p.vertex.x[i] / grid;
           item.v[i].y = p.vertex.y[i] / grid;
-          item.v[i].z = p.vertex.code[i][kDepthPlane] / largest;
-          item.v[i].rgba = color(p.vertex.code[i]);
         }
     }
     items.push_back(item);

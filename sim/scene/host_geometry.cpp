@@ -127,9 +127,9 @@ struct FixedHost {
 
 template <class Host>
 HostVertex rounded_in(HostVertex v) {
-  for (double* const part : {&v.vertex.x, &v.vertex.y, &v.vertex.z, &v.vertex.w, &v.vertex.u, &v.vertex.v})
-    *part = Host::rounded(*part);
-  for (double& channel : v.vertex.rgba) channel = Host::rounded(channel);
+  VertexNumbers numbers = numbers_of(v.vertex);
+  for (double& number : numbers) number = Host::rounded(number);
+  v.vertex = vertex_of(numbers);
   for (double& part : v.normal) part = Host::rounded(part);
   return v;
 }
@@ -139,9 +139,10 @@ HostVertex cut_in(const HostVertex& in, const HostVertex& out, typename Host::Di
                   typename Host::Distance d_out) {
   const auto t = Host::parameter(d_in, d_out);
   HostVertex made;
-  for (const auto part : {&Vertex::x, &Vertex::y, &Vertex::z, &Vertex::w, &Vertex::u, &Vertex::v})
-    made.vertex.*part = Host::mix(in.vertex.*part, out.vertex.*part, t);
-  for (std::size_t c = 0; c < 4; ++c) made.vertex.rgba[c] = Host::mix(in.vertex.rgba[c], out.vertex.rgba[c], t);
+  VertexNumbers numbers = numbers_of(in.vertex);
+  std::ranges::transform(numbers, numbers_of(out.vertex), numbers.begin(),
+                         [t](double from, double to) { return Host::mix(from, to, t); });
+  made.vertex = vertex_of(numbers);
   for (std::size_t i = 0; i < 3; ++i) made.normal[i] = Host::mix(in.normal[i], out.normal[i], t);
   return made;
 }

@@ -29,13 +29,9 @@ Config random_config(Random& random) {
       if (setting.key == "msaa.pattern") continue;  // the standard one
       if (setting.is_number()) {
         int value = setting.min + static_cast<int>(below(static_cast<std::size_t>(setting.max - setting.min) + 1));
-        if (setting.max > 64 && below(3) != 0) value = 1 << below(12);  // small targets, powers of two
+        if (setting.max > 64 && below(3) != 0) value = 1 << below(12);  // small targets
         if (setting.key == "target.width" || setting.key == "target.height") value += static_cast<int>(below(2));
-        if (setting.key.ends_with(".size") || setting.key.ends_with(".slots") || setting.key.ends_with(".lag") ||
-            setting.key.starts_with("cache.") || setting.key.starts_with("texture."))
-          value = 1 << below(7);
-        if (setting.key == "msaa.samples") value = 1 << below(4);
-        if (setting.key == "stencil.bits") value = 8 * static_cast<int>(below(2));
+        if (!setting.values.empty()) value = setting.values[below(setting.values.size())];
         if (value < setting.min || value > setting.max) continue;
         set(config, setting.key, std::to_string(value));
       } else {

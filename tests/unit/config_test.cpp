@@ -1,15 +1,16 @@
 #include "model/config.hpp"
-#include "halfplane_paths.hpp"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "model/generate/raster_pkg.hpp"
 #include "model/generate/raster_taps.hpp"
 #include "model/stages/triangle_setup.hpp"
 #include "model/widths.hpp"
+#include "tests/committed.hpp"
 
 namespace halfplane {
 namespace {
@@ -188,11 +189,32 @@ TEST(Widths, TilesNarrowPlanesByAtLeastOneBitInEveryLegalConfiguration) {
 }
 
 TEST(RasterPkg, TheCommittedOneIsWhatTheConfigurationYields) {
-  EXPECT_EQ(file_text("rtl_ref/raster_pkg.sv"), raster_pkg(preset("embedded")));
+  test::expect_committed("rtl_ref/raster_pkg.sv", [](const auto&) { return raster_pkg(preset("embedded")); });
 }
 
 TEST(RasterTaps, TheCommittedOnesAreWhatTheGraphYields) {
-  EXPECT_EQ(file_text("rtl_ref/cosim/taps.svh"), raster_taps());
+  test::expect_committed("rtl_ref/cosim/taps.svh", [](const auto&) { return raster_taps(); });
+}
+
+/// What a result says of a configuration: every setting, as `config --list` describes it.
+TEST(Config, TheCommittedSchemaIsThatOfTheSettings) {
+  using Json = nlohmann::ordered_json;
+  test::expect_committed("docs/json/halfplane.common.schema.json", [](const std::string& text) {
+    Json schema = Json::parse(text);
+    Json& config = schema["$defs"]["config"];
+    const Json preset = config["properties"]["preset"];
+    config["required"] = Json::array({"preset"});
+    config["properties"] = Json::object({{"preset", preset}});
+    for (const Setting& setting : settings()) {
+      Json row{{"type", setting.is_number() ? "integer" : "string"}};
+      if (setting.is_number()) row.update(Json::object({{"minimum", setting.min}, {"maximum", setting.max}}));
+      if (!setting.names.empty()) row["enum"] = setting.names;
+      row["description"] = setting.unit + ": " + std::string(setting.meaning);
+      config["required"].push_back(setting.key);
+      config["properties"][std::string(setting.key)] = row;
+    }
+    return schema.dump(2) + "\n";
+  });
 }
 
 TEST(RasterPkg, AnyOtherSettingGivesAnotherIdentity) {

@@ -16,6 +16,8 @@
 #include <vector>
 
 #include "halfplane_paths.hpp"
+#include "model/pipeline_graph.hpp"
+#include "tests/committed.hpp"
 
 namespace halfplane {
 namespace {
@@ -242,29 +244,32 @@ std::set<std::string> stems(std::string_view folder, const std::vector<std::stri
   return result;
 }
 
-TEST(Docs, StagesOfTheRtlHaveTheStemsOfTheModelBesidesTheExceptionsNamed) {
+TEST(Docs, ModulesOfTheRtlAreStagesOfTheGraphAndStemsOfTheModelBesidesTheExceptionsNamed) {
   const std::set<std::string> model = stems("model/stages", {".hpp", ".cpp"}), rtl = stems("rtl_ref/stages", {".sv"});
-  for (std::string stem : rtl) {
-    if (has_suffix(stem, "_serial")) stem.resize(stem.size() - 7);
-    constexpr std::array<std::string_view, 9> kParts{"texture_coordinates", "texture_nearest",      "texture_cache",
-                                                     "texture_linear",      "texture_cache_linear", "colors_over_w",
-                                                     "texture_lanes",       "texture_rounds",       "texture_tags"};
-    if (std::find(kParts.begin(), kParts.end(), stem) != kParts.end()) stem = "texture_unit";
-    constexpr std::array<std::string_view, 5> kOfBlocks{"depth_cache", "late_test", "color_write", "write_back", "memory_answers"};
-    if (std::find(kOfBlocks.begin(), kOfBlocks.end(), stem) != kOfBlocks.end()) stem = "block_cache";
-    if (stem == "light_stage" || stem == "stamp_rop") stem = "texture_stage";
-    if (stem == "fog_lookup" || stem == "fog_stage") stem = "fog_unit";
-    if (stem == "context_ram") stem = "interpolate";
-    if (stem == "performance_counters") continue;
-    EXPECT_EQ(model.count(stem), 1U) << "rtl_ref/stages/" << stem << ".sv has no namesake in model/stages";
-  }
   const std::string page = read(kRoot / "rtl_ref/README.md");
   const std::size_t begin = page.find("## Stems");
   ASSERT_NE(begin, std::string::npos);
   const std::string table = page.substr(begin, page.find("\n## ", begin) - begin);
+  const auto is_named = [&table](const std::string& stem) { return table.find('`' + stem + '`') != std::string::npos; };
+  for (std::string stem : rtl) {
+    if (has_suffix(stem, "_serial")) stem.resize(stem.size() - 7);
+    EXPECT_TRUE(std::ranges::count(kStageInfo, stem, &StageInfo::name) == 1 || is_named(stem))
+        << "rtl_ref/stages/" << stem << ".sv is no stage of the graph, and rtl_ref/README.md does not say what it is";
+  }
   for (const std::string& stem : model)
-    EXPECT_TRUE(rtl.count(stem) == 1 || table.find('`' + stem + '`') != std::string::npos)
+    EXPECT_TRUE(rtl.count(stem) == 1 || is_named(stem))
         << "model/stages/" << stem << " has no RTL, and rtl_ref/README.md does not say so";
+}
+
+/// The modules of the core for FuseSoC: those of lib, then those of stages, then the top.
+TEST(Docs, TheCommittedCoreListsTheModulesOfTheRtl) {
+  test::expect_committed("halfplane.core", [](const std::string& text) {
+    const std::size_t begin = text.find("      - rtl_ref/lib/"), end = text.find("      - rtl_ref/raster_top.sv");
+    std::string list;
+    for (const std::string folder : {"rtl_ref/lib/", "rtl_ref/stages/"})
+      for (const std::string& stem : stems(folder, {".sv"})) list += "      - " + folder + stem + ".sv\n";
+    return text.substr(0, begin) + list + text.substr(end);
+  });
 }
 
 }  // namespace

@@ -345,7 +345,7 @@ functional::Slice slice_of(const DrawContext& context, const Config& config) {
   for (std::uint32_t i = 0; i < 3; ++i) {
     const Vertex& v = context.scene.vertices[i];
     const WindowPosition at = window_position(v, context.state, kHeight);
-    slice.vertices.push_back(functional::row_of(snap_vertex(at, v.rgba, config, {"", 0, i})));
+    slice.vertices.push_back(functional::row_of(snap_vertex(at, v, config, {"", 0, i})));
     slice.own_surface.push_back(surface_row(v.w, v.u, v.v));
   }
   slice.surface = slice.own_surface.data();

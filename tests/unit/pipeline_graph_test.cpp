@@ -25,28 +25,6 @@ TEST(PipelineGraph, EveryStageIsAPairOfFilesOfItsNameAndAStageOfTheHostIsOne) {
   }
 }
 
-TEST(PipelineGraph, EveryModuleOfTheRtlIsAStage) {
-  std::set<std::string> stages;
-  for (const StageInfo& stage : kStageInfo) stages.emplace(stage.name);
-  // Beside the stages: the context RAM and the counters.
-  stages.insert({"context_ram", "performance_counters"});
-  // The framebuffer of cache.kind blocks.
-  stages.insert({"cache_tags", "clear_flags", "depth_cache", "late_test", "color_write", "write_back", "pixel_colors",
-                 "memory_answers"});
-  for (const auto& file : std::filesystem::directory_iterator(kRoot / "rtl_ref" / "stages")) {
-    std::string stem = file.path().stem().string();
-    if (stem.ends_with("_serial")) stem.resize(stem.size() - std::string_view("_serial").size());
-    if (stem == "hiz") continue;  // a part of coarse_raster
-    const std::set<std::string> parts{
-        "texture_coordinates", "texture_nearest", "texture_cache", "texture_linear", "texture_cache_linear",
-        "level_of_detail",     "texture_levels",  "colors_over_w", "fog_unit",       "texture_lanes",
-        "texture_rounds",      "texture_tags",    "light_unit",    "light_stage", "texture_stage",
-        "fog_lookup",          "fog_stage",       "stamp_rop"};
-    if (parts.contains(stem)) continue;  // of texture_unit, behind it, or in front of it
-    EXPECT_EQ(stages.count(stem), 1u) << file.path();
-  }
-}
-
 TEST(PipelineGraph, ThePageOfThePipelineListsTheStagesInTheSameOrder) {
   std::ifstream page(kRoot / "docs" / "pipeline.md");
   std::vector<std::string> listed;

@@ -131,9 +131,7 @@ TEST(Rectangles, EverySampleInsideIsDrawnOnceByEveryEngine) {
       EXPECT_EQ(scalar.frame.depth, hardware.frame.depth);
     }
     const Widths widths = derive_widths(config);
-    const auto snapped = [&](const Vertex& v) {
-      return snap_vertex({v.x, v.y, v.z}, v.rgba, config, {scene.name, 0, 0});
-    };
+    const auto snapped = [&](const Vertex& v) { return snap_vertex({v.x, v.y, v.z}, v, config, {scene.name, 0, 0}); };
     const auto corners = line_rectangle(snapped(start), snapped(stop), width, widths.grid_bits);
     ASSERT_TRUE(corners.has_value());
     std::size_t p = 0;

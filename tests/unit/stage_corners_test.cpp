@@ -4,24 +4,22 @@
 #include <limits>
 
 #include "../scene_builder.hpp"
-#include "model/packets/packet_words.hpp"
 #include "model/host/clip.hpp"
+#include "model/host/viewport.hpp"
+#include "model/packets/packet_words.hpp"
 #include "model/stages/cull.hpp"
-#include "model/study/fill_rule.hpp"
 #include "model/stages/hiz.hpp"
-#include "model/study/homogeneous_setup.hpp"
 #include "model/stages/line_raster.hpp"
 #include "model/stages/triangle_setup.hpp"
-#include "model/host/viewport.hpp"
+#include "model/study/fill_rule.hpp"
+#include "model/study/homogeneous_setup.hpp"
 
 namespace halfplane {
 namespace {
 
-const std::array<double, 4> kWhite{255, 255, 255, 255};
-
 std::string refusal(const WindowPosition& p, const Config& config) {
   try {
-    (void)snap_vertex(p, kWhite, config, {"scene.hpt", 7, 3});
+    (void)snap_vertex(p, Vertex{}, config, {"scene.hpt", 7, 3});
   } catch (const InputError& error) {
     return error.what();
   }
@@ -48,9 +46,9 @@ TEST(Viewport, AVertexThatSnapsToNoCodeIsRefusedOnEverySideAndTheOneBesideItIsTa
     EXPECT_EQ(text.rfind("scene.hpt: draw from line 7: vertex 3 at window (", 0), 0u) << text;
     EXPECT_NE(text.find("must snap into [-32, 32) pixels and z into [0, 1]"), std::string::npos) << text;
   }
-  const SnappedVertex low = snap_vertex({-32, -32, 0}, kWhite, config, {});
+  const SnappedVertex low = snap_vertex({-32, -32, 0}, Vertex{}, config, {});
   EXPECT_EQ((std::array{low.x, low.y}), (std::array{-128, -128}));
-  const SnappedVertex high = snap_vertex({31.75, 31.75, 1}, kWhite, config, {});
+  const SnappedVertex high = snap_vertex({31.75, 31.75, 1}, Vertex{}, config, {});
   EXPECT_EQ((std::array{high.x, high.y}), (std::array{127, 127}));
   EXPECT_EQ(high.depth(), 255u);
 }

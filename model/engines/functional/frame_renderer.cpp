@@ -426,16 +426,15 @@ Slice& FrameRenderer::add_slice(const DrawContext& context) {
   slice.high_index = 0;
   slice.counters = {};
   is_stencil_zero_ = is_stencil_zero_ && !ops.stencil;
-  const bool falls = state.depth_test == DepthFunc::less || state.depth_test == DepthFunc::lequal ||
-                     state.depth_test == DepthFunc::equal || state.depth_test == DepthFunc::never;
-  pending_rises_ |= state.depth_write && !falls;
+  pending_rises_ |= ops.state.depth_write && can_raise_depth(ops.state.depth_test);
   return slice;
 }
 
 /// Whether every fragment of the draw would fail against what is drawn so far. Pending triangles may lower depths only.
 bool FrameRenderer::is_behind(const DrawContext& context, const PreparedScene::DrawChunks& draw) const {
   const State& state = context.state;
-  const bool falls = state.depth_test == DepthFunc::less || state.depth_test == DepthFunc::lequal;
+  const DepthFunc func = context.fragment_ops.state.depth_test;
+  const bool falls = func == DepthFunc::less || func == DepthFunc::lequal;
   if (!is_opaque_ || context.fragment_ops.stencil || context.rect.width <= 0 || context.rect.height <= 0) return false;
   if (!draw.has_box || !falls || pending_rises_ || state.polygon_offset != std::array<double, 2>{0.0, 0.0})
     return false;

@@ -13,6 +13,7 @@
 #include "model/engines/scalar.hpp"
 #include "model/golden/exact_line.hpp"
 #include "model/stages/depth_encode.hpp"
+#include "model/stages/fragment_ops.hpp"
 
 namespace halfplane {
 namespace {
@@ -228,8 +229,9 @@ class AttributeComparison {
     const std::int32_t owner = frame_->owners()[pixel.p];
     const bool same_visible = view_->golden.ids[pixel.p] == owner && view_->ids[pixel.p] == owner;
     result_.compared_pixels += same_visible ? 1 : 0;
-    if (state.depth_write) depth(pixel, view_->stored.depth[pixel.at], same_visible);
-    if (writes_color(state, config_.color_format)) color(pixel, view_->stored.color[pixel.at], same_visible);
+    const FragmentState writes = fragment_state(state, config_.color_format);
+    if (writes.depth_write) depth(pixel, view_->stored.depth[pixel.at], same_visible);
+    if (writes.color_write) color(pixel, view_->stored.color[pixel.at], same_visible);
   }
 
   void depth(const OwnedPixel& pixel, std::uint32_t stored, bool same_visible) {

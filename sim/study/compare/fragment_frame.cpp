@@ -72,7 +72,8 @@ void FragmentFrame::add(const TappedFragment& fragment) {
 
 /// Does the one leave in the target what the other does?
 bool FragmentFrame::is_equal(const TappedFragment& a, const TappedFragment& b, const State& state) const {
-  if (state.depth_write && a.plane[kDepthPlane].code != b.plane[kDepthPlane].code) return false;
+  if (fragment_state(state, config_.color_format).depth_write && a.plane[kDepthPlane].code != b.plane[kDepthPlane].code)
+    return false;
   return !state.color_write ||
          pack_color(config_.color_format, color_of(a)) == pack_color(config_.color_format, color_of(b));
 }

@@ -88,13 +88,14 @@ std::int64_t to_grid(double lsb) {
   return static_cast<std::int64_t>(std::floor(std::ldexp(lsb, exact::kGridBits) + 0.5));
 }
 
-/// The golden's value beside each plane, and the parts of the difference.
-void add_parts(Entry& entry) {
+/// The golden's value beside each plane that it knows, and the parts of the difference. `colors`: planes of them.
+void add_parts(Entry& entry, std::size_t colors) {
   if (!entry.golden || !entry.golden->fragment) return;
   const golden::TappedFragment& fragment = *entry.golden->fragment;
   for (std::size_t p = 0; p < entry.planes.size(); ++p) {
     PlaneFigure& plane = entry.planes[p];
-    if (p != kDepthPlane && entry.surface) continue;  // the golden's colour is that of the whole surface
+    const bool is_color = p >= kColorPlane && p < kColorPlane + colors;
+    if (p != kDepthPlane && (!is_color || entry.surface)) continue;  // its colour is that of the whole surface
     plane.golden = p == kDepthPlane ? fragment.depth : fragment.color[p - kColorPlane];
     const std::int64_t u = to_grid(*plane.golden), s = exact::on_grid(plane.oracle),
                        h = exact::on_grid({plane.unrounded, int128{1} << plane.guard_bits}),
@@ -109,6 +110,7 @@ void add_parts(Entry& entry) {
 void record_golden(const Scene& scene, const Config& config, const std::function<void(double)>& progress,
                    Explanation& result) {
   const int grid_bits = derive_widths(config).grid_bits;
+  const auto colors = static_cast<std::size_t>(color_planes(attributes_of(with_alpha(config, scene))));
   int left = scene.width, top = scene.height, right = 0, bottom = 0;
   for (const PixelHistory& pixel : result.pixels) {
     left = std::min(left, pixel.at.x);
@@ -142,7 +144,7 @@ void record_golden(const Scene& scene, const Config& config, const std::function
                                      ": the golden draws primitive " + std::to_string(fragment.primitive) +
                                      ", which passes nowhere near it in the model");
     }
-    for (Entry& entry : pixel.history) add_parts(entry);
+    for (Entry& entry : pixel.history) add_parts(entry, colors);
     const auto p = static_cast<std::size_t>(pixel.at.y) * static_cast<std::size_t>(image.width) +
                    static_cast<std::size_t>(pixel.at.x);
     const std::size_t at = image.frame.at(pixel.at.x, pixel.at.y);

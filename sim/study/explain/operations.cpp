@@ -58,10 +58,11 @@ Result test_stencil(FragmentAtWork& f, OperationStep& step) {
 bool always(const FragmentAtWork&) { return true; }
 Result test_depth(FragmentAtWork& f, OperationStep& step) {
   const int bits = f.context.depth_encode.format().bits;
-  step.figures = {{"func", {}, 0, word_of("depth_test", f.context.state)},
+  const DepthFunc func = f.context.fragment_ops.state.depth_test;
+  step.figures = {{"func", {}, 0, draw_state("depth_test").words[static_cast<std::size_t>(func)]},
                   {"fragment", {f.depth}, bits},
                   {"stored", {f.stored.depth}, bits}};
-  f.passes_depth = depth_passes(f.context.state.depth_test, f.depth, f.stored.depth);
+  f.passes_depth = depth_passes(func, f.depth, f.stored.depth);
   step.passes = f.passes_depth;
   return failed_for_good(f);
 }
@@ -158,7 +159,7 @@ Result pack(FragmentAtWork& f, OperationStep& step) {
   return {};
 }
 
-bool writes_depth(const FragmentAtWork& f) { return f.context.state.depth_write; }
+bool writes_depth(const FragmentAtWork& f) { return f.context.fragment_ops.state.depth_write; }
 Result write_depth(FragmentAtWork& f, OperationStep& step) {
   const int bits = f.context.depth_encode.format().bits;
   step.figures = {{"before", {f.stored.depth}, bits}, {"after", {f.depth}, bits}};

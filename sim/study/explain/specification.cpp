@@ -329,12 +329,14 @@ class SpecificationWalk {
   }
 
   /// The primitive's own colour. Alpha is 255 where no plane holds it and nobody looks.
-  [[nodiscard]] static std::array<std::uint32_t, 4> color_of(const Entry& entry) {
+  [[nodiscard]] std::array<std::uint32_t, 4> color_of(const Entry& entry) const {
     std::array<std::uint32_t, 4> color{0, 0, 0, 255};
     if (entry.surface)
       for (std::size_t c = 0; c < 4; ++c) color[c] = entry.surface->sample.primitive[c];
     else
-      for (std::size_t p = kColorPlane; p < entry.planes.size(); ++p) color[p - kColorPlane] = entry.planes[p].code;
+      for (std::size_t c = 0;
+           c < static_cast<std::size_t>(widths_.color_planes) && kColorPlane + c < entry.planes.size(); ++c)
+        color[c] = entry.planes[kColorPlane + c].code;
     return color;
   }
 

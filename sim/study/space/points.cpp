@@ -1,23 +1,10 @@
 #include "sim/study/space/points.hpp"
 
-#include <array>
-#include <string_view>
-
 #include "sim/show/image/framebuffer_files.hpp"
 #include "sim/show/report/hardware.hpp"
 
 namespace halfplane {
 namespace {
-
-/// What shapes time and gates and no pixel. Points that differ in nothing else, and whose hardware drew the same bits, have
-/// the same errors, which are then found once.
-constexpr std::array<std::string_view, 26> kNoPixel{
-    "stamp.size",        "key.primitive_bits", "context.slots",      "hiz.bits",      "hiz.lag",
-    "cache.kind",        "cache.lines",        "cache.queue",        "cache.victims", "frame.clears",
-    "frame.order",       "frame.store",        "setup.kind",         "texture.unit",  "texture.cache_kb",
-    "texture.queue",     "blend.lanes",        "lines.unit",         "counters.unit", "counters.bits",
-    "memory.port_bits",  "reciprocal.kind",    "perspective.colors", "texture.lanes", "texture.ways",
-    "setup.plane_clocks"};
 
 SpaceJson number_or_null(const std::optional<double>& value) { return value ? SpaceJson(*value) : SpaceJson(nullptr); }
 
@@ -41,10 +28,10 @@ SpaceJson abilities(const Config& config) {
 
 const BenchFacts& PointStudy::facts_of(const BenchCase& at, const Rendering& picture,
                                        const std::function<void(double)>& progress) {
+  // Points that differ in no pixel, and whose hardware drew the same bits, have the same errors, which are then found once.
   Config shown = at.config;
-  for (const std::string_view key : kNoPixel)
-    for (const Setting& setting : settings())
-      if (setting.key == key) set(shown, key, get(preset("embedded"), setting));
+  for (const Setting& setting : settings())
+    if (!setting.may_change_pixels) set(shown, setting.key, get(preset("embedded"), setting));
   const std::string key = at.scene_name + '\n' + label(shown) + '\n' +
                           color_hash(picture.frame, at.config.color_format) + depth_hash(picture.frame);
   const auto found = facts_.find(key);
