@@ -1,10 +1,18 @@
-// Cutouts: what triangles are in tiles that their edges cut, where pixels have several samples. Their colours are put off. A
-// tile keeps its last cutouts, each as the number of its triangle and the samples that have passed, a bit each; one that others
-// hide sample by sample is dropped, and only of what is left colours are computed, once a pixel and cutout, mostly at the end of
-// the bin. Of a cutout in front of all that the tile has even the depths wait: what it covers passes, and nobody needs them.
+// Cutouts, where pixels have several samples: the part of a triangle in a tile that its edges cut, kept for later. A tile
+// keeps up to eight of them, each as the number of its triangle and the samples that have passed, a bit each. Later cutouts
+// hide earlier ones sample by sample; one of which nothing is left is dropped. Colours are computed once for each pixel and
+// remaining cutout, mostly at the end of the bin. Depths of a cutout in front of all that the tile holds wait as well.
 //
-// Such a tile has Bin::kCutouts as the owner of its colours, or of both, and is split. What lies below has the owner that it had.
-// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+// Such a tile has Bin::kCutouts as the owner of its colours, or of colours and depths, and is split. What lies below keeps
+// the owner that it had.
+#pragma once
+
+#include "bin.inl"
+#include "tile_memory.inl"
+#include "values.inl"
+
+namespace halfplane::functional::HALFPLANE_ISA_NAME {
+namespace {
 
 /// Of a pixel: known when compiled, or 0.
 template <unsigned kSamples>
@@ -18,7 +26,7 @@ HALFPLANE_INLINE void store_samples(const Bin& bin, int tile, const PixelsOfSamp
                                     const I16& color) {
   std::uint32_t* const to = bin.sample_memory.color[0] + first_of(tile) + block * kBlockPixels;
   for (unsigned k = 0; k < samples_of<kSamples>(bin); ++k) {
-    std::uint32_t* const at_sample = to + k * std::size_t{kBinSize * kBinSize};
+    std::uint32_t* const at_sample = to + k * kBinPixels;
     select_by_bits(block_bits(passed[k], block), color, I16::load(at_sample), bin.position.to_sign).store(at_sample);
   }
 }
@@ -62,7 +70,7 @@ template <unsigned kSamples>
 struct SampledColors {
   Bin& bin;
   const BinTriangle& t;
-  std::array<ChannelPairs, kMaxPixelSamples> gain;  ///< from the centre to each sample: once somebody asks
+  std::array<ChannelPairs, kMaxPixelSamples> gain;  ///< from the centre to each sample, if has_gains
   bool has_gains = false;
 
   HALFPLANE_INLINE SampledColors(Bin& bin_, const BinTriangle& t_) : bin(bin_), t(t_) {}
@@ -74,7 +82,7 @@ struct SampledColors {
     return gain[m];
   }
 
-  /// Those of a block's pixels `any`. `plane`: at the centres; where `centre` is not, they are from the first that is `covered`.
+  /// Colours of a block's pixels `any`: at the centre, or where that is not covered at the first covered sample.
   HALFPLANE_INLINE I16 of_block(const ColorRamp& plane, std::uint64_t centre, const PixelsOfSamples& covered,
                                 std::size_t block, std::uint32_t any, ColorFormat format) {
     I16 color = block_colors(t.color, plane, block, bin.color_format, format);
@@ -93,7 +101,7 @@ struct SampledColors {
     return color;
   }
 
-  /// To the samples that have passed, of whose pixels `any` are.
+  /// Stores colours to the samples that have passed. `any`: pixels with such a sample.
   HALFPLANE_INLINE void store(int tile, std::uint64_t centre, const PixelsOfSamples& covered,
                               const PixelsOfSamples& passed, std::uint64_t any) {
     const ColorRamp plane = color_ramp(bin, t.color, color_anchor(bin, t, tile % kBinTiles, tile / kBinTiles));
@@ -106,15 +114,8 @@ struct SampledColors {
   }
 };
 
-/// A triangle among those that wait.
-HALFPLANE_INLINE std::int16_t add_plane(Bin& bin, const BinTriangle& t) {
-  if (bin.plane_count == BinMemory::kPlanes) drop_planes(bin);
-  bin.memory.planes[bin.plane_count] = t;
-  return static_cast<std::int16_t>(bin.plane_count++);
-}
-
-/// Takes the samples out of a tile's cutouts that later ones hide, and cutouts of which nothing is left. Returns whether anything
-/// of what lies below them is seen.
+/// Takes hidden samples out of a tile's cutouts, and cutouts of which nothing is left. Returns whether a sample below them is
+/// visible.
 template <unsigned kSamples>
 HALFPLANE_NOINLINE bool drop_hidden(Bin& bin, TileCutouts& cutouts) {
   PixelsOfSamples& seen = cutouts.below;
@@ -245,7 +246,7 @@ HALFPLANE_NOINLINE void color_cutouts(Bin& bin, int tile) {
   bin.samples == 4 ? split_cutouts<4>(bin, tile) : split_cutouts<0>(bin, tile);
 }
 
-/// The same of the pixels alone, each the mean of its samples: of these nobody wants to know more. The tile is whole.
+/// Colours of a tile's cutouts where only resolved pixels are stored: the mean of each pixel's samples. The tile is whole.
 template <unsigned kSamples>
 HALFPLANE_NOINLINE void resolve_cutouts(Bin& bin, int tile) {
   TileCutouts& cutouts = bin.sample_memory.cutouts[tile];
@@ -303,7 +304,7 @@ HALFPLANE_NOINLINE void finish_cutouts(Bin& bin) {
     if (bin.color_owner[tile] == Bin::kCutouts) color_cutouts(bin, tile);
   }
 }
-/// The same at the end, where nobody wants more of a pixel than what it shows.
+/// The same at the end of a bin of which only resolved pixels are stored.
 HALFPLANE_NOINLINE void resolve_all_cutouts(Bin& bin) {
   for (int tile = 0; tile < Bin::kTiles; ++tile) {
     if (bin.depth_owner[tile] == Bin::kCutouts) store_cutout_depths(bin, tile, 1);
@@ -312,7 +313,33 @@ HALFPLANE_NOINLINE void resolve_all_cutouts(Bin& bin) {
   }
 }
 
-/// What a triangle covers of a tile, and what of that has passed the depth test: a bit a pixel.
+/// Forgets the triangles of which no tile is left.
+HALFPLANE_NOINLINE void drop_planes(Bin& bin) {
+  if (bin.samples > 1) finish_cutouts(bin);
+  std::array<std::int16_t, BinMemory::kPlanes> moved;
+  moved.fill(-1);
+  for (const auto* owners : {&bin.depth_owner, &bin.color_owner})
+    for (const std::int16_t owner : *owners)
+      if (owner >= 0) moved[static_cast<std::size_t>(owner)] = 0;
+  bin.plane_count = 0;
+  for (std::size_t i = 0; i < BinMemory::kPlanes; ++i) {
+    if (moved[i] < 0) continue;
+    moved[i] = static_cast<std::int16_t>(bin.plane_count);
+    bin.memory.planes[bin.plane_count++] = bin.memory.planes[i];
+  }
+  for (auto* owners : {&bin.depth_owner, &bin.color_owner})
+    for (std::int16_t& owner : *owners)
+      if (owner >= 0) owner = moved[static_cast<std::size_t>(owner)];
+}
+
+/// The number of one more triangle that waits.
+HALFPLANE_INLINE std::int16_t add_plane(Bin& bin, const BinTriangle& t) {
+  if (bin.plane_count == BinMemory::kPlanes) drop_planes(bin);
+  bin.memory.planes[bin.plane_count] = t;
+  return static_cast<std::int16_t>(bin.plane_count++);
+}
+
+/// The samples of a tile that a triangle covers, and those of them that have passed the depth test: a bit a pixel.
 struct SamplePixels {
   std::uint64_t centre = ~std::uint64_t{0};
   PixelsOfSamples covered, passed;
@@ -376,8 +403,8 @@ HALFPLANE_INLINE void add_cutout(Bin& bin, int tile, std::int16_t plane, const S
   bin.tile_high[tile] = std::max(bin.tile_high[tile], range->high);
 }
 
-/// What of a triangle passes the test less in a tile whose depths wait, where ranges say it: it is compared with the cutout that
-/// is on top, sample by sample. False where they do not.
+/// The samples of a triangle that pass the test less in a tile whose depths wait, as far as ranges decide it: its range is
+/// compared with that of the cutout on top at each sample. False where ranges overlap.
 template <unsigned kSamples>
 HALFPLANE_INLINE bool passes_by_ranges(Bin& bin, int tile, const CutoutRange& range, SamplePixels& pixels) {
   const TileCutouts& cutouts = bin.sample_memory.cutouts[tile];
@@ -415,7 +442,7 @@ HALFPLANE_INLINE bool passes_by_ranges(Bin& bin, int tile, const CutoutRange& ra
     any |= rest[k];
     any_below |= below[k];
   }
-  // Nothing of what lies below is seen: who is behind all of them need not come here again.
+  // All that lies below is hidden: a triangle farther than the farthest cutout is rejected by the tile's range from now on.
   if (any_below == 0) bin.tile_high[tile] = std::min(bin.tile_high[tile], highest);
   return decide(any, cutouts.low_below, cutouts.high_below, [&]() HALFPLANE_LAMBDA {
     for (unsigned k = 0; k < samples_of<kSamples>(bin); ++k) pixels.passed[k] &= ~rest[k];
@@ -426,3 +453,6 @@ HALFPLANE_INLINE bool passes_by_ranges(Bin& bin, int tile, const CutoutRange& ra
 struct TileBounds {
   alignas(64) std::array<std::uint16_t, Bin::kTiles> low, high;
 };
+
+}  // namespace
+}  // namespace halfplane::functional::HALFPLANE_ISA_NAME
