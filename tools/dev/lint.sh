@@ -51,14 +51,28 @@ verible_rtl() {
     rtl_ref/*.sv rtl_ref/*/*.sv tests/rtl_units/*.sv
 }
 
+# Each file of the functional engine's kernels by itself: so a tool can read it, and the order of #include does not matter.
+kernels_alone() {
+  local folder=model/engines/functional status=0 kernel
+  local compile=("${CXX:-g++}" -std=c++20 -I. -Wall -Werror -Wno-psabi -Wno-unused)
+  "${compile[@]}" -x c++-header -o build/lint/kernel_headers.hpp.gch - <<<"#include \"$folder/kernel_headers.hpp\"" || return
+  for kernel in "$folder"/kernels/*.inl; do
+    "${compile[@]}" -include build/lint/kernel_headers.hpp -fsyntax-only -x c++ - <<<"#include \"$kernel\"" || status=1
+  done
+  return $status
+}
+
 lint() {
   ensure "${everyday[@]}" lint
   insist build sim test rtl lint
   local changed
-  mapfile -t changed < <(changed_sources "$@" | grep -E '^(model|sim|tests)/.*\.cpp$')
+  local kernels='^model/engines/functional/(kernel_headers\.hpp|kernels/.*)'
+  mapfile -t changed < <(changed_sources "$@" | grep -E "^(model|sim|tests)/.*\.cpp\$|$kernels")
+  mkdir -p build/lint
   step 'shellcheck' shellcheck --external-sources --check-sourced dev .ci/run tools/mesa/run
   step "clang-format's switches" format_switches
   step 'clang-format' xargs -a <(sources) clang-format --dry-run -Werror
+  [[ ! ${changed[*]} =~ model/engines/functional/kernel ]] || step 'kernels, each by itself' kernels_alone
   step 'configure' configure release
   step 'generate the packages' build release halfplane_packages
   step 'verilator --lint-only' lint_rtl
@@ -67,7 +81,6 @@ lint() {
   step 'verible-verilog-lint' verible_rtl
   ((${#changed[@]} > 0)) || return 0
   # clang-tidy refuses options that only GCC knows.
-  mkdir -p build/lint
   sed -E 's/ -mmem(cpy|set)-strategy=[^ ]*//g' build/release/compile_commands.json >build/lint/compile_commands.json
   step "clang-tidy: ${#changed[@]} files" xargs -a <(printf '%s\n' "${changed[@]}") -n 1 -P "$(jobs)" \
     clang-tidy --quiet -p build/lint --warnings-as-errors='*'

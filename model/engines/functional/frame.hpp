@@ -11,8 +11,8 @@
 #include <span>
 #include <vector>
 
-#include "../../stages/fragment_ops.hpp"
 #include "../../host/primitives.hpp"
+#include "../../stages/fragment_ops.hpp"
 #include "../render.hpp"
 #include "prepared_scene.hpp"
 
@@ -24,6 +24,8 @@ inline constexpr int kBinTiles = kBinSize / kTileSize;             ///< tiles al
 
 /// A block is sixteen lanes, one cache line; a tile is four of them.
 inline constexpr int kBlockShift = 2, kBlockSize = 1 << kBlockShift, kBlockPixels = 16;
+inline constexpr std::size_t kTilePixels = std::size_t{kTileSize} * kTileSize,
+                             kBinPixels = std::size_t{kBinSize} * kBinSize;
 
 /// Small triangles, which are set up sixteen at a time, lie within so many by so many tiles; so do medium ones, which
 /// may be.
@@ -77,7 +79,7 @@ struct Record {
       kWhole = 1 << 8,          ///< a triangle whose edges alone say what it covers: the scissor cuts nothing off
       kSmall = 1 << 9,          ///< whole, within kSmallTiles by kSmallTiles, not too steep
       kMedium = 1 << 10,        ///< the same with kMediumTiles, small or not
-      kDrawsNothing = 1 << 11;  ///< culled, but nobody may skip: goes through the raster and draws nothing
+      kDrawsNothing = 1 << 11;  ///< culled, but Skip forbids to leave it out: goes through the raster and draws nothing
   static constexpr int kSamplesShift =
       16;  ///< a small triangle within two by two pixels: which of them it covers; else 0
 

@@ -23,6 +23,13 @@
 #include "kernels.hpp"
 #include "surface_constants.hpp"
 
+// The instruction set of a unit of kernels: bits of its registers, and the namespace that every file of kernels/ opens. A unit
+// sets both before it includes anything; these are for tools that read one of those files by itself.
+#ifndef HALFPLANE_ISA
+#define HALFPLANE_ISA 128
+#define HALFPLANE_ISA_NAME portable
+#endif
+
 #define HALFPLANE_NOINLINE __attribute__((noinline))
 // HALFPLANE_LEAF is inlined always: operations on lanes, and the leaf arithmetic of the stages. HALFPLANE_SMALL_KERNELS: of
 // what is made of them the compiler chooses. Inlining all of it, where a vector is two or four registers, makes twice or four

@@ -12,7 +12,7 @@ extern const Kernels kPortableKernels;
 extern const Kernels kAvx2Kernels, kAvx512Kernels;
 #endif
 
-/// Those that this machine has, the fastest first; the portable one is always among them.
+/// The kernels that this machine can run, the fastest first; the portable ones are always among them.
 [[nodiscard]] std::span<const Kernels* const> available_kernels();
 
 }  // namespace halfplane::functional

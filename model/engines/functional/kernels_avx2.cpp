@@ -1,11 +1,14 @@
+#define HALFPLANE_ISA 256
+#define HALFPLANE_ISA_NAME avx2
 #include "kernel_headers.hpp"
 
 #if defined(__x86_64__) && !defined(__clang__)
 #pragma GCC push_options
 #pragma GCC target("avx2,bmi,bmi2,popcnt")
-#define HALFPLANE_ISA 256
-#define HALFPLANE_ISA_NAME avx2
-#include "kernels.inl"
+#include "kernels/cull.inl"
+#include "kernels/cull_lines.inl"
+#include "kernels/project.inl"
+#include "kernels/raster.inl"
 #pragma GCC pop_options
 
 namespace halfplane::functional {

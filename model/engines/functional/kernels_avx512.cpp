@@ -1,11 +1,14 @@
+#define HALFPLANE_ISA 512
+#define HALFPLANE_ISA_NAME avx512
 #include "kernel_headers.hpp"
 
 #if defined(__x86_64__) && !defined(__clang__)
 #pragma GCC push_options
 #pragma GCC target("avx512f,avx512bw,avx512dq,avx512vl,avx2,bmi,bmi2,popcnt")
-#define HALFPLANE_ISA 512
-#define HALFPLANE_ISA_NAME avx512
-#include "kernels.inl"
+#include "kernels/cull.inl"
+#include "kernels/cull_lines.inl"
+#include "kernels/project.inl"
+#include "kernels/raster.inl"
 #pragma GCC pop_options
 
 namespace halfplane::functional {

@@ -1,8 +1,10 @@
-#include "kernel_headers.hpp"
-
 #define HALFPLANE_ISA 128
 #define HALFPLANE_ISA_NAME portable
-#include "kernels.inl"
+#include "kernel_headers.hpp"
+#include "kernels/cull.inl"
+#include "kernels/cull_lines.inl"
+#include "kernels/project.inl"
+#include "kernels/raster.inl"
 
 namespace halfplane::functional {
 

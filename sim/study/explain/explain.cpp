@@ -12,6 +12,7 @@
 #include "model/engines/scalar.hpp"
 #include "model/golden/depth_format.hpp"
 #include "model/scene.hpp"
+#include "model/stages/fragment_ops.hpp"
 #include "model/stages/resolve.hpp"
 #include "model/widths.hpp"
 #include "sim/study/explain/history.hpp"

@@ -1,6 +1,14 @@
 // The state of a bin while its records are drawn: its pixels, what its tiles hold, what waits. Everything that follows
 // is functions over it.
-// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+#pragma once
+
+#include "leaf.inl"
+#include "line_setup.inl"
+#include "small_batch.inl"
+#include "small_setup.inl"
+
+namespace halfplane::functional::HALFPLANE_ISA_NAME {
+namespace {
 
 /// Lanes as places.
 struct LanePositions {
@@ -93,7 +101,7 @@ struct DrawnSurface {
   std::unique_ptr<StageSurface> stage;  ///< where lanes have not all that it takes
 };
 
-/// A triangle whose surface pixels show.
+/// A textured primitive that pixels show, and that is set up when the first of them is shaded.
 struct SeenSurface {
   const Slice* slice;
   const Record* record;
@@ -111,14 +119,14 @@ struct PieceGroup {
   alignas(64) SmallBatch::Lane left, top;
   std::uint32_t live;
   bool is_set_up;
-  std::uint32_t alone;                    ///< those that lanes have not set up, a bit each
+  std::uint32_t alone;                    ///< triangles that lanes cannot set up, a bit each: shaded as large ones are
   std::array<std::uint16_t, 16> surface;  ///< their numbers in BinMemory::seen
 };
 
 /// Four numbers of each piece of a group: column after column where a register of sixteen numbers can be asked for any of
 /// them, else piece after piece.
 struct alignas(64) PieceRow {
-  std::array<std::int32_t, 4 * 16> number{};
+  std::array<std::int32_t, std::size_t{4} * 16> number{};
 };
 
 /// What a pixel looks at of the piece that it shows; of a group.
@@ -142,19 +150,19 @@ struct PieceLevels {
 
 /// The pixels of a bin: tile after tile, block after block, row after row. And the triangles that have taken tiles.
 struct BinMemory {
-  static constexpr std::size_t kPlanes = 256;  ///< triangles that wait at most: more than two for each tile
-  alignas(64) std::array<std::int32_t, kBinSize * kBinSize> depth;  ///< this one or, where 16 bits suffice, the next
-  alignas(64) std::array<std::uint16_t, kBinSize * kBinSize> narrow_depth;
-  alignas(64) std::array<std::uint32_t, kBinSize * kBinSize> color;
+  static constexpr std::size_t kPlanes = 256;              ///< triangles that wait at most: more than two for each tile
+  alignas(64) std::array<std::int32_t, kBinPixels> depth;  ///< this one or, where 16 bits suffice, the next
+  alignas(64) std::array<std::uint16_t, kBinPixels> narrow_depth;
+  alignas(64) std::array<std::uint32_t, kBinPixels> color;
   alignas(64) std::array<BinTriangle, kPlanes> planes;
   static constexpr std::size_t kSurfaces = 8192;  ///< that wait at most: no more pixels than half of that show one
-  alignas(64) std::array<std::uint16_t, kBinSize * kBinSize> surface;  ///< into `seen`, 0: the colour is there
-  std::array<SeenSurface, kSurfaces> seen;                             ///< from 1 on
+  alignas(64) std::array<std::uint16_t, kBinPixels> surface;  ///< into `seen`, 0: the colour is there
+  std::array<SeenSurface, kSurfaces> seen;                    ///< from 1 on
   std::vector<DrawnSurface> drawn;
   // Pieces that wait, by group, from 1 on; a pixel of one has 16 times the group's number, its own, and this beside it.
   static constexpr std::size_t kFirstPiece = kSurfaces, kGroups = kSurfaces / 16;
   std::vector<PieceGroup> groups;         ///< kGroups, where there are any
-  std::vector<PieceConstants> constants;  ///< likewise; the first group is unused
+  std::vector<PieceConstants> constants;  ///< likewise; group 0 is unused
   std::vector<PieceLevels> levels;        ///< likewise, where a style asks
   std::vector<SurfaceStyle> styles;
 
@@ -169,27 +177,24 @@ using PixelsOfSamples = std::array<std::uint64_t, kMaxPixelSamples>;
 
 /// A triangle's part in a tile, which waits: cutouts.inl.
 struct Cutout {
-  std::int16_t plane;       ///< into BinMemory::planes
-  std::uint16_t low, high;  ///< range of its depths, where they wait
-  std::uint64_t centre;     ///< pixels that it covers there
+  std::int16_t plane;    ///< into BinMemory::planes
+  std::uint64_t centre;  ///< pixels of which it covers the centre
   PixelsOfSamples covered, passed;
 };
-/// Those of a tile, the last one on top.
+/// The cutouts of a tile, the last one on top.
 struct TileCutouts {
   static constexpr std::size_t kMost = 8;
   std::size_t count, first_depth;         ///< from first_depth on depths wait as well, if Bin::depth_owner says so
   std::int16_t color_below, depth_below;  ///< owners of what lies below
   bool is_split_below;
-  std::uint16_t low_below, high_below;  ///< range of the depths there
-  PixelsOfSamples below;                ///< what of it is seen, once drop_hidden() has said so
-  Cutout cutout[kMost];                 // GCC 12 takes an access to a std::array of these for one of another array
+  Cutout cutout[kMost];  // GCC 12 takes an access to a std::array of these for one of another array
 };
 
 /// What a bin keeps by sample where a pixel has several, each laid out as BinMemory is; colours of tiles that are split.
 struct SampleMemory {
-  alignas(64) std::int32_t depth[kMaxPixelSamples][kBinSize * kBinSize];
-  alignas(64) std::uint16_t narrow_depth[kMaxPixelSamples][kBinSize * kBinSize];
-  alignas(64) std::uint32_t color[kMaxPixelSamples][kBinSize * kBinSize];
+  alignas(64) std::int32_t depth[kMaxPixelSamples][kBinPixels];
+  alignas(64) std::uint16_t narrow_depth[kMaxPixelSamples][kBinPixels];
+  alignas(64) std::uint32_t color[kMaxPixelSamples][kBinPixels];
   TileCutouts cutouts[kBinTiles * kBinTiles];
 
   static SampleMemory& of_thread() {
@@ -201,13 +206,16 @@ struct SampleMemory {
 struct Bin {
   static constexpr int kTiles = kBinTiles * kBinTiles;
   // Who holds a tile's depths or colours; 0 and more: a triangle of BinMemory::planes.
-  static constexpr std::int32_t kInMemory = -1, kCleared = -2, kInTarget = -3,
-                                kSurfaces = -4,  ///< pixel by pixel: BinMemory::surface
-      kLayers = -5,                              ///< in memory, but for those that wait: layers.inl
-      kCutouts = -6;                             ///< SampleMemory::cutouts
+  static constexpr std::int16_t kInMemory = -1, kCleared = -2, kInTarget = -3;
+  static constexpr std::int16_t kSurfaces = -4;  ///< pixel by pixel: BinMemory::surface
+  static constexpr std::int16_t kLayers = -5;    ///< in memory, but for the layers that wait: layers.inl
+  static constexpr std::int16_t kCutouts = -6;   ///< SampleMemory::cutouts
 
-  explicit Bin(BinJob& job_)
+  using Compute = void (*)(Bin& bin, int tile);
+
+  Bin(BinJob& job_, Compute compute_deferred_)
       : job(job_),
+        compute_deferred(compute_deferred_),
         config(job.frame.config),
         widths(job.frame.widths),
         skip(job.frame.skip),
@@ -239,6 +247,7 @@ struct Bin {
   }
 
   BinJob& job;
+  Compute compute_deferred;  ///< colours of a tile of kSurfaces, kLayers, kCutouts or a textured primitive, to memory
   const Config& config;
   const Widths& widths;
   Skip skip;  ///< as far as it goes for the draw at work
@@ -264,12 +273,12 @@ struct Bin {
   bool tests_alpha = false;         ///< colours are not known to pass
   bool is_killed = false;           ///< they are known not to
   std::uint32_t drawn_samples = 1;  ///< of pixels, by the draw's mask, a bit each
-  bool is_back = false;             ///< the triangle at work shows its back, where somebody asks
+  bool is_back = false;             ///< the triangle at work shows its back; set for draws with a stencil
   [[nodiscard]] HALFPLANE_INLINE bool sees_surfaces() const { return state.has_surface && state.color_write; }
   std::int32_t low = 0, high = 0;  ///< range of its depths, or wider
   std::int32_t lowest_high = 0;    ///< of its tiles' upper bounds, or of earlier ones
   static constexpr std::int32_t kOpen = 1 << 16;
-  std::int32_t closed_from = kOpen;  ///< with the test less, all tiles hide this depth, and what is behind
+  std::int32_t closed_from = kOpen;  ///< with the test less, all tiles hide depths from here on
   const LanePositions& position = lane_positions();
   SmallBatch small;
   std::int32_t batch_surface = 0;     ///< the number of its first triangle's
@@ -281,15 +290,15 @@ struct Bin {
   std::size_t surface_count = 0;  ///< of BinMemory::seen
   std::size_t group_count = 0;    ///< of BinMemory::groups
   std::size_t layer_count = 0;    ///< of LayerMemory
-  bool is_range_old = true;       ///< low, high and lowest_high: found when somebody asks
-  /// Cutouts that others have hidden, less those whose colours somebody has asked for before the end: below zero, none wait.
+  bool is_range_old = true;       ///< low, high and lowest_high are to be found anew before use
+  /// Cutouts that later ones have hidden, less cutouts coloured before the end of the bin: from 0 down, no new cutout is kept.
   int cutouts_saved = 1;
   std::uint64_t split = 0;      ///< tiles of which the samples of a pixel may differ in colour
   std::uint64_t in_memory = 0;  ///< tiles whose depths and colours are in memory, as far as small triangles know
   std::array<std::uint8_t, kTiles> touches{};  ///< of each tile by batches, since its range was found
   alignas(64) std::array<std::int16_t, kTiles> depth_owner, color_owner;
   // What a clear leaves, to be read as if it were in memory: of a tile where 16 bits suffice, of a block.
-  alignas(64) std::array<std::uint16_t, kTileSize * kTileSize> cleared_depths;
+  alignas(64) std::array<std::uint16_t, kTilePixels> cleared_depths;
   alignas(64) std::array<std::uint32_t, kBlockPixels> cleared_colors;
 };
 
@@ -309,8 +318,19 @@ HALFPLANE_INLINE std::uint64_t tiles_of(const BinBounds& box) {
   return row * ((kColumn >> (56 - last)) & (~std::uint64_t{0} << above));
 }
 
+/// The tiles that lie in a box as a whole.
+inline std::uint64_t tiles_inside(const BinBounds& box) {
+  const auto round_up = [](int at) { return (at + kTileSize - 1) & -kTileSize; };
+  const BinBounds inner{round_up(box.left), round_up(box.top), ((box.right + 1) & -kTileSize) - 1,
+                        ((box.bottom + 1) & -kTileSize) - 1};
+  return inner.left > inner.right || inner.top > inner.bottom ? 0 : tiles_of(inner);
+}
+
 /// The part of a record's box that lies in the bin.
 HALFPLANE_INLINE BinBounds box_of(const Bin& bin, const Record& record) {
   return {std::max(record.left() - bin.first_x, 0), std::max(record.top() - bin.first_y, 0),
           std::min(record.right() - bin.first_x, kBinSize - 1), std::min(record.bottom() - bin.first_y, kBinSize - 1)};
 }
+
+}  // namespace
+}  // namespace halfplane::functional::HALFPLANE_ISA_NAME

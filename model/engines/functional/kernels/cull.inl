@@ -1,3 +1,12 @@
+// Triangles, sixteen at a time: which are drawn, and their records.
+#pragma once
+
+#include "lane_memory.inl"
+#include "leaf.inl"
+
+namespace halfplane::functional::HALFPLANE_ISA_NAME {
+namespace {
+
 /// Sixteen snapped vertices.
 struct SnappedLanes {
   I16 x, y, z, rgba;
@@ -7,14 +16,14 @@ struct SnappedLanes {
   HALFPLANE_INLINE SnappedLanes(const SnappedLanes& v) : SnappedLanes(v.x, v.y, v.z, v.rgba) {}
 };
 
-/// Lane i: the one at row_at(i).
+/// Lane i: the vertex at row_at(i).
 template <class RowAt>
 HALFPLANE_INLINE SnappedLanes load_vertices(RowAt&& row_at) {
   const auto [x, y, z, rgba] = turned_rows(row_at);
   return {x, y, z, rgba};
 }
 
-/// Those that `index` names.
+/// The vertices that `index` names.
 HALFPLANE_INLINE SnappedLanes load_rows(const VertexRow* vertices, const std::int32_t* index) {
   return load_vertices([=](int i) HALFPLANE_LAMBDA { return vertices + index[i]; });
 }
@@ -232,7 +241,7 @@ struct CullLanes {
     load_corners(t);
     const SampleLanes few = find_drawn(t, sets);
     count(sets);
-    // Culled, but nobody may leave it out: it is taken along as far as there is a pixel to look at.
+    // Culled, but Skip forbids to leave it out: its record goes on if its box holds a pixel.
     const std::uint32_t dropped = ((frame.skip.zero_area ? 0 : sets.zero) | (frame.skip.backface ? 0 : sets.culled)) &
                                   ~bits_of((t.left > t.right) | (t.top > t.bottom));
     alignas(64) Records records;
@@ -273,3 +282,6 @@ static void cull(const FrameContext& frame, Slice& slice, SlowPath slow) {
       number += count;
     }
 }
+
+}  // namespace
+}  // namespace halfplane::functional::HALFPLANE_ISA_NAME

@@ -1,5 +1,12 @@
 // Lines, sixteen at a time: what stages/line_setup makes of one, up to the columns that it covers, and their culling.
-// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+#pragma once
+
+#include "cull.inl"
+#include "lane_memory.inl"
+#include "leaf.inl"
+
+namespace halfplane::functional::HALFPLANE_ISA_NAME {
+namespace {
 
 /// How the lines of a draw end.
 struct LineRules {
@@ -17,7 +24,7 @@ struct LineRules {
 struct OctantLanes {
   I16 is_x_major, is_major_negative, is_minor_negative;
   I16 a0, b0, a1, b1;  ///< subpixels: the start, the end
-  I16 D, d;            ///< differences, D >= 1
+  I16 major, minor;    ///< from the start to the end, subpixels; major >= 1
   I16 first, end;
 
   HALFPLANE_INLINE OctantLanes(const I16& from_x, const I16& from_y, const I16& to_x, const I16& to_y,
@@ -36,8 +43,8 @@ struct OctantLanes {
     a1 = turned(a1, is_major_negative);
     b0 = turned(b0, is_minor_negative);
     b1 = turned(b1, is_minor_negative);
-    D = max(a1 - a0, I16(1));
-    d = b1 - b0;
+    major = max(a1 - a0, I16(1));
+    minor = b1 - b0;
     if (rules.is_diamond) {
       first = exit_column(a0, b0, s);
       end = exit_column(a1, b1, s);
@@ -49,7 +56,7 @@ struct OctantLanes {
 
   /// Whether a tie between two rows takes the later one.
   [[nodiscard]] HALFPLANE_INLINE I16 tie_moves(const LineRules& rules) const {
-    const I16 of_x_major = rules.is_diamond ? ~is_major_negative & (d != 0) : is_major_negative;
+    const I16 of_x_major = rules.is_diamond ? ~is_major_negative & (minor != 0) : is_major_negative;
     return select(is_x_major, of_x_major, is_minor_negative);
   }
 
@@ -128,3 +135,6 @@ static void cull_lines(const FrameContext& frame, Slice& slice, SlowPath slow) {
       }
     }
 }
+
+}  // namespace
+}  // namespace halfplane::functional::HALFPLANE_ISA_NAME

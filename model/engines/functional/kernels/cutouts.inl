@@ -1,10 +1,18 @@
-// Cutouts: deferred fragments of partially covered tiles, where pixels have several samples. Their colours are deferred. A
-// tile keeps its last cutouts, each as the number of its triangle and the samples that have passed, a bit each; one that others
-// hide sample by sample is dropped, and only of what is left colours are computed, once a pixel and cutout, mostly at the end of
-// the bin. Of a cutout in front of all that the tile has even the depths wait: what it covers passes, and nobody needs them.
+// Cutouts, where pixels have several samples: the part of a triangle in a tile that its edges cut, kept for later. A tile
+// keeps up to eight of them, each as the number of its triangle and the samples that have passed, a bit each. Later cutouts
+// hide earlier ones sample by sample; one of which nothing is left is dropped. Colours are computed once for each pixel and
+// remaining cutout, mostly at the end of the bin. Depths of a cutout in front of all that the tile holds wait as well.
 //
-// Such a tile has Bin::kCutouts as the owner of its colours, or of both, and is split. What lies below has the owner that it had.
-// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+// Such a tile has Bin::kCutouts as the owner of its colours, or of colours and depths, and is split. What lies below keeps
+// the owner that it had.
+#pragma once
+
+#include "bin.inl"
+#include "tile_memory.inl"
+#include "values.inl"
+
+namespace halfplane::functional::HALFPLANE_ISA_NAME {
+namespace {
 
 /// Of a pixel: known when compiled, or 0.
 template <unsigned kSamples>
@@ -18,7 +26,7 @@ HALFPLANE_INLINE void store_samples(const Bin& bin, int tile, const PixelsOfSamp
                                     const I16& color) {
   std::uint32_t* const to = bin.sample_memory.color[0] + first_of(tile) + block * kBlockPixels;
   for (unsigned k = 0; k < samples_of<kSamples>(bin); ++k) {
-    std::uint32_t* const at_sample = to + k * std::size_t{kBinSize * kBinSize};
+    std::uint32_t* const at_sample = to + k * kBinPixels;
     select_by_bits(block_bits(passed[k], block), color, I16::load(at_sample), bin.position.to_sign).store(at_sample);
   }
 }
@@ -43,10 +51,6 @@ struct ColorSums {
     outer += outer_of(color);
     inner += inner_of(color);
   }
-  HALFPLANE_INLINE void add(const I16& color, const I16& count) {
-    outer += outer_of(color) * count;
-    inner += inner_of(color) * count;
-  }
   HALFPLANE_INLINE I16 mean(const Bin& bin) const {
     const int log = std::countr_zero(bin.samples);
     const std::int32_t code = is_short ? 0x1f : 0xff;
@@ -62,7 +66,7 @@ template <unsigned kSamples>
 struct SampledColors {
   Bin& bin;
   const BinTriangle& t;
-  std::array<ChannelPairs, kMaxPixelSamples> gain;  ///< from the centre to each sample: once somebody asks
+  std::array<ChannelPairs, kMaxPixelSamples> gain;  ///< from the centre to each sample, if has_gains
   bool has_gains = false;
 
   HALFPLANE_INLINE SampledColors(Bin& bin_, const BinTriangle& t_) : bin(bin_), t(t_) {}
@@ -74,7 +78,7 @@ struct SampledColors {
     return gain[m];
   }
 
-  /// Those of a block's pixels `any`. `plane`: at the centres; where `centre` is not, they are from the first that is `covered`.
+  /// Colours of a block's pixels `any`: at the centre, or where that is not covered at the first covered sample.
   HALFPLANE_INLINE I16 of_block(const ColorRamp& plane, std::uint64_t centre, const PixelsOfSamples& covered,
                                 std::size_t block, std::uint32_t any, ColorFormat format) {
     I16 color = block_colors(t.color, plane, block, bin.color_format, format);
@@ -93,7 +97,7 @@ struct SampledColors {
     return color;
   }
 
-  /// To the samples that have passed, of whose pixels `any` are.
+  /// Stores colours to the samples that have passed. `any`: pixels with such a sample.
   HALFPLANE_INLINE void store(int tile, std::uint64_t centre, const PixelsOfSamples& covered,
                               const PixelsOfSamples& passed, std::uint64_t any) {
     const ColorRamp plane = color_ramp(bin, t.color, color_anchor(bin, t, tile % kBinTiles, tile / kBinTiles));
@@ -106,18 +110,11 @@ struct SampledColors {
   }
 };
 
-/// A triangle among those that wait.
-HALFPLANE_INLINE std::int16_t add_plane(Bin& bin, const BinTriangle& t) {
-  if (bin.plane_count == BinMemory::kPlanes) drop_planes(bin);
-  bin.memory.planes[bin.plane_count] = t;
-  return static_cast<std::int16_t>(bin.plane_count++);
-}
-
-/// Takes the samples out of a tile's cutouts that later ones hide, and cutouts of which nothing is left. Returns whether anything
-/// of what lies below them is seen.
+/// Takes hidden samples out of a tile's cutouts, and cutouts of which nothing is left. Returns whether a sample below them is
+/// visible.
 template <unsigned kSamples>
 HALFPLANE_NOINLINE bool drop_hidden(Bin& bin, TileCutouts& cutouts) {
-  PixelsOfSamples& seen = cutouts.below;
+  PixelsOfSamples seen;
   for (unsigned k = 0; k < samples_of<kSamples>(bin); ++k) seen[k] = ~std::uint64_t{0};
   std::array<std::uint64_t, TileCutouts::kMost> any;
   for (std::size_t i = cutouts.count; i-- != 0;) {
@@ -148,13 +145,13 @@ HALFPLANE_NOINLINE bool drop_hidden(Bin& bin, TileCutouts& cutouts) {
   return below != 0;
 }
 
-/// Depths of a tile's cutouts at the first `samples`: in memory. With all of them nothing waits any longer.
+/// Depths of a tile's cutouts: in memory.
 template <unsigned kSamples>
-HALFPLANE_NOINLINE void store_depths_of_cutouts(Bin& bin, int tile, unsigned samples) {
+HALFPLANE_NOINLINE void store_depths_of_cutouts(Bin& bin, int tile) {
   TileCutouts& cutouts = bin.sample_memory.cutouts[tile];
   (void)drop_hidden<kSamples>(bin, cutouts);
   bin.depth_owner[tile] = cutouts.depth_below;
-  for (unsigned k = 0; k < samples; ++k) {
+  for (unsigned k = 0; k < samples_of<kSamples>(bin); ++k) {
     std::uint64_t below = ~std::uint64_t{0};
     for (std::size_t i = cutouts.first_depth; i < cutouts.count; ++i) below &= ~cutouts.cutout[i].passed[k];
     if (below != 0 && cutouts.depth_below != Bin::kInMemory) {
@@ -167,7 +164,7 @@ HALFPLANE_NOINLINE void store_depths_of_cutouts(Bin& bin, int tile, unsigned sam
     const Cutout& cutout = cutouts.cutout[i];
     const BinTriangle& t = bin.memory.planes[static_cast<std::size_t>(cutout.plane)];
     const std::int32_t anchor = depth_anchor(bin, t, tile % kBinTiles, tile / kBinTiles);
-    for (unsigned k = 0; k < samples; ++k) {
+    for (unsigned k = 0; k < samples_of<kSamples>(bin); ++k) {
       const BlockRamp<I16> plane = depth_ramp(bin, t, wrapped_sum(anchor, depth_at_sample(bin, t, k)));
       for_each_block([&](auto block) HALFPLANE_LAMBDA {
         const std::uint32_t passed = block_bits(cutout.passed[k], block);
@@ -181,16 +178,16 @@ HALFPLANE_NOINLINE void store_depths_of_cutouts(Bin& bin, int tile, unsigned sam
   }
   cutouts.first_depth = cutouts.count;
   bin.depth_owner[tile] = Bin::kInMemory;
-  if (samples == bin.samples) find_sample_range(bin, tile);
+  find_sample_range(bin, tile);
 }
-HALFPLANE_INLINE void store_cutout_depths(Bin& bin, int tile, unsigned samples) {
-  bin.samples == 4 ? store_depths_of_cutouts<4>(bin, tile, samples) : store_depths_of_cutouts<0>(bin, tile, samples);
+HALFPLANE_INLINE void store_cutout_depths(Bin& bin, int tile) {
+  bin.samples == 4 ? store_depths_of_cutouts<4>(bin, tile) : store_depths_of_cutouts<0>(bin, tile);
 }
 
 /// Depths of the samples of a tile: in memory.
 HALFPLANE_NOINLINE void need_sample_depths(Bin& bin, int tile) {
   if (bin.depth_owner[tile] == Bin::kInMemory) return;
-  if (bin.depth_owner[tile] == Bin::kCutouts) return store_cutout_depths(bin, tile, bin.samples);
+  if (bin.depth_owner[tile] == Bin::kCutouts) return store_cutout_depths(bin, tile);
   for (unsigned k = 0; k < bin.samples; ++k) {
     const TileBlocks blocks = sample_depths(bin, tile, k);
     for (std::size_t i = 0; i < 4; ++i)
@@ -245,74 +242,40 @@ HALFPLANE_NOINLINE void color_cutouts(Bin& bin, int tile) {
   bin.samples == 4 ? split_cutouts<4>(bin, tile) : split_cutouts<0>(bin, tile);
 }
 
-/// The same of the pixels alone, each the mean of its samples: of these nobody wants to know more. The tile is whole.
-template <unsigned kSamples>
-HALFPLANE_NOINLINE void resolve_cutouts(Bin& bin, int tile) {
-  TileCutouts& cutouts = bin.sample_memory.cutouts[tile];
-  const bool has_below = drop_hidden<kSamples>(bin, cutouts);
-  if (has_below && (cutouts.is_split_below || cutouts.color_below == Bin::kInTarget)) return color_cutouts(bin, tile);
-  std::uint32_t* const to = bin.memory.color.data() + first_of(tile);
-  ColorSums sums[4] = {ColorSums(bin), ColorSums(bin), ColorSums(bin), ColorSums(bin)};
-  unsigned done = 0;
-  const auto add = [&](const PixelsOfSamples& seen, auto&& color_of) HALFPLANE_LAMBDA {
-    for_each_block([&](auto block) HALFPLANE_LAMBDA {
-      I16 count(0);
-      std::uint32_t any = 0, all = 0xffff;
-      for (unsigned k = 0; k < samples_of<kSamples>(bin); ++k) {
-        const std::uint32_t bits = block_bits(seen[k], block);
-        any |= bits;
-        all &= bits;
-        count = select_by_bits(bits, count + 1, count, bin.position.to_sign);
-      }
-      if (any == 0) return;
-      const I16 color = color_of(block, any);
-      if (all == 0xffff) {
-        color.store(to + block * kBlockPixels);
-        done |= 1U << block;
-      } else {
-        sums[block].add(color, count);
-      }
-    });
-  };
-  bin.split &= ~(std::uint64_t{1} << tile);
-  if (has_below) {
-    bin.color_owner[tile] = cutouts.color_below;
-    need_color(bin, tile);
-    add(cutouts.below,
-        [&](std::size_t block, std::uint32_t) HALFPLANE_LAMBDA { return I16::load(to + block * kBlockPixels); });
-  }
-  bin.color_owner[tile] = Bin::kInMemory;
-  for (std::size_t i = 0; i < cutouts.count; ++i) {
-    const Cutout& cutout = cutouts.cutout[i];
-    const BinTriangle& t = bin.memory.planes[static_cast<std::size_t>(cutout.plane)];
-    SampledColors<kSamples> colors(bin, t);
-    const ColorRamp plane = color_ramp(bin, t.color, color_anchor(bin, t, tile % kBinTiles, tile / kBinTiles));
-    add(cutout.passed, [&](std::size_t block, std::uint32_t any) HALFPLANE_LAMBDA {
-      return colors.of_block(plane, cutout.centre, cutout.covered, block, any, bin.config.color_format);
-    });
-  }
-  for_each_block([&](auto block) HALFPLANE_LAMBDA {
-    if ((done >> block & 1) == 0) sums[block].mean(bin).store(to + block * kBlockPixels);
-  });
-}
-
 /// No cutout waits any longer.
 HALFPLANE_NOINLINE void finish_cutouts(Bin& bin) {
   for (int tile = 0; tile < Bin::kTiles; ++tile) {
-    if (bin.depth_owner[tile] == Bin::kCutouts) store_cutout_depths(bin, tile, bin.samples);
+    if (bin.depth_owner[tile] == Bin::kCutouts) store_cutout_depths(bin, tile);
     if (bin.color_owner[tile] == Bin::kCutouts) color_cutouts(bin, tile);
   }
 }
-/// The same at the end, where nobody wants more of a pixel than what it shows.
-HALFPLANE_NOINLINE void resolve_all_cutouts(Bin& bin) {
-  for (int tile = 0; tile < Bin::kTiles; ++tile) {
-    if (bin.depth_owner[tile] == Bin::kCutouts) store_cutout_depths(bin, tile, 1);
-    if (bin.color_owner[tile] == Bin::kCutouts)
-      bin.samples == 4 ? resolve_cutouts<4>(bin, tile) : resolve_cutouts<0>(bin, tile);
+/// Forgets the triangles of which no tile is left.
+HALFPLANE_NOINLINE void drop_planes(Bin& bin) {
+  if (bin.samples > 1) finish_cutouts(bin);
+  std::array<std::int16_t, BinMemory::kPlanes> moved;
+  moved.fill(-1);
+  for (const auto* owners : {&bin.depth_owner, &bin.color_owner})
+    for (const std::int16_t owner : *owners)
+      if (owner >= 0) moved[static_cast<std::size_t>(owner)] = 0;
+  bin.plane_count = 0;
+  for (std::size_t i = 0; i < BinMemory::kPlanes; ++i) {
+    if (moved[i] < 0) continue;
+    moved[i] = static_cast<std::int16_t>(bin.plane_count);
+    bin.memory.planes[bin.plane_count++] = bin.memory.planes[i];
   }
+  for (auto* owners : {&bin.depth_owner, &bin.color_owner})
+    for (std::int16_t& owner : *owners)
+      if (owner >= 0) owner = moved[static_cast<std::size_t>(owner)];
 }
 
-/// What a triangle covers of a tile, and what of that has passed the depth test: a bit a pixel.
+/// The number of one more triangle that waits.
+HALFPLANE_INLINE std::int16_t add_plane(Bin& bin, const BinTriangle& t) {
+  if (bin.plane_count == BinMemory::kPlanes) drop_planes(bin);
+  bin.memory.planes[bin.plane_count] = t;
+  return static_cast<std::int16_t>(bin.plane_count++);
+}
+
+/// The samples of a tile that a triangle covers, and those of them that have passed the depth test: a bit a pixel.
 struct SamplePixels {
   std::uint64_t centre = ~std::uint64_t{0};
   PixelsOfSamples covered, passed;
@@ -345,7 +308,7 @@ HALFPLANE_INLINE void add_cutout(Bin& bin, int tile, std::int16_t plane, const S
     if (cutouts.count == TileCutouts::kMost) color_cutouts(bin, tile);
   }
   const bool begins = bin.color_owner[tile] != Bin::kCutouts;
-  if (bin.depth_owner[tile] == Bin::kCutouts && (begins || !has_depth)) store_cutout_depths(bin, tile, bin.samples);
+  if (bin.depth_owner[tile] == Bin::kCutouts && (begins || !has_depth)) store_cutout_depths(bin, tile);
   if (begins) {
     if (is_waiting(bin, tile) || bin.color_owner[tile] == Bin::kLayers) need_color(bin, tile);
     cutouts.count = cutouts.first_depth = 0;
@@ -358,8 +321,6 @@ HALFPLANE_INLINE void add_cutout(Bin& bin, int tile, std::int16_t plane, const S
   if (has_depth && bin.depth_owner[tile] != Bin::kCutouts) {
     cutouts.depth_below = bin.depth_owner[tile];
     cutouts.first_depth = cutouts.count;
-    cutouts.low_below = bin.tile_low[tile];
-    cutouts.high_below = bin.tile_high[tile];
     bin.depth_owner[tile] = Bin::kCutouts;
   }
   Cutout& cutout = cutouts.cutout[cutouts.count++];
@@ -370,59 +331,14 @@ HALFPLANE_INLINE void add_cutout(Bin& bin, int tile, std::int16_t plane, const S
     cutout.passed[k] = pixels.passed[k];
   }
   if (!has_depth) return;
-  cutout.low = range->low;
-  cutout.high = range->high;
   bin.tile_low[tile] = std::min(bin.tile_low[tile], range->low);
   bin.tile_high[tile] = std::max(bin.tile_high[tile], range->high);
-}
-
-/// What of a triangle passes the test less in a tile whose depths wait, where ranges say it: it is compared with the cutout that
-/// is on top, sample by sample. False where they do not.
-template <unsigned kSamples>
-HALFPLANE_INLINE bool passes_by_ranges(Bin& bin, int tile, const CutoutRange& range, SamplePixels& pixels) {
-  const TileCutouts& cutouts = bin.sample_memory.cutouts[tile];
-  const std::uint16_t touch = bin.range_bits_dropped != 0 ? 1 : 0;
-  PixelsOfSamples rest, below;
-  for (unsigned k = 0; k < samples_of<kSamples>(bin); ++k) {
-    rest[k] = pixels.passed[k];
-    below[k] = ~std::uint64_t{0};
-  }
-  std::uint16_t highest = 0;
-  const auto decide = [&](std::uint64_t any, std::uint16_t low, std::uint16_t high, auto&& fail) HALFPLANE_LAMBDA {
-    if (any == 0 || range.high < low) return true;
-    if (range.low < high + touch) return false;
-    fail();
-    return true;
-  };
-  for (std::size_t i = cutouts.count; i-- != cutouts.first_depth;) {
-    const Cutout& cutout = cutouts.cutout[i];
-    PixelsOfSamples here;
-    std::uint64_t any = 0;
-    for (unsigned k = 0; k < samples_of<kSamples>(bin); ++k) {
-      here[k] = rest[k] & cutout.passed[k];
-      rest[k] &= ~cutout.passed[k];
-      below[k] &= ~cutout.passed[k];
-      any |= here[k];
-    }
-    highest = std::max(highest, cutout.high);
-    const bool is_decided = decide(any, cutout.low, cutout.high, [&]() HALFPLANE_LAMBDA {
-      for (unsigned k = 0; k < samples_of<kSamples>(bin); ++k) pixels.passed[k] &= ~here[k];
-    });
-    if (!is_decided) return false;
-  }
-  std::uint64_t any = 0, any_below = 0;
-  for (unsigned k = 0; k < samples_of<kSamples>(bin); ++k) {
-    any |= rest[k];
-    any_below |= below[k];
-  }
-  // Nothing of what lies below is seen: who is behind all of them need not come here again.
-  if (any_below == 0) bin.tile_high[tile] = std::min(bin.tile_high[tile], highest);
-  return decide(any, cutouts.low_below, cutouts.high_below, [&]() HALFPLANE_LAMBDA {
-    for (unsigned k = 0; k < samples_of<kSamples>(bin); ++k) pixels.passed[k] &= ~rest[k];
-  });
 }
 
 /// Ranges of a triangle's depths in a bin's tiles.
 struct TileBounds {
   alignas(64) std::array<std::uint16_t, Bin::kTiles> low, high;
 };
+
+}  // namespace
+}  // namespace halfplane::functional::HALFPLANE_ISA_NAME

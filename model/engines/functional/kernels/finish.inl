@@ -1,5 +1,15 @@
 // The end of a bin: everything that is new goes to the target, a row of tiles at a time.
-// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+#pragma once
+
+#include "bin.inl"
+#include "cutouts.inl"
+#include "deferred.inl"
+#include "layers.inl"
+#include "tile_memory.inl"
+#include "values.inl"
+
+namespace halfplane::functional::HALFPLANE_ISA_NAME {
+namespace {
 
 inline int tiles_along(int pixels) { return std::min((pixels + kTileSize - 1) / kTileSize, kBinTiles); }
 
@@ -9,7 +19,7 @@ using PixelRows = std::array<std::array<std::uint32_t, kBinSize>, kTileSize>;
 using TileOwners = std::array<std::int16_t, Bin::kTiles>;
 
 /// The row of tiles that begins with `first`. `cleared`: what is no longer pending where they were written.
-/// `blocks_of(tile)`: its values; `write_rows(left, right, tile, rows)`: those of two that triangles have taken.
+/// `blocks_of(tile)`: a tile's values; `write_rows(left, right, tile, rows)`: those of two tiles that triangles have taken.
 template <class BlocksOf, class WriteRows>
 HALFPLANE_INLINE void finish_row(Bin& bin, int first, int columns, std::uint32_t* image, const TileOwners& owners,
                                  std::uint8_t cleared, BlocksOf&& blocks_of, WriteRows&& write_rows) {
@@ -30,7 +40,8 @@ HALFPLANE_INLINE void finish_row(Bin& bin, int first, int columns, std::uint32_t
       if ((is_new >> at & 1) == 0) continue;
       const TileBlocks blocks = blocks_of(first + at);
       for (std::size_t half = 0; half < 2; ++half)
-        store_blocks(rows[half * kBlockSize].data() + at * kTileSize, kBinSize, blocks[2 * half], blocks[2 * half + 1]);
+        store_blocks(rows[half * kBlockSize].data() + std::ptrdiff_t{at} * kTileSize, kBinSize, blocks[2 * half],
+                     blocks[2 * half + 1]);
     }
   }
   const std::size_t first_tile = static_cast<std::size_t>(bin.job.bin * Bin::kTiles + first);
@@ -39,7 +50,7 @@ HALFPLANE_INLINE void finish_row(Bin& bin, int first, int columns, std::uint32_t
     bin.job.tiles.pending[at] &= static_cast<std::uint8_t>(~cleared);
     bin.job.tiles.held[at] &= static_cast<std::uint8_t>(~cleared);
   }
-  const int stride = bin.job.target.stride;
+  const std::ptrdiff_t stride = bin.job.target.stride;
   const std::uint32_t in_lines = bin.are_lines ? is_new & is_new >> 1 & 0x55 : 0, alone = is_new & ~(in_lines * 3);
   for (int y = 0; y < kTileSize; ++y) {
     const std::uint32_t* from = rows[static_cast<std::size_t>(y)].data();
@@ -128,7 +139,7 @@ HALFPLANE_INLINE TileBlocks sample_colors(const Bin& bin, int tile, unsigned k) 
   return blocks;
 }
 
-/// A row of tiles whose pixels have several samples: the pixels' images, and those of the samples where somebody wants them.
+/// A row of tiles whose pixels have several samples: the resolved images, and with BinJob::keeps_samples those of the samples.
 HALFPLANE_NOINLINE void finish_samples(Bin& bin, int first, int columns) {
   const auto color_rows = [&bin](auto&&... of) HALFPLANE_LAMBDA { write_color_rows(bin, of...); };
   const auto write = [&](Framebuffer& to, unsigned depth_of, unsigned color_of) {
@@ -156,7 +167,7 @@ inline void finish(Bin& bin) {
   const int columns = tiles_along(bin.job.target.width - bin.first_x),
             rows = tiles_along(bin.job.target.height - bin.first_y);
   if (bin.samples > 1) {
-    bin.job.keeps_samples ? finish_cutouts(bin) : resolve_all_cutouts(bin);
+    finish_cutouts(bin);
     for (int row = 0; row < rows; ++row) finish_samples(bin, row * kBinTiles, columns);
     finish_lines();
     return;
@@ -175,3 +186,6 @@ inline void finish(Bin& bin) {
   }
   finish_lines();
 }
+
+}  // namespace
+}  // namespace halfplane::functional::HALFPLANE_ISA_NAME

@@ -1,13 +1,18 @@
-// What a draw needs of its fragments, as a policy: a type whose functions compare, and say what may be left out.
+// The depth test as a policy: a type that compares depths with what is stored, and says which tiles may be skipped.
 //
-//   opaque   what passes replaces what is stored, what fails leaves no trace. So a tile that lies behind may be left
-//            out, one in front may be taken whole, and blocks are drawn lane by lane.
+//   opaque   what passes replaces what is stored, what fails leaves no trace. So a hidden tile may be skipped,
+//            a tile in front may be taken as a whole, and blocks are drawn lane by lane.
 //   general  anything else: fragment by fragment through the scalar operations, out of line, nothing left out
 //            (general.inl). What blending, masks and the alpha test ask of triangles is in lanes too (operations.inl).
-//
-// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+#pragma once
 
-/// What the alpha test has dropped of fragments that count as passed.
+#include "bin.inl"
+#include "tile_memory.inl"
+
+namespace halfplane::functional::HALFPLANE_ISA_NAME {
+namespace {
+
+/// Counts fragments that have passed the depth test and fail the alpha test.
 inline void count_killed(Bin& bin, std::uint64_t killed) {
   bin.job.counters.alpha_killed += killed;
   if (bin.ops->state.writes()) bin.job.counters.written -= killed;
@@ -122,8 +127,8 @@ struct OpaqueFragments {
 
     HALFPLANE_INLINE explicit Writer(Bin& bin) : state(bin.state), depths(bin), pixels(bin.memory.color.data()) {}
 
-    /// Tests and writes the first `count`. Returns how many passed. What fails is stored as it was: which do, nobody
-    /// can foresee.
+    /// Tests and writes the first `count`; returns how many passed. A fragment that fails stores the old value: a branch
+    /// would be mispredicted.
     HALFPLANE_INLINE unsigned operator()(const FragmentLanes& fragments, int count) const {
       unsigned passed_pixels = 0;
       for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
@@ -145,7 +150,7 @@ struct GeneralFragments {
   /// A colour's codes, R lowest: packed when they are written.
   HALFPLANE_INLINE static ColorFormat format(const Config&) { return ColorFormat::rgba8888; }
 
-  /// Those whose bit is set, one after the other. Returns how many passed.
+  /// Draws the fragments whose bit is set, one after the other. Returns how many passed.
   HALFPLANE_NOINLINE static unsigned draw_some(Bin& bin, const FragmentLanes& fragments, std::uint32_t covered) {
     const DepthPixels depths(bin);
     unsigned passed = 0, killed = 0;
@@ -189,3 +194,6 @@ inline void count_fragments(Bin& bin, std::uint64_t covered, std::uint64_t passe
   if (bin.ops->state.writes()) counters.written += passed;
   if (bin.skip.fragments_early_z) counters.skipped.fragments_early_z += covered - passed;
 }
+
+}  // namespace
+}  // namespace halfplane::functional::HALFPLANE_ISA_NAME

@@ -1,7 +1,17 @@
 // Fragments that ask for more than opaque ones do, and for more than operations.inl has: one by one, tile after tile, nothing
 // left out or put off. Whatever the size of a triangle it is set up by itself. Of draws with a stencil;
 // RenderOptions::general_fragments takes it for all.
-// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+#pragma once
+
+#include "bin.inl"
+#include "fragments.inl"
+#include "lines.inl"
+#include "setup.inl"
+#include "tile_memory.inl"
+#include "values.inl"
+
+namespace halfplane::functional::HALFPLANE_ISA_NAME {
+namespace {
 
 /// The part of a triangle in one tile. `edge`: at the tile's first pixel.
 HALFPLANE_NOINLINE void draw_tile_general(Bin& bin, const BinTriangle& t, int tile,
@@ -29,7 +39,7 @@ HALFPLANE_NOINLINE void draw_tile_general(Bin& bin, const BinTriangle& t, int ti
     covered_pixels += static_cast<unsigned>(std::popcount(covered));
     passed_pixels += GeneralFragments::draw_some(bin, fragments, covered);
   }
-  bin.job.counters.samples_tested += kTileSize * kTileSize;
+  bin.job.counters.samples_tested += kTilePixels;
   count_fragments(bin, covered_pixels, passed_pixels);
   if (bin.state.depth_write && passed_pixels != 0) find_range(bin, tile);
 }
@@ -78,3 +88,6 @@ HALFPLANE_NOINLINE void draw_records_general(Bin& bin, const Slice& slice, const
   }
   draw_lines<GeneralFragments>(bin, slice);
 }
+
+}  // namespace
+}  // namespace halfplane::functional::HALFPLANE_ISA_NAME

@@ -1,5 +1,10 @@
-// Lanes to bits, to one number, to memory and back.
-// One room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+// Lanes to bits and to one number, and moves between lanes.
+#pragma once
+
+#include "lanes.inl"
+
+namespace halfplane::functional::HALFPLANE_ISA_NAME {
+namespace {
 
 /// One bit for each lane whose sign bit is set.
 HALFPLANE_LEAF std::uint32_t bits_of(const I16& mask) {
@@ -49,13 +54,13 @@ HALFPLANE_LEAF std::uint64_t or_of_bits(const I16& bits, const I16& by, std::uin
 }
 
 #if HALFPLANE_ISA == 512
-/// Those of sixteen bits where a < b. Not by way of a mask in lanes, as GCC takes bits_of().
+/// `bits` where a < b. Straight to a mask register: by way of bits_of() GCC makes lanes first.
 HALFPLANE_LEAF std::uint32_t bits_below(std::uint32_t bits, const I16& a, const I16& b) {
   return _mm512_mask_cmplt_epi32_mask(static_cast<__mmask16>(bits), (__m512i)a.part[0], (__m512i)b.part[0]);
 }
 #endif
 
-/// Sixteen numbers of four bits, one behind the other.
+/// Sixteen numbers of four bits, packed; lane 0 lowest.
 HALFPLANE_LEAF std::uint64_t nibbles_of(const I16& values) {
   const I16 placed = values << I16::of([](int i) { return 4 * (i % 8); });
 #if HALFPLANE_ISA == 512
@@ -63,7 +68,7 @@ HALFPLANE_LEAF std::uint64_t nibbles_of(const I16& values) {
   const auto low = static_cast<std::uint32_t>(_mm512_mask_reduce_or_epi32(0x00ff, all)),
              high = static_cast<std::uint32_t>(_mm512_mask_reduce_or_epi32(0xff00, all));
 #else
-  typedef std::int32_t Four __attribute__((vector_size(16)));
+  using Four __attribute__((vector_size(16))) = std::int32_t;
 #if HALFPLANE_ISA == 256
   const auto half = [&placed](int i) HALFPLANE_LAMBDA {
     constexpr auto kFour = std::make_index_sequence<4>{};
@@ -71,7 +76,7 @@ HALFPLANE_LEAF std::uint64_t nibbles_of(const I16& values) {
     return lanes_from<Four, 0>(eight, eight, kFour) | lanes_from<Four, 4>(eight, eight, kFour);
   };
 #else
-  const auto half = [&placed](int i) HALFPLANE_LAMBDA { return placed.part[2 * i] | placed.part[2 * i + 1]; };
+  const auto half = [&placed](std::size_t i) HALFPLANE_LAMBDA { return placed.part[2 * i] | placed.part[2 * i + 1]; };
 #endif
   const auto or_of = [](const Four& four) HALFPLANE_LAMBDA {
     const Four two = four | __builtin_shufflevector(four, four, 2, 3, 0, 1);
@@ -201,7 +206,7 @@ HALFPLANE_LEAF S16 saturated(const I16& v) {
   const __m256i both = _mm256_packs_epi32((__m256i)v.part[0], (__m256i)v.part[1]);
   r.part[0] = (S16::Register)_mm256_permute4x64_epi64(both, 0xd8);
 #elif defined(__x86_64__)
-  for (int i = 0; i < 2; ++i)
+  for (std::size_t i = 0; i < 2; ++i)
     r.part[i] = (S16::Register)_mm_packs_epi32((__m128i)v.part[2 * i], (__m128i)v.part[2 * i + 1]);
 #else
   for (int i = 0; i < 16; ++i)
@@ -236,14 +241,14 @@ HALFPLANE_LEAF B64 saturated(const S32& left, const S32& right) {
 /// Two numbers of 16 bits in turns.
 template <class Lanes>
 HALFPLANE_LEAF Lanes repeated(std::int32_t two) {
-  typedef std::int32_t Wide __attribute__((vector_size(sizeof(typename Lanes::Register))));
+  using Wide __attribute__((vector_size(sizeof(typename Lanes::Register)))) = std::int32_t;
   Lanes r;
   HALFPLANE_EACH_PART(Lanes::kParts, i, r.part[i] = (typename Lanes::Register)(Wide{} + two))
   return r;
 }
 /// Four.
 HALFPLANE_LEAF S32 repeated(std::uint64_t four) {
-  typedef std::uint64_t Wide __attribute__((vector_size(HALFPLANE_ISA / 8)));
+  using Wide __attribute__((vector_size(HALFPLANE_ISA / 8))) = std::uint64_t;
   S32 r;
   HALFPLANE_EACH_PART(S32::kParts, i, r.part[i] = (S32::Register)(Wide{} + four))
   return r;
@@ -252,7 +257,7 @@ HALFPLANE_LEAF S32 repeated(std::uint64_t four) {
 /// Bytes 0 and 1 of each lane, or 2 and 3, as pairs.
 HALFPLANE_LEAF I16 channel_pair(const I16& rgba, std::size_t pair) {
 #if HALFPLANE_ISA >= 256
-  typedef std::int8_t Bytes __attribute__((vector_size(HALFPLANE_ISA / 8)));
+  using Bytes __attribute__((vector_size(HALFPLANE_ISA / 8))) = std::int8_t;
   Bytes from;
   for (int i = 0; i < HALFPLANE_ISA / 8; ++i)
     from[i] = static_cast<std::int8_t>(i % 2 != 0 ? -1 : i % 16 / 4 * 4 + 2 * static_cast<int>(pair) + i % 4 / 2);
@@ -295,7 +300,7 @@ HALFPLANE_LEAF B64 turns_of_halves(const B64& v) {
       _mm256_broadcastsi128_si256(_mm_setr_epi8(0, 1, 8, 9, 2, 3, 10, 11, 4, 5, 12, 13, 6, 7, 14, 15));
   for (int i = 0; i < 2; ++i) r.part[i] = (B64::Register)_mm256_shuffle_epi8((__m256i)v.part[i], order);
 #else
-  typedef std::int16_t Words __attribute__((vector_size(16)));
+  using Words __attribute__((vector_size(16))) = std::int16_t;
   for (int i = 0; i < 4; ++i)
     r.part[i] = (B64::Register)__builtin_shufflevector((Words)v.part[i], (Words)v.part[i], 0, 4, 1, 5, 2, 6, 3, 7);
 #endif
@@ -308,7 +313,7 @@ HALFPLANE_LEAF void store_interleaved(const I16& low, const I16& high, Element* 
   static_assert(sizeof(Element) == 8);
 #if HALFPLANE_ISA == 512
   const auto &a = low.part[0], &b = high.part[0];
-  typedef I16::InMemory Row;
+  using Row = I16::InMemory;
   reinterpret_cast<Row*>(to)[0] = __builtin_shufflevector(a, b, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
   reinterpret_cast<Row*>(to)[1] =
       __builtin_shufflevector(a, b, 8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31);
@@ -321,7 +326,7 @@ HALFPLANE_LEAF void store_interleaved(const I16& low, const I16& high, Element* 
     _mm256_storeu_si256(row + 1, _mm256_permute2x128_si256(first, second, 0x31));
   }
 #else
-  for (int i = 0; i < 4; ++i) {
+  for (std::size_t i = 0; i < 4; ++i) {
     I16::InMemory* const row = reinterpret_cast<I16::InMemory*>(to) + 2 * i;
     row[0] = __builtin_shufflevector(low.part[i], high.part[i], 0, 4, 1, 5);
     row[1] = __builtin_shufflevector(low.part[i], high.part[i], 2, 6, 3, 7);
@@ -370,7 +375,7 @@ HALFPLANE_LEAF I16 gather(const void* base, const I16& index) {
   for (int i = 0; i < 2; ++i)
     r.part[i] = (I16::Register)_mm256_i32gather_epi32(static_cast<const int*>(base), (__m256i)index.part[i], 4);
 #else
-  for (int i = 0; i < 16; ++i)
+  for (std::size_t i = 0; i < 16; ++i)
     std::memcpy(reinterpret_cast<char*>(&r) + 4 * i,
                 static_cast<const char*>(base) + std::ptrdiff_t{index.part[i / 4][i % 4]} * 4, 4);
 #endif
@@ -394,7 +399,7 @@ HALFPLANE_LEAF std::int32_t min_lane(const I16& v) {
   return _mm512_reduce_min_epi32((__m512i)v.part[0]);
 #else
   // Half against half, down to one lane.
-  typedef std::int32_t Four __attribute__((vector_size(16)));
+  using Four __attribute__((vector_size(16))) = std::int32_t;
   const auto smaller = [](const Four& a, const Four& b) HALFPLANE_LAMBDA { return a < b ? a : b; };
 #if HALFPLANE_ISA == 256
   constexpr auto kFour = std::make_index_sequence<4>{};
@@ -414,9 +419,9 @@ HALFPLANE_LEAF std::int32_t or_of_lanes(const I16& v) {
 #if HALFPLANE_ISA == 512
   return _mm512_reduce_or_epi32((__m512i)v.part[0]);
 #else
-  typedef std::int64_t Two __attribute__((vector_size(16)));
+  using Two __attribute__((vector_size(16))) = std::int64_t;
 #if HALFPLANE_ISA == 256
-  typedef std::int64_t Four __attribute__((vector_size(32)));
+  using Four __attribute__((vector_size(32))) = std::int64_t;
   const Four four = (Four)(v.part[0] | v.part[1]);
   const Two two = __builtin_shufflevector(four, four, 0, 1) | __builtin_shufflevector(four, four, 2, 3);
 #else
@@ -448,267 +453,5 @@ HALFPLANE_LEAF std::uint32_t min_lane(const U64& v) {
 }
 HALFPLANE_LEAF std::uint32_t max_lane(const U64& v) { return 0xffff - min_lane(~v); }
 
-/// Sixteen numbers below 2^16 from and to memory.
-HALFPLANE_LEAF I16 load_narrow(const std::uint16_t* from) {
-  I16 r;
-#if HALFPLANE_ISA == 512
-  r.part[0] = (I16::Register)_mm512_cvtepu16_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(from)));
-#elif HALFPLANE_ISA == 256
-  for (int i = 0; i < 2; ++i)
-    r.part[i] = (I16::Register)_mm256_cvtepu16_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(from) + i));
-#else
-  for (int i = 0; i < 16; ++i) r.part[i / 4][i % 4] = from[i];
-#endif
-  return r;
-}
-HALFPLANE_LEAF void store_narrow(const I16& value, std::uint16_t* to) {
-#if HALFPLANE_ISA == 512
-  _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm512_cvtepi32_epi16((__m512i)value.part[0]));
-#elif HALFPLANE_ISA == 256
-  const __m256i both = _mm256_packus_epi32((__m256i)value.part[0], (__m256i)value.part[1]);
-  _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_permute4x64_epi64(both, 0xd8));
-#else
-  for (int i = 0; i < 16; ++i) to[i] = static_cast<std::uint16_t>(value.part[i / 4][i % 4]);
-#endif
-}
-
-/// Four columns of sixteen rows of four numbers.
-struct Columns {
-  I16 first, second, third, fourth;
-};
-
-#if defined(__x86_64__)
-/// Four registers, of which each quarter holds a row of four numbers: columns to rows and rows to columns.
-HALFPLANE_LEAF void turn_quarters(I16::Register& a, I16::Register& b, I16::Register& c, I16::Register& d) {
-#if HALFPLANE_ISA == 512
-#define HALFPLANE_UNPACK(half, a, b, bits) _mm512_unpack##half##_epi##bits((__m512i)(a), (__m512i)(b))
-#elif HALFPLANE_ISA == 256
-#define HALFPLANE_UNPACK(half, a, b, bits) _mm256_unpack##half##_epi##bits((__m256i)(a), (__m256i)(b))
-#else
-#define HALFPLANE_UNPACK(half, a, b, bits) _mm_unpack##half##_epi##bits((__m128i)(a), (__m128i)(b))
-#endif
-  const auto ab_low = HALFPLANE_UNPACK(lo, a, b, 32), ab_high = HALFPLANE_UNPACK(hi, a, b, 32),
-             cd_low = HALFPLANE_UNPACK(lo, c, d, 32), cd_high = HALFPLANE_UNPACK(hi, c, d, 32);
-  a = (I16::Register)HALFPLANE_UNPACK(lo, ab_low, cd_low, 64);
-  b = (I16::Register)HALFPLANE_UNPACK(hi, ab_low, cd_low, 64);
-  c = (I16::Register)HALFPLANE_UNPACK(lo, ab_high, cd_high, 64);
-  d = (I16::Register)HALFPLANE_UNPACK(hi, ab_high, cd_high, 64);
-#undef HALFPLANE_UNPACK
-}
-#endif
-
-/// Lane i: the row at row_at(i). Cheaper than a gather for each column.
-template <class RowAt>
-HALFPLANE_LEAF Columns turned_rows(RowAt&& row_at) {
-  Columns to;
-#if defined(__x86_64__)
-  for (int part = 0; part < I16::kParts; ++part) {
-    const auto quarter = [&](int i) HALFPLANE_LAMBDA {
-      return _mm_loadu_si128(reinterpret_cast<const __m128i*>(row_at(part * I16::kLanes + i)));
-    };
-    const auto quarters = [&](int i) HALFPLANE_LAMBDA {  // i, i + 4, ...
-#if HALFPLANE_ISA == 512
-      const __m512i two = _mm512_inserti32x4(_mm512_castsi128_si512(quarter(i)), quarter(i + 4), 1);
-      return (I16::Register)_mm512_inserti32x4(_mm512_inserti32x4(two, quarter(i + 8), 2), quarter(i + 12), 3);
-#elif HALFPLANE_ISA == 256
-      return (I16::Register)_mm256_inserti128_si256(_mm256_castsi128_si256(quarter(i)), quarter(i + 4), 1);
-#else
-      return (I16::Register)quarter(i);
-#endif
-    };
-    I16::Register a = quarters(0), b = quarters(1), c = quarters(2), d = quarters(3);
-    turn_quarters(a, b, c, d);
-    to.first.part[part] = a;
-    to.second.part[part] = b;
-    to.third.part[part] = c;
-    to.fourth.part[part] = d;
-  }
-#else
-  const auto column = [&](int at) HALFPLANE_LAMBDA {
-    return I16::of([&](int i) HALFPLANE_LAMBDA {
-      std::int32_t value;
-      std::memcpy(&value, reinterpret_cast<const char*>(row_at(i)) + 4 * at, sizeof value);
-      return value;
-    });
-  };
-  to = {column(0), column(1), column(2), column(3)};
-#endif
-  return to;
-}
-
-/// The same of so many rows.
-template <std::size_t N>
-struct ColumnsOfRows {
-  Columns row[N];
-};
-
-/// The other way round: lane i to the row at row_at(i).
-template <class RowAt>
-HALFPLANE_LEAF void store_rows(const Columns& from, RowAt&& row_at) {
-#if defined(__x86_64__)
-  for (int part = 0; part < I16::kParts; ++part) {
-    const auto put = [&](int i, const I16::Register& quarters) HALFPLANE_LAMBDA {  // i, i + 4, ...
-      const auto store = [&](int at, const __m128i& row) HALFPLANE_LAMBDA {
-        _mm_storeu_si128(reinterpret_cast<__m128i*>(row_at(part * I16::kLanes + at)), row);
-      };
-#if HALFPLANE_ISA == 512
-      store(i, _mm512_castsi512_si128((__m512i)quarters));
-      store(i + 4, _mm512_extracti32x4_epi32((__m512i)quarters, 1));
-      store(i + 8, _mm512_extracti32x4_epi32((__m512i)quarters, 2));
-      store(i + 12, _mm512_extracti32x4_epi32((__m512i)quarters, 3));
-#elif HALFPLANE_ISA == 256
-      store(i, _mm256_castsi256_si128((__m256i)quarters));
-      store(i + 4, _mm256_extracti128_si256((__m256i)quarters, 1));
-#else
-      store(i, (__m128i)quarters);
-#endif
-    };
-    I16::Register a = from.first.part[part], b = from.second.part[part], c = from.third.part[part],
-                  d = from.fourth.part[part];
-    turn_quarters(a, b, c, d);
-    put(0, a);
-    put(1, b);
-    put(2, c);
-    put(3, d);
-  }
-#else
-  for (int i = 0; i < 16; ++i) {
-    const auto lane = [i](const I16& of) { return of.part[i / I16::kLanes][i % I16::kLanes]; };
-    const std::array<std::int32_t, 4> row{lane(from.first), lane(from.second), lane(from.third), lane(from.fourth)};
-    std::memcpy(row_at(i), row.data(), sizeof row);
-  }
-#endif
-}
-/// At `to` + i * `stride` bytes.
-HALFPLANE_LEAF void store_rows(const Columns& from, void* to, std::size_t stride) {
-  store_rows(from,
-             [=](int i) HALFPLANE_LAMBDA { return static_cast<char*>(to) + static_cast<std::size_t>(i) * stride; });
-}
-
-/// Four columns of sixteen rows of four numbers.
-struct DoubleColumns {
-  D16 first, second, third, fourth;
-};
-
-/// Lane i: the row at row_at(i).
-template <class RowAt>
-HALFPLANE_LEAF DoubleColumns turned_doubles(RowAt&& row_at) {
-  DoubleColumns to;
-#if defined(__x86_64__)
-  for (int part = 0; part < D16::kParts; ++part) {
-    const auto row = [&](int i) HALFPLANE_LAMBDA { return static_cast<const double*>(row_at(part * D16::kLanes + i)); };
-#if HALFPLANE_ISA == 512
-    const auto rows = [&](int i) HALFPLANE_LAMBDA {  // i and i + 2
-      return _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(row(i))), _mm256_loadu_pd(row(i + 2)), 1);
-    };
-    const __m512d a = rows(0), b = rows(1), c = rows(4), d = rows(5);
-    const __m512d ab_low = _mm512_unpacklo_pd(a, b), ab_high = _mm512_unpackhi_pd(a, b),
-                  cd_low = _mm512_unpacklo_pd(c, d), cd_high = _mm512_unpackhi_pd(c, d);
-    to.first.part[part] = (D16::Register)_mm512_shuffle_f64x2(ab_low, cd_low, 0x88);
-    to.second.part[part] = (D16::Register)_mm512_shuffle_f64x2(ab_high, cd_high, 0x88);
-    to.third.part[part] = (D16::Register)_mm512_shuffle_f64x2(ab_low, cd_low, 0xdd);
-    to.fourth.part[part] = (D16::Register)_mm512_shuffle_f64x2(ab_high, cd_high, 0xdd);
-#elif HALFPLANE_ISA == 256
-    const __m256d a = _mm256_loadu_pd(row(0)), b = _mm256_loadu_pd(row(1)), c = _mm256_loadu_pd(row(2)),
-                  d = _mm256_loadu_pd(row(3));
-    const __m256d ab_low = _mm256_unpacklo_pd(a, b), ab_high = _mm256_unpackhi_pd(a, b),
-                  cd_low = _mm256_unpacklo_pd(c, d), cd_high = _mm256_unpackhi_pd(c, d);
-    to.first.part[part] = (D16::Register)_mm256_permute2f128_pd(ab_low, cd_low, 0x20);
-    to.second.part[part] = (D16::Register)_mm256_permute2f128_pd(ab_high, cd_high, 0x20);
-    to.third.part[part] = (D16::Register)_mm256_permute2f128_pd(ab_low, cd_low, 0x31);
-    to.fourth.part[part] = (D16::Register)_mm256_permute2f128_pd(ab_high, cd_high, 0x31);
-#else
-    const __m128d a = _mm_loadu_pd(row(0)), b = _mm_loadu_pd(row(1)), c = _mm_loadu_pd(row(0) + 2),
-                  d = _mm_loadu_pd(row(1) + 2);
-    to.first.part[part] = (D16::Register)_mm_unpacklo_pd(a, b);
-    to.second.part[part] = (D16::Register)_mm_unpackhi_pd(a, b);
-    to.third.part[part] = (D16::Register)_mm_unpacklo_pd(c, d);
-    to.fourth.part[part] = (D16::Register)_mm_unpackhi_pd(c, d);
-#endif
-  }
-#else
-  const auto column = [&](int at) HALFPLANE_LAMBDA {
-    return D16::of([&](int i) HALFPLANE_LAMBDA { return static_cast<const double*>(row_at(i))[at]; });
-  };
-  to.first = column(0);
-  to.second = column(1);
-  to.third = column(2);
-  to.fourth = column(3);
-#endif
-  return to;
-}
-
-/// Four rows of four pixels of an image.
-template <class Element>
-HALFPLANE_LEAF I16 load_block(const Element* from, int stride) {
-  typedef std::int32_t Row __attribute__((vector_size(16), aligned(1), may_alias));
-  typedef std::int32_t Four __attribute__((vector_size(16)));
-  std::array<Four, 4> row;
-  for (std::size_t j = 0; j < 4; ++j) row[j] = *reinterpret_cast<const Row*>(from + static_cast<int>(j) * stride);
-  I16 r;
-#if HALFPLANE_ISA == 128
-  for (std::size_t j = 0; j < 4; ++j) r.part[j] = row[j];
-#else
-  typedef std::int32_t Eight __attribute__((vector_size(32)));
-  constexpr auto kEight = std::make_index_sequence<8>{};
-  const Eight upper = lanes_from<Eight, 0>(row[0], row[1], kEight),
-              lower = lanes_from<Eight, 0>(row[2], row[3], kEight);
-#if HALFPLANE_ISA == 512
-  r.part[0] = lanes_from<I16::Register, 0>(upper, lower, std::make_index_sequence<16>{});
-#else
-  r.part[0] = upper;
-  r.part[1] = lower;
-#endif
-#endif
-  return r;
-}
-/// Two blocks, side by side, as four rows of eight pixels.
-template <class Element>
-HALFPLANE_LEAF void store_blocks(Element* to, int stride, const I16& left, const I16& right) {
-#if HALFPLANE_ISA == 512
-  typedef std::int32_t Row __attribute__((vector_size(32), aligned(4), may_alias));
-  const auto &a = left.part[0], &b = right.part[0];
-  const auto put = [&](int j, const Row& row) HALFPLANE_LAMBDA { *reinterpret_cast<Row*>(to + j * stride) = row; };
-  const auto upper = __builtin_shufflevector(a, b, 0, 1, 2, 3, 16, 17, 18, 19, 4, 5, 6, 7, 20, 21, 22, 23);
-  const auto lower = __builtin_shufflevector(a, b, 8, 9, 10, 11, 24, 25, 26, 27, 12, 13, 14, 15, 28, 29, 30, 31);
-  put(0, __builtin_shufflevector(upper, upper, 0, 1, 2, 3, 4, 5, 6, 7));
-  put(1, __builtin_shufflevector(upper, upper, 8, 9, 10, 11, 12, 13, 14, 15));
-  put(2, __builtin_shufflevector(lower, lower, 0, 1, 2, 3, 4, 5, 6, 7));
-  put(3, __builtin_shufflevector(lower, lower, 8, 9, 10, 11, 12, 13, 14, 15));
-#elif HALFPLANE_ISA == 256
-  typedef std::int32_t Row __attribute__((vector_size(32), aligned(4), may_alias));
-  const auto put = [&](int j, const Row& row) HALFPLANE_LAMBDA { *reinterpret_cast<Row*>(to + j * stride) = row; };
-  for (int part = 0; part < 2; ++part) {
-    const auto &a = left.part[part], &b = right.part[part];
-    put(2 * part, __builtin_shufflevector(a, b, 0, 1, 2, 3, 8, 9, 10, 11));
-    put(2 * part + 1, __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15));
-  }
-#else
-  for (int j = 0; j < 4; ++j) {
-    std::memcpy(to + j * stride, reinterpret_cast<const char*>(&left) + 16 * j, 16);
-    std::memcpy(to + j * stride + 4, reinterpret_cast<const char*>(&right) + 16 * j, 16);
-  }
-#endif
-}
-
-/// Sixteen pixels past the caches to the beginning of a cache line: what is written whole need not be read first.
-/// Behind the last: finish_lines().
-template <class Element>
-HALFPLANE_LEAF void stream_line(Element* to, const I16& row) {
-#if HALFPLANE_ISA == 512
-  _mm512_stream_si512(reinterpret_cast<__m512i*>(to), (__m512i)row.part[0]);
-#elif HALFPLANE_ISA == 256
-  _mm256_stream_si256(reinterpret_cast<__m256i*>(to), (__m256i)row.part[0]);
-  _mm256_stream_si256(reinterpret_cast<__m256i*>(to) + 1, (__m256i)row.part[1]);
-#elif defined(__x86_64__)
-  for (int i = 0; i < 4; ++i) _mm_stream_si128(reinterpret_cast<__m128i*>(to) + i, (__m128i)row.part[i]);
-#else
-  row.store(to);
-#endif
-}
-
-HALFPLANE_LEAF void finish_lines() {
-#if defined(__x86_64__)
-  _mm_sfence();
-#endif
-}
+}  // namespace
+}  // namespace halfplane::functional::HALFPLANE_ISA_NAME

@@ -1,10 +1,15 @@
 // Vectors of a fixed number of lanes, whatever the machine's registers hold: a pack is as many registers as it takes.
-// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
 //
 // Packs go to memory and back register by register. GCC 12 copies what is larger than 16 bytes, std::memcpy and structs
 // in memory alike, in pieces of 16, and a register loaded from several pieces that were just stored waits for all of
 // them: half of the time of a block. Nor does it compile the copies that it writes itself, of a struct or an array of packs,
 // for the instruction set of this room: a struct that is to be copied says how, and std::array and std::pair are not.
+#pragma once
+
+#include "../kernel_headers.hpp"
+
+namespace halfplane::functional::HALFPLANE_ISA_NAME {
+namespace {
 
 /// For each register of a pack, straight: GCC takes packs apart before it unrolls loops, and keeps those of four registers
 /// and more in memory otherwise.
@@ -31,14 +36,16 @@ struct Pack {
   static constexpr int kLanes = HALFPLANE_ISA / 8 / static_cast<int>(sizeof(T));  ///< of a register
   static constexpr int kParts = N / kLanes;
   static_assert(N % kLanes == 0);
-  typedef T Register __attribute__((vector_size(HALFPLANE_ISA / 8)));
-  typedef T InMemory __attribute__((vector_size(HALFPLANE_ISA / 8), aligned(1), may_alias));
+  using Register __attribute__((vector_size(HALFPLANE_ISA / 8))) = T;
+  using InMemory __attribute__((vector_size(HALFPLANE_ISA / 8), aligned(1), may_alias)) = T;
 
   Register part[kParts];
 
   HALFPLANE_LEAF Pack() = default;
-  HALFPLANE_LEAF Pack(const Pack& from) { *this = from; }
-  HALFPLANE_LEAF Pack& operator=(const Pack& from) {
+  HALFPLANE_LEAF Pack(const Pack& from) {
+    for (int i = 0; i < kParts; ++i) part[i] = from.part[i];
+  }
+  HALFPLANE_LEAF Pack& operator=(Pack from) {
     for (int i = 0; i < kParts; ++i) part[i] = from.part[i];
     return *this;
   }
@@ -213,7 +220,7 @@ HALFPLANE_LEAF Pack<T, N> max(const Pack<T, N>& a, const Pack<T, N>& b) {
   return r;
 }
 
-/// Lanes 0, 1, ... of two vectors behind each other, from lane `First` on.
+/// Lanes of `low` followed by `high`, from lane `First` on.
 template <class Result, int First, class Vector, std::size_t... I>
 HALFPLANE_LEAF Result lanes_from(const Vector& low, const Vector& high, std::index_sequence<I...>) {
   return __builtin_shufflevector(low, high, (First + static_cast<int>(I))...);
@@ -230,8 +237,8 @@ template <class To, class From, int N>
 HALFPLANE_LEAF Pack<To, N> convert(const Pack<From, N>& from) {
   constexpr int kLanes = std::min(Pack<To, N>::kLanes, Pack<From, N>::kLanes);
   static_assert(std::max(Pack<To, N>::kLanes, Pack<From, N>::kLanes) <= 2 * kLanes);
-  typedef From FromLanes __attribute__((vector_size(kLanes * sizeof(From))));
-  typedef To ToLanes __attribute__((vector_size(kLanes * sizeof(To))));
+  using FromLanes __attribute__((vector_size(kLanes * sizeof(From)))) = From;
+  using ToLanes __attribute__((vector_size(kLanes * sizeof(To)))) = To;
   Pack<To, N> to;
   if constexpr (sizeof(To) == sizeof(From)) {
     for (int i = 0; i < Pack<To, N>::kParts; ++i) to.part[i] = __builtin_convertvector(from.part[i], ToLanes);
@@ -243,12 +250,12 @@ HALFPLANE_LEAF Pack<To, N> convert(const Pack<From, N>& from) {
       to.part[2 * i + 1] = __builtin_convertvector((lanes_from<FromLanes, kLanes>(both, both, kHalf)), ToLanes);
     }
   } else if constexpr (std::is_integral_v<From> && std::endian::native == std::endian::little) {
-    constexpr auto kBoth = std::make_index_sequence<2 * kLanes>{};
+    constexpr auto kBoth = std::make_index_sequence<std::size_t{2} * kLanes>{};
     using Wide = typename Pack<To, N>::Register;  // the lower halves: even lanes, low first
     for (int i = 0; i < Pack<To, N>::kParts; ++i)
       to.part[i] = even_lanes<Wide>((Wide)from.part[2 * i], (Wide)from.part[2 * i + 1], kBoth);
   } else {
-    constexpr auto kBoth = std::make_index_sequence<2 * kLanes>{};
+    constexpr auto kBoth = std::make_index_sequence<std::size_t{2} * kLanes>{};
     for (int i = 0; i < Pack<To, N>::kParts; ++i)
       to.part[i] =
           lanes_from<typename Pack<To, N>::Register, 0>(__builtin_convertvector(from.part[2 * i], ToLanes),
@@ -280,21 +287,21 @@ using L16 = Pack<std::int64_t, 16>;
 using D16 = Pack<double, 16>;
 
 HALFPLANE_LEAF S32 shift_right_logical(const S32& a, int bits) {
-  typedef std::uint16_t Unsigned __attribute__((vector_size(HALFPLANE_ISA / 8)));
+  using Unsigned __attribute__((vector_size(HALFPLANE_ISA / 8))) = std::uint16_t;
   S32 r;
   for (int i = 0; i < S32::kParts; ++i) r.part[i] = (S32::Register)((Unsigned)a.part[i] >> bits);
   return r;
 }
 
 HALFPLANE_LEAF L16 shift_right_logical(const L16& a, int bits) {
-  typedef std::uint64_t Unsigned __attribute__((vector_size(HALFPLANE_ISA / 8)));
+  using Unsigned __attribute__((vector_size(HALFPLANE_ISA / 8))) = std::uint64_t;
   L16 r;
   for (int i = 0; i < L16::kParts; ++i) r.part[i] = (L16::Register)((Unsigned)a.part[i] >> bits);
   return r;
 }
 
 HALFPLANE_LEAF L16 shift_right_logical(const L16& a, const L16& bits) {
-  typedef std::uint64_t Unsigned __attribute__((vector_size(HALFPLANE_ISA / 8)));
+  using Unsigned __attribute__((vector_size(HALFPLANE_ISA / 8))) = std::uint64_t;
   L16 r;
   for (int i = 0; i < L16::kParts; ++i) r.part[i] = (L16::Register)((Unsigned)a.part[i] >> (Unsigned)bits.part[i]);
   return r;
@@ -378,3 +385,6 @@ HALFPLANE_LEAF I16 multiply_add_pairs(const I16& a, const I16& b) {
 #endif
   return r;
 }
+
+}  // namespace
+}  // namespace halfplane::functional::HALFPLANE_ISA_NAME

@@ -1,10 +1,19 @@
-// Layers: triangles that are laid over what is there, by alpha and nothing else. In tiles that one covers as a whole and
-// in front of everything it waits, and a tile takes up to sixteen of them at once, in their order: its pixels are read,
-// taken apart, put together and written once for all of them, and what an opaque triangle covers before is never computed.
+// Layers: triangles that are blended over what is stored by their alpha, and nothing else. One that covers a tile as a whole,
+// in front of all of it, waits as a layer; up to sixteen layers of a tile are then blended in one pass over its pixels, in
+// their order, with one read and one write. Layers that an opaque triangle hides are dropped before.
 //
-// Such a tile has Bin::kLayers as the owner of its colours; what lies below is in memory. Who needs the colours asks for
-// them as of any other tile: fetch_color().
-// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+// Such a tile has Bin::kLayers as the owner of its colours; what lies below is in memory. fetch_color() blends the layers
+// when the colours are needed.
+#pragma once
+
+#include "bin.inl"
+#include "fragments.inl"
+#include "surface.inl"
+#include "texture.inl"
+#include "tile_memory.inl"
+
+namespace halfplane::functional::HALFPLANE_ISA_NAME {
+namespace {
 
 /// src_alpha, one_minus_src_alpha, added, to all channels: what most draws that blend ask for. The two factors are 255
 /// together. Alpha, where it is stored, has the same ones, or one in the place of the first.
@@ -46,7 +55,7 @@ HALFPLANE_INLINE ColorPairs laid_over(const ColorPairs& source, const ColorPairs
       as<I16>(divide_by_255(as<S32>(source.green_alpha) * of_alpha + as<S32>(stored.green_alpha) * rest)));
 }
 
-/// One of those that wait, as one bin sees it. Values are codes without a bias, in the upper bits of 16: from 256 on they wrap.
+/// A layer that waits, in one bin. Values are codes without a bias, in the upper bits of 16: from 256 on they wrap.
 struct Layer {
   alignas(
       64) std::array<std::array<std::int32_t, Bin::kTiles>, 2> anchor;  ///< at each tile's anchor, two channels each
@@ -57,7 +66,7 @@ struct Layer {
   std::int32_t own_factor;
 };
 
-/// Those of a thread's bin; their number is Bin::layer_count.
+/// The layers of a thread's bin; Bin::layer_count of them.
 struct LayerMemory {
   static constexpr std::size_t kLayers = 16;
   std::array<Layer, kLayers> layer;
@@ -215,7 +224,7 @@ HALFPLANE_NOINLINE void lay_tile(Bin& bin, int tile) {
 
 /// The tiles on which layers wait.
 HALFPLANE_INLINE std::uint64_t layered_tiles(const Bin& bin) {
-  return bits_of(S64::load(bin.color_owner.data()) == std::int16_t{Bin::kLayers});
+  return bits_of(S64::load(bin.color_owner.data()) == Bin::kLayers);
 }
 
 /// Nothing waits any longer: numbers begin anew.
@@ -246,16 +255,19 @@ HALFPLANE_NOINLINE void add_layer(Bin& bin, const BinTriangle& t, std::uint64_t 
   select(lanes_of(tiles), with | bit, with).store(of_tile);
   bin.in_memory &= ~tiles;
   bin.job.counters.skipped.trivially_accepted += static_cast<unsigned>(std::popcount(tiles));
-  const std::uint64_t pixels = std::uint64_t{kTileSize * kTileSize} * static_cast<unsigned>(std::popcount(tiles));
+  const std::uint64_t pixels = kTilePixels * static_cast<unsigned>(std::popcount(tiles));
   count_fragments(bin, pixels * bin.samples, pixels * bin.samples);
 }
 
-/// Fragments of layers on `tiles` that nobody will see.
+/// Counts the fragments of layers on `tiles`, which an opaque triangle is about to hide.
 HALFPLANE_NOINLINE void drop_layers(Bin& bin, std::uint64_t tiles) {
   const LayerMemory& memory = LayerMemory::of_thread();
   std::uint64_t layers = 0;
   for (; tiles != 0; tiles &= tiles - 1)
     layers += static_cast<unsigned>(
         std::popcount(unsigned{memory.of_tile[static_cast<std::size_t>(std::countr_zero(tiles))]}));
-  bin.job.counters.skipped.attributes += std::uint64_t{kTileSize * kTileSize} * layers;
+  bin.job.counters.skipped.attributes += kTilePixels * layers;
 }
+
+}  // namespace
+}  // namespace halfplane::functional::HALFPLANE_ISA_NAME

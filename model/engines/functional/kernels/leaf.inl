@@ -3,7 +3,12 @@
 // Not the stages' own templates: GCC compiles a template for the instruction set that was chosen where it is written,
 // not where it is used, so that one from a shared header would take these lanes apart (ADR 15). The tests of the engine
 // hold them together.
-// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+#pragma once
+
+#include "lane_moves.inl"
+
+namespace halfplane::functional::HALFPLANE_ISA_NAME {
+namespace {
 
 /// The fill rule: a sample on an edge belongs to the triangle where the edge is a left or a top one. A mask.
 template <class Lanes>
@@ -178,11 +183,6 @@ struct SplitLanes {
 
   HALFPLANE_LEAF SplitLanes(const I16& upper_, const I16& lower_) : upper(upper_), lower(lower_) {}
   HALFPLANE_LEAF SplitLanes(const SplitLanes& from) : SplitLanes(from.upper, from.lower) {}
-  HALFPLANE_LEAF SplitLanes& operator=(const SplitLanes& from) {
-    upper = from.upper;
-    lower = from.lower;
-    return *this;
-  }
   HALFPLANE_LEAF friend SplitLanes operator+(const SplitLanes& a, const SplitLanes& b) {
     return {a.upper + b.upper, a.lower + b.lower};
   }
@@ -229,23 +229,23 @@ HALFPLANE_LEAF I16 round_shift_lanes(const L16& value, int bits) {
 }
 
 /// A number for each channel.
-typedef std::int64_t Channels __attribute__((vector_size(32)));
+using Channels __attribute__((vector_size(32))) = std::int64_t;
 HALFPLANE_LEAF Channels load(const std::array<std::int64_t, 4>& from) {
-  typedef std::int64_t InMemory __attribute__((vector_size(32), aligned(8), may_alias));
+  using InMemory __attribute__((vector_size(32), aligned(8), may_alias)) = std::int64_t;
   return *reinterpret_cast<const InMemory*>(from.data());
 }
 HALFPLANE_LEAF void store(std::array<std::int64_t, 4>& to, const Channels& value) {
-  typedef std::int64_t InMemory __attribute__((vector_size(32), aligned(8), may_alias));
+  using InMemory __attribute__((vector_size(32), aligned(8), may_alias)) = std::int64_t;
   *reinterpret_cast<InMemory*>(to.data()) = value;
 }
 /// Those of a colour, R lowest.
 HALFPLANE_LEAF Channels channels_of(std::uint32_t rgba) {
-  typedef std::uint64_t Unsigned __attribute__((vector_size(32)));
+  using Unsigned __attribute__((vector_size(32))) = std::uint64_t;
   return (Channels)((Unsigned{} + rgba) >> Unsigned{0, 8, 16, 24}) & 255;
 }
 /// Of the lower halves: red with blue, green with alpha.
 HALFPLANE_LEAF ChannelPairs channel_pairs(const Channels& value) {
-  typedef std::int32_t Codes __attribute__((vector_size(16)));
+  using Codes __attribute__((vector_size(16))) = std::int32_t;
   const Codes code = __builtin_convertvector(value, Codes);
   const Codes pair = (code & 0xffff) | __builtin_shufflevector(code, code, 2, 3, 0, 1) << 16;
   return {pair[0], pair[1]};
@@ -253,7 +253,7 @@ HALFPLANE_LEAF ChannelPairs channel_pairs(const Channels& value) {
 /// round_shift(). The lanes have no signed shift: what is left of the sign bit goes through all bits above it.
 HALFPLANE_LEAF Channels round_shift_channels(const Channels& value, int bits) {
   if (bits <= 0) return value << -bits;
-  typedef std::uint64_t Unsigned __attribute__((vector_size(32)));
+  using Unsigned __attribute__((vector_size(32))) = std::uint64_t;
   const Channels half = (Channels)((Unsigned)value >> (bits - 1)) & 1;
   const auto sign = static_cast<std::int64_t>(std::uint64_t{1} << (63 - bits));
   return (((Channels)((Unsigned)value >> bits)) ^ sign) - sign + half;
@@ -262,3 +262,6 @@ HALFPLANE_LEAF Channels round_shift_channels(const Channels& value, int bits) {
 inline std::uint64_t product(std::int64_t a, std::int64_t b) {
   return static_cast<std::uint64_t>(a) * static_cast<std::uint64_t>(b);
 }
+
+}  // namespace
+}  // namespace halfplane::functional::HALFPLANE_ISA_NAME

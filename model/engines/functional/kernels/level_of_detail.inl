@@ -1,5 +1,11 @@
 // Level of detail in lanes: level_of_detail.hpp.
-// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+#pragma once
+
+#include "bin.inl"
+#include "perspective.inl"
+
+namespace halfplane::functional::HALFPLANE_ISA_NAME {
+namespace {
 
 HALFPLANE_INLINE W16 octagon_length(const W16& a, const W16& b) {
   const W16 high = max(a, b), low = min(a, b);
@@ -23,7 +29,7 @@ HALFPLANE_INLINE I16 log2_code_of(const W16& length) {
 struct LodRamps {
   std::array<I16, 2> along_x, along_y;  ///< of the first block
 
-  HALFPLANE_INLINE LodRamps() {}
+  HALFPLANE_INLINE LodRamps() = default;
   HALFPLANE_INLINE void set(const Bin& bin, const LodSetup& lod, int tile_x, int tile_y) {
     const auto line = [](const LodLine& of, int first, const I16& pixel) HALFPLANE_LAMBDA {
       const std::uint32_t at_first = of.at_zero + static_cast<std::uint32_t>(first) * of.step;
@@ -50,3 +56,6 @@ struct LodRamps {
     return log2_code_of(longest) - (log2_code(q) << 1) + lod.offset;
   }
 };
+
+}  // namespace
+}  // namespace halfplane::functional::HALFPLANE_ISA_NAME

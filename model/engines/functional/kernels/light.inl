@@ -1,5 +1,13 @@
 // Light of fragments in lanes: phong.hpp, the same steps, of sixteen pixels.
-// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+#pragma once
+
+#include "bin.inl"
+#include "perspective.inl"
+#include "texture.inl"
+#include "values.inl"
+
+namespace halfplane::functional::HALFPLANE_ISA_NAME {
+namespace {
 
 /// The planes of a tile's normals.
 struct NormalRamps {
@@ -25,7 +33,7 @@ struct NormalLanes {
   }
 };
 
-/// inverse_length(): the bits of binary32 are the line, and behind it the place.
+/// inverse_length(): the upper bits of a binary32 mantissa are the line, those below the place.
 struct InverseLengthLanes {
   I16 down, root;  ///< exponent - 1
 
@@ -85,3 +93,6 @@ struct LightLanes {
         channel(color.green_alpha & 0xffff, 1) | (color.green_alpha & static_cast<std::int32_t>(0xffff0000U)));
   }
 };
+
+}  // namespace
+}  // namespace halfplane::functional::HALFPLANE_ISA_NAME

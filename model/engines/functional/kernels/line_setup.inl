@@ -1,5 +1,12 @@
 // Sixteen lines at a time through line_setup, and to the part of each that lies in the bin: a line a lane.
-// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+#pragma once
+
+#include "cull.inl"
+#include "cull_lines.inl"
+#include "leaf.inl"
+
+namespace halfplane::functional::HALFPLANE_ISA_NAME {
+namespace {
 
 /// Lines of a slice that wait, and after set_up_lines() where each of them enters the bin and how it goes on.
 ///
@@ -45,9 +52,9 @@ HALFPLANE_INLINE LineWay set_up_way(LineBatch& batch, const OctantLanes& line, c
   // Q, as in stages/line_setup: n columns on, the line is in row floor((Q + n d) / D) from the start's.
   const int s = rules.grid_bits, half = 1 << (s - 1);
   const I16 offset = (line.first << s) + half - line.a0, base_row = line.b0 >> s;
-  const D16 D = convert<double>(line.D), d = convert<double>(line.d);
-  const L16 numerator = convert<std::int64_t>(line.b0 & ((1 << s) - 1)) * convert<std::int64_t>(line.D) +
-                        convert<std::int64_t>(line.d) * convert<std::int64_t>(offset) +
+  const D16 D = convert<double>(line.major), d = convert<double>(line.minor);
+  const L16 numerator = convert<std::int64_t>(line.b0 & ((1 << s) - 1)) * convert<std::int64_t>(line.major) +
+                        convert<std::int64_t>(line.minor) * convert<std::int64_t>(offset) +
                         convert<std::int64_t>(~line.tie_moves(rules));
   const D16 Q = convert<double>(numerator >> s);
 
@@ -101,7 +108,7 @@ HALFPLANE_NOINLINE void set_up_lines(LineBatch& batch, const Slice& slice, const
   const SnappedLanes start = fetch(0), end = fetch(1);
   const OctantLanes line(start.x, start.y, end.x, end.y, rules);
   const LineWay way = set_up_way(batch, line, rules, first_x, first_y);
-  ReciprocalLanes reciprocal(quotient_lanes(line.D, widths.reciprocal_bits()), 0);
+  ReciprocalLanes reciprocal(quotient_lanes(line.major, widths.reciprocal_bits()), 0);
   reciprocal.value = select(line.a1 == line.a0, I16(0), reciprocal.value);
   const int s = rules.grid_bits, guard_bits = widths.line_guard_bits;
   const GradientLanes gradient(reciprocal.value, reciprocal.shift - (s + guard_bits));
@@ -143,3 +150,6 @@ HALFPLANE_NOINLINE void set_up_lines(LineBatch& batch, const Slice& slice, const
     (channel.step << (32 - widths.color().line.bits)).store(batch.color_step[c].data());
   }
 }
+
+}  // namespace
+}  // namespace halfplane::functional::HALFPLANE_ISA_NAME

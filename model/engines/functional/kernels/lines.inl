@@ -1,5 +1,13 @@
 // The part of a line in the bin: the pixels of line_raster, sixteen at a time, from the closed form of its steps.
-// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+#pragma once
+
+#include "bin.inl"
+#include "fragments.inl"
+#include "line_setup.inl"
+#include "tile_memory.inl"
+
+namespace halfplane::functional::HALFPLANE_ISA_NAME {
+namespace {
 
 /// Tiles that lines have not touched since triangles last did: they must be in memory, and their ranges are known no
 /// more.
@@ -48,7 +56,7 @@ HALFPLANE_NOINLINE void draw_pixels(Bin& bin, const LineBatch& line, std::size_t
     const I16 moved = convert<std::int32_t>(convert<double>(n) * line.slope[i] + line.row[i]);
     const I16 x = (select(is_x_major, n, moved) ^ x_sign) + first_x,
               y = (select(is_x_major, moved, n) ^ y_sign) + first_y;
-    const I16 at = place_of(x, y);  // of lanes behind the last pixel: somewhere in the bin
+    const I16 at = place_of(x, y);  // lanes after the last pixel: anywhere in the bin
     at.store(group.place.data());
     const std::uint64_t touched = or_of_bits(I16(1), at >> 6, (1U << count) - 1);
     tiles |= touched;
@@ -150,3 +158,6 @@ void draw_lines(Bin& bin, const Slice& slice) {
     if (bin.lines.pixels[i] > 0) draw_line<Fragments>(bin, bin.lines, i);
   bin.lines.count = 0;
 }
+
+}  // namespace
+}  // namespace halfplane::functional::HALFPLANE_ISA_NAME

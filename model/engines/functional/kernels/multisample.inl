@@ -1,12 +1,27 @@
-// Several samples a pixel: depths are kept by sample, colours once a pixel while all samples of it have the same one. Only a
-// tile in which they differ is split, into n images; one that a triangle takes as a whole is whole again. So what is far from
-// edges costs what one sample costs, but for depths: those of a triangle that has taken a tile are computed when somebody needs
-// them, at whichever sample. Where its edges cut a tile, a triangle waits as a cutout: cutouts.inl.
+// Large triangles where pixels have several samples: depths are kept by sample, colours once a pixel while all its samples have
+// the same one. A tile in which they differ is split, into an image for each sample; one that a triangle covers as a whole is
+// whole again. So a tile far from edges costs what it costs with one sample: the depths of a triangle that has taken it are
+// computed when needed, at the sample in question. In a tile that its edges cut a triangle waits as a cutout: cutouts.inl.
 //
 // An edge at a sample is the edge at the centre plus a constant, and so is a depth (multisample.hpp).
-// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+#pragma once
 
-/// The triangle at work. In its order: the centre's edges as those of BinTriangle, from there to each sample.
+#include "bin.inl"
+#include "cutouts.inl"
+#include "deferred.inl"
+#include "fragments.inl"
+#include "operations.inl"
+#include "setup.inl"
+#include "surface.inl"
+#include "texture.inl"
+#include "tile_memory.inl"
+#include "tiles.inl"
+#include "values.inl"
+
+namespace halfplane::functional::HALFPLANE_ISA_NAME {
+namespace {
+
+/// From the centre of a pixel to each sample: what edges (in the order of BinTriangle) and depths of a triangle gain.
 struct SeveralSamples {
   std::array<EdgeWords, kMaxPixelSamples> edge;
   std::array<std::int32_t, kMaxPixelSamples> depth;  ///< in a lane
@@ -24,7 +39,7 @@ struct SeveralSamples {
 
   /// sample_edge_offset() of the three edges. The bits that they have lost are the same at every pixel's centre.
   HALFPLANE_INLINE void move_edges(const Bin& bin, const Corners& corners, const BinTriangle& t) {
-    typedef std::uint32_t Unsigned __attribute__((vector_size(16)));
+    using Unsigned __attribute__((vector_size(16))) = std::uint32_t;
     const int s = bin.widths.grid_bits;
     const auto half = static_cast<std::uint32_t>(1 << (s - 1));
     const EdgeWords x{corners.a->x, corners.b->x, corners.c->x, 0}, y{corners.a->y, corners.b->y, corners.c->y, 0};
@@ -59,7 +74,7 @@ struct SeveralSamples {
   HALFPLANE_INLINE std::uint64_t takeable() const { return draws_all ? ~std::uint64_t{0} : 0; }
   HALFPLANE_INLINE std::uint64_t as_one(const Bin& bin) const {
     if (!draws_all) return 0;
-    const std::uint64_t is_far = bits_of(S64::load(bin.color_owner.data()) == S64(std::int16_t{Bin::kInTarget}));
+    const std::uint64_t is_far = bits_of(S64::load(bin.color_owner.data()) == Bin::kInTarget);
     return ~(bin.split | is_far);
   }
   template <class Fragments>
@@ -70,7 +85,7 @@ struct SeveralSamples {
 
 /// The colours of a tile's pixels as they are stored or, of 8 bits a channel, before they are.
 struct PixelColors {
-  alignas(64) std::array<std::uint32_t, kTileSize * kTileSize> code{};
+  alignas(64) std::array<std::uint32_t, kTilePixels> code{};
 
   HALFPLANE_INLINE ColorPairs operator[](std::size_t block) const {
     return ColorPairs(I16::load(code.data() + block * kBlockPixels));
@@ -155,7 +170,7 @@ struct SampledTriangle {
       const unsigned samples = count();
       U64 low(0xffff), high(0);
       for (unsigned k = 0; k < samples; ++k) {
-        std::uint16_t* const to = depths + k * std::size_t{kBinSize * kBinSize};
+        std::uint16_t* const to = depths + k * kBinPixels;
         const U64 stored = U64::load(to);
         U64 now = stored;
         if ((at.drawn >> k & 1) != 0) {
@@ -337,17 +352,15 @@ struct SampledTriangle {
     return bin.color_owner[tile] == Bin::kCutouts || (bin.cutouts_saved > 0 && (bin.split >> tile & 1) == 0);
   }
 
-  /// What passes, where ranges of depths say it: nobody looks at a depth, and these wait too.
-  template <class Fragments>
-  HALFPLANE_INLINE bool passes_by_ranges_alone(int tile, bool is_ahead, const CutoutRange& range,
-                                               SamplePixels& pixels) const {
-    const bool asks_cutouts = Fragments::kIsLess && can_wait && bin.depth_owner[tile] == Bin::kCutouts;
-    if (!asks_cutouts && (!is_ahead || !may_wait(tile))) return false;
+  /// Whether all that a triangle covers of a tile passes, and waits with its depths: it lies in front of all that is there.
+  HALFPLANE_INLINE bool waits_with_depths(int tile, bool is_ahead, SamplePixels& pixels) const {
+    if (!is_ahead || !may_wait(tile)) return false;
     for (unsigned k = 0; k < count(); ++k) pixels.passed[k] = (at.drawn >> k & 1) != 0 ? pixels.covered[k] : 0;
-    return is_ahead || passes_by_ranges<kSamples>(bin, tile, range, pixels);
+    pixels.find_any_and_all(count());
+    return true;
   }
 
-  /// What they let through.
+  /// Keeps it as a cutout with its depths, or all of the tile as taken.
   HALFPLANE_INLINE void wait_with_depths(int tile, const SamplePixels& pixels, const CutoutRange& range) {
     if (!bin.state.depth_write) return add_cutout<kSamples>(bin, tile, plane(), pixels, nullptr);
     if ((pixels.all & pixels.centre) != ~std::uint64_t{0})
@@ -366,15 +379,15 @@ struct SampledTriangle {
     if (!cover(tile, is_full, pixels)) return;
     const auto at_tile = static_cast<std::size_t>(tile);
     const CutoutRange range{bounds.low[at_tile], bounds.high[at_tile]};
-    const bool by_ranges = passes_by_ranges_alone<Fragments>(tile, is_ahead, range, pixels);
-    by_ranges ? pixels.find_any_and_all(count()) : test<Fragments>(tile, pixels);
+    const bool waits_whole = waits_with_depths(tile, is_ahead, pixels);
+    if (!waits_whole) test<Fragments>(tile, pixels);
     for (unsigned k = 0; k < count(); ++k) {
       if ((at.drawn >> k & 1) == 0) continue;
       counts.covered += static_cast<unsigned>(std::popcount(pixels.covered[k]));
       counts.passed += static_cast<unsigned>(std::popcount(pixels.passed[k]));
     }
     if (pixels.any == 0) return;
-    if (by_ranges)
+    if (waits_whole)
       wait_with_depths(tile, pixels, range);
     else if (bin.has_operations)
       operate(tile, pixels);
@@ -391,9 +404,8 @@ HALFPLANE_NOINLINE void draw_sampled_tiles(Bin& bin, const Slice& slice, const R
                                            std::uint64_t full, std::uint64_t in_front) {
   SampledTriangle<kSamples> drawn(bin, slice, record, t, at);
   PixelCounts pixels;
-  constexpr std::uint64_t kPixels = kTileSize * kTileSize;
   bin.job.counters.skipped.trivially_accepted += static_cast<unsigned>(std::popcount(tiles & full));
-  bin.job.counters.samples_tested += kPixels * bin.samples * static_cast<unsigned>(std::popcount(tiles & ~full));
+  bin.job.counters.samples_tested += kTilePixels * bin.samples * static_cast<unsigned>(std::popcount(tiles & ~full));
   std::uint64_t ahead = 0;
   TileBounds bounds;
   if (drawn.can_wait) {
@@ -405,9 +417,9 @@ HALFPLANE_NOINLINE void draw_sampled_tiles(Bin& bin, const Slice& slice, const R
     const int tile = std::countr_zero(tiles);
     if ((in_front >> tile & 1) != 0) {
       operate_on_tile(bin, t, tile, ~std::uint64_t{0});
-      if (bin.is_killed) count_killed(bin, static_cast<unsigned>(kPixels) * (bin.samples - 1));
-      pixels.covered += kPixels * bin.samples;
-      pixels.passed += kPixels * bin.samples;
+      if (bin.is_killed) count_killed(bin, kTilePixels * (bin.samples - 1));
+      pixels.covered += kTilePixels * bin.samples;
+      pixels.passed += kTilePixels * bin.samples;
       continue;
     }
     drawn.template draw<Fragments>(tile, (full >> tile & 1) != 0, (ahead >> tile & 1) != 0, bounds, pixels);
@@ -422,3 +434,6 @@ HALFPLANE_INLINE void SeveralSamples::draw(Bin& bin, const Slice& slice, const R
   bin.samples == 4 ? draw_sampled_tiles<Fragments, 4>(bin, slice, record, t, *this, depths, tiles, full, in_front)
                    : draw_sampled_tiles<Fragments, 0>(bin, slice, record, t, *this, depths, tiles, full, in_front);
 }
+
+}  // namespace
+}  // namespace halfplane::functional::HALFPLANE_ISA_NAME

@@ -1,8 +1,21 @@
 // Operations in lanes: alpha test, blending, dithering and masks of a triangle's pixels in a tile, from color_ops.hpp.
 // Colours stay what they are to the surfaces: red with blue and green with alpha in the halves of lanes.
 //
-// Such a triangle looks at what is stored, so it takes no tile and puts no colour off; what lies behind is still left out.
-// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+// Such a triangle looks at what is stored, so it takes no tile and defers no colour; hidden tiles are still skipped.
+#pragma once
+
+#include "bin.inl"
+#include "deferred.inl"
+#include "fragments.inl"
+#include "layers.inl"
+#include "perspective.inl"
+#include "surface.inl"
+#include "texture.inl"
+#include "tile_memory.inl"
+#include "values.inl"
+
+namespace halfplane::functional::HALFPLANE_ISA_NAME {
+namespace {
 
 using H32 = Pack<std::uint16_t, 32>;  ///< without signs
 
@@ -107,7 +120,7 @@ struct TileColors {
   const ColorSteps& steps;
   const LaneFormat& format;
   bool is_surface;
-  alignas(64) std::array<std::uint32_t, kTileSize * kTileSize> rgba;  ///< of a surface
+  alignas(64) std::array<std::uint32_t, kTilePixels> rgba;  ///< of a surface
 
   HALFPLANE_INLINE TileColors(Bin& bin, const BinTriangle& t, int tile, std::uint64_t pixels)
       : steps(t.color), format(bin.color_format), is_surface(t.surface != 0) {
@@ -166,7 +179,7 @@ HALFPLANE_NOINLINE std::uint64_t test_linear_alpha(const Bin& bin, const DrawnSu
   const SurfaceConstants& of = surface.constants;
   const LaneTexture& texture = of.texture;
   const SurfaceRamps<Sampling::linear> ramps(bin, surface, tile % kBinTiles, tile / kBinTiles, of.has_color);
-  alignas(64) std::array<std::uint32_t, kTileSize * kTileSize> quads;
+  alignas(64) std::array<std::uint32_t, kTilePixels> quads;
   CoordinateLanes from_middle[4];
   for_each_block([&](auto block) HALFPLANE_LAMBDA {
     CoordinateLanes at;
@@ -205,23 +218,17 @@ HALFPLANE_INLINE void store_colors(Bin& bin, std::uint32_t* to, std::uint64_t pi
   const ColorOps& ops = bin.ops->color;
   const ColorFormat format = bin.config.color_format;
   const bool has_alpha = format == ColorFormat::rgba8888, blends = ops.blends(), dithers = ops.dithers;
-  const bool writes_some = bin.ops->state.color_write,  // else somebody wants to know what it costs: Skip::masked_draws
+  const bool writes_some = bin.ops->state.color_write,  // false without Skip::masked_draws alone
       writes_all = writes_some && ops.writes == ColorOps{}.writes;
   const auto written = writes_some ? static_cast<std::int32_t>(written_bits(ops, format)) : 0;
   const S32 thresholds = dithers ? block_thresholds() : S32(0);
-  const bool skips = bin.skip.operations_early_z;
-  for_each_block([&](auto block) HALFPLANE_LAMBDA {
-    const std::uint32_t bits = block_bits(pixels, block);
-    if (bits == 0 && skips) return;
-    std::uint32_t* const at = to + block * kBlockPixels;
-    const I16 stored = I16::load(at);
+  store_pixels(bin, to, pixels, bin.skip.operations_early_z, [&](auto block, const I16& stored) HALFPLANE_LAMBDA {
     const auto mixed = [&]() HALFPLANE_LAMBDA {
       if (!blends) return colors[block];
       return BlendLanes(ops, colors[block], widened(stored, format))(has_alpha);
     }();
-    I16 code = dithers ? packed_dithered(mixed, thresholds) : packed(mixed.red_blue, mixed.green_alpha, format);
-    if (!writes_all) code = (code & written) | (stored & ~written);
-    (bits == 0xffff ? code : select_by_bits(bits, code, stored, bin.position.to_sign)).store(at);
+    const I16 code = dithers ? packed_dithered(mixed, thresholds) : packed(mixed.red_blue, mixed.green_alpha, format);
+    return writes_all ? code : (code & written) | (stored & ~written);
   });
 }
 
@@ -232,15 +239,9 @@ HALFPLANE_NOINLINE void lay_over(Bin& bin, const BinTriangle& t, int tile, std::
   need_color(bin, tile);
   const std::int32_t own_factor = own_factor_bits(bin.ops->color);
   std::uint32_t* const to = bin.memory.color.data() + first_of(tile);
-  const bool skips = bin.skip.operations_early_z;
-  for_each_block([&](auto block) HALFPLANE_LAMBDA {
-    const std::uint32_t bits = block_bits(pixels, block);
-    if (bits == 0 && skips) return;
-    std::uint32_t* const at = to + block * kBlockPixels;
-    const I16 stored = I16::load(at);
+  store_pixels(bin, to, pixels, bin.skip.operations_early_z, [&](auto block, const I16& stored) HALFPLANE_LAMBDA {
     const ColorPairs mixed = laid_over(colors[block], widened(stored, kFormat), own_factor);
-    const I16 code = packed(mixed.red_blue, mixed.green_alpha, kFormat);
-    (bits == 0xffff ? code : select_by_bits(bits, code, stored, bin.position.to_sign)).store(at);
+    return packed(mixed.red_blue, mixed.green_alpha, kFormat);
   });
 }
 
@@ -357,3 +358,6 @@ HALFPLANE_NOINLINE void operate_on_tile(Bin& bin, const BinTriangle& t, int tile
   need_color(bin, tile);
   store_colors(bin, bin.memory.color.data() + first_of(tile), kept, colors);
 }
+
+}  // namespace
+}  // namespace halfplane::functional::HALFPLANE_ISA_NAME

@@ -1,5 +1,11 @@
 // Attributes over w in lanes: perspective.hpp without products of more than 32 bits.
-// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+#pragma once
+
+#include "bin.inl"
+#include "values.inl"
+
+namespace halfplane::functional::HALFPLANE_ISA_NAME {
+namespace {
 
 /// Numbers from 0 on as binary32, their bits: the 21 highest are as they were, because the one below them is cleared and so
 /// no rounding gets past it.
@@ -79,9 +85,12 @@ struct QuotientRamps {
   BlockRamp<I16> q;
   std::array<BlockRamp<I16>, N> p;
 
-  HALFPLANE_INLINE QuotientRamps() {}
+  HALFPLANE_INLINE QuotientRamps() = default;
   HALFPLANE_INLINE void set(const Bin& bin, const LaneQuotients<N>& of, int tile_x, int tile_y) {
     q = over_w_ramp(bin, of.q, tile_x, tile_y);
     for (std::size_t i = 0; i < N; ++i) p[i] = over_w_ramp(bin, of.attribute[i].p, tile_x, tile_y);
   }
 };
+
+}  // namespace
+}  // namespace halfplane::functional::HALFPLANE_ISA_NAME

@@ -1,15 +1,27 @@
-// Colours of pixels that show small and medium triangles, sixteen pixels at a time, whosever they are: a lane fetches what it
-// needs of the triangle that it shows.
-// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+// Colours of pixels that show small and medium textured triangles (pieces.inl), sixteen pixels at a time, each of any triangle:
+// a lane fetches the constants of its own.
+#pragma once
+
+#include "bin.inl"
+#include "level_of_detail.inl"
+#include "perspective.inl"
+#include "pieces.inl"
+#include "surface.inl"
+#include "texture.inl"
+#include "tile_memory.inl"
+#include "values.inl"
+
+namespace halfplane::functional::HALFPLANE_ISA_NAME {
+namespace {
 
 /// The pieces that pixels of a tile show, by group.
 struct TilePieces {
   std::size_t count = 0;
   // GCC 12 takes an access to a std::array of these for one of another array.
-  std::uint16_t group[kTileSize * kTileSize];
-  std::uint64_t pixels[kTileSize * kTileSize];  ///< a bit each
+  std::uint16_t group[kTilePixels];
+  std::uint64_t pixels[kTilePixels];  ///< a bit each
 
-  HALFPLANE_INLINE TilePieces() {}
+  HALFPLANE_INLINE TilePieces() = default;
   HALFPLANE_INLINE void add(std::size_t number, std::uint64_t its_pixels) {
     group[count] = static_cast<std::uint16_t>(number);
     pixels[count++] = its_pixels;
@@ -21,7 +33,7 @@ struct TilePieces {
 /// and that of two groups as well: a block has mostly one or two.
 class BlockPieces {
  public:
-  HALFPLANE_INLINE BlockPieces() {}
+  HALFPLANE_INLINE BlockPieces() = default;
   /// `pixels`: of the tile, one at least in the block; `numbers`: of the block.
   HALFPLANE_INLINE void set(const TilePieces& shown, std::uint64_t pixels, std::size_t block,
                             const std::uint16_t* numbers, const I16& to_sign) {
@@ -76,7 +88,7 @@ class BlockPieces {
 /// The same, row by row.
 class BlockPieces {
  public:
-  HALFPLANE_INLINE BlockPieces() {}
+  HALFPLANE_INLINE BlockPieces() = default;
   HALFPLANE_INLINE void set(const TilePieces&, std::uint64_t pixels, std::size_t block, const std::uint16_t* numbers,
                             const I16& to_sign) {
     number_ = select_by_bits(block_bits(pixels, block),
@@ -144,7 +156,7 @@ HALFPLANE_NOINLINE void shade_pieces(Bin& bin, const SurfaceStyle& style, int ti
   const bool is_tame = style.is_tame;
   const int color_down = bin.centred_color.down;
   BlockPieces pieces[4];
-  alignas(64) std::array<std::uint32_t, kTileSize * kTileSize> nearest;
+  alignas(64) std::array<std::uint32_t, kTilePixels> nearest;
   CoordinateLanes at[4];
   I16 lod[4], red_blue[4], green_alpha[4];
   for_each_block([&](auto block) HALFPLANE_LAMBDA {
@@ -196,9 +208,7 @@ HALFPLANE_NOINLINE void shade_pieces(Bin& bin, const SurfaceStyle& style, int ti
       green_alpha[block] = texels.green_alpha;
     });
   }
-  for_each_block([&](auto block) HALFPLANE_LAMBDA {
-    const std::uint32_t bits = block_bits(pixels, block);
-    if (bits == 0) return;
+  store_pixels(bin, colors, pixels, true, [&](auto block, const I16&) HALFPLANE_LAMBDA {
     const std::size_t right = block & 1, below = block >> 1;
     ColumnsOfRows<2> rows;
     pieces[block].rows({&constants.color, &of_tile.colors}, sizeof constants, rows);
@@ -219,9 +229,7 @@ HALFPLANE_NOINLINE void shade_pieces(Bin& bin, const SurfaceStyle& style, int ti
       return ColorPairs(red_blue[block], green_alpha[block]);
     }();
     const ColorPairs mixed = combined(own, texels, texture);
-    const I16 color = packed(mixed.red_blue, mixed.green_alpha, format);
-    std::uint32_t* const to = colors + block * kBlockPixels;
-    (bits == 0xffff ? color : select_by_bits(bits, color, I16::load(to), position.to_sign)).store(to);
+    return packed(mixed.red_blue, mixed.green_alpha, format);
   });
 }
 HALFPLANE_INLINE void shade_pieces(Bin& bin, const SurfaceStyle& style, int tile, const TilePieces& shown,
@@ -232,3 +240,6 @@ HALFPLANE_INLINE void shade_pieces(Bin& bin, const SurfaceStyle& style, int tile
     default: return shade_pieces<Sampling::any>(bin, style, tile, shown, pixels);
   }
 }
+
+}  // namespace
+}  // namespace halfplane::functional::HALFPLANE_ISA_NAME

@@ -1,6 +1,14 @@
-// Surfaces of small and medium triangles: set up sixteen at a time, a triangle a lane, once it is known that one of them is
-// seen.
-// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+// Setup of small and medium textured triangles, sixteen at a time, a triangle a lane, once a pixel of one of them is shaded.
+// Sixteen of a batch are a group, each of them a piece.
+#pragma once
+
+#include "bin.inl"
+#include "small_batch.inl"
+#include "small_setup.inl"
+#include "texture.inl"
+
+namespace halfplane::functional::HALFPLANE_ISA_NAME {
+namespace {
 
 HALFPLANE_INLINE D16 magnitude(const D16& v) { return as<D16>(as<L16>(v) & std::int64_t{0x7fffffffffffffff}); }
 /// The exponent of numbers without a sign, as binary64 has it.
@@ -293,7 +301,7 @@ struct PieceScale {
   }
 };
 
-/// Constants of a group. Those that lanes do not have are PieceGroup::alone.
+/// Constants of a group. Triangles that lanes cannot set up become PieceGroup::alone.
 template <class Arithmetic>
 HALFPLANE_NOINLINE void set_up_pieces(Bin& bin, std::size_t number) {
   BinMemory& memory = bin.memory;
@@ -305,7 +313,8 @@ HALFPLANE_NOINLINE void set_up_pieces(Bin& bin, std::size_t number) {
   const auto* const vertices = reinterpret_cast<const char*>(slice.surface);
   static_assert(sizeof(SurfaceRow) == 2 * sizeof(VertexRow));  // `corner` is of those
   for (const SmallBatch::Lane& corner : group.corner)          // they are asked for below: until then they are there
-    for (const std::int32_t place : corner) __builtin_prefetch(vertices + 2 * static_cast<std::uint32_t>(place));
+    for (const std::int32_t place : corner)
+      __builtin_prefetch(vertices + std::size_t{2} * static_cast<std::uint32_t>(place));
   const SmallCorners corners = small_corners(group.corner, group.live, slice);
   const SmallPlanes<Arithmetic> planes(corners, widths);
   const I16 left = I16::load(group.left.data()), top = I16::load(group.top.data());
@@ -413,3 +422,6 @@ HALFPLANE_NOINLINE void set_up_pieces(Bin& bin, std::size_t number) {
   group.alone = alone & group.live;
   group.is_set_up = true;
 }
+
+}  // namespace
+}  // namespace halfplane::functional::HALFPLANE_ISA_NAME

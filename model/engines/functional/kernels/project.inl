@@ -1,6 +1,12 @@
 // Viewport and cull, lanes at a time: the bits of stages/viewport and stages/cull for what needs no clipping. What does,
 // and what may not be drawn at all, goes the slow way: through the host side's own function, which knows the messages.
-// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+#pragma once
+
+#include "lane_memory.inl"
+#include "lane_moves.inl"
+
+namespace halfplane::functional::HALFPLANE_ISA_NAME {
+namespace {
 
 /// floor(value * scale + 1/2) as snap() has it, as half of one more than floor(2 value * scale): no sum is rounded.
 /// |value * scale| < 2^30.
@@ -154,3 +160,6 @@ static void project(const FrameContext& frame, Slice& slice) {
   for (std::uint32_t bit = 1; bit <= Slice::kSlow; bit <<= 1)
     slice.any_code |= is_any((any & static_cast<int>(bit)) != 0) ? bit : 0;
 }
+
+}  // namespace
+}  // namespace halfplane::functional::HALFPLANE_ISA_NAME

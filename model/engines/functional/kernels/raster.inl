@@ -4,13 +4,32 @@
 //   triangle within two by two pixels  sixteen at a time through setup, then their samples
 //   within two by two tiles            sixteen at a time through setup, then the blocks that each covers
 //   within three by three, in a row    the same
-//   larger                             all tiles of the bin at once: outside, behind, taken as a whole, or drawn
+//   larger                             all tiles of the bin at once: outside, hidden, taken as a whole, or drawn
 //
 // A block is 4 x 4 pixels: sixteen lanes, one cache line of colours. A tile is four of them.
 //
 // A tile that a triangle covers wholly, in front of all that is there, is taken without looking at a pixel: it remembers
-// the triangle. Its depths and colours are computed when somebody needs them, at the end row by row: often nobody does.
-// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+// the triangle, whose depths and colours are computed when they are needed, mostly at the end of the bin.
+//
+// docs/functional.md draws the way of a block through these files.
+#pragma once
+
+#include "batches.inl"
+#include "bin.inl"
+#include "cutouts.inl"
+#include "deferred.inl"
+#include "finish.inl"
+#include "fragments.inl"
+#include "general.inl"
+#include "layers.inl"
+#include "lines.inl"
+#include "multisample.inl"
+#include "small_batch.inl"
+#include "tile_memory.inl"
+#include "tiles.inl"
+
+namespace halfplane::functional::HALFPLANE_ISA_NAME {
+namespace {
 
 /// One range of depths for all tiles.
 struct SameDepths {
@@ -194,7 +213,7 @@ HALFPLANE_INLINE void draw_records(Bin& bin, const Slice& slice, const std::uint
     draw_records<OpaqueFragments<true>>(bin, slice, first, last);
   else
     draw_records<OpaqueFragments<false>>(bin, slice, first, last);
-  // What another test lets through may lie behind.
+  // What another test lets through may be farther.
   if (bin.state.depth_test != DepthFunc::less) bin.closed_from = Bin::kOpen;
 }
 
@@ -249,7 +268,7 @@ struct RecordWays {
   }
 
  private:
-  /// Whose colour a flat primitive has.
+  /// The corner that has a flat primitive's colour.
   HALFPLANE_INLINE static std::size_t flat_corner(RecordKind kind) { return kind == RecordKind::whole_line ? 2 : 0; }
 };
 
@@ -278,7 +297,7 @@ HALFPLANE_NOINLINE void draw_run(Bin& bin, const Slice& slice, RecordWay way, co
   if (bin.tests_alpha) bin.state.depth_write = false;  // depths wait for it
   bin.lays_over ? draw_records(bin, slice, first, last)
                 : draw_records_in_order<OpaqueFragments<false>>(bin, slice, first, last);
-  skipped.operations_early_z += skipped.tiles_hiz - behind;  // of none where nobody asks
+  skipped.operations_early_z += skipped.tiles_hiz - behind;  // 0 without Skip::operations_early_z
   bin.has_operations = bin.lays_over = bin.is_killed = bin.tests_alpha = false;
   bin.skip = bin.job.frame.skip;
 }
@@ -296,9 +315,17 @@ HALFPLANE_NOINLINE void draw_records_by_way(Bin& bin, const Slice& slice, const 
   }
 }
 
+/// Bin::compute_deferred.
+HALFPLANE_NOINLINE void compute_deferred_colors(Bin& bin, int tile) {
+  const std::int32_t owner = bin.color_owner[tile];
+  if (owner == Bin::kLayers) return lay_tile(bin, tile);
+  if (owner == Bin::kCutouts) return color_cutouts(bin, tile);
+  shade_tile(bin, tile);
+}
+
 /// The kernel: a bin, slice after slice.
 static void raster(BinJob& job) {
-  Bin bin(job);
+  Bin bin(job, compute_deferred_colors);
   if (!bin.are_lines) fetch_target(bin);
   const auto number = static_cast<std::size_t>(job.bin);
   for (const Slice* const at : job.slices) {
@@ -322,3 +349,6 @@ static void raster(BinJob& job) {
   }
   finish(bin);
 }
+
+}  // namespace
+}  // namespace halfplane::functional::HALFPLANE_ISA_NAME

@@ -1,5 +1,10 @@
 // The constants of one triangle in one bin: triangle_setup by itself.
-// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+#pragma once
+
+#include "bin.inl"
+
+namespace halfplane::functional::HALFPLANE_ISA_NAME {
+namespace {
 
 /// What the planes of a triangle have in common.
 struct PlaneSteps {
@@ -10,13 +15,14 @@ struct PlaneSteps {
 
 /// What makes a numerator a gradient.
 struct GradientFactor {
-  std::int64_t R;  ///< reciprocal of the area
-  int k;           ///< bits that a product with it drops
+  std::int64_t reciprocal;  ///< of the area
+  int k;                    ///< bits that a product with it drops
 
   HALFPLANE_INLINE GradientFactor(const AreaQuotient& quotient, const AttributeWidths& attribute,
                                   const Widths& widths) {
-    const Reciprocal shortened = reciprocal(quotient, widths.reciprocal_bits() - attribute.reciprocal_bits());
-    R = static_cast<std::int64_t>(shortened.value);
+    const Reciprocal shortened =
+        halfplane::reciprocal(quotient, widths.reciprocal_bits() - attribute.reciprocal_bits());
+    reciprocal = static_cast<std::int64_t>(shortened.value);
     k = shortened.shift - widths.plane_fraction;
   }
 };
@@ -25,8 +31,8 @@ struct GradientFactor {
 /// beyond that a sign is the same everywhere.
 HALFPLANE_INLINE void set_up_edges(const Bin& bin, const VertexRow& a, const VertexRow& b, const VertexRow& c,
                                    BinTriangle& out) {
-  typedef std::int32_t Words __attribute__((vector_size(16)));
-  typedef double Values __attribute__((vector_size(32)));
+  using Words __attribute__((vector_size(16))) = std::int32_t;
+  using Values __attribute__((vector_size(32))) = double;
   const int s = bin.widths.grid_bits, half = 1 << (s - 1);
   const Words x{a.x, b.x, c.x, 0}, y{a.y, b.y, c.y, 0};
   const Words dx = __builtin_shufflevector(x, x, 1, 2, 0, 3) - x, dy = __builtin_shufflevector(y, y, 1, 2, 0, 3) - y;
@@ -60,7 +66,7 @@ HALFPLANE_INLINE void set_up_colors(const Bin& bin, const VertexRow& a, const Ve
   const Channels ca = codes(a), cb = bin.state.is_flat ? ca : codes(b), cc = bin.state.is_flat ? ca : codes(c);
   const Channels ab = cb - ca, ac = cc - ca;
   const GradientFactor factor(f.quotient, bin.widths.color(), bin.widths);
-  const auto gradient = [R = factor.R, k = factor.k](const Channels& numerator)
+  const auto gradient = [R = factor.reciprocal, k = factor.k](const Channels& numerator)
                             HALFPLANE_LAMBDA { return round_shift_channels(numerator * R, k); };
   const auto times = [](const Channels& code, std::int64_t side) HALFPLANE_LAMBDA {  // 9 bits and 24
 #if HALFPLANE_ISA == 128
@@ -107,7 +113,7 @@ inline void set_up_flat(const Bin& bin, const VertexRow& v, BinTriangle& out) {
   out.color = {{}, {}, pair, pair};
 }
 
-/// How far the depths of a tile lie from the one at its anchor, from where it reaches four pixels to the left and up,
+/// How far the depths of a tile lie from the depth at its anchor, from where it reaches four pixels to the left and up,
 /// three to the right and down. Steps of a pixel, in a tile's units; `least`, `most`: what a sample may add.
 HALFPLANE_INLINE void find_reach(const Bin& bin, std::int64_t step_x, std::int64_t step_y, BinTriangle& out,
                                  std::int64_t least = 0, std::int64_t most = 0) {
@@ -138,7 +144,7 @@ HALFPLANE_INLINE void set_up_depth(const Bin& bin, const VertexRow& a, const Ver
   constexpr std::int64_t kNarrow = std::int64_t{1} << 32;  // times a reciprocal of 30 bits
   const bool is_narrow = std::abs(numerator_x) < kNarrow && std::abs(numerator_y) < kNarrow;
   const GradientFactor factor(f.quotient, bin.widths.depth(), bin.widths);
-  const auto gradient = [=, R = factor.R, k = factor.k](std::int64_t numerator) HALFPLANE_LAMBDA {
+  const auto gradient = [=, R = factor.reciprocal, k = factor.k](std::int64_t numerator) HALFPLANE_LAMBDA {
     return is_narrow ? round_shift(numerator * R, k)
                      : static_cast<std::int64_t>(round_shift(static_cast<int128>(numerator) * R, k));
   };
@@ -230,3 +236,6 @@ HALFPLANE_NOINLINE bool set_up(const Bin& bin, const Slice& slice, const Record&
   if (bin.state.color_write) set_up_colors(bin, corners, out);
   return true;
 }
+
+}  // namespace
+}  // namespace halfplane::functional::HALFPLANE_ISA_NAME

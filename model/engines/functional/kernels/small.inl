@@ -1,8 +1,28 @@
 // Small and medium triangles: the blocks of 4 x 4 pixels that they cover, or their samples.
-// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+#pragma once
+
+#include "bin.inl"
+#include "deferred.inl"
+#include "fragments.inl"
+#include "layers.inl"
+#include "small_batch.inl"
+#include "small_setup.inl"
+#include "texture.inl"
+#include "tile_memory.inl"
+#include "tiny.inl"
+
+namespace halfplane::functional::HALFPLANE_ISA_NAME {
+namespace {
 
 /// Batches after which a tile's range is found anew.
 constexpr std::uint8_t kTouches = 4;
+
+/// The planes of a batch. `samples`: OnlyCentres or SmallSamples.
+template <class Samples>
+HALFPLANE_INLINE void set_up_batch(Bin& bin, const Slice& slice, Samples& samples) {
+  const auto set_up = bin.is_short ? set_up_small<ShortArithmetic, Samples> : set_up_small<LongArithmetic, Samples>;
+  set_up(bin.small, slice, bin.widths, bin.centred_depth, bin.centred_color, bin.first_x, bin.first_y, samples);
+}
 
 /// The tiles that the boxes of the batch touch in their windows, a bit each.
 HALFPLANE_INLINE std::uint64_t batch_tiles(Bin& bin) {
@@ -16,7 +36,25 @@ HALFPLANE_INLINE std::uint64_t batch_tiles(Bin& bin) {
   return or_of_bits(row | ((row << kBinTiles) & has_below), top * kBinTiles + left, live);
 }
 
-/// They must be in memory, and their ranges are known no more. Every now and then finds a tile's range anew; says so.
+/// Ranges of tiles that a batch is about to write: wide from now on, but every kTouches batches a tile's is found anew by
+/// `find`. Returns whether one was.
+template <class Fragments, class Find>
+HALFPLANE_INLINE bool widen_ranges(Bin& bin, std::uint64_t tiles, Find&& find) {
+  if (!bin.state.depth_write) return false;
+  bool is_changed = false;
+  for (std::uint64_t rest = tiles; rest != 0; rest &= rest - 1) {
+    const auto at = static_cast<std::size_t>(std::countr_zero(rest));
+    if (++bin.touches[at] == kTouches) {
+      bin.touches[at] = 0;
+      find(static_cast<int>(at));
+      is_changed = true;
+    }
+    forget_range<Fragments>(bin, static_cast<int>(at));
+  }
+  return is_changed;
+}
+
+/// Brings the tiles of a batch to memory. Returns whether the range of one was found anew.
 template <class Fragments>
 HALFPLANE_INLINE bool touch_tiles(Bin& bin, std::uint64_t tiles) {
   const bool is_color = bin.state.color_write && !bin.state.has_surface;
@@ -28,39 +66,33 @@ HALFPLANE_INLINE bool touch_tiles(Bin& bin, std::uint64_t tiles) {
   if (is_color) bin.in_memory |= tiles;
   if (bin.sees_surfaces())
     for (std::uint64_t rest = tiles; rest != 0; rest &= rest - 1) need_numbers(bin, std::countr_zero(rest));
-  if (!bin.state.depth_write) return false;
-  bool is_changed = false;
-  for (std::uint64_t rest = tiles; rest != 0; rest &= rest - 1) {
-    const auto at = static_cast<std::size_t>(std::countr_zero(rest));
-    if (++bin.touches[at] == kTouches) {
-      bin.touches[at] = 0;
-      find_range(bin, static_cast<int>(at));
-      is_changed = true;
-    }
-    forget_range<Fragments>(bin, static_cast<int>(at));
-  }
-  return is_changed;
+  return widen_ranges<Fragments>(bin, tiles, [&bin](int tile) HALFPLANE_LAMBDA { find_range(bin, tile); });
 }
 
 /// What the triangles of a batch cover: of each quad that a box touches, a bit a pixel.
 struct Coverage {
   static constexpr std::size_t kMost = 64;  ///< quads: four of each window
+  using Blocks = std::array<std::uint16_t, kMost * Quad::kBlocks>;
   std::size_t quads = 0;
   unsigned pixels = 0;
   std::array<std::uint8_t, kMost> lane, first;  ///< and of its blocks the first, among those of the window
-  alignas(64) std::array<std::uint16_t, kMost * Quad::kBlocks> block;
+  alignas(64) Blocks block;
 
-  HALFPLANE_INLINE Coverage() {}
+  HALFPLANE_INLINE Coverage() = default;
+
+  HALFPLANE_INLINE static void set_blocks(Blocks& blocks, std::size_t quad, std::uint64_t bits) {
+    std::uint16_t* const to = &blocks[Quad::kBlocks * quad];
+    if constexpr (std::endian::native == std::endian::little)
+      std::memcpy(to, &bits, sizeof bits);
+    else
+      for (std::size_t k = 0; k < Quad::kBlocks; ++k) to[k] = static_cast<std::uint16_t>(bits >> 16 * k);
+  }
 
   /// Quad number `at`. `bits`: block after block.
   HALFPLANE_INLINE void set(std::size_t at, std::size_t of_lane, std::int32_t first_block, std::uint64_t bits) {
     lane[at] = static_cast<std::uint8_t>(of_lane);
     first[at] = static_cast<std::uint8_t>(first_block);
-    std::uint16_t* const to = &block[Quad::kBlocks * at];
-    if constexpr (std::endian::native == std::endian::little)
-      std::memcpy(to, &bits, sizeof bits);
-    else
-      for (std::size_t k = 0; k < Quad::kBlocks; ++k) to[k] = static_cast<std::uint16_t>(bits >> 16 * k);
+    set_blocks(block, at, bits);
   }
   /// Of quads `from` to `from` + 15 the blocks with a pixel, a bit each.
   [[nodiscard]] HALFPLANE_INLINE std::uint64_t blocks(std::size_t from) const {
@@ -155,7 +187,7 @@ HALFPLANE_INLINE std::uint64_t live_quads(const Bin& bin) {
 HALFPLANE_INLINE void find_covered(Bin& bin, Coverage& covered) {
   const std::uint64_t quads = live_quads(bin);
   bin.has_short_edges ? find_covered<true>(bin, quads, covered) : find_covered<false>(bin, quads, covered);
-  bin.job.counters.samples_tested += Quad::kBlocks * kBlockPixels * static_cast<unsigned>(covered.quads);
+  bin.job.counters.samples_tested += Quad::kPixels * covered.quads;
 }
 
 /// Of the pixels of a bin, or of their first samples.
@@ -369,59 +401,5 @@ HALFPLANE_INLINE void draw_blocks(Bin& bin, const Coverage& covered) {
                         : draw_blocks<Fragments, Test, false>(bin, covered);
 }
 
-/// The same where pixels have several samples: sampled_blocks.inl.
-template <class Fragments>
-HALFPLANE_NOINLINE void draw_sampled_batch(Bin& bin, const Slice& slice);
-
-/// Draws a batch whose records are loaded.
-template <class Fragments>
-HALFPLANE_NOINLINE void draw_loaded(Bin& bin, const Slice& slice) {
-  if (bin.samples > 1) return draw_sampled_batch<Fragments>(bin, slice);
-  bin.line_tiles = 0;
-  if (bin.sees_surfaces()) add_surfaces(bin, slice);
-  const std::uint64_t tiles = batch_tiles(bin);
-  const bool is_short = bin.is_short;
-  bool is_changed = false;
-  if (bin.small.has_samples && !bin.has_operations) {
-    SampleRounds rounds;
-    (is_short ? set_up_samples<ShortArithmetic> : set_up_samples<LongArithmetic>)(bin, slice, rounds);
-    is_changed = touch_tiles<Fragments>(bin, tiles);
-    bin.is_narrow ? draw_samples<Fragments>(bin, rounds, bin.memory.narrow_depth.data())
-                  : draw_samples<Fragments>(bin, rounds, bin.memory.depth.data());
-  } else {
-    OnlyCentres centres;
-    (is_short ? set_up_small<ShortArithmetic, OnlyCentres>
-              : set_up_small<LongArithmetic, OnlyCentres>)(bin.small, slice, bin.widths, bin.centred_depth,
-                                                           bin.centred_color, bin.first_x, bin.first_y, centres);
-    is_changed = touch_tiles<Fragments>(bin, tiles);
-    Coverage covered;
-    find_covered(bin, covered);
-    bin.is_narrow ? draw_blocks<Fragments, NarrowTest>(bin, covered) : draw_blocks<Fragments, WideTest>(bin, covered);
-  }
-  if (bin.sees_surfaces() && !bin.skip.attributes) shade_tiles(bin, tiles);
-  bin.small.count = 0;
-  // With less, a bound that is too high will do.
-  if (is_changed || (!Fragments::kIsLess && bin.state.depth_write)) find_bin_range(bin);
-}
-
-/// Draws the small and medium triangles that wait.
-template <class Fragments>
-HALFPLANE_INLINE void draw_batch(Bin& bin, const Slice& slice) {
-  if (bin.small.count == 0) return;
-  load_records(bin.small, bin.first_x, bin.first_y);
-  draw_loaded<Fragments>(bin, slice);
-}
-
-/// Lets a record wait. A medium one may need several windows.
-template <class Fragments>
-HALFPLANE_INLINE void add_small(Bin& bin, const Slice& slice, const Record& record) {
-  if (bin.small.add(record, 0)) draw_batch<Fragments>(bin, slice);
-}
-template <class Fragments>
-HALFPLANE_INLINE void add_medium(Bin& bin, const Slice& slice, const Record& record, const BinBounds& box) {
-  constexpr int kSize = kSmallTiles * kTileSize;
-  const int width = box.right - (box.left & ~(kTileSize - 1)), height = box.bottom - (box.top & ~(kTileSize - 1));
-  for (int y = 0; y <= height; y += kSize)
-    for (int x = 0; x <= width; x += kSize)
-      if (bin.small.add(record, x | y << 16)) draw_batch<Fragments>(bin, slice);
-}
+}  // namespace
+}  // namespace halfplane::functional::HALFPLANE_ISA_NAME

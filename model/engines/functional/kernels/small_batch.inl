@@ -1,9 +1,17 @@
 // Sixteen small or medium triangles that wait: their records, corners and edges, a triangle a lane.
-// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+#pragma once
+
+#include "cull.inl"
+#include "lane_memory.inl"
+#include "leaf.inl"
+
+namespace halfplane::functional::HALFPLANE_ISA_NAME {
+namespace {
 
 /// Two by two blocks in lanes of 16 bits.
 struct Quad {
   static constexpr int kBlocks = 4, kPartBlocks = HALFPLANE_ISA == 512 ? 2 : 1, kParts = kBlocks / kPartBlocks;
+  static constexpr std::uint64_t kPixels = std::uint64_t{kBlocks} * kBlockPixels;
   using Part = Pack<std::int16_t, kPartBlocks * kBlockPixels>;  ///< a block, or two side by side
   std::array<Part, static_cast<std::size_t>(kParts)> part;
 
@@ -24,7 +32,7 @@ struct SmallBatch {
   template <std::size_t N>
   using LaneArray = std::array<Lane, N>;
   using FourChannels = std::array<std::uint64_t, 16>;  ///< of each lane, 16 bits a channel
-  static constexpr std::size_t kTiles = kSmallTiles * kSmallTiles;
+  static constexpr std::size_t kTiles = std::size_t{kSmallTiles} * kSmallTiles;
 
   int count = 0;
   std::array<const Record*, 16> records;
@@ -153,7 +161,7 @@ HALFPLANE_INLINE SmallCorners small_corners(const SmallBatch::LaneArray<3>& corn
 /// Whether 16 bits hold the edges of small and medium triangles in the quads that their boxes touch. A box of so many
 /// pixels has an extent below one more; a quad reaches less than its size beyond it.
 HALFPLANE_INLINE bool are_short_edges(const Widths& widths) {
-  constexpr std::int64_t kExtent = kMediumTiles * kTileSize + 1, kReach = kExtent + 2 * kBlockSize;
+  constexpr std::int64_t kExtent = kMediumTiles * kTileSize + 1, kReach = kExtent + std::int64_t{2} * kBlockSize;
   return (2 * kExtent * kReach << widths.grid_bits) < 1 << 15;
 }
 
@@ -199,8 +207,11 @@ HALFPLANE_INLINE void set_up_small_edges(SmallBatch& batch, const SmallCorners& 
 HALFPLANE_INLINE void find_places(SmallBatch& batch) {
   const auto block_of = [](const SmallBatch::Lane& at) HALFPLANE_LAMBDA { return I16::load(at.data()) >> kBlockShift; };
   const I16 column = block_of(batch.left), row = block_of(batch.top);
-  constexpr int kTilePixels = kTileSize * kTileSize;
-  ((column >> 1) * kTilePixels + (row >> 1) * (kBinTiles * kTilePixels)).store(batch.place.data());
+  constexpr auto kPixels = static_cast<std::int32_t>(kTilePixels);
+  ((column >> 1) * kPixels + (row >> 1) * (kBinTiles * kPixels)).store(batch.place.data());
   ((column & 1) + (row & 1) * 4).store(batch.first_block.data());
   ((block_of(batch.right) - column) + (block_of(batch.bottom) - row) * 4).store(batch.columns_rows.data());
 }
+
+}  // namespace
+}  // namespace halfplane::functional::HALFPLANE_ISA_NAME

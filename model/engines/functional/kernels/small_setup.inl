@@ -1,5 +1,12 @@
 // Planes of sixteen small or medium triangles at a time, as triangle_setup has them: the same integers, a triangle a lane.
-// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+#pragma once
+
+#include "cull.inl"
+#include "leaf.inl"
+#include "small_batch.inl"
+
+namespace halfplane::functional::HALFPLANE_ISA_NAME {
+namespace {
 
 /// A place to evaluate planes at, from their origin, subpixels.
 struct FromOrigin {
@@ -182,12 +189,12 @@ struct SmallPlanes {
       : corners(corners_),
         widths(widths_),
         quotient(Arithmetic::quotient(corners.area, widths.reciprocal_bits())),
-        steep(std::int32_t{1} << (30 - extent_bits(kMediumPixelBits, widths))) {}
+        steep_(std::int32_t{1} << (30 - extent_bits(kMediumPixelBits, widths))) {}
 
   /// Gradients of depth, in x and in y.
   [[nodiscard]] HALFPLANE_INLINE auto depth_gradients(const LaneFormat& format) const {
     const auto gradient = depth(format);
-    return is_any(corners.z_high - corners.z_low >= steep)
+    return is_any(corners.z_high - corners.z_low >= steep_)
                ? depth_gradients_by<typename Arithmetic::WideNumerator>(corners, gradient)
                : depth_gradients_by<I16>(corners, gradient);
   }
@@ -197,7 +204,7 @@ struct SmallPlanes {
   }
 
  private:
-  std::int32_t steep;  ///< differences of depth codes from here on need products of more than 32 bits
+  std::int32_t steep_;  ///< differences of depth codes from here on need products of more than 32 bits
 
   [[nodiscard]] HALFPLANE_INLINE typename Arithmetic::DepthGradient depth(const LaneFormat& format) const {
     const auto [reciprocal, k] = factor(widths.depth());
@@ -325,3 +332,6 @@ HALFPLANE_NOINLINE void set_up_small(SmallBatch& batch, const Slice& slice, cons
   if (slice.state.color_write && !slice.state.has_surface)
     set_up_small_colors(batch, planes, to, color_format, slice.state.is_flat, samples);
 }
+
+}  // namespace
+}  // namespace halfplane::functional::HALFPLANE_ISA_NAME

@@ -1,5 +1,16 @@
 // Surfaces in lanes: the colours of a tile's pixels that show a triangle with a texture or colours over w.
-// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+#pragma once
+
+#include "bin.inl"
+#include "level_of_detail.inl"
+#include "light.inl"
+#include "perspective.inl"
+#include "texture.inl"
+#include "tile_memory.inl"
+#include "values.inl"
+
+namespace halfplane::functional::HALFPLANE_ISA_NAME {
+namespace {
 
 /// divide_by_255() of channels in the halves of lanes: (t + (t >> 8)) >> 8 is 257 t >> 16.
 HALFPLANE_INLINE S32 divide_by_255(const S32& value) { return multiply_upper(value + 128, 257); }
@@ -107,7 +118,7 @@ HALFPLANE_NOINLINE void shade(Bin& bin, const DrawnSurface& surface, int tile, s
   const SurfaceRamps<kSampling> ramps(bin, surface, tile % kBinTiles, tile / kBinTiles, of.has_color);
   CoordinateLanes at[4];
   I16 lod[4], red_blue[4], green_alpha[4];
-  alignas(64) std::array<std::uint32_t, kTileSize * kTileSize> nearest;
+  alignas(64) std::array<std::uint32_t, kTilePixels> nearest;
   if constexpr (kSampling == Sampling::nearest) {
     for_each_block([&](auto block) HALFPLANE_LAMBDA {
       if (block_bits(pixels, block) == 0) return;
@@ -126,9 +137,7 @@ HALFPLANE_NOINLINE void shade(Bin& bin, const DrawnSurface& surface, int tile, s
       green_alpha[block] = texels.green_alpha;
     });
   }
-  for_each_block([&](auto block) HALFPLANE_LAMBDA {
-    const std::uint32_t bits = block_bits(pixels, block);
-    if (bits == 0) return;
+  store_pixels(bin, colors, pixels, true, [&](auto block, const I16&) HALFPLANE_LAMBDA {
     const auto pairs = [&]() HALFPLANE_LAMBDA {
       if constexpr (!kHasTexture) return ramps.own(bin, surface, block);
       const ColorPairs texels = [&]() HALFPLANE_LAMBDA {
@@ -138,9 +147,7 @@ HALFPLANE_NOINLINE void shade(Bin& bin, const DrawnSurface& surface, int tile, s
       }();
       return of.has_color ? combined(ramps.own(bin, surface, block), texels, of.texture) : texels;
     }();
-    const I16 color = packed(pairs.red_blue, pairs.green_alpha, format);
-    std::uint32_t* const to = colors + block * kBlockPixels;
-    (bits == 0xffff ? color : select_by_bits(bits, color, I16::load(to), bin.position.to_sign)).store(to);
+    return packed(pairs.red_blue, pairs.green_alpha, format);
   });
 }
 
@@ -171,19 +178,15 @@ HALFPLANE_INLINE void shade_unlit(Bin& bin, const DrawnSurface& surface, int til
 HALFPLANE_NOINLINE void shade_lit(Bin& bin, const DrawnSurface& surface, int tile, std::uint64_t pixels,
                                   std::uint32_t* const colors, ColorFormat format) {
   const SurfaceConstants& of = surface.constants;
-  alignas(64) std::array<std::uint32_t, kTileSize * kTileSize> texels{};
+  alignas(64) std::array<std::uint32_t, kTilePixels> texels{};
   if (of.has_texture) shade_unlit(bin, surface, tile, pixels, texels.data(), ColorFormat::rgba8888);
   const SurfaceRamps<Sampling::none> ramps(bin, surface, tile % kBinTiles, tile / kBinTiles, true);
   const NormalRamps normals(bin, *of.light, tile % kBinTiles, tile / kBinTiles);
-  for_each_block([&](auto block) HALFPLANE_LAMBDA {
-    const std::uint32_t bits = block_bits(pixels, block);
-    if (bits == 0) return;
+  store_pixels(bin, colors, pixels, true, [&](auto block, const I16&) HALFPLANE_LAMBDA {
     const ColorPairs lit = LightLanes(normals, *of.light, block).lit(ramps.own(bin, surface, block), *of.light);
     const ColorPairs pairs =
         of.has_texture ? combined(lit, ColorPairs(I16::load(texels.data() + block * kBlockPixels)), of.texture) : lit;
-    const I16 color = packed(pairs.red_blue, pairs.green_alpha, format);
-    std::uint32_t* const to = colors + block * kBlockPixels;
-    select_by_bits(bits, color, I16::load(to), bin.position.to_sign).store(to);
+    return packed(pairs.red_blue, pairs.green_alpha, format);
   });
 }
 
@@ -218,18 +221,14 @@ HALFPLANE_INLINE ColorPairs in_fog(const ColorPairs& color, const I16& factor, c
 /// The same with fog, which is a pass of its own over the colours of 8 bits: so it costs nothing where there is none.
 HALFPLANE_NOINLINE void shade_in_fog(Bin& bin, const DrawnSurface& surface, int tile, std::uint64_t pixels,
                                      std::uint32_t* const colors, ColorFormat format) {
-  alignas(64) std::array<std::uint32_t, kTileSize * kTileSize> clear{};
+  alignas(64) std::array<std::uint32_t, kTilePixels> clear{};
   shade_in_lanes(bin, surface, tile, pixels, clear.data(), ColorFormat::rgba8888);
   const LaneFog& fog = surface.constants.fog;
   const BlockRamp<I16> q = over_w_ramp(bin, fog.q, tile % kBinTiles, tile / kBinTiles);
-  for_each_block([&](auto block) HALFPLANE_LAMBDA {
-    const std::uint32_t bits = block_bits(pixels, block);
-    if (bits == 0) return;
+  store_pixels(bin, colors, pixels, true, [&](auto block, const I16&) HALFPLANE_LAMBDA {
     const I16 factors = fog_factors(q(block), fog, surface.constants.division.up);
     const ColorPairs pairs = in_fog(ColorPairs(I16::load(clear.data() + block * kBlockPixels)), factors, fog);
-    const I16 color = packed(pairs.red_blue, pairs.green_alpha, format);
-    std::uint32_t* const to = colors + block * kBlockPixels;
-    select_by_bits(bits, color, I16::load(to), bin.position.to_sign).store(to);
+    return packed(pairs.red_blue, pairs.green_alpha, format);
   });
 }
 
@@ -244,3 +243,6 @@ HALFPLANE_INLINE void shade(Bin& bin, const DrawnSurface& surface, int tile, std
 HALFPLANE_INLINE void shade(Bin& bin, const DrawnSurface& surface, int tile, std::uint64_t pixels) {
   shade(bin, surface, tile, pixels, bin.memory.color.data() + first_of(tile), bin.config.color_format);
 }
+
+}  // namespace
+}  // namespace halfplane::functional::HALFPLANE_ISA_NAME

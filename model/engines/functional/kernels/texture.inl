@@ -1,5 +1,11 @@
 // Texels in lanes: texture_filter.hpp and texture_sample.hpp of textures whose sides are powers of two.
-// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+#pragma once
+
+#include "lane_memory.inl"
+#include "lane_moves.inl"
+
+namespace halfplane::functional::HALFPLANE_ISA_NAME {
+namespace {
 
 /// 2^-8 texels of level 0.
 struct CoordinateLanes {
@@ -311,3 +317,6 @@ HALFPLANE_NOINLINE ColorPairs sample(const LaneTexture& texture, const Coordinat
   return {select(is_magnified, base.red_blue, small.red_blue),
           select(is_magnified, base.green_alpha, small.green_alpha)};
 }
+
+}  // namespace
+}  // namespace halfplane::functional::HALFPLANE_ISA_NAME

@@ -1,5 +1,11 @@
 // Where a tile's pixels are: in the target, in the bin's memory, or still a triangle; and the range of its depths.
-// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+#pragma once
+
+#include "bin.inl"
+#include "values.inl"
+
+namespace halfplane::functional::HALFPLANE_ISA_NAME {
+namespace {
 
 /// First pixel of a tile in the bin's memory.
 inline int first_of(int tile) { return tile * kTileSize * kTileSize; }
@@ -143,16 +149,15 @@ HALFPLANE_NOINLINE void fetch_depth(Bin& bin, int tile) {
   bin.depth_owner[tile] = Bin::kInMemory;
 }
 
-HALFPLANE_INLINE bool is_waiting(const Bin& bin, int tile);
-HALFPLANE_NOINLINE void shade_tile(Bin& bin, int tile);
-HALFPLANE_NOINLINE void lay_tile(Bin& bin, int tile);
-HALFPLANE_NOINLINE void color_cutouts(Bin& bin, int tile);
+/// Whether the colours of a tile are textured primitives that have not been shaded.
+HALFPLANE_INLINE bool is_waiting(const Bin& bin, int tile) {
+  const std::int32_t owner = bin.color_owner[tile];
+  return owner == Bin::kSurfaces || (owner >= 0 && bin.memory.planes[static_cast<std::size_t>(owner)].surface != 0);
+}
 
 HALFPLANE_NOINLINE void fetch_color(Bin& bin, int tile) {
-  if (is_waiting(bin, tile)) return shade_tile(bin, tile);
   const std::int32_t owner = bin.color_owner[tile];
-  if (owner == Bin::kLayers) return lay_tile(bin, tile);
-  if (owner == Bin::kCutouts) return color_cutouts(bin, tile);
+  if (owner == Bin::kLayers || owner == Bin::kCutouts || is_waiting(bin, tile)) return bin.compute_deferred(bin, tile);
   const TileBlocks blocks = owner >= 0
                                 ? colors_of(bin, tile)
                                 : fetched(bin, tile, owner == Bin::kCleared, bin.job.clear_color, bin.job.target.color);
@@ -239,7 +244,7 @@ HALFPLANE_INLINE void find_range(Bin& bin, int tile) {
   }
   const std::int32_t* from = bin.memory.depth.data() + first_of(tile);
   I16 low = I16::load(from), high = low;
-  for (int block = 1; block < 4; ++block) {
+  for (std::size_t block = 1; block < 4; ++block) {
     const I16 depth = I16::load(from + kBlockPixels * block);
     low = min(low, depth);
     high = max(high, depth);
@@ -254,3 +259,6 @@ HALFPLANE_INLINE void forget_range(Bin& bin, int tile) {
   if (Fragments::kIsLess || !bin.rises) bin.tile_low[tile] = 0;
   if (!Fragments::kIsLess && !bin.falls) bin.tile_high[tile] = 0xffff;
 }
+
+}  // namespace
+}  // namespace halfplane::functional::HALFPLANE_ISA_NAME

@@ -1,7 +1,19 @@
-// Large triangles: the 64 tiles of a bin at once, a lane each: outside, behind, taken as a whole, or drawn. What is said
-// of a tile is said in 16 bits: a bound that may be a little wide, never wrong. The pixels of a tile, 64 as well, are
-// exact.
-// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+// Large triangles: the 64 tiles of a bin at once, a lane each: outside, hidden, taken as a whole, or drawn. Bounds
+// of a tile have 16 bits: they may be a little wide, never wrong. The pixels of a tile, 64 as well, are exact.
+#pragma once
+
+#include "bin.inl"
+#include "cutouts.inl"
+#include "deferred.inl"
+#include "fragments.inl"
+#include "layers.inl"
+#include "operations.inl"
+#include "setup.inl"
+#include "tile_memory.inl"
+#include "values.inl"
+
+namespace halfplane::functional::HALFPLANE_ISA_NAME {
+namespace {
 
 /// The 64 lanes of a plane: over the pixels of a tile, block by block, or over the tiles of a bin, row by row. From the
 /// first register the others follow by steps.
@@ -71,7 +83,7 @@ struct DepthLanes {
 };
 
 /// Of the three edges; the fourth lane is not used.
-typedef std::int32_t EdgeWords __attribute__((vector_size(16)));
+using EdgeWords __attribute__((vector_size(16))) = std::int32_t;
 HALFPLANE_INLINE EdgeWords load_edges(const std::array<std::int32_t, 4>& from) {
   EdgeWords words;
   std::memcpy(&words, from.data(), sizeof words);
@@ -99,7 +111,7 @@ HALFPLANE_INLINE TileClasses classify_tiles(const Bin& bin, const BinTriangle& t
   static_assert(kLimit > kWay + kReach + kFloored && kLimit + kWay + kReach + kFloored < 1 << 15);
   const EdgeWords zero{}, dx = load_edges(t.dx), dy = load_edges(t.dy);
   const EdgeWords largest = larger(larger(dx, -dx), larger(dy, -dy));
-  typedef float Floats __attribute__((vector_size(16)));
+  using Floats __attribute__((vector_size(16))) = float;
   const EdgeWords bits = ((EdgeWords) __builtin_convertvector(largest, Floats) >> 23) - 126;
   const EdgeWords drop = larger(bits - kStepBits, zero);
   const EdgeWords to_largest = (larger(dx, zero) - smaller(dy, zero)) * kExtent + most,
@@ -147,35 +159,6 @@ struct TileDepths {
   }
 };
 
-/// The tiles that lie in a box as a whole.
-inline std::uint64_t tiles_inside(const BinBounds& box) {
-  const auto round_up = [](int at) { return (at + kTileSize - 1) & -kTileSize; };
-  const BinBounds inner{round_up(box.left), round_up(box.top), ((box.right + 1) & -kTileSize) - 1,
-                        ((box.bottom + 1) & -kTileSize) - 1};
-  return inner.left > inner.right || inner.top > inner.bottom ? 0 : tiles_of(inner);
-}
-
-HALFPLANE_NOINLINE void finish_cutouts(Bin& bin);
-
-/// Forgets the triangles of which no tile is left.
-HALFPLANE_NOINLINE void drop_planes(Bin& bin) {
-  if (bin.samples > 1) finish_cutouts(bin);
-  std::array<std::int16_t, BinMemory::kPlanes> moved;
-  moved.fill(-1);
-  for (const auto* owners : {&bin.depth_owner, &bin.color_owner})
-    for (const std::int16_t owner : *owners)
-      if (owner >= 0) moved[static_cast<std::size_t>(owner)] = 0;
-  bin.plane_count = 0;
-  for (std::size_t i = 0; i < BinMemory::kPlanes; ++i) {
-    if (moved[i] < 0) continue;
-    moved[i] = static_cast<std::int16_t>(bin.plane_count);
-    bin.memory.planes[bin.plane_count++] = bin.memory.planes[i];
-  }
-  for (auto* owners : {&bin.depth_owner, &bin.color_owner})
-    for (std::int16_t& owner : *owners)
-      if (owner >= 0) owner = moved[static_cast<std::size_t>(owner)];
-}
-
 /// In the lanes that are set in a mask.
 template <class Element, class Lanes>
 HALFPLANE_INLINE void replace(const S64& where, const Lanes& with, Element* at) {
@@ -202,7 +185,7 @@ HALFPLANE_INLINE void take_tiles(Bin& bin, const BinTriangle& t, std::uint64_t t
   const auto tiles = static_cast<unsigned>(std::popcount(taken));
   if (bin.state.color_write) {
     const std::uint64_t unused = taken & ~bits_of(S64::load(bin.color_owner.data()));
-    bin.job.counters.skipped.attributes += 64 * static_cast<unsigned>(std::popcount(unused));
+    bin.job.counters.skipped.attributes += kTilePixels * static_cast<unsigned>(std::popcount(unused));
     if (bin.layer_count != 0) drop_layers(bin, taken & layered_tiles(bin));
     replace(is_taken, plane, bin.color_owner.data());
     bin.split &= ~taken;
@@ -353,7 +336,7 @@ HALFPLANE_INLINE std::uint64_t test_wide(Bin& bin, const BinTriangle& t, int til
   return passed;
 }
 
-/// Colours of the pixels that passed, of blocks that have any; of all where nobody may leave them out. `anchor`: the tile's.
+/// Colours of the pixels that passed, in blocks that have any; without Skip::fragments_early_z in all. `anchor`: the tile's.
 HALFPLANE_INLINE void color_tile(Bin& bin, const BinTriangle& t, int tile, const ChannelPairs& anchor,
                                  std::uint64_t passed) {
   const bool is_cleared = bin.color_owner[tile] == Bin::kCleared;
@@ -384,14 +367,14 @@ struct PixelCounts {
   std::uint64_t covered = 0, passed = 0;
 };
 
-/// The part of a triangle in one tile. `is_in_front`: a full one, all of which passes, and whose depths stay.
+/// The part of a triangle in one tile. `is_in_front`: it covers the tile, all of it passes, and depths are not written.
 template <class Fragments>
 HALFPLANE_INLINE void draw_tile(Bin& bin, const BinTriangle& t, const TileConstants& constants, int tile, bool is_full,
                                 bool is_in_front, PixelCounts& pixels) {
   if (is_in_front) {
     operate_on_tile(bin, t, tile, ~std::uint64_t{0});
-    pixels.covered += kTileSize * kTileSize;
-    pixels.passed += kTileSize * kTileSize;
+    pixels.covered += kTilePixels;
+    pixels.passed += kTilePixels;
     return;
   }
   const int tile_x = tile % kBinTiles, tile_y = tile / kBinTiles;
@@ -428,7 +411,7 @@ HALFPLANE_NOINLINE void draw_tiles(Bin& bin, const BinTriangle& t, std::uint64_t
     draw_tile<Fragments>(bin, t, constants, tile, (full >> tile & 1) != 0, (in_front >> tile & 1) != 0, pixels);
   }
   bin.job.counters.skipped.trivially_accepted += full_tiles;
-  bin.job.counters.samples_tested += std::uint64_t{kTileSize * kTileSize} * cut_tiles;
+  bin.job.counters.samples_tested += kTilePixels * cut_tiles;
   count_fragments(bin, pixels.covered, pixels.passed);
 }
 
@@ -456,8 +439,8 @@ HALFPLANE_INLINE void take_out(std::uint64_t& live, std::uint64_t out, std::uint
   live &= ~out;
 }
 
-/// A triangle or rectangle by itself. Of its tiles that are `live`, first those go that its edges leave, then those
-/// behind: only what is left asks for depths, then for colours.
+/// A triangle or rectangle by itself. Of its tiles that are `live`, first those outside its edges are rejected, then
+/// hidden ones: depths are set up for what is left, then colours.
 template <class Fragments, class Samples>
 HALFPLANE_INLINE void draw_large(Bin& bin, const Slice& slice, const Record& record, std::uint64_t live,
                                  BinTriangle& t) {
@@ -484,7 +467,7 @@ HALFPLANE_INLINE void draw_large(Bin& bin, const Slice& slice, const Record& rec
   if (live == 0) return;
   t.surface = 0;
   if (bin.is_killed) {
-    // Nobody looks at a colour.
+    // No colour is needed.
   } else if (bin.sees_surfaces() || (bin.has_operations && bin.state.has_surface)) {
     need_surfaces(bin, samples.surfaces());
     t.surface = add_surface(bin, slice, record);
@@ -509,3 +492,6 @@ HALFPLANE_INLINE void draw_large(Bin& bin, const Slice& slice, const Record& rec
     samples.template draw<Fragments>(bin, slice, record, t, depths, live & ~taken, full, in_front);
   if (bin.state.depth_write) bin.is_range_old = true;
 }
+
+}  // namespace
+}  // namespace halfplane::functional::HALFPLANE_ISA_NAME

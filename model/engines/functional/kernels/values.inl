@@ -1,5 +1,10 @@
 // Depths and colours of a tile, block by block: from the plane's value at the tile's anchor.
-// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+#pragma once
+
+#include "bin.inl"
+
+namespace halfplane::functional::HALFPLANE_ISA_NAME {
+namespace {
 
 /// The depth at a tile's anchor, in a lane.
 HALFPLANE_INLINE std::int32_t depth_anchor(const Bin& bin, const BinTriangle& t, int tile_x, int tile_y) {
@@ -8,7 +13,7 @@ HALFPLANE_INLINE std::int32_t depth_anchor(const Bin& bin, const BinTriangle& t,
                                    << bin.depth_format.up);
 }
 HALFPLANE_INLINE ChannelPairs color_anchor(const Bin& bin, const BinTriangle& t, int tile_x, int tile_y) {
-  typedef std::uint64_t Unsigned __attribute__((vector_size(32)));
+  using Unsigned __attribute__((vector_size(32))) = std::uint64_t;
   const Channels value = load(t.c_anchor) + load(t.c_tile_x) * tile_x + load(t.c_tile_y) * tile_y;
   return channel_pairs((Channels)((Unsigned)value >> bin.color_format.drop << bin.color_format.up));
 }
@@ -104,6 +109,19 @@ HALFPLANE_INLINE std::uint32_t block_bits(std::uint64_t pixels, std::size_t bloc
   return static_cast<std::uint32_t>(pixels >> (kBlockPixels * block) & 0xffff);
 }
 
+/// Replaces `pixels` of a tile's 64 by `code_of(block, stored)`. `skips`: blocks that have none.
+template <class CodeOf>
+HALFPLANE_INLINE void store_pixels(const Bin& bin, std::uint32_t* tile, std::uint64_t pixels, bool skips,
+                                   CodeOf&& code_of) {
+  for_each_block([&](auto block) HALFPLANE_LAMBDA {
+    const std::uint32_t bits = block_bits(pixels, block);
+    if (bits == 0 && skips) return;
+    std::uint32_t* const at = tile + block * kBlockPixels;
+    const I16 stored = I16::load(at), code = code_of(block, stored);
+    (bits == 0xffff ? code : select_by_bits(bits, code, stored, bin.position.to_sign)).store(at);
+  });
+}
+
 /// Depths in block 0...3 of a tile.
 HALFPLANE_INLINE I16 block_depths(const Bin& bin, const BinTriangle& t, const BlockRamp<I16>& ramp, std::size_t block) {
   return decode(ramp(block), bin.depth_format, t.z_low, t.z_high);
@@ -123,3 +141,6 @@ HALFPLANE_INLINE I16 block_colors(const ColorSteps& t, const ColorRamp& ramp, st
   return color_codes(as<S32>(column) * as<S32>(step_x) + as<S32>(row) * as<S32>(step_y) + as<S32>(anchor), low, high,
                      bin.color_format);
 }
+
+}  // namespace
+}  // namespace halfplane::functional::HALFPLANE_ISA_NAME

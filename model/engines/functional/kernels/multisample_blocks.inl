@@ -1,9 +1,21 @@
 // Small and medium triangles where pixels have several samples: the blocks of 4 x 4 pixels of which they cover some. A
 // block's coverage, depths and colours go sample by sample through what one sample goes through; its tile is split, for of
 // small triangles hardly one leaves a pixel whole.
-// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+#pragma once
 
-/// touch_tiles() of tiles with several samples: in memory sample by sample, and split.
+#include "bin.inl"
+#include "cutouts.inl"
+#include "fragments.inl"
+#include "multisample_setup.inl"
+#include "small.inl"
+#include "small_batch.inl"
+#include "small_setup.inl"
+#include "tile_memory.inl"
+
+namespace halfplane::functional::HALFPLANE_ISA_NAME {
+namespace {
+
+/// touch_tiles() where pixels have several samples: depths by sample, colours split.
 template <class Fragments>
 HALFPLANE_INLINE bool touch_sampled_tiles(Bin& bin, std::uint64_t tiles) {
   const bool is_color = bin.state.color_write;
@@ -14,18 +26,7 @@ HALFPLANE_INLINE bool touch_sampled_tiles(Bin& bin, std::uint64_t tiles) {
     if (is_color) split_tile(bin, at);
   }
   if (is_color) bin.in_memory |= tiles;
-  if (!bin.state.depth_write) return false;
-  bool is_changed = false;
-  for (std::uint64_t rest = tiles; rest != 0; rest &= rest - 1) {
-    const auto at = static_cast<std::size_t>(std::countr_zero(rest));
-    if (++bin.touches[at] == kTouches) {
-      bin.touches[at] = 0;
-      find_sample_range(bin, static_cast<int>(at));
-      is_changed = true;
-    }
-    forget_range<Fragments>(bin, static_cast<int>(at));
-  }
-  return is_changed;
+  return widen_ranges<Fragments>(bin, tiles, [&bin](int tile) HALFPLANE_LAMBDA { find_sample_range(bin, tile); });
 }
 
 /// The edges of lane i over quad q of its window, as far as they differ from pixel to pixel; then from the values at its
@@ -93,19 +94,11 @@ struct QuadEdges<false> {
 /// What the triangles of a batch cover of their quads' pixels: at the centres, at each sample, and at any of these.
 struct SampledCoverage {
   Coverage any;
-  using Blocks = std::array<std::uint16_t, Coverage::kMost * Quad::kBlocks>;
-  alignas(64) Blocks centre;
-  alignas(64) std::array<Blocks, kMaxPixelSamples> sample;
+  alignas(64) Coverage::Blocks centre;
+  alignas(64) std::array<Coverage::Blocks, kMaxPixelSamples> sample;
   std::uint64_t samples = 0;  ///< that are covered and drawn
 
-  HALFPLANE_INLINE SampledCoverage() {}
-  HALFPLANE_INLINE static void set(Blocks& blocks, std::size_t quad, std::uint64_t bits) {
-    std::uint16_t* const to = &blocks[Quad::kBlocks * quad];
-    if constexpr (std::endian::native == std::endian::little)
-      std::memcpy(to, &bits, sizeof bits);
-    else
-      for (std::size_t k = 0; k < Quad::kBlocks; ++k) to[k] = static_cast<std::uint16_t>(bits >> 16 * k);
-  }
+  HALFPLANE_INLINE SampledCoverage() = default;
 };
 
 template <unsigned kSamples, bool kShort>
@@ -120,11 +113,11 @@ HALFPLANE_INLINE void find_sampled(const Bin& bin, const SmallSamples& samples, 
     std::uint64_t any = 0;
     for (std::size_t k = 0; k < samples_of<kSamples>(bin); ++k) {
       const std::uint64_t bits = in_box & ~edges.outside(samples.edge[k], i);
-      SampledCoverage::set(covered.sample[k], at, bits);
+      Coverage::set_blocks(covered.sample[k], at, bits);
       any |= bits;
       if ((bin.drawn_samples >> k & 1) != 0) sum += static_cast<unsigned>(std::popcount(bits));
     }
-    SampledCoverage::set(covered.centre, at, in_box & ~edges.outside(bin.small.edge, i));
+    Coverage::set_blocks(covered.centre, at, in_box & ~edges.outside(bin.small.edge, i));
     covered.any.set(at, i, bin.small.first_block[i] + kWindowQuads.first[q], any);
     at += any != 0 ? 1 : 0;
   }
@@ -136,8 +129,7 @@ HALFPLANE_INLINE void find_sampled(Bin& bin, const SmallSamples& samples, Sample
   const std::uint64_t quads = live_quads(bin);
   bin.has_short_edges ? find_sampled<kSamples, true>(bin, samples, quads, covered)
                       : find_sampled<kSamples, false>(bin, samples, quads, covered);
-  bin.job.counters.samples_tested +=
-      Quad::kBlocks * kBlockPixels * bin.samples * static_cast<unsigned>(std::popcount(quads));
+  bin.job.counters.samples_tested += Quad::kPixels * bin.samples * static_cast<unsigned>(std::popcount(quads));
 }
 
 /// Colours of a block of lane i: at the centre, or where that is not covered at the first covered sample.
@@ -213,7 +205,6 @@ using NarrowSamples = NarrowTest;
 /// Depth, test and colour of the blocks of which samples are covered.
 template <class Fragments, class Test, unsigned kSamples>
 HALFPLANE_NOINLINE void draw_sampled_blocks(Bin& bin, const SmallSamples& samples, const SampledCoverage& covered) {
-  constexpr std::size_t kPixels = kBinSize * kBinSize;
   const SmallBatch& batch = bin.small;
   const SliceState state = bin.state;
   const LanePositions& position = bin.position;
@@ -239,7 +230,7 @@ HALFPLANE_NOINLINE void draw_sampled_blocks(Bin& bin, const SmallSamples& sample
       unsigned some = 0;
       for (std::size_t k = 0; k < count; ++k) {
         const std::uint32_t bits = covered.sample[k][number] & (0U - (drawn >> k & 1U));
-        const std::size_t to = k * kPixels + at;
+        const std::size_t to = k * kBinPixels + at;
         const auto stored = test.load(to),
                    depth = test.codes((value + samples.depth[k][i]) >> depth_down, batch.z_low[i], batch.z_high[i]);
         passed[k] = test.template passed<Fragments>(state, bits, depth, stored);
@@ -250,7 +241,7 @@ HALFPLANE_NOINLINE void draw_sampled_blocks(Bin& bin, const SmallSamples& sample
       if (some == 0 || !has_color) continue;
       const I16 color = sampled_colors<kSamples>(bin, samples, covered, number, i, tile, block, color_down);
       for (std::size_t k = 0; k < count; ++k) {
-        std::uint32_t* const to = colors + k * kPixels + at;
+        std::uint32_t* const to = colors + k * kBinPixels + at;
         test.choose_color(passed[k], color, I16::load(to)).store(to);
       }
     }
@@ -271,11 +262,12 @@ template <class Fragments>
 HALFPLANE_NOINLINE void draw_sampled_batch(Bin& bin, const Slice& slice) {
   const std::uint64_t tiles = batch_tiles(bin);
   SmallSamples samples(bin.widths);
-  (bin.is_short ? set_up_small<ShortArithmetic, SmallSamples>
-                : set_up_small<LongArithmetic, SmallSamples>)(bin.small, slice, bin.widths, bin.centred_depth,
-                                                              bin.centred_color, bin.first_x, bin.first_y, samples);
+  set_up_batch(bin, slice, samples);
   const bool is_changed = touch_sampled_tiles<Fragments>(bin, tiles);
   bin.samples == 4 ? draw_sampled<Fragments, 4>(bin, samples) : draw_sampled<Fragments, 0>(bin, samples);
   bin.small.count = 0;
   if (is_changed || (!Fragments::kIsLess && bin.state.depth_write)) find_bin_range(bin);
 }
+
+}  // namespace
+}  // namespace halfplane::functional::HALFPLANE_ISA_NAME

@@ -1,5 +1,15 @@
-// Small triangles within two by two pixels: their samples, of which culling knows which they cover.
-// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+// Tiny triangles, within two by two pixels: culling knows which of the four pixel centres (samples) they cover.
+#pragma once
+
+#include "bin.inl"
+#include "fragments.inl"
+#include "layers.inl"
+#include "small_batch.inl"
+#include "small_setup.inl"
+#include "tile_memory.inl"
+
+namespace halfplane::functional::HALFPLANE_ISA_NAME {
+namespace {
 
 /// What colours are written as; of surfaces, numbers are. laid_over: of has_operations.
 enum class Writes { nothing, rgba8888, other, surface, laid_over };
@@ -17,7 +27,7 @@ struct SampleRounds {
   }
 };
 
-/// Where they are. As many rounds as one triangle has samples; who has none left has a place somewhere in the bin.
+/// Where the samples are. As many rounds as the triangle with the most has samples; a lane with none left gets any place.
 HALFPLANE_INLINE void find_samples(const Bin& bin, const SmallCorners& corners, SampleRounds& rounds) {
   const SmallBatch& batch = bin.small;
   const I16 left = I16::load(batch.left.data()), top = I16::load(batch.top.data());
@@ -122,7 +132,7 @@ HALFPLANE_INLINE void draw_samples(Bin& bin, const SampleRounds& rounds, Depth* 
     for (unsigned rest = samples; rest != 0; rest &= rest - 1, ++round) {
       const auto at = static_cast<std::uint32_t>(rounds.place[round][i]);
       const std::int32_t depth = rounds.depth[round][i], stored = depths[at];
-      // Stored as it was where it fails: which do, nobody can foresee.
+      // A sample that fails stores the old value: a branch would be mispredicted.
       const bool passed = Fragments::passes_one(state, depth, stored);
       passed_pixels += passed ? 1 : 0;
       if (kDepth) depths[at] = static_cast<Depth>(passed ? depth : stored);
@@ -135,7 +145,7 @@ HALFPLANE_INLINE void draw_samples(Bin& bin, const SampleRounds& rounds, Depth* 
     }
     covered_pixels += static_cast<unsigned>(round);
   }
-  bin.job.counters.samples_tested += 4 * static_cast<unsigned>(std::popcount(bin.small.live));
+  bin.job.counters.samples_tested += std::uint64_t{4} * static_cast<unsigned>(std::popcount(bin.small.live));
   count_fragments(bin, covered_pixels, passed_pixels);
 }
 template <class Fragments, class Depth>
@@ -149,3 +159,6 @@ HALFPLANE_INLINE void draw_samples(Bin& bin, const SampleRounds& rounds, Depth* 
   has_color ? draw_samples<Fragments, false, Writes::other>(bin, rounds, depths)
             : draw_samples<Fragments, false, Writes::nothing>(bin, rounds, depths);
 }
+
+}  // namespace
+}  // namespace halfplane::functional::HALFPLANE_ISA_NAME

@@ -1,15 +1,22 @@
-// Who is seen: colours of surfaces are put off. A pixel keeps the number of its triangle until somebody needs its colour,
-// mostly the end of the bin, and only those are computed that are still there. A triangle is set up when the first one is.
+// Deferred shading of textured primitives. A pixel keeps the number of its triangle until its colour is needed, mostly at the
+// end of the bin, so that only visible pixels are shaded. A triangle is set up when the first of its pixels is shaded.
 //
-// A tile of which pixels wait has Bin::kSurfaces as the owner of its colours; one that such a triangle has taken waits as
-// any other that was taken. So what draws without surfaces asks nothing that it has not always asked.
-// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+// A tile with deferred pixels has Bin::kSurfaces as the owner of its colours; a tile that such a triangle has taken as a whole
+// has the triangle. Draws without textures pay nothing: fetch_color() calls this file only for such owners.
+#pragma once
 
-/// Whether pixels of a tile wait.
-HALFPLANE_INLINE bool is_waiting(const Bin& bin, int tile) {
-  const std::int32_t owner = bin.color_owner[tile];
-  return owner == Bin::kSurfaces || (owner >= 0 && bin.memory.planes[static_cast<std::size_t>(owner)].surface != 0);
-}
+#include "bin.inl"
+#include "piece_colors.inl"
+#include "pieces.inl"
+#include "setup.inl"
+#include "small_batch.inl"
+#include "small_setup.inl"
+#include "surface.inl"
+#include "tile_memory.inl"
+#include "values.inl"
+
+namespace halfplane::functional::HALFPLANE_ISA_NAME {
+namespace {
 
 /// Affine colours of a triangle of any slice.
 inline void set_up_surface_colors(Bin& bin, const SeenSurface& seen, BinTriangle& out) {
@@ -59,7 +66,7 @@ HALFPLANE_INLINE const PieceGroup& group_set_up(Bin& bin, std::size_t number) {
   return group;
 }
 
-/// Gives pixels of pieces that lanes have not set up the numbers of surfaces; returns the other ones.
+/// Renumbers `pixels` of pieces that lanes cannot set up, to be shaded one triangle at a time; returns the other pixels.
 HALFPLANE_NOINLINE std::uint64_t without_lone(Bin& bin, PieceGroup& group, std::uint16_t* numbers,
                                               std::uint64_t pixels) {
   for (std::uint64_t rest = pixels; rest != 0; rest &= rest - 1) {
@@ -106,7 +113,7 @@ HALFPLANE_NOINLINE std::uint64_t shade_pieces_of(Bin& bin, int tile, std::uint64
 
 /// Colours of a tile of which pixels wait: then they are in memory.
 HALFPLANE_NOINLINE void shade_tile(Bin& bin, int tile) {
-  const std::int32_t owner = std::exchange(bin.color_owner[tile], std::int16_t{Bin::kInMemory});
+  const std::int32_t owner = std::exchange(bin.color_owner[tile], Bin::kInMemory);
   if (owner >= 0) {
     const std::int32_t number = bin.memory.planes[static_cast<std::size_t>(owner)].surface;
     return shade(bin, drawn_surface(bin, static_cast<std::size_t>(number)), tile, ~std::uint64_t{0});
@@ -128,7 +135,7 @@ inline void shade_tiles(Bin& bin, std::uint64_t tiles) {
     if (is_waiting(bin, std::countr_zero(tiles))) shade_tile(bin, std::countr_zero(tiles));
 }
 
-/// Nobody waits any longer: numbers begin anew.
+/// Shades all deferred pixels of the bin: numbers begin anew.
 HALFPLANE_NOINLINE void shade_all(Bin& bin) {
   shade_tiles(bin, ~std::uint64_t{0});
   bin.surface_count = 0;
@@ -156,7 +163,7 @@ inline bool has_style(Bin& bin, const Slice& slice) {
   return memory.styles.back().is_in_lanes;
 }
 
-/// Those of a batch, one after the other.
+/// Numbers the triangles of a batch: a group of pieces, or one by one where lanes cannot set up their draw.
 HALFPLANE_NOINLINE void add_surfaces(Bin& bin, const Slice& slice) {
   const SmallBatch& batch = bin.small;
   need_surfaces(bin, batch.records.size());
@@ -179,7 +186,7 @@ HALFPLANE_NOINLINE void add_surfaces(Bin& bin, const Slice& slice) {
   group.surface = {};
 }
 
-/// Assigns triangle numbers to the tile's pixels; 0 means already shaded.
+/// Assigns triangle numbers to the tile's pixels; 0: the colour is in memory already.
 inline void need_numbers(Bin& bin, int tile) {
   const std::int32_t owner = bin.color_owner[tile];
   if (owner == Bin::kSurfaces) return;
@@ -201,3 +208,6 @@ HALFPLANE_INLINE void see(Bin& bin, std::int32_t number, int tile, std::uint64_t
   std::uint16_t* const at = bin.memory.surface.data() + first_of(tile);
   select(lanes_of(pixels), U64(static_cast<std::uint16_t>(number)), U64::load(at)).store(at);
 }
+
+}  // namespace
+}  // namespace halfplane::functional::HALFPLANE_ISA_NAME

@@ -1,5 +1,12 @@
 // What sixteen small or medium triangles gain from the centre of a pixel to its samples, a triangle a lane: multisample.hpp.
-// A room of the kernels, compiled once for each instruction set: see ../kernels.inl.
+#pragma once
+
+#include "leaf.inl"
+#include "small_batch.inl"
+#include "small_setup.inl"
+
+namespace halfplane::functional::HALFPLANE_ISA_NAME {
+namespace {
 
 // The steps of a plane as a tile keeps them, of a pixel, and from them the gain to a sample: sample_plane_offset(), modulo
 // what a tile keeps. Of a step that wraps so many bits are left as the gain still has once its fraction is gone.
@@ -110,3 +117,6 @@ struct SmallSamples {
     }
   }
 };
+
+}  // namespace
+}  // namespace halfplane::functional::HALFPLANE_ISA_NAME
