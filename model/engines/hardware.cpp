@@ -8,15 +8,10 @@
 #include "../packets/packet_words.hpp"
 #include "../stages/coarse_raster.hpp"
 #include "../stages/cull.hpp"
-#include "../stages/depth_test.hpp"
 #include "../stages/fine_raster.hpp"
 #include "../stages/interpolate.hpp"
 #include "../stages/primitive_join.hpp"
 #include "../stages/resolve.hpp"
-#include "../stages/rop.hpp"
-#include "../packets/state_packets.hpp"
-#include "../stages/surface.hpp"
-#include "../stages/texture_stage.hpp"
 #include "../stages/triangle_setup.hpp"
 
 namespace halfplane {
@@ -151,9 +146,9 @@ HardwareModel::HardwareModel(const Config& config, PacketSink& sink, TileMemory 
       hiz_(config, widths_),
       cache_(std::in_place_type<TileCache>, config, widths_),
       memory_(std::move(memory)),
+      path_(config, widths_),
       port_(widths_, memory_.layout()) {
   if (config.cache_kind == CacheKind::blocks) cache_.emplace<BlockCache>(config, widths_);
-  if (has_texture_planes(config)) texture_.emplace(texture_settings(config, widths_), perspective_format(config));
 }
 
 void HardwareModel::run(const PrimitivePacket& primitive, const std::optional<LineSetup>& line) {
@@ -165,16 +160,18 @@ void HardwareModel::run(const PrimitivePacket& primitive, const std::optional<Li
   const ContextPacket context = make_context(setup, widths_);
   sink_.take(on<Arrow::context>, context);
   const EdgeContext edges = make_edge_context(setup);
+  FragmentPacket fragment;  // of each stamp in turn
   coarse_raster(setup, slot_, hiz_, widths_, counters_, [&](const TilePacket& tile) {
     sink_.take(on<Arrow::tile>, tile);
     sink_.take(on<Arrow::edges>, edges);
     fine_raster(tile, edges, widths_, [&](const StampPacket& stamp) {
       sink_.take(on<Arrow::stamp>, stamp);
-      const FragmentPacket fragment = interpolate(stamp, context, widths_);
+      interpolate(stamp, context, widths_, fragment);
       if (line) {
         line_raster(*line, widths_, [&](const LinePixel& pixel) {
           sink_.take(on<Arrow::line_pixel>, pixel);
-          join(line_fragment(fragment, pixel, widths_));
+          set_line_pixel(pixel, widths_, fragment);
+          join(fragment);
         });
       } else {
         join(fragment);
@@ -189,12 +186,34 @@ void HardwareModel::join(const FragmentPacket& fragment) {
   shade(fragment);
 }
 
+/// The caches, the memory of textures and the sink, as the fragment path sees them.
+struct HardwareModel::StampPort {
+  static constexpr bool kSendsPackets = true;
+  HardwareModel& model;
+  const FragmentPacket& fragment;
+
+  [[nodiscard]] std::span<const std::uint32_t> stored() const {
+    return std::visit([this](auto& cache) { return cache.access(fragment, model, model.counters_); }, model.cache_);
+  }
+  void interpolate_colors(SampleMask) const {}
+  void interpolate_over_w(SampleMask) const {}
+  [[nodiscard]] TextureLine read(std::uint32_t address, int beats) const { return model.read_texels(address, beats); }
+  [[nodiscard]] std::span<const std::uint32_t> stored_colors(SampleMask) const {
+    return std::get<BlockCache>(model.cache_).colors();
+  }
+  void send(const WritePacket& packet) const { model.sink_.take(on<Arrow::write>, packet); }
+  void send(const ColorPacket& packet) const { model.sink_.take(on<Arrow::color>, packet); }
+  void write(const WritePacket& packet) const {
+    std::visit([&](auto& cache) { cache.write(fragment, packet); }, model.cache_);
+  }
+};
+
 /// depth_test, rop and framebuffer.
 void HardwareModel::shade(const FragmentPacket& fragment) {
   switch (fragment.kind) {
     case PrimitiveKind::fast_clear: {
       const std::uint32_t color = stored_color(fragment.code[0], config_);
-      const std::uint32_t depth = depth_word(fragment.code[0][kDepthPlane], stencil_.clear_value(), widths_);
+      const std::uint32_t depth = depth_word(fragment.code[0][kDepthPlane], path_.stencil().clear_value(), widths_);
       std::visit([&](auto& cache) { cache.fast_clear(fragment, depth, color, *this, counters_); }, cache_);
       if (fragment.state.depth_write) memory_.set_clear_value(TilePlane::depth, depth);
       if (fragment.state.color_write) memory_.set_clear_value(TilePlane::color, color);
@@ -210,62 +229,20 @@ void HardwareModel::shade(const FragmentPacket& fragment) {
     case PrimitiveKind::line: break;
   }
   if (fragment.mask.any()) {
-    const auto stored = std::visit([&](auto& cache) { return cache.access(fragment, *this, counters_); }, cache_);
-    WritePacket packet = rop(fragment, depth_test(fragment, stored, stencil_, widths_), config_, widths_);
-    SampleMask kept = packet.passed;
-    if (!texture_) {
-      const SampleMask opaque = opaque_samples(fragment, colors_, widths_);
-      keep_opaque(opaque, fragment, packet, widths_);
-      kept = kept & opaque;
-    }
-    sink_.take(on<Arrow::write>, packet);
-    if (fragment.kind != PrimitiveKind::line) {
-      const bool may_fail = is_late(fragment.state, colors_.tests_alpha(), config_);
-      visit_.add(fragment, kept, may_fail ? SampleMask() : kept, widths_);
-    }
-    if (texture_) kept = texture(fragment, packet);
-    if (packs_at_write(config_)) {
-      const StampAddress at{fragment.key.tile_x, fragment.key.tile_y, fragment.stamp};
-      written_colors(colors_.ops, at, packet.write_color, std::get<BlockCache>(cache_).colors(), packet.color, config_,
-                     widths_);
-    }
-    std::visit([&](auto& cache) { cache.write(fragment, packet); }, cache_);
-    if (is_counted(fragment.kind)) {
-      counters_.covered += static_cast<std::uint32_t>(fragment.mask.count());
-      counters_.depth_passed += static_cast<std::uint32_t>(packet.passed.count());
-      counters_.alpha_killed += static_cast<std::uint32_t>(packet.passed.count() - kept.count());
-      if (fragment.state.writes()) counters_.written += static_cast<std::uint32_t>(kept.count());
-    }
+    (void)path_.shade(fragment, counters_, StampPort{*this, fragment});
   }
   if (fragment.ends_visit) {
-    const RetirePacket retired = visit_.retire(fragment, config_, widths_);
+    const RetirePacket retired = path_.retire(fragment);
     sink_.take(on<Arrow::retire>, retired);
     hiz_.retire(retired);
-    visit_ = {};
   }
 }
 
 /// A register of a unit behind the depth test.
 void HardwareModel::set_state(const FragmentPacket& token) {
   const StateRegister which = state_register(token.state);
-  if (is_of_texture(which)) return set_register(*texture_, which, token, widths_);
-  stencil_.set(which, state_word(token, widths_));
-  colors_.set(which, state_word(token, widths_));
-  std::get<BlockCache>(cache_).set(colors_, stencil_);
-}
-
-/// texture_unit, and rop behind it: the colours of `packet` become what is stored, or is about to be blended. Returns the
-/// samples that the alpha test lets pass, and only those are written.
-SampleMask HardwareModel::texture(const FragmentPacket& fragment, WritePacket& packet) {
-  const TexturedStamp shaded =
-      texture_stamp(*texture_, fragment, packet, colors_, config_, widths_,
-                    [this](std::uint32_t address, int beats) { return read_texels(address, beats); });
-  count(shaded.use, counters_);
-  packet.color = shaded.packet.color;
-  if (shaded.packet.mask.any()) sink_.take(on<Arrow::color>, shaded.packet);
-  if (!colors_.tests_alpha()) return packet.passed;
-  keep(shaded.opaque, packet);
-  return shaded.opaque & packet.passed;
+  path_.set(which, token);
+  if (!is_of_texture(which)) std::get<BlockCache>(cache_).set(path_.colors(), path_.stencil());
 }
 
 /// A line of texels.

@@ -9,14 +9,13 @@
 #include <vector>
 
 #include "../host/primitive_stream.hpp"
+#include "../host/texture_memory.hpp"
 #include "../pipeline_graph.hpp"
 #include "../stages/block_cache.hpp"
-#include "../stages/depth_test.hpp"
+#include "../stages/fragment_path.hpp"
 #include "../stages/hiz.hpp"
 #include "../stages/memory_port.hpp"
-#include "../stages/texture_unit.hpp"
 #include "../stages/tile_cache.hpp"
-#include "../host/texture_memory.hpp"
 #include "render.hpp"
 
 namespace halfplane {
@@ -91,7 +90,7 @@ class HardwareModel final : private MemoryPort {
   void request(const MemoryRequest& request) override;
   const MemoryResponse& response() override;
   void set_state(const FragmentPacket& token);
-  [[nodiscard]] SampleMask texture(const FragmentPacket& fragment, WritePacket& packet);
+  struct StampPort;
   [[nodiscard]] TextureLine read_texels(std::uint32_t address, int beats);
 
   Config config_;
@@ -99,12 +98,9 @@ class HardwareModel final : private MemoryPort {
   PacketSink& sink_;
   CounterPacket counters_;
   Hiz hiz_;
-  TileVisit visit_;  ///< what the stamps of the current tile visit have done so far
   std::variant<TileCache, BlockCache> cache_;
   TileMemory memory_;
-  std::optional<TextureUnit> texture_;
-  ColorState colors_;  ///< of the units that this hardware has
-  StencilState stencil_;
+  FragmentPath path_;
   TextureMemory texels_;
   PortStage port_;
   std::deque<MemoryResponse> responses_;  ///< to what has been asked for

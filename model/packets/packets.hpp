@@ -13,8 +13,8 @@
 #include <type_traits>
 #include <utility>
 
-#include "../stages/samples.hpp"
 #include "../scene.hpp"
+#include "../stages/samples.hpp"
 #include "../widths.hpp"
 
 namespace halfplane {
@@ -516,6 +516,7 @@ struct FragmentPacket {
 
 /// The depth code of sample `s` of a stamp.
 [[nodiscard]] inline std::uint32_t fragment_depth(const FragmentPacket& fragment, std::size_t s, const Widths& widths) {
+  if (widths.has_samples == 0) return fragment.code[s][kDepthPlane];
   const auto n = static_cast<std::size_t>(widths.pixel_samples), pixel = s / n, k = s % n;
   return k == 0 ? fragment.code[pixel][kDepthPlane] : fragment.further_depth[pixel * (n - 1) + k - 1];
 }

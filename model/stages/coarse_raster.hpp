@@ -183,10 +183,19 @@ struct TileOffset {
 /// What coarse_raster writes into the context RAM when it takes a primitive.
 [[nodiscard]] ContextPacket make_context(const SetupPacket& setup, const Widths& widths);
 
+/// Sees the steps of a walk as it takes them; the cycle model has one that gives them times.
+struct UnwatchedWalk {
+  static constexpr bool rejects = true;  ///< false: tiles outside an edge go on like all others
+  void read_ahead() const {}             ///< the next tile's bound is about to be read
+  void skip_outside() const {}           ///< a tile is outside
+  void read_bound() const {}
+  void skip_behind() const {}  ///< a tile is behind its bound
+};
+
 /// The stage: calls emit(TilePacket) in the order of the walk, which retires the visit.
-template <class Emit>
+template <class Emit, class Watch = UnwatchedWalk>
 void coarse_raster(const SetupPacket& setup, std::uint8_t slot, Hiz& hiz, const Widths& widths, CounterPacket& counters,
-                   Emit&& emit) {
+                   Emit&& emit, Watch&& watch = {}) {
   const int first_x = setup.box.left >> widths.tile_shift, last_x = setup.box.right >> widths.tile_shift;
   const int first_y = setup.box.top >> widths.tile_shift, last_y = setup.box.bottom >> widths.tile_shift;
   const auto emit_end = [&](int tile_x, int tile_y) {  // the end of the primitive without a visit
@@ -208,15 +217,20 @@ void coarse_raster(const SetupPacket& setup, std::uint8_t slot, Hiz& hiz, const 
   TileWalk walk(first_x, first_y, last_x, last_y, setup.dy);
   bool has_ended = false;
   unsigned outside = 0;
+  if (asks_hiz) watch.read_ahead();
   do {
     ++count.tiles_visited;
     const EdgeValues edges = edges_at_tile(setup, walk.x(), walk.y(), widths);
     outside = outside_edges(setup.dx, setup.dy, moved_by_samples(edges, setup.dx, setup.dy, true, widths),
                             1 << widths.tile_shift);
+    if (!watch.rejects) outside = 0;
+    if (asks_hiz && outside == 0) watch.read_bound();
     if (outside != 0) {
       ++count.tiles_outside;
+      watch.skip_outside();
     } else if (asks_hiz && hiz.rejects(setup, walk.x(), walk.y())) {
       ++count.tiles_hiz;
+      watch.skip_behind();
     } else {
       has_ended = walk.is_last();
       const TilePacket packet = make_tile_packet(setup, walk.x(), walk.y(), slot, has_ended, widths);
@@ -226,6 +240,7 @@ void coarse_raster(const SetupPacket& setup, std::uint8_t slot, Hiz& hiz, const 
       else
         count.samples_tested += to_bounds(packet.box).samples() * static_cast<std::uint64_t>(widths.pixel_samples);
       emit(packet);
+      if (asks_hiz && !has_ended) watch.read_ahead();
     }
   } while (walk.next(outside));
   if (!has_ended) emit_end(walk.x(), walk.y());

@@ -4,8 +4,8 @@
 
 #include <optional>
 
-#include "fragment_ops.hpp"
 #include "../packets/state_packets.hpp"
+#include "fragment_ops.hpp"
 
 namespace halfplane {
 
@@ -104,9 +104,8 @@ struct ColorState {
   /// Whether a fragment may be dropped by its alpha.
   [[nodiscard]] constexpr bool tests_alpha() const { return alpha.func != DepthFunc::always || alpha_covers; }
   /// Whether it is kept at sample `k` of its pixel's `samples`.
-  [[nodiscard]] constexpr bool keeps(std::uint32_t value, std::uint32_t k, std::uint32_t samples) const {
-    return depth_passes(alpha.func, value, std::uint32_t{alpha.reference}) &&
-           (!alpha_covers || k < samples_of_alpha(value, samples));
+  [[nodiscard]] constexpr bool keeps(std::uint32_t value, std::uint32_t k, int samples) const {
+    return alpha_keeps(alpha, alpha_covers ? samples : 0, value, k);
   }
 
   /// A token sets one of them.
@@ -124,10 +123,11 @@ struct ColorState {
 template <class AlphaOf>
 [[nodiscard]] SampleMask alpha_passes(const ColorState& colors, SampleMask samples, const Widths& widths,
                                       AlphaOf&& alpha_of) {
-  const auto n = static_cast<std::uint32_t>(widths.pixel_samples);
+  const int n = widths.pixel_samples;
   SampleMask kept;
   samples.for_each([&](std::size_t s) {
-    kept.set(static_cast<int>(s), colors.keeps(alpha_of(s), static_cast<std::uint32_t>(s) % n, n));
+    const int sample = static_cast<int>(s);
+    kept.set(sample, colors.keeps(alpha_of(s), static_cast<std::uint32_t>(sample % n), n));
   });
   return kept;
 }

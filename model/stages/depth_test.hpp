@@ -11,8 +11,8 @@
 #include <algorithm>
 #include <span>
 
-#include "fragment_ops.hpp"
 #include "../packets/packets.hpp"
+#include "fragment_ops.hpp"
 #include "stencil_packets.hpp"
 
 namespace halfplane {
@@ -23,9 +23,8 @@ inline void keep(SampleMask kept, WritePacket& packet) {
   packet.write_color = packet.write_color & kept;
 }
 
-/// The same where alpha is tested beside the depth: what is not written has the fragment's own depth in its packet.
-inline void keep_opaque(SampleMask opaque, const FragmentPacket& fragment, WritePacket& packet, const Widths& widths) {
-  keep(opaque, packet);
+/// What is not written has the fragment's own depth in its packet.
+inline void complete_depths(const FragmentPacket& fragment, WritePacket& packet, const Widths& widths) {
   for (std::size_t s = 0; s < static_cast<std::size_t>(widths.samples); ++s)
     if (!packet.write_depth.has(s)) packet.depth[s] = fragment_depth(fragment, s, widths);
 }
@@ -41,47 +40,33 @@ inline void keep_opaque(SampleMask opaque, const FragmentPacket& fragment, Write
   return widths.stencil_flags != 0 ? stencil << widths.depth().code.bits | depth : depth;
 }
 
-/// What the two tests make of a sample.
-struct TestedSample {
-  bool passes = false;   ///< both
-  bool changes = false;  ///< the word that is stored
-  std::uint32_t word = 0;
-};
-
-/// A covered sample against the stored word. `side`: of the stencil, which a primitive that looks at none ignores.
-[[nodiscard]] inline TestedSample test_sample(const PrimitiveState& state, const Stencil& side, std::uint32_t depth,
-                                              std::uint32_t stored, const Widths& widths) {
-  const std::uint8_t stencil = stencil_of(stored, widths);
-  const bool passes_stencil = !state.tests_stencil || stencil_passes(side, stencil);
-  const bool is_nearer = depth_passes(state.depth_test, depth, depth_of(stored, widths));
-  TestedSample sample;
-  sample.passes = passes_stencil && is_nearer;
-  const StencilOp op = state.tests_stencil ? stencil_op(side, passes_stencil, is_nearer) : StencilOp::keep;
-  const bool marks = op != StencilOp::keep && side.write_mask != 0;
-  const bool takes = sample.passes && state.depth_write;
-  sample.changes = marks || takes;
-  sample.word = depth_word(takes ? depth : depth_of(stored, widths),
-                           marks ? apply_stencil(op, side, std::uint32_t{stencil}) : stencil, widths);
-  return sample;
-}
-
-/// The stage, without the alpha test and the end of a visit. `stored`: the words of the stamp's samples in the depth RAM.
-[[nodiscard]] inline WritePacket depth_test(const FragmentPacket& fragment, std::span<const std::uint32_t> stored,
-                                            const StencilState& stencil, const Widths& widths) {
+/// The covered samples of a fragment against `stored`, the words of the stamp's samples in the depth RAM. Writes all of
+/// `packet` but its colours and the depths of samples that are not written.
+inline void test_samples(const FragmentPacket& fragment, std::span<const std::uint32_t> stored,
+                         const StencilState& stencil, const Widths& widths, WritePacket& packet) {
   const FragmentState& state = fragment.state;
-  const Stencil& side = stencil.side[state.is_back ? 1 : 0];
-  WritePacket packet;
+  const Stencil* side = state.tests_stencil ? &stencil.side[state.is_back ? 1 : 0] : nullptr;
   packet.key = fragment.key;
   packet.stamp = fragment.stamp;
-  for (std::size_t s = 0; s < static_cast<std::size_t>(widths.samples); ++s) {
-    packet.depth[s] = fragment_depth(fragment, s, widths);
-    if (!fragment.mask.has(s)) continue;
-    const TestedSample sample = test_sample(state, side, packet.depth[s], stored[s], widths);
-    packet.passed.set(static_cast<int>(s), sample.passes);
-    packet.write_depth.set(static_cast<int>(s), sample.changes);
-    if (sample.changes) packet.depth[s] = sample.word;
-  }
-  if (state.color_write) packet.write_color = packet.passed;
+  SampleMask passed, changed;
+  fragment.mask.for_each([&](std::size_t s) {
+    const TestedSample sample = test_sample(state, side, fragment_depth(fragment, s, widths),
+                                            depth_of(stored[s], widths), stencil_of(stored[s], widths));
+    passed.set(static_cast<int>(s), sample.passes);
+    changed.set(static_cast<int>(s), sample.changes);
+    packet.depth[s] = depth_word(sample.depth, sample.stencil, widths);
+  });
+  packet.passed = passed;
+  packet.write_depth = changed;
+  packet.write_color = state.color_write ? passed : SampleMask();
+}
+
+/// The stage, without the alpha test and the end of a visit.
+[[nodiscard]] inline WritePacket depth_test(const FragmentPacket& fragment, std::span<const std::uint32_t> stored,
+                                            const StencilState& stencil, const Widths& widths) {
+  WritePacket packet;
+  test_samples(fragment, stored, stencil, widths, packet);
+  complete_depths(fragment, packet, widths);
   return packet;
 }
 
@@ -109,7 +94,7 @@ class TileVisit {
  public:
   /// `passed`: samples whose depth may be written, if the state writes any; `written`: those of them where it surely is.
   void add(const FragmentPacket& fragment, SampleMask passed, SampleMask written, const Widths& widths) {
-    full_stamps_ += written.count() == widths.samples ? 1 : 0;
+    full_stamps_ += written == SampleMask::all(widths.samples) ? 1 : 0;
     has_passed_ = has_passed_ || passed.any();
     passed.for_each([&](std::size_t s) { largest_ = std::max(largest_, fragment_depth(fragment, s, widths)); });
   }

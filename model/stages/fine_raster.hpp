@@ -36,7 +36,7 @@ namespace halfplane {
 /// The edges of a triangle at the place of one sample of every pixel: what each gains from the pixel's centre.
 using EdgePlace = EdgeDeltas;
 
-/// At the centre of pixels, and at each of their samples where they have several.
+/// At the centre of pixels, where one sample lies, and at each of several samples.
 struct EdgePlaces {
   EdgePlace centre{};
   std::array<EdgePlace, kMaxPixelSamples> sample{};  ///< of one sample: the centre
@@ -49,27 +49,49 @@ struct EdgePlaces {
   }
 };
 
+/// The edge values at pixel (x, y) of the tile.
+[[nodiscard]] inline EdgeDeltas edges_at(const TilePacket& tile, const EdgeContext& edges, int x, int y) {
+  EdgeDeltas value;
+  for (std::size_t e = 0; e < 3; ++e) value[e] = tile.edge_value[e] + x * edges.step_x[e] + y * edges.step_y[e];
+  return value;
+}
+
+/// Whether no edge is negative at a place of the pixel with these edge values: the sign of the three together is clear.
+[[nodiscard]] constexpr bool is_inside(const EdgeDeltas& edge, const EdgePlace& place) {
+  return ((edge[0] + place[0]) | (edge[1] + place[1]) | (edge[2] + place[2])) >= 0;
+}
+
+[[nodiscard]] constexpr bool is_in_box(const TilePacket& tile, int x, int y) {
+  return x >= tile.box.left && x <= tile.box.right && y >= tile.box.top && y <= tile.box.bottom;
+}
+
 /// Whether pixel (x, y) of the tile is covered at one sample position.
 [[nodiscard]] inline bool is_covered(const TilePacket& tile, const EdgeContext& edges, const EdgePlace& place, int x,
                                      int y) {
-  bool covered = x >= tile.box.left && x <= tile.box.right && y >= tile.box.top && y <= tile.box.bottom;
-  for (std::size_t e = 0; e < 3 && !tile.is_inside; ++e)
-    covered &= tile.edge_value[e] + place[e] + x * edges.step_x[e] + y * edges.step_y[e] >= 0;
-  return covered;
+  return is_in_box(tile, x, y) && (tile.is_inside || is_inside(edges_at(tile, edges, x, y), place));
 }
 
 /// Gives a stamp whose first pixel is `origin` of the tile its coverage: of its samples, and of its pixels' centres.
 inline void cover_stamp(const TilePacket& tile, const EdgeContext& edges, const EdgePlaces& places, PixelOffset origin,
                         const Widths& widths, StampPacket& stamp) {
-  const StampGrid& stamps = widths.stamps;
-  stamp.mask = stamp.centre = {};
-  for (int s = 0; s < stamps.samples(); ++s) {
-    const PixelOffset pixel = stamps.pixel_of(s);
-    const int x = origin.x + pixel.x, y = origin.y + pixel.y, k = s % stamps.per_pixel;
-    stamp.mask.set(s, is_covered(tile, edges, places.sample[static_cast<std::size_t>(k)], x, y));
-    if (widths.has_samples != 0 && k == 0)
-      stamp.centre.set(s / stamps.per_pixel, is_covered(tile, edges, places.centre, x, y));
-  }
+  const StampGrid stamps = widths.stamps;
+  SampleMask mask, centre;
+  for (int y = 0; y < stamps.size; ++y)
+    for (int x = 0; x < stamps.size; ++x) {
+      if (!is_in_box(tile, origin.x + x, origin.y + y)) continue;
+      const EdgeDeltas edge = edges_at(tile, edges, origin.x + x, origin.y + y);
+      const auto covers = [&](const EdgePlace& place) { return tile.is_inside || is_inside(edge, place); };
+      const bool is_centre_covered = covers(places.centre);
+      if (stamps.per_pixel == 1) {
+        mask.set(y * stamps.size + x, is_centre_covered);
+        continue;
+      }
+      centre.set(y * stamps.size + x, is_centre_covered);
+      for (int k = 0; k < stamps.per_pixel; ++k)
+        mask.set(stamps.sample_at(x, y) + k, covers(places.sample[static_cast<std::size_t>(k)]));
+    }
+  stamp.mask = mask;
+  stamp.centre = centre;
 }
 
 /// The parts of a stamp that are its tile's.

@@ -11,10 +11,10 @@
 #include <cstdint>
 #include <optional>
 
-#include "color_ops.hpp"
 #include "../config.hpp"
 #include "../packets/packets.hpp"
 #include "../scene.hpp"
+#include "color_ops.hpp"
 #include "stencil_ops.hpp"
 
 namespace halfplane {
@@ -147,6 +147,42 @@ struct DepthOutcomes {
   return depth_passes(s.func, std::uint32_t{s.reference} & s.read_mask, std::uint32_t{stored} & s.read_mask);
 }
 
+/// What the stencil and the depth test make of a sample.
+struct TestedSample {
+  bool passes = false;   ///< both
+  bool changes = false;  ///< what is stored: its depth or its stencil
+  std::uint32_t depth = 0;
+  std::uint8_t stencil = 0;  ///< what is stored then
+};
+
+/// A depth code against what is stored. `side`: of the stencil; null: the primitive does not look at it.
+[[nodiscard]] constexpr TestedSample test_sample(const PrimitiveState& state, const Stencil* side, std::uint32_t depth,
+                                                 std::uint32_t stored_depth, std::uint8_t stored_stencil) {
+  const bool passes_stencil = side == nullptr || stencil_passes(*side, stored_stencil);
+  const bool is_nearer = depth_passes(state.depth_test, depth, stored_depth);
+  TestedSample sample{passes_stencil && is_nearer, false, stored_depth, stored_stencil};
+  if (sample.passes && state.depth_write) {
+    sample.changes = true;
+    sample.depth = depth;
+  }
+  if (side == nullptr) return sample;
+  const StencilOp op = stencil_op(*side, passes_stencil, is_nearer);
+  if (op != StencilOp::keep && side->write_mask != 0) {
+    sample.changes = true;
+    sample.stencil = static_cast<std::uint8_t>(apply_stencil(op, *side, std::uint32_t{stored_stencil}));
+  }
+  return sample;
+}
+
+/// Whether alpha to coverage draws sample `k` of a pixel: the first ones are. `samples`: of the pixel; 0: alpha does not choose.
+[[nodiscard]] constexpr bool is_drawn_by_alpha(int samples, std::uint32_t alpha, std::uint32_t k) {
+  return samples == 0 || k < samples_of_alpha(alpha, static_cast<std::uint32_t>(samples));
+}
+/// Whether the alpha test keeps it as well.
+[[nodiscard]] constexpr bool alpha_keeps(const AlphaTest& test, int samples, std::uint32_t alpha, std::uint32_t k) {
+  return depth_passes(test.func, alpha, std::uint32_t{test.reference}) && is_drawn_by_alpha(samples, alpha, k);
+}
+
 // --- one fragment, all of it ----------------------------------------------------------------------------------------
 
 /// What comes of a fragment.
@@ -155,11 +191,6 @@ enum class Fate {
   killed,  ///< passed those, but not the alpha test
   passed
 };
-
-/// Whether alpha to coverage draws that sample: the first ones of a pixel are.
-[[nodiscard]] constexpr bool is_drawn_by_alpha(const FragmentOps& ops, std::uint32_t alpha, std::uint32_t sample) {
-  return ops.alpha_samples == 0 || sample < samples_of_alpha(alpha, static_cast<std::uint32_t>(ops.alpha_samples));
-}
 
 /// What is stored at a fragment's pixel.
 struct StoredPixel {
@@ -182,23 +213,17 @@ template <class Color>
 constexpr Fate apply_fragment(const FragmentOps& ops, ColorFormat format, const TestedFragment& fragment, Color&& color,
                               const StoredPixel& stored) {
   using Code = std::uint32_t;
-  const Stencil* stencil = ops.stencil ? &(*ops.stencil)[fragment.is_back ? 1 : 0] : nullptr;
-  const bool stencil_passes = stencil == nullptr || halfplane::stencil_passes(*stencil, stored.stencil);
-  const bool passes = stencil_passes && depth_passes(ops.state.depth_test, fragment.depth, stored.depth);
-  const bool has_side_effects = stencil != nullptr && writes_stencil(*stencil);
-  if (!passes && !has_side_effects) return Fate::failed;
+  const Stencil* side = ops.stencil ? &(*ops.stencil)[fragment.is_back ? 1 : 0] : nullptr;
+  const TestedSample tested = test_sample(ops.state, side, fragment.depth, stored.depth, stored.stencil);
+  if (!tested.passes && !tested.changes) return Fate::failed;
   Channels<Code> source{};
   const bool tests_alpha = ops.alpha.func != DepthFunc::always || ops.alpha_samples != 0;
-  if (tests_alpha || (passes && ops.state.color_write)) source = color();
-  const bool is_dropped = tests_alpha && (!depth_passes(ops.alpha.func, source[3], Code{ops.alpha.reference}) ||
-                                          !is_drawn_by_alpha(ops, source[3], fragment.sample));
-  if (is_dropped) return passes ? Fate::killed : Fate::failed;
-  if (has_side_effects) {
-    const StencilOp op = stencil_op(*stencil, stencil_passes, passes);
-    stored.stencil = static_cast<std::uint8_t>(apply_stencil<Code>(op, *stencil, Code{stored.stencil}));
-  }
-  if (!passes) return Fate::failed;
-  if (ops.state.depth_write) stored.depth = fragment.depth;
+  if (tests_alpha || (tested.passes && ops.state.color_write)) source = color();
+  if (tests_alpha && !alpha_keeps(ops.alpha, ops.alpha_samples, source[3], fragment.sample))
+    return tested.passes ? Fate::killed : Fate::failed;
+  stored.depth = tested.depth;
+  stored.stencil = tested.stencil;
+  if (!tested.passes) return Fate::failed;
   if (ops.state.color_write)
     stored.color = store_color<Code>(ops.color, format, source, stored.color, dither_threshold(fragment.x, fragment.y));
   return Fate::passed;

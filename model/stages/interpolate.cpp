@@ -46,6 +46,33 @@ Interpolated interpolate_at(const TriangleSetup& setup, const Widths& widths, in
 
 namespace {
 
+/// A plane over the pixels of a stamp, modulo 2^64.
+struct StampPlane {
+  std::uint64_t first, step_x, step_y;  ///< at the stamp's first pixel; per pixel
+
+  /// `from_anchor`: the stamp's first pixel, from the anchor of its tile.
+  StampPlane(const StampPacket& stamp, const ContextPacket& context, std::size_t p, const PixelOffset& from_anchor)
+      : step_x(static_cast<std::uint64_t>(context.step_x[p])), step_y(static_cast<std::uint64_t>(context.step_y[p])) {
+    first = static_cast<std::uint64_t>(stamp.anchor[p]) +
+            static_cast<std::uint64_t>(std::int64_t{from_anchor.x}) * step_x +
+            static_cast<std::uint64_t>(std::int64_t{from_anchor.y}) * step_y;
+  }
+  [[nodiscard]] std::uint64_t at(const PixelOffset& pixel) const {
+    return first + static_cast<std::uint64_t>(pixel.x) * step_x + static_cast<std::uint64_t>(pixel.y) * step_y;
+  }
+  /// From there to a sample of the pixel.
+  [[nodiscard]] std::uint64_t to_sample(const SampleOffset& o, const Widths& widths) const {
+    return static_cast<std::uint64_t>(
+        sample_plane_offset(static_cast<std::int64_t>(step_x), static_cast<std::int64_t>(step_y), o, widths.grid_bits));
+  }
+};
+
+PixelOffset from_anchor(int stamp, const Widths& widths) {
+  const PixelOffset first = widths.stamps.origin_of(stamp);
+  const int half_tile = 1 << (widths.tile_shift - 1);
+  return {first.x - half_tile, first.y - half_tile};
+}
+
 /// What hardware has of decode(): the rounded code modulo 2^bits, without the clamp. The error before rounding stays below
 /// 1/2 LSB (depth_error_bound() is at most 1), so at a covered sample it is that of decode(); at others it may be anything.
 std::uint32_t wrapped_code(std::uint64_t value, const LocalFormat<std::uint64_t>& format) {
@@ -56,52 +83,82 @@ std::uint32_t wrapped_code(std::uint64_t value, const LocalFormat<std::uint64_t>
 /// Where a pixel of a stamp is shaded: at its centre, or if a sample is covered and the centre is not, at the first such.
 SampleOffset shaded_offset(const StampPacket& stamp, int pixel, const Widths& widths) {
   const unsigned covered = widths.stamps.of_pixel(stamp.mask, pixel);
-  if (widths.has_samples == 0 || covered == 0 || stamp.centre.has(static_cast<std::size_t>(pixel))) return {};
+  if (covered == 0 || stamp.centre.has(static_cast<std::size_t>(pixel))) return {};
   return widths.sample_offset[static_cast<std::size_t>(std::countr_zero(covered))];
 }
 
 }  // namespace
 
-FragmentPacket interpolate(const StampPacket& stamp, const ContextPacket& context, const Widths& widths) {
-  FragmentPacket fragment;
+void start_fragment(const StampPacket& stamp, const ContextPacket& context, const Widths& widths,
+                    FragmentPacket& fragment) {
   fragment.kind = stamp.kind;
   fragment.ends_visit = stamp.ends_visit;
   fragment.ends_primitive = stamp.ends_primitive;
   fragment.key = stamp.key;
   fragment.stamp = stamp.stamp;
   fragment.state = context.state;
-  fragment.mask = stamp.mask & widths.stamps.in_every_pixel(~unsigned{context.state.masked_samples});
+  fragment.mask = stamp.mask;
+  if (context.state.masked_samples != 0)
+    fragment.mask = fragment.mask & widths.stamps.in_every_pixel(~unsigned{context.state.masked_samples});
+  if (widths.coordinates == 0) return;
   fragment.coordinates = context.coordinates;
-  if (widths.has_colors_over_w != 0) {
-    fragment.least_color = vertex_color(context.range.low, widths);
-    fragment.greatest_color = vertex_color(context.range.high, widths);
-  }
-  const StampGrid& stamps = widths.stamps;
-  const PixelOffset origin = stamps.origin_of(stamp.stamp);
-  const int half_tile = 1 << (widths.tile_shift - 1);
-  for (int pixel = 0; pixel < stamps.pixels(); ++pixel) {
-    const auto at = static_cast<std::size_t>(pixel), n = static_cast<std::size_t>(widths.pixel_samples);
-    const PixelOffset in_stamp = stamps.pixel_of(pixel * stamps.per_pixel);
-    const auto i = static_cast<std::uint64_t>(std::int64_t{origin.x + in_stamp.x - half_tile});  // from the anchor
-    const auto j = static_cast<std::uint64_t>(std::int64_t{origin.y + in_stamp.y - half_tile});
-    const auto value_at = [&](std::size_t p, const SampleOffset& o) {
-      return static_cast<std::uint64_t>(stamp.anchor[p]) + i * static_cast<std::uint64_t>(context.step_x[p]) +
-             j * static_cast<std::uint64_t>(context.step_y[p]) +
-             static_cast<std::uint64_t>(sample_plane_offset(context.step_x[p], context.step_y[p], o, widths.grid_bits));
+  if (widths.has_colors_over_w == 0) return;
+  fragment.least_color = vertex_color(context.range.low, widths);
+  fragment.greatest_color = vertex_color(context.range.high, widths);
+}
+
+void interpolate_depths(const StampPacket& stamp, const ContextPacket& context, SampleMask pixels, const Widths& widths,
+                        FragmentPacket& fragment) {
+  const LocalFormat<std::uint64_t> format(widths.depth());
+  const StampPlane plane(stamp, context, kDepthPlane, from_anchor(stamp.stamp, widths));
+  const StampGrid stamps = widths.stamps;
+  if (widths.has_samples == 0)
+    return pixels.for_each([&](std::size_t pixel) {
+      fragment.code[pixel][kDepthPlane] = wrapped_code(plane.at(stamps.place_of(static_cast<int>(pixel))), format);
+    });
+  const std::size_t further = static_cast<std::size_t>(widths.pixel_samples) - 1;
+  pixels.for_each([&](std::size_t pixel) {
+    const std::uint64_t centre = plane.at(stamps.place_of(static_cast<int>(pixel)));
+    const auto code_at = [&](std::size_t k) {
+      return wrapped_code(centre + plane.to_sample(widths.sample_offset[k], widths), format);
     };
-    const SampleOffset shaded = shaded_offset(stamp, pixel, widths);
-    for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p) {
-      const std::uint64_t value = value_at(p, p == kDepthPlane ? widths.sample_offset[0] : shaded);
-      if (static_cast<int>(p) >= widths.affine_planes) {  // Q and P as they are: the texture unit divides
-        fragment.code[at][p] = static_cast<std::uint32_t>(wrap_unsigned(value, widths.of_plane(p).local.bits));
-        continue;
-      }
-      fragment.code[at][p] = wrapped_code(value, LocalFormat<std::uint64_t>(widths.of_plane(p)));
-    }
-    for (std::size_t k = 1; k < n; ++k)
-      fragment.further_depth[at * (n - 1) + k - 1] =
-          wrapped_code(value_at(kDepthPlane, widths.sample_offset[k]), LocalFormat<std::uint64_t>(widths.depth()));
+    fragment.code[pixel][kDepthPlane] = code_at(0);
+    for (std::size_t k = 0; k < further; ++k) fragment.further_depth[pixel * further + k] = code_at(k + 1);
+  });
+}
+
+void interpolate_planes(const StampPacket& stamp, const ContextPacket& context, int first, int end, SampleMask pixels,
+                        const Widths& widths, FragmentPacket& fragment) {
+  const StampGrid stamps = widths.stamps;
+  const PixelOffset origin = from_anchor(stamp.stamp, widths);
+  const bool has_samples = widths.has_samples != 0;
+  for (auto p = static_cast<std::size_t>(first); p < static_cast<std::size_t>(end); ++p) {
+    const StampPlane plane(stamp, context, p, origin);
+    const LocalFormat<std::uint64_t> format(widths.of_plane(p));
+    const int local_bits = widths.of_plane(p).local.bits;
+    const bool is_affine = static_cast<int>(p) < widths.affine_planes;
+    pixels.for_each([&](std::size_t pixel) {
+      const int n = static_cast<int>(pixel);
+      std::uint64_t value = plane.at(stamps.place_of(n));
+      if (has_samples) value += plane.to_sample(shaded_offset(stamp, n, widths), widths);
+      fragment.code[pixel][p] = is_affine ? wrapped_code(value, format)
+                                          // Q and P as they are: the texture unit divides
+                                          : static_cast<std::uint32_t>(wrap_unsigned(value, local_bits));
+    });
   }
+}
+
+void interpolate(const StampPacket& stamp, const ContextPacket& context, const Widths& widths,
+                 FragmentPacket& fragment) {
+  const SampleMask pixels = SampleMask::all(widths.pixels);
+  start_fragment(stamp, context, widths, fragment);
+  interpolate_depths(stamp, context, pixels, widths, fragment);
+  interpolate_planes(stamp, context, kColorPlane, widths.planes, pixels, widths, fragment);
+}
+
+FragmentPacket interpolate(const StampPacket& stamp, const ContextPacket& context, const Widths& widths) {
+  FragmentPacket fragment;
+  interpolate(stamp, context, widths, fragment);
   return fragment;
 }
 

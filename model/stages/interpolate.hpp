@@ -99,4 +99,17 @@ struct Interpolated {
 /// that of the stamp's slot.
 [[nodiscard]] FragmentPacket interpolate(const StampPacket& stamp, const ContextPacket& context, const Widths& widths);
 
+// The same over a packet that is used again, at once and step by step: its codes stay what they were but for those of `pixels`.
+void interpolate(const StampPacket& stamp, const ContextPacket& context, const Widths& widths,
+                 FragmentPacket& fragment);
+/// All but the codes.
+void start_fragment(const StampPacket& stamp, const ContextPacket& context, const Widths& widths,
+                    FragmentPacket& fragment);
+/// The depths of all samples of these pixels.
+void interpolate_depths(const StampPacket& stamp, const ContextPacket& context, SampleMask pixels, const Widths& widths,
+                        FragmentPacket& fragment);
+/// The planes `first` to `end` - 1, without depth.
+void interpolate_planes(const StampPacket& stamp, const ContextPacket& context, int first, int end, SampleMask pixels,
+                        const Widths& widths, FragmentPacket& fragment);
+
 }  // namespace halfplane

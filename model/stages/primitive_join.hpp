@@ -11,23 +11,29 @@
 
 namespace halfplane {
 
-/// A pixel of the line whose place is `token`: a stamp with one covered pixel, all of whose samples are drawn that the state lets, which belongs to no tile visit.
-[[nodiscard]] inline FragmentPacket line_fragment(const FragmentPacket& token, const LinePixel& pixel,
-                                                  const Widths& widths) {
+/// Turns the place of a line, or the pixel before, into a pixel of the line: a stamp with one covered pixel, which belongs to no
+/// tile visit. All samples of the pixel are drawn that the state lets.
+inline void set_line_pixel(const LinePixel& pixel, const Widths& widths, FragmentPacket& fragment) {
   const StampGrid& stamps = widths.stamps;
   const int last = (1 << widths.tile_shift) - 1;
   const int x = pixel.x & last, y = pixel.y & last;  // in the tile
-  FragmentPacket fragment = token;
   fragment.ends_visit = false;
   fragment.ends_primitive = pixel.is_last;
   fragment.key.tile_x = static_cast<std::uint16_t>(pixel.x >> widths.tile_shift);
   fragment.key.tile_y = static_cast<std::uint16_t>(pixel.y >> widths.tile_shift);
   fragment.stamp = static_cast<std::uint16_t>(stamps.stamp_at(x, y));
   fragment.mask = stamps.samples_at(x % stamps.size, y % stamps.size) &
-                  stamps.in_every_pixel(~unsigned{token.state.masked_samples});
+                  stamps.in_every_pixel(~unsigned{fragment.state.masked_samples});
   // In every lane: the other pixels are not looked at, and a lane of hardware need not know which one is.
   std::fill_n(fragment.code.begin(), widths.pixels, pixel.code);
   std::fill_n(fragment.further_depth.begin(), widths.further_samples, pixel.code[kDepthPlane]);
+}
+
+/// The stage's packet of a pixel of the line whose place is `token`.
+[[nodiscard]] inline FragmentPacket line_fragment(const FragmentPacket& token, const LinePixel& pixel,
+                                                  const Widths& widths) {
+  FragmentPacket fragment = token;
+  set_line_pixel(pixel, widths, fragment);
   return fragment;
 }
 

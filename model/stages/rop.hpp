@@ -4,9 +4,9 @@
 // colours are blended or dithered, written_colors() once more as they are written. The arithmetic is color_ops.hpp's.
 #pragma once
 
-#include "fragment_ops.hpp"
 #include "../packets/packets.hpp"
 #include "clear_flags.hpp"
+#include "fragment_ops.hpp"
 
 namespace halfplane {
 
@@ -15,14 +15,21 @@ namespace halfplane {
   return pack_color(config.color_format, color_channels(code));
 }
 
+/// The fragment's colours of `samples`, into its packet.
+inline void add_colors(const FragmentPacket& fragment, SampleMask samples, const Config& config, const Widths& widths,
+                       WritePacket& packet) {
+  const bool is_packed = !has_texture_planes(config) && !packs_at_write(config);
+  samples.for_each([&](std::size_t s) {
+    packet.color[s] = is_packed ? stored_color(fragment_code(fragment, s, widths), config)
+                                : vertex_color(fragment_code(fragment, s, widths), widths);
+  });
+}
+
 /// The stage.
 [[nodiscard]] inline WritePacket rop(const FragmentPacket& fragment, const WritePacket& tested, const Config& config,
                                      const Widths& widths) {
   WritePacket packet = tested;
-  const bool is_packed = !has_texture_planes(config) && !packs_at_write(config);
-  for (std::size_t s = 0; s < static_cast<std::size_t>(widths.samples); ++s)
-    packet.color[s] = is_packed ? stored_color(fragment_code(fragment, s, widths), config)
-                                : vertex_color(fragment_code(fragment, s, widths), widths);
+  add_colors(fragment, SampleMask::all(widths.samples), config, widths, packet);
   return packet;
 }
 
@@ -34,8 +41,8 @@ inline void written_colors(const ColorOps& ops, const StampAddress& at, SampleMa
   const PixelOffset origin = widths.stamps.origin_of(at.stamp);
   samples.for_each([&](std::size_t s) {
     const PixelOffset pixel = widths.stamps.pixel_of(static_cast<int>(s));
-    const int x = at.tile_x * config.tile_size + origin.x + pixel.x,
-              y = at.tile_y * config.tile_size + origin.y + pixel.y;
+    const int x = (at.tile_x << widths.tile_shift) + origin.x + pixel.x,
+              y = (at.tile_y << widths.tile_shift) + origin.y + pixel.y;
     const auto channels = unpack_color<std::uint32_t>(ColorFormat::rgba8888, color[s]);  // as vertex_color() has them
     color[s] = store_color<std::uint32_t>(ops, config.color_format, channels, stored[s], dither_threshold(x, y));
   });

@@ -57,7 +57,7 @@ struct PixelOffset {
   int x = 0, y = 0;
 };
 
-/// The stamps of a tile and the samples of a stamp.
+/// The stamps of a tile and the samples of a stamp. All three are powers of two, so that a place takes shifts, not divisions.
 struct StampGrid {
   int size = 1;            ///< pixels along the side of a stamp
   int stamps_per_row = 1;  ///< stamps along the side of a tile
@@ -66,10 +66,10 @@ struct StampGrid {
   [[nodiscard]] constexpr int stamps() const { return stamps_per_row * stamps_per_row; }
   [[nodiscard]] constexpr int pixels() const { return size * size; }
   [[nodiscard]] constexpr int samples() const { return pixels() * per_pixel; }
-  /// The pixel of a sample, in its stamp.
-  [[nodiscard]] constexpr PixelOffset pixel_of(int sample) const {
-    return {sample / per_pixel % size, sample / per_pixel / size};
-  }
+  /// The place of a pixel, by number, in its stamp; the pixel of a sample.
+  [[nodiscard]] constexpr PixelOffset place_of(int pixel) const { return {pixel & (size - 1), pixel >> log2(size)}; }
+  [[nodiscard]] constexpr int pixel_number(int sample) const { return sample >> log2(per_pixel); }
+  [[nodiscard]] constexpr PixelOffset pixel_of(int sample) const { return place_of(pixel_number(sample)); }
   /// The first sample of a pixel of the stamp.
   [[nodiscard]] constexpr int sample_at(int x, int y) const { return (y * size + x) * per_pixel; }
   /// All samples of a pixel of the stamp.
@@ -89,12 +89,14 @@ struct StampGrid {
   }
   /// The pixels with a sample in `mask`.
   [[nodiscard]] constexpr SampleMask pixels_of(SampleMask mask) const {
+    if (per_pixel == 1) return mask;
     SampleMask result;
     for (int pixel = 0; pixel < pixels(); ++pixel) result.set(pixel, of_pixel(mask, pixel) != 0);
     return result;
   }
   /// All samples of these pixels.
   [[nodiscard]] constexpr SampleMask samples_of(SampleMask of_pixels) const {
+    if (per_pixel == 1) return of_pixels;
     std::uint64_t bits = 0;
     for (int pixel = 0; pixel < pixels(); ++pixel)
       if (of_pixels.has(static_cast<std::size_t>(pixel)))
@@ -103,10 +105,15 @@ struct StampGrid {
   }
   /// The first pixel of a stamp, in its tile.
   [[nodiscard]] constexpr PixelOffset origin_of(int stamp) const {
-    return {stamp % stamps_per_row * size, stamp / stamps_per_row * size};
+    return {(stamp & (stamps_per_row - 1)) << log2(size), stamp >> log2(stamps_per_row) << log2(size)};
   }
   /// The stamp that holds a pixel of the tile.
-  [[nodiscard]] constexpr int stamp_at(int x, int y) const { return y / size * stamps_per_row + x / size; }
+  [[nodiscard]] constexpr int stamp_at(int x, int y) const {
+    return (y >> log2(size) << log2(stamps_per_row)) + (x >> log2(size));
+  }
+
+ private:
+  [[nodiscard]] static constexpr int log2(int power) { return std::countr_zero(static_cast<unsigned>(power)); }
 };
 
 }  // namespace halfplane

@@ -19,21 +19,30 @@ namespace halfplane {
 }
 
 struct TexturedStamp {
-  ColorPacket packet;  ///< sent only if it has a sample
-  SampleMask opaque;   ///< those that get a colour and that the alpha test behind lets pass
-  TextureUse use;
+  ColorPacket packet;                      ///< sent only if it has a sample
+  SampleMask opaque;                       ///< those that get a colour and that the alpha test behind lets pass
+  SampleMask live;                         ///< pixels that get a colour
+  std::span<const TextureLookup> lookups;  ///< until the next stamp
 };
+
+/// Whether any of these units does anything to the colours of a fragment: the planes over w are looked at then.
+[[nodiscard]] inline bool changes_colors(const TextureUnit& unit, const FragmentPacket& fragment) {
+  const bool is_triangle = fragment.kind == PrimitiveKind::triangle;
+  return fragment.coordinates.divides_colors || unit.light().is_lit(is_triangle) || unit.fog().is_fogged(is_triangle) ||
+         unit.is_textured(is_triangle, SampleMask(1));
+}
 
 /// Light, the texture unit and fog: the colours of the `live` pixels, which come as the primitive's own. read(address, beats)
 /// gives a TextureLine. Returns what was looked up; it stays until the next stamp.
 template <class Read>
 std::span<const TextureLookup> shade_pixels(TextureUnit& unit, const FragmentPacket& fragment, SampleMask live,
                                             const Widths& widths, std::span<Texel> color, Read&& read) {
+  if (!changes_colors(unit, fragment)) return {};
   const StampGrid& stamps = widths.stamps;
   const PixelOffset origin = stamps.origin_of(fragment.stamp);
   const TextureFrame frame = texture_frame(fragment);
   const bool is_triangle = fragment.kind == PrimitiveKind::triangle;
-  std::array<TextureSample, kMaxSamples> pixel;
+  const std::span<TextureSample> pixel = unit.samples();
   live.for_each([&](std::size_t i) {
     const PixelOffset at = stamps.pixel_of(static_cast<int>(i) * stamps.per_pixel);
     pixel[i] = texture_sample(fragment.code[i], widths);
@@ -54,13 +63,14 @@ template <class Read>
                                           Read&& read) {
   const StampGrid& stamps = widths.stamps;
   const SampleMask shaded = shaded_samples(write, colors), live = stamps.pixels_of(shaded);
-  TexturedStamp result{{stamps.samples_of(live), {}}, {}, {}};
+  TexturedStamp result{{stamps.samples_of(live), {}}, {}, live, {}};
+  if (!live.any()) return result;
   std::array<Texel, kMaxSamples> color;
   live.for_each([&](std::size_t i) {
     const std::uint32_t own = write.color[i * static_cast<std::size_t>(stamps.per_pixel)];
     for (std::size_t c = 0; c < 4; ++c) color[i][c] = static_cast<std::uint8_t>(own >> 8 * c);
   });
-  result.use = use_of(shade_pixels(unit, fragment, live, widths, color, read));
+  result.lookups = shade_pixels(unit, fragment, live, widths, color, read);
   const auto color_at = [&](std::size_t s) { return color[s / static_cast<std::size_t>(stamps.per_pixel)]; };
   result.packet.mask.for_each([&](std::size_t s) {
     const Texel of_pixel = color_at(s);

@@ -30,12 +30,12 @@
 #include <vector>
 
 #include "../fixed.hpp"
-#include "samples.hpp"
-#include "../scene.hpp"
 #include "../formats/texture.hpp"
+#include "../scene.hpp"
 #include "fog_unit.hpp"
 #include "light_unit.hpp"
 #include "perspective.hpp"
+#include "samples.hpp"
 #include "texture_filter.hpp"
 #include "texture_levels.hpp"
 
@@ -309,6 +309,9 @@ class TextureUnit {
         if (square.any()) visit(square);
       }
   }
+  /// Room for those of the stamp at work.
+  [[nodiscard]] std::span<TextureSample> samples() { return samples_; }
+
   [[nodiscard]] int groups(SampleMask live) const {
     int n = 0;
     for_each_group(live, [&n](SampleMask) { ++n; });
@@ -538,6 +541,7 @@ class TextureUnit {
   TextureCache cache_;
   std::vector<TextureLine> data_;
   std::vector<TextureLookup> lookups_;
+  std::array<TextureSample, kMaxSamples> samples_{};
 };
 
 }  // namespace halfplane

@@ -8,6 +8,7 @@
 
 #include "../engines/hardware.hpp"
 #include "../packets/packet_words.hpp"
+#include "../packets/state_packets.hpp"
 #include "../stages/coarse_raster.hpp"
 #include "../stages/color_packets.hpp"
 #include "../stages/cull.hpp"
@@ -16,7 +17,6 @@
 #include "../stages/interpolate.hpp"
 #include "../stages/primitive_join.hpp"
 #include "../stages/rop.hpp"
-#include "../packets/state_packets.hpp"
 #include "../stages/surface.hpp"
 #include "../stages/texture_stage.hpp"
 #include "../stages/triangle_setup.hpp"
@@ -194,7 +194,8 @@ void run_depth_test(StageIo& io, const Config& config, const Widths& widths) {
       const bool may_fail = is_late(fragment->state, colors.tests_alpha(), config);
       if (!has_texture_planes(config)) {
         const SampleMask opaque = halfplane::opaque_samples(*fragment, colors, widths);
-        keep_opaque(opaque, *fragment, tested, widths);
+        keep(opaque, tested);
+        complete_depths(*fragment, tested, widths);
         kept = kept & opaque;
       }
       run.send(0, tested);

@@ -88,7 +88,7 @@ Result cover_by_alpha(FragmentAtWork& f, OperationStep& step) {
   step.figures = {{"fragment", {f.color[3]}, 8},
                   {"samples_drawn", {samples_of_alpha(f.color[3], samples)}, 4},
                   {"sample", {f.sample}, 3}};
-  step.passes = is_drawn_by_alpha(f.context.fragment_ops, f.color[3], f.sample);
+  step.passes = is_drawn_by_alpha(f.context.fragment_ops.alpha_samples, f.color[3], f.sample);
   return *step.passes ? Result{} : dropped_by_alpha(f);
 }
 
