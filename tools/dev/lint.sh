@@ -55,7 +55,7 @@ verible_rtl() {
 kernels_alone() {
   local folder=model/engines/functional status=0 kernel
   local compile=("${CXX:-g++}" -std=c++20 -I. -Wall -Werror -Wno-psabi -Wno-unused)
-  "${compile[@]}" -x c++-header -o build/lint/kernel_headers.hpp.gch - <<<"#include \"$folder/kernel_headers.hpp\"" || return
+  "${compile[@]}" -w -x c++-header "$folder/kernel_headers.hpp" -o build/lint/kernel_headers.hpp.gch || return
   for kernel in "$folder"/kernels/*.inl; do
     "${compile[@]}" -include build/lint/kernel_headers.hpp -fsyntax-only -x c++ - <<<"#include \"$kernel\"" || status=1
   done

@@ -177,8 +177,9 @@ using PixelsOfSamples = std::array<std::uint64_t, kMaxPixelSamples>;
 
 /// A triangle's part in a tile, which waits: cutouts.inl.
 struct Cutout {
-  std::int16_t plane;    ///< into BinMemory::planes
-  std::uint64_t centre;  ///< pixels of which it covers the centre
+  std::int16_t plane;       ///< into BinMemory::planes
+  std::uint16_t low, high;  ///< range of its depths, where they wait
+  std::uint64_t centre;     ///< pixels that it covers there
   PixelsOfSamples covered, passed;
 };
 /// The cutouts of a tile, the last one on top.
@@ -187,7 +188,9 @@ struct TileCutouts {
   std::size_t count, first_depth;         ///< from first_depth on depths wait as well, if Bin::depth_owner says so
   std::int16_t color_below, depth_below;  ///< owners of what lies below
   bool is_split_below;
-  Cutout cutout[kMost];  // GCC 12 takes an access to a std::array of these for one of another array
+  std::uint16_t low_below, high_below;  ///< range of the depths there
+  PixelsOfSamples below;                ///< its samples that no cutout hides: set by drop_hidden()
+  Cutout cutout[kMost];                 // GCC 12 takes an access to a std::array of these for one of another array
 };
 
 /// What a bin keeps by sample where a pixel has several, each laid out as BinMemory is; colours of tiles that are split.

@@ -51,6 +51,10 @@ struct ColorSums {
     outer += outer_of(color);
     inner += inner_of(color);
   }
+  HALFPLANE_INLINE void add(const I16& color, const I16& count) {
+    outer += outer_of(color) * count;
+    inner += inner_of(color) * count;
+  }
   HALFPLANE_INLINE I16 mean(const Bin& bin) const {
     const int log = std::countr_zero(bin.samples);
     const std::int32_t code = is_short ? 0x1f : 0xff;
@@ -114,7 +118,7 @@ struct SampledColors {
 /// visible.
 template <unsigned kSamples>
 HALFPLANE_NOINLINE bool drop_hidden(Bin& bin, TileCutouts& cutouts) {
-  PixelsOfSamples seen;
+  PixelsOfSamples& seen = cutouts.below;
   for (unsigned k = 0; k < samples_of<kSamples>(bin); ++k) seen[k] = ~std::uint64_t{0};
   std::array<std::uint64_t, TileCutouts::kMost> any;
   for (std::size_t i = cutouts.count; i-- != 0;) {
@@ -145,13 +149,13 @@ HALFPLANE_NOINLINE bool drop_hidden(Bin& bin, TileCutouts& cutouts) {
   return below != 0;
 }
 
-/// Depths of a tile's cutouts: in memory.
+/// Depths of a tile's cutouts at the first `samples`: in memory. With all of them nothing waits any longer.
 template <unsigned kSamples>
-HALFPLANE_NOINLINE void store_depths_of_cutouts(Bin& bin, int tile) {
+HALFPLANE_NOINLINE void store_depths_of_cutouts(Bin& bin, int tile, unsigned samples) {
   TileCutouts& cutouts = bin.sample_memory.cutouts[tile];
   (void)drop_hidden<kSamples>(bin, cutouts);
   bin.depth_owner[tile] = cutouts.depth_below;
-  for (unsigned k = 0; k < samples_of<kSamples>(bin); ++k) {
+  for (unsigned k = 0; k < samples; ++k) {
     std::uint64_t below = ~std::uint64_t{0};
     for (std::size_t i = cutouts.first_depth; i < cutouts.count; ++i) below &= ~cutouts.cutout[i].passed[k];
     if (below != 0 && cutouts.depth_below != Bin::kInMemory) {
@@ -164,7 +168,7 @@ HALFPLANE_NOINLINE void store_depths_of_cutouts(Bin& bin, int tile) {
     const Cutout& cutout = cutouts.cutout[i];
     const BinTriangle& t = bin.memory.planes[static_cast<std::size_t>(cutout.plane)];
     const std::int32_t anchor = depth_anchor(bin, t, tile % kBinTiles, tile / kBinTiles);
-    for (unsigned k = 0; k < samples_of<kSamples>(bin); ++k) {
+    for (unsigned k = 0; k < samples; ++k) {
       const BlockRamp<I16> plane = depth_ramp(bin, t, wrapped_sum(anchor, depth_at_sample(bin, t, k)));
       for_each_block([&](auto block) HALFPLANE_LAMBDA {
         const std::uint32_t passed = block_bits(cutout.passed[k], block);
@@ -178,16 +182,16 @@ HALFPLANE_NOINLINE void store_depths_of_cutouts(Bin& bin, int tile) {
   }
   cutouts.first_depth = cutouts.count;
   bin.depth_owner[tile] = Bin::kInMemory;
-  find_sample_range(bin, tile);
+  if (samples == bin.samples) find_sample_range(bin, tile);
 }
-HALFPLANE_INLINE void store_cutout_depths(Bin& bin, int tile) {
-  bin.samples == 4 ? store_depths_of_cutouts<4>(bin, tile) : store_depths_of_cutouts<0>(bin, tile);
+HALFPLANE_INLINE void store_cutout_depths(Bin& bin, int tile, unsigned samples) {
+  bin.samples == 4 ? store_depths_of_cutouts<4>(bin, tile, samples) : store_depths_of_cutouts<0>(bin, tile, samples);
 }
 
 /// Depths of the samples of a tile: in memory.
 HALFPLANE_NOINLINE void need_sample_depths(Bin& bin, int tile) {
   if (bin.depth_owner[tile] == Bin::kInMemory) return;
-  if (bin.depth_owner[tile] == Bin::kCutouts) return store_cutout_depths(bin, tile);
+  if (bin.depth_owner[tile] == Bin::kCutouts) return store_cutout_depths(bin, tile, bin.samples);
   for (unsigned k = 0; k < bin.samples; ++k) {
     const TileBlocks blocks = sample_depths(bin, tile, k);
     for (std::size_t i = 0; i < 4; ++i)
@@ -242,13 +246,73 @@ HALFPLANE_NOINLINE void color_cutouts(Bin& bin, int tile) {
   bin.samples == 4 ? split_cutouts<4>(bin, tile) : split_cutouts<0>(bin, tile);
 }
 
+/// Colours of a tile's cutouts where only resolved pixels are stored: the mean of each pixel's samples. The tile is whole.
+template <unsigned kSamples>
+HALFPLANE_NOINLINE void resolve_cutouts(Bin& bin, int tile) {
+  TileCutouts& cutouts = bin.sample_memory.cutouts[tile];
+  const bool has_below = drop_hidden<kSamples>(bin, cutouts);
+  if (has_below && (cutouts.is_split_below || cutouts.color_below == Bin::kInTarget)) return color_cutouts(bin, tile);
+  std::uint32_t* const to = bin.memory.color.data() + first_of(tile);
+  ColorSums sums[4] = {ColorSums(bin), ColorSums(bin), ColorSums(bin), ColorSums(bin)};
+  unsigned done = 0;
+  const auto add = [&](const PixelsOfSamples& seen, auto&& color_of) HALFPLANE_LAMBDA {
+    for_each_block([&](auto block) HALFPLANE_LAMBDA {
+      I16 count(0);
+      std::uint32_t any = 0, all = 0xffff;
+      for (unsigned k = 0; k < samples_of<kSamples>(bin); ++k) {
+        const std::uint32_t bits = block_bits(seen[k], block);
+        any |= bits;
+        all &= bits;
+        count = select_by_bits(bits, count + 1, count, bin.position.to_sign);
+      }
+      if (any == 0) return;
+      const I16 color = color_of(block, any);
+      if (all == 0xffff) {
+        color.store(to + block * kBlockPixels);
+        done |= 1U << block;
+      } else {
+        sums[block].add(color, count);
+      }
+    });
+  };
+  bin.split &= ~(std::uint64_t{1} << tile);
+  if (has_below) {
+    bin.color_owner[tile] = cutouts.color_below;
+    need_color(bin, tile);
+    add(cutouts.below,
+        [&](std::size_t block, std::uint32_t) HALFPLANE_LAMBDA { return I16::load(to + block * kBlockPixels); });
+  }
+  bin.color_owner[tile] = Bin::kInMemory;
+  for (std::size_t i = 0; i < cutouts.count; ++i) {
+    const Cutout& cutout = cutouts.cutout[i];
+    const BinTriangle& t = bin.memory.planes[static_cast<std::size_t>(cutout.plane)];
+    SampledColors<kSamples> colors(bin, t);
+    const ColorRamp plane = color_ramp(bin, t.color, color_anchor(bin, t, tile % kBinTiles, tile / kBinTiles));
+    add(cutout.passed, [&](std::size_t block, std::uint32_t any) HALFPLANE_LAMBDA {
+      return colors.of_block(plane, cutout.centre, cutout.covered, block, any, bin.config.color_format);
+    });
+  }
+  for_each_block([&](auto block) HALFPLANE_LAMBDA {
+    if ((done >> block & 1) == 0) sums[block].mean(bin).store(to + block * kBlockPixels);
+  });
+}
+
 /// No cutout waits any longer.
 HALFPLANE_NOINLINE void finish_cutouts(Bin& bin) {
   for (int tile = 0; tile < Bin::kTiles; ++tile) {
-    if (bin.depth_owner[tile] == Bin::kCutouts) store_cutout_depths(bin, tile);
+    if (bin.depth_owner[tile] == Bin::kCutouts) store_cutout_depths(bin, tile, bin.samples);
     if (bin.color_owner[tile] == Bin::kCutouts) color_cutouts(bin, tile);
   }
 }
+/// The same at the end of a bin of which only resolved pixels are stored.
+HALFPLANE_NOINLINE void resolve_all_cutouts(Bin& bin) {
+  for (int tile = 0; tile < Bin::kTiles; ++tile) {
+    if (bin.depth_owner[tile] == Bin::kCutouts) store_cutout_depths(bin, tile, 1);
+    if (bin.color_owner[tile] == Bin::kCutouts)
+      bin.samples == 4 ? resolve_cutouts<4>(bin, tile) : resolve_cutouts<0>(bin, tile);
+  }
+}
+
 /// Forgets the triangles of which no tile is left.
 HALFPLANE_NOINLINE void drop_planes(Bin& bin) {
   if (bin.samples > 1) finish_cutouts(bin);
@@ -308,7 +372,7 @@ HALFPLANE_INLINE void add_cutout(Bin& bin, int tile, std::int16_t plane, const S
     if (cutouts.count == TileCutouts::kMost) color_cutouts(bin, tile);
   }
   const bool begins = bin.color_owner[tile] != Bin::kCutouts;
-  if (bin.depth_owner[tile] == Bin::kCutouts && (begins || !has_depth)) store_cutout_depths(bin, tile);
+  if (bin.depth_owner[tile] == Bin::kCutouts && (begins || !has_depth)) store_cutout_depths(bin, tile, bin.samples);
   if (begins) {
     if (is_waiting(bin, tile) || bin.color_owner[tile] == Bin::kLayers) need_color(bin, tile);
     cutouts.count = cutouts.first_depth = 0;
@@ -321,6 +385,8 @@ HALFPLANE_INLINE void add_cutout(Bin& bin, int tile, std::int16_t plane, const S
   if (has_depth && bin.depth_owner[tile] != Bin::kCutouts) {
     cutouts.depth_below = bin.depth_owner[tile];
     cutouts.first_depth = cutouts.count;
+    cutouts.low_below = bin.tile_low[tile];
+    cutouts.high_below = bin.tile_high[tile];
     bin.depth_owner[tile] = Bin::kCutouts;
   }
   Cutout& cutout = cutouts.cutout[cutouts.count++];
@@ -331,8 +397,56 @@ HALFPLANE_INLINE void add_cutout(Bin& bin, int tile, std::int16_t plane, const S
     cutout.passed[k] = pixels.passed[k];
   }
   if (!has_depth) return;
+  cutout.low = range->low;
+  cutout.high = range->high;
   bin.tile_low[tile] = std::min(bin.tile_low[tile], range->low);
   bin.tile_high[tile] = std::max(bin.tile_high[tile], range->high);
+}
+
+/// The samples of a triangle that pass the test less in a tile whose depths wait, as far as ranges decide it: its range is
+/// compared with that of the cutout on top at each sample. False where ranges overlap.
+template <unsigned kSamples>
+HALFPLANE_INLINE bool passes_by_ranges(Bin& bin, int tile, const CutoutRange& range, SamplePixels& pixels) {
+  const TileCutouts& cutouts = bin.sample_memory.cutouts[tile];
+  const std::uint16_t touch = bin.range_bits_dropped != 0 ? 1 : 0;
+  PixelsOfSamples rest, below;
+  for (unsigned k = 0; k < samples_of<kSamples>(bin); ++k) {
+    rest[k] = pixels.passed[k];
+    below[k] = ~std::uint64_t{0};
+  }
+  std::uint16_t highest = 0;
+  const auto decide = [&](std::uint64_t any, std::uint16_t low, std::uint16_t high, auto&& fail) HALFPLANE_LAMBDA {
+    if (any == 0 || range.high < low) return true;
+    if (range.low < high + touch) return false;
+    fail();
+    return true;
+  };
+  for (std::size_t i = cutouts.count; i-- != cutouts.first_depth;) {
+    const Cutout& cutout = cutouts.cutout[i];
+    PixelsOfSamples here;
+    std::uint64_t any = 0;
+    for (unsigned k = 0; k < samples_of<kSamples>(bin); ++k) {
+      here[k] = rest[k] & cutout.passed[k];
+      rest[k] &= ~cutout.passed[k];
+      below[k] &= ~cutout.passed[k];
+      any |= here[k];
+    }
+    highest = std::max(highest, cutout.high);
+    const bool is_decided = decide(any, cutout.low, cutout.high, [&]() HALFPLANE_LAMBDA {
+      for (unsigned k = 0; k < samples_of<kSamples>(bin); ++k) pixels.passed[k] &= ~here[k];
+    });
+    if (!is_decided) return false;
+  }
+  std::uint64_t any = 0, any_below = 0;
+  for (unsigned k = 0; k < samples_of<kSamples>(bin); ++k) {
+    any |= rest[k];
+    any_below |= below[k];
+  }
+  // All that lies below is hidden: a triangle farther than the farthest cutout is rejected by the tile's range from now on.
+  if (any_below == 0) bin.tile_high[tile] = std::min(bin.tile_high[tile], highest);
+  return decide(any, cutouts.low_below, cutouts.high_below, [&]() HALFPLANE_LAMBDA {
+    for (unsigned k = 0; k < samples_of<kSamples>(bin); ++k) pixels.passed[k] &= ~rest[k];
+  });
 }
 
 /// Ranges of a triangle's depths in a bin's tiles.

@@ -167,7 +167,7 @@ inline void finish(Bin& bin) {
   const int columns = tiles_along(bin.job.target.width - bin.first_x),
             rows = tiles_along(bin.job.target.height - bin.first_y);
   if (bin.samples > 1) {
-    finish_cutouts(bin);
+    bin.job.keeps_samples ? finish_cutouts(bin) : resolve_all_cutouts(bin);
     for (int row = 0; row < rows; ++row) finish_samples(bin, row * kBinTiles, columns);
     finish_lines();
     return;

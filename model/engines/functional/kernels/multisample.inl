@@ -352,15 +352,17 @@ struct SampledTriangle {
     return bin.color_owner[tile] == Bin::kCutouts || (bin.cutouts_saved > 0 && (bin.split >> tile & 1) == 0);
   }
 
-  /// Whether all that a triangle covers of a tile passes, and waits with its depths: it lies in front of all that is there.
-  HALFPLANE_INLINE bool waits_with_depths(int tile, bool is_ahead, SamplePixels& pixels) const {
-    if (!is_ahead || !may_wait(tile)) return false;
+  /// What passes, where ranges of depths decide it: no depth is computed, and the cutout's depths wait too.
+  template <class Fragments>
+  HALFPLANE_INLINE bool passes_by_ranges_alone(int tile, bool is_ahead, const CutoutRange& range,
+                                               SamplePixels& pixels) const {
+    const bool asks_cutouts = Fragments::kIsLess && can_wait && bin.depth_owner[tile] == Bin::kCutouts;
+    if (!asks_cutouts && (!is_ahead || !may_wait(tile))) return false;
     for (unsigned k = 0; k < count(); ++k) pixels.passed[k] = (at.drawn >> k & 1) != 0 ? pixels.covered[k] : 0;
-    pixels.find_any_and_all(count());
-    return true;
+    return is_ahead || passes_by_ranges<kSamples>(bin, tile, range, pixels);
   }
 
-  /// Keeps it as a cutout with its depths, or all of the tile as taken.
+  /// What they let through.
   HALFPLANE_INLINE void wait_with_depths(int tile, const SamplePixels& pixels, const CutoutRange& range) {
     if (!bin.state.depth_write) return add_cutout<kSamples>(bin, tile, plane(), pixels, nullptr);
     if ((pixels.all & pixels.centre) != ~std::uint64_t{0})
@@ -379,15 +381,15 @@ struct SampledTriangle {
     if (!cover(tile, is_full, pixels)) return;
     const auto at_tile = static_cast<std::size_t>(tile);
     const CutoutRange range{bounds.low[at_tile], bounds.high[at_tile]};
-    const bool waits_whole = waits_with_depths(tile, is_ahead, pixels);
-    if (!waits_whole) test<Fragments>(tile, pixels);
+    const bool by_ranges = passes_by_ranges_alone<Fragments>(tile, is_ahead, range, pixels);
+    by_ranges ? pixels.find_any_and_all(count()) : test<Fragments>(tile, pixels);
     for (unsigned k = 0; k < count(); ++k) {
       if ((at.drawn >> k & 1) == 0) continue;
       counts.covered += static_cast<unsigned>(std::popcount(pixels.covered[k]));
       counts.passed += static_cast<unsigned>(std::popcount(pixels.passed[k]));
     }
     if (pixels.any == 0) return;
-    if (waits_whole)
+    if (by_ranges)
       wait_with_depths(tile, pixels, range);
     else if (bin.has_operations)
       operate(tile, pixels);
