@@ -21,7 +21,7 @@
 // With a texture unit, colours go to the framebuffer through it: depth_test -- write --> texture_unit ---> rop -- color -->
 // framebuffer, and it has a memory of its own: texture v ^ texel. It stands inside the framebuffer of blocks.
 //
-// A stage is a pair of files of its name: model/stages/NAME.hpp is the specification of what it computes, and
+// A stage is a pair of files of its name: model/stages/NAME.hpp, of the host model/host/NAME.hpp, is the specification, and
 // rtl_ref/stages/NAME.sv the hardware (stages of the host have no hardware, the memory has neither). Of framebuffer the
 // model's part is in tile_directory.hpp and tile_cache.hpp. What an arrow carries is a packet: its fields are in
 // packets.hpp. The model of the hardware sends it in engines/hardware.cpp, the cycle model says in which cycle
