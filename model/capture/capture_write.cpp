@@ -214,7 +214,8 @@ bool same_command(const Scene& a, const Command& command_a, const Scene& b, cons
   if (command_a.index() != command_b.index()) return false;
   if (const auto* clear_a = std::get_if<Clear>(&command_a)) {
     const auto& clear_b = std::get<Clear>(command_b);
-    return clear_a->state == clear_b.state && clear_a->color.has_value() == clear_b.color.has_value() &&
+    return clear_a->state == clear_b.state && clear_a->stencil == clear_b.stencil &&
+           clear_a->color.has_value() == clear_b.color.has_value() &&
            (!clear_a->color || same_bits(*clear_a->color, *clear_b.color)) &&
            clear_a->depth.has_value() == clear_b.depth.has_value() &&
            (!clear_a->depth || same_bits(std::span(&*clear_a->depth, 1), std::span(&*clear_b.depth, 1)));
