@@ -206,13 +206,13 @@ Skip parse_skip(const std::string& text) {
   if (text == "all") return {};
   Skip skip = skip_none();
   if (text == "none") return skip;
-  std::string names;
-  for (const SkipName& entry : kSkipNames) names.append(names.empty() ? "" : ", ").append(entry.name);
+  std::vector<std::string_view> names;
+  for (const SkipName& entry : kSkipNames) names.emplace_back(entry.name);
   for (const std::string& name : split_at_commas(text)) {
     const auto* entry = std::find_if(std::begin(kSkipNames), std::end(kSkipNames),
                                      [&name](const SkipName& s) { return name == s.name; });
     if (entry == std::end(kSkipNames))
-      throw InputError("--skip: no '" + name + "'; give all, none or some of " + names);
+      throw InputError("--skip: no '" + name + "'; give all, none or some of " + joined(names));
     skip.*(entry->member) = true;
   }
   return skip;
