@@ -2,13 +2,14 @@
 
 #include <bit>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "../stages/coarse_raster.hpp"
 #include "../stages/fine_raster.hpp"
-#include "../study/homogeneous_setup.hpp"
 #include "../stages/interpolate.hpp"
 #include "../stages/multisample.hpp"
+#include "../study/homogeneous_setup.hpp"
 #include "../study/plane_rules.hpp"
 #include "../study/traversal.hpp"
 #include "commands.hpp"
@@ -40,102 +41,71 @@ struct NumberedTriangle {
   std::uint32_t index;
 };
 
-/// One covered sample of a triangle through interpolate, depth_test and rop.
-void shade_sample(const DrawContext& context, const TriangleSetup& setup, const Surface* surface, const Widths& widths,
-                  const RenderOptions& options, const NumberedTriangle& t, int x, int y, Rendering& rendering) {
-  const Interpolated value = interpolate_by_rules(setup, options.rules, widths, x, y);
-  const int weight_bits = options.rules.weights == Weights::four ? 4 : kTexelFraction;
-  if (options.fragment_tap) {
-    TappedFragment fragment = tapped(value, t.triangle, t.index, context.config.local_guard_bits, x, y);
-    if (surface != nullptr) fragment.surface = surface->at(x, y, weight_bits);
-    options.fragment_tap(fragment);
-  }
-  const auto color = [&]() -> std::array<std::uint32_t, 4> {
-    if (surface == nullptr) return color_channels(value.code);
-    const Texel c = surface->at(x, y, weight_bits).color;
-    return {c[0], c[1], c[2], c[3]};
-  };
-  const auto& v = t.triangle.v;
-  shade_pixel(
-      context, options, x, y, kAllSamples, [&value](int) { return value.code[kDepthPlane]; }, color, setup.primitive,
-      static_cast<std::int32_t>(t.index), rendering,
-      context.fragment_ops.stencil && shows_back(signed_area(v[0], v[1], v[2]), context.state.front));
-}
+/// What a tile at work needs room for, one after the other.
+struct TileScratch {
+  FragmentPacket fragment;          ///< the codes of a stamp
+  std::vector<StampPacket> stamps;  ///< where pixels have several samples
+  std::vector<TileMask> masks;      ///< likewise, by sample, where they are asked for
+};
 
 /// What stays the same over a scene.
 struct ScalarEngine {
   const Config& config;
   const RenderOptions& options;
+  TileScratch& scratch;
   const Widths widths = derive_widths(config);
+  /// Whether interpolate() has the codes of these rules: with gradients that are off, codes leave the range to which hardware need
+  /// not hold them.
+  [[nodiscard]] bool has_stage_planes() const {
+    return options.rules.gradients == Gradients::one_reciprocal && options.rules.accumulator == Accumulator::wrap;
+  }
+  [[nodiscard]] int weight_bits() const { return options.rules.weights == Weights::four ? 4 : kTexelFraction; }
 };
 
-/// The pipeline's own traversal: coarse_raster and fine_raster.
-void raster_tiles(const ScalarEngine& engine, const DrawContext& context, const TriangleSetup& setup,
-                  const NumberedTriangle& t, Rendering& rendering) {
-  const Config& config = engine.config;
-  const Widths& widths = engine.widths;
-  const Skip& skip = engine.options.skip;
-  const int shift = widths.tile_shift;
-  const SetupPacket packet = to_setup_packet(setup, widths);
-  const EdgeContext edges = make_edge_context(setup);
-  const std::optional<Surface> surface = surface_of(context, t.triangle, setup, widths);
-  Counters& counters = rendering.counters;
-  for (int tile_y = setup.top >> shift; tile_y <= setup.bottom >> shift; ++tile_y) {
-    for (int tile_x = setup.left >> shift; tile_x <= setup.right >> shift; ++tile_x) {
-      ++counters.tiles_visited;
-      const TileClass kind = classify(setup, edges_at_tile(setup, tile_x, tile_y, widths), config.tile_size);
-      if (kind == TileClass::outside && skip.tiles_outside) {
-        ++counters.skipped.tiles_outside;
-        continue;
-      }
-      TilePacket tile = make_tile_packet(packet, tile_x, tile_y, 0, false, widths);
-      tile.is_inside = tile.is_inside && skip.trivially_accepted;
-      if (tile.is_inside)
-        ++counters.skipped.trivially_accepted;
-      else
-        counters.samples_tested += to_bounds(tile.box).samples();
-      TileMask mask{};
-      fine_raster(tile, edges, widths, [&](const StampPacket& covered) {
-        const PixelOffset origin = widths.stamps.origin_of(covered.stamp);
-        covered.mask.for_each([&](std::size_t s) {
-          const PixelOffset pixel = widths.stamps.pixel_of(static_cast<int>(s));
-          const int i = origin.x + pixel.x, j = origin.y + pixel.y;
-          mask[static_cast<std::size_t>(j)] |= 1U << i;
-          shade_sample(context, setup, surface ? &*surface : nullptr, engine.widths, engine.options, t,
-                       (tile_x << shift) + i, (tile_y << shift) + j, rendering);
-        });
-      });
-      if (engine.options.coverage_tap) engine.options.coverage_tap(t.index, tile_x, tile_y, mask, 0);
-    }
-  }
-}
+/// Bits of coverage taps: pixel (x, y) of a tile.
+void set(TileMask& mask, int x, int y) { mask[static_cast<std::size_t>(y)] |= 1U << x; }
 
-/// A triangle whose pixels have several samples, at the centre of pixels and at each sample: what the stages make of each.
-class SampledTriangle {
+/// A triangle, at the centre of pixels and where they have several samples at each of those.
+class TriangleRaster {
  public:
-  SampledTriangle(const ScalarEngine& engine, const DrawContext& context, const NumberedTriangle& t,
-                  const TriangleSetup& setup)
+  TriangleRaster(const ScalarEngine& engine, const DrawContext& context, const NumberedTriangle& t,
+                 const TriangleSetup& setup, Rendering& rendering)
       : engine_(engine),
+        widths_(engine.widths),
         context_(context),
         t_(t),
-        setups_(setup, engine.widths),
-        packet_(to_setup_packet(setup, engine.widths)),
-        edges_(make_edge_context(setup)) {
-    places_.reserve(setups_.sample.size() + 1);
-    for (int k = kAtCentre; k < engine.widths.pixel_samples; ++k) {
-      const TriangleSetup& at = setups_.at(k);
-      places_.push_back({at, surface_of(context, t.triangle, at, engine.widths, offset_of(k, engine.widths))});
+        rendering_(rendering),
+        centre_(setup),
+        fragment_(engine.scratch.fragment),
+        stamps_(engine.scratch.stamps),
+        masks_(engine.scratch.masks) {
+    if (widths_.has_samples != 0) sampled_.emplace(setup, widths_);
+    places_.reserve(static_cast<std::size_t>(samples()) + 1);
+    for (int k = kAtCentre; k < samples(); ++k) {
+      const TriangleSetup& at = setup_at(k);
+      places_.push_back({at, surface_of(context, t.triangle, at, widths_, offset_of(k, widths_))});
     }
     const auto& v = t.triangle.v;
     is_back_ = context.fragment_ops.stencil && shows_back(signed_area(v[0], v[1], v[2]), context.state.front);
   }
 
-  /// coarse_raster, fine_raster at each sample, and one shading of each pixel.
-  void raster(Rendering& rendering) const {
-    const TriangleSetup& setup = setups_.centre;
-    const int shift = engine_.widths.tile_shift;
-    for (int y = setup.top >> shift; y <= setup.bottom >> shift; ++y)
-      for (int x = setup.left >> shift; x <= setup.right >> shift; ++x) raster_tile(x, y, rendering);
+  /// coarse_raster, fine_raster, and each of their stamps.
+  void raster() {
+    packet_ = to_setup_packet(centre_, widths_);
+    constants_ = make_context(packet_, widths_);
+    edges_ = make_edge_context(packet_);
+    const int shift = widths_.tile_shift;
+    for (int y = centre_.top >> shift; y <= centre_.bottom >> shift; ++y)
+      for (int x = centre_.left >> shift; x <= centre_.right >> shift; ++x) raster_tile(x, y);
+  }
+
+  /// A covered pixel that another traversal has found.
+  void shade_pixel(int x, int y) {
+    const Interpolated value = interpolate_by_rules(centre_, engine_.options.rules, widths_, x, y);
+    if (engine_.options.fragment_tap) tap(value, x, y, 1, kAtCentre);
+    shade(
+        x, y, kAllSamples, kAtCentre, [&value](int) { return value.code[kDepthPlane]; },
+        [&value] { return color_channels(value.code); });
   }
 
  private:
@@ -143,100 +113,123 @@ class SampledTriangle {
     const TriangleSetup& setup;
     std::optional<Surface> surface;
   };
+  [[nodiscard]] int samples() const { return widths_.has_samples != 0 ? widths_.pixel_samples : 0; }
+  [[nodiscard]] const TriangleSetup& setup_at(int place) const { return sampled_ ? sampled_->at(place) : centre_; }
   [[nodiscard]] const Place& at(int place) const { return places_[static_cast<std::size_t>(place + 1)]; }
 
-  /// Of a tile, the covered pixels at their centres, if a sample of them is, and at each sample.
-  [[nodiscard]] std::vector<TileMask> masks_in(int tile_x, int tile_y, bool is_accepted) const {
-    const Widths& widths = engine_.widths;
-    const StampGrid& stamps = widths.stamps;
-    TilePacket tile = make_tile_packet(packet_, tile_x, tile_y, 0, false, widths);
-    tile.is_inside = is_accepted;
-    std::vector<TileMask> mask(setups_.sample.size() + 1);
-    fine_raster(tile, edges_, widths, [&](const StampPacket& covered) {
-      const PixelOffset origin = stamps.origin_of(covered.stamp);
-      const auto set = [&](TileMask& at, int pixel) {
-        const PixelOffset in_stamp = stamps.pixel_of(pixel * stamps.per_pixel);
-        at[static_cast<std::size_t>(origin.y + in_stamp.y)] |= 1U << (origin.x + in_stamp.x);
-      };
-      covered.centre.for_each([&](std::size_t pixel) { set(mask[0], static_cast<int>(pixel)); });
-      covered.mask.for_each([&](std::size_t s) {
-        const int sample = static_cast<int>(s);
-        set(mask[static_cast<std::size_t>(sample % stamps.per_pixel) + 1], sample / stamps.per_pixel);
-      });
-    });
-    return mask;
-  }
-
-  void raster_tile(int tile_x, int tile_y, Rendering& rendering) const {
-    const Widths& widths = engine_.widths;
+  void raster_tile(int tile_x, int tile_y) {
     const Skip& skip = engine_.options.skip;
-    Counters& counters = rendering.counters;
+    Counters& counters = rendering_.counters;
     ++counters.tiles_visited;
-    bool is_outside = true, is_inside = true;
+    bool is_outside = true, is_inside = true;  // the centre of several samples is not drawn
     for (const Place& place : places_) {
       const TileClass kind =
-          classify(place.setup, edges_at_tile(place.setup, tile_x, tile_y, widths), engine_.config.tile_size);
-      is_outside &= kind == TileClass::outside || &place == &places_.front();
+          classify(place.setup, edges_at_tile(place.setup, tile_x, tile_y, widths_), engine_.config.tile_size);
+      is_outside &= kind == TileClass::outside || (sampled_ && &place == &places_.front());
       is_inside &= kind == TileClass::inside;
     }
     if (is_outside && skip.tiles_outside) {
       ++counters.skipped.tiles_outside;
       return;
     }
-    const bool is_accepted = is_inside && skip.trivially_accepted;
-    const std::uint64_t pixels = tile_box(setups_.centre, tile_x, tile_y, widths).samples();
-    if (is_accepted)
+    TilePacket tile = make_tile_packet(packet_, tile_x, tile_y, 0, false, widths_);
+    tile.is_inside = is_inside && skip.trivially_accepted;
+    if (tile.is_inside)
       ++counters.skipped.trivially_accepted;
     else
-      counters.samples_tested += pixels * setups_.sample.size();
-    const std::vector<TileMask> mask = masks_in(tile_x, tile_y, is_accepted);
-    for (int j = 0; j < engine_.config.tile_size; ++j)
-      for (int i = 0; i < engine_.config.tile_size; ++i) {
-        const auto is_set = [&](std::size_t m) { return (mask[m][static_cast<std::size_t>(j)] >> i & 1U) != 0; };
-        unsigned covered = 0;
-        for (std::size_t k = 0; k < setups_.sample.size(); ++k) covered |= is_set(k + 1) ? 1U << k : 0U;
-        if (covered == 0) continue;
-        const int place = is_set(0) ? kAtCentre : std::countr_zero(covered);
-        shade((tile_x << widths.tile_shift) + i, (tile_y << widths.tile_shift) + j, covered, place, rendering);
-      }
-    if (engine_.options.coverage_tap)
-      for (std::size_t k = 0; k < setups_.sample.size(); ++k)
-        engine_.options.coverage_tap(t_.index, tile_x, tile_y, mask[k + 1], static_cast<int>(k));
+      counters.samples_tested += to_bounds(tile.box).samples() * static_cast<std::uint64_t>(widths_.pixel_samples);
+    if (engine_.options.coverage_tap) masks_.assign(static_cast<std::size_t>(widths_.pixel_samples), {});
+    if (sampled_)
+      shade_rows(tile);
+    else
+      fine_raster(tile, edges_, widths_, [&](const StampPacket& stamp) { shade_stamp(stamp, stamp.mask); });
+    for (std::size_t k = 0; k < masks_.size(); ++k)
+      engine_.options.coverage_tap(t_.index, tile_x, tile_y, masks_[k], static_cast<int>(k));
   }
 
-  /// One pixel: its colour from `place`, the depth of each covered sample from there.
-  void shade(int x, int y, unsigned covered, int place, Rendering& rendering) const {
-    const Widths& widths = engine_.widths;
-    const Place& shaded = at(place);
-    const auto depth = [&](int k) { return plane_at(setups_.at(k), kDepthPlane, widths, x, y).code; };
-    if (engine_.options.fragment_tap) {
-      TappedFragment fragment = tapped(interpolate_at(shaded.setup, widths, x, y), t_.triangle, t_.index,
-                                       engine_.config.local_guard_bits, x, y);
-      fragment.shaded_at = place;
-      if (shaded.surface) fragment.surface = shaded.surface->at(x, y);
-      for (int k = 0; k < widths.pixel_samples; ++k) {
-        if ((covered >> k & 1U) == 0) continue;
-        fragment.sample = k;
-        fragment.plane[kDepthPlane] = plane_at(setups_.at(k), kDepthPlane, widths, x, y);
-        engine_.options.fragment_tap(fragment);
-      }
+  /// The stamps of a tile, each row of its pixels by itself: the order of fragments with several samples.
+  void shade_rows(const TilePacket& tile) {
+    const StampGrid& stamps = widths_.stamps;
+    stamps_.clear();
+    fine_raster(tile, edges_, widths_, [&](const StampPacket& stamp) { stamps_.push_back(stamp); });
+    for (int j = tile.box.top; j <= tile.box.bottom; ++j) {
+      const int first = stamps.stamp_at(0, j);
+      const SampleMask row(SampleMask::all(stamps.size).bits() << j % stamps.size * stamps.size);
+      for (const StampPacket& stamp : stamps_)
+        if (stamp.stamp >= first && stamp.stamp < first + stamps.stamps_per_row)
+          shade_stamp(stamp, row & stamps.pixels_of(stamp.mask));
     }
-    const auto color = [&]() -> std::array<std::uint32_t, 4> {
-      return shaded.surface ? surface_channels(*shaded.surface, x, y)
-                            : color_channels(interpolate_at(shaded.setup, widths, x, y).code);
+  }
+
+  /// interpolate, and these pixels of a stamp, which have a covered sample.
+  void shade_stamp(const StampPacket& stamp, SampleMask pixels) {
+    const StampGrid& stamps = widths_.stamps;
+    const PixelOffset in_tile = stamps.origin_of(stamp.stamp);
+    const bool has_stage_planes = engine_.has_stage_planes();
+    if (has_stage_planes) interpolate_depths(stamp, constants_, pixels, widths_, fragment_);
+    bool has_colors = false;
+    pixels.for_each([&](std::size_t n) {
+      const int pixel = static_cast<int>(n), first = pixel * stamps.per_pixel;
+      const PixelOffset in_stamp = stamps.place_of(pixel);
+      const int i = in_tile.x + in_stamp.x, j = in_tile.y + in_stamp.y;
+      const unsigned covered = stamps.of_pixel(stamp.mask, pixel);
+      for (std::size_t k = 0; k < masks_.size(); ++k)
+        if ((covered >> k & 1U) != 0) set(masks_[k], i, j);
+      const int x = (stamp.key.tile_x << widths_.tile_shift) + i, y = (stamp.key.tile_y << widths_.tile_shift) + j;
+      if (!has_stage_planes) return shade_pixel(x, y);
+      const int place = !sampled_ || stamp.centre.has(n) ? kAtCentre : std::countr_zero(covered);
+      if (engine_.options.fragment_tap) tap(interpolate_at(at(place).setup, widths_, x, y), x, y, covered, place);
+      shade(
+          x, y, covered, place,
+          [&](int k) { return fragment_depth(fragment_, static_cast<std::size_t>(first + k), widths_); },
+          [&] {
+            if (!std::exchange(has_colors, true))
+              interpolate_planes(stamp, constants_, kColorPlane, widths_.affine_planes, pixels, widths_, fragment_);
+            return color_channels(fragment_.code[n]);
+          });
+    });
+  }
+
+  /// The tests and rop for a pixel, shaded at `place`. color(): of its planes.
+  template <class Depth, class Color>
+  void shade(int x, int y, unsigned covered, int place, Depth&& depth, Color&& color) {
+    const std::optional<Surface>& surface = at(place).surface;
+    const auto shaded = [&]() -> std::array<std::uint32_t, 4> {
+      if (!surface) return color();
+      const Texel c = surface->at(x, y, engine_.weight_bits()).color;
+      return {c[0], c[1], c[2], c[3]};
     };
-    shade_pixel(context_, engine_.options, x, y, covered, depth, color, setups_.centre.primitive,
-                static_cast<std::int32_t>(t_.index), rendering, is_back_);
+    halfplane::shade_pixel(context_, engine_.options, x, y, covered, depth, shaded, centre_.primitive,
+                           static_cast<std::int32_t>(t_.index), rendering_, is_back_);
+  }
+
+  /// Each covered sample is a fragment.
+  void tap(const Interpolated& value, int x, int y, unsigned covered, int place) const {
+    TappedFragment fragment = tapped(value, t_.triangle, t_.index, engine_.config.local_guard_bits, x, y);
+    fragment.shaded_at = place;
+    if (at(place).surface) fragment.surface = at(place).surface->at(x, y, engine_.weight_bits());
+    for (fragment.sample = 0; fragment.sample < widths_.pixel_samples; ++fragment.sample) {
+      if ((covered >> fragment.sample & 1U) == 0) continue;
+      if (sampled_) fragment.plane[kDepthPlane] = plane_at(setup_at(fragment.sample), kDepthPlane, widths_, x, y);
+      engine_.options.fragment_tap(fragment);
+    }
   }
 
   const ScalarEngine& engine_;
+  const Widths& widths_;
   const DrawContext& context_;
-  const NumberedTriangle& t_;
-  SampledSetup setups_;
-  SetupPacket packet_;
-  EdgeContext edges_;
-  std::vector<Place> places_;  ///< of the centre, and of each sample
+  NumberedTriangle t_;
+  Rendering& rendering_;
+  const TriangleSetup& centre_;
+  std::optional<SampledSetup> sampled_;
+  std::vector<Place> places_;  ///< the centre, and each of several samples
   bool is_back_ = false;
+  SetupPacket packet_;
+  ContextPacket constants_;
+  EdgeContext edges_;
+  FragmentPacket& fragment_;
+  std::vector<StampPacket>& stamps_;
+  std::vector<TileMask>& masks_;
 };
 
 /// Gathers samples that come in any order into the masks that a coverage tap takes.
@@ -278,14 +271,14 @@ void raster_by_rules(const ScalarEngine& engine, const DrawContext& context, con
   const bool taps = static_cast<bool>(engine.options.coverage_tap) && !setup.is_empty();
   std::optional<TapTiles> tiles;
   if (taps && rules.traversal != Traversal::tiled) tiles.emplace(setup, engine.widths.tile_shift);
-  const std::optional<Surface> surface = surface_of(context, t.triangle, setup, engine.widths);
+  TriangleRaster raster(engine, context, t, setup, rendering);
   const auto emit = [&](int x, int y) {
     if (tiles) tiles->add(x, y);
-    shade_sample(context, setup, surface ? &*surface : nullptr, engine.widths, engine.options, t, x, y, rendering);
+    raster.shade_pixel(x, y);
   };
   std::uint64_t& tested = rendering.counters.samples_tested;
   switch (rules.traversal) {
-    case Traversal::tiled: raster_tiles(engine, context, setup, t, rendering); break;
+    case Traversal::tiled: raster.raster(); break;
     case Traversal::bbox: tested += traverse_bbox(setup, engine.widths, emit); break;
     case Traversal::scanline: {
       const PixelBounds box{setup.left, setup.top, setup.right, setup.bottom};
@@ -348,7 +341,8 @@ Rendering render_scalar(const Scene& scene, const Config& plain_config, const Re
   validate(plain_config);
   const Config config = with_alpha(plain_config, scene);
   check_options(options, config);
-  const ScalarEngine engine{config, options};
+  TileScratch scratch;
+  const ScalarEngine engine{config, options, scratch};
   const bool is_default = options.rules == StudyRules{};
   return run_commands(
       scene, config, options,
@@ -356,10 +350,8 @@ Rendering render_scalar(const Scene& scene, const Config& plain_config, const Re
         TriangleSetup setup = setup_triangle(triangle, config, engine.widths, context.rect);
         // brute visits the whole target whatever the box is.
         if (setup.is_empty() && (options.rules.traversal != Traversal::brute || setup.area == 0)) return;
-        if (config.msaa_samples > 1)
-          SampledTriangle(engine, context, {triangle, index}, setup).raster(rendering);
-        else if (is_default)
-          raster_tiles(engine, context, setup, {triangle, index}, rendering);
+        if (is_default)
+          TriangleRaster(engine, context, {triangle, index}, setup, rendering).raster();
         else
           raster_by_rules(engine, context, {triangle, index}, setup, rendering);
       },

@@ -2,10 +2,21 @@
 
 #include <optional>
 
+#include "../scalar.hpp"
 #include "frame_renderer.hpp"
-#include "tiles.hpp"
 
 namespace halfplane {
+namespace {
+
+/// What the lanes have not: counts, ids, taps, other tile sizes, more depth and reciprocal bits, depth formats, and vertices of
+/// surfaces that are not in front of the eye (is_supported()).
+Rendering render_by_stages(const Scene& scene, const Config& config, const RenderOptions& options) {
+  if (options.rules != StudyRules{})
+    throw InputError("the functional engine has no other traversal, fill rule or clipping; use the scalar engine");
+  return render_scalar(scene, config, options);
+}
+
+}  // namespace
 
 struct FunctionalEngine::Memory {
   explicit Memory(const Config& config_) : config(config_), fast(config_) {}
@@ -24,7 +35,7 @@ FunctionalEngine::~FunctionalEngine() = default;
 const Rendering& FunctionalEngine::render(const Scene& scene, const RenderOptions& options) {
   if (functional::is_supported(scene, memory_->config, options))
     return memory_->fast.render(PreparedScene(scene), options);
-  memory_->plain = render_tiles(scene, memory_->config, options);
+  memory_->plain = render_by_stages(scene, memory_->config, options);
   return memory_->plain;
 }
 
@@ -35,7 +46,7 @@ const Rendering& FunctionalEngine::render(const PreparedScene& prepared, const R
 
 Rendering render_functional(const Scene& scene, const Config& config, const RenderOptions& options) {
   validate(config);
-  if (!functional::is_supported(scene, config, options)) return render_tiles(scene, config, options);
+  if (!functional::is_supported(scene, config, options)) return render_by_stages(scene, config, options);
   functional::FrameRenderer renderer(config);
   (void)renderer.render(PreparedScene(scene), options);
   return renderer.take();
