@@ -9,8 +9,8 @@
 #include "model/engines/cycle/cycle_model.hpp"
 #include "model/engines/functional.hpp"
 #include "model/engines/scalar.hpp"
-#include "model/golden/golden.hpp"
 #include "model/generate/raster_pkg.hpp"
+#include "model/golden/golden.hpp"
 #include "stage_at_work.hpp"
 
 using namespace halfplane;

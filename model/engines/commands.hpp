@@ -5,8 +5,8 @@
 #include <chrono>
 #include <optional>
 
-#include "../stages/fragment_ops.hpp"
 #include "../host/primitives.hpp"
+#include "../stages/fragment_ops.hpp"
 #include "../stages/line_raster.hpp"
 #include "../stages/surface.hpp"
 #include "render.hpp"

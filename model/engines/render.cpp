@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <string>
 
-#include "../stages/fragment_ops.hpp"
 #include "../host/primitives.hpp"
+#include "../stages/fragment_ops.hpp"
 #include "../stages/resolve.hpp"
 
 namespace halfplane {

@@ -12,10 +12,10 @@
 #include "../config.hpp"
 #include "../counters.hpp"
 #include "../packets/packets.hpp"
-#include "../study/rules.hpp"
 #include "../scene.hpp"
 #include "../stages/framebuffer.hpp"
 #include "../stages/surface.hpp"
+#include "../study/rules.hpp"
 
 namespace halfplane {
 

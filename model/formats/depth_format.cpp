@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "../input_error.hpp"
 #include "../fixed.hpp"
+#include "../input_error.hpp"
 
 namespace halfplane {
 namespace {

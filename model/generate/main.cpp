@@ -9,9 +9,9 @@
 #include <string>
 
 #include "../config.hpp"
+#include "dpi_package.hpp"
 #include "raster_pkg.hpp"
 #include "raster_taps.hpp"
-#include "dpi_package.hpp"
 
 namespace halfplane {
 namespace {

@@ -7,11 +7,11 @@
 #include <sstream>
 
 #include "../packets/packet_words.hpp"
-#include "../pipeline_graph.hpp"
-#include "raster_taps.hpp"
 #include "../packets/state_packets.hpp"
+#include "../pipeline_graph.hpp"
 #include "../stages/surface.hpp"
 #include "../stages/texture_packets.hpp"
+#include "raster_taps.hpp"
 
 namespace halfplane {
 
@@ -193,9 +193,11 @@ void print_blocks(std::ostream& out, const Config& config) {
   constant("SHADED_STAMPS", "COORDINATES == 0 ? 2 : TEXTURE_STAMPS", "stamps between depth and colour, at most");
   constant("APART", "COORDINATES != 0 && MSAA_SAMPLES == 1 ? 1 : 0",
            "1: what a triangle's fragments share over w lies in a RAM, by the triangle's number");
-  constant("TRIANGLE_BITS", "$clog2(CONTEXT_SLOTS + CACHE_QUEUE + 16)", "that number: of all between setup and depth test");
+  constant("TRIANGLE_BITS", "$clog2(CONTEXT_SLOTS + CACHE_QUEUE + 16)",
+           "that number: of all between setup and depth test");
   constant("STORED_FRAGMENT_BITS",
-           "FRAGMENT_PACKET_BITS - (APART != 0 ? COORDINATE_FRAME_BITS - TRIANGLE_BITS + (PIXELS - 1) * (ALL_FRAGMENT_BITS - "
+           "FRAGMENT_PACKET_BITS - (APART != 0 ? COORDINATE_FRAME_BITS - TRIANGLE_BITS + (PIXELS - 1) * "
+           "(ALL_FRAGMENT_BITS - "
            "ALL_AFFINE_CODE_BITS) : 0)",
            "a fragment as it waits for memory");
   constant("LATE_ALPHA", "ALPHA_UNIT != 0 && COORDINATES != 0 ? 1 : 0", "1: alpha is tested behind the texture");
@@ -223,26 +225,27 @@ void print_blocks(std::ostream& out, const Config& config) {
                  {"BLOCK_Y_BITS", "y", "its row"},
                  {"BLOCK_STAMPS", "depth", "stamps whose depths come into its slot"},
                  {"BLOCK_STAMPS", "color", "likewise colours"}});
-  print_members(out, "tested_stamp",
-                {{"depth_source_t", "color_source", "of the stored colours", blends},
-                 {"SAMPLE_MASK_BITS", "changes", "samples whose stencil or depth changes", tests_alpha_late && has_stencil},
-                 {"FLAG_BITS", "is_late", "its depths are written when alpha has been tested", tests_alpha_late},
-                 {"FLAG_BITS", "on_chip", "its depths were", tests_alpha_late},
-                 {"FLAG_BITS", "is_counted", "of a triangle, point or line", tests_alpha_late},
-                 {"FLAG_BITS", "writes", "depth or colour", tests_alpha_late},
-                 {"SAMPLE_MASK_BITS", "passed", "samples that passed depth and stencil test", tests_alpha_late},
-                 {"SAMPLES*STORED_DEPTH_BITS", "word", "what they have from now on", tests_alpha_late},
-                 {"SAMPLES*STORED_DEPTH_BITS", "stored", "and had before", tests_alpha_late},
-                 {"FLAG_BITS", "sets_state", "a token", has_color_states},
-                 {"DEPTH_FUNC_BITS", "state_register", "of these registers one", has_color_states},
-                 {"32", "state", "its value", has_color_states},
-                 {"CACHE_LINE_BITS", "line", "where its block lies"},
-                 {"BLOCK_STAMP_BITS", "stamp", "its number in the block"},
-                 {"FLAG_BITS", "starts_color", "no colour of the stamp is on the chip"},
-                 {"SAMPLE_MASK_BITS", "mask", "samples whose colour is written"},
-                 {"FLAG_BITS", "evicts", "another block leaves the line"},
-                 {"FLAG_BITS", "fills", "memory holds garbage of its colours"},
-                 {"BLOCK_STAMPS", "evicted", "stamps of it whose colours leave"}});
+  print_members(
+      out, "tested_stamp",
+      {{"depth_source_t", "color_source", "of the stored colours", blends},
+       {"SAMPLE_MASK_BITS", "changes", "samples whose stencil or depth changes", tests_alpha_late && has_stencil},
+       {"FLAG_BITS", "is_late", "its depths are written when alpha has been tested", tests_alpha_late},
+       {"FLAG_BITS", "on_chip", "its depths were", tests_alpha_late},
+       {"FLAG_BITS", "is_counted", "of a triangle, point or line", tests_alpha_late},
+       {"FLAG_BITS", "writes", "depth or colour", tests_alpha_late},
+       {"SAMPLE_MASK_BITS", "passed", "samples that passed depth and stencil test", tests_alpha_late},
+       {"SAMPLES*STORED_DEPTH_BITS", "word", "what they have from now on", tests_alpha_late},
+       {"SAMPLES*STORED_DEPTH_BITS", "stored", "and had before", tests_alpha_late},
+       {"FLAG_BITS", "sets_state", "a token", has_color_states},
+       {"DEPTH_FUNC_BITS", "state_register", "of these registers one", has_color_states},
+       {"32", "state", "its value", has_color_states},
+       {"CACHE_LINE_BITS", "line", "where its block lies"},
+       {"BLOCK_STAMP_BITS", "stamp", "its number in the block"},
+       {"FLAG_BITS", "starts_color", "no colour of the stamp is on the chip"},
+       {"SAMPLE_MASK_BITS", "mask", "samples whose colour is written"},
+       {"FLAG_BITS", "evicts", "another block leaves the line"},
+       {"FLAG_BITS", "fills", "memory holds garbage of its colours"},
+       {"BLOCK_STAMPS", "evicted", "stamps of it whose colours leave"}});
 }
 
 /// A value that has a name is its number there.

@@ -9,9 +9,9 @@
 #include <cstdint>
 
 #include "../fixed.hpp"
+#include "../formats/sample_pattern.hpp"
 #include "../packets/packets.hpp"
 #include "../study/rules.hpp"
-#include "../formats/sample_pattern.hpp"
 
 namespace halfplane::exact {
 

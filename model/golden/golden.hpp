@@ -12,9 +12,9 @@
 
 #include "../config.hpp"
 #include "../counters.hpp"
-#include "../study/rules.hpp"
 #include "../scene.hpp"
 #include "../stages/framebuffer.hpp"
+#include "../study/rules.hpp"
 #include "fragment_buffer.hpp"
 
 namespace halfplane::golden {

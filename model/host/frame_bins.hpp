@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "../config.hpp"
-#include "host_primitive.hpp"
 #include "../signature.hpp"
+#include "host_primitive.hpp"
 #include "line_setup.hpp"
 
 namespace halfplane {

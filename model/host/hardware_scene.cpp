@@ -1,8 +1,8 @@
 // Which scenes this hardware can take.
-#include "../stages/fragment_ops.hpp"
-#include "primitive_stream.hpp"
 #include "../stages/depth_encode.hpp"
+#include "../stages/fragment_ops.hpp"
 #include "../stages/surface.hpp"
+#include "primitive_stream.hpp"
 
 namespace halfplane {
 namespace {

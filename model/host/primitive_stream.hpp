@@ -16,11 +16,11 @@
 #include <string>
 #include <vector>
 
+#include "../stages/surface.hpp"
 #include "frame_bins.hpp"
 #include "host_primitive.hpp"
-#include "primitives.hpp"
 #include "line_setup.hpp"
-#include "../stages/surface.hpp"
+#include "primitives.hpp"
 #include "texture_memory.hpp"
 
 namespace halfplane {

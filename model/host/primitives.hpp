@@ -8,14 +8,14 @@
 #include <vector>
 
 #include "../counters.hpp"
-#include "../stages/fragment_ops.hpp"
 #include "../scene.hpp"
-#include "clip.hpp"
 #include "../stages/cull.hpp"
 #include "../stages/depth_encode.hpp"
 #include "../stages/fog.hpp"
-#include "line_setup.hpp"
+#include "../stages/fragment_ops.hpp"
 #include "../stages/phong.hpp"
+#include "clip.hpp"
+#include "line_setup.hpp"
 #include "point_raster.hpp"
 #include "primitive_assembly.hpp"
 #include "viewport.hpp"

@@ -17,8 +17,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "fragment_ops.hpp"
 #include "../packets/packets.hpp"
+#include "fragment_ops.hpp"
 
 namespace halfplane {
 

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "color_ops.hpp"
 #include "../scene.hpp"
+#include "color_ops.hpp"
 
 namespace halfplane {
 

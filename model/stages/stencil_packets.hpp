@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "fragment_ops.hpp"
 #include "../packets/state_packets.hpp"
+#include "fragment_ops.hpp"
 
 namespace halfplane {
 

@@ -16,9 +16,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "color_ops.hpp"
 #include "../fixed.hpp"
 #include "../scene.hpp"
+#include "color_ops.hpp"
 #include "level_of_detail.hpp"
 
 namespace halfplane {

@@ -2,10 +2,10 @@
 // nothing else in the pipeline knows it.
 #pragma once
 
-#include "rules.hpp"
-#include "../widths.hpp"
 #include "../stages/cull.hpp"
 #include "../stages/triangle_setup.hpp"
+#include "../widths.hpp"
+#include "rules.hpp"
 
 namespace halfplane {
 

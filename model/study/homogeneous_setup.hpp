@@ -20,12 +20,12 @@
 #include <cstdint>
 
 #include "../config.hpp"
-#include "../scene.hpp"
-#include "../widths.hpp"
 #include "../host/clip.hpp"
-#include "../stages/interpolate.hpp"
 #include "../host/primitive_assembly.hpp"
+#include "../scene.hpp"
+#include "../stages/interpolate.hpp"
 #include "../stages/triangle_setup.hpp"
+#include "../widths.hpp"
 
 namespace halfplane {
 

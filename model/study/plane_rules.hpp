@@ -9,8 +9,8 @@
 //                    along the row
 #pragma once
 
-#include "rules.hpp"
 #include "../stages/interpolate.hpp"
+#include "rules.hpp"
 
 namespace halfplane {
 

@@ -11,9 +11,9 @@
 #include <array>
 #include <cstdint>
 
-#include "rules.hpp"
 #include "../stages/cull.hpp"
 #include "fill_rule.hpp"
+#include "rules.hpp"
 
 namespace halfplane {
 

@@ -20,9 +20,9 @@
 #include <vector>
 
 #include "model/config.hpp"
-#include "model/scene.hpp"
 #include "model/host/clip.hpp"
 #include "model/host/viewport.hpp"
+#include "model/scene.hpp"
 #include "sim/scene/vec3.hpp"
 #include "sim/scene/vertex_transform.hpp"
 

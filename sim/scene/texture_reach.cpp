@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "model/stages/perspective.hpp"
 #include "model/host/primitive_assembly.hpp"
+#include "model/stages/perspective.hpp"
 
 namespace halfplane {
 

@@ -11,8 +11,8 @@
 #include "model/engines/functional.hpp"
 #include "model/engines/scalar.hpp"
 #include "model/golden/golden.hpp"
-#include "model/study/homogeneous_setup.hpp"
 #include "model/host/viewport.hpp"
+#include "model/study/homogeneous_setup.hpp"
 #include "sim/scene/builtin.hpp"
 #include "sim/study/compare/double_draws.hpp"
 

@@ -2,8 +2,8 @@
 #include <map>
 
 #include "../line_builder.hpp"
-#include "model/packets/packet_words.hpp"
 #include "model/host/point_raster.hpp"
+#include "model/packets/packet_words.hpp"
 #include "tests/packet_values.hpp"
 
 namespace halfplane {

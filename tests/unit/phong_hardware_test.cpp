@@ -10,8 +10,8 @@
 #include "model/engines/hardware.hpp"
 #include "model/engines/scalar.hpp"
 #include "model/host/primitive_stream.hpp"
-#include "model/stages/light_unit.hpp"
 #include "model/packets/state_packets.hpp"
+#include "model/stages/light_unit.hpp"
 #include "sim/cosim/random_scene.hpp"
 
 namespace halfplane {

@@ -6,8 +6,8 @@
 
 #include "../enumeration.hpp"
 #include "model/stages/cull.hpp"
-#include "model/study/fill_rule.hpp"
 #include "model/stages/triangle_setup.hpp"
+#include "model/study/fill_rule.hpp"
 
 namespace halfplane {
 namespace {

@@ -7,8 +7,8 @@
 #include <set>
 
 #include "../scene_builder.hpp"
-#include "model/packets/packet_words.hpp"
 #include "model/host/primitives.hpp"
+#include "model/packets/packet_words.hpp"
 #include "model/stages/coarse_raster.hpp"
 #include "model/stages/cull.hpp"
 #include "model/stages/depth_test.hpp"

@@ -12,8 +12,8 @@
 #include <variant>
 #include <vector>
 
-#include "sim/show/image/picture.hpp"
 #include "sim/show/image/coverage_class.hpp"
+#include "sim/show/image/picture.hpp"
 
 namespace halfplane {
 

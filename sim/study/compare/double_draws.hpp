@@ -5,8 +5,8 @@
 #include <cstdint>
 
 #include "model/config.hpp"
-#include "model/study/rules.hpp"
 #include "model/scene.hpp"
+#include "model/study/rules.hpp"
 
 namespace halfplane {
 

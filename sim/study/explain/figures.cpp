@@ -5,12 +5,12 @@
 #include "line_walk.hpp"
 #include "model/engines/commands.hpp"
 #include "model/golden/exact_line.hpp"
-#include "model/study/fill_rule.hpp"
+#include "model/host/texture_memory.hpp"
 #include "model/stages/fine_raster.hpp"
 #include "model/stages/interpolate.hpp"
 #include "model/stages/multisample.hpp"
+#include "model/study/fill_rule.hpp"
 #include "model/study/plane_rules.hpp"
-#include "model/host/texture_memory.hpp"
 
 namespace halfplane::explain {
 namespace {

@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
+#include "model/host/line_setup.hpp"
 #include "model/packets/packet_words.hpp"
 #include "model/scene.hpp"
-#include "model/host/line_setup.hpp"
 #include "model/widths.hpp"
 
 namespace halfplane {
