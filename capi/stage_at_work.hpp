@@ -31,8 +31,8 @@ class StageAtWork final : vectors::StageIo {
   };
   [[nodiscard]] const std::vector<PortInfo>& ports(bool is_out) const { return is_out ? out_ports_ : in_ports_; }
 
-  /// `words`: as many as the port's bits need. Throws InputError for a place outside the target; and for a packet that the stage
-  /// cannot take, and then the stage is at its end and says so again whatever else is put.
+  /// `words`: as many as the port's bits need. Throws InputError for a place outside the target; and for a packet that the
+  /// stage cannot take, and then the stage is at its end and says so again whatever else is put.
   void put(std::size_t port, const std::uint32_t* words);
   /// False: there is none.
   [[nodiscard]] bool get(std::size_t port, std::uint32_t* words);

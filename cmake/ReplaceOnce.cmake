@@ -1,5 +1,6 @@
-# replace_once(variable where [[good]] [[bad]]): in the text that `variable` of the caller holds, `good`, which must occur exactly
-# once, becomes `bad`; `where` names the text in the message. For seeded faults: one that no longer fits its source stops the build.
+# replace_once(variable where [[good]] [[bad]]): in the text that `variable` of the caller holds, `good`, which must occur
+# exactly once, becomes `bad`; `where` names the text in the message. For seeded faults: one that no longer fits its source
+# stops the build.
 function(replace_once variable where good bad)
   set(replace_once_text "${${variable}}")
   string(FIND "${replace_once_text}" "${good}" first)

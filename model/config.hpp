@@ -114,8 +114,8 @@ void require_sampled_hardware(const Config& config, std::string_view who);
 }
 
 /// T, or where pixels have several samples T + 2: the halves of a tile's last place that the roundings of a plane's steps may
-/// add up to, but for that of its anchor. T/2 pixels along x and along y; half a pixel more each, and where that ends is rounded
-/// once (stages/multisample.hpp).
+/// add up to, but for that of its anchor. T/2 pixels along x and along y; half a pixel more each, and where that ends is
+/// rounded once (stages/multisample.hpp).
 [[nodiscard]] constexpr int plane_roundings(const Config& config) {
   return config.tile_size + (config.msaa_samples > 1 ? 2 : 0);
 }

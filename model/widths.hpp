@@ -165,7 +165,8 @@ struct Widths {
 /// The widest of the attributes: what one datapath for all planes must hold.
 [[nodiscard]] const Width& widest(const Widths& widths, Width AttributeWidths::*width);
 
-/// Derives every width. Precondition: every value within the range of its setting; whether the widths fit is validate()'s to say.
+/// Derives every width. Precondition: every value within the range of its setting; whether the widths fit is validate()'s to
+/// say.
 [[nodiscard]] Widths derive_widths(const Config& config);
 
 /// Widths of the scalar engine's path without clipping (stages/homogeneous_setup). No hardware has them.

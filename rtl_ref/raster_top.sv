@@ -24,8 +24,8 @@
 //
 // That is the framebuffer of blocks (cache.kind). The framebuffer of tiles is one stage, behind depth_test.
 //
-// Every arrow that waits is a stream: a packet moves when valid and ready are both high. Bit raster_pkg::STALL_X of stall_i holds
-// arrow X back for a cycle, for tests; hardware ties it to 0. The packets are X_data, X_valid, X_ready: so cosim/taps.svh
+// Every arrow that waits is a stream: a packet moves when valid and ready are both high. Bit raster_pkg::STALL_X of stall_i
+// holds arrow X back for a cycle, for tests; hardware ties it to 0. The packets are X_data, X_valid, X_ready: so cosim/taps.svh
 // finds them. Nothing in here depends on when packets come, only on what they say.
 // docs/pipeline.md says what each stage takes and how long; the host must clear depth and colour once before it draws.
 module raster_top (
@@ -140,7 +140,7 @@ module raster_top (
   logic [6:0]       texture_use;
   logic             framebuffer_idle, port_idle, moves_tiles;
 
-  // ------------------------------------------------------------------------ primitives to fragments: pipelined, or a step at a time
+  // --------------------------------------------------------- primitives to fragments: pipelined, or a step at a time
   logic shaded_valid, shaded_ready;  // what interpolate sends
   raster_pkg::fragment_packet_t shaded_data;
   generate
@@ -384,7 +384,7 @@ module raster_top (
       .killed_o        (tested_killed)
   );
 
-  // ----------------------------------------------------------------------------------------------- the framebuffer, and shading
+  // ------------------------------------------------------------------------------------ the framebuffer, and shading
   logic                         item_valid, item_ready, order_valid, order_ready, flush_valid;
   raster_pkg::fragment_packet_t item;
   raster_pkg::tag_result_t      found;

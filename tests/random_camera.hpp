@@ -7,8 +7,8 @@
 
 namespace halfplane::test {
 
-/// Eye and target in -size...size along x and z, in low_y...high_y times that along y; the angle of view from `least_fov` degrees
-/// to 120.
+/// Eye and target in -size...size along x and z, in low_y...high_y times that along y; the angle of view from `least_fov`
+/// degrees to 120.
 inline CameraRequest random_camera(halfplane::Random& random, double size, double low_y, double high_y,
                                    double least_fov) {
   const auto point = [&] {

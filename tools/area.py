@@ -25,8 +25,8 @@ SYNTH_ECP5 = 'synth_ecp5 -top raster_top -nowidelut'
 FLAT_ECP5 = ['synth_ecp5 -top raster_top -nowidelut', 'synth_ecp5 -top raster_top', 'synth_ecp5 -top raster_top -abc9',
              'synth_ecp5 -top raster_top -abc9 -nowidelut']
 FLAT = 'embedded, 2x2'
-# Its own script for -abc9: structural choices (&dch), as Yosys has them, lead round through carry boxes, which &if of Yosys 0.23's
-# ABC refuses in the flat design of `small` ("not in a topological order"); and &mfs aborts there.
+# Its own script for -abc9: structural choices (&dch), as Yosys has them, lead round through carry boxes, which &if of Yosys
+# 0.23's ABC refuses in the flat design of `small` ("not in a topological order"); and &mfs aborts there.
 SYNTH_ICE40 = ('scratchpad -set abc9.script "+&scorr; &sweep; &syn3; &if {C} {W} {D} {R} -v"; '
                'synth_ice40 -top pin_wrapper -abc9')
 # The modules that stay apart in a run that says which block costs what; what is inside of them is flattened.

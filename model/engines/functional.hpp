@@ -17,11 +17,11 @@ class FunctionalEngine {
   FunctionalEngine(const FunctionalEngine&) = delete;
   FunctionalEngine& operator=(const FunctionalEngine&) = delete;
 
-  /// Renders every command of `scene` in program order. Where options say that it follows the frame before, bins of 64x64 pixels in
-  /// which the same is drawn over the same clears stay as they are, and what is drawn in them is not counted; that is for frames
-  /// whose clears are of the whole target and come first, without stencil. The result lives until the next call. Throws InputError for a
-  /// scene that this configuration cannot take: a target that is too large, a window-space vertex outside the guard band,
-  /// a state that the engine does not have.
+  /// Renders every command of `scene` in program order. Where options say that it follows the frame before, bins of 64x64
+  /// pixels in which the same is drawn over the same clears stay as they are, and what is drawn in them is not counted; that
+  /// is for frames whose clears are of the whole target and come first, without stencil. The result lives until the next call.
+  /// Throws InputError for a scene that this configuration cannot take: a target that is too large, a window-space vertex
+  /// outside the guard band, a state that the engine does not have.
   [[nodiscard]] const Rendering& render(const Scene& scene, const RenderOptions& options = {});
   /// The same of a scene that was prepared before: for scenes that are drawn more than once.
   [[nodiscard]] const Rendering& render(const PreparedScene& prepared, const RenderOptions& options = {});

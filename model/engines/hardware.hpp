@@ -137,13 +137,13 @@ class DrawnCount {
   std::int64_t last_ = -1;  ///< input triangle that was counted last
 };
 
-/// Frame after frame by one hardware model and the memory behind it. With frame.order bins and frame.store color, bins that hold
-/// what a frame draws in them are left alone.
+/// Frame after frame by one hardware model and the memory behind it. With frame.order bins and frame.store color, bins that
+/// hold what a frame draws in them are left alone.
 class HardwareFrames {
  public:
   explicit HardwareFrames(const Config& config) : config_(config), model_(config, nobody_) {}
-  /// The next frame, flush included: frame and counters, not count, ids, visible and triangles. Of options it takes progress, and
-  /// of skip the switch of bins. Throws InputError as check_hardware_scene(); then, and when progress throws, nothing more
+  /// The next frame, flush included: frame and counters, not count, ids, visible and triangles. Of options it takes progress,
+  /// and of skip the switch of bins. Throws InputError as check_hardware_scene(); then, and when progress throws, nothing more
   /// can be drawn.
   [[nodiscard]] Rendering draw(const Scene& scene, const RenderOptions& options = {});
 

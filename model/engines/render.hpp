@@ -22,8 +22,8 @@ namespace halfplane {
 /// Which samples of one tile a triangle covers: bit i of row j. Rows beyond the tile size are 0.
 using TileMask = std::array<std::uint32_t, 32>;
 
-/// Called for every tile that was not skipped, also when its mask is empty, in the engine's order: index into Rendering::triangles, tile
-/// column, tile row, mask; and of which sample of its pixels the mask is, before State::sample_mask.
+/// Called for every tile that was not skipped, also when its mask is empty, in the engine's order: index into
+/// Rendering::triangles, tile column, tile row, mask; and of which sample of its pixels the mask is, before State::sample_mask.
 using CoverageTap =
     std::function<void(std::uint32_t triangle, int tile_x, int tile_y, const TileMask& mask, int sample)>;
 

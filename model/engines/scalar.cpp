@@ -54,8 +54,8 @@ struct ScalarEngine {
   const RenderOptions& options;
   TileScratch& scratch;
   const Widths widths = derive_widths(config);
-  /// Whether interpolate() has the codes of these rules: with gradients that are off, codes leave the range to which hardware need
-  /// not hold them.
+  /// Whether interpolate() has the codes of these rules: with gradients that are off, codes leave the range to which hardware
+  /// need not hold them.
   [[nodiscard]] bool has_stage_planes() const {
     return options.rules.gradients == Gradients::one_reciprocal && options.rules.accumulator == Accumulator::wrap;
   }

@@ -314,7 +314,8 @@ std::string raster_pkg(const Config& config) {
   print_constant(out, "COLOR_NARROW_BITS", kColorNarrowBits, "mantissa bits of the reciprocal of w, for colours");
   print_constant(out, "NORMALS", widths.normals, "planes of those, over w; instead of colours");
   print_constant(out, "STATE_WORD_BITS", state_word_bits(widths), "of a token: the codes of all planes but those");
-  print_constant(out, "TEXTURE_STAMPS", texture_stamps(config), "between X and W, with a texture unit");
+  print_constant(out, "TEXTURE_STAMPS", texture_stamps(config),
+                 "stamps between depth test and stored colours, with a texture unit");
   print_constant(out, "TEXTURE_PORT_BITS", 8 * widths.texture_port_bytes, "data of a beat of texels");
   print_constant(out, "PIXELS", widths.pixels, "pixels of a stamp");
   print_constant(out, "SAMPLES", widths.samples, "samples of a stamp, those of a pixel beside each other");

@@ -64,7 +64,8 @@ class SharedSignature {
 
 class FrameBins {
  public:
-  /// Of a target of width x height pixels. `compares`: bins are told from those of the frame before, on hardware with these clears.
+  /// Of a target of width x height pixels. `compares`: bins are told from those of the frame before, on hardware with these
+  /// clears.
   FrameBins(const Widths& widths, int width, int height, std::optional<FrameClears> compares = {});
 
   /// Whether bins are made of whole tiles, as a clear of one of them needs it.

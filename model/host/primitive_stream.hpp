@@ -32,8 +32,8 @@ namespace halfplane {
 /// The primitives of a scene, pulled one at a time. `scene` must outlive the stream.
 class HostStream {
  public:
-  /// Throws InputError for a scene that the hardware cannot take. `held`: what the memory behind the hardware holds of a target; it
-  /// must outlive the stream, and is what memory holds once all has been drawn. Null: everything is drawn.
+  /// Throws InputError for a scene that the hardware cannot take. `held`: what the memory behind the hardware holds of a
+  /// target; it must outlive the stream, and is what memory holds once all has been drawn. Null: everything is drawn.
   HostStream(const Scene& scene, const Config& config, BinContents* held = nullptr);
 
   HostStream(const HostStream&) = delete;  // the draw at work points into config_
@@ -116,9 +116,9 @@ class HostStream {
   std::deque<HostPrimitive> in_front_;  ///< what does so, and the triangle that waits for it
 };
 
-/// What the hardware relies on and cannot see: behind reset, and states, a fast clear of both planes, without which the flags of tiles are
-/// undefined, and a setup for the place of every line, for which primitive_join would wait for good. What is wrong with a
-/// primitive of a stream, `is_first` behind reset; empty: nothing.
+/// What the hardware relies on and cannot see: behind reset, and states, a fast clear of both planes, without which the flags
+/// of tiles are undefined, and a setup for the place of every line, for which primitive_join would wait for good. What is
+/// wrong with a primitive of a stream, `is_first` behind reset; empty: nothing.
 [[nodiscard]] std::string stream_fault(const HostPrimitive& primitive, bool is_first);
 
 /// Throws InputError, one line naming the state, when `scene` asks for what the hardware does not have.

@@ -1,6 +1,6 @@
 // The packets on the arrows between the stages. Each field is authored ONCE: name, type and width. From it follow the C++
-// member, the packed SystemVerilog struct (model/generate/raster_pkg.hpp), the bits that go into and come out of the RTL, and the
-// field-by-field diff (model/packets/packet_words.hpp). Which stages an arrow joins is said in model/pipeline_graph.hpp.
+// member, the packed SystemVerilog struct (model/generate/raster_pkg.hpp), the bits that go into and come out of the RTL, and
+// the field-by-field diff (model/packets/packet_words.hpp). Which stages an arrow joins is said in model/pipeline_graph.hpp.
 //
 // Units: coordinates in subpixels of 2^-s pixel (s = max(S, 1)), depth and colour in codes (LSB).
 #pragma once

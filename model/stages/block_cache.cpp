@@ -90,8 +90,8 @@ void BlockCache::write(const FragmentPacket& fragment, const WritePacket& packet
   if (fragment.state.color_write) add_dirty(TilePlane::color, packet.write_color, last_.starts_color);
 }
 
-/// The colours of a stamp on its way to memory become those of its pixels. All of a pixel's samples are there: its block leaves the
-/// chip once in a frame that began with a clear.
+/// The colours of a stamp on its way to memory become those of its pixels. All of a pixel's samples are there: its block
+/// leaves the chip once in a frame that began with a clear.
 void BlockCache::resolve_stamp(MemoryRequest& request) const {
   const int n = widths_.pixel_samples;
   SampleMask strobe;

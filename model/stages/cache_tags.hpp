@@ -4,8 +4,8 @@
 //
 // Direct mapped: a line holds depth and colour of one block. Depth is fetched a stamp at a time, when a fragment first
 // asks for it. Colour is only written, until a fragment comes whose operations read what is stored: then that of its stamp is
-// fetched as depth is, behind it, and stays known. What leaves the chip is an eviction. Its data wait until `cache.victims` later
-// ones have come, or until the block is wanted again; then they go to memory, oldest first.
+// fetched as depth is, behind it, and stays known. What leaves the chip is an eviction. Its data wait until `cache.victims`
+// later ones have come, or until the block is wanted again; then they go to memory, oldest first.
 #pragma once
 
 #include <cstdint>
@@ -125,8 +125,8 @@ class CacheTags {
     flags_.mark(last_x, last_y, clears);
   }
 
-  /// A fast clear of the colours of the bin whose last tile this is. Precondition: nothing is on the chip. Returns how many words of
-  /// flags it is in.
+  /// A fast clear of the colours of the bin whose last tile this is. Precondition: nothing is on the chip. Returns how many
+  /// words of flags it is in.
   int mark_bin(int last_x, int last_y) {
     const auto [first, last] = bin_blocks(last_x, last_y);
     flags_.mark_colors(first, last);

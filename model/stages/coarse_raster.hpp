@@ -49,8 +49,8 @@ enum class TileClass { outside, cut, inside };
   return edges;
 }
 
-/// Where a pixel has several samples, the edge values moved as far out or in as a sample of it may lie: with those a tile is outside
-/// when no sample of it can be inside an edge, and inside when all are.
+/// Where a pixel has several samples, the edge values moved as far out or in as a sample of it may lie: with those a tile is
+/// outside when no sample of it can be inside an edge, and inside when all are.
 [[nodiscard]] inline EdgeValues moved_by_samples(EdgeValues value, const EdgeDeltas& dx, const EdgeDeltas& dy,
                                                  bool outwards, const Widths& widths) {
   if (widths.has_samples == 0) return value;

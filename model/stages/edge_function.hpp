@@ -10,8 +10,8 @@ namespace halfplane {
 
 using EdgeValue = std::int64_t;  ///< floor((E + bias) / 2^s) at a pixel centre; covered when >= 0
 
-/// E - bias of the edge from `from` to `to` at the centre of pixel (x, y), square subpixels. `bias` is 0 when samples exactly on the
-/// edge belong to the triangle, otherwise 1.
+/// E - bias of the edge from `from` to `to` at the centre of pixel (x, y), square subpixels. `bias` is 0 when samples exactly
+/// on the edge belong to the triangle, otherwise 1.
 [[nodiscard]] constexpr std::int64_t exact_edge(const SnappedVertex& from, const SnappedVertex& to, int x, int y,
                                                 int grid_bits, int bias) {
   const std::int64_t half = std::int64_t{1} << (grid_bits - 1);

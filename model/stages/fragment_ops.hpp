@@ -1,8 +1,8 @@
 // What happens to a fragment once its attributes are known: the arithmetic of each operation, once.
 //
 // In program order of a fragment: the tests own what they compare (depth; stencil_ops.hpp), then the colour
-// (color_ops.hpp), then the write masks. Nothing here knows packets, tiles or memories: stages/depth_test and stages/rop put the pieces together for stamps, and the engines for what they
-// hold at once.
+// (color_ops.hpp), then the write masks. Nothing here knows packets, tiles or memories: stages/depth_test and stages/rop put
+// the pieces together for stamps, and the engines for what they hold at once.
 // Lane: std::uint32_t, or a vector of them. The scalar instance is the specification; a test holds vectors against it.
 #pragma once
 
@@ -174,7 +174,8 @@ struct TestedSample {
   return sample;
 }
 
-/// Whether alpha to coverage draws sample `k` of a pixel: the first ones are. `samples`: of the pixel; 0: alpha does not choose.
+/// Whether alpha to coverage draws sample `k` of a pixel: the first ones are. `samples`: of the pixel; 0: alpha does not
+/// choose.
 [[nodiscard]] constexpr bool is_drawn_by_alpha(int samples, std::uint32_t alpha, std::uint32_t k) {
   return samples == 0 || k < samples_of_alpha(alpha, static_cast<std::uint32_t>(samples));
 }

@@ -1,7 +1,8 @@
 // Light unit: phong.hpp in hardware, in front of the texture unit: what is combined with a texture is lit. Normals come with a
 // triangle, as planes; light, half, colours and the table of the power are registers, set by tokens.
 //
-// Tokens have the number of a texture's levels, as those of fog have (LevelsWord): above 40 bits three say which register it is.
+// Tokens have the number of a texture's levels, as those of fog have (LevelsWord): above 40 bits three say which register it
+// is.
 #pragma once
 
 #include <array>

@@ -77,8 +77,8 @@ inline void set_flag_word(MemoryRequest& request, std::uint64_t bits, const Widt
   return is_of_pixels(plane) ? memory.pixel_color : memory.stamp[is_of_color(plane) ? 1 : 0];
 }
 
-/// Where a stamp lies in its plane of a tile, in bytes: block by block, row by row in each. A block of one colour a pixel begins
-/// where it would with all its samples.
+/// Where a stamp lies in its plane of a tile, in bytes: block by block, row by row in each. A block of one colour a pixel
+/// begins where it would with all its samples.
 [[nodiscard]] inline std::uint32_t stamp_offset(TilePlane plane, int stamp, const Widths& widths) {
   const BlockStamp at = block_stamp({0, 0, static_cast<std::uint16_t>(stamp)}, widths);
   const auto block =

@@ -1,11 +1,11 @@
-// Pixel colours: blocks of 4x4 pixels whose pixels have one colour each lie in memory with one colour a pixel, others with one a
-// sample (compress.unit). A bit for each block of the target says which; it is looked at and changed where requests go out,
+// Pixel colours: blocks of 4x4 pixels whose pixels have one colour each lie in memory with one colour a pixel, others with one
+// a sample (compress.unit). A bit for each block of the target says which; it is looked at and changed where requests go out,
 // in their order, so that it is always what memory has.
 //
 // What leaves the chip of a block is its new samples. Where those of each pixel are all there and equal, or none is, the block
-// is uniform: it is written with a colour a pixel where memory holds garbage, the whole block is there, or memory has such a block
-// already. A block that is not, over one in memory that has a colour a pixel, must have all its samples from now on: that is
-// read and merged. Data is in block_cache.hpp, time in engines/cycle/block_timing.hpp, the hardware in
+// is uniform: it is written with a colour a pixel where memory holds garbage, the whole block is there, or memory has such a
+// block already. A block that is not, over one in memory that has a colour a pixel, must have all its samples from now on:
+// that is read and merged. Data is in block_cache.hpp, time in engines/cycle/block_timing.hpp, the hardware in
 // rtl_ref/stages/pixel_colors.sv.
 #pragma once
 

@@ -11,8 +11,8 @@
 
 namespace halfplane {
 
-/// Turns the place of a line, or the pixel before, into a pixel of the line: a stamp with one covered pixel, which belongs to no
-/// tile visit. All samples of the pixel are drawn that the state lets.
+/// Turns the place of a line, or the pixel before, into a pixel of the line: a stamp with one covered pixel, which belongs to
+/// no tile visit. All samples of the pixel are drawn that the state lets.
 inline void set_line_pixel(const LinePixel& pixel, const Widths& widths, FragmentPacket& fragment) {
   const StampGrid& stamps = widths.stamps;
   const int last = (1 << widths.tile_shift) - 1;

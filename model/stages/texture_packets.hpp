@@ -7,7 +7,8 @@
 
 namespace halfplane {
 
-/// Stamps between X and W: of several lanes one a clock goes in, and comes out some twenty clocks later.
+/// Stamps between the depth stage and the colour stage: of several lanes one a clock goes in, and comes out some twenty clocks
+/// later.
 [[nodiscard]] inline int texture_stamps(const Config& config) {
   return config.texture_lanes == 1 ? config.texture_queue / 2 : config.texture_queue;
 }
@@ -44,7 +45,8 @@ template <class Codes>
   return which == StateRegister::texture_levels ? levels_word(state_word(token, widths)) : LevelsWord::levels;
 }
 
-/// What a token sets in the unit, one of its three registers. `token`: its codes at a vertex, or the fragment that they have become.
+/// What a token sets in the unit, one of its three registers. `token`: its codes at a vertex, or the fragment that they have
+/// become.
 template <class Codes>
 void set_register(TextureUnit& unit, StateRegister which, const Codes& token, const Widths& widths) {
   const LevelsWord beside = word_beside_texture(which, token, widths);

@@ -3,19 +3,19 @@
 // texture_sample.hpp, texture_filter.hpp and texture.hpp.
 //
 // In memory a level is a row of rows of blocks of 4x4 texels, the texels of a block row by row, a code's low byte first; sides
-// below 4 are padded to a block, palettes are gone (rgba8888). Where the levels begin says texture_levels.hpp. A block is a line
-// of the cache: 16, 32 or 64 bytes. The lowest bits of its column and row say where in the cache it may lie; of a draw that
-// looks at two levels the highest of those of the row says whether the level is odd, so that no level is in the other's way.
-// Of two ways a block may lie in two places, told apart by the highest bit that its row would have given, or its column where that
-// gives more; it takes that of the line that was looked up longer ago. Then two levels share all places.
+// below 4 are padded to a block, palettes are gone (rgba8888). Where the levels begin says texture_levels.hpp. A block is a
+// line of the cache: 16, 32 or 64 bytes. The lowest bits of its column and row say where in the cache it may lie; of a draw
+// that looks at two levels the highest of those of the row says whether the level is odd, so that no level is in the other's
+// way. Of two ways a block may lie in two places, told apart by the highest bit that its row would have given, or its column
+// where that gives more; it takes that of the line that was looked up longer ago. Then two levels share all places.
 //
 // A sample between two levels goes through cache and filter twice, once where the second would add nothing.
 //
 // Of four lanes the live samples of 2x2 go together. Their texels come from 16 banks, by the two lowest bits of column and row,
 // and their lines from four, by the lowest bits of the blocks'. So a clock gives those of samples that agree: along either axis
-// no two of their texels are in one bank unless in one block, nor their blocks. Where not all agree, the first of those that are
-// left takes with it, in order, each that agrees with all before, and the others follow. With levels samples agree only on one
-// level; those between two go once more behind all others, on their upper ones.
+// no two of their texels are in one bank unless in one block, nor their blocks. Where not all agree, the first of those that
+// are left takes with it, in order, each that agrees with all before, and the others follow. With levels samples agree only on
+// one level; those between two go once more behind all others, on their upper ones.
 //
 // Colours over w are divided here, by the reciprocal that the coordinates have; what the texture is combined with is the
 // quotient. A triangle says so by itself.

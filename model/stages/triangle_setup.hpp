@@ -89,7 +89,8 @@ struct PlaneFrame {
 [[nodiscard]] TriangleSetup setup_triangle(const Triangle& triangle, const Config& config, const Widths& widths);
 
 /// What SetupPacket adds to the value of a plane: half of the last place that a tile keeps, and
-/// of a code that is clamped, what makes decode() a shift. With it, a tile's local anchor is the stepped value shifted right by F - l.
+/// of a code that is clamped, what makes decode() a shift. With it, a tile's local anchor is the stepped value shifted right
+/// by F - l.
 [[nodiscard]] std::uint64_t plane_bias(const AttributeWidths& attribute, const Widths& widths);
 
 /// A setup whose box lies inside the target, as it goes to coarse_raster. Kind and state are left at 0.

@@ -11,8 +11,8 @@ module pin_wrapper (
     output logic data_o     // the register's signature
 );
 
-  // Where each input begins. The layout has no bits of its own but looks at the primitive's: registers of the core stand between
-  // what becomes of the one and of the other, so no gate sees both, and nothing is saved inside. Below the
+  // Where each input begins. The layout has no bits of its own but looks at the primitive's: registers of the core stand
+  // between what becomes of the one and of the other, so no gate sees both, and nothing is saved inside. Below the
   // primitive are the five that say something is ready or there, at the end those that not every core looks at: without them it
   // is gone.
   localparam int PRIMITIVE = 5;

@@ -114,8 +114,8 @@ module raster_cosim (
 
   assign config_id_o = raster_pkg::CONFIG_ID;
 
-  // Packets as they are specified, of what raster_top has in parts. A fragment whose triangle's constants are apart: whole, with
-  // what the triangle of its number has, and of lines nothing behind the colours.
+  // Packets as they are specified, of what raster_top has in parts. A fragment whose triangle's constants are apart: whole,
+  // with what the triangle of its number has, and of lines nothing behind the colours.
   raster_pkg::fragment_packet_t fragment_data;
   raster_pkg::write_packet_t    write_data;
   raster_pkg::memory_request_t  request_data;

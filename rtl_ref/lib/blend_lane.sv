@@ -74,8 +74,8 @@ module blend_lane #(
       );
       assign sum = sum_and_carry[17:1];
 
-      // floor(v / 255 + 1/2) = (t + (t >> 8)) >> 8, t = v + 128: v + (v >> 8), 128 and a carry where the fraction of v / 256 is a
-      // half. Of ~v the quotient is the complement if 128 is taken off instead.
+      // floor(v / 255 + 1/2) = (t + (t >> 8)) >> 8, t = v + 128: v + (v >> 8), 128 and a carry where the fraction of v / 256
+      // is a half. Of ~v the quotient is the complement if 128 is taken off instead.
       logic signed [2:0]  upper;  // v >> 15, and 128 more or less, which changes nothing below that
       logic [17:0] quotient;  // below that the bit that makes the carry
       logic        is_negative, is_above;

@@ -12,7 +12,8 @@ module blend_setup #(
     input logic [5:0]  equation_i,  // 3 bits each: of colour, of alpha
     input logic [31:0] constant_i,
 
-    // Of each factor, lowest first: it is the source, the stored colour, the alpha of either, src_alpha_saturate; the complement
+    // Of each factor, lowest first: it is the source, the stored colour, the alpha of either, src_alpha_saturate; the
+    // complement
     output logic [23:0]            chooses_o,
     output logic [16*CHANNELS-1:0] fixed_o,    // of each channel for both factors: the constant, if it is one
     output logic [5:0]             equation_o

@@ -1,5 +1,5 @@
-// Masked SRAM: an SRAM (sram.sv) with a write enable for each bit of a word. A word that is read while it is written is not to be
-// looked at.
+// Masked SRAM: an SRAM (sram.sv) with a write enable for each bit of a word. A word that is read while it is written is not to
+// be looked at.
 module masked_sram #(
     parameter int WIDTH = 1,               // bits of a word
     parameter int DEPTH = 2,               // words, at least 2

@@ -28,8 +28,9 @@ module sram #(
   localparam int HIGH = DEPTH - LOW;  // words from LOW on
   localparam int HIGH_ADDRESS = HIGH < 2 ? 1 : $clog2(HIGH);
 
-  // The same two hints for Yosys (no_rw_check, ram_style), Vivado (rw_addr_collision, ram_style), Quartus (ramstyle, whose block
-  // RAMs have names of the part's: they are left to it), Synplify and Gowin (syn_ramstyle). Yosys takes ram_style before the rest.
+  // The same two hints for Yosys (no_rw_check, ram_style), Vivado (rw_addr_collision, ram_style), Quartus (ramstyle, whose
+  // block RAMs have names of the part's: they are left to it), Synplify and Gowin (syn_ramstyle). Yosys takes ram_style before
+  // the rest.
   localparam KIND = BLOCK ? "block" : "auto";
   localparam COLLISION = READS_OLD ? "auto" : "no";
   localparam QUARTUS = READS_OLD ? "auto" : "no_rw_check";

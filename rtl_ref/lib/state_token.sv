@@ -1,5 +1,5 @@
-// State token: what a fragment of kind state says: of which unit a register is set, and its value, which lies where fragments have
-// their codes. Combinational. Specification: model/packets/state_packets.hpp.
+// State token: what a fragment of kind state says: of which unit a register is set, and its value, which lies where fragments
+// have their codes. Combinational. Specification: model/packets/state_packets.hpp.
 module state_token #(
     parameter int WORD = raster_pkg::STATE_WORD_BITS  // derived; not to be set
 ) (

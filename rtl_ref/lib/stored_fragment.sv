@@ -1,6 +1,6 @@
-// Stored fragment: a fragment as queues hold it. Where the triangle's constants are APART, in a RAM by the triangle's number, it
-// has of planes over w the anchors of its tile, in its first pixel, and the number in place of the frame of coordinates, lowest.
-// Else it is the fragment as it is. Bits that are not stored come back as 0; whole_fragment.sv makes them.
+// Stored fragment: a fragment as queues hold it. Where the triangle's constants are APART, in a RAM by the triangle's number,
+// it has of planes over w the anchors of its tile, in its first pixel, and the number in place of the frame of coordinates,
+// lowest. Else it is the fragment as it is. Bits that are not stored come back as 0; whole_fragment.sv makes them.
 module stored_fragment #(
     parameter bit APART = raster_pkg::APART != 0,  // derived; not to be set
     parameter int NUMBER = raster_pkg::TRIANGLE_BITS,

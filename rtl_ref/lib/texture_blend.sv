@@ -1,6 +1,6 @@
-// Texture blend: what a linear filter gave on one level becomes a texel, or waits for what it gives on the next, and both become
-// one. One register. A sum that is blended keeps 8 fraction bits, and is rounded a second time, as is one of two levels that has
-// the other's weight. Of several lanes each has its own, and all of them move as one; a pass brings sums to some.
+// Texture blend: what a linear filter gave on one level becomes a texel, or waits for what it gives on the next, and both
+// become one. One register. A sum that is blended keeps 8 fraction bits, and is rounded a second time, as is one of two levels
+// that has the other's weight. Of several lanes each has its own, and all of them move as one; a pass brings sums to some.
 // Specification: blend_levels of model/stages/texture_filter.hpp.
 module texture_blend #(
     parameter int TAIL = 1  // bits that go along

@@ -1,4 +1,5 @@
-// One coordinate of a sample on a level of its texture: the texel it lies in, or the two whose middles are around it. Two clocks.
+// One coordinate of a sample on a level of its texture: the texel it lies in, or the two whose middles are around it. Two
+// clocks.
 //
 //   scale  the place divided by 2^level, no farther than to one texel, with a bit more to round by
 //   wrap   rounded and half a texel less, or cut off; then onto the level's image

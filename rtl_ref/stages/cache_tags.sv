@@ -2,11 +2,11 @@
 // a fragment needs while those before it are still on their way.
 //
 // In: fragments, in program order. Out: items for the test, each with what the tags have found, and orders: so many evicted
-// blocks go to memory, then a stamp of depth is read, and with blending one of colour. A fragment takes three cycles to become an
-// item, one a cycle: its line is read, compared, and what follows leaves. Where the flag of a cleared block falls, a fragment of
-// another block than the one before waits a cycle (clear_flags). Tokens stay until all they ask for is done: a walk over the
-// lines that evicts what is dirty, the marks of a fast clear, a word of flags a cycle, or a flush's requests. A fast clear of one
-// bin shares its words with others: each is read, then written.
+// blocks go to memory, then a stamp of depth is read, and with blending one of colour. A fragment takes three cycles to become
+// an item, one a cycle: its line is read, compared, and what follows leaves. Where the flag of a cleared block falls, a
+// fragment of another block than the one before waits a cycle (clear_flags). Tokens stay until all they ask for is done: a
+// walk over the lines that evicts what is dirty, the marks of a fast clear, a word of flags a cycle, or a flush's requests. A
+// fast clear of one bin shares its words with others: each is read, then written.
 // Specification: model/stages/cache_tags.hpp.
 module cache_tags #(
     parameter int STAMPS = raster_pkg::BLOCK_STAMPS,  // derived; not to be set

@@ -2,8 +2,8 @@
 // words of FLAG_WORD blocks of a row. They survive a flush.
 //
 // A fragment's word is read in the cycle in which it comes; cleared_o says in every cycle from the next one on what its block's
-// flags are, with all that have fallen until then. A flag that falls costs nobody a cycle that can do without the read port: its
-// word is read in the cycle behind, when no fragment that needs its own can come (is_busy_o), and written in the one
+// flags are, with all that have fallen until then. A flag that falls costs nobody a cycle that can do without the read port:
+// its word is read in the cycle behind, when no fragment that needs its own can come (is_busy_o), and written in the one
 // after that. Falls are two cycles apart at least. Tokens read and write words when nothing else is under way.
 // Specification: model/stages/clear_flags.hpp; the times are those of model/engines/cycle/block_timing.hpp.
 module clear_flags #(
@@ -136,8 +136,8 @@ module clear_flags #(
   assign word_depth_o = word_depth;
   assign word_color_o = word_color;
 
-  // The flags of the block that came last: from its word in the cycle after it came, less what was being written then; from here
-  // in the cycles behind.
+  // The flags of the block that came last: from its word in the cycle after it came, less what was being written then; from
+  // here in the cycles behind.
   logic       is_fresh_q;
   logic [1:0] held_q, written_q, read_flags, kept;
   assign read_flags = is_fresh_q ? {word_color[bit_of(read_x_i)], word_depth[bit_of(read_x_i)]} & ~written_q : held_q;

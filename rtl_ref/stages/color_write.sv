@@ -1,5 +1,5 @@
-// Color write: tested and shaded stamps are written to the colour RAM, a clock later; an evicted block's colours are read out of
-// it, a stamp a clock, each before it is written.
+// Color write: tested and shaded stamps are written to the colour RAM, a clock later; an evicted block's colours are read out
+// of it, a stamp a clock, each before it is written.
 //
 // Two evictions may be under way. The RAM is read for the stamp that this clock takes, where that is still to be read, else for
 // the older one. So no stamp waits for a read, and an eviction waits only where two are before it. The third can overtake none
@@ -76,8 +76,8 @@ module color_write #(
   assign own    = goes && (mask != '0 || writes_all) ? STAMPS'(1) << tested_i.stamp : '0;
   assign stamp_ready_o = goes && ends;
 
-  // The evictions under way: stamps that are left to be read, of the older one and of the one behind it, which becomes the older
-  // one when nothing of that is left.
+  // The evictions under way: stamps that are left to be read, of the older one and of the one behind it, which becomes the
+  // older one when nothing of that is left.
   logic [STAMPS-1:0] first_q, first_left, second_q, second, second_left, left, next;
   logic [LINE-1:0]   first_line_q, second_line_q, second_line;
   logic [SLOT-1:0] first_slot_q, second_slot_q, second_slot, next_slot_q;
@@ -279,7 +279,8 @@ module color_write #(
         else if (goes) done_q <= ends ? '0 : done_q | group;
       end
 
-      // 1 and 2: what is on its way to the RAM. 1 has read it, 2 blends, packs and writes; 3 is what has been written last, while
+      // 1 and 2: what is on its way to the RAM. 1 has read it, 2 blends, packs and writes; 3 is what has been written last,
+      // while
       // 1 read. An eviction waits for 3 as well.
       logic [2:0]           on_way_q;
       logic [LINE-1:0]      line_1_q, line_2_q, line_3_q;
@@ -351,8 +352,8 @@ module color_write #(
         code_3_q    <= made;
       end
 
-      // 1: what is stored: the newest of what is on its way, else what the RAM has; where that does not have it, the base. One of
-      // five, each by itself, so that nothing is chosen in a row.
+      // 1: what is stored: the newest of what is on its way, else what the RAM has; where that does not have it, the base. One
+      // of five, each by itself, so that nothing is chosen in a row.
       assign base = (answer_i & {SAMPLES*COLOR{is_answered_1_q}}) | {SAMPLES{clear_color_1_q}};
       for (s = 0; s < SAMPLES; s++) begin : gen_stored
         logic [1:0] is_newer;  // what 2 and 3 have

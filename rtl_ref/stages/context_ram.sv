@@ -1,10 +1,10 @@
-// Context RAM: what the stamps of a primitive share, by the slot that coarse_raster gives it. A slot is not written before it is
-// free, nor read before the first stamp is there. The serial front writes one part a cycle.
+// Context RAM: what the stamps of a primitive share, by the slot that coarse_raster gives it. A slot is not written before it
+// is free, nor read before the first stamp is there. The serial front writes one part a cycle.
 //
-// With planes over w and one sample a pixel (APART) most of it is wanted only behind the depth test: the steps of those planes, and
-// the frame of coordinates. They lie in a RAM of their own by the triangle's number, which goes with the fragments in place of the
-// frame. There are as many numbers as triangles can be between setup and test: those in slots, and one for each fragment behind
-// that, since a triangle's end goes as one.
+// With planes over w and one sample a pixel (APART) most of it is wanted only behind the depth test: the steps of those
+// planes, and the frame of coordinates. They lie in a RAM of their own by the triangle's number, which goes with the fragments
+// in place of the frame. There are as many numbers as triangles can be between setup and test: those in slots, and one for
+// each fragment behind that, since a triangle's end goes as one.
 // Specification: make_context() of model/stages/interpolate.hpp.
 module context_ram #(
     parameter int SLOT = raster_pkg::SLOT_BITS  // derived; not to be set

@@ -8,8 +8,8 @@
 // what the one before it writes is forwarded. Of a block that leaves, the stamps that may have been written are read, one a
 // cycle, first the one that is about to be overwritten.
 //
-// With a late alpha test (LATE_ALPHA) late_test writes the depths of what alpha may still drop. A fragment waits for those in its
-// place, an eviction for those in its line, and one that is not late for all of them.
+// With a late alpha test (LATE_ALPHA) late_test writes the depths of what alpha may still drop. A fragment waits for those in
+// its place, an eviction for those in its line, and one that is not late for all of them.
 // Specification: model/stages/block_cache.hpp; the times are those of model/engines/cycle/block_timing.hpp.
 module depth_cache #(
     parameter int SAMPLES = raster_pkg::SAMPLES,  // derived; not to be set
@@ -27,7 +27,8 @@ module depth_cache #(
     input  raster_pkg::tag_result_t      made_result_i,
     input  logic [CODE-1:0]              clear_depth_i,
 
-    // From memory_answers: the stored depths of the fragments that wait for them, in order; there in the cycle after it is taken
+    // From memory_answers: the stored depths of the fragments that wait for them, in order; there in the cycle after it is
+    // taken
     input  logic                    answer_valid_i,
     output logic                    takes_answer_o,
     input  logic [SAMPLES*CODE-1:0] answer_i,
@@ -247,8 +248,8 @@ module depth_cache #(
     v_last_q  <= left == next;
   end
 
-  // The depth RAM: of each sample its code, and whether memory does not have it. What a stamp is tested against comes from there,
-  // from the answer, or stands in a register as it goes: the clear value, or what is written while the RAM is read.
+  // The depth RAM: of each sample its code, and whether memory does not have it. What a stamp is tested against comes from
+  // there, from the answer, or stands in a register as it goes: the clear value, or what is written while the RAM is read.
   assign x1_on_chip = x1_q.source == raster_pkg::DEPTH_SOURCE_CHIP;
   generate
     for (s = 0; s < SAMPLES; s++) begin : gen_depth

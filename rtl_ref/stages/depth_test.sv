@@ -102,8 +102,8 @@ module depth_test (
   // The alpha test, where the colour is known here: without a texture unit. With one W decides, and what writes depth is late.
   // Its register is set by a token.
   logic is_late;
-  // An operation of the stencil as stencil_test wants it: what counts has bit 2, down bit 1, and bit 0 where it stops at the end;
-  // what does not count keeps, zeroes, replaces, inverts.
+  // An operation of the stencil as stencil_test wants it: what counts has bit 2, down bit 1, and bit 0 where it stops at the
+  // end; what does not count keeps, zeroes, replaces, inverts.
   function automatic [2:0] as_bits(input [2:0] op);
     case (op)
       raster_pkg::STENCIL_OP_KEEP: as_bits = 3'b000;

@@ -1,5 +1,5 @@
-// Fog lookup: where in the table of the fog the pixels of a stamp lie. In front of the texture unit, where Q still is; what it finds
-// goes with the stamp to fog_stage. Combinational but for the table's octaves, which a token sets.
+// Fog lookup: where in the table of the fog the pixels of a stamp lie. In front of the texture unit, where Q still is; what it
+// finds goes with the stamp to fog_stage. Combinational but for the table's octaves, which a token sets.
 //
 // The word: from bit 0 the places of the pixels, 19 bits each, or a token's value; above them that there is fog, that a token
 // sets the fog's colour, and that it sets a line of the table.

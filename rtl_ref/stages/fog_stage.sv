@@ -1,5 +1,5 @@
-// Fog stage: fog_unit in the stream of shaded stamps, behind the texture unit; fog_lookup has found where in its table they lie.
-// Without the unit stamps pass as they are.
+// Fog stage: fog_unit in the stream of shaded stamps, behind the texture unit; fog_lookup has found where in its table they
+// lie. Without the unit stamps pass as they are.
 // Specification: model/stages/fog_unit.hpp.
 module fog_stage #(
     parameter int PIXELS = raster_pkg::PIXELS,  // derived; not to be set

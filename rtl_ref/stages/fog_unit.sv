@@ -4,8 +4,8 @@
 //   1  the line of the table where each sample's place lies        2  f = start + rise * part, 0 to 1
 //   3  colour + f (colour of the pixel - colour of the fog)
 //
-// Each register takes what is in front of it as soon as what it holds goes on. A token passes as stamps do, and what it sets holds
-// for those behind it: a line of the table as it comes in, the fog's colour as it leaves the first register.
+// Each register takes what is in front of it as soon as what it holds goes on. A token passes as stamps do, and what it sets
+// holds for those behind it: a line of the table as it comes in, the fog's colour as it leaves the first register.
 // Specification: FogUnit of model/stages/fog_unit.hpp; the times are FogTiming's in model/engines/cycle/block_timing.hpp.
 module fog_unit #(
     parameter int SAMPLES  = 4,

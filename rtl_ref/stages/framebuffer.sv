@@ -10,7 +10,8 @@ module framebuffer (
     input logic clk_i,
     input logic rst_ni,
 
-    // From depth_test: accesses, answered in the next cycle; access_color_i is the stored colour of sample 0 of the cycle before
+    // From depth_test: accesses, answered in the next cycle; access_color_i is the stored colour of sample 0 of the cycle
+    // before
     input  logic                                                       access_valid_i,
     output logic                                                       access_ready_o,
     input  raster_pkg::fragment_packet_t                               access_i,

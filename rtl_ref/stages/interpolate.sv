@@ -112,7 +112,8 @@ module interpolate (
   logic [PIXELS*CODES-1:0]      code;
   raster_pkg::fragment_packet_t made;
 
-  // Where each pixel is shaded, a bit for each of its samples: the first that is covered, unless its centre is. None: its centre.
+  // Where each pixel is shaded, a bit for each of its samples: the first that is covered, unless its centre is. None: its
+  // centre.
   logic [PIXELS*N-1:0] shaded_at;
   generate
     if (N > 1) begin : gen_shaded

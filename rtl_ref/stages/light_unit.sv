@@ -1,5 +1,5 @@
-// Light unit: colours in front of the texture unit in the light of their normals. Stamps wait in a queue, in order; a lane takes
-// a sample a clock of those that are lit, or a stamp without any, and gives it twelve clocks later.
+// Light unit: colours in front of the texture unit in the light of their normals. Stamps wait in a queue, in order; a lane
+// takes a sample a clock of those that are lit, or a stamp without any, and gives it twelve clocks later.
 //
 //   1      the leading one of P, the same for its three components     2  m: P shifted to it, 15 bits and the sign
 //   3, 4   m^2, m.L, m.H: products, sums                               5  the line of 1 / |m|

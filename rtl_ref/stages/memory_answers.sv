@@ -1,8 +1,8 @@
 // Memory answers: what memory answers to reads of blocks, on its way to whoever waits for it: depths to depth_cache, and with
 // blending colours to color_write. A place for each read that can be under way, so that no answer waits for a fragment.
 //
-// Answers come in the order of the reads, so a queue of what each read was of says where they go. Reads of a merge (pixel_colors)
-// are answered to write_back.
+// Answers come in the order of the reads, so a queue of what each read was of says where they go. Reads of a merge
+// (pixel_colors) are answered to write_back.
 // Specification: the answers of model/stages/block_cache.hpp.
 module memory_answers #(
     parameter int SAMPLES = raster_pkg::SAMPLES,  // derived; not to be set

@@ -284,8 +284,8 @@ module memory_port (
   localparam int STAMPS = raster_pkg::STAMPS_PER_ROW * raster_pkg::STAMPS_PER_ROW;
   localparam int DEPTH_SHARED = (DEPTH_SHIFT < PORT) ? PORT - DEPTH_SHIFT : 0;  // log2 of the stamps in a beat
   localparam int DEPTH_STAMPS = (STAMPS < (1 << DEPTH_SHARED)) ? STAMPS : 1 << DEPTH_SHARED;  // read with it
-  // With blending colours are read too. Unless their stamps are as large and fill beats, it must be known whose the next one is.
-  // And with COMPRESS_UNIT those of pixels.
+  // With blending colours are read too. Unless their stamps are as large and fill beats, it must be known whose the next one
+  // is. And with COMPRESS_UNIT those of pixels.
   localparam bit BLENDS = raster_pkg::BLEND_LANES != 0;
   localparam bit READS_COLOR = COMPRESSES || (BLENDS && (COLOR_SHIFT != DEPTH_SHIFT || DEPTH_SHIFT < PORT));
   localparam bit READS_SAMPLES = READS_COLOR && BLENDS;

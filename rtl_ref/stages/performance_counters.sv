@@ -1,6 +1,6 @@
-// Performance counters: the work of triangles, points and lines, and what of tiles goes to and from memory, since reset. What the
-// framebuffer counts comes through a register. A counter whose highest bit falls has wrapped, and `overflow` stays. Without the
-// unit nothing moves, and nothing is left of it.
+// Performance counters: the work of triangles, points and lines, and what of tiles goes to and from memory, since reset. What
+// the framebuffer counts comes through a register. A counter whose highest bit falls has wrapped, and `overflow` stays.
+// Without the unit nothing moves, and nothing is left of it.
 // Specification: CounterPacket of model/packets/packets.hpp.
 module performance_counters #(
     parameter int COUNT = $clog2(raster_pkg::SAMPLES + 1),  // derived; not to be set

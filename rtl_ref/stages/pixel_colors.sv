@@ -1,14 +1,14 @@
-// Pixel colours: blocks of 4x4 pixels whose pixels have one colour each lie in memory with one colour a pixel, others with one a
-// sample. A bit for each block of the target, in words of FLAG_WORD blocks of a row, says which.
+// Pixel colours: blocks of 4x4 pixels whose pixels have one colour each lie in memory with one colour a pixel, others with one
+// a sample. A bit for each block of the target, in words of FLAG_WORD blocks of a row, says which.
 //
 //   victims -> [slots: is it uniform, is it whole] --.
 //   requests <-> [look: the block's bit] -> how its colours are written or read -> [merge: reads of its pixels, if need be]
 //
-// Whoever is about to ask for colours of a block, to write or to read, waits a cycle for its bit. What is written is uniform if of
-// each pixel all samples are there, and equal, or none; the block then goes to memory with a colour a pixel where memory holds
-// garbage, all of it is there, or memory has such a block already. One that is not uniform, over such a block, is merged: its
-// pixels are read, behind everything that was asked for before, and kept here until the block has been written with all samples.
-// Tokens read and write words when nothing else is under way.
+// Whoever is about to ask for colours of a block, to write or to read, waits a cycle for its bit. What is written is uniform
+// if of each pixel all samples are there, and equal, or none; the block then goes to memory with a colour a pixel where memory
+// holds garbage, all of it is there, or memory has such a block already. One that is not uniform, over such a block, is
+// merged: its pixels are read, behind everything that was asked for before, and kept here until the block has been written
+// with all samples. Tokens read and write words when nothing else is under way.
 // Specification: model/stages/pixel_colors.hpp; the times are those of model/engines/cycle/block_timing.hpp.
 module pixel_colors #(
     parameter int SIDE_BITS = $clog2(raster_pkg::BLOCK_SIDE),  // derived; not to be set
@@ -38,8 +38,8 @@ module pixel_colors #(
     input logic [SAMPLES-1:0]       come_strobe_i,
     input logic [SAMPLES*COLOR-1:0] come_color_i,
 
-    // Colours of a block are to be written, those of a slot, or a stamp's are to be read; in the order of requests, until the last
-    // of them has been taken
+    // Colours of a block are to be written, those of a slot, or a stamp's are to be read; in the order of requests, until the
+    // last of them has been taken
     input  logic                                    writes_i,
     input  logic [VICTIM-1:0]                       slot_i,
     input  logic                                    is_every_i,  // stamp of it written

@@ -1,5 +1,5 @@
-// Stamp rop: rop of each pixel of a shaded stamp, and its colour at all samples that get it. Where colours are blended or dithered
-// they are packed in color_write. Combinational.
+// Stamp rop: rop of each pixel of a shaded stamp, and its colour at all samples that get it. Where colours are blended or
+// dithered they are packed in color_write. Combinational.
 // Specification: model/stages/texture_stage.hpp.
 module stamp_rop #(
     parameter int PIXELS = raster_pkg::PIXELS,  // derived; not to be set

@@ -4,11 +4,12 @@
 //                  '-> texture_rounds -^ (FILTER 2)                      texture_blend, four (FILTER 2) -^
 //
 // Texels lie in 16 banks, by the two lowest bits of their columns and rows; a bank gives one texel a clock, of whichever of the
-// (up to four) lines. Lines lie in four, by the lowest bits of their blocks'. So of each axis a pass has one line for each lowest
-// bit of a block, and each two lowest bits of a texel say which of the two. Samples agree where that holds along both axes; those
-// of a group that do not go one pass behind the other. What a stamp shows at one texel a pixel, or larger, agrees. With levels
-// they agree on one alone, and a group goes by again on the upper ones: what the lower gave of a sample waits in its lane's blend.
-// Specification: take_group() of model/stages/texture_unit.hpp; times: model/engines/cycle/texture_timing.hpp.
+// (up to four) lines. Lines lie in four, by the lowest bits of their blocks'. So of each axis a pass has one line for each
+// lowest bit of a block, and each two lowest bits of a texel say which of the two. Samples agree where that holds along both
+// axes; those of a group that do not go one pass behind the other. What a stamp shows at one texel a pixel, or larger, agrees.
+// With levels they agree on one alone, and a group goes by again on the upper ones: what the lower gave of a sample waits in
+// its lane's blend. Specification: take_group() of model/stages/texture_unit.hpp; times:
+// model/engines/cycle/texture_timing.hpp.
 module texture_lanes #(
     parameter int FILTER = 0,                 // 0 nearest, 1 linear as well, 2 levels as well
     parameter int REFERENCE_BITS = 24,        // of FILTER 2
@@ -228,7 +229,8 @@ module texture_lanes #(
     else if (p_moves) done_q <= ends ? '0 : done_q | joins;
   end
 
-  // Of each axis the even and the odd block, and of which each column or row is; of each bank whether a sample has a texel there.
+  // Of each axis the even and the odd block, and of which each column or row is; of each bank whether a sample has a texel
+  // there.
   logic [2*2*BLOCK-1:0] block;     // of x lowest, of it the even one
   logic [7:0]           odd;       // of x lowest
   logic [3:0]           used;

@@ -1,5 +1,5 @@
-// Texture levels: samples whose level is known become passes through cache and filter: one, or one on each of two levels. Of each
-// the texels that it looks at, and where its level lies in memory. Two registers, a pass a clock.
+// Texture levels: samples whose level is known become passes through cache and filter: one, or one on each of two levels. Of
+// each the texels that it looks at, and where its level lies in memory. Two registers, a pass a clock.
 //
 //   scale  the coordinates on the level; the blocks of its sides
 //   wrap   its texels; where the level begins

@@ -1,5 +1,5 @@
-// Texture linear: texels of a linear filter. Places wait in a queue, look their lines up in a cache with four banks, and become one
-// texel each. With levels, of which a place then says which it wants, some go through twice.
+// Texture linear: texels of a linear filter. Places wait in a queue, look their lines up in a cache with four banks, and
+// become one texel each. With levels, of which a place then says which it wants, some go through twice.
 //
 //   places -> [levels, LEVELS] -> texture_cache_linear -> texture_filter -> [texture_blend, LEVELS] -> texels
 //

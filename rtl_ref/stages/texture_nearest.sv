@@ -1,5 +1,5 @@
-// Texture nearest: texels of a nearest filter. The address of each sample's line waits in a queue, is looked up, and the code that
-// comes becomes a colour.
+// Texture nearest: texels of a nearest filter. The address of each sample's line waits in a queue, is looked up, and the code
+// that comes becomes a colour.
 //
 //   texels -> [address] -> texture_cache -> texture_decode -> colours
 //

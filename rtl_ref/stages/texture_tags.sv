@@ -5,12 +5,12 @@
 //
 // A pass is what looks its lines up at a time: a sample, one of those between two levels, or samples that agree. Tags are in
 // four banks, by the lowest bits of a block's column and row, so each bank looks up at most one line of a pass. A pass whose
-// lines are all there takes a clock, one with n misses n clocks; they are asked for bank by bank, and the pass waits in the queue
-// until all have come. What may be given away for a line, and what a reset leaves: as in texture_cache.sv.
+// lines are all there takes a clock, one with n misses n clocks; they are asked for bank by bank, and the pass waits in the
+// queue until all have come. What may be given away for a line, and what a reset leaves: as in texture_cache.sv.
 //
 // Of two ways a block may lie in two places: the highest bit of a place's row, or of its column where that has more of them, is
-// not the block's but the way. Not there, it takes the place of the one that was looked up longer ago, in the order of passes; so
-// the way follows from the data alone. Levels then need no halves of their own.
+// not the block's but the way. Not there, it takes the place of the one that was looked up longer ago, in the order of passes;
+// so the way follows from the data alone. Levels then need no halves of their own.
 // Specification: look_up() of model/stages/texture_unit.hpp; times: model/engines/cycle/texture_timing.hpp.
 module texture_tags #(
     parameter int LINES = 64,            // a power of two, at least 16

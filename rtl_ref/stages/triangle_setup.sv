@@ -149,9 +149,9 @@ module triangle_setup (
   end
 
   // Division of 2^m, from the bit before the point, which is 1 only for A = 2^m. What is left less the area has the next bit in
-  // its sign. Where it is negative nothing is taken back: twice that and the area is what twice the rest less the area would be.
-  // So the chain subtracts or adds, and what stands in the register is twice its last result. Each divider goes on where the one
-  // before it stopped.
+  // its sign. Where it is negative nothing is taken back: twice that and the area is what twice the rest less the area would
+  // be. So the chain subtracts or adds, and what stands in the register is twice its last result. Each divider goes on where
+  // the one before it stopped.
   localparam int AREA_AT = 3 * raster_pkg::EDGE_VALUE_BITS +  // in a packet
                            (raster_pkg::MSAA_SAMPLES > 1 ? 3 * raster_pkg::GRID_BITS : 0);
   localparam int REMAINDER = A + 2;                          // -2 A <= it < 2 A

@@ -1,9 +1,9 @@
-// Write-back: what goes to memory of the framebuffer of blocks, in the order that cache_tags says: blocks that have left the chip,
-// then the read that an order ends with; and what a flush writes.
+// Write-back: what goes to memory of the framebuffer of blocks, in the order that cache_tags says: blocks that have left the
+// chip, then the read that an order ends with; and what a flush writes.
 //
-// A block that leaves gets one of VICTIMS slots. Its depths come into it from depth_cache, its colours from color_write, a stamp a
-// cycle; when all of both are there it is written, a stamp a request, depths first. With compress.unit pixel_colors says of each
-// block whether its colours are written, or read, with one a pixel.
+// A block that leaves gets one of VICTIMS slots. Its depths come into it from depth_cache, its colours from color_write, a
+// stamp a cycle; when all of both are there it is written, a stamp a request, depths first. With compress.unit pixel_colors
+// says of each block whether its colours are written, or read, with one a pixel.
 // Specification: model/stages/block_cache.hpp, pixel_colors.hpp; the times are those of model/engines/cycle/block_timing.hpp.
 module write_back #(
     parameter int SAMPLES = raster_pkg::SAMPLES,  // derived; not to be set
@@ -227,7 +227,7 @@ module write_back #(
     end
   endgenerate
 
-  // ------------------------------------------------------------------------------------------------- blocks of one colour a pixel
+  // ------------------------------------------------------------------------------------ blocks of one colour a pixel
   localparam int PIXEL_COLORS = raster_pkg::PIXELS * COLOR;  // of a stamp, one a pixel
   logic [PIXEL_COLORS-1:0] merged;
   generate
@@ -286,7 +286,7 @@ module write_back #(
     end
   endgenerate
 
-  // ---------------------------------------------------------------- the request: a victim's stamp, a read, or what a flush writes
+  // --------------------------------------------------- the request: a victim's stamp, a read, or what a flush writes
   logic [raster_pkg::TILE_X_BITS-1:0]      sent_tile_x;
   logic [raster_pkg::TILE_Y_BITS-1:0]      sent_tile_y;
   logic [raster_pkg::STAMP_INDEX_BITS-1:0] sent_index;

@@ -54,8 +54,8 @@ struct SceneStudy {
 [[nodiscard]] std::string short_text(double value);
 [[nodiscard]] std::string mapping_name(DepthMapping mapping);
 
-/// The theory of one mapping and format, with the part done to `progress`; what a scene measured, of the whole with an empty z, of a decade with the z that
-/// it begins at.
+/// The theory of one mapping and format, with the part done to `progress`; what a scene measured, of the whole with an empty
+/// z, of a decade with the z that it begins at.
 void add_theory_rows(const DepthQuestion& question, DepthMapping mapping, const DepthFormat& format,
                      const std::function<void(double)>& progress, std::vector<DepthRow>& rows);
 void add_measured_rows(const DepthQuestion& question, const DepthVariant& variant, const DepthMeasurement& m,

@@ -54,8 +54,8 @@ void check_frames(const RenderCommand& options);
 [[nodiscard]] std::string numbered(const std::string& path, int frame, int frames);
 
 /// Frame i of N shows `--time A..B` at A + i (B - A) / N, and the camera when i/N of its orbit is done, so that what ends as
-/// it began is shown without a frame twice. Without --time all of the animation. Of a capture with `frame` lines, frame i is the
-/// picture at the end of its frame i. Returns the exit status.
+/// it began is shown without a frame twice. Without --time all of the animation. Of a capture with `frame` lines, frame i is
+/// the picture at the end of its frame i. Returns the exit status.
 [[nodiscard]] int run_frames(const RenderCommand& options, const Config& config);
 
 }  // namespace halfplane

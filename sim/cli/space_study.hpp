@@ -51,7 +51,8 @@ void measure_space(const CommonOptions& common, const SpaceOptions& options, con
 void write_cluster(const CommonOptions& common, const SpaceOptions& options, const std::vector<BenchCase>& cases,
                    const std::function<std::string(const BenchCase&)>& arguments, const SpaceStudy& study);
 
-/// Reads what the tasks left in the folders; the first one's configuration is the base. Returns how many points are not there yet.
+/// Reads what the tasks left in the folders; the first one's configuration is the base. Returns how many points are not there
+/// yet.
 std::size_t collect_space(const SpaceOptions& options, SpaceStudy& study);
 
 /// Marks the front, writes JSON, CSV and page, and prints.

@@ -230,8 +230,8 @@ void Generator::set_units() {
   }
 }
 
-/// Stencil tests in runs of draws, with few values so that they meet, and clears of the stencil, alone and with others. By random
-/// numbers of their own, as above.
+/// Stencil tests in runs of draws, with few values so that they meet, and clears of the stencil, alone and with others. By
+/// random numbers of their own, as above.
 void Generator::set_stencils() {
   Random random(seed_ ^ 0x57e4c11u);
   const auto below = [&random](std::uint64_t n) { return random.next() % n; };

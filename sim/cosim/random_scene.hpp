@@ -8,9 +8,9 @@
 
 namespace halfplane {
 
-/// A scene of `count` window-space triangles, lines and points on a random target within 640x480 and the configuration's (a quarter of that
-/// with stamps of one sample). Sizes are log-uniform from one subpixel to the whole guard band. The same for the same
-/// arguments on every machine. Every vertex snaps.
+/// A scene of `count` window-space triangles, lines and points on a random target within 640x480 and the configuration's (a
+/// quarter of that with stamps of one sample). Sizes are log-uniform from one subpixel to the whole guard band. The same for
+/// the same arguments on every machine. Every vertex snaps.
 ///
 /// What it is rich in: vertices on pixel centres and tile corners, shared edges, slivers, triangles of zero area and
 /// outside, piles of one triangle, equal depths, every depth function, mask, cull, front and scissor, partial

@@ -15,14 +15,15 @@ struct RtlRendering {
 /// hardware does not take, std::runtime_error when the RTL hangs.
 [[nodiscard]] RtlRendering render_rtl(Dut& dut, const Scene& scene, const Config& config, const RenderOptions& options);
 
-/// Frame after frame through one design, without a reset between them. With frame.order bins and frame.store color, bins that hold
-/// what a frame draws in them are left alone.
+/// Frame after frame through one design, without a reset between them. With frame.order bins and frame.store color, bins that
+/// hold what a frame draws in them are left alone.
 class RtlFrames {
  public:
   /// `dut` must outlive this.
   RtlFrames(Dut& dut, const Config& config);
-  /// The next frame. Its counters are the specification's: the RTL's count from reset on, and the first to pass its width says so for
-  /// good. Of `options` it takes progress, and of skip the switch of bins. Throws as render_rtl(); then nothing more can be drawn.
+  /// The next frame. Its counters are the specification's: the RTL's count from reset on, and the first to pass its width says
+  /// so for good. Of `options` it takes progress, and of skip the switch of bins. Throws as render_rtl(); then nothing more
+  /// can be drawn.
   [[nodiscard]] RtlRendering draw(const Scene& scene, const RenderOptions& options);
 
  private:

@@ -16,7 +16,8 @@ using SceneSource = std::function<std::optional<Scene>()>;
 /// One scene.
 [[nodiscard]] SceneSource single_scene(Scene scene);
 
-/// `count` random triangles, lines and points, in scenes of up to 2,000 so that a failing one is small. The first are smaller still.
+/// `count` random triangles, lines and points, in scenes of up to 2,000 so that a failing one is small. The first are smaller
+/// still.
 [[nodiscard]] SceneSource random_scenes(const Config& config, std::uint64_t seed, std::uint64_t count);
 
 /// In which order a session's scenes are sent, and which planes they store: as configured; or, where the hardware has a
@@ -53,7 +54,8 @@ struct Finding {
   std::string trace_failure;       ///< why it could not be
 };
 
-/// Reduces, and writes, whole or not at all, the waveform around the mismatch to `trace` (empty: none, likewise when the design has none).
+/// Reduces, and writes, whole or not at all, the waveform around the mismatch to `trace` (empty: none, likewise when the
+/// design has none).
 [[nodiscard]] Finding investigate(Dut& dut, const Config& config, const LockstepOptions& options, const Scene& failed,
                                   const Mismatch& mismatch, const std::string& trace, const ReduceOptions& reducing);
 

@@ -31,7 +31,8 @@ struct GltfAnimation {
   double end = 0;  ///< of its last keyframe, seconds
 };
 
-/// Which of the file's animations: that of this name or number, the first for an empty one. Throws InputError when there is none.
+/// Which of the file's animations: that of this name or number, the first for an empty one. Throws InputError when there is
+/// none.
 [[nodiscard]] std::size_t choose_animation(const GltfFile& file, const std::string& name);
 
 /// Reads entry `number` of the list of animations. Tracks of what is not read here (pointers) are left out; a channel of

@@ -118,7 +118,8 @@ void JsonPlace::fail(const std::string& what, const std::string& mend) const {
 }
 namespace {
 
-// Quantization only allows more kinds of number; visibility and instances are read (gltf_nodes.cpp). The others are about what is not read, or say nothing of the picture.
+// Quantization only allows more kinds of number; visibility and instances are read (gltf_nodes.cpp). The others are about what
+// is not read, or say nothing of the picture.
 constexpr std::array<std::string_view, 9> kKnownExtensions{
     "KHR_mesh_quantization", "KHR_animation_pointer", "KHR_xmp",
     "KHR_xmp_json_ld",       "MSFT_texture_dds",      "KHR_node_selectability",

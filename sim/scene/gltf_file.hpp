@@ -77,7 +77,8 @@ using BufferSource = std::function<std::optional<std::string>(const std::string&
 /// The kinds of number in a buffer, by the codes of the file format.
 enum class GltfComponent : std::uint16_t { i8 = 5120, u8 = 5121, i16 = 5122, u16 = 5123, u32 = 5125, f32 = 5126 };
 
-/// A checked window on `count` elements of 1...4 numbers, or of the 16 of a matrix: every read of element i < count lies inside the bytes.
+/// A checked window on `count` elements of 1...4 numbers, or of the 16 of a matrix: every read of element i < count lies
+/// inside the bytes.
 struct GltfAccessor {
   std::uint64_t count = 0;
   int width = 1;  ///< numbers per element

@@ -55,8 +55,8 @@ struct GltfCamera {
   CameraRequest request;
 };
 
-/// Walks the default scene, without what KHR_node_visibility hides: `scene`, else the first one, else (a file without scenes) every node that is no child.
-/// Throws InputError when the nodes are no forest, and for a camera that shows nothing.
+/// Walks the default scene, without what KHR_node_visibility hides: `scene`, else the first one, else (a file without scenes)
+/// every node that is no child. Throws InputError when the nodes are no forest, and for a camera that shows nothing.
 [[nodiscard]] GltfNodes walk_nodes(GltfFile& file, std::vector<std::string>& warnings);
 
 /// From each node's space to the world's; with an animation, as it is at `time`. Throws InputError for what leaves binary64.

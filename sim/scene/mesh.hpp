@@ -62,8 +62,8 @@ struct MeshPart {
   double alpha_cutoff = 0.5;  ///< of `mask`: opacity below it is not drawn
 };
 
-/// Invariants (kept by every maker): indices < vertices.size(), material numbers < materials.size() (or kRestart in Mesh::indices), all numbers finite, parts
-/// cover all triangles in order, textures as validate() wants them.
+/// Invariants (kept by every maker): indices < vertices.size(), material numbers < materials.size() (or kRestart in
+/// Mesh::indices), all numbers finite, parts cover all triangles in order, textures as validate() wants them.
 struct Mesh {
   std::vector<MeshVertex> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise from outside, as far as the source knows

@@ -1,8 +1,9 @@
 
   // What comes in. A fragment on offer stays as it is until it is taken (primitive_join_stream and what is in front of it); a
   // token has no samples. From depth_test: the write of an item with samples comes in the cycle after it, of no others than
-  // its samples, of all of them for `always`, and of the planes of its state, the depth's where a stencil changes above it; with it what each has from now on (depth_test_stream). From memory: an answer is
-  // one to a read that was taken in an earlier cycle, in turn.
+  // its samples, of all of them for `always`, and of the planes of its state, the depth's where a stencil changes above it;
+  // with it what each has from now on (depth_test_stream). From memory: an answer is one to a read that was taken in an
+  // earlier cycle, in turn.
   logic is_token, is_clear, takes_fragment, takes_token;
   assign is_clear       = fragment_i.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR;
   assign is_token       = is_clear || fragment_i.kind == raster_pkg::PRIMITIVE_KIND_FLUSH;

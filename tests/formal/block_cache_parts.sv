@@ -12,8 +12,8 @@
   logic [SAMPLES-1:0]       w_ram_dirty, w_ram_writes, w_ram_dirty_new, w_write_mask_q;
   logic [SAMPLES*COLOR-1:0] w_ram_code, w_ram_code_new;
 
-  // Evictions that W has begun: for how many clocks the older one has been, the one behind it, and the one of any_slot, which is
-  // said to be in its slot when it has been for more than DELAY. Stamps that are left are read until then.
+  // Evictions that W has begun: for how many clocks the older one has been, the one behind it, and the one of any_slot, which
+  // is said to be in its slot when it has been for more than DELAY. Stamps that are left are read until then.
   logic [TIME-1:0] first_time_q, second_time_q, any_time_q, first_left, second_left, started;
   always_comb begin
     first_left  = '0;

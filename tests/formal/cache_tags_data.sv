@@ -287,8 +287,8 @@
         assert (pending_q && WRITES'(a) <= age_q);
   end
 
-  // A flush writes the words of the flags, each once (of depth only where it is not lost), and, where colours are resolved, every stamp of a block whose colours
-  // are still flagged.
+  // A flush writes the words of the flags, each once (of depth only where it is not lost), and, where colours are resolved,
+  // every stamp of a block whose colours are still flagged.
   logic [INDEX-1:0] any_index;
   logic [1:0]       flags_sent_q;
   logic             is_sent_q, word_is_it, words_are_behind, has_sent, takes_request;

@@ -18,8 +18,8 @@
     if (!rst_ni) g_known_q <= '0;
   end
 
-  // What comes in, as cache_tags has it (cache_tags_data asserts it): nobody reads while a fall does, falls are apart, a fall that
-  // is announced comes, and tokens come alone.
+  // What comes in, as cache_tags has it (cache_tags_data asserts it): nobody reads while a fall does, falls are apart, a fall
+  // that is announced comes, and tokens come alone.
   logic               was_asked_q, asks_q, waits_q;
   logic [BLOCK_X-1:0] asked_x_q, read_before_x_q, waits_x_q;
   logic [BLOCK_Y-1:0] asked_y_q, read_before_y_q, waits_y_q;

@@ -1,7 +1,7 @@
 
   // The walk from tile to tile against values summed up outside of it, at the tile and at the row's start: a column on, minus
-  // T dy; one back, plus T dy; a row on, T dx. The tiles that they belong to are counted here as well: from a tile the way is to
-  // one of its neighbours, or from the row's start to its left or down.
+  // T dy; one back, plus T dy; a row on, T dx. The tiles that they belong to are counted here as well: from a tile the way is
+  // to one of its neighbours, or from the row's start to its left or down.
   logic [TX-1:0] tile_x_g, start_x_g;
   logic [TY-1:0] tile_y_g;
   raster_pkg::setup_packet_t g_q;

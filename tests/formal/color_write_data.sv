@@ -24,8 +24,8 @@
     if (tested_i.sets_state) assume (mask == '0 && !tested_i.evicts && !tested_i.starts_color && tested_i.color_source == raster_pkg::DEPTH_SOURCE_NONE);
   end
 
-  // One sample of one stamp of a line, any; `word` is what its RAM holds, `newest` what it will hold when all that is on its way
-  // has been written.
+  // One sample of one stamp of a line, any; `word` is what its RAM holds, `newest` what it will hold when all that is on its
+  // way has been written.
   (* anyconst *) logic [LINE-1:0]  any_line;
   (* anyconst *) logic [STAMP-1:0] any_stamp;
   (* anyconst *) logic [$clog2(SAMPLES+1)-1:0] any_sample;

@@ -1,6 +1,6 @@
 
-  // A beat on offer stays as it is, through a reset as well. A burst that begins ends: one first beat, then each with a beat less
-  // to go, at the next address, up to the last. A burst that a reset has cut goes on without strobes.
+  // A beat on offer stays as it is, through a reset as well. A burst that begins ends: one first beat, then each with a beat
+  // less to go, at the next address, up to the last. A burst that a reset has cut goes on without strobes.
   always_ff @(posedge clk_i) if (runs_q && $past(runs_q)) begin
     if ($past(beat_valid_o && !beat_ready_i)) assert (beat_valid_o && beat_o == $past(beat_o));
   end

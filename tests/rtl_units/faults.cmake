@@ -121,9 +121,10 @@ texture_fault(texture_unit 60 [=[(e_moves && stamp_divides && e_ends_q)]=] [=[(e
 texture_fault(over_w_narrow 61 [=[lost_16 || lost_4 || lost_1]=] [=[lost_4 || lost_1]=])
 texture_fault(colors_over_w 62 [=[{6{!amount[7]}}]=] [=[{6{1'b1}}]=])
 set(texture_colors_faults ${texture_faults})
-# Lanes: two texels in one bank, two lines in one, who is compared with whom, who has been, a sample that has its lines beside one
-# that has not, whose blocks count, where half a row of a line lies, a state while a pass is in front of the tags, a quotient or a
-# stamp that goes with the first pass, whose colours a pass brings, a row of the other parity, samples that do not live.
+# Lanes: two texels in one bank, two lines in one, who is compared with whom, who has been, a sample that has its lines beside
+# one that has not, whose blocks count, where half a row of a line lies, a state while a pass is in front of the tags, a
+# quotient or a stamp that goes with the first pass, whose colours a pass brings, a row of the other parity, samples that do
+# not live.
 texture_fault(texture_agree 63 [=[a[1:0] != b[1:0]]=] [=[1'b1]=])
 texture_fault(texture_agree 64 [=[a[2] != b[2]]=] [=[1'b1]=])
 texture_fault(texture_lanes 65 [=[!joins[first]]=] [=[!left[first]]=])
@@ -136,8 +137,8 @@ texture_fault(texture_unit 71 [=[e_moves && e_last_q && e_ends_q]=] [=[e_moves &
 texture_fault(texture_unit 72 [=[e_lanes_q[i%LANES]]=] [=[1'b1]=])
 texture_fault(texture_lanes 73 [=[first[2] ? first[3] : second[3]]=] [=[first[3]]=])
 texture_fault(texture_unit 74 [=[waiting_mask[i*LANES+:LANES] & {LANES{group == GROUP'(i)}}]=] [=[{LANES{group == GROUP'(i)}}]=])
-# Two ways: the older of a set in the clock behind its line in front, which was newer, what lies in front in which way, a line in
-# both, a line that is still to be read in the other way, the way of a texel.
+# Two ways: the older of a set in the clock behind its line in front, which was newer, what lies in front in which way, a line
+# in both, a line that is still to be read in the other way, the way of a texel.
 texture_fault(texture_tags 75 [=[same_place_q ? !recent_way_q : !newer]=] [=[!newer]=])
 texture_fault(texture_tags 76 [=[way[b] && !sweeps_q]=] [=[1'b0]=])
 texture_fault(texture_tags 77 [=[same_place_q && recent_way == 1'(w)]=] [=[same_place_q]=])
@@ -145,10 +146,11 @@ texture_fault(texture_tags 78 [=[way[b] == 1'(w)]=] [=[1'b1]=])
 texture_fault(texture_tags 79 [=[groups[way[b]*NUMBER+:NUMBER]]=] [=[groups[0+:NUMBER]]=])
 texture_fault(texture_lanes 80 [=[found_ways[{odd_at[4+y], odd_at[x]}]]=] [=[found_ways[0]]=])
 set(texture_ways_faults ${texture_faults})
-# Lanes with levels: the level of the second round, who takes part in it, samples of two levels in a pass, whose level has a part,
-# a round of samples that do not live, where a level begins, whose level a pass has; whose weight the upper level has, a sum that
-# waits and another's, a pass of which some leave, what waits and leaves, a stamp that goes with the first round, an odd level's
-# half, what the lower level lacked; rows and columns of 2x2, squares of a stamp, a state while a round is under way.
+# Lanes with levels: the level of the second round, who takes part in it, samples of two levels in a pass, whose level has a
+# part, a round of samples that do not live, where a level begins, whose level a pass has; whose weight the upper level has, a
+# sum that waits and another's, a pass of which some leave, what waits and leaves, a stamp that goes with the first round, an
+# odd level's half, what the lower level lacked; rows and columns of 2x2, squares of a stamp, a state while a round is under
+# way.
 texture_fault(texture_rounds 81 [=[level_i[4*l+:4] + 4'(is_second_q)]=] [=[level_i[4*l+:4]]=])
 texture_fault(texture_rounds 82 [=[is_second_q ? live_i & has_upper : live_i]=] [=[live_i]=])
 texture_fault(texture_rounds 83 [=[wrapped_level_q[4*l+:4] == wrapped_level_q[4*m+:4]]=] [=[1'b1]=])

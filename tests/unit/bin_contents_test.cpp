@@ -40,7 +40,8 @@ class Following {
         hardware_(config_),
         cycle_(config_, *memory_) {}
 
-  /// The next frame, by all of them; equal to what the functional engine draws alone. Returns the bins that the hardware left alone.
+  /// The next frame, by all of them; equal to what the functional engine draws alone. Returns the bins that the hardware left
+  /// alone.
   std::uint64_t expect_equal(const Scene& scene) {
     const Rendering alone = render_functional(scene, config_, {});
     const Rendering& functional = functional_.render(scene, following());

@@ -56,8 +56,8 @@ TEST(Blend, OneBlendIsWithinHalfACodeOfRealArithmeticWhateverItsFactors) {
 }
 
 // A stored code of rgb565 is widened to 8 bits, which is off by up to 0.082 codes of 5 bits and 0.177 of 6; what is blended is
-// rounded to 8 bits (0.061, 0.124) and then to the code (0.5). A factor at the stored colour, or on it, says how much of the first
-// is left. Every source, alpha and stored code; the factors of each kind that are worst.
+// rounded to 8 bits (0.061, 0.124) and then to the code (0.5). A factor at the stored colour, or on it, says how much of the
+// first is left. Every source, alpha and stored code; the factors of each kind that are worst.
 TEST(Blend, OneBlendOfRgb565IsWithinItsBoundOverEveryValue) {
   struct Case {
     BlendFactor src, dst;

@@ -64,7 +64,8 @@ Config compressed(Config config) {
   return config;
 }
 
-/// Those of them that tests of blocks with one colour a pixel go over: wide ports and narrow ones, stamps of one pixel and of a block.
+/// Those of them that tests of blocks with one colour a pixel go over: wide ports and narrow ones, stamps of one pixel and of
+/// a block.
 std::vector<Config> compressed_hardware() {
   std::vector<Config> configs{compressed(hardware("tiny", 2)),
                               compressed(hardware("embedded", 4)),

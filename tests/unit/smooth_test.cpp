@@ -1,4 +1,5 @@
-// Smooth lines and points: what they cover of a pixel is the exact area, their codes are the line's, and every engine draws them alike.
+// Smooth lines and points: what they cover of a pixel is the exact area, their codes are the line's, and every engine draws
+// them alike.
 #include <gtest/gtest.h>
 
 #include <array>

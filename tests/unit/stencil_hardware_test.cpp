@@ -1,5 +1,5 @@
-// The stencil in hardware, in one word with the depth: the hardware and the cycle engine against the scalar one, the tokens that
-// set it, what is fetched for it, how clears are sent, HiZ, and what is refused without it.
+// The stencil in hardware, in one word with the depth: the hardware and the cycle engine against the scalar one, the tokens
+// that set it, what is fetched for it, how clears are sent, HiZ, and what is refused without it.
 #include <gtest/gtest.h>
 
 #include <random>

@@ -186,8 +186,8 @@ class BackTiming {
     return moved;
   }
 
-  /// The same in a framebuffer of blocks: a flush, or a fast clear of the planes that `state` writes, of tiles (0, 0), or the first of
-  /// its bin, to (last_x, last_y).
+  /// The same in a framebuffer of blocks: a flush, or a fast clear of the planes that `state` writes, of tiles (0, 0), or the
+  /// first of its bin, to (last_x, last_y).
   Cycle pass_token(Cycle offered, CacheTags& directory, bool is_clear, const PrimitiveState& state, int last_x,
                    int last_y) {
     const std::array<bool, 2> clears{state.depth_write, state.color_write};

@@ -1,28 +1,30 @@
-// The time of a framebuffer of blocks (cache.kind blocks): rtl_ref/stages/cache_tags.sv, block_cache.sv.
+// The time of a framebuffer of blocks (cache.kind blocks): rtl_ref/stages/cache_tags.sv, depth_cache.sv,
+// color_write.sv, write_back.sv. Of fragment m: t is when the tags are through with it, x the depth stage, w the colour stage.
 //
-// T looks a fragment up, X tests it, W writes its colours; between T and X the fragments wait for memory, in order. Every
-// wait is for an earlier fragment or eviction, so the time of one is a maximum over those before it:
+// The tags look a fragment up, the depth stage tests it, the colour stage writes its colours; between the tags and the depth
+// stage the fragments wait for memory, in order. Every wait is for an earlier fragment or eviction, so the time of one is a
+// maximum over those before it:
 //
 //   s(m) = max(moved + 1, t(m-1))
 //   t(m) = max(s(m) + 1, x(m-queue) + 1, room for an order, two behind the last flag that fell where one falls)
 //   moved(m) >= s(m-1), and not the cycle behind a t in which a flag fell, unless it is in the block of the one before
-//   requests: those of the order before, then evictions as X and W are through with them, then the read, a request a cycle
+//   requests: those of the order before, then evictions as both stages are through with them, then the read, a request a cycle
 //   x(m) = max(t + 2, x(m-1) + 1, the read's answer + 1, w(m-2)), whatever stamp the one before was
-//   w(m) = max(x + 2, w(m-1) + 1); with a texture unit between X and W texture_timing.hpp says when W has it
+//   w(m) = max(x + 2, w(m-1) + 1); with a texture unit between x and w texture_timing.hpp says when
 //
-// With blending an order may end with a read of colours, and W takes a fragment for as many clocks as blend.lanes wants, one at
-// least: w is the first, and w(m-1) + 1 counts from the last. What it writes is in the RAM kBlendClocks later, in order. An item
-// that reads colours waits at W for its answer, w >= answer + 1, and where it reads the RAM, until nothing of an eviction is left
-// to be read; what is on its way to the RAM it is given. With the alpha test behind a texture unit
-// a fragment that writes depth is late: W writes it, and at X none goes before that which is in the same place (kLateLines),
-// or is not late itself.
+// With blending an order may end with a read of colours, and the colour stage takes a fragment for as many clocks as
+// blend.lanes wants, one at least: w is the first, and w(m-1) + 1 counts from the last. What it writes is in the RAM
+// kBlendClocks later, in order. An item that reads colours waits at the colour stage for its answer, w >= answer + 1, and
+// where it reads the RAM, until nothing of an eviction is left to be read; what is on its way to the RAM it is given. With the
+// alpha test behind a texture unit a fragment that writes depth is late: the colour stage writes it, and at the depth stage
+// none goes before that which is in the same place (kLateLines), or is not late itself.
 //
-// With compress.unit a request for colours waits a cycle for the bit that says what memory has of the block; what must be merged
-// waits for all answers that are under way, and for its own.
+// With compress.unit a request for colours waits a cycle for the bit that says what memory has of the block; what must be
+// merged waits for all answers that are under way, and for its own.
 //
-// An eviction reads its stamps out of the RAMs one a cycle, from x and w on. Meanwhile X tests what needs no read of its own, and
-// the next eviction waits. In W, where a stamp is in the RAM a cycle after w, that of the stamp at w is read first; so no stamp
-// waits, and an eviction only for the second one before it.
+// An eviction reads its stamps out of the RAMs one a cycle, from x and w on. Meanwhile the depth stage tests what needs no
+// read of its own, and the next eviction waits. In the colour stage, where a stamp is in the RAM a cycle after w, that of the
+// stamp at w is read first; so no stamp waits, and an eviction only for the second one before it.
 #pragma once
 
 #include <algorithm>
@@ -40,11 +42,11 @@
 
 namespace halfplane {
 
-/// Fog behind a texture unit, rtl_ref/stages/fog_unit.sv: three registers, each of which takes what is in front of it as soon as
-/// what it holds goes on.
+/// Fog behind a texture unit, rtl_ref/stages/fog_unit.sv: three registers, each of which takes what is in front of it as soon
+/// as what it holds goes on.
 class FogTiming {
  public:
-  /// A stamp on offer from `offered` on. Returns when it is on offer to W.
+  /// A stamp on offer from `offered` on. Returns when it is on offer to the colour stage.
   Cycle take(Cycle offered) {
     Cycle at = offered;
     for (std::size_t n = 0; n < entered_.size(); ++n) {
@@ -56,7 +58,7 @@ class FogTiming {
   }
   /// When it was taken.
   [[nodiscard]] Cycle taken() const { return entered_.front(); }
-  /// W took it.
+  /// The colour stage took it.
   void leave(Cycle w) { left_ = w; }
 
  private:
@@ -71,7 +73,8 @@ class FogTiming {
 ///   on its way on kClocks behind the last
 class LightTiming {
  public:
-  /// X let a stamp go in `x`, `lit` of whose samples are. Returns when X would have let it go without a unit.
+  /// The depth stage let a stamp go in `x`, `lit` of whose samples are. Returns when the depth stage would have let it go
+  /// without a unit.
   Cycle take(Cycle x, int lit, bool sets) {
     last_ = std::max(x + kDoor, last_ + 1);
     if (sets) last_ = std::max(last_, looked_at_);
@@ -83,7 +86,7 @@ class LightTiming {
   }
 
  private:
-  static constexpr Cycle kDoor = 2;     ///< from X to the head of the queue
+  static constexpr Cycle kDoor = 2;     ///< from the depth stage to the head of the queue
   static constexpr Cycle kClocks = 12;  ///< from there to the texture unit's door
   static constexpr Cycle kLooks = 10;   ///< of those, up to the last that looks at a register of the light
   Cycle last_ = 0;                      ///< when the last sample, or stamp without any, went into the lane
@@ -132,21 +135,21 @@ class BlockTiming {
     if (has_normals(config)) light_.emplace();
   }
 
-  /// When T can take the next fragment, but for cycles in which it is_busy().
+  /// When the tags can take the next fragment, but for cycles in which it is_busy().
   [[nodiscard]] Cycle room() const { return looked_; }
   /// In `cycle` the word of a flag that falls is read, and the fragment wants its own.
   [[nodiscard]] bool is_busy(Cycle cycle, const TagResult& tags, const BlockItem& item) const {
     return item.mask.any() && last_block_ != tags.block && (cycle == fall_reads_[0] || cycle == fall_reads_[1]);
   }
-  /// When T holds none.
+  /// When the tags hold none.
   [[nodiscard]] Cycle is_empty() const { return left_ + 1; }
-  /// When X was through with the last fragment.
+  /// When the depth stage was through with the last fragment.
   [[nodiscard]] Cycle tested() const { return tested_; }
-  /// When W took its colours.
+  /// When the colour stage took its colours.
   [[nodiscard]] Cycle colored() const { return colored_; }
 
-  /// A fragment that T took in `moved`, or a line that it read then. ask(cycle, plane, stamp, run, is_write): a request, in
-  /// `cycle` at the earliest; returns PortTimes.
+  /// A fragment that the tags took in `moved`, or a line that it read then. ask(cycle, plane, stamp, run, is_write): a
+  /// request, in `cycle` at the earliest; returns PortTimes.
   template <class Ask>
   void take(Cycle moved, const TagResult& tags, const BlockItem& item, Ask&& ask) {
     const bool reads = tags.source == DepthSource::memory, reads_color = tags.color_source == DepthSource::memory;
@@ -208,7 +211,7 @@ class BlockTiming {
   }
 
  private:
-  /// T: what came in `moved` is compared, then leaves. Returns when.
+  /// The tags: what came in `moved` is compared, then leaves. Returns when.
   Cycle leave(Cycle moved, bool falls) {
     looked_ = std::max(moved + 1, left_);
     left_ = std::max({looked_ + 1, items_.room(), orders_.room()});
@@ -231,20 +234,20 @@ class BlockTiming {
   struct Answers {
     Cycle depth = 0, color = 0;
   };
-  /// A write of colours that may not be in the RAM yet: the cycle in which W took it.
+  /// A write of colours that may not be in the RAM yet: the cycle in which the colour stage took it.
   struct ColorWrite {
     Cycle taken = 0;
     std::size_t line = 0;
     SampleMask samples;
   };
-  static constexpr Cycle kBlendClocks = 3;       ///< from W to the RAM, with blending
-  static constexpr std::size_t kLateLines = 16;  ///< lines whose late fragments X tells apart, modulo
+  static constexpr Cycle kBlendClocks = 3;       ///< from the colour stage to the RAM, with blending
+  static constexpr std::size_t kLateLines = 16;  ///< lines whose late fragments the depth stage tells apart, modulo
 
   [[nodiscard]] std::size_t late_place(std::size_t line, int stamp) const {
     return line % kLateLines * static_cast<std::size_t>(widths_.blocks.stamps()) + static_cast<std::size_t>(stamp);
   }
 
-  /// The first cycle in which X can let an item go, as far as it depends on late ones.
+  /// The first cycle in which the depth stage can let an item go, as far as it depends on late ones.
   [[nodiscard]] Cycle late_room(const TagResult& tags, const BlockItem& item) const {
     Cycle room = 0;
     if (item.mask.any()) room = item.is_late ? late_[late_place(tags.line, item.stamp)] + 1 : last_late_ + 1;
@@ -267,7 +270,7 @@ class BlockTiming {
   }
 
   /// The evictions whose colours are being read out of their RAM, a stamp a cycle: the older one's before those of the one
-  /// behind it, but that of a stamp which W takes before all of them. Two at most.
+  /// behind it, but that of a stamp which the colour stage takes before all of them. Two at most.
   class ColorReads {
    public:
     [[nodiscard]] bool has_two() const { return has_two_; }
@@ -311,8 +314,8 @@ class BlockTiming {
     Cycle at_ = 0;          ///< the next read
   };
 
-  /// W: the colours of that item, on offer from `offered` on, the stored ones from `answer` on. Returns when those of what it
-  /// evicts are known to be in their slot, which does not depend on what comes behind it.
+  /// The colour stage: the colours of that item, on offer from `offered` on, the stored ones from `answer` on. Returns when
+  /// those of what it evicts are known to be in their slot, which does not depend on what comes behind it.
   Cycle color(const TagResult& tags, const BlockItem& item, Cycle offered, Cycle answer) {
     const DepthSource source = tags.color_source;
     const bool fetches = source == DepthSource::clear || source == DepthSource::memory;
@@ -334,7 +337,8 @@ class BlockTiming {
     return ready;
   }
 
-  /// The clocks in which an item passes W from `w` on: one for each group of lanes with a sample to blend. Returns the last.
+  /// The clocks in which an item passes the colour stage from `w` on: one for each group of lanes with a sample to blend.
+  /// Returns the last.
   Cycle write_colors(Cycle w, std::size_t line, const BlockItem& item, bool writes_all) {
     const int groups = item.blends ? widths_.samples / lanes_ : 1, size = widths_.samples / groups;
     SampleMask writes;  // that come along with the first group: no group reads what another writes
@@ -458,14 +462,17 @@ class BlockTiming {
 
   Widths widths_;
   int lanes_;           ///< samples that are blended in a clock; 0: none are
-  Cycle write_clocks_;  ///< from W to the RAM
+  Cycle write_clocks_;  ///< from the colour stage to the RAM
   Station items_, orders_;
-  Station behind_{2, 0, 0};  ///< between X and W; or there is a
+  Station behind_{2, 0, 0};  ///< between the depth stage and the colour stage; or there is a
   std::optional<TextureTiming> texture_;
   std::optional<FogTiming> fog_;
   std::optional<LightTiming> light_;
-  Cycle looked_ = 0, left_ = 0, tested_ = 0, colored_ = 0,
-        ordered_ = 0;  ///< when the last one was looked up in T, left it, X, W; the last request's cycle
+  Cycle
+      looked_ = 0,
+      left_ = 0, tested_ = 0, colored_ = 0,
+      ordered_ =
+          0;  ///< when the last one was looked up in the tags, left it, the depth stage, the colour stage; the last request's cycle
   std::array<Cycle, 2> fall_reads_{};       ///< when words of flags that fell were read, the last one first
   std::optional<BlockAddress> last_block_;  ///< of the last fragment, where it has samples and no token came since
   Cycle depth_free_ = 0;                    ///< when the depth RAM has been read for the last eviction
@@ -482,7 +489,7 @@ class BlockTiming {
   std::vector<SampleMask> dirty_colors_;  ///< then, by line and stamp: samples whose colours differ from memory
   BlockBits of_pixels_;                   ///< likewise: blocks that memory has with one colour a pixel
   Cycle answered_ = 0;                    ///< the last read
-  std::vector<Cycle> late_;               ///< by place: when W took the last late item
+  std::vector<Cycle> late_;               ///< by place: when the colour stage took the last late item
   Cycle last_late_ = 0;                   ///< the last of them all
 };
 

@@ -45,7 +45,8 @@ PrimitiveWork work_of(const PrimitivePacket& packet, bool is_dropped) {
   return work;
 }
 
-/// The bits of the stages, stamp by stamp, and `Timing` for each. Packets leave a stage in an order that does not depend on time.
+/// The bits of the stages, stamp by stamp, and `Timing` for each. Packets leave a stage in an order that does not depend on
+/// time.
 template <class Timing>
 class CycleModelOf final : public CycleModel {
  public:

@@ -30,8 +30,8 @@ struct CycleOptions {
 class CycleModel {
  public:
   virtual ~CycleModel() = default;
-  /// The next frame, of any size: what the host does not clear stays, where the size does. The host offers its next primitive from
-  /// `cycle` on.
+  /// The next frame, of any size: what the host does not clear stays, where the size does. The host offers its next primitive
+  /// from `cycle` on.
   virtual void begin(int width, int height, Cycle cycle) = 0;
   /// From now on the memory of textures holds those of `scene`.
   virtual void hold_textures(const Scene& scene) = 0;
@@ -71,15 +71,15 @@ struct CycleRendering {
   std::vector<float> misses;
 };
 
-/// Frame after frame through one chip and the memory behind it. With frame.order bins and frame.store color, bins that hold what a
-/// frame draws in them are left alone.
+/// Frame after frame through one chip and the memory behind it. With frame.order bins and frame.store color, bins that hold
+/// what a frame draws in them are left alone.
 class CycleFrames {
  public:
   /// `memory` and what `options` points to must outlive this. Throws InputError as make_cycle_model().
   CycleFrames(const Config& config, MemoryTiming& memory, const CycleOptions& options = {});
 
-  /// The next frame, to the end of its flush. Throws InputError as check_hardware_scene(); then, and when progress throws, nothing
-  /// more can be drawn. Of `render` it takes progress, and of skip the switch of bins.
+  /// The next frame, to the end of its flush. Throws InputError as check_hardware_scene(); then, and when progress throws,
+  /// nothing more can be drawn. Of `render` it takes progress, and of skip the switch of bins.
   [[nodiscard]] CycleRendering draw(const Scene& scene, const RenderOptions& render = {});
 
  private:

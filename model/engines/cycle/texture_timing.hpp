@@ -11,12 +11,12 @@
 //   g(m) = that of its last sample; without texture max(x(m) + 2, g(m-1) + 1, w(m-1))
 //
 // A sample whose colour is divided and that has no texture goes by the tags: c(n) = max(s(n) + 10, c(n-1) + 1, g(m-1) + 1,
-// w(m-1)) is its e(n). A state lies in front of it, so nobody is in front of the tags, and its split waits for no room there. One
-// with both has its colour before its texel.
+// w(m-1)) is its e(n). A state lies in front of it, so nobody is in front of the tags, and its split waits for no room there.
+// One with both has its colour before its texel.
 //
 // With a linear filter a sample asks for its lines one by one, and leaves the tags with the last of them or later. It
-// is offered to W in g(m) + 1. A state is set when no sample is left in front of h: max(x(m) + 2, s + 1, t + 1); lines of a
-// triangle as soon as they come: max(x(m) + 2, s + 1).
+// is offered to the colour stage in g(m) + 1. A state is set when no sample is left in front of h: max(x(m) + 2, s + 1, t +
+// 1); lines of a triangle as soon as they come: max(x(m) + 2, s + 1).
 //
 // With levels its level is known two clocks later, and it goes through two more stages in front of the tags and one more behind
 // the filter, once or twice. Of its pass i, counted over all samples:
@@ -116,12 +116,12 @@ class TextureTiming {
   /// taken and answered up to `over`.
   [[nodiscard]] static Cycle recovered(Cycle reset, Cycle over) { return std::max(reset, over) + 2; }
 
-  /// The first cycle in which X may let the next stamp go, which is here in the cycle behind that.
+  /// The first cycle in which the depth stage may let the next stamp go, which is here in the cycle behind that.
   [[nodiscard]] Cycle room() const { return inside_.room(); }
   /// When nothing is under way any more.
   [[nodiscard]] Cycle is_empty() const { return std::max(left_ + 1, swept_); }
 
-  /// X let a stamp go in `x` that has no texture. Returns when it is on offer to W.
+  /// The depth stage let a stamp go in `x` that has no texture. Returns when it is on offer to the colour stage.
   Cycle pass(Cycle x) {
     gone_ = std::max({x + kDoor, gone_ + 1, left_});
     return gone_ + 1;
@@ -143,8 +143,8 @@ class TextureTiming {
     return pass(x);
   }
 
-  /// A stamp with a texture; `lookups`: of its samples, as they go. ask(cycle, address, beats): a request, on offer from `cycle`
-  /// on; returns LineTimes.
+  /// A stamp with a texture; `lookups`: of its samples, as they go. ask(cycle, address, beats): a request, on offer from
+  /// `cycle` on; returns LineTimes.
   template <class Ask>
   Cycle take(Cycle x, std::span<const TextureLookup> lookups, Ask&& ask) {
     bool is_next = true;  // the next pass is the first of a sample, or of a group
@@ -170,7 +170,7 @@ class TextureTiming {
     return gone_ + 1;
   }
 
-  /// What is behind the unit took the stamp, and W.
+  /// What is behind the unit took the stamp, and the colour stage.
   void leave(Cycle taken, Cycle w) {
     left_ = taken;
     inside_.leave(w);
@@ -180,7 +180,7 @@ class TextureTiming {
  private:
   static constexpr int kAhead = 16, kClocks = 10, kLevelClocks = 12,
                        kRequests = 16;  ///< samples between split and tags, and the least cycles; lines asked for
-  static constexpr Cycle kDoor = 2;     ///< from X to the head of the queues
+  static constexpr Cycle kDoor = 2;     ///< from the depth stage to the head of the queues
   static constexpr int kGroup = 3, kNumber = 7;  ///< a group is 8 samples; of its number the tags know 7 bits
   static constexpr std::uint64_t kNumbers = 1U << kNumber;
 

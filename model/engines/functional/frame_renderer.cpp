@@ -63,8 +63,8 @@ void add(Counters& sum, const Counters& c) {
   for (const SkipName& one : kSkipNames) sum.skipped.*one.counter += c.skipped.*one.counter;
 }
 
-/// Whether surfaces are those of the fast path: opaque, and every w > 0. Which of a draw's triangles would be refused the
-/// plain path says.
+/// Whether surfaces are those of the fast path: opaque, and every w > 0. Which of a draw's triangles are refused, the
+/// scalar engine says.
 bool has_plain_surfaces(const Scene& scene, const RenderOptions& options) {
   if (options.general_fragments) return false;
   const auto is_window = [](const State& s) { return has_surface(s) && s.space == Space::window; };

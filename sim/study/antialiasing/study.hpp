@@ -1,9 +1,9 @@
-// How far from the exact area the coverage of a pixel is by every kind of antialiasing, and what a frame of it takes: time of the
-// functional engine, and cycles and bytes of hardware.
+// How far from the exact area the coverage of a pixel is by every kind of antialiasing, and what a frame of it takes: time of
+// the functional engine, and cycles and bytes of hardware.
 //
 // The hardware is the configuration's, in bins that store colours alone, with clears that stay flags. Several samples: with the
-// unit that stores their mean (resolve.unit). Supersampling: N x N frames with one sample, whose pictures the host reads, and the
-// mean that it writes, are bytes too; its own time is not in the cycles. Smooth: with alpha and one lane that blends.
+// unit that stores their mean (resolve.unit). Supersampling: N x N frames with one sample, whose pictures the host reads, and
+// the mean that it writes, are bytes too; its own time is not in the cycles. Smooth: with alpha and one lane that blends.
 #pragma once
 
 #include <cstdint>

@@ -17,8 +17,8 @@ namespace halfplane {
 /// the caller's to refuse.
 class MesaPeer {
  public:
-  /// `threads` is how many cores may work at a time; `samples` of a pixel, 1 or 4. Throws std::runtime_error that names the package libosmesa6 when
-  /// libOSMesa cannot be loaded.
+  /// `threads` is how many cores may work at a time; `samples` of a pixel, 1 or 4. Throws std::runtime_error that names the
+  /// package libosmesa6 when libOSMesa cannot be loaded.
   MesaPeer(int width, int height, int depth_bits, int threads, int samples = 1);
   ~MesaPeer();
   MesaPeer(const MesaPeer&) = delete;

@@ -21,17 +21,17 @@ constexpr std::string_view kFineGrid = "grid below a subpixel", kGlassBehind = "
                            kOneMoves = "city, one house moves", kAllMove = "city, everything moves";
 constexpr std::array kOwn{kFineGrid, kGlassBehind, kFaint, kOpaqueGlass, kMasked, kOneMoves, kAllMove};
 
-/// Why the pairs are what they are. objects, nodes and frustum: nearly all of `objects` lies outside, and the teapot inside. backface: a
-/// closed mesh, and triangles of which none faces away. zero_area and empty: triangles smaller than the snap grid and
-/// smaller than a pixel, and half-screen ones. objects_hiz: whole objects behind a wall, and objects drawn from front
-/// to back that mostly show. tiles_hiz: the same layers in either order. attributes: layers, and triangles that take no tile as a whole. tiles_outside: long diagonal
-/// triangles, whose boxes are mostly empty, and ones of about a pixel. trivially_accepted: large triangles, and ones
-/// that fill no tile. fragments_early_z: overlap that tiles alone do not decide, and layers of which each passes.
-/// clear: a mesh that leaves most tiles alone, and triangles that need every pixel of them. operations_early_z: blended
-/// layers behind opaque ones, and layers that all are seen. alpha_tiles: layers of which an alpha test drops one half by the
-/// alpha of their vertices, and by that of a texture, where it decides half of the tiles. opaque_blends: layers that blend,
-/// of alpha 1 and of less. masked_draws: blended layers whose channels are masked, and layers that write all. bins: of two
-/// pictures in turns one object is elsewhere, or all are; any other scene is at rest.
+/// Why the pairs are what they are. objects, nodes and frustum: nearly all of `objects` lies outside, and the teapot inside.
+/// backface: a closed mesh, and triangles of which none faces away. zero_area and empty: triangles smaller than the snap grid
+/// and smaller than a pixel, and half-screen ones. objects_hiz: whole objects behind a wall, and objects drawn from front
+/// to back that mostly show. tiles_hiz: the same layers in either order. attributes: layers, and triangles that take no tile
+/// as a whole. tiles_outside: long diagonal triangles, whose boxes are mostly empty, and ones of about a pixel.
+/// trivially_accepted: large triangles, and ones that fill no tile. fragments_early_z: overlap that tiles alone do not decide,
+/// and layers of which each passes. clear: a mesh that leaves most tiles alone, and triangles that need every pixel of them.
+/// operations_early_z: blended layers behind opaque ones, and layers that all are seen. alpha_tiles: layers of which an alpha
+/// test drops one half by the alpha of their vertices, and by that of a texture, where it decides half of the tiles.
+/// opaque_blends: layers that blend, of alpha 1 and of less. masked_draws: blended layers whose channels are masked, and
+/// layers that write all. bins: of two pictures in turns one object is elsewhere, or all are; any other scene is at rest.
 constexpr std::array<SkipPair, 19> kPairs{{{kObjects, "objects", "teapot"},
                                            {kNodes, "objects", "teapot"},
                                            {"frustum", "objects", "teapot"},
@@ -52,8 +52,8 @@ constexpr std::array<SkipPair, 19> kPairs{{{kObjects, "objects", "teapot"},
                                            {"masked_draws", kMasked, "layers"},
                                            {"bins", kOneMoves, kAllMove}}};
 
-/// Frames of an engine of its own, with or without one kind of skipping: of the scenes in turns. `counters`: of the last frame; may
-/// be null.
+/// Frames of an engine of its own, with or without one kind of skipping: of the scenes in turns. `counters`: of the last
+/// frame; may be null.
 Frame skip_frame(const std::vector<std::shared_ptr<const Scene>>& scenes, const SkipPlan& plan, std::string_view skip,
                  bool is_on, Counters* counters) {
   RenderOptions options;

@@ -20,8 +20,8 @@ struct DepthTrial {
 };
 
 /// Another near plane, reversed float, w, one more bit, two more subpixel bits, each at the same storage unless its name
-/// says otherwise; those that `base` does not have already, and that a study ended early came to. Best first: fewest fights, to a tenth of a percent of the
-/// pairs, then the least rms error.
+/// says otherwise; those that `base` does not have already, and that a study ended early came to. Best first: fewest fights,
+/// to a tenth of a percent of the pairs, then the least rms error.
 [[nodiscard]] std::vector<DepthTrial> try_changes(const Scene& scene, const DepthVariant& base,
                                                   const DepthMeasurement& measured, int threads,
                                                   const std::function<void(double fraction)>& progress);

@@ -61,8 +61,8 @@ EyePlane plane_of(const Viewport& vp, const Vertex& v0, const Vertex& v1, const 
 }
 
 /// By number of the input primitive over the whole scene, as in Rendering::ids. Throws InputError for a scene whose filled
-/// triangles are not all in clip space, or that moves depth by depth_range or polygon_offset: its eye depth is not known; and for
-/// one that clears depth between its draws or has several frames.
+/// triangles are not all in clip space, or that moves depth by depth_range or polygon_offset: its eye depth is not known; and
+/// for one that clears depth between its draws or has several frames.
 std::vector<EyePlane> eye_planes(const Scene& scene) {
   std::vector<EyePlane> planes;
   bool has_ended = false;

@@ -18,8 +18,8 @@ struct DepthVariant {
   [[nodiscard]] std::string name() const;
 };
 
-/// Bits of the plane that a format's codes are made from: as many where it is stored as it is, of a mapping that is affine on the
-/// screen; else four more, of floats 32, and `more`; 32 at most.
+/// Bits of the plane that a format's codes are made from: as many where it is stored as it is, of a mapping that is affine on
+/// the screen; else four more, of floats 32, and `more`; 32 at most.
 [[nodiscard]] int interpolated_bits(const DepthFormat& format, bool is_linear, int more);
 
 /// The mapping and format on top of `config`. Bits of the interpolated depth: those of the format where it can be stored

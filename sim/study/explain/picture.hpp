@@ -1,4 +1,5 @@
-// The neighbourhood of a pixel, enlarged: grid, samples, edges before and after the snap, and which primitive covers which sample.
+// The neighbourhood of a pixel, enlarged: grid, samples, edges before and after the snap, and which primitive covers which
+// sample.
 #pragma once
 
 #include "history.hpp"

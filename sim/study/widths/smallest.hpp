@@ -69,8 +69,9 @@ struct Smallest {
 /// coverage is bounded, perspective.bits and perspective.mantissa_bits if textures are, or colours and there are some over
 /// w; the rest of `start` stays. Whatever bound says nothing about a setting leaves it as it is.
 /// Takes errors to fall as settings rise: a configuration below one that failed in every setting is not tried.
-/// Throws InputError when textures are bounded and no scene has any, and when a scene cannot be drawn with `start` at all. `progress` is called with the configurations
-/// measured, also within one. Interrupted, thrown there, ends the search: found is then the cheapest that held so far.
+/// Throws InputError when textures are bounded and no scene has any, and when a scene cannot be drawn with `start` at all.
+/// `progress` is called with the configurations measured, also within one. Interrupted, thrown there, ends the search: found
+/// is then the cheapest that held so far.
 [[nodiscard]] Smallest find_smallest(const std::vector<Scene>& scenes, const Config& start, const ErrorBounds& bounds,
                                      const std::function<void(int trials)>& progress = {});
 
