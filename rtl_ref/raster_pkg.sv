@@ -66,7 +66,7 @@ package raster_pkg;
   localparam int COLOR_NARROW_BITS = 13;  // mantissa bits of the reciprocal of w, for colours
   localparam int NORMALS = 0;  // planes of those, over w; instead of colours
   localparam int STATE_WORD_BITS = 40;  // of a token: the codes of all planes but those
-  localparam int TEXTURE_STAMPS = 16;  // between X and W, with a texture unit
+  localparam int TEXTURE_STAMPS = 16;  // stamps between depth test and stored colours, with a texture unit
   localparam int TEXTURE_PORT_BITS = 64;  // data of a beat of texels
   localparam int PIXELS = 4;  // pixels of a stamp
   localparam int SAMPLES = 4;  // samples of a stamp, those of a pixel beside each other
