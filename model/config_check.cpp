@@ -37,7 +37,7 @@ void validate(const Config& config) {
   for (const Setting& setting : settings()) {  // a Config built in code has not passed through set()
     if (!setting.is_number()) continue;
     const std::string value = get(config, setting);
-    set(copy, setting.key, value);
+    setting.write(copy, setting, value);
     refuse_unless(setting.values.empty() || std::ranges::count(setting.values, std::stoi(value)) == 1,
                   std::string(setting.key) + " must be " + listed(setting.values));
   }

@@ -1,4 +1,4 @@
-// What somebody meant who typed a word that is none.
+// Nearest known word to a misspelt one, for error messages.
 #pragma once
 
 #include <span>

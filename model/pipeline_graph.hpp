@@ -19,8 +19,9 @@
 //   memory:                                                                        memory
 //
 // With a texture unit, colours go to the framebuffer through it: depth_test -- write --> texture_unit ---> rop -- color -->
-// framebuffer, and it has a memory of its own: texture v ^ texel. The framebuffer of blocks is cache_tags, depth_cache,
-// color_write and write_back in the RTL; the texture unit stands between its depths and its colours.
+// framebuffer, and it has a memory of its own: texture v ^ texel. In the RTL the framebuffer of blocks is cache_tags,
+// depth_cache, late_test, color_write, write_back and memory_answers; light_stage, texture_stage, fog_stage and stamp_rop are
+// between depth_cache and late_test.
 //
 // A stage is a pair of files of its name: model/stages/NAME.hpp, of the host model/host/NAME.hpp, is the specification, and
 // rtl_ref/stages/NAME.sv the hardware (stages of the host have no hardware, the memory has neither). Of framebuffer the

@@ -1,8 +1,8 @@
 // Signatures: 128 bits that stand for a sequence of words.
 //
 // Two lanes of 64 bits, each of which takes a word by steps that can be undone: two states that differ stay apart whatever
-// words come behind, so lengths do not matter. At the end each is folded. Sequences that differ have equal signatures with a
-// probability of about 2^-128, for words that nobody chose so as to make them equal.
+// words follow, so lengths do not matter. At the end each is folded. Sequences that differ have equal signatures with a
+// probability of about 2^-128, for words not chosen to collide.
 #pragma once
 
 #include <bit>

@@ -11,7 +11,7 @@
 #include "attributes.hpp"
 #include "config.hpp"
 #include "fixed.hpp"
-#include "stages/samples.hpp"
+#include "samples.hpp"
 
 namespace halfplane {
 

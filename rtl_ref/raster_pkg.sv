@@ -546,13 +546,18 @@ package raster_pkg;
   localparam int TAG_X_BITS = BLOCK_X_BITS > LINE_X_BITS ? BLOCK_X_BITS - LINE_X_BITS : 1;  // of a block's column, its tag
   localparam int TAG_Y_BITS = BLOCK_Y_BITS > LINE_Y_BITS ? BLOCK_Y_BITS - LINE_Y_BITS : 1;  // of its row
   localparam int FLAG_WORD_X_BITS = BLOCK_X_BITS > $clog2(FLAG_WORD) ? BLOCK_X_BITS - $clog2(FLAG_WORD) : 1;  // a word's number in its row of flags
+  localparam int SAMPLE_COUNT_BITS = $clog2(SAMPLES + 1);  // samples of a stamp, counted
   localparam int VICTIM_SLOT_BITS = $clog2(CACHE_VICTIMS);  // a slot for an evicted block
   localparam int VICTIM_COUNT_BITS = $clog2(CACHE_VICTIMS + 1);  // so many of them
   localparam int SHADED_STAMPS = COORDINATES == 0 ? 2 : TEXTURE_STAMPS;  // stamps between depth and colour, at most
-  localparam int APART = COORDINATES != 0 && MSAA_SAMPLES == 1 ? 1 : 0;  // 1: what a triangle's fragments share over w lies in a RAM, by the triangle's number
+  localparam int STORE_CONSTANTS_SEPARATELY = COORDINATES != 0 && MSAA_SAMPLES == 1 ? 1 : 0;  // 1: what a triangle's fragments share over w lies in a RAM, by the triangle's number
   localparam int TRIANGLE_BITS = $clog2(CONTEXT_SLOTS + CACHE_QUEUE + 16);  // that number: of all between setup and depth test
-  localparam int STORED_FRAGMENT_BITS = FRAGMENT_PACKET_BITS - (APART != 0 ? COORDINATE_FRAME_BITS - TRIANGLE_BITS + (PIXELS - 1) * (ALL_FRAGMENT_BITS - ALL_AFFINE_CODE_BITS) : 0);  // a fragment as it waits for memory
-  localparam int LATE_ALPHA = ALPHA_UNIT != 0 && COORDINATES != 0 ? 1 : 0;  // 1: alpha is tested behind the texture
+  localparam int STORED_FRAGMENT_BITS = FRAGMENT_PACKET_BITS - (STORE_CONSTANTS_SEPARATELY != 0 ? COORDINATE_FRAME_BITS - TRIANGLE_BITS + (PIXELS - 1) * (ALL_FRAGMENT_BITS - ALL_AFFINE_CODE_BITS) : 0);  // a fragment as it waits for memory
+  localparam int UNIT_WORD_BITS = 43;  // a token's value for light or fog; two bits above it say which
+  localparam int FOG_PLACE_BITS = 19;  // where in the table of a fog a pixel lies
+  localparam int FOG_PLACES_BITS = FOG_PLACE_BITS * PIXELS > UNIT_WORD_BITS ? FOG_PLACE_BITS * PIXELS : UNIT_WORD_BITS;  // that of a stamp's pixels, or a token's value
+  localparam int FOG_WORD_BITS = FOG_UNIT == 0 ? 1 : FOG_PLACES_BITS + 3;  // with it: there is fog; a token sets its colour; a line of its table
+  localparam int LATE_ALPHA = ALPHA_UNIT != 0 && COORDINATES != 0 ? 1 : 0;  // 1: alpha is tested downstream of the texture
 
   typedef struct packed {
     logic [CACHE_LINE_BITS-1:0] line;  // where the fragment's block lies
@@ -586,6 +591,39 @@ package raster_pkg;
   localparam int VICTIM_BITS = BLOCK_X_BITS + BLOCK_Y_BITS + BLOCK_STAMPS + BLOCK_STAMPS;  // of the struct above
 
   typedef struct packed {
+    logic [VICTIM_SLOT_BITS-1:0] slot;  // that the block gets
+    logic [2-1:0] fills;  // colour, depth: memory holds garbage
+    victim_t block;  // where it belongs, and what comes into its slot
+  } eviction_t;
+  localparam int EVICTION_BITS = VICTIM_SLOT_BITS + 2 + VICTIM_BITS;  // of the struct above
+
+  typedef struct packed {
+    logic [FLAG_BITS-1:0] last;  // of its block
+    logic [VICTIM_SLOT_BITS-1:0] slot;  // of its block
+    logic [BLOCK_STAMP_BITS-1:0] stamp;  // its number in the block
+    logic [SAMPLE_MASK_BITS-1:0] strobe;  // samples that memory does not have
+    logic [SAMPLES*STORED_DEPTH_BITS-1:0] depth;  // words of all
+  } depth_victim_t;
+  localparam int DEPTH_VICTIM_BITS = FLAG_BITS + VICTIM_SLOT_BITS + BLOCK_STAMP_BITS + SAMPLE_MASK_BITS + SAMPLES*STORED_DEPTH_BITS;  // of the struct above
+
+  typedef struct packed {
+    logic [VICTIM_SLOT_BITS-1:0] slot;  // of its block
+    logic [BLOCK_STAMP_BITS-1:0] stamp;  // its number in the block
+    logic [SAMPLE_MASK_BITS-1:0] strobe;  // samples that memory does not have
+    logic [SAMPLES*STORED_COLOR_BITS-1:0] color;  // of all
+  } color_victim_t;
+  localparam int COLOR_VICTIM_BITS = VICTIM_SLOT_BITS + BLOCK_STAMP_BITS + SAMPLE_MASK_BITS + SAMPLES*STORED_COLOR_BITS;  // of the struct above
+
+  typedef struct packed {
+    logic [FLAG_BITS-1:0] reads;  // a word of the bits of blocks with one colour a pixel is read
+    logic [FLAG_BITS-1:0] writes;  // or written
+    logic [FLAG_WORD_X_BITS-1:0] x;  // its number in the row
+    logic [BLOCK_Y_BITS-1:0] y;  // the row of blocks
+    logic [FLAG_WORD-1:0] word;  // what is written
+  } pixel_word_t;
+  localparam int PIXEL_WORD_BITS = FLAG_BITS + FLAG_BITS + FLAG_WORD_X_BITS + BLOCK_Y_BITS + FLAG_WORD;  // of the struct above
+
+  typedef struct packed {
     logic [CACHE_LINE_BITS-1:0] line;  // where its block lies
     logic [BLOCK_STAMP_BITS-1:0] stamp;  // its number in the block
     logic [FLAG_BITS-1:0] starts_color;  // no colour of the stamp is on the chip
@@ -595,5 +633,18 @@ package raster_pkg;
     logic [BLOCK_STAMPS-1:0] evicted;  // stamps of it whose colours leave
   } tested_stamp_t;
   localparam int TESTED_STAMP_BITS = CACHE_LINE_BITS + BLOCK_STAMP_BITS + FLAG_BITS + SAMPLE_MASK_BITS + FLAG_BITS + FLAG_BITS + BLOCK_STAMPS;  // of the struct above
+
+  // Of a set of stamps of a block the lowest one alone; the number of that one; so many samples.
+  function automatic [BLOCK_STAMPS-1:0] lowest_stamp(input [BLOCK_STAMPS-1:0] set);
+    lowest_stamp = set & (~set + 1'b1);
+  endfunction
+  function automatic [BLOCK_STAMP_BITS-1:0] stamp_number(input [BLOCK_STAMPS-1:0] one);
+    stamp_number = '0;
+    for (int i = 0; i < BLOCK_STAMPS; i++) if (one[i]) stamp_number = stamp_number | BLOCK_STAMP_BITS'(i);
+  endfunction
+  function automatic [SAMPLE_COUNT_BITS-1:0] count_samples(input [SAMPLES-1:0] mask);
+    count_samples = '0;
+    for (int i = 0; i < SAMPLES; i++) count_samples = count_samples + SAMPLE_COUNT_BITS'(mask[i]);
+  endfunction
 
 endpackage

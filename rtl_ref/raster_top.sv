@@ -22,7 +22,7 @@
 //                                      v      |
 //                                      memory
 //
-// That is the framebuffer of blocks (cache.kind). The framebuffer of tiles is one stage, behind depth_test.
+// That is the framebuffer of blocks (cache.kind). The framebuffer of tiles is one stage, next to depth_test.
 //
 // Every arrow that waits is a stream: a packet moves when valid and ready are both high. Bit raster_pkg::STALL_X of stall_i
 // holds arrow X back for a cycle, for tests; hardware ties it to 0. The packets are X_data, X_valid, X_ready: so cosim/taps.svh
@@ -72,7 +72,7 @@ module raster_top (
 
   localparam int SAMPLES = raster_pkg::SAMPLES;
   localparam int PIXELS = raster_pkg::PIXELS;
-  localparam int COUNT = $clog2(SAMPLES + 1);
+  localparam int COUNT = raster_pkg::SAMPLE_COUNT_BITS;
   localparam int DEPTHS = SAMPLES * raster_pkg::STORED_DEPTH_BITS;  // the words of a stamp
   localparam bit HAS_TEXTURE = raster_pkg::COORDINATES != 0;
   localparam bit LATE = raster_pkg::LATE_ALPHA != 0;
@@ -390,24 +390,17 @@ module raster_top (
   raster_pkg::tag_result_t      found;
   raster_pkg::block_order_t     order;
   raster_pkg::memory_request_t  flush_data;
-  logic [raster_pkg::FLAG_WORD-1:0]         flush_word, pixel_word_new, pixel_word;
-  logic                                     pixel_reads, pixel_writes;
-  logic [raster_pkg::FLAG_WORD_X_BITS-1:0]  pixel_word_x;
-  logic [raster_pkg::BLOCK_Y_BITS-1:0]      pixel_word_y;
+  raster_pkg::pixel_word_t      pixel_word;
+  logic [raster_pkg::FLAG_WORD-1:0]         flush_word, stored_pixel_word;
   logic [raster_pkg::STORED_DEPTH_BITS-1:0] clear_depth;
   logic [raster_pkg::STORED_COLOR_BITS-1:0] clear_color;
   logic tags_are_idle, depths_are_idle, texture_is_idle, write_is_idle, orders_are_done;
   logic is_resolved, stores;
 
-  logic                      evicts, victim_valid, victim_last, slot_free_again;  // depth_cache to write_back
-  logic [raster_pkg::VICTIM_SLOT_BITS-1:0] evicts_slot, victim_slot, left_slot;
-  raster_pkg::victim_t       evicts_block;
-  logic [1:0]                evicts_fills;
-  logic [raster_pkg::BLOCK_STAMP_BITS-1:0] victim_stamp, left_stamp;
-  logic [SAMPLES-1:0]        victim_strobe, left_strobe;
-  logic [DEPTHS-1:0]         victim_depth;
-  logic                      left_valid, left_ready;  // color_write to write_back
-  logic [SAMPLES*raster_pkg::STORED_COLOR_BITS-1:0] left_color;
+  logic                      evicts, slot_free_again, depth_victim_valid, color_victim_valid, colors_are_evicted;
+  raster_pkg::eviction_t     eviction;
+  raster_pkg::depth_victim_t depth_victim;
+  raster_pkg::color_victim_t color_victim;
   logic                      read_goes, read_color, read_of_pixels, merges;  // write_back to memory_answers
   logic                      depth_valid, depth_taken, stored_color_valid, stored_color_taken;
   logic [DEPTHS-1:0]         answered_depth;
@@ -416,7 +409,6 @@ module raster_top (
   // From depth_cache through light, texture and fog to color_write.
   localparam int RGBA = 8 * raster_pkg::COLOR_PLANES;
   localparam int WRITTEN = raster_pkg::WRITTEN_COLOR_BITS;
-  localparam int FOG = raster_pkg::FOG_UNIT == 0 ? 1 : 3 + (19 * PIXELS > 43 ? 19 * PIXELS : 43);
   logic                         passed_valid, lit_valid, textured_valid, textured_ready, colored_valid, colored_ready;
   raster_pkg::tested_stamp_t    passed_stamp, lit_stamp, textured_stamp, colored_stamp;
   raster_pkg::fragment_packet_t passed_fragment, whole_fragment, lit_fragment;
@@ -424,7 +416,7 @@ module raster_top (
   logic [PIXELS-1:0]            passed_pixels, lit_pixels, textured_mask, fogged_mask;
   logic [PIXELS*WRITTEN-1:0]    passed_color, lit_color;
   logic [PIXELS*RGBA-1:0]       textured_rgba, fogged_rgba;
-  logic [FOG-1:0]               fog_entering, fog_leaving;
+  logic [raster_pkg::FOG_WORD_BITS-1:0]               fog_entering, fog_leaving;
   logic [SAMPLES*raster_pkg::SHADED_COLOR_BITS-1:0] colored_color;
   logic [PIXELS*8-1:0]          colored_alpha;
   logic                         late_valid;
@@ -494,12 +486,8 @@ module raster_top (
           .request_ready_i (request_ready),
           .request_o       (flush_data),
           .request_word_o  (flush_word),
-          .pixel_reads_o   (pixel_reads),
-          .pixel_writes_o  (pixel_writes),
-          .pixel_word_x_o  (pixel_word_x),
-          .pixel_word_y_o  (pixel_word_y),
-          .pixel_word_o    (pixel_word_new),
-          .pixel_word_i    (pixel_word),
+          .pixel_word_o    (pixel_word),
+          .pixel_word_i    (stored_pixel_word),
           .clear_depth_o   (clear_depth),
           .clear_color_o   (clear_color),
           .is_cleared_o    (is_clear),
@@ -534,15 +522,9 @@ module raster_top (
           .late_writes_i   (late_writes),
           .late_word_i     (late_word),
           .evicts_o        (evicts),
-          .evicts_slot_o   (evicts_slot),
-          .evicts_block_o  (evicts_block),
-          .evicts_fills_o  (evicts_fills),
-          .victim_valid_o  (victim_valid),
-          .victim_last_o   (victim_last),
-          .victim_slot_o   (victim_slot),
-          .victim_stamp_o  (victim_stamp),
-          .victim_strobe_o (victim_strobe),
-          .victim_depth_o  (victim_depth),
+          .eviction_o      (eviction),
+          .victim_valid_o  (depth_victim_valid),
+          .victim_o        (depth_victim),
           .slot_free_i     (slot_free_again),
           .idle_o          (depths_are_idle)
       );
@@ -670,12 +652,9 @@ module raster_top (
           .answer_valid_i (stored_color_valid),
           .answer_i       (stored_color),
           .answer_ready_o (stored_color_taken),
-          .victim_valid_o (left_valid),
-          .victim_slot_o  (left_slot),
-          .victim_stamp_o (left_stamp),
-          .victim_strobe_o(left_strobe),
-          .victim_color_o (left_color),
-          .victim_ready_o (left_ready),
+          .victim_valid_o (color_victim_valid),
+          .victim_o       (color_victim),
+          .victim_ready_o (colors_are_evicted),
           .idle_o         (write_is_idle)
       );
       write_back u_write_back (
@@ -690,22 +669,13 @@ module raster_top (
           .clear_depth_i   (clear_depth),
           .clear_color_i   (clear_color),
           .evicts_i        (evicts),
-          .evicts_slot_i   (evicts_slot),
-          .evicts_block_i  (evicts_block),
-          .evicts_fills_i  (evicts_fills),
-          .depth_valid_i   (victim_valid),
-          .depth_last_i    (victim_last),
-          .depth_slot_i    (victim_slot),
-          .depth_stamp_i   (victim_stamp),
-          .depth_strobe_i  (victim_strobe),
-          .depth_i         (victim_depth),
+          .eviction_i      (eviction),
+          .depth_valid_i   (depth_victim_valid),
+          .depth_i         (depth_victim),
           .slot_free_o     (slot_free_again),
-          .color_valid_i   (left_valid),
-          .color_slot_i    (left_slot),
-          .color_stamp_i   (left_stamp),
-          .color_strobe_i  (left_strobe),
-          .color_i         (left_color),
-          .color_ready_i   (left_ready),
+          .color_valid_i   (color_victim_valid),
+          .color_i         (color_victim),
+          .color_ready_i   (colors_are_evicted),
           .request_valid_o (request_offered),
           .request_ready_i (request_ready),
           .request_o       (request_data),
@@ -717,12 +687,8 @@ module raster_top (
           .read_color_o    (read_color),
           .read_of_pixels_o(read_of_pixels),
           .merges_o        (merges),
-          .token_reads_i   (pixel_reads),
-          .token_writes_i  (pixel_writes),
-          .token_word_x_i  (pixel_word_x),
-          .token_word_y_i  (pixel_word_y),
-          .token_word_i    (pixel_word_new),
-          .token_word_o    (pixel_word),
+          .token_i         (pixel_word),
+          .token_word_o    (stored_pixel_word),
           .fills_o         (is_fill),
           .stores_o        (stores),
           .idle_o          (orders_are_done)

@@ -77,7 +77,7 @@ OPERATIONS = [
     ('and all of these', ['texture.unit=nearest', 'fog.unit=1', *UNITS], 'a texture unit'),
 ]
 OPERATION_TOPS = {'blend_lane': 'a lane of four channels with alpha', 'alpha_test': 'of four samples', 'stencil_test': 'of four samples',
-                  'dithered_rop': 'a sample', 'fog_place': 'a sample', 'fog_unit': 'four samples', 'color_write': 'W, four lanes'}
+                  'dithered_rop': 'a sample', 'fog_place': 'a sample', 'fog_unit': 'four samples', 'color_write': 'four blend lanes'}
 OPERATION_PARAMETERS = {'fog_unit': 'WORD 76'}  # where a module alone has others: the places of four samples
 OPERATION_UNITS = 'and all of these'  # the design that has them
 OPERATION_HEAD = '## Fragment operations'

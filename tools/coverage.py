@@ -24,7 +24,7 @@ from collections import Counter, defaultdict
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 HOST_STAGES = ('primitive_assembly', 'clip', 'viewport', 'line_setup', 'point_raster', 'smooth_raster')
-OPERATIONS = ('color_ops', 'fragment_ops', 'stencil_ops', 'samples')  # arithmetic that stages and engines share
+OPERATIONS = ('color_ops', 'fragment_ops', 'stencil_ops')  # arithmetic that stages and engines share
 
 
 def read(path):

@@ -238,7 +238,7 @@ void HardwareModel::shade(const FragmentPacket& fragment) {
   }
 }
 
-/// A register of a unit behind the depth test.
+/// Sets a register of a unit downstream of the depth test.
 void HardwareModel::set_state(const FragmentPacket& token) {
   const StateRegister which = state_register(token.state);
   path_.set(which, token);

@@ -58,7 +58,7 @@ struct RenderOptions {
   StudyRules rules;                   ///< anything but the default: render_scalar alone has it
   const Framebuffer* onto = nullptr;  ///< the frame that is drawn on, as this engine made it; null: an empty one
   bool follows = false;         ///< of FunctionalEngine: the frame before may be compared with this one, see Skip::bins
-  bool resolved_only = false;   ///< nobody looks at Framebuffer::samples: the functional engine may leave them empty
+  bool resolved_only = false;   ///< Framebuffer::samples is not read: the functional engine may leave it empty
   bool want_count = false;      ///< fill Rendering::count
   bool want_ids = false;        ///< fill Rendering::ids
   bool want_triangles = false;  ///< keep Rendering::triangles (and fill `visible` beside `ids`)

@@ -89,7 +89,7 @@ class TriangleRaster {
     is_back_ = context.fragment_ops.stencil && shows_back(signed_area(v[0], v[1], v[2]), context.state.front);
   }
 
-  /// coarse_raster, fine_raster, and each of their stamps.
+  /// Every tile of the box, classified; then fine_raster and each of its stamps.
   void raster() {
     packet_ = to_setup_packet(centre_, widths_);
     constants_ = make_context(packet_, widths_);

@@ -1,4 +1,4 @@
-// The scalar engine: the stages, one primitive and one sample at a time. Slow, short, and the specification of every other
+// The scalar engine: the stages, one triangle and one stamp at a time. Slow, short, and the specification of every other
 // engine.
 #pragma once
 

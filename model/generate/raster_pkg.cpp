@@ -9,7 +9,9 @@
 #include "../packets/packet_words.hpp"
 #include "../packets/state_packets.hpp"
 #include "../pipeline_graph.hpp"
+#include "../stages/fog.hpp"
 #include "../stages/surface.hpp"
+#include "../stages/texture_levels.hpp"
 #include "../stages/texture_packets.hpp"
 #include "raster_taps.hpp"
 
@@ -188,19 +190,28 @@ void print_blocks(std::ostream& out, const Config& config) {
   constant("TAG_Y_BITS", "BLOCK_Y_BITS > LINE_Y_BITS ? BLOCK_Y_BITS - LINE_Y_BITS : 1", "of its row");
   constant("FLAG_WORD_X_BITS", "BLOCK_X_BITS > $clog2(FLAG_WORD) ? BLOCK_X_BITS - $clog2(FLAG_WORD) : 1",
            "a word's number in its row of flags");
+  constant("SAMPLE_COUNT_BITS", "$clog2(SAMPLES + 1)", "samples of a stamp, counted");
   constant("VICTIM_SLOT_BITS", "$clog2(CACHE_VICTIMS)", "a slot for an evicted block");
   constant("VICTIM_COUNT_BITS", "$clog2(CACHE_VICTIMS + 1)", "so many of them");
   constant("SHADED_STAMPS", "COORDINATES == 0 ? 2 : TEXTURE_STAMPS", "stamps between depth and colour, at most");
-  constant("APART", "COORDINATES != 0 && MSAA_SAMPLES == 1 ? 1 : 0",
+  constant("STORE_CONSTANTS_SEPARATELY", "COORDINATES != 0 && MSAA_SAMPLES == 1 ? 1 : 0",
            "1: what a triangle's fragments share over w lies in a RAM, by the triangle's number");
   constant("TRIANGLE_BITS", "$clog2(CONTEXT_SLOTS + CACHE_QUEUE + 16)",
            "that number: of all between setup and depth test");
   constant("STORED_FRAGMENT_BITS",
-           "FRAGMENT_PACKET_BITS - (APART != 0 ? COORDINATE_FRAME_BITS - TRIANGLE_BITS + (PIXELS - 1) * "
+           "FRAGMENT_PACKET_BITS - (STORE_CONSTANTS_SEPARATELY != 0 ? COORDINATE_FRAME_BITS - TRIANGLE_BITS + (PIXELS "
+           "- 1) * "
            "(ALL_FRAGMENT_BITS - "
            "ALL_AFFINE_CODE_BITS) : 0)",
            "a fragment as it waits for memory");
-  constant("LATE_ALPHA", "ALPHA_UNIT != 0 && COORDINATES != 0 ? 1 : 0", "1: alpha is tested behind the texture");
+  print_constant(out, "UNIT_WORD_BITS", kLevelsWordBit,
+                 "a token's value for light or fog; two bits above it say which");
+  print_constant(out, "FOG_PLACE_BITS", kFogPlaceBits + kFogOctaves, "where in the table of a fog a pixel lies");
+  constant("FOG_PLACES_BITS", "FOG_PLACE_BITS * PIXELS > UNIT_WORD_BITS ? FOG_PLACE_BITS * PIXELS : UNIT_WORD_BITS",
+           "that of a stamp's pixels, or a token's value");
+  constant("FOG_WORD_BITS", "FOG_UNIT == 0 ? 1 : FOG_PLACES_BITS + 3",
+           "with it: there is fog; a token sets its colour; a line of its table");
+  constant("LATE_ALPHA", "ALPHA_UNIT != 0 && COORDINATES != 0 ? 1 : 0", "1: alpha is tested downstream of the texture");
   print_members(out, "tag_result",
                 {{"CACHE_LINE_BITS", "line", "where the fragment's block lies"},
                  {"BLOCK_STAMP_BITS", "stamp", "its stamp there"},
@@ -225,6 +236,27 @@ void print_blocks(std::ostream& out, const Config& config) {
                  {"BLOCK_Y_BITS", "y", "its row"},
                  {"BLOCK_STAMPS", "depth", "stamps whose depths come into its slot"},
                  {"BLOCK_STAMPS", "color", "likewise colours"}});
+  print_members(out, "eviction",
+                {{"VICTIM_SLOT_BITS", "slot", "that the block gets"},
+                 {"2", "fills", "colour, depth: memory holds garbage"},
+                 {"victim_t", "block", "where it belongs, and what comes into its slot"}});
+  print_members(out, "depth_victim",
+                {{"FLAG_BITS", "last", "of its block"},
+                 {"VICTIM_SLOT_BITS", "slot", "of its block"},
+                 {"BLOCK_STAMP_BITS", "stamp", "its number in the block"},
+                 {"SAMPLE_MASK_BITS", "strobe", "samples that memory does not have"},
+                 {"SAMPLES*STORED_DEPTH_BITS", "depth", "words of all"}});
+  print_members(out, "color_victim",
+                {{"VICTIM_SLOT_BITS", "slot", "of its block"},
+                 {"BLOCK_STAMP_BITS", "stamp", "its number in the block"},
+                 {"SAMPLE_MASK_BITS", "strobe", "samples that memory does not have"},
+                 {"SAMPLES*STORED_COLOR_BITS", "color", "of all"}});
+  print_members(out, "pixel_word",
+                {{"FLAG_BITS", "reads", "a word of the bits of blocks with one colour a pixel is read"},
+                 {"FLAG_BITS", "writes", "or written"},
+                 {"FLAG_WORD_X_BITS", "x", "its number in the row"},
+                 {"BLOCK_Y_BITS", "y", "the row of blocks"},
+                 {"FLAG_WORD", "word", "what is written"}});
   print_members(
       out, "tested_stamp",
       {{"depth_source_t", "color_source", "of the stored colours", blends},
@@ -246,6 +278,18 @@ void print_blocks(std::ostream& out, const Config& config) {
        {"FLAG_BITS", "evicts", "another block leaves the line"},
        {"FLAG_BITS", "fills", "memory holds garbage of its colours"},
        {"BLOCK_STAMPS", "evicted", "stamps of it whose colours leave"}});
+  out << "\n  // Of a set of stamps of a block the lowest one alone; the number of that one; so many samples.\n"
+         "  function automatic [BLOCK_STAMPS-1:0] lowest_stamp(input [BLOCK_STAMPS-1:0] set);\n"
+         "    lowest_stamp = set & (~set + 1'b1);\n"
+         "  endfunction\n"
+         "  function automatic [BLOCK_STAMP_BITS-1:0] stamp_number(input [BLOCK_STAMPS-1:0] one);\n"
+         "    stamp_number = '0;\n"
+         "    for (int i = 0; i < BLOCK_STAMPS; i++) if (one[i]) stamp_number = stamp_number | BLOCK_STAMP_BITS'(i);\n"
+         "  endfunction\n"
+         "  function automatic [SAMPLE_COUNT_BITS-1:0] count_samples(input [SAMPLES-1:0] mask);\n"
+         "    count_samples = '0;\n"
+         "    for (int i = 0; i < SAMPLES; i++) count_samples = count_samples + SAMPLE_COUNT_BITS'(mask[i]);\n"
+         "  endfunction\n";
 }
 
 /// A value that has a name is its number there.

@@ -116,9 +116,9 @@ class HostStream {
   std::deque<HostPrimitive> in_front_;  ///< what does so, and the triangle that waits for it
 };
 
-/// What the hardware relies on and cannot see: behind reset, and states, a fast clear of both planes, without which the flags
-/// of tiles are undefined, and a setup for the place of every line, for which primitive_join would wait for good. What is
-/// wrong with a primitive of a stream, `is_first` behind reset; empty: nothing.
+/// Rules that the hardware relies on and does not check: after reset and state tokens, a fast clear of both buffers, without
+/// which the flags of tiles are undefined, and a setup for the place of every line, for which primitive_join would wait for
+/// good. Returns the rule that a primitive breaks, or an empty text; `is_first`: the first one after reset.
 [[nodiscard]] std::string stream_fault(const HostPrimitive& primitive, bool is_first);
 
 /// Throws InputError, one line naming the state, when `scene` asks for what the hardware does not have.

@@ -13,8 +13,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "../samples.hpp"
 #include "../scene.hpp"
-#include "../stages/samples.hpp"
 #include "../widths.hpp"
 
 namespace halfplane {
@@ -189,7 +189,7 @@ enum class HizUpdate : std::uint8_t { none, set, clear };
 enum class TilePlane : std::uint8_t { depth, color, depth_flags, color_flags, pixel_color = 5, pixel_flags = 7 };
 inline constexpr std::array kTilePlanes{TilePlane::depth, TilePlane::color};
 
-/// Where the depth test finds what is stored under a stamp; and where colour operations do.
+/// Source of a stamp's stored depths; also of its stored colours, for colour operations.
 enum class DepthSource : std::uint8_t {
   none,    ///< it does not look: `always`, with a full mask; operations that store the fragment's colour
   chip,    ///< on the chip

@@ -1,4 +1,4 @@
-// State packets: tokens that say what a unit behind the depth test does from here on. They go the way of all packets, in
+// State packets: tokens that set a register of a unit downstream of the depth test. They travel with all packets, in
 // order, so nothing else carries a state. The value lies where a vertex has its codes, and comes out of interpolate as it
 // went in.
 #pragma once

@@ -1,4 +1,4 @@
-// Color packets: the states of the units behind the texture as tokens carry them: what is done with colours, its constant, and
+// Color packets: the states of the colour units as tokens carry them: colour operations, its constant, and
 // the alpha test (state_packets.hpp says where the words lie).
 #pragma once
 
@@ -19,7 +19,7 @@ inline constexpr int kFactor = 4, kEquation = 3, kFunction = 3, kByte = 8;  // b
 }
 
 /// ColorOps without the constant, lowest first: four factors, two equations, channels that are written, dithers, blends,
-/// reads what is stored. The last two follow from the rest, and stand there for who needs no more.
+/// reads what is stored. The last two follow from the rest, stored for readers that need no other field.
 [[nodiscard]] constexpr std::uint32_t pack(const ColorOps& ops) {
   using namespace color_packets_detail;
   std::uint32_t word = 0;

@@ -4,7 +4,7 @@
 // but for its colours, which rop adds, and at the end of a tile visit a RetirePacket. The arithmetic of the test is that of
 // fragment_ops.hpp.
 //
-// The alpha test stands here where the colour is known: without a texture unit. With one it comes behind that; then a draw
+// Without a texture unit the alpha test is here, where the colour is known. With one it is downstream of it; then a draw
 // that tests alpha and writes depth is late: what passes here is only written, and counted as written, once its alpha is known.
 #pragma once
 
@@ -70,7 +70,7 @@ inline void test_samples(const FragmentPacket& fragment, std::span<const std::ui
   return packet;
 }
 
-/// Whether depth, or the stencil above it, is written behind the texture: the alpha test decides there whether it is.
+/// Whether depth, or the stencil above it, is written only after the texture unit, if the alpha test passes.
 [[nodiscard]] constexpr bool is_late(const PrimitiveState& state, bool tests_alpha, const Config& config) {
   return has_texture_planes(config) && tests_alpha && state.writes_word();
 }

@@ -1,7 +1,7 @@
 // Fine raster: one tile in, the covered samples of its stamps out.
 //
 // In: a TilePacket and the triangle's EdgeContext. Out: a StampPacket for each stamp with at least one covered sample,
-// row by row. Latency 3 cycles; one stamp position of the tile's box per cycle.
+// row by row. Time: docs/pipeline.md.
 // A sample is covered when all three edge values are >= 0 there and it lies in the tile's box (which carries the scissor).
 // Where a pixel has several samples, all of them are looked at, and its centre too: at an uncovered one it is not shaded.
 // The last row of stamps ends the visit: its last covered stamp, or, when it has none, an empty one at its first

@@ -100,7 +100,7 @@ class FragmentPath {
     fate.kept = fate.kept & opaque;
   }
 
-  /// Light, texture unit and fog, and the alpha test behind them.
+  /// Light, texture unit and fog, and the alpha test after them.
   template <class Port>
   void texture(const FragmentPacket& fragment, CounterPacket& counters, StampFate& fate, Port& port) {
     if (changes_colors(*texture_, fragment)) port.interpolate_over_w(shaded_samples(packet_, colors_));

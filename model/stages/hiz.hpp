@@ -4,7 +4,7 @@
 // bound of a tile is {h, all ones}, h the stored top hiz.bits of a depth code: no depth in the tile is above it.
 //
 // Visit n sees the updates of the visits up to n - lag, all of them and none of a later one, so that what is seen follows
-// from program order alone and nobody waits for a visit that has just begun. The visits between can only have lowered
+// from program order alone and no visit waits for one that has just begun. The visits between can only have lowered
 // depths, which leaves a bound true; if one of them may have raised a depth, by its state, no tile is behind its bound.
 // A fast clear of depth sets all bounds, and what earlier visits had to say is forgotten.
 //

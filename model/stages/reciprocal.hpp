@@ -7,7 +7,7 @@
 //
 // which is 2^(2k-1) / q with a relative error of at most 3 * 2^-k: the middle is off by 2^-k, the floor by 2^(1-k).
 // d is odd and no power of two is a multiple of it, so a guess g is too large exactly when g d - 2^(2k) > 0, and where g is
-// known to be right or one too large the sign of the low bits of g d says which: nobody computes the whole product.
+// known to be right or one too large the sign of the low bits of g d says which, so the full product is never computed.
 //
 // Three algorithms give it: the division itself, in hardware a bit a clock (rtl_ref/lib/reciprocal_restoring.sv); a
 // division in binary32, for lanes; a table of 2^ceil(k/2) nodes with straight lines between (reciprocal_table.sv).

@@ -16,8 +16,8 @@
 
 namespace halfplane {
 
-/// What a word of the register texture_levels is. The registers of tokens are eight, and all of them have their use; a
-/// texture's levels are short, so those of the units around the texture unit lie there too, told apart by two bits above.
+/// What a word of the register texture_levels is. All eight token registers are in use, and the levels
+/// word is short, so fog and light share it; two upper bits tell them apart.
 enum class LevelsWord : std::uint8_t { levels, fog, fog_line, light };
 inline constexpr int kLevelsWordBit = 43;  ///< the lower of them
 [[nodiscard]] constexpr LevelsWord levels_word(std::uint64_t word) {

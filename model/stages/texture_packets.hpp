@@ -1,4 +1,4 @@
-// What the texture unit sees of the packets: samples and their frame.
+// Texture unit inputs from packets: samples and texture constants.
 #pragma once
 
 #include "../packets/packets.hpp"
@@ -39,7 +39,7 @@ namespace halfplane {
   return sample;
 }
 
-/// What a token is to the units around the texture unit, which lets their tokens through.
+/// Tokens for the light and fog units, which pass through the texture unit unchanged.
 template <class Codes>
 [[nodiscard]] LevelsWord word_beside_texture(StateRegister which, const Codes& token, const Widths& widths) {
   return which == StateRegister::texture_levels ? levels_word(state_word(token, widths)) : LevelsWord::levels;

@@ -31,11 +31,11 @@
 
 #include "../fixed.hpp"
 #include "../formats/texture.hpp"
+#include "../samples.hpp"
 #include "../scene.hpp"
 #include "fog_unit.hpp"
 #include "light_unit.hpp"
 #include "perspective.hpp"
-#include "samples.hpp"
 #include "texture_filter.hpp"
 #include "texture_levels.hpp"
 
@@ -244,7 +244,7 @@ class TextureUnit {
     lines_.move_in(line_part);
     lod_ = lines_.lines().unpack();
   }
-  /// What fogs the colours behind it.
+  /// The fog unit, downstream of it.
   [[nodiscard]] FogUnit& fog() { return fog_; }
   [[nodiscard]] const FogUnit& fog() const { return fog_; }
   /// What lights those in front of it.
@@ -391,7 +391,7 @@ class TextureUnit {
     }
   }
 
-  /// What the samples of a square look at; by their numbers in their stamp, which has 4x4 at most.
+  /// Texels that the samples of a square need, indexed by sample number in the stamp (at most 4x4).
   struct GroupPlaces {
     std::array<TexturePlace, 16> place;
     std::array<SampleFilter, 16> filter;

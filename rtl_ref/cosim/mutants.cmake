@@ -227,9 +227,9 @@ mutant(79 stages/color_write.sv "fill: what was not drawn into keeps what the co
 mutant(80 stages/write_back.sv "victims: a block goes to memory before its colours are here"
   [=[depth_ready_q != '0 && color_ready_q != '0]=] [=[depth_ready_q != '0]=])
 
-# two evictions under way in W
+# two evictions in flight in color_write
 mutant(261 stages/color_write.sv "evictions: the stamp that is about to be written is not read first"
-  [=[hits ? own : lowest(left)]=] [=[lowest(of_second ? second : first_q)]=])
+  [=[hits ? own : raster_pkg::lowest_stamp(left)]=] [=[raster_pkg::lowest_stamp(of_second ? second : first_q)]=])
 mutant(262 stages/color_write.sv "evictions: a third begins while two are under way"
   [=[!started_q && !second_begun_q]=] [=[!started_q]=])
 mutant(263 stages/color_write.sv "evictions: the colours of the second go to the slot of the first"
@@ -422,7 +422,8 @@ mutant(205 stages/depth_cache.sv "alpha: what is not tested overtakes what is"
 mutant(206 stages/cache_tags.sv "alpha: depth unread where always writes all that alpha lets pass"
   [=[(tests_alpha && fragment_q.state.depth_write)]=] [=[1'b0]=])
 mutant(207 stages/late_test.sv "alpha: counter: samples that fail the depth test are counted too"
-  [=[popcount(stamp_i.passed & ~alpha_passes)]=] [=[popcount(~alpha_passes)]=])
+  [=[raster_pkg::count_samples(stamp_i.passed & ~alpha_passes)]=]
+  [=[raster_pkg::count_samples(~alpha_passes)]=])
 mutant(324 lib/alpha_test.sv "alpha: less and greater are exchanged"
   [=[is_less ? less_passes : (is_equal ? equal_passes : greater_passes)]=]
   [=[is_less ? greater_passes : (is_equal ? equal_passes : less_passes)]=])
@@ -435,7 +436,8 @@ mutant(327 stages/late_test.sv "alpha: what it drops writes its depth"
 mutant(328 stages/late_test.sv "alpha: a depth that was read for what it drops does not come into the RAM"
   [=[is_kept || !stamp_i.on_chip]=] [=[is_kept]=])
 mutant(329 stages/late_test.sv "alpha: counter: what it drops counts as written"
-  [=[popcount(stamp_i.passed & alpha_passes)]=] [=[popcount(stamp_i.passed)]=])
+  [=[raster_pkg::count_samples(stamp_i.passed & alpha_passes)]=]
+  [=[raster_pkg::count_samples(stamp_i.passed)]=])
 mutant(330 stages/color_write.sv "alpha: what it drops writes its colour"
   [=[tested_i.mask & opaque_i]=] [=[tested_i.mask]=])
 

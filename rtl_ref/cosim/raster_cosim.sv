@@ -120,7 +120,7 @@ module raster_cosim (
   raster_pkg::write_packet_t    write_data;
   raster_pkg::memory_request_t  request_data;
   generate
-    if (raster_pkg::APART != 0) begin : gen_apart
+    if (raster_pkg::STORE_CONSTANTS_SEPARATELY != 0) begin : gen_separate
       localparam int NUMBER = raster_pkg::TRIANGLE_BITS;
       localparam int CODES = raster_pkg::ALL_FRAGMENT_BITS;
       localparam int AFFINE = raster_pkg::ALL_AFFINE_CODE_BITS;

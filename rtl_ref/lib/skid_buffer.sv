@@ -1,4 +1,4 @@
-// Skid buffer: the one elastic element of the design. Two items deep, ready is registered, no bubbles.
+// Skid buffer: an elastic element that cuts a ready chain. Two items deep, ready is registered, no bubbles.
 //
 // Item n enters no earlier than one cycle after item n-2 left; latency 1 cycle. An item that is offered stays offered
 // unchanged until it is taken.

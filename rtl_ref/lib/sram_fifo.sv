@@ -1,4 +1,4 @@
-// FIFO in an SRAM: a fifo (fifo.sv) of wide items that nobody looks at before he has taken them. data_o is the item that was
+// FIFO in an SRAM: a fifo (fifo.sv) of wide items that are read only after they are taken. data_o is the item that was
 // taken last, from the cycle after that on.
 module sram_fifo #(
     parameter int WIDTH = 1,  // bits of an item

@@ -16,14 +16,13 @@ module state_token #(
   localparam int P = raster_pkg::FRAGMENT_BITS_OF[32*(AFFINE+1)+:32];
   localparam int Q_AT = raster_pkg::FRAGMENT_AT[32*AFFINE+:32];
   localparam int L = raster_pkg::PERSPECTIVE_GUARD_BITS;
-  localparam int UNIT_AT = 43;
   assign is_token_o = fragment_i.kind == raster_pkg::PRIMITIVE_KIND_STATE;
   assign register_o = fragment_i.state.depth_test;
   assign word_o     = {fragment_i.code[Q_AT+Q+P+L+:P-L-1], fragment_i.code[Q_AT+Q+L+:P-L-1], fragment_i.code[Q_AT+L+:Q-L-1],
                        fragment_i.code[0+:AFFINE_BITS]};
   generate
     if (raster_pkg::FOG_UNIT != 0 || raster_pkg::NORMALS != 0) begin : gen_units
-      assign unit_o = is_token_o && register_o == raster_pkg::STATE_REGISTER_TEXTURE_LEVELS ? word_o[UNIT_AT+:2] : 2'd0;
+      assign unit_o = is_token_o && register_o == raster_pkg::STATE_REGISTER_TEXTURE_LEVELS ? word_o[raster_pkg::UNIT_WORD_BITS+:2] : 2'd0;
     end else begin : gen_levels
       assign unit_o = 2'd0;
     end

@@ -1,8 +1,9 @@
-// Stored fragment: a fragment as queues hold it. Where the triangle's constants are APART, in a RAM by the triangle's number,
-// it has of planes over w the anchors of its tile, in its first pixel, and the number in place of the frame of coordinates,
-// lowest. Else it is the fragment as it is. Bits that are not stored come back as 0; whole_fragment.sv makes them.
+// Stored fragment: a fragment as queues hold it. Where the triangle's constants are STORE_CONSTANTS_SEPARATELY, in a RAM by
+// the triangle's number, it has of planes over w the anchors of its tile, in its first pixel, and the number in place of the
+// texture constants, lowest. Else it is the fragment as it is. Bits that are not stored come back as 0; whole_fragment.sv
+// makes them.
 module stored_fragment #(
-    parameter bit APART = raster_pkg::APART != 0,  // derived; not to be set
+    parameter bit STORE_CONSTANTS_SEPARATELY = raster_pkg::STORE_CONSTANTS_SEPARATELY != 0,  // derived; not to be set
     parameter int NUMBER = raster_pkg::TRIANGLE_BITS,
     parameter int WIDTH = raster_pkg::STORED_FRAGMENT_BITS
 ) (
@@ -26,7 +27,7 @@ module stored_fragment #(
 
   genvar s;
   generate
-    if (APART) begin : gen_apart
+    if (STORE_CONSTANTS_SEPARATELY) begin : gen_separate
       logic [FRAGMENT-1:0] entering;
       logic [FRAGMENT-1:0] leaving;
       assign entering   = fragment_i;

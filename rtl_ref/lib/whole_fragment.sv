@@ -1,8 +1,8 @@
-// Whole fragment: a fragment that a queue held (stored_fragment.sv), and what its triangle's context says: the frame of
-// coordinates, and the values over w, from the tile's anchors to the stamp's first pixel and from there to each, as interpolate
+// Whole fragment: a fragment that a queue held (stored_fragment.sv), and what its triangle's context says: the texture
+// constants, and the values over w, from the tile's anchors to the stamp's first pixel and from there to each, as interpolate
 // makes those of other planes.
 module whole_fragment #(
-    parameter bit APART = raster_pkg::APART != 0  // derived; else the fragment is whole
+    parameter bit STORE_CONSTANTS_SEPARATELY = raster_pkg::STORE_CONSTANTS_SEPARATELY != 0  // derived; else the fragment is whole
 ) (
     input  raster_pkg::fragment_packet_t fragment_i,
     input  raster_pkg::context_packet_t  context_i,
@@ -24,7 +24,7 @@ module whole_fragment #(
 
   genvar p, s;
   generate
-    if (APART) begin : gen_apart
+    if (STORE_CONSTANTS_SEPARATELY) begin : gen_separate
       // The stamp's first pixel from the centre of the tile, in two's complement (interpolate.sv).
       logic [PIXEL-1:0] to_x, to_y;
       if (PER_ROW_BITS > 0) begin : gen_offset

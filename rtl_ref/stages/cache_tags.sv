@@ -44,11 +44,7 @@ module cache_tags #(
     output logic [raster_pkg::FLAG_WORD-1:0] request_word_o,  // its data, of a word of flags
 
     // Words of the bits of blocks with one colour a pixel: one is read, and there in the next cycle; or written
-    output logic                             pixel_reads_o,
-    output logic                             pixel_writes_o,
-    output logic [WORD_X-1:0]                pixel_word_x_o,
-    output logic [BLOCK_Y-1:0]               pixel_word_y_o,
-    output logic [raster_pkg::FLAG_WORD-1:0] pixel_word_o,
+    output raster_pkg::pixel_word_t          pixel_word_o,
     input  logic [raster_pkg::FLAG_WORD-1:0] pixel_word_i,
 
     output logic [raster_pkg::STORED_DEPTH_BITS-1:0] clear_depth_o,
@@ -610,11 +606,11 @@ module cache_tags #(
   end
 
   // Blocks that are cleared have none until they are written, and one colour a pixel where that is what a flush writes.
-  assign pixel_reads_o  = COMPRESSES && state_q == READ;
-  assign pixel_writes_o = COMPRESSES && token_writes[1];
-  assign pixel_word_x_o = word_x_q;
-  assign pixel_word_y_o = word_y_q;
-  assign pixel_word_o   = !COMPRESSES ? '0 :
+  assign pixel_word_o.reads  = COMPRESSES && state_q == READ;
+  assign pixel_word_o.writes = COMPRESSES && token_writes[1];
+  assign pixel_word_o.x      = word_x_q;
+  assign pixel_word_o.y      = word_y_q;
+  assign pixel_word_o.word   = !COMPRESSES ? '0 :
                           state_q == RESOLVE ? pixel_word_i | word_color : pixel_word_i & ~marks & {WORD{clears_bin}};
 
   assign request_word_o  = word;

@@ -34,7 +34,7 @@ module coarse_raster (
     input  logic                      tile_ready_i,
     output raster_pkg::tile_packet_t  tile_o,
     output raster_pkg::edge_context_t edges_o,
-    output logic [3*raster_pkg::TILE_EDGE_BITS-1:0] visit_edges_o,  // the serial stage has what is less to make
+    output logic [3*raster_pkg::TILE_EDGE_BITS-1:0] visit_edges_o,  // as fine_raster_serial takes them
 
     // From depth_test: a tile visit has retired
     input logic                       retire_valid_i,

@@ -37,10 +37,7 @@ module color_write #(
 
     // A stamp that leaves, in a slot for victims; and that all of the next eviction's are there
     output logic                                                        victim_valid_o,
-    output logic [SLOT-1:0]                                             victim_slot_o,
-    output logic [STAMP-1:0]                                            victim_stamp_o,
-    output logic [raster_pkg::SAMPLES-1:0]                              victim_strobe_o,
-    output logic [raster_pkg::SAMPLES*raster_pkg::STORED_COLOR_BITS-1:0] victim_color_o,
+    output raster_pkg::color_victim_t                                   victim_o,
     output logic                                                        victim_ready_o,
 
     output logic idle_o  // everything is in the RAM
@@ -51,14 +48,6 @@ module color_write #(
   localparam int SHADED = raster_pkg::SHADED_COLOR_BITS;
   localparam int LANES = raster_pkg::BLEND_LANES;
   localparam int ADDRESS = LINE + STAMP;
-
-  function automatic [STAMPS-1:0] lowest(input [STAMPS-1:0] set);
-    lowest = set & (~set + 1'b1);
-  endfunction
-  function automatic [STAMP-1:0] number_of(input [STAMPS-1:0] one);
-    number_of = '0;
-    for (int i = 0; i < STAMPS; i++) if (one[i]) number_of = number_of | STAMP'(i);
-  endfunction
 
   logic [SAMPLES-1:0] mask;  // samples whose colour is written
   assign mask = tested_i.mask & opaque_i;
@@ -92,7 +81,7 @@ module color_write #(
   assign hits        = hits_first || hits_second;
   assign of_second   = hits_second || (!hits_first && first_q == '0);
   assign left        = first_q != '0 ? first_q : second;  // of the older one
-  assign next        = hits ? own : lowest(left);
+  assign next        = hits ? own : raster_pkg::lowest_stamp(left);
   assign reads       = left != '0;
   assign first_left  = of_second ? first_q : first_q & ~next;
   assign second_left = of_second ? second & ~next : second;
@@ -140,13 +129,13 @@ module color_write #(
     end
   end
   always_ff @(posedge clk_i) begin
-    stamp_q <= number_of(next);
+    stamp_q <= raster_pkg::stamp_number(next);
     slot_q  <= of_second ? second_slot : first_slot_q;
     fills_q <= of_second ? second_fills : first_fills_q;
   end
   assign victim_valid_o = valid_q;
-  assign victim_slot_o  = slot_q;
-  assign victim_stamp_o = stamp_q;
+  assign victim_o.slot  = slot_q;
+  assign victim_o.stamp = stamp_q;
   assign victim_ready_o = delay_q[DELAY-1];
 
   // The colour RAM: of each sample its code, and whether memory does not have it.
@@ -154,7 +143,7 @@ module color_write #(
   logic [ADDRESS-1:0]       read_address, write_address;
   logic [SAMPLES-1:0]       dirty, writes, dirty_new;
   logic [SAMPLES*COLOR-1:0] code, code_new;
-  assign read_address = looks ? {tested_i.line, tested_i.stamp} : {of_second ? second_line : first_line_q, number_of(next)};
+  assign read_address = looks ? {tested_i.line, tested_i.stamp} : {of_second ? second_line : first_line_q, raster_pkg::stamp_number(next)};
   genvar s;
   generate
     for (s = 0; s < SAMPLES; s++) begin : gen_color
@@ -171,8 +160,8 @@ module color_write #(
           .write_address_i(write_address),
           .data_i         ({dirty_new[s], code_new[s*COLOR+:COLOR]})
       );
-      assign victim_strobe_o[s] = fills_q || dirty[s];
-      assign victim_color_o[s*COLOR+:COLOR] = dirty[s] ? code[s*COLOR+:COLOR] : clear_color_i & {COLOR{fills_q}};
+      assign victim_o.strobe[s] = fills_q || dirty[s];
+      assign victim_o.color[s*COLOR+:COLOR] = dirty[s] ? code[s*COLOR+:COLOR] : clear_color_i & {COLOR{fills_q}};
     end
   endgenerate
 
@@ -279,9 +268,8 @@ module color_write #(
         else if (goes) done_q <= ends ? '0 : done_q | group;
       end
 
-      // 1 and 2: what is on its way to the RAM. 1 has read it, 2 blends, packs and writes; 3 is what has been written last,
-      // while
-      // 1 read. An eviction waits for 3 as well.
+      // Stages 1 and 2 are in flight to the RAM: 1 has read it; 2 blends, packs and writes. 3 holds the last write, made while
+      // 1 read. An eviction also waits for 3.
       logic [2:0]           on_way_q;
       logic [LINE-1:0]      line_1_q, line_2_q, line_3_q;
       logic [STAMP-1:0]     stamp_1_q, stamp_2_q, stamp_3_q;

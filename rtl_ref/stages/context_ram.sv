@@ -1,11 +1,11 @@
 // Context RAM: what the stamps of a primitive share, by the slot that coarse_raster gives it. A slot is not written before it
 // is free, nor read before the first stamp is there. The serial front writes one part a cycle.
 //
-// With planes over w and one sample a pixel (APART) most of it is wanted only behind the depth test: the steps of those
-// planes, and the frame of coordinates. They lie in a RAM of their own by the triangle's number, which goes with the fragments
-// in place of the frame. There are as many numbers as triangles can be between setup and test: those in slots, and one for
-// each fragment behind that, since a triangle's end goes as one.
-// Specification: make_context() of model/stages/interpolate.hpp.
+// With planes over w and one sample a pixel (STORE_CONSTANTS_SEPARATELY) most of it is wanted only behind the depth test: the
+// steps of those planes, and the texture constants. They lie in a RAM of their own by the triangle's number, which goes with
+// the fragments in place of the frame. There are as many numbers as triangles can be between setup and test: those in slots,
+// and one for each fragment behind that, since a triangle's end goes as one.
+// Specification: make_context() of model/stages/coarse_raster.hpp.
 module context_ram #(
     parameter int SLOT = raster_pkg::SLOT_BITS  // derived; not to be set
 ) (
@@ -30,11 +30,11 @@ module context_ram #(
     output logic [raster_pkg::TRIANGLE_BITS-1:0] number_o  // of the next triangle
 );
 
-  localparam bit APART = raster_pkg::APART != 0;
+  localparam bit STORE_CONSTANTS_SEPARATELY = raster_pkg::STORE_CONSTANTS_SEPARATELY != 0;
   localparam int NUMBER = raster_pkg::TRIANGLE_BITS;
   localparam int DEPTH = raster_pkg::CONTEXT_SLOTS;
   generate
-    if (APART) begin : gen_apart
+    if (STORE_CONSTANTS_SEPARATELY) begin : gen_separate
       localparam int FRAME = raster_pkg::COORDINATE_FRAME_BITS;
       localparam int AT = raster_pkg::STEP_AT[32*raster_pkg::AFFINE_PLANES+:32];
       localparam int STEP = raster_pkg::ALL_STEP_BITS - AT;
@@ -73,10 +73,10 @@ module context_ram #(
 
     if (raster_pkg::SETUP_KIND == 0) begin : gen_context
       // The range is wanted for colours over w alone: no other code is clamped.
-      localparam int FRAME = APART ? NUMBER : raster_pkg::COORDINATE_FRAME_BITS;
+      localparam int FRAME = STORE_CONSTANTS_SEPARATELY ? NUMBER : raster_pkg::COORDINATE_FRAME_BITS;
       localparam int RANGE = 2 * raster_pkg::ALL_AFFINE_CODE_BITS;
       localparam int STEPS = raster_pkg::ALL_STEP_BITS;
-      localparam int KEPT_STEPS = APART ? raster_pkg::STEP_AT[32*(APART ? raster_pkg::AFFINE_PLANES : 0)+:32] : STEPS;
+      localparam int KEPT_STEPS = STORE_CONSTANTS_SEPARATELY ? raster_pkg::STEP_AT[32*(STORE_CONSTANTS_SEPARATELY ? raster_pkg::AFFINE_PLANES : 0)+:32] : STEPS;
       localparam int HEAD = raster_pkg::CONTEXT_PACKET_BITS - RANGE - raster_pkg::COORDINATE_FRAME_BITS -
                             2 * (STEPS - KEPT_STEPS);  // state and steps
       localparam int KEPT = raster_pkg::COLORS_OVER_W != 0 ? RANGE : 0;  // of the range
@@ -105,7 +105,7 @@ module context_ram #(
       end else begin : gen_no_range
         assign context_o.range = '0;
       end
-      if (APART) begin : gen_number
+      if (STORE_CONSTANTS_SEPARATELY) begin : gen_number
         assign entering[0+:FRAME]    = number_o;
         assign context_o.coordinates = raster_pkg::COORDINATE_FRAME_BITS'(kept[0+:FRAME]);
       end else if (FRAME != 0) begin : gen_frame

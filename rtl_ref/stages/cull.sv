@@ -322,7 +322,7 @@ module cull (
     end
   end
 
-  // --- The last step: on offer, or dropped, which is known from registers: whoever hands over waits for it.
+  // --- The last step: on offer or dropped, decided from registers, because the hand-over depends on it.
   logic is_negative;
   assign d_is_triangle = kind_q == raster_pkg::PRIMITIVE_KIND_TRIANGLE;
   assign is_counted    = d_is_triangle || (kind_q[2] && !kind_q[0]);  // point, line

@@ -58,15 +58,9 @@ module depth_cache #(
 
     // To write_back: a block that leaves gets a slot, and its depths come into it
     output logic                    evicts_o,
-    output logic [SLOT-1:0]         evicts_slot_o,
-    output raster_pkg::victim_t     evicts_block_o,
-    output logic [1:0]              evicts_fills_o,  // colour, depth: memory holds garbage
-    output logic                    victim_valid_o,  // a stamp
-    output logic                    victim_last_o,
-    output logic [SLOT-1:0]         victim_slot_o,
-    output logic [STAMP-1:0]        victim_stamp_o,
-    output logic [SAMPLES-1:0]      victim_strobe_o,
-    output logic [SAMPLES*CODE-1:0] victim_depth_o,
+    output raster_pkg::eviction_t     eviction_o,
+    output logic                      victim_valid_o,  // a stamp
+    output raster_pkg::depth_victim_t victim_o,
     input  logic                    slot_free_i,     // the oldest block is in memory
 
     output logic idle_o  // nothing is in the queue, and nothing between here and color_write
@@ -92,14 +86,6 @@ module depth_cache #(
   // Fragments wait with their colours packed, where nothing else looks at those.
   localparam bit PACKS = raster_pkg::COORDINATES == 0 && raster_pkg::BLEND_LANES == 0 && raster_pkg::DITHER_UNIT == 0 &&
                          raster_pkg::ALPHA_UNIT == 0;
-
-  function automatic [STAMPS-1:0] lowest(input [STAMPS-1:0] set);
-    lowest = set & (~set + 1'b1);
-  endfunction
-  function automatic [STAMP-1:0] number_of(input [STAMPS-1:0] one);
-    number_of = '0;
-    for (int i = 0; i < STAMPS; i++) if (one[i]) number_of = number_of | STAMP'(i);
-  endfunction
 
   genvar s;
 
@@ -135,7 +121,7 @@ module depth_cache #(
       .bits_i    (item_stored),
       .fragment_o(item)
   );
-  // Of several samples a pixel depths and colours are most of an item, and nobody looks at them before the test.
+  // With several samples a pixel, depths and colours are most of an item, and are not read before the test.
   localparam int FURTHER = PIXELS * (raster_pkg::MSAA_SAMPLES - 1) * Z;
   registered_fifo #(
       .WIDTH (raster_pkg::TAG_RESULT_BITS + STORED),
@@ -177,7 +163,7 @@ module depth_cache #(
                         (!on_chip || left_q == '0) && (!in_memory || answer_valid_i) &&
                         (behind_q != BEHIND'(PLACES) || (stamp_leaves_i && raster_pkg::COORDINATES == 0));
   assign left         = evicts_o ? found.depth : left_q;
-  assign next         = goes && (found.evicts || left_line_q == found.line) && (left & item_bit) != '0 ? item_bit : lowest(left);
+  assign next         = goes && (found.evicts || left_line_q == found.line) && (left & item_bit) != '0 ? item_bit : raster_pkg::lowest_stamp(left);
   assign reads_victim = left != '0;
   assign takes_answer_o  = goes && in_memory;
   assign tested_valid_o  = goes;
@@ -218,19 +204,19 @@ module depth_cache #(
   logic [SLOT-1:0] v_slot_q, slot_q;  // of the next one
   logic [LINE+STAMP-1:0] depth_read_address;
   logic [LINE-1:0] line_above_x;
-  assign depth_read_address = {left_q != '0 ? left_line_q : found.line, reads_victim ? number_of(next) : found.stamp};
+  assign depth_read_address = {left_q != '0 ? left_line_q : found.line, reads_victim ? raster_pkg::stamp_number(next) : found.stamp};
   assign line_above_x         = found.line >> LINE_X;
   assign evicts_o             = goes && found.evicts;
-  assign evicts_slot_o        = slot_q;
-  assign evicts_fills_o       = found.fills;
-  assign evicts_block_o.x     = (BLOCK_X'(found.tag_x) << LINE_X) | (BLOCK_X'(found.line) & BLOCK_X'((1 << LINE_X) - 1));
-  assign evicts_block_o.y     = (BLOCK_Y'(found.tag_y) << LINE_Y) | BLOCK_Y'(line_above_x);
-  assign evicts_block_o.depth = found.depth;
-  assign evicts_block_o.color = found.color;
+  assign eviction_o.slot       = slot_q;
+  assign eviction_o.fills      = found.fills;
+  assign eviction_o.block.x     = (BLOCK_X'(found.tag_x) << LINE_X) | (BLOCK_X'(found.line) & BLOCK_X'((1 << LINE_X) - 1));
+  assign eviction_o.block.y     = (BLOCK_Y'(found.tag_y) << LINE_Y) | BLOCK_Y'(line_above_x);
+  assign eviction_o.block.depth = found.depth;
+  assign eviction_o.block.color = found.color;
   assign victim_valid_o       = v_valid_q;
-  assign victim_last_o        = v_last_q;
-  assign victim_slot_o        = v_slot_q;
-  assign victim_stamp_o       = v_stamp_q;
+  assign victim_o.last         = v_last_q;
+  assign victim_o.slot         = v_slot_q;
+  assign victim_o.stamp        = v_stamp_q;
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
       v_valid_q <= 1'b0;
@@ -243,7 +229,7 @@ module depth_cache #(
   always_ff @(posedge clk_i) begin
     if (evicts_o) fills_q <= found.fills[0];
     v_fills_q <= evicts_o ? found.fills[0] : fills_q;
-    v_stamp_q <= number_of(next);
+    v_stamp_q <= raster_pkg::stamp_number(next);
     v_slot_q  <= evicts_o ? slot_q : slot_q - 1'b1;
     v_last_q  <= left == next;
   end
@@ -278,12 +264,12 @@ module depth_cache #(
           .write_address_i(late_valid_i ? {late_i.line, late_i.stamp} : {x1_q.line, x1_q.stamp}),
           .data_i         (word)
       );
-      assign victim_strobe_o[s] = v_fills_q || dirty;
-      assign victim_depth_o[s*CODE+:CODE] = code;
+      assign victim_o.strobe[s] = v_fills_q || dirty;
+      assign victim_o.depth[s*CODE+:CODE] = code;
     end
   endgenerate
 
-  // ------------------------------------------------------------------------------------- behind the test, on its way to colour
+  // ------------------------------------------------------------------------------------- after the test, towards shading
   raster_pkg::fragment_packet_t x1_item_q;
   always_ff @(posedge clk_i) x1_item_q <= item;
   assign stamp_valid_o        = x1_valid_q;

@@ -50,7 +50,6 @@ module depth_test (
   localparam int STAMP_BITS = raster_pkg::STAMP_INDEX_BITS;
   localparam int STAMPS = raster_pkg::STAMPS_PER_ROW * raster_pkg::STAMPS_PER_ROW;
   localparam int HIZ = raster_pkg::HIZ_CODE_BITS;
-  localparam int COUNT = $clog2(SAMPLES + 1);
   localparam bit HAS_ALPHA = raster_pkg::ALPHA_UNIT != 0 && raster_pkg::CACHE_KIND == 1 && raster_pkg::SETUP_KIND == 0;
 
   // D0: the fragment on offer. Tokens (bit 1 of a kind) have no covered sample; those of lines have become pixels by now.
@@ -99,8 +98,8 @@ module depth_test (
       .greater_o(greater_passes)
   );
 
-  // The alpha test, where the colour is known here: without a texture unit. With one W decides, and what writes depth is late.
-  // Its register is set by a token.
+  // The alpha test, where the colour is known here: without a texture unit. With one late_test decides, and a fragment that
+  // writes depth is late. Its register is set by a token.
   logic is_late;
   // An operation of the stencil as stencil_test wants it: what counts has bit 2, down bit 1, and bit 0 where it stops at the
   // end; what does not count keeps, zeroes, replaces, inverts.
@@ -252,18 +251,14 @@ module depth_test (
   assign write_o.color        = color_q;
 
   // Counters, one cycle late: the masks are kept and summed up in the cycle behind, far from the RAM that they come from.
-  function automatic [COUNT-1:0] popcount(input [SAMPLES-1:0] mask);
-    popcount = '0;
-    for (int i = 0; i < SAMPLES; i++) popcount = popcount + COUNT'(mask[i]);
-  endfunction
 
   logic is_counted, writes;
   logic [SAMPLES-1:0] covered_q, passed_q, written_q;
   assign is_counted = valid_q && (fragment_q.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE || fragment_q.kind[2]);  // point, line
   assign writes     = fragment_q.state.depth_write || fragment_q.state.color_write;
-  assign covered_o  = popcount(covered_q);
-  assign passed_o   = popcount(passed_q);
-  assign written_o  = popcount(written_q);
+  assign covered_o  = raster_pkg::count_samples(covered_q);
+  assign passed_o   = raster_pkg::count_samples(passed_q);
+  assign written_o  = raster_pkg::count_samples(written_q);
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
@@ -283,7 +278,7 @@ module depth_test (
         if (!rst_ni) killed_q <= '0;
         else killed_q <= is_counted ? passed & ~kept : '0;
       end
-      assign killed_o = popcount(killed_q);
+      assign killed_o = raster_pkg::count_samples(killed_q);
     end else begin : gen_none_killed
       assign killed_o = '0;
     end

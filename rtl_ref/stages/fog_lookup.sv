@@ -1,12 +1,12 @@
 // Fog lookup: where in the table of the fog the pixels of a stamp lie. In front of the texture unit, where Q still is; what it
 // finds goes with the stamp to fog_stage. Combinational but for the table's octaves, which a token sets.
 //
-// The word: from bit 0 the places of the pixels, 19 bits each, or a token's value; above them that there is fog, that a token
-// sets the fog's colour, and that it sets a line of the table.
+// The word: from bit 0 the places of the pixels, FOG_PLACE_BITS each, or a token's value; above them that there is fog, that a
+// token sets the fog's colour, and that it sets a line of the table.
 // Specification: model/stages/fog_unit.hpp.
 module fog_lookup #(
-    parameter int PLACES = 19 * raster_pkg::PIXELS > 43 ? 19 * raster_pkg::PIXELS : 43,  // derived; not to be set
-    parameter int WORD = raster_pkg::FOG_UNIT == 0 ? 1 : PLACES + 3
+    parameter int PLACES = raster_pkg::FOG_PLACES_BITS,  // derived; not to be set
+    parameter int WORD = raster_pkg::FOG_WORD_BITS
 ) (
     input  logic                         clk_i,
     input  logic                         rst_ni,
@@ -20,7 +20,7 @@ module fog_lookup #(
     if (raster_pkg::FOG_UNIT == 0) begin : gen_clear
       assign word_o = '0;
     end else begin : gen_fogged
-      localparam int TOKEN = 43;
+      localparam int PLACE = raster_pkg::FOG_PLACE_BITS;
       localparam int COLOR_BITS = 24;
       localparam int FRAGMENT = raster_pkg::ALL_FRAGMENT_BITS;  // of a pixel
       localparam int Q = raster_pkg::FRAGMENT_BITS_OF[32*raster_pkg::AFFINE_PLANES+:32];
@@ -52,13 +52,13 @@ module fog_lookup #(
             .q_i      (fragment_i.code[s*FRAGMENT+Q_AT+:Q]),
             .octave_i (fragment_i.coordinates.fog_octave),
             .octaves_i(octaves_q),
-            .place_o  (places[19*s+:19])
+            .place_o  (places[PLACE*s+:PLACE])
         );
       end
-      if (PLACES > 19 * raster_pkg::PIXELS) begin : gen_rest
-        assign places[PLACES-1:19*raster_pkg::PIXELS] = '0;
+      if (PLACES > PLACE * raster_pkg::PIXELS) begin : gen_rest
+        assign places[PLACES-1:PLACE*raster_pkg::PIXELS] = '0;
       end
-      assign word_o[PLACES-1:0] = is_token ? PLACES'(word[TOKEN-1:0]) : places;
+      assign word_o[PLACES-1:0] = is_token ? PLACES'(word[raster_pkg::UNIT_WORD_BITS-1:0]) : places;
       assign word_o[PLACES+:3]  = {sets_line, sets_color, enable_q && fragment_i.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE};
     end
   endgenerate

@@ -4,8 +4,8 @@
 module fog_stage #(
     parameter int PIXELS = raster_pkg::PIXELS,  // derived; not to be set
     parameter int COLORS = raster_pkg::PIXELS * 8 * raster_pkg::COLOR_PLANES,
-    parameter int PLACES = 19 * raster_pkg::PIXELS > 43 ? 19 * raster_pkg::PIXELS : 43,
-    parameter int WORD = raster_pkg::FOG_UNIT == 0 ? 1 : PLACES + 3
+    parameter int PLACES = raster_pkg::FOG_PLACES_BITS,
+    parameter int WORD = raster_pkg::FOG_WORD_BITS
 ) (
     input logic clk_i,
     input logic rst_ni,

@@ -6,6 +6,7 @@
 //
 // Each register takes what is in front of it as soon as what it holds goes on. A token passes as stamps do, and what it sets
 // holds for those behind it: a line of the table as it comes in, the fog's colour as it leaves the first register.
+// A sample here is a pixel's shading point: one a pixel, however many samples coverage has.
 // Specification: FogUnit of model/stages/fog_unit.hpp; the times are FogTiming's in model/engines/cycle/block_timing.hpp.
 module fog_unit #(
     parameter int SAMPLES  = 4,

@@ -3,10 +3,10 @@
 // In: a stamp packet, and from the context RAM what its slot holds. Out: a fragment packet. A sample's value is the closed
 // form anchor + i step_x + j step_y (i, j pixels from pixel (T/2, T/2)), modulo the local width; its code is the bits above
 // the fraction, and at a covered sample in the range of the vertices by the bounds of the widths: nothing clamps it. Planes
-// behind depth and colours, 1/w and what lies over it, stay as they are; where triangles' constants are APART (raster_top) the
-// anchors of the tile go on in place of them (stored_fragment.sv). Latency 6 cycles, one stamp per cycle. Nothing waits on the
-// way: a stamp enters when there is a place for its fragment in the FIFO at the
-// end. A cycle each:
+// behind depth and colours, 1/w and what lies over it, stay as they are; where triangles' constants are
+// STORE_CONSTANTS_SEPARATELY (raster_top) the anchors of the tile go on in place of them (stored_fragment.sv). Latency 6
+// cycles, one stamp per cycle. Nothing waits on the way: a stamp enters when there is a place for its fragment in the FIFO at
+// the end. A cycle each:
 //   context  the context is read
 //   x, y     from the anchor to the stamp's first sample
 //   samples  from there to each sample
@@ -49,7 +49,7 @@ module interpolate (
   localparam int PIXEL = raster_pkg::TILE_PIXEL_BITS;
   localparam int L = raster_pkg::PLANE_LOCAL_GUARD_BITS;
   localparam int PER_ROW_BITS = PIXEL - STAMP_SHIFT;
-  localparam bit APART = raster_pkg::APART != 0;
+  localparam bit STORE_CONSTANTS_SEPARATELY = raster_pkg::STORE_CONSTANTS_SEPARATELY != 0;
   localparam int STORED = raster_pkg::STORED_FRAGMENT_BITS;
 
   raster_pkg::stamp_packet_t context_stamp_q, x_stamp_q, y_stamp_q, samples_stamp_q;
@@ -214,7 +214,7 @@ module interpolate (
         if (p < raster_pkg::AFFINE_PLANES) begin : gen_code
           assign code[s*CODES+CODE+:B] = {!value_q[L+B-1], value_q[L+:B-1]};
         end else begin : gen_over_w
-          assign code[s*CODES+CODE+:B] = !APART ? value_q : s == 0 ? samples_stamp_q.anchor[LOCAL+:W] : '0;
+          assign code[s*CODES+CODE+:B] = !STORE_CONSTANTS_SEPARATELY ? value_q : s == 0 ? samples_stamp_q.anchor[LOCAL+:W] : '0;
         end
         if (p == 0) begin : gen_depth  // of its other samples
           for (k = 1; k < N; k++) begin : gen_further

@@ -1,11 +1,11 @@
 // Late test: the alpha test behind the texture (LATE_ALPHA). What alpha may drop has not been written; here it is, or not: its
 // depths into depth_cache, its colours on into color_write. What alpha drops of a stamp that came from memory is written as it
 // was read. Without it every sample is kept.
-// Specification: model/stages/depth_test.hpp (opaque_samples, keep_opaque), block_cache.hpp.
+// Specification: opaque of model/stages/texture_stage.hpp, FragmentPath::drop of fragment_path.hpp, block_cache.hpp.
 module late_test #(
     parameter int SAMPLES = raster_pkg::SAMPLES,  // derived; not to be set
     parameter int CODE = raster_pkg::STORED_DEPTH_BITS,
-    parameter int COUNT = $clog2(SAMPLES + 1)
+    parameter int COUNT = raster_pkg::SAMPLE_COUNT_BITS
 ) (
     input logic clk_i,
     input logic rst_ni,
@@ -29,10 +29,6 @@ module late_test #(
   genvar s;
   generate
     if (raster_pkg::LATE_ALPHA != 0) begin : gen_late
-      function automatic [COUNT-1:0] popcount(input [SAMPLES-1:0] mask);
-        popcount = '0;
-        for (int i = 0; i < SAMPLES; i++) popcount = popcount + COUNT'(mask[i]);
-      endfunction
       logic [raster_pkg::DEPTH_FUNC_BITS-1:0] func_q;
       logic [7:0]           reference_q;
       logic                 covers_q;  // alpha says how many samples of a pixel are drawn
@@ -75,8 +71,8 @@ module late_test #(
           written_o <= '0;
           killed_o  <= '0;
         end else begin
-          written_o <= is_counted && stamp_i.writes ? popcount(stamp_i.passed & alpha_passes) : '0;
-          killed_o  <= is_counted ? popcount(stamp_i.passed & ~alpha_passes) : '0;
+          written_o <= is_counted && stamp_i.writes ? raster_pkg::count_samples(stamp_i.passed & alpha_passes) : '0;
+          killed_o  <= is_counted ? raster_pkg::count_samples(stamp_i.passed & ~alpha_passes) : '0;
         end
       end
     end else begin : gen_early

@@ -39,7 +39,7 @@ module light_stage #(
       // Depths of further samples end at the test.
       localparam int HEADER_AT = PIXELS * FRAGMENT + PIXELS * (raster_pkg::MSAA_SAMPLES - 1) * raster_pkg::DEPTH_CODE_BITS;
       localparam int HEADER = raster_pkg::FRAGMENT_PACKET_BITS - HEADER_AT;
-      localparam int TOKEN = 43;
+      localparam int TOKEN = raster_pkg::UNIT_WORD_BITS;
       logic [PIXELS*NORMALS_AT-1:0] others, lit_others;
       logic [3*NORMAL*PIXELS-1:0]   normals;
       logic [HEADER-1:0]            header, lit_header;

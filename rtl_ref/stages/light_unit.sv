@@ -9,6 +9,7 @@
 //
 // What a stamp carries along waits in RAMs until its last sample is through; its colours until stage 11 looks at them. A token
 // waits until no sample is left that looks at a register, and sets it on its way into the lane.
+// A sample here is a pixel's shading point: one a pixel, however many samples coverage has.
 // Specification: LightUnit of model/stages/light_unit.hpp; the times are LightTiming's in model/engines/cycle/block_timing.hpp.
 module light_unit #(
     parameter int SAMPLES  = 4,

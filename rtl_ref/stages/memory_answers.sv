@@ -12,7 +12,7 @@ module memory_answers #(
     input logic clk_i,
     input logic rst_ni,
 
-    // From write_back: a read goes to memory, of colours, with one a pixel; answers are those of a merge
+    // From write_back: a read is requested; it is of colours; of one colour a pixel; answers belong to a merge
     input logic read_goes_i,
     input logic read_color_i,
     input logic read_of_pixels_i,
@@ -48,7 +48,7 @@ module memory_answers #(
   sram_fifo #(
       .WIDTH(SAMPLES * CODE),
       .DEPTH(QUEUE),
-      .BLOCK(raster_pkg::APART == 0)  // whose constants want the block RAMs that an ECP5-25F has left
+      .BLOCK(raster_pkg::STORE_CONSTANTS_SEPARATELY == 0)  // whose constants want the block RAMs that an ECP5-25F has left
   ) u_answers (
       .clk_i,
       .rst_ni,

@@ -213,7 +213,7 @@ module memory_port (
 
   // The word on its way out. While it gathers, it is not complete and not on offer.
   logic               valid_q, gathers_q, is_write_q, is_first_q, in_burst_q, recovers_q;
-  logic [ADDRESS-1:PORT] address_q;  // without the rows above: a product is long enough by itself
+  logic [ADDRESS-1:PORT] address_q;  // without the offset of the rows above, which is a product and is added a step later
   logic [ADDRESS-TILE-1:0] above_q;
   logic [LENGTH-1:0]  length_q;  // beats that are left of the burst
   localparam bit SEVERAL = WORD > BYTES;  // beats in a word
@@ -284,8 +284,8 @@ module memory_port (
   localparam int STAMPS = raster_pkg::STAMPS_PER_ROW * raster_pkg::STAMPS_PER_ROW;
   localparam int DEPTH_SHARED = (DEPTH_SHIFT < PORT) ? PORT - DEPTH_SHIFT : 0;  // log2 of the stamps in a beat
   localparam int DEPTH_STAMPS = (STAMPS < (1 << DEPTH_SHARED)) ? STAMPS : 1 << DEPTH_SHARED;  // read with it
-  // With blending colours are read too. Unless their stamps are as large and fill beats, it must be known whose the next one
-  // is. And with COMPRESS_UNIT those of pixels.
+  // With blending colours are read too. Unless colour and depth stamps have one size and fill beats, the port records which
+  // kind the next answer is. Likewise colours of pixels with COMPRESS_UNIT.
   localparam bit BLENDS = raster_pkg::BLEND_LANES != 0;
   localparam bit READS_COLOR = COMPRESSES || (BLENDS && (COLOR_SHIFT != DEPTH_SHIFT || DEPTH_SHIFT < PORT));
   localparam bit READS_SAMPLES = READS_COLOR && BLENDS;
@@ -299,7 +299,7 @@ module memory_port (
   localparam int SHARED = (PIXEL_SHARED > MOST_SHARED) ? PIXEL_SHARED : MOST_SHARED;
   localparam int PARTS = (PART > SHARED) ? PART : SHARED;
   localparam int READ_WORD = MOST_BEATS * BYTES;
-  // Stamps that are read at a time: with colours those that wait between X and W as well.
+  // Reads in flight, in stamps: with blending also those of stamps between depth_cache and color_write.
   localparam int PLACES = (raster_pkg::COORDINATES == 0) ? 2 : raster_pkg::TEXTURE_STAMPS;
   localparam int WAITS = BLENDS ? 1 << $clog2(2 * raster_pkg::CACHE_QUEUE + PLACES) : raster_pkg::CACHE_QUEUE;
   localparam int IN_BLOCK = raster_pkg::BLOCK_SIDE * raster_pkg::BLOCK_SIDE;  // stamps that are merged

@@ -30,8 +30,8 @@ module primitive_join (
   localparam int TX = raster_pkg::TILE_X_BITS;
   localparam int TY = raster_pkg::TILE_Y_BITS;
   localparam int CODES = raster_pkg::ALL_FRAGMENT_BITS;  // of a pixel
-  // Of a line's pixel there is nothing behind the colours; where triangles' constants are apart, nobody looks there.
-  localparam int JOINED = raster_pkg::COORDINATES != 0 && N == 1 ? raster_pkg::ALL_AFFINE_CODE_BITS : CODES;
+  // A line's pixel has no planes beyond the colours; where triangles' constants are stored separately they are not read.
+  localparam int JOINED = raster_pkg::STORE_CONSTANTS_SEPARATELY != 0 ? raster_pkg::ALL_AFFINE_CODE_BITS : CODES;
 
   logic is_line;
   assign is_line          = fragment_i.kind == raster_pkg::PRIMITIVE_KIND_LINE;

@@ -65,7 +65,8 @@ module texture_cache_linear #(
   localparam int LINE_Y = LINE / 2;
   localparam int BLOCK = SIDE_BITS - 2;
 
-  // ------------------------------------------------------------------------ which columns and rows are in which bank Of each bank along one axis: is there a block in it, which; is there a texel, which.
+  // ------------------------------------------------------------------------ which columns and rows are in which bank Of each
+  // bank along one axis: is there a block in it, which; is there a texel, which.
   logic [1:0]             used_x, used_y;
   logic [2*BLOCK-1:0]     block_x, block_y;  // of the even bank lowest
   logic [BLOCK-1:0]       first_x, first_y, second_x, second_y;

@@ -40,8 +40,8 @@ module texture_rounds #(
     output logic [3:0]                waits_o,       // of these the ones whose upper level comes later
     output logic                      ends_o,        // the last round of its group
     output logic                      is_second_o,   // of two
-    output logic [16*SIDE_BITS-1:0]   texel_o,       // those of a sample, x and y, and those behind them
-    output logic [63:0]               part_o,        // of those behind, along x lowest
+    output logic [16*SIDE_BITS-1:0]   texel_o,       // for each sample x, y of its texel, then of the next texel
+    output logic [63:0]               part_o,        // weight of the next texel, along x lowest
     output logic [5:0]                agree_o,       // 0 and 1, 0 and 2, 1 and 2, 0 and 3, 1 and 3, 2 and 3
     output logic [31:0]               level_part_o,
     output logic [3:0]                is_between_o,

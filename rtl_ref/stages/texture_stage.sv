@@ -6,7 +6,7 @@ module texture_stage #(
     parameter int PIXELS = raster_pkg::PIXELS,  // derived; not to be set
     parameter int CHANNELS = raster_pkg::COLOR_PLANES,
     parameter int COLORS = raster_pkg::PIXELS * raster_pkg::WRITTEN_COLOR_BITS,
-    parameter int FOG = raster_pkg::FOG_UNIT == 0 ? 1 : 3 + (19 * raster_pkg::PIXELS > 43 ? 19 * raster_pkg::PIXELS : 43)
+    parameter int FOG = raster_pkg::FOG_WORD_BITS
 ) (
     input logic clk_i,
     input logic power_on_ni,

@@ -10,6 +10,7 @@
 // Of four lanes the samples of a stamp are numbered inside as they go: square by square, row by row in each.
 // A state is a stamp too. At the door it says whether the stamps behind it are textured and how they are combined; it sets
 // the address once no sample is left in front of the cache's data.
+// A sample here is a pixel's shading point: one a pixel, however many samples coverage has.
 // Specification: model/stages/texture_unit.hpp; the times are those of model/engines/cycle/texture_timing.hpp.
 module texture_unit #(
     parameter int SAMPLES = 4,          // of a stamp; a power of two
@@ -129,7 +130,7 @@ module texture_unit #(
       door_combine_q <= state_i[6:5];
     end
 
-  // Each sample's coordinates beside each other, and the samples as they go.
+  // Coordinates packed by sample, and the order in which samples enter.
   localparam int SIDE = $clog2(SAMPLES) / 2;  // log2 of the samples along a stamp's side
   logic [COORDINATES-1:0]   places;
   logic [SAMPLES-1:0]       door_mask;

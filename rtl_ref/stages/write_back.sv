@@ -28,23 +28,14 @@ module write_back #(
 
     // From depth_cache: a block leaves; stamps of its depths
     input  logic                    evicts_i,
-    input  logic [SLOT-1:0]         evicts_slot_i,
-    input  raster_pkg::victim_t     evicts_block_i,
-    input  logic [1:0]              evicts_fills_i,  // colour, depth: memory holds garbage
-    input  logic                    depth_valid_i,
-    input  logic                    depth_last_i,
-    input  logic [SLOT-1:0]         depth_slot_i,
-    input  logic [STAMP-1:0]        depth_stamp_i,
-    input  logic [SAMPLES-1:0]      depth_strobe_i,
-    input  logic [SAMPLES*CODE-1:0] depth_i,
+    input  raster_pkg::eviction_t     eviction_i,
+    input  logic                      depth_valid_i,
+    input  raster_pkg::depth_victim_t depth_i,
     output logic                    slot_free_o,     // the oldest block is in memory
 
     // From color_write: stamps of its colours; all of the next block's are there
     input logic                     color_valid_i,
-    input logic [SLOT-1:0]          color_slot_i,
-    input logic [STAMP-1:0]         color_stamp_i,
-    input logic [SAMPLES-1:0]       color_strobe_i,
-    input logic [SAMPLES*COLOR-1:0] color_i,
+    input raster_pkg::color_victim_t color_i,
     input logic                     color_ready_i,
 
     // To and from memory_port
@@ -63,12 +54,8 @@ module write_back #(
     output logic merges_o,
 
     // Tokens: a word of the bits of blocks with one colour a pixel is read, and there in the next cycle; or written
-    input  logic                                    token_reads_i,
-    input  logic                                    token_writes_i,
-    input  logic [raster_pkg::FLAG_WORD_X_BITS-1:0] token_word_x_i,
-    input  logic [raster_pkg::BLOCK_Y_BITS-1:0]     token_word_y_i,
-    input  logic [WORD-1:0]                         token_word_i,
-    output logic [WORD-1:0]                         token_word_o,
+    input  raster_pkg::pixel_word_t token_i,
+    output logic [WORD-1:0]         token_word_o,
 
     output logic fills_o,   // this cycle asks for a stamp
     output logic stores_o,  // this cycle writes one
@@ -82,18 +69,10 @@ module write_back #(
   localparam bit BLENDS = raster_pkg::BLEND_LANES != 0;
   localparam bit COMPRESSES = raster_pkg::COMPRESS_UNIT != 0;
 
-  function automatic [STAMPS-1:0] lowest(input [STAMPS-1:0] set);
-    lowest = set & (~set + 1'b1);
-  endfunction
-  function automatic [STAMP-1:0] number_of(input [STAMPS-1:0] one);
-    number_of = '0;
-    for (int i = 0; i < STAMPS; i++) if (one[i]) number_of = number_of | STAMP'(i);
-  endfunction
-
   // Of the lowest one, how many follow each other without a gap.
   function automatic [RUN-1:0] run_of(input [STAMPS-1:0] set);
     logic [STAMPS-1:0] gaps;  // above the lowest, from the first one that is missing on
-    gaps   = ~set & ~(lowest(set) - 1'b1);
+    gaps   = ~set & ~(raster_pkg::lowest_stamp(set) - 1'b1);
     run_of = '0;
     for (int i = 0; i < STAMPS; i++)
       if (set[i] && (gaps & ((STAMPS'(2) << i) - 1'b1)) == '0) run_of = run_of + 1'b1;
@@ -149,8 +128,8 @@ module write_back #(
   assign sends       = wants_write && is_ready && (depth_left != '0 || (color_left != '0 && colors_known));
   assign skips       = wants_write && is_ready && depth_left == '0 && color_left == '0;
   assign is_color    = depth_left == '0;
-  assign sent        = lowest(is_color ? color_left : depth_left);
-  assign sent_stamp  = asks_pixels ? asked_stamp : number_of(sent);
+  assign sent        = raster_pkg::lowest_stamp(is_color ? color_left : depth_left);
+  assign sent_stamp  = asks_pixels ? asked_stamp : raster_pkg::stamp_number(sent);
   assign ends_victim = is_color ? color_left == sent : depth_left == sent && color_left == '0;
   assign is_here     = (sent & (is_color ? leaving.color : leaving.depth)) != '0;
   assign finishes    = skips || (sends && takes_request && ends_victim);
@@ -186,8 +165,8 @@ module write_back #(
       written_q     <= '0;
     end else begin
       oldest_q      <= oldest_q + SLOT'(finishes);
-      depth_ready_q <= depth_ready_q + (SLOT + 1)'(evicts_i && evicts_block_i.depth == '0) +
-                       (SLOT + 1)'(depth_valid_i && depth_last_i) - (SLOT + 1)'(finishes);
+      depth_ready_q <= depth_ready_q + (SLOT + 1)'(evicts_i && eviction_i.block.depth == '0) +
+                       (SLOT + 1)'(depth_valid_i && depth_i.last) - (SLOT + 1)'(finishes);
       color_ready_q <= color_ready_q + (SLOT + 1)'(color_ready_i) - (SLOT + 1)'(finishes);
       written_q     <= takes_order ? '0 : written_q + WRITES'(finishes);
     end
@@ -196,26 +175,26 @@ module write_back #(
   assign {sent_depth_strobe, sent_depth} = victim_depth_q[{oldest_q, sent_stamp}];
   assign {sent_color_strobe, sent_color} = victim_color_q[{oldest_q, sent_stamp}];
   always_ff @(posedge clk_i) begin
-    if (depth_valid_i) victim_depth_q[{depth_slot_i, depth_stamp_i}] <= {depth_strobe_i, depth_i};
-    if (color_valid_i) victim_color_q[{color_slot_i, color_stamp_i}] <= {color_strobe_i, color_i};
-    if (evicts_i) victim_q[evicts_slot_i] <= evicts_block_i;
+    if (depth_valid_i) victim_depth_q[{depth_i.slot, depth_i.stamp}] <= {depth_i.strobe, depth_i.depth};
+    if (color_valid_i) victim_color_q[{color_i.slot, color_i.stamp}] <= {color_i.strobe, color_i.color};
+    if (evicts_i) victim_q[eviction_i.slot] <= eviction_i.block;
   end
 
   genvar s, v;
   generate
     for (v = 0; v < VICTIMS; v++) begin : gen_left
       logic begins, is_sent;
-      assign begins  = evicts_i && evicts_slot_i == SLOT'(v);
+      assign begins  = evicts_i && eviction_i.slot == SLOT'(v);
       assign is_sent = sends && takes_request && oldest_q == SLOT'(v);
       always_ff @(posedge clk_i) begin
         if (begins) begin
-          depth_left_q[v] <= {STAMPS{evicts_fills_i[0]}};
-          color_left_q[v] <= {STAMPS{evicts_fills_i[1]}};
+          depth_left_q[v] <= {STAMPS{eviction_i.fills[0]}};
+          color_left_q[v] <= {STAMPS{eviction_i.fills[1]}};
         end else begin
-          if (depth_valid_i && depth_slot_i == SLOT'(v) && depth_strobe_i != '0)
-            depth_left_q[v] <= depth_left_q[v] | (STAMPS'(1) << depth_stamp_i);
-          if (color_valid_i && color_slot_i == SLOT'(v) && color_strobe_i != '0)
-            color_left_q[v] <= color_left_q[v] | (STAMPS'(1) << color_stamp_i);
+          if (depth_valid_i && depth_i.slot == SLOT'(v) && depth_i.strobe != '0)
+            depth_left_q[v] <= depth_left_q[v] | (STAMPS'(1) << depth_i.stamp);
+          if (color_valid_i && color_i.slot == SLOT'(v) && color_i.strobe != '0)
+            color_left_q[v] <= color_left_q[v] | (STAMPS'(1) << color_i.stamp);
           if (is_sent && !is_color) depth_left_q[v] <= depth_left_q[v] & ~sent;
           if (is_sent && is_color) color_left_q[v] <= color_left_q[v] & ~sent;
           if (takes_merged && !colors_known && oldest_q == SLOT'(v)) color_left_q[v] <= '1;
@@ -238,12 +217,12 @@ module write_back #(
           .clk_i,
           .rst_ni,
           .begins_i      (evicts_i),
-          .begin_slot_i  (evicts_slot_i),
-          .begin_fills_i (evicts_fills_i[1]),
+          .begin_slot_i  (eviction_i.slot),
+          .begin_fills_i (eviction_i.fills[1]),
           .comes_i       (color_valid_i),
-          .come_slot_i   (color_slot_i),
-          .come_strobe_i (color_strobe_i),
-          .come_color_i  (color_i),
+          .come_slot_i   (color_i.slot),
+          .come_strobe_i (color_i.strobe),
+          .come_color_i  (color_i.color),
           .writes_i      (wants_write && is_ready && is_color && color_left != '0),
           .slot_i        (oldest_q),
           .is_every_i    (color_left == '1),
@@ -267,11 +246,11 @@ module write_back #(
           .takes_answers_o(merges_o),
           .stamp_i       (sent_stamp),
           .merged_o      (merged),
-          .token_reads_i,
-          .token_writes_i,
-          .word_x_i      (token_word_x_i),
-          .word_y_i      (token_word_y_i),
-          .word_i        (token_word_i),
+          .token_reads_i (token_i.reads),
+          .token_writes_i(token_i.writes),
+          .word_x_i      (token_i.x),
+          .word_y_i      (token_i.y),
+          .word_i        (token_i.word),
           .word_o        (token_word_o)
       );
     end else begin : gen_no_pixel_colors

@@ -22,7 +22,7 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// Shows the part done, 0...1, NaN where nobody knows the whole. False: a signal asks to stop.
+  /// Shows the part done, 0...1, NaN if the total is unknown. False: a signal asks to stop.
   [[nodiscard]] bool goes_on(double fraction, std::uint64_t count = 0);
   /// The same, but throws Interrupted.
   void operator()(double fraction, std::uint64_t count = 0);

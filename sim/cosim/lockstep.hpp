@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "model/engines/cycle/cycle_model.hpp"
@@ -65,7 +66,7 @@ struct Mismatch {
 struct LockstepOptions {
   std::uint64_t seed = 1;        ///< of stalls and start values
   double stall_probability = 0;  ///< per stream and cycle, in [0, 1)
-  MemorySettings memory;         ///< behind the RTL
+  MemorySettings memory;         ///< connected to the RTL's memory port
   std::uint16_t mutant = 0;
   bool drains_clears = false;  ///< nothing goes in behind a fast clear until it is done: for cycles of primitives alone
   bool compares = true;        ///< false: the design alone, for its image and counters
@@ -85,6 +86,9 @@ struct LockstepOptions {
   std::function<bool(double fraction)> progress;
 };
 
+/// The stage that counts this member of CounterPacket; none: not one stage alone.
+[[nodiscard]] std::optional<Stage> stage_of_counter(std::string_view name);
+
 struct LockstepResult {
   std::array<std::uint64_t, kArrows> compared{};  ///< packets, by arrow
   std::uint64_t memory_compared = 0;              ///< stamps of either plane in the final memory
@@ -97,7 +101,7 @@ struct LockstepResult {
   std::uint64_t raster_cycles = 0;  ///< from the first of them taken to the last write into the on-chip tiles
   std::uint64_t tile_cycles = 0;    ///< of these, the ones in which the framebuffer moved tiles and took no access
   std::uint64_t model_cycles = 0;   ///< what the cycle model says of `cycles`; 0 when it was not asked
-  std::uint64_t model_raster_cycles = 0, model_tile_cycles = 0;  ///< likewise of the next two
+  std::uint64_t model_raster_cycles = 0, model_tile_cycles = 0;  ///< likewise of `raster_cycles`, `tile_cycles`
   std::uint64_t clocks = 0;  ///< simulated, those that waited for a packet too many included
   std::uint64_t drawn = 0;   ///< input triangles of which a piece passed cull; only when nothing is compared
   std::array<StreamUse, kStreams.size()> use{};  ///< by kStreams; only when nothing is compared
@@ -158,7 +162,7 @@ class Lockstep {
   [[nodiscard]] const TileMemory& memory() const { return memory_.tiles(); }  ///< the RTL's
   [[nodiscard]] CounterPacket counters();                                     ///< the RTL's, of all that was done
   [[nodiscard]] const Counters& host_counters() const { return host_counters_; }
-  /// Ends the waveform, which takes its place. Whether there is one.
+  /// Closes the waveform and moves it to its final path. Returns whether there is one.
   bool finish_trace();
   /// Why there is none, one line; empty where none could not be written. The run goes on without.
   [[nodiscard]] const std::string& trace_failure() const { return trace_failure_; }

@@ -71,7 +71,7 @@ void Lockstep::report_missing_cycle() {
           cycle_mismatch(boundary, {}, "the cycle model has one more in cycle " + std::to_string(left.front()));
 }
 
-/// Says which streams hold a packet that nobody takes, and blames the stage behind the last of them.
+/// Names the streams whose packet is not taken; suspects the stage downstream of the last one.
 void Lockstep::explain_standstill(Mismatch& mismatch) {
   const DutOutputs& out = dut_.evaluate(0, true, true);
   std::string waiting;
@@ -98,6 +98,32 @@ void Lockstep::report_missing() {
   explain_standstill(*result_.mismatch);
 }
 
+std::optional<Stage> stage_of_counter(std::string_view name) {
+  using enum Stage;
+  static constexpr std::pair<std::string_view, Stage> kStageOfCounter[]{{"primitives_in", cull},
+                                                                        {"zero_area", cull},
+                                                                        {"backface", cull},
+                                                                        {"empty", cull},
+                                                                        {"no_sample", cull},
+                                                                        {"tiles_visited", coarse_raster},
+                                                                        {"tiles_outside", coarse_raster},
+                                                                        {"trivially_accepted", coarse_raster},
+                                                                        {"tiles_hiz", coarse_raster},
+                                                                        {"samples_tested", coarse_raster},
+                                                                        {"covered", depth_test},
+                                                                        {"depth_passed", depth_test},
+                                                                        {"written", depth_test},
+                                                                        {"alpha_killed", depth_test},
+                                                                        {"tile_fills", framebuffer},
+                                                                        {"tile_evictions", framebuffer},
+                                                                        {"tile_clears", framebuffer},
+                                                                        {"texture_samples", texture_unit},
+                                                                        {"texture_hits", texture_unit},
+                                                                        {"texture_fills", texture_unit}};
+  const auto* found = std::ranges::find(kStageOfCounter, name, &std::pair<std::string_view, Stage>::first);
+  return found == std::end(kStageOfCounter) ? std::nullopt : std::optional(found->second);
+}
+
 void Lockstep::compare_counters() {
   if (config_.counter_units == 0) return;
   if (!snapshot_.empty() && snapshot_ != shown_counters()) return fail_protocol("raster_top", "held counters count");
@@ -109,13 +135,9 @@ void Lockstep::compare_counters() {
   const auto names = m.differing();
   if (names.empty()) return;
   m.arrow = "counters";
-  const Stage counts =
-      names[0].starts_with("tile_")                                                  ? Stage::framebuffer
-      : names[0] == "covered" || names[0] == "depth_passed" || names[0] == "written" ? Stage::depth_test
-      : names[0].starts_with("tiles_") || names[0] == "trivially_accepted" || names[0] == "samples_tested"
-          ? Stage::coarse_raster
-          : Stage::cull;
-  m.stage = info(counts).name;
+  const auto counter =
+      std::ranges::find_if(names, [](std::string_view name) { return stage_of_counter(name).has_value(); });
+  m.stage = counter == names.end() ? "raster_top" : info(*stage_of_counter(*counter)).name;
   m.cycle = cycle_;
   result_.mismatch = std::move(m);
 }

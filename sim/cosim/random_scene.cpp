@@ -203,7 +203,7 @@ void Generator::set_samples() {
     if (random.next() % 3 == 0) state = random_state(state, rows, chooser(random));
 }
 
-/// Of clears behind something drawn those of colours alone stay.
+/// Keeps, of the clears after a draw, those of colours only.
 void Generator::drop_later_clears() {
   bool is_behind = false;
   std::erase_if(scene_.commands, [&](const Command& command) {

@@ -23,7 +23,7 @@ RtlRendering render_rtl(Dut& dut, const Scene& scene, const Config& config, cons
   if (result.run.mismatch) throw std::runtime_error("the RTL hangs: " + result.run.mismatch->hint);
   result.rendering.frame = to_framebuffer(lockstep.memory(), scene.width, scene.height, config);
   const CounterPacket counted = lockstep.counters();
-  if (config.counter_units == 0 || counted.overflow) {  // nobody counted, or too far: what the specification counts
+  if (config.counter_units == 0 || counted.overflow) {  // no counters, or an overflow: use the specification's counts
     result.rendering.counters = render_hardware(scene, config, {}).counters;
   } else {
     result.rendering.counters = lockstep.host_counters();

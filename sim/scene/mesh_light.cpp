@@ -23,7 +23,7 @@ double brightness(const Vec3& normal, const Vec3& to_light) {
 
 // --- lights ----------------------------------------------------------------------------------------------------------
 
-/// From everywhere, where nobody says: of scenes in display codes as OpenGL has it, of linear ones what looks as dark.
+/// Default ambient light: OpenGL's for display codes; for linear colours the value that looks equally dark.
 constexpr double kAmbientOfCodes = 0.2, kLinearAmbient = 0.03;
 
 constexpr OptionParts kLightParts{"--light",

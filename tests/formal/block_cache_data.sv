@@ -17,7 +17,7 @@
   logic              sends_any;
   assign any_bit   = STAMPS'(1) << any_stamp;
   assign sends_any = sends && takes_request && oldest_q == any_slot && sent == any_bit;
-  logic [SAMPLES-1:0]       w_mask_q;  // what W took in the clock before
+  logic [SAMPLES-1:0]       w_mask_q;  // what color_write took in the clock before
   logic [SAMPLES*COLOR-1:0] w_color_q;
   always_ff @(posedge clk_i) begin
     w_mask_q  <= w.mask;
@@ -44,7 +44,7 @@
                                       (w_first_slot_q == any_slot && (w_first_q & any_bit) != '0) ||
                                       (w_second_slot_q == any_slot && (w_second_q & any_bit) != '0));
       assign is_read   = p == 0 ? v_valid_q && v_slot_q == any_slot && v_stamp_q == any_stamp :
-                                  c_valid && c_slot == any_slot && c_stamp == any_stamp;
+                                  c_valid && c.slot == any_slot && c.stamp == any_stamp;
       assign slot_left = ((p == 0 ? depth_left_q[any_slot] : color_left_q[any_slot]) & any_bit) != '0;
       always_ff @(posedge clk_i) if (begins) begin
         is_line_q <= begins_line == any_line;
@@ -58,7 +58,7 @@
           assert (is_line_q == (w_first_line_q == any_line) && fills_q == w_first_fills_q);
         if (p == 1 && w_second_slot_q == any_slot && w_two_q)
           assert (is_line_q == (w_second_line_q == any_line) && fills_q == w_second_fills_q);
-        if (p == 1 && c_valid && c_slot == any_slot) assert (fills_q == c_fills_q);
+        if (p == 1 && c_valid && c.slot == any_slot) assert (fills_q == c_fills_q);
         if (is_left || is_read) assert (is_here_q && slot_left == fills_q);
         if (!is_here_q && slot_left) assert (fills_q);
         if (is_read) assert (is_here_q && !is_left);

@@ -12,8 +12,8 @@
   logic [SAMPLES-1:0]       w_ram_dirty, w_ram_writes, w_ram_dirty_new, w_write_mask_q;
   logic [SAMPLES*COLOR-1:0] w_ram_code, w_ram_code_new;
 
-  // Evictions that W has begun: for how many clocks the older one has been, the one behind it, and the one of any_slot, which
-  // is said to be in its slot when it has been for more than DELAY. Stamps that are left are read until then.
+  // Evictions that color_write has begun: for how many clocks the older one has been, the one behind it, and the one of
+  // any_slot, which is said to be in its slot when it has been for more than DELAY. Stamps that are left are read until then.
   logic [TIME-1:0] first_time_q, second_time_q, any_time_q, first_left, second_left, started;
   always_comb begin
     first_left  = '0;
@@ -40,7 +40,7 @@
     olders = '0;
     for (int i = 0; i < DELAY; i++) olders = olders + TIME'(older[i]);
   end
-  logic any_begun;  // W has begun it, and memory has not all of it
+  logic any_begun;  // color_write has begun it, and memory has not all of it
   assign any_begun = holds_any && 32'(taken_q) - 32'(evictions_behind) > 32'(age);
   always_comb if (runs_q) begin
     // An eviction takes what has been written since the last one of its line, which then has been read (cache_tags_data).
@@ -66,9 +66,9 @@
       if (any_time_q <= TIME'(DELAY)) assert (w_delay_q[any_time_q-1'b1] && 32'(age) == 32'(color_ready_q) + 32'(olders));
       else assert (32'(age) < 32'(color_ready_q));
     end
-    if (c_valid && c_slot == any_slot) assert (any_begun && any_time_q <= TIME'(DELAY));
+    if (c_valid && c.slot == any_slot) assert (any_begun && any_time_q <= TIME'(DELAY));
     // What is still to come into a slot comes before that is said to be all there.
-    if (c_valid) assert (32'(SLOT'(c_slot - oldest_q)) >= 32'(color_ready_q));
+    if (c_valid) assert (32'(SLOT'(c.slot - oldest_q)) >= 32'(color_ready_q));
     if (w_writes_q) assert (w_write_mask_q != '0);
   end
 
@@ -85,7 +85,7 @@
   logic [COLOR+CODE-1:0] clear_before_q;
   always_ff @(posedge clk_i) clear_before_q <= {clear_color, clear_depth};
 
-  // Between X and W: a queue of two (skid_buffer).
+  // Between depth_cache and color_write: a queue of two (skid_buffer).
   localparam int COLORED = raster_pkg::TESTED_STAMP_BITS + SAMPLES * COLOR;
   logic [COLORED-1:0] first_q, second_q, entering;
   logic [1:0]         count_q;
@@ -106,7 +106,7 @@
   end
 
   // The slots: given to evictions in turn, written to memory in turn; which are in the queue.
-  logic [1:0]      evictions_behind;  // those that W has not begun
+  logic [1:0]      evictions_behind;  // those that color_write has not begun
   logic            holds_any, first_evicts, second_evicts;
   logic [SLOT:0] age;
   assign first_evicts     = count_q != '0 && first_q[STAMPS+1] && !w_started_q;

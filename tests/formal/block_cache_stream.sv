@@ -105,9 +105,9 @@
     end
   end
 
-  // No deadlock. An item waits for stamps that are read, one a cycle, for the item in X1, for W, which takes one a cycle but
-  // for stamps that it reads, and then only for a slot or an answer; memory's next waits only for data on their way from X and
-  // W.
+  // No deadlock. An item waits for stamps that are read, one a cycle, for the item at the test, for color_write, which
+  // takes one a cycle but for stamps that it reads, and then only for a slot or an answer; memory's next waits only for data in
+  // flight from depth_cache and color_write.
   always_comb if (runs_q) begin
     if (item_valid && !goes && left_q == '0 && !x1_valid_q && count_q != 2'd2)
       assert ((found.evicts && !slot_free) || (found.source == raster_pkg::DEPTH_SOURCE_MEMORY && !answer_valid));

@@ -38,13 +38,11 @@ module blocks (
   raster_pkg::tag_result_t      made_result;
   raster_pkg::block_order_t     ordered;
   raster_pkg::memory_request_t  flush_request;
-  logic [WORD-1:0]              flush_word, pixel_word_new, pixel_word;
+  logic [WORD-1:0]              flush_word, stored_pixel_word;
+  raster_pkg::pixel_word_t      pixel_word;
   logic [CODE-1:0]              clear_depth;
   logic [COLOR-1:0]             clear_color;
   logic                         depths_are_idle, orders_are_done, is_cleared, is_resolved, at_token, tags_are_idle;
-  logic                         pixel_reads, pixel_writes;
-  logic [raster_pkg::FLAG_WORD_X_BITS-1:0] pixel_word_x;
-  logic [raster_pkg::BLOCK_Y_BITS-1:0]     pixel_word_y;
   cache_tags u_tags (
       .clk_i,
       .rst_ni,
@@ -63,12 +61,8 @@ module blocks (
       .request_ready_i,
       .request_o      (flush_request),
       .request_word_o (flush_word),
-      .pixel_reads_o  (pixel_reads),
-      .pixel_writes_o (pixel_writes),
-      .pixel_word_x_o (pixel_word_x),
-      .pixel_word_y_o (pixel_word_y),
-      .pixel_word_o   (pixel_word_new),
-      .pixel_word_i   (pixel_word),
+      .pixel_word_o   (pixel_word),
+      .pixel_word_i   (stored_pixel_word),
       .clear_depth_o  (clear_depth),
       .clear_color_o  (clear_color),
       .is_cleared_o   (is_cleared),
@@ -77,14 +71,12 @@ module blocks (
       .idle_o         (tags_are_idle)
   );
 
-  logic                      answer_valid, answer_taken, x1_valid, colors_done, evicts_now, victim_valid, victim_last, slot_again;
-  logic [SAMPLES*CODE-1:0]   answer, victim_depth;
+  logic                      answer_valid, answer_taken, x1_valid, colors_done, evicts_now, victim_valid, slot_again;
+  logic [SAMPLES*CODE-1:0]   answer;
   raster_pkg::tested_stamp_t x1_stamp, w;
-  logic [SAMPLES-1:0]        x1_samples, victim_strobe;
-  logic [SLOT-1:0]           evicts_slot, victim_slot;
-  raster_pkg::victim_t       evicts_block;
-  logic [1:0]                evicts_fills;
-  logic [STAMP-1:0]          victim_stamp;
+  logic [SAMPLES-1:0]        x1_samples;
+  raster_pkg::eviction_t     eviction;
+  raster_pkg::depth_victim_t depth_victim;
   logic                      never;
   logic [SAMPLES-1:0]        no_samples, all_samples;
   logic [SAMPLES*(CODE+1)-1:0] no_words;
@@ -119,15 +111,9 @@ module blocks (
       .late_writes_i   (no_samples),
       .late_word_i     (no_words),
       .evicts_o        (evicts_now),
-      .evicts_slot_o   (evicts_slot),
-      .evicts_block_o  (evicts_block),
-      .evicts_fills_o  (evicts_fills),
+      .eviction_o      (eviction),
       .victim_valid_o  (victim_valid),
-      .victim_last_o   (victim_last),
-      .victim_slot_o   (victim_slot),
-      .victim_stamp_o  (victim_stamp),
-      .victim_strobe_o (victim_strobe),
-      .victim_depth_o  (victim_depth),
+      .victim_o        (depth_victim),
       .slot_free_i     (slot_again),
       .idle_o          (depths_are_idle)
   );
@@ -147,11 +133,9 @@ module blocks (
       .data_o ({w, w_color})
   );
 
-  logic                     c_valid, c_ready, write_is_idle, color_answer_valid, color_answer_taken;
-  logic [STAMP-1:0]         c_stamp;
-  logic [SLOT-1:0]          c_slot;
-  logic [SAMPLES*COLOR-1:0] c_color, color_answer;
-  logic [SAMPLES-1:0]       c_color_strobe;
+  logic                      c_valid, c_ready, write_is_idle, color_answer_valid, color_answer_taken;
+  raster_pkg::color_victim_t c;
+  logic [SAMPLES*COLOR-1:0]  color_answer;
   color_write u_write (
       .clk_i,
       .rst_ni,
@@ -165,10 +149,7 @@ module blocks (
       .answer_i       (color_answer),
       .answer_ready_o (color_answer_taken),
       .victim_valid_o (c_valid),
-      .victim_slot_o  (c_slot),
-      .victim_stamp_o (c_stamp),
-      .victim_strobe_o(c_color_strobe),
-      .victim_color_o (c_color),
+      .victim_o       (c),
       .victim_ready_o (c_ready),
       .idle_o         (write_is_idle)
   );
@@ -186,21 +167,12 @@ module blocks (
       .clear_depth_i   (clear_depth),
       .clear_color_i   (clear_color),
       .evicts_i        (evicts_now),
-      .evicts_slot_i   (evicts_slot),
-      .evicts_block_i  (evicts_block),
-      .evicts_fills_i  (evicts_fills),
+      .eviction_i      (eviction),
       .depth_valid_i   (victim_valid),
-      .depth_last_i    (victim_last),
-      .depth_slot_i    (victim_slot),
-      .depth_stamp_i   (victim_stamp),
-      .depth_strobe_i  (victim_strobe),
-      .depth_i         (victim_depth),
+      .depth_i         (depth_victim),
       .slot_free_o     (slot_again),
       .color_valid_i   (c_valid),
-      .color_slot_i    (c_slot),
-      .color_stamp_i   (c_stamp),
-      .color_strobe_i  (c_color_strobe),
-      .color_i         (c_color),
+      .color_i         (c),
       .color_ready_i   (c_ready),
       .request_valid_o (request_valid_o),
       .request_ready_i (request_ready_i),
@@ -213,12 +185,8 @@ module blocks (
       .read_color_o    (read_color),
       .read_of_pixels_o(read_of_pixels),
       .merges_o        (merges),
-      .token_reads_i   (pixel_reads),
-      .token_writes_i  (pixel_writes),
-      .token_word_x_i  (pixel_word_x),
-      .token_word_y_i  (pixel_word_y),
-      .token_word_i    (pixel_word_new),
-      .token_word_o    (pixel_word),
+      .token_i         (pixel_word),
+      .token_word_o    (stored_pixel_word),
       .fills_o         (asks_stamp),
       .stores_o        (writes_stamp),
       .idle_o          (orders_are_done)

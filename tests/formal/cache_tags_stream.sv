@@ -26,7 +26,7 @@
               $past({found_o.source, found_o.depth, found_o.color, found_o.fills}));
     if ($past(request_valid_o && !request_ready_i)) assert (request_valid_o && request_o == $past(request_o));
   end
-  // block_cache puts a request's data together of these.
+  // write_back assembles a request's data from these.
   always_comb if (runs_q && request_valid_o)
     assert (request_o.data == (request_o.plane[1] ? (SAMPLES * LANE)'(request_word_o) : {SAMPLES{LANE'(clear_color_o)}}));
   // The RAMs: sram_word; the flags: clear_flags_data.

@@ -92,8 +92,8 @@
       if (is_left) assert (on_way_to_it == '0);
       if (victim_is_it_q && begun_q) begin
         assert (reads_it_q && !collided_q && read_word_q == snapshot_q && victim_valid_o);
-        assert (victim_strobe_o[any_sample] == (fills_q || snapshot_q[COLOR]));
-        if (snapshot_q[COLOR]) assert (victim_color_o[any_sample*COLOR+:COLOR] == snapshot_q[COLOR-1:0]);
+        assert (victim_o.strobe[any_sample] == (fills_q || snapshot_q[COLOR]));
+        if (snapshot_q[COLOR]) assert (victim_o.color[any_sample*COLOR+:COLOR] == snapshot_q[COLOR-1:0]);
       end
       // For induction.
       if (on_way_to_it[2])

@@ -233,6 +233,15 @@ TEST_P(CosimHarness, AWrongCounterIsNamed) {
   ASSERT_TRUE(result.mismatch.has_value());
   EXPECT_EQ(result.mismatch->arrow, "counters");
   EXPECT_EQ(result.mismatch->differing(), std::vector<std::string>{"tile_fills"});
+  EXPECT_EQ(result.mismatch->stage, "framebuffer");
+}
+
+TEST(CosimCounters, EachIsOfAStageButTheOneThatTellsOfAnOverflow) {
+  for_each_field<CounterPacket>([](const auto& field) {
+    EXPECT_EQ(stage_of_counter(field.name).has_value(), field.name != "overflow") << field.name;
+  });
+  EXPECT_EQ(stage_of_counter("alpha_killed"), Stage::depth_test);
+  EXPECT_EQ(stage_of_counter("texture_hits"), Stage::texture_unit);
 }
 
 TEST_P(CosimHarness, CountersThatMoveWhileTheyAreHeldBreakTheProtocol) {

@@ -1,5 +1,5 @@
-// The time of everything behind the stamps: primitive_join, line_raster, depth_test, framebuffer, memory. Both ways in
-// which the RTL does what comes before end here (pipelined_timing.hpp, serial_timing.hpp).
+// Timing of the stages downstream of interpolate: primitive_join, line_raster, depth_test, framebuffer, memory. Base class of
+// pipelined_timing.hpp and serial_timing.hpp.
 #pragma once
 
 #include <algorithm>

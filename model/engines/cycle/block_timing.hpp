@@ -1,5 +1,6 @@
 // The time of a framebuffer of blocks (cache.kind blocks): rtl_ref/stages/cache_tags.sv, depth_cache.sv,
-// color_write.sv, write_back.sv. Of fragment m: t is when the tags are through with it, x the depth stage, w the colour stage.
+// late_test.sv, color_write.sv, write_back.sv, memory_answers.sv, pixel_colors.sv. Of fragment m: t is when the tags are
+// through with it, x the depth stage, w the colour stage.
 //
 // The tags look a fragment up, the depth stage tests it, the colour stage writes its colours; between the tags and the depth
 // stage the fragments wait for memory, in order. Every wait is for an earlier fragment or eviction, so the time of one is a
@@ -468,11 +469,11 @@ class BlockTiming {
   std::optional<TextureTiming> texture_;
   std::optional<FogTiming> fog_;
   std::optional<LightTiming> light_;
-  Cycle
-      looked_ = 0,
-      left_ = 0, tested_ = 0, colored_ = 0,
-      ordered_ =
-          0;  ///< when the last one was looked up in the tags, left it, the depth stage, the colour stage; the last request's cycle
+  Cycle looked_ = 0;                        ///< the last fragment was looked up in the tags
+  Cycle left_ = 0;                          ///< it left them
+  Cycle tested_ = 0;                        ///< it left the depth stage
+  Cycle colored_ = 0;                       ///< the colour stage took it
+  Cycle ordered_ = 0;                       ///< the last request
   std::array<Cycle, 2> fall_reads_{};       ///< when words of flags that fell were read, the last one first
   std::optional<BlockAddress> last_block_;  ///< of the last fragment, where it has samples and no token came since
   Cycle depth_free_ = 0;                    ///< when the depth RAM has been read for the last eviction

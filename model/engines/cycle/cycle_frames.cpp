@@ -10,7 +10,7 @@
 namespace halfplane {
 namespace {
 
-/// What was counted behind `before`, and of the frame at work the rest.
+/// Totals since `before`; members of the current frame are taken as they are.
 TimingTotals since(TimingTotals now, const TimingTotals& before) {
   using T = TimingTotals;
   for (auto count : {&T::hazard_cycles, &T::move_cycles, &T::memory_cycles, &T::bound_cycles, &T::visit_cycles,

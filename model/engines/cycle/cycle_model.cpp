@@ -109,7 +109,7 @@ class CycleModelOf final : public CycleModel {
       stencil.side[0] = replacing_stencil(stencil.clear_value());
       (void)set_stencil_flags(drawn.state, stencil.side);
     }
-    set({}, stencil);  // nobody has set colours for a clear
+    set({}, stencil);  // a clear ignores the colour registers
     send(host, drawn);
     set(held, held_stencil);
   }

@@ -11,7 +11,7 @@ namespace halfplane {
 /// The defaults are the RTL. Queues: items that wait in front of a stage, in a FIFO of a cycle's latency; 0: none.
 struct TimingParameters {
   int triangle_queue = 0, setup_queue = 0, tile_queue = 0, fragment_queue = 0;
-  int stamp_queue = 2;  ///< the skid buffer behind interpolate, at least 1
+  int stamp_queue = 2;  ///< places in the FIFO (serial: the skid buffer) after interpolate, at least 1
   int divide_bits = 2;  ///< quotient bits a cycle of the pipelined triangle_setup
   int untested_tiles =
       Hiz::kUntestedTiles;  ///< a triangle of at most so many tiles in x and in y never reads HiZ bounds

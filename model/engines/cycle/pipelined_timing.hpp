@@ -1,5 +1,5 @@
 // The time of the pipelined RTL: cull, triangle_setup, coarse_raster, fine_raster, interpolate (setup.kind pipelined).
-// Each register, unit and buffer of the .sv is a Station here; what is written behind a transfer is the stage's own work.
+// Each register, unit and buffer of the .sv is a Station here; the lines after a transfer are the stage's own work.
 #pragma once
 
 #include <bit>

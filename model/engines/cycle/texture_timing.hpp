@@ -1,4 +1,4 @@
-// The time of the texture unit: rtl_ref/stages/texture_unit.sv, texture_coordinates.sv, texture_cache.sv.
+// The time of the texture unit: rtl_ref/stages/texture_unit.sv and the texture_*.sv in it.
 //
 // Every wait is for an earlier stamp or sample, so the time of one is a maximum over those before it. Of stamp m and sample n:
 //
@@ -11,7 +11,7 @@
 //   g(m) = that of its last sample; without texture max(x(m) + 2, g(m-1) + 1, w(m-1))
 //
 // A sample whose colour is divided and that has no texture goes by the tags: c(n) = max(s(n) + 10, c(n-1) + 1, g(m-1) + 1,
-// w(m-1)) is its e(n). A state lies in front of it, so nobody is in front of the tags, and its split waits for no room there.
+// w(m-1)) is its e(n). A state precedes it, so no sample waits upstream of the tags and its split needs no room there.
 // One with both has its colour before its texel.
 //
 // With a linear filter a sample asks for its lines one by one, and leaves the tags with the last of them or later. It

@@ -329,7 +329,7 @@ void FrameRenderer::settle(const Rect& rect) {
     std::uint8_t is_missing = 0;  // in memory
     for (std::size_t i = 0; i < kTiles; ++i)
       is_missing |= static_cast<std::uint8_t>(waits[i] & ~tiles_.held[bin * kTiles + i]);
-    // Of samples nobody knows what they hold.
+    // The contents of samples are unknown.
     if (is_whole && is_missing == 0 && frame.samples.empty()) {
       std::fill_n(waits, kTiles, std::uint8_t{0});
       return;

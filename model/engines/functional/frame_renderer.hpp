@@ -74,8 +74,8 @@ class FrameRenderer {
       arena_;  ///< for more than one thread; kept, or every part of a frame would wait for it
   int bins_x_ = 0, bins_y_ = 0;
   Rendering rendering_;
-  bool keeps_samples_ = true;               ///< somebody looks at Framebuffer::samples when the frame is done
-  std::vector<Framebuffer> spare_samples_;  ///< where nobody does: for the next frame
+  bool keeps_samples_ = true;               ///< Framebuffer::samples is read after the frame
+  std::vector<Framebuffer> spare_samples_;  ///< if not: reused for the next frame
   TileStates tiles_;
   std::vector<std::uint8_t> is_in_target_;  ///< by tile: all bits or none
   std::uint32_t clear_depth_ = 0, clear_color_ = 0;
@@ -92,7 +92,7 @@ class FrameRenderer {
   std::size_t entries_done_ = 0;
   std::vector<Counters> bin_counters_;
   bool compares_ = false;             ///< bins with those of the frame before
-  std::vector<Signature> held_bins_;  ///< what the frame holds in each bin; empty: nobody knows
+  std::vector<Signature> held_bins_;  ///< what the frame holds in each bin; empty: unknown
   std::vector<Signature> texels_;     ///< of each texture, where bins are compared
 };
 

@@ -37,8 +37,8 @@ inline constexpr double kSlowFrame = 2;
 inline constexpr double kShortFrame = 0.1, kWarmUp = 0.02;
 
 /// Measures every frame `repeat` times, in turns, so that what else the machine does falls on all of them alike; the
-/// turn before warms up. Whoever throws a std::runtime_error there is left out. `progress` gets 0...1; may be empty.
-/// Interrupted, thrown there or by a frame, ends it: who was not measured by then has no seconds.
+/// turn before warms up. A frame that throws a std::runtime_error there is left out. `progress` gets 0...1; may be empty.
+/// Interrupted, thrown there or by a frame, ends it: frames not measured by then have no seconds.
 [[nodiscard]] std::vector<FrameTimes> measure_in_turns(std::span<const Frame> frames, int repeat,
                                                        const std::function<void(double)>& progress = {});
 

@@ -22,7 +22,7 @@ namespace halfplane {
 
 /// The errors of the pixels under so many layers.
 struct LayerRow {
-  std::uint32_t layers = 0;  ///< colour writes that looked at what was stored, since one that did not
+  std::uint32_t layers = 0;  ///< colour writes that read the stored colour, since the last that did not
   std::uint64_t pixels = 0;
   double max = 0, rms = 0;   ///< LSB of the stored format, the worst channel of each pixel
   double bound = 0;          ///< the largest

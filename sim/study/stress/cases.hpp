@@ -13,7 +13,7 @@ struct Case {
   std::string_view item;         ///< of the stress list; "" for what is not on it
   std::string_view property;     ///< in words
   void (*run)(Unit&);            ///< makes one random input and checks it
-  int every = 1;                 ///< runs in every so manieth round: dear units run more rarely
+  int every = 1;                 ///< runs once in this many rounds: expensive units run more rarely
   bool own_configs = false;      ///< chooses its configurations itself
   bool prefers_presets = false;  ///< half of its units run in the presets
 };

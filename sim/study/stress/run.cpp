@@ -99,7 +99,7 @@ class Driver {
     }
   }
 
-  /// Whether whoever looks at the progress lets it go on; if not, nobody begins another unit.
+  /// Whether the progress callback lets the run continue; if not, no further unit starts.
   bool goes_on(double done) {
     if (!options_.progress) return true;
     try {

@@ -125,8 +125,8 @@ struct Places {
   HALFPLANE_INLINE std::size_t operator[](int i) const { return word_at(place.data(), i); }
 };
 
-/// Texels by loads and stores of one word each, beside which lanes go on: half the time of a gather. Whoever loads them as
-/// lanes waits until they are in the cache, and so does something else first. `places` may be `to`.
+/// Texels by loads and stores of one word each, in parallel to lane arithmetic: half the time of a gather. A vector load of
+/// the result stalls until the stores have completed, so do other work first. `places` may be `to`.
 HALFPLANE_INLINE void fetch_texels(const void* texels, const std::uint32_t* places, std::uint32_t* to) {
   for (int i = 0; i < kBlockPixels; ++i) to[i] = static_cast<const std::uint32_t*>(texels)[word_at(places, i)];
 }

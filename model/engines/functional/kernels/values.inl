@@ -104,7 +104,7 @@ HALFPLANE_INLINE void for_each_block(Visit&& visit) {
   visit(std::integral_constant<std::size_t, 3>{});
 }
 
-/// Of the pixels of a tile, a bit each, those of a block.
+/// Mask of a block's pixels, from the mask of its tile.
 HALFPLANE_INLINE std::uint32_t block_bits(std::uint64_t pixels, std::size_t block) {
   return static_cast<std::uint32_t>(pixels >> (kBlockPixels * block) & 0xffff);
 }
