@@ -1,0 +1,123 @@
+// A context: the state of OpenGL 1.5, what is shared with others, and where it draws. Commands are functions on it
+// (commands.hpp); entry points are generated from gl.xml (entry_points.py).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "frame.hpp"
+#include "objects.hpp"
+#include "shade.hpp"
+#include "state.hpp"
+
+namespace halfplane::gl {
+
+/// Where contexts draw: a window, a pbuffer. Made by the window system's side (glx/, egl/), which shows `frame` in present().
+struct Drawable {
+  Drawable(const Options& options, int width, int height) : frame(options, width, height) {}
+  virtual ~Drawable() = default;
+  Drawable(const Drawable&) = delete;
+  Drawable& operator=(const Drawable&) = delete;
+
+  /// Shows the picture; called by swaps, and by glFlush and glFinish where `single_buffered`.
+  virtual void present() {}
+
+  Frame frame;
+  bool single_buffered = false;
+};
+
+using Mat4 = std::array<double, 16>;  ///< column by column, as OpenGL has them
+inline constexpr Mat4 kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+
+struct EvaluatorMap {
+  int components = 0;
+  std::array<int, 2> order{1, 1};
+  std::array<double, 4> range{0, 1, 0, 1};
+  std::vector<double> point;  ///< order[0] * order[1] * components, v fastest
+};
+
+struct SavedAttributes {
+  GLbitfield mask = 0;
+  State state;
+  // Of GL_TEXTURE_BIT: parameters of the textures that were bound, without their images.
+  std::vector<TextureObject> textures;
+};
+
+struct Query {
+  bool active = false;
+  std::uint64_t begun_at = 0, samples = 0;
+};
+
+struct Context {
+  explicit Context(std::shared_ptr<SharedObjects> shared_objects = std::make_shared<SharedObjects>());
+  ~Context();
+  Context(const Context&) = delete;
+  Context& operator=(const Context&) = delete;
+
+  State state;
+  ClientState client;
+  std::shared_ptr<SharedObjects> shared;
+  Drawable* drawable = nullptr;       ///< null: nothing is drawn
+  Drawable* read_drawable = nullptr;  ///< where glReadPixels reads
+  bool was_current = false;           ///< viewport and scissor have been set to the size of the first drawable
+
+  GLenum error = GL_NO_ERROR;
+  /// Keeps the first error until glGetError.
+  void fail(GLenum code) {
+    if (error == GL_NO_ERROR) error = code;
+  }
+
+  // Matrices (matrix.cpp). The last one of each stack is current.
+  std::vector<Mat4> modelview{kIdentity}, projection{kIdentity}, color_matrix{kIdentity};
+  std::array<std::vector<Mat4>, kTextureUnits> texture_matrix;
+
+  // Between glBegin and glEnd (vertex.cpp).
+  static constexpr GLenum kNoPrimitive = ~0U;
+  GLenum primitive = kNoPrimitive;
+  std::vector<ShadedVertex> vertices;
+  [[nodiscard]] bool inside_begin() const { return primitive != kNoPrimitive; }
+
+  /// Raised by every command that is not a vertex or an attribute of one, so that what follows from state is computed once.
+  std::uint64_t revision = 1;
+  std::unique_ptr<ShadingConstants, ShadingConstantsDeleter> shading;  ///< shade.cpp
+
+  std::map<GLenum, EvaluatorMap> maps;              ///< by GL_MAP1_... and GL_MAP2_...
+  std::map<GLenum, std::vector<float>> pixel_maps;  ///< by GL_PIXEL_MAP_...
+  std::vector<SavedAttributes> attributes;          ///< glPushAttrib
+  std::vector<std::pair<GLbitfield, ClientState>> client_attributes;
+  std::array<TextureObject, 4> default_textures;  ///< name 0, by kTextureTargets
+  std::array<std::array<TextureImage, 13>, 4> proxies;
+  std::map<GLuint, Query> queries;
+  GLuint active_query = 0;
+
+  // glRenderMode (feedback.cpp).
+  GLenum render_mode = GL_RENDER;
+  std::vector<GLuint> names;
+  GLuint* select_buffer = nullptr;
+  GLfloat* feedback_buffer = nullptr;
+  GLsizei select_size = 0, feedback_size = 0;
+  GLenum feedback_type = GL_2D;
+  std::size_t feedback_used = 0, select_used = 0;
+  GLint hits = 0;
+  bool overflowed = false, was_hit = false;
+  double hit_low = 1, hit_high = 0;
+
+  std::vector<std::array<float, 4>> accumulation;  ///< RGBA of each pixel, rows from the bottom; empty until it is used
+
+  // Display lists (list.cpp).
+  std::shared_ptr<DisplayList> compiling;  ///< null: none
+  GLuint compiling_name = 0;
+  bool compiles_and_executes = false;
+  int list_depth = 0;
+};
+
+/// The context of this thread; null: none.
+[[nodiscard]] Context* current();
+/// Makes it that of this thread, draws and reads where it says. Null: none.
+void make_current(Context* context, Drawable* draw, Drawable* read);
+
+}  // namespace halfplane::gl

@@ -1,0 +1,78 @@
+// A frame of a program as a scene of the model: what is drawn is collected, and drawn when the program looks at it or swaps.
+// So that a saved frame is a capture, and any engine can draw it again.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "../../model/config.hpp"
+#include "../../model/scene.hpp"
+#include "../../model/stages/framebuffer.hpp"
+
+namespace halfplane::gl {
+
+enum class OnMissing { host, warn, stop };
+
+/// What `halfplane run` decides, in the environment variable HALFPLANE_GL as JSON (options.cpp).
+struct Options {
+  Config config;
+  int threads = 1;
+  OnMissing on_missing = OnMissing::warn;
+  bool hud = false;
+  bool cycles = false;                   ///< the cycle engine draws the frames from `first_frame` to `last_frame`, too
+  int first_frame = 0, last_frame = -1;  ///< -1: to the end
+  double mhz = 0;                        ///< clock of the hardware, 0: not said
+  std::string memory;                    ///< --memory, as `render` takes it
+  std::vector<int> save;                 ///< frames that are written as captures
+  std::string save_to;                   ///< path of `save`, or the folder of all frames
+  bool save_all = false;
+  std::string results;  ///< file that takes one line of JSON for each frame; empty: none
+};
+/// Of HALFPLANE_GL, or the defaults. Throws InputError.
+[[nodiscard]] Options options_from_environment();
+
+class Frame {
+ public:
+  /// Black, as far as can be. Throws InputError for a size that the configuration does not take.
+  Frame(const Options& options, int width, int height);
+  ~Frame();
+
+  [[nodiscard]] int width() const;
+  [[nodiscard]] int height() const;
+  [[nodiscard]] const Options& options() const;
+  /// Another size: what was drawn is lost.
+  void resize(int width, int height);
+
+  /// Clears inside the scissor of `state`, all channels.
+  void clear(const halfplane::State& state, const Clear& what);
+  /// `indices` count within `vertices`.
+  void draw(const halfplane::State& state, Topology topology, std::span<const Vertex> vertices,
+            std::span<const std::uint32_t> indices);
+  /// The number, for State::texture, of the texture that was made for `key` (TextureObject::revision and what else makes it
+  /// another one); made once and kept over frames while it is used.
+  [[nodiscard]] std::uint32_t texture(std::uint64_t key, const std::function<halfplane::Texture()>& make);
+
+  /// What has been drawn, after drawing what waits. Valid until the next call.
+  [[nodiscard]] const Framebuffer& picture();
+  /// Samples that passed the depth test since the program began, after drawing what waits: for occlusion queries.
+  [[nodiscard]] std::uint64_t samples_passed();
+  /// Ends the frame: draws what waits, then saves and measures what the options ask for.
+  void end();
+
+  /// Says once for each `what` that this configuration does not have it, and how it is drawn instead; ends the program
+  /// where the options say stop.
+  void missing(const std::string& what, const std::string& instead);
+
+  /// Seconds spent in the engine since the program began, beside those in the driver.
+  [[nodiscard]] double raster_seconds() const;
+
+ private:
+  struct Memory;
+  std::unique_ptr<Memory> memory_;
+};
+
+}  // namespace halfplane::gl

@@ -1,0 +1,39 @@
+// Pixels on their way between the program's memory and the driver (OpenGL 1.5, 3.6.3 to 3.6.5, 4.3.2).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "state.hpp"
+
+namespace halfplane::gl {
+
+struct Context;
+
+/// Pixels as real numbers after glPixelTransfer, rows from the bottom as in the program's memory. Colours are RGBA in 0...1;
+/// depth, stencil and index lie in the first component.
+struct Image {
+  int width = 0, height = 0, depth = 1;
+  GLenum format = GL_RGBA;  ///< GL_RGBA, GL_DEPTH_COMPONENT, GL_STENCIL_INDEX or GL_COLOR_INDEX
+  std::vector<std::array<float, 4>> pixel;
+};
+
+/// Bits of glBitmap and glPolygonStipple, row 0 at the bottom.
+struct Bitmap {
+  int width = 0, height = 0;
+  std::vector<bool> bit;
+};
+
+/// GL_INVALID_ENUM or GL_INVALID_OPERATION when format and type do not go together, else GL_NO_ERROR.
+[[nodiscard]] GLenum check_format(GLenum format, GLenum type);
+
+/// Reads the program's memory, by Context::client's unpack state and pixel transfer. Precondition: check_format().
+[[nodiscard]] Image unpack(const Context& context, int width, int height, int depth, GLenum format, GLenum type,
+                           const void* pixels);
+/// Writes to the program's memory, by the pack state and pixel transfer. Precondition: check_format().
+void pack(const Context& context, const Image& image, GLenum format, GLenum type, void* pixels);
+[[nodiscard]] Bitmap unpack_bitmap(const Context& context, int width, int height, const GLubyte* bits);
+
+}  // namespace halfplane::gl
