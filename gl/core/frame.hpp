@@ -67,6 +67,10 @@ class Frame {
   /// where the options say stop.
   void missing(const std::string& what, const std::string& instead);
 
+  /// What Options::hud asks for, into a picture that is about to be shown: 0xrrggbb, rows from the top. Leaves the frame as
+  /// it is; does nothing without the option.
+  void draw_hud(std::span<std::uint32_t> xrgb, int width, int height, int pitch_pixels) const;
+
   /// Seconds spent in the engine since the program began, beside those in the driver.
   [[nodiscard]] double raster_seconds() const;
 
