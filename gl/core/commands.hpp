@@ -19,7 +19,7 @@ struct Params {
   Vec4 value{};
   bool is_integer = false, is_vector = false;
 };
-[[nodiscard]] Vec4 color_of(const Params& params);
+[[nodiscard]] Vec4 color_of(const Params& params);  // light.cpp, as param_count()
 /// Values that `pname` takes in the v variants of light, material, fog, ...: 1, 3 or 4; 1 for what is none.
 [[nodiscard]] int param_count(GLenum pname);
 
@@ -59,6 +59,9 @@ void polygon_stipple(Context&, std::array<std::uint32_t, 32> rows);
 void light(Context&, GLenum light, GLenum pname, Params params);
 void light_model(Context&, GLenum pname, Params params);
 void color_material(Context&, GLenum face, GLenum mode);
+/// Copies the current colour to the materials that follow it, if GL_COLOR_MATERIAL is enabled. For color(), enable() and
+/// pop_attrib().
+void track_color(Context&);
 void fog(Context&, GLenum pname, Params params);
 
 // Matrices: list (matrix.cpp).

@@ -48,6 +48,7 @@ struct SavedAttributes {
 };
 
 struct Query {
+  bool exists = false;  ///< has been begun, not only named
   bool active = false;
   std::uint64_t begun_at = 0, samples = 0;
 };

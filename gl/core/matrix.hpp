@@ -1,0 +1,36 @@
+// Matrices, and the check of an enumerator, for the commands that take them.
+#pragma once
+
+#include <algorithm>
+#include <initializer_list>
+
+#include "context.hpp"
+
+namespace halfplane::gl {
+
+[[nodiscard]] constexpr Vec4 transformed(const Mat4& m, const Vec4& v) {
+  Vec4 result{};
+  for (std::size_t row = 0; row < 4; ++row)
+    result[row] = m[row] * v[0] + m[4 + row] * v[1] + m[8 + row] * v[2] + m[12 + row] * v[3];
+  return result;
+}
+
+/// A row times a matrix: how planes go from one space to the other, by the inverse of what takes points there.
+[[nodiscard]] constexpr Vec4 transformed_plane(const Vec4& plane, const Mat4& m) {
+  Vec4 result{};
+  for (std::size_t column = 0; column < 4; ++column)
+    for (std::size_t row = 0; row < 4; ++row) result[column] += plane[row] * m[4 * column + row];
+  return result;
+}
+
+[[nodiscard]] Mat4 product(const Mat4& a, const Mat4& b);
+/// The adjugate where there is none.
+[[nodiscard]] Mat4 inverse(const Mat4& m);
+
+/// Sets `where`, or GL_INVALID_ENUM for what is not allowed.
+inline void set_enum(Context& context, GLenum& where, GLenum value, std::initializer_list<GLenum> allowed) {
+  if (std::ranges::find(allowed, value) == allowed.end()) return context.fail(GL_INVALID_ENUM);
+  where = value;
+}
+
+}  // namespace halfplane::gl
