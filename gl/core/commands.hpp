@@ -172,6 +172,8 @@ void bitmap(Context&, std::shared_ptr<const Bitmap> bitmap, double x_origin, dou
             double y_move);
 void copy_pixels(Context&, GLint x, GLint y, GLsizei width, GLsizei height, GLenum type);
 void read_pixels(Context&, GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type, void* pixels);
+void draw_tex(Context&, double x, double y, double z, double width,
+              double height);  // GL_OES_draw_texture (draw_tex.cpp)
 void pixel_zoom(Context&, double x, double y);
 void pixel_transfer(Context&, GLenum pname, double value);
 void pixel_map(Context&, GLenum map, std::shared_ptr<const std::vector<float>> values);

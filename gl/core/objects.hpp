@@ -24,6 +24,8 @@ struct TextureImage {
   std::vector<Texel> texel;           ///< row 0 at t = 0; of depth textures the value in each channel
 };
 
+inline constexpr GLenum kTextureCropRect = 0x8b9d;  ///< GL_TEXTURE_CROP_RECT_OES
+
 struct TextureObject {
   GLuint name = 0;
   GLenum target = 0;  ///< 0 until it is bound for the first time
@@ -36,6 +38,7 @@ struct TextureObject {
   int base_level = 0, max_level = 1000;
   bool generate_mipmap = false;
   GLenum compare_mode = GL_NONE, compare_func = GL_LEQUAL, depth_mode = GL_LUMINANCE;
+  std::array<int, 4> crop{};   ///< GL_TEXTURE_CROP_RECT_OES: x, y, width, height in texels
   std::uint64_t revision = 0;  ///< raised by every change of an image; unique over all textures
 };
 

@@ -1,0 +1,263 @@
+#!/usr/bin/env python3
+"""Writes core/entry_points.cpp: a function for each command of OpenGL 1.5 and OpenGL ES-CM 1.0, and their other names.
+
+    gl/entry_points.py [--check] [gl.xml]
+
+The signatures are those of Khronos' gl.xml (Debian: khronos-api), the commands those of core/commands.hpp. What an entry
+point does follows from its name by the rules below. --check compares and writes nothing; status 1: the file is out of date.
+"""
+import pathlib
+import re
+import sys
+import xml.etree.ElementTree
+
+FEATURES = [f"GL_VERSION_1_{minor}" for minor in range(6)] + ["GL_VERSION_ES_CM_1_0"]
+CORE = pathlib.Path(__file__).parent / "core"
+
+# Name without "gl", count, type and v -> command, arguments before the components, how integers are read.
+COMPONENTS = {
+    "Vertex": ("vertex", "", "real"),
+    "Normal": ("normal", "", "norm"),
+    "Color": ("color", "", "norm"),
+    "SecondaryColor": ("secondary_color", "", "norm"),
+    "Index": ("index", "", "real"),
+    "TexCoord": ("tex_coord", "GLenum{GL_TEXTURE0}", "real"),
+    "MultiTexCoord": ("tex_coord", "$1", "real"),
+    "FogCoord": ("fog_coord", "", "real"),
+    "EvalCoord1": ("eval_coord1", "", "real"),
+    "EvalCoord2": ("eval_coord2", "", "real"),
+    "RasterPos": ("raster_pos", "", "real"),
+    "WindowPos": ("window_pos", "", "real"),
+    "DrawTex": ("draw_tex", "", "real"),
+}
+FILL = {"y": "0.0", "z": "0.0", "w": "1.0", "t": "0.0", "r": "0.0", "q": "1.0", "a": "1.0"}  # components not given
+COUNTS = {"Index": 1, "FogCoord": 1, "EvalCoord1": 1, "EvalCoord2": 2, "DrawTex": 5}
+
+# With values by Params.
+PARAMS = ["Light", "Material", "LightModel", "Fog", "TexParameter", "TexEnv", "TexGen", "PointParameter"]
+# With results by Values.
+GETS = ["Light", "Material", "TexEnv", "TexGen", "TexParameter", "TexLevelParameter", "Map", "PixelMap"]
+
+# Commands that no display list takes, of those that are not void and do not begin with gen_, delete_ or get_.
+AT_ONCE = re.compile(
+    r"(\w+_pointer|interleaved_arrays|client_\w+|\w+_client_attrib|draw_(arrays|elements|range_elements)|multi_draw_\w+"
+    r"|array_element|bind_buffer|buffer_(sub_)?data|begin_query|end_query|finish|flush|read_pixels|pixel_store|new_list"
+    r"|end_list|select_buffer|feedback_buffer)$")
+INSIDE_BEGIN = re.compile(
+    r"(begin|end|vertex|normal|color|secondary_color|index|tex_coord|fog_coord|edge_flag|material|eval_coord.|eval_point."
+    r"|array_element|call_list)$")
+
+# What follows from no rule: the body; $1 is the first argument, $* all.
+BODIES = {
+    "Enable": "listed<&enable>($1, true)",
+    "Disable": "listed<&enable>($1, false)",
+    "EnableClientState": "now<&client_state>($1, true)",
+    "DisableClientState": "now<&client_state>($1, false)",
+    "BlendFunc": "listed<&blend_func_separate>($1, $2, $1, $2)",
+    "EdgeFlagv": "listed_inside<&edge_flag>(*$1)",
+    "ClipPlane": "listed<&clip_plane>($1, vec4($2))",
+    "ClipPlanef": "listed<&clip_plane>($1, vec4($2))",
+    "ClipPlanex": "listed<&clip_plane>($1, vec4_fixed($2))",
+    "RenderMode": "now<&set_render_mode>($1)",
+    "DrawPixels": "with_context([&](Context& c) { enter_draw_pixels(c, $*); })",
+    "Bitmap": "with_context([&](Context& c) { enter_bitmap(c, $*); })",
+    "PolygonStipple": "with_context([&](Context& c) { enter_polygon_stipple(c, $1); })",
+    "TexImage1D": "with_context([&](Context& c) { enter_tex_image(c, 1, $1, $2, $3, $4, 1, 1, $5, $6, $7, $8); })",
+    "TexImage2D": "with_context([&](Context& c) { enter_tex_image(c, 2, $1, $2, $3, $4, $5, 1, $6, $7, $8, $9); })",
+    "TexImage3D": "with_context([&](Context& c) { enter_tex_image(c, 3, $*); })",
+    "TexSubImage1D":
+        "with_context([&](Context& c) { enter_tex_sub_image(c, 1, $1, $2, $3, 0, 0, $4, 1, 1, $5, $6, $7); })",
+    "TexSubImage2D":
+        "with_context([&](Context& c) { enter_tex_sub_image(c, 2, $1, $2, $3, $4, 0, $5, $6, 1, $7, $8, $9); })",
+    "TexSubImage3D": "with_context([&](Context& c) { enter_tex_sub_image(c, 3, $*); })",
+    "CopyTexImage1D": "listed<&copy_tex_image>(1, $1, $2, $3, $4, $5, $6, 1, $7)",
+    "CopyTexImage2D": "listed<&copy_tex_image>(2, $*)",
+    "CopyTexSubImage1D": "listed<&copy_tex_sub_image>(1, $1, $2, $3, 0, 0, $4, $5, $6, 1)",
+    "CopyTexSubImage2D": "listed<&copy_tex_sub_image>(2, $1, $2, $3, $4, 0, $5, $6, $7, $8)",
+    "CopyTexSubImage3D": "listed<&copy_tex_sub_image>(3, $*)",
+    "GetCompressedTexImage": "now<&enter_get_compressed_image>($1, $2)",
+    "CallLists": "with_context([&](Context& c) { enter_call_lists(c, $*); })",
+    "PrioritizeTextures": "with_context([&](Context& c) { enter_prioritize_textures(c, $*); })",
+    "DeleteTextures": "now<&enter_delete_textures>($*)",
+    "GetClipPlane": "outside_begin([&](Context& c) { store_clip_plane(c, $1, $2); })",
+    "GetClipPlanef": "outside_begin([&](Context& c) { store_clip_plane(c, $1, $2); })",
+    "GetClipPlanex": "outside_begin([&](Context& c) { store_clip_plane(c, $1, $2); })",
+    "GetFixedv": "outside_begin([&](Context& c) { store_state_fixed(get(c, $1), $2); })",
+    "GetQueryiv": "now<&get_query>($*)",
+    "GetQueryObjectiv": "now<&get_query_object>($*)",
+    "GetQueryObjectuiv": "now<&get_query_object>($1, $2, reinterpret_cast<GLint*>($3))",
+    "GetBufferParameteriv": "now<&get_buffer_parameter>($*)",
+    "GetBufferPointerv": "now<&get_buffer_pointer>($*)",
+    "GetPointerv": "now<&get_pointer>($*)",
+}
+for rule in ("Map1", "Map2", "PixelMap"):
+    for letters in ("f", "d", "fv", "uiv", "usv"):
+        command = "pixel_map" if rule == "PixelMap" else rule.lower()
+        BODIES[rule + letters] = f"with_context([&](Context& c) {{ enter_{command}(c, $*); }})"
+for rule in ("Boolean", "Integer", "Float", "Double"):
+    BODIES[f"Get{rule}v"] = "outside_begin([&](Context& c) { store(get(c, $1), $2); })"
+
+# Names of extensions that gl.xml gives no alias: those of the name without EXT, and arrays with a count that is not used.
+SAME_WITHOUT_EXT = ["glGenTexturesEXT", "glDeleteTexturesEXT", "glIsTextureEXT", "glAreTexturesResidentEXT"]
+COUNTED = [f"gl{array}PointerEXT" for array in ("Vertex", "Normal", "Color", "Index", "TexCoord", "EdgeFlag")]
+NOTHING = ["glLockArraysEXT", "glUnlockArraysEXT"]
+DRAW_TEX = [f"glDrawTex{letters}OES" for letters in ("s", "i", "f", "x", "sv", "iv", "fv", "xv")]
+
+
+def read_registry(path):
+    """The commands as name -> (result, [(type, parameter)], alias), and the names of FEATURES."""
+    root = xml.etree.ElementTree.parse(path).getroot()
+    commands = {}
+    for command in root.find("commands"):
+        def declared(node):
+            name = node.find("name").text
+            kind = "".join(node.itertext()).strip().removesuffix(name).strip()
+            return re.sub(r"\s*\*", "*", kind).replace("GLclampx", "GLfixed"), name
+        result, name = declared(command.find("proto"))
+        alias = command.find("alias")
+        commands[name] = (result, [declared(p) for p in command.findall("param")],
+                          None if alias is None else alias.get("name"))
+    names = {command.get("name") for feature in root.findall("feature") if feature.get("name") in FEATURES
+             for command in feature.findall("require/command")}
+    return commands, names
+
+
+def read_commands():
+    """Of commands.hpp: name -> types and names of the parameters behind Context&."""
+    text = re.sub(r"//.*", "", (CORE / "commands.hpp").read_text())
+    found = {}
+    for name, parameters in re.findall(r"\b(\w+)\(Context&(?:, )?([^;{]*)\);", text):
+        parts = [part.split() for part in re.split(r",\s*(?![^<]*>)", parameters) if part.strip()]
+        found[name] = [(" ".join(part[:-1]), part[-1]) for part in parts]
+    return found
+
+
+def snake(name):
+    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower()
+
+
+def issued(command):
+    """How a command is issued: the name of a function of entry_conversions.hpp."""
+    inside = "_inside" if INSIDE_BEGIN.match(command) else ""
+    at_once = AT_ONCE.match(command) or re.match(r"(gen|delete|get|is|are|map_b|unmap)_?", command)
+    return ("now" if at_once else "listed") + inside
+
+
+def body_of(name, parameters, commands):
+    """The body of an entry point; None where no rule holds."""
+    stem = name.removeprefix("gl").removesuffix("OES")
+    names = [parameter for _, parameter in parameters]
+    if stem in BODIES:
+        body = BODIES[stem].replace("$*", ", ".join(names))
+        return re.sub(r"\$(\d)", lambda match: names[int(match[1]) - 1], body)
+    if stem.startswith("Compressed"):
+        return "listed<&compressed_image>()"
+
+    if found := re.fullmatch(r"([A-Za-z]+?)([1-4]?)(b|s|i|f|d|ub|us|ui|x)(v?)", stem):
+        base, count, letters, is_vector = found.groups()
+        for family in (base, base + count):
+            if family in COMPONENTS:
+                return components(family, COUNTS.get(family) or int(count), letters == "x", is_vector, names, commands)
+        if base in PARAMS:
+            convert = ("vector" if is_vector else "scalar") + ("_fixed" if letters == "x" else "")
+            first = "".join(f"{n}, " for n in names[:-1])
+            return f"{issued(snake(base))}<&{snake(base)}>({first}{convert}({names[-2]}, {names[-1]}))"
+        if base.startswith("Get") and base[3:] in GETS:
+            store = "store_fixed" if letters == "x" else "store"
+            return (f"outside_begin([&](Context& c) {{ {store}({snake(base)}(c, {', '.join(names[:-1])}), "
+                    f"{names[-1]}); }})")
+        if re.fullmatch(r"(Load|Mult)(Transpose)?Matrix", base):
+            convert = "matrix_fixed" if letters == "x" else "matrix"
+            return f"listed<&{snake(base)}>({convert}({names[0]}))"
+        if base == "Rect" and is_vector:
+            return f"listed<&rect>({', '.join(f'real({n}[{i}])' for n in names for i in range(2))})"
+
+    for command in (snake(stem), snake(re.sub(r"[fdisx]$", "", stem))):
+        if command in commands:
+            return f"{issued(command)}<&{command}>({', '.join(arguments(parameters, commands[command]))})"
+    return None
+
+
+def components(base, count, is_fixed, is_vector, names, commands):
+    command, first, read = COMPONENTS[base]
+    if is_fixed:
+        read = "fixed"
+    given = [f"{names[-1]}[{i}]" for i in range(count)] if is_vector else names[-count:]
+    values = [f"{read}({value})" for value in given]
+    wanted = [parameter for kind, parameter in commands[command] if kind == "double"]
+    first = first.replace("$1", names[0])
+    values += [FILL[parameter] for parameter in wanted[count:]]
+    return f"{issued(command)}<&{command}>({', '.join(([first] if first else []) + values)})"
+
+
+def arguments(given, wanted):
+    """An argument where the command has a double is read as one; the rest has the type of the command already."""
+    assert len(given) == len(wanted), (given, wanted)
+    for (kind, name), (target, _) in zip(given, wanted):
+        yield name if target != "double" else f"fixed({name})" if kind == "GLfixed" else f"real({name})"
+
+
+def entry(name, parameters, body):
+    """A row of the table."""
+    listed = ", ".join(kind + (f" {parameter}" if re.search(rf"\b{parameter}\b", body) else "")
+                       for kind, parameter in parameters)
+    statement = f" return {body}; " if body else ""
+    return f'{{"{name}", function([]({listed}) {{{statement}}})}},'
+
+
+def generate(path):
+    registry, names = read_registry(path)
+    commands = read_commands()
+    rows, missing = {}, []
+    for name in sorted(names) + DRAW_TEX:
+        parameters = [(kind, parameter + "_" * (parameter in commands)) for kind, parameter in registry[name][1]]
+        body = body_of(name, parameters, commands)
+        rows[name] = entry(name, parameters, body or "")
+        if body is None:
+            missing.append(name)
+    if missing:
+        sys.exit(f"no rule for {', '.join(missing)}")
+    for name in COUNTED:
+        parameters = registry[name][1]
+        plain = registry[name.removesuffix("EXT")][1]
+        rows[name] = entry(name, parameters,
+                           body_of(name.removesuffix("EXT"), [(k, p) for k, p in parameters if p != "count"], commands))
+        assert len(plain) + 1 == len(parameters)
+    for name in NOTHING:
+        rows[name] = entry(name, registry[name][1], "")
+    aliases = {name: alias for name, (_, parameters, alias) in registry.items()
+               if name not in rows and alias in rows and len(parameters) == len(registry[alias][1])}
+    aliases.update((name, name.removesuffix("EXT")) for name in SAME_WITHOUT_EXT)
+
+    lines = ["// Written by gl/entry_points.py from Khronos' gl.xml and core/commands.hpp: change that, not this.",
+             "// clang-format off", '#include "entry_points.hpp"', "", "#include <algorithm>", "#include <array>", "",
+             '#include "entry_conversions.hpp"', "", "namespace halfplane::gl {", "namespace {", "",
+             "struct EntryPoint {", "  std::string_view name;", "  const void* function;", "};", "struct Alias {",
+             "  std::string_view name, of;", "};", "",
+             "// Of a lambda without captures, with the calling convention of C.", "template <class Lambda>",
+             "const void* function(Lambda lambda) {", "  return reinterpret_cast<const void*>(+lambda);", "}", "",
+             "// Sorted by name.", "const std::array entry_points{std::to_array<EntryPoint>({"]
+    lines += ["  " + rows[name] for name in sorted(rows)]
+    lines += ["})};", "", "// Sorted by name.", "constexpr std::array aliases{std::to_array<Alias>({"]
+    lines += [f'  {{"{name}", "{aliases[name]}"}},' for name in sorted(aliases)]
+    lines += ["})};", "", "template <class Table>", "auto find(const Table& table, std::string_view name) {",
+              "  const auto at = std::ranges::lower_bound(table, name, {}, [](const auto& row) { return row.name; });",
+              "  return at != table.end() && at->name == name ? &*at : nullptr;", "}", "", "}  // namespace", "",
+              "const void* entry_point(std::string_view name) {",
+              "  if (const Alias* alias = find(aliases, name)) name = alias->of;",
+              "  const EntryPoint* found = find(entry_points, name);",
+              "  return found != nullptr ? found->function : nullptr;", "}", "", "}  // namespace halfplane::gl", ""]
+    return "\n".join(lines)
+
+
+def main():
+    arguments_ = [argument for argument in sys.argv[1:] if argument != "--check"]
+    written = generate(arguments_[0] if arguments_ else "/usr/share/khronos-api/gl.xml")
+    file = CORE / "entry_points.cpp"
+    if "--check" in sys.argv:
+        sys.exit(0 if file.read_text() == written else f"{file} is out of date: run {__file__}")
+    file.write_text(written)
+
+
+if __name__ == "__main__":
+    main()
