@@ -65,6 +65,7 @@ struct Context {
   Drawable* drawable = nullptr;       ///< null: nothing is drawn
   Drawable* read_drawable = nullptr;  ///< where glReadPixels reads
   bool was_current = false;           ///< viewport and scissor have been set to the size of the first drawable
+  bool is_embedded = false;           ///< of OpenGL ES-CM, for glGetString
 
   GLenum error = GL_NO_ERROR;
   /// Keeps the first error until glGetError.
