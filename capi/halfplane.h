@@ -58,7 +58,8 @@ HALFPLANE_API halfplane_scene* halfplane_scene_new(int width, int height);
  * Returns 0. */
 HALFPLANE_API int halfplane_scene_say(halfplane_scene* scene, const char* lines, size_t bytes);
 /* A texture of that name for `state texture NAME`, from width * height texels of R, G, B, A, a byte each, the row of v = 0 first.
- * `format`: as which its texels are stored, "rgba8888", "rgb565"...; `mips`: "none", "box" or "box_linear" (docs/capture.md).
+ * `format`: as which its texels are stored, "rgba8888", "rgb565"...; `mips`: "none", "box", "box_linear" (docs/capture.md),
+ * or "levels": the texels of the smaller levels follow, each of half the sides, down to 1x1.
  * A texture that has the name already is an error. Returns 0. */
 HALFPLANE_API int halfplane_scene_texture(halfplane_scene* scene, const char* name, int width, int height,
                                           const uint8_t* rgba, const char* format, const char* mips);

@@ -159,14 +159,23 @@ Texture read_texture(std::string_view name, int width, int height, const std::ui
   if (!is_side(width) || !is_side(height))
     throw InputError("a texture of " + std::to_string(width) + "x" + std::to_string(height) +
                      " texels; give sides of 1 to " + std::to_string(kLargestTexture));
-  TexelImage image{width, height, {}};
-  image.texel.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  std::memcpy(image.texel.data(), &required(rgba, "the array of texels"), image.texel.size() * sizeof(Texel));
+  const auto stored_as = static_cast<TextureFormat>(place_in(kTextureFormats, format, "texture format"));
+  const auto kind = static_cast<Mips>(place_in(kMips, mips, "kind of mips"));
+  const std::uint8_t* texels = &required(rgba, "the array of texels");
+  const auto next_image = [&texels](int w, int h) {
+    TexelImage image{w, h, {}};
+    image.texel.resize(static_cast<std::size_t>(w) * static_cast<std::size_t>(h));
+    std::memcpy(image.texel.data(), texels, image.texel.size() * sizeof(Texel));
+    texels += image.texel.size() * sizeof(Texel);
+    return image;
+  };
+  std::vector<TexelImage> levels{next_image(width, height)};
+  while (kind == Mips::levels && (levels.back().width > 1 || levels.back().height > 1))
+    levels.push_back(next_image(std::max(1, levels.back().width / 2), std::max(1, levels.back().height / 2)));
   Scene probe;
   probe.name = "texture";
-  probe.textures.push_back(make_texture(std::string(name), image,
-                                        static_cast<TextureFormat>(place_in(kTextureFormats, format, "texture format")),
-                                        static_cast<Mips>(place_in(kMips, mips, "kind of mips"))));
+  probe.textures.push_back(kind == Mips::levels ? make_texture(std::string(name), levels, stored_as)
+                                                : make_texture(std::string(name), levels.front(), stored_as, kind));
   validate(probe);  // its name
   return std::move(probe.textures.front());
 }

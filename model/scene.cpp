@@ -79,6 +79,7 @@ void check_texture(const Scene& scene, std::size_t index, const Place& place) {
     width = std::max(1, width / 2);
     height = std::max(1, height / 2);
   }
+  if (texture.mips == Mips::levels && !texture.is_complete()) fail("levels of its own that end before 1x1");
 }
 
 /// A member holds what its row of the table allows.

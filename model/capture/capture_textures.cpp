@@ -76,9 +76,11 @@ void TextureReader::read_texture(CaptureText& text, std::vector<Texture>& textur
   }
   while (text.has_word()) {
     constexpr std::array<std::string_view, 2> options{"format", "mips"};
-    if (text.choice("an option of a texture", options) == 1)
+    if (text.choice("an option of a texture", options) == 1) {
       mips = static_cast<Mips>(text.choice("mips", kMips));
-    else if (source == 2)
+      if (mips == Mips::levels && source != 2)
+        text.fail("mips levels of a texture that is not inline; write its levels in texels lines, or mips box");
+    } else if (source == 2)
       text.fail("format behind inline, which names it already");
     else
       format = static_cast<TextureFormat>(text.choice("the format", kTextureFormats));
@@ -114,17 +116,23 @@ void TextureReader::read_palette(CaptureText& text) {
 void TextureReader::read_texels(CaptureText& text, std::vector<Texture>& textures) {
   if (!incomplete_) text.fail("texels without a texture inline before them, or more of them than it has");
   Texture& texture = incomplete_->texture;
-  TextureLevel& image = texture.level.front();
-  const auto size = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+  const auto is_full = [&texture] {
+    const TextureLevel& level = texture.level.back();
+    return level.code.size() == static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height);
+  };
   const bool has_palette = palette_size(texture.format) != 0;
   read_hex(text, digits_of(texture.format), "texels", [&](std::uint32_t code) {
     if (has_palette && code >= texture.palette.size())
       text.fail("texel " + std::to_string(code) + " of a palette of " + std::to_string(texture.palette.size()));
-    image.code.push_back(code);
+    TextureLevel& level = texture.level.back();
+    if (is_full())
+      text.fail("more texels than the " + std::to_string(level.code.size()) + " of " +
+                (texture.last_level() == 0 ? "" : "the last level of ") + "texture " + quoted_word(texture.name));
+    level.code.push_back(code);
+    if (is_full() && texture.mips == Mips::levels && !texture.is_complete())
+      texture.level.push_back({std::max(1, level.width / 2), std::max(1, level.height / 2), {}});
   });
-  if (image.code.size() > size)
-    text.fail("more texels than the " + std::to_string(size) + " of texture " + quoted_word(texture.name));
-  if (image.code.size() < size) return;
+  if (!is_full()) return;
   add_mips(texture);
   textures.push_back(std::move(texture));
   incomplete_.reset();
@@ -132,9 +140,11 @@ void TextureReader::read_texels(CaptureText& text, std::vector<Texture>& texture
 
 void TextureReader::expect_complete(const CaptureText& text) const {
   if (!incomplete_) return;
-  const TextureLevel& image = incomplete_->texture.level.front();
-  text.fail("texture " + quoted_word(incomplete_->texture.name) + " from line " + std::to_string(incomplete_->line) +
-            " has " + std::to_string(image.code.size()) + " of its " + std::to_string(image.width) + "x" +
+  const TextureLevel& image = incomplete_->texture.level.back();
+  const int n = incomplete_->texture.last_level();
+  text.fail((n == 0 ? "" : "level " + std::to_string(n) + " of ") + "texture " +
+            quoted_word(incomplete_->texture.name) + " from line " + std::to_string(incomplete_->line) + " has " +
+            std::to_string(image.code.size()) + " of its " + std::to_string(image.width) + "x" +
             std::to_string(image.height) + " texels; write the others in texels lines behind it");
 }
 
@@ -151,12 +161,17 @@ void write_texture(const Texture& texture, std::string& out) {
     for (const std::uint8_t channel : c) append_hex(out, channel, 2);
   }
   if (!texture.palette.empty()) out += '\n';
-  for (std::size_t i = 0; i < image.code.size(); ++i) {
-    const std::size_t column = i % static_cast<std::size_t>(image.width);
-    if (column % 16 == 0) out += column == 0 ? (i == 0 ? "texels " : "\ntexels ") : " ";
-    append_hex(out, image.code[i], digits_of(texture.format));
+  const std::size_t levels =
+      texture.mips == Mips::levels ? texture.level.size() : 1;  // the others follow from the image
+  for (std::size_t n = 0; n < levels; ++n) {
+    const TextureLevel& level = texture.level[n];
+    for (std::size_t i = 0; i < level.code.size(); ++i) {
+      const std::size_t column = i % static_cast<std::size_t>(level.width);
+      if (column % 16 == 0) out += column == 0 ? (i == 0 ? "texels " : "\ntexels ") : " ";
+      append_hex(out, level.code[i], digits_of(texture.format));
+    }
+    out += '\n';
   }
-  out += '\n';
 }
 
 }  // namespace halfplane

@@ -193,10 +193,28 @@ std::uint32_t encode_texel(TextureFormat format, const Texel& texel, std::span<c
   return code;
 }
 
-Texture make_texture(std::string name, const TexelImage& image, TextureFormat format, Mips mips) {
+namespace {
+
+void check_sides(const std::string& name, const TexelImage& image) {
   if (image.width < 1 || image.height < 1 || image.width > kLargestTexture || image.height > kLargestTexture)
     throw InputError("texture " + name + " of " + std::to_string(image.width) + "x" + std::to_string(image.height) +
                      " texels; give 1x1 to 4096x4096");
+}
+
+/// Level `n` decoded.
+TexelImage decoded(const Texture& texture, int n) {
+  const TextureLevel& level = texture.level[static_cast<std::size_t>(n)];
+  TexelImage image{level.width, level.height, {}};
+  image.texel.reserve(level.code.size());
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) image.texel.push_back(texture.texel(n, x, y));
+  return image;
+}
+
+}  // namespace
+
+Texture make_texture(std::string name, const TexelImage& image, TextureFormat format, Mips mips) {
+  check_sides(name, image);
   Texture texture{std::move(name), format, mips, {}, {}};
   if (palette_size(format) != 0) texture.palette = palette_of(texture.name, image, format);
   texture.level.push_back(encoded(texture, image));
@@ -204,12 +222,29 @@ Texture make_texture(std::string name, const TexelImage& image, TextureFormat fo
   return texture;
 }
 
+Texture make_texture(std::string name, std::span<const TexelImage> levels, TextureFormat format) {
+  if (levels.empty()) throw InputError("texture " + name + " without an image; give at least one level");
+  if (palette_size(format) != 0) throw InputError("texture " + name + " of a palette with levels; give them as codes");
+  check_sides(name, levels.front());
+  Texture texture{std::move(name), format, Mips::levels, {}, {}};
+  int width = levels.front().width, height = levels.front().height;
+  for (const TexelImage& image : levels) {
+    if (image.width != width || image.height != height || texture.is_complete())
+      throw InputError("texture " + texture.name + ": level " + std::to_string(texture.level.size()) + " of " +
+                       std::to_string(image.width) + "x" + std::to_string(image.height) +
+                       " texels; each level has half the size of the one before, down to 1x1");
+    texture.level.push_back(encoded(texture, image));
+    width = std::max(1, width / 2);
+    height = std::max(1, height / 2);
+  }
+  add_mips(texture);
+  return texture;
+}
+
 void add_mips(Texture& texture) {
-  texture.level.resize(1);
+  if (texture.mips != Mips::levels) texture.level.resize(1);
   if (texture.mips == Mips::none) return;
-  TexelImage image{texture.width(), texture.height(), {}};
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) image.texel.push_back(texture.texel(0, x, y));
+  const TexelImage image = decoded(texture, texture.last_level());
   for (int width = image.width, height = image.height; width > 1 || height > 1;) {
     width = std::max(1, width / 2);
     height = std::max(1, height / 2);

@@ -21,10 +21,10 @@ enum class TextureFormat : std::uint8_t { l8, la88, rgb565, rgba5551, rgba4444, 
 inline constexpr std::array<std::string_view, 8> kTextureFormats{"l8",       "la88",     "rgb565", "rgba5551",
                                                                  "rgba4444", "rgba8888", "p4",     "p8"};
 
-/// How the smaller levels are made: not at all, or as means over boxes, of the codes or of the light that they stand for
-/// (sRGB).
-enum class Mips : std::uint8_t { none, box, box_linear };
-inline constexpr std::array<std::string_view, 3> kMips{"none", "box", "box_linear"};
+/// Where the smaller levels come from: there are none; means over boxes of the image, of its channels or of the light that
+/// they stand for (sRGB); images of their own.
+enum class Mips : std::uint8_t { none, box, box_linear, levels };
+inline constexpr std::array<std::string_view, 4> kMips{"none", "box", "box_linear", "levels"};
 
 enum class TexturePattern : std::uint8_t { chequer, gradient, grid };
 inline constexpr std::array<std::string_view, 3> kTexturePatterns{"chequer", "gradient", "grid"};
@@ -65,6 +65,10 @@ struct Texture {
 
   [[nodiscard]] int width() const { return level.front().width; }
   [[nodiscard]] int height() const { return level.front().height; }
+  /// Whether its levels reach down to 1x1.
+  [[nodiscard]] bool is_complete() const {
+    return !level.empty() && level.back().width == 1 && level.back().height == 1;
+  }
   [[nodiscard]] int last_level() const { return static_cast<int>(level.size()) - 1; }
   /// Precondition: inside the level.
   [[nodiscard]] Texel texel(int n, int x, int y) const {
@@ -82,7 +86,10 @@ struct Texture {
 /// Stores an image. Throws InputError when its colours are more than the format's palette holds, or its sides are not 1 to
 /// kLargestTexture.
 [[nodiscard]] Texture make_texture(std::string name, const TexelImage& image, TextureFormat format, Mips mips);
-/// The same of codes: `level` holds the image alone, its smaller levels are added.
+/// Stores an image and its smaller levels, which may end before 1x1: the others are box means of the last one. Throws
+/// InputError likewise, for a level that has not half the size of the level before, and for palettes.
+[[nodiscard]] Texture make_texture(std::string name, std::span<const TexelImage> levels, TextureFormat format);
+/// Adds the levels that are missing down to 1x1, as `mips` says, to an image of codes; Mips::levels: to its last level.
 void add_mips(Texture& texture);
 
 /// chequer: 8x8 squares. gradient: R along u, G along v. grid: 8x8 cells with lines between them, and where they are large

@@ -325,6 +325,15 @@ void Generator::set_textures() {
     if (chance(0.3)) v.u = static_cast<double>(below(65)) / 64;
     if (chance(0.3)) v.v = static_cast<double>(below(65)) / 64;
   }
+  // Levels that have nothing to do with their image.
+  for (Texture& texture : scene_.textures) {
+    if (texture.mips != Mips::box || !chance(0.3)) continue;
+    texture.mips = Mips::levels;
+    const std::size_t codes =
+        texture.palette.empty() ? std::size_t{1} << texel_bits(texture.format) : texture.palette.size();
+    for (std::size_t n = 1; n < texture.level.size(); ++n)
+      for (std::uint32_t& code : texture.level[n].code) code = static_cast<std::uint32_t>(below(codes));
+  }
 }
 
 /// A few fogs, from one that begins at the eye to one that has a hair of width, at distances that vertices have and beyond; in

@@ -116,6 +116,13 @@ TEST(CaptureTextures, EveryFormatAndStateComesBackBitForBit) {
     scene.textures.push_back(make_texture("t" + std::string(kTextureFormats[i]),
                                           pattern_image(TexturePattern::chequer, 20, 3 + static_cast<int>(i)),
                                           static_cast<TextureFormat>(i), static_cast<Mips>(i % 3)));
+  Texture& own = scene.textures.emplace_back(scene.textures[4]);
+  own.name = "own";
+  own.mips = Mips::levels;
+  for (std::size_t n = 1; n < own.level.size(); ++n)
+    for (std::uint32_t& code : own.level[n].code) code = static_cast<std::uint32_t>(n) * 0x1111;
+  scene.textures.emplace_back(scene.textures[7]).name = "palette";
+  scene.textures.back().mips = Mips::levels;
   State& state = scene.states[0];
   state.texture = 6;
   state.texture_min = TextureMin::linear_mipmap_nearest;
@@ -141,6 +148,34 @@ TEST(CaptureTextures, APatternIsTheImageItNames) {
   EXPECT_EQ(scene.states.at(0).texture, 0u);
 }
 
+TEST(CaptureTextures, LevelsOfItsOwnFollowTheImage) {
+  const Scene scene = read_capture(
+      "halfplane 1\ntexture a inline l8 4 2 mips levels\ntexels 0001020304050607 10\n"
+      "texels 11 20\nstate texture a\n" +
+          std::string(kDrawn),
+      "test.hpt");
+  const Texture& texture = scene.textures.at(0);
+  ASSERT_EQ(texture.level.size(), 3u);
+  EXPECT_EQ(texture.level[1], (TextureLevel{2, 1, {0x10, 0x11}}));
+  EXPECT_EQ(texture.level[2], (TextureLevel{1, 1, {0x20}}));
+}
+
+TEST(Texture, LevelsOfItsOwnGoOnAsBoxMeans) {
+  const auto plain = [](int width, int height, std::uint8_t v) {
+    return TexelImage{width, height, std::vector<Texel>(static_cast<std::size_t>(width * height), Texel{v, v, v, 255})};
+  };
+  const std::array<TexelImage, 2> levels{plain(8, 4, 10), plain(4, 2, 200)};
+  const Texture texture = make_texture("t", levels, TextureFormat::rgba8888);
+  ASSERT_EQ(texture.level.size(), 4u);
+  EXPECT_EQ(texture.texel(0, 0, 0)[0], 10);
+  EXPECT_EQ(texture.texel(1, 3, 1)[0], 200);
+  EXPECT_EQ(texture.texel(3, 0, 0)[0], 200);
+  const std::array<TexelImage, 2> wrong{plain(8, 4, 0), plain(4, 4, 0)};
+  EXPECT_THROW((void)make_texture("t", wrong, TextureFormat::rgba8888), InputError);
+  EXPECT_THROW((void)make_texture("t", std::span<const TexelImage>(), TextureFormat::rgba8888), InputError);
+  EXPECT_THROW((void)make_texture("t", levels, TextureFormat::p4), InputError);
+}
+
 TEST(CaptureTextures, WhatIsWrongIsSaidInOneLine) {
   const auto message = [](const std::string& lines) -> std::string {
     try {
@@ -164,6 +199,11 @@ TEST(CaptureTextures, WhatIsWrongIsSaidInOneLine) {
   says("texture a file\n", "without a path");
   says("texture a file nowhere.png\n", "nowhere.png");
   says("texture a inline l8 2 2\n", "has 0 of its 2x2 texels");
+  says("texture a pattern grid 8 8 mips levels\n", "not inline");
+  says("texture a inline l8 2 2 mips levels\ntexels 00010203\n",
+       "level 1 of texture 'a' from line 2 has 0 of its 1x1 texels");
+  says("texture a inline l8 4 4 mips levels\ntexels 000102030405060708090a0b0c0d0e0f 01\n", "level 1 of texture 'a'");
+  says("texture a inline l8 2 1 mips levels\ntexels 000102 03\n", "more texels than the 1 of the last level");
   says("texture a inline l8 2 2\ntexels 000102\n", "has 3 of its 2x2 texels");
   says("texture a inline l8 2 2\ntexels 0001020304\n", "more texels than the 4");
   says("texture a inline l8 2 2\ntexels 00010g03\n", "no hex digit");
@@ -192,6 +232,10 @@ TEST(CaptureTextures, ASceneWithBrokenTexturesIsRefused) {
   refused([](Scene& s) { s.textures[0].level[0].width = 0; });
   refused([](Scene& s) { s.textures[0].level[1].code.pop_back(); });
   refused([](Scene& s) { s.textures[0].level[0].code[5] = 16; });
+  refused([](Scene& s) {
+    s.textures[0].mips = Mips::levels;
+    s.textures[0].level.pop_back();
+  });
   refused([](Scene& s) { s.states[0].texture = 1; });
 }
 

@@ -22,7 +22,13 @@ Texture random_texture(Unit& unit, int width, int height) {
     for (std::size_t c = 0; c < 4; ++c) texel[c] = static_cast<std::uint8_t>(bits >> (8 * c));
   }
   constexpr std::array kFormats{TextureFormat::rgba8888, TextureFormat::rgb565, TextureFormat::la88};
-  return make_texture("t", image, kFormats[static_cast<std::size_t>(unit.random.index(3))], Mips::box);
+  Texture texture = make_texture("t", image, kFormats[static_cast<std::size_t>(unit.random.index(3))], Mips::box);
+  if (image.texel.front()[0] % 4 != 0) return texture;
+  // Levels that have nothing to do with their image: the upper left texels of that, as they come.
+  texture.mips = Mips::levels;
+  for (std::size_t n = 1; n < texture.level.size(); ++n)
+    std::copy_n(texture.level[0].code.begin(), texture.level[n].code.size(), texture.level[n].code.begin());
+  return texture;
 }
 
 /// A side of 1 to 256 texels, half of them powers of two.
