@@ -7,10 +7,13 @@
 
 #include "../../model/scene.hpp"
 #include "shade.hpp"
+#include "texture.hpp"
 
 namespace halfplane::gl {
 
 struct Context;
+
+inline constexpr double kLargestSize = 64;  ///< pixels, of points and lines
 
 /// Draws what glBegin(mode) makes of vertices[indices[0]], vertices[indices[1]], ...: clip planes, two-sided light, polygon
 /// modes, stipples, selection and feedback; then Frame::draw in the state of the context.
@@ -36,7 +39,25 @@ enum class DrawKind { triangles, lines, points, rectangle };
 /// The model's state of what the context's state says. None: nothing can be drawn (a face culled away, no buffer).
 /// Says by Frame::missing() what the model does not have.
 [[nodiscard]] std::optional<halfplane::State> hardware_state(Context& context, DrawKind kind);
+/// The same; with `is_textured` for triangles whatever `kind` is, and how the texture takes their colours.
+[[nodiscard]] std::optional<halfplane::State> hardware_state(Context& context, DrawKind kind, bool is_textured,
+                                                             TextureUse& use);
 /// As hardware_state(), for a clear: scissor and masks.
 [[nodiscard]] halfplane::State clear_state(Context& context);
+/// Draws in the state as it is, but for the logic operation.
+void draw_in(Context& context, halfplane::State state, Topology topology, std::vector<Vertex> vertices,
+             std::span<const std::uint32_t> indices);
+/// Texels as draw_rectangle() has them, in a state of space window. Culling and texture are set here.
+void draw_texels(Context& context, halfplane::State state, const halfplane::Texture& texels, double x, double y,
+                 double zoom_x, double zoom_y, double z, double w);
+
+/// Where glRenderMode is not GL_RENDER: takes a point, a line or a polygon after clipping, `clip` in window coordinates as
+/// RasterPosition::window and colours in the first place. `token`: GL_POINT_TOKEN, GL_LINE_TOKEN, ...
+void feed_primitive(Context& context, GLenum token, std::span<const ShadedVertex> vertices);
+/// Likewise the raster position of glBitmap, glDrawPixels and glCopyPixels (GL_BITMAP_TOKEN, ...). Whether the command is
+/// thereby done; false in GL_RENDER.
+bool feed_raster(Context& context, GLenum token);
+/// In GL_SELECT: something at the depth z (0...1) is inside the view volume. A valid glRasterPos is.
+void hit(Context& context, double z);
 
 }  // namespace halfplane::gl
