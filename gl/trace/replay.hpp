@@ -1,0 +1,41 @@
+// A program's trace drawn by the driver: frame by frame as the program drew it, without the program or a window system.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+
+#include "../core/context.hpp"
+
+namespace halfplane::gl {
+
+struct TraceContents {
+  /// A window or pbuffer. apitrace records no sizes of windows: it is that of the largest viewport that begins at (0, 0).
+  struct Surface {
+    int width = 0, height = 0;
+    bool has_fixed_size = false;  ///< of a pbuffer
+    int frames = 0;               ///< swaps; 1 where nothing is ever swapped
+  };
+  std::map<std::int64_t, Surface> surfaces;
+  std::int64_t shown = 0;  ///< the surface with most frames: that of the program's frames
+  int frames = 0;
+  std::string damage;  ///< where the file ends too early and how, empty: it is whole
+};
+
+/// Reads a trace without drawing. Throws InputError for a file that is no trace, or in which nothing is drawn.
+[[nodiscard]] TraceContents survey(const std::string& path);
+
+struct ReplayHooks {
+  /// A line for each command that cannot be carried out, once.
+  std::function<void(const std::string&)> warn = [](const std::string&) {};
+  /// Called before frame `number` ends.
+  std::function<void(int number, Frame& frame)> frame = [](int, Frame&) {};
+};
+
+/// Draws the first `frames` frames; those of the shown surface save and measure what `options` ask for. Throws InputError for
+/// a damaged file, and for surfaces that the configuration does not take.
+void replay(const std::string& path, const TraceContents& contents, const Options& options, int frames,
+            const ReplayHooks& hooks);
+
+}  // namespace halfplane::gl
