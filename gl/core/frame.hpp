@@ -26,9 +26,10 @@ struct Options {
   bool cycles = false;                   ///< the cycle engine draws the frames from `first_frame` to `last_frame`, too
   int first_frame = 0, last_frame = -1;  ///< -1: to the end
   double mhz = 0;                        ///< clock of the hardware, 0: not said
-  std::string memory;                    ///< --memory, as `render` takes it
-  std::vector<int> save;                 ///< frames that are written as captures
-  std::string save_to;                   ///< path of `save`, or the folder of all frames
+  std::string memory;                    ///< name of a MemoryKind; empty: fixed
+  int memory_latency = 8;                ///< of the fixed memory, cycles
+  std::vector<int> save;  ///< frames that are written as captures; several: with their numbers in the name
+  std::string save_to;    ///< path of `save`, or the folder of all frames
   bool save_all = false;
   std::string results;  ///< file that takes one line of JSON for each frame; empty: none
 };
@@ -44,7 +45,7 @@ class Frame {
   [[nodiscard]] int width() const;
   [[nodiscard]] int height() const;
   [[nodiscard]] const Options& options() const;
-  /// Another size: what was drawn is lost.
+  /// Another size: what was drawn is lost. Beyond the largest target of the configuration: held to that, and said.
   void resize(int width, int height);
 
   /// Clears inside the scissor of `state`, all channels.

@@ -1,0 +1,341 @@
+// The end of a frame: captures, cycles, results, and the line of figures over the picture.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "../../model/capture/capture.hpp"
+#include "../../model/engines/cycle/cycle_model.hpp"
+#include "../../model/host/primitives.hpp"
+#include "frame_memory.hpp"
+
+namespace halfplane::gl {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Keys as `halfplane render` has them.
+Json counters_json(const Counters& c) {
+  Json skipped = Json::object();
+  for (const SkipName& one : kSkipNames) skipped[one.name] = c.skipped.*one.counter;
+  return {{"primitives", {{"in", c.primitives_in}, {"culled", c.culled}, {"drawn", c.drawn}, {"clipped", c.clipped}}},
+          {"fragments",
+           {{"covered", c.covered},
+            {"depth_passed", c.depth_passed},
+            {"alpha_killed", c.alpha_killed},
+            {"written", c.written}}},
+          {"samples_tested", c.samples_tested},
+          {"tiles_visited", c.tiles_visited},
+          {"skipped", std::move(skipped)}};
+}
+
+/// Bytes between chip and memory, by cause and plane.
+Json traffic_json(const CycleRun& run, const Config& config, std::uint64_t& total) {
+  constexpr std::array kPlanes{"depth", "color"};
+  const auto port_bytes = static_cast<std::uint64_t>(config.memory_port_bits / 8);
+  Json traffic;
+  for (std::size_t cause = 0; cause < kMoveCauses.size(); ++cause)
+    for (std::size_t plane = 0; plane < kPlanes.size(); ++plane) {
+      const std::uint64_t bytes = run.totals.beats[cause][plane] * port_bytes;
+      traffic[std::string(kMoveCauses[cause])][kPlanes[plane]] = bytes;
+      total += bytes;
+    }
+  const std::uint64_t texels =
+      run.totals.texel_beats * static_cast<std::uint64_t>(derive_widths(config).texture_port_bytes);
+  if (texels != 0) traffic["fill"]["texture"] = texels;
+  total += texels;
+  return traffic;
+}
+
+/// Cycles of each stage's output.
+Json stages_json(const CycleRun& run) {
+  Json stages = Json::object();
+  for (const Arrow out : kElastic) {
+    const Stage sender = info(out).from;
+    if (!info(sender).is_timed || out == Arrow::response) continue;
+    const StreamUse& use = run.use[index(out)];
+    if (use.busy != 0)
+      stages[std::string(info(sender).name)] = {{"busy", use.busy}, {"stalled", use.stalled}, {"starved", use.starved}};
+  }
+  return stages;
+}
+
+/// FNV-1a of the codes, as `halfplane render` has it.
+std::string color_hash(const Framebuffer& frame, ColorFormat format) {
+  std::uint64_t hash = 0xcbf29ce484222325;
+  const int bytes = format == ColorFormat::rgb565 ? 2 : 4;
+  for (int y = 0; y < frame.height; ++y)
+    for (int x = 0; x < frame.width; ++x)
+      for (int i = 0; i < bytes; ++i) hash = (hash ^ (frame.color[frame.at(x, y)] >> 8 * i & 0xff)) * 0x100000001b3;
+  std::array<char, 17> text{};
+  std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(hash));
+  return text.data();
+}
+
+/// "frame.hpt" as "frame-0007.hpt".
+std::string numbered(const std::string& path, int number) {
+  std::array<char, 16> digits{};
+  std::snprintf(digits.data(), digits.size(), "-%04d", number);
+  const std::filesystem::path name(path);
+  return (name.parent_path() / (name.stem().string() + digits.data() + name.extension().string())).string();
+}
+
+std::array<double, 4> channels_of(std::uint32_t code, ColorFormat format) {
+  const Texel texel = format == ColorFormat::rgb565
+                          ? decode_texel(TextureFormat::rgb565, code, {})
+                          : Texel{static_cast<std::uint8_t>(code), static_cast<std::uint8_t>(code >> 8),
+                                  static_cast<std::uint8_t>(code >> 16), static_cast<std::uint8_t>(code >> 24)};
+  return {static_cast<double>(texel[0]), static_cast<double>(texel[1]), static_cast<double>(texel[2]),
+          static_cast<double>(texel[3])};
+}
+
+// A font of 3 x 5 pixels: an octal digit a row, its highest bit on the left.
+struct Glyph {
+  char character;
+  unsigned rows;
+};
+constexpr std::array kFont{Glyph{'0', 075557}, Glyph{'1', 026227}, Glyph{'2', 071747}, Glyph{'3', 071717},
+                           Glyph{'4', 055711}, Glyph{'5', 074717}, Glyph{'6', 074757}, Glyph{'7', 071111},
+                           Glyph{'8', 075757}, Glyph{'9', 075717}, Glyph{'.', 000002}, Glyph{'A', 025755},
+                           Glyph{'C', 034443}, Glyph{'E', 074647}, Glyph{'F', 074644}, Glyph{'H', 055755},
+                           Glyph{'I', 072227}, Glyph{'L', 044447}, Glyph{'M', 057755}, Glyph{'N', 065555},
+                           Glyph{'O', 025552}, Glyph{'P', 065644}, Glyph{'R', 065655}, Glyph{'S', 034216},
+                           Glyph{'T', 072222}, Glyph{'V', 055552}, Glyph{'Y', 055222}, Glyph{'Z', 071247}};
+constexpr int kGlyphWidth = 3, kGlyphHeight = 5, kScale = 2;
+
+}  // namespace
+
+// --- captures ---------------------------------------------------------------------------------------------------------
+
+Scene Frame::Memory::whole(bool restores) const {
+  Scene whole = empty_scene();
+  if (restores && goes_on) restore(whole);
+  const auto vertices = static_cast<std::uint32_t>(whole.vertices.size()),
+             states_before = static_cast<std::uint32_t>(whole.states.size());
+  const std::size_t indices = whole.indices.size();
+  whole.vertices.insert(whole.vertices.end(), scene.vertices.begin(), scene.vertices.end());
+  for (const std::uint32_t index : scene.indices) whole.indices.push_back(index == kRestart ? index : index + vertices);
+  for (Command command : scene.commands) {
+    std::visit(
+        [&](auto& of) {
+          if constexpr (requires { of.state; }) of.state += states_before;
+          if constexpr (requires { of.first; }) of.first += indices;
+        },
+        command);
+    whole.commands.push_back(command);
+  }
+  std::map<std::uint32_t, std::uint32_t> number;
+  for (halfplane::State state : scene.states) {
+    if (state.texture && *state.texture < slots.size() && !slots[*state.texture].texture.level.empty()) {
+      const auto [at, is_new] = number.try_emplace(*state.texture, static_cast<std::uint32_t>(whole.textures.size()));
+      if (is_new) whole.textures.push_back(slots[at->first].texture);
+      state.texture = at->second;
+    } else {
+      state.texture.reset();  // of draws that were refused
+    }
+    whole.states.push_back(state);
+  }
+  return whole;
+}
+
+/// The picture that the frame goes on with, but for what it clears: colours as rectangles with a texture, depths and stencil
+/// values as points.
+void Frame::Memory::restore(Scene& whole) const {
+  const std::uint32_t far = DepthEncode(config, {}).of_window(1.0);
+  halfplane::State state;
+  state.space = Space::window;
+  state.depth_test = DepthFunc::always;
+  whole.states.push_back(state);
+  whole.commands.emplace_back(Clear{0, channels_of(base.color[0], config.color_format), 1.0, std::uint8_t{0}});
+  const auto add = [&whole](const halfplane::State& with, Topology topology, std::size_t first) {
+    whole.commands.emplace_back(Draw{.state = static_cast<std::uint32_t>(whole.states.size()),
+                                     .topology = topology,
+                                     .first = first,
+                                     .count = whole.indices.size() - first});
+    whole.states.push_back(with);
+  };
+
+  // Sides of powers of two, which every texture unit takes.
+  constexpr int kSide = 1024;
+  const auto side_of = [](int pixels) { return static_cast<int>(std::bit_ceil(static_cast<unsigned>(pixels))); };
+  for (int top = 0; !cleared.color && top < base.height; top += kSide)
+    for (int left = 0; left < base.width; left += kSide) {
+      const int width = std::min(kSide, base.width - left), height = std::min(kSide, base.height - top);
+      halfplane::Texture texture;
+      texture.name = "before" + std::to_string(whole.textures.size());
+      texture.format = config.color_format == ColorFormat::rgb565 ? TextureFormat::rgb565 : TextureFormat::rgba8888;
+      TextureLevel& level = texture.level.emplace_back();
+      level = {side_of(width), side_of(height), {}};
+      level.code.resize(static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height));
+      for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+          const std::uint32_t code = base.color[base.at(left + x, top + y)];
+          // A stored colour has R in its lowest byte, a texel's code in its highest.
+          level
+              .code[static_cast<std::size_t>(y) * static_cast<std::size_t>(level.width) + static_cast<std::size_t>(x)] =
+              config.color_format == ColorFormat::rgb565
+                  ? code
+                  : (code & 0xff) << 24 | (code & 0xff00) << 8 | (code >> 8 & 0xff00) | code >> 24;
+        }
+      halfplane::State rectangle = state;
+      rectangle.depth_write = false;
+      rectangle.texture = static_cast<std::uint32_t>(whole.textures.size());
+      rectangle.texture_combine = TextureCombine::replace;
+      const std::size_t first = whole.indices.size();
+      const auto corner = static_cast<std::uint32_t>(whole.vertices.size());
+      for (const auto& [x, y] : {std::pair{0, 0}, {width, 0}, {0, height}, {width, height}})
+        whole.vertices.push_back({static_cast<double>(left + x),
+                                  static_cast<double>(top + y),
+                                  0,
+                                  1,
+                                  {255, 255, 255, 255},
+                                  static_cast<double>(x) / level.width,
+                                  static_cast<double>(y) / level.height});
+      for (const std::uint32_t i : {0U, 1U, 2U, 2U, 1U, 3U}) whole.indices.push_back(corner + i);
+      whole.textures.push_back(std::move(texture));
+      add(rectangle, Topology::triangles, first);
+    }
+
+  std::map<std::uint8_t, std::vector<std::pair<int, int>>> points;  // by stencil value
+  for (int y = 0; y < base.height; ++y)
+    for (int x = 0; x < base.width; ++x) {
+      const std::size_t at = base.at(x, y);
+      const std::uint8_t value = cleared.stencil ? std::uint8_t{0} : base.stencil[at];
+      if ((!cleared.depth && base.depth[at] != far) || value != 0) points[value].emplace_back(x, y);
+    }
+  for (const auto& [value, places] : points) {
+    halfplane::State pixel = state;
+    pixel.color_write = false;
+    pixel.depth_write = !cleared.depth;
+    if (value != 0) pixel.stencil = Stencil{.reference = value, .passes = StencilOp::replace};
+    const std::size_t first = whole.indices.size();
+    for (const auto& [x, y] : places) {
+      whole.indices.push_back(static_cast<std::uint32_t>(whole.vertices.size()));
+      whole.vertices.push_back({x + 0.5, y + 0.5, static_cast<double>(base.depth[base.at(x, y)]) / far});
+    }
+    add(pixel, Topology::points, first);
+  }
+}
+
+/// The frame as a capture, whole or not at all.
+void Frame::Memory::save(int number) const {
+  const std::string path = options.save_all          ? (std::filesystem::path(options.save_to) / "frame.hpt").string()
+                           : options.save_to.empty() ? std::string("frame.hpt")
+                                                     : options.save_to;
+  const bool is_one = !options.save_all && options.save.size() == 1 && !options.save_to.empty();
+  const std::string name = is_one ? path : numbered(path, number), part = name + ".part";
+  std::error_code error;
+  try {
+    std::ofstream out(part);
+    out << "# Frame " << number << " of a program that drew through OpenGL\n";
+    if (goes_on) out << "# It goes on with the picture before it, which the first draws put back\n";
+    if (goes_on && (!base.samples.empty() || !DepthEncode(config, {}).is_identity()))
+      out << "# but for the samples of its pixels and depths in a format of their own\n";
+    write_capture(whole(true), out);
+    out.close();
+    if (!out) error = std::make_error_code(std::errc::io_error);
+    if (!error) std::filesystem::rename(part, name, error);
+  } catch (const InputError& fault) {
+    say_once("frame " + std::to_string(number) + " is not saved: " + fault.what());
+    error = std::make_error_code(std::errc::invalid_argument);
+  }
+  if (!error) return;
+  say_once(name + ": " + error.message());
+  std::filesystem::remove(part, error);
+}
+
+// --- the end of a frame -----------------------------------------------------------------------------------------------
+
+void Frame::Memory::end() {
+  flush();
+  if (!has_begun) begin();
+  const int number = next_frame_number();
+  const bool is_asked = number >= options.first_frame && (options.last_frame < 0 || number <= options.last_frame);
+  const bool is_saved = options.save_all ? is_asked : std::ranges::find(options.save, number) != options.save.end();
+  if (is_saved) save(number);
+
+  Json row{{"frame", number}, {"width", scene.width}, {"height", scene.height}, {"goes_on", goes_on}};
+  row.update(counters_json(counters));
+  const auto draws = std::ranges::count_if(
+      scene.commands, [](const Command& command) { return std::holds_alternative<Draw>(command); });
+  row["draws"] = draws;
+  row["textures"] =
+      std::ranges::count_if(slots, [this](const Slot& slot) { return slot.frame == frame && slot.key != 0; });
+  row["texture_bytes"] = texture_bytes;
+  for (const char* key : {"cycles", "bytes", "bins", "pairs", "color_hash", "lacks"}) row[key] = nullptr;
+  if (options.cycles && is_asked) {
+    try {
+      const MemorySettings settings{options.memory.empty() ? MemoryKind::fixed : memory_kind(options.memory),
+                                    options.memory_latency, options.mhz >= 1 ? static_cast<int>(options.mhz) : 50};
+      const auto timing = make_memory(settings, config);
+      CycleOptions cycle;
+      cycle.textures = settings;
+      const CycleRendering measured = render_cycle(whole(false), config, *timing, {}, cycle);
+      std::uint64_t bytes = 0;
+      row["traffic_bytes"] = traffic_json(measured.run, config, bytes);
+      row["cycles"] = *(last_cycles = measured.run.cycles);
+      row["bytes"] = bytes;
+      row["bins"] = measured.rendering.counters.bins;
+      row["pairs"] = measured.rendering.counters.pairs;
+      row["stages"] = stages_json(measured.run);
+    } catch (const std::exception& error) {
+      row["lacks"] = error.what();
+      say_once(std::string("no cycles: ") + error.what());
+    }
+  }
+  if (is_saved || !row["cycles"].is_null()) row["color_hash"] = color_hash(*picture, config.color_format);
+
+  const Clock::time_point now = Clock::now();
+  const double frame_s = std::chrono::duration<double>(now - std::exchange(frame_start, now)).count();
+  const double raster = raster_s - std::exchange(raster_before_s, raster_s);
+  row["time_s"] = {{"raster", raster}, {"driver", std::exchange(driver_s, 0)}, {"frame", frame_s}};
+  // Over the last frames, so that the figure can be read.
+  const double rate = 1 / std::max(frame_s, 1e-6);
+  frames_per_second = frames_per_second == 0 ? rate : frames_per_second + (rate - frames_per_second) / 8;
+  last_primitives = counters.primitives_in;
+  row["missing"] = std::exchange(missing, {});
+  if (options.results.empty() || !is_asked) return;
+  std::ofstream out(options.results, std::ios::app);
+  out << row.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n" << std::flush;
+  if (!out) say_once(options.results + ": cannot be written");
+}
+
+// --- the HUD ----------------------------------------------------------------------------------------------------------
+
+void Frame::draw_hud(std::span<std::uint32_t> xrgb, int width, int height, int pitch_pixels) const {
+  const Memory& m = *memory_;
+  if (!m.options.hud) return;
+  std::array<char, 96> line{};
+  if (m.last_cycles)
+    std::snprintf(line.data(), line.size(), "%.1f FPS  %.3f M CYCLES  %.0f MHZ FOR 30 FPS", m.frames_per_second,
+                  static_cast<double>(*m.last_cycles) / 1e6, std::ceil(static_cast<double>(*m.last_cycles) * 30 / 1e6));
+  else
+    std::snprintf(line.data(), line.size(), "%.1f FPS  %llu PRIMITIVES", m.frames_per_second,
+                  static_cast<unsigned long long>(m.last_primitives));
+  const std::string_view text(line.data());
+  constexpr int kMargin = kScale, kAdvance = (kGlyphWidth + 1) * kScale;
+  constexpr std::uint32_t kInk = 0xffffff, kPaper = 0x000000;
+  const int columns = std::min(width, static_cast<int>(text.size()) * kAdvance + 2 * kMargin),
+            rows = std::min(height, kGlyphHeight * kScale + 2 * kMargin);
+  for (int y = 0; y < rows; ++y)
+    for (int x = 0; x < columns; ++x) {
+      const std::size_t at =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(pitch_pixels) + static_cast<std::size_t>(x);
+      if (at >= xrgb.size()) return;
+      const int i = x - kMargin, column = i % kAdvance / kScale, row = (y - kMargin) / kScale;
+      bool is_ink = false;
+      if (i >= 0 && static_cast<std::size_t>(i / kAdvance) < text.size() && y >= kMargin && row < kGlyphHeight &&
+          column < kGlyphWidth) {
+        const auto* glyph = std::ranges::find(kFont, text[static_cast<std::size_t>(i / kAdvance)], &Glyph::character);
+        is_ink = glyph != kFont.end() && (glyph->rows >> (3 * (kGlyphHeight - 1 - row) + 2 - column) & 1U) != 0;
+      }
+      xrgb[at] = is_ink ? kInk : kPaper;
+    }
+}
+
+}  // namespace halfplane::gl

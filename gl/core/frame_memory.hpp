@@ -1,0 +1,127 @@
+// What a Frame remembers: the frame's commands so far (frame.cpp), and what is told of it at its end (frame_end.cpp).
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "../../model/draw_states.hpp"
+#include "../../model/engines/functional.hpp"
+#include "frame.hpp"
+
+namespace halfplane::gl {
+
+/// One line on stderr, once for each text; numbers in it do not make it another one.
+void say_once(const std::string& what);
+/// Of the process: frames of all its drawables count together, so that a number names one picture.
+[[nodiscard]] int next_frame_number();
+
+using Clock = std::chrono::steady_clock;
+
+/// Adds the seconds of its life to `seconds`.
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& seconds) : seconds_(seconds) {}
+  ~Stopwatch() { seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
+  double& seconds_;
+  Clock::time_point start_ = Clock::now();
+};
+
+struct Frame::Memory {
+  Memory(const Options& options_, int width, int height);
+
+  /// Collecting.
+  void resize(int width, int height);
+  void clear(const halfplane::State& state, Clear what);
+  void draw(const halfplane::State& state, Topology topology, std::span<const Vertex> vertices,
+            std::span<const std::uint32_t> indices);
+  [[nodiscard]] std::uint32_t texture(std::uint64_t key, const std::function<halfplane::Texture()>& make);
+
+  /// Draws what waits.
+  void flush();
+  void end();
+
+  const Options options;
+  const Config config;
+  FunctionalEngine engine;
+  const Framebuffer* picture = nullptr;  ///< the engine's
+  double raster_s = 0;                   ///< since the program began
+  std::uint64_t samples = 0;             ///< passed in earlier frames
+
+  // The frame so far. Textures of its states are numbers of slots.
+  Scene scene;
+  std::unordered_map<halfplane::State, std::uint32_t, StateHash> states;  ///< of `scene`
+  std::vector<std::uint8_t> checked, refused;                             ///< by state: primitive types, a bit each
+  std::uint32_t last_state = 0;                                           ///< the one that was asked for last
+  int kind = -1;  ///< of the draws that wait, see kind_of(); -1: none does
+
+  /// How much of the scene has been drawn.
+  struct Mark {
+    std::size_t commands = 0, vertices = 0, indices = 0;
+  };
+  Mark drawn;
+  Counters counters;  ///< of what has been drawn
+
+  Framebuffer base;        ///< what the frame is drawn on, where `goes_on`
+  bool goes_on = false;    ///< the frame looks at some of the picture before it
+  bool has_begun = false;  ///< some of it has been drawn: what follows is known
+  struct Cleared {
+    bool color = false, depth = false, stencil = false;
+  };
+  Cleared cleared;            ///< of the whole target, before anything is drawn
+  bool uses_stencil = false;  ///< since the program began
+
+  struct Slot {
+    std::uint64_t key = 0, frame = 0;  ///< the frame that it was used in last
+    halfplane::Texture texture;        ///< without levels: free
+    std::optional<TexelBlocks> blocks;
+    std::size_t bytes = 0;
+  };
+  std::vector<Slot> slots;
+  std::unordered_map<std::uint64_t, std::uint32_t> slot_of;
+  std::size_t texture_bytes = 0;
+  std::uint64_t frame = 0, textures_made = 0;
+
+  // Results and the HUD (frame_end.cpp).
+  double driver_s = 0;  ///< of this frame: collecting
+  double raster_before_s = 0;
+  Clock::time_point frame_start = Clock::now();
+  double frames_per_second = 0;
+  std::optional<std::uint64_t> last_cycles;
+  std::uint64_t last_primitives = 0;
+  std::set<std::string> missing;  ///< of this frame
+
+  /// The frame as a scene of its own. `restores`: begins with the picture that it was drawn on, where it looks at that.
+  [[nodiscard]] Scene whole(bool restores) const;
+  [[nodiscard]] Mark end_mark() const { return {scene.commands.size(), scene.vertices.size(), scene.indices.size()}; }
+
+  struct Part;
+
+  [[nodiscard]] Scene empty_scene() const;
+  [[nodiscard]] bool is_recorded() const { return options.save_all || !options.save.empty() || options.cycles; }
+  [[nodiscard]] std::uint32_t state_number(const halfplane::State& state);
+  [[nodiscard]] bool takes(std::uint32_t state, Topology topology);
+  [[nodiscard]] bool can_draw(const halfplane::State& state, std::span<const std::uint32_t> primitive) const;
+  [[nodiscard]] Draw as_list(const Draw& draw, bool only_good);
+  void add(Draw draw);
+  void begin();
+  void forget();
+  void render();
+  void recover();
+  void keep_good(const Draw& draw, std::vector<Command>& kept);
+  [[nodiscard]] std::string fault_of(const Draw& draw);
+  void rebase();
+  void drop_textures(std::size_t most_bytes, std::uint64_t least_frame);
+  void restore(Scene& whole) const;
+  void save(int number) const;
+};
+
+}  // namespace halfplane::gl
