@@ -92,6 +92,8 @@ struct Context {
   std::vector<SavedAttributes> attributes;          ///< glPushAttrib
   std::vector<std::pair<GLbitfield, ClientState>> client_attributes;
   std::array<TextureObject, 4> default_textures;  ///< name 0, by kTextureTargets
+  /// What TextureUnit::bound names, kept while another context deletes it. One with another name is out of date.
+  std::array<std::array<std::shared_ptr<TextureObject>, 4>, kTextureUnits> bound_textures;
   std::array<std::array<TextureImage, 13>, 4> proxies;
   std::map<GLuint, Query> queries;
   GLuint active_query = 0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -12,8 +13,8 @@ namespace halfplane::gl {
 
 struct Context;
 
-/// Pixels as real numbers after glPixelTransfer, rows from the bottom as in the program's memory. Colours are RGBA in 0...1;
-/// depth, stencil and index lie in the first component.
+/// Pixels as real numbers, rows from the bottom as in the program's memory. Colours are RGBA with 1 as the largest integer;
+/// depth, stencil and index lie in the first component. Who stores them holds them to their range.
 struct Image {
   int width = 0, height = 0, depth = 1;
   GLenum format = GL_RGBA;  ///< GL_RGBA, GL_DEPTH_COMPONENT, GL_STENCIL_INDEX or GL_COLOR_INDEX
@@ -29,11 +30,14 @@ struct Bitmap {
 /// GL_INVALID_ENUM or GL_INVALID_OPERATION when format and type do not go together, else GL_NO_ERROR.
 [[nodiscard]] GLenum check_format(GLenum format, GLenum type);
 
-/// Reads the program's memory, by Context::client's unpack state and pixel transfer. Precondition: check_format().
+/// Reads the program's memory, by Context::client's unpack state. `is_3d`: of glTexImage3D and glTexSubImage3D, which skip
+/// whole images. Precondition: check_format().
 [[nodiscard]] Image unpack(const Context& context, int width, int height, int depth, GLenum format, GLenum type,
-                           const void* pixels);
-/// Writes to the program's memory, by the pack state and pixel transfer. Precondition: check_format().
-void pack(const Context& context, const Image& image, GLenum format, GLenum type, void* pixels);
+                           const void* pixels, bool is_3d = false);
+/// Pixels after glPixelTransfer, which counts when a command is carried out: GL_RGBA for colours and colour indices.
+[[nodiscard]] std::shared_ptr<const Image> transferred(const Context& context, std::shared_ptr<const Image> image);
+/// Writes to the program's memory, by the pack state. Precondition: check_format().
+void pack(const Context& context, const Image& image, GLenum format, GLenum type, void* pixels, bool is_3d = false);
 [[nodiscard]] Bitmap unpack_bitmap(const Context& context, int width, int height, const GLubyte* bits);
 
 }  // namespace halfplane::gl
