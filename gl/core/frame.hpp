@@ -36,6 +36,9 @@ struct Options {
 /// Of HALFPLANE_GL, or the defaults. Throws InputError.
 [[nodiscard]] Options options_from_environment();
 
+/// The file that frame `number` is saved to.
+[[nodiscard]] std::string saved_name(const Options& options, int number);
+
 class Frame {
  public:
   /// Black, as far as can be. Throws InputError for a size that the configuration does not take.

@@ -70,7 +70,8 @@ class Survey {
       drawn_[call.thread] = binding->draw;
       if (binding->draw != 0) contents.surfaces[binding->draw];
     } else if (const auto swapped = swapped_by(call)) {
-      ++contents.surfaces[*swapped].frames;
+      contents.surfaces[*swapped];
+      ++contents.frames;
     } else if (begins_with_one_of(name, {"glXCreatePbuffer", "glXCreateGLXPbuffer", "eglCreatePbuffer"})) {
       fixed_size(call);
     } else if (name == "glViewport" && call.argument("x").integer == 0 && call.argument("y").integer == 0) {
@@ -116,7 +117,7 @@ class Replay {
   bool take(const TraceCall& call);
   /// For a program that never swaps.
   void finish() {
-    if (frame_ < frames_ && contents_.surfaces.at(contents_.shown).frames == 1) end_frame(contents_.shown);
+    if (contents_.unswapped != 0) end_frame(contents_.unswapped);
   }
 
  private:
@@ -206,13 +207,7 @@ Drawable* Replay::surface(std::int64_t id) {
   if (known == contents_.surfaces.end()) return nullptr;
   std::unique_ptr<Drawable>& place = surfaces_[id];
   if (place == nullptr) {
-    Options options = options_;
-    if (id != contents_.shown) {
-      options.save.clear();
-      options.results.clear();
-      options.save_all = options.cycles = false;
-    }
-    place = std::make_unique<Drawable>(options, std::max(1, known->second.width), std::max(1, known->second.height));
+    place = std::make_unique<Drawable>(options_, std::max(1, known->second.width), std::max(1, known->second.height));
   }
   return place.get();
 }
@@ -220,7 +215,7 @@ Drawable* Replay::surface(std::int64_t id) {
 void Replay::end_frame(std::int64_t id) {
   Drawable* drawable = surface(id);
   if (drawable == nullptr) return;
-  if (id == contents_.shown) hooks_.frame(frame_++, drawable->frame);
+  hooks_.frame(frame_++, drawable->frame);
   drawable->frame.end();
 }
 
@@ -446,16 +441,11 @@ TraceContents survey(const std::string& path) {
     survey.contents.damage = error.what();
   }
   TraceContents contents = std::move(survey.contents);
-  for (auto& [id, surface] : contents.surfaces) {
-    if (surface.width == 0 || surface.height == 0 || surface.frames <= contents.frames) continue;
-    contents.frames = surface.frames;
-    contents.shown = id;
-  }
   if (contents.frames > 0) return contents;
-  for (auto& [id, surface] : contents.surfaces) {
+  for (const auto& [id, surface] : contents.surfaces) {
     if (surface.width == 0 || surface.height == 0) continue;
-    contents.shown = id;
-    contents.frames = surface.frames = 1;
+    contents.unswapped = id;
+    contents.frames = 1;
     return contents;
   }
   throw InputError(contents.damage.empty() ? path + ": nothing is drawn in this trace" : contents.damage);

@@ -15,12 +15,11 @@ struct TraceContents {
   struct Surface {
     int width = 0, height = 0;
     bool has_fixed_size = false;  ///< of a pbuffer
-    int frames = 0;               ///< swaps; 1 where nothing is ever swapped
   };
   std::map<std::int64_t, Surface> surfaces;
-  std::int64_t shown = 0;  ///< the surface with most frames: that of the program's frames
-  int frames = 0;
-  std::string damage;  ///< where the file ends too early and how, empty: it is whole
+  int frames = 0;              ///< swaps of any surface
+  std::int64_t unswapped = 0;  ///< where nothing is ever swapped: the surface whose one frame the trace is
+  std::string damage;          ///< where the file ends too early and how, empty: it is whole
 };
 
 /// Reads a trace without drawing. Throws InputError for a file that is no trace, or in which nothing is drawn.
@@ -33,7 +32,7 @@ struct ReplayHooks {
   std::function<void(int number, Frame& frame)> frame = [](int, Frame&) {};
 };
 
-/// Draws the first `frames` frames; those of the shown surface save and measure what `options` ask for. Throws InputError for
+/// Draws the first `frames` frames; each saves and measures what `options` ask for. Throws InputError for
 /// a damaged file, and for surfaces that the configuration does not take.
 void replay(const std::string& path, const TraceContents& contents, const Options& options, int frames,
             const ReplayHooks& hooks);

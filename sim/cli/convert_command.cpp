@@ -2,6 +2,7 @@
 #include <ostream>
 
 #include "sim/cli/commands.hpp"
+#include "sim/cli/convert_trace.hpp"
 #include "sim/cli/options.hpp"
 #include "sim/cosim/session.hpp"
 #include "sim/show/image/whole_file.hpp"
@@ -11,7 +12,7 @@ namespace {
 
 struct ConvertOptions : CommonOptions {
   std::uint64_t random = 0;  ///< primitives; 0: a scene
-  std::string output;
+  std::string output, frames;
 };
 
 /// FILE.hpt as FILE-1.hpt, when there are several.
@@ -45,9 +46,19 @@ int run(const ConvertOptions& options) {
   if (options.scene.empty() == (options.random == 0))
     throw InputError(options.scene.empty() ? "nothing to convert; give a SCENE or --random N"
                                            : "a scene and --random together; give one of them");
+  check_distinct({options.scene, options.output, options.json});
+  if (is_trace(options.scene)) {
+    Json result = result_head("convert", options, effective_config(options));
+    result["seed"] = options.seed;
+    result["random"] = nullptr;
+    result["captures"] = Json::array();
+    const int status = convert_trace(options, {options.frames, options.output}, result);
+    if (status == exit_ok) finish_json(options, result, start);
+    return status;
+  }
+  if (!options.frames.empty()) throw InputError("--frame takes frames of a FILE.trace; leave it out");
   const bool is_stdout = options.output == "-";
   check_output(options.output, ".hpt");
-  check_distinct({options.scene, options.output, options.json});
   const Config config = effective_config(options);
   const SceneSource next = scenes_of(options, config);
   std::optional<Scene> scene = next(), following = next();
@@ -86,11 +97,19 @@ void add_convert_command(CLI::App& app, Action& selected) {
                    "several")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}))
       ->type_name("N");
-  add_file_option(*command, "-o", options->output, "the capture, .hpt, or - for stdout");
+  command
+      ->add_option("--frame", options->frames, "of a FILE.trace: frame N, or A to B, counted from 0; else all of them")
+      ->type_name("N|A..B");
+  add_file_option(*command, "-o", options->output,
+                  "the capture, .hpt, or - for stdout; of a FILE.trace with several frames FILE-0000.hpt and on, or a "
+                  "folder for them");
   command->get_option("-o")->required();
   command->footer(
       "\nA mesh is written as its camera sees it, in clip space, in the convention gl. --set depth.mapping is not\n"
       "written: give it to the command that draws the capture.\n"
+      "\nA FILE.trace is a program that `apitrace trace` recorded; the driver of `halfplane run` draws it again, "
+      "without\n"
+      "the program, a window or a graphics card: docs/programs.md.\n"
       "\nExample:\n  halfplane convert model.glb --camera name=main --size 320x240 -o model.hpt");
 }
 
