@@ -8,6 +8,9 @@
 
 namespace halfplane::gl {
 
+/// Into 0...1, NaN as 0.
+[[nodiscard]] constexpr double held(double value) { return value > 0 ? (value < 1 ? value : 1) : 0; }
+
 [[nodiscard]] constexpr Vec4 transformed(const Mat4& m, const Vec4& v) {
   Vec4 result{};
   for (std::size_t row = 0; row < 4; ++row)

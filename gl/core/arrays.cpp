@@ -1,0 +1,613 @@
+// Vertex arrays, buffer objects and occlusion queries (OpenGL 1.5, 2.8, 2.9, 4.1.7).
+#include <cstring>
+#include <limits>
+
+#include "commands.hpp"
+#include "list.hpp"
+#include "matrix.hpp"
+#include "primitive.hpp"
+#include "shading.hpp"
+
+namespace halfplane::gl {
+namespace {
+
+constexpr std::size_t kUnbounded = std::numeric_limits<std::size_t>::max();
+
+/// Reads `count` numbers. Normalized: the largest integer is 1 (OpenGL 1.5, table 2.6).
+using Read = void (*)(const std::byte* from, int count, double* to);
+
+template <class Number, bool kNormalized>
+void read(const std::byte* from, int count, double* to) {
+  for (int i = 0; i < count; ++i, from += sizeof(Number)) {
+    Number number;
+    std::memcpy(&number, from, sizeof number);
+    to[i] = static_cast<double>(number);
+    if constexpr (kNormalized && std::is_integral_v<Number>) {
+      const double range = 2.0 * static_cast<double>(std::numeric_limits<std::make_unsigned_t<Number>>::max() / 2) + 1;
+      to[i] = std::is_signed_v<Number> ? (2 * to[i] + 1) / range : to[i] / range;
+    }
+  }
+}
+
+struct NumberType {
+  GLenum type;
+  std::size_t bytes;
+  Read plain, normalized;
+};
+template <class Number>
+constexpr NumberType number_type(GLenum type) {
+  return {type, sizeof(Number), read<Number, false>, read<Number, true>};
+}
+constexpr std::array kNumberTypes{number_type<GLbyte>(GL_BYTE),   number_type<GLubyte>(GL_UNSIGNED_BYTE),
+                                  number_type<GLshort>(GL_SHORT), number_type<GLushort>(GL_UNSIGNED_SHORT),
+                                  number_type<GLint>(GL_INT),     number_type<GLuint>(GL_UNSIGNED_INT),
+                                  number_type<GLfloat>(GL_FLOAT), number_type<GLdouble>(GL_DOUBLE)};
+
+const NumberType& number_type_of(GLenum type) {
+  const auto found = std::ranges::find(kNumberTypes, type, &NumberType::type);
+  return found == kNumberTypes.end() ? kNumberTypes.front() : *found;
+}
+
+constexpr std::initializer_list<GLenum> kColorTypes{GL_BYTE, GL_UNSIGNED_BYTE, GL_SHORT, GL_UNSIGNED_SHORT,
+                                                    GL_INT,  GL_UNSIGNED_INT,  GL_FLOAT, GL_DOUBLE};
+
+void set_pointer(Context& context, ArrayPointer& array, int size, std::array<int, 2> sizes, GLenum type,
+                 std::initializer_list<GLenum> types, GLsizei stride, const void* pointer) {
+  if (size < sizes[0] || size > sizes[1] || stride < 0) return context.fail(GL_INVALID_VALUE);
+  if (std::ranges::find(types, type) == types.end()) return context.fail(GL_INVALID_ENUM);
+  array = {array.enabled, size, type, stride, pointer, context.client.array_buffer};
+}
+
+std::shared_ptr<BufferObject> buffer_of(const Context& context, GLuint name) {
+  const std::lock_guard lock(context.shared->mutex);
+  const auto found = context.shared->buffers.find(name);
+  return found == context.shared->buffers.end() ? nullptr : found->second;
+}
+
+/// Memory of the program or of a buffer.
+struct Memory {
+  std::shared_ptr<BufferObject> buffer;  ///< kept alive; null: the program's
+  const std::byte* data = nullptr;       ///< null: none
+  std::size_t bytes = 0;
+
+  /// False: the buffer is mapped, and no one may read it.
+  [[nodiscard]] bool is_readable() const { return buffer == nullptr || !buffer->mapped; }
+  [[nodiscard]] const std::byte* at(std::size_t offset, std::size_t size) const {
+    return offset <= bytes && size <= bytes - offset ? data + offset : nullptr;
+  }
+};
+
+Memory memory_of(const Context& context, GLuint buffer_name, const void* pointer) {
+  if (buffer_name == 0) return {nullptr, static_cast<const std::byte*>(pointer), pointer == nullptr ? 0 : kUnbounded};
+  const auto buffer = buffer_of(context, buffer_name);
+  const auto offset = reinterpret_cast<std::size_t>(pointer);
+  if (buffer == nullptr || offset > buffer->data.size()) return {};
+  return {buffer, buffer->data.data() + offset, buffer->data.size() - offset};
+}
+
+std::array<ArrayPointer*, 7 + kTextureUnits> arrays_of(ClientState& client) {
+  std::array<ArrayPointer*, 7 + kTextureUnits> arrays{&client.vertex,    &client.normal, &client.color,
+                                                      &client.secondary, &client.index,  &client.edge_flag,
+                                                      &client.fog_coord};
+  for (std::size_t i = 0; i < kTextureUnits; ++i) arrays[7 + i] = &client.tex_coord[i];
+  return arrays;
+}
+
+/// An enabled array, ready to be read.
+struct Stream {
+  Memory memory;
+  std::size_t stride = 0, element_bytes = 0;
+  int size = 0;
+  Read read = nullptr;
+
+  /// Those that there are memory for.
+  [[nodiscard]] std::size_t elements() const {
+    return read == nullptr || memory.bytes < element_bytes ? 0 : (memory.bytes - element_bytes) / stride + 1;
+  }
+  /// Leaves `to` as it is for elements beyond the end of a buffer.
+  void get(std::uint32_t i, double* to) const {
+    if (read == nullptr) return;
+    const std::byte* const from = memory.at(i * stride, element_bytes);
+    if (from != nullptr) read(from, size, to);
+  }
+};
+
+/// All arrays of a draw.
+struct Streams {
+  Stream vertex, normal, color, secondary, index, edge_flag, fog_coord;
+  std::array<Stream, kTextureUnits> tex_coord;
+  bool is_readable = true;
+
+  explicit Streams(const Context& context) {
+    const ClientState& client = context.client;
+    const auto add = [&](Stream& stream, const ArrayPointer& array, bool is_normalized) {
+      if (!array.enabled) return;
+      const NumberType& type = number_type_of(array.type);
+      stream.memory = memory_of(context, array.buffer, array.pointer);
+      stream.element_bytes = type.bytes * static_cast<std::size_t>(array.size);
+      stream.stride = array.stride == 0 ? stream.element_bytes : static_cast<std::size_t>(array.stride);
+      stream.size = array.size;
+      stream.read = is_normalized ? type.normalized : type.plain;
+      is_readable &= stream.memory.is_readable();
+    };
+    add(vertex, client.vertex, false);
+    add(normal, client.normal, true);
+    add(color, client.color, true);
+    add(secondary, client.secondary, true);
+    add(index, client.index, false);
+    add(edge_flag, client.edge_flag, false);
+    add(fog_coord, client.fog_coord, false);
+    for (std::size_t i = 0; i < kTextureUnits; ++i) add(tex_coord[i], client.tex_coord[i], false);
+  }
+
+  /// Issues the attributes of an element as commands.
+  void issue_attributes(Context& context, std::uint32_t i) const {
+    const auto with = [&](const Stream& stream, auto&& command) {
+      if (stream.read == nullptr) return;
+      Vec4 value{0, 0, 0, 1};
+      stream.get(i, value.data());
+      command(value);
+    };
+    constexpr auto kAllowed = InsideBegin::allowed;
+    with(edge_flag, [&](const Vec4& v) {
+      issue<&gl::edge_flag, kAllowed>(context, static_cast<GLboolean>(v[0] != 0 ? GL_TRUE : GL_FALSE));
+    });
+    for (std::size_t unit = 0; unit < kTextureUnits; ++unit)
+      with(tex_coord[unit], [&](const Vec4& v) {
+        issue<&gl::tex_coord, kAllowed>(context, static_cast<GLenum>(GL_TEXTURE0 + unit), v[0], v[1], v[2], v[3]);
+      });
+    with(fog_coord, [&](const Vec4& v) { issue<&gl::fog_coord, kAllowed>(context, v[0]); });
+    with(index, [&](const Vec4& v) { issue<&gl::index, kAllowed>(context, v[0]); });
+    with(secondary, [&](const Vec4& v) { issue<&gl::secondary_color, kAllowed>(context, v[0], v[1], v[2]); });
+    with(color, [&](const Vec4& v) { issue<&gl::color, kAllowed>(context, v[0], v[1], v[2], v[3]); });
+    with(normal, [&](const Vec4& v) { issue<&gl::normal, kAllowed>(context, v[0], v[1], v[2]); });
+  }
+
+  [[nodiscard]] Vec4 position(std::uint32_t i) const {
+    Vec4 value{0, 0, 0, 1};
+    vertex.get(i, value.data());
+    return value;
+  }
+  void issue_vertex(Context& context, std::uint32_t i) const {
+    issue_attributes(context, i);
+    if (vertex.read == nullptr) return;
+    const auto& [x, y, z, w] = position(i);
+    issue<&gl::vertex, InsideBegin::allowed>(context, x, y, z, w);
+  }
+};
+
+/// A draw's errors; false: it has one.
+bool check_draw(Context& context, GLenum mode, GLsizei count) {
+  const GLenum error = context.inside_begin() ? GL_INVALID_OPERATION
+                       : mode > GL_POLYGON    ? GL_INVALID_ENUM
+                       : count < 0            ? GL_INVALID_VALUE
+                                              : GL_NO_ERROR;
+  if (error != GL_NO_ERROR) context.fail(error);
+  return error == GL_NO_ERROR;
+}
+
+/// Draws elements first + indices[0], first + indices[1], ..., each shaded once. `are_distinct`: they are so already.
+void draw(Context& context, const Streams& streams, GLenum mode, std::uint32_t first,
+          std::span<const std::uint32_t> indices, bool are_distinct) {
+  if (!streams.is_readable) return context.fail(GL_INVALID_OPERATION);
+  if (streams.vertex.elements() == 0 || indices.empty()) return;
+  if (context.compiling != nullptr) {
+    issue<&begin, InsideBegin::allowed>(context, mode);
+    for (const std::uint32_t i : indices) streams.issue_vertex(context, first + i);
+    issue<&end, InsideBegin::allowed>(context);
+    return;
+  }
+  update_shading(context);
+  const CurrentKept kept(context);
+  context.vertices.clear();
+  const auto shade_element = [&](std::uint32_t i) {
+    streams.issue_attributes(context, first + i);
+    shade_current(context, streams.position(first + i), context.vertices.emplace_back());
+  };
+  // Where each element of the range has been put; a sparse range is shaded index by index instead.
+  constexpr auto kNowhere = std::numeric_limits<std::uint32_t>::max();
+  const auto [low, high] = std::ranges::minmax(are_distinct ? indices.first(1) : indices);
+  if (are_distinct || (high - low) / 8 > indices.size()) {
+    for (const std::uint32_t i : indices) shade_element(i);
+    return draw_primitives(context, mode, context.vertices, counting(indices.size()));
+  }
+  thread_local std::vector<std::uint32_t> place, placed;
+  place.assign(std::size_t{high} - low + 1, kNowhere);
+  placed.clear();
+  for (const std::uint32_t i : indices) {
+    std::uint32_t& at = place[i - low];
+    if (at == kNowhere) {
+      at = static_cast<std::uint32_t>(context.vertices.size());
+      shade_element(i);
+    }
+    placed.push_back(at);
+  }
+  draw_primitives(context, mode, context.vertices, placed);
+}
+
+/// Names that are not in use; they are from now on.
+template <class Object>
+void generate(Context& context, std::map<GLuint, Object>& objects, GLsizei n, GLuint* names) {
+  if (n < 0) return context.fail(GL_INVALID_VALUE);
+  GLuint name = objects.empty() ? 1 : objects.rbegin()->first + 1;
+  for (GLsizei i = 0; i < n; ++i, ++name) {
+    while (name == 0 || objects.contains(name)) ++name;
+    names[i] = name;
+    objects[name];
+  }
+}
+
+/// The binding of a target; null and GL_INVALID_ENUM for what is no target.
+GLuint* binding_of(Context& context, GLenum target) {
+  if (target == GL_ARRAY_BUFFER) return &context.client.array_buffer;
+  if (target == GL_ELEMENT_ARRAY_BUFFER) return &context.client.element_buffer;
+  context.fail(GL_INVALID_ENUM);
+  return nullptr;
+}
+
+/// The buffer that is bound to a target; null and an error where there is none.
+std::shared_ptr<BufferObject> bound_buffer(Context& context, GLenum target) {
+  const GLuint* const binding = binding_of(context, target);
+  if (binding == nullptr) return nullptr;
+  auto buffer = *binding == 0 ? nullptr : buffer_of(context, *binding);
+  if (buffer == nullptr) context.fail(GL_INVALID_OPERATION);
+  return buffer;
+}
+
+/// The part of a buffer that a command names; null and an error where it may not.
+std::byte* part_of(Context& context, GLenum target, GLintptr offset, GLsizeiptr size) {
+  const auto buffer = bound_buffer(context, target);
+  if (buffer == nullptr) return nullptr;
+  const auto bytes = static_cast<GLsizeiptr>(buffer->data.size());
+  const GLenum error = offset < 0 || size < 0 || offset > bytes || size > bytes - offset ? GL_INVALID_VALUE
+                       : buffer->mapped                                                  ? GL_INVALID_OPERATION
+                                                                                         : GL_NO_ERROR;
+  if (error != GL_NO_ERROR) {
+    context.fail(error);
+    return nullptr;
+  }
+  return buffer->data.data() + offset;
+}
+
+std::uint64_t samples_passed(const Context& context) {
+  return context.drawable == nullptr ? 0 : context.drawable->frame.samples_passed();
+}
+
+/// glInterleavedArrays (OpenGL 1.5, table 2.5). Sizes of 0: the array is off. Offsets in bytes.
+struct Interleaved {
+  GLenum format;
+  int texture_size, color_size;
+  GLenum color_type;
+  bool has_normal;
+  int vertex_size, color_at, normal_at, vertex_at, stride;
+};
+constexpr int kFloat = sizeof(GLfloat);
+constexpr GLenum kBytes = GL_UNSIGNED_BYTE;
+constexpr std::array kInterleaved{
+    Interleaved{GL_V2F, 0, 0, 0, false, 2, 0, 0, 0, 2 * kFloat},
+    Interleaved{GL_V3F, 0, 0, 0, false, 3, 0, 0, 0, 3 * kFloat},
+    Interleaved{GL_C4UB_V2F, 0, 4, kBytes, false, 2, 0, 0, 4, 4 + 2 * kFloat},
+    Interleaved{GL_C4UB_V3F, 0, 4, kBytes, false, 3, 0, 0, 4, 4 + 3 * kFloat},
+    Interleaved{GL_C3F_V3F, 0, 3, GL_FLOAT, false, 3, 0, 0, 3 * kFloat, 6 * kFloat},
+    Interleaved{GL_N3F_V3F, 0, 0, 0, true, 3, 0, 0, 3 * kFloat, 6 * kFloat},
+    Interleaved{GL_C4F_N3F_V3F, 0, 4, GL_FLOAT, true, 3, 0, 4 * kFloat, 7 * kFloat, 10 * kFloat},
+    Interleaved{GL_T2F_V3F, 2, 0, 0, false, 3, 0, 0, 2 * kFloat, 5 * kFloat},
+    Interleaved{GL_T4F_V4F, 4, 0, 0, false, 4, 0, 0, 4 * kFloat, 8 * kFloat},
+    Interleaved{GL_T2F_C4UB_V3F, 2, 4, kBytes, false, 3, 2 * kFloat, 0, 2 * kFloat + 4, 4 + 5 * kFloat},
+    Interleaved{GL_T2F_C3F_V3F, 2, 3, GL_FLOAT, false, 3, 2 * kFloat, 0, 5 * kFloat, 8 * kFloat},
+    Interleaved{GL_T2F_N3F_V3F, 2, 0, 0, true, 3, 0, 2 * kFloat, 5 * kFloat, 8 * kFloat},
+    Interleaved{GL_T2F_C4F_N3F_V3F, 2, 4, GL_FLOAT, true, 3, 2 * kFloat, 6 * kFloat, 9 * kFloat, 12 * kFloat},
+    Interleaved{GL_T4F_C4F_N3F_V4F, 4, 4, GL_FLOAT, true, 4, 4 * kFloat, 8 * kFloat, 11 * kFloat, 15 * kFloat}};
+
+}  // namespace
+
+void vertex_pointer(Context& context, GLint size, GLenum type, GLsizei stride, const void* pointer) {
+  set_pointer(context, context.client.vertex, size, {2, 4}, type, {GL_SHORT, GL_INT, GL_FLOAT, GL_DOUBLE}, stride,
+              pointer);
+}
+
+void normal_pointer(Context& context, GLenum type, GLsizei stride, const void* pointer) {
+  set_pointer(context, context.client.normal, 3, {3, 3}, type, {GL_BYTE, GL_SHORT, GL_INT, GL_FLOAT, GL_DOUBLE}, stride,
+              pointer);
+}
+
+void color_pointer(Context& context, GLint size, GLenum type, GLsizei stride, const void* pointer) {
+  set_pointer(context, context.client.color, size, {3, 4}, type, kColorTypes, stride, pointer);
+}
+
+void secondary_color_pointer(Context& context, GLint size, GLenum type, GLsizei stride, const void* pointer) {
+  set_pointer(context, context.client.secondary, size, {3, 3}, type, kColorTypes, stride, pointer);
+}
+
+void index_pointer(Context& context, GLenum type, GLsizei stride, const void* pointer) {
+  set_pointer(context, context.client.index, 1, {1, 1}, type, {GL_UNSIGNED_BYTE, GL_SHORT, GL_INT, GL_FLOAT, GL_DOUBLE},
+              stride, pointer);
+}
+
+void tex_coord_pointer(Context& context, GLint size, GLenum type, GLsizei stride, const void* pointer) {
+  set_pointer(context, context.client.tex_coord[static_cast<std::size_t>(context.client.active_texture)], size, {1, 4},
+              type, {GL_SHORT, GL_INT, GL_FLOAT, GL_DOUBLE}, stride, pointer);
+}
+
+void fog_coord_pointer(Context& context, GLenum type, GLsizei stride, const void* pointer) {
+  set_pointer(context, context.client.fog_coord, 1, {1, 1}, type, {GL_FLOAT, GL_DOUBLE}, stride, pointer);
+}
+
+void edge_flag_pointer(Context& context, GLsizei stride, const void* pointer) {
+  set_pointer(context, context.client.edge_flag, 1, {1, 1}, GL_UNSIGNED_BYTE, {GL_UNSIGNED_BYTE}, stride, pointer);
+}
+
+void interleaved_arrays(Context& context, GLenum format, GLsizei stride, const void* pointer) {
+  const auto found = std::ranges::find(kInterleaved, format, &Interleaved::format);
+  if (found == kInterleaved.end()) return context.fail(GL_INVALID_ENUM);
+  if (stride < 0) return context.fail(GL_INVALID_VALUE);
+  if (stride == 0) stride = found->stride;
+  ClientState& client = context.client;
+  // An address, or an offset within a buffer; not arithmetic on a pointer, which may be null.
+  const auto set = [&](ArrayPointer& array, int size, GLenum type, int at) {
+    array.enabled = size != 0;
+    const auto* const where =
+        reinterpret_cast<const void*>(reinterpret_cast<std::uintptr_t>(pointer) + static_cast<std::uintptr_t>(at));
+    if (size != 0) array = {true, size, type, stride, where, client.array_buffer};
+  };
+  client.edge_flag.enabled = client.index.enabled = client.secondary.enabled = client.fog_coord.enabled = false;
+  set(client.tex_coord[static_cast<std::size_t>(client.active_texture)], found->texture_size, GL_FLOAT, 0);
+  set(client.color, found->color_size, found->color_type, found->color_at);
+  set(client.normal, found->has_normal ? 3 : 0, GL_FLOAT, found->normal_at);
+  set(client.vertex, found->vertex_size, GL_FLOAT, found->vertex_at);
+}
+
+void client_state(Context& context, GLenum array, bool enabled) {
+  ClientState& client = context.client;
+  switch (array) {
+    case GL_VERTEX_ARRAY: client.vertex.enabled = enabled; return;
+    case GL_NORMAL_ARRAY: client.normal.enabled = enabled; return;
+    case GL_COLOR_ARRAY: client.color.enabled = enabled; return;
+    case GL_SECONDARY_COLOR_ARRAY: client.secondary.enabled = enabled; return;
+    case GL_INDEX_ARRAY: client.index.enabled = enabled; return;
+    case GL_EDGE_FLAG_ARRAY: client.edge_flag.enabled = enabled; return;
+    case GL_FOG_COORDINATE_ARRAY: client.fog_coord.enabled = enabled; return;
+    case GL_TEXTURE_COORD_ARRAY:
+      client.tex_coord[static_cast<std::size_t>(client.active_texture)].enabled = enabled;
+      return;
+    default: context.fail(GL_INVALID_ENUM);
+  }
+}
+
+void client_active_texture(Context& context, GLenum unit) {
+  if (unit < GL_TEXTURE0 || unit >= GL_TEXTURE0 + kTextureUnits) return context.fail(GL_INVALID_ENUM);
+  context.client.active_texture = static_cast<int>(unit - GL_TEXTURE0);
+}
+
+void array_element(Context& context, GLint i) {
+  if (i < 0) return context.fail(GL_INVALID_VALUE);
+  const Streams streams(context);
+  if (!streams.is_readable) return context.fail(GL_INVALID_OPERATION);
+  streams.issue_vertex(context, static_cast<std::uint32_t>(i));
+}
+
+void draw_arrays(Context& context, GLenum mode, GLint first, GLsizei count) {
+  if (!check_draw(context, mode, count)) return;
+  if (first < 0) return context.fail(GL_INVALID_VALUE);
+  // No element beyond the end of a buffer is drawn.
+  const Streams streams(context);
+  const std::size_t elements = streams.vertex.elements(), at = static_cast<std::size_t>(first);
+  const std::size_t drawn = std::min(static_cast<std::size_t>(count), elements > at ? elements - at : 0);
+  draw(context, streams, mode, static_cast<std::uint32_t>(first), counting(drawn), true);
+}
+
+void draw_elements(Context& context, GLenum mode, GLsizei count, GLenum type, const void* indices) {
+  if (!check_draw(context, mode, count)) return;
+  if (type != GL_UNSIGNED_BYTE && type != GL_UNSIGNED_SHORT && type != GL_UNSIGNED_INT)
+    return context.fail(GL_INVALID_ENUM);
+  const Memory memory = memory_of(context, context.client.element_buffer, indices);
+  if (!memory.is_readable()) return context.fail(GL_INVALID_OPERATION);
+  const std::size_t bytes = number_type_of(type).bytes;
+  thread_local std::vector<std::uint32_t> numbers;
+  numbers.assign(std::min(static_cast<std::size_t>(count), memory.bytes / bytes), 0);
+  if (numbers.empty()) return;
+  const auto widen = [&]<class Number>(Number) {
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      Number number;
+      std::memcpy(&number, memory.data + i * sizeof number, sizeof number);
+      numbers[i] = number;
+    }
+  };
+  if (type == GL_UNSIGNED_BYTE) widen(GLubyte());
+  if (type == GL_UNSIGNED_SHORT) widen(GLushort());
+  if (type == GL_UNSIGNED_INT) widen(GLuint());
+  draw(context, Streams(context), mode, 0, numbers, false);
+}
+
+void draw_range_elements(Context& context, GLenum mode, GLuint start, GLuint end, GLsizei count, GLenum type,
+                         const void* indices) {
+  if (end < start) return context.fail(GL_INVALID_VALUE);
+  draw_elements(context, mode, count, type, indices);
+}
+
+void multi_draw_arrays(Context& context, GLenum mode, const GLint* first, const GLsizei* count, GLsizei draws) {
+  if (draws < 0) return context.fail(GL_INVALID_VALUE);
+  for (GLsizei i = 0; i < draws; ++i)
+    if (count[i] > 0) draw_arrays(context, mode, first[i], count[i]);
+}
+
+void multi_draw_elements(Context& context, GLenum mode, const GLsizei* count, GLenum type, const void* const* indices,
+                         GLsizei draws) {
+  if (draws < 0) return context.fail(GL_INVALID_VALUE);
+  for (GLsizei i = 0; i < draws; ++i)
+    if (count[i] > 0) draw_elements(context, mode, count[i], type, indices[i]);
+}
+
+void bind_buffer(Context& context, GLenum target, GLuint name) {
+  GLuint* const binding = binding_of(context, target);
+  if (binding == nullptr) return;
+  *binding = name;
+  if (name == 0) return;
+  const std::lock_guard lock(context.shared->mutex);
+  auto& buffer = context.shared->buffers[name];
+  if (buffer == nullptr) buffer = std::make_shared<BufferObject>();
+}
+
+void delete_buffers(Context& context, GLsizei n, const GLuint* names) {
+  if (n < 0) return context.fail(GL_INVALID_VALUE);
+  ClientState& client = context.client;
+  const std::lock_guard lock(context.shared->mutex);
+  for (GLsizei i = 0; i < n; ++i) {
+    if (names[i] == 0 || context.shared->buffers.erase(names[i]) == 0) continue;
+    const auto unbind = [&](GLuint& binding) {
+      if (binding == names[i]) binding = 0;
+    };
+    unbind(client.array_buffer), unbind(client.element_buffer);
+    for (ArrayPointer* const array : arrays_of(client))
+      if (array->buffer == names[i]) array->buffer = 0, array->pointer = nullptr;
+  }
+}
+
+void gen_buffers(Context& context, GLsizei n, GLuint* names) {
+  const std::lock_guard lock(context.shared->mutex);
+  generate(context, context.shared->buffers, n, names);
+}
+
+GLboolean is_buffer(Context& context, GLuint name) { return buffer_of(context, name) != nullptr ? GL_TRUE : GL_FALSE; }
+
+void buffer_data(Context& context, GLenum target, GLsizeiptr size, const void* data, GLenum usage) {
+  // Streamed, static and dynamic: for drawing, reading and copying each.
+  const bool is_usage = usage >= GL_STREAM_DRAW && usage <= GL_DYNAMIC_COPY && usage % 4 != 3;
+  if (binding_of(context, target) == nullptr) return;
+  if (!is_usage) return context.fail(GL_INVALID_ENUM);
+  if (size < 0) return context.fail(GL_INVALID_VALUE);
+  const auto buffer = bound_buffer(context, target);
+  if (buffer == nullptr) return;
+  try {
+    const auto* const bytes = static_cast<const std::byte*>(data);
+    if (data != nullptr)
+      buffer->data.assign(bytes, bytes + size);
+    else
+      buffer->data.assign(static_cast<std::size_t>(size), std::byte{});
+  } catch (const std::exception&) {  // too long, or no memory
+    buffer->data.clear();
+    return context.fail(GL_OUT_OF_MEMORY);
+  }
+  buffer->usage = usage;
+  buffer->access = GL_READ_WRITE;
+  buffer->mapped = false;
+}
+
+void buffer_sub_data(Context& context, GLenum target, GLintptr offset, GLsizeiptr size, const void* data) {
+  std::byte* const part = part_of(context, target, offset, size);
+  if (part != nullptr && size > 0) std::memcpy(part, data, static_cast<std::size_t>(size));
+}
+
+void get_buffer_sub_data(Context& context, GLenum target, GLintptr offset, GLsizeiptr size, void* data) {
+  const std::byte* const part = part_of(context, target, offset, size);
+  if (part != nullptr && size > 0) std::memcpy(data, part, static_cast<std::size_t>(size));
+}
+
+void* map_buffer(Context& context, GLenum target, GLenum access) {
+  GLenum checked = 0;
+  if (binding_of(context, target) == nullptr) return nullptr;
+  set_enum(context, checked, access, {GL_READ_ONLY, GL_WRITE_ONLY, GL_READ_WRITE});
+  if (checked == 0) return nullptr;
+  const auto buffer = bound_buffer(context, target);
+  if (buffer == nullptr) return nullptr;
+  if (buffer->mapped) {
+    context.fail(GL_INVALID_OPERATION);
+    return nullptr;
+  }
+  buffer->data.reserve(1);  // null says that it could not be mapped
+  buffer->access = access;
+  buffer->mapped = true;
+  return buffer->data.data();
+}
+
+GLboolean unmap_buffer(Context& context, GLenum target) {
+  const auto buffer = bound_buffer(context, target);
+  if (buffer == nullptr) return GL_FALSE;
+  if (!buffer->mapped) {
+    context.fail(GL_INVALID_OPERATION);
+    return GL_FALSE;
+  }
+  buffer->mapped = false;
+  return GL_TRUE;
+}
+
+void get_buffer_parameter(Context& context, GLenum target, GLenum pname, GLint* params) {
+  if (binding_of(context, target) == nullptr) return;
+  GLenum checked = 0;
+  set_enum(context, checked, pname, {GL_BUFFER_SIZE, GL_BUFFER_USAGE, GL_BUFFER_ACCESS, GL_BUFFER_MAPPED});
+  if (checked == 0) return;
+  const auto buffer = bound_buffer(context, target);
+  if (buffer == nullptr) return;
+  switch (pname) {
+    case GL_BUFFER_SIZE:
+      *params = static_cast<GLint>(std::min<std::size_t>(buffer->data.size(), std::numeric_limits<GLint>::max()));
+      return;
+    case GL_BUFFER_USAGE: *params = static_cast<GLint>(buffer->usage); return;
+    case GL_BUFFER_ACCESS: *params = static_cast<GLint>(buffer->access); return;
+    default: *params = buffer->mapped ? GL_TRUE : GL_FALSE;
+  }
+}
+
+void get_buffer_pointer(Context& context, GLenum target, GLenum pname, void** params) {
+  if (binding_of(context, target) == nullptr) return;
+  if (pname != GL_BUFFER_MAP_POINTER) return context.fail(GL_INVALID_ENUM);
+  const auto buffer = bound_buffer(context, target);
+  if (buffer != nullptr) *params = buffer->mapped ? buffer->data.data() : nullptr;
+}
+
+void gen_queries(Context& context, GLsizei n, GLuint* names) { generate(context, context.queries, n, names); }
+
+void delete_queries(Context& context, GLsizei n, const GLuint* names) {
+  if (n < 0) return context.fail(GL_INVALID_VALUE);
+  for (GLsizei i = 0; i < n; ++i) {
+    if (names[i] == context.active_query) context.active_query = 0;
+    context.queries.erase(names[i]);
+  }
+}
+
+GLboolean is_query(Context& context, GLuint name) {
+  const auto found = context.queries.find(name);
+  return found != context.queries.end() && found->second.exists ? GL_TRUE : GL_FALSE;
+}
+
+void begin_query(Context& context, GLenum target, GLuint name) {
+  if (target != GL_SAMPLES_PASSED) return context.fail(GL_INVALID_ENUM);
+  if (name == 0 || context.active_query != 0) return context.fail(GL_INVALID_OPERATION);
+  context.queries[name] = {.exists = true, .active = true, .begun_at = samples_passed(context)};
+  context.active_query = name;
+}
+
+void end_query(Context& context, GLenum target) {
+  if (target != GL_SAMPLES_PASSED) return context.fail(GL_INVALID_ENUM);
+  if (context.active_query == 0) return context.fail(GL_INVALID_OPERATION);
+  Query& query = context.queries[std::exchange(context.active_query, 0)];
+  // Another drawable may have been made current, with fewer samples.
+  const std::uint64_t now = samples_passed(context);
+  query.samples = now > query.begun_at ? now - query.begun_at : 0;
+  query.active = false;
+}
+
+void get_query(Context& context, GLenum target, GLenum pname, GLint* params) {
+  if (target != GL_SAMPLES_PASSED) return context.fail(GL_INVALID_ENUM);
+  if (pname == GL_CURRENT_QUERY)
+    *params = static_cast<GLint>(context.active_query);
+  else if (pname == GL_QUERY_COUNTER_BITS)
+    *params = std::numeric_limits<GLuint>::digits;
+  else
+    context.fail(GL_INVALID_ENUM);
+}
+
+void get_query_object(Context& context, GLuint name, GLenum pname, GLint* params) {
+  const auto found = context.queries.find(name);
+  if (found == context.queries.end() || !found->second.exists || found->second.active)
+    return context.fail(GL_INVALID_OPERATION);
+  if (pname == GL_QUERY_RESULT)
+    *params = static_cast<GLint>(
+        static_cast<GLuint>(std::min<std::uint64_t>(found->second.samples, std::numeric_limits<GLuint>::max())));
+  else if (pname == GL_QUERY_RESULT_AVAILABLE)
+    *params = GL_TRUE;
+  else
+    context.fail(GL_INVALID_ENUM);
+}
+
+}  // namespace halfplane::gl
