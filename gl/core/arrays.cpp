@@ -29,6 +29,11 @@ void read(const std::byte* from, int count, double* to) {
   }
 }
 
+void read_fixed(const std::byte* from, int count, double* to) {
+  read<GLint, false>(from, count, to);
+  for (int i = 0; i < count; ++i) to[i] /= 65536;
+}
+
 struct NumberType {
   GLenum type;
   std::size_t bytes;
@@ -38,10 +43,15 @@ template <class Number>
 constexpr NumberType number_type(GLenum type) {
   return {type, sizeof(Number), read<Number, false>, read<Number, true>};
 }
-constexpr std::array kNumberTypes{number_type<GLbyte>(GL_BYTE),   number_type<GLubyte>(GL_UNSIGNED_BYTE),
-                                  number_type<GLshort>(GL_SHORT), number_type<GLushort>(GL_UNSIGNED_SHORT),
-                                  number_type<GLint>(GL_INT),     number_type<GLuint>(GL_UNSIGNED_INT),
-                                  number_type<GLfloat>(GL_FLOAT), number_type<GLdouble>(GL_DOUBLE)};
+constexpr std::array kNumberTypes{number_type<GLbyte>(GL_BYTE),
+                                  number_type<GLubyte>(GL_UNSIGNED_BYTE),
+                                  number_type<GLshort>(GL_SHORT),
+                                  number_type<GLushort>(GL_UNSIGNED_SHORT),
+                                  number_type<GLint>(GL_INT),
+                                  number_type<GLuint>(GL_UNSIGNED_INT),
+                                  number_type<GLfloat>(GL_FLOAT),
+                                  number_type<GLdouble>(GL_DOUBLE),
+                                  NumberType{GL_FIXED, sizeof(GLint), read_fixed, read_fixed}};
 
 const NumberType& number_type_of(GLenum type) {
   const auto found = std::ranges::find(kNumberTypes, type, &NumberType::type);
@@ -54,7 +64,8 @@ constexpr std::initializer_list<GLenum> kColorTypes{GL_BYTE, GL_UNSIGNED_BYTE, G
 void set_pointer(Context& context, ArrayPointer& array, int size, std::array<int, 2> sizes, GLenum type,
                  std::initializer_list<GLenum> types, GLsizei stride, const void* pointer) {
   if (size < sizes[0] || size > sizes[1] || stride < 0) return context.fail(GL_INVALID_VALUE);
-  if (std::ranges::find(types, type) == types.end()) return context.fail(GL_INVALID_ENUM);
+  const bool is_of_embedded = context.is_embedded && (type == GL_FIXED || type == GL_BYTE);
+  if (std::ranges::find(types, type) == types.end() && !is_of_embedded) return context.fail(GL_INVALID_ENUM);
   array = {array.enabled, size, type, stride, pointer, context.client.array_buffer};
 }
 

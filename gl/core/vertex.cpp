@@ -16,14 +16,6 @@ void set_size(Context& context, double& where, double size, double above = 0) {
   where = size;
 }
 
-/// A raster position in selection is a hit of its depth.
-void hit(Context& context, double z) {
-  if (context.render_mode != GL_SELECT) return;
-  context.was_hit = true;
-  context.hit_low = std::min(context.hit_low, z);
-  context.hit_high = std::max(context.hit_high, z);
-}
-
 bool is_inside(const Context& context, const ShadedVertex& vertex) {
   const auto& [x, y, z, w] = vertex.clip;
   if (!(w > 0 && x >= -w && x <= w && y >= -w && y <= w && z >= -w && z <= w)) return false;
