@@ -1,0 +1,101 @@
+// What GLX and EGL have in common: a connection to the X server, its pixel formats, and drawables that show themselves.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "../core/context.hpp"
+
+#include <X11/Xlib.h>
+#include <X11/Xutil.h>
+#include <X11/extensions/XShm.h>
+
+namespace halfplane::gl {
+
+/// Options of this process, read once. Throws InputError.
+[[nodiscard]] const Options& options();
+
+/// Whether the options can be read; says on stderr what is wrong with them. Writes `system` to the file that the environment
+/// variable HALFPLANE_GL_ANSWERED names, so that `halfplane run` knows which libraries were loaded.
+[[nodiscard]] bool answers(const char* system);
+
+// What every pixel has, whatever the configuration stores of it.
+inline constexpr int kColorBits = 8;  ///< of each of R, G, B, A
+inline constexpr int kDepthBits = 24, kStencilBits = 8;
+inline constexpr int kAccumBits = 16;  ///< of each of R, G, B, A
+
+/// Buffers that go with a visual.
+struct PixelFormat {
+  XVisualInfo visual{};  ///< its pointer is one of the driver's own connection; visualid 0: no visual
+  bool double_buffered = true;
+};
+
+/// A connection of the driver's own to an X server: what goes wrong on it (a window that is gone) reaches no handler of the
+/// program. Any thread may use it.
+class Server {
+ public:
+  /// Of the name of a display, null for that of the environment. Kept until the process ends. Null: no server answers.
+  [[nodiscard]] static Server* open(const char* name);
+
+  [[nodiscard]] int screens() const { return static_cast<int>(formats_.size()); }
+  [[nodiscard]] int default_screen() const { return DefaultScreen(display_); }
+  /// Of every TrueColor visual of a screen. The default visual comes first, visuals with alpha last. The second visual of each
+  /// depth is single-buffered; where there is none, the first stands for both.
+  [[nodiscard]] const std::vector<PixelFormat>& formats(int screen) const {
+    return formats_[static_cast<std::size_t>(screen)];
+  }
+
+  struct Geometry {
+    int screen = 0, depth = 0, width = 0, height = 0;
+  };
+  /// Of a window or pixmap. None: there is no such drawable.
+  [[nodiscard]] std::optional<Geometry> geometry(XID drawable);
+
+ private:
+  friend class Window;
+  explicit Server(Display* display);
+
+  Display* display_;
+  std::mutex mutex_;
+  bool has_shm_;
+  std::vector<std::vector<PixelFormat>> formats_;  // by screen
+};
+
+enum class DrawableKind { window, pixmap, pbuffer };
+
+class Window final : public Drawable {
+ public:
+  /// `server` may be null for pbuffers. Throws InputError for a size that the configuration does not take.
+  Window(DrawableKind what, Server* x_server, XID x_drawable, const PixelFormat& its_format, int width, int height);
+  ~Window() override;
+
+  /// Of single-buffered drawables: ends the frame, too, for no swap does.
+  void present() override;
+  /// Ends the frame, shows it, and takes over the window's size.
+  void swap();
+  /// Shows the picture in `target`, a window or pixmap of the depth of the format.
+  void show(XID target);
+  /// Takes over the size of the X window. False: the window is gone.
+  bool follow_size();
+
+  const DrawableKind kind;
+  Server* const server;
+  const XID xid;  ///< of the X window or pixmap
+  const PixelFormat format;
+  int swap_interval = 1;         ///< kept for queries: there is no vertical retrace to wait for
+  unsigned long event_mask = 0;  ///< glXSelectEvent; no pbuffer is ever clobbered
+
+ private:
+  /// Makes image_ one of the size of the frame. False: no memory.
+  bool make_image(int width, int height);
+  void free_image();
+
+  XImage* image_ = nullptr;
+  XShmSegmentInfo segment_{};  // shmaddr null: image_ has memory of its own
+  GC gc_ = nullptr;
+};
+
+}  // namespace halfplane::gl
