@@ -215,7 +215,7 @@ void list_base(Context&, GLuint base);  // list
 GLuint gen_lists(Context&, GLsizei range);
 void delete_lists(Context&, GLuint name, GLsizei range);
 GLboolean is_list(Context&, GLuint name);
-/// glCallLists' array as numbers; empty and GL_INVALID_ENUM for a type that is none.
+/// glCallLists' array as numbers; null: an error was issued.
 [[nodiscard]] std::shared_ptr<const std::vector<GLuint>> list_names(Context&, GLsizei n, GLenum type,
                                                                     const void* lists);
 
@@ -258,6 +258,9 @@ void get_pointer(Context&, GLenum pname, void** params);
 void get_polygon_stipple(Context&, GLubyte* mask);
 GLboolean is_enabled(Context&, GLenum cap);
 /// Where an enable is kept; null: `cap` is none. Of texgen and texture targets: of the active unit.
-[[nodiscard]] bool* enable_flag(Context&, GLenum cap);
+[[nodiscard]] bool* enable_flag(State&, GLenum cap);
+[[nodiscard]] inline bool* enable_flag(Context& context, GLenum cap) { return enable_flag(context.state, cap); }
+/// GL_ENABLE_BIT.
+void copy_enables(State& to, State from);
 
 }  // namespace halfplane::gl

@@ -43,8 +43,7 @@ struct EvaluatorMap {
 struct SavedAttributes {
   GLbitfield mask = 0;
   State state;
-  // Of GL_TEXTURE_BIT: parameters of the textures that were bound, without their images.
-  std::vector<TextureObject> textures;
+  std::vector<TextureParameters> textures;  ///< of GL_TEXTURE_BIT: of bound ones, unit by unit, as kTextureTargets
 };
 
 struct Query {
@@ -66,6 +65,7 @@ struct Context {
   Drawable* read_drawable = nullptr;  ///< where glReadPixels reads
   bool was_current = false;           ///< viewport and scissor have been set to the size of the first drawable
   bool is_embedded = false;           ///< of OpenGL ES-CM, for glGetString
+  std::string renderer;               ///< what glGetString answered to GL_RENDERER
 
   GLenum error = GL_NO_ERROR;
   /// Keeps the first error until glGetError.

@@ -26,11 +26,8 @@ struct TextureImage {
 
 inline constexpr GLenum kTextureCropRect = 0x8b9d;  ///< GL_TEXTURE_CROP_RECT_OES
 
-struct TextureObject {
-  GLuint name = 0;
-  GLenum target = 0;  ///< 0 until it is bound for the first time
-  /// Levels of each face: one face, or the six of a cube map.
-  std::array<std::vector<TextureImage>, 6> face;
+/// What GL_TEXTURE_BIT saves of a texture.
+struct TextureParameters {
   GLenum min_filter = GL_NEAREST_MIPMAP_LINEAR, mag_filter = GL_LINEAR;
   std::array<GLenum, 3> wrap{GL_REPEAT, GL_REPEAT, GL_REPEAT};
   Vec4 border_color{0, 0, 0, 0};
@@ -38,7 +35,14 @@ struct TextureObject {
   int base_level = 0, max_level = 1000;
   bool generate_mipmap = false;
   GLenum compare_mode = GL_NONE, compare_func = GL_LEQUAL, depth_mode = GL_LUMINANCE;
-  std::array<int, 4> crop{};   ///< GL_TEXTURE_CROP_RECT_OES: x, y, width, height in texels
+  std::array<int, 4> crop{};  ///< GL_TEXTURE_CROP_RECT_OES: x, y, width, height in texels
+};
+
+struct TextureObject : TextureParameters {
+  GLuint name = 0;
+  GLenum target = 0;  ///< 0 until it is bound for the first time
+  /// Levels of each face: one face, or the six of a cube map.
+  std::array<std::vector<TextureImage>, 6> face;
   std::uint64_t revision = 0;  ///< raised by every change of an image; unique over all textures
 };
 

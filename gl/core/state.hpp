@@ -17,11 +17,13 @@ inline constexpr int kTextureUnits = 1;  ///< GL_MAX_TEXTURE_UNITS
 inline constexpr int kLights = 8;
 inline constexpr int kClipPlanes = 6;
 inline constexpr int kLargestTexture = 4096;  ///< texels along a side
-inline constexpr int kEvalOrder = 30;         ///< GL_MAX_EVAL_ORDER
-inline constexpr int kPixelMapTable = 256;    ///< GL_MAX_PIXEL_MAP_TABLE
-inline constexpr int kListNesting = 64;       ///< GL_MAX_LIST_NESTING
-inline constexpr int kAttribDepth = 16;       ///< GL_MAX_ATTRIB_STACK_DEPTH, and that of client attributes
-inline constexpr int kNameDepth = 64;         ///< GL_MAX_NAME_STACK_DEPTH
+inline constexpr int kLargestTexture3D = 256;
+inline constexpr int kLargestPoint = 64, kLargestLine = 64;  ///< pixels: what sizes and widths are held to
+inline constexpr int kEvalOrder = 30;                        ///< GL_MAX_EVAL_ORDER
+inline constexpr int kPixelMapTable = 256;                   ///< GL_MAX_PIXEL_MAP_TABLE
+inline constexpr int kListNesting = 64;                      ///< GL_MAX_LIST_NESTING
+inline constexpr int kAttribDepth = 16;  ///< GL_MAX_ATTRIB_STACK_DEPTH, and that of client attributes
+inline constexpr int kNameDepth = 64;    ///< GL_MAX_NAME_STACK_DEPTH
 inline constexpr int kModelviewDepth = 32, kProjectionDepth = 4, kTextureDepth = 10;  ///< of matrix stacks
 inline constexpr int kLargestViewport = 16384;                                        ///< GL_MAX_VIEWPORT_DIMS
 

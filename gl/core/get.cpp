@@ -1,0 +1,475 @@
+// Queries of state by tables (OpenGL 1.5, 6.1 and tables 6.5 to 6.35).
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <utility>
+
+#include "commands.hpp"
+
+namespace halfplane::gl {
+namespace {
+
+// What follows from a value's type: its kind, and it as doubles.
+struct Numbers : Values {
+  template <class T>
+  requires std::is_arithmetic_v<T> Numbers(T number) : Values{kind_of<T>(), {static_cast<double>(number)}} {}
+  template <class T, std::size_t N>
+  Numbers(const std::array<T, N>& numbers) : Values{kind_of<T>(), {}} {
+    for (const T number : numbers) value.push_back(static_cast<double>(number));
+  }
+
+ private:
+  template <class T>
+  static constexpr ValueKind kind_of() {
+    if constexpr (std::is_same_v<T, bool>)
+      return ValueKind::boolean;
+    else
+      return std::is_integral_v<T> ? ValueKind::integer : ValueKind::real;
+  }
+};
+
+Numbers color_values(Numbers numbers) {
+  numbers.kind = ValueKind::color;
+  return numbers;
+}
+
+Numbers transposed(const Mat4& m) {
+  Mat4 rows;
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = m[i % 4 * 4 + i / 4];
+  return rows;
+}
+
+// Of the configuration; zeros without a drawable.
+using Bits = std::array<int, 6>;  // red, green, blue, alpha, depth, stencil
+Bits buffer_bits(const Context& context) {
+  if (context.drawable == nullptr) return {};
+  const Config& config = context.drawable->frame.options().config;
+  const int depth = config.depth_format.bits != 0 ? config.depth_format.bits : config.depth_bits;
+  if (config.color_format == ColorFormat::rgb565) return {5, 6, 5, 0, depth, config.stencil_bits};
+  return {8, 8, 8, 8, depth, config.stencil_bits};
+}
+int samples(const Context& context) {
+  const int count = context.drawable == nullptr ? 1 : context.drawable->frame.options().config.msaa_samples;
+  return count == 1 ? 0 : count;
+}
+
+const TextureUnit& active_unit(const Context& context) {
+  return context.state.texture.unit[static_cast<std::size_t>(context.state.texture.active)];
+}
+const auto& active_matrix(const Context& context) {
+  return context.texture_matrix[static_cast<std::size_t>(context.state.texture.active)];
+}
+
+constexpr int kAccumulationBits = 16;
+constexpr std::array<double, 2> kPointSizes{1, kLargestPoint}, kLineWidths{1, kLargestLine};
+
+struct StateValue {
+  GLenum pname;
+  Numbers (*value)(const Context& c);
+};
+
+// In the order of the specification's tables. Enables and arrays have tables of their own.
+const StateValue kStateValues[] = {
+    // 6.5: current values
+    {GL_CURRENT_COLOR, [](const Context& c) { return color_values(c.state.current.color); }},
+    {GL_CURRENT_SECONDARY_COLOR, [](const Context& c) { return color_values(c.state.current.secondary); }},
+    {GL_CURRENT_INDEX, [](const Context& c) -> Numbers { return c.state.current.index; }},
+    {GL_CURRENT_TEXTURE_COORDS, [](const Context& c) -> Numbers { return c.state.current.tex_coord[static_cast<std::size_t>(c.state.texture.active)]; }},
+    {GL_CURRENT_NORMAL, [](const Context& c) { return color_values(c.state.current.normal); }},
+    {GL_CURRENT_FOG_COORD, [](const Context& c) -> Numbers { return c.state.current.fog_coord; }},
+    {GL_EDGE_FLAG, [](const Context& c) -> Numbers { return c.state.current.edge_flag; }},
+    {GL_CURRENT_RASTER_POSITION, [](const Context& c) -> Numbers { return c.state.current.raster.window; }},
+    {GL_CURRENT_RASTER_DISTANCE, [](const Context& c) -> Numbers { return c.state.current.raster.distance; }},
+    {GL_CURRENT_RASTER_COLOR, [](const Context& c) { return color_values(c.state.current.raster.color); }},
+    {GL_CURRENT_RASTER_SECONDARY_COLOR, [](const Context& c) { return color_values(c.state.current.raster.secondary); }},
+    {GL_CURRENT_RASTER_INDEX, [](const Context&) -> Numbers { return 1.0; }},
+    {GL_CURRENT_RASTER_TEXTURE_COORDS, [](const Context& c) -> Numbers { return c.state.current.raster.tex_coord[static_cast<std::size_t>(c.state.texture.active)]; }},
+    {GL_CURRENT_RASTER_POSITION_VALID, [](const Context& c) -> Numbers { return c.state.current.raster.valid; }},
+    // 6.6: arrays
+    {GL_CLIENT_ACTIVE_TEXTURE, [](const Context& c) -> Numbers { return GL_TEXTURE0 + c.client.active_texture; }},
+    {GL_ARRAY_BUFFER_BINDING, [](const Context& c) -> Numbers { return c.client.array_buffer; }},
+    {GL_ELEMENT_ARRAY_BUFFER_BINDING, [](const Context& c) -> Numbers { return c.client.element_buffer; }},
+    // 6.7: transformation
+    {GL_MODELVIEW_MATRIX, [](const Context& c) -> Numbers { return c.modelview.back(); }},
+    {GL_PROJECTION_MATRIX, [](const Context& c) -> Numbers { return c.projection.back(); }},
+    {GL_TEXTURE_MATRIX, [](const Context& c) -> Numbers { return active_matrix(c).back(); }},
+    {GL_TRANSPOSE_MODELVIEW_MATRIX, [](const Context& c) { return transposed(c.modelview.back()); }},
+    {GL_TRANSPOSE_PROJECTION_MATRIX, [](const Context& c) { return transposed(c.projection.back()); }},
+    {GL_TRANSPOSE_TEXTURE_MATRIX, [](const Context& c) { return transposed(active_matrix(c).back()); }},
+    {GL_MODELVIEW_STACK_DEPTH, [](const Context& c) -> Numbers { return c.modelview.size(); }},
+    {GL_PROJECTION_STACK_DEPTH, [](const Context& c) -> Numbers { return c.projection.size(); }},
+    {GL_TEXTURE_STACK_DEPTH, [](const Context& c) -> Numbers { return active_matrix(c).size(); }},
+    {GL_MATRIX_MODE, [](const Context& c) -> Numbers { return c.state.transform.matrix_mode; }},
+    {GL_VIEWPORT, [](const Context& c) -> Numbers { const auto& v = c.state.viewport; return std::array{v.x, v.y, v.width, v.height}; }},
+    {GL_DEPTH_RANGE, [](const Context& c) { return color_values(std::array{c.state.viewport.near, c.state.viewport.far}); }},
+    // 6.8 and 6.9: colour, fog, light
+    {GL_FOG_COLOR, [](const Context& c) { return color_values(c.state.fog.color); }},
+    {GL_FOG_INDEX, [](const Context& c) -> Numbers { return c.state.fog.index; }},
+    {GL_FOG_DENSITY, [](const Context& c) -> Numbers { return c.state.fog.density; }},
+    {GL_FOG_START, [](const Context& c) -> Numbers { return c.state.fog.start; }},
+    {GL_FOG_END, [](const Context& c) -> Numbers { return c.state.fog.end; }},
+    {GL_FOG_MODE, [](const Context& c) -> Numbers { return c.state.fog.mode; }},
+    {GL_FOG_COORD_SRC, [](const Context& c) -> Numbers { return c.state.fog.coord_source; }},
+    {GL_SHADE_MODEL, [](const Context& c) -> Numbers { return c.state.lighting.shade_model; }},
+    {GL_COLOR_MATERIAL_PARAMETER, [](const Context& c) -> Numbers { return c.state.lighting.color_material_mode; }},
+    {GL_COLOR_MATERIAL_FACE, [](const Context& c) -> Numbers { return c.state.lighting.color_material_face; }},
+    {GL_LIGHT_MODEL_AMBIENT, [](const Context& c) { return color_values(c.state.lighting.model_ambient); }},
+    {GL_LIGHT_MODEL_LOCAL_VIEWER, [](const Context& c) -> Numbers { return c.state.lighting.local_viewer; }},
+    {GL_LIGHT_MODEL_TWO_SIDE, [](const Context& c) -> Numbers { return c.state.lighting.two_side; }},
+    {GL_LIGHT_MODEL_COLOR_CONTROL, [](const Context& c) -> Numbers { return c.state.lighting.color_control; }},
+    // 6.11 and 6.12: rasterization, multisampling
+    {GL_POINT_SIZE, [](const Context& c) -> Numbers { return c.state.point.size; }},
+    {GL_POINT_SIZE_MIN, [](const Context& c) -> Numbers { return c.state.point.least; }},
+    {GL_POINT_SIZE_MAX, [](const Context& c) -> Numbers { return c.state.point.largest; }},
+    {GL_POINT_FADE_THRESHOLD_SIZE, [](const Context& c) -> Numbers { return c.state.point.fade; }},
+    {GL_POINT_DISTANCE_ATTENUATION, [](const Context& c) -> Numbers { return c.state.point.attenuation; }},
+    {GL_LINE_WIDTH, [](const Context& c) -> Numbers { return c.state.line.width; }},
+    {GL_LINE_STIPPLE_PATTERN, [](const Context& c) -> Numbers { return c.state.line.stipple_pattern; }},
+    {GL_LINE_STIPPLE_REPEAT, [](const Context& c) -> Numbers { return c.state.line.stipple_factor; }},
+    {GL_CULL_FACE_MODE, [](const Context& c) -> Numbers { return c.state.polygon.cull_face; }},
+    {GL_FRONT_FACE, [](const Context& c) -> Numbers { return c.state.polygon.front_face; }},
+    {GL_POLYGON_MODE, [](const Context& c) -> Numbers { return c.state.polygon.mode; }},
+    {GL_POLYGON_OFFSET_FACTOR, [](const Context& c) -> Numbers { return c.state.polygon.offset_factor; }},
+    {GL_POLYGON_OFFSET_UNITS, [](const Context& c) -> Numbers { return c.state.polygon.offset_units; }},
+    {GL_SAMPLE_COVERAGE_VALUE, [](const Context& c) -> Numbers { return c.state.multisample.value; }},
+    {GL_SAMPLE_COVERAGE_INVERT, [](const Context& c) -> Numbers { return c.state.multisample.invert; }},
+    // 6.13 to 6.16: textures
+    {GL_TEXTURE_BINDING_1D, [](const Context& c) -> Numbers { return active_unit(c).bound[0]; }},
+    {GL_TEXTURE_BINDING_2D, [](const Context& c) -> Numbers { return active_unit(c).bound[1]; }},
+    {GL_TEXTURE_BINDING_3D, [](const Context& c) -> Numbers { return active_unit(c).bound[2]; }},
+    {GL_TEXTURE_BINDING_CUBE_MAP, [](const Context& c) -> Numbers { return active_unit(c).bound[3]; }},
+    {GL_ACTIVE_TEXTURE, [](const Context& c) -> Numbers { return GL_TEXTURE0 + c.state.texture.active; }},
+    // 6.19: pixel operations
+    {GL_SCISSOR_BOX, [](const Context& c) -> Numbers { const auto& s = c.state.scissor; return std::array{s.x, s.y, s.width, s.height}; }},
+    {GL_ALPHA_TEST_FUNC, [](const Context& c) -> Numbers { return c.state.color.alpha_func; }},
+    {GL_ALPHA_TEST_REF, [](const Context& c) { return color_values(c.state.color.alpha_reference); }},
+    {GL_STENCIL_FUNC, [](const Context& c) -> Numbers { return c.state.stencil.func; }},
+    {GL_STENCIL_VALUE_MASK, [](const Context& c) -> Numbers { return c.state.stencil.value_mask; }},
+    {GL_STENCIL_REF, [](const Context& c) -> Numbers { return c.state.stencil.reference; }},
+    {GL_STENCIL_FAIL, [](const Context& c) -> Numbers { return c.state.stencil.fail; }},
+    {GL_STENCIL_PASS_DEPTH_FAIL, [](const Context& c) -> Numbers { return c.state.stencil.depth_fail; }},
+    {GL_STENCIL_PASS_DEPTH_PASS, [](const Context& c) -> Numbers { return c.state.stencil.depth_pass; }},
+    {GL_DEPTH_FUNC, [](const Context& c) -> Numbers { return c.state.depth.func; }},
+    {GL_BLEND_SRC, [](const Context& c) -> Numbers { return c.state.color.src_rgb; }},
+    {GL_BLEND_DST, [](const Context& c) -> Numbers { return c.state.color.dst_rgb; }},
+    {GL_BLEND_SRC_RGB, [](const Context& c) -> Numbers { return c.state.color.src_rgb; }},
+    {GL_BLEND_SRC_ALPHA, [](const Context& c) -> Numbers { return c.state.color.src_alpha; }},
+    {GL_BLEND_DST_RGB, [](const Context& c) -> Numbers { return c.state.color.dst_rgb; }},
+    {GL_BLEND_DST_ALPHA, [](const Context& c) -> Numbers { return c.state.color.dst_alpha; }},
+    {GL_BLEND_EQUATION, [](const Context& c) -> Numbers { return c.state.color.equation; }},
+    {GL_BLEND_COLOR, [](const Context& c) { return color_values(c.state.color.blend_color); }},
+    {GL_LOGIC_OP_MODE, [](const Context& c) -> Numbers { return c.state.color.logic_func; }},
+    // 6.20: framebuffer
+    {GL_DRAW_BUFFER, [](const Context& c) -> Numbers { return c.state.color.draw_buffer; }},
+    {GL_INDEX_WRITEMASK, [](const Context& c) -> Numbers { return c.state.color.index_write; }},
+    {GL_COLOR_WRITEMASK, [](const Context& c) -> Numbers { return c.state.color.write; }},
+    {GL_DEPTH_WRITEMASK, [](const Context& c) -> Numbers { return c.state.depth.write; }},
+    {GL_STENCIL_WRITEMASK, [](const Context& c) -> Numbers { return c.state.stencil.write_mask; }},
+    {GL_COLOR_CLEAR_VALUE, [](const Context& c) { return color_values(c.state.color.clear); }},
+    {GL_INDEX_CLEAR_VALUE, [](const Context& c) -> Numbers { return c.state.color.clear_index; }},
+    {GL_DEPTH_CLEAR_VALUE, [](const Context& c) { return color_values(c.state.depth.clear); }},
+    {GL_STENCIL_CLEAR_VALUE, [](const Context& c) -> Numbers { return c.state.stencil.clear; }},
+    {GL_ACCUM_CLEAR_VALUE, [](const Context& c) { return color_values(c.state.accum.clear); }},
+    // 6.21 to 6.24: pixels
+    {GL_UNPACK_SWAP_BYTES, [](const Context& c) -> Numbers { return c.client.unpack.swap_bytes; }},
+    {GL_UNPACK_LSB_FIRST, [](const Context& c) -> Numbers { return c.client.unpack.lsb_first; }},
+    {GL_UNPACK_IMAGE_HEIGHT, [](const Context& c) -> Numbers { return c.client.unpack.image_height; }},
+    {GL_UNPACK_SKIP_IMAGES, [](const Context& c) -> Numbers { return c.client.unpack.skip_images; }},
+    {GL_UNPACK_ROW_LENGTH, [](const Context& c) -> Numbers { return c.client.unpack.row_length; }},
+    {GL_UNPACK_SKIP_ROWS, [](const Context& c) -> Numbers { return c.client.unpack.skip_rows; }},
+    {GL_UNPACK_SKIP_PIXELS, [](const Context& c) -> Numbers { return c.client.unpack.skip_pixels; }},
+    {GL_UNPACK_ALIGNMENT, [](const Context& c) -> Numbers { return c.client.unpack.alignment; }},
+    {GL_PACK_SWAP_BYTES, [](const Context& c) -> Numbers { return c.client.pack.swap_bytes; }},
+    {GL_PACK_LSB_FIRST, [](const Context& c) -> Numbers { return c.client.pack.lsb_first; }},
+    {GL_PACK_IMAGE_HEIGHT, [](const Context& c) -> Numbers { return c.client.pack.image_height; }},
+    {GL_PACK_SKIP_IMAGES, [](const Context& c) -> Numbers { return c.client.pack.skip_images; }},
+    {GL_PACK_ROW_LENGTH, [](const Context& c) -> Numbers { return c.client.pack.row_length; }},
+    {GL_PACK_SKIP_ROWS, [](const Context& c) -> Numbers { return c.client.pack.skip_rows; }},
+    {GL_PACK_SKIP_PIXELS, [](const Context& c) -> Numbers { return c.client.pack.skip_pixels; }},
+    {GL_PACK_ALIGNMENT, [](const Context& c) -> Numbers { return c.client.pack.alignment; }},
+    {GL_MAP_COLOR, [](const Context& c) -> Numbers { return c.state.pixel.map_color; }},
+    {GL_MAP_STENCIL, [](const Context& c) -> Numbers { return c.state.pixel.map_stencil; }},
+    {GL_INDEX_SHIFT, [](const Context& c) -> Numbers { return c.state.pixel.index_shift; }},
+    {GL_INDEX_OFFSET, [](const Context& c) -> Numbers { return c.state.pixel.index_offset; }},
+    {GL_RED_SCALE, [](const Context& c) -> Numbers { return c.state.pixel.scale[0]; }},
+    {GL_GREEN_SCALE, [](const Context& c) -> Numbers { return c.state.pixel.scale[1]; }},
+    {GL_BLUE_SCALE, [](const Context& c) -> Numbers { return c.state.pixel.scale[2]; }},
+    {GL_ALPHA_SCALE, [](const Context& c) -> Numbers { return c.state.pixel.scale[3]; }},
+    {GL_DEPTH_SCALE, [](const Context& c) -> Numbers { return c.state.pixel.depth_scale; }},
+    {GL_RED_BIAS, [](const Context& c) -> Numbers { return c.state.pixel.bias[0]; }},
+    {GL_GREEN_BIAS, [](const Context& c) -> Numbers { return c.state.pixel.bias[1]; }},
+    {GL_BLUE_BIAS, [](const Context& c) -> Numbers { return c.state.pixel.bias[2]; }},
+    {GL_ALPHA_BIAS, [](const Context& c) -> Numbers { return c.state.pixel.bias[3]; }},
+    {GL_DEPTH_BIAS, [](const Context& c) -> Numbers { return c.state.pixel.depth_bias; }},
+    {GL_ZOOM_X, [](const Context& c) -> Numbers { return c.state.pixel.zoom_x; }},
+    {GL_ZOOM_Y, [](const Context& c) -> Numbers { return c.state.pixel.zoom_y; }},
+    {GL_READ_BUFFER, [](const Context& c) -> Numbers { return c.state.pixel.read_buffer; }},
+    // 6.25 and 6.26: evaluators, hints
+    {GL_MAP1_GRID_DOMAIN, [](const Context& c) -> Numbers { return c.state.eval.range1; }},
+    {GL_MAP2_GRID_DOMAIN, [](const Context& c) -> Numbers { return c.state.eval.range2; }},
+    {GL_MAP1_GRID_SEGMENTS, [](const Context& c) -> Numbers { return c.state.eval.grid1; }},
+    {GL_MAP2_GRID_SEGMENTS, [](const Context& c) -> Numbers { return c.state.eval.grid2; }},
+    {GL_PERSPECTIVE_CORRECTION_HINT, [](const Context& c) -> Numbers { return c.state.hint.perspective; }},
+    {GL_POINT_SMOOTH_HINT, [](const Context& c) -> Numbers { return c.state.hint.point; }},
+    {GL_LINE_SMOOTH_HINT, [](const Context& c) -> Numbers { return c.state.hint.line; }},
+    {GL_POLYGON_SMOOTH_HINT, [](const Context& c) -> Numbers { return c.state.hint.polygon; }},
+    {GL_FOG_HINT, [](const Context& c) -> Numbers { return c.state.hint.fog; }},
+    {GL_GENERATE_MIPMAP_HINT, [](const Context& c) -> Numbers { return c.state.hint.mipmap; }},
+    {GL_TEXTURE_COMPRESSION_HINT, [](const Context& c) -> Numbers { return c.state.hint.compression; }},
+    // 6.27 and 6.28: limits
+    {GL_MAX_LIGHTS, [](const Context&) -> Numbers { return kLights; }},
+    {GL_MAX_CLIP_PLANES, [](const Context&) -> Numbers { return kClipPlanes; }},
+    {GL_MAX_MODELVIEW_STACK_DEPTH, [](const Context&) -> Numbers { return kModelviewDepth; }},
+    {GL_MAX_PROJECTION_STACK_DEPTH, [](const Context&) -> Numbers { return kProjectionDepth; }},
+    {GL_MAX_TEXTURE_STACK_DEPTH, [](const Context&) -> Numbers { return kTextureDepth; }},
+    {GL_SUBPIXEL_BITS, [](const Context& c) -> Numbers { return c.drawable == nullptr ? Config().subpixel_bits : c.drawable->frame.options().config.subpixel_bits; }},
+    {GL_MAX_3D_TEXTURE_SIZE, [](const Context&) -> Numbers { return kLargestTexture3D; }},
+    {GL_MAX_TEXTURE_SIZE, [](const Context&) -> Numbers { return kLargestTexture; }},
+    {GL_MAX_CUBE_MAP_TEXTURE_SIZE, [](const Context&) -> Numbers { return kLargestTexture; }},
+    {GL_MAX_TEXTURE_LOD_BIAS, [](const Context&) -> Numbers { return 16.0; }},
+    {GL_MAX_PIXEL_MAP_TABLE, [](const Context&) -> Numbers { return kPixelMapTable; }},
+    {GL_MAX_NAME_STACK_DEPTH, [](const Context&) -> Numbers { return kNameDepth; }},
+    {GL_MAX_LIST_NESTING, [](const Context&) -> Numbers { return kListNesting; }},
+    {GL_MAX_EVAL_ORDER, [](const Context&) -> Numbers { return kEvalOrder; }},
+    {GL_MAX_VIEWPORT_DIMS, [](const Context&) -> Numbers { return std::array{kLargestViewport, kLargestViewport}; }},
+    {GL_MAX_ATTRIB_STACK_DEPTH, [](const Context&) -> Numbers { return kAttribDepth; }},
+    {GL_MAX_CLIENT_ATTRIB_STACK_DEPTH, [](const Context&) -> Numbers { return kAttribDepth; }},
+    {GL_MAX_TEXTURE_UNITS, [](const Context&) -> Numbers { return kTextureUnits; }},
+    {GL_MAX_ELEMENTS_INDICES, [](const Context&) -> Numbers { return 1 << 16; }},
+    {GL_MAX_ELEMENTS_VERTICES, [](const Context&) -> Numbers { return 1 << 16; }},
+    {GL_POINT_SIZE_RANGE, [](const Context&) -> Numbers { return kPointSizes; }},
+    {GL_ALIASED_POINT_SIZE_RANGE, [](const Context&) -> Numbers { return kPointSizes; }},
+    {GL_POINT_SIZE_GRANULARITY, [](const Context&) -> Numbers { return 1.0 / 16; }},
+    {GL_LINE_WIDTH_RANGE, [](const Context&) -> Numbers { return kLineWidths; }},
+    {GL_ALIASED_LINE_WIDTH_RANGE, [](const Context&) -> Numbers { return kLineWidths; }},
+    {GL_LINE_WIDTH_GRANULARITY, [](const Context&) -> Numbers { return 1.0 / 16; }},
+    {GL_AUX_BUFFERS, [](const Context&) -> Numbers { return 0; }},
+    {GL_RGBA_MODE, [](const Context&) -> Numbers { return true; }},
+    {GL_INDEX_MODE, [](const Context&) -> Numbers { return false; }},
+    {GL_DOUBLEBUFFER, [](const Context& c) -> Numbers { return c.drawable != nullptr && !c.drawable->single_buffered; }},
+    {GL_STEREO, [](const Context&) -> Numbers { return false; }},
+    {GL_SAMPLE_BUFFERS, [](const Context& c) -> Numbers { return samples(c) == 0 ? 0 : 1; }},
+    {GL_SAMPLES, [](const Context& c) -> Numbers { return samples(c); }},
+    {GL_NUM_COMPRESSED_TEXTURE_FORMATS, [](const Context&) -> Numbers { return 0; }},
+    {GL_COMPRESSED_TEXTURE_FORMATS, [](const Context&) -> Numbers { return std::array<int, 0>{}; }},
+    {GL_IMPLEMENTATION_COLOR_READ_TYPE, [](const Context&) -> Numbers { return GL_UNSIGNED_BYTE; }},
+    {GL_IMPLEMENTATION_COLOR_READ_FORMAT, [](const Context&) -> Numbers { return GL_RGBA; }},
+    // 6.33: bits of the buffers
+    {GL_RED_BITS, [](const Context& c) -> Numbers { return buffer_bits(c)[0]; }},
+    {GL_GREEN_BITS, [](const Context& c) -> Numbers { return buffer_bits(c)[1]; }},
+    {GL_BLUE_BITS, [](const Context& c) -> Numbers { return buffer_bits(c)[2]; }},
+    {GL_ALPHA_BITS, [](const Context& c) -> Numbers { return buffer_bits(c)[3]; }},
+    {GL_INDEX_BITS, [](const Context&) -> Numbers { return 0; }},
+    {GL_DEPTH_BITS, [](const Context& c) -> Numbers { return buffer_bits(c)[4]; }},
+    {GL_STENCIL_BITS, [](const Context& c) -> Numbers { return buffer_bits(c)[5]; }},
+    {GL_ACCUM_RED_BITS, [](const Context&) -> Numbers { return kAccumulationBits; }},
+    {GL_ACCUM_GREEN_BITS, [](const Context&) -> Numbers { return kAccumulationBits; }},
+    {GL_ACCUM_BLUE_BITS, [](const Context&) -> Numbers { return kAccumulationBits; }},
+    {GL_ACCUM_ALPHA_BITS, [](const Context&) -> Numbers { return kAccumulationBits; }},
+    // 6.34: the rest
+    {GL_LIST_BASE, [](const Context& c) -> Numbers { return c.state.list.base; }},
+    {GL_LIST_INDEX, [](const Context& c) -> Numbers { return c.compiling == nullptr ? 0 : c.compiling_name; }},
+    {GL_LIST_MODE, [](const Context& c) -> Numbers { return c.compiling == nullptr ? 0 : c.compiles_and_executes ? GL_COMPILE_AND_EXECUTE : GL_COMPILE; }},
+    {GL_ATTRIB_STACK_DEPTH, [](const Context& c) -> Numbers { return c.attributes.size(); }},
+    {GL_CLIENT_ATTRIB_STACK_DEPTH, [](const Context& c) -> Numbers { return c.client_attributes.size(); }},
+    {GL_NAME_STACK_DEPTH, [](const Context& c) -> Numbers { return c.names.size(); }},
+    {GL_RENDER_MODE, [](const Context& c) -> Numbers { return c.render_mode; }},
+    {GL_SELECTION_BUFFER_SIZE, [](const Context& c) -> Numbers { return c.select_size; }},
+    {GL_FEEDBACK_BUFFER_SIZE, [](const Context& c) -> Numbers { return c.feedback_size; }},
+    {GL_FEEDBACK_BUFFER_TYPE, [](const Context& c) -> Numbers { return c.feedback_type; }},
+};
+
+// A row of flags: `first`, `first` + 1, ... of glEnable.
+struct Enable {
+  GLenum first;
+  GLuint count;
+  bool* (*flag)(State& s, std::size_t i);
+};
+TextureUnit& active_unit(State& state) { return state.texture.unit[static_cast<std::size_t>(state.texture.active)]; }
+constexpr Enable kEnables[] = {
+    {GL_ALPHA_TEST, 1, [](State& s, std::size_t) { return &s.color.alpha_test; }},
+    {GL_AUTO_NORMAL, 1, [](State& s, std::size_t) { return &s.eval.auto_normal; }},
+    {GL_BLEND, 1, [](State& s, std::size_t) { return &s.color.blend; }},
+    {GL_CLIP_PLANE0, kClipPlanes, [](State& s, std::size_t i) { return &s.transform.clip_enabled[i]; }},
+    {GL_COLOR_LOGIC_OP, 1, [](State& s, std::size_t) { return &s.color.logic_op; }},
+    {GL_COLOR_MATERIAL, 1, [](State& s, std::size_t) { return &s.lighting.color_material; }},
+    {GL_COLOR_SUM, 1, [](State& s, std::size_t) { return &s.fog.color_sum; }},
+    {GL_CULL_FACE, 1, [](State& s, std::size_t) { return &s.polygon.cull; }},
+    {GL_DEPTH_TEST, 1, [](State& s, std::size_t) { return &s.depth.test; }},
+    {GL_DITHER, 1, [](State& s, std::size_t) { return &s.color.dither; }},
+    {GL_FOG, 1, [](State& s, std::size_t) { return &s.fog.enabled; }},
+    {GL_INDEX_LOGIC_OP, 1, [](State& s, std::size_t) { return &s.color.index_logic_op; }},
+    {GL_LIGHT0, kLights, [](State& s, std::size_t i) { return &s.lighting.light_enabled[i]; }},
+    {GL_LIGHTING, 1, [](State& s, std::size_t) { return &s.lighting.enabled; }},
+    {GL_LINE_SMOOTH, 1, [](State& s, std::size_t) { return &s.line.smooth; }},
+    {GL_LINE_STIPPLE, 1, [](State& s, std::size_t) { return &s.line.stipple; }},
+    {GL_MAP1_COLOR_4, 9, [](State& s, std::size_t i) { return &s.eval.map1[i]; }},
+    {GL_MAP2_COLOR_4, 9, [](State& s, std::size_t i) { return &s.eval.map2[i]; }},
+    {GL_MULTISAMPLE, 1, [](State& s, std::size_t) { return &s.multisample.enabled; }},
+    {GL_NORMALIZE, 1, [](State& s, std::size_t) { return &s.transform.normalize; }},
+    {GL_POINT_SMOOTH, 1, [](State& s, std::size_t) { return &s.point.smooth; }},
+    {GL_POLYGON_OFFSET_FILL, 1, [](State& s, std::size_t) { return &s.polygon.offset_fill; }},
+    {GL_POLYGON_OFFSET_LINE, 1, [](State& s, std::size_t) { return &s.polygon.offset_line; }},
+    {GL_POLYGON_OFFSET_POINT, 1, [](State& s, std::size_t) { return &s.polygon.offset_point; }},
+    {GL_POLYGON_SMOOTH, 1, [](State& s, std::size_t) { return &s.polygon.smooth; }},
+    {GL_POLYGON_STIPPLE, 1, [](State& s, std::size_t) { return &s.polygon.stipple; }},
+    {GL_RESCALE_NORMAL, 1, [](State& s, std::size_t) { return &s.transform.rescale_normal; }},
+    {GL_SAMPLE_ALPHA_TO_COVERAGE, 1, [](State& s, std::size_t) { return &s.multisample.alpha_to_coverage; }},
+    {GL_SAMPLE_ALPHA_TO_ONE, 1, [](State& s, std::size_t) { return &s.multisample.alpha_to_one; }},
+    {GL_SAMPLE_COVERAGE, 1, [](State& s, std::size_t) { return &s.multisample.coverage; }},
+    {GL_SCISSOR_TEST, 1, [](State& s, std::size_t) { return &s.scissor.test; }},
+    {GL_STENCIL_TEST, 1, [](State& s, std::size_t) { return &s.stencil.test; }},
+    {GL_TEXTURE_1D, 2, [](State& s, std::size_t i) { return &active_unit(s).enabled[i]; }},
+    {GL_TEXTURE_3D, 1, [](State& s, std::size_t) { return &active_unit(s).enabled[2]; }},
+    {GL_TEXTURE_CUBE_MAP, 1, [](State& s, std::size_t) { return &active_unit(s).enabled[3]; }},
+    {GL_TEXTURE_GEN_S, 4, [](State& s, std::size_t i) { return &active_unit(s).gen[i].enabled; }},
+};
+
+// The pnames of an array; 0: none.
+struct ArrayNames {
+  GLenum enable, size, type, stride, buffer, pointer;
+  const ArrayPointer& (*array)(const ClientState& c);
+};
+constexpr ArrayNames kArrays[] = {
+    {GL_VERTEX_ARRAY, GL_VERTEX_ARRAY_SIZE, GL_VERTEX_ARRAY_TYPE, GL_VERTEX_ARRAY_STRIDE,
+     GL_VERTEX_ARRAY_BUFFER_BINDING, GL_VERTEX_ARRAY_POINTER,
+     [](const ClientState& c) -> const ArrayPointer& { return c.vertex; }},
+    {GL_NORMAL_ARRAY, 0, GL_NORMAL_ARRAY_TYPE, GL_NORMAL_ARRAY_STRIDE, GL_NORMAL_ARRAY_BUFFER_BINDING,
+     GL_NORMAL_ARRAY_POINTER, [](const ClientState& c) -> const ArrayPointer& { return c.normal; }},
+    {GL_COLOR_ARRAY, GL_COLOR_ARRAY_SIZE, GL_COLOR_ARRAY_TYPE, GL_COLOR_ARRAY_STRIDE, GL_COLOR_ARRAY_BUFFER_BINDING,
+     GL_COLOR_ARRAY_POINTER, [](const ClientState& c) -> const ArrayPointer& { return c.color; }},
+    {GL_SECONDARY_COLOR_ARRAY, GL_SECONDARY_COLOR_ARRAY_SIZE, GL_SECONDARY_COLOR_ARRAY_TYPE,
+     GL_SECONDARY_COLOR_ARRAY_STRIDE, GL_SECONDARY_COLOR_ARRAY_BUFFER_BINDING, GL_SECONDARY_COLOR_ARRAY_POINTER,
+     [](const ClientState& c) -> const ArrayPointer& { return c.secondary; }},
+    {GL_INDEX_ARRAY, 0, GL_INDEX_ARRAY_TYPE, GL_INDEX_ARRAY_STRIDE, GL_INDEX_ARRAY_BUFFER_BINDING,
+     GL_INDEX_ARRAY_POINTER, [](const ClientState& c) -> const ArrayPointer& { return c.index; }},
+    {GL_TEXTURE_COORD_ARRAY, GL_TEXTURE_COORD_ARRAY_SIZE, GL_TEXTURE_COORD_ARRAY_TYPE, GL_TEXTURE_COORD_ARRAY_STRIDE,
+     GL_TEXTURE_COORD_ARRAY_BUFFER_BINDING, GL_TEXTURE_COORD_ARRAY_POINTER,
+     [](const ClientState& c) -> const ArrayPointer& {
+       return c.tex_coord[static_cast<std::size_t>(c.active_texture)];
+     }},
+    {GL_FOG_COORD_ARRAY, 0, GL_FOG_COORD_ARRAY_TYPE, GL_FOG_COORD_ARRAY_STRIDE, GL_FOG_COORD_ARRAY_BUFFER_BINDING,
+     GL_FOG_COORD_ARRAY_POINTER, [](const ClientState& c) -> const ArrayPointer& { return c.fog_coord; }},
+    {GL_EDGE_FLAG_ARRAY, 0, 0, GL_EDGE_FLAG_ARRAY_STRIDE, GL_EDGE_FLAG_ARRAY_BUFFER_BINDING, GL_EDGE_FLAG_ARRAY_POINTER,
+     [](const ClientState& c) -> const ArrayPointer& { return c.edge_flag; }},
+};
+
+constexpr GLuint kPixelMaps = 10;  // from GL_PIXEL_MAP_I_TO_I on
+// Until it is set, a map is a single zero.
+std::vector<float> pixel_map_of(const Context& context, GLenum map) {
+  const auto found = context.pixel_maps.find(map);
+  return found == context.pixel_maps.end() ? std::vector<float>{0} : found->second;
+}
+
+constexpr const char* kExtensions =
+    "GL_ARB_multisample GL_ARB_multitexture GL_ARB_occlusion_query GL_ARB_point_parameters GL_ARB_texture_env_add "
+    "GL_ARB_texture_mirrored_repeat GL_ARB_transpose_matrix GL_ARB_vertex_buffer_object GL_ARB_window_pos "
+    "GL_EXT_abgr GL_EXT_bgra GL_EXT_blend_color GL_EXT_blend_func_separate GL_EXT_blend_minmax GL_EXT_blend_subtract "
+    "GL_EXT_compiled_vertex_array GL_EXT_copy_texture GL_EXT_draw_range_elements GL_EXT_fog_coord "
+    "GL_EXT_multi_draw_arrays GL_EXT_packed_pixels GL_EXT_point_parameters GL_EXT_rescale_normal "
+    "GL_EXT_secondary_color GL_EXT_separate_specular_color GL_EXT_stencil_wrap GL_EXT_subtexture GL_EXT_texture "
+    "GL_EXT_texture_edge_clamp GL_EXT_texture_env_add GL_EXT_texture_lod_bias GL_EXT_texture_object "
+    "GL_EXT_vertex_array GL_OES_draw_texture GL_SGIS_generate_mipmap GL_SGIS_texture_edge_clamp GL_SGIS_texture_lod";
+
+}  // namespace
+
+Values get(Context& context, GLenum pname) {
+  for (const StateValue& row : kStateValues)
+    if (row.pname == pname) return row.value(context);
+  if (const bool* flag = enable_flag(context, pname)) return Numbers(*flag);
+  if (pname - GL_PIXEL_MAP_I_TO_I_SIZE < kPixelMaps)
+    return Numbers(pixel_map_of(context, pname - GL_PIXEL_MAP_I_TO_I_SIZE + GL_PIXEL_MAP_I_TO_I).size());
+  for (const ArrayNames& names : kArrays) {
+    const ArrayPointer& array = names.array(context.client);
+    if (pname == names.enable) return Numbers(array.enabled);
+    if (pname == names.stride) return Numbers(array.stride);
+    if (pname == names.buffer) return Numbers(array.buffer);
+    if (pname != 0 && pname == names.size) return Numbers(array.size);
+    if (pname != 0 && pname == names.type) return Numbers(array.type);
+  }
+  context.fail(GL_INVALID_ENUM);
+  return {};
+}
+
+bool* enable_flag(State& state, GLenum cap) {
+  for (const Enable& row : kEnables)
+    if (cap - row.first < row.count) return row.flag(state, cap - row.first);
+  return nullptr;
+}
+
+void copy_enables(State& to, State from) {
+  const int active = to.texture.active;
+  for (int unit = 0; unit < kTextureUnits; ++unit) {
+    to.texture.active = from.texture.active = unit;
+    for (const Enable& row : kEnables)
+      for (std::size_t i = 0; i < row.count; ++i) *row.flag(to, i) = *row.flag(from, i);
+  }
+  to.texture.active = active;
+}
+
+GLboolean is_enabled(Context& context, GLenum cap) {
+  if (const bool* flag = enable_flag(context, cap)) return *flag;
+  for (const ArrayNames& names : kArrays)
+    if (cap == names.enable) return names.array(context.client).enabled;
+  context.fail(GL_INVALID_ENUM);
+  return GL_FALSE;
+}
+
+Values get_pixel_map(Context& context, GLenum map) {
+  if (map - GL_PIXEL_MAP_I_TO_I >= kPixelMaps) return context.fail(GL_INVALID_ENUM), Values{};
+  const std::vector<float> table = pixel_map_of(context, map);
+  const bool is_index = map == GL_PIXEL_MAP_I_TO_I || map == GL_PIXEL_MAP_S_TO_S;
+  return {is_index ? ValueKind::real : ValueKind::color, {table.begin(), table.end()}};
+}
+
+Vec4 get_clip_plane(Context& context, GLenum plane) {
+  if (plane - GL_CLIP_PLANE0 < GLuint{kClipPlanes}) return context.state.transform.clip_plane[plane - GL_CLIP_PLANE0];
+  context.fail(GL_INVALID_ENUM);
+  return {};
+}
+
+GLenum get_error(Context& context) { return std::exchange(context.error, GLenum{GL_NO_ERROR}); }
+
+const GLubyte* get_string(Context& context, GLenum name) {
+  const auto text = [](const char* of) { return reinterpret_cast<const GLubyte*>(of); };
+  switch (name) {
+    case GL_VENDOR: return text("Halfplane");
+    case GL_RENDERER:
+      if (context.renderer.empty())
+        context.renderer =
+            context.drawable == nullptr ? "Halfplane" : "Halfplane " + label(context.drawable->frame.options().config);
+      return text(context.renderer.c_str());
+    case GL_VERSION: return text(context.is_embedded ? "OpenGL ES-CM 1.0 Halfplane 0.1" : "1.5 Halfplane 0.1");
+    case GL_EXTENSIONS: return text(kExtensions);
+    default: context.fail(GL_INVALID_ENUM); return nullptr;
+  }
+}
+
+void get_pointer(Context& context, GLenum pname, void** params) {
+  for (const ArrayNames& names : kArrays)
+    if (pname == names.pointer) {
+      *params = const_cast<void*>(names.array(context.client).pointer);
+      return;
+    }
+  if (pname == GL_SELECTION_BUFFER_POINTER)
+    *params = context.select_buffer;
+  else if (pname == GL_FEEDBACK_BUFFER_POINTER)
+    *params = context.feedback_buffer;
+  else
+    context.fail(GL_INVALID_ENUM);
+}
+
+void get_polygon_stipple(Context& context, GLubyte* mask) {
+  const PixelStore& store = context.client.pack;
+  const int bits = store.row_length > 0 ? store.row_length : 32, bytes = (bits + 7) / 8;
+  const std::ptrdiff_t pitch = (bytes + store.alignment - 1) / store.alignment * store.alignment;
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 32; ++x) {
+      const int column = x + store.skip_pixels, bit = store.lsb_first ? column % 8 : 7 - column % 8;
+      GLubyte& byte = mask[(y + store.skip_rows) * pitch + column / 8];
+      const bool is_set = (context.state.stipple.row[static_cast<std::size_t>(y)] >> (31 - x) & 1) != 0;
+      byte = static_cast<GLubyte>((byte & ~(1 << bit)) | is_set << bit);
+    }
+}
+
+}  // namespace halfplane::gl

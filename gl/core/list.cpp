@@ -1,0 +1,154 @@
+#include "list.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include "entry_conversions.hpp"
+
+namespace halfplane::gl {
+
+void* DisplayList::add(Play call, std::size_t bytes) {
+  const std::size_t padded = (bytes + kAlignment - 1) / kAlignment * kAlignment, at = calls_.size();
+  calls_.resize(at + sizeof(Header) + padded);
+  new (&calls_[at]) Header{call, padded};
+  return calls_.data() + at + sizeof(Header);
+}
+
+void DisplayList::play(Context& context) const {
+  auto owned = owned_.begin();
+  for (std::size_t at = 0; at < calls_.size();) {
+    const auto* header = reinterpret_cast<const Header*>(&calls_[at]);
+    at += sizeof(Header);
+    if (header->play != nullptr)
+      header->play(context, calls_.data() + at);
+    else
+      (*owned++)(context);
+    at += header->bytes;
+  }
+}
+
+void new_list(Context& context, GLuint name, GLenum mode) {
+  if (name == 0) return context.fail(GL_INVALID_VALUE);
+  if (mode != GL_COMPILE && mode != GL_COMPILE_AND_EXECUTE) return context.fail(GL_INVALID_ENUM);
+  if (context.compiling != nullptr) return context.fail(GL_INVALID_OPERATION);
+  context.compiling = std::make_shared<DisplayList>();
+  context.compiling_name = name;
+  context.compiles_and_executes = mode == GL_COMPILE_AND_EXECUTE;
+}
+
+void end_list(Context& context) {
+  if (context.compiling == nullptr) return context.fail(GL_INVALID_OPERATION);
+  const std::lock_guard lock(context.shared->mutex);
+  context.shared->lists[context.compiling_name] = std::exchange(context.compiling, nullptr);
+}
+
+// The list is kept while it runs, whatever becomes of its name.
+void call_list(Context& context, GLuint name) {
+  if (context.list_depth >= kListNesting) return;
+  std::shared_ptr<const DisplayList> list;
+  {
+    const std::lock_guard lock(context.shared->mutex);
+    const auto found = context.shared->lists.find(name);
+    if (found == context.shared->lists.end()) return;
+    list = found->second;
+  }
+  struct Depth {
+    int& depth;
+    explicit Depth(int& of) : depth(of) { ++depth; }
+    ~Depth() { --depth; }
+  } const depth(context.list_depth);
+  list->play(context);
+}
+
+void call_lists(Context& context, std::shared_ptr<const std::vector<GLuint>> offsets) {
+  const GLuint base = context.state.list.base;
+  for (const GLuint offset : *offsets) call_list(context, base + offset);
+}
+
+void list_base(Context& context, GLuint base) { context.state.list.base = base; }
+
+GLuint gen_lists(Context& context, GLsizei range) {
+  if (range < 0) return context.fail(GL_INVALID_VALUE), 0;
+  if (range == 0) return 0;
+  const std::lock_guard lock(context.shared->mutex);
+  auto& lists = context.shared->lists;
+  // Behind the largest name, or else in the first gap.
+  const auto count = static_cast<GLuint>(range);
+  const GLuint largest =
+      std::max(lists.empty() ? 0 : lists.rbegin()->first, context.compiling != nullptr ? context.compiling_name : 0);
+  GLuint first = largest + 1;
+  if (~GLuint{0} - largest < count) {
+    first = 1;
+    for (const auto& [name, list] : lists) {
+      if (name - first >= count && !(context.compiling_name - first < count)) break;
+      first = name + 1;
+    }
+    if (first == 0 || ~GLuint{0} - first < count - 1) return 0;
+  }
+  for (GLuint i = 0; i < count; ++i) lists.emplace_hint(lists.end(), first + i, std::make_shared<DisplayList>());
+  return first;
+}
+
+void delete_lists(Context& context, GLuint name, GLsizei range) {
+  if (range < 0) return context.fail(GL_INVALID_VALUE);
+  const std::lock_guard lock(context.shared->mutex);
+  auto& lists = context.shared->lists;
+  const std::uint64_t end = std::uint64_t{name} + static_cast<std::uint64_t>(range);
+  auto last = lists.lower_bound(name);
+  while (last != lists.end() && last->first < end) last = lists.erase(last);
+}
+
+GLboolean is_list(Context& context, GLuint name) {
+  const std::lock_guard lock(context.shared->mutex);
+  return context.shared->lists.contains(name);
+}
+
+namespace {
+
+template <class T>
+GLuint name_at(const std::byte* at) {
+  T value;
+  std::memcpy(&value, at, sizeof value);
+  if constexpr (std::is_floating_point_v<T>)
+    return converted<GLuint>(std::trunc(static_cast<double>(value)), ValueKind::integer);
+  else
+    return static_cast<GLuint>(value);
+}
+// GL_2_BYTES and so on: the first byte is the highest.
+template <std::size_t Bytes>
+GLuint name_of_bytes(const std::byte* at) {
+  GLuint name = 0;
+  for (std::size_t i = 0; i < Bytes; ++i) name = name << 8 | std::to_integer<GLuint>(at[i]);
+  return name;
+}
+
+struct NameType {
+  std::size_t bytes;
+  GLuint (*name)(const std::byte* at);
+};
+constexpr std::array<NameType, 10> kNameTypes{{{1, name_at<GLbyte>},  // from GL_BYTE on
+                                               {1, name_at<GLubyte>},
+                                               {2, name_at<GLshort>},
+                                               {2, name_at<GLushort>},
+                                               {4, name_at<GLint>},
+                                               {4, name_at<GLuint>},
+                                               {4, name_at<GLfloat>},
+                                               {2, name_of_bytes<2>},
+                                               {3, name_of_bytes<3>},
+                                               {4, name_of_bytes<4>}}};
+
+}  // namespace
+
+std::shared_ptr<const std::vector<GLuint>> list_names(Context& context, GLsizei n, GLenum type, const void* lists) {
+  if (type - GL_BYTE >= kNameTypes.size()) return list_error(context, GL_INVALID_ENUM), nullptr;
+  if (n < 0) return list_error(context, GL_INVALID_VALUE), nullptr;
+  const NameType& how = kNameTypes[type - GL_BYTE];
+  auto names = std::make_shared<std::vector<GLuint>>();
+  const auto* at = static_cast<const std::byte*>(lists);
+  for (GLsizei i = 0; i < n; ++i, at += how.bytes) names->push_back(how.name(at));
+  return names;
+}
+
+}  // namespace halfplane::gl
