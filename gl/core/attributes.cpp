@@ -41,12 +41,16 @@ constexpr std::array<Group, 20> kGroups{{{GL_CURRENT_BIT, copy<&State::current>}
 template <class Visit>
 void visit_bound_textures(Context& context, const Visit& visit) {
   const std::lock_guard lock(context.shared->mutex);
-  for (TextureUnit& unit : context.state.texture.unit)
+  for (std::size_t u = 0; u < kTextureUnits; ++u)
     for (std::size_t i = 0; i < kTextureTargets.size(); ++i) {
-      const auto found = context.shared->textures.find(unit.bound[i]);
-      const bool exists = found != context.shared->textures.end() && found->second != nullptr;
-      if (!exists) unit.bound[i] = 0;
-      visit(unit.bound[i] == 0 ? context.default_textures[i] : *found->second);
+      GLuint& name = context.state.texture.unit[u].bound[i];
+      std::shared_ptr<TextureObject>& texture = context.bound_textures[u][i];
+      if (texture == nullptr || texture->name != name) {
+        const auto found = context.shared->textures.find(name);
+        texture = found == context.shared->textures.end() ? nullptr : found->second;
+      }
+      if (texture == nullptr || texture->target != kTextureTargets[i]) name = 0;
+      visit(name == 0 ? context.default_textures[i] : *texture);
     }
 }
 

@@ -10,13 +10,13 @@ constexpr GLsizei kLargestImage = kLargestTexture + 2;  // with its border
 // Unpacks an image and hands it to `command`, or issues an error. Without pixels: null.
 template <class Command>
 void with_image(Context& context, std::array<GLsizei, 3> size, GLenum format, GLenum type, const void* pixels,
-                const Command& command) {
+                const Command& command, bool is_3d = false) {
   const auto [width, height, depth] = size;
   if (width < 0 || height < 0 || depth < 0) return list_error(context, GL_INVALID_VALUE);
   if (const GLenum error = check_format(format, type); error != GL_NO_ERROR) return list_error(context, error);
   command(pixels == nullptr
               ? nullptr
-              : std::make_shared<const Image>(unpack(context, width, height, depth, format, type, pixels)));
+              : std::make_shared<const Image>(unpack(context, width, height, depth, format, type, pixels, is_3d)));
 }
 
 bool is_proxy(GLenum target) {
@@ -72,15 +72,16 @@ void enter_tex_image(Context& context, int dimensions, GLenum target, GLint leve
     else  // at once, also where a list is compiled
       tex_image(context, dimensions, target, level, internal_format, width, height, depth, border, nullptr);
   };
-  with_image(context, {width, height, depth}, format, type, pixels, command);
+  with_image(context, {width, height, depth}, format, type, pixels, command, dimensions == 3);
 }
 
 void enter_tex_sub_image(Context& context, int dimensions, GLenum target, GLint level, GLint x, GLint y, GLint z,
                          GLsizei width, GLsizei height, GLsizei depth, GLenum format, GLenum type, const void* pixels) {
   if (std::max({width, height, depth}) > kLargestImage) return list_error(context, GL_INVALID_VALUE);
-  with_image(context, {width, height, depth}, format, type, pixels, [&](const std::shared_ptr<const Image>& image) {
+  const auto command = [&](const std::shared_ptr<const Image>& image) {
     if (image != nullptr) issue<&tex_sub_image>(context, dimensions, target, level, x, y, z, image);
-  });
+  };
+  with_image(context, {width, height, depth}, format, type, pixels, command, dimensions == 3);
 }
 
 void enter_call_lists(Context& context, GLsizei n, GLenum type, const void* lists) {

@@ -39,27 +39,37 @@ Numbers transposed(const Mat4& m) {
   return rows;
 }
 
-// Of the configuration; zeros without a drawable.
-using Bits = std::array<int, 6>;  // red, green, blue, alpha, depth, stencil
-Bits buffer_bits(const Context& context) {
+Config config_of(const Context& context) {
+  return context.drawable == nullptr ? Config() : context.drawable->frame.options().config;
+}
+// Red, green, blue, alpha, depth, stencil; zeros without a drawable.
+std::array<int, 6> buffer_bits(const Context& context) {
   if (context.drawable == nullptr) return {};
-  const Config& config = context.drawable->frame.options().config;
+  const Config config = config_of(context);
   const int depth = config.depth_format.bits != 0 ? config.depth_format.bits : config.depth_bits;
   if (config.color_format == ColorFormat::rgb565) return {5, 6, 5, 0, depth, config.stencil_bits};
   return {8, 8, 8, 8, depth, config.stencil_bits};
 }
 int samples(const Context& context) {
-  const int count = context.drawable == nullptr ? 1 : context.drawable->frame.options().config.msaa_samples;
+  const int count = config_of(context).msaa_samples;
   return count == 1 ? 0 : count;
 }
 
-const TextureUnit& active_unit(const Context& context) {
-  return context.state.texture.unit[static_cast<std::size_t>(context.state.texture.active)];
-}
-const auto& active_matrix(const Context& context) {
-  return context.texture_matrix[static_cast<std::size_t>(context.state.texture.active)];
+template <class Rectangle>
+Numbers box(const Rectangle& r) {
+  return std::array{r.x, r.y, r.width, r.height};
 }
 
+GLenum list_mode(const Context& context) {
+  if (context.compiling == nullptr) return 0;
+  return context.compiles_and_executes ? GL_COMPILE_AND_EXECUTE : GL_COMPILE;
+}
+
+// The active unit's one of an array of units.
+template <class T>
+const T& active(const Context& context, const std::array<T, kTextureUnits>& units) {
+  return units[static_cast<std::size_t>(context.state.texture.active)];
+}
 constexpr int kAccumulationBits = 16;
 constexpr std::array<double, 2> kPointSizes{1, kLargestPoint}, kLineWidths{1, kLargestLine};
 
@@ -74,16 +84,18 @@ const StateValue kStateValues[] = {
     {GL_CURRENT_COLOR, [](const Context& c) { return color_values(c.state.current.color); }},
     {GL_CURRENT_SECONDARY_COLOR, [](const Context& c) { return color_values(c.state.current.secondary); }},
     {GL_CURRENT_INDEX, [](const Context& c) -> Numbers { return c.state.current.index; }},
-    {GL_CURRENT_TEXTURE_COORDS, [](const Context& c) -> Numbers { return c.state.current.tex_coord[static_cast<std::size_t>(c.state.texture.active)]; }},
+    {GL_CURRENT_TEXTURE_COORDS, [](const Context& c) -> Numbers { return active(c, c.state.current.tex_coord); }},
     {GL_CURRENT_NORMAL, [](const Context& c) { return color_values(c.state.current.normal); }},
     {GL_CURRENT_FOG_COORD, [](const Context& c) -> Numbers { return c.state.current.fog_coord; }},
     {GL_EDGE_FLAG, [](const Context& c) -> Numbers { return c.state.current.edge_flag; }},
     {GL_CURRENT_RASTER_POSITION, [](const Context& c) -> Numbers { return c.state.current.raster.window; }},
     {GL_CURRENT_RASTER_DISTANCE, [](const Context& c) -> Numbers { return c.state.current.raster.distance; }},
     {GL_CURRENT_RASTER_COLOR, [](const Context& c) { return color_values(c.state.current.raster.color); }},
-    {GL_CURRENT_RASTER_SECONDARY_COLOR, [](const Context& c) { return color_values(c.state.current.raster.secondary); }},
+    {GL_CURRENT_RASTER_SECONDARY_COLOR,
+     [](const Context& c) { return color_values(c.state.current.raster.secondary); }},
     {GL_CURRENT_RASTER_INDEX, [](const Context&) -> Numbers { return 1.0; }},
-    {GL_CURRENT_RASTER_TEXTURE_COORDS, [](const Context& c) -> Numbers { return c.state.current.raster.tex_coord[static_cast<std::size_t>(c.state.texture.active)]; }},
+    {GL_CURRENT_RASTER_TEXTURE_COORDS,
+     [](const Context& c) -> Numbers { return active(c, c.state.current.raster.tex_coord); }},
     {GL_CURRENT_RASTER_POSITION_VALID, [](const Context& c) -> Numbers { return c.state.current.raster.valid; }},
     // 6.6: arrays
     {GL_CLIENT_ACTIVE_TEXTURE, [](const Context& c) -> Numbers { return GL_TEXTURE0 + c.client.active_texture; }},
@@ -92,16 +104,19 @@ const StateValue kStateValues[] = {
     // 6.7: transformation
     {GL_MODELVIEW_MATRIX, [](const Context& c) -> Numbers { return c.modelview.back(); }},
     {GL_PROJECTION_MATRIX, [](const Context& c) -> Numbers { return c.projection.back(); }},
-    {GL_TEXTURE_MATRIX, [](const Context& c) -> Numbers { return active_matrix(c).back(); }},
+    {GL_TEXTURE_MATRIX, [](const Context& c) -> Numbers { return active(c, c.texture_matrix).back(); }},
     {GL_TRANSPOSE_MODELVIEW_MATRIX, [](const Context& c) { return transposed(c.modelview.back()); }},
     {GL_TRANSPOSE_PROJECTION_MATRIX, [](const Context& c) { return transposed(c.projection.back()); }},
-    {GL_TRANSPOSE_TEXTURE_MATRIX, [](const Context& c) { return transposed(active_matrix(c).back()); }},
+    {GL_TRANSPOSE_TEXTURE_MATRIX, [](const Context& c) { return transposed(active(c, c.texture_matrix).back()); }},
     {GL_MODELVIEW_STACK_DEPTH, [](const Context& c) -> Numbers { return c.modelview.size(); }},
     {GL_PROJECTION_STACK_DEPTH, [](const Context& c) -> Numbers { return c.projection.size(); }},
-    {GL_TEXTURE_STACK_DEPTH, [](const Context& c) -> Numbers { return active_matrix(c).size(); }},
+    {GL_TEXTURE_STACK_DEPTH, [](const Context& c) -> Numbers { return active(c, c.texture_matrix).size(); }},
     {GL_MATRIX_MODE, [](const Context& c) -> Numbers { return c.state.transform.matrix_mode; }},
-    {GL_VIEWPORT, [](const Context& c) -> Numbers { const auto& v = c.state.viewport; return std::array{v.x, v.y, v.width, v.height}; }},
-    {GL_DEPTH_RANGE, [](const Context& c) { return color_values(std::array{c.state.viewport.near, c.state.viewport.far}); }},
+    {GL_VIEWPORT, [](const Context& c) -> Numbers { return box(c.state.viewport); }},
+    {GL_DEPTH_RANGE,
+     [](const Context& c) {
+       return color_values(std::array{c.state.viewport.near, c.state.viewport.far});
+     }},
     // 6.8 and 6.9: colour, fog, light
     {GL_FOG_COLOR, [](const Context& c) { return color_values(c.state.fog.color); }},
     {GL_FOG_INDEX, [](const Context& c) -> Numbers { return c.state.fog.index; }},
@@ -134,13 +149,13 @@ const StateValue kStateValues[] = {
     {GL_SAMPLE_COVERAGE_VALUE, [](const Context& c) -> Numbers { return c.state.multisample.value; }},
     {GL_SAMPLE_COVERAGE_INVERT, [](const Context& c) -> Numbers { return c.state.multisample.invert; }},
     // 6.13 to 6.16: textures
-    {GL_TEXTURE_BINDING_1D, [](const Context& c) -> Numbers { return active_unit(c).bound[0]; }},
-    {GL_TEXTURE_BINDING_2D, [](const Context& c) -> Numbers { return active_unit(c).bound[1]; }},
-    {GL_TEXTURE_BINDING_3D, [](const Context& c) -> Numbers { return active_unit(c).bound[2]; }},
-    {GL_TEXTURE_BINDING_CUBE_MAP, [](const Context& c) -> Numbers { return active_unit(c).bound[3]; }},
+    {GL_TEXTURE_BINDING_1D, [](const Context& c) -> Numbers { return active(c, c.state.texture.unit).bound[0]; }},
+    {GL_TEXTURE_BINDING_2D, [](const Context& c) -> Numbers { return active(c, c.state.texture.unit).bound[1]; }},
+    {GL_TEXTURE_BINDING_3D, [](const Context& c) -> Numbers { return active(c, c.state.texture.unit).bound[2]; }},
+    {GL_TEXTURE_BINDING_CUBE_MAP, [](const Context& c) -> Numbers { return active(c, c.state.texture.unit).bound[3]; }},
     {GL_ACTIVE_TEXTURE, [](const Context& c) -> Numbers { return GL_TEXTURE0 + c.state.texture.active; }},
     // 6.19: pixel operations
-    {GL_SCISSOR_BOX, [](const Context& c) -> Numbers { const auto& s = c.state.scissor; return std::array{s.x, s.y, s.width, s.height}; }},
+    {GL_SCISSOR_BOX, [](const Context& c) -> Numbers { return box(c.state.scissor); }},
     {GL_ALPHA_TEST_FUNC, [](const Context& c) -> Numbers { return c.state.color.alpha_func; }},
     {GL_ALPHA_TEST_REF, [](const Context& c) { return color_values(c.state.color.alpha_reference); }},
     {GL_STENCIL_FUNC, [](const Context& c) -> Numbers { return c.state.stencil.func; }},
@@ -222,7 +237,7 @@ const StateValue kStateValues[] = {
     {GL_MAX_MODELVIEW_STACK_DEPTH, [](const Context&) -> Numbers { return kModelviewDepth; }},
     {GL_MAX_PROJECTION_STACK_DEPTH, [](const Context&) -> Numbers { return kProjectionDepth; }},
     {GL_MAX_TEXTURE_STACK_DEPTH, [](const Context&) -> Numbers { return kTextureDepth; }},
-    {GL_SUBPIXEL_BITS, [](const Context& c) -> Numbers { return c.drawable == nullptr ? Config().subpixel_bits : c.drawable->frame.options().config.subpixel_bits; }},
+    {GL_SUBPIXEL_BITS, [](const Context& c) -> Numbers { return config_of(c).subpixel_bits; }},
     {GL_MAX_3D_TEXTURE_SIZE, [](const Context&) -> Numbers { return kLargestTexture3D; }},
     {GL_MAX_TEXTURE_SIZE, [](const Context&) -> Numbers { return kLargestTexture; }},
     {GL_MAX_CUBE_MAP_TEXTURE_SIZE, [](const Context&) -> Numbers { return kLargestTexture; }},
@@ -246,7 +261,8 @@ const StateValue kStateValues[] = {
     {GL_AUX_BUFFERS, [](const Context&) -> Numbers { return 0; }},
     {GL_RGBA_MODE, [](const Context&) -> Numbers { return true; }},
     {GL_INDEX_MODE, [](const Context&) -> Numbers { return false; }},
-    {GL_DOUBLEBUFFER, [](const Context& c) -> Numbers { return c.drawable != nullptr && !c.drawable->single_buffered; }},
+    {GL_DOUBLEBUFFER,
+     [](const Context& c) -> Numbers { return c.drawable != nullptr && !c.drawable->single_buffered; }},
     {GL_STEREO, [](const Context&) -> Numbers { return false; }},
     {GL_SAMPLE_BUFFERS, [](const Context& c) -> Numbers { return samples(c) == 0 ? 0 : 1; }},
     {GL_SAMPLES, [](const Context& c) -> Numbers { return samples(c); }},
@@ -269,7 +285,7 @@ const StateValue kStateValues[] = {
     // 6.34: the rest
     {GL_LIST_BASE, [](const Context& c) -> Numbers { return c.state.list.base; }},
     {GL_LIST_INDEX, [](const Context& c) -> Numbers { return c.compiling == nullptr ? 0 : c.compiling_name; }},
-    {GL_LIST_MODE, [](const Context& c) -> Numbers { return c.compiling == nullptr ? 0 : c.compiles_and_executes ? GL_COMPILE_AND_EXECUTE : GL_COMPILE; }},
+    {GL_LIST_MODE, [](const Context& c) -> Numbers { return list_mode(c); }},
     {GL_ATTRIB_STACK_DEPTH, [](const Context& c) -> Numbers { return c.attributes.size(); }},
     {GL_CLIENT_ATTRIB_STACK_DEPTH, [](const Context& c) -> Numbers { return c.client_attributes.size(); }},
     {GL_NAME_STACK_DEPTH, [](const Context& c) -> Numbers { return c.names.size(); }},
