@@ -49,7 +49,7 @@ void draw_in(Context& context, halfplane::State state, Topology topology, std::v
              std::span<const std::uint32_t> indices);
 /// Texels as draw_rectangle() has them, in a state of space window. Culling and texture are set here.
 void draw_texels(Context& context, halfplane::State state, const halfplane::Texture& texels, double x, double y,
-                 double zoom_x, double zoom_y, double z, double w);
+                 double zoom_x, double zoom_y, double z, double w, bool has_logic_op);
 
 /// Where glRenderMode is not GL_RENDER: takes a point, a line or a polygon after clipping, `clip` in window coordinates as
 /// RasterPosition::window and colours in the first place. `token`: GL_POINT_TOKEN, GL_LINE_TOKEN, ...

@@ -1,0 +1,339 @@
+// The context's state as the model's, and draws of the model in it.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+#include "../../model/signature.hpp"
+#include "context.hpp"
+#include "primitive.hpp"
+
+namespace halfplane::gl {
+namespace {
+
+constexpr int kLargestScissor = 1048576;       ///< pixels, a bound of the model
+constexpr double kLargestNumber = 1e12;        ///< likewise, of polygon offset and fog
+constexpr double kClosestStart = 255 / 256.0;  ///< of linear fog, the end is 1: the model's bound
+
+template <class To>
+using Table = std::initializer_list<std::pair<GLenum, To>>;
+template <class To>
+To find(const Table<To>& table, GLenum key) {
+  const auto* const at = std::ranges::find(table, key, &std::pair<GLenum, To>::first);
+  return at == table.end() ? table.begin()->second : at->second;
+}
+
+DepthFunc compare_of(GLenum func) {
+  return find<DepthFunc>({{GL_ALWAYS, DepthFunc::always},
+                          {GL_NEVER, DepthFunc::never},
+                          {GL_LESS, DepthFunc::less},
+                          {GL_EQUAL, DepthFunc::equal},
+                          {GL_LEQUAL, DepthFunc::lequal},
+                          {GL_GREATER, DepthFunc::greater},
+                          {GL_NOTEQUAL, DepthFunc::notequal},
+                          {GL_GEQUAL, DepthFunc::gequal}},
+                         func);
+}
+
+BlendFactor factor_of(GLenum factor) {
+  return find<BlendFactor>({{GL_ZERO, BlendFactor::zero},
+                            {GL_ONE, BlendFactor::one},
+                            {GL_SRC_COLOR, BlendFactor::src_color},
+                            {GL_ONE_MINUS_SRC_COLOR, BlendFactor::one_minus_src_color},
+                            {GL_DST_COLOR, BlendFactor::dst_color},
+                            {GL_ONE_MINUS_DST_COLOR, BlendFactor::one_minus_dst_color},
+                            {GL_SRC_ALPHA, BlendFactor::src_alpha},
+                            {GL_ONE_MINUS_SRC_ALPHA, BlendFactor::one_minus_src_alpha},
+                            {GL_DST_ALPHA, BlendFactor::dst_alpha},
+                            {GL_ONE_MINUS_DST_ALPHA, BlendFactor::one_minus_dst_alpha},
+                            {GL_CONSTANT_COLOR, BlendFactor::constant_color},
+                            {GL_ONE_MINUS_CONSTANT_COLOR, BlendFactor::one_minus_constant_color},
+                            {GL_CONSTANT_ALPHA, BlendFactor::constant_alpha},
+                            {GL_ONE_MINUS_CONSTANT_ALPHA, BlendFactor::one_minus_constant_alpha},
+                            {GL_SRC_ALPHA_SATURATE, BlendFactor::src_alpha_saturate}},
+                           factor);
+}
+
+StencilOp stencil_op_of(GLenum op) {
+  return find<StencilOp>({{GL_KEEP, StencilOp::keep},
+                          {GL_ZERO, StencilOp::zero},
+                          {GL_REPLACE, StencilOp::replace},
+                          {GL_INCR, StencilOp::incr},
+                          {GL_DECR, StencilOp::decr},
+                          {GL_INVERT, StencilOp::invert},
+                          {GL_INCR_WRAP, StencilOp::incr_wrap},
+                          {GL_DECR_WRAP, StencilOp::decr_wrap}},
+                         op);
+}
+
+/// Held to low...high; a NaN is `low`.
+double held(double value, double low, double high) { return value > low ? std::min(value, high) : low; }
+
+std::uint8_t byte_of(double value) { return static_cast<std::uint8_t>(std::lround(held(value, 0, 1) * 255)); }
+
+Rect scissor_of(const ScissorState& scissor) {
+  const auto interval = [](int start, int size) {
+    const std::int64_t first = std::max(start, 0);
+    const std::int64_t end = std::min<std::int64_t>(std::int64_t{start} + size, kLargestScissor);
+    return std::pair(static_cast<int>(std::min<std::int64_t>(first, kLargestScissor)),
+                     static_cast<int>(std::max<std::int64_t>(end - first, 0)));
+  };
+  const auto [x, width] = interval(scissor.x, scissor.width);
+  const auto [y, height] = interval(scissor.y, scissor.height);
+  return {x, y, width, height};
+}
+
+/// None where the model's numbers do not reach.
+std::optional<Fog> fog_of(const FogState& fog) {
+  const auto is_number = [](double value) { return value >= 0 && value <= kLargestNumber; };
+  if (fog.mode == GL_LINEAR) {
+    if (!is_number(fog.start) || !is_number(fog.end) || fog.start > fog.end * kClosestStart) return std::nullopt;
+    return Fog{FogKind::linear, fog.start, fog.end};
+  }
+  if (!is_number(fog.density)) return std::nullopt;
+  return Fog{fog.mode == GL_EXP ? FogKind::exp : FogKind::exp2, fog.density, fog.density};
+}
+
+Stencil stencil_of(const StencilState& s) {
+  return {.func = compare_of(s.func),
+          .reference = static_cast<std::uint8_t>(std::clamp(s.reference, 0, 255)),
+          .read_mask = static_cast<std::uint8_t>(s.value_mask & 255),
+          .write_mask = static_cast<std::uint8_t>(s.write_mask & 255),
+          .stencil_fails = stencil_op_of(s.fail),
+          .depth_fails = stencil_op_of(s.depth_fail),
+          .passes = stencil_op_of(s.depth_pass)};
+}
+
+void set_samples(const MultisampleState& multisample, int samples, halfplane::State& state) {
+  if (samples == 1 || !multisample.enabled) return;
+  state.line_rule = LineRule::rectangle;
+  state.alpha_to_coverage = multisample.alpha_to_coverage;
+  if (!multisample.coverage) return;
+  const std::uint32_t all = (1U << samples) - 1;
+  const std::uint32_t mask = (1U << std::lround(held(multisample.value, 0, 1) * samples)) - 1;
+  state.sample_mask = multisample.invert ? all & ~mask : mask;
+}
+
+void set_fragment_operations(Context& context, halfplane::State& state) {
+  const gl::State& from = context.state;
+  const ColorState& color = from.color;
+  state.depth_test = from.depth.test ? compare_of(from.depth.func) : DepthFunc::always;
+  state.depth_write = from.depth.test && from.depth.write;
+  state.color_mask = color.write;
+  state.color_write = color.draw_buffer != GL_NONE && std::ranges::count(color.write, true) > 0;
+  if (color.alpha_test) state.alpha_test = {compare_of(color.alpha_func), byte_of(color.alpha_reference)};
+  if (color.blend && !color.logic_op) {
+    state.blend = BlendFactors{factor_of(color.src_rgb), factor_of(color.dst_rgb), factor_of(color.src_alpha),
+                               factor_of(color.dst_alpha)};
+    state.blend_equation.fill(find<BlendEquation>({{GL_FUNC_ADD, BlendEquation::add},
+                                                   {GL_FUNC_SUBTRACT, BlendEquation::subtract},
+                                                   {GL_FUNC_REVERSE_SUBTRACT, BlendEquation::reverse_subtract},
+                                                   {GL_MIN, BlendEquation::min},
+                                                   {GL_MAX, BlendEquation::max}},
+                                                  color.equation));
+    std::ranges::transform(color.blend_color, state.blend_color.begin(), byte_of);
+  }
+  if (from.stencil.test) {
+    state.stencil = stencil_of(from.stencil);
+    if (context.drawable->frame.options().config.stencil_bits == 0)
+      context.drawable->frame.missing("a stencil buffer", "the host keeps one");
+  }
+  state.dither = color.dither;
+}
+
+/// Texels in the corner of sides that are powers of two, as hardware takes them.
+halfplane::Texture padded(const halfplane::Texture& texels) {
+  halfplane::Texture texture = texels;
+  const auto side = [](int texel) { return static_cast<int>(std::bit_ceil(static_cast<unsigned>(texel))); };
+  const TextureLevel& from = texels.level.front();
+  TextureLevel level{side(from.width), side(from.height), {}};
+  const auto from_width = static_cast<std::size_t>(from.width), width = static_cast<std::size_t>(level.width);
+  level.code.resize(width * static_cast<std::size_t>(level.height));
+  for (std::size_t y = 0; y < static_cast<std::size_t>(from.height); ++y)
+    std::copy_n(from.code.begin() + static_cast<std::ptrdiff_t>(y * from_width), from_width,
+                level.code.begin() + static_cast<std::ptrdiff_t>(y * width));
+  texture.mips = Mips::none;
+  texture.level = {std::move(level)};
+  return texture;
+}
+
+/// The two ends of an axis of a zoomed image: where in the window, and which texel. Cut to the target, because the guard
+/// band is not far.
+struct End {
+  double at, texel;
+};
+std::optional<std::array<End, 2>> zoomed(double origin, double zoom, int texels, int target) {
+  // The first pixel whose centre is inside; so that no centre lies on the border of two texels.
+  if (zoom == std::rint(zoom)) origin = std::ceil(origin - 0.5);
+  double first = (-1 - origin) / zoom, last = (target + 1 - origin) / zoom;
+  if (!std::isfinite(first) || !std::isfinite(last)) return std::nullopt;
+  if (zoom < 0) std::swap(first, last);
+  first = std::max(first, 0.0);
+  last = std::min<double>(last, texels);
+  if (first >= last) return std::nullopt;
+  return std::array{End{origin + zoom * first, first}, End{origin + zoom * last, last}};
+}
+
+void draw_channels(Context& context, halfplane::State state, Topology topology, std::vector<Vertex>& vertices,
+                   std::span<const std::uint32_t> indices, const std::array<bool, 4>& channels,
+                   const std::array<double, 4>& color) {
+  for (std::size_t c = 0; c < 4; ++c) state.color_mask[c] = state.color_mask[c] && channels[c];
+  for (Vertex& v : vertices) v.rgba = color;
+  context.drawable->frame.draw(state, topology, vertices, indices);
+}
+
+/// A logic operation on a channel whose bits are all `is_one` as one on what is stored: bit 0 is the result of stored ones,
+/// bit 1 that of stored zeros.
+unsigned stored_operation(unsigned op, bool is_one) { return (is_one ? op : op >> 2) & 3; }
+
+}  // namespace
+
+halfplane::State clear_state(Context& context) {
+  halfplane::State state;
+  state.origin = Origin::bottom_left;
+  if (context.state.scissor.test) state.scissor = scissor_of(context.state.scissor);
+  return state;
+}
+
+std::optional<halfplane::State> hardware_state(Context& context, DrawKind kind, bool is_textured, TextureUse& use) {
+  if (context.drawable == nullptr) return std::nullopt;
+  Frame& frame = context.drawable->frame;
+  const gl::State& from = context.state;
+  const PolygonState& polygon = from.polygon;
+  if (kind == DrawKind::triangles && polygon.cull && polygon.cull_face == GL_FRONT_AND_BACK) return std::nullopt;
+  halfplane::State state = clear_state(context);
+  if (kind == DrawKind::rectangle) {
+    state.space = Space::window;
+  } else {
+    const ViewportState& v = from.viewport;
+    if (v.width <= 0 || v.height <= 0) return std::nullopt;
+    state.viewport = {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.width),
+                      static_cast<double>(v.height)};
+    state.depth_range = {held(v.near, 0, 1), held(v.far, 0, 1)};
+    state.shade = from.lighting.shade_model == GL_FLAT ? Shade::flat : Shade::smooth;
+    state.provoking = Provoking::last;
+  }
+  set_fragment_operations(context, state);
+  set_samples(from.multisample, frame.options().config.msaa_samples, state);
+  if (kind == DrawKind::triangles) {
+    if (polygon.cull) state.cull = polygon.cull_face == GL_BACK ? Cull::back : Cull::front;
+    state.front = polygon.front_face == GL_CCW ? FrontFace::ccw : FrontFace::cw;
+    state.color_interp = ColorInterp::perspective;
+    if (polygon.offset_fill)
+      state.polygon_offset = {held(polygon.offset_factor, -kLargestNumber, kLargestNumber),
+                              held(polygon.offset_units, -kLargestNumber, kLargestNumber)};
+    if (polygon.smooth) frame.missing("antialiased polygons", "their edges are as without");
+  }
+  // Wider ones would leave the guard band.
+  const auto& config = frame.options().config;
+  const double widest = held(config.guard_band - std::max(frame.width(), frame.height()) - 3, 1, kLargestSize);
+  if (kind == DrawKind::lines) {
+    state.smooth = from.line.smooth;
+    const double width = held(from.line.width, 1, widest);
+    state.line_width = from.line.smooth ? width : std::round(width);
+  }
+  if (kind == DrawKind::points) {
+    state.smooth = from.point.smooth;
+    state.point_shape = from.point.smooth ? PointShape::round : PointShape::square;
+    state.point_clip = PointClip::center;
+    state.point_size = held(from.point.size, 1, widest);
+  }
+  if (from.fog.enabled) {
+    state.fog = fog_of(from.fog);
+    for (std::size_t c = 0; c < 3; ++c) state.fog_color[c] = byte_of(from.fog.color[c]);
+  }
+  if (is_textured) {
+    use = use_texture(context, state);
+    if (state.texture) state.color_interp = ColorInterp::perspective;
+  }
+  return state;
+}
+
+std::optional<halfplane::State> hardware_state(Context& context, DrawKind kind) {
+  TextureUse use;
+  return hardware_state(context, kind, kind == DrawKind::triangles, use);
+}
+
+void draw_in(Context& context, halfplane::State state, Topology topology, std::vector<Vertex> vertices,
+             std::span<const std::uint32_t> indices) {
+  Frame& frame = context.drawable->frame;
+  const unsigned op = context.state.color.logic_func - GL_CLEAR;
+  const bool is_same_for_all = (op & 3) == op >> 2;
+  if (vertices.empty() || !context.state.color.logic_op || context.state.color.logic_func == GL_COPY)
+    return frame.draw(state, topology, vertices, indices);
+  const bool is_plain = !state.texture && !state.fog;
+  if (context.state.color.logic_func == GL_COPY_INVERTED && is_plain) {
+    for (Vertex& v : vertices)
+      for (double& c : v.rgba) c = 255 - c;
+    return frame.draw(state, topology, vertices, indices);
+  }
+  const std::array<double, 4> source = vertices.front().rgba;
+  const auto is_black_or_white = [&](const Vertex& v) {
+    return v.rgba == source && std::ranges::all_of(source, [](double c) { return c == 0 || c == 255; });
+  };
+  if (!is_same_for_all && !(is_plain && std::ranges::all_of(vertices, is_black_or_white)))
+    frame.missing("logic operations on colours that are not all zeros or ones", "the colour counts as the nearer");
+  state.texture.reset();
+  state.fog.reset();
+  std::array<bool, 4> replaced{}, inverted{};
+  std::array<double, 4> color{};
+  for (std::size_t c = 0; c < 4; ++c) {
+    const unsigned operation = stored_operation(op, source[c] > 127);
+    replaced[c] = operation == 0 || operation == 3;
+    inverted[c] = operation == 2;
+    color[c] = operation == 3 ? 255 : 0;
+  }
+  const bool inverts = std::ranges::count(inverted, true) > 0;
+  if (!inverts || std::ranges::count(replaced, true) > 0) {
+    draw_channels(context, state, topology, vertices, indices, replaced, color);
+    if (state.depth_write) state.depth_test = DepthFunc::equal;
+    state.depth_write = false;
+    state.stencil.reset();
+  }
+  if (!inverts) return;
+  state.blend = BlendFactors{BlendFactor::one_minus_dst_color, BlendFactor::zero, BlendFactor::one_minus_dst_alpha,
+                             BlendFactor::zero};
+  draw_channels(context, state, topology, vertices, indices, inverted, {255, 255, 255, 255});
+}
+
+void draw_texels(Context& context, halfplane::State state, const halfplane::Texture& texels, double x, double y,
+                 double zoom_x, double zoom_y, double z, double w, bool has_logic_op) {
+  Frame& frame = context.drawable->frame;
+  const auto across = zoomed(x, zoom_x, texels.width(), frame.width());
+  const auto up = zoomed(y, zoom_y, texels.height(), frame.height());
+  if (!across || !up) return;
+  const Signature signature = signature_of(texels);
+  // The highest bit keeps them apart from the revisions of textures.
+  state.texture =
+      frame.texture((signature.low ^ signature.high) | std::uint64_t{1} << 63, [&texels] { return padded(texels); });
+  state.texture_min = TextureMin::nearest;
+  state.texture_mag = TextureMag::nearest;
+  state.texture_wrap = {TextureWrap::clamp, TextureWrap::clamp};
+  state.texture_combine = TextureCombine::replace;
+  state.cull = Cull::none;
+  const auto side = [](int size) { return static_cast<double>(std::bit_ceil(static_cast<unsigned>(size))); };
+  std::vector<Vertex> corners;
+  for (const End& row : *up)
+    for (const End& column : *across)
+      corners.push_back({column.at,
+                         row.at,
+                         held(z, 0, 1),
+                         w > 0 ? w : 1,
+                         {255, 255, 255, 255},
+                         column.texel / side(texels.width()),
+                         row.texel / side(texels.height())});
+  static constexpr std::array<std::uint32_t, 4> kStrip{0, 1, 2, 3};
+  if (has_logic_op) return draw_in(context, state, Topology::triangle_strip, std::move(corners), kStrip);
+  frame.draw(state, Topology::triangle_strip, corners, kStrip);
+}
+
+void draw_rectangle(Context& context, const halfplane::Texture& texels, double x, double y, double zoom_x,
+                    double zoom_y, double z, double w) {
+  const auto state = hardware_state(context, DrawKind::rectangle);
+  if (!state) return;
+  if (context.state.fog.enabled && !state->fog)
+    context.drawable->frame.missing("this fog on pixels", "they are drawn without fog");
+  draw_texels(context, *state, texels, x, y, zoom_x, zoom_y, z, w, true);
+}
+
+}  // namespace halfplane::gl
