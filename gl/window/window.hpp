@@ -68,7 +68,7 @@ enum class DrawableKind { window, pixmap, pbuffer };
 
 class Window final : public Drawable {
  public:
-  /// `server` may be null for pbuffers. Throws InputError for a size that the configuration does not take.
+  /// Pbuffers have no `x_drawable`, and need no server. Throws InputError for a size that the configuration does not take.
   Window(DrawableKind what, Server* x_server, XID x_drawable, const PixelFormat& its_format, int width, int height);
   ~Window() override;
 
