@@ -1,0 +1,330 @@
+#!/usr/bin/env python3
+"""Real OpenGL programs in Mesa's llvmpipe and in Halfplane's driver, the same frame of the same recording.
+
+  programs.py record -o FOLDER [NAME...]    records programs under Xvfb: FOLDER/NAME.trace
+  programs.py compare -o FOLDER [NAME...]   draws a frame of each recording twice and compares: table.md, sheet.png
+  programs.py list                          the programs, and whether they are installed
+
+Needs Debian's apitrace, xvfb and libgl1-mesa-dri, and for `compare` build/halfplane with the driver. Pictures stay in FOLDER
+as NAME.mesa.ppm and NAME.halfplane.png. Exit status 1: a program of `compare` failed or lies over --most.
+"""
+import argparse
+import concurrent.futures
+import glob
+import os
+import pathlib
+import re
+import shutil
+import signal
+import struct
+import subprocess
+import sys
+import time
+import zlib
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+# Name: the command and its package. Screen savers are added by look_for_savers().
+PROGRAMS = {
+    'glxgears': ('glxgears', 'mesa-utils'),
+    'gltron': ('/usr/games/gltron', 'gltron'),
+    'chromium-bsu': ('/usr/games/chromium-bsu -w -na', 'chromium-bsu'),
+    'billard-gl': ('/usr/games/billard-gl', 'billard-gl'),
+    'rrootage': ('/usr/games/rrootage -window', 'rrootage'),
+    'torus-trooper': ('/usr/games/torus-trooper -window', 'torus-trooper'),
+    'gunroar': ('/usr/games/gunroar -window', 'gunroar'),
+    'briquolo': ('/usr/games/briquolo', 'briquolo'),
+    'armagetronad': ('/usr/games/armagetronad -window', 'armagetronad'),
+    'bzflag': ('/usr/games/bzflag -window 640x480 -solo 3', 'bzflag-client'),
+    'tumiki-fighters': ('/usr/games/tumiki-fighters -window', 'tumiki-fighters'),
+}
+SAVERS = '/usr/libexec/xscreensaver'  # xscreensaver-gl, xscreensaver-gl-extra, rss-glx
+SEEN = 8  # of 255: a difference in a channel that counts
+
+
+def libraries(path):
+    done = subprocess.run(['ldd', path], capture_output=True, text=True, check=False)
+    return done.stdout
+
+
+def look_for_savers():
+    for path in sorted(glob.glob(f'{SAVERS}/*')):
+        if 'libGL' in libraries(path) or 'libEGL' in libraries(path):
+            PROGRAMS.setdefault(os.path.basename(path), (f'{path} -window -geometry 300x220', 'xscreensaver-gl'))
+
+
+def api_of(command):
+    return 'egl' if 'libEGL.so' in libraries(shutil.which(command.split()[0]) or '') else 'gl'
+
+
+class Display:
+    """An X server of our own, on the first free number."""
+
+    def __enter__(self):
+        read, write = os.pipe()
+        self.server = subprocess.Popen(
+            ['Xvfb', '-displayfd', str(write), '-screen', '0', '800x600x24', '+extension', 'GLX', '-nolisten', 'tcp'],
+            pass_fds=[write], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        os.close(write)
+        with os.fdopen(read) as pipe:
+            self.name = ':' + pipe.readline().strip()
+        return self
+
+    def __exit__(self, *_):
+        self.server.terminate()
+        self.server.wait()
+
+
+def environment(display, folder):
+    home = folder / 'home'
+    home.mkdir(exist_ok=True)
+    return os.environ | {'DISPLAY': display, 'HOME': str(home), 'SDL_AUDIODRIVER': 'dummy', 'LIBGL_ALWAYS_SOFTWARE': '1',
+                         'XDG_RUNTIME_DIR': str(home)}
+
+
+def stop(process, patience=4):
+    """Ends the whole group: apitrace starts the program as its child."""
+    for number in (signal.SIGTERM, signal.SIGKILL):
+        try:
+            os.killpg(process.pid, number)
+        except ProcessLookupError:
+            return
+        try:
+            process.wait(patience)
+            return
+        except subprocess.TimeoutExpired:
+            pass
+
+
+def record(name, folder, display, seconds):
+    command = PROGRAMS[name][0].split()
+    trace = folder / f'{name}.trace'
+    trace.unlink(missing_ok=True)
+    with open(folder / f'{name}.log', 'wb') as log:
+        process = subprocess.Popen(
+            ['apitrace', 'trace', '--api', api_of(PROGRAMS[name][0]), '-o', str(trace), *command], stdout=log,
+            stderr=log, stdin=subprocess.DEVNULL, start_new_session=True, cwd=folder / 'home',
+            env=environment(display, folder))
+        try:
+            process.wait(seconds)
+        except subprocess.TimeoutExpired:
+            pass
+        stop(process)
+    size = trace.stat().st_size if trace.exists() else 0
+    return f'{name:20} {size / 1e6:7.1f} MB'
+
+
+# --- pictures ---------------------------------------------------------------------------------------------------------
+
+
+class Picture:
+    """RGB bytes, rows from the top."""
+
+    def __init__(self, width, height, rgb):
+        self.width, self.height, self.rgb = width, height, rgb
+
+    def cropped(self, width, height):
+        """The part at the bottom left, where OpenGL's window begins."""
+        rows = [self.rgb[3 * y * self.width:3 * (y * self.width + width)]
+                for y in range(self.height - height, self.height)]
+        return Picture(width, height, b''.join(rows))
+
+    def shrunk(self, width, height):
+        pixels = bytearray()
+        for y in range(height):
+            for x in range(width):
+                at = 3 * (y * self.height // height * self.width + x * self.width // width)
+                pixels += self.rgb[at:at + 3]
+        return Picture(width, height, bytes(pixels))
+
+
+def read_ppm(data):
+    head = re.match(rb'P6\s+(?:#[^\n]*\n\s*)*(\d+)\s+(\d+)\s+255\s', data)
+    width, height = int(head[1]), int(head[2])
+    return Picture(width, height, data[head.end():head.end() + 3 * width * height])
+
+
+def read_png(path):
+    """8-bit RGB, as `halfplane render` writes it."""
+    data = path.read_bytes()
+    packed, at = b'', 8
+    while at < len(data):
+        length, kind = struct.unpack('>I4s', data[at:at + 8])
+        body = data[at + 8:at + 8 + length]
+        if kind == b'IHDR':
+            width, height = struct.unpack('>II', body[:8])
+        elif kind == b'IDAT':
+            packed += body
+        at += 12 + length
+    raw, stride = zlib.decompress(packed), 3 * width
+    out, above = bytearray(), bytearray(stride)
+    for y in range(height):
+        kind, row = raw[y * (stride + 1)], bytearray(raw[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
+        for i in range(stride if kind else 0):
+            left, up, corner = row[i - 3] if i > 2 else 0, above[i], above[i - 3] if i > 2 else 0
+            if kind == 4:
+                guess = left + up - corner
+                base = min((left, up, corner), key=lambda value, guess=guess: abs(guess - value))
+            else:
+                base = (0, left, up, (left + up) // 2)[kind]
+            row[i] = (row[i] + base) & 255
+        out += row
+        above = row
+    return Picture(width, height, bytes(out))
+
+
+def write_png(path, picture):
+    def chunk(kind, body):
+        return struct.pack('>I', len(body)) + kind + body + struct.pack('>I', zlib.crc32(kind + body))
+
+    stride = 3 * picture.width
+    rows = b''.join(b'\0' + picture.rgb[y * stride:(y + 1) * stride] for y in range(picture.height))
+    path.write_bytes(b'\x89PNG\r\n\x1a\n' + chunk(b'IHDR', struct.pack('>IIBBBBB', picture.width, picture.height, 8, 2, 0, 0, 0)) +
+                     chunk(b'IDAT', zlib.compress(rows)) + chunk(b'IEND', b''))
+
+
+def differences(a, b):
+    """Share of pixels that differ by more than SEEN in a channel, and mean difference of the channels, of 255."""
+    width, height = min(a.width, b.width), min(a.height, b.height)
+    a, b = a.cropped(width, height).rgb, b.cropped(width, height).rgb
+    gaps = [abs(x - y) for x, y in zip(a, b)]
+    seen = sum(max(gaps[i:i + 3]) > SEEN for i in range(0, len(gaps), 3))
+    return seen / (width * height), sum(gaps) / len(gaps)
+
+
+def sheet(pairs, columns=4, width=200, height=150, gap=4):
+    """Pairs side by side, Mesa's left: in the order of the table, row by row."""
+    cell = 2 * width + gap
+    rows = (len(pairs) + columns - 1) // columns
+    total, tall = columns * (cell + 2 * gap), rows * (height + 2 * gap)
+    pixels = bytearray(b'\x60' * (3 * total * tall))
+    for number, pair in enumerate(pairs):
+        for side, picture in enumerate(pair):
+            if picture is None:
+                continue
+            small = picture.shrunk(width, height)
+            x = number % columns * (cell + 2 * gap) + gap + side * (width + gap)
+            y = number // columns * (height + 2 * gap) + gap
+            for line in range(height):
+                at = 3 * ((y + line) * total + x)
+                pixels[at:at + 3 * width] = small.rgb[3 * line * width:3 * (line + 1) * width]
+    return Picture(total, tall, bytes(pixels))
+
+
+# --- comparison -------------------------------------------------------------------------------------------------------
+
+
+def run(words, seconds, **options):
+    try:
+        return subprocess.run(words, capture_output=True, timeout=seconds, check=False, **options)
+    except subprocess.TimeoutExpired:
+        return subprocess.CompletedProcess(words, 124, b'', f'took more than {seconds} s'.encode())
+
+
+def swaps(trace):
+    """Numbers of the calls that end frames."""
+    dump = run(['apitrace', 'dump', '--color=never', '--calls=frame', str(trace)], 120).stdout.decode(errors='replace')
+    return [int(line.split()[0]) for line in dump.splitlines() if re.match(r'\d+ (glX|egl)SwapBuffers', line)]
+
+
+def in_mesa(name, folder, call, env):
+    prefix = folder / f'{name}.mesa-'
+    for old in glob.glob(f'{prefix}*'):
+        os.unlink(old)
+    trace = folder / f'{name}.trace'
+    replay = 'eglretrace' if api_of(PROGRAMS[name][0]) == 'egl' else 'glretrace'
+    done = run([replay, '--headless', '-s', '-', '-S', str(call), str(trace)], 240, env=env)
+    at = done.stdout.find(b'P6')
+    if at < 0:
+        raise RuntimeError(f'{replay}: {done.stderr.decode(errors="replace").strip().splitlines()[-1:]}')
+    (folder / f'{name}.mesa.ppm').write_bytes(done.stdout[at:])
+    return read_ppm(done.stdout[at:])
+
+
+def in_halfplane(name, folder, frame, options):
+    capture, picture = folder / f'{name}.hpt', folder / f'{name}.halfplane.png'
+    picture.unlink(missing_ok=True)
+    config = ['--config', options.config] + [word for setting in options.set for word in ('--set', setting)]
+    begun = time.monotonic()
+    said = ''
+    for words in (['convert', str(folder / f'{name}.trace'), '--frame', str(frame), '-o', str(capture)],
+                  ['render', str(capture), '-o', str(picture)]):
+        done = run([str(options.halfplane), *words, *config, '--quiet'], 240)
+        said += done.stderr.decode(errors='replace')
+        if done.returncode != 0 or not pathlib.Path(words[-1]).exists():
+            raise RuntimeError(said.strip().splitlines()[-1] if said.strip() else f'exit status {done.returncode}')
+    seconds = time.monotonic() - begun
+    (folder / f'{name}.said').write_text(said, encoding='utf-8')
+    return read_png(picture), seconds, [line.removeprefix('halfplane: ') for line in said.splitlines()]
+
+
+def compare(name, folder, env, options):
+    row = {'name': name, 'mesa': None, 'ours': None, 'error': '', 'said': []}
+    try:
+        calls = swaps(folder / f'{name}.trace')
+        if not calls:
+            raise RuntimeError('the recording has no frame')
+        row['frame'] = min(options.frame, len(calls) * 3 // 4)
+        row['mesa'] = in_mesa(name, folder, calls[row['frame']], env)
+        row['ours'], row['seconds'], row['said'] = in_halfplane(name, folder, row['frame'], options)
+        row['seen'], row['mean'] = differences(row['mesa'], row['ours'])
+    except (RuntimeError, OSError, zlib.error, struct.error, TypeError) as error:
+        row['error'] = str(error)
+    return row
+
+
+def table(rows):
+    out = ['| program | frame | pixels | differ by more than 8, % | mean of 255 | seconds to the frame | says |',
+           '| --- | --- | --- | --- | --- | --- | --- |']
+    for row in rows:
+        if row['error']:
+            out.append(f'| {row["name"]} | {row.get("frame", "")} | | | | | **{row["error"][:100]}** |')
+        else:
+            ours = row['ours']
+            out.append(f'| {row["name"]} | {row["frame"]} | {ours.width}x{ours.height} | {100 * row["seen"]:.2f} | '
+                       f'{row["mean"]:.2f} | {row["seconds"]:.1f} | {"; ".join(row["said"])[:120]} |')
+    return '\n'.join(out) + '\n'
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('what', choices=['record', 'compare', 'list'])
+    parser.add_argument('names', nargs='*', metavar='NAME')
+    parser.add_argument('-o', '--output', type=pathlib.Path, default=ROOT / 'out/programs')
+    parser.add_argument('--seconds', type=float, default=6, help='of a recording')
+    parser.add_argument('--frame', type=int, default=100, help='that is compared, or three quarters of a shorter recording')
+    parser.add_argument('--halfplane', type=pathlib.Path, default=ROOT / 'build/halfplane')
+    parser.add_argument('--config', default='full')
+    parser.add_argument('--set', action='append', default=[], help='key=value; stencil.bits=8 without one')
+    parser.add_argument('--most', type=float, default=100, help='percent of differing pixels that is let through')
+    parser.add_argument('-j', '--jobs', type=int, default=1)
+    options = parser.parse_intermixed_args()
+    options.set = options.set or ['stencil.bits=8']
+    look_for_savers()
+    unknown = [name for name in options.names if name not in PROGRAMS]
+    if unknown:
+        sys.exit(f'programs.py: no program {", ".join(unknown)}; `programs.py list` names them')
+    if options.what == 'list':
+        for name, (command, package) in PROGRAMS.items():
+            print(f'{name:20} {"yes" if shutil.which(command.split()[0]) else "no":4} {package:20} {command}')
+        return 0
+    folder = options.output.resolve()
+    folder.mkdir(parents=True, exist_ok=True)
+    with Display() as display, concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+        if options.what == 'record':
+            names = [name for name in options.names or PROGRAMS if shutil.which(PROGRAMS[name][0].split()[0])]
+            for line in pool.map(lambda name: record(name, folder, display.name, options.seconds), names):
+                print(line, flush=True)
+            return 0
+        names = [name for name in options.names or PROGRAMS if (folder / f'{name}.trace').exists()]
+        env = environment(display.name, folder)
+        rows = []
+        for row in pool.map(lambda name: compare(name, folder, env, options), names):
+            rows.append(row)
+            print(table([row]).splitlines()[-1], flush=True)
+    (folder / 'table.md').write_text(table(rows), encoding='utf-8')
+    write_png(folder / 'sheet.png', sheet([(row['mesa'], row['ours']) for row in rows]))
+    return int(any(row['error'] or 100 * row['seen'] > options.most for row in rows))
+
+
+if __name__ == '__main__':
+    sys.exit(main())
