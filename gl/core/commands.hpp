@@ -182,7 +182,8 @@ void pixel_store(Context&, GLenum pname, double value);
 /// GL_STENCIL_INDEX. Outside the window: zeros.
 [[nodiscard]] Image read_rectangle(Context&, int x, int y, int width, int height, GLenum format);
 
-// Textures: list where an Image is taken (texture.cpp). glTexImage1D is 2D with a height of 1, and so on: `dimensions`.
+// Textures: list where an Image is taken (texture.cpp, texture_state.cpp). glTexImage1D is 2D with a height of 1, and so on:
+// `dimensions`.
 void tex_image(Context&, int dimensions, GLenum target, GLint level, GLint internal_format, GLsizei width,
                GLsizei height, GLsizei depth, GLint border,
                std::shared_ptr<const Image> image);  // null: undefined texels, and proxies

@@ -95,6 +95,7 @@ struct Context {
   /// What TextureUnit::bound names, kept while another context deletes it. One with another name is out of date.
   std::array<std::array<std::shared_ptr<TextureObject>, 4>, kTextureUnits> bound_textures;
   std::array<std::array<TextureImage, 13>, 4> proxies;
+  std::map<std::uint64_t, std::uint32_t> texture_fits;  ///< how the model combines a texture (texture_upload.cpp)
   std::map<GLuint, Query> queries;
   GLuint active_query = 0;
 

@@ -17,12 +17,18 @@ struct Context;
 /// The object bound to `target` of the active unit; null and GL_INVALID_ENUM for what is no target.
 [[nodiscard]] TextureObject* bound_texture(Context& context, GLenum target);
 
-/// An image as an internal format keeps it. None: the format is none.
+/// RGBA as 8 bits a channel, held to 0...1.
+[[nodiscard]] Texel texel_of(const std::array<float, 4>& color);
+
+/// Whether sampling finds all images that the filters ask for (OpenGL 1.5, 3.8.10).
+[[nodiscard]] bool is_complete(const TextureObject& texture);
+
+/// An image as an internal format keeps it, without its border. None: the format is none.
 [[nodiscard]] std::optional<TextureImage> stored_image(const Image& image, GLint internal_format, int border);
 
 /// Fills texture, filters, wraps, level of detail and combine mode of `state` as the unit's texture and environment ask,
-/// and says by Frame::missing() what the model has not. `scale_color`: what the vertices' colour is multiplied with first
-/// (GL_REPLACE is modulate with white where the base format has no alpha, so {1, 1, 1, 0} then replaces RGB alone).
+/// and says by Frame::missing() what the model has not. Where the result says so, vertices are white or opaque: GL_REPLACE
+/// by a texture without alpha is modulate with white, which leaves alpha.
 struct TextureUse {
   bool replaces_rgb = false, replaces_alpha = false;  ///< the vertex's colour counts as 1 there
 };

@@ -1,0 +1,349 @@
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "context.hpp"
+#include "matrix.hpp"
+#include "texture.hpp"
+
+namespace halfplane::gl {
+namespace {
+
+/// How RGB and alpha come from the vertex's colour and the texel that is handed to the model. of_white: not exactly; the
+/// environment's result for white vertices is multiplied with their colour.
+enum class Rgb : std::uint8_t { modulate, replace, add, decal, decal_constant, of_white };
+enum class Alpha : std::uint8_t { multiply, replace, of_white };
+struct Fit {
+  Rgb rgb = Rgb::modulate;
+  Alpha alpha = Alpha::multiply;
+  bool folds = false;  ///< the environment is folded into the texels
+  [[nodiscard]] bool is_exact() const { return rgb != Rgb::of_white && alpha != Alpha::of_white; }
+};
+
+/// One channel of an environment's result for one texel: a times the vertex's, plus b.
+struct Affine {
+  double a = 0, b = 0;
+  bool is_exact = true;  ///< else right for white, opaque vertices
+
+  [[nodiscard]] double of_white() const { return a + b; }
+};
+using Result = std::array<Affine, 4>;
+
+constexpr double kTolerance = 1.0 / 512;
+bool is_near(double x, double y) { return std::abs(x - y) < kTolerance; }
+
+Affine sum(const Affine& x, const Affine& y, double factor, double bias) {
+  return {x.a + factor * y.a, x.b + factor * y.b + bias, x.is_exact && y.is_exact};
+}
+Affine product(const Affine& x, const Affine& y) {
+  if (x.a != 0 && y.a != 0) return {x.of_white() * y.of_white(), 0, false};
+  return {x.a * y.b + y.a * x.b, x.b * y.b, x.is_exact && y.is_exact};
+}
+Affine complement(const Affine& x) { return {-x.a, 1 - x.b, x.is_exact}; }
+
+/// What an environment sees: the texture's color as table 3.20 fills it in, and the constant.
+struct Inputs {
+  Vec4 texel, constant;
+};
+
+/// An argument of GL_COMBINE in one channel (tables 3.24 and 3.25).
+Affine argument(const TextureCombiner& combiner, std::size_t i, std::size_t channel, const Inputs& inputs) {
+  const GLenum source = combiner.source[i], operand = combiner.operand[i];
+  const bool takes_alpha = operand == GL_SRC_ALPHA || operand == GL_ONE_MINUS_SRC_ALPHA;
+  const std::size_t c = takes_alpha ? 3 : channel;
+  Affine value;
+  if (source == GL_CONSTANT)
+    value.b = inputs.constant[c];
+  else if (source == GL_PRIMARY_COLOR || source == GL_PREVIOUS)  // the first unit's previous color is the primary one
+    value = {1, 0, c == channel};
+  else
+    value.b = inputs.texel[c];
+  return operand == GL_ONE_MINUS_SRC_COLOR || operand == GL_ONE_MINUS_SRC_ALPHA ? complement(value) : value;
+}
+
+/// Table 3.23. `channel`: of RGB or alpha.
+Affine combined(const TextureCombiner& combiner, std::size_t channel, const Inputs& inputs) {
+  const auto arg = [&](std::size_t i, std::size_t c) { return argument(combiner, i, c, inputs); };
+  Affine result = arg(0, channel);
+  switch (combiner.function) {
+    case GL_MODULATE: result = product(result, arg(1, channel)); break;
+    case GL_ADD: result = sum(result, arg(1, channel), 1, 0); break;
+    case GL_ADD_SIGNED: result = sum(result, arg(1, channel), 1, -0.5); break;
+    case GL_SUBTRACT: result = sum(result, arg(1, channel), -1, 0); break;
+    case GL_INTERPOLATE: {
+      const Affine part = arg(2, channel);
+      result = sum(product(result, part), product(arg(1, channel), complement(part)), 1, 0);
+      break;
+    }
+    case GL_DOT3_RGB:
+    case GL_DOT3_RGBA: {
+      result = {};
+      for (std::size_t c = 0; c < 3; ++c)
+        result = sum(result, product(sum(arg(0, c), {}, 0, -0.5), sum(arg(1, c), {}, 0, -0.5)), 4, 0);
+      result.is_exact = result.is_exact && result.a == 0;  // of all channels together
+      break;
+    }
+    default: break;
+  }
+  result.a *= combiner.scale;
+  result.b *= combiner.scale;
+  if (result.a == 0) result.b = held(result.b);
+  return result;
+}
+
+/// The environment of a unit: table 3.22, and GL_COMBINE.
+Result environment(const TextureUnit& unit, GLenum base, const Texel& texel) {
+  Inputs inputs{{}, unit.env_color};
+  for (std::size_t c = 0; c < 4; ++c) inputs.texel[c] = texel[c] / 255.0;
+  Result result;
+  if (unit.env_mode == GL_COMBINE) {
+    if (base == GL_ALPHA) inputs.texel[0] = inputs.texel[1] = inputs.texel[2] = 0;
+    const auto& [rgb, alpha] = unit.combine;
+    for (std::size_t c = 0; c < 3; ++c) result[c] = combined(rgb, c, inputs);
+    result[3] = rgb.function == GL_DOT3_RGBA ? result[0] : combined(alpha, 3, inputs);
+    return result;
+  }
+  const bool is_added = unit.env_mode == GL_ADD;  // else GL_BLEND
+  for (std::size_t c = 0; c < 4; ++c) {
+    const double t = inputs.texel[c];
+    if (c == 3 && base != GL_INTENSITY)
+      result[c] = {t, 0};
+    else
+      result[c] = is_added ? Affine{1, t} : Affine{1 - t, unit.env_color[c] * t};
+  }
+  return result;
+}
+
+/// Of the modes that take texels as they are; none: the texels decide.
+std::optional<Fit> direct_fit(GLenum mode, GLenum base) {
+  const bool is_opaque = base == GL_RGB || base == GL_LUMINANCE;
+  switch (mode) {
+    case GL_MODULATE: return Fit{};
+    case GL_REPLACE:
+      return Fit{base == GL_ALPHA ? Rgb::modulate : Rgb::replace, is_opaque ? Alpha::multiply : Alpha::replace};
+    case GL_DECAL: return Fit{base == GL_RGBA ? Rgb::decal : is_opaque ? Rgb::replace : Rgb::modulate};
+    case GL_ADD:
+      if (base == GL_ALPHA) return Fit{};
+      if (base != GL_INTENSITY) return Fit{Rgb::add};
+      break;
+    case GL_BLEND:
+      if (base == GL_ALPHA) return Fit{};
+      break;
+    default: break;
+  }
+  return std::nullopt;
+}
+
+/// A texture as one unit samples it.
+struct Sampled {
+  const TextureObject& texture;
+  const TextureUnit& unit;
+  GLenum base;              ///< of depth textures what they are read as
+  std::size_t first, last;  ///< levels
+
+  [[nodiscard]] const TextureImage& level(std::size_t l) const { return texture.face[0][l]; }
+  [[nodiscard]] Texel texel(std::size_t l, std::size_t i) const {
+    const Texel& t = level(l).texel[i];
+    if (level(l).base_format != GL_DEPTH_COMPONENT || base == GL_INTENSITY) return t;
+    return base == GL_ALPHA ? Texel{255, 255, 255, t[0]} : Texel{t[0], t[0], t[0], 255};
+  }
+  /// Texels of one level: of a texture with several layers the first.
+  [[nodiscard]] std::size_t texels(std::size_t l) const {
+    return static_cast<std::size_t>(level(l).width) * static_cast<std::size_t>(level(l).height);
+  }
+};
+
+/// Which of the model's modes gives the results of all texels.
+Fit fit_texels(const Sampled& sampled) {
+  std::array<bool, 5> rgb{true, true, true, true, true};  // by Rgb
+  std::array<bool, 2> alpha{true, true};                  // by Alpha
+  bool keeps_alpha = true;
+  const Vec4& constant = sampled.unit.env_color;
+  for (std::size_t l = sampled.first; l <= sampled.last; ++l)
+    for (std::size_t i = 0; i < sampled.texels(l); ++i) {
+      const Texel texel = sampled.texel(l, i);
+      const Result result = environment(sampled.unit, sampled.base, texel);
+      for (std::size_t c = 0; c < 4; ++c) {
+        const auto [a, b, is_exact] = result[c];
+        const bool modulates = is_exact && is_near(b, 0) && a > -kTolerance && a < 1 + kTolerance;
+        const bool replaces = is_exact && is_near(a, 0);
+        if (c == 3) {
+          alpha[0] = alpha[0] && modulates;
+          alpha[1] = alpha[1] && replaces;
+          keeps_alpha = keeps_alpha && modulates && is_near(a, 1);
+          continue;
+        }
+        const bool is_even = is_exact && is_near(a, result[0].a) && a > -kTolerance && a < 1 + kTolerance;
+        const std::array<bool, 5> holds{modulates, replaces, is_exact && is_near(a, 1) && b > -kTolerance,
+                                        is_even && is_near(b, (1 - a) * texel[c] / 255.0),
+                                        is_even && is_near(b, (1 - a) * constant[c])};
+        for (std::size_t k = 0; k < rgb.size(); ++k) rgb[k] = rgb[k] && holds[k];
+      }
+    }
+  Fit fit{.folds = true};
+  rgb[3] = rgb[3] && keeps_alpha;
+  rgb[4] = rgb[4] && keeps_alpha;
+  fit.rgb = static_cast<Rgb>(std::ranges::find(rgb, true) - rgb.begin());
+  fit.alpha = static_cast<Alpha>(std::ranges::find(alpha, true) - alpha.begin());
+  return fit;
+}
+
+/// A texel that makes the model's mode give the environment's result.
+Texel folded(const Fit& fit, const Result& result, const Texel& texel, const Vec4& constant) {
+  std::array<float, 4> color{};
+  for (std::size_t c = 0; c < 4; ++c) {
+    const auto& [a, b, is_exact] = result[c];
+    const bool is_of_white = c == 3 ? fit.alpha == Alpha::of_white : fit.rgb == Rgb::of_white;
+    const bool takes_a = c == 3 ? fit.alpha == Alpha::multiply : fit.rgb == Rgb::modulate;
+    color[c] = static_cast<float>(is_of_white ? a + b : takes_a ? a : b);
+  }
+  if (fit.rgb == Rgb::decal || fit.rgb == Rgb::decal_constant) {
+    for (std::size_t c = 0; c < 3; ++c)
+      color[c] = static_cast<float>(fit.rgb == Rgb::decal ? texel[c] / 255.0 : constant[c]);
+    color[3] = static_cast<float>(1 - result[0].a);
+  }
+  return texel_of(color);
+}
+
+halfplane::Texture made(const Sampled& sampled, const Fit& fit, bool has_levels) {
+  std::vector<TexelImage> levels;
+  for (std::size_t l = sampled.first; l <= sampled.last; ++l) {
+    TexelImage image{sampled.level(l).width, sampled.level(l).height, {}};
+    image.texel.reserve(sampled.texels(l));
+    for (std::size_t i = 0; i < sampled.texels(l); ++i) {
+      const Texel texel = sampled.texel(l, i);
+      image.texel.push_back(
+          fit.folds ? folded(fit, environment(sampled.unit, sampled.base, texel), texel, sampled.unit.env_color)
+                    : texel);
+    }
+    levels.push_back(std::move(image));
+  }
+  const bool is_grey = !fit.folds && sampled.base != GL_RGB && sampled.base != GL_RGBA;
+  const TextureFormat format = !is_grey                       ? TextureFormat::rgba8888
+                               : sampled.base == GL_LUMINANCE ? TextureFormat::l8
+                                                              : TextureFormat::la88;
+  std::string name = "texture" + std::to_string(sampled.texture.name);
+  return has_levels ? make_texture(std::move(name), levels, format)
+                    : make_texture(std::move(name), levels.front(), format, Mips::none);
+}
+
+/// A number for values that differ (SplitMix64's last step after each).
+class Key {
+ public:
+  template <class... Values>
+  explicit Key(const Values&... values) {
+    (add(values), ...);
+  }
+  void add(std::uint64_t value) {
+    key_ += value + 0x9e3779b97f4a7c15ULL;
+    key_ = (key_ ^ key_ >> 30) * 0xbf58476d1ce4e5b9ULL;
+    key_ = (key_ ^ key_ >> 27) * 0x94d049bb133111ebULL;
+    key_ ^= key_ >> 31;
+  }
+  [[nodiscard]] std::uint64_t value() const { return key_; }
+
+ private:
+  std::uint64_t key_ = 0;
+};
+
+/// The fit of an environment that has to be folded, found once for each key.
+Fit folded_fit(Context& context, const Sampled& sampled, std::uint64_t key) {
+  constexpr std::size_t kMost = 1024;
+  if (const auto known = context.texture_fits.find(key); known != context.texture_fits.end())
+    return std::bit_cast<Fit>(known->second);
+  if (context.texture_fits.size() >= kMost) context.texture_fits.clear();
+  const Fit fit = fit_texels(sampled);
+  context.texture_fits[key] = std::bit_cast<std::uint32_t>(fit);
+  return fit;
+}
+
+bool is_linear(GLenum filter) {
+  return filter == GL_LINEAR || filter == GL_LINEAR_MIPMAP_NEAREST || filter == GL_LINEAR_MIPMAP_LINEAR;
+}
+
+void say_what_is_missing(Frame& frame, const TextureObject& texture) {
+  const bool filters = is_linear(texture.min_filter) || is_linear(texture.mag_filter);
+  for (std::size_t i = 0; i < (texture.target == GL_TEXTURE_1D ? 1U : 2U); ++i) {
+    if (texture.wrap[i] == GL_CLAMP_TO_BORDER) frame.missing("GL_CLAMP_TO_BORDER", "drawn as GL_CLAMP_TO_EDGE");
+    if (texture.wrap[i] == GL_CLAMP && filters)
+      frame.missing("GL_CLAMP with a linear filter", "drawn as GL_CLAMP_TO_EDGE");
+  }
+  const TextureImage& image = texture.face[0][static_cast<std::size_t>(texture.base_level)];
+  if (image.border != 0) frame.missing("borders of textures", "their texels are left out");
+  if (texture.target == GL_TEXTURE_3D) frame.missing("three-dimensional textures", "the first layer is drawn");
+  if (texture.target == GL_TEXTURE_CUBE_MAP) frame.missing("cube maps", "drawn without the texture");
+  if (image.base_format == GL_DEPTH_COMPONENT && texture.compare_mode != GL_NONE)
+    frame.missing("depth textures that compare", "the depths are drawn");
+}
+
+TextureWrap wrap_of(GLenum wrap) {
+  if (wrap == GL_REPEAT) return TextureWrap::repeat;
+  return wrap == GL_MIRRORED_REPEAT ? TextureWrap::mirror : TextureWrap::clamp;
+}
+
+}  // namespace
+
+TextureUse use_texture(Context& context, halfplane::State& state) {
+  const TextureObject* texture = context.drawable == nullptr ? nullptr : sampled_texture(context, 0);
+  if (texture == nullptr) return {};
+  Frame& frame = context.drawable->frame;
+  say_what_is_missing(frame, *texture);
+  if (texture->target == GL_TEXTURE_CUBE_MAP) return {};
+  const TextureUnit& unit = context.state.texture.unit[0];
+  const auto first = static_cast<std::size_t>(texture->base_level);
+  const TextureImage& image = texture->face[0][first];
+  const int side = std::max(image.width, image.height);
+  const bool is_mipmapped = texture->min_filter != GL_NEAREST && texture->min_filter != GL_LINEAR;
+  const std::size_t last =
+      !is_mipmapped ? first
+                    : std::min(first + static_cast<std::size_t>(std::bit_width(static_cast<unsigned>(side))) - 1,
+                               static_cast<std::size_t>(texture->max_level));
+  const bool has_levels = last > first;
+  const bool is_depth = image.base_format == GL_DEPTH_COMPONENT;
+  const Sampled sampled{*texture, unit, is_depth ? texture->depth_mode : image.base_format, first, last};
+
+  Key key(texture->revision, first, last, sampled.base);
+  std::optional<Fit> fit = direct_fit(unit.env_mode, sampled.base);
+  if (!fit) {
+    key.add(unit.env_mode);
+    for (const double channel : unit.env_color) key.add(std::bit_cast<std::uint64_t>(channel));
+    for (const TextureCombiner& combiner : unit.combine) {
+      if (unit.env_mode != GL_COMBINE) break;
+      key.add(combiner.function);
+      key.add(static_cast<std::uint64_t>(combiner.scale));
+      for (std::size_t i = 0; i < 3; ++i) key.add(std::uint64_t{combiner.source[i]} << 32 | combiner.operand[i]);
+    }
+    fit = folded_fit(context, sampled, key.value());
+    if (!fit->is_exact())
+      frame.missing(unit.env_mode == GL_COMBINE ? "this GL_COMBINE environment"
+                    : unit.env_mode == GL_BLEND ? "this GL_BLEND environment"
+                                                : "GL_ADD with GL_INTENSITY",
+                    "drawn as for white vertices, multiplied with their colours");
+  }
+  state.texture = frame.texture(key.value(), [&] { return made(sampled, *fit, has_levels); });
+
+  const GLenum min = has_levels || !is_mipmapped      ? texture->min_filter
+                     : is_linear(texture->min_filter) ? GLenum{GL_LINEAR}
+                                                      : GLenum{GL_NEAREST};
+  state.texture_min = static_cast<TextureMin>(min >= GL_NEAREST_MIPMAP_NEAREST ? min - GL_NEAREST_MIPMAP_NEAREST + 2
+                                                                               : min - GL_NEAREST);
+  state.texture_mag = is_linear(texture->mag_filter) ? TextureMag::linear : TextureMag::nearest;
+  state.texture_wrap = {wrap_of(texture->wrap[0]),
+                        texture->target == GL_TEXTURE_1D ? TextureWrap::clamp : wrap_of(texture->wrap[1])};
+  const double largest = has_levels ? static_cast<double>(last - first) : 12;
+  const auto in = [](double value, double low, double high) { return value > low ? std::min(value, high) : low; };
+  state.texture_lod = {in(texture->lod_bias + unit.lod_bias, -16, 16), in(texture->min_lod, 0, largest),
+                       in(texture->max_lod, 0, largest)};
+  const bool replaces_alpha = fit->alpha == Alpha::replace;
+  state.texture_combine = fit->rgb == Rgb::add                                        ? TextureCombine::add
+                          : fit->rgb == Rgb::decal || fit->rgb == Rgb::decal_constant ? TextureCombine::decal
+                          : fit->rgb == Rgb::replace && replaces_alpha                ? TextureCombine::replace
+                                                                                      : TextureCombine::modulate;
+  return {fit->rgb == Rgb::replace, replaces_alpha};
+}
+
+}  // namespace halfplane::gl
