@@ -403,6 +403,7 @@ void Frame::Memory::render() {
     part.blocks = std::move(prepared.textures);
     picture = &rendering.frame;
     gl::add(counters, rendering.counters);
+    geometry_s += rendering.geometry_s;
   }
   drawn = end_mark();
 }

@@ -110,6 +110,12 @@ constexpr int kGlyphWidth = 3, kGlyphHeight = 5, kScale = 2;
 
 }  // namespace
 
+std::string saved_name(const Options& options, int number) {
+  if (options.save_all) return numbered((std::filesystem::path(options.save_to) / "frame.hpt").string(), number);
+  if (options.save_to.empty()) return numbered("frame.hpt", number);
+  return options.save.size() == 1 ? options.save_to : numbered(options.save_to, number);
+}
+
 // --- captures ---------------------------------------------------------------------------------------------------------
 
 Scene Frame::Memory::whole(bool restores) const {
@@ -224,11 +230,7 @@ void Frame::Memory::restore(Scene& whole) const {
 
 /// The frame as a capture, whole or not at all.
 void Frame::Memory::save(int number) const {
-  const std::string path = options.save_all          ? (std::filesystem::path(options.save_to) / "frame.hpt").string()
-                           : options.save_to.empty() ? std::string("frame.hpt")
-                                                     : options.save_to;
-  const bool is_one = !options.save_all && options.save.size() == 1 && !options.save_to.empty();
-  const std::string name = is_one ? path : numbered(path, number), part = name + ".part";
+  const std::string name = saved_name(options, number), part = name + ".part";
   std::error_code error;
   try {
     std::ofstream out(part);
@@ -292,8 +294,11 @@ void Frame::Memory::end() {
 
   const Clock::time_point now = Clock::now();
   const double frame_s = std::chrono::duration<double>(now - std::exchange(frame_start, now)).count();
-  const double raster = raster_s - std::exchange(raster_before_s, raster_s);
-  row["time_s"] = {{"raster", raster}, {"driver", std::exchange(driver_s, 0)}, {"frame", frame_s}};
+  const double drawing = raster_s - std::exchange(raster_before_s, raster_s), geometry = std::exchange(geometry_s, 0);
+  row["time_s"] = {{"geometry", geometry},
+                   {"raster", drawing - geometry},
+                   {"driver", std::exchange(driver_s, 0)},
+                   {"frame", frame_s}};
   // Over the last frames, so that the figure can be read.
   const double rate = 1 / std::max(frame_s, 1e-6);
   frames_per_second = frames_per_second == 0 ? rate : frames_per_second + (rate - frames_per_second) / 8;

@@ -91,7 +91,7 @@ struct Frame::Memory {
   std::uint64_t frame = 0, textures_made = 0;
 
   // Results and the HUD (frame_end.cpp).
-  double driver_s = 0;  ///< of this frame: collecting
+  double driver_s = 0, geometry_s = 0;  ///< of this frame: collecting; the engine's host side
   double raster_before_s = 0;
   Clock::time_point frame_start = Clock::now();
   double frames_per_second = 0;

@@ -42,35 +42,6 @@ Json frame_row(int frame, const Moment& moment, const Rendering& rendering, cons
   return row;
 }
 
-/// A table of all rows: a column for each figure, named as its keys with dots between them; nothing where it is null.
-std::string csv_text(const Json& rows) {
-  std::string text;
-  for (const Json& row : rows) {
-    std::string names, values;
-    const Json cells = row.flatten();
-    for (const auto& [pointer, value] : cells.items()) {
-      std::string name = pointer.substr(1);
-      std::replace(name.begin(), name.end(), '/', '.');
-      names += (names.empty() ? "" : ",") + name;
-      values += (values.empty() ? "" : ",") + (value.is_string() ? value.get<std::string>()
-                                               : value.is_null() ? std::string()
-                                                                 : value.dump());
-    }
-    if (text.empty()) text = names + "\n";
-    text += values + "\n";
-  }
-  return text;
-}
-
-/// The least, the median and the largest of a figure over the frames.
-void print_range(std::ostream& out, const Json& rows, const std::string& name, const char* key) {
-  std::vector<std::uint64_t> values;
-  for (const Json& row : rows) values.push_back(row[key].get<std::uint64_t>());
-  std::sort(values.begin(), values.end());
-  out << left_aligned(name, 12) << "least " << with_commas(values.front()) << ", median "
-      << with_commas(values[values.size() / 2]) << ", most " << with_commas(values.back()) << " a frame\n";
-}
-
 /// Throws InputError where a frame goes on with the picture of the one before, and the engine has it no more.
 void refuse_to_go_on(const RenderCommand& options, std::size_t frame) {
   const bool keeps = options.engine == "functional" || options.engine == "scalar";
@@ -203,6 +174,33 @@ void print_bins(std::ostream& out, const Json& rows) {
 }
 
 }  // namespace
+
+std::string csv_text(const Json& rows) {
+  std::string text;
+  for (const Json& row : rows) {
+    std::string names, values;
+    const Json cells = row.flatten();
+    for (const auto& [pointer, value] : cells.items()) {
+      std::string name = pointer.substr(1);
+      std::replace(name.begin(), name.end(), '/', '.');
+      names += (names.empty() ? "" : ",") + name;
+      values += (values.empty() ? "" : ",") + (value.is_string() ? value.get<std::string>()
+                                               : value.is_null() ? std::string()
+                                                                 : value.dump());
+    }
+    if (text.empty()) text = names + "\n";
+    text += values + "\n";
+  }
+  return text;
+}
+
+void print_range(std::ostream& out, const Json& rows, const std::string& name, const char* key) {
+  std::vector<std::uint64_t> values;
+  for (const Json& row : rows) values.push_back(row[key].get<std::uint64_t>());
+  std::sort(values.begin(), values.end());
+  out << left_aligned(name, 12) << "least " << with_commas(values.front()) << ", median "
+      << with_commas(values[values.size() / 2]) << ", most " << with_commas(values.back()) << " a frame\n";
+}
 
 void add_frames_options(CLI::App& app, RenderCommand& options) {
   const auto number = [range = CLI::Range(1, kMostFrames)](std::string& word) {

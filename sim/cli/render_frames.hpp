@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <iosfwd>
 #include <optional>
 #include <string>
 
@@ -42,6 +43,12 @@ struct CycleFacts {
 /// The pictures and arrays that the options name.
 void write_files(const RenderCommand& options, const Rendering& rendering, const Config& config,
                  const std::string& title);
+
+/// A table of all rows: a column for each figure, named as its keys with dots between them; nothing where it is null.
+[[nodiscard]] std::string csv_text(const Json& rows);
+
+/// The least, the median and the largest of a figure over the frames.
+void print_range(std::ostream& out, const Json& rows, const std::string& name, const char* key);
 
 /// Adds --frames, --csv and --chart.
 void add_frames_options(CLI::App& app, RenderCommand& options);

@@ -21,6 +21,9 @@ libdraco-dev         gltf  draco/compression/decode.h
 libmeshoptimizer-dev gltf  meshoptimizer.h
 libwebp-dev          gltf  webp/decode.h
 libjs-chart.js       report /usr/share/javascript/chart.js/chart.min.js
+libglvnd-dev         test  glvnd/libglxabi.h
+libx11-dev           test  X11/Xlib.h
+libxext-dev          test  X11/extensions/XShm.h
 libgtest-dev         test  gtest/gtest.h
 python3-jsonschema   test  /usr/lib/python3/dist-packages/jsonschema/__init__.py
 python3              coverage python3

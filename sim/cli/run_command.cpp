@@ -1,0 +1,382 @@
+// `halfplane run`: a program whose OpenGL is the model's, by the driver in gl/.
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <charconv>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <thread>
+
+#include "sim/cli/commands.hpp"
+#include "sim/cli/progress.hpp"
+#include "sim/cli/render_frames.hpp"
+#include "sim/show/image/whole_file.hpp"
+#include "sim/show/report/page.hpp"
+
+extern char** environ;
+
+namespace halfplane {
+namespace {
+
+struct RunCommand : CommonOptions {
+  std::string engine = "functional", on_missing = "warn", frames, save_path, save_folder, csv_path, chart_path;
+  MemorySettings memory;
+  std::vector<int> save;
+  bool hud = false;
+  std::vector<std::string> program;
+};
+
+struct FrameSpan {
+  int first = 0, last = -1;  ///< -1: no end
+};
+/// `--frames A..B`. Throws InputError.
+FrameSpan parse_frames(const std::string& text) {
+  FrameSpan span;
+  if (text.empty()) return span;
+  const std::size_t dots = text.find("..");
+  const auto number = [](std::string_view word, int& value) {
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    return error == std::errc() && end == word.data() + word.size() && value >= 0;
+  };
+  const std::string_view words(text);
+  if (dots == std::string::npos || !number(words.substr(0, dots), span.first) ||
+      !number(words.substr(dots + 2), span.last) || span.last < span.first)
+    throw InputError("--frames '" + text + "': give A..B, frames counted from 0");
+  return span;
+}
+
+/// Where the driver lies: in the build folder of this program, or where it is installed. Throws when it was not built.
+std::filesystem::path driver_folder() {
+  const std::filesystem::path here = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+  for (const char* folder : {"gl", "../" HALFPLANE_LIBDIR})
+    if (std::filesystem::exists(here / folder / "libGLX_halfplane.so.0"))
+      return std::filesystem::canonical(here / folder);
+  throw std::runtime_error(
+      "run: this build has no OpenGL driver (libGLX_halfplane.so.0); install libglvnd-dev, libx11-dev and libxext-dev, "
+      "and build again");
+}
+
+/// A folder of this run's own, gone with it.
+class RunFolder {
+ public:
+  RunFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "halfplane-run-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr)
+      throw std::runtime_error("run: cannot make a folder for temporary files: " + std::string(std::strerror(errno)));
+    path_ = name;
+  }
+  ~RunFolder() {
+    std::error_code error;
+    std::filesystem::remove_all(path_, error);
+  }
+  RunFolder(const RunFolder&) = delete;
+  RunFolder& operator=(const RunFolder&) = delete;
+  [[nodiscard]] std::string file(const char* name) const { return (path_ / name).string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// Where the driver saves; absolute, because programs change their folder.
+std::string save_target(const RunCommand& options) {
+  std::string name = options.save_folder.empty() ? options.save_path : options.save_folder;
+  if (name.empty()) name = options.save.size() == 1 ? "frame-" + std::to_string(options.save[0]) + ".hpt" : "frame.hpt";
+  return std::filesystem::absolute(name).string();
+}
+
+/// The driver's options, as gl/core/options.cpp reads them.
+Json driver_options(const RunCommand& options, const Config& config, const FrameSpan& span, const RunFolder& folder) {
+  Json settings_of_it = Json::array();
+  const Config start = preset(config.preset);
+  for (const Setting& setting : settings())
+    if (get(config, setting) != get(start, setting))
+      settings_of_it.push_back(std::string(setting.key) + "=" + get(config, setting));
+  return {{"preset", config.preset},
+          {"config", settings_of_it},
+          {"threads", options.threads},
+          {"on_missing", options.on_missing},
+          {"hud", options.hud},
+          {"cycles", options.engine == "cycle"},
+          {"first_frame", span.first},
+          {"last_frame", span.last},
+          {"mhz", options.memory.mhz},
+          {"memory", kMemoryKinds[static_cast<std::size_t>(options.memory.kind)]},
+          {"memory_latency", options.memory.latency},
+          {"save", options.save},
+          {"save_to", save_target(options)},
+          {"save_all", !options.save_folder.empty()},
+          {"results", folder.file("results")}};
+}
+
+/// This program's environment, with what leads the program to the driver.
+std::vector<std::string> environment(const RunFolder& folder, const Json& driver) {
+  const std::filesystem::path libraries = driver_folder();
+  const Json vendor{{"file_format_version", "1.0.0"},
+                    {"ICD", {{"library_path", (libraries / "libEGL_halfplane.so.0").string()}}}};
+  write_text_file(folder.file("egl.json"), vendor.dump());
+  const char* const before = std::getenv("LD_LIBRARY_PATH");
+  const std::map<std::string, std::string> added{
+      {"__GLX_VENDOR_LIBRARY_NAME", "halfplane"},
+      {"__EGL_VENDOR_LIBRARY_FILENAMES", folder.file("egl.json")},
+      {"LD_LIBRARY_PATH", libraries.string() + (before == nullptr || *before == '\0' ? "" : ":" + std::string(before))},
+      {"HALFPLANE_GL", driver.dump(-1, ' ', false, Json::error_handler_t::replace)},
+      {"HALFPLANE_GL_ANSWERED", folder.file("answered")}};
+  std::vector<std::string> all;
+  for (char** word = environ; *word != nullptr; ++word) {
+    const std::string variable(*word);
+    if (!added.contains(variable.substr(0, variable.find('=')))) all.push_back(variable);
+  }
+  for (const auto& [name, value] : added) all.push_back(name + "=" + value);
+  return all;
+}
+
+std::vector<char*> pointers(const std::vector<std::string>& words) {
+  std::vector<char*> list;
+  for (const std::string& word : words) list.push_back(const_cast<char*>(word.c_str()));
+  list.push_back(nullptr);
+  return list;
+}
+
+/// The program, and whoever it starts. From a terminal it stays in the terminal's group, so that Ctrl-C and reading work.
+class Child {
+ public:
+  /// `has_stdout`: else what it prints goes to stderr. Throws InputError when it cannot be started.
+  Child(const std::vector<std::string>& program, const std::vector<std::string>& environment, bool has_stdout) {
+    has_group_ = isatty(STDIN_FILENO) == 0;
+    const std::vector<char*> words = pointers(program), variables = pointers(environment);
+    std::array<int, 2> failure{};
+    if (pipe2(failure.data(), O_CLOEXEC) != 0 || (pid_ = fork()) < 0)
+      throw std::runtime_error("run: cannot start a program: " + std::string(std::strerror(errno)));
+    if (pid_ == 0) {
+      if (has_group_) setpgid(0, 0);
+      prctl(PR_SET_PDEATHSIG, SIGTERM);
+      if (!has_stdout) dup2(STDERR_FILENO, STDOUT_FILENO);
+      for (const int signal : {SIGPIPE, SIGXFSZ, SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);
+      execvpe(words[0], words.data(), variables.data());
+      const int reason = errno;
+      (void)!write(failure[1], &reason, sizeof reason);
+      _exit(127);
+    }
+    close(failure[1]);
+    int reason = 0;
+    const bool has_failed = read(failure[0], &reason, sizeof reason) == sizeof reason;
+    close(failure[0]);
+    if (!has_failed) return;
+    waitpid(pid_, nullptr, 0);
+    throw InputError("run: cannot start '" + program[0] + "': " + std::strerror(reason));
+  }
+  ~Child() {
+    if (!has_ended_) end();
+  }
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+
+  /// Whether it has ended by now.
+  bool has_ended() {
+    if (!has_ended_) has_ended_ = waitpid(pid_, &status_, WNOHANG) == pid_;
+    return has_ended_;
+  }
+  /// Asks it to end, and after three seconds does not ask.
+  void end() {
+    signal(SIGTERM);
+    for (int i = 0; i < 60 && !has_ended(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    if (has_ended_) return;
+    signal(SIGKILL);
+    has_ended_ = waitpid(pid_, &status_, 0) == pid_;
+  }
+  /// As a shell has it: 128 and the signal that ended it.
+  [[nodiscard]] int status() const { return WIFEXITED(status_) ? WEXITSTATUS(status_) : 128 + WTERMSIG(status_); }
+
+ private:
+  void signal(int number) const { kill(has_group_ ? -pid_ : pid_, number); }
+  pid_t pid_ = -1;
+  int status_ = 0;
+  bool has_group_ = false, has_ended_ = false;
+};
+
+/// The lines of JSON that the driver appends to a file; what it has not finished yet is left out.
+class ResultLines {
+ public:
+  explicit ResultLines(std::string path) : path_(std::move(path)) {}
+  /// Reads on.
+  void read() {
+    std::ifstream in(path_, std::ios::binary);
+    in.seekg(read_);
+    for (std::string line; std::getline(in, line) && !in.eof();) {
+      read_ += static_cast<std::streamoff>(line.size()) + 1;
+      Json row = Json::parse(line, nullptr, false);
+      if (row.is_object()) rows.push_back(std::move(row));
+    }
+  }
+  Json rows = Json::array();
+
+ private:
+  std::string path_;
+  std::streamoff read_ = 0;
+};
+
+/// A frame's figures without the ones that not every frame has.
+Json csv_rows(const Json& rows) {
+  Json list = Json::array();
+  for (Json row : rows) {
+    for (const char* key : {"missing", "lacks", "stages", "traffic_bytes"}) row.erase(key);
+    list.push_back(std::move(row));
+  }
+  return list;
+}
+
+/// What frames lack, each once.
+Json texts_of(const Json& rows, const char* key) {
+  std::vector<std::string> texts;
+  for (const Json& row : rows)
+    for (const Json& text : row[key].is_array() ? row[key] : Json::array({row[key]}))
+      if (text.is_string() && std::ranges::find(texts, text.get<std::string>()) == texts.end()) texts.push_back(text);
+  return texts;
+}
+
+void print_run(std::ostream& out, const RunCommand& options, const Json& result, const Config& config) {
+  const Json& rows = result["frames"];
+  out << joined(options.program, " ") << ": " << label(config) << ", engine " << options.engine << ", "
+      << joined(result["answered"].get<std::vector<std::string>>()) << '\n';
+  double seconds = 0, drawing = 0;
+  Json measured = Json::array();
+  for (const Json& row : rows) {
+    seconds += row["time_s"]["frame"].get<double>();
+    drawing += row["time_s"]["geometry"].get<double>() + row["time_s"]["raster"].get<double>();
+    if (!row["cycles"].is_null()) measured.push_back(row);
+  }
+  const auto count = static_cast<double>(rows.size());
+  out << "frames      " << rows.size();
+  if (!rows.empty())
+    out << " in " << fixed(seconds, 2) << " s, " << fixed(count / std::max(seconds, 1e-9), 1) << " a second; "
+        << fixed(1e3 * drawing / count, 2) << " ms each to draw";
+  out << '\n';
+  if (!measured.empty()) {
+    print_range(out, measured, "cycles", "cycles");
+    print_range(out, measured, "bytes", "bytes");
+    std::uint64_t most = 0;
+    for (const Json& row : measured) most = std::max(most, row["cycles"].get<std::uint64_t>());
+    out << "clock       " << with_commas((most * 30 + 999'999) / 1'000'000)
+        << " MHz for 30 frames a second of the most\n";
+  }
+  for (const Json& text : result["lacks"]) out << "no cycles   " << text.get<std::string>() << '\n';
+  for (const Json& text : result["missing"]) out << "missing     " << text.get<std::string>() << '\n';
+}
+
+int run(const RunCommand& options) {
+  const auto start = std::chrono::steady_clock::now();
+  const Config config = effective_config(options);
+  const FrameSpan span = parse_frames(options.frames);
+  if (!options.save.empty() && !options.save_folder.empty())
+    throw InputError("--save and --save-all: give one of the two");
+  if (!options.save_path.empty() && options.save.empty())
+    throw InputError("-o: the capture of --save N; add that, or use --save-all DIR");
+  for (const std::string* path : {&options.save_path, &options.csv_path, &options.chart_path})
+    if (*path == "-") throw InputError("run: stdout is the program's; give a file in place of -");
+  check_output(options.save_path, ".hpt");
+  check_output(options.csv_path, ".csv");
+  check_output(options.chart_path, ".html");
+  check_distinct({options.json, options.save_path, options.csv_path, options.chart_path});
+  if (!options.chart_path.empty()) require_chart_library();
+  make_folder("--save-all", options.save_folder);
+
+  const RunFolder folder;
+  ResultLines lines(folder.file("results"));
+  stop_in_order();
+  bool is_partial = false, has_all = false;
+  int status = 0;
+  {
+    Child child(options.program, environment(folder, driver_options(options, config, span, folder)),
+                options.json != "-");
+    while (!child.has_ended()) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      lines.read();
+      has_all = span.last >= 0 && !lines.rows.empty() && lines.rows.back()["frame"].get<int>() >= span.last;
+      if (has_all || is_interrupted()) child.end();
+    }
+    status = child.status();
+  }
+  lines.read();
+  is_partial = is_interrupted();
+
+  Json result = result_head("run", options, config);
+  std::vector<std::string> answered;
+  std::ifstream answers(folder.file("answered"));
+  for (std::string line; std::getline(answers, line);)
+    if (std::ranges::find(answered, line) == answered.end()) answered.push_back(line);
+  result["program"] = options.program;
+  result["status"] = or_null(!has_all, status);
+  result["answered"] = answered;
+  result["engine"] = options.engine;
+  result["memory"] = options.engine == "cycle" ? memory_json(options.memory) : Json(nullptr);
+  result["width"] = lines.rows.empty() ? Json(0) : lines.rows.back()["width"];
+  result["height"] = lines.rows.empty() ? Json(0) : lines.rows.back()["height"];
+  result["missing"] = texts_of(lines.rows, "missing");
+  result["lacks"] = texts_of(lines.rows, "lacks");
+  result["frames"] = lines.rows;
+  if (!options.csv_path.empty()) write_text_file(options.csv_path, csv_text(csv_rows(lines.rows)));
+  if (!options.chart_path.empty()) write_page(options.chart_path, kFramesPage, result);
+  finish_json(options, result, start, is_partial);
+  std::ostream& out = human(options);
+  print_run(out, options, result, config);
+  const auto complain = [&](int exit_status, const std::string& what) {
+    std::cerr << "halfplane: run: " << what << '\n';
+    return exit_status;
+  };
+  if (is_partial) return ended(out, is_partial, exit_ok);
+  if (answered.empty())
+    return complain(
+        exit_mismatch,
+        options.program[0] + " did not load the driver: it draws without OpenGL, or its libGL is not libglvnd's");
+  if (has_all || status == 0) return exit_ok;
+  if (options.on_missing == "stop" && status == exit_bad_input) return exit_bad_input;  // the driver has said why
+  return complain(exit_mismatch, options.program[0] + " ended with status " + std::to_string(status));
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app, Action& selected) {
+  const auto [command, options] =
+      add_command<RunCommand>(app, selected, "run", "a program whose OpenGL this model draws (Linux, libglvnd)", run);
+  add_output_options(*command, *options);
+  command->add_option("--engine", options->engine, "functional, or cycle: the cycles of each frame as well")
+      ->check(CLI::IsMember({"functional", "cycle"}))
+      ->capture_default_str();
+  add_memory_options(*command, options->memory);
+  command
+      ->add_option("--frames", options->frames, "A..B: figures of these frames, counted from 0; then the program ends")
+      ->type_name("A..B");
+  command->add_option("--save", options->save, "frame N as a capture; may be given several times")
+      ->check(CLI::Range(0, 1'000'000'000))
+      ->type_name("N");
+  command->add_option("--save-all", options->save_folder, "every frame as a capture in this folder")
+      ->check(refuse_empty)
+      ->type_name("DIR");
+  add_file_option(*command, "-o", options->save_path, "the capture of --save, .hpt (default frame-N.hpt)");
+  command->add_flag("--hud", options->hud, "frames a second and cycles in a corner of the window");
+  command
+      ->add_option(
+          "--on-missing", options->on_missing,
+          "what this hardware does not have: drawn some other way (host), with a warning (warn), or the end (stop)")
+      ->check(CLI::IsMember({"host", "warn", "stop"}))
+      ->capture_default_str();
+  command->add_option("--threads", options->threads, "threads that draw")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  add_file_option(*command, "--csv", options->csv_path, "a row of figures for each frame, .csv");
+  add_file_option(*command, "--chart", options->chart_path, "the figures over time, .html");
+  command->add_option("PROGRAM", options->program, "the program and its arguments, after --")->required();
+  command->footer(
+      "\nExample:\n  halfplane run --config full --hud -- glxgears\n"
+      "  halfplane run --frames 10..19 --engine cycle --csv gears.csv -- glxgears");
+}
+
+}  // namespace halfplane
