@@ -14,7 +14,7 @@ namespace {
 
 /// Where a parameter is kept, and what it takes.
 struct Place {
-  std::variant<GLenum*, int*, bool*, double*, Vec4*> where;
+  std::variant<GLenum*, int*, bool*, double*, Vec4*, std::array<int, 4>*> where;
   std::span<const GLenum> allowed{};  ///< of an enum
   ValueKind kind = ValueKind::real;   ///< color: held to 0...1, integers map linearly
 };
@@ -56,6 +56,7 @@ std::optional<Place> texture_place(TextureObject& t, GLenum pname) {
     case GL_TEXTURE_LOD_BIAS: return Place{&t.lod_bias};
     case GL_TEXTURE_BASE_LEVEL: return Place{&t.base_level};
     case GL_TEXTURE_MAX_LEVEL: return Place{&t.max_level};
+    case kTextureCropRect: return Place{&t.crop};
     case GL_GENERATE_MIPMAP: return Place{&t.generate_mipmap};
     case GL_DEPTH_TEXTURE_MODE: return Place{&t.depth_mode, kDepthModes};
     case GL_TEXTURE_COMPARE_MODE: return Place{&t.compare_mode, kCompareModes};
@@ -123,9 +124,13 @@ bool set(Context& context, const std::optional<Place>& place, const Params& para
     **flag = value[0] != 0;
   } else if (double* const* real = std::get_if<double*>(&place->where)) {
     **real = in_range(value[0]);
+  } else if (!params.is_vector) {
+    return refuse(GL_INVALID_ENUM);
+  } else if (Vec4* const* vector = std::get_if<Vec4*>(&place->where)) {
+    std::ranges::transform(value, (*vector)->begin(), in_range);
   } else {
-    if (!params.is_vector) return refuse(GL_INVALID_ENUM);
-    std::ranges::transform(value, std::get<Vec4*>(place->where)->begin(), in_range);
+    std::ranges::transform(value, std::get<std::array<int, 4>*>(place->where)->begin(),
+                           [](double v) { return static_cast<int>(std::clamp(v, -2147483648.0, 2147483647.0)); });
   }
   return true;
 }
@@ -141,8 +146,10 @@ Values get(Context& context, const std::optional<Place>& place) {
     return {ValueKind::integer, {static_cast<double>(**number)}};
   if (bool* const* flag = std::get_if<bool*>(&place->where)) return {ValueKind::boolean, {**flag ? 1.0 : 0.0}};
   if (double* const* real = std::get_if<double*>(&place->where)) return {place->kind, {**real}};
-  const Vec4& vector = *std::get<Vec4*>(place->where);
-  return {place->kind, {vector.begin(), vector.end()}};
+  if (Vec4* const* vector = std::get_if<Vec4*>(&place->where))
+    return {place->kind, {(*vector)->begin(), (*vector)->end()}};
+  const auto& integers = *std::get<std::array<int, 4>*>(place->where);
+  return {ValueKind::integer, {integers.begin(), integers.end()}};
 }
 
 }  // namespace

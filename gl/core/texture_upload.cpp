@@ -254,10 +254,10 @@ class Key {
 Fit folded_fit(Context& context, const Sampled& sampled, std::uint64_t key) {
   constexpr std::size_t kMost = 1024;
   if (const auto known = context.texture_fits.find(key); known != context.texture_fits.end())
-    return std::bit_cast<Fit>(known->second);
+    return {static_cast<Rgb>(known->second & 255), static_cast<Alpha>(known->second >> 8), true};
   if (context.texture_fits.size() >= kMost) context.texture_fits.clear();
   const Fit fit = fit_texels(sampled);
-  context.texture_fits[key] = std::bit_cast<std::uint32_t>(fit);
+  context.texture_fits[key] = static_cast<std::uint32_t>(fit.rgb) | static_cast<std::uint32_t>(fit.alpha) << 8;
   return fit;
 }
 
