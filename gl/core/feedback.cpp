@@ -9,8 +9,6 @@
 namespace halfplane::gl {
 namespace {
 
-constexpr std::size_t kMaxNames = 64;  ///< GL_MAX_NAME_STACK_DEPTH
-
 /// What a vertex has in feedback beside x and y.
 struct FeedbackType {
   GLenum type;
@@ -80,7 +78,8 @@ void load_name(Context& context, GLuint name) {
 }
 
 void push_name(Context& context, GLuint name) {
-  if (changes_names(context, context.names.size() < kMaxNames, GL_STACK_OVERFLOW)) context.names.push_back(name);
+  if (changes_names(context, context.names.size() < std::size_t{kNameDepth}, GL_STACK_OVERFLOW))
+    context.names.push_back(name);
 }
 
 void pop_name(Context& context) {

@@ -122,10 +122,7 @@ void enable(Context& context, GLenum cap, bool enabled) {
   bool* const flag = enable_flag(context, cap);
   if (flag == nullptr) return context.fail(GL_INVALID_ENUM);
   *flag = enabled;
-  // The material takes the current colour at once.
-  const LightingState& lighting = context.state.lighting;
-  if (cap == GL_COLOR_MATERIAL && enabled)
-    color_material(context, lighting.color_material_face, lighting.color_material_mode);
+  if (cap == GL_COLOR_MATERIAL && enabled) track_color(context);
 }
 
 void alpha_func(Context& context, GLenum func, double reference) {

@@ -226,7 +226,7 @@ std::optional<halfplane::State> hardware_state(Context& context, DrawKind kind, 
   }
   // Wider ones would leave the guard band.
   const auto& config = frame.options().config;
-  const double widest = held(config.guard_band - std::max(frame.width(), frame.height()) - 3, 1, kLargestSize);
+  const double widest = held(config.guard_band - std::max(frame.width(), frame.height()) - 3, 1, kLargestLine);
   if (kind == DrawKind::lines) {
     state.smooth = from.line.smooth;
     const double width = held(from.line.width, 1, widest);

@@ -498,7 +498,7 @@ class Pipeline {
   void piece(const ShadedVertex& a, const ShadedVertex& b, std::size_t major) {
     if (!is_textured_) return add({DrawKind::lines, Topology::lines, true, false, 1}, {a, b});
     if (state_.line.smooth) missing("smooth lines with a texture", "they are drawn without antialiasing");
-    const double half = std::round(std::clamp(state_.line.width, 1.0, kLargestSize)) / 2;
+    const double half = std::round(std::clamp<double>(state_.line.width, 1, kLargestLine)) / 2;
     std::array<double, 2> across{};
     across[1 - major] = half;
     rectangle(DrawKind::lines, {a, b}, {0, 0}, across);
@@ -520,7 +520,7 @@ class Pipeline {
 
  public:
   [[nodiscard]] double point_size(const ShadedVertex& v) const {
-    const double size = v.point_size > 1 ? std::min(v.point_size, kLargestSize) : 1;
+    const double size = v.point_size > 1 ? std::min<double>(v.point_size, kLargestPoint) : 1;
     return state_.point.smooth ? size : std::round(size);
   }
 

@@ -13,8 +13,6 @@ namespace halfplane::gl {
 
 struct Context;
 
-inline constexpr double kLargestSize = 64;  ///< pixels, of points and lines
-
 /// Draws what glBegin(mode) makes of vertices[indices[0]], vertices[indices[1]], ...: clip planes, two-sided light, polygon
 /// modes, stipples, selection and feedback; then Frame::draw in the state of the context.
 void draw_primitives(Context& context, GLenum mode, std::span<const ShadedVertex> vertices,
