@@ -60,7 +60,8 @@ Json stages_json(const CycleRun& run) {
     if (!info(sender).is_timed || out == Arrow::response) continue;
     const StreamUse& use = run.use[index(out)];
     if (use.busy != 0)
-      stages[std::string(info(sender).name)] = {{"busy", use.busy}, {"stalled", use.stalled}, {"starved", use.starved}};
+      stages[std::string(info(sender).name)] = {
+          {"busy", use.busy}, {"stalled", use.stalled}, {"starved", use.starved}, {"items", use.busy}};
   }
   return stages;
 }
