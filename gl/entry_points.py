@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Writes core/entry_points.cpp: a function for each command of OpenGL 1.5 and OpenGL ES-CM 1.0, and their other names.
+"""Writes core/entry_points.cpp: a function for each command of OpenGL 1.5 and OpenGL ES-CM 1.0, and their other names;
+and core/entry_names.inc: the names of OpenGL 1.5.
 
     gl/entry_points.py [--check] [gl.xml]
 
@@ -11,7 +12,8 @@ import re
 import sys
 import xml.etree.ElementTree
 
-FEATURES = [f"GL_VERSION_1_{minor}" for minor in range(6)] + ["GL_VERSION_ES_CM_1_0"]
+DESKTOP = [f"GL_VERSION_1_{minor}" for minor in range(6)]
+EMBEDDED = ["GL_VERSION_ES_CM_1_0"]
 CORE = pathlib.Path(__file__).parent / "core"
 
 # Name without "gl", count, type and v -> command, arguments before the components, how integers are read.
@@ -105,7 +107,7 @@ DRAW_TEX = [f"glDrawTex{letters}OES" for letters in ("s", "i", "f", "x", "sv", "
 
 
 def read_registry(path):
-    """The commands as name -> (result, [(type, parameter)], alias), and the names of FEATURES."""
+    """The commands as name -> (result, [(type, parameter)], alias), and the names that features have."""
     root = xml.etree.ElementTree.parse(path).getroot()
     commands = {}
     for command in root.find("commands"):
@@ -117,9 +119,10 @@ def read_registry(path):
         alias = command.find("alias")
         commands[name] = (result, [declared(p) for p in command.findall("param")],
                           None if alias is None else alias.get("name"))
-    names = {command.get("name") for feature in root.findall("feature") if feature.get("name") in FEATURES
-             for command in feature.findall("require/command")}
-    return commands, names
+    def names_of(features):
+        return {command.get("name") for feature in root.findall("feature") if feature.get("name") in features
+                for command in feature.findall("require/command")}
+    return commands, names_of(DESKTOP), names_of(EMBEDDED)
 
 
 def read_commands():
@@ -206,10 +209,11 @@ def entry(name, parameters, body):
 
 
 def generate(path):
-    registry, names = read_registry(path)
+    """The files: name -> text."""
+    registry, desktop, embedded = read_registry(path)
     commands = read_commands()
     rows, missing = {}, []
-    for name in sorted(names) + DRAW_TEX:
+    for name in sorted(desktop | embedded) + DRAW_TEX:
         parameters = [(kind, parameter + "_" * (parameter in commands)) for kind, parameter in registry[name][1]]
         body = body_of(name, parameters, commands)
         rows[name] = entry(name, parameters, body or "")
@@ -247,16 +251,19 @@ def generate(path):
               "  if (const Alias* alias = find(aliases, name)) name = alias->of;",
               "  const EntryPoint* found = find(entry_points, name);",
               "  return found != nullptr ? found->function : nullptr;", "}", "", "}  // namespace halfplane::gl", ""]
-    return "\n".join(lines)
+    names = ["// Written by gl/entry_points.py: the commands of OpenGL 1.5."]
+    names += [f"HALFPLANE_ENTRY({name})" for name in sorted(desktop)]
+    return {"entry_points.cpp": "\n".join(lines), "entry_names.inc": "\n".join(names) + "\n"}
 
 
 def main():
     arguments_ = [argument for argument in sys.argv[1:] if argument != "--check"]
-    written = generate(arguments_[0] if arguments_ else "/usr/share/khronos-api/gl.xml")
-    file = CORE / "entry_points.cpp"
-    if "--check" in sys.argv:
-        sys.exit(0 if file.read_text() == written else f"{file} is out of date: run {__file__}")
-    file.write_text(written)
+    for name, text in generate(arguments_[0] if arguments_ else "/usr/share/khronos-api/gl.xml").items():
+        file = CORE / name
+        if "--check" not in sys.argv:
+            file.write_text(text)
+        elif file.read_text() != text:
+            sys.exit(f"{file} is out of date: run {__file__}")
 
 
 if __name__ == "__main__":
