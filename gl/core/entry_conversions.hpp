@@ -125,8 +125,9 @@ T converted(double value, ValueKind kind) {
     if (std::isnan(value)) return 0;
     if (kind == ValueKind::integer || kind == ValueKind::boolean)  // an unsigned one keeps its bits
       return static_cast<T>(static_cast<std::int64_t>(std::clamp(value, -9.0e18, 9.0e18)));
-    if (kind == ValueKind::color)
-      value = std::is_unsigned_v<T> ? value * Limits::max() : (value * std::numeric_limits<GLuint>::max() - 1) / 2;
+    if (kind == ValueKind::color)  // 0 lies between two integers and becomes 0
+      value = std::nearbyint(std::is_unsigned_v<T> ? value * Limits::max()
+                                                   : (value * std::numeric_limits<GLuint>::max() - 1) / 2);
     return static_cast<T>(
         std::clamp(std::round(value), static_cast<double>(Limits::min()), static_cast<double>(Limits::max())));
   }
