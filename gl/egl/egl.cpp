@@ -543,7 +543,7 @@ EGLContext CreateContext(EGLDisplay handle, EGLConfig config, EGLContext share, 
   if ((flags & ~EGLAttrib{7}) != 0) return Failed{EGL_BAD_ATTRIBUTE};
   constexpr EGLAttrib kForwardOrRobust =
       EGL_CONTEXT_OPENGL_FORWARD_COMPATIBLE_BIT_KHR | EGL_CONTEXT_OPENGL_ROBUST_ACCESS_BIT_KHR;
-  if (major != 1 || minor < 0 || minor > (is_es ? 1 : 5) || (flags & kForwardOrRobust) != 0 ||
+  if (major != 1 || minor < 0 || minor > (is_es ? 0 : 5) || (flags & kForwardOrRobust) != 0 ||
       wishes[EGL_CONTEXT_OPENGL_ROBUST_ACCESS] != EGL_FALSE ||
       (!is_es && wishes[EGL_CONTEXT_OPENGL_FORWARD_COMPATIBLE] != EGL_FALSE))
     return Failed{EGL_BAD_MATCH};

@@ -619,7 +619,9 @@ int QueryContext(Display* display, GLXContext handle, int name, int* value) {
 void QueryDrawable(Display* display, GLXDrawable id, int name, unsigned* value) {
   const std::shared_ptr<GlxDrawable> drawable = find_drawable(display, id);
   Server* const server = server_of(display);
-  const auto geometry = drawable == nullptr && server != nullptr ? server->geometry(id) : std::nullopt;
+  XSync(display, False);
+  const auto geometry =
+      server == nullptr ? std::nullopt : server->geometry(drawable == nullptr ? id : drawable->window.xid);
   if (drawable == nullptr && !geometry) {
     glx_error(display, GLXBadDrawable, id, X_GLXGetDrawableAttributes);
     return;
