@@ -1,0 +1,201 @@
+// Random sequences of commands: any enum, any nesting, valid memory. Nothing may crash or touch memory that is not the
+// command's; sanitizers see more of it (the preset asan-ubsan). What a command accepted once is tried again with one argument
+// changed, so that sequences get past the checks of enums.
+#define GL_GLEXT_PROTOTYPES
+#include <GL/gl.h>
+#include <GL/glext.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <functional>
+#include <iostream>
+#include <limits>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "gl/core/commands.hpp"
+#include "gl/core/entry_points.hpp"
+#include "gl/trace/call_names.hpp"
+#include "sim/scene/random.hpp"
+#include "tests/tier.hpp"
+
+namespace halfplane::gl {
+namespace {
+
+constexpr std::size_t kPool = std::size_t{16} << 20;  // bytes that any pointer may be followed and preceded by
+constexpr int kLargest = 33;                          // of numbers that count something
+
+/// First and last value of the runs in which the enums of OpenGL 1.5 lie.
+constexpr std::array<std::pair<unsigned, unsigned>, 50> kEnums{
+    {{0x0000, 0x0009}, {0x0100, 0x0104}, {0x0200, 0x0207}, {0x0300, 0x0308}, {0x0400, 0x040c}, {0x0500, 0x0505},
+     {0x0600, 0x0604}, {0x0700, 0x0707}, {0x0800, 0x0803}, {0x0900, 0x0901}, {0x0a00, 0x0a02}, {0x0b00, 0x0bf2},
+     {0x0c00, 0x0cc6}, {0x0cf0, 0x0d05}, {0x0d10, 0x0dff}, {0x1000, 0x1004}, {0x1100, 0x1102}, {0x1200, 0x1209},
+     {0x1300, 0x1301}, {0x1400, 0x140c}, {0x1500, 0x150f}, {0x1600, 0x1603}, {0x1700, 0x1702}, {0x1800, 0x1802},
+     {0x1900, 0x190a}, {0x1a00, 0x1a01}, {0x1b00, 0x1b02}, {0x1c00, 0x1c02}, {0x1d00, 0x1d01}, {0x1e00, 0x1e03},
+     {0x1f00, 0x1f03}, {0x2000, 0x2003}, {0x2100, 0x2101}, {0x2200, 0x2203}, {0x2300, 0x2300}, {0x2400, 0x2401},
+     {0x2500, 0x2502}, {0x2600, 0x2601}, {0x2700, 0x2703}, {0x2800, 0x2803}, {0x2900, 0x2901}, {0x2a00, 0x2a27},
+     {0x3000, 0x3005}, {0x4000, 0x4007}, {0x8001, 0x800b}, {0x8032, 0x8074}, {0x80c8, 0x8151}, {0x8362, 0x8370},
+     {0x84c0, 0x858a}, {0x8764, 0x8919}}};
+
+/// Memory for the program's side. Pointers are to its middle.
+struct Pools {
+  std::vector<std::byte> numbers = std::vector<std::byte>(2 * kPool);  ///< read: any bits
+  std::vector<std::byte> indices = std::vector<std::byte>(2 * kPool);  ///< read: numbers below 16 of any integer type
+  std::vector<std::byte> scratch = std::vector<std::byte>(2 * kPool);  ///< written
+};
+
+class Caller {
+ public:
+  Caller() {
+    Random fill(1);
+    for (std::size_t i = 0; i < pools_.numbers.size(); i += 8) {
+      const std::uint64_t bits = fill.next();
+      std::memcpy(&pools_.numbers[i], &bits, 8);
+    }
+    for (std::size_t i = 0; i < pools_.indices.size(); i += 4) pools_.indices[i] = static_cast<std::byte>(i / 4 % 16);
+#define HALFPLANE_COMMAND(name) command<decltype(::gl##name)>("gl" #name),
+    commands_ = {HALFPLANE_CALLS(HALFPLANE_COMMAND) HALFPLANE_QUERIES(HALFPLANE_COMMAND)};
+#undef HALFPLANE_COMMAND
+  }
+
+  /// One sequence on contexts of its own.
+  void run(std::uint64_t seed, int calls) {
+    random_ = Random(seed);
+    Options options;
+    options.config = labelled(configs_[seed % configs_.size()]);
+    options.on_missing = OnMissing::host;
+    Drawable drawable(options, 32, 24);
+    Context context;
+    make_current(&context, &drawable, &drawable);
+    calls_of_list_ = 0;
+    for (int i = 0; i < calls; ++i) {
+      const Command& command = commands_[random_.next() % commands_.size()];
+      // A list that calls itself more than once takes for ever, as it would on any OpenGL.
+      if (context.compiling != nullptr && command.name.starts_with("glCallList") &&
+          (command.name == "glCallLists" || calls_of_list_++ > 0))
+        continue;
+      if (command.name == "glNewList") calls_of_list_ = 0;
+      command.call(*this, command);
+    }
+    if (context.inside_begin()) end(context);
+    (void)drawable.frame.picture();
+    drawable.frame.end();
+    make_current(nullptr, nullptr, nullptr);
+  }
+
+ private:
+  struct Command {
+    std::string_view name;
+    std::function<void(Caller&, const Command&)> call;
+  };
+
+  template <class Function>
+  struct Typed;
+  template <class R, class... A>
+  struct Typed<R(A...)> {
+    using Tuple = std::tuple<std::remove_const_t<A>...>;
+    static void call(Caller& caller, const Command& command, std::vector<Tuple>& accepted) {
+      const void* entry = entry_point(command.name);
+      ASSERT_NE(entry, nullptr) << command.name;
+      [[maybe_unused]] const bool has_pointer = (std::is_pointer_v<A> || ...);
+      Tuple arguments{caller.value<std::remove_const_t<A>>(command.name, has_pointer)...};
+      constexpr std::size_t kCount = sizeof...(A);
+      if (!accepted.empty() && caller.random_.next() % 4 != 0) {
+        const Tuple fresh = arguments;
+        arguments = accepted[caller.random_.next() % accepted.size()];
+        const std::size_t changed = kCount == 0 ? 0 : caller.random_.next() % (kCount + 1);
+        [&]<std::size_t... I>(std::index_sequence<I...>) {
+          ((I == changed ? void(std::get<I>(arguments) = std::get<I>(fresh)) : void()), ...);
+        }
+        (std::index_sequence_for<A...>());
+      }
+      Context* context = current();
+      const GLenum before = std::exchange(context->error, GL_NO_ERROR);
+      std::apply(reinterpret_cast<R (*)(A...)>(const_cast<void*>(entry)), arguments);
+      constexpr std::size_t kMost = 64;
+      if (context->error == GL_NO_ERROR && context->compiling == nullptr) {
+        if (accepted.size() < kMost)
+          accepted.push_back(arguments);
+        else
+          accepted[caller.random_.next() % kMost] = arguments;
+      }
+      if (before != GL_NO_ERROR) context->error = before;
+    }
+  };
+  template <class Function>
+  static Command command(std::string_view name) {
+    return {name, [accepted = std::vector<typename Typed<Function>::Tuple>()](
+                      Caller& caller, const Command& self) mutable { Typed<Function>::call(caller, self, accepted); }};
+  }
+
+  template <class T>
+  T value(std::string_view name, bool has_pointer) {
+    if constexpr (std::is_floating_point_v<T>) {
+      return static_cast<T>(real(name.starts_with("glPixelStore")));
+    } else if constexpr (std::is_pointer_v<T>) {
+      return static_cast<T>(pointer(name, std::is_const_v<std::remove_pointer_t<T>>));
+    } else {
+      const bool takes_enum = std::is_unsigned_v<T> && sizeof(T) == sizeof(GLenum);
+      if (sizeof(T) < sizeof(int)) return static_cast<T>(random_.next());
+      if (takes_enum ? random_.next() % 3 != 0 : !has_pointer && random_.next() % 4 == 0 && has_integer_enums(name))
+        return static_cast<T>(any_enum());
+      if (takes_enum && random_.next() % 8 == 0) return static_cast<T>(random_.next());
+      return static_cast<T>(static_cast<int>(random_.next() % (kLargest + 3)) - 2);
+    }
+  }
+  static bool has_integer_enums(std::string_view name) {
+    constexpr std::array kOf{"glTex", "glLight", "glMaterial", "glFog", "glPoint", "glPixelTransfer"};
+    return std::ranges::any_of(kOf, [name](std::string_view start) { return name.starts_with(start); });
+  }
+  unsigned any_enum() {
+    const auto [first, last] = kEnums[random_.next() % kEnums.size()];
+    return first + static_cast<unsigned>(random_.next() % (last - first + 1));
+  }
+  double real(bool is_small) {
+    constexpr std::array kSpecial{0.0, 1.0, -1.0, 0.5, 2.0, 16.0, 255.0, 1e30, -1e30, 1e-30};
+    switch (random_.next() % (is_small ? 2 : 8)) {
+      case 0: return std::floor(random_.uniform(-2, kLargest));
+      case 1: return random_.uniform(-2, 2);
+      case 2: return random_.uniform(-64, 64);
+      case 3: return any_enum();
+      case 4: return random_.next() % 8 == 0 ? std::numeric_limits<double>::infinity() : 1;
+      case 5: return random_.next() % 8 == 0 ? std::numeric_limits<double>::quiet_NaN() : 0;
+      default: return kSpecial[random_.next() % kSpecial.size()];
+    }
+  }
+  void* pointer(std::string_view name, bool is_read) {
+    if (is_read && random_.next() % 16 == 0 && name.starts_with("glTexImage")) return nullptr;
+    const bool counts = name.find("Elements") != name.npos || name.find("List") != name.npos ||
+                        name.find("Delete") != name.npos || name.find("MultiDraw") != name.npos;
+    std::vector<std::byte>& pool = !is_read ? pools_.scratch : counts ? pools_.indices : pools_.numbers;
+    return &pool[kPool + random_.next() % 64 * 16];
+  }
+
+  Pools pools_;
+  std::vector<Command> commands_;
+  Random random_{0};
+  int calls_of_list_ = 0;
+  std::array<std::string, 3> configs_{"embedded", "full stencil.bits=8", "embedded stencil.bits=8 msaa.samples=4"};
+};
+
+TEST(CallSequences, RandomCommandsNeitherCrashNorLeaveTheirMemory) {
+  Caller caller;
+  const int sequences = test::cases(2000, 1000000);
+  const std::uint64_t first = 1;
+  std::cout << "seeds " << first << " to " << first + static_cast<std::uint64_t>(sequences) - 1 << std::endl;
+  for (int i = 0; i < sequences; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(first + static_cast<std::uint64_t>(i)));
+    caller.run(first + static_cast<std::uint64_t>(i), 40);
+    if (HasFatalFailure()) return;
+  }
+}
+
+}  // namespace
+}  // namespace halfplane::gl
