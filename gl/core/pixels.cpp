@@ -57,6 +57,8 @@ Vec4 raster_color(const RasterPosition& raster) {
 constexpr std::size_t kBatch = 1 << 16;
 
 void draw_colors(Context& context, const Image& image, double x, double y) {
+  if (sampled_texture(context, 0) != nullptr)
+    context.drawable->frame.missing("textured pixel rectangles", "they are drawn without the texture");
   const RasterPosition& raster = context.state.current.raster;
   const PixelState& state = context.state.pixel;
   for (int top = 0; top < image.height; top += kLargestTexture)
@@ -120,8 +122,6 @@ void draw_image(Context& context, const Image& image, double x, double y) {
   const auto draw = image.format == GL_DEPTH_COMPONENT ? draw_depths
                     : image.format == GL_STENCIL_INDEX ? draw_stencils
                                                        : draw_colors;
-  if (image.format != GL_STENCIL_INDEX && sampled_texture(context, 0) != nullptr)
-    context.drawable->frame.missing("textured pixel rectangles", "they are drawn without the texture");
   draw(context, image, window[0] + state.zoom_x * x, window[1] + state.zoom_y * y);
 }
 
@@ -186,8 +186,7 @@ void bitmap(Context& context, std::shared_ptr<const Bitmap> bitmap, double x_ori
   RasterPosition& raster = context.state.current.raster;
   if (!raster.valid) return;
   if (!feed_raster(context, GL_BITMAP_TOKEN) && context.drawable != nullptr && !bitmap->bit.empty()) {
-    Frame& frame = context.drawable->frame;
-    if (sampled_texture(context, 0) != nullptr) frame.missing("textured bitmaps", "they are drawn without the texture");
+    const Frame& frame = context.drawable->frame;
     const double left = std::floor(raster.window[0] - x_origin), bottom = std::floor(raster.window[1] - y_origin);
     const Vec4 color = raster_color(raster);
     std::vector<WindowFragment> fragments;

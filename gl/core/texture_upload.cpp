@@ -244,7 +244,8 @@ class Key {
     key_ = (key_ ^ key_ >> 27) * 0x94d049bb133111ebULL;
     key_ ^= key_ >> 31;
   }
-  [[nodiscard]] std::uint64_t value() const { return key_; }
+  /// Without the highest bit, which is of pixel rectangles.
+  [[nodiscard]] std::uint64_t value() const { return key_ >> 1; }
 
  private:
   std::uint64_t key_ = 0;
