@@ -293,9 +293,7 @@ void flush(Context& context) {
   if (drawable == nullptr) return;
   const bool draws_to_front =
       is_one_of(context.state.color.draw_buffer, {GL_FRONT, GL_FRONT_LEFT, GL_LEFT, GL_FRONT_AND_BACK});
-  if (!drawable->single_buffered && !draws_to_front) return;
-  drawable->frame.end();
-  drawable->present();
+  if (drawable->single_buffered || draws_to_front) drawable->present();
 }
 
 void finish(Context& context) { flush(context); }

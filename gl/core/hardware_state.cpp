@@ -318,7 +318,7 @@ void draw_texels(Context& context, halfplane::State state, const halfplane::Text
       corners.push_back({column.at,
                          row.at,
                          held(z, 0, 1),
-                         w > 0 ? w : 1,
+                         w > 0 ? w : 1e-6,  // the distance that fog takes
                          {255, 255, 255, 255},
                          column.texel / side(texels.width()),
                          row.texel / side(texels.height())});

@@ -72,6 +72,7 @@ class Batch {
     if (!state) return;
     state_ = *state;
     if (group_.is_window) state_.space = Space::window;
+    if (group_.is_window && group_.kind != DrawKind::rectangle) cut_to_viewport();
     if (group_.topology == Topology::points) state_.point_size = group_.point_size;
     is_textured_ = state_.texture.has_value();
     if (group_.is_stippled) stipple();
@@ -90,6 +91,23 @@ class Batch {
 
  private:
   void missing(const char* what, const char* instead) { context_.drawable->frame.missing(what, instead); }
+
+  /// As clip space does it.
+  void cut_to_viewport() {
+    const ViewportState& v = context_.state.viewport;
+    Rect& cut = state_.scissor ? *state_.scissor : state_.scissor.emplace(Rect{v.x, v.y, v.width, v.height});
+    const auto limit = [](int& start, int& size, int low, int length) {
+      const std::int64_t end = std::min(std::int64_t{start} + size, std::int64_t{low} + length);
+      start = std::max(start, low);
+      size = static_cast<int>(std::clamp<std::int64_t>(end - start, 0, kLargestViewport));
+    };
+    limit(cut.x, cut.width, v.x, v.width);
+    limit(cut.y, cut.height, v.y, v.height);
+    limit(cut.x, cut.width, 0, kLargestViewport);
+    limit(cut.y, cut.height, 0, kLargestViewport);
+    cut.x = std::min(cut.x, kLargestViewport);
+    cut.y = std::min(cut.y, kLargestViewport);
+  }
 
   /// Positions and texture coordinates. Where q differs, x y z w divided by q are the same place, and what is interpolated
   /// over w / q is the projected coordinate.
@@ -248,12 +266,16 @@ struct Plane {
   bool shows_cut;  ///< the edge along the cut is one of the polygon's
 };
 
-constexpr std::array<Plane, 6> kViewVolume{{{&ShadedVertex::clip, {0, 0, 1, 1}, false},
-                                            {&ShadedVertex::clip, {0, 0, -1, 1}, false},
-                                            {&ShadedVertex::clip, {1, 0, 0, 1}, false},
-                                            {&ShadedVertex::clip, {-1, 0, 0, 1}, false},
-                                            {&ShadedVertex::clip, {0, 1, 0, 1}, false},
-                                            {&ShadedVertex::clip, {0, -1, 0, 1}, false}}};
+/// Near and far, then the sides, so many pixels farther out.
+std::array<Plane, 6> view_volume(const ViewportState& viewport, double margin) {
+  const double x = 1 + 2 * margin / viewport.width, y = 1 + 2 * margin / viewport.height;
+  return {{{&ShadedVertex::clip, {0, 0, 1, 1}, false},
+           {&ShadedVertex::clip, {0, 0, -1, 1}, false},
+           {&ShadedVertex::clip, {1, 0, 0, x}, false},
+           {&ShadedVertex::clip, {-1, 0, 0, x}, false},
+           {&ShadedVertex::clip, {0, 1, 0, y}, false},
+           {&ShadedVertex::clip, {0, -1, 0, y}, false}}};
+}
 
 double distance(const Plane& plane, const ShadedVertex& v) {
   const Vec4& at = v.*plane.where;
@@ -355,8 +377,9 @@ class Pipeline {
   }
 
   /// Clips to the view volume, to window coordinates. False: nothing is left.
-  bool to_window(Vertices& vertices) const {
-    clip(vertices, kViewVolume);
+  bool to_window(Vertices& vertices, double margin = 0) const {
+    if (state_.viewport.width <= 0 || state_.viewport.height <= 0) return false;
+    clip(vertices, view_volume(state_.viewport, margin));
     for (ShadedVertex& v : vertices) {
       if (!(v.clip[3] > 0)) return false;
       v.clip = window_position(state_.viewport, v.clip);
@@ -425,7 +448,8 @@ class Pipeline {
     const double offset = 2 * (slope * polygon.offset_factor + code * polygon.offset_units) / range;
     if (!std::isfinite(offset)) return;
     // What is beyond near and far goes before the offset moves vertices beyond them, where they are held.
-    clip(vertices, std::span(kViewVolume).first(2));
+    const auto planes = view_volume(state_.viewport, 0);
+    clip(vertices, std::span(planes).first(2));
     for (ShadedVertex& v : vertices)
       v.clip[2] = std::clamp(v.clip[2] + offset * v.clip[3], -std::abs(v.clip[3]), std::abs(v.clip[3]));
   }
@@ -443,7 +467,8 @@ class Pipeline {
     if (resets) stipple_at_ = 0;
     if (!is_fed_ && !is_textured_ && !state_.line.stipple)
       return add({.kind = DrawKind::lines, .topology = Topology::lines}, vertices);
-    if (!to_window(vertices)) return;
+    // With a pixel around it, no pixel is lost at the border, and the scissor drops the rest.
+    if (!to_window(vertices, is_fed_ ? 0 : 1)) return;
     if (is_fed_) return feed_primitive(context_, resets ? GL_LINE_RESET_TOKEN : GL_LINE_TOKEN, vertices);
     const ShadedVertex &a = vertices[0], &b = vertices[1];
     const double dx = b.clip[0] - a.clip[0], dy = b.clip[1] - a.clip[1];
@@ -452,7 +477,8 @@ class Pipeline {
     stippled_line(a, b, major);
   }
 
-  /// The pieces of a line that its stipple leaves, cut between pixels along the major axis.
+  /// The pieces of a line that its stipple leaves, cut along the major axis where one pixel's diamond has been left and
+  /// the next one's cannot have been.
   void stippled_line(const ShadedVertex& a, const ShadedVertex& b, std::size_t major) {
     const double turn = b.clip[major] >= a.clip[major] ? 1 : -1, from = turn * a.clip[major], to = turn * b.clip[major];
     const auto is_in_diamond = [&](const ShadedVertex& v) {
@@ -463,7 +489,7 @@ class Pipeline {
     const double first = std::floor(from) + (from - std::floor(from) > 0.5 && !is_in_diamond(a) ? 1 : 0),
                  end = std::floor(to) + (to - std::floor(to) > 0.5 && !is_in_diamond(b) ? 1 : 0);
     const auto at = [&](double place) {
-      const double t = (place - from) / (to - from);
+      const double t = (place + 0.25 - from) / (to - from);
       return t <= 0 ? a : t >= 1 ? b : window_mix(a, b, t);
     };
     double begin = first;
