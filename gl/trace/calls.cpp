@@ -39,9 +39,11 @@ struct Row {
   Caller caller;
 };
 
-// In the order of their names.
-#define HALFPLANE_CALL(name) Row{"gl" #name, &Typed<decltype(::gl##name)>::call},
-constexpr std::array kCalls{HALFPLANE_CALLS(HALFPLANE_CALL)};
+constexpr std::array kCalls{
+#define HALFPLANE_ENTRY(name) Row{#name, &Typed<decltype(::name)>::call},
+#include "../core/entry_names.inc"
+#undef HALFPLANE_ENTRY
+};
 
 }  // namespace
 

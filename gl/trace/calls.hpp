@@ -70,7 +70,7 @@ class Arguments {
 };
 
 /// Calls `entry`, which is the command `name` without its ARB or EXT; false: there is none, or it takes other arguments.
-/// Commands that only ask, and those whose memory is the program's (maps, selection), are not among them.
+/// Not for commands that write to the program's memory: `reach` is what they read.
 bool call_entry(std::string_view name, const void* entry, Arguments& arguments);
 
 }  // namespace halfplane::gl

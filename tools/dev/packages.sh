@@ -23,6 +23,7 @@ libwebp-dev          gltf  webp/decode.h
 libjs-chart.js       report /usr/share/javascript/chart.js/chart.min.js
 libglvnd-dev         test  glvnd/libglxabi.h
 libx11-dev           test  X11/Xlib.h
+libsnappy-dev        test  snappy.h
 libxext-dev          test  X11/extensions/XShm.h
 libgtest-dev         test  gtest/gtest.h
 python3-jsonschema   test  /usr/lib/python3/dist-packages/jsonschema/__init__.py
