@@ -53,11 +53,11 @@ constexpr std::uint32_t argb(ColorFormat format, std::uint32_t code) {
   return 0xff000000 | (r << 3 | r >> 2) << 16 | (g << 2 | g >> 4) << 8 | (b << 3 | b >> 2);
 }
 
-/// The top bits of an 8-bit channel where `mask` has them.
+/// An 8-bit channel as one of as many bits as `mask` has.
 unsigned long in_mask(std::uint32_t channel, unsigned long mask) {
   if (mask == 0) return 0;
-  const int shift = __builtin_ctzl(mask), bits = __builtin_popcountl(mask);
-  return (bits > 8 ? static_cast<unsigned long>(channel) << (bits - 8) : channel >> (8 - bits)) << shift;
+  const int shift = __builtin_ctzl(mask);
+  return (channel * (mask >> shift) + 127) / 255 << shift;
 }
 
 bool is_little_endian_argb(const XImage& image) {
