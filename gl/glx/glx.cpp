@@ -232,12 +232,7 @@ void leave_thread(GlxContext* context) {
 
 /// A thread that ends with a current context leaves it to others.
 struct ThreadEnd {
-  ~ThreadEnd() {
-    if (GlxContext* const context = here(); context != nullptr) {
-      const std::lock_guard lock(objects().mutex);
-      context->is_current = false;
-    }
-  }
+  ~ThreadEnd() { leave_thread(here()); }
 };
 
 /// The drawable of `id`; an X window that no call has named becomes one. Null: an error has been raised.
@@ -394,7 +389,7 @@ XVisualInfo* ChooseVisual(Display* display, int screen, int* list) {
 }
 
 void CopyContext(Display* display, GLXContext source, GLXContext destination, unsigned long mask) {
-  const GlxContext* const from = find_context(source);
+  GlxContext* const from = find_context(source);
   GlxContext* const to = find_context(destination);
   if (from == nullptr || to == nullptr)
     glx_error(display, GLXBadContext, 0, X_GLXCopyContext);
@@ -403,29 +398,13 @@ void CopyContext(Display* display, GLXContext source, GLXContext destination, un
   else if (to->is_current)
     x_error(display, BadAccess, 0, X_GLXCopyContext);
   else {
-    const auto copy = [&](unsigned long bit, auto group) {
-      if ((mask & bit) != 0) to->state.*group = from->state.*group;
-    };
-    copy(GL_CURRENT_BIT, &State::current);
-    copy(GL_POINT_BIT, &State::point);
-    copy(GL_LINE_BIT, &State::line);
-    copy(GL_POLYGON_BIT, &State::polygon);
-    copy(GL_POLYGON_STIPPLE_BIT, &State::stipple);
-    copy(GL_PIXEL_MODE_BIT, &State::pixel);
-    copy(GL_LIGHTING_BIT, &State::lighting);
-    copy(GL_FOG_BIT, &State::fog);
-    copy(GL_DEPTH_BUFFER_BIT, &State::depth);
-    copy(GL_ACCUM_BUFFER_BIT, &State::accum);
-    copy(GL_STENCIL_BUFFER_BIT, &State::stencil);
-    copy(GL_VIEWPORT_BIT, &State::viewport);
-    copy(GL_TRANSFORM_BIT, &State::transform);
-    copy(GL_COLOR_BUFFER_BIT, &State::color);
-    copy(GL_HINT_BIT, &State::hint);
-    copy(GL_EVAL_BIT, &State::eval);
-    copy(GL_LIST_BIT, &State::list);
-    copy(GL_TEXTURE_BIT, &State::texture);
-    copy(GL_SCISSOR_BIT, &State::scissor);
-    copy(GL_MULTISAMPLE_BIT, &State::multisample);
+    // What glPushAttrib saves of one, glPopAttrib gives to the other.
+    std::vector<SavedAttributes> stack;
+    stack.swap(from->attributes);
+    push_attrib(*from, static_cast<GLbitfield>(mask));
+    to->attributes.push_back(std::move(from->attributes.back()));
+    stack.swap(from->attributes);
+    pop_attrib(*to);
     ++to->revision;
   }
 }
