@@ -72,7 +72,7 @@ void draw_colors(Context& context, const Image& image, double x, double y) {
                                    static_cast<std::size_t>(i)]));
       draw_rectangle(context, make_texture("pixels", tile, TextureFormat::rgba8888, Mips::none),
                      x + state.zoom_x * left, y + state.zoom_y * top, state.zoom_x, state.zoom_y, raster.window[2],
-                     raster.window[3]);
+                     raster.distance);
     }
 }
 
@@ -80,7 +80,7 @@ void draw_depths(Context& context, const Image& image, double x, double y) {
   const RasterPosition& raster = context.state.current.raster;
   std::vector<WindowFragment> fragments;
   for_each_covered(context, image, x, y, [&](int column, int row, const std::array<float, 4>& pixel) {
-    fragments.push_back({column, row, held(pixel[0]), raster.window[3], raster_color(raster)});
+    fragments.push_back({column, row, held(pixel[0]), raster.distance, raster_color(raster)});
     if (fragments.size() < kBatch) return;
     draw_fragments(context, fragments);
     fragments.clear();
@@ -195,7 +195,7 @@ void bitmap(Context& context, std::shared_ptr<const Bitmap> bitmap, double x_ori
       for (int i = 0; i < bitmap->width; ++i) {
         const double x = left + i, y = bottom + j;
         if (bitmap->bit[bit++] && x >= 0 && y >= 0 && x < frame.width() && y < frame.height())
-          fragments.push_back({static_cast<int>(x), static_cast<int>(y), raster.window[2], raster.window[3], color});
+          fragments.push_back({static_cast<int>(x), static_cast<int>(y), raster.window[2], raster.distance, color});
       }
     draw_fragments(context, fragments);
   }

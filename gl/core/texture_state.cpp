@@ -129,8 +129,9 @@ bool set(Context& context, const std::optional<Place>& place, const Params& para
   } else if (Vec4* const* vector = std::get_if<Vec4*>(&place->where)) {
     std::ranges::transform(value, (*vector)->begin(), in_range);
   } else {
-    std::ranges::transform(value, std::get<std::array<int, 4>*>(place->where)->begin(),
-                           [](double v) { return static_cast<int>(std::clamp(v, -2147483648.0, 2147483647.0)); });
+    std::ranges::transform(value, std::get<std::array<int, 4>*>(place->where)->begin(), [](double v) {
+      return v > -2147483648.0 ? static_cast<int>(std::min(v, 2147483647.0)) : 0;
+    });
   }
   return true;
 }
