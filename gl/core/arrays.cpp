@@ -1,6 +1,7 @@
 // Vertex arrays, buffer objects and occlusion queries (OpenGL 1.5, 2.8, 2.9, 4.1.7).
 #include <cstring>
 #include <limits>
+#include <utility>
 
 #include "commands.hpp"
 #include "list.hpp"
@@ -197,17 +198,34 @@ bool check_draw(Context& context, GLenum mode, GLsizei count) {
   return error == GL_NO_ERROR;
 }
 
+/// Those of several draws.
+bool check_draws(Context& context, GLenum mode, const GLsizei* count, GLsizei draws) {
+  return check_draw(context, mode, draws) &&
+         std::all_of(count, count + draws, [&](GLsizei n) { return check_draw(context, mode, n); });
+}
+
+void play(Context& context, std::shared_ptr<const DisplayList> list) { list->play(context); }
+
+/// A draw as a list of its own, for one that is being compiled: within glBegin and glEnd it is refused as a whole.
+std::shared_ptr<const DisplayList> compiled(Context& context, const Streams& streams, GLenum mode, std::uint32_t first,
+                                            std::span<const std::uint32_t> indices) {
+  const auto list = std::make_shared<DisplayList>();
+  const auto outer = std::exchange(context.compiling, list);
+  const bool executes = std::exchange(context.compiles_and_executes, false);
+  issue<&begin, InsideBegin::allowed>(context, mode);
+  for (const std::uint32_t i : indices) streams.issue_vertex(context, first + i);
+  issue<&end, InsideBegin::allowed>(context);
+  context.compiling = outer;
+  context.compiles_and_executes = executes;
+  return list;
+}
+
 /// Draws elements first + indices[0], first + indices[1], ..., each shaded once. `are_distinct`: they are so already.
 void draw(Context& context, const Streams& streams, GLenum mode, std::uint32_t first,
           std::span<const std::uint32_t> indices, bool are_distinct) {
   if (!streams.is_readable) return context.fail(GL_INVALID_OPERATION);
   if (streams.vertex.elements() == 0 || indices.empty()) return;
-  if (context.compiling != nullptr) {
-    issue<&begin, InsideBegin::allowed>(context, mode);
-    for (const std::uint32_t i : indices) streams.issue_vertex(context, first + i);
-    issue<&end, InsideBegin::allowed>(context);
-    return;
-  }
+  if (context.compiling != nullptr) return issue<&play>(context, compiled(context, streams, mode, first, indices));
   update_shading(context);
   const CurrentKept kept(context);
   context.vertices.clear();
@@ -437,16 +455,14 @@ void draw_range_elements(Context& context, GLenum mode, GLuint start, GLuint end
 }
 
 void multi_draw_arrays(Context& context, GLenum mode, const GLint* first, const GLsizei* count, GLsizei draws) {
-  if (draws < 0) return context.fail(GL_INVALID_VALUE);
-  for (GLsizei i = 0; i < draws; ++i)
-    if (count[i] > 0) draw_arrays(context, mode, first[i], count[i]);
+  if (!check_draws(context, mode, count, draws)) return;
+  for (GLsizei i = 0; i < draws; ++i) draw_arrays(context, mode, first[i], count[i]);
 }
 
 void multi_draw_elements(Context& context, GLenum mode, const GLsizei* count, GLenum type, const void* const* indices,
                          GLsizei draws) {
-  if (draws < 0) return context.fail(GL_INVALID_VALUE);
-  for (GLsizei i = 0; i < draws; ++i)
-    if (count[i] > 0) draw_elements(context, mode, count[i], type, indices[i]);
+  if (!check_draws(context, mode, count, draws)) return;
+  for (GLsizei i = 0; i < draws; ++i) draw_elements(context, mode, count[i], type, indices[i]);
 }
 
 void bind_buffer(Context& context, GLenum target, GLuint name) {

@@ -120,7 +120,7 @@ void return_accumulated(Context& context, float value) {
 
 void enable(Context& context, GLenum cap, bool enabled) {
   bool* const flag = enable_flag(context, cap);
-  if (flag == nullptr) return context.fail(GL_INVALID_ENUM);
+  if (flag == nullptr) return client_state(context, cap, enabled);  // GL_EXT_vertex_array enables arrays here
   *flag = enabled;
   if (cap == GL_COLOR_MATERIAL && enabled) track_color(context);
 }

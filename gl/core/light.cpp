@@ -56,7 +56,7 @@ template <class Object>
 bool set(Context& context, std::span<const Parameter<Object>> parameters, Object& object, GLenum pname,
          const Params& params) {
   const Parameter<Object>* parameter = find(parameters, pname);
-  if (parameter == nullptr || (parameter->one == nullptr && !params.is_vector)) {
+  if (parameter == nullptr) {
     context.fail(GL_INVALID_ENUM);
     return false;
   }
@@ -179,13 +179,9 @@ void light_model(Context& context, GLenum pname, Params params) {
     case GL_LIGHT_MODEL_TWO_SIDE: lighting.two_side = params.value[0] != 0; return;
     case GL_LIGHT_MODEL_COLOR_CONTROL:
       return set_enum(context, lighting.color_control, enum_of(params), {GL_SINGLE_COLOR, GL_SEPARATE_SPECULAR_COLOR});
-    case GL_LIGHT_MODEL_AMBIENT:
-      if (!params.is_vector) break;
-      lighting.model_ambient = color_of(params);
-      return;
-    default: break;
+    case GL_LIGHT_MODEL_AMBIENT: lighting.model_ambient = color_of(params); return;
+    default: context.fail(GL_INVALID_ENUM);
   }
-  context.fail(GL_INVALID_ENUM);
 }
 
 void material(Context& context, GLenum face, GLenum pname, Params params) {

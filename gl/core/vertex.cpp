@@ -135,7 +135,7 @@ void point_parameter(Context& context, GLenum pname, Params params) {
                         : pname == GL_POINT_FADE_THRESHOLD_SIZE ? &point.fade
                                                                 : nullptr;
   if (where != nullptr) return set_size(context, *where, params.value[0], -std::numeric_limits<double>::denorm_min());
-  if (pname != GL_POINT_DISTANCE_ATTENUATION || !params.is_vector) return context.fail(GL_INVALID_ENUM);
+  if (pname != GL_POINT_DISTANCE_ATTENUATION) return context.fail(GL_INVALID_ENUM);
   point.attenuation = {params.value[0], params.value[1], params.value[2]};
 }
 

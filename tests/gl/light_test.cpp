@@ -219,7 +219,6 @@ TEST_F(Lighting, ErrorsChangeNothing) {
   };
   EXPECT_EQ(light_error(GL_LIGHT0 + kLights, GL_AMBIENT, vector({})), kEnum);
   EXPECT_EQ(light_error(GL_LIGHT0, GL_EMISSION, vector({})), kEnum);
-  EXPECT_EQ(light_error(GL_LIGHT0, GL_AMBIENT, scalar(1)), kEnum);
   EXPECT_EQ(light_error(GL_LIGHT0, GL_SPOT_CUTOFF, scalar(90.5)), kValue);
   EXPECT_EQ(light_error(GL_LIGHT0, GL_SPOT_CUTOFF, scalar(180)), GLenum{GL_NO_ERROR});
   EXPECT_EQ(light_error(GL_LIGHT0, GL_SPOT_EXPONENT, scalar(129)), kValue);

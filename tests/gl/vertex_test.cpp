@@ -286,6 +286,18 @@ TEST_F(Arrays, AreImmediateMode) {
   EXPECT_EQ(context.error, GLenum{GL_NO_ERROR});
 }
 
+TEST_F(Arrays, OfAListAreRefusedWithinAPrimitive) {
+  interleaved_arrays(context, GL_T2F_C4F_N3F_V3F, 0, packed.data());
+  new_list(context, 1, GL_COMPILE);
+  draw_arrays(context, GL_POINTS, 0, 3);
+  end_list(context);
+  EXPECT_EQ(context.error, GLenum{GL_NO_ERROR});
+  begin(context, GL_POINTS);
+  EXPECT_EQ(error_of([&] { call_list(context, 1); }), GLenum{GL_INVALID_OPERATION});
+  EXPECT_TRUE(context.vertices.empty());
+  end(context);
+}
+
 TEST_F(Arrays, KeepTheCurrentAttributes) {
   color(context, 0.1, 0.2, 0.3, 1);
   const Vec4 before = context.state.current.color;
@@ -390,6 +402,10 @@ TEST_F(Arrays, Errors) {
   EXPECT_EQ(error_of([&] { interleaved_arrays(context, GL_FLOAT, 0, nullptr); }), GLenum{GL_INVALID_ENUM});
   EXPECT_EQ(error_of([&] { draw_arrays(context, 99, 0, 1); }), GLenum{GL_INVALID_ENUM});
   EXPECT_EQ(error_of([&] { draw_arrays(context, GL_POINTS, 0, -1); }), GLenum{GL_INVALID_VALUE});
+  const std::array<GLint, 2> firsts{0, 0};
+  const std::array<GLsizei, 2> counts{1, -1};
+  EXPECT_EQ(error_of([&] { multi_draw_arrays(context, GL_POINTS, firsts.data(), counts.data(), 2); }),
+            GLenum{GL_INVALID_VALUE});
   EXPECT_EQ(error_of([&] { draw_elements(context, GL_POINTS, 1, GL_INT, nullptr); }), GLenum{GL_INVALID_ENUM});
   EXPECT_EQ(error_of([&] { bind_buffer(context, GL_RGBA, 1); }), GLenum{GL_INVALID_ENUM});
   EXPECT_EQ(error_of([&] { array_element(context, -1); }), GLenum{GL_INVALID_VALUE});
