@@ -103,7 +103,7 @@ void return_accumulated(Context& context, float value) {
   state.depth_test = DepthFunc::always;
   state.depth_write = false;
   state.color_mask = context.state.color.write;
-  state.dither = context.state.color.dither;
+  state.dither = context.state.color.dither && context.drawable->frame.options().config.dither_units != 0;
   for (int y = 0; y < image.height; y += kLargestTexture)
     for (int x = 0; x < image.width; x += kLargestTexture) {
       TexelImage part{std::min(kLargestTexture, image.width - x), std::min(kLargestTexture, image.height - y), {}};

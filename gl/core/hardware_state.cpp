@@ -138,7 +138,7 @@ void set_fragment_operations(Context& context, halfplane::State& state) {
     if (context.drawable->frame.options().config.stencil_bits == 0)
       context.drawable->frame.missing("a stencil buffer", "the host keeps one");
   }
-  state.dither = color.dither;
+  state.dither = color.dither && context.drawable->frame.options().config.dither_units != 0;
 }
 
 /// Texels in the corner of sides that are powers of two, as hardware takes them.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "../../model/attributes.hpp"
 #include "../../model/signature.hpp"
 #include "context.hpp"
 
@@ -82,6 +83,12 @@ class Batch {
     const bool colors_differ = !traits_.has_one_color || (has_host_fog_ && !is_textured_);
     // As exact, and hardware of any configuration has it.
     if (!colors_differ || traits_.has_one_w || state_.shade == Shade::flat) state_.color_interp = ColorInterp::affine;
+    const Options& options = context_.drawable->frame.options();
+    if (state_.color_interp == ColorInterp::perspective && !has_colors_over_w(options.config) &&
+        options.on_missing != OnMissing::host) {
+      missing("colours over w", "they are affine in the window; perspective.colors=1 has them");
+      state_.color_interp = ColorInterp::affine;
+    }
     place();
     paint([this](const ShadedVertex& v) { return main_color(v); });
     draw_in(context_, state_, group_.topology, model_, indices_);

@@ -15,7 +15,7 @@ namespace halfplane::gl {
 struct Picture {
   static constexpr int kSide = 64;
 
-  explicit Picture(const std::string& config = "full stencil.bits=8")
+  explicit Picture(const std::string& config = "full stencil.bits=8 texture.unit=trilinear perspective.colors=1")
       : options(options_of(config)), drawable(options, kSide, kSide) {
     context.drawable = context.read_drawable = &drawable;
     viewport(context, 0, 0, kSide, kSide);

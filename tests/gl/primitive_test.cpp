@@ -451,6 +451,98 @@ TEST(GlFragment, WindowFragmentsAndRectangles) {
   EXPECT_EQ(picture.rgb(5, 5), kGreen);
 }
 
+/// Two texels, red on the left and half of green on the right.
+void bind_two_texels(Picture& picture, GLenum env_mode) {
+  auto image = std::make_shared<Image>();
+  image->width = 2, image->height = 1;
+  image->pixel = {{1, 0, 0, 1}, {0, 0.5, 0, 1}};
+  Context& context = picture.context;
+  tex_image(context, 2, GL_TEXTURE_2D, 0, GL_RGBA8, 2, 1, 1, 0, image);
+  for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+    tex_parameter(context, GL_TEXTURE_2D, filter, {.value = {GL_NEAREST}, .is_integer = true});
+  tex_env(context, GL_TEXTURE_ENV, GL_TEXTURE_ENV_MODE, {.value = {static_cast<double>(env_mode)}, .is_integer = true});
+  enable(context, GL_TEXTURE_2D, true);
+  picture.changed();
+}
+
+constexpr Rgb kHalfGreen{0, 128, 0};
+
+/// Quads with s from 0 to 1 across, of the given q on the right.
+void draw_textured(Picture& picture, GLenum mode, std::initializer_list<std::array<double, 2>> places, double right,
+                   double q = 1) {
+  picture.changed();
+  begin(picture.context, mode);
+  for (const auto& [x, y] : places) {
+    const bool is_right = x >= right;
+    tex_coord(picture.context, GL_TEXTURE0, is_right ? q : 0, 0, 0, is_right ? q : 1);
+    vertex(picture.context, x, y, 0, 1);
+  }
+  end(picture.context);
+}
+
+TEST(GlPrimitive, TexturesLieOnLinesAndPoints) {
+  Picture picture;
+  bind_two_texels(picture, GL_REPLACE);
+  draw_textured(picture, GL_LINES, {{2, 10.5}, {22, 10.5}}, 22);
+  EXPECT_EQ(picture.row(10, 0, 24), "..####################..");
+  EXPECT_EQ(picture.drawn_pixels(), 20);
+  EXPECT_EQ(picture.rgb(11, 10), kRed);
+  EXPECT_EQ(picture.rgb(12, 10), kHalfGreen);
+  point_size(picture.context, 4);
+  draw_textured(picture, GL_POINTS, {{10, 30}, {30, 30}}, 30, 0.75);
+  EXPECT_EQ(picture.drawn_pixels(), 20 + 32);
+  EXPECT_EQ(picture.rgb(9, 29), kRed);
+  EXPECT_EQ(picture.rgb(29, 29), kRed);  // s / q is 1, which repeats
+  line_width(picture.context, 3);
+  picture.black();
+  draw_textured(picture, GL_LINES, {{30.5, 2}, {34.5, 42}}, 34);
+  EXPECT_EQ(picture.drawn_pixels(), 3 * 40);
+}
+
+TEST(GlPrimitive, ASecondColorIsAddedAfterTheTexture) {
+  Picture picture;
+  bind_two_texels(picture, GL_MODULATE);
+  enable(picture.context, GL_COLOR_SUM, true);
+  enable(picture.context, GL_DEPTH_TEST, true);
+  secondary_color(picture.context, 0, 0.25, 1);
+  draw_textured(picture, GL_QUADS, {{0, 0}, {64, 0}, {64, 64}, {0, 64}}, 64);
+  EXPECT_EQ(picture.rgb(5, 5), (Rgb{255, 64, 255}));
+  const Rgb right = picture.rgb(60, 5);
+  EXPECT_NEAR(right[1], 192, 1);
+  EXPECT_EQ(picture.pixel(5, 5)[3], 255);
+  enable(picture.context, GL_TEXTURE_2D, false);
+  picture.black();
+  color(picture.context, 0.5, 0.5, 0.5, 1);
+  draw_textured(picture, GL_QUADS, {{0, 0}, {64, 0}, {64, 64}, {0, 64}}, 64);
+  EXPECT_EQ(picture.rgb(5, 5), (Rgb{128, 191, 255}));
+}
+
+TEST(GlPrimitive, FogOfTexturesByCoordinates) {
+  Picture picture;
+  bind_two_texels(picture, GL_REPLACE);
+  enable(picture.context, GL_FOG, true);
+  fog(picture.context, GL_FOG_MODE, {.value = {GL_LINEAR}});
+  fog(picture.context, GL_FOG_COORD_SRC, {.value = {GL_FOG_COORD}});
+  fog(picture.context, GL_FOG_COLOR, {.value = {0, 0, 1, 1}, .is_vector = true});
+  fog_coord(picture.context, 0.75);
+  draw_textured(picture, GL_QUADS, {{0, 0}, {64, 0}, {64, 64}, {0, 64}}, 64);
+  const Rgb left = picture.rgb(5, 5);
+  EXPECT_NEAR(left[0], 64, 1);
+  EXPECT_NEAR(left[2], 191, 1);
+}
+
+TEST(GlPrimitive, TextureCoordinatesAreDividedByQ) {
+  Picture picture;
+  bind_two_texels(picture, GL_REPLACE);
+  // s = 3x, q = 1 + 2x: s / q is one half at x = 1/4.
+  draw_textured(picture, GL_QUADS, {{0, 0}, {64, 0}, {64, 64}, {0, 64}}, 64, 3);
+  for (const int y : {3, 31, 60}) {
+    EXPECT_EQ(picture.rgb(15, y), kRed);
+    EXPECT_EQ(picture.rgb(16, y), kHalfGreen);
+    EXPECT_EQ(picture.rgb(63, y), kHalfGreen);
+  }
+}
+
 TEST(GlPrimitive, AnyNumbersAreTaken) {
   constexpr double kHuge = 1e308, kNan = std::numeric_limits<double>::quiet_NaN(),
                    kInfinite = std::numeric_limits<double>::infinity();
