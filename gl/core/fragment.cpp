@@ -105,15 +105,8 @@ void return_accumulated(Context& context, float value) {
   state.color_mask = context.state.color.write;
   state.dither = context.state.color.dither && context.drawable->frame.options().config.dither_units != 0;
   for (int y = 0; y < image.height; y += kLargestTexture)
-    for (int x = 0; x < image.width; x += kLargestTexture) {
-      TexelImage part{std::min(kLargestTexture, image.width - x), std::min(kLargestTexture, image.height - y), {}};
-      for (int row = y; row < y + part.height; ++row) {
-        const auto first = image.texel.begin() + std::ptrdiff_t{row} * image.width + x;
-        part.texel.insert(part.texel.end(), first, first + part.width);
-      }
-      const auto texels = make_texture("accumulation", part, TextureFormat::rgba8888, Mips::none);
-      draw_texels(context, state, texels, in.left + x, in.bottom + y, 1, 1, 0, 1, false);
-    }
+    for (int x = 0; x < image.width; x += kLargestTexture)
+      draw_texels(context, state, part_of(image, x, y), in.left + x, in.bottom + y, 1, 1, 0, 1, false);
 }
 
 }  // namespace

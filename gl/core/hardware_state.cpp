@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "../../model/signature.hpp"
+#include "../../model/stages/color_ops.hpp"
 #include "context.hpp"
 #include "primitive.hpp"
 
@@ -174,6 +175,26 @@ std::optional<std::array<End, 2>> zoomed(double origin, double zoom, int texels,
   return std::array{End{origin + zoom * first, first}, End{origin + zoom * last, last}};
 }
 
+/// Pixels of an axis, and the texel of one: that of its centre.
+struct Pixels {
+  int first, end;
+};
+Pixels pixels_of(const std::array<End, 2>& ends, int target) {
+  const auto pixel = [&](double at) { return static_cast<int>(held(std::ceil(at - 0.5), 0, target)); };
+  const auto [low, high] = std::minmax(ends[0].at, ends[1].at);
+  return {pixel(low), pixel(high)};
+}
+int texel_at(int pixel, const std::array<End, 2>& ends, double zoom, int texels) {
+  return static_cast<int>(held(std::floor(ends[0].texel + (pixel + 0.5 - ends[0].at) / zoom), 0, texels - 1));
+}
+
+/// Bit by bit; rows of the truth table as in stored_operation().
+std::uint8_t operated(unsigned op, unsigned source, unsigned stored) {
+  const unsigned result = ((op & 1) != 0 ? source & stored : 0) | ((op & 2) != 0 ? source & ~stored : 0) |
+                          ((op & 4) != 0 ? ~source & stored : 0) | ((op & 8) != 0 ? ~source & ~stored : 0);
+  return static_cast<std::uint8_t>(result & 255);
+}
+
 void draw_channels(Context& context, halfplane::State state, Topology topology, std::vector<Vertex>& vertices,
                    std::span<const std::uint32_t> indices, const std::array<bool, 4>& channels,
                    const std::array<double, 4>& color) {
@@ -327,13 +348,46 @@ void draw_texels(Context& context, halfplane::State state, const halfplane::Text
   frame.draw(state, Topology::triangle_strip, corners, kStrip);
 }
 
+halfplane::Texture part_of(const TexelImage& image, int left, int top) {
+  TexelImage part{std::min(kLargestTexture, image.width - left), std::min(kLargestTexture, image.height - top), {}};
+  for (int row = top; row < top + part.height; ++row) {
+    const auto first = image.texel.begin() + std::ptrdiff_t{row} * image.width + left;
+    part.texel.insert(part.texel.end(), first, first + part.width);
+  }
+  return make_texture("pixels", part, TextureFormat::rgba8888, Mips::none);
+}
+
 void draw_rectangle(Context& context, const halfplane::Texture& texels, double x, double y, double zoom_x,
                     double zoom_y, double z, double w) {
   const auto state = hardware_state(context, DrawKind::rectangle);
   if (!state) return;
-  if (context.state.fog.enabled && !state->fog)
-    context.drawable->frame.missing("this fog on pixels", "they are drawn without fog");
-  draw_texels(context, *state, texels, x, y, zoom_x, zoom_y, z, w, true);
+  Frame& frame = context.drawable->frame;
+  if (context.state.fog.enabled && !state->fog) frame.missing("this fog on pixels", "they are drawn without fog");
+  const unsigned op = context.state.color.logic_func - GL_CLEAR;
+  const bool looks_at_both = (op & 3) != op >> 2 && context.state.color.logic_func != GL_COPY;
+  if (!context.state.color.logic_op || !looks_at_both)
+    return draw_texels(context, *state, texels, x, y, zoom_x, zoom_y, z, w, true);
+  // No pixel comes twice, so that the host can put them together before any is drawn.
+  const auto across = zoomed(x, zoom_x, texels.width(), frame.width());
+  const auto up = zoomed(y, zoom_y, texels.height(), frame.height());
+  if (!across || !up) return;
+  const Pixels columns = pixels_of(*across, frame.width()), rows = pixels_of(*up, frame.height());
+  if (columns.first >= columns.end || rows.first >= rows.end) return;
+  const Framebuffer& picture = frame.picture();
+  TexelImage image{columns.end - columns.first, rows.end - rows.first, {}};
+  for (int row = rows.first; row < rows.end; ++row)
+    for (int column = columns.first; column < columns.end; ++column) {
+      const Texel source = texels.texel(0, texel_at(column, *across, zoom_x, texels.width()),
+                                        texel_at(row, *up, zoom_y, texels.height()));
+      const auto stored = widen_color<std::uint32_t>(frame.options().config.color_format,
+                                                     picture.color[picture.at(column, picture.height - 1 - row)]);
+      Texel& result = image.texel.emplace_back();
+      for (std::size_t c = 0; c < 4; ++c) result[c] = operated(op, source[c], stored[c]);
+    }
+  for (int top = 0; top < image.height; top += kLargestTexture)
+    for (int left = 0; left < image.width; left += kLargestTexture)
+      draw_texels(context, *state, part_of(image, left, top), columns.first + left, rows.first + top, 1, 1, z, w,
+                  false);
 }
 
 }  // namespace halfplane::gl

@@ -49,6 +49,9 @@ void draw_in(Context& context, halfplane::State state, Topology topology, std::v
 void draw_texels(Context& context, halfplane::State state, const halfplane::Texture& texels, double x, double y,
                  double zoom_x, double zoom_y, double z, double w, bool has_logic_op);
 
+/// Of an image of any size the part from (left, top) on that a texture holds.
+[[nodiscard]] halfplane::Texture part_of(const TexelImage& image, int left, int top);
+
 /// Where glRenderMode is not GL_RENDER: takes a point, a line or a polygon after clipping, `clip` in window coordinates as
 /// RasterPosition::window and colours in the first place. `token`: GL_POINT_TOKEN, GL_LINE_TOKEN, ...
 void feed_primitive(Context& context, GLenum token, std::span<const ShadedVertex> vertices);

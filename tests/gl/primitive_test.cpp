@@ -313,6 +313,36 @@ TEST(GlFragment, XorOfEachChannel) {
   EXPECT_EQ(picture.rgb(5, 5), (Rgb{204, 0, 255}));
 }
 
+TEST(GlFragment, EveryLogicOperationOfPixels) {
+  const std::array<std::uint32_t (*)(std::uint32_t, std::uint32_t), 16> operations{
+      [](auto, auto) { return 0U; },           [](auto s, auto d) { return s & d; },
+      [](auto s, auto d) { return s & ~d; },   [](auto s, auto) { return s; },
+      [](auto s, auto d) { return ~s & d; },   [](auto, auto d) { return d; },
+      [](auto s, auto d) { return s ^ d; },    [](auto s, auto d) { return s | d; },
+      [](auto s, auto d) { return ~(s | d); }, [](auto s, auto d) { return ~(s ^ d); },
+      [](auto, auto d) { return ~d; },         [](auto s, auto d) { return s | ~d; },
+      [](auto s, auto) { return ~s; },         [](auto s, auto d) { return ~s | d; },
+      [](auto s, auto d) { return ~(s & d); }, [](auto, auto) { return ~0U; }};
+  const TexelImage image{2, 1, {{0x35, 0xf0, 0x0f, 0xaa}, {0x11, 0x22, 0x44, 0x88}}};
+  const halfplane::Texture texels = make_texture("texels", image, TextureFormat::rgba8888, Mips::none);
+  constexpr std::array<std::uint32_t, 4> kStored{0x53, 0x3c, 0xc3, 0x5a};
+  for (std::size_t op = 0; op < 16; ++op) {
+    Picture picture;
+    clear_color(picture.context, kStored[0] / 255.0, kStored[1] / 255.0, kStored[2] / 255.0, kStored[3] / 255.0);
+    clear(picture.context, GL_COLOR_BUFFER_BIT);
+    enable(picture.context, GL_COLOR_LOGIC_OP, true);
+    logic_op(picture.context, static_cast<GLenum>(GL_CLEAR + op));
+    draw_rectangle(picture.context, texels, 20, 10, -3, 2, 0, 1);
+    for (const int x : {15, 18})
+      for (std::size_t c = 0; c < 4; ++c) {
+        const std::uint32_t source = image.texel[x == 18 ? 0 : 1][c];
+        EXPECT_EQ(picture.pixel(x, 11)[c], static_cast<int>(operations[op](source, kStored[c]) & 255))
+            << op << " " << x;
+      }
+    EXPECT_EQ(picture.pixel(13, 11)[0], static_cast<int>(kStored[0]));
+  }
+}
+
 TEST(GlFragment, ClearsObeyMasksAndScissor) {
   Picture picture;
   Context& context = picture.context;
