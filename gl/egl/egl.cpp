@@ -289,6 +289,8 @@ EGLBoolean Terminate(EGLDisplay handle) {
 }
 
 const char* QueryString(EGLDisplay handle, EGLint name) {
+  if (handle == EGL_NO_DISPLAY && (name == EGL_EXTENSIONS || name == EGL_VERSION))
+    return done(name == EGL_VERSION ? "1.5" : "EGL_EXT_client_extensions EGL_EXT_platform_base");
   const Call call(handle);
   t_state.error = call.error;
   if (call.failed()) return nullptr;
@@ -540,7 +542,9 @@ EGLContext CreateContext(EGLDisplay handle, EGLConfig config, EGLContext share, 
   if (!read_list(list, wishes)) return Failed{EGL_BAD_ATTRIBUTE};
   const EGLAttrib major = wishes[EGL_CONTEXT_MAJOR_VERSION], minor = wishes[EGL_CONTEXT_MINOR_VERSION];
   const EGLAttrib flags = wishes[EGL_CONTEXT_FLAGS_KHR];
-  if ((flags & ~EGLAttrib{7}) != 0) return Failed{EGL_BAD_ATTRIBUTE};
+  constexpr EGLAttrib kOfEither = EGL_CONTEXT_OPENGL_DEBUG_BIT_KHR | EGL_CONTEXT_OPENGL_ROBUST_ACCESS_BIT_KHR;
+  if ((flags & ~(is_es ? kOfEither : kOfEither | EGL_CONTEXT_OPENGL_FORWARD_COMPATIBLE_BIT_KHR)) != 0)
+    return Failed{EGL_BAD_ATTRIBUTE};
   constexpr EGLAttrib kForwardOrRobust =
       EGL_CONTEXT_OPENGL_FORWARD_COMPATIBLE_BIT_KHR | EGL_CONTEXT_OPENGL_ROBUST_ACCESS_BIT_KHR;
   if (major != 1 || minor < 0 || minor > (is_es ? 0 : 5) || (flags & kForwardOrRobust) != 0 ||

@@ -221,13 +221,19 @@ std::nullptr_t glx_error(Display* display, int code, XID resource, int minor) {
   return nullptr;
 }
 
+/// Precondition: the objects are locked.
+void delete_context(GlxContext* context) {
+  objects().contexts.erase(context);
+  delete context;
+}
+
 void leave_thread(GlxContext* context) {
   if (context == nullptr) return;
   const std::lock_guard lock(objects().mutex);
   context->is_current = false;
   context->drawable = context->read_drawable = nullptr;
   context->draw = context->read = nullptr;
-  if (context->is_destroyed) delete context;
+  if (context->is_destroyed) delete_context(context);
 }
 
 /// A thread that ends with a current context leaves it to others.
@@ -282,7 +288,7 @@ Bool make_current(Display* display, GLXDrawable draw, GLXDrawable read, GLXConte
   GlxContext* const context = find_context(handle);
   if (handle == nullptr || (context != nullptr && (draw == 0 || read == 0)))
     x_error(display, BadMatch, 0, minor);
-  else if (context == nullptr)
+  else if (context == nullptr || context->is_destroyed)
     glx_error(display, GLXBadContext, 0, minor);
   else if (context->is_current && context != before)
     x_error(display, BadAccess, 0, minor);
@@ -348,7 +354,7 @@ XID create_on(Display* display, DrawableKind kind, const FbConfig& config, XID x
           return entry.first.first == config.server && entry.second->window.xid == xid;
         });
       };
-      if (is_taken()) return x_error(display, BadAlloc, xid, minor), 0;
+      if (is_window && is_taken()) return x_error(display, BadAlloc, xid, minor), 0;
       return keep(display, std::make_shared<GlxDrawable>(kind, config, xid, geometry->width, geometry->height));
     } catch (const std::exception&) {
       x_error(display, BadAlloc, xid, minor);
@@ -363,8 +369,13 @@ void destroy(Display* display, XID id, DrawableKind kind, int error, int minor) 
     glx_error(display, error, id, minor);
     return;
   }
-  const std::lock_guard lock(objects().mutex);
-  objects().drawables.erase({server_of(display), id});
+  XSync(display, False);
+  const bool is_gone = kind == DrawableKind::window && !drawable->window.server->geometry(drawable->window.xid);
+  {
+    const std::lock_guard lock(objects().mutex);
+    objects().drawables.erase({server_of(display), id});
+  }
+  if (is_gone) glx_error(display, error, id, minor);  // it went with its X window
 }
 
 // GLX 1.4, in the order of its functions' names.
@@ -442,11 +453,12 @@ GLXContext CreateContextAttribsARB(Display* display, GLXFBConfig handle, GLXCont
   constexpr int kLastMinor[] = {-1, 5, 1, 3, 6};  // of OpenGL 1, 2, 3, 4
   if ((flags & ~(GLX_CONTEXT_DEBUG_BIT_ARB | GLX_CONTEXT_FORWARD_COMPATIBLE_BIT_ARB)) != 0)
     return x_error(display, BadValue, 0, kMinor);
-  if (major < 1 || major > 4 || minor < 0 || minor > kLastMinor[major] || wishes[GLX_RENDER_TYPE] != GLX_RGBA_TYPE ||
+  const int render_type = wishes[GLX_RENDER_TYPE];
+  if (render_type != GLX_RGBA_TYPE && render_type != GLX_COLOR_INDEX_TYPE) return x_error(display, BadValue, 0, kMinor);
+  if (major < 1 || major > 4 || minor < 0 || minor > kLastMinor[major] || render_type != GLX_RGBA_TYPE ||
       ((flags & GLX_CONTEXT_FORWARD_COMPATIBLE_BIT_ARB) != 0 && major < 3))
     return x_error(display, BadMatch, 0, kMinor);
-  if ((major > 3 || (major == 3 && minor >= 2)) && profile != GLX_CONTEXT_CORE_PROFILE_BIT_ARB &&
-      profile != GLX_CONTEXT_COMPATIBILITY_PROFILE_BIT_ARB)
+  if (profile != GLX_CONTEXT_CORE_PROFILE_BIT_ARB && profile != GLX_CONTEXT_COMPATIBILITY_PROFILE_BIT_ARB)
     return glx_error(display, GLXBadProfileARB, 0, kMinor);
   if (major > 1) return glx_error(display, GLXBadFBConfig, 0, kMinor);
   return create_context(display, *config, share, kMinor);
@@ -459,9 +471,8 @@ void DestroyContext(Display* display, GLXContext handle) {
     return;
   }
   const std::lock_guard lock(objects().mutex);
-  objects().contexts.erase(context);
   context->is_destroyed = true;
-  if (!context->is_current) delete context;
+  if (!context->is_current) delete_context(context);
 }
 
 GLXPixmap CreateGLXPixmap(Display* display, XVisualInfo* visual, Pixmap pixmap) {
@@ -471,16 +482,12 @@ GLXPixmap CreateGLXPixmap(Display* display, XVisualInfo* visual, Pixmap pixmap) 
   return 0;
 }
 
-/// Windows and pixmaps have no attributes of their own in GLX 1.4.
+/// GLX 1.4 defines no attributes of windows and pixmaps; what extensions define of them changes nothing here.
 template <DrawableKind Kind, int Minor>
-XID CreateOn(Display* display, GLXFBConfig handle, XID xid, const int* list) {
-  const FbConfig* const config = find_config(display, handle);
-  if (config == nullptr)
-    glx_error(display, GLXBadFBConfig, 0, Minor);
-  else if (list != nullptr && *list != 0)
-    x_error(display, BadValue, static_cast<XID>(*list), Minor);
-  else
+XID CreateOn(Display* display, GLXFBConfig handle, XID xid, const int*) {
+  if (const FbConfig* const config = find_config(display, handle); config != nullptr)
     return create_on(display, Kind, *config, xid, Minor);
+  glx_error(display, GLXBadFBConfig, 0, Minor);
   return 0;
 }
 
