@@ -8,8 +8,11 @@
 namespace halfplane::gl {
 namespace {
 
-/// Of a driver that nobody has configured: what programs expect of a visual.
-Config plain_config() { return labelled("full stencil.bits=8"); }
+/// Of a driver that nobody has configured: what programs expect of a visual, and every unit.
+Config plain_config() {
+  return labelled(
+      "full stencil.bits=8 perspective.colors=1 texture.unit=trilinear alpha.unit=1 blend.lanes=4 fog.unit=1");
+}
 
 OnMissing on_missing_of(const std::string& word) {
   const std::map<std::string, OnMissing> words{

@@ -194,9 +194,7 @@ std::string csv_text(const Json& rows) {
   return text;
 }
 
-void print_range(std::ostream& out, const Json& rows, const std::string& name, const char* key) {
-  std::vector<std::uint64_t> values;
-  for (const Json& row : rows) values.push_back(row[key].get<std::uint64_t>());
+void print_range(std::ostream& out, const std::string& name, std::vector<std::uint64_t> values) {
   std::sort(values.begin(), values.end());
   out << left_aligned(name, 12) << "least " << with_commas(values.front()) << ", median "
       << with_commas(values[values.size() / 2]) << ", most " << with_commas(values.back()) << " a frame\n";
@@ -299,8 +297,12 @@ int run_frames(const RenderCommand& options, const Config& config) {
   if (all.front().moment.time)
     out << ", time " << fixed(*all.front().moment.time, 3) << " to " << fixed(*all.back().moment.time, 3) << " s";
   out << '\n';
-  if (!rows[0]["cycles"].is_null()) print_range(out, rows, "cycles", "cycles");
-  if (!rows[0]["bytes"].is_null()) print_range(out, rows, "bytes", "bytes");
+  for (const char* key : {"cycles", "bytes"}) {
+    if (rows[0][key].is_null()) continue;
+    std::vector<std::uint64_t> values;
+    for (const Json& row : rows) values.push_back(row[key].get<std::uint64_t>());
+    print_range(out, key, std::move(values));
+  }
   print_bins(out, rows);
   if (!options.color_path.empty())
     out << "pictures    " << numbered(options.color_path, 0, frames) << " to "

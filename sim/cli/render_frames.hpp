@@ -47,8 +47,8 @@ void write_files(const RenderCommand& options, const Rendering& rendering, const
 /// A table of all rows: a column for each figure, named as its keys with dots between them; nothing where it is null.
 [[nodiscard]] std::string csv_text(const Json& rows);
 
-/// The least, the median and the largest of a figure over the frames.
-void print_range(std::ostream& out, const Json& rows, const std::string& name, const char* key);
+/// The least, the median and the largest of a figure over the frames. Precondition: there are some.
+void print_range(std::ostream& out, const std::string& name, std::vector<std::uint64_t> values);
 
 /// Adds --frames, --csv and --chart.
 void add_frames_options(CLI::App& app, RenderCommand& options);

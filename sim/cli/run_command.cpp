@@ -202,25 +202,57 @@ class Child {
   bool has_group_ = false, has_ended_ = false;
 };
 
-/// The lines of JSON that the driver appends to a file; what it has not finished yet is left out.
+/// What all frames together took.
+struct Totals {
+  std::uint64_t frames = 0;
+  double seconds = 0, drawing = 0;
+  std::vector<std::uint64_t> cycles, bytes;  ///< of the frames that were measured
+  std::vector<std::string> missing, lacks;   ///< each once
+  Json last;                                 ///< the last row; null: there is none
+
+  void add(const Json& row) {
+    ++frames;
+    const Json& time = row["time_s"];
+    seconds += time["frame"].get<double>();
+    drawing += time["geometry"].get<double>() + time["raster"].get<double>();
+    if (!row["cycles"].is_null()) {
+      cycles.push_back(row["cycles"].get<std::uint64_t>());
+      bytes.push_back(row["bytes"].get<std::uint64_t>());
+    }
+    const auto note = [](std::vector<std::string>& texts, const Json& text) {
+      if (text.is_string() && std::ranges::find(texts, text.get<std::string>()) == texts.end()) texts.push_back(text);
+    };
+    for (const Json& text : row["missing"]) note(missing, text);
+    note(lacks, row["lacks"]);
+    last = row;
+  }
+};
+
+/// The lines of JSON that the driver appends to a file. It is taken away at each reading, and read at the next one, when no
+/// line of it is under way any more: a game of an hour has a hundred thousand frames.
 class ResultLines {
  public:
-  explicit ResultLines(std::string path) : path_(std::move(path)) {}
-  /// Reads on.
+  /// `keeps_rows`: else there are totals alone.
+  ResultLines(std::string path, bool keeps_rows) : path_(std::move(path)), keeps_rows_(keeps_rows) {}
   void read() {
-    std::ifstream in(path_, std::ios::binary);
-    in.seekg(read_);
-    for (std::string line; std::getline(in, line) && !in.eof();) {
-      read_ += static_cast<std::streamoff>(line.size()) + 1;
+    const std::string taken = path_ + ".taken";
+    std::ifstream in(taken);
+    for (std::string line; std::getline(in, line);) {
       Json row = Json::parse(line, nullptr, false);
-      if (row.is_object()) rows.push_back(std::move(row));
+      if (!row.is_object()) continue;  // the program was ended while it wrote
+      totals.add(row);
+      if (keeps_rows_) rows.push_back(std::move(row));
     }
+    std::error_code error;
+    std::filesystem::remove(taken, error);
+    std::filesystem::rename(path_, taken, error);
   }
+  Totals totals;
   Json rows = Json::array();
 
  private:
   std::string path_;
-  std::streamoff read_ = 0;
+  bool keeps_rows_;
 };
 
 /// A frame's figures without the ones that not every frame has.
@@ -233,42 +265,25 @@ Json csv_rows(const Json& rows) {
   return list;
 }
 
-/// What frames lack, each once.
-Json texts_of(const Json& rows, const char* key) {
-  std::vector<std::string> texts;
-  for (const Json& row : rows)
-    for (const Json& text : row[key].is_array() ? row[key] : Json::array({row[key]}))
-      if (text.is_string() && std::ranges::find(texts, text.get<std::string>()) == texts.end()) texts.push_back(text);
-  return texts;
-}
-
-void print_run(std::ostream& out, const RunCommand& options, const Json& result, const Config& config) {
-  const Json& rows = result["frames"];
+void print_run(std::ostream& out, const RunCommand& options, const Totals& totals,
+               const std::vector<std::string>& answered, const Config& config) {
   out << joined(options.program, " ") << ": " << label(config) << ", engine " << options.engine << ", "
-      << joined(result["answered"].get<std::vector<std::string>>()) << '\n';
-  double seconds = 0, drawing = 0;
-  Json measured = Json::array();
-  for (const Json& row : rows) {
-    seconds += row["time_s"]["frame"].get<double>();
-    drawing += row["time_s"]["geometry"].get<double>() + row["time_s"]["raster"].get<double>();
-    if (!row["cycles"].is_null()) measured.push_back(row);
-  }
-  const auto count = static_cast<double>(rows.size());
-  out << "frames      " << rows.size();
-  if (!rows.empty())
-    out << " in " << fixed(seconds, 2) << " s, " << fixed(count / std::max(seconds, 1e-9), 1) << " a second; "
-        << fixed(1e3 * drawing / count, 2) << " ms each to draw";
+      << joined(answered) << '\n'
+      << "frames      " << with_commas(totals.frames);
+  if (totals.frames > 0)
+    out << " in " << fixed(totals.seconds, 2) << " s, "
+        << fixed(static_cast<double>(totals.frames) / std::max(totals.seconds, 1e-9), 1) << " a second; "
+        << fixed(1e3 * totals.drawing / static_cast<double>(totals.frames), 2) << " ms each to draw";
   out << '\n';
-  if (!measured.empty()) {
-    print_range(out, measured, "cycles", "cycles");
-    print_range(out, measured, "bytes", "bytes");
-    std::uint64_t most = 0;
-    for (const Json& row : measured) most = std::max(most, row["cycles"].get<std::uint64_t>());
-    out << "clock       " << with_commas((most * 30 + 999'999) / 1'000'000)
-        << " MHz for 30 frames a second of the most\n";
+  if (!totals.cycles.empty()) {
+    print_range(out, "cycles", totals.cycles);
+    print_range(out, "bytes", totals.bytes);
+    constexpr std::uint64_t kRate = 30, kMega = 1'000'000;  // frames a second
+    out << "clock       " << with_commas((std::ranges::max(totals.cycles) * kRate + kMega - 1) / kMega)
+        << " MHz for 30 frames a second, each of the most cycles\n";
   }
-  for (const Json& text : result["lacks"]) out << "no cycles   " << text.get<std::string>() << '\n';
-  for (const Json& text : result["missing"]) out << "missing     " << text.get<std::string>() << '\n';
+  for (const std::string& text : totals.lacks) out << "no cycles   " << text << '\n';
+  for (const std::string& text : totals.missing) out << "missing     " << text << '\n';
 }
 
 int run(const RunCommand& options) {
@@ -289,7 +304,9 @@ int run(const RunCommand& options) {
   make_folder("--save-all", options.save_folder);
 
   const RunFolder folder;
-  ResultLines lines(folder.file("results"));
+  const bool keeps_rows = !options.json.empty() || !options.csv_path.empty() || !options.chart_path.empty();
+  ResultLines lines(folder.file("results"), keeps_rows);
+  const Totals& totals = lines.totals;
   stop_in_order();
   bool is_partial = false, has_all = false;
   int status = 0;
@@ -299,12 +316,12 @@ int run(const RunCommand& options) {
     while (!child.has_ended()) {
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
       lines.read();
-      has_all = span.last >= 0 && !lines.rows.empty() && lines.rows.back()["frame"].get<int>() >= span.last;
+      has_all = span.last >= 0 && !totals.last.is_null() && totals.last["frame"].get<int>() >= span.last;
       if (has_all || is_interrupted()) child.end();
     }
     status = child.status();
   }
-  lines.read();
+  for (int i = 0; i < 2; ++i) lines.read();
   is_partial = is_interrupted();
 
   Json result = result_head("run", options, config);
@@ -317,16 +334,16 @@ int run(const RunCommand& options) {
   result["answered"] = answered;
   result["engine"] = options.engine;
   result["memory"] = options.engine == "cycle" ? memory_json(options.memory) : Json(nullptr);
-  result["width"] = lines.rows.empty() ? Json(0) : lines.rows.back()["width"];
-  result["height"] = lines.rows.empty() ? Json(0) : lines.rows.back()["height"];
-  result["missing"] = texts_of(lines.rows, "missing");
-  result["lacks"] = texts_of(lines.rows, "lacks");
+  result["width"] = totals.last.is_null() ? Json(0) : totals.last["width"];
+  result["height"] = totals.last.is_null() ? Json(0) : totals.last["height"];
+  result["missing"] = totals.missing;
+  result["lacks"] = totals.lacks;
   result["frames"] = lines.rows;
   if (!options.csv_path.empty()) write_text_file(options.csv_path, csv_text(csv_rows(lines.rows)));
   if (!options.chart_path.empty()) write_page(options.chart_path, kFramesPage, result);
   finish_json(options, result, start, is_partial);
   std::ostream& out = human(options);
-  print_run(out, options, result, config);
+  if (!answered.empty()) print_run(out, options, totals, answered, config);
   const auto complain = [&](int exit_status, const std::string& what) {
     std::cerr << "halfplane: run: " << what << '\n';
     return exit_status;
