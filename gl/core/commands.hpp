@@ -186,7 +186,7 @@ void pixel_store(Context&, GLenum pname, double value);
 // `dimensions`.
 void tex_image(Context&, int dimensions, GLenum target, GLint level, GLint internal_format, GLsizei width,
                GLsizei height, GLsizei depth, GLint border,
-               std::shared_ptr<const Image> image);  // null: undefined texels, and proxies
+               std::shared_ptr<const Image> image);  // null or without pixels: undefined texels
 void tex_sub_image(Context&, int dimensions, GLenum target, GLint level, GLint x, GLint y, GLint z,
                    std::shared_ptr<const Image> image);
 void copy_tex_image(Context&, int dimensions, GLenum target, GLint level, GLenum internal_format, GLint x, GLint y,

@@ -7,16 +7,14 @@ namespace {
 
 constexpr GLsizei kLargestImage = kLargestTexture + 2;  // with its border
 
-// Unpacks an image and hands it to `command`, or issues an error. Without pixels: null.
+// Unpacks an image and hands it to `command`, or issues an error.
 template <class Command>
 void with_image(Context& context, std::array<GLsizei, 3> size, GLenum format, GLenum type, const void* pixels,
                 const Command& command, bool is_3d = false) {
   const auto [width, height, depth] = size;
   if (width < 0 || height < 0 || depth < 0) return list_error(context, GL_INVALID_VALUE);
   if (const GLenum error = check_format(format, type); error != GL_NO_ERROR) return list_error(context, error);
-  command(pixels == nullptr
-              ? nullptr
-              : std::make_shared<const Image>(unpack(context, width, height, depth, format, type, pixels, is_3d)));
+  command(std::make_shared<const Image>(unpack(context, width, height, depth, format, type, pixels, is_3d)));
 }
 
 bool is_proxy(GLenum target) {
@@ -40,9 +38,8 @@ bool is_unscaled(GLenum pname) {
 
 void enter_draw_pixels(Context& context, GLsizei width, GLsizei height, GLenum format, GLenum type,
                        const void* pixels) {
-  with_image(context, {width, height, 1}, format, type, pixels, [&](const std::shared_ptr<const Image>& image) {
-    if (image != nullptr) issue<&draw_pixels>(context, image);
-  });
+  with_image(context, {width, height, 1}, format, type, pixels,
+             [&](const std::shared_ptr<const Image>& image) { issue<&draw_pixels>(context, image); });
 }
 
 void enter_bitmap(Context& context, GLsizei width, GLsizei height, double x_origin, double y_origin, double x_move,
@@ -79,7 +76,7 @@ void enter_tex_sub_image(Context& context, int dimensions, GLenum target, GLint 
                          GLsizei width, GLsizei height, GLsizei depth, GLenum format, GLenum type, const void* pixels) {
   if (std::max({width, height, depth}) > kLargestImage) return list_error(context, GL_INVALID_VALUE);
   const auto command = [&](const std::shared_ptr<const Image>& image) {
-    if (image != nullptr) issue<&tex_sub_image>(context, dimensions, target, level, x, y, z, image);
+    issue<&tex_sub_image>(context, dimensions, target, level, x, y, z, image);
   };
   with_image(context, {width, height, depth}, format, type, pixels, command, dimensions == 3);
 }

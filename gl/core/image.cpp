@@ -101,10 +101,11 @@ std::int32_t extended(std::uint32_t raw, int bits) {
 float decoded(std::uint32_t raw, const PixelType& type, bool is_index) {
   if (type.kind == TypeKind::real) return std::bit_cast<float>(raw);
   const int bits = 8 * type.bytes;
-  if (type.kind == TypeKind::whole)
-    return is_index ? static_cast<float>(raw) : static_cast<float>(double{1} * raw / largest(bits));
-  const double value = extended(raw, bits);
-  return static_cast<float>(is_index ? value : (2 * value + 1) / largest(bits));
+  const double value = type.kind == TypeKind::whole ? double{1} * raw : extended(raw, bits);
+  // A float holds 24 bits: of larger indices it gets the low ones, which are those that count.
+  constexpr std::uint32_t kHeld = 1U << 24;
+  if (is_index) return static_cast<float>(std::abs(value) < kHeld ? value : raw & (kHeld - 1));
+  return static_cast<float>((type.kind == TypeKind::whole ? value : 2 * value + 1) / largest(bits));
 }
 
 /// Tables 4.4 and 4.6.
@@ -195,6 +196,7 @@ Image unpack(const Context& context, int width, int height, int depth, GLenum fo
   const PixelType& t = *row_of(kTypes, type);
   const bool is_color = !f.is_index() && format != GL_DEPTH_COMPONENT;
   Image image{width, height, depth, is_color ? GL_RGBA : format, {}};
+  if (pixels == nullptr) return image;
   image.pixel.assign(pixel_count(width, height, depth), {0, 0, 0, is_color ? 1.0F : 0.0F});
   const PixelStore& store = context.client.unpack;
   const auto put = [&f](std::array<float, 4>& to, std::size_t component, float value) {
@@ -273,6 +275,7 @@ void pack(const Context& context, const Image& image, GLenum format, GLenum type
   const PixelFormat& f = *row_of(kFormats, format);
   const PixelType& t = *row_of(kTypes, type);
   const PixelStore& store = context.client.pack;
+  if (pixels == nullptr) return;
   const auto take = [&f](const std::array<float, 4>& from, std::size_t component) {
     const int channel = f.channel[component];
     return channel == kLuminance ? from[0] + from[1] + from[2] : from[static_cast<std::size_t>(channel)];

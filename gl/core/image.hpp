@@ -31,7 +31,7 @@ struct Bitmap {
 [[nodiscard]] GLenum check_format(GLenum format, GLenum type);
 
 /// Reads the program's memory, by Context::client's unpack state. `is_3d`: of glTexImage3D and glTexSubImage3D, which skip
-/// whole images. Precondition: check_format().
+/// whole images. Null: an image without its pixels, for the errors that its command has. Precondition: check_format().
 [[nodiscard]] Image unpack(const Context& context, int width, int height, int depth, GLenum format, GLenum type,
                            const void* pixels, bool is_3d = false);
 /// Pixels after glPixelTransfer, which counts when a command is carried out: GL_RGBA for colours and colour indices.

@@ -2,6 +2,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <span>
 #include <utility>
@@ -47,40 +48,52 @@ void for_each_covered(const Context& context, const Image& image, double x, doub
   }
 }
 
-Vec4 raster_color(const RasterPosition& raster) {
-  Vec4 color = raster.color;
-  for (std::size_t c = 0; c < 3; ++c) color[c] = std::min(color[c] + raster.secondary[c], 1.0);
+/// The color sum after the texture.
+Vec4 with_secondary(const Context& context, Vec4 color) {
+  for (std::size_t c = 0; c < 3; ++c) color[c] = std::min(color[c] + context.state.current.raster.secondary[c], 1.0);
   return color;
+}
+Vec4 raster_color(const Context& context) {
+  const auto texture = raster_texture(context);
+  const Vec4& color = context.state.current.raster.color;
+  return with_secondary(context, texture ? texture(color) : color);
 }
 
 /// Fragments are handed on in batches of this size.
 constexpr std::size_t kBatch = 1 << 16;
 
 void draw_colors(Context& context, const Image& image, double x, double y) {
-  if (sampled_texture(context, 0) != nullptr)
-    context.drawable->frame.missing("textured pixel rectangles", "they are drawn without the texture");
   const RasterPosition& raster = context.state.current.raster;
   const PixelState& state = context.state.pixel;
-  for (int top = 0; top < image.height; top += kLargestTexture)
+  const auto texture = raster_texture(context);
+  const bool is_plain = !texture && raster.secondary[0] == 0 && raster.secondary[1] == 0 && raster.secondary[2] == 0;
+  const auto texel = [&](const std::array<float, 4>& pixel) {
+    if (is_plain) return texel_of(pixel);
+    const Vec4 color{held(pixel[0]), held(pixel[1]), held(pixel[2]), held(pixel[3])};
+    const Vec4 drawn = with_secondary(context, texture ? texture(color) : color);
+    return texel_of({static_cast<float>(drawn[0]), static_cast<float>(drawn[1]), static_cast<float>(drawn[2]),
+                     static_cast<float>(drawn[3])});
+  };
+  for (int bottom = 0; bottom < image.height; bottom += kLargestTexture)
     for (int left = 0; left < image.width; left += kLargestTexture) {
-      TexelImage tile{std::min(image.width - left, kLargestTexture), std::min(image.height - top, kLargestTexture), {}};
-      tile.texel.reserve(static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height));
-      for (int j = top; j < top + tile.height; ++j)
-        for (int i = left; i < left + tile.width; ++i)
-          tile.texel.push_back(
-              texel_of(image.pixel[static_cast<std::size_t>(j) * static_cast<std::size_t>(image.width) +
-                                   static_cast<std::size_t>(i)]));
+      TexelImage tile{
+          std::min(image.width - left, kLargestTexture), std::min(image.height - bottom, kLargestTexture), {}};
+      for (int j = bottom; j < bottom + tile.height; ++j) {
+        const auto row = image.pixel.begin() + std::ptrdiff_t{j} * image.width + left;
+        std::transform(row, row + tile.width, std::back_inserter(tile.texel), texel);
+      }
       draw_rectangle(context, make_texture("pixels", tile, TextureFormat::rgba8888, Mips::none),
-                     x + state.zoom_x * left, y + state.zoom_y * top, state.zoom_x, state.zoom_y, raster.window[2],
+                     x + state.zoom_x * left, y + state.zoom_y * bottom, state.zoom_x, state.zoom_y, raster.window[2],
                      raster.distance);
     }
 }
 
 void draw_depths(Context& context, const Image& image, double x, double y) {
   const RasterPosition& raster = context.state.current.raster;
+  const Vec4 color = raster_color(context);
   std::vector<WindowFragment> fragments;
   for_each_covered(context, image, x, y, [&](int column, int row, const std::array<float, 4>& pixel) {
-    fragments.push_back({column, row, held(pixel[0]), raster.distance, raster_color(raster)});
+    fragments.push_back({column, row, held(pixel[0]), raster.distance, color});
     if (fragments.size() < kBatch) return;
     draw_fragments(context, fragments);
     fragments.clear();
@@ -188,7 +201,7 @@ void bitmap(Context& context, std::shared_ptr<const Bitmap> bitmap, double x_ori
   if (!feed_raster(context, GL_BITMAP_TOKEN) && context.drawable != nullptr && !bitmap->bit.empty()) {
     const Frame& frame = context.drawable->frame;
     const double left = std::floor(raster.window[0] - x_origin), bottom = std::floor(raster.window[1] - y_origin);
-    const Vec4 color = raster_color(raster);
+    const Vec4 color = raster_color(context);
     std::vector<WindowFragment> fragments;
     std::size_t bit = 0;
     for (int j = 0; j < bitmap->height; ++j)

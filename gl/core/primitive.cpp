@@ -682,7 +682,6 @@ void draw_primitives(Context& context, GLenum mode, std::span<const ShadedVertex
 void draw_fragments(Context& context, std::span<const WindowFragment> fragments) {
   if (context.drawable == nullptr || fragments.empty()) return;
   const Frame& frame = context.drawable->frame;
-  if (is_textured(context)) context.drawable->frame.missing("textured bitmaps", "they are drawn without the texture");
   constexpr std::size_t kMost = 4096;  // vertices are large
   Vertices vertices;
   std::vector<std::uint32_t> indices;

@@ -109,7 +109,7 @@ Texel stored_texel(GLenum base, const std::array<float, 4>& color) {
     default: return t;
   }
 }
-/// The way back, for glGetTexImage (table 6.1).
+/// The way back, for glGetTexImage (table 6.1; a luminance is the red component alone).
 std::array<float, 4> read_texel(GLenum base, const Texel& texel) {
   std::array<float, 4> color{};
   for (std::size_t c = 0; c < 4; ++c) color[c] = static_cast<float>(texel[c]) / 255;
@@ -121,6 +121,7 @@ std::array<float, 4> read_texel(GLenum base, const Texel& texel) {
     default: return color;
   }
 }
+std::array<float, 4> red_alone(const std::array<float, 4>& color) { return {color[0], 0, 0, color[3]}; }
 
 std::size_t texel_count(const TextureImage& image) {
   return static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) *
@@ -298,6 +299,7 @@ TextureImage* sub_image_of(Context& context, int dimensions, GLenum name, GLint 
 /// Texels of a border are left out.
 void store_sub_image(Context& context, GLenum name, GLint level, TextureImage& to, const std::array<GLint, 3>& offset,
                      const Image& image) {
+  if (image.pixel.empty()) return;
   std::size_t i = 0;
   for (int z = offset[2]; z < offset[2] + image.depth; ++z)
     for (int y = offset[1]; y < offset[1] + image.height; ++y)
@@ -408,7 +410,7 @@ void tex_image(Context& context, int dimensions, GLenum target, GLint level, GLi
   if (fit == Fit::refused || !takes_base(context, *to, base)) return;
   if (image != nullptr && !go_together(context, image->format, base)) return;
   if (fit == Fit::too_large) return store_image(context, *to, level, {});
-  if (to->is_proxy || image == nullptr) {
+  if (to->is_proxy || image == nullptr || image->pixel.empty()) {
     const std::array<int, 3> cut{border_along(width, border), border_along(height, border),
                                  border_along(depth, border)};
     TextureImage blank{
@@ -536,6 +538,8 @@ void get_tex_image(Context& context, GLenum target, GLint level, GLenum format, 
             stored->base_format,
             stored->texel[texel_at(stored->width, stored->height, std::clamp(x, 0, stored->width - 1),
                                    std::clamp(y, 0, stored->height - 1), std::clamp(z, 0, stored->depth - 1))]));
+  if (format == GL_LUMINANCE || format == GL_LUMINANCE_ALPHA)
+    std::ranges::transform(image.pixel, image.pixel.begin(), red_alone);
   pack(context, image, format, type, pixels, from->dimensions == 3);
 }
 

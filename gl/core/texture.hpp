@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 
 #include "../../model/scene.hpp"
@@ -33,5 +34,9 @@ struct TextureUse {
   bool replaces_rgb = false, replaces_alpha = false;  ///< the vertex's colour counts as 1 there
 };
 [[nodiscard]] TextureUse use_texture(Context& context, halfplane::State& state);
+
+/// What the unit's texture makes of the colors of fragments at the raster position, where it is magnified. Empty: no
+/// texture. Valid while the state of the context stays.
+[[nodiscard]] std::function<Vec4(const Vec4&)> raster_texture(const Context& context);
 
 }  // namespace halfplane::gl

@@ -104,8 +104,8 @@ TextureUnit& active_unit(Context& context) {
   return context.state.texture.unit[static_cast<std::size_t>(context.state.texture.active)];
 }
 
-/// Sets a parameter, or reports the error. Whether it was set.
-bool set(Context& context, const std::optional<Place>& place, const Params& params) {
+/// Sets a parameter, or reports the error. Whether it was set. `takes_scalars`: also vectors, whose rest is then 0.
+bool set(Context& context, const std::optional<Place>& place, const Params& params, bool takes_scalars) {
   const auto refuse = [&context](GLenum error) {
     context.fail(error);
     return false;
@@ -124,7 +124,7 @@ bool set(Context& context, const std::optional<Place>& place, const Params& para
     **flag = value[0] != 0;
   } else if (double* const* real = std::get_if<double*>(&place->where)) {
     **real = in_range(value[0]);
-  } else if (!params.is_vector) {
+  } else if (!params.is_vector && !takes_scalars) {
     return refuse(GL_INVALID_ENUM);
   } else if (Vec4* const* vector = std::get_if<Vec4*>(&place->where)) {
     std::ranges::transform(value, (*vector)->begin(), in_range);
@@ -157,19 +157,19 @@ Values get(Context& context, const std::optional<Place>& place) {
 
 void tex_parameter(Context& context, GLenum target, GLenum pname, Params params) {
   TextureObject* texture = bound_texture(context, target);
-  if (texture != nullptr) set(context, texture_place(*texture, pname), params);
+  if (texture != nullptr) set(context, texture_place(*texture, pname), params, false);
 }
 
 void tex_env(Context& context, GLenum target, GLenum pname, Params params) {
   const bool is_scale = target == GL_TEXTURE_ENV && (pname == GL_RGB_SCALE || pname == GL_ALPHA_SCALE);
   if (const double scale = params.value[0]; is_scale && scale != 1 && scale != 2 && scale != 4)
     return context.fail(GL_INVALID_VALUE);
-  set(context, environment_place(active_unit(context), target, pname), params);
+  set(context, environment_place(active_unit(context), target, pname), params, true);
 }
 
 void tex_gen(Context& context, GLenum coord, GLenum pname, Params params) {
   TextureUnit& unit = active_unit(context);
-  if (set(context, generation_place(unit, coord, pname), params) && pname == GL_EYE_PLANE) {
+  if (set(context, generation_place(unit, coord, pname), params, true) && pname == GL_EYE_PLANE) {
     Vec4& plane = unit.gen[coord - GL_S].eye;
     plane = transformed_plane(plane, inverse(context.modelview.back()));
   }

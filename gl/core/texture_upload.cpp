@@ -45,9 +45,11 @@ Affine product(const Affine& x, const Affine& y) {
 }
 Affine complement(const Affine& x) { return {-x.a, 1 - x.b, x.is_exact}; }
 
-/// What an environment sees: the texture's color as table 3.20 fills it in, and the constant.
+/// What an environment sees: the texture's color as table 3.20 fills it in, the constant, and the fragment's color where
+/// it is known.
 struct Inputs {
   Vec4 texel, constant;
+  const Vec4* fragment;
 };
 
 /// An argument of GL_COMBINE in one channel (tables 3.24 and 3.25).
@@ -59,7 +61,7 @@ Affine argument(const TextureCombiner& combiner, std::size_t i, std::size_t chan
   if (source == GL_CONSTANT)
     value.b = inputs.constant[c];
   else if (source == GL_PRIMARY_COLOR || source == GL_PREVIOUS)  // the first unit's previous color is the primary one
-    value = {1, 0, c == channel};
+    value = inputs.fragment != nullptr ? Affine{0, (*inputs.fragment)[c]} : Affine{1, 0, c == channel};
   else
     value.b = inputs.texel[c];
   return operand == GL_ONE_MINUS_SRC_COLOR || operand == GL_ONE_MINUS_SRC_ALPHA ? complement(value) : value;
@@ -95,28 +97,38 @@ Affine combined(const TextureCombiner& combiner, std::size_t channel, const Inpu
   return result;
 }
 
-/// The environment of a unit: table 3.22, and GL_COMBINE.
-Result environment(const TextureUnit& unit, GLenum base, const Texel& texel) {
-  Inputs inputs{{}, unit.env_color};
-  for (std::size_t c = 0; c < 4; ++c) inputs.texel[c] = texel[c] / 255.0;
+/// The environment of a unit: tables 3.21 and 3.22, and GL_COMBINE. `texel`: as it is stored, in 0...1.
+Result environment(const TextureUnit& unit, GLenum base, const Vec4& texel, const Vec4* fragment = nullptr) {
   Result result;
   if (unit.env_mode == GL_COMBINE) {
+    Inputs inputs{texel, unit.env_color, fragment};
     if (base == GL_ALPHA) inputs.texel[0] = inputs.texel[1] = inputs.texel[2] = 0;
     const auto& [rgb, alpha] = unit.combine;
     for (std::size_t c = 0; c < 3; ++c) result[c] = combined(rgb, c, inputs);
     result[3] = rgb.function == GL_DOT3_RGBA ? result[0] : combined(alpha, 3, inputs);
     return result;
   }
-  const bool is_added = unit.env_mode == GL_ADD;  // else GL_BLEND
+  const bool is_opaque = base == GL_RGB || base == GL_LUMINANCE;
   for (std::size_t c = 0; c < 4; ++c) {
-    const double t = inputs.texel[c];
-    if (c == 3 && base != GL_INTENSITY)
-      result[c] = {t, 0};
-    else
-      result[c] = is_added ? Affine{1, t} : Affine{1 - t, unit.env_color[c] * t};
+    const double t = texel[c];
+    const Affine kept{1, 0}, product{t, 0};
+    const bool is_alpha = c == 3 && base != GL_INTENSITY;  // that is a color in all channels, but for GL_DECAL
+    switch (unit.env_mode) {
+      case GL_REPLACE: result[c] = (c == 3 ? is_opaque : base == GL_ALPHA) ? kept : Affine{0, t}; break;
+      case GL_DECAL:
+        result[c] = c == 3 || base == GL_ALPHA ? kept : is_opaque ? Affine{0, t} : Affine{1 - texel[3], t * texel[3]};
+        break;
+      case GL_ADD: result[c] = is_alpha ? product : base == GL_ALPHA ? kept : Affine{1, t}; break;
+      case GL_BLEND:
+        result[c] = is_alpha ? product : base == GL_ALPHA ? kept : Affine{1 - t, unit.env_color[c] * t};
+        break;
+      default: result[c] = product; break;
+    }
   }
   return result;
 }
+
+Vec4 real(const Texel& texel) { return {texel[0] / 255.0, texel[1] / 255.0, texel[2] / 255.0, texel[3] / 255.0}; }
 
 /// Of the modes that take texels as they are; none: the texels decide.
 std::optional<Fit> direct_fit(GLenum mode, GLenum base) {
@@ -166,7 +178,7 @@ Fit fit_texels(const Sampled& sampled) {
   for (std::size_t l = sampled.first; l <= sampled.last; ++l)
     for (std::size_t i = 0; i < sampled.texels(l); ++i) {
       const Texel texel = sampled.texel(l, i);
-      const Result result = environment(sampled.unit, sampled.base, texel);
+      const Result result = environment(sampled.unit, sampled.base, real(texel));
       for (std::size_t c = 0; c < 4; ++c) {
         const auto [a, b, is_exact] = result[c];
         const bool modulates = is_exact && is_near(b, 0) && a > -kTolerance && a < 1 + kTolerance;
@@ -217,7 +229,7 @@ halfplane::Texture made(const Sampled& sampled, const Fit& fit, bool has_levels)
     for (std::size_t i = 0; i < sampled.texels(l); ++i) {
       const Texel texel = sampled.texel(l, i);
       image.texel.push_back(
-          fit.folds ? folded(fit, environment(sampled.unit, sampled.base, texel), texel, sampled.unit.env_color)
+          fit.folds ? folded(fit, environment(sampled.unit, sampled.base, real(texel)), texel, sampled.unit.env_color)
                     : texel);
     }
     levels.push_back(std::move(image));
@@ -281,6 +293,44 @@ void say_what_is_missing(Frame& frame, const TextureObject& texture) {
     frame.missing("depth textures that compare", "the depths are drawn");
 }
 
+/// The texel that a coordinate in texels means along a side.
+int wrapped(GLenum wrap, double at, int size) {
+  const double last = size - 1;
+  if (wrap == GL_REPEAT || wrap == GL_MIRRORED_REPEAT) {
+    const double period = wrap == GL_REPEAT ? size : 2 * size;
+    at -= std::floor(at / period) * period;
+    if (at > last && wrap == GL_MIRRORED_REPEAT) at = period - 1 - at;
+  }
+  return static_cast<int>(at > 0 ? std::min(at, last) : 0);  // NaN: 0
+}
+
+/// A texture at one place, magnified.
+Vec4 sampled_at(const Sampled& sampled, double s, double t) {
+  const TextureImage& image = sampled.level(sampled.first);
+  const TextureObject& texture = sampled.texture;
+  const bool is_linear = texture.mag_filter == GL_LINEAR;
+  const double shift = is_linear ? 0.5 : 0;
+  const double u = s * image.width - shift, v = t * image.height - shift;
+  Vec4 sum{};
+  for (const int j : {0, 1})
+    for (const int i : {0, 1}) {
+      const double wide = i == 0 ? 1 - (u - std::floor(u)) : u - std::floor(u);
+      const double high = j == 0 ? 1 - (v - std::floor(v)) : v - std::floor(v);
+      const double weight = is_linear ? wide * high : (i == 0 && j == 0 ? 1 : 0);
+      const int x = wrapped(texture.wrap[0], std::floor(u) + i, image.width);
+      const int y = wrapped(texture.wrap[1], std::floor(v) + j, image.height);
+      const Vec4 texel =
+          real(sampled.texel(sampled.first, static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+                                                static_cast<std::size_t>(x)));
+      for (std::size_t c = 0; c < 4; ++c) sum[c] += weight * texel[c];
+    }
+  return sum;
+}
+
+GLenum base_of(const TextureObject& texture, const TextureImage& image) {
+  return image.base_format == GL_DEPTH_COMPONENT ? texture.depth_mode : image.base_format;
+}
+
 TextureWrap wrap_of(GLenum wrap) {
   if (wrap == GL_REPEAT) return TextureWrap::repeat;
   return wrap == GL_MIRRORED_REPEAT ? TextureWrap::mirror : TextureWrap::clamp;
@@ -304,8 +354,7 @@ TextureUse use_texture(Context& context, halfplane::State& state) {
                     : std::min(first + static_cast<std::size_t>(std::bit_width(static_cast<unsigned>(side))) - 1,
                                static_cast<std::size_t>(texture->max_level));
   const bool has_levels = last > first;
-  const bool is_depth = image.base_format == GL_DEPTH_COMPONENT;
-  const Sampled sampled{*texture, unit, is_depth ? texture->depth_mode : image.base_format, first, last};
+  const Sampled sampled{*texture, unit, base_of(*texture, image), first, last};
 
   Key key(texture->revision, first, last, sampled.base);
   std::optional<Fit> fit = direct_fit(unit.env_mode, sampled.base);
@@ -345,6 +394,21 @@ TextureUse use_texture(Context& context, halfplane::State& state) {
                           : fit->rgb == Rgb::replace && replaces_alpha                ? TextureCombine::replace
                                                                                       : TextureCombine::modulate;
   return {fit->rgb == Rgb::replace, replaces_alpha};
+}
+
+std::function<Vec4(const Vec4&)> raster_texture(const Context& context) {
+  const TextureObject* texture = sampled_texture(context, 0);
+  if (texture == nullptr || texture->target == GL_TEXTURE_CUBE_MAP) return {};
+  const TextureUnit& unit = context.state.texture.unit[0];
+  const auto base = static_cast<std::size_t>(texture->base_level);
+  const Sampled sampled{*texture, unit, base_of(*texture, texture->face[0][base]), base, base};
+  const auto& [s, t, r, q] = context.state.current.raster.tex_coord[0];
+  return [&unit, format = sampled.base, texel = sampled_at(sampled, s / q, t / q)](const Vec4& color) {
+    const Result result = environment(unit, format, texel, &color);
+    Vec4 textured{};
+    for (std::size_t c = 0; c < 4; ++c) textured[c] = held(result[c].a * color[c] + result[c].b);
+    return textured;
+  };
 }
 
 }  // namespace halfplane::gl

@@ -114,6 +114,9 @@ TEST(GlImage, ChannelsOfFormats) {
   const GLbyte lowest = -128;
   EXPECT_EQ(first(GL_RED, GL_BYTE, &lowest)[0], -1);
   EXPECT_EQ(first(GL_COLOR_INDEX, GL_BYTE, &lowest)[0], -128);
+  const GLint large = 0x7a000078;
+  EXPECT_EQ(first(GL_STENCIL_INDEX, GL_INT, &large)[0], 0x78);
+  EXPECT_TRUE(unpack(context, 1, 1, 1, GL_RGB, GL_FLOAT, nullptr).pixel.empty());
 }
 
 TEST(GlImage, RowsLieAsPixelStoreSays) {

@@ -270,6 +270,31 @@ TEST_F(GlTexture, InterpolationByTheTexturesAlphaIsADecal) {
   expect_near(color(48, 16), expected(GL_DECAL, GL_RGBA, fragment, seen(kBases[5], kTexels[1]), {}));
 }
 
+/// Pixels and bitmaps take the texture at the raster position, in every environment.
+TEST_F(GlTexture, PixelsAndBitmapsAreTextured) {
+  enable(context, GL_TEXTURE_2D, true);
+  nearest();
+  upload(0, GL_RGBA, image(2, 2, kTexels));
+  const Vec4 fragment{0.8, 0.4, 0.2, 0.6}, constant{0.2, 0.9, 0.5, 0};
+  tex_env(context, GL_TEXTURE_ENV, GL_TEXTURE_ENV_COLOR, {constant, false, true});
+  for (const GLenum mode : {GL_REPLACE, GL_MODULATE, GL_DECAL, GL_BLEND, GL_ADD})
+    for (const BaseFormat& base : kBases) {
+      if (mode == GL_DECAL && base.format != GL_RGB && base.format != GL_RGBA) continue;
+      SCOPED_TRACE("mode " + std::to_string(mode) + " format " + std::to_string(base.format));
+      upload(0, base.format, image(2, 2, kTexels));
+      environment(GL_TEXTURE_ENV_MODE, mode);
+      gl::color(context, fragment[0], fragment[1], fragment[2], fragment[3]);
+      tex_coord(context, GL_TEXTURE0, 0.75, 1.25, 0, 1);  // the second texel
+      ++context.revision;
+      window_pos(context, 5, 5, 0);
+      bitmap(context, std::make_shared<const Bitmap>(Bitmap{1, 1, {true}}), 0, 0, 5, 0);
+      draw_pixels(context, filled(1, 1, {204, 102, 51, 153}));
+      const Vec4 result = expected(mode, base.format, fragment, seen(base, kTexels[1]), constant);
+      expect_near(color(5, 5), result);
+      expect_near(color(10, 5), result);
+    }
+}
+
 // ---- sampling
 
 TEST_F(GlTexture, LevelsOfItsOwn) {
@@ -500,7 +525,7 @@ TEST_F(GlTexture, ParametersAndTheirErrors) {
   EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
   tex_gen(context, GL_R, GL_TEXTURE_GEN_MODE, {{GL_SPHERE_MAP}, true, false});
   EXPECT_EQ(error(), GLenum{GL_INVALID_ENUM});
-  tex_gen(context, GL_Q, GL_EYE_PLANE, {{1.0}, true, false});
+  tex_gen(context, GL_Q + 1, GL_EYE_PLANE, {{1.0}, true, true});
   EXPECT_EQ(error(), GLenum{GL_INVALID_ENUM});
   active_texture(context, GL_TEXTURE0 + kTextureUnits);
   EXPECT_EQ(error(), GLenum{GL_INVALID_ENUM});
