@@ -79,7 +79,12 @@ Frame::Memory::Memory(const Options& options_, int width, int height)
     : options(options_), config(options_.config), engine(options_.config) {
   scene.width = width;
   scene.height = height;
-  picture = &engine.render(empty_scene()).frame;
+  try {
+    picture = &engine.render(empty_scene()).frame;
+  } catch (const InputError& error) {  // the window system's error does not say why
+    say_once(error.what());
+    throw;
+  }
 }
 
 Scene Frame::Memory::empty_scene() const {

@@ -318,7 +318,7 @@ void Frame::draw_hud(std::span<std::uint32_t> xrgb, int width, int height, int p
   if (!m.options.hud) return;
   std::array<char, 96> line{};
   if (m.last_cycles)
-    std::snprintf(line.data(), line.size(), "%.1f FPS  %.3f M CYCLES  %.0f MHZ FOR 30 FPS", m.frames_per_second,
+    std::snprintf(line.data(), line.size(), "%.1f FPS %.3fM CYCLES %.0fMHZ FOR 30", m.frames_per_second,
                   static_cast<double>(*m.last_cycles) / 1e6, std::ceil(static_cast<double>(*m.last_cycles) * 30 / 1e6));
   else
     std::snprintf(line.data(), line.size(), "%.1f FPS  %llu PRIMITIVES", m.frames_per_second,
