@@ -11,6 +11,7 @@
 #include <span>
 #include <string_view>
 #include <thread>
+#include <utility>
 
 #include "../core/commands.hpp"
 #include "../core/entry_points.hpp"
@@ -54,17 +55,17 @@ constexpr Attribute kAttributes[] = {
     {EGL_LUMINANCE_SIZE, Rule::at_least, 0, constant<0>},
     {EGL_ALPHA_SIZE, Rule::at_least, 0, constant<kColorBits>},
     {EGL_ALPHA_MASK_SIZE, Rule::at_least, 0, constant<0>},
-    {EGL_BIND_TO_TEXTURE_RGB, Rule::exact, EGL_DONT_CARE, constant<EGL_FALSE>},
-    {EGL_BIND_TO_TEXTURE_RGBA, Rule::exact, EGL_DONT_CARE, constant<EGL_FALSE>},
+    {EGL_BIND_TO_TEXTURE_RGB, Rule::exact, EGL_DONT_CARE, constant<EGL_TRUE>},
+    {EGL_BIND_TO_TEXTURE_RGBA, Rule::exact, EGL_DONT_CARE, constant<EGL_TRUE>},
     {EGL_COLOR_BUFFER_TYPE, Rule::exact, EGL_RGB_BUFFER, constant<EGL_RGB_BUFFER>},
     {EGL_CONFIG_CAVEAT, Rule::exact, EGL_DONT_CARE, constant<EGL_NONE>},
     {EGL_CONFIG_ID, Rule::exact, EGL_DONT_CARE, [](const EglConfig& c) { return c.id; }},
     {EGL_CONFORMANT, Rule::mask, 0, constant<kApis>},
     {EGL_DEPTH_SIZE, Rule::at_least, 0, constant<kDepthBits>},
     {EGL_LEVEL, Rule::exact, 0, constant<0>},
-    {EGL_MAX_PBUFFER_WIDTH, Rule::not_compared, 0, constant<kLargestSide>},
-    {EGL_MAX_PBUFFER_HEIGHT, Rule::not_compared, 0, constant<kLargestSide>},
-    {EGL_MAX_PBUFFER_PIXELS, Rule::not_compared, 0, constant<kLargestSide * kLargestSide>},
+    {EGL_MAX_PBUFFER_WIDTH, Rule::not_compared, 0, [](const EglConfig&) { return largest_side(); }},
+    {EGL_MAX_PBUFFER_HEIGHT, Rule::not_compared, 0, [](const EglConfig&) { return largest_side(); }},
+    {EGL_MAX_PBUFFER_PIXELS, Rule::not_compared, 0, [](const EglConfig&) { return largest_side() * largest_side(); }},
     {EGL_MAX_SWAP_INTERVAL, Rule::exact, EGL_DONT_CARE, constant<INT_MAX>},
     {EGL_MIN_SWAP_INTERVAL, Rule::exact, EGL_DONT_CARE, constant<0>},
     {EGL_NATIVE_RENDERABLE, Rule::exact, EGL_DONT_CARE, [](const EglConfig& c) { return c.has_visual() ? 1 : 0; }},
@@ -100,6 +101,8 @@ struct Surface {
   Window window;
   const EglConfig* config;
   std::thread::id bound_to{};  ///< the thread where it is current
+  EGLint texture_format = EGL_NO_TEXTURE, mipmap_texture = EGL_FALSE;
+  bool is_bound_to_texture = false;
   EGLint largest = EGL_FALSE, mipmap_level = 0, swap_behavior = EGL_BUFFER_PRESERVED;
   EGLint resolve = EGL_MULTISAMPLE_RESOLVE_DEFAULT, colorspace = EGL_GL_COLORSPACE_LINEAR;
 };
@@ -376,8 +379,9 @@ template <class T>
 EGLSurface create_on(EGLDisplay handle, DrawableKind kind, EGLConfig config, XID xid, const T* list) {
   const bool is_window = kind == DrawableKind::window;
   const EGLint bad_native = is_window ? EGL_BAD_NATIVE_WINDOW : EGL_BAD_NATIVE_PIXMAP;
-  const Call call = std::move(Call(handle).with_config(config));
-  if (call.failed()) return Failed{call.error};
+  Call call(handle);
+  if (!call.failed() && call.display->server == nullptr) return Failed{bad_native};
+  if (call.with_config(config).failed()) return Failed{call.error};
   Wishes wishes{{EGL_GL_COLORSPACE, EGL_GL_COLORSPACE_LINEAR},
                 {EGL_VG_COLORSPACE, EGL_VG_COLORSPACE_LINEAR},
                 {EGL_VG_ALPHA_FORMAT, EGL_VG_ALPHA_FORMAT_NONPRE}};
@@ -385,7 +389,7 @@ EGLSurface create_on(EGLDisplay handle, DrawableKind kind, EGLConfig config, XID
   if (!read_list(list, wishes)) return Failed{EGL_BAD_ATTRIBUTE};
   const bool single = is_window && wishes[EGL_RENDER_BUFFER] == EGL_SINGLE_BUFFER;
   if (is_window && !single && wishes[EGL_RENDER_BUFFER] != EGL_BACK_BUFFER) return Failed{EGL_BAD_ATTRIBUTE};
-  if (!call.config->has_visual() || wishes[EGL_GL_COLORSPACE] != EGL_GL_COLORSPACE_LINEAR) return Failed{EGL_BAD_MATCH};
+  if (wishes[EGL_GL_COLORSPACE] != EGL_GL_COLORSPACE_LINEAR) return Failed{EGL_BAD_MATCH};
   call.display->flush();
   const auto geometry = call.display->server->geometry(xid);
   if (!geometry) return Failed{bad_native};
@@ -408,8 +412,8 @@ EGLSurface CreatePixmapSurface(EGLDisplay display, EGLConfig config, EGLNativePi
   return create_on(display, DrawableKind::pixmap, config, static_cast<XID>(pixmap), list);
 }
 /// `native` points to the X window or pixmap.
-template <DrawableKind Kind>
-EGLSurface CreatePlatformSurface(EGLDisplay display, EGLConfig config, void* native, const EGLAttrib* list) {
+template <DrawableKind Kind, class T>
+EGLSurface CreatePlatformSurface(EGLDisplay display, EGLConfig config, void* native, const T* list) {
   return create_on(display, Kind, config, native == nullptr ? 0 : *static_cast<XID*>(native), list);
 }
 
@@ -427,17 +431,25 @@ EGLSurface CreatePbufferSurface(EGLDisplay handle, EGLConfig config, const EGLin
                 {EGL_VG_ALPHA_FORMAT, EGL_VG_ALPHA_FORMAT_NONPRE}};
   if (!read_list(list, wishes)) return Failed{EGL_BAD_ATTRIBUTE};
   if (wishes[EGL_WIDTH] < 0 || wishes[EGL_HEIGHT] < 0) return Failed{EGL_BAD_PARAMETER};
-  if (wishes[EGL_TEXTURE_FORMAT] != EGL_NO_TEXTURE || wishes[EGL_TEXTURE_TARGET] != EGL_NO_TEXTURE ||
+  const auto texture_format = static_cast<EGLint>(wishes[EGL_TEXTURE_FORMAT]);
+  const EGLAttrib texture_target = wishes[EGL_TEXTURE_TARGET];
+  if ((texture_format != EGL_NO_TEXTURE && texture_format != EGL_TEXTURE_RGB && texture_format != EGL_TEXTURE_RGBA) ||
+      (texture_target != EGL_NO_TEXTURE && texture_target != EGL_TEXTURE_2D))
+    return Failed{EGL_BAD_ATTRIBUTE};
+  if ((texture_format == EGL_NO_TEXTURE) != (texture_target == EGL_NO_TEXTURE) ||
       wishes[EGL_GL_COLORSPACE] != EGL_GL_COLORSPACE_LINEAR)
     return Failed{EGL_BAD_MATCH};
   const bool largest = wishes[EGL_LARGEST_PBUFFER] != EGL_FALSE;
-  int width = std::max(static_cast<int>(wishes[EGL_WIDTH]), 1),
-      height = std::max(static_cast<int>(wishes[EGL_HEIGHT]), 1);
-  for (;; width = (width + 1) / 2, height = (height + 1) / 2) {
+  const EGLAttrib most = largest ? largest_side() : INT_MAX;
+  auto width = static_cast<int>(std::clamp<EGLAttrib>(wishes[EGL_WIDTH], 1, most));
+  auto height = static_cast<int>(std::clamp<EGLAttrib>(wishes[EGL_HEIGHT], 1, most));
+  for (;; width -= width / 2, height -= height / 2) {
     try {
       auto surface =
           std::make_shared<Surface>(DrawableKind::pbuffer, call.display->server, 0, *call.config, false, width, height);
       surface->largest = largest ? EGL_TRUE : EGL_FALSE;
+      surface->texture_format = texture_format;
+      surface->mipmap_texture = wishes[EGL_MIPMAP_TEXTURE] != EGL_FALSE ? EGL_TRUE : EGL_FALSE;
       return keep(*call.display, std::move(surface));
     } catch (const std::exception&) {
       if (!largest || (width == 1 && height == 1)) return Failed{EGL_BAD_ALLOC};
@@ -471,9 +483,9 @@ EGLBoolean QuerySurface(EGLDisplay handle, EGLSurface surface, EGLint name, EGLi
     case EGL_HEIGHT: *value = s.window.frame.height(); break;
     case EGL_CONFIG_ID: *value = s.config->id; break;
     case EGL_LARGEST_PBUFFER: of_pbuffer(s.largest); break;
-    case EGL_TEXTURE_FORMAT:
-    case EGL_TEXTURE_TARGET: of_pbuffer(EGL_NO_TEXTURE); break;
-    case EGL_MIPMAP_TEXTURE: of_pbuffer(EGL_FALSE); break;
+    case EGL_TEXTURE_FORMAT: of_pbuffer(s.texture_format); break;
+    case EGL_TEXTURE_TARGET: of_pbuffer(s.texture_format == EGL_NO_TEXTURE ? EGL_NO_TEXTURE : EGL_TEXTURE_2D); break;
+    case EGL_MIPMAP_TEXTURE: of_pbuffer(s.mipmap_texture); break;
     case EGL_MIPMAP_LEVEL: of_pbuffer(s.mipmap_level); break;
     case EGL_HORIZONTAL_RESOLUTION:
     case EGL_VERTICAL_RESOLUTION: *value = EGL_UNKNOWN; break;
@@ -505,13 +517,26 @@ EGLBoolean SurfaceAttrib(EGLDisplay handle, EGLSurface surface, EGLint name, EGL
   }
 }
 
-/// No configuration has EGL_BIND_TO_TEXTURE_RGB or RGBA.
-EGLBoolean TexImage(EGLDisplay handle, EGLSurface surface, EGLint buffer) {
-  const Call call = std::move(Call(handle).with_surface(surface));
-  return Failed{call.failed()                                        ? call.error
-                : buffer != EGL_BACK_BUFFER                          ? EGL_BAD_PARAMETER
-                : call.surface->window.kind != DrawableKind::pbuffer ? EGL_BAD_SURFACE
-                                                                     : EGL_BAD_MATCH};
+/// eglBindTexImage copies the pbuffer to the texture: until eglReleaseTexImage nothing may be drawn to it.
+template <bool Binds>
+EGLBoolean TexImage(EGLDisplay handle, EGLSurface surface_handle, EGLint buffer) {
+  const Call call = std::move(Call(handle).with_surface(surface_handle));
+  if (call.failed()) return Failed{call.error};
+  Surface& surface = *call.surface;
+  if (buffer != EGL_BACK_BUFFER) return Failed{EGL_BAD_PARAMETER};
+  if (surface.window.kind != DrawableKind::pbuffer) return Failed{EGL_BAD_SURFACE};
+  if (surface.texture_format == EGL_NO_TEXTURE) return Failed{EGL_BAD_MATCH};
+  if (Binds && surface.is_bound_to_texture) return Failed{EGL_BAD_ACCESS};
+  if (EglContext* const context = t_state.context.get(); Binds && context != nullptr) {
+    Drawable* const read = std::exchange(context->read_drawable, &surface.window);
+    copy_tex_image(*context, 2, GL_TEXTURE_2D, surface.mipmap_level,
+                   surface.texture_format == EGL_TEXTURE_RGB ? GL_RGB : GL_RGBA, 0, 0, surface.window.frame.width(),
+                   surface.window.frame.height(), 0);
+    context->read_drawable = read;
+    ++context->revision;
+  }
+  surface.is_bound_to_texture = Binds;
+  return done();
 }
 
 EGLBoolean BindAPI(EGLenum api) {
@@ -542,11 +567,10 @@ EGLContext CreateContext(EGLDisplay handle, EGLConfig config, EGLContext share, 
   if (!read_list(list, wishes)) return Failed{EGL_BAD_ATTRIBUTE};
   const EGLAttrib major = wishes[EGL_CONTEXT_MAJOR_VERSION], minor = wishes[EGL_CONTEXT_MINOR_VERSION];
   const EGLAttrib flags = wishes[EGL_CONTEXT_FLAGS_KHR];
-  constexpr EGLAttrib kOfEither = EGL_CONTEXT_OPENGL_DEBUG_BIT_KHR | EGL_CONTEXT_OPENGL_ROBUST_ACCESS_BIT_KHR;
-  if ((flags & ~(is_es ? kOfEither : kOfEither | EGL_CONTEXT_OPENGL_FORWARD_COMPATIBLE_BIT_KHR)) != 0)
-    return Failed{EGL_BAD_ATTRIBUTE};
   constexpr EGLAttrib kForwardOrRobust =
       EGL_CONTEXT_OPENGL_FORWARD_COMPATIBLE_BIT_KHR | EGL_CONTEXT_OPENGL_ROBUST_ACCESS_BIT_KHR;
+  if ((flags & ~(EGL_CONTEXT_OPENGL_DEBUG_BIT_KHR | (is_es ? 0 : kForwardOrRobust))) != 0)
+    return Failed{EGL_BAD_ATTRIBUTE};
   if (major != 1 || minor < 0 || minor > (is_es ? 0 : 5) || (flags & kForwardOrRobust) != 0 ||
       wishes[EGL_CONTEXT_OPENGL_ROBUST_ACCESS] != EGL_FALSE ||
       (!is_es && wishes[EGL_CONTEXT_OPENGL_FORWARD_COMPATIBLE] != EGL_FALSE))
@@ -763,7 +787,7 @@ void* get_proc_address(const char* name) {
   };
   static const Named table[] = {
       {"eglBindAPI", address(BindAPI)},
-      {"eglBindTexImage", address(TexImage)},
+      {"eglBindTexImage", address(TexImage<true>)},
       {"eglChooseConfig", address(ChooseConfig)},
       {"eglClientWaitSync", address(ClientWaitSync)},
       {"eglCopyBuffers", address(CopyBuffers)},
@@ -772,8 +796,10 @@ void* get_proc_address(const char* name) {
       {"eglCreatePbufferFromClientBuffer", address(CreatePbufferFromClientBuffer)},
       {"eglCreatePbufferSurface", address(CreatePbufferSurface)},
       {"eglCreatePixmapSurface", address(CreatePixmapSurface)},
-      {"eglCreatePlatformPixmapSurface", address(CreatePlatformSurface<DrawableKind::pixmap>)},
-      {"eglCreatePlatformWindowSurface", address(CreatePlatformSurface<DrawableKind::window>)},
+      {"eglCreatePlatformPixmapSurface", address(CreatePlatformSurface<DrawableKind::pixmap, EGLAttrib>)},
+      {"eglCreatePlatformPixmapSurfaceEXT", address(CreatePlatformSurface<DrawableKind::pixmap, EGLint>)},
+      {"eglCreatePlatformWindowSurface", address(CreatePlatformSurface<DrawableKind::window, EGLAttrib>)},
+      {"eglCreatePlatformWindowSurfaceEXT", address(CreatePlatformSurface<DrawableKind::window, EGLint>)},
       {"eglCreateSync", address(CreateSync)},
       {"eglCreateWindowSurface", address(CreateWindowSurface)},
       {"eglDestroyContext", address(DestroyContext)},
@@ -790,7 +816,7 @@ void* get_proc_address(const char* name) {
       {"eglQueryContext", address(QueryContext)},
       {"eglQueryString", address(QueryString)},
       {"eglQuerySurface", address(QuerySurface)},
-      {"eglReleaseTexImage", address(TexImage)},
+      {"eglReleaseTexImage", address(TexImage<false>)},
       {"eglReleaseThread", address(ReleaseThread)},
       {"eglSurfaceAttrib", address(SurfaceAttrib)},
       {"eglSwapBuffers", address(SwapBuffers)},

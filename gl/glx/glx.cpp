@@ -81,9 +81,9 @@ constexpr Attribute kAttributes[] = {
     {GLX_TRANSPARENT_GREEN_VALUE, Rule::not_compared, kAny, constant<0>},
     {GLX_TRANSPARENT_BLUE_VALUE, Rule::not_compared, kAny, constant<0>},
     {GLX_TRANSPARENT_ALPHA_VALUE, Rule::not_compared, kAny, constant<0>},
-    {GLX_MAX_PBUFFER_WIDTH, Rule::not_compared, kAny, constant<kLargestSide>},
-    {GLX_MAX_PBUFFER_HEIGHT, Rule::not_compared, kAny, constant<kLargestSide>},
-    {GLX_MAX_PBUFFER_PIXELS, Rule::not_compared, kAny, constant<kLargestSide * kLargestSide>},
+    {GLX_MAX_PBUFFER_WIDTH, Rule::not_compared, kAny, [](const FbConfig&) { return largest_side(); }},
+    {GLX_MAX_PBUFFER_HEIGHT, Rule::not_compared, kAny, [](const FbConfig&) { return largest_side(); }},
+    {GLX_MAX_PBUFFER_PIXELS, Rule::not_compared, kAny, [](const FbConfig&) { return largest_side() * largest_side(); }},
     {GLX_VISUAL_ID, Rule::not_compared, kAny,
      [](const FbConfig& c) { return static_cast<int>(c.format.visual.visualid); }},
 };
@@ -501,9 +501,10 @@ GLXPbuffer CreatePbuffer(Display* display, GLXFBConfig handle, const int* list) 
     if (wish == wishes.end() || list[1] < 0) return x_error(display, BadValue, 0, kMinor), 0;
     wish->second = list[1];
   }
-  int width = std::max(wishes[GLX_PBUFFER_WIDTH], 1), height = std::max(wishes[GLX_PBUFFER_HEIGHT], 1);
   const bool largest = wishes[GLX_LARGEST_PBUFFER] != 0;
-  for (;; width = (width + 1) / 2, height = (height + 1) / 2) {
+  const int most = largest ? largest_side() : INT_MAX;
+  int width = std::clamp(wishes[GLX_PBUFFER_WIDTH], 1, most), height = std::clamp(wishes[GLX_PBUFFER_HEIGHT], 1, most);
+  for (;; width -= width / 2, height -= height / 2) {
     try {
       auto drawable = std::make_shared<GlxDrawable>(DrawableKind::pbuffer, *config, 0, width, height);
       drawable->preserved = wishes[GLX_PRESERVED_CONTENTS] != 0;

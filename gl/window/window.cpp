@@ -14,6 +14,10 @@
 #undef min
 #undef max
 
+/// A thread of the program may draw while another ends the process, so nothing static of this library (the symbol does not
+/// leave it) is ever destroyed.
+extern "C" int __cxa_atexit(void (*)(void*), void*, void*) { return 0; }
+
 namespace halfplane::gl {
 namespace {
 
@@ -71,6 +75,8 @@ const Options& options() {
   static const Options options = options_from_environment();
   return options;
 }
+
+int largest_side() { return std::min(options().config.guard_band, kLargestSide); }
 
 bool answers(const char* system) {
   if (const char* path = std::getenv("HALFPLANE_GL_ANSWERED"); path != nullptr && *path != 0)

@@ -18,6 +18,9 @@ namespace halfplane::gl {
 /// Options of this process, read once. Throws InputError.
 [[nodiscard]] const Options& options();
 
+/// Pixels along a side of a drawable, at most: those that window coordinates reach.
+[[nodiscard]] int largest_side();
+
 /// Whether the options can be read; says on stderr what is wrong with them. Writes `system` to the file that the environment
 /// variable HALFPLANE_GL_ANSWERED names, so that `halfplane run` knows which libraries were loaded.
 [[nodiscard]] bool answers(const char* system);
