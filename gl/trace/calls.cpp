@@ -10,8 +10,6 @@
 #include <tuple>
 #include <utility>
 
-#include "call_names.hpp"
-
 namespace halfplane::gl {
 namespace {
 
