@@ -10,10 +10,12 @@
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <string>
 
 #include "model/capture/capture.hpp"
 #include "model/engines/functional.hpp"
+#include "sim/scene/random_state.hpp"
 
 namespace halfplane::gl {
 namespace {
@@ -241,6 +243,72 @@ TEST(GlFrame, BadDrawsAreDroppedAlone) {
   draw_some(bad, 0.0);
   draw_some(good, 0.0);
   expect_same(bad.picture(), good.picture(), "the frame after it");
+}
+
+/// Any states, topologies and coordinates, looks on the way, frames that go on: every capture is its picture.
+TEST(GlFrame, WhateverIsDrawnIsWhatIsSaved) {
+  std::mt19937_64 random(11);
+  const Chooser choose = chooser(random);
+  const auto one_in = [&](std::uint32_t n) { return choose(n) == 0; };
+  const StateRows rows = states_but({"texture"});
+  const auto coordinate = [&](bool is_window) -> double {
+    constexpr std::array kOdd{0.0,
+                              1e5,
+                              -1e12,
+                              1e40,
+                              1e303,
+                              std::numeric_limits<double>::infinity(),
+                              std::numeric_limits<double>::quiet_NaN()};
+    if (one_in(40)) return kOdd[choose(kOdd.size())];
+    return is_window ? choose(900) / 10.0 - 10 : choose(400) / 100.0 - 2;
+  };
+  for (const char* config :
+       {"embedded", "full stencil.bits=8", "tiny target.width=80 target.height=60 guard.band=128"}) {
+    const Folder folder;
+    const Options options = saving(folder, config);
+    Frame frame(options, kWidth, kHeight);
+    for (int number = 0; number < 40; ++number) {
+      const std::uint32_t commands = choose(12);
+      for (std::uint32_t i = 0; i < commands; ++i) {
+        halfplane::State state;
+        for (int n = one_in(3) ? 0 : 3; n > 0; --n) {  // a few states that are not the default, or many
+          const DrawState& row = *rows[choose(static_cast<std::uint32_t>(rows.size()))];
+          row.set(state, random_value(row, choose));
+        }
+        if (one_in(6)) state = random_state(state, rows, choose);
+        if (i == 0 || one_in(4)) {
+          Clear clear;
+          if (!one_in(4)) clear.color = {{coordinate(true), 50, 100, 255}};
+          if (!one_in(4)) clear.depth = one_in(2) ? 1.0 : coordinate(false);
+          if (!one_in(4)) clear.stencil = static_cast<std::uint8_t>(choose(3));
+          frame.clear(one_in(3) ? state : halfplane::State{}, clear);
+        }
+        if (one_in(3)) state.texture = frame.texture(choose(4), [] { return chequer(8); });
+        const bool is_window = state.space == Space::window;
+        std::vector<Vertex> vertices(1 + choose(12));
+        for (Vertex& v : vertices)
+          v = {coordinate(is_window),
+               coordinate(is_window),
+               is_window ? choose(11) / 10.0 : coordinate(false),
+               one_in(3) ? coordinate(false) : 1.0,
+               {coordinate(true), choose(256) * 1.0, 0, choose(256) * 1.0},
+               coordinate(false),
+               coordinate(false)};
+        std::vector<std::uint32_t> indices(choose(20));
+        for (std::uint32_t& index : indices)
+          index = one_in(20) ? kRestart : choose(static_cast<std::uint32_t>(vertices.size()));
+        frame.draw(state, static_cast<Topology>(choose(7)), vertices, indices);
+        if (one_in(8)) (void)frame.picture();
+        if (one_in(8)) (void)frame.samples_passed();
+      }
+      const Framebuffer picture = frame.picture();
+      frame.end();
+      const Scene saved = last_capture(folder);
+      expect_same(render_functional(saved, options.config).frame, picture,
+                  std::string(config) + ", frame " + std::to_string(number) + " of " + folder.file(""));
+      if (::testing::Test::HasFailure()) return;
+    }
+  }
 }
 
 TEST(GlFrame, TexturesAreMadeOnceAndKeptWhileTheyAreUsed) {
