@@ -43,20 +43,17 @@ bool has_buffer(Context& context, GLenum mode, bool is_single) {
 }
 bool is_single(const Drawable* drawable) { return drawable != nullptr && drawable->single_buffered; }
 
-/// The whole target within the scissor of `state`.
-void fill(Context& context, halfplane::State state, const Vec4& color) {
-  Frame& frame = context.drawable->frame;
-  state.space = Space::window;
-  state.depth_test = DepthFunc::always;
-  state.depth_write = false;
-  std::vector<Vertex> corners;
-  for (const int y : {0, frame.height()})
-    for (const int x : {0, frame.width()}) {
-      Vertex& v = corners.emplace_back(Vertex{static_cast<double>(x), static_cast<double>(y)});
-      std::ranges::transform(color, v.rgba.begin(), [](double c) { return 255 * c; });
-    }
-  static constexpr std::array<std::uint32_t, 4> kStrip{0, 1, 2, 3};
-  frame.draw(state, Topology::triangle_strip, corners, kStrip);
+/// The state of masked clears: all pixels in the scissor.
+halfplane::State fill_state(Context& context) {
+  halfplane::State state = all_pixels();
+  state.scissor = clear_state(context).scissor;
+  return state;
+}
+
+std::array<double, 4> in_bytes(const Vec4& color) {
+  std::array<double, 4> rgba{};
+  std::ranges::transform(color, rgba.begin(), [](double c) { return 255 * c; });
+  return rgba;
 }
 
 /// Pixels of the drawable in the scissor, as columns and rows from the bottom left.
@@ -98,10 +95,7 @@ void return_accumulated(Context& context, float value) {
       return static_cast<std::uint8_t>(std::lround(held(static_cast<double>(c * value)) * 255));
     });
   });
-  halfplane::State state = clear_state(context);
-  state.space = Space::window;
-  state.depth_test = DepthFunc::always;
-  state.depth_write = false;
+  halfplane::State state = fill_state(context);
   state.color_mask = context.state.color.write;
   state.dither = context.state.color.dither && context.drawable->frame.options().config.dither_units != 0;
   for (int y = 0; y < image.height; y += kLargestTexture)
@@ -217,16 +211,15 @@ void clear(Context& context, GLbitfield mask) {
   if ((mask & ~kAll) != 0) return context.fail(GL_INVALID_VALUE);
   if (context.render_mode != GL_RENDER || context.drawable == nullptr) return;
   const gl::State& from = context.state;
-  const halfplane::State state = clear_state(context);
   Clear what;
   const auto writes = std::ranges::count(from.color.write, true);
   if ((mask & GL_COLOR_BUFFER_BIT) != 0 && from.color.draw_buffer != GL_NONE && writes > 0) {
     if (writes == 4) {
-      std::ranges::transform(from.color.clear, what.color.emplace().begin(), [](double c) { return 255 * c; });
+      what.color = in_bytes(from.color.clear);
     } else {
-      halfplane::State masked = state;
+      halfplane::State masked = fill_state(context);
       masked.color_mask = from.color.write;
-      fill(context, masked, from.color.clear);
+      fill_target(context, masked, in_bytes(from.color.clear));
     }
   }
   if ((mask & GL_DEPTH_BUFFER_BIT) != 0 && from.depth.write) what.depth = from.depth.clear;
@@ -236,13 +229,13 @@ void clear(Context& context, GLbitfield mask) {
     if (bits == 255) {
       what.stencil = value;
     } else {
-      halfplane::State masked = state;
+      halfplane::State masked = fill_state(context);
       masked.color_write = false;
       masked.stencil = Stencil{.reference = value, .write_mask = bits, .passes = StencilOp::replace};
-      fill(context, masked, {});
+      fill_target(context, masked, {});
     }
   }
-  if (what.color || what.depth || what.stencil) context.drawable->frame.clear(state, what);
+  if (what.color || what.depth || what.stencil) context.drawable->frame.clear(clear_state(context), what);
   if ((mask & GL_ACCUM_BUFFER_BIT) == 0) return;
   std::array<float, 4> accumulated{};
   std::ranges::transform(from.accum.clear, accumulated.begin(), [](double c) { return static_cast<float>(c); });

@@ -207,7 +207,59 @@ void draw_channels(Context& context, halfplane::State state, Topology topology, 
 /// bit 1 that of stored zeros.
 unsigned stored_operation(unsigned op, bool is_one) { return (is_one ? op : op >> 2) & 3; }
 
+/// A logic operation on any colours: the draw replaces what is stored and marks its pixels by an alpha of 0, the host puts
+/// both together. Where a draw comes to a pixel more than once, the last time counts.
+void draw_through_host(Context& context, halfplane::State state, Topology topology, const std::vector<Vertex>& vertices,
+                       std::span<const std::uint32_t> indices) {
+  Frame& frame = context.drawable->frame;
+  frame.missing("logic operations on colours that are not all zeros or ones", "the host carries them out");
+  const unsigned op = context.state.color.logic_func - GL_CLEAR;
+  const std::array<bool, 4> mask = state.color_mask;
+  const auto before = frame.picture().color;
+  halfplane::State mark = all_pixels();
+  mark.color_mask = {false, false, false, true};
+  fill_target(context, mark, {255, 255, 255, 255});
+  state.color_mask.fill(true);
+  state.blend = BlendFactors{BlendFactor::one, BlendFactor::zero, BlendFactor::zero, BlendFactor::zero};
+  frame.draw(state, topology, vertices, indices);
+  const Framebuffer& picture = frame.picture();
+  TexelImage image{picture.width, picture.height, {}};
+  for (int y = picture.height - 1; y >= 0; --y)
+    for (int x = 0; x < picture.width; ++x) {
+      const std::size_t at = picture.at(x, y);
+      const auto stored = widen_color<std::uint32_t>(ColorFormat::rgba8888, before[at]);
+      auto source = widen_color<std::uint32_t>(ColorFormat::rgba8888, picture.color[at]);
+      const bool is_drawn = source[3] == 0;
+      source[3] = static_cast<std::uint32_t>(vertices.front().rgba[3]);
+      Texel& result = image.texel.emplace_back();
+      for (std::size_t c = 0; c < 4; ++c)
+        result[c] = is_drawn && mask[c] ? operated(op, source[c], stored[c]) : static_cast<std::uint8_t>(stored[c]);
+    }
+  for (int top = 0; top < image.height; top += kLargestTexture)
+    for (int left = 0; left < image.width; left += kLargestTexture)
+      draw_texels(context, all_pixels(), part_of(image, left, top), left, top, 1, 1, 0, 1, false);
+}
+
 }  // namespace
+
+halfplane::State all_pixels() {
+  halfplane::State state;
+  state.space = Space::window;
+  state.origin = Origin::bottom_left;
+  state.depth_test = DepthFunc::always;
+  state.depth_write = false;
+  return state;
+}
+
+void fill_target(Context& context, const halfplane::State& state, const std::array<double, 4>& rgba) {
+  Frame& frame = context.drawable->frame;
+  std::vector<Vertex> corners;
+  for (const int y : {0, frame.height()})
+    for (const int x : {0, frame.width()})
+      corners.push_back({static_cast<double>(x), static_cast<double>(y), 0, 1, rgba});
+  static constexpr std::array<std::uint32_t, 4> kStrip{0, 1, 2, 3};
+  frame.draw(state, Topology::triangle_strip, corners, kStrip);
+}
 
 halfplane::State clear_state(Context& context) {
   halfplane::State state;
@@ -251,7 +303,7 @@ std::optional<halfplane::State> hardware_state(Context& context, DrawKind kind, 
   if (kind == DrawKind::lines) {
     state.smooth = from.line.smooth;
     const double width = held(from.line.width, 1, widest);
-    state.line_width = from.line.smooth ? width : std::round(width);
+    state.line_width = from.line.smooth ? width : std::rint(width);
   }
   if (kind == DrawKind::points) {
     state.smooth = from.point.smooth;
@@ -292,8 +344,11 @@ void draw_in(Context& context, halfplane::State state, Topology topology, std::v
   const auto is_black_or_white = [&](const Vertex& v) {
     return v.rgba == source && std::ranges::all_of(source, [](double c) { return c == 0 || c == 255; });
   };
-  if (!is_same_for_all && !(is_plain && std::ranges::all_of(vertices, is_black_or_white)))
+  if (!is_same_for_all && !(is_plain && std::ranges::all_of(vertices, is_black_or_white))) {
+    if (frame.options().config.color_format == ColorFormat::rgba8888)
+      return draw_through_host(context, state, topology, vertices, indices);
     frame.missing("logic operations on colours that are not all zeros or ones", "the colour counts as the nearer");
+  }
   state.texture.reset();
   state.fog.reset();
   std::array<bool, 4> replaced{}, inverted{};

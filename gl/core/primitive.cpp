@@ -39,6 +39,13 @@ double fog_factor(const FogState& fog, double distance) {
   return limited(std::exp(fog.mode == GL_EXP ? -x : -x * x));
 }
 
+/// Whether fog between two vertices is not nearly linear.
+bool fog_bends(const FogState& fog, const ShadedVertex& a, const ShadedVertex& b) {
+  constexpr double kMost = 8 / 255.0;
+  if (a.clip[3] <= 0 || b.clip[3] <= 0) return true;  // the distance has a least value between them
+  return std::abs(fog_factor(fog, a.fog_distance) - fog_factor(fog, b.fog_distance)) > kMost;
+}
+
 /// What decides how a batch of vertices is drawn.
 struct BatchTraits {
   bool has_one_color = true, has_one_w = true, has_one_q = true, has_positive_q = true;
@@ -256,14 +263,18 @@ std::array<Element, n> mix(const std::array<Element, n>& a, const std::array<Ele
 }
 
 ShadedVertex mix(const ShadedVertex& a, const ShadedVertex& b, double t) {
-  return {.eye = mix(a.eye, b.eye, t),
-          .clip = mix(a.clip, b.clip, t),
-          .color = mix(a.color, b.color, t),
-          .secondary = mix(a.secondary, b.secondary, t),
-          .tex_coord = mix(a.tex_coord, b.tex_coord, t),
-          .fog_distance = std::lerp(a.fog_distance, b.fog_distance, t),
-          .point_size = std::lerp(a.point_size, b.point_size, t),
-          .edge_flag = a.edge_flag};
+  // The distance of a line that passes the eye has no sign: it is that of the mixed place, unless it is a coordinate.
+  const auto is_depth = [](const ShadedVertex& v) { return v.fog_distance == std::abs(v.eye[2]); };
+  ShadedVertex out{.eye = mix(a.eye, b.eye, t),
+                   .clip = mix(a.clip, b.clip, t),
+                   .color = mix(a.color, b.color, t),
+                   .secondary = mix(a.secondary, b.secondary, t),
+                   .tex_coord = mix(a.tex_coord, b.tex_coord, t),
+                   .fog_distance = std::lerp(a.fog_distance, b.fog_distance, t),
+                   .point_size = std::lerp(a.point_size, b.point_size, t),
+                   .edge_flag = a.edge_flag};
+  if (is_depth(a) && is_depth(b)) out.fog_distance = std::abs(out.eye[2]);
+  return out;
 }
 
 /// Inside: the product with a vertex's member is not negative.
@@ -472,7 +483,7 @@ class Pipeline {
 
   void line(Vertices vertices, bool resets) {
     if (resets) stipple_at_ = 0;
-    if (!is_fed_ && !is_textured_ && !state_.line.stipple)
+    if (!is_fed_ && !is_textured_ && !state_.line.stipple && !fog_bends(vertices[0], vertices[1]))
       return add({.kind = DrawKind::lines, .topology = Topology::lines}, vertices);
     // With a pixel around it, no pixel is lost at the border, and the scissor drops the rest.
     if (!to_window(vertices, is_fed_ ? 0 : 1)) return;
@@ -526,12 +537,24 @@ class Pipeline {
     return v;
   }
 
+  /// Fog is the model's at the ends of a line: this one is halved until that shows no more.
+  void fogged_piece(const ShadedVertex& a, const ShadedVertex& b, int halvings) {
+    if (halvings == 0 || !fog_bends(a, b)) return add({DrawKind::lines, Topology::lines, true, false, 1}, {a, b});
+    const ShadedVertex middle = window_mix(a, b, 0.5);
+    fogged_piece(a, middle, halvings - 1);
+    fogged_piece(middle, b, halvings - 1);
+  }
+
+  [[nodiscard]] bool fog_bends(const ShadedVertex& a, const ShadedVertex& b) const {
+    return state_.fog.enabled && !is_fed_ && gl::fog_bends(state_.fog, a, b);
+  }
+
   /// A line in the window; with a texture as wide along the minor axis as lines are, which covers the same pixels between
   /// its ends.
   void piece(const ShadedVertex& a, const ShadedVertex& b, std::size_t major) {
-    if (!is_textured_) return add({DrawKind::lines, Topology::lines, true, false, 1}, {a, b});
+    if (!is_textured_) return fogged_piece(a, b, kFogHalvings);
     if (state_.line.smooth) missing("smooth lines with a texture", "they are drawn without antialiasing");
-    const double half = std::round(std::clamp<double>(state_.line.width, 1, kLargestLine)) / 2;
+    const double half = std::rint(std::clamp<double>(state_.line.width, 1, kLargestLine)) / 2;
     std::array<double, 2> across{};
     across[1 - major] = half;
     rectangle(DrawKind::lines, {a, b}, {0, 0}, across);
@@ -554,13 +577,15 @@ class Pipeline {
  public:
   [[nodiscard]] double point_size(const ShadedVertex& v) const {
     const double size = v.point_size > 1 ? std::min<double>(v.point_size, kLargestPoint) : 1;
-    return state_.point.smooth ? size : std::round(size);
+    return state_.point.smooth ? size : std::rint(size);
   }
 
  private:
   void missing(const char* what, const char* instead) const {
     if (context_.drawable != nullptr) context_.drawable->frame.missing(what, instead);
   }
+
+  static constexpr int kFogHalvings = 6;
 
   Context& context_;
   const gl::State& state_;
@@ -624,7 +649,8 @@ Shape shape_of(GLenum mode) {
   return mode == GL_POINTS ? Shape::point : mode <= GL_LINE_STRIP ? Shape::line : Shape::polygon;
 }
 
-bool is_taken_apart(const Context& context, Shape shape, std::span<const ShadedVertex> vertices) {
+bool is_taken_apart(const Context& context, Shape shape, std::span<const ShadedVertex> vertices,
+                    std::span<const std::uint32_t> indices) {
   const gl::State& state = context.state;
   const auto is_set = [](bool b) { return b; };
   if (context.render_mode != GL_RENDER || std::ranges::any_of(state.transform.clip_enabled, is_set)) return true;
@@ -636,6 +662,9 @@ bool is_taken_apart(const Context& context, Shape shape, std::span<const ShadedV
            std::ranges::any_of(vertices, is_two_sided);
   }
   if (is_textured(context)) return true;
+  const auto bends = [&](std::uint32_t a, std::uint32_t b) { return fog_bends(state.fog, vertices[a], vertices[b]); };
+  if (shape == Shape::line && state.fog.enabled && std::ranges::adjacent_find(indices, bends) != indices.end())
+    return true;
   const auto other_size = [&](const ShadedVertex& v) { return v.point_size != vertices.front().point_size; };
   return shape == Shape::line ? state.line.stipple : std::ranges::any_of(vertices, other_size);
 }
@@ -649,7 +678,7 @@ void draw_primitives(Context& context, GLenum mode, std::span<const ShadedVertex
   const Assembly& assembly = kAssemblies[mode];
   const Shape shape = shape_of(mode);
   Pipeline pipeline(context);
-  if (!is_taken_apart(context, shape, vertices)) {
+  if (!is_taken_apart(context, shape, vertices, indices)) {
     Group group{.topology = assembly.topology.value_or(Topology::triangles)};
     if (shape == Shape::line) group.kind = DrawKind::lines;
     if (shape == Shape::point) {

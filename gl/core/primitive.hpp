@@ -42,6 +42,10 @@ enum class DrawKind { triangles, lines, points, rectangle };
                                                              TextureUse& use);
 /// As hardware_state(), for a clear: scissor and masks.
 [[nodiscard]] halfplane::State clear_state(Context& context);
+/// For what the host writes: in the window, without tests, depth and stencil.
+[[nodiscard]] halfplane::State all_pixels();
+/// Fills the target in such a state, colours 0...255.
+void fill_target(Context& context, const halfplane::State& state, const std::array<double, 4>& rgba);
 /// Draws in the state as it is, but for the logic operation.
 void draw_in(Context& context, halfplane::State state, Topology topology, std::vector<Vertex> vertices,
              std::span<const std::uint32_t> indices);

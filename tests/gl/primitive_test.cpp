@@ -343,6 +343,43 @@ TEST(GlFragment, EveryLogicOperationOfPixels) {
   }
 }
 
+TEST(GlFragment, LogicOperationsOfAnyColors) {
+  Picture picture;
+  clear_color(picture.context, 0x53 / 255.0, 0x3c / 255.0, 0xc3 / 255.0, 0);
+  clear(picture.context, GL_COLOR_BUFFER_BIT);
+  enable(picture.context, GL_COLOR_LOGIC_OP, true);
+  logic_op(picture.context, GL_XOR);
+  color_mask(picture.context, GL_TRUE, GL_TRUE, GL_FALSE, GL_TRUE);
+  set_color(picture.context, {0x35, 0xf0, 0x0f});
+  picture.draw(GL_QUADS, {{8, 8}, {16, 8}, {16, 16}, {8, 16}});
+  EXPECT_EQ(picture.rgb(8, 8), (Rgb{0x66, 0xcc, 0xc3}));
+  EXPECT_EQ(picture.rgb(16, 15), (Rgb{0x53, 0x3c, 0xc3}));
+  picture.draw(GL_QUADS, {{8, 8}, {16, 8}, {16, 16}, {8, 16}});
+  EXPECT_EQ(picture.rgb(8, 8), (Rgb{0x53, 0x3c, 0xc3}));
+  EXPECT_EQ(picture.pixel(20, 20)[3], 0);
+}
+
+TEST(GlPrimitive, FogBendsAlongALine) {
+  Picture picture;
+  Context& context = picture.context;
+  matrix_mode(context, GL_PROJECTION);
+  load_identity(context);
+  frustum(context, -1, 1, -1, 1, 1, 1000);
+  matrix_mode(context, GL_MODELVIEW);
+  enable(context, GL_FOG, true);
+  fog(context, GL_FOG_MODE, {.value = {GL_EXP}});
+  fog(context, GL_FOG_DENSITY, {.value = {0.1}});
+  picture.changed();
+  begin(context, GL_LINES);  // on the floor, from behind the eye far away
+  vertex(context, 0.01, -1, 5, 1);
+  vertex(context, 0.01, -1, -500, 1);
+  end(context);
+  for (int y = 2; y < 30; ++y) {
+    const double distance = 32 / (32 - y - 0.5);
+    EXPECT_NEAR(picture.rgb(32, y)[0], 255 * std::exp(-0.1 * distance), 3) << y;
+  }
+}
+
 TEST(GlFragment, ClearsObeyMasksAndScissor) {
   Picture picture;
   Context& context = picture.context;
