@@ -168,7 +168,7 @@ void flush(Context&);
 
 // Pixels: list but for read_pixels and pixel_store (pixels.cpp). An Image is what unpack() gave when the command was issued.
 void draw_pixels(Context&, std::shared_ptr<const Image> image);
-void bitmap(Context&, std::shared_ptr<const Bitmap> bitmap, double x_origin, double y_origin, double x_move,
+void bitmap(Context&, const std::shared_ptr<const Bitmap>& bitmap, double x_origin, double y_origin, double x_move,
             double y_move);
 void copy_pixels(Context&, GLint x, GLint y, GLsizei width, GLsizei height, GLenum type);
 void read_pixels(Context&, GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type, void* pixels);
@@ -176,7 +176,7 @@ void draw_tex(Context&, double x, double y, double z, double width,
               double height);  // GL_OES_draw_texture (draw_tex.cpp)
 void pixel_zoom(Context&, double x, double y);
 void pixel_transfer(Context&, GLenum pname, double value);
-void pixel_map(Context&, GLenum map, std::shared_ptr<const std::vector<float>> values);
+void pixel_map(Context&, GLenum map, const std::shared_ptr<const std::vector<float>>& values);
 void pixel_store(Context&, GLenum pname, double value);
 /// The pixels of a rectangle of the read drawable as unpack() would give them: GL_RGBA, GL_DEPTH_COMPONENT or
 /// GL_STENCIL_INDEX. Outside the window: zeros.
@@ -198,7 +198,7 @@ void tex_env(Context&, GLenum target, GLenum pname, Params params);
 void tex_gen(Context&, GLenum coord, GLenum pname, Params params);
 void active_texture(Context&, GLenum unit);
 void bind_texture(Context&, GLenum target, GLuint name);
-void prioritize_textures(Context&, std::shared_ptr<const std::vector<std::pair<GLuint, double>>> priorities);
+void prioritize_textures(Context&, const std::shared_ptr<const std::vector<std::pair<GLuint, double>>>& priorities);
 // Not list.
 void gen_textures(Context&, GLsizei n, GLuint* names);
 void delete_textures(Context&, GLsizei n, const GLuint* names);

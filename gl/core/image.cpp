@@ -119,7 +119,7 @@ std::uint32_t encoded(float value, const PixelType& type, bool is_index) {
   }
   const double in_range = held(value);
   if (type.kind == TypeKind::real) return std::bit_cast<std::uint32_t>(static_cast<float>(in_range));
-  if (!is_signed) return static_cast<std::uint32_t>(in_range * largest(bits) + 0.5);
+  if (!is_signed) return static_cast<std::uint32_t>(std::llround(in_range * largest(bits)));
   return static_cast<std::uint32_t>(static_cast<std::int64_t>(std::floor((in_range * largest(bits) - 1) / 2 + 0.5)));
 }
 
@@ -289,7 +289,8 @@ void pack(const Context& context, const Image& image, GLenum format, GLenum type
          } else if (t.is_packed()) {
            std::uint32_t word = 0;
            for (std::size_t i = 0; i < static_cast<std::size_t>(f.components); ++i)
-             word |= static_cast<std::uint32_t>(held(take(from, i)) * largest(t.bits[i]) + 0.5) << shift_of(t, i);
+             word |= static_cast<std::uint32_t>(std::llround(held(take(from, i)) * largest(t.bits[i])))
+                     << shift_of(t, i);
            save(at, t.bytes, store.swap_bytes, word);
          } else {
            for (std::size_t i = 0; i < static_cast<std::size_t>(f.components); ++i, at += t.bytes)

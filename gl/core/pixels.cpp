@@ -194,8 +194,8 @@ void draw_pixels(Context& context, std::shared_ptr<const Image> image) {
   draw_image(context, *transferred(context, std::move(image)), 0, 0);
 }
 
-void bitmap(Context& context, std::shared_ptr<const Bitmap> bitmap, double x_origin, double y_origin, double x_move,
-            double y_move) {
+void bitmap(Context& context, const std::shared_ptr<const Bitmap>& bitmap, double x_origin, double y_origin,
+            double x_move, double y_move) {
   RasterPosition& raster = context.state.current.raster;
   if (!raster.valid) return;
   if (!feed_raster(context, GL_BITMAP_TOKEN) && context.drawable != nullptr && !bitmap->bit.empty()) {
@@ -274,7 +274,7 @@ void pixel_transfer(Context& context, GLenum pname, double value) {
   }
 }
 
-void pixel_map(Context& context, GLenum map, std::shared_ptr<const std::vector<float>> values) {
+void pixel_map(Context& context, GLenum map, const std::shared_ptr<const std::vector<float>>& values) {
   if (map < GL_PIXEL_MAP_I_TO_I || map > GL_PIXEL_MAP_A_TO_A) return context.fail(GL_INVALID_ENUM);
   const bool is_of_indices = map <= GL_PIXEL_MAP_I_TO_A, holds_indices = map <= GL_PIXEL_MAP_S_TO_S;
   if (values == nullptr || values->empty() || (is_of_indices && !std::has_single_bit(values->size())))

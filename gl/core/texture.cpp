@@ -327,7 +327,8 @@ bool is_next_level(const TextureImage& image, const TextureImage& larger) {
 
 Texel texel_of(const std::array<float, 4>& color) {
   Texel texel{};
-  for (std::size_t c = 0; c < 4; ++c) texel[c] = static_cast<std::uint8_t>(held(color[c]) * 255 + 0.5);
+  for (std::size_t c = 0; c < 4; ++c)
+    texel[c] = static_cast<std::uint8_t>(static_cast<int>(held(color[c]) * 510 + 1) / 2);
   return texel;
 }
 
@@ -470,7 +471,8 @@ void bind_texture(Context& context, GLenum target, GLuint name) {
   context.bound_textures[unit][index] = std::move(texture);
 }
 
-void prioritize_textures(Context& context, std::shared_ptr<const std::vector<std::pair<GLuint, double>>> priorities) {
+void prioritize_textures(Context& context,
+                         const std::shared_ptr<const std::vector<std::pair<GLuint, double>>>& priorities) {
   for (const auto& [name, priority] : *priorities)
     if (const auto texture = name == 0 ? nullptr : named_texture(*context.shared, name, 0, false))
       texture->priority = held(priority);

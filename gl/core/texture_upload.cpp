@@ -178,6 +178,7 @@ Fit fit_texels(const Sampled& sampled) {
   for (std::size_t l = sampled.first; l <= sampled.last; ++l)
     for (std::size_t i = 0; i < sampled.texels(l); ++i) {
       const Texel texel = sampled.texel(l, i);
+      if (i != 0 && texel == sampled.texel(l, i - 1)) continue;
       const Result result = environment(sampled.unit, sampled.base, real(texel));
       for (std::size_t c = 0; c < 4; ++c) {
         const auto [a, b, is_exact] = result[c];
