@@ -42,8 +42,7 @@
   always_comb if (runs_q) begin
     if (waits_q) assume (fragment_valid_i && fragment_i == before_q);
     if (is_token) assume (fragment_i.mask == '0);
-    if (is_clear) assume (fragment_i.state.depth_test != raster_pkg::DEPTH_FUNC_EQUAL);  // clears of a bin:
-                                                                                         // cache_tags_data
+    if (is_clear) assume (fragment_i.state.depth_test != raster_pkg::DEPTH_FUNC_EQUAL);  // of bins: cache_tags_data
     assume (write_valid_i == (tested_valid_q && tested_q.mask != '0));
     assume ((write_i.passed & ~tested_q.mask) == '0);
     if (tested_q.state.depth_test == raster_pkg::DEPTH_FUNC_ALWAYS) assume (write_i.passed == tested_q.mask);
