@@ -1,8 +1,8 @@
-// What is interpolated over a primitive: the one list of planes. Plane 0 is depth, colours follow.
+// Attributes interpolated over a primitive: the one list of planes. Plane 0 is depth, colours follow.
 //
-// A plane is authored here and in what snaps its codes (host/viewport.cpp). From this list follow its widths
-// (widths.hpp), the arrays in the packets (packets.hpp), the tables and generate loops of the RTL (raster_pkg.hpp), and what
-// observer, random scenes and comparison loop over. Planes of one attribute are alike: they share its widths.
+// A plane is authored here and in the snap of its codes (host/viewport.cpp). From this list follow its widths
+// (widths.hpp), the arrays in the packets (packets.hpp), the tables and generate loops of the RTL (raster_pkg.hpp), and
+// the loops of observer, random scenes and comparison. Planes of one attribute share its widths.
 #pragma once
 
 #include <algorithm>
@@ -18,19 +18,19 @@ namespace halfplane {
 
 /// Whether the attribute itself is linear in the window, or its quotient by w.
 enum class Interpolation : std::uint8_t { affine, over_w };
-/// The vertex that a plane starts from: the first of the canonical order, or the one with the smallest 1/w.
+/// The vertex at which a plane starts: the first of the canonical order, or the one with the smallest 1/w.
 enum class BaseVertex : std::uint8_t { canonical, smallest_q };
-/// Where the codes of an attribute end.
+/// The buffer that stores the codes of an attribute.
 enum class StoredAs : std::uint8_t { nothing, depth, color };
 
-/// An attribute: one plane, or several that are alike.
+/// An attribute: one plane, or several with equal properties.
 struct Attribute {
-  std::string_view name;                 ///< of its widths: "depth code", "local depth"
-  std::array<std::string_view, 4> part;  ///< what its planes are called
+  std::string_view name;                 ///< base name of its widths: "depth code", "local depth"
+  std::array<std::string_view, 4> part;  ///< names of its planes
   int planes;                            ///< 1 to 4
-  int bits;                              ///< of a code, with its sign
-  std::string_view symbol;               ///< what docs/spec.md calls `bits` in a bound
-  int reciprocal_bits;                   ///< r: significant bits of the reciprocal that its gradients are made with
+  int bits;                              ///< bits of a code, with its sign
+  std::string_view symbol;               ///< symbol for `bits` in docs/spec.md
+  int reciprocal_bits;                   ///< r: significant bits of the reciprocal for its gradients
   int guard_bits;                        ///< l: fraction bits inside a tile
   bool is_signed = false;                ///< the codes have a sign
   bool is_clamped = true;                ///< to the range of the vertices' codes
@@ -40,9 +40,10 @@ struct Attribute {
 };
 
 inline constexpr int kMaxAttributes = 5, kMaxPlanes = 12;
-inline constexpr std::size_t kDepthPlane = 0, kColorPlane = 1;  ///< the first colour: red; green, blue and alpha behind
+inline constexpr std::size_t kDepthPlane = 0, kColorPlane = 1;  ///< the first colour: red; then green, blue and alpha
 
-/// What the planes over w share, whatever the configuration: l, and how many bits less than Q the reciprocal of the area has.
+/// Constants of the planes over w in every configuration: l, and the difference in bits between Q and the reciprocal of
+/// the area.
 inline constexpr int kPerspectiveGuardBits = 4, kPerspectiveReciprocalLess = 2;
 /// k_P of a colour over w.
 inline constexpr int kColorNarrowBits = 13;
@@ -50,7 +51,7 @@ inline constexpr int kColorNarrowBits = 13;
 /// N_P of a colour over w: its P has no more bits than Q.
 [[nodiscard]] constexpr int color_over_w_bits(const Config& config) { return std::min(config.perspective_bits, 18); }
 
-/// N_P of a normal over w: two bits more than a colour's, and no more than Q has.
+/// N_P of a normal over w: two bits more than a colour's, and at most as many as Q.
 [[nodiscard]] constexpr int normal_over_w_bits(const Config& config) { return std::min(config.perspective_bits, 20); }
 
 /// One value for each plane. Elements from plane_count() on are unused.
@@ -73,22 +74,22 @@ struct AttributeList {
   constexpr void add(const Attribute& next) { attribute[static_cast<std::size_t>(attributes++)] = next; }
 };
 
-/// Whether a unit looks at alpha: rop, where the stored format keeps it, a blend, or a test.
+/// Whether a unit reads alpha: rop, if the stored format keeps it, a blend, or a test.
 [[nodiscard]] constexpr bool needs_alpha(const Config& config) {
   return config.color_format == ColorFormat::rgba8888 || config.alpha_units != 0 || config.blend_lanes != 0;
 }
 
-/// Whether rop packs colours where they are written, and not before: they are blended or dithered there.
+/// Whether colours are packed only when they are written, because they are blended or dithered there.
 [[nodiscard]] constexpr bool packs_at_write(const Config& config) {
   return config.blend_lanes != 0 || config.dither_units != 0;
 }
 
-/// Whether the hardware tests alpha. Other hardware with alpha.unit interpolates it, and that is all.
+/// Whether the hardware tests alpha. Other hardware with alpha.unit only interpolates it.
 [[nodiscard]] constexpr bool tests_alpha(const Config& config) {
   return config.alpha_units != 0 && config.cache_kind == CacheKind::blocks && config.setup_kind == SetupKind::pipelined;
 }
 
-/// Whether the hardware lights fragments: what validate() lets pass with shade.unit.
+/// Whether the hardware lights fragments: in configurations that pass validate(), with shade.unit.
 [[nodiscard]] constexpr bool has_normals(const Config& config) {
   return config.shade_units != 0 && config.texture_unit != TextureUnitKind::off && config.perspective_colors == 0;
 }
@@ -150,7 +151,7 @@ struct AttributeList {
     list.add({.name = "normal over w",
               .part = {"normal x over w", "normal y over w", "normal z over w"},
               .planes = 3,
-              .bits = normal_over_w_bits(config) + 2,  // 2^N_P is a code: that of a normal along an axis
+              .bits = normal_over_w_bits(config) + 2,  // 2^N_P is a code: of a normal along an axis
               .symbol = "N_N + 2",
               .reciprocal_bits = bits - kPerspectiveReciprocalLess,
               .guard_bits = kPerspectiveGuardBits,
@@ -161,7 +162,7 @@ struct AttributeList {
   return list;
 }
 
-/// Whether the list has what a texture unit looks at.
+/// Whether the list has the planes of a texture unit.
 [[nodiscard]] constexpr bool has_texture_planes(const Config& config) {
   return config.texture_unit != TextureUnitKind::off;
 }
@@ -171,26 +172,26 @@ struct AttributeList {
   return has_texture_planes(config) && config.perspective_colors != 0;
 }
 
-/// How many planes there are.
+/// Number of planes.
 [[nodiscard]] constexpr int plane_count(const AttributeList& list) {
   int count = 0;
   for (const Attribute& attribute : list) count += attribute.planes;
   return count;
 }
 
-/// The colour planes as channels R, G, B, A. Where there is no alpha the last is no colour, and nobody may look at it.
+/// The colour planes as channels R, G, B, A. Without alpha the last one is undefined.
 [[nodiscard]] constexpr std::array<std::uint32_t, 4> color_channels(const PerPlane<std::uint32_t>& code) {
   return {code[kColorPlane], code[kColorPlane + 1], code[kColorPlane + 2], code[kColorPlane + 3]};
 }
 
-/// Planes that hold the stored colour; they follow each other from kColorPlane on.
+/// Planes that hold the stored colour; they are consecutive from kColorPlane on.
 [[nodiscard]] constexpr int color_planes(const AttributeList& list) {
   int count = 0;
   for (const Attribute& attribute : list) count += attribute.stored == StoredAs::color ? attribute.planes : 0;
   return count;
 }
 
-/// The planes whose codes are linear in the window, depth and colour: those that lines have too. They come first.
+/// The planes whose codes are linear in the window, depth and colour: lines have these only. They come first.
 [[nodiscard]] constexpr int affine_planes(const AttributeList& list) {
   int count = 0;
   for (const Attribute& attribute : list) count += attribute.is_clamped ? attribute.planes : 0;

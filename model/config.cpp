@@ -46,7 +46,7 @@ Setting number(std::string_view key, std::string unit, std::string_view meaning,
                       std::string_view text) { config.*member = parse_int(setting, text); }};
 }
 
-/// A number that is one of these.
+/// A number from a list of values.
 template <int Config::*member>
 Setting one_of(std::string_view key, std::string unit, std::string_view meaning, std::vector<int> values) {
   Setting setting = number<member>(key, std::move(unit), meaning, values.front(), values.back());
@@ -54,7 +54,7 @@ Setting one_of(std::string_view key, std::string unit, std::string_view meaning,
   return setting;
 }
 
-/// A power of two, from one of them to another.
+/// A power of two between two bounds.
 template <int Config::*member>
 Setting powers(std::string_view key, std::string unit, std::string_view meaning, int min, int max) {
   std::vector<int> values;
@@ -80,7 +80,7 @@ Setting choice(std::string_view key, std::vector<std::string_view> names, std::s
               }};
 }
 
-/// What has a notation of its own.
+/// A value with its own notation.
 template <auto member>
 Setting text(std::string_view key, std::string unit, std::string_view meaning) {
   return {.key = key,

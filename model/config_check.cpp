@@ -1,4 +1,4 @@
-// What no single range of a setting can say: combinations that could overflow, or that no hardware has.
+// Checks that no single range of a setting can express: combinations that could overflow, or that no hardware has.
 #include <algorithm>
 #include <cstdio>
 #include <span>
@@ -21,7 +21,7 @@ void require_bits(const Width& width, int bits, std::string_view holder) {
                                         "; lower subpixel.bits, guard.band or depth.bits");
 }
 
-/// "4, 8, 16 or 32"; a longer list is of powers.
+/// "4, 8, 16 or 32"; a longer list is given as powers.
 std::string listed(std::span<const int> values) {
   if (values.size() > 6) return "a power of two";
   std::string text;

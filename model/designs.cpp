@@ -9,7 +9,7 @@ constexpr std::string_view kToml =
 #include "designs_toml.inc"  // designs.toml as a string: written by CMakeLists.txt
     ;
 
-/// What stands before the next `separator`; both are taken off `text`.
+/// The text before the next `separator`; both are removed from `text`.
 std::string_view take_until(std::string_view& text, char separator) {
   const std::string_view head = text.substr(0, text.find(separator));
   text.remove_prefix(std::min(text.size(), head.size() + 1));

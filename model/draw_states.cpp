@@ -11,9 +11,9 @@
 namespace halfplane {
 namespace {
 
-// ---- how a member becomes a StateValue and back: one pair of functions for each kind of type
+// ---- conversion of a member to a StateValue and back: one pair of functions for each kind of type
 
-// What is optional has the word for none as the last of its words.
+// An optional value has the word for none as its last word.
 
 template <class Value>
 requires(std::is_enum_v<Value> || std::is_same_v<Value, bool>) StateValue to_value(Value value, std::size_t) {
@@ -36,7 +36,7 @@ requires(std::is_same_v<Box, Rect> || std::is_same_v<Box, Viewport>) StateValue
            static_cast<double>(box.height)}};
 }
 
-/// The numbers of a struct as references, in the order in which they are written.
+/// References to the numbers of a struct, in the order in which they are written.
 constexpr auto numbers_of(
     auto& alpha) requires std::is_same_v<std::remove_const_t<std::remove_reference_t<decltype(alpha)>>, AlphaTest> {
   return std::tie(alpha.func, alpha.reference);
@@ -62,7 +62,7 @@ StateValue to_value(const Value& from, std::size_t words) {
   return value;
 }
 
-/// The end of a fog that has none is its density once more, which nobody writes; what a capture says there is dropped.
+/// The end of a fog without one equals its density, and is not written; a value in a capture is dropped.
 StateValue to_value(const Fog& fog, std::size_t words) {
   return {words, {static_cast<double>(fog.kind), fog.start, fog.kind == FogKind::linear ? fog.end : fog.start}};
 }
@@ -118,9 +118,9 @@ void from_value(const StateValue& from, std::optional<Value>& to, std::size_t wo
     from_value(from, to.emplace(), words);
 }
 
-// ---- what must hold of every row, as far as the compiler can see it
+// ---- conditions on every row, as far as the compiler can check them
 
-/// Whether E has the value: compilers write a value without a name as a cast, "(E)7".
+/// Whether E has the value: compilers print a value without a name as a cast, "(E)7".
 template <auto value>
 consteval bool is_enumerator() {
   constexpr std::string_view function = __PRETTY_FUNCTION__;
@@ -135,7 +135,7 @@ consteval std::size_t enumerators() {
     return n;
 }
 
-/// A row for a member. Does not compile for an enum of which not every value has a name, or none has.
+/// A row for a member. Does not compile for an enum if only some of its values have names, or none has.
 template <auto member>
 consteval DrawState row(DrawState state) {
   using Value = std::remove_cvref_t<decltype(std::declval<State>().*member)>;
@@ -147,7 +147,7 @@ consteval DrawState row(DrawState state) {
   return state;
 }
 
-/// Initializes any member, so that members can be counted.
+/// Converts to any member type, so that members can be counted.
 struct AnyMember {
   template <class T>
   constexpr operator T() const {  // NOLINT(google-explicit-constructor)
@@ -247,7 +247,7 @@ constexpr StateNumber byte_number(Words what, double random_step = 51, unsigned 
   return {
       .what = what, .low = 0, .high = 255, .is_whole = true, .random_step = random_step, .random_count = random_count};
 }
-// As far as the vertices of random scenes are, and denser than one sees through.
+// At most as far as the vertices of random scenes, and denser than visible.
 constexpr std::array<StateNumber, 3> fog_numbers{
     {word_number("fog's kind", fog_words),
      {"fog's start or density", 0, farthest, false, false, 0, 0.125, 9},
@@ -283,7 +283,7 @@ constexpr std::array<StateNumber, 4> blend_color_numbers{
 constexpr std::array<StateNumber, 4> color_mask_numbers{
     {word_number("color_mask of red", switch_words), word_number("color_mask of green", switch_words),
      word_number("color_mask of blue", switch_words), word_number("color_mask of alpha", switch_words)}};
-// References, masks and stored values near each other, so that all outcomes come up.
+// References, masks and stored values close together, so that all outcomes occur.
 constexpr std::array<StateNumber, 7> stencil_numbers{
     {word_number("the stencil's function", depth_words), byte_number("the stencil's reference", 1, 4),
      byte_number("the mask that is read through", 85, 4), byte_number("the mask that is written through", 85, 4),

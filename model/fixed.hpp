@@ -58,7 +58,7 @@ template <class Integer>
   return static_cast<std::int64_t>(whole) + (scaled - whole >= 0.5 ? 1 : 0);
 }
 
-/// A window depth in [0, 1] as its code of so many bits.
+/// A window depth in [0, 1] as its code of `depth_bits` bits.
 [[nodiscard]] inline std::uint32_t snap_depth(double z, int depth_bits) {
   return static_cast<std::uint32_t>(snap(z, static_cast<double>((std::int64_t{1} << depth_bits) - 1)));
 }

@@ -1,11 +1,11 @@
-// What is thrown where input enters.
+// The exception for invalid input.
 #pragma once
 
 #include <stdexcept>
 
 namespace halfplane {
 
-/// For files, options and configurations that do not fit; what() is one line that names the place and the mend.
+/// For invalid files, options and configurations; what() is one line that names the place and the remedy.
 struct InputError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

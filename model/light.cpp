@@ -9,10 +9,10 @@ namespace {
 
 constexpr std::int64_t kOne = std::int64_t{1} << kDirectionBits;
 constexpr int kTableBits = 9, kLines = 1 << kTableBits;  // of logarithm and power
-constexpr int kLogBits = 40;                             // behind the point, of both tables' entries
+constexpr int kLogBits = 40;                             // fraction bits of the entries of both tables
 constexpr int kShininessBits = 16;
 
-/// round(v 2^bits), held to what an unsigned word of 32 or 48 bits takes.
+/// round(v 2^bits), clamped to an unsigned word of 32 or 48 bits.
 std::uint64_t to_fixed(double v, int bits, int word) {
   const double scaled = std::ldexp(v, bits);
   const double largest = std::ldexp(1.0, word) - 1;
@@ -23,7 +23,8 @@ std::int32_t to_signed(double v, int bits) {
   return static_cast<std::int32_t>(std::clamp(scaled, -2147483648.0, 2147483647.0));
 }
 
-/// Made by integers alone, so that every machine has the same: 2^(2^-k) by square roots, from them powers and logarithms.
+/// Computed with integers only, so that every machine has the same values: 2^(2^-k) by square roots, from them powers
+/// and logarithms.
 struct Tables {
   std::array<std::uint64_t, kLines + 1> log;    ///< log2(1 + i / kLines), u1.40
   std::array<std::uint64_t, kLines + 1> power;  ///< 2^(-i / kLines), u1.40
@@ -57,7 +58,7 @@ const Tables& tables() {
   return made;
 }
 
-/// Between two entries: `place` is 0...1 in u0.`bits`.
+/// Interpolates between two entries: `place` is 0...1 in u0.`bits`.
 std::uint64_t on_line(const std::array<std::uint64_t, kLines + 1>& table, std::uint64_t place, int bits) {
   const std::uint64_t line = place >> (bits - kTableBits);
   const std::uint64_t part = place & ((std::uint64_t{1} << (bits - kTableBits)) - 1);
@@ -115,7 +116,7 @@ std::uint32_t fixed_power(std::uint32_t x, std::uint32_t n) {
   if (x == 0) return 0;
   // -log2 x = octave - log2 of the mantissa, 1...2.
   const int octave = kDirectionBits - floor_log2(x);
-  const std::uint64_t mantissa = (std::uint64_t{x} << octave) - one;  // behind the point, u0.30
+  const std::uint64_t mantissa = (std::uint64_t{x} << octave) - one;  // fraction, u0.30
   const std::uint64_t log =
       (static_cast<std::uint64_t>(octave) << kLogBits) - on_line(tables().log, mantissa, kDirectionBits);
   const uint128 exponent = uint128{log} * n >> kShininessBits;  // u16.40
@@ -160,7 +161,7 @@ FixedLighting::FixedLighting(const Lighting& lighting, double extent) : has_loca
       const double factor = light.attenuation[static_cast<std::size_t>(i)];
       if (!(factor > 0)) continue;
       const int bits = 31 - std::ilogb(factor);
-      // A distance is 2^scale_ times as long here.
+      // A distance is 2^scale_ times as long in these units.
       to.attenuation[i] = {to_fixed(factor, bits, 33), bits + i * scale_};
     }
     if (light.range > 0) to.inverse_range = to_fixed(1 / light.range, kFallOffBits - scale_, 48);
@@ -175,7 +176,7 @@ FixedPlace FixedLighting::place(const std::array<double, 3>& eye) const {
 /// 1 / (constant + linear d + quadratic d^2), faded and in the cone: u16.32. `distance` in u16.16.
 std::uint64_t FixedLighting::fall_off(const FixedLight& light, std::uint64_t distance,
                                       const FixedDirection& to_light) const {
-  constexpr int kBits = 48;  // of the denominator, behind the point
+  constexpr int kBits = 48;  // fraction bits of the denominator
   constexpr std::uint64_t kLargest = (std::uint64_t{1} << 48) - 1;
   uint128 sum = 0;
   for (int i = 0; i < 3; ++i) {
@@ -183,7 +184,7 @@ std::uint64_t FixedLighting::fall_off(const FixedLight& light, std::uint64_t dis
     for (int k = 0; k < i; ++k) term *= distance;
     if (term == 0) continue;
     const int right = light.attenuation[i].bits + i * kPlaceBits - kBits;
-    if (floor_log2(term) - right > 100) return 0;  // so far away
+    if (floor_log2(term) - right > 100) return 0;  // too far away to matter
     sum += right >= 128 ? 0 : right >= 0 ? term >> right : term << -right;
   }
   if (sum == 0) return kLargest;

@@ -7,9 +7,9 @@
 namespace halfplane {
 namespace {
 
-constexpr std::size_t kLongest = 64;  // letters: a longer word is no slip of the finger, and the distance is quadratic
+constexpr std::size_t kLongest = 64;  // letters: a longer word is no typing error, and the distance is quadratic
 
-// Insertions, deletions and substitutions between two words (Levenshtein).
+// Edit distance of two words: insertions, deletions and substitutions (Levenshtein).
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});

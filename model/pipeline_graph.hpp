@@ -1,4 +1,4 @@
-// The pipeline: every stage and every arrow between two stages, in the order in which a triangle goes. Read this first.
+// The pipeline: every stage and every arrow between two stages, in the order of a triangle's path. Read this first.
 //
 //   host: primitive_assembly -> clip -> viewport                                   line_setup
 //                                          | primitive                                  | line
@@ -23,12 +23,12 @@
 // depth_cache, late_test, color_write, write_back and memory_answers; light_stage, texture_stage, fog_stage and stamp_rop are
 // between depth_cache and late_test.
 //
-// A stage is a pair of files of its name: model/stages/NAME.hpp, of the host model/host/NAME.hpp, is the specification, and
-// rtl_ref/stages/NAME.sv the hardware (stages of the host have no hardware, the memory has neither). Of framebuffer the
-// model's part is in tile_directory.hpp and tile_cache.hpp. What an arrow carries is a packet: its fields are in
-// packets.hpp. The model of the hardware sends it in engines/hardware.cpp, the cycle model says in which cycle
-// (engines/cycle/), raster_top.sv wires it, rtl_ref/cosim/taps.svh, generated from this file, shows it to the
-// co-simulation, and that compares the two.
+// A stage is a pair of files of its name: model/stages/NAME.hpp, for the host model/host/NAME.hpp, is the
+// specification, and rtl_ref/stages/NAME.sv the hardware (stages of the host have no hardware, the memory has neither).
+// The model of framebuffer is in tile_directory.hpp and tile_cache.hpp. An arrow carries packets: their fields are in
+// packets.hpp. engines/hardware.cpp sends them, the cycle model gives their cycles (engines/cycle/), raster_top.sv
+// wires them, rtl_ref/cosim/taps.svh, generated from this file, shows them to the co-simulation, which compares model
+// and RTL.
 #pragma once
 
 #include <array>
@@ -41,12 +41,12 @@
 
 namespace halfplane {
 
-/// Where a stage is.
+/// The side of a stage.
 enum class Side : std::uint8_t { host, rtl, memory };
 
 // clang-format off
-/// STAGE(name, side, timed, what). Timed: the cycle model accounts for the cycles in which it is at work; the others of
-/// the RTL add none of their own.
+/// STAGE(name, side, timed, what). Timed: the cycle model counts the cycles in which it is at work; the other RTL
+/// stages add none.
 #define HALFPLANE_STAGES(STAGE)                                                                             \
   /*    name                side    timed  what it makes of what */                                         \
   STAGE(primitive_assembly, host,   false, "indices and topology -> triangles, lines, points")              \
@@ -70,8 +70,8 @@ enum class Side : std::uint8_t { host, rtl, memory };
   STAGE(texture_memory,     memory, false, "lines of texels asked for -> texels")
 
 /// ARROW(name, packet, from, via, to, flow). Via: a stage without registers that the packet passes on its way, or none.
-/// Flow: see below. The number of an elastic arrow is its bit of raster_top's stall_i, and goes into the hash of injected
-/// stalls: it stays with its arrow for good, and a new arrow takes the next one that is free.
+/// Flow: see below. The number of an elastic arrow is its bit of raster_top's stall_i, and goes into the hash of
+/// injected stalls: it never changes, and a new arrow takes the next free number.
 #define HALFPLANE_ARROWS(ARROW)                                                                            \
   /*    name        packet           from            via             to              flow */               \
   ARROW(primitive,  PrimitivePacket, viewport,       none,           cull,           elastic(0))           \
@@ -95,7 +95,7 @@ enum class Side : std::uint8_t { host, rtl, memory };
   ARROW(color,      ColorPacket,     texture_unit,   rop,            framebuffer,    handshake())
 // clang-format on
 
-/// The stall stream of the memory itself, which then takes no request: it has a number among those of the arrows.
+/// The stall stream of the memory itself, which then takes no request: its number is in the range of the arrows'.
 inline constexpr int kMemoryStall = 10;
 
 #define HALFPLANE_NAME(name, ...) name,
@@ -103,14 +103,14 @@ enum class Stage : std::uint8_t { HALFPLANE_STAGES(HALFPLANE_NAME) none };
 enum class Arrow : std::uint8_t { HALFPLANE_ARROWS(HALFPLANE_NAME) };
 #undef HALFPLANE_NAME
 
-/// How the packets of an arrow move.
+/// Movement of the packets of an arrow.
 struct Flow {
-  bool waits = false;               ///< valid and ready: in the cycle in which both are high; otherwise valid alone
-  int stall = -1;                   ///< bit of raster_top's stall_i that holds it back, -1: none does
-  std::optional<Arrow> rides_with;  ///< with every packet of that arrow, in its cycle
+  bool waits = false;               ///< valid and ready: moves in the cycle with both high; otherwise valid only
+  int stall = -1;                   ///< bit of raster_top's stall_i that holds it back; -1: none
+  std::optional<Arrow> rides_with;  ///< moves with every packet of that arrow, in its cycle
 
   static constexpr Flow elastic(int number) { return {true, number, {}}; }
-  static constexpr Flow handshake() { return {true, -1, {}}; }  ///< waits, and is not stalled by itself
+  static constexpr Flow handshake() { return {true, -1, {}}; }  ///< waits, and has no stall of its own
   static constexpr Flow always() { return {}; }
   static constexpr Flow beside(Arrow other) { return {false, -1, other}; }
 };
@@ -141,7 +141,7 @@ inline constexpr std::size_t kStages = kStageInfo.size(), kArrows = kArrowInfo.s
 [[nodiscard]] constexpr const StageInfo& info(Stage stage) { return kStageInfo[index(stage)]; }
 [[nodiscard]] constexpr const ArrowInfo& info(Arrow arrow) { return kArrowInfo[index(arrow)]; }
 
-// What follows from the table: which arrows are what.
+// Sets of arrows that follow from the table.
 
 /// The RTL sends it: model and RTL are compared packet by packet.
 [[nodiscard]] constexpr bool is_compared(Arrow arrow) { return info(info(arrow).from).side == Side::rtl; }
@@ -149,7 +149,7 @@ inline constexpr std::size_t kStages = kStageInfo.size(), kArrows = kArrowInfo.s
 [[nodiscard]] constexpr bool is_tapped(Arrow arrow) {
   return is_compared(arrow) && info(info(arrow).to).side == Side::rtl;
 }
-/// Its crossings have cycles of their own, which the cycle model says.
+/// Its crossings have their own cycles in the cycle model.
 [[nodiscard]] constexpr bool is_boundary(Arrow arrow) { return !info(arrow).flow.rides_with; }
 /// Only hardware with a texture unit has it.
 [[nodiscard]] constexpr bool is_of_texture_unit(Arrow arrow) {
@@ -160,7 +160,7 @@ inline constexpr std::size_t kStages = kStageInfo.size(), kArrows = kArrowInfo.s
 /// Elastic and inside the RTL: raster_cosim shows its valid and ready.
 [[nodiscard]] constexpr bool is_stream(Arrow arrow) { return is_tapped(arrow) && is_elastic(arrow); }
 
-/// The arrows of which `is` holds, in order.
+/// The arrows for which `is` is true, in order.
 template <bool (*is)(Arrow)>
 [[nodiscard]] consteval auto arrows_that() {
   constexpr std::size_t kCount = [] {
@@ -193,7 +193,7 @@ inline constexpr auto kStreams = arrows_that<is_stream>();  ///< likewise of str
 /// The bit of an elastic arrow in a set of stalls.
 [[nodiscard]] constexpr unsigned stall_bit(Arrow arrow) { return is_elastic(arrow) ? 1U << info(arrow).flow.stall : 0; }
 
-/// Bits of raster_top's stall_i, and how many numbers there are with that of the memory.
+/// Bits of raster_top's stall_i, and the number of stall streams including the memory's.
 inline constexpr int kStallBits = [] {
   int bits = 0;
   for (const Arrow arrow : kElastic) bits = bits > info(arrow).flow.stall ? bits : info(arrow).flow.stall + 1;
@@ -222,17 +222,17 @@ static_assert(kTapped.size() <= 32 && kStallStreams <= 32, "raster_cosim's fire_
 
 // Fault attribution.
 
-/// The stage whose timing decides the cycle of a crossing. Host stages have no timing: "host".
+/// The stage whose timing decides the cycle of a crossing. Host stages have no timing: the name is "host".
 [[nodiscard]] constexpr std::string_view sender_name(Arrow arrow) {
   const StageInfo& stage = info(info(arrow).from);
   return stage.side == Side::host ? "host" : stage.name;
 }
 
-/// The stage to look at first when a packet is wrong and nothing is known but its arrow. A write is rop's to finish; a
-/// fragment passes primitive_join as it is, unless it is of a line.
+/// The stage to suspect first for a wrong packet, by its arrow only. rop finishes a write; a fragment passes
+/// primitive_join unchanged, unless it belongs to a line.
 [[nodiscard]] constexpr Stage suspect(Arrow arrow) { return arrow == Arrow::write ? Stage::rop : info(arrow).from; }
 
-/// The same for a packet that differs in known fields: those of a write belong to two stages, and so do fragments.
+/// The same for a packet with known differing fields: the fields of a write come from two stages, and so do fragments.
 struct Difference {
   bool is_of_line = false;       ///< the fragment of a line
   bool is_in_color_only = true;  ///< no field but stored colours differs
@@ -267,7 +267,8 @@ HALFPLANE_ARROWS(HALFPLANE_PACKET)
 template <Arrow A>
 using PacketOf = typename PacketOn<A>::Type;
 
-/// Calls visit(std::type_identity<Packet>{}) with the packet type of an arrow. Packets are declared here alone.
+/// Calls visit(std::type_identity<Packet>{}) with the packet type of an arrow. Only this function maps arrows to
+/// packets.
 template <class Visit>
 decltype(auto) with_packet_type(Arrow arrow, Visit&& visit) {
 #define HALFPLANE_CASE(name, packet, ...) \
@@ -278,7 +279,7 @@ decltype(auto) with_packet_type(Arrow arrow, Visit&& visit) {
 }
 
 /// \cond inheritance that Doxygen takes for endless
-// take(on<arrow>, packet) for the arrows from the I-th on, each of which does nothing.
+// take(on<arrow>, packet) for the arrows from number I on; each does nothing.
 template <std::size_t I = 0>
 struct PacketSinkFrom : PacketSinkFrom<I + 1> {
   using PacketSinkFrom<I + 1>::take;
@@ -291,8 +292,8 @@ struct PacketSinkFrom<kArrows> {
 };
 /// \endcond
 
-/// Who wants to see packets overrides the overloads it needs: take(On<Arrow::tile>, const TilePacket&). Each arrow's
-/// packets come in the order of that arrow; packets of different arrows come interleaved as the work happens.
+/// A sink overrides the overloads it needs: take(On<Arrow::tile>, const TilePacket&). Each arrow's packets come in the
+/// order of that arrow; packets of different arrows come interleaved as the work happens.
 using PacketSink = PacketSinkFrom<>;
 
 /// \cond
@@ -307,7 +308,7 @@ template <class Derived>
 struct EveryPacketFrom<Derived, kArrows> : PacketSink {};
 /// \endcond
 
-/// Who wants all of them: Derived has `template <Arrow A> void take_any(const PacketOf<A>&)`, public.
+/// A sink for all packets: Derived has `template <Arrow A> void take_any(const PacketOf<A>&)`, public.
 template <class Derived>
 using EveryPacket = EveryPacketFrom<Derived>;
 

@@ -1,7 +1,7 @@
-// The samples of a stamp: how many there are, which number each has, and which of them a mask holds.
+// The samples of a stamp: their number and numbering, and masks of them.
 //
-// A stamp is a square of pixels. Its samples are numbered pixel by pixel, row by row, and those of a pixel follow each other. A
-// pixel has one sample, at its centre, or several (sample_pattern.hpp).
+// A stamp is a square of pixels. Its samples are numbered pixel by pixel, row by row, and samples of a pixel are
+// consecutive. A pixel has one sample, at its centre, or several (sample_pattern.hpp).
 #pragma once
 
 #include <bit>
@@ -10,7 +10,7 @@
 
 namespace halfplane {
 
-/// The most samples that a stamp can have: those of a mask.
+/// The largest number of samples of a stamp: the bits of a mask.
 inline constexpr std::size_t kMaxSamples = 64;
 
 /// A set of samples of one stamp: bit n is sample n.
@@ -28,12 +28,12 @@ class SampleMask {
   [[nodiscard]] constexpr bool any() const { return bits_ != 0; }
   [[nodiscard]] constexpr bool has(std::size_t n) const { return (bits_ >> n & 1) != 0; }
   [[nodiscard]] constexpr int count() const { return std::popcount(bits_); }
-  /// Numbers of the lowest and the highest one. Precondition: any().
+  /// Numbers of the lowest and the highest sample. Precondition: any().
   [[nodiscard]] constexpr int first() const { return std::countr_zero(bits_); }
   [[nodiscard]] constexpr int last() const { return 63 - std::countl_zero(bits_); }
   constexpr void set(int n, bool value = true) { bits_ |= std::uint64_t{value} << n; }
 
-  /// Calls visit(number) for each, lowest first.
+  /// Calls visit(number) for each sample, lowest first.
   template <class Visit>
   constexpr void for_each(Visit&& visit) const {
     for (std::uint64_t left = bits_; left != 0; left &= left - 1)
@@ -52,12 +52,13 @@ class SampleMask {
   std::uint64_t bits_ = 0;
 };
 
-/// A place: pixels from the first one of a stamp or of a tile.
+/// A place: offset in pixels from the first pixel of a stamp or of a tile.
 struct PixelOffset {
   int x = 0, y = 0;
 };
 
-/// The stamps of a tile and the samples of a stamp. All three are powers of two, so that a place takes shifts, not divisions.
+/// The stamps of a tile and the samples of a stamp. All three are powers of two, so that a place needs shifts, not
+/// divisions.
 struct StampGrid {
   int size = 1;            ///< pixels along the side of a stamp
   int stamps_per_row = 1;  ///< stamps along the side of a tile
@@ -76,11 +77,11 @@ struct StampGrid {
   [[nodiscard]] constexpr SampleMask samples_at(int x, int y) const {
     return SampleMask(SampleMask::all(per_pixel).bits() << sample_at(x, y));
   }
-  /// Of the samples of pixel `pixel` of the stamp those in `mask`, sample 0 of the pixel the lowest bit.
+  /// The samples of pixel `pixel` that are in `mask`, sample 0 of the pixel the lowest bit.
   [[nodiscard]] constexpr unsigned of_pixel(SampleMask mask, int pixel) const {
     return static_cast<unsigned>(mask.bits() >> pixel * per_pixel & SampleMask::all(per_pixel).bits());
   }
-  /// In every pixel the same samples: the lowest bits of `of_pixel`.
+  /// The same samples in every pixel: the lowest bits of `of_pixel`.
   [[nodiscard]] constexpr SampleMask in_every_pixel(unsigned of_pixel) const {
     const std::uint64_t samples = of_pixel & SampleMask::all(per_pixel).bits();
     std::uint64_t bits = 0;

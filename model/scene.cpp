@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kMostPrimitives = std::numeric_limits<std::int32_t>::max();  // ids are signed
 
-/// Where a message says that something is: the scene, and what in it.
+/// Place in a message: the scene, and the item in it.
 class Place {
  public:
   explicit Place(const Scene& scene) : scene_(scene) {}
@@ -31,7 +31,7 @@ class Place {
   const Scene& scene_;
 };
 
-bool is_between(double value, double low, double high) { return value >= low && value <= high; }  // no NaN is
+bool is_between(double value, double low, double high) { return value >= low && value <= high; }  // false for NaN
 
 bool is_color(const std::array<double, 4>& rgba) {
   return std::ranges::all_of(rgba, [](double c) { return is_between(c, 0, 255); });
@@ -56,7 +56,7 @@ void check_normals(const Scene& scene, const Place& place) {
         place.fail("normal " + std::to_string(i) + " has a component beyond 1e12");
 }
 
-/// A texture is what make_texture() makes, and its name is a word of a capture.
+/// A texture is in the form of make_texture(), and its name is a word of a capture.
 void check_texture(const Scene& scene, std::size_t index, const Place& place) {
   const Texture& texture = scene.textures[index];
   const auto fail = [&](const std::string& what) { place.fail("texture " + std::to_string(index) + ": " + what); };
@@ -83,7 +83,7 @@ void check_texture(const Scene& scene, std::size_t index, const Place& place) {
   if (texture.mips == Mips::levels && !texture.is_complete()) fail("levels of its own that end before 1x1");
 }
 
-/// A member holds what its row of the table allows.
+/// Every member is in the range of its row of the table.
 void check_state(const Scene& scene, std::size_t index, const Place& place) {
   for (const DrawState& row : draw_states()) {
     const StateValue value = row.value(scene.states[index]);
@@ -155,7 +155,7 @@ void validate(const Scene& scene) {
   check_normals(scene, place);
   for (std::size_t i = 0; i < scene.textures.size(); ++i) check_texture(scene, i, place);
   for (std::size_t i = 0; i < scene.states.size(); ++i) check_state(scene, i, place);
-  std::size_t primitives = 0;  // at most: an index makes no more than one
+  std::size_t primitives = 0;  // an upper bound: an index makes at most one
   for (std::size_t i = 0; i < scene.commands.size(); ++i) {
     if (const auto* clear = std::get_if<Clear>(&scene.commands[i])) check_clear(scene, i, *clear, place);
     const auto* draw = std::get_if<Draw>(&scene.commands[i]);

@@ -1,4 +1,4 @@
-// What enters the pipeline: vertices, state and draws, in program order. Model, golden and oracle read this type;
+// The input of the pipeline: vertices, state and draws, in program order. Model, golden and oracle read this type;
 // sim/scene makes it from captures, meshes and the built-in scenes.
 #pragma once
 
@@ -21,28 +21,28 @@ enum class Topology { triangles, triangle_strip, triangle_fan, lines, line_strip
 enum class DepthFunc { never, less, lequal, equal, greater, gequal, notequal, always };
 enum class Cull { none, back, front, both };
 enum class FrontFace { ccw, cw };
-/// phong: colours as smooth has them, in the light of each fragment of filled triangles (State::light_direction).
+/// phong: colours as with smooth, then light at each fragment of filled triangles (State::light_direction).
 enum class Shade { smooth, flat, phong };
 enum class ColorInterp { affine, perspective };
-/// What is drawn of a triangle that is not culled: its samples, its three edges as lines, or its three corners as points.
+/// Drawn part of a triangle that is not culled: its samples, its three edges as lines, or its three corners as points.
 enum class PolygonMode { fill, line, point };
-/// Which vertex of a primitive gives the colour when `shade` is flat.
+/// The vertex of a primitive that gives the colour when `shade` is flat.
 enum class Provoking { first, last };
-/// What a point is: the square of its size, or of that square's pixels those whose centres lie in the disc.
+/// Shape of a point: the square of its size, or the pixels of the square whose centres lie in the disc.
 enum class PointShape { square, round };
-/// Who is clipped when a point's centre is outside: its pixels only, or the point as a whole.
+/// Clipping of a point whose centre is outside: its pixels only, or the point as a whole.
 enum class PointClip { pixel, center };
 enum class ClipZ { minus_one_one, zero_one };
-/// Where pixel centres lie in window coordinates: the first one at 1/2 or at 0.
+/// Position of pixel centres in window coordinates: the first one at 1/2 or at 0.
 enum class PixelCenter { half, integer };
-/// The corner that window coordinates count from: top left with y down, or bottom left with y up.
+/// Origin of window coordinates: top left with y down, or bottom left with y up.
 enum class Origin { top_left, bottom_left };
-/// Which pixels a line covers; see "Lines" in docs/spec.md. `rectangle`: the samples of a rectangle about it.
+/// Coverage rule of lines; see "Lines" in docs/spec.md. `rectangle`: the samples of a rectangle about the line.
 enum class LineRule { midpoint, bresenham, diamond, rectangle };
 
-/// How a texture's coordinates run over a primitive.
+/// Interpolation of a texture's coordinates over a primitive.
 enum class TextureInterp { perspective, affine };
-/// Which texels are looked at where a pixel holds more than one of them, and where it holds less.
+/// Filter where a pixel holds more than one texel, and where it holds less.
 enum class TextureMin {
   nearest,
   linear,
@@ -52,15 +52,15 @@ enum class TextureMin {
   linear_mipmap_linear
 };
 enum class TextureMag { nearest, linear };
-/// Beyond the image: again, its last texel, or turned over. Along u and v.
+/// Texels beyond the image: repeated, the last texel, or mirrored. Along u and v.
 enum class TextureWrap { repeat, clamp, mirror };
-/// What becomes of the primitive's colour.
+/// Combination with the primitive's colour.
 enum class TextureCombine { modulate, replace, decal, add };
 
-/// How fog thickens with the distance from the eye.
+/// Density of fog by the distance from the eye.
 enum class FogKind { linear, exp, exp2 };
 
-/// What a colour is multiplied with before two of them are added (OpenGL ES 2.0, table 4.2).
+/// Factor of a colour before two are added (OpenGL ES 2.0, table 4.2).
 enum class BlendFactor {
   zero,
   one,
@@ -78,17 +78,17 @@ enum class BlendFactor {
   one_minus_constant_alpha,
   src_alpha_saturate
 };
-/// How the products are put together; the last two take the colours themselves.
+/// Combination of the products; min and max take the colours themselves.
 enum class BlendEquation { add, subtract, reverse_subtract, min, max };
-/// What becomes of a stored stencil value.
+/// Update of a stored stencil value.
 enum class StencilOp { keep, zero, replace, incr, decr, invert, incr_wrap, decr_wrap };
 
-/// How much of a fragment's own colour is left at a distance w from the eye, 0...1 (OpenGL ES 1.1.12, 3.8). Linear:
-/// (end - w) / (end - start), where a start above end * 255/256 counts as that. exp: e^(-start w), exp2: e^(-(start w)^2),
-/// for which `end` does not count.
+/// The fraction of a fragment's own colour that remains at a distance w from the eye, 0...1 (OpenGL ES 1.1.12, 3.8).
+/// Linear: (end - w) / (end - start), with start at most end * 255/256. exp: e^(-start w), exp2: e^(-(start w)^2), both
+/// without `end`.
 struct Fog {
   FogKind kind = FogKind::exp;
-  double start = 1;  ///< of linear; of the others the density
+  double start = 1;  ///< for linear; for the others the density
   double end = 1;
   bool operator==(const Fog&) const = default;
 };
@@ -109,21 +109,21 @@ struct BlendFactors {
 
 /// The stencil test of one side of triangles. Lines and points have a front.
 struct Stencil {
-  DepthFunc func = DepthFunc::always;  ///< how (reference & read_mask) compares with (stored & read_mask)
+  DepthFunc func = DepthFunc::always;  ///< comparison of (reference & read_mask) with (stored & read_mask)
   std::uint8_t reference = 0, read_mask = 255, write_mask = 255;
   StencilOp stencil_fails = StencilOp::keep, depth_fails = StencilOp::keep, passes = StencilOp::keep;
   bool operator==(const Stencil&) const = default;
 };
 
-/// A vertex as it was given. Clip space: homogeneous clip coordinates, +y up. Window space: x, y in pixels (y down,
-/// pixel centres at half-integers, unless its state says otherwise), z in [0, 1], w as the clip-space w.
+/// A vertex as given. Clip space: homogeneous clip coordinates, +y up. Window space: x, y in pixels (y down, pixel
+/// centres at half-integers, unless its state says otherwise), z in [0, 1], w as the clip-space w.
 struct Vertex {
   double x = 0, y = 0, z = 0, w = 1;
   std::array<double, 4> rgba{255, 255, 255, 255};  ///< 0...255
-  double u = 0, v = 0;                             ///< 0 and 1 are the sides of a texture
+  double u = 0, v = 0;                             ///< 0 to 1 over the texture
 };
 
-/// A vertex as its numbers, in the order of its members, which is that of a capture's `v` line.
+/// A vertex as numbers, in the order of its members and of a capture's `v` line.
 using VertexNumbers = std::array<double, sizeof(Vertex) / sizeof(double)>;
 [[nodiscard]] constexpr VertexNumbers numbers_of(const Vertex& v) { return std::bit_cast<VertexNumbers>(v); }
 [[nodiscard]] constexpr Vertex vertex_of(const VertexNumbers& numbers) { return std::bit_cast<Vertex>(numbers); }
@@ -132,10 +132,10 @@ using VertexNumbers = std::array<double, sizeof(Vertex) / sizeof(double)>;
 struct VertexPart {
   std::string_view names;  ///< "r g b a"
   std::size_t end;         ///< the first number after it
-  std::string_view what;   ///< one of them, in messages
+  std::string_view what;   ///< name of one of them, in messages
   double low = std::numeric_limits<double>::lowest(), high = std::numeric_limits<double>::max();
 };
-/// A `v` line ends with one of these; the numbers after it are those of Vertex{}.
+/// A `v` line ends after one of these parts; the remaining numbers are those of Vertex{}.
 inline constexpr std::array kVertexParts{VertexPart{"x y z", 3, "a coordinate"}, VertexPart{"w", 4, "a coordinate"},
                                          VertexPart{"r g b a", 8, "a colour component", 0, 255},
                                          VertexPart{"u v", 10, "a coordinate"}};
@@ -165,7 +165,7 @@ struct Viewport {
   bool operator==(const Viewport&) const = default;
 };
 
-/// Everything that a draw depends on besides its vertices.
+/// All state of a draw, without its vertices.
 struct State {
   Space space = Space::clip;
   DepthFunc depth_test = DepthFunc::less;
@@ -179,15 +179,15 @@ struct State {
   PolygonMode polygon_mode = PolygonMode::fill;
   std::array<double, 2> polygon_offset{0.0, 0.0};  ///< slope factor, constant in depth LSB; see "Polygon offset"
   LineRule line_rule = LineRule::diamond;
-  std::optional<bool> line_last;  ///< whether a line's last pixel is drawn; none: as the rule has it
-  double line_width = 1;          ///< pixels, at least 1: across the minor axis, rounded; of a rectangle its width
-  bool smooth = false;            ///< of lines, with one sample a pixel: what they cover of a pixel multiplies alpha
+  std::optional<bool> line_last;  ///< whether a line's last pixel is drawn; none: by the rule
+  double line_width = 1;          ///< pixels, at least 1: across the minor axis, rounded; of a rectangle its true width
+  bool smooth = false;            ///< of lines, with one sample per pixel: the covered area multiplies alpha
   double point_size = 1;          ///< side of the square, pixels, at least 1
   PointShape point_shape = PointShape::square;
   PointClip point_clip = PointClip::pixel;
   ClipZ clip_z = ClipZ::minus_one_one;
   PixelCenter pixel_center = PixelCenter::half;  ///< of window-space vertices and the viewport
-  Origin origin = Origin::top_left;              ///< of the same two and the scissor; `front` is as seen in any case
+  Origin origin = Origin::top_left;              ///< of these and the scissor; `front` is as seen in any case
   std::optional<Rect> scissor;                   ///< none: the whole target
   std::optional<Viewport> viewport;              ///< none: the whole target
   std::array<double, 2> depth_range{0.0, 1.0};
@@ -198,10 +198,10 @@ struct State {
   std::array<TextureWrap, 2> texture_wrap{};
   std::array<double, 3> texture_lod{0.0, 0.0, 12.0};  ///< bias, least and largest level
   TextureCombine texture_combine = TextureCombine::modulate;
-  std::optional<Fog> fog;  ///< none: colours stay as they are
+  std::optional<Fog> fog;  ///< none: colours are unchanged
   std::array<std::uint8_t, 3> fog_color{};
-  // Of shade phong: a fragment of colour C and normal N becomes C (ambient + diffuse N.L) + specular (N.H)^shininess, the
-  // highlight where N.L > 0, held to 255. L and H may have any length.
+  // For shade phong: a fragment of colour C and normal N becomes C (ambient + diffuse N.L) + specular (N.H)^shininess,
+  // the highlight where N.L > 0, clamped to 255. L and H may have any length.
   std::array<double, 3> light_direction{0, 0, 1};  ///< L: to the light, in the space of the normals
   std::array<double, 3> light_half{0, 0, 1};       ///< H: between L and the direction to the eye
   std::array<std::uint8_t, 3> light_ambient{51, 51, 51}, light_diffuse{255, 255, 255}, light_specular{};
@@ -211,12 +211,12 @@ struct State {
   std::array<BlendEquation, 2> blend_equation{};           ///< of colour and of alpha
   std::array<std::uint8_t, 4> blend_color{};               ///< the constant of blend factors
   std::array<bool, 4> color_mask{true, true, true, true};  ///< channels that color_write writes
-  std::optional<Stencil> stencil;                          ///< none: no test, nothing is stored
+  std::optional<Stencil> stencil;                          ///< none: no test, no stencil is written
   std::optional<Stencil> stencil_back;                     ///< of triangles that show their back; none: as `stencil`
   bool dither = false;                                     ///< ordered, where a channel has fewer than 8 bits
-  // Of pixels with several samples; with one they do nothing.
+  // For pixels with several samples; no effect with one.
   std::optional<std::uint32_t> sample_mask;  ///< bit k: sample k is drawn; none: all
-  bool alpha_to_coverage = false;            ///< alpha says how many samples are drawn
+  bool alpha_to_coverage = false;            ///< alpha gives the number of samples drawn
   bool operator==(const State&) const = default;
 };
 
@@ -236,10 +236,10 @@ struct Draw {
   std::uint32_t state = 0;   ///< index into Scene::states
   std::uint32_t object = 0;  ///< index into Scene::objects
   Topology topology = Topology::triangles;
-  std::size_t first = 0;   ///< first of its entries in Scene::indices
-  std::size_t count = 0;   ///< how many entries
+  std::size_t first = 0;   ///< index of its first entry in Scene::indices
+  std::size_t count = 0;   ///< number of entries
   std::uint32_t line = 0;  ///< line in the file it came from, 0 for none: for messages only
-  /// Not 0: known to cover no sample (whole-object culling), so that an engine need only number its primitives.
+  /// Not 0: known to cover no sample (whole-object culling); an engine then only numbers its primitives.
   std::uint8_t outside = 0;
 };
 
@@ -251,19 +251,19 @@ using Command = std::variant<Clear, Draw, EndFrame>;
 inline constexpr int kLargestSide = 16384;      ///< pixels along a side of any target
 inline constexpr double kLargestNormal = 1e12;  ///< component of a normal
 
-/// A whole input. Its invariants are what validate() checks; every reader keeps them.
+/// A complete input. validate() checks its invariants; every reader keeps them.
 struct Scene {
-  /// 0 for a vertex that has none.
+  /// 0 for a vertex without one.
   [[nodiscard]] std::array<double, 3> normal(std::size_t vertex) const {
     return vertex < normals.size() ? normals[vertex] : std::array<double, 3>{};
   }
 
   std::string name;
   int width = 640, height = 480;  ///< target, pixels
-  /// Near and far, eye-space units, 0 < near < far: what depth mappings refer to. None: the scene's maker did not say.
+  /// Near and far for depth mappings, eye-space units, 0 < near < far. None: not specified.
   std::optional<std::array<double, 2>> planes;
   std::vector<Vertex> vertices;
-  /// Of shade phong: of the first vertices, of any length, 0 for none. Those behind have none: see normal().
+  /// For shade phong: normals of the first vertices, of any length, 0 for none. Later vertices have none: see normal().
   std::vector<std::array<double, 3>> normals;
   std::vector<std::uint32_t> indices;
   std::vector<State> states;
@@ -275,10 +275,10 @@ struct Scene {
 /// "file: draw from line 7", for messages about a draw.
 [[nodiscard]] std::string place_of_draw(std::string_view file, std::uint32_t line);
 
-/// Checks what no reader would make and whoever fills in the struct may: numbers that are finite and in their range
+/// Checks everything that readers guarantee and other code may violate: numbers that are finite and in their range
 /// (colours 0...255, depths 0...1, states as their table has them), draws inside the indices, indices < vertices.size()
-/// or kRestart, states and objects that exist, sides of 1 to kLargestSide pixels. Linear in the scene. Every function of
-/// the library that takes a scene calls it. Throws InputError, one line that names what and where.
+/// or kRestart, states and objects that exist, sides of 1 to kLargestSide pixels. Linear in the scene. Every function
+/// of the library that takes a scene calls it. Throws InputError, one line that names the fault and the place.
 void validate(const Scene& scene);
 
 }  // namespace halfplane

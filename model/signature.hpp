@@ -1,8 +1,8 @@
-// Signatures: 128 bits that stand for a sequence of words.
+// Signatures: 128-bit hashes of a sequence of words.
 //
-// Two lanes of 64 bits, each of which takes a word by steps that can be undone: two states that differ stay apart whatever
-// words follow, so lengths do not matter. At the end each is folded. Sequences that differ have equal signatures with a
-// probability of about 2^-128, for words not chosen to collide.
+// Two lanes of 64 bits, each of which absorbs a word by invertible steps: two different states stay different for any
+// following words, so lengths do not matter. At the end each is folded. Sequences that differ have equal signatures
+// with a probability of about 2^-128, for words not chosen to collide.
 #pragma once
 
 #include <bit>

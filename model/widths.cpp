@@ -97,7 +97,8 @@ void derive_attributes(Widths& w, const Config& config, int128 side) {
 
 void derive_line_widths(Widths& w, const Config& config) {
   const int128 side = w.delta.range.hi, pixel = int128{1} << w.grid_bits;
-  // From the start's row, at the line's first column. o: from the start to its centre, -2^(s-1) <= o <= 2^s subpixels.
+  // From the start's row, at the line's first column. o: offset from the start to its centre, -2^(s-1) <= o <= 2^s
+  // subpixels.
   w.line_numerator = exact("line numerator", "f D + d o - 1, f < 2^s", {-pixel / 2 * side - 1, (2 * pixel - 1) * side});
   w.line_position = exact("line position", "(line numerator >> s) + d n, n columns: d n <= L^2 / 2^s",
                           (w.line_numerator.range >> w.grid_bits) + (Interval{0, side * side} >> w.grid_bits));
@@ -110,7 +111,7 @@ void derive_line_widths(Widths& w, const Config& config) {
                        {0, std::max(config.target_width, config.target_height) - 1});
 }
 
-/// What a texture unit takes besides planes; a bit each where there is none, and no element of the arrays over coordinates.
+/// Widths of a texture unit besides planes; without one a bit each, and no element of the arrays over coordinates.
 void derive_texture(Widths& w, const Config& config) {
   const bool has_unit = has_texture_planes(config);
   w.coordinates = has_unit ? 2 : 0;
@@ -146,7 +147,7 @@ void derive_texture(Widths& w, const Config& config) {
   w.texture_byte = exact("texture byte", "8 bits", {0, 255});
 }
 
-/// Log2 of the bytes that hold so many bits of a sample: 1, 2 or 4.
+/// Log2 of the bytes for `bits` bits of a sample: 1, 2 or 4.
 int sample_bytes_log2(int bits) { return bits <= 8 ? 0 : bits <= 16 ? 1 : 2; }
 
 void derive_memory(Widths& w, const Config& config) {
@@ -191,9 +192,9 @@ Widths derive_widths(const Config& config) {
   }
   const int128 band = config.guard_band;
   w.tile_shift = floor_log2(static_cast<uint128>(config.tile_size));
-  // A span of W + H = 4 * band pixels: half an LSB of gradient error per pixel, 4 bits below that for the anchor. And more
-  // than a tile keeps, in the smallest band too: narrowing to local guard bits is a shift right, and the bits that a step
-  // of a whole tile leaves as they are lie below them.
+  // A span of W + H = 4 * band pixels: half an LSB of gradient error per pixel, 4 bits below that for the anchor. And
+  // more than a tile keeps, even in the smallest band: narrowing to local guard bits is a shift right, and the bits
+  // that a step of a whole tile does not change lie below them.
   w.guard_bits = std::max(ceil_log2(static_cast<uint128>(4 * band)) + 4, config.local_guard_bits + w.tile_shift);
   w.plane_fraction = w.guard_bits + s;
   w.stamps = {config.stamp_size, config.tile_size / config.stamp_size, config.msaa_samples};
@@ -220,13 +221,13 @@ Widths derive_widths(const Config& config) {
   w.area = exact("area", "L^2, L the side of the guard band", {0, edge.hi});
   w.edge_value = exact("edge value", "(+-L^2 - 1) >> s", (edge + Interval{-1, 0}) >> s);
   w.edge_step = exact("edge step", "delta: one pixel changes E >> s by dx or dy", delta);
-  // |dx| + |dy| over T - 1 pixels, and to a sample (sample_edge_reach()).
+  // |dx| + |dy| over T - 1 pixels, plus the increment to a sample (sample_edge_reach()).
   const int128 to_sample = w.has_samples != 0 ? side + 1 : 0, extent = 2 * side * (config.tile_size - 1) + to_sample;
   w.tile_edge = exact("tile edge",
                       w.has_samples != 0 ? "saturated beyond (T-1/2)(|dx|+|dy|) + 1 at the tile's first pixel"
                                          : "saturated beyond (T-1)(|dx|+|dy|) at the tile's first pixel",
                       {-extent - 1, extent});
-  // All of its bits are used: saturating at a power of two is a look at the high bits, where a clamp would subtract.
+  // All of its bits are used: saturating at a power of two only tests the high bits, where a clamp would subtract.
   w.tile_edge.range = {-(int128{1} << (w.tile_edge.bits - 1)), (int128{1} << (w.tile_edge.bits - 1)) - 1};
   w.sample_edge =
       exact("sample edge", w.has_samples != 0 ? "tile edge + (T-1/2)(|dx|+|dy|) + 1" : "tile edge + (T-1)(|dx|+|dy|)",
@@ -257,12 +258,12 @@ Widths derive_widths(const Config& config) {
   w.stencil_flags = config.stencil_bits != 0 ? 1 : 0;
   w.stored_depth = bits("stored depth", "a depth code, stencil.bits above it", config.depth_bits + config.stencil_bits);
 
-  // What rides with a primitive.
+  // State that travels with a primitive.
   w.kind = count("kind", "PrimitiveKind", 8);
   w.flag = count("flag", "yes or no", 2);
   w.depth_func = count("depth func", "DepthFunc", 8);
   w.cull_mode = count("cull mode", "Cull", 4);
-  // A bit for the tile at least, however small the target.
+  // At least one bit for the tile, for any target.
   w.pixel_x = count("pixel x", "target width, at least 2 T", std::max(config.target_width, 2 * tile));
   w.pixel_y = count("pixel y", "target height, at least 2 T", std::max(config.target_height, 2 * tile));
   w.vertex_color = bits("vertex color", "8 bits a stored channel", w.color().code.bits * w.color_planes);
@@ -286,7 +287,7 @@ double depth_error_bound(const Config& config) {
   return 0.5                                                           // storage
          + std::ldexp(1.0, -config.reciprocal_extra_bits)              // the reciprocal, over the full depth range
          + (plane_roundings(config) + 1) * local                       // the steps, and the anchor
-         + std::ldexp(1.0, -5);  // wide gradients over the guard band: guard_bits is chosen so
+         + std::ldexp(1.0, -5);  // wide gradients over the guard band: ensured by guard_bits
 }
 
 double line_depth_error_bound(const Config& config) {
@@ -301,7 +302,7 @@ HomogeneousWidths derive_homogeneous_widths(const Config& config) {
   HomogeneousWidths w;
   const int128 pixels = int128{config.target_width} + config.target_height;
   const int span = ceil_log2(static_cast<uint128>(pixels));
-  // Three roundings by 1/2 move E by (W + H) / 2 at most, and its slope is 2^(m-1) at least.
+  // Three roundings by 1/2 move E by at most (W + H) / 2, and its slope is at least 2^(m-1).
   w.fraction = span + config.subpixel_bits + 1;
   const Interval coefficient = symmetric(int128{1} << w.fraction), offset = symmetric(pixels << w.fraction);
   w.coefficient = exact("homogeneous coefficient", "2^m, m = log2(W + H) + S + 1", coefficient);

@@ -1,7 +1,7 @@
 // Every intermediate of the pipeline: its range by interval arithmetic from the configuration, and the bits it needs.
 //
-// No width is typed in anywhere else. C++ checks its lanes against these, raster_pkg.sv and the table of `halfplane config
-// --widths` are printed from them, and a configuration whose widths do not fit is refused by validate().
+// No width is written anywhere else. C++ checks its lanes against these, raster_pkg.sv and the table of `halfplane
+// config --widths` are printed from them, and a configuration whose widths do not fit is refused by validate().
 #pragma once
 
 #include <array>
@@ -33,22 +33,22 @@ struct Interval {
 /// [-magnitude, magnitude].
 [[nodiscard]] constexpr Interval symmetric(int128 magnitude) { return {-magnitude, magnitude}; }
 
-/// One intermediate: what it is called, why it is no larger, and how many bits hold it.
+/// One intermediate: its name, the reason for its bound, and its number of bits.
 struct Width {
   std::string name;   ///< "edge value"; also the base of its constant in raster_pkg.sv: EDGE_VALUE_BITS
   std::string bound;  ///< the formula behind `range`, in the symbols of docs/spec.md
-  Interval range;     ///< every value it takes; for a modular quantity, the residues
+  Interval range;     ///< all its values; for a modular quantity, the residues
   int bits = 0;
   bool is_signed = false;
-  bool is_modular = false;  ///< lives modulo 2^bits; only its final value is decoded
+  bool is_modular = false;  ///< kept modulo 2^bits; only its final value is decoded
 };
 
-/// What each plane of an attribute takes.
+/// Widths of each plane of an attribute.
 struct AttributeWidths {
   Width code, delta, numerator, reciprocal, product, plane, local;
-  Width step;               ///< of a local plane; with several samples s bits more, of which d takes the upper ones
-  Width fragment;           ///< what a fragment has of it: the code, or without a clamp the local value
-  Width line, affine_code;  ///< along a line, and a code that is clamped; no bits where the attribute has none
+  Width step;               ///< of a local plane; with several samples s bits more, of which d uses the upper ones
+  Width fragment;           ///< its value in a fragment: the code, or without a clamp the local value
+  Width line, affine_code;  ///< along a line, and a clamped code; no bits if the attribute has none
 
   /// r: significant bits of the reciprocal.
   [[nodiscard]] int reciprocal_bits() const { return reciprocal.bits - 1; }
@@ -56,29 +56,29 @@ struct AttributeWidths {
   [[nodiscard]] int guard_bits() const { return local.bits - code.bits - 1; }
 };
 
-/// What a line of the cache holds: 4x4 pixels of a tile, or a stamp where that is larger; of cache.kind tiles, a tile.
+/// The content of a cache line: 4x4 pixels of a tile, or a stamp if that is larger; with cache.kind tiles a tile.
 struct BlockGrid {
   int side = 1;       ///< stamps along the side of a block
   int per_tile = 1;   ///< blocks along the side of a tile
-  int flag_word = 1;  ///< flags that a word holds: of blocks in one row; a power of two
+  int flag_word = 1;  ///< flags in a word: of blocks in one row; a power of two
 
   [[nodiscard]] constexpr int stamps() const { return side * side; }  ///< of a block
   bool operator==(const BlockGrid&) const = default;
 };
 
-/// Where stamps and flags lie in memory, as logarithms of bytes; what the host chooses is in MemoryLayout (packets.hpp).
+/// Layout of stamps and flags in memory, as logarithms of bytes; the host's choices are in MemoryLayout (packets.hpp).
 struct MemoryGrid {
   int port = 0;                                         ///< a beat
   std::array<int, 2> sample{};                          ///< a sample of depth, of colour
   std::array<int, 2> stamp{};                           ///< a stamp
-  int pixel_color = 0;                                  ///< its colours, with one a pixel
+  int pixel_color = 0;                                  ///< its colours, one per pixel
   int flag_word = 0;                                    ///< a word of flags
-  int plane = 0;                                        ///< a plane of a tile
+  int plane = 0;                                        ///< a buffer of a tile
   int flag_row = 0;                                     ///< from the flags of one row of blocks to the next
-  [[nodiscard]] int tile() const { return plane + 1; }  ///< from one tile of a row to the next: both planes
+  [[nodiscard]] int tile() const { return plane + 1; }  ///< from one tile of a row to the next: both buffers
 };
 
-/// The derived widths of a configuration, and the few derived constants beside them.
+/// The derived widths of a configuration, and a few derived constants.
 struct Widths {
   // Constants.
   int grid_bits = 0;       ///< s, see coordinate_grid_bits()
@@ -86,34 +86,34 @@ struct Widths {
   int plane_fraction = 0;  ///< F = G + s: fraction bits of a plane at subpixel resolution
   int tile_shift = 0;      ///< log2 of the tile size
   StampGrid stamps;        ///< the stamps of a tile, the samples of a stamp
-  BlockGrid blocks;        ///< what a cache line holds
+  BlockGrid blocks;        ///< content of a cache line
   MemoryGrid memory;
   int port_bytes = 0;                    ///< of a beat on the memory port
   int planes = 0;                        ///< of all attributes together
   int affine_planes = 0;                 ///< depth and colour, which come first
   int alpha_counters = 0;                ///< 1: the alpha test counts
-  int texture_counters = 0;              ///< 1: so does a texture unit
-  int fog_octaves = 0;                   ///< 1: triangles say where in the table of a fog they lie
-  int stencil_flags = 0;                 ///< 1: there is a stencil, and primitives say what they do with it
+  int texture_counters = 0;              ///< 1: likewise with a texture unit
+  int fog_octaves = 0;                   ///< 1: triangles carry their octave in the table of a fog
+  int stencil_flags = 0;                 ///< 1: there is a stencil, and primitives carry flags for it
   int coordinates = 0;                   ///< of a texture: 2 with a texture unit, else 0
-  std::size_t q_plane = 0;               ///< with a texture unit: that of 1/w; u and v follow, and colours over w
-  int colors_over_w = 0;                 ///< how many of those
+  std::size_t q_plane = 0;               ///< with a texture unit: plane of 1/w; u and v follow, and colours over w
+  int colors_over_w = 0;                 ///< number of colours over w
   int has_colors_over_w = 0;             ///< 1: there are some
-  int normals = 0;                       ///< planes of those, over w; instead of colours
-  int color_planes = 0;                  ///< those of the stored colour: kColorPlane and the next ones
+  int normals = 0;                       ///< planes of normals over w; instead of colours
+  int color_planes = 0;                  ///< planes of the stored colour: kColorPlane and the next ones
   int samples = 0;                       ///< samples of a stamp
   int tiles_x = 0, tiles_y = 0;          ///< tiles along the sides of the widest and highest target
   int line_x_bits = 0, line_y_bits = 0;  ///< low bits of a tile's or block's x and y that choose its cache line
-  int hiz_group_bits = 0;                ///< HiZ bounds of 2^so many tiles of a row are cleared at once
+  int hiz_group_bits = 0;                ///< HiZ bounds of 2^n tiles of a row are cleared at once
   int line_guard_bits = 0;               ///< fraction bits of depth and colour along a line
 
   // Samples of a pixel.
   int pixel_samples = 1;
   int pixels = 1;           ///< of a stamp
-  int has_samples = 0;      ///< 1: a pixel has several
-  int edge_lows = 0;        ///< 3 then: of each edge the bits that edge_function() has lost
-  int further_samples = 0;  ///< of a stamp, but for the first of each pixel
-  int memory_colors = 0;    ///< of a stamp in memory: of its samples, or of its pixels, where the chip takes their mean
+  int has_samples = 0;      ///< 1: several samples per pixel
+  int edge_lows = 0;        ///< 3 then: for each edge the bits dropped by edge_function()
+  int further_samples = 0;  ///< of a stamp, without the first of each pixel
+  int memory_colors = 0;    ///< of a stamp in memory: one per sample, or per pixel if the chip stores the mean
   std::array<SampleOffset, kMaxPixelSamples> sample_offset{};  ///< of each, from the pixel's centre, 2^-s pixel
 
   // Coverage.
@@ -123,10 +123,10 @@ struct Widths {
   std::array<AttributeWidths, kMaxAttributes> attribute;
   PerPlane<std::uint8_t> attribute_of{};  ///< index of each plane's attribute
   PerPlane<std::uint64_t> line_mask{};    ///< all ones in AttributeWidths::line
-  Width reciprocal, reciprocal_shift;     ///< the widest, which the others are the upper bits of
+  Width reciprocal, reciprocal_shift;     ///< the widest; the others are its upper bits
   // Keys and positions.
   Width primitive_id, slot, tile_x, tile_y, tile_pixel, stamp_index, sample_mask, stored_color, stored_depth;
-  Width edge_low, pixel_mask, masked_samples, further_depth;  // of several samples a pixel
+  Width edge_low, pixel_mask, masked_samples, further_depth;  // with several samples per pixel
   Width kind, flag, depth_func, cull_mode, pixel_x, pixel_y, vertex_color, hiz_code, hiz_update, tile_plane,
       depth_source, memory_lane, counter;
   // The memory port.
@@ -138,35 +138,35 @@ struct Widths {
   Width run, address, row_stride, burst_length, port_strobe, port_byte;
   // Lines.
   Width line_numerator, line_position, line_product;   // line_setup
-  Width line_error, line_stay, line_move, line_count;  // registers and steps of line_raster, beside those of the planes
+  Width line_error, line_stay, line_move, line_count;  // registers and steps of line_raster, without planes
 
   /// r of the widest reciprocal.
   [[nodiscard]] int reciprocal_bits() const { return reciprocal.bits - 1; }
-  /// Those of one plane.
+  /// Widths of one plane.
   [[nodiscard]] const AttributeWidths& of_plane(std::size_t p) const { return attribute[attribute_of[p]]; }
   [[nodiscard]] const AttributeWidths& depth() const { return of_plane(kDepthPlane); }
   [[nodiscard]] const AttributeWidths& color() const { return of_plane(kColorPlane); }
-  /// The first colour over w, or the first normal, and how many planes there are in front of it: those that a token's value is
-  /// spread over.
+  /// The first colour over w, or the first normal, and the number of planes before it, over which a token's value is
+  /// spread.
   [[nodiscard]] std::size_t color_over_w_plane() const { return static_cast<std::size_t>(token_planes()); }
   [[nodiscard]] std::size_t normal_plane() const { return static_cast<std::size_t>(token_planes()); }
   [[nodiscard]] int token_planes() const { return planes - colors_over_w - normals; }
   /// "depth", "red", ...
   [[nodiscard]] std::string_view plane_name(std::size_t p) const;
 
-  /// All of them, as a reader wants them: coverage, planes, keys, lines. For tables and for raster_pkg.sv.
+  /// All widths, in readable order: coverage, planes, keys, lines. For tables and for raster_pkg.sv.
   [[nodiscard]] std::vector<const Width*> all() const&;
   std::vector<const Width*> all() const&& = delete;  // the pointers would outlive the widths
 };
 
-/// Whether states go beside the setup of triangles: where a texture unit's planes make that long, and its states many.
+/// Whether states bypass the setup of triangles: where a texture unit's planes make setup long, and states frequent.
 [[nodiscard]] inline bool has_state_lane(const Widths& widths) { return widths.coordinates != 0; }
 
-/// The widest of the attributes: what one datapath for all planes must hold.
+/// The widest of the attributes: the width of one datapath for all planes.
 [[nodiscard]] const Width& widest(const Widths& widths, Width AttributeWidths::*width);
 
-/// Derives every width. Precondition: every value within the range of its setting; whether the widths fit is validate()'s to
-/// say.
+/// Derives every width. Precondition: every value within the range of its setting; validate() checks whether the widths
+/// fit.
 [[nodiscard]] Widths derive_widths(const Config& config);
 
 /// Widths of the scalar engine's path without clipping (stages/homogeneous_setup). No hardware has them.
@@ -181,14 +181,14 @@ struct HomogeneousWidths {
 };
 [[nodiscard]] HomogeneousWidths derive_homogeneous_widths(const Config& config);
 
-/// The farthest that a rounded edge lies from the true one inside the target, in pixels: at most half a subpixel.
+/// Bound of the distance of a rounded edge from the true one inside the target, in pixels: at most half a subpixel.
 [[nodiscard]] double homogeneous_edge_bound(const Config& config);
 
 /// The largest depth error, in LSB, against the exact plane through the snapped vertices. validate() refuses above 1.
 [[nodiscard]] double depth_error_bound(const Config& config);
 
 /// The same along a line, against the exact value at the pixel's major coordinate. Without the 1/2 of storage it is
-/// below 1/2 in every legal configuration, so no code ever leaves the range of the two ends, and none is clamped.
+/// below 1/2 in every legal configuration, so no code ever leaves the range of the two ends, and no clamp is needed.
 [[nodiscard]] double line_depth_error_bound(const Config& config);
 
 }  // namespace halfplane

@@ -1,17 +1,17 @@
-// Checks what the host of raster_top does on its ports. Simulation only, bound from outside:
+// Checks the behaviour of raster_top's host on its ports. Simulation only, bound from outside:
 //
 //   bind raster_top primitive_stream_checker u_primitive_stream_checker (.*);
 //
 // A broken rule is an assertion that fails, with a message: what is wrong, in which primitive of the stream, what to send
 // instead. Primitives are counted from reset, the first is 0. Verilator wants --assert.
 //
-// is_written is what a test bench waits for before it reads the picture from memory. idle_o alone is not: what was drawn
-// since the last flush may lie on the chip.
+// A test bench waits for is_written before it reads the picture from memory. idle_o alone is not enough: pixels drawn
+// since the last flush may still be on the chip.
 module primitive_stream_checker (
     input logic clk_i,
     input logic rst_ni,
 
-    // From the host, as raster_top has them
+    // From the host, as in raster_top
     input logic                          primitive_valid_i,
     input logic                          primitive_ready_o,
     input raster_pkg::primitive_packet_t primitive_i,
@@ -26,9 +26,9 @@ module primitive_stream_checker (
   localparam bit HAS_BLOCKS = raster_pkg::CACHE_KIND == 1;
 
   logic [63:0] taken_q;      // primitives, of all kinds
-  logic [63:0] unwritten_q;  // of those, the ones after the last flush; states write nothing
+  logic [63:0] unwritten_q;  // primitives since the last flush; states write nothing
   logic        has_target_q;
-  logic [raster_pkg::PIXEL_X_BITS-1:0] last_x_q;  // of the target: the box of the last fast clear of both planes
+  logic [raster_pkg::PIXEL_X_BITS-1:0] last_x_q;  // of the target: the last fast clear of both buffers
   logic [raster_pkg::PIXEL_Y_BITS-1:0] last_y_q;
 
   logic takes, is_state, is_clear, is_flush, is_bin, clears_both, has_known_kind;
@@ -43,11 +43,11 @@ module primitive_stream_checker (
       primitive_i.kind == raster_pkg::PRIMITIVE_KIND_POINT || is_clear || is_flush || is_state ||
       (primitive_i.kind == raster_pkg::PRIMITIVE_KIND_LINE && raster_pkg::LINES_UNIT != 0);
 
-  // Everything that was taken in the cycles before is in memory.
+  // Everything taken in earlier cycles is in memory.
   logic is_written;
   assign is_written = idle_o && unwritten_q == '0;
 
-  // What is on offer stays until it is taken.
+  // A packet on offer stays until it is taken.
   logic                          waits_q;
   raster_pkg::primitive_packet_t waiting_q;
   always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -85,7 +85,7 @@ module primitive_stream_checker (
     end
   end
 
-  // The rules of a primitive, at the clock edge that takes it. A state has no box, and may come in front of all else.
+  // The rules of a primitive, at the clock edge that takes it. A state has no box, and may precede everything else.
   logic is_whole, is_in_target;
   assign is_whole = primitive_i.box.left == '0 && primitive_i.box.top == '0 && primitive_i.box.right == last_x_q &&
                     primitive_i.box.bottom == last_y_q;
@@ -143,8 +143,8 @@ module primitive_stream_checker (
     end
   end
 
-  // Where planes lie may change when nothing is under way and nothing is left on the chip for the old place; and after a
-  // reset, while caches are still swept.
+  // The addresses of buffers may change when nothing is under way and nothing is left on the chip for the old
+  // addresses; and after a reset, while caches are still swept.
   raster_pkg::memory_layout_t layout_q;
   always_ff @(posedge clk_i) begin
     layout_q <= layout_i;
@@ -155,14 +155,14 @@ module primitive_stream_checker (
                unwritten_q);
   end
 
-  // Lines: setups and their places in program order, of which either may come first.
+  // Lines: setups and their places in program order; either may come first.
   generate
     if (raster_pkg::LINES_UNIT != 0) begin : gen_lines
       localparam int ID = raster_pkg::PRIMITIVE_ID_BITS;
       logic [63:0] places_q, setups_q;
       logic        line_waits_q, takes_place, takes_setup;
       raster_pkg::line_setup_t line_q;
-      logic [ID-1:0] ids[$];  // of those without their other half
+      logic [ID-1:0] ids[$];  // lines whose other half is missing
       assign takes_place = takes && primitive_i.kind == raster_pkg::PRIMITIVE_KIND_LINE;
       assign takes_setup = line_valid_i && line_ready_o;
 

@@ -22,16 +22,16 @@
 //                                      v      |
 //                                      memory
 //
-// That is the framebuffer of blocks (cache.kind). The framebuffer of tiles is one stage, next to depth_test.
+// This is the framebuffer of blocks (cache.kind). The framebuffer of tiles is one stage, next to depth_test.
 //
-// Every arrow that waits is a stream: a packet moves when valid and ready are both high. Bit raster_pkg::STALL_X of stall_i
-// holds arrow X back for a cycle, for tests; hardware ties it to 0. The packets are X_data, X_valid, X_ready: so cosim/taps.svh
-// finds them. Nothing in here depends on when packets come, only on what they say.
-// docs/pipeline.md says what each stage takes and how long; the host must clear depth and colour once before it draws.
+// Every arrow that waits is a stream: a packet moves when valid and ready are both high. Bit raster_pkg::STALL_X of
+// stall_i holds arrow X back for a cycle, for tests; hardware ties it to 0. Arrows are named X_data, X_valid, X_ready,
+// as cosim/taps.svh expects. Results never depend on the timing of packets, only on their content. docs/pipeline.md
+// lists the latency and the interval of each stage; the host must clear depth and colour once before it draws.
 module raster_top (
     input logic clk_i,
     input logic rst_ni,       // at any time, for a cycle at least
-    input logic power_on_ni,  // with it when power comes: what memory was asked for before is forgotten
+    input logic power_on_ni,  // with rst_ni at power-on: earlier requests to memory are forgotten
 
     input logic [raster_pkg::STALL_BITS-1:0] stall_i,
 
@@ -46,7 +46,7 @@ module raster_top (
     input  raster_pkg::line_setup_t line_i,
 
     // To memory: bursts of beats. Each beat that was read is answered, and each burst that was written, in order
-    input  raster_pkg::memory_layout_t layout_i,  // from the host; stays as it is while anything is under way
+    input  raster_pkg::memory_layout_t layout_i,  // from the host; stays while anything is under way
     output logic                       beat_valid_o,
     input  logic                       beat_ready_i,
     output raster_pkg::memory_beat_t   beat_o,
@@ -54,7 +54,7 @@ module raster_top (
     output logic                       answer_ready_o,
     input  raster_pkg::memory_answer_t answer_i,
 
-    // To the memory of textures: reads of lines, answered beat by beat in their order
+    // To the texture memory: reads of lines, answered beat by beat in order
     output logic                         texture_valid_o,
     input  logic                         texture_ready_i,
     output raster_pkg::texture_request_t texture_o,
@@ -62,7 +62,7 @@ module raster_top (
     output logic                         texel_ready_o,
     input  raster_pkg::texel_beat_t      texel_i,
 
-    // The counters of one cycle: while hold is high they stay, to be read word by word, and counting goes on
+    // Snapshot of the counters of one cycle: it stays while hold is high, to be read word by word; counting goes on
     input  logic                        counters_hold_i,
     output raster_pkg::counter_packet_t counters_o,
     // Nothing is under way: every primitive of the cycles before has been drawn, and memory has answered everything. What was
@@ -73,7 +73,7 @@ module raster_top (
   localparam int SAMPLES = raster_pkg::SAMPLES;
   localparam int PIXELS = raster_pkg::PIXELS;
   localparam int COUNT = raster_pkg::SAMPLE_COUNT_BITS;
-  localparam int DEPTHS = SAMPLES * raster_pkg::STORED_DEPTH_BITS;  // the words of a stamp
+  localparam int DEPTHS = SAMPLES * raster_pkg::STORED_DEPTH_BITS;  // bits of a stamp's stored words
   localparam bit HAS_TEXTURE = raster_pkg::COORDINATES != 0;
   localparam bit LATE = raster_pkg::LATE_ALPHA != 0;
 
@@ -90,15 +90,15 @@ module raster_top (
   logic [3*raster_pkg::TILE_EDGE_BITS-1:0] visit_edges;
   raster_pkg::stamp_packet_t               stamp_data;
   raster_pkg::line_pixel_t                 line_pixel_data;
-  raster_pkg::fragment_packet_t            fragment_data;  // without the constants of its triangle where they are apart
-  raster_pkg::write_packet_t               write_data;     // its depths are those of the fragment, its words are beside it
+  raster_pkg::fragment_packet_t            fragment_data;  // without constants that are stored separately
+  raster_pkg::write_packet_t               write_data;  // without its depths and words: the depths are the fragment's
   logic [DEPTHS-1:0]                       write_word;
   raster_pkg::retire_packet_t              retire_data;
-  raster_pkg::memory_request_t             request_data;   // of blocks without its data
+  raster_pkg::memory_request_t             request_data;   // without its data, with the framebuffer of blocks
   logic [8*raster_pkg::REQUEST_BYTES-1:0]  request_bytes;  // its data as they lie in memory
   raster_pkg::memory_response_t            response_data;
   raster_pkg::color_packet_t               color_data;
-  logic                                    tested_valid;   // the fragment that is tested, with what is stored under it
+  logic                                    tested_valid;   // the fragment in the test, with its stored words
   raster_pkg::fragment_packet_t            tested;
 
   // At the producer, before a stall.
@@ -126,7 +126,7 @@ module raster_top (
   assign texture_valid_o   = texture_offered && !stall_i[raster_pkg::STALL_TEXTURE];
   assign texel_ready_o     = texel_accepted && !stall_i[raster_pkg::STALL_TEXEL];
 
-  // Beside the streams: slots of contexts, events for the counters, who is idle.
+  // Next to the streams: context slots, counter events, idle flags.
   logic [raster_pkg::SLOT_BITS-1:0]                                   context_slot, read_slot;
   logic                                                               slot_free, context_read;
   raster_pkg::context_packet_t                                        stamp_context, tested_context;
@@ -141,7 +141,7 @@ module raster_top (
   logic             framebuffer_idle, port_idle, moves_tiles;
 
   // --------------------------------------------------------- primitives to fragments: pipelined, or a step at a time
-  logic shaded_valid, shaded_ready;  // what interpolate sends
+  logic shaded_valid, shaded_ready;  // output of interpolate
   raster_pkg::fragment_packet_t shaded_data;
   generate
     if (raster_pkg::SETUP_KIND == 0) begin : gen_pipelined
@@ -316,7 +316,7 @@ module raster_top (
       .number_o         (triangle_number)
   );
 
-  // Lines: drawn beside all that, joined where their pixels are tested.
+  // Lines: drawn in parallel, joined where their pixels are tested.
   generate
     if (raster_pkg::LINES_UNIT != 0) begin : gen_lines
       logic line_ready, pixel_offered, pixel_accepted;
@@ -606,7 +606,7 @@ module raster_top (
         assign color_valid = colored_valid && fogged_mask != '0;
         assign color_ready = colored_ready;
       end else begin : gen_unshaded
-        logic                      has_room;  // always: depth_cache counts
+        logic                      has_room;  // always 1: depth_cache counts
         logic [PIXELS*WRITTEN-1:0] color;
         skid_buffer #(
             .WIDTH(raster_pkg::TESTED_STAMP_BITS + PIXELS * WRITTEN)

@@ -58,8 +58,8 @@ class CaptureReader {
   CaptureText text_;
   TextureReader textures_;
   Scene scene_;
-  State state_;                // what the next draw gets
-  bool state_changed_ = true;  // since state_number() was asked
+  State state_;                // state of the next draw
+  bool state_changed_ = true;  // since the last call of state_number()
   std::uint32_t state_number_ = 0;
   std::uint32_t object_ = 0;
   std::size_t target_line_ = 0;  // 0: not given yet
@@ -181,7 +181,7 @@ void CaptureReader::read_state() {
              "; write one of " + known);
 }
 
-/// The index of state_ in Scene::states; a state that was drawn with before keeps its index.
+/// The index of state_ in Scene::states; a state used by an earlier draw keeps its index.
 std::uint32_t CaptureReader::state_number() {
   if (state_changed_) {
     state_changed_ = false;
@@ -217,7 +217,7 @@ void CaptureReader::read_object() {
   object_ = place->second;
 }
 
-/// "3 (x y z), 4 (and w), 8 (and r g b a) or 10 (and u v)".
+/// Lists the forms of a vertex: "3 (x y z), 4 (and w), 8 (and r g b a) or 10 (and u v)".
 std::string vertex_forms() {
   std::string text;
   for (const VertexPart& part : kVertexParts) {
@@ -233,7 +233,7 @@ void CaptureReader::read_vertex() {
   if (text_.has_word() || std::ranges::find(kVertexParts, count, &VertexPart::end) == kVertexParts.end())
     text_.fail(std::string("a vertex of ") + (text_.has_word() ? "more than " : "") + std::to_string(count) +
                " numbers; write " + vertex_forms());
-  // No index can follow the last line, and the number at a cut would be read as a shorter one.
+  // No index can follow the last line, and a truncated number would be read as a shorter one.
   if (!text_.is_terminated())
     text_.fail("the file ends inside this vertex: it may be cut off; add the rest, or end the line");
   if (const VertexPart* const part = part_out_of_bounds(numbers); part != nullptr)
@@ -243,7 +243,7 @@ void CaptureReader::read_vertex() {
   scene_.vertices.push_back(vertex_of(numbers));
 }
 
-/// One more attribute of the vertex above.
+/// Reads one more attribute of the vertex above.
 void CaptureReader::read_attribute() {
   const std::string_view name = text_.word();
   if (name != "normal")
@@ -257,8 +257,9 @@ void CaptureReader::read_attribute() {
     component = text_.number("a component of a normal", -kLargestNormal, kLargestNormal);
 }
 
-/// Makes room for as many vertices as the text will have if it goes on like this: touching fresh memory, which doubling
-/// does twice, takes as long as reading the numbers. Bounded by the text, since a vertex takes at least 8 bytes of it.
+/// Reserves room for the number of vertices extrapolated from the text so far: touching fresh memory, which doubling
+/// does twice, takes as long as reading the numbers. Bounded by the text's size, since a vertex takes at least 8 bytes
+/// of it.
 void CaptureReader::grow_vertices() {
   constexpr std::size_t enough_to_tell = 1024;  // vertices
   const std::size_t count = scene_.vertices.size();
@@ -268,7 +269,7 @@ void CaptureReader::grow_vertices() {
   scene_.vertices.reserve(count < enough_to_tell ? doubled : std::max(doubled, static_cast<std::size_t>(expected)));
 }
 
-/// One line of indices. A strip, a fan or a loop stands on one line; lists that follow each other join.
+/// One line of indices. A strip, a fan or a loop is one line; consecutive lists are joined.
 void CaptureReader::read_draw(const CaptureDraw& draw) {
   const bool is_list = draw.is_list;
   const std::size_t least = draw.least;
@@ -314,13 +315,13 @@ void CaptureReader::read_draw(const CaptureDraw& draw) {
                                     .line = static_cast<std::uint32_t>(line)});
 }
 
-/// The text of a file. Its memory is not filled before it is read into, as a std::string's would be.
+/// The text of a file. Its memory is not initialised before the read, unlike a std::string's.
 struct FileText {
   std::unique_ptr<char[]> bytes;
   std::size_t size = 0;
 };
 
-/// Reads to the end, a file in one piece; a pipe has no size to go by.
+/// Reads to the end, a file in one piece; the size of a pipe is unknown.
 FileText read_all(const std::string& path) {
   const auto refuse = [&path](const std::string& why) {
     throw InputError(path + ": " + why + "; give the path of a capture");
@@ -329,13 +330,13 @@ FileText read_all(const std::string& path) {
   const auto status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) refuse("there is no such file");
   if (std::filesystem::is_directory(status)) refuse("this is a folder");
-  if (std::filesystem::is_character_file(status)) refuse("this is a device");  // some of them never end
+  if (std::filesystem::is_character_file(status)) refuse("this is a device");  // some devices never end
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   if (!file) refuse("the file cannot be opened (" + std::generic_category().message(errno) + ")");
 
   const auto known_size = std::filesystem::is_regular_file(status) ? std::filesystem::file_size(path, error) : 0;
-  // One byte more than the file has: the first read then meets its end.
+  // One byte more than the file has: the first read then reaches its end.
   std::size_t room = std::max<std::size_t>(error ? 0 : known_size, 1u << 16) + 1;
   FileText text{std::make_unique_for_overwrite<char[]>(room)};
   for (;;) {

@@ -1,4 +1,4 @@
-// Captures: the text format that holds a whole scene, exact to the bit. docs/capture.md is its reference.
+// Captures: the text format for a whole scene, exact to the bit. docs/capture.md is its reference.
 #pragma once
 
 #include <iosfwd>
@@ -16,14 +16,14 @@ namespace halfplane {
 /// The same for a file or a pipe. Throws InputError, also when the file cannot be read.
 [[nodiscard]] Scene read_capture_file(const std::string& path);
 
-/// Writes a capture that reads back as the same scene, bit for bit, if `scene` is in the form that the reader makes:
-/// objects[0] is unnamed and no two objects share a name, states are distinct and in the order of their first use, the
-/// indices of the draws follow each other without gaps, two neighbouring lists of triangles differ in state or object.
-/// Another scene reads back in that form, with the same picture. Draws of less than one triangle are left out. The
-/// caller checks the stream. Throws InputError for a scene that is not valid.
+/// Writes a capture that reads back as the same scene, bit for bit, if `scene` is in the reader's form: objects[0] is
+/// unnamed and no two objects share a name, states are distinct and in the order of their first use, the indices of the
+/// draws are consecutive without gaps, two neighbouring lists of triangles differ in state or object. Another scene
+/// reads back in that form, with the same picture. Draws of less than one triangle are left out. The caller checks the
+/// stream. Throws InputError for an invalid scene.
 void write_capture(const Scene& scene, std::ostream& out);
 
-/// Whether two scenes are the same input, every number bit for bit. Scene::name and Draw::line do not count: they serve
+/// Whether two scenes are the same input, every number bit for bit. Scene::name and Draw::line are ignored: they serve
 /// messages only.
 [[nodiscard]] bool same_scene(const Scene& a, const Scene& b);
 

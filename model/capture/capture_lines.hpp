@@ -1,4 +1,4 @@
-// A capture with a prefix of generated lines, such as the head that the C interface puts before the lines of its caller.
+// A capture with a prefix of generated lines, such as the head that the C interface adds to its caller's lines.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace halfplane {
 
-/// read_capture() of a text whose first `head` lines messages do not count.
+/// read_capture() of a text; messages do not count its first `head` lines.
 [[nodiscard]] Scene read_capture_lines(std::string_view text, std::string_view file_name, std::size_t head);
 
 }  // namespace halfplane

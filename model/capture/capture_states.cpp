@@ -7,16 +7,16 @@
 namespace halfplane {
 namespace {
 
-/// "off or x y width height in pixels"
+/// The form of a row's value: "off or x y width height in pixels"
 std::string what_to_write(const DrawState& row) {
   std::string text = row.words.empty() ? "" : std::string(row.words.back()) + " or ";
   text += row.form;
   return row.unit.empty() ? text : text + " in " + std::string(row.unit);
 }
 
-/// Takes the word if the line has one of the row's; otherwise numbers must follow.
+/// Reads a word if the line has one of the row's; otherwise numbers must follow.
 bool read_word(CaptureText& text, const DrawState& row, StateValue& value) {
-  CaptureText ahead = text;  // a word to look at before it is read
+  CaptureText ahead = text;  // to look at a word before it is read
   const std::string_view word = ahead.word();
   for (value.word = 0; value.word < row.words.size(); ++value.word)
     if (row.words[value.word] == word) {
@@ -37,7 +37,7 @@ double read_texture(CaptureText& text, const DrawState& row, std::span<const Tex
   return static_cast<double>(found - textures.begin());
 }
 
-/// A number in hexadecimal digits; a 0x before them is no harm.
+/// A number in hexadecimal digits; a 0x prefix is accepted.
 double read_hex(CaptureText& text, const DrawState& row, const StateNumber& number) {
   const std::string_view word = text.word();
   std::string_view digits = word;
@@ -61,7 +61,7 @@ void append_hex(std::string& out, unsigned value) {
 }
 
 void read_numbers(CaptureText& text, const DrawState& row, std::span<const Texture> textures, StateValue& value) {
-  std::string positive;  // "viewport width and height": what must be above 0
+  std::string positive;  // "viewport width and height": numbers that must be positive
   bool is_refused = false;
   for (std::size_t i = 0; i < row.numbers.size(); ++i) {
     const StateNumber& number = row.numbers[i];
@@ -113,7 +113,8 @@ void write_state_value(const State& state, const DrawState& row, std::span<const
   };
   std::size_t needed = count;
   while (needed > 0 && says_nothing(needed - 1)) --needed;
-  if (needed == 0 || row.numbers[needed - 1].repeats == 0) count = needed;  // all that may be left out, or none of it
+  if (needed == 0 || row.numbers[needed - 1].repeats == 0)
+    count = needed;  // either all optional numbers are absent, or none
   for (std::size_t i = 0; i < count; ++i) {
     const StateNumber& number = row.numbers[i];
     out += ' ';

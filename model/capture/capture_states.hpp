@@ -1,4 +1,4 @@
-// The draw states of a capture, read and written as their table (model/draw_states.hpp) has them; and its words for draws.
+// The draw states of a capture, read and written by their table (model/draw_states.hpp); and its words for draws.
 #pragma once
 
 #include <array>
@@ -19,17 +19,17 @@ void read_state_value(CaptureText& text, const DrawState& row, std::span<const T
 /// Appends the value of `row`, each of its words, numbers and names after a blank.
 void write_state_value(const State& state, const DrawState& row, std::span<const Texture> textures, std::string& out);
 
-/// The rows that `state` lines may name: all but `space`, in the order in which they are written.
+/// The rows that `state` lines may name: all except `space`, in the order in which they are written.
 [[nodiscard]] std::span<const DrawState> capture_states();
 
 /// The row of `space`.
 [[nodiscard]] const DrawState& capture_space();
 
-/// How a draw is written: its word, and how many indices it takes.
+/// The written form of a draw: its word, and its number of indices.
 struct CaptureDraw {
   std::string_view word;
   Topology topology;
-  std::string_view primitive;  ///< what one of them is called in messages
+  std::string_view primitive;  ///< name of one of them in messages
   std::size_t least;           ///< indices of one primitive
   bool is_list;                ///< every `least` indices are a primitive of their own; otherwise they share vertices
 };

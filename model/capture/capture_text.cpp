@@ -27,13 +27,13 @@ std::string text_of(double value) {
   return text;
 }
 
-/// std::from_chars plus what it lacks: a leading '+' and the 0x of hex floats. invalid_argument: not a number.
+/// std::from_chars, extended by a leading '+' and the 0x of hex floats. invalid_argument: not a number.
 std::errc parse_number(std::string_view word, double& value) {
   const bool is_negative = word.starts_with('-');
   if (is_negative || word.starts_with('+')) word.remove_prefix(1);
   const bool is_hex = word.starts_with("0x") || word.starts_with("0X");
   if (is_hex) word.remove_prefix(2);
-  // from_chars takes a sign, "inf" and "nan" too: a number begins with a digit or a point here.
+  // from_chars accepts a sign, "inf" and "nan" too: here a number begins with a digit or a point.
   if (word.empty() || !(word[0] == '.' || (is_hex ? hex_digit(word[0]) >= 0 : is_digit(word[0]))))
     return std::errc::invalid_argument;
   const char* end = word.data() + word.size();
@@ -44,14 +44,14 @@ std::errc parse_number(std::string_view word, double& value) {
   return result.ec;
 }
 
-/// The common number: few digits and no exponent. Both the digits (up to 2^53) and the power of ten are exact doubles,
-/// so that the one division rounds to nearest. Returns where the number ends, or nullptr for one that is written
-/// otherwise, right or wrong.
+/// Reads the common form: few digits and no exponent. Both the digits (up to 2^53) and the power of ten are exact
+/// doubles, so that the one division rounds to nearest. Returns the end of the number, or nullptr for any other form,
+/// right or wrong.
 inline const char* read_short_decimal(const char* p, const char* line_end, double& value) {
   const bool is_negative = p != line_end && *p == '-';
   if (is_negative) ++p;
   const char* begin = p;
-  std::uint64_t digits = 0;  // unsigned: a long run wraps, and its length refuses it below
+  std::uint64_t digits = 0;  // unsigned: a long run wraps, and is refused below by its length
   for (; p != line_end && is_digit(*p); ++p) digits = digits * 10 + static_cast<std::uint64_t>(*p - '0');
   auto count = p - begin;
   std::ptrdiff_t places = 0;
@@ -152,7 +152,7 @@ std::string_view CaptureText::expect_word(std::string_view what) {
 
 std::size_t CaptureText::numbers(std::span<double> values) {
   std::size_t count = 0;
-  const char* p = at_;  // a local: this loop is where the time of reading a large file goes
+  const char* p = at_;  // a local: this loop takes most of the time for a large file
   while (count < values.size()) {
     while (p != line_end_ && is_blank(*p)) ++p;
     if (p == line_end_ || *p == '#') break;
@@ -211,7 +211,7 @@ std::uint32_t CaptureText::index(std::size_t count) {
 }
 
 bool CaptureText::take(std::string_view expected) {
-  if (!has_word() || *at_ != expected.front()) return false;  // in a hurry: this stands before every index
+  if (!has_word() || *at_ != expected.front()) return false;  // fast path: this is called before every index
   const char* before = at_;
   if (word() == expected) return true;
   at_ = before;

@@ -1,4 +1,4 @@
-// A capture's text, line by line and word by word, with the place for messages. Used by the capture reader only.
+// A capture's text, line by line and word by word, with the position for messages. Used by the capture reader only.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace halfplane {
 
-/// `text` between quotes, fit for a one-line message: at most 40 bytes of it, the unprintable ones by their number.
+/// `text` between quotes, fit for a one-line message: at most 40 bytes of it, unprintable bytes by their number.
 [[nodiscard]] std::string quoted_word(std::string_view text);
 
 /// The value of a hexadecimal digit of either case, -1 for any other character.
@@ -25,7 +25,7 @@ void append_number(std::string& out, double value);
 /// A cursor over the words of a text. Words are separated by blanks and tabs; `#` ends a line early, CR LF is one end.
 class CaptureText {
  public:
-  /// `head`: lines at its beginning that are not the caller's, and not counted.
+  /// `head`: lines at the beginning that are not the caller's, and not counted.
   CaptureText(std::string_view text, std::string_view file_name, std::size_t head = 0)
       : text_(text), file_name_(file_name), head_(head), line_(0 - head) {}
 
@@ -35,12 +35,12 @@ class CaptureText {
   [[nodiscard]] bool has_word();
   /// The next word, empty at the end of the line.
   [[nodiscard]] std::string_view word();
-  /// What is left of the line, without the blanks around it.
+  /// The rest of the line, without the blanks around it.
   [[nodiscard]] std::string_view rest();
 
   /// The next word as a finite number: decimal or C hex float, rounded to nearest.
   [[nodiscard]] double number();
-  /// The numbers that follow, as many as the line and `values` have. Returns how many.
+  /// Reads the following numbers, as many as the line and `values` have. Returns how many.
   [[nodiscard]] std::size_t numbers(std::span<double> values);
   /// A number in [low, high]; `what` names it in the message.
   [[nodiscard]] double number(std::string_view what, double low, double high);
@@ -50,14 +50,14 @@ class CaptureText {
   [[nodiscard]] std::uint32_t index(std::size_t count);
   /// Takes the next word if it is `expected`.
   [[nodiscard]] bool take(std::string_view expected);
-  /// The place in `names` of the next word; `what` names the setting in the message.
+  /// The index in `names` of the next word; `what` names the setting in the message.
   [[nodiscard]] std::size_t choice(std::string_view what, std::span<const std::string_view> names);
 
-  /// Refuses words that are left over.
+  /// Refuses left-over words.
   void expect_end();
   /// Refuses a NUL byte anywhere in the text.
   void refuse_nul() const;
-  /// Whether the line ends with a line end, as all do but the last one of a text that was cut off.
+  /// Whether the line has a line end, as all lines but the last one of a truncated text do.
   [[nodiscard]] bool is_terminated() const { return next_ > 0 && text_[next_ - 1] == '\n'; }
   /// Bytes of the whole text, and of its lines up to this one.
   [[nodiscard]] std::size_t size() const { return text_.size(); }
@@ -74,9 +74,9 @@ class CaptureText {
 
   std::string_view text_, file_name_;
   std::size_t head_;                // lines that are not counted
-  std::size_t next_ = 0;            // where the next line begins in text_
-  std::size_t line_;                // 0: before the first that counts; modulo 2^64 before that
-  const char* at_ = nullptr;        // where the next word is looked for
+  std::size_t next_ = 0;            // start of the next line in text_
+  std::size_t line_;                // 0: before the first counted line; modulo 2^64 before that
+  const char* at_ = nullptr;        // where the search for the next word starts
   const char* line_end_ = nullptr;  // before its LF or CR LF
 };
 

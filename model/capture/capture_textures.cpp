@@ -36,7 +36,7 @@ void append_hex(std::string& out, std::uint32_t number, int digits) {
   for (int shift = 4 * (digits - 1); shift >= 0; shift -= 4) out += "0123456789abcdef"[number >> shift & 15];
 }
 
-/// Calls work(); what it refuses is said with the place in the capture.
+/// Calls work(); adds the place in the capture to its errors.
 template <class Work>
 void at_its_line(const CaptureText& text, Work&& work) {
   try {

@@ -11,15 +11,15 @@
 
 namespace halfplane {
 
-/// Collects the lines of textures. One whose texels stand in the capture is complete when all of them have come.
+/// Collects the lines of textures. A texture with texels in the capture is complete when all of them have come.
 class TextureReader {
  public:
-  /// `file_name`: the capture's; files of texels are looked for beside it.
+  /// `file_name`: the capture's; files of texels are searched next to it.
   explicit TextureReader(std::string_view file_name) : file_name_(file_name) {}
 
-  /// Behind the word `texture`: NAME file PATH | pattern P W H | inline FORMAT W H, then [format F] [mips M].
+  /// After the word `texture`: NAME file PATH | pattern P W H | inline FORMAT W H, then [format F] [mips M].
   void read_texture(CaptureText& text, std::vector<Texture>& textures);
-  /// Behind `palette` and `texels`: words of hex digits.
+  /// After `palette` and `texels`: words of hex digits.
   void read_palette(CaptureText& text);
   void read_texels(CaptureText& text, std::vector<Texture>& textures);
   /// Refuses an end, or another line, while texels are missing.
@@ -37,12 +37,12 @@ class TextureReader {
   std::optional<Inline> incomplete_;
 };
 
-/// Appends the lines of a texture, its texels in them.
+/// Appends the lines of a texture, including its texels.
 void write_texture(const Texture& texture, std::string& out);
 
 /// The image of a PNG, JPEG, BMP or TGA file, 8 bits a channel. Throws InputError: "path: what is wrong".
 [[nodiscard]] TexelImage read_image_file(const std::string& path);
-/// The same of its bytes; `what` names it in messages.
+/// The same from its bytes; `what` names the image in messages.
 [[nodiscard]] TexelImage read_image(std::string_view bytes, const std::string& what);
 
 }  // namespace halfplane

@@ -22,7 +22,7 @@ bool same_bits(std::span<const double> a, std::span<const double> b) {
   });
 }
 
-/// How many numbers of a `v` line are needed: up to the last part that differs from the defaults.
+/// Number of numbers needed on a `v` line: up to the last part that differs from the defaults.
 std::size_t numbers_needed(const VertexNumbers& numbers) {
   constexpr VertexNumbers defaults = numbers_of(Vertex{});
   std::size_t needed = 0, begin = 0;
@@ -34,7 +34,8 @@ std::size_t numbers_needed(const VertexNumbers& numbers) {
   return needed;
 }
 
-/// An object's name as one word or several on a line: what the line could not hold is written as % and two hex digits.
+/// An object's name as one word or several on a line: characters that the line cannot hold are written as % and two hex
+/// digits.
 std::string escaped(std::string_view name) {
   constexpr std::string_view digits = "0123456789ABCDEF";
   std::string result;
@@ -52,7 +53,7 @@ std::string escaped(std::string_view name) {
   return result;
 }
 
-/// Writes commands in order and remembers what the reader knows at each point.
+/// Writes commands in order and tracks the reader's state.
 class CaptureWriter {
  public:
   CaptureWriter(const Scene& scene, std::ostream& out) : scene_(scene), out_(out) {}
@@ -108,8 +109,8 @@ class CaptureWriter {
   const Scene& scene_;
   std::ostream& out_;
   std::string buffer_;
-  State state_;                    // what the reader has at this point
-  bool space_is_named_ = false;    // `space` is written once even if it is the default: people look for it
+  State state_;                    // the reader's state at this point
+  bool space_is_named_ = false;    // `space` is written once even if it is the default, for human readers
   std::size_t object_ = 0;         // the reader's current object
   std::size_t objects_named_ = 1;  // objects below this one have their numbers; 0 needs no line
 };
@@ -152,7 +153,7 @@ void CaptureWriter::write_state(const State& wanted) {
 }
 
 void CaptureWriter::write_clear(const Clear& clear) {
-  if (!clear.color && !clear.depth && !clear.stencil) return;  // clears nothing, and has no line
+  if (!clear.color && !clear.depth && !clear.stencil) return;  // clears nothing, and needs no line
   write_state(scene_.states[clear.state]);
   buffer_ += "clear";
   const auto write = [this](const char* what, std::span<const double> numbers) {
@@ -175,12 +176,12 @@ void CaptureWriter::write_object(std::size_t object) {
   object_ = object;
 }
 
-/// The reader numbers objects as they appear: names the ones before `end` that have not appeared yet, in order.
+/// The reader numbers objects as they appear: writes the names before `end` that have not appeared yet, in order.
 void CaptureWriter::introduce_objects(std::size_t end) {
   for (; objects_named_ < end; ++objects_named_) write_object(objects_named_);
 }
 
-/// Writes what the pipeline draws: indices that make no primitive are left out.
+/// Writes the drawn part: indices that make no primitive are left out.
 void CaptureWriter::write_draw(const Draw& draw) {
   const auto format = *std::ranges::find(kCaptureDraws, draw.topology, &CaptureDraw::topology);
   const auto drawn = [&format](std::size_t run) {

@@ -6,7 +6,7 @@
 #include "../config.hpp"
 #include "capture_textures.hpp"
 
-#define STB_IMAGE_STATIC  // ours stays in this file, whatever other libraries bring along
+#define STB_IMAGE_STATIC  // our copy stays in this file, whatever other libraries contain
 #define STB_IMAGE_IMPLEMENTATION
 #define STBI_ONLY_PNG
 #define STBI_ONLY_JPEG
@@ -18,7 +18,8 @@
 namespace halfplane {
 namespace {
 
-// More than the largest texture has uncompressed, at 16 bits a channel. A file may have no end at all: a device, a pipe.
+// More than the uncompressed size of the largest texture, at 16 bits a channel. A device or a pipe may have no end at
+// all.
 constexpr std::size_t kMostBytes = std::size_t{1} << 28;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What the engines share: running a scene's commands in program order, and the pixels of lines and points.
+// Shared code of the engines: runs a scene's commands in program order, and draws the pixels of lines and points.
 #pragma once
 
 #include <algorithm>
@@ -13,15 +13,15 @@
 
 namespace halfplane {
 
-/// Where fragments end: the images and owners of pixels, or of one of their samples.
+/// The end of fragments: the images and owners of pixels, or of one of their samples.
 struct FragmentTarget {
   Framebuffer& frame;
   Owners& owners;
   std::uint32_t sample = 0;
 };
 
-/// A covered sample through depth_encode, the tests and rop, into `target` of the rendering. `color()` gives its four codes,
-/// when they are needed. `is_back`: of a triangle that shows its back.
+/// Passes a covered sample through depth_encode, the tests and rop, into `target` of the rendering. `color()` gives its
+/// four codes, when they are needed. `is_back`: the triangle shows its back.
 template <class Color>
 void shade_sample(const DrawContext& context, const RenderOptions& options, int x, int y, std::uint32_t plane_code,
                   Color&& color, std::uint32_t primitive, std::int32_t visible, const FragmentTarget& target,
@@ -52,8 +52,8 @@ void shade_sample(const DrawContext& context, const RenderOptions& options, int 
   if (!owners.visible.empty()) owners.visible[plain] = visible;
 }
 
-/// A pixel that is covered as a whole, or, where it has several samples, those of them that `covered` names: plane_code(k)
-/// gives the depth of each, `color()` the colour of all.
+/// A fully covered pixel, or of a multisampled pixel the samples in `covered`: plane_code(k) gives the depth of each
+/// sample, `color()` the colour of all.
 template <class Depth, class Color>
 void shade_pixel(const DrawContext& context, const RenderOptions& options, int x, int y, unsigned covered,
                  Depth&& plane_code, Color&& color, std::uint32_t primitive, std::int32_t visible, Rendering& rendering,
@@ -82,8 +82,8 @@ inline void tap_samples(TappedFragment fragment, int samples, const FragmentTap&
   for (fragment.sample = 0; fragment.sample < samples; ++fragment.sample) tap(fragment);
 }
 
-/// The surface of a triangle whose setup is not empty, if its draw has one; at a sample, `offset` from pixel centres, if
-/// `setup` is there. Throws InputError for a vertex that is not in front of the eye, as only window space can give one.
+/// The surface of a triangle whose setup is not empty, if its draw has one; with `setup` at a sample, `offset` from
+/// pixel centres. Throws InputError for a vertex that is not in front of the eye, which only window space can give.
 [[nodiscard]] inline std::optional<Surface> surface_of(const DrawContext& context, const Triangle& triangle,
                                                        const TriangleSetup& setup, const Widths& widths,
                                                        const SampleOffset& offset = {}) {
@@ -95,16 +95,16 @@ inline void tap_samples(TappedFragment fragment, int samples, const FragmentTap&
                                 context.config, widths, offset);
 }
 
-/// Its colour as codes.
+/// The surface's colour as codes.
 [[nodiscard]] inline std::array<std::uint32_t, 4> surface_channels(const Surface& surface, int x, int y) {
   const Texel c = surface.color(x, y);
   return {c[0], c[1], c[2], c[3]};
 }
 
-/// `visible` of a pixel that a line or a point owns.
+/// `visible` of a pixel owned by a line or a point.
 inline constexpr std::int32_t kVisibleOutline = -2;
 
-/// The fragments of a line, from the registers that line_raster reads its pixels off.
+/// The fragments of a line, from the registers of line_raster.
 inline void tap_line(const LinePrimitive& line, const Widths& widths, std::uint32_t item, const FragmentTap& tap) {
   const int guard_bits = widths.line_guard_bits;
   TappedFragment fragment{PrimitiveKind::line,
@@ -121,7 +121,7 @@ inline void tap_line(const LinePrimitive& line, const Widths& widths, std::uint3
   for (LineState state = first_state(line.setup);; advance(state, line.setup, widths)) {
     const LinePixel pixel = pixel_of(state, line.setup, widths);
     const auto sample = [&](std::uint64_t value, std::uint32_t code) -> PlaneSample {
-      // Before the start shows its codes as they are; a register carries half an LSB.
+      // A pixel before the start shows the start's codes; a register includes half an LSB.
       if (state.is_before_start) return {std::int64_t{code} << guard_bits, code};
       return {static_cast<std::int64_t>(value) - (std::int64_t{1} << (guard_bits - 1)), code};
     };
@@ -134,7 +134,7 @@ inline void tap_line(const LinePrimitive& line, const Widths& widths, std::uint3
   }
 }
 
-/// Those of a point: the vertex everywhere.
+/// The fragments of a point: its vertex everywhere.
 inline void tap_point(const PointPrimitive& point, const Widths& widths, std::uint32_t item, const FragmentTap& tap) {
   const DrawnPoint& drawn = point.drawn;
   TappedFragment fragment{PrimitiveKind::point, drawn.primitive, drawn.draw, item, nullptr, nullptr, &drawn};
@@ -175,7 +175,7 @@ inline void draw_point(const DrawContext& context, const Widths& widths, const R
   });
 }
 
-/// Host side and raster of a draw whose primitives end as lines or points. Calls raster(triangle) for the triangles of
+/// Host side and raster of a draw whose primitives become lines or points. Calls raster(triangle) for the triangles of
 /// lines that are rectangles.
 template <class Raster>
 void draw_outlines(const DrawContext& context, const Widths& widths, VertexCache& cache, std::uint32_t& primitive,
@@ -199,14 +199,15 @@ void draw_outlines(const DrawContext& context, const Widths& widths, VertexCache
   });
 }
 
-/// A draw of filled triangles that run_commands() leaves to nobody else.
+/// For run_commands(): no other path draws filled triangles.
 struct NoOtherPath {
   bool operator()(const DrawContext&, std::uint32_t&, Rendering&) const { return false; }
 };
 
-/// Runs every command of `scene`. Calls raster(context, triangle, index, rendering) for each triangle that the host
-/// side leaves, in program order; `index` counts them over the whole scene. Before a draw of filled triangles, asks
-/// other_path(context, primitive, rendering): true says that it has drawn and counted them all, `primitive` included.
+/// Runs every command of `scene`. Calls raster(context, triangle, index, rendering) for each triangle that leaves the
+/// host side, in program order; `index` counts them over the whole scene. Before a draw of filled triangles, calls
+/// other_path(context, primitive, rendering): true says that it has drawn and counted all of them, and advanced
+/// `primitive`.
 template <class Raster, class OtherPath = NoOtherPath>
 Rendering run_commands(const Scene& scene, const Config& config, const RenderOptions& options, Raster&& raster,
                        OtherPath&& other_path = {}) {

@@ -186,7 +186,7 @@ void HardwareModel::join(const FragmentPacket& fragment) {
   shade(fragment);
 }
 
-/// The caches, the memory of textures and the sink, as the fragment path sees them.
+/// The caches, the texture memory and the sink, as the fragment path sees them.
 struct HardwareModel::StampPort {
   static constexpr bool kSendsPackets = true;
   HardwareModel& model;
@@ -245,7 +245,7 @@ void HardwareModel::set_state(const FragmentPacket& token) {
   if (!is_of_texture(which)) std::get<BlockCache>(cache_).set(path_.colors(), path_.stencil());
 }
 
-/// A line of texels.
+/// Reads a line of texels.
 TextureLine HardwareModel::read_texels(std::uint32_t address, int beats) {
   sink_.take(on<Arrow::texture>, TextureRequest{address, static_cast<std::uint16_t>(beats)});
   TextureLine line{};
@@ -308,9 +308,9 @@ CounterPacket since(CounterPacket now, const CounterPacket& before) {
 }
 
 void count_hardware(const CounterPacket& hardware, std::uint64_t drawn, Counters& counters) {
-  // One input triangle may have sent several pieces: those without a pixel are counted by triangle, not by piece.
+  // One input triangle may have sent several pieces: pieces without a pixel are counted by triangle, not by piece.
   const std::uint64_t culled_before_box = counters.culled + hardware.zero_area + hardware.backface;
-  counters.drawn += drawn;  // the host knows about lines and points
+  counters.drawn += drawn;  // the host counts lines and points
   counters.culled = counters.primitives_in - counters.drawn;
   counters.skipped.empty += counters.culled - culled_before_box;
   counters.skipped.zero_area += hardware.zero_area;

@@ -17,7 +17,7 @@
 namespace halfplane {
 namespace {
 
-/// As the tap has it.
+/// The fragment in the tap's form.
 TappedFragment tapped(const Interpolated& value, const Triangle& triangle, std::uint32_t index, int guard_bits, int x,
                       int y) {
   TappedFragment fragment{PrimitiveKind::triangle,
@@ -35,37 +35,37 @@ TappedFragment tapped(const Interpolated& value, const Triangle& triangle, std::
   return fragment;
 }
 
-/// A triangle that the host side has left, and its number.
+/// A triangle from the host side, and its number.
 struct NumberedTriangle {
   const Triangle& triangle;
   std::uint32_t index;
 };
 
-/// What a tile at work needs room for, one after the other.
+/// Buffers of the current tile, reused.
 struct TileScratch {
   FragmentPacket fragment;          ///< the codes of a stamp
-  std::vector<StampPacket> stamps;  ///< where pixels have several samples
-  std::vector<TileMask> masks;      ///< likewise, by sample, where they are asked for
+  std::vector<StampPacket> stamps;  ///< with several samples per pixel
+  std::vector<TileMask> masks;      ///< likewise, by sample, if requested
 };
 
-/// What stays the same over a scene.
+/// Constants of a scene.
 struct ScalarEngine {
   const Config& config;
   const RenderOptions& options;
   TileScratch& scratch;
   const Widths widths = derive_widths(config);
-  /// Whether interpolate() has the codes of these rules: with gradients that are off, codes leave the range to which hardware
-  /// need not hold them.
+  /// Whether interpolate() has the codes of these rules: with faulty gradients, codes leave the range that hardware
+  /// need not clamp to.
   [[nodiscard]] bool has_stage_planes() const {
     return options.rules.gradients == Gradients::one_reciprocal && options.rules.accumulator == Accumulator::wrap;
   }
   [[nodiscard]] int weight_bits() const { return options.rules.weights == Weights::four ? 4 : kTexelFraction; }
 };
 
-/// Bits of coverage taps: pixel (x, y) of a tile.
+/// Sets a bit of a coverage tap: pixel (x, y) of a tile.
 void set(TileMask& mask, int x, int y) { mask[static_cast<std::size_t>(y)] |= 1U << x; }
 
-/// A triangle, at the centre of pixels and where they have several samples at each of those.
+/// Rasterizes a triangle at the centres of pixels, and with several samples at each sample.
 class TriangleRaster {
  public:
   TriangleRaster(const ScalarEngine& engine, const DrawContext& context, const NumberedTriangle& t,
@@ -99,7 +99,7 @@ class TriangleRaster {
       for (int x = centre_.left >> shift; x <= centre_.right >> shift; ++x) raster_tile(x, y);
   }
 
-  /// A covered pixel that another traversal has found.
+  /// Shades a covered pixel found by another traversal.
   void shade_pixel(int x, int y) {
     const Interpolated value = interpolate_by_rules(centre_, engine_.options.rules, widths_, x, y);
     if (engine_.options.fragment_tap) tap(value, x, y, 1, kAtCentre);
@@ -121,7 +121,7 @@ class TriangleRaster {
     const Skip& skip = engine_.options.skip;
     Counters& counters = rendering_.counters;
     ++counters.tiles_visited;
-    bool is_outside = true, is_inside = true;  // the centre of several samples is not drawn
+    bool is_outside = true, is_inside = true;  // with several samples the centre is not drawn
     for (const Place& place : places_) {
       const TileClass kind =
           classify(place.setup, edges_at_tile(place.setup, tile_x, tile_y, widths_), engine_.config.tile_size);
@@ -147,7 +147,7 @@ class TriangleRaster {
       engine_.options.coverage_tap(t_.index, tile_x, tile_y, masks_[k], static_cast<int>(k));
   }
 
-  /// The stamps of a tile, each row of its pixels by itself: the order of fragments with several samples.
+  /// The stamps of a tile, each row of their pixels separately: the order of fragments with several samples.
   void shade_rows(const TilePacket& tile) {
     const StampGrid& stamps = widths_.stamps;
     stamps_.clear();
@@ -161,7 +161,7 @@ class TriangleRaster {
     }
   }
 
-  /// interpolate, and these pixels of a stamp, which have a covered sample.
+  /// Interpolates and shades these pixels of a stamp, which have a covered sample.
   void shade_stamp(const StampPacket& stamp, SampleMask pixels) {
     const StampGrid& stamps = widths_.stamps;
     const PixelOffset in_tile = stamps.origin_of(stamp.stamp);
@@ -190,7 +190,7 @@ class TriangleRaster {
     });
   }
 
-  /// The tests and rop for a pixel, shaded at `place`. color(): of its planes.
+  /// The tests and rop for a pixel, shaded at `place`. color(): from its planes.
   template <class Depth, class Color>
   void shade(int x, int y, unsigned covered, int place, Depth&& depth, Color&& color) {
     const std::optional<Surface>& surface = at(place).surface;
@@ -203,7 +203,7 @@ class TriangleRaster {
                            static_cast<std::int32_t>(t_.index), rendering_, is_back_);
   }
 
-  /// Each covered sample is a fragment.
+  /// Taps each covered sample as a fragment.
   void tap(const Interpolated& value, int x, int y, unsigned covered, int place) const {
     TappedFragment fragment = tapped(value, t_.triangle, t_.index, engine_.config.local_guard_bits, x, y);
     fragment.shaded_at = place;
@@ -222,7 +222,7 @@ class TriangleRaster {
   Rendering& rendering_;
   const TriangleSetup& centre_;
   std::optional<SampledSetup> sampled_;
-  std::vector<Place> places_;  ///< the centre, and each of several samples
+  std::vector<Place> places_;  ///< the centre, and each sample of several
   bool is_back_ = false;
   SetupPacket packet_;
   ContextPacket constants_;
@@ -232,7 +232,7 @@ class TriangleRaster {
   std::vector<TileMask>& masks_;
 };
 
-/// Gathers samples that come in any order into the masks that a coverage tap takes.
+/// Collects samples in any order into the masks of a coverage tap.
 class TapTiles {
  public:
   TapTiles(const TriangleSetup& setup, int tile_shift)
@@ -259,7 +259,7 @@ class TapTiles {
   std::vector<TileMask> masks_;
 };
 
-/// A triangle by other rules than the pipeline's.
+/// Rasterizes a triangle by rules other than the pipeline's.
 void raster_by_rules(const ScalarEngine& engine, const DrawContext& context, const NumberedTriangle& t,
                      TriangleSetup& setup, Rendering& rendering) {
   const StudyRules& rules = engine.options.rules;
@@ -294,7 +294,7 @@ void raster_by_rules(const ScalarEngine& engine, const DrawContext& context, con
   if (tiles) tiles->send(engine.options.coverage_tap, t.index);
 }
 
-/// The triangles of a draw without geometric clipping.
+/// Draws the triangles of a draw without geometric clipping.
 void draw_homogeneous(const ScalarEngine& engine, const DrawContext& context, std::uint32_t& primitive,
                       Rendering& rendering) {
   if (has_surface(context.state))
@@ -348,7 +348,7 @@ Rendering render_scalar(const Scene& scene, const Config& plain_config, const Re
       scene, config, options,
       [&](const DrawContext& context, const Triangle& triangle, std::uint32_t index, Rendering& rendering) {
         TriangleSetup setup = setup_triangle(triangle, config, engine.widths, context.rect);
-        // brute visits the whole target whatever the box is.
+        // brute visits the whole target regardless of the box.
         if (setup.is_empty() && (options.rules.traversal != Traversal::brute || setup.area == 0)) return;
         if (is_default)
           TriangleRaster(engine, context, {triangle, index}, setup, rendering).raster();

@@ -6,9 +6,10 @@
 
 namespace halfplane {
 
-/// As render_functional, with the same image, counts and ids, bit for bit. Has every traversal (the same image from
-/// each), fill rule and fault of RenderOptions::rules. Clipping::homogeneous draws clip-space triangles by homogeneous_setup
-/// instead: no primitive is cut, no triangle is kept; window-space ones, lines and points are drawn as ever.
+/// Like render_functional, with the same image, counts and ids, bit for bit. Supports every traversal (the same image
+/// from each), fill rule and fault of RenderOptions::rules. Clipping::homogeneous draws clip-space triangles by
+/// homogeneous_setup instead: no primitive is cut, no triangle is kept; window-space triangles, lines and points are
+/// drawn as usual.
 [[nodiscard]] Rendering render_scalar(const Scene& scene, const Config& config, const RenderOptions& options = {});
 
 }  // namespace halfplane

@@ -13,13 +13,13 @@ namespace halfplane {
 
 namespace {
 
-/// The scene of one clear or draw, whose memory is used again. It keeps its texture, which is decoded once and not for
-/// each draw.
+/// The scene of one clear or draw, whose memory is reused. It keeps its texture, which is decoded once and not for each
+/// draw.
 struct Canvas {
   Scene scene;
-  std::vector<TexelBlocks> texels;  ///< of its texture, once it has been drawn with
+  std::vector<TexelBlocks> texels;  ///< of its texture, after the first draw with it
 
-  /// The scene with nothing but the texture and one state.
+  /// The scene with only the texture and one state.
   Scene& with(const State& state) {
     scene.vertices.clear();
     scene.normals.clear();
@@ -38,9 +38,9 @@ struct Target::Memory {
 
   const Config config;
   FunctionalEngine engine;
-  Canvas plain;                        ///< of draws without a texture
-  std::vector<Canvas> textured;        ///< of draws with one, by its number
-  Framebuffer taken;                   ///< from the caller's memory; drawn on next
+  Canvas plain;                        ///< for draws without a texture
+  std::vector<Canvas> textured;        ///< for draws with a texture, by its number
+  Framebuffer taken;                   ///< copied from the caller's memory; drawn on next
   const Framebuffer* frame = nullptr;  ///< `taken`, or the engine's
   int threads = 1;
 
@@ -216,7 +216,7 @@ void Target::copy_from(const PixelMemory& memory) {
       }
     }
   }
-  // What was taken over is the colour and the depth of each of a pixel's samples.
+  // The image taken over gives colour and depth of every sample of a pixel.
   for (Framebuffer& sample : onto.samples) {
     if (memory.color != nullptr) sample.color = onto.color;
     if (memory.depth != nullptr) sample.depth = onto.depth;

@@ -131,7 +131,7 @@ std::uint32_t depth_code(const DepthFormat& format, std::uint64_t numerator, std
   if (!format.is_float())
     return static_cast<std::uint32_t>((2 * static_cast<uint128>(numerator) * top + denominator) / (2 * denominator));
   // The quotient is rounded to 64 bits or more. A midpoint between codes has 26 at most and the denominator 32, so a
-  // quotient that is not a midpoint is more than 2^-59 of itself away from one: the rounding moves none across.
+  // quotient that is not a midpoint is more than 2^-59 (relative) away from one: rounding moves none across a midpoint.
   static_assert(std::numeric_limits<long double>::digits >= 64);
   const FloatScale one = scale_of(format);
   return float_code(format, static_cast<long double>(numerator * one.factor) / static_cast<long double>(denominator),

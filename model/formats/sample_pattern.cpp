@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kUnit = 1 << kPatternFraction;  // a pixel
 
-/// One coordinate of a place. `text` loses what was read.
+/// Reads one coordinate of a place and removes it from `text`.
 int read_coordinate(std::string_view& text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -88,7 +88,7 @@ SamplePattern resolved_pattern(const SamplePattern& pattern, int samples) {
 }
 
 int pattern_bits(const SamplePattern& resolved) {
-  unsigned any = kUnit;  // the lowest bit that is set in some way from the centre
+  unsigned any = kUnit;  // its lowest set bit is the lowest in any offset from the centre
   for (int k = 0; k < resolved.count; ++k) {
     const SampleOffset& place = resolved.place[static_cast<std::size_t>(k)];
     any |= static_cast<unsigned>(place.x - kUnit / 2) | static_cast<unsigned>(place.y - kUnit / 2);

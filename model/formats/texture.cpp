@@ -8,7 +8,7 @@
 namespace halfplane {
 namespace {
 
-/// Where a format keeps its channels: bits of R, G, B, A from the top down. Luminance counts as R.
+/// The place of a format's channels: bits of R, G, B, A from the top down. Luminance counts as R.
 struct Layout {
   std::array<int, 4> bits;
   bool is_luminance = false;
@@ -66,7 +66,7 @@ std::vector<Texel> palette_of(const std::string& name, const TexelImage& image, 
   return colors;
 }
 
-/// Light of each sRGB code, 0...65535 (IEC 61966-2-1).
+/// Linear light of each sRGB code, 0...65535 (IEC 61966-2-1).
 std::array<std::uint32_t, 256> light_of_codes() {
   std::array<std::uint32_t, 256> light{};
   for (std::size_t code = 0; code < light.size(); ++code) {
@@ -77,7 +77,7 @@ std::array<std::uint32_t, 256> light_of_codes() {
   return light;
 }
 
-/// The parts of `size` texels that one of `smaller` covers: calls visit(texel, weight); the weights add up to `size`.
+/// The parts of `size` texels covered by one of `smaller`: calls visit(texel, weight); the weights add up to `size`.
 template <class Visit>
 void for_each_part(int at, int size, int smaller, Visit&& visit) {
   const int first = at * size, last = first + size;  // in parts of a texel, `smaller` each
@@ -124,7 +124,7 @@ TextureLevel encoded(const Texture& texture, const TexelImage& image) {
 
 // ---- patterns
 
-/// 3x5 pixels a digit, rows from the top, the left one in bit 2.
+/// 3x5 pixels a digit, rows from the top, the left pixel in bit 2.
 constexpr std::array<std::array<std::uint8_t, 5>, 10> kDigits{{{7, 5, 5, 5, 7},
                                                                {2, 6, 2, 2, 7},
                                                                {7, 1, 7, 4, 7},

@@ -1,8 +1,8 @@
-// Textures: images of texels in a stored format, each with its mipmaps. Made on the host; every engine reads them alike.
+// Textures: images of texels in a stored format, each with its mipmaps. Made on the host, and read by every engine.
 //
-// A texel is stored as a code: its channels from the top bits down, as the format's name has them (rgb565: R in bits 15...11),
-// or a number in the palette. Decoded, each channel has 8 bits: 5 and 6 bits are widened by repeating their top bits, 4
-// bits by repeating all, one bit is 0 or 255; luminance is R, G and B; without an alpha it is 255.
+// A texel is stored as a code: its channels from the top bits down, in the order of the format's name (rgb565: R in
+// bits 15...11), or a palette index. Decoded, each channel has 8 bits: 5 and 6 bits are widened by repeating their top
+// bits, 4 bits by repeating all, one bit is 0 or 255; luminance is R, G and B; without an alpha channel alpha is 255.
 #pragma once
 
 #include <array>
@@ -21,8 +21,8 @@ enum class TextureFormat : std::uint8_t { l8, la88, rgb565, rgba5551, rgba4444, 
 inline constexpr std::array<std::string_view, 8> kTextureFormats{"l8",       "la88",     "rgb565", "rgba5551",
                                                                  "rgba4444", "rgba8888", "p4",     "p8"};
 
-/// Where the smaller levels come from: there are none; means over boxes of the image, of its channels or of the light that
-/// they stand for (sRGB); images of their own.
+/// Source of the smaller levels: none, means over boxes of the image (of the codes or of linear light, sRGB), or images of
+/// their own.
 enum class Mips : std::uint8_t { none, box, box_linear, levels };
 inline constexpr std::array<std::string_view, 4> kMips{"none", "box", "box_linear", "levels"};
 
@@ -40,7 +40,7 @@ using Texel = std::array<std::uint8_t, 4>;
 [[nodiscard]] std::size_t palette_size(TextureFormat format);
 [[nodiscard]] bool has_alpha(TextureFormat format);
 [[nodiscard]] Texel decode_texel(TextureFormat format, std::uint32_t code, std::span<const Texel> palette);
-/// The nearest code. Of a palette: the nearest entry, the first of several. Luminance is that of Rec. 601.
+/// The nearest code. With a palette: the nearest entry, the first of several. Luminance is that of Rec. 601.
 [[nodiscard]] std::uint32_t encode_texel(TextureFormat format, const Texel& texel, std::span<const Texel> palette);
 
 /// Row-major, row 0 at v = 0.
@@ -60,7 +60,7 @@ struct Texture {
   std::string name;
   TextureFormat format = TextureFormat::rgba8888;
   Mips mips = Mips::none;
-  std::vector<Texel> palette;       ///< of p4 and p8
+  std::vector<Texel> palette;       ///< for p4 and p8
   std::vector<TextureLevel> level;  ///< the image first; the smaller ones down to 1x1 with mipmaps
 
   [[nodiscard]] int width() const { return level.front().width; }
@@ -80,20 +80,20 @@ struct Texture {
   bool operator==(const Texture&) const = default;
 };
 
-/// Of all that can be read of it.
+/// Signature of all data that can be read from the texture.
 [[nodiscard]] Signature signature_of(const Texture& texture);
 
 /// Stores an image. Throws InputError when its colours are more than the format's palette holds, or its sides are not 1 to
 /// kLargestTexture.
 [[nodiscard]] Texture make_texture(std::string name, const TexelImage& image, TextureFormat format, Mips mips);
-/// Stores an image and its smaller levels, which may end before 1x1: the others are box means of the last one. Throws
-/// InputError likewise, for a level that has not half the size of the level before, and for palettes.
+/// Stores an image and its smaller levels; levels missing before 1x1 become box means of the last one. Throws InputError
+/// likewise, for a level that does not have half the size of the level before, and for palettes.
 [[nodiscard]] Texture make_texture(std::string name, std::span<const TexelImage> levels, TextureFormat format);
 /// Adds the levels that are missing down to 1x1, as `mips` says, to an image of codes; Mips::levels: to its last level.
 void add_mips(Texture& texture);
 
-/// chequer: 8x8 squares. gradient: R along u, G along v. grid: 8x8 cells with lines between them, and where they are large
-/// enough the column and row of each in digits.
+/// chequer: 8x8 squares. gradient: R along u, G along v. grid: 8x8 cells with lines between them, and in large enough
+/// cells their column and row in digits.
 [[nodiscard]] TexelImage pattern_image(TexturePattern pattern, int width, int height);
 
 }  // namespace halfplane

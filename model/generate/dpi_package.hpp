@@ -7,8 +7,8 @@
 
 namespace halfplane::vectors {
 
-/// The text of the package: the C functions, and for each stage that can be run by itself one function that makes it, one for
-/// each packet that goes in, and one for each that comes out. It imports raster_pkg of the same configuration.
+/// The text of the package: the C functions, and for each stage that can run alone one function that creates it, one
+/// for each input packet, and one for each output packet. It imports raster_pkg of the same configuration.
 [[nodiscard]] std::string dpi_package(const Config& config);
 
 }  // namespace halfplane::vectors

@@ -1,5 +1,5 @@
-// What the RTL is built from and follows from a configuration, written into files: made of few sources, so that a build that
-// verilates has it early.
+// Writes the files that the RTL is built from and that follow from a configuration: built from few sources, so that a
+// build that verilates has them early.
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -26,7 +26,7 @@ std::string generated(std::span<const char* const> words) {
   throw InputError(kUsage);
 }
 
-/// Leaves a file alone that holds the text already: what is made from it need not be made again.
+/// Does not touch a file with the same text: files made from it need not be made again.
 void write(const char* path, const std::string& text) {
   std::ifstream before(path, std::ios::binary);
   if (before && std::string(std::istreambuf_iterator<char>(before), {}) == text) return;

@@ -17,11 +17,11 @@
 
 namespace halfplane {
 
-/// What becomes of a stored stencil, in the words of tokens: a field of no packet.
+/// The update of a stored stencil, in the words of tokens: no field of a packet.
 template <>
 struct WireEnum<StencilOp> {
   static constexpr std::string_view name = "stencil_op";
-  static constexpr Width Widths::*width = &Widths::depth_func;  // eight of either
+  static constexpr Width Widths::*width = &Widths::depth_func;  // eight on either side
   static constexpr Enumerator<StencilOp> all[] = {
       {StencilOp::keep, "keep"},           {StencilOp::zero, "zero"},          {StencilOp::replace, "replace"},
       {StencilOp::incr, "incr"},           {StencilOp::decr, "decr"},          {StencilOp::invert, "invert"},
@@ -61,8 +61,8 @@ std::string all_bits(Width AttributeWidths::*width) {
   return "ALL_" + std::string(table->word) + "_BITS";
 }
 
-/// Of each plane the bits of a value and where it begins in an array over the planes, 32 bits an entry, plane 0 lowest;
-/// the bits of the whole array, and those of its widest value.
+/// For each plane the bits of a value and its start in an array over the planes, 32 bits per entry, plane 0 lowest; the
+/// bits of the whole array, and of its widest value.
 void print_plane_table(std::ostream& out, const PlaneTable& table, const Widths& widths) {
   std::string bits, at;
   int sum = 0, most = 0;
@@ -80,7 +80,7 @@ void print_plane_table(std::ostream& out, const PlaneTable& table, const Widths&
   print_constant(out, "MAX_" + word + "_BITS", most, "of the widest");
 }
 
-/// msaa.pattern: the way from a pixel's centre to each of its samples.
+/// msaa.pattern: the offset of each sample from a pixel's centre.
 void print_sample_places(std::ostream& out, const Widths& widths) {
   std::string x, y;
   for (int k = widths.pixel_samples - 1; k >= 0; --k) {
@@ -148,7 +148,7 @@ void print_packet(std::ostream& out, const Widths& widths) {
   print_constant(out, constant_name(Packet::name) + "_BITS", packet_bits<Packet>(widths), "of the struct above");
 }
 
-/// A member of a struct that only the RTL has.
+/// A member of a struct that exists only in the RTL.
 struct Member {
   std::string_view type;  ///< a name of the package, or bits as an expression of its constants
   std::string_view name;
@@ -172,7 +172,7 @@ void print_members(std::ostream& out, const std::string& name, std::initializer_
       << ";  // of the struct above\n";
 }
 
-/// The parts of the framebuffer of blocks, and what goes between them: no arrow of the graph.
+/// The parts of the framebuffer of blocks, and the signals between them: no arrow of the graph.
 void print_blocks(std::ostream& out, const Config& config) {
   const bool blends = config.blend_lanes != 0, has_stencil = config.stencil_bits != 0;
   const bool tests_alpha_late = config.alpha_units != 0 && has_texture_planes(config);
@@ -292,7 +292,7 @@ void print_blocks(std::ostream& out, const Config& config) {
          "  endfunction\n";
 }
 
-/// A value that has a name is its number there.
+/// A named value is printed as its number.
 void print_setting(std::ostream& out, const Setting& setting, const std::string& value) {
   long long number = setting.is_number() ? std::stoll(value) : 0;
   std::string names;

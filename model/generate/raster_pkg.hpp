@@ -1,5 +1,5 @@
-// raster_pkg.sv: the SystemVerilog side of the one configuration. Widths, constants and packed packet structs are printed
-// from the same tables that C++ uses, so the two cannot drift apart.
+// raster_pkg.sv: the SystemVerilog side of the one configuration. Widths, constants and packed packet structs are
+// printed from the same tables that C++ uses, so both always agree.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +9,10 @@
 
 namespace halfplane {
 
-/// The text of raster_pkg.sv for `config`. Throws InputError when the configuration is not valid.
+/// The text of raster_pkg.sv for `config`. Throws InputError for an invalid configuration.
 [[nodiscard]] std::string raster_pkg(const Config& config);
 
-/// FNV-1a 64 over every setting that shapes hardware: model and RTL compare it before they compare anything else.
+/// FNV-1a 64 over every setting that affects hardware: model and RTL compare it first.
 [[nodiscard]] std::uint64_t config_id(const Config& config);
 
 }  // namespace halfplane

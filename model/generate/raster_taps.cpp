@@ -18,7 +18,7 @@ std::string type_of(Arrow arrow) {
   });
 }
 
-/// When a packet of the arrow moves, in the names of raster_top.
+/// The condition for a packet of the arrow to move, in the names of raster_top.
 std::string moves(Arrow arrow) {
   const Flow& flow = info(arrow).flow;
   if (flow.rides_with) return moves(*flow.rides_with);
@@ -26,7 +26,7 @@ std::string moves(Arrow arrow) {
   return flow.waits ? valid + " && u_raster." + text(arrow) + "_ready" : valid;
 }
 
-/// Whether raster_top has it in parts, which raster_cosim.sv puts together.
+/// Whether raster_top carries it in parts, which raster_cosim.sv joins.
 bool is_made_whole(Arrow arrow) { return arrow == Arrow::fragment || arrow == Arrow::write || arrow == Arrow::request; }
 
 /// "{<prefix>B<suffix>, <prefix>A<suffix>}": the first one is the lowest bit.

@@ -1,5 +1,5 @@
-// What the RTL needs of the pipeline's graph, as SystemVerilog: printed from model/pipeline_graph.hpp, so that no order of
-// bits is written down twice.
+// The RTL's view of the pipeline graph, as SystemVerilog: printed from model/pipeline_graph.hpp, so that the order of
+// bits is defined once.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Golden clipper: Sutherland-Hodgman on homogeneous coordinates, in the scalar type asked for.
+// Golden clipper: Sutherland-Hodgman on homogeneous coordinates, in the given scalar type.
 //
 // In: three clip-space vertices. Out: a convex polygon of up to nine, all inside, its first vertex the fan's centre.
 // In: two vertices. Out: the part of the segment that is inside.
@@ -16,7 +16,7 @@ template <class Real>
 struct ClipVertex {
   std::array<Real, 4> position{};  ///< x, y, z, w
   std::array<Real, 4> rgba{};      ///< 0...255
-  std::array<Real, 2> uv{};        ///< of the texture
+  std::array<Real, 2> uv{};        ///< texture coordinates
 };
 
 /// A half-space: inside where the dot product with the position is >= 0.
@@ -29,7 +29,7 @@ struct Polygon {
   std::size_t count = 0;
 
   void push(const ClipVertex<Real>& v) {
-    if (count < vertex.size()) vertex[count++] = v;  // full only when rounding has bent a sliver out of convexity
+    if (count < vertex.size()) vertex[count++] = v;  // full only if rounding has made a sliver non-convex
   }
 };
 
@@ -39,8 +39,8 @@ template <class Real>
   return plane[0] * p[0] + plane[1] * p[1] + plane[2] * p[2] + plane[3] * p[3];
 }
 
-/// The point where an edge meets the plane. Always seen from the inside vertex, so that the two triangles that share
-/// the edge get the same point to the last bit.
+/// The point where an edge meets the plane. Always computed from the inside vertex, so that the two triangles that
+/// share the edge get the same point to the last bit.
 template <class Real>
 [[nodiscard]] ClipVertex<Real> intersect(const Plane<Real>& plane, const ClipVertex<Real>& inside,
                                          const ClipVertex<Real>& outside) {
@@ -69,9 +69,9 @@ template <class Real>
   return out;
 }
 
-/// Near, far and the four sides of the guard band, window coordinates from -limit to limit. The sides take no pixel away,
-/// they keep x / w finite; but a cut vertex gets its colour here, so affine colour depends on where and in which order
-/// they cut. Near and far together imply w >= 0.
+/// Near, far and the four sides of the guard band, window coordinates from -limit to limit. The sides remove no pixel,
+/// they keep x / w finite; but a cut vertex gets its colour here, so affine colour depends on the place and order of
+/// the cuts. Near and far together imply w >= 0.
 template <class Real>
 [[nodiscard]] std::array<Plane<Real>, 6> clip_planes(ClipZ clip_z, const Viewport& viewport, double limit) {
   // Window x = centre + half * x / w, so -limit <= window x is half * x + (centre + limit) * w >= 0.
@@ -88,7 +88,7 @@ template <class Real>
           {0, half_y, 0, high_y}};
 }
 
-/// `polygon` cut by all planes; `was_cut` tells whether any plane took something away.
+/// `polygon` cut by all planes; `was_cut` tells whether any plane cut the polygon.
 template <class Real>
 [[nodiscard]] Polygon<Real> clip(Polygon<Real> polygon, std::span<const Plane<Real>> planes, bool& was_cut) {
   was_cut = false;
@@ -102,7 +102,7 @@ template <class Real>
   return polygon;
 }
 
-/// Cuts the segment from `a` to `b` by all planes; false when nothing is left of it. `was_cut` as above.
+/// Cuts the segment from `a` to `b` by all planes; false when no part is left. `was_cut` as above.
 template <class Real>
 [[nodiscard]] bool clip_segment(ClipVertex<Real>& a, ClipVertex<Real>& b, std::span<const Plane<Real>> planes,
                                 bool& was_cut) {

@@ -1,5 +1,5 @@
-// Golden colour operations: blending, in real arithmetic. Channels are 0...255, of which a target without alpha has 255 in
-// the last.
+// Golden colour operations: blending, in real arithmetic. Channels are 0...255; in a target without alpha the last is
+// 255.
 #pragma once
 
 #include <algorithm>
@@ -38,7 +38,7 @@ using RealColor = std::array<double, 4>;
   return 0;
 }
 
-/// What colour writes leave where `src` comes upon `dst`: blended, under the mask.
+/// The colour after a write of `src` over `dst`: blended, under the mask.
 [[nodiscard]] inline RealColor blended(const State& state, const RealColor& src, const RealColor& dst) {
   RealColor result = src;
   for (std::size_t c = 0; c < 4; ++c) {
@@ -64,7 +64,7 @@ using RealColor = std::array<double, 4>;
   return result;
 }
 
-/// The stencil test of the side that shows.
+/// The stencil test of the visible side.
 [[nodiscard]] inline const Stencil* stencil_of(const State& state, bool is_back) {
   if (!state.stencil) return nullptr;
   return is_back && state.stencil_back ? &*state.stencil_back : &*state.stencil;
@@ -72,7 +72,7 @@ using RealColor = std::array<double, 4>;
 [[nodiscard]] inline bool passes(const Stencil& s, int stored) {
   return passes(s.func, s.reference & s.read_mask, stored & s.read_mask);
 }
-/// The stored value behind one of its operations, a whole number 0...255.
+/// The stored value after an operation, a whole number 0...255.
 [[nodiscard]] inline int operated(StencilOp op, const Stencil& s, int stored) {
   int result = stored;
   switch (op) {

@@ -1,5 +1,5 @@
-// Golden depth formats: the value of a stored code, and the code nearest to a real depth, by bisection. Slow and plain on
-// purpose: the reference for stages/depth_encode.
+// Golden depth formats: the value of a stored code, and the code nearest to a real depth, by bisection. Deliberately
+// slow and plain: the reference for stages/depth_encode.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,7 @@
 
 namespace halfplane::golden {
 
-/// A depth buffer's format, with what its mapping refers to.
+/// A depth buffer's format, with the near and far of its mapping.
 class DepthBuffer {
  public:
   DepthBuffer(const Config& config, const std::optional<std::array<double, 2>>& planes)
@@ -19,7 +19,7 @@ class DepthBuffer {
     if (planes) near_ = (*planes)[0], far_ = (*planes)[1];
   }
 
-  /// What a code is worth, 0...1.
+  /// The value of a code, 0...1.
   [[nodiscard]] double value(std::uint32_t code) const {
     switch (format_.kind) {
       case DepthFormat::Kind::bins: return (code + 0.5) / std::exp2(format_.bits);
@@ -35,7 +35,7 @@ class DepthBuffer {
     return ((1U << (format_.exponent_bits - 1)) - 1) << format_.mantissa_bits;
   }
 
-  /// The code of a depth d as it is stored.
+  /// The code of a stored depth d.
   [[nodiscard]] std::uint32_t code(double d) const {
     // The last code whose lower boundary is at or below d.
     std::uint32_t low = 0, high = largest();
@@ -49,14 +49,14 @@ class DepthBuffer {
     return low;
   }
 
-  /// What is stored for a window depth: under w and log that is the std depth of the fragment.
+  /// The stored depth for a window depth: under w and log a window depth is the std depth of the fragment.
   [[nodiscard]] double stored_depth(double window) const {
     if (is_screen_linear(mapping_)) return window;
     const double z = near_ * far_ / (far_ - window * (far_ - near_));
     return mapping_ == DepthMapping::w ? (z - near_) / (far_ - near_) : std::log(z / near_) / std::log(far_ / near_);
   }
 
-  /// The other way round.
+  /// The inverse.
   [[nodiscard]] double window_depth(double stored) const {
     if (is_screen_linear(mapping_)) return stored;
     const double z =

@@ -8,7 +8,7 @@ namespace halfplane::exact {
 namespace {
 
 struct Point {
-  std::int64_t x, y;  // subpixels, < 2^31, so that differences fit and one multiplication makes a product
+  std::int64_t x, y;  // subpixels, < 2^31, so that differences fit and a product needs one multiplication
 };
 
 Point point(const SnappedVertex& v) { return {v.x, v.y}; }
@@ -26,8 +26,8 @@ int128 doubled_area(Point a, Point b, Point c) {
 
 int128 doubled_area(const Triangle& t) { return doubled_area(point(t.v[0]), point(t.v[1]), point(t.v[2])); }
 
-/// Doubled area of the sample with each edge, turned to positive orientation. weight[i] belongs to vertex i, and their
-/// sum is the doubled area of the triangle.
+/// Doubled area of the sample with each edge, in positive orientation. weight[i] belongs to vertex i, and their sum is
+/// the doubled area of the triangle.
 std::array<int128, 3> weights(const Triangle& t, Point sample, int128 area) {
   std::array<int128, 3> weight{};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -64,7 +64,7 @@ Rational color_at(const Triangle& t, int x, int y, int grid_bits, int channel) {
 
 TriangleOracle::TriangleOracle(const Triangle& triangle, int grid_bits, FillRule rule)
     : triangle_(triangle), grid_bits_(grid_bits), area_(doubled_area(triangle)) {
-  const bool is_turned = area_ < 0;  // then every edge is run through the other way round
+  const bool is_turned = area_ < 0;  // then every edge is traversed in reverse
   if (is_turned) area_ = -area_;
   const std::int64_t pixel = std::int64_t{1} << grid_bits;
   std::int64_t largest = 0;
@@ -118,7 +118,7 @@ Triangle seen_from(Triangle triangle, const SampleOffset& offset) {
 }
 
 std::int64_t on_grid(const Rational& value, int scale_numerator, int scale_denominator) {
-  // floor(n / d + 1/2) = floor((2n + d) / 2d); division truncates, so a remainder below zero takes one more.
+  // floor(n / d + 1/2) = floor((2n + d) / 2d); division truncates, so a negative remainder subtracts one more.
   const int128 numerator = (value.numerator * scale_numerator) << kGridBits;
   const int128 denominator = value.denominator * scale_denominator;
   const int128 dividend = 2 * numerator + denominator, divisor = 2 * denominator;

@@ -24,11 +24,11 @@ struct Rational {
   int128 denominator = 1;
 };
 
-/// Does the triangle cover the centre of pixel (x, y)? Both orientations; zero area covers nothing. Coordinates in
+/// Whether the triangle covers the centre of pixel (x, y). Both orientations; area 0 covers nothing. Coordinates in
 /// units of 2^-grid_bits pixel, grid_bits >= 1 (Widths::grid_bits).
 [[nodiscard]] bool covers(const Triangle& triangle, int x, int y, int grid_bits, FillRule rule = FillRule::top_left);
 
-/// Is that centre on the closed triangle's border: exactly on an edge or a vertex?
+/// Whether that centre is on the closed triangle's border: exactly on an edge or a vertex.
 [[nodiscard]] bool is_on_border(const Triangle& triangle, int x, int y, int grid_bits);
 
 /// The plane through the three snapped vertices' depth codes at that centre, in depth LSB. The area must not be zero.
@@ -37,7 +37,7 @@ struct Rational {
 /// The same through the 8-bit colour codes of one channel, in LSB of 8 bits.
 [[nodiscard]] Rational color_at(const Triangle& triangle, int x, int y, int grid_bits, int channel);
 
-/// What the vertices weigh at one sample: every plane through three codes follows from it.
+/// The weights of the vertices at one sample: every plane through three codes follows from them.
 struct PlaneWeights {
   std::array<int128, 3> weight{};
   int128 area = 1;  ///< their sum
@@ -47,8 +47,8 @@ struct PlaneWeights {
   }
 };
 
-/// The same answers for many samples of one triangle: what they share is computed once, and products that fit are taken
-/// in 64 bits. Still each sample by itself, without stepping.
+/// The same results for many samples of one triangle: constants are computed once, and products that fit use 64 bits.
+/// Still each sample separately, without stepping.
 class TriangleOracle {
  public:
   TriangleOracle(const Triangle& triangle, int grid_bits, FillRule rule = FillRule::top_left);
@@ -59,18 +59,18 @@ class TriangleOracle {
 
  private:
   struct Edge {
-    std::int64_t x, y, dx, dy;  ///< start and direction, turned so that the inside is positive
-    bool owns;                  ///< the samples exactly on it
+    std::int64_t x, y, dx, dy;  ///< start and direction, oriented so that the inside is positive
+    bool owns;                  ///< includes the samples exactly on it
   };
   Triangle triangle_;
   int grid_bits_;
-  int128 area_;                  ///< doubled, not negative
+  int128 area_;                  ///< doubled, non-negative
   std::array<Edge, 3> edge_{};   ///< edge i lies opposite vertex i
-  std::int64_t narrow_limit_{};  ///< below it in both coordinates a sample's edge values fit 64 bits; 0: never
+  std::int64_t narrow_limit_{};  ///< for samples below it in both coordinates edge values fit 64 bits; 0: never
 };
 
-/// The triangle as a sample at `offset` from the centre of each pixel sees it, on the same grid: moved the other way, so that
-/// what holds at a centre holds at the sample.
+/// The triangle seen from a sample at `offset` from the centre of each pixel, on the same grid: moved the opposite way,
+/// so that a test at a centre is a test at the sample.
 [[nodiscard]] Triangle seen_from(Triangle triangle, const SampleOffset& offset);
 
 /// floor(value * scale_numerator / scale_denominator * 2^kGridBits + 1/2), scale_numerator < 2^7.

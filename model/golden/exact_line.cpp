@@ -26,7 +26,7 @@ Epsilons difference(const Epsilons& p, int128 a, const Epsilons& q, int128 b) {
   return {p.n * a - q.n * b, p.e1 * a - q.e1 * b, p.e2 * a - q.e2 * b};
 }
 
-/// One side of the diamond: the moved segment is inside where value + t slope < 0, t from 0 to 1.
+/// One side of the diamond: the moved segment is inside where value + t slope < 0, for t from 0 to 1.
 struct Side {
   Epsilons value;
   int128 slope;
@@ -44,14 +44,14 @@ std::array<Side, 4> diamond_sides(const Line& line, int x, int y) {
   return sides;
 }
 
-/// Is some t in [0, 1] inside all sides? Each side allows an open half line of t, bounded at -value / slope.
+/// Whether some t in [0, 1] is inside all sides. Each side allows an open half line of t, bounded at -value / slope.
 bool meets(const std::array<Side, 4>& sides) {
   for (const Side& a : sides) {
     if (a.slope == 0 && sign(a.value) >= 0) return false;
     if (a.slope > 0 && sign(a.value) >= 0) return false;  // t < -value / slope <= 0
     const Epsilons at_end{a.value.n + a.slope, a.value.e1, a.value.e2};
     if (a.slope < 0 && sign(at_end) >= 0) return false;  // t > value / -slope >= 1
-    // t > a.value / -a.slope and t < -b.value / b.slope leave something when the first bound is the smaller.
+    // t > a.value / -a.slope and t < -b.value / b.slope overlap when the first bound is the smaller.
     if (a.slope < 0)
       for (const Side& b : sides)
         if (b.slope > 0 && sign(difference(a.value, b.slope, b.value, a.slope)) >= 0) return false;

@@ -17,15 +17,14 @@ struct Line {
   int grid_bits = 1;
 };
 
-/// Does the line cover pixel (x, y)?
-/// midpoint, bresenham: its centre is within half a pixel of the line through the centres of the two end pixels,
-/// measured across the major axis, and between the ends; of two centres at just half a pixel it is the one that lies on
-/// the left end's side. diamond: the segment, moved by (-e, -e^2) for every small enough e > 0, meets the open diamond
-/// |x - x_c| + |y - y_c| < 1/2, and does not end in it.
+/// Whether the line covers pixel (x, y). midpoint, bresenham: its centre is within half a pixel of the line through the
+/// centres of the two end pixels, measured across the major axis, and between the ends; of two centres at exactly half
+/// a pixel the one on the left end's side counts. diamond: the segment, moved by (-e, -e^2) for every small enough e >
+/// 0, meets the open diamond |x - x_c| + |y - y_c| < 1/2, and does not end in it.
 [[nodiscard]] bool covers(const Line& line, int x, int y);
 
-/// What runs from `from` at the start to `to` at the end, at the pixel's major coordinate, held between the two. A line
-/// without length has its start's.
+/// An attribute that runs from `from` at the start to `to` at the end, at the pixel's major coordinate, clamped to the
+/// two. A line without length has its start's value.
 [[nodiscard]] Rational plane_at(const Line& line, int x, int y, std::int64_t from, std::int64_t to);
 
 /// Depth at the pixel's major coordinate, clamped to the ends; in LSB. A line without length has its start's depth.

@@ -10,7 +10,7 @@
 
 namespace halfplane::golden {
 
-/// f, 0...1. `inverse_w`: 1/w of the fragment; what has none is beyond all fog.
+/// f, 0...1. `inverse_w`: 1/w of the fragment; 0 or less is beyond all fog.
 [[nodiscard]] inline double fog_part(const Fog& fog, double inverse_w) {
   const double w = inverse_w > 0 ? 1 / inverse_w : HUGE_VAL;
   const double depth = fog.start == 0 ? 0 : fog.start * w;
@@ -23,7 +23,7 @@ namespace halfplane::golden {
   return w < fog.end ? std::min(1.0, (fog.end - w) / (fog.end - start)) : 0.0;
 }
 
-/// R, G and B between the fog's colour and their own.
+/// R, G and B blended with the fog's colour.
 [[nodiscard]] inline RealColor in_fog(const State& state, const RealColor& color, double part) {
   RealColor result = color;
   for (std::size_t c = 0; c < 3; ++c) result[c] = color[c] * part + state.fog_color[c] * (1 - part);

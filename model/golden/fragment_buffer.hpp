@@ -1,8 +1,8 @@
 // Golden framebuffer: the result of the operations on each pixel's fragments, in real arithmetic. The last stage of the golden:
 // no code of the model, no rounding.
 //
-// In: clears and fragments in program order. Out: for each pixel the depth that was written last, the value written with it,
-// and its owner. Operations: alpha, stencil and depth test, blending, the write masks.
+// In: clears and fragments in program order. Out: for each pixel the last written depth, the value written with it, and
+// its owner. Operations: alpha, stencil and depth test, blending, the write masks.
 #pragma once
 
 #include <array>
@@ -17,29 +17,29 @@
 
 namespace halfplane::golden {
 
-/// What became of a fragment.
+/// The fate of a fragment.
 struct Fate {
   bool passed = false;   ///< the stencil and the depth test
-  bool killed = false;   ///< and then not the alpha test
+  bool killed = false;   ///< and then failed the alpha test
   bool written = false;  ///< it owns the pixel now: it passed, and its draw writes depth, colour or both
   bool stencil_failed = false;
 };
 
-/// A fragment as it comes to the operations, beside its colour.
+/// A fragment at the entry of the operations, without its colour.
 template <class Depth>
 struct Tested {
   Depth depth{};
-  double alpha = 255;             ///< 0...255, behind its texture
+  double alpha = 255;             ///< 0...255, after its texture
   bool is_back = false;           ///< of a triangle that shows its back
   bool is_drawn_by_alpha = true;  ///< false: alpha to coverage drops this sample, as the alpha test would
 };
 
-/// Depth: what the test compares. Value: what colour writes store: channels, which are blended, or whatever says more about a
-/// fragment.
+/// Depth: the type compared in the test. Value: the type stored by colour writes: channels, which are blended, or any
+/// data about a fragment.
 template <class Depth, class Value>
 class FragmentBuffer {
  public:
-  /// `has_alpha`: a stored colour has one; otherwise it is opaque.
+  /// `has_alpha`: the stored colour has alpha; otherwise it is opaque.
   FragmentBuffer(std::size_t pixels, Depth depth, const Value& value, bool has_alpha = true)
       : has_alpha_(has_alpha), depth_(pixels, depth), value_(pixels, value), stencil_(pixels, 0), owner_(pixels, -1) {}
 
@@ -77,7 +77,7 @@ class FragmentBuffer {
   void clear_depth(std::size_t pixel, Depth depth) { depth_[pixel] = depth; }
   void clear_value(std::size_t pixel, const Value& value) { value_[pixel] = value; }
   void clear_stencil(std::size_t pixel, int value) { stencil_[pixel] = value; }
-  /// A clear of any of them leaves a pixel to nobody.
+  /// A clear of any buffer leaves a pixel without owner.
   void disown(std::size_t pixel) { owner_[pixel] = -1; }
 
   [[nodiscard]] Depth depth(std::size_t pixel) const { return depth_[pixel]; }

@@ -30,7 +30,7 @@ const std::array<int, 4>& channel_shift(ColorFormat format) {
   return format == ColorFormat::rgb565 ? kShift565 : kShift8888;
 }
 
-/// floor(value + 1/2), held inside 0...max; what is no number becomes 0.
+/// floor(value + 1/2), clamped to 0...max; NaN becomes 0.
 std::uint32_t round_to_code(double value, double max) {
   return value > 0 ? static_cast<std::uint32_t>(std::min(std::floor(value + 0.5), max)) : 0;
 }
@@ -95,10 +95,10 @@ class Renderer {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(image_.width) + static_cast<std::size_t>(x);
   }
 
-  /// Its first sample.
+  /// The pixel's first sample.
   std::size_t first_sample(std::size_t pixel) const { return pixel * samples_; }
 
-  /// The images of the samples, and of them what a pixel is.
+  /// Splits the samples into images, and computes the pixels from them.
   void split_samples() {
     const std::size_t pixels = image_.count.size();
     image_.samples.resize(samples_);
@@ -118,7 +118,7 @@ class Renderer {
         for (std::size_t c = 0; c < 4; ++c) image_.color[p][c] += of.color[p][c] / static_cast<double>(samples_);
   }
 
-  /// The real values at the end, rounded: nothing in between depends on the codes.
+  /// Rounds the final real values: no intermediate depends on the codes.
   void round_frame() {
     for (int y = 0; y < image_.height; ++y) {
       for (int x = 0; x < image_.width; ++x) {
@@ -153,20 +153,20 @@ class Renderer {
 
   [[nodiscard]] double subpixel() const { return std::ldexp(1.0, -config_.subpixel_bits); }
 
-  /// One draw, and the primitive of it that is at work.
+  /// One draw, and its current primitive.
   struct DrawAtWork {
     const State& state;
     const Viewport vp;
     const std::array<Plane<Real>, 6> planes;
-    const std::array<Plane<Real>, 6> rectangle_planes;  ///< of a smaller guard band: what is beside a line fits in too
+    const std::array<Plane<Real>, 6> rectangle_planes;  ///< of a smaller guard band: so that the line's width fits too
     const PixelRange region;
     const std::uint32_t command;
     std::uint32_t primitive = 0;
     Real offset = 0;  ///< polygon offset, window depth
     bool was_cut = false, was_drawn = false;
     bool is_back = false;       ///< of a filled triangle that shows its back
-    bool is_rectangle = false;  ///< the triangle at work is half of a line
-    /// The triangle at work with its normals in place of its colours, where its fragments are lit: one of the two.
+    bool is_rectangle = false;  ///< the current triangle is half of a line
+    /// The current triangle with its normals as colours, if its fragments are lit: one of the two.
     std::optional<Setup<Real>> normals{};
     std::optional<HomogeneousSetup<Real>> homogeneous_normals{};
   };
@@ -206,8 +206,8 @@ class Renderer {
     });
   }
 
-  /// The position of one vertex with the colour of another.
-  /// Distances to the clip planes are sums of products with coordinates: they must not leave binary64.
+  /// The position of one vertex with the colour of another. Distances to the clip planes are sums of products with
+  /// coordinates: they must fit binary64.
   void refuse_huge(const Draw& draw) const {
     for (std::size_t i = draw.first; i < draw.first + draw.count; ++i) {
       if (scene_.indices[i] == kRestart) continue;
@@ -244,7 +244,7 @@ class Renderer {
     return d.state.space == Space::clip ? to_screen(v, d.state, d.vp) : from_window(v, d.state, scene_);
   }
 
-  /// `normals`: the same with_normals(); none: its fragments are not lit.
+  /// `normals`: from with_normals(); null: fragments are not lit.
   void draw_triangle(const Corners& v, const Corners* normals, DrawAtWork& d) {
     if (options_.clipping == Clipping::homogeneous && d.state.space == Space::clip &&
         d.state.polygon_mode == PolygonMode::fill) {
@@ -261,7 +261,7 @@ class Renderer {
       return draw_fan(outline, clipped(*normals, of_normals, d), d);
     }
     if (is_culled(normal.z, d.state)) return;
-    d.was_cut = false;  // what is cut now is an edge
+    d.was_cut = false;  // from here on edges are cut
     for (std::size_t i = 0; i < 3; ++i)
       d.state.polygon_mode == PolygonMode::line ? draw_line(v[i], v[(i + 1) % 3], d) : draw_point(v[i], d);
   }
@@ -276,7 +276,7 @@ class Renderer {
     return {corners.data(), polygon.count};
   }
 
-  /// `normals`: of the polygon's corners, as colours; empty: its fragments are not lit.
+  /// `normals`: of the polygon's corners, as colours; empty: fragments are not lit.
   void draw_fan(std::span<const ScreenVertex<Real>> polygon, std::span<const ScreenVertex<Real>> normals,
                 DrawAtWork& d) {
     const std::size_t start = polygon.size() > 3 ? fan_start(polygon, d.state) : 0;
@@ -318,7 +318,7 @@ class Renderer {
   }
 
   void draw_line(ClipVertex<Real> a, ClipVertex<Real> b, DrawAtWork& d) {
-    const bool is_smooth = d.state.smooth && samples_ == 1;  // several samples are smooth by themselves
+    const bool is_smooth = d.state.smooth && samples_ == 1;  // several samples are already smooth
     const bool is_rectangle = d.state.line_rule == LineRule::rectangle || is_smooth;
     const auto& planes = is_rectangle ? d.rectangle_planes : d.planes;
     if (d.state.space == Space::clip && !clip_segment<Real>(a, b, planes, d.was_cut)) return;
@@ -340,7 +340,7 @@ class Renderer {
     }
   }
 
-  /// A line as two triangles, whatever side they show, or smooth.
+  /// A line as two triangles, with either side visible, or smooth.
   void draw_rectangle(ScreenVertex<Real> start, ScreenVertex<Real> end, bool is_smooth, DrawAtWork& d) {
     for (auto* v : {&start, &end}) add_fog(v->rgba, v->inverse_w, d.state);
     const auto corners = rectangle_about(start, end, d.state.line_width);
@@ -381,7 +381,7 @@ class Renderer {
         if (point_covers(at, d.state, x, y)) shade(x, y, fragment, d);
   }
 
-  /// A point whose alpha is multiplied by what it covers of each pixel.
+  /// A point whose alpha is multiplied by its coverage of each pixel.
   void draw_smooth(const ScreenVertex<Real>& at, const DrawAtWork& d) {
     const PixelRange range = intersect(d.region, point_range(at, d.state.point_size + 2, scene_));
     for (int y = range.begin_y; y < range.end_y; ++y)
@@ -406,8 +406,8 @@ class Renderer {
     image_.outlines.push_back(outline);
   }
 
-  /// The corner that a clipped polygon's fan starts at: the smallest (Y, X, Z) after the snap. Where the diagonals lie
-  /// shows in affine colours, and the real coordinates of a level edge tie only up to rounding.
+  /// The corner at which a clipped polygon's fan starts: the smallest (Y, X, Z) after the snap. The place of the
+  /// diagonals is visible in affine colours, and the real coordinates of a level edge tie only up to rounding.
   std::size_t fan_start(std::span<const ScreenVertex<Real>> polygon, const State& state) const {
     std::array<std::array<double, 3>, 9> key{};
     for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -426,7 +426,7 @@ class Renderer {
   void rasterize(const Setup<Real>& t, const DrawAtWork& d) {
     const auto [left, right] = std::minmax({t.v[0].x, t.v[1].x, t.v[2].x});
     const auto [top, bottom] = std::minmax({t.v[0].y, t.v[1].y, t.v[2].y});
-    // One pixel wider on the far sides: a sample on the very border is decided by the edges, not by the range.
+    // One pixel wider on the far sides: edges, not the range, decide about a sample on the border.
     const Real margin = samples_ == 1 ? 0 : 1;  // samples lie before the centre too
     const PixelRange range =
         intersect(d.region, pixel_range(left - margin, top - margin, right + 1, bottom + 1, scene_));
@@ -447,8 +447,8 @@ class Renderer {
 
   using EdgeValues = std::array<Real, 3>;
 
-  /// A pixel with several samples: coverage and depth of each, one colour: from the centre, whose edge values are given, or
-  /// where that is not covered from the first covered sample.
+  /// A pixel with several samples: coverage and depth of each, one colour: from the centre, whose edge values are
+  /// given, or if that is not covered from the first covered sample.
   void sample_pixel(const Setup<Real>& t, int x, int y, const EdgeValues& centre, const DrawAtWork& d) {
     const auto is_inside = [&t](const EdgeValues& e) {
       return t.edge[0].inside(e[0]) && t.edge[1].inside(e[1]) && t.edge[2].inside(e[2]);
@@ -479,7 +479,7 @@ class Renderer {
             options_.texture_interp.value_or(d.state.texture_interp)};
   }
 
-  /// What is interpolated of a triangle, in its light if it has one.
+  /// Interpolated attributes of a triangle, in its light if it has one.
   template <class Triangle>
   [[nodiscard]] Fragment<Real> fragment_at(const Triangle& t, const EdgeValues& e, const DrawAtWork& d) const {
     Fragment<Real> fragment = interpolate(t, e, rules_of(d));
@@ -519,12 +519,12 @@ class Renderer {
     for (std::size_t c = 0; c < 4; ++c) rgba[c] = static_cast<Real>(color[c]);
   }
 
-  /// A fragment that covers its pixel as a whole.
+  /// A fragment that covers its whole pixel.
   void shade(int x, int y, const Fragment<Real>& fragment, const DrawAtWork& d) {
     for (std::size_t k = 0; k < samples_; ++k) store(x, y, k, fragment, d);
   }
 
-  /// Whether alpha to coverage draws a sample: so many first ones as alpha says.
+  /// Whether alpha to coverage draws a sample: the first samples, as many as alpha selects.
   [[nodiscard]] bool is_drawn(std::size_t sample, double alpha, const State& state) const {
     if (samples_ == 1 || !state.alpha_to_coverage) return true;
     return static_cast<double>(sample) < std::floor(alpha / 255 * static_cast<double>(samples_) + 0.5);
@@ -556,7 +556,7 @@ class Renderer {
   const DepthBuffer depth_buffer_;
   Image image_;
   std::size_t samples_;                                          // of a pixel
-  std::array<std::pair<Real, Real>, kMaxPixelSamples> place_{};  // of each, pixels from the upper left corner
+  std::array<std::pair<Real, Real>, kMaxPixelSamples> place_{};  // of each sample, pixels from the upper left corner
   FragmentBuffer<Real, std::array<double, 4>> pixels_;           // window depth, 0...1; colour, 0...255
 };
 

@@ -1,7 +1,7 @@
 // The float golden model: the scene without snap, quantization or fixed-point arithmetic (image U).
 //
-// Independent code, on purpose: it shares scene, configuration and framebuffer type with the model, but no stage. The docs call
-// the pixel values "real"; here they are binary64, contraction off.
+// Deliberately independent code: it shares scene, configuration and framebuffer type with the model, but no stage. The
+// docs call the pixel values "real"; here they are binary64, contraction off.
 #pragma once
 
 #include <array>
@@ -19,10 +19,10 @@
 
 namespace halfplane::golden {
 
-/// binary64 is the reference. binary32 is what a GPU's single precision would show: it cannot judge a 24-bit depth.
+/// binary64 is the reference. binary32 shows the effect of a GPU's single precision: it cannot judge a 24-bit depth.
 enum class Precision { binary64, binary32 };
 
-/// Where a triangle, line or point of the golden lies, after clipping: for distances to edges and for eye-space depth.
+/// The place of a golden triangle, line or point, after clipping: for distances to edges and for eye-space depth.
 struct Outline {
   std::size_t corners = 3;         ///< 3: triangle, 2: line from [0] to [1], 1: point
   std::uint32_t primitive = 0;     ///< input primitive, over the whole scene
@@ -32,31 +32,31 @@ struct Outline {
   std::array<double, 3> inverse_w{};
 };
 
-/// What is stored, width * height entries each, rows from the top.
+/// Stored values, width * height entries each, rows from the top.
 struct Samples {
   std::vector<std::int32_t> ids;             ///< input primitive that owns the stored colour or depth, -1 none
   std::vector<double> depth;                 ///< window z * (2^B - 1), not rounded: LSB of the interpolated depth
   std::vector<std::array<double, 4>> color;  ///< 0...255, not rounded
 };
 
-/// All per-pixel vectors have width * height entries, rows from the top. Of pixels with several samples: the mean of their
-/// colours; depth and owner of sample 0.
+/// All per-pixel vectors have width * height entries, rows from the top. With several samples per pixel: the mean of
+/// their colours; depth and owner of sample 0.
 struct Image : Samples {
   int width = 0, height = 0;
   std::vector<std::uint32_t> count;  ///< covered samples before the depth test
-  std::vector<Samples> samples;      ///< of each sample of a pixel; empty where a pixel has one
+  std::vector<Samples> samples;      ///< of each sample of a pixel; empty with one sample per pixel
   Framebuffer frame;                 ///< the same, rounded to the stored formats
   Counters counters;                 ///< primitives, covered, samples_tested, depth_passed, written
-  std::vector<Outline> outlines;     ///< what was not culled, if asked for
+  std::vector<Outline> outlines;     ///< primitives that were not culled, if requested
 };
 
-/// A fragment as it comes to the operations, and what becomes of it. Depths in LSB of the interpolated depth, not rounded.
+/// A fragment at the entry of the operations, and its fate. Depths in LSB of the interpolated depth, not rounded.
 struct TappedFragment {
   std::uint32_t primitive = 0, draw = 0;  ///< as in Outline
-  std::size_t outline = 0;                ///< its place in Image::outlines; with want_outlines
+  std::size_t outline = 0;                ///< its index in Image::outlines; with want_outlines
   int x = 0, y = 0;                       ///< pixels
-  int sample = 0;                         ///< of its pixel: each covered one is a fragment of its own
-  double depth = 0, stored_depth = 0;     ///< its own, and what lies at its pixel before it
+  int sample = 0;                         ///< in its pixel: each covered sample is a fragment of its own
+  double depth = 0, stored_depth = 0;     ///< its own depth, and the stored one before it
   std::array<double, 4> color{};          ///< 0...255, with its texture
   Fate fate;
 };
@@ -64,16 +64,16 @@ struct TappedFragment {
 struct Options {
   Precision precision = Precision::binary64;
   Clipping clipping = Clipping::polygon;
-  std::optional<ColorInterp> color_interp;      ///< in place of what the states say
-  std::optional<TextureInterp> texture_interp;  ///< likewise
-  bool want_outlines = false;                   ///< none are kept of triangles that are drawn without clipping
-  std::optional<Rect> only;                     ///< draws touch these pixels alone; clears touch all
+  std::optional<ColorInterp> color_interp;                  ///< instead of the states' values
+  std::optional<TextureInterp> texture_interp;              ///< likewise
+  bool want_outlines = false;                               ///< not for triangles drawn without clipping
+  std::optional<Rect> only;                                 ///< draws touch only these pixels; clears touch all
   std::function<void(const TappedFragment&)> fragment_tap;  ///< in program order; may be empty
   std::function<void(double fraction)> progress;  ///< 0...1, called once per 64 primitives or so; may be empty
 };
 
-/// Renders every command in program order. Throws InputError for a target that the configuration does not hold: each of
-/// its pixels costs 70 bytes here.
+/// Renders every command in program order. Throws InputError for a target larger than the configuration's: each pixel
+/// takes 70 bytes here.
 [[nodiscard]] Image render(const Scene& scene, const Config& config, const Options& options);
 [[nodiscard]] Image render(const Scene& scene, const Config& config, Precision precision = Precision::binary64);
 
@@ -84,7 +84,7 @@ struct Options {
 /// One channel of a stored colour code.
 [[nodiscard]] int stored_channel(std::uint32_t color, ColorFormat format, int channel);
 
-/// A colour, 0 to 255, rounded to the nearest that the format stores: what Image::frame has of Samples::color.
+/// A colour, 0 to 255, rounded to the nearest of the stored format: relates Image::frame to Samples::color.
 [[nodiscard]] std::uint32_t rounded_color(const std::array<double, 4>& rgba, ColorFormat format);
 
 }  // namespace halfplane::golden

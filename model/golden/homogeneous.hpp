@@ -1,11 +1,11 @@
 // Golden rasterization without clipping, in 2D homogeneous coordinates: Olano and Greer, "Triangle Scan Conversion
 // using 2D Homogeneous Coordinates", Graphics Hardware 1997.
 //
-// In: three clip-space vertices, any of them behind the eye. Out: edge functions that hold in front of the eye alone.
-// With v = (X, Y, W), window coordinates times w, a pixel (x, y, 1) is sum b_i v_i with b_i = e_i / det, e_0 = v1 x v2
-// and so on, and b_i is the weight of vertex i in space over the w of the point seen there. So the point is one of the
-// triangle, in front of the eye, when no b_i is negative; and sum b_i f_i is f / w of that point for whatever is linear
-// in clip space. No vertex is divided by its w but for the range of pixels.
+// In: three clip-space vertices, any of them behind the eye. Out: edge functions that are valid only in front of the
+// eye. With v = (X, Y, W), window coordinates times w, a pixel (x, y, 1) is sum b_i v_i with b_i = e_i / det, e_0 = v1
+// x v2 and so on, and b_i is the weight of vertex i in space over the w of the point seen there. So the point belongs
+// to the triangle, in front of the eye, when no b_i is negative; and sum b_i f_i is f / w of that point for any f
+// linear in clip space. Vertices are divided by w only for the range of pixels.
 #pragma once
 
 #include <algorithm>
@@ -18,14 +18,14 @@
 
 namespace halfplane::golden {
 
-/// A vertex in window coordinates times w, scaled by a power of two that its triangle shares.
+/// A vertex in window coordinates times w, scaled by a power of two common to its triangle.
 template <class Real>
 struct HomogeneousVertex {
   Real x = 0, y = 0, w = 0;    ///< pixels, times w
   Real z = 0;                  ///< window depth, times w
-  Real near = 0, far = 0;      ///< not negative on the inner side of the plane
+  Real near = 0, far = 0;      ///< non-negative on the inner side of the plane
   std::array<Real, 4> rgba{};  ///< 0...255
-  std::array<Real, 2> uv{};    ///< of the texture
+  std::array<Real, 2> uv{};    ///< texture coordinates
 };
 
 /// a x + b y + c in pixels: the cross product of two vertices.
@@ -38,7 +38,7 @@ struct HomogeneousEdge {
   [[nodiscard]] bool inside(Real e) const { return e > 0 || (e == 0 && (a > 0 || (a == 0 && b > 0))); }
 };
 
-/// Both products of a difference change places when the vertices do, so that a shared edge is negated to the last bit.
+/// Both products of a difference swap when the vertices do, so that a shared edge is negated to the last bit.
 template <class Real>
 [[nodiscard]] HomogeneousEdge<Real> cross(const HomogeneousVertex<Real>& p, const HomogeneousVertex<Real>& q) {
   return {p.y * q.w - q.y * p.w, p.w * q.x - q.w * p.x, p.x * q.y - q.x * p.y};
@@ -49,10 +49,10 @@ template <class Real>
 struct HomogeneousSetup {
   std::array<HomogeneousVertex<Real>, 3> v{};
   std::array<HomogeneousEdge<Real>, 3> edge{};  ///< edge[i] is opposite v[i]
-  Real determinant = 0;                         ///< before the turn: its sign is the facing, as that of an area
+  Real determinant = 0;                         ///< before the swap: its sign is the facing, like that of an area
   Real scale = 1;                               ///< of its vertices
-  bool is_in_front = false;                     ///< every w > 0: affine colour has a meaning
-  bool is_outside = false;                      ///< behind the eye, before near or beyond far as a whole
+  bool is_in_front = false;                     ///< every w > 0: affine colour is meaningful
+  bool is_outside = false;                      ///< completely behind the eye, before near or beyond far
 };
 
 template <class Real>
@@ -78,7 +78,7 @@ template <class Real>
   Real largest = 0;
   for (const auto& corner : v)
     for (const Real p : corner.position) largest = std::max(largest, std::abs(p));
-  // A power of two takes no bit away, and keeps products of three coordinates within the range of Real.
+  // A power of two loses no bit, and keeps products of three coordinates within the range of Real.
   const Real scale = largest > 0 ? std::scalbn(Real(1), -std::ilogb(largest)) : Real(0);
   HomogeneousSetup<Real> t;
   for (std::size_t i = 0; i < 3; ++i) t.v[i] = to_homogeneous(v[i], scale, state, vp);
@@ -94,7 +94,7 @@ template <class Real>
   return t;
 }
 
-/// The pixels to ask: those around the vertices, or all of `region` when one has no place in the window.
+/// The pixels to test: those around the vertices, or all of `region` if a vertex has no window position.
 template <class Real>
 [[nodiscard]] PixelRange homogeneous_range(const HomogeneousSetup<Real>& t, const PixelRange& region,
                                            const Scene& scene) {
@@ -103,7 +103,7 @@ template <class Real>
   const auto& [p, q, r] = t.v;
   const auto [left, right] = std::minmax({p.x / p.w, q.x / q.w, r.x / r.w});
   const auto [top, bottom] = std::minmax({p.y / p.w, q.y / q.w, r.y / r.w});
-  // One pixel wider on all sides: a sample on the very border is decided by the edges, not by the quotients.
+  // One pixel wider on all sides: edges, not quotients, decide about a sample on the border.
   return intersect(region, pixel_range(left - 1, top - 1, right + 1, bottom + 1, scene));
 }
 
@@ -116,8 +116,8 @@ template <class Real>
   return near >= 0 && far >= 0;
 }
 
-/// The attributes there. What is affine is so over the whole triangle, as given; with a vertex behind the eye that has no
-/// meaning on the screen, and it is perspective.
+/// The attributes there. Affine attributes are affine over the whole triangle; with a vertex behind the eye that is
+/// meaningless on the screen, and they are interpolated over w.
 template <class Real>
 [[nodiscard]] Fragment<Real> interpolate(const HomogeneousSetup<Real>& t, const std::array<Real, 3>& e,
                                          InterpolationRules rules) {

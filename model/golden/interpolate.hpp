@@ -14,17 +14,17 @@ template <class Real>
 struct Fragment {
   Real z = 0;                  ///< window depth, 0...1
   std::array<Real, 4> rgba{};  ///< 0...255
-  TextureCoordinates texture;  ///< of triangles
-  Real inverse_w = 1;          ///< likewise; 0 or less where a window-space w gives none
+  TextureCoordinates texture;  ///< for triangles
+  Real inverse_w = 1;          ///< likewise; 0 or less for an invalid window-space w
 };
 
-/// How colours and texture coordinates run over a primitive.
+/// Interpolation of colours and texture coordinates over a primitive.
 struct InterpolationRules {
   ColorInterp color = ColorInterp::affine;
   TextureInterp texture = TextureInterp::perspective;
 };
 
-/// A value at a sample and its change per pixel: of what is linear in the window, or a quotient of two that are.
+/// A value at a sample and its change per pixel: linear in the window, or a quotient of two linear values.
 template <class Real>
 struct Slope {
   Real value = 0, x = 0, y = 0;
@@ -47,12 +47,12 @@ template <class Real>
   return sum;
 }
 
-/// Texture coordinates where the vertices weigh so much; the weights need not add up to 1.
+/// Texture coordinates for given weights of the vertices; the weights need not add up to 1.
 template <class Real, class Vertex>
 [[nodiscard]] TextureCoordinates texture_at(const std::array<Slope<Real>, 3>& weight, const std::array<Vertex, 3>& v) {
   const Slope<Real> sum = weighted(weight, {1, 1, 1});
   const auto coordinate = [&](std::size_t k) {
-    // From vertex 0, so that one that is equal at all three stays so.
+    // Relative to vertex 0, so that a coordinate equal at all three stays constant.
     const Real base = v[0].uv[k];
     Slope<Real> c = weighted(weight, {0, v[1].uv[k] - base, v[2].uv[k] - base}) / sum;
     c.value += base;

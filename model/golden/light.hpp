@@ -20,7 +20,7 @@ inline Real3 normalized(const Real3& v) {
 }
 }  // namespace light_detail
 
-/// Where a light is seen from a place, and how much of it arrives.
+/// Direction to a light from a place, and the fraction of its intensity there.
 struct LightAt {
   Real3 direction{};  ///< length 1
   double strength = 1;
@@ -42,7 +42,7 @@ inline LightAt light_at(const Light& light, const Real3& place) {
   return at;
 }
 
-/// The colour of a vertex at `eye` (eye space) whose normal, of length 1, is turned to the side that is seen: 0...255.
+/// The colour of a vertex at `eye` (eye space) whose normal, of length 1, points to the visible side: 0...255.
 inline Real3 light_color(const Lighting& lighting, const Real3& eye, const Real3& normal, const Material& material) {
   using namespace light_detail;
   Real3 sum{};

@@ -27,9 +27,9 @@ struct Line {
   return state.line_rule == LineRule::diamond || !state.line_last.value_or(true);
 }
 
-/// Does a midpoint or Bresenham line from pixel (x0, y0) to pixel (x1, y1) cover pixel (x, y)? All are whole numbers.
-/// Seen from left to right, the centre's distance from the line across the major axis is in [-1/2, 1/2), the border
-/// that belongs to it being the one on the left end's side. Exact below 2^25 pixels.
+/// Whether a midpoint or Bresenham line from pixel (x0, y0) to pixel (x1, y1) covers pixel (x, y). All are whole
+/// numbers. Seen from left to right, the centre's distance from the line across the major axis is in [-1/2, 1/2),
+/// including the border on the left end's side. Exact below 2^25 pixels.
 [[nodiscard]] inline bool connects(double x0, double y0, double x1, double y1, bool drops_last, double x, double y) {
   if (drops_last && x == x1 && y == y1) return false;
   if (x < std::min(x0, x1) || x > std::max(x0, x1) || y < std::min(y0, y1) || y > std::max(y0, y1)) return false;
@@ -48,8 +48,8 @@ struct Line {
   return rise >= 0 ? -length <= below && below < length : -length < below && below <= length;
 }
 
-/// Diamond exit: does the segment, moved by (-e, -e^2) for every small enough e > 0, meet the open diamond
-/// |x - x_c| + |y - y_c| < 1/2 of the pixel, and not end in it? On the axes x + y and x - y the diamond is a square and
+/// Diamond exit: whether the segment, moved by (-e, -e^2) for every small enough e > 0, meets the open diamond |x -
+/// x_c| + |y - y_c| < 1/2 of the pixel, and does not end in it. On the axes x + y and x - y the diamond is a square and
 /// a moved point lies inside it when it was in (-1/2, 1/2]. Segment and square meet unless one of three axes separates
 /// them: the square's own two, and the one across the segment.
 template <class Real>
@@ -73,7 +73,7 @@ template <class Real>
   return has_left && has_right;
 }
 
-/// Does the line cover pixel (x, y)?
+/// Whether the line covers pixel (x, y).
 template <class Real>
 [[nodiscard]] bool covers(const Line<Real>& line, int x, int y) {
   if (line.rule == LineRule::diamond) return leaves_diamond(line.start.x, line.start.y, line.end.x, line.end.y, x, y);
@@ -81,7 +81,7 @@ template <class Real>
                   line.drops_last, x, y);
 }
 
-/// The ends as coverage and attributes take them: the other rules move them to the centres of their pixels.
+/// The ends for coverage and attributes: all rules but diamond exit move them to the centres of their pixels.
 template <class Real>
 struct Track {
   Real x0 = 0, y0 = 0, x1 = 0, y1 = 0;
@@ -91,7 +91,8 @@ struct Track {
     for (Real* v : {&x0, &y0, &x1, &y1}) *v = std::floor(*v) + Real(0.5);
   }
   [[nodiscard]] bool is_x_major() const { return std::abs(x1 - x0) >= std::abs(y1 - y0); }
-  /// 0 at the start, 1 at the end, at the pixel's coordinate on the major axis; clamped. 0 for a line without length.
+  /// Parameter of the line, 0 at the start, 1 at the end, at the pixel's coordinate on the major axis; clamped. 0 for a
+  /// line without length.
   [[nodiscard]] Real parameter(int x, int y) const {
     const Real from = is_x_major() ? x0 : y0, length = is_x_major() ? x1 - x0 : y1 - y0;
     const Real at = static_cast<Real>(is_x_major() ? x : y) + Real(0.5);
@@ -99,11 +100,11 @@ struct Track {
   }
 };
 
-/// Of a line of `width` pixels, how many lines of one it is: rounded, at least 1.
+/// Number of strands of a line of `width` pixels: rounded, at least 1.
 [[nodiscard]] inline int strands_of(double width) { return std::max(1, static_cast<int>(std::floor(width + 0.5))); }
 
-/// The line moved along one axis to where strand i of `count` lies: by i - (count - 1)/2 pixels, by whole ones where
-/// the rule rounds its ends.
+/// The line moved along one axis to strand i of `count`: by i - (count - 1)/2 pixels, by whole pixels if the rule
+/// rounds its ends.
 template <class Real>
 [[nodiscard]] Line<Real> strand_along(Line<Real> line, Real ScreenVertex<Real>::*axis, int i, int count) {
   const int whole = i - (count - 1) / 2;
@@ -121,7 +122,7 @@ template <class Real>
 }
 
 /// A line as a rectangle: two corners of the start and two of the end, in order around it, each half of `width` pixels
-/// across the line from its end. Nothing for a line without length.
+/// across the line from its end. None for a line without length.
 template <class Real>
 [[nodiscard]] std::optional<std::array<ScreenVertex<Real>, 4>> rectangle_about(const ScreenVertex<Real>& start,
                                                                                const ScreenVertex<Real>& end,
@@ -136,7 +137,7 @@ template <class Real>
   return std::array{corner(start, 1), corner(start, -1), corner(end, -1), corner(end, 1)};
 }
 
-/// The area of a rectangle in pixel (x, y), 0 to 1: what is left of it between the pixel's four sides. Corners go round it.
+/// The area of a rectangle in pixel (x, y), 0 to 1: of its part between the pixel's four sides. Corners are in order.
 template <class Real>
 [[nodiscard]] double area_in_pixel(const std::array<ScreenVertex<Real>, 4>& corners, int x, int y) {
   struct Point {
@@ -167,7 +168,7 @@ template <class Real>
   return std::min(1.0, std::abs(doubled) / 2);
 }
 
-/// The attributes of a line beside a pixel: those of the point of the segment that is nearest to the pixel's centre.
+/// The attributes of a line at a nearby pixel: at the point of the segment nearest to the pixel's centre.
 template <class Real>
 [[nodiscard]] Fragment<Real> beside(const ScreenVertex<Real>& a, const ScreenVertex<Real>& b, int x, int y) {
   const Real dx = b.x - a.x, dy = b.y - a.y, px = static_cast<Real>(x) + Real(0.5),
@@ -180,8 +181,8 @@ template <class Real>
 }
 
 /// Calls visit(x, y) for the pixels of `range` that lie within `margin` pixels of the line along both axes: one column
-/// of 2 * margin + 1 candidates per pixel of the major axis. 1 is enough for coverage: a pixel that is covered holds, or
-/// touches, the point in which the line crosses its column or ends in it.
+/// of 2 * margin + 1 candidates per pixel of the major axis. 1 is enough for coverage: a covered pixel contains, or
+/// touches, the point where the line crosses its column or ends in it.
 template <class Real, class Visit>
 void for_each_candidate(const Line<Real>& line, const PixelRange& range, int margin, Visit&& visit) {
   const Track<Real> track(line);
@@ -223,8 +224,8 @@ template <class Real>
   return pixel_range(x - half, y - half, x + half, y + half, scene);
 }
 
-/// The area that a disc of that radius about the origin has in [x0, x1] x [y0, y1]: the part of it above y0 and below y1,
-/// integrated between the places where its border crosses theirs.
+/// The area of a disc of that radius about the origin in [x0, x1] x [y0, y1]: its part above y0 and below y1,
+/// integrated between the crossings of their borders.
 [[nodiscard]] inline double disc_in_box(double radius, double x0, double x1, double y0, double y1) {
   x0 = std::clamp(x0, -radius, radius);
   x1 = std::clamp(x1, -radius, radius);
@@ -254,7 +255,7 @@ template <class Real>
   return shared(left) * shared(top);
 }
 
-/// Of a pixel of that square: does the point cover it? A round one where its disc holds the centre.
+/// Whether the point covers a pixel of that square: a round point if its disc contains the centre.
 template <class Real>
 [[nodiscard]] bool point_covers(const ScreenVertex<Real>& at, const State& state, int x, int y) {
   const Real dx = static_cast<Real>(x) + Real(0.5) - at.x, dy = static_cast<Real>(y) + Real(0.5) - at.y;

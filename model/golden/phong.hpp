@@ -1,4 +1,4 @@
-// Golden light of fragments, in real arithmetic: Blinn's model with one light from infinitely far, seen from infinitely far.
+// Golden light of fragments, in real arithmetic: Blinn's model with one light at infinity and the viewer at infinity.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace halfplane::golden {
 
 using Direction = std::array<double, 3>;
 
-/// As long as 1; 0 where it is 0.
+/// Normalised to length 1; 0 where it is 0.
 [[nodiscard]] inline Direction unit(const Direction& v) {
   const double largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
   if (!(largest > 0)) return {};

@@ -11,8 +11,8 @@
 
 namespace halfplane::golden {
 
-/// The normal of a flat polygon on the screen, its length twice the area. z > 0: clockwise as seen. A polygon of fewer
-/// than three corners has none.
+/// The normal of a flat polygon on the screen, its length twice the area. z > 0: clockwise as seen. 0 for fewer than
+/// three corners.
 template <class Real>
 struct PlaneNormal {
   Real x = 0, y = 0, z = 0;

@@ -14,7 +14,7 @@ namespace halfplane::golden {
 /// One input primitive.
 struct Primitive {
   std::size_t corners = 3;               ///< 3: triangle, 2: line, 1: point
-  std::array<std::uint32_t, 3> index{};  ///< into Scene::vertices; of a triangle the provoking one first
+  std::array<std::uint32_t, 3> index{};  ///< into Scene::vertices; of a triangle the provoking vertex first
   std::uint32_t provoking = 0;           ///< into Scene::vertices
 };
 
@@ -33,7 +33,7 @@ class Assembler {
     before_ = {before_[1], index};
   }
 
-  /// The end of the draw, or of one of its strips: a loop closes, what is incomplete goes.
+  /// Ends the draw, or one of its strips: a loop closes, an incomplete primitive is dropped.
   void end() {
     if (topology_ == Topology::line_loop && count_ > 1) line(before_[1], first_);
     count_ = 0;
@@ -49,12 +49,12 @@ class Assembler {
         return;
       case Topology::triangle_strip:
         if (count_ < 3) return;
-        // Every other triangle is named the other way round, so that all of them face the same way.
+        // Every other triangle is reversed, so that all have the same facing.
         if (count_ % 2 == 1) return triangle(older, old, index);
         return is_last_ ? visit_(Primitive{3, {index, old, older}, index})
                         : visit_(Primitive{3, {older, index, old}, older});
       case Topology::triangle_fan:
-        // The centre colours no triangle: the first of the others does, or the last.
+        // The centre gives no triangle its colour: the first of the other vertices does, or the last.
         if (count_ >= 3)
           is_last_ ? visit_(Primitive{3, {index, first_, old}, index})
                    : visit_(Primitive{3, {old, index, first_}, old});
@@ -79,8 +79,8 @@ class Assembler {
   bool is_last_;
   Visit& visit_;
   std::size_t count_ = 0;                  // vertices since the last restart
-  std::uint32_t first_ = 0;                // of them
-  std::array<std::uint32_t, 2> before_{};  // the two latest of them
+  std::uint32_t first_ = 0;                // the first of them
+  std::array<std::uint32_t, 2> before_{};  // the latest two of them
 };
 
 /// Calls visit(Primitive) for the primitives of one draw.

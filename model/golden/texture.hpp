@@ -11,7 +11,7 @@
 
 namespace halfplane::golden {
 
-/// Where a sample lies on a texture: 0 and 1 are its sides; and how that changes from pixel to pixel.
+/// The place of a sample on a texture, 0 to 1 over its sides; and its change from pixel to pixel.
 struct TextureCoordinates {
   double u = 0, v = 0;
   double u_x = 0, u_y = 0, v_x = 0, v_y = 0;
@@ -26,10 +26,10 @@ using Color = std::array<double, 4>;
   return std::log2(std::max(std::hypot(at.u_x * width, at.v_x * height), std::hypot(at.u_y * width, at.v_y * height)));
 }
 
-/// The texel that a whole number stands for, `size` of them along the axis.
+/// The texel of the image for a whole number, with `size` texels along the axis.
 [[nodiscard]] inline int wrapped(double texel, int size, TextureWrap wrap) {
   const auto modulo = [texel](double period) {
-    const double rest = std::fmod(texel, period);  // exact, as a quotient would not be
+    const double rest = std::fmod(texel, period);  // exact, unlike a quotient
     return rest < 0 ? rest + period : rest;
   };
   if (wrap == TextureWrap::clamp) return static_cast<int>(std::clamp(texel, 0.0, static_cast<double>(size - 1)));
@@ -56,8 +56,8 @@ struct TexelPlace {
   double x = 0, y = 0;
 };
 
-/// A place that binary64 has left within its error beside a border of texels, 2^-40 of the texels that it has been taken
-/// from, is on the border: a sprite whose coordinates lie on borders shows the texel that begins there.
+/// Moves a place within binary64's error of a border of texels, 2^-40 of the extent, onto the border: a sprite whose
+/// coordinates lie on borders shows the texel that begins there.
 [[nodiscard]] inline double on_border(double place, double extent) {
   const double border = std::round(place);
   return std::abs(place - border) <= std::ldexp(std::max(std::abs(place), extent), -40) ? border : place;
@@ -69,7 +69,7 @@ struct TexelPlace {
   const TextureLevel& level = texture.level[static_cast<std::size_t>(n)];
   const auto on_level = [is_linear](double texels, int size, int whole) {
     const double place = is_linear ? texels * size / whole - 0.5 : on_border(texels * size / whole, size);
-    return std::isfinite(place) ? place : 0;  // what has left binary64 is nowhere
+    return std::isfinite(place) ? place : 0;  // an overflow has no place
   };
   const double x = on_level(at.x, level.width, texture.width()), y = on_level(at.y, level.height, texture.height());
   const double left = std::floor(x), top = std::floor(y);
@@ -108,7 +108,8 @@ struct TexelPlace {
                   bounded_level(state, level_of_detail(texture, at)));
 }
 
-/// The primitive's colour and the texture's together: OpenGL ES 1.1's table 3.17, alpha as it is where the format has none.
+/// The primitive's colour and the texture's combined: OpenGL ES 1.1's table 3.17; alpha is unchanged if the format has
+/// none.
 [[nodiscard]] inline Color combined(const Color& color, const Color& texel, TextureCombine combine, bool has_alpha) {
   Color c = color;
   for (std::size_t i = 0; i < 3; ++i) switch (combine) {

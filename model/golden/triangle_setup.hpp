@@ -22,7 +22,7 @@ struct Edge {
 };
 
 /// The edge from a to b. It is evaluated from its upper end in either direction, so that the two triangles that share
-/// it get values of opposite sign and the same magnitude, whatever the arithmetic rounds.
+/// it get values of opposite sign and the same magnitude, with any rounding.
 template <class Real>
 [[nodiscard]] Edge<Real> make_edge(const ScreenVertex<Real>& a, const ScreenVertex<Real>& b) {
   const Real dx = b.x - a.x, dy = b.y - a.y;
@@ -46,7 +46,7 @@ template <class Real>
   return state.cull == Cull::both || state.cull == (is_front ? Cull::front : Cull::back);
 }
 
-/// Of a triangle that is not culled. Lines and points, a triangle's outline too, show their front.
+/// For a triangle that is not culled. Lines and points, a triangle's outline too, show their front.
 template <class Real>
 [[nodiscard]] bool shows_back(Real area, const State& state) {
   return (area > 0) != (state.front == FrontFace::cw);

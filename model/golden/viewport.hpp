@@ -17,11 +17,10 @@ struct ScreenVertex {
   Real z = 0;         ///< window depth, 0...1
   Real inverse_w = 1;
   std::array<Real, 4> rgba{};  ///< 0...255
-  std::array<Real, 2> uv{};    ///< of the texture
+  std::array<Real, 2> uv{};    ///< texture coordinates
 };
 
-/// A rectangle of pixels, half-open: `end_x` and `end_y` are no longer of it. (Boxes and bounds of the model are
-/// inclusive.)
+/// A rectangle of pixels, half-open: `end_x` and `end_y` are outside. (Boxes and bounds of the model are inclusive.)
 struct PixelRange {
   int begin_x = 0, begin_y = 0, end_x = 0, end_y = 0;
   [[nodiscard]] bool empty() const { return begin_x >= end_x || begin_y >= end_y; }
@@ -32,7 +31,7 @@ struct PixelRange {
           std::min(a.end_y, b.end_y)};
 }
 
-/// The first pixel whose centre is at or right of (below) `position`; held inside 0...limit.
+/// The first pixel whose centre is at or right of (below) `position`; clamped to 0...limit.
 [[nodiscard]] inline int first_centre(double position, int limit) {
   return static_cast<int>(std::clamp(std::ceil(position - 0.5), 0.0, static_cast<double>(limit)));
 }
@@ -43,7 +42,7 @@ struct PixelRange {
           first_centre(bottom, scene.height)};
 }
 
-/// Target and scissor: what a clear fills.
+/// Target and scissor: the pixels of a clear.
 [[nodiscard]] inline PixelRange clear_region(const Scene& scene, const State& state) {
   if (!state.scissor) return {0, 0, scene.width, scene.height};
   const double x = state.scissor->x, y = state.scissor->y;  // double: x + width may not fit an int
@@ -53,7 +52,7 @@ struct PixelRange {
                      scene);
 }
 
-/// How far the outer corner of the first pixel lies from the origin of the state's window coordinates, along each axis.
+/// Distance of the first pixel's outer corner from the origin of the state's window coordinates, along each axis.
 [[nodiscard]] inline double first_pixel_offset(const State& state) {
   return state.pixel_center == PixelCenter::half ? 0.0 : 0.5;
 }
@@ -78,7 +77,7 @@ template <class Real>
           state.viewport->width, state.viewport->height};
 }
 
-/// Target, scissor and, in clip space, the viewport: what a draw may touch.
+/// Target, scissor and, in clip space, the viewport: the pixels of a draw.
 [[nodiscard]] inline PixelRange draw_region(const Scene& scene, const State& state) {
   const PixelRange range = clear_region(scene, state);
   if (state.space == Space::window) return range;

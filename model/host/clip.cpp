@@ -6,7 +6,7 @@
 namespace halfplane {
 namespace {
 
-/// The point where the edge crosses the plane, from the inside end (distance `d_in` >= 0) to the outside one (< 0).
+/// The point where the edge crosses the plane, from the inside end (distance `d_in` >= 0) to the outside end (< 0).
 Vertex cut(const Vertex& in, const Vertex& out, double d_in, double d_out) {
   const double t = d_in / (d_in - d_out);
   const auto mix = [t](double from, double to) { return from + t * (to - from); };
@@ -15,7 +15,7 @@ Vertex cut(const Vertex& in, const Vertex& out, double d_in, double d_out) {
   return vertex_of(made);
 }
 
-/// Cuts a line at a plane that its ends have these distances from. Returns whether anything is left.
+/// Cuts a line at a plane, with these distances of its ends. Returns whether a part remains.
 bool cut_line(std::array<Vertex, 2>& line, double d_a, double d_b) {
   if (d_a < 0 && d_b < 0) return false;
   if (d_a < 0) line[0] = cut(line[1], line[0], d_b, d_a);
@@ -80,7 +80,7 @@ ClipPolygon clip(const ClipPlanes& planes, const Vertex& a, const Vertex& b, con
     polygon = clip_against(plane, polygon);
     if (polygon.size < 3) return {};
   }
-  // Inside all planes w >= 0, and w = 0 only at the eye itself: then the triangle is seen edge-on and covers nothing.
+  // Inside all planes w >= 0, and w = 0 only at the eye itself: then the triangle is seen edge-on and covers no pixel.
   for (int i = 0; i < polygon.size; ++i)
     if (!(polygon.v[static_cast<std::size_t>(i)].w > 0)) return {};
   return polygon;

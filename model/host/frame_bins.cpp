@@ -10,14 +10,14 @@
 namespace halfplane {
 namespace {
 
-constexpr std::uint64_t kFewSamples = 16;  ///< of which each is looked at
+constexpr std::uint64_t kFewSamples = 16;  ///< up to which every sample is tested
 
 PixelBounds intersection(const PixelBounds& a, const PixelBounds& b) {
   return {std::max(a.left, b.left), std::max(a.top, b.top), std::min(a.right, b.right), std::min(a.bottom, b.bottom)};
 }
 
-/// Whether a triangle of positive area may cover a sample of `box`: exact where the box is small and a pixel has one sample,
-/// otherwise by the corner that lies farthest inside of each edge.
+/// Whether a triangle of positive area may cover a sample of `box`: exact for a small box and one sample per pixel,
+/// otherwise by the corner farthest inside each edge.
 bool touches(const std::array<SnappedVertex, 3>& v, const PixelBounds& box, const Widths& widths) {
   const auto edge = [&](std::size_t i, int x, int y) {
     return edge_function(v[i], v[(i + 1) % 3], x, y, widths.grid_bits);
@@ -39,7 +39,7 @@ std::optional<LineSetup> setup_in(const WholeLine& line, const PixelBounds& bin,
   return setup_line(line.start, line.end, line.rule, line.drops_last, intersection(line.limit, bin), widths);
 }
 
-/// Pixels that the line may cover, one more on each side for its rule's sake.
+/// Pixels that the line may cover, with one more on each side for the line rule.
 PixelBounds bounds_of(const WholeLine& line, int grid_bits) {
   const auto [left, right] = std::minmax({line.start.x >> grid_bits, line.end.x >> grid_bits});
   const auto [top, bottom] = std::minmax({line.start.y >> grid_bits, line.end.y >> grid_bits});
@@ -67,7 +67,7 @@ PixelBounds FrameBins::box_of(std::size_t bin) const {
   return {left, top, left + width_ - 1, top + height_ - 1};
 }
 
-/// Adds the item that comes next to the bins of `box` of which touches(bounds) says so. Returns whether there is one.
+/// Adds the next item to those bins of `box` for which touches(bounds) is true. Returns whether there is one.
 template <class Touches>
 bool FrameBins::add_to_bins(const PixelBounds& box, Touches&& touches) {
   bool is_seen = false;
@@ -106,7 +106,7 @@ void FrameBins::add(const HostPrimitive& primitive, const WholeLine& line) {
   lines_.push_back(line);
 }
 
-/// All that the pixels of a primitive depend on. Its number is none of that.
+/// Everything that the pixels of a primitive depend on. Not its number.
 Signature FrameBins::signature_of(const HostPrimitive& primitive, const WholeLine* line) {
   if (!compares_) return {};
   SignatureHash hash;
@@ -167,10 +167,10 @@ Signature FrameBins::signature_of(const HostPrimitive& primitive, const WholeLin
   return hash.signature();
 }
 
-/// What a bin takes to be drawn, at least: its primitives and half of the stamps of their boxes; and where clears are resolved
-/// about its stamps.
+/// Lower bound of the cycles to draw a bin: its primitives and half of the stamps of their boxes; and where clears are
+/// resolved about its stamps.
 std::uint64_t FrameBins::least_cycles(std::size_t bin) const {
-  constexpr std::uint64_t kSetup = 4;  // cycles from primitive to primitive
+  constexpr std::uint64_t kSetup = 4;  // cycles from one primitive to the next
   const auto stamps = [this](const PixelBounds& box) {
     return box.samples() / static_cast<std::uint64_t>(widths_.pixels);
   };
@@ -186,7 +186,7 @@ std::uint64_t FrameBins::least_cycles(std::size_t bin) const {
   return compares_ == FrameClears::resolve ? std::max(cycles, stamps(bounds) / 2) : cycles;
 }
 
-/// Against what is saved stand a clear of each bin that is drawn, and a walk over the lines in front of them.
+/// The savings are weighed against a clear of each drawn bin, and a walk over the cache lines before these clears.
 void FrameBins::leave_out_equal(BinContents& held, const Signature& clears) {
   std::vector<Signature> now;
   now.reserve(bin_.size());
@@ -197,7 +197,7 @@ void FrameBins::leave_out_equal(BinContents& held, const Signature& clears) {
     now.push_back(hash.signature());
   }
   const bool is_known = held.width == target_width_ && held.height == target_height_ && held.bin.size() == now.size();
-  constexpr std::uint64_t kToken = 16;  // cycles behind which a token finds nothing under way
+  constexpr std::uint64_t kToken = 16;  // a token finds nothing under way after this many cycles
   const int words = ((1 << widths_.line_x_bits) - 1) / widths_.blocks.flag_word + 1;
   const std::uint64_t clear = kToken + 2 * static_cast<std::uint64_t>(words << widths_.line_y_bits);
   std::uint64_t saved = 0, cost = kToken + (std::uint64_t{1} << (widths_.line_x_bits + widths_.line_y_bits));
@@ -232,7 +232,7 @@ void FrameBins::close(bool drops_depth, BinContents* held, const Signature& clea
   is_closed_ = true;
   cleared_.reset();
   bin_next_ = item_next_ = 0;
-  const auto is_unseen = [&](std::uint32_t item) {  // a clear of depths behind everything that looks at them
+  const auto is_unseen = [&](std::uint32_t item) {  // a clear of depths after all reads of them
     const PrimitivePacket& packet = items_[item].packet;
     return drops_depth && packet.kind == PrimitiveKind::rectangle && !packet.state.color_write;
   };
@@ -257,7 +257,7 @@ std::optional<HostPrimitive> FrameBins::next() {
   return std::nullopt;
 }
 
-/// What of a primitive lies in a bin.
+/// The part of a primitive that lies in a bin.
 HostPrimitive FrameBins::part(const Item& item, const PixelBounds& bin) const {
   HostPrimitive out{item.packet, {}, item.primitive, item.command, true, item.units};
   if (item.line == kNoLine) {

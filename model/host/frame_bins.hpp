@@ -1,14 +1,15 @@
 // The primitives of a frame, sorted by bin (frame.order bins).
 //
-// A bin is an aligned rectangle of pixels whose blocks have a cache line each: nothing leaves the chip while it is drawn.
-// In: primitives in program order. Out: bin by bin, those that touch it, in program order, each cut to the bin. A pixel lies
-// in one bin, so everything that happens to it keeps its order, and the picture is that of program order.
+// A bin is an aligned rectangle of pixels whose blocks have a cache line each: nothing leaves the chip while it is
+// drawn. In: primitives in program order. Out: bin by bin, the primitives that touch it, in program order, each cut to
+// the bin. A pixel lies in one bin, so its fragments keep their order, and the picture is that of program order.
 //
-// All of a frame must be here before the first primitive goes: memory is primitives, and 4 bytes for each of their bins.
+// The whole frame must be here before the first primitive is sent: memory is primitives, and 4 bytes for each of their
+// bins.
 //
-// A bin in which the same is drawn as in the frame before holds the same picture, and is left alone (BinContents): its
-// signature is over everything that its pixels depend on, in order. Signatures of 128 bits (signature.hpp) are equal by
-// chance once in 2^128 comparisons.
+// A bin with the same draws as in the frame before holds the same picture, and is skipped (BinContents): its signature
+// covers everything that its pixels depend on, in order. Signatures of 128 bits (signature.hpp) are equal by chance
+// once in 2^128 comparisons.
 #pragma once
 
 #include <memory>
@@ -22,7 +23,7 @@
 
 namespace halfplane {
 
-/// What line_setup needs to begin a line again in each bin.
+/// Input of line_setup to begin a line again in each bin.
 struct WholeLine {
   SnappedVertex start, end;
   LineRule rule = LineRule::diamond;
@@ -30,23 +31,23 @@ struct WholeLine {
   PixelBounds limit;  ///< the scissor, inside the target
 };
 
-/// What memory holds of a target that was drawn in bins.
+/// The content of a target in memory that was drawn in bins.
 struct BinContents {
   int width = 0, height = 0;   ///< of the target, pixels
-  std::vector<Signature> bin;  ///< row by row; empty: nobody knows
+  std::vector<Signature> bin;  ///< row by row; empty: unknown
   void forget() { bin.clear(); }
 };
 
-/// Whether frames that follow each other are compared bin by bin: no bin has depths to be kept.
+/// Whether successive frames are compared bin by bin: only if no bin has depths to be kept.
 [[nodiscard]] inline bool compares_bins(const Config& config) {
   return config.frame_order == FrameOrder::bins && config.frame_store == FrameStore::color;
 }
 
-/// The signature of what draws share, made again only where another one comes.
+/// The signature of data shared by draws, computed again only when the data change.
 template <class Shared>
 class SharedSignature {
  public:
-  /// `add`: adds what counts of it to a hash.
+  /// `add`: adds the data that count to a hash.
   [[nodiscard]] const Signature& signature_of(const std::shared_ptr<const Shared>& shared, const auto& add) {
     if (shared != last_) {
       last_ = shared;
@@ -64,37 +65,38 @@ class SharedSignature {
 
 class FrameBins {
  public:
-  /// Of a target of width x height pixels. `compares`: bins are told from those of the frame before, on hardware with these
-  /// clears.
+  /// For a target of width x height pixels. `compares`: compares bins with those of the frame before, on hardware with
+  /// these clears.
   FrameBins(const Widths& widths, int width, int height, std::optional<FrameClears> compares = {});
 
-  /// Whether bins are made of whole tiles, as a clear of one of them needs it.
+  /// Whether bins consist of whole tiles, as required for a clear of one bin.
   [[nodiscard]] static bool has_whole_tiles(const Widths& widths);
 
-  /// Nothing has been added since the last primitive went.
+  /// Nothing has been added since the last primitive was sent.
   [[nodiscard]] bool is_empty() const { return items_.empty(); }
 
-  /// A triangle that faces the right way, a point, or a rectangle. Returns whether it may cover a sample.
+  /// A triangle with the right facing, a point, or a rectangle. Returns whether it may cover a sample.
   bool add(const HostPrimitive& primitive);
 
   /// A line with a pixel inside its limit; `primitive` without its setup.
   void add(const HostPrimitive& primitive, const WholeLine& line);
 
-  /// The frame is complete. `drops_depth`: nobody looks at the depths that it leaves behind. With `held`: bins that hold what
-  /// is drawn in them over `clears` are left out, where that is worth it; then it is what memory holds behind this frame.
+  /// The frame is complete. `drops_depth`: the final depths are never read. With `held`: bins whose content equals
+  /// their draws over `clears` are skipped, where that pays off; on return it is the content of memory after this
+  /// frame.
   void close(bool drops_depth, BinContents* held = nullptr, const Signature& clears = {});
 
-  /// Behind close(): the boxes of the bins that must be cleared, each by itself; none: all of the target at once.
+  /// After close(): the boxes of the bins that must be cleared, one by one; none: all of the target at once.
   [[nodiscard]] const std::optional<std::vector<PixelBounds>>& cleared() const { return cleared_; }
-  /// Something will come of next().
+  /// Whether next() will return a primitive.
   [[nodiscard]] bool has_next() const;
 
-  /// Behind close(): the next primitive; none behind the last, and then a new frame may be added.
+  /// After close(): the next primitive; none after the last, and then a new frame may be added.
   [[nodiscard]] std::optional<HostPrimitive> next();
 
-  [[nodiscard]] std::uint64_t bins() const { return bins_; }    ///< with something in them, of all frames closed so far
+  [[nodiscard]] std::uint64_t bins() const { return bins_; }    ///< not empty, of all frames closed so far
   [[nodiscard]] std::uint64_t pairs() const { return pairs_; }  ///< triangles, lines and points in them
-  /// Bins with something in them that were left alone.
+  /// Bins that are not empty and were skipped.
   [[nodiscard]] std::uint64_t left_out() const { return left_out_; }
 
  private:
@@ -124,7 +126,7 @@ class FrameBins {
   std::vector<WholeLine> lines_;
   std::vector<std::vector<std::uint32_t>> bin_;  ///< row by row: indices into items_
   bool is_closed_ = false;
-  std::size_t bin_next_ = 0, item_next_ = 0;  ///< what goes next
+  std::size_t bin_next_ = 0, item_next_ = 0;  ///< the next bin and item
   std::uint64_t bins_ = 0, pairs_ = 0, left_out_ = 0;
   std::optional<std::vector<PixelBounds>> cleared_;
   SharedSignature<FogTable> fog_;

@@ -1,4 +1,4 @@
-// Which scenes this hardware can take.
+// The scenes that this hardware supports.
 #include "../stages/depth_encode.hpp"
 #include "../stages/fragment_ops.hpp"
 #include "../stages/surface.hpp"
@@ -7,7 +7,7 @@
 namespace halfplane {
 namespace {
 
-/// What of a textured draw, or one with colours over w, the hardware lacks; empty: nothing.
+/// The missing feature of this hardware for a textured draw, or a draw with colours over w; empty: none.
 std::string surface_fault(const Scene& scene, const State& state, const Config& config) {
   if (state.shade == Shade::phong && state.color_write && !has_normals(config))
     return "shade phong: this hardware lights no fragments; set shade.unit=1 (with texture.unit=nearest and "
@@ -44,7 +44,7 @@ std::string surface_fault(const Scene& scene, const State& state, const Config& 
   return "";
 }
 
-/// What of a state's operations this hardware does not have, and the mend; empty: it has all.
+/// The missing feature of this hardware for a state's operations, and the remedy; empty: none.
 std::string fragment_fault(const State& state, const Config& config) {
   const FragmentOps ops = fragment_ops(state, config.color_format);
   const auto unit = [](const char* setting) {

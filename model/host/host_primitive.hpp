@@ -14,29 +14,29 @@
 
 namespace halfplane {
 
-/// What the units must be set to for a primitive: words of their registers, as tokens carry them.
+/// The unit registers that a primitive needs, as words of tokens.
 struct UnitWords {
   std::uint64_t texture_state = 0;              ///< of a triangle: TextureState
   std::uint32_t texture_levels = 0;             ///< likewise TextureLevels
-  std::optional<TextureLines> texture_lines{};  ///< where its samples have a level of detail
-  bool looks_at_fog = false;                    ///< of a triangle whose colours are written, with a unit for it
-  std::shared_ptr<const FogTable> fog{};        ///< then: what is in the way; none: nothing
+  std::optional<TextureLines> texture_lines{};  ///< if its samples have a level of detail
+  bool looks_at_fog = false;                    ///< triangle whose colours are written, with a fog unit
+  std::shared_ptr<const FogTable> fog{};        ///< then: its fog; null: none
   bool looks_at_light = false;                  ///< likewise
-  std::shared_ptr<const PhongLight> light{};    ///< then: what it is lit by; none: nothing
-  ColorWords colors{};                          ///< of what is drawn
-  StencilWords stencil{};                       ///< likewise; of a fast clear: its value
+  std::shared_ptr<const PhongLight> light{};    ///< then: its light; null: none
+  ColorWords colors{};                          ///< of the draw
+  StencilWords stencil{};                       ///< likewise; for a fast clear: its value
   Signature texels{};                           ///< of the texture of a triangle, where bins are compared
 };
 
-/// The packet, and where it came from.
+/// The packet, and its origin.
 struct HostPrimitive {
   static constexpr std::uint32_t kNoCommand = ~0U;
 
   PrimitivePacket packet;
-  std::optional<LineSetup> line;  ///< beside a packet of kind line
-  std::uint32_t primitive = 0;    ///< number of the input primitive over the whole scene; otherwise: of the next one
+  std::optional<LineSetup> line;  ///< with a packet of kind line
+  std::uint32_t primitive = 0;    ///< number of the input primitive over the whole scene; otherwise of the next one
   std::uint32_t command = kNoCommand;  ///< index into Scene::commands; kNoCommand: the first clear and the flush
-  bool is_part = false;                ///< what lies in one bin: the host has counted the whole
+  bool is_part = false;                ///< the part in one bin: the host has counted the whole
   UnitWords units{};
 };
 

@@ -8,7 +8,7 @@
 namespace halfplane {
 namespace {
 
-/// The line in its own octant. Turning an axis round takes coordinate v to -v, and so pixel i to -1 - i.
+/// The line in its own octant. Reversing an axis maps coordinate v to -v, and so pixel i to -1 - i.
 struct OctantLine {
   bool is_x_major = false, is_major_negative = false, is_minor_negative = false;
   std::int64_t a0 = 0, b0 = 0, a1 = 0, b1 = 0;  ///< subpixels: a0 <= a1, b0 <= b1, a1 - a0 >= b1 - b0
@@ -26,7 +26,7 @@ Bounds turned(std::int64_t low, std::int64_t high, bool is_negative) {
 }
 
 OctantLine to_octant(const SnappedVertex& start, const SnappedVertex& end, LineRule rule, int s) {
-  const auto at = [&](std::int32_t v) -> std::int64_t {  // the centre of the pixel that holds v
+  const auto at = [&](std::int32_t v) -> std::int64_t {  // the centre of the pixel that contains v
     return rule == LineRule::diamond ? v : (std::int64_t{v >> s} << s) + (std::int64_t{1} << (s - 1));
   };
   const std::int64_t x0 = at(start.x), y0 = at(start.y), x1 = at(end.x), y1 = at(end.y);
@@ -43,11 +43,11 @@ OctantLine to_octant(const SnappedVertex& start, const SnappedVertex& end, LineR
   return line;
 }
 
-/// Does a line that crosses a column's centre exactly between two rows take the later one?
+/// Whether a line that crosses a column's centre exactly between two rows takes the later row.
 bool tie_moves(const OctantLine& line, LineRule rule) {
   // Crossing a column of a y-major line: the left pixel, by either rule (-e is the larger part of the perturbation).
   if (!line.is_x_major) return line.is_minor_negative;
-  // The left end's side: where the line comes from, unless it is drawn from right to left.
+  // The left end's side: towards the start, unless the line is drawn from right to left.
   if (rule != LineRule::diamond) return line.is_major_negative;
   // Moved to the left, a sloped line crosses the column nearer its right end's row; a level line moves up.
   return !line.is_major_negative && line.minor_delta() != 0;

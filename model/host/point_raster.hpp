@@ -1,12 +1,12 @@
-// Point raster: the pixels of a point as boxes: what is drawn is rectangles of one depth and one colour
-// (PrimitiveKind::rectangle), of a square point one, of a round one one a row.
+// Point raster: the pixels of a point as boxes: rectangles of one depth and one colour (PrimitiveKind::rectangle), a
+// single one for a square point, one per row for a round point.
 //
 // A point of size n covers the pixels whose centres lie in [X - n/2, X + n/2) x [Y - n/2, Y + n/2): left and top border
-// in, right and bottom out, as the fill rule has it. Whole sizes cover n x n pixels wherever the point lies, and points
-// side by side share none.
+// in, right and bottom out, as in the fill rule. Whole sizes cover n x n pixels at any position, and adjacent points
+// share no pixel.
 //
-// A round point covers those of the square's pixels whose centres lie in its disc, (x - X)^2 + (y - Y)^2 <= (n/2)^2:
-// none, where it is small and lies between them.
+// A round point covers the pixels of the square whose centres lie in its disc, (x - X)^2 + (y - Y)^2 <= (n/2)^2: none,
+// if it is small and lies between them.
 #pragma once
 
 #include "../fixed.hpp"
@@ -15,16 +15,16 @@
 
 namespace halfplane {
 
-/// The first pixel whose centre is at or behind a border; in halves of a subpixel, so that the border of an odd size is
+/// The first pixel whose centre is at or after a border; in halves of a subpixel, so that the border of an odd size is
 /// an integer and the centre of pixel i is at (2 i + 1) 2^grid_bits.
 [[nodiscard]] constexpr int first_centre(std::int64_t border, int grid_bits) {
   const std::int64_t centre = std::int64_t{1} << grid_bits, pixel = 2 * centre;
-  // The last pixel whose centre is before it ends just before the next.
+  // The last pixel whose centre is before the border is the one before the next.
   return static_cast<int>((border - centre + pixel - 1) >> (grid_bits + 1));
 }
 
-/// The pixels of its square inside `limit`; empty when there are none. `size`: the side, in subpixels of 2^-grid_bits
-/// pixel, at least one pixel, so that no point falls between the centres; X, Y, size: any in a legal guard band.
+/// The pixels of the point's square inside `limit`; may be empty. `size`: the side, in subpixels of 2^-grid_bits pixel,
+/// at least one pixel, so that no point falls between the centres; X, Y, size: any in a legal guard band.
 [[nodiscard]] constexpr PixelBounds point_bounds(const SnappedVertex& point, std::int32_t size,
                                                  const PixelBounds& limit, int grid_bits) {
   const auto first = [grid_bits](std::int64_t border) { return first_centre(border, grid_bits); };
@@ -33,8 +33,8 @@ namespace halfplane {
           std::min(limit.right, first(x + size) - 1), std::min(limit.bottom, first(y + size) - 1)};
 }
 
-/// Calls visit(box) for the boxes that a point's pixels make up, from top to bottom. `box`: its square's pixels, as
-/// point_bounds() has them.
+/// Calls visit(box) for the boxes of a point's pixels, from top to bottom. `box`: its square's pixels, from
+/// point_bounds().
 template <class Visit>
 void for_each_run(const SnappedVertex& point, std::int32_t size, PointShape shape, const PixelBounds& box,
                   int grid_bits, Visit&& visit) {

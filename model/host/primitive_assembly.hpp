@@ -1,7 +1,7 @@
 // Primitive assembly: indices and a topology in; triangles, lines or points out, in program order.
 //
 // In: a Draw and the scene's indices. Out: the vertex indices of each primitive. kRestart among the indices ends a run;
-// what is left over at the end of a run makes no primitive. Host side; it takes no cycles of the pipeline.
+// left-over indices at the end of a run make no primitive. Host side; no cycles of the pipeline.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace halfplane {
 
 enum class PrimitiveType { triangle, line, point };
 
-/// What a topology's primitives are, before polygon_mode.
+/// The primitive type of a topology, before polygon_mode.
 [[nodiscard]] constexpr PrimitiveType primitive_type(Topology topology) {
   switch (topology) {
     case Topology::triangles:
@@ -39,15 +39,16 @@ void for_each_run(const Scene& scene, const Draw& draw, Visit&& visit) {
   }
 }
 
-/// The triangles of one draw, in order: calls visit(a, b, c) with indices into Scene::vertices, the provoking vertex first,
-/// the others in the order that keeps the facing. Odd triangles of a strip are turned, so that all of it faces one way.
+/// The triangles of one draw, in order: calls visit(a, b, c) with indices into Scene::vertices, the provoking vertex
+/// first, the others in the order that keeps the facing. Odd triangles of a strip are reversed, so that the whole strip
+/// has one facing.
 template <class Visit>
 void for_each_triangle(const Scene& scene, const Draw& draw, Provoking provoking, Visit&& visit) {
   const bool is_first = provoking == Provoking::first;
   for_each_run(scene, draw, [&](std::span<const std::uint32_t> v) {
     const std::size_t step = draw.topology == Topology::triangles ? 3 : 1;
     for (std::size_t i = 0; i + 2 < v.size(); i += step) {
-      // In the order of the facing, and which of the three the rule for `first` and the rule for `last` name.
+      // In the order of the facing, and the vertices that the rules `first` and `last` name.
       std::size_t a = i, b = i + 1, c = i + 2;
       if (draw.topology == Topology::triangle_fan) a = i + 1, b = i + 2, c = 0;
       if (draw.topology == Topology::triangle_strip && i % 2 == 1) std::swap(b, c);
@@ -79,7 +80,7 @@ void for_each_point(const Scene& scene, const Draw& draw, Visit&& visit) {
   });
 }
 
-/// One primitive as it was assembled: `type` says how many of the indices there are.
+/// One assembled primitive: `type` gives the number of indices.
 struct AssembledPrimitive {
   PrimitiveType type = PrimitiveType::triangle;
   std::array<std::uint32_t, 3> index{};
@@ -104,7 +105,7 @@ void for_each_primitive(const Scene& scene, const Draw& draw, Provoking provokin
   }
 }
 
-/// How many primitives a draw makes: lines and points of polygon_mode do not count.
+/// Number of primitives of a draw: lines and points of polygon_mode do not count.
 [[nodiscard]] inline std::size_t primitive_count(const Scene& scene, const Draw& draw) {
   std::size_t count = 0;
   for_each_primitive(scene, draw, Provoking::first, [&count](const AssembledPrimitive&) { ++count; });

@@ -12,7 +12,7 @@
 namespace halfplane {
 namespace {
 
-/// A primitive without vertices: one depth and one colour over its whole box.
+/// A primitive without vertices: constant depth and colour over its whole box.
 PrimitivePacket flat_packet(PrimitiveKind kind, const Rect& rect) {
   PrimitivePacket packet;
   packet.kind = kind;
@@ -39,8 +39,8 @@ const Clear* whole_clear(const Scene& scene, const Command& command) {
 
 }  // namespace
 
-/// Whether all clears of the whole target are in front of everything else, but for those of colours alone: then its bins begin
-/// once.
+/// Whether all clears of the whole target come before everything else, except clears of colours only: then its bins
+/// begin once.
 bool begins_once(const Scene& scene) {
   bool is_first = true;
   for (const Command& command : scene.commands) {
@@ -106,7 +106,7 @@ std::optional<HostPrimitive> HostStream::next() {
   return first;
 }
 
-/// The registers of colours that have another value than wanted. At the start of a scene nobody knows what they hold.
+/// Sets the colour registers that differ from the wanted values. At the start of a scene their content is unknown.
 void HostStream::set_colors(const HostPrimitive& primitive) {
   const auto set = [&](StateRegister which, std::optional<std::uint32_t> ColorWords::*word) {
     const auto& wanted = primitive.units.colors.*word;
@@ -119,7 +119,7 @@ void HostStream::set_colors(const HostPrimitive& primitive) {
   set(StateRegister::alpha_test, &ColorWords::alpha);
 }
 
-/// Likewise those of the stencil. What is the same for both sides goes in one token.
+/// Likewise for the stencil registers. Values common to both sides go in one token.
 void HostStream::set_stencil(const HostPrimitive& primitive) {
   const auto set = [&](StateRegister which, auto member) {
     const auto& wanted = primitive.units.stencil.*member;
@@ -140,8 +140,7 @@ void HostStream::set_stencil(const HostPrimitive& primitive) {
   set(StateRegister::stencil_update, &StencilWords::update);
 }
 
-/// What the texture unit must be told in front of a triangle. The first state of a scene drops what is left of another one's
-/// texels.
+/// Sets the texture unit for a triangle. The first state of a scene drops texels of an earlier scene.
 void HostStream::set_texture(const HostPrimitive& triangle) {
   if (triangle.units.texture_state != texture_state_) {
     TextureState next = TextureState::unpack(triangle.units.texture_state);
@@ -163,7 +162,7 @@ void HostStream::set_texture(const HostPrimitive& triangle) {
         state_token(StateRegister::texture_lines, line_part(*triangle.units.texture_lines, part_bits, n), triangle));
 }
 
-/// The fog of a triangle, and those lines of its table that differ from what the unit has.
+/// Sets the fog of a triangle: only lines of its table that differ from the unit's.
 void HostStream::set_fog(const HostPrimitive& triangle) {
   if (!triangle.units.looks_at_fog) return;
   const FogTable* table = triangle.units.fog.get();
@@ -181,7 +180,7 @@ void HostStream::set_fog(const HostPrimitive& triangle) {
   }
 }
 
-/// The light of a triangle: what differs from what the unit has, of its registers and of the lines of its table.
+/// Sets the light of a triangle: only registers and lines of its table that differ from the unit's.
 void HostStream::set_light(const HostPrimitive& triangle) {
   if (!triangle.units.looks_at_light) return;
   const PhongLight* light = triangle.units.light.get();
@@ -200,7 +199,7 @@ void HostStream::set_light(const HostPrimitive& triangle) {
     set(light_line_[n], light->lines()[n], light_line_word(n, light->lines()[n]));
 }
 
-/// A register of a unit has its value from here on.
+/// A token that sets a register of a unit from here on.
 HostPrimitive HostStream::state_token(StateRegister which, uint128 word, const HostPrimitive& in_front_of) const {
   PrimitivePacket packet;
   packet.kind = PrimitiveKind::state;
@@ -258,8 +257,8 @@ void HostStream::close_bins() {
   send_clears();
 }
 
-/// The clears that waited for the bins: as they came, or, where some bins stay as they are, the last colour in each of the
-/// others, and then depth, if anything comes behind it.
+/// Sends the clears that waited for the bins: unchanged, or, if some bins are skipped, the last colour in each of the
+/// others, and then depth, if any draw follows.
 void HostStream::send_clears() {
   if (!bins_->cleared()) {
     pending_.insert(pending_.end(), clears_.begin(), clears_.end());
@@ -284,7 +283,7 @@ void HostStream::send_clears() {
   clears_.clear();
 }
 
-/// Of a texture, all that can be read of it.
+/// Signature of all data that can be read from a texture.
 Signature HostStream::texels_of(std::size_t texture) {
   texels_.resize(scene_.textures.size());
   std::optional<Signature>& known = texels_[texture];
@@ -314,8 +313,7 @@ void HostStream::send_next_primitive() {
     send_outline(assembled);
   } else {
     pieces_.clear();
-    bool is_culled =
-        true;  // nothing is left to cull: no packet can say that a rectangle is empty, and bins hold no others
+    bool is_culled = true;  // nothing is left to cull: no packet can express an empty rectangle, and bins hold none
     if (!bins_ && context_->rect.width > 0 && context_->rect.height > 0)
       is_culled = geometry_for_hardware(*context_, vertices_, assembled.index, primitive_, counters_, pieces_);
     else
@@ -325,8 +323,8 @@ void HostStream::send_next_primitive() {
   ++primitive_;
 }
 
-/// Lines go beside a packet that holds their place, strand by strand, rectangles as triangles, points as boxes: lines
-/// and points with a pixel at least.
+/// Sends lines with a packet that holds their place, strand by strand, rectangles as triangles, points as boxes; only
+/// lines and points with at least one pixel.
 void HostStream::send_outline(const AssembledPrimitive& assembled) {
   outline_.clear();
   geometry(*context_, widths_, vertices_, assembled, primitive_, counters_, outline_);
@@ -392,14 +390,14 @@ void HostStream::send_triangle(const Triangle& triangle, bool is_culled) {
   send(out);
 }
 
-/// Codes of a plane at the vertices, in the bits that a packet has for them.
+/// Writes codes of a plane at the vertices, in the bits of the packet's field.
 void HostStream::set_plane(std::size_t plane, const auto& codes, PrimitivePacket& packet) const {
   for (std::size_t i = 0; i < 3; ++i)
     packet.vertex.code[i][plane] = static_cast<std::uint32_t>(
         wrap_unsigned(static_cast<std::uint64_t>(codes[i]), widths_.of_plane(plane).code.bits));
 }
 
-/// Q and P of the vertices, how to read them back, and what the texture unit must be set to.
+/// Sets Q and P of the vertices, their format, and the state of the texture unit.
 void HostStream::set_coordinates(const Triangle& triangle, HostPrimitive& out) {
   const State& state = context_->state;
   require_positive_w(*context_, triangle);
@@ -421,7 +419,7 @@ void HostStream::set_coordinates(const Triangle& triangle, HostPrimitive& out) {
   if (config_.texture_unit == TextureUnitKind::trilinear) set_levels(triangle, coordinates, format, out);
 }
 
-/// Q of the vertices, and where in the fog's table it lies. A texture has brought the same Q.
+/// Sets Q of the vertices, and its octave in the fog's table. A texture has set the same Q.
 void HostStream::set_distance(const Triangle& triangle, HostPrimitive& out) const {
   require_positive_w(*context_, triangle);
   const PerspectiveFormat format = perspective_format(config_);
@@ -431,7 +429,7 @@ void HostStream::set_distance(const Triangle& triangle, HostPrimitive& out) cons
   out.packet.coordinates.fog_octave = fog_octave(*context_->fog, q_exponent(w, format.q_bits) + format.guard_bits);
 }
 
-/// P of the normals, and Q, where their planes start. A texture and a fog have brought the same Q.
+/// Sets P of the normals, and Q, and the start of their planes. A texture and a fog have set the same Q.
 void HostStream::set_normals(const Triangle& triangle, PrimitivePacket& packet) const {
   require_positive_w(*context_, triangle);
   const PerspectiveFormat format = perspective_format(config_);
@@ -444,7 +442,7 @@ void HostStream::set_normals(const Triangle& triangle, PrimitivePacket& packet) 
   }
 }
 
-/// Q and P of the colours, and how to read them back. With a texture over w Q is that of its coordinates, to the bit.
+/// Sets Q and P of the colours, and their format. With a texture over w Q is exactly that of its coordinates.
 void HostStream::set_colors_over_w(const Triangle& triangle, PrimitivePacket& packet) const {
   require_positive_w(*context_, triangle);
   const PerspectiveFormat format = perspective_format(config_);
@@ -462,7 +460,7 @@ void HostStream::set_colors_over_w(const Triangle& triangle, PrimitivePacket& pa
   }
 }
 
-/// And what it must know of levels. A triangle that the hardware drops needs none.
+/// Sets the texture unit's levels. A triangle that the hardware drops needs none.
 void HostStream::set_levels(const Triangle& triangle, const TextureCoordinates& coordinates,
                             const PerspectiveFormat& format, HostPrimitive& out) const {
   const State& state = context_->state;
@@ -483,14 +481,15 @@ void HostStream::set_levels(const Triangle& triangle, const TextureCoordinates& 
   out.units.texture_lines = TextureLines::pack(lod, Sampler(scene_.textures[*state.texture], state).bias);
 }
 
-/// Of the whole target; of no plane so far.
+/// A fast clear of the whole target; of no buffer so far.
 PrimitivePacket HostStream::fast_clear() const {
   PrimitivePacket packet = flat_packet(PrimitiveKind::fast_clear, {0, 0, scene_.width, scene_.height});
   if (bins_ && config_.frame_store == FrameStore::color) packet.state.depth_test = DepthFunc::never;  // drops_depth()
   return packet;
 }
 
-/// Depth and stencil are one word of memory. A clear of one of them clears both where the host knows what the other is.
+/// Depth and stencil are one word of memory. A clear of one of them clears both if the host knows the value of the
+/// other.
 void HostStream::fill_word(Clear& clear) const {
   if (!has_stencil(config_)) {
     clear.stencil.reset();
@@ -521,7 +520,7 @@ void HostStream::send_clear(const Clear& command) {
   if (clear.depth) clear_depth(packet, *clear.depth, config_);
   if (clear.color) clear_color(packet, *clear.color, config_);
   HostPrimitive out = host_primitive(packet, primitive_);
-  if (!is_fast) out.units.colors = color_words({packet.state, {}, {}, {}}, config_);  // whatever has been drawn before
+  if (!is_fast) out.units.colors = color_words({packet.state, {}, {}, {}}, config_);  // for any earlier draws
   if (clear.stencil && is_fast) out.units.stencil.test[0] = pack_test(replacing_stencil(*clear.stencil));
   if (clear.stencil && !is_fast) {
     const Stencil replacing = replacing_stencil(*clear.stencil);
@@ -535,7 +534,7 @@ void HostStream::send_clear(const Clear& command) {
   send(out);
 }
 
-/// Of what a primitive may write nobody knows any more that it is the same everywhere.
+/// Marks the buffers that a primitive may write as no longer uniform.
 void HostStream::note_words(const PrimitiveState& state) {
   if (state.depth_write) depth_everywhere_.reset();
   if (state.writes_stencil) stencil_everywhere_.reset();
@@ -547,7 +546,7 @@ HostPrimitive HostStream::host_primitive(const PrimitivePacket& packet, std::uin
   return out;
 }
 
-/// Of the draw at work.
+/// A primitive of the current draw.
 HostPrimitive HostStream::drawn_primitive(const PrimitivePacket& packet, std::uint32_t primitive) const {
   HostPrimitive out = host_primitive(packet, primitive);
   const FragmentOps& ops = context_->fragment_ops;
@@ -556,7 +555,7 @@ HostPrimitive HostStream::drawn_primitive(const PrimitivePacket& packet, std::ui
   return out;
 }
 
-/// Tokens go at once, and in program order everything does.
+/// Sends tokens at once, and in program order everything.
 void HostStream::send(const HostPrimitive& primitive) {
   const PrimitiveKind kind = primitive.packet.kind;
   if (bins_ && kind != PrimitiveKind::fast_clear && kind != PrimitiveKind::flush) {

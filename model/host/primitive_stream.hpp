@@ -1,13 +1,13 @@
-// What the host sends to the hardware for a scene: snapped primitives with their states, one packet each.
+// The host's output to the hardware for a scene: snapped primitives with their states, one packet each.
 //
-// First a fast clear of both planes, unless the scene begins with one, then the scene's commands, at the end a flush. In
-// program order (frame.order program) primitives go as they are made: the host clips; facing, area and box are the
-// hardware's to look at, except for a clipped polygon, which is culled as a whole. In bins the host culls, sorts what is
-// left (frame_bins.hpp), and sends it bin by bin: at the flush, and where the depth of the whole target is cleared, which
-// begins new bins. Of all other clears those behind the first primitive of its bins go into them.
+// First a fast clear of both buffers, unless the scene begins with one, then the scene's commands, at the end a flush.
+// In program order (frame.order program) primitives are sent as they are made: the host clips; the hardware tests
+// facing, area and box, except for a clipped polygon, which the host culls as a whole. In bins the host culls, sorts
+// the rest (frame_bins.hpp), and sends it bin by bin: at the flush, and where the depth of the whole target is cleared,
+// which begins new bins. Other clears after the first primitive of the bins go into them.
 //
-// A frame that follows another one on the same hardware, with BinContents between them, leaves bins alone that hold what is
-// drawn in them. What then remains of the clears that it begins with are colours, bin by bin, and depth as a whole.
+// A frame that follows another on the same hardware, with BinContents between them, skips bins whose content equals
+// their draws. Of its initial clears then remain colours, bin by bin, and depth as a whole.
 #pragma once
 
 #include <array>
@@ -25,27 +25,28 @@
 
 namespace halfplane {
 
-/// Whether all clears of the whole target are in front of everything else, but for those of colours alone: then its bins begin
-/// once.
+/// Whether all clears of the whole target come before everything else, except clears of colours only: then its bins
+/// begin once.
 [[nodiscard]] bool begins_once(const Scene& scene);
 
 /// The primitives of a scene, pulled one at a time. `scene` must outlive the stream.
 class HostStream {
  public:
-  /// Throws InputError for a scene that the hardware cannot take. `held`: what the memory behind the hardware holds of a
-  /// target; it must outlive the stream, and is what memory holds once all has been drawn. Null: everything is drawn.
+  /// Throws InputError for a scene that the hardware does not support. `held`: the content of a target in the
+  /// hardware's memory; it must outlive the stream, and describes memory once all has been drawn. Null: everything is
+  /// drawn.
   HostStream(const Scene& scene, const Config& config, BinContents* held = nullptr);
 
-  HostStream(const HostStream&) = delete;  // the draw at work points into config_
+  HostStream(const HostStream&) = delete;  // context_ points into config_
   HostStream& operator=(const HostStream&) = delete;
 
   /// The next primitive; none after the flush. Throws InputError for a vertex that cannot be snapped.
   [[nodiscard]] std::optional<HostPrimitive> next();
 
-  /// What the host itself has counted so far: primitives_in, clipped, and what it culled, by reason; bins and pairs.
+  /// The host's own counts so far: primitives_in, clipped, and culled primitives, by reason; bins and pairs.
   [[nodiscard]] const Counters& counters() const { return counters_; }
 
-  /// 0...1: how much of the scene has been sent, every command counted alike.
+  /// 0...1: the fraction of the scene that has been sent, by commands.
   [[nodiscard]] double progress() const;
 
  private:
@@ -90,38 +91,39 @@ class HostStream {
   std::size_t command_ = 0;                    ///< the next of Scene::commands
   bool is_finished_ = false;                   ///< the flush has been queued
   std::uint32_t primitive_ = 0;                ///< number of the next input primitive
-  std::optional<DrawContext> context_;         ///< of the draw at work
-  std::vector<AssembledPrimitive> assembled_;  ///< of the draw at work
+  std::optional<DrawContext> context_;         ///< of the current draw
+  std::vector<AssembledPrimitive> assembled_;  ///< of the current draw
   std::size_t assembled_next_ = 0;             ///< the next of them
   std::vector<Triangle> pieces_;               ///< scratch
   Outline outline_;                            ///< scratch
-  std::optional<FrameBins> bins_;              ///< of frame.order bins: what waits for the frame to be complete
-  BinContents* held_ = nullptr;                ///< where bins are compared; then the clears that they begin with wait
+  std::optional<FrameBins> bins_;              ///< with frame.order bins: primitives that wait for the end of the frame
+  BinContents* held_ = nullptr;                ///< if bins are compared; then the initial clears wait
   std::vector<HostPrimitive> clears_;
   std::vector<std::optional<Signature>> texels_;  ///< of each texture, likewise
   std::vector<HostPrimitive> pending_;            ///< made but not yet pulled
   std::size_t pending_first_ = 0;
   std::optional<TextureMemory> textures_;        ///< with a texture unit
-  std::optional<std::uint64_t> texture_state_;   ///< what the unit was set to since the scene began
-  std::optional<std::uint32_t> texture_levels_;  ///< of one with levels, likewise
+  std::optional<std::uint64_t> texture_state_;   ///< the unit's state since the scene began
+  std::optional<std::uint32_t> texture_levels_;  ///< likewise, with levels
   std::optional<FogState> fog_state_;            ///< likewise, and the lines of its table
   std::array<std::optional<FogLine>, std::size_t{1} << kFogLines> fog_line_{};
-  std::array<std::optional<std::uint64_t>, kLightWords> light_word_{};  ///< likewise of light
+  std::array<std::optional<std::uint64_t>, kLightWords> light_word_{};  ///< likewise for light
   std::array<std::optional<FallingLine>, std::size_t{1} << kPowerLines> light_line_{};
   std::optional<TextureLines> texture_lines_;
-  ColorWords colors_;                             ///< what else has been set since the scene began
-  StencilWords stencil_;                          ///< likewise
-  std::optional<double> depth_everywhere_ = 1.0;  ///< what every pixel holds, as far as the host can tell
+  ColorWords colors_;                                                 ///< other registers set since the scene began
+  StencilWords stencil_;                                              ///< likewise
+  std::optional<double> depth_everywhere_ = 1.0;                      ///< value of every pixel, if the host knows it
   std::optional<std::uint8_t> stencil_everywhere_ = std::uint8_t{0};  ///< likewise
-  std::deque<HostPrimitive> in_front_;  ///< what does so, and the triangle that waits for it
+  std::deque<HostPrimitive> in_front_;  ///< tokens to be sent first, and the triangle that waits for them
 };
 
-/// Rules that the hardware relies on and does not check: after reset and state tokens, a fast clear of both buffers, without
-/// which the flags of tiles are undefined, and a setup for the place of every line, for which primitive_join would wait for
-/// good. Returns the rule that a primitive breaks, or an empty text; `is_first`: the first one after reset.
+/// Rules that the hardware relies on and does not check: after reset and state tokens, a fast clear of both buffers,
+/// without which the flags of tiles are undefined, and a setup for the place of every line, for which primitive_join
+/// would wait forever. Returns the rule that a primitive breaks, or an empty text; `is_first`: the first one after
+/// reset.
 [[nodiscard]] std::string stream_fault(const HostPrimitive& primitive, bool is_first);
 
-/// Throws InputError, one line naming the state, when `scene` asks for what the hardware does not have.
+/// Throws InputError, one line naming the state, when `scene` needs a feature that the hardware lacks.
 void check_hardware_scene(const Scene& scene, const Config& config);
 
 }  // namespace halfplane

@@ -31,9 +31,10 @@ std::int64_t total_area(const SnappedPolygon& polygon) {
   return sum;
 }
 
-/// Where the fan of a clipped polygon starts. The snap can dent a convex polygon by a subpixel, and a fan across the dent
-/// would draw some pixels twice; a fan with no piece turned over covers the polygon exactly once. Of the corners that give
-/// one, or of all when none does, the smallest (Y, X, Z): the order in which the triangle names its vertices must not show.
+/// The start of a clipped polygon's fan. The snap can dent a convex polygon by a subpixel, and a fan across the dent
+/// would draw some pixels twice; a fan with no reversed piece covers the polygon exactly once. Among the corners with
+/// such a fan, or among all if there is none, the smallest (Y, X, Z): the result must not depend on the order of the
+/// vertices.
 int fan_start(const SnappedPolygon& polygon, std::int64_t area) {
   int best = 0;
   bool best_agrees = false;
@@ -59,8 +60,8 @@ double largest_coordinate(std::span<const Vertex> v) {
   return largest;
 }
 
-/// Clipping cancels digits: a corner is as exact as binary64 is at the size of the primitive's coordinates. Whether none is off
-/// by more than a pixel.
+/// Whether no corner is off by more than a pixel. Clipping cancels digits: a corner is as exact as binary64 at the size
+/// of the primitive's coordinates.
 bool is_precise(std::span<const Vertex> clipped, std::span<const Vertex> v, const DrawContext& context) {
   const double pixels = std::max(context.viewport.width, context.viewport.height);
   const double error = largest_coordinate(v) * pixels * std::numeric_limits<double>::epsilon();
@@ -74,7 +75,7 @@ bool is_precise(std::span<const Vertex> clipped, std::span<const Vertex> v, cons
                    " leave less than a pixel of precision where the primitive is cut; use smaller coordinates");
 }
 
-/// A vertex that a cut made, or one that another cut beside it left alone: in the guard band, but for what binary64 rounds.
+/// A vertex made by a cut, or left unchanged next to one: in the guard band, up to rounding in binary64.
 SnappedVertex snap_clipped(const Vertex& v, const DrawContext& context, std::uint32_t number) {
   WindowPosition p = to_window(v, context.state, context.viewport);
   p.x = std::clamp(p.x, -context.band, context.band);
@@ -85,7 +86,8 @@ SnappedVertex snap_clipped(const Vertex& v, const DrawContext& context, std::uin
 
 SurfaceVertex surface_vertex(const Vertex& v) { return {v.w, v.u, v.v, {}}; }
 
-/// The same triangle cut once more, with its normals as colours: the cuts are the same, for they look at places alone.
+/// Cuts the same triangle once more, with its normals as colours: the cuts are the same, because they depend on
+/// positions only.
 void clip_normals(const DrawContext& context, const std::array<std::uint32_t, 3>& index, std::array<Vertex, 3> v,
                   SnappedPolygon& polygon) {
   for (std::size_t i = 0; i < 3; ++i) {
@@ -99,7 +101,7 @@ void clip_normals(const DrawContext& context, const std::array<std::uint32_t, 3>
   }
 }
 
-/// `is_outside`: the triangle is outside the view, so corners that are not exact enough to draw are none.
+/// `is_outside`: the triangle is outside the view, so corners that are too inexact to draw are dropped.
 SnappedPolygon clip_and_snap(const DrawContext& context, const std::array<std::uint32_t, 3>& index, bool is_outside) {
   const auto& vertices = context.scene.vertices;
   std::array<Vertex, 3> v{vertices[index[0]], vertices[index[1]], vertices[index[2]]};
@@ -126,7 +128,7 @@ bool box_is_empty(const std::array<SnappedVertex, 3>& v, const DrawContext& cont
       .is_empty();
 }
 
-/// Codes whose colour is the provoking vertex's.
+/// Codes with the provoking vertex's colour.
 PerPlane<std::uint32_t> flat_color(const DrawContext& context, std::uint32_t provoking) {
   return snap_codes(0, context.scene.vertices[provoking], context.config);
 }
@@ -137,7 +139,7 @@ struct Projected {
   bool is_cut = false;
 };
 
-/// Counts a triangle that comes in, and one of which nothing is left.
+/// Counts an incoming triangle, and a triangle that is clipped away.
 Projected project(const DrawContext& context, VertexCache& cache, const std::array<std::uint32_t, 3>& index,
                   const Skip& skip, Counters& counters) {
   ++counters.primitives_in;
@@ -180,7 +182,7 @@ bool is_culled(std::int64_t area, const State& state, Counters& counters) {
 }
 
 /// Polygon offset in depth codes: slope factor times the steeper slope of the plane per pixel, plus the constant. The
-/// slope is that of the fan's largest piece; a polygon without area has none.
+/// slope is that of the fan's largest piece; a polygon without area has no slope.
 std::int64_t offset_codes(const SnappedPolygon& polygon, const DrawContext& context) {
   const auto& [factor, constant] = context.state.polygon_offset;
   if (factor == 0 && constant == 0) return 0;
@@ -211,7 +213,7 @@ void apply_polygon_offset(SnappedPolygon& polygon, const DrawContext& context) {
     for (SnappedVertex& v : polygon.v) move_depth(v, offset, context.config.depth_bits);
 }
 
-/// Calls visit(piece) for the triangles of a polygon's fan. A piece turned over by the snap is left out.
+/// Calls visit(piece) for the triangles of a polygon's fan. A piece reversed by the snap is skipped.
 template <class Visit>
 void for_each_piece(const SnappedPolygon& polygon, std::int64_t area, std::uint32_t primitive, std::uint32_t command,
                     Visit&& visit) {
@@ -226,7 +228,7 @@ void for_each_piece(const SnappedPolygon& polygon, std::int64_t area, std::uint3
   }
 }
 
-/// Distances to planes are sums of a few coordinates times pixels: they must not leave binary64.
+/// Distances to planes are sums of a few coordinates times pixels: they must fit binary64.
 void require_finite_distances(const Vertex& v, const DrawContext& context, std::uint32_t number) {
   for (const double c : {v.x, v.y, v.z, v.w})
     if (!(std::abs(c) <= 1e300))
@@ -243,7 +245,7 @@ class OutlineBuilder {
 
   std::optional<PerPlane<std::uint32_t>> color;  ///< of every vertex, if shading is flat
   std::int64_t depth_offset = 0;                 ///< codes
-  bool is_cut = false;                           ///< a line so far was
+  bool is_cut = false;                           ///< an earlier part of a line was cut
 
   void add_line(std::uint32_t a, std::uint32_t b) {
     const LineRule rule = context_.state.line_rule;
@@ -286,7 +288,7 @@ class OutlineBuilder {
     }
   }
 
-  /// Two triangles that share the diagonal from its first to its third corner, or the pixels of a smooth line.
+  /// Adds two triangles that share the diagonal from the first to the third corner, or the pixels of a smooth line.
   void add_rectangle(const DrawnLine& line, bool crosses) {
     const auto corners = line_rectangle(line.start, line.end, context_.state.line_width, widths_.grid_bits);
     if (!corners) return;
@@ -299,7 +301,7 @@ class OutlineBuilder {
     }
   }
 
-  /// A point of one pixel for each pixel of which the rectangle covers a part.
+  /// Adds a point of one pixel for each pixel that the rectangle covers in part.
   void add_smooth(const DrawnLine& line, const std::array<SnappedVertex, 4>& corners, bool crosses) {
     for (const SmoothPixel& pixel : smooth_raster(corners, bounds_of(context_.rect), widths_.grid_bits)) {
       add_pixel(pixel, codes_beside(line.start, line.end, pixel.x, pixel.y, widths_));
@@ -307,7 +309,7 @@ class OutlineBuilder {
     }
   }
 
-  /// A pixel of what is smooth: a point of its own.
+  /// Adds a pixel of a smooth primitive: a point of its own.
   void add_pixel(const SmoothPixel& pixel, PerPlane<std::uint32_t> code) {
     if (color_planes(attributes_of(context_.config)) == 4) {
       std::uint32_t& alpha = code[kColorPlane + 3];
@@ -346,7 +348,7 @@ class OutlineBuilder {
   }
 
  private:
-  /// A vertex of window space in the pixels that the rasterizer counts.
+  /// Converts a vertex of window space to the rasterizer's pixels.
   void to_top_left(Vertex& v) const {
     const WindowPosition p = window_position(v, context_.state, context_.scene.height);
     v.x = p.x;
@@ -383,20 +385,20 @@ class OutlineBuilder {
   Outline& out_;
 };
 
-/// Whether lines must lie in the guard band with all that is beside them.
+/// Whether lines must lie in the guard band with their whole width.
 bool draws_whole_rectangles(const DrawContext& context) {
   return drawn_as(context.state, context.draw.topology) == PrimitiveType::line &&
          (context.state.line_rule == LineRule::rectangle || is_smooth(context.state, context.config));
 }
 
-/// How far a corner may lie from its end along an axis: half the width, and a subpixel for both snaps.
+/// Distance of a corner from its end along an axis: half the width, and a subpixel for both snaps.
 double room_for_rectangle(const State& state, const Config& config) {
   return state.line_width / 2 + std::ldexp(1.0, -config.subpixel_bits);
 }
 
-/// What lies outside the guard band is not drawn: a point there, or a line, must not be so wide that it would reach the
-/// target. A line of one pixel never does. A rectangle must lie in the guard band as a whole: its line is cut by half
-/// its width, a subpixel and the snap inside of it, where the cut end itself must not show.
+/// Primitives outside the guard band are not drawn: a point or a line there must not be wide enough to reach the
+/// target. A line of one pixel never is. A rectangle must lie completely in the guard band: its line is cut half its
+/// width, a subpixel and the snap inside it, where the cut end itself must not be visible.
 void refuse_too_wide(const DrawContext& context) {
   const Scene& scene = context.scene;
   const PrimitiveType type = drawn_as(context.state, context.draw.topology);
@@ -424,7 +426,7 @@ State rectangle_state(State state) {
   state.texture.reset();
   state.fog.reset();
   state.stencil_back.reset();
-  state.shade = Shade::smooth;  // flat colours are at both ends, and fog made two of one; a line has no normal
+  state.shade = Shade::smooth;  // flat colours are at both ends, possibly with different fog; a line has no normal
   return state;
 }
 
@@ -574,7 +576,7 @@ void check_fits(const Scene& scene, const Config& config) {
   for (std::size_t i = 0; i < scene.commands.size(); ++i) {
     const auto* draw = std::get_if<Draw>(&scene.commands[i]);
     if (draw == nullptr) continue;
-    // A mesh of many objects is as many draws of one state.
+    // A mesh of many objects is many draws with one state.
     if (looked_at != nullptr && draw->state == looked_at->state && draw->topology == looked_at->topology) continue;
     looked_at = draw;
     const DrawContext context(scene, config, *draw, static_cast<std::uint32_t>(i));
@@ -585,7 +587,7 @@ void check_fits(const Scene& scene, const Config& config) {
                        "affinely; the golden has it over w");
     refuse_too_wide(context);
     const Viewport& v = context.viewport;
-    // A sample that the clipper cuts away, or whose right or lower edge it puts on it, would be lost.
+    // A sample that the clipper cuts away, or places on its right or lower edge, would be lost.
     const double limit = guard_band_limit(config), last = limit + 0.5;
     const bool fits = v.x >= -limit && v.y >= -limit && v.x + v.width < last && v.y + v.height < last;
     if (context.state.space == Space::clip && !fits)

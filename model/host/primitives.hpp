@@ -1,5 +1,5 @@
-// The host's side of the pipeline (pipeline_graph.hpp): one primitive of a scene to what goes into the hardware, or into an
-// engine that does what the hardware does.
+// The host's side of the pipeline (pipeline_graph.hpp): converts one primitive of a scene into the input of the
+// hardware, or of an engine that computes the same.
 #pragma once
 
 #include <array>
@@ -22,33 +22,32 @@
 
 namespace halfplane {
 
-/// What a draw needs that does not change from one triangle to the next.
+/// Constants of a draw.
 struct DrawContext {
   const Scene& scene;
   const Config& config;
-  const std::shared_ptr<const State> state_of_rectangles;  ///< of a draw of rectangles
-  const State& state;                                      ///< of the draw, or that one
+  const std::shared_ptr<const State> state_of_rectangles;  ///< for a draw of rectangles
+  const State& state;                                      ///< of the draw, or the one above
   const Draw& draw;
   std::uint32_t command = 0;  ///< index of the draw in Scene::commands
   Viewport viewport;
   Rect rect;    ///< pixels that the draw may touch
-  double band;  ///< where the sides of the guard band cut, pixels on either side of 0; of rectangles with room for them
+  double band;  ///< distance of the guard band's sides from 0, pixels; for rectangles less their width
   ClipPlanes guard_band, view_volume;
-  ClipPlanes
-      frustum;  ///< the view volume and a pixel around it: what is outside of this snaps to no pixel of the viewport
+  ClipPlanes frustum;  ///< the view volume and a pixel around it: primitives outside snap to no pixel of the viewport
   DepthEncode depth_encode;
   FragmentOps fragment_ops;
-  std::shared_ptr<const FogTable> fog;      ///< none: no fog
-  std::shared_ptr<const PhongLight> phong;  ///< none: colours are not lit by fragments
+  std::shared_ptr<const FogTable> fog;      ///< null: no fog
+  std::shared_ptr<const PhongLight> phong;  ///< null: no light of fragments
 
   DrawContext(const Scene& scene_, const Config& config_, const Draw& draw_, std::uint32_t command_);
 };
 
-/// Throws InputError for a triangle with a vertex that is not in front of the eye, as only window space can give one: its
+/// Throws InputError for a triangle with a vertex that is not in front of the eye, possible only in window space: its
 /// attributes cannot be divided by w.
 void require_positive_w(const DrawContext& context, const Triangle& triangle);
 
-/// A vertex that several triangles share is projected once.
+/// Projects a vertex shared by several triangles once.
 class VertexCache {
  public:
   struct Entry {
@@ -57,7 +56,7 @@ class VertexCache {
     unsigned outside_guard_band = 0;
     std::uint32_t state = ~0U;  ///< state that the entry was made with
   };
-  /// `vertices` of the scene; 0: remembers the last three alone, for callers to whom sharing is no matter.
+  /// `vertices` of the scene; 0: remembers only the last three, for callers without shared vertices.
   explicit VertexCache(std::size_t vertices) : entries_(vertices == 0 ? 3 : vertices), is_ring_(vertices == 0) {}
   [[nodiscard]] const Entry& get(const DrawContext& context, std::uint32_t index);
 
@@ -67,18 +66,18 @@ class VertexCache {
   std::size_t next_ = 0;
 };
 
-/// The host side of one input triangle: clip, viewport, cull. Appends what is left of it to `out`: nothing, the triangle,
-/// or the fan of its clipped polygon. Counts into `counters`.
+/// The host side of one input triangle: clip, viewport, cull. Appends the result to `out`: nothing, the triangle, or
+/// the fan of its clipped polygon. Counts into `counters`.
 void geometry(const DrawContext& context, VertexCache& cache, std::array<std::uint32_t, 3> index,
               std::uint32_t primitive, const Skip& skip, Counters& counters, std::vector<Triangle>& out);
 
-/// The same for hardware that culls by itself: a triangle that needs no cut is appended as it was named, whatever its
-/// area, facing and box; of a clipped polygon, culled as a whole, every piece that is not turned over. Counts
-/// primitives_in, clipped, and what is culled here. Returns whether the triangle was cut.
+/// The same for hardware that culls: a triangle that needs no cut is appended unchanged, with any area, facing and box;
+/// of a clipped polygon, culled as a whole, every piece that is not reversed. Counts primitives_in, clipped, and
+/// triangles culled here. Returns whether the triangle was cut.
 bool geometry_for_hardware(const DrawContext& context, VertexCache& cache, std::array<std::uint32_t, 3> index,
                            std::uint32_t primitive, Counters& counters, std::vector<Triangle>& out);
 
-/// A line that the host side leaves: with at least one pixel inside the scissor.
+/// A line from the host side: with at least one pixel inside the scissor.
 struct LinePrimitive {
   DrawnLine drawn;
   LineSetup setup;
@@ -90,17 +89,17 @@ struct PointPrimitive {
   PixelBounds box;
 };
 
-/// Calls visit(box) for the boxes that its pixels make up.
+/// Calls visit(box) for the boxes of its pixels.
 template <class Visit>
 void for_each_run(const PointPrimitive& point, int grid_bits, Visit&& visit) {
   const DrawnPoint& drawn = point.drawn;
   for_each_run(drawn.at, drawn.size, drawn.shape, point.box, grid_bits, visit);
 }
 
-/// What is left of one primitive that is not filled.
+/// The result for one primitive that is not filled.
 struct Outline {
   std::vector<LinePrimitive> lines;
-  std::vector<Triangle> triangles;  ///< of lines that are rectangles: each with a sample's place in its box
+  std::vector<Triangle> triangles;  ///< for lines that are rectangles: each with a sample position in its box
   std::vector<PointPrimitive> points;
 
   void clear() {
@@ -111,7 +110,7 @@ struct Outline {
   [[nodiscard]] std::size_t size() const { return lines.size() + triangles.size() + points.size(); }
 };
 
-/// What the primitives of a draw end as.
+/// The type that the primitives of a draw are finally drawn as.
 [[nodiscard]] constexpr PrimitiveType drawn_as(const State& state, Topology topology) {
   const PrimitiveType type = primitive_type(topology);
   if (type != PrimitiveType::triangle || state.polygon_mode == PolygonMode::fill) return type;
@@ -123,22 +122,23 @@ struct Outline {
   return state.line_rule == LineRule::rectangle && drawn_as(state, topology) == PrimitiveType::line;
 }
 
-/// What those triangles are drawn with. A line has no texture, meets fog at its ends, and shows its front.
+/// The state for those triangles. A line has no texture, is fogged at its ends, and shows its front.
 [[nodiscard]] State rectangle_state(State state);
 
 /// The host side of one primitive that is not filled: clip, viewport, cull (of triangles), line_setup or point_raster.
-/// Appends to `out`, counts into `counters`. Cull of triangles looks at the clipped triangle; its edges are then clipped
-/// one by one. No side of the view volume drops a line before the clip: a line a hair outside may snap to a pixel inside.
+/// Appends to `out`, counts into `counters`. Cull of triangles tests the clipped triangle; its edges are then clipped
+/// one by one. No side of the view volume drops a line before the clip: a line slightly outside may snap to a pixel
+/// inside.
 void geometry(const DrawContext& context, const Widths& widths, VertexCache& cache, const AssembledPrimitive& primitive,
               std::uint32_t number, Counters& counters, Outline& out);
 
 /// validate(scene), then check_fits().
 void check_scene(const Scene& scene, const Config& config);
 
-/// Throws InputError when `scene`, which is valid, asks for what this configuration or version does not have.
+/// Throws InputError when `scene`, which is valid, needs a feature that this configuration or version lacks.
 void check_fits(const Scene& scene, const Config& config);
 
-/// The pixels that a clear fills: it obeys the scissor alone, not the viewport.
+/// The pixels that a clear fills: limited by the scissor, not the viewport.
 [[nodiscard]] Rect clear_rect(const Scene& scene, const Clear& command);
 
 }  // namespace halfplane

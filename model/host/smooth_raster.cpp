@@ -17,7 +17,7 @@ struct Side {
   [[nodiscard]] double distance(const Point& p) const { return a * p.x + b * p.y + c; }
 };
 
-/// A square that four lines cut has at most eight corners.
+/// A square cut by four lines has at most eight corners.
 struct Polygon {
   std::array<Point, 8> corner;
   std::size_t size = 0;
@@ -76,7 +76,7 @@ double area_at(const Sides& sides, int x, int y) {
   return area_of(left);
 }
 
-/// The pixels of a box of which area(x, y) does not round to 0.
+/// The pixels of a box with an area(x, y) that does not round to 0.
 template <class Area>
 std::vector<SmoothPixel> pixels_of(const PixelBounds& box, Area&& area) {
   std::vector<SmoothPixel> pixels;
@@ -88,7 +88,7 @@ std::vector<SmoothPixel> pixels_of(const PixelBounds& box, Area&& area) {
   return pixels;
 }
 
-/// The length that [from, to] and a pixel, [0, 1], have in common.
+/// The length of the overlap of [from, to] with a pixel, [0, 1].
 double shared(double from, double to) { return std::max(0.0, std::min(1.0, to) - std::max(0.0, from)); }
 
 }  // namespace
@@ -140,7 +140,7 @@ PerPlane<std::uint32_t> codes_beside(const SnappedVertex& start, const SnappedVe
   const std::int64_t part = std::clamp<std::int64_t>((centre(x) - start.x) * dx + (centre(y) - start.y) * dy, 0, whole);
   PerPlane<std::uint32_t> code{};
   for (std::size_t p = 0; p < static_cast<std::size_t>(widths.affine_planes); ++p) {
-    // Both are weights of codes that are not negative: the division rounds down.
+    // Both are weights of non-negative codes: the division rounds down.
     const int128 sum = int128{start.code[p]} * (whole - part) + int128{end.code[p]} * part;
     code[p] = static_cast<std::uint32_t>((2 * sum + whole) / (2 * int128{whole}));
   }

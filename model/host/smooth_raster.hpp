@@ -1,10 +1,10 @@
-// Smooth raster: how much of each pixel a line's rectangle, or a point, covers.
+// Smooth raster: the covered area of each pixel for a line's rectangle, or a point.
 //
 // Host side, binary64, contraction off. A pixel's square is cut by the rectangle's four sides, one after the other
-// (Sutherland and Hodgman, CACM 17(1), 1974), and what is left is measured by the shoelace formula. Where the distance of a
-// side from the pixel's centre says that it leaves the square whole, or all outside, nothing is cut. The corners are
-// exact; each cut rounds, so areas are off by less than 2^-40 pixel^2. A disc's are off by up to 0.004, where a pixel
-// holds its top or bottom (tests/unit/smooth_test.cpp).
+// (Sutherland and Hodgman, CACM 17(1), 1974), and the rest is measured by the shoelace formula. No cut is made if the
+// distance of a side from the pixel's centre shows that the square is completely inside or outside. The corners are
+// exact; each cut rounds, so the error of areas is below 2^-40 pixel^2. The error for a disc is up to 0.004, in a pixel
+// with its top or bottom (tests/unit/smooth_test.cpp).
 #pragma once
 
 #include <array>
@@ -18,25 +18,25 @@
 
 namespace halfplane {
 
-/// Whether the lines and points of a state are smooth. Where a pixel has several samples nobody looks at the state.
+/// Whether the lines and points of a state are smooth. Ignored with several samples per pixel.
 [[nodiscard]] constexpr bool is_smooth(const State& state, const Config& config) {
   return state.smooth && config.msaa_samples == 1;
 }
 
-/// A pixel, and how much of it is covered: 1 to kWholePixel.
+/// A pixel, and its coverage: 1 to kWholePixel.
 struct SmoothPixel {
   int x = 0, y = 0;
   std::uint32_t coverage = 0;
 };
 
-/// Coverage of a pixel that is covered as a whole: an area is rounded to the nearest of so many parts.
+/// Coverage of a full pixel: an area is rounded to the nearest multiple of 1/255.
 inline constexpr std::uint32_t kWholePixel = 255;
 
-/// The area of a parallelogram in pixel (x, y), 0 to 1. Its corners go round it, of either orientation, on a grid of
-/// 2^-grid_bits pixel.
+/// The area of a parallelogram in pixel (x, y), 0 to 1. Its corners are in order around it, in either orientation, on a
+/// grid of 2^-grid_bits pixel.
 [[nodiscard]] double area_in_pixel(const std::array<SnappedVertex, 4>& corners, int x, int y, int grid_bits);
 
-/// The pixels of `limit` (inclusive) of which a parallelogram covers a part that does not round to 0, row by row.
+/// The pixels of `limit` (inclusive) whose area covered by a parallelogram does not round to 0, row by row.
 [[nodiscard]] std::vector<SmoothPixel> smooth_raster(const std::array<SnappedVertex, 4>& corners,
                                                      const PixelBounds& limit, int grid_bits);
 
@@ -49,8 +49,8 @@ inline constexpr std::uint32_t kWholePixel = 255;
 [[nodiscard]] std::vector<SmoothPixel> smooth_raster(const SnappedVertex& point, std::int32_t size, PointShape shape,
                                                      const PixelBounds& limit, int grid_bits);
 
-/// The codes of a line beside a pixel: those of the point of the segment that is nearest to the pixel's centre, between the
-/// ends' codes and rounded to the nearest. The ends must not lie on each other.
+/// The codes of a line at a nearby pixel: at the point of the segment nearest to the pixel's centre, interpolated
+/// between the ends' codes and rounded to the nearest. The ends must not coincide.
 [[nodiscard]] PerPlane<std::uint32_t> codes_beside(const SnappedVertex& start, const SnappedVertex& end, int x, int y,
                                                    const Widths& widths);
 

@@ -1,4 +1,4 @@
-// The memory of the texture unit: the images of a scene's textures, one behind the other, as the unit reads them.
+// The memory of the texture unit: the images of a scene's textures, one after the other, in the unit's format.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace halfplane {
 
 class TextureMemory {
  public:
-  static constexpr std::uint32_t kAlignment = 64;  ///< bytes, of an image
+  static constexpr std::uint32_t kAlignment = 64;  ///< alignment of an image, bytes
 
   TextureMemory() = default;
   TextureMemory(const Scene& scene, const Config& config) {
@@ -26,9 +26,9 @@ class TextureMemory {
     }
   }
 
-  /// Where texture `n` of the scene begins.
+  /// Address of texture `n` of the scene.
   [[nodiscard]] std::uint32_t base(std::size_t n) const { return base_[n]; }
-  /// Behind the last image: 0.
+  /// After the last image: 0.
   void read(std::uint32_t address, std::span<std::uint8_t> out) const {
     for (std::uint8_t& byte : out) {
       byte = address < bytes_.size() ? bytes_[address] : std::uint8_t{0};

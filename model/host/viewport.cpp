@@ -20,7 +20,7 @@ Rect intersect(const Rect& rect, std::int64_t left, std::int64_t top, std::int64
           static_cast<int>(bottom - top)};
 }
 
-/// What the state's pixel centres must be moved by to lie at half-integers.
+/// Offset that moves the state's pixel centres to half-integers.
 double center_offset(const State& state) { return state.pixel_center == PixelCenter::integer ? 0.5 : 0.0; }
 
 [[noreturn]] void refuse_vertex(const WindowPosition& p, const VertexSource& source, const Config& config) {
@@ -71,7 +71,7 @@ Rect raster_rect(const State& state, int target_width, int target_height) {
 WindowPosition to_window(const Vertex& v, const State& state, const Viewport& viewport) {
   const double x = v.x / v.w, y = v.y / v.w, z = v.z / v.w;
   const double depth = state.clip_z == ClipZ::zero_one ? z : (z + 1) / 2;
-  // A vertex cut by near or far is on the plane up to rounding; the clamp keeps it there.
+  // A vertex cut by near or far is on the plane up to rounding; the clamp puts it exactly there.
   return {viewport.x + (x + 1) / 2 * viewport.width, viewport.y + (1 - y) / 2 * viewport.height,
           state.depth_range[0] + (state.depth_range[1] - state.depth_range[0]) * std::clamp(depth, 0.0, 1.0)};
 }
@@ -104,7 +104,7 @@ SnappedVertex snap_vertex(const WindowPosition& p, const Vertex& vertex, const C
     refuse_vertex(p, source, config);
   const int S = config.subpixel_bits, grid_bits = coordinate_grid_bits(config);
   const double scale = static_cast<double>(std::int64_t{1} << S);
-  const auto on_grid = [&](double position) {  // an origin of 1/2 has a place on the grid, which has a bit at least
+  const auto on_grid = [&](double position) {  // an origin of 1/2 is on the grid, which has at least one fraction bit
     return (snap(position - origin, scale) << (grid_bits - S)) + (origin != 0 ? std::int64_t{1} << (grid_bits - 1) : 0);
   };
   const std::int64_t x = on_grid(p.x), y = on_grid(p.y);

@@ -1,7 +1,7 @@
 // Viewport: clip coordinates in, snapped window coordinates out (perspective divide, viewport, depth range, snap).
 //
-// Host side, binary64. From here on every number is an integer. X, Y: floor(x * 2^S + 1/2), held in units of 2^-s pixel
-// (s = max(S, 1)); Z: floor(z * (2^B - 1) + 1/2); colour: floor(c + 1/2).
+// Host side, binary64. All later numbers are integers. X, Y: floor(x * 2^S + 1/2), held in units of 2^-s pixel (s =
+// max(S, 1)); Z: floor(z * (2^B - 1) + 1/2); colour: floor(c + 1/2).
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@ struct WindowPosition {
   double x = 0, y = 0, z = 0;
 };
 
-/// A window-space vertex as the rasterizer counts: pixel centres at half-integers, y down from the top.
+/// A window-space vertex in the rasterizer's coordinates: pixel centres at half-integers, y down from the top.
 [[nodiscard]] WindowPosition window_position(const Vertex& v, const State& state, int target_height);
 
 /// The viewport of a state, its own or the whole target, likewise.
@@ -31,15 +31,15 @@ struct WindowPosition {
 /// Divide, viewport and depth range of a clipped vertex (w > 0).
 [[nodiscard]] WindowPosition to_window(const Vertex& v, const State& state, const Viewport& viewport);
 
-/// Where a vertex came from: for the message when it does not fit.
+/// The origin of a vertex: for the message when it does not fit.
 struct VertexSource {
   std::string_view file;   ///< Scene::name
   std::uint32_t line = 0;  ///< Draw::line
   std::size_t number = 0;  ///< index into Scene::vertices
 };
 
-/// Where the grid of the snap begins, in pixels along x and y: at 1/2 where pixels are not divided and a state counts their
-/// centres from integers, so that an integer stays the centre that it is; else at 0, and every centre is on the grid.
+/// The origin of the snap grid, in pixels along x and y: 1/2 if pixels are not subdivided and the state has pixel
+/// centres at integers, so that an integer stays a centre; else 0, and every centre is on the grid.
 [[nodiscard]] constexpr double snap_origin(const State& state, const Config& config) {
   return config.subpixel_bits == 0 && state.pixel_center == PixelCenter::integer ? 0.5 : 0.0;
 }
@@ -48,11 +48,11 @@ struct VertexSource {
 [[nodiscard]] SnappedVertex snap_vertex(const WindowPosition& p, const Vertex& vertex, const Config& config,
                                         const VertexSource& source, double origin = 0);
 
-/// The codes of every plane: window depth in [0, 1], colour 0...255 a channel. Another plane gets its codes here, and
-/// its number back in vertex_of_codes().
+/// The codes of every plane: window depth in [0, 1], colour 0...255 a channel. A new plane gets its codes here, and its
+/// value from a code in vertex_of_codes().
 [[nodiscard]] PerPlane<std::uint32_t> snap_codes(double z, const Vertex& vertex, const Config& config);
 
-/// A vertex of window space that snaps to these codes; its place is left at 0.
+/// A vertex of window space that snaps to these codes; its position is left at 0.
 [[nodiscard]] Vertex vertex_of_codes(const PerPlane<std::uint32_t>& code, const Config& config);
 
 /// Gives `to` the colour of `from`.

@@ -16,7 +16,7 @@ void for_each_value_upwards(Packet& packet, const Widths& widths, Visit& visit) 
   });
 }
 
-// Visitors have types of their own: what visits the members of one packet is compiled once for all packets.
+// Visitors have types of their own: a visitor of one packet's members is compiled once for all packets.
 
 struct BitCounter {
   int bits = 0;
@@ -105,7 +105,7 @@ int packet_bits(const Widths& widths) {
   return counter.bits;
 }
 
-// Flattened: the state of the writer and of the reader stays in registers.
+// Flattened: the state of writer and reader stays in registers.
 template <class Packet>
 [[gnu::flatten]] void pack_words(const Packet& packet, const Widths& widths, std::uint32_t* out) {
   Packer packer{WordWriter(out)};
@@ -136,7 +136,7 @@ std::vector<std::uint64_t> element_values(const std::uint32_t* words, const Widt
   return std::move(list.values);
 }
 
-// All packets, and whatever they nest.
+// All packets, and their nested parts.
 #define HALFPLANE_COMPILE(Packet)                                                 \
   template int packet_bits<Packet>(const Widths&);                                \
   template void pack_words<Packet>(const Packet&, const Widths&, std::uint32_t*); \

@@ -1,4 +1,4 @@
-// Packets as packed 32-bit words, lowest first: what goes into and comes out of the RTL. All of it follows from a packet's
+// Packets as packed 32-bit words, lowest first: the input and output of the RTL. Everything follows from a packet's
 // fields (packets.hpp). SystemVerilog puts the first field of a packed struct highest; arrays have element 0 lowest.
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace halfplane {
 
-/// A value as the bits that hold it, and back. The bits of a signed one go on with its sign.
+/// Converts a value to the bits that hold it, and back. Signed values are sign-extended.
 template <class T>
 [[nodiscard]] constexpr std::uint64_t to_bits(const T& value) {
   if constexpr (std::is_same_v<T, SampleMask>)
@@ -26,8 +26,8 @@ template <class T>
   return static_cast<T>(bits);
 }
 
-/// Elements of a member that is an array of them; 0 for one that is an element itself. Where each plane has a width of its
-/// own, an element is an array over the planes.
+/// Elements of a member that is an array of them; 0 for a plain member. Where each plane has its own width, an element
+/// is an array over the planes.
 template <class Member, class Place>
 inline constexpr std::size_t kElements = kArraySize<Member>;
 template <class Member>
@@ -43,7 +43,7 @@ template <class Packet, class Member, class Place>
 
 namespace packet_detail {
 
-/// Calls visit(value, width) for an element, or for that of every plane that has one.
+/// Calls visit(value, width) for an element, or for its value on every plane that has one.
 template <class Value, class Visit>
 constexpr void visit_element(Value& value, const Widths& widths, Width Widths::*width, Visit& visit) {
   visit(value, widths.*width);
@@ -54,13 +54,13 @@ constexpr void visit_element(Values& values, const Widths& widths, Width Attribu
     if ((widths.of_plane(p).*width).bits != 0) visit(values[p], widths.of_plane(p).*width);
 }
 
-/// Likewise for an array of elements. It has no type of its own: arrays of all sizes share this function.
+/// Likewise for an array of elements. It is not typed: arrays of all sizes share this function.
 template <class Value, class Place, class Visit>
 constexpr void visit_array(Value* values, std::size_t count, const Widths& widths, Place width, Visit& visit) {
   for (std::size_t i = 0; i < count; ++i) visit_element(values[i], widths, width, visit);
 }
 
-/// Likewise for what a member has of them.
+/// Likewise for the elements of a member.
 template <class Member, class Place, class Visit>
 constexpr void visit_member(Member& member, std::size_t count, const Widths& widths, Place width, Visit& visit) {
   if constexpr (kElements<std::remove_const_t<Member>, Place> != 0)
@@ -101,7 +101,7 @@ class WordWriter {
   }
   /// `bits` of 1 to 32.
   void put_word(std::uint64_t value, int bits) {
-    pending_ |= (value & (~0ULL >> (64 - bits))) << filled_;  // filled_ < 32: nothing is lost
+    pending_ |= (value & (~0ULL >> (64 - bits))) << filled_;  // filled_ < 32: no bit is lost
     filled_ += bits;
     if (filled_ >= 32) {
       *out_++ = static_cast<std::uint32_t>(pending_);
@@ -147,7 +147,7 @@ class WordReader {
   int held_ = 0;
 };
 
-// Templates without a body are compiled in packet_words.cpp, for the packets and parts of packets that it lists.
+// Templates without a body are compiled in packet_words.cpp, for the packets and parts of packets listed there.
 
 /// Bits of the packed struct.
 template <class Packet>
@@ -167,9 +167,9 @@ template <class Packet>
 template <class Packet>
 [[nodiscard]] Packet unpack_words(const std::uint32_t* words, const Widths& widths);
 
-/// One element of a packet, as a reader sees it.
+/// One element of a packet, in readable form.
 struct ElementName {
-  std::string name;  ///< "mask", "edge_value[2]", "step_x[depth]", "code[1][red]"; of a nested one, its own name alone
+  std::string name;  ///< "mask", "edge_value[2]", "step_x[depth]", "code[1][red]"; if nested, only its own name
   Width width;
 };
 

@@ -1,6 +1,6 @@
-// The packets on the arrows between the stages. Each field is authored ONCE: name, type and width. From it follow the C++
-// member, the packed SystemVerilog struct (model/generate/raster_pkg.hpp), the bits that go into and come out of the RTL, and
-// the field-by-field diff (model/packets/packet_words.hpp). Which stages an arrow joins is said in model/pipeline_graph.hpp.
+// The packets on the arrows between the stages. Each field is authored ONCE: name, type and width. From these follow
+// the C++ member, the packed SystemVerilog struct (model/generate/raster_pkg.hpp), the bits on the RTL's ports, and the
+// field-by-field diff (model/packets/packet_words.hpp). model/pipeline_graph.hpp lists the stages that an arrow joins.
 //
 // Units: coordinates in subpixels of 2^-s pixel (s = max(S, 1)), depth and colour in codes (LSB).
 #pragma once
@@ -24,12 +24,12 @@ inline constexpr std::size_t kMaxPortBytes = 64;
 
 // ------------------------------------------------------------------------------------------------------- what a field is
 
-/// Stands for the width of a member that has fields of its own.
+/// Placeholder for the width of a member with fields of its own.
 struct Nested {};
 
-/// One field of a packet. `width`: of an element: a member of Widths, or a member of AttributeWidths for a member that has an
-/// element for each plane, or Nested. An array is packed element 0 lowest; `count` says how many of its elements this
-/// configuration has, none: all of them.
+/// One field of a packet. `width`: of an element: a member of Widths, or a member of AttributeWidths for a member with
+/// an element for each plane, or Nested. An array is packed element 0 lowest; `count`: the number of its elements in
+/// this configuration; none: all of them.
 template <class Packet, class Member, class Place>
 struct Field {
   std::string_view name;
@@ -65,7 +65,7 @@ struct Lines {
   std::size_t count = 0;
 };
 
-/// Those on which a packet declares a field, in order.
+/// The lines on which a packet declares a field, in order.
 template <class Packet, int... I>
 consteval auto field_lines(std::integer_sequence<int, I...>) {
   constexpr bool kHasField[] = {HasFieldOn<Packet, Packet::kFirstLine + I>...};
@@ -82,7 +82,7 @@ inline constexpr auto kFieldLines =
 
 }  // namespace packet_detail
 
-/// Calls visit(field) for every Field of a packet type, the first one first.
+/// Calls visit(field) for every Field of a packet type, in order.
 template <class Packet, class Visit>
 constexpr void for_each_field(Visit&& visit) {
   [&]<std::size_t... I>(std::index_sequence<I...>) {
@@ -91,7 +91,7 @@ constexpr void for_each_field(Visit&& visit) {
   }
   (std::make_index_sequence<packet_detail::kFieldLines<Packet>.count>{});
 }
-/// The last one first: from the lowest bit up.
+/// In reverse order: from the lowest bit up.
 template <class Packet, class Visit>
 constexpr void for_each_field_upwards(Visit&& visit) {
   [&]<std::size_t... I>(std::index_sequence<I...>) {
@@ -129,15 +129,15 @@ struct SnappedVertex {
   return std::tie(a.y, a.x, a.code[kDepthPlane]) < std::tie(b.y, b.x, b.code[kDepthPlane]);
 }
 
-/// What of a vertex lives over w: host side.
+/// A vertex's attributes over w: host side.
 struct SurfaceVertex {
   double w = 1;                          ///< clip-space w
-  double u = 0, v = 0;                   ///< 0 and 1 are the sides of a texture
-  std::array<std::int32_t, 3> normal{};  ///< of shade phong: codes of 2^-15
+  double u = 0, v = 0;                   ///< 0 to 1 over the texture
+  std::array<std::int32_t, 3> normal{};  ///< for shade phong: codes of 2^-15
 };
 
-/// A triangle between viewport and triangle_setup: where the RTL starts. One input triangle that was clipped yields
-/// several of these with the same `primitive`.
+/// A triangle between viewport and triangle_setup: the input of the RTL. A clipped input triangle yields several of
+/// these with the same `primitive`.
 struct Triangle {
   std::uint32_t primitive = 0;  ///< number of the input triangle, over the whole scene
   std::uint32_t draw = 0;       ///< index into Scene::commands
@@ -145,59 +145,59 @@ struct Triangle {
   std::array<SurfaceVertex, 3> surface{};  ///< of the same vertices
 };
 
-/// What a primitive is. Rectangles and points cover their whole box with one code a plane. Bit 1 set: a token,
-/// which visits no tile on its way to depth_test.
+/// Kind of a primitive. Rectangles and points cover their whole box with one code per plane. Bit 1 set: a token, which
+/// visits no tile on its way to depth_test.
 enum class PrimitiveKind : std::uint8_t {
   triangle = 0,
   rectangle = 1,   ///< a clear inside the scissor: drawn like a triangle that covers every pixel, and not counted
   fast_clear = 2,  ///< a clear of the whole target: marks tiles, writes no pixel
-  flush = 3,       ///< writes back all that is on the chip; the box is the whole target
+  flush = 3,       ///< writes back all data on the chip; the box is the whole target
   point = 4,       ///< a rectangle that is counted
   line = 6,        ///< the place of a line in program order; its pixels come from line_raster
-  state = 7  ///< what a unit behind the depth test does from here on: a StateRegister, which stands in the place of the
-             ///< depth test, and its value, spread over the codes (packets/state_packets.hpp)
+  state = 7  ///< sets a register of a unit downstream of the depth test: a StateRegister, in the place of the depth
+             ///< test, and its value, spread over the codes (packets/state_packets.hpp)
 };
 
-/// What a token of kind state sets.
+/// Register that a token of kind state sets.
 enum class StateRegister : std::uint8_t {
   texture = 0,         ///< TextureState
-  texture_levels = 1,  ///< TextureLevels; FogState and a line of its table too, or of light: LevelsWord
-  texture_lines = 2,   ///< a part of a TextureLines, moved in behind those before
+  texture_levels = 1,  ///< TextureLevels; also FogState, a line of its table, or light: LevelsWord
+  texture_lines = 2,   ///< a part of a TextureLines, shifted in after the ones before
   color_ops = 4,       ///< ColorOps without its constant (stages/color_packets.hpp)
-  blend_constant = 5,  ///< that
+  blend_constant = 5,  ///< the constant of ColorOps
   alpha_test = 6,      ///< AlphaTest
-  stencil_test = 3,    ///< how a side or both are compared (stages/stencil_packets.hpp)
-  stencil_update = 7   ///< what becomes of the stored value, likewise
+  stencil_test = 3,    ///< the comparison of one side or both (stages/stencil_packets.hpp)
+  stencil_update = 7   ///< the update of the stored value, likewise
 };
 
-/// Whether it is one of the texture unit's.
+/// Whether it is a register of the texture unit.
 [[nodiscard]] constexpr bool is_of_texture(StateRegister which) { return which <= StateRegister::texture_lines; }
 
-/// What the counters count; clears and flushes are the host's own.
+/// Whether the counters count it; clears and flushes are the host's own.
 [[nodiscard]] constexpr bool is_counted(PrimitiveKind kind) {
   return kind == PrimitiveKind::triangle || kind == PrimitiveKind::point || kind == PrimitiveKind::line;
 }
 
-/// What visits no tile on its way to depth_test.
+/// Whether it visits no tile on its way to depth_test.
 [[nodiscard]] constexpr bool is_token(PrimitiveKind kind) { return (static_cast<unsigned>(kind) & 2U) != 0; }
 
-/// What the end of a tile visit does to the tile's HiZ bound.
+/// Effect of the end of a tile visit on the tile's HiZ bound.
 enum class HizUpdate : std::uint8_t { none, set, clear };
 
-/// What a tile has of each pixel; and the flags of its cleared blocks, which a flush writes to memory.
-/// With compress.unit also the colours of blocks that have one a pixel, and the flags that say which.
+/// Buffers of a tile in memory; and the flags of its cleared blocks, written by a flush. With compress.unit also the
+/// colours of blocks with one per pixel, and the flags of these blocks.
 enum class TilePlane : std::uint8_t { depth, color, depth_flags, color_flags, pixel_color = 5, pixel_flags = 7 };
 inline constexpr std::array kTilePlanes{TilePlane::depth, TilePlane::color};
 
 /// Source of a stamp's stored depths; also of its stored colours, for colour operations.
 enum class DepthSource : std::uint8_t {
-  none,    ///< it does not look: `always`, with a full mask; operations that store the fragment's colour
+  none,    ///< no read: `always`, with a full mask; operations that store the fragment's colour
   chip,    ///< on the chip
   clear,   ///< the last fast clear's value
   memory,  ///< a read
 };
 
-/// An enum as the generated package has it: `depth_func_t` with DEPTH_FUNC_NEVER and so on.
+/// An enum in the generated package: `depth_func_t` with DEPTH_FUNC_NEVER and so on.
 template <class Enum>
 struct Enumerator {
   Enum value;
@@ -295,30 +295,30 @@ struct TileBox {
   PACKET_END
 };
 
-/// The states that ride with a primitive.
+/// The states that travel with a primitive.
 struct PrimitiveState {
   PACKET(PrimitiveState, "primitive_state");
   FIELD(DepthFunc, depth_test,
-        &Widths::depth_func)  ///< for a fast clear or a flush: drops_depth(), clears_bin(); for a state: which
+        &Widths::depth_func)  ///< for a fast clear or a flush: drops_depth(), clears_bin(); for a state: register
   FIELD(bool, depth_write, &Widths::flag)                             ///< for a fast clear: clears depth
   FIELD(bool, color_write, &Widths::flag)                             ///< likewise
-  FIELD(bool, tests_stencil, &Widths::flag, &Widths::stencil_flags)   ///< the stored stencil is looked at, or changes
-  FIELD(bool, writes_stencil, &Widths::flag, &Widths::stencil_flags)  ///< it changes, on a side and of some sample
+  FIELD(bool, tests_stencil, &Widths::flag, &Widths::stencil_flags)   ///< the stored stencil is read, or changes
+  FIELD(bool, writes_stencil, &Widths::flag, &Widths::stencil_flags)  ///< it may change, on a side and for some sample
   FIELD(bool, marks_failed, &Widths::flag, &Widths::stencil_flags)    ///< also where a sample fails one of the tests
   FIELD(bool, is_back, &Widths::flag, &Widths::stencil_flags)  ///< of a triangle that shows its back, from cull on
-  FIELD(std::uint8_t, masked_samples, &Widths::masked_samples, &Widths::has_samples)  ///< of each pixel: are not drawn
+  FIELD(std::uint8_t, masked_samples, &Widths::masked_samples, &Widths::has_samples)  ///< per pixel: not drawn
   PACKET_END
   [[nodiscard]] constexpr bool writes() const { return depth_write || color_write; }
-  /// Whether anything of a stored depth may change: it, or the stencil above it.
+  /// Whether a stored depth may change, or the stencil above it.
   [[nodiscard]] constexpr bool writes_word() const { return depth_write || writes_stencil; }
-  /// Of a fast clear: depth of blocks that leave the chip before the next fast clear or flush is lost. Of a flush: that of
-  /// those on the chip, and its flags are not written. Only in a framebuffer of blocks.
+  /// For a fast clear: depth of blocks evicted before the next fast clear or flush is lost. For a flush: depth of the
+  /// blocks on the chip, and depth flags are not written. Only in a framebuffer of blocks.
   [[nodiscard]] constexpr bool drops_depth() const { return depth_test == DepthFunc::never; }
-  /// Of a fast clear of colours alone, behind a flush: of the bin with its last tile.
+  /// For a fast clear of colours only, after a flush: clears the bin with its last tile.
   [[nodiscard]] constexpr bool clears_bin() const { return depth_test == DepthFunc::equal; }
 };
 
-/// Whose tile it is.
+/// The owner of a tile packet.
 struct TileKey {
   PACKET(TileKey, "tile_key");
   FIELD(std::uint32_t, primitive_id, &Widths::primitive_id)  ///< Triangle::primitive modulo 2^key.primitive_bits
@@ -338,7 +338,7 @@ struct TriangleVertices {
   PACKET_END
 };
 
-/// The range of the vertices' codes, to which the final ones are clamped.
+/// The range of the vertices' codes, to which the final codes are clamped.
 struct CodeRange {
   PACKET(CodeRange, "code_range");
   FIELD(PerPlane<std::uint32_t>, low, &AttributeWidths::affine_code)
@@ -346,8 +346,8 @@ struct CodeRange {
   PACKET_END
 };
 
-/// How a triangle's texture coordinates are read back, u and v, and its colours over w (stages/perspective.hpp), and its fog.
-/// Only with a texture unit.
+/// The format of a triangle's texture coordinates u and v, and its colours over w (stages/perspective.hpp), and its
+/// fog. Only with a texture unit.
 struct CoordinateFrame {
   PACKET(CoordinateFrame, "coordinate_frame");
   using Pair = std::array<std::int32_t, 2>;
@@ -355,17 +355,18 @@ struct CoordinateFrame {
   FIELD(Pair, reach, &Widths::coordinate_reach, &Widths::coordinates)  ///< x
   FIELD(Pair, origin, &Widths::coordinate_reference, &Widths::coordinates)  ///< u_ref, texels: wrapped_reference()
   FIELD(std::int32_t, fog_octave, &Widths::fog_octave,
-        &Widths::fog_octaves)  ///< of a fog's table, where Q = 1 would lie
+        &Widths::fog_octaves)  ///< octave of Q = 1 in a fog's table
   using Channels = std::array<std::int32_t, 4>;
-  FIELD(bool, divides_colors, &Widths::flag, &Widths::has_colors_over_w)      ///< they are P over Q, not what is affine
+  FIELD(bool, divides_colors, &Widths::flag, &Widths::has_colors_over_w)      ///< P over Q, not the affine codes
   FIELD(Channels, color_shift, &Widths::color_shift, &Widths::colors_over_w)  ///< c and x of each
   FIELD(Channels, color_reach, &Widths::color_reach, &Widths::colors_over_w)
   PACKET_END
   bool operator==(const CoordinateFrame&) const = default;
 };
 
-/// Where the host has put the planes in memory: bytes. It stays as it is while anything is under way. Bases of tiles and the
-/// stride are multiples of a plane of a tile, those of flags of a row of them (MemoryGrid); lower bits count as 0.
+/// Addresses of the buffers in memory, chosen by the host: bytes. Constant while anything is under way. Bases of tiles
+/// and the stride are multiples of a tile's buffer, those of flags of a row of flags (MemoryGrid); lower bits count as
+/// 0.
 struct MemoryLayout {
   PACKET(MemoryLayout, "memory_layout");
   FIELD(std::uint32_t, depth_base, &Widths::address)
@@ -382,7 +383,7 @@ using EdgeValues = std::array<std::int64_t, 3>;
 using EdgeDeltas = std::array<std::int32_t, 3>;
 using EdgeLows = std::array<std::uint16_t, 3>;
 
-/// Colours of a vertex or a sample, 8 bits a channel, R lowest: what goes into a texture unit, which stands in front of rop.
+/// Colours of a vertex or a sample, 8 bits a channel, R lowest: the input of a texture unit, upstream of rop.
 [[nodiscard]] constexpr std::uint32_t vertex_color(const PerPlane<std::uint32_t>& code, const Widths& widths) {
   std::uint32_t color = 0;
   for (int c = widths.color_planes - 1; c >= 0; --c)
@@ -392,7 +393,7 @@ using EdgeLows = std::array<std::uint16_t, 3>;
 
 // ------------------------------------------------------------------------------------------------------------- the packets
 
-/// host -> cull: a snapped primitive, as it was named.
+/// host -> cull: a snapped primitive, its vertices in the given order.
 struct PrimitivePacket {
   PACKET(PrimitivePacket, "primitive_packet");
   FIELD(PrimitiveKind, kind, &Widths::kind)
@@ -406,7 +407,7 @@ struct PrimitivePacket {
   PACKET_END
 };
 
-/// cull -> triangle_setup: a triangle that faces the right way and has a pixel centre in its box, in canonical order.
+/// cull -> triangle_setup: a triangle with the right facing and a pixel centre in its box, in canonical order.
 struct TrianglePacket {
   PACKET(TrianglePacket, "triangle_packet");
   FIELD(PrimitiveKind, kind, &Widths::kind)
@@ -421,7 +422,7 @@ struct TrianglePacket {
   PACKET_END
 };
 
-/// triangle_setup -> coarse_raster: everything that stays constant over the primitive.
+/// triangle_setup -> coarse_raster: all constants of the primitive.
 struct SetupPacket {
   PACKET(SetupPacket, "setup_packet");
   FIELD(PrimitiveKind, kind, &Widths::kind)
@@ -431,7 +432,7 @@ struct SetupPacket {
   FIELD(EdgeDeltas, dx, &Widths::delta)  ///< of each edge, subpixels; 0 for other kinds than triangles
   FIELD(EdgeDeltas, dy, &Widths::delta)
   FIELD(EdgeValues, edge_value, &Widths::edge_value)  ///< edge_function at the first pixel of the first tile
-  FIELD(EdgeLows, edge_low, &Widths::edge_low, &Widths::edge_lows)  ///< the bits that it has lost
+  FIELD(EdgeLows, edge_low, &Widths::edge_low, &Widths::edge_lows)  ///< its dropped bits
   FIELD(PerPlane<std::int64_t>, value, &AttributeWidths::plane)     ///< Plane::value + plane_bias()
   FIELD(PerPlane<std::int64_t>, step_x, &AttributeWidths::plane)    ///< per subpixel
   FIELD(PerPlane<std::int64_t>, step_y, &AttributeWidths::plane)
@@ -451,13 +452,13 @@ struct ContextPacket {
   PACKET_END
 };
 
-/// coarse_raster -> fine_raster: one tile of one primitive, or (is_visit = 0) only the news that a primitive has ended.
+/// coarse_raster -> fine_raster: one tile of one primitive, or (is_visit = 0) only the end of a primitive.
 struct TilePacket {
   PACKET(TilePacket, "tile_packet");
   FIELD(PrimitiveKind, kind, &Widths::kind)
   FIELD(bool, is_visit,
         &Widths::flag)  ///< 0: no tile; fast clears, flushes, and primitives whose last tile was skipped
-  FIELD(bool, ends_primitive, &Widths::flag)         ///< nothing of this primitive follows
+  FIELD(bool, ends_primitive, &Widths::flag)         ///< the last packet of this primitive
   FIELD(TileKey, key, Nested{})                      ///< without a visit: the last tile of the box
   FIELD(std::uint8_t, slot, &Widths::slot)           ///< context RAM slot of the triangle's constants
   FIELD(TileBox, box, Nested{})                      ///< pixels of the tile inside box and scissor
@@ -467,7 +468,7 @@ struct TilePacket {
   PACKET_END
 };
 
-/// The part of a triangle's constants that fine_raster reads: what each edge value gains per pixel.
+/// The part of a triangle's constants that fine_raster reads: the increments of each edge value per pixel.
 struct EdgeContext {
   PACKET(EdgeContext, "edge_context");
   FIELD(EdgeDeltas, step_x, &Widths::edge_step)                ///< -dy: per pixel to the right
@@ -476,7 +477,7 @@ struct EdgeContext {
   PACKET_END
 };
 
-/// fine_raster -> interpolate: one stamp. Sent when a sample is covered or when it ends something.
+/// fine_raster -> interpolate: one stamp. Sent when a sample is covered or when it ends a visit or primitive.
 struct StampPacket {
   PACKET(StampPacket, "stamp_packet");
   FIELD(PrimitiveKind, kind, &Widths::kind)
@@ -503,11 +504,11 @@ struct FragmentPacket {
   FIELD(SampleMask, mask, &Widths::sample_mask)
   FIELD(PrimitiveState, state, Nested{})
   FIELD(CoordinateFrame, coordinates, Nested{})
-  FIELD(std::uint32_t, least_color, &Widths::vertex_color, &Widths::has_colors_over_w)     ///< to which a quotient is
-  FIELD(std::uint32_t, greatest_color, &Widths::vertex_color, &Widths::has_colors_over_w)  ///< held, R lowest
+  FIELD(std::uint32_t, least_color, &Widths::vertex_color, &Widths::has_colors_over_w)     ///< range of the
+  FIELD(std::uint32_t, greatest_color, &Widths::vertex_color, &Widths::has_colors_over_w)  ///< quotients, R lowest
   using Depths = std::array<std::uint32_t, kMaxSamples>;
   FIELD(Depths, further_depth, &Widths::further_depth,
-        &Widths::further_samples)  ///< of the samples but the first of each pixel
+        &Widths::further_samples)  ///< of all samples but the first of each pixel
   FIELD(Codes, code, &AttributeWidths::fragment,
         &Widths::pixels)  ///< of each pixel: clamped codes, local Q and P; its depth
                           ///< is that of its first sample
@@ -527,7 +528,7 @@ struct FragmentPacket {
   return fragment.code[s / static_cast<std::size_t>(widths.pixel_samples)];
 }
 
-/// depth_test, rop -> framebuffer: what is written, and where; sent for every stamp with a covered sample.
+/// depth_test, rop -> framebuffer: the values to write, and their place; sent for every stamp with a covered sample.
 struct WritePacket {
   PACKET(WritePacket, "write_packet");
   using Codes = std::array<std::uint32_t, kMaxSamples>;
@@ -535,12 +536,12 @@ struct WritePacket {
   FIELD(std::uint16_t, stamp, &Widths::stamp_index)
   FIELD(SampleMask, passed, &Widths::sample_mask)  ///< samples that passed the depth test
   FIELD(SampleMask, write_depth,
-        &Widths::sample_mask)  ///< of those, the ones to write; and those whose stencil changes
+        &Widths::sample_mask)  ///< samples of these to write; and samples whose stencil changes
   FIELD(SampleMask, write_color, &Widths::sample_mask)
   FIELD(Codes, depth, &Widths::stored_depth,
-        &Widths::samples)  ///< as they are stored; of samples that are not written, the fragment's codes
+        &Widths::samples)  ///< stored words; for samples that are not written, the fragment's codes
   FIELD(Codes, color, &Widths::written_color,
-        &Widths::samples)  ///< as it is stored, or before the texture or the blend; likewise
+        &Widths::samples)  ///< stored code, or the colour before the texture or the blend; likewise
   PACKET_END
 };
 
@@ -553,21 +554,21 @@ struct RetirePacket {
   PACKET_END
 };
 
-/// host -> line_raster: a line with at least one pixel inside the scissor; what line_setup makes (host/line_setup.hpp).
-/// The states ride with the line's place in program order, a PrimitivePacket of kind line.
+/// host -> line_raster: a line with at least one pixel inside the scissor; the output of line_setup
+/// (host/line_setup.hpp). The states travel with the line's place in program order, a PrimitivePacket of kind line.
 struct LineSetup {
   PACKET(LineSetup, "line_setup");
-  FIELD(std::uint32_t, primitive_id, &Widths::primitive_id)  ///< that of the PrimitivePacket; left at 0 by setup_line
+  FIELD(std::uint32_t, primitive_id, &Widths::primitive_id)  ///< number of the PrimitivePacket; left at 0 by setup_line
   FIELD(std::int32_t, x, &Widths::pixel_x)  ///< the first pixel; inside the target when it goes to the RTL
   FIELD(std::int32_t, y, &Widths::pixel_y)
   FIELD(bool, is_x_major, &Widths::flag)     ///< every step changes x
-  FIELD(bool, is_x_negative, &Widths::flag)  ///< x falls
+  FIELD(bool, is_x_negative, &Widths::flag)  ///< x decreases
   FIELD(bool, is_y_negative, &Widths::flag)  ///< likewise y
   FIELD(bool, is_before_start,
         &Widths::flag)  ///< the first pixel's centre lies before the start: it shows the start's codes
   FIELD(std::uint32_t, remaining, &Widths::line_count)  ///< pixels after the first
   FIELD(std::int64_t, error, &Widths::line_error)       ///< p: >= 0 when the next pixel lies in the next row
-  FIELD(std::int64_t, step_stay, &Widths::line_stay)    ///< d, added to p after a step along the major axis alone
+  FIELD(std::int64_t, step_stay, &Widths::line_stay)    ///< d, added to p after a step along the major axis only
   FIELD(std::int64_t, step_move, &Widths::line_move)    ///< d - D, added to p after a step along both
   FIELD(PerPlane<std::uint64_t>, value,
         &AttributeWidths::line)  ///< 2^-G' LSB at the first pixel's major coordinate, plus 1/2 LSB
@@ -588,11 +589,11 @@ struct LinePixel {
   bool operator==(const LinePixel&) const = default;
 };
 
-/// framebuffer -> memory_port: a write of one stamp of one plane, or a read of `run` of them, one response each. Requests go
-/// in program order; reads are answered in the same order. A run lies one behind the other in memory (stages/memory_port.hpp)
-/// and is one burst: the writes of it follow each other, each with the number of stamps that are left of it.
-/// A word of flags is bits of `data`, flag n of the word bit n; its words lie in rows of blocks: word n of block row y is
-/// asked for as tile_x n and stamp y modulo BlockGrid::per_tile of tile_y.
+/// framebuffer -> memory_port: a write of one stamp of one buffer, or a read of `run` of them, one response each.
+/// Requests go in program order; reads are answered in the same order. A run is consecutive in memory
+/// (stages/memory_port.hpp) and is one burst: its writes follow each other, each with the number of stamps left. A word
+/// of flags is bits of `data`, flag n of the word bit n; words lie in rows of blocks: word n of block row y is
+/// addressed as tile_x n and stamp y modulo BlockGrid::per_tile of tile_y.
 struct MemoryRequest {
   PACKET(MemoryRequest, "memory_request");
   using Lanes = std::array<std::uint32_t, kMaxSamples>;
@@ -601,9 +602,9 @@ struct MemoryRequest {
   FIELD(std::uint16_t, tile_x, &Widths::tile_x)
   FIELD(std::uint16_t, tile_y, &Widths::tile_y)
   FIELD(std::uint16_t, stamp, &Widths::stamp_index)
-  FIELD(std::uint16_t, run, &Widths::run)                     ///< stamps or words of its burst from this one on
+  FIELD(std::uint16_t, run, &Widths::run)                     ///< stamps or words left in its burst, including this one
   FIELD(SampleMask, strobe, &Widths::sample_mask)             ///< the samples to write; 0 for a read
-  FIELD(Lanes, data, &Widths::memory_lane, &Widths::samples)  ///< one code a sample; 0 where none is written
+  FIELD(Lanes, data, &Widths::memory_lane, &Widths::samples)  ///< one code per sample; 0 if not written
   PACKET_END
 };
 
@@ -614,21 +615,21 @@ struct MemoryResponse {
   PACKET_END
 };
 
-/// memory_port -> memory: a beat of a burst that writes, or all of a burst that reads. Bursts lie in one plane of one tile or
-/// in one row of flags, and their bytes follow each other.
+/// memory_port -> memory: a beat of a write burst, or a whole read burst. Bursts lie in one buffer of one tile or in
+/// one row of flags, and their bytes are consecutive.
 struct MemoryBeat {
   PACKET(MemoryBeat, "memory_beat");
   using Bytes = std::array<std::uint8_t, kMaxPortBytes>;
   FIELD(bool, is_write, &Widths::flag)
   FIELD(bool, is_first, &Widths::flag)                         ///< a burst begins
   FIELD(std::uint32_t, address, &Widths::address)              ///< of its first byte; a multiple of the port's bytes
-  FIELD(std::uint16_t, length, &Widths::burst_length)          ///< beats of the burst from this one on
+  FIELD(std::uint16_t, length, &Widths::burst_length)          ///< beats left in the burst, including this one
   FIELD(std::uint64_t, strobe, &Widths::port_strobe)           ///< the bytes to write; 0 for a read
-  FIELD(Bytes, data, &Widths::port_byte, &Widths::port_bytes)  ///< 0 where none is written
+  FIELD(Bytes, data, &Widths::port_byte, &Widths::port_bytes)  ///< 0 for bytes that are not written
   PACKET_END
 };
 
-/// memory -> memory_port: a beat that was read, or the news that a burst has been written. In the order of the bursts.
+/// memory -> memory_port: a beat that was read, or the acknowledgement of a written burst. In the order of the bursts.
 struct MemoryAnswer {
   PACKET(MemoryAnswer, "memory_answer");
   FIELD(bool, is_write, &Widths::flag)
@@ -640,7 +641,7 @@ struct MemoryAnswer {
 struct TextureRequest {
   PACKET(TextureRequest, "texture_request");
   FIELD(std::uint32_t, address, &Widths::address)      ///< bytes
-  FIELD(std::uint16_t, beats, &Widths::texture_beats)  ///< of it
+  FIELD(std::uint16_t, beats, &Widths::texture_beats)  ///< number of beats
   PACKET_END
 };
 
@@ -652,13 +653,13 @@ struct TexelBeat {
   PACKET_END
 };
 
-/// texture_unit, rop -> framebuffer: the colours of a stamp of which any sample lives; of other samples they are 0.
+/// texture_unit, rop -> framebuffer: the colours of a stamp with any live sample; of other samples 0.
 struct ColorPacket {
   PACKET(ColorPacket, "color_packet");
-  /// Samples whose colour is written, or looked at by the alpha test; of several in a pixel all, if one is.
+  /// Samples whose colour is written, or read by the alpha test; of several in a pixel all, if one is.
   FIELD(SampleMask, mask, &Widths::sample_mask)
   FIELD(WritePacket::Codes, color, &Widths::shaded_color,
-        &Widths::samples)  ///< as it is stored, or before it is blended or dithered; 0 where none lives
+        &Widths::samples)  ///< stored code, or the colour before blending or dithering; 0 for other samples
   PACKET_END
 };
 
@@ -666,7 +667,7 @@ struct ColorPacket {
 /// 2^counters.bits. Names as in Counters (counters.hpp).
 struct CounterPacket {
   PACKET(CounterPacket, "counter_packet");
-  FIELD(bool, overflow, &Widths::flag)                   ///< one of the others has passed its largest value in the RTL
+  FIELD(bool, overflow, &Widths::flag)                   ///< a counter has exceeded its width in the RTL
   FIELD(std::uint64_t, primitives_in, &Widths::counter)  ///< triangles, points and lines that came to cull
   FIELD(std::uint64_t, zero_area, &Widths::counter)
   FIELD(std::uint64_t, backface, &Widths::counter)
@@ -681,10 +682,10 @@ struct CounterPacket {
   FIELD(std::uint64_t, depth_passed, &Widths::counter)
   FIELD(std::uint64_t, written, &Widths::counter)
   FIELD(std::uint64_t, tile_fills,
-        &Widths::counter)  ///< stamps that were read, as the next two; with blending colours too
+        &Widths::counter)  ///< stamps read, like the next two; with blending colours too
   FIELD(std::uint64_t, tile_evictions, &Widths::counter)
-  FIELD(std::uint64_t, tile_clears, &Widths::counter)  ///< of depth alone
-  /// With a texture unit alone: samples that were looked up, those whose lines were all in its cache, lines asked for.
+  FIELD(std::uint64_t, tile_clears, &Widths::counter)  ///< of depth only
+  /// Only with a texture unit: samples looked up, samples whose lines were all in the cache, lines requested.
   FIELD(std::uint64_t, texture_samples, &Widths::counter, &Widths::texture_counters)
   FIELD(std::uint64_t, texture_hits, &Widths::counter, &Widths::texture_counters)
   FIELD(std::uint64_t, texture_fills, &Widths::counter, &Widths::texture_counters)

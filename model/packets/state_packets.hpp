@@ -1,6 +1,6 @@
-// State packets: tokens that set a register of a unit downstream of the depth test. They travel with all packets, in
-// order, so nothing else carries a state. The value lies where a vertex has its codes, and comes out of interpolate as it
-// went in.
+// State packets: tokens that set a register of a unit downstream of the depth test. They travel in the packet stream,
+// in order, so no other packet carries a state. The value takes the place of a vertex's codes, and passes interpolate
+// unchanged.
 #pragma once
 
 #include "../fixed.hpp"
@@ -8,7 +8,7 @@
 
 namespace halfplane {
 
-/// Which register a token of kind state sets; it stands in the place of the depth test.
+/// Register that a token of kind state sets; stored in the field of the depth test.
 [[nodiscard]] constexpr StateRegister state_register(const PrimitiveState& state) {
   return static_cast<StateRegister>(state.depth_test);
 }
@@ -16,14 +16,14 @@ namespace halfplane {
   return {static_cast<DepthFunc>(which), false, false};
 }
 
-/// Bits of a token's codes; of a value, 128 at most.
+/// Bits of a token's codes; a value has at most 128.
 [[nodiscard]] inline int state_word_bits(const Widths& widths) {
   int bits = 0;
   for (int p = 0; p < widths.token_planes(); ++p) bits += widths.of_plane(static_cast<std::size_t>(p)).code.bits;
   return bits;
 }
 
-/// A value over the codes of a vertex, lowest plane first, and back from the fragment that it has become.
+/// Spreads a value over the codes of a vertex, lowest plane first, and reads it back from the resulting fragment.
 inline void set_state_word(PerPlane<std::uint32_t>& code, uint128 word, const Widths& widths) {
   for (std::size_t p = 0; p < static_cast<std::size_t>(widths.token_planes()); ++p) {
     const int bits = widths.of_plane(p).code.bits;
@@ -46,7 +46,7 @@ inline void set_state_word(PerPlane<std::uint32_t>& code, uint128 word, const Wi
     code[p] >>= widths.of_plane(p).guard_bits();
   return wide_state_word(code, widths);
 }
-/// Its lowest 64 bits, which are all that most registers have.
+/// The lowest 64 bits, enough for most registers.
 template <class Codes>
 [[nodiscard]] std::uint64_t state_word(const Codes& token, const Widths& widths) {
   return static_cast<std::uint64_t>(wide_state_word(token, widths));

@@ -51,7 +51,8 @@ std::span<const std::uint32_t> BlockCache::access(const FragmentPacket& fragment
   return stored_;
 }
 
-/// Those that the chip does not have come from the clear value or from memory. What has been written of the stamp is newer.
+/// Reads stored colours; those missing on the chip come from the clear value or from memory. Samples of the stamp
+/// already written are newer.
 void BlockCache::read_colors(MemoryPort& memory, CounterPacket& counters) {
   std::ranges::fill(stored_color_, last_.color_source == DepthSource::clear ? clear_value_[1] : 0);
   if (last_.color_source == DepthSource::none) return;
@@ -79,7 +80,7 @@ void BlockCache::write(const FragmentPacket& fragment, const WritePacket& packet
     SampleMask& dirty = dirty_[number(plane)][last_stamp_];
     dirty = starts ? written : dirty | written;
   };
-  // What was not on the chip is from now on, all of the stamp.
+  // From now on all of the stamp is on the chip.
   const bool starts_depth = last_.source != DepthSource::chip;
   if (starts_depth) std::ranges::copy(stored_, lanes(TilePlane::depth, last_stamp_).begin());
   masked_copy(TilePlane::depth, packet.write_depth, packet.depth);
@@ -90,7 +91,7 @@ void BlockCache::write(const FragmentPacket& fragment, const WritePacket& packet
   if (fragment.state.color_write) add_dirty(TilePlane::color, packet.write_color, last_.starts_color);
 }
 
-/// The colours of a stamp on its way to memory become those of its pixels. All of a pixel's samples are there: its block
+/// Reduces the colours of a stamp on its way to memory to one per pixel. All samples of a pixel are present: its block
 /// leaves the chip once in a frame that began with a clear.
 void BlockCache::resolve_stamp(MemoryRequest& request) const {
   const int n = widths_.pixel_samples;
@@ -105,7 +106,7 @@ void BlockCache::resolve_stamp(MemoryRequest& request) const {
   request.strobe = strobe;
 }
 
-/// A stamp whose pixels have one colour each, as memory has it then.
+/// A stamp whose pixels have one colour each, in the form for memory.
 void BlockCache::choose_pixels(MemoryRequest& request) const {
   const auto n = static_cast<std::size_t>(widths_.pixel_samples);
   SampleMask strobe;
@@ -119,7 +120,7 @@ void BlockCache::choose_pixels(MemoryRequest& request) const {
   request.plane = TilePlane::pixel_color;
 }
 
-/// The requests that an eviction comes to, before anything new is written into its line.
+/// Makes the requests of an eviction, before its line is overwritten.
 void BlockCache::capture(const Eviction& eviction) {
   Victim& victim = victims_.emplace_back();
   victim.block = eviction.block;
@@ -129,7 +130,7 @@ void BlockCache::capture(const Eviction& eviction) {
       const bool is_here = (eviction.stamps[p] >> stamp & 1) != 0;
       const std::size_t at = stamp_index(eviction.line, stamp);
       const SampleMask dirty = is_here ? dirty_[p][at] : SampleMask();
-      // Depths of a stamp are on the chip all or none; of colours those that have been written matter.
+      // Depths of a stamp are on the chip all or none; of colours only the written ones.
       const SampleMask held = plane == TilePlane::depth && is_here ? SampleMask::all(widths_.samples) : dirty;
       MemoryRequest request = request_of(plane, stamp_address({eviction.block, stamp}, widths_));
       request.is_write = true;
@@ -152,7 +153,7 @@ void BlockCache::capture(const Eviction& eviction) {
   }
 }
 
-/// Colours on their way to memory, as it has the block from now on.
+/// Gives colours on their way to memory the form that the block will have there.
 void BlockCache::compress(Victim& victim, MemoryPort& memory, CounterPacket& counters) {
   std::vector<MemoryRequest>& colors = victim.stamps[number(TilePlane::color)];
   if (colors.empty()) return;
@@ -163,7 +164,7 @@ void BlockCache::compress(Victim& victim, MemoryPort& memory, CounterPacket& cou
   of_pixels_.set(victim.block, move == ColorMove::pixels);
 }
 
-/// All samples of the block: those that leave the chip over the colours of its pixels in memory.
+/// Writes all samples of the block: the evicted ones over the pixel colours read from memory.
 void BlockCache::merge(Victim& victim, MemoryPort& memory, CounterPacket& counters) {
   std::vector<MemoryRequest> all;
   for (int stamp = 0; stamp < widths_.blocks.stamps(); ++stamp) {
@@ -196,7 +197,7 @@ void BlockCache::write_victims(int count, MemoryPort& memory, CounterPacket& cou
       if (plane == TilePlane::color && config_.compress_units != 0) compress(victim, memory, counters);
       std::vector<MemoryRequest>& stamps = victim.stamps[number(plane)];
       for (auto request = stamps.begin(); request != stamps.end(); ++request) {
-        // Stamps that follow each other are a run.
+        // Consecutive stamps are a run.
         auto last = request;
         while (std::next(last) != stamps.end() && number_in_block(*std::next(last)) == number_in_block(*last) + 1)
           ++last;
@@ -209,7 +210,7 @@ void BlockCache::write_victims(int count, MemoryPort& memory, CounterPacket& cou
   }
 }
 
-/// Nothing stays on the chip, and nothing on the way.
+/// Writes everything back: nothing stays on the chip, or in flight.
 void BlockCache::evict_all(MemoryPort& memory, CounterPacket& counters) {
   directory_.evict_all([&](const TagResult& result) {
     write_victims(result.writes, memory, counters);
@@ -259,7 +260,7 @@ void BlockCache::flush(const FragmentPacket& token, MemoryPort& memory, CounterP
   });
 }
 
-/// The colours of blocks in which nothing was drawn since they were cleared.
+/// Writes the clear colour of blocks in which nothing was drawn since the clear.
 void BlockCache::write_cleared(int last_x, int last_y, MemoryPort& memory, CounterPacket& counters) {
   directory_.for_each_flag_word(TilePlane::color, last_x, last_y, [&](int word, int y, std::uint64_t bits) {
     for (; bits != 0; bits &= bits - 1) {

@@ -1,7 +1,7 @@
-// Block cache: the on-chip depth and colour of blocks of 4x4 pixels, and those that are on their way to memory.
+// Block cache: the on-chip depth and colour of blocks of 4x4 pixels, and the evicted blocks on their way to memory.
 //
 // In: fragments, writes, fast clears, flushes, in program order. Out: stored depths, memory requests in the order of
-// cache_tags.hpp, which decides what moves; here is the data.
+// cache_tags.hpp, which decides what moves; this class holds the data.
 #pragma once
 
 #include <span>
@@ -18,23 +18,23 @@ class BlockCache {
  public:
   BlockCache(const Config& config, const Widths& widths);
 
-  /// The depth codes under a fragment with covered samples, until the next call. Those of a stamp that the test does not
-  /// look at are 0.
+  /// The depth codes under a fragment with covered samples, until the next call. 0 for a stamp that the test does not
+  /// read.
   [[nodiscard]] std::span<const std::uint32_t> access(const FragmentPacket& fragment, MemoryPort& memory,
                                                       CounterPacket& counters);
 
-  /// The stored colours under it, where its operations read them: else 0.
+  /// The stored colours under the fragment, where its operations read them: else 0.
   [[nodiscard]] std::span<const std::uint32_t> colors() const { return stored_color_; }
 
-  /// A token has set what is done with colours, or with the stencil.
+  /// A token has set the colour operations, or the stencil.
   void set(const ColorState& colors, const StencilState& stencil) {
     directory_.set(colors.ops.reads_stored(), colors.tests_alpha(), stencil.replaces());
   }
 
-  /// Writes what came of the fragment of the last access.
+  /// Writes the result of the fragment of the last access.
   void write(const FragmentPacket& fragment, const WritePacket& packet);
 
-  /// `token`: a fragment of kind fast_clear; `depth`, `color`: its depth and colour as they are stored.
+  /// `token`: a fragment of kind fast_clear; `depth`, `color`: its depth and colour in the stored format.
   void fast_clear(const FragmentPacket& token, std::uint32_t depth, std::uint32_t color, MemoryPort& memory,
                   CounterPacket& counters);
 
@@ -42,10 +42,10 @@ class BlockCache {
   void flush(const FragmentPacket& token, MemoryPort& memory, CounterPacket& counters);
 
  private:
-  /// A block that has left its line: what of it goes to memory.
+  /// An evicted block: its data for memory.
   struct Victim {
     BlockAddress block;
-    std::array<std::vector<MemoryRequest>, 2> stamps;  ///< by plane, in order
+    std::array<std::vector<MemoryRequest>, 2> stamps;  ///< by buffer, in order
     LeavingColors colors;
   };
 
@@ -71,15 +71,15 @@ class BlockCache {
   CacheTags directory_;
   TagResult last_;                            ///< of the last access
   std::size_t last_stamp_ = 0;                ///< likewise, in the arrays below
-  std::vector<std::uint32_t> stored_;         ///< likewise: what the depth test saw
-  std::vector<std::uint32_t> stored_color_;   ///< likewise: what operations on colours see
-  TilePlane color_plane_ = TilePlane::color;  ///< likewise: where they come from
-  std::array<std::uint32_t, 2> code_mask_;    ///< bits of a code of each plane
+  std::vector<std::uint32_t> stored_;         ///< likewise: the words that the depth test saw
+  std::vector<std::uint32_t> stored_color_;   ///< likewise: the colours that operations read
+  TilePlane color_plane_ = TilePlane::color;  ///< likewise: the buffer of these colours
+  std::array<std::uint32_t, 2> code_mask_;    ///< bits of a code, by buffer
   std::array<std::uint32_t, 2> clear_value_{};
   std::array<std::vector<std::uint32_t>, 2> lanes_;  ///< line by line, stamp by stamp
-  std::array<std::vector<SampleMask>, 2> dirty_;     ///< samples of a stamp that memory does not have
+  std::array<std::vector<SampleMask>, 2> dirty_;     ///< samples of a stamp that are newer than memory
   std::deque<Victim> victims_;                       ///< oldest first
-  BlockBits of_pixels_;  ///< with compress.unit: blocks that memory has with one colour a pixel
+  BlockBits of_pixels_;  ///< with compress.unit: blocks that lie in memory with one colour per pixel
 };
 
 }  // namespace halfplane

@@ -1,11 +1,11 @@
-// Cache tags: which blocks of 4x4 pixels are on the chip, what of them is known, and which a fast clear has flagged. It
-// decides, in program order and before the depth test, what moves between chip and memory: block_cache.hpp moves the
-// data, the cycle model the time, rtl_ref/stages/cache_tags.sv is the hardware.
+// Cache tags: which blocks of 4x4 pixels are on the chip, with which stamps, and which blocks a fast clear has flagged.
+// They decide, in program order and before the depth test, what moves between chip and memory: block_cache.hpp moves
+// the data, the cycle model adds the time, rtl_ref/stages/cache_tags.sv is the hardware.
 //
 // Direct mapped: a line holds depth and colour of one block. Depth is fetched a stamp at a time, when a fragment first
-// asks for it. Colour is only written, until a fragment comes whose operations read what is stored: then that of its stamp is
-// fetched as depth is, behind it, and stays known. What leaves the chip is an eviction. Its data wait until `cache.victims`
-// later ones have come, or until the block is wanted again; then they go to memory, oldest first.
+// reads it. Colour is only written, until the operations of a fragment read stored colours: then those of its stamp are
+// fetched like depth, after it, and stay known. A block that leaves the chip is an eviction. Its data wait until
+// `cache.victims` later evictions have come, or until the block is needed again; then they go to memory, oldest first.
 #pragma once
 
 #include <cstdint>
@@ -18,26 +18,25 @@
 
 namespace halfplane {
 
-/// What leaves a line.
+/// A block that leaves a line.
 struct Eviction {
   std::size_t line = 0;
   BlockAddress block;
-  std::array<std::uint64_t, 2> stamps{};  ///< by plane, a bit each: stamps that may have been written
-  std::array<bool, 2>
-      fills{};  ///< by plane: memory holds garbage, so all of it is written, untouched samples as cleared
+  std::array<std::uint64_t, 2> stamps{};  ///< by buffer, a bit each: stamps that may have been written
+  std::array<bool, 2> fills{};  ///< by buffer: memory is stale, so all of it is written, untouched samples as cleared
 };
 
-/// What the tags make of one fragment, or of one line on a walk.
+/// The result of a tag lookup for one fragment, or for one line on a walk.
 struct TagResult {
   std::size_t line = 0;
   BlockAddress block;  ///< the fragment's
-  int writes = 0;      ///< so many evictions, oldest first, go to memory now, ahead of what is read for this fragment
+  int writes = 0;      ///< number of evictions, oldest first, that go to memory now, ahead of this fragment's reads
   std::optional<Eviction> eviction;
   DepthSource source = DepthSource::none;
-  bool starts_color = false;  ///< the first colours of this stamp: the others of it are not on the chip
+  bool starts_color = false;  ///< the first colours of this stamp: its other samples are not on the chip
   DepthSource color_source = DepthSource::none;  ///< of the stored colours, where operations read them
 
-  /// A flag falls with the eviction.
+  /// Whether a flag falls with the eviction.
   [[nodiscard]] bool falls() const { return eviction && (eviction->fills[0] || eviction->fills[1]); }
 };
 
@@ -54,7 +53,7 @@ class CacheTags {
   /// Flags of a row of the widest target, in words.
   [[nodiscard]] int flag_words() const { return words_of(widths_.tiles_x * widths_.blocks.per_tile - 1); }
 
-  /// A fragment with covered samples; `is_full`: all of its stamp.
+  /// A fragment with covered samples; `is_full`: it covers all of its stamp.
   TagResult access(const StampAddress& at, const PrimitiveState& state, bool is_full) {
     const BlockStamp place = block_stamp(at, widths_);
     const std::uint64_t stamp = std::uint64_t{1} << place.stamp;
@@ -88,15 +87,16 @@ class CacheTags {
     return result;
   }
 
-  /// A token has set what is done with colours: whether it reads what is stored, and whether alpha is tested, so that of what
-  /// passes the depth test not all may be written; and, by side, whether a stencil test passes all and replaces all of them.
+  /// A token has set the colour operations: whether they read stored colours, and whether alpha is tested, so that some
+  /// samples that pass the depth test may not be written; and, by side, whether a stencil test passes and replaces all
+  /// of them.
   void set(bool reads_color, bool tests_alpha, const std::array<bool, 2>& replaces_stencil) {
     reads_color_ = reads_color;
     tests_alpha_ = tests_alpha;
     replaces_stencil_ = replaces_stencil;
   }
 
-  /// Whether depth that leaves the chip from now on is lost: the flag of its block stays as it is.
+  /// Whether depth evicted from now on is lost: the flag of its block then stays.
   void drop_depth(bool drops) { drops_depth_ = drops; }
   [[nodiscard]] bool drops_depth() const { return drops_depth_; }
 
@@ -112,21 +112,21 @@ class CacheTags {
     }
   }
 
-  /// Everything that has left the chip goes to memory: so many evictions.
+  /// All evictions go to memory; returns their number.
   int write_all() {
     const auto writes = static_cast<int>(unwritten_.size());
     unwritten_.clear();
     return writes;
   }
 
-  /// A fast clear of the planes in `clears`, tiles (0, 0) to (last_x, last_y). Nothing is on the chip behind it.
+  /// A fast clear of the buffers in `clears`, tiles (0, 0) to (last_x, last_y). Nothing is on the chip after it.
   void mark(int last_x, int last_y, const std::array<bool, 2>& clears) {
     for (Line& line : lines_) line = {};
     flags_.mark(last_x, last_y, clears);
   }
 
-  /// A fast clear of the colours of the bin whose last tile this is. Precondition: nothing is on the chip. Returns how many
-  /// words of flags it is in.
+  /// A fast clear of the colours of the bin whose last tile this is. Precondition: nothing is on the chip. Returns the
+  /// number of words of flags that it touches.
   int mark_bin(int last_x, int last_y) {
     const auto [first, last] = bin_blocks(last_x, last_y);
     flags_.mark_colors(first, last);
@@ -142,13 +142,13 @@ class CacheTags {
             {static_cast<std::uint16_t>(right), static_cast<std::uint16_t>(bottom)}};
   }
 
-  /// The words of the flags of a plane: visit(x, y, word), word x of the row y of blocks.
+  /// The words of a buffer's flags: visit(x, y, word), word x of the row y of blocks.
   template <class Visit>
   void for_each_flag_word(TilePlane plane, int last_x, int last_y, Visit&& visit) const {
     flags_.for_each_word(plane, last_x, last_y, visit);
   }
 
-  /// Their clear colours are in memory.
+  /// The clear colours of these tiles are in memory.
   void resolve(TilePlane plane, int last_x, int last_y) { flags_.resolve(plane, last_x, last_y); }
 
   [[nodiscard]] int words_of(int last_block) const { return word_of(last_block) + 1; }
@@ -159,27 +159,28 @@ class CacheTags {
     BlockAddress block;
     std::uint64_t known = 0;           ///< stamps whose depths are on the chip
     std::uint64_t colored = 0;         ///< stamps whose colours may have been written
-    std::uint64_t color_known = 0;     ///< of those, the ones whose colours are all on the chip
+    std::uint64_t color_known = 0;     ///< stamps of these whose colours are all on the chip
     bool has_depth = false;            ///< depths may have been written
-    std::array<bool, 2> is_cleared{};  ///< the flags of the block, as long as it is here
+    std::array<bool, 2> is_cleared{};  ///< the flags of the block, while it is on the chip
   };
 
-  /// Whether a fragment asks for what is stored under it. With a stencil what is written keeps a part of that, unless both
-  /// parts are replaced.
+  /// Whether a fragment reads its stored words. With a stencil a write keeps a part of them, unless both parts are
+  /// replaced.
   [[nodiscard]] bool looks_at_depth(const PrimitiveState& state, bool is_full) const {
     const bool replaces = state.depth_write && state.tests_stencil && replaces_stencil_[state.is_back ? 1 : 0];
     return state.depth_test != DepthFunc::always || !is_full || (tests_alpha_ && state.writes_word()) ||
            (has_stencil_ && (state.tests_stencil || state.depth_write) && !replaces);
   }
   [[nodiscard]] static constexpr std::size_t number(TilePlane plane) { return static_cast<std::size_t>(plane); }
-  /// Of the words of a row of blocks.
+  /// Index of a word in a row of blocks.
   [[nodiscard]] int word_of(int x) const { return x / widths_.blocks.flag_word; }
   [[nodiscard]] std::size_t line_of(const BlockAddress& block) const {
     const auto low = [](int value, int bits) { return static_cast<std::size_t>(value & ((1 << bits) - 1)); };
     return low(block.y, widths_.line_y_bits) << widths_.line_x_bits | low(block.x, widths_.line_x_bits);
   }
 
-  /// A block that is wanted may be on its way to memory: how many evictions have to go first, the newest of it the last.
+  /// A needed block may still be on its way to memory: the number of evictions that must go first, up to its newest
+  /// one.
   int write_up_to(const BlockAddress& block) {
     for (std::size_t n = unwritten_.size(); n > 0; --n) {
       if (unwritten_[n - 1] != block) continue;

@@ -1,7 +1,7 @@
-// Clear flags: a bit for each block and plane, set: memory holds garbage there, and what counts is the value of the last fast
-// clear. A block is what a cache line holds (BlockGrid): 4x4 pixels, or with cache.kind tiles a tile. A fast clear sets
-// flags a word at a time; one falls when its block goes to memory; the others survive a flush, which writes the words, or
-// the clear colours themselves.
+// Clear flags: a bit for each block and buffer; set: memory is stale there, and the value of the last fast clear
+// counts. A block is the content of a cache line (BlockGrid): 4x4 pixels, or with cache.kind tiles a tile. A fast clear
+// sets flags a word at a time; a flag falls when its block goes to memory; the others survive a flush, which writes the
+// words, or the clear colours themselves.
 #pragma once
 
 #include <algorithm>
@@ -44,7 +44,7 @@ struct BlockStamp {
           static_cast<std::uint16_t>(y * widths.stamps.stamps_per_row + x)};
 }
 
-/// Where a request for a word of flags goes: word x of the row y of blocks.
+/// The address of a request for a word of flags: word x of the row y of blocks.
 [[nodiscard]] inline StampAddress flag_word_address(int word, int y, const Widths& widths) {
   const int per_tile = widths.blocks.per_tile;
   return {static_cast<std::uint16_t>(word), static_cast<std::uint16_t>(y / per_tile),
@@ -66,20 +66,20 @@ class BlockBits {
 
   [[nodiscard]] bool is_set(const BlockAddress& block) const { return is_set_[index(block.x, block.y)] != 0; }
   void set(const BlockAddress& block, bool value) { is_set_[index(block.x, block.y)] = value ? 1 : 0; }
-  /// Those of tiles (0, 0) to (last_x, last_y).
+  /// Sets the bits of tiles (0, 0) to (last_x, last_y).
   void set_tiles(int last_x, int last_y, bool value) {
     for (int y = 0; y < (last_y + 1) * per_tile_; ++y)
       std::fill_n(is_set_.begin() + static_cast<std::ptrdiff_t>(index(0, y)), (last_x + 1) * per_tile_, value ? 1 : 0);
   }
 
-  /// Those of the blocks `first` to `last`.
+  /// Sets the bits of the blocks `first` to `last`.
   void set_blocks(const BlockAddress& first, const BlockAddress& last, bool value) {
     for (int y = first.y; y <= last.y; ++y)
       std::fill_n(is_set_.begin() + static_cast<std::ptrdiff_t>(index(first.x, y)), last.x - first.x + 1,
                   value ? 1 : 0);
   }
 
-  /// Their words: visit(x, y, word), word x of the row y of blocks.
+  /// The words of these tiles: visit(x, y, word), word x of the row y of blocks.
   template <class Visit>
   void for_each_word(int last_x, int last_y, Visit&& visit) const {
     const int blocks = (last_x + 1) * per_tile_;
@@ -107,10 +107,10 @@ class ClearFlags {
   explicit ClearFlags(const Widths& widths) : depth_(widths), color_(widths) {}
 
   [[nodiscard]] bool is_set(TilePlane plane, const BlockAddress& block) const { return of(plane).is_set(block); }
-  /// Memory holds the block from now on.
+  /// The block is in memory from now on.
   void fall(TilePlane plane, const BlockAddress& block) { of(plane).set(block, false); }
 
-  /// A fast clear of the planes in `clears`, tiles (0, 0) to (last_x, last_y).
+  /// A fast clear of the buffers in `clears`, tiles (0, 0) to (last_x, last_y).
   void mark(int last_x, int last_y, const std::array<bool, 2>& clears) {
     for (const TilePlane plane : kTilePlanes)
       if (clears[static_cast<std::size_t>(plane)]) of(plane).set_tiles(last_x, last_y, true);
@@ -119,10 +119,10 @@ class ClearFlags {
   void mark_colors(const BlockAddress& first, const BlockAddress& last) {
     of(TilePlane::color).set_blocks(first, last, true);
   }
-  /// The clear values of a plane have been written to memory.
+  /// The clear values of a buffer have been written to memory.
   void resolve(TilePlane plane, int last_x, int last_y) { of(plane).set_tiles(last_x, last_y, false); }
 
-  /// The words of a plane: visit(x, y, word), word x of the row y of blocks.
+  /// The words of a buffer: visit(x, y, word), word x of the row y of blocks.
   template <class Visit>
   void for_each_word(TilePlane plane, int last_x, int last_y, Visit&& visit) const {
     of(plane).for_each_word(last_x, last_y, visit);

@@ -1,14 +1,14 @@
 // Coarse raster: the tiles of a primitive, row by row, sorted into outside, cut and inside.
 //
 // In: a SetupPacket. Out: a TilePacket for each tile that is neither outside nor behind its HiZ bound, and the
-// constants that wait in the context RAM. The end of the walk always sends one: if its last tile was left out, one
-// without a visit. A tile is outside when the largest value of one edge over its pixels is negative (trivial reject),
-// inside when the smallest value of every edge is not (trivial accept), cut otherwise.
+// constants for the context RAM. The end of the walk always sends a packet: if its last tile was skipped, one without a
+// visit. A tile is outside when the largest value of one edge over its pixels is negative (trivial reject), inside when
+// the smallest value of every edge is not (trivial accept), cut otherwise.
 //
-// Edge values leave here narrow: inside a tile they move by at most M = (T-1)(|dx| + |dy|), so saturating the value at the
-// first pixel to [-M_max - 1, M_max] leaves the sign of every sample as it was. A tile that an edge accepts or rejects
-// as a whole needs no case of its own. With several samples a pixel M has room for the way to a sample, and tiles are sorted by
-// edges moved by sample_edge_reach(): that of the sample that lies farthest out, wherever it is.
+// Edge values leave this stage narrow: inside a tile they change by at most M = (T-1)(|dx| + |dy|), so saturating the
+// value at the first pixel to [-M_max - 1, M_max] preserves the sign at every sample. A tile that an edge accepts or
+// rejects as a whole needs no case of its own. With several samples per pixel M includes the increment to a sample, and
+// tiles are classified by edges moved by sample_edge_reach(): to the farthest possible sample.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace halfplane {
 
 enum class TileClass { outside, cut, inside };
 
-/// Of one edge: the largest value over the pixels of a tile with `value` at its first one. dx, dy: subpixels.
+/// The largest value of an edge over the pixels of a tile with `value` at its first pixel. dx, dy: subpixels.
 [[nodiscard]] constexpr EdgeValue largest_in_tile(EdgeValue value, EdgeValue dx, EdgeValue dy, int tile_size) {
   return value + (tile_size - 1) * ((dx > 0 ? dx : 0) + (dy < 0 ? -dy : 0));
 }
@@ -49,8 +49,8 @@ enum class TileClass { outside, cut, inside };
   return edges;
 }
 
-/// Where a pixel has several samples, the edge values moved as far out or in as a sample of it may lie: with those a tile is
-/// outside when no sample of it can be inside an edge, and inside when all are.
+/// With several samples per pixel, the edge values moved as far out or in as a sample may lie: with them a tile is
+/// outside when no sample can be inside an edge, and inside when all are.
 [[nodiscard]] inline EdgeValues moved_by_samples(EdgeValues value, const EdgeDeltas& dx, const EdgeDeltas& dy,
                                                  bool outwards, const Widths& widths) {
   if (widths.has_samples == 0) return value;
@@ -62,11 +62,11 @@ enum class TileClass { outside, cut, inside };
 }
 
 /// The way through the tiles of a primitive's box. A row is walked to the right from its start, then from there to the
-/// left, each way until an edge has been left that gets no better that way, so wherever it starts nothing is overlooked.
-/// It starts below the first tile of the row above that was not outside.
+/// left, each way until the tile is outside an edge whose value does not grow in that direction, so no tile is missed
+/// wherever the walk starts. It starts below the first tile of the row above that was not outside.
 class TileWalk {
  public:
-  /// Tiles, inclusive; of the three edges, 0 for what has none.
+  /// Tiles, inclusive; edge deltas, 0 for a primitive without edges.
   TileWalk(int first_x, int first_y, int last_x, int last_y, const EdgeDeltas& edge_dy)
       : x_(first_x), y_(first_y), first_x_(first_x), last_x_(last_x), last_y_(last_y), start_x_(first_x) {
     for (std::size_t i = 0; i < 3; ++i) {
@@ -80,7 +80,7 @@ class TileWalk {
   /// Whether the walk ends with this tile, if it is not outside.
   [[nodiscard]] bool is_last() const { return is_last_column() && !must_return_ && y_ == last_y_; }
 
-  /// From a tile that lies outside of these edges to the next one. False: there is none.
+  /// Moves from a tile that lies outside these edges to the next tile. False: there is none.
   bool next(unsigned outside) {
     if ((outside & no_better_left_) != 0) must_return_ = false;  // nothing lies to the left of it
     const bool exits = is_last_column() || (outside & (goes_left_ ? no_better_left_ : no_better_right_)) != 0;
@@ -110,8 +110,8 @@ class TileWalk {
 
   int x_, y_;
   int first_x_, last_x_, last_y_;
-  int start_x_;                                        ///< of this row, then of the one below
-  unsigned no_better_right_ = 0, no_better_left_ = 0;  ///< edges that get no better that way
+  int start_x_;                                        ///< of this row, then of the next
+  unsigned no_better_right_ = 0, no_better_left_ = 0;  ///< edges whose value does not grow in that direction
   bool goes_left_ = false;
   bool must_return_ = false;  ///< there are tiles to the left of the start
   bool is_empty_ = true;      ///< every tile of the row so far was outside
@@ -151,7 +151,7 @@ struct TileOffset {
   return {subpixels(tile_x - (setup.left >> widths.tile_shift)), subpixels(tile_y - (setup.top >> widths.tile_shift))};
 }
 
-/// A plane at the anchor of the tile there, modulo 2^bits.
+/// A plane at the anchor of the tile at that offset, modulo 2^bits.
 [[nodiscard]] inline PlaneValue plane_at_tile(const Plane& plane, const TileOffset& offset, int bits) {
   return wrap_signed(static_cast<std::int64_t>(static_cast<std::uint64_t>(plane.value) +
                                                static_cast<std::uint64_t>(plane.step_x) * offset.dx +
@@ -180,19 +180,19 @@ struct TileOffset {
           std::min(setup.bottom - y0, last)};
 }
 
-/// What coarse_raster writes into the context RAM when it takes a primitive.
+/// The content of the context RAM for a primitive.
 [[nodiscard]] ContextPacket make_context(const SetupPacket& setup, const Widths& widths);
 
-/// Sees the steps of a walk as it takes them; the cycle model has one that gives them times.
+/// Watches the steps of a walk; the cycle model has a watch that gives them times.
 struct UnwatchedWalk {
-  static constexpr bool rejects = true;  ///< false: tiles outside an edge go on like all others
+  static constexpr bool rejects = true;  ///< false: tiles outside an edge are processed like all others
   void read_ahead() const {}             ///< the next tile's bound is about to be read
   void skip_outside() const {}           ///< a tile is outside
   void read_bound() const {}
   void skip_behind() const {}  ///< a tile is behind its bound
 };
 
-/// The stage: calls emit(TilePacket) in the order of the walk, which retires the visit.
+/// The stage: calls emit(TilePacket) in the order of the walk; emit retires the visit.
 template <class Emit, class Watch = UnwatchedWalk>
 void coarse_raster(const SetupPacket& setup, std::uint8_t slot, Hiz& hiz, const Widths& widths, CounterPacket& counters,
                    Emit&& emit, Watch&& watch = {}) {

@@ -1,7 +1,8 @@
-// What happens to a fragment's colour behind the tests, once its texture has been seen: alpha test, blending, dithering,
-// masks. The arithmetic of each, once.
+// Operations on a fragment's colour after the tests and its texture: alpha test, blending, dithering, masks. The
+// arithmetic of each exists once.
 //
-// Colours are codes of 8 bits, 0...255 for 0...1; a stored one is widened to that by repeating its upper bits. A blend is
+// Colours are codes of 8 bits, 0...255 for 0...1; a stored colour is widened to 8 bits by repeating its upper bits. A
+// blend is
 //   s fs + d fd  (or d fd - s fs, s fs - d fd), clamped at 0, divided by 255 and rounded once, clamped at 255
 // which is exact: (t + (t >> 8)) >> 8 with t = x + 128 is x / 255 to the nearest for every such sum.
 // Lane: std::uint32_t, or a vector of them. The scalar instance is the specification.
@@ -71,7 +72,7 @@ template <class Lane>
   return r | g << 8 | b << 16 | a << 24;
 }
 
-/// 8-bit codes to the stored code. rgb565 does not look at the last.
+/// 8-bit codes to the stored code. rgb565 ignores the last.
 template <class Lane>
 [[nodiscard]] constexpr Lane pack_color(ColorFormat format, const Channels<Lane>& c) {
   return format == ColorFormat::rgb565 ? pack_rgb565(c[0], c[1], c[2]) : pack_rgba8888(c[0], c[1], c[2], c[3]);
@@ -80,14 +81,14 @@ template <class Lane>
   return pack_color(format, Channels<std::uint32_t>{c[0], c[1], c[2], c[3]});
 }
 
-/// A stored code taken apart as it is stored, 5, 6, 5 bits or 8 each. Of rgb565 the last is 0.
+/// A stored code split into its fields, 5, 6, 5 bits or 8 each. For rgb565 the last is 0.
 template <class Lane>
 [[nodiscard]] constexpr Channels<Lane> unpack_color(ColorFormat format, const Lane& color) {
   if (format == ColorFormat::rgb565) return {color >> 11 & 31, color >> 5 & 63, color & 31, Lane{}};
   return {color & 255, color >> 8 & 255, color >> 16 & 255, color >> 24};
 }
 
-/// A stored code as 8-bit codes: 5 and 6 bits repeat their upper ones; what has no alpha is opaque.
+/// A stored code as 8-bit codes: 5 and 6 bits repeat their upper ones; a format without alpha is opaque.
 template <class Lane>
 [[nodiscard]] constexpr Channels<Lane> widen_color(ColorFormat format, const Lane& color) {
   const Channels<Lane> c = unpack_color(format, color);
@@ -95,8 +96,8 @@ template <class Lane>
   return {c[0] << 3 | c[0] >> 2, c[1] << 2 | c[1] >> 4, c[2] << 3 | c[2] >> 2, Lane{} + 255};
 }
 
-/// Ordered dithering: the threshold of a pixel, one of sixteen (Bayer's 4x4 matrix). A code is rounded up where what is
-/// lost is more than (threshold + 1/2) / 16.
+/// Ordered dithering: the threshold of a pixel, one of sixteen (Bayer's 4x4 matrix). A code is rounded up where the
+/// lost fraction is more than (threshold + 1/2) / 16.
 [[nodiscard]] constexpr std::uint32_t dither_threshold(int x, int y) {
   constexpr std::array<std::uint8_t, 16> kBayer{0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
   return 15U - kBayer[static_cast<std::size_t>((y & 3) * 4 + (x & 3))];
@@ -145,7 +146,7 @@ template <class Lane>
   return Lane{};
 }
 
-/// One channel of the sum.
+/// One channel of the blended colour.
 template <class Lane>
 [[nodiscard]] constexpr Lane blend_channel(BlendEquation equation, const Lane& s, const Lane& fs, const Lane& d,
                                            const Lane& fd) {
@@ -162,23 +163,23 @@ template <class Lane>
 
 // --- the operations of a draw ---------------------------------------------------------------------------------------
 
-/// What a draw does with colours. Made so that draws which do the same are equal.
+/// Colour operations of a draw. Normalised so that draws with equal effect are equal.
 struct ColorOps {
-  BlendFactors factors;                                ///< one, zero: the fragment's colour as it is
+  BlendFactors factors;                                ///< one, zero: the fragment's colour unchanged
   std::array<BlendEquation, 2> equation{};             ///< of colour, of alpha
-  BlendColor constant{};                               ///< 0 where no factor is one
+  BlendColor constant{};                               ///< 0 unless a factor uses it
   std::array<bool, 4> writes{true, true, true, true};  ///< channels
   bool dithers = false;
   bool operator==(const ColorOps&) const = default;
 
-  /// The stored code is that of the fragment's colour: all there is without these operations.
+  /// The stored code is that of the fragment's colour: no operation has an effect.
   [[nodiscard]] constexpr bool is_plain() const { return *this == ColorOps{}; }
   [[nodiscard]] constexpr bool blends() const {
     return factors != BlendFactors{} || equation != std::array<BlendEquation, 2>{};
   }
-  /// Whether what is stored takes part in what will be.
+  /// Whether the result depends on the stored colour.
   [[nodiscard]] constexpr bool reads_stored() const { return blends() || writes != std::array{true, true, true, true}; }
-  /// Whether a factor is made of the constant.
+  /// Whether a factor uses the constant.
   [[nodiscard]] constexpr bool reads_constant() const {
     const auto is_constant = [](BlendFactor factor) {
       return factor >= BlendFactor::constant_color && factor <= BlendFactor::one_minus_constant_alpha;
@@ -188,7 +189,7 @@ struct ColorOps {
   }
 };
 
-/// Whether a source of alpha 255 replaces what is stored, whatever both are.
+/// Whether a source of alpha 255 replaces the stored colour, for all values of both.
 [[nodiscard]] constexpr bool replaces_where_opaque(const ColorOps& ops, ColorFormat format) {
   const auto is_one = [](BlendFactor f) { return f == BlendFactor::one || f == BlendFactor::src_alpha; };
   const auto is_zero = [](BlendFactor f) { return f == BlendFactor::zero || f == BlendFactor::one_minus_src_alpha; };
@@ -200,7 +201,7 @@ struct ColorOps {
   return has_color && (has_alpha || format != ColorFormat::rgba8888) && !ops.dithers && ops.writes == ColorOps{}.writes;
 }
 
-/// What of `state` matters to a format: rgb565 has no alpha, rgba8888 nothing to dither.
+/// The operations of `state` that affect a format: rgb565 has no alpha, rgba8888 needs no dithering.
 [[nodiscard]] constexpr ColorOps color_ops(const State& state, ColorFormat format) {
   const bool has_alpha = format == ColorFormat::rgba8888;
   const auto takes_factors = [](BlendEquation e) { return e != BlendEquation::min && e != BlendEquation::max; };
@@ -213,7 +214,7 @@ struct ColorOps {
     if (!takes_factors(ops.equation[1]) || !has_alpha)
       ops.factors.src_alpha = BlendFactor::one, ops.factors.dst_alpha = BlendFactor::zero;
     if (ops.reads_constant()) ops.constant = state.blend_color;
-    // subtract with one and zero takes nothing away.
+    // subtract with one and zero subtracts nothing
     for (const std::size_t part : {0U, 1U}) {
       const BlendFactors& f = ops.factors;
       const bool is_source = part == 0 ? f.src == BlendFactor::one && f.dst == BlendFactor::zero
@@ -233,7 +234,7 @@ struct ColorOps {
   return state.color_write && (mask[0] || mask[1] || mask[2] || (mask[3] && format == ColorFormat::rgba8888));
 }
 
-/// The colour that `source` and `stored` make, 8-bit codes.
+/// The blend of `source` and `stored`, 8-bit codes.
 template <class Lane>
 [[nodiscard]] constexpr Channels<Lane> blended(const ColorOps& ops, const Channels<Lane>& source,
                                                const Channels<Lane>& stored) {
@@ -257,7 +258,7 @@ template <class Lane>
   return result;
 }
 
-/// The code that is stored where `source` comes upon `stored`. `threshold`: dither_threshold() of the pixel.
+/// The code to store for `source` over `stored`. `threshold`: dither_threshold() of the pixel.
 template <class Lane>
 [[nodiscard]] constexpr Lane store_color(const ColorOps& ops, ColorFormat format, const Channels<Lane>& source,
                                          const Lane& stored, const Lane& threshold) {

@@ -1,5 +1,5 @@
-// Color packets: the states of the colour units as tokens carry them: colour operations, its constant, and
-// the alpha test (state_packets.hpp says where the words lie).
+// Color packets: the states of the colour units in tokens: colour operations, the blend constant, and the alpha test
+// (state_packets.hpp gives the place of the words).
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace halfplane {
 
-/// The words of the registers that a draw wants; none: it does not look at that one.
+/// The words of the registers that a draw needs; none: it does not use that register.
 struct ColorWords {
   std::optional<std::uint32_t> ops, constant, alpha;
 };
@@ -18,8 +18,8 @@ namespace color_packets_detail {
 inline constexpr int kFactor = 4, kEquation = 3, kFunction = 3, kByte = 8;  // bits
 }
 
-/// ColorOps without the constant, lowest first: four factors, two equations, channels that are written, dithers, blends,
-/// reads what is stored. The last two follow from the rest, stored for readers that need no other field.
+/// ColorOps without the constant, lowest first: four factors, two equations, channels to write, dithers, blends, reads
+/// stored colours. The last two follow from the rest, stored for readers that need no other field.
 [[nodiscard]] constexpr std::uint32_t pack(const ColorOps& ops) {
   using namespace color_packets_detail;
   std::uint32_t word = 0;
@@ -40,7 +40,7 @@ inline constexpr int kFactor = 4, kEquation = 3, kFunction = 3, kByte = 8;  // b
   return word;
 }
 
-/// Back; the constant stays as it is.
+/// The inverse; the constant is unchanged.
 constexpr void unpack(std::uint64_t word, ColorOps& ops) {
   using namespace color_packets_detail;
   const auto take = [&word](int bits) {
@@ -69,7 +69,7 @@ constexpr void unpack(std::uint64_t word, ColorOps& ops) {
   return constant;
 }
 
-/// The function, above it the reference, and above that whether alpha says how many of a pixel's samples are drawn.
+/// The function, above it the reference, and above that alpha to coverage.
 [[nodiscard]] constexpr std::uint32_t pack(const AlphaTest& alpha, bool covers = false) {
   using namespace color_packets_detail;
   return static_cast<std::uint32_t>(alpha.func) | std::uint32_t{alpha.reference} << kFunction |
@@ -84,7 +84,7 @@ constexpr void unpack(std::uint64_t word, ColorOps& ops) {
   return (word >> (kFunction + kByte) & 1) != 0;
 }
 
-/// What a draw asks of the units that this hardware has.
+/// The words of a draw for the units of this hardware.
 [[nodiscard]] inline ColorWords color_words(const FragmentOps& ops, const Config& config) {
   ColorWords words;
   if (packs_at_write(config) && ops.state.color_write) {
@@ -99,16 +99,16 @@ constexpr void unpack(std::uint64_t word, ColorOps& ops) {
 struct ColorState {
   ColorOps ops;
   AlphaTest alpha;
-  bool alpha_covers = false;  ///< alpha says how many of a pixel's samples are drawn
+  bool alpha_covers = false;  ///< alpha to coverage
 
   /// Whether a fragment may be dropped by its alpha.
   [[nodiscard]] constexpr bool tests_alpha() const { return alpha.func != DepthFunc::always || alpha_covers; }
-  /// Whether it is kept at sample `k` of its pixel's `samples`.
+  /// Whether the fragment is kept at sample `k` of its pixel's `samples`.
   [[nodiscard]] constexpr bool keeps(std::uint32_t value, std::uint32_t k, int samples) const {
     return alpha_keeps(alpha, alpha_covers ? samples : 0, value, k);
   }
 
-  /// A token sets one of them.
+  /// A token sets one of the registers.
   constexpr void set(StateRegister which, std::uint64_t word) {
     if (which == StateRegister::color_ops) unpack(word, ops);
     if (which == StateRegister::blend_constant) ops.constant = unpack_constant(word);
@@ -119,7 +119,7 @@ struct ColorState {
   }
 };
 
-/// Of a stamp's samples those that their alpha keeps. `alpha_of(s)`: the code of sample s.
+/// The samples of a stamp that their alpha keeps. `alpha_of(s)`: the code of sample s.
 template <class AlphaOf>
 [[nodiscard]] SampleMask alpha_passes(const ColorState& colors, SampleMask samples, const Widths& widths,
                                       AlphaOf&& alpha_of) {
@@ -139,7 +139,7 @@ template <class AlphaOf>
                       [&](std::size_t s) { return color_channels(fragment_code(fragment, s, widths))[3]; });
 }
 
-/// A token may set one of them.
+/// A token may set one of the registers.
 inline void set_colors(const FragmentPacket& fragment, ColorState& colors, const Widths& widths) {
   if (fragment.kind != PrimitiveKind::state) return;
   const StateRegister which = state_register(fragment.state);

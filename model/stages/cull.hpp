@@ -1,9 +1,9 @@
-// Cull: drops triangles of no area, those that face the wrong way, those without a pixel centre in the scissor, and
-// small ones that cover none.
+// Cull: drops triangles of area 0, triangles with the wrong facing, triangles without a pixel centre in the scissor,
+// and small ones that cover none.
 //
 // In: a PrimitivePacket. Out: a TrianglePacket in canonical order with its area and box, or nothing. Positive area =
-// clockwise as seen on the screen (y down). Other kinds than triangles pass as they are, unless their box is empty; of a state
-// that overtakes the setup of triangles only the last vertex's codes do.
+// clockwise as seen on the screen (y down). Other kinds pass unchanged, unless their box is empty; a state that
+// overtakes the setup of triangles keeps only the last vertex's codes.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +24,7 @@ namespace halfplane {
   return ax * by - ay * bx;
 }
 
-/// Whether a triangle of that area, whatever its unit, shows its back: positive is clockwise. Lines and points, a triangle's
+/// Whether a triangle of that area, in any unit, shows its back: positive is clockwise. Lines and points, a triangle's
 /// outline too, show their front.
 template <class Area>
 [[nodiscard]] constexpr bool shows_back(const Area& area, FrontFace front) {
@@ -33,7 +33,7 @@ template <class Area>
 
 enum class CullResult { keep, backface, zero_area };
 
-/// `backface` stands for whichever side `mode` removes.
+/// `backface` stands for the side that `mode` removes.
 [[nodiscard]] constexpr CullResult cull(std::int64_t area, Cull mode, FrontFace front) {
   if (area == 0) return CullResult::zero_area;
   const bool is_front = !shows_back(area, front);
@@ -49,7 +49,7 @@ enum class CullResult { keep, backface, zero_area };
 struct PixelBounds {
   int left = 0, top = 0, right = -1, bottom = -1;
   [[nodiscard]] constexpr bool is_empty() const { return left > right || top > bottom; }
-  /// Pixels of it. Precondition: not empty.
+  /// Number of its pixels. Precondition: not empty.
   [[nodiscard]] constexpr std::uint64_t samples() const {
     return static_cast<std::uint64_t>(right - left + 1) * static_cast<std::uint64_t>(bottom - top + 1);
   }
@@ -66,7 +66,7 @@ struct PixelBounds {
           std::min(limit.right, (x_max - half) >> grid_bits), std::min(limit.bottom, (y_max - half) >> grid_bits)};
 }
 
-/// The same where a pixel has `samples` samples: with several, wherever they lie, the pixels that the bounding box touches.
+/// The same for `samples` samples per pixel: with several, wherever they lie, the pixels that the bounding box touches.
 [[nodiscard]] inline PixelBounds sample_bounds(const std::array<SnappedVertex, 3>& v, const PixelBounds& limit,
                                                int grid_bits, int samples) {
   if (samples == 1) return pixel_bounds(v, limit, grid_bits);
@@ -76,7 +76,8 @@ struct PixelBounds {
           std::min(limit.right, x_max >> grid_bits), std::min(limit.bottom, y_max >> grid_bits)};
 }
 
-/// Positive area and smallest (Y, X, Z) first: all six orders of the vertices become one. Their indices in that order.
+/// Positive area and smallest (Y, X, Z) first: all six orders of the vertices become one. Returns the indices in that
+/// order.
 [[nodiscard]] inline std::array<std::size_t, 3> canonical_order(const std::array<SnappedVertex, 3>& v,
                                                                 std::int64_t area) {
   const auto first = static_cast<std::size_t>(std::min_element(v.begin(), v.end(), canonically_before) - v.begin());
@@ -114,8 +115,9 @@ template <class Box>
   return {box.left, box.top, box.right, box.bottom};
 }
 
-/// One sample a pixel. Whether a triangle covers no sample and is small enough for the pipelined cull to find that: its box has
-/// at most 2x2 samples, and each of its sides, in the order of `v`, the input of cull, is in [-4, 4) pixels long in x and in y.
+/// With one sample per pixel: whether a triangle covers no sample and is small enough for the pipelined cull to find
+/// that: its box has at most 2x2 samples, and each of its sides, in the order of `v`, the input of cull, is in [-4, 4)
+/// pixels long in x and in y.
 [[nodiscard]] inline bool provably_covers_no_sample(const TrianglePacket& triangle,
                                                     const std::array<SnappedVertex, 3>& v, const Widths& widths) {
   const PixelBox& box = triangle.box;
@@ -137,11 +139,11 @@ template <class Box>
   return true;
 }
 
-/// The stage. Each dropped triangle is counted once, by the first reason that holds. `looks_at_samples`: as the pipelined
-/// hardware does, the serial one does not.
+/// The stage. Each dropped triangle is counted once, by the first reason that holds. `looks_at_samples`: true for the
+/// pipelined hardware, false for the serial one.
 [[nodiscard]] inline std::optional<TrianglePacket> cull(const PrimitivePacket& in, const Widths& widths,
                                                         CounterPacket& counters, bool looks_at_samples = false) {
-  std::optional<TrianglePacket> kept;  // the one that is returned: a packet is much to copy
+  std::optional<TrianglePacket> kept;  // the returned one: a packet is expensive to copy
   const auto keep = [&](const PixelBox& box) -> TrianglePacket& {
     TrianglePacket& out = kept.emplace();
     out.kind = in.kind;

@@ -1,8 +1,9 @@
-// Depth encode: the depth that interpolate gives, as the code that is stored and compared.
+// Depth encode: converts the interpolated depth into the code that is stored and compared.
 //
-// In: plane code, u<depth.bits>. Out: code of depth.format. Nothing to do for the format `plane`, which is what the RTL
-// has. A float costs hardware a leading-zero count and a shift; the mappings w and log, which are not affine on the
-// screen, a division and a logarithm for each fragment: the plane then holds the std depth, from which they are computed.
+// In: plane code, u<depth.bits>. Out: code of depth.format. The identity for the format `plane`, the only one of the
+// RTL. A float costs hardware a leading-zero count and a shift; the mappings w and log, which are not affine on the
+// screen, a division and a logarithm for each fragment: the plane then holds the std depth, from which they are
+// computed.
 #pragma once
 
 #include <array>
@@ -18,16 +19,16 @@ using DepthPlanes = std::array<double, 2>;
 
 class DepthEncode {
  public:
-  /// `planes` (Scene::planes) is needed by w and log alone. Throws InputError if they lack it.
+  /// `planes` (Scene::planes) is needed for w and log only. Throws InputError if they lack it.
   DepthEncode(const Config& config, const std::optional<DepthPlanes>& planes);
 
   /// Stored codes are plane codes.
   [[nodiscard]] bool is_identity() const { return is_identity_; }
 
-  /// The stored code of a plane code. Rises with it.
+  /// The stored code of a plane code. Monotonic.
   [[nodiscard]] std::uint32_t operator()(std::uint32_t plane_code) const;
 
-  /// The stored code of a window depth that no mapping has touched: a clear's.
+  /// The stored code of a window depth to which no mapping applies: a clear's.
   [[nodiscard]] std::uint32_t of_window(double z) const;
 
   /// The window depth in [0, 1] that a stored code stands for, and the plane's value there, 0...1.
@@ -47,7 +48,7 @@ class DepthEncode {
   long double log_ratio_ = 1;  ///< its logarithm
 };
 
-/// The format that is stored: depth.format, with `plane` resolved.
+/// The stored format: depth.format, with `plane` resolved.
 [[nodiscard]] DepthFormat stored_format(const Config& config);
 
 }  // namespace halfplane

@@ -1,11 +1,13 @@
-// Depth test: a stamp's depth codes against the stored ones, the stencil before that, and what follows from the result.
+// Depth test: compares a stamp's depth codes with the stored ones, after the stencil test, and makes the write and the
+// retirement.
 //
-// In: a FragmentPacket and the words stored under it: depth codes, the stencil above each (stencil.bits). Out: a WritePacket
-// but for its colours, which rop adds, and at the end of a tile visit a RetirePacket. The arithmetic of the test is that of
-// fragment_ops.hpp.
+// In: a FragmentPacket and the words stored under it: depth codes, the stencil above each (stencil.bits). Out: a
+// WritePacket without its colours, which rop adds, and at the end of a tile visit a RetirePacket. The arithmetic of the
+// test is that of fragment_ops.hpp.
 //
-// Without a texture unit the alpha test is here, where the colour is known. With one it is downstream of it; then a draw
-// that tests alpha and writes depth is late: what passes here is only written, and counted as written, once its alpha is known.
+// Without a texture unit the alpha test is here, where the colour is known. With one it is downstream of it; then a
+// draw that tests alpha and writes depth is late: passed samples are only written, and counted as written, once their
+// alpha is known.
 #pragma once
 
 #include <algorithm>
@@ -17,19 +19,19 @@
 
 namespace halfplane {
 
-/// Only these samples are written.
+/// Restricts the writes to these samples.
 inline void keep(SampleMask kept, WritePacket& packet) {
   packet.write_depth = packet.write_depth & kept;
   packet.write_color = packet.write_color & kept;
 }
 
-/// What is not written has the fragment's own depth in its packet.
+/// Samples that are not written have the fragment's own depth in the packet.
 inline void complete_depths(const FragmentPacket& fragment, WritePacket& packet, const Widths& widths) {
   for (std::size_t s = 0; s < static_cast<std::size_t>(widths.samples); ++s)
     if (!packet.write_depth.has(s)) packet.depth[s] = fragment_depth(fragment, s, widths);
 }
 
-/// A stored depth: the stencil above the depth code, where there is one.
+/// A stored depth: the stencil above the depth code, if there is one.
 [[nodiscard]] inline std::uint32_t depth_of(std::uint32_t word, const Widths& widths) {
   return word & static_cast<std::uint32_t>(widths.depth().code.range.hi);
 }
@@ -40,8 +42,8 @@ inline void complete_depths(const FragmentPacket& fragment, WritePacket& packet,
   return widths.stencil_flags != 0 ? stencil << widths.depth().code.bits | depth : depth;
 }
 
-/// The covered samples of a fragment against `stored`, the words of the stamp's samples in the depth RAM. Writes all of
-/// `packet` but its colours and the depths of samples that are not written.
+/// The covered samples of a fragment against `stored`, the words of the stamp's samples in the depth RAM. Fills all of
+/// `packet` except its colours and the depths of samples that are not written.
 inline void test_samples(const FragmentPacket& fragment, std::span<const std::uint32_t> stored,
                          const StencilState& stencil, const Widths& widths, WritePacket& packet) {
   const FragmentState& state = fragment.state;
@@ -75,8 +77,8 @@ inline void test_samples(const FragmentPacket& fragment, std::span<const std::ui
   return has_texture_planes(config) && tests_alpha && state.writes_word();
 }
 
-/// What a visit that writes depth does to its tile's bound. `is_full`: every sample of the tile was covered and written,
-/// the largest depth code was `largest`; `has_passed`: one at least may be.
+/// The effect of a visit that writes depth on its tile's bound. `is_full`: every sample of the tile was covered and
+/// written, the largest depth code was `largest`; `has_passed`: at least one may be written.
 inline void set_hiz_update(RetirePacket& packet, const PrimitiveState& state, bool is_full, bool has_passed,
                            std::uint32_t largest, const Config& config, const Widths& widths) {
   if (config.hiz_bits == 0 || !state.depth_write) return;
@@ -89,10 +91,11 @@ inline void set_hiz_update(RetirePacket& packet, const PrimitiveState& state, bo
   }
 }
 
-/// What the stage gathers over the stamps of one tile visit.
+/// Data that the stage collects over the stamps of one tile visit.
 class TileVisit {
  public:
-  /// `passed`: samples whose depth may be written, if the state writes any; `written`: those of them where it surely is.
+  /// `passed`: samples whose depth may be written, if the state writes any; `written`: those whose depth is certainly
+  /// written.
   void add(const FragmentPacket& fragment, SampleMask passed, SampleMask written, const Widths& widths) {
     full_stamps_ += written == SampleMask::all(widths.samples) ? 1 : 0;
     has_passed_ = has_passed_ || passed.any();
@@ -108,7 +111,7 @@ class TileVisit {
   }
 
  private:
-  int full_stamps_ = 0;  ///< stamps of which every sample was covered and passed
+  int full_stamps_ = 0;  ///< stamps with every sample covered and passed
   bool has_passed_ = false;
   std::uint32_t largest_ = 0;  ///< depth code
 };

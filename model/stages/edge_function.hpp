@@ -1,5 +1,5 @@
-// The edge function: on which side of an edge a pixel centre lies. cull evaluates it once per edge, coarse_raster and
-// fine_raster step it.
+// The edge function: the side of an edge on which a pixel centre lies. cull evaluates it once per edge, coarse_raster
+// and fine_raster step it.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ using EdgeValue = std::int64_t;  ///< floor((E + bias) / 2^s) at a pixel centre;
   return dx * (py - from.y) - dy * (px - from.x) - bias;
 }
 
-/// What the pipeline has of it, >= 0 when covered: floor((E - bias) / 2^s).
+/// The pipeline's edge function, >= 0 when covered: floor((E - bias) / 2^s).
 [[nodiscard]] constexpr EdgeValue edge_function(const SnappedVertex& from, const SnappedVertex& to, int x, int y,
                                                 int grid_bits, int bias) {
   return exact_edge(from, to, x, y, grid_bits, bias) >> grid_bits;
@@ -38,19 +38,19 @@ using EdgeValue = std::int64_t;  ///< floor((E + bias) / 2^s) at a pixel centre;
   return edge_function(from, to, x, y, grid_bits, is_top_left(from, to) ? 0 : 1);
 }
 
-/// The grid_bits bits that edge_function() has lost below its value: the same at every pixel centre.
+/// The grid_bits bits that edge_function() has dropped below its value: the same at every pixel centre.
 [[nodiscard]] constexpr EdgeValue edge_low(const SnappedVertex& from, const SnappedVertex& to, int grid_bits) {
   return exact_edge(from, to, 0, 0, grid_bits, is_top_left(from, to) ? 0 : 1) & ((EdgeValue{1} << grid_bits) - 1);
 }
 
-/// c: what an edge gains from the centre of a pixel to a sample that lies `o` from it, in 2^-s pixel. `step_x`, `step_y`: what
-/// it gains per pixel.
+/// c: the increment of an edge from the centre of a pixel to a sample at `o` from it, in 2^-s pixel. `step_x`,
+/// `step_y`: increments per pixel.
 [[nodiscard]] constexpr EdgeValue sample_edge_offset(EdgeValue low, EdgeValue step_x, EdgeValue step_y,
                                                      const SampleOffset& o, int grid_bits) {
   return (low + step_x * o.x + step_y * o.y) >> grid_bits;
 }
 
-/// Wherever in its pixel a sample lies, |c| is at most this.
+/// Bound of |c| for any sample position in a pixel.
 [[nodiscard]] constexpr EdgeValue sample_edge_reach(EdgeValue step_x, EdgeValue step_y) {
   return ((step_x < 0 ? -step_x : step_x) + (step_y < 0 ? -step_y : step_y) + 1) >> 1;
 }

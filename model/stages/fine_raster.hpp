@@ -1,12 +1,11 @@
 // Fine raster: one tile in, the covered samples of its stamps out.
 //
 // In: a TilePacket and the triangle's EdgeContext. Out: a StampPacket for each stamp with at least one covered sample,
-// row by row. Time: docs/pipeline.md.
-// A sample is covered when all three edge values are >= 0 there and it lies in the tile's box (which carries the scissor).
-// Where a pixel has several samples, all of them are looked at, and its centre too: at an uncovered one it is not shaded.
-// The last row of stamps ends the visit: its last covered stamp, or, when it has none, an empty one at its first
-// column. So the end is known without looking ahead further than a row. A packet without a visit passes as an empty
-// stamp.
+// row by row. Time: docs/pipeline.md. A sample is covered when all three edge values are >= 0 there and it lies in the
+// tile's box (which carries the scissor). With several samples per pixel all of them are tested, and the centre too: an
+// uncovered centre is not shaded. The last row of stamps ends the visit: its last covered stamp, or, if it has none, an
+// empty one at its first column. So the end is known with one row of look-ahead. A packet without a visit passes as an
+// empty stamp.
 #pragma once
 
 #include "triangle_setup.hpp"
@@ -33,13 +32,13 @@ namespace halfplane {
   return context;
 }
 
-/// The edges of a triangle at the place of one sample of every pixel: what each gains from the pixel's centre.
+/// The edges of a triangle at one sample position of every pixel: increments from the pixel's centre.
 using EdgePlace = EdgeDeltas;
 
-/// At the centre of pixels, where one sample lies, and at each of several samples.
+/// Edges at the centre of pixels, the position of a single sample, and at each of several samples.
 struct EdgePlaces {
   EdgePlace centre{};
-  std::array<EdgePlace, kMaxPixelSamples> sample{};  ///< of one sample: the centre
+  std::array<EdgePlace, kMaxPixelSamples> sample{};  ///< with one sample: the centre
 
   EdgePlaces(const EdgeContext& edges, const Widths& widths) {
     for (std::size_t k = 0; widths.has_samples != 0 && k < static_cast<std::size_t>(widths.pixel_samples); ++k)
@@ -56,7 +55,7 @@ struct EdgePlaces {
   return value;
 }
 
-/// Whether no edge is negative at a place of the pixel with these edge values: the sign of the three together is clear.
+/// Whether no edge is negative at a place of the pixel with these edge values: the sign bit of their OR is 0.
 [[nodiscard]] constexpr bool is_inside(const EdgeDeltas& edge, const EdgePlace& place) {
   return ((edge[0] + place[0]) | (edge[1] + place[1]) | (edge[2] + place[2])) >= 0;
 }
@@ -71,7 +70,7 @@ struct EdgePlaces {
   return is_in_box(tile, x, y) && (tile.is_inside || is_inside(edges_at(tile, edges, x, y), place));
 }
 
-/// Gives a stamp whose first pixel is `origin` of the tile its coverage: of its samples, and of its pixels' centres.
+/// Sets the coverage of a stamp whose first pixel is `origin` of the tile: of its samples, and of its pixels' centres.
 inline void cover_stamp(const TilePacket& tile, const EdgeContext& edges, const EdgePlaces& places, PixelOffset origin,
                         const Widths& widths, StampPacket& stamp) {
   const StampGrid stamps = widths.stamps;
@@ -94,7 +93,7 @@ inline void cover_stamp(const TilePacket& tile, const EdgeContext& edges, const 
   stamp.centre = centre;
 }
 
-/// The parts of a stamp that are its tile's.
+/// The fields of a stamp that are its tile's.
 [[nodiscard]] inline StampPacket empty_stamp(const TilePacket& tile) {
   StampPacket stamp;
   stamp.kind = tile.kind;
@@ -104,7 +103,7 @@ inline void cover_stamp(const TilePacket& tile, const EdgeContext& edges, const 
   return stamp;
 }
 
-/// Calls emit(StampPacket) for every stamp of the tile that has coverage or ends something.
+/// Calls emit(StampPacket) for every stamp of the tile that has coverage or ends a visit.
 template <class Emit>
 void fine_raster(const TilePacket& tile, const EdgeContext& edges, const Widths& widths, Emit&& emit) {
   const StampGrid& stamps = widths.stamps;
@@ -116,7 +115,7 @@ void fine_raster(const TilePacket& tile, const EdgeContext& edges, const Widths&
     return;
   }
   const EdgePlaces places(edges, widths);
-  StampPacket held = stamp;  // the last one of the last row so far
+  StampPacket held = stamp;  // the last covered stamp of the last row so far
   held.stamp = static_cast<std::uint16_t>(stamps.stamp_at(0, last_row * size));
   for (int row = tile.box.top / size; row <= last_row; ++row) {
     for (int column = tile.box.left / size; column <= tile.box.right / size; ++column) {

@@ -8,10 +8,10 @@
 namespace halfplane {
 namespace {
 
-constexpr double kFirstTrace = 1.0 / 2048;  // of the fog: less is none
-constexpr double kHair = 1 + 1.0 / 1024;    // a linear fog begins and ends inside its table, not at the ends of it
+constexpr double kFirstTrace = 1.0 / 2048;  // of the fog: less is ignored
+constexpr double kHair = 1 + 1.0 / 1024;    // a linear fog begins and ends inside its table, not at its ends
 
-/// e^-x, x >= 0, within 2 ulp: 2^-n times the series of what is left, at most ln 2 / 2 on either side.
+/// e^-x, x >= 0, within 2 ulp: 2^-n times the series of the rest, at most ln 2 / 2 in magnitude.
 double exp_of_minus(double x) {
   if (!(x < 700)) return 0;
   constexpr double kLog2E = 1.4426950408889634, kUpper = 0x1.62e42fee00000p-1, kLower = 0x1.a39ef35793c76p-33;
@@ -24,25 +24,25 @@ double exp_of_minus(double x) {
 
 double start_of(const Fog& fog) { return std::min(fog.start, fog.end * 255 / 256); }
 
-/// Whether f is the same at every distance: a linear fog that ends at the eye, and one without density.
+/// Whether f is the same at every distance: a linear fog that ends at the eye, or a fog of density 0.
 bool is_constant(const Fog& fog) { return fog.kind == FogKind::linear ? fog.end <= 0 : fog.start <= 0; }
 
-/// The exponent of the largest power of two that is not above x > 0.
+/// The exponent of the largest power of two not above x > 0.
 int exponent_of(double x) {
   int exponent = 0;
   (void)std::frexp(x, &exponent);
   return exponent - 1;
 }
 
-/// The distance from which on at most 2^-12 of the colour is left.
+/// The distance from which on at most 2^-12 of the colour remains.
 double farthest(const Fog& fog) {
-  constexpr double kLog = 8.317766166719343, kRoot = 2.8840537732018747;  // of 2^12, and of that
+  constexpr double kLog = 8.317766166719343, kRoot = 2.8840537732018747;  // ln 2^12, and its square root
   const double w =
       fog.kind == FogKind::linear ? fog.end * kHair : (fog.kind == FogKind::exp ? kLog : kRoot) / fog.start;
   return std::clamp(w, 1e-300, 1e300);
 }
 
-/// The most of f's derivatives of q, times q, q^2 and q^3: how much f changes, and how far it is from a straight line.
+/// Bounds of f's derivatives by q, times q, q^2 and q^3: how much f changes, and how far it is from a straight line.
 struct Bends {
   double first, second, third;
 };
@@ -79,7 +79,7 @@ FogTable::FogTable(const Fog& fog, const std::array<std::uint8_t, 3>& color, int
   }
 }
 
-/// The fewest octaves beyond which there is nothing to be seen.
+/// The fewest octaves outside which f is constant in effect.
 void FogTable::find_range() {
   if (is_constant(fog_)) return;
   first_ = exponent_of(1 / farthest(fog_));
@@ -92,7 +92,7 @@ void FogTable::find_range() {
 FogTable::Line FogTable::line_from(double q, double next) const {
   const auto at = [this](double of) { return fog_factor(fog_, 1 / of, false); };
   const double first = at(q), last = at(next), off = at((q + next) / 2) - (first + last) / 2;
-  // A place stands for all q that begin with its bits, the middle of them.
+  // A place stands for all q that begin with its bits; their middle is used.
   const double middle = (last - first) * std::ldexp(0.5, -place_bits_);
   const double most = std::ldexp(1.0, kFogStartBits - 1) - 1;
   const auto rounded = [most](double value, double least) {
@@ -133,13 +133,13 @@ double FogTable::error_bound() const {
   const double straight = (bends.second + 1.5 * bends.third / lines) / (16 * lines * lines);
   const double far = fog_factor(fog_, std::ldexp(1.0, -first_)),
                near = 1 - fog_factor(fog_, std::ldexp(1.0, -first_ - (1 << octave_bits_)));
-  // What lies beyond an end is as the middle of the place there.
+  // Beyond an end f is that of the middle of the end's place.
   return straight + rounding + std::max(far, near) + std::ldexp(bends.first, -kFogPlaceBits - 1);
 }
 
 std::shared_ptr<const FogTable> fog_table(const State& state) {
   if (!state.fog) return nullptr;
-  // Contexts are made again and again, of a few states.
+  // Contexts are made repeatedly, for few states.
   constexpr std::size_t kKept = 8;
   static thread_local std::array<std::shared_ptr<const FogTable>, kKept> kept;
   static thread_local std::size_t next = 0;

@@ -1,15 +1,16 @@
-// Fog: a fragment's colour gives way to that of the fog, the more the farther it is from the eye.
+// Fog: blends a fragment's colour with the fog's colour by its distance from the eye.
 //
-//   f                of the distance w (scene.hpp, Fog), by a table of q = 1/w, which a pixel has anyway
-//   colour           floor((C f + fog (2^12 - f)) / 2^12 + 1/2) of R, G and B, f in 2^-12
+//   f                from the distance w (scene.hpp, Fog), by a table of q = 1/w, which a pixel has anyway
+//   colour           floor((C f + fog (2^12 - f)) / 2^12 + 1/2) for R, G and B, f in 2^-12
 //
 // The table is looked up by the floating representation of q, read as one integer: exponent and kPlaceBits bits of the
-// mantissa. That is a piecewise linear logarithm of q: so many places in each octave, straight inside of an octave. 2^lines
-// lines share 2^octaves octaves, from the last q that shows a trace of the colour to the first that shows no fog; beyond them
-// the first and the last place count. Few octaves, as of a fog that begins far off, have many lines each.
+// mantissa. That is a piecewise linear logarithm of q: equally many places in each octave, linear inside an octave.
+// 2^lines lines share 2^octaves octaves, from the smallest q with a visible trace of the colour to the first without
+// fog; beyond them the first and the last place count. Few octaves, as for a fog that begins far away, have many lines
+// each.
 //
-// A line is what a straight line through both ends is, less half of what it is off in the middle, so that the two errors are
-// alike. Ends are not held to 0...1: where a fog begins and ends is a bend of what is held, not of what is interpolated.
+// A line is the chord through both ends, less half of its error in the middle, so that the two errors are equal. Ends
+// are not clamped to 0...1: the begin and the end of a fog are bends of the clamped value, not of the interpolated one.
 //
 // The table is part of a draw's state and made on the host, in binary64 without any library's exp: the same everywhere.
 #pragma once
@@ -25,25 +26,26 @@ namespace halfplane {
 
 inline constexpr int kFogLines = 8;                               ///< log2 of the lines of a table
 inline constexpr int kFogOctaves = 4;                             ///< log2 of the most octaves
-inline constexpr int kFogPlaceBits = 15;                          ///< of the mantissa of q that count
-inline constexpr int kFogStartFraction = 15;                      ///< of a line's numbers
-inline constexpr int kFogStartBits = 18;                          ///< with the sign: -4 to 4
+inline constexpr int kFogPlaceBits = 15;                          ///< significant bits of the mantissa of q
+inline constexpr int kFogStartFraction = 15;                      ///< fraction bits of a line's numbers
+inline constexpr int kFogStartBits = 18;                          ///< bits with the sign: -4 to 4
 inline constexpr int kFogFactorBits = 12;                         ///< fraction bits of f
 inline constexpr std::uint32_t kFogClear = 1U << kFogFactorBits;  ///< f = 1
 
 /// A line of a fog's table.
 struct FogLine {
   std::int32_t start = 0;  ///< at its first place, 2^-15
-  std::int32_t rise = 0;   ///< from there to the next line's, at least 0
+  std::int32_t rise = 0;   ///< from there to the next line, at least 0
   bool operator==(const FogLine&) const = default;
 };
 
-/// The place of Q = `code` > 0 in a table of 2^octave_bits octaves; `octave`: the one where Q = 1 would lie.
+/// The place of Q = `code` > 0 in a table of 2^octave_bits octaves; `octave`: that of Q = 1.
 [[nodiscard]] std::int32_t fog_position(std::uint64_t code, int octave, int octave_bits);
-/// f of a place on its line, which has 2^place_bits of them: 0...2^12.
+/// f at a place on its line, which has 2^place_bits places: 0...2^12.
 [[nodiscard]] std::uint32_t fog_factor_on(const FogLine& line, std::int32_t place, int place_bits);
 
-/// f at a distance w > 0, as real as binary64 is, the same on every machine. `held`: to 0...1, which it is but for linear.
+/// f at a distance w > 0, computed in binary64, the same on every machine. `held`: clamped to 0...1, which only matters
+/// for linear.
 [[nodiscard]] double fog_factor(const Fog& fog, double w, bool held = true);
 
 /// The table of a fog.
@@ -69,7 +71,7 @@ class FogTable {
   [[nodiscard]] std::uint32_t factor(std::int32_t position) const;
   [[nodiscard]] std::uint32_t factor(std::uint64_t code, int scale) const { return factor(position(code, scale)); }
 
-  /// The most that factor() is off where q is known: lines, their rounding, f's, and the ends of the table.
+  /// Bound of the error of factor() for exact q: lines, their rounding, f's, and the ends of the table.
   [[nodiscard]] double error_bound() const;
 
  private:
@@ -82,16 +84,17 @@ class FogTable {
   std::vector<Line> line_;
 };
 
-/// The table of a draw's fog; none: there is no fog. Draws of one state get the same one.
+/// The table of a draw's fog; null: no fog. Draws with equal state share a table.
 [[nodiscard]] std::shared_ptr<const FogTable> fog_table(const State& state);
 
-/// The most that f is off at a real distance w where q is off by `relative` of itself. The table's own part is in it.
+/// Bound of the error of f at a real distance w with relative error `relative` of q. Includes the table's own error.
 [[nodiscard]] double fog_error_bound(const FogTable& table, double w, double relative);
 
-/// f of a vertex: of lines and points, whose ends are fogged. What is not in front of the eye is as near as can be.
+/// f of a vertex: for lines and points, which are fogged at their ends. A vertex that is not in front of the eye counts
+/// as nearest.
 [[nodiscard]] std::uint32_t fog_factor_of_vertex(const Fog& fog, double w);
 
-/// A channel in fog.
+/// A channel blended with fog.
 template <class Lane>
 [[nodiscard]] constexpr Lane fogged(const Lane& color, const Lane& fog, const Lane& factor) {
   return (color * factor + fog * (kFogClear - factor) + kFogClear / 2) >> kFogFactorBits;

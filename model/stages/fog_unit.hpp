@@ -1,7 +1,7 @@
-// Fog unit: fog.hpp in hardware, behind the texture unit. Its table, the fog's colour and whether there is any are registers,
-// set by tokens, a line of the table each; a triangle brings where in the table its Q lies.
+// Fog unit: fog.hpp in hardware, downstream of the texture unit. Its table, the fog's colour and its enable are
+// registers, set by tokens, a line of the table each; a triangle brings the octave of Q = 1 in the table.
 //
-// Its tokens have the number of a texture's levels (LevelsWord).
+// Its tokens use the number of a texture's levels (LevelsWord).
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace halfplane {
 
 inline constexpr int kFogOctaveLow = -32, kFogOctaveHigh = 31;  ///< Widths::fog_octave
 
-/// What the unit knows of a draw, but for the table.
+/// The unit's state for a draw, without the table.
 struct FogState {
   bool enable = false;
   int octave_bits = 0;  ///< FogTable::octave_bits()
@@ -44,14 +44,15 @@ struct FogState {
          (static_cast<std::uint64_t>(line.start) & 0x3ffff) << 17 | static_cast<std::uint64_t>(line.rise);
 }
 
-/// Where the table of a fog has Q = 1, for Q of 2^-scale; beyond what a packet can say all Q lie beyond an end as well.
+/// The octave of Q = 1 in the table of a fog, for Q in 2^-scale; where a packet cannot express it, all Q lie beyond an
+/// end as well.
 [[nodiscard]] inline int fog_octave(const FogTable& table, int scale) {
   return std::clamp(-scale - table.first(), kFogOctaveLow, kFogOctaveHigh);
 }
 
 class FogUnit {
  public:
-  /// A token that is one of fog's.
+  /// Executes a token for fog.
   void set(std::uint64_t word) {
     if (levels_word(word) == LevelsWord::fog) {
       state_ = FogState::unpack(word);
@@ -61,9 +62,9 @@ class FogUnit {
     line_[word >> 35 & 0xff] = {start >= 1 << 17 ? start - (1 << 18) : start,
                                 static_cast<std::int32_t>(word & 0x1ffff)};
   }
-  /// Whether colours of a primitive change.
+  /// Whether fog changes colours of a primitive.
   [[nodiscard]] bool is_fogged(bool is_triangle) const { return state_.enable && is_triangle; }
-  /// A sample's colour in fog.
+  /// Blends a sample's colour with fog.
   void add(std::uint64_t q, int octave, Texel& color) const {
     const int place_bits = kFogPlaceBits + state_.octave_bits - kFogLines;
     const std::int32_t position = fog_position(q, octave, state_.octave_bits);

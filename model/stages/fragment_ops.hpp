@@ -1,9 +1,9 @@
-// What happens to a fragment once its attributes are known: the arithmetic of each operation, once.
+// Operations on a fragment with known attributes: the arithmetic of each exists once.
 //
-// In program order of a fragment: the tests own what they compare (depth; stencil_ops.hpp), then the colour
-// (color_ops.hpp), then the write masks. Nothing here knows packets, tiles or memories: stages/depth_test and stages/rop put
-// the pieces together for stamps, and the engines for what they hold at once.
-// Lane: std::uint32_t, or a vector of them. The scalar instance is the specification; a test holds vectors against it.
+// In program order of a fragment: the tests (depth; stencil_ops.hpp), then the colour (color_ops.hpp), then the write
+// masks. This file is independent of packets, tiles and memories: stages/depth_test and stages/rop combine the
+// operations for stamps, and the engines for their own units of work. Lane: std::uint32_t, or a vector of them. The
+// scalar instance is the specification; a test holds vectors against it.
 #pragma once
 
 #include <array>
@@ -21,25 +21,24 @@ namespace halfplane {
 
 // --- what a draw asks of its fragments ------------------------------------------------------------------------------
 
-/// It rides with its primitives.
+/// The state travels with its primitives.
 using FragmentState = PrimitiveState;
 
 [[nodiscard]] constexpr FragmentState fragment_state(const State& state, ColorFormat format) {
   return {state.depth_test, state.depth_write, writes_color(state, format)};
 }
 
-/// Whether a state looks at a fragment's alpha.
+/// Whether a state reads a fragment's alpha.
 [[nodiscard]] constexpr bool looks_at_alpha(const State& state) {
   if (state.alpha_test.func != DepthFunc::always) return true;
   if (!state.blend) return false;
   const auto is_alpha = [](BlendFactor f) {
     return f == BlendFactor::src_alpha || f == BlendFactor::one_minus_src_alpha || f == BlendFactor::src_alpha_saturate;
   };
-  return is_alpha(state.blend->src) ||
-         is_alpha(state.blend->dst);  // what becomes of alpha matters to a format with one
+  return is_alpha(state.blend->src) || is_alpha(state.blend->dst);  // stored alpha matters only in a format with alpha
 }
 
-/// `config` with a plane of alpha where a draw of `scene` looks at it. The software engines have all units; a plane more
+/// `config` with a plane of alpha where a draw of `scene` reads it. The software engines have all units; one more plane
 /// changes no bit of the others.
 [[nodiscard]] inline Config with_alpha(Config config, const Scene& scene) {
   for (const State& state : scene.states)
@@ -50,15 +49,15 @@ using FragmentState = PrimitiveState;
 /// The samples of a draw that State::sample_mask lets pass, a bit each.
 [[nodiscard]] constexpr unsigned drawn_samples(const State& state) { return state.sample_mask.value_or(~0U); }
 
-/// All of it.
+/// All operations of a draw.
 struct FragmentOps {
   FragmentState state;
   AlphaTest alpha;
   std::optional<StencilSides> stencil;
   ColorOps color;
-  int alpha_samples = 0;  ///< of a pixel, where alpha says how many of them are drawn; 0: it says nothing of that
+  int alpha_samples = 0;  ///< samples of a pixel, with alpha to coverage; else 0
 
-  /// Nothing but the depth test and colours that replace each other.
+  /// Only the depth test and colours that replace stored ones.
   [[nodiscard]] constexpr bool is_plain() const {
     return alpha.func == DepthFunc::always && alpha_samples == 0 && !stencil &&
            (!state.color_write || color.is_plain());
@@ -69,7 +68,8 @@ struct FragmentOps {
   return {fragment_state(state, format), state.alpha_test, stencil_sides(state), color_ops(state, format)};
 }
 
-/// How many of a pixel's samples an alpha of 8 bits draws: samples * alpha / 255, rounded; exact, as in blending.
+/// The number of a pixel's samples that an alpha of 8 bits draws: samples * alpha / 255, rounded; exact, as in
+/// blending.
 template <class Lane>
 [[nodiscard]] constexpr Lane samples_of_alpha(const Lane& alpha, std::uint32_t samples) {
   const Lane t = alpha * samples + 128U;
@@ -108,7 +108,7 @@ template <DepthFunc Func, class Code>
   return false;
 }
 
-/// What a test comes to for all values from `low` to `high`.
+/// The result of a test for all values from `low` to `high`.
 enum class Outcome { some_pass, all_pass, none_passes };
 [[nodiscard]] constexpr Outcome test_outcome(DepthFunc func, std::uint32_t reference, std::uint32_t low,
                                              std::uint32_t high) {
@@ -122,7 +122,7 @@ enum class Outcome { some_pass, all_pass, none_passes };
   return !some_fail ? Outcome::all_pass : !some_pass ? Outcome::none_passes : Outcome::some_pass;
 }
 
-/// The same for lanes, without a branch: a function is the outcomes of one comparison that it lets pass.
+/// The same for lanes, without a branch: a function as the set of comparison outcomes that pass.
 struct DepthOutcomes {
   std::uint32_t less, equal, greater;  ///< all bits set where the outcome passes
 
@@ -147,15 +147,15 @@ struct DepthOutcomes {
   return depth_passes(s.func, std::uint32_t{s.reference} & s.read_mask, std::uint32_t{stored} & s.read_mask);
 }
 
-/// What the stencil and the depth test make of a sample.
+/// The result of the stencil and the depth test for a sample.
 struct TestedSample {
   bool passes = false;   ///< both
-  bool changes = false;  ///< what is stored: its depth or its stencil
+  bool changes = false;  ///< the stored depth or stencil changes
   std::uint32_t depth = 0;
-  std::uint8_t stencil = 0;  ///< what is stored then
+  std::uint8_t stencil = 0;  ///< the stencil to store then
 };
 
-/// A depth code against what is stored. `side`: of the stencil; null: the primitive does not look at it.
+/// A depth code against the stored word. `side`: of the stencil; null: the primitive does not use it.
 [[nodiscard]] constexpr TestedSample test_sample(const PrimitiveState& state, const Stencil* side, std::uint32_t depth,
                                                  std::uint32_t stored_depth, std::uint8_t stored_stencil) {
   const bool passes_stencil = side == nullptr || stencil_passes(*side, stored_stencil);
@@ -174,8 +174,8 @@ struct TestedSample {
   return sample;
 }
 
-/// Whether alpha to coverage draws sample `k` of a pixel: the first ones are. `samples`: of the pixel; 0: alpha does not
-/// choose.
+/// Whether alpha to coverage draws sample `k` of a pixel: it draws the first ones. `samples`: of the pixel; 0: no alpha
+/// to coverage.
 [[nodiscard]] constexpr bool is_drawn_by_alpha(int samples, std::uint32_t alpha, std::uint32_t k) {
   return samples == 0 || k < samples_of_alpha(alpha, static_cast<std::uint32_t>(samples));
 }
@@ -186,30 +186,30 @@ struct TestedSample {
 
 // --- one fragment, all of it ----------------------------------------------------------------------------------------
 
-/// What comes of a fragment.
+/// The fate of a fragment.
 enum class Fate {
   failed,  ///< the stencil or the depth test
   killed,  ///< passed those, but not the alpha test
   passed
 };
 
-/// What is stored at a fragment's pixel.
+/// The stored values at a fragment's pixel.
 struct StoredPixel {
   std::uint32_t& depth;
   std::uint32_t& color;
   std::uint8_t& stencil;
 };
 
-/// A fragment as it comes to the operations.
+/// A fragment at the entry of the operations.
 struct TestedFragment {
   std::uint32_t depth = 0;   ///< the code in the stored format
   int x = 0, y = 0;          ///< pixels: dithering
   bool is_back = false;      ///< of a triangle that shows its back
-  std::uint32_t sample = 0;  ///< of its pixel
+  std::uint32_t sample = 0;  ///< number in its pixel
 };
 
-/// Runs the operations on one fragment, in order, on what is stored at its pixel. `color()` gives the four 8-bit codes; asked
-/// only when somebody looks at them. What the alpha test drops leaves nothing behind, in the stencil neither.
+/// Runs the operations on one fragment, in order, on the values stored at its pixel. `color()` gives the four 8-bit
+/// codes; called only when needed. A fragment dropped by the alpha test changes nothing, not even the stencil.
 template <class Color>
 constexpr Fate apply_fragment(const FragmentOps& ops, ColorFormat format, const TestedFragment& fragment, Color&& color,
                               const StoredPixel& stored) {

@@ -1,18 +1,19 @@
-// Fragment path: the way of a stamp from depth_test to the framebuffer, for every engine that computes what the RTL does. The
-// hardware engine sends the packets of each stage on the way; the cycle engine asks what became of the stamp and adds times.
+// Fragment path: a stamp's path from depth_test to the framebuffer, for every engine that computes the bits of the RTL.
+// The hardware engine sends the packets of each stage on the way; the cycle engine reads the fate of the stamp and adds
+// times.
 //
-// In: a fragment with covered samples, and tokens. Through a Port: what is stored under the stamp, lines of texels, and what is
-// written. Out: what became of the samples, the counters, the end of a tile visit.
+// In: a fragment with covered samples, and tokens. Through a Port: the stored words under the stamp, lines of texels,
+// and the writes. Out: the fate of the samples, the counters, the end of a tile visit.
 //
 // A Port has
-//   kSendsPackets           true: packets have the values of all samples; false: of those that are written or shaded
+//   kSendsPackets           true: packets have the values of all samples; false: of written or shaded samples only
 //   stored()                the words under the stamp's covered samples, as depth_test takes them
 //   interpolate_colors(samples), interpolate_over_w(samples)
-//                           makes these codes of the fragment, for the pixels of these samples, unless they are there
+//                           makes these codes of the fragment, for the pixels of these samples, if missing
 //   read(address, beats)    a TextureLine
-//   stored_colors(samples)  the codes under these samples, where the operations on colours read them
+//   stored_colors(samples)  the codes under these samples, if the operations on colours read them
 //   send(packet)            a WritePacket upstream of the texture, a ColorPacket downstream of it
-//   write(packet)           what is written, as it is stored
+//   write(packet)           the written values, in the stored format
 #pragma once
 
 #include "color_packets.hpp"
@@ -23,14 +24,14 @@
 
 namespace halfplane {
 
-/// What became of a stamp's samples.
+/// The fate of a stamp's samples.
 struct StampFate {
-  SampleMask passed;                       ///< both tests
-  SampleMask kept;                         ///< of those, what the alpha test has not dropped
-  SampleMask changed;                      ///< whose stored word the tests change, before the alpha test
-  SampleMask written;                      ///< of those, the ones whose word is written
+  SampleMask passed;                       ///< by both tests
+  SampleMask kept;                         ///< samples of these that the alpha test has kept
+  SampleMask changed;                      ///< samples whose stored word the tests change, before the alpha test
+  SampleMask written;                      ///< samples of these whose word is written
   SampleMask shaded;                       ///< pixels that a texture unit colours
-  std::span<const TextureLookup> lookups;  ///< of those, until the next stamp
+  std::span<const TextureLookup> lookups;  ///< of the shaded pixels, until the next stamp
 };
 
 class FragmentPath {
@@ -43,7 +44,7 @@ class FragmentPath {
   [[nodiscard]] const StencilState& stencil() const { return stencil_; }
   [[nodiscard]] const std::optional<TextureUnit>& texture() const { return texture_; }
 
-  /// A token sets one of the registers. `codes`: those of its vertex, or the fragment that they have become.
+  /// A token sets one of the registers. `codes`: of its vertex, or of the fragment that it has become.
   template <class Codes>
   void set(StateRegister which, const Codes& codes) {
     if (is_of_texture(which)) return set_register(*texture_, which, codes, widths_);
@@ -89,7 +90,7 @@ class FragmentPath {
     return fate;
   }
 
-  /// The end of a tile visit, whose last stamp is `last`.
+  /// The end of a tile visit, with its last stamp `last`.
   [[nodiscard]] RetirePacket retire(const FragmentPacket& last) {
     return std::exchange(visit_, {}).retire(last, config_, widths_);
   }
@@ -129,8 +130,8 @@ class FragmentPath {
   StencilState stencil_;
   ColorState colors_;
   std::optional<TextureUnit> texture_;
-  TileVisit visit_;     ///< what the stamps of the tile visit at work have done so far
-  WritePacket packet_;  ///< of the stamp at work
+  TileVisit visit_;     ///< state of the current tile visit after its stamps so far
+  WritePacket packet_;  ///< of the current stamp
 };
 
 }  // namespace halfplane

@@ -1,9 +1,8 @@
 // Framebuffer: depth, colour and stencil memory of one target.
 //
 // In: depth-tested stamps, clears. Out: the two images. Depth is one code per pixel, colour one stored code per pixel
-// (Config::color_format), stencil 8 bits. Rows are padded to whole tiles, so that an engine may touch a tile as a whole.
-// Where a pixel has several samples, each of them has images of its own, and those of the pixel are what resolve() makes of
-// them.
+// (Config::color_format), stencil 8 bits. Rows are padded to whole tiles, so that an engine may touch a tile as a
+// whole. With several samples per pixel each sample has its own images, and resolve() computes those of the pixel.
 #pragma once
 
 #include <cstddef>
@@ -34,7 +33,7 @@ struct Framebuffer {
   int stride = 0;             ///< pixels from one row to the next; rows below `height` are padding as well
   Image depth, color;
   std::vector<std::uint8_t> stencil;
-  std::vector<Framebuffer> samples;  ///< of each sample of a pixel; empty where a pixel has one
+  std::vector<Framebuffer> samples;  ///< of each sample of a pixel; empty with one sample per pixel
 
   Framebuffer() = default;
   Framebuffer(int width_, int height_, int tile_size)
@@ -48,7 +47,7 @@ struct Framebuffer {
   /// Whether every sixteen pixels of a row, from its first on, are a cache line.
   [[nodiscard]] bool has_whole_lines() const { return stride % 16 == 0; }
 
-  /// Index of pixel (x, y) in each of them.
+  /// Index of pixel (x, y) in each image.
   [[nodiscard]] std::size_t at(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(stride) + static_cast<std::size_t>(x);
   }

@@ -1,17 +1,17 @@
 // HiZ: a bound on the depths of each tile, by which coarse_raster drops tiles that cannot pass the depth test.
 //
-// In: the tile visits and the fast clears, in program order. Out: whether a tile of a primitive can be left out. The
-// bound of a tile is {h, all ones}, h the stored top hiz.bits of a depth code: no depth in the tile is above it.
+// In: the tile visits and the fast clears, in program order. Out: whether a tile of a primitive can be skipped. The
+// bound of a tile is {h, all ones}, h the stored top hiz.bits of a depth code: no depth in the tile is above the bound.
 //
-// Visit n sees the updates of the visits up to n - lag, all of them and none of a later one, so that what is seen follows
-// from program order alone and no visit waits for one that has just begun. The visits between can only have lowered
-// depths, which leaves a bound true; if one of them may have raised a depth, by its state, no tile is behind its bound.
-// A fast clear of depth sets all bounds, and what earlier visits had to say is forgotten.
+// Visit n sees the updates of all visits up to n - lag and of no later one, so that the visible updates follow from
+// program order alone and no visit waits for one that has just begun. The visits between can only have lowered depths,
+// which keeps a bound valid; if one of them may have raised a depth, by its state, no tile is behind its bound. A fast
+// clear of depth sets all bounds, and updates of earlier visits are dropped.
 //
-// Lines are not in any tile visit, so nothing retires that could raise a bound behind them. One whose depth test can raise
-// a depth (greater, gequal, notequal, always) makes all bounds worthless as it passes coarse_raster: later triangles are
-// not tested, until a fast clear of depth makes all bounds anew. Program order alone, one flip-flop and no wait; the
-// other tests only lower depths, which leaves bounds what they are.
+// Lines belong to no tile visit, so no retirement could raise a bound after them. A line whose depth test can raise a
+// depth (greater, gequal, notequal, always) invalidates all bounds as it passes coarse_raster: later triangles are not
+// tested, until a fast clear of depth sets all bounds again. Program order alone, one flip-flop and no wait; the other
+// tests only lower depths, which keeps bounds valid.
 #pragma once
 
 #include <algorithm>
@@ -22,12 +22,12 @@
 
 namespace halfplane {
 
-/// The bounds of all tiles. Before the first clear they are all ones: nothing is left out.
+/// The bounds of all tiles. Before the first clear they are all ones: no tile is skipped.
 class Hiz {
  public:
   static constexpr int kUntestedTiles = 2;  ///< of the RTL
 
-  /// A primitive of at most `untested_tiles` in x and in y is never tested.
+  /// A primitive of at most `untested_tiles` tiles in x and in y is never tested.
   explicit Hiz(const Config& config, const Widths& widths, int untested_tiles = kUntestedTiles)
       : untested_tiles_(untested_tiles),
         bits_(config.hiz_bits),
@@ -39,8 +39,8 @@ class Hiz {
         unseen_(static_cast<std::size_t>(lag_)),
         quiet_(lag_ - 1) {}
 
-  /// Whether the primitive may be tested at all. Not where what fails leaves a mark in the stencil; and those of up to
-  /// 2 x 2 tiles are not: reading the bound would cost more than it saves.
+  /// Whether the primitive may be tested at all. Not if a failing sample changes the stencil; nor if it has at most 2 x
+  /// 2 tiles: reading the bound would cost more than it saves.
   [[nodiscard]] bool is_eligible(const SetupPacket& setup, const Widths& widths) const {
     const auto tiles = [&widths](int first, int last) {
       return (last >> widths.tile_shift) - (first >> widths.tile_shift) + 1;
@@ -64,7 +64,7 @@ class Hiz {
     quiet_ = state.depth_write && can_raise_depth(state.depth_test) ? 0 : std::min(quiet_ + 1, lag_ - 1);
   }
 
-  /// It has retired: the next visit sees what the one `lag` visits before it had to say.
+  /// The visit has retired: the next visit sees the update of the one `lag` visits before it.
   void retire(const RetirePacket& retired) {
     unseen_[newest_] = retired;
     newest_ = (newest_ + 1) % unseen_.size();
@@ -73,7 +73,7 @@ class Hiz {
     seen = {};
   }
 
-  /// A line follows; its pixels do not show here.
+  /// A line follows; its pixels are not visible here.
   void pass_line(const SetupPacket& line) {
     if (line.state.depth_write && can_raise_depth(line.state.depth_test)) holds_ = false;
   }
@@ -104,7 +104,7 @@ class Hiz {
   std::size_t tiles_x_;
   std::vector<std::uint32_t> code_;
   std::vector<RetirePacket> unseen_;  ///< ring: of the last visits
-  std::size_t newest_ = 0;            ///< where the next one goes, and the oldest is
+  std::size_t newest_ = 0;            ///< place of the next visit, and of the oldest
   int quiet_;                         ///< visits since one that may raise a depth, lag - 1 at most
 };
 

@@ -60,7 +60,7 @@ struct StampPlane {
   [[nodiscard]] std::uint64_t at(const PixelOffset& pixel) const {
     return first + static_cast<std::uint64_t>(pixel.x) * step_x + static_cast<std::uint64_t>(pixel.y) * step_y;
   }
-  /// From there to a sample of the pixel.
+  /// Increment from there to a sample of the pixel.
   [[nodiscard]] std::uint64_t to_sample(const SampleOffset& o, const Widths& widths) const {
     return static_cast<std::uint64_t>(
         sample_plane_offset(static_cast<std::int64_t>(step_x), static_cast<std::int64_t>(step_y), o, widths.grid_bits));
@@ -73,14 +73,16 @@ PixelOffset from_anchor(int stamp, const Widths& widths) {
   return {first.x - half_tile, first.y - half_tile};
 }
 
-/// What hardware has of decode(): the rounded code modulo 2^bits, without the clamp. The error before rounding stays below
-/// 1/2 LSB (depth_error_bound() is at most 1), so at a covered sample it is that of decode(); at others it may be anything.
+/// The hardware's decode(): the rounded code modulo 2^bits, without the clamp. The error before rounding stays below
+/// 1/2 LSB (depth_error_bound() is at most 1), so at a covered sample the code equals decode(); at others it is
+/// undefined.
 std::uint32_t wrapped_code(std::uint64_t value, const LocalFormat<std::uint64_t>& format) {
   const std::uint64_t half = std::uint64_t{1} << (format.bits - 1);
   return static_cast<std::uint32_t>(((value >> format.guard_bits) - half) & (2 * half - 1));
 }
 
-/// Where a pixel of a stamp is shaded: at its centre, or if a sample is covered and the centre is not, at the first such.
+/// The shading place of a pixel of a stamp: its centre, or if a sample is covered and the centre is not, the first
+/// covered sample.
 SampleOffset shaded_offset(const StampPacket& stamp, int pixel, const Widths& widths) {
   const unsigned covered = widths.stamps.of_pixel(stamp.mask, pixel);
   if (covered == 0 || stamp.centre.has(static_cast<std::size_t>(pixel))) return {};
@@ -142,7 +144,7 @@ void interpolate_planes(const StampPacket& stamp, const ContextPacket& context, 
       std::uint64_t value = plane.at(stamps.place_of(n));
       if (has_samples) value += plane.to_sample(shaded_offset(stamp, n, widths), widths);
       fragment.code[pixel][p] = is_affine ? wrapped_code(value, format)
-                                          // Q and P as they are: the texture unit divides
+                                          // Q and P are not rounded: the texture unit divides
                                           : static_cast<std::uint32_t>(wrap_unsigned(value, local_bits));
     });
   }

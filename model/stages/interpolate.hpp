@@ -1,9 +1,9 @@
 // Interpolate: attributes at the covered samples of a tile.
 //
-// In: the planes at the tile's anchor. Out: a code for each plane and sample. Inside a tile a plane is narrow:
-// l local guard bits, anchored at the centre of pixel (T/2, T/2), so the rounding of a step acts over at most T/2 pixels a
-// side. The value at a pixel is the closed form anchor + i step_x + j step_y: every traversal computes the same one.
-// Final value: floor(v + 1/2), in the range of the triangle's vertices: engines that look beyond covered samples clamp it.
+// In: the planes at the tile's anchor. Out: a code for each plane and sample. Inside a tile a plane is narrow: l local
+// guard bits, anchored at the centre of pixel (T/2, T/2), so the rounding of a step acts over at most T/2 pixels a
+// side. The value at a pixel is the closed form anchor + i step_x + j step_y: every traversal computes the same value.
+// Final value: floor(v + 1/2), in the range of the triangle's vertices: engines that read uncovered samples clamp it.
 #pragma once
 
 #include "coarse_raster.hpp"
@@ -18,7 +18,7 @@ struct LocalPlane {
   Lane step_x = 0, step_y = 0;  ///< per pixel
 };
 
-/// How to read a LocalPlane of `bits`-bit codes back.
+/// Reads a LocalPlane of `bits`-bit codes.
 template <class Lane>
 struct LocalFormat {
   int bits = 0;        ///< of a code
@@ -29,7 +29,7 @@ struct LocalFormat {
   LocalFormat(int bits_, int guard_bits_)
       : bits(bits_), guard_bits(guard_bits_), modulus_mask(static_cast<Lane>(~0ULL >> (63 - bits_ - guard_bits_))) {}
 
-  /// Codes wrap modulo 2^(bits + 1); the window [-2^(bits-1), 3 * 2^(bits-1)) holds every value near a legal code.
+  /// Codes wrap modulo 2^(bits + 1); the wrap window [-2^(bits-1), 3 * 2^(bits-1)) holds every value near a legal code.
   [[nodiscard]] constexpr Lane offset() const { return Lane{1} << (bits - 1 + guard_bits); }
 };
 
@@ -43,7 +43,7 @@ template <class Lane>
           static_cast<Lane>(round_shift(plane.step_y, drop - widths.grid_bits))};
 }
 
-/// The same for a plane of codes: with what makes decode() a shift.
+/// The same for a plane of codes: with the offset that makes decode() a shift.
 template <class Lane>
 [[nodiscard]] inline LocalPlane<Lane> local_plane(PlaneValue anchor, const Plane& plane,
                                                   const LocalFormat<Lane>& format, const Widths& widths) {
@@ -61,14 +61,15 @@ template <class SignedLane, class Lane>
   return code < low ? low : code > high ? high : code;
 }
 
-/// d: what a plane gains from the centre of a pixel to a sample that lies `o` from it, in 2^-s pixel. Steps: those of a
-/// LocalPlane, with their sign, modulo 2^s times as much: d is what it is modulo.
+/// d: the increment of a plane from the centre of a pixel to a sample at `o` from it, in 2^-s pixel. Steps: of a
+/// LocalPlane, signed; with steps modulo 2^(s+n), d is valid modulo 2^n.
 [[nodiscard]] constexpr std::int64_t sample_plane_offset(std::int64_t step_x, std::int64_t step_y,
                                                          const SampleOffset& o, int grid_bits) {
   return round_shift(step_x * o.x + step_y * o.y, grid_bits);
 }
 
-/// A plane at a sample, modulo 2^64: at pixel centres lies what it has there. `guard_bits`: l, which its tiles keep.
+/// A plane at a sample, modulo 2^64: its value at pixel centres is the one at that sample. `guard_bits`: l, kept in its
+/// tiles.
 [[nodiscard]] inline Plane plane_at_sample(Plane plane, int guard_bits, const SampleOffset& o, const Widths& widths) {
   const int drop = widths.plane_fraction - guard_bits;
   const auto step = [&](PlaneValue per_subpixel) { return round_shift(per_subpixel, drop - widths.grid_bits); };
@@ -78,7 +79,7 @@ template <class SignedLane, class Lane>
   return plane;
 }
 
-/// Where a pixel is: its tile, and how many pixels it lies from the tile's anchor, modulo 2^64.
+/// The place of a pixel: its tile, and its distance from the tile's anchor in pixels, modulo 2^64.
 struct PixelPlace {
   TileOffset tile;
   std::uint64_t i, j;
@@ -99,10 +100,10 @@ struct Interpolated {
 /// that of the stamp's slot.
 [[nodiscard]] FragmentPacket interpolate(const StampPacket& stamp, const ContextPacket& context, const Widths& widths);
 
-// The same over a packet that is used again, at once and step by step: its codes stay what they were but for those of `pixels`.
+// The same for a reused packet, at once and step by step: only the codes of `pixels` change.
 void interpolate(const StampPacket& stamp, const ContextPacket& context, const Widths& widths,
                  FragmentPacket& fragment);
-/// All but the codes.
+/// All fields except the codes.
 void start_fragment(const StampPacket& stamp, const ContextPacket& context, const Widths& widths,
                     FragmentPacket& fragment);
 /// The depths of all samples of these pixels.

@@ -5,7 +5,7 @@
 namespace halfplane {
 namespace {
 
-/// One coordinate's functions before they are scaled, in texels Q^2 a subpixel times A.
+/// One coordinate's functions before scaling, in texels Q^2 per subpixel times A.
 struct Numerators {
   double slope = 0;                ///< sum c_k
   std::array<double, 3> row{};     ///< N_x at the rows of the vertices
@@ -28,8 +28,8 @@ Numerators numerators(const std::array<SnappedVertex, 3>& v, const QCodes& q, co
   return n;
 }
 
-/// The line through `value` at `position` subpixels. Stepped from the pixel of that place, so that the rounding of the step
-/// acts inside the triangle alone.
+/// The line through `value` at `position` subpixels. Stepped from the pixel at that place, so that the rounding of the
+/// step acts only inside the triangle.
 LodLine to_line(double value, double slope, int position, double scale, int grid_bits) {
   const auto residue = [](double number) {
     return static_cast<std::uint32_t>(static_cast<std::int64_t>(std::remainder(std::floor(number + 0.5), 0x1p32)));
@@ -54,11 +54,11 @@ LodSetup setup_lod(const std::array<SnappedVertex, 3>& v, std::int64_t area, con
       sum += std::abs(of.row[i]) + std::abs(of.column[i]);
     }
   LodSetup setup;
-  if (!std::isfinite(sum) || largest == 0) {  // more texels than binary64 counts, or one all over
+  if (!std::isfinite(sum) || largest == 0) {  // more texels than binary64 can count, or a constant coordinate
     setup.offset = (largest == 0 ? -64 : 64) * (1 << kLodFraction);
     return setup;
   }
-  // N a pixel is N a subpixel times 2^s.
+  // N per pixel is N per subpixel times 2^s.
   const double to_pixels = std::ldexp(1.0, grid_bits) / static_cast<double>(area);
   const int g = 30 - std::ilogb(largest * to_pixels);
   const double scale = std::ldexp(to_pixels, g);

@@ -1,21 +1,21 @@
-// Level of detail: how many texels a pixel spans, as a power of two, from which a texture's level follows.
+// Level of detail: the number of texels that a pixel spans, as a power of two, which selects a texture's level.
 //
 //   lambda = log2 max(|(u_x, v_x)|, |(u_y, v_y)|), derivatives in texels a pixel
 //
-// computed at each pixel by itself: neither neighbours nor what else of the stamp is covered play a part. With u = P / Q,
-// u_x = N_x / Q^2, N_x = P_x Q - P Q_x. P and Q are planes, so d N_x / dx = 0: N_x is a linear function of y alone, and
-// N_y = P_y Q - P Q_y one of x alone. With c_k = Q_i Q_j (u_i - u_j), (i, j, k) in turn, and A twice the area,
+// computed at each pixel separately: neither neighbours nor the coverage of the stamp matter. With u = P / Q, u_x = N_x
+// / Q^2, N_x = P_x Q - P Q_x. P and Q are planes, so d N_x / dx = 0: N_x is a linear function of y alone, and N_y = P_y
+// Q - P Q_y of x alone. With c_k = Q_i Q_j (u_i - u_j), (i, j, k) in turn, and A twice the area,
 //
 //   N_x = sum c_k (y - y_k) / A,  N_y = -sum c_k (x - x_k) / A
 //
-// so u and v have four lines with two slopes between them. They live in 32-bit lanes, scaled by a power of two, 2^g, that
-// takes their largest value at the triangle's vertices to 2^30...2^31. As they are modulo 2^32, how far outside does not
-// matter. Then
+// so u and v have four lines with two slopes between them. They are held in 32-bit lanes, scaled by a power of two,
+// 2^g, that brings their largest value at the triangle's vertices to 2^30...2^31. Because they are modulo 2^32, values
+// far outside do no harm. Then
 //
 //   lambda = L(max(oct(N_xu, N_xv), oct(N_yu, N_yv))) - 2 L(Q) + 2 l - g
 //
-// oct: a length by a polygon, within -3.0 % and +0.8 %; L: log2 from eight bits behind the leading one. All logarithms have
-// 8 fraction bits.
+// oct: a length by a polygon, within -3.0 % and +0.8 %; L: log2 from the eight bits after the leading one. All
+// logarithms have 8 fraction bits.
 #pragma once
 
 #include <algorithm>
@@ -34,14 +34,14 @@ using Lod = std::int32_t;               ///< 2^-8 levels
 struct LodLine {
   std::uint32_t at_zero = 0, step = 0;
 
-  /// Its magnitude.
+  /// The line's magnitude.
   [[nodiscard]] constexpr std::uint32_t at(int n) const {
     const std::uint32_t value = at_zero + static_cast<std::uint32_t>(n) * step;
     return value >> 31 != 0 ? 0 - value : value;
   }
 };
 
-/// What a textured triangle has besides its planes.
+/// Data of a textured triangle besides its planes.
 struct LodSetup {
   std::array<LodLine, 2> along_y{};  ///< N_x of u and of v
   std::array<LodLine, 2> along_x{};  ///< N_y of u and of v
@@ -58,7 +58,7 @@ struct LodSetup {
   return std::max(high, high - (high >> 3) + (low >> 1));
 }
 
-/// log2(value), 8 fraction bits; of 0 that of 1. A parabola between powers of two, off by at most 1/64.
+/// log2(value), 8 fraction bits; of 0 as of 1. A parabola between powers of two, off by at most 1/64.
 [[nodiscard]] constexpr Lod log2_code(std::uint64_t value) {
   if (value == 0) return 0;
   const int e = floor_log2(value);
@@ -79,7 +79,7 @@ struct LodSetup {
   return std::clamp((lod + 127) >> kLodFraction, 0, last_level);
 }
 
-/// The two levels around lambda, and how much of the upper one there is, in 256ths.
+/// The two levels around lambda, and the weight of the upper one, in 256ths.
 struct LevelPair {
   int lower = 0, upper = 0;
   std::uint32_t part = 0;

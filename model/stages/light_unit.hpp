@@ -1,8 +1,9 @@
-// Light unit: phong.hpp in hardware, in front of the texture unit: what is combined with a texture is lit. Normals come with a
-// triangle, as planes; light, half, colours and the table of the power are registers, set by tokens.
+// Light unit: phong.hpp in hardware, upstream of the texture unit: a colour is lit before it is combined with a
+// texture. Normals come with a triangle, as planes; light, half, colours and the table of the power are registers, set
+// by tokens.
 //
-// Tokens have the number of a texture's levels, as those of fog have (LevelsWord): above 40 bits three say which register it
-// is.
+// Tokens use the number of a texture's levels, like those of fog (LevelsWord): above 40 bits three bits select the
+// register.
 #pragma once
 
 #include <array>
@@ -15,11 +16,11 @@
 
 namespace halfplane {
 
-inline constexpr int kLightWordBit = 40;  ///< of the word of a token: LightWord, three bits
+inline constexpr int kLightWordBit = 40;  ///< of a token's word: LightWord, three bits
 
-/// Which registers a word of light sets, each with what it has from the lowest bit.
+/// Registers set by a word of light, each with its fields from the lowest bit.
 enum class LightWord : std::uint8_t {
-  state,       ///< the highlight's colour, 8 each; whether there is light; narrow 3
+  state,       ///< the highlight's colour, 8 each; enable; narrow 3
   ambient,     ///< 13 each of red, green and blue
   diffuse,     ///< likewise
   direction,   ///< x and y, 16 each
@@ -27,7 +28,7 @@ enum class LightWord : std::uint8_t {
   half,        ///< y and z
   line,        ///< of the power's table: fall 11, start 16, its number 8
 };
-inline constexpr std::size_t kLightWords = 6;  ///< those but the lines
+inline constexpr std::size_t kLightWords = 6;  ///< without the lines
 
 namespace light_unit_detail {
 
@@ -44,14 +45,14 @@ template <std::size_t N, class T>
   for (std::size_t n = N; n-- > 0;) word = word << bits | wrap_unsigned(static_cast<std::uint64_t>(value[n]), bits);
   return word;
 }
-/// One of them.
+/// Field of such a word.
 [[nodiscard]] constexpr std::uint32_t field(std::uint64_t word, std::size_t n, int bits) {
   return static_cast<std::uint32_t>(wrap_unsigned(word >> (static_cast<int>(n) * bits), bits));
 }
 
 }  // namespace light_unit_detail
 
-/// All registers of a light but its lines, by LightWord.
+/// All registers of a light except its lines, by LightWord.
 [[nodiscard]] inline std::array<std::uint64_t, kLightWords> light_words(const LightRegisters& light) {
   using namespace light_unit_detail;
   using Pair = std::array<std::int32_t, 2>;
@@ -65,7 +66,7 @@ template <std::size_t N, class T>
           word_of(LightWord::directions) | fields(Pair{z, half_x}, kComponent),
           word_of(LightWord::half) | fields(Pair{half_y, half_z}, kComponent)};
 }
-/// The state where there is none.
+/// The state of a draw without light.
 [[nodiscard]] constexpr std::uint64_t no_light_word() { return light_unit_detail::word_of(LightWord::state); }
 
 [[nodiscard]] constexpr std::uint64_t light_line_word(std::size_t number, const FallingLine& line) {
@@ -76,7 +77,7 @@ template <std::size_t N, class T>
 
 class LightUnit {
  public:
-  /// A token that is one of light's.
+  /// Executes a token for light.
   void set(std::uint64_t word) {
     using namespace light_unit_detail;
     const auto component = [word](std::size_t n) {
@@ -113,7 +114,7 @@ class LightUnit {
         return;
     }
   }
-  /// Whether colours of a primitive change.
+  /// Whether light changes colours of a primitive.
   [[nodiscard]] bool is_lit(bool is_triangle) const { return enable_ && is_triangle; }
   /// A sample's colour in the light, by its P of a normal, local to its tile.
   void add(const std::array<std::int64_t, 3>& p, Texel& color) const {

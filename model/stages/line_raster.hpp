@@ -1,7 +1,7 @@
 // Line raster: a LineSetup in, one pixel of the line out per cycle, from start to end.
 //
-// The registers of LineState are all that changes along a line; the next state is one addition per register, two of
-// them chosen by the sign of the error. Depth and colour live modulo 2^(bits + G'): inside the line the true value
+// The registers of LineState hold all that changes along a line; the next state is one addition per register, two with
+// steps chosen by the sign of the error. Depth and colour are held modulo 2^(bits + G'): inside the line the true value
 // fits, with one half LSB already added, so that a code is the register's upper bits: no rounding, no clamp.
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace halfplane {
 
-/// What a unit holds while it draws a line.
+/// The state of the unit while it draws a line.
 struct LineState {
   std::int32_t x = 0, y = 0;        ///< Widths::pixel_x, pixel_y
   std::int64_t error = 0;           ///< Widths::line_error
@@ -23,7 +23,7 @@ struct LineState {
   return {line.x, line.y, line.error, line.remaining, line.is_before_start, line.value};
 }
 
-/// The pixel that the registers stand for.
+/// The pixel described by the registers.
 [[nodiscard]] inline LinePixel pixel_of(const LineState& state, const LineSetup& line, const Widths& widths) {
   LinePixel pixel{line.primitive_id, state.x, state.y, state.remaining == 0, {}};
   for (std::size_t p = 0; p < static_cast<std::size_t>(widths.affine_planes); ++p)

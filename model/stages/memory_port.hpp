@@ -1,8 +1,8 @@
-// Memory port: what the framebuffer asks for, stamp by stamp, becomes bursts of beats of memory.port_bits, and what memory
-// answers becomes stamps again. Where a burst begins and ends follows from the requests alone, never from time.
+// Memory port: turns the framebuffer's requests, one per stamp, into bursts of beats of memory.port_bits, and the
+// answers of memory into stamps. The begin and end of a burst follow from the requests alone, never from time.
 //
-// In: requests and answers, each in order. Out: beats and responses. A stamp wider than a beat takes several; of narrower
-// ones those of a run share a beat. Bytes are in order of the samples, lowest first. Time is in
+// In: requests and answers, each in order. Out: beats and responses. A stamp wider than a beat takes several; narrower
+// stamps of a run share a beat. Bytes are in order of the samples, lowest first. Time is in
 // engines/cycle/port_timing.hpp, the hardware in rtl_ref/stages/memory_port.sv.
 #pragma once
 
@@ -16,7 +16,7 @@ namespace halfplane {
 struct MemoryPort {
   /// A write of one stamp or word, or a read of `run` of them.
   virtual void request(const MemoryRequest& request) = 0;
-  /// The next stamp that was read; valid until the next call: 64 lanes are much to copy.
+  /// The next stamp that was read; valid until the next call: 64 lanes are expensive to copy.
   [[nodiscard]] virtual const MemoryResponse& response() = 0;
 
  protected:
@@ -39,7 +39,7 @@ inline void set_flag_word(MemoryRequest& request, std::uint64_t bits, const Widt
   return bits;
 }
 
-/// Of a read; a write adds its strobes and data.
+/// A read request; a write adds its strobes and data.
 [[nodiscard]] inline MemoryRequest request_of(TilePlane plane, const StampAddress& at) {
   MemoryRequest request;
   request.plane = plane;
@@ -50,7 +50,7 @@ inline void set_flag_word(MemoryRequest& request, std::uint64_t bits, const Widt
   return request;
 }
 
-/// Word `word` of the row y of the flags of a plane, `words` of them.
+/// `words` words of flags of a buffer, from word `word` of row y on.
 [[nodiscard]] inline MemoryRequest flag_word_request(TilePlane plane, int word, int words, int y, std::uint64_t bits,
                                                      const Widths& widths) {
   MemoryRequest request = request_of(flags_of(plane), flag_word_address(word, y, widths));
@@ -63,7 +63,7 @@ inline void set_flag_word(MemoryRequest& request, std::uint64_t bits, const Widt
 
 [[nodiscard]] constexpr bool is_flags(TilePlane plane) { return (static_cast<unsigned>(plane) & 2U) != 0; }
 [[nodiscard]] constexpr bool is_of_color(TilePlane plane) { return (static_cast<unsigned>(plane) & 1U) != 0; }
-/// A colour a pixel, or the flags of the blocks that have those.
+/// Colours one per pixel, or the flags of such blocks.
 [[nodiscard]] constexpr bool is_of_pixels(TilePlane plane) { return (static_cast<unsigned>(plane) & 4U) != 0; }
 
 /// Codes of a stamp in memory.
@@ -71,14 +71,14 @@ inline void set_flag_word(MemoryRequest& request, std::uint64_t bits, const Widt
   return is_of_pixels(plane) ? widths.pixels : is_of_color(plane) ? widths.memory_colors : widths.samples;
 }
 
-/// Log2 of the bytes of a stamp of the plane, or of a word of its flags.
+/// Log2 of the bytes of a stamp of the buffer, or of a word of its flags.
 [[nodiscard]] inline int item_shift(TilePlane plane, const MemoryGrid& memory) {
   if (is_flags(plane)) return memory.flag_word;
   return is_of_pixels(plane) ? memory.pixel_color : memory.stamp[is_of_color(plane) ? 1 : 0];
 }
 
-/// Where a stamp lies in its plane of a tile, in bytes: block by block, row by row in each. A block of one colour a pixel
-/// begins where it would with all its samples.
+/// Offset of a stamp in its tile's buffer, in bytes: block by block, row by row in each. A block with one colour per
+/// pixel has the same offset as with all its samples.
 [[nodiscard]] inline std::uint32_t stamp_offset(TilePlane plane, int stamp, const Widths& widths) {
   const BlockStamp at = block_stamp({0, 0, static_cast<std::uint16_t>(stamp)}, widths);
   const auto block =
@@ -87,8 +87,8 @@ inline void set_flag_word(MemoryRequest& request, std::uint64_t bits, const Widt
          (static_cast<std::uint32_t>(at.stamp) << item_shift(plane, widths.memory));
 }
 
-/// The address of the first byte of a stamp, or of word tile_x of a row of flags (MemoryRequest). The words of the flags of
-/// one colour a pixel lie in the second half of a row of flags of colour.
+/// The address of the first byte of a stamp, or of word tile_x of a row of flags (MemoryRequest). The flag words of one
+/// colour per pixel lie in the second half of a row of colour flags.
 [[nodiscard]] inline std::uint32_t byte_address(TilePlane plane, int tile_x, int tile_y, int stamp,
                                                 const MemoryLayout& layout, const Widths& widths) {
   const MemoryGrid& m = widths.memory;
@@ -104,7 +104,8 @@ inline void set_flag_word(MemoryRequest& request, std::uint64_t bits, const Widt
          y * multiple(layout.row_stride, m.tile()) + (x << m.tile()) + stamp_offset(plane, stamp, widths);
 }
 
-/// The tiles of the widest target row by row, depth and colour of a tile side by side, then the flags of depth, of colour.
+/// The tiles of the widest target row by row, depth and colour of a tile side by side, then the depth flags and the
+/// colour flags.
 [[nodiscard]] inline MemoryLayout default_layout(const Widths& widths) {
   const MemoryGrid& m = widths.memory;
   MemoryLayout layout;
@@ -127,11 +128,12 @@ inline void set_flag_word(MemoryRequest& request, std::uint64_t bits, const Widt
                   std::max(layout.depth_flags_base, layout.color_flags_base) + flags);
 }
 
-/// How the stamps or words of a run share beats. `shift`: log2 of the bytes of one; `place`: of the first, in its row.
+/// How the stamps or words of a run share beats. `shift`: log2 of the bytes of each; `place`: index of the first in its
+/// row.
 struct BeatShare {
-  int per_stamp = 1;  ///< beats of one; 1 where several share a beat
-  int per_beat = 1;   ///< of them in a beat; 1 where one fills it
-  int first = 0;      ///< number in its beat
+  int per_stamp = 1;  ///< beats of each; 1 where several share a beat
+  int per_beat = 1;   ///< of them in a beat; 1 where each fills one
+  int first = 0;      ///< index in its beat
   BeatShare(int shift, int port, std::uint32_t place)
       : per_stamp(1 << std::max(0, shift - port)),
         per_beat(1 << std::max(0, port - shift)),
@@ -143,7 +145,7 @@ class PortStage {
  public:
   PortStage(const Widths& widths, const MemoryLayout& layout) : widths_(widths), layout_(layout) {}
 
-  /// send(MemoryBeat): the beats that the request completes, in order. It may answer() a read.
+  /// send(MemoryBeat): the beats that the request completes, in order. After it the beats of a read may be answered.
   template <class Send>
   void take(const MemoryRequest& request, Send&& send) {
     const MemoryGrid& m = widths_.memory;
@@ -180,7 +182,7 @@ class PortStage {
     }
   }
 
-  /// A beat of what the last request reads. give(MemoryResponse): the stamps that it completes, in order.
+  /// A beat of the last read. give(MemoryResponse): the stamps that it completes, in order.
   template <class Give>
   void answer(const MemoryAnswer& answer, Give&& give) {
     const std::size_t bytes = static_cast<std::size_t>(widths_.port_bytes);
@@ -198,9 +200,9 @@ class PortStage {
   struct Read {
     TilePlane plane = TilePlane::depth;
     BeatShare share{0, 0, 0};
-    int left = 0;                     ///< stamps without a response
-    int next = 0;                     ///< of them in its beat
-    std::vector<std::uint8_t> bytes;  ///< of the next response, so far
+    int left = 0;                     ///< stamps not yet answered
+    int next = 0;                     ///< index of the next in its beat
+    std::vector<std::uint8_t> bytes;  ///< of the next response, incomplete
   };
 
   /// Beat `beat` of the stamp or word of a request, from byte `first` of the beat on.
@@ -211,7 +213,7 @@ class PortStage {
     const std::uint64_t word = has_flags ? flag_word(request, widths_) : 0;
     const int sample = m.sample[is_of_color(request.plane) ? 1 : 0];
     for (int n = 0; n < size; ++n) {
-      const int byte = beat * widths_.port_bytes + n;  // of the stamp
+      const int byte = beat * widths_.port_bytes + n;  // in the stamp
       const auto s = static_cast<std::size_t>(byte >> sample);
       if (!has_flags && !request.strobe.has(s)) continue;
       const auto at = static_cast<std::size_t>(first + n);

@@ -1,15 +1,19 @@
-// Multisample: a triangle as each sample of a pixel sees it.
+// Multisample: a triangle seen from each sample of a pixel.
 //
-// In: the setup of a triangle, at pixel centres, and its vertices. Out: the same setup at one sample of every pixel. A sample
-// lies o = (o_x, o_y) from the centre, in 2^-s pixel, the same in all pixels, so it costs one constant an edge and plane:
+// In: the setup of a triangle, at pixel centres, and its vertices. Out: the same setup at one sample of every pixel. A
+// sample lies o = (o_x, o_y) from the centre, in 2^-s pixel, the same in all pixels, so it needs one constant per edge
+// and plane:
 //
-//   edges   e + c,  c = (low + dx o_y - dy o_x) >> s,  low: the s bits that e, as floor((E - bias) / 2^s), has lost. They are the
+//   edges   e + c,  c = (low + dx o_y - dy o_x) >> s,  low: the s bits that e, as floor((E - bias) / 2^s), has dropped.
+//   They are
 //           same at all centres, so e + c is floor((E(o) - bias) / 2^s): exact, the edges of the triangle moved by -o
-//   planes  z + d,  d = (n_x o_x + n_y o_y + 1/2) >> s,  n: the steps per pixel that a tile keeps. So interpolate makes d of what it
-//           has, for 2 halves of a tile's last place more of error: half a pixel's way along each axis, and the rounding of d
+//   planes  z + d,  d = (n_x o_x + n_y o_y + 1/2) >> s,  n: the steps per pixel in a tile's precision. So interpolate
+//   computes d
+//           from them, with 2 halves of a tile's last place more of error: half a pixel's step along each axis, and
+//           rounding of d
 //
-// A pixel with a covered sample is shaded once: at its centre, or where that is not covered, at its lowest-numbered covered
-// sample. A perspective plane there may be read; at a centre outside it may have no meaning.
+// A pixel with a covered sample is shaded once: at its centre, or if that is not covered, at its lowest-numbered
+// covered sample. There a plane over w is valid; at an uncovered centre it may not be.
 #pragma once
 
 #include <array>
@@ -35,7 +39,7 @@ namespace halfplane {
   return setup;
 }
 
-/// The triangle moved by -o: at its pixel centres lies what the triangle has at a sample.
+/// The triangle moved by -o: its values at pixel centres are those of the triangle at a sample.
 [[nodiscard]] inline Triangle moved_to_sample(Triangle triangle, const SampleOffset& o) {
   for (SnappedVertex& v : triangle.v) {
     v.x -= o.x;
@@ -44,10 +48,10 @@ namespace halfplane {
   return triangle;
 }
 
-/// Where a pixel is shaded: -1 at its centre, otherwise the number of a sample.
+/// Shading place of a pixel: -1 its centre, otherwise the number of a sample.
 inline constexpr int kAtCentre = -1;
 
-/// From the centre to there.
+/// Offset of the shading place from the centre.
 [[nodiscard]] inline SampleOffset offset_of(int place, const Widths& widths) {
   return place == kAtCentre ? SampleOffset{} : widths.sample_offset[static_cast<std::size_t>(place)];
 }

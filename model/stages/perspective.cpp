@@ -27,7 +27,8 @@ std::uint32_t q_code(double w, int e) {
 
 double coordinate_error_bound(double extent, double w_ratio, const PerspectiveFormat& format,
                               const OverWFormat& attribute, int roundings) {
-  // The largest |u'|: half the extent and what u_ref, an integer, is off the middle; all of it without a u_ref.
+  // The largest |u'|: half the extent plus the distance of u_ref, an integer, from the middle; the whole extent without
+  // a u_ref.
   const double reach = attribute.is_centred ? extent / 2 + 1 : extent;
   const double delta = std::ldexp(roundings + 1, -format.guard_bits - 1) + std::ldexp(1.0, -5);  // of a plane, codes
   const double smallest_q = std::ldexp(1.0, format.q_bits - 1) / w_ratio;
@@ -71,7 +72,7 @@ OverW quantize_over_w(const std::array<double, 3>& value, const QCodes& q, const
   }
   const auto bits_above_point = [](double number) { return number < 1 ? 0 : std::ilogb(number) + 1; };
   result.reach = bits_above_point(farthest * (1 + std::ldexp(1.0, -10)));
-  // Where all products are tiny, P need not have more bits than the result will show.
+  // If all products are tiny, P needs no more bits than the result shows.
   const int largest_bits = largest > 0 ? std::ilogb(largest) + 1 : result.reach - 1;
   result.exponent = std::max(largest_bits, result.reach - 1) - attribute.bits;
   const auto codes = [&] {

@@ -9,16 +9,16 @@ namespace halfplane {
 namespace {
 
 constexpr int kShininessFraction = 16;
-constexpr double kTrace = 1.0 / 2048;  // of a highlight: less is none
+constexpr double kTrace = 1.0 / 2048;  // of a highlight: less is ignored
 
 std::uint32_t shininess_code(double shininess) {
   return static_cast<std::uint32_t>(snap(shininess, 1 << kShininessFraction));
 }
 
-/// A direction of the state, cut off so that none is longer than 1.
+/// A direction of the state, truncated so that none is longer than 1.
 Normal direction_codes(const std::array<double, 3>& direction) {
   const std::array<double, 3> unit = unit_normal(direction);
-  constexpr double kLargest = (1 << kNormalFraction) - 1;  // 16 bits with the sign
+  constexpr double kLargest = (1 << kNormalFraction) - 1;  // 16 bits, signed
   Normal codes;
   for (std::size_t i = 0; i < 3; ++i) codes[i] = static_cast<std::int32_t>(std::trunc(unit[i] * kLargest));
   return codes;
@@ -30,8 +30,8 @@ double length_of(const Normal& codes) {
   return std::sqrt(square);
 }
 
-/// The chord of a falling curve, and half of what it is off in the middle. `ahead`: the part of the line that a place stands
-/// for the middle of, where what is looked up has more bits.
+/// The chord of a falling curve, less half of its error in the middle. `ahead`: the fraction of the line that one place
+/// covers, where the looked-up value has more bits: a place stands for its middle.
 FallingLine chord(double first, double middle, double last, int fraction, double ahead) {
   const double off = middle - (first + last) / 2, fall = first - last;
   const double start = first + off / 2 - ahead * fall / 2;
@@ -76,7 +76,7 @@ OverW quantize_normal(const std::array<std::int32_t, 3>& component, const QCodes
 }
 
 Normal block_normal(const std::array<std::int64_t, 3>& p) {
-  std::uint64_t bits = 0;  // of the largest, but for the last one of a negative number
+  std::uint64_t bits = 0;  // of the largest; the last bit of a negative number may differ
   for (const std::int64_t c : p) bits |= static_cast<std::uint64_t>(c ^ (c >> 63));
   const int drop = (bits == 0 ? 0 : floor_log2(bits)) + 1 - kBlockBits;
   Normal m;
@@ -114,10 +114,10 @@ InverseLength inverse_length(const Normal& m) {
 }
 
 std::uint32_t cosine(const Normal& m, const InverseLength& length, const Normal& direction) {
-  std::int64_t dot = 0;  // 32 bits with the sign
+  std::int64_t dot = 0;  // 32 bits, signed
   for (std::size_t i = 0; i < 3; ++i) dot += std::int64_t{m[i]} * direction[i];
   if (dot <= 0) return 0;
-  // 17 bits, and a half for what is dropped.
+  // 17 bits, plus a half for the dropped bits.
   const auto part = static_cast<std::uint64_t>(dot >> (length.exponent - 1)) << 1 | 1;
   return static_cast<std::uint32_t>(round_shift(part * length.root, kRootFraction));
 }
@@ -139,12 +139,13 @@ PhongLight::PhongLight(const Given& given) : given_(given) {
   make_power();
 }
 
-/// Of what cosine() makes of an N.H: the half is a hair too short. Not held to 1, which would be a bend in the first line.
+/// Power of a cosine() result for N.H, corrected for the slightly short half vector. Not clamped to 1, which would be a
+/// bend in the first line.
 double PhongLight::real_power(double x) const {
   return half_length_ > 0 ? power_of(x / half_length_, shininess_code(given_.shininess)) : 0;
 }
 
-/// As narrow as the power allows: what is left out shows no trace.
+/// As narrow as the power allows: the rest of the range shows no trace.
 void PhongLight::make_power() {
   const std::uint32_t n = shininess_code(given_.shininess);
   int& narrow = registers_.narrow;
@@ -181,7 +182,7 @@ std::uint32_t LightRegisters::lit(std::size_t channel, std::uint32_t color, cons
 }
 
 PhongLight::Bounds PhongLight::error_bounds(double cosine_of_light, double cosine_of_half, double turn) const {
-  const double rounded_direction = std::sqrt(3.0) * std::ldexp(1.0, 1 - kNormalFraction);  // cut off, and 2^-15 short
+  const double rounded_direction = std::sqrt(3.0) * std::ldexp(1.0, 1 - kNormalFraction);  // truncated, and 2^-15 short
   turn += std::sqrt(3.0) * std::ldexp(0.5, 1 - kBlockBits);                                // m
   const double chord_of_root = 0.75 / 16 * std::ldexp(1.0, -2 * kRootLines);
   const double root =
@@ -194,18 +195,18 @@ PhongLight::Bounds PhongLight::error_bounds(double cosine_of_light, double cosin
     bounds.diffuse = 0;
     return bounds;
   }
-  // Of N.H the length of H is made up for, and a turn counts as its sine does.
+  // The length of H is corrected in N.H, and a turn counts as its sine.
   const double turned = turn + rounded_direction, x = std::max(cosine_of_half, 0.0);
   const double sine = std::sqrt(std::max(0.0, 1 - x * x));
   const double moved = turned * sine + turned * turned / 2 + cosine_rounded;
   const double n = given_.shininess, real = std::pow(std::min(x, 1.0), n);
   const double higher = std::pow(std::min(x + moved, 1.0), n), lower = std::pow(std::max(x - moved, 0.0), n);
   const double width = std::ldexp(1.0, -kPowerLines - narrow());
-  const double bend = n * std::max(n - 1, 0.0) * width * width;  // the most of a line's second derivative
+  const double bend = n * std::max(n - 1, 0.0) * width * width;  // bound of a line's second derivative
   const double table = bend / 16 * (1 + n * width) + std::ldexp(1.5, -kPowerStartFraction) +
                        std::ldexp(0.5, -kLightFraction) + power_of(1 - std::ldexp(1.0, -narrow()), shininess_code(n));
   bounds.specular = std::max(higher - real, real - lower) + table;
-  // At the edge of the light either side of N.L = 0 may be meant.
+  // At the edge of the light either side of N.L = 0 is possible.
   if (std::abs(cosine_of_light) <= off) bounds.specular = std::max(bounds.specular, higher + table);
   return bounds;
 }
@@ -218,7 +219,7 @@ double PhongLight::error_bound(std::size_t channel, std::uint32_t color, const B
 
 std::shared_ptr<const PhongLight> phong_light(const State& state) {
   if (state.shade != Shade::phong) return nullptr;
-  // Contexts are made again and again, of a few states.
+  // Contexts are made repeatedly, for few states.
   constexpr std::size_t kKept = 8;
   static thread_local std::array<std::shared_ptr<const PhongLight>, kKept> kept;
   static thread_local std::size_t next = 0;

@@ -1,39 +1,39 @@
-// Pixel colours: blocks of 4x4 pixels whose pixels have one colour each lie in memory with one colour a pixel, others with one
-// a sample (compress.unit). A bit for each block of the target says which; it is looked at and changed where requests go out,
-// in their order, so that it is always what memory has.
+// Pixel colours: blocks of 4x4 pixels with one colour in each pixel lie in memory with one colour per pixel, others
+// with one per sample (compress.unit). A bit for each block of the target says which; it is read and changed as
+// requests go out, in their order, so that it always describes memory.
 //
-// What leaves the chip of a block is its new samples. Where those of each pixel are all there and equal, or none is, the block
-// is uniform: it is written with a colour a pixel where memory holds garbage, the whole block is there, or memory has such a
-// block already. A block that is not, over one in memory that has a colour a pixel, must have all its samples from now on:
-// that is read and merged. Data is in block_cache.hpp, time in engines/cycle/block_timing.hpp, the hardware in
-// rtl_ref/stages/pixel_colors.sv.
+// An eviction writes a block's new samples. If in each pixel all samples are present and equal, or none is, the block
+// is uniform: it is written with one colour per pixel if memory is stale, the whole block is present, or memory holds
+// it so already. A block that is not uniform, over one stored with one colour per pixel, needs all its samples from now
+// on: the pixels are read and merged. Data is in block_cache.hpp, time in engines/cycle/block_timing.hpp, the hardware
+// in rtl_ref/stages/pixel_colors.sv.
 #pragma once
 
 #include "clear_flags.hpp"
 
 namespace halfplane {
 
-/// The colours of a block that leaves the chip.
+/// The colours of an evicted block.
 struct LeavingColors {
-  bool fills = false;      ///< memory holds garbage, and all of the block is there
-  bool is_uniform = true;  ///< of each pixel all samples are there, and equal, or none
-  bool is_whole = false;   ///< all of the block is there
+  bool fills = false;      ///< memory is stale, and all of the block is written
+  bool is_uniform = true;  ///< in each pixel all samples are present and equal, or none is
+  bool is_whole = false;   ///< all of the block is present
 };
 
-/// How they go to memory.
+/// The form in which colours go to memory.
 enum class ColorMove : std::uint8_t {
-  samples,  ///< those that are there, a colour a sample
-  pixels,   ///< likewise, a colour a pixel
-  merge,    ///< all, a colour a sample: what is not there is read, a colour a pixel
+  samples,  ///< those present, one colour per sample
+  pixels,   ///< those present, one colour per pixel
+  merge,    ///< all, one colour per sample: missing ones are read, one colour per pixel
 };
 
-/// `of_pixels`: memory has the block with a colour a pixel.
+/// `of_pixels`: the block lies in memory with one colour per pixel.
 [[nodiscard]] constexpr ColorMove color_move(const LeavingColors& colors, bool of_pixels) {
   if (colors.is_uniform) return colors.fills || colors.is_whole || of_pixels ? ColorMove::pixels : ColorMove::samples;
   return of_pixels && !colors.fills ? ColorMove::merge : ColorMove::samples;
 }
 
-/// Whether of each pixel of a stamp all samples in `mask` are there, and equal, or none is. color(s): that of sample s.
+/// Whether in each pixel of a stamp all samples are in `mask` and equal, or none is. color(s): of sample s.
 template <class Color>
 [[nodiscard]] bool has_one_color(SampleMask mask, const Widths& widths, Color&& color) {
   const int n = widths.pixel_samples;

@@ -1,8 +1,9 @@
-// Primitive join: puts the pixels of lines where program order wants them among the stamps.
+// Primitive join: inserts the pixels of lines among the stamps in program order.
 //
 // In: fragments from interpolate, pixels from line_raster. Out: fragments. A fragment of kind line is the place of one
-// line: it takes pixels up to the line's last one and becomes one fragment each. Every other fragment goes through. What
-// is read next follows from what was read last, never from what has come first. No latency, one fragment per cycle.
+// line: it takes pixels up to the line's last one and becomes one fragment each. Every other fragment passes. The
+// stream to read next follows from the last item read, never from which stream is valid first. No latency, one fragment
+// per cycle.
 #pragma once
 
 #include <algorithm>
@@ -11,8 +12,8 @@
 
 namespace halfplane {
 
-/// Turns the place of a line, or the pixel before, into a pixel of the line: a stamp with one covered pixel, which belongs to
-/// no tile visit. All samples of the pixel are drawn that the state lets.
+/// Turns the place of a line, or the pixel before, into a pixel of the line: a stamp with one covered pixel, which
+/// belongs to no tile visit. All samples of the pixel that the state allows are drawn.
 inline void set_line_pixel(const LinePixel& pixel, const Widths& widths, FragmentPacket& fragment) {
   const StampGrid& stamps = widths.stamps;
   const int last = (1 << widths.tile_shift) - 1;
@@ -24,12 +25,12 @@ inline void set_line_pixel(const LinePixel& pixel, const Widths& widths, Fragmen
   fragment.stamp = static_cast<std::uint16_t>(stamps.stamp_at(x, y));
   fragment.mask = stamps.samples_at(x % stamps.size, y % stamps.size) &
                   stamps.in_every_pixel(~unsigned{fragment.state.masked_samples});
-  // In every lane: the other pixels are not looked at, and a lane of hardware need not know which one is.
+  // In every lane: the other pixels are ignored, and a lane of hardware need not know its pixel.
   std::fill_n(fragment.code.begin(), widths.pixels, pixel.code);
   std::fill_n(fragment.further_depth.begin(), widths.further_samples, pixel.code[kDepthPlane]);
 }
 
-/// The stage's packet of a pixel of the line whose place is `token`.
+/// The fragment for a pixel of the line whose place is `token`.
 [[nodiscard]] inline FragmentPacket line_fragment(const FragmentPacket& token, const LinePixel& pixel,
                                                   const Widths& widths) {
   FragmentPacket fragment = token;

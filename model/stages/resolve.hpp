@@ -1,8 +1,8 @@
 // Resolve: the one colour of a pixel with several samples.
 //
-// In: the images of the samples. Out: those of the pixel. Each stored channel is (sum + n/2) >> log2 n, n samples: the mean
-// rounded to the nearest code, halves up, so at most half a stored LSB off. Depth and stencil are sample 0's: a mean of depths
-// lies on no surface.
+// In: the images of the samples. Out: the images of the pixel. Each stored channel is (sum + n/2) >> log2 n, n samples:
+// the mean rounded to the nearest code, halves up, so at most half a stored LSB off. Depth and stencil are sample 0's:
+// a mean of depths lies on no surface.
 #pragma once
 
 #include "../config.hpp"
@@ -29,7 +29,7 @@ template <class Color>
   return mean;
 }
 
-/// Fills the images of the pixels from those of their samples. Does nothing where a pixel has one.
+/// Fills the images of the pixels from those of their samples. Does nothing with one sample per pixel.
 inline void resolve(Framebuffer& frame, ColorFormat format) {
   if (frame.samples.empty()) return;
   const int samples = static_cast<int>(frame.samples.size());

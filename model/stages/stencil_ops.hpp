@@ -1,5 +1,5 @@
-// The stencil test, and what becomes of the stored value: 8 bits a pixel.
-// Lane: std::uint32_t, or a vector of them. Source: OpenGL ES 2.0.25, 4.1.4.
+// The stencil test and the update of the stored value: 8 bits per pixel. Lane: std::uint32_t, or a vector of them.
+// Source: OpenGL ES 2.0.25, 4.1.4.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace halfplane {
 
-/// Of triangles that show their front, of those that show their back.
+/// For triangles that show their front, and their back.
 using StencilSides = std::array<Stencil, 2>;
 
 /// The stencil test of a state, if it has one.
@@ -20,7 +20,7 @@ using StencilSides = std::array<Stencil, 2>;
   return StencilSides{*state.stencil, state.stencil_back.value_or(*state.stencil)};
 }
 
-/// The stored value behind an operation.
+/// The stored value after an operation.
 template <class Lane>
 [[nodiscard]] constexpr Lane apply_stencil(StencilOp op, const Stencil& s, const Lane& stored) {
   const Lane full = Lane{} + 255;
@@ -41,12 +41,12 @@ template <class Lane>
   return (result() & mask) | (stored & ~mask);
 }
 
-/// What of a test decides which operation it is.
+/// Selects the operation by the results of the tests.
 [[nodiscard]] constexpr StencilOp stencil_op(const Stencil& s, bool stencil_passes, bool depth_passes) {
   return !stencil_passes ? s.stencil_fails : depth_passes ? s.passes : s.depth_fails;
 }
 
-/// Whether any outcome changes what is stored.
+/// Whether any outcome changes the stored value.
 [[nodiscard]] constexpr bool writes_stencil(const Stencil& s) {
   return s.write_mask != 0 &&
          (s.stencil_fails != StencilOp::keep || s.depth_fails != StencilOp::keep || s.passes != StencilOp::keep);

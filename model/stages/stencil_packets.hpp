@@ -1,5 +1,5 @@
-// Stencil packets: the stencil tests of the depth test as tokens carry them (state_packets.hpp says where the words lie). A
-// token is about a side of triangles or about both. Whether a primitive looks at any of it rides with the primitive.
+// Stencil packets: the stencil tests of the depth test in tokens (state_packets.hpp gives the place of the words). A
+// token sets one side of triangles or both. A primitive carries flags that say whether it uses them.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ namespace halfplane {
 /// Whether the hardware has a stencil.
 [[nodiscard]] constexpr bool has_stencil(const Config& config) { return config.stencil_bits != 0; }
 
-/// The words of the registers that a draw wants, front and back; none: it does not look at that one.
+/// The words of the registers that a draw needs, front and back; none: it does not use that register.
 struct StencilWords {
   std::array<std::optional<std::uint32_t>, 2> test, update;
 };
@@ -24,19 +24,19 @@ inline constexpr int kFunction = 3, kOp = 3, kByte = 8, kTest = kFunction + 2 * 
                      kUpdate = 3 * kOp + kByte;  // bits
 }
 
-/// How a side is compared, lowest first: function, reference, read mask.
+/// The comparison of a side, lowest first: function, reference, read mask.
 [[nodiscard]] constexpr std::uint32_t pack_test(const Stencil& s) {
   using namespace stencil_packets_detail;
   return static_cast<std::uint32_t>(s.func) | std::uint32_t{s.reference} << kFunction |
          std::uint32_t{s.read_mask} << (kFunction + kByte);
 }
-/// What becomes of the stored value, lowest first: sfail, zfail, zpass, write mask.
+/// The update of the stored value, lowest first: sfail, zfail, zpass, write mask.
 [[nodiscard]] constexpr std::uint32_t pack_update(const Stencil& s) {
   using namespace stencil_packets_detail;
   return static_cast<std::uint32_t>(s.stencil_fails) | static_cast<std::uint32_t>(s.depth_fails) << kOp |
          static_cast<std::uint32_t>(s.passes) << 2 * kOp | std::uint32_t{s.write_mask} << 3 * kOp;
 }
-/// The same of a token: for the sides in `sides`, bit 0 the front.
+/// The same for a token: for the sides in `sides`, bit 0 the front.
 [[nodiscard]] constexpr std::uint32_t with_sides(StateRegister which, std::uint32_t word, std::uint32_t sides) {
   using namespace stencil_packets_detail;
   return word | sides << (which == StateRegister::stencil_test ? kTest : kUpdate);
@@ -50,7 +50,7 @@ inline constexpr int kFunction = 3, kOp = 3, kByte = 8, kTest = kFunction + 2 * 
 struct StencilState {
   StencilSides side{};
 
-  /// A token sets one of them.
+  /// A token sets one of the registers.
   constexpr void set(StateRegister which, std::uint64_t word) {
     using namespace stencil_packets_detail;
     if (which != StateRegister::stencil_test && which != StateRegister::stencil_update) return;
@@ -80,7 +80,7 @@ struct StencilState {
     }
   }
 
-  /// By side: every value passes, and of what passes nothing is left.
+  /// By side: every value passes, and a passing value is fully replaced.
   [[nodiscard]] constexpr std::array<bool, 2> replaces() const {
     const auto replaces = [](const Stencil& s) {
       return s.func == DepthFunc::always && (s.passes == StencilOp::zero || s.passes == StencilOp::replace) &&
@@ -89,12 +89,12 @@ struct StencilState {
     return {replaces(side[0]), replaces(side[1])};
   }
 
-  /// What a fast clear of depth leaves above it.
+  /// The stencil that a fast clear of depth leaves above it.
   [[nodiscard]] constexpr std::uint8_t clear_value() const { return side[0].reference; }
 };
 
-/// What a draw with these sides asks of the hardware: the flags of its primitives, but for is_back. Returns whether it asks for
-/// anything: a test that every fragment passes and that changes nothing is none.
+/// Sets the flags of a draw with these sides in its primitives, except is_back. Returns whether any is set: a test that
+/// every fragment passes and that changes nothing needs none.
 constexpr bool set_stencil_flags(PrimitiveState& state, const StencilSides& sides) {
   for (const Stencil& s : sides) {
     state.writes_stencil = state.writes_stencil || writes_stencil(s);
@@ -106,7 +106,7 @@ constexpr bool set_stencil_flags(PrimitiveState& state, const StencilSides& side
   return state.tests_stencil;
 }
 
-/// The registers that it wants.
+/// The registers that the draw needs.
 [[nodiscard]] constexpr StencilWords stencil_words(const StencilSides& sides) {
   StencilWords words;
   for (const std::size_t n : {0U, 1U}) {

@@ -60,7 +60,8 @@ Plane Surface::at_sample(const Plane& plane) const {
   return plane_at_sample(plane, format_.guard_bits, offset_, widths_);
 }
 
-/// Q of fog and normals is that of colours or coordinates over w, where there are some: the same codes, and the same plane.
+/// Q of fog and normals is shared with colours or coordinates over w, if there are any: the same codes, and the same
+/// plane.
 Surface::Divisor Surface::true_divisor(const std::array<double, 3>& w, bool is_over_w) const {
   if (color_divisor_) return *color_divisor_;
   if (texture_divisor_ && is_over_w) return *texture_divisor_;

@@ -1,10 +1,11 @@
-// Surface: the colour of a triangle at a covered sample, where it is more than the codes of its affine planes: colours over
-// w, their light, a texture, the two combined, and what is left of that in fog.
+// Surface: the colour of a triangle at a covered sample, where it is more than the codes of its affine planes: colours
+// over w, their light, a texture, both combined, and the result in fog.
 //
 //   colours      affine codes, or P / Q (perspective.hpp)
 //   light        phong.hpp, from normals over w
-//   coordinates  u, v over w, or affine: the same planes with Q the same at all vertices
-//   level        level_of_detail.hpp, from the coordinates' planes; where a sample of several is shaded, from Q there and the
+//   coordinates  u, v over w, or affine: the same planes with equal Q at all vertices
+//   level        level_of_detail.hpp, from the coordinates' planes; where one of several samples is shaded, from Q
+//   there and the
 //                row and column of its pixel's centre
 //   texel        texture_sample.hpp
 //   fog          fog.hpp, from Q
@@ -23,7 +24,7 @@
 
 namespace halfplane {
 
-/// How precise the attributes over w of a configuration are.
+/// Precision of the attributes over w of a configuration.
 [[nodiscard]] constexpr PerspectiveFormat perspective_format(const Config& config) {
   const int bits = config.perspective_bits, mantissa = config.perspective_mantissa_bits;
   constexpr int kShortMantissa = 16;
@@ -35,13 +36,13 @@ namespace halfplane {
           {color_over_w_bits(config), kColorNarrowBits, 0, false}};
 }
 
-/// Whether the filled triangles of a draw need one.
+/// Whether the filled triangles of a draw need a surface.
 [[nodiscard]] constexpr bool has_surface(const State& state) {
   return state.texture.has_value() || state.color_interp == ColorInterp::perspective || state.fog.has_value() ||
          state.shade == Shade::phong;
 }
 
-/// What a textured triangle sends to setup, vertices in the order of `surface`; every w > 0. Host.
+/// Input of setup for a textured triangle, vertices in the order of `surface`; every w > 0. Host.
 struct TextureCoordinates {
   QCodes q{};
   std::array<std::array<double, 3>, 2> texels{};  ///< u and v of each vertex
@@ -56,14 +57,14 @@ struct SurfaceSample {
   Texel primitive{};                   ///< its own colour
   Normal normal{};                     ///< m; without light 0
   PhongLight::Factors light{};         ///< N.L and the highlight, 2^-12; without light 0
-  Texel lit{};                         ///< the primitive's colour in its light; without light as it is
+  Texel lit{};                         ///< the primitive's colour in its light; without light unchanged
   std::array<double, 2> coordinate{};  ///< u and v, texels of level 0, before they wrap; 0 without a texture
-  TexturePlace place;                  ///< the same as the filter gets it
+  TexturePlace place;                  ///< the place as passed to the filter
   Lod lod = 0;                         ///< without bias and bounds
   Texel texel{};                       ///< the texture's colour; without one 0
-  Texel clear{};                       ///< R, G, B, A: both together
+  Texel clear{};                       ///< R, G, B, A: both combined
   std::uint64_t fog_q = 0;             ///< Q, 2^-l codes; without fog 0
-  std::uint32_t fog = kFogClear;       ///< f, what of that is left
+  std::uint32_t fog = kFogClear;       ///< f, the part of that which remains
   Texel color{};                       ///< in fog
 };
 
@@ -80,9 +81,9 @@ class Surface {
     Plane plane;
   };
 
-  /// At pixel centres; or at a sample of each pixel, `offset` from there, and then `setup` is the one at that sample
-  /// (setup_at_sample). `setup` of `triangle`, not empty; `texture`, `fog`, `phong`: those of the state, or none. Every w > 0
-  /// (require_positive_w).
+  /// At pixel centres; or at a sample of each pixel, `offset` from the centre, with `setup` at that sample
+  /// (setup_at_sample). `setup`: of `triangle`, not empty; `texture`, `fog`, `phong`: of the state, or none. Every w >
+  /// 0 (require_positive_w).
   Surface(const Triangle& triangle, const TriangleSetup& setup, const State& state, const Texture* texture,
           const FogTable* fog, const PhongLight* phong, const Config& config, const Widths& widths,
           const SampleOffset& offset = {});
@@ -91,7 +92,7 @@ class Surface {
   /// R, G, B, A at a covered sample.
   [[nodiscard]] Texel color(int x, int y) const { return at(x, y).color; }
 
-  // What color() is made of, for who does the same in lanes.
+  // Parts of color(), for engines that compute it in lanes.
   [[nodiscard]] const PerspectiveFormat& format() const { return format_; }
   [[nodiscard]] const std::optional<Divisor>& color_divisor() const { return color_divisor_; }
   [[nodiscard]] const std::optional<Divisor>& texture_divisor() const { return texture_divisor_; }

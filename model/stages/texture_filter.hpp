@@ -1,12 +1,13 @@
-// Texture filter: from a coordinate and a level to a texel colour, and that together with the primitive's own.
+// Texture filter: from a coordinate and a level to a texel colour, combined with the primitive's own colour.
 //
-// A coordinate counts texels of level 0 with f fraction bits; texel i holds [i, i + 1), its middle is i + 1/2. On its level
-// it has 8 fraction bits: cut off where one texel is looked for, rounded where they are weights, which halves what they lose.
-//   nearest    the texel that holds it
-//   linear     the four whose middles surround it, weights (256 - a, a) (256 - b, b): the 8 bits behind u - 1/2 and v - 1/2
+// A coordinate counts texels of level 0 with f fraction bits; texel i holds [i, i + 1), its centre is i + 1/2. On its
+// level it has 8 fraction bits: truncated to select one texel, rounded to give weights, which halves their error.
+//   nearest    the texel that contains the place
+//   linear     the four whose centres surround it, weights (256 - a, a) (256 - b, b): the 8 bits after the point of u -
+//   1/2, v - 1/2
 //   trilinear  linear on two levels, each kept to 8 fraction bits of a channel, then (256 - c, c)
-// A sum is rounded once, (sum + 2^15) >> 16; between two levels twice, which costs 2^-9 of a code and saves a multiplier of
-// 25 bits. `fetch(level, x, y)` gives the texel there, R, G, B, A.
+// A sum is rounded once, (sum + 2^15) >> 16; between two levels twice, with an error of 2^-9 of a code, which saves a
+// multiplier of 25 bits. `fetch(level, x, y)` gives the texel there, R, G, B, A.
 #pragma once
 
 #include <algorithm>
@@ -31,39 +32,39 @@ struct TextureAxis {
   TextureWrap wrap = TextureWrap::repeat;
 
   [[nodiscard]] constexpr bool is_power_of_two() const { return std::has_single_bit(static_cast<unsigned>(size)); }
-  /// After so many texels the image comes again. Not for clamp.
+  /// Period of the image in texels. Not for clamp.
   [[nodiscard]] constexpr std::int64_t period() const {
     return wrap == TextureWrap::mirror ? std::int64_t{2} * size : std::int64_t{size};
   }
   [[nodiscard]] constexpr TextureAxis at_level(int level) const { return {std::max(1, size >> level), wrap}; }
 };
 
-/// value modulo period, not negative.
+/// value modulo period, non-negative.
 [[nodiscard]] constexpr std::int64_t floor_modulo(std::int64_t value, std::int64_t period) {
   const std::int64_t rest = value % period;
   return rest < 0 ? rest + period : rest;
 }
 
-/// u_ref as the hardware gets it: modulo the period; or, with clamp, where no coordinate of the triangle can tell the
-/// difference. Host.
+/// u_ref as passed to the hardware: modulo the period; or, with clamp, moved without effect on any coordinate of the
+/// triangle. Host.
 [[nodiscard]] inline std::int32_t wrapped_reference(double reference, const TextureAxis& axis) {
   if (axis.wrap == TextureWrap::clamp) {
-    const double limit = std::ldexp(1.0, kMaxReach + 2);  // twice what U can be
+    const double limit = std::ldexp(1.0, kMaxReach + 2);  // twice the largest U
     return static_cast<std::int32_t>(std::clamp(reference, -limit, limit));
   }
   const auto period = static_cast<double>(axis.period());
-  const double rest = std::fmod(reference, period);  // exact, as a quotient would not be
+  const double rest = std::fmod(reference, period);  // exact, unlike a quotient
   return static_cast<std::int32_t>(rest < 0 ? rest + period : rest);
 }
 
-/// U + u_ref, 2^-f texels; modulo the period where there is one.
+/// U + u_ref, 2^-f texels; modulo the period if there is one.
 [[nodiscard]] constexpr std::int64_t texture_coordinate(std::int64_t u, std::int32_t reference, int fraction_bits,
                                                         const TextureAxis& axis) {
   const std::int64_t sum = u + reference * (std::int64_t{1} << fraction_bits);
   return axis.wrap == TextureWrap::clamp ? sum : floor_modulo(sum, axis.period() << fraction_bits);
 }
 
-/// A coordinate of level 0, f fraction bits, on another level, 8 fraction bits: coordinate size_n / size, cut off.
+/// A coordinate of level 0, f fraction bits, on another level, 8 fraction bits: coordinate size_n / size, truncated.
 [[nodiscard]] constexpr std::int64_t at_level(std::int64_t coordinate, int fraction_bits, const TextureAxis& axis,
                                               int level) {
   const std::int64_t fine = coordinate << (kTexelFraction - fraction_bits);
@@ -72,31 +73,31 @@ struct TextureAxis {
   return (scaled - floor_modulo(scaled, axis.size)) / axis.size;
 }
 
-/// The same rounded: cut off with a bit more, which is then rounded by.
+/// The same rounded: truncated to one more bit, then rounded by it.
 [[nodiscard]] constexpr std::int64_t rounded_at_level(std::int64_t coordinate, int fraction_bits,
                                                       const TextureAxis& axis, int level) {
   return round_shift(at_level(2 * coordinate, fraction_bits, axis, level), 1);
 }
 
-/// The texel of the image that number i stands for.
+/// The texel of the image for texel number i.
 [[nodiscard]] constexpr int wrapped_texel(std::int64_t i, const TextureAxis& axis) {
   const std::int64_t last = axis.size - 1;
   if (axis.wrap == TextureWrap::clamp) return static_cast<int>(std::clamp<std::int64_t>(i, 0, last));
   const std::int64_t period = axis.period();
   const std::int64_t rest = axis.is_power_of_two() ? i & (period - 1) : floor_modulo(i, period);
-  return static_cast<int>(rest > last ? period - 1 - rest : rest);  // beyond the last one: mirrored
+  return static_cast<int>(rest > last ? period - 1 - rest : rest);  // beyond the last texel: mirrored
 }
 
 /// A sample's place on a texture: coordinates of level 0 with f fraction bits.
 struct TexturePlace {
   std::array<std::int64_t, 2> coordinate{};
   int fraction_bits = kTexelFraction;
-  int weight_bits = kTexelFraction;  ///< of a linear filter's weights; fewer to study what that costs
+  int weight_bits = kTexelFraction;  ///< of a linear filter's weights; fewer for studies
 };
 /// Along u and v, of level 0.
 using TextureAxes = std::array<TextureAxis, 2>;
 
-/// What one axis of a linear filter looks at: two texels, and how much of the second there is, in 256ths.
+/// Input of one axis of a linear filter: two texels, and the weight of the second, in 256ths.
 struct TexelPair {
   int first = 0, second = 0;
   std::uint32_t part = 0;
@@ -144,7 +145,7 @@ template <class Fetch>
   return result;
 }
 
-/// Two colours with 8 fraction bits each, and how much of the second there is, in 256ths.
+/// Blends two colours with 8 fraction bits each; `part`: the weight of the second, in 256ths.
 [[nodiscard]] constexpr std::uint8_t blend_levels(std::uint32_t lower, std::uint32_t upper, std::uint32_t part) {
   return static_cast<std::uint8_t>(round_shift(lower * (256 - part) + upper * part, 16));
 }
@@ -173,8 +174,8 @@ template <class Fetch>
   return result;
 }
 
-/// The primitive's colour and the texture's together: OpenGL ES 1.1, table 3.17. A format without alpha leaves that of the
-/// primitive as it is; its texels have 255 there.
+/// The primitive's colour and the texture's combined: OpenGL ES 1.1, table 3.17. A format without alpha keeps the
+/// primitive's alpha; its texels have 255 there.
 [[nodiscard]] constexpr Texel combined(const Texel& color, const Texel& texel, TextureCombine combine, bool has_alpha) {
   const auto rounded = [](std::uint32_t value) { return static_cast<std::uint8_t>(divide_by_255(value)); };
   const auto product = [rounded](std::uint32_t a, std::uint32_t b) { return rounded(a * b); };

@@ -3,7 +3,7 @@
 namespace halfplane {
 namespace {
 
-/// So many lowest bits.
+/// The `bits` lowest bits.
 [[nodiscard]] constexpr uint128 low_bits(uint128 value, int bits) { return value & ((uint128{1} << bits) - 1); }
 
 /// Bits 0 to 127 and 128 to 255 of a value shifted to the left.
@@ -48,7 +48,7 @@ TextureLines TextureLines::pack(const LodSetup& setup, Lod bias) {
   };
   for (const LodLine& line : setup.along_y) add(line.at_zero);
   for (const LodLine& line : setup.along_x) add(line.at_zero);
-  for (const LodLine& line : setup.along_y) add(line.step);  // those along x have the same
+  for (const LodLine& line : setup.along_y) add(line.step);  // the steps along x are the same
   put(lines, wrap_unsigned(static_cast<std::uint64_t>(offset), kOffsetBits), at);
   return lines;
 }

@@ -1,10 +1,11 @@
-// Texture levels in hardware: what the unit knows of a draw's levels, where they lie in memory, and how the lines of a triangle
-// (level_of_detail.hpp) come to it in tokens.
+// Texture levels in hardware: the unit's state about a draw's levels, their place in memory, and the tokens that bring
+// the lines of a triangle (level_of_detail.hpp).
 //
-// Levels lie one behind the other, the largest first, each a row of rows of blocks. Of 2^w x 2^h texels, level n has 2^a
-// blocks, a = max(0, w-2-n) + max(0, h-2-n). Down to the first of one block these are falling powers of two, so their sum up to
-// a level is some of the bits of one number: those above a. No adder is needed to find it, and none to find a block in it.
-// Of the two levels that may follow the first has the next block, and the second, of 1x1 texels, is texel (2, 2) of that.
+// Levels are consecutive in memory, the largest first, each as rows of blocks. With 2^w x 2^h texels, level n has 2^a
+// blocks, a = max(0, w-2-n) + max(0, h-2-n). Down to the first level of one block these are decreasing powers of two,
+// so their sum up to a level is the bits of one number above bit a. No adder is needed to find a level, or a block in
+// it. Of the two levels that may follow, the first has the next block, and the second, of 1x1 texels, is texel (2, 2)
+// of that block.
 #pragma once
 
 #include <algorithm>
@@ -16,48 +17,48 @@
 
 namespace halfplane {
 
-/// What a word of the register texture_levels is. All eight token registers are in use, and the levels
-/// word is short, so fog and light share it; two upper bits tell them apart.
+/// Kinds of words for the register texture_levels. All eight token registers are in use, and the levels word is short,
+/// so fog and light share it; two upper bits tell them apart.
 enum class LevelsWord : std::uint8_t { levels, fog, fog_line, light };
-inline constexpr int kLevelsWordBit = 43;  ///< the lower of them
+inline constexpr int kLevelsWordBit = 43;  ///< the lower of the two bits
 [[nodiscard]] constexpr LevelsWord levels_word(std::uint64_t word) {
   return static_cast<LevelsWord>(word >> kLevelsWordBit & 3);
 }
-/// Those two bits.
+/// The two bits of a kind.
 [[nodiscard]] constexpr std::uint64_t tag_of(LevelsWord which) {
   return std::uint64_t{static_cast<std::uint8_t>(which)} << kLevelsWordBit;
 }
 
-/// Of a draw.
+/// The levels of a draw.
 struct TextureLevels {
   static constexpr int kBits = 31;
   TextureMin min = TextureMin::nearest;
   int last = 0;                ///< number of the smallest level
   Lod least = 0, largest = 0;  ///< 0 to kLargest
 
-  /// A level of detail above has no other effect than this.
+  /// A greater level of detail has no other effect than this one.
   static constexpr Lod kLargest = (1 << 12) - 1;
 
   /// From the lowest bit: min 3 (its lowest: linear; the others: none, the nearest level, two levels), last 4, least 12,
   /// largest 12.
   [[nodiscard]] std::uint32_t pack() const;
   [[nodiscard]] static TextureLevels unpack(std::uint32_t word);
-  /// Whether any sample looks at two levels. They share the cache then, even and odd ones.
+  /// Whether any sample may read two levels. Then even and odd levels share the cache.
   [[nodiscard]] constexpr bool has_two() const { return min >= TextureMin::nearest_mipmap_linear; }
   bool operator==(const TextureLevels&) const = default;
 };
 
 [[nodiscard]] TextureLevels texture_levels(const Texture& texture, const State& state);
 
-/// Whether its samples have a level of detail that makes a difference.
+/// Whether its samples have a level of detail that matters.
 [[nodiscard]] bool needs_level(const TextureLevels& levels, TextureMag mag);
 
-/// Where a level begins.
+/// The start of a level.
 struct LevelPlace {
-  std::uint32_t block = 0;  ///< behind the first of level 0
+  std::uint32_t block = 0;  ///< from the first of level 0
   bool is_corner = false;   ///< at texel (2, 2) of it
 };
-/// Of sides of so many texels, log2; 0 <= level <= the larger of the two.
+/// Sides in texels, log2; 0 <= level <= the larger of the two.
 [[nodiscard]] constexpr LevelPlace level_place(const std::array<int, 2>& log2_size, int level) {
   const int w = std::max(0, log2_size[0] - 2), h = std::max(0, log2_size[1] - 2);
   const int first_of_one = std::max(w, h);
@@ -69,26 +70,26 @@ struct LevelPlace {
   return place;
 }
 
-/// The lines of a triangle as tokens bring them: bits of along_y (at_zero of u, of v), along_x (likewise), the steps of u and
-/// of v, and 16 of the offset.
+/// The lines of a triangle in tokens: bits of along_y (at_zero of u, of v), along_x (likewise), the steps of u and of
+/// v, and 16 of the offset.
 struct TextureLines {
   static constexpr int kBits = 208;
-  static constexpr int kOffsetBits = 16;  ///< +-2^7 levels: beyond, each level of detail is held
+  static constexpr int kOffsetBits = 16;  ///< +-2^7 levels: beyond that every level of detail is clamped
   uint128 low = 0, high = 0;
 
-  /// `bias` is a part of the offset.
+  /// `bias` is included in the offset.
   [[nodiscard]] static TextureLines pack(const LodSetup& setup, Lod bias);
   [[nodiscard]] LodSetup unpack() const;
   bool operator==(const TextureLines&) const = default;
 };
 
-/// Bits of them in a token whose codes have so many, and how many tokens that makes. No codes have less than 70 bits.
+/// Bits of the lines in a token with `code_bits` bits of codes, and the number of tokens. Codes have at least 70 bits.
 [[nodiscard]] constexpr int line_part_bits(int code_bits) { return code_bits >= 104 ? 104 : 70; }
 [[nodiscard]] constexpr int line_parts(int part_bits) { return (TextureLines::kBits + part_bits - 1) / part_bits; }
 /// Part n, the lowest first.
 [[nodiscard]] uint128 line_part(const TextureLines& lines, int part_bits, int n);
 
-/// What the unit has of them: the last parts that came, the last one highest.
+/// The unit's copy of the lines: the last parts that came, the last one highest.
 class LineRegister {
  public:
   explicit LineRegister(int part_bits) : part_bits_(part_bits) {}
@@ -97,7 +98,7 @@ class LineRegister {
 
  private:
   int part_bits_;
-  std::array<uint128, 3> part_{};  ///< as many as there are
+  std::array<uint128, 3> part_{};  ///< as many as a triangle has
 };
 
 }  // namespace halfplane

@@ -7,8 +7,8 @@
 
 namespace halfplane {
 
-/// Stamps between the depth stage and the colour stage: of several lanes one a clock goes in, and comes out some twenty clocks
-/// later.
+/// Stamps between the depth stage and the colour stage: with several lanes one enters per clock, and leaves about
+/// twenty clocks later.
 [[nodiscard]] inline int texture_stamps(const Config& config) {
   return config.texture_lanes == 1 ? config.texture_queue / 2 : config.texture_queue;
 }
@@ -27,7 +27,7 @@ namespace halfplane {
           config.texture_ways};
 }
 
-/// Q and P where a pixel is shaded; not where that lies.
+/// Q and P at the shading place of a pixel; not the place.
 [[nodiscard]] inline TextureSample texture_sample(const PerPlane<std::uint32_t>& code, const Widths& widths) {
   const std::size_t q = widths.q_plane;
   const auto p = [&](std::size_t plane) { return wrap_signed(code[plane], widths.of_plane(plane).local.bits); };
@@ -45,7 +45,7 @@ template <class Codes>
   return which == StateRegister::texture_levels ? levels_word(state_word(token, widths)) : LevelsWord::levels;
 }
 
-/// What a token sets in the unit, one of its three registers. `token`: its codes at a vertex, or the fragment that they have
+/// Sets one of the unit's three registers from a token. `token`: its codes at a vertex, or the fragment that it has
 /// become.
 template <class Codes>
 void set_register(TextureUnit& unit, StateRegister which, const Codes& token, const Widths& widths) {
@@ -62,14 +62,14 @@ void set_register(TextureUnit& unit, StateRegister which, const Codes& token, co
     unit.set(TextureState::unpack(state_word(token, widths)));
 }
 
-/// Counted as the hardware does.
+/// Counts the use as the hardware does.
 inline void count(const TextureUse& use, CounterPacket& counters) {
   counters.texture_samples += use.samples;
   counters.texture_hits += use.hits;
   counters.texture_fills += use.fills;
 }
 
-/// The colours of a stamp's live pixels in fog, if there is any.
+/// Blends the colours of a stamp's live pixels with fog, if enabled.
 inline void add_fog(const TextureUnit& unit, bool is_triangle, SampleMask live, std::span<const TextureSample> pixels,
                     const CoordinateFrame& frame, std::span<Texel> colors) {
   if (unit.fog().is_fogged(is_triangle))

@@ -1,7 +1,7 @@
 // Texture sample: a triangle's sampler state, and the texture's colour at a place and a level of detail.
 //
-// Where a pixel holds more than a texel, texture_min counts, else texture_mag; the border is a level of 0, or of 1/2 where
-// a linear image meets nearest ones (OpenGL 4.6, 8.14.3).
+// Where a pixel spans more than a texel, texture_min applies, else texture_mag; the border is a level of 0, or of 1/2
+// where a linear image meets nearest ones (OpenGL 4.6, 8.14.3).
 #pragma once
 
 #include "../scene.hpp"
@@ -33,9 +33,9 @@ struct Sampler {
   [[nodiscard]] static Lod to_lod(double level) { return static_cast<Lod>(std::floor(level * 256 + 0.5)); }
 };
 
-/// What a sample reads of its texture.
+/// The texels that a sample reads.
 struct SampleFilter {
-  bool is_linear = false;   ///< on each level; else its nearest texel
+  bool is_linear = false;   ///< on each level; else the nearest texel
   bool is_between = false;  ///< two levels; else `levels.lower` alone
   LevelPair levels;
 };

@@ -1,9 +1,9 @@
-// Texture stage: what texture_unit makes of one stamp, over its ports.
+// Texture stage: runs texture_unit on one stamp, through its ports.
 //
-// In: a fragment, and what depth_test lets be written of it, with the primitive's own colours. Through `read`: lines of texels.
-// Out: the colours of the live pixels as the packet behind has them: as they are stored, or 8 bits a channel where they are
-// yet to be blended. Live are those with a sample that is written, or, where an alpha test stands behind the texture, one that
-// it looks at; all samples of a pixel have its colour.
+// In: a fragment, and depth_test's write masks, with the primitive's own colours. Through `read`: lines of texels. Out:
+// the colours of the live pixels in the format of the next packet: stored codes, or 8 bits a channel if still to be
+// blended. A pixel is live if a sample of it is written, or, with an alpha test downstream of the texture, tested by
+// it; all samples of a pixel have its colour.
 #pragma once
 
 #include "../packets/packets.hpp"
@@ -20,20 +20,20 @@ namespace halfplane {
 
 struct TexturedStamp {
   ColorPacket packet;                      ///< sent only if it has a sample
-  SampleMask opaque;                       ///< those that get a colour and that the alpha test behind lets pass
+  SampleMask opaque;                       ///< samples that get a colour and pass the alpha test downstream
   SampleMask live;                         ///< pixels that get a colour
   std::span<const TextureLookup> lookups;  ///< until the next stamp
 };
 
-/// Whether any of these units does anything to the colours of a fragment: the planes over w are looked at then.
+/// Whether any of these units changes the colours of a fragment: only then the planes over w are read.
 [[nodiscard]] inline bool changes_colors(const TextureUnit& unit, const FragmentPacket& fragment) {
   const bool is_triangle = fragment.kind == PrimitiveKind::triangle;
   return fragment.coordinates.divides_colors || unit.light().is_lit(is_triangle) || unit.fog().is_fogged(is_triangle) ||
          unit.is_textured(is_triangle, SampleMask(1));
 }
 
-/// Light, the texture unit and fog: the colours of the `live` pixels, which come as the primitive's own. read(address, beats)
-/// gives a TextureLine. Returns what was looked up; it stays until the next stamp.
+/// Light, the texture unit and fog: the colours of the `live` pixels, on entry the primitive's own. read(address,
+/// beats) gives a TextureLine. Returns the lookups, valid until the next stamp.
 template <class Read>
 std::span<const TextureLookup> shade_pixels(TextureUnit& unit, const FragmentPacket& fragment, SampleMask live,
                                             const Widths& widths, std::span<Texel> color, Read&& read) {

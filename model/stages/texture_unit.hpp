@@ -1,27 +1,29 @@
-// Texture unit: the texture of a stamp's live samples in hardware, nearest or linear, on one level or between two, and the
-// cache that it reads through. Its coordinates, levels, texels and colours are those of perspective.hpp, level_of_detail.hpp,
+// Texture unit: the texture of a stamp's live samples in hardware, nearest or linear, on one level or between two, and
+// its cache. Its coordinates, levels, texels and colours are those of perspective.hpp, level_of_detail.hpp,
 // texture_sample.hpp, texture_filter.hpp and texture.hpp.
 //
-// In memory a level is a row of rows of blocks of 4x4 texels, the texels of a block row by row, a code's low byte first; sides
-// below 4 are padded to a block, palettes are gone (rgba8888). Where the levels begin says texture_levels.hpp. A block is a
-// line of the cache: 16, 32 or 64 bytes. The lowest bits of its column and row say where in the cache it may lie; of a draw
-// that looks at two levels the highest of those of the row says whether the level is odd, so that no level is in the other's
-// way. Of two ways a block may lie in two places, told apart by the highest bit that its row would have given, or its column
-// where that gives more; it takes that of the line that was looked up longer ago. Then two levels share all places.
+// In memory a level is a row of rows of blocks of 4x4 texels, the texels of a block row by row, a code's low byte
+// first; sides below 4 are padded to a block, palettes are gone (rgba8888). texture_levels.hpp gives the start of the
+// levels. A block is a line of the cache: 16, 32 or 64 bytes. The lowest bits of its column and row give its place in
+// the cache; for a draw that reads two levels the highest of the row's bits says whether the level is odd, so that the
+// levels do not conflict. With two ways a block may lie in two places, which differ in the highest bit of its row's
+// part, or its column's where that has more; a miss replaces the line that was looked up longer ago. Then two levels
+// share all places.
 //
-// A sample between two levels goes through cache and filter twice, once where the second would add nothing.
+// A sample between two levels goes through cache and filter twice, once if the second level adds nothing.
 //
-// Of four lanes the live samples of 2x2 go together. Their texels come from 16 banks, by the two lowest bits of column and row,
-// and their lines from four, by the lowest bits of the blocks'. So a clock gives those of samples that agree: along either axis
-// no two of their texels are in one bank unless in one block, nor their blocks. Where not all agree, the first of those that
-// are left takes with it, in order, each that agrees with all before, and the others follow. With levels samples agree only on
-// one level; those between two go once more behind all others, on their upper ones.
+// With four lanes the live samples of 2x2 go together. Their texels come from 16 banks, by the two lowest bits of
+// column and row, and their lines from four, by the lowest bits of the blocks' column and row. So a clock serves
+// samples that agree: along either axis no two of their texels are in one bank unless in one block, nor their blocks.
+// Where not all agree, the first sample left takes with it, in order, each sample that agrees with all before, and the
+// others follow. With levels samples agree only on one level; samples between two levels go a second time after all
+// others, on their upper levels.
 //
-// Colours over w are divided here, by the reciprocal that the coordinates have; what the texture is combined with is the
-// quotient. A triangle says so by itself.
+// Colours over w are divided here, by the reciprocal of the coordinates; the quotient is combined with the texture. A
+// flag of the triangle selects this.
 //
-// A state holds for the stamps behind it. Stamps of other primitives than triangles, stamps without live samples, and all
-// while the state's texture is off and colours are affine pass as they are.
+// A state holds for later stamps. Stamps of primitives other than triangles, stamps without live samples, and all
+// stamps while the state's texture is off and colours are affine pass unchanged.
 #pragma once
 
 #include <array>
@@ -45,26 +47,26 @@ inline constexpr int kTextureBlock = 4;                                 ///< tex
 inline constexpr int kTextureLine = 4 * kTextureBlock * kTextureBlock;  ///< bytes at most
 using TextureLine = std::array<std::uint8_t, kTextureLine>;
 
-/// Of a format without palette: log2 of a texel's bytes.
+/// For a format without palette: log2 of a texel's bytes.
 [[nodiscard]] constexpr int texel_size_log2(TextureFormat format) {
   return format == TextureFormat::l8 ? 0 : format == TextureFormat::rgba8888 ? 2 : 1;
 }
 /// The format in which hardware stores it.
 [[nodiscard]] TextureFormat stored_format(TextureFormat format);
-/// As it lies in memory: level 0, or all of them where the sides are powers of two.
+/// The texture's bytes in memory: level 0, or all levels if the sides are powers of two.
 [[nodiscard]] std::vector<std::uint8_t> texture_bytes(const Texture& texture, bool has_levels = false);
 
-/// What the unit knows of a draw.
+/// The unit's state for a draw.
 struct TextureState {
   static constexpr int kBits = 46;
   bool enable = false;
-  bool invalidates = false;  ///< drops what is in the cache. Needed where memory that was read has other texels now
+  bool invalidates = false;                  ///< drops the cache's content. Needed if the texels in memory have changed
   TextureFormat format = TextureFormat::l8;  ///< without palette
   TextureCombine combine = TextureCombine::modulate;
   std::array<TextureWrap, 2> wrap{};
   std::array<int, 2> log2_size{};  ///< width, height; 0 to 12
   std::uint32_t base = 0;          ///< byte address, a multiple of 64
-  bool is_linear = false;          ///< only of a unit with that filter; of one with levels texture_mag
+  bool is_linear = false;          ///< only with that filter; with levels: texture_mag
 
   /// From the lowest bit: enable, invalidates, format 3, combine 2, wraps 2 + 2, sizes 4 + 4, base / 64 26, is_linear.
   [[nodiscard]] std::uint64_t pack() const;
@@ -73,7 +75,7 @@ struct TextureState {
   bool operator==(const TextureState&) const = default;
 };
 
-/// That of a texture of power-of-two sides at `base`.
+/// The state of a texture with power-of-two sides at `base`.
 [[nodiscard]] TextureState texture_state(const Texture& texture, const State& state, std::uint32_t base);
 
 struct TextureSettings {
@@ -85,34 +87,34 @@ struct TextureSettings {
   bool has_levels = false;  ///< likewise: more than level 0; has_linear as well
   int line_bits = 104;      ///< of a TextureLines in a token
   int lanes = 1;            ///< LANES: samples that go together, 1 or 4
-  int stamp_size = 2;       ///< of several lanes: samples along a stamp's side
+  int stamp_size = 2;       ///< with several lanes: samples along a stamp's side
   int ways = 1;             ///< places in the cache where a line may lie: 1, or 2 where lines are in banks
-  /// Lines in four banks, asked for one by one.
+  /// Lines in four banks, requested one by one.
   [[nodiscard]] bool has_banks() const { return has_linear || lanes != 1; }
   /// Beats of a line.
   [[nodiscard]] int beats(TextureFormat format) const { return (128 << texel_size_log2(format)) / port_bits; }
 };
 
-/// A line on the way of a sample, or of those that go together, through the cache.
+/// A line in the cache lookup of a sample, or of samples that go together.
 struct TextureLookup {
   std::uint32_t address = 0;  ///< of its line
-  std::uint32_t line = 0;     ///< the place in the cache
+  std::uint32_t line = 0;     ///< its place in the cache
   bool is_miss = false;
   int beats = 1;  ///< of the line
   int bank = 0;
-  std::size_t sample = 0;  ///< of the stamp: the first that wants it
+  std::size_t sample = 0;  ///< number in the stamp: the first sample that needs it
   bool ends = true;        ///< the last of the lines that are looked up together
-  bool continues = false;  ///< and more come of the sample, of another level, or of those that go together
-  bool turns = false;  ///< of those that go together: and what comes of them looks at upper levels, this at lower ones
-  int samples = 0;     ///< of the last: samples that are through
-  int hits = 0;        ///< of those, whose lines were all there
+  bool continues = false;  ///< and the sample needs another level, or other samples of the group follow
+  bool turns = false;      ///< of samples that go together: the next lookups are on upper levels, this one on lower
+  int samples = 0;         ///< of the last line: samples completed
+  int hits = 0;            ///< of these samples, those whose lines were all there
 };
 
-/// What samples made of the cache, each counted once however many levels it looked at.
+/// The samples' use of the cache, each counted once for any number of levels.
 struct TextureUse {
   std::uint64_t samples = 0;
   std::uint64_t hits = 0;   ///< samples that found all of their lines
-  std::uint64_t fills = 0;  ///< lines asked for
+  std::uint64_t fills = 0;  ///< lines requested
 };
 [[nodiscard]] inline TextureUse use_of(std::span<const TextureLookup> lookups) {
   TextureUse use;
@@ -124,7 +126,7 @@ struct TextureUse {
   return use;
 }
 
-/// Columns, or rows, of texels that one clock of several lanes can look at: of one block, or neither their texels nor their
+/// Whether several lanes can read these columns, or rows, of texels in one clock: of one block, or neither texels nor
 /// blocks in one bank.
 [[nodiscard]] constexpr bool agree(int a, int b) {
   const int block_a = a / kTextureBlock, block_b = b / kTextureBlock;
@@ -137,12 +139,12 @@ struct TextureUse {
   return all;
 }
 
-/// Which lines are in the cache.
+/// The lines in the cache.
 class TextureCache {
  public:
   struct Access {
-    std::uint32_t line = 0;  ///< where it is now
-    bool is_hit = false;     ///< and was
+    std::uint32_t line = 0;  ///< its place now
+    bool is_hit = false;     ///< it was there
   };
 
   explicit TextureCache(int lines, int ways = 1) : lines_(static_cast<std::size_t>(lines)) {
@@ -152,7 +154,7 @@ class TextureCache {
     if (ways == 2) second_ = std::uint32_t{1} << ((x_bits_ == y_bits_ ? bits : x_bits_) - 1);
   }
 
-  /// Where the block of that column and row may lie; of two ways the first.
+  /// The place of the block with that column and row; with two ways the first.
   [[nodiscard]] std::uint32_t line_of(std::uint32_t x, std::uint32_t y) const {
     return ((y & ((1U << y_bits_) - 1)) << x_bits_ | (x & ((1U << x_bits_) - 1))) & ~second_;
   }
@@ -162,11 +164,11 @@ class TextureCache {
     const auto half = std::uint32_t{1} << (y_bits_ - 1);
     return line_of(x, (y & (half - 1)) | ((level & 1) != 0 ? half : 0));
   }
-  /// Of a line that is there, where; `first` as line_of() has it.
+  /// The place of a line that is in the cache; `first` from line_of().
   [[nodiscard]] std::uint32_t find(std::uint32_t address, std::uint32_t first) const {
     return is_at(address, first) ? first : first | second_;
   }
-  /// The line is there now: of two ways in place of that which was looked up longer ago, if it was not.
+  /// Brings the line into the cache, if missing: with two ways in place of the line that was looked up longer ago.
   Access access(std::uint32_t address, std::uint32_t first) {
     const std::uint32_t second = first | second_;
     Access result{first, is_at(address, first)};
@@ -187,7 +189,7 @@ class TextureCache {
  private:
   struct Line {
     bool is_valid = false;
-    bool is_second_newer = false;  ///< of a first way: the second was looked up later
+    bool is_second_newer = false;  ///< of a first way: the second way was looked up later
     std::uint32_t address = 0;
   };
   [[nodiscard]] bool is_at(std::uint32_t address, std::uint32_t line) const {
@@ -196,10 +198,10 @@ class TextureCache {
 
   std::vector<Line> lines_;
   int x_bits_ = 0, y_bits_ = 0;
-  std::uint32_t second_ = 0;  ///< the bit of a place that tells two ways apart; of one way 0
+  std::uint32_t second_ = 0;  ///< the bit of a place that selects the way; 0 with one way
 };
 
-/// What the samples of a triangle share, u and v; and how its colours are read back where they lie over w too.
+/// Texture constants of a triangle, u and v; and the format of its colours if they lie over w too.
 struct TextureFrame {
   std::array<OverWScale, 2> scale{};
   std::array<std::int32_t, 2> reference{};  ///< wrapped_reference()
@@ -214,7 +216,7 @@ struct TextureSample {
   std::array<std::int64_t, 2> p{};
   int x = 0, y = 0;
   std::array<std::int64_t, 4> color_p{};  ///< of a triangle whose colours lie over w
-  std::array<std::int64_t, 3> normal{};   ///< of one that is lit: P of its normal
+  std::array<std::int64_t, 3> normal{};   ///< of a lit sample: P of its normal
 };
 
 class TextureUnit {
@@ -239,7 +241,7 @@ class TextureUnit {
     sampler_.largest = levels.largest;
     sampler_.last_level = levels.last;
   }
-  /// A part of the lines of the triangle that follows.
+  /// A part of the next triangle's lines.
   void move_in(uint128 line_part) {
     lines_.move_in(line_part);
     lod_ = lines_.lines().unpack();
@@ -247,14 +249,14 @@ class TextureUnit {
   /// The fog unit, downstream of it.
   [[nodiscard]] FogUnit& fog() { return fog_; }
   [[nodiscard]] const FogUnit& fog() const { return fog_; }
-  /// What lights those in front of it.
+  /// The light unit, upstream of it.
   [[nodiscard]] LightUnit& light() { return light_; }
   [[nodiscard]] const LightUnit& light() const { return light_; }
   [[nodiscard]] bool is_textured(bool is_triangle, SampleMask live) const {
     return state_.enable && is_triangle && live.any();
   }
 
-  /// Of a frame that divides_colors: P over Q, the sample's own colour; the alpha of three channels stays.
+  /// If the frame divides_colors: P over Q, the sample's own colour; with three channels alpha stays.
   void divide_colors(const TextureSample& sample, const TextureFrame& frame, int channels, Texel& color) const {
     const PixelReciprocal q = divide_by_q(sample.q, format_);
     for (std::size_t c = 0; c < static_cast<std::size_t>(channels); ++c)
@@ -275,13 +277,13 @@ class TextureUnit {
     return place;
   }
 
-  /// What a sample reads.
+  /// The filter of a sample.
   [[nodiscard]] SampleFilter filter_at(const TextureSample& sample) const {
     if (!settings_.has_levels) return {state_.is_linear, false, {}};
     return filter_of(sampler_, level_of_detail(lod_, sample.q, sample.x, sample.y));
   }
 
-  /// The columns and rows of texels that it looks at on a level: of a nearest filter one of each, twice.
+  /// The columns and rows of texels that it reads on a level: for a nearest filter one of each, twice.
   [[nodiscard]] std::array<TexelPair, 2> texels_of(const TexturePlace& place, bool is_linear, int level) const {
     const TextureAxes axes = state_.axes();
     std::array<TexelPair, 2> texels{};
@@ -297,7 +299,8 @@ class TextureUnit {
     return texels;
   }
 
-  /// Calls visit(samples) for those of `live` that go together, in order: each of one lane, of four those of a square.
+  /// Calls visit(samples) for the `live` samples that go together, in order: each alone with one lane, a square with
+  /// four.
   template <class Visit>
   void for_each_group(SampleMask live, Visit&& visit) const {
     if (settings_.lanes == 1)
@@ -309,7 +312,7 @@ class TextureUnit {
         if (square.any()) visit(square);
       }
   }
-  /// Room for those of the stamp at work.
+  /// Room for the samples of the current stamp.
   [[nodiscard]] std::span<TextureSample> samples() { return samples_; }
 
   [[nodiscard]] int groups(SampleMask live) const {
@@ -318,8 +321,8 @@ class TextureUnit {
     return n;
   }
 
-  /// A stamp whose samples `live` are textured: their colours become those of the result. read(address, beats): the bytes of
-  /// a line, asked for in order. Returns what the samples did, in the order in which they go; it stays until the next stamp.
+  /// A stamp whose samples `live` are textured: replaces their colours by the results. read(address, beats): the bytes
+  /// of a line, requested in order. Returns the samples' lookups, in their order; valid until the next stamp.
   template <class Read>
   std::span<const TextureLookup> take(SampleMask live, std::span<const TextureSample> samples,
                                       const TextureFrame& frame, std::span<Texel> colors, Read&& read) {
@@ -363,7 +366,8 @@ class TextureUnit {
     colors[s] = combined(colors[s], texel_of(filter, lower, upper), state_.combine, has_alpha(state_.format));
   }
 
-  /// Samples of a square, those together that agree: all on their only or lower level, then those between two on the upper.
+  /// Samples of a square, agreeing ones together: all on their only or lower level, then samples between two levels on
+  /// the upper one.
   template <class Read>
   void take_group(SampleMask group, std::span<const TextureSample> samples, const TextureFrame& frame,
                   std::span<Texel> colors, Read&& read) {
@@ -395,12 +399,12 @@ class TextureUnit {
   struct GroupPlaces {
     std::array<TexturePlace, 16> place;
     std::array<SampleFilter, 16> filter;
-    std::array<int, 16> level{};  ///< the one of the two that is looked at
+    std::array<int, 16> level{};  ///< the current one of the two
     std::array<Texels, 16> texels;
     std::array<Sums, 16> lower{};
-    SampleMask lacked;  ///< those between two levels whose lower one had not all lines there
+    SampleMask lacked;  ///< samples between two levels whose lower level missed
 
-    /// Of `left` the first, and each that agrees with all before.
+    /// The first of `left`, and each sample that agrees with all before.
     [[nodiscard]] SampleMask agreeing(SampleMask left) const {
       SampleMask pass;
       left.for_each([&](std::size_t s) {
@@ -415,7 +419,7 @@ class TextureUnit {
     }
   };
 
-  /// Samples that agree, of which `waiting` look at another level later.
+  /// Samples that agree; `waiting` ones read another level later.
   template <class Read>
   void take_pass(GroupPlaces& at, SampleMask pass, SampleMask waiting, std::span<Texel> colors, Read&& read) {
     const std::size_t first = lookups_.size();
@@ -440,11 +444,11 @@ class TextureUnit {
     });
   }
 
-  /// Whether the upper level says anything of its own.
+  /// Whether the upper level contributes.
   [[nodiscard]] static bool has_two(const SampleFilter& filter) {
     return filter.is_between && filter.levels.part != 0 && filter.levels.upper != filter.levels.lower;
   }
-  /// What a filter gives of its sums.
+  /// The result of a filter from its sums.
   [[nodiscard]] static Texel texel_of(const SampleFilter& filter, const Sums& lower, const Sums& upper) {
     Texel texel{};
     for (std::size_t c = 0; c < 4; ++c)
@@ -454,13 +458,13 @@ class TextureUnit {
     return texel;
   }
 
-  /// Whether one of those texels lies in a block of that bank.
+  /// Whether one of these texels lies in a block of that bank.
   [[nodiscard]] static bool wants(const Texels& texels, int bank) {
     return block_in(texels[0], bank & 1) >= 0 && block_in(texels[1], bank >> 1) >= 0;
   }
 
-  /// The lines of samples that agree, bank by bank, by the lowest bits of a block's row and column; without banks the one block
-  /// that there is.
+  /// The lines of samples that agree, bank by bank, by the lowest bits of a block's row and column; without banks the
+  /// only block.
   template <class TexelsOf, class Read>
   void look_up(int level, SampleMask pass, TexelsOf&& texels_of_sample, Read&& read) {
     for (const int bank : {0, 1, 2, 3}) {
@@ -479,7 +483,7 @@ class TextureUnit {
     lookups_.back().ends = true;
   }
 
-  /// What the filter gives on a level, 16 fraction bits, where its lines are there.
+  /// The sums of the filter on a level, 16 fraction bits, if its lines are present.
   [[nodiscard]] Sums sums(const TexturePlace& place, bool is_linear, int level) const {
     if (is_linear)
       return linear_sums([this](int l, int u, int v) { return texel(l, u, v); }, state_.axes(), place, level);
@@ -490,7 +494,7 @@ class TextureUnit {
     return sums;
   }
 
-  /// Of two columns or rows of texels, the block whose lowest bit is `bit`; -1: there is none.
+  /// The block whose lowest bit is `bit`, of two columns or rows of texels; -1: there is none.
   [[nodiscard]] static int block_in(const TexelPair& pair, int bit) {
     for (const int texel : {pair.first, pair.second})
       if ((texel / kTextureBlock & 1) == bit) return texel / kTextureBlock;
@@ -516,7 +520,7 @@ class TextureUnit {
     if (lookup.is_miss) data_[lookup.line] = read(lookup.address, lookup.beats);
     lookups_.push_back(lookup);
   }
-  /// A texel whose line is there.
+  /// A texel whose line is present.
   [[nodiscard]] Texel texel(int level, int column, int row) const {
     const std::uint32_t corner = level_place(state_.log2_size, level).is_corner ? 2 : 0;
     const auto x = static_cast<std::uint32_t>(column) + corner, y = static_cast<std::uint32_t>(row) + corner;
@@ -536,8 +540,8 @@ class TextureUnit {
   TextureState state_;
   TextureLevels levels_;
   LineRegister lines_;
-  LodSetup lod_;     ///< what is in it
-  Sampler sampler_;  ///< state_ and levels_, but for the texture
+  LodSetup lod_;     ///< the lines in it
+  Sampler sampler_;  ///< state_ and levels_, without the texture
   TextureCache cache_;
   std::vector<TextureLine> data_;
   std::vector<TextureLookup> lookups_;

@@ -59,7 +59,7 @@ struct TileCache::DataMover {
   }
 
  private:
-  /// Writes the stamps in `rows`, all of each; change(request) says what.
+  /// Writes the stamps in `rows`, all of each; change(request) sets the data.
   template <class Change>
   void for_each_stamp(const TileAddress& address, const StampRows& rows, bool is_whole, Change&& change) {
     for (int stamp = 0; stamp < cache.stamps_; ++stamp) {

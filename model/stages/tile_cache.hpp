@@ -1,9 +1,9 @@
 // Tile cache: the on-chip depth and colour of a few tiles, written back to memory, and the flags of fast-cleared tiles.
 //
 // In: accesses to tiles, writes, fast clears, flushes, in program order. Out: memory requests in program order: on a
-// miss the stamps of the old tile that were written, with a strobe a sample, then reads of the new tile's depth. Where a
-// plane is flagged as cleared the tile begins with the clear value, and all of it goes to memory: then the flag falls. What
-// moves is for tile_directory.hpp to say; here is the data.
+// miss the written stamps of the old tile, with one strobe per sample, then reads of the new tile's depth. If a buffer
+// is flagged as cleared the tile begins with the clear value, and all of it goes to memory: then the flag falls.
+// tile_directory.hpp decides what moves; this class holds the data.
 #pragma once
 
 #include <span>
@@ -20,10 +20,10 @@ class TileCache {
   /// Makes the fragment's tile resident. Returns the depth codes under it.
   std::span<const std::uint32_t> access(const FragmentPacket& fragment, MemoryPort& memory, CounterPacket& counters);
 
-  /// Writes what came of a fragment into its tile, which is resident.
+  /// Writes a fragment's result into its tile, which is resident.
   void write(const FragmentPacket& fragment, const WritePacket& packet);
 
-  /// `token`: a fragment of kind fast_clear; `depth`, `color`: its depth and colour as they are stored.
+  /// `token`: a fragment of kind fast_clear; `depth`, `color`: its depth and colour in the stored format.
   void fast_clear(const FragmentPacket& token, std::uint32_t depth, std::uint32_t color, MemoryPort& memory,
                   CounterPacket& counters);
 

@@ -2,13 +2,13 @@
 // It decides what moves between chip and memory, and in what order; a mover moves it: tile_cache.hpp the data, the cycle
 // model the time.
 //
-// Direct mapped: a line holds both planes of one tile. Depth is fetched with the tile, colour is only ever written. A mover
-// has, called in the order in which the hardware works:
-//   look_at_line()                         a line without a dirty plane is looked at (the walks of clears and flushes)
-//   write_back(line, address, rows, fills) these stamps of a dirty plane go to memory, all of them where it is garbage
+// Direct mapped: a line holds both buffers of one tile. Depth is fetched with the tile, colour is only ever written.
+// The functions of a mover, called in the order of the hardware:
+//   look_at_line()                         a line without a dirty buffer is looked at (the walks of clears and flushes)
+//   write_back(line, address, rows, fills) these stamps of a dirty buffer go to memory, all of them if memory is stale
 //   fill(line, x, y, is_cleared)           a tile comes in: its depth from memory or from the clear value
 //   mark_words(words)                      a fast clear sets flags, a word at a time
-//   write_flags(plane, word, words, y, bits) a flush writes a word of flags, of so many in its row
+//   write_flags(plane, word, words, y, bits) a flush writes a word of flags, one of `words` in its row
 //   look_at_tile()                         a flush looks at the flag of a tile's colour
 //   write_clear_value(address, rows)       it is set: a flush writes the clear value
 #pragma once
@@ -22,7 +22,7 @@
 
 namespace halfplane {
 
-/// A plane of one tile: where a request goes.
+/// A buffer of one tile: the address of a request.
 struct TileAddress {
   TilePlane plane;
   std::uint16_t tile_x, tile_y;
@@ -31,8 +31,8 @@ struct TileAddress {
 /// A bit for each stamp of each row of stamps of a tile.
 using StampRows = std::array<std::uint32_t, 32>;
 
-/// Stamps of the burst that a request for `stamp` begins or goes on with: the rest of a plane that moves whole; otherwise those
-/// in `rows` that follow it in its row without a gap.
+/// Stamps of the burst that a request for `stamp` begins or continues: the rest of a buffer that moves whole; otherwise
+/// the stamps in `rows` that follow in its row without a gap.
 [[nodiscard]] inline int run_of(const StampRows& rows, bool is_whole, int stamp, const Widths& widths) {
   const int per_row = widths.stamps.stamps_per_row;
   if (is_whole) return widths.stamps.stamps() - stamp;
@@ -57,7 +57,7 @@ class TileDirectory {
     return low(tile_y, widths_.line_y_bits) << widths_.line_x_bits | low(tile_x, widths_.line_x_bits);
   }
 
-  /// Makes the tile resident. Returns whether it was.
+  /// Makes the tile resident. Returns whether it already was.
   template <class Mover>
   bool access(int tile_x, int tile_y, Mover&& mover, CounterPacket& counters) {
     const std::size_t n = line_of(tile_x, tile_y);
@@ -83,10 +83,11 @@ class TileDirectory {
     }
   }
 
-  /// Of the planes in `clears`, tiles (0, 0) to (last_x, last_y), and those that share a word of flags with them.
+  /// Clears the buffers in `clears` of tiles (0, 0) to (last_x, last_y), and of tiles that share a word of flags with
+  /// them.
   template <class Mover>
   void fast_clear(int last_x, int last_y, const std::array<bool, 2>& clears, Mover&& mover, CounterPacket& counters) {
-    // What the cleared plane's lines hold is dead, but writing it back keeps this simple.
+    // The lines of the cleared buffer are dead, but writing them back keeps this simple.
     if (!(clears[0] && clears[1])) write_back_all(mover, counters);
     for (Line& line : lines_) line = {};
     const int word = widths_.blocks.flag_word;
@@ -94,8 +95,8 @@ class TileDirectory {
     flags_.mark(last_x | (word - 1), last_y, clears);
   }
 
-  /// Writes everything back: dirty stamps, then the flags, or the clear colour of the tiles that are still flagged. Nothing
-  /// is on the chip behind it.
+  /// Writes everything back: dirty stamps, then the flags, or the clear colour of the tiles that are still flagged.
+  /// Nothing is on the chip after it.
   template <class Mover>
   void flush(int last_x, int last_y, Mover&& mover, CounterPacket& counters) {
     const int flag_word = widths_.blocks.flag_word;
@@ -113,8 +114,8 @@ class TileDirectory {
   struct Line {
     bool is_valid = false;
     BlockAddress tile;
-    std::array<bool, 2> is_dirty{};    ///< by plane
-    std::array<StampRows, 2> dirty{};  ///< likewise: stamps that have been written
+    std::array<bool, 2> is_dirty{};    ///< by buffer
+    std::array<StampRows, 2> dirty{};  ///< likewise: written stamps
   };
 
   [[nodiscard]] static constexpr std::size_t number(TilePlane plane) { return static_cast<std::size_t>(plane); }

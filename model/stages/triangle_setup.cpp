@@ -34,7 +34,7 @@ Plane setup_plane(std::int64_t base, std::int64_t next, std::int64_t last, const
   Plane plane;
   plane.step_x = wrap(static_cast<std::uint64_t>(gradient(ac * f.by - bc * f.ay, r, f.fraction)));
   plane.step_y = wrap(static_cast<std::uint64_t>(gradient(f.ax * bc - f.bx * ac, r, f.fraction)));
-  // Unsigned arithmetic: the products wrap modulo 2^64, and the plane is a residue of that.
+  // Unsigned arithmetic: the products wrap modulo 2^64, and the plane is their residue.
   plane.value = wrap((static_cast<std::uint64_t>(base) << f.fraction) +
                      static_cast<std::uint64_t>(plane.step_x) * static_cast<std::uint64_t>(f.dx) +
                      static_cast<std::uint64_t>(plane.step_y) * static_cast<std::uint64_t>(f.dy));
@@ -49,7 +49,7 @@ std::int64_t code_value(const SnappedVertex& v, std::size_t p, const Widths& wid
   return code.is_signed ? wrap_signed(v.code[p], code.bits) : std::int64_t{v.code[p]};
 }
 
-/// Everything that follows from the vertices in canonical order, their area and the box.
+/// All constants that follow from the vertices in canonical order, their area and the box.
 void finish_setup(TriangleSetup& setup, const std::array<SnappedVertex, 3>& v, const Config& config,
                   const Widths& widths) {
   const int s = widths.grid_bits;
@@ -84,7 +84,7 @@ void finish_setup(TriangleSetup& setup, const std::array<SnappedVertex, 3>& v, c
   }
 }
 
-/// The constants of a primitive that has one code a plane and no edges.
+/// The constants of a primitive with one code per plane and no edges.
 void finish_flat_setup(TriangleSetup& setup, const SnappedVertex& v, const Widths& widths) {
   for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p) {
     const auto value = static_cast<std::uint64_t>(code_value(v, p, widths)) << widths.plane_fraction;

@@ -1,12 +1,13 @@
-// Triangle setup: three snapped vertices in, everything that stays constant over the triangle out.
+// Triangle setup: three snapped vertices in, all constants of the triangle out.
 //
 //   edges       E_i(p) = dx_i (p_y - y_i) - dy_i (p_x - x_i), folded to one integer per pixel (see edge_function)
 //   reciprocal  R = floor(2^k / A + 1/2), k placing R in [2^(r-1), 2^r], r = bits of a code + extra: one quotient for all
-//               planes, of which those of shorter codes take the upper bits
+//               planes; planes with shorter codes take its upper bits
 //   planes      z(p) = z_0 + (N_x (p_x - x_0) + N_y (p_y - y_0)) / A, gradients per subpixel with F fraction bits
 //
-// Because x and y gradients share R, its error scales z - z_0 as a whole: at most 2^-r of the range of the codes inside the
-// triangle, however thin. Planes live modulo 2^(bits + 1 + F): right inside the triangle, wherever they wrap outside it.
+// Because x and y gradients share R, its error scales z - z_0 as a whole: at most 2^-r of the range of the codes inside
+// the triangle, however thin. Planes are held modulo 2^(bits + 1 + F): correct inside the triangle, even if they wrap
+// outside it.
 //
 // Values are given at the first tile of the triangle's box: edges at its first pixel, planes at its anchor (the centre of
 // pixel (T/2, T/2)); coarse_raster steps them from tile to tile.
@@ -37,7 +38,7 @@ struct Plane {
   PlaneValue step_x = 0, step_y = 0;  ///< per subpixel
 };
 
-/// A triangle's constants: what the context RAM holds, and where its tile walk starts.
+/// A triangle's constants: the content of the context RAM, and the start of its tile walk.
 struct TriangleSetup {
   std::uint32_t primitive = 0;
   std::int64_t area = 0;  ///< twice the area, square subpixels, > 0
@@ -49,7 +50,7 @@ struct TriangleSetup {
   [[nodiscard]] bool is_empty() const { return left > right || top > bottom; }
 };
 
-/// floor(2^(shift+1) / area): the one division of a triangle, with a bit to round by.
+/// floor(2^(shift+1) / area): the one division of a triangle, with one more bit for rounding.
 struct AreaQuotient {
   std::uint64_t value = 0;
   int shift = 0;
@@ -62,19 +63,19 @@ struct Reciprocal {
   int shift = 0;
 };
 [[nodiscard]] Reciprocal reciprocal(std::int64_t area, int significant_bits);
-/// Without the lowest `dropped` bits: as exactly rounded as the whole.
+/// Without the lowest `dropped` bits: rounded as exactly as the whole.
 [[nodiscard]] constexpr Reciprocal reciprocal(const AreaQuotient& quotient, int dropped) {
   return {round_shift(quotient.value >> dropped, 1), quotient.shift - dropped};
 }
 
-/// What the planes of one triangle share.
+/// Constants common to the planes of one triangle.
 struct PlaneFrame {
   std::int64_t ax, ay, bx, by;  ///< from the base vertex to the other two, subpixels
   std::int64_t dx, dy;          ///< from the base vertex to the anchor, subpixels
   int fraction;                 ///< F
 };
-/// The frame of planes that start at `base`; `next` and `last` follow it in the triangle's order, which has positive area.
-/// The anchor is that of the tile with pixel (first_x, first_y) as its first.
+/// The frame of planes that start at `base`; `next` and `last` are the vertices after it in the triangle's order, which
+/// has positive area. The anchor is that of the tile with pixel (first_x, first_y) as its first.
 [[nodiscard]] PlaneFrame plane_frame(const SnappedVertex& base, const SnappedVertex& next, const SnappedVertex& last,
                                      int first_x, int first_y, int tile_size, const Widths& widths);
 /// The plane through three codes, in the order of the frame's vertices, modulo 2^bits. Codes may have a sign.
@@ -88,12 +89,11 @@ struct PlaneFrame {
 /// The same over the whole guard band: for questions about a single pixel.
 [[nodiscard]] TriangleSetup setup_triangle(const Triangle& triangle, const Config& config, const Widths& widths);
 
-/// What SetupPacket adds to the value of a plane: half of the last place that a tile keeps, and
-/// of a code that is clamped, what makes decode() a shift. With it, a tile's local anchor is the stepped value shifted right
-/// by F - l.
+/// The constant that SetupPacket adds to the value of a plane: half of a tile's last place, and for a clamped code the
+/// offset that makes decode() a shift. With it, a tile's local anchor is the stepped value shifted right by F - l.
 [[nodiscard]] std::uint64_t plane_bias(const AttributeWidths& attribute, const Widths& widths);
 
-/// A setup whose box lies inside the target, as it goes to coarse_raster. Kind and state are left at 0.
+/// A setup whose box lies inside the target, in the form for coarse_raster. Kind and state are left at 0.
 [[nodiscard]] SetupPacket to_setup_packet(const TriangleSetup& setup, const Widths& widths);
 
 /// The setup of any kind of primitive.

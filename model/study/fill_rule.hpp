@@ -1,5 +1,5 @@
-// Fill rules for study: who owns a sample exactly on an edge. A rule is one bit per edge, the bias of edge_function;
-// nothing else in the pipeline knows it.
+// Fill rules for study: the owner of a sample exactly on an edge. A rule is one bit per edge, the bias of
+// edge_function; no other part of the pipeline depends on it.
 #pragma once
 
 #include "../stages/cull.hpp"
@@ -10,7 +10,7 @@
 namespace halfplane {
 
 /// The bias of the edge from `from` to `to` of a triangle of positive area: 0 when samples on it belong to the
-/// triangle, otherwise 1. offset_point (Shirley, Fundamentals of Computer Graphics: triangle rasterization): they
+/// triangle, otherwise 1. offset_point (Shirley, Fundamentals of Computer Graphics: triangle rasterization): samples
 /// belong to it when the window point (-1, -1), in pixels, lies strictly on its side. An edge whose line passes through
 /// that point owns nothing, in either of the two triangles that share it.
 [[nodiscard]] constexpr int edge_bias(const SnappedVertex& from, const SnappedVertex& to, FillRule rule,
@@ -26,7 +26,7 @@ namespace halfplane {
   return 0;
 }
 
-/// Gives the edges of `setup`, made from the vertices `v` in canonical order, another fill rule.
+/// Sets another fill rule for the edges of `setup`, made from the vertices `v` in canonical order.
 inline void set_fill_rule(TriangleSetup& setup, const std::array<SnappedVertex, 3>& v, FillRule rule,
                           const Widths& widths) {
   const int first_x = setup.left >> widths.tile_shift << widths.tile_shift;  // first pixel of the first tile

@@ -10,15 +10,15 @@
 namespace halfplane {
 namespace {
 
-/// A vertex in window coordinates times w, all scaled by a power of two that the triangle shares.
+/// A vertex in window coordinates times w, all scaled by a power of two common to the triangle.
 struct Corner {
   double x = 0, y = 0, w = 0;      ///< pixels
   double z = 0;                    ///< window depth, 0...1
   double near = 0, far = 0;        ///< distances: not negative inside
-  PerPlane<std::uint32_t> code{};  ///< of the planes but depth
+  PerPlane<std::uint32_t> code{};  ///< of the planes except depth
 };
 
-/// a x + b y + c in pixels, before it is rounded.
+/// a x + b y + c in pixels, before rounding.
 struct Line {
   double a = 0, b = 0, c = 0;
   [[nodiscard]] double at(double x, double y) const { return a * x + b * y + c; }
@@ -46,7 +46,7 @@ Corner to_corner(const Vertex& v, int exponent, const HomogeneousFrame& frame) {
   return corner;
 }
 
-/// The largest coordinate decides the scale, so that no product of three leaves the range of binary64.
+/// The largest coordinate decides the scale, so that a product of three stays in the range of binary64.
 Corners to_corners(const std::array<Vertex, 3>& v, const HomogeneousFrame& frame) {
   double largest = 0;
   for (const Vertex& vertex : v)
@@ -55,7 +55,7 @@ Corners to_corners(const std::array<Vertex, 3>& v, const HomogeneousFrame& frame
   return {to_corner(v[0], exponent, frame), to_corner(v[1], exponent, frame), to_corner(v[2], exponent, frame)};
 }
 
-/// Sorts by position: sums of three depend on their order in the last bit. Returns whether the facing was turned round.
+/// Sorts by position: sums of three depend on their order in the last bit. Returns whether the facing was reversed.
 bool sort_corners(Corners& v) {
   bool is_turned = false;
   const auto order = [&](std::size_t i, std::size_t j) {
@@ -73,7 +73,7 @@ bool sort_corners(Corners& v) {
 /// Rounds away from zero at 1/2: a negated value gives the negated integer.
 std::int64_t round_symmetric(double value) { return static_cast<std::int64_t>(std::round(value)); }
 
-/// The integer function of a line, at pixel centres. The larger slope keeps m bits; far off, c has only to keep its
+/// The integer function of a line, at pixel centres. The larger slope keeps m bits; far away, c only has to keep its
 /// sign.
 LinearFunction to_bound(const Line& line, const HomogeneousWidths& widths) {
   const double slope = std::max(std::abs(line.a), std::abs(line.b));
@@ -119,14 +119,14 @@ Plane to_plane(const Line& codes, const TriangleSetup& box, const HomogeneousFra
           residue(codes.a, w.guard_bits, bits), residue(codes.b, w.guard_bits, bits)};
 }
 
-/// Target pixels around the vertices, one more on each side; all of them when a vertex has no place in the window.
+/// Target pixels around the vertices, one more on each side; all of them if a vertex has no window position.
 void set_box(TriangleSetup& box, const Corners& v, bool is_in_front, const Rect& rect) {
   box.left = rect.x;
   box.top = rect.y;
   box.right = rect.x + rect.width - 1;
   box.bottom = rect.y + rect.height - 1;
   if (!is_in_front) return;
-  // A rounded edge moves by half a subpixel, half a pixel at most: the wider box never cuts what it gained.
+  // A rounded edge moves by half a subpixel, half a pixel at most: the wider box always contains it.
   const auto narrow = [&v](int& first, int& last, double Corner::*position) {
     const auto at = [&](const Corner& c) { return c.*position / c.w; };
     const auto [low, high] = std::minmax({at(v[0]), at(v[1]), at(v[2])});
@@ -156,8 +156,8 @@ void set_depth(HomogeneousSetup& setup, const Lines& e, const Corners& v, double
   setup.depth_offset = snap(std::clamp(offset, -top, top), 1.0);  // enough to reach either end from the other
 }
 
-/// Scales 1 / w and colour / w by one factor, so that their quotient keeps its value: by the largest magnitude that
-/// the weights have together at a corner of the box or as a step.
+/// Scales 1 / w and colour / w by one factor, so that their quotient keeps its value: by the largest magnitude of the
+/// sum of weights at a corner of the box or of a step.
 void set_perspective(HomogeneousSetup& setup, const Lines& e, const Corners& v, const HomogeneousFrame& frame) {
   const TriangleSetup& box = setup.triangle;
   double largest = 0;
@@ -179,7 +179,7 @@ void set_perspective(HomogeneousSetup& setup, const Lines& e, const Corners& v, 
     setup.code_weight[p] = scaled([p](const Corner& corner) { return static_cast<double>(corner.code[p]); });
 }
 
-/// Every plane but depth.
+/// Sets every plane except depth.
 void set_attributes(HomogeneousSetup& setup, const Lines& e, const Corners& v, double determinant,
                     const HomogeneousFrame& frame) {
   TriangleSetup& triangle = setup.triangle;
@@ -203,7 +203,7 @@ HomogeneousSetup rejected(Rejection rejection) {
 }  // namespace
 
 HomogeneousSetup setup_homogeneous(const std::array<Vertex, 3>& vertices, const HomogeneousFrame& frame) {
-  // Part of the definition, whatever --skip says: rounded edges of what lies outside could graze the border.
+  // Part of the definition, for any --skip: rounded edges of outside triangles could graze the border.
   unsigned outside = ~0U;
   for (const Vertex& vertex : vertices) outside &= outcode(frame.view_volume, vertex);
   Corners v = to_corners(vertices, frame);
@@ -212,7 +212,7 @@ HomogeneousSetup setup_homogeneous(const std::array<Vertex, 3>& vertices, const 
   const bool is_turned = sort_corners(v);
   Lines e{cross(v[1], v[2]), cross(v[2], v[0]), cross(v[0], v[1])};
   double determinant = e[0].a * v[0].x + e[0].b * v[0].y + e[0].c * v[0].w;
-  // Smaller than any that is not: its reciprocal must stay finite.
+  // Smaller than any other: its reciprocal must stay finite.
   if (!(std::abs(determinant) > 1e-200)) return rejected(Rejection::zero_area);
   const int facing = (determinant > 0) == is_turned ? -1 : 1;  // 1: clockwise as seen
   if (cull(facing, frame.state) != CullResult::keep) return rejected(Rejection::backface);
@@ -226,7 +226,7 @@ HomogeneousSetup setup_homogeneous(const std::array<Vertex, 3>& vertices, const 
   set_box(setup.triangle, v, is_in_front, frame.rect);
   if (setup.triangle.is_empty()) return rejected(Rejection::empty);
   for (std::size_t i = 0; i < 3; ++i) setup.bound[i] = to_edge(e[i], frame.homogeneous);
-  // A plane that all vertices are inside of cuts nothing: its bound stays 0, which is never negative.
+  // A plane with all vertices inside cuts nothing: its bound stays 0, which is never negative.
   if (!all_of(v, [](const Corner& c) { return c.near >= 0; }))
     setup.bound[3] = to_bound(blend(e, v, [](const Corner& c) { return c.near; }), frame.homogeneous);
   if (!all_of(v, [](const Corner& c) { return c.far >= 0; }))
@@ -246,7 +246,7 @@ Interpolated interpolate_at(const HomogeneousSetup& setup, const Widths& widths,
   result.code[kDepthPlane] = static_cast<std::uint32_t>(std::clamp<std::int64_t>(moved, 0, largest));
   if (!setup.is_perspective) return result;
   const int i = x - triangle.left, j = y - triangle.top;
-  const std::int64_t weight = std::max<std::int64_t>(1, setup.weight.at(i, j));  // positive but for its rounding
+  const std::int64_t weight = std::max<std::int64_t>(1, setup.weight.at(i, j));  // positive except for rounding
   for (std::size_t p = kColorPlane; p < static_cast<std::size_t>(widths.affine_planes); ++p) {
     const std::int64_t code = std::max<std::int64_t>(0, setup.code_weight[p].at(i, j));
     result.code[p] = static_cast<std::uint32_t>(

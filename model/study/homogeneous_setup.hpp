@@ -1,17 +1,17 @@
-// Homogeneous setup: a triangle in clip coordinates in, edge functions that hold in front of the eye alone out. Nothing
-// is cut, and no vertex is divided but for its box and the range that depth and colour are held to. After Olano and
-// Greer, "Triangle Scan Conversion using 2D Homogeneous Coordinates", Graphics Hardware 1997.
+// Homogeneous setup: a triangle in clip coordinates in, edge functions that are valid only in front of the eye out.
+// Nothing is cut, and vertices are divided only for the box and the range to which depth and colour are clamped. After
+// Olano and Greer, "Triangle Scan Conversion using 2D Homogeneous Coordinates", Graphics Hardware 1997.
 //
 // With v_i = (X, Y, W), window coordinates times w, and e_0 = v1 x v2 and so on, a pixel p = (x, y, 1) is sum b_i v_i
-// with b_i = e_i(p) / det. sum b_i f_i is f / w of what is seen at p, for any f that is linear in clip space: 1 / w,
-// window depth, and the distances to near and far. All b_i >= 0 says that p sees the triangle, and that w > 0 there.
+// with b_i = e_i(p) / det. sum b_i f_i is f / w of the point seen at p, for any f linear in clip space: 1 / w, window
+// depth, and the distances to near and far. If all b_i >= 0, p sees the triangle, and w > 0 there.
 //
-// Host side, binary64, up to the coefficients; they are rounded to integers, and what follows is exact:
+// Host side, binary64, up to the coefficients; these are rounded to integers, and all later steps are exact:
 //   bounds   E(x, y) = a x + b y + c in whole pixels, the larger of |a|, |b| scaled to m bits; covered where E >= 0,
 //            with the fill rule folded into c. The two triangles on an edge compute it with exchanged ends, which
-//            negates each coefficient to the last bit: every sample belongs to exactly one side of it
+//            negates each coefficient to the last bit: every sample belongs to exactly one side of the edge
 //   depth    the plane of triangle_setup, with its guard bits, from the unsnapped vertices
-//   colour   affine when every vertex has w > 0; otherwise, where that has no meaning on the screen, perspective:
+//   colour   affine when every vertex has w > 0; otherwise, where that is meaningless on the screen, perspective:
 //            one division a sample, (sum b_i c_i) / (sum b_i)
 #pragma once
 
@@ -36,22 +36,22 @@ struct LinearFunction {
   [[nodiscard]] constexpr std::int64_t at(int x, int y) const { return a * x + b * y + c; }
 };
 
-/// Why nothing of a triangle is drawn.
+/// The reason why nothing of a triangle is drawn.
 enum class Rejection { none, outside, zero_area, backface, empty };
 
 struct HomogeneousSetup {
   Rejection rejection = Rejection::none;
   std::array<LinearFunction, 5>
-      bound{};                    ///< three edges, near, far: covered where none is negative; (0, 0) is the target's
+      bound{};                    ///< three edges, near, far: covered where none is negative; (0, 0): first pixel
   TriangleSetup triangle;         ///< box, planes and their ranges; its edges are not set
   std::int64_t depth_offset = 0;  ///< polygon offset, codes: added at the sample
-  bool is_back = false;           ///< it shows its back
+  bool is_back = false;           ///< the back is visible
   bool is_perspective = false;    ///< then the next two are set, and the colour planes are not
   LinearFunction weight;          ///< 1 / w, scaled; (0, 0) is the first pixel of the box
-  PerPlane<LinearFunction> code_weight{};  ///< codes / w likewise, of the planes but depth
+  PerPlane<LinearFunction> code_weight{};  ///< codes / w likewise, of the planes except depth
 };
 
-/// What stays the same over a draw.
+/// Constants of a draw.
 struct HomogeneousFrame {
   const Config& config;
   const Widths& widths;
@@ -62,10 +62,10 @@ struct HomogeneousFrame {
   ClipPlanes view_volume = view_volume_planes(state.clip_z);
 };
 
-/// Any order of the vertices gives the same bits. Colours as they are to be interpolated.
+/// Any order of the vertices gives the same bits. Colours in their final form for interpolation.
 [[nodiscard]] HomogeneousSetup setup_homogeneous(const std::array<Vertex, 3>& v, const HomogeneousFrame& frame);
 
-/// The codes at a sample, polygon offset and the final clamps included. What is before rounding: of the planes alone.
+/// The codes at a sample, including polygon offset and the final clamps. `unrounded`: of the planes alone.
 [[nodiscard]] Interpolated interpolate_at(const HomogeneousSetup& setup, const Widths& widths, int x, int y);
 
 /// Calls emit(x, y) for every covered sample of the box, row by row; returns how many samples it tested.

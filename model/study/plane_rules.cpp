@@ -5,18 +5,18 @@
 namespace halfplane {
 namespace {
 
-/// What the planes of one triangle share, and the rules for them.
+/// Constants of the planes of one triangle, and their rules.
 struct RulesFrame {
   std::int64_t ax, ay, bx, by;  // v1 - v0 and v2 - v0, subpixels
   std::int64_t dx, dy;          // from v0 to the anchor of the first tile, subpixels
   std::uint64_t x_reciprocal = 0, y_reciprocal = 0;
   int shift = 0;  // k
   int fraction;   // F
-  int kept;       // fraction bits of a gradient per subpixel that are kept: F, or l + s
+  int kept;       // fraction bits kept of a gradient per subpixel: F, or l + s
   StudyRules rules;
 };
 
-/// `value` in a register of `bits` bits.
+/// `value` clamped or wrapped to a register of `bits` bits.
 std::int64_t held(int128 value, int bits, Accumulator accumulator) {
   if (accumulator == Accumulator::wrap) return wrap_signed(static_cast<std::int64_t>(value), bits);
   const int128 half = int128{1} << (bits - 1);
@@ -31,7 +31,7 @@ int128 gradient(std::int64_t numerator, std::uint64_t reciprocal, const RulesFra
   return (drop > 0 ? product >> drop : product << -drop) << (f.fraction - f.kept);
 }
 
-/// For planes whose reciprocal has so many significant bits.
+/// For planes with this many significant bits of the reciprocal.
 void set_reciprocals(RulesFrame& frame, std::int64_t area, int significant_bits) {
   const Reciprocal nearest = reciprocal(area, significant_bits);
   frame.shift = nearest.shift;

@@ -1,5 +1,5 @@
-// Conventions that can be chosen for study: never the default, and only the scalar engine has them. docs/rules.md,
-// docs/numerics.md and docs/texture.md show what each does.
+// Conventions that can be chosen for study: never the default, and only in the scalar engine. docs/rules.md,
+// docs/numerics.md and docs/texture.md show the effect of each.
 #pragma once
 
 #include <array>
@@ -8,42 +8,42 @@
 
 namespace halfplane {
 
-/// Which samples exactly on an edge belong to a triangle.
+/// Ownership of samples exactly on an edge.
 enum class FillRule {
-  top_left,      ///< those on top and left edges: the pipeline's own rule
-  offset_point,  ///< those on edges that have the point (-1, -1) on the triangle's side: Shirley's rule
-  inclusive,     ///< all: those on a shared edge are drawn twice
-  exclusive      ///< none (E > 0 on all three edges): those on a shared edge are a crack
+  top_left,      ///< samples on top and left edges: the pipeline's own rule
+  offset_point,  ///< samples on edges that have the point (-1, -1) on the triangle's side: Shirley's rule
+  inclusive,     ///< all samples: those on a shared edge are drawn twice
+  exclusive      ///< no sample (E > 0 on all three edges): those on a shared edge are a crack
 };
 
-/// In which order, and by what arithmetic, the samples of a triangle are found.
+/// Order and arithmetic of the search for a triangle's samples.
 enum class Traversal {
-  tiled,     ///< tiles, rejected and accepted as a whole, then stamps: the pipeline's own
+  tiled,     ///< tiles, rejected and accepted whole, then stamps: the pipeline's own
   bbox,      ///< every sample of the box, edge functions stepped from sample to sample
   scanline,  ///< two edges walked from row to row; between them no sample is tested
   brute      ///< every sample of the target, edge functions evaluated directly
 };
 
-/// How triangles in clip space get rid of what lies behind the eye.
+/// Treatment of the part of a clip-space triangle behind the eye.
 enum class Clipping {
   polygon,     ///< cut by near, far and the guard band, drawn as a fan: the pipeline's own
   homogeneous  ///< not cut: edge functions in 2D homogeneous coordinates, after Olano and Greer
 };
 
-/// How triangle_setup makes the gradients of its planes. The others are faults.
+/// Gradients of the planes of triangle_setup. All but the first are faults.
 enum class Gradients {
   one_reciprocal,   ///< both times one reciprocal, rounded to nearest: the pipeline's own
-  two_reciprocals,  ///< x times one that was rounded down, y times one that was rounded up
-  truncated         ///< per pixel, what lies below the fraction bits of a tile dropped
+  two_reciprocals,  ///< x times a reciprocal rounded down, y times one rounded up
+  truncated         ///< per pixel, bits below the fraction of a tile dropped
 };
 
-/// What a plane does where it leaves the range of its register. The other is a fault.
+/// Behaviour of a plane that leaves the range of its register. The second is a fault.
 enum class Accumulator {
-  wrap,     ///< goes on modulo 2^N: the pipeline's own
-  saturate  ///< stays at the end of the range, gradients likewise
+  wrap,     ///< wraps modulo 2^N: the pipeline's own
+  saturate  ///< clamps at the end of the range, gradients likewise
 };
 
-/// How many bits a weight of a linear texture filter has. Fewer than eight are a fault.
+/// Bits of a weight of a linear texture filter. Fewer than eight are a fault.
 enum class Weights {
   eight,  ///< the pipeline's own
   four    ///< rounded to sixteenths
@@ -77,7 +77,7 @@ inline constexpr std::array<std::string_view, 2> kWeightsNames{"8", "4"};
   return kWeightsNames[static_cast<std::size_t>(weights)];
 }
 
-/// What is studied.
+/// The rules of a study.
 struct StudyRules {
   Traversal traversal = Traversal::tiled;
   FillRule fill_rule = FillRule::top_left;

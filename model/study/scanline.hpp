@@ -23,7 +23,7 @@ namespace halfplane {
   return a % b < 0 ? quotient - 1 : quotient;
 }
 
-/// One edge on its way down. `x` is the first covered pixel of the row on a left edge, the last on a right one.
+/// One edge on its way down. `x` is the first covered pixel of the row on a left edge, the last one on a right edge.
 struct EdgeWalk {
   int first_row = 0, last_row = -1;  ///< rows whose centre lies on the closed edge's range of y
   std::int64_t x = 0;                ///< pixels
@@ -41,8 +41,8 @@ struct EdgeWalk {
   }
 };
 
-/// The edge between `upper` and `lower`, upper.y < lower.y, at the first of its rows that is not above `top`. `bias` as
-/// in edge_function. On a right edge E = dx (py - y) - dy (px - x) >= bias, solved for the pixel X of px, is
+/// The edge between `upper` and `lower`, upper.y < lower.y, at its first row not above `top`. `bias` as in
+/// edge_function. On a right edge E = dx (py - y) - dy (px - x) >= bias, solved for the pixel X of px, is
 ///   X <= floor((dx (py - y) + dy (x - 1/2 pixel) - bias) / (dy 2^s)),
 /// on a left one X >= the ceiling of the same with + bias. Products below 2^(2V + 2), V the bits of a coordinate: 64 bits
 /// hold them. The low s bits drop before the division.
@@ -77,14 +77,14 @@ std::uint64_t traverse_scanline(const std::array<SnappedVertex, 3>& v, const Pix
 
   const std::int64_t half = std::int64_t{1} << (grid_bits - 1);
   int first = box.top, last = box.bottom;
-  // Clockwise, a right edge runs downwards and a left one upwards; so do horizontal ones in the order of their chain.
+  // Clockwise, a right edge runs downwards and a left one upwards; horizontal edges run in the order of their chain.
   const auto bias_of = [&](const SnappedVertex& upper, const SnappedVertex& lower, bool is_left) {
     return is_left ? edge_bias(lower, upper, rule, grid_bits) : edge_bias(upper, lower, rule, grid_bits);
   };
   const auto walk = [&](const SnappedVertex& upper, const SnappedVertex& lower, bool is_left) {
     const int bias = bias_of(upper, lower, is_left);
     if (upper.y < lower.y) return walk_edge(upper, lower, is_left, bias, box.top, grid_bits);
-    // A horizontal edge bounds no span, but a row of centres exactly on it is drawn only if it owns them.
+    // A horizontal edge bounds no span, but a row of centres exactly on it is drawn only if the edge owns them.
     const bool is_on_row = ((upper.y - half) & ((std::int64_t{1} << grid_bits) - 1)) == 0;
     const int row = static_cast<int>((upper.y - half) >> grid_bits);
     if (is_on_row && bias != 0) {

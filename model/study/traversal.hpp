@@ -1,7 +1,7 @@
 // Traversals for study: other ways to find the same samples. The pipeline's own is coarse_raster and fine_raster.
 //
-// Each calls emit(x, y) once for every covered pixel and returns how many samples it tested. Whatever the order, the
-// buffers are the same: coverage is exact, attributes are a closed form of the pixel, and a triangle covers it once.
+// Each calls emit(x, y) once for every covered pixel and returns how many samples it tested. The buffers are the same
+// for any order: coverage is exact, attributes are a closed form of the pixel, and a triangle covers it once.
 #pragma once
 
 #include "scanline.hpp"
@@ -29,8 +29,8 @@ std::uint64_t traverse_bbox(const TriangleSetup& setup, const Widths& widths, Em
   return tested;
 }
 
-/// Every sample of a target of width x height pixels, each by three direct evaluations; `rect` is where the draw may
-/// write. `v`: positive area, as canonical() gives it.
+/// Every sample of a target of width x height pixels, each by three direct evaluations; `rect`: the pixels that the
+/// draw may write. `v`: positive area, as canonical() gives it.
 template <class Emit>
 std::uint64_t traverse_brute(const std::array<SnappedVertex, 3>& v, const Rect& rect, int width, int height,
                              FillRule rule, int grid_bits, Emit&& emit) {

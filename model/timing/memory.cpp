@@ -20,7 +20,7 @@ class FixedMemory final : public MemoryTiming {
   Cycle latency_;
 };
 
-/// What all memories with a clock of their own have: a short queue, and time in picoseconds.
+/// Common part of all memories with their own clock: a short queue, and time in picoseconds.
 class ClockedMemory : public MemoryTiming {
  public:
   ClockedMemory(const Config& config, int mhz, Picoseconds clock)
@@ -30,7 +30,7 @@ class ClockedMemory : public MemoryTiming {
 
   [[nodiscard]] Cycle room() const final { return queue_.room(); }
   BurstAnswer accept(const MemoryBurst& burst, Cycle cycle) final {
-    const Picoseconds arrives = round_up((cycle + 1) * cycle_);  // it has gone through a register
+    const Picoseconds arrives = round_up((cycle + 1) * cycle_);  // it has passed a register
     const auto beats = static_cast<std::uint64_t>(burst.beats);
     const Served served = serve(burst.is_write, burst.address, beats * port_bytes_, arrives);
     queue_.leave((served.last + cycle_ - 1) / cycle_);
@@ -39,14 +39,14 @@ class ClockedMemory : public MemoryTiming {
   }
 
  protected:
-  /// When the last byte of a burst has moved, and how long one takes.
+  /// End of a burst's last byte, and the time per burst.
   struct Served {
     Picoseconds last, byte;
   };
   /// The edge of the memory's clock at or after `time`.
   [[nodiscard]] Picoseconds round_up(Picoseconds time) const { return (time + clock_ - 1) / clock_ * clock_; }
   [[nodiscard]] Picoseconds clock() const { return clock_; }
-  /// A burst, all of which is here in `arrives`.
+  /// Serves a burst that has completely arrived in `arrives`.
   virtual Served serve(bool is_write, std::uint64_t address, std::uint64_t bytes, Picoseconds arrives) = 0;
 
  private:
@@ -91,7 +91,7 @@ class Dram final : public ClockedMemory {
   static constexpr std::uint64_t kClosed = ~0ULL;
   struct Bank {
     std::uint64_t row = kClosed;
-    Picoseconds may_activate = 0;  ///< earliest next one
+    Picoseconds may_activate = 0;  ///< earliest next activate
     Picoseconds may_precharge = 0;
   };
 
@@ -122,10 +122,10 @@ class Dram final : public ClockedMemory {
     }
     const std::uint64_t latency = is_write ? t_.write_clocks : t_.read_clocks;
     if (!is_write) column = std::max(column, write_ended_ + t_.write_to_read);
-    const Picoseconds bus = bus_free_ + (is_write != last_was_write_ ? t_.clock : 0);  // the bus turns round
+    const Picoseconds bus = bus_free_ + (is_write != last_was_write_ ? t_.clock : 0);  // bus turnaround
     if (bus > latency * t_.clock) column = std::max(column, bus - latency * t_.clock);
     column = round_up(column);
-    // The memory moves whole bursts of its own.
+    // The memory moves whole bursts of its own length.
     const std::uint64_t unit = t_.burst_clocks * t_.bytes_per_clock;
     const std::uint64_t clocks = ((address + bytes - 1) / unit - address / unit + 1) * t_.burst_clocks;
     const Picoseconds done = column + (latency + clocks) * t_.clock;
@@ -154,8 +154,8 @@ class Dram final : public ClockedMemory {
   bool last_was_write_ = false;
 };
 
-/// AP Memory APS6404L-3SQR, 64 Mbit, QPI at 84 MHz: data sheet "QSPI PSRAM", 38h quad write and EBh quad read. Every burst
-/// has a command of its own; it refreshes itself while it is not selected, so a long one is cut (tCEM).
+/// AP Memory APS6404L-3SQR, 64 Mbit, QPI at 84 MHz: data sheet "QSPI PSRAM", 38h quad write and EBh quad read. Every
+/// burst has a command of its own; it refreshes itself while it is not selected, so a long burst is cut (tCEM).
 class Psram final : public ClockedMemory {
  public:
   Psram(const Config& config, int mhz) : ClockedMemory(config, mhz, kClock) {}

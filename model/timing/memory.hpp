@@ -12,18 +12,18 @@
 
 namespace halfplane {
 
-/// What a burst moves (MemoryBeat).
+/// The transfer of a burst (MemoryBeat).
 struct MemoryBurst {
   bool is_write = false;
   std::uint64_t address = 0;  ///< of its first byte
   int beats = 1;
 };
 
-/// When the answers to a burst are there: beat by beat what is read, or once that all is written.
+/// Times of the answers to a burst: beat by beat for a read, or once for a complete write.
 struct BurstAnswer {
-  std::uint64_t first = 0, step = 1;  ///< of the first beat, and from beat to beat, in units
+  std::uint64_t first = 0, step = 1;  ///< of the first beat, and from one beat to the next, in units
   std::uint64_t unit = 1;             ///< of a cycle
-  Cycle behind = 0;                   ///< cycles on top
+  Cycle behind = 0;                   ///< additional cycles
   [[nodiscard]] Cycle at(int beat) const {
     return (first + static_cast<std::uint64_t>(beat) * step + unit - 1) / unit + behind;
   }
@@ -33,9 +33,9 @@ struct BurstAnswer {
 class MemoryTiming {
  public:
   virtual ~MemoryTiming() = default;
-  /// The first cycle in which the first beat of the next burst can be taken; the others are taken whenever they come.
+  /// The first cycle in which the first beat of the next burst can be taken; the others are taken as they come.
   [[nodiscard]] virtual Cycle room() const = 0;
-  /// The last beat of the next burst is taken in `cycle` (the only one of a burst that reads).
+  /// The last beat of the next burst is taken in `cycle` (the only beat of a read).
   virtual BurstAnswer accept(const MemoryBurst& burst, Cycle cycle) = 0;
 };
 
@@ -55,10 +55,10 @@ struct MemorySettings {
   bool operator==(const MemorySettings&) const = default;
 };
 
-/// The kind of that name. Throws InputError when there is none.
+/// The kind with that name. Throws InputError when there is none.
 [[nodiscard]] MemoryKind memory_kind(std::string_view name);
 
-/// After its power-up. Each row of a memory is filled before the next bank's.
+/// A memory after power-up. Each row is filled before the next bank's.
 [[nodiscard]] std::unique_ptr<MemoryTiming> make_memory(const MemorySettings& settings, const Config& config);
 
 }  // namespace halfplane

@@ -8,20 +8,20 @@
 
 namespace halfplane {
 
-/// When an item left its sender, and when its receiver took it: the same without a queue between them.
+/// The cycle in which an item left its sender, and in which its receiver took it: equal without a queue.
 struct Passage {
   Cycle left, taken;
 };
 
 class Queue {
  public:
-  /// `items` that it holds; 0: there is none. An item is on offer a cycle after it entered.
+  /// `items`: its capacity; 0: no queue.
   explicit Queue(int items) {
     if (items > 0) place_.emplace(items, 1, 1);
   }
 
-  /// The same where take(cycle), given when the item can be taken at the earliest, says when it is. `next`: behind the
-  /// last one that was taken. Returns when the item leaves its sender.
+  /// The same with take(cycle), which gets the earliest cycle and returns the cycle in which the item is taken. `next`:
+  /// after the last take. Returns when the item leaves its sender.
   template <class Take>
   Cycle pass(Cycle offered, Cycle next, Take&& take) {
     if (!place_) return take(std::max(offered, next));
@@ -30,7 +30,8 @@ class Queue {
     return entered;
   }
 
-  /// The next item, on offer from `offered` on, through the queue and over `stream` to somebody with room from `room` on.
+  /// Passes the next item, on offer from `offered` on, through the queue and over `stream` to a receiver with room from
+  /// `room` on.
   Passage pass(Stream& stream, Cycle offered, Cycle room) {
     if (!place_) {
       const Cycle moved = stream.transfer(offered, room);
@@ -45,7 +46,7 @@ class Queue {
 
  private:
   std::optional<Station> place_;
-  Cycle next_ = 0;  ///< behind the last item
+  Cycle next_ = 0;  ///< after the last item
 };
 
 }  // namespace halfplane

@@ -9,13 +9,14 @@ namespace halfplane {
 
 using Cycle = std::uint64_t;  ///< number of a clock cycle since reset
 
-/// A probability in [0, 1) as the threshold that is_stalled() takes, in 2^-32.
+/// A probability in [0, 1) as the threshold of is_stalled(), in 2^-32.
 [[nodiscard]] inline std::uint64_t stall_threshold(double probability) {
   return static_cast<std::uint64_t>(std::ldexp(probability, 32));
 }
 
-/// Whether `stream` moves nothing in `cycle`. The cycle is one step of SplitMix64's counter and the stream one of another
-/// odd constant, both through its finaliser (Steele, Lea, Flood 2014); the top 32 bits are compared with the threshold.
+/// Whether `stream` moves nothing in `cycle`. The cycle counts steps of SplitMix64's constant and the stream steps of
+/// another odd constant, both through its finaliser (Steele, Lea, Flood 2014); the top 32 bits are compared with the
+/// threshold.
 [[nodiscard]] constexpr bool is_stalled(std::uint64_t seed, int stream, Cycle cycle, std::uint64_t threshold) {
   if (threshold == 0) return false;
   std::uint64_t z =

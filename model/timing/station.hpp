@@ -1,11 +1,12 @@
 // Station: a place in a pipeline that holds a few items in order. A register, a unit that works on one item at a time, a
 // row of registers with back-pressure, a skid buffer, a pool of slots: one rule for all.
 //
-//   item n may enter when item n - capacity has left: in the same cycle (turnaround 0, ready passes through) or so many
+//   item n may enter when item n - capacity has left: in the same cycle (turnaround 0, ready passes through) or that
+//   many
 //   cycles later (turnaround 1: ready is a register)
 //   it may leave `latency` cycles after it entered
 //
-// So time is a max-plus recurrence over the items; nothing ticks.
+// So time is a max-plus recurrence over the items; there is no clock loop.
 #pragma once
 
 #include <vector>
@@ -16,22 +17,22 @@ namespace halfplane {
 
 class Station {
  public:
-  /// Cycles but for `capacity`, which is items and at least 1.
+  /// In cycles, except `capacity`: items, at least 1.
   Station(int capacity, int latency, int turnaround)
       : latency_(static_cast<Cycle>(latency)),
         turnaround_(static_cast<Cycle>(turnaround)),
         free_at_(static_cast<std::size_t>(capacity)) {}
 
-  /// The first cycle in which the next item can enter, as far as the items before it are concerned.
+  /// The first cycle in which the next item can enter, as far as earlier items decide.
   [[nodiscard]] Cycle room() const { return free_at_[next_]; }
   /// The first cycle in which an item that entered in `entered` can leave.
   [[nodiscard]] Cycle ready(Cycle entered) const { return entered + latency_; }
-  /// The next item leaves. Once for every item, in order, before room() is asked for the item `capacity` behind it.
+  /// The next item leaves. Call once for every item, in order, before room() for the item `capacity` after it.
   void leave(Cycle cycle) {
     free_at_[next_] = cycle + turnaround_;
     if (++next_ == free_at_.size()) next_ = 0;
   }
-  /// The cycle from which on everything that ever entered has left, turnaround included.
+  /// The cycle from which on all items have left, turnaround included.
   [[nodiscard]] Cycle empty() const { return free_at_[next_ == 0 ? free_at_.size() - 1 : next_ - 1]; }
 
  private:

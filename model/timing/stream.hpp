@@ -1,5 +1,5 @@
-// Stream: a valid/ready hand-over between two stages. An item moves in the first cycle in which it is offered, the other
-// side is ready, and nothing stalls the stream.
+// Stream: a valid/ready hand-over between two stages. An item moves in the first cycle in which it is offered, the
+// other side is ready, and no stall holds the stream.
 #pragma once
 
 #include <algorithm>
@@ -8,11 +8,11 @@
 
 namespace halfplane {
 
-/// What one stream did, in cycles.
+/// Use of one stream, in cycles.
 struct StreamUse {
   std::uint64_t busy = 0;     ///< moved an item
-  std::uint64_t stalled = 0;  ///< had one that was not taken
-  std::uint64_t starved = 0;  ///< had none
+  std::uint64_t stalled = 0;  ///< had an item that was not taken
+  std::uint64_t starved = 0;  ///< had no item
 };
 
 class Stream {
@@ -20,14 +20,14 @@ class Stream {
   /// `streams`: the stalls that hold it back, a bit each.
   Stream(const Stalls& stalls, unsigned streams) : stalls_(stalls), streams_(streams) {}
 
-  /// Moves the next item, which is on offer from `offered` on, to somebody who can take it from `room` on; the stalls of
-  /// `others`, a bit each, hold it back as well. Returns when.
+  /// Moves the next item, on offer from `offered` on, to a receiver that can take it from `room` on; the stalls of
+  /// `others`, a bit each, hold it back as well. Returns the cycle.
   Cycle transfer(Cycle offered, Cycle room, unsigned others = 0) {
     const Cycle moved = stalls_.next_free(streams_ | others, std::max(offered, room));
     count(offered, moved);
     return moved;
   }
-  /// Accounts for an item that moved together with that of another stream.
+  /// Counts an item that moved together with an item of another stream.
   void count(Cycle offered, Cycle moved) {
     ++items_;
     waited_ += moved - offered;

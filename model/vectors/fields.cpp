@@ -10,10 +10,10 @@ namespace halfplane::vectors {
 
 namespace {
 
-/// "code[3][red]" in its parts: "code", then what stands in brackets.
+/// "code[3][red]" in its parts: "code", then the text in brackets.
 std::string_view stem_of(std::string_view name) { return name.substr(0, name.find('[')); }
 
-/// Where each lies in the packed struct: the first field highest, of the elements of one array the first lowest.
+/// Places the fields in the packed struct: the first field highest; of the elements of one array the first lowest.
 void place(std::vector<FieldName>& fields) {
   int low = 0;
   for (std::size_t end = fields.size(); end > 0;) {

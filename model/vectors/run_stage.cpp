@@ -1,4 +1,4 @@
-// Each stage at work, from the packets that go in.
+// Runs each stage on its input packets.
 #include "stages.hpp"
 
 #include <algorithm>
@@ -24,7 +24,7 @@
 namespace halfplane::vectors {
 namespace {
 
-/// A stage at work, with its packets as what they are.
+/// A running stage, with typed packets.
 struct Run {
   StageIo& io;
   const Config& config;
@@ -36,7 +36,7 @@ struct Run {
     if (words.empty()) return std::nullopt;
     return unpack_words<Packet>(words.data(), widths);
   }
-  /// One that must come.
+  /// Takes a packet that must come.
   template <class Packet>
   [[nodiscard]] Packet need(std::size_t port, const char* what) const {
     auto packet = take<Packet>(port);
@@ -49,7 +49,7 @@ struct Run {
   }
 };
 
-/// What goes through the tests and what does not.
+/// Whether a fragment goes through the tests.
 [[nodiscard]] bool is_tested(const FragmentPacket& fragment) {
   return (!is_token(fragment.kind) || fragment.kind == PrimitiveKind::line) && fragment.mask.any();
 }
@@ -71,7 +71,7 @@ void run_triangle_setup(StageIo& io, const Config& config, const Widths& widths)
   }
 }
 
-/// Each visit retires before the next one looks at HiZ, which sees it `lag` visits later.
+/// Each visit retires before the next one uses HiZ, which sees the update `lag` visits later.
 void run_coarse_raster(StageIo& io, const Config& config, const Widths& widths) {
   const Run run{io, config, widths};
   CounterPacket counters;
@@ -100,7 +100,7 @@ void run_fine_raster(StageIo& io, const Config& config, const Widths& widths) {
 
 void run_interpolate(StageIo& io, const Config& config, const Widths& widths) {
   const Run run{io, config, widths};
-  std::optional<ContextPacket> context;  // of the primitive at work
+  std::optional<ContextPacket> context;  // of the current primitive
   while (const auto stamp = run.take<StampPacket>(0)) {
     if (!context) context = run.need<ContextPacket>(1, "context packet for a primitive");
     run.send(0, interpolate(*stamp, *context, widths));
@@ -127,12 +127,12 @@ void run_primitive_join(StageIo& io, const Config& config, const Widths& widths)
   }
 }
 
-/// Likewise the stencil test.
+/// Likewise for the stencil test.
 void set_stencil(const FragmentPacket& fragment, StencilState& stencil, const Widths& widths) {
   if (fragment.kind == PrimitiveKind::state) stencil.set(state_register(fragment.state), state_word(fragment, widths));
 }
 
-/// An alpha test stands behind the texture.
+/// Whether the alpha test is downstream of the texture.
 [[nodiscard]] bool is_alpha_late(const ColorState& colors, const Config& config) {
   return has_texture_planes(config) && colors.tests_alpha();
 }
@@ -146,13 +146,13 @@ void require_alpha(const Config& config) {
       "blend.lanes");
 }
 
-/// Those of `shaded` that it lets pass, by the next color packet of a port.
+/// The samples of `shaded` that pass it, by the next color packet of a port.
 [[nodiscard]] SampleMask opaque_samples(const Run& run, std::size_t port, SampleMask shaded, const ColorState& colors) {
   const auto packet = run.need<ColorPacket>(port, "color packet for a write");
   return alpha_passes(colors, shaded, run.widths, [&](std::size_t s) { return packet.color[s] >> 24; });
 }
 
-/// The depths under all stamps, with the stencil above them, as the fragments themselves leave them.
+/// The depths under all stamps, with the stencil above them, as written by the fragments themselves.
 class DepthPlane {
  public:
   explicit DepthPlane(const Widths& widths)
@@ -199,7 +199,7 @@ void run_depth_test(StageIo& io, const Config& config, const Widths& widths) {
         kept = kept & opaque;
       }
       run.send(0, tested);
-      // Behind a texture the alpha test decides later what is written: its alpha comes with the colours.
+      // With a texture unit the alpha test decides later about writes: alpha comes with the colours.
       if (may_fail) require_alpha(config);
       const SampleMask shaded = shaded_samples(tested, colors);
       if (is_alpha_late(colors, config) && shaded.any()) keep(opaque_samples(run, 1, shaded, colors), tested);
@@ -219,7 +219,7 @@ void run_rop(StageIo& io, const Config& config, const Widths& widths) {
       run.send(0, rop(*fragment, run.need<WritePacket>(1, "tested packet for a stamp"), config, widths));
 }
 
-/// The memory behind a cache, as packets.
+/// The memory of a cache, as packets.
 class PacketMemory final : public MemoryPort {
  public:
   PacketMemory(const Run& run, std::size_t requests, std::size_t responses)

@@ -1,8 +1,8 @@
-// The stages as judges: what goes into each, what comes out of it, and the specification that makes the one of the other.
+// The stages as judges: the input and output packets of each, and the specification that maps one to the other.
 //
-// Ports are arrows of the pipeline graph, and two hand-overs inside a cycle that are none: `interpolated`, what interpolate
-// gives primitive_join, and `tested`, what depth_test gives rop. A stage reads each of its ports in order; in which order it
-// turns from one to the other follows from the data alone, so that the packets of a port need no time.
+// Ports are arrows of the pipeline graph, and two transfers inside a cycle that are no arrows: `interpolated`, from
+// interpolate to primitive_join, and `tested`, from depth_test to rop. A stage reads each of its ports in order; the
+// order between ports follows from the data alone, so that the packets of a port need no time.
 #pragma once
 
 #include <cstdint>
@@ -20,24 +20,24 @@ namespace halfplane::vectors {
 
 /// A port of a stage.
 struct Port {
-  std::string_view name;  ///< the arrow's, or `interpolated`, or `tested`
-  Arrow like;             ///< whose packet type it has
+  std::string_view name;  ///< name of the arrow, or `interpolated`, or `tested`
+  Arrow like;             ///< the arrow with the same packet type
 };
 
-/// The packets of a stage's ports, as its specification takes and gives them: packed words (model/packets/packet_words.hpp).
+/// The packets on a stage's ports, in the form of its specification: packed words (model/packets/packet_words.hpp).
 class StageIo {
  public:
   virtual ~StageIo() = default;
-  /// The next packet of port `port` of those that go in; none at the end. Valid until the next call.
+  /// The next packet of input port `port`; empty at the end. Valid until the next call.
   [[nodiscard]] virtual std::span<const std::uint32_t> take(std::size_t port) = 0;
-  /// The next packet of port `port` of those that come out.
+  /// The next packet of output port `port`.
   virtual void send(std::size_t port, std::span<const std::uint32_t> words) = 0;
 };
 
 struct JudgedStage {
   Stage stage;
   std::vector<Port> in, out;
-  std::string_view why_not = {};  ///< its packets cannot be judged from what goes in; empty: they can
+  std::string_view why_not = {};  ///< why its packets cannot be judged from the input; empty: they can
 
   [[nodiscard]] bool can_run() const { return why_not.empty(); }
 };
@@ -49,7 +49,7 @@ void run_stage(const JudgedStage& stage, StageIo& io, const Config& config, cons
 /// Every stage of the graph that sends packets.
 [[nodiscard]] std::span<const JudgedStage> judged_stages();
 
-/// The stage of that name. Throws InputError that lists the names, and one for a stage that this configuration does not have.
+/// The stage with that name. Throws InputError that lists the names, and for a stage that this configuration lacks.
 [[nodiscard]] const JudgedStage& judged_stage(std::string_view name);
 void require_stage(const JudgedStage& stage, const Config& config);
 
@@ -60,19 +60,19 @@ struct FieldName {
   bool is_signed = false;
   int low = 0;  ///< its lowest bit in the packed struct
 };
-/// Those of a packet type, as files list them: the highest field first, elements of an array by their number.
+/// The fields of a packet type, as files list them: the highest field first, elements of an array by their number.
 [[nodiscard]] std::vector<FieldName> fields_of(Arrow like, const Widths& widths);
-/// The same by place, highest bits first: elements of an array by falling number, because element 0 is the lowest.
+/// The same by place, highest bits first: elements of an array in descending order, because element 0 is the lowest.
 [[nodiscard]] std::vector<FieldName> highest_first(std::vector<FieldName> fields);
 [[nodiscard]] std::size_t packet_words(Arrow like, const Widths& widths);
 [[nodiscard]] int bits_of(Arrow like, const Widths& widths);
-/// The bits of every field of a packet, and back. Precondition of the way back: each value fits its field.
+/// The bits of every field of a packet, and back. Precondition of the inverse: each value fits its field.
 [[nodiscard]] std::vector<std::uint64_t> values_of(Arrow like, const Widths& widths,
                                                    std::span<const std::uint32_t> words);
 [[nodiscard]] std::vector<std::uint32_t> words_from(std::span<const FieldName> fields,
                                                     std::span<const std::uint64_t> values);
-/// What is wrong with a packet that goes in: it has a tile or a pixel outside the largest target, which no specification has a
-/// place for. Empty: nothing.
+/// The fault of an input packet: a tile or a pixel outside the largest target, for which no specification is defined.
+/// Empty: none.
 [[nodiscard]] std::string place_fault(std::span<const FieldName> fields, std::span<const std::uint64_t> values,
                                       const Config& config, const Widths& widths);
 

@@ -1,23 +1,22 @@
-// Pin wrapper: raster_top behind six pins, for place and route only. A shift register feeds every input, and every output
-// bit is folded into the same register on its way, so that nothing of the core can be left out: what the register says in
-// the end is its signature. All of it is registered, so that every path begins and ends in a register. A wire between two
-// registers costs no time that the core would not cost anywhere else.
+// Pin wrapper: raster_top with six pins, for place and route only. A shift register feeds every input, and every output
+// bit is folded into the same register on its way, so that no part of the core can be optimised away: the final content
+// of the register is its signature. Everything is registered, so that every path begins and ends in a register. A wire
+// between two registers adds no time to a path of the core.
 module pin_wrapper (
     input  logic clk_i,
     input  logic rst_ni,
     input  logic data_i,    // the next bit of the inputs
-    input  logic shift_i,   // move them by one; otherwise they stay
+    input  logic shift_i,   // shifts the inputs by one; otherwise they stay
     input  logic valid_i,   // a primitive and a line are offered
     output logic data_o     // the register's signature
 );
 
-  // Where each input begins. The layout has no bits of its own but looks at the primitive's: registers of the core stand
-  // between what becomes of the one and of the other, so no gate sees both, and nothing is saved inside. Below the
-  // primitive are the five that say something is ready or there, at the end those that not every core looks at: without them it
-  // is gone.
+  // Where each input begins in the register. The layout has no bits of its own but reuses those of the primitive: core
+  // registers stand between the uses of the two, so no gate sees both, and synthesis saves nothing. Below the primitive
+  // are the five valid and ready bits, at the end the inputs that some cores do not read: without them they are gone.
   localparam int PRIMITIVE = 5;
   localparam int ANSWER = PRIMITIVE + raster_pkg::PRIMITIVE_PACKET_BITS - raster_pkg::PRIMITIVE_ID_BITS;
-  localparam int PLANE = raster_pkg::ADDRESS_BITS - raster_pkg::PLANE_SHIFT;  // of an address, bits that are not always 0
+  localparam int PLANE = raster_pkg::ADDRESS_BITS - raster_pkg::PLANE_SHIFT;  // address bits that are not always 0
   localparam int FLAG_ROW = raster_pkg::ADDRESS_BITS - raster_pkg::FLAG_ROW_SHIFT;
   localparam int STRIDE = raster_pkg::ROW_STRIDE_BITS - raster_pkg::PLANE_SHIFT - 1;
   localparam int LAYOUT = 2 * PLANE + 2 * FLAG_ROW + STRIDE;
@@ -30,7 +29,7 @@ module pin_wrapper (
   localparam int TEXTURE = BEAT + raster_pkg::MEMORY_BEAT_BITS;
   localparam int OUT = TEXTURE + raster_pkg::TEXTURE_REQUEST_BITS + raster_pkg::COUNTER_PACKET_BITS;
 
-  // Three outputs and the bit that moves are a gate of four inputs in front of a flip-flop that is there already.
+  // Three outputs and the shifted bit fit a gate of four inputs in front of a flip-flop that is there already.
   localparam int FOLDED = (OUT > 3 * USED) ? (OUT + USED - 1) / USED : 3;
   logic [IN-1:0]          in_q, folded;
   logic [FOLDED*USED-1:0] out_padded;

@@ -27,7 +27,7 @@ void note(int error) {
   if (state().error == 0) state().error = error;
 }
 
-/// Has no name, so nothing of it stays.
+/// Opens a temporary file without a name, so that it vanishes when closed.
 std::FILE* open_temporary() {
   std::string name = state().folder + ".halfplane-fst-XXXXXX";
   const int descriptor = mkstemp(name.data());
@@ -45,7 +45,7 @@ std::FILE* open_noted(const char* path, const char* mode) {
   return file;
 }
 
-/// What could not be written shows here at the latest.
+/// A failed write shows here at the latest.
 int close_noted(std::FILE* file) {
   errno = 0;
   const bool had_error = std::ferror(file) != 0;
@@ -73,7 +73,7 @@ int seek_noted(std::FILE* file, off_t offset, int whence) {
   return result;
 }
 
-/// A mapping whose every page is there: of the file where it has room, of nothing where it has not.
+/// A mapping with every page present: of the file where it is long enough, else of anonymous memory.
 void* map_whole(void* address, std::size_t length, int protection, int flags, int descriptor, off_t offset) {
   if (length == 0) return nullptr;
   if (const int error = posix_fallocate(descriptor, offset, static_cast<off_t>(length)); error != 0) {

@@ -1,8 +1,8 @@
 // The co-simulation top: raster_top, and a tap on every arrow inside it. Simulation only; adds no logic to the design.
 //
-// Which arrows there are, which bit is whose and how a tap is wired is generated from model/pipeline_graph.hpp: taps.svh.
+// The list of arrows, their bits and the wiring of the taps are generated from model/pipeline_graph.hpp: taps.svh.
 //
-// Every input is registered: what lies here at a clock edge is what the design sees in the cycle that begins with it. So
+// Every input is registered: the design sees the value at a clock edge in the cycle that begins with it. So
 // no logic hangs on a port, and Verilator settles the design once a cycle, at the edge.
 `include "cosim/taps.svh"
 bind raster_top primitive_stream_checker u_primitive_stream_checker (.*);
@@ -42,7 +42,7 @@ module raster_cosim (
     input  logic                        counters_hold_i,
     output raster_pkg::counter_packet_t counters_o,
     output logic                        idle_o,
-    output logic                        moves_tiles_o,  // the framebuffer is busy with memory or a clear
+    output logic                        moves_tiles_o,  // the framebuffer waits for memory or a clear
     output logic [63:0]                 config_id_o,
 
     // The taps
@@ -114,8 +114,8 @@ module raster_cosim (
 
   assign config_id_o = raster_pkg::CONFIG_ID;
 
-  // Packets as they are specified, of what raster_top has in parts. A fragment whose triangle's constants are apart: whole,
-  // with what the triangle of its number has, and of lines nothing behind the colours.
+  // Whole packets of the specification for arrows that raster_top carries in parts. A fragment whose triangle constants
+  // are stored separately gets those of its triangle number; a line's fragment has no planes beyond the colours.
   raster_pkg::fragment_packet_t fragment_data;
   raster_pkg::write_packet_t    write_data;
   raster_pkg::memory_request_t  request_data;
@@ -142,14 +142,14 @@ module raster_cosim (
       assign fragment_data = u_raster.fragment_data;
     end
   endgenerate
-  // Words where they are written.
+  // Stored words, where they are written.
   localparam int WORD = raster_pkg::STORED_DEPTH_BITS;
   always_comb begin
     write_data = u_raster.write_data;
     for (int s = 0; s < raster_pkg::SAMPLES; s++)
       if (write_data.write_depth[s]) write_data.depth[s*WORD+:WORD] = u_raster.write_word[s*WORD+:WORD];
   end
-  // A lane a sample.
+  // One lane per sample.
   logic [raster_pkg::SAMPLES*raster_pkg::MEMORY_LANE_BITS-1:0] request_lanes;
   request_lanes u_request_lanes (
       .plane_i(u_raster.request_data.plane),

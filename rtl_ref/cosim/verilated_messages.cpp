@@ -29,7 +29,7 @@ void halfplane_verilated_print(const char* format, ...) {
   said() += text;
 }
 
-/// The end of a simulation that cannot go on: what was said must be seen.
+/// Ends a simulation that cannot go on: the message must be seen.
 void vl_fatal(const char* file, int line, const char* /*where*/, const char* message) {
   std::fprintf(stderr, "%sVerilator: %s:%d: %s\n", said().c_str(), file, line, message);
   std::abort();

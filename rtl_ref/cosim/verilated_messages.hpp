@@ -9,10 +9,10 @@ void halfplane_verilated_print(const char* format, ...) __attribute__((format(pr
 
 namespace halfplane {
 
-/// What has been said in this thread since the last call.
+/// The text printed in this thread since the last call.
 [[nodiscard]] std::string take_verilated_text();
 
-/// Of an assertion that failed its message alone; other text in one line.
+/// The message alone of a failed assertion; other text in one line.
 [[nodiscard]] std::string assertion_message(const std::string& text);
 
 }  // namespace halfplane

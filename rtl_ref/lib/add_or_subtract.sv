@@ -1,4 +1,4 @@
-// a + b, or a - b, in one carry chain: the chain itself turns b around.
+// a + b, or a - b, in one carry chain: the chain itself inverts b.
 //
 // Yosys makes of a choice between a sum and a difference a chain and a gate a bit in front of it; its cell for both, `$alu`,
 // can do without those gates; only a script that says so gets that cell.
@@ -12,7 +12,7 @@ module add_or_subtract #(
 );
 
 `ifdef YOSYS_ALU  // read_verilog -icells -DYOSYS_ALU
-  wire [WIDTH-1:0] differs, carry;  // the cell's other outputs
+  wire [WIDTH-1:0] differs, carry;  // unused outputs of the cell
   \$alu #(
       .A_SIGNED(0),
       .B_SIGNED(0),

@@ -1,5 +1,5 @@
-// Alpha test: the samples of a stamp whose alpha compares with the reference as the function says; and of a pixel's samples,
-// where alpha covers, the first of them, as many as it says: samples * alpha / 255, rounded. Combinational.
+// Alpha test: keeps the samples of a stamp whose alpha passes the comparison with the reference. With alpha to coverage
+// it also keeps only the first samples of each pixel, samples * alpha / 255 of them, rounded. Combinational.
 // Specification: ColorState::keeps of model/stages/color_packets.hpp.
 module alpha_test (
     input  logic [raster_pkg::DEPTH_FUNC_BITS-1:0] func_i,

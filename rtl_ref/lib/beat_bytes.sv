@@ -1,19 +1,19 @@
-// Beat bytes: a stamp or a word of flags as bytes on their way to memory, and how many beats it takes: several where it is
-// wider than a beat, one that it shares with those beside it where it is narrower. Combinational. Specification: BeatShare and
-// put() of model/stages/memory_port.hpp.
+// Beat bytes: a stamp or a word of flags as bytes on their way to memory, and the number of beats: several where the
+// word is wider than a beat, one that neighbouring stamps share where it is narrower. Combinational. Specification:
+// BeatShare and put() of model/stages/memory_port.hpp.
 module beat_bytes #(
     parameter int SAMPLES = 1,                            // samples of a stamp
-    parameter int SAMPLE_BYTES = 2,                       // of a sample in memory
+    parameter int SAMPLE_BYTES = 2,                       // bytes of a sample in memory
     parameter int WORD = 8,                               // bytes of word_o: the larger of a stamp and a beat
     parameter int SHIFT = $clog2(SAMPLES * SAMPLE_BYTES)  // derived; not to be set
 ) (
-    input  logic [8*WORD-1:0]               bytes_i,   // as they lie in memory, behind them 0
+    input  logic [8*WORD-1:0]               bytes_i,   // as they lie in memory, 0 above them
     input  logic [SAMPLES-1:0]              strobe_i,
     input  logic [15:0]                     place_i,   // number of the stamp in its row of beats
     input  logic [raster_pkg::RUN_BITS-1:0] run_i,     // stamps from this one on
     output logic [8*WORD-1:0]               word_o,
     output logic [WORD-1:0]                 strobe_o,
-    output logic [7:0]                      more_o,    // beats of the stamp behind its first
+    output logic [7:0]                      more_o,    // beats of the stamp after its first
     output logic [raster_pkg::BURST_LENGTH_BITS-1:0] length_o,  // beats of the run
     output logic                            ends_o     // the stamp is the last in its beat
 );

@@ -1,18 +1,17 @@
-// Blend lane: one sample's colour and the stored one become the blended one, every channel in its own multipliers.
-// Combinational, so that the next clock may blend what comes of it again.
+// Blend lane: blends one sample's colour with the stored colour, every channel in its own multipliers. Combinational,
+// so that the next clock may blend with the result.
 //
 //   factors -> s fs + d fd, or a difference that is at least 0 -> / 255, at most 255
 //
-// min and max are sums too: of 255 times the smaller or larger one and 0 times the other. What of the factors is the same for
-// all lanes comes from blend_setup.sv.
-// Specification: blended of model/stages/color_ops.hpp.
+// min and max are sums too: 255 times the smaller or larger colour and 0 times the other. blend_setup.sv gives the part
+// of the factors that is the same for all lanes. Specification: blended of model/stages/color_ops.hpp.
 module blend_lane #(
-    parameter int CHANNELS = 4  // that are stored: 3 or 4
+    parameter int CHANNELS = 4  // stored channels: 3 or 4
 ) (
     input logic [31:0] source_i,  // 8 bits a channel, R lowest
     input logic [31:0] stored_i,
     input logic [23:0] chooses_i,   // as blend_setup gives them
-    input logic [5:0]  equation_i,  // 3 bits each: of colour, of alpha
+    input logic [5:0]  equation_i,  // 3 bits each: colour equation, alpha equation
     input logic [16*CHANNELS-1:0] fixed_i,
 
     output logic [8*CHANNELS-1:0] color_o
@@ -23,9 +22,9 @@ module blend_lane #(
   localparam logic [2:0] MIN = 3'd3;
   localparam logic [2:0] MAX = 3'd4;
 
-  // What of the factors is the same for all channels: an alpha, and whether they are complements.
-  logic [7:0] source_alpha, stored_alpha, room;  // above the stored alpha
-  logic [31:0] alpha;  // for each factor
+  // The part of the factors that is the same for all channels: an alpha, and whether factors are complements.
+  logic [7:0] source_alpha, stored_alpha, room;  // 255 minus the stored alpha
+  logic [31:0] alpha;  // one alpha per factor
   assign source_alpha = source_i[31:24];
   assign stored_alpha = stored_i[31:24];
   assign room         = ~stored_alpha;
@@ -38,11 +37,11 @@ module blend_lane #(
     end
 
     for (c = 0; c < CHANNELS; c++) begin : gen_channel
-      localparam int SET = c == 3 ? 2 : 0;  // number of the first of its factors
+      localparam int SET = c == 3 ? 2 : 0;  // number of the channel's first factor
       logic [2:0]  equation;
       logic [7:0]  source, stored;
-      logic [15:0] factors;  // of the source; above that of the stored colour
-      logic        takes_source, is_extreme;  // min or max: of the two
+      logic [15:0] factors;  // factor of the source; above it that of the stored colour
+      logic        takes_source, is_extreme;  // min or max takes the source
       logic        subtracts, reverses;
       logic [15:0] source_product, stored_product;
       assign equation     = c == 3 ? equation_i[5:3] : equation_i[2:0];
@@ -57,9 +56,10 @@ module blend_lane #(
       assign source_product = source * factors[7:0];
       assign stored_product = stored * factors[15:8];
 
-      // One carry chain gives a + b, a - b and, turned around, b - a: that is ~(a - b - 1), and is turned behind the division.
-      logic        differs;  // not a sum
-      logic [16:0] sum;      // less than 2^17; of a difference the highest bit is the sign
+      // One carry chain gives a + b, a - b and, turned around, b - a: that is ~(a - b - 1), and is inverted after the
+      // division.
+      logic        differs;  // the equation is not a sum
+      logic [16:0] sum;      // less than 2^17; the highest bit is the sign of a difference
       logic [17:0] sum_and_carry;
       assign subtracts = equation == SUBTRACT;
       assign reverses  = equation == REVERSE_SUBTRACT;
@@ -74,10 +74,10 @@ module blend_lane #(
       );
       assign sum = sum_and_carry[17:1];
 
-      // floor(v / 255 + 1/2) = (t + (t >> 8)) >> 8, t = v + 128: v + (v >> 8), 128 and a carry where the fraction of v / 256
-      // is a half. Of ~v the quotient is the complement if 128 is taken off instead.
+      // floor(v / 255 + 1/2) = (t + (t >> 8)) >> 8, t = v + 128: v + (v >> 8), 128 and a carry where the fraction of v
+      // / 256 is a half. The quotient of ~v is the complement if 128 is subtracted instead.
       logic signed [2:0]  upper;  // v >> 15, and 128 more or less, which changes nothing below that
-      logic [17:0] quotient;  // below that the bit that makes the carry
+      logic [17:0] quotient;  // its lowest bit only makes the carry
       logic        is_negative, is_above;
       assign upper       = {differs && sum[16], sum[16:15]} + (reverses ? 3'b111 : 3'b001);
       assign quotient    = {sum, 1'b1} + {{7{upper[2] && differs}}, upper, sum[14:8], sum[7]};

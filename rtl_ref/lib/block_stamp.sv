@@ -1,4 +1,4 @@
-// Block stamp: of a stamp of a tile, the block that it lies in, and its number there. Combinational; the other way round is
+// Block stamp: the block that holds a stamp of a tile, and the stamp's number in it. Combinational; the inverse is
 // stamp_address. Specification: block_stamp() of model/stages/cache_tags.hpp.
 module block_stamp #(
     parameter int TILE_BITS = $clog2(raster_pkg::BLOCKS_PER_ROW),  // derived; not to be set
@@ -18,7 +18,7 @@ module block_stamp #(
   localparam int ROW_BITS = $clog2(raster_pkg::STAMPS_PER_ROW);
   localparam logic [15:0] SIDE_MASK = 16'((1 << SIDE_BITS) - 1);
 
-  logic [15:0] column, row;  // of the stamp in its tile
+  logic [15:0] column, row;  // column and row of the stamp in its tile
   assign column    = 16'(stamp_i) & 16'((1 << ROW_BITS) - 1);
   assign row       = 16'(stamp_i) >> ROW_BITS;
   assign block_x_o = (BLOCK_X'(tile_x_i) << TILE_BITS) | BLOCK_X'(column >> SIDE_BITS);

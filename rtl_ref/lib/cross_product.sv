@@ -1,9 +1,9 @@
-// Cross product: a * d - b * c - bias, the one multiplication of edge functions and plane numerators. Two multipliers;
-// the result is there two enabled cycles after its operands, one result per cycle.
+// Cross product: a * d - b * c - bias, the only multiplication in edge functions and plane numerators. Two multipliers;
+// the result comes two enabled cycles after its operands, one result per cycle.
 module cross_product #(
     parameter int A_BITS = 2,  // of a and b, signed
     parameter int D_BITS = 2,  // of c and d, signed
-    parameter int OUT_BITS = 4  // of the result, signed: the caller has proven that it fits, or wants a residue
+    parameter int OUT_BITS = 4  // of the result, signed: the caller has proven that it fits, or wants the residue
 ) (
     input  logic                       clk_i,
     input  logic                       enable_i,

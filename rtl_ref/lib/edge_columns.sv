@@ -1,11 +1,11 @@
-// Edge columns: which pixels of a row of a tile are outside an edge, by the sign of its edge function at each of them.
+// Edge columns: which pixels of a row of a tile are outside an edge, by the sign of its edge function at each pixel.
 //
-// Along a row the value rises or falls, so its sign changes once: a search for that column, a bit of it at each step, looks
-// at the value in log2(2^OFFSET) columns and not in all. It begins in the middle and goes on, half as far each time, to the
-// side on which the sign changes: down to column k, so that the columns behind k are beyond the change. Whether column 0 is,
-// the value there says itself.
+// Along a row the value rises or falls, so its sign changes once: a binary search finds that column, one bit of it at
+// each step, and looks at log2(2^OFFSET) values instead of all. It begins in the middle and goes on, half as far each
+// time, towards the change of sign, to column k: the columns after k are beyond the change. The value itself says
+// whether column 0 is.
 module edge_columns #(
-    parameter int WIDTH  = 1,  // bits of a value; the caller has proven that it fits in every column
+    parameter int WIDTH  = 1,  // bits of a value; the caller has proven that the value fits in every column
     parameter int OFFSET = 1   // bits of a column
 ) (
     input  logic signed [WIDTH-1:0]     value_i,   // in column 0
@@ -25,7 +25,7 @@ module edge_columns #(
       if (b == OFFSET) begin : gen_first
         assign value = value_i;
       end else begin : gen_moved
-        logic is_before;  // the columns that are beyond
+        logic is_before;  // columns beyond the change of sign
         logic goes_left;
         logic [WIDTH-1:0] from;
         logic [WIDTH-b-1:0] moved;  // a step of 2^b columns leaves the bits below as they are

@@ -1,10 +1,11 @@
-// Edge offset: the edge function (or any plane) moved by a few pixels, value + x * step_x + y * step_y, as shifts and adds.
-// With a constant x and y it is the adders of one sample; with a variable one it finds the first stamp of a tile's box.
+// Edge offset: the edge function (or any plane) moved by a few pixels, value + x * step_x + y * step_y, as shifts and
+// adds. With constant x and y these are the adders of one sample; with variable ones they find the first stamp of a
+// tile's box.
 //
 // Bit b of a pixel offset changes the value from bit b up: narrow adders in a row, highest bit first, so that neighbours
 // share them.
 module edge_offset #(
-    parameter int WIDTH  = 1,  // bits of a value; the caller has proven that the sum fits, or wants a residue
+    parameter int WIDTH  = 1,  // bits of a value; the caller has proven that the sum fits, or wants the residue
     parameter int OFFSET = 1   // bits of x and y, pixels
 ) (
     input  logic signed [WIDTH-1:0]  value_i,

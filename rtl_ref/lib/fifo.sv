@@ -1,5 +1,5 @@
-// FIFO: DEPTH items, a power of two. An item that enters is on offer from the next cycle on; the place of one that leaves is
-// free from the next cycle on. The memory is read without a clock, as that of LUTs is.
+// FIFO: DEPTH items, a power of two. An item that enters is on offer from the next cycle on; the place of an item that
+// leaves is free from the next cycle on. The memory is read without a clock, as LUT RAM is.
 module fifo #(
     parameter int WIDTH = 1,  // bits of an item
     parameter int DEPTH = 2   // items; a power of two
@@ -21,7 +21,7 @@ module fifo #(
   localparam int INDEX = $clog2(DEPTH);
 
   logic [WIDTH-1:0] memory_q[0:DEPTH-1];
-  logic [INDEX:0]   head_q, tail_q;  // of the item on offer, of the next to enter; a bit more tells full from empty
+  logic [INDEX:0]   head_q, tail_q;  // places of the item on offer and the next; one bit more tells full from empty
   logic             enters, leaves;
 
   assign ready_o = head_q != (tail_q ^ {1'b1, {INDEX{1'b0}}});

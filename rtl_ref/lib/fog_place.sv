@@ -1,16 +1,16 @@
-// Where in the table of a fog a sample's Q lies: Q as a floating number, read as one integer, from the table's first octave on.
-// The highest 8 bits of a place are its line. Combinational.
-// Specification: fog_position of model/stages/fog.cpp, 2^19 places whatever the octaves.
+// Place of a sample's Q in the fog table: Q as a floating-point number, read as one integer, from the table's first
+// octave on. The highest 8 bits of a place are its table line. Combinational. Specification: fog_position of
+// model/stages/fog.cpp, 2^19 places for any number of octaves.
 module fog_place #(
     parameter int Q_BITS = 27  // at most 32
 ) (
     input  logic [Q_BITS-1:0] q_i,       // not 0
-    input  logic signed [5:0] octave_i,  // where Q = 1 would lie
-    input  logic [2:0]        octaves_i, // log2 of those of the table, at most 4
+    input  logic signed [5:0] octave_i,  // the octave of Q = 1
+    input  logic [2:0]        octaves_i, // log2 of the table's octaves, at most 4
     output logic [18:0]       place_o
 );
 
-  // Zeros at the top are shifted out by 16, 8, 4, 2, 1: how many, and the mantissa.
+  // Leading zeros are shifted out by 16, 8, 4, 2, 1: their number, and the mantissa.
   function automatic [19:0] normalised(input [31:0] value);
     logic [31:0] left;
     logic [4:0]  zeros;

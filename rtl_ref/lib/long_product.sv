@@ -1,17 +1,17 @@
-// Product of two numbers that are longer than a multiplier takes, digits of 17 bits at a time, added one behind the other.
+// Product of two numbers that are wider than a multiplier's input, in digits of 17 bits, added one after the other.
 //
 // Yosys splits a long product itself, but it adds three numbers by full adders in front of a carry chain, three places a bit
-// where two chains take two. Where the right number has no sign the products of a digit of its with every other digit of the
-// left one lie beside each other, and are one number.
+// where two chains take two. Where the right factor has no sign, the products of one of its digits with every other
+// digit of the left factor do not overlap and are one number.
 module long_product #(
     parameter int LEFT = 18,         // bits of the left factor, signed
     parameter int RIGHT = 18,        // bits of the right factor
-    parameter bit RIGHT_SIGNED = 1,  // 0: it has no sign, which saves adders
+    parameter bit RIGHT_SIGNED = 1,  // 0: unsigned, which saves adders
     parameter int OUT = 36           // bits of the product that count, from the lowest
 ) (
     input  logic [LEFT-1:0]  left_i,    // signed
     input  logic [RIGHT-1:0] right_i,
-    output logic [OUT-1:0]   product_o  // modulo 2^OUT, of which it may be shorter
+    output logic [OUT-1:0]   product_o  // modulo 2^OUT; may be shorter than the full product
 );
 
   localparam int DIGIT = 17;
@@ -21,7 +21,7 @@ module long_product #(
                                 (RIGHT - (RIGHT_SIGNED ? 2 : 1)) / DIGIT + 1 : 1;
   localparam int PARTS = LEFT_DIGITS * RIGHT_DIGITS;
 
-  // Both with a sign, as long as all digits.
+  // Both signed, extended to all digits.
   localparam int LEFT_LONG = LEFT_DIGITS * DIGIT + 1;
   localparam int RIGHT_LONG = RIGHT_DIGITS * DIGIT + 1;
   logic signed [LEFT_LONG-1:0]  left;
@@ -42,8 +42,8 @@ module long_product #(
         localparam int AT = DIGIT * (i + j);
         logic signed [DIGIT:0]  left_digit;
         logic signed [PART-1:0] part;
-        logic [OUT-1:0]         sum;     // with it
-        logic [OUT-1:0]         so_far;  // without it
+        logic [OUT-1:0]         sum;     // including this term
+        logic [OUT-1:0]         so_far;  // before this term
         assign left_digit = {i == LEFT_DIGITS - 1 && left[i*DIGIT+DIGIT], left[i*DIGIT+:DIGIT]};
         assign part       = left_digit * right_digit;
         assign parts[N*PART+:PART] = part;
@@ -54,7 +54,7 @@ module long_product #(
         end else begin : gen_zero
           assign so_far = '0;
         end
-        if ((i > 1 && !HAS_SIGN) || AT >= OUT) begin : gen_no_term  // stands above another one, or above all
+        if ((i > 1 && !HAS_SIGN) || AT >= OUT) begin : gen_no_term  // above another term, or above the whole product
           assign sum = so_far;
         end else begin : gen_term
           logic [OUT-AT-1:0] term;

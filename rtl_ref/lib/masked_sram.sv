@@ -1,10 +1,10 @@
-// Masked SRAM: an SRAM (sram.sv) with a write enable for each bit of a word. A word that is read while it is written is not to
-// be looked at.
+// Masked SRAM: an SRAM (sram.sv) with a write enable for each bit of a word. A word read while it is written is
+// undefined.
 module masked_sram #(
     parameter int WIDTH = 1,               // bits of a word
     parameter int DEPTH = 2,               // words, at least 2
     parameter bit EARLY = 0,               // 1: may_write_i comes earlier than write_i
-    parameter int HAS_MASK = 1,            // 1: the part's block RAM has such enables (iCE40); 0: a RAM for each bit, on any part
+    parameter int HAS_MASK = 1,  // 1: block RAM with enables per bit (iCE40); 0: a RAM for each bit, on any part
     parameter int ADDRESS = $clog2(DEPTH)  // derived; not to be set
 ) (
     input logic clk_i,
@@ -13,7 +13,7 @@ module masked_sram #(
     input  logic [ADDRESS-1:0] read_address_i,
     output logic [WIDTH-1:0]   data_o,
 
-    input logic               may_write_i,  // high where a bit of write_i is
+    input logic               may_write_i,  // high whenever a bit of write_i is
     input logic [WIDTH-1:0]   write_i,
     input logic [ADDRESS-1:0] write_address_i,
     input logic [WIDTH-1:0]   data_i
@@ -23,7 +23,7 @@ module masked_sram #(
   generate
     if (HAS_MASK != 0) begin : gen_masked
       // Synthesis takes for the enable of a block RAM what any bit of it is enabled by. A bit that nothing reads is written
-      // with may_write_i: then that alone is the enable.
+      // with may_write_i: then may_write_i alone is the enable.
       localparam int BITS = EARLY ? WIDTH + 1 : WIDTH;
       logic [BITS-1:0] write, data;
       assign write = BITS'({may_write_i, write_i});

@@ -1,4 +1,4 @@
-// P over w, narrowed for the product: Pn = P / 2^(e+c) rounded, held to NARROW bits and a sign. Two clocks.
+// P over w, narrowed for the product: Pn = P / 2^(e+c) rounded, clamped to NARROW bits and a sign. Two clocks.
 //
 // A fixed pipeline without enables. Specification: narrow_p of model/stages/perspective.hpp.
 module over_w_narrow #(
@@ -8,11 +8,12 @@ module over_w_narrow #(
     input logic clk_i,
 
     input  logic [P_BITS-1:0] p_i,
-    input  logic [5:0]        amount_i,  // e + c + NARROW; the shift to the right is by NARROW less
-    output logic [NARROW:0]   narrow_o   // of two clocks ago
+    input  logic [5:0]        amount_i,  // e + c + NARROW; the shift to the right is NARROW less
+    output logic [NARROW:0]   narrow_o   // input of two clocks ago
 );
 
-  // P with room below, and a bit for the half: shifted by 16s, 4s, 1s. What leaves at the top must repeat the sign.
+  // P with room below, and a bit for the half: shifted by 16s, 4s, 1s. Bits shifted out at the top must repeat the
+  // sign.
   localparam int WIDE = NARROW + 65;
   localparam int BY_16 = NARROW + 17;
   localparam int BY_4 = NARROW + 5;
@@ -48,7 +49,7 @@ module over_w_narrow #(
   logic [BY_16-1:0] shifted_16;
   logic [BY_4-1:0]  shifted_4;
   logic [BY_1-1:0]  shifted_1, shifted_q;
-  logic [11:0]      top_4;  // bits that differ from the sign
+  logic [11:0]      top_4;  // whether a bit differs from the sign
   logic [2:0]       top_1;
   logic             sign_q, is_held_q;
   logic [NARROW:0]  rounded;

@@ -1,4 +1,4 @@
-// A comparison function as the three orders in which it lets a value pass: it is less than the other one, equal, greater.
+// A comparison function as the three orders in which it passes: value less than the other, equal, greater.
 // Combinational. Specification: DepthOutcomes of model/stages/fragment_ops.hpp.
 module passing_orders (
     input  logic [raster_pkg::DEPTH_FUNC_BITS-1:0] func_i,

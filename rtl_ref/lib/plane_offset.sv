@@ -11,7 +11,7 @@ module plane_offset #(
     output logic [WIDTH-1:0]  value_o
 );
 
-  // A negative digit is added as a complement; the 1 that this lacks comes in as a carry from one bit below.
+  // A negative digit is added as a complement; the missing 1 comes in as a carry from one bit below.
   logic             is_negative, is_odd;
   logic [WIDTH-1:0] digit;
   logic [WIDTH:0]   total;

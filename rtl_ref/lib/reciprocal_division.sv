@@ -1,21 +1,21 @@
 // Reciprocal of a normalised 1/w, one a clock: floor(2^(2k) / d), d = 2m + 1, k = BITS, by restoring division.
 //
-// What reciprocal_restoring.sv does in k clocks with one subtraction is here a row of them, a quarter between two registers:
-// four clocks from mantissa to result, as reciprocal_table.sv has, without its RAM and multipliers.
-// A fixed pipeline without enables: who uses it counts the clocks. Specification: model/stages/reciprocal.hpp.
+// The k subtractions of reciprocal_restoring.sv stand here in rows, a quarter of them between two registers: four
+// clocks from mantissa to result, as in reciprocal_table.sv, without its RAM and multipliers. A fixed pipeline without
+// enables: the user counts the clocks. Specification: model/stages/reciprocal.hpp.
 module reciprocal_division #(
     parameter int BITS = 18  // k: bits of m and of the reciprocal; a subtraction row each
 ) (
     input logic clk_i,
 
     input  logic [BITS-2:0] mantissa_i,   // m below its highest bit, which is set
-    output logic [BITS-1:0] reciprocal_o  // of four clocks ago; its highest bit is set
+    output logic [BITS-1:0] reciprocal_o  // of the mantissa four clocks ago; the highest bit is set
 );
 
   localparam int CLOCKS = 4;
-  localparam int STEPS = (BITS - 1 + CLOCKS - 1) / CLOCKS;  // of a clock; a bit of the quotient each, the highest is 1
+  localparam int STEPS = (BITS - 1 + CLOCKS - 1) / CLOCKS;  // quotient bits per clock; the highest bit is 1
 
-  // From clock to clock: the divisor, what is left (below d), the bits that are there behind the highest.
+  // From clock to clock: the divisor, the remainder (below d), the quotient bits so far without the highest.
   logic [CLOCKS*(BITS-1)-1:0] mantissa_q;
   logic [CLOCKS*(BITS+1)-1:0] left_q;
   logic [CLOCKS*(BITS-1)-1:0] bits_q;
@@ -28,7 +28,7 @@ module reciprocal_division #(
       logic [BITS+1:0] trial;  // its highest bit: negative
       if (c == 0) begin : gen_first
         assign mantissa = mantissa_i;
-        assign left     = {1'b0, ~mantissa_i, 1'b1};  // of 2^(k+1), behind the highest bit: -d modulo 2^(k+1)
+        assign left     = {1'b0, ~mantissa_i, 1'b1};  // of 2^(k+1), after the highest bit: -d modulo 2^(k+1)
         assign bits     = '0;
       end else begin : gen_next
         assign mantissa = mantissa_q[(c-1)*(BITS-1)+:BITS-1];

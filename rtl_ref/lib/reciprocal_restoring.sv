@@ -1,7 +1,7 @@
-// Reciprocal of a normalised 1/w, a bit a clock: floor(2^(2k) / d), d = 2m + 1, k = BITS, by restoring division.
+// Reciprocal of a normalised 1/w, one bit per clock: floor(2^(2k) / d), d = 2m + 1, k = BITS, by restoring division.
 //
-// The highest bit of the quotient is always 1: what is left of 2^(k+1) behind it is -d modulo 2^(k+1), and k - 1 bits remain.
-// Taken in one clock, offered k clocks later. Specification: model/stages/reciprocal.hpp.
+// The highest bit of the quotient is always 1: the remainder of 2^(k+1) after it is -d modulo 2^(k+1), and k - 1 bits
+// remain. The result is offered k clocks after the mantissa is taken. Specification: model/stages/reciprocal.hpp.
 module reciprocal_restoring #(
     parameter int BITS = 18  // k: bits of m and of the reciprocal; a clock each
 ) (
@@ -20,7 +20,7 @@ module reciprocal_restoring #(
   logic            is_busy_q;
   logic [BITS-2:0] mantissa_q;
   logic [BITS:0]   remainder_q;  // below d
-  logic [BITS-1:0] quotient_q;   // a 1 in front of the bits that are there
+  logic [BITS-1:0] quotient_q;   // a 1 in front of the bits so far
   logic [BITS+1:0] trial;        // its highest bit: negative
   logic            is_done;
 

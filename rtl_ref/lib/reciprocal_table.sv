@@ -1,8 +1,8 @@
 // Reciprocal of a normalised 1/w, one a clock: floor(2^(2k) / d), d = 2m + 1, k = BITS. Four clocks from mantissa to result.
 //
-//   line_q     of the interval that m lies in: the value where it begins and how much that drops, halves
+//   line_q     line of m's interval: the value where it begins and the drop over the interval, in halves
 //   guess_q    the value on the line: the floor or one more
-//   product_q  guess * d. 2^(2k) is 0 modulo 2^(k+2), and the guess is off by less than 2: the sign says which it is
+//   product_q  guess * d. 2^(2k) is 0 modulo 2^(k+2), and the guess is off by less than 2: the sign decides
 //   reciprocal_o
 // A fixed pipeline without enables: who uses it counts the clocks. Specification: model/stages/reciprocal.hpp.
 module reciprocal_table #(
@@ -21,7 +21,7 @@ module reciprocal_table #(
   localparam int SUM = BITS + 1 + PLACE;
   localparam int CHECK = BITS + 2;
 
-  // 2^(2k) / d in halves, rounded, where interval n begins.
+  // 2^(2k) / d in halves, rounded, at the start of interval n.
   function automatic [63:0] node(input [63:0] n);
     node = ((64'd1 << (2 * BITS + 2)) / ((((64'd1 << INTERVAL) + n) << (PLACE + 1)) + 64'd1) + 64'd1) >> 1;
   endfunction
@@ -35,7 +35,7 @@ module reciprocal_table #(
 
   logic [BITS+DROP-1:0] line_q;
   logic [BITS-2:0]      line_mantissa_q, guess_mantissa_q;
-  logic [SUM-1:0]       on_line;  // cut off to an integer
+  logic [SUM-1:0]       on_line;  // truncated to an integer
   logic [BITS-1:0]      guess_q, product_guess_q;
   logic                 is_too_large_q;
   logic [CHECK-1:0]     product;

@@ -1,10 +1,10 @@
-// FIFO (fifo.sv) whose item on offer stands in a register: who looks far at it begins there, and not at an address of a RAM.
+// FIFO (fifo.sv) whose item on offer stands in a register: long paths from the item begin there, not at an address of a
+// RAM.
 //
-// Latency two cycles; the item in the register is one of the DEPTH. Ready says nothing of the consumer: a place is free in
-// the cycle behind the one in which an item leaves.
+// Latency two cycles; the item in the register is one of the DEPTH. Ready does not depend on the consumer: a place is
+// free in the cycle after its item leaves.
 //
-// Of wide items the lowest STORED bits, which whoever takes an item does not look far at, may lie in an SRAM: its read is the
-// register.
+// The lowest STORED bits of wide items, from which no long paths start, may lie in an SRAM: its read is the register.
 module registered_fifo #(
     parameter int WIDTH = 1,  // bits of an item
     parameter int DEPTH = 2,  // a power of two
@@ -23,14 +23,14 @@ module registered_fifo #(
     input  logic             ready_i,
     output logic [WIDTH-1:0] data_o,
 
-    output logic is_empty_o  // nothing is here, nor on its way to the register
+    output logic is_empty_o  // no item is in the memory, the register or between them
 );
 
   localparam int USED = $clog2(DEPTH + 1);
 
-  logic                    waits, enters, leaves, is_free;  // an item behind the register; the register is, or will be
+  logic                    waits, enters, leaves, is_free;  // an item waits for the register, which is or gets free
   logic [WIDTH-STORED-1:0] next, offered_q;
-  logic [USED-1:0]         used_q;  // items here
+  logic [USED-1:0]         used_q;  // items inside
 
   assign ready_o    = used_q != USED'(DEPTH);
   assign is_empty_o = used_q == '0;

@@ -1,5 +1,5 @@
-// Request bytes: what a request to memory writes, as it lies there: the stamp's samples one behind the other, or a word of
-// flags; behind them 0. Combinational. Specification: put() of model/stages/memory_port.hpp.
+// Request bytes: the data of a memory write, as they lie in memory: the stamp's samples one after the other, or a word
+// of flags; above them 0. Combinational. Specification: put() of model/stages/memory_port.hpp.
 module request_bytes (
     input  raster_pkg::memory_request_t request_i,
     output logic [8*raster_pkg::REQUEST_BYTES-1:0] bytes_o

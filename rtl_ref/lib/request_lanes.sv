@@ -1,5 +1,5 @@
-// Request lanes: what a request to memory writes, a lane a sample, out of the bytes that lie in memory: request_bytes the
-// other way. A word of flags lies in the lanes from the first bit on. Combinational.
+// Request lanes: the data of a memory write, one lane per sample, from the bytes in memory: the inverse of
+// request_bytes. A word of flags fills the lanes from the first bit on. Combinational.
 module request_lanes (
     input  raster_pkg::tile_plane_t                                       plane_i,
     input  logic [8*raster_pkg::REQUEST_BYTES-1:0]                        bytes_i,

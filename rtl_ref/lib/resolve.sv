@@ -1,5 +1,5 @@
-// Resolve: the one colour of each pixel of a stamp, where it has several samples: of each stored channel the mean, rounded to
-// the nearest code, halves up. Combinational. Specification: mean_color of model/stages/resolve.hpp.
+// Resolve: the one colour of each multisampled pixel of a stamp: the mean of each stored channel, rounded to the
+// nearest code, halves up. Combinational. Specification: mean_color of model/stages/resolve.hpp.
 module resolve (
     input  logic [raster_pkg::SAMPLES*raster_pkg::STORED_COLOR_BITS-1:0] color_i,
     output logic [raster_pkg::PIXELS*raster_pkg::STORED_COLOR_BITS-1:0]  color_o

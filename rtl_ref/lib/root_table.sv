@@ -1,7 +1,7 @@
-// 1 / |m| from |m|^2, in a block RAM: a line for 7 bits behind the leading one, and whether |m|^2 is of an odd octave; down it by
-// the 10 bits behind those. A clock for the RAM, and what follows it within the next.
-// Specification: inverse_length of model/stages/phong.cpp, whose root_lines() these are: of a start the bits below the highest,
-// which is set, 17, and a fall of 11.
+// 1 / |m| from |m|^2, by a table in block RAM. Its line is chosen by the 7 bits after the leading one and the parity of
+// the octave of |m|^2; the value falls along the line by the next 10 bits. One clock for the RAM, the arithmetic within
+// the next. A line of the specification, root_lines() of model/stages/phong.cpp: a start of 17 bits without the
+// highest, which is set, and a fall of 11. Specification: inverse_length of model/stages/phong.cpp.
 module root_table #(
     parameter int SQUARE = 32,  // bits of |m|^2, whose leading one is one of the four highest
     parameter int ROOT   = 18   // bits of the reciprocal root
@@ -9,7 +9,7 @@ module root_table #(
     input logic clk_i,
 
     input  logic [SQUARE-1:0] square_i,
-    output logic [ROOT-1:0]   root_o     // 2^-18 2^-k, k = 14 or 15, half of the leading one's place; a clock later
+    output logic [ROOT-1:0]   root_o  // unit 2^-18 2^-k, k = 14 or 15, half of the leading one's place; a clock later
 );
 
   localparam int LINE = 7;
@@ -54,7 +54,7 @@ module root_table #(
   logic [WIDTH-1:0] lines_rom[0:255];
   initial for (int n = 0; n < 256; n++) lines_rom[n] = LINES[WIDTH*n+:WIDTH];
 
-  // Behind the leading one: of an even octave it is the second or the fourth bit.
+  // The bits after the leading one: in an even octave it is the second or the fourth bit.
   logic [1:0]            zeros;
   logic [LINE+PLACE-1:0] behind;
   logic [WIDTH-1:0]      line_q;

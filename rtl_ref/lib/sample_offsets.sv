@@ -1,15 +1,15 @@
-// Sample offsets: what an edge function or a plane gains on the way from a pixel's centre to each of its samples, value +
-// X * step_x + Y * step_y, X and Y constant subpixels of MSAA_X and MSAA_Y. Shifts and adds; modulo 2^WIDTH.
+// Sample offsets: an edge function or a plane moved from a pixel's centre to each of its samples, value + X * step_x +
+// Y * step_y, X and Y constant subpixels of MSAA_X and MSAA_Y. Shifts and adds; modulo 2^WIDTH.
 //
-// Samples lie opposite each other, and their X and Y are few numbers: the way is made as the one to the right, from products
-// of sizes, and a sample to the left goes it backwards. So what is the same for two samples is there once.
+// Samples lie opposite each other, and their X and Y have few magnitudes: an offset is made for the sample to the
+// right, from products of magnitudes, and negated for the one to the left. So terms that two samples share exist once.
 module sample_offsets #(
     parameter int WIDTH = 1  // bits of a value
 ) (
     input  logic signed [WIDTH-1:0]                          value_i,
     input  logic signed [WIDTH-1:0]                          step_x_i,
     input  logic signed [WIDTH-1:0]                          step_y_i,
-    output logic        [raster_pkg::MSAA_SAMPLES*WIDTH-1:0] value_o    // by sample
+    output logic        [raster_pkg::MSAA_SAMPLES*WIDTH-1:0] value_o    // one value per sample
 );
 
   function automatic logic [WIDTH-1:0] times(input logic [WIDTH-1:0] step, input logic [31:0] size);

@@ -1,10 +1,10 @@
-// Where a sample lies in its block of 4x4 pixels: the low bits of its pixel's place. Combinational.
+// Place of a sample in its block of 4x4 pixels: the low bits of its pixel's coordinates. Combinational.
 module sample_place #(
-    parameter int SAMPLE = 0,                                   // of the stamp, pixel by pixel and row by row
+    parameter int SAMPLE = 0,                                   // number in the stamp, pixel by pixel and row by row
     parameter int SIDE_BITS = $clog2(raster_pkg::BLOCK_SIDE),   // derived; not to be set
     parameter int STAMP = (SIDE_BITS == 0) ? 1 : 2 * SIDE_BITS  // derived: bits of a stamp's number in its block
 ) (
-    input  logic [STAMP-1:0] stamp_i,  // of the block, row by row
+    input  logic [STAMP-1:0] stamp_i,  // number in the block, row by row
     output logic [1:0]       x_o,
     output logic [1:0]       y_o
 );

@@ -1,10 +1,10 @@
-// The lane of states in triangle_setup: beside the parts in which triangles are, each of them for a cycle a plane, and one
-// register behind both, from which either is on offer.
+// The lane of states in triangle_setup: it runs next to the parts that process triangles for one cycle per plane, and
+// joins them in one output register.
 //
-// A state knows how many primitives have come before it, modulo more than the parts hold: it is the next one as soon as so
-// many have left, and until then its successors wait in their last part. Nothing else joins the two.
-// A register loads what the parts have made, or nothing but zeros and a state's codes, so that no gate of a plane's is spent.
-// Specification: finish_flat_setup() of model/stages/triangle_setup.cpp; the times are those of pipelined_timing.hpp.
+// A state knows the number of primitives before it, modulo more than the parts hold: it is next once that many have
+// left; until then its successors wait in their last part. Nothing else joins the two streams. The register loads the
+// output of the parts, or zeros and a state's codes, so that the planes need no gate. Specification:
+// finish_flat_setup() of model/stages/triangle_setup.cpp; the times are those of pipelined_timing.hpp.
 module setup_states (
     input logic clk_i,
     input logic rst_ni,
@@ -14,7 +14,7 @@ module setup_states (
     output logic                         triangle_ready_o,
     input  raster_pkg::triangle_packet_t triangle_i,
 
-    // What is no state goes to the first part, and comes from the last one
+    // Packets that are not states: to the first part, and back from the last one
     input  logic                      part_ready_i,
     output logic                      part_takes_o,
     input  logic                      made_valid_i,
@@ -29,7 +29,7 @@ module setup_states (
 
   localparam int PLANES = raster_pkg::PLANES;
   localparam int AFFINE = raster_pkg::AFFINE_PLANES;
-  localparam int CODES = raster_pkg::ALL_CODE_BITS;  // of a vertex
+  localparam int CODES = raster_pkg::ALL_CODE_BITS;  // bits of a vertex's codes
   localparam int F = raster_pkg::PLANE_FRACTION;
   localparam int L = raster_pkg::PLANE_LOCAL_GUARD_BITS;
   localparam logic [32*PLANES-1:0] CODE_BITS_OF = raster_pkg::CODE_BITS_OF;
@@ -37,14 +37,14 @@ module setup_states (
   localparam logic [32*PLANES-1:0] PLANE_BITS_OF = raster_pkg::PLANE_BITS_OF;
   localparam logic [32*PLANES-1:0] PLANE_AT = raster_pkg::PLANE_AT;
   localparam int ID = raster_pkg::PRIMITIVE_ID_BITS;
-  localparam int WAITING = 8;  // states
-  localparam int NUMBER = 4;   // of a primitive: the parts hold at most 15
+  localparam int WAITING = 8;  // states that can wait
+  localparam int NUMBER = 4;   // bits of a primitive's number: the parts hold at most 15
 
   logic is_state, enters, waits, is_next, takes_state, takes_made, is_free, valid_q;
   logic states_ready;
   logic [NUMBER-1:0] entered_q, left_q, number;
   logic [ID-1:0]     primitive_id;
-  raster_pkg::depth_func_t which;  // register it sets, in the place of the depth test
+  raster_pkg::depth_func_t which;  // the register that the state sets, in the place of the depth test
   logic [CODES-1:0]  code;
   assign is_state         = triangle_i.kind == raster_pkg::PRIMITIVE_KIND_STATE;
   assign triangle_ready_o = is_state ? states_ready : part_ready_i;
@@ -112,7 +112,7 @@ module setup_states (
     end
   end
 
-  // A plane of gradients 0: its code, and what triangle_setup adds to it (HALVES there).
+  // A plane with gradients 0: its code, plus the constant that triangle_setup adds (HALVES there).
   localparam logic [F-1:0] HALVES = F'(1) << (F - L - 1) | F'(1) << (F - 1);
   localparam logic [F-1:0] HALVES_OVER_W = F'(1) << (F - raster_pkg::PERSPECTIVE_GUARD_BITS - 1);
   genvar p;

@@ -21,7 +21,7 @@ module skid_buffer #(
 
   logic             head_valid_q;  // the item on offer
   logic [WIDTH-1:0] head_q;
-  logic             tail_valid_q;  // the item behind it; while it is there nothing enters
+  logic             tail_valid_q;  // the item after it; while it is there no item enters
   logic [WIDTH-1:0] tail_q;
 
   logic enters, leaves;

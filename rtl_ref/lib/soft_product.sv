@@ -1,6 +1,7 @@
-// Product of two short numbers where multipliers are dear: rows of the left one's bits in pairs, added as a tree.
+// Product of two short numbers where multipliers are expensive: rows for pairs of the left factor's bits, added as a
+// tree.
 module soft_product (
-    input  logic        [7:0]  left_i,  // without sign
+    input  logic        [7:0]  left_i,  // unsigned
     input  logic signed [8:0]  right_i,
     output logic signed [16:0] product_o
 );

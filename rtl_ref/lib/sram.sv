@@ -1,14 +1,14 @@
 // SRAM: one read port, one write port, the shape of a block RAM. Contents are undefined until written.
 //
-// A read takes one cycle, and its result stays until the next read. It sees the writes of earlier cycles. Of a word
-// that is written in the same cycle it gives the old value, which some block RAMs need extra logic for: a user who
-// never looks at such a result sets READS_OLD to 0.
+// A read takes one cycle, and its result stays until the next read. It sees the writes of earlier cycles. A read of a
+// word that is written in the same cycle gives the old value, which some block RAMs need extra logic for: a user that
+// ignores such results sets READS_OLD to 0.
 module sram #(
     parameter int WIDTH = 1,               // bits of a word
     parameter int DEPTH = 2,               // words, at least 2
-    parameter bit READS_OLD = 1,           // 0: nothing looks at a word that is read as it is written; saves a comparator
-    parameter bit BLOCK = 0,               // 1: in block RAM even where it fills little of it
-    parameter int WHOLE = 1024,            // words up to which it is one RAM in any case
+    parameter bit READS_OLD = 1,           // 0: a word read while it is written is never used; saves a comparator
+    parameter bit BLOCK = 0,               // 1: in block RAM even if that is mostly empty
+    parameter int WHOLE = 1024,            // up to this many words it is one RAM in any case
     parameter int ADDRESS = $clog2(DEPTH)  // derived; not to be set
 ) (
     input logic clk_i,
@@ -22,15 +22,15 @@ module sram #(
     input logic [WIDTH-1:0]   data_i
 );
 
-  // A few words more than a power of two are a RAM of their own: otherwise all of it would be made of smaller blocks, with
-  // a multiplexer behind them.
+  // A few words more than a power of two become a RAM of their own: otherwise the whole would be made of smaller blocks
+  // and a multiplexer.
   localparam int LOW = 1 << (ADDRESS - 1);
   localparam int HIGH = DEPTH - LOW;  // words from LOW on
   localparam int HIGH_ADDRESS = HIGH < 2 ? 1 : $clog2(HIGH);
 
   // The same two hints for Yosys (no_rw_check, ram_style), Vivado (rw_addr_collision, ram_style), Quartus (ramstyle, whose
   // block RAMs have names of the part's: they are left to it), Synplify and Gowin (syn_ramstyle). Yosys takes ram_style before
-  // the rest.
+  // all others.
   localparam KIND = BLOCK ? "block" : "auto";
   localparam COLLISION = READS_OLD ? "auto" : "no";
   localparam QUARTUS = READS_OLD ? "auto" : "no_rw_check";

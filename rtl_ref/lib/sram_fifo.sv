@@ -1,9 +1,9 @@
-// FIFO in an SRAM: a fifo (fifo.sv) of wide items that are read only after they are taken. data_o is the item that was
-// taken last, from the cycle after that on.
+// FIFO in an SRAM: a fifo (fifo.sv) of wide items that are read only after they are taken. data_o is the item taken
+// last, from the next cycle on.
 module sram_fifo #(
     parameter int WIDTH = 1,  // bits of an item
     parameter int DEPTH = 2,  // a power of two
-    parameter bit BLOCK = 1   // in block RAM even where it fills little of it
+    parameter bit BLOCK = 1   // in block RAM even if that is mostly empty
 ) (
     input logic clk_i,
     input logic rst_ni,
@@ -21,7 +21,7 @@ module sram_fifo #(
 
   localparam int INDEX = $clog2(DEPTH);
 
-  logic [INDEX:0] head_q, tail_q;  // of the item on offer, of the next to enter; a bit more tells full from empty
+  logic [INDEX:0] head_q, tail_q;  // places of the item on offer and the next; one bit more tells full from empty
   logic           enters, leaves;
 
   assign ready_o = head_q != (tail_q ^ {1'b1, {INDEX{1'b0}}});

@@ -1,4 +1,4 @@
-// Stamp address: of a stamp of a block, the tile that it lies in, and its number there. Combinational; the other way round is
+// Stamp address: the tile that holds a stamp of a block, and the stamp's number in it. Combinational; the inverse is
 // block_stamp. Specification: stamp_address() of model/stages/cache_tags.hpp.
 module stamp_address #(
     parameter int TILE_BITS = $clog2(raster_pkg::BLOCKS_PER_ROW),  // derived; not to be set
@@ -17,7 +17,7 @@ module stamp_address #(
   localparam logic [15:0] TILE_MASK = 16'((1 << TILE_BITS) - 1);
   localparam logic [15:0] SIDE_MASK = 16'((1 << SIDE_BITS) - 1);
 
-  logic [15:0] column, row;  // of the stamp in its tile
+  logic [15:0] column, row;  // column and row of the stamp in its tile
   assign column   = ((16'(block_x_i) & TILE_MASK) << SIDE_BITS) | (16'(stamp_i) & SIDE_MASK);
   assign row      = ((16'(block_y_i) & TILE_MASK) << SIDE_BITS) | (16'(stamp_i) >> SIDE_BITS);
   assign tile_x_o = raster_pkg::TILE_X_BITS'(block_x_i >> TILE_BITS);

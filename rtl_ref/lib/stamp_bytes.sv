@@ -1,13 +1,13 @@
-// Stamp bytes: a stamp out of what memory has answered. Combinational. Specification: unpack() of
+// Stamp bytes: extracts a stamp from the beats that memory has answered. Combinational. Specification: unpack() of
 // model/stages/memory_port.hpp.
 module stamp_bytes #(
-    parameter int CODES = raster_pkg::SAMPLES,  // of a stamp; the lanes behind them are 0
-    parameter int SAMPLE_BYTES = 2,             // of a sample in memory
+    parameter int CODES = raster_pkg::SAMPLES,  // codes of a stamp; the lanes above them are 0
+    parameter int SAMPLE_BYTES = 2,             // bytes of a sample in memory
     parameter int WORD = 8,                     // bytes of word_i
     parameter int SHARED = 0,                   // log2 of the stamps in a beat
     parameter int PART = 1                      // bits of a stamp's number in its beat
 ) (
-    input  logic [8*WORD-1:0] word_i,  // the last beats, the newest on top
+    input  logic [8*WORD-1:0] word_i,  // the last beats, the newest highest
     input  logic [PART-1:0]   sub_i,   // number of the stamp in its beat
     output logic [raster_pkg::SAMPLES*raster_pkg::MEMORY_LANE_BITS-1:0] data_o
 );

@@ -1,5 +1,5 @@
-// State token: what a fragment of kind state says: of which unit a register is set, and its value, which lies where fragments
-// have their codes. Combinational. Specification: model/packets/state_packets.hpp.
+// State token: decodes a fragment of kind state: the unit whose register it sets, and the value, which takes the place
+// of a fragment's codes. Combinational. Specification: model/packets/state_packets.hpp.
 module state_token #(
     parameter int WORD = raster_pkg::STATE_WORD_BITS  // derived; not to be set
 ) (
@@ -7,7 +7,7 @@ module state_token #(
     output logic                                   is_token_o,
     output logic [raster_pkg::DEPTH_FUNC_BITS-1:0] register_o,
     output logic [WORD-1:0]                        word_o,
-    output logic [1:0]                             unit_o  // of the register texture_levels: levels, fog, its table, light
+    output logic [1:0]                             unit_o  // for register texture_levels: levels, fog, fog table, light
 );
 
   localparam int AFFINE = raster_pkg::AFFINE_PLANES;

@@ -1,7 +1,7 @@
-// Stencil test of the samples of a stamp, and what becomes of the values that are stored under them. Combinational.
-// Specification: test_sample of model/stages/depth_test.hpp, model/stages/stencil_ops.hpp.
+// Stencil test of the samples of a stamp, and the new values of their stored stencils. Combinational. Specification:
+// test_sample of model/stages/depth_test.hpp, model/stages/stencil_ops.hpp.
 module stencil_test (
-    // The side that the triangle shows
+    // The registers of the side that the triangle shows
     input logic [raster_pkg::DEPTH_FUNC_BITS-1:0] func_i,
     input logic [7:0]                             reference_i,
     input logic [7:0]                             read_i,
@@ -10,10 +10,10 @@ module stencil_test (
 
     input logic [raster_pkg::SAMPLES-1:0]   may_mark_i,
     input logic [8*raster_pkg::SAMPLES-1:0] stored_i,
-    input logic [raster_pkg::SAMPLES-1:0]   is_nearer_i,  // it passes the depth test
+    input logic [raster_pkg::SAMPLES-1:0]   is_nearer_i,  // the sample passes the depth test
 
     output logic [raster_pkg::SAMPLES-1:0]   passes_o,
-    output logic [raster_pkg::SAMPLES-1:0]   marks_o,  // the stored value is written; else stencil_o is as it was
+    output logic [raster_pkg::SAMPLES-1:0]   marks_o,  // the stored value is written; else stencil_o is unchanged
     output logic [8*raster_pkg::SAMPLES-1:0] stencil_o
 );
 
@@ -25,18 +25,19 @@ module stencil_test (
       .greater_o(greater_passes)
   );
 
-  // Whether a sample passes where a bit is the highest that differs: the reference is less if it has a 0 there.
+  // Whether a sample passes if bit i is the highest that differs: the reference is less if it has a 0 there.
   logic [7:0] passes_if;
   assign passes_if = (reference_i & {8{greater_passes}}) | (~reference_i & {8{less_passes}});
 
   genvar s;
   generate
     for (s = 0; s < raster_pkg::SAMPLES; s++) begin : gen_sample
-      // A bit at a time, each a table of four inputs. What is compared: the highest bit that differs decides. What is stored: a
-      // bit toggles if the operation says so, or where it counts and all bits below are ones (zeros, counting down).
+      // Bit by bit, each a table of four inputs. Comparison: the highest bit that differs decides. Update: a bit
+      // toggles if the operation says so, or if the operation counts and all bits below are ones (zeros, counting
+      // down).
       logic [7:0] stored, differs, toggles, carries;
       logic [2:0] op;
-      logic [1:0] sets;  // what does not count
+      logic [1:0] sets;  // the operations that do not count
       logic       counts, is_down, saturates, is_at_end;
       assign stored  = stored_i[8*s+:8];
       assign differs = (stored ^ reference_i) & read_i;

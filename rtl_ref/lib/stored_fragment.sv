@@ -1,7 +1,7 @@
-// Stored fragment: a fragment as queues hold it. Where the triangle's constants are STORE_CONSTANTS_SEPARATELY, in a RAM by
-// the triangle's number, it has of planes over w the anchors of its tile, in its first pixel, and the number in place of the
-// texture constants, lowest. Else it is the fragment as it is. Bits that are not stored come back as 0; whole_fragment.sv
-// makes them.
+// Stored fragment: a fragment as queues hold it. Where the triangle's constants are STORE_CONSTANTS_SEPARATELY, in a
+// RAM by the triangle's number, the first pixel holds the tile anchors of the planes over w, and the number takes the
+// lowest bits of the texture constants. Otherwise the fragment is unchanged. Bits that are not stored come back as 0;
+// whole_fragment.sv restores them.
 module stored_fragment #(
     parameter bit STORE_CONSTANTS_SEPARATELY = raster_pkg::STORE_CONSTANTS_SEPARATELY != 0,  // derived; not to be set
     parameter int NUMBER = raster_pkg::TRIANGLE_BITS,
@@ -15,15 +15,15 @@ module stored_fragment #(
 );
 
   localparam int FRAGMENT = raster_pkg::FRAGMENT_PACKET_BITS;
-  localparam int CODES = raster_pkg::ALL_FRAGMENT_BITS;  // of a pixel
+  localparam int CODES = raster_pkg::ALL_FRAGMENT_BITS;  // bits of a pixel
   localparam int AFFINE = raster_pkg::ALL_AFFINE_CODE_BITS;
   localparam int PIXELS = raster_pkg::PIXELS;
   localparam int FRAME = raster_pkg::COORDINATE_FRAME_BITS;
   localparam int FRAME_AT = PIXELS * CODES + (raster_pkg::COLORS_OVER_W != 0 ? 2 * raster_pkg::VERTEX_COLOR_BITS : 0);
-  localparam int HEADER = FRAGMENT - FRAME_AT - FRAME;        // kind to state
+  localparam int HEADER = FRAGMENT - FRAME_AT - FRAME;        // from kind to state
   localparam int FIRST = CODES - AFFINE;                      // anchors over w, in the first pixel
   localparam int RANGE = FRAME_AT - PIXELS * CODES;
-  localparam int RANGE_AT = PIXELS * AFFINE + FIRST;          // in the bits; below it are the codes
+  localparam int RANGE_AT = PIXELS * AFFINE + FIRST;          // position in the fragment; the codes are below it
 
   genvar s;
   generate

@@ -1,5 +1,5 @@
-// Which of four samples agree: that go together through a cache of 16 banks of texels and four of lines. Along both axes, of
-// any two of their texels, the blocks are the same, or neither the blocks nor the texels are in one bank. Combinational.
+// Which of four samples agree: can go together through a cache of 16 banks of texels and four of lines. Along both axes
+// any two of their texels lie in the same block, or in different banks of lines and of texels. Combinational.
 // Specification: agree() of model/stages/texture_unit.hpp.
 module texture_agree #(
     parameter int ENDS = 1,       // texels of a sample along an axis: 1 or 2

@@ -1,38 +1,38 @@
-// What a texture cache has asked memory for: one request on offer, the beats that have not come, and where each one goes.
+// Memory side of a texture cache: one request on offer, the beats that have not come, and the cache line of each.
 //
-// Lines are answered in the order in which they were asked for, beat by beat, and every beat is taken as it comes.
+// Lines are answered in the order of the requests, beat by beat, and every beat is taken as it comes.
 //
-// Reset: power_on_ni resets the request and the count of beats, rst_ni everything else at any time. A request on offer stays
-// on offer until it is taken; beats of before rst_ni are dropped; until the last has come nothing is asked for.
-// Times: TexturePort and recovered() of model/engines/cycle/texture_timing.hpp.
+// Reset: power_on_ni resets the request and the count of beats, rst_ni everything else at any time. A request on offer
+// stays on offer until it is taken; beats requested before rst_ni are dropped; until the last of them has come no
+// request is made. Times: TexturePort and recovered() of model/engines/cycle/texture_timing.hpp.
 module texture_answers #(
     parameter int LINE = 6,        // bits of a line's place in the cache
-    parameter int PORT_BITS = 64,  // of a beat: 16 to 128
-    parameter int WORD_BITS = 64,  // of a word of the cache, at least those of a beat, a power of two
-    parameter int LINES = 16,      // that are not answered; a power of two
+    parameter int PORT_BITS = 64,  // bits of a beat: 16 to 128
+    parameter int WORD_BITS = 64,  // bits of a word of the cache, at least PORT_BITS, a power of two
+    parameter int LINES = 16,      // lines in flight; a power of two
     parameter int WORDS = 9 - $clog2(WORD_BITS)  // derived: words of a line of 64 bytes, log2
 ) (
     input logic clk_i,
     input logic rst_ni,
     input logic power_on_ni,
 
-    // A line is asked for, in a cycle in which there is room for it
+    // A line is requested, in a cycle in which there is room for it
     output logic            room_o,
     input  logic            asks_i,
-    input  logic [27:0]     address_i,  // 16 bytes
-    input  logic [1:0]      size_i,     // log2 of its bytes, less 4
+    input  logic [27:0]     address_i,  // unit 16 bytes
+    input  logic [1:0]      size_i,     // log2 of the line's bytes, less 4
     input  logic [LINE-1:0] line_i,
 
     // Memory
     output logic                 request_valid_o,
     input  logic                 request_ready_i,
-    output logic [31:0]          request_address_o,  // bytes
+    output logic [31:0]          request_address_o,  // in bytes
     output logic [5:0]           request_beats_o,
     input  logic                 answer_valid_i,
     output logic                 answer_ready_o,
     input  logic [PORT_BITS-1:0] answer_data_i,
 
-    // A word has come, of which line, which of its words; and the last of a line
+    // A word has come: its line, its place in the line, and whether it is the line's last
     output logic                 word_valid_o,
     output logic [WORD_BITS-1:0] word_o,
     output logic [LINE-1:0]      line_o,
@@ -40,11 +40,11 @@ module texture_answers #(
     output logic [WORDS-1:0]     place_o,
     output logic                 ends_line_o,
 
-    output logic idle_o  // nothing is on offer, and no beat to come
+    output logic idle_o  // no request is on offer, and no beat is to come
 );
 
-  localparam int BYTES = $clog2(PORT_BITS / 8);  // of a beat, log2
-  localparam int BEATS = 6 - BYTES;              // of a line of 64 bytes, likewise
+  localparam int BYTES = $clog2(PORT_BITS / 8);  // log2 of the bytes of a beat
+  localparam int BEATS = 6 - BYTES;              // log2 of the beats of a line of 64 bytes
   localparam int UNANSWERED = $clog2(LINES + 1) + BEATS + 1;
 
   logic                  request_valid_q, recovers_q, discards, is_done, fills_ready, takes;

@@ -1,8 +1,8 @@
 // One coordinate of a sample: P over q, as a texel of the image. Six clocks from P to texel.
 //
-//   narrow   Pn = P / 2^(e+c) rounded, held to NARROW bits and a sign
+//   narrow   Pn = P / 2^(e+c) rounded, clamped to NARROW bits and a sign
 //   product  Pn r, r the reciprocal of the normalised q
-//   place    its texels: the product times 2^x, rounded at FRACTION bits, what is behind the point cut off
+//   place    the texels: the product times 2^x, rounded at FRACTION bits, the fraction cut off
 //   wrap     + u_ref, then onto the image
 // A fixed pipeline without enables. Specification: narrow_p, over_q of model/stages/perspective.hpp, texels_around of
 // texture_filter.hpp.
@@ -13,27 +13,27 @@ module texture_axis #(
     parameter int FRACTION = 8,         // f
     parameter int REFERENCE_BITS = 24,  // with its sign
     parameter int SIDE_BITS = 12,       // log2 of the longest side
-    parameter int LINEAR = 0            // 1 also the two texels whose middles are around the place, 2 the place alone
+    parameter int LINEAR = 0  // 1 also gives the two texels whose centres are around the place, 2 the place alone
 ) (
     input logic clk_i,
 
-    // Each in its clock: 0, 0, 3, 4, 5
+    // Inputs of clocks 0, 0, 3, 4, 5
     input logic [P_BITS-1:0]         p_i,
-    input logic [5:0]                amount_i,  // e + c + NARROW; the shift to the right is by NARROW less
+    input logic [5:0]                amount_i,  // e + c + NARROW; the shift to the right is NARROW less
     input logic [MANTISSA-2:0]       reciprocal_i,  // below its highest bit, which is set
     input logic [4:0]                reach_i,      // x, at most 20
     input logic [REFERENCE_BITS-1:0] reference_i,  // u_ref
 
-    // Of the texture: while samples are under way they stay
+    // Constants of the texture: they stay while samples are under way
     input logic [SIDE_BITS-1:0] last_i,   // size - 1
     input logic [1:0]           wrap_i,   // 0 repeat, 1 clamp, 2 mirror
     input logic                 is_linear_i,
 
-    // Of six clocks ago
+    // Of the input six clocks ago
     output logic [SIDE_BITS-1:0] texel_o,
-    output logic [SIDE_BITS-1:0] next_o,  // the texel behind it, where it is linear
-    output logic [7:0]           part_o,  // how much of that, in 256ths
-    output logic [REFERENCE_BITS+7:0] coordinate_o  // or the place before it is wrapped, 2^-8 texels
+    output logic [SIDE_BITS-1:0] next_o,  // the next texel, where the filter is linear
+    output logic [7:0]           part_o,  // weight of the next texel, in 256ths
+    output logic [REFERENCE_BITS+7:0] coordinate_o  // or the place before wrapping, 2^-8 texels
 );
 
   // ----------------------------------------------------------------------------------------------------- clocks 0, 1: narrow
@@ -50,7 +50,7 @@ module texture_axis #(
   always_ff @(posedge clk_i) narrow_2_q <= narrow;
 
   // ---------------------------------------------------------------------------------------------------- clock 3: the product
-  // The highest bit of r is set: without it, as a number with a sign, it is no longer than a multiplier's input.
+  // The highest bit of r is set: without it, as a signed number, r is no longer than a multiplier's input.
   localparam int PRODUCT = NARROW + 1 + MANTISSA;
   logic signed [PRODUCT-1:0] short_product, product_q;
   assign short_product = $signed(narrow_2_q) * $signed({1'b0, reciprocal_i});
@@ -60,7 +60,7 @@ module texture_axis #(
   // ------------------------------------------------------------------------------------------------------- clock 4: the place
   // Times 2^x, between the half that rounds and the highest bit of the texels: shifted by 8s, 2s, 1.
   localparam int POINT = MANTISSA + NARROW - 1;
-  localparam int WHOLE = 22;                // bits of the texels
+  localparam int WHOLE = 22;                // bits of the texel number
   localparam int PLACE = WHOLE + FRACTION + 1;
   localparam int UP_2 = PLACE + 1;          // bits before the shift by 1
   localparam int UP_8 = UP_2 + 6;           // bits before that by 2s
@@ -95,7 +95,7 @@ module texture_axis #(
   generate
     if (BELOW >= 0) begin : gen_zeros
       assign long = {{ABOVE{product_q[PRODUCT-1]}}, product_q, {BELOW{1'b0}}};
-    end else begin : gen_cut  // bits that no reach brings up to the half
+    end else begin : gen_cut  // no reach shifts these bits up to the rounding bit
       logic [ABOVE+PRODUCT-1:0] all;
       assign all  = {{ABOVE{product_q[PRODUCT-1]}}, product_q};
       assign long = all[ABOVE+PRODUCT-1-:LONG];
@@ -105,7 +105,7 @@ module texture_axis #(
   assign placed   = reach_i[0] ? placed_2[PLACE-1:0] : placed_2[UP_2-1:1];
   always_ff @(posedge clk_i) begin
     whole_q   <= placed[PLACE-1-:WHOLE];
-    carries_q <= &placed[FRACTION:0];  // a half of the last bit carries into the texels
+    carries_q <= &placed[FRACTION:0];  // a half of the last bit carries into the texel number
   end
 
   // -------------------------------------------------------------------------------------------------------- clock 5: the wrap
@@ -125,7 +125,7 @@ module texture_axis #(
       logic unused;
       assign unused = &{last_i, wrap_i, is_linear_i};
     end else if (LINEAR == 1) begin : gen_linear
-      // Less half a texel: from the middle of the texel in front.
+      // Less half a texel: measured from the centre of the previous texel.
       logic [FRACTION-1:0]       part_q;
       logic [7:0]                part;
       logic [REFERENCE_BITS-1:0] first;

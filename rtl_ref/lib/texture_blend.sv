@@ -1,6 +1,6 @@
-// Texture blend: what a linear filter gave on one level becomes a texel, or waits for what it gives on the next, and both
-// become one. One register. A sum that is blended keeps 8 fraction bits, and is rounded a second time, as is one of two levels
-// that has the other's weight. Of several lanes each has its own, and all of them move as one; a pass brings sums to some.
+// Texture blend: the filtered sum of one level becomes a texel, or waits for the sum of the next level and both are
+// blended. One register. A blended sum keeps 8 fraction bits and is rounded a second time, even if the weight of the
+// other level is 0. Several lanes have one blend each, and all move together; a pass brings sums to some of them.
 // Specification: blend_levels of model/stages/texture_filter.hpp.
 module texture_blend #(
     parameter int TAIL = 1  // bits that go along
@@ -10,12 +10,12 @@ module texture_blend #(
 
     input  logic            valid_i,
     output logic            ready_o,
-    input  logic            takes_i,       // it brings a sum to this sample
-    input  logic [95:0]     sum_i,         // 24 bits a channel, 16 of them behind the point
-    input  logic            is_between_i,  // two levels are asked for
-    input  logic            is_first_i,    // of two that come; of several lanes, of all that it brings sums to
+    input  logic            takes_i,       // the pass brings a sum to this sample
+    input  logic [95:0]     sum_i,         // 24 bits a channel, 16 of them fraction
+    input  logic            is_between_i,  // the sample lies between two levels
+    input  logic            is_first_i,    // first of two sums; with several lanes, of every lane that gets a sum
     input  logic            is_second_i,
-    input  logic [7:0]      part_i,        // of the second, in 256ths; 0 where there is none
+    input  logic [7:0]      part_i,        // weight of the second level, in 256ths; 0 if there is none
     input  logic [TAIL-1:0] tail_i,
 
     output logic            valid_o,
@@ -28,7 +28,7 @@ module texture_blend #(
   logic [7:0]      part_q;
   logic [TAIL-1:0] tail_q;
   logic [95:0]     lower_q;  // the only one, or the first of two
-  logic [63:0]     upper_q;  // 8 bits behind the point
+  logic [63:0]     upper_q;  // 8 fraction bits
   assign ready_o = !valid_q || is_first_q || ready_i;
   assign valid_o = valid_q && !is_first_q;
   assign tail_o  = tail_q;

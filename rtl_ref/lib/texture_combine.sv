@@ -1,4 +1,4 @@
-// A texel's colour and the primitive's become one. Combinational.
+// Combines a texel's colour with the primitive's. Combinational.
 //
 // Every mode is one product and one division by 255, floor((s + 128 + ((s + 128) >> 8)) >> 8):
 //   modulate  s = c t            replace  s = 255 t
@@ -7,12 +7,12 @@
 // Specification: combined of model/stages/texture_filter.hpp.
 module texture_combine #(
     parameter int CHANNELS = 4,  // of the primitive's colour: 3 or 4
-    parameter int SOFT = 0       // so many channels, R first, have no multiplier
+    parameter int SOFT = 0       // this many channels, R first, have no multiplier
 ) (
     input  logic [31:0]           texel_i,      // 8 bits a channel, R lowest
     input  logic [8*CHANNELS-1:0] color_i,      // the primitive's, likewise
     input  logic [1:0]            combine_i,    // 0 modulate, 1 replace, 2 decal, 3 add
-    input  logic                  has_alpha_i,  // the format has
+    input  logic                  has_alpha_i,  // the format stores alpha
     output logic [8*CHANNELS-1:0] color_o
 );
 
@@ -26,7 +26,7 @@ module texture_combine #(
   generate
     for (n = 0; n < CHANNELS; n++) begin : gen_channel
       logic [7:0]         color, texel, whole;
-      logic [7:0]         left;  // of the product
+      logic [7:0]         left;  // left factor of the product
       logic signed [8:0]  right;
       logic signed [16:0] product;
       logic [15:0]        rounded, quotient;

@@ -1,8 +1,8 @@
-// Linear filter: four texels and how much there is of the second column and row. Two registers; without rounding between them,
-// (sum + 2^15) >> 16 at the end, or the sum as it is where it is blended with that of another level. Specification:
+// Linear filter: four texels, weighted by the fractions along x and y. Two registers; without rounding between them,
+// (sum + 2^15) >> 16 at the end, or the raw sum where it is blended with that of another level. Specification:
 // linear_sums and filter_linear of model/stages/texture_filter.hpp.
 module texture_filter #(
-    parameter int LEVELS = 0,  // sum_o is what counts
+    parameter int LEVELS = 0,  // 1: sum_o is the output
     parameter int TAIL = 1     // bits that go along
 ) (
     input logic clk_i,
@@ -12,12 +12,12 @@ module texture_filter #(
     output logic            ready_o,
     input  logic [127:0]    code_i,    // first row, second row
     input  logic [2:0]      format_i,
-    input  logic [15:0]     part_i,    // in 256ths; of the second column lowest
+    input  logic [15:0]     part_i,    // weight of the second column and row, in 256ths; the column's lowest
     input  logic [TAIL-1:0] tail_i,
 
     output logic            valid_o,
     input  logic            ready_i,
-    output logic [95:0]     sum_o,  // 24 bits a channel, with 2^15 without LEVELS
+    output logic [95:0]     sum_o,  // 24 bits a channel; includes 2^15 without LEVELS
     output logic [31:0]     texel_o,
     output logic [TAIL-1:0] tail_o
 );

@@ -1,26 +1,26 @@
-// One coordinate of a sample on a level of its texture: the texel it lies in, or the two whose middles are around it. Two
-// clocks.
+// One coordinate of a sample on a level of its texture: the texel that holds it, or the two whose centres are around
+// it. Two clocks.
 //
-//   scale  the place divided by 2^level, no farther than to one texel, with a bit more to round by
+//   scale  the place divided by 2^level, at most by the side, with one more bit for rounding
 //   wrap   rounded and half a texel less, or cut off; then onto the level's image
 // Both have enables. Specification: at_level, rounded_at_level and texels_around of model/stages/texture_filter.hpp.
 module texture_on_level #(
-    parameter int REFERENCE_BITS = 24,  // of a place's texels, with their sign
+    parameter int REFERENCE_BITS = 24,  // bits of a place's texel number, with its sign
     parameter int SIDE_BITS = 12        // log2 of the longest side
 ) (
     input logic clk_i,
-    input logic scales_i,  // of the first clock
-    input logic wraps_i,   // of the second
+    input logic scales_i,  // enable of the first clock
+    input logic wraps_i,   // enable of the second clock
 
     input logic [REFERENCE_BITS+7:0] coordinate_i,  // 2^-8 texels of level 0
     input logic [3:0]                level_i,
     input logic                      is_linear_i,
 
-    // Of the texture: while samples are under way they stay
+    // Constants of the texture: they stay while samples are under way
     input logic [3:0] log2_size_i,
     input logic [1:0] wrap_i,
 
-    input  logic                 is_corner_i,  // of the second clock: the level's texel is (2, 2) of its block
+    input  logic                 is_corner_i,  // in the second clock: the level's texel is (2, 2) of its block
     output logic [SIDE_BITS-1:0] texel_o,
     output logic [SIDE_BITS-1:0] next_o,
     output logic [7:0]           part_o
@@ -28,7 +28,7 @@ module texture_on_level #(
 
   localparam int PLACE = REFERENCE_BITS + 8;
 
-  logic [3:0]           by, left;  // bits of the place that leave, of the texels that stay
+  logic [3:0]           by, left;  // bits of the place that are shifted out, of the texel that remain
   logic signed [PLACE:0] long, scaled_q;
   logic [SIDE_BITS-1:0] last_q, first_texel, next_texel;
   logic                 is_linear_q;

@@ -1,5 +1,6 @@
-// What a texture's sides say of its levels, from a state on: log2 of level 0's blocks along each, the first level of one block,
-// and the number whose bits are where levels begin. Specification: level_place of model/stages/texture_levels.hpp.
+// Constants of a texture's levels, from a state on: log2 of level 0's blocks along each side, the first level of one
+// block, and the number whose bits are the starts of levels. Specification: level_place of
+// model/stages/texture_levels.hpp.
 module texture_sides (
     input logic       clk_i,
     input logic       sets_state_i,
@@ -30,7 +31,7 @@ module texture_sides (
       wide_o         <= new_wide;
       high_o         <= new_high;
       first_of_one_o <= new_longer;
-      // From that of level 0 down every second bit, as long as both sides are halved; then every one.
+      // From level 0 down every second bit while both sides are halved; then every bit.
       ones_o         <= ((21'h155555 << new_odds) | ~(21'h1ffffe << new_odds)) & ~(21'h1ffffe << new_blocks);
     end
 

@@ -1,4 +1,4 @@
-// Texture wrap: the texel of the image that a number stands for. Combinational. Specification: wrapped_texel of
+// Texture wrap: maps a texel number onto the image. Combinational. Specification: wrapped_texel of
 // model/stages/texture_filter.hpp.
 module texture_wrap #(
     parameter int NUMBER_BITS = 24,  // with its sign

@@ -1,25 +1,26 @@
-// Victim bytes: what a block that leaves the chip writes of a stamp, or a flush of a cleared block or of flags, as it lies in
-// memory. One of five, each by itself, so that nothing is chosen in a row. Colours are those of the samples, or of the pixels:
-// their mean, or the one that each has. Combinational. Specification: capture() and compress() of model/stages/block_cache.cpp.
+// Victim bytes: the data of a memory write as they lie in memory: a stamp of an evicted block, or at a flush a cleared
+// block or a word of flags. The five sources are masked and ORed, so no choice waits for another. Colours are one per
+// sample, or one per pixel: the mean, or the only one. Combinational. Specification: capture() and compress() of
+// model/stages/block_cache.cpp.
 module victim_bytes #(
     parameter int SAMPLES = raster_pkg::SAMPLES,             // derived; not to be set
     parameter int PIXELS = raster_pkg::PIXELS,               // derived; not to be set
     parameter int CODE = raster_pkg::STORED_DEPTH_BITS,      // derived: bits of a stored depth
     parameter int COLOR = raster_pkg::STORED_COLOR_BITS,     // derived: bits of a stored colour
-    parameter int MEMORY_COLORS = raster_pkg::MEMORY_COLORS  // of a stamp: of its samples, or their mean in each pixel
+    parameter int MEMORY_COLORS = raster_pkg::MEMORY_COLORS  // of a stamp: one per sample, or the mean of each pixel
 ) (
     // A stamp of a victim
     input  logic                     sends_depth_i,
     input  logic                     sends_color_i,
-    input  logic                     is_here_i,       // in the slot; else all of it is as cleared, or merged
+    input  logic                     is_here_i,       // the stamp is in the slot; else it is cleared, or merged
     input  logic [SAMPLES*CODE-1:0]  depth_i,
     input  logic [SAMPLES*COLOR-1:0] color_i,
-    input  logic [SAMPLES-1:0]       color_strobe_i,  // samples that are there
-    input  logic                     of_pixels_i,     // it is written with one colour a pixel
-    input  logic                     merges_i,        // it is written whole: what is not there has the colour of its pixel
+    input  logic [SAMPLES-1:0]       color_strobe_i,  // samples in the slot
+    input  logic                     of_pixels_i,     // the stamp is written with one colour per pixel
+    input  logic                     merges_i,        // written whole: missing samples get their pixel's colour
     input  logic [PIXELS*COLOR-1:0]  merged_i,
 
-    // A flush: a word of flags, a stamp of colours as cleared
+    // A flush: a word of flags, or a stamp of clear colours
     input logic                             sends_flags_i,
     input logic [raster_pkg::FLAG_WORD-1:0] flags_i,
     input logic                             sends_cleared_i,
@@ -37,7 +38,7 @@ module victim_bytes #(
   localparam int DATA = 8 * raster_pkg::REQUEST_BYTES;
   localparam int N = raster_pkg::MSAA_SAMPLES;
   localparam bit COMPRESSES = raster_pkg::COMPRESS_UNIT != 0;
-  logic [MEMORY_COLORS*COLOR-1:0] stored;  // colours as memory has them
+  logic [MEMORY_COLORS*COLOR-1:0] stored;  // colours as stored in memory
   logic [MEMORY_COLORS-1:0]       stored_strobe, is_written;
   logic                           sends_here, clears_depth, clears_color;
   logic [DEPTHS-1:0]              depth_bytes, clear_depths;
@@ -56,7 +57,7 @@ module victim_bytes #(
           COLOR_WIDTH'(clear_color_i) & {COLOR_WIDTH{clears_color && is_written[s]}};
     end
     if (COMPRESSES) begin : gen_compress
-      // What is sent, over what was read; or of each pixel the first sample.
+      // The slot's colours over those read from memory; or the first sample of each pixel.
       logic [SAMPLES*COLOR-1:0] all_color;
       logic [SAMPLES-1:0]       here;
       assign here         = color_strobe_i & {SAMPLES{is_here_i}};
@@ -84,7 +85,7 @@ module victim_bytes #(
             .color_i(color_i),
             .color_o(stored)
         );
-        for (s = 0; s < PIXELS; s++) begin : gen_strobe  // all of a pixel's samples are there, or none
+        for (s = 0; s < PIXELS; s++) begin : gen_strobe  // all of a pixel's samples are present, or none
           assign stored_strobe[s] = color_strobe_i[s*N];
         end
       end else begin : gen_samples
@@ -97,7 +98,7 @@ module victim_bytes #(
   logic [DEPTHS-1:0]                depth_part;
   logic [COLORS-1:0]                color_part;
   logic [raster_pkg::FLAG_WORD-1:0] flag_part;
-  logic [DATA-1:0]                  clear_part;  // of all samples the same: chosen once
+  logic [DATA-1:0]                  clear_part;  // the same for all samples: chosen once
   assign depth_part = depth_bytes & {DEPTHS{sends_depth_i && is_here_i}};
   assign color_part = color_bytes & {COLORS{sends_color_i && sends_here}};
   assign flag_part  = flags_i & {raster_pkg::FLAG_WORD{sends_flags_i}};

@@ -1,6 +1,6 @@
-// Whole fragment: a fragment that a queue held (stored_fragment.sv), and what its triangle's context says: the texture
-// constants, and the values over w, from the tile's anchors to the stamp's first pixel and from there to each, as interpolate
-// makes those of other planes.
+// Whole fragment: restores a fragment that a queue held (stored_fragment.sv) from its triangle's context: the texture
+// constants, and the values over w, from the tile's anchors to the stamp's first pixel and from there to each pixel, as
+// interpolate does for the other planes.
 module whole_fragment #(
     parameter bit STORE_CONSTANTS_SEPARATELY = raster_pkg::STORE_CONSTANTS_SEPARATELY != 0  // derived; else the fragment is whole
 ) (
@@ -9,14 +9,14 @@ module whole_fragment #(
     output raster_pkg::fragment_packet_t fragment_o
 );
 
-  localparam int CODES = raster_pkg::ALL_FRAGMENT_BITS;  // of a pixel
+  localparam int CODES = raster_pkg::ALL_FRAGMENT_BITS;  // bits of a pixel
   localparam int AFFINE = raster_pkg::AFFINE_PLANES;
   localparam int AFFINE_BITS = raster_pkg::ALL_AFFINE_CODE_BITS;
   localparam int PIXELS = raster_pkg::PIXELS;
   localparam int STAMP = raster_pkg::STAMP_SIZE;
   localparam int PIXEL = raster_pkg::TILE_PIXEL_BITS;
   localparam int PLANES = raster_pkg::PLANES;
-  localparam logic [32*PLANES-1:0] BITS_OF = raster_pkg::LOCAL_BITS_OF;  // of a value over w as of its steps
+  localparam logic [32*PLANES-1:0] BITS_OF = raster_pkg::LOCAL_BITS_OF;  // bits of a value over w, and of its steps
   localparam logic [32*PLANES-1:0] STEP_AT = raster_pkg::STEP_AT;
   localparam logic [32*PLANES-1:0] FRAGMENT_AT = raster_pkg::FRAGMENT_AT;
   localparam int STAMP_SHIFT = $clog2(STAMP);

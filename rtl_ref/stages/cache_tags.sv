@@ -1,13 +1,13 @@
-// Cache tags: which blocks of 4x4 pixels are on the chip, looked up before the depth test, so that memory is asked for what
-// a fragment needs while those before it are still on their way.
+// Cache tags: which blocks of 4x4 pixels are on the chip, looked up before the depth test, so that the memory reads of
+// a fragment start while earlier fragments are still in flight.
 //
-// In: fragments, in program order. Out: items for the test, each with what the tags have found, and orders: so many evicted
-// blocks go to memory, then a stamp of depth is read, and with blending one of colour. A fragment takes three cycles to become
-// an item, one a cycle: its line is read, compared, and what follows leaves. Where the flag of a cleared block falls, a
-// fragment of another block than the one before waits a cycle (clear_flags). Tokens stay until all they ask for is done: a
-// walk over the lines that evicts what is dirty, the marks of a fast clear, a word of flags a cycle, or a flush's requests. A
-// fast clear of one bin shares its words with others: each is read, then written.
-// Specification: model/stages/cache_tags.hpp.
+// In: fragments, in program order. Out: items for the test, each with the result of its tag lookup, and orders: write
+// back a number of evicted blocks, then read a stamp of depth, and with blending one of colour. A fragment becomes an
+// item in three cycles, one per cycle: its line is read, compared, and the result leaves. Where the flag of a cleared
+// block falls, a fragment of another block than the one before waits a cycle (clear_flags). Tokens stay until all their
+// work is done: a walk over the lines that evicts the dirty ones, the marks of a fast clear, a word of flags a cycle,
+// or a flush's requests. The words of a fast clear of one bin also hold flags of other bins: each is read, then
+// written. Specification: model/stages/cache_tags.hpp.
 module cache_tags #(
     parameter int STAMPS = raster_pkg::BLOCK_STAMPS,  // derived; not to be set
     parameter int STAMP = raster_pkg::BLOCK_STAMP_BITS,
@@ -25,25 +25,25 @@ module cache_tags #(
     output logic                         fragment_ready_o,
     input  raster_pkg::fragment_packet_t fragment_i,
 
-    // To depth_cache: the fragment, and what the tags have found
+    // To depth_cache: the fragment, and the result of its tag lookup
     output logic                         item_valid_o,
     input  logic                         item_ready_i,
     output raster_pkg::fragment_packet_t item_o,
     output raster_pkg::tag_result_t      found_o,
 
-    // To write_back: blocks that leave, to be written, and a read
+    // To write_back: evicted blocks to be written, and a read
     output logic                     order_valid_o,
     input  logic                     order_ready_i,
     output raster_pkg::block_order_t order_o,
 
-    // Behind all orders: what a flush writes
+    // After all orders: the writes of a flush
     input  logic                        drained_i,  // no item and no order is under way
     output logic                        request_valid_o,
     input  logic                        request_ready_i,
     output raster_pkg::memory_request_t request_o,
-    output logic [raster_pkg::FLAG_WORD-1:0] request_word_o,  // its data, of a word of flags
+    output logic [raster_pkg::FLAG_WORD-1:0] request_word_o,  // its data, if it writes a word of flags
 
-    // Words of the bits of blocks with one colour a pixel: one is read, and there in the next cycle; or written
+    // Words of the bits of blocks with one colour per pixel: a word is read, and valid in the next cycle; or written
     output raster_pkg::pixel_word_t          pixel_word_o,
     input  logic [raster_pkg::FLAG_WORD-1:0] pixel_word_i,
 
@@ -52,13 +52,13 @@ module cache_tags #(
 
     output logic is_cleared_o,  // a stamp begins with the clear value
     output logic is_resolved_o,  // a stamp of a cleared block goes to memory
-    output logic at_token_o,  // behind everything, lines and flags are at work
+    output logic at_token_o,  // a token is at work on lines and flags, after everything else
     output logic idle_o
 );
 
   localparam int SAMPLES = raster_pkg::SAMPLES;
   localparam int Z = raster_pkg::DEPTH_CODE_BITS;
-  localparam int CODE = raster_pkg::STORED_DEPTH_BITS;  // the stencil above that, where there is one
+  localparam int CODE = raster_pkg::STORED_DEPTH_BITS;  // depth, above it the stencil, if there is one
   localparam int COLOR = raster_pkg::STORED_COLOR_BITS;
   localparam int LANE = raster_pkg::MEMORY_LANE_BITS;
   localparam int LINES = raster_pkg::CACHE_LINES;
@@ -73,23 +73,23 @@ module cache_tags #(
   localparam int VICTIM = raster_pkg::VICTIM_SLOT_BITS;
   localparam int WORD = raster_pkg::FLAG_WORD;
   localparam int BIT = $clog2(WORD);
-  localparam int KNOWN = raster_pkg::BLEND_LANES == 0 ? 0 : STAMPS;  // with blending: stamps whose colours are here
+  localparam int KNOWN = raster_pkg::BLEND_LANES == 0 ? 0 : STAMPS;  // blending: stamps with their colours on the chip
   localparam int REST = 3 + TAG_X + TAG_Y + 2 * STAMPS + 3;
-  localparam int STATE = REST + KNOWN;  // of a line
+  localparam int STATE = REST + KNOWN;  // bits of a line's state
   localparam bit TESTS_ALPHA = raster_pkg::ALPHA_UNIT != 0 && raster_pkg::SETUP_KIND == 0;
   localparam logic [LINE-1:0] LINE_X_MASK = LINE'((1 << LINE_X) - 1);
   localparam logic [LINE-1:0] LINE_Y_MASK = LINE'((1 << LINE_Y) - 1);
-  localparam logic [BLOCK_X-1:0] BIN_X = BLOCK_X'((1 << LINE_X) - 1);  // of a block's x: its place in the bin
+  localparam logic [BLOCK_X-1:0] BIN_X = BLOCK_X'((1 << LINE_X) - 1);  // bits of a block's x within the bin
   localparam logic [BLOCK_Y-1:0] BIN_Y = BLOCK_Y'((1 << LINE_Y) - 1);
 
   localparam logic [3:0] SERVE = 4'd0;    // fragments
   localparam logic [3:0] LOOK = 4'd1;     // a token's walk reads a line
-  localparam logic [3:0] ORDER = 4'd2;    // what has left the chip goes to memory
+  localparam logic [3:0] ORDER = 4'd2;    // evicted blocks go to memory
   localparam logic [3:0] DRAIN = 4'd3;
   localparam logic [3:0] MARK = 4'd4;     // fast clear: empties lines, sets flags
   localparam logic [3:0] READ = 4'd5;     // flush: a word of flags
-  localparam logic [3:0] SEND = 4'd6;     // it goes to memory
-  localparam logic [3:0] RESOLVE = 4'd7;  // its blocks do
+  localparam logic [3:0] SEND = 4'd6;     // the word goes to memory
+  localparam logic [3:0] RESOLVE = 4'd7;  // its resolved blocks go to memory
   localparam logic [3:0] DONE = 4'd8;
 
   logic [3:0] state_q, state_d;
@@ -108,10 +108,10 @@ module cache_tags #(
   endfunction
 
   assign is_clear      = fragment_i.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR;
-  assign is_token      = is_clear || fragment_i.kind == raster_pkg::PRIMITIVE_KIND_FLUSH;  // not a pixel of a line
+  assign is_token      = is_clear || fragment_i.kind == raster_pkg::PRIMITIVE_KIND_FLUSH;  // and no pixel of a line
   assign clears_bin    = is_clear && fragment_i.state.depth_test == raster_pkg::DEPTH_FUNC_EQUAL;
   assign clears_all    = is_clear && fragment_i.state.depth_write && fragment_i.state.color_write;
-  assign skips_walk    = clears_all || clears_bin;  // over the lines: they are dropped, or there is nothing in them
+  assign skips_walk    = clears_all || clears_bin;  // over the lines: they are dropped, or empty
   assign fragment_line = line_of(fragment_x, fragment_y);
   block_stamp u_fragment_stamp (
       .tile_x_i (fragment_i.key.tile_x),
@@ -122,12 +122,12 @@ module cache_tags #(
       .stamp_o  ()
   );
 
-  // The fragment, or line of a walk, whose line is being read; its flags are looked at meanwhile. Of a fragment in the block of
-  // the one before, which has samples, the line is known to have them, and of one without samples nobody asks.
+  // The fragment, or line of a walk, whose line is being read; its flags are read meanwhile. No flags are needed for a
+  // fragment without samples, or in the block of the fragment before if that has samples: it hits.
   logic                             read_valid_q, read_walks_q, has_read_q, moves, looks, needs_flags, flags_are_busy;
   raster_pkg::fragment_packet_t read_q;
   logic [LINE-1:0]                  read_line_q;
-  // Where a token is: line of its walk, word of flags.
+  // Progress of a token: line of its walk, word of flags.
   logic               lines_done_q;
   logic [LINE-1:0]    walk_q;
   logic [WORD_X-1:0]  word_x_q;
@@ -135,7 +135,7 @@ module cache_tags #(
   logic [BLOCK_X-1:0]               read_x;
   logic [BLOCK_Y-1:0]               read_y;
   logic [1:0]                       read_cleared;
-  // The one whose line has been compared.
+  // The fragment or line whose tag has been compared.
   logic                             valid_q, walks_q, is_access, leaves;
   raster_pkg::fragment_packet_t fragment_q;
   logic [LINE-1:0]                  line_q;
@@ -220,7 +220,7 @@ module cache_tags #(
       .data_i         (line_new)
   );
 
-  // A line that is read while it is written; and one that is written by the fragment before, as it leaves.
+  // A line that is read while it is written; and a line that the previous fragment writes as it leaves.
   always_ff @(posedge clk_i) begin
     if (takes_fragment || looks) begin
       is_forwarded_q <= line_writes && line_read_address == line_write_address;
@@ -230,13 +230,14 @@ module cache_tags #(
   assign is_next    = (is_access || (valid_q && walks_q)) && line_q == read_line_q;
   assign read_state = is_next ? line_new : is_forwarded_q ? forward_q : line_read;
   always_ff @(posedge clk_i) if (moves) line_state_q <= read_state;
-  // What follows from the rest stands in it as well, known at once: the line may have been written; its flags fall then.
+  // line_dirty and line_falls are derived from the other fields and stored with them, to be known at once: samples may
+  // have been written; an eviction clears flags.
   assign {line_valid, line_dirty, line_falls, tag_x, tag_y, line_known, line_colored, line_has_depth, line_cleared} = line_state_q[STATE-1-:REST];
   assign line_x = (BLOCK_X'(tag_x) << LINE_X) | (BLOCK_X'(line_q) & BLOCK_X'((1 << LINE_X) - 1));
   assign line_above_x = line_q >> LINE_X;
   assign line_y = (BLOCK_Y'(tag_y) << LINE_Y) | BLOCK_Y'(line_above_x);
 
-  // The tag is compared on each way that the line may come, before one of them is taken.
+  // The tag is compared on each path that the line may come by, before one of them is chosen.
   logic [TAG_X+TAG_Y-1:0] read_tag;
   logic                   read_hits, forward_hits, next_hits, found, hits_q, leaves_line_q;
   logic [1:0]             cleared_q;
@@ -280,14 +281,14 @@ module cache_tags #(
       .word_color_o  (word_color)
   );
 
-  // What the tags find.
+  // The result of the tag lookup.
   logic is_dirty, evicts, is_full, is_known;
   logic starts_color, uses, stores_depth;
   logic sets_state;
   logic [1:0] cleared;
   raster_pkg::depth_source_t source;
   logic [STAMPS-1:0] stamp_bit, known, colored, line_depth;
-  logic              drops_depth_q;  // depth that leaves the chip is lost, and its flag stays
+  logic              drops_depth_q;  // evicted depth is lost, and its flag stays
 
   assign is_access  = valid_q && !walks_q && fragment_q.mask != '0;
   assign sets_state = valid_q && !walks_q && fragment_q.kind == raster_pkg::PRIMITIVE_KIND_STATE;
@@ -305,7 +306,7 @@ module cache_tags #(
   assign colored      = hits_q ? line_colored : '0;
   assign is_known     = (known & stamp_bit) != '0;
   assign starts_color = is_access && fragment_q.state.color_write && (colored & stamp_bit) == '0;
-  logic keeps_part, tests_alpha;  // what is written keeps a part of what was stored; alpha may keep it from being written
+  logic keeps_part, tests_alpha;  // a write keeps a part of the stored value; alpha may prevent a write
   always_comb begin
     source = raster_pkg::DEPTH_SOURCE_NONE;
     if (is_known) source = raster_pkg::DEPTH_SOURCE_CHIP;
@@ -314,16 +315,16 @@ module cache_tags #(
       source = cleared[0] ? raster_pkg::DEPTH_SOURCE_CLEAR : raster_pkg::DEPTH_SOURCE_MEMORY;
     if (!is_access) source = raster_pkg::DEPTH_SOURCE_NONE;
   end
-  // With a stencil: what is written keeps a part of what was stored, the stencil is looked at; a clear has a value of it.
+  // With a stencil: a write keeps a part of the stored word, the stencil is read; a clear has a stencil value.
   logic           writes_word;  // the depth or the stencil may change
   logic [CODE-1:0] clear_word;
   generate
     if (raster_pkg::STENCIL_BITS != 0) begin : gen_stencil
-      localparam int SIDES = raster_pkg::DEPTH_FUNC_BITS + 16;  // bit of a token that it is about the front
-      localparam int OP = raster_pkg::DEPTH_FUNC_BITS;  // eight of either
+      localparam int SIDES = raster_pkg::DEPTH_FUNC_BITS + 16;  // bit of a token that selects the front side
+      localparam int OP = raster_pkg::DEPTH_FUNC_BITS;  // eight operation codes per side
       localparam int UPDATE_SIDES = 3 * OP + 8;
       logic [7:0] clear_q;
-      logic [1:0] passes_all_q, replaces_q;  // by side: every value passes; what passes leaves none of it
+      logic [1:0] passes_all_q, replaces_q;  // by side: every value passes; a passing value replaces the stored one
       logic       sets_test, sets_update, replaces;
       assign sets_test   = leaves && sets_state && fragment_q.state.depth_test == raster_pkg::STATE_REGISTER_STENCIL_TEST;
       assign sets_update = leaves && sets_state && fragment_q.state.depth_test == raster_pkg::STATE_REGISTER_STENCIL_UPDATE;
@@ -351,13 +352,13 @@ module cache_tags #(
   endgenerate
   assign uses = source != raster_pkg::DEPTH_SOURCE_NONE || fragment_q.state.depth_write;
 
-  // What is done with colours: a register that tokens set. Where it reads what is stored, a stamp's colours are asked for once;
-  // where alpha is tested, what passes the depth test may still not be written, so depths are asked for.
+  // Colour operations: a register that tokens set. Where they read stored colours, a stamp's colours are requested
+  // once; with an alpha test a sample that passes the depth test may still not be written, so depths are requested.
   raster_pkg::depth_source_t color_source;
   logic [REST-1:0]           line_rest;
   generate
     if (raster_pkg::BLEND_LANES != 0) begin : gen_reads_color
-      localparam int READS = 28;  // the bit of a word of operations that says so
+      localparam int READS = 28;  // the bit of an operations word that says that stored colours are read
       logic              reads_color_q;
       logic [STAMPS-1:0] color_known, color_known_new;
       assign color_known     = hits_q ? line_state_q[KNOWN-1:0] : '0;
@@ -407,7 +408,7 @@ module cache_tags #(
     if (walks_q || state_q == MARK) line_rest[REST-1] = 1'b0;
   end
 
-  // Evicted blocks whose data wait. The wanted one may be among them.
+  // Evicted blocks whose data wait in a slot. The wanted block may be among them.
   logic [VICTIM-1:0]   oldest_q;  // number of the oldest, modulo VICTIMS
   logic [WRITES-1:0]   waiting_q, wanted, writes;
   logic [BLOCK_X-1:0]  victim_x_q[0:VICTIMS-1];
@@ -415,7 +416,7 @@ module cache_tags #(
   logic [VICTIM-1:0]   next_victim;
   logic                orders_all;
 
-  // Each place is compared where it is; then they stand by age, oldest first.
+  // Each slot is compared in its place; then the results are ordered by age, oldest first.
   logic [VICTIMS-1:0] is_same, is_same_by_age;
   assign next_victim    = oldest_q + VICTIM'(waiting_q);
   assign is_same_by_age = VICTIMS'({is_same, is_same} >> oldest_q);
@@ -449,7 +450,7 @@ module cache_tags #(
     end
   end
 
-  // Items and orders leave together, when there is room for both, whatever is to leave.
+  // Items and orders leave together, when there is room for both, whichever of them leaves.
   logic is_item, is_order, is_settled;
   assign is_settled     = valid_q && !(falls && flags_are_busy);
   assign is_item        = !walks_q || evicts;
@@ -496,9 +497,9 @@ module cache_tags #(
   logic                    words_done_q, ends_words, is_last_line, ends_mark, next_word;
   localparam bit COMPRESSES = raster_pkg::COMPRESS_UNIT != 0;
   logic                    plane_q;  // 1: colour
-  logic                    pixels_q;  // and then which blocks have one colour a pixel
+  logic                    pixels_q;  // then: which blocks have one colour per pixel
   logic                    is_last_plane;
-  logic [WORD-1:0]         word, bits_q;  // a word of flags on its way to memory; of colours that are resolved
+  logic [WORD-1:0]         word, bits_q;  // a word of flags on its way to memory; flags of resolved colours
   logic [STAMP-1:0]        stamp_q;
   logic                    resolves, ends_block, begins;
   logic [CODE-1:0]         clear_depth_q;
@@ -555,7 +556,7 @@ module cache_tags #(
   always_ff @(posedge clk_i) begin
     if (state_q == SERVE || state_q == DRAIN) begin
       walk_q       <= '0;
-      lines_done_q <= state_q == DRAIN && clears_bin;  // there is nothing in them
+      lines_done_q <= state_q == DRAIN && clears_bin;  // the lines are empty
       words_done_q <= 1'b0;
       word_x_q     <= first_word;
       word_y_q     <= first_y;
@@ -582,7 +583,7 @@ module cache_tags #(
     if (state_q == MARK && fragment_i.state.color_write) clear_color_q <= color;
   end
 
-  // A fast clear says what becomes of depth from then on, a flush of what it finds on the chip.
+  // A fast clear says whether later evictions lose their depth, a flush whether the depth now on the chip is lost.
   logic drops_depth;
   assign drops_depth = fragment_i.state.depth_test == raster_pkg::DEPTH_FUNC_NEVER;
   always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -599,13 +600,13 @@ module cache_tags #(
     if (state_q == RESOLVE) token_writes = {next_word, 1'b0};
   end
 
-  logic [BLOCK_X-1:0] resolve_x_q;  // of the flag that is bit 0 of bits_q
+  logic [BLOCK_X-1:0] resolve_x_q;  // block column of the flag in bit 0 of bits_q
   always_ff @(posedge clk_i) begin
     if (state_q == SEND) resolve_x_q <= BLOCK_X'(word_x_q) << BIT;
     else if (state_q == RESOLVE && (!bits_q[0] || ends_block)) resolve_x_q <= resolve_x_q + 1'b1;
   end
 
-  // Blocks that are cleared have none until they are written, and one colour a pixel where that is what a flush writes.
+  // A fast clear removes these bits; a flush that resolves cleared blocks to one colour per pixel sets them.
   assign pixel_word_o.reads  = COMPRESSES && state_q == READ;
   assign pixel_word_o.writes = COMPRESSES && token_writes[1];
   assign pixel_word_o.x      = word_x_q;
@@ -616,7 +617,7 @@ module cache_tags #(
   assign request_word_o  = word;
   assign request_valid_o = (state_q == SEND && !resolves) || (state_q == RESOLVE && bits_q[0]);
   assign is_resolved_o   = state_q == RESOLVE && request_valid_o && request_ready_i;
-  // What a cleared block is written as, and the flags behind those of colour.
+  // The data of a cleared block at a flush, and the flags that follow those of colour.
   localparam int CLEARED_COLORS = COMPRESSES ? raster_pkg::PIXELS : raster_pkg::MEMORY_COLORS;
   logic [raster_pkg::TILE_X_BITS-1:0] resolve_tile_x;
   logic [raster_pkg::TILE_Y_BITS-1:0] resolve_tile_y;
@@ -634,7 +635,7 @@ module cache_tags #(
     request_o.is_write = 1'b1;
     request_o.strobe   = '1;
     request_o.run      = RUN'(STAMPS) - RUN'(stamp_q);
-    request_o.tile_y   = resolve_tile_y;  // of a word of flags the same: that of its row of blocks
+    request_o.tile_y   = resolve_tile_y;  // a word of flags has the same tile_y: that of its row of blocks
     if (state_q == RESOLVE) begin
       request_o.plane  = COMPRESSES ? raster_pkg::TILE_PLANE_PIXEL_COLOR : raster_pkg::TILE_PLANE_COLOR;
       request_o.strobe = SAMPLES'({CLEARED_COLORS{1'b1}});

@@ -1,11 +1,11 @@
-// Clear flags: a bit for each block and plane of the target, set where a fast clear stands for what memory should hold, in
-// words of FLAG_WORD blocks of a row. They survive a flush.
+// Clear flags: a bit for each block and plane of the target, set while the value of a fast clear counts instead of
+// memory, in words of FLAG_WORD blocks of a row. They survive a flush.
 //
-// A fragment's word is read in the cycle in which it comes; cleared_o says in every cycle from the next one on what its block's
-// flags are, with all that have fallen until then. A flag that falls costs nobody a cycle that can do without the read port:
-// its word is read in the cycle behind, when no fragment that needs its own can come (is_busy_o), and written in the one
-// after that. Falls are two cycles apart at least. Tokens read and write words when nothing else is under way.
-// Specification: model/stages/clear_flags.hpp; the times are those of model/engines/cycle/block_timing.hpp.
+// A fragment's word is read in the cycle in which the fragment comes; in every later cycle cleared_o gives the flags of
+// its block, including all falls so far. A falling flag delays only fragments that need the read port: its word is read
+// in the next cycle, in which they wait (is_busy_o), and written in the one after that. Falls are at least two cycles
+// apart. Tokens read and write words when nothing else is under way. Specification: model/stages/clear_flags.hpp; the
+// times are those of model/engines/cycle/block_timing.hpp.
 module clear_flags #(
     parameter int TILE_BITS = $clog2(raster_pkg::BLOCKS_PER_ROW),  // derived; not to be set
     parameter int BLOCK_X = raster_pkg::TILE_X_BITS + TILE_BITS,   // derived: bits of a block's column
@@ -17,24 +17,24 @@ module clear_flags #(
     input logic clk_i,
     input logic rst_ni,
 
-    // A fragment that comes and asks for the flags of its block
-    output logic               is_busy_o,  // it has to wait
+    // A fragment arrives and asks for the flags of its block
+    output logic               is_busy_o,  // the fragment has to wait
     input  logic               reads_i,
     input  logic [BLOCK_X-1:0] block_x_i,
     input  logic [BLOCK_Y-1:0] block_y_i,
 
-    // The block that came last, from the cycle after that on
+    // The block of the last fragment, from the next cycle on
     input  logic [BLOCK_X-1:0] read_x_i,
     input  logic [BLOCK_Y-1:0] read_y_i,
     output logic [1:0]         cleared_o,  // colour, depth
 
-    // A block that leaves the chip: its flags of these planes are about to fall, now
+    // An evicted block: its flags of these buffers fall in this cycle
     input logic [1:0]         fills_i,
     input logic               falls_i,
     input logic [BLOCK_X-1:0] line_x_i,
     input logic [BLOCK_Y-1:0] line_y_i,
 
-    // Tokens: a word is read, and is there in the next cycle; planes of it are written
+    // Tokens: a word is read, and valid in the next cycle; its flags of either buffer are written
     input  logic               token_reads_i,
     input  logic [1:0]         token_writes_i,
     input  logic [WORD_X-1:0]  word_x_i,
@@ -54,7 +54,7 @@ module clear_flags #(
     bit_of = BIT'(x);
   endfunction
 
-  // A fall: its word is read, then written.
+  // A falling flag: its word is read, then written.
   logic               reads_q, writes_q;
   logic [BLOCK_X-1:0] reads_x_q, writes_x_q;
   logic [BLOCK_Y-1:0] reads_y_q, writes_y_q;
@@ -106,7 +106,7 @@ module clear_flags #(
 
   assign reads = (reads_i && !(writes_q && write_address == read_address)) || reads_q || token_reads_i;
 
-  // A word that is being written is not read: the RAMs still have it from when it was read to be written.
+  // A word that is being written is not read again: the RAM outputs still hold it from the read before the write.
   sram #(
       .WIDTH(WORD),
       .DEPTH(FLAGS),
@@ -136,8 +136,8 @@ module clear_flags #(
   assign word_depth_o = word_depth;
   assign word_color_o = word_color;
 
-  // The flags of the block that came last: from its word in the cycle after it came, less what was being written then; from
-  // here in the cycles behind.
+  // The flags of the last block: in the cycle after it came from its word, less the flags being cleared then; from this
+  // register in later cycles.
   logic       is_fresh_q;
   logic [1:0] held_q, written_q, read_flags, kept;
   assign read_flags = is_fresh_q ? {word_color[bit_of(read_x_i)], word_depth[bit_of(read_x_i)]} & ~written_q : held_q;

@@ -1,19 +1,19 @@
-// Coarse raster: the tiles of a primitive's box, row by row, without those that it cannot change.
+// Coarse raster: the tiles of a primitive's box, row by row, without tiles that the primitive cannot change.
 //
 // In: a setup packet. Out: a tile packet for each tile that is neither outside an edge (trivial reject) nor behind the
-// tile's HiZ bound; if the last tile of the walk was skipped, a packet without a visit that tells the primitive's end.
-// Three cycles from the setup packet to the first visit; a tile a cycle, and where bounds are read three for a visit.
+// tile's HiZ bound; if the last tile of the walk was skipped, a packet without a visit marks the primitive's end. Three
+// cycles from the setup packet to the first visit; a tile a cycle, and where bounds are read three for a visit.
 //
-// Two steps: the walk, and the tile that it leaves, which waits in a register until fine_raster takes it. So what decides
-// about a tile is registers: its HiZ bound comes with the tile into that register, while the walk is one tile ahead.
+// Two steps: the walk, and the tile that it has produced, which waits in a register until fine_raster takes it. So the
+// decision about a tile starts from registers: its HiZ bound arrives with the tile, while the walk is one tile ahead.
 //
-// A row is walked to the right from its start, then from there to the left, each way until an edge has been left that gets
-// no better that way. It starts below the first tile of the row above that was not outside.
+// A row is walked to the right from its start, then from there to the left, each way until the tile is outside an edge
+// whose value does not grow in that direction. It starts below the first tile of the row above that was not outside.
 //
-// A primitive whose box touches at most 2x2 tiles reads no bounds. The bound of any other's next tile is read on the way to
-// it, from PREPARE on, as long as it may be: not while a visit waits to start, which changes what bounds know. A tile whose
-// bound could not be read then, or was read too early, waits and reads it behind that visit. What a bound knows: hiz.sv.
-// Specification: model/stages/coarse_raster.hpp, model/stages/hiz.hpp.
+// A primitive whose box touches at most 2x2 tiles reads no bounds. For any other, the bound of the next tile is read on
+// the way to it, from PREPARE on, when reading is allowed: not while a visit waits to start, which changes the content
+// of bounds. A tile whose bound could not be read then, or was read too early, waits and reads it after that visit.
+// Content of bounds: hiz.sv. Specification: model/stages/coarse_raster.hpp, model/stages/hiz.hpp.
 module coarse_raster (
     input logic clk_i,
     input logic rst_ni,
@@ -26,7 +26,7 @@ module coarse_raster (
     // To the context RAM, with the setup packet
     output logic [raster_pkg::SLOT_BITS-1:0] context_slot_o,
     output raster_pkg::context_packet_t      context_o,
-    output logic [raster_pkg::ALL_LOCAL_BITS-1:0] context_step_o,  // the serial stage has steps one after the other
+    output logic [raster_pkg::ALL_LOCAL_BITS-1:0] context_step_o,  // the serial stage sends steps one after the other
     input  logic                             slot_free_i,  // interpolate has read a slot for the last time
 
     // To fine_raster; edges_o is the context of the tile's primitive
@@ -34,7 +34,7 @@ module coarse_raster (
     input  logic                      tile_ready_i,
     output raster_pkg::tile_packet_t  tile_o,
     output raster_pkg::edge_context_t edges_o,
-    output logic [3*raster_pkg::TILE_EDGE_BITS-1:0] visit_edges_o,  // as fine_raster_serial takes them
+    output logic [3*raster_pkg::TILE_EDGE_BITS-1:0] visit_edges_o,  // for fine_raster_serial
 
     // From depth_test: a tile visit has retired
     input logic                       retire_valid_i,
@@ -71,13 +71,13 @@ module coarse_raster (
   localparam int SLOT = raster_pkg::SLOT_BITS;
 
   localparam logic [2:0] IDLE = 3'd0, PREPARE = 3'd1, WALK = 3'd2, CLEAR = 3'd3, PASS = 3'd4;
-  logic [2:0] state_q;  // of the walk. PASS: a token behind its CLEAR
+  logic [2:0] state_q;  // of the walk. PASS: a token after its CLEAR
 
   raster_pkg::setup_packet_t s_q;
   logic [TX-1:0]   tile_x_q;
   logic [TY-1:0]   tile_y_q;
   logic [SLOT-1:0] slot_q;   // of the primitive in s_q, or of the next one
-  logic [SLOT:0]   used_q;   // slots that are not free
+  logic [SLOT:0]   used_q;   // slots in use
 
   logic is_triangle, has_walk, clears_bounds;
   logic takes, steps, is_last_column, is_last_row, is_last_tile, is_eligible, is_eligible_q, finishes;
@@ -93,13 +93,13 @@ module coarse_raster (
   assign takes          = setup_valid_i && setup_ready_o;
   assign context_slot_o = slot_q;
 
-  // --- The tile that the walk has left: on offer, or dropped where it is behind its bound. The walk's last one is on offer in
-  // any case, to tell the primitive's end.
+  // --- The tile that the walk has produced: on offer, or dropped where it lies behind its bound. The last tile of the
+  // walk is on offer in any case, to mark the primitive's end.
   logic left_valid_q;
-  logic left_behind;    // its verdict, of
+  logic left_behind;    // the tile lies behind its bound
   logic [raster_pkg::HIZ_CODE_BITS-1:0] left_bound_q;
   logic [raster_pkg::HIZ_CODE_BITS:0]   left_limit_q;
-  logic left_raises_q;  // it may raise a depth by its state
+  logic left_raises_q;  // the primitive's state may raise a depth
   raster_pkg::tile_packet_t  left_q;
   raster_pkg::edge_context_t edges, left_edges_q;
   logic is_visit, is_dropped, tile_taken, left_is_free;
@@ -110,9 +110,9 @@ module coarse_raster (
   assign tile_taken   = tile_valid_o && tile_ready_i;
   assign left_is_free = !left_valid_q || is_dropped || tile_taken;
 
-  // --- The walk. A tile is left when it is outside, or enters that register.
+  // --- The walk. The walk goes on when a tile is outside, or enters that register.
   logic ends_walk, passes_token, enters;
-  logic has_bound_q;    // that of this tile has been read, and no visit has started since or waits to
+  logic has_bound_q;    // the tile's bound has been read, and no visit has started since or waits to start
   logic has_verdict;
   assign passes_token = (state_q == PREPARE && !has_walk && !clears_bounds) || state_q == PASS;
   assign has_verdict  = has_bound_q && (!left_valid_q || is_dropped);
@@ -122,8 +122,8 @@ module coarse_raster (
   assign steps        = state_q == WALK && (enters || (is_outside && !ends_walk));
   assign finishes     = enters && (ends_walk || state_q != WALK);
 
-  // From a tile to the next one.
-  logic [TX-1:0] start_x_q, next_x;  // start: of this row, then of the one below
+  // From one tile to the next.
+  logic [TX-1:0] start_x_q, next_x;  // start of this row, then of the next
   logic [TY-1:0] next_y;
   logic          goes_left_q;
   logic          must_return_q;  // there are tiles to the left of the start
@@ -145,7 +145,7 @@ module coarse_raster (
   assign row_ends       = exits && !must_return;
   assign ends_walk      = row_ends && is_last_row;
   assign moves_left     = goes_left_q || turns_back;
-  assign moves_start    = is_empty_q && is_outside;  // or all of it, down
+  assign moves_start    = is_empty_q && is_outside;  // or moves all of it down
   assign next_x         = exits ? start_x_q - TX'(turns_back) : goes_left_q ? tile_x_q - TX'(1) : (clears ? group_end : tile_x_q) + TX'(1);
   assign next_y         = tile_y_q + TY'(row_ends);
 
@@ -169,18 +169,19 @@ module coarse_raster (
     end
   end
 
-  // The values at the row's start come the way that all others come; those of the first row in PREPARE, by no step.
+  // The values at the row's start take the same path as all others; those of the first row in PREPARE, with a step of
+  // 0.
   logic goes_on, starts, returns, notes_start, moves_right;
   assign starts      = state_q == PREPARE;
   assign returns     = exits && !starts;
   assign moves_right = !starts && !row_ends && !moves_left;
   assign notes_start = starts || (goes_on && (row_ends || moves_start));
-  assign goes_on = steps || (clears && !is_last_tile);  // the last time, to nowhere
+  assign goes_on = steps || (clears && !is_last_tile);  // the last step has no effect
 
   always_ff @(posedge clk_i) begin
     if (state_q == IDLE) begin
       s_q <= setup_i;
-      // A token stands at its last tile; but one that clears bounds gets there group by group.
+      // A token goes straight to its last tile, unless it clears bounds group by group.
       if (setup_i.kind[1] && !(setup_i.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR && setup_i.state.depth_write &&
                                raster_pkg::HIZ_BITS != 0)) begin
         tile_x_q <= setup_i.box.right[PX-1:TS];
@@ -193,7 +194,7 @@ module coarse_raster (
       tile_x_q <= next_x;
       tile_y_q <= next_y;
     end else if (clears) begin
-      tile_x_q <= s_q.box.right[PX-1:TS];  // from its group to the last tile itself
+      tile_x_q <= s_q.box.right[PX-1:TS];  // from the last group to the last tile
     end
     if (state_q == IDLE) begin
       start_x_q     <= setup_i.box.left[PX-1:TS];
@@ -225,7 +226,7 @@ module coarse_raster (
       assign dy    = s_q.dy[i*D+:D];
       assign best  = (dx[D-1] ? '0 : (D + 1)'(dx)) - (dy[D-1] ? (D + 1)'(dy) : '0);
       assign worst = (dx[D-1] ? (D + 1)'(dx) : '0) - (dy[D-1] ? '0 : (D + 1)'(dy));
-      // Of several samples a pixel the one that lies farthest out, wherever it is: half of |dx| + |dy| away, rounded up.
+      // With several samples per pixel the farthest possible one: half of |dx| + |dy| away, rounded up.
       logic [D-1:0] reach;
       if (raster_pkg::MSAA_SAMPLES > 1) begin : gen_reach
         logic [D:0] size;  // |dx| + |dy|
@@ -276,8 +277,8 @@ module coarse_raster (
   assign is_outside = edge_is_outside != '0;
   assign is_inside  = edge_is_inside == '1;
 
-  // --- Planes: the wide value at the tile's anchor, but for the bits that no step changes; setup added what makes the local
-  // anchor its high bits. In the context are steps per pixel, narrowed to the local guard bits.
+  // --- Planes: the wide value at the tile's anchor, without the bits that no step changes; setup added the offset that
+  // makes its high bits the local anchor. The context holds steps per pixel, narrowed to the local guard bits.
   logic [raster_pkg::ALL_LOCAL_BITS-1:0] anchor;
   generate
     for (i = 0; i < PLANES; i++) begin : gen_plane
@@ -286,7 +287,7 @@ module coarse_raster (
       localparam int B = LOCAL_BITS_OF[32*i+:32];
       localparam int LOCAL = LOCAL_AT[32*i+:32];
       localparam int M = P - TS - S;  // a tile's step leaves the bits below as they are
-      localparam int NARROW = P - B - S;  // bits that a local step loses
+      localparam int NARROW = P - B - S;  // bits removed from a local step
       localparam int SB = STEP_BITS_OF[32*i+:32];
       localparam int STEP = STEP_AT[32*i+:32];
       logic [P-1:0] value;
@@ -325,13 +326,13 @@ module coarse_raster (
     end
   endgenerate
 
-  // --- Visits under way, and what is known of the depths of a tile
+  // --- Visits under way, and bounds on the depths of a tile
   logic          starts_visit, reads_bound, reads_next;
   logic [TX-1:0] read_x;
   logic [TY-1:0] read_y;
   assign starts_visit = tile_taken && is_visit;
   assign reads_bound  = (state_q == PREPARE || state_q == WALK) && is_settled && !(left_valid_q && is_visit);
-  assign reads_next   = state_q == WALK && (is_outside || has_verdict);  // where bounds matter it goes on
+  assign reads_next   = state_q == WALK && (is_outside || has_verdict);  // where bounds matter the walk continues
   assign read_x       = reads_next ? next_x : tile_x_q;
   assign read_y       = reads_next ? next_y : tile_y_q;
   always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -389,7 +390,7 @@ module coarse_raster (
       left_limit_q               <= state_q == WALK && !is_outside && is_eligible_q ? limit : '0;
       left_raises_q              <= s_q.state.depth_write && s_q.state.depth_test[2];
       left_q.kind                <= s_q.kind;
-      left_q.is_visit            <= state_q == WALK && !is_outside;  // if it is not behind
+      left_q.is_visit            <= state_q == WALK && !is_outside;  // unless the tile lies behind its bound
       left_q.ends_primitive      <= state_q != WALK || ends_walk;
       left_q.key.primitive_id    <= s_q.primitive_id;
       left_q.key.tile_x          <= tile_x_q;
@@ -421,7 +422,7 @@ module coarse_raster (
     area = '0;
     for (int b = 0; b <= TS; b++) area = area + (height[b] ? (2 * TS + 1)'(width) << b : '0);
   end
-  // One cycle late: what takes a tile comes late enough without the counters behind it.
+  // One cycle late: the signal that takes a tile is late enough without the counters downstream.
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
       is_visited_o     <= 1'b0;

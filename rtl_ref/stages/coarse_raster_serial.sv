@@ -1,10 +1,10 @@
-// Coarse raster for the smallest parts: the bits of coarse_raster.sv with one edge stepped and tested a cycle.
+// Coarse raster for the smallest parts: the same bits as coarse_raster.sv, with one edge stepped and tested per cycle.
 //
-// The edges stand in a ring of three. TURN moves it round once: each edge is stepped to the next tile as it leaves the
-// front, and tested in the cycle after that at the back. The planes are stepped meanwhile. The way from tile to tile is
-// that of coarse_raster.sv.
-// Occupancy: 5 cycles a tile, one more for a visit, one more where a HiZ bound is read; a visited tile is offered until
-// fine_raster is through with it. Specification: model/stages/coarse_raster.hpp, model/stages/hiz.hpp.
+// The edges stand in a ring of three. TURN rotates it once: each edge is stepped to the next tile as it leaves the
+// front, and tested at the back one cycle later. The planes are stepped meanwhile. The walk is that of
+// coarse_raster.sv. Occupancy: 5 cycles a tile, one more for a visit, one more where a HiZ bound is read; a visited
+// tile is offered until fine_raster has finished it. Specification: model/stages/coarse_raster.hpp,
+// model/stages/hiz.hpp.
 module coarse_raster_serial (
     input logic clk_i,
     input logic rst_ni,
@@ -14,15 +14,15 @@ module coarse_raster_serial (
     output logic                      setup_ready_o,
     input  raster_pkg::setup_packet_t setup_i,
 
-    // To the context RAM, with the setup packet; the RAM takes the steps from context_step_o, where step_x is a cycle later
-    // and step_y two, so that of context_o nothing is made but what only passes through
+    // To the context RAM, with the setup packet; the RAM takes the steps from context_step_o, step_x one cycle later
+    // and step_y two; context_o carries only fields that pass through
     output logic [raster_pkg::SLOT_BITS-1:0]      context_slot_o,
     output raster_pkg::context_packet_t           context_o,
     output logic [raster_pkg::ALL_LOCAL_BITS-1:0] context_step_o,
     input  logic                             slot_free_i,  // interpolate has read a slot for the last time
 
-    // To fine_raster; edges_o is the context of the tile's primitive, visit_edges_o the edge_value of tile_o for a visit, of
-    // which no edge is far below 0: so only what is too large is cut
+    // To fine_raster; edges_o is the context of the tile's primitive, visit_edges_o the edge_value of tile_o for a
+    // visit. No edge is far below 0 in a visit: so only large values are clamped
     output logic                      tile_valid_o,
     input  logic                      tile_ready_i,
     output raster_pkg::tile_packet_t  tile_o,
@@ -70,11 +70,11 @@ module coarse_raster_serial (
 
   raster_pkg::setup_packet_t s_q;  // its box complemented, as cull holds it
   raster_pkg::pixel_box_t bounds;
-  raster_pkg::setup_packet_t setup;  // as it was taken
+  raster_pkg::setup_packet_t setup;  // the setup packet as it was taken
   logic [TX-1:0]   tile_x_q;
   logic [TY-1:0]   tile_y_q;
   logic [SLOT-1:0] slot_q;   // of the primitive in s_q
-  logic [SLOT:0]   used_q;   // slots that are not free
+  logic [SLOT:0]   used_q;   // slots in use
 
   logic is_triangle, is_fast_clear, is_token, clears_bounds;
   logic takes, steps, turns_end, is_last_column, is_last_row, is_last_tile, clears, finishes;
@@ -83,7 +83,7 @@ module coarse_raster_serial (
   logic [raster_pkg::HIZ_CODE_BITS:0]   limit;
   logic is_behind, is_settled, visits_are_done, is_skipped, tile_taken;
   logic outside_q, inside_q;      // some edge, all edges
-  logic ends_way_q, ends_left_q;  // outside of an edge that gets no better this way, to the left
+  logic ends_way_q, ends_left_q;  // outside an edge whose value does not grow in this direction, to the left
   assign bounds         = ~s_q.box;
   always_comb begin
     setup     = s_q;
@@ -93,7 +93,8 @@ module coarse_raster_serial (
   assign is_fast_clear  = s_q.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR;
   assign is_token       = s_q.kind[1];  // fast clear, flush, line
   assign clears_bounds  = is_fast_clear && s_q.state.depth_write && raster_pkg::HIZ_BITS != 0;
-  assign clears         = state_q == CLEAR && clears_bounds && visits_are_done;  // the bounds of a group of tiles each cycle
+  assign clears         = state_q == CLEAR && clears_bounds && visits_are_done;  // the bounds of a group of tiles each
+                                                                                 // cycle
   assign setup_ready_o  = state_q == IDLE && used_q != (SLOT + 1)'(SLOTS);
   assign takes          = setup_valid_i && setup_ready_o;
   assign context_slot_o = slot_q;
@@ -106,13 +107,13 @@ module coarse_raster_serial (
   assign steps        = is_skipped || (tile_taken && state_q != END);
   assign finishes     = tile_taken && (state_q == END || is_last_tile);
 
-  // From a tile to the next one.
-  logic [TX-1:0] start_x_q, next_x;  // start: of this row, then of the one below
-  logic          goes_left_q;        // this move, and the way from there on
+  // From one tile to the next.
+  logic [TX-1:0] start_x_q, next_x;  // start of this row, then of the next
+  logic          goes_left_q;        // direction of this move and of the walk after it
   logic          must_return_q;      // there are tiles to the left of the start
   logic          is_empty_q;         // every tile of the row so far was outside
   logic          goes_down_q, turns_back_q, moves_start_q;  // this move
-  logic          was_left_q;         // the way before it
+  logic          was_left_q;         // direction before the move
   logic [TX-1:0] group_end;  // the last tile of the group that is cleared
   logic          is_last_group, is_leftmost, is_rightmost, exits, must_return, turns_back, row_ends, goes_down;
   assign is_leftmost    = tile_x_q == bounds.left[PX-1:TS];
@@ -173,7 +174,7 @@ module coarse_raster_serial (
       tile_x_q <= next_x;
       tile_y_q <= tile_y_q + TY'(goes_down);
     end else if (clears) begin
-      tile_x_q <= bounds.right[PX-1:TS];  // from its group to the last tile itself
+      tile_x_q <= bounds.right[PX-1:TS];  // from the last group to the last tile
     end
 
     if (takes) begin
@@ -198,10 +199,10 @@ module coarse_raster_serial (
 
   // ------------------------------------------------------------------------------------------------------------ edges
   // Edge 0 lowest. value: at the tile's first pixel; row: at the start of its row, in use after the first turn; right,
-  // down: one pixel that way. right comes as dy, its sign is turned on the first turn.
+  // down: one pixel that way. right is loaded as dy and negated in the first turn.
   logic [3*V-1:0]      values, row_q;
   logic [2*V-1:0]      value_q;
-  logic signed [V-1:0] not_value_q;  // the one at the back, complemented
+  logic signed [V-1:0] not_value_q;  // the edge at the back, complemented
   logic [3*D-1:0]      right_q, down_q;
   logic                moves_ring;
   logic signed [V-1:0] from, next;
@@ -230,7 +231,7 @@ module coarse_raster_serial (
 
   // The edge at the back, at the tile's best and at its worst corner: T - 1 pixels away.
   logic signed [D-1:0]  test_right, test_down;
-  logic                 gets_no_better;  // outside of this edge, on this way
+  logic                 gets_no_better;  // outside this edge, whose value does not grow in this direction
   logic signed [D:0]    best, worst;
   logic signed [V:0]    less_best, less_worst;  // value - best, from the complement
   logic signed [V:0]    largest, smallest;
@@ -271,10 +272,10 @@ module coarse_raster_serial (
   endgenerate
 
   // ----------------------------------------------------------------------------------------------------------- planes
-  // The wide value at the tile's anchor; setup added what makes the local anchor its high bits. In TURN, cycle 0 goes back to
-  // the row's start where the move begins there, cycle 2 steps, and cycle 3 notes a new start. The step to the right stands
-  // in front, the one down behind it; they change places twice, round the step for one down, before it for one that turns
-  // back. On the second time the step to the right is complemented where the way turns.
+  // The wide value at the tile's anchor; setup added the offset that makes its high bits the local anchor. In TURN,
+  // cycle 0 goes back to the row's start where the move begins there, cycle 2 steps, and cycle 3 notes a new start. The
+  // step to the right stands first in the ring, the step down second; they swap twice, around the step for a move down,
+  // before it for a turn back. In the second swap the step to the right is complemented where the walk turns.
   logic loads_start, adds_step, notes_start, swaps, turns_step;
   assign loads_start = state_q == TURN && (is_new_q ? turn_q == 2'd2 : turn_q == 2'd0 && (goes_down_q || turns_back_q));
   assign adds_step   = state_q == TURN && turn_q == 2'd2 && !is_new_q;
@@ -283,9 +284,9 @@ module coarse_raster_serial (
                                            (goes_down_q && (turn_q == 2'd1 || turn_q == 2'd2)));
   assign turns_step  = turns_back_q ? turn_q == 2'd1 : turn_q == 2'd2 && was_left_q;
 
-  // In the context are steps per pixel, narrowed to the local guard bits and rounded: by the adder of the plane, while there
-  // is no value yet. Cycle 0 of a new primitive adds half a unit to the step to the right, and cycle 1 to the one down,
-  // which change places meanwhile; the value comes in cycle 2.
+  // The context holds steps per pixel, narrowed to the local guard bits and rounded by the adder of the plane, while
+  // there is no value yet. Cycle 0 of a new primitive adds half a unit to the step to the right, and cycle 1 to the
+  // step down, which swap meanwhile; the value comes in cycle 2.
   generate
     for (i = 0; i < PLANES; i++) begin : gen_plane
       localparam int P = PLANE_BITS_OF[32*i+:32];
@@ -293,7 +294,7 @@ module coarse_raster_serial (
       localparam int B = LOCAL_BITS_OF[32*i+:32];
       localparam int LOCAL = LOCAL_AT[32*i+:32];
       localparam int M = P - TS - S;  // a tile's step leaves the bits below as they are
-      localparam int T = NARROW + B;  // bits of a step per pixel; of a step per tile the highest are without effect
+      localparam int T = NARROW + B;  // bits of a step per pixel; the highest bits of a step per tile have no effect
       logic [P-1:0] value, step_x, step_y;
       logic [M-1:0] plane_q, start_q;
       logic [T-1:0] step_q, other_step_q;
@@ -386,7 +387,7 @@ module coarse_raster_serial (
     area = '0;
     for (int b = 0; b <= TS; b++) area = area + (height[b] ? (2 * TS + 1)'(width) << b : '0);
   end
-  // One cycle late: what takes a tile comes late enough without the counters behind it.
+  // One cycle late: the signal that takes a tile is late enough without the counters downstream.
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
       is_visited_o     <= 1'b0;

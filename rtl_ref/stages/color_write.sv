@@ -1,17 +1,17 @@
-// Color write: tested and shaded stamps are written to the colour RAM, a clock later; an evicted block's colours are read out
-// of it, a stamp a clock, each before it is written.
+// Color write: tested and shaded stamps are written to the colour RAM, a clock later; an evicted block's colours are
+// read out of it, a stamp a clock, each before it is overwritten.
 //
-// Two evictions may be under way. The RAM is read for the stamp that this clock takes, where that is still to be read, else for
-// the older one. So no stamp waits for a read, and an eviction waits only where two are before it. The third can overtake none
-// but the second; so the colours of one are in their slot DELAY clocks after it began, whatever comes behind it, and that is
-// when it is said to be there.
+// Two evictions may be under way. The RAM is read for the stamp written in this clock, if its old colours are still to
+// be read, else for the older eviction. So no stamp waits for a read, and an eviction waits only if two are before it.
+// A third eviction could overtake only the second; so the colours of an eviction are in their slot DELAY clocks after
+// its begin, whatever follows, and are reported present then.
 //
-// Without blending nobody reads colours but to write them back, and a stamp takes a clock. With it a stamp also reads what is
-// stored under it, from the RAM and, where that does not have all of it, from the clear value or an answer of memory; it takes
-// a clock for each group of BLEND_LANES samples that are blended, one at least, and writes two clocks after it has read, in
-// order. What is on its way to these samples is newer than the RAM and forwarded, so that the same stamp may come every clock;
-// a stamp that reads waits until nothing of an eviction is left to be read, and an eviction for what is on its way to its line
-// and a clock more. Samples are packed here, rounded or dithered.
+// Without blending colours are read only for write-back, and a stamp takes a clock. With blending a stamp also reads
+// the stored colours of its samples, from the RAM and, for samples missing there, from the clear value or an answer of
+// memory; it takes a clock for each group of BLEND_LANES samples that are blended, one at least, and writes two clocks
+// after the read, in order. Writes in flight to these samples are newer than the RAM and forwarded, so that the same
+// stamp may come every clock; a stamp that reads waits until the reads of an eviction are complete, and an eviction
+// waits for the writes in flight to its line and a clock more. Samples are packed here, rounded or dithered.
 // Specification: model/stages/block_cache.hpp, rop.hpp; the times are those of model/engines/cycle/block_timing.hpp.
 module color_write #(
     parameter int STAMPS = raster_pkg::BLOCK_STAMPS,  // derived; not to be set
@@ -22,7 +22,7 @@ module color_write #(
     input logic clk_i,
     input logic rst_ni,
 
-    // From depth_cache and what stands between
+    // From depth_cache, through the shading stages
     input  logic                                                         stamp_valid_i,
     output logic                                                         stamp_ready_o,
     input  raster_pkg::tested_stamp_t                                    tested_i,
@@ -30,12 +30,12 @@ module color_write #(
     input  logic [raster_pkg::SAMPLES*raster_pkg::SHADED_COLOR_BITS-1:0] color_i,
     input  logic [raster_pkg::STORED_COLOR_BITS-1:0]                     clear_color_i,
 
-    // From memory_answers: stored colours, for those that wait for them
+    // From memory_answers: stored colours, for stamps that wait for them
     input logic                                                         answer_valid_i,
-    input logic [raster_pkg::SAMPLES*raster_pkg::STORED_COLOR_BITS-1:0] answer_i,  // that was taken last, from the next clock on
+    input logic [raster_pkg::SAMPLES*raster_pkg::STORED_COLOR_BITS-1:0] answer_i,  // answer taken last, from next clock
     output logic                              answer_ready_o,
 
-    // A stamp that leaves, in a slot for victims; and that all of the next eviction's are there
+    // An evicted stamp, in a slot for victims; and all stamps of the next eviction are there
     output logic                                                        victim_valid_o,
     output raster_pkg::color_victim_t                                   victim_o,
     output logic                                                        victim_ready_o,
@@ -52,21 +52,21 @@ module color_write #(
   logic [SAMPLES-1:0] mask;  // samples whose colour is written
   assign mask = tested_i.mask & opaque_i;
 
-  // What the stamp at the head does: its eviction begins, it goes on to the RAM.
-  logic              writes_all;  // all its samples are written into the RAM, that others are known not to be there
-  logic              is_busy;     // something is on its way to its line
-  logic              waits;       // for what it reads
-  logic              ends;        // with this clock
+  // The stamp at the head: its eviction begins, it goes on to the RAM.
+  logic              writes_all;  // it writes all samples into the RAM, uncovered ones as absent
+  logic              is_busy;     // a write to its line is in flight
+  logic              waits;       // for the stored colours that it blends with
+  logic              ends;        // leaves in this clock
   logic              goes, started_q, starts;
   logic              second_begun_q;  // two evictions are under way
-  logic [STAMPS-1:0] own;         // the stamp that is about to be written
+  logic [STAMPS-1:0] own;         // the stamp that is about to be overwritten
   assign starts = stamp_valid_i && tested_i.evicts && !started_q && !second_begun_q && !is_busy;
   assign goes   = stamp_valid_i && (!tested_i.evicts || starts || started_q) && !waits;
   assign own    = goes && (mask != '0 || writes_all) ? STAMPS'(1) << tested_i.stamp : '0;
   assign stamp_ready_o = goes && ends;
 
-  // The evictions under way: stamps that are left to be read, of the older one and of the one behind it, which becomes the
-  // older one when nothing of that is left.
+  // The evictions under way: stamps still to be read, of the older one and of the next, which becomes the older one
+  // when that is complete.
   logic [STAMPS-1:0] first_q, first_left, second_q, second, second_left, left, next;
   logic [LINE-1:0]   first_line_q, second_line_q, second_line;
   logic [SLOT-1:0] first_slot_q, second_slot_q, second_slot, next_slot_q;
@@ -80,7 +80,7 @@ module color_write #(
   assign hits_second = second_line == tested_i.line && (second & own) != '0;
   assign hits        = hits_first || hits_second;
   assign of_second   = hits_second || (!hits_first && first_q == '0);
-  assign left        = first_q != '0 ? first_q : second;  // of the older one
+  assign left        = first_q != '0 ? first_q : second;  // of the older eviction
   assign next        = hits ? own : raster_pkg::lowest_stamp(left);
   assign reads       = left != '0;
   assign first_left  = of_second ? first_q : first_q & ~next;
@@ -112,8 +112,8 @@ module color_write #(
     second_fills_q <= second_fills;
   end
 
-  // A stamp has been read. What of an eviction is left when it begins is at most what the one before has, its own, and what the
-  // one behind it overtakes it with.
+  // A stamp has been read. Stamps left to read when an eviction begins: at most those of the eviction before, its own,
+  // and those that the next one reads first.
   localparam int DELAY = 3 * STAMPS;
   logic              valid_q, fills_q;
   logic [STAMP-1:0]  stamp_q;
@@ -138,7 +138,7 @@ module color_write #(
   assign victim_o.stamp = stamp_q;
   assign victim_ready_o = delay_q[DELAY-1];
 
-  // The colour RAM: of each sample its code, and whether memory does not have it.
+  // The colour RAM: for each sample its code, and whether only the chip holds it.
   logic                     looks;  // the stamp at the head reads the RAM
   logic [ADDRESS-1:0]       read_address, write_address;
   logic [SAMPLES-1:0]       dirty, writes, dirty_new;
@@ -177,7 +177,7 @@ module color_write #(
       assign ends          = 1'b1;
       assign looks         = 1'b0;
       assign answer_ready_o = 1'b0;
-      // On its way to the RAM.
+      // On the way to the RAM.
       logic                     writes_q;
       logic [LINE-1:0]          write_line_q;
       logic [STAMP-1:0]         write_stamp_q;
@@ -203,7 +203,7 @@ module color_write #(
       if (raster_pkg::DITHER_UNIT == 0) begin : gen_packed
         assign packed_color = color_i;
       end else begin : gen_dithered
-        localparam int DITHERS = 26;  // the bit of a word of operations that says so
+        localparam int DITHERS = 26;  // the bit of an operations word that says so
         logic dithers_q;
         always_ff @(posedge clk_i or negedge rst_ni) begin
           if (!rst_ni) dithers_q <= 1'b0;
@@ -228,11 +228,12 @@ module color_write #(
         end
       end
     end else begin : gen_blends
-      localparam int GROUP = LANES < SAMPLES ? LANES : SAMPLES;  // samples that are blended in a clock
+      localparam int GROUP = LANES < SAMPLES ? LANES : SAMPLES;  // samples blended in one clock
       localparam int GROUPS = SAMPLES / GROUP;
-      localparam int CHANNELS = raster_pkg::COLOR_FORMAT == 0 ? 3 : 4;  // that are stored
+      localparam int CHANNELS = raster_pkg::COLOR_FORMAT == 0 ? 3 : 4;  // stored channels
 
-      // The registers: operations, lowest first four factors, two equations, channels that are written, dithers, blends.
+      // The registers: operations, from the lowest bit: four factors, two equations, channels to write, dithering,
+      // blending.
       localparam int EQUATION = 16;
       localparam int WRITES = 22;
       localparam int DITHERS = 26;
@@ -251,7 +252,7 @@ module color_write #(
 
       // 0: the stamp at the head, group by group.
       logic               is_here, is_fetched, is_first;
-      logic [GROUPS-1:0]  wanted, done_q, group;  // groups with a sample to be blended
+      logic [GROUPS-1:0]  wanted, done_q, group;  // groups with a sample to blend
       logic [SAMPLES-1:0] written;
       assign is_here    = tested_i.color_source == raster_pkg::DEPTH_SOURCE_CHIP;
       assign is_fetched = tested_i.color_source != raster_pkg::DEPTH_SOURCE_NONE && !is_here;
@@ -268,38 +269,39 @@ module color_write #(
         else if (goes) done_q <= ends ? '0 : done_q | group;
       end
 
-      // Stages 1 and 2 are in flight to the RAM: 1 has read it; 2 blends, packs and writes. 3 holds the last write, made while
-      // 1 read. An eviction also waits for 3.
+      // Stages 1 and 2 are in flight to the RAM: 1 has read it; 2 blends, packs and writes it. 3 holds the last write,
+      // made while 1 read. An eviction also waits for 3.
       logic [2:0]           on_way_q;
       logic [LINE-1:0]      line_1_q, line_2_q, line_3_q;
       logic [STAMP-1:0]     stamp_1_q, stamp_2_q, stamp_3_q;
-      logic [SAMPLES-1:0]   mask_1_q, mask_2_q;     // whose colour is written
-      logic [SAMPLES-1:0]   writes_1_q, writes_2_q, writes_3_q;  // that come into the RAM
-      logic [SAMPLES-1:0]   blended_1_q, blended_2_q;  // by the lanes
-      logic [SAMPLES-1:0]   dirty_2_q, dirty_3_q, held;  // held: newer than what memory has, as 1 finds it
+      logic [SAMPLES-1:0]   mask_1_q, mask_2_q;     // samples whose colour is written
+      logic [SAMPLES-1:0]   writes_1_q, writes_2_q, writes_3_q;  // samples written into the RAM
+      logic [SAMPLES-1:0]   blended_1_q, blended_2_q;  // samples blended in the lanes
+      logic [SAMPLES-1:0]   dirty_2_q, dirty_3_q, held;  // held: newer than memory, as seen by stage 1
       logic [SAMPLES*SHADED-1:0] color_1_q, color_2_q;
       logic [SAMPLES*COLOR-1:0]  base, stored, stored_2_q, made, code_3_q;
       logic [GROUPS-1:0]    group_1_q, group_2_q;
-      logic [23:0]          chooses, chooses_2_q;    // of blend_setup
+      logic [23:0]          chooses, chooses_2_q;    // outputs of blend_setup
       logic [16*CHANNELS-1:0] fixed, fixed_2_q;
       logic [5:0]           equation, equation_2_q;
       logic [DITHERS:WRITES] out_2_q;
       logic                 starts_1_q, is_here_1_q, is_answered_1_q;
       logic [COLOR-1:0]     clear_color_1_q;
-      logic [4:0]           out;  // of the operations what comes last: channels written, dithers
-      logic [2:0]           is_same_line;   // of the head
-      logic [1:0]           is_same_stamp;  // 2 and 3, of 1
+      logic [4:0]           out;  // the last two fields of the operations: channels written, dithering
+      logic [2:0]           is_same_line;   // stages with the line of the head
+      logic [1:0]           is_same_stamp;  // stages 2 and 3 hold the stamp of stage 1
 
       assign is_same_line = on_way_q & {line_3_q == tested_i.line && writes_3_q != '0, line_2_q == tested_i.line && writes_2_q != '0,
                                              line_1_q == tested_i.line && writes_1_q != '0};
       assign is_same_stamp = on_way_q[2:1] & {{line_3_q, stamp_3_q} == {line_1_q, stamp_1_q},
                                               {line_2_q, stamp_2_q} == {line_1_q, stamp_1_q}};
       assign is_busy  = is_same_line != '0;
-      // Where something of the stamp is in the RAM it is read.
+      // A stamp that has any sample in the RAM is read.
       assign waits = (tested_i.color_source == raster_pkg::DEPTH_SOURCE_MEMORY && is_first && !answer_valid_i) ||
                      (tested_i.color_source != raster_pkg::DEPTH_SOURCE_NONE && !tested_i.starts_color && left != '0);
       assign looks = goes && tested_i.color_source != raster_pkg::DEPTH_SOURCE_NONE && !tested_i.starts_color;
-      assign answer_ready_o = goes && is_first && tested_i.color_source == raster_pkg::DEPTH_SOURCE_MEMORY;  // and is here until the next one
+      // The answer stays until the next one is taken.
+      assign answer_ready_o = goes && is_first && tested_i.color_source == raster_pkg::DEPTH_SOURCE_MEMORY;
       assign idle_o = on_way_q == '0;
 
       always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -310,7 +312,7 @@ module color_write #(
         line_1_q    <= tested_i.line;
         stamp_1_q   <= tested_i.stamp;
         mask_1_q    <= written;
-        writes_1_q  <= written | {SAMPLES{writes_all && is_first}};  // else a group would undo what another has made
+        writes_1_q  <= written | {SAMPLES{writes_all && is_first}};  // else a group would undo the result of another
         color_1_q   <= color_i;
         group_1_q   <= group;
         starts_1_q  <= tested_i.starts_color;
@@ -323,7 +325,7 @@ module color_write #(
         mask_2_q    <= mask_1_q;
         writes_2_q  <= writes_1_q;
         blended_2_q <= blended_1_q;
-        for (int i = 0; i < GROUPS; i++)  // of a stamp that is blended the group: the others have their turn
+        for (int i = 0; i < GROUPS; i++)  // only the group, in a blended stamp: the others have their turn
           if (ops_q[BLENDS] && !group_1_q[i]) color_2_q[i*GROUP*SHADED+:GROUP*SHADED] <= '0;
           else color_2_q[i*GROUP*SHADED+:GROUP*SHADED] <= color_1_q[i*GROUP*SHADED+:GROUP*SHADED];
         dirty_2_q   <= mask_1_q | held;
@@ -340,13 +342,13 @@ module color_write #(
         code_3_q    <= made;
       end
 
-      // 1: what is stored: the newest of what is on its way, else what the RAM has; where that does not have it, the base. One
-      // of five, each by itself, so that nothing is chosen in a row.
+      // 1: the stored colour: the newest write in flight, else the RAM; where the RAM is not valid, the base. The five
+      // sources are masked and ORed, so no choice waits for another.
       assign base = (answer_i & {SAMPLES*COLOR{is_answered_1_q}}) | {SAMPLES{clear_color_1_q}};
       for (s = 0; s < SAMPLES; s++) begin : gen_stored
-        logic [1:0] is_newer;  // what 2 and 3 have
-        logic       is_found;  // what is in the RAM or on the way is the stored colour
-        logic [2:0] has_it;    // of these 2, 3 or the RAM
+        logic [1:0] is_newer;  // stages 2 and 3 hold a newer value
+        logic       is_found;  // the stored colour is in the RAM or in flight
+        logic [2:0] has_it;    // the source: 2, 3 or the RAM
         assign is_newer = is_same_stamp & {writes_3_q[s], writes_2_q[s]};
         assign has_it   = {is_newer == '0, is_newer[1] && !is_newer[0], is_newer[0]};
         assign held[s]  = (has_it & {dirty[s], dirty_3_q[s], dirty_2_q[s]}) != '0 && !starts_1_q;
@@ -357,7 +359,7 @@ module color_write #(
                                         (base[s*COLOR+:COLOR] & {COLOR{!is_found}});
       end
 
-      // What the registers say, for the lanes.
+      // The register values, for the lanes.
       blend_setup #(
           .CHANNELS(CHANNELS)
       ) u_setup (
@@ -370,7 +372,7 @@ module color_write #(
           .equation_o(equation)
       );
 
-      // 2: of the group its samples, as 8 bits a channel, blended.
+      // 2: the samples of the group, 8 bits a channel, blended.
       logic [GROUP*8*CHANNELS-1:0] result;
       genvar l;
       for (l = 0; l < GROUP; l++) begin : gen_lane
@@ -403,7 +405,7 @@ module color_write #(
         );
       end
 
-      // Packed, and of each channel the new or the stored one.
+      // Packed: each channel new or stored.
       assign out           = out_2_q;
       assign write_address = {line_2_q, stamp_2_q};
       assign writes        = writes_2_q & {SAMPLES{on_way_q[1]}};
@@ -414,7 +416,7 @@ module color_write #(
         logic [COLOR-1:0]  packed_color, channels;
         always_comb begin
           rgba = color_2_q[s*SHADED+:SHADED];
-          // With a lane for each sample colours that are not blended come through it as well.
+          // With a lane for each sample, colours that are not blended pass through it as well.
           if (GROUPS == 1 || blended_2_q[s]) rgba[8*CHANNELS-1:0] = result[(s%GROUP)*8*CHANNELS+:8*CHANNELS];
         end
         if (raster_pkg::DITHER_UNIT == 0) begin : gen_rounded

@@ -1,43 +1,43 @@
-// Colours over w: of a sample's P over q the colour, one sample a clock, eight clocks, beside the coordinates and by their
-// reciprocal.
+// Colours over w: a sample's colour from its P over q, one sample a clock, eight clocks, in parallel with the
+// coordinates and with their reciprocal.
 //
-//   1, 2  by how much P is narrowed, and P narrowed (over_w_narrow.sv)
+//   1, 2  the shift of P, and P narrowed (over_w_narrow.sv)
 //   5     the product with the reciprocal
 //   6     times 2^x, rounded to a code
-//   7     held to the range of the vertices' codes
-// What a triangle's samples share waits in RAMs, a word for each stamp in the unit, as that of coordinates does.
-// A fixed pipeline without enables. Specification: over_q, color_over_q of model/stages/perspective.hpp.
+//   7     clamped to the range of the vertices' codes
+// Constants of a triangle wait in RAMs, a word for each stamp in the unit, like those of coordinates. A fixed pipeline
+// without enables. Specification: over_q, color_over_q of model/stages/perspective.hpp.
 module colors_over_w #(
     parameter int CHANNELS = 3,           // channels of a colour, a multiplier each
-    parameter int P_BITS = 24,            // of P in a tile, with its sign; at least 18
+    parameter int P_BITS = 24,            // bits of P in a tile, signed; at least 18
     parameter int MANTISSA = 18,          // k
     parameter int NARROW = 13,            // k_P
-    parameter int SHIFT_BITS = 6,         // of c, with its sign
-    parameter int REACH_BITS = 4,         // of x, at most 8
+    parameter int SHIFT_BITS = 6,         // bits of c, signed
+    parameter int REACH_BITS = 4,         // bits of x, at most 8
     parameter int QUEUE = 16,             // stamps in the unit; a power of two
     parameter int INDEX = $clog2(QUEUE),  // derived; not to be set
     parameter int EXPONENT = 5            // bits of e
 ) (
     input logic clk_i,
 
-    // What the samples of a stamp share; red lowest
+    // Constants of a stamp; red lowest
     input logic                           frame_valid_i,
     input logic [INDEX-1:0]               frame_index_i,
     input logic [CHANNELS*SHIFT_BITS-1:0] shift_i,     // c
     input logic [CHANNELS*REACH_BITS-1:0] reach_i,     // x
-    input logic [CHANNELS*8-1:0]          least_i,     // of the vertices' codes
+    input logic [CHANNELS*8-1:0]          least_i,     // minimum of the vertices' codes
     input logic [CHANNELS*8-1:0]          greatest_i,
 
-    // The sample; what divides it, one and five clocks later
-    input logic [INDEX-1:0]           index_i,  // of its stamp
+    // The sample; its divisor, one and five clocks later
+    input logic [INDEX-1:0]           index_i,  // index of its stamp
     input logic [CHANNELS*P_BITS-1:0] p_i,
     input logic [EXPONENT-1:0]        exponent_i,    // floor(log2 q)
     input logic [MANTISSA-2:0]        reciprocal_i,  // below its highest bit, which is set
 
-    output logic [CHANNELS*8-1:0] color_o  // of eight clocks ago
+    output logic [CHANNELS*8-1:0] color_o  // for the sample of eight clocks ago
 );
 
-  logic [7*INDEX-1:0] index_q;  // of a clock ago lowest
+  logic [7*INDEX-1:0] index_q;  // the last clock's lowest
   always_ff @(posedge clk_i) index_q <= {index_q[6*INDEX-1:0], index_i};
 
   logic [CHANNELS*SHIFT_BITS-1:0] shift_ram_q[0:QUEUE-1];
@@ -65,7 +65,7 @@ module colors_over_w #(
   genvar n;
   generate
     for (n = 0; n < CHANNELS; n++) begin : gen_channel
-      // Below 0 whatever is not 0 is held, as at 0.
+      // Below 0 a value that is not 0 saturates, as at 0.
       logic signed [7:0] amount;
       logic [5:0]        amount_q;
       logic [NARROW:0]   narrow, narrow_q;
@@ -81,7 +81,7 @@ module colors_over_w #(
           .narrow_o(narrow)
       );
 
-      // As in texture_axis: the highest bit of the reciprocal apart. |Pn| <= 2^NARROW, r < 2^MANTISSA.
+      // As in texture_axis: the highest bit of the reciprocal is separate. |Pn| <= 2^NARROW, r < 2^MANTISSA.
       localparam int PRODUCT = NARROW + 1 + MANTISSA;
       logic signed [PRODUCT-1:0] short_product, product_q;
       assign short_product = $signed(narrow_q) * $signed({1'b0, reciprocal_i});
@@ -90,9 +90,9 @@ module colors_over_w #(
         product_q <= short_product + $signed({narrow_q, {(MANTISSA - 1) {1'b0}}});
       end
 
-      // The product times 2^x, x up to 8, and a half below the point. What is beyond 2^9 + 1/2 there is none.
+      // The product times 2^x, x up to 8, and a half below the point. Nothing exceeds 2^9 + 1/2.
       localparam int POINT = MANTISSA + NARROW - 1;
-      localparam int WHOLE = 11;  // bits of a code, with its sign
+      localparam int WHOLE = 11;  // bits of a code, signed
       logic signed [POINT+WHOLE-1:0] placed;
       logic signed [WHOLE-1:0]       code_q;
       logic [7:0]                    held;

@@ -1,10 +1,10 @@
-// Context RAM: what the stamps of a primitive share, by the slot that coarse_raster gives it. A slot is not written before it
-// is free, nor read before the first stamp is there. The serial front writes one part a cycle.
+// Context RAM: the constants of a primitive that its stamps need, by the slot that coarse_raster assigns. A slot is not
+// written before it is free, nor read before the first stamp arrives. The serial front writes one part a cycle.
 //
-// With planes over w and one sample a pixel (STORE_CONSTANTS_SEPARATELY) most of it is wanted only behind the depth test: the
-// steps of those planes, and the texture constants. They lie in a RAM of their own by the triangle's number, which goes with
-// the fragments in place of the frame. There are as many numbers as triangles can be between setup and test: those in slots,
-// and one for each fragment behind that, since a triangle's end goes as one.
+// With planes over w and one sample per pixel (STORE_CONSTANTS_SEPARATELY) most constants are needed only after the
+// depth test: the steps of those planes, and the texture constants. They lie in a RAM of their own by the triangle's
+// number, which goes with the fragments instead of the texture constants. There are as many numbers as triangles
+// between setup and test: one per slot, and one for each later fragment, since a triangle's end travels as a fragment.
 // Specification: make_context() of model/stages/coarse_raster.hpp.
 module context_ram #(
     parameter int SLOT = raster_pkg::SLOT_BITS  // derived; not to be set
@@ -16,18 +16,18 @@ module context_ram #(
     input logic                                  write_i,
     input logic [SLOT-1:0]                       write_slot_i,
     input raster_pkg::context_packet_t           context_i,
-    input logic [raster_pkg::ALL_LOCAL_BITS-1:0] step_i,  // of the serial front: along x a cycle behind write_i, then along y
+    input logic [raster_pkg::ALL_LOCAL_BITS-1:0] step_i,  // of the serial front: x a cycle after write_i, then y
 
-    // To interpolate, in the cycle behind the read
+    // To interpolate, in the cycle after the read
     input  logic                        read_i,
     input  logic [SLOT-1:0]             read_slot_i,
     output raster_pkg::context_packet_t context_o,
 
-    // To the fragment at the test, likewise: what is apart
+    // To the fragment in the test, likewise: the separate constants
     input  logic                         tested_i,
     input  raster_pkg::fragment_packet_t tested_fragment_i,
     output raster_pkg::context_packet_t  tested_context_o,
-    output logic [raster_pkg::TRIANGLE_BITS-1:0] number_o  // of the next triangle
+    output logic [raster_pkg::TRIANGLE_BITS-1:0] number_o  // number of the next triangle
 );
 
   localparam bit STORE_CONSTANTS_SEPARATELY = raster_pkg::STORE_CONSTANTS_SEPARATELY != 0;
@@ -72,14 +72,14 @@ module context_ram #(
     end
 
     if (raster_pkg::SETUP_KIND == 0) begin : gen_context
-      // The range is wanted for colours over w alone: no other code is clamped.
+      // The range of the codes is needed for colours over w only: no other code is clamped.
       localparam int FRAME = STORE_CONSTANTS_SEPARATELY ? NUMBER : raster_pkg::COORDINATE_FRAME_BITS;
       localparam int RANGE = 2 * raster_pkg::ALL_AFFINE_CODE_BITS;
       localparam int STEPS = raster_pkg::ALL_STEP_BITS;
       localparam int KEPT_STEPS = STORE_CONSTANTS_SEPARATELY ? raster_pkg::STEP_AT[32*(STORE_CONSTANTS_SEPARATELY ? raster_pkg::AFFINE_PLANES : 0)+:32] : STEPS;
       localparam int HEAD = raster_pkg::CONTEXT_PACKET_BITS - RANGE - raster_pkg::COORDINATE_FRAME_BITS -
                             2 * (STEPS - KEPT_STEPS);  // state and steps
-      localparam int KEPT = raster_pkg::COLORS_OVER_W != 0 ? RANGE : 0;  // of the range
+      localparam int KEPT = raster_pkg::COLORS_OVER_W != 0 ? RANGE : 0;  // bits of the range
       logic [HEAD+KEPT+FRAME-1:0] entering, kept;
       logic [KEPT_STEPS-1:0]      step_x, step_y;
       sram #(

@@ -1,15 +1,15 @@
-// Cull: decides by the signed area whether a triangle faces the right way, by its box whether it can touch a sample, and
-// by the samples themselves, where there are only a few, whether it does.
+// Cull: tests the signed area (facing), the box (whether it contains a sample), and for small triangles the samples
+// themselves.
 //
-// In: a primitive packet. Out: a triangle packet in canonical order (positive area, smallest (Y, X, Z) first), with its box
-// and its three edge functions at the first pixel of the box's first tile: their sum is twice the area, so that no
-// multiplication is spent on deciding alone.
+// In: a primitive packet. Out: a triangle packet in canonical order (positive area, smallest (Y, X, Z) first), with its
+// box and its three edge functions at the first pixel of the box's first tile: their sum is twice the area, so that no
+// multiplication serves the decision only.
 //
-// Two parts, each holding one primitive for four steps; they take the three edges in turn through one cross product:
-//   sort    which vertex leads; then the box, and from there on an edge a step
-//   decide  an edge function a step; in the last one the triangle is on offer, or dropped
-// Occupancy 4 cycles, latency 8. A part hands over when the next one is free.
-// Specification: model/stages/cull.hpp, edge_function() in model/stages/edge_function.hpp.
+// Two parts, each with one primitive for four steps; the three edges go in turn through one cross product:
+//   sort    which vertex leads; then the box, and from there on one edge per step
+//   decide  one edge function per step; in the last step the triangle is on offer, or dropped
+// Occupancy 4 cycles, latency 8. A part passes its triangle on when the next one is free. Specification:
+// model/stages/cull.hpp, edge_function() in model/stages/edge_function.hpp.
 module cull (
     input logic clk_i,
     input logic rst_ni,
@@ -24,29 +24,29 @@ module cull (
     input  logic                         triangle_ready_i,
     output raster_pkg::triangle_packet_t triangle_o,
 
-    // Counters: one pulse for each, a cycle late
+    // Counters: one pulse per event, a cycle late
     output logic is_primitive_o,  // triangles, points and lines
     output logic is_zero_area_o,
     output logic is_backface_o,
     output logic is_empty_o,
     output logic is_no_sample_o,
-    output logic is_dropped_o  // whatever the kind; at once
+    output logic is_dropped_o  // of any kind; not delayed
 );
 
   localparam int C = raster_pkg::COORDINATE_BITS;
   localparam int D = raster_pkg::DELTA_BITS;
   localparam int Z = raster_pkg::DEPTH_CODE_BITS;
-  localparam int CODES = raster_pkg::ALL_CODE_BITS;  // of a vertex; the lowest is its depth, Z
+  localparam int CODES = raster_pkg::ALL_CODE_BITS;  // bits of a vertex's codes; the lowest code is its depth, Z
   localparam int S = raster_pkg::GRID_BITS;
   localparam int TS = raster_pkg::TILE_SHIFT;
   localparam int PX = raster_pkg::PIXEL_X_BITS;
   localparam int PY = raster_pkg::PIXEL_Y_BITS;
-  localparam int E = raster_pkg::EDGE_PRODUCT_BITS + 1;  // an exact edge function, its sign whatever the order
+  localparam int E = raster_pkg::EDGE_PRODUCT_BITS + 1;  // an exact edge function; its sign is valid either way round
   localparam int A = raster_pkg::AREA_BITS;
   localparam int V = raster_pkg::EDGE_VALUE_BITS;
   localparam int KEY = 2 * C + Z;  // (Y, X, Z) as one unsigned number
   localparam int N = S + 3;        // a side of less than 4 pixels, subpixels
-  localparam int NV = S + 7;       // edge_function of such a triangle, at a sample of its box
+  localparam int NV = S + 7;       // bits of the edge function of such a triangle, at a sample of its box
 
   // ------------------------------------------------------------------------------------------------------------- sort
   raster_pkg::primitive_packet_t p_q;
@@ -55,7 +55,7 @@ module cull (
   logic       sort_moves, hands_over, decide_ready;
   logic       is_triangle, is_state, is_sorted;
 
-  // Where states overtake the setup of triangles they stay for a cycle in either part.
+  // Where states overtake the setup of triangles they stay one cycle in each part.
   assign is_state          = raster_pkg::COORDINATES != 0 && p_q.kind == raster_pkg::PRIMITIVE_KIND_STATE;
   assign is_sorted         = sort_step_q == 2'd3 || is_state;
   assign hands_over        = sort_busy_q && is_sorted && decide_ready;
@@ -87,7 +87,7 @@ module cull (
   assign key0 = {~y0[C-1], y0[0+:C-1], ~x0[C-1], x0[0+:C-1], p_q.vertex.code[0+:Z]};
   assign key1 = {~y1[C-1], y1[0+:C-1], ~x1[C-1], x1[0+:C-1], p_q.vertex.code[CODES+:Z]};
   assign key2 = {~y2[C-1], y2[0+:C-1], ~x2[C-1], x2[0+:C-1], p_q.vertex.code[2*CODES+:Z]};
-  assign is_0_first = !(key1 < key0) && !(key2 < key0);  // <= would be a comparison for equality beside the carry
+  assign is_0_first = !(key1 < key0) && !(key2 < key0);  // <= would need a comparator for equality, not just a carry
   assign is_1_first = !(key2 < key1);
 
   // --- Meanwhile and in step 1 the box: pixel centres within the vertices' bounds, cut by the scissor.
@@ -108,7 +108,7 @@ module cull (
     y_max = y0 < y1 ? y1 : y0;
     y_max = y_max < y2 ? y2 : y_max;
   end
-  localparam bit HAS_SAMPLES = raster_pkg::MSAA_SAMPLES > 1;  // then the box has the pixels that the triangle touches
+  localparam bit HAS_SAMPLES = raster_pkg::MSAA_SAMPLES > 1;  // the box then has every pixel that the triangle touches
   localparam logic signed [B-1:0] TO_FIRST = HAS_SAMPLES ? '0 : HALF - B'(1);
   localparam logic signed [B-1:0] TO_LAST = HAS_SAMPLES ? '0 : HALF;
   assign first_x = (B'(x_min_q) + TO_FIRST) >>> S;
@@ -120,12 +120,12 @@ module cull (
   assign right   = is_triangle && last_x < $signed(B'(p_q.box.right)) ? last_x : $signed(B'(p_q.box.right));
   assign bottom  = is_triangle && last_y < $signed(B'(p_q.box.bottom)) ? last_y : $signed(B'(p_q.box.bottom));
 
-  // --- Steps 1 to 3, edge_function: E(p) = dx (p_y - y) - dy (p_x - x), p the centre of the first tile's first pixel; from
-  // the leading vertex to the next one, and so on round.
+  // --- Steps 1 to 3, edge_function: E(p) = dx (p_y - y) - dy (p_x - x), p the centre of the first tile's first pixel;
+  // from the leading vertex to the next one, and so on around.
   logic [1:0]               from_q, to;  // vertices
   logic signed [C-1:0]      from_x, from_y, to_x, to_y;
   logic [CODES-1:0]         from_code;
-  logic [2*(2*C+CODES)-1:0] chain_q;  // vertices that have had their turn, the newest is the highest
+  logic [2*(2*C+CODES)-1:0] chain_q;  // vertices already used, the newest highest
   assign to = from_q[1] ? 2'd0 : from_q + 2'd1;
   always_comb begin
     from_x    = from_q[1] ? x2 : from_q[0] ? x1 : x0;
@@ -146,7 +146,7 @@ module cull (
   assign to_px = D'(px) - D'(from_x_q);
   assign to_py = D'(py) - D'(from_y_q);
 
-  // The box's own first pixel, as a small triangle sees it.
+  // The first pixel of the box, for small triangles.
   localparam logic [S-1:0] CENTRE = S'(1) << (S - 1);
   logic signed [N:0] to_cx, to_cy;
   assign to_cx = (N + 1)'({box_q.left, CENTRE}) - from_x_q[N:0];
@@ -207,7 +207,7 @@ module cull (
   end
 
   // The fill rule goes into the edge function, E - [not top or left]. Seen from the other side, where the edge runs
-  // backwards, it is -E - [top or left] = ~(E - [not top or left]): of one number all bits are turned.
+  // backwards, it is -E - [top or left] = ~(E - [not top or left]): one number with all bits inverted.
   logic                is_top_left, is_biased, bias_q, edge_bias_q;
   logic signed [E-1:0] edge_value;
   assign is_top_left = dy_q[D-1] || (dy_q == '0 && (!dx_q[D-1] && dx_q != '0));
@@ -228,7 +228,7 @@ module cull (
       .result_o(edge_value)
   );
 
-  // The same in fewer bits at the box's first pixel, for a triangle whose sides are shorter than 4 pixels.
+  // The same in fewer bits at the box's first pixel, for a triangle with sides shorter than 4 pixels.
   logic signed [S+NV-1:0] corner;
   cross_product #(
       .A_BITS  (N),
@@ -245,7 +245,7 @@ module cull (
       .result_o(corner)
   );
 
-  // The signs at that pixel and its neighbours to the right and below; those that the box has not got are overlooked later.
+  // The signs at that pixel and its neighbours to the right and below; pixels outside the box are masked later.
   logic                 is_short, is_short_q, edge_is_short_q;
   logic signed [N-1:0]  side_x_q, side_y_q, edge_x_q, edge_y_q;
   logic signed [NV-1:0] here, right_of, below, across;
@@ -258,21 +258,21 @@ module cull (
   assign signs    = {across[NV-1], below[NV-1], right_of[NV-1], here[NV-1]};
 
   // Twice the area is the sum of the exact edge functions; the bias comes back as a carry.
-  logic [3*V-1:0]      edge_q;  // before orientation; the newest is the highest
+  logic [3*V-1:0]      edge_q;  // before orientation; the newest edge is the highest
   logic signed [E-1:0] area_q;
   logic signed [E:0]   area;
   assign area = {area_q, 1'b1} + {edge_value, edge_bias_q};
 
-  // What the verdict needs, known a cycle ahead of it.
-  logic       is_zero_q, is_back_q;  // area_q is; it has the sign of a side that is dropped
+  // Inputs of the decision, known a cycle before it.
+  logic       is_zero_q, is_back_q;  // area is 0; area has the sign of a culled side
   logic       is_small, is_small_q;  // all sides are short
-  logic [3:0] has_inside, has_outside, has_inside_q, has_outside_q;  // for each of the four samples: it is inside, outside of some edge
+  logic [3:0] has_inside, has_outside, has_inside_q, has_outside_q;  // per sample: inside, outside of some edge
   logic       is_sampleless_q;
   logic       is_front;
-  // A sample is covered when it is on the same side of all edges, whichever way round they run. More than 2x2 samples are
-  // left to fine_raster.
+  // A sample is covered when it is on the same side of all edges, in either orientation. More than 2x2 samples are left
+  // to fine_raster.
   logic [2:0] columns, rows;  // less one
-  logic       has_2x2_q, has_column_q, has_row_q;  // at most; a second one
+  logic       has_2x2_q, has_column_q, has_row_q;  // at most 2x2; with a second column or row
   logic [3:0] is_missed;
   assign is_front    = area[E] != front_cw_q;  // positive area: clockwise as seen
   assign is_small    = is_small_q && edge_is_short_q;
@@ -299,7 +299,7 @@ module cull (
       d_box_q       <= box_q;
       d_is_empty_q  <= is_empty_q && !is_state;
       vertex_q      <= {from_x, from_y, from_code, chain_q};
-      if (is_state) begin  // has no box, and alike vertices, of which the last goes on
+      if (is_state) begin  // has no box, and equal vertices, of which the last goes on
         d_box_q                        <= '0;
         vertex_q[2*(2*C+CODES)-1:0]    <= '0;
       end
@@ -322,7 +322,7 @@ module cull (
     end
   end
 
-  // --- The last step: on offer or dropped, decided from registers, because the hand-over depends on it.
+  // --- The last step: on offer or dropped, decided from registers, because the handshake depends on it.
   logic is_negative;
   assign d_is_triangle = kind_q == raster_pkg::PRIMITIVE_KIND_TRIANGLE;
   assign is_counted    = d_is_triangle || (kind_q[2] && !kind_q[0]);  // point, line
@@ -341,7 +341,7 @@ module cull (
   assign is_missed = (has_inside & has_outside) | ~{has_column_q && has_row_q, has_row_q, has_column_q, 1'b1};
 
   assign is_dropped_o   = leaves && is_dropped;
-  // Counters, one cycle late: what makes a triangle leave comes late enough without them behind it.
+  // Counters, one cycle late: the signal that lets a triangle leave is late enough without them downstream.
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
       is_primitive_o <= 1'b0;
@@ -358,10 +358,10 @@ module cull (
     end
   end
 
-  // With several samples a pixel the bits of the edge functions below the point go along.
+  // With several samples per pixel the fraction bits of the edge functions go along.
   generate
     if (HAS_SAMPLES) begin : gen_edge_lows
-      logic [3*S-1:0] low_q;  // before orientation; the newest is the highest
+      logic [3*S-1:0] low_q;  // before orientation; the newest edge is the highest
       genvar l;
       always_ff @(posedge clk_i) if (decide_moves && d_is_triangle) low_q <= {edge_value[0+:S], low_q[S+:2*S]};
       for (l = 0; l < 3; l++) begin : gen_edge
@@ -404,8 +404,8 @@ module cull (
   endgenerate
   assign triangle_o.state = state;
 
-  // Of a triangle of negative area vertices 1 and 2 change places: its edges run the other way round, edge i is edge
-  // 2 - i, backwards.
+  // Of a triangle of negative area vertices 1 and 2 change places: its edges run the opposite way, edge i is edge 2 - i
+  // reversed.
   genvar i;
   generate
     for (i = 0; i < 3; i++) begin : gen_vertex

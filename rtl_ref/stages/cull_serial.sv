@@ -1,12 +1,12 @@
-// Cull for the smallest parts: the bits of cull.sv from one comparator and one bit-serial cross product.
+// Cull for the smallest parts: the same bits as cull.sv, from one comparator and one bit-serial cross product.
 //
 // The vertices stand in a ring of three. Two moves bring them into any order: turn (0 <- 1 <- 2 <- 0) and swap (0 <-> 1).
 //   SORT   the smallest (Y, X, Z) to the front: compare, swap, turn twice, compare, swap
 //   BOX    pixel centres within the bounds, cut by the scissor, one vertex a cycle
-//   AREA   edge 0 at vertex 2, which is twice the area; a negative one swaps vertices 1 and 2 (FLIP) and comes again
+//   AREA   edge 0 at vertex 2, which is twice the area; a negative one swaps vertices 1 and 2 (FLIP) and is repeated
 //   EDGES  the edge functions at the first pixel of the box's first tile
-// Occupancy: about 4 to 5 times the bits of an edge function. primitive_i must stay until primitive_ready_o, which comes
-// with the result: what only passes through is not stored. Specification: model/stages/cull.hpp.
+// Occupancy: about 4 to 5 times the bits of an edge function. primitive_i must stay until primitive_ready_o, which
+// comes with the result: fields that only pass through are not stored. Specification: model/stages/cull.hpp.
 module cull_serial (
     input logic clk_i,
     input logic rst_ni,
@@ -26,14 +26,14 @@ module cull_serial (
     output logic is_zero_area_o,
     output logic is_backface_o,
     output logic is_empty_o,
-    output logic is_no_sample_o,  // never: it does not look at samples
-    output logic is_dropped_o  // whatever the kind
+    output logic is_no_sample_o,  // always 0: this stage tests no samples
+    output logic is_dropped_o  // of any kind
 );
 
   localparam int C = raster_pkg::COORDINATE_BITS;
   localparam int D = raster_pkg::DELTA_BITS;
   localparam int Z = raster_pkg::DEPTH_CODE_BITS;
-  localparam int CODES = raster_pkg::ALL_CODE_BITS;  // of a vertex; the lowest is its depth, Z
+  localparam int CODES = raster_pkg::ALL_CODE_BITS;  // bits of a vertex's codes; the lowest code is its depth, Z
   localparam int S = raster_pkg::GRID_BITS;
   localparam int TS = raster_pkg::TILE_SHIFT;
   localparam int PX = raster_pkg::PIXEL_X_BITS;
@@ -41,7 +41,7 @@ module cull_serial (
   localparam int A = raster_pkg::AREA_BITS;
   localparam int V = raster_pkg::EDGE_VALUE_BITS;
   localparam int KEY = 2 * C + Z;  // (Y, X, Z) as one unsigned number
-  localparam int LAST = A > S + V - 1 ? A : S + V - 1;  // the highest bit of a product that matters; A: its sign
+  localparam int LAST = A > S + V - 1 ? A : S + V - 1;  // the highest significant bit of a product; A: its sign
   localparam int COUNT = $clog2(LAST + 2);
 
   // ---------------------------------------------------------------------------------------------------------- control
@@ -51,7 +51,7 @@ module cull_serial (
   logic [COUNT-1:0] count_q;  // cycles in this state, or of this edge
   logic [1:0]       edge_q;
   logic             is_triangle, is_counted, takes, leaves, is_dropped, multiplies, product_ends;
-  logic             is_negative_q;  // the area
+  logic             is_negative_q;  // the area is negative
   assign is_triangle  = primitive_i.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE;
   assign is_counted   = is_triangle || primitive_i.kind[2];  // point, line
   assign takes        = state_q == IDLE && primitive_valid_i;
@@ -85,10 +85,11 @@ module cull_serial (
   end
 
   // --------------------------------------------------------------------------------------------------------- vertices
-  // Vertex 0 is what everything is taken from: its registers hold complements, so that no gate stands before a carry.
+  // Vertex 0 is the subtrahend of all differences: its registers hold complements, so that no gate stands before a
+  // carry.
   logic [C-1:0]     not_x0_q, not_y0_q, x0, y0, x1_q, x2_q, y1_q, y2_q;
   logic [CODES-1:0] not_code0_q, code0, code1_q, code2_q;
-  logic             turns, swaps, is_odd_q;  // is_odd_q: the order runs round the other way than the host's
+  logic             turns, swaps, is_odd_q;  // is_odd_q: the order is opposite to the host's
   assign x0    = ~not_x0_q;
   assign y0    = ~not_y0_q;
   assign code0 = ~not_code0_q;
@@ -123,16 +124,17 @@ module cull_serial (
   end
 
   // -------------------------------------------------------------------------------------------------------------- box
-  // The first and the last pixel whose centre is not before, not behind a vertex. The box is from the smallest first to the
-  // largest last of the three vertices, cut by the scissor; a cycle a vertex, one for the scissor, one to see what is left.
+  // The first and the last pixel whose centre is not before, not after a vertex. The box is from the smallest first to
+  // the largest last of the three vertices, cut by the scissor; a cycle a vertex, one for the scissor, one to see what
+  // is left.
   localparam int B = C + 1;      // a coordinate plus half a pixel
-  localparam int N = C - S + 1;  // a pixel in the guard band, or one outside of it
+  localparam int N = C - S + 1;  // bits of a pixel in the guard band, or one outside it
   localparam logic signed [B-1:0] HALF = B'(1 << (S - 1));
   logic signed [B-1:0] above_x, below_x, above_y, below_y;
   logic signed [N-1:0] first_x, last_x, first_y, last_y, scissor_left, scissor_top, scissor_right, scissor_bottom;
   logic signed [N-1:0] held_left, held_right, held_top, held_bottom;
   logic                cuts_left, cuts_right, cuts_top, cuts_bottom;
-  logic        [N-1:0] not_left_q, not_right_q, not_top_q, not_bottom_q;  // complements again
+  logic        [N-1:0] not_left_q, not_right_q, not_top_q, not_bottom_q;  // complements as well
   logic                is_first, is_empty, is_empty_q;
   assign held_left         = ~not_left_q;
   assign held_right        = ~not_right_q;
@@ -176,7 +178,7 @@ module cull_serial (
 
   // ---------------------------------------------------------------------------------------------------- cross product
   // dx * (y - y0) - dy * (x - x0), from vertex 0 to 1; (x, y) is vertex 2 or the first pixel's centre. One bit of the
-  // differences a cycle, lowest first and on with their signs, so the product comes out modulo any power of two.
+  // differences a cycle, lowest first and sign-extended, so the product comes out modulo any power of two.
   logic signed [D-1:0] dx, dy, x, y;
   logic [D-1:0]        to_x_q, to_y_q;
   logic signed [D:0]   wide_dx, wide_dy, both_q;  // both: dx - dy
@@ -212,11 +214,11 @@ module cull_serial (
     end
   end
 
-  // Results, the newest bit highest. An edge that is neither a top nor a left one leaves the samples on it: 1 less.
+  // Results, the newest bit highest. An edge that is neither top nor left excludes samples on it: minus 1.
   logic [A-1:0]   area_q;
   logic [3*V-1:0] value_q;
   logic           any_q, borrow_q, is_top_left, is_value_bit;
-  logic [COUNT-1:0] number;  // of the bit that comes out
+  logic [COUNT-1:0] number;  // number of the output bit
   assign number       = count_q - COUNT'(1);
   assign is_top_left  = dy[D-1] || (dy == '0 && !dx[D-1]);
   assign is_value_bit = number >= COUNT'(S) && number < COUNT'(S + V);

@@ -1,19 +1,19 @@
-// Depth cache: the depths of the blocks on the chip, and with them all that goes into the depth test and comes out of it.
+// Depth cache: the depths of the blocks on the chip, and the inputs and outputs of the depth test.
 //
 //   cache_tags -> queue -> [depth RAM, clear value or answer] -> depth_test -> [the word is written] -> shading
-//                                      '-- stamps of blocks that leave -> write_back
+//                                      '-- stamps of evicted blocks -> write_back
 //
-// Fragments wait for memory in the queue, in order. One that goes is tested in the next cycle against what is stored under it:
-// from the RAM, or the clear value, or the answer, which comes into the RAM with what is written. A stamp may come every cycle:
-// what the one before it writes is forwarded. Of a block that leaves, the stamps that may have been written are read, one a
-// cycle, first the one that is about to be overwritten.
+// Fragments wait for memory in the queue, in order. The fragment at the head is tested in the next cycle against its
+// stored depths: from the RAM, the clear value, or the answer, which enters the RAM with the written depths. A stamp
+// may come every cycle: the writes of the one before are forwarded. Of an evicted block, the stamps that may have been
+// written are read, one a cycle, first the one that is about to be overwritten.
 //
-// With a late alpha test (LATE_ALPHA) late_test writes the depths of what alpha may still drop. A fragment waits for those in
-// its place, an eviction for those in its line, and one that is not late for all of them.
-// Specification: model/stages/block_cache.hpp; the times are those of model/engines/cycle/block_timing.hpp.
+// With a late alpha test (LATE_ALPHA) late_test writes the depths of samples that alpha may still drop. A fragment
+// waits for such stamps in its place, an eviction for those in its line, and a fragment that is not late for all of
+// them. Specification: model/stages/block_cache.hpp; the times are those of model/engines/cycle/block_timing.hpp.
 module depth_cache #(
     parameter int SAMPLES = raster_pkg::SAMPLES,  // derived; not to be set
-    parameter int CODE = raster_pkg::STORED_DEPTH_BITS,  // a depth, the stencil above it where there is one
+    parameter int CODE = raster_pkg::STORED_DEPTH_BITS,  // a depth, the stencil above it, if there is one
     parameter int STAMP = raster_pkg::BLOCK_STAMP_BITS,
     parameter int SLOT = raster_pkg::VICTIM_SLOT_BITS
 ) (
@@ -27,47 +27,47 @@ module depth_cache #(
     input  raster_pkg::tag_result_t      made_result_i,
     input  logic [CODE-1:0]              clear_depth_i,
 
-    // From memory_answers: the stored depths of the fragments that wait for them, in order; there in the cycle after it is
-    // taken
+    // From memory_answers: the stored depths for fragments that wait for them, in order; valid in the cycle after the
+    // take
     input  logic                    answer_valid_i,
     output logic                    takes_answer_o,
     input  logic [SAMPLES*CODE-1:0] answer_i,
 
-    // To depth_test, which takes it at once; what is stored under it in the cycle after that
+    // To depth_test, which never waits; the stored depths follow in the next cycle
     output logic                         tested_valid_o,
     output raster_pkg::fragment_packet_t tested_o,
     output logic [SAMPLES*CODE-1:0]      stored_depth_o,
 
-    // From depth_test: the write of the fragment of the cycle before, and what its samples have from now on
+    // From depth_test: the write of the fragment of the cycle before, and the new stored words of its samples
     input logic                      write_valid_i,
     input raster_pkg::write_packet_t write_i,
     input logic [SAMPLES*CODE-1:0]   word_i,
 
-    // To shading: the stamp that was tested; of SHADED_STAMPS at most none has left
+    // To shading: the tested stamp; at most SHADED_STAMPS are inside
     output logic                         stamp_valid_o,
     output raster_pkg::tested_stamp_t    stamp_o,
     output raster_pkg::fragment_packet_t stamp_fragment_o,
-    output logic [SAMPLES-1:0]           stamp_writes_o,  // samples that get a colour, or of which alpha is tested
-    input  logic                         stamp_leaves_i,  // color_write takes one
+    output logic [SAMPLES-1:0]           stamp_writes_o,  // samples that get a colour, or whose alpha is tested
+    input  logic                         stamp_leaves_i,  // color_write takes a stamp
 
     // From late_test, in that cycle: depths that it writes, if any are late
     input logic                        late_valid_i,
     input raster_pkg::tested_stamp_t   late_i,
     input logic [SAMPLES-1:0]          late_writes_i,
-    input logic [SAMPLES*(CODE+1)-1:0] late_word_i,  // of each sample whether memory does not have it, and the word
+    input logic [SAMPLES*(CODE+1)-1:0] late_word_i,  // for each sample whether only the chip holds it, and the word
 
-    // To write_back: a block that leaves gets a slot, and its depths come into it
+    // To write_back: an evicted block gets a slot, and its depths follow
     output logic                    evicts_o,
     output raster_pkg::eviction_t     eviction_o,
     output logic                      victim_valid_o,  // a stamp
     output raster_pkg::depth_victim_t victim_o,
     input  logic                    slot_free_i,     // the oldest block is in memory
 
-    output logic idle_o  // nothing is in the queue, and nothing between here and color_write
+    output logic idle_o  // the queue is empty, and nothing is between here and color_write
 );
 
   localparam int PIXELS = raster_pkg::PIXELS;
-  localparam int CODES = raster_pkg::ALL_FRAGMENT_BITS;  // of a pixel of a fragment; the lowest is its depth
+  localparam int CODES = raster_pkg::ALL_FRAGMENT_BITS;  // bits of a pixel of a fragment; the lowest code is its depth
   localparam int Z = raster_pkg::DEPTH_CODE_BITS;
   localparam int STORED = raster_pkg::STORED_FRAGMENT_BITS;
   localparam int STAMPS = raster_pkg::BLOCK_STAMPS;
@@ -83,7 +83,7 @@ module depth_cache #(
   localparam bit BLENDS = raster_pkg::BLEND_LANES != 0;
   localparam bit LATE = raster_pkg::LATE_ALPHA != 0;
   localparam bit HAS_STATE = BLENDS || LATE || raster_pkg::DITHER_UNIT != 0;  // colours have operations that tokens set
-  // Fragments wait with their colours packed, where nothing else looks at those.
+  // Fragments wait with packed colours, where no other stage reads the colours.
   localparam bit PACKS = raster_pkg::COORDINATES == 0 && raster_pkg::BLEND_LANES == 0 && raster_pkg::DITHER_UNIT == 0 &&
                          raster_pkg::ALPHA_UNIT == 0;
 
@@ -91,7 +91,7 @@ module depth_cache #(
 
   // ------------------------------------------------------------------------------------------------------------- the queue
   raster_pkg::fragment_packet_t made_packed, item;
-  raster_pkg::tag_result_t      found;  // by the tags, of the item at the head
+  raster_pkg::tag_result_t      found;  // result of the tag lookup, of the item at the head
   logic [STORED-1:0]            made_stored, item_stored;
   logic                         item_valid, goes, items_are_done;
   generate
@@ -108,7 +108,7 @@ module depth_cache #(
       always_comb begin
         made_packed = made_i;
         for (int i = 0; i < PIXELS; i++)
-          if (i != 0 || !HAS_STENCIL || made_i.kind != raster_pkg::PRIMITIVE_KIND_STATE)  // whose word is in the first
+          if (i != 0 || !HAS_STENCIL || made_i.kind != raster_pkg::PRIMITIVE_KIND_STATE)  // its word is in pixel 0
             made_packed.code[i*CODES+Z+:COLORS] = COLORS'(made_colors[i*COLOR+:COLOR]);
       end
     end else begin : gen_whole
@@ -121,7 +121,7 @@ module depth_cache #(
       .bits_i    (item_stored),
       .fragment_o(item)
   );
-  // With several samples a pixel, depths and colours are most of an item, and are not read before the test.
+  // With several samples per pixel, depths and colours are most of an item, and are not read before the test.
   localparam int FURTHER = PIXELS * (raster_pkg::MSAA_SAMPLES - 1) * Z;
   registered_fifo #(
       .WIDTH (raster_pkg::TAG_RESULT_BITS + STORED),
@@ -143,13 +143,13 @@ module depth_cache #(
   logic              on_chip, in_memory, reads_victim, slot_free, is_again, leaves_line;
   logic [STAMPS-1:0] left_q, left, next, item_bit;  // stamps of the last eviction that are still to be read
   logic [LINE-1:0]   left_line_q;
-  logic [SLOT:0]     taken_q;         // slots that have been given away
+  logic [SLOT:0]     taken_q;         // slots assigned so far
   logic [BEHIND-1:0] behind_q;        // stamps between here and color_write
-  logic              waits_for_late;  // for depths that late_test writes
+  logic              waits_for_late;  // depths of late_test must come first
   logic              writes_word;     // the item may change a depth, or the stencil above it
-  logic              tests_alpha, x1_late;  // by the register of the alpha test; the item at the test is late
+  logic              tests_alpha, x1_late;  // by the register of the alpha test; the item in the test is late
 
-  logic                    x1_valid_q, x1_writes_q;  // at the test; it writes the RAM, perhaps
+  logic                    x1_valid_q, x1_writes_q;  // in the test; it may write the RAM
   raster_pkg::tag_result_t x1_q;
   logic                    x1_on_chip;
 
@@ -157,7 +157,7 @@ module depth_cache #(
   assign item_bit     = STAMPS'(1) << found.stamp;
   assign on_chip      = found.source == raster_pkg::DEPTH_SOURCE_CHIP;
   assign in_memory    = found.source == raster_pkg::DEPTH_SOURCE_MEMORY;
-  assign is_again     = x1_valid_q && on_chip && x1_q.line == found.line && x1_q.stamp == found.stamp;  // the stamp at the test
+  assign is_again     = x1_valid_q && on_chip && x1_q.line == found.line && x1_q.stamp == found.stamp;  // same stamp
   assign leaves_line  = x1_valid_q && x1_q.line == found.line && x1_writes_q;
   assign goes         = item_valid && !waits_for_late && (!found.evicts || (left_q == '0 && slot_free && !leaves_line)) &&
                         (!on_chip || left_q == '0) && (!in_memory || answer_valid_i) &&
@@ -198,10 +198,10 @@ module depth_cache #(
     end
   endgenerate
 
-  // A block that leaves.
+  // An evicted block.
   logic            v_valid_q, v_last_q, v_fills_q, fills_q;  // a stamp of it has been read
   logic [STAMP-1:0] v_stamp_q;
-  logic [SLOT-1:0] v_slot_q, slot_q;  // of the next one
+  logic [SLOT-1:0] v_slot_q, slot_q;  // slot of the next block
   logic [LINE+STAMP-1:0] depth_read_address;
   logic [LINE-1:0] line_above_x;
   assign depth_read_address = {left_q != '0 ? left_line_q : found.line, reads_victim ? raster_pkg::stamp_number(next) : found.stamp};
@@ -234,8 +234,9 @@ module depth_cache #(
     v_last_q  <= left == next;
   end
 
-  // The depth RAM: of each sample its code, and whether memory does not have it. What a stamp is tested against comes from
-  // there, from the answer, or stands in a register as it goes: the clear value, or what is written while the RAM is read.
+  // The depth RAM: for each sample its code, and whether only the chip holds it. The stored depths of a stamp come from
+  // there, from the answer, or stand in a register as it enters the test: the clear value, or the write made while the
+  // RAM is read.
   assign x1_on_chip = x1_q.source == raster_pkg::DEPTH_SOURCE_CHIP;
   generate
     for (s = 0; s < SAMPLES; s++) begin : gen_depth
@@ -243,7 +244,7 @@ module depth_cache #(
       logic            dirty, writes, is_forwarded, in_ram_q;
       logic [CODE:0]   word;
       assign stored       = in_ram_q ? code : x1_q.source == raster_pkg::DEPTH_SOURCE_MEMORY ? answer_i[s*CODE+:CODE] : held_q;
-      assign is_forwarded = is_again && writes;  // not of a late one: behind that nothing in its place goes
+      assign is_forwarded = is_again && writes;  // not from a late fragment: no later fragment of its place passes it
       always_ff @(posedge clk_i) begin
         in_ram_q <= on_chip && !is_forwarded;
         held_q   <= is_forwarded ? word_i[s*CODE+:CODE] : clear_depth_i;
@@ -292,8 +293,8 @@ module depth_cache #(
     end
   endgenerate
 
-  // What is late.
-  logic [SAMPLES-1:0] looked_at;  // by the alpha test: what it may keep from being written
+  // Late writes.
+  logic [SAMPLES-1:0] looked_at;  // samples that the alpha test may keep from being written
   assign stamp_writes_o = {SAMPLES{write_valid_i}} & (tests_alpha ? looked_at : write_i.write_color);
   generate
     if (HAS_STENCIL) begin : gen_marked
@@ -302,11 +303,11 @@ module depth_cache #(
       assign looked_at = write_i.passed;
     end
     if (LATE) begin : gen_late
-      // Stamps on their way, told apart by the lowest bits of their line.
+      // Stamps in flight, told apart by the lowest bits of their line.
       localparam int NEAR = LINE < 4 ? LINE : 4;
       localparam int PLACED = 1 << (NEAR + STAMP);
       logic [PLACED-1:0] pending_q, sets, clears;
-      logic [STAMPS-1:0] pending_here;  // of the item's line
+      logic [STAMPS-1:0] pending_here;  // late stamps in the item's line
       logic [BEHIND-1:0] late_behind_q;
       logic              tests_alpha_q, is_late, enters, x1_writes_word;
       assign is_late        = tests_alpha_q && writes_word && item.mask != '0;

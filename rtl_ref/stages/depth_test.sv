@@ -1,10 +1,9 @@
-// Depth test: a stamp's depth codes against the stored ones, and what follows from the result.
+// Depth test: compares a stamp's depth codes with the stored ones and makes the write and the retirement.
 //
 // In: fragments. Out: an access of the framebuffer for each stamp with a covered sample and for each token (fast clear,
-// flush); one cycle later, with the stored codes, the write of what passed; another cycle later the retirement of the
-// tile visit. One stamp a cycle. With tiles a stamp waits one cycle behind a stamp whose depth it has to see;
-// a framebuffer of blocks forwards it.
-// Specification: model/stages/depth_test.hpp.
+// flush); one cycle later, with the stored codes, the write of the passed samples; another cycle later the retirement
+// of the tile visit. One stamp a cycle. With tiles a stamp waits one cycle behind a stamp whose depth it has to see; a
+// framebuffer of blocks forwards it. Specification: model/stages/depth_test.hpp.
 module depth_test (
     input logic clk_i,
     input logic rst_ni,
@@ -14,24 +13,24 @@ module depth_test (
     output logic                         fragment_ready_o,
     input  raster_pkg::fragment_packet_t fragment_i,
 
-    // To framebuffer: the access, and what it answers in the cycle after it
+    // To framebuffer: the access, answered in the next cycle
     output logic                                                    access_valid_o,
     input  logic                                                    access_ready_i,
     output raster_pkg::fragment_packet_t                            access_o,
-    output logic [raster_pkg::STORED_COLOR_BITS-1:0]                access_color_o,  // of sample 0, a cycle later: a clear's colour
+    output logic [raster_pkg::STORED_COLOR_BITS-1:0]                access_color_o,  // stored colour 0, a cycle later
     input  logic [raster_pkg::SAMPLES*raster_pkg::STORED_DEPTH_BITS-1:0] stored_depth_i,
 
-    // To framebuffer; never waits. The depths of the packet are those of the fragment
+    // To framebuffer; never waits. The depths of the packet are the fragment's
     output logic                      write_valid_o,
     output raster_pkg::write_packet_t write_o,
-    // What a sample has from now on, written or not
+    // New stored word of each sample, written or not
     output logic [raster_pkg::SAMPLES*raster_pkg::STORED_DEPTH_BITS-1:0] word_o,
 
     // To coarse_raster; never waits
     output logic                       retire_valid_o,
     output raster_pkg::retire_packet_t retire_o,
 
-    // Samples of triangles, points and lines that this cycle adds to the counters
+    // Samples of triangles, points and lines to be counted in this cycle
     output logic [$clog2(raster_pkg::SAMPLES+1)-1:0] covered_o,
     output logic [$clog2(raster_pkg::SAMPLES+1)-1:0] passed_o,
     output logic [$clog2(raster_pkg::SAMPLES+1)-1:0] written_o,
@@ -40,11 +39,11 @@ module depth_test (
 
   localparam int SAMPLES = raster_pkg::SAMPLES;
   localparam int PIXELS = raster_pkg::PIXELS;
-  localparam int N = raster_pkg::MSAA_SAMPLES;  // of a pixel
+  localparam int N = raster_pkg::MSAA_SAMPLES;  // samples of a pixel
   localparam int STAMP = raster_pkg::STAMP_SIZE;
   localparam int CODE = raster_pkg::DEPTH_CODE_BITS;
-  localparam int WORD = raster_pkg::STORED_DEPTH_BITS;  // a code and above it the stencil, where there is one
-  localparam int CODES = raster_pkg::ALL_FRAGMENT_BITS;  // of a pixel; the lowest is its depth, above that its colours
+  localparam int WORD = raster_pkg::STORED_DEPTH_BITS;  // a code and above it the stencil, if there is one
+  localparam int CODES = raster_pkg::ALL_FRAGMENT_BITS;  // bits of a pixel: lowest its depth code, then its colours
   localparam int COLORS = raster_pkg::VERTEX_COLOR_BITS;
   localparam int COLOR = raster_pkg::WRITTEN_COLOR_BITS;
   localparam int STAMP_BITS = raster_pkg::STAMP_INDEX_BITS;
@@ -52,7 +51,8 @@ module depth_test (
   localparam int HIZ = raster_pkg::HIZ_CODE_BITS;
   localparam bit HAS_ALPHA = raster_pkg::ALPHA_UNIT != 0 && raster_pkg::CACHE_KIND == 1 && raster_pkg::SETUP_KIND == 0;
 
-  // D0: the fragment on offer. Tokens (bit 1 of a kind) have no covered sample; those of lines have become pixels by now.
+  // D0: the fragment on offer. Tokens (bit 1 of a kind) have no covered sample; tokens of lines have become pixels by
+  // now.
   logic needs_access, must_wait, takes_fragment;
   logic [SAMPLES*COLOR-1:0] color;
 
@@ -62,13 +62,13 @@ module depth_test (
   logic [SAMPLES*COLOR-1:0] color_q;
   logic [SAMPLES*CODE-1:0]  depth;
   logic [SAMPLES-1:0]       is_nearer, passes_stencil;  // passes the depth test; the stencil test
-  logic [SAMPLES-1:0]       passed, kept;  // by both, and of those by the alpha test
-  logic [SAMPLES-1:0]       opaque;        // by the alpha test, if that is here
+  logic [SAMPLES-1:0]       passed, kept;  // samples that pass both, and of those the alpha test
+  logic [SAMPLES-1:0]       opaque;        // samples that pass the alpha test, if it is here
   logic [SAMPLES-1:0]       takes;         // samples whose depth is written
   logic [SAMPLES-1:0]       changes;       // samples whose stored word is
   logic                     is_stamp;
 
-  // Of a line's pixel no sample may be drawn, where it has several.
+  // With several samples per pixel a line's pixel may have no sample to draw.
   assign needs_access = (fragment_i.kind[1] && !(N > 1 && fragment_i.kind == raster_pkg::PRIMITIVE_KIND_LINE)) ||
                         fragment_i.mask != '0;
   assign must_wait = raster_pkg::CACHE_KIND == 0 && valid_q && fragment_q.state.depth_write && fragment_q.key.tile_x == fragment_i.key.tile_x &&
@@ -98,11 +98,11 @@ module depth_test (
       .greater_o(greater_passes)
   );
 
-  // The alpha test, where the colour is known here: without a texture unit. With one late_test decides, and a fragment that
-  // writes depth is late. Its register is set by a token.
+  // The alpha test, where the colour is known here: without a texture unit. With a texture unit late_test decides, and
+  // a fragment that writes depth is late. Its register is set by a token.
   logic is_late;
-  // An operation of the stencil as stencil_test wants it: what counts has bit 2, down bit 1, and bit 0 where it stops at the
-  // end; what does not count keeps, zeroes, replaces, inverts.
+  // An operation of the stencil as stencil_test expects it: counting has bit 2, down bit 1, saturation bit 0; the
+  // others keep, zero, replace, invert.
   function automatic [2:0] as_bits(input [2:0] op);
     case (op)
       raster_pkg::STENCIL_OP_KEEP: as_bits = 3'b000;
@@ -119,7 +119,7 @@ module depth_test (
   genvar s;
   generate
     if (HAS_ALPHA) begin : gen_alpha
-      localparam int ALPHA = CODE + COLORS - 8;  // the last colour
+      localparam int ALPHA = CODE + COLORS - 8;  // alpha, the last colour channel
       logic [raster_pkg::DEPTH_FUNC_BITS-1:0] alpha_func_q;
       logic [7:0] reference_q;
       logic       covers_q;
@@ -161,7 +161,7 @@ module depth_test (
       assign is_late = 1'b0;
     end
 
-    // The stencil, with the side that the triangle shows. Its registers are set by tokens, for one side or for both.
+    // The stencil registers of the side that the triangle shows. Tokens set them, for one side or for both.
     if (raster_pkg::STENCIL_BITS != 0) begin : gen_stencil
       localparam int TEST = raster_pkg::DEPTH_FUNC_BITS + 16;  // function, reference, read mask, lowest first
       localparam int UPDATE = 9 + 8;                           // sfail, zfail, zpass, write mask
@@ -232,7 +232,7 @@ module depth_test (
             .rgba_i (fragment_i.code[PIXEL*CODES+CODE+:COLORS]),
             .color_o(color[s*COLOR+:COLOR])
         );
-      end else begin : gen_whole  // packed by the cache of blocks, behind the texture unit, or where it is written
+      end else begin : gen_whole  // packed in the cache of blocks, after the texture unit, or where it is written
         assign color[s*COLOR+:COLOR] = COLOR'(fragment_i.code[PIXEL*CODES+CODE+:COLORS]);
       end
     end
@@ -250,7 +250,7 @@ module depth_test (
   assign write_o.write_color  = fragment_q.state.color_write ? kept : '0;
   assign write_o.color        = color_q;
 
-  // Counters, one cycle late: the masks are kept and summed up in the cycle behind, far from the RAM that they come from.
+  // Counters, one cycle late: the masks are registered and summed in the next cycle, far from the RAM that feeds them.
 
   logic is_counted, writes;
   logic [SAMPLES-1:0] covered_q, passed_q, written_q;
@@ -300,7 +300,7 @@ module depth_test (
       assign retire_o.update   = raster_pkg::HIZ_UPDATE_NONE;
       assign retire_o.hiz_code = '0;
     end else begin : gen_hiz
-      // What the visit has done before this stamp. The visit covers its tile when the last of STAMPS full stamps comes.
+      // State of the visit before this stamp. The visit covers its tile when the last of STAMPS full stamps comes.
       logic [STAMP_BITS-1:0] full_stamps_q;
       logic                  any_passed_q;
       logic [HIZ-1:0]        max_q;
@@ -314,8 +314,8 @@ module depth_test (
       assign covers_tile = is_full && full_stamps_q == STAMP_BITS'(STAMPS - 1);
 
       // The codes of a covered tile are a plane, rounded and clamped, which keeps their order: the largest is at a
-      // corner of the tile. So one pixel of a stamp is enough, the one towards the tile's corner on the stamp's side; of its
-      // samples, whose planes are moved ones, the farthest.
+      // corner of the tile. So one pixel of a stamp is enough, the pixel towards the tile's corner on the stamp's side;
+      // with several samples the farthest of its samples, whose planes are shifted copies.
       function automatic [HIZ-1:0] farthest(input [N*CODE-1:0] depths);
         farthest = depths[CODE-1-:HIZ];
         for (int i = 1; i < N; i++)

@@ -1,13 +1,12 @@
 // Fine raster: one tile in, the covered samples of its stamps out.
 //
-// In: a tile packet and the primitive's edge context. Out: a stamp packet for each stamp with a covered sample, row by row;
-// the last row sends one in any case, because it carries the news that the visit ends.
+// In: a tile packet and the primitive's edge context. Out: a stamp packet for each stamp with a covered sample, row by
+// row; the last row sends one in any case, because it marks the end of the visit.
 //
 // Three parts: `rows` evaluates the edge functions of a whole row of stamps per cycle, stepping down the tile's box;
-// `coverage` holds the samples that such a row covers, and drops a row without; `stamps` sends the stamps of one row, one per
-// cycle, while the next row is found.
-// Three cycles from the tile to its first stamp, no bubble between rows or tiles. Nothing here multiplies.
-// Specification: model/stages/fine_raster.hpp.
+// `coverage` holds the covered samples of such a row, and drops an empty row; `stamps` sends the stamps of one row, one
+// per cycle, while the next row is found. Three cycles from the tile to its first stamp, no bubble between rows or
+// tiles. Nothing here multiplies. Specification: model/stages/fine_raster.hpp.
 module fine_raster (
     input logic clk_i,
     input logic rst_ni,
@@ -34,8 +33,8 @@ module fine_raster (
   localparam int TILE_EDGE = raster_pkg::TILE_EDGE_BITS;
   localparam int PIXEL = raster_pkg::TILE_PIXEL_BITS;
   localparam int SAMPLES = raster_pkg::SAMPLES;
-  localparam int N = raster_pkg::MSAA_SAMPLES;  // of a pixel
-  localparam int PIXELS = raster_pkg::PIXELS;   // of a stamp
+  localparam int N = raster_pkg::MSAA_SAMPLES;  // samples of a pixel
+  localparam int PIXELS = raster_pkg::PIXELS;   // pixels of a stamp
   localparam int CENTRES = PER_ROW * PIXELS;
   localparam int S = raster_pkg::GRID_BITS;
   localparam int ROW = PER_ROW * SAMPLES;  // samples of a row of stamps; those of one stamp are neighbours
@@ -77,7 +76,7 @@ module fine_raster (
     end else if (row_leaves) y_q <= y_q + PIXEL'(STAMP);
   end
 
-  localparam int PLACES = N == 1 ? 1 : N + 1;  // of a pixel: its samples, and behind them its centre
+  localparam int PLACES = N == 1 ? 1 : N + 1;  // places of a pixel: its samples, then its centre
   genvar e, i, j, k;
   generate
     for (e = 0; e < 3; e++) begin : gen_edge
@@ -100,7 +99,7 @@ module fine_raster (
           .value_o (start)
       );
 
-      // What the edge gains on the way to each place.
+      // Increment of the edge function from the pixel to each place.
       logic [PLACES*W-1:0] place_q;
       if (N == 1) begin : gen_one
         assign place_q = '0;
@@ -143,7 +142,7 @@ module fine_raster (
             .y_i     (PIXEL'(j)),
             .value_o (row_value)
         );
-        // At the centres of pixels, or at each of their samples, and at the centres as well.
+        // At the centres of pixels, or at each of their samples and at the centres.
         for (k = 0; k < PLACES; k++) begin : gen_place
           logic [TILE-1:0] outside_columns;
           edge_columns #(
@@ -165,7 +164,7 @@ module fine_raster (
       end
     end
 
-    // The box as columns and rows of pixels, and as samples in the order of `covered`.
+    // The box as masks of pixel columns and rows, and of samples in the order of `covered`.
     for (i = 0; i < TILE; i++) begin : gen_box_column
       assign column_in_box[i] = PIXEL'(i) >= tile_q.box.left && PIXEL'(i) <= tile_q.box.right;
     end
@@ -234,7 +233,7 @@ module fine_raster (
     for (int s = 0; s < PER_ROW; s++) if (COLUMN'(s) == column) pending_d[s*SAMPLES+:SAMPLES] = '0;
   end
 
-  // At most one stamp has samples left: known a cycle ahead, for much waits for it.
+  // At most one stamp has samples left: known a cycle ahead, because long paths start from it.
   function automatic logic is_one_stamp(input logic [ROW-1:0] samples);
     logic [PER_ROW-1:0] has_samples;
     is_one_stamp = 1'b1;
@@ -270,7 +269,7 @@ module fine_raster (
   assign stamp_o.key            = stamp_tile_q.key;
   assign stamp_o.slot           = stamp_tile_q.slot;
   assign stamp_o.mask           = mask;
-  // Beside them, of a row's pixels those whose centres are covered.
+  // Next to the samples: the pixels of a row whose centres are covered.
   generate
     if (N > 1) begin : gen_centre
       logic [CENTRES-1:0] centre_q, stamps_centre_q;

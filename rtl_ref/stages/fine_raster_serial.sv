@@ -1,13 +1,13 @@
-// Fine raster for the smallest parts: the bits of fine_raster.sv from one stamp position a cycle, stepped with two adders
-// an edge: one to the right, and one that has the row below ready when a row ends.
+// Fine raster for the smallest parts: the same bits as fine_raster.sv, one stamp position a cycle, stepped with two
+// adders per edge: one to the right, and one that prepares the row below for the end of a row.
 //
 // From the tile's first pixel it steps right to the box's first column of stamps, then down to the first row; then it
-// visits every stamp of the box, row by row. The row below is found in the first column, for the next cycle: so a row of
-// one stamp takes two cycles, and so does a row on the way down. In the last row each covered stamp is held back until the
-// next one is found, because the last of them ends the visit. Whether the whole tile is inside is not looked at: then the
-// edges say so at each stamp, in the same cycle.
-// tile_i and its edges are not stored: tile_ready_o comes with the last stamp. So a tile costs a cycle, one for each stamp
-// of its box, and the way to the first one. Specification: model/stages/fine_raster.hpp.
+// visits every stamp of the box, row by row. The row below is computed in the first column, for the next cycle: so a
+// row of one stamp takes two cycles, and so does a row skipped on the way down. In the last row each covered stamp is
+// held back until the next one is found, because the last of them ends the visit. The flag for a fully covered tile is
+// not used: the edge tests give the same result at each stamp. tile_i and its edges are not stored: tile_ready_o comes
+// with the last stamp. So a tile costs a cycle, one for each stamp of its box, and the steps to the first stamp.
+// Specification: model/stages/fine_raster.hpp.
 module fine_raster_serial (
     input logic clk_i,
     input logic rst_ni,
@@ -38,7 +38,7 @@ module fine_raster_serial (
   // ------------------------------------------------------------------------------------------------------------- walk
   localparam logic [1:0] IDLE = 2'd0, RIGHT = 2'd1, DOWN = 2'd2, SCAN = 2'd3;
   (* fsm_encoding = "none" *) logic [1:0] state_q;  // RIGHT, DOWN: on the way to the first stamp of the box
-  logic [COLUMN-1:0] column_q, row_q;  // of the stamp whose edge values these are
+  logic [COLUMN-1:0] column_q, row_q;  // position of the stamp whose edge values are held
   logic [COLUMN-1:0] first_column, last_column, first_row, last_row, next_column, next_row;
   logic              scans, is_first_column, is_last_column, is_last_row, is_end, starts, passes, is_way_down, moves, tile_leaves;
   logic              has_below_q;  // below_q is the row below this one
@@ -88,7 +88,7 @@ module fine_raster_serial (
   genvar e, i, j;
   generate
     for (e = 0; e < 3; e++) begin : gen_edge
-      logic signed [W-1:0] value_q, below_q;  // at the stamp's first sample; at that of the first stamp of the row below
+      logic signed [W-1:0] value_q, below_q;  // at the stamp's first sample; at that of the first stamp one row below
       logic signed [W-1:0] step_x, step_y, right;
       assign step_x = W'($signed(edges_i.step_x[e*STEP+:STEP]));
       assign step_y = W'($signed(edges_i.step_y[e*STEP+:STEP]));

@@ -1,9 +1,8 @@
-// Fog lookup: where in the table of the fog the pixels of a stamp lie. In front of the texture unit, where Q still is; what it
-// finds goes with the stamp to fog_stage. Combinational but for the table's octaves, which a token sets.
+// Fog lookup: finds the places of a stamp's pixels in the fog table, upstream of the texture unit, where Q is still
+// available; the places go with the stamp to fog_stage. Combinational but for the table's octaves, which a token sets.
 //
-// The word: from bit 0 the places of the pixels, FOG_PLACE_BITS each, or a token's value; above them that there is fog, that a
-// token sets the fog's colour, and that it sets a line of the table.
-// Specification: model/stages/fog_unit.hpp.
+// The word: from bit 0 the places of the pixels, FOG_PLACE_BITS each, or a token's value; above them three bits: fog is
+// enabled, a token sets the fog's colour, a token sets a line of the table. Specification: model/stages/fog_unit.hpp.
 module fog_lookup #(
     parameter int PLACES = raster_pkg::FOG_PLACES_BITS,  // derived; not to be set
     parameter int WORD = raster_pkg::FOG_WORD_BITS
@@ -22,11 +21,11 @@ module fog_lookup #(
     end else begin : gen_fogged
       localparam int PLACE = raster_pkg::FOG_PLACE_BITS;
       localparam int COLOR_BITS = 24;
-      localparam int FRAGMENT = raster_pkg::ALL_FRAGMENT_BITS;  // of a pixel
+      localparam int FRAGMENT = raster_pkg::ALL_FRAGMENT_BITS;  // bits of a pixel
       localparam int Q = raster_pkg::FRAGMENT_BITS_OF[32*raster_pkg::AFFINE_PLANES+:32];
       localparam int Q_AT = raster_pkg::FRAGMENT_AT[32*raster_pkg::AFFINE_PLANES+:32];
-      logic              enable_q;   // there is fog
-      logic [2:0]        octaves_q;  // of its table
+      logic              enable_q;   // fog is enabled
+      logic [2:0]        octaves_q;  // octaves of the table
       logic [PLACES-1:0] places;
       logic              is_token, sets_color, sets_line;
       logic [1:0]        unit;

@@ -1,6 +1,5 @@
-// Fog stage: fog_unit in the stream of shaded stamps, behind the texture unit; fog_lookup has found where in its table they
-// lie. Without the unit stamps pass as they are.
-// Specification: model/stages/fog_unit.hpp.
+// Fog stage: fog_unit in the stream of shaded stamps, downstream of the texture unit; fog_lookup has found their places
+// in the fog table. Without the unit stamps pass unchanged. Specification: model/stages/fog_unit.hpp.
 module fog_stage #(
     parameter int PIXELS = raster_pkg::PIXELS,  // derived; not to be set
     parameter int COLORS = raster_pkg::PIXELS * 8 * raster_pkg::COLOR_PLANES,
@@ -14,7 +13,7 @@ module fog_stage #(
     input  logic                      stamp_valid_i,
     output logic                      stamp_ready_o,
     input  raster_pkg::tested_stamp_t stamp_i,
-    input  logic [WORD-1:0]           fog_i,   // of fog_lookup
+    input  logic [WORD-1:0]           fog_i,   // from fog_lookup
     input  logic [PIXELS-1:0]         mask_i,
     input  logic [COLORS-1:0]         rgba_i,
 

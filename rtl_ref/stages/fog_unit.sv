@@ -1,18 +1,18 @@
-// Fog unit: colours behind the texture unit give way to that of the fog, the more the farther their samples are. All samples of
-// a stamp at once, three clocks.
+// Fog unit: blends colours downstream of the texture unit with the fog's colour, by the distance of their samples. All
+// samples of a stamp at once, three clocks.
 //
-//   1  the line of the table where each sample's place lies        2  f = start + rise * part, 0 to 1
+//   1  the table line of each sample's place        2  f = start + rise * part, 0 to 1
 //   3  colour + f (colour of the pixel - colour of the fog)
 //
-// Each register takes what is in front of it as soon as what it holds goes on. A token passes as stamps do, and what it sets
-// holds for those behind it: a line of the table as it comes in, the fog's colour as it leaves the first register.
-// A sample here is a pixel's shading point: one a pixel, however many samples coverage has.
-// Specification: FogUnit of model/stages/fog_unit.hpp; the times are FogTiming's in model/engines/cycle/block_timing.hpp.
+// Each register loads as soon as its content moves on. A token passes like a stamp, and its value holds for later
+// stamps: a line of the table is set as the token enters, the fog's colour as it leaves the first register. A sample
+// here is a pixel's shading point: one per pixel, however many samples coverage has. Specification: FogUnit of
+// model/stages/fog_unit.hpp; the times are FogTiming's in model/engines/cycle/block_timing.hpp.
 module fog_unit #(
     parameter int SAMPLES  = 4,
-    parameter int CHANNELS = 4,  // of a colour
+    parameter int CHANNELS = 4,  // channels of a colour
     parameter int PAYLOAD  = 1,  // bits that a stamp carries along
-    parameter int WORD     = 76  // of a token, 43; and of places, 19 a sample, at least
+    parameter int WORD     = 76  // bits of a token, 43, or of the places, 19 per sample: the larger
 ) (
     input logic clk_i,
     input logic rst_ni,
@@ -25,9 +25,9 @@ module fog_unit #(
     input  logic                          is_fogged_i,
     input  logic                          sets_color_i,  // a token: the word is the colour
     input  logic                          sets_line_i,   // likewise: a line's number, start and rise
-    input  logic [WORD-1:0]               word_i,        // of each sample 19 bits, fog_place; or a token's word
+    input  logic [WORD-1:0]               word_i,        // 19 bits per sample, fog_place; or a token's word
 
-    // The same in fog
+    // The same stamp with fog
     output logic                          stamp_valid_o,
     input  logic                          stamp_ready_i,
     output logic [PAYLOAD-1:0]            payload_o,
@@ -67,7 +67,7 @@ module fog_unit #(
   logic [PAYLOAD-1:0] payload_1_q, payload_2_q, payload_3_q;
   logic [COLORS-1:0]  color_1_q, color_2_q, color_3_q, mixed;
   logic               is_fogged_1_q, is_fogged_2_q, sets_color_1_q;
-  logic [23:0]        word_1_q, fog_q;  // a colour on its way; that of the fog
+  logic [23:0]        word_1_q, fog_q;  // colour of a token in flight; the fog's colour
   always_ff @(posedge clk_i) begin
     if (enters_1) begin
       payload_1_q    <= payload_i;

@@ -1,11 +1,12 @@
-// Framebuffer of tiles: depth and colour of a few tiles on the chip, a direct-mapped write-back cache of the planes in memory.
+// Framebuffer of tiles: depth and colour of a few tiles on the chip, a direct-mapped write-back cache of the buffers in
+// memory.
 //
 // In: accesses of depth_test (a stamp, or a token: fast clear, flush) and its writes. Out: the stored depth codes of
 // the stamp one cycle after the access, and requests to memory, in program order. A hit takes one cycle. A miss writes
-// back the stamps that were written, then brings in the tile: its depth from memory, or both planes from the clear value
-// where a fast clear came after their last write back; colour is only ever written.
-// The write of an access comes in the cycle after it, when the next access waits at the earliest: so whatever is looked
-// at from the second cycle of a miss on is settled. Specification: model/stages/tile_cache.hpp.
+// back the stamps that were written, then brings in the tile: its depth from memory, or both buffers from the clear
+// value where a fast clear came after their last write-back; colour is only ever written. The write of an access comes
+// in the cycle after it, when the next access waits at the earliest: so all state is settled from the second cycle of a
+// miss on. Specification: model/stages/tile_cache.hpp.
 module framebuffer (
     input logic clk_i,
     input logic rst_ni,
@@ -35,8 +36,8 @@ module framebuffer (
     output logic evict_o,
     output logic clear_o,
 
-    output logic moves_tiles_o,  // no access is served while tiles move, or are marked or looked at
-    output logic idle_o          // nothing waits for memory
+    output logic moves_tiles_o,  // no access is served while tiles move, are marked or are looked up
+    output logic idle_o          // no memory access is pending
 );
 
   localparam int SAMPLES = raster_pkg::SAMPLES;
@@ -53,8 +54,8 @@ module framebuffer (
   localparam int LINE_X = raster_pkg::LINE_X_BITS;  // may be 0, or more than TILE_X
   localparam int LINE_Y = raster_pkg::LINE_Y_BITS;
   localparam int LINE = (LINES == 1) ? 1 : LINE_X + LINE_Y;
-  localparam int ADDRESS = LINE + STAMP_BITS;  // of a stamp in the RAMs
-  localparam int ROW_ADDRESS = LINE + ROW_BITS;  // of a row of stamps
+  localparam int ADDRESS = LINE + STAMP_BITS;  // bits of a stamp's address in the RAMs
+  localparam int ROW_ADDRESS = LINE + ROW_BITS;  // bits of a row's address
   localparam int WORD = raster_pkg::FLAG_WORD;
   localparam int BIT = $clog2(WORD);
   localparam int WORD_X = (TILE_X > BIT) ? TILE_X - BIT : 1;  // bits of a word's number in its row
@@ -66,11 +67,11 @@ module framebuffer (
 
   localparam logic [2:0] SERVE = 3'd0;    // accesses that hit
   localparam logic [2:0] CHECK = 3'd1;    // is line_q dirty?
-  localparam logic [2:0] EVICT = 3'd2;    // write back a plane of line_q
+  localparam logic [2:0] EVICT = 3'd2;    // write back one buffer of line_q
   localparam logic [2:0] FILL = 3'd3;     // bring in the tile
   localparam logic [2:0] MARK = 3'd4;     // fast clear: set a word of flags a cycle
   localparam logic [2:0] READ = 3'd5;     // flush: read a word of flags; the end of any walk
-  localparam logic [2:0] SEND = 3'd6;     // flush: it goes to memory; or is the tile's flag set?
+  localparam logic [2:0] SEND = 3'd6;     // flush: the word goes to memory; or is the tile's flag set?
   localparam logic [2:0] RESOLVE = 3'd7;  // flush: write the clear colour of a tile
 
   logic [2:0]        state_q, state_d;
@@ -78,13 +79,13 @@ module framebuffer (
   logic              plane_q;   // of an eviction or walk; 1: colour
   logic [TILE_X-1:0] walk_x_q;  // tile of a fast clear's or flush's walk
   logic [TILE_Y-1:0] walk_y_q;
-  logic              walked_q;  // the walk is through
-  logic [CODE-1:0]   clear_depth;  // of the last fast clear
+  logic              walked_q;  // the walk is complete
+  logic [CODE-1:0]   clear_depth;  // value of the last fast clear
   logic [COLOR-1:0]  clear_color;
 
-  // Tags; those and the dirty bits of a line that is not valid mean nothing.
+  // Tags; undefined for a line that is not valid, like its dirty bits.
   logic [LINES-1:0]  valid_q;
-  logic [TILE_X-1:0] tag_x_q[0:LINES-1];  // tile x without the bits that chose the line
+  logic [TILE_X-1:0] tag_x_q[0:LINES-1];  // tile x without the bits that select the line
   logic [TILE_Y-1:0] tag_y_q[0:LINES-1];
   logic              dirty_depth_q[0:LINES-1];
   logic              dirty_color_q[0:LINES-1];
@@ -98,17 +99,17 @@ module framebuffer (
   logic [TILE_X-1:0] tile_x, tile_x_q, victim_x;
   logic [TILE_Y-1:0] tile_y, tile_y_q;
   logic              reads_flags;
-  logic flag_depth, flag_color;  // the plane of the tile in memory is garbage: its value is the last fast clear's
+  logic flag_depth, flag_color;  // the tile's buffer in memory is stale: the value of the last fast clear counts
 
   assign is_clear    = access_i.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR;
-  assign is_token    = is_clear || access_i.kind == raster_pkg::PRIMITIVE_KIND_FLUSH;  // not a pixel of a line
+  assign is_token    = is_clear || access_i.kind == raster_pkg::PRIMITIVE_KIND_FLUSH;  // and no pixel of a line
   assign clears_all  = is_clear && access_i.state.depth_write && access_i.state.color_write;
   assign access_line = (LINE'(access_i.key.tile_x) & LINE_X_MASK) | ((LINE'(access_i.key.tile_y) & LINE_Y_MASK) << LINE_X);
   assign write_line  = (LINE'(write_i.key.tile_x) & LINE_X_MASK) | ((LINE'(write_i.key.tile_y) & LINE_Y_MASK) << LINE_X);
   assign is_fill     = state_q == FILL;
   assign is_resolve  = state_q == RESOLVE;
 
-  // One look-up: of the access while it is served, of line_q after that.
+  // One lookup: of the access while it is served, of line_q after that.
   assign line  = state_q == SERVE ? access_line : line_q;
   assign tag_x = tag_x_q[line];
   assign tag_y = tag_y_q[line];
@@ -119,7 +120,7 @@ module framebuffer (
 
   // The walk of a token: words of flags, or tile by tile where colours are resolved.
   logic resolves, walks, ends_row, ends_walk, sends;
-  logic ends_plane, fill_ends;  // the last stamp of a plane has been taken; the tile is here
+  logic ends_plane, fill_ends;  // the last stamp of a buffer has been taken; the tile is complete
   assign resolves  = raster_pkg::FRAME_CLEARS == 0 && plane_q;
   assign sends     = state_q == SEND && !resolves;
   assign ends_row  = resolves ? walk_x_q == access_i.key.tile_x : walk_x_q >> BIT == access_i.key.tile_x >> BIT;
@@ -172,8 +173,8 @@ module framebuffer (
     else if (walks && ends_walk) plane_q <= 1'b1;
   end
 
-  // The values of the last fast clear, each a word of a RAM, read in every cycle: what MARK writes is there long before a tile
-  // is filled with it.
+  // The values of the last fast clear, each a word of a RAM, read in every cycle: MARK writes it long before a tile is
+  // filled with it.
   sram #(
       .WIDTH    (CODE),
       .READS_OLD(0),
@@ -201,16 +202,16 @@ module framebuffer (
       .data_i         (access_color_i)
   );
 
-  // Stamps of a tile, in order: those of a row that are still to come are samples of stamps_q, the next row is read ahead.
-  // A stamp is read out of the RAMs and is on offer in the cycle after that. A plane that memory has as garbage is written
-  // whole, and so is what a flush resolves: one burst; otherwise stamps that follow each other in a row are one. A fill
-  // asks for its stamps of depth at once.
+  // Stamps of a tile, in order: samples of stamps_q are the rest of the current row, the next row is read ahead. A
+  // stamp is read out of the RAMs and is on offer in the next cycle. A stale buffer is written whole, and so is a tile
+  // that a flush resolves: one burst; otherwise consecutive stamps of a row are one burst. A fill requests all its
+  // stamps of depth at once.
   logic                    offers_q;  // stamp_q is on offer
   logic [STAMP_BITS-1:0]   stamp_q, stamp;
   logic [SAMPLES-1:0]      strobe_q, strobe;
   logic [ROWS*SAMPLES-1:0] stamps_q, dirty_row;
   logic [2*ROWS*SAMPLES-1:0] dirty_rows;  // colour, depth
-  logic [ROW_BITS:0]       row_q, row;    // the next one
+  logic [ROW_BITS:0]       row_q, row;    // the next row
   logic [ROWS-1:0]         left, one;
   logic [RUN-1:0]          run, run_q;    // stamps of the burst from this one on
   logic                    gap;
@@ -266,7 +267,7 @@ module framebuffer (
     end
   end
 
-  // Answers: room for all that was asked for. A tile that was cleared is filled without any.
+  // Answers: there is room for every request. A cleared tile is filled without any.
   logic [STAMP_BITS-1:0] fill_stamp_q;
   logic                  fill_steps;
   assign response_ready_o = 1'b1;
@@ -314,8 +315,8 @@ module framebuffer (
     end
   end
 
-  // The tile that is marked or whose flags are read: of a line that is dirty, the one that leaves. CHECK is on its way to one
-  // that comes in; what it reads for a token is not looked at. It stays in a register while it is moved.
+  // The tile that is marked or whose flags are read: for a dirty line, the evicted tile. In CHECK it is about to change
+  // to the incoming tile; then a token's read is ignored. It stays in a register while it is moved.
   assign line_above_x = line_q >> LINE_X;
   assign victim_x     = (tag_x << LINE_X) | (TILE_X'(line_q) & TILE_X'((1 << LINE_X) - 1));
   always_comb begin
@@ -334,13 +335,14 @@ module framebuffer (
     end
   end
 
-  // Flags: a bit a tile and plane, in words of a row of tiles. Those beyond the target's right side mean nothing.
+  // Clear flags: a bit per tile and buffer, in words of a row of tiles. Flags beyond the target's right side mean
+  // nothing.
   logic [WORD-1:0]    word_depth, word_color, flag_bit;
   logic [BIT-1:0]     bit_x;
   logic [1:0]         flag_write;  // colour, depth
   logic [TILE_X-1:0]  word_x, last_word;
   logic [TILE_Y+WORD_X-1:0] flag_read_address, flag_write_address;
-  // Looked at, and written but for MARK, when they have been read: the bit of the tile whose word that is.
+  // After the read, the bit of the word's tile is looked at and, except in MARK, written.
   assign bit_x      = BIT'(tile_x_q);
   assign word_x     = tile_x_q >> BIT;
   assign last_word  = access_i.key.tile_x >> BIT;
@@ -379,11 +381,11 @@ module framebuffer (
       .data_i         ({WORD{state_q == MARK}})
   );
 
-  // The RAMs: one a sample and plane. A word that is read while it is written is not looked at: depth_test keeps such
+  // The RAMs: one per sample and buffer. A word that is read while it is written is not used: depth_test keeps such
   // stamps apart.
   logic                  reads;
   logic [ADDRESS-1:0]    read_address;
-  logic [LINE-1:0]       new_line;  // what is written
+  logic [LINE-1:0]       new_line;  // line to be written
   logic [STAMP_BITS-1:0] new_stamp;
   logic [STAMP_BITS-1:0] new_row;
   assign reads        = state_q == SERVE || steps;
@@ -392,9 +394,9 @@ module framebuffer (
   assign new_stamp    = is_fill ? fill_stamp_q : write_i.stamp;
   assign new_row      = new_stamp >> ROW_BITS;
 
-  // Beside them a bit for each sample and plane: written since the tile came in. A word is a row of stamps.
+  // Next to them a bit per sample and buffer: written since the tile came in. A word is a row of stamps.
   logic [ROW_ADDRESS-1:0] dirty_read_address, dirty_write_address;
-  logic [ROWS-1:0]        column;  // of the stamp that is written
+  logic [ROWS-1:0]        column;  // column of the written stamp
   assign dirty_read_address  = (ROW_ADDRESS'(line_q) << ROW_BITS) | (ROW_ADDRESS'(row) & ROW_ADDRESS'(ROWS - 1));
   assign dirty_write_address = (ROW_ADDRESS'(new_line) << ROW_BITS) | ROW_ADDRESS'(new_row);
   always_comb
@@ -443,7 +445,7 @@ module framebuffer (
           .write_address_i({new_line, new_stamp}),
           .data_i         (color_new)
       );
-      // Which bits are written comes late, from the depth test; that any may be does not.
+      // The write mask comes late, from the depth test; the write enable does not.
       for (c = 0; c < 2; c++) begin : gen_plane
         masked_sram #(
             .WIDTH(ROWS),

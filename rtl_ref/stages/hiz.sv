@@ -1,23 +1,23 @@
 // HiZ: a bound on the depths of each tile, by which coarse_raster drops tiles that cannot pass the depth test; and the
-// visits under way, by whose numbers it is said what a bound knows.
+// visits under way, whose numbers say which updates a bound includes.
 //
-// Visit n sees the updates of the visits up to n - LAG, all of them and none of a later one, whenever they come: what a
-// visit brings home waits in a queue until LAG visits have started behind it. So nothing is waited for but visit n - LAG, and
-// no more than LAG are under way. Visits between that may raise a depth make the bounds worthless until they are seen.
-// A bound is read in one cycle and is there in the next one and until the next read, beside the limit of the primitive: the
-// tile is behind where the bound is below the limit, as long as no visit starts. The primitive stands for a cycle before.
-// Specification: model/stages/hiz.hpp.
+// Visit n sees the updates of all visits up to n - LAG and of no later one, whatever the timing: an update waits in a
+// queue until LAG later visits have started. So the only wait is for visit n - LAG, and at most LAG visits are under
+// way. Visits in flight that may raise a depth make the bounds unusable until they are seen. A bound is read in one
+// cycle and valid from the next cycle to the next read, next to the limit of the primitive: the tile is behind where
+// the bound is below the limit, as long as no visit starts. The primitive is present a cycle before. Specification:
+// model/stages/hiz.hpp.
 module hiz (
     input logic clk_i,
     input logic rst_ni,
 
-    // The primitive that coarse_raster has, and the tile at which it is
+    // The primitive of coarse_raster, and its current tile
     input raster_pkg::setup_packet_t          setup_i,
     input logic [raster_pkg::TILE_X_BITS-1:0] tile_x_i,
     input logic [raster_pkg::TILE_Y_BITS-1:0] tile_y_i,
-    input logic                               passes_i,  // it has just come
+    input logic                               passes_i,  // the primitive has just come
     input logic                               clears_i,  // the bounds of the tile's group; no visit is under way
-    input logic                               reads_i,   // that of this tile:
+    input logic                               reads_i,   // the bound of this tile:
     input logic [raster_pkg::TILE_X_BITS-1:0] read_x_i,
     input logic [raster_pkg::TILE_Y_BITS-1:0] read_y_i,
     input logic                               starts_visit_i,
@@ -25,8 +25,8 @@ module hiz (
 
     output logic is_eligible_o,    // bounds may reject its tiles
     output logic is_settled_o,     // visit n - LAG has been seen: a bound may be read, a visit may start
-    output logic [raster_pkg::HIZ_CODE_BITS-1:0] bound_o,  // that was read, and
-    output logic [raster_pkg::HIZ_CODE_BITS:0]   limit_o,  // the least that is not behind; 0: nothing is
+    output logic [raster_pkg::HIZ_CODE_BITS-1:0] bound_o,  // the bound that was read
+    output logic [raster_pkg::HIZ_CODE_BITS:0]   limit_o,  // the least bound that is not behind; 0: no tile is behind
     output logic visits_are_done_o,
 
     // From depth_test: a tile visit has retired
@@ -42,18 +42,18 @@ module hiz (
   localparam int Z = raster_pkg::DEPTH_CODE_BITS;
   localparam int HIZ = raster_pkg::HIZ_BITS == 0 ? 0 : raster_pkg::HIZ_CODE_BITS;
   localparam int LAG = raster_pkg::HIZ_LAG;
-  localparam int GROUP = raster_pkg::HIZ_GROUP_BITS;  // tiles side by side that are cleared at once: 2^GROUP
+  localparam int GROUP = raster_pkg::HIZ_GROUP_BITS;  // adjacent tiles that are cleared at once: 2^GROUP
   localparam int N = $clog2(LAG);  // bits of a place in the queue
 
   // Visits that have started, retired and been seen, since reset or the last clear of the bounds, modulo 2 LAG.
   logic [N:0] started_q, retired_q, seen_q, seen_next, full;
-  logic       has_update_q;  // the oldest retired one that has not been seen is at hand
+  logic       has_update_q;  // the oldest retired visit that has not been seen is available
   logic       sees;
   assign full              = seen_q + (N + 1)'(LAG);  // LAG visits have not been seen
   assign is_settled_o      = started_q != full;
   assign visits_are_done_o = started_q == retired_q;
   assign sees = has_update_q && (!is_settled_o || (starts_visit_i && started_q + (N + 1)'(1) == full));
-  // A clear comes behind all of them in program order: what they have to say is forgotten.
+  // A clear comes after all of them in program order: their updates are dropped.
   assign seen_next = clears_i ? started_q : seen_q + (N + 1)'(sees);
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -73,7 +73,7 @@ module hiz (
   generate
     if (HIZ > 0) begin : gen_hiz
       logic can_raise, is_triangle, is_wide, is_high;
-      logic marks_failed;  // what fails shows in the stencil
+      logic marks_failed;  // a failed test shows in the stencil
       if (raster_pkg::STENCIL_BITS != 0) begin : gen_stencil
         assign marks_failed = setup_i.state.marks_failed;
       end else begin : gen_no_stencil
@@ -103,7 +103,7 @@ module hiz (
         end
       end
 
-      // What retired visits have to say about their tiles, in order.
+      // Updates of retired visits, in order.
       localparam int UPDATE = TY + TX + HIZ + 1;
       logic           has_news;
       logic [TY-1:0]  update_y;
@@ -112,7 +112,7 @@ module hiz (
       sram #(
           .WIDTH    (UPDATE),
           .DEPTH    (LAG),
-          .READS_OLD(0),  // what is looked at was written in an earlier cycle
+          .READS_OLD(0),  // a read item was written in an earlier cycle
           .BLOCK    (raster_pkg::SETUP_KIND != 0)
       ) u_updates (
           .clk_i,
@@ -142,7 +142,7 @@ module hiz (
       logic [HIZ:0]   limit_q;
       assign depth_min = setup_i.range.low[0+:Z];
       logic [(HIZ<<GROUP)-1:0] bounds;  // of the tiles of a group, each in a RAM of its own
-      logic [GROUP-1:0]        read_q;  // which of them was asked for
+      logic [GROUP-1:0]        read_q;  // tile of the group that was read
       always_ff @(posedge clk_i) if (reads_i) read_q <= read_x_i[GROUP-1:0];
       always_comb begin
         bound = bounds[0+:HIZ];
@@ -156,7 +156,7 @@ module hiz (
         sram #(
             .WIDTH    (HIZ),
             .DEPTH    (WORDS == 1 ? 2 : WORDS),
-            .READS_OLD(0)  // no bound is looked at that was read while another was written
+            .READS_OLD(0)  // a bound read during a write is not used
         ) u_bound (
             .clk_i,
             .read_i         (reads_i),
@@ -168,7 +168,7 @@ module hiz (
         );
       end
 
-      // Behind: depth_min > bound; for `less` equality will do, of all bits: those that are not stored are ones.
+      // Behind: depth_min > bound, or equal for `less`; all bits are compared, and those not stored are ones.
       logic is_equal_behind;
       if (HIZ == Z) begin : gen_exact
         assign is_equal_behind = setup_i.state.depth_test == raster_pkg::DEPTH_FUNC_LESS;

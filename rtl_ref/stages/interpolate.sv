@@ -1,17 +1,17 @@
 // Interpolate: the codes of every plane at the samples of a stamp.
 //
-// In: a stamp packet, and from the context RAM what its slot holds. Out: a fragment packet. A sample's value is the closed
-// form anchor + i step_x + j step_y (i, j pixels from pixel (T/2, T/2)), modulo the local width; its code is the bits above
-// the fraction, and at a covered sample in the range of the vertices by the bounds of the widths: nothing clamps it. Planes
-// behind depth and colours, 1/w and what lies over it, stay as they are; where triangles' constants are
-// STORE_CONSTANTS_SEPARATELY (raster_top) the anchors of the tile go on in place of them (stored_fragment.sv). Latency 6
-// cycles, one stamp per cycle. Nothing waits on the way: a stamp enters when there is a place for its fragment in the FIFO at
-// the end. A cycle each:
+// In: a stamp packet, and the context of its slot from the context RAM. Out: a fragment packet. A sample's value is the
+// closed form anchor + i step_x + j step_y (i, j pixels from pixel (T/2, T/2)), modulo the local width; its code is the
+// bits above the fraction; at a covered sample the widths guarantee that it lies in the range of the vertices, so
+// nothing clamps it. Planes after depth and colours, 1/w and planes over w, pass with their fractions; where triangles'
+// constants are STORE_CONSTANTS_SEPARATELY (raster_top) the anchors of the tile go on instead (stored_fragment.sv).
+// Latency 6 cycles, one stamp per cycle. Nothing waits on the way: a stamp enters when there is a place for its
+// fragment in the FIFO at the end. A cycle each:
 //   context  the context is read
 //   x, y     from the anchor to the stamp's first sample
 //   samples  from there to each sample
 //   FIFO     where fragments wait
-//   offer    behind a register, for what looks at a fragment looks far
+//   offer    a register, because long paths start from a fragment
 // Specification: model/stages/interpolate.hpp.
 module interpolate (
     input logic clk_i,
@@ -36,8 +36,8 @@ module interpolate (
 
   localparam int STAMP = raster_pkg::STAMP_SIZE;
   localparam int STAMP_SHIFT = $clog2(STAMP);
-  localparam int PIXELS = raster_pkg::PIXELS;  // of a stamp
-  localparam int N = raster_pkg::MSAA_SAMPLES;  // of a pixel
+  localparam int PIXELS = raster_pkg::PIXELS;  // pixels of a stamp
+  localparam int N = raster_pkg::MSAA_SAMPLES;  // samples of a pixel
   localparam int S = raster_pkg::GRID_BITS;
   localparam int PLANES = raster_pkg::PLANES;
   localparam logic [32*PLANES-1:0] STEP_AT = raster_pkg::STEP_AT;
@@ -45,7 +45,7 @@ module interpolate (
   localparam logic [32*PLANES-1:0] FRAGMENT_AT = raster_pkg::FRAGMENT_AT;
   localparam logic [32*PLANES-1:0] LOCAL_BITS_OF = raster_pkg::LOCAL_BITS_OF;
   localparam logic [32*PLANES-1:0] LOCAL_AT = raster_pkg::LOCAL_AT;
-  localparam int CODES = raster_pkg::ALL_FRAGMENT_BITS;  // of a pixel
+  localparam int CODES = raster_pkg::ALL_FRAGMENT_BITS;  // bits of a pixel
   localparam int PIXEL = raster_pkg::TILE_PIXEL_BITS;
   localparam int L = raster_pkg::PLANE_LOCAL_GUARD_BITS;
   localparam int PER_ROW_BITS = PIXEL - STAMP_SHIFT;
@@ -94,7 +94,7 @@ module interpolate (
     samples_context_q <= y_context_q;
   end
 
-  // The stamp's first sample from the centre, in stamps: -n/2 ... n/2 - 1 of n in a row, two's complement.
+  // Offset of the stamp's first sample from the centre, in stamps: -n/2 ... n/2 - 1 of n in a row, two's complement.
   logic [PIXEL-1:0] to_x, to_y;  // pixels
   generate
     if (PER_ROW_BITS > 0) begin : gen_offset
@@ -112,8 +112,8 @@ module interpolate (
   logic [PIXELS*CODES-1:0]      code;
   raster_pkg::fragment_packet_t made;
 
-  // Where each pixel is shaded, a bit for each of its samples: the first that is covered, unless its centre is. None: its
-  // centre.
+  // Where each pixel is shaded, a bit per sample: its centre if covered or if no sample is, else the first covered
+  // sample.
   logic [PIXELS*N-1:0] shaded_at;
   generate
     if (N > 1) begin : gen_shaded
@@ -132,7 +132,7 @@ module interpolate (
       localparam int W = LOCAL_BITS_OF[32*p+:32];
       localparam int LOCAL = LOCAL_AT[32*p+:32];
       localparam int B = FRAGMENT_BITS_OF[32*p+:32];
-      localparam int CODE = FRAGMENT_AT[32*p+:32];  // and in ranges, whose planes come first
+      localparam int CODE = FRAGMENT_AT[32*p+:32];  // and ranges; these planes come first
       localparam int STEP = STEP_AT[32*p+:32];
       logic signed [W-1:0] anchor, context_step_x, x_step_y, y_step_x, y_step_y;  // modulo 2^W signs do not matter
       logic signed [W-1:0] x_value_q, y_value_q;
@@ -142,7 +142,7 @@ module interpolate (
       assign y_step_x       = y_context_q.step_x[STEP+:W];
       assign y_step_y       = y_context_q.step_y[STEP+:W];
 
-      // x, then y; the stamp lies on either side of the centre.
+      // x, then y; the stamp may lie on either side of the centre.
       logic signed [W-1:0] x_value, y_value;
       plane_offset #(
           .WIDTH (W),
@@ -169,10 +169,11 @@ module interpolate (
         y_value_q <= y_value;
       end
 
-      // With several samples a pixel, what the plane gains from its centre to each of them, rounded to the local guard bits.
+      // With several samples per pixel, the plane's increment from the centre to each sample, rounded to the local
+      // guard bits.
       logic [N*W-1:0] to_sample_q;
       if (N > 1) begin : gen_to_sample
-        localparam int WIDE = W + S;  // of a step
+        localparam int WIDE = W + S;  // bits of a step
         logic [N*WIDE-1:0] ways;
         sample_offsets #(
             .WIDTH(WIDE)
@@ -203,20 +204,20 @@ module interpolate (
             .y_i     (PIXEL'(s / STAMP)),
             .value_o (value)
         );
-        // Depth is that of the first sample, all else belongs to where the pixel is shaded.
+        // Depth is taken at the first sample, all other planes at the shading point.
         always_comb begin
           way = p == 0 ? to_sample_q[0+:W] : '0;
           for (int i = 0; i < N; i++) if (p != 0 && shaded_at[s*N+i]) way = way | to_sample_q[i*W+:W];
         end
         always_ff @(posedge clk_i) value_q <= value + way;
 
-        // The code that is offset by half of all: modulo 2^B its highest bit is another one, and nothing else.
+        // The code is offset by half its range: modulo 2^B that inverts its highest bit.
         if (p < raster_pkg::AFFINE_PLANES) begin : gen_code
           assign code[s*CODES+CODE+:B] = {!value_q[L+B-1], value_q[L+:B-1]};
         end else begin : gen_over_w
           assign code[s*CODES+CODE+:B] = !STORE_CONSTANTS_SEPARATELY ? value_q : s == 0 ? samples_stamp_q.anchor[LOCAL+:W] : '0;
         end
-        if (p == 0) begin : gen_depth  // of its other samples
+        if (p == 0) begin : gen_depth  // depths of the other samples
           for (k = 1; k < N; k++) begin : gen_further
             logic [W-1:0] further_q;
             always_ff @(posedge clk_i) further_q <= value + to_sample_q[k*W+:W];

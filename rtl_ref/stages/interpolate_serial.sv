@@ -1,12 +1,12 @@
-// Interpolate for the smallest parts: the bits of interpolate.sv with one context under way instead of one a step.
+// Interpolate for the smallest parts: the same bits as interpolate.sv, with one context in use instead of one per step.
 //
-// The context RAM's output is the only copy of a context: it is read when the first stamp of a primitive waits and
-// everything of the primitive before has left. Then one stamp a cycle; latency 2 cycles:
+// The context RAM's output is the only copy of a context: it is read when the first stamp of a primitive waits and all
+// stamps of the primitive before have left. Then one stamp a cycle; latency 2 cycles:
 //   x, y  from the anchor to the stamp's first sample; from there to each sample, of which the code is a part
-// Step y ends in a block RAM, from which a fragment is also offered: three wait there at most, the newest in step y, the
-// others behind it as in a skid buffer. So what comes later waits for the framebuffer by registers alone. What is looked at
-// first, whether there is an access and of what, stands in registers all the way.
-// Specification: model/stages/interpolate.hpp.
+// Step y ends in a block RAM, from which a fragment is also offered: at most three wait there, the newest in step y,
+// the others as in a skid buffer. So later stages wait for the framebuffer by registers alone. The fields that decide
+// first, whether and what a fragment accesses, stand in registers all the way. Specification:
+// model/stages/interpolate.hpp.
 module interpolate_serial (
     input logic clk_i,
     input logic rst_ni,
@@ -36,7 +36,7 @@ module interpolate_serial (
   localparam logic [32*PLANES-1:0] CODE_AT = raster_pkg::CODE_AT;
   localparam logic [32*PLANES-1:0] LOCAL_BITS_OF = raster_pkg::LOCAL_BITS_OF;
   localparam logic [32*PLANES-1:0] LOCAL_AT = raster_pkg::LOCAL_AT;
-  localparam int CODES = raster_pkg::ALL_CODE_BITS;  // of a sample
+  localparam int CODES = raster_pkg::ALL_CODE_BITS;  // bits of a sample
   localparam int PIXEL = raster_pkg::TILE_PIXEL_BITS;
   localparam int L = raster_pkg::PLANE_LOCAL_GUARD_BITS;
   localparam int PER_ROW_BITS = PIXEL - STAMP_SHIFT;
@@ -77,7 +77,7 @@ module interpolate_serial (
     if (y_ready) y_first_q <= {x_stamp_q.kind, x_stamp_q.key, x_stamp_q.stamp, x_stamp_q.mask};
   end
 
-  // The stamp's first sample from the centre, in stamps: -n/2 ... n/2 - 1 of n in a row, two's complement.
+  // Offset of the stamp's first sample from the centre, in stamps: -n/2 ... n/2 - 1 of n in a row, two's complement.
   logic signed [PIXEL-1:0] to_x, to_y;  // pixels
   generate
     if (PER_ROW_BITS > 0) begin : gen_offset
@@ -159,8 +159,8 @@ module interpolate_serial (
       .data_o ({fragment_o.kind, fragment_o.key, fragment_o.stamp, fragment_o.mask})
   );
 
-  // The word on offer in the next cycle was written before this one: a fragment is in step y first.
-  logic [1:0] write_q, read_q, read;  // of four words: where the next fragment goes; the one on offer, now and in the next cycle
+  // The word on offer in the next cycle was written in an earlier one: a fragment is in step y first.
+  logic [1:0] write_q, read_q, read;  // of four words: place of the next fragment; of the offer, now and next
   assign read = read_q + 2'(fragment_valid_o && fragment_ready_i);
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin

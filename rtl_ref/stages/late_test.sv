@@ -1,7 +1,7 @@
-// Late test: the alpha test behind the texture (LATE_ALPHA). What alpha may drop has not been written; here it is, or not: its
-// depths into depth_cache, its colours on into color_write. What alpha drops of a stamp that came from memory is written as it
-// was read. Without it every sample is kept.
-// Specification: opaque of model/stages/texture_stage.hpp, FragmentPath::drop of fragment_path.hpp, block_cache.hpp.
+// Late test: the alpha test downstream of the texture unit (LATE_ALPHA). Samples that alpha may drop have not been
+// written yet; the passed ones are written here: depths into depth_cache, colours into color_write. Dropped samples of
+// a stamp read from memory are written with the values read. Without LATE_ALPHA every sample is kept. Specification:
+// opaque of model/stages/texture_stage.hpp, FragmentPath::drop of fragment_path.hpp, block_cache.hpp.
 module late_test #(
     parameter int SAMPLES = raster_pkg::SAMPLES,  // derived; not to be set
     parameter int CODE = raster_pkg::STORED_DEPTH_BITS,
@@ -16,12 +16,12 @@ module late_test #(
     input logic [raster_pkg::PIXELS*8-1:0]  alpha_i,
     output logic [SAMPLES-1:0]              opaque_o,  // samples that alpha keeps
 
-    // To depth_cache: of each sample whether memory does not have it, and its word
+    // To depth_cache: for each sample whether only the chip holds it, and its word
     output logic                        late_valid_o,
     output logic [SAMPLES-1:0]          late_writes_o,
     output logic [SAMPLES*(CODE+1)-1:0] late_word_o,
 
-    // Samples of triangles, points and lines that this cycle adds to the counters
+    // Samples of triangles, points and lines to be counted in this cycle
     output logic [COUNT-1:0] written_o,
     output logic [COUNT-1:0] killed_o
 );
@@ -31,8 +31,8 @@ module late_test #(
     if (raster_pkg::LATE_ALPHA != 0) begin : gen_late
       logic [raster_pkg::DEPTH_FUNC_BITS-1:0] func_q;
       logic [7:0]           reference_q;
-      logic                 covers_q;  // alpha says how many samples of a pixel are drawn
-      logic [SAMPLES-1:0]   changes, alpha_passes;  // the depth or the stencil changes
+      logic                 covers_q;  // alpha to coverage
+      logic [SAMPLES-1:0]   changes, alpha_passes;  // the sample would change the depth or the stencil
       logic                 is_counted;
       always_ff @(posedge clk_i or negedge rst_ni) begin
         if (!rst_ni) begin

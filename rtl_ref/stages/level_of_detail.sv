@@ -1,17 +1,17 @@
-// Level of detail: from a sample's pixel and q to the levels of the texture that it looks at, one sample a clock, or those of
-// 2x2 (LANES), ten clocks.
+// Level of detail: from a sample's pixel and q to the levels of the texture that the sample reads, one sample a clock,
+// or 2x2 of them (LANES), ten clocks.
 //
 //   0, 1  lines    N_x and N_y of u and v: two along y, two along x
 //   2     their magnitudes
 //   3, 4  lengths of (N_xu, N_xv) and (N_yu, N_yv), by an octagon
 //   5     the longer one
-//   6, 7  its logarithm, less twice that of q, and the offset: lambda
+//   8     clamped to the draw's minimum and maximum
 //   8     held between the draw's least and largest
 //   9     which levels, and which filter
-// Of 2x2 samples those of a row share N_y, those of a column N_x, and what the odd ones have is one step more.
-// The lines come in parts, each moved in behind those before, and hold for the samples behind them; what a draw has of levels
-// stays while samples are under way. A fixed pipeline without enables. Specification: level_of_detail of
-// model/stages/level_of_detail.hpp, filter_of of texture_sample.hpp, TextureLevels and TextureLines of texture_levels.hpp.
+// The samples of 2x2 share N_y along a row and N_x along a column; the odd ones are one step further. The lines come in
+// parts, each shifted in after the ones before, and hold for later samples; the levels of a draw stay while samples are
+// under way. A fixed pipeline without enables. Specification: level_of_detail of model/stages/level_of_detail.hpp,
+// filter_of of texture_sample.hpp, TextureLevels and TextureLines of texture_levels.hpp.
 module level_of_detail #(
     parameter int PART = 104,  // bits of a part of the lines
     parameter int PIXEL = 12,  // bits of a pixel's column and row
@@ -27,21 +27,21 @@ module level_of_detail #(
     // The sample, or the first of several: column and row are even
     input logic [PIXEL-1:0]   x_i,
     input logic [PIXEL-1:0]   y_i,
-    input logic [5*LANES-1:0] exponent_i,  // a clock later: floor(log2 q), and what of q follows its highest bit
+    input logic [5*LANES-1:0] exponent_i,  // a clock later: floor(log2 q), and the bits of q after its highest
     input logic [8*LANES-1:0] below_i,
     input logic               is_mag_linear_i,  // of the draw
 
-    // Of ten clocks ago
+    // For the sample of ten clocks ago
     output logic [4*LANES-1:0] level_o,  // the only level, or the lower one
-    output logic [8*LANES-1:0] part_o,   // of the upper one, in 256ths; 0: it is not looked at
+    output logic [8*LANES-1:0] part_o,   // weight of the upper level, in 256ths; 0: it is not read
     output logic [LANES-1:0]   is_linear_o,
-    output logic [LANES-1:0]   is_between_o,  // between two levels, even if one says all
+    output logic [LANES-1:0]   is_between_o,  // between two levels, even if one has the whole weight
 
     output logic       shares_o  // the draw looks at two levels
 );
 
   localparam int LINES = (PART * 2 >= 208) ? PART * 2 : PART * 3;
-  localparam int LOD = 18;  // 2^-8 levels, with their sign
+  localparam int LOD = 18;  // unit 2^-8 levels, signed
   localparam int SIDE = (LANES == 1) ? 1 : 2;  // samples along a side
 
   logic [LINES-1:0] lines_q;
@@ -56,8 +56,8 @@ module level_of_detail #(
   assign shares_o = min_levels_q[1];
 
   // ---------------------------------------------------------------------------------------------- clocks 0 to 2: the lines
-  logic [127:0]      product_q;  // along y of u and v, along x likewise
-  logic [128*SIDE-1:0] zero_q, value_q, magnitude_q;  // the same of each row and of each column
+  logic [127:0]      product_q;  // along y of u and v, then along x
+  logic [128*SIDE-1:0] zero_q, value_q, magnitude_q;  // the same for each row and each column
   logic [15:0]       offset_q;
   genvar n, k;
   generate
@@ -81,13 +81,13 @@ module level_of_detail #(
 
   // --------------------------------------------------------------------------------------------- clocks 3 to 5: the lengths
   logic [64*SIDE-1:0] high_q, length_q;  // along y of each row, then along x of each column
-  logic [62*SIDE-1:0] half_q;            // of the shorter side
+  logic [62*SIDE-1:0] half_q;            // half of the shorter side
   generate
     for (n = 0; n < 2; n++) begin : gen_length
       for (k = 0; k < SIDE; k++) begin : gen_side
         localparam int AT = n * SIDE + k;
         logic [31:0] of_u, of_v, high;
-        logic [32:0] more;  // than the longer side, by 7/8 and 1/2: where that is negative, nothing
+        logic [32:0] more;  // added to the longer side, for the slopes 7/8 and 1/2: nothing if negative
         assign of_u = magnitude_q[128*k+64*n+:32];
         assign of_v = magnitude_q[128*k+64*n+32+:32];
         assign high = high_q[32*AT+:32];
@@ -101,7 +101,7 @@ module level_of_detail #(
     end
   endgenerate
 
-  function automatic [12:0] normalised(input [31:0] value);  // floor(log2), 8 bits behind the highest
+  function automatic [12:0] normalised(input [31:0] value);  // floor(log2), 8 bits after the highest
     logic [31:0] left;
     logic [4:0]  zeros;
     left = value;
@@ -126,7 +126,7 @@ module level_of_detail #(
       logic [7:0]      below, q_below;
       logic [12:0]     normalised_q;
       logic [LOD-1:0]  rest, lambda_q;
-      logic [6*LOD-1:0] rest_q;  // what is added, of a clock ago lowest
+      logic [6*LOD-1:0] rest_q;  // addend, the last clock's lowest
       log2_below u_log2 (
           .below_i(normalised_q[7:0]),
           .log2_o (below)

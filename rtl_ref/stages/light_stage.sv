@@ -1,4 +1,5 @@
-// Light stage: light_unit in the stream of tested stamps. What of a fragment is normals ends here; the rest of it goes along.
+// Light stage: light_unit in the stream of tested stamps. The normals of a fragment end here; its other fields go
+// along.
 //
 // A stamp never waits on its way in: depth_cache counts those inside. Without normals stamps pass as they are.
 // Specification: model/stages/light_unit.hpp, texture_stage.hpp.
@@ -14,7 +15,7 @@ module light_stage #(
     input raster_pkg::tested_stamp_t    stamp_i,
     input raster_pkg::fragment_packet_t fragment_i,
     input logic [PIXELS-1:0]            writes_i,  // pixels with a sample that gets a colour
-    input logic [COLORS-1:0]            color_i,   // of the primitive, one a pixel
+    input logic [COLORS-1:0]            color_i,   // colour of the primitive, one per pixel
 
     // To texture_stage
     output logic                         stamp_valid_o,
@@ -33,10 +34,10 @@ module light_stage #(
       assign writes_o      = writes_i;
       assign color_o       = color_i;
     end else begin : gen_lit
-      localparam int FRAGMENT = raster_pkg::ALL_FRAGMENT_BITS;  // of a pixel
+      localparam int FRAGMENT = raster_pkg::ALL_FRAGMENT_BITS;  // bits of a pixel
       localparam int NORMALS_AT = raster_pkg::FRAGMENT_AT[32*(raster_pkg::AFFINE_PLANES+3*(raster_pkg::NORMALS!=0 ? 1 : 0))+:32];
       localparam int NORMAL = (FRAGMENT - NORMALS_AT) / 3;
-      // Depths of further samples end at the test.
+      // Depths of a pixel's other samples end at the test.
       localparam int HEADER_AT = PIXELS * FRAGMENT + PIXELS * (raster_pkg::MSAA_SAMPLES - 1) * raster_pkg::DEPTH_CODE_BITS;
       localparam int HEADER = raster_pkg::FRAGMENT_PACKET_BITS - HEADER_AT;
       localparam int TOKEN = raster_pkg::UNIT_WORD_BITS;

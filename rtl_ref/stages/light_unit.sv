@@ -1,51 +1,51 @@
-// Light unit: colours in front of the texture unit in the light of their normals. Stamps wait in a queue, in order; a lane
-// takes a sample a clock of those that are lit, or a stamp without any, and gives it twelve clocks later.
+// Light unit: lights the colours of samples with normals, upstream of the texture unit. Stamps wait in a queue, in
+// order; a lane takes one lit sample per clock, or a stamp without lit samples, and outputs it twelve clocks later.
 //
-//   1      the leading one of P, the same for its three components     2  m: P shifted to it, 15 bits and the sign
+//   1      the leading one of P, common to its three components     2  m: P shifted to it, 15 bits and the sign
 //   3, 4   m^2, m.L, m.H: products, sums                               5  the line of 1 / |m|
 //   6      1 / |m|                                                     7  N.L and N.H
 //   8      N.L of 12 bits; the line of (N.H)^shininess                 9  the power
 //   10     ambient + diffuse N.L, specular (N.H)^shininess             11 the colour
 //
-// What a stamp carries along waits in RAMs until its last sample is through; its colours until stage 11 looks at them. A token
-// waits until no sample is left that looks at a register, and sets it on its way into the lane.
-// A sample here is a pixel's shading point: one a pixel, however many samples coverage has.
-// Specification: LightUnit of model/stages/light_unit.hpp; the times are LightTiming's in model/engines/cycle/block_timing.hpp.
+// The payload of a stamp waits in RAMs until its last sample is complete; its colours until stage 11 reads them. A
+// token waits until no sample in flight still reads a register, and sets it on its way into the lane. A sample here is
+// a pixel's shading point: one per pixel, however many samples coverage has. Specification: LightUnit of
+// model/stages/light_unit.hpp; the times are LightTiming's in model/engines/cycle/block_timing.hpp.
 module light_unit #(
     parameter int SAMPLES  = 4,
-    parameter int CHANNELS = 4,   // of a colour
-    parameter int P_BITS   = 27,  // of a component of P, with its sign; the highest bit is a copy of the sign
+    parameter int CHANNELS = 4,   // channels of a colour
+    parameter int P_BITS   = 27,  // bits of a component of P, signed; the highest bit is a copy of the sign
     parameter int PAYLOAD  = 1,   // bits that a stamp carries along
-    parameter int WORD     = 43,  // of a token, at most 3 P_BITS SAMPLES
+    parameter int WORD     = 43,  // bits of a token, at most 3 P_BITS SAMPLES
     parameter int PLACES   = 16   // stamps inside at most; a power of two
 ) (
     input logic clk_i,
     input logic rst_ni,
 
-    // From X
+    // From light_stage
     input logic                          stamp_valid_i,
     input logic [PAYLOAD-1:0]            payload_i,
     input logic [8*CHANNELS*SAMPLES-1:0] color_i,        // R lowest
     input logic                          is_triangle_i,
     input logic [SAMPLES-1:0]            mask_i,         // samples that get a colour
-    input logic [3*P_BITS*SAMPLES-1:0]   p_i,            // x lowest
-    input logic                          sets_i,         // a token of the light's
+    input logic [3*P_BITS*SAMPLES-1:0]   p_i,            // normal of each sample, x lowest
+    input logic                          sets_i,         // a token for a register of the light
     input logic [WORD-1:0]               word_i,
 
-    // The same, lit
+    // The same stamp, lit
     output logic                          stamp_valid_o,
     output logic [PAYLOAD-1:0]            payload_o,
     output logic [8*CHANNELS*SAMPLES-1:0] color_o
 );
 
-  localparam int P = P_BITS - 1;  // that count
-  localparam int M = 16;          // of m, of a direction, with the sign
+  localparam int P = P_BITS - 1;  // significant bits of P
+  localparam int M = 16;          // bits of m and of a direction, signed
   localparam int FACTOR = 13;     // 0 to 2^12
   localparam int COLOR = 8 * CHANNELS;
   localparam int NORMALS = 3 * P_BITS * SAMPLES;
   localparam int STAGES = 12;
-  localparam int LOOKS = 10;      // the last stage that looks at a register
-  localparam int REGISTER = 40;   // of a word: which
+  localparam int LOOKS = 10;      // the last stage that reads a register
+  localparam int REGISTER = 40;   // place of the register's number in a word
 
   // --------------------------------------------------------------------------------------------------------- into the lane
   logic                 head_valid, head_triangle, head_sets, goes, ends;
@@ -54,7 +54,7 @@ module light_unit #(
   logic [STAGES:1]      at_q, ends_q;
   logic [STAGES-1:1]    first_q;
   logic [LOOKS-1:1]     lit_q;
-  logic [(STAGES-1)*SAMPLES-1:0] sample_q;  // of stage 1 lowest
+  logic [(STAGES-1)*SAMPLES-1:0] sample_q;  // stage 1 lowest
   logic                 enable_q;
   logic [WORD-1:0]      word;
   logic waiting_ready, colors_ready, carried_ready, colors_valid, carried_valid;
@@ -117,7 +117,7 @@ module light_unit #(
   end
 
   // -------------------------------------------------------------------------------------------------- the normal: 0, 1 and 2
-  // Zeros at the top, by 16, 8, 4, 2, 1.
+  // Leading zeros, by 16, 8, 4, 2, 1.
   function automatic [4:0] zeros_of(input [31:0] value);
     logic [31:0] rest;
     rest = value;
@@ -128,7 +128,7 @@ module light_unit #(
   endfunction
 
   logic [3*P-1:0] p, p_1_q, p_2_q;
-  logic [P-2:0]   bits;  // of the largest component, but for the last one of a negative number
+  logic [P-2:0]   bits;  // up to the largest component; of a negative one its complement
   logic [4:0]     zeros_2_q;
   logic [3*M-1:0] m, m_3_q;
   always_comb begin
@@ -182,7 +182,7 @@ module light_unit #(
       .root_o  (root)
   );
 
-  // m.L, m.H in 17 bits and a half for what is dropped; by |m| of 15 bits or of 14.
+  // m.L, m.H in 17 bits, plus a half for the dropped bits; for |m| of 15 bits or of 14.
   function automatic [ROOT-1:0] part_of(input [2*M-1:0] dot, input is_long);
     part_of = {is_long ? dot[14+:ROOT-1] : dot[13+:ROOT-1], 1'b1};
   endfunction

@@ -1,9 +1,9 @@
 // Line raster: the pixels of one line, from its start to its end.
 //
-// In: line setups, from the host. Out: one pixel per cycle. What changes along a line is in registers, one adder each,
-// two of them chosen by the sign of the error. The planes have half an LSB in them, so that a code is the upper bits.
-// The next line is taken in the cycle in which the last pixel leaves; latency 1 cycle.
-// Specification: model/stages/line_raster.hpp.
+// In: line setups, from the host. Out: one pixel per cycle. Error, position and planes are in registers, one adder
+// each, with steps chosen by the sign of the error. The planes include half an LSB, so that a code is the upper bits.
+// The next line is taken in the cycle in which the last pixel leaves; latency 1 cycle. Specification:
+// model/stages/line_raster.hpp.
 module line_raster (
     input logic clk_i,
     input logic rst_ni,
@@ -34,12 +34,12 @@ module line_raster (
   logic [PX-1:0]         x_q;
   logic [PY-1:0]         y_q;
   logic signed [E-1:0]   error_q;      // >= 0: the next pixel lies in the next row
-  logic [COUNT-1:0]      remaining_q;  // pixels behind this one
+  logic [COUNT-1:0]      remaining_q;  // pixels after this one
   logic                  is_before_start_q;
 
   logic is_last, takes, moves;
   assign is_last       = remaining_q == '0;
-  assign line_ready_o  = !valid_q;  // so that nothing in here waits for what is behind it
+  assign line_ready_o  = !valid_q;  // so that nothing in here waits for downstream stages
   assign takes         = line_valid_i && line_ready_o;
   assign pixel_valid_o = valid_q;
   assign moves         = !error_q[E-1];

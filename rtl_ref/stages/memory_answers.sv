@@ -1,9 +1,8 @@
-// Memory answers: what memory answers to reads of blocks, on its way to whoever waits for it: depths to depth_cache, and with
-// blending colours to color_write. A place for each read that can be under way, so that no answer waits for a fragment.
+// Memory answers: the answers of memory to reads of blocks, buffered for their consumers: depths for depth_cache, and
+// with blending colours for color_write. A place for each read in flight, so that no answer waits for a fragment.
 //
-// Answers come in the order of the reads, so a queue of what each read was of says where they go. Reads of a merge
-// (pixel_colors) are answered to write_back.
-// Specification: the answers of model/stages/block_cache.hpp.
+// Answers come in the order of the reads, so a queue of the reads' kinds says where they go. Answers to reads of a
+// merge (pixel_colors) go to write_back. Specification: the answers of model/stages/block_cache.hpp.
 module memory_answers #(
     parameter int SAMPLES = raster_pkg::SAMPLES,  // derived; not to be set
     parameter int CODE = raster_pkg::STORED_DEPTH_BITS,
@@ -12,7 +11,7 @@ module memory_answers #(
     input logic clk_i,
     input logic rst_ni,
 
-    // From write_back: a read is requested; it is of colours; of one colour a pixel; answers belong to a merge
+    // From write_back: a read is requested; it reads colours; with one colour per pixel; answers belong to a merge
     input logic read_goes_i,
     input logic read_color_i,
     input logic read_of_pixels_i,
@@ -23,7 +22,7 @@ module memory_answers #(
     output logic                         response_ready_o,
     input  raster_pkg::memory_response_t response_i,
 
-    // To depth_cache and to color_write: what is taken is there from the next cycle on
+    // To depth_cache and to color_write: data follow in the cycle after the take
     output logic                     depth_valid_o,
     input  logic                     depth_ready_i,
     output logic [SAMPLES*CODE-1:0]  depth_o,
@@ -48,7 +47,7 @@ module memory_answers #(
   sram_fifo #(
       .WIDTH(SAMPLES * CODE),
       .DEPTH(QUEUE),
-      .BLOCK(raster_pkg::STORE_CONSTANTS_SEPARATELY == 0)  // whose constants want the block RAMs that an ECP5-25F has left
+      .BLOCK(raster_pkg::STORE_CONSTANTS_SEPARATELY == 0)  // separate constants need the block RAMs of an ECP5-25F
   ) u_answers (
       .clk_i,
       .rst_ni,
@@ -61,11 +60,11 @@ module memory_answers #(
   );
   generate
     if (raster_pkg::BLEND_LANES != 0) begin : gen_blends
-      localparam int READS = 1 << $clog2(2 * QUEUE + PLACES);  // that may not have been answered
+      localparam int READS = 1 << $clog2(2 * QUEUE + PLACES);  // reads that may not have been answered
       logic                     is_color, color_ready, answers_pixels;  // the next answer
       logic [SAMPLES*COLOR-1:0] response_color;
       logic                     planes_ready, planes_valid;
-      // Which plane the next answer is of: as the reads went out.
+      // Buffer of the next answer, in the order of the reads.
       localparam int PLANE = COMPRESSES ? 2 : 1;
       logic [PLANE-1:0] asked_plane, answered_plane;
       assign is_color = answered_plane[0];

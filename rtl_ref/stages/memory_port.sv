@@ -1,16 +1,18 @@
-// Memory port: what the framebuffer asks for, stamp by stamp, becomes bursts of beats, and what memory answers becomes stamps.
+// Memory port: turns the framebuffer's requests, one per stamp, into bursts of beats, and the answers of memory into
+// stamps.
 //
-//   request -> address -> [word] -> beat          a word is a stamp, or what shares a beat
+//   request -> address -> [word] -> beat          a word is a stamp, or several that share a beat
 //   response <- [beats of a stamp] <- answer
 //
-// In: requests, in program order; a run of them is a burst, and the first one says how long it is. Out: beats, each with its
-// byte address and the beats that are left of its burst. A request waits a cycle in a register, which takes the next one in the
-// cycle in which its last beat moves. Answers come in the order of the bursts: each beat that was read, and one word for each
-// burst that was written. Those are counted, so idle_o means written, not taken.
+// In: requests, in program order; a run of them is a burst, whose length the first request gives. Out: beats, each with
+// its byte address and the number of beats left in its burst. A request waits a cycle in a register, which takes the
+// next one in the cycle in which its last beat moves. Answers come in the order of the bursts: each beat that was read,
+// and one word for each burst that was written. Those are counted, so idle_o means written, not taken.
 //
-// Reset: power_on_ni resets the port, rst_ni everything in front of it at any time, for a cycle at least. A burst under way is
-// then ended with beats that write nothing, and the answers that are still to come are dropped; only then requests are taken.
-// Specification: model/stages/memory_port.hpp; the times are those of model/engines/cycle/port_timing.hpp.
+// Reset: power_on_ni resets the port, rst_ni everything upstream of it at any time, for a cycle at least. A burst under
+// way is then ended with beats that write nothing, and the answers that are still to come are dropped; only then
+// requests are taken. Specification: model/stages/memory_port.hpp; the times are those of
+// model/engines/cycle/port_timing.hpp.
 module memory_port (
     input logic clk_i,
     input logic power_on_ni,
@@ -22,7 +24,7 @@ module memory_port (
     input  logic                        request_valid_i,
     output logic                        request_ready_o,
     input  raster_pkg::memory_request_t request_i,
-    input  logic [8*raster_pkg::REQUEST_BYTES-1:0] bytes_i,  // which are these, as they lie in memory (request_bytes)
+    input  logic [8*raster_pkg::REQUEST_BYTES-1:0] bytes_i,  // its data, as they lie in memory (request_bytes)
 
     // To the framebuffer
     output logic                         response_valid_o,
@@ -39,19 +41,19 @@ module memory_port (
     output logic                       answer_ready_o,
     input  raster_pkg::memory_answer_t answer_i,
 
-    output logic idle_o  // all has been answered
+    output logic idle_o  // every request has been answered
 );
 
   localparam int SAMPLES = raster_pkg::SAMPLES;
   localparam int LANE = raster_pkg::MEMORY_LANE_BITS;
   localparam int PORT = raster_pkg::PORT_SHIFT;
-  localparam int BYTES = 1 << PORT;  // of a beat
+  localparam int BYTES = 1 << PORT;  // bytes of a beat
   localparam int HAS_BLOCKS = raster_pkg::CACHE_KIND;
   localparam int DEPTH_SHIFT = $clog2(SAMPLES * raster_pkg::DEPTH_SAMPLE_BYTES);  // log2 of the bytes of a stamp
-  localparam int COLORS = raster_pkg::MEMORY_COLORS;  // of a stamp
+  localparam int COLORS = raster_pkg::MEMORY_COLORS;  // colours of a stamp
   localparam int COLOR_SHIFT = $clog2(COLORS * raster_pkg::COLOR_SAMPLE_BYTES);
   localparam bit COMPRESSES = raster_pkg::COMPRESS_UNIT != 0;
-  localparam int PIXEL_SHIFT = $clog2(raster_pkg::PIXELS * raster_pkg::COLOR_SAMPLE_BYTES);  // of colours, one a pixel
+  localparam int PIXEL_SHIFT = $clog2(raster_pkg::PIXELS * raster_pkg::COLOR_SAMPLE_BYTES);  // of one colour per pixel
   localparam int FLAG_BYTES = raster_pkg::FLAG_WORD / 8;
   localparam int FLAG_SHIFT = $clog2(FLAG_BYTES);
   localparam int STAMP_SHIFT = (DEPTH_SHIFT > COLOR_SHIFT) ? DEPTH_SHIFT : COLOR_SHIFT;
@@ -66,7 +68,7 @@ module memory_port (
   localparam int STRIDE = raster_pkg::ROW_STRIDE_BITS;
 
   // ---------------------------------------------------------------------------------------------------------- the way out
-  // Where the stamp lies in its plane of a tile: block by block.
+  // Where the stamp lies in its tile's buffer: block by block.
   localparam int ROW_BITS = $clog2(raster_pkg::STAMPS_PER_ROW);
   localparam int SIDE_BITS = $clog2(raster_pkg::BLOCK_SIDE);
   localparam int TILE_BITS = $clog2(raster_pkg::BLOCKS_PER_ROW);
@@ -78,9 +80,9 @@ module memory_port (
                   ((row & SIDE_MASK) << SIDE_BITS) | (column & SIDE_MASK);
 
   // The address: base, row of tiles, tile, stamp.
-  logic                     is_color, is_flags, of_pixels;  // of_pixels: with one colour a pixel, or flags that say so
+  logic                     is_color, is_flags, of_pixels;  // of_pixels: one colour per pixel, or flags of such blocks
   logic [ADDRESS-1:0]       address;
-  logic [ADDRESS-PLANE-1:0] base, planes;  // planes of tiles up to this one in its row
+  logic [ADDRESS-PLANE-1:0] base, planes;  // buffers of tiles up to this one in its row
   logic [ADDRESS-TILE-1:0]  above;         // tiles in the rows above
   logic [PLANE-1:0]         color_offset, offset;
   assign is_color = request_i.plane[0];
@@ -91,7 +93,7 @@ module memory_port (
   generate
     if (COMPRESSES) begin : gen_pixel_offset
       localparam logic [15:0] IN_BLOCK = 16'((1 << (2 * SIDE_BITS)) - 1);
-      assign of_pixels    = request_i.plane[2];  // from where the block begins in any case
+      assign of_pixels    = request_i.plane[2];  // from the start of the block in any case
       assign color_offset = (PLANE'(place & ~IN_BLOCK) << COLOR_SHIFT) |
                             (of_pixels ? PLANE'(place & IN_BLOCK) << PIXEL_SHIFT : PLANE'(place & IN_BLOCK) << COLOR_SHIFT);
     end else begin : gen_offset
@@ -101,7 +103,7 @@ module memory_port (
   endgenerate
   assign offset = is_color ? color_offset : PLANE'(place) << DEPTH_SHIFT;
 
-  // The bytes, and the beats that they take.
+  // The bytes, and their number of beats.
   logic [8*WORD-1:0] depth_word, color_word, flag_word, word, bytes;
   logic [WORD-1:0]   depth_strobe, color_strobe, flag_strobe, strobe;
   logic [7:0]        depth_more, color_more, flag_more, more;
@@ -138,7 +140,7 @@ module memory_port (
       .length_o(color_length),
       .ends_o  (color_ends)
   );
-  logic [ADDRESS-ROW-1:0] flag_base, rows;  // of flags up to this one
+  logic [ADDRESS-ROW-1:0] flag_base, rows;  // rows of flags up to this one
   assign flag_base = is_color ? layout_i.color_flags_base[ADDRESS-1:ROW] : layout_i.depth_flags_base[ADDRESS-1:ROW];
   assign rows      = flag_base + ((ADDRESS - ROW)'(request_i.tile_y) << TILE_BITS) +
                      (ADDRESS - ROW)'(request_i.stamp);
@@ -207,17 +209,17 @@ module memory_port (
   assign ends   = !request_i.is_write || request_i.run == RUN'(1) ||
                   (is_flags ? flag_ends : (is_color ? sample_ends : depth_ends));
 
-  // A burst lies in a plane of a tile, or in a row of flags: no beat moves the address beyond these bits.
+  // A burst lies in one buffer of a tile, or in a row of flags: no beat moves the address beyond these bits.
   localparam int WIDEST = (PLANE > ROW) ? PLANE : ROW;
   localparam int INSIDE = (WIDEST > PORT) ? WIDEST : PORT + 1;
 
-  // The word on its way out. While it gathers, it is not complete and not on offer.
+  // The output word. While it gathers stamps, it is not complete and not on offer.
   logic               valid_q, gathers_q, is_write_q, is_first_q, in_burst_q, recovers_q;
-  logic [ADDRESS-1:PORT] address_q;  // without the offset of the rows above, which is a product and is added a step later
+  logic [ADDRESS-1:PORT] address_q;  // without the offset of the rows above, a product that is added one step later
   logic [ADDRESS-TILE-1:0] above_q;
-  logic [LENGTH-1:0]  length_q;  // beats that are left of the burst
+  logic [LENGTH-1:0]  length_q;  // beats left in the burst
   localparam bit SEVERAL = WORD > BYTES;  // beats in a word
-  logic [7:0]         more_q;    // of the word behind the one on offer
+  logic [7:0]         more_q;    // beats of the word after the one on offer
   logic [8*WORD-1:0]  data_q;
   logic [WORD-1:0]    strobe_q;
   logic [7:0]         writes_q;  // bursts without an answer
@@ -248,7 +250,7 @@ module memory_port (
     end
   end
 
-  // Behind the last beat of a word there are no strobes: so end the bursts that a reset has cut.
+  // After the last beat of a word there are no strobes: this ends bursts that a reset has cut.
   always_ff @(posedge clk_i) begin
     if (takes) begin
       data_q   <= gathers_q ? data_q | word : word;
@@ -284,8 +286,8 @@ module memory_port (
   localparam int STAMPS = raster_pkg::STAMPS_PER_ROW * raster_pkg::STAMPS_PER_ROW;
   localparam int DEPTH_SHARED = (DEPTH_SHIFT < PORT) ? PORT - DEPTH_SHIFT : 0;  // log2 of the stamps in a beat
   localparam int DEPTH_STAMPS = (STAMPS < (1 << DEPTH_SHARED)) ? STAMPS : 1 << DEPTH_SHARED;  // read with it
-  // With blending colours are read too. Unless colour and depth stamps have one size and fill beats, the port records which
-  // kind the next answer is. Likewise colours of pixels with COMPRESS_UNIT.
+  // With blending colours are read too. Unless colour and depth stamps have one size and fill beats, the port records
+  // which kind the next answer is. Likewise with COMPRESS_UNIT for one colour per pixel.
   localparam bit BLENDS = raster_pkg::BLEND_LANES != 0;
   localparam bit READS_COLOR = COMPRESSES || (BLENDS && (COLOR_SHIFT != DEPTH_SHIFT || DEPTH_SHIFT < PORT));
   localparam bit READS_SAMPLES = READS_COLOR && BLENDS;
@@ -293,16 +295,16 @@ module memory_port (
   localparam int COLOR_SHARED = (READS_SAMPLES && COLOR_SHIFT < PORT) ? PORT - COLOR_SHIFT : 0;
   localparam int PIXEL_BEATS = (COMPRESSES && PIXEL_SHIFT > PORT) ? 1 << (PIXEL_SHIFT - PORT) : 1;
   localparam int PIXEL_SHARED = (COMPRESSES && PIXEL_SHIFT < PORT) ? PORT - PIXEL_SHIFT : 0;
-  localparam int MOST_BEATS = (COLOR_BEATS > DEPTH_BEATS) ? COLOR_BEATS : DEPTH_BEATS;  // of pixels no more
+  localparam int MOST_BEATS = (COLOR_BEATS > DEPTH_BEATS) ? COLOR_BEATS : DEPTH_BEATS;  // pixel colours need no more
   localparam int PART = (MOST_BEATS > 1) ? $clog2(MOST_BEATS) : 1;
   localparam int MOST_SHARED = (COLOR_SHARED > DEPTH_SHARED) ? COLOR_SHARED : DEPTH_SHARED;
   localparam int SHARED = (PIXEL_SHARED > MOST_SHARED) ? PIXEL_SHARED : MOST_SHARED;
   localparam int PARTS = (PART > SHARED) ? PART : SHARED;
   localparam int READ_WORD = MOST_BEATS * BYTES;
-  // Reads in flight, in stamps: with blending also those of stamps between depth_cache and color_write.
+  // Reads in flight, in stamps: with blending also the reads of stamps between depth_cache and color_write.
   localparam int PLACES = (raster_pkg::COORDINATES == 0) ? 2 : raster_pkg::TEXTURE_STAMPS;
   localparam int WAITS = BLENDS ? 1 << $clog2(2 * raster_pkg::CACHE_QUEUE + PLACES) : raster_pkg::CACHE_QUEUE;
-  localparam int IN_BLOCK = raster_pkg::BLOCK_SIDE * raster_pkg::BLOCK_SIDE;  // stamps that are merged
+  localparam int IN_BLOCK = raster_pkg::BLOCK_SIDE * raster_pkg::BLOCK_SIDE;  // stamps of a merge
   localparam int WAITING = (COMPRESSES && WAITS < IN_BLOCK) ? IN_BLOCK : WAITS;
   localparam int MOST = MOST_BEATS * ((HAS_BLOCKS != 0) ? WAITING : STAMPS);
   localparam int READS = $clog2(MOST + 1);
@@ -311,11 +313,11 @@ module memory_port (
   logic [PARTS-1:0]       part_q;  // beats of the next stamp that have come, or stamps of the beat that have gone
   logic [PARTS-1:0]       sub;     // number of the next stamp in its beat
   logic [READS-1:0]       reads_q;
-  logic [8*READ_WORD-1:0] beats;   // the newest on top
+  logic [8*READ_WORD-1:0] beats;   // the newest beat highest
   logic [SAMPLES*LANE-1:0] depth_data;
   logic                   answers, is_read, responds, is_whole, is_last;
   logic                   answers_color;  // the next stamp is one of colours
-  logic                   answers_pixels;  // of those with one a pixel
+  logic                   answers_pixels;  // it has one colour per pixel
 
   assign is_read           = answer_valid_i && !answer_i.is_write;
   assign is_whole          = (!READS_COLOR && DEPTH_SHARED != 0) ||
@@ -337,7 +339,7 @@ module memory_port (
     if (HAS_BLOCKS == 0) begin : gen_planes
       assign answers_color  = 1'b0;
       assign answers_pixels = 1'b0;
-      assign sub     = part_q;  // whole planes are read
+      assign sub     = part_q;  // whole buffers are read
       assign is_last = DEPTH_SHARED == 0 || part_q == PARTS'(DEPTH_STAMPS - 1);
     end else begin : gen_stamps
       assign is_last = 1'b1;  // single stamps are read
@@ -462,6 +464,6 @@ module memory_port (
   end
 
   assign is_done = !valid_q && !gathers_q && !owes && reads_q == '0 && writes_q == '0;
-  assign idle_o  = !discards && reads_q == '0 && writes_q == '0;  // what has not been sent has not been answered
+  assign idle_o  = !discards && reads_q == '0 && writes_q == '0;  // a request not yet sent is not answered either
 
 endmodule

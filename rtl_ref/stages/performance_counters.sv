@@ -1,7 +1,7 @@
-// Performance counters: the work of triangles, points and lines, and what of tiles goes to and from memory, since reset. What
-// the framebuffer counts comes through a register. A counter whose highest bit falls has wrapped, and `overflow` stays.
-// Without the unit nothing moves, and nothing is left of it.
-// Specification: CounterPacket of model/packets/packets.hpp.
+// Performance counters: the work of triangles, points and lines, and the traffic of tiles to and from memory, since
+// reset. The framebuffer's events come through a register. A counter whose highest bit falls has wrapped, and
+// `overflow` stays. Without the unit the counters are constant and are removed. Specification: CounterPacket of
+// model/packets/packets.hpp.
 module performance_counters #(
     parameter int COUNT = $clog2(raster_pkg::SAMPLES + 1),  // derived; not to be set
     parameter int TESTED = 2 * raster_pkg::TILE_SHIFT + $clog2(raster_pkg::MSAA_SAMPLES) + 1
@@ -9,7 +9,7 @@ module performance_counters #(
     input logic clk_i,
     input logic rst_ni,
 
-    // What this cycle adds: primitives, of cull; visits and samples that are tested, of coarse_raster
+    // Events of this cycle: primitives, from cull; visits and samples to be tested, from coarse_raster
     input logic              is_primitive_i,
     input logic              is_zero_area_i,
     input logic              is_backface_i,
@@ -20,18 +20,18 @@ module performance_counters #(
     input logic              is_accepted_i,
     input logic              is_hiz_i,
     input logic [TESTED-1:0] samples_tested_i,
-    // Samples, of depth_test or late_test
+    // Samples, from depth_test or late_test
     input logic [COUNT-1:0]  covered_i,
     input logic [COUNT-1:0]  passed_i,
     input logic [COUNT-1:0]  written_i,
     input logic [COUNT-1:0]  killed_i,
-    // Stamps of the framebuffer, and what the texture unit makes of its cache
+    // Stamps of the framebuffer, and cache use of the texture unit
     input logic              fill_i,
     input logic              evict_i,
     input logic              clear_i,
     input logic [6:0]        texture_use_i,
 
-    input  logic                        hold_i,  // what is shown stays, and counting goes on
+    input  logic                        hold_i,  // the snapshot stays, and counting goes on
     output raster_pkg::counter_packet_t counters_o
 );
 
@@ -84,7 +84,7 @@ module performance_counters #(
       counters_q.tile_clears        <= counters_q.tile_clears + COUNTER'(clear_q);
       if (raster_pkg::ALPHA_UNIT != 0 && raster_pkg::CACHE_KIND == 1 && raster_pkg::SETUP_KIND == 0)
         counters_q[COUNTER-1:0] <= counters_q[COUNTER-1:0] + COUNTER'(killed_i);  // the last is alpha_killed
-      if (raster_pkg::COORDINATES != 0)  // in front of that texture_samples, texture_hits, texture_fills
+      if (raster_pkg::COORDINATES != 0)  // before that texture_samples, texture_hits, texture_fills
         for (int i = 0; i < 3; i++)
           counters_q[TEXTURE_AT+(2-i)*COUNTER+:COUNTER] <= counters_q[TEXTURE_AT+(2-i)*COUNTER+:COUNTER] +
                                                            COUNTER'(texture_use_q[3*i+:3]);

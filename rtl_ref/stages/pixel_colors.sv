@@ -1,19 +1,19 @@
-// Pixel colours: blocks of 4x4 pixels whose pixels have one colour each lie in memory with one colour a pixel, others with one
-// a sample. A bit for each block of the target, in words of FLAG_WORD blocks of a row, says which.
+// Pixel colours: a block of 4x4 pixels with one colour in each pixel lies in memory with one colour per pixel, any
+// other with one per sample. A bit for each block of the target, in words of FLAG_WORD blocks of a row, says which.
 //
 //   victims -> [slots: is it uniform, is it whole] --.
 //   requests <-> [look: the block's bit] -> how its colours are written or read -> [merge: reads of its pixels, if need be]
 //
-// Whoever is about to ask for colours of a block, to write or to read, waits a cycle for its bit. What is written is uniform
-// if of each pixel all samples are there, and equal, or none; the block then goes to memory with a colour a pixel where memory
-// holds garbage, all of it is there, or memory has such a block already. One that is not uniform, over such a block, is
-// merged: its pixels are read, behind everything that was asked for before, and kept here until the block has been written
-// with all samples. Tokens read and write words when nothing else is under way.
-// Specification: model/stages/pixel_colors.hpp; the times are those of model/engines/cycle/block_timing.hpp.
+// Before colours of a block are written or read, its bit is looked up, which takes one cycle. A victim is uniform if in
+// each pixel all samples are present and equal, or none is; the block then goes to memory with one colour per pixel if
+// memory is stale, all of the block is present, or memory holds it so already. A victim that is not uniform, over a
+// block stored so, is merged: its pixels are read, after all earlier requests, and kept here until the block has been
+// written with all samples. Tokens read and write words when nothing else is under way. Specification:
+// model/stages/pixel_colors.hpp; the times are those of model/engines/cycle/block_timing.hpp.
 module pixel_colors #(
     parameter int SIDE_BITS = $clog2(raster_pkg::BLOCK_SIDE),  // derived; not to be set
     parameter int TILE_BITS = $clog2(raster_pkg::BLOCKS_PER_ROW),
-    parameter int STAMPS = raster_pkg::BLOCK_SIDE * raster_pkg::BLOCK_SIDE,  // of a block
+    parameter int STAMPS = raster_pkg::BLOCK_SIDE * raster_pkg::BLOCK_SIDE,  // stamps of a block
     parameter int STAMP = (STAMPS == 1) ? 1 : 2 * SIDE_BITS,
     parameter int BLOCK_X = raster_pkg::TILE_X_BITS + TILE_BITS,
     parameter int BLOCK_Y = raster_pkg::TILE_Y_BITS + TILE_BITS,
@@ -22,14 +22,15 @@ module pixel_colors #(
     parameter int WORD_X = (BLOCK_X > BIT) ? BLOCK_X - BIT : 1,  // bits of a word's number in its row
     parameter int SAMPLES = raster_pkg::SAMPLES,
     parameter int COLOR = raster_pkg::STORED_COLOR_BITS,
-    parameter int COLORS = raster_pkg::PIXELS * COLOR,  // of a stamp, one a pixel
+    parameter int COLORS = raster_pkg::PIXELS * COLOR,  // bits of a stamp's colours, one per pixel
     parameter int VICTIMS = raster_pkg::CACHE_VICTIMS,
     parameter int VICTIM = $clog2(VICTIMS)
 ) (
     input logic clk_i,
     input logic rst_ni,
 
-    // Slots of victims: an eviction begins, and whether memory holds garbage of its colours; a stamp of colours comes into one
+    // Slots of victims: an eviction begins, and whether its colours in memory are stale; a stamp of colours enters a
+    // slot
     input logic                     begins_i,
     input logic [VICTIM-1:0]        begin_slot_i,
     input logic                     begin_fills_i,
@@ -38,11 +39,11 @@ module pixel_colors #(
     input logic [SAMPLES-1:0]       come_strobe_i,
     input logic [SAMPLES*COLOR-1:0] come_color_i,
 
-    // Colours of a block are to be written, those of a slot, or a stamp's are to be read; in the order of requests, until the
-    // last of them has been taken
+    // Colours of a block are to be written, from a slot, or a stamp's are to be read; in the order of requests, until
+    // the last of them has been taken
     input  logic                                    writes_i,
     input  logic [VICTIM-1:0]                       slot_i,
-    input  logic                                    is_every_i,  // stamp of it written
+    input  logic                                    is_every_i,  // every stamp of it is written
     input  logic [BLOCK_X-1:0]                      write_x_i,
     input  logic [BLOCK_Y-1:0]                      write_y_i,
     input  logic                                    reads_i,
@@ -50,23 +51,23 @@ module pixel_colors #(
     input  logic [raster_pkg::TILE_Y_BITS-1:0]      read_tile_y_i,
     input  logic [raster_pkg::STAMP_INDEX_BITS-1:0] read_stamp_i,
     input  logic                                    ends_i,
-    output logic                                    is_known_o,   // how: now
-    output logic                                    of_pixels_o,  // then: with one colour a pixel
+    output logic                                    is_known_o,   // the block's bit is known
+    output logic                                    of_pixels_o,  // with one colour per pixel
 
-    // The merge: reads of its stamps, their answers in order, and one of them as it is written
+    // The merge: reads of its stamps, their answers in order, and the merged stamp being written
     output logic                             asks_o,
     output logic [STAMP-1:0]                 ask_stamp_o,
-    input  logic                             is_asked_i,  // taken
+    input  logic                             is_asked_i,  // the read was taken
     input  logic                             other_asked_i,  // another read was taken, or answered
     input  logic                             other_answered_i,
     input  logic                             answers_i,
     input  logic [SAMPLES*raster_pkg::MEMORY_LANE_BITS-1:0] answer_i,
-    output logic                             merges_o,  // all stamps are written, with what was read
-    output logic                             takes_answers_o,  // none but its own are to come
+    output logic                             merges_o,  // all stamps are written, merged with the colours read
+    output logic                             takes_answers_o,  // only its own answers are still to come
     input  logic [STAMP-1:0]                 stamp_i,
     output logic [COLORS-1:0]                merged_o,
 
-    // Tokens: a word is read, and is there in the next cycle; or written
+    // Tokens: a word is read, and valid in the next cycle; or written
     input  logic               token_reads_i,
     input  logic               token_writes_i,
     input  logic [WORD_X-1:0]  word_x_i,
@@ -84,9 +85,9 @@ module pixel_colors #(
   localparam int MOST = raster_pkg::BLEND_LANES == 0 ? raster_pkg::CACHE_QUEUE : 2 * raster_pkg::CACHE_QUEUE + PLACES;
   localparam int READS = $clog2(MOST + 1);
 
-  // Of the colours in each slot: memory holds garbage; pixels have one each; what has come is whole.
+  // Colours of each slot: stale in memory; one per pixel; complete so far.
   logic [VICTIMS-1:0] fills_q, is_uniform_q, is_full_q;
-  logic               is_uniform;  // the stamp that comes
+  logic               is_uniform;  // the incoming stamp is uniform
   always_comb begin
     is_uniform = 1'b1;
     for (int i = 0; i < SAMPLES; i++)
@@ -106,7 +107,7 @@ module pixel_colors #(
     end
   end
 
-  // The block at work.
+  // The block being looked up.
   logic [BLOCK_X-1:0] read_x, block_x;
   logic [BLOCK_Y-1:0] read_y, block_y;
   block_stamp u_read_block (
@@ -156,7 +157,7 @@ module pixel_colors #(
   assign of_pixels_o = writes_i ? is_even && (fills || is_whole_q || is_stored) : is_stored;
 
   // The merge.
-  logic [COUNT-1:0]  asked_q, answered_q;  // stamps
+  logic [COUNT-1:0]  asked_q, answered_q;  // in stamps
   logic [READS-1:0]  others_q;  // reads that have not been answered
   logic [COLORS-1:0] merged_q[0:STAMPS-1], answer;
   assign merges_o    = writes_i && known_q && !is_even && !fills && is_stored;

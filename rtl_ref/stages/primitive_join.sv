@@ -1,8 +1,8 @@
-// Primitive join: puts the pixels of lines where program order wants them among the stamps.
+// Primitive join: inserts the pixels of lines among the stamps in program order.
 //
-// In: fragments from interpolate, pixels from line_raster. Out: fragments. A fragment of kind line waits for the pixels of
-// one line and becomes one fragment each; every other goes through. Combinational: no latency, one fragment per cycle.
-// Which stream is read next follows from the fragment on offer, never from which of the two has something.
+// In: fragments from interpolate, pixels from line_raster. Out: fragments. A fragment of kind line waits for the pixels
+// of one line and becomes one fragment each; every other fragment passes. Combinational: no latency, one fragment per
+// cycle. Which stream is read next follows from the fragment on offer, never from which of the two streams is valid.
 // Specification: model/stages/primitive_join.hpp.
 module primitive_join (
     // From interpolate
@@ -22,14 +22,14 @@ module primitive_join (
 );
 
   localparam int SAMPLES = raster_pkg::SAMPLES;
-  localparam int N = raster_pkg::MSAA_SAMPLES;  // of a pixel
+  localparam int N = raster_pkg::MSAA_SAMPLES;  // samples of a pixel
   localparam int TS = raster_pkg::TILE_SHIFT;
   localparam int SIZE = raster_pkg::STAMP_SIZE;
   localparam int SS = $clog2(SIZE);
   localparam int STAMP = raster_pkg::STAMP_INDEX_BITS;
   localparam int TX = raster_pkg::TILE_X_BITS;
   localparam int TY = raster_pkg::TILE_Y_BITS;
-  localparam int CODES = raster_pkg::ALL_FRAGMENT_BITS;  // of a pixel
+  localparam int CODES = raster_pkg::ALL_FRAGMENT_BITS;  // bits of a pixel
   // A line's pixel has no planes beyond the colours; where triangles' constants are stored separately they are not read.
   localparam int JOINED = raster_pkg::STORE_CONSTANTS_SEPARATELY != 0 ? raster_pkg::ALL_AFFINE_CODE_BITS : CODES;
 
@@ -39,8 +39,8 @@ module primitive_join (
   assign fragment_ready_o = fragment_ready_i && (!is_line || (pixel_valid_i && pixel_i.is_last));
   assign pixel_ready_o    = fragment_ready_i && fragment_valid_i && is_line;
 
-  logic [TS-1:0]      x, y;              // in the tile
-  logic [TS-1:0]      inner_x, inner_y;  // in the stamp
+  logic [TS-1:0]      x, y;              // position in the tile
+  logic [TS-1:0]      inner_x, inner_y;  // position in the stamp
   logic [STAMP-1:0]   stamp;
   logic [SAMPLES-1:0] mask;
   assign x       = TS'(pixel_i.x);

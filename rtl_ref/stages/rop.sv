@@ -12,8 +12,8 @@ module rop (
       logic [15:0] r, g, b;
       logic [8:0] r_rest, g_rest, b_rest;  // 126 - c
 
-      // c * 249 + 1014 = c * 257 + (126 - c) * 8 + 6, and c * 257 is c beside itself. Likewise with 4 for green. In the
-      // smallest parts a carry chain cannot turn c round: there 126 - c is the complement of c - 127.
+      // c * 249 + 1014 = c * 257 + (126 - c) * 8 + 6, and c * 257 is c concatenated with c. Likewise with 4 for green.
+      // In the smallest parts a carry chain cannot invert c: there 126 - c is the complement of c - 127.
       localparam bit SMALLEST = raster_pkg::SETUP_KIND != 0;
       assign r_rest = SMALLEST ? ~({1'b0, rgba_i[7:0]} - 9'd127) : 9'd126 - {1'b0, rgba_i[7:0]};
       assign g_rest = SMALLEST ? ~({1'b0, rgba_i[15:8]} - 9'd127) : 9'd126 - {1'b0, rgba_i[15:8]};

@@ -1,6 +1,5 @@
-// Stamp rop: rop of each pixel of a shaded stamp, and its colour at all samples that get it. Where colours are blended or
-// dithered they are packed in color_write. Combinational.
-// Specification: model/stages/texture_stage.hpp.
+// Stamp rop: rop of each pixel of a shaded stamp, copied to all samples that get the colour. Blended or dithered
+// colours are packed in color_write. Combinational. Specification: model/stages/texture_stage.hpp.
 module stamp_rop #(
     parameter int PIXELS = raster_pkg::PIXELS,  // derived; not to be set
     parameter int RGBA = 8 * raster_pkg::COLOR_PLANES,
@@ -10,11 +9,11 @@ module stamp_rop #(
     input  logic [PIXELS*RGBA-1:0]                rgba_i,
     output logic [raster_pkg::SAMPLES*COLOR-1:0]  color_o,  // as color_write takes it
     output logic [PIXELS*8-1:0]                   alpha_o,
-    output raster_pkg::color_packet_t             packet_o  // the same with what is not written at 0
+    output raster_pkg::color_packet_t             packet_o  // the same with 0 for samples that are not written
 );
 
-  localparam int N = raster_pkg::MSAA_SAMPLES;  // of a pixel, which has one colour, whatever samples it is written to
-  // A sample that is not written has colour 0 where more than its mask is looked at.
+  localparam int N = raster_pkg::MSAA_SAMPLES;  // samples of a pixel, which has one colour, whichever are written
+  // A sample that is not written has colour 0 where more than its mask is read.
   localparam bit CLEANS = N > 1 || raster_pkg::BLEND_LANES != 0;
   genvar s;
   generate

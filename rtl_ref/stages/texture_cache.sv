@@ -1,20 +1,21 @@
-// Texture cache: lines of 4x4 texels, direct mapped, non-blocking: on a miss only the sample itself waits.
+// Texture cache: lines of 4x4 texels, direct mapped, non-blocking: on a miss only the sample that missed waits.
 //
 //   sample -> [tags] -> waiting samples -> [data RAM] -> code
 //                '-> request .. memory .. answers -^
 //
-// A sample looks its line up and then waits in a queue, a hit as well as a miss, so that the answers to misses have time to
-// come (Igehy, Eldridge, Proudfoot 1998). Answers are written as they come, and always can be: each line that is asked for
-// takes the place of one that nobody reads any more. So a miss waits until the last sample that was found in the line's place
-// has been read. The tags know its number, counted in groups and modulo a power of two: a line that was last read long ago may
-// look as if a sample were still to read it, which costs a wait, and only for samples in front.
+// A sample looks its line up and then waits in a queue, after a hit as well as a miss, so that the answers to misses
+// have time to come (Igehy, Eldridge, Proudfoot 1998). Answers are written as they come, and always can be: each
+// requested line takes the place of a line with no reader left. So a miss waits until the last sample that was found in
+// the line's place has been read. The tags hold the number of that sample, counted in groups and modulo a power of two:
+// a line that was last read long ago may appear to have a reader left, which costs a wait, and only if samples are
+// still in the queue.
 //
-// Reset: that of texture_answers.sv.
-// Specification: TextureCache of model/stages/texture_unit.hpp; times: model/engines/cycle/texture_timing.hpp.
+// Reset: as in texture_answers.sv. Specification: TextureCache of model/stages/texture_unit.hpp; times:
+// model/engines/cycle/texture_timing.hpp.
 module texture_cache #(
     parameter int LINES = 64,      // a power of two, at least 2
     parameter int PORT_BITS = 64,  // 16 to 128
-    parameter int IN_FLIGHT = 32,  // samples that wait; a power of two
+    parameter int IN_FLIGHT = 32,  // samples in the queue; a power of two
     parameter int TAIL = 1,        // bits that go along with a sample
     parameter int LINE = $clog2(LINES)  // derived; not to be set
 ) (
@@ -25,13 +26,13 @@ module texture_cache #(
     // Samples
     input  logic            sample_valid_i,
     output logic            sample_ready_o,
-    input  logic [27:0]     address_i,  // of the line, 16 bytes
+    input  logic [27:0]     address_i,  // address of the line, 16 bytes
     input  logic [LINE-1:0] line_i,
-    input  logic [3:0]      texel_i,    // inside the line
+    input  logic [3:0]      texel_i,    // place inside the line
     input  logic [2:0]      format_i,
     input  logic [TAIL-1:0] tail_i,
 
-    input  logic drop_i,          // all lines; in a cycle in which no sample is in front of the tags, or in them
+    input  logic drop_i,          // drops all lines; in a cycle in which no sample is in the tags or upstream of them
     output logic tags_are_empty_o,
 
     // Texels as they are stored, in order
@@ -50,25 +51,25 @@ module texture_cache #(
     output logic                 answer_ready_o,
     input  logic [PORT_BITS-1:0] answer_data_i,
 
-    output logic hit_o,  // a sample has been looked up
+    output logic hit_o,  // the sample that was looked up hit
     output logic miss_o,
     output logic idle_o
 );
 
-  localparam int NUMBER = 7;  // bits of a group's number, as many as fit beside a tag into a block RAM
-  localparam int GROUP = 3;   // log2 of a group's samples
+  localparam int NUMBER = 7;  // bits of a group's number, as many as fit next to a tag into a block RAM
+  localparam int GROUP = 3;   // log2 of the samples in a group
   localparam int COUNT = NUMBER + GROUP;
   localparam int WORD_BITS = (PORT_BITS < 32) ? 32 : PORT_BITS;  // of the RAM
-  localparam int WORD = $clog2(WORD_BITS / 8);   // bytes of a word, log2
-  localparam int WORDS = 6 - WORD;               // of a line of 64 bytes, log2
+  localparam int WORD = $clog2(WORD_BITS / 8);   // log2 of the bytes of a word
+  localparam int WORDS = 6 - WORD;               // log2 of the words of a line of 64 bytes
 
-  function automatic [1:0] size_of(input [2:0] format);  // bytes of a texel, log2
+  function automatic [1:0] size_of(input [2:0] format);  // log2 of the bytes of a texel
     size_of = (format == 3'd0) ? 2'd0 : (format == 3'd5) ? 2'd2 : 2'd1;
   endfunction
 
   // -------------------------------------------------------------------------------------------------------------------- tags
   logic              t_valid_q, t_enters, t_goes, is_hit, waits, is_occupied, is_referenced;
-  logic              same_place_q, same_line_q;  // as the sample in front
+  logic              same_place_q, same_line_q;  // same place or line as the sample before
   logic [27:0]       t_address_q, tag;
   logic [LINE-1:0]   t_line_q;
   logic [3:0]        t_texel_q;
@@ -80,8 +81,8 @@ module texture_cache #(
   logic [LINE-1:0]   sweep_q;
   logic [LINE-1:0]   tag_write_line;
   logic [NUMBER+28:0] tag_new;
-  logic [COUNT-1:0]  issued_q, read_q;  // samples that have left the tags, and those of them that have been read
-  logic [COUNT-1:0]  last;              // the number of the last that has left
+  logic [COUNT-1:0]  issued_q, read_q;  // samples that have left the tags; samples of those that have been read
+  logic [COUNT-1:0]  last;              // number of the last sample that has left
   logic              waiting_ready, waiting_valid, reads;
   logic              may_ask, answers_are_idle;
 
@@ -113,7 +114,7 @@ module texture_cache #(
   assign is_occupied  = issued_q != read_q;
   assign is_known     = same_place_q ? same_line_q : tag_valid && tag == t_address_q;
   assign is_hit       = is_known;
-  // Counted back from this sample: no farther than the oldest that waits.
+  // Counted back from this sample: no farther than the oldest in the queue.
   assign is_referenced = is_occupied &&
                          NUMBER'(group - (same_place_q ? last_group : tag_group)) <= NUMBER'(group - oldest_group);
   assign waits  = !waiting_ready ||
@@ -158,7 +159,7 @@ module texture_cache #(
       .LINE     (LINE),
       .PORT_BITS(PORT_BITS),
       .WORD_BITS(WORD_BITS),
-      .LINES    (IN_FLIGHT)  // each has a sample that waits
+      .LINES    (IN_FLIGHT)  // each has a sample in the queue
   ) u_answers (
       .clk_i,
       .rst_ni,
@@ -202,7 +203,7 @@ module texture_cache #(
   logic [3:0]           texel;
   logic [2:0]           format;
   logic [TAIL-1:0]      tail;
-  logic [5:0]           offset;  // bytes
+  logic [5:0]           offset;  // in bytes
   logic [LINE+WORDS-1:0] data_read_address, data_write_address;
   logic [WORD_BITS-1:0] word;
   logic                 d_valid_q, d_ready;

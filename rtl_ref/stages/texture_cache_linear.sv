@@ -1,14 +1,14 @@
-// Texture cache for a linear filter: what texture_cache.sv is for one texel a sample, for the four around its place.
+// Texture cache for a linear filter: texture_cache.sv for the four texels around a sample's place.
 //
-// These lie in one block of 4x4, or in two or four beside each other, whose lines texture_tags.sv looks up. Texels are in four
-// banks as well, by the lowest bits of their own column and row: each gives one texel.
+// The four texels lie in one block of 4x4, or in two or four neighbouring blocks, whose lines texture_tags.sv looks up.
+// Texels are in four banks as well, by the lowest bits of their own column and row: each bank gives one texel.
 // Specification and times: those of texture_cache.sv.
 module texture_cache_linear #(
     parameter int LINES = 64,      // a power of two, at least 16
     parameter int WAYS = 1,        // 1 or 2
     parameter int PORT_BITS = 64,  // 16, 32 or 64
-    parameter int IN_FLIGHT = 32,  // samples that wait; a power of two
-    parameter int REQUESTS = 16,   // lines that are not answered; a power of two
+    parameter int IN_FLIGHT = 32,  // samples in the queue; a power of two
+    parameter int REQUESTS = 16,   // lines in flight; a power of two
     parameter int TAIL = 1,        // bits that go along with a sample
     parameter int SIDE_BITS = 12   // log2 of the longest side, texels
 ) (
@@ -23,21 +23,21 @@ module texture_cache_linear #(
     input  logic [2*SIDE_BITS-1:0] y_i,
     input  logic [TAIL-1:0]        tail_i,
 
-    // Its level: where that begins, in lines of 16 bytes, and a row of its lines, log2
+    // Its level: address of the first line, 16 bytes, and log2 of the lines in a row
     input logic [23:0] offset_i,
     input logic [3:0]  row_i,
     input logic        is_odd_i,
 
-    // The texture: stays while samples are in front of the tags
+    // Constants of the texture: they stay while samples are upstream of the tags
     input logic [2:0]  format_i,
     input logic [25:0] base_i,
     input logic [1:0]  size_i,
-    input logic        shares_i,  // odd levels have one half of each bank, even ones the other
+    input logic        shares_i,  // odd levels use one half of each bank, even levels the other
 
     input  logic drop_i,
     output logic tags_are_empty_o,
 
-    // Four texels as they are stored: first row, second row
+    // Four texels as stored: first row, second row
     output logic            code_valid_o,
     input  logic            code_ready_i,
     output logic [127:0]    code_o,
@@ -53,10 +53,10 @@ module texture_cache_linear #(
     output logic                 answer_ready_o,
     input  logic [PORT_BITS-1:0] answer_data_i,
 
-    output logic            looked_up_o,  // a sample, or a pass of one
-    output logic            hit_o,        // and all of it was there
+    output logic            looked_up_o,  // of a sample, or one of its passes
+    output logic            hit_o,        // and all its lines were there
     output logic [TAIL-1:0] looked_up_tail_o,
-    output logic            miss_o,       // a line has been asked for
+    output logic            miss_o,       // a line has been requested
     output logic idle_o
 );
 
@@ -66,9 +66,9 @@ module texture_cache_linear #(
   localparam int BLOCK = SIDE_BITS - 2;
 
   // ------------------------------------------------------------------------ which columns and rows are in which bank Of each
-  // bank along one axis: is there a block in it, which; is there a texel, which.
+  // in each bank along one axis: is a block there, and which; is a texel there, and which.
   logic [1:0]             used_x, used_y;
-  logic [2*BLOCK-1:0]     block_x, block_y;  // of the even bank lowest
+  logic [2*BLOCK-1:0]     block_x, block_y;  // the even bank lowest
   logic [BLOCK-1:0]       first_x, first_y, second_x, second_y;
   assign first_x    = x_i[SIDE_BITS-1:2];
   assign second_x   = x_i[2*SIDE_BITS-1:SIDE_BITS+2];
@@ -79,13 +79,13 @@ module texture_cache_linear #(
   assign block_x    = {first_x[0] ? first_x : second_x, first_x[0] ? second_x : first_x};
   assign block_y    = {first_y[0] ? first_y : second_y, first_y[0] ? second_y : first_y};
 
-  localparam int WAY_AT = (LINE % 2 == 0 ? LINE : LINE_X) - 1;  // of a line's number the bit that is the way: texture_tags.sv
+  localparam int WAY_AT = (LINE % 2 == 0 ? LINE : LINE_X) - 1;  // the way bit of a line's number: texture_tags.sv
   localparam logic [LINE-1:0] FIRST = ~(LINE'(WAYS - 1) << WAY_AT);
 
-  // What a texel needs of a column or row to be read: the line's part, and the bit above the bank's.
+  // Read address of a texel's column or row: the line's part, and the bit above the bank's.
   localparam int WAY_X = LINE_X + 1;
   localparam int WAY_Y = LINE_Y + 1;
-  localparam logic [WAY_Y-1:0] HALF_OF_WAY = WAY_Y'(WAYS == 1) << LINE_Y;  // its highest bit, that of a place along y likewise
+  localparam logic [WAY_Y-1:0] HALF_OF_WAY = WAY_Y'(WAYS == 1) << LINE_Y;  // the highest bit of a place along y
   logic [2*WAY_X-1:0] way_x;
   logic [2*WAY_Y-1:0] way_y;
   assign way_x = x_i[0] ? {x_i[1+:WAY_X], x_i[SIDE_BITS+1+:WAY_X]} : {x_i[SIDE_BITS+1+:WAY_X], x_i[1+:WAY_X]};
@@ -97,7 +97,7 @@ module texture_cache_linear #(
   logic [LINE-1:0]    fill_line;
   logic [1:0]         fill_size;
   logic [63:0]        fill_word;
-  logic [2:0]         fill_place;  // of the word in its line
+  logic [2:0]         fill_place;  // place of the word in its line
   logic [3:0]         lacks;
   logic               found_valid, reads;
   logic [2:0]         format;
@@ -106,7 +106,7 @@ module texture_cache_linear #(
   logic [2*WAY_Y-1:0] at_y;
   logic [3:0]         parity, d_parity_q, found_ways;
   logic               d_valid_q;
-  logic [1:0]         d_odd_x_q;  // of the even and the odd column, the bit above the lowest
+  logic [1:0]         d_odd_x_q;  // the bit above the lowest, of the even and the odd column
   logic [2:0]         d_format_q;
   logic [TAIL-1:0]    d_tail_q;
   localparam int PLACES = 2 * WAY_X + 2 * WAY_Y + 4 + 3;
@@ -174,7 +174,7 @@ module texture_cache_linear #(
       d_tail_q   <= tail;
     end
 
-  logic [127:0] texel;  // of the banks
+  logic [127:0] texel;  // one texel per bank
   genvar b;
   generate
     for (b = 0; b < 4; b++) begin : gen_texels
@@ -185,7 +185,8 @@ module texture_cache_linear #(
       logic            is_row, row, pair;
       logic [LINE-1:0] line, place;
       logic            way;
-      // A word of 64 bits has two rows of bytes, a row of halves, or half a row; of its texels every second is the bank's.
+      // A word of 64 bits has two rows of bytes, a row of halves, or half a row; every second of its texels belongs to
+      // the bank.
       assign is_row = fill_size == 2'd0 || (fill_size == 2'd1 ? fill_place[0] : fill_place[1]) == 1'(Y);
       assign row    = fill_size == 2'd0 ? fill_place[0] : fill_size == 2'd1 ? fill_place[1] : fill_place[2];
       assign pair   = fill_size == 2'd2 && fill_place[0];

@@ -1,31 +1,32 @@
-// Texture coordinates: from a sample's q, u and v to the texel it lies in, a sample of each lane a clock, eight clocks.
+// Texture coordinates: from a sample's q, u and v to the texel that holds the place, one sample per lane and clock,
+// eight clocks.
 //
 //   0  normalise    e = floor(log2 q), m the highest k bits of q
-//   1  reciprocal   of m, four clocks                         | by how much P is narrowed
-//   2  axes         P narrowed, beside the reciprocal; product, place, wrap (texture_axis.sv)
-// What a triangle's samples share waits in RAMs, a word for each stamp in the unit, and is read where it is needed; the samples
-// that go together are of one stamp, and share nothing else.
-// A fixed pipeline without enables. Specification: divide_by_q of model/stages/perspective.hpp and what texture_axis has.
+//   1  reciprocal   of m, four clocks                         | the shift of P
+//   2  axes         P narrowed, next to the reciprocal; product, place, wrap (texture_axis.sv)
+// Texture constants wait in RAMs, a word for each stamp in the unit, and are read where they are needed; samples that
+// go together belong to one stamp, and share nothing else. A fixed pipeline without enables. Specification: divide_by_q
+// of model/stages/perspective.hpp, and that of texture_axis.
 module texture_coordinates #(
-    parameter int LANES = 1,              // samples a clock, each with multipliers of its own: 1 or 4
-    parameter int Q_BITS = 27,            // of q, without sign
-    parameter int P_BITS = 28,            // of u and v over w, with their signs
+    parameter int LANES = 1,              // samples per clock, each with its own multipliers: 1 or 4
+    parameter int Q_BITS = 27,            // bits of q, unsigned
+    parameter int P_BITS = 28,            // bits of u and v over w, signed
     parameter int MANTISSA = 18,          // k: bits of q that its reciprocal looks at
     parameter int NARROW = 17,            // k_P: bits of P in the product
     parameter int FRACTION = 8,           // f: fraction bits of a coordinate, texels
-    parameter int SHIFT_BITS = 6,         // of c, with its sign
-    parameter int REACH_BITS = 5,         // of x
-    parameter int REFERENCE_BITS = 24,    // of u_ref, with its sign
+    parameter int SHIFT_BITS = 6,         // bits of c, signed
+    parameter int REACH_BITS = 5,         // bits of x
+    parameter int REFERENCE_BITS = 24,    // bits of u_ref, signed
     parameter int QUEUE = 16,             // stamps in the unit; a power of two
     parameter int SIDE_BITS = 12,         // log2 of the longest side, texels
-    parameter int LINEAR = 0,             // 1: also the two texels whose middles are around the place; 2: the place alone
+    parameter int LINEAR = 0,  // 1: also the two texels whose centres are around the place; 2: the place alone
     parameter int RECIPROCAL = 0,         // 0 from a table, 1 by division
     parameter int INDEX = $clog2(QUEUE),  // derived; not to be set
     parameter int EXPONENT = 5            // bits of e
 ) (
     input logic clk_i,
 
-    // What the samples of a stamp share; u lowest
+    // Constants of a stamp; u lowest
     input logic                        frame_valid_i,
     input logic [INDEX-1:0]            frame_index_i,
     input logic [2*SHIFT_BITS-1:0]     shift_i,      // c, at least -NARROW
@@ -33,32 +34,32 @@ module texture_coordinates #(
     input logic [2*REFERENCE_BITS-1:0] reference_i,  // u_ref
 
     // The samples
-    input logic [INDEX-1:0]        index_i,  // of their stamp
+    input logic [INDEX-1:0]        index_i,  // index of their stamp
     input logic [LANES*Q_BITS-1:0] q_i,      // not 0
     input logic [LANES*P_BITS-1:0] u_i,
     input logic [LANES*P_BITS-1:0] v_i,
 
-    // The texture
+    // Constants of the texture
     input logic [2*SIDE_BITS-1:0] last_i,
     input logic [3:0]             wrap_i,
     input logic                   is_linear_i,
 
-    // Of eight clocks ago, x lowest
+    // For the samples of eight clocks ago, x lowest
     output logic [LANES*2*SIDE_BITS-1:0] texel_o,
-    output logic [LANES*2*SIDE_BITS-1:0] next_o,  // LINEAR 1: the texel behind it, and how much of that
+    output logic [LANES*2*SIDE_BITS-1:0] next_o,  // LINEAR 1: the next texel, and its weight
     output logic [LANES*16-1:0]          part_o,
-    output logic [LANES*(2*REFERENCE_BITS+16)-1:0] coordinate_o,  // LINEAR 2: the place before it is wrapped, 2^-8 texels
+    output logic [LANES*(2*REFERENCE_BITS+16)-1:0] coordinate_o,  // LINEAR 2: the place before wrapping, 2^-8 texels
 
-    // Of a clock ago: floor(log2 q), and what of q follows its highest bit
+    // For the samples of one clock ago: floor(log2 q), and the bits of q after its highest
     output logic [LANES*EXPONENT-1:0] exponent_o,
     output logic [LANES*8-1:0]        below_o,
 
-    // Of five clocks ago: the reciprocal, below its highest bit, which is set
+    // For the samples of five clocks ago: the reciprocal, without its highest bit, which is set
     output logic [LANES*(MANTISSA-1)-1:0] reciprocal_o
 );
 
-  // The stamp's index, as far as the sample has come.
-  logic [7*INDEX-1:0] index_q;  // of a clock ago lowest
+  // The stamp's index, delayed with the sample.
+  logic [7*INDEX-1:0] index_q;  // the last clock's lowest
   always_ff @(posedge clk_i) index_q <= {index_q[6*INDEX-1:0], index_i};
 
   logic [2*SHIFT_BITS-1:0]     shift_ram_q[0:QUEUE-1];
@@ -78,7 +79,7 @@ module texture_coordinates #(
     end
 
   // ---------------------------------------------------------------------------------------------------- clock 0: normalise
-  // Zeros at the top are shifted out by 16, 8, 4, 2, 1: how many, and what is left below the highest bit.
+  // Leading zeros are shifted out by 16, 8, 4, 2, 1: their number, and the bits below the highest.
   function automatic [EXPONENT+30:0] normalised(input [31:0] value);
     logic [31:0]         left;
     logic [EXPONENT-1:0] zeros;
@@ -97,7 +98,7 @@ module texture_coordinates #(
       logic [30:0]         left;
       assign {zeros, left} = normalised({q_i[k*Q_BITS+:Q_BITS], {(32 - Q_BITS) {1'b0}}});
 
-      logic [MANTISSA-2:0]  mantissa_q;  // below its highest bit
+      logic [MANTISSA-2:0]  mantissa_q;  // without its highest bit
       logic [EXPONENT-1:0]  exponent_q;
       logic [2*P_BITS-1:0]  p_1_q, p_2_q;
       logic [11:0]          amount_q;

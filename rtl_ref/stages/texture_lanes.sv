@@ -3,22 +3,22 @@
 //   groups -> [queue] -> passes of samples that agree -> texture_tags -> texels of 16 banks -> texture_filter, four -> texels
 //                  '-> texture_rounds -^ (FILTER 2)                      texture_blend, four (FILTER 2) -^
 //
-// Texels lie in 16 banks, by the two lowest bits of their columns and rows; a bank gives one texel a clock, of whichever of the
-// (up to four) lines. Lines lie in four, by the lowest bits of their blocks'. So of each axis a pass has one line for each
-// lowest bit of a block, and each two lowest bits of a texel say which of the two. Samples agree where that holds along both
-// axes; those of a group that do not go one pass behind the other. What a stamp shows at one texel a pixel, or larger, agrees.
-// With levels they agree on one alone, and a group goes by again on the upper ones: what the lower gave of a sample waits in
-// its lane's blend. Specification: take_group() of model/stages/texture_unit.hpp; times:
-// model/engines/cycle/texture_timing.hpp.
+// Texels lie in 16 banks, by the two lowest bits of their columns and rows; a bank gives one texel a clock, from any of
+// up to four lines. Lines lie in four banks, by the lowest bits of their blocks' columns and rows. So along each axis a
+// pass has one line for each lowest bit of a block, and for each two lowest bits of a texel one of these two lines.
+// Samples agree where that holds along both axes; samples of a group that do not agree go in successive passes. A stamp
+// at one texel per pixel, or magnified, agrees. With levels all samples of a pass agree on one level, and a group
+// repeats on the upper levels: the sum of the lower level waits in the lane's blend. Specification: take_group() of
+// model/stages/texture_unit.hpp; times: model/engines/cycle/texture_timing.hpp.
 module texture_lanes #(
     parameter int FILTER = 0,                 // 0 nearest, 1 linear as well, 2 levels as well
-    parameter int REFERENCE_BITS = 24,        // of FILTER 2
+    parameter int REFERENCE_BITS = 24,        // for FILTER 2
     parameter int SIDE_BITS = 12,             // log2 of the longest side, texels
-    parameter int AHEAD = 16,                 // groups
+    parameter int AHEAD = 16,                 // groups that wait
     parameter int LINES = 64,                 // a power of two, at least 16
     parameter int WAYS = 1,                   // 1 or 2
     parameter int PORT_BITS = 64,             // 16, 32 or 64
-    parameter int IN_FLIGHT = 32,             // passes that wait; a power of two
+    parameter int IN_FLIGHT = 32,             // passes in the queue; a power of two
     parameter int TAIL = 1,                   // bits that go along with a group
     parameter int PLACE = REFERENCE_BITS + 8  // derived; not to be set
 ) (
@@ -26,7 +26,7 @@ module texture_lanes #(
     input logic rst_ni,
     input logic power_on_ni,
 
-    // Groups of samples, of which some live: texels, x lowest; no more than AHEAD between here and pops_o
+    // Groups of samples, some of them live: texels, x lowest; at most AHEAD between here and pops_o
     input  logic                     valid_i,
     input  logic [3:0]               live_i,
     input  logic [4*2*SIDE_BITS-1:0] texel_i,
@@ -38,9 +38,9 @@ module texture_lanes #(
     input  logic [3:0]               is_linear_i,
     input  logic [3:0]               is_between_i,
     input  logic [TAIL-1:0]          tail_i,
-    output logic                     pops_o,  // one has left the queue
+    output logic                     pops_o,  // a group has left the queue
 
-    // The texture: stays while samples are in front of the tags
+    // Constants of the texture: they stay while samples are upstream of the tags
     input logic        sets_state_i,
     input logic [7:0]  log2_size_i,
     input logic [3:0]  wrap_i,
@@ -53,7 +53,7 @@ module texture_lanes #(
     input  logic drop_i,
     output logic tags_are_empty_o,
 
-    // Passes: of which samples there are texels, and whether they are the last of their group
+    // Passes: the samples that get texels, and whether they are the last of their group
     output logic            texel_valid_o,
     input  logic            texel_ready_i,
     output logic [3:0]      texel_lanes_o,
@@ -70,9 +70,9 @@ module texture_lanes #(
     output logic                 answer_ready_o,
     input  logic [PORT_BITS-1:0] answer_data_i,
 
-    output logic [2:0] sample_o,  // so many have been looked up, on all of their levels
-    output logic [2:0] hit_o,     // and of so many all lines were there
-    output logic       miss_o,    // a line has been asked for
+    output logic [2:0] sample_o,  // samples looked up, on all of their levels
+    output logic [2:0] hit_o,     // samples of these whose lines were all there
+    output logic       miss_o,    // a line has been requested
     output logic       idle_o
 );
 
@@ -84,8 +84,8 @@ module texture_lanes #(
   localparam int BLOCK = SIDE_BITS - 2;
   localparam int LEVELS = (FILTER == 2) ? 1 : 0;
   localparam int LINEAR = (FILTER != 0) ? 1 : 0;
-  localparam int LEVEL_PARTS = 32 + 4 + 1;  // of the upper levels, whether there are two, whether this is the second
-  localparam int PARTS = (LEVELS != 0) ? 64 + LEVEL_PARTS : (LINEAR != 0) ? 64 : 1;  // bits of what a filter is told
+  localparam int LEVEL_PARTS = 32 + 4 + 1;  // weights of the upper levels; there are two levels; this is the second
+  localparam int PARTS = (LEVELS != 0) ? 64 + LEVEL_PARTS : (LINEAR != 0) ? 64 : 1;  // bits of the filters' inputs
   localparam int ENDS = (LINEAR != 0) ? 2 : 1;    // texels of a sample along an axis
   localparam int TEXELS = 4 * ENDS * 2 * SIDE_BITS;
 
@@ -94,7 +94,7 @@ module texture_lanes #(
   logic [TEXELS-1:0] waiting;
   logic [5:0]        agree_q;
   logic              found_valid, found_moves, found_ends, p_moves, p_ready, ends, rounds_are_empty;
-  logic [3:0]        live, waits, done_q, left, joins;  // of those that live the ones whose upper level comes later
+  logic [3:0]        live, waits, done_q, left, joins;  // live samples whose upper level comes later
   logic [1:0]        lowest;
   logic [PARTS-1:0]  parts;
   logic [TAIL-1:0]   found_tail;
@@ -212,7 +212,7 @@ module texture_lanes #(
   endgenerate
 
   // -------------------------------------------------------------------------------------------------------- the next pass
-  // The first that is left takes with it, in order, each that agrees with all before.
+  // The first sample left takes with it, in order, each sample that agrees with all before.
   assign left     = live & ~done_q;
   assign lowest   = left[0] ? 2'd0 : left[1] ? 2'd1 : left[2] ? 2'd2 : 2'd3;
   always_comb begin
@@ -229,14 +229,14 @@ module texture_lanes #(
     else if (p_moves) done_q <= ends ? '0 : done_q | joins;
   end
 
-  // Of each axis the even and the odd block, and of which each column or row is; of each bank whether a sample has a texel
-  // there.
-  logic [2*2*BLOCK-1:0] block;     // of x lowest, of it the even one
-  logic [7:0]           odd;       // of x lowest
+  // For each axis the even and the odd block, and which of them each column or row uses; for each bank whether a sample
+  // has a texel there.
+  logic [2*2*BLOCK-1:0] block;     // x lowest, its even one lowest
+  logic [7:0]           odd;       // x lowest
   logic [3:0]           used;
   logic [4*4*ENDS-1:0]  low;       // the two lowest bits of each texel, in their order
-  logic [4*2*ENDS-1:0]  odd_texel;  // of each texel, whether its block is odd
-  logic [15:0]          uses;       // of each lane which banks of lines
+  logic [4*2*ENDS-1:0]  odd_texel;  // whether each texel's block is odd
+  logic [15:0]          uses;       // banks of lines used by each lane
   generate
     for (l = 0; l < 4; l++) begin : gen_bits
       for (e = 0; e < 2 * ENDS; e++) begin : gen_texel
@@ -305,17 +305,17 @@ module texture_lanes #(
     end
 
   // ----------------------------------------------------------------------------------------------------------------- tags
-  localparam int WAY_AT = (LINE % 2 == 0 ? LINE : LINE_X) - 1;  // of a line's number the bit that is the way: texture_tags.sv
+  localparam int WAY_AT = (LINE % 2 == 0 ? LINE : LINE_X) - 1;  // the way bit of a line's number: texture_tags.sv
   localparam logic [LINE-1:0] FIRST = ~(LINE'(WAYS - 1) << WAY_AT);
-  localparam int PLACES = 2 * (BANK_X + BANK_Y);  // of the lines, what says where in their bank they lie
+  localparam int PLACES = 2 * (BANK_X + BANK_Y);  // bits that give the lines' places in their banks
   localparam int SHAPE = 8 + 16 * ENDS + 4 + 4;   // odd, low, joins, waits
   localparam int REST = 1 + 3 + TAIL;
-  localparam logic [BANK_Y-1:0] HALF = BANK_Y'(WAYS == 1) << (BANK_Y - 1);  // of a bank, for odd levels
+  localparam logic [BANK_Y-1:0] HALF = BANK_Y'(WAYS == 1) << (BANK_Y - 1);  // half of a bank, for odd levels
   logic               fills_word, tags_are_idle, looked_up, found, reads;
   logic [LINE-1:0]    fill_line;
   logic [1:0]         fill_size;
   logic [63:0]        fill_word;
-  logic [2:0]         fill_place;  // of the word in its line
+  logic [2:0]         fill_place;  // place of the word in its line
   logic [3:0]         lacks;
   logic [PLACES-1:0]  p_places, places;
   logic [3:0]         found_ways;
@@ -382,7 +382,7 @@ module texture_lanes #(
   );
   assign reads = found && d_ready;
 
-  // A sample has found all of its lines where none is lacking in a bank that it uses; between two levels on neither.
+  // A sample has found all of its lines where no bank that it uses lacks one; between two levels, on both levels.
   logic [4*2*ENDS-1:0] t_odd_texel;
   logic [15:0]         t_uses;
   generate
@@ -451,7 +451,7 @@ module texture_lanes #(
       d_tail_q   <= tail;
     end
 
-  logic [16*32-1:0] code;  // of the banks, row by row
+  logic [16*32-1:0] code;  // one texel per bank, row by row
   genvar x, y;
   generate
     for (y = 0; y < 4; y++) begin : gen_row
@@ -486,11 +486,12 @@ module texture_lanes #(
     end
   endgenerate
 
-  // Of each lane the texels of its even and its odd column and row, then in their order. Of one texel a sample one alone.
-  localparam int ALONG = 4 + 1 + TAIL + ((LEVELS != 0) ? 4 + LEVEL_PARTS : 0);  // through the filters, beside the first lane
+  // For each lane the texels of its even and its odd column and row, then in their order. With one texel per sample,
+  // that texel alone.
+  localparam int ALONG = 4 + 1 + TAIL + ((LEVELS != 0) ? 4 + LEVEL_PARTS : 0);  // bits through the filters with lane 0
   logic [ALONG-1:0] along, filtered;
   logic [3:0]       sum_ready;
-  logic [3:0]       sum_joins, sum_leaves, sum_is_between;  // of them those whose upper level does not come later
+  logic [3:0]       sum_joins, sum_leaves, sum_is_between;  // samples whose upper level does not come later
   logic [31:0]      sum_level_part;
   logic             sum_is_second;
   logic [TAIL:0]    sum_rest;
@@ -506,14 +507,14 @@ module texture_lanes #(
     end
     for (l = 0; l < 4; l++) begin : gen_lane
       logic [127:0] corner, banks;  // first row, second row; even row, odd row
-      logic [3:0]   first, second;  // lowest bits of the first texel and of the next, x lowest
-      logic [3:0]   high;           // of the even and of the odd texel the bit above: of columns lowest
+      logic [3:0]   first, second;  // lowest bits of the first and of the next texel, x lowest
+      logic [3:0]   high;           // the next bit, of the even and of the odd texel: of columns lowest
       assign first  = d_low_q[l*4*ENDS+:4];
       assign second = d_low_q[l*4*ENDS+4*(ENDS-1)+:4];
       assign high   = {first[2] ? first[3] : second[3], first[2] ? second[3] : first[3],
                        first[0] ? first[1] : second[1], first[0] ? second[1] : first[1]};
       for (y = 0; y < 2; y++) begin : gen_banks
-        logic [255:0] rows;  // two banks' columns each of rows y and y + 2
+        logic [255:0] rows;  // columns of two banks each, of rows y and y + 2
         assign rows = {code[32*4*(y+2)+:128], code[32*4*y+:128]};
         for (x = 0; x < 2; x++) begin : gen_bank
           logic [31:0] lower, upper;

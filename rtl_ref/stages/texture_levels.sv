@@ -1,13 +1,13 @@
-// Texture levels: samples whose level is known become passes through cache and filter: one, or one on each of two levels. Of
-// each the texels that it looks at, and where its level lies in memory. Two registers, a pass a clock.
+// Texture levels: samples with known levels become passes through cache and filter: one, or one on each of two levels.
+// A pass gets its texels and the address of its level. Two registers, one pass per clock.
 //
-//   scale  the coordinates on the level; the blocks of its sides
-//   wrap   its texels; where the level begins
-// Levels are falling powers of two of blocks, so that where one begins is the bits of one number, `ones_q`, above its own size:
-// neither that sum nor a block's place in the level needs an adder. Specification: level_place of
+//   scale  the coordinates on the level; the blocks along its sides
+//   wrap   its texels; the start of the level
+// Levels are decreasing powers of two of blocks, so that the start of a level is the bits of one number, `ones_q`,
+// above its own size: neither that sum nor a block's place in the level needs an adder. Specification: level_place of
 // model/stages/texture_levels.hpp and texels_of of texture_unit.hpp.
 module texture_levels #(
-    parameter int REFERENCE_BITS = 24,        // of a place's texels, with their sign
+    parameter int REFERENCE_BITS = 24,        // bits of a place's texel number, with its sign
     parameter int SIDE_BITS = 12,             // log2 of the longest side, texels
     parameter int TAIL = 1,                   // bits that go along
     parameter int PLACE = REFERENCE_BITS + 8  // derived; not to be set
@@ -19,13 +19,13 @@ module texture_levels #(
     input  logic               valid_i,
     output logic               ready_o,
     input  logic [2*PLACE-1:0] coordinate_i,  // 2^-8 texels of level 0
-    input  logic [3:0]         level_i,       // the only one, or the lower one
-    input  logic [7:0]         part_i,        // of the level above; 0: it is not looked at
+    input  logic [3:0]         level_i,       // the only level, or the lower one
+    input  logic [7:0]         part_i,        // weight of the upper level; 0: it is not read
     input  logic               is_linear_i,
     input  logic               is_between_i,
     input  logic [TAIL-1:0]    tail_i,
 
-    // The texture: stays while samples are under way
+    // Constants of the texture: they stay while samples are under way
     input logic       sets_state_i,
     input logic [7:0] log2_size_i,  // width lowest
     input logic [3:0] wrap_i,
@@ -36,13 +36,13 @@ module texture_levels #(
     input  logic                   ready_i,
     output logic [2*SIDE_BITS-1:0] texel_o,
     output logic [2*SIDE_BITS-1:0] next_o,
-    output logic [15:0]            part_o,        // of those behind, along x lowest
-    output logic [23:0]            offset_o,      // of the level's first line, 16 bytes
-    output logic [3:0]             row_o,         // log2 of a row of lines, likewise
-    output logic                   is_odd_o,      // the level
-    output logic [7:0]             level_part_o,  // of the level above; 0: there is but one pass
+    output logic [15:0]            part_o,        // weights of the next texels, along x lowest
+    output logic [23:0]            offset_o,      // address of the level's first line, 16 bytes
+    output logic [3:0]             row_o,         // log2 of the lines in a row, likewise
+    output logic                   is_odd_o,      // the level is odd
+    output logic [7:0]             level_part_o,  // weight of the upper level; 0: there is only one pass
     output logic                   is_between_o,
-    output logic                   is_first_o,    // of two
+    output logic                   is_first_o,    // first of two passes
     output logic                   is_second_o,
     output logic [TAIL-1:0]        tail_o,
 
@@ -55,7 +55,7 @@ module texture_levels #(
   endfunction
 
   logic [7:0]  log2_size_q;
-  logic [3:0]  wide_q, high_q, first_of_one_q;  // log2 of blocks along the sides; the first level of one
+  logic [3:0]  wide_q, high_q, first_of_one_q;  // log2 of the blocks along the sides; the first level of one block
   logic [20:0] ones_q;
   texture_sides u_sides (
       .clk_i,
@@ -74,7 +74,7 @@ module texture_levels #(
   logic               is_small_q, is_corner_q, is_odd_q, is_between_q, first_q, second_q;
   logic [7:0]         part_q;
   logic [TAIL-1:0]    tail_q;
-  logic [4:0]         blocks;  // of the level, log2
+  logic [4:0]         blocks;  // log2 of the level's blocks
   logic [20:0]        begins;
   assign has_second = part_i != '0;
   assign level      = level_i + 4'(is_second_q);

@@ -1,12 +1,12 @@
-// Texture linear: texels of a linear filter. Places wait in a queue, look their lines up in a cache with four banks, and
-// become one texel each. With levels, of which a place then says which it wants, some go through twice.
+// Texture linear: texels of a linear filter. Places wait in a queue, look their lines up in a cache with four banks,
+// and become one texel each. With levels, a place says which levels it reads, and some places take two passes.
 //
 //   places -> [levels, LEVELS] -> texture_cache_linear -> texture_filter -> [texture_blend, LEVELS] -> texels
 //
 // Specification: take() of model/stages/texture_unit.hpp; the times are those of model/engines/cycle/texture_timing.hpp.
 module texture_linear #(
     parameter int LEVELS = 0,                 // 1: levels, and the blend of two
-    parameter int REFERENCE_BITS = 24,        // of a place's texels, with their sign
+    parameter int REFERENCE_BITS = 24,        // bits of a place's texel number, with its sign
     parameter int SIDE_BITS = 12,             // log2 of the longest side, texels
     parameter int AHEAD = 16,                 // samples that wait for the cache; a power of two
     parameter int LINES = 64,                 // of the cache, 64 bytes each; a power of two, at least 16
@@ -20,7 +20,7 @@ module texture_linear #(
     input logic rst_ni,
     input logic power_on_ni,
 
-    // Places; no more than AHEAD between here and pops_o
+    // Places; at most AHEAD between here and pops_o
     input  logic                   valid_i,
     input  logic [2*SIDE_BITS-1:0] texel_i,
     input  logic [2*SIDE_BITS-1:0] next_i,
@@ -31,9 +31,9 @@ module texture_linear #(
     input  logic                   is_linear_i,
     input  logic                   is_between_i,
     input  logic [TAIL-1:0]        tail_i,
-    output logic                   pops_o,  // one has left the queue
+    output logic                   pops_o,  // a place has left the queue
 
-    // The texture: stays while samples are in front of the tags
+    // Constants of the texture: they stay while samples are upstream of the tags
     input logic        sets_state_i,
     input logic [7:0]  log2_size_i,
     input logic [3:0]  wrap_i,
@@ -60,13 +60,13 @@ module texture_linear #(
     output logic                 answer_ready_o,
     input  logic [PORT_BITS-1:0] answer_data_i,
 
-    output logic sample_o,  // one has been looked up, on all of its levels
+    output logic sample_o,  // a sample has been looked up, on all of its levels
     output logic hit_o,     // and all of its lines were there
-    output logic miss_o,    // a line has been asked for
+    output logic miss_o,    // a line has been requested
     output logic idle_o
 );
 
-  localparam int CARRIED = (LEVELS != 0) ? 27 + TAIL : 16 + TAIL;  // through the cache
+  localparam int CARRIED = (LEVELS != 0) ? 27 + TAIL : 16 + TAIL;  // bits carried through the cache
 
   logic                   found_valid, found_ready, pass_valid, pass_ready, tags_are_empty, is_odd, code_valid, code_ready;
   logic [2*SIDE_BITS-1:0] pass_texel, pass_next;
@@ -82,7 +82,7 @@ module texture_linear #(
   logic                   found_has_room;
   assign pops_o = found_valid && found_ready;
 
-  // What is counted: a sample between two levels once, with its second pass.
+  // Events: a sample between two levels counts once, with its second pass.
   logic               looked_up, finds_all;
   logic [CARRIED-1:0] looked_up_carried;
   generate

@@ -1,5 +1,5 @@
-// Texture nearest: texels of a nearest filter. The address of each sample's line waits in a queue, is looked up, and the code
-// that comes becomes a colour.
+// Texture nearest: texels of a nearest filter. The address of each sample's line waits in a queue and is looked up; the
+// code in the answer becomes a colour.
 //
 //   texels -> [address] -> texture_cache -> texture_decode -> colours
 //
@@ -16,13 +16,13 @@ module texture_nearest #(
     input logic rst_ni,
     input logic power_on_ni,
 
-    // Texels, x lowest; no more than AHEAD between here and pops_o
+    // Texels, x lowest; at most AHEAD between here and pops_o
     input  logic                   valid_i,
     input  logic [2*SIDE_BITS-1:0] texel_i,
     input  logic [TAIL-1:0]        tail_i,
-    output logic                   pops_o,  // one has left the queue
+    output logic                   pops_o,  // a texel has left the queue
 
-    // The texture: stays while samples are in front of the tags
+    // Constants of the texture: they stay while samples are upstream of the tags
     input logic [2:0]  format_i,
     input logic [25:0] base_i,
     input logic [1:0]  size_i,
@@ -45,7 +45,7 @@ module texture_nearest #(
     output logic                 answer_ready_o,
     input  logic [PORT_BITS-1:0] answer_data_i,
 
-    output logic sample_o,  // one has been looked up
+    output logic sample_o,  // a sample has been looked up
     output logic hit_o,
     output logic miss_o,
     output logic idle_o
@@ -56,7 +56,7 @@ module texture_nearest #(
   localparam int LINE_Y = LINE / 2;
   localparam int BLOCK = SIDE_BITS - 2;
 
-  // Blocks of 4x4 texels in rows; which line, their lowest bits say.
+  // Blocks of 4x4 texels in rows; their lowest bits select the line.
   logic [BLOCK-1:0] block_x, block_y;
   logic [21:0]      place;
   logic [27:0]      address, found_address;

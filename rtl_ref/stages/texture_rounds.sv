@@ -1,14 +1,14 @@
-// Texture rounds: groups of four samples, each of which knows its levels, become rounds: one of their only or lower levels, and
-// where any lies between two another of the upper ones. Of each round the texels that its samples look at, and who agrees:
-// samples that do are on one level, and go together. Three registers, a round a clock.
+// Texture rounds: groups of four samples with known levels become rounds: one of their only or lower levels, and if any
+// sample lies between two levels, a second of the upper ones. Each round has the texels of its samples and the agreeing
+// pairs: samples that agree are on one level, and go together. Three registers, one round per clock.
 //
-//   scale  each sample's coordinates on its level; the blocks of that level's sides
+//   scale  each sample's coordinates on its level; the blocks along that level's sides
 //   wrap   its texels
 //   agree  which pairs go together
-// Where a level lies is said of the one pass that leaves, not of four samples. Specification: take_group() of
+// The address of a level is computed for the pass that leaves, not for four samples. Specification: take_group() of
 // model/stages/texture_unit.hpp, level_place of texture_levels.hpp.
 module texture_rounds #(
-    parameter int REFERENCE_BITS = 24,        // of a place's texels, with their sign
+    parameter int REFERENCE_BITS = 24,        // bits of a place's texel number, with its sign
     parameter int SIDE_BITS = 12,             // log2 of the longest side, texels
     parameter int TAIL = 1,                   // bits that go along with a group
     parameter int PLACE = REFERENCE_BITS + 8  // derived; not to be set
@@ -16,18 +16,18 @@ module texture_rounds #(
     input logic clk_i,
     input logic rst_ni,
 
-    // Groups, of which some live; u lowest
+    // Groups, some samples of them live; u lowest
     input  logic               valid_i,
     output logic               ready_o,
     input  logic [3:0]         live_i,
     input  logic [8*PLACE-1:0] coordinate_i,  // 2^-8 texels of level 0
-    input  logic [15:0]        level_i,       // the only one, or the lower one
-    input  logic [31:0]        part_i,        // of the level above; 0: it is not looked at
+    input  logic [15:0]        level_i,       // the only level, or the lower one
+    input  logic [31:0]        part_i,        // weight of the upper level; 0: it is not read
     input  logic [3:0]         is_linear_i,
     input  logic [3:0]         is_between_i,
     input  logic [TAIL-1:0]    tail_i,
 
-    // The texture: stays while groups are under way
+    // Constants of the texture: they stay while groups are under way
     input logic       sets_state_i,
     input logic [7:0] log2_size_i,  // width lowest
     input logic [3:0] wrap_i,
@@ -37,9 +37,9 @@ module texture_rounds #(
     output logic                      valid_o,
     input  logic                      ready_i,
     output logic [3:0]                live_o,
-    output logic [3:0]                waits_o,       // of these the ones whose upper level comes later
+    output logic [3:0]                waits_o,       // live samples whose upper level comes later
     output logic                      ends_o,        // the last round of its group
-    output logic                      is_second_o,   // of two
+    output logic                      is_second_o,   // second of two rounds
     output logic [16*SIDE_BITS-1:0]   texel_o,       // for each sample x, y of its texel, then of the next texel
     output logic [63:0]               part_o,        // weight of the next texel, along x lowest
     output logic [5:0]                agree_o,       // 0 and 1, 0 and 2, 1 and 2, 0 and 3, 1 and 3, 2 and 3
@@ -47,16 +47,16 @@ module texture_rounds #(
     output logic [3:0]                is_between_o,
     output logic [TAIL-1:0]           tail_o,
 
-    // Of a pass of a round, of which this is the first sample, where its level lies
+    // Address of a level, for the pass of a round with this first sample
     input  logic [1:0]  first_i,
-    output logic [23:0] offset_o,  // of its first line, 16 bytes
-    output logic [3:0]  row_o,     // log2 of a row of lines, likewise
-    output logic        is_odd_o,  // the level
+    output logic [23:0] offset_o,  // address of the level's first line, 16 bytes
+    output logic [3:0]  row_o,     // log2 of the lines in a row, likewise
+    output logic        is_odd_o,  // the level is odd
 
     output logic is_empty_o
 );
 
-  localparam int LEVEL = 11;  // what is known of a level: odd, small, log2 of its blocks and of those in a row
+  localparam int LEVEL = 11;  // constants of a level: odd, small, log2 of its blocks and of the blocks in a row
 
   logic [7:0]  log2_size;
   logic [3:0]  wide, high, first_of_one;
@@ -99,7 +99,7 @@ module texture_rounds #(
     end
   end
 
-  // What goes along: live, waits, ends, second, parts of levels, between, tail.
+  // Payload: live, waits, ends, second, weights of levels, between, tail.
   localparam int ALONG = 4 + 4 + 1 + 1 + 32 + 4 + TAIL;
   logic [ALONG-1:0] along, scaled_along_q, wrapped_along_q, agreed_along_q;
   assign along = {is_second_q ? live_i & has_upper : live_i, is_second_q ? 4'd0 : live_i & has_upper, !turns, is_second_q,

@@ -1,4 +1,4 @@
-// Texture stage: texture_unit in the stream of tested stamps: what it looks at of a fragment and of tokens.
+// Texture stage: texture_unit in the stream of tested stamps, and the fields of fragments and tokens that it uses.
 //
 // A stamp never waits on its way in: depth_cache counts those inside, at most SHADED_STAMPS.
 // Specification: model/stages/texture_stage.hpp.
@@ -18,7 +18,7 @@ module texture_stage #(
     input raster_pkg::fragment_packet_t fragment_i,
     input logic [FOG-1:0]               fog_i,
     input logic [PIXELS-1:0]            writes_i,  // pixels that get a colour
-    input logic [COLORS-1:0]            color_i,   // of the primitive
+    input logic [COLORS-1:0]            color_i,   // colour of the primitive
 
     // To fog_stage
     output logic                         stamp_valid_o,
@@ -28,7 +28,7 @@ module texture_stage #(
     output logic [PIXELS-1:0]            mask_o,
     output logic [PIXELS*8*CHANNELS-1:0] rgba_o,
 
-    // To and from the memory of textures
+    // To and from the texture memory
     output logic                         texture_valid_o,
     input  logic                         texture_ready_i,
     output raster_pkg::texture_request_t texture_o,
@@ -36,11 +36,11 @@ module texture_stage #(
     output logic                         texel_ready_o,
     input  raster_pkg::texel_beat_t      texel_i,
 
-    output logic [6:0] use_o,  // so many samples were looked up, of so many all was there, a line was asked for; lowest first
-    output logic       idle_o  // behind a reset it may wait for answers of before
+    output logic [6:0] use_o,  // samples looked up, samples that hit, a line requested; lowest first
+    output logic       idle_o  // after a reset it may wait for earlier answers
 );
 
-  localparam int FRAGMENT = raster_pkg::ALL_FRAGMENT_BITS;  // of a pixel
+  localparam int FRAGMENT = raster_pkg::ALL_FRAGMENT_BITS;  // bits of a pixel
   localparam int AFFINE = raster_pkg::AFFINE_PLANES;
   localparam int Q = raster_pkg::FRAGMENT_BITS_OF[32*AFFINE+:32];
   localparam int P = raster_pkg::FRAGMENT_BITS_OF[32*(AFFINE+1)+:32];
@@ -62,7 +62,7 @@ module texture_stage #(
   );
   assign is_levels = is_token && register == raster_pkg::STATE_REGISTER_TEXTURE_LEVELS;
 
-  // Coordinates, and the stamp's first pixel, as levels want it.
+  // Coordinates, and the stamp's first pixel, which levels need.
   localparam int TILE = raster_pkg::TILE_SHIFT;
   localparam int STAMP = $clog2(raster_pkg::STAMP_SIZE);
   localparam int ROW = $clog2(raster_pkg::STAMPS_PER_ROW);
@@ -72,7 +72,7 @@ module texture_stage #(
   assign stamp_x = (PIXEL'(fragment_i.key.tile_x) << TILE) | ((PIXEL'(fragment_i.stamp) & PIXEL'((1 << ROW) - 1)) << STAMP);
   assign stamp_y = (PIXEL'(fragment_i.key.tile_y) << TILE) | ((PIXEL'(fragment_i.stamp) >> ROW) << STAMP);
 
-  // Colours over w, where there are some.
+  // Colours over w, if configured.
   localparam int OVER_W = raster_pkg::COLORS_OVER_W != 0 ? 1 : 0;
   localparam int COLOR_P = OVER_W != 0 ? raster_pkg::LOCAL_BITS_OF[32*(AFFINE+3*OVER_W)+:32] : 24;
   logic                                             divides_colors;

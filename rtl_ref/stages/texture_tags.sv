@@ -1,33 +1,33 @@
-// Texture tags: which lines a cache with four banks has, and those it has asked memory for.
+// Texture tags: the lines present in a cache with four banks, and the lines requested from memory.
 //
-//   lines of a pass -> [tags] -> waiting passes -> pass, whose lines are there
+//   lines of a pass -> [tags] -> waiting passes -> pass, with all its lines present
 //                         '-> request .. memory .. answers -> words of lines
 //
-// A pass is what looks its lines up at a time: a sample, one of those between two levels, or samples that agree. Tags are in
-// four banks, by the lowest bits of a block's column and row, so each bank looks up at most one line of a pass. A pass whose
-// lines are all there takes a clock, one with n misses n clocks; they are asked for bank by bank, and the pass waits in the
-// queue until all have come. What may be given away for a line, and what a reset leaves: as in texture_cache.sv.
+// A pass is the unit of lookup: a sample, a sample on one of two levels, or samples that agree. Tags are in four banks,
+// by the lowest bits of a block's column and row, so each bank looks up at most one line of a pass. A pass whose lines
+// are all present takes a clock, one with n misses n clocks; misses are requested bank by bank, and the pass waits in
+// the queue until all have come. Which line may be replaced, and the effect of a reset: as in texture_cache.sv.
 //
-// Of two ways a block may lie in two places: the highest bit of a place's row, or of its column where that has more of them, is
-// not the block's but the way. Not there, it takes the place of the one that was looked up longer ago, in the order of passes;
-// so the way follows from the data alone. Levels then need no halves of their own.
-// Specification: look_up() of model/stages/texture_unit.hpp; times: model/engines/cycle/texture_timing.hpp.
+// With two ways a block may lie in two places: the highest bit of a place's row, or of its column where that has more
+// bits, is the way instead of a block bit. A miss replaces the way that was looked up longer ago, in the order of
+// passes; so the way follows from the data alone. Levels then need no halves of their own. Specification: look_up() of
+// model/stages/texture_unit.hpp; times: model/engines/cycle/texture_timing.hpp.
 module texture_tags #(
     parameter int LINES = 64,            // a power of two, at least 16
     parameter int WAYS = 1,              // 1 or 2
     parameter int PORT_BITS = 64,        // 16, 32 or 64
-    parameter int IN_FLIGHT = 32,        // passes that wait; a power of two
-    parameter int REQUESTS = 16,         // lines that are not answered; a power of two
+    parameter int IN_FLIGHT = 32,        // passes in the queue; a power of two
+    parameter int REQUESTS = 16,         // lines in flight; a power of two
     parameter int CARRIED = 1,           // bits that go along with a pass
     parameter int SIDE_BITS = 12,        // log2 of the longest side, texels
-    parameter int LINE = $clog2(LINES),  // derived, not to be set; as what follows
+    parameter int LINE = $clog2(LINES),  // derived; not to be set, like BLOCK
     parameter int BLOCK = SIDE_BITS - 2  // derived: bits of a block's column and row
 ) (
     input logic clk_i,
     input logic rst_ni,
     input logic power_on_ni,
 
-    // Passes: which banks they use, column and row lowest first; the even and the odd block's column and row
+    // Passes: which banks they use, column and row lowest first; column and row of the even and the odd block
     input  logic               pass_valid_i,
     output logic               pass_ready_o,
     input  logic [3:0]         used_i,
@@ -35,32 +35,32 @@ module texture_tags #(
     input  logic [2*BLOCK-1:0] block_y_i,
     input  logic [CARRIED-1:0] carried_i,
 
-    // Their level: where that begins, in lines of 16 bytes, and a row of its lines, log2
+    // Their level: address of the first line, 16 bytes, and log2 of the lines in a row
     input logic [23:0] offset_i,
     input logic [3:0]  row_i,
     input logic        is_odd_i,
 
-    // The texture: stays while passes are in front of the tags, or in them
+    // Constants of the texture: they stay while passes are in the tags or upstream of them
     input logic [25:0] base_i,
     input logic [1:0]  size_i,
-    input logic        shares_i,  // odd levels have one half of each bank, even ones the other
+    input logic        shares_i,  // odd levels use one half of each bank, even levels the other
 
     input  logic drop_i,
     output logic tags_are_empty_o,
 
-    // What has left the tags, in the cycle in which it does: which of its lines were not there
+    // The pass that leaves the tags in this cycle: which of its lines were missing
     output logic               looked_up_o,
     output logic [3:0]         lacks_o,
     output logic [CARRIED-1:0] looked_up_carried_o,
-    output logic               miss_o,  // a line has been asked for
+    output logic               miss_o,  // a line has been requested
 
-    // Passes whose lines are there
+    // Passes whose lines are present
     output logic               found_valid_o,
     input  logic               found_ready_i,
     output logic [CARRIED-1:0] found_carried_o,
-    output logic [3:0]         found_ways_o,  // of each bank's line the way; of one 0
+    output logic [3:0]         found_ways_o,  // way of each bank's line; 0 with one way
 
-    // A word of a line has come: of which size (log2 of the line's bytes, less 4), line and place in it
+    // A word of a line has come: size of the line (log2 of its bytes, less 4), line and place in it
     output logic            word_valid_o,
     output logic [63:0]     word_o,
     output logic [LINE-1:0] line_o,
@@ -81,10 +81,10 @@ module texture_tags #(
 
   localparam int LINE_X = (LINE + 1) / 2;
   localparam int LINE_Y = LINE / 2;
-  localparam int BANK_X = LINE_X - 1;     // of a line's number in its bank
+  localparam int BANK_X = LINE_X - 1;     // bits of a line's number in its bank
   localparam int BANK_Y = LINE_Y - 1;
   localparam int BANK = BANK_X + BANK_Y;
-  localparam int WAY_AT = (LINE % 2 == 0 ? BANK : BANK_X) - 1;  // the bit of a place in its bank that is the way
+  localparam int WAY_AT = (LINE % 2 == 0 ? BANK : BANK_X) - 1;  // the way bit of a place in its bank
   localparam int SET = BANK - WAYS + 1;
   localparam int SETS = LINES / 4 / WAYS;
   localparam int NUMBER = 7;
@@ -92,7 +92,7 @@ module texture_tags #(
   localparam int COUNT = NUMBER + GROUP;
   localparam int COME = $clog2(4 * (IN_FLIGHT + 1) + 1);
   localparam logic [BANK_Y-1:0] HALF_OF_BANK = BANK_Y'(WAYS == 1) << (BANK_Y - 1);
-  localparam logic [BANK-1:0] FIRST = ~(BANK'(WAYS - 1) << WAY_AT);  // of a place the bits without the way
+  localparam logic [BANK-1:0] FIRST = ~(BANK'(WAYS - 1) << WAY_AT);  // mask of a place's bits without the way
 
   function automatic [SET-1:0] set_of(input [BANK-1:0] place);
     set_of = WAYS == 1 ? SET'(place) : SET'(place >> (WAY_AT + 1) << WAY_AT) | SET'(place & BANK'((1 << WAY_AT) - 1));
@@ -125,7 +125,7 @@ module texture_tags #(
     for (b = 0; b < 4; b++) begin : gen_tags
       localparam int X = b % 2;
       localparam int Y = b / 2;
-      logic                   same_place_q, same_line_q, writes, recent_way;  // the way of the line in front
+      logic                   same_place_q, same_line_q, writes, recent_way;  // the way of the line before
       logic [WAYS-1:0]        is_there;
       logic [WAYS*NUMBER-1:0] groups;
       logic [27:0]            address;
@@ -139,7 +139,7 @@ module texture_tags #(
       assign writes    = (t_goes && t_used_q[b]) || sweeps_q;
       assign write_set = sweeps_q ? sweep_q : set_of(t_place_q[b*BANK+:BANK]);
       for (w = 0; w < WAYS; w++) begin : gen_ways
-        logic              tag_valid, is_written, is_recent;  // what was written as this was read
+        logic              tag_valid, is_written, is_recent;  // state written in the cycle of the read
         logic [27:0]       tag;
         logic [NUMBER-1:0] tag_group;
         logic [NUMBER+28:0] tag_new;
@@ -166,7 +166,7 @@ module texture_tags #(
         assign recent_way = 1'b0;
         assign way[b]     = 1'b0;
       end else begin : gen_two_ways
-        logic recent_way_q, newer;  // of a set the way that was looked up last
+        logic recent_way_q, newer;  // the way of a set that was looked up last
         sram #(
             .WIDTH    (1),
             .DEPTH    (SETS),

@@ -1,83 +1,83 @@
-// Texture unit: the texels of one texture for the samples of stamps, a live sample a clock, or those of 2x2 (LANES), combined
-// with their colours; and those colours, where they lie over w.
+// Texture unit: the texels of one texture for the samples of stamps, one live sample per clock, or 2x2 of them (LANES),
+// combined with their colours; it also divides colours over w.
 //
 //   stamp --> coordinates -> [split] -> texture_coordinates -> addresses -> texture_cache -> [texel] -.
 //         |                        '--> colors_over_w -------------------------> divided -------------|
 //         '-> stamps -------------------------------------------------------------------> [combine] -> stamp
 //
-// What a stamp carries along waits in `stamps`, its coordinates in `coordinates`; stamps without texture have nothing there and
-// pass, in order, one a clock. The stamps inside are counted by who sends them, so that none waits at the door.
-// Of four lanes the samples of a stamp are numbered inside as they go: square by square, row by row in each.
-// A state is a stamp too. At the door it says whether the stamps behind it are textured and how they are combined; it sets
-// the address once no sample is left in front of the cache's data.
-// A sample here is a pixel's shading point: one a pixel, however many samples coverage has.
-// Specification: model/stages/texture_unit.hpp; the times are those of model/engines/cycle/texture_timing.hpp.
+// A stamp's payload waits in `stamps`, its coordinates in `coordinates`; stamps without texture store no coordinates
+// and pass, in order, one per clock. The sender counts the stamps inside, so that none waits at the entry. With four
+// lanes the samples of a stamp are renumbered inside in the order they go: square by square, row by row in each. A
+// state travels as a stamp. At the entry it says whether later stamps are textured and how they are combined; it sets
+// the address once no sample is left upstream of the cache's data. A sample here is a pixel's shading point: one per
+// pixel, however many samples coverage has. Specification: model/stages/texture_unit.hpp; the times are those of
+// model/engines/cycle/texture_timing.hpp.
 module texture_unit #(
-    parameter int SAMPLES = 4,          // of a stamp; a power of two
-    parameter int LANES = 1,            // samples that go together, 1 or 4
-    parameter int Q_BITS = 27,          // of q in a tile, without sign; at most 32
-    parameter int P_BITS = 28,          // of u and v over w in a tile, with their signs
+    parameter int SAMPLES = 4,          // samples of a stamp; a power of two
+    parameter int LANES = 1,            // samples that go together: 1 or 4
+    parameter int Q_BITS = 27,          // bits of q in a tile, unsigned; at most 32
+    parameter int P_BITS = 28,          // bits of u and v over w in a tile, signed
     parameter int MANTISSA = 18,        // k
     parameter int NARROW = 17,          // k_P
     parameter int FRACTION = 8,         // f
-    parameter int SHIFT_BITS = 6,       // of c, with its sign
-    parameter int REACH_BITS = 5,       // of x
-    parameter int REFERENCE_BITS = 24,  // of u_ref, with its sign
-    parameter int CHANNELS = 4,         // of a colour
-    parameter int SOFT = 0,             // of these, so many are combined without a multiplier
+    parameter int SHIFT_BITS = 6,       // bits of c, signed
+    parameter int REACH_BITS = 5,       // bits of x
+    parameter int REFERENCE_BITS = 24,  // bits of u_ref, signed
+    parameter int CHANNELS = 4,         // channels of a colour
+    parameter int SOFT = 0,             // this many channels are combined without a multiplier
     parameter int FILTER = 0,           // 0 nearest, 1 linear as well, 2 levels as well
     parameter int RECIPROCAL = 0,       // 0 from a table, 1 by division
     parameter int PAYLOAD = 1,          // bits that a stamp carries along
     parameter int QUEUE = 16,           // stamps inside; a power of two
     parameter int IN_FLIGHT = 32,       // samples between address and texel; a power of two
     parameter int LINES = 64,           // of the cache; a power of two
-    parameter int WAYS = 1,             // of them, in which a block may lie: 1 or 2, not of one nearest texel
-    parameter int PORT_BITS = 64,       // of a beat
-    parameter int WORD = 46,            // bits that a state brings: of a level's lines 70 or 104, else 46
-    parameter int PIXEL = 12,           // of a pixel's column and row
-    parameter int OVER_W = 0,           // 1: it divides colours as well
-    parameter int COLOR_P_BITS = 24,    // of those over w in a tile, with their signs
-    parameter int COLOR_NARROW = 13,    // their k_P
-    parameter int COLOR_SHIFT_BITS = 6, // of their c, with its sign
-    parameter int COLOR_REACH_BITS = 4  // of their x
+    parameter int WAYS = 1,             // ways of the cache: 1 or 2; 1 with one nearest texel
+    parameter int PORT_BITS = 64,       // bits of a beat
+    parameter int WORD = 46,            // bits of a state: 70 or 104 with the lines of a level, else 46
+    parameter int PIXEL = 12,           // bits of a pixel's column and row
+    parameter int OVER_W = 0,           // 1: the unit divides colours as well
+    parameter int COLOR_P_BITS = 24,    // bits of colours over w in a tile, signed
+    parameter int COLOR_NARROW = 13,    // k_P of colours
+    parameter int COLOR_SHIFT_BITS = 6, // bits of c of colours, signed
+    parameter int COLOR_REACH_BITS = 4  // bits of x of colours
 ) (
     input logic clk_i,
     input logic rst_ni,
     input logic power_on_ni,
 
-    // Stamps; no more than QUEUE between here and the end
+    // Stamps; at most QUEUE between here and the output
     input logic                               stamp_valid_i,
     input logic [PAYLOAD-1:0]                 payload_i,
-    input logic [SAMPLES-1:0]                 mask_i,         // samples that live
+    input logic [SAMPLES-1:0]                 mask_i,         // live samples
     input logic [8*CHANNELS*SAMPLES-1:0]      color_i,        // of the primitive, R lowest
-    input logic                               is_triangle_i,  // else it has no texture
+    input logic                               is_triangle_i,  // else the stamp has no texture
     input logic [SAMPLES*Q_BITS-1:0]          q_i,
     input logic [SAMPLES*P_BITS-1:0]          u_i,
     input logic [SAMPLES*P_BITS-1:0]          v_i,
     input logic [2*SHIFT_BITS-1:0]            shift_i,        // c = 1 + x - sp - k_P; of u lowest
     input logic [2*REACH_BITS-1:0]            reach_i,
     input logic [2*REFERENCE_BITS-1:0]        reference_i,
-    input logic                               sets_state_i,   // for the stamps behind it; without a mask
+    input logic                               sets_state_i,   // for later stamps; without a mask
     input logic                               sets_levels_i,
-    input logic                               moves_in_i,     // a part of a triangle's lines
-    input logic [PIXEL-1:0]                   x_i,            // of the stamp's first sample
+    input logic                               moves_in_i,     // a part of a triangle's lines arrives
+    input logic [PIXEL-1:0]                   x_i,            // column of the stamp's first sample
     input logic [PIXEL-1:0]                   y_i,
     input logic [WORD-1:0]                    state_i,        // TextureState::pack, TextureLevels::pack, line_part
 
-    // Of OVER_W: the triangle's colours lie over w, and color_i does not count
+    // With OVER_W: the triangle's colours lie over w, and color_i is ignored
     input logic                                     divides_colors_i,
     input logic [SAMPLES*CHANNELS*COLOR_P_BITS-1:0] color_p_i,  // red lowest
     input logic [CHANNELS*COLOR_SHIFT_BITS-1:0]     color_shift_i,
     input logic [CHANNELS*COLOR_REACH_BITS-1:0]     color_reach_i,
-    input logic [8*CHANNELS-1:0]                    least_color_i,  // of the vertices
+    input logic [8*CHANNELS-1:0]                    least_color_i,  // minimum of the vertices' colours
     input logic [8*CHANNELS-1:0]                    greatest_color_i,
 
-    // The same with their colours
+    // The same stamp with its colours
     output logic                          stamp_valid_o,
     input  logic                          stamp_ready_i,
     output logic [PAYLOAD-1:0]            payload_o,
     output logic [SAMPLES-1:0]            mask_o,
-    output logic [8*CHANNELS*SAMPLES-1:0] color_o,  // of samples that live
+    output logic [8*CHANNELS*SAMPLES-1:0] color_o,  // colours of live samples
 
     // Memory: lines are read, beats come in their order
     output logic                 request_valid_o,
@@ -88,17 +88,17 @@ module texture_unit #(
     output logic                 answer_ready_o,
     input  logic [PORT_BITS-1:0] answer_data_i,
 
-    output logic [$clog2(LANES+1)-1:0] sample_o,  // so many have been looked up in the cache
-    output logic [$clog2(LANES+1)-1:0] hit_o,     // and of so many all lines were there
-    output logic miss_o,  // a line has been asked for
+    output logic [$clog2(LANES+1)-1:0] sample_o,  // samples looked up in the cache
+    output logic [$clog2(LANES+1)-1:0] hit_o,     // samples of these whose lines were all there
+    output logic miss_o,  // a line has been requested
     output logic idle_o  // nothing is under way
 );
 
   localparam int SIDE_BITS = 12;
   localparam int GROUPS = SAMPLES / LANES;
   localparam int GROUP = (GROUPS == 1) ? 1 : $clog2(GROUPS);
-  localparam int TAIL = GROUP + 1;                          // of a group; the last of its stamp
-  localparam int AHEAD_TAIL = TAIL + ((LANES != 1) ? LANES : 0);  // and which samples live, where there are several
+  localparam int TAIL = GROUP + 1;  // bits of a group's tail: its number, and whether it is the last of its stamp
+  localparam int AHEAD_TAIL = TAIL + ((LANES != 1) ? LANES : 0);  // and the live samples, with several lanes
   localparam int INDEX = $clog2(QUEUE);
   localparam int COLOR = 8 * CHANNELS;
   localparam int COLOR_P = CHANNELS * COLOR_P_BITS;
@@ -106,11 +106,11 @@ module texture_unit #(
   localparam int COORDINATES = SAMPLES * PLACE;
   localparam int GROUP_PLACE = LANES * PLACE;
   localparam int AHEAD = 16;  // groups between split and tags
-  localparam int CLOCKS = (FILTER == 2) ? 10 : 8;  // of texture_coordinates, of level_of_detail
-  localparam int TOKEN = (FILTER == 2) ? 3 : 1;    // kinds of states
+  localparam int CLOCKS = (FILTER == 2) ? 10 : 8;  // latency of texture_coordinates, or of level_of_detail
+  localparam int TOKEN = (FILTER == 2) ? 3 : 1;    // bits of a state's kind
   localparam int PIXELS = COORDINATES + 2 * PIXEL;
   localparam int PLACED = (FILTER != 2) ? COORDINATES : (PIXELS > WORD) ? PIXELS : WORD + 1;
-  localparam int WAITING = PLACED + ((OVER_W != 0) ? 2 : 0);  // with what becomes of the stamp
+  localparam int WAITING = PLACED + ((OVER_W != 0) ? 2 : 0);  // with two flags: textured, divides colours
 
   // ---------------------------------------------------------------------------------------------------------------- the door
   logic       is_shaded, is_textured, divides, enters, door_enable_q;
@@ -139,7 +139,7 @@ module texture_unit #(
   genvar s;
   generate
     for (s = 0; s < SAMPLES; s++) begin : gen_place
-      // Squares of 2x2 in rows, in each its own two rows.
+      // Squares of 2x2 in rows, each in two rows.
       localparam int AT = (LANES == 1 || SAMPLES == 4) ? s :
                           ((2 * ((s / 4) / (1 << (SIDE - 1))) + (s / 2) % 2) << SIDE) + 2 * ((s / 4) % (1 << (SIDE - 1))) + s % 2;
       assign places[s*PLACE+:Q_BITS+2*P_BITS] = {v_i[AT*P_BITS+:P_BITS], u_i[AT*P_BITS+:P_BITS], q_i[AT*Q_BITS+:Q_BITS]};
@@ -157,7 +157,7 @@ module texture_unit #(
   logic [TOKEN-1:0]       token, waiting_token;
   logic [SAMPLES-1:0]     waiting_mask;
   logic [WAITING-1:0]     entering, waiting;
-  logic [INDEX-1:0]       entered_q, split_q;  // number of the next such stamp at the door, and at the split
+  logic [INDEX-1:0]       entered_q, split_q;  // number of the next such stamp at the entry, and at the split
   logic                   passes_door, has_alpha, stamp_waits, stamp_is_textured, stamp_has_alpha, stamp_leaves;
   logic                   waiting_divides;
   logic                   waiting_is_textured, stamp_divides;
@@ -168,7 +168,7 @@ module texture_unit #(
   logic                   waiting_ready, stamps_ready;
   assign passes_door = enters || (stamp_valid_i && token != '0);
   assign has_alpha   = door_format_q != 3'd0 && door_format_q != 3'd2;
-  // Of a stamp whether it is textured; and of OVER_W whether its colours are divided.
+  // Flags of a stamp: it is textured; with OVER_W: its colours are divided.
   localparam int FLAGS = (OVER_W != 0) ? 2 : 1;
   logic [FLAGS-1:0]  door_flags, stamp_flags;
   logic [PLACED-1:0] placed;
@@ -180,7 +180,7 @@ module texture_unit #(
       assign entering            = {divides, is_textured, placed};
       assign waiting_is_textured = waiting[PLACED];
       assign waiting_divides     = waiting[PLACED+1];
-    end else begin : gen_textured  // whoever waits and is no token
+    end else begin : gen_textured  // every waiting stamp that is not a token
       assign entering            = placed;
       assign waiting_is_textured = 1'b1;
       assign waiting_divides     = 1'b0;
@@ -236,7 +236,7 @@ module texture_unit #(
   endfunction
 
   logic               splits, can_set, sets_state, moves_in, is_last, leaves_queue, tags_are_empty;
-  logic [GROUPS-1:0]  done_q, left;  // groups of the stamp that are through; that are not
+  logic [GROUPS-1:0]  done_q, left;  // groups of the stamp that are complete; groups left
   logic [GROUP-1:0]   group;
   logic [4:0]         ahead_q;
   generate
@@ -246,7 +246,7 @@ module texture_unit #(
   endgenerate
   assign group      = lowest(left);
   assign is_last    = (left & (left - 1'b1)) == '0;
-  assign splits     = waits && !is_token && ahead_q != 5'(AHEAD);  // behind a state that takes the texture away it is 0
+  assign splits     = waits && !is_token && ahead_q != 5'(AHEAD);  // 0 after a state that disables the texture
   assign can_set    = waits && is_state && ahead_q == '0 && tags_are_empty;
   assign sets_state = can_set && waiting_token[0];
   assign takes      = can_set || moves_in || (splits && is_last);
@@ -271,14 +271,14 @@ module texture_unit #(
     place_index_q <= split_q;
   end
 
-  // The state at work.
+  // The active state.
   logic [2:0]             format_q;
   logic [3:0]             wrap_q;
-  logic [2*SIDE_BITS-1:0] last_q;   // of each side, the number of its last texel
+  logic [2*SIDE_BITS-1:0] last_q;   // number of the last texel of each side
   logic                   is_linear_q;
   logic [1:0]             size_q;   // log2 of a line's bytes, less 4
-  logic [3:0]             row_q;    // that of a row of lines
-  logic [25:0]            base_q;   // 64 bytes
+  logic [3:0]             row_q;    // log2 of the lines in a row
+  logic [25:0]            base_q;   // unit 64 bytes
   logic [3:0]             log2_width;
   logic [1:0]             size;
   assign log2_width = waiting[14:11];
@@ -295,12 +295,12 @@ module texture_unit #(
     end
 
   // ------------------------------------------------------------------------------------------------------------ the address
-  logic [CLOCKS:0]            valid_q;  // of a clock ago lowest
+  logic [CLOCKS:0]            valid_q;  // the last clock's lowest
   logic [AHEAD_TAIL*(CLOCKS+1)-1:0] tail_q;
   logic [LANES*2*SIDE_BITS-1:0] texel;
   logic [LANES*2*SIDE_BITS-1:0] next;
   logic [LANES*16-1:0]        part;
-  logic [LANES*(2*REFERENCE_BITS+16)-1:0] place;  // of levels, as far as the level
+  logic [LANES*(2*REFERENCE_BITS+16)-1:0] place;  // with levels, until the level is known
   logic [LANES*(2*REFERENCE_BITS+16)-1:0] coordinate;
   logic [LANES*5-1:0]         exponent;
   logic [LANES*(MANTISSA-1)-1:0] reciprocal;
@@ -427,8 +427,8 @@ module texture_unit #(
   logic            texel_valid, texel_ready;
   logic [LANES*32-1:0] texel_color, e_texel_q;
   logic [TAIL-1:0]     texel_tail;
-  logic [LANES-1:0]    texel_lanes;  // the samples that have come
-  logic                texel_ends;   // and they are the last of their group
+  logic [LANES-1:0]    texel_lanes;  // samples whose texels have come
+  logic                texel_ends;   // these samples are the last of their group
   assign drops = sets_state && waiting[1];
   generate
     if (LANES != 1) begin : gen_lanes
@@ -584,15 +584,15 @@ module texture_unit #(
   endgenerate
 
   // ------------------------------------------------------------------------------------------------- colours over w, divided
-  // As many wait as there are samples in the stamps inside, so that no sample waits for a place.
+  // The queue has a place for each sample of the stamps inside, so that no sample waits for a place.
   logic              takes_divided;
   logic              divided_valid, divided_last;
   logic [GROUP-1:0]  divided_group;
   logic [LANES*COLOR-1:0] divided;
   generate
     if (OVER_W != 0) begin : gen_colors_over_w
-      localparam int COLOR_CLOCKS = 8;  // of colors_over_w
-      logic [COLOR_CLOCKS:0] divides_q;  // of a clock ago lowest
+      localparam int COLOR_CLOCKS = 8;  // latency of colors_over_w
+      logic [COLOR_CLOCKS:0] divides_q;  // the last clock's lowest
       logic [LANES*COLOR-1:0] color;
       logic                  divided_ready;
       always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -660,8 +660,8 @@ module texture_unit #(
     color_of = rest[LANES*COLOR-1:0];
   endfunction
 
-  // A sample's own colour is divided before its texel comes: that takes fewer clocks.
-  logic d_moves;  // a sample without a texture, whose colour is divided
+  // A sample's own colour is divided before its texel comes: the division takes fewer clocks.
+  logic d_moves;  // a sample without texture whose colour is divided
   assign e_color = stamp_divides ? divided : color_of(stamp_color, e_group_q);
   generate
     for (s = 0; s < LANES; s++) begin : gen_combine
@@ -681,7 +681,7 @@ module texture_unit #(
   assign is_free       = !out_valid_q || stamp_ready_i;
   assign passes        = stamp_waits && !stamp_is_textured && !stamp_divides && is_free;
   assign d_moves       = stamp_waits && !stamp_is_textured && stamp_divides && divided_valid && is_free;
-  assign e_moves       = e_valid_q && stamp_is_textured && is_free;  // the first that is textured is its own
+  assign e_moves       = e_valid_q && stamp_is_textured && is_free;  // the first textured stamp is this sample's
   assign stamp_leaves  = passes || (e_moves && e_last_q && e_ends_q) || (d_moves && divided_last);
   assign texel_ready   = !e_valid_q || e_moves;
   assign takes_divided = d_moves || (e_moves && stamp_divides && e_ends_q);

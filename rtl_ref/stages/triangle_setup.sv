@@ -1,25 +1,23 @@
-// Triangle setup: everything that stays constant over the triangle, from its three vertices: the reciprocal of its area,
-// and for each plane two gradients and the value at the anchor of its first tile.
+// Triangle setup: all constants of a triangle, from its three vertices: the reciprocal of its area, and for each plane
+// two gradients and the value at the anchor of its first tile.
 //
-// A triangle goes from phase to phase, a cycle each. What all planes take, a cycle each or two (setup.plane_clocks), is a
-// part; a part holds one triangle, which waits in its last phase until the next part is free. Whatever is done for plane p is
-// done p or 2 p phases later than for plane 0, so that planes come one behind the other, those of one triangle behind those
-// of the other:
+// A triangle goes from phase to phase, a cycle each. A part is a group of phases as long as all planes take, a cycle or
+// two each (setup.plane_clocks); a part holds one triangle, which waits in its last phase until the next part is free.
+// Plane p is processed p or 2 p phases after plane 0, so that planes follow each other, and those of one triangle
+// follow those of the triangle before:
 //   divide       the highest bit of the area; R = floor(2^k / A + 1/2), two quotient bits a cycle
-//                (of each plane as many bits of R as its codes need, rounded for themselves)
+//                (for each plane as many bits of R as its codes need, rounded separately)
 //   differences  of the codes, and their ranges
 //   numerators   N_x, N_y
 //   gradients    round(N * R * 2^(F-k))
 //   values       c_0 + g_x (x - x_0) + g_y (y - y_0)
-// With a cycle a plane there are two lanes, for x and for y. With two there is one, which has x in a plane's first cycle and y
-// in its second: half of the multipliers, one shifter.
-// What a plane leaves behind in a phase stands in one register until the next one. Such a register moves while any plane is
-// in the phases around it, in whichever part: no register is overwritten while in use, because a triangle is never a step
-// behind the younger one in the part before.
-// Occupancy: the cycles of all planes. Latency (embedded): 21, with two cycles a plane 25. As many triangles are under way as
-// there are parts, six or four.
-// With the planes of a texture unit states go beside the parts (setup_states.sv), a cycle each.
-// Specification: model/stages/triangle_setup.hpp.
+// With one cycle per plane there are two lanes, for x and for y. With two there is one, which has x in a plane's first
+// cycle and y in its second: half of the multipliers, one shifter. The result of a plane in a phase stands in one
+// register until the next plane's. Such a register moves while any plane is in the phases around it, in whichever part:
+// no register is overwritten while in use, because a triangle is never a step behind the younger one in the part
+// before. Occupancy: the cycles of all planes. Latency (embedded): 21, with two cycles per plane 25. As many triangles
+// are under way as there are parts, six or four. With the planes of a texture unit states bypass the parts
+// (setup_states.sv), a cycle each. Specification: model/stages/triangle_setup.hpp.
 module triangle_setup (
     input logic clk_i,
     input logic rst_ni,
@@ -38,21 +36,21 @@ module triangle_setup (
   localparam int D = raster_pkg::DELTA_BITS;
   localparam int C = raster_pkg::COORDINATE_BITS;
   localparam int PLANES = raster_pkg::PLANES;
-  localparam int CLOCKS = raster_pkg::SETUP_PLANE_CLOCKS;  // of a plane
+  localparam int CLOCKS = raster_pkg::SETUP_PLANE_CLOCKS;  // cycles per plane
   localparam int LANES = 2 / CLOCKS;                       // x and y, or x and then y
   localparam logic [32*PLANES-1:0] CODE_BITS_OF = raster_pkg::CODE_BITS_OF;
   localparam logic [32*PLANES-1:0] CODE_AT = raster_pkg::CODE_AT;
   localparam logic [32*PLANES-1:0] RECIPROCAL_BITS_OF = raster_pkg::RECIPROCAL_BITS_OF;
   localparam logic [32*PLANES-1:0] PLANE_BITS_OF = raster_pkg::PLANE_BITS_OF;
   localparam logic [32*PLANES-1:0] PLANE_AT = raster_pkg::PLANE_AT;
-  localparam int CODES = raster_pkg::ALL_CODE_BITS;  // of a vertex
+  localparam int CODES = raster_pkg::ALL_CODE_BITS;  // bits of a vertex's codes
   localparam int T = raster_pkg::TRIANGLE_PACKET_BITS;
-  localparam int AFFINE = raster_pkg::AFFINE_PLANES;  // the planes behind them start at the vertex of the smallest 1/w
-  // The parts have the width of the widest plane, whichever is at work.
+  localparam int AFFINE = raster_pkg::AFFINE_PLANES;  // the later planes start at the vertex of the smallest 1/w
+  // The parts have the width of the widest plane, whichever is processed.
   localparam int Z = raster_pkg::MAX_CODE_BITS;
-  localparam int ZA = raster_pkg::MAX_AFFINE_CODE_BITS;  // of the planes that have a range
-  localparam int ZW = CODE_BITS_OF[32*(PLANES>AFFINE?AFFINE:0)+:32];  // of 1/w
-  localparam int ZC = ZW > ZA ? ZW : ZA;  // that are compared
+  localparam int ZA = raster_pkg::MAX_AFFINE_CODE_BITS;  // bits of the planes that have a range
+  localparam int ZW = CODE_BITS_OF[32*(PLANES>AFFINE?AFFINE:0)+:32];  // bits of 1/w
+  localparam int ZC = ZW > ZA ? ZW : ZA;  // bits of the codes that are compared
   localparam int DC = raster_pkg::MAX_DELTA_BITS;
   localparam int N = raster_pkg::MAX_NUMERATOR_BITS;
   localparam int P = raster_pkg::MAX_PLANE_BITS;
@@ -69,7 +67,7 @@ module triangle_setup (
   // ----------------------------------------------------------------------------------------------------------- phases
   // Phase 0 finds the highest bit. The quotient has one bit before the point and R after it, one more than is kept, for
   // the rounding.
-  localparam int STEPS = PLANES * CLOCKS;  // of a part
+  localparam int STEPS = PLANES * CLOCKS;  // phases of a part
   localparam int BITS_PER_CYCLE = 2;
   localparam int DIVIDE_CYCLES = (R + BITS_PER_CYCLE) / BITS_PER_CYCLE;
   localparam int DIVIDERS = (DIVIDE_CYCLES + STEPS - 1) / STEPS;
@@ -77,16 +75,16 @@ module triangle_setup (
   localparam int ROUND = 1 + DIVIDE_CYCLES;
   // For plane 0:
   localparam int PRODUCT = ROUND + 1;  // N * R
-  localparam int SHIFT = PRODUCT + 1;  // the gradient
-  localparam int MOVE = SHIFT + 1;     // to the anchor
+  localparam int SHIFT = PRODUCT + 1;  // gradient
+  localparam int MOVE = SHIFT + 1;     // step to the anchor
   localparam int SUM = MOVE + 1;
-  localparam int NUMERATOR = PRODUCT - 2;        // and the phase behind it
+  localparam int NUMERATOR = PRODUCT - 2;        // and the next phase
   localparam int CORNERS = NUMERATOR + 1 - CLOCKS;  // from here on the corners' differences are known
-  // Differences of codes; where a plane takes two cycles, both of them in one part.
+  // Differences of codes; where a plane takes two cycles, both lie in one part.
   localparam int DELTA = (NUMERATOR - CLOCKS) / CLOCKS * CLOCKS;
-  localparam int DELTA_PART = DELTA / STEPS;      // and the next one
-  localparam int DELTA_LEFT = NUMERATOR - CLOCKS - DELTA;  // 1 if they wait a cycle for that
-  localparam int BASE = MOVE + AFFINE - 1;  // with a cycle a plane: the vertex of the smallest 1/w counts from here on
+  localparam int DELTA_PART = DELTA / STEPS;      // and the next part
+  localparam int DELTA_LEFT = NUMERATOR - CLOCKS - DELTA;  // 1 if they wait a cycle for the numerators
+  localparam int BASE = MOVE + AFFINE - 1;  // one cycle per plane: the vertex of the smallest 1/w is used from here on
   localparam int OFFER = SUM + STEPS;
   localparam int LAST_PART = OFFER / STEPS;
   localparam int PARTS = LAST_PART + 1;
@@ -94,11 +92,11 @@ module triangle_setup (
   logic [OFFER:0]     at_q, at_d;  // a triangle is in the phase
   logic [OFFER-1:0]   moves;       // and goes on
   logic [PARTS-1:0]   ready_q, ready_d;
-  logic [SUM:DELTA]   flows;  // some plane goes on: from this phase if it is plane 0
+  logic [SUM:DELTA]   flows;  // some plane moves: from this phase if it is plane 0
   logic               takes, leaves, made_ready;
 
-  // A part is ready when nobody is in it, or when who is in its last phase goes on. The last part is free a cycle after its
-  // setup was taken: so it is known a cycle ahead which parts will be ready.
+  // A part is ready when it is empty, or when the triangle in its last phase moves on. The last part is free a cycle
+  // after its setup was taken: so the ready parts are known a cycle ahead.
   always_comb begin
     moves = at_q[OFFER-1:0];
     for (int i = 0; i < LAST_PART; i++) moves[i*STEPS+STEPS-1] = at_q[i*STEPS+STEPS-1] && ready_q[i+1];
@@ -121,12 +119,12 @@ module triangle_setup (
     end
   end
 
-  logic [PARTS*T-1:0] packets_q;  // of each part
+  logic [PARTS*T-1:0] packets_q;  // one per part
   raster_pkg::triangle_packet_t first_packet, delta_packet, behind_packet, corner_packet, anchor_packet, base_packet,
       last_packet;
   assign first_packet  = packets_q[0+:T];
   assign delta_packet  = packets_q[DELTA_PART*T+:T];
-  assign behind_packet = packets_q[(DELTA_PART+1)*T+:T];  // of planes that come when the triangle has gone on
+  assign behind_packet = packets_q[(DELTA_PART+1)*T+:T];  // for planes that come after the triangle has moved on
   assign corner_packet = packets_q[(CORNERS-1)/STEPS*T+:T];
   assign anchor_packet = packets_q[(MOVE-CLOCKS)/STEPS*T+:T];
   assign base_packet   = packets_q[(PLANES>AFFINE?BASE/STEPS:0)*T+:T];
@@ -137,7 +135,7 @@ module triangle_setup (
   end
 
   // ----------------------------------------------------------------------------------------------------------- divide
-  // The highest set bit of the area, 2^m: of the mirrored area the lowest one, which a carry finds.
+  // The highest set bit of the area, 2^m: the lowest set bit of the mirrored area, which a carry finds.
   logic [A-1:0] first_area, mirrored, least, highest;
   assign first_area = first_packet.area;
   assign least      = mirrored & -mirrored;
@@ -148,13 +146,13 @@ module triangle_setup (
     end
   end
 
-  // Division of 2^m, from the bit before the point, which is 1 only for A = 2^m. What is left less the area has the next bit in
-  // its sign. Where it is negative nothing is taken back: twice that and the area is what twice the rest less the area would
-  // be. So the chain subtracts or adds, and what stands in the register is twice its last result. Each divider goes on where
-  // the one before it stopped.
+  // Non-restoring division of 2^m, from the bit before the point, which is 1 only for A = 2^m. The sign of the
+  // remainder less the area is the next bit. A negative remainder is not restored: the next step adds the area instead
+  // of subtracting it. So the chain subtracts or adds, and the register holds twice its last result. Each divider
+  // continues the one before it.
   localparam int AREA_AT = 3 * raster_pkg::EDGE_VALUE_BITS +  // in a packet
                            (raster_pkg::MSAA_SAMPLES > 1 ? 3 * raster_pkg::GRID_BITS : 0);
-  localparam int REMAINDER = A + 2;                          // -2 A <= it < 2 A
+  localparam int REMAINDER = A + 2;                          // bounds: -2 A <= remainder < 2 A
   logic [DIVIDERS*REMAINDER-1:0] remainders;
   logic [DIVIDERS*QUOTIENT-1:0]  quotients;
   genvar d, b;
@@ -162,7 +160,7 @@ module triangle_setup (
     for (d = 0; d < DIVIDERS; d++) begin : gen_divider
       localparam int CYCLES = d == DIVIDERS - 1 ? DIVIDE_CYCLES - d * STEPS : STEPS;
       localparam int BITS = BITS_PER_CYCLE * CYCLES;
-      localparam int HEAD = BITS_PER_CYCLE * STEPS * d;  // bits of the dividers before
+      localparam int HEAD = BITS_PER_CYCLE * STEPS * d;  // bits of the earlier dividers
       logic [A-1:0]         area_q;
       logic [REMAINDER-1:0] remainder_q, remainder_d, start;
       logic [BITS-1:0]      bits_q, bits_d;
@@ -172,7 +170,7 @@ module triangle_setup (
       assign iterates = moves[d*STEPS+1+:CYCLES] != '0;
       for (b = 0; b < BITS_PER_CYCLE; b++) begin : gen_bit
         logic [REMAINDER-1:0] from;
-        logic [REMAINDER-2:0] rest;  // less the area; it has a bit less
+        logic [REMAINDER-2:0] rest;  // remainder less the area; one bit shorter
         if (b == 0) begin : gen_first_bit
           assign from = remainder_q;
         end else begin : gen_next_bit
@@ -217,7 +215,7 @@ module triangle_setup (
     for (int i = 0; i < A; i++) if (gen_divider[0].remainder_q[i]) log2_area = log2_area | M'(i);
   end
 
-  // Of each plane the upper bits, rounded by the next one; what is below is dropped, spare bits with it.
+  // For each plane the upper bits, rounded by the next one; the lower bits and spare bits are dropped.
   logic [QUOTIENT-1:0] quotient_q;
   logic [PLANES*R-1:0] uppers, halves;
   logic [R-1:0]        upper, half, reciprocal, reciprocal_q;
@@ -246,11 +244,12 @@ module triangle_setup (
   end
 
   // ------------------------------------------------------------------------------------------------------- differences
-  // A plane's code at each vertex, the differences from vertex 0, the range. Its cycles are in one part.
+  // A plane's code at each vertex, the differences from vertex 0, the range. The cycles of a plane are in one part.
   localparam int CZ = Z + 1;  // with a sign
   logic [PLANES*CZ-1:0]        codes_0, codes_1, codes_2;
-  logic [PLANES-1:0]           plane_differs;  // its differences are made
-  // Planes over w start at the vertex of the smallest 1/w, the first of several: 2, 1, none of the two. Plane AFFINE is 1/w.
+  logic [PLANES-1:0]           plane_differs;  // the differences of the plane are computed
+  // Planes over w start at the vertex of the smallest 1/w, the first of several: vertex 2, 1, or neither. Plane AFFINE
+  // is 1/w.
   logic [1:0]                  base, base_q;
   logic                        differs_over_w, differs_in_w;
   generate
@@ -281,8 +280,8 @@ module triangle_setup (
     end
   endgenerate
 
-  // Where a plane starts: the code at vertex 0, with the offset of its window added (see values), or at the vertex of the
-  // smallest 1/w.
+  // Start of a plane: the code at vertex 0, with the offset of its window added (see values), or the code at the vertex
+  // of the smallest 1/w.
   function automatic [Z:0] window_of(input [CZ-1:0] code, input [PLANES-1:0] plane);
     window_of = code;
     for (int i = 0; i < AFFINE; i++) begin
@@ -293,15 +292,15 @@ module triangle_setup (
     end
   endfunction
 
-  // What later phases need of a plane goes along: the differences up to the numerators, the start up to the values.
-  localparam int START = SUM + 1 - CLOCKS;               // takes it
-  localparam int TO_START = START - DELTA - CLOCKS + 1;  // registers
+  // Inputs of later phases travel with a plane: the differences up to the numerators, the start up to the values.
+  localparam int START = SUM + 1 - CLOCKS;               // the phase that takes the start
+  localparam int TO_START = START - DELTA - CLOCKS + 1;  // number of registers
   logic signed [CZ-1:0]    c0;
   logic [CZ-1:0]           low, high;
   logic [DC-1:0]           ac_q, bc_q;
-  logic [TO_START*(Z+1)-1:0] start_q;  // the newest is the lowest
+  logic [TO_START*(Z+1)-1:0] start_q;  // the newest lowest
   logic [Z:0]              start;
-  logic                    starts;     // is valid, and goes there
+  logic                    starts;     // the plane is valid, and goes there
   always_comb begin
     c0 = '0;
     for (int i = 0; i < PLANES; i++) if (plane_differs[i]) c0 = c0 | codes_0[i*CZ+:CZ];
@@ -347,7 +346,7 @@ module triangle_setup (
         end
       end
     end else begin : gen_shared_differences
-      // Vertex 1, then vertex 2; what is known of the first two waits in registers.
+      // Vertex 1, then vertex 2; results of the first two comparisons wait in registers.
       logic signed [CZ-1:0] other;
       logic signed [DC-1:0] difference;
       logic [DC-1:0]        first_q, pair_a_q, pair_b_q;
@@ -402,12 +401,12 @@ module triangle_setup (
     end
   endgenerate
 
-  // The ranges of a triangle stay with the parts behind. Planes over w have none.
+  // The ranges of a triangle stay with the later parts. Planes over w have none.
   localparam int RANGES = 2 * AFFINE * ZA;
-  localparam int RANGED = DELTA + CLOCKS * AFFINE - 1;  // the last one is found
+  localparam int RANGED = DELTA + CLOCKS * AFFINE - 1;  // the last range is complete
   localparam int RANGE_PART = (RANGED + 1) / STEPS;
   logic                    finds_range;
-  logic [(AFFINE-1)*ZA-1:0] low_q, high_q;  // the newest is the highest
+  logic [(AFFINE-1)*ZA-1:0] low_q, high_q;  // the newest lowest
   logic [(PARTS-RANGE_PART)*RANGES-1:0] ranges_q;
   always_comb begin
     finds_range = 1'b0;
@@ -474,7 +473,7 @@ module triangle_setup (
     end
   endgenerate
 
-  // The edges' directions, in the part that is entered meanwhile and those behind.
+  // The directions of the edges, in the part that is entered meanwhile and in later ones.
   localparam int EDGE_PART = CORNERS / STEPS + 1;
   logic [(PARTS-EDGE_PART)*6*D-1:0] edges_q;
   always_ff @(posedge clk_i) begin
@@ -488,8 +487,8 @@ module triangle_setup (
   end
 
   // -------------------------------------------------------------------------------------------------------- gradients
-  // round_shift(N * R, k - F): k - F = m + OFFSET, which may be negative: LEFT zeros go below the product first, so that
-  // what remains is a shift to the right by at least 1, of which the rounding takes the last.
+  // round_shift(N * R, k - F): k - F = m + OFFSET, which may be negative: LEFT zeros go below the product first, so
+  // that a shift to the right by at least 1 remains, whose last bit the rounding takes.
   localparam int OFFSET = R - 1 - F;
   localparam int LEFT = OFFSET < 1 ? 1 - OFFSET : 0;
   localparam int SHIFT_BASE = OFFSET + LEFT - 1;
@@ -497,10 +496,10 @@ module triangle_setup (
   localparam int SHIFT_BITS = $clog2(A + SHIFT_BASE + 1);
   localparam int LOG2_PART = PRODUCT / STEPS;
 
-  logic [(LOG2_PART+1)*M-1:0]         log2_q;  // of each part
+  logic [(LOG2_PART+1)*M-1:0]         log2_q;  // one per part
   logic [SHIFT_BITS-1:0]              shift_q;
   logic [LANES*PRODUCT_BITS-1:0]      product_q;
-  logic [LANES*P-1:0]                 step_q;  // per subpixel
+  logic [LANES*P-1:0]                 step_q;  // gradient per subpixel
 
   always_ff @(posedge clk_i) begin
     if (moves[1]) log2_q[0+:M] <= log2_area;
@@ -541,17 +540,17 @@ module triangle_setup (
   assign anchor_x = centre_x(anchor_packet.box.left[PX-1:TS]);
   assign anchor_y = centre_y(anchor_packet.box.top[PY-1:TS]);
 
-  // A plane at its vertex: its code with F fraction bits, half a unit of the local plane's last place, and the offset of its
-  // window (LocalFormat), 2^(B-1), so that a tile's anchor is a shift.
+  // A plane at its vertex: its code with F fraction bits, half a unit of the local plane's last place, and the offset
+  // of its wrap window (LocalFormat), 2^(B-1), so that a tile's anchor is a shift.
   localparam logic [F-1:0] HALVES = F'(1) << (F - L - 1) | F'(1) << (F - 1);
-  localparam logic [F-1:0] HALVES_OVER_W = F'(1) << (F - raster_pkg::PERSPECTIVE_GUARD_BITS - 1);  // has no window
-  logic                    sums_over_w;         // such a plane starts
-  logic [LANES*D-1:0]      to;                  // the anchor, from the plane's vertex
+  localparam logic [F-1:0] HALVES_OVER_W = F'(1) << (F - raster_pkg::PERSPECTIVE_GUARD_BITS - 1);  // no wrap window
+  logic                    sums_over_w;         // a plane over w starts
+  logic [LANES*D-1:0]      to;                  // offset of the anchor from the plane's vertex
   logic [LANES*P-1:0]      move_q;
   logic [P-1:0]            start_value, sum;    // modulo 2^P
-  logic                    sums;                // is a plane's value
-  logic [2*PLANES*P-1:0]   steps_q;             // {y, x}, the newest is the highest
-  logic [(PLANES-1)*P-1:0] sums_q;              // likewise
+  logic                    sums;                // sum is a plane's value
+  logic [2*PLANES*P-1:0]   steps_q;             // {y, x}, the newest highest
+  logic [(PLANES-1)*P-1:0] sums_q;              // the newest highest
   assign start_value = P'({start_q[(TO_START-1)*(Z+1)+:Z+1], sums_over_w ? HALVES_OVER_W : HALVES});
   generate
     if (PLANES > AFFINE) begin : gen_over_w
@@ -581,7 +580,7 @@ module triangle_setup (
           to_anchor_y_q <= D'(anchor_y) - D'($signed(anchor_packet.vertex.y[0+:C]));
         end
       end
-      // The same from the vertex of the smallest 1/w, for the planes over it.
+      // The same from the vertex of the smallest 1/w, for the planes over w.
       if (PLANES > AFFINE) begin : gen_base
         logic                moves_over_w;
         logic signed [C-1:0] base_x, base_y;
@@ -614,7 +613,7 @@ module triangle_setup (
       assign sum  = moved + move_q[(LANES-1)*P+:P];
       assign sums = flows[SUM];
     end else begin : gen_shared_values
-      // The way to the anchor from one corner after the other: what they need of the packet waits beside the parts.
+      // The offset to the anchor from one corner after the other: the corners and anchors wait next to the parts.
       localparam int WAY = MOVE - 1;
       logic [6*C-1:0]      corners_q;  // {y, x} of vertex 2, 1, 0
       logic [2*(C+1)-1:0]  anchor_q;   // {y, x}
@@ -647,7 +646,7 @@ module triangle_setup (
         end
         if (flows[WAY]) to_q <= D'($signed(anchor)) - D'($signed(from));
       end
-      // One adder: what a plane starts with waits in the register of the sum.
+      // One adder: the start of a plane waits in the register of the sum.
       logic         begins;
       logic [P-1:0] rest_q;
       always_comb begin

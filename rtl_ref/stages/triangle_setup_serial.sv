@@ -1,17 +1,17 @@
-// Triangle setup for the smallest parts: the bits of triangle_setup.sv from one adder and one shift-and-add multiplier,
-// one bit a cycle. It costs about as many flip-flops as a setup packet has bits, because every intermediate waits in a
-// result register that is not needed yet.
+// Triangle setup for the smallest parts: the same bits as triangle_setup.sv, from one adder and one shift-and-add
+// multiplier, one bit a cycle. It costs about as many flip-flops as a setup packet has bits, because every intermediate
+// waits in a result register that is not needed yet.
 //
 // Bits run lowest first through chains: shift registers that hold a field of all planes, plane 0 lowest.
 // A pass moves a chain through once, plane by plane, so no bit is ever selected by an index.
-//   SUBTRACT  the ring: raw coordinates become dx, dy and the way to the anchor; meanwhile R, with a subtractor of its own
+//   SUBTRACT  the ring: raw coordinates become dx, dy and the offset to the anchor; meanwhile R, in its own subtractor
 //   FIRST     numerators: (c2 - c0) d0 of all planes into the value chain
 //   SECOND    and (c1 - c0) d2 added there
-//   GRADIENT  numerator * R, shifted and rounded, into a step chain. These three for y, then for x
-//   VALUE     step * way to the anchor, added to the value chain; for x, then for y
-// The multiplier's operand is the lowest word of the ring, which turns between the passes.
-// Occupancy: about 1300 cycles and 8 for each bit of the area. triangle_i must stay until triangle_ready_o, which
-// comes after the result: what only passes through is not stored. Specification: model/stages/triangle_setup.hpp.
+//   GRADIENT  numerator * R, shifted and rounded, into a step chain. These three states for y, then for x
+//   VALUE     step * offset to the anchor, added to the value chain; for x, then for y
+// The multiplier's operand is the lowest word of the ring, which rotates between the passes. Occupancy: about 1300
+// cycles and 8 for each bit of the area. triangle_i must stay until triangle_ready_o, which comes after the result:
+// fields that only pass through are not stored. Specification: model/stages/triangle_setup.hpp.
 module triangle_setup_serial (
     input logic clk_i,
     input logic rst_ni,
@@ -49,9 +49,9 @@ module triangle_setup_serial (
   localparam int RING = 8 * D;
   localparam int UNIT = $clog2(PLANES > 8 ? PLANES : 8);
 
-  // The dividend starts at 1, so that after j = ceil(log2 A) quotient bits of 0 come the R that count, and
-  // quotient = floor(2^(j + R - 1) / A). SHIFT = j + R - 2 - F is what brings a product to F fraction bits; it includes
-  // the rounding bit, so LEAD zeros go below the product where it might be less than 1.
+  // The dividend starts at 1, so that after j = ceil(log2 A) quotient bits of 0 come the R significant ones, and
+  // quotient = floor(2^(j + R - 1) / A). SHIFT = j + R - 2 - F brings a product to F fraction bits; it includes the
+  // rounding bit, so LEAD zeros go below the product where it might be less than 1.
   localparam int LEAD = F + 3 - R > 0 ? F + 3 - R : 0;
   localparam int SHIFT_MAX = A + R - 2 - F + LEAD;
   localparam int COUNT = $clog2(SHIFT_MAX > P ? SHIFT_MAX : P);
@@ -62,14 +62,14 @@ module triangle_setup_serial (
   localparam logic [3:0] IDLE = 4'd0, SUBTRACT = 4'd1, FIRST = 4'd2, TURN_A = 4'd3, SECOND = 4'd4, GRADIENT = 4'd5,
       TURN_B = 4'd6, TURN_C = 4'd7, VALUE_X = 4'd8, TURN_D = 4'd9, VALUE_Y = 4'd10, OFFER = 4'd11, TAKE = 4'd12;
   (* fsm_encoding = "none" *) logic [3:0] state_q;
-  logic             is_x_q;  // the numerators and gradients at work
+  logic             is_x_q;  // the numerators and gradients in progress are those of x
   logic [UNIT-1:0]  unit_q;  // plane, or word of the ring
   logic [COUNT-1:0] bit_q, last_bit, shift_q;  // shift_q: SHIFT + LEAD - 1
-  logic             keeps_q;  // GRADIENT: the bits that are dropped have gone by
-  logic             waits_q, has_moved;  // and so have those that are kept, but not all of the numerator
+  logic             keeps_q;  // GRADIENT: the dropped bits have passed
+  logic             waits_q, has_moved;  // the kept bits have passed too, but not the whole numerator
   logic [UNIT-1:0]  last_unit;
   logic [COUNT-1:0] code_bits, last_of_plane;  // of the plane
-  logic [MOVED-1:0] all_moved;                 // of its numerator, with LEAD zeros
+  logic [MOVED-1:0] all_moved;                 // bits of its numerator, with LEAD zeros
   logic             is_numerator, is_gradient, is_value, is_turn, is_last_bit, unit_ends, state_ends, load;
 
   assign is_numerator = state_q == FIRST || state_q == SECOND;
@@ -156,13 +156,13 @@ module triangle_setup_serial (
   end
 
   // ----------------------------------------------------------------------------------------------------------- chains
-  logic [RING-1:0]  ring_q;  // at first x0, x1, x2, x0, then y likewise; then dx, way to the anchor, dy, way to the anchor
+  logic [RING-1:0]  ring_q;  // at first x0, x1, x2, x0, y likewise; then dx, way to the anchor, dy, way to the anchor
   logic [CHAIN-1:0] step_x_q, step_y_q, value_q;
   logic [CODES-1:0] min_q, max_q;  // codes of vertices 1 and 2, until the last pass that needs them
   logic             moves_codes, keeps, moves_numerator;
   logic             ring_in, min_in, max_in, sum, c0, c1, c2;
 
-  // From the way to the anchor of the first tile: its centre is that of pixel (T/2, T/2).
+  // Coordinates of the anchor of the first tile: the centre of pixel (T/2, T/2).
   logic [D-1:0] anchor_x, anchor_y;
   assign anchor_x = D'({triangle_i.box.left[PX-1:TS], 1'b1, {(TS - 1) {1'b0}}}) << S | D'(1 << (S - 1));
   assign anchor_y = D'({triangle_i.box.top[PY-1:TS], 1'b1, {(TS - 1) {1'b0}}}) << S | D'(1 << (S - 1));
@@ -171,7 +171,8 @@ module triangle_setup_serial (
   logic [2*CHAIN-1:0] anchors;
   assign anchors = (2 * CHAIN)'(anchor_x) << (3 * D) | (2 * CHAIN)'(anchor_y) << (7 * D);
 
-  // c_0 with F fraction bits, half a unit of the local plane's last place, and the offset of its window (LocalFormat).
+  // c_0 with F fraction bits, half a unit of the local plane's last place, and the offset of its wrap window
+  // (LocalFormat).
   localparam logic [F-1:0] HALVES = F'(1) << (F - L - 1) | F'(1) << (F - 1);
   logic [CHAIN-1:0] base;
   genvar p;
@@ -228,15 +229,15 @@ module triangle_setup_serial (
   end
 
   // ------------------------------------------------------------------------------------------------ differences, range
-  // A word of the ring is taken from the next one, or from the anchor.
+  // A word of the ring is subtracted from the next one, or from the anchor.
   logic minuend, borrow_q;
   assign minuend = unit_q[1:0] == 2'd3 ? step_y_q[0] : ring_q[D];
   assign ring_in = is_turn ? ring_q[0] : minuend ^ ring_q[0] ^ borrow_q;
 
-  // Codes have no sign, so the last borrow is the sign of their difference.
+  // Codes have no sign, so the last borrow is the sign of a difference.
   logic              borrow_10_q, borrow_20_q, borrow_21_q;
   logic              ac, bc;
-  logic [PLANES-1:0] is_1_below_0_q, is_2_below_0_q, is_2_below_1_q;  // as of the pass before; the current plane is lowest
+  logic [PLANES-1:0] is_1_below_0_q, is_2_below_0_q, is_2_below_1_q;  // from the pass before; the current plane lowest
   logic              sorts, is_min_1, is_min_2, is_max_1, is_max_2;
   assign c0       = step_x_q[CHAIN-CODES];
   assign c1       = min_q[0];
@@ -270,7 +271,7 @@ module triangle_setup_serial (
     end
   end
 
-  // Of each plane the bits of the quotient that it keeps, and below them the highest of the others.
+  // For each plane the bits of the quotient that it keeps, and below them the highest dropped bit.
   logic [PLANES*R-1:0] reciprocals;
   logic [R-1:0]        reciprocal;
   genvar b;
@@ -288,9 +289,9 @@ module triangle_setup_serial (
   end
 
   // ------------------------------------------------------------------------------------------------- multiply and add
-  // The serial factor comes lowest bit first and goes on with its sign, so the product comes out modulo any power of two.
+  // The serial factor comes lowest bit first, sign-extended, so the product comes out modulo any power of two.
   logic               factor, sign_q, restarts, product, addend, negates, carry_q;
-  logic [MOVED-1:0]   moved_q;  // bits of the numerator that have gone by, after LEAD zeros
+  logic [MOVED-1:0]   moved_q;  // bits of the numerator that have passed, after LEAD zeros
   logic [ACC-1:0]     operand;
   logic [ACC+1:0]     total;  // its lowest bit only makes the carry
   logic [ACC-1:0]     acc_q;
@@ -306,7 +307,7 @@ module triangle_setup_serial (
       default: factor = step_y_q[0];
     endcase
   end
-  // R = (quotient + 1) >> 1: its rounding goes in as a carry, through ones where a plane has dropped bits.
+  // R = (quotient + 1) >> 1: rounding enters as a carry, through ones in place of the dropped bits of a plane.
   assign operand = is_gradient ? ACC'(reciprocal[R-1:1]) : ACC'($signed(ring_q[0+:D]));
   assign total   = {acc_q[ACC-1], acc_q, 1'b1} +
       {operand[ACC-1] && factor, operand & {ACC{factor}}, is_gradient && reciprocal[0] && factor};
@@ -328,7 +329,7 @@ module triangle_setup_serial (
       sign_q <= factor;
       acc_q  <= total[ACC+1:2];
       if (!has_moved) moved_q <= moved_q + MOVED'(1);
-      if (is_gradient && !keeps_q) carry_q <= product;  // the last one that is dropped rounds
+      if (is_gradient && !keeps_q) carry_q <= product;  // the last dropped bit rounds
       else carry_q <= addend ? (product ^ negates) || carry_q : (product ^ negates) && carry_q;
     end
   end
@@ -341,7 +342,7 @@ module triangle_setup_serial (
   assign setup_o.primitive_id = triangle_i.primitive_id;
   assign setup_o.box          = triangle_i.box;
   assign setup_o.state        = triangle_i.state;
-  assign setup_o.dx           = ring_q[D+:3*D];  // the ring has turned by 15 words
+  assign setup_o.dx           = ring_q[D+:3*D];  // the ring has rotated by 15 words
   assign setup_o.dy           = ring_q[5*D+:3*D];
   assign setup_o.edge_value   = triangle_i.edge_value;
   assign setup_o.value        = value_q;

@@ -1,10 +1,10 @@
-// Write-back: what goes to memory of the framebuffer of blocks, in the order that cache_tags says: blocks that have left the
-// chip, then the read that an order ends with; and what a flush writes.
+// Write-back: the memory traffic of the framebuffer of blocks, in the order given by cache_tags: evicted blocks, then
+// the read that ends an order; and the writes of a flush.
 //
-// A block that leaves gets one of VICTIMS slots. Its depths come into it from depth_cache, its colours from color_write, a
-// stamp a cycle; when all of both are there it is written, a stamp a request, depths first. With compress.unit pixel_colors
-// says of each block whether its colours are written, or read, with one a pixel.
-// Specification: model/stages/block_cache.hpp, pixel_colors.hpp; the times are those of model/engines/cycle/block_timing.hpp.
+// An evicted block gets one of VICTIMS slots. Its depths come from depth_cache, its colours from color_write, a stamp a
+// cycle; when all of both are in the slot the block is written, a stamp a request, depths first. With compress.unit
+// pixel_colors says of each block whether its colours are written, or read, one per pixel. Specification:
+// model/stages/block_cache.hpp, pixel_colors.hpp; the times are those of model/engines/cycle/block_timing.hpp.
 module write_back #(
     parameter int SAMPLES = raster_pkg::SAMPLES,  // derived; not to be set
     parameter int CODE = raster_pkg::STORED_DEPTH_BITS,
@@ -16,7 +16,7 @@ module write_back #(
     input logic clk_i,
     input logic rst_ni,
 
-    // From cache_tags: orders; behind all of them what a flush writes, whose data are the word, or the clear value
+    // From cache_tags: orders; after all of them the writes of a flush, whose data are the word, or the clear value
     input  logic                        ordered_valid_i,
     output logic                        ordered_ready_o,
     input  raster_pkg::block_order_t    ordered_i,
@@ -26,14 +26,14 @@ module write_back #(
     input  logic [CODE-1:0]             clear_depth_i,
     input  logic [COLOR-1:0]            clear_color_i,
 
-    // From depth_cache: a block leaves; stamps of its depths
+    // From depth_cache: a block is evicted; stamps of its depths
     input  logic                    evicts_i,
     input  raster_pkg::eviction_t     eviction_i,
     input  logic                      depth_valid_i,
     input  raster_pkg::depth_victim_t depth_i,
     output logic                    slot_free_o,     // the oldest block is in memory
 
-    // From color_write: stamps of its colours; all of the next block's are there
+    // From color_write: stamps of its colours; all of the next block's are complete
     input logic                     color_valid_i,
     input raster_pkg::color_victim_t color_i,
     input logic                     color_ready_i,
@@ -42,23 +42,23 @@ module write_back #(
     output logic                         request_valid_o,
     input  logic                         request_ready_i,
     output raster_pkg::memory_request_t  request_o,        // without its data
-    output logic [8*raster_pkg::REQUEST_BYTES-1:0] request_bytes_o,  // which are these, as they lie in memory
+    output logic [8*raster_pkg::REQUEST_BYTES-1:0] request_bytes_o,  // its data, as they lie in memory
     input  logic                         response_valid_i,
     input  logic                         response_ready_i,
     input  raster_pkg::memory_response_t response_i,
 
-    // To memory_answers: a read goes out, of colours, with one a pixel; answers are those of a merge
+    // To memory_answers: a read goes out; it reads colours; one per pixel; answers belong to a merge
     output logic read_goes_o,
     output logic read_color_o,
     output logic read_of_pixels_o,
     output logic merges_o,
 
-    // Tokens: a word of the bits of blocks with one colour a pixel is read, and there in the next cycle; or written
+    // Tokens: a word of the bits of blocks with one colour per pixel is read, and valid in the next cycle; or written
     input  raster_pkg::pixel_word_t token_i,
     output logic [WORD-1:0]         token_word_o,
 
-    output logic fills_o,   // this cycle asks for a stamp
-    output logic stores_o,  // this cycle writes one
+    output logic fills_o,   // this cycle requests a stamp
+    output logic stores_o,  // this cycle writes a stamp
     output logic idle_o     // no order is under way
 );
 
@@ -69,9 +69,9 @@ module write_back #(
   localparam bit BLENDS = raster_pkg::BLEND_LANES != 0;
   localparam bit COMPRESSES = raster_pkg::COMPRESS_UNIT != 0;
 
-  // Of the lowest one, how many follow each other without a gap.
+  // Length of the run of ones from the lowest one on.
   function automatic [RUN-1:0] run_of(input [STAMPS-1:0] set);
-    logic [STAMPS-1:0] gaps;  // above the lowest, from the first one that is missing on
+    logic [STAMPS-1:0] gaps;  // above the lowest, from the first gap on
     gaps   = ~set & ~(raster_pkg::lowest_stamp(set) - 1'b1);
     run_of = '0;
     for (int i = 0; i < STAMPS; i++)
@@ -96,26 +96,26 @@ module write_back #(
   assign idle_o = !order_valid;
 
   // ------------------------------------------------------------------------------------------------- slots, and which is sent
-  localparam int PLACE = SLOT + STAMP;  // of a stamp in the slots
+  localparam int PLACE = SLOT + STAMP;  // place of a stamp in the slots
   logic [SAMPLES*(CODE+1)-1:0]  victim_depth_q[0:(1<<PLACE)-1];
   logic [SAMPLES*(COLOR+1)-1:0] victim_color_q[0:(1<<PLACE)-1];
   logic [raster_pkg::VICTIM_BITS-1:0] victim_q[0:VICTIMS-1];
   logic [STAMPS-1:0] depth_left_q[0:VICTIMS-1];  // stamps still to be written
   logic [STAMPS-1:0] color_left_q[0:VICTIMS-1];
-  logic [SLOT-1:0]   oldest_q;  // slot of the next to be written
-  logic [SLOT:0]     depth_ready_q, color_ready_q;  // blocks whose depths, and colours, are all here
+  logic [SLOT-1:0]   oldest_q;  // slot of the next block to be written
+  logic [SLOT:0]     depth_ready_q, color_ready_q;  // blocks whose depths, and colours, are complete
   logic              is_ready;
-  logic [WRITES-1:0] written_q;  // of the order at the head
-  logic              depth_asked_q;  // likewise: its read of depths has been taken, that of colours has not
+  logic [WRITES-1:0] written_q;  // blocks written of the order at the head
+  logic              depth_asked_q;  // of the order at the head: its depth read has been taken, its colour read has not
 
   logic                     sends, skips, wants_write, wants_read, is_color, ends_victim, is_here, takes_request, finishes;
-  logic                     reads_color, colors_known, asks_pixels;  // how colours are written or read; a read of a merge
-  logic                     of_pixels;  // the colours at work lie in memory with one a pixel
+  logic                     reads_color, colors_known, asks_pixels;  // the colours' form is known; a read of a merge
+  logic                     of_pixels;  // the current colours lie in memory with one per pixel
   logic [STAMP-1:0]         asked_stamp, sent_stamp;
-  logic                     takes_merged;  // all stamps of the block are written, with what was read
+  logic                     takes_merged;  // all stamps of the block are written, with the merged colours
   logic [STAMPS-1:0]        depth_left, color_left, sent;
   raster_pkg::victim_t      leaving;
-  logic [SAMPLES*CODE-1:0]  sent_depth, lent_depth;  // as it is in its slot; and 0 where it is not written
+  logic [SAMPLES*CODE-1:0]  sent_depth, lent_depth;  // depths of the slot; lent_depth is 0 where they are not written
   logic [SAMPLES*COLOR-1:0] sent_color;
   logic [SAMPLES-1:0]       sent_depth_strobe, sent_color_strobe;
 
@@ -133,7 +133,7 @@ module write_back #(
   assign ends_victim = is_color ? color_left == sent : depth_left == sent && color_left == '0;
   assign is_here     = (sent & (is_color ? leaving.color : leaving.depth)) != '0;
   assign finishes    = skips || (sends && takes_request && ends_victim);
-  assign reads_color = order_reads_color && (!order.reads || depth_asked_q);  // behind that of depth
+  assign reads_color = order_reads_color && (!order.reads || depth_asked_q);  // after the depth read
   assign takes_order = (finishes && written_q + 1'b1 == order.writes && !order.reads && !order_reads_color) ||
                        (read_goes_o && (reads_color || !order_reads_color));
   assign request_valid_o = flush_valid_i || sends || asks_pixels || (wants_read && (!reads_color || colors_known));
@@ -207,7 +207,7 @@ module write_back #(
   endgenerate
 
   // ------------------------------------------------------------------------------------ blocks of one colour a pixel
-  localparam int PIXEL_COLORS = raster_pkg::PIXELS * COLOR;  // of a stamp, one a pixel
+  localparam int PIXEL_COLORS = raster_pkg::PIXELS * COLOR;  // bits of a stamp's colours, one per pixel
   logic [PIXEL_COLORS-1:0] merged;
   generate
     if (COMPRESSES) begin : gen_pixel_colors

@@ -7,17 +7,16 @@
                                                              x1_q.source != raster_pkg::DEPTH_SOURCE_NONE)));
   end
 
-  // One place of the RAMs, any: a sample m of a stamp of a line.
+  // An arbitrary place of the RAMs: a sample m of a stamp of a line.
   (* anyconst *) logic [LINE-1:0]   any_line;
   (* anyconst *) logic [STAMP-1:0]  any_stamp;
-  // What an eviction takes along, as it is when all before it, and nothing behind it, has been written. It is what memory
-  // gets, each sample once, and only then the slot is free.
-  // In between it is in the RAM, on its way, or in the slot.
+  // The data of an eviction: those after all earlier writes and before any later one. Memory gets exactly these, each
+  // sample once, and only then the slot is free. In between the data are in the RAM, in flight, or in the slot.
   logic [STAMPS-1:0] any_bit;
   logic              sends_any;
   assign any_bit   = STAMPS'(1) << any_stamp;
   assign sends_any = sends && takes_request && oldest_q == any_slot && sent == any_bit;
-  logic [SAMPLES-1:0]       w_mask_q;  // what color_write took in the clock before
+  logic [SAMPLES-1:0]       w_mask_q;  // mask that color_write took in the clock before
   logic [SAMPLES*COLOR-1:0] w_color_q;
   always_ff @(posedge clk_i) begin
     w_mask_q  <= w.mask;
@@ -38,7 +37,7 @@
       assign reads         = p == 0 ? reads_victim || goes : w_reads;
       assign read_address  = p == 0 ? depth_read_address : w_read_address;
       assign write_address = p == 0 ? {x1_q.line, x1_q.stamp} : w_write_address;
-      // An eviction that is being read is that of the slot, and its stamp is still to be read, or has been.
+      // An eviction being read is that of the slot, and its stamp is still to be read, or has been.
       assign is_begun  = p == 0 ? holds_any : any_begun;
       assign is_left   = is_begun && (p == 0 ? SLOT'(slot_q - 1'b1) == any_slot && (left_q & any_bit) != '0 :
                                       (w_first_slot_q == any_slot && (w_first_q & any_bit) != '0) ||
@@ -88,11 +87,11 @@
         end
         always_comb if (runs_q) begin
           if (read_is_it_q && !collided_q) assume (ram == read_word_q);  // sram_word
-          // What is written: what passed, or what was there (a colour: garbage, under a strobe that says so).
+          // Written data: passed depths, or the stored ones (a colour: garbage, under a strobe that says so).
           if (p == 0 && writes) assert (stored == {write_i.write_depth[m], write_i.write_depth[m] ? write_i.depth[m*CODE+:CODE] :
                                                                             stored_depth_o[m*CODE+:CODE]});
           if (p == 1 && writes) assert (stored == (BITS + 1)'({w_mask_q[m], w_color_q[m*COLOR+:COLOR]}));
-          // The test sees what was written last, up to the clock before.
+          // The test sees the last write, up to the clock before.
           if (p == 0 && x1_valid_q && x1_q.source == raster_pkg::DEPTH_SOURCE_CHIP && tested_q.mask != '0 &&
               {x1_q.line, x1_q.stamp} == {any_line, any_stamp}) begin
             assert (read_is_it_q && gen_depth[m].in_ram_q == !collided_q);
@@ -105,7 +104,7 @@
             if (is_left || is_read) assert (!sent_q);
             if (is_left) assert (word_q == snapshot_q);
             if (is_read) assert (read_is_it_q && !collided_q && read_word_q == snapshot_q);
-            // In its slot.
+            // Data in the slot.
             if (is_here_q && !is_left && !is_read) begin
               assert ((p == 0 ? slot_depth_strobe[m] : slot_color_strobe[m]) == owes);
               if (owes)
@@ -114,7 +113,7 @@
             end
             if (!is_left && !is_read && owes) assert (sent_q || slot_left);
             if (slot_left) assert (!sent_q);
-            // What is sent.
+            // Data sent to memory.
             if (sends_any && is_color == (p == 1)) begin
               assert (request_o.strobe[m] == owes);
               if (owes)

@@ -1,9 +1,9 @@
 
-  // What comes in. A fragment on offer stays as it is until it is taken (primitive_join_stream and what is in front of it); a
-  // token has no samples. From depth_test: the write of an item with samples comes in the cycle after it, of no others than
-  // its samples, of all of them for `always`, and of the planes of its state, the depth's where a stencil changes above it;
-  // with it what each has from now on (depth_test_stream). From memory: an answer is one to a read that was taken in an
-  // earlier cycle, in turn.
+  // Assumptions on inputs. A fragment on offer stays unchanged until it is taken (primitive_join_stream and the proofs
+  // upstream); a token has no samples. From depth_test: the write of an item with samples comes in the next cycle,
+  // within its samples, for `always` of all of them, and in the buffers of its state, or in depth where the stencil
+  // above it changes; with the new stored word of each sample (depth_test_stream). From memory: an answer belongs to a
+  // read that was taken in an earlier cycle, in order.
   logic is_token, is_clear, takes_fragment, takes_token;
   assign is_clear       = fragment_i.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR;
   assign is_token       = is_clear || fragment_i.kind == raster_pkg::PRIMITIVE_KIND_FLUSH;
@@ -14,7 +14,7 @@
   logic [$clog2(QUEUE):0]           unanswered_q;
   logic                             takes_read, takes_response;
   assign takes_read     = takes_request && !request_o.is_write;
-  logic [SAMPLES*LANE-1:0] request_data;  // what a request writes, a lane a sample
+  logic [SAMPLES*LANE-1:0] request_data;  // data of a request, one lane per sample
   request_lanes u_request_lanes (
       .plane_i(request_o.plane),
       .bytes_i(request_bytes_o),
@@ -28,7 +28,7 @@
     tested_q       <= tested_o;
     unanswered_q   <= rst_ni ? unanswered_q + ($clog2(QUEUE) + 1)'(takes_read) - ($clog2(QUEUE) + 1)'(takes_response) : '0;
   end
-  // Whether the word of a sample may change, and where a stencil is above its depth also of one that does not pass.
+  // Whether the word of a sample may change; with a stencil above its depth also for samples that fail.
   logic tested_writes, tested_marks;
   generate
     if (raster_pkg::STENCIL_BITS != 0) begin : gen_marks
@@ -42,7 +42,7 @@
   always_comb if (runs_q) begin
     if (waits_q) assume (fragment_valid_i && fragment_i == before_q);
     if (is_token) assume (fragment_i.mask == '0);
-    if (is_clear) assume (fragment_i.state.depth_test != raster_pkg::DEPTH_FUNC_EQUAL);  // of one bin: cache_tags_data has it
+    if (is_clear) assume (fragment_i.state.depth_test != raster_pkg::DEPTH_FUNC_EQUAL);  // of bins: cache_tags_data
     assume (write_valid_i == (tested_valid_q && tested_q.mask != '0));
     assume ((write_i.passed & ~tested_q.mask) == '0);
     if (tested_q.state.depth_test == raster_pkg::DEPTH_FUNC_ALWAYS) assume (write_i.passed == tested_q.mask);

@@ -1,5 +1,5 @@
 
-  // Of color_write, which is what the proof is about as well: its registers (tools/prove_list.py connects them).
+  // Parts of color_write, which the proof covers as well: its registers (tools/prove_list.py connects them).
   localparam int DELAY = 3 * STAMPS;
   localparam int TIME = $clog2(DELAY + 2);
   logic [STAMPS-1:0]        w_first_q, w_second_q, w_next;
@@ -12,8 +12,9 @@
   logic [SAMPLES-1:0]       w_ram_dirty, w_ram_writes, w_ram_dirty_new, w_write_mask_q;
   logic [SAMPLES*COLOR-1:0] w_ram_code, w_ram_code_new;
 
-  // Evictions that color_write has begun: for how many clocks the older one has been, the one behind it, and the one of
-  // any_slot, which is said to be in its slot when it has been for more than DELAY. Stamps that are left are read until then.
+  // Evictions that color_write has begun: the number of clocks since the begin of the older one, of the next one, and
+  // of the one of any_slot, which is reported complete in its slot after more than DELAY. Its remaining stamps are read
+  // until then.
   logic [TIME-1:0] first_time_q, second_time_q, any_time_q, first_left, second_left, started;
   always_comb begin
     first_left  = '0;
@@ -33,17 +34,18 @@
     if (w_starts && w_slot_q == any_slot) any_time_q <= TIME'(1);
     else if (any_time_q <= TIME'(DELAY)) any_time_q <= any_time_q + 1'b1;
   end
-  logic [DELAY-1:0] older;  // begun before that of any_slot, and not said to be there
+  logic [DELAY-1:0] older;  // begun before the eviction of any_slot, and not yet reported complete
   logic [TIME-1:0]  olders;
   assign older = any_time_q > TIME'(DELAY) ? '0 : w_delay_q >> any_time_q;
   always_comb begin
     olders = '0;
     for (int i = 0; i < DELAY; i++) olders = olders + TIME'(older[i]);
   end
-  logic any_begun;  // color_write has begun it, and memory has not all of it
+  logic any_begun;  // color_write has begun it, and memory lacks a part of it
   assign any_begun = holds_any && 32'(taken_q) - 32'(evictions_behind) > 32'(age);
   always_comb if (runs_q) begin
-    // An eviction takes what has been written since the last one of its line, which then has been read (cache_tags_data).
+    // An eviction takes the samples written since the last eviction of its line, whose reads are complete
+    // (cache_tags_data).
     if (w_starts && w.line == w_first_line_q) assume ((w.evicted & w_first_q) == '0);
     if (w_first_q == '0) assert (w_second_q == '0 && !w_two_q);
     if (!w_two_q) assert (w_second_q == '0);
@@ -67,18 +69,18 @@
       else assert (32'(age) < 32'(color_ready_q));
     end
     if (c_valid && c.slot == any_slot) assert (any_begun && any_time_q <= TIME'(DELAY));
-    // What is still to come into a slot comes before that is said to be all there.
+    // Data still to come into a slot come before the slot is reported complete.
     if (c_valid) assert (32'(SLOT'(c.slot - oldest_q)) >= 32'(color_ready_q));
     if (w_writes_q) assert (w_write_mask_q != '0);
   end
 
-  // Tags and queues are cut out: items, orders and answers may be any, but for what cache_tags_stream, fifo_stream and
-  // skid_buffer_stream prove. One slot of the victims, any.
+  // Tags and queues are cut out: items, orders and answers are arbitrary except for what cache_tags_stream, fifo_stream
+  // and skid_buffer_stream prove. An arbitrary slot of the victims.
   (* anyconst *) logic [SLOT-1:0] any_slot;
   always_comb if (runs_q) begin
     if (item_valid && found.evicts) assume (found.source != raster_pkg::DEPTH_SOURCE_CHIP);
     if (item_valid && item.mask == '0) assume (found.source == raster_pkg::DEPTH_SOURCE_NONE && !found.starts_color);
-    // A clear and what a flush writes go behind all items and orders (cache_tags_stream: DRAIN).
+    // A clear and the writes of a flush come after all items and orders (cache_tags_stream: DRAIN).
     if (flush_valid) assume (!order_valid && !item_valid && taken_q == '0 && behind_q == '0);
     if (clear_before_q != {clear_color, clear_depth}) assume (taken_q == '0 && behind_q == '0);
   end
@@ -101,12 +103,12 @@
   always_comb if (runs_q) begin
     assume (w_valid == (count_q != '0));
     if (w_valid) assume (leaving_w == first_q);
-    assert (32'(behind_q) == 32'(count_q) + 32'(x1_valid_q) && behind_q <= 2'd2);  // room in it, always
+    assert (32'(behind_q) == 32'(count_q) + 32'(x1_valid_q) && behind_q <= 2'd2);  // there is always room in it
     assert (!(x1_valid_q && count_q == 2'd2));
   end
 
-  // The slots: given to evictions in turn, written to memory in turn; which are in the queue.
-  logic [1:0]      evictions_behind;  // those that color_write has not begun
+  // The slots: assigned to evictions in turn, written to memory in turn; which of them are in the queue.
+  logic [1:0]      evictions_behind;  // evictions that color_write has not begun
   logic            holds_any, first_evicts, second_evicts;
   logic [SLOT:0] age;
   assign first_evicts     = count_q != '0 && first_q[STAMPS+1] && !w_started_q;
@@ -127,11 +129,11 @@
     if (left_q != '0) assert (v_valid_q);
     if (v_valid_q) assert (v_last_q == (left_q == '0) && v_slot_q == SLOT'(slot_q - 1'b1) && v_fills_q == fills_q);
     assert (!w_started_q);
-    // What is about to be written is not still to be read.
+    // A stamp about to be overwritten is not still to be read.
     if (w_writes_q && w_first_line_q == w_write_address[STAMP+:LINE]) assert ((w_first_q & (STAMPS'(1) << w_write_address[STAMP-1:0])) == '0);
     if (w_writes_q && w_second_line_q == w_write_address[STAMP+:LINE]) assert ((w_second_q & (STAMPS'(1) << w_write_address[STAMP-1:0])) == '0);
     if (x1_valid_q && x1_writes_q != '0 && left_line_q == x1_q.line) assert ((left_q & (STAMPS'(1) << x1_q.stamp)) == '0);
-    // What the queue holds of them is what their slots hold.
+    // The queue agrees with the slots about them.
     if (x1_valid_q && x1_q.evicts && SLOT'(slot_q - 1'b1) == any_slot)
       assert (x1_q.color == here_color_any && {STAMPS{x1_q.fills[1]}} == color_left_q[any_slot]);
     if (second_evicts && SLOT'(w_slot_q + SLOT'(first_evicts)) == any_slot)

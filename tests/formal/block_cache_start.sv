@@ -1,6 +1,6 @@
 
-  // The start of a bounded proof is behind a token: no line is valid, and either memory holds everything or, where a flush
-  // leaves flags (frame.clears=flags), nothing but what is flagged. Lines are the words whose width is theirs.
+  // A bounded proof starts after a token: no line is valid, and memory holds everything, or where a flush leaves flags
+  // (frame.clears=flags), only cleared blocks. Lines are recognised by the width of their words.
   localparam int LINE_STATE = 3 + 2 + 2 * raster_pkg::BLOCK_SIDE * raster_pkg::BLOCK_SIDE + 3;
   logic starts_q = 1'b1;
   always_ff @(posedge clk_i) starts_q <= 1'b0;

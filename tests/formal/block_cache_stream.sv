@@ -1,5 +1,5 @@
 
-  // Towards memory: what is offered stays. Offers of tags and queues stay (cache_tags_stream, fifo_stream).
+  // Towards memory: an offer stays. Offers of tags and queues stay (cache_tags_stream, fifo_stream).
   raster_pkg::block_order_t        order_before_q;
   var raster_pkg::memory_request_t flush_before_q;
   logic                            order_stays_q, flush_stays_q;
@@ -12,7 +12,7 @@
   always_comb if (runs_q) begin
     if (order_stays_q) assume (order_valid && order == order_before_q);
     if (flush_stays_q) assume (flush_valid && flush_request == flush_before_q);
-    // What a flush writes, beside the request: cache_tags_stream.
+    // Data of a flush, next to the request: cache_tags_stream.
     if (flush_valid) assume (flush_request.data == (flush_request.plane[1] ? (8 * raster_pkg::REQUEST_BYTES)'(flush_word) : {SAMPLES{LANE'(clear_color)}}));
     if (order_valid) assume (order.writes != '0 || order.reads);  // is_order
     if (order_valid) assert (written_q <= order.writes);
@@ -26,17 +26,18 @@
     if ($past(request_valid_o && !request_ready_i)) assert (request_valid_o && request_o == $past(request_o) && request_bytes_o == $past(request_bytes_o));
   end
 
-  // No read overtakes the write of an eviction of its block. Any eviction and any later order that reads its block: the
-  // tags order the write with it or before it (cache_tags_data: nothing of the block is pending). A queue of the writes that
-  // orders ask for says how many evictions have to be written before an order's read; the eviction is one of them.
-  (* anyseq *) logic is_eviction, is_reader;  // the ones that are looked at
+  // No read overtakes the write of an eviction of its block. For an arbitrary eviction and an arbitrary later order
+  // that reads its block: the tags order the write with it or before it (cache_tags_data: nothing of the block is
+  // pending). A queue of the writes in each order says how many evictions have to be written before an order's read;
+  // the eviction is one of them.
+  (* anyseq *) logic is_eviction, is_reader;  // the chosen eviction and reader
   localparam int N = $clog2(QUEUE * VICTIMS + VICTIMS + 1) + 1;
   logic [N-1:0] asked_q, ahead_q, needs_q, asked, queued;
   logic         evicted_q, unwritten_q, reader_waits_q;
-  logic [$clog2(QUEUE):0] place_q, orders_q;  // of the reader in the queue; orders in it
+  logic [$clog2(QUEUE):0] place_q, orders_q;  // place of the reader in the queue; orders in it
   logic [WRITES-1:0] writes_q[0:QUEUE-1];     // head at 0
   logic enters, starts_eviction, starts_reader;
-  logic [N-1:0] waiting_q;                    // evictions that are not ordered yet
+  logic [N-1:0] waiting_q;                    // evictions without an order yet
   assign enters          = ordered_valid && ordered_ready;
   assign starts_eviction = made_valid && made_ready && made_result.evicts && is_eviction && !evicted_q;
   assign starts_reader   = enters && ordered.reads && is_reader && evicted_q && !reader_waits_q;
@@ -87,7 +88,7 @@
     end
   end
   always_comb if (runs_q) begin
-    // fifo_stream; and tags order what waits, each once.
+    // fifo_stream; and tags order each waiting eviction once.
     assume (order_valid == (orders_q != '0) && ordered_ready == (orders_q != QUEUE));
     if (order_valid) assume (order.writes == writes_q[0]);
     if (ordered_valid) assume (N'(ordered.writes) <= waiting_q && waiting_q <= VICTIMS && (ordered.writes != '0 || ordered.reads));
@@ -101,13 +102,13 @@
     if (reader_waits_q) begin
       assert (evicted_q && place_q < orders_q && needs_q + N'(written_q) == sum_reader && needs_q <= asked_q);
       if (unwritten_q) assert (ahead_q < needs_q);
-      if (place_q == '0 && wants_read) assert (!unwritten_q);  // it reads
+      if (place_q == '0 && wants_read) assert (!unwritten_q);  // the reader reads
     end
   end
 
-  // No deadlock. An item waits for stamps that are read, one a cycle, for the item at the test, for color_write, which
-  // takes one a cycle but for stamps that it reads, and then only for a slot or an answer; memory's next waits only for data in
-  // flight from depth_cache and color_write.
+  // No deadlock. An item waits for stamps that are read, one a cycle, for the item in the test, for color_write, which
+  // takes one a cycle except for stamps that read colours, and then only for a slot or an answer; the next request to
+  // memory waits only for data in flight from depth_cache and color_write.
   always_comb if (runs_q) begin
     if (item_valid && !goes && left_q == '0 && !x1_valid_q && count_q != 2'd2)
       assert ((found.evicts && !slot_free) || (found.source == raster_pkg::DEPTH_SOURCE_MEMORY && !answer_valid));
@@ -121,7 +122,7 @@
     if ($past(x1_valid_q && !goes)) assert (!x1_valid_q);
     if ($past(w_valid && !colors_done)) assert (!w_writes_q && (!w_two_q || ($past(w_two_q) && w_first_q < $past(w_first_q))));
     if ($past(v_valid_q)) assert (left_q != '0 || !v_valid_q || v_last_q);
-    // A run of writes is one behind the other in its block, each with what is left of it.
+    // A run of writes is consecutive in its block, each with the length of the rest.
     if ($past(sends && takes_request) && $past(request_o.run) != RUN'(1))
       assert (sends && request_o.run == $past(request_o.run) - 1'b1 && request_o.plane == $past(request_o.plane) &&
               sent_stamp == $past(sent_stamp) + 1'b1);

@@ -1,8 +1,8 @@
 
-  // One sample of one stamp, any. `truth` of a plane is what a framebuffer without a cache would hold there: the last write or
-  // fast clear. (1) The test finds it under every fragment that looks. (2) When a flush is through, memory holds it, or its
-  // flag is written and the clear value is it. Memory answers with what was written last; what that is where nothing was
-  // written is anything.
+  // An arbitrary sample of an arbitrary stamp. `truth` of a buffer is the value that a framebuffer without a cache
+  // would hold there: the last write or fast clear. (1) The test finds it under every fragment that reads it. (2) When
+  // a flush is complete, memory holds it, or its flag is written and it equals the clear value. Memory answers with the
+  // last write; where nothing was written, with an arbitrary value.
   (* anyconst *) logic [BLOCK_X-1:0]          any_x;
   (* anyconst *) logic [BLOCK_Y-1:0]          any_y;
   (* anyconst *) logic [INDEX-1:0]            any_stamp;
@@ -10,7 +10,7 @@
   (* anyconst *) logic [1:0]                  any_garbage;
   logic tested_is_it_q, looks_q, request_is_it;
   logic truth_depth_q, truth_color_q, memory_depth_q, memory_color_q, cleared_depth_q, cleared_color_q;
-  logic flag_depth_q, flag_color_q;  // as the last flush has written them
+  logic flag_depth_q, flag_color_q;  // as the last flush has written it
   logic [3:0] waits_is_it_q, waits_value_q;
   assign request_is_it = takes_request && request_o.tile_x == any_x && request_o.tile_y == any_y && request_o.stamp == any_stamp &&
                          request_o.plane[1] == 1'b0;

@@ -1,6 +1,6 @@
-// The framebuffer of blocks without shading, as raster_top joins its stages, without depth_test: what the proofs block_cache_*
-// are about. tools/prove.py puts depth_cache, memory_answers and write_back into it as text, so that a property can name what
-// is inside them.
+// The framebuffer of blocks without shading, as raster_top joins its stages, without depth_test: the subject of the
+// proofs block_cache_*. tools/prove.py inserts depth_cache, memory_answers and write_back as text, so that a property
+// can name signals inside them.
 module blocks (
     input logic clk_i,
     input logic rst_ni,

@@ -1,5 +1,5 @@
 
-  // With blending, behind cache_tags_data: where the colours of a stamp are that its operations read. `g_` as there.
+  // With blending, on top of cache_tags_data: the place of a stamp's colours that its operations read. `g_` as there.
   logic [STAMPS-1:0] g_color_known_q;
   logic              g_reads_q, reads_it;
   assign reads_it = fragment_q.state.color_write && g_reads_q;
@@ -17,7 +17,7 @@
                                       here_q && g_color_known_q[stamp] ? raster_pkg::DEPTH_SOURCE_CHIP :
                                       flag_q[1] ? raster_pkg::DEPTH_SOURCE_CLEAR : raster_pkg::DEPTH_SOURCE_MEMORY));
       assert (order_o.reads_color == (found_o.color_source == raster_pkg::DEPTH_SOURCE_MEMORY));
-      // Known is only what is on the chip, and that leaves with its block.
+      // Only colours on the chip are known, and they leave with their block.
       if (found_o.color_source == raster_pkg::DEPTH_SOURCE_CHIP) assert (!found_o.starts_color);
     end
     if (here_q) assert ((g_color_known_q & ~colored_q) == '0);

@@ -1,20 +1,21 @@
 
-  // One block, any, and one stamp of it: what a cache with one line for it, and memory behind it, must do with it. `g_` is
-  // the specification (model/stages/cache_tags.hpp), told of what leaves here, in order; the RAM may answer anything but for
-  // the words in which the block is (sram_word), and the flags anything but for those of the block (clear_flags_data, what
-  // that assumes is asserted here). From the host: tokens are of all blocks that are ever drawn to.
+  // An arbitrary block, and an arbitrary stamp of it: what a cache with one line for it, and memory, must do with it.
+  // `g_` is the specification (model/stages/cache_tags.hpp), fed with the outputs of this stage, in order; the RAM may
+  // answer anything except for the words in which the block is (sram_word), and the flags anything except for those of
+  // the block (clear_flags_data, whose assumptions are asserted here). From the host: tokens cover all blocks that are
+  // ever drawn to.
   (* anyconst *) logic [BLOCK_X-1:0] any_x;
   (* anyconst *) logic [BLOCK_Y-1:0] any_y;
   (* anyconst *) logic [STAMP-1:0]   any_stamp;
   logic [LINE-1:0]   any_line;
   logic              is_it, misses_it, empties_it, here_q, has_depth_q, pending_q;
   logic [STAMPS-1:0] known_q, colored_q;
-  logic [1:0]        flag_q;      // colour, depth: memory holds garbage
-  logic [WRITES-1:0] age_q;       // of the newest eviction of it that waits: so many older ones do
-  logic              drops_q;     // the last fast clear says that depth which leaves is lost
+  logic [1:0]        flag_q;      // colour, depth: memory is stale
+  logic [WRITES-1:0] age_q;       // of its newest waiting eviction: the number of older ones
+  logic              drops_q;     // the last fast clear says that evicted depth is lost
   logic              drops, stores_depth, is_dirty, evicts_it, pending, is_looked_at;
   logic [1:0]        fills_it;
-  logic              clears_it;   // a fast clear of the whole target, or of the bin in which it lies
+  logic              clears_it;   // a fast clear of the whole target, or of the block's bin
   logic [WRITES-1:0] age;
   assign clears_it    = is_clear && (!clears_bin || (any_x >> LINE_X == last_x >> LINE_X && any_y >> LINE_Y == last_y >> LINE_Y &&
                                                      any_x <= last_x && any_y <= last_y));
@@ -22,7 +23,7 @@
   assign is_it        = is_access && block_x == any_x && block_y == any_y;
   assign empties_it   = valid_q && line_q == any_line && (walks_q || (is_access && !is_it));
   assign drops        = is_token && !is_clear && state_q != SERVE ? fragment_i.state.depth_test == raster_pkg::DEPTH_FUNC_NEVER : drops_q;
-  assign stores_depth = has_depth_q && !drops;  // a flush speaks for what it finds
+  assign stores_depth = has_depth_q && !drops;  // a flush decides for the depth it finds
   assign is_dirty     = stores_depth || colored_q != '0;
   assign evicts_it    = here_q && is_dirty && empties_it;
   assign fills_it     = flag_q & {colored_q != '0, stores_depth && known_q != '0};
@@ -35,8 +36,8 @@
             32'(any_y) < (raster_pkg::TILES_Y << TILE_BITS));
   end
 
-  // A stencil stands above each depth: a draw that writes one of them, or tests the stencil, keeps a part of what was stored,
-  // unless it replaces all of both. From the host: who tests it has set how, on its side.
+  // A stencil stands above each depth: a draw that writes one of them, or tests the stencil, keeps a part of the stored
+  // word, unless it replaces both. From the host: a draw that tests it has set the registers of its side.
   logic keeps_some, changes_word;
   generate
     if (raster_pkg::STENCIL_BITS != 0) begin : gen_stencil_claim
@@ -112,15 +113,15 @@
   end
 
   always_comb if (runs_q && is_known_q) begin
-    // A fragment of it.
+    // A fragment of the block.
     if (leaves && is_it) begin
       assert (found_o.source == (here_q && known_q[stamp] ? raster_pkg::DEPTH_SOURCE_CHIP : !is_looked_at ? raster_pkg::DEPTH_SOURCE_NONE :
                                 flag_q[0] ? raster_pkg::DEPTH_SOURCE_CLEAR : raster_pkg::DEPTH_SOURCE_MEMORY));
       assert (found_o.starts_color == (fragment_q.state.color_write && !(here_q && colored_q[stamp])));
       assert (order_o.reads == (found_o.source == raster_pkg::DEPTH_SOURCE_MEMORY));
-      assert (!pending);  // what it asks memory for is behind the writes of all that has left the chip of it
+      assert (!pending);  // its memory read comes after the writes of all evictions of the block
     end
-    // It leaves when another block comes, or a token walks by, and only then; with all of it.
+    // The block leaves when another block comes, or a token walks by, and only then; with all of its data.
     if (leaves) assert ((found_o.evicts && line_x == any_x && line_y == any_y) == evicts_it);
     if (leaves && evicts_it) begin
       assert (found_o.depth == (stores_depth ? known_q : '0) && found_o.color == colored_q && found_o.fills == fills_it);
@@ -132,7 +133,7 @@
     cover (leaves && evicts_it && has_depth_q && drops);
     cover (leaves && empties_it && here_q && has_depth_q && !evicts_it);
     cover (takes_token && !is_clear && flag_q != '0);
-    // Where the specification is in the hardware. The word of the line is old while the write of it is under way.
+    // The specification's state in the hardware. The word of the line is old while its write is under way.
     if (!is_marking) begin
       assert (here_q == (word_valid && word_x == any_x && word_y == any_y));
       if (here_q)
@@ -142,7 +143,7 @@
     if (here_q && !is_marking) assert (!pending_q);
   end
 
-  // The line's word. What is read in the cycle of a write of it is not looked at.
+  // The line's word. A read in the cycle of its write is not used.
   logic [STATE-1:0]   word_q, read_word_q;
   logic               word_valid, word_dirty, word_falls, word_has_depth, is_marking, reads_it_q, collided_q, line_stays_q;
   logic [TAG_X-1:0]   word_tag_x;
@@ -171,7 +172,7 @@
     if (reads_it_q && !collided_q) assume (line_read == read_word_q);
   end
 
-  // The block's flags as clear_flags has them.
+  // The block's flags in clear_flags.
   logic [1:0] flag_ram_q;  // colour, depth
   logic       fell_q, fell_before_q, is_asked_q, line_is_it, read_is_it, waits_q;
   logic [WORD-1:0] depth_before_q, color_before_q;
@@ -207,8 +208,8 @@
     if (state_q == READ) assert (token_writes == '0);
   end
 
-  // For induction: what has been read is what is there; what is under way.
-  logic [1:0] marked, flag_now;  // what the RAMs of flags hold while a token or an eviction is at work
+  // For induction: a read word equals the stored one; state under way.
+  logic [1:0] marked, flag_now;  // content of the flag RAMs while a token or an eviction is at work
   logic words_passed, lines_passed;
   assign marked   = {fragment_i.state.color_write, fragment_i.state.depth_write} & {2{words_passed && clears_it}};
   assign words_passed = (is_clear ? words_done_q : state_q == DONE) || word_y_q > any_y ||
@@ -217,7 +218,8 @@
                         (!valid_q && !read_valid_q)) : lines_done_q || walk_q > any_line;
   always_comb if (runs_q) begin
     assert (state_q <= DONE);
-    // Three steps: the line that is read is that of the fragment; of one that has not asked for its flags the block is here.
+    // Three steps: the line that is read is that of the fragment; the block of a fragment that has not asked for its
+    // flags is on the chip.
     if (read_valid_q && !read_walks_q) assert (read_line_q == line_of(read_x, read_y) && (read_q.mask != '0 || !is_asked_q));
     if (valid_q && !walks_q) assert (line_q == line_of(block_x, block_y) && leaves_line_q == (fragment_q.mask != '0 && !hits_q));
     if (valid_q && walks_q) assert (leaves_line_q);
@@ -253,7 +255,7 @@
     if (state_q > DRAIN && state_q < DONE && !(is_clear && words_done_q))
       assert (word_x_q >= first_word && word_x_q <= last_word && word_y_q >= first_y && word_y_q <= last_y);
     if (clears_bin && state_q > DRAIN) assert (state_q == DONE || (lines_done_q && !words_done_q));
-    // Behind a token nothing is here until a fragment comes.
+    // After a token nothing is on the chip until a fragment comes.
     if (is_empty_q) assert (is_known_q && !word_valid && !is_access && !(read_valid_q && !read_walks_q && read_q.mask != '0));
     if (!is_known_q && is_marking) assert ((flag_ram_q & marked) == marked);
     if (!is_known_q)
@@ -267,7 +269,7 @@
       assert (word_dirty == (word_has_depth || word_colored != '0));
       assert (word_falls == ((word_cleared & {word_colored != '0, word_has_depth && word_known != '0}) != '0));
     end
-    // Tokens: lines are empty behind the walk, flags are set and reset behind it.
+    // Tokens: lines are empty after the walk has passed, flags are set and reset after it.
     if (state_q == LOOK ? lines_passed : state_q > LOOK && (!clears_all || (state_q >= MARK && lines_passed))) assert (!word_valid);
     if (state_q == DONE) assert (words_done_q && (is_clear ? lines_done_q : plane_q));
   end
@@ -279,7 +281,7 @@
   always_comb if (runs_q && is_known_q) begin
     assert (flag_ram_q == flag_now);
     if (is_it && !hits_q) assert (cleared_q == flag_ram_q);
-    // The evictions that wait.
+    // The waiting evictions.
     if (pending_q)
       assert (age_q < waiting_q && victim_x_q[oldest_q+VICTIM'(age_q)] == any_x && victim_y_q[oldest_q+VICTIM'(age_q)] == any_y);
     for (int a = 0; a < VICTIMS; a++)
@@ -287,8 +289,8 @@
         assert (pending_q && WRITES'(a) <= age_q);
   end
 
-  // A flush writes the words of the flags, each once (of depth only where it is not lost), and, where colours are resolved,
-  // every stamp of a block whose colours are still flagged.
+  // A flush writes the words of the flags, each once (depth flags only if depth is not lost), and, where colours are
+  // resolved, every stamp of a block whose colours are still flagged.
   logic [INDEX-1:0] any_index;
   logic [1:0]       flags_sent_q;
   logic             is_sent_q, word_is_it, words_are_behind, has_sent, takes_request;

@@ -1,6 +1,6 @@
 
-  // What comes in. A fragment on offer stays until it is taken; a token has no samples; from the host a fast clear of both
-  // planes before all else. A clear of one bin is of colours, and nothing has come since the token before it.
+  // Assumptions on inputs. A fragment on offer stays until it is taken; a token has no samples; from the host a fast
+  // clear of both buffers comes before all else. A clear of one bin clears colours, and directly follows a token.
   logic token_waits_q, is_known_q, takes_token, is_empty_q;
   assign takes_token = fragment_valid_i && fragment_ready_o && is_token;
   var raster_pkg::fragment_packet_t before_q;

@@ -1,12 +1,12 @@
 
-  // Each fragment leaves once, in its turn, as it was; what is on offer stays while the other side's FIFO has room. (FIFOs:
-  // ready does not depend on valid, and goes only when something enters.)
+  // Each fragment leaves once, in order, unchanged; an offer stays while the other side's FIFO has room. (FIFOs: ready
+  // does not depend on valid, and falls only when an item enters.)
   logic is_stuck;
   assign is_stuck = is_settled && !leaves;
   always_comb if (runs_q) begin
     assert ((valid_q && leaves && is_item) == (item_valid_o && item_ready_i));
     assert (orders_all == (state_q == ORDER && !(order_valid_o && !order_ready_i)));
-    if (item_valid_o && item_ready_i && is_order) assert (order_valid_o && order_ready_i);  // together
+    if (item_valid_o && item_ready_i && is_order) assert (order_valid_o && order_ready_i);  // both leave together
     if (!walks_q && item_valid_o) assert (item_o == fragment_q);
     if (walks_q && item_valid_o) assert (item_o.mask == '0 && !item_o.ends_visit && found_o.evicts && !order_o.reads);
     if (valid_q && item_valid_o && item_o.mask == '0) assert (found_o.source == raster_pkg::DEPTH_SOURCE_NONE && !found_o.starts_color);
@@ -46,9 +46,9 @@
     if (flags_stay_q && state_q == SEND) assume ({word_color, word_depth} == flags_before_q);
   end
 
-  // No deadlock: when items, orders and requests are taken and what was ordered is done, a fragment leaves within four cycles,
-  // and what is left to do for a token gets less in every cycle. That is, the most significant first: its parts; lines to
-  // look at, or planes; rows and columns of words; lines to mark; flags of a word and stamps of a block.
+  // No deadlock: when items, orders and requests are taken and orders are completed, a fragment leaves within four
+  // cycles, and the remaining work of a token decreases in every cycle. The measure, most significant first: its parts;
+  // lines to look at, or buffers; rows and columns of words; lines to mark; flags of a word and stamps of a block.
   logic             others_do;
   logic [2:0]       part;
   logic [2:0]       step;

@@ -1,6 +1,6 @@
 
-  // One block, any, and its flags: what tokens write into them, less what has fallen. `g_` is the specification
-  // (model/stages/clear_flags.hpp); the RAMs may answer anything but for the word in which the block is (sram_word).
+  // An arbitrary block, and its flags: those that tokens write, less the fallen ones. `g_` is the specification
+  // (model/stages/clear_flags.hpp); the RAMs may answer anything except for the word in which the block is (sram_word).
   (* anyconst *) logic [BLOCK_X-1:0] any_x;
   (* anyconst *) logic [BLOCK_Y-1:0] any_y;
   logic [1:0] g_flag_q, g_known_q;  // colour, depth; a token has written them
@@ -18,8 +18,8 @@
     if (!rst_ni) g_known_q <= '0;
   end
 
-  // What comes in, as cache_tags has it (cache_tags_data asserts it): nobody reads while a fall does, falls are apart, a fall
-  // that is announced comes, and tokens come alone.
+  // Inputs as cache_tags makes them (cache_tags_data asserts it): no read during the read of a fall, falls are apart,
+  // an announced fall comes, and tokens come alone.
   logic               was_asked_q, asks_q, waits_q;
   logic [BLOCK_X-1:0] asked_x_q, read_before_x_q, waits_x_q;
   logic [BLOCK_Y-1:0] asked_y_q, read_before_y_q, waits_y_q;
@@ -46,7 +46,7 @@
     assume (32'(any_x) < (raster_pkg::TILES_X << TILE_BITS) && 32'(any_y) < (raster_pkg::TILES_Y << TILE_BITS));
   end
 
-  logic [1:0] g_now;  // with the falls that are announced
+  logic [1:0] g_now;  // with the announced falls
   logic       token_read_q;
   assign g_now = g_flag_q & ~(fills_i & {2{line_is_it}});
   always_ff @(posedge clk_i) token_read_q <= rst_ni && token_reads_i && token_is_it;
@@ -61,7 +61,7 @@
     cover (is_asked && read_is_it && g_known_q == 2'b11 && !is_fresh_q && g_flag_q == 2'b10);
   end
 
-  // The RAMs: sram_word. What is read in the cycle of a write of it may be anything.
+  // The RAMs: sram_word. A read in the cycle of a write of its word may give anything.
   logic            is_it_q, collided_q, stays_q;
   logic [1:0]      ram_q, read_q;
   logic [WORD-1:0] depth_before_q, color_before_q;
@@ -84,7 +84,7 @@
     if (is_it_q && !collided_q) assume ({word_color[bit_of(any_x)], word_depth[bit_of(any_x)]} == read_q);
   end
 
-  // For induction: where the flags are while they fall.
+  // For induction: the state of flags while they fall.
   logic [1:0] falling;
   always_comb begin
     falling = '0;

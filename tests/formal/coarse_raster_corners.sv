@@ -1,11 +1,11 @@
 
-  // The corners that the stage looks at, of one edge: the way from the tile's first pixel to any of its samples, x times
-  // -dy and y times dx, lies between T - 1 times `worst` and T - 1 times `best`, exactly, and both fit their width.
-  // In steps, so that no sum is long: n of T - 1 steps; what lies between in x and in y adds up; T - 1 times is T times less
+  // The corners that the stage looks at, of one edge: the increment from the tile's first pixel to any of its samples,
+  // x times -dy and y times dx, lies between T - 1 times `worst` and T - 1 times `best`, exactly, and both fit their
+  // width. In steps, so that no sum is long: n of T - 1 steps; bounds in x and in y add up; T - 1 times is T times less
   // once.
   localparam int WIDE = TE + 2;
   localparam int MOST = raster_pkg::TILE_SIZE - 1;
-  localparam logic [D-1:0] LOWEST = {1'b1, {(D - 1) {1'b0}}};  // no difference of two coordinates
+  localparam logic [D-1:0] LOWEST = {1'b1, {(D - 1) {1'b0}}};  // not a difference of two coordinates
   logic signed [D-1:0] down, to_right;  // one pixel down adds dx, one to the right -dy
   assign down     = $signed(s_q.dx[0+:D]);
   assign to_right = -$signed(s_q.dy[0+:D]);

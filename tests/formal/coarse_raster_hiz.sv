@@ -1,6 +1,7 @@
 
-  // What hiz.sv takes for granted: a visit starts when it is settled, a clear has no visit under way. And a tile is rejected
-  // by a verdict of its own: read at this tile when all was settled, and no visit has started since, nor waits to.
+  // Assumptions of hiz.sv: a visit starts when the stage is settled, a clear has no visit under way. And a tile is
+  // rejected by its own verdict: read at this tile when the stage was settled, with no visit started since or waiting
+  // to start.
   logic is_good_q;
   logic [TX-1:0] read_x_q;
   logic [TY-1:0] read_y_q;

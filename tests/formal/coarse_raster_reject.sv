@@ -1,8 +1,9 @@
 
-  // What the stage says of an edge holds wherever in the tile the edge value may be: outside, then it is negative there;
-  // inside, then not; and the narrow value that goes to fine_raster has the sign of the wide one. `moved` is the way from
-  // the tile's first pixel to a sample: anything between the two corners that best_q and worst_q stand for
-  // (coarse_raster_step: that they do; coarse_raster_corners: that all samples lie between). Whatever the registers hold.
+  // The stage's verdict on an edge holds for the whole tile: outside, the edge value is negative everywhere; inside,
+  // nowhere; and the narrow value that goes to fine_raster has the sign of the wide one. `moved` is the increment from
+  // the tile's first pixel to a sample: any value between the two corners that best_q and worst_q stand for
+  // (coarse_raster_step proves that they do; coarse_raster_corners that all samples lie between). For any content of
+  // the registers.
   localparam int WIDE = V + 2;  // exact
   localparam logic signed [WIDE-1:0] MOST = 2 * (raster_pkg::TILE_SIZE - 1) * (2 ** (D - 1) - 1);
   logic walks;

@@ -1,7 +1,7 @@
 
-  // The walk from tile to tile against values summed up outside of it, at the tile and at the row's start: a column on, minus
-  // T dy; one back, plus T dy; a row on, T dx. The tiles that they belong to are counted here as well: from a tile the way is
-  // to one of its neighbours, or from the row's start to its left or down.
+  // The walk from tile to tile against values summed up outside the stage, at the tile and at the row's start: one
+  // column right, minus T dy; one left, plus T dy; one row down, plus T dx. The tiles of these values are counted here
+  // as well: a move goes from a tile to one of its neighbours, or from the row's start to its left or down.
   logic [TX-1:0] tile_x_g, start_x_g;
   logic [TY-1:0] tile_y_g;
   raster_pkg::setup_packet_t g_q;
@@ -43,7 +43,7 @@
       end
       always_comb if (runs_q && (walks || (state_q == PREPARE && has_walk)))
         assert (gen_edge[k].value_q == $signed(tile_q) && (starts ? row_first_q == tile_q : gen_edge[k].row_q == $signed(row_first_q)));
-      // The ways to the tile's corners: T - 1 times those of a pixel (coarse_raster_corners).
+      // The increments to the tile's corners: T - 1 times those of a pixel (coarse_raster_corners).
       logic signed [TE-1:0] best, worst;
       assign best  = (TE'(gen_edge[k].best) <<< TS) - TE'(gen_edge[k].best);
       assign worst = (TE'(gen_edge[k].worst) <<< TS) - TE'(gen_edge[k].worst);
@@ -54,7 +54,7 @@
       localparam int AT = PLANE_AT[32*k+:32];
       localparam int B = LOCAL_BITS_OF[32*k+:32];
       localparam int LOCAL = LOCAL_AT[32*k+:32];
-      localparam int M = P - TS - S;  // no step changes the bits below
+      localparam int M = P - TS - S;  // no step changes the bits below this one
       logic [P-1:0] tile_q, row_first_q, step_x, step_y, value, to;
       assign value  = setup_i.value[AT+:P];
       assign step_x = g_q.step_x[AT+:P] << (TS + S);
@@ -72,7 +72,7 @@
       end
       always_comb if (runs_q && (walks || (state_q == PREPARE && has_walk)))
         assert (gen_plane[k].value_q == tile_q[P-1-:M] && (starts ? row_first_q == tile_q : gen_plane[k].row_q == row_first_q[P-1-:M]));
-      // What is on offer is what the walk was at when it left its tile.
+      // The offer is the tile that the walk has left.
       logic [B-1:0] left_g;
       always_ff @(posedge clk_i) if (left_is_free) left_g <= tile_q[P-1-:B];
       always_comb if (runs_q && left_valid_q && is_visit) assert (tile_o.anchor[LOCAL+:B] == left_g);

@@ -1,7 +1,7 @@
 
-  // Each setup ends with exactly one packet that ends the primitive; what is offered stays; no slot is given
-  // twice; nothing is stuck that its neighbours do not hold. Two primitives at most are in the stage: the one that is walked,
-  // and the one before it, whose last tile is on offer.
+  // Each setup ends with exactly one packet that ends the primitive; an offer stays; no slot is assigned twice; the
+  // stage is stuck only if a neighbour stalls it. At most two primitives are in the stage: the walked one, and the one
+  // before it, whose last tile is on offer.
   logic       walked_q, ends, is_ending;
   logic [1:0] owed_q;  // primitives that came and have not ended
   raster_pkg::setup_packet_t g_q;
@@ -51,13 +51,13 @@
       if (!has_walk) assert (start_x_q == s_q.box.left[PX-1:TS] && !goes_left_q && !must_return_q);
     end
     if (state_q == PASS) assert (is_last_row && tile_x_q == s_q.box.right[PX-1:TS]);
-    // With a ready consumer a tile goes on when HiZ is settled, which it is soon after every visit has retired, and with it
-    // the walk: at once, or, where bounds matter, when the tile's has been read, which takes a cycle.
+    // With a ready consumer a tile goes on when HiZ is settled, soon after every visit has retired, and the walk goes
+    // on with it: at once, or, where bounds matter, when the tile's bound has been read, which takes a cycle.
     if (left_valid_q && tile_ready_i && is_settled) assert (left_is_free);
     if (left_is_free && state_q == WALK && (is_outside || !is_eligible_q)) assert (steps);
     if (!left_valid_q && state_q == WALK && has_bound_q) assert (steps);
     if (left_is_free && passes_token) assert (finishes);
-    if (!walked_q && !setup_ready_o) assert (used_q == (SLOT + 1)'(SLOTS));  // it waits for nothing but a slot
+    if (!walked_q && !setup_ready_o) assert (used_q == (SLOT + 1)'(SLOTS));  // it waits only for a slot
     cover (ends && !is_visit);
     cover (ends && takes);
   end
@@ -70,7 +70,7 @@
     if ($past(state_q == CLEAR)) assert (state_q == PASS || {tile_y_q, tile_x_q} > $past({tile_y_q, tile_x_q}));
   end
 
-  // What has no edges is outside of none.
+  // A primitive without edges is outside none.
   genvar k;
   generate
     for (k = 0; k < 3; k++) begin : gen_proof

@@ -1,6 +1,7 @@
 
-  // From the product to the colour, whatever the product is: times 2^x, to the nearest code, half up, and held to the range of
-  // the vertices. So a colour lies between theirs, and rgb565 behind it, in which a code of 8 bits may not show, hides nothing.
+  // From the product to the colour, for any product: times 2^x, to the nearest code, half up, and clamped to the range
+  // of the vertices. So a colour lies between those of the vertices, and packing to rgb565, in which a code of 8 bits
+  // may not show, hides no error.
   localparam int BITS = MANTISSA + NARROW + 9;
   logic signed [BITS-1:0] scaled;
   logic signed [BITS:0]   rounded;

@@ -1,5 +1,5 @@
 
-  // The result of the last cycle's operands, whatever the products are: their difference less the bias, and it stays
+  // The result for the last cycle's operands, whatever the products are: their difference less the bias; it stays
   // without an enable.
   logic signed [A_BITS+D_BITS+1:0] expected;
   logic signed [OUT_BITS-1:0]      kept_q, expected_q;

@@ -1,6 +1,6 @@
 
-  // Sums and differences on the way to the edge functions, again in four bits more. The scissor lies in the target, the
-  // guard band is larger.
+  // Sums and differences in the edge functions, again with four bits more. The scissor lies in the target, the guard
+  // band is larger.
   localparam int WIDE = C + 4;
   logic signed [WIDE-1:0] wide_px, wide_py, wide_cx, wide_cy;
   assign wide_px = (WIDE'({box_q.left[PX-1:TS], {TS{1'b0}}}) << S) + WIDE'(1 << (S - 1));
@@ -34,14 +34,14 @@
   end
   always_comb if (runs_q && sort_busy_q && sort_step_q != 2'd0) assert (x_min_q == x_min && x_max_q == x_max &&
                                                                         y_min_q == y_min && y_max_q == y_max);
-  // Behind step 1 the edge's first vertex is one of the three.
+  // After step 1 the edge's first vertex is one of the three.
   always_comb if (runs_q && sort_busy_q && sort_step_q[1])
     assert ((from_x_q == x0 && from_y_q == y0) || (from_x_q == x1 && from_y_q == y1) || (from_x_q == x2 && from_y_q == y2));
   always_comb if (runs_q && sort_busy_q && sort_step_q[1] && !is_empty_q) begin
     assert (left <= right && top <= bottom);
     assert (32'(box_q.left) == 32'(left) && 32'(box_q.right) == 32'(right) && 32'(box_q.top) == 32'(top) &&
             32'(box_q.bottom) == 32'(bottom));
-    // A small triangle sees the first pixel of its box in few bits, and its columns and rows in three.
+    // For a small triangle the first pixel of its box fits few bits, its columns and rows three.
     if (is_triangle && all_short) begin
       assert (WIDE'(to_cx) == wide_cx - WIDE'(from_x_q) && WIDE'(to_cy) == wide_cy - WIDE'(from_y_q));
       assert (box_q.right - box_q.left < PX'(8) && box_q.bottom - box_q.top < PY'(8));

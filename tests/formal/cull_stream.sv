@@ -1,6 +1,6 @@
 
-  // Each primitive is offered once or dropped once, with its own number; what is offered stays. The multipliers' results
-  // may be anything. What goes through the two parts, again:
+  // Each primitive is offered once or dropped once, with its own number; an offer stays. The multipliers' results may
+  // be anything. The primitives in the two parts, tracked again:
   logic in_sort_q, in_decide_q, takes, sends, drops;
   logic [raster_pkg::PRIMITIVE_ID_BITS-1:0] sorted_id_q, decided_id_q;
   assign takes = primitive_valid_i && primitive_ready_o;
@@ -26,12 +26,12 @@
     if (in_decide_q) assert (id_q == decided_id_q);
     if (sends) assert (in_decide_q && triangle_o.primitive_id == decided_id_q);
     if (drops) assert (in_decide_q);
-    // No deadlock: four steps a part, and then it goes on as soon as the one ahead is gone.
+    // No deadlock: four steps a part, and then the primitive goes on as soon as the one ahead is gone.
     if (in_decide_q && decide_step_q == 2'd3 && triangle_ready_i) assert (sends || drops);
     if (in_sort_q && sort_step_q == 2'd3 && (!in_decide_q || sends || drops)) assert (hands_over);
-    // The edges are in turn: the part behind is never a step further.
+    // The edges are in turn: the later primitive is never a step further.
     if (in_sort_q && in_decide_q) assert (decide_step_q >= sort_step_q);
-    // What is known a cycle ahead.
+    // Flags known a cycle ahead.
     if (in_decide_q) assert (is_zero_q == (area_q == '0));
     if (in_decide_q && decide_step_q != '0)
       assert (has_2x2_q == (d_is_triangle && columns <= 3'd1 && rows <= 3'd1) && has_column_q == (columns != '0) &&

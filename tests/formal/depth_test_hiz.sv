@@ -1,11 +1,11 @@
 
-  // The bound that a visit leaves behind, when it covered its tile and all of it passed: not below the depths of its
-  // four corners. The depths of a visit are a plane, rounded and clamped, so that the largest is at one of them. From
-  // fine_raster: the stamps of a visit come in ascending order, each once. After its end all is as before: one visit is
-  // as good as any.
+  // The bound of a visit that covered its tile with all depths passed: not below the depths of the tile's four corners.
+  // The depths of a visit are a plane, rounded and clamped, so that the largest is at a corner. From fine_raster: the
+  // stamps of a visit come in ascending order, each once. After its end the state is as before: one visit stands for
+  // all.
   localparam int LAST = STAMPS - 1;
   localparam int PER_ROW = raster_pkg::STAMPS_PER_ROW;
-  (* anyconst *) logic [CODE-1:0] c00, c01, c10, c11;  // of the visit that is looked at: row, column
+  (* anyconst *) logic [CODE-1:0] c00, c01, c10, c11;  // of the chosen visit: row, column
   logic [STAMP_BITS:0] next_q;  // the stamps below this one have come or never will
   logic is_visit_stamp;
   assign is_visit_stamp = fragment_i.mask != '0 && !fragment_i.kind[1];
@@ -21,17 +21,17 @@
     if (32'(fragment_i.stamp) == LAST - (PER_ROW - 1)) assume (fragment_i.code[(SAMPLES-STAMP)*CODES+:CODE] == c10);
     if (32'(fragment_i.stamp) == LAST) assume (fragment_i.code[(SAMPLES-1)*CODES+:CODE] == c11);
   end
-  // A pixel of a line has no visit to end; a packet without samples neither changes nor sends anything else.
+  // A pixel of a line has no visit to end; a packet without samples changes and sends nothing else.
   always_comb if (fragment_i.kind[1]) assume (!fragment_i.ends_visit);
 
-  // What D1 holds: the stamps up to and with the one in fragment_q.
+  // Content of D1: the stamps up to the one in fragment_q.
   logic [STAMP_BITS:0] before_q;  // next_q when that stamp was taken
   always_ff @(posedge clk_i) before_q <= next_q;
   logic [HIZ-1:0] h00, h01, h10, h11;
   assign {h00, h01, h10, h11} = {c00[CODE-1-:HIZ], c01[CODE-1-:HIZ], c10[CODE-1-:HIZ], c11[CODE-1-:HIZ]};
   logic holds_stamp;
   assign holds_stamp = is_stamp && !fragment_q.kind[1];
-  always_comb if (runs_q && holds_stamp) begin  // what was assumed of it when it came
+  always_comb if (runs_q && holds_stamp) begin  // assumptions made when the stamp came
     assert ((STAMP_BITS + 1)'(fragment_q.stamp) >= before_q);
     if (fragment_q.stamp == '0) assert (depth[0+:CODE] == c00);
     if (32'(fragment_q.stamp) == PER_ROW - 1) assert (depth[(STAMP-1)*CODE+:CODE] == c01);
@@ -41,11 +41,11 @@
   always_comb if (runs_q && valid_q)
     assert (next_q == (fragment_q.ends_visit ? '0 : holds_stamp ? (STAMP_BITS + 1)'(fragment_q.stamp) + 1'b1 : before_q));
   logic [STAMP_BITS:0] done;
-  assign done = valid_q ? before_q : next_q;  // as full_stamps_q and max_q stand
+  assign done = valid_q ? before_q : next_q;  // the position that full_stamps_q and max_q include
   always_comb if (runs_q) begin
     assert (next_q <= (STAMP_BITS + 1)'(STAMPS));
     assert ((STAMP_BITS + 1)'(gen_hiz.full_stamps_q) <= done);
-    // Of those corners that have come.
+    // For the corners that have come.
     if ((STAMP_BITS + 1)'(gen_hiz.full_stamps_q) == done && done <= (STAMP_BITS + 1)'(LAST)) begin
       if (32'(done) > 0) assert (gen_hiz.max_q >= h00);
       if (32'(done) > PER_ROW - 1) assert (gen_hiz.max_q >= h01);

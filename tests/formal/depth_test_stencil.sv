@@ -1,7 +1,7 @@
 
-  // What a sample leaves of the word that was stored under it: nothing is written where nothing is covered; a depth stays
-  // unless the fragment passed and writes it; the stencil stays unless the primitive tests it, and then outside of the write
-  // mask; who passed was let through by both tests.
+  // The new stored word of a sample: nothing is written where nothing is covered; a depth stays unless the fragment
+  // passed and writes it; the stencil stays unless the primitive tests it, and then outside the write mask; a passing
+  // sample passed both tests.
   genvar f;
   generate
     for (f = 0; f < SAMPLES; f++) begin : gen_claim

@@ -1,6 +1,7 @@
 
   // Every fragment with a covered sample, and every token, is one access; every covered one is one write a cycle later,
-  // and the end of a visit one retirement another cycle later. Nothing behind the access waits, so that this is all.
+  // and the end of a visit one retirement another cycle later. Nothing waits after the access, so that this is
+  // complete.
   logic sends_access;
   assign sends_access = access_valid_o && access_ready_i;
   always_comb if (runs_q) begin
@@ -17,12 +18,13 @@
       if ($past(fragment_i.state.depth_test) == raster_pkg::DEPTH_FUNC_ALWAYS) assert (write_o.passed == $past(fragment_i.mask));
       assert (write_o.write_depth == ($past(fragment_i.state.depth_write) ? write_o.passed : '0));
       assert (write_o.write_color == ($past(fragment_i.state.color_write) ? write_o.passed : '0));
-      // What is written one cycle after its access is not read by an access of this cycle.
+      // A sample written one cycle after its access is not read by an access of this cycle.
       if (access_valid_o && write_o.write_depth != '0 && access_o.key.tile_x == write_o.key.tile_x &&
           access_o.key.tile_y == write_o.key.tile_y && access_o.stamp == write_o.stamp)
         assert ((write_o.write_depth & access_o.mask) == '0);
     end
-    // An access on offer stays while its fragment does; no fragment waits for more than one cycle by itself.
+    // An access on offer stays while its fragment does; no fragment waits for more than one cycle without an external
+    // cause.
     if ($past(access_valid_o && !access_ready_i) && fragment_valid_i && fragment_i == $past(fragment_i))
       assert (access_valid_o);
     if ($past(must_wait && needs_access)) assert (!must_wait);

@@ -1,6 +1,6 @@
 
-  // The sign of value + column step in every column, in so many bits that no sum wraps; the values of the first and of the
-  // last column fit, so all between them do.
+  // The sign of value + column step in every column, in so many bits that no sum wraps; the values of the first and of
+  // the last column fit, so all between them fit.
   localparam int WIDE = WIDTH + OFFSET + 1;
   genvar c;
   generate

@@ -1,9 +1,10 @@
 
-  // One item, any: the n-th from now that enters is the n-th from now that leaves, as it was. Which one is any; so all are.
+  // An arbitrary item: the n-th from now that enters is the n-th from now that leaves, unchanged. The choice is free;
+  // so all items are covered.
   (* anyconst *) logic [WIDTH-1:0] any_data;
   (* anyseq *) logic               is_chosen;
-  logic         under_way_q;                       // the chosen item is in here
-  logic [INDEX:0] ahead_q, count_q;                // items before it; items
+  logic         under_way_q;                       // the chosen item is inside
+  logic [INDEX:0] ahead_q, count_q;                // items before it; items inside
   logic         was_chosen_q;
   always_ff @(posedge clk_i) begin
     if (!rst_ni) begin

@@ -1,9 +1,9 @@
 
-  // The edge values of each row of stamps, at its first column, against value + y step_y of the tile's packet: y of the first
-  // row as the sum of its bits, from there row by row, in two bits more than the stage has, so that a sum that left its
-  // range would show.
+  // The edge values of each row of stamps, at its first column, against value + y step_y of the tile's packet: y of the
+  // first row as the sum of its bits, from there row by row, in two bits more than the stage has, so that a sum out of
+  // its range would show.
   localparam int WIDE = W + 2;
-  localparam logic [STEP-1:0] LOWEST = {1'b1, {(STEP - 1) {1'b0}}};  // no difference of two coordinates
+  localparam logic [STEP-1:0] LOWEST = {1'b1, {(STEP - 1) {1'b0}}};  // not a difference of two coordinates
   localparam int LARGEST = 2 ** (STEP - 1) - 1;
   genvar k, r;
   generate
@@ -32,7 +32,7 @@
       end
     end
   endgenerate
-  // From coarse_raster: a box. The walk ends with it.
+  // From coarse_raster: a non-empty box. The walk ends with it.
   always_comb if (tile_valid_i) assume (tile_i.box.top <= tile_i.box.bottom);
   always_comb if (runs_q && row_valid_q) begin
     assert ((y_q & PIXEL'(STAMP - 1)) == '0);

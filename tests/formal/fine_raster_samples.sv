@@ -1,9 +1,9 @@
 
-  // Every sample of a row of stamps, from the row's edge values: covered when it is in the box and the tile is inside or
-  // value + x step_x + y step_y >= 0 for the three edges, in two bits more than the stage has. Whatever the registers hold
-  // within their range, which fine_raster_rows proves.
+  // Every sample of a row of stamps, from the row's edge values: covered when it is in the box and the tile is inside
+  // or value + x step_x + y step_y >= 0 for the three edges, in two bits more than the stage has. For any register
+  // content within its range, which fine_raster_rows proves.
   localparam int WIDE = W + 2;
-  localparam logic [STEP-1:0] LOWEST = {1'b1, {(STEP - 1) {1'b0}}};  // no difference of two coordinates
+  localparam logic [STEP-1:0] LOWEST = {1'b1, {(STEP - 1) {1'b0}}};  // not a difference of two coordinates
   localparam logic signed [WIDE-1:0] MOST = 2 ** (TILE_EDGE - 1) + (TILE - STAMP) * (2 ** (STEP - 1) - 1);
   genvar k, c;
   generate
@@ -18,7 +18,7 @@
       end
       for (c = 0; c < STAMP * TILE; c++) begin : gen_proof_sample  // row in the stamp, column
         logic signed [WIDE-1:0] exact;
-        // In the order of the RTL, rows first and the highest bit first: so the solver finds the same sums.
+        // In the order of the RTL, rows first and the highest bit first: so that the solver recognises the same sums.
         assign exact = at_row + (((c / TILE) & 2) ? sy <<< 1 : '0) + (((c / TILE) & 1) ? sy : '0) +
                        (((c % TILE) & 4) ? sx <<< 2 : '0) + (((c % TILE) & 2) ? sx <<< 1 : '0) +
                        (((c % TILE) & 1) ? sx : '0);

@@ -1,20 +1,20 @@
 
-  // One tile of the stream, any, and one stamp of it, any: the stamp is sent once if a sample of it is covered, with the
-  // mask that its row had, in order, and the visit ends once, with its last packet.
+  // An arbitrary tile of the stream, and an arbitrary stamp of it: the stamp is sent once if a sample of it is covered,
+  // with the mask of its row, in order, and the visit ends once, with its last packet.
   (* anyconst *) logic [PIXEL-1:0]  any_row;     // first pixel row of a row of stamps
-  (* anyconst *) logic [COLUMN-1:0] any_column;  // of stamps
+  (* anyconst *) logic [COLUMN-1:0] any_column;  // column of stamps
   (* anyseq *)   logic              pick;
-  logic in_rows_q, in_coverage_q, in_stamps_q, done_q, sent_q;  // where the picked tile is
-  logic [SAMPLES-1:0] want_q;                    // of the stamp, once its row has been looked at
+  logic in_rows_q, in_coverage_q, in_stamps_q, done_q, sent_q;  // place of the chosen tile
+  logic [SAMPLES-1:0] want_q;                    // mask of the stamp, once its row has been looked at
   logic               has_want_q;
-  logic [PIXEL:0]     last_q;                    // column of the last stamp sent of this row, and one; 0: none
+  logic [PIXEL:0]     last_q;                    // 1 + column of the last stamp of this row that was sent; 0: none
   raster_pkg::tile_packet_t g_q;
   logic picks, sends_it;
   assign picks     = takes_tile && pick && !in_rows_q && !in_coverage_q && !in_stamps_q && !done_q;
   assign sends_it  = stamp_leaves && in_stamps_q && mask != '0 && column == any_column && stamps_y_q == any_row;
 
   always_comb assume ((any_row & PIXEL'(STAMP - 1)) == '0 && {1'b0, any_column} < (COLUMN + 1)'(PER_ROW));
-  // From coarse_raster: a box.
+  // From coarse_raster: a non-empty box.
   always_comb if (tile_valid_i) assume (tile_i.box.top <= tile_i.box.bottom && tile_i.box.left <= tile_i.box.right);
 
   always_ff @(posedge clk_i) begin
@@ -44,13 +44,13 @@
     else if (stamp_leaves) last_q <= (PIXEL + 1)'(column) + 1'b1;
   end
 
-  logic [SAMPLES-1:0] left_of_it;  // what of the stamp is still to be sent
+  logic [SAMPLES-1:0] left_of_it;  // samples of the stamp still to be sent
   assign left_of_it = pending_q[32'(any_column)*SAMPLES+:SAMPLES];
   logic row_has_passed;
   assign row_has_passed = g_q.is_visit && any_row >= ((g_q.box.top >> STAMP_SHIFT) << STAMP_SHIFT) && any_row <= g_q.box.bottom;
 
   always_comb if (runs_q) begin
-    // Nothing is lost or told twice.
+    // Nothing is lost or sent twice.
     if (sends_it) assert (!sent_q && has_want_q && mask == want_q);
     if (done_q) assert (sent_q == (want_q != '0) && has_want_q == row_has_passed);
     if (done_q) assert (!in_rows_q && !in_coverage_q && !in_stamps_q);
@@ -65,7 +65,7 @@
     if (stamp_ready_i && coverage_valid_q) assert (coverage_ready || stamp_leaves);
     if (stamp_ready_i && stamps_valid_q) assert (stamp_leaves);
 
-    // For induction: where the picked tile is, and what has become of the stamp.
+    // For induction: the place of the chosen tile, and the state of the stamp.
     if (stamps_valid_q) assert (is_last_stamp_q == is_one_stamp(pending_q));
     if (in_rows_q) assert (row_valid_q && tile_q == g_q && !done_q);
     if (in_coverage_q) assert (coverage_valid_q && coverage_tile_q == g_q && !done_q && coverage_last_row_q == !in_rows_q);

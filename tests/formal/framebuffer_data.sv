@@ -1,9 +1,10 @@
 
-  // One stamp of one tile, any. `truth` of a plane is what a framebuffer without a cache would hold there: the last write or
-  // fast clear. (1) An access reads it. (2) When a flush is through, memory holds it, or the flag that memory has of the plane
-  // says that it is the value of the last fast clear. In between it is in the line, when the tile is there and, for a colour,
-  // written or cleared; where it is not written since the tile came in, in memory or, where the flag is set, it is the value
-  // of the last fast clear. From the host: a fast clear before all else, and of all tiles that are ever drawn to.
+  // An arbitrary stamp of an arbitrary tile. `truth` of a buffer is the value that a framebuffer without a cache would
+  // hold there: the last write or fast clear. (1) An access reads it. (2) When a flush is complete, memory holds it, or
+  // the buffer's flag in memory says that it is the value of the last fast clear. In between it is in the line, if the
+  // tile is there and, for a colour, written or cleared; if not written since the tile came in, it is in memory or,
+  // with the flag set, the value of the last fast clear. From the host: a fast clear comes before all else, and covers
+  // all tiles that are ever drawn to.
   (* anyconst *) logic [TILE_X-1:0]     any_x;
   (* anyconst *) logic [TILE_Y-1:0]     any_y;
   (* anyconst *) logic [STAMP_BITS-1:0] any_stamp;
@@ -18,7 +19,7 @@
                          !(is_fill && line_q == any_line);
   assign is_it         = access_i.key.tile_x == any_x && access_i.key.tile_y == any_y;
   assign walk_is_it    = walk_x_q == any_x && walk_y_q == any_y;
-  logic chooses;  // between tiles; otherwise that one is moved which was chosen
+  logic chooses;  // between tiles; otherwise the chosen tile is moved
   logic [TILE_X-1:0] x;
   logic [TILE_Y-1:0] y;
   assign chooses       = state_q == SERVE || state_q == CHECK || state_q == MARK || state_q == READ;
@@ -26,7 +27,7 @@
   assign y             = chooses ? tile_y : tile_y_q;
   assign tile_is_it    = x == any_x && y == any_y;
   assign word_is_it    = x >> BIT == any_x >> BIT && y == any_y;
-  assign has_passed    = walk_y_q > any_y || (walk_y_q == any_y &&  // the walk
+  assign has_passed    = walk_y_q > any_y || (walk_y_q == any_y &&  // by the walk
                          (resolves ? walk_x_q > any_x : walk_x_q >> BIT > any_x >> BIT));
   assign request_is_it = takes_request && !sends && tile_is_it && stamp_q == any_stamp;
   assign evicts_it     = state_q == EVICT && is_there && line_q == any_line;
@@ -47,11 +48,11 @@
     end
     dirty_read_q <= dirty_read_address;
     looked_q <= rst_ni && takes_access && !token && is_it && access_i.stamp == any_stamp;
-    if (state_q == CHECK || state_q == READ) word_read_q <= word_is_it;  // the word of its flags
+    if (state_q == CHECK || state_q == READ) word_read_q <= word_is_it;  // the word of the tile's flags
   end
   always_comb if (runs_q) begin
     if (access_taken_q) assert (state_q == SERVE);
-    if (write_valid_i)  // its tile is still there
+    if (write_valid_i)  // the tile is still there
       assert (valid_q[write_line] && tag_x_q[write_line] == write_i.key.tile_x >> LINE_X && tag_y_q[write_line] == write_i.key.tile_y >> LINE_Y);
     if (valid_q[any_line])
       assert (TILE_X'(tag_x_q[any_line] << LINE_X) >> LINE_X == tag_x_q[any_line] &&
@@ -63,7 +64,7 @@
   end
 
   logic [1:0] flag_g, flag_then_q, memory_flag_q, dirty, known_q;
-  logic       is_row;  // the row of its stamp is at hand
+  logic       is_row;  // the row of its stamp is available
   assign dirty  = {dirty_color_q[any_line], dirty_depth_q[any_line]} & {2{valid_q[any_line]}};
   assign is_row = row_q == any_row + 1'b1;
   genvar p, m;
@@ -71,7 +72,7 @@
     for (p = 0; p < 2; p++) begin : gen_plane
       localparam int BITS = p == 0 ? CODE : COLOR;
       logic is_masked, is_marked, is_sent, word_bit;
-      logic [ROW_BITS:0] dirty_bit;  // of its stamp in the row's word
+      logic [ROW_BITS:0] dirty_bit;  // dirty bit of its stamp in the row's word
       assign dirty_bit = (ROW_BITS + 1)'(p * ROWS) | (ROW_BITS + 1)'(any_stamp & COLUMN_MASK);
       logic [BITS-1:0] cleared, value;
       assign is_masked = p == 0 ? access_i.state.depth_write : access_i.state.color_write;
@@ -80,7 +81,7 @@
       assign is_marked = token && is_clear && is_masked && (state_q == MARK || walked_q);
       assign is_sent   = p == 0 || raster_pkg::FRAME_CLEARS != 0;  // the flags go to memory, not the colours
       assign word_bit  = p == 0 ? word_depth[BIT'(any_x)] : word_color[BIT'(any_x)];
-      // The flag of the tile, what a read of its word found (sram_word), and what memory has of it.
+      // The tile's flag in hardware, the value that a read of its word found (sram_word), and the flag in memory.
       always_ff @(posedge clk_i) begin
         if (flag_write[p] && flag_bit[BIT'(any_x)] && word_is_it) flag_g[p] <= state_q == MARK;
         if (state_q == CHECK || state_q == READ) flag_then_q[p] <= flag_g[p];
@@ -112,9 +113,9 @@
         assign writes_word = (p == 0 ? gen_sample[m].writes_depth : gen_sample[m].writes_color) && {new_line, new_stamp} == {any_line, any_stamp};
         assign writes_row  = dirty_write_address == any_row_address && gen_sample[m].writes_dirty[dirty_bit];
         assign reads_new   = gen_sample[m].dirty[dirty_bit];
-        assign asks        = takes_request && !request_o.is_write && tile_is_it && p == 0;  // all of its stamps
+        assign asks        = takes_request && !request_o.is_write && tile_is_it && p == 0;  // for all of its stamps
         always_ff @(posedge clk_i) begin
-          // Without a cache.
+          // The value without a cache.
           if (writes && write_i.key.tile_x == any_x && write_i.key.tile_y == any_y && write_i.stamp == any_stamp)
             truth_q <= p == 0 ? BITS'(write_i.depth[m*CODE+:CODE]) : BITS'(write_i.color[m*COLOR+:COLOR]);
           else if (takes_access && token && is_clear && is_masked) truth_q <= value;
@@ -130,7 +131,7 @@
           else if (asks) asked_q <= 1'b1;
         end
         always_comb if (runs_q) begin
-          // What sram_word proves; not of a word that is written in the cycle in which it is read. And memory: in turn.
+          // sram_word; not for a word that is written in the cycle of its read. And memory answers in order.
           if (!words_stay_q && !writes_then_q && read_q == {any_line, any_stamp}) assume (word == read_word_q);
           if (dirty_read_q == any_row_address && !writes_row_then_q) assume (reads_new == is_new_then_q);
           if (response_valid_i && asked_q && answered == ASK'(any_stamp)) assume (response == answer_q);
@@ -140,7 +141,7 @@
           truth_then_q   <= truth_q;
           looked_at_it_q <= known_q[p] && access_i.mask[m];
         end
-        logic filled, offered, waits, passed;  // this word, by the fill under way; by the run of stamps
+        logic filled, offered, waits, passed;  // this word, in the current fill; in the run of stamps
         assign filled  = is_fill && is_it && fill_stamp_q > any_stamp;
         assign offered = offers_q && stamp_q == any_stamp && strobe_q[m];
         assign waits   = is_row && stamps_q[32'(any_stamp & COLUMN_MASK)*SAMPLES+m];
@@ -149,7 +150,7 @@
         always_comb if (runs_q && known_q[p]) begin
           if (p == 0 && looked_q && looked_at_it_q) assert (stored_depth_o[m*CODE+:CODE] == truth_then_q);
           if (takes_access && token && !is_clear) assert ((is_sent && memory_flag_q[p] ? cleared : memory_q) == truth_q);
-          // Where it is.
+          // Place of the value.
           if (is_there && (p == 0 || is_new_q || (flag_g[p] && !is_marked))) assert (word_q == truth_q);
           if ((!is_there || !dirty[p] || !is_new_q) && !is_marked) assert (truth_q == (flag_g[p] ? cleared : memory_q));
           if (evicts_it && plane_q == p) begin

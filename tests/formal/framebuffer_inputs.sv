@@ -1,9 +1,9 @@
 
-  // What comes in. From depth_test: an access on offer stays as it is until it is taken (depth_test_stream, and the fragment
-  // on offer there stays: interpolate_stream, primitive_join_stream, line_raster_stream); the write of an access with
-  // samples comes in the cycle after it, and writes no sample whose depth the access of that cycle looks at
-  // (depth_test_stream); a token has no samples (fine_raster_stream: none without a visit; coarse_raster_stream).
-  // From memory: an answer is one to a read that was taken in an earlier cycle. Of the RAMs all outputs may be anything but
+  // Assumptions on inputs. From depth_test: an access on offer stays unchanged until it is taken (depth_test_stream,
+  // and the fragment on offer there stays: interpolate_stream, primitive_join_stream, line_raster_stream); the write of
+  // an access with samples comes in the next cycle, and writes no sample whose depth the access of that cycle reads
+  // (depth_test_stream); a token has no samples (fine_raster_stream: none without a visit; coarse_raster_stream). From
+  // memory: an answer belongs to a read that was taken in an earlier cycle. All outputs of RAMs may be anything except
   // for what sram_word proves: they stay until the next read.
   logic token;  // fast clear, flush
   assign token = access_i.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR || access_i.kind == raster_pkg::PRIMITIVE_KIND_FLUSH;
@@ -23,7 +23,7 @@
   end
   always_comb if (runs_q) begin
     if (access_waits_q) assume (access_i == access_before_q);
-    if (access_waits_q && access_waited_q) assume (access_color_i == access_color_before_q);  // it is a cycle behind
+    if (access_waits_q && access_waited_q) assume (access_color_i == access_color_before_q);  // one cycle late
     if (token) assume (access_i.mask == '0);
     assume (write_valid_i == access_taken_q);
     if (write_valid_i)
@@ -68,12 +68,12 @@
     end
   endgenerate
 
-  // What the walks and the runs of stamps rest on.
+  // Invariants of the walks and the runs of stamps.
   logic walks_tiles;
   assign walks_tiles = state_q == MARK || state_q == READ || state_q == SEND || is_resolve;
   localparam int STAMPS = 32'(LAST_STAMP) + 1;
   localparam int ASK = STAMP_BITS + 2;
-  logic [ASK-1:0] next, asked, answered;  // stamp behind the last that was read out; of a fill: reads taken, their answers
+  logic [ASK-1:0] next, asked, answered;  // stamp after the last one read out; in a fill: reads taken, their answers
   always_comb begin
     next = ASK'(row_q) << ROW_BITS;
     for (int i = ROWS - 1; i >= 0; i--) if (left[i]) next = (ASK'(row_q) << ROW_BITS) - ASK'(ROWS - i);
@@ -99,7 +99,7 @@
     if (state_q == MARK || is_fill) assert (!plane_q);
     if (is_resolve) assert (resolves && flag_color);
     if (is_fill) assert (!token && !line_depth_dirty && !line_color_dirty);
-    // A run of stamps: none twice, none left out, each with its samples.
+    // A run of stamps: none twice, none skipped, each with its samples.
     assert (row_q <= (ROW_BITS + 1)'(ROWS) || !runs);
     if (runs) begin
       if (left != '0) assert (row_q != '0);
@@ -118,7 +118,7 @@
       assert (!offers_q);
       if (!is_fill) assert (stamps_q == '0);
     end
-    // A fill: what was asked for, what came back, what is to come.
+    // A fill: stamps requested, answered, still to come.
     if (is_fill && !flag_depth) assert (asked <= ASK'(STAMPS) && answered <= asked && ASK'(unanswered_q) == asked - answered);
     else assert (unanswered_q == '0);
   end

@@ -1,9 +1,9 @@
 
-  // Towards memory: what is offered stays; the stamps of a plane come in order, and of one tile. And no deadlock:
-  // while an access waits, what is left to do gets less in every cycle in which memory does its part, and never more; after
-  // a fill its access is served. What is left, the most significant first: before the fill or the walk, of the lines that
-  // are looked at, of the planes of a line; of the answers, or of the planes, rows and columns of a walk; then of rows of
-  // stamps, stamps of a row, and the one on offer.
+  // Towards memory: an offer stays; the stamps of a buffer come in order, and from one tile. And no deadlock: while an
+  // access waits, the remaining work decreases in every cycle in which memory does its part, and never grows; after a
+  // fill its access is served. The measure, most significant first: before the fill or the walk, lines to look at,
+  // buffers of a line; answers, or buffers, rows and columns of a walk; then rows of stamps, stamps of a row, and the
+  // stamp on offer.
   always_comb if (runs_q) begin
     if (state_q == EVICT) assert (request_o.plane[0] ? line_color_dirty : line_depth_dirty);
     if (request_valid_o) assert (request_o.is_write == (state_q != FILL));
@@ -17,7 +17,7 @@
     if ($past(is_fill) && !is_fill) assert (state_q == SERVE && access_ready_o);
   end
 
-  localparam int WIDE = ASK + LINE + TILE_X + TILE_Y;  // enough for any of them
+  localparam int WIDE = ASK + LINE + TILE_X + TILE_Y;  // enough for each of them
   logic [1:0]        part, planes;
   logic [WIDE-1:0]   first, second, moving;
   logic [3:0]        stage;

@@ -1,9 +1,9 @@
 
-  // A tile, any, from the fast clear that gave it its bound. Whatever a visit of it does to its depths: `farthest_g` is the
-  // largest of them in program order, its stored bits. One that cannot raise a depth leaves it as it is or lowers it; what
-  // the visit says when it retires is not below it (depth_test_hiz). (1) A verdict is made by the bound that the visits up
-  // to number n - LAG left behind, exactly. (2) Where it rejects, the real depth test fails for any fragment not before
-  // depth_min against any depth that the tile may hold, after all visits below n.
+  // An arbitrary tile, from the fast clear that gave it its bound. For any visits to the tile: `farthest_g` is its
+  // largest depth in program order, the stored bits. A visit that cannot raise a depth keeps or lowers it; the visit's
+  // update at retirement is not below it (depth_test_hiz). (1) A verdict uses the bound after the visits up to number n
+  // - LAG, exactly. (2) If it rejects, the real depth test fails for any fragment not before depth_min against any
+  // depth that the tile may hold, after all visits below n.
   localparam int CODE = raster_pkg::DEPTH_CODE_BITS;
   localparam int CODES = raster_pkg::ALL_CODE_BITS;
   localparam int SAMPLES = raster_pkg::SAMPLES;
@@ -11,20 +11,20 @@
   (* anyconst *) logic [TY-1:0] any_y;
   (* anyseq *) logic [HIZ-1:0] any_farthest;
   (* anyseq *) logic any_silence;
-  logic [N-1:0] newest, retires;  // places in the ring of the visit that starts, that retires
+  logic [N-1:0] newest, retires;  // places in the ring of the starting and of the retiring visit
   assign newest  = started_q[N-1:0];
   assign retires = retired_q[N-1:0];
-  (* anyseq *) logic is_it;  // the visit that starts is in this tile
+  (* anyseq *) logic is_it;  // the starting visit is in this tile
   logic reads_it, clears_it, raises, line_raises;
   assign reads_it  = read_x_i == any_x && read_y_i == any_y;
-  logic clears_group;  // of tiles that are cleared at once: this one is among them
+  logic clears_group;  // the tile is in the group being cleared
   assign clears_group = tile_x_i >> GROUP == any_x >> GROUP && tile_y_i == any_y;
   assign clears_it    = clears_i && clears_group;
   assign raises      = raises_i;
   assign line_raises = setup_i.state.depth_write && setup_i.state.depth_test[2];
 
-  // Of each visit that has not been seen: whether it is in this tile, may raise depths, will say nothing; the farthest
-  // depth behind it; what it said.
+  // For each visit not yet seen: whether it is in this tile, may raise depths, has no update; the farthest depth after
+  // it; its update.
   logic [LAG-1:0]     is_it_g, raises_g, is_silent_g;
   logic [LAG*HIZ-1:0] farthest_of_g, code_g;
   logic [HIZ-1:0]     farthest_g, seen_farthest_g, bound_g;
@@ -68,8 +68,8 @@
     end
   end
 
-  // The RAMs are cut out. What sram_word proves of them: a read gives what was written in an earlier cycle; nothing is said
-  // of a word that is written in the same one.
+  // The RAMs are cut out. Assumed from sram_word: a read gives the last write of an earlier cycle; a word written in
+  // the same cycle is arbitrary.
   logic           is_it_q, is_silent_q, is_said_q;
   logic [HIZ-1:0] code_q, word_q;
   logic           has_word_q;
@@ -93,7 +93,7 @@
     if (has_word_q) assume (gen_hiz.bound == word_q);
   end
 
-  // How many of the visits since the clear are seen: all up to n - LAG and no other.
+  // Number of seen visits since the clear: all up to n - LAG and no other.
   logic [N-1:0] since_g;  // visits since the clear, LAG - 1 at most
   always_ff @(posedge clk_i) begin
     if (!rst_ni || clears_i) since_g <= '0;
@@ -114,7 +114,7 @@
       assert (gen_hiz.bound == bound_g);  // (1)
     end
     if (in_clear_q) assert (unseen == '0 && has_bound_q);
-    // Nothing between may have raised a depth.
+    // No visit between may have raised a depth.
     if (has_bound_q) begin
       assert (bound_g >= seen_farthest_g);
       if (unseen == '0) assert (farthest_g == seen_farthest_g);
@@ -125,8 +125,8 @@
   generate
     for (k = 0; k < LAG; k++) begin : gen_visit
       localparam int BEFORE = (k + LAG - 1) % LAG;
-      logic [N-1:0]   age;     // visits between it and the oldest one that has not been seen
-      logic [N-1:0]   youth;   // and the newest
+      logic [N-1:0]   age;     // visits between it and the oldest unseen one
+      logic [N-1:0]   youth;   // visits between it and the newest
       logic [HIZ-1:0] before;  // the farthest depth before it
       assign age    = N'(k) - seen_q[N-1:0];
       assign youth  = newest - N'(k) - N'(1);
@@ -136,7 +136,7 @@
         if (has_bound_q) begin
           if (!raises_g[k] || is_silent_g[k] || !is_it_g[k]) assert (farthest_of_g[k*HIZ+:HIZ] <= before);
           if (youth == '0) assert (farthest_of_g[k*HIZ+:HIZ] == farthest_g);
-          // What lies between it and the newest did not raise a depth when all is quiet.
+          // The visits between it and the newest raised no depth if all is quiet.
           if (gen_hiz.quiet_q > youth) assert (farthest_g <= farthest_of_g[k*HIZ+:HIZ] && !raises_g[k]);
         end
         if ({1'b0, age} < unseen_retired && is_it_g[k] && !is_silent_g[k])
@@ -145,7 +145,7 @@
     end
   endgenerate
 
-  // A verdict is that of a primitive that has stood for a cycle.
+  // A verdict belongs to a primitive that has been present for a cycle.
   raster_pkg::setup_packet_t was_setup_q;
   logic is_behind_o, has_stood, was_is_equal_behind;
   always_ff @(posedge clk_i) was_setup_q <= setup_i;
@@ -180,7 +180,7 @@
       .write_valid_o(write_valid), .write_o(write), .retire_valid_o(retire_valid), .retire_o(retire),
       .covered_o(), .passed_o(), .written_o()
   );
-  // The cycle after: the fragment's depths against what is stored.
+  // The cycle after: the fragment's depths against the stored ones.
   logic            rejected_q;
   logic [CODE-1:0] depth_min_q, farthest_q;
   always_ff @(posedge clk_i) begin
@@ -198,7 +198,7 @@
   endgenerate
   always_comb if (runs_q && rejected_q) assert (write_valid && write.passed == '0);  // (2)
   always_comb if (runs_q) cover (rejected_q);
-  // What coarse_raster takes for granted: a verdict stays until the next read.
+  // An assumption of coarse_raster: a verdict stays until the next read.
   logic was_good_q, was_behind_q, had_stood_q;
   always_ff @(posedge clk_i) begin
     was_good_q   <= rst_ni && !reads_i && is_good_q && !starts_visit_i && !clears_i;

@@ -1,8 +1,8 @@
 
-  // What coarse_raster and depth_test keep to: a visit starts when the stage is settled (coarse_raster_hiz); it retires
-  // once, behind those before it; a clear waits for all of them.
+  // Guarantees of coarse_raster and depth_test: a visit starts when the stage is settled (coarse_raster_hiz); it
+  // retires once, after earlier ones; a clear waits for all of them.
   localparam int U = N + 1;
-  logic [N:0] unseen, unseen_retired;  // visits that have not been seen; of these have retired
+  logic [N:0] unseen, unseen_retired;  // visits not yet seen; visits of these that have retired
   assign unseen         = started_q - seen_q;
   assign unseen_retired = retired_q - seen_q;
   always_comb begin
@@ -11,7 +11,7 @@
     if (clears_i) assume (visits_are_done_o && !starts_visit_i && !reads_i && !passes_i);
   end
 
-  // The counts: those that have been seen have retired, those that have retired have started, LAG at most are not seen.
+  // The counts: seen visits have retired, retired visits have started, at most LAG are not seen.
   always_comb if (runs_q) begin
     assert (unseen <= U'(LAG) && unseen_retired <= unseen);
     if (has_update_q) assert (unseen_retired != '0);

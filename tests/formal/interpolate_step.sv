@@ -1,8 +1,9 @@
 
-  // Each step of each plane, from what is in the step before it: to the stamp's first column, to its first row, to each
-  // sample; x and y from pixel (T/2, T/2), modulo 2^W, as sums of their bits. A stamp's context and values move from step
-  // to step together (interpolate_stream), so that the three add up to anchor + x step_x + y step_y. Then the codes: what
-  // is above the fraction, less the half of all that anchors are offset by. Whatever the registers hold.
+  // Each step of each plane, from the content of the step before: to the stamp's first column, to its first row, to
+  // each sample; x and y from pixel (T/2, T/2), modulo 2^W, as sums of their bits. A stamp's context and values move
+  // from step to step together (interpolate_stream), so that the three add up to anchor + x step_x + y step_y. Then the
+  // codes: the bits above the fraction, less the half range by which anchors are offset. For any content of the
+  // registers.
   localparam int MIDDLE = raster_pkg::TILE_SIZE / 2;
   genvar k, n;
   generate

@@ -1,9 +1,9 @@
 
-  // A stamp of the stream, any: four cycles later its fragment goes into the FIFO, with what the context RAM answered for
-  // it, and there is a place. The FIFO is cut out; what registered_fifo_stream proves of it is assumed: it takes ROOM.
+  // An arbitrary stamp of the stream: four cycles later its fragment enters the FIFO, with the context RAM's answer for
+  // it, and there is a place. The FIFO is cut out; registered_fifo_stream is assumed: it takes ROOM.
   (* anyseq *) logic pick;
   logic       done_q;
-  logic [3:0] at_q;        // the step that it is in: context, x, y, samples
+  logic [3:0] at_q;        // its step: context, x, y, samples
   logic [USED-1:0] held_q; // in the FIFO, or on offer
   raster_pkg::stamp_packet_t   g_q;
   raster_pkg::context_packet_t context_q;
@@ -37,7 +37,7 @@
     if (at_q[3])
       assert (made.kind == g_q.kind && made.ends_visit == g_q.ends_visit && made.ends_primitive == g_q.ends_primitive &&
               made.key == g_q.key && made.stamp == g_q.stamp && made.mask == g_q.mask && made.state == context_q.state);
-    if (!stamp_ready_o) assert (held_q != '0 || valid != '0);  // no deadlock: what is under way gets there
+    if (!stamp_ready_o) assert (held_q != '0 || valid != '0);  // no deadlock: stamps under way get there
     cover (done_q && !stamp_ready_o);
   end
   always_ff @(posedge clk_i) if (runs_q && $past(runs_q)) begin

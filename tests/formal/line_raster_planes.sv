@@ -1,5 +1,5 @@
 
-  // The line as it was taken, the pixels sent before this one, and first + n steps, summed up.
+  // The line as it was taken, the number of pixels sent before this one, and first + n steps, summed up.
   raster_pkg::line_setup_t g_q;
   logic [COUNT-1:0] n_q;
   logic             sends;

@@ -20,7 +20,7 @@
     end
   end
 
-  // From the host: d = step_stay, D = step_stay - step_move >= d, and an error in [d - D, d), if it is used at all.
+  // From the host: d = step_stay, D = step_stay - step_move >= d, and an error in [d - D, d), if it is used.
   always_comb if (line_valid_i) begin
     assume ($signed(line_i.step_move) <= 0);
     if (line_i.remaining != '0)

@@ -1,6 +1,6 @@
 
-  // A word, any: each bit that is read is what was written into it last in an earlier cycle, and the answer stays until the
-  // next read.
+  // An arbitrary word: each bit read is the last one written into it in an earlier cycle, and the answer stays until
+  // the next read.
   (* anyconst *) logic [ADDRESS-1:0] any_address;
   logic [WIDTH-1:0] was_written_q = '0, was_read_q = '0, word_q, answer_q;
   always_ff @(posedge clk_i) begin
@@ -19,7 +19,7 @@
     end
   endgenerate
   always_comb assert (((data_o ^ answer_q) & was_read_q) == '0);
-  // So it does whatever was read.
+  // Any answer stays.
   logic             stays_q = 1'b0;
   logic [WIDTH-1:0] before_q;
   always_ff @(posedge clk_i) begin

@@ -1,23 +1,25 @@
 
-  // Any byte of any sample of a stamp that is written: it goes to memory once, at its address, with the strobe and the value of
-  // the request, before the next request is taken or with it; no other byte of its beat is written that no stamp wrote.
+  // An arbitrary byte of an arbitrary sample of a stamp that is written: it goes to memory once, at its address, with
+  // the strobe and the value of the request, before the next request is taken or with it; no byte of its beat is
+  // written that belongs to no stamp.
   (* anyconst *) logic [$clog2(SAMPLES+1)-1:0] any_sample;
   (* anyconst *) logic [1:0]                   any_byte;
   (* anyseq *) logic                           is_chosen;
   logic                  waits_q, strobed_q, was_chosen_q, at_color_q;
-  logic [ADDRESS-1:PORT] sent;  // the beat on offer
+  logic [ADDRESS-1:PORT] sent;  // address of the beat on offer
   assign sent = beat_o.address[ADDRESS-1:PORT];
   logic [ADDRESS-1:0]    at_q, at;
   logic [7:0]            value_q, value;
-  logic [ADDRESS-1:0]    first;  // byte of the stamp
+  logic [ADDRESS-1:0]    first;  // address of the stamp's first byte
   always_comb begin
     assume (any_sample < SAMPLES);
     if (request_valid_i) assume (32'(any_byte) < (request_i.plane[0] ? raster_pkg::COLOR_SAMPLE_BYTES : raster_pkg::DEPTH_SAMPLE_BYTES));
   end
-  // A run is of one tile, and the layout stays: what follows in a beat that gathers is of that beat.
+  // A run is within one tile, and the layout stays: a stamp that joins a gathering beat belongs to that beat.
   always_comb if (runs_q && request_valid_i && gathers_q)
     assume (address[ADDRESS-1:PORT] == address_q && (is_flags ? '0 : above) == above_q);
-  // The address by its definition (byte_address() of model/stages/memory_port.hpp), with bases in any multiple of a plane.
+  // The address by its definition (byte_address() of model/stages/memory_port.hpp), with bases at any multiple of a
+  // buffer.
   assign first = ((is_color ? layout_i.color_base : layout_i.depth_base) >> PLANE << PLANE) +
                  ADDRESS'({(ADDRESS - TILE)'(request_i.tile_y) * (ADDRESS - TILE)'(layout_i.row_stride[STRIDE-1:TILE]),
                            {TILE{1'b0}}}) +
@@ -38,13 +40,13 @@
       strobed_q <= request_i.strobe[any_sample];
     end
   end
-  logic [ADDRESS-1:PORT] behind;  // beats between the one on offer and that of the byte
+  logic [ADDRESS-1:PORT] behind;  // beats from the one on offer to that of the byte
   logic [WORD-1:0]       strobe_there;
   logic [8*WORD-1:0]     data_there;
   assign behind       = at_q[ADDRESS-1:PORT] - sent;
   assign strobe_there = strobe_q >> ((32'(behind[PORT+7:PORT]) << PORT) + 32'(at_q[PORT-1:0]));
   assign data_there   = data_q >> (8 * ((32'(behind[PORT+7:PORT]) << PORT) + 32'(at_q[PORT-1:0])));
-  // Of a beat that gathers nothing is there yet behind what has come.
+  // A gathering beat holds nothing above the bytes that have come.
   logic [31:0] come;  // bytes
   assign come = 32'(place_in_beat_run) << (run_plane_q[1] ? FLAG_SHIFT : (run_plane_q[0] ? COLOR_SHIFT : DEPTH_SHIFT));
   always_comb if (runs_q && gathers_q && !discards) assert (strobe_q >> come == '0 && data_q >> (8 * come) == '0);
@@ -56,13 +58,13 @@
     if (hits) assert (beat_o.strobe[at_q[PORT-1:0]] == strobed_q);
     if (hits && strobed_q) assert (beat_o.data[8*at_q[PORT-1:0]+:8] == value_q);
     if (takes && !gathers_q) assert (hits);
-    if (gathers_q && !discards)  // what is still to come lies behind it in the beat
+    if (gathers_q && !discards)  // bytes still to come lie above it in the beat
       assert ((16'(at_q[PORT-1:0]) >> (at_color_q ? COLOR_SHIFT : DEPTH_SHIFT)) < place_in_beat_run &&
               run_plane_q == (at_color_q ? raster_pkg::TILE_PLANE_COLOR : raster_pkg::TILE_PLANE_DEPTH));
     cover (hits && strobed_q);
   end
 
-  // Any sample of a stamp that is read: of the beats that memory answers, the bytes where the stamp has it.
+  // An arbitrary sample of a stamp that is read: the bytes of the beats answered by memory, at the stamp's place.
   localparam int DEPTH_BYTES = 1 << DEPTH_SHIFT;
   logic [7:0] kept_byte_q, answered_byte, response_byte;
   logic [31:0] byte_at;
@@ -80,7 +82,7 @@
         if (response_valid_o && is_of_depth)
           assert (response_byte == (byte_at >> PORT == DEPTH_BEATS - 1 ? answered_byte : kept_byte_q));
       end
-      if (READ_WORD > BYTES) begin : gen_kept_bytes  // for induction: where the byte is in what is kept
+      if (READ_WORD > BYTES) begin : gen_kept_bytes  // for induction: the place of the byte in the kept beats
         always_comb if (runs_q && !discards && is_of_depth && 32'(part_q) > byte_at >> PORT)
           assert (8'(gen_kept.kept_q >> (8 * (32'(READ_WORD) - 32'(BYTES) - (32'(part_q) << PORT) + byte_at))) == kept_byte_q);
       end

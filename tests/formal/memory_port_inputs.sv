@@ -1,18 +1,18 @@
 
-  // Power comes once. The other reset may come at any time, as often as it likes.
+  // Power comes once. The other reset may come at any time, any number of times.
   logic runs_q = 1'b0;
   always_ff @(posedge clk_i) runs_q <= 1'b1;
   always_comb assume (power_on_ni == runs_q);
 
-  // From the framebuffer: runs of one plane, the writes of a run one behind the other, each with what is left of it
-  // (block_cache_stream, framebuffer_stream); a stamp of the tile. Behind a reset it begins anew, and there is none in it.
-  // From memory: an answer is one to what was asked for, in turn, and stays until it is taken: so many beats for a burst that
-  // reads, one for a burst that was written to its end.
+  // From the framebuffer: runs in one buffer, the writes of a run consecutive, each with the length of the rest
+  // (block_cache_stream, framebuffer_stream); a stamp of the tile. After a reset the framebuffer starts anew, without a
+  // run. From memory: an answer belongs to a request, in order, and stays until it is taken: one per beat for a burst
+  // that reads, one for a burst that was written to its end.
   localparam int STAMPS_I = raster_pkg::STAMPS_PER_ROW * raster_pkg::STAMPS_PER_ROW;
   localparam int N = READS + 9;
   logic [RUN-1:0] run_left_q;                      // stamps of a burst that are still to come
   raster_pkg::tile_plane_t run_plane_q;
-  logic [N-1:0] reads_out_q, writes_out_q, stale_q;  // at memory: beats that it has not answered, bursts, and how many of both are stale
+  logic [N-1:0] reads_out_q, writes_out_q, stale_q;  // beats and bursts that memory owes; the stale ones of both
   logic [N-1:0] most_reads;
   logic [15:0] run_place_q;
   assign most_reads = N'(MOST);
@@ -31,7 +31,7 @@
       else if (answers && stale_q != '0) stale_q <= stale_q - 1'b1;
     end
   end
-  // With a request come its data as they lie in memory.
+  // A request comes with its data as they lie in memory.
   logic [8*raster_pkg::REQUEST_BYTES-1:0] data_bytes;
   request_bytes u_data_bytes (
       .request_i(request_i),

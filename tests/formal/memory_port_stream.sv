@@ -1,10 +1,10 @@
 
-  // A beat on offer stays as it is, through a reset as well. A burst that begins ends: one first beat, then each with a beat
-  // less to go, at the next address, up to the last. A burst that a reset has cut goes on without strobes.
+  // A beat on offer stays unchanged, through a reset as well. A burst that begins ends: one first beat, then each with
+  // one beat less to go, at the next address, up to the last. A burst that a reset has cut continues without strobes.
   always_ff @(posedge clk_i) if (runs_q && $past(runs_q)) begin
     if ($past(beat_valid_o && !beat_ready_i)) assert (beat_valid_o && beat_o == $past(beat_o));
   end
-  logic              open_q;  // a burst that writes has begun and has not ended
+  logic              open_q;  // a writing burst has begun and has not ended
   logic [LENGTH-1:0] to_go_q;
   logic [ADDRESS-1:PORT] next_q;
   always_ff @(posedge clk_i) begin
@@ -15,7 +15,7 @@
       next_q  <= address_q + 1'b1;
     end
   end
-  // Beats of what is left of the run, the one that gathers included.
+  // Beats of the rest of the run, the gathering one included.
   localparam int COLOR_SHARED = (COLOR_SHIFT < PORT) ? PORT - COLOR_SHIFT : 0;
   localparam int FLAG_SHARED = (FLAG_SHIFT < PORT) ? PORT - FLAG_SHIFT : 0;
   logic [15:0]       place_in_beat_run, shared;
@@ -58,11 +58,11 @@
     assert (N'(reads_q) <= most_reads);
     if (idle_o) assert (reads_out_q == '0 && writes_out_q == '0 && !beat_valid_o && !open_q);
 
-    // A reset: what memory answers to requests from before it goes nowhere, and nothing is asked for until it has.
+    // A reset: answers of memory to earlier requests are dropped, and no request is made until all have come.
     assert (stale_q <= N'(reads_q) + N'(writes_q));
     if (stale_q != '0) assert (discards && !response_valid_o && !takes);
 
-    // No deadlock: it takes a request, or has a beat on offer, or waits for an answer.
+    // No deadlock: the port takes a request, or has a beat on offer, or waits for an answer.
     if (!discards && !valid_q && request_valid_i) assert (request_ready_o || (begins && writes_q == '1));
     if (recovers_q && rst_ni && !valid_q && !gathers_q && !owes) assert (is_done || reads_out_q != '0 || writes_out_q != '0);
     if (answer_valid_i && response_ready_i && (answer_i.is_write || is_last)) assert (answer_ready_o);

@@ -1,5 +1,5 @@
 
-  // Combinational, so one cycle says all: what comes out, and what is taken from which side.
+  // Combinational, so one cycle is complete: the output, and the input taken from each side.
   logic takes_fragment, takes_pixel, sends;
   assign takes_fragment = fragment_valid_i && fragment_ready_o;
   assign takes_pixel    = pixel_valid_i && pixel_ready_o;
@@ -19,7 +19,7 @@
     end
     if (fragment_ready_i && fragment_valid_i && pixel_valid_i) assert (sends);  // no deadlock
     if (fragment_ready_i && fragment_valid_i && fragment_i.kind != raster_pkg::PRIMITIVE_KIND_LINE) assert (sends);
-    // What is offered depends on no ready: it stays while the inputs stay.
+    // An offer depends on no ready: it stays while the inputs stay.
     assert (fragment_valid_o == (fragment_valid_i && (fragment_i.kind != raster_pkg::PRIMITIVE_KIND_LINE || pixel_valid_i)));
   end
 

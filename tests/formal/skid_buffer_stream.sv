@@ -1,5 +1,5 @@
 
-  // A queue of two, written without looking at the buffer: what enters leaves once, unchanged, in order.
+  // A queue of two, written independently of the buffer: an item that enters leaves once, unchanged, in order.
   logic [1:0]       count_q;
   logic [WIDTH-1:0] first_q, second_q;
   logic             pushes, pops;

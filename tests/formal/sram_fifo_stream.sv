@@ -1,12 +1,13 @@
 
-  // One item, any, that enters at any place: the n-th from now that enters is the n-th from now that leaves, and data_o is it
-  // from the cycle behind on until the next one leaves. The RAM is cut out: what sram_word proves of it is assumed.
+  // An arbitrary item that enters at an arbitrary place: the n-th from now that enters is the n-th from now that
+  // leaves, and data_o is it from the next cycle on until the next one leaves. The RAM is cut out: sram_word is assumed
+  // for it.
   (* anyconst *) logic [WIDTH-1:0] any_data;
   (* anyconst *) logic [INDEX-1:0] any_place;
   (* anyseq *) logic               is_chosen;
   logic             under_way_q, was_chosen_q, is_out_q;
-  logic [INDEX:0]   ahead_q, count_q;  // items before it; items
-  logic [WIDTH-1:0] word_q, answer_q;  // of the RAM at any_place; what was read there
+  logic [INDEX:0]   ahead_q, count_q;  // items before it; items inside
+  logic [WIDTH-1:0] word_q, answer_q;  // the RAM's word at any_place; the last answer
   logic             reads_it_q;
   always_ff @(posedge clk_i) begin
     if (!rst_ni) begin

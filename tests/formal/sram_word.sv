@@ -1,5 +1,5 @@
 
-  // A word, any: a read gives what was written last in an earlier cycle, and the answer stays until the next read.
+  // An arbitrary word: a read gives the last write of an earlier cycle, and the answer stays until the next read.
   (* anyconst *) logic [ADDRESS-1:0] any_address;
   always_comb assume (32'(any_address) < DEPTH && 32'(read_address_i) < DEPTH && 32'(write_address_i) < DEPTH);
   logic             was_written_q = 1'b0, was_read_q = 1'b0;
@@ -26,7 +26,7 @@
     if (was_written_q) assert (held == word_q);
     if (was_read_q) assert (data_o == answer_q);
   end
-  // So it does whatever was read.
+  // Any answer stays.
   logic             stays_q = 1'b0;
   logic [WIDTH-1:0] before_q;
   always_ff @(posedge clk_i) begin

@@ -1,9 +1,9 @@
 
-  // The first of two levels leaves nothing, but is kept until the second is blended with it; all others leave once, in order,
-  // and what is offered stays.
-  logic        first_waits_q;  // the last that came was the first of two
-  logic        second_q;       // what is here is the second
-  logic [15:0] first_value_q;  // of its lowest channel, 8 bits behind the point
+  // The first of two levels does not leave, but is kept until the second is blended with it; all others leave once, in
+  // order, and an offer stays.
+  logic        first_waits_q;  // the last item was the first of two
+  logic        second_q;       // the current item is the second
+  logic [15:0] first_value_q;  // of its lowest channel, 8 fraction bits
   always_ff @(posedge clk_i) begin
     if (!rst_ni) first_waits_q <= 1'b0;
     else if (valid_i && ready_o) first_waits_q <= is_first_i;
@@ -11,7 +11,7 @@
     if (valid_i && ready_o && is_first_i) first_value_q <= sum_i[23:8] + 16'(sum_i[7]);
   end
   always_comb begin
-    assume (takes_i);  // of one lane
+    assume (takes_i);  // one lane
     if (valid_i) begin
       assume (is_second_i == first_waits_q && !(is_first_i && is_second_i));  // texture_levels_stream
       assume (!(is_first_i || is_second_i) || is_between_i);

@@ -1,7 +1,8 @@
 
-  // One line of memory, any, and one word of it: no cache at all would give what memory holds there. Its samples say so in what
-  // goes along with them, with their number, and before or behind an invalidation, any, with which memory may change. RAMs and
-  // queues are cut out, and do what sram_word and fifo_stream prove of them.
+  // An arbitrary line of memory, and an arbitrary word of it: the result must equal memory's, as without a cache. The
+  // line's samples are marked in their payload, with their number, and with their order relative to an arbitrary
+  // invalidation, with which memory may change. RAMs and queues are cut out, and behave as sram_word and fifo_stream
+  // prove.
   localparam int COUNTED = $clog2(IN_FLIGHT) + 1;
   localparam int SEQUENCE = TAIL - 2;
   (* anyconst *) logic [27:0]          any_address;
@@ -10,7 +11,7 @@
   (* anyconst *) logic [WORDS-1:0]     any_word;
   (* anyconst *) logic [WORD_BITS-1:0] old_word, new_word;
   (* anyseq *) logic                   is_chosen;
-  logic                is_new_q;  // the invalidation has been
+  logic                is_new_q;  // the invalidation has happened
   logic [SEQUENCE-1:0] entered_q, left_q;
   always_ff @(posedge clk_i) begin
     is_new_q  <= rst_ni && (is_new_q || (drop_i && is_chosen));
@@ -27,7 +28,7 @@
     if (drop_i) assume (!t_valid_q && !sample_valid_i);
   end
 
-  // Samples that wait: what is in the queue, the first that leaves lowest.
+  // Samples in the queue: its content, the next to leave lowest.
   localparam int WAITING = 1 + LINE + 4 + 3 + TAIL;
   logic [WAITING-1:0] wait_q[0:IN_FLIGHT-1];
   logic [COUNTED-1:0] waits_q;
@@ -38,7 +39,7 @@
       else if (reads && i + 1 < IN_FLIGHT) wait_q[i] <= wait_q[(i+1)%IN_FLIGHT];
     end
   end
-  // Lines that have not come, likewise; that they are of any_address is what memory sees of them (below).
+  // Lines that have not come, likewise; memory sees which of them have any_address (below).
   localparam int FILL = LINE + 2 + 2;
   logic [FILL-1:0]    fill_q[0:IN_FLIGHT-1];
   logic [COUNTED-1:0] fills_q;
@@ -62,7 +63,7 @@
     if (fills_valid) assume ({fill_line, fill_size} == fill_q[0][LINE+1:0]);
   end
 
-  // Memory answers what it was asked for, in order.
+  // Memory answers its requests, in order.
   logic       request_is_it, fill_is_it, fill_is_new;
   logic [6:0] owed_q, on_offer;
   assign {fill_is_new, fill_is_it} = fill_q[0][FILL-1-:2];
@@ -80,7 +81,7 @@
     assert (answer_ready_o && !recovers_q);
   end
 
-  // RAMs: the words of the line. What is read in the cycle of a write of it may be anything.
+  // RAMs: the words of the line. A read in the cycle of a write of its word may give anything.
   logic                 tag_writes, cell_valid_q, old_valid_q, tag_is_it_q, data_writes, data_is_it, data_is_it_q, stays_q, data_stays_q;
   logic [27:0]          cell_tag_q, old_tag_q;
   logic [NUMBER-1:0]    cell_group_q, old_group_q;
@@ -110,7 +111,7 @@
     if (data_is_it_q) assume (word == old_data_q);
   end
 
-  // What is claimed: each sample leaves in its turn, and one of any_address with what memory held there when it came.
+  // The claim: each sample leaves in order, and a sample of any_address with memory's content when it came.
   logic                 d_claims_q;
   logic [WORD_BITS-1:0] truth;
   logic [5:0]           at;  // bits of the word below the texel
@@ -130,8 +131,8 @@
     assert (code_valid_o && code_o == $past(code_o) && code_tail_o == $past(code_tail_o));
   end
 
-  // For induction. Of the samples that wait all that were found in any_line are of one line of memory, and but for the first
-  // they are hits: a miss waits until the place is free. The n-th miss waits for the n-th line.
+  // For induction. All samples in the queue that were found in any_line are of one line of memory, and all but the
+  // first are hits: a miss waits until the place is free. The n-th miss waits for the n-th line.
   logic [IN_FLIGHT-1:0]   waits_here, waits_it, waits_new, waits_miss, here_before, is_to_come;
   logic [COUNTED-1:0]     misses_before[0:IN_FLIGHT];
   logic [IN_FLIGHT*3-1:0] size_of_wait;
@@ -182,7 +183,7 @@
       end
       if (waits_miss[i] && here_before[i]) assert (!waits_here[i]);
       if (waits_here[i]) begin
-        // The tags know a sample that is not read before this one.
+        // The tags know a sample that is read no earlier than this one.
         assert (NUMBER'(group - cell_group_q) <= NUMBER'(group - number[i][COUNT-1:GROUP]));
         if (!sweeps_q && cell_valid_q) assert (waits_it[i] == (cell_tag_q == any_address) && waits_new[i] == is_new_q);
         for (int j = 0; j < i; j++)
@@ -196,7 +197,7 @@
     if (cell_is_it && has_come_so_far) assert (data_q == (is_new_q ? new_word : old_word));
   end
 
-  // No deadlock: when memory does its part and texels are taken, what is left to do gets less in every cycle.
+  // No deadlock: when memory does its part and texels are taken, the remaining work decreases in every cycle.
   logic [7:0] work;
   assign work = 8'd24 * 8'(t_valid_q) + 8'd2 * 8'(waits_q) + 8'(d_valid_q) + 8'(request_valid_q) + 8'(unanswered_q) +
                 (sweeps_q ? 8'(LINES) - 8'(sweep_q) : '0);

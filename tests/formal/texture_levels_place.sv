@@ -1,6 +1,7 @@
 
-  // Where a level begins: the sum of the blocks of all larger ones, and a block more behind the first of one; whatever the
-  // sides, 2^0 to 2^12 texels, and the level. The image lies below it, so that the two are or'ed.
+  // Start of a level: the sum of the blocks of all larger levels, and one block more after the first level of one
+  // block; for all sides, 2^0 to 2^12 texels, and levels. The image lies below the start's bits, so that the two can be
+  // ORed.
   function automatic [3:0] blocks_of(input [3:0] log2_size);  // log2
     blocks_of = log2_size[3:1] == '0 ? 4'd0 : log2_size - 4'd2;
   endfunction
@@ -12,7 +13,7 @@
     else if (sets_state_i) is_set_q <= 1'b1;
     if (scales) scaled_level_q <= level;
   end
-  // Blocks of level n and of all before it; a counter that runs along.
+  // Blocks of level n and of all before it; a counter runs along.
   logic [20:0] before;
   logic [3:0]  wide, high;
   always_comb begin

@@ -1,6 +1,6 @@
 
-  // A sample without a second level makes one pass, another two, the first and the second, with what goes along the same; in
-  // order, and what is offered stays. `left` is the pass that was taken last.
+  // A sample without a second level makes one pass, any other two, the first and the second, with the same payload; in
+  // order, and an offer stays. `left` is the pass taken last.
   logic            left_first_q;
   logic [TAIL-1:0] left_tail_q, entered_tail_q;
   always_ff @(posedge clk_i) begin
@@ -9,7 +9,7 @@
     if (valid_o && ready_i) left_tail_q <= tail_o;
     if (scales) entered_tail_q <= tail_i;
   end
-  // A sample that is offered stays.
+  // A sample on offer stays.
   always_ff @(posedge clk_i)
     if (runs_q && $past(runs_q) && $past(valid_i && !ready_o)) begin
       assume (valid_i && part_i == $past(part_i) && tail_i == $past(tail_i));

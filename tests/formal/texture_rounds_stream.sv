@@ -1,7 +1,7 @@
 
-  // A group without a sample between two levels makes one round, another two: first all that live, of which some wait for the
-  // second, then those alone; with what goes along the same, in order, and what is offered stays.
-  localparam int SECOND = TAIL + 36, ENDS = TAIL + 37, WAITS = TAIL + 38, LIVE = TAIL + 42;  // in what goes along
+  // A group without a sample between two levels makes one round, any other two: first all live samples, some of which
+  // wait for the second, then these alone; with the same payload, in order, and an offer stays.
+  localparam int SECOND = TAIL + 36, ENDS = TAIL + 37, WAITS = TAIL + 38, LIVE = TAIL + 42;  // in the payload
   logic             left_turns_q;
   logic [3:0]       left_waits_q;
   logic [TAIL-1:0]  left_tail_q, entered_tail_q;
@@ -11,7 +11,7 @@
     if (valid_o && ready_i) {left_waits_q, left_tail_q} <= {waits_o, tail_o};
     if (scales) entered_tail_q <= tail_i;
   end
-  // What the round in front of each register left behind it.
+  // The state after the round before, at each register.
   logic            agreed_turns, wrapped_turns, scaled_turns;
   logic [3:0]      agreed_waits, wrapped_waits, scaled_waits;
   logic [TAIL-1:0] agreed_tail, wrapped_tail, scaled_tail;
@@ -23,13 +23,13 @@
   assign {scaled_turns, scaled_waits, scaled_tail} =
       scaled_valid_q ? {!scaled_along_q[ENDS], scaled_along_q[WAITS+:4], scaled_along_q[TAIL-1:0]} :
       {wrapped_turns, wrapped_waits, wrapped_tail};
-  // Of a round, and of the one in front of it.
+  // Relation of a round to the one before it.
   function automatic [0:0] follows(input [ALONG-1:0] round, input turned, input [3:0] waited, input [TAIL-1:0] tail);
     follows = round[SECOND] == turned && round[LIVE+:4] != '0 && round[ENDS] == (round[WAITS+:4] == '0) &&
               (round[WAITS+:4] & ~round[LIVE+:4]) == '0 &&
               (!turned || (round[ENDS] && round[LIVE+:4] == waited && round[TAIL-1:0] == tail));
   endfunction
-  // A group that is offered stays.
+  // A group on offer stays.
   always_ff @(posedge clk_i)
     if (runs_q && $past(runs_q) && $past(valid_i && !ready_o)) begin
       assume (valid_i && part_i == $past(part_i) && live_i == $past(live_i) && tail_i == $past(tail_i));

@@ -1,11 +1,12 @@
 
-  // What it left behind in a phase is there in the next one: for each plane the differences, numerators, products, gradients,
-  // moves; at the end the gradients and values of all planes. What it keeps for several phases is there in all of them.
+  // The result of a triangle in a phase is there in the next one: for each plane the differences, numerators, products,
+  // gradients, moves; at the end the gradients and values of all planes. Values kept for several phases are there in
+  // all of them.
   logic [OFFER-1:0] it_goes;
   assign it_goes = it_at_q[OFFER-1:0] & moves;
   genvar k, c, j;
   generate
-    // A plane's differences, start, range and value. It has CLOCKS cycles; what is found in the last one counts.
+    // A plane's differences, start, range and value. It has CLOCKS cycles; the result of the last one counts.
     for (k = 0; k < PLANES; k++) begin : gen_plane_proof
       localparam int FIRST = CLOCKS * k;
       localparam int LAST = FIRST + CLOCKS - 1;
@@ -48,7 +49,7 @@
         if (it_at_q[NUMERATOR+FIRST+:CLOCKS] != '0) assert (ac_q == delta_q);
         if (it_at_q[OFFER]) assert (setup_values_q[k*P+:P] == total_q);
       end
-      // On its way: the start; and in the chains, whose newest is the highest.
+      // In flight: the start; and in the chains, whose newest is the highest.
       for (c = 0; c < TO_START; c++) begin : gen_way
         always_comb if (runs_q && it_at_q[DELTA+FIRST+CLOCKS+c]) assert (start_q[c*(Z+1)+:Z+1] == code_q);
       end
@@ -72,9 +73,9 @@
       end
     end
 
-    // What a plane has in each of its cycles, in the first lane.
+    // Values of a plane in each of its cycles, in the first lane.
     for (j = 0; j < STEPS; j++) begin : gen_cycle_proof
-      logic [N-1:0]            numerator_q;  // as the three were in the cycle before
+      logic [N-1:0]            numerator_q;  // the three values of the cycle before
       logic [PRODUCT_BITS-1:0] last_product_q;
       logic [P-1:0]            last_move_q;
       logic                    waits_for_product_q, waits_for_shift_q, waits_for_sum_q;
@@ -118,7 +119,7 @@
     end
   endgenerate
 
-  // Constants while its planes pass by.
+  // Constants while its planes pass.
   logic [QUOTIENT-1:0] its_quotient_q;
   logic [SHIFT_BITS-1:0] its_shift_q;
   logic [D-1:0]        its_corner_q;
@@ -148,13 +149,13 @@
     end
   endgenerate
 
-  // The quotient, divider by divider: what one began the next one goes on with.
+  // The quotient, divider by divider: each continues the one before.
   genvar g;
   generate
     for (g = 0; g < DIVIDERS; g++) begin : gen_quotient
       localparam int BITS = BITS_PER_CYCLE * (g == DIVIDERS - 1 ? DIVIDE_CYCLES - g * STEPS : STEPS);
       localparam int CYCLES = BITS / BITS_PER_CYCLE;
-      logic [REMAINDER-1:0] rest_q;  // as it left the last cycle
+      logic [REMAINDER-1:0] rest_q;  // remainder after the last cycle
       logic [BITS_PER_CYCLE-1:0] newest_q;
       always_ff @(posedge clk_i) begin
         if (it_goes[g*STEPS]) rest_q <= gen_divider[g].start;

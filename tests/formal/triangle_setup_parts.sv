@@ -1,5 +1,5 @@
 
-  // A triangle of the stream, any: the phase that it is in, and how many are ahead of it. The multipliers' results may be
+  // An arbitrary triangle of the stream: its phase, and the number of triangles ahead. The multipliers' results may be
   // anything.
   localparam int COUNT = $clog2(PARTS + 1);
   (* anyseq *) logic pick;
@@ -45,12 +45,13 @@
     assert (inside_q == (it_at_q != '0) && (it_at_q & (it_at_q - 1'b1)) == '0 && (it_at_q & ~at_q) == '0);
     if (inside_q) assert (ahead_q == ones(at_q & ~(it_at_q | (it_at_q - 1'b1))) && !done_q);
   end
-  // A part is ready when nobody is in it, or when who is in its last phase goes on.
+  // A part is ready when it is empty, or when the triangle in its last phase moves on.
   always_comb if (runs_q) begin
     assert (ready_q[LAST_PART] == (at_q[OFFER:LAST_PART*STEPS] == '0));
     for (int i = 0; i < LAST_PART; i++) assert (ready_q[i] == (at_q[i*STEPS+:STEPS] == '0 || moves[i*STEPS+STEPS-1]));
   end
-  // A part holds one, and it is never a step behind the one in the part before; in the last it may wait for long.
+  // A part holds one triangle, which is never a step behind the one in the part before; in the last part it may wait
+  // for long.
   genvar m, n;
   generate
     for (m = 0; m <= OFFER; m++) begin : gen_order

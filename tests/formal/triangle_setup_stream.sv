@@ -1,6 +1,6 @@
 
-  // It leaves once, in its turn, as it came. And no deadlock: unless the consumer holds a setup packet, what is left to do
-  // before it leaves gets less in every cycle.
+  // It leaves once, in order, unchanged. And no deadlock: unless the consumer holds a setup packet, the work before it
+  // leaves decreases in every cycle.
   genvar q;
   generate
     for (q = 0; q < PARTS; q++) begin : gen_packet
@@ -19,7 +19,7 @@
     cover (leaves && count_q == COUNT'(LAST_PART));
   end
 
-  // The phases that it and those ahead of it still have before them.
+  // Phases still to pass, of it and of the triangles ahead.
   localparam int LEFT = $clog2(PARTS * (OFFER + 1) + 1);
   function automatic [LEFT-1:0] phases(input [OFFER:0] bits);
     phases = '0;

@@ -23,32 +23,32 @@
 
 namespace halfplane {
 
-/// The samples that a fragment reads and writes, for the hazard of the next one.
+/// The samples that a fragment reads and writes, to find hazards with the next fragment.
 struct FragmentPlace {
   int tile_x = 0, tile_y = 0, stamp = 0;
-  SampleMask mask;  ///< covered samples; none: looks nothing up
+  SampleMask mask;  ///< covered samples; none: no lookup
   bool depth_write = false;
 };
 
-/// Where a run begins and ends, and what it spent besides moving items, in cycles.
+/// Begin and end of a run, and cycles not spent moving items.
 struct TimingTotals {
-  Cycle last = 0;                   ///< the last one in which an item crossed a boundary
-  Cycle first_primitive = 0;        ///< the one in which the first triangle, point or line was taken
-  Cycle last_write = 0;             ///< into the on-chip tiles
-  std::uint64_t tile_cycles = 0;    ///< between these two: the framebuffer moved tiles and took no access
+  Cycle last = 0;                   ///< the last cycle in which an item crossed a boundary
+  Cycle first_primitive = 0;        ///< the cycle in which the first triangle, point or line was taken
+  Cycle last_write = 0;             ///< the last write into the on-chip tiles
+  std::uint64_t tile_cycles = 0;    ///< between these two: the framebuffer moved tiles and served no access
   std::uint64_t hazard_cycles = 0;  ///< tiles: a fragment waited for the write of the one before
-  std::uint64_t move_cycles = 0;    ///< of the whole run: the framebuffer took no access
-  std::uint64_t memory_cycles = 0;  ///< of these: a request or an answer was waited for
+  std::uint64_t move_cycles = 0;    ///< of the whole run: the framebuffer served no access
+  std::uint64_t memory_cycles = 0;  ///< of move_cycles: waiting for a request or an answer
   std::uint64_t bound_cycles = 0;   ///< coarse_raster waited for a visit to retire before it read a bound
-  std::uint64_t visit_cycles = 0;   ///< likewise because too many visits were under way
+  std::uint64_t visit_cycles = 0;   ///< the same because too many visits were under way
   std::uint64_t slot_cycles = 0;    ///< a setup waited for a context slot
-  /// In which each stage was at work: its narrowest part, waits for others left out.
+  /// Cycles in which each stage was at work: its narrowest part, without waits for other stages.
   std::array<std::uint64_t, kStages> works{};
-  std::array<std::array<std::uint64_t, 2>, kMoveCauses.size()> beats{};  ///< on the memory port, by MoveCause and plane
-  std::uint64_t texel_beats = 0;                                         ///< of the texture unit's port
+  std::array<std::array<std::uint64_t, 2>, kMoveCauses.size()> beats{};  ///< on the memory port, by cause and buffer
+  std::uint64_t texel_beats = 0;                                         ///< moved on the texture unit's port
   bool has_primitive = false;                                            ///< first_primitive has been seen
 
-  /// From the first primitive taken to the last write into the on-chip tiles; 0: nothing was written since.
+  /// From the first primitive taken to the last write into the on-chip tiles; 0: no write since.
   [[nodiscard]] std::uint64_t raster_cycles() const {
     return has_primitive && last_write >= first_primitive ? last_write - first_primitive + 1 : 0;
   }
@@ -73,18 +73,18 @@ class BackTiming {
     texture_port_.emplace(*textures_, stream(Arrow::texture), stream(Arrow::texel));
   }
 
-  /// Where the planes lie in memory, unless it is default_layout().
+  /// Addresses of the buffers in memory; the default is default_layout().
   void set_layout(const MemoryLayout& layout) { port_.set_layout(layout); }
   /// With compress.unit: has_one_color() of a stamp's stored samples.
   using OneColor = std::function<bool(const StampAddress&, SampleMask)>;
   void look_at_colors(OneColor has_one_color) { has_one_color_ = std::move(has_one_color); }
   [[nodiscard]] const TimingTotals& totals() const { return totals_; }
-  /// When the last fragment moved.
+  /// The cycle in which the last fragment moved.
   [[nodiscard]] Cycle last_fragment() const { return last_fragment_; }
-  /// Of an elastic arrow.
+  /// The stream of an elastic arrow.
   [[nodiscard]] const Stream& stream(Arrow arrow) const { return streams_[index(arrow)]; }
 
-  /// Another scene: primitives, writes and tile moves count from here.
+  /// Another scene: primitives, writes and tile moves are counted from here on.
   void begin_scene() {
     totals_.has_primitive = false;
     totals_.last_write = 0;
@@ -97,7 +97,7 @@ class BackTiming {
     if (totals_.has_primitive) return;
     totals_.has_primitive = true;
     totals_.first_primitive = cycle;
-    // What a clear moves and writes comes earlier in program order, and may come later in time.
+    // Moves and writes of a clear come earlier in program order, and may come later in time.
     const auto since = [cycle](Cycle from, Cycle to) {
       return to > cycle ? to - std::min(std::max(from, cycle), to) : 0;
     };
@@ -108,7 +108,7 @@ class BackTiming {
     moved_before_.clear();
   }
 
-  /// The setup of the line whose place is offered from `offered` on goes into line_raster.
+  /// The setup of a line whose place is offered from `offered` on goes into line_raster.
   void take_line(Cycle offered) {
     const Cycle taken = stream(Arrow::line).transfer(std::max(offered, next_line_), line_raster_.room());
     next_line_ = taken + 1;
@@ -126,19 +126,19 @@ class BackTiming {
     return moved;
   }
 
-  /// A stamp with covered samples. look_up(mover) makes its tile resident and returns whether it was.
+  /// A stamp with covered samples. look_up(mover) makes its tile resident and returns whether it already was.
   template <class LookUp>
   Cycle access(Cycle offered, const FragmentPlace& place, LookUp&& look_up) {
     return access(offered, place, std::forward<LookUp>(look_up), 0);
   }
 
-  /// The same in a framebuffer of blocks, with what the tags found and what the test made of it.
+  /// The same in a framebuffer of blocks, with the results of the tag lookup and the test.
   Cycle access(Cycle offered, const TagResult& tags, const BlockItem& item) {
     return take_block(offered, tags, item, 0);
   }
 
-  /// The pixels of the line whose place is on offer from `offered` on: step() makes the next one and returns whether
-  /// there is one behind it; `place` is then where it lies. Returns when the last one moves.
+  /// The pixels of a line whose place is on offer from `offered` on: step() makes the next pixel and returns whether
+  /// another follows; `place` is then its place. Returns the cycle in which the last pixel moves.
   template <class Step, class LookUp>
   Cycle take_pixels(Cycle offered, const FragmentPlace& place, Step&& step, LookUp&& look_up) {
     return take_pixels_by(offered, step, [&](Cycle at, unsigned others) {
@@ -146,7 +146,8 @@ class BackTiming {
     });
   }
 
-  /// The same in a framebuffer of blocks: look_up(item) gives the tags of the pixel, and says what the test made of it.
+  /// The same in a framebuffer of blocks: look_up(item) looks up the tags of the pixel, and sets the result of its
+  /// test.
   template <class Step, class LookUp>
   Cycle take_block_pixels(Cycle offered, Step&& step, LookUp&& look_up) {
     return take_pixels_by(offered, step, [&](Cycle at, unsigned others) {
@@ -186,8 +187,8 @@ class BackTiming {
     return moved;
   }
 
-  /// The same in a framebuffer of blocks: a flush, or a fast clear of the planes that `state` writes, of tiles (0, 0), or the
-  /// first of its bin, to (last_x, last_y).
+  /// The same in a framebuffer of blocks: a flush, or a fast clear of the buffers that `state` writes, of tiles (0, 0),
+  /// or the first tile of its bin, to (last_x, last_y).
   Cycle pass_token(Cycle offered, CacheTags& directory, bool is_clear, const PrimitiveState& state, int last_x,
                    int last_y) {
     const std::array<bool, 2> clears{state.depth_write, state.color_write};
@@ -203,7 +204,7 @@ class BackTiming {
     const Cycle drained = blocks_->drain(cycle, directory.write_all(), ask) + 1;
     cycle = drained;
     const int words = directory.words_of((last_x + 1) * widths_.blocks.per_tile - 1);  // of a row
-    // Of one bin a word is read, then written.
+    // In a clear of one bin each word is read, then written.
     if (clears_bin) {
       cycle += 2 * static_cast<Cycle>(directory.mark_bin(last_x, last_y));
       const auto [first, last] = directory.bin_blocks(last_x, last_y);
@@ -253,7 +254,7 @@ class BackTiming {
   [[nodiscard]] Stream& stream(Arrow arrow) { return streams_[index(arrow)]; }
 
   const Stalls stalls_;
-  Cycle last_fragment_ = 0;  ///< when the last one moved
+  Cycle last_fragment_ = 0;  ///< when the last fragment moved
   Cycle last_retire_ = 0;
 
   TimingTotals totals_;
@@ -277,7 +278,7 @@ class BackTiming {
     return moved;
   }
 
-  /// A request, in `cycle` at the earliest.
+  /// Sends a request, in `cycle` at the earliest.
   PortTimes ask(Cycle cycle, TilePlane plane, const StampAddress& at, int run, MoveCause cause) {
     const bool is_read = cause == MoveCause::fill;
     const std::uint64_t beats = port_.beats();
@@ -289,7 +290,7 @@ class BackTiming {
     return times;
   }
 
-  /// A line for the texture unit, which takes its beats as they come.
+  /// Requests a line for the texture unit, which takes its beats as they come.
   LineTimes ask_for_texels(Cycle cycle, std::uint32_t address, int beats) {
     const LineTimes times =
         texture_port_->ask(cycle, address, beats, [this](int, Cycle at) { note(Arrow::texel, at); });
@@ -298,7 +299,7 @@ class BackTiming {
     return times;
   }
 
-  /// What BlockTiming asks memory through.
+  /// BlockTiming's access to memory.
   struct BlockPort {
     BackTiming& timing;
 
@@ -313,7 +314,7 @@ class BackTiming {
     }
   };
 
-  /// The same of a framebuffer of blocks.
+  /// The same for a framebuffer of blocks.
   PortTimes ask_of_block(Cycle cycle, TilePlane plane, const StampAddress& at, int run, MoveCause cause) {
     const PortTimes times = ask(cycle, plane, at, run, cause);
     if (sink_ != nullptr)
@@ -344,18 +345,18 @@ class BackTiming {
     return cycle;
   }
 
-  /// The framebuffer's machine while it moves tiles: `cycle` is the next one to be spent.
+  /// The framebuffer's state machine while it moves tiles: `cycle` is the next unused one.
   struct Mover {
     BackTiming& timing;
     Cycle cycle;
 
     void look_at_line() { ++cycle; }
     void write_back(std::size_t, const TileAddress& address, const StampRows& rows, bool fills) {
-      cycle += 2;  // the look that found it dirty, and one for its first row of stamps
+      cycle += 2;  // the lookup that found it dirty, and one for its first row of stamps
       timing.write_stamps(cycle, address, rows, fills, MoveCause::evict);
     }
     void fill(std::size_t, int x, int y, const std::array<bool, 2>& is_cleared) {
-      ++cycle;  // the look that found nothing dirty
+      ++cycle;  // the lookup that found nothing dirty
       timing.fill(cycle, x, y, is_cleared[0]);
     }
     void mark_words(int words) { cycle += static_cast<Cycle>(words); }
@@ -392,9 +393,9 @@ class BackTiming {
     return moved;
   }
 
-  /// Writes of these stamps of a tile: a stamp is read out of the RAMs, from `cycle` on, and offered in the cycle after
-  /// that; the next one is read when it is taken. A row without one takes a cycle, the last row none. `cycle` becomes the
-  /// one behind the last request and row.
+  /// Writes of these stamps of a tile: a stamp is read out of the RAMs, from `cycle` on, and offered in the next cycle;
+  /// the next stamp is read when it is taken. A row without stamps takes a cycle, the last row none. `cycle` becomes
+  /// the one after the last request and row.
   void write_stamps(Cycle& cycle, const TileAddress& address, const StampRows& rows, bool is_whole, MoveCause cause) {
     const int per_row = widths_.stamps.stamps_per_row;
     Cycle first = 0, taken = 0;
@@ -440,7 +441,7 @@ class BackTiming {
   }
 
   using Streams = std::array<Stream, kArrows>;
-  /// One for each arrow, though only elastic ones need theirs.
+  /// One stream for each arrow, though only elastic arrows need one.
   static Streams streams_of(const Stalls& stalls) {
     const auto stalled_by = [](Arrow arrow) {
       return stall_bit(arrow) | (info(arrow).to == Stage::memory ? 1U << kMemoryStall : 0);
@@ -459,8 +460,8 @@ class BackTiming {
   bool resolves_;    ///< frame.clears
   bool compresses_;  ///< compress.unit
   OneColor has_one_color_;
-  std::optional<BlockTiming> blocks_;       ///< of cache.kind blocks
-  std::unique_ptr<MemoryTiming> textures_;  ///< with a texture unit: the memory behind it
+  std::optional<BlockTiming> blocks_;       ///< with cache.kind blocks
+  std::unique_ptr<MemoryTiming> textures_;  ///< with a texture unit: its memory
   std::optional<TexturePort> texture_port_;
   Cycle next_line_ = 0, first_pixel_ = 0;
   FragmentPlace last_place_;

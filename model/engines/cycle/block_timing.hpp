@@ -1,31 +1,33 @@
-// The time of a framebuffer of blocks (cache.kind blocks): rtl_ref/stages/cache_tags.sv, depth_cache.sv,
-// late_test.sv, color_write.sv, write_back.sv, memory_answers.sv, pixel_colors.sv. Of fragment m: t is when the tags are
-// through with it, x the depth stage, w the colour stage.
+// The time of a framebuffer of blocks (cache.kind blocks): rtl_ref/stages/cache_tags.sv, depth_cache.sv, late_test.sv,
+// color_write.sv, write_back.sv, memory_answers.sv, pixel_colors.sv. For fragment m: t, x, w are the cycles in which it
+// leaves the tags, the depth stage, the colour stage.
 //
-// The tags look a fragment up, the depth stage tests it, the colour stage writes its colours; between the tags and the depth
-// stage the fragments wait for memory, in order. Every wait is for an earlier fragment or eviction, so the time of one is a
-// maximum over those before it:
+// The tags look a fragment up, the depth stage tests it, the colour stage writes its colours; between the tags and the
+// depth stage the fragments wait for memory, in order. Every wait is for an earlier fragment or eviction, so each time
+// is a maximum over earlier ones:
 //
 //   s(m) = max(moved + 1, t(m-1))
-//   t(m) = max(s(m) + 1, x(m-queue) + 1, room for an order, two behind the last flag that fell where one falls)
-//   moved(m) >= s(m-1), and not the cycle behind a t in which a flag fell, unless it is in the block of the one before
-//   requests: those of the order before, then evictions as both stages are through with them, then the read, a request a cycle
-//   x(m) = max(t + 2, x(m-1) + 1, the read's answer + 1, w(m-2)), whatever stamp the one before was
-//   w(m) = max(x + 2, w(m-1) + 1); with a texture unit between x and w texture_timing.hpp says when
+//   t(m) = max(s(m) + 1, x(m-queue) + 1, room for an order, if a flag falls: two cycles after the last fall)
+//   moved(m) >= s(m-1), and not the cycle after a t in which a flag fell, unless it is in the block of the fragment
+//   before
+//   requests: those of the order before, then evictions that both stages have finished, then the read, a request a
+//   cycle
+//   x(m) = max(t + 2, x(m-1) + 1, the read's answer + 1, w(m-2)), whatever the stamp before
+//   w(m) = max(x + 2, w(m-1) + 1); with a texture unit between x and w given by texture_timing.hpp
 //
 // With blending an order may end with a read of colours, and the colour stage takes a fragment for as many clocks as
-// blend.lanes wants, one at least: w is the first, and w(m-1) + 1 counts from the last. What it writes is in the RAM
-// kBlendClocks later, in order. An item that reads colours waits at the colour stage for its answer, w >= answer + 1, and
-// where it reads the RAM, until nothing of an eviction is left to be read; what is on its way to the RAM it is given. With the
-// alpha test behind a texture unit a fragment that writes depth is late: the colour stage writes it, and at the depth stage
-// none goes before that which is in the same place (kLateLines), or is not late itself.
+// blend.lanes requires, one at least: w is the first, and w(m-1) + 1 counts from the last. Its colours are in the RAM
+// kBlendClocks later, in order. An item that reads colours waits at the colour stage for its answer, w >= answer + 1,
+// and if it reads the RAM, until all reads of evictions are complete; writes in flight to the RAM are forwarded. With
+// the alpha test downstream of a texture unit a fragment that writes depth is late: the colour stage writes its depth,
+// and at the depth stage an item waits for late ones in its place (kLateLines), or for all if it is not late itself.
 //
-// With compress.unit a request for colours waits a cycle for the bit that says what memory has of the block; what must be
-// merged waits for all answers that are under way, and for its own.
+// With compress.unit a request for colours waits a cycle for the bit that gives the block's form in memory; a merge
+// waits for all answers in flight, and for its own.
 //
-// An eviction reads its stamps out of the RAMs one a cycle, from x and w on. Meanwhile the depth stage tests what needs no
-// read of its own, and the next eviction waits. In the colour stage, where a stamp is in the RAM a cycle after w, that of the
-// stamp at w is read first; so no stamp waits, and an eviction only for the second one before it.
+// An eviction reads its stamps out of the RAMs one a cycle, from x and w on. Meanwhile the depth stage tests items that
+// need no eviction of their own, and the next eviction waits. In the colour stage, where a stamp is in the RAM a cycle
+// after w, the stamp at w is read first; so no stamp waits, and an eviction waits only for the second one before it.
 #pragma once
 
 #include <algorithm>
@@ -43,15 +45,15 @@
 
 namespace halfplane {
 
-/// Fog behind a texture unit, rtl_ref/stages/fog_unit.sv: three registers, each of which takes what is in front of it as soon
-/// as what it holds goes on.
+/// Fog downstream of a texture unit, rtl_ref/stages/fog_unit.sv: three registers, each of which loads as soon as its
+/// content moves on.
 class FogTiming {
  public:
   /// A stamp on offer from `offered` on. Returns when it is on offer to the colour stage.
   Cycle take(Cycle offered) {
     Cycle at = offered;
     for (std::size_t n = 0; n < entered_.size(); ++n) {
-      const Cycle free = n + 1 < entered_.size() ? entered_[n + 1] : left_;  // when the one before goes on
+      const Cycle free = n + 1 < entered_.size() ? entered_[n + 1] : left_;  // when the stamp before moves on
       at = std::max(at, free);
       entered_[n] = at++;
     }
@@ -67,14 +69,14 @@ class FogTiming {
   Cycle left_ = 0;
 };
 
-/// Light in front of a texture unit, rtl_ref/stages/light_unit.sv: a queue, and a lane that takes a sample a clock, or a stamp
-/// without any. Of stamp m:
+/// Light upstream of a texture unit, rtl_ref/stages/light_unit.sv: a queue, and a lane that takes a lit sample per
+/// clock, or a stamp without any. For stamp m:
 ///
-///   l(m) = max(x + 2, l(m-1) + 1), and from there on a clock a sample; its light being set, the last lit l + 10
-///   on its way on kClocks behind the last
+///   l(m) = max(x + 2, l(m-1) + 1), then a clock per sample; a token of the light waits for the last lit l + 10
+///   leaves kClocks after the last one
 class LightTiming {
  public:
-  /// The depth stage let a stamp go in `x`, `lit` of whose samples are. Returns when the depth stage would have let it go
+  /// A stamp leaves the depth stage in `x`, with `lit` lit samples. Returns the cycle in which it would have left
   /// without a unit.
   Cycle take(Cycle x, int lit, bool sets) {
     last_ = std::max(x + kDoor, last_ + 1);
@@ -88,32 +90,32 @@ class LightTiming {
 
  private:
   static constexpr Cycle kDoor = 2;     ///< from the depth stage to the head of the queue
-  static constexpr Cycle kClocks = 12;  ///< from there to the texture unit's door
-  static constexpr Cycle kLooks = 10;   ///< of those, up to the last that looks at a register of the light
-  Cycle last_ = 0;                      ///< when the last sample, or stamp without any, went into the lane
-  Cycle looked_at_ = 0;                 ///< the last sample has looked at all registers
+  static constexpr Cycle kClocks = 12;  ///< from there to the input of the texture unit
+  static constexpr Cycle kLooks = 10;   ///< part of these, up to the last read of a register of the light
+  Cycle last_ = 0;                      ///< when the last sample, or stamp without any, entered the lane
+  Cycle looked_at_ = 0;                 ///< when the last sample has read all registers
 };
 
-/// What a fragment is to a texture unit, and to those around it.
+/// The work of a fragment in a texture unit and its neighbours.
 struct TextureWork {
-  std::optional<StateRegister> sets;       ///< a token
-  bool invalidates = false;                ///< and what is in the cache goes
-  std::span<const TextureLookup> lookups;  ///< of the samples that are textured
+  std::optional<StateRegister> sets;       ///< the fragment is a token for this register
+  bool invalidates = false;                ///< and it invalidates the cache
+  std::span<const TextureLookup> lookups;  ///< of the textured samples
   int divided = 0;                         ///< groups of samples whose colours lie over w
-  int lit = 0;                             ///< samples
-  bool sets_light = false;                 ///< a token of the light's
+  int lit = 0;                             ///< lit samples
+  bool sets_light = false;                 ///< a token for the light
 };
 
-/// What the test made of a fragment.
+/// A fragment after the depth test.
 struct BlockItem {
   SampleMask mask;                                ///< covered samples; none: an empty stamp, or a line of a walk
-  int stamp = 0;                                  ///< in its block
+  int stamp = 0;                                  ///< number in its block
   bool depth_write = false, color_write = false;  ///< by its state
-  bool wrote_depth = false;                       ///< of any sample
+  bool wrote_depth = false;                       ///< for some sample
   SampleMask colors;                              ///< samples whose colour is written
   bool blends = false;                            ///< by the state
-  bool is_late = false;                           ///< depth is written behind the texture: is_late()
-  bool is_shaded = false;                         ///< with a texture unit: a sample lives there
+  bool is_late = false;                           ///< depth is written after the texture unit: is_late()
+  bool is_shaded = false;                         ///< with a texture unit: a sample is live there
   TextureWork texture;                            ///< with a texture unit
 };
 
@@ -136,20 +138,20 @@ class BlockTiming {
     if (has_normals(config)) light_.emplace();
   }
 
-  /// When the tags can take the next fragment, but for cycles in which it is_busy().
+  /// When the tags can take the next fragment, except for cycles in which it is_busy().
   [[nodiscard]] Cycle room() const { return looked_; }
-  /// In `cycle` the word of a flag that falls is read, and the fragment wants its own.
+  /// In `cycle` the word of a falling flag is read, and the fragment needs its own.
   [[nodiscard]] bool is_busy(Cycle cycle, const TagResult& tags, const BlockItem& item) const {
     return item.mask.any() && last_block_ != tags.block && (cycle == fall_reads_[0] || cycle == fall_reads_[1]);
   }
-  /// When the tags hold none.
+  /// When the tags are empty.
   [[nodiscard]] Cycle is_empty() const { return left_ + 1; }
-  /// When the depth stage was through with the last fragment.
+  /// When the last fragment left the depth stage.
   [[nodiscard]] Cycle tested() const { return tested_; }
-  /// When the colour stage took its colours.
+  /// When the colour stage took the last fragment.
   [[nodiscard]] Cycle colored() const { return colored_; }
 
-  /// A fragment that the tags took in `moved`, or a line that it read then. ask(cycle, plane, stamp, run, is_write): a
+  /// A fragment that the tags took in `moved`, or a line that was read then. ask(cycle, plane, stamp, run, is_write): a
   /// request, in `cycle` at the earliest; returns PortTimes.
   template <class Ask>
   void take(Cycle moved, const TagResult& tags, const BlockItem& item, Ask&& ask) {
@@ -197,10 +199,10 @@ class BlockTiming {
     return looked_;
   }
 
-  /// With compress.unit: which blocks memory has with one colour a pixel.
+  /// With compress.unit: the blocks that lie in memory with one colour per pixel.
   [[nodiscard]] BlockBits& of_pixels() { return of_pixels_; }
 
-  /// All that has left the chip goes to memory, from `cycle` on. Returns when nothing is under way any more.
+  /// All evicted blocks go to memory, from `cycle` on. Returns when nothing is under way any more.
   template <class Ask>
   Cycle drain(Cycle cycle, int writes, Ask&& ask) {
     last_block_.reset();
@@ -212,7 +214,7 @@ class BlockTiming {
   }
 
  private:
-  /// The tags: what came in `moved` is compared, then leaves. Returns when.
+  /// The tags: the line read in `moved` is compared, then leaves. Returns the cycle in which it leaves.
   Cycle leave(Cycle moved, bool falls) {
     looked_ = std::max(moved + 1, left_);
     left_ = std::max({looked_ + 1, items_.room(), orders_.room()});
@@ -225,9 +227,9 @@ class BlockTiming {
 
   struct Victim {
     BlockAddress block;
-    std::array<std::uint64_t, 2> stamps;  ///< to be written, by plane
+    std::array<std::uint64_t, 2> stamps;  ///< to be written, by buffer
     std::size_t slot;
-    Cycle ready;  ///< all of it is in the slot
+    Cycle ready;  ///< when all of it is in the slot
     LeavingColors colors;
   };
 
@@ -242,13 +244,13 @@ class BlockTiming {
     SampleMask samples;
   };
   static constexpr Cycle kBlendClocks = 3;       ///< from the colour stage to the RAM, with blending
-  static constexpr std::size_t kLateLines = 16;  ///< lines whose late fragments the depth stage tells apart, modulo
+  static constexpr std::size_t kLateLines = 16;  ///< lines whose late fragments the depth stage distinguishes, modulo
 
   [[nodiscard]] std::size_t late_place(std::size_t line, int stamp) const {
     return line % kLateLines * static_cast<std::size_t>(widths_.blocks.stamps()) + static_cast<std::size_t>(stamp);
   }
 
-  /// The first cycle in which the depth stage can let an item go, as far as it depends on late ones.
+  /// The first cycle in which the depth stage can let an item go, as far as late items decide it.
   [[nodiscard]] Cycle late_room(const TagResult& tags, const BlockItem& item) const {
     Cycle room = 0;
     if (item.mask.any()) room = item.is_late ? late_[late_place(tags.line, item.stamp)] + 1 : last_late_ + 1;
@@ -257,7 +259,7 @@ class BlockTiming {
     return room;
   }
 
-  /// The cycle in which the item that the depth stage has finished is offered to the colour stage.
+  /// The cycle in which an item that the depth stage has finished is offered to the colour stage.
   template <class Ask>
   Cycle shaded(const TextureWork& work, Ask&& ask) {
     if (!texture_) return tested_ + 2;
@@ -270,17 +272,17 @@ class BlockTiming {
     });
   }
 
-  /// The evictions whose colours are being read out of their RAM, a stamp a cycle: the older one's before those of the one
-  /// behind it, but that of a stamp which the colour stage takes before all of them. Two at most.
+  /// The evictions whose colours are being read out of the RAM, a stamp a cycle: the older eviction first, but a stamp
+  /// that the colour stage is about to overwrite before all others. Two at most.
   class ColorReads {
    public:
     [[nodiscard]] bool has_two() const { return has_two_; }
-    /// When the older one has been read, if no stamp of it is taken before that; then the next can begin.
+    /// When the older eviction has been read, if no stamp of it is read earlier; then the next can begin.
     [[nodiscard]] Cycle first_done() const { return at_ + static_cast<Cycle>(std::popcount(left_[0])); }
-    /// Likewise both.
+    /// When both have been read.
     [[nodiscard]] Cycle all_done() const { return first_done() + static_cast<Cycle>(std::popcount(left_[1])); }
 
-    /// What is read before `cycle`.
+    /// Reads before `cycle`.
     void pass(Cycle cycle) {
       while (left_[0] != 0 && at_ < cycle) remove(0, left_[0] & (~left_[0] + 1));
       at_ = std::max(at_, cycle);
@@ -293,7 +295,7 @@ class BlockTiming {
       line_[place] = line;
       has_two_ = place == 1;
     }
-    /// A stamp that is taken in this cycle, where it is still to be read.
+    /// A stamp that is overwritten in this cycle, if still to be read.
     void read(std::size_t line, std::uint64_t stamp) {
       for (const std::size_t place : {0U, 1U})
         if (line_[place] == line && (left_[place] & stamp) != 0) return remove(place, stamp);
@@ -311,12 +313,12 @@ class BlockTiming {
 
     std::array<std::uint64_t, 2> left_{};  ///< stamps to be read
     std::array<std::size_t, 2> line_{};
-    bool has_two_ = false;  ///< the second has begun, and the first is not through
+    bool has_two_ = false;  ///< the second has begun, and the first is not complete
     Cycle at_ = 0;          ///< the next read
   };
 
-  /// The colour stage: the colours of that item, on offer from `offered` on, the stored ones from `answer` on. Returns when
-  /// those of what it evicts are known to be in their slot, which does not depend on what comes behind it.
+  /// The colour stage: the colours of that item, on offer from `offered` on, the stored ones from `answer` on. Returns
+  /// when the colours of its eviction are reported in their slot, which does not depend on later items.
   Cycle color(const TagResult& tags, const BlockItem& item, Cycle offered, Cycle answer) {
     const DepthSource source = tags.color_source;
     const bool fetches = source == DepthSource::clear || source == DepthSource::memory;
@@ -342,7 +344,7 @@ class BlockTiming {
   /// Returns the last.
   Cycle write_colors(Cycle w, std::size_t line, const BlockItem& item, bool writes_all) {
     const int groups = item.blends ? widths_.samples / lanes_ : 1, size = widths_.samples / groups;
-    SampleMask writes;  // that come along with the first group: no group reads what another writes
+    SampleMask writes;  // that go with the first group: no group reads the writes of another
     if (writes_all) writes = SampleMask(SampleMask::all(widths_.samples).bits() & ~item.colors.bits());
     bool has_gone = false;
     for (int group = 0; group < groups; ++group) {
@@ -364,7 +366,7 @@ class BlockTiming {
     for (; writes > 0; --writes) {
       const Victim& v = victims_.front();
       cycle = std::max(cycle, v.ready);
-      Cycle behind = cycle + 1;  // nothing to write is found in a cycle too
+      Cycle behind = cycle + 1;  // finding nothing to write takes a cycle too
       for (const TilePlane plane : kTilePlanes) {
         std::uint64_t left = v.stamps[static_cast<std::size_t>(plane)];
         ColorMove move = ColorMove::samples;
@@ -407,7 +409,7 @@ class BlockTiming {
     return answers;
   }
 
-  /// Reads what memory has of a block's pixels, from `cycle` on. Returns when its samples can be written.
+  /// Reads a block's pixels from memory, from `cycle` on. Returns when its samples can be written.
   template <class Ask>
   Cycle merge(Cycle cycle, const BlockAddress& block, Ask&& ask) {
     cycle = std::max(cycle, answered_ + 1);
@@ -462,23 +464,23 @@ class BlockTiming {
   }
 
   Widths widths_;
-  int lanes_;           ///< samples that are blended in a clock; 0: none are
+  int lanes_;           ///< samples blended per clock; 0: no blending
   Cycle write_clocks_;  ///< from the colour stage to the RAM
   Station items_, orders_;
-  Station behind_{2, 0, 0};  ///< between the depth stage and the colour stage; or there is a
+  Station behind_{2, 0, 0};  ///< between the depth stage and the colour stage; or the shading units
   std::optional<TextureTiming> texture_;
   std::optional<FogTiming> fog_;
   std::optional<LightTiming> light_;
   Cycle looked_ = 0;                        ///< the last fragment was looked up in the tags
-  Cycle left_ = 0;                          ///< it left them
+  Cycle left_ = 0;                          ///< it left the tags
   Cycle tested_ = 0;                        ///< it left the depth stage
   Cycle colored_ = 0;                       ///< the colour stage took it
   Cycle ordered_ = 0;                       ///< the last request
-  std::array<Cycle, 2> fall_reads_{};       ///< when words of flags that fell were read, the last one first
-  std::optional<BlockAddress> last_block_;  ///< of the last fragment, where it has samples and no token came since
+  std::array<Cycle, 2> fall_reads_{};       ///< when words of falling flags were read, the last one first
+  std::optional<BlockAddress> last_block_;  ///< block of the last fragment, if it has samples and no token came since
   Cycle depth_free_ = 0;                    ///< when the depth RAM has been read for the last eviction
   ColorReads reads_;
-  std::array<ColorWrite, kBlendClocks> color_writes_{};  ///< the last ones
+  std::array<ColorWrite, kBlendClocks> color_writes_{};  ///< the last writes
   std::size_t next_write_ = 0;
   std::size_t last_line_ = 0;
   bool last_writes_ = false;  ///< the last fragment may have written depths
@@ -487,11 +489,11 @@ class BlockTiming {
   std::deque<Victim> victims_;
   std::vector<std::array<std::uint64_t, 2>> dirty_;  ///< by line and plane: stamps that differ from memory
   bool compresses_;                                  ///< compress.unit
-  std::vector<SampleMask> dirty_colors_;  ///< then, by line and stamp: samples whose colours differ from memory
-  BlockBits of_pixels_;                   ///< likewise: blocks that memory has with one colour a pixel
-  Cycle answered_ = 0;                    ///< the last read
+  std::vector<SampleMask> dirty_colors_;  ///< if so, by line and stamp: samples whose colours differ from memory
+  BlockBits of_pixels_;                   ///< likewise: blocks that lie in memory with one colour per pixel
+  Cycle answered_ = 0;                    ///< answer of the last read
   std::vector<Cycle> late_;               ///< by place: when the colour stage took the last late item
-  Cycle last_late_ = 0;                   ///< the last of them all
+  Cycle last_late_ = 0;                   ///< the latest of all
 };
 
 }  // namespace halfplane

@@ -1,4 +1,4 @@
-// Frames through the cycle model: what each of them cost.
+// Frames through the cycle model, and the cost of each.
 #include <algorithm>
 #include <chrono>
 #include <utility>
@@ -10,7 +10,7 @@
 namespace halfplane {
 namespace {
 
-/// Totals since `before`; members of the current frame are taken as they are.
+/// Totals since `before`; members that describe the current frame are copied.
 TimingTotals since(TimingTotals now, const TimingTotals& before) {
   using T = TimingTotals;
   for (auto count : {&T::hazard_cycles, &T::move_cycles, &T::memory_cycles, &T::bound_cycles, &T::visit_cycles,
@@ -30,7 +30,7 @@ CycleFrames::CycleFrames(const Config& config, MemoryTiming& memory, const Cycle
 CycleRendering CycleFrames::draw(const Scene& scene, const RenderOptions& render) {
   if (!render.skip.bins) held_.forget();
   CycleRendering result = draw(scene, render, &held_);
-  model_->rendering().frame = result.rendering.frame;  // what the next frame does not draw
+  model_->rendering().frame = result.rendering.frame;  // kept where the next frame does not draw
   return result;
 }
 

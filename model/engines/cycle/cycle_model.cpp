@@ -21,7 +21,7 @@
 namespace halfplane {
 namespace {
 
-/// Whether the area is negative with the vertices as cull_serial sorts them: it swaps two and turns all three on the way.
+/// Whether the area is negative with the vertices as cull_serial sorts them: the sort swaps two and rotates all three.
 bool is_negative_when_sorted(const std::array<SnappedVertex, 3>& v, std::int64_t area) {
   const bool swaps_first = canonically_before(v[1], v[0]);
   const bool swaps_again = canonically_before(swaps_first ? v[1] : v[0], v[2]);
@@ -45,8 +45,8 @@ PrimitiveWork work_of(const PrimitivePacket& packet, bool is_dropped) {
   return work;
 }
 
-/// The bits of the stages, stamp by stamp, and `Timing` for each. Packets leave a stage in an order that does not depend on
-/// time.
+/// Computes the bits of the stages, stamp by stamp, and `Timing` for each. Packets leave a stage in an order that does
+/// not depend on time.
 template <class Timing>
 class CycleModelOf final : public CycleModel {
  public:
@@ -122,7 +122,7 @@ class CycleModelOf final : public CycleModel {
   [[nodiscard]] std::vector<float>& misses() override { return misses_; }
 
  private:
-  /// Sends a primitive of the host's down the pipeline as `primitive`.
+  /// Sends a primitive of the host down the pipeline as `primitive`.
   void send(const HostPrimitive& host, const PrimitivePacket& primitive) {
     const auto triangle = cull(primitive, widths_, counters_, config_.setup_kind == SetupKind::pipelined);
     timing_.take(work_of(primitive, !triangle));
@@ -163,19 +163,19 @@ class CycleModelOf final : public CycleModel {
       return timing_.pass_token(offered,
                                 [&](auto& mover) { tiles_->fast_clear(last_x, last_y, planes, mover, counters_); });
     });
-    if (planes[1])  // behind the blocks that leave the chip before it
+    if (planes[1])  // after the blocks evicted before it
       for (Framebuffer& frame : frames())
         fill(frame.color, to_bounds(clear.box), pack_color(config_.color_format, color_channels(code)));
     if (planes[0] || planes[1]) std::ranges::fill(rendering_.ids, -1);
   }
 
-  /// Of each sample of a pixel.
+  /// One image for each sample of a pixel.
   [[nodiscard]] std::span<Framebuffer> frames() {
     if (widths_.has_samples == 0) return {&rendering_.frame, 1};
     return rendering_.frame.samples;
   }
 
-  /// The right ends of the rows and the rows below; the first clear fills the rest.
+  /// Pads the right ends of the rows and the rows below; the first clear fills the rest.
   void fill_padding(Framebuffer::Image& image, std::uint32_t code) const {
     const Framebuffer& frame = rendering_.frame;
     const auto row = [&](int y) { return image.begin() + static_cast<std::ptrdiff_t>(frame.at(0, y)); };
@@ -201,7 +201,7 @@ class CycleModelOf final : public CycleModel {
 
   void draw_line(const TrianglePacket& token, const LineSetup& line, std::uint32_t primitive) {
     const PrimitiveState& state = token.state;
-    SetupPacket setup;  // what HiZ looks at
+    SetupPacket setup;  // input of HiZ
     setup.state = state;
     hiz_.pass_line(setup);
     fragment_.kind = token.kind;
@@ -227,7 +227,7 @@ class CycleModelOf final : public CycleModel {
       return hits;
     };
     const auto look_up_block = [&](BlockItem& item) {
-      return place.mask.any() ? block_access(place, fate, item) : TagResult{};  // none of its samples is drawn
+      return place.mask.any() ? block_access(place, fate, item) : TagResult{};  // no sample is drawn
     };
     const Cycle before = timing_.last_fragment();
     timing_.end_token([&](Cycle offered) {
@@ -243,7 +243,7 @@ class CycleModelOf final : public CycleModel {
     return {fragment.key.tile_x, fragment.key.tile_y, fragment.stamp, fragment.mask, fragment.state.depth_write};
   }
 
-  /// What the tags of a framebuffer of blocks find for the fragment at work, and what became of it.
+  /// Looks up the current fragment in the tags of a framebuffer of blocks, and records its fate.
   TagResult block_access(const FragmentPlace& place, const StampFate& fate, BlockItem& item) {
     const PrimitiveState& state = fragment_.state;
     const ColorState& colors = path_.colors();
@@ -266,12 +266,12 @@ class CycleModelOf final : public CycleModel {
     return blocks_->access(at, state, place.mask == SampleMask::all(widths_.samples));
   }
 
-  /// The images and the memory of textures, as the fragment path sees them.
+  /// The images and the texture memory, as the fragment path sees them.
   struct StampPort {
     static constexpr bool kSendsPackets = false;
     CycleModelOf& model;
     StampImages& images;
-    const StampPacket* stamp;  ///< null: of a line, whose fragment has all of its codes
+    const StampPacket* stamp;  ///< null: a pixel of a line, whose fragment has all of its codes
     const ContextPacket* context;
 
     [[nodiscard]] std::span<const std::uint32_t> stored() const { return images.words(model.fragment_.mask); }
@@ -299,7 +299,7 @@ class CycleModelOf final : public CycleModel {
     void write(const WritePacket& packet) const { images.write(packet); }
   };
 
-  /// The fragment at work, from depth_test to the framebuffer.
+  /// Takes the current fragment from depth_test to the framebuffer.
   StampFate shade(StampImages& images, const StampPacket* stamp, const ContextPacket* context,
                   std::uint32_t primitive) {
     images.enter({fragment_.key.tile_x, fragment_.key.tile_y, fragment_.stamp});
@@ -314,7 +314,7 @@ class CycleModelOf final : public CycleModel {
     return fate;
   }
 
-  /// Counts of the fragment's samples, and the owners of those that are stored: a pixel has that of its first.
+  /// Counts the fragment's samples, and notes the owners of the stored ones: a pixel has the owner of its first sample.
   void note_samples(const StampImages& images, SampleMask kept, std::uint32_t primitive) {
     const bool counts = is_counted(fragment_.kind);
     fragment_.mask.for_each([&](std::size_t s) {
@@ -341,7 +341,7 @@ class CycleModelOf final : public CycleModel {
     void skip_behind() const { timing.skip_behind(); }
   };
 
-  /// coarse_raster, and for each visit the rest of the pipeline.
+  /// Runs coarse_raster, and for each visit the rest of the pipeline.
   void draw(const SetupPacket& setup, std::uint32_t primitive) {
     const ContextPacket context = make_context(setup, widths_);
     const EdgeContext edges = make_edge_context(setup);
@@ -378,7 +378,7 @@ class CycleModelOf final : public CycleModel {
       stamp.centre = coverage_[stamp.stamp].centres;
       start_fragment(stamp, context, widths_, fragment_);
       const FragmentPlace place = place_of(fragment_);
-      if (!place.mask.any()) return timing_.pass(offered);  // none of its samples is drawn
+      if (!place.mask.any()) return timing_.pass(offered);  // no sample is drawn
       interpolate_depths(stamp, context, widths_.stamps.pixels_of(place.mask), widths_, fragment_);
       const StampFate fate = shade(images, &stamp, &context, primitive);
       if (blocks_) {
@@ -397,8 +397,8 @@ class CycleModelOf final : public CycleModel {
     if (options_.want_cost) share_cost(tile, work, static_cast<float>(timing_.last_fragment() - before));
   }
 
-  /// Shares the cycles of a visit among the pixels that it covered, or, if there are none, those of its box. Pixels of several
-  /// samples all have their share.
+  /// Shares the cycles of a visit among its covered pixels, or, if there are none, the pixels of its box. Pixels with
+  /// several samples all have equal shares.
   void share_cost(const TilePacket& tile, const TileVisitWork& work, float cycles) {
     const int per_row = widths_.stamps.stamps_per_row, size = config_.stamp_size;
     const auto is_covered = [&](int x, int y) {
@@ -419,10 +419,10 @@ class CycleModelOf final : public CycleModel {
                             (tile.key.tile_y << widths_.tile_shift) + y)] += share;
   }
 
-  /// What a token sets, here and in the tags; `texture`: what that is to the texture unit.
+  /// Applies a token's state, here and in the tags; `texture`: its work in the texture unit.
   void set_state(const TrianglePacket& token, TextureWork& texture) {
     const StateRegister which = state_register(token.state);
-    const PerPlane<std::uint32_t>& codes = token.vertex.code[2];  // what a lane of states leaves
+    const PerPlane<std::uint32_t>& codes = token.vertex.code[2];  // where the lane of states puts it
     path_.set(which, codes);
     if (!is_of_texture(which)) return set_tags();
     const LevelsWord beside = word_beside_texture(which, codes, widths_);
@@ -448,15 +448,15 @@ class CycleModelOf final : public CycleModel {
   Timing timing_;
   CounterPacket counters_;
   Hiz hiz_;
-  std::optional<TileDirectory> tiles_;  ///< one of them, by cache.kind
+  std::optional<TileDirectory> tiles_;  ///< one of the two, by cache.kind
   std::optional<CacheTags> blocks_;
   FragmentPath path_;
-  /// Of a stamp of the tile at work that is not empty.
+  /// Coverage of a stamp of the current tile that is not empty.
   struct Coverage {
     SampleMask samples, centres;
   };
   std::vector<Coverage> coverage_;
-  FragmentPacket fragment_;  ///< at work; its codes are those that have been asked for
+  FragmentPacket fragment_;  ///< the current one; holds only codes that have been requested
   TextureMemory texels_;
   Rendering rendering_;
   std::vector<float> cost_, misses_;

@@ -1,6 +1,6 @@
 // The cycle model: the bits of the stages and the cycle in which every item crosses every boundary between them. Exact
-// against rtl_ref, and without a clock: one primitive at a time goes all the way through, because whatever an item waits
-// for is in an item before it.
+// against rtl_ref, and without a clock: one primitive at a time goes all the way through, because an item waits only
+// for earlier items.
 #pragma once
 
 #include <memory>
@@ -19,23 +19,23 @@ struct CycleOptions {
   Stalls stalls;                              ///< injected back-pressure
   TimingParameters parameters;                ///< sizes of buffers; the default is the RTL
   TransferSink* sink = nullptr;               ///< sees every crossing; slows the model down. Must outlive the model
-  std::optional<MemoryLayout> layout;         ///< of the planes in memory; default_layout() unless given
-  MemorySettings textures;                    ///< of the memory behind a texture unit, where there is one
+  std::optional<MemoryLayout> layout;         ///< addresses of the buffers in memory; default_layout() unless given
+  MemorySettings textures;                    ///< of the texture unit's memory, if there is one
   bool want_count = false, want_ids = false;  ///< fill Rendering::count (without tiles behind HiZ), ids
   bool want_cost = false;                     ///< fill CycleRendering::cost
   bool want_misses = false;                   ///< fill CycleRendering::misses
 };
 
-/// The whole chip after reset, with a memory behind it.
+/// The whole chip after reset, and its memory.
 class CycleModel {
  public:
   virtual ~CycleModel() = default;
-  /// The next frame, of any size: what the host does not clear stays, where the size does. The host offers its next primitive
-  /// from `cycle` on.
+  /// Begins the next frame, of any size: pixels that the host does not clear stay, if the size stays. The host offers
+  /// its next primitive from `cycle` on.
   virtual void begin(int width, int height, Cycle cycle) = 0;
-  /// From now on the memory of textures holds those of `scene`.
+  /// From now on the texture memory holds the textures of `scene`.
   virtual void hold_textures(const Scene& scene) = 0;
-  /// One primitive, to its last write.
+  /// Runs one primitive, to its last write.
   virtual void run(const HostPrimitive& primitive) = 0;
   [[nodiscard]] virtual const CounterPacket& counters() const = 0;  ///< as the RTL's, since reset
   [[nodiscard]] virtual const TimingTotals& totals() const = 0;
@@ -44,61 +44,62 @@ class CycleModel {
   [[nodiscard]] virtual Rendering& rendering() = 0;
   /// Cycles of each pixel since begin(), width * height of them; empty unless wanted.
   [[nodiscard]] virtual std::vector<float>& cost() = 0;
-  /// Likewise of the lines that a texture unit asked memory for.
+  /// Likewise the texture lines requested from memory.
   [[nodiscard]] virtual std::vector<float>& misses() = 0;
 };
 
-/// `memory` must outlive the model. Throws InputError for a configuration or parameters that no hardware has.
+/// `memory` must outlive the model. Throws InputError for a configuration or parameters that no hardware supports.
 [[nodiscard]] std::unique_ptr<CycleModel> make_cycle_model(const Config& config, MemoryTiming& memory,
                                                            const CycleOptions& options = {});
 
-/// What a frame cost.
+/// The cost of a frame.
 struct CycleRun {
   Cycle cycles = 0;                 ///< to the last item that crossed any boundary, memory included
   std::uint64_t raster_cycles = 0;  ///< from the first primitive taken to the last write into the on-chip tiles
-  std::uint64_t tile_cycles = 0;    ///< of these, the ones in which the framebuffer moved tiles and took no access
+  std::uint64_t tile_cycles = 0;    ///< of these, cycles in which the framebuffer moved tiles and served no access
   TimingTotals totals;
-  std::array<StreamUse, kArrows> use{};  ///< of the elastic arrows
+  std::array<StreamUse, kArrows> use{};  ///< of each elastic arrow
 };
 
 struct CycleRendering {
   Rendering rendering;
   CycleRun run;
-  /// Cycles of each pixel: what passed between the last fragment of one tile visit and that of the next is shared by the
-  /// pixels that the visit covered (or, if there are none, by those of its box). Width * height, or empty.
+  /// Cycles of each pixel: the time between the last fragments of two successive tile visits is shared by the pixels
+  /// that the visit covered (or, if there are none, by the pixels of its box). Width * height, or empty.
   std::vector<float> cost;
-  /// Lines of texels that the samples of each pixel asked memory for: what their sum is, Counters::texture.fills. Likewise.
+  /// Lines of texels requested from memory by the samples of each pixel; their sum is Counters::texture.fills.
+  /// Likewise.
   std::vector<float> misses;
 };
 
-/// Frame after frame through one chip and the memory behind it. With frame.order bins and frame.store color, bins that hold
-/// what a frame draws in them are left alone.
+/// Frame after frame through one chip and its memory. With frame.order bins and frame.store color, bins whose content
+/// equals what the frame draws in them are skipped.
 class CycleFrames {
  public:
-  /// `memory` and what `options` points to must outlive this. Throws InputError as make_cycle_model().
+  /// `memory` and the objects that `options` points to must outlive this. Throws InputError as make_cycle_model().
   CycleFrames(const Config& config, MemoryTiming& memory, const CycleOptions& options = {});
 
-  /// The next frame, to the end of its flush. Throws InputError as check_hardware_scene(); then, and when progress throws,
-  /// nothing more can be drawn. Of `render` it takes progress, and of skip the switch of bins.
+  /// Renders the next frame, to the end of its flush. Throws InputError as check_hardware_scene(); then, and when
+  /// progress throws, nothing more can be drawn. Uses `render.progress`, and of skip the switch of bins.
   [[nodiscard]] CycleRendering draw(const Scene& scene, const RenderOptions& render = {});
 
  private:
   friend CycleRendering render_cycle(const Scene& scene, const Config& config, MemoryTiming& memory,
                                      const RenderOptions& render, const CycleOptions& options);
-  /// Bins are compared with what they held, if there is anything to compare them with.
+  /// Compares bins with their previous content, if there is any.
   [[nodiscard]] CycleRendering draw(const Scene& scene, const RenderOptions& render, BinContents* held);
 
   Config config_;
   std::unique_ptr<CycleModel> model_;
   BinContents held_;
-  CounterPacket counted_;  ///< up to the frame before, like those below
+  CounterPacket counted_;  ///< up to the frame before, like the members below
   TimingTotals totals_;
   std::array<StreamUse, kArrows> use_{};
   Cycle start_ = 0;
 };
 
-/// Renders `scene` from reset to the end of its flush. Throws InputError as check_hardware_scene(). Of `render` it takes
-/// progress, want_count and want_ids.
+/// Renders `scene` from reset to the end of its flush. Throws InputError as check_hardware_scene(). Uses progress,
+/// want_count and want_ids of `render`.
 [[nodiscard]] CycleRendering render_cycle(const Scene& scene, const Config& config, MemoryTiming& memory,
                                           const RenderOptions& render = {}, const CycleOptions& options = {});
 

@@ -1,5 +1,5 @@
 // The time of the pipelined RTL: cull, triangle_setup, coarse_raster, fine_raster, interpolate (setup.kind pipelined).
-// Each register, unit and buffer of the .sv is a Station here; the lines after a transfer are the stage's own work.
+// Each register, unit and buffer of the .sv is a Station here; the lines after a transfer are the stage's own time.
 #pragma once
 
 #include <bit>
@@ -34,7 +34,7 @@ class PipelinedTiming : public BackTiming {
     begin_scene();
   }
 
-  /// The next primitive, through cull and triangle_setup to coarse_raster; or, if it is dropped, only into cull.
+  /// Takes the next primitive, through cull and triangle_setup to coarse_raster; a dropped one goes only into cull.
   void take(const PrimitiveWork& primitive) {
     const Cycle taken = stream(Arrow::primitive).transfer(offer_, sort_.room());
     note(Arrow::primitive, taken);
@@ -72,7 +72,7 @@ class PipelinedTiming : public BackTiming {
     work(Stage::coarse_raster, PipelinedCycles::walk_begins);
   }
 
-  /// A fast clear sets the bounds of so many groups of tiles, when every visit has retired.
+  /// A fast clear sets the bounds of this many groups of tiles, when every visit has retired.
   void clear_bounds(std::uint64_t groups) {
     const Cycle clears = std::max(walk_ - 1, last_retire_ + 1);
     totals_.bound_cycles += clears - (walk_ - 1);
@@ -80,7 +80,7 @@ class PipelinedTiming : public BackTiming {
     work(Stage::coarse_raster, groups + PipelinedCycles::clear_ends);
   }
 
-  /// The next tile of the walk is outside, and passed over.
+  /// The next tile of the walk is outside and is skipped.
   void skip_outside() {
     ++walk_;
     work(Stage::coarse_raster, 1);
@@ -89,21 +89,21 @@ class PipelinedTiming : public BackTiming {
   /// From here on bounds are read, each on the way to its tile.
   void read_ahead() { reads_bounds_ = true; }
 
-  /// The tile goes on with its bound: that was read behind the last visit, and knows of the visit hiz.lag before.
+  /// The tile goes on with its bound, which was read after the last visit and includes the visit hiz.lag before.
   void read_bound() {
     const Cycle unread = std::max(walk_, visit_left_ + 2), ready = std::max(unread, visits_.room() + 1);
     totals_.bound_cycles += ready - unread;
     walk_ = std::max(ready, tile_left_ + 1);
   }
 
-  /// The primitive lies behind that bound, and the tile is passed over.
+  /// The primitive lies behind the bound, and the tile is skipped.
   void skip_behind() {
     ++walk_;
     work(Stage::coarse_raster, 1);
   }
 
-  /// The end of a primitive whose last tile was passed over: an empty stamp without a visit. shade(offered) is what
-  /// depth_test does with it.
+  /// The end of a primitive whose last tile was skipped: an empty stamp without a visit. shade(offered): the stamp in
+  /// depth_test.
   template <class Shade>
   void end_walk(Shade&& shade) {
     const Cycle offered = std::max(walk_, tile_left_ + 1);
@@ -124,7 +124,7 @@ class PipelinedTiming : public BackTiming {
     end_walk(shade);
   }
 
-  /// A visit of a tile. shade(offered, row, column) is what depth_test does with a stamp of it.
+  /// A visit of a tile. shade(offered, row, column): a stamp of it in depth_test.
   template <class Shade>
   void visit(const TileVisitWork& tile, Shade&& shade) {
     const Cycle decided = std::max(walk_, tile_left_) + 1;
@@ -164,7 +164,7 @@ class PipelinedTiming : public BackTiming {
   }
 
  private:
-  /// From a triangle's coming to triangle_setup to its last part.
+  /// From a triangle's arrival at triangle_setup to its last part.
   Cycle through_parts(Cycle entered) {
     for (std::size_t part = 0; part < parts_.size(); ++part) {
       const Station& next = part + 1 < parts_.size() ? parts_[part + 1] : offer_setup_;
@@ -190,16 +190,16 @@ class PipelinedTiming : public BackTiming {
 
   Station sort_{1, PipelinedCycles::cull_sort, 0}, decide_{1, PipelinedCycles::cull_decide, 0};
   SetupCycles setup_;
-  std::vector<Station> parts_;                                    ///< of triangle_setup, but for the last
-  Station offer_setup_;                                           ///< the last
-  Station states_{SetupCycles::kStates, 1, 1}, joined_{1, 1, 0};  ///< beside them, and behind both
+  std::vector<Station> parts_;                                    ///< of triangle_setup, without the last
+  Station offer_setup_;                                           ///< the last part
+  Station states_{SetupCycles::kStates, 1, 1}, joined_{1, 1, 0};  ///< lane of states; output register of both
   Station coarse_{1, 0, 1}, slots_, visits_;
   Station rows_{1, 1, 0}, coverage_{1, 1, 0}, stamps_{1, 1, 0}, interpolate_;  ///< the first three: fine_raster
   Queue triangle_queue_, setup_queue_, tile_queue_, fragment_queue_;
   Cycle offer_ = 0, last_left_ = 0;
   Cycle walk_ = 0;                        ///< when coarse_raster's walk is at the next tile
-  Cycle tile_left_ = 0, visit_left_ = 0;  ///< when the last tile packet left it, the last visit
-  bool reads_bounds_ = false;             ///< the primitive does
+  Cycle tile_left_ = 0, visit_left_ = 0;  ///< when the last tile packet left it, and the last visit
+  bool reads_bounds_ = false;             ///< the current primitive reads bounds
 };
 
 }  // namespace halfplane

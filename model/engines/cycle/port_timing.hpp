@@ -1,10 +1,10 @@
-// The time of the memory port: rtl_ref/stages/memory_port.sv, and the memory behind it.
+// The time of the memory port: rtl_ref/stages/memory_port.sv, and of the memory.
 //
-// One register holds a stamp on its way out, or the part of a beat that has come; it takes the next one in the cycle in which
-// its last beat moves. Reads wait for nothing else; a burst that writes waits until at most so many are unanswered. An answer
-// goes through without a register: a stamp is handed on in the cycle in which its last beat comes.
+// One register holds a stamp to be sent, or the gathered part of a beat; it loads the next one in the cycle in which
+// its last beat moves. Reads wait for nothing else; a write burst waits until at most 255 are unanswered. An answer
+// passes without a register: a stamp is handed on in the cycle in which its last beat comes.
 //
-//   request(n) = max(offered, last beat of n-1, for a new burst that writes: answer of the 255th before + 1)
+//   request(n) = max(offered, last beat of n-1, for a new write burst: answer of the 255th before + 1)
 //   beat       = max(request + 1, beat before + 1, for a new burst: memory has room)
 //   answer     = max(memory has it, answer before + 1)
 #pragma once
@@ -21,21 +21,21 @@
 
 namespace halfplane {
 
-/// What a request is about (MemoryRequest).
+/// The subject of a request (MemoryRequest).
 struct PortRequest {
   bool is_write = false;
   TilePlane plane = TilePlane::depth;
   int tile_x = 0, tile_y = 0, stamp = 0, run = 1;
 };
 
-/// When a request was taken, and when the last response to it came.
+/// The cycle in which a request was taken, and the cycle of the last response to it.
 struct PortTimes {
   Cycle asked = 0, answered = 0;
 };
 
 class PortTiming {
  public:
-  static constexpr int kUnanswered = 255;  ///< bursts that write
+  static constexpr int kUnanswered = 255;  ///< write bursts
 
   /// `memory`, `streams` by Arrow and `sink`, which may be null, must outlive this.
   PortTiming(const Widths& widths, const Stalls& stalls, MemoryTiming& memory, std::array<Stream, kArrows>& streams,
@@ -49,12 +49,12 @@ class PortTiming {
         unanswered_(kUnanswered, 0, 1) {}
 
   void set_layout(const MemoryLayout& layout) { layout_ = layout; }
-  /// Beats that have moved, of writes and of what was read.
+  /// Beats moved, for writes and reads.
   [[nodiscard]] std::uint64_t beats() const { return beats_; }
-  /// The last cycle in which something crossed.
+  /// The last cycle in which an item crossed.
   [[nodiscard]] Cycle last() const { return last_; }
 
-  /// On offer from `cycle` on.
+  /// A request on offer from `cycle` on.
   PortTimes take(const PortRequest& request, Cycle cycle) {
     const int shift = item_shift(request.plane, widths_.memory);
     const std::uint32_t address =
@@ -133,10 +133,10 @@ class PortTiming {
   MemoryTiming& memory_;
   std::array<Stream, kArrows>& streams_;
   TransferSink* sink_;
-  Station unanswered_;     ///< bursts that write
-  MemoryBurst burst_;      ///< the one that is being written
+  Station unanswered_;     ///< write bursts
+  MemoryBurst burst_;      ///< the burst being written
   int left_ = 0;           ///< stamps of it that have not come
-  bool has_sent_ = false;  ///< a beat of it
+  bool has_sent_ = false;  ///< a beat of it has been sent
   Cycle room_ = 0, answered_ = 0;
   std::uint64_t beats_ = 0;
   Cycle last_ = 0;

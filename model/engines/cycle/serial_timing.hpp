@@ -1,6 +1,6 @@
-// The time of the RTL for the smallest parts (setup.kind serial): *_serial.sv. A stage looks at its packet until it is
-// through with it, so a packet often moves together with the last one that came of it: those transfers wait for the
-// stalls of several streams at once.
+// The time of the RTL for the smallest parts (setup.kind serial): *_serial.sv. A stage reads its packet until it has
+// finished it, so a packet often moves together with the last packet made from it: such transfers wait for the stalls
+// of several streams at once.
 #pragma once
 
 #include <bit>
@@ -90,7 +90,7 @@ class SerialTiming : public BackTiming {
 
   template <class Shade>
   void end_walk(Shade&& shade) {
-    end(walk_ - SerialCycles::turn, shade);  // what passed over the last tile went on to turn to the next one
+    end(walk_ - SerialCycles::turn, shade);  // after skipping the last tile the walk turns to the next one
   }
   template <class Shade>
   void end_token(Shade&& shade) {
@@ -103,8 +103,8 @@ class SerialTiming : public BackTiming {
     totals_.visit_cycles += starts - walk_;
     const Cycle offered = starts + 1;
     has_bound_ = false;
-    // From the tile's first stamp to the first one of the box, two cycles a row on the way down; then one position a cycle,
-    // and one more in a row of one.
+    // From the tile's first stamp to the first stamp of the box, two cycles per row on the way down; then one position
+    // a cycle, and one more for a row of one stamp.
     const int waits = tile.first_column == tile.last_column ? 1 : 0;
     Cycle at = stalls_.next_free(kTile, std::max(offered, fine_.room())) + 1 +
                static_cast<Cycle>(tile.first_column + 2 * tile.first_row + waits);
@@ -115,7 +115,7 @@ class SerialTiming : public BackTiming {
     for (int column = tile.first_column; column <= tile.last_column; ++column, ++at) {
       if (!is_covered(tile, tile.last_row, column)) continue;
       if (held >= 0) at = send(at, 0, 0, [&](Cycle t) { return shade(t, tile.last_row, held); });
-      if (held >= 0 && column == tile.last_column) ++at;  // it stays there for the last one
+      if (held >= 0 && column == tile.last_column) ++at;  // it waits there for the last stamp
       held = column;
     }
     --at;
@@ -157,8 +157,8 @@ class SerialTiming : public BackTiming {
     offer_ = taken + 1;
   }
 
-  /// A stamp on offer from `offered` on, through interpolate and the buffer behind it; it moves when `others` are free too
-  /// and not before `room`. Returns when it moves.
+  /// A stamp on offer from `offered` on, through interpolate and the buffer after it; it moves when `others` are free
+  /// too and not before `room`. Returns the cycle in which it moves.
   template <class Shade>
   Cycle send(Cycle offered, unsigned others, Cycle room, Shade&& shade) {
     Cycle ready = std::max(room, interpolate_.room());

@@ -11,15 +11,15 @@
 
 namespace halfplane {
 
-/// In cycles. Texts, because some depend on the item.
+/// In cycles. Strings, because some depend on the item.
 struct StageRow {
   Stage stage;
-  std::string latency;   ///< from an item in to what comes of it out
+  std::string latency;   ///< from an item in to its results out
   std::string interval;  ///< one item every so many cycles
   std::string holds;     ///< items under way at most
 };
 
-/// Of a configuration, in the order of the pipeline; the stages of the host are left out.
+/// The stages of a configuration, in the order of the pipeline, without the host.
 [[nodiscard]] std::vector<StageRow> stage_table(const Config& config);
 
 /// The same as a Markdown table.

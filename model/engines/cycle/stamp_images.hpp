@@ -1,5 +1,5 @@
-// Stamp images: the framebuffer as the stages downstream of interpolate see it, a stamp at a time. What is on the chip and what
-// in memory makes no difference to bits: that is the caches' time.
+// Stamp images: the framebuffer as the stages downstream of interpolate see it, a stamp at a time. Whether a stamp is
+// on the chip or in memory makes no difference to bits, only to time in the caches.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ namespace halfplane {
 
 class StampImages {
  public:
-  /// `frames`: of each sample of a pixel. Both must outlive this.
+  /// `frames`: one for each sample of a pixel. Both must outlive this.
   StampImages(std::span<Framebuffer> frames, const Widths& widths)
       : frames_(frames), widths_(widths), stamps_(widths.stamps) {
     for (int pixel = 0; pixel < stamps_.pixels(); ++pixel) {
@@ -22,7 +22,7 @@ class StampImages {
     }
   }
 
-  /// Goes on to a stamp.
+  /// Moves on to a stamp.
   void enter(const StampAddress& at) {
     const PixelOffset in_tile = stamps_.origin_of(at.stamp);
     first_ = {(at.tile_x << widths_.tile_shift) + in_tile.x, (at.tile_y << widths_.tile_shift) + in_tile.y};
@@ -35,7 +35,7 @@ class StampImages {
     return {first_.x + in_stamp.x, first_.y + in_stamp.y};
   }
 
-  /// The words of `samples` as the depth RAM has them, and their colours; of the others anything.
+  /// The words of `samples` as in the depth RAM, and their colours; other samples are undefined.
   [[nodiscard]] std::span<const std::uint32_t> words(SampleMask samples) {
     samples.for_each([&](std::size_t s) {
       const auto& [frame, at] = stored(s);
@@ -60,7 +60,7 @@ class StampImages {
     });
   }
 
-  /// Whether of each pixel of the stamp all samples in `mask` are there, and stored alike, or none is.
+  /// Whether in each pixel of the stamp all samples are in `mask` and stored alike, or none is.
   [[nodiscard]] bool has_one_color(SampleMask mask) const {
     return halfplane::has_one_color(mask, widths_, [&](std::size_t s) { return color(s); });
   }
@@ -82,8 +82,8 @@ class StampImages {
   std::span<Framebuffer> frames_;
   const Widths& widths_;
   StampGrid stamps_;
-  PixelOffset first_;                    ///< pixel of the stamp, in the target
-  std::size_t index_ = 0;                ///< its place in the images
+  PixelOffset first_;                    ///< first pixel of the stamp, in the target
+  std::size_t index_ = 0;                ///< its index in the images
   std::array<int, kMaxSamples> offset_;  ///< from there to each pixel of a stamp
   std::array<std::uint32_t, kMaxSamples> code_;
 };

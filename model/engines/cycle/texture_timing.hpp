@@ -1,50 +1,51 @@
 // The time of the texture unit: rtl_ref/stages/texture_unit.sv and the texture_*.sv in it.
 //
-// Every wait is for an earlier stamp or sample, so the time of one is a maximum over those before it. Of stamp m and sample n:
+// Every wait is for an earlier stamp or sample, so each time is a maximum over earlier ones. For stamp m and sample n:
 //
 //   s(n) = max(x(m) + 2, s(n-1) + 1, a(n-16) + 1)                  split
 //   a(n) = max(s(n) + 10, t(n-1), tags swept)                      its tag is read
 //   t(n) = max(a(n) + 1, h(n-in_flight) + 1), a miss also: the request before is taken, the line's place is free
 //   h(n) = max(t(n) + 1, d(n-1)), a miss also: its last beat + 1   its texel is read
-//   d(n) = max(h(n) + 1, e(n-1))                                   decoded; of a linear filter three such stages
+//   d(n) = max(h(n) + 1, e(n-1))                                   decoded; three such stages for a linear filter
 //   e(n) = max(d(n) + 1, g(m-1) + 1, w(m-1))                       combined
-//   g(m) = that of its last sample; without texture max(x(m) + 2, g(m-1) + 1, w(m-1))
+//   g(m) = e of its last sample; without texture max(x(m) + 2, g(m-1) + 1, w(m-1))
 //
-// A sample whose colour is divided and that has no texture goes by the tags: c(n) = max(s(n) + 10, c(n-1) + 1, g(m-1) + 1,
-// w(m-1)) is its e(n). A state precedes it, so no sample waits upstream of the tags and its split needs no room there.
-// One with both has its colour before its texel.
+// A sample without texture whose colour is divided bypasses the tags: its e(n) is c(n) = max(s(n) + 10, c(n-1) + 1,
+// g(m-1) + 1, w(m-1)). A state precedes it, so no sample waits upstream of the tags and its split needs no room there.
+// With a texture as well, the colour is ready before the texel.
 //
-// With a linear filter a sample asks for its lines one by one, and leaves the tags with the last of them or later. It
-// is offered to the colour stage in g(m) + 1. A state is set when no sample is left in front of h: max(x(m) + 2, s + 1, t +
-// 1); lines of a triangle as soon as they come: max(x(m) + 2, s + 1).
+// With a linear filter a sample requests its lines one by one, and leaves the tags with the last request or later. A
+// stamp is offered to the colour stage in g(m) + 1. A state is set when no sample is left upstream of h: max(x(m) + 2,
+// s + 1, t + 1); lines of a triangle as soon as they come: max(x(m) + 2, s + 1).
 //
-// With levels its level is known two clocks later, and it goes through two more stages in front of the tags and one more behind
-// the filter, once or twice. Of its pass i, counted over all samples:
+// With levels a sample's level is known two clocks later, and the sample goes through two more stages upstream of the
+// tags and one more after the filter, once or twice. For its pass i, counted over all samples:
 //
 //   f(i) = max(s(n) + 12, b(i-1))   it leaves the queue; with its last pass the sample
 //   b(i) = max(f(i) + 1, a(i-1))    its coordinates are on their level
 //   a(i) = max(b(i) + 1, t(i-1), tags swept)
 //
-// and the first of two passes waits in no e: it ends in the filter's last stage, a clock behind the one before.
+// and the first of two passes does not reach e: it ends in the filter's last stage, a clock after the one before.
 //
-// Of four lanes n counts groups, and a group goes through cache and filter in one pass or more, of samples that agree. Their
-// lines are asked for one by one, also without a linear filter, and a register holds a pass in front of the tags:
+// With four lanes n counts groups, and a group goes through cache and filter in one pass or more, of samples that
+// agree. Their lines are requested one by one, also without a linear filter, and a register holds a pass upstream of
+// the tags:
 //
 //   f(i) = max(s(n) + 10, a(i-1))   it leaves the queue; with its last pass the group
 //   a(i) = max(f(i) + 1, t(i-1), tags swept)
 //
 // e is that of a pass, and c that of a group.
 //
-// Of four lanes with levels a group leaves its queue once or twice, of all samples' lower levels and of the upper ones. Of such
-// a round r, and of its pass i:
+// With four lanes and levels a group leaves its queue once or twice, with all samples' lower levels and with the upper
+// ones. For such a round r, and its pass i:
 //
 //   f(r) = max(s(n) + 12, b(r-1))       with its last round the group leaves the queue
 //   b(r) = max(f(r) + 1, c(r-1))        its coordinates are on their levels
-//   c(r) = max(b(r) + 1, p(r-1, last))  who agrees is known
-//   p(i) = max(c(r) + 1, a(i-1))        a pass in front of the tags
+//   c(r) = max(b(r) + 1, p(r-1, last))  the agreeing samples are known
+//   p(i) = max(c(r) + 1, a(i-1))        a pass upstream of the tags
 //   a(i) = max(p(i) + 1, t(i-1), tags swept)
 //
-// A pass whose samples all wait for their upper level waits in no e.
+// A pass whose samples all wait for their upper level does not reach e.
 #pragma once
 
 #include <algorithm>
@@ -65,14 +66,14 @@ struct LineTimes {
   Cycle asked = 0, answered = 0;
 };
 
-/// The unit's memory port, and the memory behind it: a request goes out from a register, and beats are taken as they come.
+/// The unit's memory port, and its memory: a request goes out from a register, and beats are taken as they come.
 class TexturePort {
  public:
-  /// All of them must outlive this.
+  /// All arguments must outlive this.
   TexturePort(MemoryTiming& memory, Stream& requests, Stream& answers)
       : memory_(memory), requests_(requests), answers_(answers) {}
 
-  /// Beats of before a reset come up to `over`.
+  /// Beats requested before a reset come up to `over`.
   void answers_until(Cycle over) { answered_ = over; }
   /// A line, on offer from `cycle` on. visit(beat, cycle) for each beat.
   template <class Visit>
@@ -94,7 +95,7 @@ class TexturePort {
 
 class TextureTiming {
  public:
-  /// rst_ni is high from `start` on; all that was asked for before it is over in `recovered` (recovered()).
+  /// rst_ni is high from `start` on; all earlier requests are complete in `recovered` (recovered()).
   explicit TextureTiming(const TextureSettings& settings, Cycle start = 0, Cycle recovered = 0)
       : has_banks_(settings.has_banks()),
         has_levels_(settings.has_levels),
@@ -112,22 +113,22 @@ class TextureTiming {
         lines_(static_cast<std::size_t>(settings.lines)),
         read_(static_cast<std::size_t>(settings.in_flight)) {}
 
-  /// When the first request after a reset may leave the tags: rst_ni was low up to `reset`, the last request of before was
-  /// taken and answered up to `over`.
+  /// When the first request after a reset may leave the tags: rst_ni was low up to `reset`, the last earlier request
+  /// was taken and answered up to `over`.
   [[nodiscard]] static Cycle recovered(Cycle reset, Cycle over) { return std::max(reset, over) + 2; }
 
-  /// The first cycle in which the depth stage may let the next stamp go, which is here in the cycle behind that.
+  /// The first cycle in which the depth stage may let the next stamp go; the stamp arrives in the next cycle.
   [[nodiscard]] Cycle room() const { return inside_.room(); }
   /// When nothing is under way any more.
   [[nodiscard]] Cycle is_empty() const { return std::max(left_ + 1, swept_); }
 
-  /// The depth stage let a stamp go in `x` that has no texture. Returns when it is on offer to the colour stage.
+  /// A stamp without texture that left the depth stage in `x`. Returns when it is on offer to the colour stage.
   Cycle pass(Cycle x) {
     gone_ = std::max({x + kDoor, gone_ + 1, left_});
     return gone_ + 1;
   }
 
-  /// A stamp that sets a state; `drops`: and invalidates the cache.
+  /// A stamp that sets a state; `drops`: it also invalidates the cache.
   Cycle set(Cycle x, bool drops) {
     split_ = std::max({x + kDoor, split_ + 1, looked_up_ + 1});
     if (drops) {
@@ -137,14 +138,14 @@ class TextureTiming {
     return pass(x);
   }
 
-  /// A stamp that brings a part of a triangle's lines.
+  /// A stamp with a part of a triangle's lines.
   Cycle set_lines(Cycle x) {
     split_ = std::max(x + kDoor, split_ + 1);
     return pass(x);
   }
 
-  /// A stamp with a texture; `lookups`: of its samples, as they go. ask(cycle, address, beats): a request, on offer from
-  /// `cycle` on; returns LineTimes.
+  /// A stamp with a texture; `lookups`: of its samples, in their order. ask(cycle, address, beats): a request, on offer
+  /// from `cycle` on; returns LineTimes.
   template <class Ask>
   Cycle take(Cycle x, std::span<const TextureLookup> lookups, Ask&& ask) {
     bool is_next = true;  // the next pass is the first of a sample, or of a group
@@ -160,7 +161,7 @@ class TextureTiming {
     return gone_ + 1;
   }
 
-  /// A stamp without a texture whose colours are divided by w, in so many groups of samples: they go by the tags.
+  /// A stamp without a texture whose colours are divided by w, in this many groups of samples: they bypass the tags.
   Cycle divide(Cycle x, int groups) {
     for (int n = 0; n < groups; ++n) {
       split_ = std::max(x + kDoor, split_ + 1);
@@ -170,7 +171,7 @@ class TextureTiming {
     return gone_ + 1;
   }
 
-  /// What is behind the unit took the stamp, and the colour stage.
+  /// The stage after the unit took the stamp, and the colour stage took it in `w`.
   void leave(Cycle taken, Cycle w) {
     left_ = taken;
     inside_.leave(w);
@@ -179,14 +180,15 @@ class TextureTiming {
 
  private:
   static constexpr int kAhead = 16, kClocks = 10, kLevelClocks = 12,
-                       kRequests = 16;  ///< samples between split and tags, and the least cycles; lines asked for
+                       kRequests = 16;  ///< samples between split and tags, and the least cycles; lines in flight
   static constexpr Cycle kDoor = 2;     ///< from the depth stage to the head of the queues
-  static constexpr int kGroup = 3, kNumber = 7;  ///< a group is 8 samples; of its number the tags know 7 bits
+  static constexpr int kGroup = 3, kNumber = 7;  ///< a group is 8 samples; the tags hold 7 bits of its number
   static constexpr std::uint64_t kNumbers = 1U << kNumber;
 
   [[nodiscard]] std::uint64_t last_group() const { return (count_ - 1) >> kGroup; }
 
-  /// When the tags of the next pass are read. `is_last` of its sample or group; `turns`: of its group's lower levels.
+  /// When the tags of the next pass are read. `is_last`: of its sample or group; `turns`: last of its group's lower
+  /// levels.
   Cycle tags_read(bool is_last, bool turns) {
     Cycle at = ahead_.ready(split_);
     if (has_lanes_ && has_levels_) return tags_read_of_round(is_last, turns, at);
@@ -222,7 +224,7 @@ class TextureTiming {
     return tag_read_;
   }
 
-  /// The way through cache and filter of a sample on one level, or of those that agree.
+  /// A sample on one level, or agreeing samples, through cache and filter.
   template <class Ask>
   void pass(std::span<const TextureLookup> lookups, Ask&& ask) {
     const bool is_combined = lookups.back().samples != 0;
@@ -231,7 +233,7 @@ class TextureTiming {
     for (const TextureLookup& lookup : lookups) {
       if (lookup.is_miss) {
         t = std::max({next, request_room_, requests_.room(), free_place(lines_[lookup.line])});
-        if (!has_banks_) t = std::max(t, waiting_.room());  // asks as it leaves
+        if (!has_banks_) t = std::max(t, waiting_.room());  // requests as it leaves
         const LineTimes times = ask(t + 1, lookup.address, lookup.beats);
         request_room_ = times.asked;
         requests_.leave(times.answered);
@@ -253,12 +255,12 @@ class TextureTiming {
     if (is_combined) combined_ = std::max({at + 1, gone_ + 1, left_});
   }
 
-  /// When no sample waits any more that may have been found in a line's place, the last of them in `group`: all up to the end
-  /// of the youngest group that the tags cannot tell from it.
+  /// When no sample that may have been found in a line's place is still in the queue, the last of them in `group`: all
+  /// up to the end of the youngest group that the tags cannot tell from it.
   [[nodiscard]] Cycle free_place(std::uint64_t group) const {
     const std::uint64_t now = count_ >> kGroup;
     const std::uint64_t last = now - ((now - group) & (kNumbers - 1));
-    const std::uint64_t end = std::min((last + 1) << kGroup, count_);  // behind the last of them
+    const std::uint64_t end = std::min((last + 1) << kGroup, count_);  // after the last sample of the group
     if (last > now || end == 0 || count_ - (end - 1) > read_.size()) return 0;
     return read_[(end - 1) % read_.size()] + 1;
   }
@@ -266,18 +268,17 @@ class TextureTiming {
   bool has_banks_, has_levels_, has_lanes_;
   std::size_t filter_stages_;  ///< between data RAM and e
   Station inside_, ahead_, waiting_, requests_;
-  Cycle sweep_, swept_;                             ///< how long it takes to sweep the tags; when they have been
+  Cycle sweep_, swept_;                             ///< duration of a sweep of the tags; its end
   Cycle request_room_;                              ///< when the next request may leave the tags
-  Cycle split_ = 0, looked_up_ = 0, combined_ = 0;  ///< of the last sample
-  Cycle divided_ = 0;                               ///< of the last one that has a colour and no texture
-  Cycle on_level_ = 0, tag_read_ = 0;               ///< of the last pass, with levels
-  Cycle round_left_ = 0, agreed_ = 0, passed_ = 0;  ///< of the last round f and c, of the last pass p
+  Cycle split_ = 0, looked_up_ = 0, combined_ = 0;  ///< times of the last sample
+  Cycle divided_ = 0;                               ///< of the last sample with a colour and no texture
+  Cycle on_level_ = 0, tag_read_ = 0;               ///< times of the last pass, with levels
+  Cycle round_left_ = 0, agreed_ = 0, passed_ = 0;  ///< f and c of the last round, p of the last pass
   bool is_next_round_ = true;                       ///< the next pass is the first of a round
-  std::array<Cycle, 4>
-      stages_{};  ///< of the last sample, when it left the data RAM, and what a linear filter has behind it
-  Cycle gone_ = 0, left_ = 0;         ///< of the last stamp
+  std::array<Cycle, 4> stages_{};     ///< when the last sample left the data RAM, and each stage of a linear filter
+  Cycle gone_ = 0, left_ = 0;         ///< times of the last stamp
   std::uint64_t count_ = 0;           ///< samples
-  std::vector<std::uint64_t> lines_;  ///< of each line's place, the group of the last sample that was found there
+  std::vector<std::uint64_t> lines_;  ///< by a line's place: group of the last sample that was found there
   std::vector<Cycle> read_;           ///< h of the last samples
 };
 

@@ -1,8 +1,8 @@
-// What the parts of the functional engine hand on to each other: slices of a draw, records of what is left of their
-// primitives, and for each bin of the target the list of its records.
+// Data passed between the parts of the functional engine: slices of a draw, records of their remaining primitives, and
+// for each bin of the target the list of its records.
 //
-//   slice   some thousand primitives of one draw. Its own vertices, records and bin lists: made by one thread.
-//   bin     64 x 64 pixels. Drawn by one thread, slice after slice: in program order, whoever made the slices.
+//   slice   a few thousand primitives of one draw. Has its own vertices, records and bin lists: made by one thread.
+//   bin     64 x 64 pixels. Drawn by one thread, slice after slice: in program order, whichever thread made the slices.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@
 namespace halfplane::functional {
 
 inline constexpr int kBinShift = 6, kBinSize = 1 << kBinShift;     ///< pixels along the side of a bin
-inline constexpr int kTileShift = 3, kTileSize = 1 << kTileShift;  ///< the only tile size that this engine has
+inline constexpr int kTileShift = 3, kTileSize = 1 << kTileShift;  ///< the only tile size of this engine
 inline constexpr int kBinTiles = kBinSize / kTileSize;             ///< tiles along the side of a bin
 
 /// A block is sixteen lanes, one cache line; a tile is four of them.
@@ -27,27 +27,28 @@ inline constexpr int kBlockShift = 2, kBlockSize = 1 << kBlockShift, kBlockPixel
 inline constexpr std::size_t kTilePixels = std::size_t{kTileSize} * kTileSize,
                              kBinPixels = std::size_t{kBinSize} * kBinSize;
 
-/// Small triangles, which are set up sixteen at a time, lie within so many by so many tiles; so do medium ones, which
-/// may be.
+/// Small triangles, which are set up sixteen at a time, lie within this many by this many tiles; medium ones may be set
+/// up so.
 inline constexpr int kSmallTiles = 2, kMediumTiles = 3;
 
-/// Their extent: below that many pixels, and such that 32 bits hold products of two.
+/// Bits of their extent: less than that many pixels, and such that 32 bits hold products of two.
 [[nodiscard]] inline int extent_bits(int pixel_bits, const Widths& widths) {
   return std::min(pixel_bits + widths.grid_bits, 14);
 }
 inline constexpr int kSmallPixelBits = 4, kMediumPixelBits = 5;
 
-/// What a draw asks of its fragments, and how they are shaded.
-/// Of draws that test alpha, color_write says that colours are looked at.
+/// Operations of a draw's fragments, and their shading. In draws with an alpha test, color_write says that colours are
+/// read.
 struct SliceState : FragmentState {
-  bool is_flat = false;      ///< the colour is that of the first vertex
-  bool is_opaque = true;     ///< what passes replaces what is stored, what fails leaves no trace
+  bool is_flat = false;      ///< the colour of the first vertex is used
+  bool is_opaque = true;     ///< a passing fragment replaces the stored values, a failing one has no effect
   bool has_surface = false;  ///< colours are those of surface.hpp
-  bool is_masked = false;    ///< no channel of a colour is written, nor looked at
+  bool is_masked = false;    ///< no colour channel is written or read
 };
 
-/// A vertex as this engine stores it, whatever a SnappedVertex looks like: what every draw needs of it is a row of four
-/// words, of which lanes take sixteen at a time, a column each. A further attribute becomes an array of its own in Slice.
+/// A vertex in the engine's own layout, independent of SnappedVertex: the values that every draw needs are a row of
+/// four words, of which lanes take sixteen at a time, a column each. A further attribute becomes an array of its own in
+/// Slice.
 struct VertexRow {
   std::int32_t x = 0, y = 0;  ///< subpixels, y down
   std::uint32_t z = 0;        ///< depth code
@@ -56,32 +57,30 @@ struct VertexRow {
 static_assert(sizeof(VertexRow) == 16 && offsetof(VertexRow, y) == 4 && offsetof(VertexRow, z) == 8 &&
               offsetof(VertexRow, rgba) == 12);
 
-/// The colour planes as a word of this engine: 8 bits a channel, R lowest.
+/// The colour planes packed into a word of this engine: 8 bits a channel, R lowest.
 [[nodiscard]] inline std::uint32_t packed_channels(const PerPlane<std::uint32_t>& code) {
   const auto channel = color_channels(code);
   return channel[0] | channel[1] << 8 | channel[2] << 16 | channel[3] << 24;
 }
 
-/// The one place where what the host side snapped becomes a row.
+/// The one place where a snapped vertex of the host side becomes a row.
 [[nodiscard]] inline VertexRow row_of(const SnappedVertex& v) { return {v.x, v.y, v.depth(), packed_channels(v.code)}; }
 
 enum class RecordKind : std::uint8_t { triangle, whole_line, cut_line, rectangle };
 
 /// A primitive with at least one pixel in its box. Eight words: kernels make and take sixteen at a time, a column each.
 struct Record {
-  std::array<std::uint32_t, 3> v{};    ///< into Slice::vertices, of a triangle the provoking one first, of a whole line
-                                       ///< last, behind its ends; cut line: [0] into Slice::lines
+  std::array<std::uint32_t, 3> v{};    ///< into vertices, provoking one first, of whole lines last; cut: [0] into lines
   std::int32_t z_low = 0, z_high = 0;  ///< range of its depth codes
-  std::int32_t left_top = 0, right_bottom = 0;  ///< its box inside the scissor, pixels, inclusive: column low, row high
-  std::int32_t traits = 0;                      ///< kind in the lowest byte, and the following
+  std::int32_t left_top = 0, right_bottom = 0;  ///< its box within the scissor, pixels, inclusive: column low, row high
+  std::int32_t traits = 0;                      ///< kind in the lowest byte, and these bits
 
-  static constexpr std::int32_t
-      kWhole = 1 << 8,          ///< a triangle whose edges alone say what it covers: the scissor cuts nothing off
-      kSmall = 1 << 9,          ///< whole, within kSmallTiles by kSmallTiles, not too steep
-      kMedium = 1 << 10,        ///< the same with kMediumTiles, small or not
-      kDrawsNothing = 1 << 11;  ///< culled, but Skip forbids to leave it out: goes through the raster and draws nothing
-  static constexpr int kSamplesShift =
-      16;  ///< a small triangle within two by two pixels: which of them it covers; else 0
+  static constexpr std::int32_t kWhole = 1
+                                         << 8,  ///< a triangle covered by its edges alone: the scissor cuts nothing off
+      kSmall = 1 << 9,                          ///< whole, within kSmallTiles by kSmallTiles, not too steep
+      kMedium = 1 << 10,                        ///< whole, within kMediumTiles by kMediumTiles, small or not
+      kDrawsNothing = 1 << 11;  ///< culled, but Skip forbids to drop it: goes through the raster and draws nothing
+  static constexpr int kSamplesShift = 16;  ///< a small triangle within two by two pixels: the covered ones; else 0
 
   [[nodiscard]] int left() const { return static_cast<std::int16_t>(left_top); }
   [[nodiscard]] int top() const { return left_top >> 16; }
@@ -95,7 +94,7 @@ static_assert(sizeof(Record) == 32 && offsetof(Record, z_low) == 12 && offsetof(
               offsetof(Record, left_top) == 20 && offsetof(Record, right_bottom) == 24 &&
               offsetof(Record, traits) == 28);
 
-/// One slice. What the lanes read and write is in plain arrays, as long as they need.
+/// One slice. The data that lanes read and write is in plain arrays, padded to whole registers.
 struct Slice {
   /// Primitives of one draw that follow each other.
   struct Part {
@@ -103,23 +102,23 @@ struct Slice {
     std::uint32_t command = 0;         ///< index of the draw in Scene::commands
     std::uint32_t primitive = 0;       ///< number of the first, over the whole scene
   };
-  const DrawContext* context = nullptr;  ///< of its first part; the others have the same state
+  const DrawContext* context = nullptr;  ///< of its first part; all parts have the same state
   SliceState state;
   std::vector<Part> parts;
   std::size_t triangles = 0;                 ///< of all parts
   bool is_lines = false;                     ///< the triangles are lines
-  std::vector<AssembledPrimitive> outlines;  ///< or what the lanes do not take: points, polygon modes; then of one part
+  std::vector<AssembledPrimitive> outlines;  ///< or primitives not for lanes: points, polygon modes; then of one part
 
-  /// Range of the triangles' vertices: those are projected, once each. If it is too wide for that, every corner is a
-  /// vertex of its own: three in a row for each triangle.
+  /// Range of the triangles' vertices: each is projected once. If the range is too wide, every corner is a vertex of
+  /// its own: three in a row for each triangle.
   std::uint32_t low_index = 0, high_index = 0;
   bool is_wide = false;
   std::vector<VertexRow> vertices;
-  /// Of each vertex, where the state has surfaces; normals where it is lit by fragments. They are the prepared scene's, as
-  /// long as those are the slice's vertices, one for one.
+  /// Attributes of each vertex, where the state has surfaces; normals where fragments are lit. They are the prepared
+  /// scene's, if the slice's vertices are exactly those.
   const SurfaceRow* surface = nullptr;
   const Normal* normals = nullptr;
-  std::vector<SurfaceRow> own_surface;  ///< else these
+  std::vector<SurfaceRow> own_surface;  ///< else these copies
   std::vector<Normal> own_normals;
   std::vector<std::uint32_t> codes;  ///< kVolume and kSlow bits of each vertex
   std::uint32_t any_code = 0;        ///< their union
@@ -127,8 +126,8 @@ struct Slice {
   std::size_t record_count = 0;
   std::vector<LineSetup> lines;
   std::vector<std::uint32_t> bin_first;    ///< into bin_records, one more than there are bins
-  std::vector<std::uint32_t> bin_records;  ///< into records
-  Signature state_signature;               ///< where bins are compared; and of each record
+  std::vector<std::uint32_t> bin_records;  ///< into records, by bin
+  Signature state_signature;               ///< where bins are compared; likewise of each record
   std::vector<Signature> signatures;
   Counters counters;
 
@@ -136,45 +135,45 @@ struct Slice {
   static constexpr std::uint32_t kSlow = 0x40;    ///< outside the guard band, or not a vertex that may be drawn
 };
 
-/// What stays the same over the frame.
+/// Constants of a frame.
 struct FrameContext {
   const PreparedScene& prepared;
   const Config& config;
   const Widths& widths;
   Skip skip;
   int bins_x = 0, bins_y = 0;
-  bool takes_one_by_one = false;  ///< all fragments: RenderOptions::general_fragments
+  bool takes_one_by_one = false;  ///< draws all fragments one by one: RenderOptions::general_fragments
 };
 
-/// What happens to triangle number `triangle` of a part that the lanes cannot take: the host side's own function.
+/// Draws triangle number `triangle` of a part that lanes cannot take: the host side's own function.
 using SlowPath = void (*)(const FrameContext& frame, Slice& slice, const Slice::Part& part, std::size_t triangle);
 
-/// What is known of the tiles of the target without looking at their pixels, bin after bin, row by row inside a bin.
-/// Ranges of depths are kept in 16 bits, the upper ones of a code: lanes then take a bin's 64 tiles at once.
+/// State of the target's tiles that is known without reading pixels, bin after bin, row by row inside a bin. Ranges of
+/// depths are kept in 16 bits, the upper ones of a code: lanes then take a bin's 64 tiles at once.
 struct TileStates {
-  static constexpr std::uint8_t kDepthCleared = 1, kColorCleared = 2;  ///< a clear that has not been written yet
-  std::vector<std::uint16_t> z_low, z_high;                            ///< no stored depth lies outside
+  static constexpr std::uint8_t kDepthCleared = 1, kColorCleared = 2;  ///< a pending clear
+  std::vector<std::uint16_t> z_low, z_high;                            ///< bounds of the stored depths
   std::vector<std::uint8_t> pending;
   std::vector<std::uint8_t>
-      held;  ///< the same bits: the target's memory is that clear, from this frame or an earlier one
+      held;  ///< the same bits: the target's memory holds that clear, from this frame or an earlier one
 };
 
 /// Bits of a code below those that a range keeps.
 [[nodiscard]] inline int range_drop(const Config& config) { return std::max(config.depth_bits - 16, 0); }
 
-/// One bin at work.
+/// The bin being drawn.
 struct BinJob {
   const FrameContext& frame;
   std::span<const Slice* const> slices;
   int bin = 0;
   Framebuffer& target;
   TileStates& tiles;
-  std::uint32_t clear_depth = 0, clear_color = 0;  ///< of pending tiles
+  std::uint32_t clear_depth = 0, clear_color = 0;  ///< of tiles with pending clears
   Counters& counters;
-  bool keeps_samples = false;  ///< their images are written, not the pixels' alone
+  bool keeps_samples = false;  ///< the samples' images are written, not only the pixels'
 };
 
-/// The loops that are worth lanes, compiled for one instruction set.
+/// The loops that run in lanes, compiled for one instruction set.
 struct Kernels {
   const char* name;
   void (*project)(const FrameContext&, Slice&);         ///< vertices and codes

@@ -18,14 +18,14 @@ namespace {
 
 constexpr std::size_t kSlicePrimitives = 2048;  // small enough that two threads share a small frame evenly
 constexpr std::size_t kBatchPrimitives = 1 << 18;
-constexpr std::size_t kTiles = std::size_t{kBinTiles} * kBinTiles;  // of a bin
+constexpr std::size_t kTiles = std::size_t{kBinTiles} * kBinTiles;  // in a bin
 
-/// The range of a tile that holds no depth: in nobody's way.
+/// The range of a tile that holds no depth: it never decides.
 constexpr struct { std::uint16_t low = 0xffff, high = 0; } kNoDepth;
 
 using Clock = std::chrono::steady_clock;
 
-/// Calls work(i) for 0 <= i < count. Throws what the smallest i threw, whoever ran it.
+/// Calls work(i) for 0 <= i < count. Throws the exception of the smallest i, whichever thread ran it.
 template <class Work>
 void for_each_index(tbb::task_arena* threads, std::size_t count, Work&& work) {
   if (threads == nullptr || count < 2) {
@@ -63,8 +63,7 @@ void add(Counters& sum, const Counters& c) {
   for (const SkipName& one : kSkipNames) sum.skipped.*one.counter += c.skipped.*one.counter;
 }
 
-/// Whether surfaces are those of the fast path: opaque, and every w > 0. Which of a draw's triangles are refused, the
-/// scalar engine says.
+/// Whether the fast path takes all surfaces: opaque, and every w > 0. The scalar engine reports refused triangles.
 bool has_plain_surfaces(const Scene& scene, const RenderOptions& options) {
   if (options.general_fragments) return false;
   const auto is_window = [](const State& s) { return has_surface(s) && s.space == Space::window; };
@@ -72,8 +71,8 @@ bool has_plain_surfaces(const Scene& scene, const RenderOptions& options) {
          std::ranges::all_of(scene.vertices, [](const Vertex& v) { return v.w > 0; });
 }
 
-/// Whether pixels with several samples are those of the fast path: triangles and points, no stencil, no alpha that chooses
-/// samples. Edges move to a sample in 32 bits.
+/// Whether the fast path takes multisampled pixels: triangles and points, no stencil, no alpha that selects samples.
+/// Edges move to a sample in 32 bits.
 bool has_plain_samples(const Scene& scene, const Widths& widths, const RenderOptions& options) {
   if (options.general_fragments || widths.delta.bits + widths.grid_bits > 31) return false;
   if (std::ranges::any_of(scene.states, [](const State& s) { return s.stencil || s.alpha_to_coverage; })) return false;
@@ -92,7 +91,7 @@ bool is_supported(const Scene& scene, const Config& config, const RenderOptions&
   if (std::ranges::any_of(scene.states, has_surface) && !has_plain_surfaces(scene, options)) return false;
   const Widths widths = derive_widths(config);
   if (widths.has_samples != 0 && !has_plain_samples(scene, widths, options)) return false;
-  // Lanes of 32 bits for what lives in a tile, of 64 for planes; area and edges as the kernels compute them.
+  // Lanes of 32 bits for values in a tile, of 64 for planes; area and edges as the kernels compute them.
   return widths.depth().local.bits <= 32 && widths.color().local.bits <= 16 && config.depth_bits <= 30 &&
          widths.delta.bits <= 24 && widths.color().product.bits <= 64 && widths.color().line.bits <= 31 &&
          widths.reciprocal.bits <= 30 && DepthEncode(config, scene.planes).is_identity();
@@ -104,7 +103,7 @@ const Rendering& FrameRenderer::render(const PreparedScene& prepared, const Rend
   start(prepared, options);
   try {
     run_commands(options);
-  } catch (...) {  // the frame is whole in any case: it may be drawn on
+  } catch (...) {  // the frame is whole in any case: later draws may go on it
     slice_count_ = 0;
     held_bins_.clear();
     finish();
@@ -135,12 +134,12 @@ Rendering FrameRenderer::take() {
   return std::exchange(rendering_, {});
 }
 
-/// Whether all that happens in a bin is a clear that waits, and then what is drawn at once.
+/// Whether all events in a bin are a pending clear, and then draws that are all drawn together.
 bool FrameRenderer::compares(const RenderOptions& options) const {
   if (keeps_samples_ && widths_.has_samples != 0) return false;
   if (!options.follows || !skip_.bins || !skip_.clear || options.onto != nullptr || !is_stencil_zero_) return false;
   if (std::ranges::any_of(scene_->states, [](const State& s) { return s.stencil.has_value(); })) return false;
-  std::size_t primitives = 0;  // all of them wait together
+  std::size_t primitives = 0;  // all of them are pending together
   for (const PreparedScene::DrawChunks& draw : prepared_->draws) primitives += draw.primitives;
   if (primitives > 4 * kBatchPrimitives) return false;
   bool has_drawn = false;
@@ -168,7 +167,7 @@ void FrameRenderer::start(const PreparedScene& prepared, const RenderOptions& op
   is_opaque_ = !options.general_fragments;
   if (options.threads != threads_) {
     threads_ = options.threads;
-    const int most = tbb::info::default_concurrency();  // of more it would warn
+    const int most = tbb::info::default_concurrency();  // the library warns above this
     arena_ = threads_ > 1 ? std::make_unique<tbb::task_arena>(std::min(threads_, most)) : nullptr;
   }
   kernels_ = available_kernels().front();
@@ -216,7 +215,7 @@ void FrameRenderer::start(const PreparedScene& prepared, const RenderOptions& op
   }
 }
 
-/// The images of the samples: made when somebody needs them.
+/// Makes the images of the samples when they are first needed.
 void FrameRenderer::need_samples() {
   Framebuffer& frame = rendering_.frame;
   if (widths_.has_samples == 0 || !frame.samples.empty()) return;
@@ -224,7 +223,7 @@ void FrameRenderer::need_samples() {
                        Framebuffer(frame.width, frame.height, config_.tile_size));
 }
 
-/// Nothing is known of what the frame holds: any depth.
+/// Marks the depth range of every tile as unknown.
 void FrameRenderer::forget_tiles() {
   std::ranges::fill(tiles_.pending, std::uint8_t{0});
   std::ranges::fill(tiles_.held, std::uint8_t{0});
@@ -239,7 +238,7 @@ void FrameRenderer::forget_depths(std::size_t first, std::size_t count) {
   }
 }
 
-/// Which tiles of the bins lie in the target. Those that do not hold no depth: no range of theirs is in the way.
+/// Finds the tiles of each bin that lie in the target. The others hold no depth: their ranges never decide.
 void FrameRenderer::find_tiles() {
   is_in_target_.resize(tiles_.pending.size());
   for (std::size_t i = 0; i < is_in_target_.size(); ++i) {
@@ -274,11 +273,11 @@ void FrameRenderer::clear_whole(const Clear& command) {
     bits |= TileStates::kColorCleared;
     clear_color_ = clear_color(*command.color, config_.color_format);
   }
-  // Loops that the compiler takes in lanes: nothing that they store can be one of their pointers.
+  // Loops that the compiler vectorises: their stores cannot alias their pointers.
   const std::size_t tiles = is_in_target_.size();
   const std::uint8_t* const is_in = is_in_target_.data();
   std::uint8_t* const pending = tiles_.pending.data();
-  std::uint32_t again = 0;  // of the clear before
+  std::uint32_t again = 0;  // the clear before
   for (std::size_t i = 0; i < tiles; ++i) again += (pending[i] & bits) != 0 ? 1U : 0U;
   rendering_.counters.skipped.clear += again;
   for (std::size_t i = 0; i < tiles; ++i) pending[i] = static_cast<std::uint8_t>(pending[i] | (is_in[i] & bits));
@@ -312,7 +311,7 @@ void FrameRenderer::clear(const Clear& command) {
   }
 }
 
-/// Writes the clears that are still pending in tiles that meet `rect`; not where memory is that clear already.
+/// Writes the clears that are still pending in tiles that meet `rect`, except where memory holds them already.
 void FrameRenderer::settle(const Rect& rect) {
   Framebuffer& frame = rendering_.frame;
   const auto forget = [this](std::uint8_t bit, std::uint32_t& held, std::uint32_t value) {
@@ -326,7 +325,7 @@ void FrameRenderer::settle(const Rect& rect) {
   const bool is_whole = rect == Rect{0, 0, frame.width, frame.height};
   for_each_index(arena_.get(), bins, [&](std::size_t bin) {
     std::uint8_t* const waits = tiles_.pending.data() + bin * kTiles;
-    std::uint8_t is_missing = 0;  // in memory
+    std::uint8_t is_missing = 0;  // not yet in memory
     for (std::size_t i = 0; i < kTiles; ++i)
       is_missing |= static_cast<std::uint8_t>(waits[i] & ~tiles_.held[bin * kTiles + i]);
     // The contents of samples are unknown.
@@ -361,7 +360,7 @@ void FrameRenderer::settle(const Rect& rect) {
   });
 }
 
-/// Writes what is pending; the padding is as in an empty target.
+/// Writes all pending data; the padding is as in an empty target.
 void FrameRenderer::finish() {
   const auto started = Clock::now();
   std::uint64_t pending = 0;
@@ -398,7 +397,7 @@ void FrameRenderer::draw(std::uint32_t command) {
     rendering_.counters.culled += count;
     return;
   }
-  // The lanes take lines of one pixel that have their own colours: the host side fogs their ends.
+  // The lanes take lines of one pixel that are not fogged: the host side fogs line ends.
   const State& state = scene_->states[draw.state];
   const bool is_thin = state.line_rule != LineRule::rectangle && !state.smooth && strands_of(state.line_width) == 1;
   const bool is_plain = type != PrimitiveType::line || (!state.fog && is_thin);
@@ -430,7 +429,8 @@ Slice& FrameRenderer::add_slice(const DrawContext& context) {
   return slice;
 }
 
-/// Whether every fragment of the draw would fail against what is drawn so far. Pending triangles may lower depths only.
+/// Whether every fragment of the draw would fail against the depths drawn so far. Pending triangles may only lower
+/// depths.
 bool FrameRenderer::is_behind(const DrawContext& context, const PreparedScene::DrawChunks& draw) const {
   const State& state = context.state;
   const DepthFunc func = context.fragment_ops.state.depth_test;
@@ -442,11 +442,11 @@ bool FrameRenderer::is_behind(const DrawContext& context, const PreparedScene::D
     return to_window({p[0], p[1], p[2], 1, {}, 0, 0}, state, context.viewport);
   };
   const WindowPosition a = corner(draw.low), b = corner(draw.high);
-  // Nothing that the clipper would touch, nor what would be refused: its corners and errors are not the box's.
+  // No draw that the clipper would cut, or with a refused vertex: its corners and errors are not the box's.
   const double limit = config_.guard_band - 2, near = state.clip_z == ClipZ::zero_one ? 0 : -1, hair = 1e-9;
   const auto is_inside = [limit](const WindowPosition& p) { return std::abs(p.x) < limit && std::abs(p.y) < limit; };
   if (!is_inside(a) || !is_inside(b) || !(draw.low[2] > near + hair && draw.high[2] < 1 - hair)) return false;
-  // A pixel and a code more: the snap, and the rounding of the plane.
+  // One pixel and one code more: the snap, and the rounding of the plane.
   const Rect& rect = context.rect;
   const auto tile = [](double pixel, int first, int last) {
     return static_cast<int>(std::clamp(pixel, static_cast<double>(first), static_cast<double>(last))) >> kTileShift;
@@ -462,24 +462,24 @@ bool FrameRenderer::is_behind(const DrawContext& context, const PreparedScene::D
     for (int x = left; x <= right; ++x) {
       const int bin = (y >> kShift) * bins_x_ + (x >> kShift);
       const int at = (bin * kBinTiles + (y & (kBinTiles - 1))) * kBinTiles + (x & (kBinTiles - 1));
-      // The bits that a range drops may all be ones.
+      // The dropped bits of a range may all be ones.
       const std::int64_t above = (std::int64_t{tiles_.z_high[static_cast<std::size_t>(at)]} + 1) << range_drop(config_);
       if (nearest < static_cast<double>(above)) return false;
     }
   return true;
 }
 
-/// Chunk by chunk into the open slice while that has the same state and room.
+/// Adds chunk by chunk to the open slice while that has the same state and room.
 void FrameRenderer::draw_prepared(std::uint32_t command) {
   const Draw& draw = std::get<Draw>(scene_->commands[command]);
   const PreparedScene::DrawChunks& chunks = prepared_->draws[command];
   const bool is_lines = primitive_type(draw.topology) == PrimitiveType::line;
   if (skip_.objects_hiz && chunks.has_box && !compares_) {
-    // What is in front must be drawn to be known: before the first draw that is worth it, and now and then.
+    // Occluders must be drawn to be known: before the first draw that is worth it, and from time to time.
     constexpr std::size_t kMany = 512, kStale = 1 << 15;
     if (chunks.primitives >= kMany && pending_primitives_ > 0 && (!has_flushed_ || pending_primitives_ >= kStale))
       flush();
-    // Before anything is drawn there is only the clear, which hides something when it is not the farthest depth.
+    // Before the first draw there is only the clear, which hides something unless it is the farthest depth.
     const bool may_hide = has_flushed_ || clear_depth_ < (std::uint32_t{1} << config_.depth_bits) - 1;
     if (may_hide && is_behind(DrawContext(*scene_, config_, draw, command), chunks)) {
       primitive_ += static_cast<std::uint32_t>(chunks.primitives);
@@ -490,7 +490,7 @@ void FrameRenderer::draw_prepared(std::uint32_t command) {
       return;
     }
   }
-  // Vertices that neighbouring slices share are projected in each: the fewer slices, the fewer of those.
+  // Vertices that neighbouring slices share are projected in each slice: fewer slices, fewer of these.
   constexpr std::size_t kSlicesOfDraw = 16;
   const std::size_t slice_limit = std::clamp(chunks.primitives / kSlicesOfDraw, kSlicePrimitives, 4 * kSlicePrimitives);
   for (std::size_t i = chunks.first; i < chunks.first + chunks.count; ++i) {
@@ -527,7 +527,7 @@ void FrameRenderer::draw_outlines(const DrawContext& context) {
   });
 }
 
-/// Of all that is drawn in a bin, in order, over the clears. Slices of one state are one.
+/// Signature of all draws in a bin, in order, over the clears. Slices of one state count as one.
 Signature FrameRenderer::signature_of_bin(std::size_t bin, const std::vector<const Slice*>& slices) const {
   SignatureHash hash;
   hash.add(clear_depth_);
@@ -543,12 +543,12 @@ Signature FrameRenderer::signature_of_bin(std::size_t bin, const std::vector<con
   return hash.signature();
 }
 
-/// Draws what is pending. Where bins are compared that is all of the frame.
+/// Draws all pending slices. Where bins are compared these are the whole frame.
 void FrameRenderer::flush(bool is_last) {
   open_ = nullptr;
   if (slice_count_ == 0 && !(compares_ && is_last)) return;
   const auto started = Clock::now();
-  // What is drawn later looks at samples: then they must be there.
+  // Later draws read samples: then they must be in memory.
   const bool writes_samples = widths_.has_samples != 0 && (keeps_samples_ || !is_last);
   if (writes_samples) need_samples();
   for_each_index(arena_.get(), slice_count_, [this](std::size_t i) { build(slices_[i]); });

@@ -11,10 +11,10 @@
 
 namespace halfplane::functional {
 
-/// Whether the fast path has all that is asked for.
+/// Whether the fast path supports the scene, configuration and options.
 [[nodiscard]] bool is_supported(const Scene& scene, const Config& config, const RenderOptions& options);
 
-/// Renders frames; keeps its memory from one to the next.
+/// Renders frames; reuses its memory from frame to frame.
 class FrameRenderer {
  public:
   explicit FrameRenderer(const Config& config);
@@ -22,7 +22,7 @@ class FrameRenderer {
   /// Precondition: is_supported(). The result lives until the next call.
   [[nodiscard]] const Rendering& render(const PreparedScene& prepared, const RenderOptions& options);
 
-  /// The last result, for keeps: the next frame starts with memory of its own.
+  /// Moves the last result out: the next frame allocates its own memory.
   [[nodiscard]] Rendering take();
 
  private:
@@ -30,7 +30,7 @@ class FrameRenderer {
   void run_commands(const RenderOptions& options);
   void find_tiles();
   void need_samples();
-  /// The image of the pixels, and those of their samples.
+  /// The image of the pixels, and the images of their samples.
   template <class Visit>
   void for_each_image(Visit&& visit) {
     visit(rendering_.frame);
@@ -56,13 +56,13 @@ class FrameRenderer {
   [[nodiscard]] Signature signature_of_bin(std::size_t bin, const std::vector<const Slice*>& slices) const;
   void fill_bins(Slice& slice) const;
 
-  /// A depth as the ranges of tiles keep it.
+  /// A depth in the precision of tile ranges.
   [[nodiscard]] std::uint16_t range_of(std::uint32_t code) const {
     return static_cast<std::uint16_t>(code >> range_drop(config_));
   }
 
-  Config given_;   ///< by who made it
-  Config config_;  ///< with what the scene needs: with_alpha()
+  Config given_;   ///< as passed in
+  Config config_;  ///< extended for the scene: with_alpha()
   Widths widths_;
   const Kernels* kernels_ = nullptr;
   const PreparedScene* prepared_ = nullptr;
@@ -71,7 +71,7 @@ class FrameRenderer {
   bool is_opaque_ = true;  ///< SliceState::is_opaque of every draw
   int threads_ = 1;
   std::unique_ptr<tbb::task_arena>
-      arena_;  ///< for more than one thread; kept, or every part of a frame would wait for it
+      arena_;  ///< for more than one thread; kept, because every part of a frame would wait for a new one
   int bins_x_ = 0, bins_y_ = 0;
   Rendering rendering_;
   bool keeps_samples_ = true;               ///< Framebuffer::samples is read after the frame
@@ -79,20 +79,20 @@ class FrameRenderer {
   TileStates tiles_;
   std::vector<std::uint8_t> is_in_target_;  ///< by tile: all bits or none
   std::uint32_t clear_depth_ = 0, clear_color_ = 0;
-  std::uint32_t held_depth_ = 0, held_color_ = 0;  ///< the clear that TileStates::held speaks of
+  std::uint32_t held_depth_ = 0, held_color_ = 0;  ///< the clear of TileStates::held
   std::deque<DrawContext> contexts_;
   std::deque<Slice> slices_;
   std::size_t slice_count_ = 0, pending_primitives_ = 0;
-  bool pending_rises_ = false;  ///< what is pending may make a stored depth larger
+  bool pending_rises_ = false;  ///< pending draws may raise a stored depth
   bool has_flushed_ = false;    ///< since the last clear
   bool is_stencil_zero_ = true;
-  Slice* open_ = nullptr;  ///< takes further triangles of its state
+  Slice* open_ = nullptr;  ///< accepts further triangles of its state
   std::uint32_t open_state_ = 0;
   std::uint32_t primitive_ = 0;
   std::size_t entries_done_ = 0;
   std::vector<Counters> bin_counters_;
-  bool compares_ = false;             ///< bins with those of the frame before
-  std::vector<Signature> held_bins_;  ///< what the frame holds in each bin; empty: unknown
+  bool compares_ = false;             ///< compares bins with those of the frame before
+  std::vector<Signature> held_bins_;  ///< content of each bin of the frame; empty: unknown
   std::vector<Signature> texels_;     ///< of each texture, where bins are compared
 };
 

@@ -8,8 +8,8 @@
 namespace halfplane {
 namespace {
 
-/// What the lanes have not: counts, ids, taps, other tile sizes, more depth and reciprocal bits, depth formats, and vertices of
-/// surfaces that are not in front of the eye (is_supported()).
+/// Renders by the stages, for features that lanes lack: counts, ids, taps, other tile sizes, more depth and reciprocal
+/// bits, depth formats, and surfaces with vertices that are not in front of the eye (is_supported()).
 Rendering render_by_stages(const Scene& scene, const Config& config, const RenderOptions& options) {
   if (options.rules != StudyRules{})
     throw InputError("the functional engine has no other traversal, fill rule or clipping; use the scalar engine");

@@ -1,5 +1,5 @@
-// Everything that the kernels include, before a TU switches to another instruction set: what these headers define stays
-// code for every machine.
+// All headers that the kernels include, before a TU switches to another instruction set: definitions of these headers
+// stay code for every machine.
 #pragma once
 
 #if defined(__x86_64__)
@@ -31,9 +31,9 @@
 #endif
 
 #define HALFPLANE_NOINLINE __attribute__((noinline))
-// HALFPLANE_LEAF is inlined always: operations on lanes, and the leaf arithmetic of the stages. HALFPLANE_SMALL_KERNELS: of
-// what is made of them the compiler chooses. Inlining all of it, where a vector is two or four registers, makes twice or four
-// times the code and takes twice or ten times as long to compile.
+// HALFPLANE_LEAF is always inlined: operations on lanes, and the leaf arithmetic of the stages.
+// HALFPLANE_SMALL_KERNELS: the compiler decides about the functions built on them. Inlining all of it, where a vector
+// is two or four registers, makes two or four times the code and takes two to ten times as long to compile.
 #define HALFPLANE_LEAF inline __attribute__((always_inline))
 #ifdef HALFPLANE_SMALL_KERNELS
 #define HALFPLANE_INLINE inline

@@ -12,7 +12,7 @@ namespace halfplane {
 
 namespace {
 
-/// The box of a clip-space draw's triangles, for whole-object tests: worth it for those alone that have many.
+/// The box of a clip-space draw's triangles, for whole-object tests: only worth it for draws with many triangles.
 void find_box(PreparedScene::DrawChunks& draw, const PreparedScene& prepared, std::size_t first) {
   constexpr std::size_t kFew = 64;
   if (draw.primitives < kFew) return;
@@ -34,7 +34,7 @@ void find_box(PreparedScene::DrawChunks& draw, const PreparedScene& prepared, st
   draw.has_box = true;
 }
 
-/// What of the vertices lives over w, where a state asks for it.
+/// Finds the attributes over w of the vertices, if a state needs them.
 void find_surface(PreparedScene& prepared, std::size_t spare) {
   const Scene& scene = prepared.scene();
   if (std::ranges::none_of(scene.states, [](const State& s) { return has_surface(s); })) return;
@@ -49,7 +49,7 @@ void find_surface(PreparedScene& prepared, std::size_t spare) {
     prepared.normals[i] = normal_codes(unit_normal(scene.normal(i)));
 }
 
-/// Whether a texture's texels may be mixed with those beside them.
+/// Whether a texture's filter mixes neighbouring texels.
 bool is_linear(const State& state) {
   return state.texture_mag == TextureMag::linear || state.texture_min == TextureMin::linear ||
          state.texture_min == TextureMin::linear_mipmap_nearest ||
@@ -88,7 +88,7 @@ PreparedScene::PreparedScene(const Scene& scene, std::vector<TexelBlocks> known)
     if (type == PrimitiveType::point || drawn_as(state, draw->topology) != type) continue;
     DrawChunks& of_draw = draws[i];
     of_draw.first = chunks.size();
-    if (draw->outside != 0) {  // only numbered
+    if (draw->outside != 0) {  // numbered, but not drawn
       of_draw.primitives = primitive_count(scene, *draw);
       continue;
     }

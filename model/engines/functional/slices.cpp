@@ -1,4 +1,4 @@
-// How a slice is built: its vertices, its records, its bin lists.
+// Building a slice: its vertices, its records, its bin lists.
 #include <algorithm>
 #include <bit>
 #include <utility>
@@ -25,13 +25,13 @@ Record record_of(const std::array<std::uint32_t, 3>& v, std::int64_t z_low, std:
   return record;
 }
 
-/// Appends; Slice::records may be longer than it is full.
+/// Appends; Slice::records may be longer than its content.
 void add_record(Slice& slice, const Record& record, std::size_t room) {
   if (slice.records.size() < slice.record_count + 1 + room) slice.records.resize(2 * (slice.record_count + 1 + room));
   slice.records[slice.record_count++] = record;
 }
 
-/// Appends what of a triangle's vertices lives over w, before the vertices. Those of the scene are copied then.
+/// Appends the attributes over w of a triangle's vertices, before the vertices. Those of the scene are copied first.
 void add_surface_vertices(Slice& slice, const Triangle& triangle) {
   const bool is_lit = slice.normals != nullptr;
   if (slice.surface != slice.own_surface.data()) {
@@ -46,7 +46,7 @@ void add_surface_vertices(Slice& slice, const Triangle& triangle) {
   if (is_lit) slice.normals = slice.own_normals.data();
 }
 
-/// Appends a triangle of the host side, if there may be a sample in its box.
+/// Appends a triangle of the host side, if its box may contain a sample.
 void add_triangle(Slice& slice, const Triangle& triangle, const Rect& rect, const Widths& widths, std::size_t room) {
   const PixelBounds box = sample_bounds(triangle.v, {rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1},
                                         widths.grid_bits, widths.pixel_samples);
@@ -58,7 +58,7 @@ void add_triangle(Slice& slice, const Triangle& triangle, const Rect& rect, cons
   add_record(slice, record_of({first, first + 1, first + 2}, low, high, box, RecordKind::triangle), room);
 }
 
-/// A triangle that needs the clipper, or whose vertex is refused: the host side's function, message included.
+/// A triangle that needs the clipper, or with a refused vertex: drawn by the host side's function, message included.
 void draw_slowly(const FrameContext& frame, Slice& slice, const Slice::Part& part, std::size_t triangle) {
   const Scene& scene = frame.prepared.scene();
   const DrawContext context(scene, frame.config, std::get<Draw>(scene.commands[part.command]), part.command);
@@ -72,7 +72,7 @@ void draw_slowly(const FrameContext& frame, Slice& slice, const Slice::Part& par
   for (const Triangle& piece : pieces) add_triangle(slice, piece, context.rect, frame.widths, slice.triangles);
 }
 
-/// What of a slice's vertices lives over w.
+/// Finds the attributes over w of a slice's vertices.
 void find_surface_vertices(const FrameContext& frame, Slice& slice) {
   const PreparedScene& prepared = frame.prepared;
   const bool is_lit = slice.context->phong != nullptr;
@@ -105,7 +105,7 @@ PixelBounds line_box(const LineSetup& line) {
   return {std::min(line.x, end_x), std::min(line.y, end_y), std::max(line.x, end_x), std::max(line.y, end_y)};
 }
 
-/// Appends what the host side has made of a line or point.
+/// Appends a line or point of the host side.
 void add_outline(Slice& slice, const Outline& outline, const Rect& rect, const Widths& widths, std::size_t room) {
   for (const Triangle& triangle : outline.triangles) add_triangle(slice, triangle, rect, widths, room);
   for (const LinePrimitive& line : outline.lines) {
@@ -124,7 +124,7 @@ void add_outline(Slice& slice, const Outline& outline, const Rect& rect, const W
   }
 }
 
-/// A line that the scissor or the clipper cuts, or whose vertex is refused.
+/// A line that the scissor or the clipper cuts, or with a refused vertex.
 void draw_line_slowly(const FrameContext& frame, Slice& slice, const Slice::Part& part, std::size_t line) {
   const Scene& scene = frame.prepared.scene();
   const DrawContext context(scene, frame.config, std::get<Draw>(scene.commands[part.command]), part.command);
@@ -154,7 +154,7 @@ void FrameRenderer::build(Slice& slice) const {
     slice.codes.resize(vertices + 16);
     if (slice.state.has_surface) find_surface_vertices(frame, slice);
     if (slice.records.size() < slice.triangles) slice.records.resize(slice.triangles);
-    // Polygon offset is a property of the triangle: no vertex has it.
+    // Polygon offset is a property of the triangle, not of vertices.
     if (!slice.is_lines && slice.context->state.polygon_offset != std::array<double, 2>{0.0, 0.0}) {
       for (const Slice::Part& part : slice.parts)
         for (std::size_t i = 0; i < part.count; ++i) draw_slowly(frame, slice, part, i);
@@ -167,7 +167,7 @@ void FrameRenderer::build(Slice& slice) const {
   if (compares_) sign(slice);
 }
 
-/// Everything that the pixels of each record depend on, but for the clears below it.
+/// Everything that the pixels of each record depend on, except the clears below it.
 void FrameRenderer::sign(Slice& slice) const {
   const State& state = slice.context->state;
   SignatureHash of_state;
@@ -228,7 +228,7 @@ void FrameRenderer::fill_bins(Slice& slice) const {
   static thread_local std::vector<std::uint32_t> next;
   static thread_local std::vector<Entry> entries;
   next.assign(bins, 0);
-  entries.resize(std::max(entries.size(), slice.record_count));  // one each, and room for more where there are more
+  entries.resize(std::max(entries.size(), slice.record_count));  // one per record, more where it lies in several bins
   Entry* entry = entries.data();
   std::uint32_t* const in_bin = next.data();
   std::size_t count = 0;

@@ -7,7 +7,7 @@
 namespace halfplane::functional {
 namespace {
 
-/// What row_of() made a row of.
+/// The inverse of row_of().
 SnappedVertex vertex_of(const VertexRow& row, std::uint32_t rgba, const Widths& widths) {
   SnappedVertex v;
   v.x = row.x;
@@ -113,8 +113,8 @@ LaneTexture texture_lanes(const Sampler& sampler, const TexelBlocks& texels, Tex
   return lanes;
 }
 
-/// The bounds: P less P of another vertex has a bit more than P, a numerator is the difference of two products of such a
-/// number and a side, and the reciprocal is at most 2^r. Where a product gains bits, they are those of F beyond r.
+/// The bounds: P less P of another vertex has a bit more than P, a numerator is the difference of two products of such
+/// a number and a side, and the reciprocal is at most 2^r. If a product gains bits, these are the bits of F beyond r.
 SurfaceStyle::SurfaceStyle(const FrameContext& frame, const DrawContext& draw)
     : context(&draw),
       format(perspective_format(frame.config)),
@@ -157,7 +157,7 @@ SurfaceConstants::SurfaceConstants(const StageSurface& from, const FrameContext&
   if (is_lit) set_light(from, frame.widths);
 }
 
-/// Whether the primitive's colour makes no difference.
+/// Whether the primitive's colour has no effect.
 bool SurfaceConstants::sees_texture_alone(const StageSurface& from) const {
   const bool is_white = std::ranges::all_of(color_low, [](std::uint32_t code) { return code == 255; });
   switch (from.surface.combine()) {
@@ -167,9 +167,9 @@ bool SurfaceConstants::sees_texture_alone(const StageSurface& from) const {
   }
 }
 
-/// Whether every Pn lies in its range where it is covered. x leaves a part of 2^-10 beside the largest |u'|. Of it
-/// rounding takes 2^-13 (Pn, of 12 bits and more), the reciprocal of the area 2 * 2^-14, and the planes of P and Q, off by
-/// less than 0.82 and 0.32 codes, 1.14 of 2^11 codes of Q; those of P count as many times as N is larger than N_P.
+/// Whether every Pn of a covered pixel lies in its range. x leaves a margin of 2^-10 above the largest |u'|. Rounding
+/// takes 2^-13 of it (Pn, of 12 bits and more), the reciprocal of the area 2 * 2^-14, and the planes of P and Q, off by
+/// less than 0.82 and 0.32 codes, 1.14 of 2^11 codes of Q; errors of P are scaled by N / N_P.
 bool SurfaceConstants::is_never_held(const OverWFormat& format, const PerspectiveFormat& all, const QCodes& q) {
   constexpr int kNarrowBits = 12, kReciprocalBits = 14, kCodes = 11;
   return format.narrow_bits >= kNarrowBits && all.reciprocal_bits >= kReciprocalBits &&
@@ -182,10 +182,10 @@ LaneAttribute SurfaceConstants::attribute_of(const Surface::Attribute& from, con
   const PerspectiveFormat& all = surface.surface.format();
   LaneAttribute attribute;
   attribute.p = lanes_of(from.plane, surface.setup, all.guard_bits, lanes.up, widths);
-  const int narrow = 1 + from.over_w.reach - from.over_w.exponent - format.narrow_bits;  // from e to what P drops
+  const int narrow = 1 + from.over_w.reach - from.over_w.exponent - format.narrow_bits;  // from e to the shift of P
   attribute.narrow = narrow - 1 - kFloatBias + lanes.up;
   attribute.drop = all.mantissa_bits + format.narrow_bits - 1 - from.over_w.reach - format.fraction_bits - lanes.split;
-  // At a covered pixel Q is the smallest vertex's or more, but for a third of a code.
+  // At a covered pixel Q is at least the smallest vertex's, less a third of a code.
   const int smallest = floor_log2(*std::ranges::min_element(divisor.q)) + all.guard_bits - 1;
   attribute.may_gain = smallest + narrow < 1;
   const int largest = floor_log2(*std::ranges::max_element(divisor.q)) + all.guard_bits + 1;

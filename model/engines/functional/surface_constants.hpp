@@ -1,5 +1,5 @@
-// What is constant over the surface of one triangle, as lanes take it: the planes of surface.hpp, whose values wrap in 32
-// bits, and how a texture is looked at. Made for those triangles alone that a bin has found to be seen.
+// Constants of one triangle's surface, as lanes take them: the planes of surface.hpp, whose values wrap in 32 bits, and
+// the access to a texture. Made only for triangles that a bin has found visible.
 #pragma once
 
 #include <array>
@@ -28,13 +28,13 @@ struct StageSurface {
   Surface surface;  ///< of that setup
 };
 
-/// A plane over w, 2^-l codes, in the upper bits of a lane: it wraps by itself.
+/// A plane over w, 2^-l codes, in the upper bits of a lane: it wraps by overflow.
 struct LanePlane {
-  std::uint64_t at_zero = 0;             ///< at the anchor of the target's first tile, 2^-F codes; with what rounds it
+  std::uint64_t at_zero = 0;             ///< at the anchor of the target's first tile, 2^-F codes, with rounding term
   std::uint64_t tile_x = 0, tile_y = 0;  ///< from tile to tile
-  std::int32_t step_x = 0, step_y = 0;   ///< of a pixel
+  std::int32_t step_x = 0, step_y = 0;   ///< per pixel
   int drop = 0;                          ///< F - l
-  int up = 0;                            ///< bits below it in a lane
+  int up = 0;                            ///< bits below the plane in a lane
 
   /// At the anchor of a tile of the target.
   [[nodiscard]] std::int32_t anchor(int x, int y) const {
@@ -44,11 +44,11 @@ struct LanePlane {
   }
 };
 
-/// How Q is divided by.
+/// Constants of the division by Q.
 struct LaneDivision {
   int up;                      ///< bits below Q in a lane
-  std::int32_t mantissa_mask;  ///< in binary32: the k highest bits of a number but for the first
-  std::int32_t middle;         ///< the bit behind them, and the exponent of 1
+  std::int32_t mantissa_mask;  ///< in binary32: the k highest bits of a number without the first
+  std::int32_t middle;         ///< the bit after them, and the exponent of 1
   int to_divisor;              ///< from d 2^-k in binary32 to d
   float power;                 ///< 2^k
   std::int32_t whole;          ///< 2^(2k) modulo 2^32
@@ -56,24 +56,25 @@ struct LaneDivision {
   explicit LaneDivision(const PerspectiveFormat& format);
 };
 
-/// How P of one kind of attribute is. A product Pn r is computed in two parts, of the upper and the lower bits of r.
+/// Format of P for one kind of attribute. A product Pn r is computed in two parts, with the upper and the lower bits of
+/// r.
 struct LaneOverW {
   int up;                        ///< bits below P in a lane
-  std::int32_t lowest, highest;  ///< Pn
+  std::int32_t lowest, highest;  ///< range of Pn
   int split;                     ///< lower bits of r
-  std::int32_t lower_bits;       ///< those
+  std::int32_t lower_bits;       ///< mask of these bits
 
   LaneOverW(const OverWFormat& attribute, const PerspectiveFormat& format);
 };
 
-/// An attribute: P, and how far it is shifted.
+/// An attribute: P, and its shifts.
 struct LaneAttribute {
   LanePlane p;
-  int narrow = 0;         ///< from Q's exponent in binary32 to what a lane of P drops, but for a bit that rounds
-  bool may_gain = false;  ///< whether P itself may drop less than a bit, and gain some
-  bool is_tame = false;   ///< where it is covered P drops 1 to 31 bits of a lane, and no Pn is held
-  int drop = 1;           ///< what the upper part of Pn r drops, at least 1
-  std::int32_t half = 1;  ///< of that
+  int narrow = 0;         ///< from Q's exponent in binary32 to the bits that a lane of P drops, less one for rounding
+  bool may_gain = false;  ///< whether P itself may drop less than one bit, and gain some
+  bool is_tame = false;   ///< at covered pixels P drops 1 to 31 bits of a lane, and no Pn is clamped
+  int drop = 1;           ///< bits that the upper part of Pn r drops, at least 1
+  std::int32_t half = 1;  ///< half a unit of that
 };
 
 /// Attributes over one Q.
@@ -83,14 +84,14 @@ struct LaneQuotients {
   std::array<LaneAttribute, N> attribute{};
 };
 
-/// How a texture is looked at, its sides powers of two.
+/// Access to a texture whose sides are powers of two.
 struct LaneTexture {
   const void* texels = nullptr;              ///< TexelBlocks
-  const TexelBlocks::Quad* quads = nullptr;  ///< if there are
+  const TexelBlocks::Quad* quads = nullptr;  ///< if present
   std::array<std::int32_t, TexelBlocks::kLevels> first{};
   std::array<int, 2> bits{};                ///< log2 of its sides
-  std::array<std::int32_t, 2> last{};       ///< texel along them
-  int pitch = 0;                            ///< from a row's number, but for the two lowest bits, to its place
+  std::array<std::int32_t, 2> last{};       ///< last texel along them
+  int pitch = 0;                            ///< from a row's number, without the two lowest bits, to its place
   std::array<TextureWrap, 2> wrap{};        ///
   std::array<std::int32_t, 2> reference{};  ///< u_ref, 2^-8 texels
   int up = 0;                               ///< from a coordinate to 2^-8 texels
@@ -99,15 +100,15 @@ struct LaneTexture {
   int last_level = 0;
   LodSetup lod;
   Lod bias = 0, least = 0, largest = 0;
-  Lod magnified = 0;  ///< up to here mag counts
+  Lod magnified = 0;  ///< up to this lambda mag applies
   TextureCombine combine = TextureCombine::modulate;
   bool has_alpha = false;
-  const std::uint32_t* alpha_quads = nullptr;              ///< TexelBlocks, if there are
-  const TexelBlocks::AlphaRanges* alpha_ranges = nullptr;  ///< of level 0, if there are
+  const std::uint32_t* alpha_quads = nullptr;              ///< alphas of TexelBlocks, if present
+  const TexelBlocks::AlphaRanges* alpha_ranges = nullptr;  ///< of level 0, if present
   std::array<std::int32_t, 2> margin{};                    ///< coordinates_margin(), 2^-8 texels
 };
 
-/// How much of sample() there is to do.
+/// How much of sample() is needed.
 enum class Sampling { none, nearest, linear, any };
 [[nodiscard]] inline Sampling sampling_of(const LaneTexture& texture) {
   if (texture.min == TextureMin::nearest && texture.mag == TextureMag::nearest) return Sampling::nearest;
@@ -115,10 +116,10 @@ enum class Sampling { none, nearest, linear, any };
   return Sampling::any;
 }
 
-/// No coordinate of a pixel of a tile is that much less (more) than the least (the greatest) of those of its corners, 2^-8
-/// texels, if all four are covered. P and Q are linear over the pixels, so P / Q has its extremes in corners, as Q > 0. What
-/// a pixel makes of it is off by less than 2^x (2^(2-k) + 2^(1-k_P)), for the reciprocal and for Pn, and 2^-f for what is
-/// rounded last; twice that, and a last bit each.
+/// Bound: how far a coordinate in a tile may lie below (above) the least (the greatest) coordinate of its corners, 2^-8
+/// texels, if all four are covered. P and Q are linear over the pixels, so P / Q has its extremes in corners, as Q > 0.
+/// The error at a pixel is less than 2^x (2^(2-k) + 2^(1-k_P)), for the reciprocal and for Pn, and 2^-f for the last
+/// rounding; twice that, and a last bit each.
 [[nodiscard]] inline std::int32_t coordinates_margin(int reach, const PerspectiveFormat& format) {
   const int k = format.mantissa_bits, narrow = format.coordinate.narrow_bits;
   const double off = std::ldexp(1.0, reach) * (std::ldexp(1.0, 2 - k) + std::ldexp(1.0, 1 - narrow)) +
@@ -126,20 +127,20 @@ enum class Sampling { none, nearest, linear, any };
   return static_cast<std::int32_t>(std::ceil(2 * off * (1 << kTexelFraction))) + 2;
 }
 
-/// Those of a texture and its sampler. `combine`: with the primitive's colour; `fraction_bits`: of a coordinate.
+/// Constants of a texture and its sampler. `combine`: with the primitive's colour; `fraction_bits`: of a coordinate.
 [[nodiscard]] LaneTexture texture_lanes(const Sampler& sampler, const TexelBlocks& texels, TextureCombine combine,
                                         int fraction_bits);
 
-/// What the surfaces of a draw have in common, where lanes set up sixteen of them at a time and shade pixels whosever
-/// they are: one texture and affine colours.
+/// Constants common to the surfaces of a draw, where lanes set up sixteen surfaces at a time and shade pixels of any of
+/// them: one texture and affine colours.
 struct SurfaceStyle {
   SurfaceStyle(const FrameContext& frame, const DrawContext& draw);
 
   const DrawContext* context;
-  bool is_in_lanes = false;  ///< else there is nothing more to know
+  bool is_in_lanes = false;  ///< else the other members are unused
   Sampling sampling = Sampling::none;
-  bool is_affine = false;            ///< w makes no difference to coordinates
-  bool is_tame = true;               ///< so are the coordinates of all that have been set up: LaneAttribute
+  bool is_affine = false;            ///< w does not change coordinates
+  bool is_tame = true;               ///< the coordinates of all surfaces set up so far are tame: LaneAttribute
   std::array<double, 2> size{1, 1};  ///< texels along the texture's sides
   PerspectiveFormat format;
   LaneDivision division;
@@ -147,22 +148,22 @@ struct SurfaceStyle {
   LaneTexture texture;
 };
 
-/// How a fog is looked up, from Q in binary32 whose exponent and upper mantissa are one number.
+/// Lookup of a fog table, from Q in binary32 whose exponent and upper mantissa are one number.
 struct LaneFog {
   LanePlane q;
   const FogTable::Line* lines = nullptr;
   std::int32_t first = 0, last = 0;  ///< that number at the first place; the last place
-  int place_bits = 0, drop = 0;      ///< of a line; from a line's sum to f
+  int place_bits = 0, drop = 0;      ///< bits of a place in a line; shift from a line's sum to f
   std::array<std::int32_t, 3> color{};
 };
 
-/// How fragments are lit.
+/// Light of fragments.
 struct LaneLight {
   std::array<LanePlane, 3> normal;
   int up = 0;                          ///< bits below P in a lane
   const FallingLine* roots = nullptr;  ///< of 1 / sqrt
   const FallingLine* power = nullptr;
-  int place_bits = 0, drop = 0;  ///< of a power's line; from a line's sum to what it is
+  int place_bits = 0, drop = 0;  ///< bits of a place in a power's line; shift from a line's sum to its value
   Normal direction{}, half{};
   std::array<std::int32_t, 3> ambient{}, diffuse{}, specular{};
 };
@@ -170,9 +171,9 @@ struct LaneLight {
 struct SurfaceConstants {
   SurfaceConstants(const StageSurface& from, const FrameContext& frame, const TexelBlocks* texels);
 
-  bool are_in_lanes = true;  ///< what follows is all that there is to know
-  bool has_texture = false;  ///< else the colour is all
-  bool has_color = true;     ///< else the texture's colour is all, but for one that is lit
+  bool are_in_lanes = true;  ///< the members below are complete
+  bool has_texture = false;  ///< else only the colour counts
+  bool has_color = true;     ///< else only the texture's colour counts, except for lit surfaces
   bool is_color_over_w = false;
   bool has_fog = false;
   LaneDivision division;
@@ -182,7 +183,7 @@ struct SurfaceConstants {
   std::array<std::uint32_t, 4> color_low{}, color_high{};  ///< of the vertices
   LaneTexture texture;
   LaneFog fog;
-  std::unique_ptr<const LaneLight> light;  ///< none: it is not lit
+  std::unique_ptr<const LaneLight> light;  ///< null: not lit
 
  private:
   void set_color(const StageSurface& from, const Widths& widths);

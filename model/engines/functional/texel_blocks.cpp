@@ -115,7 +115,7 @@ TexelBlocks::AlphaRanges::AlphaRanges(const TexelBlocks& texels, const std::arra
 TexelBlocks::AlphaRanges::Range TexelBlocks::AlphaRanges::range(const std::array<std::int32_t, 2>& low,
                                                                 const std::array<std::int32_t, 2>& high,
                                                                 const std::array<TextureWrap, 2>& wrap) const {
-  // Squares of which two along each axis hold them.
+  // Squares such that two along each axis cover the columns and rows.
   std::size_t level = 0;
   const auto is_more_than_two = [&](std::size_t axis) {
     const auto shift = static_cast<int>(level) + kShift;

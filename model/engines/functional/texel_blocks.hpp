@@ -1,8 +1,8 @@
-// A texture as lanes fetch it: decoded, in blocks of 4 x 4 texels, a cache line each. A linear footprint then lies in one
-// line more often than in two, whichever way the texture is turned.
+// A texture as lanes fetch it: decoded, in blocks of 4 x 4 texels, a cache line each. A linear footprint then lies in
+// one line more often than in two, for any rotation of the texture.
 //
-// For linear filters each texel may have its footprint beside it: itself, the next one, and both of the row below. That
-// takes four times the memory, and one load a pixel in place of four.
+// For linear filters each texel may be stored with its footprint: itself, the next texel, and both of the row below.
+// That takes four times the memory, and one load per pixel instead of four.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace halfplane {
 class TexelBlocks {
  public:
   static constexpr int kShift = 2, kSize = 1 << kShift, kTexels = kSize * kSize;
-  static constexpr std::size_t kLevels = 16;  ///< of 4096 texels, and a few more of nothing
+  static constexpr std::size_t kLevels = 16;  ///< of 4096 texels, and a few empty ones
   static constexpr std::size_t kMostQuads = std::size_t{1}
                                             << 21;  ///< texels of a texture with footprints: 32 MB of them
   struct alignas(64) Block {
@@ -28,37 +28,38 @@ class TexelBlocks {
 
   explicit TexelBlocks(const Texture& texture);
 
-  /// Makes footprints for these borders, if they are to be had: not for mirrored images, nor for large ones.
+  /// Makes footprints for these borders, if supported: not for mirrored images, nor for large ones.
   void add_quads(const std::array<TextureWrap, 2>& wrap);
-  /// Place by place as in `blocks`; null where there are none.
+  /// Indexed like `blocks`; null if there are none.
   [[nodiscard]] const Quad* quads(const std::array<TextureWrap, 2>& wrap) const;
 
-  /// The least and the largest alpha of level 0 in squares of 4, 8, ... texels, down to one that holds them all.
+  /// The minimum and the maximum alpha of level 0 in squares of 4, 8, ... texels, up to one that covers all.
   class AlphaRanges {
    public:
     struct Range {
       std::uint8_t low = 255, high = 0;
     };
-    /// `bits`: log2 of its sides.
+    /// `bits`: log2 of the sides.
     AlphaRanges(const TexelBlocks& texels, const std::array<int, 2>& bits);
-    /// Of columns and rows `low` to `high`, which an image may end between: of what lies in squares that meet them.
+    /// Range over columns and rows `low` to `high`, which may cross the end of the image: over the squares that meet
+    /// them.
     [[nodiscard]] Range range(const std::array<std::int32_t, 2>& low, const std::array<std::int32_t, 2>& high,
                               const std::array<TextureWrap, 2>& wrap) const;
 
    private:
-    /// Squares along an axis, as bits.
+    /// log2 of the squares along an axis.
     [[nodiscard]] int bits_along(std::size_t axis, int shift) const { return std::max(bits_[axis] - shift, 0); }
     std::array<int, 2> bits_;
     std::vector<std::vector<Range>> squares_;  ///< of 4, 8, ... texels, row after row
   };
-  /// Makes them, where its sides are powers of two; and the alphas of the footprints that there are, by themselves.
+  /// Makes the ranges, if sides are powers of two; and separate alphas of existing footprints.
   void add_alphas();
-  /// A footprint's four in a word, place by place; null where there are none.
+  /// The four alphas of a footprint in a word, indexed like `blocks`; null if there are none.
   [[nodiscard]] const std::uint32_t* alpha_quads(const std::array<TextureWrap, 2>& wrap) const;
   [[nodiscard]] const AlphaRanges* alpha_ranges() const { return alpha_ranges_ ? &*alpha_ranges_ : nullptr; }
 
   std::vector<Block> blocks;                  ///< level after level, row of blocks after row
-  std::array<std::int32_t, kLevels> first{};  ///< texel of each level
+  std::array<std::int32_t, kLevels> first{};  ///< first texel of each level
 
  private:
   struct Size {
@@ -68,7 +69,7 @@ class TexelBlocks {
   [[nodiscard]] std::uint32_t texel(std::size_t place) const { return blocks[place / kTexels].texel[place % kTexels]; }
 
   std::vector<Size> size_;                  ///< of each level
-  std::array<std::vector<Quad>, 4> quads_;  ///< by what repeats: u, v
+  std::array<std::vector<Quad>, 4> quads_;  ///< by the axes that repeat: u, v
   std::array<std::vector<std::uint32_t>, 4> alpha_quads_;
   std::optional<AlphaRanges> alpha_ranges_;
 };

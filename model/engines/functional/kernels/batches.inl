@@ -1,4 +1,4 @@
-// Batches of small and medium triangles: sixteen records wait, are set up together, and drawn by what they cover.
+// Batches of small and medium triangles: sixteen records are collected, set up together, and drawn by their coverage.
 #pragma once
 
 #include "bin.inl"
@@ -38,11 +38,11 @@ HALFPLANE_NOINLINE void draw_loaded(Bin& bin, const Slice& slice) {
   }
   if (bin.sees_surfaces() && !bin.skip.attributes) shade_tiles(bin, tiles);
   bin.small.count = 0;
-  // With less, a bound that is too high will do.
+  // With less, a bound that is too high is valid.
   if (is_changed || (!Fragments::kIsLess && bin.state.depth_write)) find_bin_range(bin);
 }
 
-/// Draws the small and medium triangles that wait.
+/// Draws the pending small and medium triangles.
 template <class Fragments>
 HALFPLANE_INLINE void draw_batch(Bin& bin, const Slice& slice) {
   if (bin.small.count == 0) return;
@@ -50,7 +50,7 @@ HALFPLANE_INLINE void draw_batch(Bin& bin, const Slice& slice) {
   draw_loaded<Fragments>(bin, slice);
 }
 
-/// Lets a record wait. A medium one may need several windows.
+/// Adds a record to the batch. A medium one may need several windows.
 template <class Fragments>
 HALFPLANE_INLINE void add_small(Bin& bin, const Slice& slice, const Record& record) {
   if (bin.small.add(record, 0)) draw_batch<Fragments>(bin, slice);

@@ -1,5 +1,5 @@
-// The state of a bin while its records are drawn: its pixels, what its tiles hold, what waits. Everything that follows
-// is functions over it.
+// The state of a bin while its records are drawn: its pixels, the content of its tiles, pending work. All later files
+// are functions on it.
 #pragma once
 
 #include "leaf.inl"
@@ -10,9 +10,9 @@
 namespace halfplane::functional::HALFPLANE_ISA_NAME {
 namespace {
 
-/// Lanes as places.
+/// Pixel and tile positions of lanes.
 struct LanePositions {
-  I16 pair_x;   ///< of rows of eight
+  I16 pair_x;   ///< for rows of eight
   I16 lane;     ///< its number
   I16 to_sign;  ///< 31 - lane: moves bit number `lane` to the sign
   I16 block_x, block_y;
@@ -22,10 +22,10 @@ struct LanePositions {
   std::array<I16, 2> column, row, column_pair, row_pair;
   struct Block {
     I16 column, row;
-    S32 channel_column, channel_row;  ///< of its left half, four channels a pixel
+    S32 channel_column, channel_row;  ///< of the tile's left half, four channels a pixel
   };
-  std::array<Block, 4> block;                ///< of a tile, likewise
-  std::array<Quad::Part, 2> quad_x, quad_y;  ///< of the first part of a quad: the first one, the next one
+  std::array<Block, 4> block;                ///< blocks of a tile, likewise
+  std::array<Quad::Part, 2> quad_x, quad_y;  ///< of the first part of a quad; of the next part
 
   LanePositions() {
     pair_x = I16::of([](int i) { return i % 8; });
@@ -66,9 +66,9 @@ static const LanePositions& lane_positions() {
   return positions;
 }
 
-/// What the colours of a triangle have in common, in lanes.
+/// Constants of a triangle's colours, in lanes.
 struct ColorSteps {
-  ChannelPairs step_x, step_y, low, high;  ///< of a pixel; codes of the vertices
+  ChannelPairs step_x, step_y, low, high;  ///< steps per pixel; range of the vertices' codes
 };
 
 /// Inclusive.
@@ -76,94 +76,94 @@ struct BinBounds {
   std::int32_t left, top, right, bottom;
 };
 
-/// One triangle, as one bin sees it. Positions are pixels of the bin, tiles those of the bin.
+/// One triangle, as one bin sees it, in pixels and tiles of the bin.
 struct BinTriangle {
-  /// At the bin's first pixel, held within +-2^30; steps as in Edge. The fourth is not used.
+  /// At the bin's first pixel, clamped to +-2^30; steps as in Edge. The fourth is unused.
   std::array<std::int32_t, 4> edge, dx, dy;
   BinBounds box;
   std::int32_t z_low, z_high;                 ///< codes of the vertices
   std::int64_t z_anchor, z_tile_x, z_tile_y;  ///< plane at the first tile's anchor; steps from tile to tile
-  std::int32_t z_step_x, z_step_y;            ///< of a pixel, in a lane
-  std::int32_t to_low, to_high;               ///< in a range's units: from a tile's anchor to its lowest and highest
-  bool is_gentle;                             ///< so they are known: nothing of it wraps
+  std::int32_t z_step_x, z_step_y;            ///< per pixel, in a lane
+  std::int32_t to_low, to_high;               ///< in units of a range: from a tile's anchor to its lowest and highest
+  bool is_gentle;                             ///< to_low, to_high are valid: no value wraps
   bool is_narrow;                             ///< its depths are tested in lanes of 16 bits
   bool is_steep;                              ///< an edge needs more than 16 bits in a tile
-  bool is_whole;                              ///< its edges alone say what it covers
-  std::array<std::int64_t, 4> c_anchor, c_tile_x, c_tile_y;  ///< likewise, channel by channel
+  bool is_whole;                              ///< its edges alone decide its coverage
+  std::array<std::int64_t, 4> c_anchor, c_tile_x, c_tile_y;  ///< the same for colours, channel by channel
   ColorSteps color;
-  std::int32_t surface;  ///< its number in BinMemory::seen, which then has its colours; 0: none
+  std::int32_t surface;  ///< index into BinMemory::seen, where its colours are; 0: none
 };
 
-/// A surface of which colours are computed.
+/// A surface whose colours are being computed.
 struct DrawnSurface {
   SurfaceConstants constants;
   BinTriangle colors;                   ///< affine ones
-  std::unique_ptr<StageSurface> stage;  ///< where lanes have not all that it takes
+  std::unique_ptr<StageSurface> stage;  ///< where lanes lack a feature of the surface
 };
 
-/// A textured primitive that pixels show, and that is set up when the first of them is shaded.
+/// A visible textured primitive, set up when its first pixel is shaded.
 struct SeenSurface {
   const Slice* slice;
   const Record* record;
   int place;           ///< kAtCentre, or the sample that shades
-  std::int32_t drawn;  ///< into BinMemory::drawn, when it is set up; else -1
+  std::int32_t drawn;  ///< into BinMemory::drawn, once it is set up; else -1
 };
 
-/// Sixteen small or medium triangles of a batch, as much of each as lies in its window of two by two tiles, whose colours
-/// wait. Each is a piece; those beyond the batch are never seen.
+/// Sixteen small or medium triangles of a batch, each clipped to its window of two by two tiles, with deferred colours.
+/// Each is a piece; pieces beyond the batch are never seen.
 struct PieceGroup {
   const Slice* slice;
   std::size_t style;                      ///< in BinMemory::styles
-  std::array<const Record*, 16> records;  ///< and what follows: as SmallBatch has them
+  std::array<const Record*, 16> records;  ///< the members up to `surface`: as in SmallBatch
   alignas(64) SmallBatch::LaneArray<3> corner;
   alignas(64) SmallBatch::Lane left, top;
   std::uint32_t live;
   bool is_set_up;
-  std::uint32_t alone;                    ///< triangles that lanes cannot set up, a bit each: shaded as large ones are
-  std::array<std::uint16_t, 16> surface;  ///< their numbers in BinMemory::seen
+  std::uint32_t alone;                    ///< a bit each: triangles that lanes cannot set up, shaded like large ones
+  std::array<std::uint16_t, 16> surface;  ///< their indices into BinMemory::seen
 };
 
-/// Four numbers of each piece of a group: column after column where a register of sixteen numbers can be asked for any of
-/// them, else piece after piece.
+/// Four numbers of each piece of a group: by column where a register of sixteen numbers can be indexed, else by piece.
 struct alignas(64) PieceRow {
   std::array<std::int32_t, std::size_t{4} * 16> number{};
 };
 
-/// What a pixel looks at of the piece that it shows; of a group.
+/// Constants of the visible pieces of a group.
 struct PieceConstants {
-  /// In a tile. A window has one with even column and even row, and so on.
+  /// In a tile. A window has one tile with even column and even row, and so on.
   struct Tile {
     PieceRow coordinates;  ///< anchors of Q and of P of u and v, in lanes; u_ref of v
     PieceRow colors;       ///< anchors of red and green, blue and alpha; codes of the vertices, lowest, highest
   };
-  PieceRow step_x;           ///< of Q and P; and, a byte each, what LaneAttribute drops: narrow, drop
+  PieceRow step_x;           ///< of Q and P; and, a byte each, drops of LaneAttribute: narrow, drop
   PieceRow step_y;           ///< of Q and P; u_ref of u
   PieceRow color;            ///< steps in x, red and green first, and in y
   std::array<Tile, 4> tile;  ///< by the lowest bit of its column, and that of its row
 };
 
-/// The same of its level of detail: lines of u and v along y, and along x.
+/// The same for the level of detail: lines of u and v along y, and along x.
 struct PieceLevels {
   PieceRow at_zero, step;
   PieceRow offset;  ///< the first column
 };
 
-/// The pixels of a bin: tile after tile, block after block, row after row. And the triangles that have taken tiles.
+/// The pixels of a bin: tile after tile, block after block, row after row. And the triangles that own tiles.
 struct BinMemory {
-  static constexpr std::size_t kPlanes = 256;              ///< triangles that wait at most: more than two for each tile
-  alignas(64) std::array<std::int32_t, kBinPixels> depth;  ///< this one or, where 16 bits suffice, the next
+  static constexpr std::size_t kPlanes = 256;              ///< limit of pending triangles: more than two for each tile
+  alignas(64) std::array<std::int32_t, kBinPixels> depth;  ///< this one or, if 16 bits suffice, the next
   alignas(64) std::array<std::uint16_t, kBinPixels> narrow_depth;
   alignas(64) std::array<std::uint32_t, kBinPixels> color;
   alignas(64) std::array<BinTriangle, kPlanes> planes;
-  static constexpr std::size_t kSurfaces = 8192;  ///< that wait at most: no more pixels than half of that show one
-  alignas(64) std::array<std::uint16_t, kBinPixels> surface;  ///< into `seen`, 0: the colour is there
+  static constexpr std::size_t kSurfaces = 8192;  ///< limit of pending surfaces: twice the pixels that can show one
+  alignas(64) std::array<std::uint16_t, kBinPixels> surface;  ///< into `seen`, 0: the colour is in memory
   std::array<SeenSurface, kSurfaces> seen;                    ///< from 1 on
   std::vector<DrawnSurface> drawn;
-  // Pieces that wait, by group, from 1 on; a pixel of one has 16 times the group's number, its own, and this beside it.
+  // Pending pieces, by group, from 1 on; the pixel of a piece stores 16 times the group's number, plus the piece's own,
+  // plus this.
   static constexpr std::size_t kFirstPiece = kSurfaces, kGroups = kSurfaces / 16;
-  std::vector<PieceGroup> groups;         ///< kGroups, where there are any
+  std::vector<PieceGroup> groups;         ///< kGroups, if there are any
   std::vector<PieceConstants> constants;  ///< likewise; group 0 is unused
-  std::vector<PieceLevels> levels;        ///< likewise, where a style asks
+  std::vector<PieceLevels> levels;        ///< likewise, if a style needs them
   std::vector<SurfaceStyle> styles;
 
   static BinMemory& of_thread() {
@@ -175,25 +175,25 @@ struct BinMemory {
 /// Pixels of a tile at each sample, a bit each.
 using PixelsOfSamples = std::array<std::uint64_t, kMaxPixelSamples>;
 
-/// A triangle's part in a tile, which waits: cutouts.inl.
+/// A triangle's pending part in a tile: cutouts.inl.
 struct Cutout {
   std::int16_t plane;       ///< into BinMemory::planes
-  std::uint16_t low, high;  ///< range of its depths, where they wait
-  std::uint64_t centre;     ///< pixels that it covers there
+  std::uint16_t low, high;  ///< range of its depths, if they are pending
+  std::uint64_t centre;     ///< pixels covered at their centres
   PixelsOfSamples covered, passed;
 };
 /// The cutouts of a tile, the last one on top.
 struct TileCutouts {
   static constexpr std::size_t kMost = 8;
-  std::size_t count, first_depth;         ///< from first_depth on depths wait as well, if Bin::depth_owner says so
-  std::int16_t color_below, depth_below;  ///< owners of what lies below
+  std::size_t count, first_depth;         ///< from here on depths are pending as well, if Bin::depth_owner says so
+  std::int16_t color_below, depth_below;  ///< owners of the layers below
   bool is_split_below;
-  std::uint16_t low_below, high_below;  ///< range of the depths there
-  PixelsOfSamples below;                ///< its samples that no cutout hides: set by drop_hidden()
+  std::uint16_t low_below, high_below;  ///< range of the depths below
+  PixelsOfSamples below;                ///< samples that no cutout hides: set by drop_hidden()
   Cutout cutout[kMost];                 // GCC 12 takes an access to a std::array of these for one of another array
 };
 
-/// What a bin keeps by sample where a pixel has several, each laid out as BinMemory is; colours of tiles that are split.
+/// Data of a bin by sample of multisampled pixels, each laid out as BinMemory is; colours of split tiles.
 struct SampleMemory {
   alignas(64) std::int32_t depth[kMaxPixelSamples][kBinPixels];
   alignas(64) std::uint16_t narrow_depth[kMaxPixelSamples][kBinPixels];
@@ -208,10 +208,10 @@ struct SampleMemory {
 
 struct Bin {
   static constexpr int kTiles = kBinTiles * kBinTiles;
-  // Who holds a tile's depths or colours; 0 and more: a triangle of BinMemory::planes.
+  // Owner of a tile's depths or colours; 0 and more: a triangle of BinMemory::planes.
   static constexpr std::int16_t kInMemory = -1, kCleared = -2, kInTarget = -3;
   static constexpr std::int16_t kSurfaces = -4;  ///< pixel by pixel: BinMemory::surface
-  static constexpr std::int16_t kLayers = -5;    ///< in memory, but for the layers that wait: layers.inl
+  static constexpr std::int16_t kLayers = -5;    ///< in memory, except for pending layers: layers.inl
   static constexpr std::int16_t kCutouts = -6;   ///< SampleMemory::cutouts
 
   using Compute = void (*)(Bin& bin, int tile);
@@ -250,62 +250,63 @@ struct Bin {
   }
 
   BinJob& job;
-  Compute compute_deferred;  ///< colours of a tile of kSurfaces, kLayers, kCutouts or a textured primitive, to memory
+  Compute compute_deferred;  ///< to memory: colours of a tile of kSurfaces, kLayers, kCutouts or a textured primitive
   const Config& config;
   const Widths& widths;
-  Skip skip;  ///< as far as it goes for the draw at work
+  Skip skip;  ///< as it applies to the current draw
   LaneFormat depth_format, color_format;
   LaneFormat centred_depth, centred_color;  ///< of small triangles
-  bool is_short;                            ///< the arithmetic of small triangles
+  bool is_short;                            ///< small triangles use the short arithmetic
   bool has_short_edges;                     ///< 16 bits hold their edges
   int first_x, first_y;                     ///< pixels
   double pixel;                             ///< a subpixel, in pixels
   bool are_lines;                           ///< sixteen pixels of a row of the target are a cache line
   unsigned samples;                         ///< of a pixel; several: multisample.inl
   bool is_narrow;                           ///< depths are in BinMemory::narrow_depth
-  bool tests_narrow;  ///< 16 bits hold the codes of a tile modulo their window, and fifteen of its fractions
+  bool tests_narrow;  ///< 16 bits hold the codes of a tile modulo their wrap window, and fifteen of its fractions
   int range_bits_dropped;
   std::uint16_t *tile_low, *tile_high;
   BinMemory& memory;
-  SampleMemory& sample_memory;  ///< not of_thread() in a loop: it is a call, for all that the compiler knows
+  SampleMemory& sample_memory;  ///< not of_thread() in a loop: that is an opaque call for the compiler
   SliceState state;
   const FragmentOps* ops = nullptr;  ///< of the slice
-  // Of the primitive at work, once its alpha has been looked at:
-  bool has_operations = false;      ///< which are more than plain: operations.inl
-  bool lays_over = false;           ///< of them blending alone, by alpha
+  // Of the current primitive, once its alpha has been tested:
+  bool has_operations = false;      ///< operations that are more than plain: operations.inl
+  bool lays_over = false;           ///< the only operation is blending by alpha
   bool tests_alpha = false;         ///< colours are not known to pass
-  bool is_killed = false;           ///< they are known not to
-  std::uint32_t drawn_samples = 1;  ///< of pixels, by the draw's mask, a bit each
-  bool is_back = false;             ///< the triangle at work shows its back; set for draws with a stencil
+  bool is_killed = false;           ///< all colours are known to fail
+  std::uint32_t drawn_samples = 1;  ///< of pixels, by the draw's sample mask, a bit each
+  bool is_back = false;             ///< the current triangle shows its back; set for draws with a stencil
   [[nodiscard]] HALFPLANE_INLINE bool sees_surfaces() const { return state.has_surface && state.color_write; }
-  std::int32_t low = 0, high = 0;  ///< range of its depths, or wider
+  std::int32_t low = 0, high = 0;  ///< range of the bin's depths, or wider
   std::int32_t lowest_high = 0;    ///< of its tiles' upper bounds, or of earlier ones
   static constexpr std::int32_t kOpen = 1 << 16;
   std::int32_t closed_from = kOpen;  ///< with the test less, all tiles hide depths from here on
   const LanePositions& position = lane_positions();
   SmallBatch small;
-  std::int32_t batch_surface = 0;     ///< the number of its first triangle's
+  std::int32_t batch_surface = 0;     ///< surface number of its first triangle
   int small_run = 0;                  ///< records in a row that were small or medium
   LineBatch lines, cut_line;          ///< cut_line: one, in lane 0
-  std::uint64_t line_tiles = 0;       ///< touched by lines since triangles last were drawn
-  bool falls = false, rises = false;  ///< what a passing depth may do to the stored one
+  std::uint64_t line_tiles = 0;       ///< touched by lines since triangles were last drawn
+  bool falls = false, rises = false;  ///< direction in which a passing depth may change the stored one
   std::size_t plane_count = 0;
   std::size_t surface_count = 0;  ///< of BinMemory::seen
   std::size_t group_count = 0;    ///< of BinMemory::groups
   std::size_t layer_count = 0;    ///< of LayerMemory
-  bool is_range_old = true;       ///< low, high and lowest_high are to be found anew before use
-  /// Cutouts that later ones have hidden, less cutouts coloured before the end of the bin: from 0 down, no new cutout is kept.
+  bool is_range_old = true;       ///< low, high and lowest_high must be found again before use
+  /// Cutouts hidden by later ones, minus cutouts coloured before the end of the bin: at 0 or less no new cutout is
+  /// kept.
   int cutouts_saved = 1;
-  std::uint64_t split = 0;      ///< tiles of which the samples of a pixel may differ in colour
-  std::uint64_t in_memory = 0;  ///< tiles whose depths and colours are in memory, as far as small triangles know
-  std::array<std::uint8_t, kTiles> touches{};  ///< of each tile by batches, since its range was found
+  std::uint64_t split = 0;      ///< tiles whose pixels may have samples of different colours
+  std::uint64_t in_memory = 0;  ///< tiles with depths and colours in memory, as far as small triangles know
+  std::array<std::uint8_t, kTiles> touches{};  ///< by tile: touches by batches since its range was found
   alignas(64) std::array<std::int16_t, kTiles> depth_owner, color_owner;
-  // What a clear leaves, to be read as if it were in memory: of a tile where 16 bits suffice, of a block.
+  // Clear values, readable as if they were in memory: a tile if 16 bits suffice, a block.
   alignas(64) std::array<std::uint16_t, kTilePixels> cleared_depths;
   alignas(64) std::array<std::uint32_t, kBlockPixels> cleared_colors;
 };
 
-/// Depths as the ranges of tiles keep them.
+/// A range of depths in the precision of tile ranges.
 struct DepthRange {
   std::int32_t low, high;
 };
@@ -321,7 +322,7 @@ HALFPLANE_INLINE std::uint64_t tiles_of(const BinBounds& box) {
   return row * ((kColumn >> (56 - last)) & (~std::uint64_t{0} << above));
 }
 
-/// The tiles that lie in a box as a whole.
+/// The tiles that lie completely in a box.
 inline std::uint64_t tiles_inside(const BinBounds& box) {
   const auto round_up = [](int at) { return (at + kTileSize - 1) & -kTileSize; };
   const BinBounds inner{round_up(box.left), round_up(box.top), ((box.right + 1) & -kTileSize) - 1,

@@ -1,4 +1,4 @@
-// Triangles, sixteen at a time: which are drawn, and their records.
+// Culls triangles, sixteen at a time, and makes records of the others.
 #pragma once
 
 #include "lane_memory.inl"
@@ -43,14 +43,14 @@ HALFPLANE_INLINE I16 extent(const std::array<I16, 3>& c) {
   return max(max(c[0], c[1]), c[2]) - min(min(c[0], c[1]), c[2]);
 }
 
-/// Of twice an area: masks.
+/// Sign of twice an area: masks.
 struct Side {
   I16 is_turned, is_zero;  ///< below 0, 0
 };
 
 /// From the first corner to the second (a) and to the third (b): differences of 23 bits.
 HALFPLANE_INLINE Side side_of(const I16& ax, const I16& ay, const I16& bx, const I16& by) {
-  constexpr int kShort = 15;  // bits of a magnitude whose products 32 bits hold
+  constexpr int kShort = 15;  // bits of a magnitude whose product fits 32 bits
   const auto above = [](const I16& v) HALFPLANE_LAMBDA { return (v ^ (v >> 31)) >> kShort; };
   if (!is_any(((above(ax) | above(ay)) | (above(bx) | above(by))) != 0)) {
     const I16 area = cross(ax, ay, bx, by);
@@ -61,15 +61,15 @@ HALFPLANE_INLINE Side side_of(const I16& ax, const I16& ay, const I16& bx, const
   return {convert<std::int32_t>(area < 0.0), convert<std::int32_t>(area == 0.0)};
 }
 
-/// What triangles of at most two by two pixel centres cover of them.
+/// Coverage of triangles of at most two by two pixel centres.
 struct SampleLanes {
-  I16 is_known;  ///< for which triangles; the others are left at 0
+  I16 is_known;  ///< mask of these triangles; the others are left at 0
   I16 samples;   ///< bits: upper left, upper right, lower left, lower right
 };
 
 HALFPLANE_INLINE SampleLanes covered_samples(const CullTriangles& t, const I16& is_turned, int grid_bits) {
   const I16 is_wide = t.right > t.left, is_high = t.bottom > t.top;
-  // By its own extent, not by what the scissor leaves of it: the products below must fit.
+  // The extent of the triangle itself, not of its scissored box: the products below must fit.
   const I16 is_small = (t.right - t.left <= 1) & (t.bottom - t.top <= 1) & (extent(t.x) < 4 << grid_bits) &
                        (extent(t.y) < 4 << grid_bits);
   if (!is_any(is_small)) return {I16(0), I16(0)};
@@ -97,7 +97,7 @@ HALFPLANE_INLINE SampleLanes covered_samples(const CullTriangles& t, const I16& 
 }
 
 /// The corners of `count` or sixteen primitives from `first` on, as indices into Slice::vertices. `number`: of the
-/// first, in the slice. What lies beyond `count` is not looked at, but must be there.
+/// first, in the slice. Corners beyond `count` are not used, but must be readable.
 HALFPLANE_INLINE std::array<I16, 3> corner_lanes(const FrameContext& frame, const Slice& slice, std::size_t first,
                                                  std::size_t count, std::size_t number) {
   const I16 lane = I16::of([](int i) { return i; });
@@ -110,7 +110,7 @@ HALFPLANE_INLINE std::array<I16, 3> corner_lanes(const FrameContext& frame, cons
   return v;
 }
 
-/// What the lanes of SmallBatch hold.
+/// Limits of the lanes of SmallBatch.
 struct LaneLimits {
   int tiles;                   ///< along the side of a triangle's box, below
   std::int32_t extent, range;  ///< subpixels, depth codes, below
@@ -118,12 +118,13 @@ struct LaneLimits {
   LaneLimits(int tiles_, int pixel_bits, const Widths& widths) : tiles(tiles_) {
     const int bits = extent_bits(pixel_bits, widths);
     extent = 1 << bits;
-    // Numerators: two products of a difference of codes and one of coordinates; times the reciprocal below 2^62.
+    // Numerators: two products of a difference of codes and a difference of coordinates; below 2^62 after
+    // multiplication with the reciprocal.
     range = std::int32_t{1} << std::clamp(61 - bits - widths.reciprocal.bits, 0, 30);
   }
 };
 
-/// Turns 16 triangles into records; what must go the slow way goes it in its turn.
+/// Turns 16 triangles into records; triangles that need the slow path take it in order.
 struct CullLanes {
   const FrameContext& frame;
   Slice& slice;
@@ -132,20 +133,20 @@ struct CullLanes {
   Cull mode;
   bool is_front_cw;
   LaneLimits small, medium;
-  alignas(64) std::array<std::array<std::int32_t, 16>, 3> at{};  ///< the corners, in memory: where scalars find them
+  alignas(64) std::array<std::array<std::int32_t, 16>, 3> at{};  ///< the corners, in memory: for scalar code
 
   /// Sets of triangles, a bit each.
   struct Sets {
     std::uint32_t lanes, slow = 0,
-                         frustum = 0;   ///< those there; those the slow way; outside a plane of the view volume
-    std::uint32_t zero, culled, empty;  ///< of the others, each the first reason that holds
-    std::uint32_t drawn, sampleless;    ///< of those left, without a sample all the same
+                         frustum = 0;   ///< present; on the slow path; outside a plane of the view volume
+    std::uint32_t zero, culled, empty;  ///< of the others, by the first reason that holds
+    std::uint32_t drawn, sampleless;    ///< of the rest; of these the ones without a sample
   };
 
   /// The corners and boxes of triangles whose t.v is known.
   HALFPLANE_INLINE void load_corners(CullTriangles& t) {
     for (std::size_t k = 0; k < 3; ++k) t.v[k].store(at[k].data());
-    // Pixels whose centre the box holds, or where they have several samples, those that it touches.
+    // Pixels whose centres the box contains; with several samples, pixels that it touches.
     const int grid_bits = frame.widths.grid_bits, has_samples = frame.widths.has_samples;
     const int half = has_samples != 0 ? 0 : 1 << (grid_bits - 1), before = has_samples != 0 ? 0 : half - 1;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -160,7 +161,7 @@ struct CullLanes {
     t.bottom = min(I16(limit.bottom), (max(max(t.y[0], t.y[1]), t.y[2]) - half) >> grid_bits);
   }
 
-  /// By the codes of their vertices.
+  /// Finds triangles to clip by the codes of their vertices.
   HALFPLANE_INLINE void find_clipped(const CullTriangles& t, Sets& sets) const {
     if (slice.any_code == 0) return;
     const I16 a = gather(slice.codes.data(), t.v[0]), b = gather(slice.codes.data(), t.v[1]),
@@ -170,7 +171,7 @@ struct CullLanes {
       sets.frustum = bits_of((a & b & c & static_cast<int>(Slice::kVolume)) != 0) & sets.lanes & ~sets.slow;
   }
 
-  /// By area, side and box. Returns what the small ones cover.
+  /// Finds drawn triangles by area, side and box. Returns the coverage of the small ones.
   HALFPLANE_INLINE SampleLanes find_drawn(const CullTriangles& t, Sets& sets) const {
     const Side side = side_of(t.x[1] - t.x[0], t.y[1] - t.y[0], t.x[2] - t.x[0], t.y[2] - t.y[0]);
     const I16& is_turned = side.is_turned;
@@ -206,7 +207,7 @@ struct CullLanes {
   }
 
   using Records = std::array<Record, 16>;
-  /// `dropped`: a bit for each that draws nothing.
+  /// `dropped`: a bit for each triangle that draws nothing.
   HALFPLANE_INLINE void make_records(const CullTriangles& t, const SampleLanes& few, std::uint32_t dropped,
                                      Records& records) const {
     const I16 z_low = min(min(t.z[0], t.z[1]), t.z[2]), z_high = max(max(t.z[0], t.z[1]), t.z[2]);
@@ -232,7 +233,7 @@ struct CullLanes {
                words + 4, sizeof(Record));
   }
 
-  /// The triangles of `part` from `first` on, `many` or sixteen of them. `number`: of the first, in the slice.
+  /// Culls the triangles of `part` from `first` on, `many` or sixteen of them. `number`: of the first, in the slice.
   HALFPLANE_INLINE void operator()(const Slice::Part& part, std::size_t first, std::size_t many, std::size_t number) {
     CullTriangles t(corner_lanes(frame, slice, part.first + first, many, number));
     Sets sets;
@@ -241,7 +242,7 @@ struct CullLanes {
     load_corners(t);
     const SampleLanes few = find_drawn(t, sets);
     count(sets);
-    // Culled, but Skip forbids to leave it out: its record goes on if its box holds a pixel.
+    // Culled, but Skip forbids to drop it: its record goes on if its box contains a pixel.
     const std::uint32_t dropped = ((frame.skip.zero_area ? 0 : sets.zero) | (frame.skip.backface ? 0 : sets.culled)) &
                                   ~bits_of((t.left > t.right) | (t.top > t.bottom));
     alignas(64) Records records;
@@ -261,7 +262,7 @@ struct CullLanes {
   }
 };
 
-/// Slice::records of a slice of triangles; they are as many as the triangles, or more where the slow path cuts.
+/// Makes Slice::records for a slice of triangles; they are as many as the triangles, or more where the slow path clips.
 static void cull(const FrameContext& frame, Slice& slice, SlowPath slow) {
   const DrawContext& context = *slice.context;
   const Rect& rect = context.rect;

@@ -1,4 +1,4 @@
-// Lines, sixteen at a time: what stages/line_setup makes of one, up to the columns that it covers, and their culling.
+// Lines, sixteen at a time: stages/line_setup up to the covered columns, and culling.
 #pragma once
 
 #include "cull.inl"
@@ -20,7 +20,7 @@ struct LineRules {
 };
 
 /// Sixteen lines, each in its own octant, and the columns [first, end) that they cover: OctantLine and Columns of
-/// stages/line_setup. Turning an axis round takes coordinate v to -v, and so pixel i to ~i.
+/// stages/line_setup. Reversing an axis maps coordinate v to -v, and so pixel i to ~i.
 struct OctantLanes {
   I16 is_x_major, is_major_negative, is_minor_negative;
   I16 a0, b0, a1, b1;  ///< subpixels: the start, the end
@@ -54,7 +54,7 @@ struct OctantLanes {
     }
   }
 
-  /// Whether a tie between two rows takes the later one.
+  /// Whether a tie between two rows goes to the later one.
   [[nodiscard]] HALFPLANE_INLINE I16 tie_moves(const LineRules& rules) const {
     const I16 of_x_major = rules.is_diamond ? ~is_major_negative & (minor != 0) : is_major_negative;
     return select(is_x_major, of_x_major, is_minor_negative);
@@ -72,7 +72,7 @@ struct OctantLanes {
   }
 };
 
-/// Records of the lines that lie inside the scissor as a whole; the others go the slow way.
+/// Records of lines that lie completely inside the scissor; the others take the slow path.
 static void cull_lines(const FrameContext& frame, Slice& slice, SlowPath slow) {
   const DrawContext& context = *slice.context;
   const Widths& widths = frame.widths;
@@ -96,7 +96,8 @@ static void cull_lines(const FrameContext& frame, Slice& slice, SlowPath slow) {
       const SnappedLanes start = load_rows(slice.vertices.data(), ends[0].data()),
                          end = load_rows(slice.vertices.data(), ends[1].data());
       const OctantLanes line(start.x, start.y, end.x, end.y, rules);
-      // In its octant it covers no row beside those of its ends, and the one before where it starts on a border of rows.
+      // In its octant it covers only the rows from one end to the other, and the row before where it starts on a border
+      // of rows.
       const auto side = [&](const I16& from, const I16& to, const I16& is_negative, bool is_low)
                             HALFPLANE_LAMBDA { return select(is_negative, is_low ? ~to : ~from, is_low ? from : to); };
       const I16 last = line.end - 1, top_row = (line.b0 >> s) - 1, bottom_row = line.b1 >> s;

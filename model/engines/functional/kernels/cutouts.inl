@@ -1,10 +1,11 @@
-// Cutouts, where pixels have several samples: the part of a triangle in a tile that its edges cut, kept for later. A tile
-// keeps up to eight of them, each as the number of its triangle and the samples that have passed, a bit each. Later cutouts
-// hide earlier ones sample by sample; one of which nothing is left is dropped. Colours are computed once for each pixel and
-// remaining cutout, mostly at the end of the bin. Depths of a cutout in front of all that the tile holds wait as well.
+// Cutouts, where pixels have several samples: the part of a triangle in a tile that its edges cut, kept for later. A
+// tile keeps up to eight cutouts, each as the number of its triangle and the samples that have passed, a bit each.
+// Later cutouts hide earlier ones sample by sample; a fully hidden cutout is dropped. Colours are computed once for
+// each pixel and remaining cutout, mostly at the end of the bin. Depths of a cutout in front of all of the tile's
+// depths are deferred as well.
 //
-// Such a tile has Bin::kCutouts as the owner of its colours, or of colours and depths, and is split. What lies below keeps
-// the owner that it had.
+// Such a tile has Bin::kCutouts as the owner of its colours, or of colours and depths, and is split. The data below
+// keeps its previous owner.
 #pragma once
 
 #include "bin.inl"
@@ -14,13 +15,13 @@
 namespace halfplane::functional::HALFPLANE_ISA_NAME {
 namespace {
 
-/// Of a pixel: known when compiled, or 0.
+/// Samples of a pixel: known at compile time, or 0.
 template <unsigned kSamples>
 HALFPLANE_INLINE unsigned samples_of(const Bin& bin) {
   return kSamples != 0 ? kSamples : bin.samples;
 }
 
-/// Colours of a block to the samples that have passed.
+/// Writes colours of a block to the samples that have passed.
 template <unsigned kSamples>
 HALFPLANE_INLINE void store_samples(const Bin& bin, int tile, const PixelsOfSamples& passed, std::size_t block,
                                     const I16& color) {
@@ -31,8 +32,8 @@ HALFPLANE_INLINE void store_samples(const Bin& bin, int tile, const PixelsOfSamp
   }
 }
 
-/// Sums of colours as they are stored, to make the mean of a block's samples: mean_color(). Two sums a lane: of red and blue,
-/// of green and alpha.
+/// Sums of colours as they are stored, to make the mean of a block's samples: mean_color(). Two sums a lane: red and
+/// blue, green and alpha.
 struct ColorSums {
   I16 outer, inner;
   bool is_short;
@@ -65,7 +66,7 @@ struct ColorSums {
   }
 };
 
-/// Colours of a triangle's planes to the samples of a tile.
+/// Writes colours of a triangle's planes to the samples of a tile.
 template <unsigned kSamples>
 struct SampledColors {
   Bin& bin;
@@ -82,7 +83,7 @@ struct SampledColors {
     return gain[m];
   }
 
-  /// Colours of a block's pixels `any`: at the centre, or where that is not covered at the first covered sample.
+  /// Colours of a block's pixels `any`: at the centre, or, if that is not covered, at the first covered sample.
   HALFPLANE_INLINE I16 of_block(const ColorRamp& plane, std::uint64_t centre, const PixelsOfSamples& covered,
                                 std::size_t block, std::uint32_t any, ColorFormat format) {
     I16 color = block_colors(t.color, plane, block, bin.color_format, format);
@@ -114,7 +115,7 @@ struct SampledColors {
   }
 };
 
-/// Takes hidden samples out of a tile's cutouts, and cutouts of which nothing is left. Returns whether a sample below them is
+/// Removes hidden samples from a tile's cutouts, and cutouts without samples. Returns whether a sample below them is
 /// visible.
 template <unsigned kSamples>
 HALFPLANE_NOINLINE bool drop_hidden(Bin& bin, TileCutouts& cutouts) {
@@ -149,7 +150,7 @@ HALFPLANE_NOINLINE bool drop_hidden(Bin& bin, TileCutouts& cutouts) {
   return below != 0;
 }
 
-/// Depths of a tile's cutouts at the first `samples`: in memory. With all of them nothing waits any longer.
+/// Writes depths of a tile's cutouts at the first `samples` to memory. With all samples nothing is pending any more.
 template <unsigned kSamples>
 HALFPLANE_NOINLINE void store_depths_of_cutouts(Bin& bin, int tile, unsigned samples) {
   TileCutouts& cutouts = bin.sample_memory.cutouts[tile];
@@ -188,7 +189,7 @@ HALFPLANE_INLINE void store_cutout_depths(Bin& bin, int tile, unsigned samples) 
   bin.samples == 4 ? store_depths_of_cutouts<4>(bin, tile, samples) : store_depths_of_cutouts<0>(bin, tile, samples);
 }
 
-/// Depths of the samples of a tile: in memory.
+/// Brings depths of the samples of a tile to memory.
 HALFPLANE_NOINLINE void need_sample_depths(Bin& bin, int tile) {
   if (bin.depth_owner[tile] == Bin::kInMemory) return;
   if (bin.depth_owner[tile] == Bin::kCutouts) return store_cutout_depths(bin, tile, bin.samples);
@@ -200,7 +201,7 @@ HALFPLANE_NOINLINE void need_sample_depths(Bin& bin, int tile) {
   bin.depth_owner[tile] = Bin::kInMemory;
 }
 
-/// Colours of a tile, of whichever owner: in memory, split where they are the target's.
+/// Brings colours of a tile, of any owner, to memory, split where they are in the target.
 HALFPLANE_NOINLINE void need_sample_colors(Bin& bin, int tile) {
   if (bin.color_owner[tile] != Bin::kInTarget) return need_color(bin, tile);
   for (unsigned k = 0; k < bin.samples; ++k) {
@@ -222,7 +223,7 @@ HALFPLANE_NOINLINE void split_tile(Bin& bin, int tile) {
   bin.split |= std::uint64_t{1} << tile;
 }
 
-/// Colours of a tile's cutouts: in memory, and split.
+/// Brings colours of a tile's cutouts to memory, split.
 template <unsigned kSamples>
 HALFPLANE_INLINE void split_cutouts(Bin& bin, int tile) {
   TileCutouts& cutouts = bin.sample_memory.cutouts[tile];
@@ -246,7 +247,8 @@ HALFPLANE_NOINLINE void color_cutouts(Bin& bin, int tile) {
   bin.samples == 4 ? split_cutouts<4>(bin, tile) : split_cutouts<0>(bin, tile);
 }
 
-/// Colours of a tile's cutouts where only resolved pixels are stored: the mean of each pixel's samples. The tile is whole.
+/// Writes colours of a tile's cutouts where only resolved pixels are stored: the mean of each pixel's samples. The tile
+/// becomes whole.
 template <unsigned kSamples>
 HALFPLANE_NOINLINE void resolve_cutouts(Bin& bin, int tile) {
   TileCutouts& cutouts = bin.sample_memory.cutouts[tile];
@@ -297,7 +299,7 @@ HALFPLANE_NOINLINE void resolve_cutouts(Bin& bin, int tile) {
   });
 }
 
-/// No cutout waits any longer.
+/// Draws all pending cutouts.
 HALFPLANE_NOINLINE void finish_cutouts(Bin& bin) {
   for (int tile = 0; tile < Bin::kTiles; ++tile) {
     if (bin.depth_owner[tile] == Bin::kCutouts) store_cutout_depths(bin, tile, bin.samples);
@@ -313,7 +315,7 @@ HALFPLANE_NOINLINE void resolve_all_cutouts(Bin& bin) {
   }
 }
 
-/// Forgets the triangles of which no tile is left.
+/// Forgets the triangles that own no tile any more.
 HALFPLANE_NOINLINE void drop_planes(Bin& bin) {
   if (bin.samples > 1) finish_cutouts(bin);
   std::array<std::int16_t, BinMemory::kPlanes> moved;
@@ -332,14 +334,14 @@ HALFPLANE_NOINLINE void drop_planes(Bin& bin) {
       if (owner >= 0) owner = moved[static_cast<std::size_t>(owner)];
 }
 
-/// The number of one more triangle that waits.
+/// Number of a newly pending triangle.
 HALFPLANE_INLINE std::int16_t add_plane(Bin& bin, const BinTriangle& t) {
   if (bin.plane_count == BinMemory::kPlanes) drop_planes(bin);
   bin.memory.planes[bin.plane_count] = t;
   return static_cast<std::int16_t>(bin.plane_count++);
 }
 
-/// The samples of a tile that a triangle covers, and those of them that have passed the depth test: a bit a pixel.
+/// The samples of a tile that a triangle covers, and those that have passed the depth test: a bit per pixel.
 struct SamplePixels {
   std::uint64_t centre = ~std::uint64_t{0};
   PixelsOfSamples covered, passed;
@@ -355,12 +357,12 @@ struct SamplePixels {
   }
 };
 
-/// A range of depths as tiles keep it.
+/// A range of depths in the precision of tile ranges.
 struct CutoutRange {
   std::uint16_t low, high;
 };
 
-/// One more cutout of a tile. `range`: of its depths, if they wait as well.
+/// Adds a cutout to a tile. `range`: of its depths, if they are deferred as well.
 template <unsigned kSamples>
 HALFPLANE_INLINE void add_cutout(Bin& bin, int tile, std::int16_t plane, const SamplePixels& pixels,
                                  const CutoutRange* range) {
@@ -403,8 +405,8 @@ HALFPLANE_INLINE void add_cutout(Bin& bin, int tile, std::int16_t plane, const S
   bin.tile_high[tile] = std::max(bin.tile_high[tile], range->high);
 }
 
-/// The samples of a triangle that pass the test less in a tile whose depths wait, as far as ranges decide it: its range is
-/// compared with that of the cutout on top at each sample. False where ranges overlap.
+/// The samples of a triangle that pass the test `less` in a tile with deferred depths, as far as ranges decide: its
+/// range is compared with that of the top cutout at each sample. False where ranges overlap.
 template <unsigned kSamples>
 HALFPLANE_INLINE bool passes_by_ranges(Bin& bin, int tile, const CutoutRange& range, SamplePixels& pixels) {
   const TileCutouts& cutouts = bin.sample_memory.cutouts[tile];
@@ -442,7 +444,7 @@ HALFPLANE_INLINE bool passes_by_ranges(Bin& bin, int tile, const CutoutRange& ra
     any |= rest[k];
     any_below |= below[k];
   }
-  // All that lies below is hidden: a triangle farther than the farthest cutout is rejected by the tile's range from now on.
+  // Everything below is hidden: from now on the tile's range rejects a triangle farther than the farthest cutout.
   if (any_below == 0) bin.tile_high[tile] = std::min(bin.tile_high[tile], highest);
   return decide(any, cutouts.low_below, cutouts.high_below, [&]() HALFPLANE_LAMBDA {
     for (unsigned k = 0; k < samples_of<kSamples>(bin); ++k) pixels.passed[k] &= ~rest[k];

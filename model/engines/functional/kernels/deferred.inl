@@ -1,8 +1,8 @@
 // Deferred shading of textured primitives. A pixel keeps the number of its triangle until its colour is needed, mostly at the
 // end of the bin, so that only visible pixels are shaded. A triangle is set up when the first of its pixels is shaded.
 //
-// A tile with deferred pixels has Bin::kSurfaces as the owner of its colours; a tile that such a triangle has taken as a whole
-// has the triangle. Draws without textures pay nothing: fetch_color() calls this file only for such owners.
+// A tile with deferred pixels has Bin::kSurfaces as the owner of its colours; a tile fully covered by such a triangle
+// has the triangle. Draws without textures have no cost: fetch_color() calls this file only for such owners.
 #pragma once
 
 #include "bin.inl"
@@ -27,7 +27,7 @@ inline void set_up_surface_colors(Bin& bin, const SeenSurface& seen, BinTriangle
   bin.state = state;
 }
 
-/// Surface number `number`, which is set up when it is first asked for.
+/// Surface number `number`, set up on first use.
 inline const DrawnSurface& drawn_surface(Bin& bin, std::size_t number) {
   BinMemory& memory = bin.memory;
   SeenSurface& seen = memory.seen[number];
@@ -45,20 +45,20 @@ inline const DrawnSurface& drawn_surface(Bin& bin, std::size_t number) {
   return drawn;
 }
 
-/// The number of one more.
+/// Number of one more surface.
 inline std::uint16_t add_surface(Bin& bin, const Slice& slice, const Record& record, int place = kAtCentre) {
   const std::size_t number = ++bin.surface_count;
   bin.memory.seen[number] = {&slice, &record, place, -1};
   return static_cast<std::uint16_t>(number);
 }
 
-/// The pixels of a tile that show pieces, where it waits pixel by pixel.
+/// The pixels of a tile that show pieces, if its owner is kSurfaces.
 HALFPLANE_INLINE std::uint64_t pixels_of_pieces(const Bin& bin, const U64& surface) {
   if (bin.group_count == 0) return 0;
   return bits_at_least(surface, U64(static_cast<std::uint16_t>(BinMemory::kFirstPiece)));
 }
 
-/// A group that is set up when the first of its pieces is seen.
+/// A group, set up when its first piece is seen.
 HALFPLANE_INLINE const PieceGroup& group_set_up(Bin& bin, std::size_t number) {
   const PieceGroup& group = bin.memory.groups[number];
   if (!group.is_set_up)
@@ -80,7 +80,7 @@ HALFPLANE_NOINLINE std::uint64_t without_lone(Bin& bin, PieceGroup& group, std::
   return pixels;
 }
 
-/// Shades those `pixels` of a tile that show pieces; returns the others.
+/// Shades the `pixels` of a tile that show pieces; returns the others.
 HALFPLANE_NOINLINE std::uint64_t shade_pieces_of(Bin& bin, int tile, std::uint64_t pixels) {
   BinMemory& memory = bin.memory;
   std::uint16_t* const numbers = memory.surface.data() + first_of(tile);
@@ -111,7 +111,7 @@ HALFPLANE_NOINLINE std::uint64_t shade_pieces_of(Bin& bin, int tile, std::uint64
   return pixels & ~pieces;
 }
 
-/// Colours of a tile of which pixels wait: then they are in memory.
+/// Brings colours of a tile with deferred pixels to memory.
 HALFPLANE_NOINLINE void shade_tile(Bin& bin, int tile) {
   const std::int32_t owner = std::exchange(bin.color_owner[tile], Bin::kInMemory);
   if (owner >= 0) {
@@ -135,7 +135,7 @@ inline void shade_tiles(Bin& bin, std::uint64_t tiles) {
     if (is_waiting(bin, std::countr_zero(tiles))) shade_tile(bin, std::countr_zero(tiles));
 }
 
-/// Shades all deferred pixels of the bin: numbers begin anew.
+/// Shades all deferred pixels of the bin: numbers start again.
 HALFPLANE_NOINLINE void shade_all(Bin& bin) {
   shade_tiles(bin, ~std::uint64_t{0});
   bin.surface_count = 0;
@@ -144,12 +144,12 @@ HALFPLANE_NOINLINE void shade_all(Bin& bin) {
   bin.memory.styles.clear();
 }
 
-/// Numbers for so many triangles, at most 16.
+/// Makes room for this many surface numbers, at most 16.
 HALFPLANE_INLINE void need_surfaces(Bin& bin, std::size_t count) {
   if (bin.surface_count + 16 * bin.group_count + count >= BinMemory::kSurfaces) shade_all(bin);
 }
 
-/// Whether lanes set up the surfaces of a slice: the last of BinMemory::styles is theirs.
+/// Whether lanes set up the surfaces of a slice: their style is the last of BinMemory::styles.
 inline bool has_style(Bin& bin, const Slice& slice) {
   BinMemory& memory = bin.memory;
   if (memory.styles.empty() || memory.styles.back().context != slice.context) {
@@ -163,7 +163,7 @@ inline bool has_style(Bin& bin, const Slice& slice) {
   return memory.styles.back().is_in_lanes;
 }
 
-/// Numbers the triangles of a batch: a group of pieces, or one by one where lanes cannot set up their draw.
+/// Numbers the triangles of a batch: as a group of pieces, or one by one where lanes cannot set up their draw.
 HALFPLANE_NOINLINE void add_surfaces(Bin& bin, const Slice& slice) {
   const SmallBatch& batch = bin.small;
   need_surfaces(bin, batch.records.size());
@@ -198,7 +198,7 @@ inline void need_numbers(Bin& bin, int tile) {
   bin.in_memory &= ~(std::uint64_t{1} << tile);
 }
 
-/// Pixels of a tile show a surface.
+/// Marks pixels of a tile as showing a surface.
 HALFPLANE_INLINE void see(Bin& bin, std::int32_t number, int tile, std::uint64_t pixels) {
   if (!bin.skip.attributes) {
     need_color(bin, tile);

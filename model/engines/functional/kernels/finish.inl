@@ -1,4 +1,4 @@
-// The end of a bin: everything that is new goes to the target, a row of tiles at a time.
+// The end of a bin: all new data goes to the target, a row of tiles at a time.
 #pragma once
 
 #include "bin.inl"
@@ -18,8 +18,9 @@ using PixelRows = std::array<std::array<std::uint32_t, kBinSize>, kTileSize>;
 
 using TileOwners = std::array<std::int16_t, Bin::kTiles>;
 
-/// The row of tiles that begins with `first`. `cleared`: what is no longer pending where they were written.
-/// `blocks_of(tile)`: a tile's values; `write_rows(left, right, tile, rows)`: those of two tiles that triangles have taken.
+/// Writes the row of tiles that begins with `first`. `cleared`: the clears no longer pending after the write.
+/// `blocks_of(tile)`: a tile's values; `write_rows(left, right, tile, rows)`: the values of two tiles owned by
+/// triangles.
 template <class BlocksOf, class WriteRows>
 HALFPLANE_INLINE void finish_row(Bin& bin, int first, int columns, std::uint32_t* image, const TileOwners& owners,
                                  std::uint8_t cleared, BlocksOf&& blocks_of, WriteRows&& write_rows) {
@@ -70,8 +71,8 @@ HALFPLANE_INLINE void finish_row(Bin& bin, int first, int columns, std::uint32_t
   }
 }
 
-/// Depths of two tiles side by side, each a triangle's as a whole, row by row: a cache line each. `left_moved`,
-/// `right_moved`: what they gain to a sample.
+/// Writes depths of two tiles side by side, each owned by a triangle, row by row: a cache line each. `left_moved`,
+/// `right_moved`: their gain to a sample.
 HALFPLANE_INLINE void write_depth_rows(const Bin& bin, const BinTriangle& left, const BinTriangle& right, int tile,
                                        PixelRows& rows, std::int32_t left_moved = 0, std::int32_t right_moved = 0) {
   const int to = tile % kBinTiles * kTileSize;
@@ -139,7 +140,8 @@ HALFPLANE_INLINE TileBlocks sample_colors(const Bin& bin, int tile, unsigned k) 
   return blocks;
 }
 
-/// A row of tiles whose pixels have several samples: the resolved images, and with BinJob::keeps_samples those of the samples.
+/// Writes a row of tiles with multisampled pixels: the resolved images, and with BinJob::keeps_samples the samples'
+/// images.
 HALFPLANE_NOINLINE void finish_samples(Bin& bin, int first, int columns) {
   const auto color_rows = [&bin](auto&&... of) HALFPLANE_LAMBDA { write_color_rows(bin, of...); };
   const auto write = [&](Framebuffer& to, unsigned depth_of, unsigned color_of) {
@@ -160,7 +162,7 @@ HALFPLANE_NOINLINE void finish_samples(Bin& bin, int first, int columns) {
   for (unsigned k = 0; k < bin.samples; ++k) write(bin.job.target.samples[k], k, k);
 }
 
-/// Everything that is new goes to the target, a row of tiles at a time.
+/// Writes all new data to the target, a row of tiles at a time.
 inline void finish(Bin& bin) {
   if (bin.surface_count + bin.group_count != 0) shade_all(bin);
   if (bin.layer_count != 0) lay_all(bin);

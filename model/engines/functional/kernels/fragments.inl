@@ -1,9 +1,10 @@
-// The depth test as a policy: a type that compares depths with what is stored, and says which tiles may be skipped.
+// The depth test as a policy: a type that compares depths with the stored ones, and says which tiles may be skipped.
 //
-//   opaque   what passes replaces what is stored, what fails leaves no trace. So a hidden tile may be skipped,
+//   opaque   a passing fragment replaces the stored values, a failing one has no effect. So a hidden tile may be
+//   skipped,
 //            a tile in front may be taken as a whole, and blocks are drawn lane by lane.
-//   general  anything else: fragment by fragment through the scalar operations, out of line, nothing left out
-//            (general.inl). What blending, masks and the alpha test ask of triangles is in lanes too (operations.inl).
+//   general  any other state: fragment by fragment through the scalar operations, out of line, nothing skipped
+//            (general.inl). Blending, masks and the alpha test of triangles are in lanes too (operations.inl).
 #pragma once
 
 #include "bin.inl"
@@ -18,7 +19,7 @@ inline void count_killed(Bin& bin, std::uint64_t killed) {
   if (bin.ops->state.writes()) bin.job.counters.written -= killed;
 }
 
-/// Up to sixteen fragments that follow each other.
+/// Up to sixteen consecutive fragments.
 struct FragmentLanes {
   using Lane = std::array<std::int32_t, 16>;
   alignas(64) Lane place;  ///< pixel of the bin's memory
@@ -26,8 +27,8 @@ struct FragmentLanes {
   alignas(64) Lane color;  ///< packed in the policy's format
 };
 
-/// Ranges of the bin's tiles, and a bit each for how others compare with them. Ranges that have dropped bits and touch may
-/// overlap.
+/// Ranges of the bin's tiles, and a bit each for their comparison with another range. Ranges with dropped bits that
+/// touch may overlap.
 struct RangeLanes {
   const Bin& bin;
 
@@ -40,7 +41,7 @@ struct RangeLanes {
   }
 };
 
-/// IsLess: the test that nearly every scene has, known when compiled. Otherwise it is the state's.
+/// IsLess: the most common test, known at compile time. Otherwise the test is the state's.
 template <bool IsLess>
 struct OpaqueFragments {
   static constexpr bool kIsOpaque = true, kIsLess = IsLess;
@@ -84,7 +85,8 @@ struct OpaqueFragments {
     }
   }
 
-  /// The bin's tiles against fragments in [depths.low(), depths.high()], a lane a tile: where none passes.
+  /// Compares fragments in [depths.low(), depths.high()] with the bin's tiles, a lane per tile: tiles where none
+  /// passes.
   template <class Depths>
   HALFPLANE_INLINE static std::uint64_t tiles_behind(const Bin& bin, const Depths& depths) {
     const RangeLanes tile(bin);
@@ -99,7 +101,7 @@ struct OpaqueFragments {
     }
   }
 
-  /// Where all do.
+  /// Tiles where all pass.
   template <class Depths>
   HALFPLANE_INLINE static std::uint64_t tiles_in_front(const Bin& bin, const Depths& depths) {
     const RangeLanes tile(bin);
@@ -118,8 +120,7 @@ struct OpaqueFragments {
   /// Colours are packed before the test.
   HALFPLANE_INLINE static ColorFormat format(const Config& config) { return config.color_format; }
 
-  /// Writes fragments that follow each other. What is stored to memory might change the bin, for all that the compiler
-  /// knows: hence copies.
+  /// Writes consecutive fragments. The compiler must assume that stores change the bin: hence copies.
   struct Writer {
     SliceState state;
     DepthPixels depths;
@@ -127,7 +128,7 @@ struct OpaqueFragments {
 
     HALFPLANE_INLINE explicit Writer(Bin& bin) : state(bin.state), depths(bin), pixels(bin.memory.color.data()) {}
 
-    /// Tests and writes the first `count`; returns how many passed. A fragment that fails stores the old value: a branch
+    /// Tests and writes the first `count`; returns how many passed. A failing fragment stores the old value: a branch
     /// would be mispredicted.
     HALFPLANE_INLINE unsigned operator()(const FragmentLanes& fragments, int count) const {
       unsigned passed_pixels = 0;
@@ -150,7 +151,7 @@ struct GeneralFragments {
   /// A colour's codes, R lowest: packed when they are written.
   HALFPLANE_INLINE static ColorFormat format(const Config&) { return ColorFormat::rgba8888; }
 
-  /// Draws the fragments whose bit is set, one after the other. Returns how many passed.
+  /// Draws the fragments whose bit is set, one after the other. Returns the number that passed.
   HALFPLANE_NOINLINE static unsigned draw_some(Bin& bin, const FragmentLanes& fragments, std::uint32_t covered) {
     const DepthPixels depths(bin);
     unsigned passed = 0, killed = 0;

@@ -1,6 +1,6 @@
-// Fragments that ask for more than opaque ones do, and for more than operations.inl has: one by one, tile after tile, nothing
-// left out or put off. Whatever the size of a triangle it is set up by itself. Of draws with a stencil;
-// RenderOptions::general_fragments takes it for all.
+// Fragments with operations beyond those of opaque ones and of operations.inl: one by one, tile after tile, nothing
+// skipped or deferred. A triangle of any size is set up alone. For draws with a stencil;
+// RenderOptions::general_fragments uses it for all.
 #pragma once
 
 #include "bin.inl"
@@ -44,7 +44,8 @@ HALFPLANE_NOINLINE void draw_tile_general(Bin& bin, const BinTriangle& t, int ti
   if (bin.state.depth_write && passed_pixels != 0) find_range(bin, tile);
 }
 
-/// Of a triangle, where the stencil has two sides. Turning the vertices, as records do, keeps the sign of the area.
+/// Whether a triangle shows its back, where the stencil has two sides. The rotation of vertices in records keeps the
+/// sign of the area.
 inline bool shows_back(const Bin& bin, const Slice& slice, const Record& record) {
   if (!bin.ops->stencil || record.kind() != RecordKind::triangle) return false;
   const VertexRow &a = slice.vertices[record.v[0]], &b = slice.vertices[record.v[1]], &c = slice.vertices[record.v[2]];
@@ -63,7 +64,7 @@ inline void draw_triangle_general(Bin& bin, const BinTriangle& t) {
     }
 }
 
-/// draw_records() of such a slice.
+/// draw_records() for such a slice.
 HALFPLANE_NOINLINE void draw_records_general(Bin& bin, const Slice& slice, const std::uint32_t* first,
                                              const std::uint32_t* last) {
   bin.line_tiles = 0;

@@ -1,4 +1,4 @@
-// Lanes to memory and back: narrow numbers, rows of four, blocks of an image, whole cache lines.
+// Lanes from and to memory: narrow numbers, rows of four, blocks of an image, whole cache lines.
 #pragma once
 
 #include "lanes.inl"
@@ -6,7 +6,7 @@
 namespace halfplane::functional::HALFPLANE_ISA_NAME {
 namespace {
 
-/// Sixteen numbers below 2^16 from and to memory.
+/// Sixteen numbers below 2^16, from and to memory.
 HALFPLANE_LEAF I16 load_narrow(const std::uint16_t* from) {
   I16 r;
 #if HALFPLANE_ISA == 512
@@ -36,7 +36,7 @@ struct Columns {
 };
 
 #if defined(__x86_64__)
-/// Four registers, of which each quarter holds a row of four numbers: columns to rows and rows to columns.
+/// Four registers, whose quarters each hold a row of four numbers: columns to rows and rows to columns.
 HALFPLANE_LEAF void turn_quarters(I16::Register& a, I16::Register& b, I16::Register& c, I16::Register& d) {
 #if HALFPLANE_ISA == 512
 #define HALFPLANE_UNPACK(half, a, b, bits) _mm512_unpack##half##_epi##bits((__m512i)(a), (__m512i)(b))
@@ -94,13 +94,13 @@ HALFPLANE_LEAF Columns turned_rows(RowAt&& row_at) {
   return to;
 }
 
-/// The same of so many rows.
+/// The same for N rows.
 template <std::size_t N>
 struct ColumnsOfRows {
   Columns row[N];
 };
 
-/// The other way round: lane i to the row at row_at(i).
+/// The inverse: lane i to the row at row_at(i).
 template <class RowAt>
 HALFPLANE_LEAF void store_rows(const Columns& from, RowAt&& row_at) {
 #if defined(__x86_64__)
@@ -137,7 +137,7 @@ HALFPLANE_LEAF void store_rows(const Columns& from, RowAt&& row_at) {
   }
 #endif
 }
-/// At `to` + i * `stride` bytes.
+/// Stores row i at `to` + i * `stride` bytes.
 HALFPLANE_LEAF void store_rows(const Columns& from, void* to, std::size_t stride) {
   store_rows(from,
              [=](int i) HALFPLANE_LAMBDA { return static_cast<char*>(to) + static_cast<std::size_t>(i) * stride; });
@@ -249,8 +249,8 @@ HALFPLANE_LEAF void store_blocks(Element* to, int stride, const I16& left, const
 #endif
 }
 
-/// Sixteen pixels past the caches to the beginning of a cache line: what is written whole need not be read first.
-/// Behind the last: finish_lines().
+/// Sixteen pixels past the caches to the beginning of a cache line: a line that is written whole need not be read
+/// first. Call finish_lines() after the last.
 template <class Element>
 HALFPLANE_LEAF void stream_line(Element* to, const I16& row) {
 #if HALFPLANE_ISA == 512

@@ -24,7 +24,7 @@ HALFPLANE_LEAF std::uint32_t bits_of(const I16& mask) {
 #endif
 }
 
-/// The bits of all lanes together, of each lane `by` places up, of the lanes whose bit is set in `lanes`.
+/// ORs the bits of the lanes in `lanes`, each shifted up by `by`.
 HALFPLANE_LEAF std::uint64_t or_of_bits(const I16& bits, const I16& by, std::uint32_t lanes) {
 #if HALFPLANE_ISA == 512
   const auto half = [](std::uint32_t mask, const __m256i& b, const __m256i& places) HALFPLANE_LAMBDA {
@@ -54,7 +54,7 @@ HALFPLANE_LEAF std::uint64_t or_of_bits(const I16& bits, const I16& by, std::uin
 }
 
 #if HALFPLANE_ISA == 512
-/// `bits` where a < b. Straight to a mask register: by way of bits_of() GCC makes lanes first.
+/// `bits` where a < b. Goes straight to a mask register: with bits_of() GCC makes lanes first.
 HALFPLANE_LEAF std::uint32_t bits_below(std::uint32_t bits, const I16& a, const I16& b) {
   return _mm512_mask_cmplt_epi32_mask(static_cast<__mmask16>(bits), (__m512i)a.part[0], (__m512i)b.part[0]);
 }
@@ -148,7 +148,7 @@ HALFPLANE_LEAF std::uint64_t bits_at_most(const S64& a, std::int16_t b) {
 #endif
 }
 
-/// The other way round: a mask.
+/// The inverse: a mask.
 HALFPLANE_LEAF S64 lanes_of(std::uint64_t bits) {
   S64 r;
 #if HALFPLANE_ISA == 512
@@ -166,7 +166,7 @@ HALFPLANE_LEAF S64 lanes_of(std::uint64_t bits) {
 }
 
 #if HALFPLANE_ISA <= 256
-/// The other way round, of sixteen lanes.
+/// The inverse, for sixteen lanes.
 HALFPLANE_LEAF S16 block_lanes_of(std::uint32_t bits) {
   const S16 bit = S16::of([](int i) { return static_cast<std::int16_t>(1U << i); });
   return (S16(static_cast<std::int16_t>(bits)) & bit) == bit;
@@ -184,7 +184,7 @@ HALFPLANE_LEAF I16 widened(const S16& mask) {
 #endif
 }
 
-/// How many lanes of a mask are set, times kCountOfLane.
+/// Number of set lanes in a mask, times kCountOfLane.
 constexpr unsigned kCountOfLane = HALFPLANE_ISA == 256 ? 2 : 1;
 HALFPLANE_LEAF unsigned count_of(const S16& mask) {
 #if HALFPLANE_ISA == 256
@@ -199,7 +199,7 @@ HALFPLANE_LEAF unsigned count_of(const S16& mask) {
 #endif
 }
 
-/// To 16 bits; what does not fit becomes the nearest that does.
+/// To 16 bits, saturating.
 HALFPLANE_LEAF S16 saturated(const I16& v) {
   S16 r;
 #if HALFPLANE_ISA == 256
@@ -216,7 +216,7 @@ HALFPLANE_LEAF S16 saturated(const I16& v) {
 }
 #endif
 
-/// Eight lanes of `left` and eight of `right` in turns, to bytes; what does not fit becomes the nearest signed one.
+/// Eight lanes of `left` and eight of `right` alternating, to signed bytes, saturating.
 HALFPLANE_LEAF B64 saturated(const S32& left, const S32& right) {
   B64 r;
 #if HALFPLANE_ISA == 512
@@ -238,7 +238,7 @@ HALFPLANE_LEAF B64 saturated(const S32& left, const S32& right) {
   return r;
 }
 
-/// Two numbers of 16 bits in turns.
+/// Two numbers of 16 bits, alternating.
 template <class Lanes>
 HALFPLANE_LEAF Lanes repeated(std::int32_t two) {
   using Wide __attribute__((vector_size(sizeof(typename Lanes::Register)))) = std::int32_t;
@@ -246,7 +246,7 @@ HALFPLANE_LEAF Lanes repeated(std::int32_t two) {
   HALFPLANE_EACH_PART(Lanes::kParts, i, r.part[i] = (typename Lanes::Register)(Wide{} + two))
   return r;
 }
-/// Four.
+/// Four, repeated.
 HALFPLANE_LEAF S32 repeated(std::uint64_t four) {
   using Wide __attribute__((vector_size(HALFPLANE_ISA / 8))) = std::uint64_t;
   S32 r;
@@ -274,7 +274,7 @@ HALFPLANE_LEAF I16 channel_pair(const I16& rgba, std::size_t pair) {
 #endif
 }
 
-/// The lower half of each lane in both halves.
+/// The lower half of each lane, copied to both halves.
 HALFPLANE_LEAF I16 doubled(const I16& v) {
   I16 r;
 #if HALFPLANE_ISA == 512
@@ -289,7 +289,7 @@ HALFPLANE_LEAF I16 doubled(const I16& v) {
   return r;
 }
 
-/// Of each eight numbers of 16 bits the first four and the last four in turns.
+/// In each group of eight 16-bit numbers, the first four interleaved with the last four.
 HALFPLANE_LEAF B64 turns_of_halves(const B64& v) {
   B64 r;
 #if HALFPLANE_ISA == 512
@@ -307,7 +307,7 @@ HALFPLANE_LEAF B64 turns_of_halves(const B64& v) {
   return r;
 }
 
-/// Lane by lane the 64 bits that begin with `low`, to memory.
+/// Stores the 64 bits of each lane, `low` first, to memory.
 template <class Element>
 HALFPLANE_LEAF void store_interleaved(const I16& low, const I16& high, Element* to) {
   static_assert(sizeof(Element) == 8);
@@ -366,7 +366,7 @@ HALFPLANE_LEAF I16 select_by_bits(std::uint32_t bits, const I16& a, const I16& b
 #endif
 }
 
-/// 32 bits from base + 4 index, lane by lane.
+/// 32 bits from base + 4 * index, lane by lane.
 HALFPLANE_LEAF I16 gather(const void* base, const I16& index) {
   I16 r;
 #if HALFPLANE_ISA == 512
@@ -414,7 +414,7 @@ HALFPLANE_LEAF std::int32_t min_lane(const I16& v) {
 }
 HALFPLANE_LEAF std::int32_t max_lane(const I16& v) { return ~min_lane(~v); }
 
-/// The lanes' bits together.
+/// OR of all lanes.
 HALFPLANE_LEAF std::int32_t or_of_lanes(const I16& v) {
 #if HALFPLANE_ISA == 512
   return _mm512_reduce_or_epi32((__m512i)v.part[0]);

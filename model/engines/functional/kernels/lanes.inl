@@ -1,9 +1,10 @@
-// Vectors of a fixed number of lanes, whatever the machine's registers hold: a pack is as many registers as it takes.
+// Vectors with a fixed number of lanes, whatever the register size of the machine: a pack uses as many registers as it
+// needs.
 //
-// Packs go to memory and back register by register. GCC 12 copies what is larger than 16 bytes, std::memcpy and structs
-// in memory alike, in pieces of 16, and a register loaded from several pieces that were just stored waits for all of
-// them: half of the time of a block. Nor does it compile the copies that it writes itself, of a struct or an array of packs,
-// for the instruction set of this room: a struct that is to be copied says how, and std::array and std::pair are not.
+// Packs go to memory and back register by register. GCC 12 copies more than 16 bytes, by std::memcpy or as structs in
+// memory, in pieces of 16, and a register loaded from several pieces that were just stored waits for all of them: half
+// of the time of a block. Nor does it compile implicit copies, of a struct or an array of packs, for the instruction
+// set of this file: a struct that is copied defines its copy, and std::array and std::pair are not copied.
 #pragma once
 
 #include "../kernel_headers.hpp"
@@ -11,8 +12,8 @@
 namespace halfplane::functional::HALFPLANE_ISA_NAME {
 namespace {
 
-/// For each register of a pack, straight: GCC takes packs apart before it unrolls loops, and keeps those of four registers
-/// and more in memory otherwise.
+/// Unrolled over the registers of a pack: GCC takes packs apart before it unrolls loops, and otherwise keeps those of
+/// four registers and more in memory.
 #define HALFPLANE_PART(parts, i, at, ...) \
   if constexpr ((parts) > at) {           \
     constexpr int i = at;                 \
@@ -33,7 +34,7 @@ namespace {
 /// N lanes of a T.
 template <class T, int N>
 struct Pack {
-  static constexpr int kLanes = HALFPLANE_ISA / 8 / static_cast<int>(sizeof(T));  ///< of a register
+  static constexpr int kLanes = HALFPLANE_ISA / 8 / static_cast<int>(sizeof(T));  ///< in a register
   static constexpr int kParts = N / kLanes;
   static_assert(N % kLanes == 0);
   using Register __attribute__((vector_size(HALFPLANE_ISA / 8))) = T;
@@ -144,7 +145,7 @@ HALFPLANE_LEAF Pack<T, N>& operator&=(Pack<T, N>& a, const Pack<T, N>& b) {
   return a = a & b;
 }
 
-/// Shift without a sign.
+/// Unsigned shift.
 template <int N>
 HALFPLANE_LEAF Pack<std::int32_t, N> shift_right_logical(const Pack<std::int32_t, N>& a, int bits) {
   using P = Pack<std::int32_t, N>;
@@ -183,7 +184,7 @@ HALFPLANE_PACK_COMPARISON(!=)
 template <class T, int N>
 HALFPLANE_LEAF Pack<T, N> select(const Pack<MaskOf<T>, N>& mask, const Pack<T, N>& a, const Pack<T, N>& b) {
   Pack<T, N> r;
-#if HALFPLANE_ISA == 256  // GCC would ask first where the mask is 0
+#if HALFPLANE_ISA == 256  // GCC would otherwise first test where the mask is 0
   using Register = typename Pack<T, N>::Register;
   HALFPLANE_EACH_PART(
       (Pack<T, N>::kParts), i,
@@ -226,13 +227,13 @@ HALFPLANE_LEAF Result lanes_from(const Vector& low, const Vector& high, std::ind
   return __builtin_shufflevector(low, high, (First + static_cast<int>(I))...);
 }
 
-/// Every second lane of them, from the first on.
+/// Every second lane of `low` and `high`, from the first on.
 template <class Result, class Vector, std::size_t... I>
 HALFPLANE_LEAF Result even_lanes(const Vector& low, const Vector& high, std::index_sequence<I...>) {
   return __builtin_shufflevector(low, high, (2 * static_cast<int>(I))...);
 }
 
-/// Lane by lane to another type, as static_cast has it; where one type is twice as wide, half a register at a time.
+/// Converts lane by lane as static_cast does; where one type is twice as wide, half a register at a time.
 template <class To, class From, int N>
 HALFPLANE_LEAF Pack<To, N> convert(const Pack<From, N>& from) {
   constexpr int kLanes = std::min(Pack<To, N>::kLanes, Pack<From, N>::kLanes);
@@ -351,7 +352,7 @@ HALFPLANE_LEAF I16 upper_halves(const L16& v) {
 /// Two values of 16 bits in the halves of each lane.
 HALFPLANE_LEAF I16 pairs(const I16& low, const I16& high) { return (low & 0xffff) | (high << 16); }
 
-/// The upper halves of products of numbers without a sign.
+/// The upper halves of unsigned products.
 HALFPLANE_LEAF S32 multiply_upper(const S32& a, std::uint16_t b) {
   S32 r;
   const S32 factor(static_cast<std::int16_t>(b));
@@ -371,7 +372,7 @@ HALFPLANE_LEAF S32 multiply_upper(const S32& a, std::uint16_t b) {
   return r;
 }
 
-/// a.low b.low + a.high b.high, lane by lane, of 16-bit pairs.
+/// a.low b.low + a.high b.high, lane by lane, for 16-bit pairs.
 HALFPLANE_LEAF I16 multiply_add_pairs(const I16& a, const I16& b) {
   I16 r;
 #if HALFPLANE_ISA == 512

@@ -1,9 +1,10 @@
-// Layers: triangles that are blended over what is stored by their alpha, and nothing else. One that covers a tile as a whole,
-// in front of all of it, waits as a layer; up to sixteen layers of a tile are then blended in one pass over its pixels, in
-// their order, with one read and one write. Layers that an opaque triangle hides are dropped before.
+// Layers: triangles that are blended over the stored colours by their alpha, with no other operation. A triangle that
+// covers a whole tile, in front of all its depths, is kept as a layer; up to sixteen layers of a tile are then blended
+// in one pass over its pixels, in order, with one read and one write. Layers hidden by an opaque triangle are dropped
+// first.
 //
-// Such a tile has Bin::kLayers as the owner of its colours; what lies below is in memory. fetch_color() blends the layers
-// when the colours are needed.
+// Such a tile has Bin::kLayers as the owner of its colours; the colours below are in memory. fetch_color() blends the
+// layers when the colours are needed.
 #pragma once
 
 #include "bin.inl"
@@ -15,8 +16,8 @@
 namespace halfplane::functional::HALFPLANE_ISA_NAME {
 namespace {
 
-/// src_alpha, one_minus_src_alpha, added, to all channels: what most draws that blend ask for. The two factors are 255
-/// together. Alpha, where it is stored, has the same ones, or one in the place of the first.
+/// src_alpha, one_minus_src_alpha, added, for all channels: the most common blending. The two factors sum to 255.
+/// Alpha, where stored, uses the same factors, or one as the first.
 [[nodiscard]] inline bool is_over(const ColorOps& ops, ColorFormat format) {
   const BlendFactors& f = ops.factors;
   if (f.src != BlendFactor::src_alpha || f.dst != BlendFactor::one_minus_src_alpha ||
@@ -27,7 +28,7 @@ namespace {
           f.dst_alpha == BlendFactor::one_minus_src_alpha && ops.equation[1] == BlendEquation::add);
 }
 
-/// What takes the place of alpha as its own first factor, where that is one: bits that are set beside it.
+/// The bits that replace alpha as its own first factor, where that is one.
 HALFPLANE_INLINE std::int32_t own_factor_bits(const ColorOps& ops) {
   return ops.factors.src_alpha == BlendFactor::one ? 255 << 16 : 0;
 }
@@ -37,8 +38,8 @@ HALFPLANE_INLINE S32 alpha_pairs(const I16& green_alpha) {
   return as<S32>(shift_right_logical(green_alpha, 16) | (green_alpha & static_cast<std::int32_t>(0xffff0000U)));
 }
 
-/// What is stored, as codes of 8 bits: widen_color(). Five bits r become 33 r >> 2, six g 65 g >> 4: here as the upper halves
-/// of products, r 2^11 times 264 and g 2^10 times 260.
+/// The stored colour as codes of 8 bits: widen_color(). Five bits r become 33 r >> 2, six g 65 g >> 4: here as the
+/// upper halves of products, r 2^11 times 264 and g 2^10 times 260.
 HALFPLANE_INLINE ColorPairs widened(const I16& stored, ColorFormat format) {
   if (format == ColorFormat::rgba8888) return ColorPairs(stored);
   const I16 red_blue = (stored & 0xf800) | (stored << 27), green = (stored << 5) & 0xfc00;
@@ -46,7 +47,7 @@ HALFPLANE_INLINE ColorPairs widened(const I16& stored, ColorFormat format) {
                     as<I16>(multiply_upper(as<S32>(green), 260)) | (255 << 16));
 }
 
-/// The colour of such a draw: blended(). The sum of two products is at most 255^2. `own_factor`: own_factor_bits().
+/// The colour of such a draw: blended(). The sum of the two products is at most 255^2. `own_factor`: own_factor_bits().
 HALFPLANE_INLINE ColorPairs laid_over(const ColorPairs& source, const ColorPairs& stored, std::int32_t own_factor) {
   const S32 alpha = alpha_pairs(source.green_alpha), rest = 255 - alpha;
   const S32 of_alpha = as<S32>(as<I16>(alpha) | own_factor);
@@ -55,14 +56,14 @@ HALFPLANE_INLINE ColorPairs laid_over(const ColorPairs& source, const ColorPairs
       as<I16>(divide_by_255(as<S32>(source.green_alpha) * of_alpha + as<S32>(stored.green_alpha) * rest)));
 }
 
-/// A layer that waits, in one bin. Values are codes without a bias, in the upper bits of 16: from 256 on they wrap.
+/// A pending layer, in one bin. Values are codes without a bias, in the upper bits of 16: from 256 on they wrap.
 struct Layer {
   alignas(
       64) std::array<std::array<std::int32_t, Bin::kTiles>, 2> anchor;  ///< at each tile's anchor, two channels each
   alignas(
       64) std::array<std::array<std::array<std::int32_t, kBlockPixels>, 4>, 2> from_anchor;  ///< of a block's pixels
   ChannelPairs low, high;                                                                    ///< codes of the vertices
-  std::uint64_t is_clamped;  ///< tiles whose values may leave them
+  std::uint64_t is_clamped;  ///< tiles whose values may leave this range
   std::int32_t own_factor;
 };
 
@@ -70,7 +71,7 @@ struct Layer {
 struct LayerMemory {
   static constexpr std::size_t kLayers = 16;
   std::array<Layer, kLayers> layer;
-  std::array<std::uint16_t, Bin::kTiles> of_tile;  ///< a bit each; where color_owner says that some wait
+  std::array<std::uint16_t, Bin::kTiles> of_tile;  ///< a bit each; valid where color_owner is kLayers
 
   static LayerMemory& of_thread() {
     static thread_local LayerMemory memory;
@@ -78,11 +79,11 @@ struct LayerMemory {
   }
 };
 
-/// Whether 32 bits hold what is left of a colour's plane at a tile's anchor.
+/// Whether 32 bits hold the local part of a colour's plane at a tile's anchor.
 [[nodiscard]] inline bool are_short_anchors(const LaneFormat& format) { return format.drop + 16 - format.up <= 32; }
 
-/// Two channels at the anchors of all tiles, and where they may leave the codes of the vertices within a tile. All of a
-/// tile is covered, so that nothing wraps there.
+/// Two channels at the anchors of all tiles, and the tiles in which they may leave the range of the vertices' codes. A
+/// tile is fully covered, so that no value wraps there.
 HALFPLANE_INLINE std::uint64_t set_layer_anchors(const Bin& bin, const BinTriangle& t, Layer& layer, std::size_t p) {
   const LaneFormat& format = bin.centred_color;
   const auto low_word = [](std::int64_t v) HALFPLANE_LAMBDA {
@@ -134,7 +135,7 @@ HALFPLANE_INLINE std::uint64_t set_layer_anchors(const Bin& bin, const BinTriang
   return leaves;
 }
 
-/// A tile's pixels of two channels each, while layers are laid over them.
+/// A tile's pixels of two channels each, while layers are blended over them.
 struct LaidPairs {
   S32 red_blue, green_alpha;
 
@@ -149,7 +150,7 @@ struct LaidPairs {
   }
 };
 
-/// One layer over a block.
+/// Blends one layer over a block.
 template <bool kClamps, ColorFormat kFormat>
 HALFPLANE_INLINE void lay(const Layer& layer, int tile, std::size_t block, int down, std::int16_t bias,
                           LaidPairs& over) {
@@ -172,7 +173,7 @@ HALFPLANE_INLINE void lay(const Layer& layer, int tile, std::size_t block, int d
   }
 }
 
-/// The layers of a tile, a bit each, over its pixels: as many blocks at once as there are registers for.
+/// Blends the layers of a tile, a bit each, over its pixels: as many blocks at once as there are registers for.
 template <ColorFormat kFormat>
 HALFPLANE_NOINLINE void lay_over_tile(const Bin& bin, const LayerMemory& memory, int tile, std::uint32_t layers,
                                       std::uint32_t* to) {
@@ -212,7 +213,7 @@ HALFPLANE_NOINLINE void lay_over_tile(const Bin& bin, const LayerMemory& memory,
 #endif
 }
 
-/// Colours of a tile on which layers wait: then they are in memory.
+/// Brings colours of a tile with pending layers to memory.
 HALFPLANE_NOINLINE void lay_tile(Bin& bin, int tile) {
   const LayerMemory& memory = LayerMemory::of_thread();
   bin.color_owner[tile] = Bin::kInMemory;
@@ -222,18 +223,18 @@ HALFPLANE_NOINLINE void lay_tile(Bin& bin, int tile) {
                                                    : lay_over_tile<ColorFormat::rgb565>(bin, memory, tile, layers, to);
 }
 
-/// The tiles on which layers wait.
+/// The tiles with pending layers.
 HALFPLANE_INLINE std::uint64_t layered_tiles(const Bin& bin) {
   return bits_of(S64::load(bin.color_owner.data()) == Bin::kLayers);
 }
 
-/// Nothing waits any longer: numbers begin anew.
+/// Blends all pending layers: numbers start again.
 HALFPLANE_NOINLINE void lay_all(Bin& bin) {
   for (std::uint64_t rest = layered_tiles(bin); rest != 0; rest &= rest - 1) lay_tile(bin, std::countr_zero(rest));
   bin.layer_count = 0;
 }
 
-/// One more layer, on `tiles`.
+/// Adds a layer on `tiles`.
 HALFPLANE_NOINLINE void add_layer(Bin& bin, const BinTriangle& t, std::uint64_t tiles) {
   if (bin.layer_count == LayerMemory::kLayers) lay_all(bin);
   LayerMemory& memory = LayerMemory::of_thread();

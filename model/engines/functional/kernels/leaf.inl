@@ -1,8 +1,8 @@
-// The leaf arithmetic of the stages, in lanes: reciprocal, gradient, rounding, decode, pack. Each stands here once.
+// The leaf arithmetic of the stages, in lanes: reciprocal, gradient, rounding, decode, pack. Each exists once.
 //
-// Not the stages' own templates: GCC compiles a template for the instruction set that was chosen where it is written,
-// not where it is used, so that one from a shared header would take these lanes apart (ADR 15). The tests of the engine
-// hold them together.
+// These are not the stages' own templates: GCC compiles a template for the instruction set in force where it is
+// written, not where it is used, so that a shared one would take these lanes apart (ADR 15). The tests of the engine
+// keep both equal.
 #pragma once
 
 #include "lane_moves.inl"
@@ -10,13 +10,13 @@
 namespace halfplane::functional::HALFPLANE_ISA_NAME {
 namespace {
 
-/// The fill rule: a sample on an edge belongs to the triangle where the edge is a left or a top one. A mask.
+/// The fill rule: a sample on an edge belongs to the triangle if the edge is a left or a top edge. A mask.
 template <class Lanes>
 HALFPLANE_LEAF auto is_top_left(const Lanes& dx, const Lanes& dy) {
   return (dy < 0) | ((dy == 0) & (dx > 0));
 }
 
-/// Of two vectors: twice the area that they span, and on which side of an edge a point lies.
+/// Cross product of two vectors: twice the area between them, and the side of an edge on which a point lies.
 template <class Lanes>
 HALFPLANE_LEAF Lanes cross(const Lanes& ax, const Lanes& ay, const Lanes& bx, const Lanes& by) {
   return ax * by - ay * bx;
@@ -27,7 +27,7 @@ HALFPLANE_LEAF I16 magnitude(const I16& v) { return max(v, -v); }
 /// -v where the mask is set.
 HALFPLANE_LEAF I16 turned(const I16& v, const I16& mask) { return (v ^ mask) - mask; }
 
-/// How the values of a tile are held and read back: in the upper bits of a lane, so that they wrap by themselves.
+/// How the values of a tile are held and read: in the upper bits of a lane, so that they wrap by overflow.
 struct LaneFormat {
   int drop;       ///< from a plane's value at the anchor to a tile's
   int up;         ///< from a tile's value to a lane
@@ -35,9 +35,9 @@ struct LaneFormat {
   int step_drop;  ///< from a plane's step to a step of a pixel in a tile
   std::int32_t bias;
   std::uint64_t anchor_bias;
-  std::uint64_t to_centred;  ///< beside it: then an arithmetic shift by `down` leaves the code less `bias`
+  std::uint64_t to_centred;  ///< added to the value: then an arithmetic shift by `down` gives the code minus `bias`
 
-  /// `lane_bits`: of the lane.
+  /// `lane_bits`: bits of a lane.
   LaneFormat(const AttributeWidths& attribute, int lane_bits, const Widths& widths) {
     const int guard_bits = attribute.guard_bits();
     drop = widths.plane_fraction - guard_bits;
@@ -49,7 +49,7 @@ struct LaneFormat {
     to_centred = std::uint64_t{1} << (attribute.code.bits + widths.plane_fraction);
   }
 
-  /// With anchors of that kind.
+  /// With centred anchors.
   [[nodiscard]] LaneFormat centred() const {
     LaneFormat format = *this;
     format.anchor_bias += to_centred;
@@ -60,7 +60,7 @@ struct LaneFormat {
 /// A plane over the pixels of a block, row after row, from its steps and its value at `first`. `column`, `row`: of the
 /// pixels, with as many lanes for each pixel as there are planes. `below`: step_y times block_rows<Lanes>.
 template <class Lanes>
-constexpr int block_rows = 4 / Lanes::kParts;  ///< of a register
+constexpr int block_rows = 4 / Lanes::kParts;  ///< in a register
 template <class Lanes>
 HALFPLANE_LEAF Lanes block_plane(const Lanes& column, const Lanes& row, const Lanes& step_x, const Lanes& step_y,
                                  const Lanes& below, const Lanes& first) {
@@ -73,13 +73,13 @@ HALFPLANE_LEAF Lanes block_plane(const Lanes& column, const Lanes& row, const La
 /// Two channels in the halves of a lane: red and blue, green and alpha.
 using ChannelPairs = std::array<std::int32_t, 2>;
 
-/// Of each half by itself.
+/// Adds the halves separately.
 HALFPLANE_LEAF std::int32_t sum_of_pairs(std::int32_t a, std::int32_t b) {
   const auto first = static_cast<std::uint32_t>(a), second = static_cast<std::uint32_t>(b);
   return static_cast<std::int32_t>(((first + second) & 0xffff) | ((first & 0xffff0000) + (second & 0xffff0000)));
 }
 
-/// The codes of values in lanes, clamped to those of the vertices.
+/// The codes of values in lanes, clamped to the range of the vertices.
 HALFPLANE_LEAF I16 decode(const I16& value, const LaneFormat& format, const I16& low, const I16& high) {
   return min(max(shift_right_logical(value, format.down) - format.bias, low), high);
 }
@@ -90,7 +90,7 @@ HALFPLANE_LEAF I16 decode(const I16& value, const LaneFormat& format, const I16&
   return as<I16>(min(max(code, as<S32>(low)), as<S32>(high)));
 }
 
-/// Codes of 8 bits, red with blue and green with alpha, as the target has them.
+/// Codes of 8 bits, red with blue and green with alpha, in the target's format.
 [[nodiscard]] HALFPLANE_LEAF I16 packed(const I16& red_blue, const I16& green_alpha, ColorFormat format) {
   if (format == ColorFormat::rgba8888) return red_blue | green_alpha << 8;
   // 16 bits suffice: 255 * 253 + 1014 < 2^16.
@@ -105,7 +105,7 @@ HALFPLANE_LEAF I16 decode(const I16& value, const LaneFormat& format, const I16&
   return packed(rgba & 0xff00ff, shift_right_logical(rgba, 8) & 0xff00ff, format);
 }
 
-/// area_quotient() by a division in binary64, put right by its remainder: exact.
+/// area_quotient() by a division in binary64, corrected by its remainder: exact.
 HALFPLANE_LEAF AreaQuotient fast_area_quotient(std::int64_t area, int significant_bits) {
   const int shift = 63 - std::countl_zero(static_cast<std::uint64_t>(area)) + significant_bits;
   double power;
@@ -119,11 +119,11 @@ HALFPLANE_LEAF AreaQuotient fast_area_quotient(std::int64_t area, int significan
   quotient += remainder < 0 ? -1 : remainder >= area ? 1 : 0;
   return {static_cast<std::uint64_t>(quotient), shift};
 }
-/// Sixteen of them, and shifts.
+/// Sixteen quotients, and shifts.
 struct QuotientLanes {
   I16 value, shift;
 };
-/// Of areas below 2^`area_bits`, where binary64 tells each quotient from the next: its division is exact when rounded down.
+/// Whether binary64 distinguishes all quotients of areas below 2^`area_bits`: its division is exact when rounded down.
 [[nodiscard]] constexpr bool is_exact_division(int area_bits, int significant_bits) {
   return area_bits + significant_bits + 2 <= 52;
 }
@@ -133,7 +133,7 @@ HALFPLANE_LEAF QuotientLanes exact_quotient_lanes(const I16& area, int significa
   const auto power = as<D16>(exponent + (static_cast<std::int64_t>(significant_bits + 1) << 52));
   return {convert<std::int32_t>(power / divisor), (upper_halves(exponent) >> 20) + (significant_bits - 1023)};
 }
-/// Of areas below 2^31. significant_bits <= 29: a quotient fits 31 bits.
+/// For areas below 2^31. significant_bits <= 29: a quotient fits 31 bits.
 HALFPLANE_LEAF QuotientLanes quotient_lanes(const I16& area, int significant_bits) {
   const D16 divisor = convert<double>(max(area, I16(1)));
   const auto bits = as<L16>(divisor);
@@ -145,7 +145,7 @@ HALFPLANE_LEAF QuotientLanes quotient_lanes(const I16& area, int significant_bit
   quotient = quotient + (remainder < 0) - (remainder >= convert<std::int64_t>(area));
   return {convert<std::int32_t>(quotient), convert<std::int32_t>(shift)};
 }
-/// Their reciprocals, without the lowest `dropped` bits.
+/// Reciprocals of the areas, without the lowest `dropped` bits.
 struct ReciprocalLanes {
   I16 value, shift;
   HALFPLANE_LEAF ReciprocalLanes(const QuotientLanes& quotient, int dropped)
@@ -156,10 +156,10 @@ struct ReciprocalLanes {
 /// Gradients of sixteen planes: numerators times reciprocals, rounded.
 struct GradientLanes {
   static constexpr std::int64_t kRaise = std::int64_t{1} << 62;  ///< makes a product positive: no shift needs a sign
-  L16 reciprocal, left, right;                                   ///< shifts: one of them 0
+  L16 reciprocal, left, right;                                   ///< shifts; one of them is 0
   L16 addend, lowered;
 
-  /// `k`: bits that a product drops; negative: gains.
+  /// `k`: bits that a product drops; negative: bits gained.
   HALFPLANE_LEAF GradientLanes(const I16& reciprocal_, const I16& k)
       : reciprocal(convert<std::int64_t>(reciprocal_)),
         left(convert<std::int64_t>(max(-k, I16(0)))),
@@ -177,7 +177,7 @@ struct GradientLanes {
   }
 };
 
-/// A value that wraps, in two lanes of 32 bits: the bits below some place, and those from there on.
+/// A value that wraps, split into two lanes of 32 bits: the bits below some place, and the bits from there on.
 struct SplitLanes {
   I16 upper, lower;
 
@@ -191,7 +191,7 @@ struct SplitLanes {
   }
 };
 
-/// The same where binary64 holds the products: numerators times reciprocals below 2^53, gradients below 2^51.
+/// The same for products that fit binary64: numerators times reciprocals below 2^53, gradients below 2^51.
 struct ExactGradientLanes {
   D16 factor;  ///< R 2^-k
   int place;   ///< where a gradient is split
@@ -203,19 +203,19 @@ struct ExactGradientLanes {
 
   HALFPLANE_LEAF SplitLanes operator()(const I16& numerator) const { return (*this)(convert<double>(numerator)); }
   HALFPLANE_LEAF SplitLanes operator()(const D16& numerator) const {
-    constexpr double kInteger = 0x1.8p52;  // what is added to it is an integer in the lower bits
+    constexpr double kInteger = 0x1.8p52;  // adding it leaves the integer in the lower bits
     const auto bits = as<L16>(floor(numerator * factor + 0.5) + kInteger);
     return {convert<std::int32_t>(shift_right_logical(bits, place)),
             convert<std::int32_t>(bits) & ((std::int32_t{1} << place) - 1)};
   }
 };
 
-/// The same where 32 bits hold the products, and the planes, which wrap.
+/// The same for products, and wrapping planes, that fit 32 bits.
 struct NarrowGradientLanes {
   I16 reciprocal, right, addend;
 
   HALFPLANE_LEAF NarrowGradientLanes(const I16& reciprocal_, const I16& k)
-      : reciprocal(reciprocal_ << max(-k, I16(0))),  // where a product gains bits
+      : reciprocal(reciprocal_ << max(-k, I16(0))),  // if a product gains bits
         right(max(k, I16(0))),
         addend((I16(1) << right) >> 1) {}
 
@@ -228,7 +228,7 @@ HALFPLANE_LEAF I16 round_shift_lanes(const L16& value, int bits) {
   return convert<std::int32_t>(shift_right_logical(value + (std::int64_t{1} << (bits - 1)), bits));
 }
 
-/// A number for each channel.
+/// One number per channel.
 using Channels __attribute__((vector_size(32))) = std::int64_t;
 HALFPLANE_LEAF Channels load(const std::array<std::int64_t, 4>& from) {
   using InMemory __attribute__((vector_size(32), aligned(8), may_alias)) = std::int64_t;
@@ -238,19 +238,19 @@ HALFPLANE_LEAF void store(std::array<std::int64_t, 4>& to, const Channels& value
   using InMemory __attribute__((vector_size(32), aligned(8), may_alias)) = std::int64_t;
   *reinterpret_cast<InMemory*>(to.data()) = value;
 }
-/// Those of a colour, R lowest.
+/// The channels of a colour, R lowest.
 HALFPLANE_LEAF Channels channels_of(std::uint32_t rgba) {
   using Unsigned __attribute__((vector_size(32))) = std::uint64_t;
   return (Channels)((Unsigned{} + rgba) >> Unsigned{0, 8, 16, 24}) & 255;
 }
-/// Of the lower halves: red with blue, green with alpha.
+/// The lower halves: red with blue, green with alpha.
 HALFPLANE_LEAF ChannelPairs channel_pairs(const Channels& value) {
   using Codes __attribute__((vector_size(16))) = std::int32_t;
   const Codes code = __builtin_convertvector(value, Codes);
   const Codes pair = (code & 0xffff) | __builtin_shufflevector(code, code, 2, 3, 0, 1) << 16;
   return {pair[0], pair[1]};
 }
-/// round_shift(). The lanes have no signed shift: what is left of the sign bit goes through all bits above it.
+/// round_shift(). The lanes have no signed shift: the shifted sign bit is copied to all bits above it.
 HALFPLANE_LEAF Channels round_shift_channels(const Channels& value, int bits) {
   if (bits <= 0) return value << -bits;
   using Unsigned __attribute__((vector_size(32))) = std::uint64_t;

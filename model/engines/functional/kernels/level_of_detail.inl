@@ -18,7 +18,7 @@ HALFPLANE_INLINE I16 log2_code(const I16& bits) {
   return log + ((part * (256 - part) * 95) >> 16);
 }
 
-/// Of lengths, which may take all 32 bits.
+/// For lengths that may take all 32 bits.
 HALFPLANE_INLINE I16 log2_code_of(const W16& length) {
   const W16 has_all = length >> 31;
   const I16 halved = max(as<I16>(length >> has_all), I16(1));
@@ -27,7 +27,7 @@ HALFPLANE_INLINE I16 log2_code_of(const W16& length) {
 
 /// Lines in a tile: their magnitudes at the pixels of a block.
 struct LodRamps {
-  std::array<I16, 2> along_x, along_y;  ///< of the first block
+  std::array<I16, 2> along_x, along_y;  ///< in the first block
 
   HALFPLANE_INLINE LodRamps() = default;
   HALFPLANE_INLINE void set(const Bin& bin, const LodSetup& lod, int tile_x, int tile_y) {

@@ -1,4 +1,4 @@
-// Light of fragments in lanes: phong.hpp, the same steps, of sixteen pixels.
+// Light of fragments in lanes: the steps of phong.hpp for sixteen pixels.
 #pragma once
 
 #include "bin.inl"
@@ -27,18 +27,18 @@ struct NormalLanes {
     const auto magnitude = [this](std::size_t c) HALFPLANE_LAMBDA { return m[c] ^ (m[c] >> 31); };
     const I16 bits = shift_right_logical(magnitude(0) | magnitude(1) | magnitude(2), of.up) | 1;
     const I16 drop =
-        (float_bits(bits) >> kFloatFraction) + (of.up - kFloatBias - kBlockBits);  // but for a bit that rounds
+        (float_bits(bits) >> kFloatFraction) + (of.up - kFloatBias - kBlockBits);  // except for a rounding bit
     const I16 left = max(-drop, I16(0)), right = max(drop, I16(0));
     for (I16& c : m) c = min((((c << left) >> right) + 1) >> 1, I16((1 << kBlockBits) - 1));
   }
 };
 
-/// inverse_length(): the upper bits of a binary32 mantissa are the line, those below the place.
+/// inverse_length(): the upper bits of a binary32 mantissa give the line, the lower bits the place on it.
 struct InverseLengthLanes {
   I16 down, root;  ///< exponent - 1
 
   HALFPLANE_INLINE InverseLengthLanes(const NormalLanes& n, const LaneLight& of) {
-    const I16 square = n.m[0] * n.m[0] + n.m[1] * n.m[1] + n.m[2] * n.m[2];  // 32 bits without a sign
+    const I16 square = n.m[0] * n.m[0] + n.m[1] * n.m[1] + n.m[2] * n.m[2];  // 32 bits, unsigned
     const I16 bits = float_bits(shift_right_logical(square, 1));
     constexpr int kBelowLine = kFloatFraction - kRootLines, kBelowPlace = kBelowLine - kRootPlaceBits;
     const I16 line = ((bits >> kBelowLine) & ((2 << kRootLines) - 1)) << 1;
@@ -46,7 +46,7 @@ struct InverseLengthLanes {
     const auto* const numbers = &of.roots->start;
     const I16 fall = gather(numbers, line + 1) * place + (1 << (kRootPlaceBits - 1));
     root = gather(numbers, line) - (fall >> kRootPlaceBits);
-    // The exponent of the square is that of its half and 1 more; of no normal there is none, and no cosine.
+    // The exponent of the square is that of its half plus 1; a zero normal has none, and no cosine.
     down = max((bits >> (kFloatFraction + 1)) - (kFloatBias - 1) / 2 - 1, I16(kBlockBits - 2));
   }
 };

@@ -1,4 +1,4 @@
-// Sixteen lines at a time through line_setup, and to the part of each that lies in the bin: a line a lane.
+// Sixteen lines at a time through line_setup, clipped to the bin: a line a lane.
 #pragma once
 
 #include "cull.inl"
@@ -8,23 +8,23 @@
 namespace halfplane::functional::HALFPLANE_ISA_NAME {
 namespace {
 
-/// Lines of a slice that wait, and after set_up_lines() where each of them enters the bin and how it goes on.
+/// Pending lines of a slice, and after set_up_lines() the entry point into the bin and the steps of each.
 ///
-/// Codes are held in the upper bits of a lane: their registers then wrap by themselves.
+/// Codes are held in the upper bits of a lane: registers then wrap by overflow.
 struct LineBatch {
   using Lane = std::array<std::int32_t, 16>;
 
   int count = 0;
-  alignas(64) std::array<Lane, 3> v;                         ///< into Slice::vertices: start, end, the provoking one
-  alignas(64) Lane pixels;                                   ///< in the bin; none when below 1
-  alignas(64) Lane x, y;                                     ///< of the first of them, from the bin's
-  alignas(64) Lane is_x_major, x_sign, y_sign, shows_start;  ///< -1: so, negative
-  alignas(64) std::array<double, 16> row, slope;             ///< rows moved n pixels on: floor(row + n slope)
+  alignas(64) std::array<Lane, 3> v;                         ///< into Slice::vertices: start, end, provoking vertex
+  alignas(64) Lane pixels;                                   ///< in the bin; none if below 1
+  alignas(64) Lane x, y;                                     ///< of the first pixel, from the bin's first
+  alignas(64) Lane is_x_major, x_sign, y_sign, shows_start;  ///< masks: true is -1
+  alignas(64) std::array<double, 16> row, slope;             ///< row after n pixels: floor(row + n slope)
   alignas(64) std::array<std::int64_t, 16> depth, depth_step;
   alignas(64) std::array<Lane, 4> color, color_step;
   alignas(64) Lane depth_start, color_start;
 
-  /// True when that was the last for which there is room.
+  /// True if the batch is full now.
   HALFPLANE_INLINE bool add(const Record& record) {
     const auto i = static_cast<std::size_t>(count);
     for (std::size_t k = 0; k < 3; ++k) v[k][i] = static_cast<std::int32_t>(record.v[k]);
@@ -33,14 +33,14 @@ struct LineBatch {
 };
 
 /// floor(numerator / denominator) of integers below 2^53, the quotient in an int32. Rounding never reaches an integer
-/// from below: the next one is at least 1 / denominator away.
+/// from below: the exact quotient is at least 1 / denominator away.
 HALFPLANE_INLINE I16 floor_divide(const D16& numerator, const D16& denominator) {
   const D16 quotient = numerator / denominator;
   const I16 truncated = convert<std::int32_t>(quotient);
   return truncated + convert<std::int32_t>(convert<double>(truncated) > quotient);
 }
 
-/// Where sixteen lines run in the bin.
+/// The course of sixteen lines in the bin.
 struct LineWay {
   I16 offset;  ///< subpixels from the start to the centre of the first column
   I16 low;     ///< the first step in the bin
@@ -71,8 +71,8 @@ HALFPLANE_INLINE LineWay set_up_way(LineBatch& batch, const OctantLanes& line, c
             bottom = convert<double>(bin_range(bin_minor, line.is_minor_negative, false) - base_row);
   const D16 never(1 << 20), some_d = max(d, D16(1.0));
   const L16 is_level = d == 0.0;
-  const D16 missing = top * D - Q;                  // until the bin's first row
-  const D16 room = (bottom + 1.0) * D - (Q + 1.0);  // to its last
+  const D16 missing = top * D - Q;                  // until the first row of the bin
+  const D16 room = (bottom + 1.0) * D - (Q + 1.0);  // to its last row
   const D16 enters = select(is_level, never, min((missing + (d - 1.0)) / some_d, never));
   const D16 leaves = select(is_level, never, min(room / some_d, never));
   low = max(low, convert<std::int32_t>(select(missing > 0.0, enters, D16(0.0))));
@@ -82,7 +82,7 @@ HALFPLANE_INLINE LineWay set_up_way(LineBatch& batch, const OctantLanes& line, c
   const D16 steps = convert<double>(low), position = Q + d * steps;
   const I16 moved = floor_divide(position, D);
   const D16 reciprocal_D = 1.0 / D;
-  // Half a unit off every border between rows: far more than what these products are off.
+  // Half a unit away from every border between rows: far more than the error of these products.
   ((position - convert<double>(moved) * D + 0.5) * reciprocal_D).store(batch.row.data());
   (d * reciprocal_D).store(batch.slope.data());
   const I16 major = (line.first + low) ^ line.is_major_negative, minor = (base_row + moved) ^ line.is_minor_negative;
@@ -95,13 +95,13 @@ HALFPLANE_INLINE LineWay set_up_way(LineBatch& batch, const OctantLanes& line, c
   return {offset, low};
 }
 
-/// Everything about the lines that wait. The attributes' arithmetic stays in one function: as functions over a struct it
-/// took a tenth more instructions.
+/// Sets up the pending lines. The attributes' arithmetic stays in one function: as functions on a struct it took a
+/// tenth more instructions.
 HALFPLANE_NOINLINE void set_up_lines(LineBatch& batch, const Slice& slice, const FrameContext& frame, int first_x,
                                      int first_y) {
   const Widths& widths = frame.widths;
   const LineRules rules(slice.context->state, widths);
-  for (int i = batch.count; i < 16; ++i)  // what is not there is like the first
+  for (int i = batch.count; i < 16; ++i)  // unused lanes copy the first
     for (std::size_t k = 0; k < 3; ++k) batch.v[k][static_cast<std::size_t>(i)] = batch.v[k][0];
   const auto fetch = [&](std::size_t k)
                          HALFPLANE_LAMBDA { return load_rows(slice.vertices.data(), batch.v[k].data()); };
@@ -114,8 +114,8 @@ HALFPLANE_NOINLINE void set_up_lines(LineBatch& batch, const Slice& slice, const
   const GradientLanes gradient(reciprocal.value, reciprocal.shift - (s + guard_bits));
   const L16 to_first = convert<std::int64_t>(way.offset), to_bin = convert<std::int64_t>(way.low);
   const std::int64_t half_code = std::int64_t{1} << (guard_bits - 1), half_step = std::int64_t{1} << (s - 1);
-  // Values wrap far above their bits: shifts need no sign. Steps do as well, but not where they are still to be shifted
-  // down: a line shorter than a pixel has steps above the whole range.
+  // Values wrap far above their bits: shifts need no sign. Steps wrap too, except before a shift down: a line shorter
+  // than a pixel has steps above the whole range.
   const auto start_of = [&](const I16& from, const L16& moved) HALFPLANE_LAMBDA {
     return (convert<std::int64_t>(from) << guard_bits) + half_code + shift_right_logical(moved + half_step, s);
   };

@@ -9,8 +9,7 @@
 namespace halfplane::functional::HALFPLANE_ISA_NAME {
 namespace {
 
-/// Tiles that lines have not touched since triangles last did: they must be in memory, and their ranges are known no
-/// more.
+/// Tiles that lines have not touched since triangles last did: they must be in memory, and their ranges become unknown.
 template <class Fragments>
 HALFPLANE_NOINLINE void touch_line_tiles(Bin& bin, std::uint64_t tiles) {
   bin.line_tiles |= tiles;
@@ -77,7 +76,7 @@ HALFPLANE_NOINLINE void draw_pixels(Bin& bin, const LineBatch& line, std::size_t
 /// Line `i` of a batch.
 template <class Fragments>
 HALFPLANE_INLINE void draw_line(Bin& bin, const LineBatch& lines, std::size_t i) {
-  using Narrow = std::conditional_t<Fragments::kIsOpaque, std::int32_t, std::int64_t>;  // one is enough out of line
+  using Narrow = std::conditional_t<Fragments::kIsOpaque, std::int32_t, std::int64_t>;  // one instance suffices
   if (bin.widths.depth().line.bits <= 32)
     draw_pixels<Fragments, Narrow>(bin, lines, i);
   else
@@ -89,13 +88,13 @@ struct Steps {
   std::int64_t first = 0, last = 0;
 };
 
-/// `start`: where the coordinate is at step 0, in pixels of the bin; `is_negative`: it falls. D: 0 for the coordinate
-/// that moves in every step; otherwise it has moved floor((error + (n - 1) d + D) / D) pixels after n steps.
+/// `start`: the coordinate at step 0, in pixels of the bin; `is_negative`: the coordinate decreases. D: 0 for the
+/// coordinate that moves in every step; otherwise it has moved floor((error + (n - 1) d + D) / D) pixels after n steps.
 HALFPLANE_INLINE void clip_steps(Steps& steps, std::int32_t start, bool is_negative, std::int64_t error, std::int64_t d,
                                  std::int64_t D) {
-  const std::int64_t enters = is_negative ? start - (kBinSize - 1) : -start;  // moves that bring it in
-  const std::int64_t leaves = is_negative ? start : kBinSize - 1 - start;     // the last move that keeps it in
-  const auto step_of = [&](std::int64_t move) HALFPLANE_LAMBDA {  // the first step after which it has moved so far
+  const std::int64_t enters = is_negative ? start - (kBinSize - 1) : -start;  // moves until it enters the bin
+  const std::int64_t leaves = is_negative ? start : kBinSize - 1 - start;     // the last move within the bin
+  const auto step_of = [&](std::int64_t move) HALFPLANE_LAMBDA {              // the first step after this many moves
     if (D == 0) return move;
     const std::int64_t numerator = (move - 1) * D - error;
     if (d == 0) return numerator <= 0 ? std::int64_t{1} : std::int64_t{1} << 40;
@@ -106,8 +105,8 @@ HALFPLANE_INLINE void clip_steps(Steps& steps, std::int32_t start, bool is_negat
   if (leaves >= 0 && leaves < steps.last) steps.last = std::min(steps.last, step_of(leaves + 1) - 1);
 }
 
-/// A line that was set up alone: one that the scissor or the clipper has cut.
-/// Its part in the bin becomes bin.cut_line; false where there is none.
+/// A line that was set up alone: cut by the scissor or the clipper. Its part in the bin becomes bin.cut_line; false if
+/// there is none.
 HALFPLANE_NOINLINE bool set_up_cut_line(Bin& bin, const LineSetup& line) {
   const std::int64_t d = line.step_stay, D = line.step_stay - line.step_move;
   const bool is_x_major = line.is_x_major != 0;
@@ -149,7 +148,7 @@ HALFPLANE_INLINE void draw_cut_line(Bin& bin, const LineSetup& line) {
   if (set_up_cut_line(bin, line)) draw_line<Fragments>(bin, bin.cut_line, 0);
 }
 
-/// Draws the lines that wait.
+/// Draws the pending lines.
 template <class Fragments>
 void draw_lines(Bin& bin, const Slice& slice) {
   if (bin.lines.count == 0) return;

@@ -1,7 +1,8 @@
-// Large triangles where pixels have several samples: depths are kept by sample, colours once a pixel while all its samples have
-// the same one. A tile in which they differ is split, into an image for each sample; one that a triangle covers as a whole is
-// whole again. So a tile far from edges costs what it costs with one sample: the depths of a triangle that has taken it are
-// computed when needed, at the sample in question. In a tile that its edges cut a triangle waits as a cutout: cutouts.inl.
+// Large triangles with several samples per pixel: depths are kept per sample, colours per pixel while all its samples
+// have the same one. A tile in which they differ is split, into an image for each sample; a tile that a triangle fully
+// covers is whole again. So a tile far from edges costs as much as with one sample: the depths of a triangle that owns
+// it are computed when needed, at the sample in question. In a tile cut by its edges a triangle is kept as a cutout:
+// cutouts.inl.
 //
 // An edge at a sample is the edge at the centre plus a constant, and so is a depth (multisample.hpp).
 #pragma once
@@ -21,12 +22,13 @@
 namespace halfplane::functional::HALFPLANE_ISA_NAME {
 namespace {
 
-/// From the centre of a pixel to each sample: what edges (in the order of BinTriangle) and depths of a triangle gain.
+/// From the centre of a pixel to each sample: the increments of a triangle's edges (in the order of BinTriangle) and
+/// depths.
 struct SeveralSamples {
   std::array<EdgeWords, kMaxPixelSamples> edge;
   std::array<std::int32_t, kMaxPixelSamples> depth;  ///< in a lane
-  EdgeWords edge_least, edge_most;                   ///< of them, and of the centre's 0
-  std::uint32_t drawn;                               ///< samples that the draw's mask lets pass, a bit each
+  EdgeWords edge_least, edge_most;                   ///< bounds of the edges, including 0 at the centre
+  std::uint32_t drawn;                               ///< samples that the draw's sample mask lets pass, a bit each
   bool draws_all;
 
   HALFPLANE_INLINE explicit SeveralSamples(const Bin& bin) : drawn(bin.drawn_samples) {
@@ -37,7 +39,7 @@ struct SeveralSamples {
     draws_all = drawn == (1U << bin.samples) - 1;
   }
 
-  /// sample_edge_offset() of the three edges. The bits that they have lost are the same at every pixel's centre.
+  /// sample_edge_offset() of the three edges. Their dropped bits are the same at every pixel's centre.
   HALFPLANE_INLINE void move_edges(const Bin& bin, const Corners& corners, const BinTriangle& t) {
     using Unsigned __attribute__((vector_size(16))) = std::uint32_t;
     const int s = bin.widths.grid_bits;
@@ -83,7 +85,7 @@ struct SeveralSamples {
                              std::uint64_t in_front) const;
 };
 
-/// The colours of a tile's pixels as they are stored or, of 8 bits a channel, before they are.
+/// The colours of a tile's pixels, packed or, with 8 bits a channel, before packing.
 struct PixelColors {
   alignas(64) std::array<std::uint32_t, kTilePixels> code{};
 
@@ -92,7 +94,7 @@ struct PixelColors {
   }
 };
 
-/// One triangle in its tiles. `kSamples`: how many a pixel has, or 0, if Bin::samples says it.
+/// One triangle in its tiles. `kSamples`: how many a pixel has, or 0, if Bin::samples gives the number.
 template <unsigned kSamples>
 struct SampledTriangle {
   Bin& bin;
@@ -102,9 +104,9 @@ struct SampledTriangle {
   const SeveralSamples& at;
   const TileConstants constants;
   SampledColors<kSamples> planes;
-  std::array<std::int32_t, kMaxPixelSamples> surface{};  ///< its number where a sample shades; 0: none yet
-  bool can_wait;                                         ///< its colours
-  std::int16_t plane_number = -1;                        ///< into BinMemory::planes, once it waits
+  std::array<std::int32_t, kMaxPixelSamples> surface{};  ///< surface number by shading sample; 0: none yet
+  bool can_wait;                                         ///< its colours may be deferred
+  std::int16_t plane_number = -1;                        ///< into BinMemory::planes, once pending
 
   HALFPLANE_INLINE SampledTriangle(Bin& bin_, const Slice& slice_, const Record& record_, const BinTriangle& t_,
                                    const SeveralSamples& at_)
@@ -114,8 +116,8 @@ struct SampledTriangle {
 
   HALFPLANE_INLINE unsigned count() const { return samples_of<kSamples>(bin); }
 
-  /// What edges have at the first pixel of a tile, at the centre and from there on at each sample, less than the limit for
-  /// what is outside. As in outside_edges().
+  /// Edge values at the first pixel of a tile, at the centre and then at each sample; less than the limit is outside.
+  /// As in outside_edges().
   using FirstValues = std::array<std::array<std::int32_t, 4>, 1 + kMaxPixelSamples>;
   HALFPLANE_INLINE FirstValues first_values(const EdgeWords& smallest) const {
     FirstValues first;
@@ -127,7 +129,7 @@ struct SampledTriangle {
     return first;
   }
 
-  /// Takes the pixels outside an edge out of what is covered.
+  /// Removes the pixels outside an edge from the coverage.
   HALFPLANE_INLINE void leave_out(std::size_t e, const FirstValues& first, SamplePixels& pixels) const {
     const auto each = [&](auto&& outside) HALFPLANE_LAMBDA {
       pixels.centre &= ~outside(first[0][e]);
@@ -139,7 +141,7 @@ struct SampledTriangle {
     each([&](std::int32_t from) HALFPLANE_LAMBDA { return bits_at_most(ramp, static_cast<std::int16_t>(~from)); });
   }
 
-  /// False where nothing is covered. Mostly one edge cuts a tile: the others are not looked at.
+  /// False if nothing is covered. Mostly one edge cuts a tile: the others are not evaluated.
   HALFPLANE_INLINE bool cover(int tile, bool is_full, SamplePixels& pixels) const {
     std::uint64_t in_box = ~std::uint64_t{0};
     const int x = tile % kBinTiles, y = tile / kBinTiles;
@@ -206,7 +208,7 @@ struct SampledTriangle {
     if (writes && pixels.any != 0) find_sample_range(bin, tile);
   }
 
-  /// The pixels whose colour is from sample m, which is the first that is covered where the centre is not.
+  /// The pixels shaded at sample m, the first that is covered where the centre is not.
   template <class Visit>
   HALFPLANE_INLINE void for_each_place(const SamplePixels& pixels, Visit&& visit) const {
     std::uint64_t rest = pixels.any & ~pixels.centre;
@@ -229,7 +231,7 @@ struct SampledTriangle {
     return {sum_of_pairs(centre[0], gain[0]), sum_of_pairs(centre[1], gain[1])};
   }
 
-  /// Colours of all pixels with a sample that has passed, of a surface or of planes.
+  /// Finds colours of all pixels with a passed sample, from a surface or from planes.
   HALFPLANE_NOINLINE void find_colors(int tile, const SamplePixels& pixels, ColorFormat format, PixelColors& colors) {
     if (t.surface != 0) {
       const auto set = [&](std::int32_t number, std::uint64_t here) {
@@ -247,7 +249,7 @@ struct SampledTriangle {
     });
   }
 
-  /// Whether the pixels of a tile have one colour each, before and after; what is all covered is so in any case.
+  /// Whether the pixels of a tile have one colour each, before and after; a fully covered tile does in any case.
   HALFPLANE_INLINE bool stays_whole(int tile, const SamplePixels& pixels) const {
     const std::uint64_t bit = std::uint64_t{1} << tile;
     if (bin.color_owner[tile] == Bin::kInTarget) need_sample_colors(bin, tile);
@@ -285,7 +287,7 @@ struct SampledTriangle {
     planes.store(tile, pixels.centre, pixels.covered, pixels.passed, pixels.any);
   }
 
-  /// Depths of what has passed every test.
+  /// Writes depths of the samples that have passed every test.
   HALFPLANE_INLINE void write_depths(int tile, const SamplePixels& pixels) const {
     if (pixels.any == 0) return;
     const std::int32_t anchor = depth_anchor(bin, t, tile % kBinTiles, tile / kBinTiles);
@@ -301,7 +303,7 @@ struct SampledTriangle {
     find_sample_range(bin, tile);
   }
 
-  /// operate_on_tile() of samples.
+  /// operate_on_tile() for samples.
   HALFPLANE_NOINLINE void operate(int tile, SamplePixels& pixels) {
     const FragmentOps& ops = *bin.ops;
     const auto passed_samples = [&] {
@@ -334,25 +336,25 @@ struct SampledTriangle {
         store_colors(bin, bin.sample_memory.color[k] + first_of(tile), pixels.passed[k], colors);
   }
 
-  /// Its number among the triangles that wait.
+  /// Its number among the pending triangles.
   HALFPLANE_INLINE std::int16_t plane() {
     if (plane_number < 0) plane_number = add_plane(bin, t);
     return plane_number;
   }
 
-  /// Whether the colours of what has passed wait.
+  /// Whether the colours of the passed samples are deferred.
   HALFPLANE_INLINE bool waits(int tile, const SamplePixels& pixels) const {
     if (!can_wait || !may_wait(tile) || pixels.all == ~std::uint64_t{0}) return false;
     return pixels.any != pixels.all || (bin.split >> tile & 1) != 0;
   }
 
-  /// Whether a cutout waits in a tile: where samples have been stored one by one, others will be as well, and where cutouts are
-  /// asked for before others hide them, they had better not wait.
+  /// Whether a cutout is deferred in a tile: not where samples have been stored one by one, as others will be, nor
+  /// where cutouts are usually needed before others hide them.
   HALFPLANE_INLINE bool may_wait(int tile) const {
     return bin.color_owner[tile] == Bin::kCutouts || (bin.cutouts_saved > 0 && (bin.split >> tile & 1) == 0);
   }
 
-  /// What passes, where ranges of depths decide it: no depth is computed, and the cutout's depths wait too.
+  /// Samples that pass, where ranges of depths decide: no depth is computed, and the cutout's depths are deferred too.
   template <class Fragments>
   HALFPLANE_INLINE bool passes_by_ranges_alone(int tile, bool is_ahead, const CutoutRange& range,
                                                SamplePixels& pixels) const {
@@ -362,7 +364,7 @@ struct SampledTriangle {
     return is_ahead || passes_by_ranges<kSamples>(bin, tile, range, pixels);
   }
 
-  /// What they let through.
+  /// Adds the passed samples as a cutout with deferred depths.
   HALFPLANE_INLINE void wait_with_depths(int tile, const SamplePixels& pixels, const CutoutRange& range) {
     if (!bin.state.depth_write) return add_cutout<kSamples>(bin, tile, plane(), pixels, nullptr);
     if ((pixels.all & pixels.centre) != ~std::uint64_t{0})

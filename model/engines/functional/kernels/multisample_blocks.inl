@@ -1,6 +1,6 @@
-// Small and medium triangles where pixels have several samples: the blocks of 4 x 4 pixels of which they cover some. A
-// block's coverage, depths and colours go sample by sample through what one sample goes through; its tile is split, for of
-// small triangles hardly one leaves a pixel whole.
+// Small and medium triangles with several samples per pixel: the blocks of 4 x 4 pixels with covered samples. A block's
+// coverage, depths and colours are processed sample by sample as with one sample; its tile is split, because few small
+// triangles leave a pixel whole.
 #pragma once
 
 #include "bin.inl"
@@ -15,11 +15,11 @@
 namespace halfplane::functional::HALFPLANE_ISA_NAME {
 namespace {
 
-/// touch_tiles() where pixels have several samples: depths by sample, colours split.
+/// touch_tiles() for several samples per pixel: depths by sample, colours split.
 template <class Fragments>
 HALFPLANE_INLINE bool touch_sampled_tiles(Bin& bin, std::uint64_t tiles) {
   const bool is_color = bin.state.color_write;
-  bin.cutouts_saved = std::min(bin.cutouts_saved, 0);  // small triangles will ask for more of them
+  bin.cutouts_saved = std::min(bin.cutouts_saved, 0);  // small triangles will need memory instead
   for (std::uint64_t rest = tiles & ~(bin.in_memory & bin.split); rest != 0; rest &= rest - 1) {
     const int at = std::countr_zero(rest);
     need_sample_depths(bin, at);
@@ -29,8 +29,8 @@ HALFPLANE_INLINE bool touch_sampled_tiles(Bin& bin, std::uint64_t tiles) {
   return widen_ranges<Fragments>(bin, tiles, [&bin](int tile) HALFPLANE_LAMBDA { find_sample_range(bin, tile); });
 }
 
-/// The edges of lane i over quad q of its window, as far as they differ from pixel to pixel; then from the values at its
-/// first pixel, at the centre or at a sample, a bit for each pixel that is outside.
+/// The edges of lane i over quad q of its window, their part that varies from pixel to pixel; then from the values at
+/// its first pixel, at the centre or at a sample, a bit for each pixel outside.
 template <bool kShort>
 struct QuadEdges;
 
@@ -91,12 +91,12 @@ struct QuadEdges<false> {
   }
 };
 
-/// What the triangles of a batch cover of their quads' pixels: at the centres, at each sample, and at any of these.
+/// Coverage of a batch's quads by pixel: at the centres, at each sample, and at any of these.
 struct SampledCoverage {
   Coverage any;
   alignas(64) Coverage::Blocks centre;
   alignas(64) std::array<Coverage::Blocks, kMaxPixelSamples> sample;
-  std::uint64_t samples = 0;  ///< that are covered and drawn
+  std::uint64_t samples = 0;  ///< covered and drawn samples
 
   HALFPLANE_INLINE SampledCoverage() = default;
 };
@@ -132,7 +132,7 @@ HALFPLANE_INLINE void find_sampled(Bin& bin, const SmallSamples& samples, Sample
   bin.job.counters.samples_tested += Quad::kPixels * bin.samples * static_cast<unsigned>(std::popcount(quads));
 }
 
-/// Colours of a block of lane i: at the centre, or where that is not covered at the first covered sample.
+/// Colours of a block of lane i: at the centre, or, if that is not covered, at the first covered sample.
 template <unsigned kSamples>
 HALFPLANE_INLINE I16 sampled_colors(const Bin& bin, const SmallSamples& samples, const SampledCoverage& covered,
                                     std::size_t number, std::size_t i, const SmallBatch::Tile& tile,
@@ -156,7 +156,7 @@ HALFPLANE_INLINE I16 sampled_colors(const Bin& bin, const SmallSamples& samples,
 }
 
 #if HALFPLANE_ISA == 512
-/// NarrowTest where registers are larger: the codes of a block are half of one, masks are bits.
+/// NarrowTest for larger registers: the codes of a block are half a register, masks are bits.
 struct NarrowSamples {
   static constexpr unsigned kCount = 1;
   using Passed = std::uint32_t;
@@ -202,7 +202,7 @@ struct NarrowSamples {
 using NarrowSamples = NarrowTest;
 #endif
 
-/// Depth, test and colour of the blocks of which samples are covered.
+/// Depth, test and colour of the blocks with covered samples.
 template <class Fragments, class Test, unsigned kSamples>
 HALFPLANE_NOINLINE void draw_sampled_blocks(Bin& bin, const SmallSamples& samples, const SampledCoverage& covered) {
   const SmallBatch& batch = bin.small;
@@ -248,7 +248,7 @@ HALFPLANE_NOINLINE void draw_sampled_blocks(Bin& bin, const SmallSamples& sample
   count_fragments(bin, covered.samples, passed_pixels / Test::kCount);
 }
 
-/// A batch that is set up, in tiles that are ready for it.
+/// Draws a batch that is set up, in tiles that are ready for it.
 template <class Fragments, unsigned kSamples>
 HALFPLANE_NOINLINE void draw_sampled(Bin& bin, const SmallSamples& samples) {
   SampledCoverage covered;
@@ -257,7 +257,7 @@ HALFPLANE_NOINLINE void draw_sampled(Bin& bin, const SmallSamples& samples) {
                 : draw_sampled_blocks<Fragments, WideTest, kSamples>(bin, samples, covered);
 }
 
-/// Draws a batch whose records are loaded, of no operations and no surfaces.
+/// Draws a loaded batch, without operations and surfaces.
 template <class Fragments>
 HALFPLANE_NOINLINE void draw_sampled_batch(Bin& bin, const Slice& slice) {
   const std::uint64_t tiles = batch_tiles(bin);

@@ -1,4 +1,5 @@
-// What sixteen small or medium triangles gain from the centre of a pixel to its samples, a triangle a lane: multisample.hpp.
+// Increments of sixteen small or medium triangles from the centre of a pixel to its samples, a triangle a lane:
+// multisample.hpp.
 #pragma once
 
 #include "leaf.inl"
@@ -8,10 +9,11 @@
 namespace halfplane::functional::HALFPLANE_ISA_NAME {
 namespace {
 
-// The steps of a plane as a tile keeps them, of a pixel, and from them the gain to a sample: sample_plane_offset(), modulo
-// what a tile keeps. Of a step that wraps so many bits are left as the gain still has once its fraction is gone.
+// The steps of a plane per pixel, in a tile's precision, and from them the increment to a sample:
+// sample_plane_offset(), modulo a tile's wrap window. A step that wraps keeps as many bits as the increment still has
+// without its fraction.
 
-/// In 32 bits, where they hold planes.
+/// In 32 bits, if planes fit.
 struct PixelStepsI {
   I16 x, y;
 
@@ -27,10 +29,10 @@ struct PixelStepsI {
   }
 };
 
-/// Split, as the gradients are, at a pixel's fraction of `s` bits.
+/// Split, like the gradients, at a pixel's fraction of `s` bits.
 struct PixelStepsSplit {
-  I16 x, y;              ///< whole pixels' worth
-  I16 x_lower, y_lower;  ///< and what is left, rounded
+  I16 x, y;              ///< upper part
+  I16 x_lower, y_lower;  ///< lower part, rounded
 
   HALFPLANE_INLINE PixelStepsSplit(const Gradients<SplitLanes>& steps, const LaneFormat& format)
       : x(steps.x.upper),
@@ -71,19 +73,19 @@ HALFPLANE_INLINE PixelStepsL pixel_steps(const Gradients<L16>& steps, const Lane
   return {steps, format};
 }
 
-/// A batch at each sample; what set_up_small() tells of it.
+/// A batch at each sample; set_up_small() fills it.
 struct SmallSamples {
   const Widths& widths;
-  std::size_t count;                                                        ///< samples of a pixel
-  alignas(64) std::array<SmallBatch::LaneArray<3>, kMaxPixelSamples> edge;  ///< as SmallBatch::edge
-  alignas(64) std::array<SmallBatch::Lane, kMaxPixelSamples> depth;         ///< gains, in a lane
+  std::size_t count;                                                        ///< of a pixel
+  alignas(64) std::array<SmallBatch::LaneArray<3>, kMaxPixelSamples> edge;  ///< as SmallBatch::edge, at each sample
+  alignas(64) std::array<SmallBatch::Lane, kMaxPixelSamples> depth;         ///< increments, in a lane
   alignas(64) std::array<SmallBatch::FourChannels, kMaxPixelSamples> color;
-  alignas(64) std::array<SmallBatch::LaneArray<4>, kMaxPixelSamples> channel;  ///< the same, one by one
+  alignas(64) std::array<SmallBatch::LaneArray<4>, kMaxPixelSamples> channel;  ///< increments of each channel
 
   HALFPLANE_INLINE explicit SmallSamples(const Widths& of)
       : widths(of), count(static_cast<std::size_t>(of.pixel_samples)) {}
 
-  /// Edge e, with the bits that its value drops: sample_edge_offset().
+  /// Edge e, with the dropped bits of its value: sample_edge_offset().
   HALFPLANE_INLINE void move_edge(std::size_t e, const I16& exact, const I16& dx, const I16& dy, bool is_short) {
     for (std::size_t k = 0; k < count; ++k) {
       const SampleOffset& o = widths.sample_offset[k];
@@ -103,11 +105,11 @@ struct SmallSamples {
     for (std::size_t k = 0; k < count; ++k)
       (of_pixel.gain(widths.sample_offset[k], widths.grid_bits) << format.up).store(channel[k][c].data());
   }
-  /// One that is the same all over each triangle.
+  /// A channel that is constant over each triangle.
   HALFPLANE_INLINE void keep_channel(std::size_t c) {
     for (std::size_t k = 0; k < count; ++k) I16(0).store(channel[k][c].data());
   }
-  /// Behind the last of them.
+  /// To be called after the last channel.
   HALFPLANE_INLINE void join_channels() {
     for (std::size_t k = 0; k < count; ++k) {
       const auto pair = [&](std::size_t c) HALFPLANE_LAMBDA {

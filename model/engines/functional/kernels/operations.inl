@@ -1,7 +1,7 @@
 // Operations in lanes: alpha test, blending, dithering and masks of a triangle's pixels in a tile, from color_ops.hpp.
-// Colours stay what they are to the surfaces: red with blue and green with alpha in the halves of lanes.
+// Colours have the layout of surfaces: red with blue and green with alpha in the halves of lanes.
 //
-// Such a triangle looks at what is stored, so it takes no tile and defers no colour; hidden tiles are still skipped.
+// Such a triangle reads stored values, so it owns no tile and defers no colour; hidden tiles are still skipped.
 #pragma once
 
 #include "bin.inl"
@@ -17,9 +17,9 @@
 namespace halfplane::functional::HALFPLANE_ISA_NAME {
 namespace {
 
-using H32 = Pack<std::uint16_t, 32>;  ///< without signs
+using H32 = Pack<std::uint16_t, 32>;  ///< unsigned
 
-/// min(a + b, 255^2) of products of codes; what a is above b, or 0.
+/// min(a + b, 255^2) for products of codes.
 HALFPLANE_INLINE S32 limited_sum(const S32& a, const S32& b) {
   constexpr std::uint16_t kMost = 255 * 255;
   const auto first = as<H32>(a);
@@ -30,7 +30,7 @@ HALFPLANE_INLINE S32 limited_difference(const S32& a, const S32& b) {
   return as<S32>(first - min(first, as<H32>(b)));
 }
 
-/// A block's colours on their way to be stored.
+/// A block's colours before they are stored.
 struct BlendLanes {
   const ColorOps& ops;
   ColorPairs source, stored;
@@ -43,7 +43,7 @@ struct BlendLanes {
         source_alpha(alpha_pairs(source.green_alpha)),
         stored_alpha(alpha_pairs(stored.green_alpha)) {}
 
-  /// blend_factor() of red with blue, or green with alpha; `is_alpha`: of the latter, alpha's.
+  /// blend_factor() of red with blue, or green with alpha; `is_alpha`: for the latter, alpha's factor.
   HALFPLANE_INLINE S32 factor(BlendFactor of, const S32& src, const S32& dst, std::size_t first, std::size_t second,
                               bool is_alpha) const {
     const auto constant = [&](std::size_t a, std::size_t b)
@@ -114,7 +114,7 @@ HALFPLANE_INLINE S32 block_thresholds() {
   }));
 }
 
-/// The colours of a tile's pixels before they are stored: computed when they are asked for, or a surface's.
+/// The colours of a tile's pixels before they are stored: computed on demand, or a surface's.
 struct TileColors {
   ColorRamp plane;
   const ColorSteps& steps;
@@ -140,7 +140,7 @@ struct TileColors {
   }
 };
 
-/// Of `pixels`, those that the alpha test lets pass. `alpha_of`: those of a block.
+/// The `pixels` that pass the alpha test. `alpha_of`: alpha of a block.
 template <class AlphaOf>
 HALFPLANE_INLINE std::uint64_t test_alphas(const Bin& bin, std::uint64_t pixels, AlphaOf&& alpha_of) {
   const DepthFunc func = bin.ops->alpha.func;
@@ -165,7 +165,7 @@ HALFPLANE_INLINE std::uint64_t test_alpha(const Bin& bin, std::uint64_t pixels, 
   });
 }
 
-/// Whether the alpha of a surface's linear filter may be had without its colours.
+/// Whether the alpha of a surface's linear filter can be computed without its colours.
 HALFPLANE_INLINE bool has_alpha_alone(const DrawnSurface& surface) {
   const SurfaceConstants& of = surface.constants;
   return of.are_in_lanes && of.has_texture && !of.light && of.texture.alpha_quads != nullptr &&
@@ -173,7 +173,7 @@ HALFPLANE_INLINE bool has_alpha_alone(const DrawnSurface& surface) {
          (!of.has_color || of.texture.combine == TextureCombine::modulate);
 }
 
-/// test_alpha() of such a surface in a tile.
+/// test_alpha() for such a surface in a tile.
 HALFPLANE_NOINLINE std::uint64_t test_linear_alpha(const Bin& bin, const DrawnSurface& surface, int tile,
                                                    std::uint64_t pixels) {
   const SurfaceConstants& of = surface.constants;
@@ -197,7 +197,7 @@ HALFPLANE_NOINLINE std::uint64_t test_linear_alpha(const Bin& bin, const DrawnSu
   });
 }
 
-/// Depths of `pixels`, which have passed every test.
+/// Writes depths of `pixels`, which have passed every test.
 HALFPLANE_INLINE void write_depths(Bin& bin, const BinTriangle& t, int tile, std::uint64_t pixels) {
   if (pixels == 0) return;
   need_depth(bin, tile);
@@ -212,13 +212,13 @@ HALFPLANE_INLINE void write_depths(Bin& bin, const BinTriangle& t, int tile, std
   find_range(bin, tile);
 }
 
-/// Colours of `pixels` upon what is stored, a tile's 64: store_color().
+/// Operates colours of `pixels` upon the stored ones, of a tile's 64: store_color().
 template <class Colors>
 HALFPLANE_INLINE void store_colors(Bin& bin, std::uint32_t* to, std::uint64_t pixels, const Colors& colors) {
   const ColorOps& ops = bin.ops->color;
   const ColorFormat format = bin.config.color_format;
   const bool has_alpha = format == ColorFormat::rgba8888, blends = ops.blends(), dithers = ops.dithers;
-  const bool writes_some = bin.ops->state.color_write,  // false without Skip::masked_draws alone
+  const bool writes_some = bin.ops->state.color_write,  // false only without Skip::masked_draws
       writes_all = writes_some && ops.writes == ColorOps{}.writes;
   const auto written = writes_some ? static_cast<std::int32_t>(written_bits(ops, format)) : 0;
   const S32 thresholds = dithers ? block_thresholds() : S32(0);
@@ -232,7 +232,7 @@ HALFPLANE_INLINE void store_colors(Bin& bin, std::uint32_t* to, std::uint64_t pi
   });
 }
 
-/// A draw of is_over() and no alpha test.
+/// A draw with is_over() and no alpha test.
 template <ColorFormat kFormat>
 HALFPLANE_NOINLINE void lay_over(Bin& bin, const BinTriangle& t, int tile, std::uint64_t pixels) {
   const TileColors colors(bin, t, tile, pixels);
@@ -245,8 +245,8 @@ HALFPLANE_NOINLINE void lay_over(Bin& bin, const BinTriangle& t, int tile, std::
   });
 }
 
-/// What the alpha test comes to for all pixels of a tile that a textured triangle covers at its corners, as far as the alphas
-/// say it of all texels that may be looked at: level 0 alone.
+/// The outcome of the alpha test for all pixels of a tile whose corners a textured triangle covers, as far as the
+/// alphas of all reachable texels decide it: level 0 only.
 HALFPLANE_NOINLINE Outcome texture_outcome(Bin& bin, const BinTriangle& t, int tile, std::uint64_t pixels) {
   constexpr std::uint64_t kCorners =
       1 | std::uint64_t{1} << (kBlockPixels + 3) | std::uint64_t{1} << (2 * kBlockPixels + 12) | std::uint64_t{1} << 63;
@@ -258,7 +258,7 @@ HALFPLANE_NOINLINE Outcome texture_outcome(Bin& bin, const BinTriangle& t, int t
   if (sampling == Sampling::any) return Outcome::some_pass;
   const int tile_x = (bin.first_x >> kTileShift) + tile % kBinTiles,
             tile_y = (bin.first_y >> kTileShift) + tile / kBinTiles;
-  // Corner after corner, over and over.
+  // The corners, repeated.
   const I16 column = I16::of([](int i) { return (i & 1) != 0 ? kTileSize / 2 - 1 : -kTileSize / 2; }),
             row = I16::of([](int i) { return (i & 2) != 0 ? kTileSize / 2 - 1 : -kTileSize / 2; });
   const auto at_corners = [&](const LanePlane& plane) HALFPLANE_LAMBDA {
@@ -289,8 +289,8 @@ HALFPLANE_NOINLINE Outcome texture_outcome(Bin& bin, const BinTriangle& t, int t
                       result(of.color_high[3], texel.high));
 }
 
-/// What the alpha test comes to for all pixels of a tile, as far as the alpha of a triangle's plane says it: what lanes
-/// compute from the tile's anchor, where nothing of it wraps.
+/// The outcome of the alpha test for all pixels of a tile, as far as the alpha of a triangle's plane decides it: as
+/// lanes compute it from the tile's anchor, if no value wraps.
 HALFPLANE_INLINE Outcome alpha_outcome(Bin& bin, const BinTriangle& t, int tile, std::uint64_t pixels) {
   if (!bin.tests_alpha) return Outcome::all_pass;
   if (bin.is_killed) return Outcome::none_passes;
@@ -316,7 +316,7 @@ HALFPLANE_INLINE Outcome alpha_outcome(Bin& bin, const BinTriangle& t, int tile,
                       static_cast<std::uint32_t>(high));
 }
 
-/// What becomes of a tile's pixels that have passed the depth test; the alpha test may still drop them.
+/// Operates on a tile's pixels that have passed the depth test; the alpha test may still drop them.
 HALFPLANE_NOINLINE void operate_on_tile(Bin& bin, const BinTriangle& t, int tile, std::uint64_t passed) {
   const FragmentOps& ops = *bin.ops;
   if (passed == 0 && bin.skip.operations_early_z) {
@@ -339,8 +339,8 @@ HALFPLANE_NOINLINE void operate_on_tile(Bin& bin, const BinTriangle& t, int tile
     count_killed(bin, static_cast<unsigned>(std::popcount(passed & ~kept)));
     if (bin.tests_alpha && ops.state.depth_write) write_depths(bin, t, tile, kept);
   };
-  // What passes replaces what is stored: its colour waits as any other surface's, and is computed if it is seen.
-  // bin.state.color_write says as well that alpha is looked at.
+  // A passing pixel replaces the stored values: its colour is deferred like any other surface's, and computed if
+  // visible. bin.state.color_write also says that alpha is read.
   if (t.surface != 0 && bin.samples == 1 && bin.skip.attributes && ops.state.color_write && ops.color.is_plain()) {
     if (alpha == Outcome::some_pass) {
       const DrawnSurface& surface = drawn_surface(bin, static_cast<std::size_t>(t.surface));

@@ -7,8 +7,8 @@
 namespace halfplane::functional::HALFPLANE_ISA_NAME {
 namespace {
 
-/// Numbers from 0 on as binary32, their bits: the 21 highest are as they were, because the one below them is cleared and so
-/// no rounding gets past it.
+/// Bits of numbers from 0 on as binary32: the 21 highest are unchanged, because the bit below them is cleared and so no
+/// rounding carries past it.
 HALFPLANE_INLINE I16 float_bits(const I16& value) { return as<I16>(convert<float>(value & ~(value >> 21))); }
 
 /// 1 / Q of pixels: PixelReciprocal.
@@ -17,7 +17,7 @@ struct ReciprocalsOfQ {
   I16 exponent;    ///< e + kFloatBias
   I16 reciprocal;  ///< r
 
-  /// `value`: of Q's plane. Where a pixel is not covered anything may come out.
+  /// `value`: of Q's plane. For an uncovered pixel the result is undefined.
   HALFPLANE_INLINE ReciprocalsOfQ(const I16& value, const LaneDivision& by) {
     bits = float_bits(shift_right_logical(value, by.up));
     exponent = bits >> kFloatFraction;
@@ -42,16 +42,17 @@ struct ReciprocalsOfQ {
   }
 };
 
-/// P with so many bits more, held where it leaves the range of narrow_p() in any case. `bits`: at most 21.
+/// P with `bits` more bits, clamped where it exceeds the range of narrow_p() in any case. `bits`: at most 21.
 HALFPLANE_INLINE I16 with_more_bits(const I16& p, const I16& bits) {
   const I16 limit = I16(1 << 30) >> bits;
   return min(max(p, -limit), limit) << bits;
 }
 
-/// narrow_p(), `value`: of P's plane. A shift by no bits, or to the left, is one by a bit after another to the left.
+/// narrow_p(), `value`: of P's plane. A shift by 0 bits, or to the left, becomes a left shift followed by a right shift
+/// of one bit.
 HALFPLANE_INLINE I16 narrow_p(const I16& value, const ReciprocalsOfQ& q, const LaneAttribute& attribute,
                               const LaneOverW& format) {
-  const I16 down = q.exponent + attribute.narrow;  // from a lane
+  const I16 down = q.exponent + attribute.narrow;  // shift from a lane
   if (attribute.is_tame) return ((value >> down) + 1) >> 1;
   I16 dropped;
   if (attribute.may_gain) {
@@ -63,7 +64,7 @@ HALFPLANE_INLINE I16 narrow_p(const I16& value, const ReciprocalsOfQ& q, const L
   return min(max((dropped + 1) >> 1, I16(format.lowest)), I16(format.highest));
 }
 
-/// over_q(). A product of more than 31 bits is the sum of two, floored one after the other.
+/// over_q(). A product of more than 31 bits is the sum of two, floored in turn.
 HALFPLANE_INLINE I16 over_q(const I16& value, const ReciprocalsOfQ& q, const LaneAttribute& attribute,
                             const LaneOverW& format) {
   const I16 narrow = narrow_p(value, q, attribute, format);

@@ -1,5 +1,5 @@
-// Colours of pixels that show small and medium textured triangles (pieces.inl), sixteen pixels at a time, each of any triangle:
-// a lane fetches the constants of its own.
+// Colours of pixels that show small and medium textured triangles (pieces.inl), sixteen pixels at a time, each of any
+// triangle: a lane fetches the constants of its own triangle.
 #pragma once
 
 #include "bin.inl"
@@ -29,12 +29,12 @@ struct TilePieces {
 };
 
 #if HALFPLANE_ISA == 512
-/// The pieces that the pixels of a block show, a pixel a lane. A register of numbers of a group is asked for any of them,
-/// and that of two groups as well: a block has mostly one or two.
+/// The pieces that the pixels of a block show, a pixel a lane. A register holds a constant of all pieces of a group and
+/// can be indexed, and so can two: a block mostly has one or two groups.
 class BlockPieces {
  public:
   HALFPLANE_INLINE BlockPieces() = default;
-  /// `pixels`: of the tile, one at least in the block; `numbers`: of the block.
+  /// `pixels`: of the tile, at least one in the block; `numbers`: of the block.
   HALFPLANE_INLINE void set(const TilePieces& shown, std::uint64_t pixels, std::size_t block,
                             const std::uint16_t* numbers, const I16& to_sign) {
     count_ = 0;
@@ -49,8 +49,8 @@ class BlockPieces {
     const I16 in_group = load_narrow(numbers) & 15;
     of_two_ = select_by_bits(lanes_[1], in_group + 16, in_group, to_sign);
   }
-  /// Lane by lane the rows of the pixel's piece, of which those of the first group are `first`; 0 where a pixel shows none.
-  /// `group_size`: bytes from a group's to the next one's.
+  /// Lane by lane the rows of the pixel's piece, `first` being those of the first group; 0 for a pixel without a piece.
+  /// `group_size`: bytes from one group to the next.
   template <std::size_t N>
   HALFPLANE_INLINE void rows(const PieceRow* const (&first)[N], std::size_t group_size, ColumnsOfRows<N>& to) const {
     const auto number = [&](std::size_t k, std::size_t n, std::size_t column) HALFPLANE_LAMBDA {
@@ -79,10 +79,10 @@ class BlockPieces {
 
  private:
   static constexpr std::size_t kMost = kBlockPixels + 1;
-  I16 of_two_;                  ///< a piece's place in its group, in the second group 16 more
+  I16 of_two_;                  ///< a piece's index in its group, 16 more in the second group
   std::size_t count_;           ///< of groups
-  std::size_t group_[kMost];    ///< their numbers
-  std::uint32_t lanes_[kMost];  ///< their pixels
+  std::size_t group_[kMost];    ///< numbers of the groups
+  std::uint32_t lanes_[kMost];  ///< pixels of each group
 };
 #else
 /// The same, row by row.
@@ -113,7 +113,7 @@ class BlockPieces {
 };
 #endif
 
-/// over_q(), `value`: P. Lanes have what LaneAttribute has. `is_tame`: as there, of all.
+/// over_q(), `value`: P. Lanes hold the members of LaneAttribute. `is_tame`: as there, for all.
 HALFPLANE_INLINE I16 over_q(const I16& value, const ReciprocalsOfQ& q, const I16& narrow, const I16& drop, bool is_tame,
                             const LaneOverW& format) {
   const I16 down = q.exponent + narrow - PieceScale::kNarrowLess;

@@ -1,5 +1,5 @@
-// Setup of small and medium textured triangles, sixteen at a time, a triangle a lane, once a pixel of one of them is shaded.
-// Sixteen of a batch are a group, each of them a piece.
+// Setup of small and medium textured triangles, sixteen at a time, a triangle a lane, once a pixel of one of them is
+// shaded. The sixteen of a batch are a group, each one a piece.
 #pragma once
 
 #include "bin.inl"
@@ -11,13 +11,13 @@ namespace halfplane::functional::HALFPLANE_ISA_NAME {
 namespace {
 
 HALFPLANE_INLINE D16 magnitude(const D16& v) { return as<D16>(as<L16>(v) & std::int64_t{0x7fffffffffffffff}); }
-/// The exponent of numbers without a sign, as binary64 has it.
+/// The exponent field of non-negative numbers in binary64.
 HALFPLANE_INLINE I16 exponent_field(const D16& v) { return upper_halves(as<L16>(v)) >> 20; }
-/// The other way round: 2^(field - 1023).
+/// The inverse: 2^(field - 1023).
 HALFPLANE_INLINE D16 power_of_field(const I16& field) { return as<D16>(convert<std::int64_t>(field) << 52); }
 constexpr std::int32_t kDoubleBias = 1023;
 
-/// snap(): floor(v + 1/2). Where that sum itself would round it does so downwards, which leaves its floor what it is.
+/// snap(): floor(v + 1/2). Where that sum itself rounds, it rounds down, which does not change its floor.
 HALFPLANE_INLINE D16 snapped(const D16& v) {
 #if HALFPLANE_ISA == 512
   D16 r;
@@ -26,7 +26,7 @@ HALFPLANE_INLINE D16 snapped(const D16& v) {
                                                    _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
   return floor(r);
 #else
-  const D16 whole = floor(v);  // or it is not computed
+  const D16 whole = floor(v);  // or the compiler drops it
   return whole + as<D16>(as<L16>(D16(1.0)) & (v - whole >= 0.5));
 #endif
 }
@@ -45,13 +45,13 @@ HALFPLANE_INLINE I16 snapped_codes(const D16& v) {
 #endif
 }
 
-/// What the three corners have of something.
+/// The values of an attribute at the three corners.
 template <class Lanes>
 struct OfCorners {
   Lanes a, b, c;
 };
 
-/// Of finite numbers.
+/// For finite numbers.
 HALFPLANE_INLINE D16 least_of(const OfCorners<D16>& of) { return min(min(of.a, of.b), of.c); }
 HALFPLANE_INLINE D16 largest_magnitude(const OfCorners<D16>& of) {
 #if HALFPLANE_ISA == 512
@@ -74,10 +74,10 @@ struct QLanes {
 
   /// `inverse`: 1 / w.
   HALFPLANE_INLINE QLanes(const OfCorners<D16>& w, const OfCorners<D16>& inverse, int bits) {
-    // The quotient of a mantissa is that of w, moved.
+    // The quotient of a mantissa is that of w, scaled.
     const D16 scale = power_of_field(exponent_field(least_of(w)) + bits);
     const D16 a = inverse.a * scale, b = inverse.b * scale, c = inverse.c * scale;
-    // The nearest may round to a bit more than there are.
+    // Rounding may carry to one more bit.
     const D16 whole(static_cast<double>(std::int64_t{1} << bits) - 0.5);
     const D16 fit = select(max(max(a, b), c) >= whole, D16(0.5), D16(1.0));
     number.a = max(snapped(a * fit), D16(1.0));
@@ -89,7 +89,7 @@ struct QLanes {
   }
 };
 
-/// quantize_over_w() of a coordinate.
+/// quantize_over_w() for a coordinate.
 struct OverWLanes {
   OfCorners<I16> p;
   I16 reach, exponent;
@@ -121,13 +121,14 @@ struct OverWLanes {
   }
 };
 
-/// Which corner planes over w start from: base_vertex(), of equal ones the first in canonical order; and which follow it.
+/// The corner at which planes over w start: base_vertex(), of equal ones the first in canonical order; and the corners
+/// after it.
 struct PieceOrder {
-  I16 is_b, is_c;  ///< masks; else a
+  I16 is_b, is_c;  ///< masks; neither: a
 
   HALFPLANE_INLINE PieceOrder(const I16& first_is_b, const I16& first_is_c, const I16& is_turned,
                               const OfCorners<I16>& q) {
-    // How many corners after the first, and where that is in canonical order.
+    // Number of corners after the first, in canonical order.
     const auto ranked = [&](const I16& code, std::int32_t if_a, std::int32_t if_b, std::int32_t if_c) HALFPLANE_LAMBDA {
       const I16 after = select(first_is_c, I16(if_c), select(first_is_b, I16(if_b), I16(if_a)));
       return (code << 2) | (after ^ (is_turned & (after != 0) & 3));
@@ -137,14 +138,14 @@ struct PieceOrder {
     is_b = ~is_c & (b < a);
   }
 
-  /// The base, the next one, the last.
+  /// The base, the next corner, the last.
   HALFPLANE_INLINE OfCorners<I16> turned_to_base(const I16& a, const I16& b, const I16& c) const {
     return {select(is_c, c, select(is_b, b, a)), select(is_c, a, select(is_b, c, b)),
             select(is_c, b, select(is_b, a, c))};
   }
 };
 
-/// Which corner is the first in the order of (Y, X): masks; else a.
+/// The first corner in the order of (Y, X): masks; neither: a.
 struct FirstCorner {
   I16 is_b, is_c;
 
@@ -155,7 +156,7 @@ struct FirstCorner {
   }
 };
 
-/// Four numbers of each piece of a group, a piece a lane.
+/// Stores four numbers of each piece of a group, a piece a lane.
 HALFPLANE_INLINE void store_row(const Columns& from, PieceRow& to) {
 #if HALFPLANE_ISA == 512
   from.first.store(to.number.data());
@@ -167,13 +168,13 @@ HALFPLANE_INLINE void store_row(const Columns& from, PieceRow& to) {
 #endif
 }
 
-/// setup_lod(). Returns the lanes that it does not have, a bit each.
+/// setup_lod(). Returns the lanes that it cannot set up, a bit each.
 HALFPLANE_NOINLINE std::uint32_t set_up_levels(const SmallCorners& corners, const FirstCorner& first, const QLanes& q,
                                                const OfCorners<D16>& u, const OfCorners<D16>& v,
                                                const PerspectiveFormat& format, int grid_bits, PieceLevels& to) {
   const L16 first_is_b = convert<std::int64_t>(first.is_b), first_is_c = convert<std::int64_t>(first.is_c),
             is_turned = convert<std::int64_t>(corners.is_turned);
-  // Corners in canonical order, in which sums are rounded.
+  // Corners in canonical order, the order in which sums are rounded.
   const auto in_order = [&](const OfCorners<D16>& of, D16* ordered) HALFPLANE_LAMBDA {
     ordered[0] = select(first_is_c, of.c, select(first_is_b, of.b, of.a));
     const D16 next = select(first_is_c, of.a, select(first_is_b, of.c, of.b)),
@@ -241,14 +242,14 @@ HALFPLANE_NOINLINE std::uint32_t set_up_levels(const SmallCorners& corners, cons
 struct PiecePlanes {
   const Widths& widths;
   const PerspectiveFormat& format;
-  L16 ax, ay, bx, by;             ///< the corners from the base
-  L16 to_x, to_y;                 ///< the anchor of the tile of even column and row from it
-  L16 is_odd_column, is_odd_row;  ///< masks: of the window's first tile
+  L16 ax, ay, bx, by;             ///< corners from the base
+  L16 to_x, to_y;                 ///< from the base to the anchor of the tile of even column and row
+  L16 is_odd_column, is_odd_row;  ///< masks: column and row of the window's first tile
   GradientLanes gradient;
 
-  /// In lanes, `up` bits below its values.
+  /// Plane in lanes, with `up` bits below its values.
   struct Plane {
-    I16 at[4];  ///< as PieceConstants has its tiles
+    I16 at[4];  ///< at the anchors of PieceConstants::tile
     I16 step_x, step_y;
   };
 
@@ -276,10 +277,10 @@ struct PiecePlanes {
   }
 };
 
-/// How a coordinate's P is divided: LaneAttribute.
+/// Division of a coordinate's P: LaneAttribute.
 struct PieceScale {
-  I16 narrow;   ///< but for kNarrowLess
-  I16 drop;     ///< less 1
+  I16 narrow;   ///< without kNarrowLess
+  I16 drop;     ///< minus 1
   I16 is_tame;  ///< a mask
   static constexpr std::int32_t kNarrowLess = 128;
 
@@ -311,8 +312,8 @@ HALFPLANE_NOINLINE void set_up_pieces(Bin& bin, std::size_t number) {
   const Widths& widths = bin.widths;
   const Slice& slice = *group.slice;
   const auto* const vertices = reinterpret_cast<const char*>(slice.surface);
-  static_assert(sizeof(SurfaceRow) == 2 * sizeof(VertexRow));  // `corner` is of those
-  for (const SmallBatch::Lane& corner : group.corner)          // they are asked for below: until then they are there
+  static_assert(sizeof(SurfaceRow) == 2 * sizeof(VertexRow));  // `corner` counts in units of SurfaceRow
+  for (const SmallBatch::Lane& corner : group.corner)          // prefetched for the code below
     for (const std::int32_t place : corner)
       __builtin_prefetch(vertices + std::size_t{2} * static_cast<std::uint32_t>(place));
   const SmallCorners corners = small_corners(group.corner, group.live, slice);

@@ -1,5 +1,6 @@
-// Viewport and cull, lanes at a time: the bits of stages/viewport and stages/cull for what needs no clipping. What does,
-// and what may not be drawn at all, goes the slow way: through the host side's own function, which knows the messages.
+// Viewport and cull, lanes at a time: the bits of stages/viewport and stages/cull for what needs no clipping. Triangles
+// that need clipping, or may not be drawn at all, take the slow path: the host side's own function, which makes the
+// messages.
 #pragma once
 
 #include "lane_memory.inl"
@@ -8,8 +9,8 @@
 namespace halfplane::functional::HALFPLANE_ISA_NAME {
 namespace {
 
-/// floor(value * scale + 1/2) as snap() has it, as half of one more than floor(2 value * scale): no sum is rounded.
-/// |value * scale| < 2^30.
+/// floor(value * scale + 1/2), equal to snap(), as half of floor(2 value * scale) + 1: no sum is rounded. |value *
+/// scale| < 2^30.
 HALFPLANE_INLINE I16 snap_lanes(const D16& value, double scale) {
   return (convert<std::int32_t>(floor(value * (2 * scale))) + 1) >> 1;
 }
@@ -20,7 +21,7 @@ struct VertexLanes {
   I16 rgba;
 };
 
-/// What the vertices of a slice are projected with.
+/// Constants of the projection of a slice's vertices.
 struct Projection {
   bool is_clip_space;
   Viewport viewport;
@@ -74,7 +75,7 @@ HALFPLANE_INLINE I16 clip_codes(const VertexLanes& v, const Projection& p) {
   const D16 by_x = v.x * p.half_width, by_y = v.y * p.half_height;
   const L16 in_band = (by_x + v.w * p.band_w[0] >= 0.0) & (-by_x + v.w * p.band_w[1] >= 0.0) &
                       (-by_y + v.w * p.band_w[2] >= 0.0) & (by_y + v.w * p.band_w[3] >= 0.0) & (v.w > 0.0);
-  // Inside all planes and with w at most this, every coordinate is.
+  // Inside all planes and with w at most this, every coordinate is small too.
   const L16 is_small = (v.w <= 1e300) & (max(max(v.x, -v.x), max(v.y, -v.y)) <= 1e300) & (max(v.z, -v.z) <= 1e300);
   return volume | bit(near & far & convert<std::int32_t>(in_band & is_small), Slice::kSlow);
 }
@@ -86,7 +87,7 @@ HALFPLANE_INLINE I16 project_lanes(const VertexLanes& v, const Projection& p, in
   if (p.is_clip_space) {
     codes = clip_codes(v, p);
     const L16 is_fine = convert<std::int64_t>(codes < static_cast<int>(Slice::kSlow));
-    const D16 w = select(is_fine, v.w, D16(1.0));  // what is not is not used
+    const D16 w = select(is_fine, v.w, D16(1.0));  // others are not used
     const D16 nx = v.x / w, ny = v.y / w, nz = v.z / w;
     const D16 depth = p.is_zero_one ? nz : (nz + 1.0) * 0.5;  // halves are exact
     x = p.viewport.x + (nx + 1.0) * 0.5 * p.viewport.width;
@@ -98,7 +99,7 @@ HALFPLANE_INLINE I16 project_lanes(const VertexLanes& v, const Projection& p, in
     if (p.scale_y < 0) y = static_cast<double>(target_height) - y;
     z = v.z;
   }
-  // Coarse: what is beyond does not fit the conversions.
+  // A coarse bound: larger values do not fit the conversions.
   const L16 fits = (max(x, -x) <= p.reach) & (max(y, -y) <= p.reach) & (z >= -1.0) & (z <= 2.0);
   x = select(fits, x, D16(0.0));
   y = select(fits, y, D16(0.0));

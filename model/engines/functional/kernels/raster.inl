@@ -1,17 +1,17 @@
-// Setup, coarse raster, fine raster, interpolation, depth test and ROP of one bin, fused. Bits as in the stages; the
-// order of the work is this engine's own:
+// Setup, coarse raster, fine raster, interpolation, depth test and ROP of one bin, fused. The bits are those of the
+// stages; the order of the work differs:
 //
 //   triangle within two by two pixels  sixteen at a time through setup, then their samples
-//   within two by two tiles            sixteen at a time through setup, then the blocks that each covers
+//   within two by two tiles            sixteen at a time through setup, then their covered blocks
 //   within three by three, in a row    the same
-//   larger                             all tiles of the bin at once: outside, hidden, taken as a whole, or drawn
+//   larger                             all tiles of the bin at once: outside, hidden, taken whole, or drawn
 //
 // A block is 4 x 4 pixels: sixteen lanes, one cache line of colours. A tile is four of them.
 //
-// A tile that a triangle covers wholly, in front of all that is there, is taken without looking at a pixel: it remembers
-// the triangle, whose depths and colours are computed when they are needed, mostly at the end of the bin.
+// A tile that a triangle covers wholly, in front of all its depths, is taken without access to pixels: the tile stores
+// the triangle's number, and depths and colours are computed when they are needed, mostly at the end of the bin.
 //
-// docs/functional.md draws the way of a block through these files.
+// docs/functional.md draws the path of a block through these files.
 #pragma once
 
 #include "batches.inl"
@@ -39,14 +39,15 @@ struct SameDepths {
   HALFPLANE_INLINE U64 high() const { return U64(static_cast<std::uint16_t>(range.high)); }
 };
 
-/// Whether nothing of a record can be seen that is a line, or one of many small triangles: the whole bin is asked first.
+/// Whether no part of a record can be visible; for lines and records among many small triangles: the range of the whole
+/// bin is tested first.
 template <class Fragments>
 HALFPLANE_INLINE bool is_behind(Bin& bin, const Record& record, bool is_line) {
   if (!bin.skip.tiles_hiz) return false;
   if (bin.is_range_old) find_bin_range(bin);
   const DepthRange range = range_of(bin, record);
   if (!(Fragments::kIsLess ? range.low >= bin.closed_from : Fragments::is_behind(bin, range))) {
-    // Nearer than what every tile may hold: no need to look at its own.
+    // Nearer than the bound of every tile: its own tiles need no test.
     if (is_line || (Fragments::kIsLess && range.low < bin.lowest_high)) return false;
     if ((tiles_of(box_of(bin, record)) & ~Fragments::tiles_behind(bin, SameDepths{range})) != 0) return false;
   }
@@ -56,13 +57,13 @@ HALFPLANE_INLINE bool is_behind(Bin& bin, const Record& record, bool is_line) {
   return true;
 }
 
-/// Of the part of a record's box that lies in the bin.
+/// First tile of the part of a record's box that lies in the bin.
 HALFPLANE_INLINE int first_tile(const Bin& bin, const Record& record) {
   const int x = std::max(record.left() - bin.first_x, 0), y = std::max(record.top() - bin.first_y, 0);
   return (y >> kTileShift) * kBinTiles + (x >> kTileShift);
 }
 
-/// What the next records need is asked for now.
+/// Prefetches data for the next records.
 HALFPLANE_INLINE void fetch_records(const Slice& slice, const std::uint32_t* first, const std::uint32_t* last) {
   constexpr std::ptrdiff_t kAhead = 8;
   if (last - first <= kAhead) return;
@@ -71,8 +72,8 @@ HALFPLANE_INLINE void fetch_records(const Slice& slice, const std::uint32_t* fir
     for (std::size_t k = 0; k < 2; ++k) __builtin_prefetch(&slice.vertices[near.v[k]]);
 }
 
-/// Of any other record: its tiles that may show it. All tiles of the bin are asked at once, and where all of them hide it
-/// that is kept for the next ones.
+/// For any other record: its tiles that may show it. All tiles of the bin are tested at once, and where all of them
+/// hide it that result is kept for the next records.
 template <class Fragments>
 HALFPLANE_INLINE std::uint64_t seen_tiles(Bin& bin, const Record& record, const BinBounds& box) {
   const std::uint64_t tiles = tiles_of(box);
@@ -86,11 +87,11 @@ HALFPLANE_INLINE std::uint64_t seen_tiles(Bin& bin, const Record& record, const 
   return tiles & ~behind;
 }
 
-/// A triangle or rectangle that is drawn by itself, in its tiles that are `live`.
+/// Draws a triangle or rectangle alone, in those of its tiles that are `live`.
 template <class Fragments>
 HALFPLANE_INLINE void draw_alone(Bin& bin, const Slice& slice, const Record& record, const BinBounds& box,
                                  std::uint64_t live) {
-  // What comes first in the order must be drawn first.
+  // Earlier records must be drawn first.
   if (bin.small.count != 0) draw_batch<Fragments>(bin, slice);
   if (bin.lines.count != 0) draw_lines<Fragments>(bin, slice);
   bin.line_tiles = 0;
@@ -104,8 +105,8 @@ HALFPLANE_INLINE void draw_alone(Bin& bin, const Slice& slice, const Record& rec
     draw_large<Fragments, OneSample>(bin, slice, record, live, triangle);
 }
 
-/// Sixteen records at once, where all are small and each is nearer than what the first of its tiles may hold: a batch, of
-/// whose records nothing need be asked one by one. Nothing may be waiting.
+/// Sixteen records at once, if all are small and each is nearer than the bound of its first tile: a batch without tests
+/// of single records. Nothing may be pending.
 template <class Fragments>
 HALFPLANE_INLINE bool draw_sixteen(Bin& bin, const Slice& slice, const std::uint32_t* first) {
   SmallBatch& batch = bin.small;
@@ -136,7 +137,7 @@ HALFPLANE_INLINE bool draw_sixteen(Bin& bin, const Slice& slice, const std::uint
 template <class Fragments>
 void draw_records(Bin& bin, const Slice& slice, const std::uint32_t* first, const std::uint32_t* last) {
   bin.line_tiles = 0;
-  const std::uint32_t* next_sixteen = first;  // from where on it is worth a try
+  const std::uint32_t* next_sixteen = first;  // the next record at which it is worth a try
   while (first != last) {
     const Record& record = slice.records[*first];
     if (bin.small.count == 0 && record.has(Record::kSmall) && first >= next_sixteen && last - first >= 16) {
@@ -148,7 +149,7 @@ void draw_records(Bin& bin, const Slice& slice, const std::uint32_t* first, cons
     }
     fetch_records(slice, first++, last);
     if (record.has(Record::kSmall)) {
-      // Nearer than what one of its tiles may hold: no need to look at the others, nor at the bin.
+      // Nearer than the bound of one of its tiles: no test of the others, nor of the bin.
       const bool is_near = Fragments::kIsLess && range_of(bin, record).low < bin.tile_high[first_tile(bin, record)];
       if (!is_near && is_behind<Fragments>(bin, record, false)) continue;
       ++bin.small_run;
@@ -171,7 +172,8 @@ void draw_records(Bin& bin, const Slice& slice, const std::uint32_t* first, cons
     const BinBounds box = box_of(bin, record);
     const std::uint64_t live = seen_tiles<Fragments>(bin, record, box);
     if (live == 0) continue;
-    // A batch pays for medium triangles from the third in a row on; with several samples, where tiles cost more, always.
+    // A batch pays off for medium triangles from the third in a row on; with several samples, where tiles cost more,
+    // always.
     const int most_alone = bin.samples > 1 ? 0 : 2;
     const bool is_medium = record.has(Record::kMedium);
     bin.small_run = is_medium ? bin.small_run + 1 : 0;
@@ -184,7 +186,7 @@ void draw_records(Bin& bin, const Slice& slice, const std::uint32_t* first, cons
   draw_lines<Fragments>(bin, slice);
 }
 
-/// Records whose fragments look at what is stored, or whose pixels have several samples: one after the other.
+/// Records whose fragments read stored values, or whose pixels have several samples: one after the other.
 template <class Fragments>
 HALFPLANE_NOINLINE void draw_records_in_order(Bin& bin, const Slice& slice, const std::uint32_t* first,
                                               const std::uint32_t* last) {
@@ -199,30 +201,30 @@ HALFPLANE_NOINLINE void draw_records_in_order(Bin& bin, const Slice& slice, cons
   bin.closed_from = Bin::kOpen;
 }
 
-/// Records of one slice that are drawn the same way.
+/// Draws records of one slice that are drawn the same way.
 HALFPLANE_INLINE void draw_records(Bin& bin, const Slice& slice, const std::uint32_t* first,
                                    const std::uint32_t* last) {
-  // Blocks of small triangles with several samples a pixel lay nothing over, and do not put colours off.
+  // Blocks of small triangles with several samples per pixel support no blending and no deferred colours.
   if (bin.samples > 1 && (bin.has_operations || bin.sees_surfaces())) {
     if (bin.state.depth_test == DepthFunc::less)
       return draw_records_in_order<OpaqueFragments<true>>(bin, slice, first, last);
     return draw_records_in_order<OpaqueFragments<false>>(bin, slice, first, last);
   }
-  // Twice: for the test that nearly every scene has, and for any.
+  // Two instances: for the most common test, and for any.
   if (bin.state.depth_test == DepthFunc::less)
     draw_records<OpaqueFragments<true>>(bin, slice, first, last);
   else
     draw_records<OpaqueFragments<false>>(bin, slice, first, last);
-  // What another test lets through may be farther.
+  // Other tests may let farther depths pass.
   if (bin.state.depth_test != DepthFunc::less) bin.closed_from = Bin::kOpen;
 }
 
-/// What the operations of a draw come to for one of its primitives, as far as the alpha of its vertices says it.
+/// The result of a draw's operations for one of its primitives, as far as the alpha of its vertices decides it.
 enum class RecordWay {
-  plain,      ///< what passes replaces what is stored
-  laid_over,  ///< blended by alpha, and no more
-  killed,     ///< by the alpha test
-  operated,   ///< all of operations.inl
+  plain,      ///< a passing fragment replaces the stored values
+  laid_over,  ///< only blended by alpha
+  killed,     ///< fails the alpha test
+  operated,   ///< full operations.inl
   general     ///< lines, one fragment after the other
 };
 
@@ -235,7 +237,7 @@ struct RecordWays {
   RecordWays(const Bin& bin, const Slice& of) : slice(of), ops(of.context->fragment_ops) {
     const ColorFormat format = bin.config.color_format;
     tests_alpha = ops.alpha.func != DepthFunc::always;
-    // What a texture makes of alpha is not known.
+    // The alpha of a texture is unknown.
     const State& state = of.context->state;
     const bool keeps_alpha = !state.texture || state.texture_combine == TextureCombine::decal ||
                              !has_alpha(of.context->scene.textures[*state.texture].format);
@@ -268,11 +270,11 @@ struct RecordWays {
   }
 
  private:
-  /// The corner that has a flat primitive's colour.
+  /// The corner that gives a flat primitive its colour.
   HALFPLANE_INLINE static std::size_t flat_corner(RecordKind kind) { return kind == RecordKind::whole_line ? 2 : 0; }
 };
 
-/// Records of one slice with operations, as long as they go the same way.
+/// Draws records of one slice with operations, as long as their way is the same.
 HALFPLANE_NOINLINE void draw_run(Bin& bin, const Slice& slice, RecordWay way, const std::uint32_t* first,
                                  const std::uint32_t* last) {
   const FragmentOps& ops = *bin.ops;
@@ -294,7 +296,7 @@ HALFPLANE_NOINLINE void draw_run(Bin& bin, const Slice& slice, RecordWay way, co
   bin.is_killed = way == RecordWay::killed;
   bin.tests_alpha = way == RecordWay::killed || (way == RecordWay::operated && ops.alpha.func != DepthFunc::always);
   bin.skip.tiles_hiz = bin.job.frame.skip.tiles_hiz && bin.skip.operations_early_z;
-  if (bin.tests_alpha) bin.state.depth_write = false;  // depths wait for it
+  if (bin.tests_alpha) bin.state.depth_write = false;  // depths are written after the alpha test
   bin.lays_over ? draw_records(bin, slice, first, last)
                 : draw_records_in_order<OpaqueFragments<false>>(bin, slice, first, last);
   skipped.operations_early_z += skipped.tiles_hiz - behind;  // 0 without Skip::operations_early_z

@@ -1,4 +1,4 @@
-// The constants of one triangle in one bin: triangle_setup by itself.
+// The constants of one triangle in one bin: triangle_setup for a single triangle.
 #pragma once
 
 #include "bin.inl"
@@ -6,17 +6,17 @@
 namespace halfplane::functional::HALFPLANE_ISA_NAME {
 namespace {
 
-/// What the planes of a triangle have in common.
+/// Constants common to a triangle's planes.
 struct PlaneSteps {
   std::int64_t ax, ay, bx, by;  ///< second and third corner from the first
   std::int64_t dx, dy;          ///< from the origin to the anchor of the bin's first tile
   AreaQuotient quotient;
 };
 
-/// What makes a numerator a gradient.
+/// The factor from numerators to gradients.
 struct GradientFactor {
   std::int64_t reciprocal;  ///< of the area
-  int k;                    ///< bits that a product with it drops
+  int k;                    ///< bits that a product with the reciprocal drops
 
   HALFPLANE_INLINE GradientFactor(const AreaQuotient& quotient, const AttributeWidths& attribute,
                                   const Widths& widths) {
@@ -27,8 +27,8 @@ struct GradientFactor {
   }
 };
 
-/// The three edges at once: edge_function(), whose values binary64 holds. Inside a bin they move by less than 2^30:
-/// beyond that a sign is the same everywhere.
+/// The three edges at once: edge_function(), whose values binary64 holds. Inside a bin they change by less than 2^30: a
+/// larger value has the same sign everywhere.
 HALFPLANE_INLINE void set_up_edges(const Bin& bin, const VertexRow& a, const VertexRow& b, const VertexRow& c,
                                    BinTriangle& out) {
   using Words __attribute__((vector_size(16))) = std::int32_t;
@@ -40,7 +40,7 @@ HALFPLANE_INLINE void set_up_edges(const Bin& bin, const VertexRow& a, const Ver
   const auto value_of = [](const Words& v) HALFPLANE_LAMBDA {
 #if HALFPLANE_ISA == 128
     return __builtin_convertvector(v, Values);
-#else  // GCC would convert half and half
+#else  // GCC would convert in two halves
     return (Values)_mm256_cvtepi32_pd((__m128i)v);
 #endif
   };
@@ -68,7 +68,7 @@ HALFPLANE_INLINE void set_up_colors(const Bin& bin, const VertexRow& a, const Ve
   const GradientFactor factor(f.quotient, bin.widths.color(), bin.widths);
   const auto gradient = [R = factor.reciprocal, k = factor.k](const Channels& numerator)
                             HALFPLANE_LAMBDA { return round_shift_channels(numerator * R, k); };
-  const auto times = [](const Channels& code, std::int64_t side) HALFPLANE_LAMBDA {  // 9 bits and 24
+  const auto times = [](const Channels& code, std::int64_t side) HALFPLANE_LAMBDA {  // codes of 9 bits, sides of 24
 #if HALFPLANE_ISA == 128
     return code * side;
 #else
@@ -91,7 +91,7 @@ HALFPLANE_INLINE void set_up_colors(const Bin& bin, const VertexRow& a, const Ve
                channel_pairs(larger(larger(ca, cb), cc))};
 }
 
-/// A rectangle of one depth and one colour: no edges.
+/// A rectangle of constant depth and colour: no edges.
 inline void set_up_flat(const Bin& bin, const VertexRow& v, BinTriangle& out) {
   out.z_low = out.z_high = static_cast<std::int32_t>(v.z);
   out.edge = {};
@@ -113,8 +113,8 @@ inline void set_up_flat(const Bin& bin, const VertexRow& v, BinTriangle& out) {
   out.color = {{}, {}, pair, pair};
 }
 
-/// How far the depths of a tile lie from the depth at its anchor, from where it reaches four pixels to the left and up,
-/// three to the right and down. Steps of a pixel, in a tile's units; `least`, `most`: what a sample may add.
+/// Distance of a tile's depths from the depth at its anchor, which has four pixels to the left and above, three to the
+/// right and below. Steps per pixel, in a tile's units; `least`, `most`: increments to a sample.
 HALFPLANE_INLINE void find_reach(const Bin& bin, std::int64_t step_x, std::int64_t step_y, BinTriangle& out,
                                  std::int64_t least = 0, std::int64_t most = 0) {
   const auto low = [](std::int64_t step)
@@ -126,22 +126,22 @@ HALFPLANE_INLINE void find_reach(const Bin& bin, std::int64_t step_x, std::int64
                      to_high = (high(step_x) + high(step_y) + most) >> drop;
   out.to_low = static_cast<std::int32_t>(to_low);
   out.to_high = static_cast<std::int32_t>(to_high);
-  // One pixel of the tile is inside the triangle. From there to the anchor, and on to any other, 16 bits must hold the
-  // distance to the middle of the vertices' depths.
+  // At least one pixel of the tile is inside the triangle. From there to the anchor, and on to any other pixel, 16 bits
+  // must hold the distance to the middle of the vertices' depths.
   constexpr std::int64_t kRange = std::int64_t{1} << 15, kRounding = 8;
   out.is_narrow = bin.tests_narrow && out.z_high - out.z_low < (1 << 16) - kRounding;
   const std::int64_t half = (std::int64_t{out.z_high} - out.z_low) >> (bin.range_bits_dropped + 1);
   out.is_gentle = half + 2 * (to_high - to_low) + kRounding < kRange;
 }
 
-/// Depth: its plane from tile to tile, and its steps of a pixel in a lane.
+/// Depth: its plane from tile to tile, and its steps per pixel in a lane.
 HALFPLANE_INLINE void set_up_depth(const Bin& bin, const VertexRow& a, const VertexRow& b, const VertexRow& c,
                                    const VertexRow& origin, const PlaneSteps& f, BinTriangle& out) {
   const LaneFormat& format = bin.depth_format;
   const int s = bin.widths.grid_bits;
   const std::int64_t az = std::int64_t{b.z} - a.z, bz = std::int64_t{c.z} - a.z;
   const std::int64_t numerator_x = az * f.by - bz * f.ay, numerator_y = f.ax * bz - f.bx * az;
-  constexpr std::int64_t kNarrow = std::int64_t{1} << 32;  // times a reciprocal of 30 bits
+  constexpr std::int64_t kNarrow = std::int64_t{1} << 32;  // numerator times a reciprocal of 30 bits
   const bool is_narrow = std::abs(numerator_x) < kNarrow && std::abs(numerator_y) < kNarrow;
   const GradientFactor factor(f.quotient, bin.widths.depth(), bin.widths);
   const auto gradient = [=, R = factor.reciprocal, k = factor.k](std::int64_t numerator) HALFPLANE_LAMBDA {
@@ -163,14 +163,14 @@ HALFPLANE_INLINE void set_up_depth(const Bin& bin, const VertexRow& a, const Ver
   find_reach(bin, local_x, local_y, out);
 }
 
-/// The corners of a triangle, turned so that its area is positive.
+/// The corners of a triangle, swapped so that its area is positive.
 struct Corners {
   const VertexRow *a, *b, *c;
-  PlaneSteps f;  ///< the sides; the rest when the planes are set up
+  PlaneSteps f;  ///< the sides; the rest is set with the planes
   std::int64_t area;
 };
 
-/// False where it has no area.
+/// False if the area is 0.
 HALFPLANE_INLINE bool find_corners(const Slice& slice, const Record& record, Corners& out) {
   const VertexRow* v = slice.vertices.data();
   out.a = v + record.v[0];
@@ -192,7 +192,7 @@ HALFPLANE_INLINE bool find_corners(const Slice& slice, const Record& record, Cor
   return out.area != 0;
 }
 
-/// The first of its corners in the order of (Y, X): two in one place would leave no area.
+/// The first corner in the order of (Y, X): two at one place would give area 0.
 HALFPLANE_INLINE const VertexRow& origin_of(const Corners& corners) {
   const auto is_before = [](const VertexRow* p, const VertexRow* q) HALFPLANE_LAMBDA {
     return (std::int64_t{p->y} << 32) + p->x < (std::int64_t{q->y} << 32) + q->x;
@@ -203,7 +203,7 @@ HALFPLANE_INLINE const VertexRow& origin_of(const Corners& corners) {
   return *origin;
 }
 
-/// What the planes have in common, and that of the depths.
+/// Sets up the constants common to the planes, and the depth plane.
 HALFPLANE_INLINE void set_up_planes(const Bin& bin, const Record& record, Corners& corners, BinTriangle& out) {
   PlaneSteps& f = corners.f;
   const VertexRow& origin = origin_of(corners);
@@ -223,7 +223,7 @@ HALFPLANE_INLINE void set_up_colors(const Bin& bin, const Corners& corners, BinT
   set_up_colors(bin, *corners.a, *corners.b, *corners.c, origin_of(corners), corners.f, out);
 }
 
-/// A triangle or rectangle, whatever is asked of it; false where it has no area.
+/// Sets up a triangle or rectangle completely; false if the area is 0.
 HALFPLANE_NOINLINE bool set_up(const Bin& bin, const Slice& slice, const Record& record, BinTriangle& out) {
   if (record.kind() == RecordKind::rectangle) {
     set_up_flat(bin, slice.vertices[record.v[0]], out);

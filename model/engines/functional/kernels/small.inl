@@ -14,10 +14,10 @@
 namespace halfplane::functional::HALFPLANE_ISA_NAME {
 namespace {
 
-/// Batches after which a tile's range is found anew.
+/// Batches after which a tile's range is found again.
 constexpr std::uint8_t kTouches = 4;
 
-/// The planes of a batch. `samples`: OnlyCentres or SmallSamples.
+/// Sets up the planes of a batch. `samples`: OnlyCentres or SmallSamples.
 template <class Samples>
 HALFPLANE_INLINE void set_up_batch(Bin& bin, const Slice& slice, Samples& samples) {
   const auto set_up = bin.is_short ? set_up_small<ShortArithmetic, Samples> : set_up_small<LongArithmetic, Samples>;
@@ -36,8 +36,8 @@ HALFPLANE_INLINE std::uint64_t batch_tiles(Bin& bin) {
   return or_of_bits(row | ((row << kBinTiles) & has_below), top * kBinTiles + left, live);
 }
 
-/// Ranges of tiles that a batch is about to write: wide from now on, but every kTouches batches a tile's is found anew by
-/// `find`. Returns whether one was.
+/// Ranges of tiles that a batch is about to write: wide from now on, but every kTouches batches `find` finds a tile's
+/// range again. Returns whether it did for any.
 template <class Fragments, class Find>
 HALFPLANE_INLINE bool widen_ranges(Bin& bin, std::uint64_t tiles, Find&& find) {
   if (!bin.state.depth_write) return false;
@@ -54,7 +54,7 @@ HALFPLANE_INLINE bool widen_ranges(Bin& bin, std::uint64_t tiles, Find&& find) {
   return is_changed;
 }
 
-/// Brings the tiles of a batch to memory. Returns whether the range of one was found anew.
+/// Brings the tiles of a batch to memory. Returns whether the range of one was found again.
 template <class Fragments>
 HALFPLANE_INLINE bool touch_tiles(Bin& bin, std::uint64_t tiles) {
   const bool is_color = bin.state.color_write && !bin.state.has_surface;
@@ -69,13 +69,13 @@ HALFPLANE_INLINE bool touch_tiles(Bin& bin, std::uint64_t tiles) {
   return widen_ranges<Fragments>(bin, tiles, [&bin](int tile) HALFPLANE_LAMBDA { find_range(bin, tile); });
 }
 
-/// What the triangles of a batch cover: of each quad that a box touches, a bit a pixel.
+/// Coverage of the triangles of a batch: for each quad that a box touches, a bit per pixel.
 struct Coverage {
   static constexpr std::size_t kMost = 64;  ///< quads: four of each window
   using Blocks = std::array<std::uint16_t, kMost * Quad::kBlocks>;
   std::size_t quads = 0;
   unsigned pixels = 0;
-  std::array<std::uint8_t, kMost> lane, first;  ///< and of its blocks the first, among those of the window
+  std::array<std::uint8_t, kMost> lane, first;  ///< and the quad's first block, among those of the window
   alignas(64) Blocks block;
 
   HALFPLANE_INLINE Coverage() = default;
@@ -94,7 +94,7 @@ struct Coverage {
     first[at] = static_cast<std::uint8_t>(first_block);
     set_blocks(block, at, bits);
   }
-  /// Of quads `from` to `from` + 15 the blocks with a pixel, a bit each.
+  /// The blocks with a covered pixel in quads `from` to `from` + 15, a bit each.
   [[nodiscard]] HALFPLANE_INLINE std::uint64_t blocks(std::size_t from) const {
     const std::uint64_t some = ~bits_equal(U64::load(block.data() + Quad::kBlocks * from), U64(0));
     const std::size_t there = Quad::kBlocks * (quads - from);
@@ -104,7 +104,7 @@ struct Coverage {
 
 /// The quads of a window, two by two.
 struct WindowQuads {
-  std::array<std::int32_t, 4> first;                    ///< block, from the first one's
+  std::array<std::int32_t, 4> first;                    ///< block number, from the first one
   std::array<std::array<std::uint64_t, 4>, 16> in_box;  ///< their pixels, a bit each, by SmallBatch::columns_rows
 };
 static constexpr WindowQuads kWindowQuads = [] {
@@ -119,7 +119,7 @@ static constexpr WindowQuads kWindowQuads = [] {
   return quads;
 }();
 
-/// Of quad `q` of a window a bit for each pixel that is outside the triangle; where 16 bits hold its edges.
+/// A bit for each pixel of quad `q` of a window outside the triangle; where 16 bits hold its edges.
 HALFPLANE_INLINE std::uint64_t outside_short(const Bin& bin, std::size_t i, std::size_t q) {
   using Part = Quad::Part;
   const Part &column = bin.position.quad_x[q % 2], &row = bin.position.quad_y[q / 2];
@@ -163,7 +163,7 @@ HALFPLANE_INLINE std::uint64_t outside_long(const Bin& bin, std::size_t i, std::
 
 template <bool kShort>
 HALFPLANE_INLINE void find_covered(const Bin& bin, std::uint64_t quads, Coverage& covered) {
-  std::size_t at = 0;  // not in memory: bytes that are stored might change it, for all that the compiler knows
+  std::size_t at = 0;  // not in memory: the compiler must assume that byte stores change it
   unsigned pixels = 0;
   for (; quads != 0; quads &= quads - 1, ++at) {
     const auto number = static_cast<std::size_t>(std::countr_zero(quads)), i = number / 4, q = number % 4;
@@ -178,19 +178,19 @@ HALFPLANE_INLINE void find_covered(const Bin& bin, std::uint64_t quads, Coverage
 /// The quads that boxes touch: four bits for each lane.
 HALFPLANE_INLINE std::uint64_t live_quads(const Bin& bin) {
   const I16 columns_rows = I16::load(bin.small.columns_rows.data());
-  // A second column of quads, a second row, and what both make.
+  // A second column of quads, a second row, and both.
   const I16 aside = shift_right_logical(columns_rows, 1) & 1, below = shift_right_logical(columns_rows, 3);
   const I16 is_live = (I16::of([](int i) { return 1 << i; }) & static_cast<std::int32_t>(bin.small.live)) != 0;
   return nibbles_of(((aside << 1) + 1) * ((below << 2) + 1) & is_live);
 }
-/// Triangle by triangle.
+/// Finds the coverage, triangle by triangle.
 HALFPLANE_INLINE void find_covered(Bin& bin, Coverage& covered) {
   const std::uint64_t quads = live_quads(bin);
   bin.has_short_edges ? find_covered<true>(bin, quads, covered) : find_covered<false>(bin, quads, covered);
   bin.job.counters.samples_tested += Quad::kPixels * covered.quads;
 }
 
-/// Of the pixels of a bin, or of their first samples.
+/// Depths of the bin's pixels, or of their first samples.
 template <class Depth, std::size_t N>
 HALFPLANE_INLINE Depth* first_depth(std::array<Depth, N>& pixels) {
   return pixels.data();
@@ -202,7 +202,7 @@ HALFPLANE_INLINE Depth* first_depth(Depth (*samples)[N]) {
 
 /// A block's depths in lanes of 32 bits while they are tested. `Memory`: BinMemory or SampleMemory.
 struct WideTest {
-  static constexpr unsigned kCount = 1;  ///< what count() says of a pixel
+  static constexpr unsigned kCount = 1;  ///< bits of count() per pixel
   const Bin& bin;
   std::int32_t bias;
   bool is_narrow;
@@ -216,7 +216,7 @@ struct WideTest {
         is_narrow(bin_.is_narrow),
         narrow(first_depth(memory.narrow_depth)),
         wide(first_depth(memory.depth)) {}
-  /// All three centred.
+  /// All three values centred.
   HALFPLANE_INLINE I16 codes(const I16& code, std::int32_t low, std::int32_t high) const {
     return min(max(code, I16(low)), I16(high)) + bias;
   }
@@ -231,7 +231,7 @@ struct WideTest {
   }
 #if HALFPLANE_ISA == 512
   using Passed = std::uint32_t;
-  /// What is covered and passes: a bit a pixel.
+  /// Covered and passing pixels: a bit each.
   template <class Fragments>
   HALFPLANE_INLINE static std::uint32_t passed(const SliceState& state, std::uint32_t covered, const I16& depth,
                                                const I16& stored) {
@@ -242,13 +242,13 @@ struct WideTest {
   HALFPLANE_INLINE I16 choose(std::uint32_t pixels, const I16& a, const I16& b) const {
     return select_by_bits(pixels, a, b, bin.position.to_sign);
   }
-  /// A triangle's number. What was there is not looked at: the next triangle need not wait for it.
+  /// Writes a triangle's number. The old number is not read: the next triangle need not wait for it.
   HALFPLANE_INLINE static void put_number(std::uint32_t pixels, std::int32_t number, std::uint16_t* to) {
     _mm256_mask_storeu_epi16(to, static_cast<__mmask16>(pixels), _mm256_set1_epi16(static_cast<std::int16_t>(number)));
   }
 #else
   using Passed = I16;
-  /// What is covered and passes: the signs of lanes.
+  /// Covered and passing pixels: the signs of lanes.
   template <class Fragments>
   HALFPLANE_INLINE I16 passed(const SliceState& state, std::uint32_t covered, const I16& depth,
                               const I16& stored) const {
@@ -260,7 +260,7 @@ struct WideTest {
   HALFPLANE_INLINE static I16 choose(const I16& pixels, const I16& a, const I16& b) {
     return select_by_sign(pixels, a, b);
   }
-  /// A triangle's number.
+  /// Writes a triangle's number.
   HALFPLANE_INLINE static void put_number(const I16& pixels, std::int32_t number, std::uint16_t* to) {
     store_narrow(choose(pixels, I16(number), load_narrow(to)), to);
   }
@@ -274,7 +274,7 @@ struct WideTest {
 #if HALFPLANE_ISA == 512
 using NarrowTest = WideTest;
 #else
-/// The same in 16 bits, which are half as many registers: for depths that the bin keeps in as many.
+/// The same in 16 bits, with half as many registers: for bins that keep depths in 16 bits.
 struct NarrowTest {
   static constexpr unsigned kCount = kCountOfLane;
   using Passed = S16;
@@ -311,7 +311,7 @@ struct alignas(16) WindowBlock {
   std::uint32_t place;        ///< from the window's first tile in the bin's memory
   std::uint32_t tile, block;  ///< of the window, of its tile
 };
-/// By the first block of a quad; beyond the window lies what no box touches.
+/// By the first block of a quad; blocks beyond the window are touched by no box.
 static constexpr std::array<std::array<WindowBlock, Quad::kBlocks>, 16> kWindowBlocks = [] {
   std::array<std::array<WindowBlock, Quad::kBlocks>, 16> blocks{};
   for (std::uint32_t first = 0; first < 16; ++first)
@@ -337,13 +337,13 @@ HALFPLANE_INLINE I16 small_colors(const Bin& bin, std::size_t i, const SmallBatc
   return kColor == Writes::other ? packed(rgba, bin.config.color_format) : rgba;
 }
 
-/// Those of a draw of is_over(), upon what is stored.
+/// Colours of a draw with is_over(), blended upon the stored ones.
 HALFPLANE_INLINE I16 blended_colors(const I16& rgba, const I16& stored, std::int32_t own_factor, ColorFormat format) {
   const ColorPairs mixed = laid_over(ColorPairs(rgba), widened(stored, format), own_factor);
   return packed(mixed.red_blue, mixed.green_alpha, format);
 }
 
-/// Depth, test and colour of the blocks that are covered in part. What is written, the state says.
+/// Depth, test and colour of the partially covered blocks. The state says which buffers are written.
 template <class Fragments, class Test, bool kDepth, Writes kColor>
 HALFPLANE_INLINE void draw_blocks(Bin& bin, const Coverage& covered) {
   const SmallBatch& batch = bin.small;

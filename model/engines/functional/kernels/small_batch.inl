@@ -1,4 +1,4 @@
-// Sixteen small or medium triangles that wait: their records, corners and edges, a triangle a lane.
+// Sixteen pending small or medium triangles: their records, corners and edges, a triangle a lane.
 #pragma once
 
 #include "cull.inl"
@@ -25,19 +25,19 @@ struct Quad {
   }
 };
 
-/// Triangles of a slice that wait, as much of each as lies in a window of two by two tiles; and after set_up_small() their
-/// constants: fields of lanes, one for each.
+/// Pending triangles of a slice, each clipped to a window of two by two tiles; and after set_up_small() their
+/// constants: fields of lanes, one for each triangle.
 struct SmallBatch {
   using Lane = std::array<std::int32_t, 16>;
   template <std::size_t N>
   using LaneArray = std::array<Lane, N>;
-  using FourChannels = std::array<std::uint64_t, 16>;  ///< of each lane, 16 bits a channel
+  using FourChannels = std::array<std::uint64_t, 16>;  ///< one per lane, 16 bits a channel
   static constexpr std::size_t kTiles = std::size_t{kSmallTiles} * kSmallTiles;
 
   int count = 0;
   std::array<const Record*, 16> records;
   alignas(64) Lane window{};  ///< from the box's first tile to the window's, pixels: column low, row high
-  bool has_samples = true;    ///< of all of them it is known which few they cover
+  bool has_samples = true;    ///< the few covered samples are known for all of them
 
   alignas(64) LaneArray<3> corner;            ///< bytes from the slice's first vertex
   std::uint32_t live = 0;                     ///< lanes that draw something in this bin
@@ -46,22 +46,22 @@ struct SmallBatch {
 
   alignas(64) LaneArray<3> edge;                    ///< at the first pixel of the first quad
   alignas(64) LaneArray<3> edge_x, edge_y;          ///< from pixel to pixel
-  alignas(64) LaneArray<3> edge_aside, edge_below;  ///< from block to block; all in both halves where 16 bits hold them
+  alignas(64) LaneArray<3> edge_aside, edge_below;  ///< from block to block; in both halves where 16 bits hold them
   alignas(64) Lane first_block;                     ///< of the first quad, among the four by four of the window
   alignas(64) Lane columns_rows;                    ///< of blocks, less 1: two bits each
   alignas(64) Lane place;                           ///< of the window's first tile in the bin's memory
-  /// Planes at the anchors of the window's tiles, centred; of colours 16 bits a channel.
+  /// Planes at the anchors of the window's tiles, centred; colours with 16 bits a channel.
   struct alignas(256) Tile {
     Lane depth;
     FourChannels color;
   };
   std::array<Tile, kTiles> tile;
-  alignas(64) Lane z_step_x, z_step_y, z_step_below;  ///< the last of block_rows<I16> rows
+  alignas(64) Lane z_step_x, z_step_y, z_step_below;  ///< the last for block_rows<I16> rows
   alignas(64) Lane z_low, z_high;                     ///< centred, in both halves where 16 bits do
   alignas(64) FourChannels c_step_x, c_step_y;
   alignas(64) Lane c_low, c_high;  ///< a byte a channel, R lowest
 
-  /// True when that was the last for which there is room.
+  /// True if the batch is full now.
   HALFPLANE_INLINE bool add(const Record& record, std::int32_t at_window) {
     records[static_cast<std::size_t>(count)] = &record;
     window[static_cast<std::size_t>(count)] = at_window;
@@ -69,14 +69,14 @@ struct SmallBatch {
   }
 };
 
-/// Four words of each record that waits, from word `from` on.
+/// Four words of each pending record, from word `from` on.
 HALFPLANE_INLINE Columns words_of(const SmallBatch& batch, int from) {
   return turned_rows([&batch, from](int i) HALFPLANE_LAMBDA {
     return reinterpret_cast<const std::int32_t*>(batch.records[static_cast<std::size_t>(i)]) + from;
   });
 }
 
-/// What a batch keeps of its records, whose words these are; live.
+/// Stores the words of its records in a batch; sets live.
 HALFPLANE_INLINE void place_records(SmallBatch& batch, const Columns& lower, const Columns& upper, int first_x,
                                     int first_y) {
   constexpr int kRowBits = 4;
@@ -99,7 +99,7 @@ HALFPLANE_INLINE void place_records(SmallBatch& batch, const Columns& lower, con
   };
   last_in((right_bottom << 16 >> 16) - first_x, window_x).store(batch.right.data());
   last_in((right_bottom >> 16) - first_y, window_y).store(batch.bottom.data());
-  // Of two by two samples the bin may have one column or row: those on the left, or those on the right moved there.
+  // The bin may hold only one column or row of two by two samples: the left one, or the right one moved there.
   constexpr std::int32_t kLeft = 1 | 4, kUpper = 1 | 2;
   const I16 in_columns =
       select(x0 < 0, shift_right_logical(covered, 1) & kLeft, select(x0 == kBinSize - 1, covered & kLeft, covered));
@@ -110,22 +110,23 @@ HALFPLANE_INLINE void place_records(SmallBatch& batch, const Columns& lower, con
       ((1U << batch.count) - 1) & ~bits_of(((traits & Record::kDrawsNothing) != 0) | ((covered != 0) & (in_bin == 0)));
 }
 
-/// The fields of the records that wait.
+/// Loads the fields of the pending records.
 HALFPLANE_NOINLINE void load_records(SmallBatch& batch, int first_x, int first_y) {
   for (std::size_t i = static_cast<std::size_t>(batch.count); i < 16; ++i) batch.records[i] = batch.records[0];
   place_records(batch, words_of(batch, 0), words_of(batch, 4), first_x, first_y);
 }
 
-/// The corners of a batch's triangles as they come, b and c also from a; the first of them in the order of (Y, X), which
-/// the planes start from; and twice the area.
+/// The corners of a batch's triangles in their order, b and c also relative to a; the first corner in the order of (Y,
+/// X), where the planes start; and twice the area.
 struct SmallCorners {
   SnappedLanes a, b, c, origin;
   I16 ax, ay, bx, by;
-  I16 area, is_turned;  ///< its magnitude; a mask: it is negative
+  I16 area, is_turned;  ///< its magnitude; a mask: it was negative
   I16 z_low, z_high;
 };
 
-/// `corner`, `live`: as SmallBatch has them; takes those of no area out of `live`. Extents of less than 2^14 subpixels.
+/// `corner`, `live`: as SmallBatch has them; removes triangles without area from `live`. Extents of less than 2^14
+/// subpixels.
 HALFPLANE_INLINE SmallCorners small_corners(const SmallBatch::LaneArray<3>& corner, std::uint32_t& live,
                                             const Slice& slice) {
   const auto fetch = [&corner, vertices = reinterpret_cast<const char*>(slice.vertices.data())](std::size_t k)
@@ -142,7 +143,7 @@ HALFPLANE_INLINE SmallCorners small_corners(const SmallBatch::LaneArray<3>& corn
   const I16 ax = b.x - a.x, ay = b.y - a.y, bx = c.x - a.x, by = c.y - a.y;
   const I16 area = cross(ax, ay, bx, by), is_turned = area >> 31;
   live &= ~bits_of(area == 0);
-  // (Y, X) from a, as one number.
+  // (Y, X) relative to a, as one number.
   const I16 b_key = (ay << 16) + ax, c_key = (by << 16) + bx;
   return {a,
           b,
@@ -158,14 +159,14 @@ HALFPLANE_INLINE SmallCorners small_corners(const SmallBatch::LaneArray<3>& corn
           max(max(a.z, b.z), c.z)};
 }
 
-/// Whether 16 bits hold the edges of small and medium triangles in the quads that their boxes touch. A box of so many
-/// pixels has an extent below one more; a quad reaches less than its size beyond it.
+/// Whether 16 bits hold the edges of small and medium triangles in the quads that their boxes touch. A box of n pixels
+/// has an extent below n + 1; a quad reaches less than its size beyond it.
 HALFPLANE_INLINE bool are_short_edges(const Widths& widths) {
   constexpr std::int64_t kExtent = kMediumTiles * kTileSize + 1, kReach = kExtent + std::int64_t{2} * kBlockSize;
   return (2 * kExtent * kReach << widths.grid_bits) < 1 << 15;
 }
 
-/// Where pixels have one sample: what is set up at their centres is all that there is. SmallSamples is told the rest.
+/// With one sample per pixel the setup at the centres is complete. SmallSamples receives the rest.
 struct OnlyCentres {
   HALFPLANE_INLINE void move_edge(std::size_t, const I16&, const I16&, const I16&, bool) {}
   template <class Steps>
@@ -185,7 +186,7 @@ HALFPLANE_INLINE void set_up_small_edges(SmallBatch& batch, const SmallCorners& 
     return (((I16::load(box.data()) & ~(kBlockSize - 1)) + first) << s) + half;
   };
   const I16 px = first_of_block(batch.left, first_x), py = first_of_block(batch.top, first_y);
-  // Turned so that no area is negative.
+  // Swapped so that no area is negative.
   const auto& [a, b, c, origin, ax, ay, bx, by, area, is_turned, z_low, z_high] = corners;
   const std::array<I16, 4> x{a.x, select(is_turned, c.x, b.x), select(is_turned, b.x, c.x), a.x},
       y{a.y, select(is_turned, c.y, b.y), select(is_turned, b.y, c.y), a.y};
@@ -203,7 +204,7 @@ HALFPLANE_INLINE void set_up_small_edges(SmallBatch& batch, const SmallCorners& 
   }
 }
 
-/// Where the windows are, and their boxes in blocks.
+/// Finds the places of the windows, and their boxes in blocks.
 HALFPLANE_INLINE void find_places(SmallBatch& batch) {
   const auto block_of = [](const SmallBatch::Lane& at) HALFPLANE_LAMBDA { return I16::load(at.data()) >> kBlockShift; };
   const I16 column = block_of(batch.left), row = block_of(batch.top);

@@ -1,4 +1,4 @@
-// Planes of sixteen small or medium triangles at a time, as triangle_setup has them: the same integers, a triangle a lane.
+// Planes of sixteen small or medium triangles at a time, with the integers of triangle_setup, a triangle a lane.
 #pragma once
 
 #include "cull.inl"
@@ -8,7 +8,7 @@
 namespace halfplane::functional::HALFPLANE_ISA_NAME {
 namespace {
 
-/// A place to evaluate planes at, from their origin, subpixels.
+/// A place at which planes are evaluated, from their origin, subpixels.
 struct FromOrigin {
   I16 x, y;
 };
@@ -23,7 +23,7 @@ HALFPLANE_INLINE FromOrigin anchor_from_origin(const SmallCorners& corners, cons
 }
 
 // Planes and gradients that wrap come in three widths: I16 where 32 bits hold them; SplitLanes, split at
-// LaneFormat::drop, of whose upper part 32 bits suffice; L16.
+// LaneFormat::drop, where 32 bits suffice for the upper part; L16.
 
 /// The value of a plane, with LaneFormat::anchor_bias. `fraction`: its bits.
 HALFPLANE_INLINE I16 plane_at(const FromOrigin& to, int fraction, const I16& at_origin, const I16& step_x,
@@ -44,13 +44,13 @@ HALFPLANE_INLINE L16 plane_at(const FromOrigin& to, int fraction, const I16& at_
   return (convert<std::int64_t>(at_origin) << fraction) + step_x * convert<std::int64_t>(to.x) +
          step_y * convert<std::int64_t>(to.y) + static_cast<std::int64_t>(format.anchor_bias);
 }
-/// What fits_split() allows for: offsets below 64 pixels, two products, two steps to tiles and a bias.
+/// Limits assumed by fits_split(): offsets below 64 pixels, two products, two steps to tiles and a bias.
 HALFPLANE_INLINE bool fits_split(const LaneFormat& format, const Widths& widths) {
   constexpr int kOffset = 6 + 2;
   return format.drop + widths.grid_bits + kOffset < 32 && format.step_drop > 0;
 }
 
-/// That value as a tile keeps it.
+/// That value in a tile's precision.
 HALFPLANE_INLINE I16 narrowed(const I16& value, const LaneFormat& format) {
   return shift_right_logical(value, format.drop) << format.up;
 }
@@ -61,7 +61,7 @@ HALFPLANE_INLINE I16 narrowed(const L16& value, const LaneFormat& format) {
   return convert<std::int32_t>(shift_right_logical(value, format.drop)) << format.up;
 }
 
-/// A gradient as a tile keeps it: of a pixel.
+/// A gradient in a tile's precision: per pixel.
 HALFPLANE_INLINE I16 local_step(const I16& step, const LaneFormat& format) {
   const int drop = format.step_drop;
   return shift_right_logical(step + (1 << (drop - 1)), drop) << format.up;
@@ -74,13 +74,13 @@ HALFPLANE_INLINE I16 local_step(const L16& step, const LaneFormat& format) {
   return round_shift_lanes(step, format.step_drop) << format.up;
 }
 
-/// Of a plane, in x and in y.
+/// Gradients of a plane, in x and in y.
 template <class Step>
 struct Gradients {
   Step x, y;
 };
 template <class Step>
-Gradients(Step, Step) -> Gradients<Step>;  // clang 14 does not find it by itself
+Gradients(Step, Step) -> Gradients<Step>;  // clang 14 does not deduce it
 
 /// Gradients of depth. `Gradient`: GradientLanes or ExactGradientLanes; `Numerator`: I16, L16 or D16.
 template <class Numerator, class Gradient>
@@ -97,10 +97,11 @@ HALFPLANE_INLINE auto depth_gradients_by(const SmallCorners& t, const Gradient& 
   return Gradients{gradient(product(az, t.by) - product(bz, t.ay)), gradient(product(t.ax, bz) - product(t.bx, az))};
 }
 
-/// The codes that colours of sixteen triangles are clamped to, as the target has them: a byte a channel, R lowest.
+/// The range of codes to which colours of sixteen triangles are clamped, in the target's format: a byte a channel, R
+/// lowest.
 struct ColorRange {
   I16 low, high;
-  std::uint32_t differs;  ///< bytes: 0 where a channel is the same all over each triangle
+  std::uint32_t differs;  ///< bytes: 0 where a channel is constant over each triangle
 
   HALFPLANE_INLINE ColorRange(const SmallCorners& t, bool is_flat) {
     const B64 a = as<B64>(t.a.rgba), b = is_flat ? a : as<B64>(t.b.rgba), c = is_flat ? a : as<B64>(t.c.rgba);
@@ -108,10 +109,10 @@ struct ColorRange {
     high = as<I16>(max(max(a, b), c));
     differs = static_cast<std::uint32_t>(or_of_lanes(low ^ high));
   }
-  /// Of channels that follow each other: then the clamp alone makes it.
+  /// For consecutive channels: then the clamp alone gives the value.
   [[nodiscard]] HALFPLANE_INLINE bool is_flat(std::size_t channel) const { return (differs >> 8 * channel & 255) == 0; }
 
-  /// Packed colours from what saturated() leaves of centred values.
+  /// Packed colours from centred values after saturated().
   [[nodiscard]] HALFPLANE_INLINE static I16 clamped(const B64& channels, const I16& low, const I16& high) {
     return as<I16>(min(max(channels ^ 0x80, as<B64>(low)), as<B64>(high)));
   }
@@ -149,12 +150,12 @@ HALFPLANE_INLINE auto channel_gradients(const SmallCorners& t, const NarrowGradi
                    gradient(multiply_add_pairs(both, pairs(-t.bx, t.ax)))};
 }
 
-/// Whether the short arithmetic, below, holds everything of triangles within kMediumTiles.
+/// Whether the short arithmetic, below, is exact for triangles within kMediumTiles.
 HALFPLANE_INLINE bool is_short_enough(const Widths& widths, const LaneFormat& depth_format,
                                       const LaneFormat& color_format) {
   const int extent = extent_bits(kMediumPixelBits, widths);
   const AttributeWidths &depth = widths.depth(), &color = widths.color();
-  // Binary64 holds areas' quotients, and what makes the gradients of depth.
+  // Binary64 holds quotients of areas, and the products for gradients of depth.
   const bool is_exact = is_exact_division(2 * extent, widths.reciprocal_bits()) && fits_split(depth_format, widths) &&
                         depth.code.bits + extent + depth.reciprocal.bits <= 53 &&
                         depth.code.bits + extent + widths.plane_fraction <= 50;
@@ -164,7 +165,7 @@ HALFPLANE_INLINE bool is_short_enough(const Widths& widths, const LaneFormat& de
   return is_exact && is_narrow;
 }
 
-/// How gradients are made: in short lanes, or in those that hold everything.
+/// How gradients are computed: in short lanes, or in general ones.
 struct ShortArithmetic {
   using DepthGradient = ExactGradientLanes;
   using ColorGradient = NarrowGradientLanes;
@@ -178,7 +179,7 @@ struct LongArithmetic {
   HALFPLANE_INLINE static QuotientLanes quotient(const I16& area, int bits) { return quotient_lanes(area, bits); }
 };
 
-/// The planes of a batch, as far as they follow from its corners.
+/// The planes of a batch, as functions of its corners.
 template <class Arithmetic>
 struct SmallPlanes {
   const SmallCorners& corners;
@@ -204,7 +205,7 @@ struct SmallPlanes {
   }
 
  private:
-  std::int32_t steep_;  ///< differences of depth codes from here on need products of more than 32 bits
+  std::int32_t steep_;  ///< from this difference of depth codes on products need more than 32 bits
 
   [[nodiscard]] HALFPLANE_INLINE typename Arithmetic::DepthGradient depth(const LaneFormat& format) const {
     const auto [reciprocal, k] = factor(widths.depth());
@@ -226,7 +227,7 @@ struct SmallPlanes {
 /// A plane at the anchors of a window's tiles.
 using Anchors = std::array<I16, SmallBatch::kTiles>;
 
-/// From the first one on. `to_tile`: bits from a step of a subpixel to one of a tile.
+/// From the first anchor on. `to_tile`: shift from a step per subpixel to one per tile.
 template <class Step>
 HALFPLANE_INLINE void find_anchors(const Step& first, const Step& step_x, const Step& step_y, int to_tile,
                                    const LaneFormat& format, Anchors& out) {
@@ -253,7 +254,7 @@ HALFPLANE_INLINE void set_up_small_depth(SmallBatch& batch, const SmallPlanes<Ar
   const I16 local_y = local_step(step_y, format);
   local_y.store(batch.z_step_y.data());
   (local_y * block_rows<I16>).store(batch.z_step_below.data());
-  const bool is_narrow = HALFPLANE_ISA <= 256 && widths.depth().code.bits <= 16;  // see NarrowTest
+  const bool is_narrow = HALFPLANE_ISA <= 256 && widths.depth().code.bits <= 16;  // for NarrowTest
   const auto limit = [&](const I16& z)
                          HALFPLANE_LAMBDA { return is_narrow ? doubled(z - format.bias) : z - format.bias; };
   limit(corners.z_low).store(batch.z_low.data());
@@ -316,7 +317,7 @@ HALFPLANE_INLINE void set_up_small_colors(SmallBatch& batch, const SmallPlanes<A
   samples.join_channels();
 }
 
-/// The constants of a batch that is loaded. Formats: centred.
+/// Sets up the constants of a loaded batch. Formats: centred.
 template <class Arithmetic, class Samples>
 HALFPLANE_NOINLINE void set_up_small(SmallBatch& batch, const Slice& slice, const Widths& widths,
                                      const LaneFormat& depth_format, const LaneFormat& color_format, int first_x,
@@ -328,7 +329,7 @@ HALFPLANE_NOINLINE void set_up_small(SmallBatch& batch, const Slice& slice, cons
   const FromOrigin to = anchor_from_origin(corners, I16::load(batch.left.data()), I16::load(batch.top.data()),
                                            widths.grid_bits, first_x, first_y);
   set_up_small_depth(batch, planes, to, depth_format, samples);
-  // Those of surfaces wait until they are seen.
+  // Colours of surfaces are deferred until they are visible.
   if (slice.state.color_write && !slice.state.has_surface)
     set_up_small_colors(batch, planes, to, color_format, slice.state.is_flat, samples);
 }

@@ -54,7 +54,7 @@ struct SurfaceRamps {
   ColorRamp color;
   LodRamps lod;
 
-  /// `has_color`: whether own() is asked for.
+  /// `has_color`: whether own() will be called.
   HALFPLANE_INLINE SurfaceRamps(const Bin& bin, const DrawnSurface& surface, int tile_x, int tile_y, bool has_color) {
     const SurfaceConstants& of = surface.constants;
     if constexpr (kSampling != Sampling::none) coordinate.set(bin, of.coordinate, tile_x, tile_y);
@@ -87,7 +87,7 @@ struct SurfaceRamps {
     return {channel(0) | (channel(2) << 16), channel(1) | (channel(3) << 16)};
   }
 
-  /// Where a block's pixels are on the texture. Returns lambda, where it is asked for.
+  /// Coordinates of a block's pixels on the texture. Returns lambda, if needed.
   HALFPLANE_INLINE I16 find_coordinates(const SurfaceConstants& of, std::size_t block, CoordinateLanes& at) const {
     const LaneTexture& texture = of.texture;
     const ReciprocalsOfQ q(coordinate.q(block), of.division);
@@ -108,8 +108,8 @@ HALFPLANE_INLINE ColorPairs texels_at(const LaneTexture& texture, const Coordina
   return sample(texture, at, lod);
 }
 
-/// Colours of a tile's `pixels`. One step after the other for all four blocks: a block's steps wait for each
-/// other, and would keep the next block's from being seen in time.
+/// Colours of a tile's `pixels`. Each step runs for all four blocks before the next: the steps of one block depend on
+/// each other, and would hide those of the next block from the scheduler.
 template <Sampling kSampling>
 HALFPLANE_NOINLINE void shade(Bin& bin, const DrawnSurface& surface, int tile, std::uint64_t pixels,
                               std::uint32_t* const colors, ColorFormat format) {
@@ -151,7 +151,7 @@ HALFPLANE_NOINLINE void shade(Bin& bin, const DrawnSurface& surface, int tile, s
   });
 }
 
-/// The same pixel by pixel, through the stages.
+/// The same pixel by pixel, by the stages.
 HALFPLANE_NOINLINE void shade_by_stages(Bin& bin, const Surface& surface, int tile, std::uint64_t pixels,
                                         std::uint32_t* const colors, ColorFormat format) {
   const int left = bin.first_x + tile % kBinTiles * kTileSize, top = bin.first_y + tile / kBinTiles * kTileSize;
@@ -163,7 +163,7 @@ HALFPLANE_NOINLINE void shade_by_stages(Bin& bin, const Surface& surface, int ti
   }
 }
 
-/// The textures alone, or colours that are not lit.
+/// The textures alone, or colours without light.
 HALFPLANE_INLINE void shade_unlit(Bin& bin, const DrawnSurface& surface, int tile, std::uint64_t pixels,
                                   std::uint32_t* const colors, ColorFormat format) {
   switch (sampling_of(surface.constants)) {
@@ -174,7 +174,7 @@ HALFPLANE_INLINE void shade_unlit(Bin& bin, const DrawnSurface& surface, int til
   }
 }
 
-/// What is lit: texels first, where there are some, in 8 bits a channel.
+/// Lit colours: texels first, if there are some, in 8 bits a channel.
 HALFPLANE_NOINLINE void shade_lit(Bin& bin, const DrawnSurface& surface, int tile, std::uint64_t pixels,
                                   std::uint32_t* const colors, ColorFormat format) {
   const SurfaceConstants& of = surface.constants;
@@ -190,7 +190,7 @@ HALFPLANE_NOINLINE void shade_lit(Bin& bin, const DrawnSurface& surface, int til
   });
 }
 
-/// What lanes do, but for fog.
+/// All that lanes do, except fog.
 HALFPLANE_INLINE void shade_in_lanes(Bin& bin, const DrawnSurface& surface, int tile, std::uint64_t pixels,
                                      std::uint32_t* const colors, ColorFormat format) {
   if (surface.constants.light) return shade_lit(bin, surface, tile, pixels, colors, format);
@@ -218,7 +218,7 @@ HALFPLANE_INLINE ColorPairs in_fog(const ColorPairs& color, const I16& factor, c
       mixed(color.green_alpha & 0xffff, 1) | (color.green_alpha & static_cast<std::int32_t>(0xffff0000U)));
 }
 
-/// The same with fog, which is a pass of its own over the colours of 8 bits: so it costs nothing where there is none.
+/// The same with fog, a pass of its own over colours of 8 bits: no cost without fog.
 HALFPLANE_NOINLINE void shade_in_fog(Bin& bin, const DrawnSurface& surface, int tile, std::uint64_t pixels,
                                      std::uint32_t* const colors, ColorFormat format) {
   alignas(64) std::array<std::uint32_t, kTilePixels> clear{};
@@ -232,14 +232,14 @@ HALFPLANE_NOINLINE void shade_in_fog(Bin& bin, const DrawnSurface& surface, int 
   });
 }
 
-/// Colours of a tile's `pixels`, in a format, to the places of the tile's 64.
+/// Writes colours of a tile's `pixels`, in a format, to their places among the tile's 64.
 HALFPLANE_INLINE void shade(Bin& bin, const DrawnSurface& surface, int tile, std::uint64_t pixels,
                             std::uint32_t* const colors, ColorFormat format) {
   if (surface.stage) return shade_by_stages(bin, surface.stage->surface, tile, pixels, colors, format);
   if (surface.constants.has_fog) return shade_in_fog(bin, surface, tile, pixels, colors, format);
   shade_in_lanes(bin, surface, tile, pixels, colors, format);
 }
-/// To memory, as they are stored.
+/// Writes them to memory, in the stored format.
 HALFPLANE_INLINE void shade(Bin& bin, const DrawnSurface& surface, int tile, std::uint64_t pixels) {
   shade(bin, surface, tile, pixels, bin.memory.color.data() + first_of(tile), bin.config.color_format);
 }

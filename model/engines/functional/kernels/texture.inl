@@ -1,4 +1,4 @@
-// Texels in lanes: texture_filter.hpp and texture_sample.hpp of textures whose sides are powers of two.
+// Texels in lanes: texture_filter.hpp and texture_sample.hpp for textures whose sides are powers of two.
 #pragma once
 
 #include "lane_memory.inl"
@@ -12,8 +12,8 @@ struct CoordinateLanes {
   I16 u, v;
 };
 
-/// Of a quotient of over_q() the coordinate along an axis. Far beyond the image one texel is like the next, and so 32 bits hold
-/// twice that.
+/// The coordinate along an axis from a quotient of over_q(). Far beyond the image all texels are alike, and so 32 bits
+/// hold twice that.
 template <class Reference>
 HALFPLANE_INLINE I16 on_axis(const LaneTexture& texture, std::size_t axis, const I16& u, const Reference& reference) {
   const I16 sum = (texture.up == 0 ? u : u << texture.up) + reference;
@@ -38,7 +38,7 @@ struct BaseLevel {
   HALFPLANE_INLINE I16 last() const {
     return I16(texture.last[kAxis]);
   }
-  /// From the bits of a row's number that count blocks to a place.
+  /// Shift from the block bits of a row's number to a place.
   HALFPLANE_INLINE int pitch() const { return texture.pitch; }
   HALFPLANE_INLINE static I16 first() { return I16(0); }
 };
@@ -71,7 +71,7 @@ struct LaneLevel {
   HALFPLANE_INLINE const I16& first() const { return first_texel; }
 };
 
-/// wrapped_texel(). `last`: the level's, a power of two less 1.
+/// wrapped_texel(). `last`: the last texel of the level, a power of two less 1.
 HALFPLANE_INLINE I16 wrapped_texel(const I16& i, TextureWrap wrap, const I16& last) {
   if (wrap == TextureWrap::repeat) return i & last;
   if (wrap == TextureWrap::clamp) return min(max(i, I16(0)), last);
@@ -79,7 +79,7 @@ HALFPLANE_INLINE I16 wrapped_texel(const I16& i, TextureWrap wrap, const I16& la
   return rest ^ (period & (rest > last));
 }
 
-/// What a texel's column and row add to its place in TexelBlocks.
+/// The parts of a texel's place in TexelBlocks from its column and its row.
 HALFPLANE_INLINE I16 column_place(const I16& x) { return (x & 3) + ((x & ~3) << 2); }
 template <class Pitch>
 HALFPLANE_INLINE I16 row_place(const I16& y, const Pitch& pitch) {
@@ -99,7 +99,7 @@ struct ColorPairs {
   ColorPairs& operator=(const ColorPairs&) = delete;
 };
 
-/// Where the nearest texels are.
+/// Places of the nearest texels.
 template <class Level>
 HALFPLANE_INLINE I16 nearest_places(const LaneTexture& texture, const CoordinateLanes& at, const Level& level) {
   const I16 x = wrapped_texel(level.template cut<0>(at.u) >> kTexelFraction, texture.wrap[0], level.template last<0>()),
@@ -113,8 +113,8 @@ HALFPLANE_INLINE I16 filter_nearest(const LaneTexture& texture, const Coordinate
   return gather(texture.texels, nearest_places(texture, at, level));
 }
 
-/// Numbers that lanes have stored, each to be an address. Read as they stand in memory: GCC would take them out of the lanes
-/// one by one instead, by shuffles and moves of which the lanes themselves have need.
+/// Numbers stored by lanes, to be used as addresses. They are read from memory: GCC would extract them from the lanes
+/// one by one instead, by shuffles and moves that the lanes need themselves.
 HALFPLANE_INLINE std::size_t word_at(const std::uint32_t* words, int i) {
   return static_cast<const volatile std::uint32_t&>(words[i]);
 }
@@ -131,8 +131,8 @@ HALFPLANE_INLINE void fetch_texels(const void* texels, const std::uint32_t* plac
   for (int i = 0; i < kBlockPixels; ++i) to[i] = static_cast<const std::uint32_t*>(texels)[word_at(places, i)];
 }
 
-/// What a linear filter looks at: left and right texels of two rows, R lowest, and how much there is of the second column
-/// and row, in 256ths.
+/// Input of a linear filter: left and right texels of two rows, R lowest, and the weights of the second column and row,
+/// in 256ths.
 struct Footprints {
   I16 upper_left, upper_right, lower_left, lower_right, across, down;
 };
@@ -154,13 +154,13 @@ HALFPLANE_INLINE Footprints gathered_footprints(const LaneTexture& texture, cons
           fetch(right + lower), from_middle.u & 255,  from_middle.v & 255};
 }
 
-/// Of texels before the first of a clamped image there is none but that.
+/// A clamped image has no texels before the first: their weight is that of the first alone.
 HALFPLANE_INLINE I16 part_of(const I16& coordinate, TextureWrap wrap) {
   const I16 bits = coordinate & 255;
   return wrap == TextureWrap::clamp ? bits & ~(coordinate >> 31) : bits;
 }
 
-/// Where the footprints of a linear filter begin, `from_middle`: less half a texel.
+/// Places of the footprints of a linear filter, `from_middle`: less half a texel.
 template <class Level>
 HALFPLANE_INLINE I16 footprint_places(const LaneTexture& texture, const CoordinateLanes& from_middle,
                                       const Level& level) {
@@ -190,10 +190,10 @@ struct ChannelSums {
   I16 of[4];
 };
 
-/// low * (256 - part) + high * part + 2^(drop - 1) of numbers of 16 bits, lane by lane. `lanes`: both of them; `weights`:
-/// likewise; `drop`: bits that are to be rounded.
+/// low * (256 - part) + high * part + 2^(drop - 1) for 16-bit numbers, lane by lane. `lanes`: low and high; `weights`:
+/// of both; `drop`: bits to be rounded.
 HALFPLANE_INLINE I16 weighted(const I16& lanes, const I16& weights, int drop) {
-  constexpr auto kCentre = static_cast<std::int32_t>(0x80008000U);  // as with a sign
+  constexpr auto kCentre = static_cast<std::int32_t>(0x80008000U);  // for a signed multiply
   return multiply_add_pairs(lanes ^ kCentre, weights) + ((1 << 23) + (1 << (drop - 1)));
 }
 HALFPLANE_INLINE I16 weights_of(const I16& part) { return (256 - part) | (part << 16); }
@@ -226,7 +226,7 @@ HALFPLANE_INLINE ChannelSums linear_sums(const LaneTexture& texture, const Coord
            second(above.red_blue, below.red_blue), second(above.green_alpha, below.green_alpha)}};
 }
 
-/// linear_sums() of alpha alone, as an integer. `quads`: of the lanes' footprints; `from_middle`: where they are.
+/// linear_sums() of alpha alone, as an integer. `quads`: of the lanes' footprints; `from_middle`: their coordinates.
 HALFPLANE_INLINE I16 linear_alpha(const LaneTexture& texture, const CoordinateLanes& from_middle, const I16& quads) {
   const auto left = as<S32>(quads & 0xff00ff), right = as<S32>(shift_right_logical(quads, 8) & 0xff00ff);
   const auto across = as<S32>(doubled(part_of(from_middle.u, texture.wrap[0])));
@@ -234,7 +234,7 @@ HALFPLANE_INLINE I16 linear_alpha(const LaneTexture& texture, const CoordinateLa
   return weighted(rows, weights_of(part_of(from_middle.v, texture.wrap[1])), 16) >> 16;
 }
 
-/// Of sums with 16 fraction bits the integers.
+/// Integer parts of sums with 16 fraction bits.
 HALFPLANE_INLINE ColorPairs integers_of(const ChannelSums& sum) {
   return {(sum.of[0] >> 16) | (sum.of[2] & 0xff0000), (sum.of[1] >> 16) | (sum.of[3] & 0xff0000)};
 }
@@ -244,7 +244,7 @@ HALFPLANE_INLINE ColorPairs filter_linear(const LaneTexture& texture, const Coor
   return integers_of(linear_sums(texture, at, level, 16));
 }
 
-/// blend_levels() of channels with 8 fraction bits.
+/// blend_levels() for channels with 8 fraction bits.
 HALFPLANE_INLINE ColorPairs blend_levels(const ChannelSums& lower, const ChannelSums& upper, const I16& part) {
   const I16 weights = weights_of(part);
   ChannelSums sum;
@@ -288,7 +288,7 @@ HALFPLANE_INLINE ColorPairs filtered_base(const LaneTexture& texture, const Coor
   return is_linear ? filter_linear(texture, at, level) : ColorPairs(filter_nearest(texture, at, level));
 }
 
-/// What texture_min says.
+/// Filters as texture_min says.
 HALFPLANE_INLINE ColorPairs minified(const LaneTexture& texture, const CoordinateLanes& at, const I16& lod) {
   const auto nearest_level = [&]() HALFPLANE_LAMBDA {
     const I16 level = min(max((lod + 127) >> kLodFraction, I16(0)), I16(texture.last_level));

@@ -1,4 +1,5 @@
-// Where a tile's pixels are: in the target, in the bin's memory, or still a triangle; and the range of its depths.
+// Location of a tile's pixels: in the target, in the bin's memory, or a triangle not yet computed; and the range of its
+// depths.
 #pragma once
 
 #include "bin.inl"
@@ -10,7 +11,7 @@ namespace {
 /// First pixel of a tile in the bin's memory.
 inline int first_of(int tile) { return tile * kTileSize * kTileSize; }
 
-/// First pixels of the blocks in the bin's memory: what a column of blocks adds, and a row.
+/// First pixels of the blocks in the bin's memory: the offset of a column of blocks, and of a row.
 using BlockPlaces = std::array<std::int32_t, kBinSize / kBlockSize>;
 
 static constexpr BlockPlaces kColumnPlaces = [] {
@@ -27,12 +28,12 @@ static constexpr BlockPlaces kRowPlaces = [] {
   return places;
 }();
 
-/// Where pixel (x, y) of the bin is in its memory.
+/// Place of pixel (x, y) of the bin in its memory.
 HALFPLANE_INLINE I16 place_of(const I16& x, const I16& y) {
   return (((x & 56) << 3) | ((x & 4) << 2) | (x & 3)) + (((y & 56) << 6) | ((y & 4) << 3) | ((y & 3) << 2));
 }
 
-/// The pixel at a place: the way back.
+/// The pixel at a place: the inverse.
 struct BinPixel {
   int x, y;
 };
@@ -42,7 +43,7 @@ struct BinPixel {
           tile / kBinTiles * kTileSize + (block >> 1) * kBlockSize + (place >> 2 & 3)};
 }
 
-/// The bin's part of the target is asked for now: it is written at the end, and comes from far away.
+/// Prefetches the bin's part of the target: it is written at the end, and comes from distant memory.
 inline void fetch_target(const Bin& bin) {
   constexpr int kLine = 16;  // pixels
   const int rows = std::min(kBinSize, bin.job.target.height - bin.first_y),
@@ -57,14 +58,14 @@ inline void fetch_target(const Bin& bin) {
   }
 }
 
-/// First pixel of a tile in the target, or none where the bin hangs over it.
+/// First pixel of a tile in the target, or none if the tile is outside.
 [[nodiscard]] inline std::ptrdiff_t in_target(const Bin& bin, int tile) {
   const int x = bin.first_x + tile % kBinTiles * kTileSize, y = bin.first_y + tile / kBinTiles * kTileSize;
   if (x >= bin.job.target.width || y >= bin.job.target.height) return -1;
   return static_cast<std::ptrdiff_t>(bin.job.target.at(x, y));
 }
 
-/// The bin's depths, of 16 bits where that is enough, else of 32.
+/// The bin's depths, in 16 bits if these suffice, else in 32.
 struct DepthPixels {
   bool is_narrow;
   std::uint16_t* narrow;
@@ -81,7 +82,7 @@ struct DepthPixels {
   }
 };
 
-/// Those of the block that begins with pixel `at`.
+/// Depths of the block that begins with pixel `at`.
 HALFPLANE_INLINE I16 load_depths(const Bin& bin, std::size_t at) {
   return bin.is_narrow ? load_narrow(bin.memory.narrow_depth.data() + at) : I16::load(bin.memory.depth.data() + at);
 }
@@ -94,7 +95,7 @@ HALFPLANE_INLINE void store_depths(Bin& bin, std::size_t at, const I16& depths) 
 
 using TileBlocks = std::array<I16, 4>;
 
-/// A tile's depths, which are in memory or those of a triangle.
+/// A tile's depths, from memory or from a triangle.
 HALFPLANE_INLINE TileBlocks depths_of(const Bin& bin, int tile) {
   TileBlocks blocks;
   const std::int32_t owner = bin.depth_owner[tile];
@@ -124,7 +125,7 @@ HALFPLANE_INLINE TileBlocks colors_of(const Bin& bin, int tile) {
   return blocks;
 }
 
-/// A tile of the target, or as a clear leaves it.
+/// A tile of the target, or with the values of a clear.
 HALFPLANE_INLINE TileBlocks fetched(const Bin& bin, int tile, bool is_cleared, std::uint32_t clear,
                                     const Framebuffer::Image& image) {
   TileBlocks blocks;
@@ -149,7 +150,7 @@ HALFPLANE_NOINLINE void fetch_depth(Bin& bin, int tile) {
   bin.depth_owner[tile] = Bin::kInMemory;
 }
 
-/// Whether the colours of a tile are textured primitives that have not been shaded.
+/// Whether the colours of a tile are textured primitives not yet shaded.
 HALFPLANE_INLINE bool is_waiting(const Bin& bin, int tile) {
   const std::int32_t owner = bin.color_owner[tile];
   return owner == Bin::kSurfaces || (owner >= 0 && bin.memory.planes[static_cast<std::size_t>(owner)].surface != 0);
@@ -166,7 +167,7 @@ HALFPLANE_NOINLINE void fetch_color(Bin& bin, int tile) {
   bin.color_owner[tile] = Bin::kInMemory;
 }
 
-/// Makes the tile's depths be in memory.
+/// Brings the tile's depths to memory.
 HALFPLANE_INLINE void need_depth(Bin& bin, int tile) {
   if (bin.depth_owner[tile] != Bin::kInMemory) fetch_depth(bin, tile);
 }
@@ -202,7 +203,7 @@ HALFPLANE_INLINE void store_sample(const Bin& bin, unsigned k, std::size_t at, c
     depths.store(memory.depth[k] + at);
 }
 
-/// A tile's depths at sample k, whoever holds them.
+/// A tile's depths at sample k, from any owner.
 HALFPLANE_INLINE TileBlocks sample_depths(const Bin& bin, int tile, unsigned k) {
   TileBlocks blocks;
   const std::int32_t owner = bin.depth_owner[tile];
@@ -252,8 +253,8 @@ HALFPLANE_INLINE void find_range(Bin& bin, int tile) {
   set_range(bin, tile, min_lane(low), max_lane(high));
 }
 
-/// A tile may now hold any depths beside what it held. A store, not a minimum: the next triangle of the tile need not
-/// wait for it.
+/// Marks that a tile may now also hold any depth. A store, not a minimum: the next triangle of the tile need not wait
+/// for it.
 template <class Fragments>
 HALFPLANE_INLINE void forget_range(Bin& bin, int tile) {
   if (Fragments::kIsLess || !bin.rises) bin.tile_low[tile] = 0;

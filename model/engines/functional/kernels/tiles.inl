@@ -1,5 +1,5 @@
-// Large triangles: the 64 tiles of a bin at once, a lane each: outside, hidden, taken as a whole, or drawn. Bounds
-// of a tile have 16 bits: they may be a little wide, never wrong. The pixels of a tile, 64 as well, are exact.
+// Large triangles: the 64 tiles of a bin at once, a lane each: outside, hidden, taken whole, or drawn. Bounds of a tile
+// have 16 bits: they are conservative. The pixels of a tile, 64 as well, are exact.
 #pragma once
 
 #include "bin.inl"
@@ -15,14 +15,14 @@
 namespace halfplane::functional::HALFPLANE_ISA_NAME {
 namespace {
 
-/// The 64 lanes of a plane: over the pixels of a tile, block by block, or over the tiles of a bin, row by row. From the
-/// first register the others follow by steps.
+/// The 64 lanes of a plane: over the pixels of a tile, block by block, or over the tiles of a bin, row by row. The
+/// first register is stepped to the others.
 enum class Over { pixels, tiles };
 template <Over over, class T>
 struct Ramp {
   using Lanes = Pack<T, 64>;
   using Register = typename Lanes::Register;
-  Register start, by_8, by_16, by_32;  ///< from the first lane to those of the first register; so many lanes on
+  Register start, by_8, by_16, by_32;  ///< first lane plus offsets within the first register; steps by so many lanes
 
   HALFPLANE_INLINE Ramp() = default;
   HALFPLANE_INLINE Ramp(const Bin& bin, T step_x, T step_y) {
@@ -46,7 +46,7 @@ struct Ramp {
   }
 };
 
-/// The same of values of more bits, floored to units of 2^fraction; `fraction`: at most 12, so that fifteen fit 16 bits.
+/// The same for wider values, floored to units of 2^fraction; `fraction`: at most 12, so that fifteen fit 16 bits.
 template <Over over>
 struct LongRamp {
   Ramp<over, std::int16_t> upper;
@@ -72,17 +72,17 @@ struct LongRamp {
 
 HALFPLANE_INLINE S64 every_lane(int value) { return S64(static_cast<std::int16_t>(value)); }
 
-/// Codes that lie as far from `middle` as 16 bits reach, in [low, high].
+/// Codes within 16 bits' reach of `middle`, in [low, high].
 struct DepthLanes {
-  S64 low, high, middle;  ///< the first two from the middle
+  S64 low, high, middle;  ///< the first two relative to the middle
 
   HALFPLANE_INLINE DepthLanes(int low_, int high_, int middle_)
       : low(every_lane(low_ - middle_)), high(every_lane(high_ - middle_)), middle(every_lane(middle_)) {}
-  /// Of distances from the middle.
+  /// From distances to the middle.
   HALFPLANE_INLINE U64 clamped(const S64& distance) const { return as<U64>(min(max(distance, low), high) + middle); }
 };
 
-/// Of the three edges; the fourth lane is not used.
+/// Of the three edges; the fourth lane is unused.
 using EdgeWords __attribute__((vector_size(16))) = std::int32_t;
 HALFPLANE_INLINE EdgeWords load_edges(const std::array<std::int32_t, 4>& from) {
   EdgeWords words;
@@ -97,13 +97,13 @@ HALFPLANE_INLINE std::array<std::int32_t, 4> stored(const EdgeWords& words) {
 HALFPLANE_INLINE EdgeWords smaller(const EdgeWords& a, const EdgeWords& b) { return a < b ? a : b; }
 HALFPLANE_INLINE EdgeWords larger(const EdgeWords& a, const EdgeWords& b) { return a > b ? a : b; }
 
-/// Tiles, a bit each. Either set may lack some.
+/// Tiles, a bit each. Either set may be incomplete.
 struct TileClasses {
-  std::uint64_t outside, full;  ///< no pixel is covered; all are, if the box agrees
+  std::uint64_t outside, full;  ///< no pixel is covered; all are, within the box
 };
 
-/// Each edge in units of 2^drop, floored: fifteen steps and a value make an error below 15. `least`, `most`: what edges gain
-/// from the centre of a pixel to a sample of it, at most half a step along both axes.
+/// Each edge in units of 2^drop, floored: fifteen steps and a value give an error below 15. `least`, `most`: bounds of
+/// the edges' increments from the centre of a pixel to a sample, at most half a step along both axes.
 HALFPLANE_INLINE TileClasses classify_tiles(const Bin& bin, const BinTriangle& t, const EdgeWords& least,
                                             const EdgeWords& most) {
   constexpr int kExtent = kTileSize - 1, kStepBits = 7, kFloored = 14, kLimit = 16330,
@@ -131,14 +131,14 @@ HALFPLANE_INLINE TileClasses classify_tiles(const Bin& bin, const BinTriangle& t
   return {bits_of(outside), ~bits_of(cut)};
 }
 
-/// Ranges of a triangle's depths in the tiles that it touches: the plane at their anchors, of which lanes hold the
-/// distance to the middle of the vertices' depths, and from there to the lowest and the highest.
+/// Ranges of a triangle's depths in its tiles: the plane at their anchors, held in lanes as the distance to the middle
+/// of the vertices' depths, plus the offsets to the lowest and the highest.
 struct TileDepths {
-  bool is_known;  ///< else they are the vertices'
+  bool is_known;  ///< else they are the range of the vertices
   std::int32_t first, last, middle, to_low, to_high;
   S64 anchor;
 
-  /// Up to twelve bits of a fraction are kept, of fifteen floored numbers.
+  /// Up to twelve fraction bits are kept, for fifteen floored numbers.
   HALFPLANE_INLINE TileDepths(const Bin& bin, const BinTriangle& t) : is_known(t.is_gentle) {
     const int dropped = bin.range_bits_dropped;
     first = t.z_low >> dropped;
@@ -147,7 +147,7 @@ struct TileDepths {
     const int fraction = bin.widths.plane_fraction + dropped, kept = std::min(fraction, 12), down = fraction - kept;
     const std::int64_t zero = std::int64_t{(bin.depth_format.bias >> dropped) + middle} << kept;
     anchor = LongRamp<Over::tiles>(bin, kept, t.z_tile_x >> down, t.z_tile_y >> down)((t.z_anchor >> down) - zero);
-    // The anchor's fraction, and what of it has been floored, may carry into the bits that to_high has floored.
+    // The anchor's fraction, and its floored part, may carry into the bits that to_high has floored.
     const int tile_fraction = bin.depth_format.down - bin.depth_format.up + dropped;
     to_low = t.to_low;
     to_high = t.to_high + (down > 0 && (15 << tile_fraction) >= 1 << kept ? 2 : 1);
@@ -159,13 +159,13 @@ struct TileDepths {
   }
 };
 
-/// In the lanes that are set in a mask.
+/// Replaces the lanes that are set in a mask.
 template <class Element, class Lanes>
 HALFPLANE_INLINE void replace(const S64& where, const Lanes& with, Element* at) {
   select(where, with, Lanes::load(at)).store(at);
 }
 
-/// Depths of tiles that the triangle takes as a whole. Returns its number among those that wait.
+/// Stores depths of tiles that the triangle takes whole. Returns its number among the pending triangles.
 HALFPLANE_INLINE S64 take_depths(Bin& bin, const BinTriangle& t, const S64& is_taken, const TileDepths& depths) {
   if (bin.plane_count == BinMemory::kPlanes) drop_planes(bin);
   const S64 plane(static_cast<std::int16_t>(bin.plane_count));
@@ -178,7 +178,7 @@ HALFPLANE_INLINE S64 take_depths(Bin& bin, const BinTriangle& t, const S64& is_t
   return plane;
 }
 
-/// Tiles that it takes, with their colours.
+/// Takes tiles, with their colours.
 HALFPLANE_INLINE void take_tiles(Bin& bin, const BinTriangle& t, std::uint64_t taken, const TileDepths& depths) {
   const S64 is_taken = lanes_of(taken), plane = take_depths(bin, t, is_taken, depths);
   bin.in_memory &= ~taken;
@@ -195,13 +195,12 @@ HALFPLANE_INLINE void take_tiles(Bin& bin, const BinTriangle& t, std::uint64_t t
   count_fragments(bin, fragments, fragments);
 }
 
-/// What the tiles of a triangle have in common. Copies: what is stored to memory might change it, for all that the
-/// compiler knows.
+/// Constants of a triangle over its tiles. Copies: the compiler must assume that stores change the originals.
 struct TileConstants {
-  EdgeWords edge, tile_dx, tile_dy, to_smallest, below;  ///< `below`: less than any value is from the largest
+  EdgeWords edge, tile_dx, tile_dy, to_smallest, below;  ///< `below`: less than the largest value can become
   bool is_steep, is_whole, is_narrow;
   std::int32_t z_low, z_high, middle;
-  std::int32_t z_first;  ///< from a tile's anchor to its first pixel, and from codes to the middle: a tile's units
+  std::int32_t z_first;  ///< from a tile's anchor to its first pixel, and from codes to the middle: in a tile's units
   std::array<Ramp<Over::pixels, std::int16_t>, 3> edges;
   std::array<LongRamp<Over::pixels>, 3> steep_edges;
   LongRamp<Over::pixels> depth;
@@ -232,9 +231,9 @@ struct TileConstants {
   }
 };
 
-/// The pixels of a tile outside an edge, as signs. What an edge's smallest value is below its span, or above 0, is the
-/// same for all of them: 16 bits hold the rest, of steep ones without the lowest bits. `moved`: what edges gain from the
-/// centre of a pixel to where it is looked at.
+/// The pixels of a tile outside an edge, as signs. The distance of an edge's smallest value below its span, or above 0,
+/// is common to all pixels: 16 bits hold the rest, for steep edges without the lowest bits. `moved`: the edges'
+/// increments from the centre of a pixel to the tested place.
 HALFPLANE_INLINE S64 outside_edges(const TileConstants& t, int tile_x, int tile_y, const EdgeWords& moved) {
   const EdgeWords at_tile = t.edge + moved + (tile_y * t.tile_dx - tile_x * t.tile_dy);
   const auto first = stored(smaller(larger(at_tile + t.to_smallest, t.below), EdgeWords{}) - t.to_smallest);
@@ -251,13 +250,13 @@ HALFPLANE_INLINE S64 outside_box(const Bin& bin, const BinBounds& box, int tile_
          (lanes(box.bottom, tile_y) - y);
 }
 
-/// Depths of a tile after the test, and which pixels passed.
+/// Depths of a tile after the test, and the pixels that passed.
 struct TestedTile {
   U64 now;
   std::uint64_t passed;
 };
 
-/// Depth test of a tile whose codes are of 16 bits.
+/// Depth test of a tile with codes of 16 bits.
 template <class Fragments>
 HALFPLANE_INLINE TestedTile tested(const Bin& bin, const TileConstants& t, const DepthLanes& limits,
                                    std::int32_t anchor, const S64& outside, const U64& stored) {
@@ -271,7 +270,7 @@ HALFPLANE_INLINE TestedTile tested(const Bin& bin, const TileConstants& t, const
   }
 }
 
-/// The same of pixels whose bits are set.
+/// The same for the pixels whose bits are set.
 template <class Fragments>
 HALFPLANE_INLINE TestedTile tested_by_bits(const Bin& bin, const TileConstants& t, const DepthLanes& limits,
                                            std::int32_t anchor, std::uint64_t covered, const U64& stored) {
@@ -292,7 +291,7 @@ HALFPLANE_INLINE TestedTile tested_by_bits(const Bin& bin, const TileConstants& 
   return tested<Fragments>(bin, t, limits, anchor, ~lanes_of(covered), stored);
 }
 
-/// The same in memory, or where it is cleared. Returns what passed.
+/// The same in memory, or in a cleared tile. Returns the pixels that passed.
 template <class Fragments>
 HALFPLANE_INLINE std::uint64_t test_narrow(Bin& bin, const TileConstants& t, int tile, std::int32_t anchor,
                                            const S64& outside) {
@@ -314,7 +313,7 @@ template <class Fragments>
 HALFPLANE_INLINE std::uint64_t test_wide(Bin& bin, const BinTriangle& t, int tile, std::int32_t anchor,
                                          std::uint64_t covered) {
   const BlockRamp<I16> plane = depth_ramp(bin, t, anchor);
-  // Copies: what is stored to memory might change the members, for all that the compiler knows.
+  // Copies: the compiler must assume that stores change the members.
   const LaneFormat format = bin.depth_format;
   const I16 z_low(t.z_low), z_high(t.z_high);
   const bool has_depth = bin.state.depth_write;
@@ -336,7 +335,8 @@ HALFPLANE_INLINE std::uint64_t test_wide(Bin& bin, const BinTriangle& t, int til
   return passed;
 }
 
-/// Colours of the pixels that passed, in blocks that have any; without Skip::fragments_early_z in all. `anchor`: the tile's.
+/// Colours of the pixels that passed, in blocks with such a pixel; without Skip::fragments_early_z in all. `anchor`:
+/// the tile's.
 HALFPLANE_INLINE void color_tile(Bin& bin, const BinTriangle& t, int tile, const ChannelPairs& anchor,
                                  std::uint64_t passed) {
   const bool is_cleared = bin.color_owner[tile] == Bin::kCleared;
@@ -362,12 +362,13 @@ HALFPLANE_INLINE void color_tile(Bin& bin, const BinTriangle& t, int tile, const
   });
 }
 
-/// Of a triangle in tiles.
+/// Pixel counts of a triangle in tiles.
 struct PixelCounts {
   std::uint64_t covered = 0, passed = 0;
 };
 
-/// The part of a triangle in one tile. `is_in_front`: it covers the tile, all of it passes, and depths are not written.
+/// Draws the part of a triangle in one tile. `is_in_front`: the triangle covers the tile, all of it passes, and depths
+/// are not written.
 template <class Fragments>
 HALFPLANE_INLINE void draw_tile(Bin& bin, const BinTriangle& t, const TileConstants& constants, int tile, bool is_full,
                                 bool is_in_front, PixelCounts& pixels) {
@@ -398,7 +399,7 @@ HALFPLANE_INLINE void draw_tile(Bin& bin, const BinTriangle& t, const TileConsta
   pixels.passed += static_cast<unsigned>(std::popcount(passed));
 }
 
-/// `full`: of those tiles, which need no look at the edges; `in_front`: nor at the depths.
+/// `full`: tiles that need no edge test; `in_front`: no depth test either.
 template <class Fragments>
 HALFPLANE_NOINLINE void draw_tiles(Bin& bin, const BinTriangle& t, std::uint64_t tiles, std::uint64_t full,
                                    std::uint64_t in_front) {
@@ -415,15 +416,15 @@ HALFPLANE_NOINLINE void draw_tiles(Bin& bin, const BinTriangle& t, std::uint64_t
   count_fragments(bin, pixels.covered, pixels.passed);
 }
 
-/// A triangle where pixels have one sample: nothing moves.
+/// A triangle with one sample per pixel: no increments.
 struct OneSample {
   HALFPLANE_INLINE explicit OneSample(const Bin& /*bin*/) {}
   HALFPLANE_INLINE void move_edges(const Bin&, const Corners&, const BinTriangle&) {}
   HALFPLANE_INLINE void move_depths(const Bin&, BinTriangle&) {}
   HALFPLANE_INLINE static EdgeWords least() { return EdgeWords{}; }
   HALFPLANE_INLINE static EdgeWords most() { return EdgeWords{}; }
-  HALFPLANE_INLINE static std::size_t surfaces() { return 1; }  ///< that it may have
-  /// Tiles that it may take, and those that may be drawn without a look at single samples.
+  HALFPLANE_INLINE static std::size_t surfaces() { return 1; }  ///< at most
+  /// Tiles that may be taken whole, and tiles that may be drawn without a look at single samples.
   HALFPLANE_INLINE static std::uint64_t takeable() { return ~std::uint64_t{0}; }
   HALFPLANE_INLINE static std::uint64_t as_one(const Bin&) { return ~std::uint64_t{0}; }
   template <class Fragments>
@@ -433,14 +434,14 @@ struct OneSample {
   }
 };
 
-/// Takes tiles out of a set, for a reason that counts.
+/// Removes tiles from a set, and counts the reason.
 HALFPLANE_INLINE void take_out(std::uint64_t& live, std::uint64_t out, std::uint64_t& counter) {
   counter += static_cast<unsigned>(std::popcount(live & out));
   live &= ~out;
 }
 
-/// A triangle or rectangle by itself. Of its tiles that are `live`, first those outside its edges are rejected, then
-/// hidden ones: depths are set up for what is left, then colours.
+/// Draws a triangle or rectangle alone. Of its `live` tiles, those outside its edges are rejected first, then hidden
+/// ones: depths are set up for the rest, then colours.
 template <class Fragments, class Samples>
 HALFPLANE_INLINE void draw_large(Bin& bin, const Slice& slice, const Record& record, std::uint64_t live,
                                  BinTriangle& t) {

@@ -1,4 +1,4 @@
-// Tiny triangles, within two by two pixels: culling knows which of the four pixel centres (samples) they cover.
+// Tiny triangles, within two by two pixels: culling has found which of the four pixel centres (samples) they cover.
 #pragma once
 
 #include "bin.inl"
@@ -11,15 +11,15 @@
 namespace halfplane::functional::HALFPLANE_ISA_NAME {
 namespace {
 
-/// What colours are written as; of surfaces, numbers are. laid_over: of has_operations.
+/// Format of written colours; for surfaces numbers are written. laid_over: part of has_operations.
 enum class Writes { nothing, rgba8888, other, surface, laid_over };
 
-/// The samples of triangles that have few, round by round: of each triangle one more.
+/// The samples of triangles with few samples, in rounds: one sample of each triangle per round.
 struct SampleRounds {
   static constexpr std::size_t kMost = 4;
   std::size_t count = 0;
   alignas(64) std::array<SmallBatch::Lane, kMost> to_x, to_y;   ///< FromOrigin of its tile's anchor
-  alignas(64) std::array<SmallBatch::Lane, kMost> column, row;  ///< from there, in both halves
+  alignas(64) std::array<SmallBatch::Lane, kMost> column, row;  ///< relative to it, in both halves
   alignas(64) std::array<SmallBatch::Lane, kMost> place, depth, color;
 
   [[nodiscard]] HALFPLANE_INLINE FromOrigin to(std::size_t round) const {
@@ -27,7 +27,8 @@ struct SampleRounds {
   }
 };
 
-/// Where the samples are. As many rounds as the triangle with the most has samples; a lane with none left gets any place.
+/// Finds the places of the samples. As many rounds as the largest number of samples; a lane without a sample left gets
+/// any place.
 HALFPLANE_INLINE void find_samples(const Bin& bin, const SmallCorners& corners, SampleRounds& rounds) {
   const SmallBatch& batch = bin.small;
   const I16 left = I16::load(batch.left.data()), top = I16::load(batch.top.data());
@@ -70,7 +71,7 @@ struct SampleChannel {
   I16 step_x, step_y;
 };
 
-/// Two channels of each round, centred, to `value`.
+/// Writes two channels of each round, centred, to `value`.
 template <class Arithmetic>
 HALFPLANE_INLINE void sample_pair(const Bin& bin, const SmallPlanes<Arithmetic>& planes, std::size_t pair,
                                   const SampleRounds& rounds,
@@ -117,7 +118,7 @@ HALFPLANE_NOINLINE void set_up_samples(Bin& bin, const Slice& slice, SampleRound
   }
 }
 
-/// Triangles whose few samples are known: their samples one by one, in their order. What is written, the state says.
+/// Draws triangles whose few samples are known: sample by sample, in order. The state says which buffers are written.
 template <class Fragments, bool kDepth, Writes kColor, class Depth>
 HALFPLANE_INLINE void draw_samples(Bin& bin, const SampleRounds& rounds, Depth* depths) {
   const SliceState state = bin.state;
@@ -132,7 +133,7 @@ HALFPLANE_INLINE void draw_samples(Bin& bin, const SampleRounds& rounds, Depth* 
     for (unsigned rest = samples; rest != 0; rest &= rest - 1, ++round) {
       const auto at = static_cast<std::uint32_t>(rounds.place[round][i]);
       const std::int32_t depth = rounds.depth[round][i], stored = depths[at];
-      // A sample that fails stores the old value: a branch would be mispredicted.
+      // A failing sample stores the old value: a branch would be mispredicted.
       const bool passed = Fragments::passes_one(state, depth, stored);
       passed_pixels += passed ? 1 : 0;
       if (kDepth) depths[at] = static_cast<Depth>(passed ? depth : stored);

@@ -18,12 +18,12 @@ HALFPLANE_INLINE ChannelPairs color_anchor(const Bin& bin, const BinTriangle& t,
   return channel_pairs((Channels)((Unsigned)value >> bin.color_format.drop << bin.color_format.up));
 }
 
-/// Lanes wrap.
+/// Sum that wraps.
 HALFPLANE_INLINE std::int32_t wrapped_sum(std::int32_t a, std::int32_t b) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(a) + static_cast<std::uint32_t>(b));
 }
 
-/// What depth gains from the centre of a pixel to its sample k, in a tile's units: sample_plane_offset().
+/// Increment of depth from the centre of a pixel to its sample k, in a tile's units: sample_plane_offset().
 HALFPLANE_INLINE std::int64_t depth_to_sample(const Bin& bin, const BinTriangle& t, unsigned k) {
   const int s = bin.widths.grid_bits;
   const auto step = [&](std::int64_t of_tile) HALFPLANE_LAMBDA {
@@ -37,7 +37,7 @@ HALFPLANE_INLINE std::int32_t depth_at_sample(const Bin& bin, const BinTriangle&
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(depth_to_sample(bin, t, k)) << bin.depth_format.up);
 }
 
-/// What colours gain, channel by channel.
+/// Increments of colours, channel by channel.
 HALFPLANE_INLINE Channels color_to_sample(const Bin& bin, const BinTriangle& t, std::size_t k) {
   const int s = bin.widths.grid_bits;
   const auto step = [&](const std::array<std::int64_t, 4>& of_tile) HALFPLANE_LAMBDA {
@@ -109,7 +109,7 @@ HALFPLANE_INLINE std::uint32_t block_bits(std::uint64_t pixels, std::size_t bloc
   return static_cast<std::uint32_t>(pixels >> (kBlockPixels * block) & 0xffff);
 }
 
-/// Replaces `pixels` of a tile's 64 by `code_of(block, stored)`. `skips`: blocks that have none.
+/// Replaces `pixels` of a tile's 64 by `code_of(block, stored)`. `skips`: skips blocks without such pixels.
 template <class CodeOf>
 HALFPLANE_INLINE void store_pixels(const Bin& bin, std::uint32_t* tile, std::uint64_t pixels, bool skips,
                                    CodeOf&& code_of) {
@@ -134,7 +134,7 @@ HALFPLANE_INLINE I16 block_colors(const ColorSteps& t, const ColorRamp& ramp, st
   return packed(pair(0), pair(1), pixels);
 }
 
-/// Two channels' codes, in the halves of each lane, as everything here: columns and rows from the anchor.
+/// Two channels' codes, in the halves of each lane; all arguments likewise: columns and rows from the anchor.
 [[nodiscard]] HALFPLANE_INLINE I16 channel_codes(const Bin& bin, const I16& column, const I16& row, const I16& step_x,
                                                  const I16& step_y, const I16& anchor, const I16& low,
                                                  const I16& high) {
