@@ -204,7 +204,10 @@ bool check_draws(Context& context, GLenum mode, const GLsizei* count, GLsizei dr
          std::all_of(count, count + draws, [&](GLsizei n) { return check_draw(context, mode, n); });
 }
 
-void play(Context& context, std::shared_ptr<const DisplayList> list) { list->play(context); }
+void play(Context& context, std::shared_ptr<const DisplayList> list) {
+  const CurrentKept kept(context);
+  list->play(context);
+}
 
 /// A draw as a list of its own, for one that is being compiled: within glBegin and glEnd it is refused as a whole.
 std::shared_ptr<const DisplayList> compiled(Context& context, const Streams& streams, GLenum mode, std::uint32_t first,

@@ -417,28 +417,40 @@ void draw_rectangle(Context& context, const halfplane::Texture& texels, double x
   const auto state = hardware_state(context, DrawKind::rectangle);
   if (!state) return;
   Frame& frame = context.drawable->frame;
-  if (context.state.fog.enabled && !state->fog) frame.missing("this fog on pixels", "they are drawn without fog");
   const unsigned op = context.state.color.logic_func - GL_CLEAR;
-  const bool looks_at_both = (op & 3) != op >> 2 && context.state.color.logic_func != GL_COPY;
-  if (!context.state.color.logic_op || !looks_at_both)
-    return draw_texels(context, *state, texels, x, y, zoom_x, zoom_y, z, w, true);
-  // No pixel comes twice, so that the host can put them together before any is drawn.
+  const bool looks_at_both = context.state.color.logic_op && op != GL_COPY - GL_CLEAR && (op & 3) != op >> 2;
+  const bool has_other_fog = context.state.fog.enabled && !state->fog;
+  if (!looks_at_both && !has_other_fog) return draw_texels(context, *state, texels, x, y, zoom_x, zoom_y, z, w, true);
+
   const auto across = zoomed(x, zoom_x, texels.width(), frame.width());
   const auto up = zoomed(y, zoom_y, texels.height(), frame.height());
   if (!across || !up) return;
   const Pixels columns = pixels_of(*across, frame.width()), rows = pixels_of(*up, frame.height());
+  const auto for_each_pixel = [&](const auto& visit) {
+    for (int row = rows.first; row < rows.end; ++row)
+      for (int column = columns.first; column < columns.end; ++column)
+        visit(column, row,
+              texels.texel(0, texel_at(column, *across, zoom_x, texels.width()),
+                           texel_at(row, *up, zoom_y, texels.height())));
+  };
+  if (has_other_fog) {
+    std::vector<WindowFragment> fragments;
+    for_each_pixel([&](int column, int row, const Texel& texel) {
+      WindowFragment& f = fragments.emplace_back(WindowFragment{column, row, z, w, {}});
+      std::ranges::transform(texel, f.color.begin(), [](std::uint8_t c) { return c / 255.0; });
+    });
+    return draw_fragments(context, fragments);
+  }
+  // No pixel comes twice, so that the host can put them together before any is drawn.
   if (columns.first >= columns.end || rows.first >= rows.end) return;
   const Framebuffer& picture = frame.picture();
   TexelImage image{columns.end - columns.first, rows.end - rows.first, {}};
-  for (int row = rows.first; row < rows.end; ++row)
-    for (int column = columns.first; column < columns.end; ++column) {
-      const Texel source = texels.texel(0, texel_at(column, *across, zoom_x, texels.width()),
-                                        texel_at(row, *up, zoom_y, texels.height()));
-      const auto stored = widen_color<std::uint32_t>(frame.options().config.color_format,
-                                                     picture.color[picture.at(column, picture.height - 1 - row)]);
-      Texel& result = image.texel.emplace_back();
-      for (std::size_t c = 0; c < 4; ++c) result[c] = operated(op, source[c], stored[c]);
-    }
+  for_each_pixel([&](int column, int row, const Texel& source) {
+    const auto stored = widen_color<std::uint32_t>(frame.options().config.color_format,
+                                                   picture.color[picture.at(column, picture.height - 1 - row)]);
+    Texel& result = image.texel.emplace_back();
+    for (std::size_t c = 0; c < 4; ++c) result[c] = operated(op, source[c], stored[c]);
+  });
   for (int top = 0; top < image.height; top += kLargestTexture)
     for (int left = 0; left < image.width; left += kLargestTexture)
       draw_texels(context, *state, part_of(image, left, top), columns.first + left, rows.first + top, 1, 1, z, w,

@@ -75,8 +75,8 @@ class Batch {
       : context_(context), group_(group), vertices_(vertices), indices_(indices), traits_(traits_of(vertices)) {}
 
   void draw() {
-    const bool takes_texture = makes_triangles(group_.topology) && group_.kind != DrawKind::rectangle;
-    auto state = hardware_state(context_, group_.kind, takes_texture && !group_.is_stippled, use_);
+    const bool takes_texture = makes_triangles(group_.topology) && !group_.is_stippled;
+    const auto state = hardware_state(context_, group_.kind, takes_texture, use_);
     if (!state) return;
     state_ = *state;
     if (group_.is_window) state_.space = Space::window;
@@ -87,6 +87,7 @@ class Batch {
     const FogState& fog = context_.state.fog;
     has_host_fog_ = fog.enabled && !(state_.fog && traits_.is_fogged_by_w);
     if (has_host_fog_) state_.fog.reset();
+    if (has_host_fog_ && traits_.has_one_color) state_.shade = Shade::smooth;  // fog has not one colour
     const bool colors_differ = !traits_.has_one_color || (has_host_fog_ && !is_textured_);
     // As exact, and hardware of any configuration has it.
     if (!colors_differ || traits_.has_one_w || state_.shade == Shade::flat) state_.color_interp = ColorInterp::affine;
@@ -709,7 +710,7 @@ void draw_primitives(Context& context, GLenum mode, std::span<const ShadedVertex
 }
 
 void draw_fragments(Context& context, std::span<const WindowFragment> fragments) {
-  if (context.drawable == nullptr || fragments.empty()) return;
+  if (context.drawable == nullptr) return;
   const Frame& frame = context.drawable->frame;
   constexpr std::size_t kMost = 4096;  // vertices are large
   Vertices vertices;

@@ -19,7 +19,8 @@ void draw_primitives(Context& context, GLenum mode, std::span<const ShadedVertex
                      std::span<const std::uint32_t> indices);
 
 /// Pixels of the window as points, for glBitmap and what has no better way: x and y from the bottom left, the centre of a
-/// pixel at one half, with z in 0...1 and colours in 0...1. They pass the fragment operations of the context's state.
+/// pixel at one half, with z in 0...1 and colours in 0...1. They pass fog, for which w is the distance, and the fragment
+/// operations of the context's state, but no texture.
 struct WindowFragment {
   int x = 0, y = 0;
   double z = 0, w = 1;

@@ -123,7 +123,7 @@ struct EglDisplay {
   std::vector<EglConfig> configs;
   std::map<void*, std::shared_ptr<Surface>> surfaces;
   std::map<void*, std::shared_ptr<EglContext>> contexts;
-  std::set<void*> syncs;
+  std::map<void*, std::unique_ptr<char>> syncs;
 
   void flush() const {  // the driver's own connection is to know the program's windows
     if (native != nullptr) XSync(native, 0);
@@ -270,9 +270,9 @@ EGLDisplay get_platform_display(EGLenum platform, void* native, const EGLAttrib*
 
 // EGL 1.5.
 
-EGLint GetError() { return done(t_state.error); }
+EGLint egl_get_error() { return done(t_state.error); }
 
-EGLBoolean Initialize(EGLDisplay handle, EGLint* major, EGLint* minor) {
+EGLBoolean egl_initialize(EGLDisplay handle, EGLint* major, EGLint* minor) {
   Call call(handle);
   if (call.error == EGL_BAD_DISPLAY) return Failed{call.error};
   call.display->initialized = true;
@@ -281,7 +281,7 @@ EGLBoolean Initialize(EGLDisplay handle, EGLint* major, EGLint* minor) {
   return done();
 }
 
-EGLBoolean Terminate(EGLDisplay handle) {
+EGLBoolean egl_terminate(EGLDisplay handle) {
   Call call(handle);
   if (call.error == EGL_BAD_DISPLAY) return Failed{call.error};
   call.display->initialized = false;
@@ -291,7 +291,7 @@ EGLBoolean Terminate(EGLDisplay handle) {
   return done();
 }
 
-const char* QueryString(EGLDisplay handle, EGLint name) {
+const char* egl_query_string(EGLDisplay handle, EGLint name) {
   if (handle == EGL_NO_DISPLAY && (name == EGL_EXTENSIONS || name == EGL_VERSION))
     return done(name == EGL_VERSION ? "1.5" : "EGL_EXT_client_extensions EGL_EXT_platform_base");
   const Call call(handle);
@@ -341,7 +341,7 @@ EGLBoolean choose(const Call& call, const Wishes& wishes, EGLConfig* configs, EG
   return done();
 }
 
-EGLBoolean ChooseConfig(EGLDisplay handle, const EGLint* list, EGLConfig* configs, EGLint size, EGLint* count) {
+EGLBoolean egl_choose_config(EGLDisplay handle, const EGLint* list, EGLConfig* configs, EGLint size, EGLint* count) {
   const Call call(handle);
   if (call.failed()) return Failed{call.error};
   Wishes wishes;
@@ -353,13 +353,13 @@ EGLBoolean ChooseConfig(EGLDisplay handle, const EGLint* list, EGLConfig* config
   return choose(call, wishes, configs, size, count);
 }
 
-EGLBoolean GetConfigs(EGLDisplay handle, EGLConfig* configs, EGLint size, EGLint* count) {
+EGLBoolean egl_get_configs(EGLDisplay handle, EGLConfig* configs, EGLint size, EGLint* count) {
   const Call call(handle);
   if (call.failed()) return Failed{call.error};
   return choose(call, {{EGL_SURFACE_TYPE, 0}}, configs, size, count);
 }
 
-EGLBoolean GetConfigAttrib(EGLDisplay handle, EGLConfig config, EGLint name, EGLint* value) {
+EGLBoolean egl_get_config_attrib(EGLDisplay handle, EGLConfig config, EGLint name, EGLint* value) {
   const Call call = std::move(Call(handle).with_config(config));
   if (call.failed()) return Failed{call.error};
   const Attribute* const a = attribute(name);
@@ -391,33 +391,36 @@ EGLSurface create_on(EGLDisplay handle, DrawableKind kind, EGLConfig config, XID
   if (is_window && !single && wishes[EGL_RENDER_BUFFER] != EGL_BACK_BUFFER) return Failed{EGL_BAD_ATTRIBUTE};
   if (wishes[EGL_GL_COLORSPACE] != EGL_GL_COLORSPACE_LINEAR) return Failed{EGL_BAD_MATCH};
   call.display->flush();
-  const auto geometry = call.display->server->geometry(xid);
+  Server& server = *call.display->server;
+  const auto geometry = is_window ? server.window_geometry(xid) : server.geometry(xid);
   if (!geometry) return Failed{bad_native};
   if (geometry->depth != call.config->format.visual.depth || geometry->screen != call.display->screen)
     return Failed{EGL_BAD_MATCH};
   for (const auto& [other, surface] : call.display->surfaces)
     if (surface->window.xid == xid) return Failed{EGL_BAD_ALLOC};
   try {
-    return keep(*call.display, std::make_shared<Surface>(kind, call.display->server, xid, *call.config, single,
-                                                         geometry->width, geometry->height));
+    return keep(*call.display,
+                std::make_shared<Surface>(kind, &server, xid, *call.config, single, geometry->width, geometry->height));
   } catch (const std::exception&) {
     return Failed{EGL_BAD_ALLOC};
   }
 }
 
-EGLSurface CreateWindowSurface(EGLDisplay display, EGLConfig config, EGLNativeWindowType window, const EGLint* list) {
+EGLSurface egl_create_window_surface(EGLDisplay display, EGLConfig config, EGLNativeWindowType window,
+                                     const EGLint* list) {
   return create_on(display, DrawableKind::window, config, static_cast<XID>(window), list);
 }
-EGLSurface CreatePixmapSurface(EGLDisplay display, EGLConfig config, EGLNativePixmapType pixmap, const EGLint* list) {
+EGLSurface egl_create_pixmap_surface(EGLDisplay display, EGLConfig config, EGLNativePixmapType pixmap,
+                                     const EGLint* list) {
   return create_on(display, DrawableKind::pixmap, config, static_cast<XID>(pixmap), list);
 }
 /// `native` points to the X window or pixmap.
 template <DrawableKind Kind, class T>
-EGLSurface CreatePlatformSurface(EGLDisplay display, EGLConfig config, void* native, const T* list) {
+EGLSurface egl_create_platform_surface(EGLDisplay display, EGLConfig config, void* native, const T* list) {
   return create_on(display, Kind, config, native == nullptr ? 0 : *static_cast<XID*>(native), list);
 }
 
-EGLSurface CreatePbufferSurface(EGLDisplay handle, EGLConfig config, const EGLint* list) {
+EGLSurface egl_create_pbuffer_surface(EGLDisplay handle, EGLConfig config, const EGLint* list) {
   const Call call = std::move(Call(handle).with_config(config));
   if (call.failed()) return Failed{call.error};
   Wishes wishes{{EGL_WIDTH, 0},
@@ -458,19 +461,20 @@ EGLSurface CreatePbufferSurface(EGLDisplay handle, EGLConfig config, const EGLin
 }
 
 /// Of OpenVG's images, which do not exist here.
-EGLSurface CreatePbufferFromClientBuffer(EGLDisplay handle, EGLenum, EGLClientBuffer, EGLConfig config, const EGLint*) {
+EGLSurface egl_create_pbuffer_from_client_buffer(EGLDisplay handle, EGLenum, EGLClientBuffer, EGLConfig config,
+                                                 const EGLint*) {
   const Call call = std::move(Call(handle).with_config(config));
   return Failed{call.failed() ? call.error : EGL_BAD_PARAMETER};
 }
 
-EGLBoolean DestroySurface(EGLDisplay handle, EGLSurface surface) {
+EGLBoolean egl_destroy_surface(EGLDisplay handle, EGLSurface surface) {
   const Call call = std::move(Call(handle).with_surface(surface));
   if (call.failed()) return Failed{call.error};
   call.display->surfaces.erase(surface);
   return done();
 }
 
-EGLBoolean QuerySurface(EGLDisplay handle, EGLSurface surface, EGLint name, EGLint* value) {
+EGLBoolean egl_query_surface(EGLDisplay handle, EGLSurface surface, EGLint name, EGLint* value) {
   const Call call = std::move(Call(handle).with_surface(surface));
   if (call.failed()) return Failed{call.error};
   Surface& s = *call.surface;
@@ -493,15 +497,15 @@ EGLBoolean QuerySurface(EGLDisplay handle, EGLSurface surface, EGLint name, EGLi
     case EGL_RENDER_BUFFER: *value = s.window.single_buffered ? EGL_SINGLE_BUFFER : EGL_BACK_BUFFER; break;
     case EGL_SWAP_BEHAVIOR: *value = s.swap_behavior; break;
     case EGL_MULTISAMPLE_RESOLVE: *value = s.resolve; break;
-    case EGL_GL_COLORSPACE: *value = EGL_GL_COLORSPACE_LINEAR; break;  // and EGL_VG_COLORSPACE
-    case EGL_VG_COLORSPACE: *value = EGL_VG_COLORSPACE_LINEAR; break;
+    case EGL_GL_COLORSPACE:
+    case EGL_VG_COLORSPACE: *value = EGL_GL_COLORSPACE_LINEAR; break;  // has the number of EGL_VG_COLORSPACE_LINEAR
     case EGL_VG_ALPHA_FORMAT: *value = EGL_VG_ALPHA_FORMAT_NONPRE; break;
     default: return Failed{EGL_BAD_ATTRIBUTE};
   }
   return done();
 }
 
-EGLBoolean SurfaceAttrib(EGLDisplay handle, EGLSurface surface, EGLint name, EGLint value) {
+EGLBoolean egl_surface_attrib(EGLDisplay handle, EGLSurface surface, EGLint name, EGLint value) {
   const Call call = std::move(Call(handle).with_surface(surface));
   if (call.failed()) return Failed{call.error};
   switch (name) {
@@ -519,7 +523,7 @@ EGLBoolean SurfaceAttrib(EGLDisplay handle, EGLSurface surface, EGLint name, EGL
 
 /// eglBindTexImage copies the pbuffer to the texture: until eglReleaseTexImage nothing may be drawn to it.
 template <bool Binds>
-EGLBoolean TexImage(EGLDisplay handle, EGLSurface surface_handle, EGLint buffer) {
+EGLBoolean egl_tex_image(EGLDisplay handle, EGLSurface surface_handle, EGLint buffer) {
   const Call call = std::move(Call(handle).with_surface(surface_handle));
   if (call.failed()) return Failed{call.error};
   Surface& surface = *call.surface;
@@ -539,17 +543,17 @@ EGLBoolean TexImage(EGLDisplay handle, EGLSurface surface_handle, EGLint buffer)
   return done();
 }
 
-EGLBoolean BindAPI(EGLenum api) {
+EGLBoolean egl_bind_api(EGLenum api) {
   if (api != EGL_OPENGL_API && api != EGL_OPENGL_ES_API) return Failed{EGL_BAD_PARAMETER};
   t_state.api = api;
   return done();
 }
-EGLenum QueryAPI() { return done(t_state.api); }
+EGLenum egl_query_api() { return done(t_state.api); }
 EGLBoolean get_supports_api(EGLenum api) {
   return api == EGL_OPENGL_API || api == EGL_OPENGL_ES_API ? EGL_TRUE : EGL_FALSE;
 }
 
-EGLContext CreateContext(EGLDisplay handle, EGLConfig config, EGLContext share, const EGLint* list) {
+EGLContext egl_create_context(EGLDisplay handle, EGLConfig config, EGLContext share, const EGLint* list) {
   Call call(handle);
   if (config != EGL_NO_CONFIG_KHR) call.with_config(config);
   if (call.failed()) return Failed{call.error};
@@ -591,13 +595,13 @@ EGLContext CreateContext(EGLDisplay handle, EGLConfig config, EGLContext share, 
   }
 }
 
-EGLBoolean DestroyContext(EGLDisplay handle, EGLContext context) {
+EGLBoolean egl_destroy_context(EGLDisplay handle, EGLContext context) {
   const Call call(handle);
   if (call.failed()) return Failed{call.error};
   return call.display->contexts.erase(context) == 0 ? EGLBoolean(Failed{EGL_BAD_CONTEXT}) : done();
 }
 
-EGLBoolean QueryContext(EGLDisplay handle, EGLContext handle_of_context, EGLint name, EGLint* value) {
+EGLBoolean egl_query_context(EGLDisplay handle, EGLContext handle_of_context, EGLint name, EGLint* value) {
   const Call call(handle);
   if (call.failed()) return Failed{call.error};
   const std::shared_ptr<EglContext> context = call.context(handle_of_context);
@@ -621,7 +625,7 @@ void release() {
   t_state.unbind();
 }
 
-EGLBoolean MakeCurrent(EGLDisplay handle, EGLSurface draw, EGLSurface read, EGLContext handle_of_context) {
+EGLBoolean egl_make_current(EGLDisplay handle, EGLSurface draw, EGLSurface read, EGLContext handle_of_context) {
   Call call(handle);
   const bool is_release = handle_of_context == EGL_NO_CONTEXT && draw == EGL_NO_SURFACE && read == EGL_NO_SURFACE;
   if (call.error == EGL_BAD_DISPLAY || (call.failed() && !is_release)) return Failed{call.error};
@@ -663,7 +667,7 @@ EGLBoolean MakeCurrent(EGLDisplay handle, EGLSurface draw, EGLSurface read, EGLC
   return done();
 }
 
-EGLBoolean SwapBuffers(EGLDisplay handle, EGLSurface handle_of_surface) {
+EGLBoolean egl_swap_buffers(EGLDisplay handle, EGLSurface handle_of_surface) {
   std::shared_ptr<Surface> surface;
   {
     const Call call = std::move(Call(handle).with_surface(handle_of_surface));
@@ -676,7 +680,7 @@ EGLBoolean SwapBuffers(EGLDisplay handle, EGLSurface handle_of_surface) {
   return done();
 }
 
-EGLBoolean CopyBuffers(EGLDisplay handle, EGLSurface surface, EGLNativePixmapType pixmap) {
+EGLBoolean egl_copy_buffers(EGLDisplay handle, EGLSurface surface, EGLNativePixmapType pixmap) {
   const Call call = std::move(Call(handle).with_surface(surface));
   if (call.failed()) return Failed{call.error};
   if (call.display->server == nullptr) return Failed{EGL_BAD_MATCH};
@@ -688,7 +692,7 @@ EGLBoolean CopyBuffers(EGLDisplay handle, EGLSurface surface, EGLNativePixmapTyp
   return done();
 }
 
-EGLBoolean SwapInterval(EGLDisplay handle, EGLint interval) {
+EGLBoolean egl_swap_interval(EGLDisplay handle, EGLint interval) {
   const Call call(handle);
   if (call.failed()) return Failed{call.error};
   if (t_state.context == nullptr) return Failed{EGL_BAD_CONTEXT};
@@ -697,12 +701,12 @@ EGLBoolean SwapInterval(EGLDisplay handle, EGLint interval) {
   return done();
 }
 
-EGLBoolean WaitClient() {
+EGLBoolean egl_wait_client() {
   if (t_state.context != nullptr) finish(*t_state.context);
   return done();
 }
 
-EGLBoolean WaitNative(EGLint engine) {
+EGLBoolean egl_wait_native(EGLint engine) {
   if (engine != EGL_CORE_NATIVE_ENGINE) return Failed{EGL_BAD_PARAMETER};
   const std::lock_guard lock(mutex());
   for (const auto& [key, display] : displays())
@@ -710,7 +714,7 @@ EGLBoolean WaitNative(EGLint engine) {
   return done();
 }
 
-EGLBoolean ReleaseThread() {
+EGLBoolean egl_release_thread() {
   const std::lock_guard lock(mutex());
   release();
   t_state.api = EGL_OPENGL_ES_API;
@@ -719,41 +723,43 @@ EGLBoolean ReleaseThread() {
 
 // Fences: all that was issued is carried out as one is made, so each is signaled from the start.
 
-EGLSync CreateSync(EGLDisplay handle, EGLenum type, const EGLAttrib* list) {
+EGLSync egl_create_sync(EGLDisplay handle, EGLenum type, const EGLAttrib* list) {
   const Call call(handle);
   if (call.failed()) return Failed{call.error};
   if (type != EGL_SYNC_FENCE || (list != nullptr && *list != EGL_NONE)) return Failed{EGL_BAD_ATTRIBUTE};
   if (t_state.context == nullptr) return Failed{EGL_BAD_MATCH};
   finish(*t_state.context);
-  static std::uintptr_t count = 0;
-  return done(*call.display->syncs.insert(reinterpret_cast<void*>(++count)).first);
+  auto sync = std::make_unique<char>();
+  void* const handle_of_sync = sync.get();
+  call.display->syncs[handle_of_sync] = std::move(sync);
+  return done(handle_of_sync);
 }
 
 EGLint check_sync(const Call& call, EGLSync sync) {
   return call.failed() ? call.error : call.display->syncs.contains(sync) ? EGL_SUCCESS : EGL_BAD_PARAMETER;
 }
 
-EGLBoolean DestroySync(EGLDisplay handle, EGLSync sync) {
+EGLBoolean egl_destroy_sync(EGLDisplay handle, EGLSync sync) {
   const Call call(handle);
   if (const EGLint error = check_sync(call, sync); error != EGL_SUCCESS) return Failed{error};
   call.display->syncs.erase(sync);
   return done();
 }
 
-EGLint ClientWaitSync(EGLDisplay handle, EGLSync sync, EGLint, EGLTime) {
+EGLint egl_client_wait_sync(EGLDisplay handle, EGLSync sync, EGLint, EGLTime) {
   const Call call(handle);
   t_state.error = check_sync(call, sync);
   return t_state.error == EGL_SUCCESS ? EGL_CONDITION_SATISFIED : EGL_FALSE;
 }
 
-EGLBoolean WaitSync(EGLDisplay handle, EGLSync sync, EGLint flags) {
+EGLBoolean egl_wait_sync(EGLDisplay handle, EGLSync sync, EGLint flags) {
   const Call call(handle);
   if (const EGLint error = check_sync(call, sync); error != EGL_SUCCESS) return Failed{error};
   if (t_state.context == nullptr) return Failed{EGL_BAD_MATCH};
   return flags == 0 ? done() : EGLBoolean(Failed{EGL_BAD_PARAMETER});
 }
 
-EGLBoolean GetSyncAttrib(EGLDisplay handle, EGLSync sync, EGLint name, EGLAttrib* value) {
+EGLBoolean egl_get_sync_attrib(EGLDisplay handle, EGLSync sync, EGLint name, EGLAttrib* value) {
   const Call call(handle);
   if (const EGLint error = check_sync(call, sync); error != EGL_SUCCESS) return Failed{error};
   switch (name) {
@@ -766,11 +772,11 @@ EGLBoolean GetSyncAttrib(EGLDisplay handle, EGLSync sync, EGLint name, EGLAttrib
 }
 
 /// No kind of object can become an image.
-EGLImage CreateImage(EGLDisplay handle, EGLContext, EGLenum, EGLClientBuffer, const EGLAttrib*) {
+EGLImage egl_create_image(EGLDisplay handle, EGLContext, EGLenum, EGLClientBuffer, const EGLAttrib*) {
   const Call call(handle);
   return Failed{call.failed() ? call.error : EGL_BAD_PARAMETER};
 }
-EGLBoolean DestroyImage(EGLDisplay handle, EGLImage) {
+EGLBoolean egl_destroy_image(EGLDisplay handle, EGLImage) {
   const Call call(handle);
   return Failed{call.failed() ? call.error : EGL_BAD_PARAMETER};
 }
@@ -786,46 +792,46 @@ void* get_proc_address(const char* name) {
     void* function;
   };
   static const Named table[] = {
-      {"eglBindAPI", address(BindAPI)},
-      {"eglBindTexImage", address(TexImage<true>)},
-      {"eglChooseConfig", address(ChooseConfig)},
-      {"eglClientWaitSync", address(ClientWaitSync)},
-      {"eglCopyBuffers", address(CopyBuffers)},
-      {"eglCreateContext", address(CreateContext)},
-      {"eglCreateImage", address(CreateImage)},
-      {"eglCreatePbufferFromClientBuffer", address(CreatePbufferFromClientBuffer)},
-      {"eglCreatePbufferSurface", address(CreatePbufferSurface)},
-      {"eglCreatePixmapSurface", address(CreatePixmapSurface)},
-      {"eglCreatePlatformPixmapSurface", address(CreatePlatformSurface<DrawableKind::pixmap, EGLAttrib>)},
-      {"eglCreatePlatformPixmapSurfaceEXT", address(CreatePlatformSurface<DrawableKind::pixmap, EGLint>)},
-      {"eglCreatePlatformWindowSurface", address(CreatePlatformSurface<DrawableKind::window, EGLAttrib>)},
-      {"eglCreatePlatformWindowSurfaceEXT", address(CreatePlatformSurface<DrawableKind::window, EGLint>)},
-      {"eglCreateSync", address(CreateSync)},
-      {"eglCreateWindowSurface", address(CreateWindowSurface)},
-      {"eglDestroyContext", address(DestroyContext)},
-      {"eglDestroyImage", address(DestroyImage)},
-      {"eglDestroySurface", address(DestroySurface)},
-      {"eglDestroySync", address(DestroySync)},
-      {"eglGetConfigAttrib", address(GetConfigAttrib)},
-      {"eglGetConfigs", address(GetConfigs)},
-      {"eglGetError", address(GetError)},
-      {"eglGetSyncAttrib", address(GetSyncAttrib)},
-      {"eglInitialize", address(Initialize)},
-      {"eglMakeCurrent", address(MakeCurrent)},
-      {"eglQueryAPI", address(QueryAPI)},
-      {"eglQueryContext", address(QueryContext)},
-      {"eglQueryString", address(QueryString)},
-      {"eglQuerySurface", address(QuerySurface)},
-      {"eglReleaseTexImage", address(TexImage<false>)},
-      {"eglReleaseThread", address(ReleaseThread)},
-      {"eglSurfaceAttrib", address(SurfaceAttrib)},
-      {"eglSwapBuffers", address(SwapBuffers)},
-      {"eglSwapInterval", address(SwapInterval)},
-      {"eglTerminate", address(Terminate)},
-      {"eglWaitClient", address(WaitClient)},
-      {"eglWaitGL", address(WaitClient)},
-      {"eglWaitNative", address(WaitNative)},
-      {"eglWaitSync", address(WaitSync)},
+      {"eglBindAPI", address(egl_bind_api)},
+      {"eglBindTexImage", address(egl_tex_image<true>)},
+      {"eglChooseConfig", address(egl_choose_config)},
+      {"eglClientWaitSync", address(egl_client_wait_sync)},
+      {"eglCopyBuffers", address(egl_copy_buffers)},
+      {"eglCreateContext", address(egl_create_context)},
+      {"eglCreateImage", address(egl_create_image)},
+      {"eglCreatePbufferFromClientBuffer", address(egl_create_pbuffer_from_client_buffer)},
+      {"eglCreatePbufferSurface", address(egl_create_pbuffer_surface)},
+      {"eglCreatePixmapSurface", address(egl_create_pixmap_surface)},
+      {"eglCreatePlatformPixmapSurface", address(egl_create_platform_surface<DrawableKind::pixmap, EGLAttrib>)},
+      {"eglCreatePlatformPixmapSurfaceEXT", address(egl_create_platform_surface<DrawableKind::pixmap, EGLint>)},
+      {"eglCreatePlatformWindowSurface", address(egl_create_platform_surface<DrawableKind::window, EGLAttrib>)},
+      {"eglCreatePlatformWindowSurfaceEXT", address(egl_create_platform_surface<DrawableKind::window, EGLint>)},
+      {"eglCreateSync", address(egl_create_sync)},
+      {"eglCreateWindowSurface", address(egl_create_window_surface)},
+      {"eglDestroyContext", address(egl_destroy_context)},
+      {"eglDestroyImage", address(egl_destroy_image)},
+      {"eglDestroySurface", address(egl_destroy_surface)},
+      {"eglDestroySync", address(egl_destroy_sync)},
+      {"eglGetConfigAttrib", address(egl_get_config_attrib)},
+      {"eglGetConfigs", address(egl_get_configs)},
+      {"eglGetError", address(egl_get_error)},
+      {"eglGetSyncAttrib", address(egl_get_sync_attrib)},
+      {"eglInitialize", address(egl_initialize)},
+      {"eglMakeCurrent", address(egl_make_current)},
+      {"eglQueryAPI", address(egl_query_api)},
+      {"eglQueryContext", address(egl_query_context)},
+      {"eglQueryString", address(egl_query_string)},
+      {"eglQuerySurface", address(egl_query_surface)},
+      {"eglReleaseTexImage", address(egl_tex_image<false>)},
+      {"eglReleaseThread", address(egl_release_thread)},
+      {"eglSurfaceAttrib", address(egl_surface_attrib)},
+      {"eglSwapBuffers", address(egl_swap_buffers)},
+      {"eglSwapInterval", address(egl_swap_interval)},
+      {"eglTerminate", address(egl_terminate)},
+      {"eglWaitClient", address(egl_wait_client)},
+      {"eglWaitGL", address(egl_wait_client)},
+      {"eglWaitNative", address(egl_wait_native)},
+      {"eglWaitSync", address(egl_wait_sync)},
   };
   const auto* const found = std::ranges::find(table, std::string_view(name), &Named::name);
   return found != std::end(table) ? found->function : const_cast<void*>(entry_point(name));

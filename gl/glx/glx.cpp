@@ -241,12 +241,22 @@ struct ThreadEnd {
   ~ThreadEnd() { leave_thread(here()); }
 };
 
+/// No call says that an X window which was made current as it is has been destroyed.
+void forget_gone_windows() {
+  const std::lock_guard lock(objects().mutex);
+  std::erase_if(objects().drawables, [](const auto& entry) {
+    const auto& [key, drawable] = entry;
+    return drawable->is_plain && drawable.use_count() == 1 && !key.first->geometry(key.second);
+  });
+}
+
 /// The drawable of `id`; an X window that no call has named becomes one. Null: an error has been raised.
 std::shared_ptr<GlxDrawable> drawable_for(Display* display, XID id, const GlxContext& context, int minor) {
   std::shared_ptr<GlxDrawable> drawable = find_drawable(display, id);
   try {
-    const auto geometry = drawable == nullptr ? context.config->server->geometry(id) : std::nullopt;
+    const auto geometry = drawable == nullptr ? context.config->server->window_geometry(id) : std::nullopt;
     if (geometry) {
+      forget_gone_windows();
       drawable =
           std::make_shared<GlxDrawable>(DrawableKind::window, *context.config, id, geometry->width, geometry->height);
       if (geometry->screen != context.config->screen || geometry->depth != context.config->format.visual.depth)
@@ -263,13 +273,8 @@ std::shared_ptr<GlxDrawable> drawable_for(Display* display, XID id, const GlxCon
   if (has.server != context.config->server || has.screen != context.config->screen ||
       has.format.visual.depth != context.config->format.visual.depth)
     return x_error(display, BadMatch, id, minor);
-  if (!drawable->window.follow_size()) {
-    const std::lock_guard lock(objects().mutex);
-    if (drawable->is_plain) objects().drawables.erase({has.server, id});
-    raise_error(display, drawable->is_plain ? GLXBadDrawable : GLXBadWindow, true, id, minor);
-    return nullptr;
-  }
-  return drawable;
+  if (drawable->window.follow_size()) return drawable;
+  return glx_error(display, drawable->is_plain ? GLXBadDrawable : GLXBadWindow, id, minor);
 }
 
 Bool make_current(Display* display, GLXDrawable draw, GLXDrawable read, GLXContext handle, int minor) {
@@ -340,7 +345,7 @@ XID keep(Display* display, std::shared_ptr<GlxDrawable> drawable) {
 XID create_on(Display* display, DrawableKind kind, const FbConfig& config, XID xid, int minor) {
   const bool is_window = kind == DrawableKind::window;
   XSync(display, False);
-  const auto geometry = config.server->geometry(xid);
+  const auto geometry = is_window ? config.server->window_geometry(xid) : config.server->geometry(xid);
   if (!geometry)
     x_error(display, is_window ? BadWindow : BadPixmap, xid, minor);
   else if (geometry->depth != config.format.visual.depth || geometry->screen != config.screen)
@@ -380,7 +385,7 @@ void destroy(Display* display, XID id, DrawableKind kind, int error, int minor) 
 
 // GLX 1.4, in the order of its functions' names.
 
-XVisualInfo* ChooseVisual(Display* display, int screen, int* list) {
+XVisualInfo* glx_choose_visual(Display* display, int screen, int* list) {
   Wishes wishes{{GLX_DOUBLEBUFFER, 0}, {GLX_DRAWABLE_TYPE, GLX_WINDOW_BIT}};
   bool rgba = false;
   for (; list != nullptr && *list != 0; ++list) switch (*list) {
@@ -399,7 +404,7 @@ XVisualInfo* ChooseVisual(Display* display, int screen, int* list) {
   return nullptr;
 }
 
-void CopyContext(Display* display, GLXContext source, GLXContext destination, unsigned long mask) {
+void glx_copy_context(Display* display, GLXContext source, GLXContext destination, unsigned long mask) {
   GlxContext* const from = find_context(source);
   GlxContext* const to = find_context(destination);
   if (from == nullptr || to == nullptr)
@@ -420,13 +425,13 @@ void CopyContext(Display* display, GLXContext source, GLXContext destination, un
   }
 }
 
-GLXContext CreateContext(Display* display, XVisualInfo* visual, GLXContext share, Bool) {
+GLXContext glx_create_context(Display* display, XVisualInfo* visual, GLXContext share, Bool) {
   const FbConfig* const config = config_of_visual(display, visual);
   return config == nullptr ? x_error(display, BadValue, 0, X_GLXCreateContext)
                            : create_context(display, *config, share, X_GLXCreateContext);
 }
 
-GLXContext CreateNewContext(Display* display, GLXFBConfig handle, int render_type, GLXContext share, Bool) {
+GLXContext glx_create_new_context(Display* display, GLXFBConfig handle, int render_type, GLXContext share, Bool) {
   const FbConfig* const config = find_config(display, handle);
   if (config == nullptr) return glx_error(display, GLXBadFBConfig, 0, X_GLXCreateNewContext);
   if (render_type != GLX_RGBA_TYPE)
@@ -434,7 +439,8 @@ GLXContext CreateNewContext(Display* display, GLXFBConfig handle, int render_typ
   return create_context(display, *config, share, X_GLXCreateNewContext);
 }
 
-GLXContext CreateContextAttribsARB(Display* display, GLXFBConfig handle, GLXContext share, Bool, const int* list) {
+GLXContext glx_create_context_attribs_arb(Display* display, GLXFBConfig handle, GLXContext share, Bool,
+                                          const int* list) {
   constexpr int kMinor = X_GLXCreateContextAttribsARB;
   const FbConfig* const config = find_config(display, handle);
   if (config == nullptr) return glx_error(display, GLXBadFBConfig, 0, kMinor);
@@ -464,7 +470,7 @@ GLXContext CreateContextAttribsARB(Display* display, GLXFBConfig handle, GLXCont
   return create_context(display, *config, share, kMinor);
 }
 
-void DestroyContext(Display* display, GLXContext handle) {
+void glx_destroy_context(Display* display, GLXContext handle) {
   GlxContext* const context = find_context(handle);
   if (context == nullptr) {
     glx_error(display, GLXBadContext, 0, X_GLXDestroyContext);
@@ -475,7 +481,7 @@ void DestroyContext(Display* display, GLXContext handle) {
   if (!context->is_current) delete_context(context);
 }
 
-GLXPixmap CreateGLXPixmap(Display* display, XVisualInfo* visual, Pixmap pixmap) {
+GLXPixmap glx_create_glx_pixmap(Display* display, XVisualInfo* visual, Pixmap pixmap) {
   const FbConfig* const config = config_of_visual(display, visual);
   if (config != nullptr) return create_on(display, DrawableKind::pixmap, *config, pixmap, X_GLXCreateGLXPixmap);
   x_error(display, BadValue, 0, X_GLXCreateGLXPixmap);
@@ -484,14 +490,14 @@ GLXPixmap CreateGLXPixmap(Display* display, XVisualInfo* visual, Pixmap pixmap) 
 
 /// GLX 1.4 defines no attributes of windows and pixmaps; what extensions define of them changes nothing here.
 template <DrawableKind Kind, int Minor>
-XID CreateOn(Display* display, GLXFBConfig handle, XID xid, const int*) {
+XID glx_create_on(Display* display, GLXFBConfig handle, XID xid, const int*) {
   if (const FbConfig* const config = find_config(display, handle); config != nullptr)
     return create_on(display, Kind, *config, xid, Minor);
   glx_error(display, GLXBadFBConfig, 0, Minor);
   return 0;
 }
 
-GLXPbuffer CreatePbuffer(Display* display, GLXFBConfig handle, const int* list) {
+GLXPbuffer glx_create_pbuffer(Display* display, GLXFBConfig handle, const int* list) {
   constexpr int kMinor = X_GLXCreatePbuffer;
   Wishes wishes{{GLX_PBUFFER_WIDTH, 0}, {GLX_PBUFFER_HEIGHT, 0}, {GLX_PRESERVED_CONTENTS, 1}, {GLX_LARGEST_PBUFFER, 0}};
   const FbConfig* const config = find_config(display, handle);
@@ -517,7 +523,7 @@ GLXPbuffer CreatePbuffer(Display* display, GLXFBConfig handle, const int* list) 
 }
 
 template <DrawableKind Kind, int Error, int Minor>
-void Destroy(Display* display, XID id) {
+void glx_destroy(Display* display, XID id) {
   destroy(display, id, Kind, Error, Minor);
 }
 
@@ -533,7 +539,7 @@ GLXFBConfig* handles(const Configs& configs, int* count) {
   return result;
 }
 
-GLXFBConfig* ChooseFBConfig(Display* display, int screen, const int* list, int* count) {
+GLXFBConfig* glx_choose_fb_config(Display* display, int screen, const int* list, int* count) {
   Wishes wishes;
   *count = 0;
   for (; list != nullptr && *list != 0; list += 2) {
@@ -543,13 +549,13 @@ GLXFBConfig* ChooseFBConfig(Display* display, int screen, const int* list, int* 
   return handles(matching(display, screen, wishes), count);
 }
 
-GLXFBConfig* GetFBConfigs(Display* display, int screen, int* count) {
+GLXFBConfig* glx_get_fb_configs(Display* display, int screen, int* count) {
   std::vector<const FbConfig*> all;
   for (const FbConfig& config : fb_configs(display, screen)) all.push_back(&config);
   return handles(all, count);
 }
 
-int GetFBConfigAttrib(Display* display, GLXFBConfig handle, int name, int* value) {
+int glx_get_fb_config_attrib(Display* display, GLXFBConfig handle, int name, int* value) {
   const FbConfig* const config = find_config(display, handle);
   const Attribute* const a = attribute(name);
   if (config == nullptr || a == nullptr) {
@@ -560,36 +566,36 @@ int GetFBConfigAttrib(Display* display, GLXFBConfig handle, int name, int* value
   return 0;
 }
 
-XVisualInfo* GetVisualFromFBConfig(Display* display, GLXFBConfig handle) {
+XVisualInfo* glx_get_visual_from_fb_config(Display* display, GLXFBConfig handle) {
   const FbConfig* const config = find_config(display, handle);
   return config == nullptr ? glx_error(display, GLXBadFBConfig, 0, X_GLXGetFBConfigs) : visual_of(display, *config);
 }
 
-int GetConfig(Display* display, XVisualInfo* visual, int name, int* value) {
+int glx_get_config(Display* display, XVisualInfo* visual, int name, int* value) {
   const FbConfig* const config = config_of_visual(display, visual);
   if (name == GLX_USE_GL || (config != nullptr && name == GLX_RGBA)) {
     *value = config != nullptr ? 1 : 0;
     return 0;
   }
   if (config == nullptr) return GLX_BAD_VISUAL;
-  return GetFBConfigAttrib(display, reinterpret_cast<GLXFBConfig>(const_cast<FbConfig*>(config)), name, value);
+  return glx_get_fb_config_attrib(display, reinterpret_cast<GLXFBConfig>(const_cast<FbConfig*>(config)), name, value);
 }
 
-Bool IsDirect(Display* display, GLXContext handle) {
+Bool glx_is_direct(Display* display, GLXContext handle) {
   if (find_context(handle) != nullptr) return True;
   glx_error(display, GLXBadContext, 0, X_GLXIsDirect);
   return False;
 }
 
-Bool MakeCurrent(Display* display, GLXDrawable drawable, GLXContext context) {
+Bool glx_make_current(Display* display, GLXDrawable drawable, GLXContext context) {
   return make_current(display, drawable, drawable, context, X_GLXMakeCurrent);
 }
 
-Bool MakeContextCurrent(Display* display, GLXDrawable draw, GLXDrawable read, GLXContext context) {
+Bool glx_make_context_current(Display* display, GLXDrawable draw, GLXDrawable read, GLXContext context) {
   return make_current(display, draw, read, context, X_GLXMakeContextCurrent);
 }
 
-int QueryContext(Display* display, GLXContext handle, int name, int* value) {
+int glx_query_context(Display* display, GLXContext handle, int name, int* value) {
   const GlxContext* const context = find_context(handle);
   if (context == nullptr) {
     glx_error(display, GLXBadContext, 0, X_GLXQueryContext);
@@ -603,7 +609,7 @@ int QueryContext(Display* display, GLXContext handle, int name, int* value) {
   }
 }
 
-void QueryDrawable(Display* display, GLXDrawable id, int name, unsigned* value) {
+void glx_query_drawable(Display* display, GLXDrawable id, int name, unsigned* value) {
   const std::shared_ptr<GlxDrawable> drawable = find_drawable(display, id);
   Server* const server = server_of(display);
   XSync(display, False);
@@ -638,35 +644,35 @@ constexpr char kExtensions[] =
     "GLX_ARB_create_context GLX_ARB_create_context_profile GLX_ARB_get_proc_address GLX_ARB_multisample "
     "GLX_EXT_swap_control GLX_EXT_visual_info GLX_EXT_visual_rating GLX_MESA_swap_control GLX_SGI_swap_control";
 
-const char* GetClientString(Display*, int name) {
+const char* glx_get_client_string(Display*, int name) {
   return name == GLX_VENDOR       ? "Halfplane"
          : name == GLX_VERSION    ? "1.4"
          : name == GLX_EXTENSIONS ? kExtensions
                                   : nullptr;
 }
-const char* QueryServerString(Display* display, int, int name) { return GetClientString(display, name); }
-const char* QueryExtensionsString(Display*, int) { return kExtensions; }
+const char* glx_query_server_string(Display* display, int, int name) { return glx_get_client_string(display, name); }
+const char* glx_query_extensions_string(Display*, int) { return kExtensions; }
 
-void SelectEvent(Display* display, GLXDrawable id, unsigned long mask) {
+void glx_select_event(Display* display, GLXDrawable id, unsigned long mask) {
   if (const auto drawable = find_drawable(display, id); drawable != nullptr)
     drawable->window.event_mask = mask;
   else
     glx_error(display, GLXBadDrawable, id, X_GLXChangeDrawableAttributes);
 }
 
-void GetSelectedEvent(Display* display, GLXDrawable id, unsigned long* mask) {
+void glx_get_selected_event(Display* display, GLXDrawable id, unsigned long* mask) {
   if (const auto drawable = find_drawable(display, id); drawable != nullptr)
     *mask = drawable->window.event_mask;
   else
     glx_error(display, GLXBadDrawable, id, X_GLXGetDrawableAttributes);
 }
 
-void SwapBuffers(Display* display, GLXDrawable id) {
+void glx_swap_buffers(Display* display, GLXDrawable id) {
   XFlush(display);  // a program that waits for no event has its window mapped so
   const std::shared_ptr<GlxDrawable> drawable = find_drawable(display, id);
   if (drawable != nullptr)
     drawable->window.swap();
-  else if (Server* const server = server_of(display); server == nullptr || !server->geometry(id))
+  else if (Server* const server = server_of(display); server == nullptr || !server->window_geometry(id))
     glx_error(display, GLXBadDrawable, id, X_GLXSwapBuffers);
 }
 
@@ -697,7 +703,7 @@ void compile_character(Context& context, Display* display, GC gc, Pixmap pixmap,
                  static_cast<double>(box.descent), static_cast<double>(box.width), 0.0);
 }
 
-void UseXFont(Font font, int first, int count, int list_base) {
+void glx_use_x_font(Font font, int first, int count, int list_base) {
   GlxContext* const context = here();
   if (context == nullptr) return;
   Display* const display = context->display;
@@ -732,11 +738,11 @@ void UseXFont(Font font, int first, int count, int list_base) {
   XFreeFontInfo(nullptr, info, 1);
 }
 
-void WaitGL() {
+void glx_wait_gl() {
   if (GlxContext* const context = here(); context != nullptr) finish(*context);
 }
 
-void WaitX() {
+void glx_wait_x() {
   if (GlxContext* const context = here(); context != nullptr) XSync(context->display, False);
 }
 
@@ -744,7 +750,7 @@ void WaitX() {
 
 const __GLXapiExports* g_exports = nullptr;
 
-void SwapIntervalEXT(Display* display, GLXDrawable id, int interval) {
+void glx_swap_interval_ext(Display* display, GLXDrawable id, int interval) {
   const std::shared_ptr<GlxDrawable> drawable = find_drawable(display, id);
   if (interval < 0)
     x_error(display, BadValue, static_cast<XID>(interval), X_GLXVendorPrivate);
@@ -754,18 +760,18 @@ void SwapIntervalEXT(Display* display, GLXDrawable id, int interval) {
     drawable->window.swap_interval = interval;
 }
 
-int SwapIntervalMESA(unsigned interval) {
+int glx_swap_interval_mesa(unsigned interval) {
   if (interval > INT_MAX) return GLX_BAD_VALUE;
   if (here() == nullptr) return GLX_BAD_CONTEXT;
   here()->draw->window.swap_interval = static_cast<int>(interval);
   return 0;
 }
 
-int SwapIntervalSGI(int interval) {
-  return interval <= 0 ? GLX_BAD_VALUE : SwapIntervalMESA(static_cast<unsigned>(interval));
+int glx_swap_interval_sgi(int interval) {
+  return interval <= 0 ? GLX_BAD_VALUE : glx_swap_interval_mesa(static_cast<unsigned>(interval));
 }
 
-int GetSwapIntervalMESA() { return here() == nullptr ? 0 : here()->draw->window.swap_interval; }
+int glx_get_swap_interval_mesa() { return here() == nullptr ? 0 : here()->draw->window.swap_interval; }
 
 int g_index[4];
 
@@ -776,15 +782,15 @@ Result call(__GLXvendorInfo* vendor, Args... args) {
 }
 
 void dispatch_swap_ext(Display* display, GLXDrawable drawable, int interval) {
-  call<0, &SwapIntervalEXT, void>(g_exports->vendorFromDrawable(display, drawable), display, drawable, interval);
+  call<0, &glx_swap_interval_ext, void>(g_exports->vendorFromDrawable(display, drawable), display, drawable, interval);
 }
 int dispatch_swap_mesa(unsigned interval) {
-  return call<1, &SwapIntervalMESA, int>(g_exports->getCurrentDynDispatch(), interval);
+  return call<1, &glx_swap_interval_mesa, int>(g_exports->getCurrentDynDispatch(), interval);
 }
 int dispatch_swap_sgi(int interval) {
-  return call<2, &SwapIntervalSGI, int>(g_exports->getCurrentDynDispatch(), interval);
+  return call<2, &glx_swap_interval_sgi, int>(g_exports->getCurrentDynDispatch(), interval);
 }
-int dispatch_get_swap_mesa() { return call<3, &GetSwapIntervalMESA, int>(g_exports->getCurrentDynDispatch()); }
+int dispatch_get_swap_mesa() { return call<3, &glx_get_swap_interval_mesa, int>(g_exports->getCurrentDynDispatch()); }
 
 template <class Function>
 void* address(Function* function) {
@@ -802,43 +808,43 @@ std::span<const Named> functions() {
   constexpr auto kPixmap = DrawableKind::pixmap;
   constexpr auto kPbuffer = DrawableKind::pbuffer;
   static const Named table[] = {
-      {"glXSwapIntervalEXT", address(SwapIntervalEXT), address(dispatch_swap_ext)},
-      {"glXSwapIntervalMESA", address(SwapIntervalMESA), address(dispatch_swap_mesa)},
-      {"glXSwapIntervalSGI", address(SwapIntervalSGI), address(dispatch_swap_sgi)},
-      {"glXGetSwapIntervalMESA", address(GetSwapIntervalMESA), address(dispatch_get_swap_mesa)},
-      {"glXChooseFBConfig", address(ChooseFBConfig)},
-      {"glXChooseVisual", address(ChooseVisual)},
-      {"glXCopyContext", address(CopyContext)},
-      {"glXCreateContext", address(CreateContext)},
-      {"glXCreateContextAttribsARB", address(CreateContextAttribsARB)},
-      {"glXCreateGLXPixmap", address(CreateGLXPixmap)},
-      {"glXCreateNewContext", address(CreateNewContext)},
-      {"glXCreatePbuffer", address(CreatePbuffer)},
-      {"glXCreatePixmap", address(CreateOn<kPixmap, X_GLXCreatePixmap>)},
-      {"glXCreateWindow", address(CreateOn<kWindow, X_GLXCreateWindow>)},
-      {"glXDestroyContext", address(DestroyContext)},
-      {"glXDestroyGLXPixmap", address(Destroy<kPixmap, GLXBadPixmap, X_GLXDestroyGLXPixmap>)},
-      {"glXDestroyPbuffer", address(Destroy<kPbuffer, GLXBadPbuffer, X_GLXDestroyPbuffer>)},
-      {"glXDestroyPixmap", address(Destroy<kPixmap, GLXBadPixmap, X_GLXDestroyPixmap>)},
-      {"glXDestroyWindow", address(Destroy<kWindow, GLXBadWindow, X_GLXDestroyWindow>)},
-      {"glXGetClientString", address(GetClientString)},
-      {"glXGetConfig", address(GetConfig)},
-      {"glXGetFBConfigAttrib", address(GetFBConfigAttrib)},
-      {"glXGetFBConfigs", address(GetFBConfigs)},
-      {"glXGetSelectedEvent", address(GetSelectedEvent)},
-      {"glXGetVisualFromFBConfig", address(GetVisualFromFBConfig)},
-      {"glXIsDirect", address(IsDirect)},
-      {"glXMakeContextCurrent", address(MakeContextCurrent)},
-      {"glXMakeCurrent", address(MakeCurrent)},
-      {"glXQueryContext", address(QueryContext)},
-      {"glXQueryDrawable", address(QueryDrawable)},
-      {"glXQueryExtensionsString", address(QueryExtensionsString)},
-      {"glXQueryServerString", address(QueryServerString)},
-      {"glXSelectEvent", address(SelectEvent)},
-      {"glXSwapBuffers", address(SwapBuffers)},
-      {"glXUseXFont", address(UseXFont)},
-      {"glXWaitGL", address(WaitGL)},
-      {"glXWaitX", address(WaitX)},
+      {"glXSwapIntervalEXT", address(glx_swap_interval_ext), address(dispatch_swap_ext)},
+      {"glXSwapIntervalMESA", address(glx_swap_interval_mesa), address(dispatch_swap_mesa)},
+      {"glXSwapIntervalSGI", address(glx_swap_interval_sgi), address(dispatch_swap_sgi)},
+      {"glXGetSwapIntervalMESA", address(glx_get_swap_interval_mesa), address(dispatch_get_swap_mesa)},
+      {"glXChooseFBConfig", address(glx_choose_fb_config)},
+      {"glXChooseVisual", address(glx_choose_visual)},
+      {"glXCopyContext", address(glx_copy_context)},
+      {"glXCreateContext", address(glx_create_context)},
+      {"glXCreateContextAttribsARB", address(glx_create_context_attribs_arb)},
+      {"glXCreateGLXPixmap", address(glx_create_glx_pixmap)},
+      {"glXCreateNewContext", address(glx_create_new_context)},
+      {"glXCreatePbuffer", address(glx_create_pbuffer)},
+      {"glXCreatePixmap", address(glx_create_on<kPixmap, X_GLXCreatePixmap>)},
+      {"glXCreateWindow", address(glx_create_on<kWindow, X_GLXCreateWindow>)},
+      {"glXDestroyContext", address(glx_destroy_context)},
+      {"glXDestroyGLXPixmap", address(glx_destroy<kPixmap, GLXBadPixmap, X_GLXDestroyGLXPixmap>)},
+      {"glXDestroyPbuffer", address(glx_destroy<kPbuffer, GLXBadPbuffer, X_GLXDestroyPbuffer>)},
+      {"glXDestroyPixmap", address(glx_destroy<kPixmap, GLXBadPixmap, X_GLXDestroyPixmap>)},
+      {"glXDestroyWindow", address(glx_destroy<kWindow, GLXBadWindow, X_GLXDestroyWindow>)},
+      {"glXGetClientString", address(glx_get_client_string)},
+      {"glXGetConfig", address(glx_get_config)},
+      {"glXGetFBConfigAttrib", address(glx_get_fb_config_attrib)},
+      {"glXGetFBConfigs", address(glx_get_fb_configs)},
+      {"glXGetSelectedEvent", address(glx_get_selected_event)},
+      {"glXGetVisualFromFBConfig", address(glx_get_visual_from_fb_config)},
+      {"glXIsDirect", address(glx_is_direct)},
+      {"glXMakeContextCurrent", address(glx_make_context_current)},
+      {"glXMakeCurrent", address(glx_make_current)},
+      {"glXQueryContext", address(glx_query_context)},
+      {"glXQueryDrawable", address(glx_query_drawable)},
+      {"glXQueryExtensionsString", address(glx_query_extensions_string)},
+      {"glXQueryServerString", address(glx_query_server_string)},
+      {"glXSelectEvent", address(glx_select_event)},
+      {"glXSwapBuffers", address(glx_swap_buffers)},
+      {"glXUseXFont", address(glx_use_x_font)},
+      {"glXWaitGL", address(glx_wait_gl)},
+      {"glXWaitX", address(glx_wait_x)},
   };
   return table;
 }

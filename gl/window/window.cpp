@@ -16,7 +16,7 @@
 
 /// A thread of the program may draw while another ends the process, so nothing static of this library (the symbol does not
 /// leave it) is ever destroyed.
-extern "C" int __cxa_atexit(void (*)(void*), void*, void*) { return 0; }
+extern "C" int __cxa_atexit(void (*)(void*), void*, void*) { return 0; }  // NOLINT: the name is the runtime's
 
 namespace halfplane::gl {
 namespace {
@@ -119,6 +119,15 @@ std::optional<Server::Geometry> Server::geometry(XID drawable) {
   return result;
 }
 
+std::optional<Server::Geometry> Server::window_geometry(XID window) {
+  const auto is_window = [&] {
+    const std::lock_guard lock(mutex_);
+    XWindowAttributes attributes;
+    return window != 0 && XGetWindowAttributes(display_, window, &attributes) != 0;
+  };
+  return is_window() ? geometry(window) : std::nullopt;
+}
+
 Window::Window(DrawableKind what, Server* x_server, XID x_drawable, const PixelFormat& its_format, int width,
                int height)
     : Drawable(options(), width, height), kind(what), server(x_server), xid(x_drawable), format(its_format) {
@@ -182,7 +191,7 @@ bool Window::make_image(int width, int height) {
     image_ = XShmCreateImage(display, format.visual.visual, depth, ZPixmap, nullptr, &segment_, w, h);
     segment_.shmid = image_ == nullptr ? -1 : shmget(IPC_PRIVATE, bytes(), IPC_CREAT | 0600);
     void* const memory = segment_.shmid < 0 ? nullptr : shmat(segment_.shmid, nullptr, 0);
-    if (memory != nullptr && memory != reinterpret_cast<void*>(-1)) {
+    if (memory != nullptr && reinterpret_cast<std::intptr_t>(memory) != -1) {
       segment_.shmaddr = image_->data = static_cast<char*>(memory);
       segment_.readOnly = 1;
       g_errors = 0;

@@ -56,6 +56,8 @@ class Server {
   };
   /// Of a window or pixmap. None: there is no such drawable.
   [[nodiscard]] std::optional<Geometry> geometry(XID drawable);
+  /// Of a window. None: it is none.
+  [[nodiscard]] std::optional<Geometry> window_geometry(XID window);
 
  private:
   friend class Window;

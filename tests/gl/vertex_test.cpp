@@ -304,6 +304,11 @@ TEST_F(Arrays, KeepTheCurrentAttributes) {
   interleaved_arrays(context, GL_T2F_C4F_N3F_V3F, 0, packed.data());
   draw_arrays(context, GL_POINTS, 0, 3);
   EXPECT_EQ(context.state.current.color, before);
+  new_list(context, 1, GL_COMPILE_AND_EXECUTE);
+  draw_arrays(context, GL_POINTS, 0, 3);
+  end_list(context);
+  call_list(context, 1);
+  EXPECT_EQ(context.state.current.color, before);
   EXPECT_EQ(context.state.lighting.material[1].diffuse, before);
 }
 
