@@ -21,8 +21,12 @@ TEST_F(Lists, CompiledCommandsWaitForTheCall) {
   HALFPLANE_GL(glCallList)(3);
   EXPECT_EQ(integer(GL_LINE_WIDTH), 5);
   compile(
-      3, [] { HALFPLANE_GL(glLineWidth)
-              (7); }, GL_COMPILE_AND_EXECUTE);
+      3,
+      [] {
+        HALFPLANE_GL(glLineWidth)
+        (7);
+      },
+      GL_COMPILE_AND_EXECUTE);
   EXPECT_EQ(integer(GL_LINE_WIDTH), 7);
   EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
 }

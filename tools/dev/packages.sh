@@ -22,6 +22,7 @@ libmeshoptimizer-dev gltf  meshoptimizer.h
 libwebp-dev          gltf  webp/decode.h
 libjs-chart.js       report /usr/share/javascript/chart.js/chart.min.js
 libglvnd-dev         test  glvnd/libglxabi.h
+khronos-api          test  /usr/share/khronos-api/gl.xml
 libx11-dev           test  X11/Xlib.h
 libsnappy-dev        test  snappy.h
 libxext-dev          test  X11/extensions/XShm.h
