@@ -225,12 +225,13 @@ TEST(GlPrimitive, PolygonStippleLiesOnTheWindow) {
 }
 
 TEST(GlPrimitive, PolygonOffsetMovesEveryMode) {
-  for (const GLenum mode : {GL_FILL, GL_LINE, GL_POINT}) {
+  for (const GLenum mode : std::array<GLenum, 3>{GL_FILL, GL_LINE, GL_POINT}) {
     Picture picture;
     const double from = mode == GL_FILL ? 8 : 8.5, to = from + 32;
     enable(picture.context, GL_DEPTH_TEST, true);
     polygon_mode(picture.context, GL_FRONT_AND_BACK, mode);
-    for (const GLenum cap : {GL_POLYGON_OFFSET_FILL, GL_POLYGON_OFFSET_LINE, GL_POLYGON_OFFSET_POINT})
+    for (const GLenum cap :
+         std::array<GLenum, 3>{GL_POLYGON_OFFSET_FILL, GL_POLYGON_OFFSET_LINE, GL_POLYGON_OFFSET_POINT})
       enable(picture.context, cap, true);
     picture.draw(GL_TRIANGLES, {{from, from}, {to, from}, {from, to}});
     const std::uint32_t before = picture.depth(8, 8);
@@ -422,7 +423,7 @@ TEST(GlFragment, BuffersThatDoNotExistAreErrors) {
   Context& context = picture.context;
   const auto draws = [&](GLenum mode) { return draw_buffer(context, mode), picture.error(); };
   const auto reads = [&](GLenum mode) { return read_buffer(context, mode), picture.error(); };
-  for (const GLenum mode : {GL_FRONT, GL_BACK, GL_LEFT, GL_FRONT_LEFT, GL_BACK_LEFT}) {
+  for (const GLenum mode : std::array<GLenum, 5>{GL_FRONT, GL_BACK, GL_LEFT, GL_FRONT_LEFT, GL_BACK_LEFT}) {
     EXPECT_EQ(draws(mode), GLenum{GL_NO_ERROR});
     EXPECT_EQ(reads(mode), GLenum{GL_NO_ERROR});
   }
@@ -525,7 +526,7 @@ void bind_two_texels(Picture& picture, GLenum env_mode) {
   image->pixel = {{1, 0, 0, 1}, {0, 0.5, 0, 1}};
   Context& context = picture.context;
   tex_image(context, 2, GL_TEXTURE_2D, 0, GL_RGBA8, 2, 1, 1, 0, image);
-  for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+  for (const GLenum filter : std::array<GLenum, 2>{GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
     tex_parameter(context, GL_TEXTURE_2D, filter, {.value = {GL_NEAREST}, .is_integer = true});
   tex_env(context, GL_TEXTURE_ENV, GL_TEXTURE_ENV_MODE, {.value = {static_cast<double>(env_mode)}, .is_integer = true});
   enable(context, GL_TEXTURE_2D, true);
@@ -616,7 +617,7 @@ TEST(GlPrimitive, AnyNumbersAreTaken) {
   constexpr std::array<GLenum, 6> kCaps{GL_LINE_STIPPLE, GL_POLYGON_STIPPLE, GL_CLIP_PLANE0,
                                         GL_FOG,          GL_CULL_FACE,       GL_POLYGON_OFFSET_LINE};
   for (unsigned caps = 0; caps < 64; ++caps)
-    for (const GLenum polygon : {GL_FILL, GL_LINE, GL_POINT}) {
+    for (const GLenum polygon : std::array<GLenum, 3>{GL_FILL, GL_LINE, GL_POINT}) {
       Picture picture("tiny guard.band=256 target.width=64 target.height=64");
       for (std::size_t i = 0; i < kCaps.size(); ++i) enable(picture.context, kCaps[i], (caps >> i & 1) != 0);
       polygon_mode(picture.context, GL_FRONT_AND_BACK, polygon);
