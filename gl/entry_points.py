@@ -45,9 +45,10 @@ AT_ONCE = re.compile(
     r"(\w+_pointer|interleaved_arrays|client_\w+|\w+_client_attrib|draw_(arrays|elements|range_elements)|multi_draw_\w+"
     r"|array_element|bind_buffer|buffer_(sub_)?data|begin_query|end_query|finish|flush|read_pixels|pixel_store|new_list"
     r"|end_list|select_buffer|feedback_buffer)$")
+# Draws are refused there by themselves, when they are carried out: a list may hold them within glBegin and glEnd.
 INSIDE_BEGIN = re.compile(
     r"(begin|end|vertex|normal|color|secondary_color|index|tex_coord|fog_coord|edge_flag|material|eval_coord.|eval_point."
-    r"|array_element|call_list)$")
+    r"|array_element|draw_(arrays|elements|range_elements)|multi_draw_\w+|call_list)$")
 
 # What follows from no rule: the body; $1 is the first argument, $* all.
 BODIES = {

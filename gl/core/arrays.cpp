@@ -188,12 +188,12 @@ struct Streams {
   }
 };
 
-/// A draw's errors; false: it has one.
+/// A draw's errors; false: it has one. Within glBegin and glEnd a list takes it, and it is refused when it is played.
 bool check_draw(Context& context, GLenum mode, GLsizei count) {
-  const GLenum error = context.inside_begin() ? GL_INVALID_OPERATION
-                       : mode > GL_POLYGON    ? GL_INVALID_ENUM
-                       : count < 0            ? GL_INVALID_VALUE
-                                              : GL_NO_ERROR;
+  const GLenum error = context.inside_begin() && context.compiling == nullptr ? GL_INVALID_OPERATION
+                       : mode > GL_POLYGON                                    ? GL_INVALID_ENUM
+                       : count < 0                                            ? GL_INVALID_VALUE
+                                                                              : GL_NO_ERROR;
   if (error != GL_NO_ERROR) context.fail(error);
   return error == GL_NO_ERROR;
 }
@@ -227,8 +227,9 @@ std::shared_ptr<const DisplayList> compiled(Context& context, const Streams& str
 void draw(Context& context, const Streams& streams, GLenum mode, std::uint32_t first,
           std::span<const std::uint32_t> indices, bool are_distinct) {
   if (!streams.is_readable) return context.fail(GL_INVALID_OPERATION);
-  if (streams.vertex.elements() == 0 || indices.empty()) return;
+  if (streams.vertex.elements() == 0) indices = {};
   if (context.compiling != nullptr) return issue<&play>(context, compiled(context, streams, mode, first, indices));
+  if (indices.empty()) return;
   update_shading(context);
   const CurrentKept kept(context);
   context.vertices.clear();
@@ -437,7 +438,6 @@ void draw_elements(Context& context, GLenum mode, GLsizei count, GLenum type, co
   const std::size_t bytes = number_type_of(type).bytes;
   thread_local std::vector<std::uint32_t> numbers;
   numbers.assign(std::min(static_cast<std::size_t>(count), memory.bytes / bytes), 0);
-  if (numbers.empty()) return;
   const auto widen = [&]<class Number>(Number) {
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       Number number;
@@ -453,6 +453,7 @@ void draw_elements(Context& context, GLenum mode, GLsizei count, GLenum type, co
 
 void draw_range_elements(Context& context, GLenum mode, GLuint start, GLuint end, GLsizei count, GLenum type,
                          const void* indices) {
+  if (!check_draw(context, mode, count)) return;
   if (end < start) return context.fail(GL_INVALID_VALUE);
   draw_elements(context, mode, count, type, indices);
 }

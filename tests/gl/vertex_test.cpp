@@ -288,14 +288,17 @@ TEST_F(Arrays, AreImmediateMode) {
 
 TEST_F(Arrays, OfAListAreRefusedWithinAPrimitive) {
   interleaved_arrays(context, GL_T2F_C4F_N3F_V3F, 0, packed.data());
-  new_list(context, 1, GL_COMPILE);
-  draw_arrays(context, GL_POINTS, 0, 3);
-  end_list(context);
-  EXPECT_EQ(context.error, GLenum{GL_NO_ERROR});
-  begin(context, GL_POINTS);
-  EXPECT_EQ(error_of([&] { call_list(context, 1); }), GLenum{GL_INVALID_OPERATION});
-  EXPECT_TRUE(context.vertices.empty());
-  end(context);
+  for (const GLsizei count : {3, 0}) {
+    new_list(context, 1, GL_COMPILE);
+    draw_arrays(context, GL_POINTS, 0, count);
+    end_list(context);
+    EXPECT_EQ(get_error(context), GLenum{GL_NO_ERROR});
+    begin(context, GL_POINTS);
+    EXPECT_EQ(error_of([&] { call_list(context, 1); }), GLenum{GL_INVALID_OPERATION});
+    EXPECT_TRUE(context.vertices.empty());
+    end(context);
+    (void)get_error(context);
+  }
 }
 
 TEST_F(Arrays, KeepTheCurrentAttributes) {
