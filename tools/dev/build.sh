@@ -42,7 +42,7 @@ rtl_label() {
 # test benches link with (docs/your-rtl.md).
 build_release() {
   (($# == 0)) || [[ $1 == --config && $# -ge 2 ]] || { say "./dev build: --config C [--set K=V...], not '$*'"; exit 2; }
-  build_program -DHALFPLANE_RTL_CONFIGS=
+  build_program -DHALFPLANE_RTL_CONFIGS= -DHALFPLANE_GL=AUTO
   step 'build the C interface' build release halfplane_c
   (($# > 0)) || return 0
   insist rtl

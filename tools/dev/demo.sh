@@ -21,14 +21,15 @@ demo_rtl() {
   ((status == 1)) || { say "   the fault was not caught"; exit 1; }
 }
 
-# What a person sees stays on the screen, in a pipe too. One Verilated configuration is enough, if there are no others.
+# What a person sees stays on the screen, in a pipe too. One Verilated configuration is enough, if there are no others, and
+# no OpenGL driver.
 demo() {
   ensure "${everyday[@]}"
   if [[ -n $(lacking sim) ]]; then
     demo_library
     return
   fi
-  local rtl=("-DHALFPLANE_RTL_CONFIGS=embedded")
+  local rtl=(-DHALFPLANE_RTL_CONFIGS=embedded -DHALFPLANE_GL=OFF)
   ! grep -q '^HALFPLANE_RTL_CONFIGS:' build/release/CMakeCache.txt 2>/dev/null || rtl=()
   build_program "${rtl[@]}"
   mkdir -p out
