@@ -203,7 +203,7 @@ class Child {
 };
 
 /// What all frames together took.
-struct Totals {
+struct RunTotals {
   std::uint64_t frames = 0;
   double seconds = 0, drawing = 0;
   std::vector<std::uint64_t> cycles, bytes;  ///< of the frames that were measured
@@ -247,7 +247,7 @@ class ResultLines {
     std::filesystem::remove(taken, error);
     std::filesystem::rename(path_, taken, error);
   }
-  Totals totals;
+  RunTotals totals;
   Json rows = Json::array();
 
  private:
@@ -265,7 +265,7 @@ Json csv_rows(const Json& rows) {
   return list;
 }
 
-void print_run(std::ostream& out, const RunCommand& options, const Totals& totals,
+void print_run(std::ostream& out, const RunCommand& options, const RunTotals& totals,
                const std::vector<std::string>& answered, const Config& config) {
   out << joined(options.program, " ") << ": " << label(config) << ", engine " << options.engine << ", "
       << joined(answered) << '\n'
@@ -306,7 +306,7 @@ int run(const RunCommand& options) {
   const RunFolder folder;
   const bool keeps_rows = !options.json.empty() || !options.csv_path.empty() || !options.chart_path.empty();
   ResultLines lines(folder.file("results"), keeps_rows);
-  const Totals& totals = lines.totals;
+  const RunTotals& totals = lines.totals;
   stop_in_order();
   bool is_partial = false, has_all = false;
   int status = 0;
