@@ -24,8 +24,8 @@ void read(const std::byte* from, int count, double* to) {
     std::memcpy(&number, from, sizeof number);
     to[i] = static_cast<double>(number);
     if constexpr (kNormalized && std::is_integral_v<Number>) {
-      const double range = 2.0 * static_cast<double>(std::numeric_limits<std::make_unsigned_t<Number>>::max() / 2) + 1;
-      to[i] = std::is_signed_v<Number> ? (2 * to[i] + 1) / range : to[i] / range;
+      constexpr auto kRange = static_cast<double>(std::numeric_limits<std::make_unsigned_t<Number>>::max());
+      to[i] = std::is_signed_v<Number> ? (2 * to[i] + 1) / kRange : to[i] / kRange;
     }
   }
 }
@@ -204,7 +204,7 @@ bool check_draws(Context& context, GLenum mode, const GLsizei* count, GLsizei dr
          std::all_of(count, count + draws, [&](GLsizei n) { return check_draw(context, mode, n); });
 }
 
-void play(Context& context, std::shared_ptr<const DisplayList> list) {
+void play(Context& context, const std::shared_ptr<const DisplayList>& list) {
   const CurrentKept kept(context);
   list->play(context);
 }
@@ -379,8 +379,8 @@ void interleaved_arrays(Context& context, GLenum format, GLsizei stride, const v
   // An address, or an offset within a buffer; not arithmetic on a pointer, which may be null.
   const auto set = [&](ArrayPointer& array, int size, GLenum type, int at) {
     array.enabled = size != 0;
-    const auto* const where =
-        reinterpret_cast<const void*>(reinterpret_cast<std::uintptr_t>(pointer) + static_cast<std::uintptr_t>(at));
+    const std::uintptr_t address = reinterpret_cast<std::uintptr_t>(pointer) + static_cast<std::uintptr_t>(at);
+    const auto* const where = reinterpret_cast<const void*>(address);  // NOLINT(performance-no-int-to-ptr)
     if (size != 0) array = {true, size, type, stride, where, client.array_buffer};
   };
   client.edge_flag.enabled = client.index.enabled = client.secondary.enabled = client.fog_coord.enabled = false;

@@ -126,9 +126,9 @@ void get_query_object(Context&, GLuint name, GLenum pname, GLint* params);
 
 // Evaluators: list (eval.cpp). `points` are packed as EvaluatorMap::point.
 void map1(Context&, GLenum target, double u1, double u2, GLint order,
-          std::shared_ptr<const std::vector<double>> points);
+          const std::shared_ptr<const std::vector<double>>& points);
 void map2(Context&, GLenum target, double u1, double u2, GLint uorder, double v1, double v2, GLint vorder,
-          std::shared_ptr<const std::vector<double>> points);
+          const std::shared_ptr<const std::vector<double>>& points);
 void map_grid1(Context&, GLint n, double u1, double u2);
 void map_grid2(Context&, GLint nu, double u1, double u2, GLint nv, double v1, double v2);
 void eval_mesh1(Context&, GLenum mode, GLint i1, GLint i2);

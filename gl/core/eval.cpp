@@ -9,7 +9,8 @@ namespace halfplane::gl {
 namespace {
 
 /// What a map gives, in the order of GL_MAP1_COLOR_4... and GL_MAP2_COLOR_4...
-enum Kind : std::size_t { kColor, kIndex, kNormal, kTexture1, kTexture4 = 6, kVertex3, kVertex4, kKinds };
+constexpr std::size_t kColor = 0, kIndex = 1, kNormal = 2, kTexture1 = 3, kTexture4 = 6, kVertex3 = 7, kVertex4 = 8,
+                      kKinds = 9;
 constexpr std::array<int, kKinds> kComponents{4, 1, 3, 1, 2, 3, 4, 3, 4};
 
 /// A point of a map, with its derivatives along u and v.
@@ -142,18 +143,18 @@ void set_map(Context& context, GLenum target, bool is_two_dimensional, const std
 }  // namespace
 
 int map_components(GLenum target) {
-  for (const GLenum first : {GL_MAP1_COLOR_4, GL_MAP2_COLOR_4})
+  for (const GLenum first : std::initializer_list<GLenum>{GL_MAP1_COLOR_4, GL_MAP2_COLOR_4})
     if (target >= first && target - first < kKinds) return kComponents[target - first];
   return 0;
 }
 
 void map1(Context& context, GLenum target, double u1, double u2, GLint order,
-          std::shared_ptr<const std::vector<double>> points) {
+          const std::shared_ptr<const std::vector<double>>& points) {
   set_map(context, target, false, {u1, u2, 0, 1}, {order, 1}, points.get());
 }
 
 void map2(Context& context, GLenum target, double u1, double u2, GLint uorder, double v1, double v2, GLint vorder,
-          std::shared_ptr<const std::vector<double>> points) {
+          const std::shared_ptr<const std::vector<double>>& points) {
   set_map(context, target, true, {u1, u2, v1, v2}, {uorder, vorder}, points.get());
 }
 
@@ -163,7 +164,7 @@ Values get_map(Context& context, GLenum target, GLenum query) {
     return {};
   }
   const EvaluatorMap& map = map_of(context, target);
-  const int dimensions = is_map2(target) ? 2 : 1;
+  const std::ptrdiff_t dimensions = is_map2(target) ? 2 : 1;
   switch (query) {
     case GL_COEFF: return {ValueKind::real, map.point};
     case GL_ORDER: return {ValueKind::integer, {map.order.begin(), map.order.begin() + dimensions}};

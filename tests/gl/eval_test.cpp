@@ -90,7 +90,8 @@ TEST_F(Evaluators, AttributesOfTheMomentOnly) {
   map1(context, GL_MAP1_COLOR_4, 0, 1, 2, points({0, 0, 0, 1, 1, 1, 1, 1}));
   map1(context, GL_MAP1_TEXTURE_COORD_1, 0, 1, 1, points({9}));
   map1(context, GL_MAP1_TEXTURE_COORD_2, 0, 1, 2, points({0, 4, 2, 8}));
-  for (const GLenum target : {GL_MAP1_VERTEX_4, GL_MAP1_COLOR_4, GL_MAP1_TEXTURE_COORD_1, GL_MAP1_TEXTURE_COORD_2})
+  for (const GLenum target : std::initializer_list<GLenum>{GL_MAP1_VERTEX_4, GL_MAP1_COLOR_4, GL_MAP1_TEXTURE_COORD_1,
+                                                           GL_MAP1_TEXTURE_COORD_2})
     enable1(target);
   const CurrentState before = context.state.current;
   const auto vertices = drawn([&] { eval_coord1(context, 0.25); });

@@ -104,18 +104,20 @@ TEST_F(Lighting, IsTheFormula) {
     for (std::size_t i = 0; i < kLights; ++i) {
       state.light_enabled[i] = number(0, 1) < 0.3;
       const auto name = static_cast<GLenum>(GL_LIGHT0 + i);
-      for (const GLenum pname : {GL_AMBIENT, GL_DIFFUSE, GL_SPECULAR}) light(context, name, pname, vector(color()));
+      for (const GLenum pname : std::initializer_list<GLenum>{GL_AMBIENT, GL_DIFFUSE, GL_SPECULAR})
+        light(context, name, pname, vector(color()));
       light(context, name, GL_POSITION,
             vector({number(-3, 3), number(-3, 3), number(0, 9), coin() ? number(0.5, 2) : 0}));
       const Vec3 spot = direction();
       light(context, name, GL_SPOT_DIRECTION, vector({3 * spot[0], 3 * spot[1], 3 * spot[2]}));
       light(context, name, GL_SPOT_CUTOFF, scalar(coin() ? 180 : number(30, 90)));
       light(context, name, GL_SPOT_EXPONENT, scalar(coin() ? 0 : number(0, 5)));
-      for (const GLenum pname : {GL_CONSTANT_ATTENUATION, GL_LINEAR_ATTENUATION, GL_QUADRATIC_ATTENUATION})
+      for (const GLenum pname :
+           std::initializer_list<GLenum>{GL_CONSTANT_ATTENUATION, GL_LINEAR_ATTENUATION, GL_QUADRATIC_ATTENUATION})
         light(context, name, pname, scalar(coin() ? 1 : number(0.1, 1)));
     }
-    for (const GLenum face : {GL_FRONT, GL_BACK}) {
-      for (const GLenum pname : {GL_AMBIENT, GL_DIFFUSE, GL_SPECULAR, GL_EMISSION})
+    for (const GLenum face : std::initializer_list<GLenum>{GL_FRONT, GL_BACK}) {
+      for (const GLenum pname : std::initializer_list<GLenum>{GL_AMBIENT, GL_DIFFUSE, GL_SPECULAR, GL_EMISSION})
         material(context, face, pname, vector(color()));
       material(context, face, GL_SHININESS, scalar(coin() ? 0 : number(0, 128)));
     }

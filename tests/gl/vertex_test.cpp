@@ -65,7 +65,8 @@ TEST_F(Vertices, TransposedAndMultiplied) {
 TEST_F(Vertices, StacksHaveTheirDepths) {
   constexpr std::pair<GLenum, int> kStacks[] = {
       {GL_MODELVIEW, kModelviewDepth}, {GL_PROJECTION, kProjectionDepth}, {GL_TEXTURE, kTextureDepth}};
-  for (const auto& [mode, depth] : kStacks) {
+  for (const auto& [mode, deepest] : kStacks) {
+    const int depth = deepest;
     matrix_mode(context, mode);
     EXPECT_EQ(error_of([&] { pop_matrix(context); }), GLenum{GL_STACK_UNDERFLOW});
     EXPECT_EQ(error_of([&] {
