@@ -15,7 +15,7 @@ class JsonSchema : public Cli {
     return HALFPLANE_SOURCE_DIR "/docs/json/halfplane." + command + ".schema.json";
   }
 
-  /// What the checker finds wrong with files in the folder, a line each; `words` go before the schema.
+  /// The checker's faults of files in the folder, a line each; `words` go before the schema.
   [[nodiscard]] std::vector<std::string> faults(const std::string& words, const std::string& command,
                                                 const std::string& files) const {
     const std::string line = "cd '" + folder_.string() +
