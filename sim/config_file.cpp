@@ -37,7 +37,7 @@ std::string shown(std::string_view text) {
   return result + (text.size() > kLength ? "...'" : "'");
 }
 
-// Index just behind the string whose opening quote is at `start`; ends at the line's end if it is not closed there.
+// Index just after the string whose opening quote is at `start`; the line's end if it is not closed there.
 std::size_t skip_string(std::string_view text, std::size_t start) {
   const char quote = text[start];
   const std::string triple(3, quote);
@@ -57,7 +57,7 @@ std::size_t skip_string(std::string_view text, std::size_t start) {
   return text.size();
 }
 
-// Whether a key, bare or quoted, can begin behind the brackets of a table header.
+// Whether a key, bare or quoted, can begin after the brackets of a table header.
 bool begins_table_name(std::string_view header) {
   std::size_t i = 1;
   if (i < header.size() && header[i] == '[') ++i;
@@ -68,10 +68,10 @@ bool begins_table_name(std::string_view header) {
          std::string_view("_-\"'").find(c) != std::string_view::npos;
 }
 
-// Refuses what toml++ 3.3 cannot take, before it does. It recurses once per level of nesting, and once per dot when it
-// frees what a dotted key made, so a hostile file could exhaust the stack: settings need one level. And its assertions
+// Refuses text that toml++ 3.3 cannot handle. toml++ recurses once per level of nesting, and once per dot when it frees
+// the tables of a dotted key, so a hostile file could exhaust the stack: settings need one level. And its assertions
 // (undefined behaviour where they are compiled out) fail on malformed arrays and dates and on letters beyond ASCII,
-// which no setting takes, and on control characters and table headers without a name, which TOML forbids.
+// which no setting uses, and on control characters and table headers without a name, which TOML forbids.
 void refuse_hostile_text(std::string_view text, std::string_view file) {
   std::size_t line = 1, string_end = 0, comment_end = 0;
   int dots = 0, braces = 0;
@@ -103,7 +103,7 @@ void refuse_hostile_text(std::string_view text, std::string_view file) {
   }
 }
 
-// `keys` begins with what is a key in this place beside the settings.
+// `keys` starts with the valid keys of this place other than settings.
 std::string unknown_key_message(std::string_view key, std::vector<std::string_view> keys = {"preset"}) {
   for (const Setting& setting : settings()) keys.push_back(setting.key);
   return "no setting " + shown(key) + ";" + did_you_mean(key, keys) + " `halfplane config --list` shows them all";
@@ -142,7 +142,7 @@ const Setting* find_setting(std::string_view key) {
   return nullptr;
 }
 
-// The value as `--set` would take it.
+// The value in the form of `--set`.
 std::string value_text(const Entry& entry, const Setting& setting, const Place& place) {
   if (setting.is_number()) {
     if (const auto* number = entry.value->as_integer()) return std::to_string(number->get());
@@ -153,7 +153,7 @@ std::string value_text(const Entry& entry, const Setting& setting, const Place& 
   fail(place, entry.key + ": give one of " + std::string(setting.unit) + " in quotes");
 }
 
-// Runs an action of model/config.hpp and puts the place before what it refuses.
+// Runs an action of model/config.hpp and adds the place to its errors.
 template <typename Action>
 void at_place(const Place& place, Action action) {
   try {
@@ -198,7 +198,7 @@ Config config_of(const std::vector<Entry>& entries, std::string_view file) {
 std::string read_text(const std::string& path) {
   errno = 0;
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
-  std::string text(kMaxBytes + 1, '\0');  // one more, so that a file that is too long shows
+  std::string text(kMaxBytes + 1, '\0');  // one more, so that a too long file is detected
   if (file) text.resize(std::fread(text.data(), 1, text.size(), file.get()));
   if (!file || std::ferror(file.get()) != 0)
     throw InputError("cannot read configuration '" + path + "': " + std::strerror(errno) +

@@ -1,5 +1,5 @@
-// Configuration files: TOML with the keys of settings(), a dot being a table. `preset` chooses what the others start
-// from:
+// Configuration files: TOML with the keys of settings(), a dot being a table. `preset` chooses the start values of the
+// others:
 //
 //   preset = "full"
 //   [depth]
@@ -21,13 +21,13 @@ namespace halfplane {
 /// The same for a file. Throws InputError when it cannot be read.
 [[nodiscard]] Config read_config_file(const std::string& path);
 
-/// What read_config_toml() reads back as the same configuration: the preset and every value, each with its meaning.
+/// Text from which read_config_toml() reads the same configuration: the preset and every value, each with its meaning.
 [[nodiscard]] std::string config_toml(const Config& config);
 
-/// set(), and for an unknown key an InputError that names the nearest one.
+/// set(), with an InputError for an unknown key that names the nearest one.
 void set_by_key(Config& config, std::string_view key, std::string_view value);
 
-/// What `--config` takes: the name of a preset, or a file ending in .toml.
+/// Value of `--config`: the name of a preset, or a file ending in .toml.
 [[nodiscard]] Config config_from_option(const std::string& option);
 
 /// The preset and every effective value, keyed as in --set.

@@ -11,13 +11,13 @@
 namespace halfplane {
 namespace {
 
-constexpr int kStatus = 130;            // 128 + SIGINT, as shells have it
+constexpr int kStatus = 130;            // 128 + SIGINT, as in shells
 constexpr long long kSameSignal = 100;  // milliseconds
 
-/// What the next signal does.
+/// Effect of the next signal.
 enum class Answer : int { end, ask, asked };
 
-// All that the handler touches.
+// The only data that the handler touches.
 std::atomic<Answer> answer = Answer::end;
 std::atomic<long long> asked_at = 0;  // milliseconds
 std::atomic<bool> has_half_written = false;
@@ -31,7 +31,7 @@ long long milliseconds() {
   return static_cast<long long>(now.tv_sec) * 1000 + now.tv_nsec / 1'000'000;
 }
 
-// Only what POSIX allows here.
+// Only functions that POSIX allows here.
 void on_signal(int) {
   auto expected = Answer::ask;
   if (answer.compare_exchange_strong(expected, Answer::asked)) {
@@ -49,7 +49,7 @@ void on_signal(int) {
 
 }  // namespace
 
-// Also where a script's background job was started with SIGINT ignored: who sends it there means it.
+// Also if a script's background job was started with SIGINT ignored: a SIGINT sent there is intended.
 void catch_signals() {
   struct sigaction action {};
   action.sa_handler = on_signal;

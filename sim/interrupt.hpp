@@ -5,24 +5,24 @@
 
 namespace halfplane {
 
-/// Thrown out of the work under way, by whoever reports its progress. Studies catch it and return what they have. No
-/// std::exception: who handles errors lets it pass.
+/// Thrown by progress reports to leave the current work. Studies catch it and return their results so far. Not a
+/// std::exception: error handlers let it pass.
 struct Interrupted {};
 
-/// From now on either signal ends the program at once with exit status 130, and no half-written file stays.
+/// From now on either signal ends the program at once with exit status 130, without a half-written file.
 void catch_signals();
 
-/// From now on the first signal only asks to stop; a second ends the program as above. One within a tenth of a second is
-/// the same one: timeout(1) sends each twice, to the process and to its group.
+/// From now on the first signal only asks to stop; a second ends the program as above. A signal within a tenth of a
+/// second counts as the same: timeout(1) sends each twice, to the process and to its group.
 void stop_in_order();
 
 /// Whether a signal has asked to stop.
 [[nodiscard]] bool is_interrupted() noexcept;
 
-/// Throws Interrupted if it has.
+/// Throws Interrupted if a signal has.
 void stop_if_interrupted();
 
-/// While it lives, a signal that ends the program removes the file. One at a time.
+/// While it exists, a signal that ends the program removes the file. One at a time.
 class HalfWrittenFile {
  public:
   explicit HalfWrittenFile(const std::string& path);

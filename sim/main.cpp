@@ -16,7 +16,7 @@ namespace {
 
 using namespace halfplane;
 
-/// One line on stderr, whatever bytes a name in it holds.
+/// Prints one line on stderr, whatever bytes a name in it has.
 int fail(ExitStatus status, std::string message) {
   for (char& c : message)
     if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) c = '?';
@@ -24,7 +24,7 @@ int fail(ExitStatus status, std::string message) {
   return status;
 }
 
-/// CLI11 names what a command lacks, but not the command that does not exist.
+/// CLI11 names what a command lacks, but not a command that does not exist.
 void check_command(const CLI::App& app, int argc, char** argv) {
   if (argc < 2) throw InputError("no command; try `halfplane render teapot -o teapot.png` or `halfplane --help`");
   const std::string word = argv[1];
@@ -37,7 +37,7 @@ void check_command(const CLI::App& app, int argc, char** argv) {
                    joined(names));
 }
 
-/// CLI11 says that a word is unexpected, but not which option it may have been; empty when there is none near.
+/// CLI11 reports an unexpected word, but not the option that may have been meant; empty when none is near.
 std::string option_hint(const CLI::App& app, int argc, char** argv) {
   for (const CommandText& command : command_texts(app)) {
     if (command.name != argv[1]) continue;
@@ -94,8 +94,8 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // A reader that went away and a file size limit show at the write, like a full disk: without the signals no
-  // half-written file stays behind, and every file that was asked for is written though nobody reads stdout.
+  // A closed reader and a file size limit appear as write errors, like a full disk: with these signals ignored no
+  // half-written file remains, and every requested file is written even if stdout is no longer read.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   catch_signals();

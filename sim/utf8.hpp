@@ -6,11 +6,11 @@
 
 namespace halfplane {
 
-/// What stands for bytes that are no UTF-8.
+/// Replacement for bytes that are not UTF-8.
 inline constexpr char32_t kNoCodePoint = 0xfffd;
 
-/// The code point that begins at text[at], and moves `at` behind it. A byte that begins none is one kNoCodePoint, and so
-/// is a sequence that is cut, overlong or a surrogate.
+/// The code point that begins at text[at], and moves `at` past it. A byte that begins no code point is one
+/// kNoCodePoint, and so is a truncated or overlong sequence or a surrogate.
 [[nodiscard]] char32_t next_code_point(std::string_view text, std::size_t& at);
 
 /// The length of `text` without its last code point.

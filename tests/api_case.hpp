@@ -1,6 +1,6 @@
-// Any bytes as a Scene filled in by a caller: any index, any float, any enumerator. What must hold for every one of them:
-// each public function that takes a scene gives a picture or throws an InputError of one line, and those that draw the
-// same scene draw the same picture. Shared by the fuzzer and by the test that draws random inputs.
+// Any bytes as a Scene filled in by a caller: any index, any float, any enumerator. Required for every such scene: each
+// public function that takes a scene gives a picture or throws an InputError of one line, and the functions that draw
+// the same scene draw the same picture. Shared by the fuzzer and by the test that draws random inputs.
 #pragma once
 
 #include <bit>

@@ -1,4 +1,4 @@
-// What follows from a table of the model and is committed nevertheless, for who reads without building.
+// Committed files made from a table of the model, for readers who do not build.
 #pragma once
 
 #include <gtest/gtest.h>

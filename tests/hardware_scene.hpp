@@ -1,4 +1,4 @@
-// What the tests of the hardware model share: a configuration in one line, and a sink that remembers.
+// Shared by the tests of the hardware model: a configuration in one line, and a sink that records.
 #pragma once
 
 #include <initializer_list>
@@ -18,7 +18,7 @@ inline Config with(const char* preset_name, std::initializer_list<std::pair<cons
   return config;
 }
 
-/// Remembers what the tests ask about.
+/// Records the packets that the tests check.
 struct Recorder : PacketSink {
   using PacketSink::take;
   void take(On<Arrow::tile>, const TilePacket& packet) override { tiles.push_back(packet); }

@@ -1,4 +1,4 @@
-// Lines for tests: what the stages cover, held against the exact oracle pixel by pixel.
+// Lines for tests: the coverage of the stages, checked against the exact oracle pixel by pixel.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ inline SnappedVertex centre_of(int x, int y, const LineSpace& space) {
   return snapped_vertex((x << s) + half, (y << s) + half);
 }
 
-/// Where the oracle says so: every pixel of the box of both ends, one pixel around it included.
+/// The oracle's coverage, over the box of both ends and one pixel around it.
 inline Positions oracle_positions(const exact::Line& line) {
   const int s = line.grid_bits;
   const auto [left, right] = std::minmax({line.start.x >> s, line.end.x >> s});

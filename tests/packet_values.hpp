@@ -1,4 +1,4 @@
-// Packets for tests: what they carry.
+// Packets for tests: their values.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 
 namespace halfplane::test {
 
-/// Every value of a packet in this configuration, not cut to its width, the first field first.
+/// Every value of a packet in this configuration, not truncated to its width, the first field first.
 template <class Packet>
 [[nodiscard]] std::vector<std::uint64_t> values_of(const Packet& packet, const Widths& widths) {
   std::vector<std::uint64_t> values;
@@ -19,7 +19,7 @@ template <class Packet>
   return values;
 }
 
-/// What goes into the RTL and comes out again is the packet: every value fits its field.
+/// The RTL returns the packet unchanged: every value fits its field.
 template <class Packet>
 void expect_survives_packing(const Packet& packet, const Widths& widths) {
   const auto back = unpack_words<Packet>(packed(packet, widths).data(), widths);

@@ -1,4 +1,4 @@
-// A triangle with attributes over w, drawn through the stages, and what they should be in exact integers.
+// A triangle with attributes over w, drawn through the stages, and the expected values in exact integers.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +25,7 @@ inline PerspectiveDesign perspective_design(const std::string& name, const Persp
   return {name, preset(name), format};
 }
 
-/// Vertices on the subpixel grid. Every value is an integer, so that what is seen at a pixel is an exact quotient.
+/// Vertices on the subpixel grid. Every value is an integer, so that the value at a pixel is an exact quotient.
 struct OverWTriangle {
   std::array<SnappedVertex, 3> v{};
   std::array<std::int64_t, 3> w{};      ///< 2^-10, up to 2^20 of them

@@ -1,6 +1,6 @@
-// Any bytes as a configuration and a capture, and what must hold for every one of them: the engines agree with each
-// other, whatever is skipped, and with oracle and golden within the bounds. Shared by the fuzzer and by the test that
-// replays its corpus.
+// Any bytes as a configuration and a capture, and the properties required of every one: the engines agree with each
+// other for every setting of skips, and with oracle and golden within the bounds. Shared by the fuzzer and by the test
+// that replays its corpus.
 #pragma once
 
 #include <array>
@@ -137,7 +137,7 @@ class CaptureFromBytes {
     y_ = coordinate(height_, y_);
     std::string text = "v ";
     if (is_clip_) {
-      const std::uint32_t raw = bytes_.byte();  // w: around 1, and now and then 0 or behind the eye
+      const std::uint32_t raw = bytes_.byte();  // w: around 1, sometimes 0 or behind the eye
       const double w = raw % 8 == 7 ? static_cast<int>(raw >> 3) / 8.0 - 2 : 1 + raw / 64.0;
       text += exact((x_ / width_ * 2 - 1) * w) + " " + exact((1 - y_ / height_ * 2) * w) + " " +
               exact((depth() * 2.5 - 1.25) * w) + " " + exact(w);
@@ -209,7 +209,7 @@ inline PipelineCase pipeline_case(std::span<const std::uint8_t> data) {
   return result;
 }
 
-/// What an engine made of a scene: an image, or one line that refuses it.
+/// An engine's result for a scene: an image, or one line that refuses it.
 struct Outcome {
   std::optional<Rendering> rendering;
   std::string refusal;
@@ -237,7 +237,7 @@ inline std::string difference(const Outcome& a, const Outcome& b, bool same_cove
   return {};
 }
 
-/// What does not hold for the case; nothing when all does.
+/// The first broken property of the case; empty when all hold.
 inline std::string pipeline_fault(const PipelineCase& input) {
   const Scene scene = read_capture(input.capture, "bytes.hpt");
   const Config& config = input.config;

@@ -1,5 +1,5 @@
-// Pairs of values of draw states: what the states of fragment operations and of textures can be, and scenes in which every
-// pair of values of two of them is drawn, in as few draws as a greedy choice takes.
+// Pairs of values of draw states: the states of fragment operations and of textures, and scenes in which every pair of
+// values of two of them is drawn, in as few draws as a greedy choice takes.
 #pragma once
 
 #include <algorithm>
@@ -110,8 +110,8 @@ inline std::vector<Dimension> dimensions() {
   };
 }
 
-/// Whether a draw can have both values: no part of what is off; no fog or light with an affine texture, which hardware refuses
-/// by name.
+/// Whether a draw can have both values: no part of a disabled unit; no fog or light with an affine texture, which
+/// hardware refuses by name.
 inline bool is_possible(const Dimension& a, int va, const Dimension& b, int vb) {
   const auto is_part = [](const Dimension& part, const Dimension& whole, int v) {
     return part.part_of == whole.name && v == 0;
@@ -166,8 +166,8 @@ class PairCounts {
   std::map<Pair, std::vector<std::size_t>> seen_;
 };
 
-/// Values of all states, a row a draw, so that each pair stands in some row: the first pair that is missing, then state by
-/// state the value that brings most of those that are.
+/// Values of all states, a row a draw, so that each pair is in some row: the first missing pair, then state by state
+/// the value that adds most of the missing pairs.
 inline std::vector<std::vector<int>> pair_rows(const std::vector<Dimension>& all, std::uint64_t seed) {
   Random random(seed);
   PairCounts counts(all);
@@ -212,7 +212,7 @@ inline std::vector<std::vector<int>> pair_rows(const std::vector<Dimension>& all
         best = gain;
         if (random.next() % ties == 0) row[n] = v;
       }
-      if (row[n] == kUnset) row[n] = -1;  // a part of what is off
+      if (row[n] == kUnset) row[n] = -1;  // a part of a disabled unit
     }
     counts.add(row);
     rows.push_back(std::move(row));

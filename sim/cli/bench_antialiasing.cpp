@@ -1,4 +1,4 @@
-// halfplane bench --antialiasing: how far each kind is from the exact area, and what a frame of it takes.
+// halfplane bench --antialiasing: the error of each kind against the exact area, and the cost of a frame.
 #include <iostream>
 #include <optional>
 
@@ -17,10 +17,10 @@ HALFPLANE_JSON_OF_MEMBERS(AreaRow, kind, samples, frame_s, rms, max, mean, is_fr
 
 namespace {
 
-/// Figures beside the error, each with a front of its own, as a row of the result has them.
+/// Figures plotted against the error, each with a front of its own, by their keys in a row of the result.
 constexpr std::array<const char*, 4> kCosts{"frame_s", "cycles", "bytes", "ecp5.places"};
 
-/// Of each kind, the figures of which no other one has less at an rms as low.
+/// Marks, for each kind, the figures for which no other kind has less at an rms as low.
 void mark_fronts(Json& rows) {
   Json points = rows;
   for (Json& point : points) {
@@ -57,7 +57,7 @@ void print(std::ostream& out, const Json& rows) {
   print_bench_table(out, lines, 1);
 }
 
-/// Measures one scene, into an object of the result and a table. `gates`: null where they are not counted.
+/// Measures one scene, into an object of the result and a table. `gates`: null if they are not counted.
 Json measured(const CommonOptions& options, const Config& config, int repeat, const Scene& scene, const char* name,
               const Gates* gates) {
   antialiasing::AreaStudy study;
@@ -90,7 +90,7 @@ Json measured(const CommonOptions& options, const Config& config, int repeat, co
   return json;
 }
 
-/// The kinds as points of a space, for its page.
+/// The kinds as points of a space, for the page.
 void add_points(Json& points, const std::string& scene, const Json& rows) {
   for (const Json& row : rows) {
     Json point = {{"scene", scene},

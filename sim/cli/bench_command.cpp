@@ -1,5 +1,5 @@
-// halfplane bench: run time against error, engine by engine, configuration by configuration; what skipping saves, and
-// how the cost grows.
+// halfplane bench: run time against error, engine by engine, configuration by configuration; the savings of skipping,
+// and the growth of the cost.
 #include <algorithm>
 #include <chrono>
 #include <iostream>
@@ -30,7 +30,7 @@ struct Variation {
 
 struct BenchCommand : CommonOptions {
   std::vector<std::string> scenes;
-  std::vector<std::string> engines;  ///< empty: the default, of which what does not fit is left out without a word
+  std::vector<std::string> engines;  ///< empty: the default, without a message about engines that do not fit
   std::vector<std::string> variations;
   std::vector<int> thread_counts{1};
   int repeat = 5;
@@ -55,7 +55,7 @@ std::vector<Variation> parse_variations(const std::vector<std::string>& texts, c
       if (std::count(variation.values.begin(), variation.values.end(), value) > 1)
         throw InputError(shown + " names the value " + value + " twice; give every value once");
       Config trial = config;
-      set_by_key(trial, variation.key, value);  // throws for what no configuration has
+      set_by_key(trial, variation.key, value);  // throws for an invalid value
     }
     for (const Variation& other : variations)
       if (other.key == variation.key)
@@ -70,8 +70,8 @@ struct VariedConfig {
   std::string name;  ///< "depth.bits=24 tile.size=16"; empty for the base configuration
 };
 
-/// Every combination of the values, and before them the base configuration if it is wanted; those that no hardware can have
-/// are left out.
+/// Every combination of the values, after the base configuration if it is wanted; combinations that no hardware
+/// supports are left out.
 std::vector<VariedConfig> varied_configs(const Config& base, const std::vector<Variation>& variations, bool has_base) {
   std::vector<VariedConfig> product{{base, ""}};
   for (const Variation& variation : variations) {
@@ -99,13 +99,13 @@ std::vector<VariedConfig> varied_configs(const Config& base, const std::vector<V
   return configs;
 }
 
-/// Loads a scene once for all configurations that take it alike.
+/// Loads a scene once for all configurations that load it alike.
 class BenchScenes {
  public:
   explicit BenchScenes(const BenchCommand& options) : options_(options) {}
 
   std::shared_ptr<const Scene> get(const std::string& name, const Config& config) {
-    // What load_scene() looks at: the mapping, and the target if no size was given.
+    // The inputs of load_scene(): the mapping, and the target if no size was given.
     const auto key = std::tuple(name, config.depth_mapping, config.target_width, config.target_height);
     auto& scene = scenes_[key];
     if (!scene) scene = load(name, config, options_.cull_objects).scene;
@@ -138,7 +138,7 @@ std::vector<BenchCase> bench_cases(const BenchCommand& options, const std::vecto
       try {
         cases.push_back({name, scenes.get(name, varied.config), varied.config, varied.name});
       } catch (const InputError& error) {
-        if (varied.name.empty() || configs.size() == 1) throw;  // the scene itself is at fault
+        if (varied.name.empty() || configs.size() == 1) throw;  // the scene itself is invalid
         std::cerr << "halfplane: left out: " << name << ", " << varied.name << ": " << error.what() << '\n';
       }
     }
@@ -202,7 +202,7 @@ void measure_bench_growth(const BenchCommand& options, const Config& config, Ben
   study.growth = measure_growth(plan);
 }
 
-// Everything that can be refused before a scene is read.
+// Checks everything that can be refused before a scene is read.
 void check_bench_options(const BenchCommand& options) {
   for (const std::string& engine : options.engines) {
     if (std::find(kBenchEngines.begin(), kBenchEngines.end(), engine) == kBenchEngines.end())
@@ -232,7 +232,7 @@ void check_bench_options(const BenchCommand& options) {
   if (!options.page.empty()) require_chart_library();
 }
 
-/// The command that measures the same again.
+/// The command that repeats the measurement.
 std::string bench_command_line(const BenchCommand& options) {
   std::string text = "halfplane bench";
   for (const std::string& scene : options.scenes) text += " " + quoted(scene);
@@ -254,7 +254,7 @@ std::string bench_command_line(const BenchCommand& options) {
   return text + space_arguments(options.space) + (options.page.empty() ? "" : " -o " + quoted(options.page));
 }
 
-/// What every result of this command begins with.
+/// The head of every result of this command.
 Json bench_head(const BenchCommand& options, const Config& config, const BenchStudy& study = {}) {
   Json result = result_head("bench", options, config);
   result["seed"] = options.seed;

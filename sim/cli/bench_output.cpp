@@ -81,7 +81,7 @@ Json growth_row_json(const GrowthRow& row) {
           {"mpix_s", row.mpix_s()}};
 }
 
-/// What the processor calls itself, where the system says so.
+/// The processor's name, where the system gives it.
 std::string processor_name() {
   std::ifstream file("/proc/cpuinfo");
   for (std::string line; std::getline(file, line);)
@@ -89,7 +89,7 @@ std::string processor_name() {
   return "";
 }
 
-/// How many times as fast as `engine` on the same scene, with as many threads and the same configuration if it has them.
+/// The speedup over `engine` on the same scene, with as many threads and the same configuration if present.
 std::string times_as_fast(const BenchStudy& study, const BenchRow& row, const std::string& engine) {
   const BenchRow* best = nullptr;
   int best_rank = -1;
@@ -106,21 +106,21 @@ std::string times_as_fast(const BenchStudy& study, const BenchRow& row, const st
   return fixed(ratio, ratio < 10 ? 2 : 1);
 }
 
-/// Whether it was too slow to be measured as often as others.
+/// Whether it was too slow to be measured as often as the others.
 bool is_single(const BenchStudy& study, const BenchRow& row) {
   return row.times.seconds.size() == 1 && std::any_of(study.rows.begin(), study.rows.end(), [](const BenchRow& other) {
            return other.times.seconds.size() > 1;
          });
 }
 
-/// Whether an LSB of depth is not the same in all rows.
+/// Whether the rows have different LSBs of depth.
 bool has_many_lsbs(const BenchStudy& study) {
   return std::any_of(study.rows.begin(), study.rows.end(), [&](const BenchRow& row) {
     return study.cases[row.case_index].config.depth_bits != study.cases[study.rows[0].case_index].config.depth_bits;
   });
 }
 
-/// Whether rows of several LSBs have no eye depth that they could be compared by.
+/// Whether rows with several LSBs lack an eye depth for comparison.
 bool needs_range(const BenchStudy& study) {
   return has_many_lsbs(study) && std::any_of(study.rows.begin(), study.rows.end(), [](const BenchRow& row) {
            return row.facts.errors && row.facts.errors->depth_lsb_rms && !row.facts.errors->depth_eye_rms;

@@ -1,4 +1,4 @@
-// What `halfplane bench` measured, between its options and its files: how it is written and printed.
+// The measurements of `halfplane bench`, between its options and its files: how they are written and printed.
 #pragma once
 
 #include <iosfwd>
@@ -21,25 +21,26 @@ struct BenchStudy {
 
 class Gates;
 
-/// `bench --antialiasing`: error against the exact area, and time, cycles and bytes of each kind of antialiasing; `gates`: and
-/// those of its hardware, unless it is null. `size`, `repeat`, `seed` are the command's. Adds to `result` and prints.
+/// `bench --antialiasing`: error against the exact area, and time, cycles and bytes of each kind of antialiasing;
+/// `gates`: also the gates of its hardware, unless null. `size`, `repeat`, `seed` are the command's. Adds to `result`
+/// and prints.
 void measure_antialiasing(const CommonOptions& options, const Config& config, int repeat, const Gates* gates,
                           Json& result);
 
-/// Its page, of such a result.
+/// Writes the page of such a result.
 void write_antialiasing_page(const std::string& path, const Json& result, const std::string& command);
 
-/// Adds rows, skips and growth, the last two when they were measured.
+/// Adds rows, and skips and growth if they were measured.
 void add_bench_json(Json& result, const BenchStudy& study);
 
-/// Writes the page: the result, and what the page alone needs.
+/// Writes the page: the result, and data that only the page needs.
 void write_bench_page(const std::string& path, const Json& result, const std::string& command);
 
-/// A table whose columns are as wide as what stands in them; the first `left` columns begin at the left. A column of
-/// nothing but blanks and "-" is left out.
+/// Prints a table with columns as wide as their content; the first `left` columns are left-aligned. A column of only
+/// blanks and "-" is left out.
 void print_bench_table(std::ostream& out, const std::vector<std::vector<std::string>>& lines, std::size_t left);
 
-/// Tables for people.
+/// Prints tables for people.
 void print_bench(std::ostream& out, const BenchStudy& study);
 
 }  // namespace halfplane

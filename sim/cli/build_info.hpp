@@ -1,4 +1,4 @@
-// Which build of which commit this program is.
+// The build and the commit of this program.
 #pragma once
 
 #include <string_view>
@@ -6,7 +6,7 @@
 namespace halfplane {
 
 struct BuildInfo {
-  std::string_view commit;    ///< abbreviated hash, "+changes" behind it if files differ; "unknown" outside of git
+  std::string_view commit;    ///< abbreviated hash, followed by "+changes" if files differ; "unknown" outside of git
   std::string_view type;      ///< "Release", ...
   std::string_view compiler;  ///< "GNU 12.2.0"
 };

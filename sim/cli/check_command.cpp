@@ -14,7 +14,7 @@ struct CheckOptions : CommonOptions {
   std::string stage, file, vectors, junit;
 };
 
-/// The file to judge: with --vectors what goes in comes from there, and what comes out from FILE.
+/// The file to judge: with --vectors the input comes from that file, and the output from FILE.
 vectors::VectorFile checked_file(const CheckOptions& options) {
   vectors::VectorFile file = vectors::read_vectors(options.file, options.vectors.empty());
   if (!options.vectors.empty()) {
@@ -151,7 +151,7 @@ void add_check_command(CLI::App& app, Action& selected) {
   command->add_option("FILE", options->file, "vectors whose `out` is yours: jsonl, csv, or a folder of hex")
       ->required();
   add_output_options(*command, *options);
-  command->remove_option(command->get_option("--config"));  // the header says it
+  command->remove_option(command->get_option("--config"));  // the header contains it
   command->remove_option(command->get_option("--set"));
   command->add_option("--stage", options->stage, "the stage: cull, triangle_setup, coarse_raster ...")
       ->required()

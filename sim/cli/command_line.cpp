@@ -53,7 +53,7 @@ Words convention_names() {
 
 const Words kSceneFiles{".obj", ".gltf", ".glb", ".hpt"};
 
-/// What the options take whose words CLI11 does not know, by their long names.
+/// Completions of options whose words CLI11 does not know, by their long names.
 std::map<std::string, Completion> known_completions() {
   const Words keys = names_of(settings(), &Setting::key), timing = names_of(timing_settings(), &TimingSetting::key);
   const Words mappings = words_of(depth_mapping_names().subspan(1));  // the first is the scene's own
@@ -80,7 +80,7 @@ std::map<std::string, Completion> known_completions() {
   };
 }
 
-/// "{a,b,c}" somewhere in a type name: what CLI::IsMember says of itself.
+/// Extracts "{a,b,c}" from a type name: CLI::IsMember's description.
 Words member_words(const std::string& type) {
   const auto open = type.find('{'), close = type.find('}', open);
   if (open == std::string::npos || close == std::string::npos) return {};
@@ -107,7 +107,7 @@ Completion completion_of(const OptionText& option, const CLI::Option& source, co
   return {Kind::text, {}, {}};
 }
 
-/// "SCENE..." and the like: what stands for the value.
+/// "SCENE..." and the like: the placeholder of the value.
 std::string value_name(const CLI::Option& option, const std::string& type) {
   if (option.get_items_expected_max() == 0) return "";
   if (option.get_positional() && option.get_lnames().empty())
@@ -117,7 +117,7 @@ std::string value_name(const CLI::Option& option, const std::string& type) {
   return word.empty() ? "VALUE" : word;
 }
 
-/// CLI11 names the type in C++; what a reader wants to know is what goes there.
+/// CLI11 names the type in C++; a reader needs the kind of value.
 std::string readable(const std::string& word, Kind kind) {
   if (word == "INT" || word == "UINT" || word == "FLOAT") return "N";
   if (word != "TEXT" && word != "VALUE") return word;
@@ -133,7 +133,7 @@ std::string readable(const std::string& word, Kind kind) {
   }
 }
 
-/// "1 to 1024" of "INT in [1 - 1024]", as CLI::Range says it; empty without one.
+/// "1 to 1024" from "INT in [1 - 1024]", CLI::Range's description; empty without one.
 std::string range_text(const std::string& type) {
   const auto open = type.find(" in ["), close = type.find(']', open);
   if (open == std::string::npos || close == std::string::npos) return "";
@@ -161,7 +161,7 @@ OptionText option_text(const CLI::Option& source) {
   return option;
 }
 
-/// Options of `app` and of its groups, which CLI11 keeps as commands without a name.
+/// Adds options of `app` and of its groups, which CLI11 keeps as commands without a name.
 void add_options_of(const CLI::App& app, const std::string& group, CommandText& command) {
   for (const CLI::Option* source : app.get_options()) {
     if (source->get_group().empty()) continue;  // hidden
@@ -208,7 +208,7 @@ std::vector<std::string> setting_values(std::string_view unit) {
   if (unit.find('|') == std::string_view::npos) return values;
   std::istringstream text{std::string(unit)};
   for (std::string value; std::getline(text, value, '|');)
-    if (value.find('<') == std::string::npos) values.push_back(value);  // u<b> stands for many
+    if (value.find('<') == std::string::npos) values.push_back(value);  // u<b> stands for many values
   return values;
 }
 

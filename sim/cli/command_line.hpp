@@ -1,4 +1,4 @@
-// The command line as data, walked from the tree of CLI::App: what completions and man pages are made of.
+// The command line as data, from the tree of CLI::App: the input of completions and man pages.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -8,24 +8,24 @@
 
 namespace halfplane {
 
-/// One thing that an option or a positional takes, for a shell to complete.
+/// A value of an option or a positional, for a shell to complete.
 struct Completion {
   enum class Kind {
     none,     ///< no value: a flag
     text,     ///< a value that cannot be guessed
     words,    ///< one of `words`
-    list,     ///< some of `words`, with commas
+    list,     ///< several of `words`, separated by commas
     setting,  ///< key=value
-    key,      ///< a key of `words`, then '=' and what cannot be guessed
+    key,      ///< a key of `words`, then '=' and a value that cannot be guessed
     scene,    ///< a scene of `words`, or a file
-    scenes,   ///< such scenes, with commas
+    scenes,   ///< such scenes, separated by commas
     preset,   ///< a preset of `words`, or a file
     file,
     folder
   };
   Kind kind = Kind::none;
   std::vector<std::string> words;
-  std::vector<std::string> endings;  ///< of files, as ".hpt"; empty: any
+  std::vector<std::string> endings;  ///< endings of files, as ".hpt"; empty: any
 };
 
 struct OptionText {
@@ -34,10 +34,10 @@ struct OptionText {
   std::string meaning;
   std::string standard;  ///< the default; may be empty
   std::string range;     ///< "1 to 1024"; may be empty
-  std::string group;     ///< heading; empty for the usual one
+  std::string group;     ///< heading; empty for the default one
   Completion completion;
   bool is_required = false;
-  bool is_attached = false;  ///< takes its value behind '=' alone, and may do without: --json
+  bool is_attached = false;  ///< takes its value only after '=', and optionally: --json
   bool is_repeatable = false;
 };
 
@@ -46,14 +46,14 @@ struct CommandText {
   std::string name;  ///< empty: the program
   std::string meaning;
   std::vector<OptionText> positionals, options;
-  std::vector<std::string> notes;     ///< lines of the footer that are no examples
+  std::vector<std::string> notes;     ///< lines of the footer that are not examples
   std::vector<std::string> examples;  ///< each as typed
 };
 
 /// The program first, then its commands in order.
 [[nodiscard]] std::vector<CommandText> command_texts(const CLI::App& program);
 
-/// The values that a setting takes by name; empty for a number.
+/// The named values of a setting; empty for a number.
 [[nodiscard]] std::vector<std::string> setting_values(std::string_view unit);
 
 }  // namespace halfplane

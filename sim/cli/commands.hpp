@@ -10,7 +10,7 @@ namespace halfplane {
 
 using Action = std::function<int()>;
 
-/// Adds a command to `app`, which sets `selected` when the user chose it. Completions and man walk the whole of `app` when
+/// Adds a command to `app`, which sets `selected` when the user chooses it. Completions and man walk all of `app` when
 /// they run.
 using AddCommand = void(CLI::App& app, Action& selected);
 AddCommand add_render_command, add_compare_command, add_cosim_command, add_reduce_command, add_mutants_command,

@@ -10,7 +10,7 @@
 namespace halfplane {
 namespace {
 
-constexpr std::size_t kShownLines = 6;  // of explanations, in a summary
+constexpr std::size_t kShownLines = 6;  // explanations in a summary
 
 std::uint32_t channel_of(std::uint32_t rgb, int channel) { return rgb >> 8 * channel & 255; }
 
@@ -110,7 +110,7 @@ Json against_json(const JudgedImage& judged) {
     explanations.push_back({{"kind", name_of(one.kind)}, {"change", one.change}, {"pixels", one.pixels}});
   Json differences = Json::array();
   for (const ForeignPixel& pixel : r.first) differences.push_back(pixel_json(pixel, is_depth));
-  Json first = nullptr;  // its values are one number each
+  Json first = nullptr;  // its values are single numbers
   if (r.first_pixel)
     first = {{"x", r.first_pixel->x},
              {"y", r.first_pixel->y},

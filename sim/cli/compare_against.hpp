@@ -1,4 +1,4 @@
-// What `compare` says of another rasterizer's image: options, results, panels, JUnit.
+// The comparison with another rasterizer's image in `compare`: options, results, panels, JUnit.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ namespace halfplane {
 
 /// As typed.
 struct AgainstWords {
-  std::string path;       ///< of the image; empty: none
+  std::string path;       ///< path of the image; empty: none
   std::string tolerance;  ///< "color=1,depth=1"
   int listed = 10;        ///< pixels
   bool has_listed = false;
@@ -22,10 +22,10 @@ struct AgainstWords {
 /// Adds --against, --tolerance and --first.
 void add_against_options(CLI::App& app, AgainstWords& words);
 
-/// Throws InputError for a tolerance that is none, and for options of an image without one.
+/// Throws InputError for an invalid tolerance, and for options of an image without one.
 [[nodiscard]] Tolerance parse_tolerance(const AgainstWords& words);
 
-/// An image with what came of it.
+/// An image with its verdict.
 struct JudgedImage {
   std::string path;
   ForeignImage image;
@@ -35,16 +35,16 @@ struct JudgedImage {
 
 [[nodiscard]] Json against_json(const JudgedImage& judged);
 
-/// For people, the verdict last.
+/// Lines for people, the verdict last.
 [[nodiscard]] std::vector<std::string> against_lines(const JudgedImage& judged);
 
-/// The pixels that are listed. `explain`: the command that explains a pixel, without its column and row.
+/// The listed pixels. `explain`: the command that explains a pixel, without its column and row.
 [[nodiscard]] std::vector<std::string> difference_lines(const JudgedImage& judged, const std::string& explain);
 
-/// As kAgainstPanelNames has them.
+/// The panels of kAgainstPanelNames.
 [[nodiscard]] std::vector<NamedPanel> against_panels(const JudgedImage& judged);
 
-/// One case: the image is equal, or the pixels that differ.
+/// One case: the image is equal, or the pixels differ.
 [[nodiscard]] JunitCase against_case(const JudgedImage& judged);
 
 }  // namespace halfplane

@@ -31,7 +31,7 @@ struct CompareCommand : CommonOptions {
   std::vector<std::string> panels;
 };
 
-/// Null: of nothing there is no error. `count` says so.
+/// Null for no samples; `count` shows that.
 template <class Stats>
 Json figure_of(const Stats& s, double value) {
   return or_null(s.count != 0, value);
@@ -147,16 +147,16 @@ std::string row(const std::string& name, const Stats& s) {
   return name + "\t" + max_text(s) + "\t" + rms_text(s);
 }
 
-/// Of places, whose errors in binary32 are small.
+/// For positions, whose errors in binary32 are small.
 std::string two_digits(double value) { return formatted("%.2g", value); }
 
-/// Below a picture: the same figures as in the row, each on one line with its name.
+/// Caption of a picture: the figures of the row, each on one line with its name.
 template <class Stats>
 std::string figures(const Stats& s) {
   return "max\u00a0" + max_text(s) + "  rms\u00a0" + rms_text(s);
 }
 
-/// What holds, what is broken, and what nobody holds these rules to.
+/// The bounds that hold, the broken ones, and those that do not apply to these rules.
 std::vector<std::string> bound_lines(const std::vector<std::string>& broken, const std::vector<std::string>& given_up) {
   std::vector<std::string> lines = broken;
   if (broken.empty())
@@ -165,7 +165,7 @@ std::vector<std::string> bound_lines(const std::vector<std::string>& broken, con
   return lines;
 }
 
-/// Below the rows of light at vertices and at fragments: what each costs in time.
+/// Below the rows of light at vertices and at fragments: the time of each.
 std::vector<std::string> cycles_lines(const PerVertexCycles& cycles) {
   if (!cycles.refused.empty()) return {"  no cycles: " + cycles.refused};
   std::string with = "shade.unit=1";
@@ -175,7 +175,7 @@ std::vector<std::string> cycles_lines(const PerVertexCycles& cycles) {
           "    " + with + "; at vertices with shade.unit=0: " + with_commas(cycles.without_unit)};
 }
 
-/// The figures that a person looks at first, for terminal and picture alike.
+/// The figures to look at first, for terminal and picture alike.
 std::vector<std::string> summary_lines(const Comparison& c, const std::optional<PerVertexCycles>& cycles,
                                        const std::vector<std::string>& bounds) {
   std::vector<std::string> lines{
@@ -211,7 +211,7 @@ std::vector<std::string> summary_lines(const Comparison& c, const std::optional<
                     "\t" + fixed(of.max, 3) + "\t" + fixed(of.rms, 4));
   if (cycles)
     for (const std::string& line : cycles_lines(*cycles)) lines.push_back(line);
-  // Of many numbers of layers, powers of two and the last.
+  // For many layers: powers of two and the last.
   for (const LayerRow& layer : c.layers)
     if ((layer.layers & (layer.layers - 1)) == 0 || &layer == &c.layers.back())
       lines.push_back("under " + std::to_string(layer.layers) + " layers\t" + fixed(layer.max, 3) + "\t" +
@@ -221,7 +221,7 @@ std::vector<std::string> summary_lines(const Comparison& c, const std::optional<
   return lines;
 }
 
-/// "name\tmax\trms" in columns; other lines as they are.
+/// Aligns "name\tmax\trms" in columns; other lines are unchanged.
 void print_lines(std::ostream& out, const std::vector<std::string>& lines) {
   for (const std::string& line : lines) {
     const auto first = line.find('\t'), second = line.find('\t', first + 1);
@@ -238,7 +238,7 @@ void print_lines(std::ostream& out, const std::vector<std::string>& lines) {
   }
 }
 
-/// As kTexturePanelNames has them.
+/// The panels of kTexturePanelNames.
 std::vector<NamedPanel> texture_panels(const TextureErrors& t, int width, int height) {
   std::size_t next = 0;
   const auto panel = [&](const char* caption, const std::vector<float>& errors, const char* unit, bool diverging,
@@ -272,7 +272,7 @@ ComparisonSheet make_sheet(const Comparison& c, const Scene& scene, const Config
   return sheet;
 }
 
-/// As kAffinePanelNames has them: of an affine picture the perspective one, and how far it is off.
+/// The panels of kAffinePanelNames: for an affine picture the perspective one, and the error.
 std::vector<NamedPanel> affine_panels(const Comparison& c, const Config& config) {
   const int width = c.perspective.width, height = c.perspective.height;
   std::vector<NamedPanel> panels{
@@ -301,7 +301,7 @@ void write_compare_junit(const CompareCommand& options, const Config& config, co
   write_junit(options.junit_path, "compare." + label(config), cases, result["wall_s"], result, &config);
 }
 
-/// What the options can be refused for before a scene is read.
+/// Checks the options before a scene is read.
 void check_compare(const CompareCommand& options, const Config& config) {
   if (!options.against.path.empty()) require_one_sample(config, "compare --against");
   for (const std::string* path : {&options.sheet_path, &options.model_path, &options.golden_path})
@@ -405,7 +405,7 @@ int run(const CompareCommand& options) {
     };
     if (judged) add(against_panels(*judged));
     if (options.study.interpolation == "affine" || !options.panels.empty()) add(affine_panels(c, config));
-    if (!options.panels.empty())  // room for less
+    if (!options.panels.empty())  // less room
       sheet.title = std::filesystem::path(options.scene).filename().string() + ", " + label(config) +
                     (unusual.empty() ? "" : ", " + unusual);
     write_png(options.sheet_path, comparison_sheet(sheet));

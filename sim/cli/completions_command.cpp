@@ -1,4 +1,4 @@
-// halfplane completions: what bash, zsh and fish complete, made from the options themselves.
+// halfplane completions: completions for bash, zsh and fish, made from the options themselves.
 #include <iostream>
 #include <memory>
 
@@ -83,7 +83,7 @@ _halfplane_keys() {
 }
 )";
 
-// Bash cuts words at '=' and ':'; they are put together first, and what bash holds already is left out of the answers.
+// Bash cuts words at '=' and ':'; they are joined first, and the part that bash already has is left out of the answers.
 constexpr const char* kBashHead = R"(
 _halfplane() {
   local line=() word i is_glued=''
@@ -111,7 +111,7 @@ _halfplane() {
 complete -F _halfplane halfplane
 )";
 
-/// The call that completes one value; empty where there is nothing to say.
+/// The call that completes one value; empty if there is none.
 std::string bash_call(const Completion& completion) {
   const std::string words = spaced(completion.words);
   switch (completion.kind) {
@@ -124,7 +124,7 @@ std::string bash_call(const Completion& completion) {
     case CompletionKind::preset: return "_halfplane_words" + words + "; _halfplane_files" + spaced(completion.endings);
     case CompletionKind::file: return "_halfplane_files" + spaced(completion.endings);
     case CompletionKind::folder: return "_halfplane_files /";
-    case CompletionKind::text: return ":";  // the value is the user's own: no option names there
+    case CompletionKind::text: return ":";  // a free value: no option names here
     case CompletionKind::none: break;
   }
   return "";
@@ -154,7 +154,7 @@ std::string bash_script(const std::vector<CommandText>& commands) {
       std::string pattern;
       for (const std::string& name : option.names)
         pattern.append(pattern.empty() ? "" : " | ").append(command.name).append(".").append(name);
-      // What needs its '=' has no value behind a blank.
+      // An option that needs '=' takes no value after a blank.
       values += "    " + pattern + ") " + (option.is_attached ? "[[ $attached ]] || return 1; " : "") + call + " ;;\n";
     }
     plain += "    " + command.name + ")\n      if [[ $value == -* ]]; then _halfplane_words" +
@@ -219,7 +219,7 @@ std::vector<std::string> zsh_specs(const OptionText& option) {
   return specs;
 }
 
-/// A function that offers words, and files that end so.
+/// A function that offers words, and files with these endings.
 std::string zsh_words_or_files(const std::string& name, const std::string& what, const Completion& completion) {
   Completion files = completion;
   files.kind = CompletionKind::file;
@@ -228,7 +228,7 @@ std::string zsh_words_or_files(const std::string& name, const std::string& what,
          in_single_quotes("files:file:" + zsh_action(files), false) + "\n}\n";
 }
 
-/// The first completion of that kind that any command has.
+/// The first completion of that kind in any command.
 Completion completion_of_kind(const std::vector<CommandText>& commands, CompletionKind kind) {
   for (const CommandText& command : commands)
     for (const auto* list : {&command.positionals, &command.options})
@@ -291,7 +291,7 @@ end
 complete -c halfplane -f
 )";
 
-/// What stands behind -a, and -F or -f for files or none.
+/// The arguments of -a, and -F or -f for files or none.
 std::string fish_arguments(const Completion& completion) {
   switch (completion.kind) {
     case CompletionKind::words: return " -f -a '" + spaced(completion.words).substr(1) + "'";

@@ -16,7 +16,7 @@
 namespace halfplane {
 namespace {
 
-/// Key, value, range with unit, meaning: the last two are left out without --list.
+/// Key, value, range with unit, meaning: without --list the last two are left out.
 using Row = std::array<std::string, 4>;
 
 std::vector<Row> setting_rows(const Config& config) {
@@ -31,7 +31,7 @@ std::vector<Row> setting_rows(const Config& config) {
   return rows;
 }
 
-/// Those that only the cycle model can vary.
+/// The settings that only the cycle model can vary.
 std::vector<Row> timing_rows() {
   std::vector<Row> rows;
   const TimingParameters rtl;
@@ -62,7 +62,7 @@ std::string bound_text(const Width& width) {
   return formatted("%.6g", static_cast<double>(std::max(-width.range.lo, width.range.hi)));
 }
 
-/// The hardware's, then those that only the scalar engine has.
+/// The hardware's widths, then those of the scalar engine only.
 std::vector<const Width*> all_widths(const Widths& widths, const HomogeneousWidths& homogeneous) {
   std::vector<const Width*> all = widths.all();
   const auto more = homogeneous.all();

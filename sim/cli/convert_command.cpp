@@ -15,17 +15,17 @@ struct ConvertOptions : CommonOptions {
   std::string output, frames;
 };
 
-/// FILE.hpt as FILE-1.hpt, when there are several.
+/// FILE.hpt as FILE-1.hpt, if there are several.
 std::string numbered(const std::string& path, std::size_t number) {
   const std::size_t stem = path.size() - std::string_view(".hpt").size();
   return path.substr(0, stem) + "-" + std::to_string(number) + path.substr(stem);
 }
 
-/// One scene, or those that `cosim --random` runs one after the other.
+/// One scene, or the successive scenes of `cosim --random`.
 SceneSource scenes_of(const ConvertOptions& options, const Config& config) {
   if (options.random != 0) return random_scenes(config, options.seed, options.random);
   double load_s = 0;
-  Config plain = config;  // what draws the capture maps its depth, and would map it twice
+  Config plain = config;  // a program that draws the capture maps its depth, and would map it twice
   plain.depth_mapping = DepthMapping::projection;
   return single_scene(load_scene(options, plain, load_s));
 }

@@ -112,7 +112,7 @@ Json session_json(const CosimOptions& options, const Config& config, const DutFa
                       {"rtl", r.cycles},
                       {"raster", is_whole ? Json(r.raster_cycles) : Json(nullptr)},
                       {"tiles", is_whole ? Json(r.tile_cycles) : Json(nullptr)},
-                      // The run stops at the first difference; with other bits, or none, cycles mean nothing.
+                      // The run stops at the first difference; with other bits, or none, cycles are meaningless.
                       {"max_primitive_error", is_late      ? Json(error())
                                               : has_cycles ? Json(0)
                                                            : Json(nullptr)}};
@@ -153,7 +153,7 @@ void print_equal(std::ostream& out, const CosimOptions& options, const Config& c
       << " M cycles/s\n";
 }
 
-/// The result as JUnit: of a failure what the terminal says, paths and the repeat command too.
+/// The result as JUnit: for a failure the text of the terminal, including paths and the repeat command.
 void write_cosim_junit(const CosimOptions& options, const Config& config, const Session& session,
                        const SavedFinding* saved, const Json& result) {
   std::vector<JunitCase> cases;
@@ -174,7 +174,7 @@ void write_cosim_junit(const CosimOptions& options, const Config& config, const 
   write_junit(options.junit_path, "cosim." + label(config), cases, session.seconds, result, &config, is_interrupted());
 }
 
-/// What became of the waveform of the whole run, or why there is none.
+/// The fate of the waveform of the whole run, or why there is none.
 std::string trace_text(const CosimOptions& options, const DutFactory& factory, const Session& session) {
   const TraceWindow window = trace_window(options);
   const std::uint64_t clocks = session.result.clocks;
@@ -186,7 +186,7 @@ std::string trace_text(const CosimOptions& options, const DutFactory& factory, c
   return "none: the run has " + with_commas(clocks) + " cycles, and --trace-cycles begins behind them";
 }
 
-/// The scene that the model draws unlike the scalar engine, with the fewest primitives; none: interrupted before it was known.
+/// The scene with the fewest primitives that the model draws unlike the scalar engine; none: interrupted earlier.
 std::optional<Reduced> smallest_disagreement(const CosimOptions& options, const Session& session) {
   Progress progress(options, "reducing");
   ReduceOptions reducing;

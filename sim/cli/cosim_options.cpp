@@ -28,10 +28,10 @@ std::string default_save_path(const CosimOptions& options) {
 void create_folder_of(const std::string& path) {
   const auto folder = std::filesystem::path(path).parent_path();
   std::error_code error;
-  if (!folder.empty()) std::filesystem::create_directories(folder, error);  // writing into it says what is wrong
+  if (!folder.empty()) std::filesystem::create_directories(folder, error);  // the later write reports the error
 }
 
-/// The shortest that reads back as the same number.
+/// The shortest text that reads back as the same number.
 std::string probability_text(double value) {
   char text[32];
   return {text, std::to_chars(text, text + sizeof text, value).ptr};
@@ -144,8 +144,8 @@ SavedFinding save_finding(const CosimOptions& options, const Config& config, Dut
   } catch (const std::exception& error) {  // the mismatch is worth more than the file
     saved.failure = error.what();
   }
-  // A scene that does not fail alone, or a capture that is not there, repeats nothing.
-  // A capture on stdout can only be repeated from where the caller puts it, the scene on stdin likewise.
+  // A scene that does not fail alone, or a missing capture, cannot be repeated. A capture on stdout can only be
+  // repeated from the caller's file, the scene on stdin likewise.
   const bool has_capture = saved.failure.empty() && (saved.finding.reduced || options.random == 0) &&
                            (saved.capture != "-" || options.scene == "-");
   saved.repeat = repeat_command(options, has_capture ? config : effective_config(options),

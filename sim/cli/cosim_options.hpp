@@ -1,4 +1,4 @@
-// What `cosim` and `reduce` share: their options, and what they do with a scene that fails.
+// Shared by `cosim` and `reduce`: their options, and the handling of a failing scene.
 #pragma once
 
 #include <iosfwd>
@@ -21,7 +21,7 @@ struct CosimOptions : CommonOptions {
 /// Adds --stalls.
 void add_stalls_option(CLI::App& app, CosimOptions& options);
 
-/// Adds everything but --random and --junit.
+/// Adds all options except --random and --junit.
 void add_cosim_options(CLI::App& app, CosimOptions& options);
 
 /// The design for this configuration. Throws InputError for a mutant that it does not have, std::runtime_error (exit
@@ -30,24 +30,24 @@ void add_cosim_options(CLI::App& app, CosimOptions& options);
 
 [[nodiscard]] LockstepOptions lockstep_options(const CosimOptions& options);
 
-/// The command that runs a saved capture again; "": what the options ask for, from its scene or --random.
+/// The command that runs a saved capture again; "": the scene or --random of the options.
 [[nodiscard]] std::string repeat_command(const CosimOptions& options, const Config& config, const std::string& capture,
                                          const LockstepOptions& lockstep);
 
-/// Writes a scene as `--save` says, or to the default path; returns the path.
+/// Writes a scene to the path of `--save`, or to the default path; returns the path.
 std::string save_scene(const CosimOptions& options, const Scene& scene);
 
-/// Reduces the failing scene, saves it to `save_path` (creating its folder) and its waveform beside it.
+/// Reduces the failing scene, saves it to `save_path` (creating its folder) and its waveform next to it.
 struct SavedFinding {
   Finding finding;
   std::string capture, trace;  ///< files; trace is empty when there is none
   std::string repeat;          ///< command
-  std::string failure;         ///< why the capture could not be written; empty: it was
+  std::string failure;         ///< why the capture could not be written; empty: written
 };
 [[nodiscard]] SavedFinding save_finding(const CosimOptions& options, const Config& config, Dut& dut,
                                         const Scene& failed, const Mismatch& mismatch, double seconds);
 
-/// The report that a person acts on.
+/// Prints the report for a person.
 void print_finding(std::ostream& out, const SavedFinding& saved);
 
 /// {stage, arrow, key, cycle, fields, repro, ...}.

@@ -21,7 +21,7 @@ HALFPLANE_JSON_OF_MEMBERS(OrderTrial, order, store, cycles, bytes)
 
 namespace {
 
-constexpr std::uint64_t kFewCycles = 4'000'000;  // of a frame that is explained without being asked
+constexpr std::uint64_t kFewCycles = 4'000'000;  // cycles of a frame that is explained by default
 
 /// "key=rest". Throws InputError naming the option.
 std::pair<std::string, std::string> split(const std::string& option, const std::string& text) {
@@ -50,7 +50,7 @@ std::vector<std::pair<std::string, std::string>> variations(const CycleCommandOp
   return all;
 }
 
-/// Hands on to two; either may be missing.
+/// Forwards to two sinks; either may be missing.
 class Tee final : public TransferSink {
  public:
   Tee(TransferSink* first, TransferSink* second) : sinks_{first, second} {}
@@ -93,7 +93,7 @@ double milliseconds(std::uint64_t cycles, const Hardware& hardware) {
 
 std::string kilobytes(std::uint64_t bytes) { return with_commas((bytes + 512) / 1024) + " KB"; }
 
-/// Where most of the cycles go, in words.
+/// The stage with most of the cycles, in words.
 std::string bottleneck(const CycleResult& cycle) {
   const CycleRun& run = cycle.frame.run;
   const auto stages = stage_times(run);
@@ -101,7 +101,7 @@ std::string bottleneck(const CycleResult& cycle) {
   for (const StageTime& stage : stages)
     if (stage.works > slowest->works) slowest = &stage;
   std::string text;
-  if (run.totals.move_cycles >= slowest->works)  // the framebuffer and the memory behind it, as one
+  if (run.totals.move_cycles >= slowest->works)  // the framebuffer and memory, as one
     text = "framebuffer: for " + percent(run.totals.move_cycles, run.cycles) +
            " of all cycles it moves, marks or looks at tiles and takes no access" +
            (run.totals.memory_cycles == 0
@@ -270,7 +270,7 @@ CycleResult run_cycle_engine(const CommonOptions& common, const CycleCommandOpti
   }
   try {
     vary(common, options, scene, cycle.stalls, result);
-  } catch (const Interrupted&) {  // the rows so far stand
+  } catch (const Interrupted&) {  // the rows so far are kept
   }
   return result;
 }

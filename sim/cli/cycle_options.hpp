@@ -1,4 +1,4 @@
-// What `render --engine cycle` takes and says besides what every engine does.
+// Options and output of `render --engine cycle` beyond those of every engine.
 #pragma once
 
 #include <iosfwd>
@@ -18,20 +18,20 @@ struct CycleCommandOptions {
   bool explain = false;
   std::string primitives_path, trace_path, heat_path, misses_path;
 
-  /// The options that only this engine has and that were given, for a message; empty: none was.
+  /// The given options that only this engine has, for a message; empty: none.
   [[nodiscard]] std::string given() const;
 };
 
-/// Adds the options that only this engine has.
+/// Adds the options of this engine only.
 void add_cycle_options(CLI::App& app, CycleCommandOptions& options);
 
-/// Throws InputError for what can be refused before a scene is read.
+/// Throws InputError for options that can be refused before a scene is read.
 void check_cycle_options(const CycleCommandOptions& options, const Config& config);
 
-/// What --set, --timing and --memory ask for. Throws InputError.
+/// The hardware of --set, --timing and --memory. Throws InputError.
 [[nodiscard]] Hardware hardware_of(const CycleCommandOptions& options, const Config& config);
 
-/// A run of the engine, and what was found out about it.
+/// A run of the engine, and its analysis.
 struct CycleResult {
   Hardware hardware;
   double stalls = 0;
@@ -50,7 +50,7 @@ struct CycleResult {
   std::vector<Row> rows;  ///< of --what-if
 };
 
-/// Renders, writes the files that the options name, explains (when asked, or when the frame has few cycles) and varies.
+/// Renders, writes the files that the options name, explains (on request, or if the frame has few cycles) and varies.
 [[nodiscard]] CycleResult run_cycle_engine(const CommonOptions& common, const CycleCommandOptions& options,
                                            const Scene& scene, const Config& config, RenderOptions render);
 

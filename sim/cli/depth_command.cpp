@@ -1,4 +1,4 @@
-// halfplane depth: what a depth buffer's mapping, format and planes do, in theory and on a scene.
+// halfplane depth: the effect of a depth buffer's mapping, format and planes, in theory and on a scene.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -19,9 +19,9 @@ namespace {
 
 struct DepthCommand : CommonOptions {
   std::string near, far, mappings, formats, z, range;
-  std::string error;                ///< a length: where bins exceed it, and what it takes
+  std::string error;                ///< a length: where bins exceed it, and the bits needed
   std::string slope;                ///< of two surfaces: their minimum separation
-  std::string fight_rate = "0.01";  ///< of the overlapping pairs, for the fewest bits
+  std::string fight_rate = "0.01";  ///< of overlapping pairs, for the fewest bits
   double fov = 45;                  ///< degrees, vertical
   int bits = 0;                     ///< short for --format u<bits>
   bool sweeps = false;
@@ -151,7 +151,7 @@ int thread_count(const DepthCommand& options) {
                              : static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 16U));
 }
 
-/// Of a study that a signal ended, what is whole: the variants with their measurements, or the theory alone.
+/// Keeps the complete part of an interrupted study: the variants with their measurements, or only the theory.
 void keep_whole(std::vector<DepthVariant>& variants, std::vector<DepthMeasurement>& measured) {
   std::vector<DepthVariant> whole;
   for (std::size_t i = 0; i < measured.size(); ++i)
@@ -160,7 +160,7 @@ void keep_whole(std::vector<DepthVariant>& variants, std::vector<DepthMeasuremen
   if (!whole.empty()) variants = std::move(whole);
 }
 
-/// Leaves those variants that were measured, if any were.
+/// Keeps the measured variants, if there are any.
 SceneStudy study_scene(const DepthCommand& options, const DepthQuestion& question, const Scene& scene,
                        std::vector<DepthVariant>& variants) {
   SceneStudy study;
@@ -191,7 +191,7 @@ SceneStudy study_scene(const DepthCommand& options, const DepthQuestion& questio
   if (!study.fewest.empty())
     study.answers.insert(study.answers.begin(),
                          fewest_bits_answer(study.fewest, variants[0].planes, question.fight_rate));
-  // At the size of the scene: at another one the rate where sweep and table meet would be another.
+  // At the size of the scene: another size would give another rate at the crossing of sweep and table.
   if (has_sweeps && !is_interrupted())
     study.sweeps = sweep_depth(scene, question.config, question.mappings, variants[0].format.bits, variants[0].planes,
                                threads, part(0.4, 1));
@@ -202,9 +202,9 @@ constexpr const char* kBroken =
     "a measured error exceeds its bound, surfaces at their separation fight, or a stored code is not what the stages "
     "compute";
 
-/// Whether every prediction holds that was tried: if not, this program is at fault.
+/// Whether every tested prediction holds: if not, this program is wrong.
 bool holds(const std::vector<DepthRow>& rows, const SceneStudy& study) {
-  // A bound that is reached exactly may be passed by the rounding of binary64.
+  // Rounding in binary64 may exceed a bound that is reached exactly.
   const auto is_good = [](const DepthMeasurement& m) { return m.worst_share <= 1 + 1e-6 && m.stage_mismatches == 0; };
   return std::all_of(study.measured.begin(), study.measured.end(), is_good) &&
          std::all_of(study.trials.begin(), study.trials.end(),
@@ -236,7 +236,7 @@ void check_depth_options(const DepthCommand& options, const Config& config) {
   if (!options.paths.page.empty()) require_chart_library();
 }
 
-/// The scene that is asked for, if any. Throws InputError when nothing says how deep it is.
+/// The requested scene, if any. Throws InputError when its depth range is unknown.
 std::optional<Scene> depth_scene(const DepthCommand& options, const Config& config) {
   if (options.scene.empty()) return std::nullopt;
   double load_s = 0;
@@ -264,7 +264,7 @@ std::string depth_title(const DepthCommand& options, const DepthQuestion& questi
          label(question.config) + ", seed " + std::to_string(options.seed);
 }
 
-/// The theory of every mapping and format, as far as a signal lets it come.
+/// Adds the theory of every mapping and format, until a signal comes.
 void add_theory(const DepthCommand& options, const DepthQuestion& question, std::vector<DepthRow>& rows,
                 std::vector<DepthVariant>& variants) {
   Progress progress(options, "working out the theory");

@@ -43,8 +43,8 @@ Picture reduced(int width, int height, std::span<const Value> values, int max_wi
   return picture;
 }
 
-/// Magnitudes from `low` (dark) to `high` (bright) by the logarithm; NaN, where nothing was drawn, is grey. A picture
-/// wider than `max_width` is reduced by a whole factor, each pixel then showing the worst of its block.
+/// Magnitudes from `low` (dark) to `high` (bright) on a logarithmic scale; NaN, for undrawn pixels, is grey. A picture
+/// wider than `max_width` is reduced by a whole factor; each pixel then shows the worst of its block.
 Picture error_map(int width, int height, std::span<const float> errors, double low, double high, int max_width) {
   return reduced(
       width, height, errors, max_width, [](float e) { return std::isnan(e) ? -1.0 : static_cast<double>(std::abs(e)); },
@@ -61,7 +61,7 @@ Picture fight_map(int width, int height, std::span<const std::uint8_t> fights, i
       [](double worst) { return kFightColors[static_cast<std::size_t>(std::max(worst, 0.0))]; });
 }
 
-/// Null where no error was measured.
+/// Null if no error was measured.
 Json depth_part_json(const ErrorMoments& m) {
   const auto known = [&m](double value) { return or_null(m.count != 0, value); };
   return {{"max", known(m.max)}, {"rms", known(m.rms)}};
@@ -103,7 +103,7 @@ Json measured_json(const DepthMeasurement& m) {
           {"decades", decades}};
 }
 
-/// One series of the report: a mapping and a format, without what is measured.
+/// One series of the report: a mapping and a format, without measurements.
 Json series_json(const DepthVariant& variant, const DepthQuestion& question) {
   const ExactDepth theory(variant.mapping, variant.format, question.near, question.far);
   std::vector<NamedDepth> asked;
@@ -164,7 +164,7 @@ const std::vector<std::string> kFightLegend{"grey: two surfaces or more, in orde
 const std::vector<std::string> kHeatLegend{"error of the visible surface, in eye depth",
                                            "the scale is logarithmic, and one for all"};
 
-/// Pictures of all variants on one sheet, and what their colours mean.
+/// Pictures of all variants on one sheet, with the meaning of their colours.
 void write_depth_sheet(const std::string& path, const std::string& title, const std::vector<std::string>& legend,
                        const std::vector<DepthVariant>& variants, const std::vector<Picture>& pictures,
                        const std::vector<std::string>& notes, const Legend& scale) {
@@ -176,7 +176,7 @@ void write_depth_sheet(const std::string& path, const std::string& title, const 
   write_png(path, compose_sheet(title, panels, std::min(3, static_cast<int>(panels.size()))));
 }
 
-/// A scene's variants as pictures, and what is said below each.
+/// A scene's variants as pictures, with captions.
 struct DepthPictures {
   std::vector<Picture> heats, fights;
   std::vector<std::string> heat_notes, fight_notes;

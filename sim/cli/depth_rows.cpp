@@ -55,7 +55,7 @@ void add_theory_rows(const DepthQuestion& question, DepthMapping mapping, const 
     add(z, "separation_storage", separation.storage);
     add(z, "separation_datapath", separation.datapath);
     add(z, "separation_snap", separation.snap);
-    // Tried: the part of overlapping fragments that fight.
+    // Measured: the fraction of overlapping fragments that fight.
     MeasureOptions order_alone;
     order_alone.wants_errors = false;
     order_alone.progress = [&](double) { progress(done); };
@@ -85,7 +85,7 @@ void add_measured_rows(const DepthQuestion& question, const DepthVariant& varian
   add("", "pairs", static_cast<double>(m.order.pairs));
   add("", "ties", static_cast<double>(m.order.ties));
   add("", "inversions", static_cast<double>(m.order.inversions));
-  // Of nothing there is neither a rate nor an error: no row.
+  // Without samples there is neither a rate nor an error: no row.
   if (m.order.pairs > 0) add("", "fight_rate", m.order.rate());
   if (m.total.count > 0) {
     add("", "error_max", m.total.max);
@@ -112,7 +112,7 @@ void add_fewest_rows(const DepthQuestion& question, const std::vector<FewestBits
 
 std::vector<std::string> length_answers(const DepthQuestion& question) {
   const Rational low = question.low.value_or(question.near), high = question.high.value_or(question.far);
-  std::vector<std::pair<int, std::string>> needs;  // bits, who
+  std::vector<std::pair<int, std::string>> needs;  // bits, variant
   for (std::size_t i = 1; i < depth_mapping_names().size(); ++i) {
     const auto mapping = static_cast<DepthMapping>(i);
     if (const auto bits = fewest_bits(mapping, question.near, question.far, low, high, *question.length))

@@ -1,5 +1,5 @@
-// What `halfplane depth` works out, between its options and its files: questions, rows, the study of a scene, and how they
-// are written.
+// The study of `halfplane depth`, between its options and its files: questions, rows, the study of a scene, and their
+// output.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ struct DepthRow {
   double value;
 };
 
-/// What the options ask for, read.
+/// The parsed options.
 struct DepthQuestion {
   Config config;
   Rational near, far;
@@ -38,31 +38,32 @@ struct DepthQuestion {
   std::uint64_t seed = 1;
 };
 
-/// What a scene adds: measurements, trials, sweeps, pictures.
+/// Results of a scene: measurements, trials, sweeps, pictures.
 struct SceneStudy {
   std::vector<DepthMeasurement> measured;
   std::vector<DepthTrial> trials;
   std::vector<DepthSweep> sweeps;
-  std::vector<FewestBits> fewest;    ///< of each mapping; empty where nothing overlaps
-  std::vector<std::string> answers;  ///< with the fewest bits first, where they are known
+  std::vector<FewestBits> fewest;    ///< for each mapping; empty without overlaps
+  std::vector<std::string> answers;  ///< with the fewest bits first, if known
 };
 
 // depth_rows.cpp
 
-/// The shortest decimal that reads back, or "inf"; and three digits for people.
+/// The shortest decimal that reads back, or "inf"; and with three digits for people.
 [[nodiscard]] std::string depth_number(double value);
 [[nodiscard]] std::string short_text(double value);
 [[nodiscard]] std::string mapping_name(DepthMapping mapping);
 
-/// The theory of one mapping and format, with the part done to `progress`; what a scene measured, of the whole with an empty
-/// z, of a decade with the z that it begins at.
+/// The theory of one mapping and format, reporting the fraction done to `progress`; measurements of a scene, for the
+/// whole with an empty z, for a decade with its first z.
 void add_theory_rows(const DepthQuestion& question, DepthMapping mapping, const DepthFormat& format,
                      const std::function<void(double)>& progress, std::vector<DepthRow>& rows);
 void add_measured_rows(const DepthQuestion& question, const DepthVariant& variant, const DepthMeasurement& m,
                        std::vector<DepthRow>& rows);
 void add_fewest_rows(const DepthQuestion& question, const std::vector<FewestBits>& fewest, std::vector<DepthRow>& rows);
 
-/// Which mapping keeps every step of the range below the length with the fewest bits: as integers, and as reversed floats.
+/// The mapping that keeps every step of the range below the length with the fewest bits: as integers, and as reversed
+/// floats.
 [[nodiscard]] std::vector<std::string> length_answers(const DepthQuestion& question);
 
 [[nodiscard]] std::string depth_csv(const std::vector<DepthRow>& rows);
@@ -71,16 +72,16 @@ void print_measured(std::ostream& out, const std::vector<DepthVariant>& variants
 
 // depth_page.cpp
 
-/// rows, series, trials, sweeps, answers: what the JSON and the page have in common.
+/// rows, series, trials, sweeps, answers: the common part of the JSON and the page.
 [[nodiscard]] Json study_json(const DepthQuestion& question, const std::vector<DepthRow>& rows,
                               const std::vector<DepthVariant>& variants, const SceneStudy& study);
 
-/// Where pictures and the page go; "" for none.
+/// Files for pictures and the page; "" for none.
 struct DepthPaths {
   std::string page, heat, fights;
 };
 
-/// Writes the files that are asked for. `scene` may be null.
+/// Writes the requested files. `scene` may be null.
 void write_depth_files(const DepthPaths& paths, const std::string& title, const DepthQuestion& question,
                        const Json& result, const Scene* scene, const std::vector<DepthVariant>& variants,
                        const SceneStudy& study);

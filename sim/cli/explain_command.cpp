@@ -21,7 +21,7 @@ HALFPLANE_JSON_OF_MEMBERS(Rect, x, y, width, height)
 
 namespace {
 
-constexpr int kMostPixels = 4096;  // of --box: a history of each is kept
+constexpr int kMostPixels = 4096;  // in --box: a history of each is kept
 
 struct ExplainOptions : CommonOptions {
   int x = 0, y = 0;  ///< pixels
@@ -31,7 +31,7 @@ struct ExplainOptions : CommonOptions {
   bool rtl = false, steps = false;
   int mutant = 0;
   std::string output;  ///< .png or .html
-  int margin = 4;      ///< of it, pixels
+  int margin = 4;      ///< of the picture, pixels
 };
 
 bool is_page(const std::string& path) { return path.ends_with(".html"); }
@@ -96,7 +96,7 @@ void check_picture(const ExplainOptions& options) {
   check_output(options.output);
 }
 
-/// The command as it can be repeated.
+/// The command for repetition.
 std::string explain_repeat(const ExplainOptions& options, const Config& config) {
   std::string command = program_word() + " explain " + quoted(options.scene) + " " + std::to_string(options.x) + " " +
                         std::to_string(options.y) + scene_arguments(options, config) + " --seed " +
@@ -112,7 +112,7 @@ std::string explain_repeat(const ExplainOptions& options, const Config& config) 
   return command + " -o " + quoted(options.output);
 }
 
-/// What the page's script reads (sim/show/report/explain.js). `around`: explained pixels of the window, row by row.
+/// The data for the page's script (sim/show/report/explain.js). `around`: explained pixels of the window, row by row.
 Json page_json(const explain::Explanation& around, const explain::Window& window, const Rect& box, const Scene& scene,
                const Config& config) {
   using namespace explain;
@@ -130,7 +130,7 @@ Json page_json(const explain::Explanation& around, const explain::Window& window
             {"empty",
              {{"depth", hex_text(empty.frame.depth[at], depth_bits)},
               {"color", hex_text(empty.frame.color[at], config.color_format == ColorFormat::rgb565 ? 16 : 32)}}}};
-  page["samples"] = Json::array();  // where they lie in each pixel
+  page["samples"] = Json::array();  // their places in each pixel
   const std::vector<PixelSamples> pixels = pixels_of(around);
   for (const PixelHistory& sample : pixels.front())
     page["samples"].push_back(
@@ -141,14 +141,14 @@ Json page_json(const explain::Explanation& around, const explain::Window& window
     for (Json& entry : json["history"]) {
       Json& hardware = entry["model"]["hardware"];
       if (hardware.is_object())
-        for (Json& packet : hardware["packets"]) packet.erase("fields");  // most of the bytes, and nobody shows them
+        for (Json& packet : hardware["packets"]) packet.erase("fields");  // most of the bytes, and not shown
     }
     page["pixels"].push_back(std::move(json));
   }
   return page;
 }
 
-/// Draws the box and what lies around it.
+/// Draws the box and its surroundings.
 void write_picture(const ExplainOptions& options, const Rect& box, const explain::Window& window,
                    const explain::Explanation& around, const Scene& scene, const Config& config) {
   if (!is_page(options.output)) {
@@ -190,9 +190,9 @@ int run(const ExplainOptions& options) {
   how.mutant = static_cast<std::uint16_t>(options.mutant);
   how.progress = [&progress](double fraction) { progress(fraction); };
   const Rect told_box{options.x, options.y, box.width, box.height};
-  explain::require_inside(scene, {{options.x, options.y}});  // before the box, which may end beyond every int
+  explain::require_inside(scene, {{options.x, options.y}});  // before the box, whose end may exceed every int
   explain::require_inside(scene, box_pixels(options.x, options.y, box.width, box.height));
-  const bool draws = !options.output.empty();  // what lies around it as well, in one run
+  const bool draws = !options.output.empty();  // including its surroundings, in one run
   const explain::Window window = explain::window_around(told_box, draws ? options.margin : 0, scene);
   explain::Explanation told =
       explain::explain(scene, config, box_pixels(window.left, window.top, window.width, window.height), how);

@@ -294,7 +294,7 @@ Json entry_json(const Entry& entry, const PixelHistory& pixel, const Explanation
   return json;
 }
 
-/// What is stored in the end; of hardware nothing.
+/// The final stored values; null for hardware.
 Json final_json(const Resolved& of, const Scene& scene, const Config& config) {
   const int depth_bits = DepthEncode(config, scene.planes).format().bits;
   Json golden = stored_json(of.golden.rounded, config, depth_bits, true, false);

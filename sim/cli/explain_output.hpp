@@ -1,4 +1,4 @@
-// What `halfplane explain` says of a pixel: as JSON, and as a person reads it.
+// Output of `halfplane explain` for a pixel: as JSON, and as text for people.
 #pragma once
 
 #include <iosfwd>
@@ -8,8 +8,8 @@
 
 namespace halfplane::explain {
 
-/// {x, y, history, final}, the contract's form. Of several samples: an entry of the history for each, primitive by primitive,
-/// and what they have stored in `samples`.
+/// {x, y, history, final}, the contract's form. With several samples: an entry of the history for each, primitive by
+/// primitive, and their stored values in `samples`.
 [[nodiscard]] Json pixel_json(PixelSamples pixel, const Explanation& all, const Scene& scene, const Config& config);
 
 void print_pixel(std::ostream& out, PixelSamples pixel, const Explanation& all, const Scene& scene,
@@ -21,10 +21,10 @@ void print_pixel(std::ostream& out, PixelSamples pixel, const Explanation& all, 
 /// A rational number as a real one.
 [[nodiscard]] double to_real(const exact::Rational& value);
 
-/// What the golden makes of an entry, in the words of verdicts; "dropped" before its raster.
+/// The golden's verdict on an entry, in the words of verdicts; "dropped" before its raster.
 [[nodiscard]] std::string_view golden_verdict(const GoldenFigure& golden);
 
-/// The word of a state's value, as captures have it.
+/// The word of a state's value, as in captures.
 [[nodiscard]] std::string_view state_word(std::string_view state, const State& of);
 
 }  // namespace halfplane::explain

@@ -21,7 +21,7 @@ std::string place_text(const PixelHistory& sample) {
          fixed(std::ldexp(sample.place.y, -kPatternFraction), 4);
 }
 
-/// Entry `i` of a pixel's samples: what all of them share.
+/// Prints the common part of entry `i` of a pixel's samples.
 void print_title(std::ostream& out, PixelSamples pixel, std::size_t i, const Scene& scene) {
   const Entry& entry = pixel.front().history[i];
   out << "  " << (entry.primitive ? "#" + std::to_string(*entry.primitive) : std::string("--")) << ' '
@@ -202,7 +202,7 @@ void print_hardware(std::ostream& out, const HardwareFigure& figure, const Pixel
   out << label_text("RTL") << compared << " packets compared\n";
 }
 
-/// What one sample makes of a primitive; the only one of most pixels.
+/// Prints the result of a primitive at one sample; most pixels have only one.
 void print_sample(std::ostream& out, const Entry& entry, const PixelHistory& sample, const Explanation& all,
                   const Widths& widths) {
   if (all.samples > 1)

@@ -12,7 +12,7 @@
 namespace halfplane {
 namespace {
 
-/// Text as roff shows it: no minus becomes a hyphen, no line a request.
+/// Text escaped for roff: no minus becomes a hyphen, no line a request.
 std::string roff(const std::string& text) {
   std::string result;
   for (const char c : text) result += c == '\\' ? "\\e" : c == '-' ? "\\-" : std::string(1, c);
@@ -90,7 +90,7 @@ interrupted
 set and not empty: no escapes for colours, anywhere
 )";
 
-/// What stands behind the name: without the program's own name and a full stop.
+/// The text after the name: without the program's own name and a full stop.
 std::string purpose(const CommandText& command) {
   std::string text = command.meaning;
   if (const auto colon = text.find(": "); command.name.empty() && colon != std::string::npos) text.erase(0, colon + 2);

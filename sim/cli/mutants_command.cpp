@@ -32,18 +32,18 @@ std::vector<Mutant> asked_for(const MutantsCommand& options) {
   return some;
 }
 
-/// A built-in scene and what the model shows of it.
+/// A built-in scene and the model's picture of it.
 struct ModelPicture {
   Scene scene;
   std::string color, depth;      ///< hashes
-  std::uint64_t cycles = ~0ULL;  ///< that it may take: four times the RTL's own
+  std::uint64_t cycles = ~0ULL;  ///< limit: four times the RTL's own
 };
 
 /// One seeded fault and what became of it.
 struct Verdict {
   Mutant mutant;
   std::optional<Mismatch> mismatch;
-  std::vector<std::string> pictures;  ///< scenes of which colour or depth differ, or which never end
+  std::vector<std::string> pictures;  ///< scenes with different colour or depth, or that never end
 };
 
 std::vector<ModelPicture> model_pictures(const MutantsCommand& options, const Config& config) {
@@ -110,7 +110,7 @@ std::string column(const std::string& text, std::size_t width) { return left_ali
 
 std::string stage_of(const Mutant& mutant) { return std::filesystem::path(mutant.file).stem().string(); }
 
-/// "setup step_x[depth]", "counters tiles_hiz +1", "tile never comes".
+/// Place of the difference: "setup step_x[depth]", "counters tiles_hiz +1", "tile never comes".
 std::string where(const Mismatch& m) {
   const auto fields = m.differing();
   const std::string more = fields.size() > 1 ? " +" + std::to_string(fields.size() - 1) : "";
@@ -175,7 +175,7 @@ int run(const MutantsCommand& options) {
         progress(static_cast<double>(verdicts.size()) / static_cast<double>(asked.size()));
         verdicts.push_back(judge(options, factory, *dut, mutant, pictures));
       }
-    } catch (const Interrupted&) {  // the verdicts so far stand
+    } catch (const Interrupted&) {  // the verdicts so far are kept
     }
   }
   const bool is_partial = is_interrupted();

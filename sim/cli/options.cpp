@@ -25,13 +25,13 @@
 namespace halfplane {
 namespace {
 
-/// The option whose file is stdout, if one is.
+/// The option whose file is stdout, if any.
 std::string& on_stdout() {
   static std::string option;
   return option;
 }
 
-/// For CLI11: notes that `option` writes to stdout when its value is "-". There is room for one.
+/// For CLI11: notes that `option` writes to stdout when its value is "-". Only one option may.
 std::function<void(std::string)> claim_stdout(const std::string& option) {
   return [option](const std::string& path) {
     if (path != "-") return;
@@ -41,13 +41,13 @@ std::function<void(std::string)> claim_stdout(const std::string& option) {
   };
 }
 
-/// Each as a shell takes it, the program first.
+/// The words, each quoted for a shell, the program first.
 std::vector<std::string>& typed_words() {
   static std::vector<std::string> words{"halfplane"};
   return words;
 }
 
-// Decimal, as it is printed; CLI11 would take -1, 010 and what is too large for another number.
+// Decimal only; CLI11 would read -1, 010 and too large numbers as other numbers.
 std::uint64_t parse_seed(const std::string& text) {
   std::uint64_t seed = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
@@ -160,7 +160,7 @@ void check_output(const std::string& path, const std::string& extension) {
 
 namespace {
 
-/// Whether depth.bits follow from a depth.format, because nobody says them.
+/// Whether depth.bits follow from depth.format, because they are not given.
 bool chooses_depth_bits(const CommonOptions& options, const Config& config) {
   const bool is_said =
       options.config.find('.') != std::string::npos ||  // a file
@@ -187,7 +187,7 @@ Config drawing_config(const CommonOptions& options) {
   Config config = effective_config(options);
   if (chooses_depth_bits(options, config)) {
     const bool is_linear = is_screen_linear(config.depth_mapping);
-    constexpr int kMostOfFastPath = 30;  // under w and log, whose codes far away lie between few of the plane's
+    constexpr int kMostOfFastPath = 30;  // under w and log, whose far codes fall between few of the plane's codes
     const int bits = interpolated_bits(config.depth_format, is_linear, is_linear ? 0 : kMostOfFastPath);
     config.depth_bits = is_linear || config.depth_format.is_float() ? bits : std::min(bits, kMostOfFastPath);
   }
@@ -313,7 +313,7 @@ void write_json(const CommonOptions& options, const Json& result) {
   if (options.json.empty()) return;
   Json whole = result;
   whole["command"] = typed_command();
-  // Names of files may be any bytes, JSON is UTF-8.
+  // File names may be any bytes, JSON is UTF-8.
   const std::string text = whole.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   if (options.json != "-") return write_text_file(options.json, text);
   write_stdout({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, "--json",

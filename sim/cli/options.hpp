@@ -1,4 +1,4 @@
-// What all commands share: options, the effective configuration, where text and results go.
+// Shared by all commands: options, the effective configuration, and the places of text and results.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -19,7 +19,7 @@
 #include "sim/scene/load.hpp"
 #include "sim/scene/object_cull.hpp"
 
-/// A value that may be missing is null in JSON.
+/// An optional value is null in JSON if missing.
 template <class T>
 struct nlohmann::adl_serializer<std::optional<T>> {
   template <class Json>
@@ -46,7 +46,7 @@ enum ExitStatus : int {
   exit_bad_input = 2,
   exit_missing = 3,
   exit_interrupted = 130,
-  exit_unread = 141  ///< all is well but nobody reads stdout any more: what a shell says of a tool that SIGPIPE ended
+  exit_unread = 141  ///< success, but stdout is no longer read: as a shell reports a tool ended by SIGPIPE
 };
 
 /// The common options as typed.
@@ -64,8 +64,8 @@ struct CommonOptions {
   std::string skip = "all";
   std::string convention = "gl";
   std::string cull_objects = "box";
-  bool leaves_out = false;  ///< what `cull_objects` finds outside is not computed: for commands that draw, and no more
-  bool has_tree = true;     ///< false: each object is asked by itself
+  bool leaves_out = false;  ///< objects outside by `cull_objects` are not computed: for commands that only draw
+  bool has_tree = true;     ///< false: each object is tested separately
   std::string json;         ///< empty: none, "-": stdout, else a file
   bool quiet = false;
 };
@@ -76,15 +76,16 @@ void add_output_options(CLI::App& app, CommonOptions& options);
 /// Adds --seed.
 void add_seed_option(CLI::App& app, CommonOptions& options, const std::string& meaning);
 
-/// Adds an option that takes the name of a file to write, or - for stdout; an empty name is refused, and a second one on
-/// stdout.
+/// Adds an option that takes the name of a file to write, or - for stdout; an empty name is refused, and a second
+/// output on stdout.
 void add_file_option(CLI::App& app, const std::string& name, std::string& path, const std::string& meaning);
 
 /// Adds SCENE and every common option.
 void add_scene_options(CLI::App& app, CommonOptions& options);
 
-/// Throws InputError when `path` lies in no folder or is one, or does not end in `extension` (lower case, as ".npy"; ""
-/// for any). Called before the work, so that nobody waits for a result that cannot be saved. No path is fine, and so is -.
+/// Throws InputError when `path` lies in no folder, is a folder, or does not end in `extension` (lower case, as ".npy";
+/// "" for any). Called before the work, so that no time is lost for a result that cannot be saved. An empty path is
+/// valid, and so is -.
 void check_output(const std::string& path, const std::string& extension = "");
 
 /// `--size WxH`, pixels; 0x0 for an empty text. Throws InputError.
@@ -93,17 +94,17 @@ struct Size {
 };
 [[nodiscard]] Size parse_size(const std::string& text);
 
-/// A part of a whole, above 0 and at most 1: "0.01" or "1%". Throws InputError, which begins with `option`.
+/// A fraction, above 0 and at most 1: "0.01" or "1%". Throws InputError, which begins with `option`.
 [[nodiscard]] double parse_part(const std::string& text, const std::string& option);
 
-/// Whether a scene of that name is read as a capture.
+/// Whether a scene with that name is read as a capture.
 [[nodiscard]] bool is_capture(const std::string& name);
 
 /// Preset or file, then every --set, validated. Throws InputError.
 [[nodiscard]] Config effective_config(const CommonOptions& options);
-/// The same for a picture: a depth.format is made from a plane that has its codes, unless somebody says depth.bits.
+/// The same for a picture: a depth.format is made from a plane with enough codes, unless depth.bits is given.
 [[nodiscard]] Config drawing_config(const CommonOptions& options);
-/// Says which bits those are.
+/// Reports the bits chosen.
 void warn_of_depth_bits(const CommonOptions& options, const Config& config);
 
 /// `--skip all|none|NAME,NAME...`. Throws InputError naming the legal names.
@@ -114,33 +115,33 @@ struct TimeSpan {
   double from = 0;
   std::optional<double> to;
 };
-/// Nothing for an empty text. Throws InputError.
+/// None for an empty text. Throws InputError.
 [[nodiscard]] std::optional<TimeSpan> parse_time(const std::string& text);
 
 /// The moment of `--time`, one time. Throws InputError for a span.
 [[nodiscard]] Moment moment_of(const CommonOptions& options);
 
-/// What the options ask for, before a moment is chosen. Prints warnings to stderr. See load_scene().
+/// Opens the requested scene, before a moment is chosen. Prints warnings to stderr. See load_scene().
 [[nodiscard]] MovingScene open_scene(const CommonOptions& options, const Config& config);
 
-/// A scene of open_scene() before it is projected: objects outside the view left out, in the options' convention and the
+/// A scene of open_scene() before projection: without objects outside the view, in the options' convention and the
 /// configuration's mapping of depth.
 [[nodiscard]] Scene prepared_in_clip_space(Scene scene, const CommonOptions& options, const Config& config,
                                            ObjectCounts* objects = nullptr);
 
-/// The same as the engines take it: with --transform clipped, divided and mapped in smaller numbers.
+/// The same in the engines' form: with --transform clipped, divided and mapped in lower precision.
 [[nodiscard]] Scene prepared(Scene scene, const CommonOptions& options, const Config& config,
                              ObjectCounts* objects = nullptr);
 
-/// Loads the scene that the options ask for, in its convention; a size that is not given fits the configuration's target.
-/// Prints warnings to stderr, sets `load_s`, and `objects` if there is one.
+/// Loads the requested scene, in its convention; without a given size it fits the configuration's target. Prints
+/// warnings to stderr, sets `load_s`, and `objects` if there is one.
 [[nodiscard]] Scene load_scene(const CommonOptions& options, const Config& config, double& load_s,
                                ObjectCounts* objects = nullptr);
 
-/// A warning where the scene's own depths collide (depth_collision()), and of coordinates out of reach (beyond_reach()).
+/// Warns of colliding depths in the scene (depth_collision()), and of coordinates out of reach (beyond_reach()).
 void warn_of_scene(const Scene& scene, const Config& config);
 
-/// Adds what the last scene of `source` took.
+/// Adds the work for the last scene of `source`.
 void add_work(ObjectCounts& objects, const MovingScene& source);
 
 /// `objects` of a result.
@@ -154,8 +155,8 @@ HALFPLANE_JSON_OF_MEMBERS(ObjectCounts, in, culled_sphere, culled_box, primitive
 /// The stream for human text: stdout, or stderr when a result or a file is on stdout; a null stream with --quiet.
 [[nodiscard]] std::ostream& human(const CommonOptions& options);
 
-/// Writes the result where --json says, with `command`, which gives it again. Call it before the human text: if it fails, its
-/// one line stands alone.
+/// Writes the result to the place of --json, with `command`, which repeats it. Call it before the human text: if it
+/// fails, its one line stands alone.
 void write_json(const CommonOptions& options, const Json& result);
 
 using TimePoint = std::chrono::steady_clock::time_point;
@@ -165,7 +166,7 @@ using TimePoint = std::chrono::steady_clock::time_point;
 /// Adds `wall_s` and, for work that a signal cut short, `"partial": true`; then write_json().
 void finish_json(const CommonOptions& options, Json& result, TimePoint start, bool is_partial = false);
 
-/// Makes the folder that `option` names, unless it is empty. Throws InputError.
+/// Creates the folder that `option` names, unless it is empty. Throws InputError.
 void make_folder(const std::string& option, const std::string& folder);
 
 /// The scene as a capture.
@@ -185,7 +186,7 @@ template <class Range>
   return text;
 }
 
-/// What stands between commas, empty parts included.
+/// The parts between commas, including empty ones.
 [[nodiscard]] std::vector<std::string> split_at_commas(const std::string& text);
 
 /// `printf` of one number.
@@ -200,40 +201,40 @@ template <class Range>
 /// A check for CLI11: an empty word is no value.
 [[nodiscard]] std::string refuse_empty(const std::string& text);
 
-/// A check for CLI11: Range lets NaN pass.
+/// A check for CLI11, whose Range accepts NaN.
 [[nodiscard]] std::string is_number(const std::string& text);
 
-/// Throws InputError when two of the files, read or written, have one name; no name is fine.
+/// Throws InputError when two of the files, read or written, have the same name; no name is valid.
 void check_distinct(const std::vector<std::string>& paths);
 
-/// `text` with as many blanks behind it as it takes to fill `width`, and before it.
+/// `text` padded to `width` with blanks after it, and before it.
 [[nodiscard]] std::string left_aligned(std::string text, std::size_t width);
 [[nodiscard]] std::string right_aligned(const std::string& text, std::size_t width);
 
-/// A word as a POSIX shell takes it.
+/// A word quoted for a POSIX shell.
 [[nodiscard]] std::string quoted(const std::string& word);
 
-/// The program as it was called, as a shell takes it: the first word of every command that is printed to be repeated.
+/// The program as it was called, quoted for a shell: the first word of every printed command.
 [[nodiscard]] const std::string& program_word();
 
-/// To be called once, with what main() got.
+/// To be called once, with the arguments of main().
 void set_command_line(int argc, char** argv);
 
-/// The command as it was typed, as a shell takes it: in the same folder, and with the same stdin, it gives the same result.
+/// The command as typed, quoted for a shell: in the same folder, and with the same stdin, it gives the same result.
 [[nodiscard]] std::string typed_command();
 
-/// Writes a suite as JUnit XML, unless `path` is empty, with what it was made with: scene and seed of `result`, the
-/// configuration (null: many), the command that repeats it.
+/// Writes a suite as JUnit XML, unless `path` is empty, with its inputs: scene and seed of `result`, the configuration
+/// (null: many), the command that repeats it.
 void write_junit(const std::string& path, const std::string& suite, const std::vector<JunitCase>& cases, double seconds,
                  const Json& result, const Config* config, bool is_partial = false);
 
-/// " --config PRESET --set KEY=VALUE ..." for exactly this configuration, as a shell takes it.
+/// " --config PRESET --set KEY=VALUE ..." for exactly this configuration, quoted for a shell.
 [[nodiscard]] std::string config_arguments(const Config& config);
 
-/// That, and --size, --camera and what else made the scene of its source; not the scene's name, nor the seed.
+/// The same, and --size, --camera and all other options of the scene; not the scene's name, nor the seed.
 [[nodiscard]] std::string scene_arguments(const CommonOptions& options, const Config& config);
 
-/// `value` with so many decimals.
+/// `value` with `decimals` decimals.
 [[nodiscard]] std::string fixed(double value, int decimals);
 
 }  // namespace halfplane

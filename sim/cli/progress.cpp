@@ -76,7 +76,7 @@ std::string Progress::line(double fraction, std::uint64_t count, double seconds)
     text += " " + std::to_string(static_cast<int>(100 * std::clamp(fraction, 0.0, 1.0))) + " %";
   if (!unit_.empty() && count > 0)
     text += ", " + rounded(static_cast<double>(count) / seconds) + " " + unit_ + " a second";
-  constexpr double kGuess = 0.005;  // of less nobody knows how long the whole takes
+  constexpr double kGuess = 0.005;  // fraction done below which no estimate is shown
   if (fraction >= kGuess) text += ", " + minutes(seconds * std::max(0.0, 1 / fraction - 1)) + " left";
   return text;
 }

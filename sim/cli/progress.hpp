@@ -1,4 +1,4 @@
-// Work that takes a while: how far it is, how fast, how long it will still take; and its end by a signal.
+// Progress of long work: fraction done, rate and remaining time; and its end by a signal.
 #pragma once
 
 #include <chrono>
@@ -11,18 +11,18 @@
 
 namespace halfplane {
 
-/// The progress of one piece of work, on stderr: on a terminal a line that is redrawn, once the work takes longer than two
-/// seconds; elsewhere, in a log, a line every ten seconds, or as many as HALFPLANE_PROGRESS says. Nothing with --quiet.
-/// From its making on, a signal asks the program to stop, and these calls say so.
+/// The progress of one piece of work, on stderr: on a terminal a line that is redrawn, once the work takes longer than
+/// two seconds; elsewhere, in a log, a line every ten seconds, or at the interval of HALFPLANE_PROGRESS. Nothing with
+/// --quiet. From construction on, a signal asks the program to stop, and these calls report that.
 class Progress {
  public:
-  /// `unit`: what calls count, as "checks"; empty: they count nothing.
+  /// `unit`: the unit of the counts, as "checks"; empty: no counts.
   Progress(const CommonOptions& options, std::string what, std::string unit = "");
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// Shows the part done, 0...1, NaN if the total is unknown. False: a signal asks to stop.
+  /// Shows the fraction done, 0...1, NaN if the total is unknown. False: a signal asks to stop.
   [[nodiscard]] bool goes_on(double fraction, std::uint64_t count = 0);
   /// The same, but throws Interrupted.
   void operator()(double fraction, std::uint64_t count = 0);
@@ -38,12 +38,12 @@ class Progress {
   bool is_enabled_, is_terminal_, is_shown_ = false;
 };
 
-/// Marks the result of work that a signal cut short: `"partial": true`. Others have no such key.
+/// Marks the result of interrupted work: `"partial": true`. Other results have no such key.
 void mark_partial(Json& result);
 
-/// Its last line for people.
+/// Prints its last line for people.
 void print_partial(std::ostream& out);
-/// The exit status: `status`, unless a signal cut the work short, which the last line then says.
+/// The exit status: `status`, unless a signal interrupted the work, as the last line then says.
 [[nodiscard]] int ended(std::ostream& out, bool is_partial, int status);
 
 }  // namespace halfplane

@@ -12,7 +12,7 @@ struct ReduceCommand : CosimOptions {
   double seconds = 60;
 };
 
-/// The mismatch that the scene fails with. Throws Interrupted.
+/// The scene's mismatch. Throws Interrupted.
 std::optional<Mismatch> first_mismatch(const ReduceCommand& options, const Config& config, Dut& dut,
                                        const Scene& scene) {
   Progress progress(options, "running the scene");

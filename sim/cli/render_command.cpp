@@ -65,7 +65,7 @@ Rendering draw_once(const RenderCommand& options, const Scene& scene, const Conf
     return facts->cycle->frame.rendering;
   }
   if (options.engine == "golden") return render_golden(scene, config, golden::Precision::binary64, render);
-  return render_golden(scene, config, golden::Precision::binary32, render);  // check_options() let no other through
+  return render_golden(scene, config, golden::Precision::binary32, render);  // check_options() refuses all others
 }
 
 }  // namespace
@@ -87,7 +87,7 @@ Rendering run_engine(const RenderCommand& options, const Scene& scene, const Con
 
 namespace {
 
-// Everything that can be refused before a scene is read.
+// Checks everything that can be refused before a scene is read.
 void check_options(const RenderCommand& options, const Config& config) {
   if (std::find(kEngines.begin(), kEngines.end(), options.engine) == kEngines.end())
     throw InputError("--engine: no engine '" + options.engine +
@@ -159,7 +159,7 @@ Json stages_json(const LockstepResult& run) {
     stages[std::string(sender_name(kStreams[i]))] = {
         {"busy", use.busy},
         {"stalled", use.stalled},
-        {"starved", use.starved - (run.clocks - run.cycles)},  // without the clocks behind the last packet
+        {"starved", use.starved - (run.clocks - run.cycles)},  // without the clocks after the last packet
         {"items", use.busy}};
   }
   return stages;
@@ -213,7 +213,7 @@ std::string tested_text(const Counters& c) {
   return text;
 }
 
-/// ", 12 dropped: 5 outside the view, 7 facing away": why each primitive that is not drawn is not.
+/// ", 12 dropped: 5 outside the view, 7 facing away": the reasons for primitives that are not drawn.
 std::string dropped_text(const Counters& c) {
   if (c.culled == 0) return "";
   const auto& skipped = c.skipped;
@@ -230,7 +230,7 @@ std::string dropped_text(const Counters& c) {
   return ", " + with_commas(c.culled) + " dropped" + reasons;
 }
 
-/// What people read; the figures are those of `result`.
+/// Prints the text for people, with the figures of `result`.
 void print_result(const RenderCommand& options, const Config& config, const Rendering& rendering,
                   const CycleFacts& facts, const Json& result) {
   const Counters& c = rendering.counters;
@@ -272,7 +272,7 @@ int run(const RenderCommand& given) {
   const Config config = drawing_config(given);
   check_options(given, config);
   RenderCommand options = given;
-  options.leaves_out = !options.engine.starts_with("golden");  // golden draws what is marked, too
+  options.leaves_out = !options.engine.starts_with("golden");  // golden also draws marked objects
   if (options.frames != 0) return run_frames(options, config);
   double load_s = 0;
   ObjectCounts objects;

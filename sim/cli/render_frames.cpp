@@ -20,7 +20,7 @@ struct PlannedFrame {
   Moment moment;
   std::function<Scene()> scene;
   bool is_of_capture = false;
-  bool goes_on = false;  ///< with the picture of the frame before
+  bool goes_on = false;  ///< on the picture of the frame before
 };
 
 /// One frame's figures, in the order of the columns of --csv: those of `halfplane render`.
@@ -42,7 +42,7 @@ Json frame_row(int frame, const Moment& moment, const Rendering& rendering, cons
   return row;
 }
 
-/// Throws InputError where a frame goes on with the picture of the one before, and the engine has it no more.
+/// Throws InputError if a frame draws on the picture of the one before, and the engine no longer has it.
 void refuse_to_go_on(const RenderCommand& options, std::size_t frame) {
   const bool keeps = options.engine == "functional" || options.engine == "scalar";
   if (keeps && options.supersample.empty()) return;
@@ -76,7 +76,7 @@ std::vector<PlannedFrame> capture_frames(const RenderCommand& options, Scene sce
   return frames;
 }
 
-/// What moves, at its moments.
+/// The frames of an animation, with their moments.
 std::vector<PlannedFrame> moving_frames(const RenderCommand& options, const MovingScene& source) {
   if (options.frames == kAllFrames)
     throw InputError("--frames all: that is for captures, and " + options.scene + " is none; give a number");
@@ -104,8 +104,8 @@ RenderCommand options_of(const RenderCommand& options, int frame, int frames) {
   return own;
 }
 
-/// Draws frame after frame. What leaves bins alone is one engine, or one piece of hardware, over all of them; what else draws
-/// begins each frame from nothing.
+/// Draws frame after frame. An engine that skips bins is kept over all frames, like hardware; other engines begin each
+/// frame with an empty target.
 class FrameDrawer {
  public:
   FrameDrawer(const RenderCommand& options, const Config& config) : options_(options) {
@@ -127,7 +127,7 @@ class FrameDrawer {
     }
   }
 
-  /// `onto`: the picture that the frame goes on with; null: it begins with nothing. `keeps_samples`: as run_engine().
+  /// `onto`: the picture to draw on; null: an empty one. `keeps_samples`: as run_engine().
   Rendering draw(const RenderCommand& own, const Scene& scene, const Config& config, CycleFacts& facts,
                  const std::function<void(double)>& progress, const Framebuffer* onto, bool keeps_samples) {
     if (!functional_ && !cycle_ && !rtl_) return run_engine(own, scene, config, &facts, progress, onto, keeps_samples);
@@ -148,7 +148,7 @@ class FrameDrawer {
   }
 
  private:
-  /// Nothing is asked for that shows everything that was drawn.
+  /// Whether no requested output needs every draw of the frame.
   [[nodiscard]] static bool is_picture_alone(const RenderCommand& options) {
     const CycleCommandOptions& cycle = options.cycle;
     return options.count_path.empty() && options.ids_path.empty() && options.draws_path.empty() &&

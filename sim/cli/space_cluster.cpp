@@ -1,4 +1,4 @@
-// The design space on a cluster: tasks that anybody's shell can run, one point each, and what they left gathered.
+// The design space on a cluster: tasks that any shell can run, one point each, and the collection of their results.
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Slurm's own limit is 1,001 unless somebody has set MaxArraySize.
+/// Slurm's own limit is 1,001 unless MaxArraySize is set.
 constexpr std::size_t kMostJobs = 1000;
 
 std::string point_name(std::size_t index) {
@@ -62,7 +62,7 @@ Json read_json(const fs::path& path) {
 void write_cluster(const CommonOptions& common, const SpaceOptions& options, const std::vector<BenchCase>& cases,
                    const std::function<std::string(const BenchCase&)>& arguments, const SpaceStudy& study) {
   if (options.wants_area)
-    (void)Gates(options.rtl, options.cache, options.parts);  // says now what would be missing there
+    (void)Gates(options.rtl, options.cache, options.parts);  // reports early what would be missing on the cluster
   std::error_code error;
   const fs::path folder = fs::absolute(options.slurm, error).lexically_normal();
   for (const char* part : {"points", "logs"}) {
@@ -101,7 +101,7 @@ void write_cluster(const CommonOptions& common, const SpaceOptions& options, con
 
 namespace {
 
-/// Adds the points of one folder to the study, and its head if there is none yet. Returns how many are missing.
+/// Adds the points of one folder to the study, and its head if there is none yet. Returns the number of missing points.
 std::size_t collect_folder(const fs::path& folder, SpaceStudy& study, bool is_first) {
   Json manifest = read_json(folder / "space.json");
   if (manifest.value("schema", "") != "halfplane.space/1" || !manifest.contains("labels"))

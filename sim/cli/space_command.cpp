@@ -1,4 +1,4 @@
-// What `bench --area` measures and how it is written.
+// Measurement and output of `bench --area`.
 #include <algorithm>
 #include <iostream>
 

@@ -25,19 +25,19 @@ struct SpaceOptions {
   }
 };
 
-/// Adds all of them to `bench`.
+/// Adds all of these options to `bench`.
 void add_space_options(CLI::App& command, SpaceOptions& options);
 
-/// The options that ask for the same again.
+/// The options that select the same again.
 [[nodiscard]] std::string space_arguments(const SpaceOptions& options);
 
-/// Throws InputError for what can be refused before a scene is read.
+/// Throws InputError for options that can be refused before a scene is read.
 void check_space_options(const CommonOptions& common, const SpaceOptions& options, const std::string& page);
 
-/// What was found, and what is to be done with it.
+/// The results, and their outputs.
 struct SpaceStudy {
   Json result;          ///< head, and later `points`
-  std::string command;  ///< that measures it again
+  std::string command;  ///< repeats the measurement
   std::string page;     ///< file; may be empty
   bool is_partial = false;
 };
@@ -46,13 +46,13 @@ struct SpaceStudy {
 void measure_space(const CommonOptions& common, const SpaceOptions& options, const std::vector<BenchCase>& cases,
                    SpaceStudy& study);
 
-/// Writes DIR/tasks (a shell command a line, for GNU parallel too), DIR/job.sh (for sbatch) and DIR/space.json. `arguments`
-/// gives what a case takes besides its own settings.
+/// Writes DIR/tasks (a shell command a line, for GNU parallel too), DIR/job.sh (for sbatch) and DIR/space.json.
+/// `arguments` gives the options of a case besides its own settings.
 void write_cluster(const CommonOptions& common, const SpaceOptions& options, const std::vector<BenchCase>& cases,
                    const std::function<std::string(const BenchCase&)>& arguments, const SpaceStudy& study);
 
-/// Reads what the tasks left in the folders; the first one's configuration is the base. Returns how many points are not there
-/// yet.
+/// Reads the results of the tasks in the folders; the first one's configuration is the base. Returns the number of
+/// missing points.
 std::size_t collect_space(const SpaceOptions& options, SpaceStudy& study);
 
 /// Marks the front, writes JSON, CSV and page, and prints.

@@ -26,7 +26,7 @@ struct StressCommand : CommonOptions {
   bool quick = false, list = false, has_config = false;
 };
 
-/// One figure of a case as a row of the table and of the result shows it.
+/// One figure of a case, for a row of the table and the result.
 using WorstEntry = std::pair<const std::string, stress::Worst>;
 
 /// The property that is nearest to its bound.
@@ -42,7 +42,7 @@ std::string figure(double value) {
   return is_whole ? with_commas(static_cast<std::uint64_t>(value)) : fixed(value, 4);
 }
 
-/// A configuration in a table: its preset and how many settings differ, when it is not one alone.
+/// A configuration in a table: its preset and the number of different settings, if it is no preset alone.
 std::string short_label(const Config& config) {
   const std::string text = label(config);
   const auto settings = std::count(text.begin(), text.end(), ',');
@@ -71,7 +71,7 @@ int list_cases(const StressCommand& options) {
   return exit_ok;
 }
 
-/// The command that runs one unit again; what is a property of all units together needs them all.
+/// The command that runs one unit again; a property of all units together needs all of them.
 std::string repeat_command(const StressCommand& options, const stress::CaseResult& result, const std::string& property,
                            std::uint64_t unit) {
   std::string command =
@@ -89,7 +89,7 @@ std::string repeat_command(const StressCommand& options, const stress::CaseResul
   return command;
 }
 
-/// Writes a scene as DIR/NAME.hpt; the file's name, or "" when there is no scene.
+/// Writes a scene as DIR/NAME.hpt; returns the file's name, or "" without a scene.
 std::string save_capture(const std::string& folder, const std::string& name, const Scene& scene) {
   if (scene.states.empty()) return "";
   std::filesystem::create_directories(folder);

@@ -50,7 +50,7 @@ void add_rule_option(CLI::App& app, StudyOptions& options, const Rule& rule) {
       ->capture_default_str();
 }
 
-/// The enumerator of a name; CLI11 let no other through.
+/// The enumerator of a name; CLI11 has refused all others.
 template <class Enum, class Names>
 Enum enumerator(const Names& names, const std::string& name) {
   return static_cast<Enum>(std::find(names.begin(), names.end(), name) - names.begin());

@@ -1,4 +1,4 @@
-// The study rules of docs/rules.md and docs/numerics.md, for the commands that can run the scalar engine.
+// The study rules of docs/rules.md and docs/numerics.md, for commands that can run the scalar engine.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ struct StudyOptions {
   std::string gradients{name_of(Gradients::one_reciprocal)};
   std::string accumulator{name_of(Accumulator::wrap)};
   std::string weights{name_of(Weights::eight)};
-  std::string interpolation = "scene";  ///< a change of the scene's states: every engine has it
+  std::string interpolation = "scene";  ///< a change of the scene's states, possible in every engine
 };
 
 /// Adds --traversal, --fill-rule, --gradients, --accumulator and --weights.
@@ -28,25 +28,26 @@ void add_clipping_option(CLI::App& app, StudyOptions& options);
 /// Adds --interpolation.
 void add_interpolation_option(CLI::App& app, StudyOptions& options);
 
-/// The scene with all colours and texture coordinates interpolated so: "affine", "perspective", or as it is, "scene".
+/// The scene with all colours and texture coordinates interpolated as given: "affine", "perspective", or unchanged,
+/// "scene".
 [[nodiscard]] Scene interpolated(Scene scene, const std::string& interpolation);
 
-/// " --fill-rule NAME ...": those that are not as usual, as a shell takes them.
+/// " --fill-rule NAME ...": the rules that differ from the default, quoted for a shell.
 [[nodiscard]] std::string study_arguments(const StudyOptions& options);
 
 [[nodiscard]] StudyRules study_rules(const StudyOptions& options);
 
-/// Throws InputError, naming the option, when an engine is asked for what it does not have.
+/// Throws InputError, naming the option, when an engine lacks a rule.
 void check_study_rules(const StudyOptions& options, const std::string& engine);
 
 /// Adds {traversal, fill_rule, clipping, gradients, accumulator, weights, interpolation} to a result.
 void add_rules_json(Json& result, const StudyOptions& options);
 
-/// Adds those, and {double_draws, undrawn_samples}.
+/// Adds the rules, and {double_draws, undrawn_samples}.
 void add_study_json(Json& result, const StudyOptions& options, const Scene& scene, const Config& config);
 
-/// "traversal bbox, fill rule inclusive, 12 double draws": the same for people, without what is as usual, from what
-/// add_study_json() added, from "clipping" alone, or from "interpolation".
+/// "traversal bbox, fill rule inclusive, 12 double draws": the same for people, without defaults, from the keys of
+/// add_study_json(), from "clipping" alone, or from "interpolation".
 [[nodiscard]] std::string study_text(const Json& result);
 
 }  // namespace halfplane

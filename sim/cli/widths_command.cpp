@@ -17,14 +17,14 @@
 namespace halfplane {
 namespace {
 
-/// A number where every reader of JSON has it exactly, else text.
+/// A number if every reader of JSON has it exactly, else text.
 Json integer_json(int128 value) {
   constexpr int128 exact = int128{1} << 53;
   if (value >= -exact && value <= exact) return static_cast<std::int64_t>(value);
   return decimal(value);
 }
 
-/// All digits as long as they fit their column.
+/// All digits if they fit their column.
 std::string short_decimal(int128 value) {
   std::string text = decimal(value);
   if (text.size() <= 11) return text;
@@ -85,7 +85,7 @@ Json row_json(const WidthRow& row, const Config& config) {
 
 constexpr std::array kTextureSides{256, 1024, 4096};
 
-/// To which ratio of w over a triangle errors over w are proven.
+/// The bound of the ratio of w over a triangle for which errors over w are proven.
 Json over_w_json(const Config& config) {
   const PerspectiveFormat format = perspective_format(config);
   Json coordinate = Json::array();

@@ -1,4 +1,4 @@
-// What the two halves of `halfplane widths` share: the table of widths, and the smallest configuration.
+// Shared by the two halves of `halfplane widths`: the table of widths, and the smallest configuration.
 #pragma once
 
 #include "sim/cli/options.hpp"

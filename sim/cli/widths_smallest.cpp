@@ -95,7 +95,7 @@ Json trial_json(const TriedConfig& trial, const std::vector<std::string>& names,
           {"broken", or_null(trial.broken)}};
 }
 
-/// The options that make `config` of the start's.
+/// The options that turn the start into `config`.
 std::string set_options(const Config& config, const Config& start) {
   std::string text;
   for (const Setting& setting : settings())
@@ -190,7 +190,7 @@ int run_smallest(const WidthsCommand& options) {
   Smallest smallest;
   {
     Progress progress(options, "measuring", "configurations");
-    const double unknown = std::nan("");  // nobody knows how many will be needed
+    const double unknown = std::nan("");  // the total is unknown
     smallest = find_smallest(scenes, start, bounds,
                              [&](int trials) { progress(unknown, static_cast<std::uint64_t>(trials)); });
   }

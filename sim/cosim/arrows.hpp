@@ -1,4 +1,4 @@
-// The packets of an arrow, field by field, as model and RTL have them.
+// The packets of an arrow, field by field, in model and RTL.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ struct FieldPair {
   std::string name;  ///< "mask", "edge_value[2]"
   int bits = 0;
   bool is_signed = false;
-  std::uint64_t model = 0, rtl = 0;  ///< the raw bits
+  std::uint64_t model = 0, rtl = 0;  ///< raw bits
 
   [[nodiscard]] bool differs() const { return model != rtl; }
   [[nodiscard]] std::string model_text() const;  ///< as a decimal number

@@ -16,16 +16,16 @@
 
 namespace halfplane {
 
-/// What the design shows in one cycle, before the clock edge.
+/// The design's outputs in one cycle, before the clock edge.
 struct DutOutputs {
   std::uint32_t fired = 0;  ///< bit i: a packet of arrow kTapped[i] moves now
   bool primitive_ready = false, line_ready = false, beat_valid = false, answer_ready = false, idle = false;
   bool texture_valid = false, texel_ready = false;
-  bool moves_tiles = false;                          ///< the framebuffer is busy with memory or a clear
+  bool moves_tiles = false;                          ///< the framebuffer waits for memory or a clear
   std::uint32_t stream_valid = 0, stream_ready = 0;  ///< bit i: kStreams[i]
-  std::array<const void*, kArrows> packet{};  ///< little-endian bytes of what the RTL sends, rounded up; by Arrow
-  const void* counters = nullptr;             ///< CounterPacket, likewise
-  std::string failure;                        ///< message of an assertion that failed at the edge; empty: none has
+  std::array<const void*, kArrows> packet{};         ///< little-endian bytes sent by the RTL, rounded up; by Arrow
+  const void* counters = nullptr;                    ///< CounterPacket, likewise
+  std::string failure;                               ///< message of an assertion that failed at the edge; empty: none
 };
 
 class Dut {
@@ -36,22 +36,23 @@ class Dut {
   /// A new instance with registers of random content from `seed`, reset. Nothing is offered to it. `mutant`: the fault in
   /// it, 0 for none.
   virtual void reset(std::uint64_t seed, std::uint16_t mutant) = 0;
-  /// Pulls the reset from now on, or lets go of it: without that of power_on_ni the memory port recovers.
+  /// Asserts the reset from now on, or releases it: without power_on_ni, so that the memory port recovers.
   virtual void hold_reset(bool holds) = 0;
-  /// Where the planes lie in memory, from now on.
+  /// Sets the addresses of the buffers in memory, from now on.
   virtual void set_layout(const std::uint32_t* words) = 0;
-  /// Offers a packet from now on; null takes the offer back. The words are copied.
+  /// Offers a packet from now on; null withdraws the offer. The words are copied.
   virtual void set_primitive(const std::uint32_t* words) = 0;
   virtual void set_line(const std::uint32_t* words) = 0;
   virtual void set_answer(const std::uint32_t* words) = 0;
   virtual void set_texel(const std::uint32_t* words) = 0;
-  /// While held, the counters that the design shows stay as they are.
+  /// While held, the design's counter outputs stay constant.
   virtual void set_counters_hold(bool holds) = 0;
   /// Settles this cycle's outputs; they stay valid until clock().
   virtual const DutOutputs& evaluate(std::uint32_t stalls, bool beat_ready, bool texture_ready) = 0;
   virtual void clock() = 0;
   [[nodiscard]] virtual bool can_trace() const { return false; }
-  /// Records a waveform from here to close_trace(), if it can. Each: 0, or the errno of what could not be written so far.
+  /// Records a waveform until close_trace(), if possible. Each returns 0, or the errno of the first failed write so
+  /// far.
   [[nodiscard]] virtual int open_trace(const std::string&) { return 0; }
   virtual int close_trace() { return 0; }
 };
@@ -77,8 +78,8 @@ struct Mutant {
 /// All of them; none without Verilator.
 [[nodiscard]] std::span<const Mutant> mutants();
 
-/// The design with exactly this configuration, whatever its preset is called. Throws std::runtime_error, one line with
-/// the configurations that there are, when none has it: exit status 3.
+/// The design with exactly this configuration, under any preset name. Throws std::runtime_error, one line with the
+/// available configurations, when there is none: exit status 3.
 [[nodiscard]] const DutFactory& find_dut(const Config& config);
 
 /// Makes the design and checks that it was Verilated from this configuration. Throws std::runtime_error if not.

@@ -8,7 +8,7 @@
 namespace halfplane {
 namespace {
 
-/// XML 1.0 has no other control characters, and neither U+FFFE nor U+FFFF.
+/// XML 1.0 allows no other control characters, and neither U+FFFE nor U+FFFF.
 bool is_xml(char32_t c) { return c == '\t' || (c >= ' ' && c != 0x7f && c < 0xfffd) || c > 0xffff; }
 
 std::string escaped(const std::string& text) {

@@ -1,4 +1,4 @@
-// JUnit XML: what continuous integration reads.
+// JUnit XML: the result format of continuous integration.
 #pragma once
 
 #include <string>
@@ -10,16 +10,16 @@ struct JunitCase {
   std::string name;
   std::string failure;    ///< one line; empty: passed
   std::string details;    ///< of the failure
-  std::string output;     ///< what a passed case has to say
-  std::string skipped{};  ///< why it was not run; empty: it was
+  std::string output;     ///< output of a passed case
+  std::string skipped{};  ///< why it was not run; empty: it was run
 };
 
-/// What holds for the whole suite.
+/// A property of the whole suite.
 struct JunitProperty {
   std::string name, value;
 };
 
-/// One test suite as XML. Bytes that XML cannot hold are replaced.
+/// One test suite as XML. Bytes invalid in XML are replaced.
 [[nodiscard]] std::string junit_xml(const std::string& suite, const std::vector<JunitCase>& cases, double seconds,
                                     const std::vector<JunitProperty>& properties = {});
 

@@ -12,9 +12,9 @@
 namespace halfplane {
 namespace {
 
-constexpr std::uint64_t kHangCycles = 100'000;  // without any packet; walks over the clear flags are added to it
-constexpr std::uint64_t kCountingCycles = 8;    // after the end, until everything is counted and shown
-constexpr std::uint64_t kSettleCycles = 64;     // after the end, in which a packet too many would show
+constexpr std::uint64_t kHangCycles = 100'000;  // cycles without any packet; walks over the clear flags are added
+constexpr std::uint64_t kCountingCycles = 8;    // cycles after the end, until all counts are shown
+constexpr std::uint64_t kSettleCycles = 64;     // cycles after the end, in which an extra packet would show
 constexpr std::uint64_t kMostCyclesBeforeReset = 6000;
 constexpr std::uint64_t kReportCycles = 1 << 16;
 constexpr std::uint32_t kWrites = tap_bit(Arrow::write);
@@ -35,7 +35,7 @@ std::vector<std::uint32_t> words_from(const void* bytes, std::size_t count) {
   return words;
 }
 
-/// What the blame depends on: of a packet that differs, which fields do.
+/// Fault attribution by the arrow and, for a packet that differs, by its differing fields.
 Stage suspect(Arrow arrow, const Mismatch& mismatch) {
   if (mismatch.kind != Mismatch::Kind::differs) return suspect(arrow);
   Difference difference;
@@ -67,7 +67,7 @@ Lockstep::Lockstep(Dut& dut, const Config& config, LockstepOptions options)
   start_models(memory_.tiles());
 }
 
-/// As after a reset, in front of `memory`.
+/// Starts the models as after a reset, with this memory.
 void Lockstep::start_models(TileMemory memory) {
   expected_.clear();
   expected_cycles_ = {};
@@ -86,7 +86,7 @@ void Lockstep::start_models(TileMemory memory) {
 }
 
 Lockstep::~Lockstep() {
-  if (waveform_) dut_.close_trace();  // it is not wanted
+  if (waveform_) dut_.close_trace();  // not wanted
 }
 
 void Lockstep::begin(const Scene& scene) {
@@ -105,13 +105,13 @@ void Lockstep::begin(const Scene& scene) {
   }
 }
 
-/// A part of a scene, and then a reset in the middle of it, which the memory knows nothing of. Behind it the model begins as
-/// after power-up, with what the memory holds then.
+/// Runs a part of a scene, and then resets in the middle of it; the memory does not see the reset. After it the model
+/// starts as after power-up, with the memory's content.
 void Lockstep::run_and_reset(const Scene& scene, std::uint64_t cycles) {
   HostStream host(scene, config_);
   begin(scene);
   for (const std::uint64_t end = cycle_ + cycles; cycle_ != end && !result_.mismatch;) step(host);
-  // A cycle of reset, nothing on offer any more. Then the memory answers, and nobody listens.
+  // A cycle of reset, with nothing on offer any more. Then the memory answers, and the answers are dropped.
   options_.compares = false;
   dut_.hold_reset(true);
   dut_.set_primitive(nullptr);
@@ -166,7 +166,7 @@ LockstepResult Lockstep::run(const Scene& scene, const Config& host_config, bool
     if (options_.compares && !result_.mismatch) compare_counters();
     if (!result_.mismatch) report_missing_cycle();
   }
-  for (; result_.mismatch && waveform_ && cycle_ <= options_.trace_last; ++cycle_) {  // what the fault leads to
+  for (; result_.mismatch && waveform_ && cycle_ <= options_.trace_last; ++cycle_) {  // records the fault's effects
     (void)dut_.evaluate(0, true, true);
     dut_.clock();
   }
@@ -185,7 +185,7 @@ bool Lockstep::has_finished() const {
   return all_sent_ && was_idle_ && lines_.empty() && memory_.is_idle() && textures_.is_idle() && expected_.empty();
 }
 
-/// Keeps a primitive and a line on offer, and lets the model run it before the design can have seen it.
+/// Keeps a primitive and a line on offer, and runs the model for it before the design can have seen it.
 void Lockstep::offer(HostStream& host) {
   offer_primitive(host);
   if (has_line_) return;
@@ -204,7 +204,7 @@ void Lockstep::offer_primitive(HostStream& host) {
   if (!next) {
     all_sent_ = true;
     dut_.set_primitive(nullptr);
-    dut_.set_counters_hold(true);  // while there is still something to count
+    dut_.set_counters_hold(true);  // while there are still events to count
     snapshot_at_ = cycle_ + kCountingCycles;
     return;
   }
@@ -216,7 +216,7 @@ void Lockstep::offer_primitive(HostStream& host) {
   pack_words(next->packet, widths_, primitive_.data());
   dut_.set_primitive(primitive_.data());
   has_primitive_ = true;
-  if (next->packet.kind == PrimitiveKind::fast_clear) {  // what the host knows about blocks whose flags are set
+  if (next->packet.kind == PrimitiveKind::fast_clear) {  // the host's knowledge about blocks whose flags are set
     const PerPlane<std::uint32_t>& code = next->packet.vertex.code[0];
     if (next->packet.state.depth_write)
       memory_.tiles().set_clear_value(TilePlane::depth, depth_word(code[kDepthPlane], clear_stencil(*next), widths_));
@@ -228,7 +228,7 @@ void Lockstep::offer_primitive(HostStream& host) {
     model_->run(next->packet, next->line);
     if (cycle_model_) cycle_model_->run(*next);
   } else if (next->packet.kind == PrimitiveKind::triangle && !next->is_part) {
-    CounterPacket ignored;  // pieces of one input triangle follow each other
+    CounterPacket ignored;  // the pieces of one input triangle are consecutive
     if (cull(next->packet, widths_, ignored) && std::exchange(last_drawn_, next->primitive) != next->primitive)
       ++result_.drawn;
   }
@@ -240,7 +240,7 @@ void Lockstep::step(HostStream& host) {
   offer(host);
   if (!has_answer_) {
     const std::uint32_t* due = memory_.due(cycle_);
-    dut_.set_answer(due);  // here and not when it is taken: the clock edge must still see it
+    dut_.set_answer(due);  // here and not at the take: the clock edge must still see it
     has_answer_ = due != nullptr;
   }
   const std::uint32_t stalls = stall_bits(options_.seed, cycle_, threshold_);
@@ -329,7 +329,7 @@ void Lockstep::step(HostStream& host) {
                   "idle_o is high before the memory of textures has answered");
   if (out.idle && !memory_.is_idle())
     fail_protocol(std::string(info(Stage::memory_port).name), "idle_o is high before memory has answered");
-  was_idle_ = out.idle && !taken;  // what is taken now is not yet under way
+  was_idle_ = out.idle && !taken;  // a packet taken now is not yet under way
   if (moved) last_moved_ = cycle_;
   if (!options_.compares) count_use(out);
   dut_.clock();
@@ -381,7 +381,7 @@ void Lockstep::compare_cycle(Arrow boundary) {
     result_.mismatch = cycle_mismatch(boundary, {{"cycle", 64, false, queue.front(), cycle_}}, "");
 }
 
-/// Without a pair of cycles there is none to compare: `fields` is empty.
+/// Without a pair of cycles nothing can be compared: `fields` is empty.
 Mismatch Lockstep::cycle_mismatch(Arrow boundary, std::vector<FieldPair> fields, const std::string& hint) const {
   Mismatch m;
   m.kind = Mismatch::Kind::cycle;

@@ -1,7 +1,8 @@
-// Lock-step: a scene into the design, every packet on every arrow compared with the model's, in order and bit by bit.
+// Lock-step: runs a scene in the design, and compares every packet on every arrow with the model's, in order and bit by
+// bit.
 //
-// The model runs one primitive at a time, when that primitive is first offered to the design, and queues what it expects.
-// Arrows are compared each for itself, so nothing here knows how many cycles a stage takes.
+// The model runs one primitive at a time, when that primitive is first offered to the design, and queues the expected
+// packets. Each arrow is compared separately, so latencies do not matter.
 #pragma once
 
 #include <array>
@@ -42,16 +43,16 @@ struct Mismatch {
     missing,   ///< a packet that the RTL never sends
     memory,    ///< the final memory image
     counters,  ///< the performance counters
-    protocol,  ///< valid, ready or idle broke their rule
-    cycle      ///< a packet comes in another cycle than the cycle model says
+    protocol,  ///< valid, ready or idle broke a rule
+    cycle      ///< a packet in a cycle other than the cycle model's
   };
   Kind kind = Kind::differs;
-  std::string stage, arrow;                ///< the first suspect, and where it was seen
-  std::string hint;                        ///< one line more, or empty
-  std::vector<FieldPair> fields;           ///< all of them; one side is 0 when it has no packet
+  std::string stage, arrow;                ///< the first suspect, and the arrow
+  std::string hint;                        ///< one more line, or empty
+  std::vector<FieldPair> fields;           ///< all fields; one side is 0 if it has no packet
   std::uint64_t cycle = 0;                 ///< since reset
-  std::uint64_t number = 0;                ///< of the packet on its arrow, from 0 at the scene's beginning
-  std::optional<std::uint32_t> primitive;  ///< number of the input primitive; none for a clear, the flush, or unknown
+  std::uint64_t number = 0;                ///< of the packet on its arrow, from 0 at the start of the scene
+  std::optional<std::uint32_t> primitive;  ///< number of the input primitive; none: a clear, the flush, or unknown
   std::optional<std::uint64_t> tile_x, tile_y, stamp;
 
   /// Names of the fields that differ.
@@ -68,43 +69,43 @@ struct LockstepOptions {
   double stall_probability = 0;  ///< per stream and cycle, in [0, 1)
   MemorySettings memory;         ///< connected to the RTL's memory port
   std::uint16_t mutant = 0;
-  bool drains_clears = false;  ///< nothing goes in behind a fast clear until it is done: for cycles of primitives alone
-  bool compares = true;        ///< false: the design alone, for its image and counters
+  bool drains_clears = false;  ///< no packet enters after a fast clear until it is done: for cycles of primitives only
+  bool compares = true;        ///< false: only the design, for its image and counters
   /// With `compares`, and without `drains_clears`: the cycle of every crossing of every boundary against the cycle model.
   bool compares_cycles = false;
   int resets =
-      0;  ///< with `compares`: so often each scene is begun and cut by a reset at a random cycle, before it is run
-  std::optional<MemoryLayout> layout;          ///< of the planes in memory; default_layout() unless given
+      0;  ///< with `compares`: each scene is started and cut by a reset at a random cycle this often, before it runs
+  std::optional<MemoryLayout> layout;          ///< addresses of the buffers in memory; default_layout() unless given
   TimingParameters parameters;                 ///< of the cycle model; the default is the RTL
   std::optional<MemorySettings> model_memory;  ///< likewise: `memory` unless given
-  std::string trace;                           ///< FST file, empty: none; holds the cycles of the window
+  std::string trace;                           ///< FST file, empty: none; contains the cycles of the window
   std::uint64_t trace_first = 0, trace_last = ~0ULL;
-  /// Sees what crosses a boundary into or inside the RTL, in the cycle in which it does: little-endian bytes of the packet,
+  /// Sees every packet that crosses a boundary into or inside the RTL, in its cycle: little-endian bytes of the packet,
   /// rounded up. Packets of one arrow come in order. May be empty.
   std::function<void(Arrow arrow, const void* packet, std::uint64_t cycle)> tap;
-  /// Called every 2^16 cycles with the part of the scene that has been sent; false stops the run.
+  /// Called every 2^16 cycles with the fraction of the scene that has been sent; false stops the run.
   std::function<bool(double fraction)> progress;
 };
 
-/// The stage that counts this member of CounterPacket; none: not one stage alone.
+/// The stage that counts this member of CounterPacket; none: several stages.
 [[nodiscard]] std::optional<Stage> stage_of_counter(std::string_view name);
 
 struct LockstepResult {
   std::array<std::uint64_t, kArrows> compared{};  ///< packets, by arrow
-  std::uint64_t memory_compared = 0;              ///< stamps of either plane in the final memory
+  std::uint64_t memory_compared = 0;              ///< stamps of either buffer in the final memory
   std::uint64_t counters_compared = 0;
   std::array<std::uint64_t, kArrows> cycles_compared{};  ///< crossings, by boundary
   std::optional<Mismatch> mismatch;
-  bool is_stopped = false;                             ///< by options.progress: neither equal nor different
+  bool is_stopped = false;                             ///< stopped by options.progress: neither equal nor different
   std::uint64_t triangles = 0, lines = 0, points = 0;  ///< taken by the RTL
   std::uint64_t cycles = 0;                            ///< to the last packet anywhere, memory included
-  std::uint64_t raster_cycles = 0;  ///< from the first of them taken to the last write into the on-chip tiles
-  std::uint64_t tile_cycles = 0;    ///< of these, the ones in which the framebuffer moved tiles and took no access
-  std::uint64_t model_cycles = 0;   ///< what the cycle model says of `cycles`; 0 when it was not asked
+  std::uint64_t raster_cycles = 0;  ///< from the first primitive taken to the last write into the on-chip tiles
+  std::uint64_t tile_cycles = 0;    ///< of these, cycles in which the framebuffer moved tiles and served no access
+  std::uint64_t model_cycles = 0;   ///< the cycle model's `cycles`; 0 if not computed
   std::uint64_t model_raster_cycles = 0, model_tile_cycles = 0;  ///< likewise of `raster_cycles`, `tile_cycles`
-  std::uint64_t clocks = 0;  ///< simulated, those that waited for a packet too many included
-  std::uint64_t drawn = 0;   ///< input triangles of which a piece passed cull; only when nothing is compared
-  std::array<StreamUse, kStreams.size()> use{};  ///< by kStreams; only when nothing is compared
+  std::uint64_t clocks = 0;  ///< simulated clocks, including the wait for an extra packet
+  std::uint64_t drawn = 0;   ///< input triangles with a piece that passed cull; only if nothing is compared
+  std::array<StreamUse, kStreams.size()> use{};  ///< by kStreams; only if nothing is compared
 
   [[nodiscard]] std::uint64_t total() const;
   [[nodiscard]] std::uint64_t total_cycles_compared() const;
@@ -113,7 +114,7 @@ struct LockstepResult {
   void add(const LockstepResult& later);
 };
 
-/// Takes the packets that the RTL sends, as the model has them, into one queue per arrow.
+/// Collects the packets of the RTL's arrows from the model into one queue per arrow.
 class ExpectedPackets final : public EveryPacket<ExpectedPackets> {
  public:
   explicit ExpectedPackets(const Widths& widths);
@@ -130,10 +131,10 @@ class ExpectedPackets final : public EveryPacket<ExpectedPackets> {
  private:
   const Widths& widths_;
   std::vector<PacketQueue> queue_;
-  std::uint32_t sequence_ = 0;  ///< of the primitive at work: comes back as the tag of its packets
+  std::uint32_t sequence_ = 0;  ///< of the current primitive: returned as the tag of its packets
 };
 
-/// Takes the cycles of the cycle model into one queue per boundary.
+/// Collects the cycles of the cycle model into one queue per boundary.
 class ExpectedCycles final : public TransferSink {
  public:
   void transfer(Arrow boundary, Cycle cycle) override { queue_[index(boundary)].push_back(cycle); }
@@ -153,18 +154,18 @@ class Lockstep {
   Lockstep& operator=(const Lockstep&) = delete;
 
   /// One scene, to its flush, without a reset before it. Not after a run that has failed or was stopped. Throws
-  /// InputError for a scene that the hardware cannot take.
+  /// InputError for a scene that the hardware does not support.
   [[nodiscard]] LockstepResult run(const Scene& scene) { return run(scene, config_); }
-  /// `host` may differ from the configuration in what is the host's: frame.order and frame.store. With both so that bins can
-  /// be compared, those that hold what `scene` draws in them are left alone, unless `draws_all`.
+  /// `host` may differ from the configuration in the host's settings: frame.order and frame.store. If these allow
+  /// comparison of bins, bins whose content equals the draws of `scene` are skipped, unless `draws_all`.
   [[nodiscard]] LockstepResult run(const Scene& scene, const Config& host, bool draws_all = false);
 
   [[nodiscard]] const TileMemory& memory() const { return memory_.tiles(); }  ///< the RTL's
-  [[nodiscard]] CounterPacket counters();                                     ///< the RTL's, of all that was done
+  [[nodiscard]] CounterPacket counters();                                     ///< the RTL's, of all work so far
   [[nodiscard]] const Counters& host_counters() const { return host_counters_; }
   /// Closes the waveform and moves it to its final path. Returns whether there is one.
   bool finish_trace();
-  /// Why there is none, one line; empty where none could not be written. The run goes on without.
+  /// Why there is no waveform, one line; empty without a failure. The run continues without it.
   [[nodiscard]] const std::string& trace_failure() const { return trace_failure_; }
 
  private:
@@ -204,29 +205,29 @@ class Lockstep {
   TextureModel textures_;
   std::optional<HardwareModel> model_;
   ExpectedCycles expected_cycles_;
-  std::unique_ptr<MemoryTiming> model_memory_;  // and the model in front of it: only when cycles are compared
+  std::unique_ptr<MemoryTiming> model_memory_;  // and the cycle model in front of it: only if cycles are compared
   std::unique_ptr<CycleModel> cycle_model_;
   Counters host_counters_;
-  BinContents bins_;                     // what the memories hold, for the host
+  BinContents bins_;                     // content of the memories, for the host
   std::vector<std::uint32_t> snapshot_;  // counters of the RTL, held since the last primitive was taken
-  std::uint64_t snapshot_at_ = 0;        // when they are looked at
+  std::uint64_t snapshot_at_ = 0;        // the cycle in which they are read
   std::size_t counter_bytes_;            // of their packet
 
-  LockstepResult result_;                 // of the run at work
-  std::vector<HostPrimitive> sent_;       // of the run at work, without their packets: tags index it
+  LockstepResult result_;                 // of the current run
+  std::vector<HostPrimitive> sent_;       // of the current run, without their packets: tags index it
   std::vector<std::uint32_t> primitive_;  // words of the primitive on offer
-  PacketQueue lines_;                     // of the primitives in sent_, not yet taken: a stream of its own
+  PacketQueue lines_;                     // lines of the primitives in sent_, not yet taken: a stream of its own
   std::vector<std::uint32_t> held_;       // words of a beat on offer
   bool has_primitive_ = false, has_line_ = false, all_sent_ = false, has_answer_ = false, has_held_ = false;
   bool has_texel_ = false;
   bool is_first_ = true;  // no primitive since reset
   bool has_traced_ = false, was_idle_ = false, drains_ = false;
-  std::optional<PartFile> waveform_;  // while it is recorded
+  std::optional<PartFile> waveform_;  // while recording
   std::string trace_failure_;
   std::uint64_t cycle_ = 0;           // since reset
-  std::uint64_t first_taken_ = 0;     // cycle of the first primitive that counts
+  std::uint64_t first_taken_ = 0;     // cycle of the first counted primitive
   std::uint64_t tile_cycles_ = 0;     // since then
-  std::uint64_t last_drawn_ = ~0ULL;  // input triangle that was counted last
+  std::uint64_t last_drawn_ = ~0ULL;  // input triangle counted last
   std::uint64_t last_moved_ = 0;      // the last cycle in which a packet moved anywhere
 };
 

@@ -1,5 +1,4 @@
-// What a lock-step run has compared, and what it looks at when it ends: packets and crossings that never came, counters,
-// memory.
+// The comparison at the end of a lock-step run: packets and crossings that never came, counters, memory.
 #include <algorithm>
 
 #include "sim/cosim/lockstep.hpp"
@@ -62,7 +61,7 @@ bool ExpectedPackets::empty() const {
   return true;
 }
 
-/// At the end: a crossing that the cycle model expects and that never came.
+/// Reports, at the end, a crossing that the cycle model expects and that never came.
 void Lockstep::report_missing_cycle() {
   if (!cycle_model_) return;
   for (const Arrow boundary : kBoundaries)
@@ -84,7 +83,7 @@ void Lockstep::explain_standstill(Mismatch& mismatch) {
                   (waiting.empty() ? "no stream holds a packet" : "offered and not taken: " + waiting);
 }
 
-/// Of the packets that never came, the one of the earliest primitive: behind it everything else is waiting.
+/// Reports, of the packets that never came, the one of the earliest primitive: everything later waits for it.
 void Lockstep::report_missing() {
   std::optional<Arrow> first;
   for (const Arrow arrow : kCompared) {

@@ -1,4 +1,4 @@
-// The memory behind the RTL's memory port: the data, and the time of a MemoryTiming.
+// The memory on the RTL's memory port: the data, and the times of a MemoryTiming.
 #pragma once
 
 #include <bit>
@@ -25,7 +25,7 @@ class PacketQueue {
   [[nodiscard]] std::size_t size() const { return tail_ - head_; }
   [[nodiscard]] std::size_t words() const { return words_; }
 
-  /// Room for one more packet, to be filled by the caller; valid until the next push. `tag` comes back with it.
+  /// Room for one more packet, to be filled by the caller; valid until the next push. `tag` is returned with it.
   std::uint32_t* push(std::uint32_t tag) {
     if (size() == capacity_) grow();
     std::uint32_t* slot = at(tail_++);
@@ -50,12 +50,12 @@ class PacketQueue {
     capacity_ *= 2;
   }
 
-  std::size_t words_, capacity_ = 64;  // capacity: packets, a power of two
+  std::size_t words_, capacity_ = 64;  // capacity in packets, a power of two
   std::size_t head_ = 0, tail_ = 0;
   std::vector<std::uint32_t> ring_ = std::vector<std::uint32_t>(capacity_ * (words_ + 1));
 };
 
-/// The first of the answers if it is due in this cycle; a tag is the cycle in which it is, modulo 2^32.
+/// The first of the answers if it is due in this cycle; a tag is the cycle in which it is due, modulo 2^32.
 [[nodiscard]] inline const std::uint32_t* due_of(const PacketQueue& answers, std::uint64_t cycle) {
   if (answers.empty()) return nullptr;
   const std::uint32_t late = static_cast<std::uint32_t>(cycle) - answers.front_tag();
@@ -73,7 +73,7 @@ class MemoryModel {
   /// Whether a beat can be taken in this cycle.
   [[nodiscard]] bool is_ready(std::uint64_t cycle) const { return left_ != 0 || timing_->room() <= cycle; }
 
-  /// A faulty design may ask for what is not there: nothing is kept of it. Or cut a burst: that one is never answered.
+  /// A faulty design may access invalid addresses: such data are dropped. Or cut a burst: it is never answered.
   void accept(const std::uint32_t* words, std::uint64_t cycle) {
     const auto beat = unpack_words<MemoryBeat>(words, widths_);
     const bool is_inside = tiles_.has(beat);
@@ -101,7 +101,7 @@ class MemoryModel {
   [[nodiscard]] const std::uint32_t* due(std::uint64_t cycle) const { return due_of(answers_, cycle); }
   void pop() { answers_.pop(); }
   [[nodiscard]] bool is_idle() const { return answers_.empty() && left_ == 0; }
-  /// As after a long rest: forgets what was under way, not what it holds.
+  /// As after a long rest: forgets bursts under way, not its content.
   void rest(std::unique_ptr<MemoryTiming> timing) {
     timing_ = std::move(timing);
     while (!answers_.empty()) answers_.pop();
@@ -119,11 +119,11 @@ class MemoryModel {
   TileMemory tiles_;
   std::unique_ptr<MemoryTiming> timing_;
   PacketQueue answers_;
-  MemoryBurst burst_;  ///< the one that is being written
+  MemoryBurst burst_;  ///< the burst being written
   int left_ = 0;       ///< beats of it
 };
 
-/// The same of textures, behind the texture unit: reads alone.
+/// The same for textures, on the texture unit's port: reads only.
 class TextureModel {
  public:
   TextureModel(const Config& config, const Widths& widths, std::unique_ptr<MemoryTiming> timing)
@@ -145,7 +145,7 @@ class TextureModel {
       pack_words(beat, widths_, answers_.push(static_cast<std::uint32_t>(due.at(static_cast<int>(n)))));
     }
   }
-  /// As of MemoryModel.
+  /// As in MemoryModel.
   [[nodiscard]] const std::uint32_t* due(std::uint64_t cycle) const { return due_of(answers_, cycle); }
   void pop() { answers_.pop(); }
   [[nodiscard]] bool is_idle() const { return answers_.empty(); }

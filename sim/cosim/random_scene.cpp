@@ -26,7 +26,7 @@ class Generator {
     const int limit = config.stamp_size == 1 ? 2 : 1;
     scene_.width = extent(std::min(640 / limit, config.target_width));
     scene_.height = extent(std::min(480 / limit, config.target_height));
-    if (chance(0.7)) {  // room for something to happen
+    if (chance(0.7)) {  // so that there is room for events
       scene_.width = std::max(scene_.width, std::min(12 * config.tile_size, config.target_width));
       scene_.height = std::max(scene_.height, std::min(12 * config.tile_size, config.target_height));
     }
@@ -71,7 +71,7 @@ class Generator {
     return static_cast<std::int64_t>(random_.next() % static_cast<std::uint64_t>(std::max<std::int64_t>(1, n)));
   }
   bool chance(double probability) { return random_.uniform(0, 1) < probability; }
-  /// In [1, largest], each octave as likely as the next; in whole numbers, so that machines agree.
+  /// In [1, largest], each octave equally likely; in integers, so that machines agree.
   std::int64_t sized(std::int64_t largest) {
     const int octaves = floor_log2(static_cast<uint128>(largest)) + 1;
     const std::int64_t octave = std::int64_t{1} << below(octaves);
@@ -114,10 +114,10 @@ class Generator {
   Scene scene_;
   std::int64_t unit_ = 1;   // subpixels of a pixel
   std::int64_t step_ = 1;   // subpixels between two vertices
-  bool hiz_chunk_ = false;  // large triangles and `less`: many tiles to be rejected by their bound
+  bool hiz_chunk_ = false;  // large triangles and `less`: many tiles for HiZ to reject
   bool has_lines_ = false, has_points_ = false;
-  bool lines_raise_ = false;  // lines may raise depths, which puts HiZ to rest until the next fast clear
-  bool is_pile_ = false;      // one triangle again and again: a stamp meets the one right ahead, a tile its last visit
+  bool lines_raise_ = false;  // lines may raise depths, which disables HiZ until the next fast clear
+  bool is_pile_ = false;      // one triangle repeatedly: a stamp meets the one right ahead, a tile its last visit
   std::array<Point, 3> last_{};
   std::uint64_t last_depth_ = 0;  // code
 };
@@ -145,14 +145,14 @@ State Generator::state() {
   return s;
 }
 
-/// Any value of the state's row in the table.
+/// Sets any value of the state's row in the table.
 void Generator::set_any(State& s, std::string_view name) {
   const DrawState& row = draw_state(name);
   row.set(s, random_value(row, chooser(random_)));
 }
 
-/// States of the hardware that came after these five, by random numbers of their own: the scenes of a seed are held by
-/// hashes and cycle counts, so the stream of numbers that makes them stays.
+/// Sets states added to the hardware later, from separate random numbers: tests hold the scenes of a seed by hashes and
+/// cycle counts, so the original stream of numbers stays.
 void Generator::set_newer() {
   StateRows rows = states_but({"depth_test", "depth_write", "color_write", "cull", "front"});
   std::erase_if(rows, [](const DrawState* row) { return row->home != StateHome::primitive; });
@@ -160,9 +160,9 @@ void Generator::set_newer() {
   for (State& state : scene_.states) state = random_state(state, rows, chooser(random));
 }
 
-/// Wide lines and round points in a third of the draws of either; rectangles in a third of the draws of lines, and where
-/// the hardware has no unit for lines as edges of triangles; few of rectangles and points are smooth, since that is a
-/// primitive a pixel. By random numbers of their own, as above.
+/// Sets wide lines and round points in a third of the draws of either; rectangles in a third of the draws of lines, and
+/// without a line unit as edges of triangles; few rectangles and points are smooth, since that takes a primitive per
+/// pixel. From separate random numbers, as above.
 void Generator::set_shapes() {
   Random random(seed_ ^ 0x51a9e5u), of_rectangles(seed_ ^ 0x2ec7a91eu);
   const int beside = config_.guard_band - std::max(scene_.width, scene_.height);
@@ -193,8 +193,8 @@ void Generator::set_shapes() {
   }
 }
 
-/// In a third of the draws some of a pixel's samples; by alpha where the hardware has it. By random numbers of their own, as
-/// above.
+/// In a third of the draws selects some of a pixel's samples; by alpha if the hardware has it. From separate random
+/// numbers, as above.
 void Generator::set_samples() {
   Random random(seed_ ^ 0x5a3b1e5u);
   StateRows rows = states_named({"sample_mask"});
@@ -203,7 +203,7 @@ void Generator::set_samples() {
     if (random.next() % 3 == 0) state = random_state(state, rows, chooser(random));
 }
 
-/// Keeps, of the clears after a draw, those of colours only.
+/// Keeps, of the clears after a draw, only those of colours.
 void Generator::drop_later_clears() {
   bool is_behind = false;
   std::erase_if(scene_.commands, [&](const Command& command) {
@@ -213,12 +213,12 @@ void Generator::drop_later_clears() {
   });
 }
 
-/// States of the units that this hardware has behind the depth test, in runs of draws with and without. By random numbers of
-/// their own, as above.
+/// Sets states of this hardware's units downstream of the depth test, in runs of draws with and without. From separate
+/// random numbers, as above.
 void Generator::set_units() {
   StateRows rows;
   const auto add = [&rows](const StateRows& more) { rows.insert(rows.end(), more.begin(), more.end()); };
-  if (config_.blend_lanes != 0)  // the first ones twice: a state that blends is as likely as one that does not
+  if (config_.blend_lanes != 0)  // the first ones twice: blending is as likely as not
     add(states_named({"blend", "blend", "blend_equation", "blend_color", "color_mask"}));
   if (config_.dither_units != 0) add(states_named({"dither"}));
   if (tests_alpha(config_)) add(states_named({"alpha_test"}));
@@ -230,8 +230,8 @@ void Generator::set_units() {
   }
 }
 
-/// Stencil tests in runs of draws, with few values so that they meet, and clears of the stencil, alone and with others. By
-/// random numbers of their own, as above.
+/// Sets stencil tests in runs of draws, with few values so that they meet, and clears of the stencil, alone and with
+/// others. From separate random numbers, as above.
 void Generator::set_stencils() {
   Random random(seed_ ^ 0x57e4c11u);
   const auto below = [&random](std::uint64_t n) { return random.next() % n; };
@@ -256,7 +256,7 @@ void Generator::set_stencils() {
     state.stencil = side();
     if (below(3) == 0) state.stencil_back = side();
   }
-  // All of a word is replaced, or all but a few bits of it, now and then.
+  // Now and then a whole word is replaced, or all but a few bits of it.
   Random rare(seed_ ^ 0x4e91aceu);
   const auto one_of = [&rare](std::uint64_t n) { return rare.next() % n == 0; };
   for (State& state : scene_.states) {
@@ -279,8 +279,8 @@ void Generator::set_stencils() {
     }
 }
 
-/// A few small textures, with levels where the unit has them, and triangles that show them: w ratios up to 2^10, coordinates
-/// from beside a texel's border to many repeats away. By random numbers of their own, as above.
+/// Makes a few small textures, with levels if the unit has them, and triangles that show them: w ratios up to 2^10,
+/// coordinates from next to a texel's border to many repeats away. From separate random numbers, as above.
 void Generator::set_textures() {
   Random random(seed_ ^ 0x7e87u);
   const auto below = [&random](std::uint64_t n) { return random.next() % n; };
@@ -317,7 +317,7 @@ void Generator::set_textures() {
     if (chance(0.2)) state.texture_lod[1] = random.uniform(0, 4);
     if (chance(0.2)) state.texture_lod[2] = random.uniform(0, 12);
   }
-  const double reach = std::ldexp(1.0, static_cast<int>(below(8)) - 2);  // of the coordinates, repeats
+  const double reach = std::ldexp(1.0, static_cast<int>(below(8)) - 2);  // of the coordinates, in repeats
   for (Vertex& v : scene_.vertices) {
     v.w = chance(0.3) ? 1.0 : std::exp2(random.uniform(-5, 5));
     v.u = random.uniform(-reach, reach);
@@ -336,8 +336,8 @@ void Generator::set_textures() {
   }
 }
 
-/// A few fogs, from one that begins at the eye to one that has a hair of width, at distances that vertices have and beyond; in
-/// runs of draws, since each brings a table. By random numbers of their own, as above.
+/// Makes a few fogs, from one that begins at the eye to one with almost no width, at distances of vertices and beyond;
+/// in runs of draws, since each needs a table. From separate random numbers, as above.
 void Generator::set_fogs() {
   Random random(seed_ ^ 0xf06u);
   const auto below = [&random](std::uint64_t n) { return random.next() % n; };
@@ -364,8 +364,8 @@ void Generator::set_fogs() {
   }
 }
 
-/// A few lights, in runs of draws, since each brings a table; and normals, some of which are 0, along an axis, or nearly the
-/// same. By random numbers of their own, as above.
+/// Makes a few lights, in runs of draws, since each needs a table; and normals, some of them 0, along an axis, or
+/// nearly equal. From separate random numbers, as above.
 void Generator::set_lights() {
   Random random(seed_ ^ 0x11967u);
   const auto below = [&random](std::uint64_t n) { return random.next() % n; };
@@ -381,7 +381,7 @@ void Generator::set_lights() {
   for (State& state : lights) {
     state.light_direction = vector();
     state.light_half = below(2) == 0 ? state.light_direction : vector();
-    if (below(4) == 0)  // what looks away from the light would have the highlight
+    if (below(4) == 0)  // a normal away from the light would have the highlight
       for (std::size_t c = 0; c < 3; ++c) state.light_half[c] = -state.light_direction[c];
     for (auto* color : {&state.light_ambient, &state.light_diffuse, &state.light_specular})
       for (std::uint8_t& channel : *color) channel = static_cast<std::uint8_t>(below(4) == 0 ? 255 : below(256));
@@ -409,7 +409,7 @@ void Generator::set_lights() {
   }
 }
 
-/// Colours over w in runs of draws, textured and not. By random numbers of their own, as above.
+/// Colours over w in runs of draws, textured and not. From separate random numbers, as above.
 void Generator::set_colors_over_w() {
   Random random(seed_ ^ 0xc0107u);
   bool is_over_w = false;
@@ -420,13 +420,13 @@ void Generator::set_colors_over_w() {
     State& state = scene_.states[draw->state];
     if (!is_over_w || drawn_as(state, draw->topology) != PrimitiveType::triangle) continue;
     state.color_interp = ColorInterp::perspective;
-    state.texture_interp = TextureInterp::perspective;  // one 1/w a triangle
+    state.texture_interp = TextureInterp::perspective;  // one 1/w per triangle
   }
 }
 
 void Generator::line_and_point_state(State& s) {
   if (s.depth_test >= DepthFunc::greater) s.depth_write = s.depth_write && lines_raise_;
-  s.line_rule = static_cast<LineRule>(below(3));  // rectangles come later: the stream of numbers stays
+  s.line_rule = static_cast<LineRule>(below(3));  // rectangles are set later: the stream of numbers stays
   if (chance(0.5)) s.line_last = chance(0.5);
   s.point_size = static_cast<double>(unit_ + (chance(0.4) ? 0 : below(sized(12 * unit_)))) / static_cast<double>(unit_);
 }
@@ -451,7 +451,7 @@ void Generator::clear() {
   scene_.commands.push_back(clear);
 }
 
-/// A window z that snaps to a random code: often the last one again, or one beside it, or an end of the range.
+/// A window z that snaps to a random code: often the last code again, or a neighbour, or an end of the range.
 double Generator::depth() {
   const std::uint64_t largest = (std::uint64_t{1} << config_.depth_bits) - 1;
   switch (below(8)) {
@@ -506,7 +506,7 @@ std::array<Point, 3> Generator::shape() {
     return {Point{0, 0}, Point{2 * unit_ * scene_.width, 0}, Point{0, 2 * unit_ * scene_.height}};
   switch (below(16)) {
     case 0: return tile_half();
-    case 1: {  // shares an edge with the triangle before
+    case 1: {  // shares an edge with the previous triangle
       const Point far = around(center, reach)[0];
       return {last_[1], last_[0], far};
     }
@@ -514,12 +514,12 @@ std::array<Point, 3> Generator::shape() {
     case 3: {              // the same place again, small
       return around(last_[0], sized(4 * unit_));
     }
-    case 4: {  // a sliver: the third corner beside the middle of the others
+    case 4: {  // a sliver: the third corner next to the midpoint of the others
       auto p = around(center, reach);
       p[2] = {(p[0][0] + p[1][0]) / 2 + below(3) - 1, (p[0][1] + p[1][1]) / 2 + below(3) - 1};
       return p;
     }
-    case 5: {  // no area, or next to none
+    case 5: {  // area 0, or almost
       auto p = around(center, reach);
       p[2] = chance(0.5) ? p[static_cast<std::size_t>(below(2))] : Point{2 * p[1][0] - p[0][0], 2 * p[1][1] - p[0][1]};
       return p;
@@ -528,16 +528,16 @@ std::array<Point, 3> Generator::shape() {
       const auto p = around(center, reach);
       return {p[0], Point{p[1][0], p[0][1]}, Point{p[0][0], p[1][1]}};
     }
-    case 7: return around({below(2 * band) - band, below(2 * band) - band}, reach);  // anywhere, mostly unseen
+    case 7: return around({below(2 * band) - band, below(2 * band) - band}, reach);  // anywhere, mostly not visible
     case 8: return around(center, below(band) + 1);                                  // large
     default: return around(center, std::max<std::int64_t>(1, sized(band)));
   }
 }
 
-/// A line or a point is that of the first corners of a triangle, near each other or as far apart as the guard band.
+/// A line or a point uses the first corners of a triangle, close together or as far apart as the guard band.
 void Generator::primitive(std::size_t corners, bool is_again) {
   std::array<Point, 3> p = is_again ? last_ : shape();
-  if (corners == 2 && chance(0.3)) p[1] = around(p[0], sized(24 * unit_))[0];  // in the picture if p[0] is
+  if (corners == 2 && chance(0.3)) p[1] = around(p[0], sized(24 * unit_))[0];  // visible if p[0] is
   const int all = is_again ? 0 : static_cast<int>(below(8));  // 1 to 3: all three to the same kind of point
   for (Point& q : p) q = snapped(q, all < 4 ? all : chance(0.2) ? static_cast<int>(below(4)) : 0);
   last_ = p;

@@ -1,4 +1,4 @@
-// Random scenes for co-simulation: made to be nasty, not to look like anything.
+// Random scenes for co-simulation: made to provoke faults, not to look like anything.
 #pragma once
 
 #include <cstdint>
@@ -12,13 +12,13 @@ namespace halfplane {
 /// quarter of that with stamps of one sample). Sizes are log-uniform from one subpixel to the whole guard band. The same for
 /// the same arguments on every machine. Every vertex snaps.
 ///
-/// What it is rich in: vertices on pixel centres and tile corners, shared edges, slivers, triangles of zero area and
-/// outside, piles of one triangle, equal depths, every depth function, mask, cull, front and scissor, partial
-/// and whole clears, tiles covered completely.
+/// Frequent features: vertices on pixel centres and tile corners, shared edges, slivers, triangles of area 0 and
+/// outside, piles of one triangle, equal depths, every depth function, mask, cull, front and scissor, partial and whole
+/// clears, fully covered tiles.
 [[nodiscard]] Scene random_scene(const Config& config, std::uint64_t seed, std::size_t count);
 
-/// `scene` as it may look a frame later: a draw less, two vertices with each other's colour, depth or place on a texture, other
-/// clears, or the same.
+/// `scene` one frame later: one draw less, two vertices with swapped colours, depths or texture coordinates, other
+/// clears, or unchanged.
 [[nodiscard]] Scene next_frame(const Scene& scene, std::uint64_t seed);
 
 }  // namespace halfplane

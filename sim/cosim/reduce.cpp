@@ -13,7 +13,7 @@
 namespace halfplane {
 namespace {
 
-/// A triangle, line, point or clear with a state of its own, so that anything can be taken out.
+/// A triangle, line, point or clear with its own state, so that any item can be removed.
 struct Item {
   State state;
   std::optional<Clear> clear;
@@ -134,14 +134,14 @@ class Reducer {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
 
-  /// Whether some run has failed: from then on there is something to return.
+  /// Whether some run has failed: from then on there is a result.
   [[nodiscard]] bool has_failed() const { return !best_.scene.commands.empty(); }
 
   void report() const {
     if (options_.progress) options_.progress(elapsed() / options_.seconds);
   }
 
-  /// The whole scene, without stalls if it fails without.
+  /// Tests the whole scene, without stalls if it fails without them.
   bool is_failing() {
     LockstepOptions calm = best_.lockstep;
     calm.stall_probability = 0;
@@ -211,7 +211,7 @@ void Reducer::to_window_space() {
   if (has_other) try_items(items_of(window_scene(scene_, config_)));
 }
 
-/// What comes after the primitive that fails is rarely needed, and often little of what comes before it.
+/// Removes items after the failing primitive, which are rarely needed, and often most of those before it.
 void Reducer::cut_after_failure() {
   if (!best_.mismatch.primitive) return;
   std::size_t end = 0;
@@ -224,10 +224,10 @@ void Reducer::cut_after_failure() {
   try_items(Items(items_.begin(), last));
 }
 
-/// A smaller target: to the tile that fails, then by halves. A flush of a large one would be most of every run.
+/// Makes the target smaller: to the failing tile, then by halves. A flush of a large target would be most of every run.
 void Reducer::crop() {
   for (const Item& item : items_)
-    if (depends_on_target(item)) return;  // it would be another picture
+    if (depends_on_target(item)) return;  // the picture would change
   const Mismatch& m = best_.mismatch;
   if (m.tile_x && m.tile_y) {
     const int right = (static_cast<int>(*m.tile_x) + 1) * config_.tile_size;
@@ -238,12 +238,12 @@ void Reducer::crop() {
   while (height_ > 1 && try_items(items_, width_, (height_ + 1) / 2)) continue;
 }
 
-/// Takes out runs of items, long ones first, until no single one can go.
+/// Removes runs of items, long ones first, until no single one can be removed.
 void Reducer::remove() {
   for (std::size_t length = std::max<std::size_t>(1, items_.size() / 2);;
        length = std::max<std::size_t>(1, length / 2)) {
     bool has_removed = false;
-    for (std::size_t end = items_.size(); end > 0 && !is_late();) {  // from the back: causes come before effects
+    for (std::size_t end = items_.size(); end > 0 && !is_late();) {  // from the end: causes come before effects
       const std::size_t begin = end - std::min(length, end);
       Items fewer(items_.begin(), items_.begin() + static_cast<std::ptrdiff_t>(begin));
       fewer.insert(fewer.end(), items_.begin() + static_cast<std::ptrdiff_t>(end), items_.end());
@@ -254,8 +254,8 @@ void Reducer::remove() {
   }
 }
 
-/// Applies change(item) to all items at once, and if that no longer fails, to each alone. It returns whether it changed.
-/// Returns whether any change was kept.
+/// Applies change(item) to all items at once, and if the scene no longer fails, to each alone. change() returns whether
+/// it changed the item. Returns whether any change was kept.
 template <class Change>
 bool Reducer::simplify(Change change) {
   Items all = items_;
@@ -271,8 +271,8 @@ bool Reducer::simplify(Change change) {
   return is_kept;
 }
 
-/// Each state of the table; those of the hardware last, and the last of them first: what is culled fails no more, so
-/// that `front` alone may have to stay until `cull` is reset. Hence again, until nothing changes.
+/// Simplifies each state of the table; hardware states last, and the last of them first: a culled primitive no longer
+/// fails, so `front` may have to stay until `cull` is reset. Repeats until nothing changes.
 void Reducer::simplify_states() {
   std::vector<const DrawState*> rows;
   for (const DrawState& row : draw_states()) rows.push_back(&row);
@@ -300,7 +300,7 @@ void Reducer::simplify_vertices() {
     });
   };
   const auto assign = [](auto& value, const auto& to) { return std::exchange(value, to) != to; };
-  for (std::size_t part = 2; part < kVertexParts.size(); ++part)  // colours, and what follows them
+  for (std::size_t part = 2; part < kVertexParts.size(); ++part)  // colours, and the later parts
     for_vertices([part](Vertex& v, const Item&) {
       constexpr VertexNumbers defaults = numbers_of(Vertex{});
       const VertexNumbers before = numbers_of(v);
@@ -325,7 +325,7 @@ FailTest lockstep_test(Dut& dut, const Config& config) {
   return [&dut, &config](const Scene& scene, const LockstepOptions& options) -> std::optional<Mismatch> {
     try {
       return Lockstep(dut, config, options).run(scene).mismatch;
-    } catch (const InputError&) {  // a simplification that left the guard band, say
+    } catch (const InputError&) {  // a simplification that left the guard band, for example
       return {};
     }
   };
@@ -338,11 +338,11 @@ std::optional<Reduced> reduce(const Scene& scene, const Config& config, const Lo
 
 namespace {
 
-/// From its first pixel to its last: as good a line as any for looking for a fault, if not always the same pixels.
+/// From its first pixel to its last: sufficient for finding a fault, although not always with the same pixels.
 void to_window_line(Item& item, const LineSetup& line, const Config& config, const Widths& widths) {
   item.topology = Topology::lines;
   item.state.line_rule = LineRule::bresenham;
-  item.state.scissor.reset();  // its box is where it begins
+  item.state.scissor.reset();  // its box is at its beginning
   bool is_first = true;
   line_raster(line, widths, [&](const LinePixel& pixel) {
     item.v[1] = vertex_of_codes(pixel.code, config);
@@ -352,7 +352,7 @@ void to_window_line(Item& item, const LineSetup& line, const Config& config, con
   });
 }
 
-/// A square round the middle of its box, which is the scissor.
+/// A square around the middle of its box, which is the scissor.
 void to_window_point(Item& item, const PrimitivePacket& p, const Config& config) {
   item.topology = Topology::points;
   const PixelBox& box = p.box;

@@ -45,7 +45,7 @@ std::string field_report(const FieldPair& field) {
          std::string(base.size(), ' ') + marks(model, rtl) + "\n";
 }
 
-/// "name value, name value ...", wrapped; `rtl` chooses the side.
+/// "name value, name value ...", wrapped; `rtl` selects the side.
 std::string values(const std::vector<FieldPair>& fields, const std::string& title, bool rtl, bool equal_only) {
   std::string text, line = "  " + padded(title, 18);
   const std::string indent(20, ' ');

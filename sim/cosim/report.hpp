@@ -1,4 +1,4 @@
-// A mismatch as a person reads it: where, model above rtl, the differing bits marked.
+// A mismatch in readable form: place, model above RTL, the differing bits marked.
 #pragma once
 
 #include <string>
@@ -12,20 +12,20 @@ namespace halfplane {
 /// One line: "fine_raster: mask differs in packet 12 of stamp, primitive 3, tile (4, 2), stamp 5, cycle 678".
 [[nodiscard]] std::string mismatch_line(const Mismatch& mismatch);
 
-/// The whole of it, in lines of at most 120 characters.
+/// The full report, in lines of at most 120 characters.
 [[nodiscard]] std::string mismatch_report(const Mismatch& mismatch);
 
-/// "triangle 12 · setup 12 · ...": what was compared, arrow by arrow.
+/// "triangle 12 · setup 12 · ...": the compared packets, arrow by arrow.
 [[nodiscard]] std::string compared_report(const LockstepResult& result);
 
-/// What became of a mismatch: that of the reduced scene, and what a person is told about it.
+/// The fate of a mismatch: that of the reduced scene, and the text for a person.
 struct JunitFinding {
   const Mismatch& mismatch;
   std::string report;
 };
 
 /// A test case for each arrow, the memory image and the counters, and one that fails when nothing was compared. With a
-/// finding it is this that fails, not the first symptom.
+/// finding that case fails, not the first symptom.
 [[nodiscard]] std::vector<JunitCase> junit_cases(const LockstepResult& result, const JunitFinding* finding = nullptr);
 
 }  // namespace halfplane

@@ -11,18 +11,18 @@ struct RtlRendering {
   LockstepResult run;   ///< cycles and use of the streams
 };
 
-/// Renders `scene` by `dut`, flush included. Of `options` it takes progress. Throws InputError for a scene that the
-/// hardware does not take, std::runtime_error when the RTL hangs.
+/// Renders `scene` by `dut`, flush included. Uses progress of `options`. Throws InputError for a scene that the
+/// hardware does not support, std::runtime_error when the RTL hangs.
 [[nodiscard]] RtlRendering render_rtl(Dut& dut, const Scene& scene, const Config& config, const RenderOptions& options);
 
-/// Frame after frame through one design, without a reset between them. With frame.order bins and frame.store color, bins that
-/// hold what a frame draws in them are left alone.
+/// Frame after frame through one design, without a reset between them. With frame.order bins and frame.store color,
+/// bins whose content equals the draws of a frame are skipped.
 class RtlFrames {
  public:
   /// `dut` must outlive this.
   RtlFrames(Dut& dut, const Config& config);
-  /// The next frame. Its counters are the specification's: the RTL's count from reset on, and the first to pass its width says
-  /// so for good. Of `options` it takes progress, and of skip the switch of bins. Throws as render_rtl(); then nothing more
+  /// Draws the next frame. Its counters are the specification's: the RTL counts from reset on, and its overflow flag
+  /// stays set. Uses progress of `options`, and of skip the switch of bins. Throws as render_rtl(); then nothing more
   /// can be drawn.
   [[nodiscard]] RtlRendering draw(const Scene& scene, const RenderOptions& options);
 
@@ -38,7 +38,7 @@ struct FaultyFrame {
   std::uint64_t cycles = 0;
 };
 
-/// The image that `dut` makes of `scene` with a fault in it (0: none), given about `most_cycles`.
+/// The image of `scene` by `dut` with a fault in it (0: none), limited to about `most_cycles`.
 [[nodiscard]] FaultyFrame render_faulty(Dut& dut, const Scene& scene, const Config& config, std::uint16_t mutant,
                                         std::uint64_t most_cycles);
 

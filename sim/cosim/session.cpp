@@ -15,9 +15,9 @@ namespace {
 
 constexpr std::uint64_t kLargestChunk = 2000;                  // primitives
 constexpr std::uint64_t kTraceBefore = 200, kTraceAfter = 20;  // cycles around the mismatch
-constexpr std::uint64_t kQuickTrace = 200'000;                 // cycles that a user who has pressed Ctrl-C waits for
+constexpr std::uint64_t kQuickTrace = 200'000;                 // cycles that a user waits after Ctrl-C
 
-/// Whether the order of a frame is drawn: where no other was asked for.
+/// Whether the order of a frame is random: if no other was requested.
 bool has_orders(const Config& config) {
   return config.cache_kind == CacheKind::blocks && config.frame_order == FrameOrder::program &&
          config.frame_store == FrameStore::all;
@@ -65,7 +65,7 @@ Session run_session(Dut& dut, const Config& config, const LockstepOptions& optio
   };
   while (auto scene = next()) {
     if (draws) draw_order(random, session.config);
-    std::optional<Scene> second;  // a frame behind it, some of whose bins hold what they held
+    std::optional<Scene> second;  // a next frame, some of whose bins are unchanged
     if (is_drawn && compares_bins(session.config)) second = next_frame(*scene, random.next());
     if (!run(std::move(*scene), true) || (second && !run(std::move(*second), false))) break;
   }

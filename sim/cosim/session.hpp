@@ -1,4 +1,4 @@
-// A whole co-simulation: scene after scene into one design, and what to do about the first that fails.
+// A whole co-simulation: scene after scene into one design, and the handling of the first failure.
 #pragma once
 
 #include <functional>
@@ -16,19 +16,19 @@ using SceneSource = std::function<std::optional<Scene>()>;
 /// One scene.
 [[nodiscard]] SceneSource single_scene(Scene scene);
 
-/// `count` random triangles, lines and points, in scenes of up to 2,000 so that a failing one is small. The first are smaller
-/// still.
+/// `count` random triangles, lines and points, in scenes of up to 2,000 so that a failing one is small. The first
+/// scenes are smaller.
 [[nodiscard]] SceneSource random_scenes(const Config& config, std::uint64_t seed, std::uint64_t count);
 
-/// In which order a session's scenes are sent, and which planes they store: as configured; or, where the hardware has a
-/// choice and the configuration makes none, one of the four for each scene, by the seed.
+/// The order in which a session's scenes are sent, and the buffers that they store: as configured; or, where the
+/// hardware allows a choice and the configuration makes none, one of the four for each scene, by the seed.
 enum class HostOrders { configured, drawn };
 
 struct Session {
   LockstepResult result;        ///< of all scenes together
-  std::optional<Scene> failed;  ///< the scene with the mismatch, or whose model is not the specification's
+  std::optional<Scene> failed;  ///< the scene with the mismatch, or whose model differs from the specification
   std::string disagreement;     ///< difference_from_specification() of it
-  Config config;                ///< with which the last scene was sent
+  Config config;                ///< of the last scene
   Counters counters;            ///< the host's, of that scene
   std::uint64_t scenes = 0;
   bool has_trace = false;     ///< `options.trace` has been written
@@ -36,25 +36,24 @@ struct Session {
   double seconds = 0;         ///< the model's work included
 };
 
-/// Runs all scenes without a reset between them, up to the first mismatch. With `holds_model` the model
-/// of each scene is held to the scalar engine's picture, too. `options.progress` gets the part of the scene
-/// at work.
+/// Runs all scenes without a reset between them, up to the first mismatch. With `holds_model` the model of each scene
+/// is also compared with the scalar engine's picture. `options.progress` gets the fraction of the current scene.
 [[nodiscard]] Session run_session(Dut& dut, const Config& config, const LockstepOptions& options,
                                   const SceneSource& next, HostOrders orders = HostOrders::configured,
                                   bool holds_model = false);
 
-/// A failing scene made small, with its waveform.
+/// A reduced failing scene, with its waveform.
 struct Finding {
-  Scene scene;                     ///< reduced; as it failed if it does not fail alone
+  Scene scene;                     ///< reduced; unchanged if it does not fail alone
   LockstepOptions lockstep;        ///< with which it fails
   Mismatch mismatch;               ///< of `scene`
-  std::optional<Reduced> reduced;  ///< none: after a reset the scene alone does not fail, or nobody had the time to see
+  std::optional<Reduced> reduced;  ///< none: after a reset the scene alone does not fail, or no time to find out
   bool is_stopped = false;         ///< by reducing.progress, before that was known
   bool has_trace = false;          ///< `trace` has been written
   std::string trace_failure;       ///< why it could not be
 };
 
-/// Reduces, and writes, whole or not at all, the waveform around the mismatch to `trace` (empty: none, likewise when the
+/// Reduces, and writes, completely or not at all, the waveform around the mismatch to `trace` (empty: none; also if the
 /// design has none).
 [[nodiscard]] Finding investigate(Dut& dut, const Config& config, const LockstepOptions& options, const Scene& failed,
                                   const Mismatch& mismatch, const std::string& trace, const ReduceOptions& reducing);

@@ -77,7 +77,7 @@ Config random_shading_config(Random& random) {
     try {
       validate(config);
       return config;
-    } catch (const InputError&) {  // they do not go together
+    } catch (const InputError&) {  // the settings exclude each other
     }
   }
 }

@@ -1,5 +1,5 @@
-// The hardware model, to which co-simulation holds the RTL, held to the specification: the scalar engine's picture of the same
-// scene. Packets that both RTL and model have wrong in the same way would else go unseen.
+// Compares the hardware model, the reference of co-simulation, with the specification: the scalar engine's picture of
+// the same scene. Otherwise faults common to RTL and model would stay unseen.
 #pragma once
 
 #include <functional>
@@ -13,20 +13,21 @@
 
 namespace halfplane {
 
-/// Draws what is held to the specification: the hardware model, or another engine; a test puts a faulty one here.
+/// Draws the picture to be compared: the hardware model, or another engine; a test puts a faulty one here.
 using PictureOf = std::function<Framebuffer(const Scene&, const Config&)>;
 [[nodiscard]] Framebuffer hardware_picture(const Scene& scene, const Config& config);
 
-/// Where the pictures differ first, in words: the plane, the pixel, the sample and both codes; empty: nowhere. Colours, and
-/// where all planes are stored depths and stencils. A scene of its own: what a frame before it left is not there.
+/// The first difference of the pictures, in words: the buffer, the pixel, the sample and both codes; empty: none.
+/// Compares colours, and if all buffers are stored depths and stencils. The scene is drawn alone, without an earlier
+/// frame.
 [[nodiscard]] std::string difference_from_specification(const Scene& scene, const Config& config,
                                                         const PictureOf& model = hardware_picture);
 
 /// That difference as a test for reduce(): a mismatch of the stage "specification" with the words as its hint.
 [[nodiscard]] FailTest specification_test(const Config& config, const PictureOf& model = hardware_picture);
 
-/// A random configuration with several samples a pixel and all that shades over w: texture unit and lanes, colours over w, fog,
-/// light, alpha test; of `tiny`, `embedded` or `full`. Legal.
+/// A random legal configuration with several samples per pixel and all units that shade over w: texture unit and lanes,
+/// colours over w, fog, light, alpha test; from `tiny`, `embedded` or `full`.
 [[nodiscard]] Config random_shading_config(Random& random);
 
 }  // namespace halfplane

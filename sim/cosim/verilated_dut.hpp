@@ -56,9 +56,9 @@ class VerilatedDut final : public Dut {
   void hold_reset(bool holds) override { top_->rst_ni = !holds; }
   void set_counters_hold(bool holds) override { top_->counters_hold_i = holds; }
 
-  /// raster_cosim registers its inputs, so the edge that ends the last cycle is the one at which they are taken over.
+  /// raster_cosim registers its inputs, so they are taken at the edge that ends the last cycle.
   const DutOutputs& evaluate(std::uint32_t stalls, bool beat_ready, bool texture_ready) override {
-    if (top_->clk_i != 0) fall();  // a cycle more that nobody counts, as for the counters after the last
+    if (top_->clk_i != 0) fall();  // one more, uncounted cycle, as for the counters after the last
     top_->stall_i = static_cast<std::remove_reference_t<decltype(top_->stall_i)>>(stalls);
     top_->beat_ready_i = beat_ready;
     top_->texture_ready_i = texture_ready;
@@ -119,18 +119,18 @@ class VerilatedDut final : public Dut {
     write_coverage();
     enter_context();
     top_.reset();
-    (void)take_verilated_text();  // of the one before
+    (void)take_verilated_text();  // of the previous instance
     context_ = std::make_unique<VerilatedContext>();
 #ifdef HALFPLANE_RTL_COVERAGE
     context_->randReset(0);  // otherwise the reset itself would toggle half of the bits
 #else
-    context_->randReset(2);  // random start values: a register that needs a reset and has none shows
+    context_->randReset(2);  // random start values: reveal a register that lacks a reset
 #endif
-    context_->fatalOnError(false);  // a failed assertion is reported, and ends nothing
+    context_->fatalOnError(false);  // a failed assertion is reported, and does not end the program
     context_->randSeed(static_cast<int>(seed % 0x7fffffff + 1));
     if constexpr (!std::is_void_v<Trace>) context_->traceEverOn(true);
     top_ = std::make_unique<V>(context_.get());
-    // The inputs were filled at random as well.
+    // The inputs were randomised as well.
     top_->clk_i = 0;
     top_->mutant_i = mutant;
     top_->stall_i = 0;
@@ -163,7 +163,7 @@ class VerilatedDut final : public Dut {
     out_.counters = &top_->counters_o;
   }
 
-  /// `port`: where raster_cosim shows the packets of arrow A, if the RTL sends them.
+  /// `port`: raster_cosim's output for the packets of arrow A, if the RTL sends them.
   template <Arrow A, class Port>
   void connect([[maybe_unused]] Port port) {
     if constexpr (is_compared(A)) out_.packet[index(A)] = port(*top_);
@@ -186,8 +186,8 @@ class VerilatedDut final : public Dut {
     dump();
   }
 
-  /// In a build of the preset `coverage`: what this instance has seen goes into the file that the variable
-  /// HALFPLANE_RTL_COVERAGE names, if it is set, with a number behind it.
+  /// In a build of the preset `coverage`: writes this instance's coverage to the file named in HALFPLANE_RTL_COVERAGE,
+  /// if it is set, with a number appended.
   void write_coverage() const {
 #ifdef HALFPLANE_RTL_COVERAGE
     const char* path = std::getenv("HALFPLANE_RTL_COVERAGE");

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kFullTurn = 2 * std::numbers::pi;
 
-// Of the colour circle at `turn` in 0...1; `light` in 0...1 scales it.
+// A colour of the colour circle at `turn` in 0...1; `light` in 0...1 scales it.
 std::array<double, 4> tint(double turn, double light) {
   std::array<double, 4> rgba{0, 0, 0, 255};
   for (std::size_t c = 0; c < 3; ++c)
@@ -31,8 +31,8 @@ void draw_indices(Scene& scene, const char* object, Topology topology) {
   scene.commands.push_back(Draw{0, 1, topology, 0, scene.indices.size(), 0});
 }
 
-// Half-screen triangles, lower left and upper right in turn. Each is tilted by less than a quarter of the distance to
-// the next, so that no two intersect.
+// Half-screen triangles, lower left and upper right alternating. Each is tilted by less than a quarter of the distance
+// to the next, so that no two intersect.
 Scene layers_scene(int width, int height, int layers, bool is_front_first) {
   Scene scene = cleared_scene(width, height);
   const double spacing = 1.8 / layers;  // of normalised device z
@@ -50,7 +50,7 @@ Scene layers_scene(int width, int height, int layers, bool is_front_first) {
   return scene;
 }
 
-// A texture of lines for all that is drawn.
+// A texture of lines for all draws.
 void add_grid(Scene& scene, int side, bool is_linear) {
   scene.textures.push_back(
       make_texture("grid", pattern_image(TexturePattern::grid, side, side), TextureFormat::rgba8888, Mips::none));
@@ -61,7 +61,8 @@ void add_grid(Scene& scene, int side, bool is_linear) {
   }
 }
 
-// The layers with a texture, seen in perspective: w is 1, 2 and 4 at their corners, and a texel about a pixel large.
+// The layers with a texture, seen in perspective: w is 1, 2 and 4 at their corners, and a texel is about the size of a
+// pixel.
 Scene textured_layers_scene(int width, int height, int layers, bool is_front_first, bool is_linear) {
   constexpr int kSide = 256;  // texels
   Scene scene = layers_scene(width, height, layers, is_front_first);
@@ -76,7 +77,7 @@ Scene textured_layers_scene(int width, int height, int layers, bool is_front_fir
   return scene;
 }
 
-// The layers as coloured glass: each keeps a third to two thirds of what is behind it.
+// The layers as coloured glass: each passes a third to two thirds of the light behind it.
 Scene glass_scene(int width, int height, int layers) {
   Scene scene = layers_scene(width, height, layers, false);
   for (std::size_t i = 0; i < scene.vertices.size(); ++i)
@@ -88,7 +89,7 @@ Scene glass_scene(int width, int height, int layers) {
   return scene;
 }
 
-// The layers with holes: texels of a chequer, of which every other is transparent.
+// The layers with holes: chequer texels, every other one transparent.
 Scene leaves_scene(int width, int height, int layers) {
   constexpr int kSide = 256;  // texels
   Scene scene = textured_layers_scene(width, height, layers, false, true);
@@ -99,7 +100,7 @@ Scene leaves_scene(int width, int height, int layers) {
   return scene;
 }
 
-// 40 to 80 pixels long, whatever the target; ends may lie outside it.
+// 40 to 80 pixels long, for any target size; ends may lie outside it.
 Scene scratches_scene(int width, int height, int count, std::uint64_t seed) {
   Scene scene = cleared_scene(width, height);
   Random random(seed);
@@ -117,8 +118,8 @@ Scene scratches_scene(int width, int height, int count, std::uint64_t seed) {
   return scene;
 }
 
-// A grid over the whole screen. Inner vertices are moved by less than a quarter of a cell, so that no triangle turns
-// over and every pixel is covered once.
+// A grid over the whole screen. Inner vertices are moved by less than a quarter of a cell, so that no triangle is
+// reversed and every pixel is covered once.
 Scene dust_scene(int width, int height, int triangles, std::uint64_t seed) {
   constexpr double kJitter = 0.24;
   Scene scene = cleared_scene(width, height);
@@ -191,7 +192,7 @@ Mesh textured_ball_mesh(int rings) {
   return mesh;
 }
 
-// Two open bowls: the left one two-sided, the right one with its back faces culled, which takes its inside away.
+// Two open bowls: the left one two-sided, the right one with its back faces culled, so that its inside is missing.
 Mesh shell_mesh(int rings) {
   Mesh mesh;
   for (const bool is_right : {false, true}) {
@@ -209,7 +210,7 @@ CameraRequest straight_on(const Vec3& eye, const Vec3& target, double fov) {
   return camera;
 }
 
-// A box of eight corners that all differ in colour: dark at the foot.
+// A box with a different colour at each of its eight corners: dark at the foot.
 void add_box(Mesh& mesh, const Vec3& low, const Vec3& high, double turn) {
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
   for (std::uint32_t corner = 0; corner < 8; ++corner) {
@@ -296,7 +297,7 @@ void add_pebble(Mesh& mesh, const Pebble& pebble, const Vec3& center, double rad
   for (const auto& t : pebble.triangles) mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
 }
 
-// A flat field of pebbles all round the origin, where the eye is.
+// A flat field of pebbles around the origin, where the eye is.
 Mesh objects_mesh(int count, std::uint64_t seed) {
   Mesh mesh;
   mesh.lit = false;
@@ -312,12 +313,12 @@ Mesh objects_mesh(int count, std::uint64_t seed) {
   return mesh;
 }
 
-// The vertical field of view, degrees, that makes so many degrees across.
+// The vertical field of view, degrees, for `degrees` across.
 double fov_across(double degrees, double aspect) {
   return std::atan(std::tan(degrees * std::numbers::pi / 360) / aspect) * 360 / std::numbers::pi;
 }
 
-// 56 degrees across: 5/6 of what lies round the eye is outside, with what reaches over the edge.
+// 56 degrees across: 5/6 of the surroundings of the eye are outside, apart from objects across the edge.
 CameraRequest objects_camera(double aspect) {
   CameraRequest camera = straight_on({0, 0, 0}, {0, 0, -1}, fov_across(56, aspect));
   camera.near = 1;
@@ -327,7 +328,7 @@ CameraRequest objects_camera(double aspect) {
 
 constexpr double kHiddenFov = 40;  // degrees
 
-// A wall at distance 2, a hair larger than the view, and pebbles behind it.
+// A wall at distance 2, slightly larger than the view, and pebbles behind it.
 Mesh hidden_mesh(int count, std::uint64_t seed, double aspect) {
   Mesh mesh;
   mesh.lit = false;

@@ -5,7 +5,7 @@
 namespace halfplane {
 namespace {
 
-/// A box and a sphere that hold both.
+/// A box and a sphere that contain both.
 ObjectBounds around(const ObjectBounds& a, const ObjectBounds& b) {
   ObjectBounds both;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -15,7 +15,7 @@ ObjectBounds around(const ObjectBounds& a, const ObjectBounds& b) {
   both.center = scaled(add(both.low, both.high), 0.5);
   for (const ObjectBounds* of : {&a, &b})
     both.radius = std::max(both.radius, length(subtract(of->center, both.center)) + of->radius);
-  both.radius *= 1 + 1e-14;  // above its own rounding
+  both.radius *= 1 + 1e-14;  // larger than its own rounding error
   return both;
 }
 
@@ -58,7 +58,7 @@ std::vector<std::uint8_t> BoundsTree::outside_view(const Mat4& to_clip, std::uin
   if (tests == 0 || nodes_.empty()) return outside;
   struct Visit {
     std::size_t node;
-    std::uint8_t open;  ///< tests that nothing is known of
+    std::uint8_t open;  ///< planes not yet decided
   };
   std::vector<Visit> stack{{0, tests}};
   while (!stack.empty()) {

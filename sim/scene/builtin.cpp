@@ -17,7 +17,7 @@
 namespace halfplane {
 namespace {
 
-constexpr std::size_t kPictures = 10;  // the others are work
+constexpr std::size_t kPictures = 10;  // the others are workloads
 constexpr std::array<Builtin, kPictures + 18> kBuiltins{{
     {"teapot", "the Utah teapot from its 32 Bezier patches", "segments along a patch side", 10, 1, 128, true},
     {"city", "boxes of random height, back faces culled", "boxes", 400, 1, 65536, true},
@@ -92,7 +92,7 @@ std::array<double, 4> hue(double turn) {
   return rgba;
 }
 
-// Left the midpoint rule, between pixel centres; right diamond exit, whose ends lie anywhere.
+// Left the midpoint rule, between pixel centres; right diamond exit, with ends anywhere.
 Scene star_scene(int width, int height, int spokes) {
   Scene scene = cleared_scene(width, height);
   scene.objects.emplace_back("star");
@@ -120,7 +120,7 @@ Scene star_scene(int width, int height, int spokes) {
   return scene;
 }
 
-// The surface as polylines: no triangle in it.
+// The surface as polylines: no triangles.
 Mesh wires_mesh(int lines) {
   Mesh mesh;
   mesh.lit = false;
@@ -144,7 +144,7 @@ Mesh wires_mesh(int lines) {
   return mesh;
 }
 
-// Every draw twice: filled with the background's colour and set back, then as lines.
+// Every draw twice: filled with the background's colour and moved back, then as lines.
 Scene with_hidden_lines_removed(Scene scene) {
   const std::vector<Command> draws = scene.commands;
   scene.commands.clear();
@@ -162,7 +162,7 @@ Scene with_hidden_lines_removed(Scene scene) {
       state.depth_test = DepthFunc::lequal;
       if (mode == PolygonMode::fill) state.polygon_offset = {1, 1};
       Draw next = *draw;
-      if (mode == PolygonMode::line) next.outside = 0;  // a line a hair outside can still have a pixel inside
+      if (mode == PolygonMode::line) next.outside = 0;  // a line slightly outside can still have a pixel inside
       const auto known = std::ranges::find(scene.states, state);
       next.state = static_cast<std::uint32_t>(known - scene.states.begin());
       if (known == scene.states.end()) scene.states.push_back(state);
@@ -172,7 +172,7 @@ Scene with_hidden_lines_removed(Scene scene) {
   return scene;
 }
 
-// From one corner of the screen across it, each a little turned, at random depths. A third is less than a pixel thin.
+// From one corner of the screen across it, each slightly rotated, at random depths. A third is thinner than a pixel.
 Scene slivers_scene(int width, int height, int count, std::uint64_t seed) {
   Scene scene = cleared_scene(width, height);
   Random random(seed);
@@ -202,8 +202,8 @@ Scene slivers_scene(int width, int height, int count, std::uint64_t seed) {
   return scene;
 }
 
-// Obliquely down the corridor: its far parts lie beyond the far plane, but only outside the view, so that every pixel
-// sees the shell once. Wide targets keep 90 degrees across, which this rests on.
+// Obliquely down the corridor: its distant parts lie beyond the far plane, but only outside the view, so that every
+// pixel sees the shell once. This requires 90 degrees across, which wide targets keep.
 CameraRequest walk_camera(int width, int height) {
   const double aspect = static_cast<double>(width) / height;
   CameraRequest camera;
@@ -219,7 +219,7 @@ CameraRequest coplanar_camera() {
   CameraRequest camera;
   camera.eye = Vec3{4, 6, 24};
   camera.target = Vec3{0, 0, 0};
-  camera.near = 0.3;  // a 16-bit depth step is 0.03 units there, the planes are up to 0.05 apart
+  camera.near = 0.3;  // a 16-bit depth step is 0.03 units there, the surfaces are up to 0.05 apart
   camera.far = 100;
   return camera;
 }

@@ -9,7 +9,7 @@ namespace halfplane {
 namespace {
 
 using Color = std::array<double, 4>;
-using Quad = std::array<Vec3, 4>;  // counter-clockwise from the side that is meant to be seen
+using Quad = std::array<Vec3, 4>;  // counter-clockwise from the visible side
 
 // A hue of 0...1 (red, green, blue, red), fully bright.
 Color from_hue(double hue, double saturation, double value) {
@@ -22,7 +22,7 @@ Color from_hue(double hue, double saturation, double value) {
   return rgba;
 }
 
-// Two triangles with vertices of their own: flat normal, one colour.
+// Two triangles with separate vertices: flat normal, one colour.
 void add_quad(Mesh& mesh, const Quad& corners, const Color& color) {
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
   const Vec3 normal = normalized(cross(subtract(corners[1], corners[0]), subtract(corners[2], corners[0])));
@@ -31,7 +31,7 @@ void add_quad(Mesh& mesh, const Quad& corners, const Color& color) {
   mesh.triangles.push_back({first, first + 2, first + 3});
 }
 
-// Makes everything since the last part a part of its own.
+// Makes everything since the last part a new part.
 void close_part(Mesh& mesh, const std::string& object) {
   const std::size_t first = mesh.parts.empty() ? 0 : mesh.parts.back().first + mesh.parts.back().count;
   mesh.parts.push_back({static_cast<std::uint32_t>(mesh.objects.size()), first, mesh.triangles.size() - first, 0});
@@ -51,7 +51,7 @@ Quad box_side(const Vec3& low, const Vec3& high, std::size_t axis, bool upper) {
   return quad;
 }
 
-// The torus knot's centre line at angle t of 0...2 pi: twice round the axis, three times through the hole.
+// The torus knot's centre line at angle t of 0...2 pi: twice around the axis, three times through the hole.
 Vec3 knot_line(double t) {
   const double r = 2 + std::cos(3 * t);
   return {r * std::cos(2 * t), r * std::sin(2 * t), std::sin(3 * t)};
@@ -85,7 +85,7 @@ Mesh city_mesh(int boxes, std::uint64_t seed) {
     close_part(mesh, "box " + std::to_string(i));
   }
   const double edge = half + 0.5;
-  // A little below the boxes' bottoms, which it would fight with for the same depth.
+  // Slightly below the boxes' bottoms, which would otherwise have the same depth.
   add_quad(mesh, {{{-edge, -0.02, edge}, {edge, -0.02, edge}, {edge, -0.02, -edge}, {-edge, -0.02, -edge}}},
            {95, 105, 95, 255});
   close_part(mesh, "ground");
@@ -96,13 +96,13 @@ Mesh knot_mesh(int segments) {
   Mesh mesh;
   const int around = std::max(3, segments / 8);
   constexpr double kTurn = 2 * std::numbers::pi, kTube = 0.42;  // radius of the tube; the strands are 1 to 2 apart
-  // Turned towards the default camera, which would otherwise look along one of the tube's bends.
+  // Rotated towards the default camera, which would otherwise look along one of the tube's bends.
   const Vec3 z = normalized({0.45, 0.3, 0.85}), x = normalized(cross({0, 1, 0}, z)), y = cross(z, x);
   const auto turned = [&](const Vec3& p) { return add(add(scaled(x, p[0]), scaled(y, p[1])), scaled(z, p[2])); };
   for (int i = 0; i < segments; ++i) {
     const double t = kTurn * i / segments;
     const Vec3 center = knot_line(t), tangent = knot_tangent(t);
-    // Away from the torus' own core circle: a frame that comes back to itself after the whole way round.
+    // Away from the torus' own core circle: a frame that is continuous over the whole loop.
     const Vec3 core{2 * std::cos(2 * t), 2 * std::sin(2 * t), 0};
     const Vec3 side = normalized(cross(tangent, subtract(center, core)));
     const Vec3 out = cross(side, tangent);
@@ -127,7 +127,7 @@ Mesh knot_mesh(int segments) {
 Mesh coplanar_mesh() {
   Mesh mesh;
   mesh.lit = false;
-  // Both squares lean back; the second is turned by a third of a degree about the line x = 0 that they share.
+  // Both squares lean back; the second is rotated by a third of a degree about their common line x = 0.
   constexpr double kSize = 8, kLean = 0.6, kTilt = 0.006;
   const auto square = [](double tilt) {
     Quad quad{};
@@ -150,7 +150,7 @@ Mesh corridor_mesh() {
   Mesh mesh;
   mesh.lit = false;
   const Vec3 low{-2, 0, -20}, high{2, 3, 20};
-  const Vec3 cell{1, 1, 8};  // long in the walking direction: the cells beside the eye begin behind it and end in view
+  const Vec3 cell{1, 1, 8};  // long in the walking direction: the cells next to the eye begin behind it and end in view
   const std::array<std::array<Color, 2>, 3> colors{{{{{205, 190, 150, 255}, {120, 80, 60, 255}}},   // walls
                                                     {{{90, 140, 120, 255}, {225, 230, 220, 255}}},  // floor, ceiling
                                                     {{{150, 60, 60, 255}, {235, 200, 90, 255}}}}};  // ends
@@ -158,7 +158,7 @@ Mesh corridor_mesh() {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (const bool upper : {false, true}) {
       const std::size_t s = (axis + 1) % 3, t = (axis + 2) % 3;
-      // Every edge of a cell is an edge of its neighbour too, over the corridor's corners as well: no T-junction.
+      // Every edge of a cell is an edge of its neighbour too, also across the corridor's corners: no T-junction.
       for (int i = 0; low[s] + i * cell[s] < high[s]; ++i) {
         for (int j = 0; low[t] + j * cell[t] < high[t]; ++j) {
           Vec3 from = low, to = high;

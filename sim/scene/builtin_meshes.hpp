@@ -14,10 +14,10 @@ namespace halfplane {
 /// `boxes` boxes of random height on a square grid of unit lots, and the ground. Wound for back-face culling.
 [[nodiscard]] Mesh city_mesh(int boxes, std::uint64_t seed);
 
-/// A tube round the (2, 3) torus knot, `segments` along it, in all hues. Closed; wound for back-face culling.
+/// A tube around the (2, 3) torus knot, `segments` along it, in all hues. Closed; wound for back-face culling.
 [[nodiscard]] Mesh knot_mesh(int segments);
 
-/// Two squares that cross along a line at a third of a degree: near it they are apart by less than a depth step.
+/// Two squares that cross along a line at a third of a degree: near it their distance is less than a depth step.
 [[nodiscard]] Mesh coplanar_mesh();
 
 /// A closed corridor around the origin of x and z, chequered by cells of one unit, 4 wide, 3 high, 40 long.

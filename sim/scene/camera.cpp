@@ -54,7 +54,7 @@ struct Sphere {
   double radius = 0;
 };
 
-// The middle of the vertices' box and the farthest of them from it.
+// The centre of the vertices' box and the distance of the farthest vertex from it.
 Sphere bounding_sphere(const Mesh& mesh) {
   Vec3 low = mesh.vertices.front().position, high = low;
   for (const MeshVertex& vertex : mesh.vertices) {
@@ -67,19 +67,19 @@ Sphere bounding_sphere(const Mesh& mesh) {
   for (const MeshVertex& vertex : mesh.vertices) {
     sphere.radius = std::max(sphere.radius, length(subtract(vertex.position, sphere.center)));
   }
-  // A mesh of one point still needs a size, and one that binary64 can add to its place.
+  // A mesh of one point still needs a size, large enough to be added to its position in binary64.
   sphere.radius = std::max({sphere.radius, 1e-9 * length(sphere.center), 1e-30});
   return sphere;
 }
 
-// An up that is not along the view: the given one if that will do.
+// An up vector not along the view: the given one if possible.
 Vec3 usable_up(const Vec3& up, const Vec3& forward) {
   if (length(cross(forward, normalized(up))) >= 1e-9) return normalized(up);
-  if (std::abs(forward[2]) < 0.7) return {0, 0, -1};  // looking straight down, as maps are read
+  if (std::abs(forward[2]) < 0.7) return {0, 0, -1};  // looking straight down, as on a map
   return {0, 1, 0};
 }
 
-// How far back along `back` the eye must be from the target for the cone of view to hold every vertex.
+// Distance of the eye from the target along `back` for the view cone to contain every vertex.
 double fitting_distance(const Camera& camera, const Mesh& mesh, const Vec3& back, double radius, double aspect) {
   const double half_height = std::tan(half_fov(camera.fov)), half_width = half_height * aspect;
   const Vec3 right = normalized(cross(camera.up, back)), up = cross(back, right);
@@ -99,7 +99,7 @@ double fitting_distance(const Camera& camera, const Sphere& bounds, double aspec
   return kFrameMargin * radius / std::sin(std::min(half_height, half_width));
 }
 
-// `v` turned about a unit axis, counter-clockwise as seen from its tip (Rodrigues).
+// `v` rotated about a unit axis, counter-clockwise as seen from its tip (Rodrigues).
 Vec3 turned_about(const Vec3& axis, double degrees, const Vec3& v) {
   const double angle = degrees * std::numbers::pi / 180, c = std::cos(angle), s = std::sin(angle);
   return add(add(scaled(v, c), scaled(cross(axis, v), s)), scaled(axis, dot(axis, v) * (1 - c)));
@@ -107,7 +107,7 @@ Vec3 turned_about(const Vec3& axis, double degrees, const Vec3& v) {
 
 // near and far around the vertices' depths along the view, with some room.
 void fit_planes(Camera& camera, const CameraRequest& request, const Mesh& mesh, const Vec3& forward, double radius) {
-  if (request.near && request.far) {  // nothing to be found
+  if (request.near && request.far) {  // nothing to be computed
     camera.near = *request.near;
     camera.far = *request.far;
     return;
@@ -120,7 +120,7 @@ void fit_planes(Camera& camera, const CameraRequest& request, const Mesh& mesh, 
   }
   back += 0.05 * radius;
   camera.far = request.far.value_or(back > 0 ? back : 10 * radius);
-  // Depth precision goes with near: it is kept away from the eye even where the eye is inside the mesh.
+  // Depth precision depends on near: it is kept away from the eye even if the eye is inside the mesh.
   front = std::max(front - 0.05 * radius, camera.far / 1000);
   camera.near = request.near.value_or(std::min(front, camera.far / 2));
   if (!request.far && camera.far <= camera.near) camera.far = 10 * camera.near;
@@ -135,7 +135,7 @@ CameraRequest parse_camera(std::string_view text) {
     const std::string_view part = OptionParts::cut(text, ';');
     if (part.empty()) continue;
     std::size_t equals = part.find('=');
-    if (part == "orbit") equals = part.size();  // without a number: once round
+    if (part == "orbit") equals = part.size();  // without a number: a full turn
     if (equals == std::string_view::npos) fail("no = in " + in_quotes(part), kCameraParts.example);
     const std::string_view key = OptionParts::trimmed(part.substr(0, equals));
     if (!seen.emplace(key).second) fail(in_quotes(key) + " is given twice", "leave one of them out");

@@ -9,7 +9,8 @@
 namespace halfplane {
 namespace {
 
-/// The vertices of the draws, from the lowest index to the highest: those of a frame stand together in most captures.
+/// The vertices of the draws, from the lowest index to the highest: the vertices of a frame are adjacent in most
+/// captures.
 void take_vertices(const Scene& from, Scene& to) {
   std::uint32_t low = kRestart, high = 0;
   for (const std::uint32_t index : to.indices) {
@@ -52,7 +53,7 @@ Scene frame_scene(const Scene& scene, const FrameCommands& frame) {
   made.height = scene.height;
   made.planes = scene.planes;
   made.objects = scene.objects;
-  std::map<std::uint32_t, std::uint32_t> states, textures;  // the number there, and here
+  std::map<std::uint32_t, std::uint32_t> states, textures;  // old number to new number
   const auto own_state = [&](std::uint32_t number) {
     const auto [place, is_new] = states.try_emplace(number, static_cast<std::uint32_t>(made.states.size()));
     if (!is_new) return place->second;

@@ -31,7 +31,7 @@ DepthFunc mirrored(DepthFunc function) {
   }
 }
 
-/// Where the outer corner of the first pixel lies.
+/// The position of the outer corner of the first pixel.
 double first_edge(PixelCenter center) { return center == PixelCenter::half ? 0.0 : -0.5; }
 
 /// Restates a scene, state by state and vertex by vertex.
@@ -59,7 +59,7 @@ class Restater {
   }
 
  private:
-  /// What decides how a vertex is restated, as taken from its state.
+  /// The state's members that decide how a vertex is restated.
   using Terms = std::tuple<Space, ClipZ, PixelCenter, Origin>;
   static Terms terms_of(const State& state) {
     const bool is_clip = state.space == Space::clip;
@@ -72,7 +72,7 @@ class Restater {
   Vertex restated(Vertex v, const State& from) const;
   std::uint32_t vertex(std::uint32_t index, const State& from);
 
-  /// A window y, or the near edge of something `size` high, moved to the target's origin.
+  /// A window y, or the near edge of something `size` high, converted to the target's origin.
   [[nodiscard]] double turned(double y, double size, PixelCenter center, Origin from) const {
     const double above_edge = y - first_edge(center);
     return (from == to_.origin ? above_edge : scene_.height - above_edge - size) + first_edge(to_.pixel_center);
@@ -83,8 +83,8 @@ class Restater {
   std::vector<Vertex> given_;
   Scene scene_;
   Convention to_;
-  std::map<Terms, std::uint32_t> numbers_;  ///< of the terms met so far
-  std::vector<std::uint32_t> owner_;        ///< the terms that a vertex was restated from in its place
+  std::map<Terms, std::uint32_t> numbers_;  ///< of the terms so far
+  std::vector<std::uint32_t> owner_;        ///< the terms for which a vertex was restated in place
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> copies_;  ///< {vertex, other terms}: its copy
 };
 
@@ -94,7 +94,7 @@ State Restater::restated(const State& from) const {
   state.origin = to_.origin;
   state.clip_z = to_.clip_z;
   if (state.scissor && from.origin != to_.origin) {
-    // Within +-2^21 of the target: captures hold no larger ones.
+    // Within +-2^21 of the target: captures have no larger ones.
     const auto [x, y, width, height] = *from.scissor;
     state.scissor = Rect{x, scene_.height - y - height, width, height};
   }
@@ -102,7 +102,7 @@ State Restater::restated(const State& from) const {
     state.viewport->x += first_edge(to_.pixel_center) - first_edge(from.pixel_center);
     state.viewport->y = turned(from.viewport->y, from.viewport->height, from.pixel_center, from.origin);
   }
-  // An outline is drawn along the triangle's order, which facing must therefore not change.
+  // An outline is drawn in the triangle's order, so facing must not reverse it.
   if (to_.front == FrontFace::cw && from.polygon_mode == PolygonMode::fill && from.front == FrontFace::ccw) {
     state.front = FrontFace::cw;
   }

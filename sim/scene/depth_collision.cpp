@@ -12,7 +12,7 @@ namespace halfplane {
 namespace {
 
 constexpr double kLeastRatio = 1.05;
-constexpr double kBinsBetween = 2;  // that tell two distances apart whatever their places in their bins
+constexpr double kBinsBetween = 2;  // enough to tell two distances apart, wherever they lie in their bins
 constexpr int kMostBits = 32;
 
 bool is_in_view(const Vertex& v, ClipZ clip_z) {
@@ -38,12 +38,12 @@ struct Distances {
 
 std::optional<DepthCollision> depth_collision(const Scene& scene, const Config& config) {
   if (config.depth_mapping != DepthMapping::projection || config.depth_format != DepthFormat()) return {};
-  // Places w and more than w r apart have one code only where w > near (1 - 1/r) (2^B - 1): most scenes end before that.
+  // Places w and w r can only have one code if w > near (1 - 1/r) (2^B - 1): most scenes end before that.
   if (const double least = (1 - 1 / kLeastRatio) * (std::ldexp(1.0, config.depth_bits) - 1);
       scene.planes && (*scene.planes)[1] < least * (*scene.planes)[0])
     return {};
   std::unordered_map<std::uint32_t, Distances> of_code;
-  std::vector<std::uint32_t> seen_in(scene.vertices.size(), ~0U);  // the state it was last looked at in
+  std::vector<std::uint32_t> seen_in(scene.vertices.size(), ~0U);  // the state of its last test
   for (const Command& command : scene.commands) {
     const Draw* const draw = std::get_if<Draw>(&command);
     if (draw == nullptr || draw->outside != 0 || !orders_by_depth(scene.states[draw->state])) continue;

@@ -9,18 +9,18 @@
 
 namespace halfplane {
 
-/// Two vertices in view with one code of depth, whose distances (w) differ by a twentieth or more: which of two surfaces there
-/// is seen, the order of drawing decides.
+/// Two vertices in view with one code of depth, whose distances (w) differ by a twentieth or more: there the order of
+/// drawing decides which of two surfaces is visible.
 struct DepthCollision {
   double nearer = 0, farther = 0;
   int bits = 0;                       ///< B
-  std::optional<int> enough_bits;     ///< that tell such distances apart; none: more than there are
+  std::optional<int> enough_bits;     ///< enough to tell such distances apart; none: more than available
   std::optional<double> near;         ///< the scene's near plane
-  std::optional<double> near_enough;  ///< that does, at the same bits; none where the scene does not say `near`
+  std::optional<double> near_enough;  ///< also enough, at the same bits; none if the scene has no `near`
 };
 
-/// The collision of the largest ratio; nothing where there is none, in window space, or with a depth.mapping or depth.format of
-/// its own, whose codes are others. Linear in the scene.
+/// The collision with the largest ratio; none without a collision, in window space, or with a depth.mapping or
+/// depth.format, whose codes differ. Linear in the scene.
 [[nodiscard]] std::optional<DepthCollision> depth_collision(const Scene& scene, const Config& config);
 
 /// One line.

@@ -14,7 +14,7 @@ namespace {
 
 using Rgba = std::array<double, 4>;
 
-// What one primitive reads from, all of the same count.
+// Accessors of one primitive, all with the same count.
 struct Attributes {
   const GltfAccessor* position = nullptr;
   const GltfAccessor* normal = nullptr;
@@ -28,11 +28,11 @@ struct CornerRun {
   std::uint64_t first = 0, count = 0;
 };
 
-// A transform of places and of directions that stand on faces.
+// A transform of positions and of face normals.
 struct Placing {
   Mat4 world{};
   std::array<Vec3, 3> normal_rows{};  // cofactors: the inverse transpose times the determinant's magnitude
-  bool is_mirrored = false;           // turns counter-clockwise into clockwise
+  bool is_mirrored = false;           // reverses counter-clockwise
 };
 
 Placing placing_of(const Mat4& m) {
@@ -63,7 +63,7 @@ class GltfMeshBuilder {
         left_(most_triangles),
         materials_(file, mesh_.textures, [this](const std::string& text) { warn(text); }) {}
 
-  /// `world` gets all but its file.
+  /// Fills `world` except its file.
   void run(GltfWorld& world) {
     for (const std::string& extension : file_.passed_over())
       warnings_.push_back(file_.name() + ": " + in_quotes(extension) +
@@ -101,7 +101,7 @@ class GltfMeshBuilder {
     if (warned_.insert(text).second) warnings_.push_back(file_.name() + ": " + text);
   }
 
-  // Read when a mesh first has it.
+  // Read on first use by a mesh.
   const GltfSkin* skin_of(std::size_t number, GltfWorld& world) {
     world.skins.resize(file_.count("skins"));
     if (!world.skins[number]) world.skins[number] = read_skin(file_, world.nodes, number);
@@ -110,7 +110,7 @@ class GltfMeshBuilder {
     return world.skins[number] ? &*world.skins[number] : nullptr;
   }
 
-  // Nodes of one name are one object.
+  // Nodes with the same name are one object.
   std::uint32_t object_number(const std::string& name) {
     const auto [place, added] = object_numbers_.try_emplace(name, static_cast<std::uint32_t>(mesh_.objects.size()));
     if (added) mesh_.objects.push_back(name);
@@ -172,8 +172,8 @@ class GltfMeshBuilder {
     left_ -= static_cast<std::size_t>(count);
   }
 
-  /// Corners between two indices of the largest value of their type, which start strips, fans, loops and lists anew: the format
-  /// has none of them, but exporters write them, because graphics APIs read them so.
+  /// Corners between two indices of the largest value of their type, which restart strips, fans, loops and lists: the
+  /// format forbids them, but exporters write them, because graphics APIs interpret them so.
   std::vector<CornerRun> runs() {
     const GltfAccessor* indices = attributes_.indices;
     const std::uint64_t corners = indices != nullptr ? indices->count : attributes_.position->count;
@@ -217,10 +217,10 @@ class GltfMeshBuilder {
     if (attributes_.uv == nullptr && material_.texture) {
       warn("primitives without " + material_.uv_set + " are shown without their texture");
     }
-    new_index_ = {};  // clear() would keep a table as long as the largest primitive
+    new_index_ = {};  // clear() would keep a table of the largest primitive's size
     for (const CornerRun& run : all)
       for (std::uint64_t i = 0; i < triangles_of(run); ++i) {
-        // A strip turns every other triangle round; a fan keeps its first vertex, as its last corner.
+        // A strip reverses every other triangle; a fan keeps its first vertex, as its last corner.
         std::array<std::uint64_t, 3> at{3 * i, 3 * i + 1, 3 * i + 2};
         if (mode == 5) at = {i, i + 1 + i % 2, i + 2 - i % 2};
         if (mode == 6) at = {i + 1, i + 2, 0};
@@ -262,7 +262,7 @@ class GltfMeshBuilder {
     return vertex;
   }
 
-  // Only vertices that are used get into the mesh, each once: primitives often share one long list.
+  // Adds only vertices that are used to the mesh, each once: primitives often share one long list.
   std::uint32_t shared_vertex(std::uint64_t from) {
     const auto [place, added] = new_index_.try_emplace(from, static_cast<std::uint32_t>(mesh_.vertices.size()));
     if (added) add_vertex(from);
@@ -282,7 +282,7 @@ class GltfMeshBuilder {
     mesh_.triangles.push_back(triangle);
   }
 
-  /// Lit without normals: the format asks for those of the faces. Without lights a primitive that has colours is not lit.
+  /// Lit without normals: the format requires face normals. Without lights a primitive with colours is not lit.
   bool is_flat() const {
     const bool has_light = attributes_.color == nullptr || has_lights_;
     return material_.is_lit && has_light && attributes_.normal == nullptr;
@@ -309,7 +309,7 @@ class GltfMeshBuilder {
       if (attributes_.color->width == 4) color[3] *= own[3];
     }
     for (std::size_t k = 0; k < 3; ++k) made.rgba[k] = display_code(color[k]);
-    made.rgba[3] = std::clamp(color[3], 0.0, 1.0) * 255;  // opacity is linear in both worlds
+    made.rgba[3] = std::clamp(color[3], 0.0, 1.0) * 255;  // opacity is linear in both
     if (attributes_.uv != nullptr) {
       const Rgba uv = read_element(*attributes_.uv, i);
       const auto& [to_u, to_v] = material_.uv_transform;
@@ -325,21 +325,21 @@ class GltfMeshBuilder {
 
   GltfFile& file_;
   std::vector<std::string>& warnings_;
-  std::size_t left_;  // triangles that may still be made
+  std::size_t left_;  // limit of further triangles
   Mesh mesh_;
   std::set<std::string> warned_;
   std::unordered_map<std::string, std::uint32_t> object_numbers_;
   std::uint32_t object_ = 0;
   GltfMaterials materials_;
   bool has_lights_ = false;
-  GltfMaterial material_;  // of the primitive at hand, as are the next three
+  GltfMaterial material_;  // of the current primitive, like the next three members
   std::uint32_t surface_ = 0;
   Attributes attributes_;
   std::unordered_map<std::uint64_t, std::uint32_t> new_index_;
   std::vector<std::uint64_t> sources_;  // of its vertices, in its accessors
 };
 
-/// Adds what its morph targets do to a run's vertices.
+/// Applies the morph targets to a run's vertices.
 void morph_run(const GltfRun& run, const std::vector<double>& weights, Mesh& mesh) {
   for (std::size_t t = 0; t < weights.size(); ++t) {
     const MorphTarget& target = run.deformation.targets[t];
@@ -355,7 +355,7 @@ void morph_run(const GltfRun& run, const std::vector<double>& weights, Mesh& mes
   }
 }
 
-/// Puts a run's vertices into the world, by `joints` those of a skin, and its triangles the right way round.
+/// Transforms a run's vertices to world space, those of a skin by `joints`, and orients its triangles.
 void place_run(const GltfRun& run, const Mat4& node, const std::vector<Mat4>& joints, Mesh& mesh) {
   Placing placing = placing_of(node);
   std::vector<bool> is_mirrored;  // of each vertex of a skin

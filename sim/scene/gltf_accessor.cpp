@@ -1,4 +1,4 @@
-// The accessors of a glTF file: checked when made, read element by element.
+// The accessors of a glTF file: checked on construction, read element by element.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -43,7 +43,7 @@ int width_of(const JsonPlace& place) {
   place.fail("type " + in_quotes(type), "what is drawn is made of SCALAR, VEC2, VEC3, VEC4 or MAT4");
 }
 
-// `bytes` from `offset` on, when `count` elements of `size` bytes, `stride` apart, lie in them. count >= 1.
+// Returns `bytes` from `offset` on, if `count` elements of `size` bytes, `stride` apart, lie in them. count >= 1.
 ByteSpan checked(ByteSpan bytes, const JsonPlace& place, std::uint64_t count, std::size_t size, std::size_t stride) {
   const std::uint64_t offset = place.whole_or("byteOffset", kMostOffset, 0);
   const std::uint64_t end = offset + (count - 1) * stride + size;  // < 2^40 + 2^32 * 2^8 + 16
@@ -61,7 +61,7 @@ std::uint32_t bits_at(ByteSpan bytes, std::size_t at, std::size_t size) {
   return bits;
 }
 
-// One number; a signed normalized one ends at -1 on both of its lowest codes.
+// One number; both lowest codes of a signed normalized number are -1.
 double number_at(ByteSpan bytes, std::size_t at, GltfComponent component, bool normalized) {
   const std::uint32_t bits = bits_at(bytes, at, size_of(component));
   double value = bits, largest = 1;
@@ -87,7 +87,7 @@ std::uint32_t sparse_index(const GltfAccessor& accessor, std::uint64_t k) {
   return bits_at(accessor.sparse_indices, static_cast<std::size_t>(k) * size, size);
 }
 
-// Where element i stands among the replaced ones, or sparse_count. Their indices ascend.
+// The index of element i among the replaced ones, or sparse_count. Their indices ascend.
 std::uint64_t find_sparse(const GltfAccessor& accessor, std::uint64_t i) {
   std::uint64_t low = 0, high = accessor.sparse_count;
   while (low < high) {
@@ -102,7 +102,7 @@ std::uint64_t find_sparse(const GltfAccessor& accessor, std::uint64_t i) {
   return found ? low : accessor.sparse_count;
 }
 
-/// The first N numbers of an element; those that it does not have are 0.
+/// The first N numbers of an element; missing ones are 0.
 template <std::size_t N>
 std::array<double, N> numbers_at(const GltfAccessor& accessor, std::uint64_t i) {
   std::array<double, N> result{};

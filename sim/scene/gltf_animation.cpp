@@ -33,13 +33,13 @@ Element slerp(const Element& from, Element to, double part) {
     to = blend(-1, to, 0, to);
     cosine = -cosine;
   }
-  constexpr double kStraight = 1 - 1e-12;  // where arc and chord are one in binary64, and the quotient below nears 0/0
+  constexpr double kStraight = 1 - 1e-12;  // arc and chord are equal in binary64, and the quotient below approaches 0/0
   if (cosine > kStraight) return unit(blend(1 - part, from, part, to));
   const double angle = std::acos(cosine);
   return blend(std::sin((1 - part) * angle) / std::sin(angle), from, std::sin(part * angle) / std::sin(angle), to);
 }
 
-// Hermite's polynomial; tangents are a second's, so they count for as long as the keyframes are apart.
+// Hermite's polynomial; tangents are per second, so they are scaled by the distance of the keyframes.
 Element spline(const GltfTrack& track, std::size_t key, double part, double seconds) {
   const Element &from = track.values[3 * key + 1], &out = track.values[3 * key + 2];
   const Element &in = track.values[3 * key + 3], &to = track.values[3 * key + 4];
@@ -57,7 +57,7 @@ std::optional<GltfTrack::Path> path_of(const std::string& word) {
 }
 
 GltfTrack::Interpolation interpolation_of(const JsonPlace& sampler) {
-  // A number is none of the format, but an exporter for Maya and 3ds Max writes 0, the first of its own list: LINEAR.
+  // The format has no numbers here, but an exporter for Maya and 3ds Max writes 0, the first of its own list: LINEAR.
   const std::optional<JsonPlace> given = sampler.find("interpolation");
   if (given && !given->is_text() && given->number() == 0) return GltfTrack::Interpolation::linear;
   const std::string word = sampler.text_or("interpolation", "LINEAR");
@@ -93,14 +93,14 @@ void read_values(const GltfAccessor& output, const JsonPlace& place, GltfTrack& 
     const bool is_tangent = is_spline && i % 3 != 1;
     if (width == 4 && !is_tangent) {
       if (!(inner(value, value) > 0)) place.fail("a rotation of length 0", "write 0, 0, 0, 1 for none");
-      value = unit(value);  // exporters write binary32 and less
+      value = unit(value);  // exporters write binary32 or less
     }
     track.values.push_back(value);
   }
 }
 
-/// Of a channel of weights: for each keyframe those of all targets; of a spline all in-tangents, then all values, then all
-/// out-tangents.
+/// Adds a channel of weights: for each keyframe those of all targets; for a spline all in-tangents, then all values,
+/// then all out-tangents.
 void add_weights(const GltfAccessor& output, const JsonPlace& place, const GltfTrack& common,
                  std::vector<GltfTrack>& tracks) {
   const std::uint64_t parts = common.interpolation == GltfTrack::Interpolation::cubic_spline ? 3 : 1;

@@ -12,18 +12,18 @@ struct NodeTransform {
   std::array<double, 3> scale{1, 1, 1};
 };
 
-/// What becomes of one part of one node's transform, or of the weight of one of its morph targets.
+/// The animation of one part of one node's transform, or of the weight of one of its morph targets.
 struct GltfTrack {
   enum class Path : std::uint8_t { translation, rotation, scale, weight };
   enum class Interpolation : std::uint8_t { step, linear, cubic_spline };
 
   std::size_t node = 0;  ///< in the file's list of nodes
   Path path = Path::translation;
-  std::size_t target = 0;  ///< of a weight: which of the morph targets
+  std::size_t target = 0;  ///< of a weight: the morph target
   Interpolation interpolation = Interpolation::linear;
   std::vector<double> times;  ///< of the keyframes, seconds, ascending; at least one
   std::vector<std::array<double, 4>>
-      values;  ///< one a keyframe, a weight's in front; of a cubic spline in-tangent, value, out-tangent
+      values;  ///< one per keyframe, a weight in the first component; for a cubic spline in-tangent, value, out-tangent
 };
 
 struct GltfAnimation {
@@ -31,19 +31,18 @@ struct GltfAnimation {
   double end = 0;  ///< of its last keyframe, seconds
 };
 
-/// Which of the file's animations: that of this name or number, the first for an empty one. Throws InputError when there is
-/// none.
+/// The animation with this name or number, the first for an empty one. Throws InputError when there is none.
 [[nodiscard]] std::size_t choose_animation(const GltfFile& file, const std::string& name);
 
-/// Reads entry `number` of the list of animations. Tracks of what is not read here (pointers) are left out; a channel of
-/// weights is a track for each morph target. Throws InputError "file: place: what; the mend".
+/// Reads entry `number` of the list of animations. Unsupported tracks (pointers) are left out; a channel of weights is
+/// a track for each morph target. Throws InputError "file: place: what; the remedy".
 [[nodiscard]] GltfAnimation read_animation(GltfFile& file, std::size_t number);
 
-/// What a track says at a time, a rotation taken to length 1: before its first keyframe as there, behind its last as there
-/// (glTF 2.0, 3.11 and appendix C; rotations that are LINEAR go along the shorter arc at constant speed).
+/// The value of a track at a time, a rotation normalised to length 1: constant before its first and after its last
+/// keyframe (glTF 2.0, 3.11 and appendix C; LINEAR rotations follow the shorter arc at constant speed).
 [[nodiscard]] std::array<double, 4> value_at(const GltfTrack& track, double time);
 
-/// Puts what `track` says at a time into the transform of its node, which a weight leaves alone.
+/// Sets the value of `track` at a time in the transform of its node; a weight does not change the transform.
 void apply(const GltfTrack& track, double time, NodeTransform& transform);
 
 }  // namespace halfplane

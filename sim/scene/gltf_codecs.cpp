@@ -37,7 +37,7 @@ bool can_read([[maybe_unused]] GltfCodec codec) {
 #ifdef HALFPLANE_HAS_MESHOPTIMIZER
 namespace {
 
-/// What the library takes for granted and does not look at: empty, or what is wrong.
+/// Checks the library's unchecked assumptions: empty, or the fault.
 std::string meshopt_fault(const MeshoptStream& stream, std::size_t packed_bytes) {
   const bool is_vertices = stream.mode == "ATTRIBUTES";
   if (!is_vertices && stream.mode != "TRIANGLES" && stream.mode != "INDICES")
@@ -54,7 +54,7 @@ std::string meshopt_fault(const MeshoptStream& stream, std::size_t packed_bytes)
                         (stream.filter == "QUATERNION" && stream.stride == 8) || stream.filter == "EXPONENTIAL");
     if (!is_filter) return "filter '" + stream.filter + "' for elements of " + std::to_string(stream.stride) + " bytes";
   }
-  // A byte says no more than that 64 are equal to those before: more than that is not asked memory for.
+  // A byte can state at most that 64 are equal to those before: no larger memory is allocated.
   constexpr std::uint64_t kMostRatio = 256;
   if (stream.count * stream.stride > packed_bytes * kMostRatio)
     return std::to_string(packed_bytes) + " bytes cannot hold " + std::to_string(stream.count) + " elements";
@@ -94,7 +94,7 @@ std::optional<std::string> decode_meshopt(const MeshoptStream&, ByteSpan, std::s
 #ifdef HALFPLANE_HAS_DRACO
 namespace {
 
-/// Each vertex's element of an attribute, as numbers of type T. Returns whether all of them could be had.
+/// Reads each vertex's element of an attribute, as numbers of type T. Returns whether all were available.
 template <class T>
 bool copy_as(const draco::PointCloud& mesh, const draco::PointAttribute& from, DracoAttribute& to) {
   std::array<T, 4> element{};
@@ -151,7 +151,7 @@ std::optional<DracoMesh> decode_draco(ByteSpan packed, std::vector<DracoAttribut
     auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
     if (decoded.ok()) return copied(*std::move(decoded).value(), attributes, fault);
     why += " (Draco: " + decoded.status().error_msg_string() + ")";
-  } catch (const std::exception&) {  // of lengths that cannot be
+  } catch (const std::exception&) {  // invalid lengths
   }
   fault = why;
   return std::nullopt;

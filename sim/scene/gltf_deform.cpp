@@ -19,7 +19,7 @@ const GltfAccessor& wide_accessor(GltfFile& file, const JsonPlace& index, int wi
   return accessor;
 }
 
-/// As many as the positions of the primitive.
+/// Number of vertices: the positions of the primitive.
 std::uint64_t vertices_of(GltfFile& file, const JsonPlace& primitive) {
   return file.accessor(primitive.at("attributes").at("POSITION")).count;
 }
@@ -44,7 +44,7 @@ void read_joints(GltfFile& file, const JsonPlace& primitive, const GltfSkin& ski
     for (const auto& [joints, weights] : sets) {
       const std::array<double, 4> joint = read_element(*joints, source), weight = read_element(*weights, source);
       for (std::size_t k = 0; k < 4; ++k) {
-        const double part = std::max(weight[k], 0.0);  // what has none may name any joint
+        const double part = std::max(weight[k], 0.0);  // a joint with weight 0 may be any number
         if (part > 0 && !(joint[k] >= 0 && joint[k] < static_cast<double>(skin.joints.size())))
           throw InputError(joints->place + ": element " + std::to_string(source) + " is a joint of " +
                            std::to_string(skin.joints.size()) + " that is not there; export the file again");
@@ -52,7 +52,7 @@ void read_joints(GltfFile& file, const JsonPlace& primitive, const GltfSkin& ski
         sum += part;
       }
     }
-    if (sum == 0) made.joints[first].weight = sum = 1;  // which the format rules out
+    if (sum == 0) made.joints[first].weight = sum = 1;  // forbidden by the format
     for (std::size_t k = first; k < made.joints.size(); ++k) made.joints[k].weight /= sum;
   }
 }

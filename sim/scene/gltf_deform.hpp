@@ -12,31 +12,31 @@ struct GltfSkin {
   std::vector<Mat4> inverse_bind;   ///< as many
 };
 
-/// How much of a joint's motion a vertex takes part in.
+/// The influence of a joint on a vertex.
 struct JointWeight {
   std::uint32_t joint = 0;  ///< in GltfSkin::joints
-  double weight = 0;        ///< those of a vertex add up to 1
+  double weight = 0;        ///< the weights of a vertex add up to 1
 };
 
-/// What a morph target with the weight of 1 adds to the vertices.
+/// The displacement of vertices by a morph target with weight 1.
 struct MorphTarget {
-  std::vector<Vec3> positions, normals;  ///< one a vertex; empty where it has none
+  std::vector<Vec3> positions, normals;  ///< one per vertex; empty if it has none
   double weight = 0;                     ///< at rest
 };
 
-/// Of the vertices of one primitive at a node.
+/// Deformation of the vertices of one primitive at a node.
 struct GltfDeformation {
-  std::optional<std::size_t> skin;   ///< in the file's list; none: they stand as their node does
-  std::size_t joints_of_vertex = 0;  ///< as many in `joints` for each vertex
+  std::optional<std::size_t> skin;   ///< in the file's list; none: placed by their node
+  std::size_t joints_of_vertex = 0;  ///< entries of `joints` per vertex
   std::vector<JointWeight> joints;
   std::vector<MorphTarget> targets;
 };
 
-/// Entry `number` of the list of skins; nothing where a joint is not in the scene. Throws InputError.
+/// Entry `number` of the list of skins; none if a joint is not in the scene. Throws InputError.
 [[nodiscard]] std::optional<GltfSkin> read_skin(GltfFile& file, const GltfNodes& nodes, std::size_t number);
 
-/// What of `primitive`, whose mesh stands at `instance`, moves the vertices that were made from the elements `sources` of
-/// its accessors. `skin`: that of the instance, if it is there. Throws InputError.
+/// The deformation of `primitive`, whose mesh is at `instance`, for the vertices made from the elements `sources` of
+/// its accessors. `skin`: of the instance, if present. Throws InputError.
 [[nodiscard]] GltfDeformation read_deformation(GltfFile& file, const JsonPlace& primitive, const GltfInstance& instance,
                                                const GltfNodes& nodes, const GltfSkin* skin,
                                                const std::vector<std::uint64_t>& sources, bool has_normals);
@@ -45,10 +45,10 @@ struct GltfDeformation {
 [[nodiscard]] std::vector<double> morph_weights(const std::vector<MorphTarget>& targets, std::size_t node,
                                                 const GltfAnimation* animation, double time);
 
-/// From the space of the mesh to the world by each joint, `world` being those of the nodes.
+/// The matrices from mesh space to the world by each joint, `world`: the nodes' matrices.
 [[nodiscard]] std::vector<Mat4> joint_matrices(const GltfSkin& skin, const std::vector<Mat4>& world);
 
-/// The mean of what the joints of vertex `i` do, by their weights.
+/// The mean of the joint matrices of vertex `i`, by its weights.
 [[nodiscard]] Mat4 skin_matrix(const GltfDeformation& deformation, const std::vector<Mat4>& joints, std::size_t i);
 
 }  // namespace halfplane

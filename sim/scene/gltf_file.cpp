@@ -21,7 +21,7 @@ std::shared_ptr<const nlohmann::json> parse_json(std::string_view text, const st
     const auto lines = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(read), '\n');
     fail_at(file, static_cast<std::uint32_t>(lines + 1), "not JSON (at byte " + std::to_string(read) + ")",
             "export the file again, or mend the text there");
-  } catch (const nlohmann::json::exception&) {  // the only other one: a number such as 1e999
+  } catch (const nlohmann::json::exception&) {  // the only other exception: a number such as 1e999
     throw InputError(file + ":1: a number beyond binary64; correct it");
   }
 }
@@ -61,12 +61,12 @@ JsonPlace JsonPlace::operator[](std::size_t i) const {
 
 double JsonPlace::number() const {
   if (!value_->is_number()) fail("not a number", "write one there");
-  return value_->get<double>();  // finite: the parser refuses what is not
+  return value_->get<double>();  // finite: the parser refuses other numbers
 }
 
 std::uint64_t JsonPlace::whole(std::uint64_t most) const {
   const double value = number();
-  // 2^53 bounds what a double tells apart; every `most` of ours is below it.
+  // 2^53 bounds the integers that a double distinguishes; every `most` of ours is below it.
   const bool fits = value >= 0 && value <= 0x1p53 && value == std::floor(value);
   if (!fits || static_cast<std::uint64_t>(value) > most) {
     fail("not a whole number of 0..." + std::to_string(most), "correct it, or export the file again");
@@ -113,22 +113,22 @@ std::size_t JsonPlace::index(std::size_t count, std::string_view what) const {
 }
 
 void JsonPlace::fail(const std::string& what, const std::string& mend) const {
-  // Keys come from us, but for the names in `attributes`: printable() keeps it at one line.
+  // Keys come from our code, except for the names in `attributes`: printable() keeps the message at one line.
   throw InputError(*file_ + ": " + (path_.empty() ? "" : printable(path_) + ": ") + what + "; " + mend);
 }
 namespace {
 
-// Quantization only allows more kinds of number; visibility and instances are read (gltf_nodes.cpp). The others are about what
-// is not read, or say nothing of the picture.
+// Quantization only allows more kinds of number; visibility and instances are read (gltf_nodes.cpp). The others concern
+// features that are not read, or do not affect the picture.
 constexpr std::array<std::string_view, 9> kKnownExtensions{
     "KHR_mesh_quantization", "KHR_animation_pointer", "KHR_xmp",
     "KHR_xmp_json_ld",       "MSFT_texture_dds",      "KHR_node_selectability",
     "KHR_node_hoverability", "KHR_node_visibility",   "EXT_mesh_gpu_instancing"};
-// Of materials base colour, sides and `unlit` are read, of textures their transform, of lights nothing.
+// Of materials base colour, sides and `unlit` are read, of textures their transform, of lights none.
 constexpr std::array<std::string_view, 5> kKnownFamilies{"KHR_materials_", "KHR_texture_", "EXT_texture_",
                                                          "KHR_lights_", "EXT_lights_"};
 constexpr std::string_view kDraco = "KHR_draco_mesh_compression", kMeshopt = "EXT_meshopt_compression";
-// Its base colour stands in the extension alone.
+// Its base colour is only in the extension.
 constexpr std::string_view kOtherBaseColor = "KHR_materials_pbrSpecularGlossiness";
 
 bool concerns_what_is_drawn(std::string_view extension) {
@@ -151,7 +151,7 @@ std::uint32_t word_at(std::string_view bytes, std::size_t at) {
   return word;
 }
 
-// %20 and its like; a % that starts no code stands for itself.
+// %20 and its like; a % that starts no code is literal.
 std::string percent_decoded(std::string_view text) {
   std::string result;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -167,7 +167,7 @@ std::string percent_decoded(std::string_view text) {
   return result;
 }
 
-// The name of a file beside this one, and not a place on a disk or a network.
+// Whether it is the name of a file next to this one, and not a place on a disk or a network.
 bool is_relative(const std::string& name) {
   return !name.empty() && name.front() != '/' && name.front() != '\\' && name.find(':') == std::string::npos &&
          name.find('\0') == std::string::npos;
@@ -179,7 +179,7 @@ std::optional<std::string> decode_base64(std::string_view text) {
   while (!text.empty() && text.back() == '=') text.remove_suffix(1);
   std::string result;
   result.reserve(text.size() * 3 / 4);
-  std::uint32_t bits = 0;  // what is not yet written, in the low `held` bits
+  std::uint32_t bits = 0;  // bits not yet written, in the low `held` bits
   int held = 0;
   for (const char c : text) {
     std::uint32_t value = 0;
@@ -217,7 +217,7 @@ GltfFile::GltfFile(std::string bytes, std::string name, BufferSource source)
   check_head();
 }
 
-// Header: magic, version, length; then chunks of length, type, bytes: JSON first, BIN second, others passed over.
+// Header: magic, version, length; then chunks of length, type, bytes: JSON first, BIN second, others are skipped.
 void GltfFile::split_glb() {
   const auto refuse = [this](const std::string& what) {
     throw InputError(name_ + ": " + what + "; export the file again");
@@ -312,7 +312,7 @@ ByteSpan GltfFile::view(const JsonPlace& view_place) {
   const std::optional<JsonPlace> extensions = view_place.find("extensions");
   const std::optional<JsonPlace> packed = extensions ? extensions->find(kMeshopt) : std::nullopt;
   if (packed && can_read(GltfCodec::meshopt)) return unpacked_view(view_place, *packed);
-  if (packed) {  // the file may do without: then the same bytes stand in its buffer
+  if (packed) {  // optional for the file: then the same bytes are in its buffer
     const JsonPlace holder = follow(view_place.at("buffer"), "buffers");
     const std::optional<JsonPlace> of_holder = holder.find("extensions");
     if (!holder.find("uri") && of_holder && of_holder->find(kMeshopt))
@@ -347,7 +347,7 @@ void GltfFile::unpack(const JsonPlace& primitive) {
   const std::optional<JsonPlace> packed = extensions ? extensions->find(kDraco) : std::nullopt;
   if (!packed) return;
   const JsonPlace attributes = primitive.at("attributes");
-  if (follow(attributes.at("POSITION"), "accessors").find("bufferView")) return;  // there it is as well, as it was
+  if (follow(attributes.at("POSITION"), "accessors").find("bufferView")) return;  // it is also there uncompressed
   if (!can_read(GltfCodec::draco))
     primitive.fail("compressed with " + std::string(kDraco) + ", which this build does not read", way_without(kDraco));
   const std::optional<JsonPlace> indices = primitive.find("indices");
@@ -372,7 +372,7 @@ void GltfFile::unpack(const JsonPlace& primitive) {
   set_unpacked(*indices, GltfComponent::u32, mesh->indices.size() / sizeof(std::uint32_t), mesh->indices);
 }
 
-/// The accessor that an index stands for, whose elements stand in `bytes`, packed, as numbers of that kind.
+/// Sets the accessor named by an index to the elements in `bytes`, packed, as numbers of that kind.
 void GltfFile::set_unpacked(const JsonPlace& index, GltfComponent component, std::uint64_t elements,
                             std::string bytes) {
   const JsonPlace place = follow(index, "accessors");

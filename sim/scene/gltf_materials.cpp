@@ -12,7 +12,7 @@
 namespace halfplane {
 namespace {
 
-/// `count` numbers of a list that may be left out.
+/// `count` numbers of an optional list.
 template <std::size_t count>
 std::array<double, count> numbers_or(const JsonPlace& place, std::string_view key,
                                      std::array<double, count> otherwise) {
@@ -26,7 +26,7 @@ std::array<double, count> numbers_or(const JsonPlace& place, std::string_view ke
   return result;
 }
 
-// Which of OpenGL's codes stands for which of ours.
+// Maps OpenGL's codes to ours.
 template <class Word, std::size_t count>
 Word word_or(const JsonPlace& sampler, std::string_view key,
              const std::array<std::pair<std::uint64_t, Word>, count>& words, Word otherwise) {
@@ -48,7 +48,7 @@ constexpr std::array<std::pair<std::uint64_t, TextureMag>, 2> kMagCodes{
 constexpr std::array<std::pair<std::uint64_t, TextureWrap>, 3> kWrapCodes{
     {{10497, TextureWrap::repeat}, {33071, TextureWrap::clamp}, {33648, TextureWrap::mirror}}};
 
-// Filters are left to the implementation where the file does not say: the best there are.
+// Filters not given in the file are implementation-defined: the best available.
 MeshSampler read_sampler(const JsonPlace& place) {
   MeshSampler sampler;
   sampler.min = word_or(place, "minFilter", kMinCodes, sampler.min);
@@ -58,7 +58,7 @@ MeshSampler read_sampler(const JsonPlace& place) {
   return sampler;
 }
 
-// KHR_texture_transform: scaled, turned, moved. A turn is counter-clockwise where v points down.
+// KHR_texture_transform: scaled, rotated, moved. Rotation is counter-clockwise with v down.
 void read_transform(const JsonPlace& place, GltfMaterial& material) {
   const auto [offset_u, offset_v] = numbers_or<2>(place, "offset", {0, 0});
   const auto [scale_u, scale_v] = numbers_or<2>(place, "scale", {1, 1});
@@ -69,10 +69,10 @@ void read_transform(const JsonPlace& place, GltfMaterial& material) {
 }  // namespace
 
 MeshMaterial surface_of(const GltfMaterial& material) {
-  // Of the lobe: Beckmann's roughness r^2 as an exponent n, and the height that keeps the energy of Blinn-Phong, faded out
-  // where n is small: there a highlight that is not times N.L would be a flat disc. What a dielectric reflects straight
-  // ahead is 4 in 100; a metal reflects its colour. It scatters nothing, but what it would mirror of its surroundings is not
-  // there: half of its colour is left to stand for that.
+  // The lobe: Beckmann's roughness r^2 as an exponent n, and the height that keeps the energy of Blinn-Phong, faded out
+  // for small n: there a highlight without the factor N.L would be a flat disc. A dielectric reflects 4 % at normal
+  // incidence; a metal reflects its colour. A metal has no diffuse part, but the surroundings that it would mirror are
+  // missing: half of its colour stands for them.
   const double alpha = std::max(material.roughness * material.roughness, 1e-3);
   const double n = std::clamp(2 / (alpha * alpha) - 2, 0.0, kMostShininess), height = (n + 8) / 8 * n / (n + 2);
   MeshMaterial surface;
@@ -102,7 +102,7 @@ GltfMaterial GltfMaterials::of(const JsonPlace& primitive) const {
   for (const char* key : {"normalTexture", "occlusionTexture", "emissiveTexture"}) {
     if (place.find(key)) warn_("of the textures only those of base colours are shown");
   }
-  if (place.find("emissiveTexture")) result.emission = {};  // what says that not all of it shines is not read
+  if (place.find("emissiveTexture")) result.emission = {};  // the texture that limits the emission is not read
   if (const auto shading = place.find("pbrMetallicRoughness")) read_base_color(*shading, result);
   return result;
 }
@@ -111,7 +111,7 @@ void GltfMaterials::read_base_color(const JsonPlace& shading, GltfMaterial& mate
   if (shading.find("metallicRoughnessTexture")) warn_("of the textures only those of base colours are shown");
   material.base = numbers_or<4>(shading, "baseColorFactor", material.base);
   for (double& channel : material.base) channel = std::clamp(channel, 0.0, 1.0);
-  // Where a texture says what is of metal, most is not.
+  // With a texture for metal, most of the surface is not metal.
   const double metallic = shading.find("metallicRoughnessTexture") ? 0 : material.metallic;
   material.metallic = std::clamp(shading.number_or("metallicFactor", metallic), 0.0, 1.0);
   material.roughness = std::clamp(shading.number_or("roughnessFactor", material.roughness), 0.0, 1.0);

@@ -18,15 +18,15 @@ struct GltfMaterial {
   AlphaMode alpha = AlphaMode::opaque;
   double alpha_cutoff = 0.5;
   std::optional<JsonPlace> texture;   ///< an index into `textures`
-  std::string uv_set = "TEXCOORD_0";  ///< the attribute that the texture is looked up by
-  /// u and v on the texture from those of a vertex: factors of u, v and 1.
+  std::string uv_set = "TEXCOORD_0";  ///< the attribute of the texture coordinates
+  /// u and v on the texture from a vertex's: factors of u, v and 1.
   std::array<std::array<double, 3>, 2> uv_transform{{{1, 0, 0}, {0, 1, 0}}};
 };
 
-/// What lights meet, metal and roughness approximated by Blinn-Phong (docs/gltf.md).
+/// Parameters for lighting, metal and roughness approximated by Blinn-Phong (docs/gltf.md).
 [[nodiscard]] MeshMaterial surface_of(const GltfMaterial& material);
 
-/// Reads what primitives name. Images are decoded when first used, each once.
+/// Reads the materials that primitives name. Images are decoded on first use, each once.
 class GltfMaterials {
  public:
   using Warn = std::function<void(const std::string& text)>;
@@ -35,9 +35,9 @@ class GltfMaterials {
   GltfMaterials(GltfFile& file, std::vector<Texture>& textures, Warn warn)
       : file_(file), textures_(textures), warn_(std::move(warn)) {}
 
-  /// The material of a primitive; without one the format's default: white, back faces not seen.
+  /// The material of a primitive; without one the format's default: white, back faces culled.
   [[nodiscard]] GltfMaterial of(const JsonPlace& primitive) const;
-  /// How its texture is looked up; nothing without one, or when its image is of a kind that is not read (a warning).
+  /// The sampler of its texture; none without a texture, or if its image is of an unsupported kind (a warning).
   [[nodiscard]] std::optional<MeshSampler> sampler(const GltfMaterial& material);
 
  private:

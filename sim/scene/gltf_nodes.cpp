@@ -26,7 +26,7 @@ std::array<double, N> numbers_of(const JsonPlace& place) {
   return result;
 }
 
-// A quaternion x, y, z, w, taken to length 1: exporters write binary32.
+// A quaternion x, y, z, w, normalised to length 1: exporters write binary32.
 constexpr std::uint64_t kMostCopies = std::uint64_t{1} << 20;
 
 std::array<double, 4> unit_rotation(std::array<double, 4> q, const JsonPlace& place) {
@@ -79,7 +79,7 @@ double positive(const JsonPlace& lens, const char* key) {
   return value;
 }
 
-// near, far and what the lens sees. Width follows from the target's aspect, so that nothing is stretched.
+// near, far and the lens. The width follows from the target's aspect, so that the picture is not stretched.
 void read_lens(const JsonPlace& camera, CameraRequest& request) {
   const std::string type = camera.at("type").text();
   if (type != "perspective" && type != "orthographic") {
@@ -100,7 +100,7 @@ void read_lens(const JsonPlace& camera, CameraRequest& request) {
   if (!(*request.near < *request.far)) lens.fail("znear is not nearer than zfar", "choose znear < zfar");
 }
 
-/// Of the light that a node says the number of; its colours are divided by pi, which a white surface scatters into.
+/// The light with the number given in a node; its colours are divided by pi, for scattering by a white surface.
 Light read_light(const JsonPlace& place) {
   const std::string type = place.at("type").text();
   if (type != "directional" && type != "point" && type != "spot")
@@ -153,7 +153,7 @@ class Walker {
     bool is_hidden = false;
   };
 
-  // The stack gives back what was pushed last, so lists are pushed from their ends.
+  // The stack returns the last item pushed, so lists are pushed from their ends.
   void push_roots() {
     const std::size_t scenes = file_.count("scenes"), nodes = file_.count("nodes");
     if (scenes == 0) {
@@ -218,7 +218,7 @@ class Walker {
       instance.skin = skin->index(file_.count("skins"), "skins");
   }
 
-  // EXT_mesh_gpu_instancing: the mesh once for each element of the attributes, a node below this one each.
+  // EXT_mesh_gpu_instancing: the mesh once for each element of the attributes, each as a child node.
   void add_copies(const JsonPlace& copies, const JsonPlace& node, const JsonPlace& index, std::size_t number) {
     const JsonPlace attributes = copies.at("attributes");
     const auto accessor = [&](std::string_view name, int width) -> const GltfAccessor* {
@@ -291,7 +291,7 @@ GltfNodes walk_nodes(GltfFile& file, std::vector<std::string>& warnings) { retur
 
 std::vector<Mat4> world_matrices(const GltfFile& file, const GltfNodes& nodes, const GltfAnimation* animation,
                                  double time) {
-  std::vector<std::size_t> place(file.count("nodes"), nodes.nodes.size());  // in nodes.nodes, of a node of the file
+  std::vector<std::size_t> place(file.count("nodes"), nodes.nodes.size());  // index in nodes.nodes, by the file's node
   std::vector<NodeTransform> locals;
   locals.reserve(nodes.nodes.size());
   for (const GltfNode& node : nodes.nodes) {
@@ -330,7 +330,7 @@ std::vector<GltfCamera> placed_cameras(const GltfFile& file, const GltfNodes& no
     }
     GltfCamera& made = result.emplace_back(GltfCamera{camera.name, camera.node_name, camera.number, camera.lens});
     made.request.eye = eye;
-    // Far enough away that a target at an eye far from the origin is not lost in binary64.
+    // Far enough away that a target at an eye far from the origin is exact in binary64.
     made.request.target = subtract(eye, scaled(back, std::max(1.0, length(eye))));
     made.request.up = up;
   }
@@ -352,7 +352,7 @@ std::vector<Light> placed_lights(const GltfNodes& nodes, const std::vector<Mat4>
 
 CameraRequest choose_camera(const std::vector<GltfCamera>& cameras, const CameraRequest& request) {
   if (!request.name) return request == CameraRequest() && !cameras.empty() ? cameras.front().request : request;
-  if (cameras.empty()) return request;  // frame() says that there are none
+  if (cameras.empty()) return request;  // frame() reports that there are none
   const std::string& name = *request.name;
   auto found = std::find_if(cameras.begin(), cameras.end(), [&](const GltfCamera& c) { return is_called(c, name); });
   if (found == cameras.end()) {  // many exporters give no names

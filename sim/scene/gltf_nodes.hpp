@@ -8,13 +8,13 @@
 
 namespace halfplane {
 
-/// A node of the scene: where it stands in its parent's space.
+/// A node of the scene: its place in its parent's space.
 struct GltfNode {
   std::size_t number = 0;             ///< in the file's list of nodes
   std::optional<std::size_t> parent;  ///< in GltfNodes::nodes, before this one
   std::optional<Mat4> matrix;         ///< instead of `local`
   NodeTransform local;
-  bool is_copy = false;  ///< one of EXT_mesh_gpu_instancing, below the node that the file has
+  bool is_copy = false;  ///< an instance of EXT_mesh_gpu_instancing, below the node in the file
 };
 
 /// A mesh at a node.
@@ -34,7 +34,7 @@ struct GltfCameraNode {
 };
 
 /// A light of KHR_lights_punctual at a node: in the node's space at the origin, shining along -z. Its colours are those
-/// that a white surface shows that faces it, from a distance of 1 if it is somewhere.
+/// of a white surface facing it, at a distance of 1 if the light has a place.
 struct GltfLightNode {
   std::size_t node = 0;  ///< in GltfNodes::nodes
   Light light;
@@ -55,24 +55,25 @@ struct GltfCamera {
   CameraRequest request;
 };
 
-/// Walks the default scene, without what KHR_node_visibility hides: `scene`, else the first one, else (a file without scenes)
-/// every node that is no child. Throws InputError when the nodes are no forest, and for a camera that shows nothing.
+/// Walks the default scene, without what KHR_node_visibility hides: `scene`, else the first one, else (a file without
+/// scenes) every node that is no child. Throws InputError when the nodes are no forest, and for a degenerate camera.
 [[nodiscard]] GltfNodes walk_nodes(GltfFile& file, std::vector<std::string>& warnings);
 
-/// From each node's space to the world's; with an animation, as it is at `time`. Throws InputError for what leaves binary64.
+/// From each node's space to the world's; with an animation, at `time`. Throws InputError for values that exceed
+/// binary64.
 [[nodiscard]] std::vector<Mat4> world_matrices(const GltfFile& file, const GltfNodes& nodes,
                                                const GltfAnimation* animation, double time);
 
-/// The cameras where their nodes stand. Their scale is ignored, as the format says, and so is their aspect ratio: the
-/// target's is used.
+/// The cameras at their nodes. Their scale is ignored, as the format requires, and their aspect ratio too: the target's
+/// is used.
 [[nodiscard]] std::vector<GltfCamera> placed_cameras(const GltfFile& file, const GltfNodes& nodes,
                                                      const std::vector<Mat4>& world);
 
-/// The lights where their nodes stand, which may be turned, not scaled.
+/// The lights at their nodes, which may be rotated, not scaled.
 [[nodiscard]] std::vector<Light> placed_lights(const GltfNodes& nodes, const std::vector<Mat4>& world);
 
-/// What a user's request means in this scene: with `name=`, that camera with the user's other parts put in; empty, the
-/// first camera; else, or without any camera, the default framing. Throws InputError for an unknown name.
+/// A user's request resolved in this scene: with `name=`, that camera with the user's other parts; empty, the first
+/// camera; else, or without any camera, the default framing. Throws InputError for an unknown name.
 [[nodiscard]] CameraRequest choose_camera(const std::vector<GltfCamera>& cameras, const CameraRequest& request);
 
 }  // namespace halfplane

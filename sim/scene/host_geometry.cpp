@@ -14,10 +14,10 @@ namespace halfplane {
 namespace {
 
 constexpr double kLargestFixedPixel = 32767;  // s15.16
-constexpr double kLargestSingle = 0x1p96;  // no product of two with a size in pixels, and no sum of them, is infinite
+constexpr double kLargestSingle = 0x1p96;     // no product of two with a size in pixels, and no sum of them, overflows
 constexpr std::int64_t kWholeParameter = std::int64_t{1} << 31;
 
-/// A window of pixels that the host maps to, and what it needs besides.
+/// A window of pixels as the host's target, and its derived constants.
 struct HostView {
   ClipZ clip_z;
   std::array<double, 2> depth_range;
@@ -45,7 +45,7 @@ struct SingleHost {
     return sum;
   }
 
-  /// Its parameter from the inside end.
+  /// Parameter of the cut from the inside end.
   static float parameter(Distance in, Distance out) {
     const float whole = in - out;
     return in / whole;
@@ -61,7 +61,7 @@ struct SingleHost {
 
   static WindowPosition window(const Vertex& v, const HostView& view) {
     const float w = static_cast<float>(v.w);
-    // From -1...1 to a place `size` long that begins at `first`.
+    // From -1...1 to a range of `size` that begins at `first`.
     const auto place = [](float ndc, double first, double size) {
       const float half = (ndc + 1.0F) / 2.0F;
       const float offset = half * static_cast<float>(size);
@@ -77,10 +77,11 @@ struct SingleHost {
 };
 
 struct FixedHost {
-  using Distance = std::int64_t;  ///< 32 bits behind the point
+  using Distance = std::int64_t;  ///< 32 fraction bits
 
   static double rounded(double v) { return from_s15_16(to_s15_16(v)); }
-  static std::int64_t fixed(double v) { return static_cast<std::int64_t>(std::ldexp(v, 16)); }  // exact: was rounded
+  /// Exact: v is already rounded.
+  static std::int64_t fixed(double v) { return static_cast<std::int64_t>(std::ldexp(v, 16)); }
 
   static Distance distance(const ClipPlane& plane, const Vertex& v) {
     // |coefficients| < 2^31.6 and |coordinates| <= 2^31, and of the four products two are not 0: below 2^63.
@@ -115,7 +116,7 @@ struct FixedHost {
       return from_s15_16(fixed(rounded(first)) + half(size) + divided(at * half(size), w));
     };
     const std::int64_t z = fixed(v.z);
-    const std::int64_t up = view.clip_z == ClipZ::zero_one ? 2 * z : z + w;  // at most 2 w where the depth is in 0...1
+    const std::int64_t up = view.clip_z == ClipZ::zero_one ? 2 * z : z + w;  // at most 2 w for a depth in 0...1
     const std::int64_t depth = divided(std::clamp<std::int64_t>(up, 0, 2 * w) << 30, w);
     const auto range = [](double d) { return static_cast<std::int64_t>(std::ldexp(d, 31)); };
     const std::int64_t near = range(view.depth_range[0]), far = range(view.depth_range[1]);
@@ -154,7 +155,8 @@ unsigned outcode_in(const ClipPlanes& planes, const Vertex& v) {
   return code;
 }
 
-/// Sutherland and Hodgman, plane by plane. Rounded corners may make a polygon a hair concave, so it has no most corners.
+/// Sutherland and Hodgman, plane by plane. Rounded corners may make a polygon slightly concave, so the number of
+/// corners is unbounded.
 template <class Host>
 std::vector<HostVertex> clip_triangle_in(const ClipPlanes& planes, std::vector<HostVertex> polygon) {
   for (const ClipPlane& plane : planes) {
@@ -195,7 +197,7 @@ HostPosition window_in(Vertex v, const HostView& view) {
   return position;
 }
 
-/// A state as what is in the window needs it.
+/// A state in the form needed in the window.
 State in_window(const State& state, int width, int height) {
   State made = state;
   if (state.scissor || state.viewport) made.scissor = raster_rect(state, width, height);
@@ -206,7 +208,7 @@ State in_window(const State& state, int width, int height) {
   return made;
 }
 
-/// Takes a scene into the window, draw by draw.
+/// Converts a scene to window space, draw by draw.
 class HostProjector {
  public:
   HostProjector(Scene scene, const HostGeometry& host, int subpixel_bits, HostCounts& counts)
@@ -297,8 +299,8 @@ class HostProjector {
     add_pieces(polygon);
   }
 
-  /// The fan that the pipeline makes of a clipped polygon (docs/spec.md): rounding can dent it, and then it starts at a corner
-  /// from which no piece is turned over, or those pieces are left out.
+  /// The pipeline's fan of a clipped polygon (docs/spec.md): rounding can dent the polygon, and then the fan starts at
+  /// a corner from which no piece is reversed, or reversed pieces are left out.
   void add_pieces(const std::vector<HostVertex>& polygon) {
     struct Corner {
       std::int64_t x, y;  ///< subpixels
@@ -352,11 +354,11 @@ class HostProjector {
     for (const HostVertex& end : {line->first, line->second}) made_.indices.push_back(add(end));
   }
 
-  /// A vertex that needs no cut, once for all that share it.
+  /// A vertex that needs no cut, converted once for all its users.
   std::uint32_t whole(std::uint32_t index) {
     if (place_[index] == kNone) {
       HostVertex v = given(index);
-      // What is not computed is not rounded.
+      // Values that are not computed are not rounded.
       v.vertex.rgba = given_.vertices[index].rgba;
       v.vertex.u = given_.vertices[index].u;
       v.vertex.v = given_.vertices[index].v;
@@ -404,7 +406,7 @@ class HostProjector {
   const HostGeometry& host_;
   int subpixel_bits_;
   HostCounts& counts_;
-  std::vector<std::uint32_t> place_;  ///< of a vertex that needs no cut, once it is in the window
+  std::vector<std::uint32_t> place_;  ///< index of a vertex that needs no cut, once converted
   std::vector<std::uint32_t> window_states_;
   std::uint32_t nowhere_ = kNone;
 };

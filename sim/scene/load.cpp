@@ -41,7 +41,7 @@ std::string lower_extension(const std::string& name) {
 
 constexpr std::size_t kMostStdin = std::size_t{1} << 30;  // a pipe may have no end
 
-// Read once: some commands ask for a scene more than once.
+// Read once: some commands load a scene several times.
 const std::string& stdin_text() {
   static const std::string text = [] {
     std::string all;
@@ -81,13 +81,13 @@ Scene load_capture(const SceneRequest& request) {
   return scene;
 }
 
-/// The camera when that much of its orbit is done.
+/// The camera at that fraction of its orbit.
 CameraRequest at_turn(CameraRequest camera, double turn) {
   if (camera.orbit) *camera.orbit *= turn;
   return camera;
 }
 
-/// For scenes in which nothing is animated.
+/// For scenes without animation.
 MovingScene still(const SceneRequest& request, bool has_orbit, std::function<Scene(const Moment&)> make) {
   if (!request.animation.empty())
     throw InputError("--animation: " + request.name + " has no animations; leave out --time and --animation");
@@ -98,7 +98,7 @@ MovingScene still(const SceneRequest& request, bool has_orbit, std::function<Sce
   return {at, [] { return std::optional<double>(); }, has_orbit};
 }
 
-/// A glTF scene at rest, and where its objects lie.
+/// A glTF scene at rest, and the bounds of its objects.
 struct RestingModel {
   explicit RestingModel(GltfModel of) : model(std::move(of)), places(model.mesh) {}
   GltfModel model;
@@ -109,12 +109,12 @@ MovingScene open_gltf(const SceneRequest& request, const CameraRequest& camera, 
                       const std::shared_ptr<MeshWork>& work, int width, int height,
                       std::vector<std::string>& warnings) {
   const auto world = std::make_shared<const GltfWorld>(read_gltf_world(request.name, warnings));
-  // Read when it is asked for: a scene at rest needs none.
+  // Read on demand: a scene at rest needs no animation.
   const auto animation = [world, name = request.animation, known = std::make_shared<std::optional<GltfAnimation>>()] {
     if (!*known) *known = read_animation(*world->file, choose_animation(*world->file, name));
     return &**known;
   };
-  // The camera stays where it is while things move, whatever of the motion is asked for.
+  // The camera is fixed while things move, for any part of the animation.
   const auto extent = [world, animation, known = std::make_shared<std::optional<Mesh>>()] {
     if (!*known) *known = extent_over_time(*world, *animation());
     return &**known;

@@ -11,8 +11,8 @@ namespace {
 
 // --- the light at the eye ---------------------------------------------------------------------------------------------
 
-constexpr double kHeaderAmbient = 0.18;  // what a face seen edge-on keeps of its colour
-constexpr double kWrap = 0.25;           // light that reaches round the edge, so that the dark side keeps its shape
+constexpr double kHeaderAmbient = 0.18;  // brightness of a face seen edge-on
+constexpr double kWrap = 0.25;           // light beyond the terminator, so that the dark side keeps its shape
 
 // 0...1 for a unit normal (or none) in eye space and the direction to the light.
 double brightness(const Vec3& normal, const Vec3& to_light) {
@@ -34,7 +34,7 @@ Vec3 turned(const Mat4& view, const Vec3& v) {
   return {eye[0], eye[1], eye[2]};
 }
 
-/// A light of the world as the eye sees it.
+/// A light of the world in eye space.
 Light in_eye_space(Light light, const Mat4& view) {
   const auto& p = light.position;
   light.position = transform(view, {p[0], p[1], p[2], p[3]});
@@ -42,7 +42,7 @@ Light in_eye_space(Light light, const Mat4& view) {
   return light;
 }
 
-/// All that shines, in eye space.
+/// All lights, in eye space.
 Lighting lighting_of(const Mesh& mesh, const LightRequest& request, const Mat4& view, bool is_ortho) {
   Lighting lighting;
   const double ambient = mesh.is_linear ? kLinearAmbient : kAmbientOfCodes;
@@ -77,10 +77,10 @@ void scale_colors(Light& light, double factor) {
     for (double& c : *color) c *= factor;
 }
 
-/// As the integers want a light that is somewhere: what arrives at the vertices is 1 at most, whatever unit of length the
-/// scene has; one that is 2^14 times as far away as the mesh is large shines from infinitely far.
+/// Scales a light with a place for integer arithmetic: its intensity at the vertices is at most 1, for any unit of
+/// length; a light at more than 2^14 times the mesh's size becomes infinitely distant.
 void fit_to_places(Light& light, const std::vector<Vec3>& places, const Vec3& middle, double reach) {
-  Light unbounded = light;  // no range, no cone: what is divided by
+  Light unbounded = light;  // no range, no cone: only the divisor
   unbounded.range = unbounded.spot_scale = 0;
   const Vec3 at{light.position[0], light.position[1], light.position[2]};
   if (length(subtract(at, middle)) > 0x1p14 * reach) {
@@ -106,7 +106,7 @@ void light_vertices(const Mesh& mesh, const LightRequest& request, const Mat4& v
     places.push_back({p[0], p[1], p[2]});
   }
   Vec3 low = places.front(), high = low;
-  double extent = 1e-30;  // no coordinate of a place or light is larger
+  double extent = 1e-30;  // bound on coordinates of places and lights
   const auto add_extent = [&extent](double x) { extent = std::max(extent, std::abs(x)); };
   for (const Vec3& place : places)
     for (std::size_t i = 0; i < 3; ++i) {
@@ -285,7 +285,7 @@ double linear_component(double code) {
 
 double display_code(double linear) {
   if (!(linear > 0)) return 0;
-  if (linear >= 1) return 255;  // the curve's own end is one unit in the last place off
+  if (linear >= 1) return 255;  // the curve's own end is off by one unit in the last place
   return 255 * (linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055);
 }
 

@@ -18,11 +18,11 @@ void look_up(State& state, const MeshSampler& sampler) {
   state.texture_wrap = sampler.wrap;
 }
 
-/// What the opacity of a material asks for: `mask` draws what is opaque enough, `blend` lays colours over what is there,
-/// which later draws still have to be able to lie behind.
+/// The states for a material's opacity: `mask` draws opaque parts, `blend` lays colours over the stored ones, so that
+/// later draws can still lie behind.
 void set_opacity(State& state, AlphaMode alpha, double cutoff) {
   if (alpha == AlphaMode::mask && cutoff > 1)
-    state.alpha_test = {DepthFunc::never, 0};  // nothing is so opaque
+    state.alpha_test = {DepthFunc::never, 0};  // no opacity passes
   else if (alpha == AlphaMode::mask)
     state.alpha_test = {DepthFunc::gequal, static_cast<std::uint8_t>(std::ceil(255 * std::max(cutoff, 0.0)))};
   if (alpha != AlphaMode::blend) return;
@@ -31,8 +31,8 @@ void set_opacity(State& state, AlphaMode alpha, double cutoff) {
   state.depth_write = false;
 }
 
-/// The parts in the order in which they are drawn: those that blend behind all others, farthest first by the middles of their
-/// objects' triangles. Objects that reach through each other have no such order.
+/// The parts in drawing order: blended parts after all others, farthest first by the centres of their objects'
+/// triangles. Intersecting objects have no such order.
 std::vector<const MeshPart*> drawing_order(const Mesh& mesh, const std::vector<ObjectBounds>& bounds,
                                            const Mat4& to_clip, bool is_ortho) {
   std::vector<const MeshPart*> parts;
@@ -49,20 +49,20 @@ std::vector<const MeshPart*> drawing_order(const Mesh& mesh, const std::vector<O
   return parts;
 }
 
-/// A run of a part's triangles that are drawn in one state.
+/// A run of a part's triangles with one state.
 struct MaterialRun {
   std::size_t first = 0, count = 0;       ///< triangles
-  std::optional<std::uint32_t> material;  ///< that fragments are lit by; none: they are not
+  std::optional<std::uint32_t> material;  ///< material of lit fragments; none: not lit
 };
 
-/// Whether all corners have a normal, and a material that is lit.
+/// Whether all corners have a normal and a lit material.
 bool is_lit(const Mesh& mesh, std::size_t triangle) {
   return std::ranges::all_of(mesh.triangles[triangle], [&mesh](std::uint32_t v) {
     return mesh.vertices[v].normal != Vec3{} && mesh.materials[mesh.vertices[v].material].has_header_light;
   });
 }
 
-/// Of a part whose vertices are lit, one.
+/// For a part with lit vertices, one run.
 std::vector<MaterialRun> runs_of(const Mesh& mesh, const MeshPart& part, bool is_phong) {
   if (!is_phong || part.topology != Topology::triangles) return {{part.first, part.count, std::nullopt}};
   std::vector<MaterialRun> runs;
@@ -74,8 +74,8 @@ std::vector<MaterialRun> runs_of(const Mesh& mesh, const MeshPart& part, bool is
   return runs;
 }
 
-/// Normals in eye space. Of a triangle of two sides that shows its back at all corners they are turned over, on copies of its
-/// vertices; where corners differ, as at an outline, they stay.
+/// Normals in eye space. For a two-sided triangle that shows its back at all corners they are reversed, on copies of
+/// its vertices; where corners differ, as at an outline, they stay.
 void set_normals(const Mesh& mesh, const Mat4& view, bool is_ortho, Scene& scene) {
   const auto turned = [&view](const Vec3& v, double w) -> Vec3 {
     const Vec4 eye = transform(view, {v[0], v[1], v[2], w});
@@ -102,7 +102,7 @@ void set_normals(const Mesh& mesh, const Mat4& view, bool is_ortho, Scene& scene
   }
 }
 
-/// Which tests find each object outside.
+/// The tests that find each object outside.
 std::vector<std::uint8_t> objects_outside(const std::vector<ObjectBounds>& bounds, const BoundsTree* tree,
                                           const Mat4& to_clip, std::uint8_t tests, BoundsWork& work) {
   if (tree != nullptr) return tree->outside_view(to_clip, tests, work);
@@ -112,12 +112,12 @@ std::vector<std::uint8_t> objects_outside(const std::vector<ObjectBounds>& bound
   return outside;
 }
 
-/// What of a mesh belongs to objects that may be seen.
+/// The part of a mesh that belongs to objects that may be visible.
 struct SeenMesh {
   Mesh mesh;                            ///< vertices, triangles, indices and materials; no parts
   std::vector<std::uint32_t> vertices;  ///< their numbers in the whole mesh
-  std::vector<std::size_t> first;       ///< of each part of the whole mesh: the first of its triangles
-  std::size_t most_left_out = 0;        ///< triangles of a part
+  std::vector<std::size_t> first;       ///< by part of the whole mesh: its first triangle
+  std::size_t most_left_out = 0;        ///< largest number of triangles left out of a part
 };
 
 SeenMesh seen_of(const Mesh& mesh, const std::vector<std::uint8_t>& outside) {
@@ -216,7 +216,7 @@ Scene mesh_scene(const Mesh& mesh, const CameraRequest& request, int width, int 
   scene.indices.insert(scene.indices.end(), seen.indices.begin(), seen.indices.end());
   const bool is_phong = options.light.is_phong && !options.light.is_off;
   if (is_phong) set_normals(seen, view, camera.ortho > 0, scene);
-  const std::size_t left_out = scene.indices.size();  // all triangles that are left out: as many as one draw has
+  const std::size_t left_out = scene.indices.size();  // indices of all triangles left out: as many as one draw has
   if (reduced) {
     scene.indices.resize(left_out + 3 * reduced->most_left_out, static_cast<std::uint32_t>(scene.vertices.size()));
     scene.vertices.push_back({0, 0, 0, 1});

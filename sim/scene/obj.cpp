@@ -16,9 +16,9 @@
 namespace halfplane {
 namespace {
 
-constexpr std::uint32_t kMadeNormal = 0x80000000;  // marks the number of a normal that the file did not give
+constexpr std::uint32_t kMadeNormal = 0x80000000;  // marks the number of a computed normal
 
-// What makes two corners the same vertex. Made normals of a flat face are its own.
+// The key of corners that share a vertex. Computed normals of a flat face belong to it.
 struct CornerKey {
   std::uint32_t position = 0, uv = 0, normal = 0, material = 0;
   bool operator==(const CornerKey&) const = default;
@@ -56,7 +56,7 @@ class MeshBuilder {
  private:
   void choose_colors() {
     for (const auto& color : in_.colors) {
-      for (const double value : color) color_scale_ = value > 1 ? 1 : color_scale_;  // the file counts to 255
+      for (const double value : color) color_scale_ = value > 1 ? 1 : color_scale_;  // the file counts up to 255
     }
     const MtlMaterial plain{.rgba = {204, 204, 204, 255}};  // no material: a light grey
     for (const std::string& name : in_.material_names) {
@@ -69,10 +69,10 @@ class MeshBuilder {
     mesh_.materials.clear();
     for (const MtlMaterial& material : materials_) {
       MeshMaterial& surface = mesh_.materials.emplace_back(material.surface);
-      // Without an exponent the highlight would be all of the lit half.
+      // Without an exponent the highlight would fill the whole lit half.
       if (!material.has_highlight || surface.shininess == 0) surface.specular = {};
     }
-    // Faces whose corners have colours show those, and only the others are lit by a light of ours.
+    // Faces whose corners have colours show these, and only other faces are lit by our light.
     const bool are_all_colored =
         std::ranges::all_of(in_.faces, [this](const ObjFace& face) { return is_colored(face); });
     mesh_.lit = !are_all_colored || in_.faces.empty();
@@ -104,13 +104,13 @@ class MeshBuilder {
 
   void warn_of_material(const auto& element) {
     if (material_known_[element.material]) return;
-    material_known_[element.material] = true;  // one warning a name
+    material_known_[element.material] = true;  // one warning per name
     warnings_.once("material " + in_.material_names[element.material],
                    in_.file + ":" + std::to_string(element.line) + ": no material " +
                        in_quotes(in_.material_names[element.material]) + "; the default colour is used");
   }
 
-  // A corner with what the file has of it: an index of a vt or vn that is not there is a warning.
+  // A corner with its valid indices: an index of a missing vt or vn is a warning.
   ObjCorner present(const ObjFace& face, ObjCorner corner) {
     const auto check = [&](std::int64_t& index, std::size_t count, const char* what) {
       if (index < static_cast<std::int64_t>(count)) return;
@@ -153,7 +153,7 @@ class MeshBuilder {
     ++face_number_;
   }
 
-  // Without light: it has no normals.
+  // Unlit: it has no normals.
   void add_line(const ObjLine& line) {
     require_positions(line);
     warn_of_material(line);
@@ -182,7 +182,7 @@ class MeshBuilder {
     mesh_.parts.back().count = mesh_.indices.size() - mesh_.parts.back().first;
   }
 
-  // Only objects with something to draw get into the mesh.
+  // Only objects with something to draw enter the mesh.
   std::uint32_t object_of(std::uint32_t object) {
     if (object_number_.empty()) object_number_.assign(in_.object_names.size(), kUnused);
     if (object_number_[object] == kUnused) {
@@ -216,7 +216,7 @@ class MeshBuilder {
     return texture_alpha_[sampler->texture];
   }
 
-  // How a face's texture is looked up; nothing without one, or where a corner has no place on it.
+  // The sampler of a face's texture; none without one, or if a corner has no texture coordinate.
   std::optional<MeshSampler> sampler_of(const ObjFace& face) {
     const MtlMaterial& material = materials_[face.material];
     if (!material.texture && !material.opacity_map) return std::nullopt;
@@ -242,7 +242,7 @@ class MeshBuilder {
     return material.texture ? *material.texture : *material.opacity_map;
   }
 
-  // An image that cannot be read is a warning, as a library is.
+  // An unreadable image is a warning, as for a library.
   std::optional<TexelImage> load_image(const MtlTexture& map, const std::string& key, const std::string& else_shown) {
     const std::string what = map.place + ": " + key + " " + in_quotes(map.file);
     std::optional<std::string> bytes = source_(map.file);
@@ -297,7 +297,7 @@ class MeshBuilder {
     return cuts_out ? AlphaMode::mask : AlphaMode::blend;
   }
 
-  // The mesh vertex of a corner: a known one if everything about it agrees.
+  // The mesh vertex of a corner: an existing one if everything agrees.
   std::uint32_t vertex(const ObjCorner& corner, std::uint32_t normal, std::uint32_t material, bool shows_colors) {
     const auto position = static_cast<std::uint32_t>(corner.position);
     const std::uint32_t surface = shows_colors ? material + shown_as_is_ : material;
@@ -330,7 +330,8 @@ class MeshBuilder {
     return rgba;
   }
 
-  // The file's, or one made normal for each position and smoothing group; for each position and face when flat.
+  // The file's normal, or one computed normal for each position and smoothing group; for each position and face when
+  // flat.
   std::uint32_t made_normal(const ObjFace& face, const ObjCorner& corner) {
     if (corner.normal != kNoIndex) return static_cast<std::uint32_t>(corner.normal);
     const auto position = static_cast<std::uint32_t>(corner.position);
@@ -341,8 +342,8 @@ class MeshBuilder {
     return place->second | kMadeNormal;
   }
 
-  // Adds the direction of each new triangle to the made normals of its corners, weighted by the angle there, so that
-  // the way in which a polygon was split does not show.
+  // Adds the direction of each new triangle to the computed normals of its corners, weighted by the angle there, so
+  // that the split of a polygon is not visible.
   void add_angles() {
     for (const auto& triangle : split_) {
       const std::array<Vec3, 3> p{places_[triangle[0]], places_[triangle[1]], places_[triangle[2]]};
@@ -370,14 +371,14 @@ class MeshBuilder {
   std::vector<MtlMaterial> materials_;  // for each of in_.material_names
   std::vector<bool> material_known_;
   std::map<std::pair<std::string, std::string>, std::optional<std::uint32_t>> texture_of_files_;
-  std::vector<std::optional<std::optional<std::uint32_t>>> texture_of_material_;  // nothing: not looked for yet
-  std::vector<AlphaMode> texture_alpha_;                                          // of those with a map_d
+  std::vector<std::optional<std::optional<std::uint32_t>>> texture_of_material_;  // none: not searched yet
+  std::vector<AlphaMode> texture_alpha_;                                          // for textures with a map_d
   std::optional<std::uint32_t> no_normal_;
-  std::uint32_t shown_as_is_ = 0;  // what a coloured face adds to the number of its material
+  std::uint32_t shown_as_is_ = 0;  // added to the material number of a coloured face
   std::vector<std::uint32_t> object_number_;
   double color_scale_ = 255;
   std::uint32_t face_number_ = 0;
-  std::vector<Vec3> places_;  // of the face at hand, as are the next three
+  std::vector<Vec3> places_;  // of the current face, like the next three members
   std::vector<ObjCorner> corners_;
   std::vector<std::uint32_t> vertices_;
   std::vector<std::array<std::uint32_t, 3>> split_;
@@ -400,7 +401,7 @@ Mesh read_obj_file(const std::string& path, std::vector<std::string>& warnings) 
   if (!text) throw InputError(path + ": cannot be read as a file; check the name and its permissions");
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   const auto beside = [&folder](std::string name) {
-    std::replace(name.begin(), name.end(), '\\', '/');  // written on Windows
+    std::replace(name.begin(), name.end(), '\\', '/');  // for paths written on Windows
     std::optional<std::string> bytes = read_regular_file((folder / name).string());
     if (!bytes) bytes = read_regular_file((folder / std::filesystem::path(name).filename()).string());
     return bytes;

@@ -11,16 +11,16 @@ namespace halfplane {
 
 namespace {
 
-// A number of 0...1 as 0...255; files of some exporters overshoot a little.
+// A number of 0...1 as 0...255; some exporters overshoot slightly.
 double channel(TextCursor& cursor, std::string_view what) {
   return std::clamp(cursor.number(what, kLargestCoordinate), 0.0, 1.0) * 255;
 }
 
-// Behind Ka, Kd, Ks or Ke: 0...255.
+// After Ka, Kd, Ks or Ke: 0...255.
 std::optional<std::array<double, 3>> read_color(TextCursor& cursor, std::string_view key) {
   TextCursor ahead = cursor;
   const std::string_view word = ahead.next_word();
-  if (word == "spectral" || word == "xyz") return {};  // measured spectra: legal, rare, and no colour of ours
+  if (word == "spectral" || word == "xyz") return {};  // measured spectra: legal, rare, and not converted to a colour
   const std::string of = " of " + std::string(key);
   std::array<double, 3> color{};
   color.fill(channel(cursor, "red" + of));
@@ -30,7 +30,7 @@ std::optional<std::array<double, 3>> read_color(TextCursor& cursor, std::string_
   return color;
 }
 
-/// Ka, Kd, Ks, Ke: true if it was one.
+/// Reads Ka, Kd, Ks, Ke: true if it was one of them.
 bool read_colors(TextCursor& cursor, std::string_view key, MtlMaterial& material) {
   if (key != "Ka" && key != "Kd" && key != "Ks" && key != "Ke") return false;
   const auto color = read_color(cursor, key);
@@ -46,14 +46,14 @@ bool read_colors(TextCursor& cursor, std::string_view key, MtlMaterial& material
 
 bool is_next_number(TextCursor cursor) { return parse_number(cursor.next_word()).has_value(); }
 
-// Behind -s, -o or -t: one to three numbers, of u, v and (unused) w.
+// After -s, -o or -t: one to three numbers, for u, v and (unused) w.
 void read_pair(TextCursor& cursor, std::string_view option, std::array<double, 2>& pair) {
   pair[0] = cursor.number("u of " + std::string(option), kLargestCoordinate);
   if (is_next_number(cursor)) pair[1] = cursor.number("v", kLargestCoordinate);
   if (is_next_number(cursor)) (void)cursor.next_word();
 }
 
-// Options, each a word and what follows it; then the file's name, which may hold blanks.
+// Options, each a word and its arguments; then the file's name, which may contain blanks.
 MtlTexture read_map(TextCursor& cursor, std::string_view key, std::string_view folder) {
   MtlTexture map;
   map.place = cursor.file() + ":" + std::to_string(cursor.line());
@@ -73,7 +73,7 @@ MtlTexture read_map(TextCursor& cursor, std::string_view key, std::string_view f
   const std::string name = cursor.name();
   if (name.empty()) cursor.fail(std::string(key) + " without a file", "give it one, or delete the line");
   map.file = name.front() == '/' ? name : std::string(folder) + name;
-  std::ranges::replace(map.file, '\\', '/');  // written on Windows
+  std::ranges::replace(map.file, '\\', '/');  // for paths written on Windows
   return map;
 }
 
@@ -111,7 +111,7 @@ class MtlReader {
       current_->has_highlight = cursor_.number("illum", kLargestCoordinate) >= 2;
     } else if (key == "map_Kd") {
       current_->texture = read_map(cursor_, key, folder_);
-      if (!has_color_) std::fill_n(current_->rgba.begin(), 3, 255.0);  // as it is
+      if (!has_color_) std::fill_n(current_->rgba.begin(), 3, 255.0);  // unchanged
     } else if (key == "map_d") {
       current_->opacity_map = read_map(cursor_, key, folder_);
     } else {
@@ -127,7 +127,7 @@ class MtlReader {
     if (name.empty()) cursor_.fail("newmtl without a name", "write newmtl NAME");
   }
 
-  // Exporters that mean an opaque material by `Tr 1` write `d 1` beside it.
+  // Exporters that write `Tr 1` for an opaque material also write `d 1`.
   void read_opacity(bool is_opacity) {
     TextCursor ahead = cursor_;
     if (ahead.next_word() == "-halo") cursor_ = ahead;
@@ -196,7 +196,7 @@ class ObjReader {
     }
   }
 
-  // What positions do not depend on: a warning for each kind, and the reader goes on.
+  // For lines that positions do not depend on: a warning for each kind, and the reader continues.
   template <class Read>
   void forgive(std::string_view kind, std::string_view how, Read read) {
     try {
@@ -261,7 +261,7 @@ class ObjReader {
 
   [[nodiscard]] std::string at_line() const { return out_.file + ":" + std::to_string(cursor_.line()) + ": "; }
 
-  // a, a/b, a//c or a/b/c; a trailing slash is forgiven.
+  // a, a/b, a//c or a/b/c; a trailing slash is accepted.
   ObjCorner read_corner(std::string_view word) {
     const std::array<std::size_t, 3> counts{out_.positions.size(), out_.uvs.size(), out_.normals.size()};
     std::array<std::int64_t, 3> index{kNoIndex, kNoIndex, kNoIndex};
@@ -312,7 +312,7 @@ class ObjReader {
     face_.smoothing = group;
   }
 
-  // A name may hold blanks, or the line may hold several names: the whole line is tried first.
+  // A name may contain blanks, or the line may contain several names: the whole line is tried first.
   void read_libraries() {
     const std::string all = cursor_.name();
     if (all.empty()) cursor_.fail("mtllib without a name", "write mtllib FILE, or delete the line");
@@ -330,7 +330,7 @@ class ObjReader {
     }
   }
 
-  // Each library is read once, however often it is named: a small file cannot ask for much work.
+  // Each library is read once, however often it is named: this bounds the work of a small file.
   bool load_library(const std::string& name) {
     if (const auto known = libraries_.find(name); known != libraries_.end()) return known->second;
     const std::optional<std::string> text = source_(name);
@@ -350,7 +350,7 @@ class ObjReader {
   const MaterialSource& source_;
   Warnings warnings_;
   ObjText out_;
-  ObjFace face_{.smoothing = 1};  // what the next face inherits
+  ObjFace face_{.smoothing = 1};  // inherited by the next face
   std::unordered_map<std::string, std::uint32_t> objects_{{"", 0}}, materials_{{"", 0}};
   std::unordered_map<std::string, bool> libraries_;  // name -> whether it was found
 };

@@ -19,10 +19,10 @@ constexpr std::array<std::pair<std::string_view, CullObjects>, 4> kNames{{{"none
                                                                           {"box", CullObjects::box},
                                                                           {"both", CullObjects::both}}};
 
-constexpr double kRoundingMargin = 1e-12;  // of the sum of a distance's terms
+constexpr double kRoundingMargin = 1e-12;  // relative to the sum of a distance's terms
 
-/// One bit per plane that the vertex lies outside of by more than rounding: the scene may yet be restated in another
-/// convention, whose sums round otherwise.
+/// One bit per plane that has the vertex outside by more than rounding: the scene may later be restated in another
+/// convention, with different rounding.
 unsigned clearly_outside(const ClipPlanes& planes, const Vertex& v) {
   const double margin = kRoundingMargin * (std::abs(v.x) + std::abs(v.y) + std::abs(v.z) + std::abs(v.w));
   unsigned code = 0;
@@ -30,7 +30,7 @@ unsigned clearly_outside(const ClipPlanes& planes, const Vertex& v) {
   return code;
 }
 
-/// Whether everything that the draw covers lies outside one and the same plane.
+/// Whether everything that the draw covers lies outside one common plane.
 bool is_outside(const Scene& scene, const Draw& draw) {
   const State& state = scene.states[draw.state];
   if (state.space == Space::window || draw.count == 0) return false;
@@ -45,10 +45,10 @@ bool is_outside(const Scene& scene, const Draw& draw) {
   return common != 0;
 }
 
-/// How bounds lie to one plane of the view volume, in distances of any one unit: below 0 is outside.
+/// Signed distances of bounds from one plane of the view volume, in any one unit: below 0 is outside.
 struct Side {
-  double sphere, box;  ///< what of them is farthest inside
-  double far_corner;   ///< of the box, what is farthest outside
+  double sphere, box;  ///< of the part farthest inside
+  double far_corner;   ///< of the box's part farthest outside
   double margin;       ///< far above the rounding of these
 };
 
@@ -59,7 +59,7 @@ void for_each_side(const ObjectBounds& bounds, const Mat4& to_clip, Visit&& visi
       Vec4 plane{};  // inside: plane . (p, 1) >= 0, which says w + x >= 0 or w - x >= 0
       for (std::size_t i = 0; i < 4; ++i) plane[i] = to_clip[3][i] + sign * to_clip[axis][i];
       const Vec3 normal{plane[0], plane[1], plane[2]};
-      Vec3 near{}, far{}, size{};  // the corner farthest inside, the other, and what coordinates may be as large as
+      Vec3 near{}, far{}, size{};  // the corner farthest inside, the opposite one, and bounds of coordinates
       for (std::size_t i = 0; i < 3; ++i) {
         near[i] = normal[i] > 0 ? bounds.high[i] : bounds.low[i];
         far[i] = normal[i] > 0 ? bounds.low[i] : bounds.high[i];
@@ -107,7 +107,7 @@ std::vector<ObjectBounds> object_bounds(const Mesh& mesh) {
     b.radius = 0;
   });
   for (ObjectBounds& b : bounds) b.center = scaled(add(b.low, b.high), 0.5);
-  for_each_vertex([&bounds](std::uint32_t object, const Vec3& p) {  // squares first: coordinates end at 1e30
+  for_each_vertex([&bounds](std::uint32_t object, const Vec3& p) {  // no squares yet: coordinates reach 1e30
     const Vec3 offset = subtract(p, bounds[object].center);
     bounds[object].radius = std::max(bounds[object].radius, dot(offset, offset));
   });
@@ -155,7 +155,7 @@ void mark_outside_objects(Scene& scene) {
 }
 
 ObjectCounts select_object_culling(Scene& scene, CullObjects tests) {
-  constexpr std::uint8_t kDrawn = 4;  // beside the two tests' bits
+  constexpr std::uint8_t kDrawn = 4;  // besides the two tests' bits
   std::vector<std::uint8_t> found(scene.objects.size(), 0);
   ObjectCounts counts;
   for_each_draw(scene, [&](Draw& draw) {

@@ -11,7 +11,7 @@
 
 namespace halfplane {
 
-/// Reads the values of one option; what is wrong is refused by its name.
+/// Reads the values of one option; errors name the option.
 struct OptionParts {
   std::string_view option;   ///< "--camera"
   std::string_view example;  ///< "write for example --camera ..."

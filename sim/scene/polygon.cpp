@@ -7,8 +7,8 @@
 namespace halfplane {
 namespace {
 
-// A corner on a grid of 2^48 steps across the polygon's plane: on it the side of a line is decided exactly, so that
-// no rounding can make two decisions contradict each other.
+// A corner on a grid of 2^48 steps across the polygon's plane: there the side of a line is decided exactly, so that
+// decisions cannot contradict each other.
 struct GridPoint {
   std::int64_t x = 0, y = 0;
   bool operator==(const GridPoint&) const = default;
@@ -29,7 +29,7 @@ Vec3 polygon_normal(std::span<const Vec3> corners) {
   return sum;
 }
 
-// The corners seen along the axis that is nearest to the normal, turned so that the polygon's area is positive.
+// The corners projected along the axis nearest to the normal, oriented so that the polygon's area is positive.
 std::vector<GridPoint> project(std::span<const Vec3> corners, const Vec3& normal) {
   std::size_t axis = 0;
   for (std::size_t i = 1; i < 3; ++i) {
@@ -54,8 +54,8 @@ std::vector<GridPoint> project(std::span<const Vec3> corners, const Vec3& normal
   return points;
 }
 
-// The ring of corners not yet cut off. An ear is a convex corner whose triangle holds no other corner; cutting one off
-// changes the standing of its two neighbours only, so each step costs one look at the corners that could be in the way.
+// The ring of corners not yet cut off. An ear is a convex corner whose triangle contains no other corner; cutting one
+// off affects only its two neighbours, so each step costs one test of the corners that could block it.
 class EarClipper {
  public:
   explicit EarClipper(std::vector<GridPoint> points) : points_(std::move(points)) {
@@ -73,7 +73,7 @@ class EarClipper {
   void run(std::vector<std::array<std::uint32_t, 3>>& triangles) {
     std::uint32_t left = static_cast<std::uint32_t>(points_.size());
     for (const bool relaxed : {false, true}) {
-      relaxed_ = relaxed;  // second round: flat corners may go, and touching is no obstacle
+      relaxed_ = relaxed;  // second round: flat corners may be cut, and touching is allowed
       std::vector<std::uint32_t> queue;
       for (std::uint32_t i = 0; i < points_.size(); ++i) queue.push_back(i);
       for (std::size_t head = 0; head < queue.size() && left > 3; ++head) {
@@ -97,7 +97,7 @@ class EarClipper {
     if (size < 0 || (size == 0 && !relaxed_)) return false;
     const auto [left, right] = std::minmax({a.x, b.x, c.x});
     const auto [low, high] = std::minmax({a.y, b.y, c.y});
-    const int128 least = relaxed_ ? 1 : 0;  // a corner on the triangle's edge is in the way only in the first round
+    const int128 least = relaxed_ ? 1 : 0;  // a corner on the triangle's edge blocks only in the first round
     for (const std::uint32_t other : blockers_) {
       const GridPoint& p = points_[other];
       if (gone_[other] || p.x < left || p.x > right || p.y < low || p.y > high) continue;
@@ -112,7 +112,7 @@ class EarClipper {
     next_[previous_[corner]] = next_[corner];
     previous_[next_[corner]] = previous_[corner];
     gone_[corner] = true;
-    // A corner that has become convex is in nobody's way any more; dead ones are dropped now and then.
+    // A corner that has become convex blocks no longer; dead ones are dropped from time to time.
     if (++cuts_ % 64 == 0) std::erase_if(blockers_, [this](std::uint32_t i) { return gone_[i] || turn(i) > 0; });
   }
 

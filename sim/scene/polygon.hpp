@@ -14,8 +14,8 @@ inline constexpr std::size_t kLargestConcavePolygon = 4096;
 
 /// Splits the polygon through `corners` (in order, 3 or more) into corners.size() - 2 triangles of corner numbers, each
 /// wound like the polygon, and appends them. No corner is added or left out: a corner on a straight edge becomes the
-/// corner of some triangle, so that the neighbour across the edge stays joined. A polygon without area, or what is
-/// left of one that crosses itself, becomes a fan. False (and nothing appended) for one that is too large.
+/// corner of some triangle, so that the neighbour across the edge stays joined. A polygon without area, or the rest of
+/// a self-intersecting one, becomes a fan. False (and nothing appended) for a polygon that is too large.
 [[nodiscard]] bool triangulate_polygon(std::span<const Vec3> corners,
                                        std::vector<std::array<std::uint32_t, 3>>& triangles);
 

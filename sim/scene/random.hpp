@@ -5,7 +5,7 @@
 
 namespace halfplane {
 
-/// Steele, Lea and Flood's SplitMix64: any seed is a good one, 0 too.
+/// Steele, Lea and Flood's SplitMix64: any seed is valid, including 0.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}

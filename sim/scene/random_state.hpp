@@ -14,7 +14,7 @@ namespace halfplane {
 /// Picks one of 0...n-1, n > 0: by random numbers, or by the bytes of a fuzzer.
 using Chooser = std::function<std::uint32_t(std::uint32_t n)>;
 
-/// Chooses by random numbers: of those of the house (next() or index()), or of <random>. Keeps a reference.
+/// Chooses by random numbers: from our generator (next() or index()), or from <random>. Keeps a reference.
 template <class Random>
 [[nodiscard]] Chooser chooser(Random& random) {
   return [&random](std::uint32_t n) {
@@ -27,11 +27,11 @@ template <class Random>
   };
 }
 
-/// Whether words that only the golden model takes may come up.
+/// Whether words that only the golden model supports may occur.
 enum class Refused { left_out, kept };
 
-/// Any value of the row: each word as likely as the others, numbers (as the table has them) as likely as all words. A row
-/// of words takes one choice.
+/// Any value of the row: each word equally likely, numbers (from the table) as likely as all words together. A row of
+/// words takes one choice.
 [[nodiscard]] StateValue random_value(const DrawState& row, const Chooser& choose, Refused refused = Refused::left_out);
 
 /// Rows of the table.
@@ -39,10 +39,10 @@ using StateRows = std::vector<const DrawState*>;
 [[nodiscard]] StateRows states_named(std::initializer_list<std::string_view> names);
 [[nodiscard]] StateRows states_but(std::initializer_list<std::string_view> names);
 
-/// All but what is held by units behind the depth test: fragment operations.
+/// All rows except those held by units downstream of the depth test: fragment operations.
 [[nodiscard]] StateRows without_operations(StateRows rows);
 
-/// `state` with random values in those rows, each as it is in half of the cases.
+/// `state` with random values in those rows, each unchanged in half of the cases.
 [[nodiscard]] State random_state(State state, const StateRows& rows, const Chooser& choose,
                                  Refused refused = Refused::left_out);
 

@@ -13,7 +13,7 @@ namespace {
 // The weights of four control points at i / n, or those of the derivative.
 using Weights = std::array<double, 4>;
 
-// Whole numbers before the one division, so that i / n and (n - i) / n give the same weights in reverse.
+// Integers before the one division, so that i / n and (n - i) / n give the same weights in reverse.
 Weights bernstein(int i, int n) {
   const double a = i, b = n - i, cube = static_cast<double>(n) * n * n;
   return {b * b * b / cube, 3 * (a * b * b) / cube, 3 * (a * a * b) / cube, a * a * a / cube};
@@ -24,8 +24,8 @@ Weights bernstein_slope(int i, int n) {
   return {-3 * s * s, 3 * s * s - 6 * s * t, 6 * s * t - 3 * t * t, 3 * t * t};
 }
 
-// Outer points first, then inner ones: reversing points and weights gives the same bits, so neighbours agree on the
-// curve that they share whichever way each of them runs along it.
+// Outer points first, then inner ones: reversing points and weights gives the same bits, so neighbours agree on their
+// common curve in either direction.
 Vec3 blend(const std::array<Vec3, 4>& points, const Weights& w) {
   return add(add(scaled(points[0], w[0]), scaled(points[3], w[3])),
              add(scaled(points[1], w[1]), scaled(points[2], w[2])));
@@ -34,14 +34,14 @@ Vec3 blend(const std::array<Vec3, 4>& points, const Weights& w) {
 struct Patch {
   std::array<std::array<Vec3, 4>, 4> rows;  // rows run along v, their order along u
 
-  // A point, or with slopes for weights a derivative.
+  // A point, or with the slopes' weights a derivative.
   Vec3 at(const Weights& u, const Weights& v) const {
     std::array<Vec3, 4> curve{};
     for (std::size_t i = 0; i < 4; ++i) curve[i] = blend(rows[i], v);
     return blend(curve, u);
   }
 
-  // The point; a row that has shrunk to a point stays one, though the rounded weights do not add up to 1.
+  // The point; a row that has degenerated to a point stays one, although the rounded weights do not add up to 1.
   Vec3 point(const Weights& u, const Weights& v) const {
     std::array<Vec3, 4> curve{};
     for (std::size_t i = 0; i < 4; ++i) {
@@ -55,10 +55,10 @@ struct Patch {
 // y up instead of z up; + 0.0 turns a negative zero into the positive one.
 Vec3 upright(const Vec3& p) { return {p[0] + 0.0, p[2] + 0.0, -p[1] + 0.0}; }
 
-// The outward unit normal at (i, j) of n. Where an edge has shrunk to a point, dP/dv (or dP/du) is zero and the mixed
-// derivative, the limit of its direction, takes its place.
+// The outward unit normal at (i, j) of n. Where an edge has degenerated to a point, dP/dv (or dP/du) is zero and the
+// mixed derivative, the limit of its direction, replaces it.
 Vec3 normal_at(const Patch& patch, int i, int j, int n) {
-  constexpr double kNothing = 1e-9;  // the pot is 3 units high; its smallest honest derivative is about 0.1
+  constexpr double kNothing = 1e-9;  // the pot is 3 units high; its smallest true derivative is about 0.1
   const Weights u = bernstein(i, n), v = bernstein(j, n);
   const Weights du = bernstein_slope(i, n), dv = bernstein_slope(j, n);
   Vec3 along_u = patch.at(du, v), along_v = patch.at(u, dv);
@@ -111,7 +111,7 @@ class TeapotBuilder {
     }
   }
 
-  // A known vertex with this place and nearly this normal: patches that join smoothly share it, creases do not.
+  // An existing vertex with this position and nearly this normal: patches that join smoothly share it, creases do not.
   std::uint32_t vertex(const Vec3& position, const Vec3& normal, bool inside) {
     const auto added = static_cast<std::uint32_t>(mesh_.vertices.size());
     if (!inside) {
@@ -125,7 +125,7 @@ class TeapotBuilder {
     return added;
   }
 
-  // Triangles whose side has shrunk to a point are left out.
+  // Triangles with a degenerate side are left out.
   void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     const auto& p = mesh_.vertices;
     const auto same = [&p](std::uint32_t i, std::uint32_t j) { return p[i].position == p[j].position; };

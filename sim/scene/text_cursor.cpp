@@ -44,7 +44,7 @@ std::optional<double> parse_number(std::string_view word) {
   double value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (end != word.data() + word.size() || word.empty() || error == std::errc::invalid_argument) return std::nullopt;
-  // from_chars gives up on both ends of the range; strtod tells them apart: infinity, or zero and subnormals.
+  // from_chars fails at both ends of the range; strtod distinguishes them: infinity, or zero and subnormals.
   if (error == std::errc::result_out_of_range) value = std::strtod(std::string(word).c_str(), nullptr);
   if (!std::isfinite(value)) return std::nullopt;
   return value;
@@ -82,7 +82,7 @@ void TextCursor::skip_blanks() {
 }
 
 bool TextCursor::next_line() {
-  bool inside = line_ != 0;  // the rest of the current line is passed over first
+  bool inside = line_ != 0;  // the rest of the current line is skipped first
   for (;;) {
     if (inside) {
       while (at_ < text_.size() && !is_line_end(text_[at_])) {

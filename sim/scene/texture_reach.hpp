@@ -9,14 +9,14 @@
 
 namespace halfplane {
 
-/// Filled triangles of textured draws with a corner more than 2^20 texels (kMaxReach) from the middle of its coordinates, where
-/// the pipeline holds it: between the corners the texture is elsewhere.
+/// Filled triangles of textured draws with a corner more than 2^20 texels (kMaxReach) from the centre of its
+/// coordinates, where the pipeline clamps it: between the corners the texture is displaced.
 struct BeyondReach {
   std::uint64_t triangles = 0;
-  double span = 0;  ///< the most that a triangle spans, texels of level 0
+  double span = 0;  ///< the largest extent of a triangle, texels of level 0
 };
 
-/// Nothing where every triangle is counted as it is. Whole triangles: one that is cut may be within reach. Linear in the scene.
+/// None if no triangle is clamped. Whole triangles: a cut triangle may be within reach. Linear in the scene.
 [[nodiscard]] std::optional<BeyondReach> beyond_reach(const Scene& scene);
 
 /// One line.

@@ -1,4 +1,4 @@
-// Snapped vertices as studies make them and show them.
+// Snapped vertices for studies: making them and showing them.
 #pragma once
 
 #include <array>
@@ -16,14 +16,14 @@ namespace halfplane {
   return v;
 }
 
-/// Its colour as a scene's vertex has it.
+/// Its colour in the form of a scene's vertex.
 [[nodiscard]] inline std::array<double, 4> colors_of(const SnappedVertex& v) {
   const auto channel = color_channels(v.code);
   return {1.0 * channel[0], 1.0 * channel[1], 1.0 * channel[2], 1.0 * channel[3]};
 }
 
-/// Random codes in the colour planes: draw() gives one. A channel without a plane is drawn all the same, so that what
-/// follows does not depend on the colour format.
+/// Random codes in the colour planes: draw() gives one. A channel without a plane takes a number as well, so that later
+/// numbers do not depend on the colour format.
 template <class Draw>
 void set_colors(SnappedVertex& v, const Widths& widths, Draw&& draw) {
   for (int c = 0; c < 4; ++c) {

@@ -36,7 +36,7 @@ class Judge final : public StageIo {
         result_.first->hint = "what comes here is the packet that should come next: this one was lost";
       return;
     }
-    if (may_be_extra && is_equal(list, at.next + 1, expected)) {  // so was the one before: one was too much
+    if (may_be_extra && is_equal(list, at.next + 1, expected)) {  // so was the one before: an extra one
       at.next += 2;
       return;
     }
@@ -60,11 +60,11 @@ class Judge final : public StageIo {
   }
 
  private:
-  /// Where the judge is in the packets that came out of a port.
+  /// The judge's position in the packets of an output port.
   struct Place {
     std::size_t next = 0;
     bool is_behind_difference = false;
-    bool may_be_extra = false;  ///< the packet of that difference, if all behind it comes a packet later
+    bool may_be_extra = false;  ///< the packet of that difference, if all later ones come a packet later
   };
 
   [[nodiscard]] static bool is_equal(const PacketList& list, std::size_t number,

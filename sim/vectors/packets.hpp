@@ -15,7 +15,7 @@ namespace halfplane::vectors {
 class PacketList {
  public:
   explicit PacketList(std::size_t words = 1) : per_(words) {}
-  /// `undefined`: which bits have no value, x or z of a simulator; empty: all have one.
+  /// `undefined`: bits without a value, x or z in a simulator; empty: all have one.
   void push(std::span<const std::uint32_t> words, std::vector<std::uint32_t> undefined = {}) {
     if (!undefined.empty()) undefined_[size()] = std::move(undefined);
     words_.insert(words_.end(), words.begin(), words.end());
@@ -28,7 +28,7 @@ class PacketList {
   [[nodiscard]] std::span<const std::uint32_t> operator[](std::size_t n) const {
     return std::span(words_).subspan(n * per_, per_);
   }
-  /// Room for the test of a fault.
+  /// For tests that inject a fault.
   [[nodiscard]] std::span<std::uint32_t> at(std::size_t n) { return std::span(words_).subspan(n * per_, per_); }
 
  private:

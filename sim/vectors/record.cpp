@@ -18,7 +18,7 @@ class StageRecorder final : public EveryPacket<StageRecorder> {
   template <Arrow A>
   void take_any(const PacketOf<A>& packet) {
     if constexpr (A == Arrow::fragment) set_colors(packet, colors_, widths_);
-    // Colours go to depth_test where an alpha test behind the texture looks at them.
+    // Colours go to depth_test if an alpha test downstream of the texture reads them.
     const bool is_of_others =
         A == Arrow::color && stage_.stage == Stage::depth_test && colors_.alpha.func == DepthFunc::always;
     if (!is_of_others) keep(info(A).name, packet);
@@ -45,7 +45,7 @@ class StageRecorder final : public EveryPacket<StageRecorder> {
   const JudgedStage& stage_;
   const Widths& widths_;
   StagePackets& packets_;
-  ContextPacket context_;  ///< of the primitive at work
+  ContextPacket context_;  ///< of the current primitive
   ColorState colors_;      ///< at the fragments
 };
 

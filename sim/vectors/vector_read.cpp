@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// Where a message points.
+/// The place of a message.
 struct SourceLine {
   const std::string& path;
   std::size_t number = 0;
@@ -25,7 +25,7 @@ struct SourceLine {
   }
 };
 
-/// The next line, if there is one. A file may be one line without an end: a device, or something else than vectors.
+/// The next line, if there is one. A file may be one endless line: a device, or not a file of vectors.
 bool next_line(std::istream& in, std::string& text, const SourceLine& at) {
   constexpr std::size_t kLongest = std::size_t{1} << 20;  // bytes; a packet takes some thousand
   text.clear();
@@ -77,16 +77,16 @@ HexValue parse_hex(std::string_view text, const FieldName& field, const SourceLi
   return {*value, field.bits < 64 ? *mask & ((std::uint64_t{1} << field.bits) - 1) : *mask};
 }
 
-/// What of a header goes into messages stays one line, and a short one.
+/// A header's text in messages stays on one line, and short.
 void require_plain(std::string_view word, const SourceLine& at) {
-  constexpr std::size_t kLongest = 256;  // bytes; no name and no value of a setting comes near
+  constexpr std::size_t kLongest = 256;  // bytes; far above any name and any value of a setting
   const bool is_plain = std::ranges::none_of(word, [](unsigned char c) { return c < ' ' || c == 0x7f; });
   if (word.size() > kLongest || !is_plain)
     at.fail("in the header, " + in_quotes(word) +
             " is no name and no value; keep the header that `halfplane vectors` wrote");
 }
 
-/// The file as it is read.
+/// State of the reader.
 class Reader {
  public:
   void begin(std::string_view stage, const std::map<std::string, std::string>& config, const SourceLine& at) {
@@ -143,8 +143,8 @@ class Reader {
               " is due; give them in order, from 0");
   }
 
-  /// A packet that is read. The specification is given what goes in, and has no tile or pixel outside the largest target; what
-  /// comes out is only compared, and may be as wrong as it likes.
+  /// Adds a packet. Inputs go to the specification, which is undefined for tiles or pixels outside the largest target;
+  /// outputs are only compared, and may be arbitrarily wrong.
   void add(const Place& place, std::span<const HexValue> given, const SourceLine& at) {
     const auto& names = fields(place);
     std::vector<std::uint64_t> values, undefined;
@@ -241,7 +241,7 @@ void read_csv_row(Reader& reader, const std::vector<std::string_view>& cells, co
   reader.add(place, values, at);
 }
 
-/// Of the first row: halfplane.vectors/1,STAGE,SOURCE,seed=N.
+/// From the first row: halfplane.vectors/1,STAGE,SOURCE,seed=N.
 VectorSource csv_source(const std::vector<std::string_view>& cells) {
   VectorSource source;
   if (cells.size() > 2) source.text = cells[2];
@@ -287,7 +287,7 @@ VectorFile read_csv(std::istream& in, const std::string& path) {
   return std::move(reader.file_);
 }
 
-/// A packed packet, the highest digit first, with 0x or without; '_' and comments as $readmemh has them.
+/// A packed packet, the highest digit first, with 0x or without; '_' and comments as in $readmemh.
 void read_hex_line(Reader& reader, std::string text, int bits, const Reader::Place& place, const SourceLine& at) {
   text = text.substr(0, text.find("//"));
   std::erase_if(text, [](unsigned char c) { return c == '_' || std::isspace(c) != 0; });

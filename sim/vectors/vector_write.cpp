@@ -110,7 +110,7 @@ WrittenFile write_text(const std::string& path, const std::string& text) {
   return {path, text.size()};
 }
 
-/// The packed struct as raster_pkg has it, the highest digit first.
+/// The packed struct as in raster_pkg, the highest digit first.
 std::string hex_text(const Port& port, const PacketList& list, const Widths& widths) {
   const int bits = bits_of(port.like, widths);
   std::string text;

@@ -1,5 +1,5 @@
-// The comparison on lines and points: figures that must be zero are, differences from the golden are explained by the
-// snap, and engines that are wrong are caught.
+// Tests of the comparison for lines and points: figures that must be zero are zero, the snap explains differences from
+// the golden, and wrong engines are caught.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ using test::SceneBuilder;
 
 constexpr int kWidth = 48, kHeight = 44;
 
-/// The real engine with something done to what it says: `tap` may change a pixel, or keep it back (false).
+/// The real engine with modified output: `tap` may change a pixel, or drop it (false).
 CompareOptions with_engine(std::function<bool(std::uint32_t primitive, int& x, int& y)> tap,
                            std::function<void(Rendering&)> damage = {}) {
   CompareOptions options;
@@ -34,7 +34,7 @@ CompareOptions with_engine(std::function<bool(std::uint32_t primitive, int& x, i
   return options;
 }
 
-/// Lines, strips, loops and points at random. `grid`: coordinates per pixel; 0: anywhere.
+/// Random lines, strips, loops and points. `grid`: coordinates per pixel; 0: anywhere.
 Scene random_scene(std::uint32_t seed, int grid) {
   Random random(seed);
   Scene scene = SceneBuilder(kWidth, kHeight).scene;
@@ -80,7 +80,7 @@ TEST(CompareLines, VerticesOnTheGridDifferFromTheGoldenInNoPixelAndHoldEveryBoun
       EXPECT_EQ(c.oracle.mismatches, 0u);
       EXPECT_EQ(c.stage_mismatches, 0u);
       EXPECT_TRUE(broken_bounds(c, config).empty()) << broken_bounds(c, config).front();
-      if (config.depth_bits == 16) {  // then z lies on the grid too; that of the parts is 2^-20
+      if (config.depth_bits == 16) {  // then z lies on the grid too; the grid of the parts is 2^-20
         EXPECT_LE(c.parts.snap.max, 2e-6);
       }
       EXPECT_GT(c.oracle.samples, c.compared_pixels);
@@ -198,7 +198,7 @@ Scene random_clip_scene(std::uint32_t seed) {
 
 TEST(CompareLines, ClippedPrimitivesDifferFromTheGoldenOnlyWhereTheSnapMayDecide) {
   Config config = preset("full");
-  config.depth_bits = 10;  // an LSB is large against the snap: what is left is the depth mapping
+  config.depth_bits = 10;  // an LSB is large against the snap: only the depth mapping remains
   std::uint64_t clipped = 0, compared = 0, far_off = 0, differences = 0;
   for (std::uint32_t seed = 1; seed <= 400; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -247,7 +247,7 @@ TEST(CompareLines, PolygonOffsetOfSlopedTrianglesDiffersByItsRoundingAndTheSnapO
   RecordProperty("worst", std::to_string(worst));
   EXPECT_GT(worst_offset, 500);
   EXPECT_GT(worst, 0.7);
-  // 0.66 for the code, 1/2 each for the snap of z and the rounding of o, and 2 slopes that are off by 0.1 per pixel.
+  // 0.66 for the code, 1/2 each for the snap of z and the rounding of o, and 2 slopes with errors of 0.1 per pixel.
   EXPECT_LT(worst, 2);
 }
 

@@ -1,4 +1,4 @@
-// The comparison itself: its figures add up, and engines that are wrong are caught.
+// Tests of the comparison itself: its figures add up, and wrong engines are caught.
 #include "sim/study/compare/compare.hpp"
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ Scene perspective_plane() {
   return builder.scene;
 }
 
-/// The real engine with something done to what it says.
+/// The real engine with modified output.
 CompareOptions with_engine(std::function<void(Rendering&)> damage,
                            std::function<bool(CoverageTap&, std::uint32_t, int, int, TileMask&)> tap = {}) {
   CompareOptions options;
@@ -138,7 +138,7 @@ TEST(Compare, EyeDepthInvertsTheProjection) {
   ASSERT_TRUE(mappings[0]);
   EXPECT_NEAR(mappings[0]->eye_depth(window_z(33)).value(), 33, 1e-9);
   EXPECT_FALSE(mappings[0]->eye_depth(100.0 / 99.0));  // infinitely far
-  outline.z[1] += 0.001;                               // of another projection
+  outline.z[1] += 0.001;                               // outline of another projection
   EXPECT_FALSE(fit_eye_mappings(std::array{outline}, 1)[0]);
 }
 
@@ -170,7 +170,7 @@ TEST(Compare, EmptySceneIsSeenToHaveComparedNothing) {
 
 TEST(Compare, TriangleThatCoversNoSampleIsNoPassEither) {
   SceneBuilder builder(8, 8);
-  builder.triangle(at(-40, -40), at(40, -40), at(-40, 39));  // its box holds the target, its inside does not
+  builder.triangle(at(-40, -40), at(40, -40), at(-40, 39));  // only its box contains the target
   EXPECT_EQ(broken_bounds(compare(builder.scene, preset("embedded")), preset("embedded")).size(), 1u);
 }
 
@@ -254,9 +254,9 @@ TEST(CompareMustFail, AnotherTriangleInFrontIsNotComparedButCounted) {
   EXPECT_TRUE(std::isnan(c.depth_error_lsb[5]));
 }
 
-// --- before the operations, and in them ---
+// --- before and in the fragment operations ---
 
-/// The specification with something done to its fragments.
+/// The specification with modified fragments.
 CompareOptions with_fragments(std::function<void(TappedFragment&)> damage) {
   CompareOptions options;
   options.specification = [damage](const Scene& scene, const Config& config, const RenderOptions& asked) {
@@ -275,7 +275,7 @@ bool blames_fragments(const std::vector<std::string>& broken) {
   return std::any_of(broken.begin(), broken.end(), [](const auto& line) { return line.starts_with("fragments: "); });
 }
 
-/// A triangle, a line and a point, apart from each other.
+/// A triangle, a line and a point that do not touch.
 Scene one_of_each() {
   SceneBuilder builder(32, 32);
   builder.triangle(at(1.3, 2.1, 0.1, kRed), at(30.7, 4.9, 0.9, kGreen), at(7.7, 20.3, 0.4, kBlue));
@@ -302,7 +302,7 @@ TEST(CompareMustFail, APlaneOffByOneLsbBeforeTheOperationsIsBlamedOnTheFragments
                                      }));
         const auto broken = broken_bounds(c, config);
         if (kind == PrimitiveKind::point) {
-          EXPECT_EQ(c.fragments.planes[plane].worst_of_lines, 1);  // exact but for the fault: on the bound of a colour
+          EXPECT_EQ(c.fragments.planes[plane].worst_of_lines, 1);  // exact but for the fault: at a colour's bound
         } else {
           ASSERT_EQ(broken.size(), 1u);
           EXPECT_TRUE(broken[0].starts_with("fragments: " + std::string(judged_planes(config)[plane].name)))
@@ -326,7 +326,7 @@ TEST(CompareMustFail, AnUnroundedPlaneOffByOneLsbIsBlamedOnTheFragments) {
 
 TEST(CompareMustFail, AFragmentOnePixelAsideIsBlamedOnTheFragments) {
   const Config config = preset("embedded");
-  for (const auto& [x, y] : {std::pair{10, 11}, {8, 27}, {28, 28}}) {  // of the triangle, the line, the point
+  for (const auto& [x, y] : {std::pair{10, 11}, {8, 27}, {28, 28}}) {  // pixels of the triangle, the line, the point
     std::uint64_t moved = 0;
     const auto move = [&, x = x, y = y](TappedFragment& f) {
       if (f.x == x && f.y == y) ++f.x, ++moved;
@@ -334,13 +334,13 @@ TEST(CompareMustFail, AFragmentOnePixelAsideIsBlamedOnTheFragments) {
     const Comparison c = compare(one_of_each(), config, with_fragments(move));
     ASSERT_EQ(moved, 1u) << x << ", " << y;
     EXPECT_EQ(c.fragments.coverage.mismatches,
-              2u);  // one pixel lacks it, and one has it twice or without a right to it
+              2u);  // one pixel lacks the fragment, one has it twice or wrongly
     EXPECT_EQ(c.oracle.mismatches, 0u);
     EXPECT_TRUE(blames_fragments(broken_bounds(c, config)));
   }
 }
 
-/// The engine of `options` draws with another depth function than the scene asks for.
+/// The engine of `options` draws with a depth function other than the scene's.
 Engine with_depth_test(Engine engine, DepthFunc func) {
   return [engine, func](const Scene& scene, const Config& config, const RenderOptions& options) {
     Scene other = scene;
@@ -348,7 +348,7 @@ Engine with_depth_test(Engine engine, DepthFunc func) {
     return engine(other, config, options);
   };
 }
-/// The engine of `options` drops the fraction of a channel where the pack rounds it, and swaps nothing.
+/// The engine of `options` truncates a channel where the pack rounds it, and swaps nothing.
 Engine with_truncated_pack(Engine engine) {
   return [engine](const Scene& scene, const Config& config, const RenderOptions& options) {
     RenderOptions changed = options;
@@ -371,7 +371,7 @@ Engine with_truncated_pack(Engine engine) {
   };
 }
 
-/// Two triangles of the same depth and another colour each; less shows the first.
+/// Two triangles of equal depth and different colours; less shows the first.
 Scene equal_depths() {
   State state = SceneBuilder::window_state();
   state.depth_test = DepthFunc::less;
@@ -387,7 +387,7 @@ TEST(CompareMustFail, AWrongDepthFunctionIsBlamedOnTheFramebufferAndNotOnTheFrag
   for (const bool is_in_both : {false, true}) {
     CompareOptions options;
     options.engine = with_depth_test(render_functional, DepthFunc::lequal);
-    // The golden's own operations see it even when the specification has it as well.
+    // The golden's own operations find the fault even when the specification has it as well.
     if (is_in_both) options.specification = with_depth_test(render_scalar, DepthFunc::lequal);
     const Comparison c = compare(equal_depths(), config, options);
     EXPECT_GE(c.stage_mismatches, 256u);

@@ -1,4 +1,4 @@
-// Textured draws in the comparison: parts that sum, bounds that hold, and engines that are wrong.
+// Textured draws in the comparison: parts that sum, bounds that hold, and wrong engines that are caught.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ State textured_state() {
   return state;
 }
 
-/// A quad with w from 1 to 16, repeated four times, of a texture with levels; `shrink`: a part of its usual size.
+/// A quad with w from 1 to 16, repeated four times, of a texture with levels; `shrink`: divisor of its usual size.
 Scene floor_scene(const State& state = textured_state(), int shrink = 1) {
   SceneBuilder builder(48 / shrink, 40 / shrink, state);
   const auto at = [shrink](double x, double y, double w, double u, double v) {
@@ -43,7 +43,7 @@ Scene floor_scene(const State& state = textured_state(), int shrink = 1) {
   return builder.scene;
 }
 
-/// The specification with something done to what it says of each surface.
+/// The specification with modified surface results.
 Comparison compare_damaged(const Scene& scene, const Config& config, void (*damage)(SurfaceSample&)) {
   CompareOptions options;
   options.specification = [damage](const Scene& drawn, const Config& by, const RenderOptions& asked) {
@@ -110,7 +110,7 @@ TEST(CompareTextures, EachPartIsOfItsOwnCause) {
   state.texture_mag = TextureMag::linear;
   const TextureErrors linear = *compare(floor_scene(state), preset("embedded")).texture;
   EXPECT_EQ(linear.part_level.max, 0);
-  EXPECT_EQ(linear.part_weights.max, 0);  // 8 bits of a coordinate are all that there are on level 0
+  EXPECT_EQ(linear.part_weights.max, 0);  // level 0 has only 8 coordinate bits
   EXPECT_GT(linear.part_rounding.max, 0.4);
   const TextureErrors rough = *compare(floor_scene(state),
                                        [] {

@@ -1,5 +1,5 @@
 // Depth quantization measured in the pipeline: errors under their bounds and close to them, surfaces that keep their
-// order at the predicted separation and lose it at half of it, answers that hold when tried.
+// order at the predicted separation and lose it at half of it, suggestions that hold when tried.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -40,7 +40,7 @@ TEST(DepthMeasure, ErrorsStayUnderTheirBoundAndComeCloseToIt) {
     }
 }
 
-/// The fights of two surfaces `part` of the predicted separation apart.
+/// The fights of two surfaces at `part` of the predicted separation.
 DepthOrder tried(const DepthVariant& v, double z, const SurfaceView& view, double part) {
   MeasureOptions options;
   options.wants_errors = false;
@@ -63,7 +63,7 @@ TEST(DepthMeasure, PlanesAtThePredictedSeparationNeverFightAndAtHalfOfItTheyDo) 
             const double separation = surface_separation(DepthBound(v), place.z, view).total();
             SCOPED_TRACE(v.name() + ", " + config + ", z " + std::to_string(place.z) + ", slope " +
                          std::to_string(slope) + ", separation " + std::to_string(separation));
-            if (separation > 0.1 * place.z) continue;  // little is told apart there: no room behind the surfaces
+            if (separation > 0.1 * place.z) continue;  // resolution is low there: no room beyond the surfaces
             const DepthOrder whole = tried(v, place.z, view, 1);
             ++tries;
             EXPECT_GT(whole.pairs, 2000U);
@@ -100,7 +100,7 @@ TEST(DepthMeasure, AnswersHoldWhenTried) {
     EXPECT_EQ(again.total.rms, trials[i].result.total.rms) << trials[i].what;
     EXPECT_LE(trials[0].result.order.fights(), again.order.fights()) << trials[i].what;
     if (trials[i].variant.config.subpixel_bits == base.config.subpixel_bits) {
-      EXPECT_EQ(again.fragments, measured.fragments) << trials[i].what;  // nothing is clipped away
+      EXPECT_EQ(again.fragments, measured.fragments) << trials[i].what;  // nothing is clipped
     }
     has_near |= trials[i].options.starts_with("--near");
   }
@@ -108,7 +108,7 @@ TEST(DepthMeasure, AnswersHoldWhenTried) {
   const auto answers = depth_answers(base, measured, trials);
   ASSERT_EQ(answers.size(), 3U);
   EXPECT_NE(answers[1].find(trials[0].options), std::string::npos);
-  // The near plane was absurd: nothing at equal storage beats leaving 0.01.
+  // The near plane was absurd: at equal storage the best trial moves it away from 0.01.
   EXPECT_LT(trials[0].result.order.fights(), measured.order.fights() / 2);
 }
 
@@ -133,7 +133,7 @@ TEST(DepthMeasure, RefusesScenesWhoseEyeDepthItDoesNotKnow) {
   refused([](Scene& s) { s.states[0].polygon_offset = {1, 1}; });
   refused([](Scene& s) { s.states[0].depth_range = {0.25, 1}; });
   refused([](Scene& s) { s.states[0].space = Space::window; });
-  // Surfaces of two frames, or of either side of a clear, never meet.
+  // Surfaces of different frames, or before and after a clear, never meet.
   refused([](Scene& s) {
     s.commands.emplace_back(EndFrame{});
     s.commands.push_back(s.commands[1]);
@@ -150,7 +150,7 @@ TEST(DepthMeasure, SamplesThatOnlyTheSnapCoversHaveNoEyeDepth) {
   constexpr double kHeight = 0.01, kFar = 999, kScale = 2.414, kAspect = 320.0 / 240;
   Scene scene = cleared_scene(320, 240);
   scene.planes = {1.0, 1000.0};
-  const double climb = (1 - 2 * 100.52 / 240) / kScale + kHeight / kFar;  // so that its far edge lies at y = 100.52
+  const double climb = (1 - 2 * 100.52 / 240) / kScale + kHeight / kFar;  // far edge at y = 100.52
   for (const auto& [x, z] : {std::pair{-0.5, 1.2}, {0.5, 1.2}, {0.5, kFar}, {-0.5, kFar}})
     scene.vertices.push_back({x * z * kScale / kAspect, (climb * z - kHeight) * kScale, 0, z});
   scene.indices = {0, 1, 2, 0, 2, 3};

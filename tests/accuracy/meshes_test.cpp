@@ -134,7 +134,7 @@ TEST(Meshes, FansOfThreeToSixtyFourTrianglesAroundACentreACornerAndAnEdgePointCo
 }
 
 TEST(Meshes, ClosedBoxThatCrossesNearAndSidePlanesCoversEveryPixelOnce) {
-  // The eye is inside a box that reaches behind it and far beyond the guard band: every pixel sees one inner wall.
+  // The eye is inside a box that extends behind it and far beyond the guard band: every pixel sees one inner wall.
   const Config config = preset("embedded");
   State state;
   state.depth_test = DepthFunc::always;
@@ -200,7 +200,7 @@ Scene shuffled_mesh(int cells, int pitch, int bits, std::uint32_t seed) {
   std::vector<Point> grid;
   for (int j = 0; j <= cells; ++j)
     for (int i = 0; i <= cells; ++i) {
-      const int reach = (pitch << bits) / 5;  // less than a quarter of a cell: no triangle turns over
+      const int reach = (pitch << bits) / 5;  // less than a quarter of a cell: no triangle is reversed
       const std::int64_t dx = random.index(2 * reach + 1) - reach;
       grid.push_back({at_grid(i) + dx, at_grid(j) + random.index(2 * reach + 1) - reach});
     }
@@ -222,7 +222,7 @@ Scene shuffled_mesh(int cells, int pitch, int bits, std::uint32_t seed) {
 }
 
 TEST(StressMeshes, HundredThousandShuffledTrianglesCoverEveryPixelExactlyOnce) {
-  // On the half-pixel grid ties are everywhere; on the subpixel grid they are rare, and triangles thinner.
+  // On the half-pixel grid ties are everywhere; on the subpixel grid ties are rare, and triangles thinner.
   for (const int bits : {1, 4}) {
     SCOPED_TRACE("grid bits " + std::to_string(bits) + ", seed 31");
     const Scene scene = shuffled_mesh(224, 4, bits, 31);

@@ -1,6 +1,6 @@
-// How wrong attributes over w are: a search for the worst triangle and pixel, held to the bound that was derived.
+// The error of attributes over w: a search for the worst triangle and pixel, checked against the derived bound.
 //
-// HALFPLANE_SOAK=SECONDS searches each cell for so long, from another seed every time.
+// HALFPLANE_SOAK=SECONDS searches each cell for that time, with another seed in every run.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -18,7 +18,8 @@ using test::OverWTriangle;
 using test::perspective_design;
 using test::PerspectiveDesign;
 
-/// What is searched: an attribute of a design, its extent in texels or LSB, and the ratio of the largest w to the smallest.
+/// The searched case: an attribute of a design, its extent in texels or LSB, and the ratio of the largest w to the
+/// smallest.
 struct Cell {
   PerspectiveDesign design;
   OverWFormat attribute;
@@ -56,7 +57,7 @@ OverWTriangle random_triangle(const Cell& cell, OverWRandom& random) {
   return t;
 }
 
-/// One small change: a vertex moves, or what is between the ends of w or of the values.
+/// One small change: a vertex moves, or the middle one of three w or values changes.
 OverWTriangle changed(OverWTriangle t, const Cell& cell, OverWRandom& random) {
   const auto middle = [&random](std::array<std::int64_t, 3>& of, std::int64_t unit) {
     const auto [low, high] = std::minmax({of[0], of[1], of[2]});
@@ -78,7 +79,7 @@ OverWTriangle changed(OverWTriangle t, const Cell& cell, OverWRandom& random) {
   return t;
 }
 
-/// Climbs from random triangles. Returns the largest error that was met.
+/// Hill climbing from random triangles. Returns the largest error found.
 double worst_error(const Cell& cell) {
   const char* soak = std::getenv("HALFPLANE_SOAK");
   const std::uint64_t seed =
@@ -151,11 +152,11 @@ TEST(PerspectiveAccuracyMustFail, PlanesFromTheCanonicalVertexBreakTheBound) {
 }
 
 TEST(PerspectiveAccuracyMustFail, ACoordinateFromZeroNeedsMoreBits) {
-  // What its own centre saves: an extent of 64 texels beginning at 16 x 1024 is as wrong as one of 32,768.
+  // Without its own centre, an extent of 64 texels from 16 x 1024 has the error of an extent of 32,768.
   PerspectiveFormat format = kEmbeddedPerspective;
   format.coordinate.is_centred = false;
   Cell cell{perspective_design("embedded", format), format.coordinate, 64, 16};
-  cell.attribute.is_centred = true;  // to be drawn: texels, not codes
+  cell.attribute.is_centred = true;  // for drawing: texels, not codes
   OverWRandom random(1);
   double worst = 0;
   for (int n = 0; n < 1000; ++n) {

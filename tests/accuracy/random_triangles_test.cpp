@@ -1,5 +1,5 @@
-// Random and stressful triangles through the engine, held against the oracle: no coverage mismatch anywhere, depth and
-// colour within their bounds. Every failure prints the seed that repeats it.
+// Random and stressful triangles through the engine, checked against the oracle: no coverage mismatch anywhere, depth
+// and colour within their bounds. Every failure prints the seed that repeats it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ using test::Generator;
 using test::Random;
 using test::SceneBuilder;
 
-/// What all scenes of one run had in common.
+/// Totals over all scenes of one run.
 struct Tally {
   std::uint64_t triangles = 0, on_edge = 0, samples = 0, owned = 0, depth_count = 0;
   double depth_max = 0, color_max = 0, depth_sum = 0, bias_sum = 0, color_sum = 0, color_bias_sum = 0;
@@ -200,11 +200,12 @@ TEST(RandomTriangles, EveryDepthWidthStaysWithinBoundsInItsOwnLsb) {
     SCOPED_TRACE("depth.bits " + std::to_string(bits));
     Tally tally = run_random(config, 24, 24, 8, 200);
     EXPECT_LE(tally.depth_max, 0.75);
-    EXPECT_GT(tally.depth_max, 0.3);  // an LSB of the asked width, not of a wider one
+    EXPECT_GT(tally.depth_max, 0.3);  // an LSB of the requested width, not of a wider one
   }
 }
 
-/// Soak: fresh seeds for HALFPLANE_SOAK seconds, a few otherwise. The first seed is printed; every failure has its own.
+/// Soak: fresh seeds for HALFPLANE_SOAK seconds, a few otherwise. The first seed is printed; every failure prints its
+/// own.
 TEST(StressRandomTriangles, FreshSeedsMeetTheBoundsInEveryPreset) {
   const char* soak = std::getenv("HALFPLANE_SOAK");
   const double seconds = soak == nullptr ? 6 : std::atof(soak);

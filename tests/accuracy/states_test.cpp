@@ -1,5 +1,5 @@
-// Every state of a capture, at random: on vertices that the snap leaves where they are, model and golden must show the
-// same picture; on clipped triangles they may differ only beside an edge.
+// Every state of a capture, at random: with vertices that the snap does not move, model and golden must show the same
+// picture; on clipped triangles they may differ only beside an edge.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ using test::SceneBuilder;
 
 constexpr int kWidth = 40, kHeight = 36;
 
-/// Draws of every topology at one of five depths each, on the 1/16 pixel grid; a clear now and then.
+/// Draws of every topology at one of five depths each, on the 1/16 pixel grid; an occasional clear.
 Scene random_window_scene(std::uint32_t seed) {
   Random random(seed);
   Scene scene = SceneBuilder(kWidth, kHeight).scene;
@@ -37,7 +37,7 @@ Scene random_window_scene(std::uint32_t seed) {
     }
     const std::size_t count = 3 + static_cast<std::size_t>(random.index(5));
     const double z = random.index(6) / 5.0;          // equal depths meet often
-    const double alpha = 25 + 51 * random.index(5);  // between two references of the alpha test: no rounding decides
+    const double alpha = 25 + 51 * random.index(5);  // between two references of the alpha test: no rounding matters
     scene.commands.push_back(Draw{state, 0, static_cast<Topology>(random.index(3)), scene.indices.size(), count, 0});
     for (std::size_t i = 0; i < count; ++i) {
       scene.indices.push_back(static_cast<std::uint32_t>(scene.vertices.size()));
@@ -112,7 +112,7 @@ Scene random_clip_scene(std::uint32_t seed) {
 
 TEST(States, ClippedTrianglesDifferFromTheGoldenOnlyBesideAnEdge) {
   Config config = preset("full");
-  config.depth_bits = 10;  // an LSB is large against the snap: what is left is the depth mapping
+  config.depth_bits = 10;  // an LSB is large against the snap: only the depth mapping remains
   std::uint64_t clipped = 0, compared = 0, far_off = 0, other = 0, other_beside_edge = 0;
   for (std::uint32_t seed = 1; seed <= 400; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));

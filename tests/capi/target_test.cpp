@@ -1,5 +1,5 @@
-// Targets of the C interface: call by call the bits of the capture that holds the same commands, whatever the layout of the
-// vertices and the number of threads; and what is refused changes nothing.
+// Targets of the C interface: call by call the bits of the capture that holds the same commands, for every vertex
+// layout and number of threads; and a refused call changes nothing.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -12,15 +12,15 @@
 
 namespace {
 
-constexpr int kWidth = 70, kHeight = 40;  // more than a bin of the engine, and no whole number of tiles
+constexpr int kWidth = 70, kHeight = 40;  // larger than a bin of the engine, and no whole number of tiles
 constexpr std::size_t kPixels = std::size_t{kWidth} * kHeight;
 
-/// What an emulator has: 16 bits a coordinate, 8 a channel.
+/// An emulator's vertex: 16 bits a coordinate, 8 a channel.
 struct SmallVertex {
   std::int16_t x, y;
   std::array<std::uint8_t, 4> rgba;
 };
-/// And floats, with the colour between.
+/// A vertex of floats, with the colour in the middle.
 struct FloatVertex {
   std::array<float, 4> xyzw;
   std::array<std::uint8_t, 3> rgb;
@@ -184,7 +184,7 @@ TEST_P(CapiTarget, ItsFrameGoesToTheCallersMemoryAndComesBack) {
   std::vector<std::uint32_t> depth(kPixels);
   ASSERT_EQ(halfplane_target_copy_to(target_, color.data(), pitch, depth.data(), std::size_t{kWidth} * 4), 0);
   EXPECT_EQ(depth, drawn[1]);
-  std::uint32_t code = 0;  // of the pixel 12, 11, whose lowest byte comes first here and there
+  std::uint32_t code = 0;  // code of pixel 12, 11, lowest byte first in both formats
   std::memcpy(&code, &color[pitch * 11 + bytes * 12], bytes);
   EXPECT_EQ(code, drawn[0][11 * kWidth + 12]);
   const double near = 0;
@@ -219,7 +219,7 @@ TEST_P(CapiTarget, WhatIsRefusedIsSaidInALineAndLeavesItAsItWas) {
   layout.color.components = 2;
   refuse_layout(layout, sizeof kSquare, "layout: color of 2 components; give 3 to 4");
   layout = kSmall;
-  layout.color = {HALFPLANE_I16, 3, 0};  // 68 and 38 are colours, and so is not what comes third: 255 * 256
+  layout.color = {HALFPLANE_I16, 3, 0};  // 68 and 38 are colours, so the third value is not: 255 * 256
   refuse_layout(layout, sizeof kSquare, "colour component outside 0...255");
   expect_refusal(draw("triangles", {0, 1, 4}), "index 2 of the draw is 4, and the draw has 4 vertices");
   expect_refusal(draw("hexagons", {0, 1, 2}), "no topology 'hexagons'; give one of triangles, triangle_strip");
@@ -248,7 +248,7 @@ TEST_P(CapiTarget, WhatIsRefusedIsSaidInALineAndLeavesItAsItWas) {
   EXPECT_EQ(halfplane_target_new(nullptr, 4, 4, nullptr), nullptr);
   const std::array<double, 2> planes_of_nothing{2, 1};
   EXPECT_EQ(halfplane_target_new(config_, 4, 4, planes_of_nothing.data()), nullptr);
-  // The state that was said last holds, and a texture is what it was.
+  // The last state still holds, and the texture is unchanged.
   ASSERT_EQ(draw("triangle_strip", {0, 1, 2, 3}), 0) << halfplane_last_error();
   const auto written = halfplane_target_counter(target_, "written");
   EXPECT_GT(written, 1000);

@@ -9,7 +9,7 @@ namespace {
 
 class Against : public Cli {
  protected:
-  /// What is said of an image of the city that was drawn with these words.
+  /// The comparison's result for an image of the city drawn with these arguments.
   [[nodiscard]] Json against(const std::string& scene, const std::string& drawn_with, const std::string& more = "",
                              bool is_depth = false) const {
     Arguments render = split_words("render " + scene + " " + drawn_with + " --quiet");
@@ -23,7 +23,7 @@ class Against : public Cli {
     EXPECT_EQ(outcome.status, result["against"]["different"] == 0 ? 0 : 1) << outcome.err;
     return result["against"];
   }
-  /// What is said of the picture of one scene when another is compared with it.
+  /// The comparison's result for the picture of one scene against another scene.
   [[nodiscard]] Json against_scene(const std::string& scene, const std::string& foreign,
                                    const std::string& drawn_with = "", const std::string& more = "") const {
     write("foreign.hpt", foreign);
@@ -37,7 +37,7 @@ class Against : public Cli {
     const Bytes bytes = read("r.json");
     return Json::parse(bytes.begin(), bytes.end(), nullptr, false)["against"];
   }
-  /// Expects all that differs to be of one kind, and enough of it to tell.
+  /// Expects all differences to be of one kind, and enough of them to decide.
   static void expect_all(const Json& against, const char* kind, const std::string& what) {
     EXPECT_GT(against["different"], 15) << what;
     EXPECT_EQ(pixels(against, kind), against["different"])
@@ -127,7 +127,7 @@ TEST_F(Against, AnotherStateIsCalledByItsKind) {
 }
 
 TEST_F(Against, TwoFaultsAreBothCalledByTheirKinds) {
-  // On the left two triangles of one depth, on the right one over the other, blended.
+  // Left: two triangles of equal depth; right: one over the other, blended.
   const auto scene = [](const std::string& depth, const std::string& blend) {
     return "halfplane 1\ntarget 64 32\nclear color 9 9 9 255 depth 1\nspace window\n" + depth +
            "v 1 1 0.5 1 250 20 20 255\nv 30 1 0.5 1 20 20 250 255\nv 1 30 0.5 1 20 250 20 255\n"
@@ -143,7 +143,7 @@ TEST_F(Against, TwoFaultsAreBothCalledByTheirKinds) {
 }
 
 TEST_F(Against, AMatrixOfDitheringThatIsMovedIsDither) {
-  // One colour all over, so that a moved matrix is a moved picture.
+  // One colour everywhere, so that a moved matrix is a moved picture.
   const std::string scene =
       "halfplane 1\ntarget 32 32\nclear color 0 0 0 255 depth 1\nspace window\nstate dither on\n"
       "v 0 0 0.5 1 101 77 203 255\nv 64 0 0.5 1 101 77 203 255\nv 0 64 0.5 1 101 77 203 255\nt 0 1 2\n";
@@ -158,8 +158,8 @@ TEST_F(Against, AMatrixOfDitheringThatIsMovedIsDither) {
 }
 
 TEST_F(Against, BlendingThatIsCutIsBlend) {
-  // (40 * 100 + 200 * 155) / 255 = 137.25, (60 * 100 + 90 * 155) / 255 = 78.24, (10 * 100 + 37 * 155) / 255 = 26.41: as
-  // they are. (41 * 100 + 202 * 155) / 255 = 138.86, rounded to 139 and cut to 138.
+  // (40 * 100 + 200 * 155) / 255 = 137.25, (60 * 100 + 90 * 155) / 255 = 78.24, (10 * 100 + 37 * 155) / 255 = 26.41:
+  // unchanged. (41 * 100 + 202 * 155) / 255 = 138.86, rounded to 139 and truncated to 138.
   const std::string quad = " 0 0.5 1 202 90 37 255\nv 64 0 0.5 1 202 90 37 255\nv 0 64 0.5 1 202 90 37 255\n";
   write("ours.hpt", "halfplane 1\ntarget 32 32\nclear color 0 0 0 255 depth 1\nspace window\nv 0" + quad +
                         "t 0 1 2\nstate depth_test always\nstate blend src_alpha one_minus_src_alpha\n"
@@ -180,7 +180,7 @@ TEST_F(Against, BlendingThatIsCutIsBlend) {
   EXPECT_EQ(found["different"], blended);
   expect_all(found, "blend", "cut");
   EXPECT_EQ(found["explanations"][0]["change"], "products of blending cut, not rounded");
-  // Within a code of each other they are equal.
+  // Values within one code of each other are equal.
   const Json equal = against_file("cut.png", format + " --tolerance color=1");
   EXPECT_EQ(equal["different"], 0);
   EXPECT_EQ(equal["within_tolerance"], blended);
@@ -207,7 +207,7 @@ TEST_F(Against, AToleranceIsOfCodesOfTheStoredFormat) {
   EXPECT_EQ(differing("--against c.png --tolerance color=2,depth=9"), 0);
   EXPECT_EQ(differing("--against c.png --tolerance depth=9"), 2);
   Bytes codes = read("r.npy");
-  const std::size_t last = codes.size() - 4;  // of the last pixel, which is cleared: 65535
+  const std::size_t last = codes.size() - 4;  // code of the last pixel, which is cleared: 65535
   codes[last] = 0xfc;                         // 3 less
   write("d.npy", std::string(codes.begin(), codes.end()));
   EXPECT_EQ(differing("--against d.npy --tolerance color=9,depth=2"), 1);
@@ -245,7 +245,7 @@ TEST_F(Against, TheSheetShowsTheOtherImageAndTheDifference) {
   const Arguments compare =
       split_words("compare triangle --size 32x32 --quiet -o s.png --against b.png --panels against");
   EXPECT_EQ(run(compare).status, 1);
-  // A pixel is 15 x 15 here. The only white square of that size is the one that was set.
+  // A pixel is 15 x 15 here. The only white square of that size is the changed pixel.
   const Picture sheet = picture("s.png");
   int white = 0;
   for (int y = 60; y < sheet.height; ++y)  // below the title and the caption, whose letters are not this white

@@ -1,4 +1,4 @@
-// Several samples a pixel from the command line: what draws them, and who refuses them by name.
+// Several samples a pixel from the command line: the engines that draw them, and the refusals of the others.
 #include <map>
 #include <string>
 #include <utility>
@@ -44,14 +44,14 @@ TEST_F(AntialiasingCommand, SupersampledPicturesAreTheMeanOfWholeOnes) {
   expect_refused({"bench", "--antialiasing", "--set", "msaa.samples=2"}, "msaa.samples");
 }
 
-// The mean leaves the chip, so several samples do not move several times the bytes; N x N pictures take as many frames.
+// The mean leaves the chip, so several samples do not multiply the bytes; N x N pictures take as many frames.
 TEST_F(AntialiasingCommand, HardwareOfEachKindIsMeasured) {
   const Json study = result({"bench", "--antialiasing", "--size", "96x72", "--repeat", "1"})["antialiasing"];
   std::map<std::string, Json> kinds;
   for (const Json& row : study["rows"]) kinds[row["kind"]] = row;
   const auto one = [&](const char* key) { return kinds["1 sample"][key].get<double>(); };
   for (const char* kind : {"msaa 2", "msaa 4", "msaa 8"}) {
-    EXPECT_LT(kinds[kind]["bytes"].get<double>(), 2 * one("bytes")) << kind;  // a hair touches more blocks
+    EXPECT_LT(kinds[kind]["bytes"].get<double>(), 2 * one("bytes")) << kind;  // slightly more blocks are touched
     EXPECT_LT(kinds[kind]["rms"].get<double>(), one("rms")) << kind;
   }
   for (const auto& [kind, frames] : {std::pair("supersample 2x2", 4), std::pair("supersample 4x4", 16)}) {

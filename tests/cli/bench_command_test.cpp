@@ -1,4 +1,4 @@
-// `bench`: what it measures, says, writes and refuses. Times are never compared.
+// `bench`: its measurements, output, files and refusals. Times are never compared.
 #include <algorithm>
 #include <map>
 #include <set>
@@ -49,7 +49,7 @@ TEST_F(BenchCommandLine, ErrorsAreThoseOfCompareForEachConfiguration) {
   for (const Json& row : bench["rows"]) {
     const Json& expected = compared.at(row["label"]);
     const bool is_reference = row["engine"] == "golden";
-    const auto of = [&](const char* what, const char* moment) {  // the reference is compared with nothing
+    const auto of = [&](const char* what, const char* moment) {  // the reference has no comparison
       return is_reference ? Json(nullptr) : expected[what][moment];
     };
     EXPECT_EQ(row["depth_lsb_max"], of("depth_lsb", "max")) << row;

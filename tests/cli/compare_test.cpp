@@ -1,4 +1,4 @@
-// `halfplane compare`, `scenes` and `config`: their results and what they print.
+// `halfplane compare`, `scenes` and `config`: their results and output.
 #include <set>
 
 #include "program.hpp"
@@ -154,7 +154,7 @@ TEST_F(CompareCommand, SceneWithoutTrianglesComparesNothingWhichIsNoPass) {
   EXPECT_EQ(json["compared_pixels"], 0);
   EXPECT_EQ(json["coverage"]["missing"], 0);
   ASSERT_EQ(json["broken_bounds"].size(), 1u);
-  // What was not measured is no zero.
+  // A figure that was not measured is not zero.
   EXPECT_EQ(json["depth_lsb"]["count"], 0);
   for (const char* key : {"depth_lsb", "color_lsb"})
     for (const char* moment : {"max", "mean", "rms", "p999"}) EXPECT_TRUE(json[key][moment].is_null()) << key << moment;

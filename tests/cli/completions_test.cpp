@@ -1,4 +1,4 @@
-// What the shells and man are told of the options: everything that --help has, and in bash by trying it.
+// The options that the shells' completions and man pages list: all options of --help, and for bash by trying it.
 #include <algorithm>
 #include <cstdio>
 #include <map>
@@ -40,7 +40,7 @@ class CommandLine : public Cli {
     return names;
   }
 
-  /// What a command of the shell prints, run in the folder.
+  /// The output of a shell command, run in the folder.
   [[nodiscard]] std::string shell(const std::string& command, int expected_status = 0) const {
     std::FILE* pipe = popen(("cd '" + folder_.string() + "' && { " + command + "; } 2>&1").c_str(), "r");
     if (pipe == nullptr) return "";
@@ -51,7 +51,7 @@ class CommandLine : public Cli {
     return text;
   }
 
-  /// What bash offers for the last of `words`, which are cut as bash cuts them.
+  /// Bash's completions of the last of `words`, which are split as bash splits them.
   [[nodiscard]] Words bash_offers(const Words& words) const {
     write("completions.bash", run({"completions", "bash"}).out);
     std::string script = "set -u\nsource ./completions.bash\nCOMP_WORDS=(";
@@ -149,12 +149,12 @@ TEST_F(CommandLine, ZshAndFishAreToldOfEveryOptionOfEveryCommand) {
   }
   write("_halfplane", zsh);
   write("halfplane.fish", fish);
-  // Where the shells are, they read it.
+  // Installed shells parse the file.
   (void)shell("if command -v zsh >/dev/null; then zsh -n _halfplane; fi");
   (void)shell("if command -v fish >/dev/null; then fish --no-execute halfplane.fish; fi");
 }
 
-/// What is wrong with a page, as far as a reader of man's requests can tell; empty for nothing.
+/// The first fault of a page, as far as a reader of man's requests can tell; empty for none.
 std::string page_fault(const std::string& page) {
   static const std::set<std::string> requests{".TH", ".SH", ".SS", ".TP", ".B", ".br", ".nf", ".fi"};
   bool is_verbatim = false;
@@ -181,7 +181,7 @@ std::string page_fault(const std::string& page) {
 TEST_F(CommandLine, EveryCommandHasAPageWithEveryOption) {
   ASSERT_EQ(run({"man", "-o", "man1"}).status, 0);
   Words all = commands();
-  all.emplace_back();  // the program's own
+  all.emplace_back();  // the program's own options
   for (const std::string& command : all) {
     const std::string name = command.empty() ? "halfplane" : "halfplane-" + command;
     const Bytes bytes = read("man1/" + name + ".1");
@@ -199,7 +199,7 @@ TEST_F(CommandLine, EveryCommandHasAPageWithEveryOption) {
       EXPECT_NE(page.find("\\fB" + option + "\\fR"), std::string::npos) << name << " " << option;
     }
   }
-  // Where groff is, it warns of nothing.
+  // An installed groff gives no warning.
   EXPECT_EQ(shell("if command -v groff >/dev/null; then groff -man -Tutf8 -ww -z man1/*.1; fi"), "");
 }
 

@@ -63,7 +63,7 @@ TEST_F(CullObjectsOption, ObjectsOutsideTheViewAreCountedAndThePictureStays) {
         std::max(objects["culled_sphere"].get<std::size_t>(), objects["culled_box"].get<std::size_t>());
     EXPECT_GT(culled, 10u) << tests;
     EXPECT_EQ(objects["primitives_skipped"], 12 * culled)
-        << tests;  // a box's test finds all that the sphere's does here
+        << tests;  // here a box's test culls as many objects as the sphere's
   }
 }
 

@@ -25,7 +25,7 @@ class RtlCommands : public Cli {
   }
 };
 
-/// Every tag is closed in order, and attributes have quotes: what a reader of JUnit needs.
+/// Every tag is closed in order, and attributes have quotes, as a JUnit reader requires.
 bool is_well_formed(const std::string& xml) {
   std::vector<std::string> open;
   for (std::size_t at = xml.find('<'); at != std::string::npos; at = xml.find('<', at + 1)) {
@@ -98,7 +98,7 @@ TEST_F(RtlCommands, AMutantIsNamedSavedReducedAndRepeated) {
   EXPECT_TRUE(exists(capture));
   EXPECT_TRUE(exists(trace));
   EXPECT_LE(json["reduced"]["triangles"], 3u);
-  // JUnit has what a person acts on: the reduced scene, where it is, and how to see it again.
+  // The JUnit file has the facts to act on: the reduced scene, its place, and the command that repeats the failure.
   for (const std::string& part :
        {capture, trace, json["reduced"]["repro"].get<std::string>(),
         "cycle " + std::to_string(json["reduced"]["cycle"].get<int>()), std::string("first seen cull: ")})
@@ -115,7 +115,7 @@ TEST_F(RtlCommands, AMutantIsNamedSavedReducedAndRepeated) {
   EXPECT_EQ(run({"cosim", capture}).status, 0) << "without the mutant there is nothing wrong with it";
 }
 
-/// Where a waveform begins and ends, from its header: type, length, first time, last time.
+/// Begin and end of a waveform, from its header: type, length, first time, last time.
 std::pair<std::uint64_t, std::uint64_t> fst_times(const Bytes& file) {
   const auto number = [&](std::size_t at) {
     std::uint64_t value = 0;
@@ -151,12 +151,12 @@ TEST_F(RtlCommands, TheWindowOfAWaveformIsChecked) {
     expect_refused({"cosim", "triangle", "--trace", "w.fst", "--trace-cycles", window}, "--trace-cycles: ");
   expect_refused({"cosim", "triangle", "--trace-cycles", "0:9"}, "add --trace FILE.fst");
   expect_refused({"cosim", "triangle", "--trace", "-"}, "a waveform cannot go to stdout");
-  // For root, too, nothing can be written there.
+  // Even root cannot write a file there.
   expect_refused({"cosim", "triangle", "--trace", "/proc/self/w.fst"}, "cannot write '/proc/self/w.fst'");
 }
 
-// No file may grow beyond so many bytes: every write of the waveform's writer that a full disk can refuse is refused at one of
-// these.
+// A limit on the file size: every write of the waveform writer that a full disk can refuse is refused at one of the
+// limits.
 TEST_F(RtlCommands, AWaveformThatTheDiskHasNoRoomForIsOneLineAndNoFile) {
   Surroundings full;
   for (const std::size_t bytes : {1'000, 5'000, 20'000, 100'000}) {

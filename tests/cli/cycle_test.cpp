@@ -1,4 +1,4 @@
-// `render --engine cycle`, `bench`, `config --stages`: what they say, write and refuse.
+// `render --engine cycle`, `bench`, `config --stages`: their output, files and refusals.
 #include <algorithm>
 #include <cstring>
 #include <map>
@@ -76,7 +76,7 @@ TEST_F(CycleCommand, ExplainRunsBothOrdersAndRecommendsOne) {
   EXPECT_EQ(json["orders"]["recommended"], bins["cycles"] < json["cycles"] ? "bins" : "program");
 }
 
-// Each relief is a what-if that anybody can repeat.
+// Each relief is a what-if that a user can repeat.
 TEST_F(CycleCommand, WhatIsSaidToRelieveItDoesSoWhenTried) {
   const Json explained = result({"render", "city:12", "--size", "160x120", "--engine", "cycle", "--explain"});
   ASSERT_FALSE(explained["reliefs"].empty());
@@ -202,7 +202,7 @@ TEST_F(CycleCommand, TheHeatMapSharesOutTheCyclesOfTheVisits) {
     EXPECT_GE(value, 0.0F);
     sum += value;
   }
-  // All but what the clear, the flush, and stamps that end a primitive without a visit take.
+  // All cycles except those of the clear, the flush, and stamps that end a primitive without a visit.
   EXPECT_GT(sum, 0.5 * json["raster_cycles"].get<double>());
   EXPECT_LT(sum, 1.001 * json["cycles"].get<double>());
   EXPECT_EQ(run({"render", "teapot:5", "--size", "64x48", "--engine", "cycle", "--heat", "heat.png"}).status, 0);

@@ -1,4 +1,4 @@
-// `depth`: what it says, writes and refuses.
+// `depth`: its output, files and refusals.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -42,7 +42,7 @@ TEST_F(DepthCommandLine, JsonHasRowsSeriesAndNoPictures) {
   EXPECT_FALSE(scene["trials"].empty());
 }
 
-// What the answers say is repeated by the options that they name.
+// The options that a suggestion names reproduce its result.
 TEST_F(DepthCommandLine, EachTrialComesOutTheSameWhenItsOptionsAreTyped) {
   const Arguments common{"depth", "--scene", "coplanar", "--size", "80x60", "--far", "100", "--mapping", "std"};
   const auto with = [&](const std::string& more, const char* more_format) {
@@ -121,7 +121,7 @@ TEST_F(DepthCommandLine, AskedForALengthItSaysWhereAndWhatItTakes) {
   EXPECT_NEAR(value["z_exceeds"], 80.98, 0.01);
   EXPECT_EQ(value["fewest_bits"], 22);
   EXPECT_GT(value["longest_bin"], 3.7);
-  // A near plane keeps the length beyond 100, and one a little nearer does not.
+  // A near plane keeps the length beyond 100, and a slightly nearer plane does not.
   double best = 0;
   const Json far_half = result({"depth", "--near", "1", "--far", "1000", "--mapping", "std", "--bits", "16", "--error",
                                 "0.1", "--range", "100,500"});
@@ -265,7 +265,7 @@ TEST_F(DepthCommandLine, BadQuestionsGetOneLine) {
   expect_refused({"render", "teapot", "--set", "depth.format=f16", "--engine", "cycle"}, "this hardware");
 }
 
-// A plane of 16 bits has 253 codes where the format has 5,050.
+// A 16-bit plane has 253 codes where the format has 5,050.
 TEST_F(DepthCommandLine, AFormatIsMadeFromAPlaneThatHasItsCodes) {
   const Arguments render{"render", "coplanar", "--set", "depth.mapping=w", "--set", "depth.format=u16"};
   const auto with = [&render](const char* bits) {

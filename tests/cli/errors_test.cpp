@@ -1,4 +1,5 @@
-// Bad input of every kind: one line that begins "halfplane: ", status 2 (3 for what the machine lacks), no file made.
+// Bad input of every kind: one line that begins "halfplane: ", status 2 (3 for a missing capability of the machine), no
+// file made.
 #include "program.hpp"
 
 namespace halfplane::cli {
@@ -104,7 +105,7 @@ TEST_F(BadInput, CameraIsCheckedPartByPart) {
                              "=",
                              ";;x"})
     expect_refused({"render", "teapot", "--camera", camera}, "--camera");
-  expect_refused({"render", "triangle", "--camera", "fov=40"}, "--camera");  // made in clip space
+  expect_refused({"render", "triangle", "--camera", "fov=40"}, "--camera");  // a scene made in clip space
 }
 
 TEST_F(BadInput, LightsAndTransformsThatAreNoneAreRefused) {
@@ -207,7 +208,7 @@ TEST_F(BadInput, CaptureCutShortAnywhereIsDrawnOrRefusedButNeverCrashes) {
     EXPECT_EQ(outcome.err.rfind("halfplane: cut.hpt:", 0), 0u) << outcome.err;
     EXPECT_EQ(lines_of(outcome.err).size(), 1u) << outcome.err;
   }
-  EXPECT_GT(refused, 40);  // every cut inside a vertex, at the least
+  EXPECT_GT(refused, 40);  // every cut inside a vertex, at least
   write("cut.hpt", whole.substr(0, whole.find("\nv 0 9 .5") + 8));
   expect_refused({"render", "cut.hpt"}, "cut.hpt:6: ");
 }
@@ -258,7 +259,7 @@ TEST_F(BadInput, ResultThatNobodyTakesIsAnError) {
                                        {"config", "--sv"},
                                        {"--help"}})
       expect_refused(arguments, "stdout", 2, {out, 0, 0, ""});
-    EXPECT_EQ(run({"render", "triangle", "--quiet"}, {out, 0, 0, ""}).status, 0);  // nothing to say, nothing lost
+    EXPECT_EQ(run({"render", "triangle", "--quiet"}, {out, 0, 0, ""}).status, 0);  // no output, so nothing is lost
   }
 }
 

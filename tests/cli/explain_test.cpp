@@ -1,4 +1,4 @@
-// `halfplane explain`: a pixel's history, held against what the other commands say of it.
+// `halfplane explain`: a pixel's history, checked against the other commands' results for it.
 #include <algorithm>
 #include <cstring>
 
@@ -154,7 +154,7 @@ TEST_F(ExplainCommand, SeveralSamplesAreToldOneByOne) {
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
 }
 
-/// By a judge that knows nothing of the program but its files (tests/cli/explain_judge.py).
+/// By a judge that knows only the program's files (tests/cli/explain_judge.py).
 TEST_F(ExplainCommand, AJudgeFromOutsideFindsNoFigureWrong) {
   if (paste("command -v python3 >python.txt").status != 0) GTEST_SKIP() << "no Python here";
   const auto judged = [&](const std::string& options, const std::string& seed) {
@@ -200,13 +200,13 @@ TEST_F(ExplainCommand, ThePictureIsAnEnlargedNeighbourhood) {
   const TexelImage picture = read_image_file(folder_ / "p.png");
   EXPECT_GT(count(picture, {0xe8, 0xea, 0xed, 255}), 200) << "samples, frame and text";
   EXPECT_GT(count(picture, {0x4b, 0xa3, 0xe3, 255}), 1000) << "edges and coverage of the one triangle";
-  // A pixel is 96 along a side of the picture, and shows what is stored.
+  // A pixel is 96 along a side of the picture, and shows the stored colour.
   ASSERT_EQ(run({"render", "triangle", "--size", "16x16", "-o", "r.png"}).status, 0);
   const TexelImage drawn = read_image_file(folder_ / "r.png");
   EXPECT_GT(count(picture, drawn.texel[8 * 16 + 8]), 1000);
 }
 
-/// The page in a small stand-in for a browser (tests/cli/explain_page.js), where there is Node.js.
+/// The page in a small stand-in for a browser (tests/cli/explain_page.js), if Node.js is installed.
 TEST_F(ExplainCommand, ThePageTellsThePixelThatIsHoveredAndStepsThroughPrimitives) {
   if (paste("command -v node >node.txt").status != 0) GTEST_SKIP() << "no Node.js here";
   ASSERT_EQ(run({"explain", "teapot:2", "20", "16", "--size", "40x32", "--margin", "2", "-o", "p.html"}).status, 0);
@@ -231,7 +231,7 @@ TEST_F(ExplainCommand, ThePageTellsThePixelThatIsHoveredAndStepsThroughPrimitive
   EXPECT_GT(page["painted"]["arc"], 100);
 }
 
-/// The same in a real one.
+/// The same page in a real browser.
 TEST_F(ExplainCommand, ThePageOpensInHeadlessChromium) {
   if (paste("for b in chromium chromium-browser google-chrome; do command -v $b && break; done >browser.txt").status !=
           0 ||
@@ -243,7 +243,7 @@ TEST_F(ExplainCommand, ThePageOpensInHeadlessChromium) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   for (const char* part : {"Pixel 20 16", "model colour", "Why is this pixel what it is?", "next"})
     EXPECT_NE(outcome.out.find(part), std::string::npos) << part;
-  // A hand on the mouse: over the upper left pixel, then a step back.
+  // A simulated mouse: over the upper left pixel, then a step back.
   const Bytes page = read("p.html");
   std::string text(page.begin(), page.end());
   text.insert(

@@ -1,4 +1,4 @@
-// The files of `halfplane render`: formats, hashes computed again from what they hold, and writes that fail.
+// The files of `halfplane render`: formats, hashes recomputed from the contents, and writes that fail.
 #include <algorithm>
 #include <cstring>
 
@@ -22,7 +22,7 @@ class RenderFiles : public Cli {
   }
 };
 
-/// FNV-1a 64, written here again from its definition: the program's own must not judge itself.
+/// FNV-1a 64, implemented again from its definition: the program's own must not judge itself.
 std::string fnv1a(const Bytes& bytes) {
   std::uint64_t hash = 14695981039346656037u;
   for (const std::uint8_t byte : bytes) hash = (hash ^ byte) * 1099511628211u;
@@ -31,7 +31,7 @@ std::string fnv1a(const Bytes& bytes) {
   return text;
 }
 
-/// An array file taken apart: format 1.0, four bytes an element, C order.
+/// A parsed array file: format 1.0, four bytes an element, C order.
 struct Array {
   std::string type;
   int width = 0, height = 0;

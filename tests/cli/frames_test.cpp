@@ -10,7 +10,7 @@ namespace {
 
 class Frames : public Cli {
  protected:
-  /// A triangle that goes 4 to the right within 2 s, before a camera that stands still.
+  /// A triangle that moves 4 to the right within 2 s, in front of a fixed camera.
   void write_moving() const {
     test::GltfBuilder b = test::one_triangle();
     const std::size_t input = b.accessor(test::GltfBuilder::f32, 1, {0, 2});
@@ -45,12 +45,12 @@ TEST_F(Frames, EachIsThePictureOfItsOwnTime) {
     hashes.insert(frame["color_hash"].get<std::string>());
   }
   EXPECT_EQ(hashes.size(), 4u);
-  // Without --time all of the animation; at rest the file as it is, which is how it stands half way.
+  // Without --time all of the animation; a still picture shows the file at rest, equal to half way.
   EXPECT_EQ(result({"render", "move.gltf", "--size", "48x48", "--frames", "4"})["frames"][3]["time"], 1.5);
   EXPECT_EQ(result({"render", "move.gltf", "--size", "48x48"})["color_hash"], all["frames"][2]["color_hash"]);
 }
 
-// A camera that the file does not have is framed around all of the motion, not around each frame.
+// A default camera frames all of the motion, not each frame.
 TEST_F(Frames, WhatMovesIsSeenToMove) {
   test::GltfBuilder b = test::one_triangle();
   const std::size_t input = b.accessor(test::GltfBuilder::f32, 1, {0, 2});
@@ -123,8 +123,8 @@ TEST_F(Frames, TheOtherCommandsSeeTheSceneAtATime) {
   EXPECT_EQ(result({"compare", "move.gltf", "--size", "32x32", "--time", "1.5"})["coverage"]["oracle_mismatches"], 0);
 }
 
-/// Three frames, whose areas are counted by hand: a square of 20 x 10 pixels; beside it, on the same picture, one of 5 x 4; a
-/// new picture with one of 8 x 8.
+/// Three frames with areas counted by hand: a square of 20 x 10 pixels; beside it, on the same picture, a square of 5 x
+/// 4; a new picture with a square of 8 x 8.
 class CaptureFrames : public Frames {
  protected:
   static constexpr const char* kHead = "halfplane 1\ntarget 48 40\nspace window\n";
@@ -133,7 +133,7 @@ class CaptureFrames : public Frames {
       "v 24 14 0.5 1 0 255 0 255\nts 0 1 2 3\n";
   static constexpr const char* kSecond =
       "v 30 4 0.25\nv 35 4 0.25\nv 30 8 0.25\nv 35 8 0.25\nstate depth_test lequal\nts 4 5 6 7\nl 4 3\n";
-  /// The first texture and the first vertices are none of its own.
+  /// The first texture and the first vertices belong to other frames.
   static constexpr const char* kThird =
       "clear color 0 0 0 255\nclear depth 1\nv 20 20 0.5\na normal 0 0 1\nv 28 20 0.5\na normal 1 0 1\nv 20 28 0.5\n"
       "v 28 28 0.5\na normal 0 1 1\ntexture A inline l8 1 1\ntexels 40\ntexture B inline l8 2 1\ntexels 80ff\n"
@@ -188,7 +188,7 @@ TEST_F(CaptureFrames, EachIsThePictureAtItsEnd) {
 
 TEST_F(CaptureFrames, TheStencilOfTheFrameBeforeIsKept) {
   const std::string head = kHead, first = kFirst;
-  // The second frame clears colour and depth, and draws where the first one has left 7.
+  // The second frame clears colour and depth, and draws where the first frame left stencil 7.
   const std::string mark = "clear stencil 0\nstate stencil always 7 255 255 keep keep replace\n" + first,
                     use =
                         "clear color 9 9 9 255 depth 1\nstate stencil equal 7 255 255 keep keep keep\n"

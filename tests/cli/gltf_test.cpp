@@ -1,4 +1,4 @@
-// glTF files as SCENE: the picture, the cameras of the file, and what a broken one is told.
+// glTF files as SCENE: the picture, the cameras of the file, and the messages for broken files.
 #include "program.hpp"
 #include "tests/gltf_builder.hpp"
 
@@ -7,7 +7,7 @@ namespace {
 
 class GltfScene : public Cli {
  protected:
-  // A triangle of three colours, seen by two cameras of different height.
+  // A triangle of three colours, with two cameras of different height.
   static test::GltfBuilder two_cameras() {
     test::GltfBuilder builder = test::one_triangle();
     builder.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] =

@@ -1,4 +1,4 @@
-// What the program says about itself, and that its worked examples work.
+// The program's help texts, and that their worked examples work.
 #include <algorithm>
 
 #include "program.hpp"

@@ -1,4 +1,5 @@
-// What docs/interface.md says of every command: the version, NO_COLOR, hints for what is misspelt, configuration files.
+// The promises of docs/interface.md for every command: the version, NO_COLOR, hints for misspelt names, configuration
+// files.
 #include <fcntl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -15,7 +16,7 @@ namespace {
 
 class Interface : public Cli {
  protected:
-  /// What the program prints on a terminal.
+  /// The program's output on a terminal.
   [[nodiscard]] std::string on_terminal(const Arguments& arguments, const char* no_color) const {
     const int terminal = posix_openpt(O_RDWR | O_NOCTTY);
     if (terminal < 0 || grantpt(terminal) != 0 || unlockpt(terminal) != 0) return "no terminal";

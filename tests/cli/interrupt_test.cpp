@@ -1,4 +1,4 @@
-// Long work that a signal ends: what is written by then, and what the program says of it.
+// Long work that a signal ends: the files written by then, and the program's message.
 #include <algorithm>
 #include <csignal>
 
@@ -14,8 +14,8 @@ class CliInterrupt : public Cli {
     return {bytes.begin(), bytes.end()};
   }
 
-  /// Sends `signal` to work that would take minutes at least. Expects the files, each of them whole, and the result in
-  /// result.json, which is returned.
+  /// Sends `signal` to work that would take minutes at least. Expects the files, each of them complete, and the result
+  /// in result.json, which is returned.
   [[nodiscard]] Json partial_result(Arguments arguments, std::vector<std::string> files, int signal = SIGINT) const {
     arguments.push_back("--json=result.json");
     files.push_back("result.json");
@@ -30,7 +30,7 @@ class CliInterrupt : public Cli {
   }
 };
 
-/// Those that run the RTL.
+/// Interrupts of commands that run the RTL.
 class RtlInterrupt : public CliInterrupt {
  protected:
   void SetUp() override { skip_without_rtl(); }
@@ -157,7 +157,7 @@ TEST_F(RtlInterrupt, CosimReportsWhatWasEqualSoFar) {
 }
 
 TEST_F(RtlInterrupt, ReduceWritesTheBestSoFarOrSaysThatThereIsNothing) {
-  // A million triangles: its first run alone takes seconds, and each step with many of them as long.
+  // A million triangles: the first run alone takes seconds, and each step with many of them as long.
   const Outcome outcome = interrupt(
       {"reduce", "dust", "--size", "640x480", "--mutant", "5", "-o", "small.hpt", "--json=small.json"}, SIGINT);
   EXPECT_EQ(outcome.status, 130) << outcome.err;

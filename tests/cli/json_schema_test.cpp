@@ -15,7 +15,7 @@ class JsonSchema : public Cli {
     return HALFPLANE_SOURCE_DIR "/docs/json/halfplane." + command + ".schema.json";
   }
 
-  /// What the checker finds wrong with files in the folder, a line each; `words` go before the schema.
+  /// The checker's faults of files in the folder, a line each; `words` go before the schema.
   [[nodiscard]] std::vector<std::string> faults(const std::string& words, const std::string& command,
                                                 const std::string& files) const {
     const std::string line = "cd '" + folder_.string() +
@@ -144,7 +144,7 @@ TEST_F(JsonSchema, VectorsAndTheirJudgementAreDescribed) {
   expect_results("check", {"--stage cull bad.jsonl"}, 1);
 }
 
-/// Those that run the RTL.
+/// Schemas of the commands that run the RTL.
 class RtlJsonSchema : public JsonSchema {
  protected:
   void SetUp() override { skip_without_rtl(); }
@@ -185,7 +185,7 @@ TEST_F(JsonSchema, EveryCommandWithAResultHasASchema) {
   EXPECT_GE(count, 11);
 }
 
-/// Whether every object of the schema says what each of its keys is.
+/// Whether every object of the schema describes each of its keys.
 void expect_described(const Json& schema, const std::string& where) {
   if (schema.contains("properties"))
     for (const auto& [key, value] : schema["properties"].items()) {

@@ -1,4 +1,4 @@
-// What the pages say that a command prints, it prints.
+// The commands in the pages print the output that the pages show.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>

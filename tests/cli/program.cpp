@@ -33,7 +33,7 @@ void limit(int resource, std::size_t bytes) {
   if (setrlimit(static_cast<__rlimit_resource_t>(resource), &both) != 0) _exit(126);
 }
 
-// After this, descriptor `target` is what `path` names.
+// After this, descriptor `target` is the file `path`.
 void redirect(int target, const char* path, int flags) {
   const int file = open(path, flags, 0600);
   if (file < 0 || dup2(file, target) < 0) _exit(126);
@@ -132,7 +132,7 @@ Json Cli::result(Arguments arguments) const {
   arguments.insert(arguments.end(), {"--quiet", "--json"});
   const Outcome outcome = run(arguments);
   EXPECT_EQ(outcome.status, 0) << testing::PrintToString(arguments);
-  // Few bits of depth may not tell a scene's places apart, and then a line says so.
+  // Few bits of depth may not separate a scene's places, and then a line warns of it.
   EXPECT_EQ(outcome.err.starts_with("halfplane: warning: distances ") ? "" : outcome.err, "");
   const Json json = Json::parse(outcome.out, nullptr, false);
   EXPECT_FALSE(json.is_discarded()) << "not JSON alone: " << outcome.out;

@@ -20,7 +20,7 @@ using Arguments = std::vector<std::string>;
 /// Where the program's stdout leads.
 enum class Stdout { captured, closed, full_disk, pipe_without_reader };
 
-/// What the machine grants the program; 0: no limit.
+/// Limits of the machine; 0: no limit.
 struct Surroundings {
   Stdout out = Stdout::captured;
   std::size_t file_bytes = 0;    ///< no file may grow beyond
@@ -29,7 +29,7 @@ struct Surroundings {
   double progress_s = 0;         ///< seconds between lines of progress; 0: as usual
 };
 
-/// What one run left behind.
+/// Results of one run.
 struct Outcome {
   int status = -1;  ///< exit status, or 1000 + the signal that killed it
   std::string out, err;

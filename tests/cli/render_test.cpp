@@ -1,4 +1,4 @@
-// `halfplane render`: what stdout, stderr and the JSON result hold, and which options change what.
+// `halfplane render`: the contents of stdout, stderr and the JSON result, and the effect of each option.
 #include <algorithm>
 #include <set>
 

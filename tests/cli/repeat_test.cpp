@@ -4,7 +4,7 @@
 namespace halfplane::cli {
 namespace {
 
-/// Without what a clock says: keys that end in _s.
+/// The result without its times: keys that end in _s.
 Json without_times(const Json& json) {
   if (!json.is_structured()) return json;
   Json rest = json.is_array() ? Json::array() : Json::object();
@@ -24,7 +24,7 @@ class Repeat : public Cli {
     return {bytes.begin(), bytes.end()};
   }
 
-  /// Runs, types what the result says, and expects the same result.
+  /// Runs, types the command in the result, and expects the same result.
   void expect_repeated(const std::string& words, int status = 0) const {
     SCOPED_TRACE(words);
     Arguments arguments = split_words(words);

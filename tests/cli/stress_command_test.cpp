@@ -1,4 +1,4 @@
-// `halfplane stress`: what it prints, writes and refuses; and the whole quick set.
+// `halfplane stress`: its output, files and refusals; and the whole quick set.
 #include <algorithm>
 
 #include "program.hpp"
@@ -26,7 +26,7 @@ TEST_F(CliStress, ResultHasEveryKeyOfTheContractAndTheWorstAsCapturesThatReadBac
     EXPECT_LE(depth["value"], depth["bound"]);
     const std::string capture = depth["capture"];
     ASSERT_TRUE(exists(capture));
-    // What the search reports is what another command sees.
+    // Another command confirms the search's findings.
     const Json compared = result({"compare", capture, "--config", "tiny"});
     EXPECT_EQ(compared["coverage"]["oracle_mismatches"], 0);
     EXPECT_NEAR(depth["measured"].get<double>(), depth["value"].get<double>(), 0.01 * depth["value"].get<double>());

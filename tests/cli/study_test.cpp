@@ -1,4 +1,4 @@
-// `--traversal`, `--fill-rule` and `--clipping`: what they change in results, and who refuses them.
+// `--traversal`, `--fill-rule` and `--clipping`: their effect on results, and the commands that refuse them.
 #include <algorithm>
 
 #include "halfplane_paths.hpp"

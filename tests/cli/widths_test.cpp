@@ -1,4 +1,4 @@
-// `widths`: the table's JSON, the captures of what overflows, the smallest configuration, and what is refused.
+// `widths`: the table's JSON, the captures of overflows, the smallest configuration, and the refusals.
 #include <algorithm>
 #include <stdexcept>
 
@@ -31,7 +31,7 @@ TEST_F(WidthsCommandLine, JsonHasEveryWidthWithRangeAndWhatWasSeen) {
   EXPECT_EQ(delta["spare_bits"], 0);
   EXPECT_EQ(delta["overflows_first"]["input"]["vertices"].size(),
             delta["overflows_first"]["input"]["kind"] == "line" ? 2U : 3U);
-  // What a double cannot hold is text: L (2^24 - 1) 2^28, L = 2^22 - 1.
+  // A value too large for a double is text: L (2^24 - 1) 2^28, L = 2^22 - 1.
   EXPECT_EQ(named(json["widths"], "depth product")["hi"], "18889460301979315077120");
   EXPECT_EQ(named(json["widths"], "local depth")["modular"], true);
   EXPECT_TRUE(named(json["widths"], "local depth")["overflows_first"].is_null());

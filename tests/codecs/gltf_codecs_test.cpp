@@ -1,4 +1,5 @@
-// Compressed glTF files, which the libraries themselves write: what comes out is what went in, and damage is told in a line.
+// Compressed glTF files, written by the libraries themselves: the decoded data equal the original, and damage is one
+// line of message.
 #include <draco/compression/encode.h>
 #include <draco/mesh/triangle_soup_mesh_builder.h>
 #include <gtest/gtest.h>
@@ -61,7 +62,7 @@ Mesh mesh_of(const std::string& text) {
 
 // --- meshopt -----------------------------------------------------------------------------------------------------------
 
-/// What a library wrote into a buffer of the size that it asked for.
+/// A library's output, in a buffer of the size that it asked for.
 std::string packed(std::size_t bound, const std::function<std::size_t(unsigned char*, std::size_t)>& encode) {
   std::string bytes(bound, '\0');
   bytes.resize(encode(reinterpret_cast<unsigned char*>(bytes.data()), bytes.size()));
@@ -276,7 +277,7 @@ TEST(GltfCodecs, DamageIsToldInALine) {
                                       }),
                                "TRIANGLES", "NONE", 24, 2, GltfBuilder::u16, "SCALAR", false);
   expect_damage_is_told(b.compressed(), 2);
-  // What the library does not look at.
+  // Faults that the library does not check.
   const auto refusal = [&](const char* key, const Json& value) -> std::string {
     Json file = Json::parse(b.compressed());
     file["bufferViews"][0]["extensions"]["EXT_meshopt_compression"][key] = value;

@@ -55,7 +55,7 @@ bool has_lines(const Scene& scene) {
   });
 }
 
-// What `./dev test --quick` has of them.
+// The part of them in `./dev test --quick`.
 TEST(CosimOfEmbedded, ThousandRandomPrimitivesAreEqualInEveryPacketAndCycle) {
   LockstepOptions options;
   options.seed = 29;
@@ -223,7 +223,7 @@ TEST(Cosim, ClearsAroundTheFirstTriangleCountAsInTheRtl) {
     }
 }
 
-// What was under way goes nowhere, and what comes behind the reset takes the bits and the cycles of a fresh start.
+// Work in flight at a reset is lost, and the packets after it have the bits and cycles of a fresh start.
 TEST(Cosim, AResetInTheMiddleOfAnythingLeavesNothingBehind) {
   for (const DutFactory& factory : verilated_duts())
     for (const double stalls : {0.0, 0.4}) {
@@ -288,7 +288,7 @@ std::map<std::string, std::string> cycle_baseline() {
   return lines;
 }
 
-// Faster fails as well: whoever changes cycles says so, with the line that this prints.
+// Faster fails as well: a change of cycles must be committed, with the line that this prints.
 TEST(Cosim, EveryBuiltInSceneIsEqualInEveryPacketAndTakesTheCyclesOfTheBaseline) {
   const auto baseline = cycle_baseline();
   for (const DutFactory& factory : verilated_duts()) {

@@ -1,4 +1,4 @@
-// The RTL's part of an explanation: every packet that carries a pixel, bit by bit, in the cycle that the model says.
+// The RTL's part of an explanation: every packet that carries a pixel, bit by bit, in the model's cycle.
 #include <gtest/gtest.h>
 
 #include <iostream>
@@ -17,7 +17,7 @@ TEST(ExplainRtl, RandomPixelsAgreeWithTheRtlInEveryPacketAndCycle) {
   std::cout << "seed " << kSeed << '\n';
   for (const DutFactory& factory : verilated_duts()) {
     SCOPED_TRACE(factory.name);
-    if (factory.config.msaa_samples > 1) continue;  // explain keeps no record of such hardware, and says so
+    if (factory.config.msaa_samples > 1) continue;  // explain keeps no record of such hardware
     const auto dut = make_dut(factory);
     Random random(kSeed);
     std::size_t packets = 0, cycles = 0;

@@ -48,7 +48,7 @@ bool catches(const Run& run, const Mutant& mutant, std::uint64_t primitives = 60
   return run_session(*dut, factory.config, options, scenes, HostOrders::drawn).result.mismatch.has_value();
 }
 
-/// Where a fault can show, the likely runs first.
+/// Runs in which a fault can show, the likely ones first.
 std::vector<Run> runs_for(const Mutant& mutant, std::uint64_t seed) {
   const auto is_of = [&mutant](std::initializer_list<const char*> kinds) {
     return std::any_of(kinds.begin(), kinds.end(), [&](const char* kind) { return mutant.what.starts_with(kind); });

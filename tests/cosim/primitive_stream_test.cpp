@@ -53,7 +53,7 @@ class PrimitiveStream : public testing::Test {
   }
   [[nodiscard]] PrimitivePacket flush() const { return packet(PrimitiveKind::flush); }
 
-  /// A clock, with a memory that answers. What a failed assertion says in it; empty: nothing.
+  /// A clock, with a memory that answers. The message of a failed assertion in it; empty: none.
   std::string step() {
     const std::uint32_t* due = has_answer_ ? nullptr : memory_->due(cycle_);
     if (!has_answer_) dut_->set_answer(due);
@@ -77,7 +77,7 @@ class PrimitiveStream : public testing::Test {
     return failure;
   }
 
-  /// Offers the packet until it is taken. What is said by the clock behind that.
+  /// Offers the packet until it is accepted. The message of the clock after that.
   std::string send(const PrimitivePacket& p) {
     dut_->set_primitive(packed(p, widths_).data());
     std::string failure;
@@ -99,7 +99,7 @@ class PrimitiveStream : public testing::Test {
     return failure;
   }
 
-  /// After a right beginning: what is said of one packet more.
+  /// After a correct beginning: the message for one more packet.
   std::string said_of(const PrimitivePacket& p) {
     reset();
     EXPECT_EQ(send(clear()), "");

@@ -1,4 +1,4 @@
-// Any bytes as a Scene that a caller has filled in: an InputError or a picture, from every public function. What fails
+// Any bytes as a Scene that a caller has filled in: an InputError or a picture, from every public function. A failure
 // prints the settings; the input is kept by libFuzzer.
 #include <cstdio>
 #include <cstdlib>

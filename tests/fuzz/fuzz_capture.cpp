@@ -1,4 +1,4 @@
-// What the capture reader accepts, the writer writes back unchanged; what it refuses, it refuses with a message.
+// The writer writes an accepted capture back unchanged; a refused capture gets a message.
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -35,7 +35,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::string_view message = error.what();
     require(message.starts_with("fuzz.hpt:"), "a message does not begin with the place");
     require(message.find('\n') == std::string_view::npos, "a message is longer than a line");
-    require(message.size() < 900, "a message repeats the input at length");  // one names all states
+    require(message.size() < 900, "a message repeats the input at length");  // one message names all states
     return 0;
   }
   const std::string first = written(scene);

@@ -1,4 +1,4 @@
-// The glTF reader on hostile input, either container. Everything after "%bin" is what every external buffer holds.
+// The glTF reader on hostile input, either container. Everything after "%bin" is the contents of every external buffer.
 // Properties: no crash, no undefined behaviour; a mesh that is returned keeps Mesh's invariants and makes a Scene with
 // the file's cameras; an InputError is one line that begins with the file's name or the camera option.
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The OBJ reader on hostile input. Everything after a line "%mtl" is what the material library says, whatever its name.
+// The OBJ reader on hostile input. Everything after a line "%mtl" is the material library, whatever its name.
 // Properties: no crash, no undefined behaviour; a mesh that is returned keeps Mesh's invariants and makes a Scene; an
 // InputError is one line that begins with the file's name.
 #include <cmath>

@@ -1,5 +1,5 @@
-// Any bytes as a configuration and a capture: functional = scalar = cycle, skip all = skip none, oracle and golden within
-// their bounds. What fails prints the capture and the settings that repeat it.
+// Any bytes as a configuration and a capture: functional = scalar = cycle, skip all = skip none, oracle and golden
+// within their bounds. A failure prints the capture and the settings that repeat it.
 #include <cstdio>
 #include <cstdlib>
 

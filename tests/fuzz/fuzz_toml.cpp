@@ -15,6 +15,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::string_view message(error.what());
     if (!message.starts_with("input.toml") || message.find('\n') != std::string_view::npos) std::abort();
   }
-  halfplane::validate(config);  // what the reader lets through is valid: a throw from here ends the fuzzer
+  halfplane::validate(config);  // an accepted configuration is valid: a throw from here ends the fuzzer
   return 0;
 }

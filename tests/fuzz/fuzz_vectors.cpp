@@ -1,6 +1,7 @@
-// The reader of vectors (`check`) on hostile input, and the judge on whatever it takes. Bytes that begin with "%hex" are a
-// folder: header.json up to the first line "%NAME", then NAME.hex up to the next one. Properties: no crash, no undefined
-// behaviour; an InputError is one line that begins with the file's name; what is judged is judged to its end.
+// The reader of vectors (`check`) on hostile input, and the judge on every accepted input. Bytes that begin with "%hex"
+// are a folder: header.json up to the first line "%NAME", then NAME.hex up to the next one. Properties: no crash, no
+// undefined behaviour; an InputError is one line that begins with the file's name; judging reaches the end of the
+// input.
 #include <cstdio>
 #include <cstdlib>
 #include <map>

@@ -1,5 +1,5 @@
-// Every reader takes or refuses the fuzzers' corpus and damaged copies of it, under sanitizers. The fuzzers say what must hold
-// (tests/fuzz); a broken property or a finding of a sanitizer ends the program.
+// Every reader accepts or refuses the fuzzers' corpus and damaged copies of it, under sanitizers. The required
+// properties are in the fuzzers (tests/fuzz); a broken property or a finding of a sanitizer ends the program.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// One to four times: a byte changed, a part left out, a part twice, or the end cut off.
+/// One to four times: a byte changed, a part removed, a part doubled, or the end truncated.
 Bytes damaged(Bytes bytes, Random& random) {
   for (std::uint64_t left = 1 + random.next() % 4; left > 0 && !bytes.empty(); --left) {
     const auto at = static_cast<std::ptrdiff_t>(random.next() % bytes.size());

@@ -14,7 +14,7 @@ namespace {
 constexpr std::array kBits{8, 13, 14, 16, 18, 20};
 constexpr std::size_t kFaults = 3;
 constexpr int kFaultBits = 14;
-constexpr std::uint32_t kMantissas = 1U << 19;  // those of k = 20; of fewer bits each comes several times
+constexpr std::uint32_t kMantissas = 1U << 19;  // mantissas of k = 20; with fewer bits each occurs several times
 
 /// Value number n of a port that holds 20 bits for each.
 template <class Port>
@@ -93,7 +93,7 @@ TEST_F(ReciprocalUnits, TheDivisionGivesAFloorAfterKClocksAndKeepsIt) {
     dut.ready_i = 0;
     clock();
     dut.valid_i = 0;
-    dut.mantissa_i = ~n & (kMantissas - 1);  // what was taken counts
+    dut.mantissa_i = ~n & (kMantissas - 1);  // only the accepted value counts
     for (int clocks = 1; clocks < kBits.back(); ++clocks) {
       for (std::size_t i = 0; i < kBits.size(); ++i) {
         ASSERT_EQ(dut.restoring_valid_o >> i & 1, clocks >= kBits[i]) << "k = " << kBits[i] << " behind " << clocks;

@@ -100,7 +100,7 @@ class Coordinates {
     dut_.clk_i = 0;
     dut_.eval();
   }
-  /// What comes out in this clock is compared with what went in eight clocks ago.
+  /// Compares the output of this clock with the input of eight clocks ago.
   std::uint64_t clock(const TextureSample& sample, std::size_t frame) {
     dut_.q_i = static_cast<IData>(sample.q);
     const std::uint64_t mask = (std::uint64_t{1} << p_local_bits(format_.coordinate, format_)) - 1;

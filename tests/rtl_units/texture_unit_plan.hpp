@@ -1,5 +1,5 @@
-// What the texture unit has to do with a random program, cycle by cycle: the specification gives the colours and requests, the
-// timing when each of them crosses. A run ends by itself, or is cut by a reset.
+// Expected behaviour of the texture unit for a random program, cycle by cycle: the specification gives the colours and
+// requests, the timing model the cycle of each transfer. A run ends by itself, or by a reset.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 
 namespace halfplane::texture_test {
 
-/// Of the unit that is verilated.
+/// Format of the verilated unit.
 struct UnitFormat {
   int samples, channels;
   TextureSettings settings;
@@ -196,7 +196,7 @@ class Program {
     for (int n = 0; n < line_parts(bits); ++n) token(StateRegister::texture_lines, line_part(lines, bits, n));
   }
 
-  /// Whether they lie over w, and how P is to be read; now and then as no host says it.
+  /// Whether colours lie over w, and how P is to be read; sometimes in combinations that no host sends.
   void new_colors() {
     const OverWFormat& attribute = format_.perspective.color;
     frame_.divides_colors = pick(random_, 0, 2) != 0;

@@ -92,7 +92,7 @@ class Bench {
   [[nodiscard]] std::uint64_t samples() const { return samples_; }
   [[nodiscard]] Cycle cycles() const { return cycle_; }
 
-  /// Programs with resets between. What is wrong first, or nothing.
+  /// Programs with resets between. The first fault, or nothing.
   std::string run(std::uint64_t seed, int programs, int stamps) {
     Random random(seed);
     Cycle over = 0;  // the last request of before was taken and answered
@@ -118,7 +118,7 @@ class Bench {
       if (!is_cut && (use_.samples != plan.use.samples || use_.hits != plan.use.hits || use_.fills != plan.use.fills))
         return at("counts samples, hits or lines wrong");
       samples_ += use_.samples;
-      // What was not asked for before the reset never is.
+      // A request not made before the reset is never made.
       std::erase_if(plan.requests, [this](const PlannedRequest& r) { return r.offered > cycle_; });
       plan.stamps.clear();
     }

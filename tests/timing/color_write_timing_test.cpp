@@ -1,4 +1,4 @@
-// When W takes the next stamp: the times of block_timing.hpp without a memory behind them.
+// The cycles in which W accepts the next stamp: the times of block_timing.hpp without a memory.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -19,7 +19,7 @@ struct NoMemory {
   [[nodiscard]] bool has_one_color(const StampAddress&, SampleMask) const { return false; }
 };
 
-// Of the same stamp as of different ones; with one lane a clock for each of its samples.
+// Equal for the same stamp and for different stamps; with one lane a clock for each of its samples.
 TEST(ColorWriteTiming, AStampIsBlendedAgainInTheNextClock) {
   for (const char* lanes : {"4", "1"}) {
     Config config = preset("embedded");
@@ -43,7 +43,7 @@ TEST(ColorWriteTiming, AStampIsBlendedAgainInTheNextClock) {
   }
 }
 
-// X likewise: what a stamp is tested against is what the one before has made of it, with and without a stencil above the depth.
+// X likewise: a stamp is tested against the result of the previous stamp, with and without a stencil above the depth.
 TEST(ColorWriteTiming, AStampIsTestedAgainInTheNextClock) {
   for (const char* stencil : {"0", "8"}) {
     Config config = preset("embedded");

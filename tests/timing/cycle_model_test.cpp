@@ -77,7 +77,7 @@ TEST(CycleModel, WithoutHizItCountsEveryCoveredSample) {
   EXPECT_EQ(render(scene, config, {}, {}, wanted).rendering.count, render_functional(scene, config, wanted).count);
 }
 
-// Without anybody who looks on, whole bursts are one step.
+// Without an observer, whole bursts are one step.
 TEST(CycleModel, TheCyclesAreTheSameWhetherOrNotSomebodyLooksOn) {
   for (const std::string_view name : preset_names())
     for (const Builtin& builtin : builtin_scenes()) {
@@ -117,7 +117,7 @@ TEST(CycleModel, ADeeperQueueIsNeverSlower) {
       if (before < first) helped.insert(key);
     }
   }
-  // What stands in front of the narrowest place helps somewhere.
+  // A queue upstream of the bottleneck helps in some scene.
   for (const char* key : {"queue.stamp", "queue.fragment"}) EXPECT_EQ(helped.count(key), 1u) << key;
 }
 

@@ -23,8 +23,8 @@ TEST(Memory, TheFixedOneAnswersAfterItsLatencyAndTakesABeatEveryCycle) {
 
 TEST(Memory, BlockRamTakesTwoCycles) { EXPECT_EQ(memory(MemoryKind::sram)->accept({}, 5).at(0), 7u); }
 
-/// Reads `count` stamps of 8 bytes as fast as they are taken, each so many bytes behind the one before; returns the cycle of
-/// the last answer.
+/// Reads `count` stamps of 8 bytes as fast as they are accepted, each `step` bytes after the previous stamp; returns
+/// the cycle of the last answer.
 Cycle read_run(MemoryTiming& memory, int count, std::uint64_t step, Cycle from) {
   Cycle at = from, answer = 0;
   for (int i = 0; i < count; ++i, ++at) {
@@ -47,7 +47,7 @@ TEST(Memory, SdramReadsOneRowFasterThanManyRows) {
 // The first read of an idle SDRAM: activate, tRCD = 3 clocks, CL = 3, 4 words of 6 ns: 60 ns, after the request's register.
 TEST(Memory, TheFirstSdramReadTakesTrcdAndCasAndItsBurst) {
   const auto sdram = memory(MemoryKind::sdram);
-  // Taken in cycle 10: at 110 ns, 114 ns at the memory's edge, done at 174 ns: cycle 18, there in the one after.
+  // Accepted in cycle 10: at 110 ns, 114 ns at the memory's edge, done at 174 ns: cycle 18, visible in cycle 19.
   EXPECT_EQ(sdram->accept({}, 10).at(0), 19u);
 }
 

@@ -96,7 +96,7 @@ TEST(Supersample, GridsAreReadAndWhatIsNoneIsRefused) {
   }
 }
 
-/// Without colours that run, four pictures moved by part of a pixel hold what four samples of a pixel hold.
+/// With flat colours, four pictures moved by part of a pixel equal the four samples of a pixel.
 TEST(Supersample, OfFlatTrianglesIsThePictureOfAsManySamplesAtTheSamePlaces) {
   Config config = preset("embedded");
   config.color_format = ColorFormat::rgba8888;

@@ -1,4 +1,4 @@
-// Bins that hold what is drawn in them are left alone (Skip::bins): frames behind each other, each as if it were alone.
+// Bins with unchanged contents are skipped (Skip::bins): successive frames, each equal to the same frame alone.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -40,8 +40,8 @@ class Following {
         hardware_(config_),
         cycle_(config_, *memory_) {}
 
-  /// The next frame, by all of them; equal to what the functional engine draws alone. Returns the bins that the hardware left
-  /// alone.
+  /// Draws the next frame with all engines; equal to the functional engine's frame alone. Returns the bins that the
+  /// hardware skipped.
   std::uint64_t expect_equal(const Scene& scene) {
     const Rendering alone = render_functional(scene, config_, {});
     const Rendering& functional = functional_.render(scene, following());
@@ -71,7 +71,8 @@ class Following {
   CycleFrames cycle_;
 };
 
-// Flags that stay and that are resolved; bins of less than a tile, which are always drawn; units behind the depth test.
+// Flags that stay and flags that are resolved; bins smaller than a tile, which are always drawn; units after the depth
+// test.
 TEST(BinContents, RandomFramesAreWhatEachIsAlone) {
   const std::vector<Config> configs{
       preset("embedded"),
@@ -138,7 +139,7 @@ TEST(BinContents, NothingAtAllBehindSomethingIsAClear) {
   EXPECT_EQ(frames.expect_equal(two_triangles(0)), 0u);
 }
 
-// What a triangle's packet does not say: the texels.
+// The texels are not in a triangle's packet.
 TEST(BinContents, AnotherTextureInTheSamePlaceIsDrawn) {
   Following frames(with("embedded", {{"texture.unit", "nearest"}}));
   SceneBuilder builder(128, 64);
@@ -157,7 +158,7 @@ TEST(BinContents, AnotherTextureInTheSamePlaceIsDrawn) {
   EXPECT_EQ(frames.expect_equal(builder.scene), 0u);
 }
 
-// A clear of depth in the middle begins new bins: such frames are drawn, and nothing is known behind them.
+// A clear of depth in the middle begins new bins: such frames are drawn, and nothing is known after them.
 TEST(BinContents, FramesThatBeginBinsTwiceAreDrawn) {
   Following frames(preset("embedded"));
   Scene twice = two_triangles(0);
@@ -178,7 +179,7 @@ TEST(BinContents, WithoutTheSwitchEverythingIsDrawn) {
   EXPECT_EQ(frames.draw(two_triangles(0)).counters.skipped.bins, 2u);
 }
 
-// Of a bin that stays the functional engine knows no range of depths: what is drawn on the frame must not be taken for nearer.
+// The functional engine knows no range of depths of a skipped bin: a later draw on the frame must not pass as nearer.
 TEST(BinContents, WhatIsDrawnOnAFrameIsTestedAgainstBinsThatStayed) {
   const auto triangle = [](double z) {
     SceneBuilder builder(128, 64);

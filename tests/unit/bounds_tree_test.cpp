@@ -1,4 +1,4 @@
-// Objects under a tree, and what is not computed of those outside: every bit is the one without.
+// Objects under a tree, and the computation skipped for objects outside: every bit equals the result without a tree.
 #include "sim/scene/bounds_tree.hpp"
 
 #include <gtest/gtest.h>
@@ -72,7 +72,7 @@ TEST(BoundsTree, SaysOfEachObjectWhatItsOwnTestSays) {
     const Random same = random;
     const std::vector<ObjectBounds> bounds = random_bounds(random, count);
     const BoundsTree tree(bounds);
-    // A tree over bounds that are too small is told apart.
+    // A tree over bounds that are too small is detected.
     Random again = same;
     const BoundsTree wrong(random_bounds(again, count, 0.5));
     for (int view = 0; view < 20; ++view) {
@@ -145,7 +145,7 @@ Rendering draw(const Scene& scene) {
   return render_functional(scene, preset("embedded"), options);
 }
 
-/// Draws what `make` makes with everything there and with nothing but what is seen. The vertices that were left out.
+/// Draws `make` with all objects and with only the visible ones. Returns the skipped vertices.
 template <class Make>
 std::size_t expect_nothing_is_missed(const Make& make, const std::string& what,
                                      TransformNumbers numbers = TransformNumbers::binary64) {
@@ -211,8 +211,8 @@ TEST(BoundsTree, SmallerNumbersOfTheHostTakeWhatIsLeft) {
   }
 }
 
-/// A chain of triangles, of several objects, that bends with the time: as a skin or morph target has it, whose bounds are
-/// those of the vertices where they are now.
+/// A chain of triangles, of several objects, that bends with the time, like a skin or morph target: its bounds are the
+/// bounds of the moved vertices.
 Mesh bent_chain(double time, int links) {
   Mesh mesh;
   mesh.materials.resize(2);

@@ -1,4 +1,4 @@
-// The built-in scenes, and what loads them.
+// The built-in scenes, and their loading.
 #include "sim/scene/builtin.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What the capture reader refuses, and how: each message names file, line, fault and mend.
+// The capture reader's refusals: each message names file, line, fault and remedy.
 #include <gtest/gtest.h>
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// The capture format: what is read and what is written. docs/capture.md is its reference.
+// The capture format: reading and writing. docs/capture.md is its reference.
 #include "model/capture/capture.hpp"
 #include "halfplane_paths.hpp"
 
@@ -45,7 +45,7 @@ double read_number(const std::string& text) { return read("v " + text + " 0 0\n"
 
 std::uint64_t bits(double value) { return std::bit_cast<std::uint64_t>(value); }
 
-// ---- what is read
+// ---- reading
 
 TEST(Capture, ExampleOfTheContractIsRead) {
   const Scene scene = read(
@@ -242,7 +242,7 @@ TEST(CaptureNumbers, RandomDecimalsRoundToNearestAsTheCLibraryDoes) {
     EXPECT_EQ(bits(scene.vertices[i].x), bits(std::strtod(texts[i].c_str(), nullptr))) << texts[i] << ", seed " << seed;
 }
 
-// ---- what is written
+// ---- writing
 
 /// A finite double of random bits: subnormals, huge ones and both zeros included.
 double random_double(std::mt19937_64& random) {
@@ -268,7 +268,7 @@ Enum random_enum(std::mt19937_64& random, unsigned count) {
   return static_cast<Enum>(random() % count);
 }
 
-/// Any state, and numbers of many digits: what random_value() picks is short.
+/// Any state, and numbers of many digits: the numbers of random_value() are short.
 State random_state(std::mt19937_64& random) {
   State state = random_state({}, states_but({}), chooser(random), Refused::kept);
   for (const DrawState& row : draw_states()) {

@@ -1,5 +1,5 @@
-// Blending, masks, dithering and the alpha test in hardware: the hardware and the cycle engine against the scalar one, the
-// tokens that set them, what is fetched for them, and what is refused without the unit.
+// Blending, masks, dithering and the alpha test in hardware: the hardware and the cycle engine against the scalar one,
+// the tokens that set them, the memory reads for them, and the refusals without the unit.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -111,7 +111,7 @@ State blending() {
   return state;
 }
 
-/// The registers that the host sets for a scene, in order; `kinds`: what it sends besides.
+/// The registers that the host sets for a scene, in order; `kinds`: the other tokens that it sends.
 std::vector<StateRegister> registers_set(const Scene& scene, const Config& config) {
   std::vector<StateRegister> found;
   HostStream host(scene, config);

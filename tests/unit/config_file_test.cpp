@@ -1,4 +1,4 @@
-// Configuration files: every setting arrives, every mistake is one line with file, line and mend.
+// Configuration files: every setting arrives, every mistake is one line with file, line and remedy.
 #include <gtest/gtest.h>
 #include <unistd.h>
 

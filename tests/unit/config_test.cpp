@@ -178,7 +178,7 @@ TEST(Widths, TilesNarrowPlanesByAtLeastOneBitInEveryLegalConfiguration) {
         if (!refusal(config).empty()) continue;
         ++checked;
         const Widths w = derive_widths(config);
-        EXPECT_GE(w.guard_bits - local, 1) << label(config);  // per pixel: what RTL and model round by
+        EXPECT_GE(w.guard_bits - local, 1) << label(config);  // per pixel: the rounding bits of RTL and model
         // Half of the last bit dropped, half of the last place kept, and the code's own offset.
         const int drop = w.plane_fraction - local;
         const std::uint64_t half = std::uint64_t{1} << (drop - 1), place = std::uint64_t{1} << (w.plane_fraction - 1),

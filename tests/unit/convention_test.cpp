@@ -24,7 +24,8 @@ namespace {
 constexpr const char* kStandard[] = {"d3d", "mit3dcg", "fcg:standard"};
 constexpr const char* kReversed[] = {"gl:reversed", "d3d:reversed", "mit3dcg:reversed", "fcg"};
 
-/// What two pictures of one scene differ in. Under reversed z the second one's depth is taken as 2^B - 1 - code.
+/// The differences of two pictures of one scene. Under reversed z the second picture's depth is taken as 2^B - 1 -
+/// code.
 struct Difference {
   int color = 0, ids = 0, depth = 0;
   std::uint32_t largest_depth = 0;  ///< LSB
@@ -144,7 +145,8 @@ TEST(Convention, RandomStatesInBothSpacesAreTheSamePicture) {
   }
 }
 
-// Less and greater store the smaller and the larger of two codes: what is off by one at most stays so. Equal does not.
+// Less and greater store the smaller and the larger of two codes: a difference of at most one stays at most one. Equal
+// does not keep it.
 TEST(Convention, UnderReversedZRandomStatesGiveTheComplementToOneCode) {
   const Config config = preset("embedded");
   for (const Space space : {Space::clip, Space::window}) {

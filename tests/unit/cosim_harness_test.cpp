@@ -1,5 +1,5 @@
-// The co-simulation harness itself, on designs that replay the model's packets and are then tampered with: what is equal
-// must pass, and every single fault must be named.
+// The co-simulation harness itself, on designs that replay the model's packets and are then tampered with: equal
+// designs must pass, and every single fault must be named.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 namespace halfplane {
 namespace {
 
-/// What a faulty design does with packet `number` of `arrow`.
+/// A faulty design's treatment of packet `number` of `arrow`.
 struct Fault {
   enum class Kind { none, flip, lose, repeat, stop, counter, release, withdraw, busy } kind = Kind::none;
   Arrow arrow = Arrow::stamp;
@@ -491,7 +491,7 @@ TEST(CosimReduce, AFaultInALineLeavesALine) {
   FakeDut dut(config, {Fault::Kind::flip, Arrow::line_pixel, 1, 2});
   const auto reduced = reduce(random_scene(config, 16, 150), config, {}, lockstep_test(dut, config));
   ASSERT_TRUE(reduced.has_value());
-  EXPECT_LE(reduced->primitives_after, 2u);  // its second pixel may be that of another line
+  EXPECT_LE(reduced->primitives_after, 2u);  // its second pixel may belong to another line
   EXPECT_EQ(reduced->scene.states.at(std::get<Draw>(reduced->scene.commands.at(0)).state).line_rule, State{}.line_rule);
   EXPECT_EQ(std::get<Draw>(reduced->scene.commands.at(0)).topology, Topology::lines);
 }

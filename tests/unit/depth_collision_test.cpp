@@ -1,4 +1,4 @@
-// Places that depth codes do not tell apart are found, and what is advised tells them apart.
+// Places that depth codes do not separate are found, and the suggested settings separate them.
 #include "sim/scene/depth_collision.hpp"
 
 #include <gtest/gtest.h>

@@ -54,7 +54,7 @@ TEST(DepthTheory, AgreesWithTheIndependentReference) {
 }
 
 TEST(DepthTheory, SixteenBitsAtAFarNearRatioOfAHundredThousandEndNearTheFirstThird) {
-  // n = 0.01, f = 1000: the last code but one is worth z = 395.9, everything behind it shares the last code.
+  // n = 0.01, f = 1000: the last code but one is z = 395.9, everything farther shares the last code.
   const ExactDepth theory = depth("std", "u16", "0.01", "1000");
   EXPECT_NEAR(theory.reconstructed(65534), 395.9, 0.05);
   EXPECT_DOUBLE_EQ(theory.reconstructed(65535), 1000);
@@ -119,7 +119,7 @@ TEST(DepthTheory, TheTextbooksFirstOrderStepIsRightUntilTheStepIsAPartOfTheDepth
   }
   EXPECT_NEAR(theory.at(number("900")).bin_width, 12.447, 0.0005);
   EXPECT_NEAR(theory.at(number("900")).first_order, 12.347, 0.0005);
-  // The bin that ends at far is cut to a half, which no derivative knows.
+  // The bin that ends at far is truncated to a half, which no derivative shows.
   EXPECT_LT(theory.at(number("999.9")).bin_width, 0.6 * theory.at(number("999.9")).first_order);
 }
 

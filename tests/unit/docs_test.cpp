@@ -1,4 +1,4 @@
-// What the pages and the comments point at is there: files, folders, headings, and the stems of rtl_ref/README.md.
+// The targets of the pages' and comments' links exist: files, folders, headings, and the stems of rtl_ref/README.md.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -150,7 +150,7 @@ std::vector<fs::path> pages() {
   return result;
 }
 
-/// What is after "//" in each line.
+/// The text after "//" in each line.
 std::string comments_of(const std::string& source) {
   std::string result;
   for (std::size_t at = source.find("//"); at != std::string::npos; at = source.find("//", at)) {

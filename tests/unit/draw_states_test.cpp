@@ -1,4 +1,4 @@
-// The table of draw states, and that what follows from it does.
+// The table of draw states, and that everything derived from it agrees.
 #include "model/draw_states.hpp"
 
 #include <gtest/gtest.h>
@@ -86,7 +86,7 @@ TEST(DrawStates, FogHasANumberLessWhereItHasADensity) {
   EXPECT_EQ(written_again("fog", "linear 4 12"), "linear 4 12");
   EXPECT_EQ(written_again("fog", "linear 0 0.25"), "linear 0 0.25");
   State made;
-  made.fog = Fog{FogKind::exp, 0.5, 0};  // by a program, which need not know
+  made.fog = Fog{FogKind::exp, 0.5, 0};  // set by a program; the third value is unused
   std::string text;
   write_state_value(made, draw_state("fog"), {}, text);
   EXPECT_EQ(text, " exp 0.5");

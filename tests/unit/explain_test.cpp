@@ -26,7 +26,7 @@ namespace {
 
 constexpr std::uint64_t kSeed = 26;
 
-/// What every other way through the program says of a scene.
+/// The results of every other path through the program for a scene.
 struct Witnesses {
   Rendering functional, scalar, hardware;
   golden::Image golden;
@@ -52,7 +52,7 @@ struct Witnesses {
   }
 };
 
-/// Of the sample, where pixels have several.
+/// The stored values of the sample, where pixels have several.
 void expect_stored(const Framebuffer& image, const PixelHistory& pixel, const Stored& stored) {
   const Framebuffer& frame = image.samples.empty() ? image : image.samples[static_cast<std::size_t>(pixel.sample)];
   const std::size_t at = frame.at(pixel.at.x, pixel.at.y);
@@ -61,7 +61,7 @@ void expect_stored(const Framebuffer& image, const PixelHistory& pixel, const St
   EXPECT_EQ(frame.color[at], stored.color);
 }
 
-/// Every figure of a pixel that somebody else computes as well. Returns how many fragments there were.
+/// Every figure of a pixel that another path computes as well. Returns the number of fragments.
 std::size_t expect_told(const PixelHistory& pixel, const Scene& scene, const Witnesses& w) {
   const auto [x, y] = pixel.at;
   const auto p = static_cast<std::size_t>(y) * static_cast<std::size_t>(scene.width) + static_cast<std::size_t>(x);
@@ -205,8 +205,8 @@ bool is_told_in_fog(const Entry& entry) {
   return false;
 }
 
-/// What random scenes of the hardware do not have: clip space, clipped pieces, colours over w, textures, fog, edges and corners
-/// of triangles, depth formats of the model alone.
+/// Scenes that random scenes of the hardware do not include: clip space, clipped pieces, colours over w, textures, fog,
+/// edges and corners of triangles, depth formats of the model alone.
 TEST(Explain, ScenesOfEveryKindAgreeToo) {
   std::cout << "seed " << kSeed << '\n';
   Random random(kSeed);
@@ -316,7 +316,7 @@ TEST(Explain, AWideLineNearADiagonalMayLieAlongTheOtherAxisInTheGolden) {
   }
 }
 
-/// Several samples a pixel, with masks, and coverage from alpha: each sample by itself, and what becomes of the pixel.
+/// Several samples a pixel, with masks, and coverage from alpha: each sample by itself, and the resulting pixel.
 TEST(Explain, SamplesOfAPixelAgreeToo) {
   std::cout << "seed " << kSeed << '\n';
   Random random(kSeed);

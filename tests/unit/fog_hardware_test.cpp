@@ -1,4 +1,5 @@
-// Fog in hardware: the hardware and the cycle engine against the scalar one, the tokens that bring its table, what is refused.
+// Fog in hardware: the hardware and the cycle engine against the scalar one, the tokens that bring its table, the
+// refusals.
 #include <gtest/gtest.h>
 
 #include <random>

@@ -1,5 +1,5 @@
-// Binned order (frame.order bins) against program order: the same picture and the same counts, and no depth in memory where
-// nobody wants it.
+// Binned order (frame.order bins) against program order: the same picture and the same counts, and no depth in memory
+// unless requested.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -46,7 +46,8 @@ std::map<TilePlane, std::size_t> requests(const Scene& scene, const Config& conf
   return by_plane;
 }
 
-/// Hardware model and cycle engine in bins show what the functional engine shows and count what program order counts.
+/// Hardware model and cycle engine in bins show the functional engine's picture and count the counters of program
+/// order.
 void expect_equal_in_bins(const Scene& scene, const Config& config) {
   const Rendering expected = render_functional(scene, config, {});
   const Counters program = render_hardware(scene, config).counters;
@@ -103,7 +104,7 @@ TEST(FrameBins, ATriangleIsSentOnceForEachBinThatItTouches) {
   builder
       .triangle(at(10, 10), at(60, 10), at(10, 60))               // one bin
       .triangle(at(60, 10), at(70, 10), at(60, 20))               // two
-      .triangle(at(0, 0), at(640, 0), at(0, 480))                 // those on its diagonal, and above
+      .triangle(at(0, 0), at(640, 0), at(0, 480))                 // bins on its diagonal, and above
       .triangle(at(10, 10), at(10, 10), at(60, 60))               // no area
       .triangle(at(10.3, 10.3), at(10.7, 10.3), at(10.3, 10.6));  // no sample
   const auto primitives = sent(builder.scene, in_bins(preset("embedded")));

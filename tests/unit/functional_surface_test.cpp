@@ -366,7 +366,8 @@ functional::SurfaceConstants constants_of(const Scene& scene, const Config& conf
   return {functional::StageSurface(frame, slice, first_record(), kAtCentre), frame, texels};
 }
 
-/// coordinates_margin(): what the pixels of a covered tile look at lies between what its corners do, and that much more.
+/// coordinates_margin(): the coordinates of a covered tile's pixels lie between its corners' coordinates, plus this
+/// margin.
 TEST(FunctionalSurface, CoordinatesOfATileLieBetweenThoseOfItsCorners) {
   double nearest_to_margin = 0;
   int tiles = 0;

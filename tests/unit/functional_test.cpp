@@ -237,7 +237,7 @@ TEST(Functional, SmallTrianglesOfGlassAreTheSameOnEveryPath) {
       }
 }
 
-/// What is known of a triangle's alpha, and of a tile's, may leave the alpha test out.
+/// Known bounds of a triangle's alpha, and of a tile's, may allow skipping the alpha test.
 TEST(Functional, EveryAlphaTestOfAlphaThatFadesIsTheSameOnEveryPath) {
   for (const DepthFunc func : {DepthFunc::never, DepthFunc::less, DepthFunc::lequal, DepthFunc::equal,
                                DepthFunc::greater, DepthFunc::gequal, DepthFunc::notequal})

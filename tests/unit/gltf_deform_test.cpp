@@ -65,7 +65,7 @@ void add_inverses(GltfBuilder& builder, const std::vector<double>& matrices) {
   builder.json["skins"][0]["inverseBindMatrices"] = builder.json["accessors"].size() - 1;
 }
 
-// Column by column: they take back where the joints are at rest.
+// Column by column: the inverses of the joints' rest transforms.
 const std::vector<double> kInverses{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0,  0, -1, 1,   // joint 0
                                     1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -1, 0, -1, 1};  // joint 1
 const std::vector<double> kOneJointEach{0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0};
@@ -131,7 +131,7 @@ TEST(GltfSkin, JointsThatMirrorTurnTrianglesRound) {
   const Mesh mesh = posed(world_of(builder)).mesh;
   EXPECT_EQ(mesh.triangles[0], (std::array<std::uint32_t, 3>{0, 2, 1}));
   builder.json["nodes"][1].erase("scale");
-  builder.json["nodes"][0]["scale"] = {1, 1, -1};  // the mesh's node says nothing
+  builder.json["nodes"][0]["scale"] = {1, 1, -1};  // the mesh's own node has no effect
   EXPECT_EQ(posed(world_of(builder)).mesh.triangles[0], (std::array<std::uint32_t, 3>{0, 1, 2}));
 }
 

@@ -54,7 +54,7 @@ GltfBuilder good() {
 struct Damage {
   const char* pointer;  ///< a JSON pointer
   const char* value;    ///< JSON to put there; empty: the member is removed
-  const char* message;  ///< a part of what is said
+  const char* message;  ///< part of the message
 };
 
 const Damage kDamages[] = {

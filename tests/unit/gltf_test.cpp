@@ -1,4 +1,4 @@
-// The glTF reader: what a good file becomes. What a bad one is told is in gltf_errors_test.cpp.
+// The glTF reader: the meshes of good files. The messages for bad files are in gltf_errors_test.cpp.
 #include "sim/scene/gltf.hpp"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ Parsed parse(const std::string& bytes) {
 
 Mesh mesh_of(const GltfBuilder& builder) { return parse(builder.text()).model.mesh; }
 
-// The three places of every triangle, in order: what does not depend on how vertices are numbered.
+// The three places of every triangle, in order: independent of the numbering of vertices.
 std::vector<std::array<Vec3, 3>> places(const Mesh& mesh) {
   std::vector<std::array<Vec3, 3>> result;
   for (const auto& t : mesh.triangles) {
@@ -136,7 +136,7 @@ TEST(Gltf, StripsAndFansKeepTheWindingOfTheirTriangles) {
   EXPECT_EQ(signed_areas(rim, 6), (std::vector<double>{0.5, 0.5}));
 }
 
-/// Six corners of which the fourth is none, but the end of a strip, fan or loop: what graphics APIs make of it.
+/// Six indices, the fourth of which ends a strip, fan or loop: the graphics APIs' result.
 TEST(Gltf, TheLargestIndexStartsPrimitivesAnew) {
   const std::vector<double> corners{0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 2, 1, 0, 2, 2, 0};
   const auto drawn = [&](GltfBuilder::Component component, double largest, int mode, std::vector<double> indices) {
@@ -166,7 +166,7 @@ TEST(Gltf, TheLargestIndexStartsPrimitivesAnew) {
     // Fans 0 1 3 2 and 3 4 5; a corner too few makes none.
     EXPECT_EQ(places(drawn(component, largest, 6, {0, 1, 3, 2, -1, 0, 1, -1, 3, 4, 5})),
               (Triangles{triangle(1, 3, 0), triangle(3, 2, 0), triangle(4, 5, 3)}));
-    // Of a list what is not whole is left out.
+    // An incomplete primitive of a list is dropped.
     EXPECT_EQ(places(drawn(component, largest, 4, {0, 1, 2, 3, 4, -1, 3, 4, 5})),
               (Triangles{triangle(0, 1, 2), triangle(3, 4, 5)}));
     const Mesh lines = drawn(component, largest, 3, {0, 1, 3, -1, 5, -1, 4, 5});
@@ -307,7 +307,7 @@ TEST(Gltf, SparseAccessorsReplaceElementsOfAViewOrOfZeros) {
 
 TEST(Gltf, StridesAndOffsetsAreFollowed) {
   GltfBuilder builder = test::one_triangle();
-  // Places and something else, turn by turn, after four bytes that belong to nobody.
+  // Places and other data, interleaved, after four unused bytes.
   const std::vector<double> mixed{9, 0, 0, 0, 8, 8, 3, 0, 0, 8, 8, 0, 3, 0, 8, 8};
   const std::size_t view = builder.view(GltfBuilder::packed(kF32, mixed));
   builder.json["bufferViews"][view]["byteStride"] = 20;

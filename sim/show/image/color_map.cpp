@@ -70,7 +70,7 @@ Rgb diverging_color(double t) {
 double nice_ceiling(double value) {
   if (!(value > 0) || !std::isfinite(value)) return 1;
   const double decade = std::pow(10.0, std::floor(std::log10(value)));
-  for (const double step : {1.0, 1.2, 1.6, 2.0, 2.4, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0})  // their quarters are short, too
+  for (const double step : {1.0, 1.2, 1.6, 2.0, 2.4, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0})  // quarters are short too
     if (value <= step * decade * (1 + 1e-9)) return step * decade;  // 1e-9: a value of 0.2 must not become 0.24
   return 20 * decade;                                               // log10 rounded down across a power of ten
 }

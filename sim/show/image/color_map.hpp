@@ -18,7 +18,7 @@ namespace halfplane {
 /// The end of a scale up to `value`: a short number that is >= value and at most 4/3 of it; 1 for zero.
 [[nodiscard]] double nice_ceiling(double value);
 
-/// As short as it can be said: "-0.5", "20", "1e+06".
+/// The shortest form: "-0.5", "20", "1e+06".
 [[nodiscard]] std::string short_number(double value);
 
 }  // namespace halfplane

@@ -7,7 +7,7 @@ namespace halfplane {
 
 enum class CoverageClass : std::uint8_t {
   none,     ///< neither covers it
-  both,     ///< as often as each other, the same triangle visible
+  both,     ///< equally often, with the same triangle visible
   missing,  ///< the golden covers it more often
   extra,    ///< the model covers it more often
   other     ///< equally often, but another triangle is visible

@@ -6,7 +6,8 @@
 namespace halfplane {
 namespace {
 
-/// By draws; the last stands for more as well. Light on dark, and the double draw apart from both neighbours in hue.
+/// By number of draws; the last also stands for more. Light on dark, and two draws distinct from both neighbours in
+/// hue.
 constexpr std::array<Rgb, 4> kColors{Rgb{0x2c, 0x2e, 0x33}, Rgb{0x9a, 0xa3, 0xb2}, Rgb{0xff, 0xa0, 0x2e},
                                      Rgb{0xf0, 0x3c, 0x78}};
 constexpr std::array<const char*, 4> kLabels{"not drawn", "once", "twice", "more often"};

@@ -25,8 +25,8 @@ void write_npy(const std::string& path, int width, int height, std::span<const s
 void write_npy(const std::string& path, int width, int height, std::span<const std::int32_t> values);
 void write_npy(const std::string& path, int width, int height, std::span<const float> values);
 
-/// Throws InputError when `path` cannot hold depth codes of that many bits: a .png takes 16, a .npy takes 32. Call it
-/// before the rendering, so that nobody waits for a picture that cannot be saved.
+/// Throws InputError when the format of `path` has too few bits for depth codes: a .png has 16, a .npy has 32. Call it
+/// before rendering, so that no time is lost for a picture that cannot be saved.
 void check_depth_path(const std::string& path, int depth_bits);
 
 /// Writes the stored codes, unscaled, in the format that the extension names.

@@ -9,7 +9,8 @@
 namespace halfplane {
 namespace {
 
-// Indexed by CoverageClass. The three faults: hues of Okabe and Ito's palette, told apart by colour-blind readers too.
+// Indexed by CoverageClass. The three faults: hues of Okabe and Ito's palette, distinguishable for colour-blind readers
+// too.
 constexpr std::array<PixelKind, 5> kClasses{{{kNotCompared, "neither", 0},
                                              {{0x6e, 0x75, 0x80}, "both", 1},
                                              {{0xf0, 0x6a, 0x1e}, "missing", 3},
@@ -48,7 +49,7 @@ void store(Picture& picture, std::size_t pixel, Rgb color) {
 struct ErrorStatistics {
   std::size_t compared = 0, beyond = 0;
   double max = 0, mean = 0, rms = 0;  // max of the magnitudes
-  double range = 1;                   // where the scale ends
+  double range = 1;                   // end of the scale
 };
 
 ErrorStatistics measure(std::span<const float> errors) {
@@ -69,7 +70,7 @@ ErrorStatistics measure(std::span<const float> errors) {
   result.max = *std::max_element(magnitudes.begin(), magnitudes.end());
   const auto most = magnitudes.begin() + static_cast<std::ptrdiff_t>((count - 1) * 0.995);
   std::nth_element(magnitudes.begin(), most, magnitudes.end());
-  const bool outliers = *most > 0 && result.max > 4 * *most;  // 4: beyond it the rest would lose its contrast
+  const bool outliers = *most > 0 && result.max > 4 * *most;  // 4: a larger factor would cost the rest its contrast
   result.range = nice_ceiling(outliers ? *most : result.max);
   for (const float magnitude : magnitudes)
     if (magnitude > result.range) ++result.beyond;

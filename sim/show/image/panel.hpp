@@ -1,7 +1,7 @@
 // The comparison picture: panels with captions and legends on one dark sheet.
 //
 // Pixels stay whole: small pictures are enlarged by an integer factor, those wider or higher than kMaxPanelSide are
-// reduced by one, and then a pixel of a difference panel shows the worst of its block, so that none is lost.
+// reduced by one, and then a pixel of a difference panel shows the worst of its block, so that no difference is lost.
 #pragma once
 
 #include <array>
@@ -31,21 +31,21 @@ struct ScaleLegend {
   bool diverging = true;  ///< -range...range, otherwise 0...range
   double range = 1;
   std::string unit;
-  std::string rest = "not compared";  ///< what pixels off the scale are
-  double low = 0;                     ///< > 0: low...range by the logarithm; what is less has the colour of `low`
-  bool is_cut = false;                ///< something is less than `low`
+  std::string rest = "not compared";  ///< meaning of pixels off the scale
+  double low = 0;                     ///< > 0: logarithmic low...range; smaller values have the colour of `low`
+  bool is_cut = false;                ///< some value is less than `low`
 };
 
-/// A number beside a scale; `at` is its place, 0...1.
+/// A number next to a scale; `at` is its place, 0...1.
 struct ScaleTick {
   double at = 0;
   std::string label;
 };
 
-/// The numbers that have room beside a bar of so many pixels; the unit stands with the last.
+/// The numbers that fit next to a bar of that many pixels; the last one has the unit.
 [[nodiscard]] std::vector<ScaleTick> scale_ticks(const ScaleLegend& scale, int bar);
 
-/// A scale alone, for pages that bring their own pictures.
+/// A scale alone, for pages with their own pictures.
 [[nodiscard]] Picture scale_picture(const ScaleLegend& scale, int width);
 
 using Legend = std::variant<std::monostate, std::vector<LegendEntry>, ScaleLegend>;
@@ -60,15 +60,15 @@ struct Panel {
   std::vector<std::string> lines;
 };
 
-/// A kind of pixels, as a panel shows it.
+/// A kind of pixels in a panel.
 struct PixelKind {
   Rgb color;
   std::string_view label;
-  int rank = 0;           ///< the higher one wins when a block is reduced to one pixel
-  bool is_listed = true;  ///< in the legend even where no pixel is of it
+  int rank = 0;           ///< the higher rank wins when a block is reduced to one pixel
+  bool is_listed = true;  ///< listed in the legend even without such pixels
 };
 
-/// Colours and counts of kinds. `kinds` holds width * height places in `styles`.
+/// Colours and counts of kinds. `kinds` contains width * height indices into `styles`.
 [[nodiscard]] Panel kinds_panel(std::string_view caption, int width, int height, std::span<const std::uint8_t> kinds,
                                 std::span<const PixelKind> styles);
 
@@ -76,35 +76,35 @@ struct PixelKind {
 [[nodiscard]] Panel coverage_panel(int width, int height, std::span<const CoverageClass> classes);
 
 /// Signed errors on the diverging map, or with `diverging` false magnitudes on the sequential one. NaN: not compared,
-/// shown dark. The scale ends at a round number that holds all values; if a few outliers would flatten the rest, one
-/// that holds 99.5 % of them, and the note counts those beyond. `figures` begins the note in place of the pixels' own max,
-/// rms and mean: what is said elsewhere of the same errors.
+/// shown dark. The scale ends at a round number above all values; if a few outliers would flatten the rest, above 99.5
+/// % of them, and the note counts the outliers. `figures` begins the note in place of the pixels' own max, rms and
+/// mean: the figures given elsewhere for the same errors.
 [[nodiscard]] Panel error_panel(std::string_view caption, int width, int height, std::span<const float> errors,
                                 std::string_view unit, bool diverging, std::string_view figures = {});
 
-/// Magnitudes on the sequential map by the logarithm, in whole decades and at most four of them. 0 is `rest`.
+/// Magnitudes on the sequential map on a logarithmic scale, in at most four whole decades. 0 is `rest`.
 [[nodiscard]] Panel log_panel(std::string_view caption, int width, int height, std::span<const float> values,
                               std::string_view unit, std::string_view rest);
 
-/// The scale of log_panel() for values up to `high`, of which `least` is the smallest that counts.
+/// The scale of log_panel() for values up to `high`; `least`: the smallest value that counts.
 [[nodiscard]] ScaleLegend log_scale(double least, double high, std::string_view unit, std::string_view rest);
 
-/// How often each sample was drawn: cracks and double draws at a glance. `counts` holds width * height values.
+/// How often each sample was drawn: shows cracks and double draws. `counts` contains width * height values.
 [[nodiscard]] Panel draws_panel(int width, int height, std::span<const std::uint32_t> counts);
 
-/// A picture alone; one that is too large is reduced, which the caption says.
+/// A picture alone; a picture that is too large is reduced, as the caption says.
 [[nodiscard]] Panel picture_panel(std::string_view caption, const Picture& picture);
 
 /// Panels in rows of `columns`, aligned, under one title. Columns share a width and rows a height.
 [[nodiscard]] Picture compose_sheet(std::string_view title, std::span<const Panel> panels, int columns);
 
-/// A panel that can be chosen by its name.
+/// A panel with its name for selection.
 struct NamedPanel {
   std::string_view name;  ///< one of panel_names()
   Panel panel;
 };
 
-/// Everything that `compare` shows of one scene. All vectors hold width * height values, row 0 at the top.
+/// All panels that `compare` shows of one scene. All vectors contain width * height values, row 0 at the top.
 struct ComparisonSheet {
   std::string title;  ///< scene, configuration and size
   int width = 0, height = 0;
@@ -112,14 +112,13 @@ struct ComparisonSheet {
   std::vector<CoverageClass> coverage;
   std::vector<float> depth_error;            ///< signed, LSB; NaN where not compared
   std::vector<float> color_error;            ///< largest absolute error of the channels, LSB; NaN where not compared
-  std::string depth_figures, color_figures;  ///< what `summary` says of the errors; empty: the pixels' own
+  std::string depth_figures, color_figures;  ///< the errors in `summary`; empty: the pixels' own
   std::vector<std::string> summary;          ///< the sixth cell: figures and bounds, one per line; left out when empty
   std::vector<NamedPanel> more;              ///< textures, another image, interpolation; shown after the six
-  std::vector<std::string> panels;           ///< of panel_names(), those to show, in this order; empty: all
+  std::vector<std::string> panels;           ///< names of the panels to show, in this order; empty: all
 };
 
-/// The panels of a comparison sheet, and those that it has besides: where something is textured, of another image, of
-/// affine interpolation.
+/// The panels of a comparison sheet, and additional ones: for textures, for another image, for affine interpolation.
 inline constexpr std::array<std::string_view, 6> kPanelNames{"model", "golden", "coverage",
                                                              "depth", "color",  "summary"};
 inline constexpr std::array<std::string_view, 5> kTexturePanelNames{"coordinate", "footprints", "level", "weights",
@@ -133,7 +132,7 @@ inline constexpr std::array<std::string_view, 3> kAffinePanelNames{"perspective"
 /// Colour picture and draws panel side by side.
 [[nodiscard]] Picture draws_sheet(std::string_view title, const Picture& color, std::span<const std::uint32_t> counts);
 
-/// Colour picture, `values` of each pixel (cycles, say) and draws panel side by side.
+/// Colour picture, `values` of each pixel (for example cycles) and draws panel side by side.
 [[nodiscard]] Picture heat_sheet(std::string_view title, const Picture& color, std::span<const float> values,
                                  std::string_view unit, std::span<const std::uint32_t> counts);
 

@@ -16,14 +16,14 @@ namespace {
 constexpr std::size_t kVertexBytes = 16;  // stb_easy_font: x, y, z as float and four bytes of colour
 constexpr std::size_t kQuadBytes = 4 * kVertexBytes;
 
-// What the font lacks, as the letter that it is made of: U+00C0 to U+00FF, and U+0100 to U+017F.
+// Replacement letters for characters missing in the font: U+00C0 to U+00FF, and U+0100 to U+017F.
 constexpr std::string_view kLatin1 = "AAAAAAACEEEEIIIIDNOOOOOxOUUUUYTsaaaaaaaceeeeiiiidnooooo/ouuuuyty";
 constexpr std::string_view kLatinExtendedA =
     "AaAaAaCcCcCcCcDdDdEeEeEeEeEeGgGgGgGgHhHhIiIiIiIiIiIiJjKkkLlLlLlLlLlNnNnNnnNnOoOoOoOoRrRrRrSsSsSsSsTtTtTt"
     "UuUuUuUuUuUuWwYyYZzZzZzs";
 static_assert(kLatin1.size() == 0x40 && kLatinExtendedA.size() == 0x80);
 
-/// The glyph for a code point; 0 for a mark that combines with the letter before it.
+/// The glyph for a code point; 0 for a combining mark.
 char glyph_of(char32_t c) {
   if (c >= ' ' && c <= '~') return static_cast<char>(c);
   if (c >= 0xc0 && c < 0x100) return kLatin1[c - 0xc0];
@@ -37,7 +37,7 @@ char glyph_of(char32_t c) {
   return '?';
 }
 
-// The font's table ends at '~'; anything else would be read from outside it.
+// The font's table ends at '~'; other codes would be read outside it.
 std::string printable(std::string_view text) {
   std::string result;
   for (std::size_t at = 0; at < text.size();)
@@ -127,7 +127,7 @@ std::vector<std::string> wrap_text(std::string_view text, int width, int scale) 
   const std::string hanging(indent + 2, ' ');
   std::vector<std::string> lines{std::string(text.substr(0, indent))};
   const auto fits = [&](const std::string& line) { return text_width(line, scale) <= width; };
-  bool is_empty = true;  // the line at work has no word yet
+  bool is_empty = true;  // the current line has no word yet
   for (std::size_t at = indent; at < text.size();) {
     const std::size_t blank_end = std::min(text.find_first_not_of(' ', at), text.size());
     const std::size_t end = std::min(text.find(' ', blank_end), text.size());
@@ -139,7 +139,7 @@ std::vector<std::string> wrap_text(std::string_view text, int width, int scale) 
     }
     at = end;
     is_empty = false;
-    while (!fits(lines.back())) {  // one word, wider than a line: as much of it as there is room for, and on
+    while (!fits(lines.back())) {  // one word, wider than a line: it is broken where the line is full
       std::string& line = lines.back();
       std::size_t kept = line.size();
       const std::size_t least = line.find_first_not_of(' ');

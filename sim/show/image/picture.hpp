@@ -54,8 +54,8 @@ void draw_picture(Picture& picture, const Picture& source, int x, int y, int sca
 /// Draws one line of text with its top left at (x, y); scale 1...3 times the font's 7-pixel capitals.
 void draw_text(Picture& picture, int x, int y, std::string_view text, Rgb color, int scale);
 
-/// `text` in lines of at most `width` pixels, broken between words; those behind the first are indented by two blanks
-/// more. A word wider than a line is broken between characters.
+/// `text` in lines of at most `width` pixels, broken between words; later lines are indented by two more blanks. A word
+/// wider than a line is broken between characters.
 [[nodiscard]] std::vector<std::string> wrap_text(std::string_view text, int width, int scale);
 
 /// The picture with every factor x factor block averaged into one pixel; blocks at the right and bottom may be smaller.

@@ -11,7 +11,7 @@
 #include "model/config.hpp"
 #include "whole_file.hpp"
 
-#define STB_IMAGE_WRITE_STATIC  // ours stays in this file, whatever other libraries bring along
+#define STB_IMAGE_WRITE_STATIC  // our copy stays in this file, whatever other libraries contain
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #include <stb_image_write.h>
 
@@ -20,7 +20,7 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-// libpng is C: what it calls must not throw, and leaves it by longjmp only.
+// libpng is C: callbacks must not throw, and leave it only by longjmp.
 struct Grey16Job {
   Bytes* out = nullptr;
   std::array<char, 160> error{};
@@ -47,7 +47,7 @@ void on_error(png_structp png, png_const_charp message) {
 
 void on_warning(png_structp, png_const_charp) {}
 
-// `rows` holds big-endian samples. All locals are plain values: longjmp may come back to this frame.
+// `rows` contains big-endian samples. All locals are plain values: longjmp may return to this frame.
 bool write_grey16(Grey16Job* job, int width, int height, const std::uint8_t* rows) {
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, job, on_error, on_warning);
   if (png == nullptr) return false;

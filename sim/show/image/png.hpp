@@ -17,7 +17,7 @@ namespace halfplane {
 [[nodiscard]] std::vector<std::uint8_t> encode_png_grey16(int width, int height,
                                                           std::span<const std::uint16_t> samples);
 
-/// Writes the file whole or not at all. Throws InputError naming path and reason.
+/// Writes the file completely or not at all. Throws InputError naming path and reason.
 void write_png(const std::string& path, const Picture& picture);
 
 }  // namespace halfplane

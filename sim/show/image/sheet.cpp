@@ -16,7 +16,7 @@ constexpr Rgb kDim{0xa6, 0xab, 0xb5};
 // All in pixels.
 constexpr int kMargin = 24;  // around the sheet and between cells
 constexpr int kGap = 8;      // between the parts of a cell
-constexpr int kText2 = 2;    // font scale of everything but the title
+constexpr int kText2 = 2;    // font scale of all text except the title
 constexpr int kTitleScale = 3;
 constexpr int kLine = text_height(kText2) + 4;
 constexpr int kBarHeight = 14;
@@ -24,8 +24,8 @@ constexpr int kTickHeight = 5;
 constexpr int kSwatch = 14;
 constexpr int kEntryGap = 22;       // between two entries of a legend
 constexpr int kColumnGap = 28;      // between the columns of a text
-constexpr int kMinCellWidth = 480;  // captions and statistics fit
-constexpr int kSmallPicture = 480;  // pictures are enlarged while they stay within it
+constexpr int kMinCellWidth = 480;  // fits captions and statistics
+constexpr int kSmallPicture = 480;  // pictures are enlarged up to this size
 
 int enlargement(const Picture& picture) {
   const int side = std::max({picture.width, picture.height, 1});
@@ -81,7 +81,7 @@ void draw_ticks(Picture& sheet, const ScaleLegend& scale, int left, int top, int
     const int x = left + static_cast<int>(tick.at * (bar - 1));
     draw_line(sheet, x, top, x, top + kTickHeight, kDim);
     const std::string shown = i + 1 == ticks.size() ? tick.label + " " + scale.unit : tick.label;
-    const int text_x = std::clamp(x - text_width(tick.label, kText2) / 2, left,  // all stay inside their cell
+    const int text_x = std::clamp(x - text_width(tick.label, kText2) / 2, left,  // all labels stay inside their cell
                                   std::max(left, left + width - text_width(shown, kText2)));
     draw_text(sheet, text_x, top + kTickHeight + 3, shown, kDim, kText2);
   }
@@ -120,7 +120,7 @@ std::vector<std::string> split_at_tabs(const std::string& line) {
   return fields;
 }
 
-// Of the columns of the lines that form a table.
+// Widths of the columns of a table's lines.
 std::vector<int> column_widths(const Panel& panel) {
   std::vector<int> widths;
   for (const std::string& line : panel.lines) {
@@ -132,7 +132,7 @@ std::vector<int> column_widths(const Panel& panel) {
   return widths;
 }
 
-// A table is not wrapped: its cell is as wide as it.
+// A table is not wrapped: its cell has its width.
 int table_width(const Panel& panel) {
   int width = 0;
   for (const int column : column_widths(panel)) width += column + (width == 0 ? 0 : kColumnGap);
@@ -182,7 +182,7 @@ void draw_cell(Picture& sheet, const Panel& panel, const Cells& cells, int left,
   draw_block(sheet, left, y, panel.note, cells.width, kDim);
 }
 
-// In whole decades, and fewer where there is no room for all.
+// In whole decades, fewer if there is no room for all.
 std::vector<ScaleTick> log_ticks(const ScaleLegend& scale, int bar) {
   const int first = static_cast<int>(std::lround(std::log10(scale.low)));
   const int decades = static_cast<int>(std::lround(std::log10(scale.range / scale.low)));
@@ -214,7 +214,7 @@ std::vector<ScaleTick> scale_ticks(const ScaleLegend& scale, int bar) {
       ticks.push_back({static_cast<double>(i) / intervals, short_number(low + (scale.range - low) * i / intervals)});
     return ticks;
   };
-  // Four intervals where their labels leave room between them, otherwise two.
+  // Four intervals if there is room between their labels, otherwise two.
   std::vector<ScaleTick> four = ticks_of(4);
   int widest = 0;
   for (const ScaleTick& tick : four) widest = std::max(widest, text_width(tick.label, kText2));
@@ -234,7 +234,7 @@ Picture compose_sheet(std::string_view title, std::span<const Panel> panels, int
   int width = kMinCellWidth;
   for (const Panel& panel : panels)
     width = std::max({width, enlargement(panel.picture) * panel.picture.width, table_width(panel)});
-  std::vector<Cells> rows(static_cast<std::size_t>(row_count));  // a row without legends takes no room for them
+  std::vector<Cells> rows(static_cast<std::size_t>(row_count));  // a row without legends has no space for them
   for (int i = 0; i < count; ++i) {
     const Panel& panel = panels[static_cast<std::size_t>(i)];
     Cells& row = rows[static_cast<std::size_t>(i / columns)];

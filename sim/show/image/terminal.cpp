@@ -9,7 +9,7 @@
 #include <new>
 #include <string_view>
 
-#define STB_IMAGE_RESIZE_STATIC  // ours stays in this file, whatever other libraries bring along
+#define STB_IMAGE_RESIZE_STATIC  // our copy stays in this file, whatever other libraries contain
 #define STB_IMAGE_RESIZE_IMPLEMENTATION
 #include <stb_image_resize.h>
 
@@ -17,7 +17,7 @@ namespace halfplane {
 namespace {
 
 constexpr std::string_view kGreyRamp = " .:-=+*#%@";  // dark to bright on a dark terminal
-constexpr int kMaxColumns = 400;                      // a wider terminal gains nothing but escapes
+constexpr int kMaxColumns = 400;                      // a wider terminal only gains escape sequences
 
 // Averages areas in linear light, so that thin bright lines keep their brightness.
 Picture resized(const Picture& picture, int width, int height) {

@@ -35,7 +35,7 @@ int write_all(std::FILE* file, std::span<const std::uint8_t> bytes) {
   return error;
 }
 
-// A name that no other process or call uses; short, so that it fits wherever the target's own name does.
+// A name that no other process or call uses; short, so that it fits wherever the target's name does.
 std::FILE* open_temporary(const fs::path& folder, fs::path& name) {
   for (int attempt = 0; attempt < 100; ++attempt) {
     name = folder / (".halfplane-" + std::to_string(getpid()) + "-" + std::to_string(attempt) + ".part");
@@ -69,7 +69,7 @@ PartFile::~PartFile() {
 void PartFile::finish(int error) {
   std::error_code ignored;
   const fs::file_status status = fs::status(target_, ignored);
-  if (error == 0 && fs::exists(status)) fs::permissions(name_, status.permissions(), ignored);  // as they were
+  if (error == 0 && fs::exists(status)) fs::permissions(name_, status.permissions(), ignored);  // unchanged
   if (error == 0 && std::rename(name_.c_str(), target_.c_str()) != 0) error = errno;
   if (error != 0) std::remove(name_.c_str());
   half_written_.reset();
@@ -83,7 +83,7 @@ void write_whole_file(const std::string& path, std::span<const std::uint8_t> byt
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   const bool is_device = fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
-  std::optional<PartFile> part;  // of a device there is none: renaming would replace it
+  std::optional<PartFile> part;  // none for a device: renaming would replace it
   if (!is_device) part.emplace(path);
   std::FILE* file = std::fopen(part ? part->name().c_str() : path.c_str(), "wb");
   const int reason = file == nullptr ? errno : write_all(file, bytes);
@@ -92,7 +92,7 @@ void write_whole_file(const std::string& path, std::span<const std::uint8_t> byt
 }
 
 bool is_stdout_unread() {
-  pollfd out{STDOUT_FILENO, 0, 0};  // POLLERR and POLLHUP are always told
+  pollfd out{STDOUT_FILENO, 0, 0};  // POLLERR and POLLHUP are always reported
   return poll(&out, 1, 0) > 0 && (out.revents & (POLLERR | POLLHUP)) != 0;
 }
 

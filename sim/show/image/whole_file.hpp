@@ -1,4 +1,4 @@
-// Files are written whole or not at all.
+// Files are written completely or not at all.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,8 @@ inline void write_text_file(const std::string& path, std::string_view text) {
   write_whole_file(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
 }
 
-/// A file that other code writes, under a temporary name in the same folder until it is whole. While it lives, a signal that
-/// ends the program removes it.
+/// A file that other code writes, under a temporary name in the same folder until it is complete. While the object
+/// exists, a signal that ends the program removes the file.
 class PartFile {
  public:
   /// Creates the temporary file. Throws InputError naming path and reason.
@@ -30,7 +30,7 @@ class PartFile {
   PartFile& operator=(const PartFile&) = delete;
 
   [[nodiscard]] const std::string& name() const { return name_; }  ///< the temporary one
-  /// It is whole: it takes its place. With `error`, an errno of writing it, or where that fails, throws InputError.
+  /// Moves the complete file to its place. With `error`, the errno of a write, or if the move fails, throws InputError.
   void finish(int error = 0);
 
  private:
@@ -38,11 +38,11 @@ class PartFile {
   std::optional<HalfWrittenFile> half_written_;
 };
 
-/// Writes to stdout and flushes. A reader that went away is no error: std::cout stays bad, for main() to end silently.
-/// Throws InputError for any other failure, beginning with `what` and ending with `mend`.
+/// Writes to stdout and flushes. A closed reader is no error: std::cout stays bad, so that main() ends silently. Throws
+/// InputError for any other failure, beginning with `what` and ending with `mend`.
 void write_stdout(std::span<const std::uint8_t> bytes, const std::string& what, const std::string& mend);
 
-/// Whether stdout is a pipe or socket that nobody reads any more.
+/// Whether stdout is a pipe or socket without a reader.
 [[nodiscard]] bool is_stdout_unread();
 
 }  // namespace halfplane

@@ -26,7 +26,7 @@ const Setting* find_setting(std::string_view key) {
   return nullptr;
 }
 
-/// `progress` gets the part `index` of `count`.
+/// `progress` gets the fraction of part `index` of `count`.
 CycleRun run_of(const Scene& scene, const Hardware& hardware, const Stalls& stalls,
                 const std::function<void(double)>& progress, std::size_t index, std::size_t count) {
   CycleOptions options;
@@ -44,7 +44,7 @@ std::uint64_t cycles_of(const Scene& scene, const Hardware& hardware, const Stal
 
 std::uint64_t part(std::uint64_t whole, std::uint64_t taken) { return whole > taken ? whole - taken : 0; }
 
-/// What the sender of `out` waited for: the next stage, and what else the totals know of.
+/// The waits of the sender of `out`: for the next stage, and others counted in the totals.
 std::vector<StageTime::Wait> waits_of(Arrow out, const CycleRun& run) {
   const TimingTotals& t = run.totals;
   const std::string_view next = info(info(out).to).name;
@@ -113,9 +113,9 @@ std::vector<StageTime> stage_times(const CycleRun& run) {
   std::vector<StageTime> stages;
   for (const Arrow out : kElastic) {
     const Stage sender = info(out).from;
-    if (!info(sender).is_timed || out == Arrow::response) continue;  // of memory_port the beats count
+    if (!info(sender).is_timed || out == Arrow::response) continue;  // for memory_port beats are counted
     StageTime stage{info(sender).name, run.use[index(out)], t.works[index(sender)], 0, {}};
-    if (stage.use.busy == 0 && stage.works == 0) continue;  // it is not there, or had nothing to do
+    if (stage.use.busy == 0 && stage.works == 0) continue;  // absent, or without work
     std::uint64_t waited = 0;
     for (const StageTime::Wait& wait : waits_of(out, run)) {
       waited += wait.cycles;
@@ -174,7 +174,7 @@ std::vector<Trial> try_reliefs(const Scene& scene, const Hardware& hardware, con
       change(changed, trials[i].key, trials[i].value);
       trials[i].cycles = cycles_of(scene, changed, stalls, progress, i, trials.size());
     } catch (const InputError&) {
-      continue;  // there is no such hardware
+      continue;  // such hardware does not exist
     }
     if (trials[i].cycles < cycles) helped.push_back(trials[i]);
   }

@@ -1,4 +1,4 @@
-// The hardware that `render --engine cycle` simulates, and its settings by name, which --what-if varies.
+// The hardware simulated by `render --engine cycle`, and its settings by name, varied by --what-if.
 #pragma once
 
 #include <array>
@@ -22,33 +22,33 @@ struct Hardware {
 /// InputError for an unknown key or a value outside its range.
 void change(Hardware& hardware, std::string_view key, std::string_view value);
 
-/// The value of one setting that change() takes.
+/// The value of one setting of change().
 [[nodiscard]] std::string value_of(const Hardware& hardware, std::string_view key);
 
-/// validate(), and refuses parameters that this kind of hardware does not have. Throws InputError.
+/// validate(), and refuses parameters unsupported by this kind of hardware. Throws InputError.
 void check(const Hardware& hardware);
 
-/// Renders with a memory of its own.
+/// Renders with its own memory.
 [[nodiscard]] CycleRendering run_cycles(const Scene& scene, const Hardware& hardware, const RenderOptions& render = {},
                                         CycleOptions options = {});
 
 /// One stage over a run, in cycles.
 struct StageTime {
   std::string_view name;
-  StreamUse use;              ///< of its output, as `render --engine rtl` has it
+  StreamUse use;              ///< of its output, as in `render --engine rtl`
   std::uint64_t works = 0;    ///< its narrowest part was at work
-  std::uint64_t no_item = 0;  ///< it neither worked nor waited to go on
+  std::uint64_t no_item = 0;  ///< it neither worked nor waited for the next stage
   struct Wait {
     std::string_view reason;
     std::uint64_t cycles;
   };
-  std::vector<Wait> waits;  ///< to go on, by what it waited for; none with 0 cycles
+  std::vector<Wait> waits;  ///< for the next stage, by cause; entries with 0 cycles are left out
 };
 
 /// In the order of the pipeline.
 [[nodiscard]] std::vector<StageTime> stage_times(const CycleRun& run);
 
-/// Bytes between chip and memory, by cause and plane.
+/// Bytes between chip and memory, by cause and buffer.
 struct Traffic {
   std::array<std::array<std::uint64_t, 2>, kMoveCauses.size()> bytes{};  ///< [MoveCause][depth, colour]
   std::uint64_t texels = 0;                                              ///< read by a texture unit
@@ -56,14 +56,14 @@ struct Traffic {
 };
 [[nodiscard]] Traffic traffic(const CycleRun& run, const Config& config);
 
-/// A change, and what it did to the cycles of a frame.
+/// A change, and its effect on the cycles of a frame.
 struct Trial {
   std::string key, value;
   std::uint64_t cycles = 0;
 };
 
-/// Tries what might relieve the hardware, best first; those that change nothing are left out. Here and below `progress` may
-/// be empty, and may end the work by throwing.
+/// Tries changes that might relieve the hardware, best first; ineffective ones are left out. Here and below `progress`
+/// may be empty, and may end the work by throwing.
 [[nodiscard]] std::vector<Trial> try_reliefs(const Scene& scene, const Hardware& hardware, const Stalls& stalls,
                                              std::uint64_t cycles, const std::function<void(double)>& progress);
 
@@ -73,15 +73,15 @@ struct OrderTrial {
   std::uint64_t cycles = 0, bytes = 0;
 };
 
-/// Program order and bins, both with what `hardware` stores; where that is all, also bins that store colour alone. None for
-/// a cache of tiles.
+/// Program order and bins, both with the buffers that `hardware` stores; if these are all, also bins that store only
+/// colour. None for a cache of tiles.
 [[nodiscard]] std::vector<OrderTrial> try_orders(const Scene& scene, const Hardware& hardware, const Stalls& stalls,
                                                  const std::function<void(double)>& progress);
 
-/// Of the first two of these the one with fewer cycles; if they are equal, with fewer bytes.
+/// The one of the first two with fewer cycles; if equal, with fewer bytes.
 [[nodiscard]] const std::string& recommended(const std::vector<OrderTrial>& orders);
 
-/// A thing that hardware skips, and the cycles more that a frame takes when it does not. Negative: finding out costs more.
+/// Work that hardware skips, and the additional cycles of a frame without skipping. Negative: the test costs more.
 struct Saving {
   std::string_view name;  ///< "tiles_hiz", "tiles_outside", "fast_clear"
   std::int64_t cycles;

@@ -15,7 +15,7 @@ void require_chart_library() {
 
 void write_page(const std::string& path, const ReportPage& page, const nlohmann::ordered_json& data) {
   std::string text(page.head);
-  // A script element ends at the first "</", wherever it stands. Names of files may be any bytes.
+  // A script element ends at the first "</". File names may be any bytes.
   for (const char c : data.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace))
     if (c == '<')
       text += "\\u003c";

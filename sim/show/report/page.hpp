@@ -7,18 +7,18 @@
 
 namespace halfplane {
 
-/// The parts of a page before and after its data; page.html with page.css, page.js and the page's own style and script.
+/// The parts of a page before and after its data; page.html with page.css, page.js and the page's style and script.
 struct ReportPage {
   std::string_view head, tail;
-  bool has_library;  ///< the chart library, which a page without charts does not need
+  bool has_library;  ///< the chart library, not needed by pages without charts
 };
 extern const ReportPage kBenchPage, kDepthPage, kExplainPage, kFramesPage, kSpacePage;
 
-/// Throws std::runtime_error when this program was built without the chart library, which every page but kExplainPage
-/// draws with.
+/// Throws std::runtime_error when this program was built without the chart library, which every page except
+/// kExplainPage uses.
 void require_chart_library();
 
-/// Writes the page with `data`, in the form that its script reads. Throws InputError as write_whole_file().
+/// Writes the page with `data`, in the form of its script. Throws InputError as write_whole_file().
 void write_page(const std::string& path, const ReportPage& page, const nlohmann::ordered_json& data);
 
 }  // namespace halfplane

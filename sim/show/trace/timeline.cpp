@@ -57,7 +57,7 @@ const std::string& PrimitiveSpans::finish() {
 }
 namespace {
 
-/// By Timeline::Track: a stage, and which of its tracks.
+/// By Timeline::Track: stage and track name.
 struct TrackName {
   Stage stage;
   std::string_view part;
@@ -136,14 +136,14 @@ void Timeline::transfer(Arrow boundary, Cycle cycle) {
       triangle_ = cycle;
       break;
     case Arrow::setup: {
-      const Cycle from = std::min(triangle_, cycle);  // serial: the triangle goes when its setup has gone
+      const Cycle from = std::min(triangle_, cycle);  // serial: the triangle leaves with its setup
       slice_in(setup_lanes_, from, cycle);
       has_setup_ = true;
       setup_ = last_tile_ = cycle;
       break;
     }
     case Arrow::tile: {
-      const bool is_serial = has_stamps_ && !has_tile_;  // there a tile goes together with its last stamp
+      const bool is_serial = has_stamps_ && !has_tile_;  // there a tile moves together with its last stamp
       end_tile(cycle);
       tile_name_ = next_tile_name_.empty() ? name_ + ", end" : std::exchange(next_tile_name_, {});
       if (is_serial) slice(fine, tile_name_, first_stamp_, cycle + 1);

@@ -1,6 +1,6 @@
-// Timeline of a run as Chrome trace JSON, as Perfetto (ui.perfetto.dev) opens it: stages as tracks, primitives, tiles and
-// tile moves as slices. One cycle is one microsecond. Held in memory until
-// finish(): about 100 bytes a slice, of which a primitive has three and a tile visit up to five.
+// Timeline of a run as Chrome trace JSON, for Perfetto (ui.perfetto.dev): stages as tracks, primitives, tiles and tile
+// moves as slices. One cycle is one microsecond. Held in memory until finish(): about 100 bytes a slice, of which a
+// primitive has three and a tile visit up to five.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace halfplane {
 
-// Per-primitive cycle listing: when each primitive crossed each boundary first and last, a line of CSV each,
+// Per-primitive cycle listing: the first and last crossing of each boundary by each primitive, a line of CSV each,
 // about 150 bytes, held in memory until finish().
 
 class PrimitiveSpans final : public TransferSink {
@@ -29,7 +29,7 @@ class PrimitiveSpans final : public TransferSink {
   };
   void write();
 
-  std::string text_, head_;  ///< head_: of the line at work
+  std::string text_, head_;  ///< head_: of the current line
   bool has_primitive_ = false;
   std::uint64_t number_ = 0;
   std::array<Span, kArrows> span_{};
@@ -69,8 +69,8 @@ class Timeline final : public TransferSink {
     memory_depth,
     memory_color
   };
-  static constexpr int kOrder = 64;  ///< from one track to the next: room for more lanes of a stage
-  /// One of the tracks of a stage that works on several primitives.
+  static constexpr int kOrder = 64;  ///< distance of tracks: room for more lanes of a stage
+  /// One of the tracks of a stage with several primitives under way.
   struct Lane {
     int track;
     Cycle end = 0;               ///< of its last slice
@@ -78,21 +78,21 @@ class Timeline final : public TransferSink {
   };
   void add_track(int track, int order, const std::string& name);
   void slice(int track, const std::string& name, Cycle from, Cycle to);
-  /// The primitive in such a stage: on the first lane that is free from `from` on, or on a new one.
+  /// Adds the primitive in such a stage: on the first lane free from `from` on, or on a new one.
   void slice_in(std::vector<Lane>& lanes, Cycle from, Cycle to);
   void end_tile(Cycle limit);
   void end_visit();
   void end_primitive();
 
   std::string text_;
-  std::string name_, tile_name_, next_tile_name_;  ///< of the primitive, of the tile in fine_raster, of the next one
+  std::string name_, tile_name_, next_tile_name_;  ///< of the primitive, of the tile in fine_raster, of the next tile
   bool has_tile_ = false, has_stamps_ = false, has_fragments_ = false, has_setup_ = false, has_line_ = false;
   Cycle taken_ = 0, triangle_ = 0, setup_ = 0, last_tile_ = 0, tile_ = 0, first_stamp_ = 0, last_stamp_ = 0,
         first_fragment_ = 0, last_fragment_ = 0, line_ = 0, last_pixel_ = 0;
   std::vector<Lane> cull_lanes_{{cull_1}, {cull_2}},
       setup_lanes_{{setup_1}, {setup_2}, {setup_3}, {setup_4}, {setup_5}, {setup_6}},
       coarse_lanes_{{coarse_1}, {coarse_2}};
-  int tracks_ = memory_color + 1;  ///< those above, and the lanes that deeper configurations need
+  int tracks_ = memory_color + 1;  ///< the tracks above, and the lanes for deeper configurations
 };
 
 }  // namespace halfplane

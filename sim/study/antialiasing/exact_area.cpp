@@ -12,7 +12,7 @@ struct Point {
 };
 using Polygon = std::vector<Point>;
 
-/// What of the polygon lies where sign * (coordinate - border) >= 0, of one of a point's coordinates.
+/// The part of the polygon with sign * (coordinate - border) >= 0, for one coordinate of a point.
 Polygon clipped(const Polygon& polygon, mpq_class Point::*coordinate, const mpq_class& border, int sign) {
   const auto inside_by = [&](const Point& p) { return mpq_class(sign * (p.*coordinate - border)); };
   Polygon kept;
@@ -48,7 +48,7 @@ Polygon in_pixels(const Triangle& triangle, int grid_bits) {
   return polygon;
 }
 
-/// What of a triangle lies between two lines, each 1 from the other.
+/// The part of a triangle between two lines at distance 1.
 Polygon strip(const Polygon& polygon, mpq_class Point::*coordinate, int from) {
   return clipped(clipped(polygon, coordinate, from, 1), coordinate, from + 1, -1);
 }

@@ -17,7 +17,7 @@
 namespace halfplane::antialiasing {
 namespace {
 
-/// A kind of antialiasing: samples of a pixel, and the grid of pictures, if there is one.
+/// A kind of antialiasing: samples per pixel, and the grid of pictures, if any.
 struct Kind {
   std::string name;
   int msaa = 1;
@@ -38,7 +38,7 @@ std::vector<Kind> kinds(const Scene& scene) {
   return list;
 }
 
-/// The scene with its lines smooth, laid over what is there by alpha.
+/// The scene with smooth lines, blended by alpha.
 Scene smooth(Scene scene) {
   for (State& state : scene.states) {
     state.smooth = true;
@@ -47,7 +47,7 @@ Scene smooth(Scene scene) {
   return scene;
 }
 
-/// The hardware that draws a kind; none: this configuration has none.
+/// The hardware for a kind; none: not with this configuration.
 std::optional<Config> hardware_of(Config config, const Kind& kind, const Scene& scene) {
   config.frame_order = FrameOrder::bins;
   config.frame_store = FrameStore::color;
@@ -84,13 +84,13 @@ std::optional<AreaHardware> hardware_frame(const Scene& scene, const Config& con
     return result;
   }
   (void)supersampled(scene, result.config, *kind.grid, draw);
-  const int pictures = kind.grid->side * kind.grid->side + 1;  // read, and the one that is written
+  const int pictures = kind.grid->side * kind.grid->side + 1;  // pictures read, and the one written
   const std::uint64_t pixel = derive_widths(result.config).stored_color.bits <= 16 ? 2 : 4;
   result.bytes += static_cast<std::uint64_t>(pictures) * static_cast<std::uint64_t>(scene.width * scene.height) * pixel;
   return result;
 }
 
-/// How much of a pixel is white, 0 to 1, in the stored format.
+/// The white fraction of a pixel, 0 to 1, in the stored format.
 double whiteness(std::uint32_t color, ColorFormat format) {
   return static_cast<double>(golden::stored_channel(color, format, 1)) / golden::channel_max(format)[1];
 }
@@ -113,7 +113,7 @@ void judge(const Framebuffer& frame, ColorFormat format, const std::vector<doubl
   row.mean = sum / static_cast<double>(edges);
 }
 
-/// The pictures of a kind, drawn as a program would draw them: each scene is prepared once.
+/// The pictures of a kind, drawn as in a program: each scene is prepared once.
 class Frames {
  public:
   Frames(const Scene& scene, const Config& config, const Kind& kind)
@@ -191,7 +191,7 @@ AreaStudy measure_areas(const Scene& scene, const Config& config, int repeat,
     const Kind& kind = list[i];
     Config own = config;
     own.msaa_samples = kind.msaa;
-    if (own.stamp_size * own.stamp_size * own.msaa_samples > 64) own.stamp_size = 2;  // no matter to a picture
+    if (own.stamp_size * own.stamp_size * own.msaa_samples > 64) own.stamp_size = 2;  // no effect on a picture
     AreaRow row;
     row.kind = kind.name;
     row.samples = kind.samples();

@@ -10,7 +10,7 @@
 namespace halfplane::antialiasing {
 namespace {
 
-/// The states that say where something lies, moved by (dx, dy) pixels to the right and down.
+/// Moves the states that contain positions by (dx, dy) pixels to the right and down.
 void move(State& state, double dx, double dy, int width, int height) {
   const double up = state.origin == Origin::bottom_left ? -1 : 1;
   const double corner = state.pixel_center == PixelCenter::integer ? -0.5 : 0;
@@ -80,7 +80,8 @@ std::vector<Place> places_of(const SupersampleGrid& grid) {
   const double n = grid.side;
   for (int j = 0; j < grid.side; ++j)
     for (int i = 0; i < grid.side; ++i)
-      // Turned: row j of column i lies (j + 1/2) / N into the column, and column i of row j as far from its end into the row.
+      // Rotated: row j of column i lies (j + 1/2) / N into the column, and column i of row j as far from its end into
+      // the row.
       places.push_back(grid.is_rotated ? Place{(i + (j + 0.5) / n) / n, (j + (n - i - 0.5) / n) / n}
                                        : Place{(i + 0.5) / n, (j + 0.5) / n});
   return places;
@@ -88,7 +89,7 @@ std::vector<Place> places_of(const SupersampleGrid& grid) {
 
 Scene seen_from(Scene scene, const Place& place) {
   const double dx = 0.5 - place.x, dy = 0.5 - place.y;
-  // A vertex may serve draws of window and of clip space, and of either origin: each draw gets its own.
+  // A vertex may be used in draws of window and of clip space, and with either origin: each draw gets its own copy.
   std::vector<Vertex> vertices;
   for (State& state : scene.states)
     if (state.space == Space::clip) move(state, dx, dy, scene.width, scene.height);

@@ -1,7 +1,9 @@
-// Supersampling by accumulation: the scene drawn again and again, moved by a part of a pixel, and the mean of the pictures.
+// Supersampling by accumulation: the scene drawn repeatedly, moved by a fraction of a pixel, and the mean of the
+// pictures.
 //
-// N x N pictures, one for each place of a grid in the pixel: textures, depth and blending are as fine as coverage, and lines
-// and points keep their size. Each channel of a pixel is (sum + n/2) / n of the n stored ones: the box filter over the pixel.
+// N x N pictures, one for each place of a grid in the pixel: textures, depth and blending are as fine as coverage, and
+// lines and points keep their size. Each channel of a pixel is (sum + n/2) / n of the n stored values: the box filter
+// over the pixel.
 #pragma once
 
 #include <functional>
@@ -12,7 +14,7 @@
 
 namespace halfplane::antialiasing {
 
-/// `side` x `side` places: in rows and columns, or turned, so that no two of them share a row or a column.
+/// `side` x `side` places: in rows and columns, or rotated, so that no two of them share a row or a column.
 struct SupersampleGrid {
   int side = 1;
   bool is_rotated = false;
@@ -27,7 +29,7 @@ struct Place {
 };
 [[nodiscard]] std::vector<Place> places_of(const SupersampleGrid& grid);
 
-/// The scene moved so that its pixel centres lie where those places of its pixels lay.
+/// The scene moved so that its pixel centres are at those places of its pixels.
 [[nodiscard]] Scene seen_from(Scene scene, const Place& place);
 
 /// Draws the scene from each place of the grid and returns the first rendering with the mean of all colours, the sum of all

@@ -16,7 +16,7 @@
 namespace halfplane {
 namespace {
 
-/// By the wall clock; `work` returns its cycles, or nothing.
+/// Timed by the wall clock; `work` returns its cycles, or nothing.
 template <typename Work>
 FrameCost timed_frame(Work&& work) {
   FrameCost cost;

@@ -19,13 +19,14 @@ inline constexpr std::array<std::string_view, 6> kBenchEngines{"functional", "sc
 /// Whether the engine can use more than one thread.
 [[nodiscard]] bool has_threads(std::string_view engine);
 
-/// Whether its images are the stages', bit for bit, so that one comparison with the golden holds for all such engines.
+/// Whether its images are the stages', bit for bit, so that one comparison with the golden is valid for all such
+/// engines.
 [[nodiscard]] bool is_bit_exact(std::string_view engine);
 
-/// The frame that the engine renders of `scene`, whatever else it needs made and kept: buffers from one frame to the
-/// next, a Verilated design, what llvmpipe uploads. Throws InputError for what the engine does not have, here or by its first
-/// frame, and std::runtime_error for what this build or machine lacks. `poll` is called now and then inside a frame of
-/// the slower engines, which it may leave by throwing; may be empty.
+/// A function that renders a frame of `scene`, with everything else prepared and kept: buffers from frame to frame, a
+/// Verilated design, llvmpipe's uploads. Throws InputError for unsupported features, here or in its first frame, and
+/// std::runtime_error for features missing in this build or machine. `poll` is called from time to time inside a frame
+/// of the slower engines, which it may leave by throwing; may be empty.
 [[nodiscard]] Frame make_frame(std::string_view engine, std::shared_ptr<const Scene> scene, const Config& config,
                                int threads, const std::function<void()>& poll = {});
 

@@ -14,7 +14,7 @@
 namespace halfplane {
 namespace {
 
-// How often a cell goes into the target: a quotient like 20 may come out a little below.
+// Number of cells that fit the target: a quotient like 20 may be rounded down slightly.
 int whole_cells(int pixels, double cell) { return std::max(1, static_cast<int>(pixels / cell + 1e-9)); }
 int grid_columns(const LayeredGrid& grid) { return whole_cells(grid.width, grid.cell_width); }
 int grid_rows(const LayeredGrid& grid) { return whole_cells(grid.height, grid.cell_height); }
@@ -43,7 +43,7 @@ std::vector<double> half_decades(double first, double last) {
   return steps;
 }
 
-// A million pixels, or as many as there may be triangles.
+// A million pixels, limited by the number of triangles.
 std::vector<GrowthPoint> size_points(const GrowthPlan& plan) {
   const GrowthTarget target = target_within(plan.config, 1920, 1080);
   const double aspect = static_cast<double>(target.width) / target.height;
@@ -63,7 +63,7 @@ std::vector<GrowthPoint> size_points(const GrowthPlan& plan) {
   return points;
 }
 
-// Cells of 4 x 5 pixels, so that two triangles have 20 whatever the place.
+// Cells of 4 x 5 pixels, so that the two triangles of a cell have 20 at any position.
 std::vector<GrowthPoint> count_points(const GrowthPlan& plan) {
   const GrowthTarget target = target_within(plan.config, 640, 480);
   std::vector<GrowthPoint> points;
@@ -86,7 +86,7 @@ std::vector<GrowthPoint> layer_points(const GrowthPlan& plan, bool front_to_back
 }
 
 std::vector<GrowthPoint> resolution_points(const GrowthPlan& plan) {
-  constexpr std::size_t kPixelsATriangle = 100;  // of the bound that --growth-max sets
+  constexpr std::size_t kPixelsATriangle = 100;  // with the bound of --growth-max
   std::vector<GrowthPoint> points;
   for (int side = 64; side <= 4096; side *= 2) {
     const auto pixels = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
@@ -203,7 +203,7 @@ std::vector<GrowthRow> measure_growth(const GrowthPlan& plan) {
             if (plan.progress) plan.progress((static_cast<double>(i) + fraction) / static_cast<double>(makers.size()));
           },
           rows);
-  } catch (const Interrupted&) {  // the points so far stand
+  } catch (const Interrupted&) {  // the points so far are kept
   }
   return rows;
 }

@@ -18,7 +18,7 @@ struct PeerVertex {
   std::array<float, 4> position;
   std::array<std::uint8_t, 4> rgba;
 };
-using PeerCoordinates = std::array<float, 2>;  // in a buffer of their own: who has no texture does not read them
+using PeerCoordinates = std::array<float, 2>;  // in a separate buffer: unused without a texture
 
 /// Vertex and fragment shader of a state.
 struct Shaders {
@@ -46,7 +46,7 @@ Shaders shaders_of(const State& state, bool has_texture, bool has_alpha) {
   throw InputError("llvmpipe: has no " + what + "; leave llvmpipe out for this scene");
 }
 
-// Draws of one list after another are one list.
+// Consecutive draws of one list become one list.
 bool continues(const Draw& last, const Draw& next) {
   const std::size_t step = last.topology == Topology::triangles ? 3 : last.topology == Topology::lines ? 2 : 0;
   return step != 0 && last.topology == next.topology && last.state == next.state &&
@@ -100,7 +100,7 @@ MesaFrame::MesaFrame(int width, int height, int depth_bits, int samples)
   gl_.primitive_restart_index(kRestart);
 }
 
-/// A new framebuffer, which is bound from here on.
+/// A new framebuffer, bound from here on.
 gl::Name MesaFrame::make_target(int samples) const {
   gl::Name framebuffer = 0;
   std::array<gl::Name, 2> buffers{};

@@ -1,4 +1,4 @@
-// A Scene drawn by OpenGL into a framebuffer object: what runs inside MesaPeer's process.
+// A Scene drawn by OpenGL into a framebuffer object: runs inside MesaPeer's process.
 #pragma once
 
 #include <cstdint>
@@ -11,20 +11,20 @@
 
 namespace halfplane {
 
-/// One per process: OSMesa's context and its threads cannot be taken down again.
+/// One per process: OSMesa's context and its threads cannot be shut down.
 class MesaFrame {
  public:
   /// `samples` of a pixel. Throws std::runtime_error when libOSMesa is missing or too old, or cannot make a target of that
   /// size.
   MesaFrame(int width, int height, int depth_bits, int samples);
 
-  /// Vertices in binary32, colours in RGBA8, draws merged. Throws InputError for a state that OpenGL does not have.
+  /// Vertices in binary32, colours in RGBA8, draws merged. Throws InputError for a state unsupported by OpenGL.
   void upload(const Scene& scene);
 
-  /// Every command of the scene, and waits for the last pixel. Throws std::runtime_error for an error of OpenGL.
+  /// Draws every command of the scene, and waits for the last pixel. Throws std::runtime_error for an error of OpenGL.
   void render();
 
-  /// RGBA8, R in the low byte, rows from the top; of several samples their mean.
+  /// RGBA8, R in the low byte, rows from the top; with several samples their mean.
   [[nodiscard]] std::vector<std::uint32_t> color() const;
 
   /// GL_RENDERER: the rasterizer, its vector width and its compiler.
@@ -33,7 +33,7 @@ class MesaFrame {
  private:
   struct Call {
     State state;
-    Clear clear;  // where there is nothing to draw
+    Clear clear;  // of an empty scene
     Draw draw;
     bool is_clear = false, has_restart = false;
     gl::Name program = 0, texture = 0;
@@ -50,11 +50,11 @@ class MesaFrame {
 
   gl::Functions gl_;
   int width_, height_, depth_bits_, samples_;
-  gl::Name drawn_ = 0, resolved_ = 0;         // targets; the same one where a pixel has one sample
+  gl::Name drawn_ = 0, resolved_ = 0;         // targets; the same one with one sample per pixel
   std::map<std::string, gl::Name> programs_;  // by the source of their shaders
   std::vector<gl::Name> textures_;            // of the scene
   std::vector<bool> have_alpha_;              // likewise
-  gl::Name arrays_[2]{};                      // of vertices that are given in clip space and in window space
+  gl::Name arrays_[2]{};                      // of vertices given in clip space and in window space
   std::vector<Call> calls_;
 };
 

@@ -26,7 +26,7 @@ F symbol(void* library, const char* name) {
   return reinterpret_cast<F>(address);
 }
 
-/// Sets each function that it is called with, by its name.
+/// Sets each function by its name.
 class Finder {
  public:
   explicit Finder(GetProcAddress get) : get_(get) {}
@@ -121,7 +121,7 @@ Functions start_osmesa() {
   const std::vector<int> attributes{
       kOsFormat, static_cast<int>(kRgba), kOsDepthBits, 0, kOsProfile, kOsCoreProfile, kOsMajor, 3, kOsMinor, 3, 0};
   void* context = create(attributes.data(), nullptr);
-  static std::vector<std::uint8_t> window(4UL * 16 * 16);  // must be there; frames go to a framebuffer object
+  static std::vector<std::uint8_t> window(4UL * 16 * 16);  // required; frames go to a framebuffer object
   if (context == nullptr || make_current(context, window.data(), kUnsignedByte, 16, 16) == 0)
     throw std::runtime_error("llvmpipe: libOSMesa gives no OpenGL 3.3 context; install Mesa 22.3 or newer");
   Functions functions{};

@@ -1,4 +1,4 @@
-// As much of OpenGL 4.5 and OSMesa as MesaFrame uses, found in libOSMesa when it runs: no header and no library is
+// The part of OpenGL 4.5 and OSMesa that MesaFrame uses, loaded from libOSMesa at run time: no header and no library is
 // needed to build. Values and signatures as in the Khronos registry's gl.xml and Mesa's include/GL/osmesa.h.
 #pragma once
 
@@ -39,7 +39,7 @@ inline constexpr Enum kColorAttachment = 0x8ce0, kDepthAttachment = 0x8d00, kDep
 inline constexpr int kOsFormat = 0x22, kOsDepthBits = 0x30, kOsProfile = 0x33, kOsCoreProfile = 0x34, kOsMajor = 0x36,
                      kOsMinor = 0x37;
 
-/// The functions, as in OpenGL without the prefix, in the case of the house.
+/// The functions, as in OpenGL without the prefix, in our naming style.
 struct Functions {
   const unsigned char* (*get_string)(Enum);
   Enum (*get_error)();
@@ -106,7 +106,7 @@ struct Functions {
 };
 
 /// Loads libOSMesa, makes a context current for the rest of the process and finds the functions. Throws
-/// std::runtime_error that names the package when the library is missing, or what it lacks.
+/// std::runtime_error that names the package when the library is missing, or the missing function.
 [[nodiscard]] Functions start_osmesa();
 
 }  // namespace halfplane::gl

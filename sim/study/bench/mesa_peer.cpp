@@ -15,7 +15,7 @@
 namespace halfplane {
 namespace {
 
-// Requests: f renders a frame, c asks for its colours. Answers: a kind, a size, as many bytes.
+// Requests: f renders a frame, c asks for its colours. Answers: a kind, a size, that many bytes.
 enum class AnswerKind : char { ok, missing, bad_input };
 struct AnswerHead {
   AnswerKind kind = AnswerKind::ok;
@@ -51,8 +51,8 @@ void send_answer(int socket, AnswerKind kind, const void* bytes, std::size_t siz
   if (send_bytes(socket, &head, sizeof head)) (void)send_bytes(socket, bytes, size);
 }
 
-// With no threads of its own llvmpipe rasterizes in the caller's. With some the caller bins triangles and then waits
-// for them, so that N threads keep N cores busy.
+// Without worker threads llvmpipe rasterizes in the caller's thread. With workers the caller bins triangles and then
+// waits for them, so that N threads keep N cores busy.
 int worker_threads(int threads) { return threads <= 1 ? 0 : threads; }
 
 void serve(int socket, MesaFrame& frame) {
@@ -121,7 +121,7 @@ void MesaPeer::start(const Scene* scene) {
 
 void MesaPeer::stop() {
   if (socket_ >= 0) {
-    shutdown(socket_, SHUT_RDWR);  // processes started since hold this end, too
+    shutdown(socket_, SHUT_RDWR);  // processes started since also hold this end
     close(socket_);
   }
   if (process_ > 0) waitpid(process_, nullptr, 0);

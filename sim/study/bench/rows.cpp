@@ -21,7 +21,7 @@ std::string reason_of(const std::exception_ptr& error) {
   }
 }
 
-/// What is left out, and why.
+/// Omitted engines, with reasons.
 class LeftOut {
  public:
   void add(const std::string& engine, const BenchCase& at, const std::exception_ptr& error) {
@@ -88,11 +88,11 @@ void add_case(std::span<const BenchCase> cases, std::size_t index, const BenchPl
       try {
         frames.push_back(make_frame(engine, at.scene, at.config, threads, plan.poll));
         rows.push_back({engine, threads, index, {}, facts});
-        // Those of the bit-exact engines are one comparison; the golden is what it refers to, and nobody compares llvmpipe.
+        // Bit-exact engines share one comparison; the golden is its reference, and llvmpipe is not compared.
         if (!is_bit_exact(engine)) rows.back().facts.errors.reset();
       } catch (const InputError&) {
         left_out.add(engine, at, std::current_exception());
-      } catch (const std::runtime_error&) {  // the build lacks it
+      } catch (const std::runtime_error&) {  // missing in this build
         if (engine == "llvmpipe") throw;
         left_out.add(engine, at, std::current_exception());
       }
@@ -136,7 +136,7 @@ std::vector<BenchRow> measure_rows(std::span<const BenchCase> cases, const Bench
   std::vector<BenchRow> rows;
   std::vector<Frame> frames;
   LeftOut left_out;
-  constexpr double kFactsShare = 0.3;  // of the progress: what comes before the frames
+  constexpr double kFactsShare = 0.3;  // fraction of the progress before the frames
   try {
     for (std::size_t i = 0; i < cases.size(); ++i) {
       const auto progress = [&, i](double fraction) {
@@ -157,7 +157,7 @@ std::vector<BenchRow> measure_rows(std::span<const BenchCase> cases, const Bench
     rows[i].times = times[i];
     if (times[i].refusal)
       left_out.add(rows[i].engine, cases[rows[i].case_index], times[i].refusal);
-    else if (!times[i].seconds.empty())  // it is when the study was ended early
+    else if (!times[i].seconds.empty())  // true if the study was ended early
       measured.push_back(std::move(rows[i]));
   }
   if (measured.empty() && left_out.first()) std::rethrow_exception(left_out.first());

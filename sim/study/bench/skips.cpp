@@ -15,23 +15,24 @@ namespace halfplane {
 namespace {
 
 constexpr std::string_view kObjects = "objects", kNodes = "nodes", kBins = "bins";
-// No built-ins: they show nothing that others do not.
+// Not built-in scenes: they show nothing new.
 constexpr std::string_view kFineGrid = "grid below a subpixel", kGlassBehind = "glass behind a wall",
                            kFaint = "layers that fade out", kOpaqueGlass = "opaque glass", kMasked = "masked glass",
                            kOneMoves = "city, one house moves", kAllMove = "city, everything moves";
 constexpr std::array kOwn{kFineGrid, kGlassBehind, kFaint, kOpaqueGlass, kMasked, kOneMoves, kAllMove};
 
-/// Why the pairs are what they are. objects, nodes and frustum: nearly all of `objects` lies outside, and the teapot inside.
-/// backface: a closed mesh, and triangles of which none faces away. zero_area and empty: triangles smaller than the snap grid
-/// and smaller than a pixel, and half-screen ones. objects_hiz: whole objects behind a wall, and objects drawn from front
-/// to back that mostly show. tiles_hiz: the same layers in either order. attributes: layers, and triangles that take no tile
-/// as a whole. tiles_outside: long diagonal triangles, whose boxes are mostly empty, and ones of about a pixel.
-/// trivially_accepted: large triangles, and ones that fill no tile. fragments_early_z: overlap that tiles alone do not decide,
-/// and layers of which each passes. clear: a mesh that leaves most tiles alone, and triangles that need every pixel of them.
-/// operations_early_z: blended layers behind opaque ones, and layers that all are seen. alpha_tiles: layers of which an alpha
-/// test drops one half by the alpha of their vertices, and by that of a texture, where it decides half of the tiles.
-/// opaque_blends: layers that blend, of alpha 1 and of less. masked_draws: blended layers whose channels are masked, and
-/// layers that write all. bins: of two pictures in turns one object is elsewhere, or all are; any other scene is at rest.
+/// The reasons for the pairs. objects, nodes and frustum: nearly all of `objects` lies outside, and the teapot inside.
+/// backface: a closed mesh, and triangles of which none faces away. zero_area and empty: triangles smaller than the
+/// snap grid and smaller than a pixel, and half-screen triangles. objects_hiz: whole objects behind a wall, and objects
+/// drawn from front to back that mostly show. tiles_hiz: the same layers in either order. attributes: layers, and
+/// triangles that take no tile as a whole. tiles_outside: long diagonal triangles, whose boxes are mostly empty, and
+/// ones of about a pixel. trivially_accepted: large triangles, and ones that fill no tile. fragments_early_z: overlap
+/// that tiles alone do not decide, and layers that all pass. clear: a mesh that touches few tiles, and triangles that
+/// need every pixel of them. operations_early_z: blended layers behind opaque ones, and layers that all are seen.
+/// alpha_tiles: layers half of which an alpha test drops by the alpha of their vertices, and by a texture's alpha,
+/// which decides half of the tiles. opaque_blends: layers that blend, of alpha 1 and of less. masked_draws: blended
+/// layers whose channels are masked, and layers that write all. bins: two alternating pictures in which one object has
+/// moved, or all have; all other scenes are static.
 constexpr std::array<SkipPair, 19> kPairs{{{kObjects, "objects", "teapot"},
                                            {kNodes, "objects", "teapot"},
                                            {"frustum", "objects", "teapot"},
@@ -52,7 +53,7 @@ constexpr std::array<SkipPair, 19> kPairs{{{kObjects, "objects", "teapot"},
                                            {"masked_draws", kMasked, "layers"},
                                            {"bins", kOneMoves, kAllMove}}};
 
-/// Frames of an engine of its own, with or without one kind of skipping: of the scenes in turns. `counters`: of the last
+/// Frames of a separate engine, with or without one kind of skipping, of the scenes in turns. `counters`: of the last
 /// frame; may be null.
 Frame skip_frame(const std::vector<std::shared_ptr<const Scene>>& scenes, const SkipPlan& plan, std::string_view skip,
                  bool is_on, Counters* counters) {
@@ -73,7 +74,7 @@ Frame skip_frame(const std::vector<std::shared_ptr<const Scene>>& scenes, const 
   };
 }
 
-/// The same from the mesh on.
+/// The same including the conversion of the mesh.
 Frame whole_frame(const SkipMaker& maker, const SkipPlan& plan) {
   RenderOptions options;
   options.threads = plan.threads;
@@ -92,7 +93,7 @@ Scene make_fine_grid(const SkipPlan& plan) {
   return make_layered_grid({plan.width, plan.height, cell, cell, kTriangles});
 }
 
-/// The nearest two of `layers_front`, which hide all others: those are glass.
+/// The nearest two of `layers_front`, which hide all others: these are glass.
 Scene glass_behind(Scene scene, const State& glass) {
   constexpr std::uint32_t kWall = 6;  // indices
   scene.states.push_back(glass);
@@ -107,13 +108,13 @@ Scene glass_behind(Scene scene, const State& glass) {
   return scene;
 }
 
-/// Alpha from corner to corner of each triangle of a scene.
+/// Alpha varying from corner to corner of each triangle of a scene.
 Scene with_alpha(Scene scene, const std::array<double, 3>& alpha) {
   for (std::size_t i = 0; i < scene.vertices.size(); ++i) scene.vertices[i].rgba[3] = alpha[i % 3];
   return scene;
 }
 
-/// A hundredth of the target to the right: everything, or one of its objects.
+/// Moved by a hundredth of the target to the right: everything, or one object.
 Scene moved(Scene scene, bool moves_all) {
   std::vector<bool> moves(scene.vertices.size(), moves_all);
   const auto draws =
@@ -127,7 +128,7 @@ Scene moved(Scene scene, bool moves_all) {
   return scene;
 }
 
-/// A scene that no file has, made of built-in ones.
+/// A scene without a file, made from built-in ones.
 Scene make_skip_scene(const SkipPlan& plan, std::string_view name) {
   if (name == kFineGrid) return make_fine_grid(plan);
   const auto load = [&plan](const char* built_in) { return *plan.load(built_in, false).scene; };
@@ -180,7 +181,7 @@ void measure_nodes(SkipRow& row, const SkipPlan& plan, const std::function<void(
 void measure_skip(SkipRow& row, SceneShelf& shelf, const SkipPlan& plan, const std::function<void(double)>& progress) {
   if (row.skip == kNodes) return measure_nodes(row, plan, progress);
   const bool is_objects = row.skip == kObjects;
-  // Objects that were culled have no triangles left for the frustum test to drop.
+  // Culled objects have no triangles left for the frustum test to drop.
   const SkipScene with = shelf.get(row.scene, row.skip != "frustum");
   const SkipScene without = is_objects ? shelf.get(row.scene, false) : with;
   std::vector<std::shared_ptr<const Scene>> scenes{with.scene};
@@ -225,9 +226,9 @@ std::vector<SkipRow> measure_skips(const SkipPlan& plan) {
       progress(0);
       measure_skip(rows[i], shelf, plan, progress);
     }
-  } catch (const Interrupted&) {  // the rows so far stand
+  } catch (const Interrupted&) {  // the rows so far are kept
   }
-  // They are when the study was ended early.
+  // Incomplete if the study was ended early.
   std::erase_if(rows, [](const SkipRow& row) { return row.with.seconds.empty() || row.without.seconds.empty(); });
   return rows;
 }

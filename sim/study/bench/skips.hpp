@@ -1,4 +1,4 @@
-// What leaving out work saves: every kind of skipping on a scene made for it and on one where it cannot help.
+// The savings of skipping work: every kind of skipping on a scene made for it and on one where it cannot help.
 #pragma once
 
 #include <cstdint>
@@ -15,15 +15,15 @@
 
 namespace halfplane {
 
-/// A kind of skipping, and the scenes that show what it is worth. `objects` is the culling of whole objects,
-/// which happens when a scene is loaded, `nodes` that their vertices are not computed and that a tree of them is asked, frame
-/// by frame, where a mesh becomes a scene; the others are those of kSkipNames.
+/// A kind of skipping, and the scenes that show its value. `objects` is the culling of whole objects when a scene is
+/// loaded, `nodes` the skipping of their vertices by a tree, frame by frame, when a mesh becomes a scene; the others
+/// are those of kSkipNames.
 struct SkipPair {
   std::string_view skip, made_for, cannot_help;
 };
 [[nodiscard]] std::span<const SkipPair> skip_pairs();
 
-/// A scene, and how many of its primitives culling whole objects leaves out.
+/// A scene, and the number of primitives left out by object culling.
 struct SkipScene {
   std::shared_ptr<const Scene> scene;
   std::size_t primitives_culled = 0;
@@ -31,7 +31,7 @@ struct SkipScene {
 /// Loads a scene by name, with or without culling of whole objects.
 using SkipSceneLoader = std::function<SkipScene(const std::string& name, bool culls_objects)>;
 
-/// Makes a scene anew, of a mesh that is there. `vertices_skipped`: of the last one.
+/// Makes a scene again from a loaded mesh. `vertices_skipped`: of the last one.
 struct SkipMaker {
   std::function<Scene()> make;
   std::function<std::size_t()> vertices_skipped;
@@ -41,15 +41,15 @@ using SkipSceneOpener = std::function<SkipMaker(const std::string& name, bool ha
 struct SkipRow {
   std::string skip, scene;
   bool is_made_for = false;   ///< by the table of pairs
-  FrameTimes with, without;   ///< this one skipping on and off, all others on
+  FrameTimes with, without;   ///< this kind of skipping on and off, all others on
   std::uint64_t counter = 0;  ///< of that name, with everything on; of `objects`, primitives, of `nodes`, vertices
-  /// Share of the frame time that it saves; below 0 where it costs more than it saves.
+  /// Fraction of the frame time saved; negative if the test costs more.
   [[nodiscard]] double saved() const { return 1 - with.median() / without.median(); }
 };
 
 struct SkipPlan {
   Config config;
-  int width = 640, height = 480;  ///< pixels of a scene that is made here
+  int width = 640, height = 480;  ///< pixels of a generated scene
   int threads = 1, repeat = 5;
   std::vector<std::string> scenes;  ///< every skip on each of them; empty: by the table of pairs
   SkipSceneLoader load;
@@ -57,8 +57,8 @@ struct SkipPlan {
   std::function<void(double)> progress;  ///< 0...1; may be empty. Interrupted, thrown there, ends the study
 };
 
-/// Measures on the functional engine, with and without in turns. Throws InputError as loader and engine do.
-/// Of a study that was ended early, the rows that were measured.
+/// Measures on the functional engine, with and without in turns. Throws InputError as loader and engine do. A study
+/// ended early returns the rows measured so far.
 [[nodiscard]] std::vector<SkipRow> measure_skips(const SkipPlan& plan);
 
 }  // namespace halfplane

@@ -9,7 +9,7 @@
 namespace halfplane {
 namespace {
 
-constexpr double kNanosecond = 1e-9;  // an empty scene may take less than the clock shows
+constexpr double kNanosecond = 1e-9;  // an empty scene may take less than the clock's resolution
 
 void warm_up(const Frame& frame) {
   using Clock = std::chrono::steady_clock;

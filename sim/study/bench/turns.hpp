@@ -1,4 +1,4 @@
-// How a run time is measured here: frames of everybody in turns, medians.
+// Measurement of run times: frames of all candidates in turns, medians.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace halfplane {
 
-/// What one frame took.
+/// The cost of one frame.
 struct FrameCost {
   double seconds = 0;        ///< by the wall clock
   std::uint64_t cycles = 0;  ///< of the hardware; 0: the engine has none
@@ -18,27 +18,28 @@ struct FrameCost {
 /// Renders one frame, clear included.
 using Frame = std::function<FrameCost()>;
 
-/// The frames that were measured.
+/// The measured frames.
 struct FrameTimes {
-  std::vector<double> seconds;  ///< in order of time; empty when it was refused
+  std::vector<double> seconds;  ///< in order of time; empty if refused
   std::uint64_t cycles = 0;     ///< of the last one
-  std::exception_ptr refusal;   ///< the InputError or missing tool that its first frame ended with
+  std::exception_ptr refusal;   ///< the InputError or missing tool that ended its first frame
 
   /// Seconds; of an even number the mean of the middle two. At least a nanosecond, so that rates are finite.
   [[nodiscard]] double median() const;
   [[nodiscard]] double min() const;
 };
 
-/// A frame that takes longer than this to warm up, seconds, is not rendered again: that frame is its only measurement.
+/// A frame whose warm-up takes longer than this, seconds, is not rendered again: that frame is its only measurement.
 inline constexpr double kSlowFrame = 2;
 
-/// Before each measurement of a frame shorter than this, seconds, frames go unmeasured for the second figure, seconds:
-/// it then finds caches and threads as a frame before it leaves them, and not as a second of somebody else's work does.
+/// Before each measurement of a frame shorter than the first figure, seconds, frames are rendered unmeasured for the
+/// second figure, seconds: caches and threads are then as a preceding frame leaves them, not as a second of other work
+/// does.
 inline constexpr double kShortFrame = 0.1, kWarmUp = 0.02;
 
-/// Measures every frame `repeat` times, in turns, so that what else the machine does falls on all of them alike; the
-/// turn before warms up. A frame that throws a std::runtime_error there is left out. `progress` gets 0...1; may be empty.
-/// Interrupted, thrown there or by a frame, ends it: frames not measured by then have no seconds.
+/// Measures every frame `repeat` times, in turns, so that other load of the machine affects all of them equally; the
+/// first turn warms up. A frame that throws a std::runtime_error there is left out. `progress` gets 0...1; may be
+/// empty. Interrupted, thrown there or by a frame, ends it: frames not measured by then have no seconds.
 [[nodiscard]] std::vector<FrameTimes> measure_in_turns(std::span<const Frame> frames, int repeat,
                                                        const std::function<void(double)>& progress = {});
 

@@ -18,8 +18,8 @@
 namespace halfplane {
 namespace {
 
-constexpr std::uint32_t kDepthCodes = 16;  // so far a depth may be off and still be of the same fragment
-constexpr std::uint64_t kProof = 3;  // pixels that a hypothesis predicts for each that it gets wrong, to be believed
+constexpr std::uint32_t kDepthCodes = 16;  // largest depth difference within one fragment
+constexpr std::uint64_t kProof = 3;        // pixels that a hypothesis must predict for each wrong one, to be believed
 
 std::uint32_t packed_rgb(Rgb c) { return c.r | std::uint32_t{c.g} << 8 | std::uint32_t{c.b} << 16; }
 
@@ -29,7 +29,7 @@ std::uint32_t shown_color(std::uint32_t stored, ColorFormat format) {
   return packed_rgb(color_picture(one, format).get(0, 0));
 }
 
-/// How far apart two values are, and whether that is within a tolerance.
+/// The difference of two values, and whether it is within a tolerance.
 class Judge {
  public:
   Judge(const ForeignImage& image, ColorFormat format, const Tolerance& tolerance)
@@ -58,19 +58,19 @@ class Judge {
   std::array<int, 3> largest_{255, 255, 255};  // codes of R, G, B
 };
 
-/// What may show at a pixel that differs.
+/// Possible values of a pixel that differs.
 struct Candidates {
   std::vector<std::uint32_t> fragments;      ///< of samples inside a triangle, of lines and points
   std::vector<std::uint32_t> border;         ///< of samples exactly on a border
-  std::optional<std::uint32_t> shown_state;  ///< of the fragment that the model shows
+  std::optional<std::uint32_t> shown_state;  ///< of the fragment shown by the model
 };
 
 struct CandidatePixels {
   std::map<std::size_t, Candidates> at;
-  std::vector<bool> is_touched;  ///< by state: a fragment is among them
+  std::vector<bool> is_touched;  ///< by state: a fragment with it is among them
 };
 
-/// The scene's fragments at some pixels, those on borders too whoever owns them.
+/// The scene's fragments at some pixels, including fragments on borders for either owner.
 CandidatePixels candidates_at(const Scene& scene, const Config& config, const StudyRules& rules,
                               const std::vector<std::uint32_t>& differing, bool is_depth,
                               const std::vector<std::int32_t>& owners) {
@@ -104,7 +104,7 @@ CandidatePixels candidates_at(const Scene& scene, const Config& config, const St
   return result;
 }
 
-/// What clears leave, and an empty target.
+/// Values left by clears and by an empty target.
 std::vector<std::uint32_t> cleared_values(const Scene& scene, const Config& config, bool is_depth) {
   const DepthEncode encode(config, scene.planes);
   std::vector<std::uint32_t> values{is_depth ? encode.of_window(1) : 0};
@@ -124,8 +124,8 @@ double distance_from_side(const SnappedVertex& a, const SnappedVertex& b, double
   return std::hypot(px - a.x - t * dx, py - a.y - t * dy);
 }
 
-/// Of the differing pixels those past which a side of a triangle runs within a subpixel and a half: another snap, or an edge
-/// function with fewer bits, may decide there otherwise.
+/// The differing pixels within a subpixel and a half of a triangle's side: another snap, or an edge function with fewer
+/// bits, may decide differently there.
 std::vector<bool> pixels_at_sides(const std::vector<Triangle>& triangles, const std::vector<std::uint32_t>& differing,
                                   int width, int height, int grid_bits) {
   constexpr double kNear = 1.5;  // subpixels
@@ -148,15 +148,15 @@ std::vector<bool> pixels_at_sides(const std::vector<Triangle>& triangles, const 
   return is_near;
 }
 
-/// What a hypothesis says of the pixels that differ.
+/// The predictions of a hypothesis for the differing pixels.
 struct Prediction {
   ForeignDifference kind = ForeignDifference::other;
   std::string change;
-  std::vector<std::uint32_t> right;  ///< those that it predicts
-  std::uint64_t wrong = 0;           ///< pixels that it changes and does not predict
+  std::vector<std::uint32_t> right;  ///< pixels predicted correctly
+  std::uint64_t wrong = 0;           ///< pixels changed and not predicted
 };
 
-/// Draws hypotheses and puts pixels down to those that are no coincidence.
+/// Draws hypotheses and attributes pixels to those that cannot be coincidence.
 class HypothesisTest {
  public:
   HypothesisTest(const HypothesisScene& of, const ImageValues& expected, const ForeignImage& image, const Judge& judge,
@@ -183,7 +183,7 @@ class HypothesisTest {
     }
   }
 
-  /// The kinds of pixels, by the hypothesis that explains most first; the rest stays as it is.
+  /// The kinds of pixels, by the hypothesis that explains most first; other pixels are unchanged.
   std::vector<Explanation> explain(std::vector<std::uint8_t>& kind_of) && {
     std::vector<Explanation> explanations;
     while (true) {
@@ -225,7 +225,7 @@ class HypothesisTest {
   bool is_certain_ = false;  // the last one predicts all of it
 };
 
-/// Whether a pixel beside this one shows about the same: a primitive that ends there with us may end here with others.
+/// Whether a neighbouring pixel shows about the same: a primitive that ends there in our image may end here in others.
 bool is_beside(const std::vector<std::uint32_t>& ours, int width, std::uint32_t p, std::uint32_t got, bool is_depth,
                double near) {
   const int x = static_cast<int>(p) % width, y = static_cast<int>(p) / width;
@@ -244,7 +244,7 @@ bool holds(const std::vector<std::uint32_t>& values, std::uint32_t value) {
   return std::ranges::find(values, value) != values.end();
 }
 
-/// The operation that made the colour of a fragment, and may have been off by a code: of several the last.
+/// The operation that made the colour of a fragment, and may be off by a code: the last of several.
 ForeignDifference last_operation(const Scene& scene, const std::optional<std::uint32_t>& state, ColorFormat format) {
   if (!state) return ForeignDifference::color;
   const State& of = scene.states[*state];
@@ -299,7 +299,8 @@ class PixelKinds {
   const double near_;
 };
 
-/// Kinds of the pixels that have none yet. Where a colour with no operation is off, operations are not to blame for others.
+/// Kinds of the pixels that have none yet. If a colour without an operation is off, operations do not explain the
+/// others.
 void classify_rest(const PixelKinds& kinds, const std::vector<std::uint32_t>& differing,
                    std::vector<std::uint8_t>& kind_of) {
   constexpr auto is_operation = [](ForeignDifference kind) {
@@ -395,7 +396,7 @@ ForeignImage read_foreign_image(const std::string& path, int width, int height) 
     image.is_depth = true;
     std::ifstream file(path, std::ios::binary);
     if (!file) throw InputError(path + ": there is no such file; give the image to be judged");
-    // No more than an image of this size can have, and a byte: a file may have no end at all.
+    // The maximum for an image of this size, and a byte: a file may have no end at all.
     constexpr std::size_t kLongestHeader = 10 + 65535;
     const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     std::string bytes(kLongestHeader + 4 * pixels + 1, '\0');

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kMostSubpixelBits = 8;
 
-/// The engine's image of a scene; none where it refuses it.
+/// The engine's image of a scene; none if it refuses it.
 std::optional<ImageValues> drawn_values(const HypothesisScene& of, const Scene& scene, const Config& config,
                                         const StudyRules& rules) {
   try {
@@ -23,12 +23,12 @@ std::optional<ImageValues> drawn_values(const HypothesisScene& of, const Scene& 
     const Rendering drawn =
         rules == StudyRules{} ? render_functional(scene, config) : render_scalar(scene, config, options);
     return image_values(drawn.frame, config.color_format, of.is_depth);
-  } catch (const InputError&) {  // too wide together with the rest of this configuration, say
+  } catch (const InputError&) {  // for example too wide together with the rest of this configuration
     return {};
   }
 }
 
-/// A copy of the scene that hypotheses change, draw and put right again.
+/// A copy of the scene that hypotheses change, draw and restore.
 class ChangedScene {
  public:
   explicit ChangedScene(const HypothesisScene& of) : of_(of), scene_(of.scene) {}
@@ -61,7 +61,7 @@ class ChangedScene {
     int width, height;  ///< of the texture, texels
   };
 
-  /// Draws share vertices, and textures have sizes of their own.
+  /// Draws share vertices, but textures have different sizes.
   void give_own_vertices() {
     has_own_vertices_ = true;
     const bool has_normals = !scene_.normals.empty();
@@ -98,7 +98,8 @@ class ChangedScene {
   bool has_own_vertices_ = false;
 };
 
-/// The other values of a state: its other words, and each of its words-as-numbers exchanged; those that repeat it go along.
+/// The other values of a state: its other words, and each of its words-as-numbers exchanged, with the numbers that
+/// repeat it.
 std::vector<StateValue> other_values(const DrawState& row, const StateValue& value) {
   std::vector<StateValue> others;
   const bool has_numbers = value.word == row.words.size();

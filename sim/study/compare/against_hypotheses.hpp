@@ -1,11 +1,11 @@
-// Hypotheses about a foreign image: what the scene would show with one thing of it changed. Each is drawn whole, to the bit.
+// Hypotheses about a foreign image: the scene's image with one change. Each is drawn completely, to the bit.
 //
 //   depth_func  another depth function for one that the scene has
 //   texture     another filter, wrap, combination or interpolation; coordinates half a texel or a texel off, or upside
 //               down; a level more or less; weights of 4 bits
-//   blend       another factor or equation, or none; products that are cut, shifted by 8, or rounded one by one
+//   blend       another factor or equation, or none; products truncated, shifted by 8, or rounded one by one
 //   dither      switched, or with the matrix moved
-//   color       codes cut to 5 and 6 bits, not rounded
+//   color       codes truncated to 5 and 6 bits, not rounded
 //   snap        other subpixel bits, or no snap at all
 #pragma once
 
@@ -19,7 +19,7 @@
 
 namespace halfplane {
 
-/// The values of an image, as ForeignImage has them.
+/// The values of an image, in the form of ForeignImage.
 using ImageValues = std::vector<std::uint32_t>;
 
 /// An image of ours in the form of a foreign one.
@@ -28,10 +28,10 @@ using ImageValues = std::vector<std::uint32_t>;
 struct Hypothesis {
   ForeignDifference kind = ForeignDifference::other;
   std::string change;
-  std::function<std::optional<ImageValues>()> draw;  ///< none: the scene cannot be drawn so
+  std::function<std::optional<ImageValues>()> draw;  ///< none: such a scene cannot be drawn
 };
 
-/// What hypotheses are about: all of it must outlive them.
+/// Input of hypotheses: all of it must outlive them.
 struct HypothesisScene {
   const Scene& scene;
   const Config& config;
@@ -41,18 +41,18 @@ struct HypothesisScene {
   std::vector<bool> is_touched;  ///< by state: a draw with it has fragments where the images differ
 };
 
-/// The likely ones first.
+/// The most likely ones first.
 [[nodiscard]] std::vector<Hypothesis> hypotheses(const HypothesisScene& of);
 
-/// Arithmetic of the fragment operations that no state of a draw asks for.
+/// Arithmetic of the fragment operations that no state of a draw can request.
 struct ForeignArithmetic {
   enum class Products { rounded, cut, shifted, rounded_apart } products = Products::rounded;
-  int dither_x = 0, dither_y = 0;  ///< pixels that the matrix of dithering is moved by, 0...3
-  bool cuts_codes = false;         ///< 5 and 6 bits of a colour are its upper ones
+  int dither_x = 0, dither_y = 0;  ///< offset of the dithering matrix, pixels, 0...3
+  bool cuts_codes = false;         ///< 5 and 6 bits of a colour are its upper bits
 };
 
-/// The scene's fragments with other arithmetic, an image for each; none where the fragments of render_scalar and the
-/// operations alone do not make `expected`, the model's own image.
+/// The scene's fragments with other arithmetic, an image for each; none if the fragments of render_scalar and the
+/// operations alone do not give `expected`, the model's own image.
 [[nodiscard]] std::optional<std::vector<ImageValues>> replay(const HypothesisScene& of, const ImageValues& expected,
                                                              const std::vector<ForeignArithmetic>& arithmetic);
 

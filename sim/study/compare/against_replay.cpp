@@ -1,4 +1,4 @@
-// The fragments of a scene through operations with other arithmetic than the pipeline's.
+// Replays the fragments of a scene through operations with arithmetic other than the pipeline's.
 #include <algorithm>
 
 #include "against_hypotheses.hpp"
@@ -14,7 +14,7 @@ constexpr int kDitherSide = 4;                // of the matrix
 
 using Products = ForeignArithmetic::Products;
 
-/// Two products of codes of 8 bits, put together; what a product is divided by is 255.
+/// Combines two products of codes of 8 bits; the divisor of a product is 255.
 std::uint32_t sum_of_products(Products products, BlendEquation equation, std::uint32_t a, std::uint32_t b) {
   const auto divided = [products](std::uint32_t value) {
     return products == Products::shifted ? value >> 8
@@ -49,12 +49,12 @@ Channels<std::uint32_t> blended_by(Products products, const ColorOps& ops, const
   return result;
 }
 
-/// Colours of rgb565 whose upper bits are what is stored.
+/// Colours of rgb565 with their upper bits stored.
 Channels<std::uint32_t> cut_to_codes(const Channels<std::uint32_t>& c) {
   return widen_color<std::uint32_t>(ColorFormat::rgb565, c[0] >> 3 << 11 | c[1] >> 2 << 5 | c[2] >> 3);
 }
 
-/// A framebuffer in which the operations have other arithmetic.
+/// A framebuffer whose operations have other arithmetic.
 struct ForeignTarget {
   ForeignArithmetic arithmetic;
   Rendering rendering;
@@ -76,7 +76,7 @@ struct ForeignTarget {
     const bool cuts = arithmetic.cuts_codes && !ops.color.dithers;
     const bool blends = arithmetic.products != Products::rounded && ops.color.blends();
     if ((cuts || blends) && depth_passes(ops.alpha.func, color[3], ops.alpha.reference)) {
-      ops.alpha = {};  // it looked at the source's alpha
+      ops.alpha = {};  // it has tested the source's alpha
       if (ops.color.blends())
         color = blended_by(arithmetic.products, ops.color, color, widen_color(format, frame.color[at]));
       if (cuts) color = cut_to_codes(color);

@@ -1,4 +1,4 @@
-// What docs/spec.md promises of a comparison, and what rules give up of it.
+// The bounds of docs/spec.md for a comparison, and the bounds that study rules give up.
 #include <array>
 #include <cmath>
 #include <cstdio>

@@ -49,14 +49,14 @@ struct ExactAndHardware {
   exact::Rational exact, hardware;
 };
 
-/// A pixel that the model owns, and what it must hold.
+/// A pixel that the model owns, and its expected content.
 struct OwnedPixel {
   std::size_t p = 0;                       ///< y * width + x
   std::size_t at = 0;                      ///< in a Framebuffer
   std::uint32_t draw = 0;                  ///< index into Scene::commands
   bool is_line = false;                    ///< or a point
-  PerPlane<ExactAndHardware> plane{};      ///< all that are judged
-  const SurfaceSample* surface = nullptr;  ///< what its colour is, where it is no plane's
+  PerPlane<ExactAndHardware> plane{};      ///< all judged planes
+  const SurfaceSample* surface = nullptr;  ///< source of its colour, if not a plane
 };
 
 /// Whether model and golden show the same primitive at a pixel, at each of its samples.
@@ -67,12 +67,12 @@ bool shows_same(const Comparison& c, std::size_t p) {
   return true;
 }
 
-/// Holds what is stored against what the fragments leave in a target by the golden's operations, over the pixels that
-/// some fragment owns, and gathers every attribute error.
+/// Compares the stored values with the result of the golden's operations on the fragments, over the owned pixels, and
+/// collects every attribute error.
 class AttributeComparison {
  public:
-  /// `made`: what the specification drew while its fragments came to `frames`, one for each sample of a pixel.
-  /// `perspective`: the golden's picture when all colours are interpolated so; empty: not asked for.
+  /// `made`: the specification's rendering, whose fragments went to `frames`, one for each sample of a pixel.
+  /// `perspective`: the golden's picture with all colours interpolated so; empty: not requested.
   AttributeComparison(const Scene& scene, const Config& config, const std::vector<FragmentFrame>& frames,
                       const Rendering& made, const golden::Image& perspective, Comparison& result)
       : scene_(scene),
@@ -88,7 +88,7 @@ class AttributeComparison {
         eye_mappings_(fit_eye_mappings(result.golden.outlines, scene.commands.size())),
         texture_(result.depth_error_lsb.size()) {}
 
-  /// `progress` gets the part of the pixels done.
+  /// `progress` gets the fraction of the pixels done.
   void run(const std::function<void(double)>& progress) {
     const double parts = static_cast<double>(frames_.size());
     for (std::size_t k = 0; k < frames_.size(); ++k)
@@ -114,7 +114,7 @@ class AttributeComparison {
   }
 
  private:
-  /// What the one sample of pixels, or one of several, holds: in the model, in the specification, in the golden.
+  /// The content of the one sample of pixels, or of one of several: in the model, in the specification, in the golden.
   struct View {
     const Framebuffer &stored, &made;
     const std::vector<std::int32_t>& ids;
@@ -129,7 +129,7 @@ class AttributeComparison {
             has_perspective ? perspective_.samples[k] : perspective_};
   }
 
-  /// All pixels, at one of their samples.
+  /// Compares all pixels, at one of their samples.
   void sample(std::size_t k, const std::function<void(double)>& progress) {
     frame_ = &frames_[k];
     oracle_.reset();
@@ -147,7 +147,7 @@ class AttributeComparison {
     for (const LayerRow& row : layers_->rows()) add_row(layer_rows_, row);
   }
 
-  /// The one colour of each pixel: the mean of its samples, rounded, and against the golden's.
+  /// Compares the one colour of each pixel: the mean of its samples, rounded, and the golden's.
   void resolved_colors() {
     const auto max = golden::channel_max(config_.color_format);
     const Framebuffer& frame = result_.rendering.frame;
@@ -205,11 +205,11 @@ class AttributeComparison {
     return pixel;
   }
 
-  /// From the centre to a sample; -1: the centre.
+  /// Offset from the centre to a sample; -1: the centre.
   [[nodiscard]] SampleOffset offset_of(int place) const {
     return place < 0 || frames_.size() == 1 ? SampleOffset{} : widths_.sample_offset[static_cast<std::size_t>(place)];
   }
-  /// The triangle of a fragment as it is seen from there.
+  /// The triangle of a fragment as seen from there.
   [[nodiscard]] Triangle seen_triangle(const TappedFragment& f, int place) const {
     return exact::seen_from(made_.triangles[f.item], offset_of(place));
   }
@@ -225,7 +225,7 @@ class AttributeComparison {
 
   void pixel(const OwnedPixel& pixel) {
     const State& state = state_of(pixel.draw);
-    // The same primitive, not merely some primitive: otherwise U - D would be the distance of two surfaces.
+    // It must be the same primitive: otherwise U - D would be the distance of two surfaces.
     const std::int32_t owner = frame_->owners()[pixel.p];
     const bool same_visible = view_->golden.ids[pixel.p] == owner && view_->ids[pixel.p] == owner;
     result_.compared_pixels += same_visible ? 1 : 0;
@@ -241,7 +241,7 @@ class AttributeComparison {
     v.d = depth_encode_.is_identity() ? std::int64_t{stored} << exact::kGridBits
                                       : on_grid(static_cast<double>(depth_encode_.plane_value(stored)) * depth_max_);
     result_.stage_mismatches += stored != view_->made.depth[pixel.at] ? 1 : 0;
-    // Of a format that is not the plane's, storage is a step after the datapath.
+    // In a format other than the plane's, storage is a step after the datapath.
     const std::int64_t datapath = depth_encode_.is_identity() ? v.d : v.h;
     if (pixel.is_line) {
       line_datapath_.add(to_lsb(datapath - v.s));
@@ -264,7 +264,7 @@ class AttributeComparison {
     }
   }
 
-  /// What affine interpolation costs one channel, whose value is `u`.
+  /// The error of affine interpolation in one channel, whose value is `u`.
   void affine(std::size_t p, std::int64_t u, int channel) {
     if (view_->perspective.color.empty()) return;
     const auto c = static_cast<std::size_t>(channel);
@@ -283,7 +283,7 @@ class AttributeComparison {
     if (sample_ == 0) result_.affine_texels[p] = static_cast<float>(texels);
   }
 
-  /// A colour of several fragments: what of its error is the operations'.
+  /// A colour of several fragments: the part of its error due to the operations.
   void layered_color(const OwnedPixel& pixel, std::uint32_t stored, bool same_visible) {
     layers_->judge(pixel.p, stored);
     if (!same_visible || frames_.size() > 1) return;
@@ -322,7 +322,7 @@ class AttributeComparison {
       v.u = on_grid(view_->golden.color[pixel.p][c] * max[c] / 255);
       color_parts_.add(v);
       affine(pixel.p, v.u, channel);
-      if (frames_.size() > 1) continue;  // the pixel's one colour is compared, when all samples have been looked at
+      if (frames_.size() > 1) continue;  // the pixel's one colour is compared after all samples
       const double error = to_lsb(v.d - v.u);
       color_.add(error);
       if (std::abs(error) > std::abs(worst)) worst = error;
@@ -330,7 +330,7 @@ class AttributeComparison {
     if (same_visible && frames_.size() == 1) result_.color_error_lsb[pixel.p] = static_cast<float>(worst);
   }
 
-  /// What the surface of a pixel should show; its errors are gathered.
+  /// The exact surface of a pixel; its errors are collected.
   [[nodiscard]] golden::Color exact_surface(const OwnedPixel& pixel) {
     const TappedFragment& f = frame_->shown(pixel.p);
     const SurfaceErrors errors = surface_oracle_->errors(*pixel.surface, f.x, f.y);
@@ -348,9 +348,9 @@ class AttributeComparison {
   const Scene& scene_;
   const Config& config_;
   const std::vector<FragmentFrame>& frames_;
-  const FragmentFrame* frame_ = nullptr;  // of the sample at work
+  const FragmentFrame* frame_ = nullptr;  // of the current sample
   std::size_t sample_ = 0;                // its number
-  std::optional<View> view_;              // what it holds
+  std::optional<View> view_;              // its content
   const Rendering& made_;
   const golden::Image& perspective_;
   const Widths widths_;
@@ -359,16 +359,16 @@ class AttributeComparison {
   double depth_max_;  // 2^B - 1
   DepthEncode depth_encode_;
   std::vector<std::optional<EyeMapping>> eye_mappings_;
-  std::optional<exact::TriangleOracle> oracle_;        // of the triangle at work
+  std::optional<exact::TriangleOracle> oracle_;        // of the current triangle
   std::uint32_t oracle_item_ = 0;                      // its number
-  std::optional<exact::TriangleOracle> color_oracle_;  // of it, where the pixel at work is shaded
+  std::optional<exact::TriangleOracle> color_oracle_;  // of it, where the current pixel is shaded
   std::optional<SurfaceOracle> surface_oracle_;        // likewise
   std::optional<int> shaded_at_;                       // that place
   ErrorSet depth_, color_, eye_;
   MomentSet datapath_, line_datapath_, color_datapath_, datapath_bias_, color_datapath_bias_, color_over_w_, fog_,
       light_;
   TextureErrorSets texture_;
-  std::optional<LayeredColors> layers_;  // of the sample at work
+  std::optional<LayeredColors> layers_;  // of the current sample
   std::vector<LayerRow> layer_rows_;
   bool has_texture_ = false;
   PartSets depth_parts_, color_parts_;
@@ -394,12 +394,12 @@ std::uint64_t different_pixels(const Scene& scene, const Framebuffer& a, const F
   return different;
 }
 
-/// Whether the planes are made as the pipeline makes them.
+/// Whether the planes are made by the pipeline's rules.
 bool has_own_planes(const StudyRules& rules) {
   return rules.gradients == Gradients::one_reciprocal && rules.accumulator == Accumulator::wrap;
 }
 
-/// Draws by the specification, whose every fragment goes to the judge, and through the golden's operations.
+/// Draws with the specification; every fragment goes to the judge, and through the golden's operations.
 Rendering draw_fragments(const Scene& scene, const Config& config, const CompareOptions& options, FragmentJudge& judge,
                          std::vector<FragmentFrame>& frames, const std::function<void(double)>& progress) {
   RenderOptions render_options;
@@ -451,7 +451,7 @@ Comparison compare(const Scene& scene, const Config& plain_config, const Compare
   const Rendering made = draw_fragments(scene, config, options, judge, frames, part(0.2, 0.4));
   result.fragments = judge.finish(made);
   if (!has_own_planes(options.rules))
-    result.fragments.planes.clear();  // off on purpose; what is stored says by how much
+    result.fragments.planes.clear();  // wrong on purpose; the stored values show by how much
   result.golden = golden::render(scene, config, golden_options);
   golden::Image perspective;
   if (options.wants_affine_cost) {
@@ -470,7 +470,7 @@ Comparison compare(const Scene& scene, const Config& plain_config, const Compare
     const golden::Image at_vertices = golden::render(lit_at_vertices(scene), config, golden_options);
     result.per_vertex = per_vertex_rows(scene, config, result.rendering, result.golden, at_vertices);
   }
-  // With taps the functional engine draws by the stages: what it draws without them must be the same.
+  // With taps the functional engine draws by the stages: without them it must draw the same.
   if (is_default && !options.engine) {
     RenderOptions plain;
     plain.skip = options.skip;

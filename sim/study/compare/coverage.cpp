@@ -27,7 +27,7 @@ golden::PixelRange range_of(const Triangle& t, int grid_bits) {
   return {first(x_min), first(y_min), end(x_max), end(y_max)};
 }
 
-/// Compares triangle by triangle; one object so that the result and the inputs need not be passed around.
+/// Compares triangle by triangle; an object holds the result and the inputs.
 class OracleCheck {
  public:
   OracleCheck(const Config& config, const CoverageLog& log, FillRule rule)
@@ -40,7 +40,7 @@ class OracleCheck {
     const exact::TriangleOracle oracle(t, grid_bits_, rule_);
     const auto end = log_.visits().end();
     const auto skip_to = [&](int tile_x, int tile_y) {
-      // Whatever lies before the tile was drawn outside the range, or a second time.
+      // Visits before the tile were drawn outside the range, or a second time.
       while (visit != end && visit->triangle == index &&
              std::tie(visit->tile_y, visit->tile_x) < std::tie(tile_y, tile_x)) {
         report(t, index, visit->tile_x * tile_size_, visit->tile_y * tile_size_, false, log_.sample_count(*visit));
@@ -113,7 +113,7 @@ class EdgeMarker {
     const int top = golden::first_centre(ay - reach_, height_);
     const int bottom = golden::first_centre(by + 2 * reach_, height_);
     for (int y = top; y < bottom; ++y) {
-      // The piece of the segment that lies within reach of this row, as a range of x.
+      // The part of the segment within reach of this row, as a range of x.
       const double cy = y + 0.5, dy = by - ay;
       const double from = dy > 0 ? std::clamp((cy - reach_ - ay) / dy, 0.0, 1.0) : 0;
       const double to = dy > 0 ? std::clamp((cy + reach_ - ay) / dy, 0.0, 1.0) : 1;
@@ -127,7 +127,7 @@ class EdgeMarker {
     }
   }
 
-  /// From the point p to the segment 0 - d.
+  /// Distance from the point p to the segment 0 - d.
   static double distance(double px, double py, double dx, double dy) {
     const double length2 = dx * dx + dy * dy;
     const double t = length2 > 0 ? std::clamp((px * dx + py * dy) / length2, 0.0, 1.0) : 0;
@@ -139,8 +139,8 @@ class EdgeMarker {
   const std::vector<bool>& wanted_;
 };
 
-/// How far the snap may move a corner of a rectangle, one of whose halves is the outline: the end by the half diagonal of
-/// a step, what lies across it by as much, and with the ends it turns.
+/// Bound of a corner's displacement by the snap, for a rectangle with the outline as one half: the end by the half
+/// diagonal of a step, the offset across by as much, and its rotation with the ends.
 double reach_of_rectangle(const golden::Outline& half, double width, double step) {
   const double length = std::hypot(half.x[2] - half.x[1], half.y[2] - half.y[1]);
   return std::min(std::numbers::sqrt2 * step * (1 + width / length), width + 2 * step);
@@ -188,7 +188,7 @@ OracleResult check_sample(const Scene& scene, const Config& config, std::span<co
                    golden::draw_region(scene, state), visit);
   }
   OracleResult result = check.result();
-  for (; visit != log.visits().end(); ++visit) result.mismatches += log.sample_count(*visit);  // of no triangle at all
+  for (; visit != log.visits().end(); ++visit) result.mismatches += log.sample_count(*visit);  // of no triangle
   return result;
 }
 
@@ -223,7 +223,7 @@ PixelCoverage compare_counts(const Scene& scene, std::span<const std::uint32_t> 
     (k > m ? result.missing : result.extra) += difference(k, m);
   }
   if (result.missing + result.extra == 0) return result;
-  // A sample lies up to half a pixel's diagonal from its centre, to which distances are.
+  // A sample lies up to half a pixel's diagonal from its centre; distances refer to the centre.
   const double to_sample = golden.samples.empty() ? 0 : std::sqrt(0.5);
   const double step = std::ldexp(1.0, -subpixel_bits);
   EdgeMarker marker(golden.width, golden.height, differs);
@@ -232,7 +232,7 @@ PixelCoverage compare_counts(const Scene& scene, std::span<const std::uint32_t> 
     const State& state = scene.states[draw.state];
     if (o.corners < 3)
       mark_uncertain(o, state, subpixel_bits, golden, differs, marker.near);
-    else if (drawn_as(state, draw.topology) == PrimitiveType::line)  // half of one; smooth, it covers parts of pixels
+    else if (drawn_as(state, draw.topology) == PrimitiveType::line)  // half of one; smooth, it covers pixels partially
       marker.mark(o, reach_of_rectangle(o, state.line_width, step) + (state.smooth ? std::sqrt(0.5) : to_sample));
     else
       marker.mark(o, step + to_sample);

@@ -11,7 +11,7 @@
 
 namespace halfplane {
 
-/// Everything that an engine's coverage tap said, packed: one visit is 24 bytes and a bit per sample.
+/// All calls of an engine's coverage tap, packed: one visit is 24 bytes and a bit per sample.
 class CoverageLog {
  public:
   struct Visit {
@@ -44,7 +44,7 @@ struct CoverageMismatch {
   std::uint32_t primitive = 0;  ///< number of the input primitive
   int x = 0, y = 0;             ///< pixels
   bool oracle_covers = false;
-  int sample = 0;  ///< of its pixel
+  int sample = 0;  ///< in its pixel
 };
 
 struct OracleResult {
@@ -55,8 +55,8 @@ struct OracleResult {
   std::optional<CoverageMismatch> first;
 };
 
-/// Holds the logged coverage of every triangle against exact::covers by `rule`, tiles that were never visited included.
-/// `logs`: of each sample of a pixel.
+/// Compares the logged coverage of every triangle with exact::covers by `rule`, including tiles that were never
+/// visited. `logs`: of each sample of a pixel.
 [[nodiscard]] OracleResult check_coverage(const Scene& scene, const Config& config, std::span<const Triangle> triangles,
                                           std::span<const CoverageLog> logs, FillRule rule = FillRule::top_left);
 
@@ -66,11 +66,10 @@ struct OracleResult {
 struct PixelCoverage {
   std::uint64_t missing = 0;    ///< samples that U covers and the model does not
   std::uint64_t extra = 0;      ///< samples that the model covers and U does not
-  std::uint64_t near_edge = 0;  ///< of both: in pixels that an edge of U passes, or a line or point would have decided
-                                ///< otherwise, within one snap step
+  std::uint64_t near_edge = 0;  ///< of both: at an edge of U, or where a line or point changes within a snap step
 };
 
-/// Counts per pixel against the golden's; needs Image::outlines.
+/// Compares counts per pixel with the golden's; needs Image::outlines.
 [[nodiscard]] PixelCoverage compare_counts(const Scene& scene, std::span<const std::uint32_t> model,
                                            const golden::Image& golden, int subpixel_bits);
 

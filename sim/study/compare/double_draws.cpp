@@ -12,7 +12,7 @@
 namespace halfplane {
 namespace {
 
-/// Draws per sample of the mesh that is being drawn, under both rules.
+/// Draws per sample of the current mesh, under both rules.
 class MeshCounts {
  public:
   MeshCounts(int width, int height)
@@ -23,7 +23,7 @@ class MeshCounts {
   void add_by_rule(int x, int y) { ++by_rule_[at(x, y)]; }
   void add_by_top_left(int x, int y) { ++by_top_left_[at(x, y)]; }
 
-  /// Whatever is added next lies in `box`.
+  /// Later additions lie in `box`.
   void touch(const TriangleSetup& box) {
     if (touched_.is_empty()) touched_ = {box.left, box.top, box.right, box.bottom};
     touched_ = {std::min(touched_.left, box.left), std::min(touched_.top, box.top), std::max(touched_.right, box.right),
@@ -53,7 +53,7 @@ class MeshCounts {
   PixelBounds touched_;
 };
 
-/// Is draw number `next` of another mesh than draw number `last`?
+/// Whether draw number `next` belongs to another mesh than draw number `last`.
 bool is_another_mesh(const Scene& scene, std::uint32_t last, std::uint32_t next) {
   for (std::uint32_t i = last; i <= next; ++i) {
     const auto* draw = std::get_if<Draw>(&scene.commands[i]);
@@ -70,7 +70,7 @@ DrawsOfRule count_draws(const Scene& scene, const Config& config, const StudyRul
   if (rule == FillRule::top_left && !is_homogeneous) return {};
   validate(config);
   const Widths widths = derive_widths(config);
-  check_scene(scene, config);  // before the counts are as large as it says
+  check_scene(scene, config);  // before the counts, which have its size
   MeshCounts counts(scene.width, scene.height);
   std::optional<std::uint32_t> last_draw;
   DrawsOfRule sum;
@@ -100,7 +100,7 @@ DrawsOfRule count_draws(const Scene& scene, const Config& config, const StudyRul
           counts.touch(setup.triangle);
           traverse_homogeneous(setup, [&](int x, int y) { counts.add_by_rule(x, y); });
         });
-        return false;  // the clipped triangles are what it is compared with
+        return false;  // the clipped triangles are the reference
       });
   counts.finish(sum);
   return sum;

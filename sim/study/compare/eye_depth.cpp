@@ -23,7 +23,7 @@ struct Extremes {
 };
 
 std::optional<EyeMapping> mapping_of(const Extremes& e) {
-  // 1e-6 apart at least: below that the fit would amplify the rounding of its two vertices.
+  // At least 1e-6 apart: below that the fit would amplify the rounding of its two vertices.
   if (!(e.low > 0) || !std::isfinite(e.high) || e.high - e.low < 1e-6 * e.high) return std::nullopt;
   const double b = (e.high_z - e.low_z) / (e.high - e.low);
   if (b == 0) return std::nullopt;

@@ -17,9 +17,9 @@ struct EyeMapping {
   [[nodiscard]] std::optional<double> eye_depth(double z) const;
 };
 
-/// For every command of the scene, the mapping that its draw was made with: fitted through the two vertices whose 1/w
-/// differ most, and kept only if all its vertices agree. None for orthographic draws, window space without w, and draws
-/// of which nothing is left.
+/// For every command of the scene, the mapping of its draw: fitted through the two vertices whose 1/w differ most, and
+/// kept only if all its vertices agree. None for orthographic draws, window space without w, and draws that are clipped
+/// away.
 [[nodiscard]] std::vector<std::optional<EyeMapping>> fit_eye_mappings(std::span<const golden::Outline> outlines,
                                                                       std::size_t command_count);
 

@@ -63,14 +63,14 @@ void FragmentFrame::add(const TappedFragment& fragment) {
   const golden::Tested<double> tested{static_cast<double>(depth_encode_(fragment.plane[kDepthPlane].code)), alpha,
                                       shows_back(fragment, state, draw.topology), is_drawn_by_alpha};
   const golden::Fate fate = pixels_.apply(p, state, tested, {}, owner);
-  // Of several lines or points of one primitive that store the same there, the last stands for all.
+  // Of several lines or points of one primitive that store the same value there, the last counts.
   const bool is_another = !fate.written && fragment.kind != PrimitiveKind::triangle && pixels_.owners()[p] == owner &&
                           is_equal(fragment, shown_[p], state);
   if (fate.written || is_another) shown_[p] = fragment;
   if (fate.written && writes_color(state, config_.color_format)) layers_.write(p, state, color_of(fragment));
 }
 
-/// Does the one leave in the target what the other does?
+/// Whether two fragments leave the same in the target.
 bool FragmentFrame::is_equal(const TappedFragment& a, const TappedFragment& b, const State& state) const {
   if (fragment_state(state, config_.color_format).depth_write && a.plane[kDepthPlane].code != b.plane[kDepthPlane].code)
     return false;

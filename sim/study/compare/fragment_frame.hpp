@@ -1,8 +1,8 @@
-// What the fragments of a tap leave in a target by the golden's own operations: for each pixel, whose fragment it shows.
+// The result of a tap's fragments in a target by the golden's own operations: for each pixel, the fragment it shows.
 //
-// The tests store a fragment as it came or not at all, so that the exact and the unrounded values of a pixel are those of
-// the fragment it shows and can wait until somebody asks. They compare stored codes, as real numbers. Colours that are
-// more than one fragment's are layers (layers.hpp).
+// The tests store a fragment unchanged or not at all, so that the exact and the unrounded values of a pixel are those
+// of its visible fragment and can be computed on demand. They compare stored codes, as real numbers. Colours of several
+// fragments are layers (layers.hpp).
 #pragma once
 
 #include <cstdint>
@@ -17,12 +17,12 @@ namespace halfplane {
 
 class FragmentFrame {
  public:
-  /// `sample`: the one of a pixel's several that this is the target of.
+  /// `sample`: number of the target's sample in a pixel.
   FragmentFrame(const Scene& scene, const Config& config, int sample = 0);
 
-  /// The next fragment in program order; those of other samples are no matter here.
+  /// The next fragment in program order; fragments of other samples are ignored.
   void add(const TappedFragment& fragment);
-  /// After the last one.
+  /// To be called after the last fragment.
   void finish() { clear_until(scene_.commands.size()); }
 
   /// By pixel, y * width + x: the primitive that owns it, -1 none; and the fragment it shows, where it is owned.
@@ -50,7 +50,7 @@ class FragmentFrame {
 /// then by primitive of the points.
 struct OwnedPixels {
   std::vector<std::uint32_t> pixels;  // a target has at most 2^28
-  std::uint64_t triangles = 0;        // that show
+  std::uint64_t triangles = 0;        // that are visible
 
   explicit OwnedPixels(const FragmentFrame& frame);
 };

@@ -1,5 +1,5 @@
-// Fragments before the operations: coverage and planes of each against the exact oracle. Whatever happens to a fragment
-// afterwards, what is wrong here is wrong in the setup, the raster or the interpolation.
+// Fragments before the operations: coverage and planes of each against the exact oracle. A fault found here is in the
+// setup, the raster or the interpolation, independent of later operations.
 #pragma once
 
 #include <array>
@@ -20,17 +20,17 @@
 
 namespace halfplane {
 
-// The planes that compare and stress judge: those of the one list (model/attributes.hpp).
+// The planes that compare and stress judge: those of model/attributes.hpp.
 
 /// Plane i of TappedFragment::plane.
 struct JudgedPlane {
   std::string_view name;
   int bits = 0;           ///< of a code
-  bool is_depth = false;  ///< its bound is depth_error_bound() or line_depth_error_bound(); of all others 1 LSB
+  bool is_depth = false;  ///< its bound is depth_error_bound() or line_depth_error_bound(); for all others 1 LSB
   bool is_color = false;  ///< a channel of the stored colour
 };
 
-/// All that is interpolated.
+/// All interpolated planes.
 [[nodiscard]] inline std::vector<JudgedPlane> judged_planes(const Config& config) {
   std::vector<JudgedPlane> planes;
   for (const Attribute& a : attributes_of(config))
@@ -48,11 +48,11 @@ struct JudgedPlane {
 /// The largest distances of one plane from the exact value, LSB.
 struct PlaneVerdict {
   JudgedPlane plane;
-  double worst = 0, worst_of_lines = 0;  ///< codes; of lines and points apart, whose bound may be another
-  double worst_unrounded = 0;            ///< of triangles, before the final rounding
+  double worst = 0, worst_of_lines = 0;  ///< codes; lines and points separately, with possibly another bound
+  double worst_unrounded = 0;            ///< triangles, before the final rounding
 };
 
-/// The samples of surfaces that are nearest to their bounds, or beyond them.
+/// The samples of surfaces nearest to their bounds, or beyond them.
 struct SurfaceVerdict {
   Held color, light, coordinate, level, filter, fog_factor, fog;
 };
@@ -60,7 +60,7 @@ struct SurfaceVerdict {
 struct FragmentVerdict {
   std::uint64_t fragments = 0;
   SurfaceVerdict surfaces;
-  OracleResult coverage;  ///< every sample of every primitive; a fragment that comes twice is a mismatch
+  OracleResult coverage;  ///< every sample of every primitive; a repeated fragment is a mismatch
   std::vector<PlaneVerdict> planes;
 };
 
@@ -68,12 +68,12 @@ class FragmentJudge {
  public:
   FragmentJudge(const Scene& scene, const Config& config, FillRule rule = FillRule::top_left);
   FragmentJudge(const Scene&, const Config&&,
-                FillRule = FillRule::top_left) = delete;  // it would not outlive the judge
+                FillRule = FillRule::top_left) = delete;  // must outlive the judge
 
   /// The next fragment in program order.
   void add(const TappedFragment& fragment);
 
-  /// After the last one; `rendering`: what the engine that made them has kept.
+  /// After the last one; `rendering`: the result of the engine that made them.
   [[nodiscard]] FragmentVerdict finish(const Rendering& rendering);
 
  private:
@@ -81,7 +81,7 @@ class FragmentJudge {
   void add_to_line(const TappedFragment& fragment);
   void begin_triangle(const TappedFragment& fragment);
   void finish_triangle();
-  /// Where a pixel is to be shaded: 0 at its centre, otherwise 1 + a sample.
+  /// The correct shading place of a pixel: 0 its centre, otherwise 1 + a sample.
   [[nodiscard]] std::size_t shaded_place(int x, int y) const;
 
   const Scene& scene_;
@@ -89,14 +89,14 @@ class FragmentJudge {
   const Widths widths_;
   const FillRule rule_;
   FragmentVerdict verdict_;
-  std::vector<CoverageLog> logs_;               // of each sample of a pixel
-  std::vector<PixelLog> pixels_;                // likewise
-  std::uint64_t repeated_ = 0;                  // samples
-  std::uint64_t misplaced_ = 0;                 // samples whose colour is from another place than it should be
-  std::optional<std::uint32_t> item_;           // the number of the triangle at work
-  std::vector<exact::TriangleOracle> oracles_;  // of it: at the centre, at each of several samples
-  std::vector<SurfaceOracle> surfaces_;         // likewise, if it has a surface
-  std::vector<std::map<std::pair<int, int>, TileMask>> tiles_;  // of each sample: by tile row, column
+  std::vector<CoverageLog> logs_;                               // of each sample of a pixel
+  std::vector<PixelLog> pixels_;                                // likewise
+  std::uint64_t repeated_ = 0;                                  // samples
+  std::uint64_t misplaced_ = 0;                                 // samples with a colour from a wrong place
+  std::optional<std::uint32_t> item_;                           // number of the current triangle
+  std::vector<exact::TriangleOracle> oracles_;                  // of it: at the centre, at each of several samples
+  std::vector<SurfaceOracle> surfaces_;                         // likewise, if it has a surface
+  std::vector<std::map<std::pair<int, int>, TileMask>> tiles_;  // by sample: by tile row, column
 };
 
 /// One line for every bound that a fragment breaks; empty when all hold.

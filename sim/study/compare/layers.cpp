@@ -9,8 +9,8 @@
 namespace halfplane {
 namespace {
 
-/// By how much a factor of the real colours may be off, 0...1: where it is made of a stored colour that is off by `color`
-/// 255ths, its alpha by `alpha`.
+/// Error bound of a factor of the real colours, 0...1, made from a stored colour with an error of `color` 255ths, and
+/// `alpha` for its alpha.
 double factor_error(BlendFactor factor, std::size_t channel, double color, double alpha) {
   switch (factor) {
     case BlendFactor::dst_color:
@@ -56,12 +56,12 @@ void LayeredColors::clear(std::size_t pixel, const std::array<double, 4>& color)
 double LayeredColors::bound_of_blend(const Pixel& before, const State& state, const golden::RealColor& source,
                                      std::size_t c) const {
   const bool is_narrow = format_ == ColorFormat::rgb565;
-  const auto error_of = [&](std::size_t channel) {  // 255ths, as the blend sees it
+  const auto error_of = [&](std::size_t channel) {  // 255ths, as seen by the blend
     if (is_narrow && channel == 3) return 0.0;
     return before.bound[channel] * 255 / most_[channel] + (is_narrow ? 0.5 : 0.0);
   };
   const double d = before.real[c], e = error_of(c), alpha = error_of(3);
-  double error = e;  // of min and max
+  double error = e;  // for min and max
   const BlendEquation equation = state.blend_equation[c == 3 ? 1 : 0];
   if (equation != BlendEquation::min && equation != BlendEquation::max) {
     const BlendFactors& f = *state.blend;

@@ -1,12 +1,13 @@
-// Layers: what blending, masks and dithering lose, pixel by pixel. The same fragments, as codes, go through the golden's
-// blending in real arithmetic; the stored colour less that is the error of the arithmetic alone, and a bound grows with it:
+// Layers: the errors of blending, masks and dithering, pixel by pixel. The same fragments, as codes, go through the
+// golden's blending in real arithmetic; the stored colour less that is the error of the arithmetic alone, and a bound
+// grows with it:
 //
 //   a plain write   1/2 LSB, dithered 1
 //   a blend         |d_m - d| f_d + (d + |d_m - d|) |delta f_d| + s |delta f_s|, then 1/2 of a 255th, then 1/2 LSB of rgb565
 //
-// d_m is the stored code as the blend sees it: rgb565 is widened to 8 bits. What is stored was rounded from 8 bits, k, and
-// comes back within 4 (5 bits) or 2 (6 bits) of k, which is less than the stored half LSB and half of a 255th together. A
-// factor is off where it is made of what is stored.
+// d_m is the stored code at the blend's input: rgb565 is widened to 8 bits. A stored code was rounded from 8 bits, k,
+// and returns within 4 (5 bits) or 2 (6 bits) of k, which is less than the stored half LSB and half of a 255th
+// together. A factor has an error if it is made from the stored colour.
 #pragma once
 
 #include <array>
@@ -20,13 +21,13 @@
 
 namespace halfplane {
 
-/// The errors of the pixels under so many layers.
+/// The errors of the pixels under that many layers.
 struct LayerRow {
   std::uint32_t layers = 0;  ///< colour writes that read the stored colour, since the last that did not
   std::uint64_t pixels = 0;
   double max = 0, rms = 0;   ///< LSB of the stored format, the worst channel of each pixel
   double bound = 0;          ///< the largest
-  double part_of_bound = 0;  ///< the largest error as a part of its pixel's own bound
+  double part_of_bound = 0;  ///< the largest error as a fraction of its pixel's bound
 };
 
 /// Adds a row to those of other samples, in the order of their layers.
@@ -36,16 +37,16 @@ class LayeredColors {
  public:
   LayeredColors(std::size_t pixels, ColorFormat format);
 
-  /// A fragment's colour is written. `color`: its codes.
+  /// Writes a fragment's colour. `color`: its codes.
   void write(std::size_t pixel, const State& state, const std::array<std::uint8_t, 4>& color);
   void clear(std::size_t pixel, const std::array<double, 4>& color);
 
-  /// Whether what the pixel shows is more than the code of one fragment.
+  /// Whether the pixel shows more than the code of one fragment.
   [[nodiscard]] bool is_layered(std::size_t pixel) const { return at_[pixel].is_layered; }
 
-  /// Holds a stored colour against it.
+  /// Compares a stored colour with it.
   void judge(std::size_t pixel, std::uint32_t stored);
-  /// Of the pixels that were judged, by their layers.
+  /// Of the judged pixels, by their layers.
   [[nodiscard]] std::vector<LayerRow> rows() const;
 
  private:
@@ -62,7 +63,7 @@ class LayeredColors {
   std::array<double, 4> most_;  ///< the largest code of each channel
   std::size_t channels_;
   std::vector<Pixel> at_;
-  std::vector<LayerRow> rows_;  ///< by layers; rms still a sum of squares
+  std::vector<LayerRow> rows_;  ///< by layers; rms is still a sum of squares
 };
 
 }  // namespace halfplane

@@ -20,7 +20,7 @@ const State& state_of(const Scene& scene, std::uint32_t command) {
   return scene.states[std::get<Draw>(scene.commands[command]).state];
 }
 
-/// Every disagreement of two sorted lists counts, a pixel that is drawn twice as well.
+/// Every disagreement of two sorted lists counts, also a pixel that is drawn twice.
 void compare_pixels(std::span<const Pixel> drawn, std::span<const Pixel> expected, OracleResult& result) {
   const auto report = [&result](const Pixel& pixel, bool oracle_covers) {
     ++result.mismatches;
@@ -46,7 +46,7 @@ double distance_to_segment(double px, double py, const GoldenLine& line) {
   return std::hypot(px - t * dx, py - t * dy);
 }
 
-/// From a point to the border of the diamond around (cx, cy).
+/// Distance from a point to the border of the diamond around (cx, cy).
 double distance_to_diamond(double px, double py, double cx, double cy) {
   // By symmetry the side from (1/2, 0) to (0, 1/2).
   GoldenLine side;
@@ -64,7 +64,8 @@ bool diamond_is_uncertain(const GoldenLine& line, int x, int y, double reach) {
   return false;
 }
 
-/// Coverage changes where an end moves to another pixel: do all pixels within reach of the ends give the same answer?
+/// Coverage changes where an end moves to another pixel: whether pixels within reach of the ends give different
+/// results.
 bool rounded_is_uncertain(const GoldenLine& line, int x, int y, double reach) {
   const auto low = [reach](double v) { return std::floor(v - reach); };
   const auto high = [reach](double v) { return std::floor(v + reach); };
@@ -85,14 +86,14 @@ bool point_is_uncertain(double dx, double dy, const State& state, double reach) 
   return std::abs(distance - state.point_size / 2) <= reach;
 }
 
-/// Whether a line within reach of this one may have the other major axis. The strands of the two lie to other sides.
+/// Whether a line within reach of this one may have the other major axis, and thus its strands on the other sides.
 bool may_turn(const GoldenLine& line, double reach) {
   const double run = std::abs(line.end.x - line.start.x), rise = std::abs(line.end.y - line.start.y);
-  // Each coordinate moves by as much, and by a pixel more where it is rounded.
+  // Each coordinate moves by that much, and by a pixel more if it is rounded.
   return std::abs(run - rise) <= 4 * (line.rule == LineRule::diamond ? reach : reach + 1);
 }
 
-/// The pixels of `region` that a line covers by definition. `tested` counts those that were looked at.
+/// The pixels of `region` that a line covers by definition. `tested` counts the tested pixels.
 std::vector<Pixel> oracle_pixels(const DrawnLine& drawn, LineRule rule, const golden::PixelRange& region, int grid_bits,
                                  std::uint64_t& tested) {
   const exact::Line line{drawn.start, drawn.end, rule, drawn.drops_last, grid_bits};
@@ -103,7 +104,7 @@ std::vector<Pixel> oracle_pixels(const DrawnLine& drawn, LineRule rule, const go
     return at;
   };
   std::vector<Pixel> pixels;
-  // The walk only says where to ask: two pixels more to each side than a line can reach.
+  // The walk only selects candidates: two pixels more to each side than a line can reach.
   golden::for_each_candidate(GoldenLine{real(drawn.start), real(drawn.end), rule, true}, region, 3, [&](int x, int y) {
     ++tested;
     if (exact::covers(line, x, y)) pixels.push_back({drawn.primitive, y, x});
@@ -111,14 +112,14 @@ std::vector<Pixel> oracle_pixels(const DrawnLine& drawn, LineRule rule, const go
   return pixels;
 }
 
-/// Likewise a point.
+/// Likewise for a point.
 std::vector<Pixel> oracle_pixels(const DrawnPoint& point, const golden::PixelRange& region, int grid_bits,
                                  std::uint64_t& tested) {
   // In halves of a subpixel, so that the border of an odd size is an integer.
   const std::int64_t pixel = std::int64_t{2} << grid_bits, size = point.size;
   const std::int64_t x = std::int64_t{2} * point.at.x, y = std::int64_t{2} * point.at.y;
   const auto holds = [&](std::int64_t centre, std::int64_t at) { return at - size <= centre && centre < at + size; };
-  const auto around = [&](std::int64_t border, int low, int high) {  // the pixel that holds it, inside the region
+  const auto around = [&](std::int64_t border, int low, int high) {  // the pixel that contains it, inside the region
     return static_cast<int>(std::clamp<std::int64_t>(border >> (grid_bits + 1), low, high));
   };
   // Twice the distance from the centre, squared: below 2^63 as long as sizes are below 2^30.
@@ -161,7 +162,7 @@ void check_line_coverage(const Scene& scene, const Config& config, const Renderi
 
 void mark_uncertain(const golden::Outline& outline, const State& state, int subpixel_bits, const golden::Image& image,
                     const std::vector<bool>& wanted, std::vector<bool>& near) {
-  // What is smooth covers parts of pixels, up to half a diagonal from their centres.
+  // A smooth primitive covers pixels partially, up to half a diagonal from their centres.
   const double reach = std::ldexp(1.0, -subpixel_bits) + (state.smooth && image.samples.empty() ? std::sqrt(0.5) : 0);
   const golden::PixelRange target{0, 0, image.width, image.height};
   const auto index = [&image](int x, int y) {
@@ -185,7 +186,7 @@ void mark_uncertain(const golden::Outline& outline, const State& state, int subp
   line.start.y = outline.y[0];
   line.end.x = outline.x[1];
   line.end.y = outline.y[1];
-  // 3: an end moves by a pixel at most, and may move the line out of its column's three candidates by as much.
+  // 3: an end moves by at most a pixel, and may move the line out of its column's three candidates by as much.
   const auto mark = [&](const GoldenLine& strand, auto&& is_uncertain) {
     golden::for_each_candidate(strand, target, 3, [&](int x, int y) {
       if (wanted[index(x, y)] && !near[index(x, y)] && is_uncertain(x, y)) near[index(x, y)] = true;

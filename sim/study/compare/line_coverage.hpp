@@ -1,5 +1,5 @@
-// Coverage of lines and points: against the exact oracle, pixel by pixel, and which pixels of the golden's are so close
-// to a border that the snap may decide them.
+// Coverage of lines and points: against the exact oracle, pixel by pixel, and the golden's pixels that are so close to
+// a border that the snap may decide them.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace halfplane {
 
-/// Everything that an engine's pixel tap said.
+/// All calls of an engine's pixel tap.
 class PixelLog {
  public:
   struct Pixel {
@@ -32,8 +32,8 @@ class PixelLog {
   std::vector<Pixel> pixels_;
 };
 
-/// Holds the logged pixels of every line and point against exact::covers and the definition of a point, and adds what
-/// it finds to `result`. A line that the engine left out altogether is not seen here: it is missing against U.
+/// Compares the logged pixels of every line and point with exact::covers and the definition of a point, and adds the
+/// result to `result`. A line that the engine left out completely is not found here: it is missing against U.
 void check_line_coverage(const Scene& scene, const Config& config, const Rendering& rendering, const PixelLog& log,
                          OracleResult& result);
 

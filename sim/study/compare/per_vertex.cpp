@@ -20,7 +20,7 @@ bool lights_fragments(const Scene& scene, const Draw& draw) {
   return state.shade == Shade::phong && drawn_as(state, draw.topology) == PrimitiveType::triangle;
 }
 
-/// The number of its size: 0 below a pixel, k from 2^(k-1) pixels on.
+/// The number of a size class: 0 below a pixel, k from 2^(k-1) pixels on.
 int size_class(double area) { return area < 1 ? 0 : std::ilogb(area) + 1; }
 
 }  // namespace
@@ -99,7 +99,7 @@ std::vector<PerVertexRow> per_vertex_rows(const Scene& scene, const Config& conf
 
 namespace {
 
-/// `part` of 3: which of the runs it is.
+/// `part` of 3: number of the run.
 std::uint64_t cycles_of_frame(const Scene& scene, const Config& config, int part,
                               const std::function<void(double)>& progress) {
   RenderOptions options;
@@ -113,7 +113,7 @@ PerVertexCycles per_vertex_cycles(const Scene& scene, const Config& config,
                                   const std::function<void(double)>& progress) {
   PerVertexCycles result;
   const Scene at_vertices = lit_at_vertices(scene);
-  std::vector<std::string_view> units{""};  // to be set; more than nearest texels only where the scene asks for them
+  std::vector<std::string_view> units{""};  // settings to try; more than nearest texels only if the scene needs them
   if (config.texture_unit == TextureUnitKind::off) units = {"nearest", "bilinear", "trilinear"};
   for (const std::string_view unit : units) {
     Config with = config;

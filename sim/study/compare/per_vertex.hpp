@@ -1,4 +1,4 @@
-// What light at vertices costs against light at fragments: the golden's picture of both, by the size of triangles.
+// The error of light at vertices against light at fragments: the golden's pictures of both, by the size of triangles.
 #pragma once
 
 #include <cstdint>
@@ -15,9 +15,9 @@ namespace halfplane {
 
 /// Triangles of one size.
 struct PerVertexRow {
-  double area = 0;              ///< the least, pixels; the most is twice that. 0: below one pixel
-  std::uint64_t triangles = 0;  ///< that show
-  std::uint64_t pixels = 0;     ///< of those
+  double area = 0;              ///< minimum, pixels; the maximum is twice that. 0: below one pixel
+  std::uint64_t triangles = 0;  ///< visible ones
+  std::uint64_t pixels = 0;     ///< of these
   double max = 0, rms = 0;      ///< colour lit at vertices less lit at fragments, red, green and blue, LSB of 8 bits
 };
 
@@ -32,19 +32,19 @@ struct PerVertexRow {
                                                         const Rendering& rendering, const golden::Image& fragments,
                                                         const golden::Image& vertices);
 
-// What light at fragments costs against light at vertices in time: cycles of whole frames.
+// The cost in time of light at fragments against light at vertices: cycles of whole frames.
 
-/// Cycles of the frame, of hardware that lights fragments, with the default memory.
+/// Cycles of the frame, on hardware that lights fragments, with the default memory.
 struct PerVertexCycles {
-  std::uint64_t fragments = 0;     ///< of the scene as it is
-  std::uint64_t vertices = 0;      ///< of the same hardware, of the scene lit at its vertices
-  std::uint64_t without_unit = 0;  ///< likewise, of hardware with shade.unit=0
-  std::vector<std::string> set;    ///< "shade.unit=1": what was changed in the configuration to have the unit
-  std::string refused;             ///< why there are no figures: no such hardware, or it does not take the scene
+  std::uint64_t fragments = 0;     ///< of the unchanged scene
+  std::uint64_t vertices = 0;      ///< of the scene lit at its vertices, on the same hardware
+  std::uint64_t without_unit = 0;  ///< likewise, on hardware with shade.unit=0
+  std::vector<std::string> set;    ///< "shade.unit=1": changes of the configuration to get the unit
+  std::string refused;             ///< why there are no figures: no such hardware, or it refuses the scene
 };
 
-/// Runs the cycle engine on hardware of this configuration, with shade.unit and a texture unit that takes the scene set
-/// where they are off. `progress` is given 0...1; it may be empty, and may throw to end the work.
+/// Runs the cycle engine on hardware of this configuration, with shade.unit and a texture unit for the scene set if
+/// they are off. `progress` gets 0...1; it may be empty, and may throw to end the work.
 [[nodiscard]] PerVertexCycles per_vertex_cycles(const Scene& scene, const Config& config,
                                                 const std::function<void(double)>& progress = {});
 

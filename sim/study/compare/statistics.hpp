@@ -8,7 +8,7 @@
 
 namespace halfplane {
 
-/// `mean` is signed, the rest absolute. All 0 when nothing was compared: look at `count`.
+/// `mean` is signed, the rest absolute. All 0 when nothing was compared: check `count`.
 struct ErrorMoments {
   std::uint64_t count = 0;
   double max = 0, mean = 0, rms = 0;

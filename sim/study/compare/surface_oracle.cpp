@@ -13,8 +13,8 @@ namespace halfplane {
 namespace {
 
 constexpr double kLevelBound = 0.1;           // levels
-constexpr double kRoundingBound = 0.5078125;  // LSB: a half, and 2^-7 for the one between two levels
-constexpr double kLargestTurn = 0.25;         // of a normal's length: beyond, nothing is promised of its light
+constexpr double kRoundingBound = 0.5078125;  // LSB: a half, and 2^-7 for the rounding between two levels
+constexpr double kLargestTurn = 0.25;         // of a normal's length: beyond this its light has no bound
 constexpr double kWeightBound = 1;            // LSB: two coordinates off by 2^-9 of 255
 
 std::int64_t grid_units(double lsb) {
@@ -26,7 +26,7 @@ double ratio_of(const std::array<double, 3>& w) {
   return high / low;
 }
 
-/// The filter with its weights, and nothing rounded.
+/// The filter with its weights, without rounding.
 std::array<double, 4> weighted_texel(const Sampler& s, const SurfaceSample& sample) {
   const auto fetch = [&s](int level, int x, int y) { return s.texture->texel(level, x, y); };
   const auto [is_linear, is_between, levels] = filter_of(s, sample.lod);
@@ -47,7 +47,7 @@ double over_w_bound(double extent, double w_ratio, const PerspectiveFormat& form
                     int roundings) {
   const double delta = std::ldexp(roundings + 1, -format.guard_bits - 1) + std::ldexp(1.0, -5);  // of Q's plane, codes
   const double smallest_q = std::ldexp(1.0, format.q_bits - 1) / w_ratio, lost = 0.5 + delta;
-  // |U| <= 2^(x+1), 2^x at most twice the largest |u'| and its margin, and that from the real value.
+  // |U| <= 2^(x+1), 2^x at most twice the largest |u'| with its margin; this bounds the distance from the real value.
   const double held = attribute.is_centred ? 5.01 * (extent / 2 + 1) : extent;
   if (smallest_q <= lost) return held;
   const double first_order = coordinate_error_bound(extent, w_ratio, format, attribute, roundings);
@@ -100,8 +100,8 @@ SurfaceOracle::SurfaceOracle(const Scene& scene, const Config& config, const Tri
   for (const std::size_t axis : {0U, 1U}) {
     const auto [low, high] = std::minmax({v[0].uv[axis], v[1].uv[axis], v[2].uv[axis]});
     const double extent = (high - low) * sampler_.axes[axis].size;
-    // A corner farther than 2^20 from u_ref is held there; weighted means of corners are off by no more than the corners,
-    // and the real coordinate by the rounding of binary64, in which beyond 2^900 it overflows.
+    // A corner farther than 2^20 from u_ref is clamped; weighted means of corners have at most the corners' error, and
+    // the real coordinate that of binary64, which overflows beyond 2^900.
     constexpr double kReach = kFarthestCoordinate;
     const double farthest = extent / 2 + 1;
     const double held_off = farthest > kReach ? farthest - kReach + std::ldexp(extent, -40) : 0;
@@ -111,7 +111,8 @@ SurfaceOracle::SurfaceOracle(const Scene& scene, const Config& config, const Tri
   }
 }
 
-/// Q_i is rounded, one below 1/2 to 1, and its plane is off by delta; the reciprocal of the area is off in all of it.
+/// Q_i is rounded, below 1/2 to 1, and its plane has the error delta; the error of the reciprocal of the area scales
+/// all of it.
 void SurfaceOracle::set_q(const std::array<double, 3>& w, const PerspectiveFormat& format, int roundings) {
   q_code_ = std::ldexp(1.0, -q_exponent(w, format.q_bits));
   const double smallest = 1 / std::max({w[0], w[1], w[2]}) / q_code_;
@@ -168,7 +169,7 @@ double SurfaceOracle::affine_texels(int x, int y) const {
                     (affine.v - perspective.v) * sampler_.axes[1].size);
 }
 
-/// Of the model's own colour before the light.
+/// Relative to the model's own colour before the light.
 void SurfaceOracle::compare_light(const SurfaceSample& sample, const std::array<double, 3>& normal, double inverse_w,
                                   SurfaceErrors& errors) const {
   const golden::LightFactors real = golden::light_factors(state_, normal);
@@ -176,7 +177,8 @@ void SurfaceOracle::compare_light(const SurfaceSample& sample, const std::array<
   const golden::Direction n = golden::unit(normal);
   errors.is_lit = true;
   errors.light = {0, HUGE_VAL};
-  // The reciprocal of the area is off in what lies between the pixel and the farthest vertex, whose 1/w is no larger.
+  // The error of the reciprocal of the area scales the difference between the pixel and the farthest vertex, whose 1/w
+  // is no larger.
   const double turn =
       length > 0 ? normal_lost_ * normal_code_ / length + q_relative_ * (1 + inverse_w / length) : HUGE_VAL;
   golden::RealColor own{};
@@ -195,7 +197,7 @@ void SurfaceOracle::compare_light(const SurfaceSample& sample, const std::array<
   errors.exact = golden::in_light(state_, errors.exact, real);
 }
 
-/// Of the model's own colour before the fog: what is off is the factor, and the rounding of its product.
+/// Relative to the model's own colour before the fog: the errors are of the factor, and of its product's rounding.
 void SurfaceOracle::compare_fog(const SurfaceSample& sample, double inverse_w, SurfaceErrors& errors) const {
   const double off = fog_error_bound(*fog_, 1 / inverse_w, q_lost_ * q_code_ / inverse_w + q_relative_);
   const double part = golden::fog_part(*state_.fog, inverse_w);
@@ -222,7 +224,7 @@ void SurfaceOracle::compare_texels(const SurfaceSample& sample, const golden::Fr
   const double worse = std::max(off[0], off[1]);
   errors.footprints = std::isfinite(lod) ? worse / std::exp2(lod) : 0;
   const double least = -1 - state_.texture_lod[0], model_lod = std::ldexp(sample.lod, -kLodFraction);
-  if (lod < HUGE_VAL) errors.level = std::max(model_lod, least) - std::max(lod, least);  // else none is known
+  if (lod < HUGE_VAL) errors.level = std::max(model_lod, least) - std::max(lod, least);  // otherwise unknown
   errors.level_size = {std::abs(errors.level), level_bound_};
 
   const double bounded = golden::bounded_level(state_, lod);
@@ -248,7 +250,7 @@ void SurfaceOracle::compare_texels(const SurfaceSample& sample, const golden::Fr
 
 namespace {
 
-/// The channel that is farthest off, LSB.
+/// The channel with the largest error, LSB.
 float worst_channel(const std::array<std::int64_t, 4>& error) {
   const auto size = [](std::int64_t e) { return std::abs(e); };
   return static_cast<float>(

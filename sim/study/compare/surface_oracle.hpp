@@ -1,8 +1,8 @@
-// What a surface should show at a sample, in real arithmetic through the snapped vertices, and how far what it shows is
-// from that, step by step.
+// The exact surface at a sample, in real arithmetic through the snapped vertices, and the error of the shown one, step
+// by step.
 //
-// Real is binary64: edge values of snapped vertices are exact, all weights have one sign, coordinates count from a vertex,
-// so that nothing cancels; 2^-30 texel where a triangle spans 2^20 of them. The filter is the golden's.
+// Real is binary64: edge values of snapped vertices are exact, all weights have one sign, coordinates are relative to a
+// vertex, so that nothing cancels; the error is 2^-30 texel for a triangle of 2^20 texels. The filter is the golden's.
 //
 //   S  filtered at the exact coordinate and level
 //   C  at the hardware's coordinate and the exact level
@@ -26,10 +26,10 @@
 
 namespace halfplane {
 
-/// A figure and the most that it may be; infinite where nothing is promised.
+/// A figure and its bound; infinite without a bound.
 struct Held {
   double value = 0, bound = HUGE_VAL;
-  [[nodiscard]] bool holds() const { return !std::isfinite(bound) || value <= bound; }  // of a promise, no NaN does
+  [[nodiscard]] bool holds() const { return !std::isfinite(bound) || value <= bound; }  // no NaN satisfies a bound
   [[nodiscard]] double ratio() const { return value / bound; }
 };
 
@@ -38,22 +38,22 @@ struct TexelErrors {
   std::array<std::int64_t, 4> coordinate{}, level_of_detail{}, weights{}, rounding{};
 };
 
-/// One sample of a surface against the real one.
+/// One sample of a surface compared with the real one.
 struct SurfaceErrors {
-  golden::Color exact{};  ///< what should show, 0...255
+  golden::Color exact{};  ///< the exact colour, 0...255
   Held color;             ///< a colour over w, its worst channel, LSB of 8 bits
   bool is_lit = false;
-  Held light;                ///< the channel nearest to its bound, of the same colour in real light; LSB of 8 bits
-  bool has_texture = false;  ///< otherwise nothing of the texture
+  Held light;                ///< the channel nearest to its bound, against the same colour in real light; LSB of 8 bits
+  bool has_texture = false;  ///< otherwise no texture figures
   Held coordinate;           ///< the worse of u and v, texels of level 0
   double footprints = 0;     ///< the same in extents of a pixel on the texture
-  double level = 0;          ///< model less real, levels; what magnifies counts as one level below 0
+  double level = 0;          ///< model less real, levels; magnification counts as one level below 0
   Held level_size;           ///< its size
-  Held filter;               ///< texel less real one at the hardware's own coordinate and level, LSB of 8 bits
+  Held filter;               ///< texel less the real one at the hardware's own coordinate and level, LSB of 8 bits
   TexelErrors texel;
   bool has_fog = false;
   Held fog_factor;  ///< f, times 255
-  Held fog;         ///< the channel in fog that is nearest to its bound, of the same colour in real fog; LSB of 8 bits
+  Held fog;         ///< the fogged channel nearest to its bound, against the same colour in real fog; LSB of 8 bits
 };
 
 class SurfaceOracle {
@@ -62,7 +62,7 @@ class SurfaceOracle {
   /// there (moved_to_sample).
   SurfaceOracle(const Scene& scene, const Config& config, const Triangle& triangle, const SampleOffset& offset = {});
   [[nodiscard]] SurfaceErrors errors(const SurfaceSample& sample, int x, int y) const;
-  /// How far coordinates that are affine on the screen lie from those over w, texels; 0 where the state has the latter.
+  /// Distance of coordinates that are affine on the screen from those over w, texels; 0 if the state has the latter.
   [[nodiscard]] double affine_texels(int x, int y) const;
 
  private:
@@ -81,47 +81,47 @@ class SurfaceOracle {
   Sampler sampler_;
   golden::InterpolationRules rules_;
   std::array<double, 2> offset_{};         ///< of the sample, pixels
-  golden::Setup<double> setup_, normals_;  ///< the latter with normals as colours, where there is light
+  golden::Setup<double> setup_, normals_;  ///< the latter with normals as colours, if lit
   double color_bound_ = HUGE_VAL, level_bound_ = HUGE_VAL;
   std::array<double, 2> coordinate_bound_{};
   std::shared_ptr<const FogTable> fog_;              ///< none: no fog
   std::shared_ptr<const PhongLight> phong_;          ///< none: no light
-  double normal_code_ = 0, normal_lost_ = 0;         ///< what a code of P is of a normal over w, how many it is off
-  double q_code_ = 0, q_lost_ = 0, q_relative_ = 0;  ///< what a code of Q is, how many it is off, and what part besides
+  double normal_code_ = 0, normal_lost_ = 0;         ///< one code of P as a normal over w; its error in codes
+  double q_code_ = 0, q_lost_ = 0, q_relative_ = 0;  ///< one code of Q; its error in codes, and its relative error
 };
 
-/// What real arithmetic allows an attribute over w to be off, texels or LSB: coordinate_error_bound(), which is to first
-/// order in the errors of Q, to all orders. Where Q is not known to be more than its error, whatever its bits can hold.
+/// Error bound of an attribute over w, texels or LSB: coordinate_error_bound(), which is first order in the errors of
+/// Q, to all orders. If Q may be below its error, the range of its bits.
 [[nodiscard]] double over_w_bound(double extent, double w_ratio, const PerspectiveFormat& format,
                                   const OverWFormat& attribute, int roundings);
 
-/// The largest w ratio to which a level of detail is promised to be 0.1 off at most: a code of Q is then 2^-9 of the
-/// smallest or less.
+/// The largest w ratio for which the error of a level of detail is at most 0.1: a code of Q is then at most 2^-9 of the
+/// smallest.
 [[nodiscard]] double largest_level_w_ratio(const PerspectiveFormat& format);
 
-// The errors of the textures that a target shows, taken apart, over its pixels.
+// The errors of a target's visible textures, split into parts, over its pixels.
 
 struct TextureErrors {
   std::uint64_t pixels = 0;
   ErrorMoments coordinate;         ///< the worse of u and v, texels of level 0
   ErrorMoments footprints;         ///< the same in extents of a pixel on the texture
-  double coordinate_of_bound = 0;  ///< the largest part of its triangle's bound that a coordinate takes up
+  double coordinate_of_bound = 0;  ///< the largest fraction of a triangle's bound used by a coordinate
   ErrorMoments level;              ///< model less real, levels
   /// Of the texel's channels, LSB of 8 bits: they sum to `total`, the texel less the exact one.
   PartStats part_coordinate, part_level, part_weights, part_rounding, total;
 
-  /// Per pixel, rows from the top, NaN without a texture: `coordinate`, `footprints`, `level` as above; of a part its worst
-  /// channel, LSB.
+  /// Per pixel, rows from the top, NaN without a texture: `coordinate`, `footprints`, `level` as above; for a part its
+  /// worst channel, LSB.
   struct Pictures {
     std::vector<float> coordinate, footprints, level, weights, rounding;
   } picture;
 };
 
-/// Gathers them.
+/// Collects the errors.
 class TextureErrorSets {
  public:
   explicit TextureErrorSets(std::size_t pixels);
-  /// Of pixel y * width + x; `errors` of a sample with a texture.
+  /// For pixel y * width + x; `errors` of a sample with a texture.
   void add(std::size_t pixel, const SurfaceErrors& errors);
   [[nodiscard]] TextureErrors result() &&;
 

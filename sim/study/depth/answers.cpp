@@ -22,7 +22,7 @@ DepthFormat small_float(int exponent_bits, int bits) {
   return {DepthFormat::Kind::small_float, bits, exponent_bits, bits - exponent_bits};
 }
 
-/// A format of one more bit; none where there is no room for it.
+/// A format with one more bit; none if there is no room for it.
 std::optional<DepthFormat> wider(DepthFormat format) {
   using Kind = DepthFormat::Kind;
   if (format.kind == Kind::ieee || format.bits >= 32 || (format.is_float() && format.mantissa_bits >= 24))
@@ -36,7 +36,7 @@ struct Trials {
   const DepthVariant& base;
   std::vector<DepthTrial> list;
 
-  /// Leaves out what is the base itself, and what the configuration cannot hold.
+  /// Leaves out the base itself, and formats that the configuration cannot hold.
   void add(const std::string& what, const std::string& options, const Config& config, DepthMapping mapping,
            const DepthFormat& format, const DepthPlanes& planes) {
     if (mapping == base.mapping && format == base.format && planes == base.planes &&
@@ -44,12 +44,12 @@ struct Trials {
       return;
     try {
       list.push_back({what, options, make_variant(config, mapping, format, planes), {}});
-    } catch (const InputError&) {  // widths that do not fit: not a change that this configuration can make
+    } catch (const InputError&) {  // widths that do not fit: not a possible change of this configuration
     }
   }
 };
 
-/// The decade whose errors weigh most: by the sum of squares.
+/// The decade with the largest errors: by the sum of squares.
 const DepthDecade* worst_decade(const DepthMeasurement& m) {
   const auto weight = [](const DepthDecade& d) {
     return d.error.rms * d.error.rms * static_cast<double>(d.error.count);
@@ -60,7 +60,7 @@ const DepthDecade* worst_decade(const DepthMeasurement& m) {
   return worst == m.decades.end() ? nullptr : &*worst;
 }
 
-/// Fights count to a tenth of a percent of the pairs, and then the rms error: a few pairs more or less decide nothing.
+/// Compares fights to a tenth of a percent of the pairs, and then the rms error: a few pairs do not matter.
 bool is_better(const DepthMeasurement& a, const DepthMeasurement& b) {
   const auto permille = [](const DepthMeasurement& m) { return std::round(1000 * m.order.rate()); };
   if (permille(a) != permille(b)) return permille(a) < permille(b);
@@ -98,7 +98,7 @@ std::vector<DepthTrial> try_changes(const Scene& scene, const DepthVariant& base
     return "--mapping " + std::string(depth_mapping_names()[static_cast<std::size_t>(mapping)]) + " --format " +
            to_string(format);
   };
-  // A hundredth before the nearest sample: its triangle may reach nearer between samples.
+  // A hundredth before the nearest sample: its triangle may come nearer between samples.
   if (const double near = 0.99 * measured.eye_min; near > 1.05 * base.planes[0]) {
     const DepthPlanes planes{std::stod(text("%.3g", near)), base.planes[1]};
     trials.add("the near plane at " + number(planes[0]), "--near " + number(planes[0]), config, base.mapping,
@@ -192,7 +192,7 @@ std::vector<DepthSweep> sweep_depth(const Scene& scene, const Config& config, co
     try {
       variants.push_back(make_variant(base, mapping, format, planes));
       places.push_back({sweep, sweeps[sweep].lines.size() - 1, x});
-    } catch (const InputError&) {  // a point that this configuration cannot hold
+    } catch (const InputError&) {  // impossible in this configuration
     }
   };
   const auto storage_bits = [bits](auto&& visit) {
@@ -222,7 +222,7 @@ std::vector<DepthSweep> sweep_depth(const Scene& scene, const Config& config, co
   for (std::size_t i = 0; i < results.size(); ++i) {
     is_whole = is_whole && results[i].is_whole;
     if (!results[i].is_whole) continue;
-    if (results[i].order.pairs == 0) continue;  // nothing overlaps: no rate
+    if (results[i].order.pairs == 0) continue;  // no overlaps: no rate
     auto& line = sweeps[places[i].sweep].lines[places[i].line];
     line.x.push_back(places[i].x);
     line.rate.push_back(results[i].order.rate());

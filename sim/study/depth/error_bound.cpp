@@ -36,7 +36,8 @@ DepthBound::DepthBound(const DepthVariant& variant)
       is_identity_(DepthEncode(variant.config, variant.planes).is_identity()),
       is_reversed_(is_reversed(variant.mapping)),
       plane_lsb_(1 / (std::ldexp(1.0, variant.config.depth_bits) - 1)),
-      // The bound of docs/spec.md holds half an LSB of rounding, which here is its own term; the snap of Z takes its place.
+      // The bound of docs/spec.md includes half an LSB of rounding, which is a separate term here; the snap of Z
+      // replaces it.
       datapath_(depth_error_bound(variant.config)),
       half_subpixel_(std::ldexp(0.5, -variant.config.subpixel_bits)) {}
 
@@ -73,8 +74,8 @@ double DepthBound::error(double z, const DepthBudget& budget) const {
 }
 
 DepthBound::Separation DepthBound::separation(double z, const DepthBudget& budget) const {
-  // A step of storage where it is longest between the two surfaces and what the datapath makes of them: towards far, or
-  // towards near if reversed. A float's steps double on the way.
+  // The longest step of storage between the two surfaces with the datapath's errors: towards far, or towards near if
+  // reversed. A float's steps double on the way.
   const double d = scale_.d_of_z(z);
   const Separation plain = separation(z, budget, half_step(d));
   if (!format_.is_float() || std::isinf(plain.total())) return plain;
@@ -93,7 +94,7 @@ DepthBound::Separation DepthBound::separation(double z, const DepthBudget& budge
   const double stored = scale_.z_of_d(scale_.d_of_z(z) + away * 2 * half_step);
   if (!(stored > 0) || std::isinf(stored)) return {kNever, 0, 0};
   // Flat surfaces of plane codes are rounded once, by the snap, which is the storage. Otherwise the snap of Z and the
-  // interpolation come on top, twice; so does the rounding where codes are rounded again.
+  // interpolation are added, twice; so is the rounding if codes are rounded again.
   const bool is_single_rounding = is_identity_ && budget.rounding == 0;
   const double datapath = is_single_rounding ? 0 : 2 * (budget.datapath + (is_identity_ ? 0 : budget.rounding));
   const double through = moved_t(stored, datapath), snapped = moved_t(through, 2 * budget.snap);

@@ -1,4 +1,4 @@
-// How far a stored depth can be from the true one, and how far apart two surfaces must be to keep their order.
+// Bounds of the error of a stored depth, and of the distance at which two surfaces keep their order.
 #pragma once
 
 #include "model/formats/depth_format.hpp"
@@ -6,11 +6,11 @@
 
 namespace halfplane {
 
-// Eye depth and what a mapping makes of it, in binary64: for the millions of fragments of a scene. exact_depth.hpp is
-// the reference.
+// Eye depth and its mapped depth, in binary64: for the millions of fragments of a scene. exact_depth.hpp is the
+// reference.
 
-/// t: the window depth that is interpolated, 0...1, affine in 1/z (under w and log the std depth). d: the depth that is
-/// stored. Eye-space units.
+/// t: the interpolated window depth, 0...1, affine in 1/z (under w and log the std depth). d: the stored depth.
+/// Eye-space units.
 class DepthScale {
  public:
   /// 0 < near < far; far may be infinite for stdinf and revinf.
@@ -34,7 +34,7 @@ class DepthScale {
   double offset_, slope_;  // t = offset + slope / z
 };
 
-/// What the pipeline may add to a fragment's depth, each as a distance of t, the interpolated depth of 0...1.
+/// Error terms of the pipeline for a fragment's depth, each as a distance of t, the interpolated depth of 0...1.
 struct DepthBudget {
   double snap = 0;      ///< half a subpixel along x and along y, times the slope of t
   double datapath = 0;  ///< the snap of the vertices' depth, half an LSB, and the interpolation
@@ -46,16 +46,16 @@ class DepthBound {
  public:
   explicit DepthBound(const DepthVariant& variant);
 
-  /// `slope`: |dt/dx| + |dt/dy| per pixel. `is_flat`: every vertex has the same depth code, so that nothing is
-  /// interpolated or rounded.
+  /// `slope`: |dt/dx| + |dt/dy| per pixel. `is_flat`: every vertex has the same depth code, so that there is no
+  /// interpolation or rounding error.
   [[nodiscard]] DepthBudget budget(double slope, bool is_flat) const;
 
   /// The largest |z - reconstructed z| of a fragment at eye depth z.
   [[nodiscard]] double error(double z, const DepthBudget& budget) const;
 
-  /// How far behind z a surface of the same budget must lie for its stored code to be the farther one at every sample:
-  /// the exact form of bin (1 + 2k) + 2 snap, which is what it comes to where bins hardly change. Terms in that order;
-  /// infinite where no depth between z and far is told from it.
+  /// The distance behind z at which a surface with the same budget has the farther stored code at every sample: the
+  /// exact form of bin (1 + 2k) + 2 snap, its value where bins hardly change. Terms in that order; infinite if no depth
+  /// between z and far can be distinguished.
   struct Separation {
     double storage = 0, datapath = 0, snap = 0;
     [[nodiscard]] double total() const { return storage + datapath + snap; }

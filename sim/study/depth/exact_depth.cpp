@@ -19,7 +19,7 @@ Rational power_of_two(int exponent) {
   return exponent >= 0 ? Rational(power) : Rational(mpz_class(1), power);
 }
 
-/// To one rounding or so of 64 bits: mpq_get_d would give 53.
+/// To about one rounding of 64 bits: mpq_get_d would give 53.
 long double to_long_double(const Rational& value) {
   if (value == 0) return 0;
   const mpz_class& numerator = value.get_num();
@@ -143,7 +143,7 @@ ExactDepth::Boundaries ExactDepth::boundaries(std::uint32_t code) const {
 }
 
 long double ExactDepth::d_estimate(const Rational& z) const {
-  // log1p: next to near the logarithm itself would lose what d has left there.
+  // log1p: near the near plane the logarithm itself would lose the remaining bits of d.
   if (mapping_ == DepthMapping::log) return std::log1p(to_long_double(z / near_ - 1)) / log_ratio_;
   return to_long_double(d_of(z));
 }
@@ -224,8 +224,8 @@ DepthFigures ExactDepth::at(const Rational& z) const {
   return figures;
 }
 
-/// Codes from the one of `low` to the one of `high`, in the order of z, cut where a bin may be shorter than the one before
-/// it: after each run bins do not get shorter with z. Each entry is the last code of a run.
+/// Codes from the one of `low` to the one of `high`, in the order of z, split where a bin may be shorter than the one
+/// before it: within a run bins do not get shorter with z. Each entry is the last code of a run.
 std::vector<std::uint32_t> ExactDepth::run_ends(std::uint32_t first, std::uint32_t last) const {
   std::vector<std::uint32_t> ends;
   const bool is_up = first <= last;

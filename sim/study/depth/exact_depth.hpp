@@ -1,7 +1,7 @@
-// Depth quantization, exactly: what a mapping and a format make of an eye depth, in rationals of any size.
+// Depth quantization, exactly: the code of an eye depth under a mapping and a format, in rationals of any size.
 //
-// Definitions (docs/depth.md): eye depth z in [near, far]; d(z) the mapping's depth in [0, 1]; a code's bin is every z that
-// gets that code. Only the logarithm is not rational: it is computed to 64 bits, and its ties are decided exactly.
+// Definitions (docs/depth.md): eye depth z in [near, far]; d(z) the mapping's depth in [0, 1]; a code's bin is every z
+// that gets that code. Only the logarithm is irrational: it is computed to 64 bits, and its ties are decided exactly.
 #pragma once
 
 #include <gmpxx.h>
@@ -17,14 +17,14 @@ namespace halfplane {
 
 using Rational = mpq_class;
 
-/// A decimal ("0.1", "1e-3", "5") as the exact number that it says. Throws InputError naming `what`.
+/// A decimal ("0.1", "1e-3", "5") as its exact value. Throws InputError naming `what`.
 [[nodiscard]] Rational parse_decimal(std::string_view text, std::string_view what);
 
-/// What a mapping and a format do at one eye depth. Lengths in eye-space units.
+/// A mapping and a format at one eye depth. Lengths in eye-space units.
 struct DepthFigures {
   std::uint32_t code = 0;
   double bin_width = 0;      ///< length of the code's bin, clipped to [near, far]
-  double max_recon_err = 0;  ///< largest |z - reconstructed z| in that bin; infinite where the code stands for infinity
+  double max_recon_err = 0;  ///< largest |z - reconstructed z| in that bin; infinite for the code of infinity
   double first_order = 0;    ///< |dz/dd| at z times the bin's width in d: a label, not a bound
 };
 
@@ -42,16 +42,16 @@ class ExactDepth {
   };
   [[nodiscard]] std::optional<Bin> bin(std::uint32_t code) const;
 
-  /// The code's width in d, as first_order takes it.
+  /// The code's width in d, for first_order.
   [[nodiscard]] double d_width(std::uint32_t code) const;
 
-  /// The eye depth that a code stands for; infinite where it is.
+  /// The eye depth of a code; infinite for the code of infinity.
   [[nodiscard]] double reconstructed(std::uint32_t code) const;
 
   /// The least eye depth in [low, high] whose bin is longer than `length`; none if no bin there is.
   [[nodiscard]] std::optional<double> first_exceeding(double length, const Rational& low, const Rational& high) const;
 
-  /// The longest bin that meets [low, high].
+  /// The longest bin that intersects [low, high].
   [[nodiscard]] double longest_bin(const Rational& low, const Rational& high) const;
 
   [[nodiscard]] DepthMapping mapping() const { return mapping_; }

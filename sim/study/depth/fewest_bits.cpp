@@ -16,7 +16,7 @@ DepthVariant unorm_variant(const Config& config, DepthMapping mapping, int bits,
 /// The bisection of one mapping: `fails` bits are too few, `holds` are enough.
 struct Bisection {
   int fails = kLeastBits - 1, holds = kMostBits + 1;
-  std::array<DepthOrder, kMostBits + 1> orders{};  ///< by bits, where they were measured
+  std::array<DepthOrder, kMostBits + 1> orders{};  ///< by bits, where measured
 
   [[nodiscard]] bool is_done() const { return holds - fails <= 1; }
   [[nodiscard]] int middle() const { return (fails + holds) / 2; }

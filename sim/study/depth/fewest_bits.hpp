@@ -15,17 +15,18 @@ struct FewestBits {
   DepthMapping mapping = DepthMapping::std;
   std::optional<int> bits;         ///< 8 to 32; none: 32 are not enough
   std::uint64_t pairs = 0;         ///< overlapping pairs of fragments
-  double rate = 0;                 ///< the part of them that fights with `bits`; with 32 where there are none
-  std::optional<double> one_less;  ///< the part that fights with a bit less; none: 8 are enough
+  double rate = 0;                 ///< fraction of them that fight with `bits`; with 32 if there are none
+  std::optional<double> one_less;  ///< fraction that fights with one bit less; none: 8 are enough
   bool is_in_rtl = false;          ///< the RTL stores this mapping
 };
 
-/// The interpolated depth as the pipeline stores it without `depth.format`: `u<depth.bits>`, mapped by `std`, or by `stdinf`
-/// where the far plane is infinite.
+/// The interpolated depth stored without `depth.format`: `u<depth.bits>`, mapped by `std`, or by `stdinf` where the far
+/// plane is infinite.
 [[nodiscard]] DepthVariant stored_plane(const Config& config, const DepthPlanes& planes);
 
-/// For each mapping the least number of bits with which less than `rate` of the overlapping pairs of fragments fight, by
-/// bisection: takes the fights to fall with each bit. Throws as measure_depths(). Empty if `progress` ended the study.
+/// For each mapping the least number of bits with which less than `rate` of the overlapping pairs of fragments fight,
+/// by bisection: assumes that fights decrease with each bit. Throws as measure_depths(). Empty if `progress` ended the
+/// study.
 [[nodiscard]] std::vector<FewestBits> fewest_depth_bits(const Scene& scene, const Config& config,
                                                         std::span<const DepthMapping> mappings,
                                                         const DepthPlanes& planes, double rate, int threads,

@@ -25,10 +25,10 @@ namespace halfplane {
 
 namespace {
 
-/// 1/w over the screen, from the triangle's unsnapped clip coordinates, uncut: 1/w = a x + b y + c, pixels, y down. Where
-/// w is the eye depth, as under every perspective projection, that is one over the eye depth.
+/// 1/w over the screen, from the triangle's unsnapped clip coordinates, uncut: 1/w = a x + b y + c, pixels, y down. If
+/// w is the eye depth, as in every perspective projection, this is 1 / eye depth.
 struct EyePlane {
-  double a = 0, b = 0, c = 0;  ///< all 0: a triangle seen edge-on, or no filled triangle at all
+  double a = 0, b = 0, c = 0;  ///< all 0: a triangle seen edge-on, or not a filled triangle
 
   [[nodiscard]] bool is_empty() const { return a == 0 && b == 0 && c == 0; }
   /// At the centre of a pixel.
@@ -60,9 +60,9 @@ EyePlane plane_of(const Viewport& vp, const Vertex& v0, const Vertex& v1, const 
   return {static_cast<double>(sum[0]), static_cast<double>(sum[1]), static_cast<double>(sum[2])};
 }
 
-/// By number of the input primitive over the whole scene, as in Rendering::ids. Throws InputError for a scene whose filled
-/// triangles are not all in clip space, or that moves depth by depth_range or polygon_offset: its eye depth is not known; and
-/// for one that clears depth between its draws or has several frames.
+/// By number of the input primitive over the whole scene, as in Rendering::ids. Throws InputError for a scene whose
+/// filled triangles are not all in clip space, or that changes depth by depth_range or polygon_offset: its eye depth is
+/// unknown; and for a scene that clears depth between its draws or has several frames.
 std::vector<EyePlane> eye_planes(const Scene& scene) {
   std::vector<EyePlane> planes;
   bool has_ended = false;
@@ -99,7 +99,7 @@ struct Fragment {
   double eye_depth;  ///< exact
 };
 
-/// Errors of one decade of eye depth while they are gathered.
+/// Errors of one decade of eye depth during collection.
 struct DecadeSet {
   ErrorSet error;
   MomentSet snap, interpolation, storage;
@@ -186,7 +186,7 @@ class Measurer {
     const PlaneSample depth = plane_at(setup, kDepthPlane, widths_, x, y);
     const std::uint32_t code = encode_(depth.code);
     const double u = plane.eye_depth(x, y);
-    if (!(u > 0) || std::isinf(u)) {  // covered by the snapped triangle alone: there the true one is behind the eye
+    if (!(u > 0) || std::isinf(u)) {  // covered by the snapped triangle only: there the true one is behind the eye
       ++result_.beyond;
       return;
     }
@@ -254,7 +254,7 @@ class Measurer {
   }
 
   void pairs(std::size_t pixel, std::span<const Fragment> here) {
-    // A pixel of very many layers is looked at a neighbourhood at a time, or time would grow with their square.
+    // A pixel with very many layers is compared within a neighbourhood, or time would grow with their square.
     constexpr std::size_t kNeighbours = 64;
     const bool is_turned = is_reversed(variant_.mapping);
     DepthOrder& order = result_.order;

@@ -12,7 +12,7 @@ DepthCurve depth_curve(const ExactDepth& theory, int points, std::span<const Nam
   std::vector<NamedDepth> depths(also.begin(), also.end());
   for (int i = 0; i < points; ++i) {
     const double z = near * std::pow(far / near, static_cast<double>(i) / (points - 1));
-    // The power may end a little before far, in another bin.
+    // The power may end slightly before far, in another bin.
     const Rational exact = i == points - 1 ? theory.far() : std::clamp(Rational(z), theory.near(), theory.far());
     const bool is_named = std::any_of(also.begin(), also.end(), [&](const NamedDepth& named) {
       return named.exact == exact || named.z == exact.get_d();
@@ -45,7 +45,7 @@ std::vector<CodeShare> codes_by_decade(const ExactDepth& theory) {
     const double to = std::min(std::pow(10.0, power), far);
     if (to <= from) continue;
     const std::int64_t code = theory.code(to == far ? theory.far() : Rational(to));
-    // The code at the boundary counts where it begins; the last one belongs to the last decade.
+    // The code at a boundary counts in the decade where it begins; the last one belongs to the last decade.
     const std::uint64_t codes = static_cast<std::uint64_t>(std::abs(code - last)) + (to == far ? 1 : 0);
     shares.push_back({from, to, codes, static_cast<double>(codes) / static_cast<double>(all)});
     last = code;

@@ -1,4 +1,4 @@
-// Questions to the theory over a range of eye depths: where the precision goes, and what a wanted one takes.
+// Questions to the theory over a range of eye depths: the distribution of precision, and the cost of a wanted one.
 #pragma once
 
 #include <optional>
@@ -15,14 +15,14 @@ struct NamedDepth {
   double z = 0;
 };
 
-/// The figures at eye depths evenly spaced by the logarithm, from near to far, and at those that `also` names, so that a
-/// table of these says the same as the curve. Eye-space units.
+/// The figures at logarithmically spaced eye depths, from near to far, and at those in `also`, so that a table of these
+/// agrees with the curve. Eye-space units.
 struct DepthCurve {
   std::vector<double> z, bin_width, max_recon_err, first_order;
 };
 [[nodiscard]] DepthCurve depth_curve(const ExactDepth& theory, int points, std::span<const NamedDepth> also = {});
 
-/// Codes that serve the eye depths between two powers of ten, cut to [near, far].
+/// Codes for the eye depths between two powers of ten, limited to [near, far].
 struct CodeShare {
   double from = 0, to = 0;
   std::uint64_t codes = 0;
@@ -37,13 +37,13 @@ struct CodeShare {
 [[nodiscard]] std::optional<int> fewest_bits(DepthMapping mapping, const Rational& near, const Rational& far,
                                              const Rational& low, const Rational& high, double length);
 
-/// The small float of the fewest bits that does the same, of those with 2 to 6 bits of exponent.
+/// The small float with the fewest bits that does the same, among those with 2 to 6 bits of exponent.
 [[nodiscard]] std::optional<DepthFormat> smallest_float(DepthMapping mapping, const Rational& near, const Rational& far,
                                                         const Rational& low, const Rational& high, double length);
 
 /// The least near plane, at most `low`, with which no bin in [low, high] is longer than `length`; none if even a near
-/// plane at `low` has a longer one, 0 if any down to 10^-12 of `low` will do. To one part in
-/// 10^6. None for floats: their longest bin goes up and down with near.
+/// plane at `low` has a longer one, 0 if any down to 10^-12 of `low` suffices. To one part in 10^6. None for floats:
+/// their longest bin is not monotonic in near.
 [[nodiscard]] std::optional<double> best_near(DepthMapping mapping, const DepthFormat& format, const Rational& far,
                                               const Rational& low, const Rational& high, double length);
 

@@ -17,7 +17,7 @@ struct SlopingPlane {
   [[nodiscard]] double at(double tangent) const { return depth / (1 - slope * (tangent - middle)); }
 };
 
-/// Pairs along either side of the scene: few enough for each surface to climb through some codes, if it can.
+/// Pairs along either side of the scene: few enough for each surface to cross some codes, if it can.
 int cells(const DepthBound& bound, double z, const SurfaceView& view) {
   const double step = surface_separation(bound, z, view).storage;  // of depth
   const double pixels = 6 * step / (view.slope * z * view.pixel());
@@ -66,12 +66,12 @@ Scene two_planes(const DepthBound& bound, double z, const SurfaceView& view, dou
     for (int column = 0; column < count; ++column) {
       const double left = view.width / 2.0 + (column - count / 2) * side, top = row * side;
       const auto tangent = [&](double x) { return (left + x - view.width / 2.0) * pixel; };
-      // Anywhere within a few steps of storage: each pair at another place between two codes.
+      // Anywhere within a few steps of storage: each pair at another offset between two codes.
       const double jitter = 1 + random.uniform(0, 8) * step / z;
       const SlopingPlane nearer{z * std::min(jitter, 1.05), view.slope, tangent(cell / 2.0)};
-      // Along the screen a plane's 1/z, and so t, climbs evenly: one budget for all of it.
+      // Along the screen a plane's 1/z, and so t, changes evenly: one budget for all of it.
       const DepthBudget budget = bound.budget(bound.screen_slope(nearer.depth, view.slope, pixel), view.slope == 0);
-      double ratio = 0;  // of the separation to the depth, where it is largest
+      double ratio = 0;  // of the separation to the depth, at its largest
       for (int x = 0; x <= 4 * (cell + 1); ++x) {
         const double depth = nearer.at(tangent(x / 4.0));
         ratio = std::max(ratio, bound.separation(depth, budget).total() / depth);

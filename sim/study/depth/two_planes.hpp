@@ -1,4 +1,4 @@
-// Two surfaces, one behind the other: the scene that a predicted minimum separation is tried on.
+// Two surfaces, one behind the other: the scene for testing a predicted minimum separation.
 #pragma once
 
 #include <cstdint>
@@ -21,9 +21,9 @@ struct SurfaceView {
 /// The predicted separation at eye depth z of two surfaces of that slope.
 [[nodiscard]] DepthBound::Separation surface_separation(const DepthBound& bound, double z, const SurfaceView& view);
 
-/// Up to 64 pairs of surfaces around eye depth z, each pair at a depth and in a tessellation of its own, with `slope`
-/// against the line of sight; the farther one `part` times the predicted separation behind the nearer one, where that is
-/// largest. Pairs that would reach beyond near or far are left out.
+/// Up to 64 pairs of surfaces around eye depth z, each pair with its own depth and tessellation, with `slope` against
+/// the line of sight; the farther surface `part` times the predicted separation behind the nearer one, at its largest.
+/// Pairs that would reach beyond near or far are left out.
 [[nodiscard]] Scene two_planes(const DepthBound& bound, double z, const SurfaceView& view, double part,
                                std::uint64_t seed);
 

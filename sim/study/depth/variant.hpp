@@ -1,4 +1,4 @@
-// One way to keep depth: a mapping, a format, and the configuration that has them.
+// One way to store depth: a mapping, a format, and a configuration with both.
 #pragma once
 
 #include <string>
@@ -18,17 +18,17 @@ struct DepthVariant {
   [[nodiscard]] std::string name() const;
 };
 
-/// Bits of the plane that a format's codes are made from: as many where it is stored as it is, of a mapping that is affine on
-/// the screen; else four more, of floats 32, and `more`; 32 at most.
+/// Bits of the interpolated plane for a format: equal if it is stored unchanged, with a mapping that is affine on the
+/// screen; else four more, for floats 32, plus `more`; at most 32.
 [[nodiscard]] int interpolated_bits(const DepthFormat& format, bool is_linear, int more);
 
-/// The mapping and format on top of `config`. Bits of the interpolated depth: those of the format where it can be stored
-/// as it is (u<b> of 8 bits and more under a mapping that is affine on the screen); else enough for the format's finest
-/// step at far, 32 at most. Throws InputError as validate() does.
+/// The mapping and format on top of `config`. Bits of the interpolated depth: those of the format if it can be stored
+/// unchanged (u<b> of 8 bits and more under a mapping that is affine on the screen); else enough for the format's
+/// finest step at far, 32 at most. Throws InputError as validate() does.
 [[nodiscard]] DepthVariant make_variant(const Config& config, DepthMapping mapping, const DepthFormat& format,
                                         const DepthPlanes& planes);
 
-/// What hardware pays for it, in a few words.
+/// Its hardware cost, in a few words.
 [[nodiscard]] std::string hardware_cost(const DepthVariant& variant);
 
 }  // namespace halfplane

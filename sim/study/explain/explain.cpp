@@ -23,7 +23,7 @@ namespace halfplane::explain {
 
 namespace {
 
-/// How far the corners of a piece lie from those of an outline, the best way round, pixels.
+/// Distance of a piece's corners from those of an outline, in the best assignment, pixels.
 double distance_between(const Entry& entry, const golden::Outline& outline, int grid_bits) {
   if (entry.corners.size() != outline.corners) return std::numeric_limits<double>::infinity();
   double sum = 0;
@@ -68,10 +68,10 @@ void match_outlines(PixelHistory& pixel, std::span<const golden::Outline> outlin
 
 bool is_same(const golden::Outline& a, const golden::Outline& b) { return a.x == b.x && a.y == b.y; }
 
-/// The entry that a fragment belongs to: the one beside its outline, or another one of its primitive that has none.
+/// The entry of a fragment: the one with its outline, or another one of its primitive without an outline.
 Entry* entry_of(PixelHistory& pixel, const golden::TappedFragment& fragment,
                 std::span<const golden::Outline> outlines) {
-  // The strands of a wide line have one outline: the one that draws the pixel comes first.
+  // The strands of a wide line have one outline: the strand that draws the pixel comes first.
   const golden::Outline* own = fragment.outline < outlines.size() ? &outlines[fragment.outline] : nullptr;
   const auto rank = [own](const Entry& entry) {
     const bool is_own = own != nullptr && entry.golden->outline && is_same(*entry.golden->outline, *own);
@@ -89,7 +89,7 @@ std::int64_t to_grid(double lsb) {
   return static_cast<std::int64_t>(std::floor(std::ldexp(lsb, exact::kGridBits) + 0.5));
 }
 
-/// The golden's value beside each plane that it knows, and the parts of the difference. `colors`: planes of them.
+/// The golden's value next to each plane that it has, and the parts of the difference. `colors`: planes of colours.
 void add_parts(Entry& entry, std::size_t colors) {
   if (!entry.golden || !entry.golden->fragment) return;
   const golden::TappedFragment& fragment = *entry.golden->fragment;
@@ -105,9 +105,9 @@ void add_parts(Entry& entry, std::size_t colors) {
   }
 }
 
-/// Draws the golden at the pixels of `result` alone, and puts its triangles, fragments and stored values beside the entries
-/// that they belong to. Clipped triangles fall into other pieces there: a piece is beside the one whose corners lie nearest.
-/// `progress` gets the part done; it may throw.
+/// Draws the golden at the pixels of `result` only, and adds its triangles, fragments and stored values to their
+/// entries. Clipped triangles have other pieces there: a piece is matched with the one with the nearest corners.
+/// `progress` gets the fraction done; it may throw.
 void record_golden(const Scene& scene, const Config& config, const std::function<void(double)>& progress,
                    Explanation& result) {
   const int grid_bits = derive_widths(config).grid_bits;
@@ -175,7 +175,7 @@ std::string hardware_refusal(const Scene& scene, const Config& config, const Stu
   }
 }
 
-/// A part of the work, as a part of the whole.
+/// Progress of a part of the work, as a fraction of the whole.
 std::function<void(double)> part_of(const Options& options, double from, double to) {
   return [&options, from, to](double fraction) {
     if (options.progress) options.progress(from + (to - from) * fraction);
@@ -203,7 +203,7 @@ void add_engine(const Scene& scene, const Config& config, const StudyRules& rule
   }
 }
 
-/// Of pixels with several samples: what those of the specification come to.
+/// With several samples per pixel: the resolved values of the specification.
 void resolve(const Config& config, Explanation& result) {
   if (result.samples == 1) return;
   for (std::size_t first = 0; first < result.pixels.size(); first += static_cast<std::size_t>(result.samples)) {

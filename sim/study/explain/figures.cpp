@@ -43,10 +43,10 @@ PlaneFigure plane_figure(const Widths& widths, std::size_t plane, int guard_bits
 
 constexpr std::uint32_t kWhole = 1U << 24;  ///< a weight of 1
 
-/// Of a linear filter's weight.
+/// Bits of a linear filter's weight.
 int weight_bits(const StudyRules& rules) { return rules.weights == Weights::four ? 4 : kTexelFraction; }
 
-/// Four texels of a linear filter, or the one of a nearest filter, on one level.
+/// Four texels of a linear filter, or one texel of a nearest filter, on one level.
 void add_texels(const Sampler& sampler, const SurfaceSample& sample, bool is_linear, int level, std::uint32_t part,
                 std::vector<TexelFigure>& texels) {
   const auto add = [&](int x, int y, std::uint32_t weight) {
@@ -87,7 +87,7 @@ SurfaceFigure surface_figure(const DrawContext& context, const Surface& surface,
   return figure;
 }
 
-/// By other rules, if they are.
+/// Applies study rules, if there are any.
 TriangleSetup by_rules(TriangleSetup setup, const Triangle& triangle, const StudyRules& rules, const Config& config,
                        const Widths& widths) {
   if (rules == StudyRules{} || setup.area == 0) return setup;
@@ -147,7 +147,7 @@ TrianglePiece::TrianglePiece(const DrawContext& context, const Widths& widths, c
   if (surface_) surface_oracle_.emplace(context.scene, context.config, triangle_, offset_);
 }
 
-/// As coarse_raster and fine_raster step them, from the first tile of the whole triangle.
+/// As stepped by coarse_raster and fine_raster, from the first tile of the whole triangle.
 EdgeValues TrianglePiece::edges_at(Pixel pixel) const {
   const int shift = widths_.tile_shift, last = (1 << shift) - 1;
   EdgeValues value = edges_at_tile(whole_, pixel.x >> shift, pixel.y >> shift, widths_);
@@ -156,7 +156,7 @@ EdgeValues TrianglePiece::edges_at(Pixel pixel) const {
   return value;
 }
 
-/// As fine_raster has it.
+/// As in fine_raster.
 bool TrianglePiece::is_covered(Pixel pixel) const {
   const int shift = widths_.tile_shift, last = (1 << shift) - 1;
   const TilePacket tile =
@@ -217,7 +217,7 @@ bool TrianglePiece::covers(Pixel pixel) const { return has_fragment(outcome_at(p
 void TrianglePiece::add_attributes(Pixel pixel, Entry& entry) const {
   const Interpolated value = interpolate_by_rules(setup_, rules_, widths_, pixel.x, pixel.y);
   const exact::PlaneWeights weights = oracle_.weights_at(pixel.x, pixel.y);
-  // Colours over w are no planes of their own codes.
+  // Colours over w are not planes of their own codes.
   const bool is_affine = context_.state.color_interp == ColorInterp::affine;
   const std::size_t planes = is_affine ? static_cast<std::size_t>(widths_.affine_planes) : 1;
   for (std::size_t p = 0; p < planes; ++p) {
@@ -337,7 +337,7 @@ Entry point_entry(const Widths& widths, const PointPrimitive& point, Pixel pixel
   for_each_run(point, widths.grid_bits, [&](const PixelBounds& run) {
     if (!holds(run, pixel)) return;
     is_drawn = true;
-    entry.box = run;  // what the hardware is sent for it
+    entry.box = run;  // as sent to the hardware
   });
   if (!is_drawn) {
     entry.specification = entry.oracle->covers ? Outcome(Verdict::scissor)

@@ -12,8 +12,8 @@
 namespace halfplane::explain {
 namespace {
 
-/// coarse_raster's walk once more, with a HiZ of its own, fed with the packets that the hardware model sends: what it sees
-/// at tiles that it leaves out shows in no packet.
+/// Repeats coarse_raster's walk, with its own HiZ, driven by the hardware model's packets: skipped tiles appear in no
+/// packet.
 class WalkMirror {
  public:
   WalkMirror(const Config& config, const Widths& widths) : widths_(widths), hiz_(config, widths) {}
@@ -33,8 +33,8 @@ class WalkMirror {
     walk_.emplace(tile(setup.box.left), tile(setup.box.top), tile(setup.box.right), tile(setup.box.bottom), setup.dy);
   }
 
-  /// The next tile packet of the primitive. Calls look(tile_x, tile_y, class, HiZ if asked) for it and for every tile that
-  /// was left out before it.
+  /// The next tile packet of the primitive. Calls look(tile_x, tile_y, class, HiZ if tested) for it and for every tile
+  /// skipped before it.
   template <class Look>
   void take(const TilePacket& packet, Look&& look) {
     while (walk_) {
@@ -64,7 +64,7 @@ class WalkMirror {
   bool asks_ = false;
 };
 
-/// Where a pixel lies in the hardware.
+/// The place of a pixel in the hardware.
 struct Place {
   int tile_x = 0, tile_y = 0, stamp = 0;
   std::size_t sample = 0;
@@ -96,7 +96,7 @@ class Recorder final : public EveryPacket<Recorder> {
     if (host.line) take_any<Arrow::line>(*host.line);
   }
 
-  /// `dropped`: why cull kept it, if it did.
+  /// `dropped`: the reason if cull dropped it.
   void end(std::optional<Outcome> dropped, HardwareRecord& record) {
     if (!is_wanted_) return;
     for (std::size_t i = 0; i < at_.size(); ++i) {
@@ -147,10 +147,10 @@ class Recorder final : public EveryPacket<Recorder> {
     return is_in_tile(key, i) && stamp == places_[i].stamp && mask.has(places_[i].sample);
   }
 
-  // Whether a packet carries pixel i; what is needed of it is kept.
+  // Whether a packet contains pixel i; stores the needed fields.
   template <Arrow A, class Packet>
   bool concerns(On<A>, const Packet&, std::size_t) {
-    return false;  // of memory, of which many pixels share one
+    return false;  // a memory packet, shared by many pixels
   }
   bool concerns(On<Arrow::tile>, const TilePacket& p, std::size_t i) {
     is_tile_ = p.is_visit;
@@ -178,7 +178,7 @@ class Recorder final : public EveryPacket<Recorder> {
     return true;
   }
   bool concerns(On<Arrow::color>, const ColorPacket& p, std::size_t i) {
-    // Behind the write of the same stamp, and only when one of its colours is written.
+    // After the write of the same stamp, and only if one of its colours is written.
     if (!at_[i].write || at_[i].textured || !at_[i].write->write_color.has(places_[i].sample)) return false;
     at_[i].textured = p.color[places_[i].sample];
     return true;
@@ -202,7 +202,7 @@ class Recorder final : public EveryPacket<Recorder> {
   const std::vector<Pixel>& pixels_;
   std::vector<Place> places_;
   std::array<std::uint64_t, kArrows> count_{};
-  const HostPrimitive* host_ = nullptr;  ///< at work
+  const HostPrimitive* host_ = nullptr;  ///< the current one
   bool is_wanted_ = false, is_tile_ = false;
   TileKey tile_;
   std::vector<PacketId> shared_;  ///< of all pixels
@@ -210,7 +210,7 @@ class Recorder final : public EveryPacket<Recorder> {
   std::vector<bool> awaits_write_;
 };
 
-/// Why cull dropped the primitive between these counts; none: it did not.
+/// Why cull dropped the primitive between these counts; none: not dropped.
 std::optional<Outcome> dropped_by_cull(const CounterPacket& before, const CounterPacket& after) {
   if (after.zero_area != before.zero_area) return Outcome(Verdict::zero_area);
   if (after.backface != before.backface) return Outcome(Verdict::backface);
@@ -219,7 +219,7 @@ std::optional<Outcome> dropped_by_cull(const CounterPacket& before, const Counte
   return {};
 }
 
-/// For each arrow the wanted numbers in order, and how far they have come.
+/// For each arrow the wanted numbers in order, and the position reached.
 class NumbersWanted {
  public:
   explicit NumbersWanted(PacketStore& packets) {
@@ -228,7 +228,8 @@ class NumbersWanted {
       if (const auto& rides = info(id.first).flow.rides_with) riders_[index(*rides)].emplace_back(id.second, &packet);
     }
   }
-  /// The next packet of this arrow: calls visit(RecordedPacket&) for each that rides with it, and for itself, if wanted.
+  /// The next packet of this arrow: calls visit(RecordedPacket&) for it, if wanted, and for each packet that moves with
+  /// it.
   template <class Visit>
   void next(Arrow arrow, bool with_riders, Visit&& visit) {
     const std::uint64_t number = count_[index(arrow)]++;

@@ -1,7 +1,7 @@
-// What `explain` knows of a pixel: everything that came near it, in program order, step by step.
+// The data of `explain` about a pixel: all primitives near it, in program order, step by step.
 //
-// The model's figures are those of the specification (model/stages); its packets are those of the hardware model. Beside
-// them: the golden (unsnapped, real arithmetic), the oracle (snapped, exact), and the RTL.
+// The model's figures are those of the specification (model/stages); its packets are those of the hardware model. Added
+// to these: the golden (unsnapped, real arithmetic), the oracle (snapped, exact), and the RTL.
 #pragma once
 
 #include <array>
@@ -27,7 +27,8 @@
 
 namespace halfplane::explain {
 
-// What can become of a primitive at a pixel, and where: one table, from which names, stages and sentences follow.
+// The possible fates of a primitive at a pixel, and their stages: one table, from which names, stages and sentences
+// follow.
 //
 // A new test of fragments is a row here and a row of operations.cpp.
 
@@ -56,8 +57,8 @@ enum class Verdict : std::uint8_t { HALFPLANE_VERDICTS(HALFPLANE_NAME) };
 
 struct VerdictInfo {
   std::string_view name;
-  Stage stage;      ///< that usually says so
-  bool is_covered;  ///< as far as anybody has looked; a tile behind HiZ may hold uncovered pixels too
+  Stage stage;      ///< that usually decides it
+  bool is_covered;  ///< as far as tested; a tile behind HiZ may contain uncovered pixels too
   std::string_view why;
 };
 
@@ -69,7 +70,7 @@ inline constexpr std::array kVerdictInfo{HALFPLANE_VERDICTS(HALFPLANE_VERDICT)};
   return kVerdictInfo[static_cast<std::size_t>(verdict)];
 }
 
-/// Where it ended, and why.
+/// The stage where it ended, and the reason.
 struct Outcome {
   Verdict verdict = Verdict::uncovered;
   Stage stage = Stage::fine_raster;
@@ -80,12 +81,12 @@ struct Outcome {
   constexpr Outcome(Verdict v, Stage s, std::string_view w) : verdict(v), stage(s), why(w) {}
 };
 
-/// Whether the fragment came to the tests, so that it has attributes.
+/// Whether the fragment reached the tests, so that it has attributes.
 [[nodiscard]] constexpr bool has_fragment(Verdict verdict) {
   return info(verdict).is_covered && verdict != Verdict::scissor && verdict != Verdict::tiles_hiz;
 }
 
-/// Whole pixels, the top left one is 0 0.
+/// Pixels in integers, the top left one is 0 0.
 struct Pixel {
   int x = 0, y = 0;
   bool operator==(const Pixel&) const = default;
@@ -96,7 +97,7 @@ inline constexpr std::array<std::string_view, 4> kKindNames{"clear", "triangle",
 
 /// One edge of a triangle at the pixel's centre.
 struct EdgeFigure {
-  std::size_t from = 0, to = 0;  ///< corners, as the primitive names them
+  std::size_t from = 0, to = 0;  ///< corners, in the primitive's order
   EdgeValue value = 0;           ///< the model's: floor((E + bias) / 2^s), stepped from the tile's first pixel
   std::int64_t exact = 0;        ///< E itself, square subpixels
   int bits = 0;                  ///< of `value`
@@ -105,7 +106,7 @@ struct EdgeFigure {
   [[nodiscard]] bool is_tie() const { return exact == 0; }
 };
 
-/// Why a value is what it is, in 2^-20 LSB: they sum to the code less the golden's value.
+/// Parts of a value's error, in 2^-20 LSB: they sum to the code less the golden's value.
 struct Parts {
   std::int64_t snap = 0, interpolation = 0, storage = 0;
 };
@@ -118,15 +119,15 @@ struct PlaneFigure {
   std::int64_t unrounded = 0;    ///< 2^-guard_bits LSB, before rounding and clamp
   std::uint32_t code = 0;        ///< after
   exact::Rational oracle;        ///< LSB
-  std::optional<double> golden;  ///< LSB; none where the golden has no such fragment, or its colour is textured
+  std::optional<double> golden;  ///< LSB; none if the golden has no such fragment, or its colour is textured
   std::optional<Parts> parts;    ///< with `golden`
 };
 
-/// A texel that a sample looked at.
+/// A texel that a sample reads.
 struct TexelFigure {
   int level = 0, x = 0, y = 0;
   std::uint32_t weight = 0;              ///< 2^-24
-  std::optional<std::uint32_t> address;  ///< byte of the texture unit's memory, where there is one
+  std::optional<std::uint32_t> address;  ///< byte address in the texture unit's memory, if there is one
   Texel color{};
 };
 
@@ -134,13 +135,13 @@ struct TexelFigure {
 struct SurfaceFigure {
   SurfaceSample sample;
   bool is_lit = false;
-  std::string texture;  ///< its name; empty: colours over w alone
+  std::string texture;  ///< its name; empty: only colours over w
   SampleFilter filter;
   std::vector<TexelFigure> texels;
   SurfaceErrors errors;
 };
 
-/// A state of a line's registers, and what two textbooks hold at the same pixel.
+/// A state of a line's registers, and the values of two textbooks at the same pixel.
 struct LineStep {
   std::uint32_t step = 0;
   int x = 0, y = 0;
@@ -149,7 +150,7 @@ struct LineStep {
 };
 struct LineWalk {
   LineRule rule = LineRule::midpoint;
-  std::vector<LineStep> steps;  ///< at the pixel's place along the major axis alone, or all of them
+  std::vector<LineStep> steps;  ///< at the pixel's place along the major axis only, or all of them
 };
 inline constexpr std::array<std::string_view, 3> kLineRuleNames{"midpoint", "bresenham", "diamond"};
 struct LineFigure {
@@ -168,7 +169,7 @@ struct TriangleStep {
   TileClass tile = TileClass::outside;
   EdgeValues value{};
   bool covered = false;
-  PlaneSample depth{};  ///< of covered ones
+  PlaneSample depth{};  ///< of covered pixels
 };
 
 /// A figure of an operation: codes, or the channels R, G, B, A.
@@ -179,39 +180,39 @@ struct Figure {
   std::string_view text{};
 };
 
-/// One operation on the fragment, and what it did.
+/// One operation on the fragment, and its effect.
 struct OperationStep {
   std::string_view name;
   Stage stage = Stage::none;
-  std::optional<bool> passes;  ///< of a test
+  std::optional<bool> passes;  ///< result of a test
   std::vector<Figure> figures;
 };
 
 /// Packet `number` of an arrow, counted from reset.
 using PacketId = std::pair<Arrow, std::uint64_t>;
 struct RecordedPacket {
-  std::vector<std::uint32_t> model, rtl;  ///< words; rtl is empty where there is none
+  std::vector<std::uint32_t> model, rtl;  ///< words; rtl is empty without RTL
   std::optional<std::uint64_t> model_cycle, rtl_cycle;
 };
 using PacketStore = std::map<PacketId, RecordedPacket>;
 
-/// What coarse_raster saw when it looked at the tile's HiZ bound. Depth codes.
+/// coarse_raster's test of the tile's HiZ bound. Depth codes.
 struct HizLook {
   std::uint64_t nearest = 0;   ///< of the primitive: the smallest code of its corners
-  std::uint64_t farthest = 0;  ///< of the tile: no stored code is above it
+  std::uint64_t farthest = 0;  ///< of the tile: no stored code is larger
   bool rejects = false;
 };
 
-/// What the hardware model does with a primitive at the pixel.
+/// The hardware model's treatment of a primitive at the pixel.
 struct HardwareFigure {
   Outcome outcome;
   std::optional<HizLook> hiz;
   std::vector<PacketId> packets;  ///< in order
 };
 
-/// What the golden does with it.
+/// The golden's treatment of it.
 struct GoldenFigure {
-  std::optional<golden::Outline> outline;  ///< none: it was dropped before the raster
+  std::optional<golden::Outline> outline;  ///< none: dropped before the raster
   std::vector<double> edges;               ///< of a triangle, square pixels: by corner opposite, >= 0 inside
   std::optional<golden::TappedFragment> fragment;
 };
@@ -221,17 +222,17 @@ struct OracleFigure {
   bool covers = false, is_on_border = false;
 };
 
-/// A primitive, or a piece of one, at the pixel; of pixels with several samples, at one of them.
+/// A primitive, or a piece of one, at the pixel; with several samples, at one of them.
 struct Entry {
   Kind kind = Kind::triangle;
   std::optional<std::uint32_t> primitive;  ///< number over the whole scene; none for a clear
   std::uint32_t draw = 0;                  ///< index into Scene::commands
-  std::uint32_t piece = 0;                 ///< of a clipped triangle, or of one whose edges are drawn
-  Outcome outcome;                         ///< the hardware's where it has the scene
+  std::uint32_t piece = 0;                 ///< of a clipped triangle, or of a triangle whose edges are drawn
+  Outcome outcome;                         ///< the hardware's if it supports the scene
   Outcome specification;
   bool is_cut = false;
-  std::optional<int> shaded_at;  ///< of a covered sample: where its colour is from, kAtCentre or a sample's number
-  bool is_left_out = false;      ///< covered, but not in State::sample_mask
+  std::optional<int> shaded_at;        ///< for a covered sample: source of its colour, kAtCentre or a sample's number
+  bool is_left_out = false;            ///< covered, but not in State::sample_mask
   std::vector<SnappedVertex> corners;  ///< of the piece; empty when nothing was snapped
   std::int64_t area = 0;               ///< twice, signed, square subpixels
   PixelBounds box;                     ///< pixel centres inside the scissor
@@ -240,7 +241,7 @@ struct Entry {
   std::vector<PlaneFigure> planes;
   std::optional<SurfaceFigure> surface;
   std::optional<LineFigure> line;
-  std::vector<TriangleStep> steps;  ///< only if asked for
+  std::vector<TriangleStep> steps;  ///< only if requested
   std::int32_t point_size = 0;      ///< subpixels
   PointShape point_shape = PointShape::square;
   std::vector<OperationStep> operations;
@@ -249,10 +250,10 @@ struct Entry {
   std::optional<OracleFigure> oracle;
 };
 
-/// What lies at the pixel in the end.
+/// The final stored values of the pixel.
 struct Stored {
   std::uint32_t depth = 0, color = 0;
-  std::int32_t owner = -1;   ///< input primitive, -1 none; of the RTL and the hardware model nobody knows
+  std::int32_t owner = -1;   ///< input primitive, -1 none; unknown for the RTL and the hardware model
   std::uint8_t stencil = 0;  ///< likewise
 };
 struct GoldenStored {
@@ -261,39 +262,39 @@ struct GoldenStored {
   Stored rounded;
 };
 
-/// What several samples make of their pixel: the mean of their colours; depth, stencil and owner of sample 0.
+/// The resolved pixel of several samples: the mean of their colours; depth, stencil and owner of sample 0.
 struct Resolved {
   Stored model, engine;
   GoldenStored golden;
 };
 
-/// Of a pixel, or of one of its samples: those of a pixel follow each other, and name the same primitives.
+/// History of a pixel, or of one of its samples: those of a pixel are consecutive, and name the same primitives.
 struct PixelHistory {
   Pixel at;
-  int sample = 0;      ///< of the pixel
+  int sample = 0;      ///< in the pixel
   SampleOffset place;  ///< of the sample, from the pixel's upper left corner, 2^-8 pixel
   std::vector<Entry> history;
-  Stored model;   ///< what the operations leave
-  Stored engine;  ///< what the functional engine rendered, or by study rules the scalar one
+  Stored model;   ///< the result of the operations
+  Stored engine;  ///< the functional engine's result, or with study rules the scalar engine's
   GoldenStored golden;
   std::optional<Stored> hardware, rtl;
   std::optional<Resolved> resolved;  ///< with sample 0 of several
 };
 
 struct Explanation {
-  std::vector<PixelHistory> pixels;         ///< in the order asked for, each sample by itself
+  std::vector<PixelHistory> pixels;         ///< in the requested order, each sample separately
   int samples = 1;                          ///< of a pixel
   FillRule fill_rule = FillRule::top_left;  ///< of the specification
-  PacketStore packets;                      ///< those that a history names
+  PacketStore packets;                      ///< those named in a history
   std::uint64_t primitives = 0;             ///< of the scene
   std::string no_hardware;                  ///< why the hardware cannot draw the scene; empty: it can
-  std::uint64_t checks = 0;                 ///< figures that were held against each other
-  std::vector<std::string> differences;     ///< those that differ, a line each
+  std::uint64_t checks = 0;                 ///< compared figures
+  std::vector<std::string> differences;     ///< differing figures, a line each
 };
 
-/// The histories of one pixel: one a sample.
+/// The histories of one pixel: one per sample.
 using PixelSamples = std::span<const PixelHistory>;
-/// Of every pixel, in order.
+/// The samples of every pixel, in order.
 [[nodiscard]] inline std::vector<PixelSamples> pixels_of(const Explanation& told) {
   std::vector<PixelSamples> pixels;
   const auto samples = static_cast<std::size_t>(told.samples);

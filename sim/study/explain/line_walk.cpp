@@ -16,8 +16,8 @@ struct PixelLine {
   [[nodiscard]] bool is_x_major() const { return run() >= rise(); }
   [[nodiscard]] std::int64_t major() const { return std::max(run(), rise()); }
   [[nodiscard]] std::int64_t minor() const { return std::min(run(), rise()); }
-  /// Of two pixels equally near the line, the one on the left end's side: going left, the later one; of a steep line the
-  /// left one, whichever way it goes.
+  /// Whether a tie between two pixels goes to the later one: the pixel on the left end's side wins; for a steep line
+  /// the left one, in either direction.
   [[nodiscard]] bool tie_moves() const { return x1 < x0; }
   /// Pixel (i along, j across) from the start.
   [[nodiscard]] LineStep at(std::int64_t i, std::int64_t j) const {
@@ -48,7 +48,7 @@ std::vector<LineStep> walk(const PixelLine& line, Decision&& decision) {
   return steps;
 }
 
-/// Keeps those at the pixel's place along the line.
+/// Keeps the steps at the pixel's place along the line.
 void keep_at(std::vector<LineStep>& steps, Pixel at, bool is_x_major) {
   std::erase_if(steps, [&](const LineStep& step) { return is_x_major ? step.x != at.x : step.y != at.y; });
 }

@@ -6,7 +6,7 @@
 namespace halfplane::explain {
 namespace {
 
-using Result = std::optional<Verdict>;  ///< none: the fragment goes on
+using Result = std::optional<Verdict>;  ///< none: the fragment continues
 
 int color_bits(const FragmentAtWork& f) { return f.context.config.color_format == ColorFormat::rgb565 ? 16 : 32; }
 
@@ -35,11 +35,11 @@ bool changes_stencil(const FragmentAtWork& f) {
   const Stencil* stencil = stencil_of(f);
   return stencil != nullptr && writes_stencil(*stencil);
 }
-/// Which of the two tests drops the fragment.
+/// The test that drops the fragment.
 Result failed_test(const FragmentAtWork& f) {
   return !f.passes_stencil ? Result(Verdict::stencil) : !f.passes_depth ? Result(Verdict::depth) : Result{};
 }
-/// Nothing is left to be done for a fragment that failed: no stencil value changes.
+/// A failed fragment has no further effect: no stencil value changes.
 Result failed_for_good(const FragmentAtWork& f) { return changes_stencil(f) ? Result{} : failed_test(f); }
 
 bool has_stencil(const FragmentAtWork& f) { return stencil_of(f) != nullptr; }
@@ -69,7 +69,7 @@ Result test_depth(FragmentAtWork& f, OperationStep& step) {
 
 bool tests_alpha(const FragmentAtWork& f) { return f.context.fragment_ops.alpha.func != DepthFunc::always; }
 bool covers_by_alpha(const FragmentAtWork& f) { return f.context.fragment_ops.alpha_samples != 0; }
-/// What becomes of a fragment that its alpha drops.
+/// The fate of a fragment dropped by its alpha.
 Result dropped_by_alpha(const FragmentAtWork& f) {
   const Result failed = failed_test(f);
   return failed ? failed : Result(Verdict::alpha);
@@ -176,7 +176,7 @@ Result write_color(FragmentAtWork& f, OperationStep& step) {
   return {};
 }
 
-/// In program order of a fragment. `stage`: who does it in hardware.
+/// In program order of a fragment. `stage`: the hardware stage that executes it.
 struct Operation {
   std::string_view name;
   Stage stage;

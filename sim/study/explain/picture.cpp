@@ -15,7 +15,7 @@ namespace {
 constexpr int kPictureSide = 720;             // pixels of the grid, about
 constexpr int kLegendWidth = 400, kGap = 16;  // pixels
 constexpr Rgb kPaper{0x16, 0x18, 0x1b}, kInk{0xe8, 0xea, 0xed}, kMuted{0xa3, 0xab, 0xb3}, kGrid{0x55, 0x5c, 0x64};
-// As the pages have them (sim/show/report/page.css), which people with any colour sight tell apart.
+// The palette of the pages (sim/show/report/page.css), distinguishable with any colour vision.
 constexpr std::array<Rgb, 7> kPalette{{{0x4b, 0xa3, 0xe3},
                                        {0xf5, 0x83, 0x3c},
                                        {0x23, 0xc6, 0x99},
@@ -28,7 +28,7 @@ struct Spot {
   double x = 0, y = 0;  ///< pixels of the target
 };
 
-/// A primitive that is drawn: its first entry in the box.
+/// A drawn primitive: its first entry in the box.
 struct Shown {
   const Entry* entry = nullptr;
   Rgb color;
@@ -57,7 +57,7 @@ std::vector<Shown> shown_primitives(const Explanation& around, const Rect& box) 
   return shown;
 }
 
-/// The grid, and where a place of the target lies in it.
+/// The grid, and the mapping of target positions to it.
 struct Canvas {
   Picture picture;
   Window window;
@@ -67,7 +67,7 @@ struct Canvas {
   [[nodiscard]] int at_y(double y) const { return static_cast<int>(std::lround((y - window.top) * scale)); }
 };
 
-/// The part of the segment that shows; nothing when none does (Liang and Barsky).
+/// The visible part of the segment; none if invisible (Liang and Barsky).
 std::optional<std::array<Spot, 2>> visible_part(const Spot& a, const Spot& b, const Window& window) {
   double from = 0, to = 1;
   const auto clip = [&](double direction, double room) {
@@ -159,12 +159,12 @@ void draw_pixels(Canvas& canvas, const Explanation& around, const Rect& box, con
   frame_rect(canvas.picture, {frame.x + 1, frame.y + 1, frame.width - 2, frame.height - 2}, kPaper);
 }
 
-/// A dot at each sample, and a mark around it for each primitive that covers it: number n in one of eight places.
+/// A dot at each sample, and a mark around it for each covering primitive: number n in one of eight places.
 void draw_samples(Canvas& canvas, const Explanation& around, const std::vector<Shown>& shown) {
   constexpr std::array<std::array<int, 2>, 8> kPlaces{
       {{-1, -1}, {1, -1}, {-1, 1}, {1, 1}, {0, -1}, {0, 1}, {-1, 0}, {1, 0}}};
   const int room = around.samples == 1 ? canvas.scale : canvas.scale / (around.samples < 8 ? 2 : 3);
-  const int mark = std::max(3, room / 12), step = mark + 2;  // beside the dot
+  const int mark = std::max(3, room / 12), step = mark + 2;  // next to the dot
   for (const PixelHistory& pixel : around.pixels) {
     const int x = canvas.at_x(pixel.at.x + std::ldexp(pixel.place.x, -kPatternFraction)),
               y = canvas.at_y(pixel.at.y + std::ldexp(pixel.place.y, -kPatternFraction));

@@ -27,10 +27,10 @@ double distance_to(const Point& a, const Point& b, const Point& p) {
   return std::hypot(p.x - a.x - t * dx, p.y - a.y - t * dy);
 }
 
-/// What a primitive looks like on the screen before the snap: a convex polygon, a line's two ends, or a point.
+/// The shape of a primitive on the screen before the snap: a convex polygon, a line's two ends, or a point.
 struct Shape {
   std::vector<Point> corners;
-  double margin = 0;  ///< pixels around it that belong to it: half a point's side, and a pixel of a line
+  double margin = 0;  ///< width of a border that belongs to it: half a point's side, and a pixel for a line
 
   [[nodiscard]] bool is_near(Pixel pixel, double near) const {
     if (corners.empty()) return false;
@@ -51,7 +51,7 @@ struct Shape {
   }
 };
 
-/// Of the vertices themselves, if none lies behind the eye, and what is left of them in the guard band.
+/// Of the vertices themselves, if none lies behind the eye, and of their part in the guard band.
 Shape shape_of(const DrawContext& context, const AssembledPrimitive& primitive) {
   const State& state = context.state;
   const std::size_t count = primitive.type == PrimitiveType::triangle ? 3
@@ -63,7 +63,7 @@ Shape shape_of(const DrawContext& context, const AssembledPrimitive& primitive) 
   shape.margin = drawn_as(state, context.draw.topology) == PrimitiveType::point
                      ? state.point_size * 0.7072
                      : (strands_of(state.line_width) + 1) / 2.0;
-  if (draws_smooth(context)) shape.margin += 1;  // of a pixel a corner may be covered
+  if (draws_smooth(context)) shape.margin += 1;  // a corner of a pixel may be covered
   const auto add = [&](const Vertex& vertex) {
     const WindowPosition p = state.space == Space::clip ? to_window(vertex, state, context.viewport)
                                                         : window_position(vertex, state, context.scene.height);
@@ -91,7 +91,7 @@ Shape shape_of(std::initializer_list<SnappedVertex> corners, double margin, int 
   return shape;
 }
 
-/// Why the host kept a primitive to itself.
+/// Why the host dropped a primitive.
 Outcome dropped_by_host(const Counters& before, const Counters& after) {
   const auto &a = before.skipped, &b = after.skipped;
   if (b.frustum != a.frustum) return Outcome(Verdict::frustum);
@@ -173,7 +173,7 @@ class SpecificationWalk {
 
   void draw(const Draw& draw, std::uint32_t command) {
     const State& state = scene_.states[draw.state];
-    if (draw.outside != 0) {  // the object as a whole lies outside of the view: it is only numbered
+    if (draw.outside != 0) {  // the whole object lies outside the view: it is only numbered
       number_ += static_cast<std::uint32_t>(primitive_count(scene_, draw));
       return;
     }
@@ -212,7 +212,7 @@ class SpecificationWalk {
     const bool is_cut = counters.clipped != 0;
     const int s = widths_.grid_bits;
     std::uint32_t piece = 0;
-    std::vector<std::size_t> untold = near;  // pixels that no piece has been near to
+    std::vector<std::size_t> untold = near;  // pixels that no piece has come near yet
     const auto tell = [&](std::size_t i, auto&& entry_at) {
       add(context, entry_at(record_.pixels[i].at, record_.pixels[i].sample), piece, is_cut, i);
       std::erase(untold, i);
@@ -235,7 +235,7 @@ class SpecificationWalk {
     };
     for (const LinePrimitive& line : outline_.lines)
       for_each_near(shape_of({line.drawn.start, line.drawn.end}, 1, s), entry_of_line(line));
-    // The golden's strands may lie to the other sides of a wide line near a diagonal: told of by the first one.
+    // The golden's strands may lie on the other sides of a wide line near a diagonal: reported with the first one.
     if (strands_of(context.state.line_width) > 1 && !outline_.lines.empty()) {
       piece = 0;
       for (const std::size_t i : std::vector(untold)) tell(i, entry_of_line(outline_.lines.front()));
@@ -257,7 +257,7 @@ class SpecificationWalk {
                     [&](Pixel pixel, int) { return point_entry(widths_, point, pixel); });
   }
 
-  /// Of a whole primitive that never was drawn.
+  /// For a whole primitive that was never drawn.
   void add_dropped(const DrawContext& context, const AssembledPrimitive& primitive, std::uint32_t number,
                    const Outcome& outcome, std::size_t pixel) {
     Entry entry;
@@ -279,7 +279,7 @@ class SpecificationWalk {
     record_.pixels[pixel].history.push_back(std::move(entry));
   }
 
-  /// Runs the operations, and holds what they leave against the specification of all of them together.
+  /// Runs the operations, and compares their result with the specification of all of them together.
   void add(const DrawContext& context, Entry entry, std::uint32_t piece, bool is_cut, std::size_t pixel) {
     PixelHistory& history = record_.pixels[pixel];
     entry.piece = piece;
@@ -328,7 +328,7 @@ class SpecificationWalk {
     history.history.push_back(std::move(entry));
   }
 
-  /// The primitive's own colour. Alpha is 255 where no plane holds it and nobody looks.
+  /// The primitive's own colour. Alpha is 255 if no plane holds it and it is not read.
   [[nodiscard]] std::array<std::uint32_t, 4> color_of(const Entry& entry) const {
     std::array<std::uint32_t, 4> color{0, 0, 0, 255};
     if (entry.surface)

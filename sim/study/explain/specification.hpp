@@ -1,5 +1,5 @@
-// The specification's part of an explanation: the scene once through the host's stages, and what is near a pixel through
-// the others at that pixel alone.
+// The specification's part of an explanation: the scene once through the host's stages, and the primitives near a pixel
+// through the other stages at that pixel only.
 #pragma once
 
 #include <unordered_set>
@@ -11,7 +11,7 @@ namespace halfplane::explain {
 
 struct SpecificationRecord {
   std::vector<PixelHistory> pixels;        ///< history and model
-  std::unordered_set<std::uint32_t> near;  ///< input primitives that a history names
+  std::unordered_set<std::uint32_t> near;  ///< input primitives named in a history
   std::uint64_t primitives = 0;            ///< of the scene
 };
 

@@ -42,7 +42,7 @@ class Checks {
   Explanation& result_;
 };
 
-/// Whether a line has that pixel.
+/// Whether a line contains that pixel.
 bool has_pixel(const LineSetup& line, int x, int y, const Widths& widths) {
   for (LineState state = first_state(line);; advance(state, line, widths)) {
     if (state.x == x && state.y == y) return true;
@@ -50,8 +50,8 @@ bool has_pixel(const LineSetup& line, int x, int y, const Widths& widths) {
   }
 }
 
-/// Whether a line of the host's stream is this one, or what lies of it in one bin: the strands of a wide line differ in
-/// their places alone.
+/// Whether a line of the host's stream is this one, or its part in one bin: the strands of a wide line differ only in
+/// their places.
 bool is_line_of(const LineSetup& whole, const LineSetup& sent, bool is_part, const Widths& widths) {
   const bool is_along = whole.step_stay == sent.step_stay && whole.step_move == sent.step_move &&
                         whole.is_x_major == sent.is_x_major && whole.is_x_negative == sent.is_x_negative &&
@@ -89,22 +89,22 @@ bool is_of(const Entry& entry, const HostPrimitive& host, const Widths& widths) 
   return false;
 }
 
-/// The verdict of an entry, where the hardware and the specification may say it in other words.
+/// The verdict of an entry, where the hardware and the specification may use other words.
 Outcome joined(const Outcome& hardware, const Outcome& specification) {
   const Verdict h = hardware.verdict;
   const bool is_of_hardware = h == Verdict::no_sample || h == Verdict::tiles_hiz;
   return is_of_hardware ? hardware : specification;
 }
 
-/// Whether both say the same of the pixel.
+/// Whether both agree about the pixel.
 bool agree(const Outcome& hardware, const Outcome& specification) {
   const Verdict h = hardware.verdict, s = specification.verdict;
   const bool drew = h == Verdict::written || h == Verdict::masked;
   const bool draws = s == Verdict::written || s == Verdict::masked;
-  if (s == Verdict::alpha) return drew || h == Verdict::alpha;  // the packets of depth_test do not tell
+  if (s == Verdict::alpha) return drew || h == Verdict::alpha;  // the packets of depth_test do not show it
   if (drew || draws) return h == s;
   if (s == Verdict::depth || s == Verdict::stencil) return h == Verdict::depth || h == Verdict::tiles_hiz;
-  return h != Verdict::depth;  // nothing covers: whoever says so first
+  return h != Verdict::depth;  // no coverage: whichever stage finds it first
 }
 
 void check_edges(const HardwareVisit& visit, const PixelHistory& pixel, const Entry& entry, const Config& config,
@@ -133,7 +133,7 @@ void check_edges(const HardwareVisit& visit, const PixelHistory& pixel, const En
   }
 }
 
-/// The last value that an operation left, if it ran.
+/// The last value written by an operation, if it ran.
 std::optional<std::uint64_t> figure_of(const Entry& entry, std::string_view operation, std::string_view name) {
   for (const OperationStep& step : entry.operations)
     if (step.name == operation)
@@ -154,13 +154,13 @@ void check_fragment(const HardwareVisit& visit, const PixelHistory& pixel, const
   const std::size_t s = visit.sample;
   const Widths widths = derive_widths(config);
   const bool writes = visit.write->write_depth.has(s);
-  // Where the stencil alone changes, the word has the depth that was stored.
+  // If only the stencil changes, the word contains the stored depth.
   const PrimitiveState& state = visit.fragment->state;
   const bool keeps_depth = state.tests_stencil && !(visit.write->passed.has(s) && state.depth_write);
   if (const auto depth = figure_of(entry, "depth_test", "fragment"); depth && !keeps_depth)
     checks.same(depth_of(visit.write->depth[s], widths), *depth, place,
                 "depths of write packet and specification differ");
-  // Behind a texture no packet says what the alpha test drops.
+  // Downstream of a texture no packet shows the samples that the alpha test drops.
   const bool is_late = has_texture_planes(config) && figure_of(entry, "alpha_test", "reference");
   if (is_late) return;
   const auto stencil = figure_of(entry, "write_stencil", "after");
@@ -173,7 +173,7 @@ void check_fragment(const HardwareVisit& visit, const PixelHistory& pixel, const
   const auto color = figure_of(entry, "write_color", "after");
   checks.holds(visit.write->write_color.has(s) == color.has_value(), place,
                "write packet and specification differ in whether colour is written");
-  if (color && !packs_at_write(config))  // otherwise no packet has it as it is stored
+  if (color && !packs_at_write(config))  // otherwise no packet has it in the stored format
     checks.same(visit.textured.value_or(visit.write->color[s]), *color, place,
                 "colours of the hardware and of the specification differ");
 }
@@ -183,7 +183,7 @@ void join_visit(const HardwareVisit& visit, const PixelHistory& pixel, Entry& en
   const std::string place = place_of(pixel, entry);
   const bool is_first = !entry.hardware;
   if (is_first) entry.hardware = HardwareFigure{visit.outcome, visit.hiz, visit.packets};
-  // In bins the parts of a primitive follow each other; the one that came furthest at the pixel counts.
+  // In bins the parts of a primitive are successive; the one that came furthest at the pixel counts.
   const bool is_further = !is_first && (visit.fragment || (!entry.hardware->hiz && visit.hiz));
   if (is_further) entry.hardware = HardwareFigure{visit.outcome, visit.hiz, visit.packets};
   if (entry.kind == Kind::clear) return;
@@ -203,7 +203,7 @@ void join_hardware(const HardwareRecord& hardware, const Config& config, Explana
       for (std::size_t v = 0; v < hardware.visits[p].size(); ++v) {
         const HardwareVisit& visit = hardware.visits[p][v];
         if (is_taken[v] || !is_of(entry, visit.host, widths)) continue;
-        // Corners that lie on each other are equal points of one primitive: one each. Parts in bins come again.
+        // Coinciding corners are equal points of one primitive: one each. Parts in bins are repeated.
         if (entry.kind == Kind::point && entry.hardware && !visit.host.is_part) break;
         is_taken[v] = true;
         join_visit(visit, pixel, entry, config, result.packets, checks);

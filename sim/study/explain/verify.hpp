@@ -1,4 +1,4 @@
-// Holds the figures of an explanation against each other: where two sides must agree, they are compared here, each time.
+// Compares the figures of an explanation with each other, each time: wherever two sides must agree.
 #pragma once
 
 #include "hardware_record.hpp"
@@ -6,7 +6,7 @@
 
 namespace halfplane::explain {
 
-/// Puts what the hardware model did beside the entries that it belongs to, and compares: verdicts, edge values, codes.
+/// Adds the hardware model's results to their entries, and compares: verdicts, edge values, codes.
 void join_hardware(const HardwareRecord& hardware, const Config& config, Explanation& result);
 
 /// Compares coverage with the oracle, the stored values of specification, functional engine, hardware model and RTL, and the

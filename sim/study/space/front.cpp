@@ -5,14 +5,14 @@
 namespace halfplane {
 namespace {
 
-/// Whether `a` can do all that `b` can.
+/// Whether `a` has all abilities of `b`.
 bool does_as_much(const SpaceJson& a, const SpaceJson& b) {
   return std::all_of(b.items().begin(), b.items().end(), [&](const auto& entry) {
     return a.at(entry.key()).template get<int>() >= entry.value().template get<int>();
   });
 }
 
-/// A point's figures on the axes; empty: it lacks one.
+/// A point's figures on the axes; empty: one is missing.
 std::vector<double> place(const SpaceJson& point, const std::vector<std::string>& axes) {
   std::vector<double> at;
   for (const std::string& axis : axes) {

@@ -28,7 +28,7 @@ bool is_on_path(const std::string& program) {
   return false;
 }
 
-/// Beside the program as `cmake --install` lays it out, or where the program was built.
+/// Next to the program as laid out by `cmake --install`, or where the program was built.
 std::string default_rtl() {
   std::error_code error;
   const fs::path self = fs::read_symlink("/proc/self/exe", error);
@@ -44,14 +44,14 @@ std::string default_cache() {
   return (fs::temp_directory_path() / "halfplane-gates").string();
 }
 
-/// In single quotes, as a shell takes any word.
+/// In single quotes, as a word for a shell.
 std::string shell_word(const std::string& word) {
   std::string text = "'";
   for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return text + "'";
 }
 
-/// What a command prints, and its status.
+/// The output of a command, and its status.
 struct Said {
   std::string out;
   int status = 0;
@@ -68,7 +68,7 @@ Said run(const std::string& command) {
   return said;
 }
 
-/// A file that is gone when nobody looks at it any more.
+/// A file that is removed after its last use.
 class PackageFile {
  public:
   explicit PackageFile(const std::string& text) : path_((fs::temp_directory_path() / "halfplane-XXXXXX.sv").string()) {

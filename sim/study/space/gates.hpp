@@ -1,5 +1,5 @@
 // What a configuration of the RTL costs in cells, by Yosys. rtl_ref/area/gates.py does the work and keeps what it found,
-// module by module: it is beside the RTL, wherever that lies, and ./dev area imports it.
+// module by module: it is in the folder of the RTL, and ./dev area imports it.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -10,7 +10,7 @@
 
 namespace halfplane {
 
-/// The parts that gates.py knows.
+/// The parts supported by gates.py.
 inline const std::vector<std::string> kGateParts{"ecp5", "ice40"};
 
 class Gates {

@@ -8,7 +8,7 @@ namespace {
 
 SpaceJson number_or_null(const std::optional<double>& value) { return value ? SpaceJson(*value) : SpaceJson(nullptr); }
 
-/// Where more is more: a point beats no other that can do what it cannot.
+/// Abilities, where more is better: a point beats no other that has an ability it lacks.
 SpaceJson abilities(const Config& config) {
   return {{"texture", static_cast<int>(config.texture_unit)},
           {"colors_over_w", config.perspective_colors},
@@ -28,7 +28,7 @@ SpaceJson abilities(const Config& config) {
 
 const BenchFacts& PointStudy::facts_of(const BenchCase& at, const Rendering& picture,
                                        const std::function<void(double)>& progress) {
-  // Points that differ in no pixel, and whose hardware drew the same bits, have the same errors, which are then found once.
+  // Points with the same picture, on hardware with the same bits, have the same errors, which are computed once.
   Config shown = at.config;
   for (const Setting& setting : settings())
     if (!setting.may_change_pixels) set(shown, setting.key, get(preset("embedded"), setting));

@@ -1,4 +1,4 @@
-// A point of the design space: one configuration on one scene, with its error and what a frame costs.
+// A point of the design space: one configuration on one scene, with its error and the cost of a frame.
 #pragma once
 
 #include <map>
@@ -12,13 +12,14 @@
 
 namespace halfplane {
 
-/// What all points share, so that nothing is found out twice.
+/// Data shared by all points, so that nothing is computed twice.
 class PointStudy {
  public:
   explicit PointStudy(const MemorySettings& memory) : memory_(memory) {}
 
-  /// Errors (those of `compare`), cycles and bytes of a whole frame in the cycle engine, milliseconds at the memory's clock,
-  /// and what the hardware can do; gates are not in it. Throws InputError for a scene that this hardware does not draw.
+  /// Errors (those of `compare`), cycles and bytes of a whole frame in the cycle engine, milliseconds at the memory's
+  /// clock, and the abilities of the hardware; without gates. Throws InputError for a scene that this hardware does not
+  /// support.
   [[nodiscard]] SpaceJson measure(const BenchCase& at, const std::function<void(double)>& progress);
 
  private:
@@ -29,7 +30,7 @@ class PointStudy {
   std::map<std::string, BenchFacts> facts_;
 };
 
-/// Every key of --vary with its value, as `label` "depth.bits=24 stamp.size=4" says it.
+/// Every key of --vary with its value, from a `label` like "depth.bits=24 stamp.size=4".
 [[nodiscard]] SpaceJson settings_of(const std::string& label);
 
 }  // namespace halfplane

@@ -10,11 +10,11 @@ namespace halfplane::stress {
 
 struct Case {
   std::string_view name;
-  std::string_view item;         ///< of the stress list; "" for what is not on it
+  std::string_view item;         ///< of the stress list; "" for cases not on it
   std::string_view property;     ///< in words
   void (*run)(Unit&);            ///< makes one random input and checks it
-  int every = 1;                 ///< runs once in this many rounds: expensive units run more rarely
-  bool own_configs = false;      ///< chooses its configurations itself
+  int every = 1;                 ///< runs once in this many rounds: for expensive units
+  bool own_configs = false;      ///< chooses its own configurations
   bool prefers_presets = false;  ///< half of its units run in the presets
 };
 

@@ -68,7 +68,7 @@ AttributeErrors attribute_errors(const Scene& scene, const Config& config, const
           errors.depth = std::max(errors.depth, code_distance(rendering.frame.depth[at], exact));
           continue;
         }
-        if (!planes[i].is_color) continue;  // nothing of it is stored
+        if (!planes[i].is_color) continue;  // it is not stored
         const int code =
             golden::stored_channel(rendering.frame.color[at], config.color_format, static_cast<int>(i - kColorPlane));
         errors.color = std::max(
@@ -78,7 +78,7 @@ AttributeErrors attribute_errors(const Scene& scene, const Config& config, const
   return errors;
 }
 
-/// Every fragment of the scene before the operations. Adds no figure: it fails or it does not.
+/// Judges every fragment of the scene before the operations. Adds no figure: it passes or fails.
 static void check_fragments(Unit& unit, const Scene& scene, const Engine& engine, FillRule rule) {
   FragmentJudge judge(scene, unit.config, rule);
   RenderOptions options;

@@ -1,4 +1,4 @@
-// What a drawn scene is held against: coverage sample by sample, depth and colour fragment by fragment, counts.
+// Checks of a drawn scene: coverage sample by sample, depth and colour fragment by fragment, counts.
 #pragma once
 
 #include <span>
@@ -13,27 +13,27 @@ struct Point {
   auto operator<=>(const Point&) const = default;  // NOLINT(modernize-use-nullptr): clang-tidy 14 and <=>
 };
 
-/// The engine of a run that has none of its own: render_functional, or, when fragments are asked for, render_scalar.
+/// The engine of a run without one of its own: render_functional, or, when fragments are requested, render_scalar.
 [[nodiscard]] Rendering draw(const Scene& scene, const Config& config, const RenderOptions& options);
 
-/// Draws the scene by the unit's engine and holds it against the exact oracle: every sample of every triangle's box, and
-/// depth and colour of every pixel that shows a triangle, as stored. Measures "coverage" (samples that differ), "depth"
-/// and "color" (LSB from the exact plane). Depth must be of the format `plane`. Bound of a colour: 1 LSB.
-/// In every so manieth unit the fragments are judged as well, before the operations (FragmentJudge), which adds no figure.
+/// Draws the scene with the unit's engine and compares it with the exact oracle: every sample of every triangle's box,
+/// and the stored depth and colour of every pixel that shows a triangle. Measures "coverage" (samples that differ),
+/// "depth" and "color" (LSB from the exact plane). Depth must be of the format `plane`. Bound of a colour: 1 LSB. In
+/// some units the fragments are judged as well, before the operations (FragmentJudge), which adds no figure.
 Rendering check_scene(Unit& unit, const Scene& scene, FillRule rule = FillRule::top_left);
 
-/// The largest |stored depth - exact plane| over the pixels that show a triangle, in LSB. Counts nothing.
+/// The largest |stored depth - exact plane| over the pixels that show a triangle, in LSB. Adds no count.
 struct AttributeErrors {
   double depth = 0, color = 0;  ///< LSB of the stored formats
   std::uint64_t fragments = 0;  ///< of each
 };
 [[nodiscard]] AttributeErrors attribute_errors(const Scene& scene, const Config& config, const Rendering& rendering);
 
-/// Does the convex polygon (corners clockwise as seen, y down, grid points) own the centre of pixel (x, y) by the
-/// top-left rule? From the definition, edge by edge.
+/// Whether the convex polygon (corners clockwise as seen, y down, grid points) owns the centre of pixel (x, y) by the
+/// top-left rule. From the definition, edge by edge.
 [[nodiscard]] bool polygon_covers(std::span<const Point> polygon, int x, int y, int subpixel_bits);
 
-/// Measures `property`: the pixels (x, y), number y * width + x, that are wrong.
+/// Measures `property`: the wrong pixels (x, y), number y * width + x.
 template <class IsWrong>
 void expect_pixels(Unit& unit, std::string_view property, const Scene& scene, IsWrong&& is_wrong) {
   std::uint64_t wrong = 0;
@@ -44,7 +44,7 @@ void expect_pixels(Unit& unit, std::string_view property, const Scene& scene, Is
   unit.measure(property, "pixels", static_cast<double>(wrong), 0, scene);
 }
 
-/// Requires that each pixel was covered `expected(x, y)` times; measures "count", the pixels for which this is not so.
+/// Requires that each pixel was covered `expected(x, y)` times; measures "count", the pixels for which this fails.
 template <class Expected>
 void expect_count(Unit& unit, const Scene& scene, const Rendering& rendering, Expected&& expected) {
   expect_pixels(unit, "count", scene, [&](int x, int y, std::size_t p) {
@@ -58,10 +58,10 @@ void expect_once(Unit& unit, const Scene& scene, const Rendering& rendering, std
 /// Requires equal images; measures "image", the pixels whose depth, colour or count differ.
 void expect_same_image(Unit& unit, const Scene& scene, const Rendering& a, const Rendering& b);
 
-/// Whether such hardware can be, and draws the scene.
+/// Whether such hardware exists, and supports the scene.
 [[nodiscard]] bool is_drawn_by_hardware(const Scene& scene, const Config& config);
 
-/// The options with which every scene is drawn here: counts, visible triangles.
+/// The options of every scene drawn here: counts, visible triangles.
 [[nodiscard]] RenderOptions render_options();
 
 }  // namespace halfplane::stress

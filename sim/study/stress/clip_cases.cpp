@@ -1,4 +1,4 @@
-// Clip space: cuts by the planes against rationals, closed meshes round the eye, viewports and scissors.
+// Clip space: cuts by the planes against rationals, closed meshes around the eye, viewports and scissors.
 #include <gmpxx.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ mpq_class plane_distance(const ClipPlane& p, const HomogeneousPoint& v) {
   return mpq_class(p.a) * v[0] + mpq_class(p.b) * v[1] + mpq_class(p.c) * v[2] + mpq_class(p.d) * v[3];
 }
 
-/// The triangle cut by the planes in rationals, divided and put through a viewport that is the whole target.
+/// The triangle cut by the planes in rationals, divided and mapped to a viewport of the whole target.
 std::vector<ExactCorner> exact_clip(const Config& config, const Scene& scene, const std::array<Vertex, 3>& v) {
   std::vector<HomogeneousPoint> polygon;
   for (const Vertex& p : v) polygon.push_back({mpq_class(p.x), mpq_class(p.y), mpq_class(p.z), mpq_class(p.w)});
@@ -52,7 +52,7 @@ std::vector<ExactCorner> exact_clip(const Config& config, const Scene& scene, co
   return corners;
 }
 
-/// How far p lies outside the polygon (corners in either direction), in the coordinates' unit; negative inside.
+/// Distance of p outside the polygon (corners in either direction), in the coordinates' unit; negative inside.
 double outside(const std::vector<ExactCorner>& polygon, double x, double y) {
   double area = 0;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -70,8 +70,8 @@ double outside(const std::vector<ExactCorner>& polygon, double x, double y) {
   return farthest;
 }
 
-/// Whether the snap folds the cut triangle: some corner then turns the other way, or all of them do. What is folded
-/// over lies on its neighbours, which cover the same samples: no fill rule can tell.
+/// Whether the snap folds the cut triangle: some corner then turns the other way, or all do. The folded part lies on
+/// its neighbours, which cover the same samples: no fill rule can prevent that.
 bool is_folded(const Config& config, const Scene& scene, const std::array<Vertex, 3>& v) {
   const std::vector<ExactCorner> corners = exact_clip(config, scene, v);
   const std::size_t n = corners.size();
@@ -94,13 +94,13 @@ bool is_folded(const Config& config, const Scene& scene, const std::array<Vertex
   return exact_area > 0 ? least < 0 : most > 0;
 }
 
-/// Adds a triangle to the scene; whether the snap folds what the clipper leaves of it.
+/// Adds a triangle to the scene; returns whether the snap folds its clipped polygon.
 bool add_triangle(const Unit& unit, SceneBuilder& builder, const Vertex& a, const Vertex& b, const Vertex& c) {
   builder.triangle(a, b, c);
   return is_folded(unit.config, builder.scene, {a, b, c});
 }
 
-/// Draws the triangle and holds every corner of what is drawn, and every sample not at an edge, against the exact clip.
+/// Draws the triangle and compares every drawn corner, and every sample not at an edge, with the exact clip.
 void check_clip(Unit& unit, const std::array<Vertex, 3>& v) {
   State state;  // clip space
   state.depth_test = DepthFunc::always;
@@ -109,7 +109,7 @@ void check_clip(Unit& unit, const std::array<Vertex, 3>& v) {
   try {
     rendering = check_scene(unit, scene);
   } catch (const InputError&) {
-    return;  // coordinates so large that a cut is not known to a pixel: refused by name
+    return;  // coordinates so large that a cut is not exact to a pixel: refused by name
   }
   const auto corners = exact_clip(unit.config, scene, v);
   const int shift = unit.widths.grid_bits - unit.config.subpixel_bits;
@@ -127,7 +127,7 @@ void check_clip(Unit& unit, const std::array<Vertex, 3>& v) {
         }
       }
       farthest = std::max(farthest, nearest);
-      // Corners closer together than a subpixel are not told apart: their depths are.
+      // Corners closer than a subpixel are not distinguished: their depths are.
       if (nearest <= 1) {
         for (const ExactCorner& c : corners)
           if (std::max(std::abs(std::ldexp(p.x, -shift) - c.x), std::abs(std::ldexp(p.y, -shift) - c.y)) <= 1)
@@ -138,11 +138,11 @@ void check_clip(Unit& unit, const std::array<Vertex, 3>& v) {
   unit.count_checks(3 * rendering.triangles.size());
   unit.measure("corner", "subpixels", farthest, 1, scene);
   unit.measure("corner depth", "LSB", depth, 1, scene);
-  if (is_folded(unit.config, scene, v)) return;  // the fan then draws a sliver of itself thrice
+  if (is_folded(unit.config, scene, v)) return;  // the fan then draws a sliver of itself three times
   expect_pixels(unit, "samples off the edges", scene, [&](int x, int y, std::size_t p) {
     const double away =
         corners.size() < 3 ? HUGE_VAL : outside(corners, (x + 0.5) * unit.pixel(), (y + 0.5) * unit.pixel());
-    // A corner moves by 0.71 subpixels at most, and with it the edges.
+    // A corner moves by at most 0.71 subpixels, and the edges with it.
     return std::abs(away) > 1 && rendering.count[p] != (away < 0 ? 1U : 0U);
   });
 }
@@ -157,7 +157,7 @@ void near_plane(Unit& unit) {
     double w = random.between(-1, 3);
     if (kind == 1 && i == 0) w = std::ldexp(random.unit(), -20 - random.index(20));  // w -> 0+
     if (kind == 2) w = -random.between(0.01, 3);                                     // all behind
-    if (kind == 3) w = random.between(0.2, 3);                                       // far and sides alone
+    if (kind == 3) w = random.between(0.2, 3);                                       // far and sides only
     const double reach = kind == 4 ? 40 : 3;
     const double x = random.between(-reach, reach), y = random.between(-reach, reach);
     // Between near and far, and beyond both, in any combination.
@@ -218,14 +218,14 @@ void closed_meshes(Unit& unit) {
 }
 
 void slabs(Unit& unit) {
-  // A plane that runs through near, far and all four sides, in pieces: no pixel twice, and once where near and far are not.
+  // A plane through near, far and all four sides, in pieces: no pixel twice, and once without near and far.
   Random& random = unit.random;
   const int width = unit.width(48), height = unit.height(40), cells = 2 + random.index(6);
   State state;
   state.depth_test = DepthFunc::always;
   const double near = 0.5, far = 8, nx = random.between(-0.6, 0.6), nz = random.between(-0.3, 0.3),
                h = -random.between(0.2, 1);
-  // y = h + nx x + nz z in eye space, z forward; the sheet reaches far beyond all of it.
+  // y = h + nx x + nz z in eye space, z forward; the sheet reaches far beyond everything.
   const auto vertex = [&](int i, int j) {
     const double x = -90 + 180.0 * i / cells, z = -20 + 60.0 * j / cells;
     return clip_at(x, h + nx * x + nz * z, ((far + near) * z - 2 * far * near) / (far - near), z);
@@ -244,7 +244,7 @@ void slabs(Unit& unit) {
       }
     }
   const Rendering rendering = check_scene(unit, builder.scene);
-  if (has_fold) return;  // nearly edge-on, on a coarse grid: nothing to be said of how often a pixel is covered
+  if (has_fold) return;  // nearly edge-on, on a coarse grid: the number of covers is not defined
   // The eye depth at which a ray meets the plane: y z' = h + nx x z' + nz z'.
   const auto depth = [&](double px, double py) {
     const double x = 2 * px / width - 1, y = 1 - 2 * py / height, denominator = y - nx * x - nz;
@@ -262,7 +262,7 @@ void slabs(Unit& unit) {
 }
 
 void scissor(Unit& unit) {
-  // A scissored image is the unscissored one inside, and untouched outside.
+  // A scissored image equals the unscissored one inside, and is unchanged outside.
   Random& random = unit.random;
   const int width = unit.width(40), height = unit.height(40), tile = unit.config.tile_size;
   SceneBuilder whole(width, height);

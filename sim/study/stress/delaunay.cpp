@@ -23,7 +23,7 @@ class Triangulation {
 
   void insert(Point p) {
     find_cavity(p);
-    // One new triangle on each border edge; its neighbours round p are found by the vertex they share.
+    // One new triangle on each border edge; its neighbours around p are found by their common vertex.
     const int first_new = static_cast<int>(cells_.size());
     for (const Border& edge : border_) {
       const int number = static_cast<int>(cells_.size());
@@ -50,7 +50,7 @@ class Triangulation {
  private:
   struct Cell {
     Corner corner;
-    std::array<int, 3> neighbour;  ///< neighbour[i] lies across the edge opposite corner i
+    std::array<int, 3> neighbour;  ///< neighbour[i] is across the edge opposite corner i
     bool is_alive;
   };
   struct Border {
@@ -67,7 +67,7 @@ class Triangulation {
     return c.neighbour[2];
   }
 
-  /// Kills the triangles whose circle holds p, and lists the edges around them.
+  /// Removes the triangles whose circle contains p, and lists the edges around them.
   void find_cavity(Point p) {
     int at = last_;
     for (bool is_there = false; !is_there;) {

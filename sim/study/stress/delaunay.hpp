@@ -1,4 +1,4 @@
-// Delaunay triangulations in exact arithmetic: meshes that tile a rectangle, whatever the points.
+// Delaunay triangulations in exact arithmetic: meshes that tile a rectangle, for any points.
 #pragma once
 
 #include <array>
@@ -19,9 +19,9 @@ using Mesh = std::vector<Corner>;
 }
 
 /// The Delaunay triangulation of the points and the rectangle's corners, triangles of positive area. Points must lie
-/// strictly inside the rectangle; |coordinates| < 2^29. Bowyer and Watson's insertion (Computer Journal 24(2), 1981) with
-/// a walk to the triangle at the point: about n^1.5 for sorted points. `poll` is called now and then and may end the work
-/// by throwing; may be empty.
+/// strictly inside the rectangle; |coordinates| < 2^29. Bowyer and Watson's insertion (Computer Journal 24(2), 1981)
+/// with a walk to the triangle at the point: about n^1.5 for sorted points. `poll` is called from time to time and may
+/// end the work by throwing; may be empty.
 [[nodiscard]] Mesh delaunay(Point low, Point high, const std::set<Point>& points,
                             const std::function<void()>& poll = {});
 

@@ -30,8 +30,8 @@ Scene family_scene(Unit& unit, int width, int height, int count) {
   return std::move(builder.scene);
 }
 
-/// The box row by row, every second row from right to left: one addition an edge and step. The samples where the
-/// stepped edge functions and the oracle disagree.
+/// The box row by row, every second row from right to left: one addition per edge and step. Returns the samples where
+/// the stepped edge functions and the oracle disagree.
 std::uint64_t serpentine_errors(const TriangleSetup& setup, const Triangle& triangle, const Widths& widths,
                                 std::uint64_t& samples) {
   const exact::TriangleOracle oracle(triangle, widths.grid_bits);
@@ -83,7 +83,7 @@ void fill_rules(Unit& unit) {
 }
 
 void full_guard_band(Unit& unit) {
-  // Stepping alone: from the first tile to any other of the guard band, then inside it. No target, no clip.
+  // Stepping only: from the first tile to any other of the guard band, then inside it. No target, no clip.
   Random& random = unit.random;
   const Widths& widths = unit.widths;
   const int band = unit.config.guard_band, tile = unit.config.tile_size,
@@ -107,7 +107,7 @@ void full_guard_band(Unit& unit) {
   std::uint64_t wrong = 0, samples = 0, fragments = 0;
   double worst = 0;
   for (int n = 0; n < 48; ++n) {
-    // A random tile, or one that a point near an edge lies in.
+    // A random tile, or the tile of a point near an edge.
     const std::size_t edge = static_cast<std::size_t>(random.index(3));
     const SnappedVertex &a = triangle.v[edge], &b = triangle.v[(edge + 1) % 3];
     const double t = random.unit();
@@ -161,7 +161,7 @@ void stalls(Unit& unit) {
 }
 
 void hardware_surfaces(Unit& unit) {
-  // The hardware model, which co-simulation holds the RTL to, and the engine against the scalar one.
+  // The hardware model, the reference of co-simulation, and the engine against the scalar one.
   const Config config = random_shading_config(unit.random);
   unit.count_config(std::hash<std::string>()(label(config, " --set ")));
   const Scene scene = random_scene(config, unit.random.next(), 24);
@@ -176,7 +176,7 @@ void hardware_surfaces(Unit& unit) {
 }
 
 void frames(Unit& unit) {
-  // What is left alone is what signatures say is equal: in the functional engine and, where such hardware is, in its model.
+  // Skipped bins are those with equal signatures: in the functional engine and, if such hardware exists, in its model.
   Random& random = unit.random;
   FunctionalEngine engine(unit.config);
   Config bins = unit.config;
@@ -187,7 +187,7 @@ void frames(Unit& unit) {
   try {
     (void)unit.engine(scene, unit.config, render_options());
   } catch (const InputError&) {
-    return;  // a guard band in which no point fits beside the target
+    return;  // a guard band without room for a point beside the target
   }
   if (is_drawn_by_hardware(scene, bins)) hardware.emplace(bins);
   RenderOptions follows;

@@ -1,4 +1,4 @@
-// Fragment operations: pictures that must be the same to the bit, and colours under layers against real arithmetic.
+// Fragment operations: pictures that must be equal to the bit, and colours under layers against real arithmetic.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,7 +19,7 @@ State with(Unit& unit, State state, std::initializer_list<std::string_view> name
   return state;
 }
 
-/// Triangles of any size, their alpha at random.
+/// Adds triangles of any size, with random alpha.
 void add_triangles(Unit& unit, SceneBuilder& builder, int count) {
   const int width = builder.scene.width, height = builder.scene.height;
   for (int n = 0; n < count; ++n) {
@@ -32,7 +32,7 @@ void add_triangles(Unit& unit, SceneBuilder& builder, int count) {
   }
 }
 
-/// The engine's picture is the specification's.
+/// Checks that the engine's picture is the specification's.
 Rendering rendered(Unit& unit, const Scene& scene) {
   Rendering drawn = unit.engine(scene, unit.config, render_options());
   unit.count_triangles(drawn.triangles.size());
@@ -44,13 +44,13 @@ Rendering rendered(Unit& unit, const Scene& scene) {
   return drawn;
 }
 
-/// Without taps the engine draws in its own way.
+/// Checks the engine's own path, used without taps.
 void check_without_taps(Unit& unit, const Scene& scene) {
   const Rendering drawn = rendered(unit, scene), plain = unit.engine(scene, unit.config, {});
   unit.require(plain.frame.color == drawn.frame.color, "plain", scene, "another picture without taps");
 }
 
-/// The same triangles once more, in a state of their own.
+/// Draws the same triangles again, in another state.
 void again(Scene& scene, const State& state) {
   const auto draws = scene.commands;
   scene.states.push_back(state);
@@ -62,7 +62,7 @@ void again(Scene& scene, const State& state) {
     }
 }
 
-/// Every fragment of the specification against the oracle.
+/// Judges every fragment of the specification against the oracle.
 FragmentVerdict judged(Unit& unit, const Scene& scene) {
   const Config config = with_alpha(unit.config, scene);
   FragmentJudge judge(scene, config);
@@ -129,7 +129,7 @@ void opaque_blend(Unit& unit) {
 }
 
 void alpha_parts(Unit& unit) {
-  // What passes a test, and what passes its opposite, are together what there is: where order does not matter.
+  // Fragments that pass a test, and fragments that pass its opposite, are all fragments: where order does not matter.
   State state = SceneBuilder::window_state();
   state.depth_test = DepthFunc::always;
   state.blend = BlendFactors{BlendFactor::one, BlendFactor::one, BlendFactor::one, BlendFactor::one};
@@ -173,7 +173,7 @@ void mask_parts(Unit& unit) {
 }
 
 void stencil_counts(Unit& unit) {
-  // Each fragment adds one; what is then drawn where the value is k are the pixels that so many cover.
+  // Each fragment adds one; a later draw where the value is k fills the pixels with k fragments.
   State state = SceneBuilder::window_state();
   state.depth_test = static_cast<DepthFunc>(unit.random.index(8));
   state.stencil = Stencil{.func = DepthFunc::always,

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kCombinations = 48;
 
-/// A legal combination of everything that the numbers depend on.
+/// A random legal combination of all relevant settings.
 Config random_config(std::uint64_t seed) {
   for (Random random(seed);;) {
     Config config = preset(preset_names()[static_cast<std::size_t>(random.index(4))]);
@@ -61,7 +61,7 @@ std::vector<Config> make_grid() {
   for (const int tile : {4, 8, 16, 32})
     add("embedded", [tile](Config& c) {
       c.tile_size = tile;
-      c.local_guard_bits = 8;  // what the widest of them needs
+      c.local_guard_bits = 8;  // needed by the widest of them
     });
   add("embedded", [](Config& c) { c.color_format = ColorFormat::rgba8888; });
   for (std::size_t i = 0; i < kCombinations; ++i) configs.push_back(random_config(i));

@@ -8,9 +8,9 @@
 
 namespace halfplane::stress {
 
-/// The largest |stored depth - exact plane through the snapped vertices| over the pixels that show a triangle, in LSB. None
-/// when the scene has what it cannot judge: clip space, other topologies than lists of triangles, polygon offset, another
-/// depth format than `plane`, conventions.
+/// The largest |stored depth - exact plane through the snapped vertices| over the pixels that show a triangle, in LSB.
+/// None if the scene has unsupported features: clip space, other topologies than lists of triangles, polygon offset,
+/// another depth format than `plane`, conventions.
 [[nodiscard]] std::optional<double> measured_depth_error(const Scene& scene, const Config& config,
                                                          const Engine& engine);
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::array<LineRule, 3> kRules{LineRule::midpoint, LineRule::bresenham, LineRule::diamond};
 
-/// The line as a capture that draws it again, if a target can show some of it.
+/// The line as a capture that draws it again, if a part of it is in a target.
 Scene line_scene(const exact::Line& line, const LineSpace& space) {
   State state = SceneBuilder::window_state();
   state.line_rule = line.rule;
@@ -30,7 +30,7 @@ Scene line_scene(const exact::Line& line, const LineSpace& space) {
   return scene;
 }
 
-/// The whole line against the oracle. Returns its pixels.
+/// Checks the whole line against the oracle. Returns its pixels.
 std::vector<LinePixel> check_line(Unit& unit, const exact::Line& line, const LineSpace& space) {
   const auto pixels = pixels_of(line, space);
   const Positions drawn = positions(pixels), expected = oracle_positions_nearby(line);
@@ -41,7 +41,7 @@ std::vector<LinePixel> check_line(Unit& unit, const exact::Line& line, const Lin
   LineErrors errors;
   add_errors(errors, line, pixels, space);
   unit.count_triangles(1);
-  // Five pixels a column were asked for, two columns beyond each end; and each fragment.
+  // Five pixels per column are tested, two columns beyond each end; and each fragment.
   const std::int64_t columns =
       std::max(std::abs(std::int64_t{line.end.x} - line.start.x), std::abs(std::int64_t{line.end.y} - line.start.y)) >>
       line.grid_bits;
@@ -57,7 +57,7 @@ exact::Line random_line(Unit& unit, const LineSpace& space, LineRule rule, doubl
   return {start, end, rule, rule == LineRule::diamond || unit.random.coin(), space.widths.grid_bits};
 }
 
-/// What a line and its reverse, and the two books' rules, must have in common.
+/// Common properties of a line and its reverse, and of the two books' rules.
 void check_symmetry(Unit& unit, exact::Line line, const LineSpace& space) {
   if (line.rule == LineRule::diamond) return;
   line.drops_last = false;
@@ -82,7 +82,7 @@ void lines_random(Unit& unit) {
   const LineSpace space(unit.config);
   for (const LineRule rule : kRules) {
     const int kind = unit.random.index(16);
-    const double most = 400.0 / unit.config.guard_band;  // a pixel count that leaves time for others
+    const double most = 400.0 / unit.config.guard_band;  // limits the pixels, to leave time for others
     const exact::Line line = random_line(unit, space, rule,
                                          std::min(1.0, kind == 0       ? most
                                                        : kind % 2 == 0 ? most / 8
@@ -139,7 +139,7 @@ void lines_long(Unit& unit) {
 }
 
 void polylines(Unit& unit) {
-  // Diamond exit, in one octant: no pixel twice, no column left out.
+  // Diamond exit, in one octant: no pixel twice, no column skipped.
   const LineSpace space(unit.config);
   Random& random = unit.random;
   const int octant = random.index(8), pixel = 1 << space.widths.grid_bits,

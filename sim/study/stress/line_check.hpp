@@ -1,4 +1,4 @@
-// Lines: what the stages cover, and the exact oracle's answer pixel by pixel.
+// Lines: pixels covered by the stages, and the exact oracle's answer pixel by pixel.
 #pragma once
 
 #include <algorithm>
@@ -13,10 +13,10 @@
 
 namespace halfplane::stress {
 
-/// A configuration with what derives from it.
+/// A configuration with derived constants.
 struct LineSpace {
   explicit LineSpace(const Config& config_) : config(config_), widths(derive_widths(config)) {}
-  /// The guard band, and the pixel to its left and above that a line along its border is moved into.
+  /// The guard band, including the pixel to its left and above, into which a line along its border is moved.
   [[nodiscard]] PixelBounds everything() const {
     return {-config.guard_band - 1, -config.guard_band - 1, config.guard_band - 1, config.guard_band - 1};
   }
@@ -38,7 +38,7 @@ inline std::vector<LinePixel> pixels_of(const exact::Line& line, const LineSpace
 
 using Positions = std::vector<std::pair<int, int>>;
 
-/// Where they lie, sorted: a set for comparison.
+/// The positions, sorted: a set for comparison.
 inline Positions positions(const std::vector<LinePixel>& pixels) {
   Positions list;
   for (const LinePixel& pixel : pixels) list.emplace_back(pixel.x, pixel.y);
@@ -46,7 +46,7 @@ inline Positions positions(const std::vector<LinePixel>& pixels) {
   return list;
 }
 
-/// Where the oracle says so: two pixels to each side of the line, across its major axis, and beyond its ends.
+/// Positions by the oracle: two pixels to each side of the line, across its major axis, and beyond its ends.
 inline Positions oracle_positions_nearby(const exact::Line& line) {
   const int s = line.grid_bits;
   const auto dx = std::int64_t{line.end.x} - line.start.x, dy = std::int64_t{line.end.y} - line.start.y;

@@ -1,4 +1,4 @@
-// Meshes: whatever the triangles, the samples of what they make up together are covered exactly once.
+// Meshes: for any triangles, the samples of their union are covered exactly once.
 #include <algorithm>
 #include <set>
 
@@ -23,7 +23,7 @@ void add_quad(Mesh& mesh, const std::array<Point, 4>& q, bool diagonal) {
   }
 }
 
-/// `count` different whole numbers in [low, high], sorted; fewer when there are not as many.
+/// `count` different integers in [low, high], sorted; fewer if there are not enough.
 std::vector<std::int64_t> cuts(Random& random, std::int64_t low, std::int64_t high, int count) {
   std::set<std::int64_t> set{low, high};
   for (int i = 2; i < count; ++i) set.insert(random.integer(low, high));
@@ -33,7 +33,7 @@ std::vector<std::int64_t> cuts(Random& random, std::int64_t low, std::int64_t hi
 void delaunay_mesh(Unit& unit, int size, int points) {
   Random& random = unit.random;
   const int width = unit.width(size), height = unit.height(size);
-  // On the half-pixel grid every second coordinate is a pixel centre, and ties are everywhere.
+  // On the half-pixel grid every second coordinate is a pixel centre, with ties everywhere.
   const std::int64_t step = random.coin() ? std::max(1, unit.pixel() / 2) : 1, pixel = unit.pixel();
   const Point low{-2 * pixel, -2 * pixel}, high{(width + 2) * pixel, (height + 2) * pixel};
   std::set<Point> set;
@@ -120,7 +120,7 @@ void t_junctions(Unit& unit) {
   }
   Point above = random_point(unit, width, height, 2), below = random_point(unit, width, height, 2);
   if (doubled_area(a, b, above) < 0) std::swap(above, below);
-  // Only where the pieces do not fold over: then the junction adds or takes away its own sliver a, t, b and nothing else.
+  // Only if the pieces do not fold: then the junction adds or removes only its own sliver a, t, b.
   if (doubled_area(a, b, above) <= 0 || doubled_area(b, a, below) <= 0 || doubled_area(t, a, below) <= 0 ||
       doubled_area(b, t, below) <= 0)
     return;

@@ -1,4 +1,4 @@
-// Depth and colour planes: the steepest, the flattest, planes that fight, and what error remains.
+// Depth and colour planes: the steepest, the flattest, planes that fight, and the remaining error.
 #include <gmpxx.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace halfplane::stress {
 namespace {
 
-/// A grid of cells whose inner vertices are moved by up to a quarter of a cell: triangles of all slopes, none turned over.
+/// A grid of cells whose inner vertices are moved by up to a quarter of a cell: triangles of all slopes, none reversed.
 Mesh jittered_grid(Unit& unit, int cells, std::int64_t low, std::int64_t pitch) {
   std::vector<Point> grid;
   for (int j = 0; j <= cells; ++j)
@@ -57,7 +57,7 @@ Pair same_triangle_twice(Unit& unit, int width, int height) {
   return {std::move(builder.scene), func == DepthFunc::lequal || func == DepthFunc::equal || func == DepthFunc::gequal};
 }
 
-/// One step of a sweep: what the comparison finds in this configuration.
+/// One step of a sweep: the comparison in this configuration.
 Comparison compared(Unit& unit, Unit& swept, const Scene& scene, int bits) {
   CompareOptions options;
   options.wants_affine_cost = false;
@@ -82,7 +82,7 @@ void steep_planes(Unit& unit) {
     std::array<Point, 3> p{random_point(unit, width, height, 4), random_point(unit, width, height, 4),
                            random_point(unit, width, height, 4)};
     std::array<std::uint32_t, 3> z{end(), end(), end()};  // kind 0: the extreme codes, flat and sloped
-    if (kind == 1) {                                      // all of the range within a pixel
+    if (kind == 1) {                                      // the whole range within a pixel
       p[1] = {p[0].x + unit.pixel(), p[0].y};
       z = {0, max, end()};
     } else if (kind == 2) {  // less than an LSB over the span
@@ -104,8 +104,8 @@ void steep_planes(Unit& unit) {
 }
 
 void cancellation(Unit& unit) {
-  // Constant depth, and depth that changes along one axis alone: the other gradient is 0 to the last bit, however large the
-  // products that cancel in it.
+  // Constant depth, and depth that changes along only one axis: the other gradient is exactly 0, however large its
+  // cancelling products.
   Random& random = unit.random;
   Triangle triangle;
   const bool is_constant = random.coin(), along_x = random.coin();
@@ -158,7 +158,8 @@ void coplanar(Unit& unit) {
     return rendering.count[p] == 2 && rendering.ids[p] != (pair.second_wins ? 1 : 0);
   });
 
-  // A rectangle in a plane of whole codes at every grid point, cut in two ways: nowhere more than the two bounds apart.
+  // A rectangle in a plane of integer codes at every grid point, cut in two ways: nowhere more than the two bounds
+  // apart.
   const std::int64_t max = max_depth(unit.config), side = std::int64_t{std::max(width, height) + 2} * unit.pixel();
   const std::int64_t slope = std::min<std::int64_t>(max / (2 * side), 40);
   const std::int64_t kx = random.integer(-slope, slope), ky = random.integer(-slope, slope);
@@ -187,7 +188,7 @@ void coplanar(Unit& unit) {
 }
 
 void separation(Unit& unit) {
-  // Surfaces at the predicted separation never fight; at half of it, they do. In eye space, over mappings and formats.
+  // Surfaces at the predicted separation never fight; at half of it they do. In eye space, over mappings and formats.
   Config config = unit.config;
   config.depth_mapping = DepthMapping::projection;
   if (config.target_width < 120 || config.target_height < 90) return;
@@ -203,10 +204,10 @@ void separation(Unit& unit) {
   try {
     variant = make_variant(config, mapping, format, {random.coin() ? 1.0 : 0.1, 1000});
   } catch (const InputError&) {
-    return;  // a format that this width of depth cannot feed
+    return;  // a format that needs more than this width of depth
   }
   const DepthBound bound(*variant);
-  if (surface_separation(bound, z, view).total() > 0.1 * z) return;  // little is told apart there
+  if (surface_separation(bound, z, view).total() > 0.1 * z) return;  // few depths are distinguished there
   MeasureOptions options;
   options.wants_errors = false;
   const std::uint64_t seed = random.next();
@@ -215,7 +216,7 @@ void separation(Unit& unit) {
   if (order.pairs < 1000) return;
   unit.count_checks(order.pairs);
   unit.measure("fights at the minimum", "pairs", static_cast<double>(order.fights()), 0, whole);
-  // A few thousand pairs may miss the places where rounding is at its worst: other planes then.
+  // A few thousand pairs may miss the worst rounding: tries other planes.
   std::uint64_t fights = 0;
   Scene half;
   for (int attempt = 0; attempt < 16 && fights == 0; ++attempt) {
@@ -276,10 +277,10 @@ void polygon_offset(Unit& unit) {
 }
 
 void mean_bias(Unit& unit) {
-  // Sloped triangles with depths of their own: D - S, triangle by triangle.
+  // Sloped triangles with separate depths: D - S, triangle by triangle.
   const int size = std::min(unit.width(128), unit.height(128)), cells = size / 6;
   const std::int64_t pixel = unit.pixel(), pitch = std::max<std::int64_t>(2, 6 * pixel);
-  // On a small target several times: a mean that is not known well is not judged.
+  // On a small target several times: a mean with a large error is not judged.
   for (int drawn = 0; drawn < 128 * 128; drawn += size * size) {
     const Scene scene = mesh_scene(unit, jittered_grid(unit, cells, 0, pitch), size, size);
     const Rendering rendering = check_scene(unit, scene);
@@ -299,11 +300,11 @@ void mean_bias(Unit& unit) {
 }
 
 void subpixel_sweep(Unit& unit) {
-  // What the snap costs halves with every subpixel bit.
+  // The snap error halves with every subpixel bit.
   Config config = preset("full");
   const int cells = 20;
   SceneBuilder builder(4 * cells, 4 * cells);
-  // One plane over all of the mesh: of thin triangles with slopes of their own a few would decide the mean.
+  // One plane over the whole mesh: with separate slopes a few thin triangles would decide the mean.
   for (const Corner& t :
        jittered_grid(unit, cells, 0, std::int64_t{4} << 20)) {  // 2^-20 pixel: off every grid of the sweep
     const auto vertex = [](Point p) {
@@ -321,13 +322,13 @@ void subpixel_sweep(Unit& unit) {
     if (bits > 2)
       swept.measure("snap, factor per bit - 1/2", "", std::abs(c.parts.snap.rms / last - 0.5), 0.2, builder.scene);
     last = c.parts.snap.rms;
-    if (bits == 2) first = last;  // before that the snap may turn triangles over
+    if (bits == 2) first = last;  // before that the snap may reverse triangles
   }
   unit.measure("snap, mean factor - 1/2", "", std::abs(std::pow(last / first, 1.0 / 6) - 0.5), 0.05, builder.scene);
 }
 
 void depth_sweep(Unit& unit) {
-  // Depth errors halve with every depth bit until the snap of x and y is all that is left.
+  // Depth errors halve with every depth bit until only the snap of x and y is left.
   Config config = preset("full");
   SceneBuilder builder(64, 64);
   for (const Corner& t : jittered_grid(unit, 8, 0, 8 * 1024)) {

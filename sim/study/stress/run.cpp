@@ -16,7 +16,7 @@ namespace halfplane::stress {
 namespace {
 
 constexpr double kBiasBound = 0.05;           // LSB
-constexpr double kBiasStandardError = 0.002;  // LSB: a mean that is known less well is not judged
+constexpr double kBiasStandardError = 0.002;  // LSB: a mean with a larger error is not judged
 
 std::vector<const Case*> chosen(const std::vector<std::string>& names) {
   std::vector<const Case*> list;
@@ -28,14 +28,14 @@ std::vector<const Case*> chosen(const std::vector<std::string>& names) {
   return list;
 }
 
-/// Another sequence for each seed, case and unit.
+/// A different sequence for each seed, case and unit.
 std::uint64_t unit_seed(std::uint64_t seed, std::string_view name, std::uint64_t unit) {
   std::uint64_t hash = 0xcbf29ce484222325ULL;  // FNV-1a
   for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
   return halfplane::Random(seed ^ halfplane::Random(hash ^ halfplane::Random(unit).next()).next()).next();
 }
 
-/// What all threads share, and what each of them does.
+/// Data shared by all threads, and the work of each.
 class Driver {
  public:
   explicit Driver(const RunOptions& options)
@@ -58,18 +58,18 @@ class Driver {
   }
 
  private:
-  /// 0...1, and 1 when nothing more is to be begun.
+  /// 0...1, and 1 when no further unit is started.
   [[nodiscard]] double fraction(std::uint64_t task) const {
     const auto all = static_cast<double>((options_.unit ? 1 : quick_rounds()) * cases_.size());
     if (options_.seconds <= 0 || options_.unit) return static_cast<double>(task) / all;
-    if (task < cases_.size()) return 0;  // one unit of each case, however little time there is
+    if (task < cases_.size()) return 0;  // one unit of each case, for any time limit
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count() / options_.seconds;
   }
 
   void work(std::vector<Tally>& tallies, bool reports) {
     try {
       work_until_stopped(tallies, reports);
-    } catch (const Interrupted&) {  // what a unit has checked by then counts
+    } catch (const Interrupted&) {  // checks made by then count
     }
   }
 
@@ -112,7 +112,7 @@ class Driver {
 
   void run_unit(const Case& c, std::uint64_t number, const Engine& engine, const std::function<void()>& poll,
                 Tally& tally) {
-    // The grid twice over, and beyond it new combinations.
+    // The grid twice, and then new combinations.
     const std::uint64_t grid_size = grid().size();
     const bool is_preset = c.prefers_presets && number % 2 == 0;
     const std::uint64_t step = c.prefers_presets ? number / 2 : number;
@@ -133,7 +133,7 @@ class Driver {
     checks_ += tally.checks - before;
   }
 
-  /// The one that draws by this rule: all but the usual one are the scalar engine's.
+  /// The engine for a rule: all but the default rule need the scalar engine.
   [[nodiscard]] Engine engine_of(FillRule rule) const {
     if (rule == FillRule::top_left) return engine_;
     return [rule](const Scene& scene, const Config& config, RenderOptions options) {

@@ -1,4 +1,5 @@
-// Several samples a pixel: each against the exact oracle at its own place, and the functional engine against the stages.
+// Several samples per pixel: each against the exact oracle at its own place, and the functional engine against the
+// stages.
 #include <algorithm>
 #include <optional>
 
@@ -15,7 +16,7 @@
 namespace halfplane::stress {
 namespace {
 
-/// The unit's configuration with 2, 4 or 8 samples where Direct3D has them, or on any grid down to 1/256 pixel.
+/// The unit's configuration with 2, 4 or 8 samples at Direct3D's places, or on any grid down to 1/256 pixel.
 Config with_samples(Unit& unit) {
   Random& random = unit.random;
   Config config = unit.config;
@@ -33,13 +34,13 @@ Config with_samples(Unit& unit) {
   return config;
 }
 
-/// The hardware with every unit that its framebuffer has room for; none: it does not take the scene with several samples.
+/// The hardware with every unit that fits its framebuffer; none: it does not support the scene with several samples.
 std::optional<Config> hardware_of(Config config, const Scene& scene) {
   const bool has_blocks = config.cache_kind == CacheKind::blocks;
   config.texture_unit = TextureUnitKind::off;
   config.alpha_units = config.dither_units = has_blocks ? 1 : 0;
   config.blend_lanes = has_blocks ? 4 : 0;
-  config.compress_units = has_blocks && scene.width % 2 == 0 ? 1 : 0;  // one colour a pixel in memory, or not
+  config.compress_units = has_blocks && scene.width % 2 == 0 ? 1 : 0;  // one colour per pixel in memory, or not
   config.stencil_bits = has_blocks && config.depth_bits <= 24 ? 8 : 0;
   return is_drawn_by_hardware(scene, config) ? std::optional(config) : std::nullopt;
 }
@@ -72,7 +73,7 @@ void check_samples(Unit& here, const Scene& scene) {
 
 void samples(Unit& unit) {
   const Config config = with_samples(unit);
-  if (!is_legal(config)) return;  // the grid of the samples leaves too few bits of a lane
+  if (!is_legal(config)) return;  // the sample grid leaves too few bits of a lane
   Unit here(unit, config);
   const int width = unit.width(8 + unit.random.index(24)), height = unit.height(8 + unit.random.index(24));
   TriangleFamilies<Random> families(unit.config, width, height, Random(unit.random.next()));
@@ -93,7 +94,7 @@ void samples(Unit& unit) {
 void rectangles(Unit& unit) {
   Random& random = unit.random;
   const Config config = random.coin() ? unit.config : with_samples(unit);
-  if (!is_legal(config)) return;  // the grid of the samples leaves too few bits of a lane
+  if (!is_legal(config)) return;  // the sample grid leaves too few bits of a lane
   Unit here(unit, config);
   const int width = unit.width(8 + random.index(24)), height = unit.height(8 + random.index(24));
   const int widest = std::min(9, config.guard_band - 3 - std::max(width, height));
@@ -107,7 +108,7 @@ void rectangles(Unit& unit) {
                      states_named({"cull", "front", "polygon_mode", "shade", "scissor", "sample_mask"}), choose);
     state.line_rule = LineRule::rectangle;
     state.line_width = 1 + random.index(4 * (widest - 1) + 1) / 4.0;
-    state.smooth = random.index(4) == 0;  // with one sample a pixel
+    state.smooth = random.index(4) == 0;  // with one sample per pixel
     scene.states.push_back(state);
     const auto topology = static_cast<Topology>(random.index(6));
     scene.commands.push_back(Draw{k, 0, topology, scene.indices.size(), 6, 0});

@@ -31,7 +31,7 @@ double color_error(const Interpolated& value, const exact::TriangleOracle& oracl
   return worst;
 }
 
-/// One of the nine (for colours: eighteen) integers of a triangle, moved by `step`; false when it would leave its range.
+/// One of the nine (for colours: eighteen) integers of a triangle, moved by `step`; false if out of range.
 bool move(Triangle& t, int coordinate, std::int64_t step, const Unit& unit) {
   SnappedVertex& v = t.v[static_cast<std::size_t>(coordinate % 3)];
   const auto within = [&step](std::int64_t value, std::int64_t low, std::int64_t high) {
@@ -124,7 +124,7 @@ Found climb(Unit& unit, Objective objective, int evaluations) {
     return search_error(t, objective, unit.config, unit.widths, found.samples);
   };
   found.start = found.error = error_of(found.triangle);
-  // Coordinates 0...8 are X, Y, Z of the vertices; those behind are the channels.
+  // Coordinates 0...8 are X, Y, Z of the vertices; the later ones are the channels.
   const int channels = golden::channel_count(unit.config.color_format);
   const int count = objective == Objective::color ? 9 + 3 * channels : 9;
   for (bool is_better = true; is_better && evaluations > 0;) {
@@ -151,7 +151,7 @@ Found climb(Unit& unit, Objective objective, int evaluations) {
 
 namespace {
 
-/// Climbs; the engine must draw the error that the stages have, where it is one of `drawn`.
+/// Climbs; the engine must draw the error of the stages, where it is one of `drawn`.
 std::pair<double, Scene> worst_found(Unit& unit, Objective objective, int evaluations, double AttributeErrors::*drawn) {
   const Found found = climb(unit, objective, evaluations);
   Scene scene = scene_of(unit, found.triangle);

@@ -7,7 +7,7 @@
 
 namespace halfplane::stress {
 
-/// What the search drives up, over the covered pixels of a window of the target.
+/// The quantity that the search maximises, over the covered pixels of a window of the target.
 enum class Objective {
   depth,          ///< |stored depth - exact plane|, LSB
   interpolation,  ///< |interpolated depth before rounding - exact plane|, LSB
@@ -17,12 +17,12 @@ enum class Objective {
 /// Side of the window in pixels, from pixel (0, 0) of the target.
 inline constexpr int kSearchWindow = 24;
 
-/// The largest error of the triangle in the window; 0 when it covers nothing there. Adds the samples to `samples`.
+/// The largest error of the triangle in the window; 0 if it covers no pixel there. Adds the samples to `samples`.
 [[nodiscard]] double search_error(const Triangle& triangle, Objective objective, const Config& config,
                                   const Widths& widths, std::uint64_t& samples);
 
-/// One restart: a random triangle, climbed until no coordinate's step of 1, 2, 4, ... raises the error or `evaluations` are
-/// used up.
+/// One restart: a random triangle, climbed until no coordinate's step of 1, 2, 4, ... raises the error or `evaluations`
+/// are used up.
 struct Found {
   Triangle triangle;
   double error = 0, start = 0;

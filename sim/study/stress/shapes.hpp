@@ -1,4 +1,4 @@
-// Vertices and scenes on the grid of snapped coordinates, as the cases make them.
+// Vertices and scenes on the grid of snapped coordinates, for the cases.
 #pragma once
 
 #include "sim/scene/scene_builder.hpp"
@@ -37,10 +37,12 @@ namespace halfplane::stress {
 /// Draws a mesh in random order with mixed windings, every vertex of every triangle with a depth and a colour of its own.
 [[nodiscard]] Scene mesh_scene(Unit& unit, Mesh mesh, int width, int height);
 
-/// Draws it, holds it against the oracle, and requires the pixels of `outline` (convex, clockwise) to be covered once.
+/// Draws the mesh, compares it with the oracle, and requires the pixels of `outline` (convex, clockwise) to be covered
+/// once.
 void check_mesh(Unit& unit, const Mesh& mesh, int width, int height, std::span<const Point> outline);
 
-/// Does the triangle, of either orientation, cover the centre of pixel (x, y)? As polygon_covers; no area covers nothing.
+/// Whether the triangle, of either orientation, covers the centre of pixel (x, y). As polygon_covers; area 0 covers
+/// nothing.
 [[nodiscard]] bool triangle_covers(Corner t, int x, int y, int subpixel_bits);
 
 /// One triangle as a scene of its own.

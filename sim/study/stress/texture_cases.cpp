@@ -1,5 +1,5 @@
-// Textures and colours over w: every fragment's coordinate, level, texel and colour against real arithmetic on its snapped
-// vertices (SurfaceOracle), and pictures that must be the same to the bit.
+// Textures and colours over w: every fragment's coordinate, level, texel and colour against real arithmetic on its
+// snapped vertices (SurfaceOracle), and pictures that must be equal to the bit.
 #include <algorithm>
 #include <cmath>
 
@@ -46,7 +46,7 @@ State random_sampler(Unit& unit) {
   return state;
 }
 
-/// A vertex with w, and a place of so many texels on a texture.
+/// A vertex with w, and a place on a texture in texels.
 Vertex textured(Vertex vertex, double w, double u, double v, const Texture& texture) {
   vertex.w = w;
   vertex.u = u / texture.width();
@@ -54,7 +54,7 @@ Vertex textured(Vertex vertex, double w, double u, double v, const Texture& text
   return vertex;
 }
 
-/// w between 1 and `ratio`, both of them among the three.
+/// w between 1 and `ratio`, including both.
 std::array<double, 3> random_w(Random& random, double ratio) {
   std::array<double, 3> w{1, ratio, std::pow(ratio, random.unit())};
   std::rotate(w.begin(), w.begin() + random.index(3), w.end());
@@ -80,7 +80,7 @@ Scene random_scene(Unit& unit, const State& state, Texture texture, double octav
   return std::move(builder.scene);
 }
 
-/// Judges every fragment, and holds the engine's picture against the specification's. Returns the former.
+/// Judges every fragment, and compares the engine's picture with the specification's. Returns the latter.
 Rendering check_surfaces(Unit& unit, const Scene& scene, const SampleTap& tap = {}) {
   FragmentJudge judge(scene, unit.config);
   RenderOptions options = render_options();
@@ -106,7 +106,7 @@ Rendering check_surfaces(Unit& unit, const Scene& scene, const SampleTap& tap = 
   return drawn;
 }
 
-/// The same with whole periods added to every place: the same picture.
+/// The same with whole periods added to every place: the picture must be equal.
 void check_periods(Unit& unit, const Scene& scene) {
   const Rendering here = check_surfaces(unit, scene);
   Scene moved = scene;
@@ -122,7 +122,7 @@ void check_periods(Unit& unit, const Scene& scene) {
   expect_same_image(unit, moved, here, check_surfaces(unit, moved));
 }
 
-/// Places to whole 2^-10 of a side of a power of two, so that a period can be added without rounding.
+/// Places in multiples of 2^-10 of a power-of-two side, so that a period can be added without rounding.
 Scene on_places(Unit& unit, const State& state, double octaves, double repeats) {
   const int side = 1 << unit.random.index(7);
   Scene scene = random_scene(unit, state, random_texture(unit, side, side), octaves, repeats / 2 * side);
@@ -133,7 +133,7 @@ Scene on_places(Unit& unit, const State& state, double octaves, double repeats) 
   return scene;
 }
 
-/// A rectangle of grid points as two triangles, the texture once over it.
+/// A rectangle of grid points as two triangles, with the texture once over it.
 Scene rectangle(Unit& unit, const State& state, Texture texture, Point from, Point to) {
   SceneBuilder builder(unit.width(32), unit.height(32), state);
   const auto at = [&](std::int64_t x, std::int64_t y, double u, double v) {
@@ -158,7 +158,7 @@ void textured_w_ratio(Unit& unit) {
 }
 
 void textured_slivers(Unit& unit) {
-  // Thin ones across the target, and such that hold all of it.
+  // Thin triangles across the target, and triangles that contain all of it.
   Random& random = unit.random;
   const int width = unit.width(32), height = unit.height(32), side = random_side(unit);
   const Texture texture = random_texture(unit, side, side);
@@ -182,8 +182,8 @@ void textured_slivers(Unit& unit) {
 }
 
 void texel_borders(Unit& unit) {
-  // Pixel centres on the borders of texels: either neighbour, and no other. So says a coordinate within its bound and a
-  // nearest texel that is that of the coordinate.
+  // Pixel centres on the borders of texels: either neighbour is valid, and no other. This follows from a coordinate
+  // within its bound and its nearest texel.
   Random& random = unit.random;
   const int side = 1 << random.index(6), zoom = 1 << random.index(4);
   State state = random_sampler(unit);
@@ -224,7 +224,7 @@ void texture_of_one_texel(Unit& unit) {
 }
 
 void constant_coordinate(Unit& unit) {
-  // On the grid of the result and within half of its step, a constant is that constant.
+  // On the grid of the result and within half of its step, a constant stays that constant.
   const PerspectiveFormat format = perspective_format(unit.config);
   const double step = std::ldexp(1.0, -format.coordinate.fraction_bits), octaves = 6 * unit.random.unit();
   const int side = 1 << unit.random.index(8);
@@ -254,7 +254,7 @@ void equal_w(Unit& unit) {
 }
 
 void q_near_one(Unit& unit) {
-  // w just beside a power of two: Q at the ends of its range, mantissas of all ones and of none.
+  // w just next to a power of two: Q at the ends of its range, mantissas of all ones and of zeros.
   Random& random = unit.random;
   Scene scene = random_scene(unit, random_sampler(unit), random_texture(unit, 64, 64), 0, 300);
   for (Vertex& vertex : scene.vertices) {
@@ -284,7 +284,7 @@ void wrap_across_a_tile(Unit& unit) {
 }
 
 void levels_along_a_scanline(Unit& unit) {
-  // A wall that runs away to the right: all levels on each row.
+  // A wall receding to the right: all levels in each row.
   Random& random = unit.random;
   State state = random_sampler(unit);
   state.texture_min = static_cast<TextureMin>(2 + random.index(4));
@@ -301,7 +301,7 @@ void levels_along_a_scanline(Unit& unit) {
 }
 
 void texture_viewport(Unit& unit) {
-  // One texel a pixel, half a texel from the sides: the image itself.
+  // One texel per pixel, half a texel from the sides: the image itself.
   Random& random = unit.random;
   const int width = 1 + random.index(unit.width(32)), height = 1 + random.index(unit.height(32));
   const Point from{random.index(unit.width(32) - width + 1), random.index(unit.height(32) - height + 1)};

@@ -1,4 +1,4 @@
-// Single triangles: every shape that the arithmetic might dislike.
+// Single triangles: every shape that might stress the arithmetic.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -12,7 +12,7 @@ namespace {
 
 int random_sign(Random& random) { return random.coin() ? 1 : -1; }
 
-/// The random generator of a family of its own, so that how many numbers a triangle takes does not matter.
+/// The random generator of a family of its own, so that the number of random numbers per triangle does not matter.
 TriangleFamilies<Random> families_of(Unit& unit, int width, int height) {
   return {unit.config, width, height, Random(unit.random.next())};
 }
@@ -43,7 +43,7 @@ void random_families(Unit& unit) {
 }
 
 void large_target(Unit& unit) {
-  // The longest steps between tiles; a new place each time, so that no screen need be drawn whole.
+  // The longest steps between tiles; a new place each time, so that no screen needs to be drawn completely.
   const int width = unit.width(unit.config.target_width), height = unit.height(1024);
   State state = SceneBuilder::window_state();
   state.scissor = Rect{unit.random.index(width), unit.random.index(height), 96, 64};
@@ -79,8 +79,8 @@ void zero_area(Unit& unit) {
   const std::int64_t n = 1 + random.index(8), k = random.index(static_cast<int>(n) + 1);
   const Point d{(far.x - a.x) / n, (far.y - a.y) / n};
   std::array<Point, 3> p{a, {a.x + n * d.x, a.y + n * d.y}, {a.x + k * d.x, a.y + k * d.y}};  // collinear
-  if (kind == 1) p[2] = p[random.coin() ? 0 : 1];                                             // two alike
-  if (kind == 2 || kind == 3) p[1] = p[2] = a;                                                // all alike
+  if (kind == 1) p[2] = p[random.coin() ? 0 : 1];                                             // two equal
+  if (kind == 2 || kind == 3) p[1] = p[2] = a;                                                // all equal
   std::array<Vertex, 3> v;
   for (std::size_t i = 0; i < 3; ++i) {
     v[i] = random_vertex_at(unit, p[i]);
@@ -99,7 +99,7 @@ void zero_area(Unit& unit) {
 }
 
 void unit_area_slivers(Unit& unit) {
-  // From one side of the target to the other, up to the guard band; twice the area is `scale` square subpixels.
+  // From one side of the target to the other, up to the guard band; doubled area: `scale` square subpixels.
   Random& random = unit.random;
   const int width = unit.width(96), height = unit.height(96);
   const std::int64_t longest =

@@ -36,7 +36,7 @@ class TriangleFamilies {
       double z = random_.unit();
       if (depths == 1) z = random_.index(2);                // the extreme codes
       if (depths == 2) z = base;                            // constant
-      if (depths == 3) z = std::min(base + z * 1e-4, 1.0);  // hardly a slope
+      if (depths == 3) z = std::min(base + z * 1e-4, 1.0);  // almost no slope
       std::array<double, 4> rgba;
       for (double& c : rgba) c = random_.index(4) == 0 ? 255.0 * random_.index(2) : random_.between(0, 255);
       v[i] = at(p[i][0], p[i][1], z, rgba);
@@ -79,7 +79,7 @@ class TriangleFamilies {
     return {a, b, {clamp(a[0] + t * (b[0] - a[0]) + off()), clamp(a[1] + t * (b[1] - a[1]) + off())}};
   }
 
-  /// Guard-band corners: the largest edges there are.
+  /// Guard-band corners: the largest possible edges.
   Points corners() {
     const auto corner = [&] {
       const double x = random_.index(2) == 0 ? -limit_ : limit_, y = random_.index(2) == 0 ? -limit_ : limit_;

@@ -78,7 +78,7 @@ void Unit::measure(std::string_view property, std::string_view unit, double valu
                    FillRule rule) {
   const auto known = tally_.worst.find(property);
   const double ratio = bound > 0 ? value / bound : value;
-  // Copying a scene is dear, and a better one is rare.
+  // Copying a scene is expensive, and a worse one is rare.
   if (known == tally_.worst.end() || ratio > known->second.ratio() ||
       (ratio == known->second.ratio() && number < known->second.place.unit))
     tally_.keep_worst(std::string(property),

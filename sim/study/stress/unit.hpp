@@ -1,4 +1,4 @@
-// A unit of stress: one random input of one case in one configuration, and the record of what was checked and found.
+// A unit of stress: one random input of one case in one configuration, and the record of its checks and results.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 
 namespace halfplane::stress {
 
-/// SplitMix64 with what generators ask for. Draw at most one number in the arguments of a call.
+/// SplitMix64 with the functions that generators need. Draw at most one number in the arguments of a call.
 class Random : public halfplane::Random {
  public:
   using halfplane::Random::Random;
@@ -31,12 +31,12 @@ class Random : public halfplane::Random {
   bool coin() { return (next() >> 63) != 0; }
 };
 
-/// Where a unit can be found again.
+/// The place of a unit, to find it again.
 struct Place {
   std::uint64_t unit = 0;
   Config config;
-  Scene scene;                         ///< may be empty: not every check draws one
-  FillRule rule = FillRule::top_left;  ///< by which it was drawn
+  Scene scene;                         ///< may be empty: not every check draws a scene
+  FillRule rule = FillRule::top_left;  ///< used for drawing
 };
 
 /// The worst of one property so far.
@@ -45,9 +45,9 @@ struct Worst {
   double bound = 0;
   std::string unit;  ///< "LSB", "samples", ...
   Place place;
-  std::optional<double> measured;  ///< by the independent checker, where it can judge the property
+  std::optional<double> measured;  ///< by the independent checker, if it supports the property
 
-  /// How near to its bound; a bound of 0 is broken by anything.
+  /// Nearness to its bound; a bound of 0 is broken by any value.
   [[nodiscard]] double ratio() const { return bound > 0 ? value / bound : value; }
 };
 
@@ -69,17 +69,17 @@ struct BiasSums {
   [[nodiscard]] double standard_error() const;  ///< LSB; of the ratio estimator
 };
 
-/// What one case has done; sums and maxima, so that the parts of several threads merge into the same whole.
+/// Results of one case; sums and maxima, so that the parts of several threads merge into the same total.
 struct Tally {
   std::uint64_t units = 0, triangles = 0, failures = 0;
-  std::uint64_t samples = 0;        ///< triangle-sample checks: samples and fragments held against the exact oracle
-  std::uint64_t checks = 0;         ///< those, and every other comparison: pixels of two images, yes-or-no properties
-  std::set<std::uint64_t> configs;  ///< numbers of the configurations that were visited
+  std::uint64_t samples = 0;        ///< triangle-sample checks: samples and fragments compared with the exact oracle
+  std::uint64_t checks = 0;         ///< these, and all other comparisons: pixels of two images, yes-or-no properties
+  std::set<std::uint64_t> configs;  ///< numbers of the configurations visited
   std::map<std::string, Worst, std::less<>> worst;
-  std::map<std::string, double, std::less<>> preset_depth;  ///< the worst "depth" in each preset as it is, LSB
+  std::map<std::string, double, std::less<>> preset_depth;  ///< the worst "depth" in each unchanged preset, LSB
   std::map<std::string, BiasSums, std::less<>> bias;        ///< by the label of the configuration
   std::map<std::string, Config, std::less<>> bias_config;
-  std::uint64_t bias_judged = 0;  ///< configurations whose mean is known well enough to be judged
+  std::uint64_t bias_judged = 0;  ///< configurations whose mean is exact enough to be judged
   std::optional<Failure> first;   ///< the failure of the lowest unit
 
   void keep_worst(const std::string& property, Worst candidate);
@@ -87,7 +87,7 @@ struct Tally {
   void merge(Tally&& other);
 };
 
-/// What a case gets to work with.
+/// Input and record of a case.
 class Unit {
  public:
   Unit(const Config& config_, std::uint64_t number_, std::uint64_t seed, const Engine& engine_, Tally& tally)
@@ -105,20 +105,20 @@ class Unit {
   const Widths widths;
   const std::uint64_t number;
   Random random;
-  const Engine& engine;        ///< draws; a test puts a faulty one here
+  const Engine& engine;        ///< draws the scenes; a test puts a faulty one here
   std::function<void()> poll;  ///< for long work without the engine: throws when the run was ended; may be empty
 
   void count_triangles(std::uint64_t n) { tally_.triangles += n; }
-  /// Samples whose coverage, or fragments whose depth and colour, were held against the exact oracle.
+  /// Samples whose coverage, or fragments whose depth and colour, were compared with the exact oracle.
   void count_samples(std::uint64_t n) {
     tally_.samples += n;
     tally_.checks += n;
   }
   /// Other comparisons.
   void count_checks(std::uint64_t n) { tally_.checks += n; }
-  /// Another configuration than `config` that the unit looks at.
+  /// A configuration other than `config` used by the unit.
   void count_config(std::uint64_t id) { tally_.configs.insert(id); }
-  /// A yes-or-no property: counts as one check. `scene` is saved when it does not hold. Returns `holds`.
+  /// A yes-or-no property: counts as one check. `scene` is saved when it fails. Returns `holds`.
   bool require(bool holds, std::string_view property, const Scene& scene, std::string_view what);
   /// A measured figure against its bound; the worst of all units is kept with its scene.
   void measure(std::string_view property, std::string_view unit, double value, double bound, const Scene& scene,
@@ -126,7 +126,7 @@ class Unit {
   /// One triangle's errors for the mean of this configuration.
   void add_bias(std::int64_t error_sum, std::int64_t count);
 
-  /// A target of at most this size that the configuration takes.
+  /// A target of at most this size that the configuration supports.
   [[nodiscard]] int width(int wanted) const { return std::min({wanted, config.target_width, inside_band()}); }
   [[nodiscard]] int height(int wanted) const { return std::min({wanted, config.target_height, inside_band()}); }
   /// Units of the grid on which window coordinates lie, per pixel: 2^S.

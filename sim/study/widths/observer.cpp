@@ -47,13 +47,13 @@ void require(bool holds, const char* what) {
   if (!holds) throw std::logic_error(std::string("the width observer and the stage disagree: ") + what);
 }
 
-/// A plane of `bits` bits at a covered sample: the window of its residues begins half the range of the codes below 0.
+/// A plane of `bits` bits at a covered sample: the wrap window begins half the range of the codes below 0.
 std::int64_t decoded(std::uint64_t residue, int bits) {
   const std::uint64_t below = std::uint64_t{1} << (bits - 2);
   return static_cast<std::int64_t>(wrap_unsigned(residue + below, bits)) - static_cast<std::int64_t>(below);
 }
 
-/// A coordinate of a line that runs against its axis, as line_setup turns it round.
+/// A coordinate of a line that runs against its axis, reversed as in line_setup.
 std::int64_t turned_pixel(std::int64_t pixel, bool is_negative) { return is_negative ? ~pixel : pixel; }
 
 constexpr int kWalkedPixels = 256;
@@ -63,7 +63,7 @@ constexpr int kWalkedPixels = 256;
 Interval value_range(const Width& width, const Widths& widths, const Config& config) {
   const auto codes = [&](int code_bits) {
     const int fraction = width.bits - code_bits - 1;
-    // Storage is no part of it: what is left of the bound below 1/2 is the datapath's own.
+    // Storage is not included: the rest of the bound below 1/2 is the datapath's own.
     const auto error = static_cast<int128>(std::ceil(std::ldexp(depth_error_bound(config) - 0.5, fraction)));
     return Interval{-error, (((int128{1} << code_bits) - 1) << fraction) + error};
   };
@@ -80,7 +80,7 @@ WidthObserver::WidthObserver(const Config& config)
       is_observed_(all_.size(), true),
       seen_(all_.size()) {
   for (std::size_t i = 0; i < all_.size(); ++i) place_.emplace_back(all_[i], i);
-  for (int a = 0; a < widths_.attributes.attributes; ++a) {  // what is the same under another name
+  for (int a = 0; a < widths_.attributes.attributes; ++a) {  // the same width under another name
     const AttributeWidths& w = widths_.attribute[static_cast<std::size_t>(a)];
     const auto place = [this](const Width& width) {
       return static_cast<std::size_t>(std::find(all_.begin(), all_.end(), &width) - all_.begin());
@@ -91,7 +91,7 @@ WidthObserver::WidthObserver(const Config& config)
   }
   std::sort(place_.begin(), place_.end());
   for (const auto member : kByConstruction) is_observed_[place_of(widths_.*member)] = false;
-  for (int a = 0; a < widths_.attributes.attributes; ++a) {  // planes over w: probes have none
+  for (int a = 0; a < widths_.attributes.attributes; ++a) {  // planes over w: not in probes
     const AttributeWidths& w = widths_.attribute[static_cast<std::size_t>(a)];
     if (w.affine_code.bits != 0) continue;
     for (const auto member :
@@ -131,7 +131,7 @@ void WidthObserver::observe(const Probe& probe) {
 
 struct WidthObserver::TriangleStages {
   TrianglePacket packet;
-  TriangleSetup setup;  // what interpolate_at() takes
+  TriangleSetup setup;  // input of interpolate_at()
   SetupPacket setup_packet;
   ContextPacket context;
   EdgeContext edges;
@@ -249,7 +249,7 @@ void WidthObserver::observe_tile(const TriangleStages& stages, int tile_x, int t
       for (const int x : {0, last})
         see(widths_.sample_edge,
             int128{tile.edge_value[i]} + int128{x} * stages.edges.step_x[i] + int128{y} * stages.edges.step_y[i]);
-  StampPacket first, newest;  // that cover something: among them the extremes of every field
+  StampPacket first, newest;  // stamps with coverage: the extremes of every field are among them
   fine_raster(tile, stages.edges, widths_, [&](const StampPacket& stamp) {
     if (!stamp.mask.any()) return;
     if (!first.mask.any()) first = stamp;
@@ -309,7 +309,7 @@ void WidthObserver::observe_line(const Probe& probe) {
     for (std::size_t p = 0; p < static_cast<std::size_t>(widths_.affine_planes); ++p)
       see(widths_.of_plane(p).code, probe.v[i].code[p]);
   }
-  // Nothing is cut away here: the pixels that a line in the guard band covers lie at most one outside of it.
+  // No clipping here: the pixels covered by a line in the guard band lie at most one outside it.
   const int edge = config_.guard_band + 2;
   const PixelBounds everything{-edge, -edge, edge, edge};
   for (const bool is_whole : {true, false}) {
@@ -325,7 +325,7 @@ void WidthObserver::observe_line(const Probe& probe) {
 
 namespace {
 
-/// The ends of a line along one axis of its octant, as line_setup turns them.
+/// The ends of a line along one axis of its octant, reversed as in line_setup.
 struct Ends {
   std::int64_t from, to;
 };
@@ -340,7 +340,7 @@ Ends ends_of(std::int32_t from, std::int32_t to, bool is_negative, LineRule rule
 
 }  // namespace
 
-/// The position along the minor axis at the first and the last pixel; of a whole line, what it was made from.
+/// The position along the minor axis at the first and the last pixel; for a whole line, its inputs.
 void WidthObserver::observe_positions(const Probe& probe, const LineSetup& line, bool is_whole) {
   const int s = widths_.grid_bits;
   const bool x_major = line.is_x_major, x_negative = line.is_x_negative, y_negative = line.is_y_negative;
@@ -358,7 +358,7 @@ void WidthObserver::observe_positions(const Probe& probe, const LineSetup& line,
   if (!is_whole) return;
   const int128 pixel = int128{1} << s, offset = (int128{column} << s) + pixel / 2 - a.from;
   const int128 numerator = (int128{b.from} & (pixel - 1)) * D + d * offset;
-  const bool moves = numerator >> s == position;  // a tie; where there is none the bias changes nothing
+  const bool moves = numerator >> s == position;  // a tie; without one the bias has no effect
   require(moves || (numerator - 1) >> s == position, "line position");
   see(widths_.line_numerator, numerator - (moves ? 0 : 1));
 }

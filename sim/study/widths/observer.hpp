@@ -1,8 +1,8 @@
-// What the intermediates of the pipeline really hold. The stages are run on one primitive at a time, and the smallest and
-// the largest value of every width are kept.
+// The real range of the pipeline's intermediates. The stages run on one primitive at a time, and the smallest and the
+// largest value of every width are recorded.
 //
-// Whatever a packet carries is read from the packet. What stays inside a stage (products, numerators, a line's
-// positions) is computed a second time in 128 bits, and held against what the stage hands on.
+// Packet fields are read from the packet. Values inside a stage (products, numerators, a line's positions) are computed
+// again in 128 bits, and compared with the stage's output.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@
 
 namespace halfplane {
 
-/// A primitive after the snap: what the widths are tried with. The scissor is the whole target of the configuration.
+/// A primitive after the snap: the test input for widths. The scissor is the whole target of the configuration.
 struct Probe {
   bool is_line = false;
   LineRule rule = LineRule::diamond;  ///< of a line
@@ -26,7 +26,7 @@ struct Probe {
   bool operator==(const Probe&) const = default;
 };
 
-/// The values of one width so far. Of a modular one: the values read back from the residues at covered samples.
+/// The values of one width so far. For a modular width: the values decoded from the residues at covered samples.
 struct Seen {
   std::uint64_t count = 0;
   int128 lo = 0, hi = 0;  ///< meaningless while count is 0
@@ -38,32 +38,32 @@ struct Seen {
   }
 };
 
-/// The range that the values of `width`, a member of `widths`, lie in: Width::range; of a modular plane, the codes at
-/// covered samples with the derived error on both sides, in units of its last fraction bit.
+/// The range of the values of `width`, a member of `widths`: Width::range; for a modular plane, the codes at covered
+/// samples with the derived error on both sides, in units of its last fraction bit.
 [[nodiscard]] Interval value_range(const Width& width, const Widths& widths, const Config& config);
 
-/// Runs the stages and keeps what it sees.
+/// Runs the stages and records the values.
 class WidthObserver {
  public:
   explicit WidthObserver(const Config& config);
-  WidthObserver(const WidthObserver&) = delete;  // the widths are known by their addresses
+  WidthObserver(const WidthObserver&) = delete;  // widths are identified by their addresses
   WidthObserver& operator=(const WidthObserver&) = delete;
 
-  /// Runs the primitive through every stage up to its fragments. Of a triangle, the tiles at the corners of its box, at
-  /// its vertices and along its edges are visited: values are linear, so extremes lie there. Of a line, its first 256
-  /// pixels and its last. Throws std::logic_error when an intermediate is not what its stage made of it.
+  /// Runs the primitive through every stage up to its fragments. For a triangle, visits the tiles at the corners of its
+  /// box, at its vertices and along its edges: values are linear, so extremes lie there. For a line, its first 256
+  /// pixels and its last. Throws std::logic_error when an intermediate differs from its stage's.
   void observe(const Probe& probe);
-  /// Forgets all that was seen.
+  /// Forgets all recorded values.
   void clear();
 
   [[nodiscard]] const Config& config() const { return config_; }
   [[nodiscard]] const Widths& widths() const { return widths_; }
   /// In the order of Widths::all().
   [[nodiscard]] std::span<const Seen> seen() const { return seen_; }
-  /// Of a member of widths().
+  /// For a member of widths().
   [[nodiscard]] const Seen& seen(const Width& width) const { return seen_[place_of(width)]; }
-  /// Whether it looks at that width of all(). It does not where the range counts states, slots or numbers that wrap: such
-  /// a width is exact by construction.
+  /// Whether that width of all() is observed. Not if the range counts states, slots or numbers that wrap: such a width
+  /// is exact by construction.
   [[nodiscard]] bool is_observed(std::size_t place) const { return is_observed_[place]; }
 
  private:

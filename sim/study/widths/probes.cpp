@@ -58,14 +58,14 @@ Probe ProbeMaker::random() {
     set_colors(v, widths_, [this] { return below(3) == 0 ? 255 * below(2) : below(256); });
   }
   if (below(3) != 0) return probe;
-  // A sliver, or a small one: the third vertex close to the first, or to the line through the others.
+  // A sliver, or a small triangle: the third vertex close to the first, or to the line through the others.
   const double t = below(2) == 0 ? 0 : random_.uniform(0, 1);
   const auto near = [&](std::int32_t a, std::int32_t b) {
     return legal(a + static_cast<std::int64_t>(t * (static_cast<double>(b) - a)) + below(7) - 3);
   };
   probe.v[2].x = near(probe.v[0].x, probe.v[1].x);
   probe.v[2].y = near(probe.v[0].y, probe.v[1].y);
-  if (t == 0) std::swap(probe.v[1], probe.v[2]);  // for a line, the ends are close to each other
+  if (t == 0) std::swap(probe.v[1], probe.v[2]);  // for a line, the ends are close together
   return probe;
 }
 

@@ -1,4 +1,4 @@
-// Primitives that try widths: random ones, directed extremes, and small changes of one.
+// Primitives that test widths: random ones, directed extremes, and small changes of one.
 #pragma once
 
 #include <vector>
@@ -14,9 +14,10 @@ class ProbeMaker {
  public:
   ProbeMaker(const Config& config, std::uint64_t seed);
 
-  /// A random one, rich in ends of the ranges, near-equal coordinates, slivers and pixel centres; one in three a line.
+  /// A random probe, with frequent ends of ranges, near-equal coordinates, slivers and pixel centres; one in three is a
+  /// line.
   [[nodiscard]] Probe random();
-  /// One to three numbers of it changed: to an end of the range, by a power of two, or to that of another vertex.
+  /// Changes one to three of its numbers: to an end of the range, by a power of two, or to that of another vertex.
   [[nodiscard]] Probe changed(Probe probe);
 
  private:
@@ -28,7 +29,7 @@ class ProbeMaker {
   Random random_;
   int grid_bits_;
   std::int32_t low_, high_;  // of a coordinate, subpixels
-  std::int32_t odd_mask_;    // clears what a coordinate cannot have: at S = 0 all are even
+  std::int32_t odd_mask_;    // clears impossible bits of a coordinate: at S = 0 all are even
   std::uint32_t depth_max_;
   Widths widths_;
 };

@@ -15,7 +15,7 @@
 namespace halfplane {
 namespace {
 
-/// A setting that is searched. The guard band counts by its logarithm, so that each step is one bit.
+/// A searched setting. The guard band counts by its logarithm, so that each step is one bit.
 struct Axis {
   std::string_view key;
   int Config::*member;
@@ -69,7 +69,7 @@ class Search {
       low_[a] = setting_range(a).first;
       high_[a] = kAxes[a].is_logarithm ? value : setting_range(a).second;
     }
-    // The widest that is legal: what must be given up goes where it helps least.
+    // The widest legal configuration: reductions are made where the bits help least.
     for (const std::size_t a : {2U, 1U, 3U, 0U})
       while (!refusal(at(high_)).empty() && high_[a] > value_of(start_, a)) --high_[a];
   }
@@ -145,7 +145,7 @@ class Search {
     return config;
   }
 
-  /// The part of the overlapping pairs that fights, if there are any and their eye depths are known.
+  /// The fraction of the overlapping pairs that fights, if there are any and their eye depths are known.
   [[nodiscard]] std::optional<double> fights(const Scene& scene, const Config& config) const {
     if (!scene.planes) return std::nullopt;
     MeasureOptions options;
@@ -155,7 +155,7 @@ class Search {
     return order.pairs == 0 ? std::nullopt : std::optional(order.rate());
   }
 
-  /// Measures one scene. Returns what is broken.
+  /// Measures one scene. Returns the broken bound.
   [[nodiscard]] std::string measure(const Scene& scene, const Config& config, SceneErrors& errors) const {
     CompareOptions options;
     options.progress = [this](double) { report(); };
@@ -201,7 +201,7 @@ class Search {
     return kept;
   }
 
-  /// Below these no other setting helps: each is the least that does with all others at their most.
+  /// Below these no other setting helps: each is the minimum that works with all others at their maximum.
   void raise_lower_ends() {
     for (std::size_t a = 0; a < kAxes.size(); ++a) {
       int fails = low_[a] - 1, holds = high_[a];
@@ -214,14 +214,14 @@ class Search {
     }
   }
 
-  /// The cheapest point that holds, in order of cost.
+  /// The cheapest point that keeps the bounds, in order of cost.
   Point cheapest() {
     std::vector<std::pair<long, Point>> points;
     Point point = low_;
     for (bool is_more = true; is_more;) {
       if (refusal(at(point)).empty()) points.emplace_back(cost(at(point)), point);
       is_more = false;
-      for (std::size_t a = 0; a < kAxes.size() && !is_more; ++a) {  // an odometer
+      for (std::size_t a = 0; a < kAxes.size() && !is_more; ++a) {  // counts through all combinations
         is_more = point[a] < high_[a];
         point[a] = is_more ? point[a] + 1 : low_[a];
       }
@@ -238,7 +238,7 @@ class Search {
       if (trial(candidate).holds()) return candidate;
       failed.push_back(candidate);
     }
-    return high_;  // which holds
+    return high_;  // which keeps the bounds
   }
 
   OneLess one_less(const Point& found, std::size_t a) {

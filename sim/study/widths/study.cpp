@@ -14,7 +14,7 @@ std::optional<double> proven_w_ratio(double extent, double error, const Perspect
     return over_w_bound(extent, std::exp2(log_ratio), format, attribute, tile_size) <= error;
   };
   if (!holds(0)) return std::nullopt;
-  double low = 0, high = format.q_bits;  // at 2^N nothing is left of Q
+  double low = 0, high = format.q_bits;  // at 2^N no bits of Q are left
   while (high - low > 1e-9) {
     const double middle = (low + high) / 2;
     (holds(middle) ? low : high) = middle;
@@ -30,7 +30,7 @@ struct Witnesses {
   std::uint64_t first_overflow = 0, overflows = 0;  // of the random probes, with one bit less
 };
 
-/// Tries probes and remembers the best of each end.
+/// Tries probes and remembers the best for each end.
 class Study {
  public:
   Study(const Config& config, const WidthStudyOptions& options)
@@ -43,7 +43,7 @@ class Study {
   WidthStudy run() {
     try {
       try_all();
-    } catch (const Interrupted&) {  // what was seen stands
+    } catch (const Interrupted&) {  // values seen so far are kept
     }
     return result();
   }
@@ -79,13 +79,13 @@ class Study {
     return seen.count != 0 && (upwards ? seen.hi >= range(place).hi : seen.lo <= range(place).lo);
   }
 
-  /// With one bit less.
+  /// Whether it overflows with one bit less.
   [[nodiscard]] bool overflows(std::size_t place, const Seen& seen) const {
     const Width& width = *all_[place];
     return bits_needed({seen.lo, seen.hi}, width.is_signed, width.is_modular) >= width.bits;
   }
 
-  /// `number`: of a random probe, from 1. Leaves what this probe alone showed in the observer.
+  /// `number`: of a random probe, from 1. Leaves this probe's values in the observer.
   void attempt(const Probe& probe, std::uint64_t number = 0) {
     observer_.clear();
     observer_.observe(probe);
@@ -103,7 +103,7 @@ class Study {
     }
   }
 
-  /// A random probe that reaches the width at all.
+  /// A random probe that uses the width.
   [[nodiscard]] Probe fresh_start(std::size_t place) {
     Probe probe;
     for (int i = 0; i < 100; ++i) {
@@ -125,7 +125,7 @@ class Study {
       const Probe next = maker_.changed(probe);
       attempt(next);
       const auto reached = height();
-      if (!reached || (best && *reached < *best)) continue;  // level steps are taken: they lead along ridges
+      if (!reached || (best && *reached < *best)) continue;  // equal steps are accepted: they lead along ridges
       best = reached;
       probe = next;
     }

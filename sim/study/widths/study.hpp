@@ -1,5 +1,4 @@
-// The widths of a configuration, tried: how much of each derived range is ever used, and what would overflow with a bit
-// less.
+// The widths of a configuration, tried: the used part of each derived range, and overflows with one bit less.
 #pragma once
 
 #include <functional>
@@ -12,57 +11,57 @@
 
 namespace halfplane {
 
-// How far apart the w of a triangle may be for what is interpolated over w to keep a given error.
+// The ratio of w over a triangle for which attributes over w keep a given error.
 
-/// What the page of widths asks: 1/16 texel, 2 LSB of 8 bits.
+/// The errors on the page of widths: 1/16 texel, 2 LSB of 8 bits.
 inline constexpr double kProvenTexels = 0.0625, kProvenColor = 2;
 
-/// The largest ratio of w over a triangle to which over_w_bound() is at most `error` (texels, LSB) for an attribute that
-/// spans `extent`; nothing when it is more with equal w already.
+/// The largest ratio of w over a triangle for which over_w_bound() is at most `error` (texels, LSB) for an attribute of
+/// extent `extent`; none if it is larger even with equal w.
 [[nodiscard]] std::optional<double> proven_w_ratio(double extent, double error, const PerspectiveFormat& format,
                                                    const OverWFormat& attribute, int tile_size);
 
-/// That of a texture coordinate over `texels`, to kProvenTexels.
+/// The ratio for a texture coordinate over `texels`, with kProvenTexels.
 [[nodiscard]] inline std::optional<double> proven_w_ratio(double texels, const PerspectiveFormat& format,
                                                           int tile_size) {
   return proven_w_ratio(texels, kProvenTexels, format, format.coordinate, tile_size);
 }
 
-/// An input whose value does not fit a width that has one bit less.
+/// An input whose value does not fit a width with one bit less.
 struct Overflow {
   Probe probe;
   int128 value = 0;
-  std::uint64_t first_probe = 0;    ///< the first of the random probes that overflows, from 1; 0: the search alone did
-  std::uint64_t random_probes = 0;  ///< how many of them do
+  std::uint64_t first_probe = 0;    ///< the first of the random probes that overflows, from 1; 0: only the search did
+  std::uint64_t random_probes = 0;  ///< number of these
 };
 
-/// One width, as derived and as seen.
+/// One width, derived and observed.
 struct WidthRow {
   Width width;
   bool is_observed = false;  ///< else exact by construction: see WidthObserver::is_observed()
   Interval range;            ///< value_range()
   Seen seen;
-  int needed_bits = 0;                ///< that hold what was seen
-  std::optional<Overflow> overflows;  ///< with one bit less; none: nothing seen does
+  int needed_bits = 0;                ///< for the observed values
+  std::optional<Overflow> overflows;  ///< with one bit less; none: no observed value does
 
   [[nodiscard]] bool attains_lo() const { return seen.count != 0 && seen.lo == range.lo; }
   [[nodiscard]] bool attains_hi() const { return seen.count != 0 && seen.hi == range.hi; }
   [[nodiscard]] bool is_within() const { return seen.count == 0 || (seen.lo >= range.lo && seen.hi <= range.hi); }
   [[nodiscard]] int spare_bits() const { return width.bits - needed_bits; }
-  /// The largest share of either end that was seen, 0...1.
+  /// The largest fraction of either end that was observed, 0...1.
   [[nodiscard]] double used() const;
 };
 
-/// Bits that hold every value of [lo, hi]: in two's complement if `is_signed`; modulo 2^bits, as many as tell its values
-/// apart.
+/// Bits that hold every value of [lo, hi]: in two's complement if `is_signed`; modulo 2^bits, enough to distinguish its
+/// values.
 [[nodiscard]] int bits_needed(const Interval& values, bool is_signed, bool is_modular);
 
 struct WidthStudyOptions {
   std::uint64_t seed = 1;
   std::uint64_t samples = 20000;  ///< random probes
   int climb_steps = 1500;         ///< for each end of each width, half of them from a fresh start
-  /// Gets the part done and the probes tried; may be empty. Interrupted, thrown there, ends the study: what was seen by
-  /// then is returned.
+  /// Gets the fraction done and the probes tried; may be empty. Interrupted, thrown there, ends the study, which
+  /// returns its results so far.
   std::function<void(double fraction, std::uint64_t probes)> progress;
 };
 
@@ -70,7 +69,8 @@ struct WidthStudy {
   std::uint64_t probes = 0;    ///< tried in all
   std::vector<WidthRow> rows;  ///< in the order of Widths::all()
 
-  /// Places of the rows that a bit less would overflow: by the first random probe that does, then by how many do.
+  /// Rows that would overflow with one bit less: ordered by the first random probe that overflows, then by their
+  /// number.
   [[nodiscard]] std::vector<std::size_t> overflow_order() const;
 };
 
