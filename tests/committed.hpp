@@ -14,8 +14,8 @@
 
 namespace halfplane::test {
 
-/// Holds a file of the repository against `made`, which turns its text into what it should be. With HALFPLANE_UPDATE in the
-/// environment the file is rewritten instead.
+/// Compares a file of the repository with `made`, which makes the expected text from its text. With HALFPLANE_UPDATE in
+/// the environment the file is rewritten instead.
 inline void expect_committed(const std::string& path, const std::function<std::string(const std::string&)>& made) {
   const std::string file = std::string(HALFPLANE_SOURCE_DIR) + "/" + path;
   std::ifstream in(file, std::ios::binary);

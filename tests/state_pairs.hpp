@@ -52,7 +52,7 @@ inline std::vector<Dimension> dimensions() {
     return Dimension{name, 3, [n](const State& s) { return s.texture ? static_cast<int>(s.texture_wrap[n]) : -1; },
                      [n](State& s, int v) { s.texture_wrap[n] = static_cast<TextureWrap>(v); }, "texture"};
   };
-  /// What is off, or is as `make` says.
+  /// A state that is off, or has the value of `make`.
   const auto optional = [](std::string_view name, auto member, auto make) {
     return Dimension{name, 2, [member](const State& s) { return s.*member ? 1 : 0; },
                      [member, make](State& s, int v) {

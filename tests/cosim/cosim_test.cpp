@@ -88,7 +88,7 @@ TEST(Cosim, EveryPacketOfRandomScenesIsEqualWithAndWithoutStalls) {
   }
 }
 
-// What a texture unit asks for and what comes of it is compared too, where there is one.
+// A texture unit's requests and results are compared too, if the design has one.
 TEST(Cosim, TexturesAreLookedUpInRandomScenes) {
   std::size_t units = 0;
   for (const DutFactory& factory : verilated_duts()) {
@@ -124,7 +124,7 @@ TEST(Cosim, ColoursAreBlendedInRandomScenes) {
   EXPECT_GT(units, 0u);
 }
 
-// The stencil goes with its depths, marks what fails, and waits for a late alpha test.
+// The stencil shares the depth's word, marks failing fragments, and waits for a late alpha test.
 TEST(Cosim, StencilsAreDrawnInRandomScenes) {
   std::size_t units = 0;
   for (const DutFactory& factory : verilated_duts()) {

@@ -98,7 +98,7 @@ TEST(Cycles, AStreamOfTrianglesOfOnePixelTakesAtMostFourAndAHalfEach) {
 TEST(Cycles, TrianglesThatCoverNoSampleTakeNothingBehindCull) {
   Random random(1);
   std::vector<Triangle> triangles(2000);
-  for (Triangle& t : triangles) {  // past the one sample in their box; the last one is drawn
+  for (Triangle& t : triangles) {  // they miss the one sample in their box; the last one is drawn
     const double x = std::floor(random.uniform(0, 29)), y = std::floor(random.uniform(0, 29));
     t = {{{x + 0.75, y + 0.25}, {x + 1.75, y + 1.25}, {x + 1.25, y + 1}}};
   }

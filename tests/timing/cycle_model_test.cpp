@@ -1,4 +1,5 @@
-// The cycle engine without RTL: the functional engine's bits, the same cycles whoever looks on, and rules of monotony.
+// The cycle engine without RTL: the functional engine's bits, the same cycles with and without an observer, and rules
+// of monotony.
 #include <gtest/gtest.h>
 
 #include <set>

@@ -129,7 +129,7 @@ TEST(Teapot, TheNormalsAtItsTwoPolesAreVertical) {
 TEST(Knot, TheTubeIsClosedAndItsFrontIsOutside) {
   const Mesh mesh = knot_mesh(64);
   EXPECT_TRUE(open_edges(edges_of(mesh)).empty());
-  EXPECT_NEAR(volume(mesh), 16, 0.5);  // pi * 0.42^2 * the line's length of 29, less what the facets cut off
+  EXPECT_NEAR(volume(mesh), 16, 0.5);  // pi * 0.42^2 * the line's length of 29, minus the facets' loss
 }
 
 TEST(City, EveryBoxIsClosedAndSeenFromOutside) {

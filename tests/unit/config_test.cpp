@@ -196,7 +196,7 @@ TEST(RasterTaps, TheCommittedOnesAreWhatTheGraphYields) {
   test::expect_committed("rtl_ref/cosim/taps.svh", [](const auto&) { return raster_taps(); });
 }
 
-/// What a result says of a configuration: every setting, as `config --list` describes it.
+/// The configuration in a result: every setting, as `config --list` describes it.
 TEST(Config, TheCommittedSchemaIsThatOfTheSettings) {
   using Json = nlohmann::ordered_json;
   test::expect_committed("docs/json/halfplane.common.schema.json", [](const std::string& text) {

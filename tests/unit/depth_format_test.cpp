@@ -104,7 +104,7 @@ TEST(DepthMapping, EveryMappingAndFormatRunsThroughEnginesGoldenAndOracle) {
       const Rendering scalar = render_scalar(scene, config, {});
       EXPECT_EQ(scalar.frame.depth, c.rendering.frame.depth);
       EXPECT_EQ(scalar.frame.color, c.rendering.frame.color);
-      // The golden's code is another one's arithmetic: of the same depth it is the same code or the one beside it.
+      // The golden uses other arithmetic: for the same depth its code is equal or adjacent.
       const DepthEncode encode(config, scene.planes);
       std::uint64_t differ = 0, visible = 0;
       for (int y = 0; y < scene.height; ++y)

@@ -43,7 +43,7 @@ bool is_code(std::string_view name) {
   return std::any_of(endings.begin(), endings.end(), [&](auto ending) { return has_suffix(name, ending); });
 }
 
-/// Every file and folder of the project by its path from the root; `ends` holds what a path may be shortened to.
+/// Every file and folder of the project by its path from the root; `ends` holds the short forms of paths.
 struct Tree {
   std::set<std::string> paths, ends;
 
@@ -70,7 +70,7 @@ const Tree& tree() {
   return tree;
 }
 
-/// `NAME.sv` stands for any name, `_serial.sv` for the end of one; what is in build/ is made.
+/// `NAME.sv` stands for any name, `_serial.sv` for the end of one; files in build/ are generated.
 bool is_placeholder(const std::string& word) {
   if (word[0] == '.' || word[0] == '_' || word.rfind("build/", 0) == 0) return true;
   const std::string stem = fs::path(word).stem().string();

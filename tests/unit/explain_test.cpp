@@ -402,7 +402,7 @@ TEST(Explain, TextbookLinesAreTheRegisters) {
   }
 }
 
-/// Changes one figure; whoever compares must notice.
+/// Changes one figure; the comparison must notice.
 TEST(Explain, AChangedFigureIsADifference) {
   const Config config = preset("embedded");
   const Scene scene = random_scene(config, kSeed, 60);

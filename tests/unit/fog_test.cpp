@@ -46,7 +46,7 @@ std::uint32_t factor_at(const FogTable& table, double w) {
   return table.factor(static_cast<std::uint64_t>(std::llround(std::ldexp(mantissa, 40))), 40 - exponent);
 }
 
-/// The worst error of a table over 24 octaves about a distance, less what the bound allows for q; LSB of 8 bits.
+/// The worst error of a table over 24 octaves about a distance, minus the bound's part for q; LSB of 8 bits.
 double worst_error(const FogTable& table, double about, double* part_of_bound = nullptr) {
   double worst = 0;
   for (int i = 0; i < 24 * 500; ++i) {

@@ -1,4 +1,4 @@
-// Lines and points in the hardware model: their fragments, their place in program order, and what they do to HiZ.
+// Lines and points in the hardware model: their fragments, their place in program order, and their effect on HiZ.
 #include <gtest/gtest.h>
 
 #include <utility>

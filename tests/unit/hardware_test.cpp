@@ -102,7 +102,7 @@ Scene random_scene(std::uint32_t seed, const Config& config, int triangles = 80)
   return random_scene(seed, is_tiny ? 15 : 93, is_tiny ? 13 : 71, is_tiny ? 32 : 500, triangles);
 }
 
-/// What coarse_raster would count of the triangles that cull drops because they cover no sample.
+/// The counts of coarse_raster for the triangles that cull drops because they cover no sample.
 CounterPacket walks_saved(const Scene& scene, const Config& config) {
   const Widths widths = derive_widths(config);
   CounterPacket saved, ignored;

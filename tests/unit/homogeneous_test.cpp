@@ -1,5 +1,6 @@
 // Clipping::homogeneous: the golden without clipping equals the clipped one; the model's rounded edges stay within
-// their derived bound, every sample lies on one side of a shared edge, and what that leaves at vertices is counted.
+// their derived bound, every sample lies on one side of a shared edge, and the remaining faults at vertices are
+// counted.
 #include <gtest/gtest.h>
 
 #include <algorithm>

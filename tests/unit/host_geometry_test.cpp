@@ -57,7 +57,7 @@ constexpr std::array<double Vertex::*, 6> kParts{&Vertex::x, &Vertex::y, &Vertex
 
 std::int64_t units(double v) { return static_cast<std::int64_t>(std::ldexp(v, 16)); }
 
-/// The planes anew, from what they are for: near, far, left, right, top, bottom of the guard band.
+/// The planes derived again from their purpose: near, far, left, right, top, bottom of the guard band.
 struct ExactPlane {
   std::int64_t x, y, z, w;  ///< 2^-16
   [[nodiscard]] int128 distance(const Vertex& v) const {

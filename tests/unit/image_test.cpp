@@ -1,4 +1,4 @@
-// What is drawn for people: colour maps, text, panels, sheets, previews.
+// Pictures for people: colour maps, text, panels, sheets, previews.
 #include <gtest/gtest.h>
 
 #include <algorithm>

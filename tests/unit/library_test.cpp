@@ -1,4 +1,4 @@
-// The library as strangers call it: scenes that nobody has checked, and frames that stay.
+// The library as outside callers use it: unchecked scenes, and frames that stay.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -211,7 +211,7 @@ TEST(Library, ATargetGoesOnInTheCallersMemory) {
                 second = make_builtin("ball:3", width, height, {}, 1);
     Target whole(config, width, height, first.planes);
     (void)whole.draw(first);
-    // Rows of the caller's are longer than the picture, and what is between them stays.
+    // The caller's rows are longer than the picture, and the bytes between them stay unchanged.
     const std::size_t bytes = config.color_format == ColorFormat::rgb565 ? 2 : 4, pitch = bytes * 60;
     std::vector<std::uint8_t> color(pitch * static_cast<std::size_t>(height), 0xa5);
     std::vector<std::uint32_t> depth(53 * static_cast<std::size_t>(height), 77);
@@ -250,7 +250,7 @@ TEST(Library, ARefusedDrawLeavesTheTargetAsItWas) {
     EXPECT_THROW((void)target.draw(scene.states[0], Topology::triangles, vertices), InputError);
     EXPECT_EQ(target.frame().color, before.color);
     EXPECT_EQ(target.frame().depth, before.depth);
-    target.clear({.depth = 1.0});  // nothing of what was refused is left
+    target.clear({.depth = 1.0});  // nothing of the refused scene remains
     EXPECT_EQ(target.frame().color, before.color);
     EXPECT_GT(target.draw(scene.states[0], Topology::triangles, std::span(scene.vertices)).written, 0u);
     EXPECT_NE(target.frame().color, before.color);

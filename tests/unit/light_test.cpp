@@ -1,4 +1,4 @@
-// Lighting in fixed point against real arithmetic, and against what can be said without either.
+// Lighting in fixed point against real arithmetic, and against properties that need neither.
 #include "model/light.hpp"
 
 #include <gtest/gtest.h>

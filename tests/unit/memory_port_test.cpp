@@ -1,4 +1,4 @@
-// The memory port: where stamps lie, how a run becomes a burst of beats, and what comes back.
+// The memory port: where stamps lie, how a run becomes a burst of beats, and the answers.
 #include "model/stages/memory_port.hpp"
 
 #include <gtest/gtest.h>
@@ -84,7 +84,7 @@ TEST(MemoryLayout, TheStampsOfABlockFollowEachOtherAndTheTilesOfARowHaveAPitch) 
   EXPECT_EQ(layout.color_base, 128u);
 }
 
-/// A run of writes, and what of it is in memory then, byte by byte; checks the bursts on the way.
+/// A run of writes, and its bytes in memory afterwards; checks the bursts on the way.
 TEST(MemoryPort, ARunIsOneBurstAndEveryByteGoesWhereItBelongs) {
   for (const Config& config : configurations()) {
     const Widths widths = derive_widths(config);

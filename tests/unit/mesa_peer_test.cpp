@@ -1,4 +1,4 @@
-// Mesa's picture of a scene is ours but for rounding: what is timed is the same work.
+// Mesa's picture of a scene equals the model's up to rounding: both times are of the same work.
 #include "sim/study/bench/mesa_peer.hpp"
 
 #include <gtest/gtest.h>
@@ -68,7 +68,7 @@ class MesaPeerTest : public testing::Test {
     return count;
   }
 
-  // Of all pictures so far the pixels whose worst channel is the same, off by one, by two, by more.
+  // Over all pictures so far, the number of pixels whose worst channel is equal, off by one, by two, by more.
   void report(const char* what) const {
     std::printf("%s: %llu pixels the same, %llu off by 1 of 255, %llu by 2, %llu by more\n", what, pixels_[0],
                 pixels_[1], pixels_[2], pixels_[3]);
@@ -146,7 +146,7 @@ TEST_F(MesaPeerTest, RectanglesOfLinesHaveTheSameSamples) {
   report("rectangles");
 }
 
-// bench asks for as many samples a pixel as the configuration has; of those that llvmpipe has not it says so.
+// bench asks for the configuration's samples a pixel; numbers and places that llvmpipe lacks are refused.
 TEST(MesaPeer, HasOneSampleAPixelOrFour) {
   const auto scene = std::make_shared<const Scene>(make_builtin("triangle", 16, 16, {}, 1));
   for (const int samples : {2, 8}) {
@@ -199,7 +199,7 @@ TEST_F(MesaPeerTest, FragmentOperationsMeanTheSame) {
   for (const std::string& state : states) {
     const Scene scene = read_capture(
         head + "state depth_test lequal\nstate " + state + "\nt 0 1 2\nt 3 4 5\nt 8 7 6\nt 5 1 8\n", "ops.hpt");
-    // A factor that is a stored colour doubles what that is off by, layer by layer.
+    // A factor that is a stored colour doubles the error of that colour, layer by layer.
     EXPECT_LE(differing(scene), state.find("dst_color") == std::string::npos ? 12 : 80) << state;
   }
   EXPECT_GT(states.size(), 70u);

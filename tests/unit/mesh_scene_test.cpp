@@ -1,4 +1,4 @@
-// What a mesh's materials become: states, and the order of what blends.
+// Scenes made from a mesh's materials: states, and the order of blended parts.
 #include "sim/scene/mesh_scene.hpp"
 
 #include <gtest/gtest.h>

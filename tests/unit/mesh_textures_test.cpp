@@ -1,4 +1,4 @@
-// Textures of glTF and OBJ files: where their texels come from, how they are looked up, what a bad one is told.
+// Textures of glTF and OBJ files: the source of their texels, their lookup, the messages for bad ones.
 #include "sim/scene/mesh_textures.hpp"
 
 #include <gtest/gtest.h>

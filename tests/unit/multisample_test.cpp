@@ -1,4 +1,4 @@
-// Several samples a pixel: the pattern, a triangle at a sample, what the engines make of it, and what they make of it at last.
+// Several samples a pixel: the pattern, a triangle at a sample, the engines' samples, and the resolved picture.
 #include "model/stages/multisample.hpp"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ Config sampled(std::string_view name, int samples, std::string_view pattern = "s
   return config;
 }
 
-/// The patterns that most tests run over: standard ones, on the centre and on a grid finer than that of the vertices.
+/// The patterns that most tests run over: standard ones, at the centre and on a grid finer than the vertices' grid.
 std::vector<Config> sampled_configs() {
   std::vector<Config> configs;
   for (const char* name : {"tiny", "embedded", "full"})
@@ -326,7 +326,7 @@ TEST(Multisample, TheSampleMaskAndAlphaChooseSamples) {
     EXPECT_EQ(drawn(over_all(state, alpha).scene), (1U << count) - 1) << alpha;
   }
   state.sample_mask = 5;
-  EXPECT_EQ(drawn(over_all(state, 128).scene), 1U);  // two by alpha, and of those the mask's
+  EXPECT_EQ(drawn(over_all(state, 128).scene), 1U);  // two by alpha, of which the mask keeps one
 }
 
 TEST(Multisample, LinesAndPointsCoverAllSamples) {

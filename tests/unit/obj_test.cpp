@@ -1,4 +1,4 @@
-// The OBJ reader: what a good file becomes, and what a bad one is told.
+// The OBJ reader: meshes of good files, and messages for bad ones.
 #include "sim/scene/obj.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ struct Parsed {
   std::vector<std::string> warnings;
 };
 
-// `library` is what every mtllib line finds; empty finds nothing.
+// `library` is the file that every mtllib line finds; empty: none.
 Parsed parse(const std::string& text, const std::string& library = "") {
   Parsed result;
   const auto source = [&library](const std::string&) {

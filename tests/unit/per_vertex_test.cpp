@@ -1,4 +1,4 @@
-// What light at vertices costs against light at fragments, as `compare` has it: LSB by the size of triangles, cycles.
+// The error of light at vertices against light at fragments, as `compare` has it: LSB by the size of triangles, cycles.
 #include <gtest/gtest.h>
 
 #include <algorithm>

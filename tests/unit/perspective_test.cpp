@@ -1,4 +1,4 @@
-// Attributes over w: what host, setup and pixel promise, and the cases at their borders. How wrong they are is in
+// Attributes over w: the guarantees of host, setup and pixel, and the cases at their limits. Their error is in
 // accuracy/perspective_test.cpp.
 #include "model/stages/perspective.hpp"
 
@@ -143,7 +143,7 @@ TEST(Perspective, NarrowedQAndPDecodeAtEveryCoveredSampleOfAnyWRatio) {
 }
 
 TEST(PerspectiveMustFail, OneBitLessDecodesWrongly) {
-  // Q that is read modulo 2^(N+l-1): what a lane too narrow would see.
+  // Q modulo 2^(N+l-1): its value in a lane that is too narrow.
   const PerspectiveDesign& design = designs()[1];
   OverWRandom random(4);
   int wrong = 0;
@@ -158,7 +158,7 @@ TEST(PerspectiveMustFail, OneBitLessDecodesWrongly) {
 }
 
 TEST(Perspective, PIsNeverHeldWithinTheBound) {
-  // The margin of x covers what Q and P are off, as long as a unit of Q is small beside the smallest: here 2^9 at least.
+  // The margin of x covers the errors of Q and P, if a unit of Q is small beside the smallest: here 2^9 at least.
   const PerspectiveDesign& design = designs()[1];
   OverWRandom random(5);
   std::int64_t farthest = 0;

@@ -1,5 +1,5 @@
 // Light of fragments in hardware: the hardware and the cycle engine against the scalar one, the tokens that bring its
-// registers, what is refused.
+// registers, the refusals.
 #include <gtest/gtest.h>
 
 #include <random>

@@ -426,7 +426,7 @@ TEST(PhongMustFail, CompareSeesAnotherPower) {
   EXPECT_NE(broken_bounds(compare(scene, config, options), config), std::vector<std::string>{});
 }
 
-// Two LSB from the golden at a power of 64: what is promised of a mesh.
+// Two LSB from the golden at a power of 64: the guarantee for a mesh.
 TEST(Phong, AtAPowerOf64AMeshIsWithinTwoLsbOfTheGolden) {
   MeshOptions options;
   options.light = parse_lights(std::vector<std::string>{"phong", "from=1,2,3"});

@@ -53,7 +53,7 @@ Triangle sliver(Random& random, const Config& config, int reach) {
   return t;
 }
 
-/// What is left of v0 at a pixel, in pixels, and the true gradients per pixel: the symbols of docs/numerics.md.
+/// A pixel centre's offset from v0, in pixels, and the true gradients per pixel: the symbols of docs/numerics.md.
 struct Point {
   double dx, dy, gx, gy;
 };
@@ -233,7 +233,7 @@ TEST_P(PageFaults, BreakTheDepthBoundWhereTheUsualRulesKeepIt) {
   EXPECT_FALSE(broken_bounds(wrong, config).empty());
   EXPECT_GT(wrong.datapath.max, fault.depth_lsb);
   EXPECT_GT(wrong.other_visible, fault.other_visible);
-  EXPECT_EQ(wrong.coverage.missing + wrong.coverage.extra, 0u);  // planes do not decide what is covered
+  EXPECT_EQ(wrong.coverage.missing + wrong.coverage.extra, 0u);  // planes do not affect coverage
 }
 
 INSTANTIATE_TEST_SUITE_P(Page, PageFaults,

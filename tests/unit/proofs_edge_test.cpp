@@ -1,4 +1,4 @@
-// Proofs by enumeration: a shared edge, and the ranges of what is computed from three vertices.
+// Proofs by enumeration: a shared edge, and the ranges of values computed from three vertices.
 #include <algorithm>
 #include <array>
 #include <cstdlib>

@@ -33,7 +33,7 @@ TileTally classify_every_slope(int reach, int extent) {
   TileTally tally;
   for (int dy = -side; dy <= side; ++dy)
     for (int dx = -side; dx <= side; ++dx) {
-      // Of all samples of the tile, by looking at each.
+      // Over all samples of the tile, one by one.
       std::int64_t least = 0, most = 0;
       for (int y = 0; y < tile; ++y)
         for (int x = 0; x < tile; ++x) {
@@ -75,8 +75,8 @@ TEST(ProofsMustFail, ATileIsJudgedWronglyAtACornerOnePixelOff) {
 
 using Coverage = std::bitset<256>;  // tiny's target, row by row
 
-/// What the stages cover of a triangle, and their tiles that are wrongly rejected or accepted. `is_broken`: the edges'
-/// steps along x and y change places behind coarse_raster.
+/// The stages' coverage of a triangle, and their tiles that are wrongly rejected or accepted. `is_broken`: the edges'
+/// steps along x and y are swapped after coarse_raster.
 Coverage stepped_coverage(const SetupPacket& setup, bool is_broken, TileTally& tally, const Coverage& expected) {
   const Widths& widths = tiny_widths();
   const int shift = widths.tile_shift, tile = tiny().tile_size;

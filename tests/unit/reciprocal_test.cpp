@@ -53,7 +53,7 @@ TEST_P(EveryWidth, IsWhatTheTableGivesAfterOneCorrection) {
   EXPECT_EQ(tally.wrong, 0U);
   EXPECT_EQ(other, 0U) << "the guess is right or one too large";
   EXPECT_GT(one_too_large, tally.cases / 8) << "so it has to be corrected";
-  // What the hardware stores: the bits of a start below its highest, and of a drop.
+  // The stored table: the bits of a start below its highest, and of a drop.
   const int nodes = 1 << ((k + 1) / 2);
   ASSERT_EQ(table.lines().size(), static_cast<std::size_t>(nodes));
   for (const ReciprocalTable::Line& line : table.lines()) {
@@ -66,7 +66,7 @@ TEST_P(EveryWidth, IsOffTheTrueReciprocalByThreeInTwoToTheKAtMost) {
   const int k = GetParam();
   double worst = 0;
   for (std::uint32_t m = 1U << (k - 1); m < 1U << k; ++m)
-    for (const double q : {m + 0.0, m + 1.0}) {  // the ends of what m stands for
+    for (const double q : {m + 0.0, m + 1.0}) {  // the ends of the range that m represents
       const double exact = std::ldexp(0.5, 2 * k) / q;
       worst = std::max(worst, std::abs(mantissa_reciprocal(m, k) - exact) / exact);
     }

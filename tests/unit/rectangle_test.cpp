@@ -1,4 +1,4 @@
-// Lines as rectangles: their corners, their samples, and what of a draw's state they take.
+// Lines as rectangles: their corners, their samples, and the parts of a draw's state that they use.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -90,8 +90,7 @@ TEST(Rectangles, CornersAreTheEndsPlusAndMinusOneVectorAcrossTheLine) {
   }
 }
 
-/// Whether a convex polygon covers a point, both on the grid: by its sides, of which those to the left and on top own what lies
-/// on them.
+/// Whether a convex polygon covers a point, both on the grid: by its sides; left and top sides own the points on them.
 bool quad_covers(std::array<SnappedVertex, 4> v, std::int64_t x, std::int64_t y) {
   if (signed_area(v[0], v[1], v[2]) < 0) std::swap(v[1], v[3]);
   for (std::size_t i = 0; i < 4; ++i) {
@@ -150,7 +149,7 @@ TEST(Rectangles, EverySampleInsideIsDrawnOnceByEveryEngine) {
   EXPECT_GT(drawn, 50000U);
 }
 
-/// Crossing lines of every topology with what triangles would take of the state.
+/// Crossing lines of every topology with the state that triangles would use.
 std::vector<Vertex> zigzag() {
   return {at(3.25, 5.5, 0.2, {255, 0, 0, 255}), at(35.5, 9.75, 0.8, {0, 255, 0, 128}),
           at(6.5, 33.25, 0.4, {0, 0, 255, 255}), at(33, 36.5, 0.6, {255, 255, 0, 255})};

@@ -38,7 +38,7 @@ Config textured(Config config) {
   return config;
 }
 
-/// Those that tests go over: both framebuffers, every number of samples, all units, patterns of another kind.
+/// The configurations of the tests: both framebuffers, every number of samples, all units, patterns of another kind.
 std::vector<Config> sampled_hardware() {
   std::vector<Config> configs{hardware("tiny", 2), hardware("tiny", 8)};
   for (const int samples : {2, 4, 8}) configs.push_back(hardware("embedded", samples));
@@ -64,8 +64,8 @@ Config compressed(Config config) {
   return config;
 }
 
-/// Those of them that tests of blocks with one colour a pixel go over: wide ports and narrow ones, stamps of one pixel and of
-/// a block.
+/// The subset for tests of blocks with one colour a pixel: wide ports and narrow ones, stamps of one pixel and of a
+/// block.
 std::vector<Config> compressed_hardware() {
   std::vector<Config> configs{compressed(hardware("tiny", 2)),
                               compressed(hardware("embedded", 4)),
@@ -152,7 +152,8 @@ TEST(SampledHardware, SurfacesAreTheSpecificationsInRandomConfigurations) {
   EXPECT_EQ(drawn.size(), 9u);
 }
 
-// A disagreement shrinks to what it takes. The fault: a model that is one off at a pixel, as soon as something is drawn there.
+// A disagreement is reduced to its cause. The fault: a model that is one off at a pixel, as soon as something is drawn
+// there.
 TEST(SampledHardware, ADisagreementWithTheSpecificationIsReduced) {
   const Config config = preset("embedded");
   const PictureOf faulty = [](const Scene& scene, const Config& with) {
@@ -171,7 +172,7 @@ TEST(SampledHardware, ADisagreementWithTheSpecificationIsReduced) {
       << reduced->mismatch.hint;
 }
 
-// The right picture is that of an independent model in integers, of docs/spec.md.
+// The reference picture is from an independent integer model of docs/spec.md.
 TEST(SampledHardware, PlanesOverWGainTheirNarrowedStepsAtASample) {
   const Scene scene = read_capture(
       "halfplane 1\ntarget 40 31\ntexture t inline rgba5551 2 1\ntexels 0000ffff\nspace window\n"
@@ -233,8 +234,8 @@ TEST(SampledHardware, StoresTheMeanOfAPixelsSamples) {
   }
 }
 
-/// Of a frame in bins a chip that takes the means moves what it moves with one sample a pixel: blocks of which a sample is
-/// covered and no centre come to a little more.
+/// For a frame in bins, a chip that resolves to means moves the bytes of one sample a pixel; blocks with a covered
+/// sample but no covered centre add slightly.
 TEST(SampledHardware, MeansMoveAsManyBytesAsOneSample) {
   for (const char* name : {"teapot", "city"}) {
     Config single = preset("embedded");

@@ -1,5 +1,5 @@
-// Smooth lines and points: what they cover of a pixel is the exact area, their codes are the line's, and every engine draws
-// them alike.
+// Smooth lines and points: their coverage of a pixel is the exact area, their codes are the line's, and every engine
+// draws them alike.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -123,7 +123,7 @@ TEST(SmoothRaster, OfPointsIsTheAreaOfSquareOrDisc) {
   EXPECT_GT(parts, 4000U);
 }
 
-/// Smooth lines and points over a grey ground, laid over what is there by alpha.
+/// Smooth lines and points, blended by alpha over a grey ground.
 Scene smooth_lines(std::uint32_t seed) {
   Random random(seed);
   SceneBuilder builder(kTarget, kTarget);
@@ -132,7 +132,7 @@ Scene smooth_lines(std::uint32_t seed) {
   for (std::uint32_t k = 0; k < 4; ++k) {
     State state = SceneBuilder::window_state();
     state.smooth = true;
-    state.line_rule = static_cast<LineRule>(random.index(4));  // nobody looks at it
+    state.line_rule = static_cast<LineRule>(random.index(4));  // smooth lines ignore it
     state.line_width = 1 + random.index(20) / 4.0;
     state.blend = BlendFactors{BlendFactor::src_alpha, BlendFactor::one_minus_src_alpha};
     state.depth_write = k == 0;

@@ -1,4 +1,4 @@
-// What a stage does at the end of its range: refusals, empty results and cases that scenes seldom have.
+// Stages at the ends of their range: refusals, empty results and cases that scenes seldom have.
 #include <gtest/gtest.h>
 
 #include <limits>

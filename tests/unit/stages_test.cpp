@@ -41,7 +41,7 @@ struct WalkTally {
   std::uint64_t tiles = 0, met = 0, met_twice = 0, visited = 0, in_boxes = 0;
 };
 
-/// `way`: called with the edges that a tile is outside of; what it returns the walk believes.
+/// `way`: called with the edges that a tile is outside of; the walk uses its return value.
 template <class Way>
 WalkTally walk_random_triangles(std::uint64_t seed, Way&& way) {
   const Config config = preset("embedded");

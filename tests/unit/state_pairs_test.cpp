@@ -36,7 +36,7 @@ TEST(StatePairs, RandomScenesDrawEveryPairOfValues) {
   const std::vector<Dimension> all = dimensions();
   PairCounts counts(all);
   constexpr std::uint64_t kFirstSeed = 33,
-                          kScenes = 1600;  // of 200 primitives: a third of what `./dev soak-cosim` draws
+                          kScenes = 1600;  // of 200 primitives: a third of the scenes of `./dev soak-cosim`
   std::size_t draws = 0;
   for (std::uint64_t seed = kFirstSeed; seed < kFirstSeed + kScenes; ++seed) {
     const Scene scene = random_scene(config, seed, 200);

@@ -1,5 +1,5 @@
-// The stencil in hardware, in one word with the depth: the hardware and the cycle engine against the scalar one, the tokens
-// that set it, what is fetched for it, how clears are sent, HiZ, and what is refused without it.
+// The stencil in hardware, in one word with the depth: the hardware and the cycle engine against the scalar one, the
+// tokens that set it, the memory reads for it, the form of clears, HiZ, and the refusals without it.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -219,12 +219,13 @@ TEST(StencilHardware, DepthThatIsOverwrittenIsReadOnlyForTheSakeOfTheStencil) {
   EXPECT_EQ(cleared("8"), 16u);
 }
 
-// Where a draw leaves nothing of what was stored, nobody asks for it.
+// A draw that replaces the whole stored word does not read it.
 TEST(StencilHardware, AWordThatIsReplacedAsAWholeGoesUnread) {
   State over;
   over.depth_test = DepthFunc::always;
   const Config config = with("embedded", {{"stencil.bits", "8"}});
-  // Of a square on a cleared target: all that it touches, or what its two triangles share.
+  // Tile clears for a square on a cleared target: all tiles that it touches, or only the tiles shared by its two
+  // triangles.
   const auto asked = [&](const State& state) {
     const Scene scene = squares({state});
     const Rendering scalar = render_scalar(scene, config), drawn = render_hardware(scene, config);

@@ -36,7 +36,7 @@ TEST(CaseList, TheListIsCompleteAndEveryNameIsItsOwn) {
   for (int item = 1; item <= 12; ++item) EXPECT_TRUE(items.contains("t" + std::to_string(item))) << item;
 }
 
-/// An engine that says of each surface what `damage` makes of it, and draws it as ever.
+/// An engine that reports each surface as modified by `damage`, and draws unchanged.
 Engine with_surfaces(std::function<void(SurfaceSample&)> damage) {
   return [damage](const Scene& scene, const Config& config, const RenderOptions& asked) {
     RenderOptions changed = asked;
@@ -301,7 +301,7 @@ bool is_caught(std::string_view name, const Engine& engine) {
 }
 
 TEST(SuiteMustFail, EveryCaseThatDrawsSeesAFaultOfTheEngine) {
-  // Those that look at stages alone, or draw with engines of their own.
+  // Searches that check stages alone, or draw with engines of their own.
   const std::set<std::string_view> without_engine{"cancellation",
                                                   "separation",
                                                   "lines_octants",

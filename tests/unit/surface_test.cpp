@@ -181,7 +181,7 @@ TEST(Surface, BothEnginesDrawTheSamePicture) {
     }
 }
 
-// Clip space, a triangle from behind the eye: what the clipper cuts keeps its texture.
+// Clip space, a triangle from behind the eye: clipped pieces keep the texture.
 TEST(Surface, AClippedTriangleKeepsItsTexture) {
   State state;
   state.texture = 0;
@@ -251,7 +251,7 @@ TEST(Surface, FormatsFollowTheirSettings) {
   EXPECT_EQ(perspective_format(preset("tiny")).color.bits, 16);
 }
 
-// As captures may have them: beyond what any place on a texture needs, and what products of them hold.
+// As captures may have them: beyond the needs of any place on a texture, and beyond the range of their products.
 TEST(Surface, CoordinatesOfAnySizeAreDrawn) {
   for (const double far : {1e17, 1e30, 1e300})
     for (const int size : {32, 33}) {

@@ -1,4 +1,5 @@
-// Textured triangles in hardware: the hardware and the cycle engine against the scalar one, and what a texture unit refuses.
+// Textured triangles in hardware: the hardware and the cycle engine against the scalar one, and a texture unit's
+// refusals.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -236,8 +237,8 @@ TEST(TexturedHardware, TokensBringLevelsAndLines) {
   }
 }
 
-// Whatever the sides, no two levels share a block but the last two, and each lies behind the one before; in all they take the
-// blocks that they need.
+// Whatever the sides, no two levels share a block but the last two, and each follows the previous level; in all they
+// take the blocks that they need.
 TEST(TexturedHardware, LevelsLieOneBehindTheOther) {
   for (int w = 0; w <= 12; ++w)
     for (int h = 0; h <= 12; ++h) {
@@ -252,7 +253,7 @@ TEST(TexturedHardware, LevelsLieOneBehindTheOther) {
     }
 }
 
-// Of sides that are no powers of two, which hardware refuses to draw, memory holds the image alone.
+// For sides that are no powers of two, which hardware refuses to draw, memory holds the image alone.
 TEST(TexturedHardware, LevelsOfOddSidesAreNotInMemory) {
   for (const auto& [width, height] : {std::pair{12, 8}, std::pair{8, 12}}) {
     const Texture texture =
@@ -391,7 +392,8 @@ TEST(TexturedHardware, RefusesByNameWhatTheUnitLacks) {
                InputError);
 }
 
-// Of two ways the one looked up longer ago goes, whether it was found then or filled; of one way the only one.
+// With two ways the least recently used one is replaced, whether its last use was a hit or a fill; with one way the
+// only one.
 TEST(TextureCacheWays, ABlockTakesThePlaceOfTheOneLookedUpLongerAgo) {
   TextureCache one(16), two(16, 2);
   EXPECT_EQ(one.line_of(3, 2), 11U);

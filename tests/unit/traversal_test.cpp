@@ -1,4 +1,4 @@
-// Study rules: four traversals find the same samples, by every fill rule; each rule does what docs/rules.md says of it.
+// Study rules: four traversals find the same samples, by every fill rule; each rule agrees with docs/rules.md.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -246,7 +246,7 @@ TEST(Traversals, SamplesTestedAreTheTargetTheBoxOrTheSpans) {
   EXPECT_EQ(tested(Traversal::scanline).first, tested(Traversal::scanline).second);
   EXPECT_LT(tested(Traversal::tiled).first, tested(Traversal::brute).first);
 
-  RenderOptions everything;  // brute tests the target for triangles beside it too
+  RenderOptions everything;  // brute also tests the target for triangles outside it
   everything.rules.traversal = Traversal::brute;
   everything.skip = {false, false, false, false, false};
   builder.triangle(at(-9, 2), at(-3, 2), at(-9, 8));
@@ -334,7 +334,7 @@ TEST(FillRules, DoubleDrawsAreTheSamplesOnTheEdgesThatAMeshShares) {
 
 TEST(FillRules, ExclusiveLeavesASharedEdgeThroughPixelCentresUndrawn) {
   const Config config = preset("embedded");
-  // 18 x 18 pixels. The diagonal goes through the centres of those from (2, 2) to (19, 19); the sides through none.
+  // 18 x 18 pixels. The diagonal goes through the pixel centres from (2, 2) to (19, 19); the sides through none.
   const Scene square = shared_edge(at(2, 2), at(20, 20), at(20, 2), at(2, 20), false);
   const auto undrawn = [&](FillRule rule) { return count_draws(square, config, {Traversal::tiled, rule}).undrawn; };
   EXPECT_EQ(undrawn(FillRule::exclusive), 18U);

@@ -1,4 +1,4 @@
-// Vertices in the numbers of smaller hosts: by hand, and what they cost.
+// Vertices in the numbers of smaller hosts: by hand, and their cost.
 #include "sim/scene/vertex_transform.hpp"
 
 #include <gtest/gtest.h>

@@ -195,7 +195,7 @@ TEST(ProvenOverW, IsWhereTheBoundReachesTheError) {
       EXPECT_GT(over_w_bound(texels, ratio * 1.0001, format, format.coordinate, 8), kProvenTexels);
     }
   }
-  EXPECT_GT(*proven_w_ratio(1024, perspective_format(preset("embedded")), 8), 64);  // what the contract promises
+  EXPECT_GT(*proven_w_ratio(1024, perspective_format(preset("embedded")), 8), 64);  // the contract's guarantee
   EXPECT_GT(*proven_w_ratio(1024, perspective_format(preset("full")), 8), 1024);
   EXPECT_FALSE(proven_w_ratio(256, perspective_format(preset("tiny")), 8));
 }
