@@ -1,4 +1,4 @@
-// `halfplane run`: programs that draw through the driver, and others. tests/cli/egl_program.cpp needs no screen.
+// `halfplane run`: programs that draw through the driver, and others. tests/gl_program/egl_program.cpp needs no screen.
 #include <algorithm>
 #include <csignal>
 

@@ -26,7 +26,7 @@ int main(int count, char** words) {
     glBegin(GL_TRIANGLES);
     glColor3f(1, 0, 0), glVertex2f(-0.8F, -0.7F);
     glColor3f(0, 1, 0), glVertex2f(0.8F, -0.7F);
-    glColor3f(0, 0, 1), glVertex2f(0, 0.8F);
+    glColor3f(0, 0, 1), glVertex4f(0, 1.6F, 0, 2);
     glEnd();
     eglSwapBuffers(display, surface);
   }
