@@ -128,6 +128,9 @@ class Picture:
                 for y in range(self.height - height, self.height)]
         return Picture(width, height, b''.join(rows))
 
+    def is_blank(self):
+        return self.rgb == self.rgb[:3] * (self.width * self.height)
+
     def shrunk(self, width, height):
         pixels = bytearray()
         for y in range(height):
@@ -267,6 +270,8 @@ def compare(name, folder, env, options):
         row['mesa'] = in_mesa(name, folder, calls[row['frame']], env)
         row['ours'], row['seconds'], row['said'] = in_halfplane(name, folder, row['frame'], options)
         row['seen'], row['mean'] = differences(row['mesa'], row['ours'])
+        if row['mesa'].is_blank() and row['ours'].is_blank():
+            row['said'].insert(0, 'both blank: says nothing')
     except (RuntimeError, OSError, zlib.error, struct.error, TypeError) as error:
         row['error'] = str(error)
     return row
