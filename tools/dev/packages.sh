@@ -3,7 +3,7 @@
 
 # The one list of packages: name (Debian 12, Ubuntu 24.04), what needs it, how we know that it is there (a command or
 # a header). build: anything at all; sim: the program; speed: only time; report: HTML reports;
-# gltf: compressed glTF files; test, rtl, coverage, prove, lint,
+# gltf: compressed glTF files; gl: the OpenGL driver; test, rtl, coverage, prove, lint,
 # soak, docs: those commands.
 readonly packages='
 build-essential      build c++
@@ -21,11 +21,11 @@ libdraco-dev         gltf  draco/compression/decode.h
 libmeshoptimizer-dev gltf  meshoptimizer.h
 libwebp-dev          gltf  webp/decode.h
 libjs-chart.js       report /usr/share/javascript/chart.js/chart.min.js
-libglvnd-dev         test  glvnd/libglxabi.h
-khronos-api          test  /usr/share/khronos-api/gl.xml
-libx11-dev           test  X11/Xlib.h
-libsnappy-dev        test  snappy.h
-libxext-dev          test  X11/extensions/XShm.h
+libglvnd-dev         gl    glvnd/libglxabi.h
+khronos-api          gl    /usr/share/khronos-api/gl.xml
+libx11-dev           gl    X11/Xlib.h
+libsnappy-dev        gl    snappy.h
+libxext-dev          gl    X11/extensions/XShm.h
 libgtest-dev         test  gtest/gtest.h
 python3-jsonschema   test  /usr/lib/python3/dist-packages/jsonschema/__init__.py
 python3              coverage python3
@@ -43,7 +43,7 @@ nextpnr-ice40        area  nextpnr-ice40
 python3              area  python3
 clang                soak  clang++
 doxygen              docs  doxygen'
-readonly everyday=(build sim speed report gltf test rtl coverage)
+readonly everyday=(build sim speed report gltf gl test rtl coverage)
 
 # present PROBE: a header is looked for where compilers and CMake look, a command in the path, a file at its path.
 present() {
