@@ -12,6 +12,7 @@
 #include "../../model/capture/capture.hpp"
 #include "../../model/engines/cycle/cycle_model.hpp"
 #include "../../model/host/primitives.hpp"
+#include "../../model/stages/color_ops.hpp"
 #include "frame_memory.hpp"
 
 namespace halfplane::gl {
@@ -86,13 +87,11 @@ std::string numbered(const std::string& path, int number) {
   return (name.parent_path() / (name.stem().string() + digits.data() + name.extension().string())).string();
 }
 
-std::array<double, 4> channels_of(std::uint32_t code, ColorFormat format) {
-  const Texel texel = format == ColorFormat::rgb565
-                          ? decode_texel(TextureFormat::rgb565, code, {})
-                          : Texel{static_cast<std::uint8_t>(code), static_cast<std::uint8_t>(code >> 8),
-                                  static_cast<std::uint8_t>(code >> 16), static_cast<std::uint8_t>(code >> 24)};
-  return {static_cast<double>(texel[0]), static_cast<double>(texel[1]), static_cast<double>(texel[2]),
-          static_cast<double>(texel[3])};
+/// Of a stored colour: channels 0 to 255.
+template <class Channel>
+std::array<Channel, 4> channels_of(std::uint32_t code, ColorFormat format) {
+  const auto [r, g, b, a] = widen_color(format, code);
+  return {static_cast<Channel>(r), static_cast<Channel>(g), static_cast<Channel>(b), static_cast<Channel>(a)};
 }
 
 // A font of 3 x 5 pixels: an octal digit a row, its highest bit on the left.
@@ -158,7 +157,7 @@ void Frame::Memory::restore(Scene& whole) const {
   state.space = Space::window;
   state.depth_test = DepthFunc::always;
   whole.states.push_back(state);
-  whole.commands.emplace_back(Clear{0, channels_of(base.color[0], config.color_format), 1.0, std::uint8_t{0}});
+  whole.commands.emplace_back(Clear{0, channels_of<double>(base.color[0], config.color_format), 1.0, std::uint8_t{0}});
   const auto add = [&whole](const halfplane::State& with, Topology topology, std::size_t first) {
     whole.commands.emplace_back(Draw{.state = static_cast<std::uint32_t>(whole.states.size()),
                                      .topology = topology,
@@ -182,12 +181,9 @@ void Frame::Memory::restore(Scene& whole) const {
       for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
           const std::uint32_t code = base.color[base.at(left + x, top + y)];
-          // A stored colour has R in its lowest byte, a texel's code in its highest.
           level
               .code[static_cast<std::size_t>(y) * static_cast<std::size_t>(level.width) + static_cast<std::size_t>(x)] =
-              config.color_format == ColorFormat::rgb565
-                  ? code
-                  : (code & 0xff) << 24 | (code & 0xff00) << 8 | (code >> 8 & 0xff00) | code >> 24;
+              encode_texel(texture.format, channels_of<std::uint8_t>(code, config.color_format), {});
         }
       halfplane::State rectangle = state;
       rectangle.depth_write = false;

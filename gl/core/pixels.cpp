@@ -153,31 +153,22 @@ double depth_of(const Config& config, std::uint32_t code) {
   return is_reversed(config.depth_mapping) ? 1 - value : value;
 }
 
-/// A parameter of glPixelStore: which of the two sets, and a number or a switch of it.
+/// A parameter of glPixelStore: its names of the two sets, and a number or a switch of either.
 struct StoreParameter {
-  GLenum name;
+  GLenum unpack, pack;
   int PixelStore::*number;
   bool PixelStore::*flag;
 };
 constexpr auto kStoreParameters = std::to_array<StoreParameter>({
-    {GL_UNPACK_SWAP_BYTES, nullptr, &PixelStore::swap_bytes},
-    {GL_UNPACK_LSB_FIRST, nullptr, &PixelStore::lsb_first},
-    {GL_UNPACK_ROW_LENGTH, &PixelStore::row_length, nullptr},
-    {GL_UNPACK_SKIP_ROWS, &PixelStore::skip_rows, nullptr},
-    {GL_UNPACK_SKIP_PIXELS, &PixelStore::skip_pixels, nullptr},
-    {GL_UNPACK_ALIGNMENT, &PixelStore::alignment, nullptr},
-    {GL_UNPACK_SKIP_IMAGES, &PixelStore::skip_images, nullptr},
-    {GL_UNPACK_IMAGE_HEIGHT, &PixelStore::image_height, nullptr},
-    {GL_PACK_SWAP_BYTES, nullptr, &PixelStore::swap_bytes},
-    {GL_PACK_LSB_FIRST, nullptr, &PixelStore::lsb_first},
-    {GL_PACK_ROW_LENGTH, &PixelStore::row_length, nullptr},
-    {GL_PACK_SKIP_ROWS, &PixelStore::skip_rows, nullptr},
-    {GL_PACK_SKIP_PIXELS, &PixelStore::skip_pixels, nullptr},
-    {GL_PACK_ALIGNMENT, &PixelStore::alignment, nullptr},
-    {GL_PACK_SKIP_IMAGES, &PixelStore::skip_images, nullptr},
-    {GL_PACK_IMAGE_HEIGHT, &PixelStore::image_height, nullptr},
+    {GL_UNPACK_SWAP_BYTES, GL_PACK_SWAP_BYTES, nullptr, &PixelStore::swap_bytes},
+    {GL_UNPACK_LSB_FIRST, GL_PACK_LSB_FIRST, nullptr, &PixelStore::lsb_first},
+    {GL_UNPACK_ROW_LENGTH, GL_PACK_ROW_LENGTH, &PixelStore::row_length, nullptr},
+    {GL_UNPACK_SKIP_ROWS, GL_PACK_SKIP_ROWS, &PixelStore::skip_rows, nullptr},
+    {GL_UNPACK_SKIP_PIXELS, GL_PACK_SKIP_PIXELS, &PixelStore::skip_pixels, nullptr},
+    {GL_UNPACK_ALIGNMENT, GL_PACK_ALIGNMENT, &PixelStore::alignment, nullptr},
+    {GL_UNPACK_SKIP_IMAGES, GL_PACK_SKIP_IMAGES, &PixelStore::skip_images, nullptr},
+    {GL_UNPACK_IMAGE_HEIGHT, GL_PACK_IMAGE_HEIGHT, &PixelStore::image_height, nullptr},
 });
-constexpr std::size_t kUnpackParameters = 8;
 
 int rounded(double value) {
   if (std::isnan(value)) return 0;
@@ -288,9 +279,10 @@ void pixel_map(Context& context, GLenum map, const std::shared_ptr<const std::ve
 }
 
 void pixel_store(Context& context, GLenum pname, double value) {
-  const auto* row = std::ranges::find(kStoreParameters, pname, &StoreParameter::name);
+  const auto* row = std::ranges::find_if(
+      kStoreParameters, [pname](const StoreParameter& p) { return p.unpack == pname || p.pack == pname; });
   if (row == kStoreParameters.end()) return context.fail(GL_INVALID_ENUM);
-  PixelStore& store = row < kStoreParameters.begin() + kUnpackParameters ? context.client.unpack : context.client.pack;
+  PixelStore& store = row->unpack == pname ? context.client.unpack : context.client.pack;
   if (row->flag != nullptr) {
     store.*row->flag = value != 0;
     return;

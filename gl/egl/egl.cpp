@@ -15,6 +15,7 @@
 
 #include "../core/commands.hpp"
 #include "../core/entry_points.hpp"
+#include "../window/config_attribute.hpp"
 #include "../window/window.hpp"
 
 #include <EGL/egl.h>
@@ -32,22 +33,14 @@ struct EglConfig {
   [[nodiscard]] bool has_visual() const { return format.visual.visualid != 0; }
 };
 
-enum class Rule { at_least, exact, mask, not_compared };
-
 template <EGLint N>
 EGLint constant(const EglConfig&) {
   return N;
 }
 
-/// EGL 1.5, table 3.1, with how eglChooseConfig() compares and what it takes where the program does not say (table 3.4).
-struct Attribute {
-  EGLint name;
-  Rule rule;
-  EGLint by_default;
-  EGLint (*value)(const EglConfig&);
-};
 constexpr EGLint kApis = EGL_OPENGL_BIT | EGL_OPENGL_ES_BIT;
-constexpr Attribute kAttributes[] = {
+/// EGL 1.5, table 3.1, with how eglChooseConfig() compares and what it takes where the program does not say (table 3.4).
+constexpr ConfigAttribute<EglConfig> kAttributes[] = {
     {EGL_BUFFER_SIZE, Rule::at_least, 0, constant<4 * kColorBits>},
     {EGL_RED_SIZE, Rule::at_least, 0, constant<kColorBits>},
     {EGL_GREEN_SIZE, Rule::at_least, 0, constant<kColorBits>},
@@ -62,7 +55,7 @@ constexpr Attribute kAttributes[] = {
     {EGL_CONFIG_ID, Rule::exact, EGL_DONT_CARE, [](const EglConfig& c) { return c.id; }},
     {EGL_CONFORMANT, Rule::mask, 0, constant<kApis>},
     {EGL_DEPTH_SIZE, Rule::at_least, 0, constant<kDepthBits>},
-    {EGL_LEVEL, Rule::exact, 0, constant<0>},
+    {EGL_LEVEL, Rule::level, 0, constant<0>},
     {EGL_MAX_PBUFFER_WIDTH, Rule::not_compared, 0, [](const EglConfig&) { return largest_side(); }},
     {EGL_MAX_PBUFFER_HEIGHT, Rule::not_compared, 0, [](const EglConfig&) { return largest_side(); }},
     {EGL_MAX_PBUFFER_PIXELS, Rule::not_compared, 0, [](const EglConfig&) { return largest_side() * largest_side(); }},
@@ -87,11 +80,6 @@ constexpr Attribute kAttributes[] = {
     {EGL_TRANSPARENT_GREEN_VALUE, Rule::not_compared, 0, constant<0>},
     {EGL_TRANSPARENT_BLUE_VALUE, Rule::not_compared, 0, constant<0>},
 };
-
-const Attribute* attribute(EGLint name) {
-  const auto* const found = std::ranges::find(kAttributes, name, &Attribute::name);
-  return found == std::end(kAttributes) ? nullptr : found;
-}
 
 // Displays, surfaces, contexts.
 
@@ -319,20 +307,11 @@ EGLBoolean choose(const Call& call, const Wishes& wishes, EGLConfig* configs, EG
     if (!geometry) return Failed{EGL_BAD_NATIVE_PIXMAP};
     depth = geometry->depth;
   }
-  const auto id = wishes.find(EGL_CONFIG_ID);
-  const bool by_id = id != wishes.end() && id->second != EGL_DONT_CARE;  // then nothing else counts
   EGLint found = 0;
   // They differ in nothing that eglChooseConfig() sorts by but their numbers.
   for (EglConfig& config : call.display->configs) {
-    const bool fits = std::ranges::all_of(kAttributes, [&](const Attribute& a) {
-      const auto wish = wishes.find(a.name);
-      const auto wanted = wish == wishes.end() ? a.by_default : static_cast<EGLint>(wish->second);
-      const EGLint has = a.value(config);
-      if (by_id) return a.name != EGL_CONFIG_ID || has == wanted;
-      if (a.rule == Rule::not_compared || (wanted == EGL_DONT_CARE && a.name != EGL_LEVEL)) return true;
-      return a.rule == Rule::at_least ? has >= wanted : a.rule == Rule::mask ? (has & wanted) == wanted : has == wanted;
-    });
-    if (!fits || (depth != 0 && depth != config.format.visual.depth)) continue;
+    if (!fits(kAttributes, config, wishes, EGL_CONFIG_ID) || (depth != 0 && depth != config.format.visual.depth))
+      continue;
     if (configs != nullptr && found == size) break;
     if (configs != nullptr) configs[found] = &config;
     ++found;
@@ -346,7 +325,8 @@ EGLBoolean egl_choose_config(EGLDisplay handle, const EGLint* list, EGLConfig* c
   if (call.failed()) return Failed{call.error};
   Wishes wishes;
   for (; list != nullptr && *list != EGL_NONE; list += 2) {
-    if (attribute(list[0]) == nullptr && list[0] != EGL_MATCH_NATIVE_PIXMAP) return Failed{EGL_BAD_ATTRIBUTE};
+    if (find_attribute(kAttributes, list[0]) == nullptr && list[0] != EGL_MATCH_NATIVE_PIXMAP)
+      return Failed{EGL_BAD_ATTRIBUTE};
     if (list[0] == EGL_LEVEL && list[1] == EGL_DONT_CARE) return Failed{EGL_BAD_ATTRIBUTE};
     wishes[list[0]] = list[1];
   }
@@ -362,7 +342,7 @@ EGLBoolean egl_get_configs(EGLDisplay handle, EGLConfig* configs, EGLint size, E
 EGLBoolean egl_get_config_attrib(EGLDisplay handle, EGLConfig config, EGLint name, EGLint* value) {
   const Call call = std::move(Call(handle).with_config(config));
   if (call.failed()) return Failed{call.error};
-  const Attribute* const a = attribute(name);
+  const auto* const a = find_attribute(kAttributes, name);
   if (a == nullptr) return Failed{EGL_BAD_ATTRIBUTE};
   *value = a->value(*call.config);
   return done();

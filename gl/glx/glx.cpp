@@ -13,6 +13,7 @@
 #include "../core/commands.hpp"
 #include "../core/entry_points.hpp"
 #include "../core/list.hpp"
+#include "../window/config_attribute.hpp"
 #include "../window/window.hpp"
 
 #include <GL/glx.h>
@@ -36,26 +37,17 @@ struct FbConfig {
   bool shares_visual = false;  ///< another configuration is what glXGetConfig() says of the visual
 };
 
-enum class Rule { at_least, exact, mask, not_compared };
-
 template <int N>
 int constant(const FbConfig&) {
   return N;
 }
 
 /// GLX 1.4, table 3.1, with how glXChooseFBConfig() compares and what it takes where the program does not say (table 3.4).
-struct Attribute {
-  int name;
-  Rule rule;
-  int by_default;
-  int (*value)(const FbConfig&);
-};
-constexpr int kAny = static_cast<int>(GLX_DONT_CARE);
-constexpr Attribute kAttributes[] = {
-    {GLX_FBCONFIG_ID, Rule::exact, kAny, [](const FbConfig& c) { return c.id; }},
+constexpr ConfigAttribute<FbConfig> kAttributes[] = {
+    {GLX_FBCONFIG_ID, Rule::exact, kDontCare, [](const FbConfig& c) { return c.id; }},
     {GLX_BUFFER_SIZE, Rule::at_least, 0, constant<4 * kColorBits>},
-    {GLX_LEVEL, Rule::exact, 0, constant<0>},
-    {GLX_DOUBLEBUFFER, Rule::exact, kAny, [](const FbConfig& c) { return c.format.double_buffered ? 1 : 0; }},
+    {GLX_LEVEL, Rule::level, 0, constant<0>},
+    {GLX_DOUBLEBUFFER, Rule::exact, kDontCare, [](const FbConfig& c) { return c.format.double_buffered ? 1 : 0; }},
     {GLX_STEREO, Rule::exact, 0, constant<0>},
     {GLX_AUX_BUFFERS, Rule::at_least, 0, constant<0>},
     {GLX_RED_SIZE, Rule::at_least, 0, constant<kColorBits>},
@@ -72,26 +64,22 @@ constexpr Attribute kAttributes[] = {
     {GLX_SAMPLES, Rule::at_least, 0, constant<0>},
     {GLX_RENDER_TYPE, Rule::mask, GLX_RGBA_BIT, constant<GLX_RGBA_BIT>},
     {GLX_DRAWABLE_TYPE, Rule::mask, GLX_WINDOW_BIT, constant<GLX_WINDOW_BIT | GLX_PIXMAP_BIT | GLX_PBUFFER_BIT>},
-    {GLX_X_RENDERABLE, Rule::exact, kAny, constant<1>},
-    {GLX_X_VISUAL_TYPE, Rule::exact, kAny, constant<GLX_TRUE_COLOR>},
-    {GLX_CONFIG_CAVEAT, Rule::exact, kAny, constant<GLX_NONE>},
+    {GLX_X_RENDERABLE, Rule::exact, kDontCare, constant<1>},
+    {GLX_X_VISUAL_TYPE, Rule::exact, kDontCare, constant<GLX_TRUE_COLOR>},
+    {GLX_CONFIG_CAVEAT, Rule::exact, kDontCare, constant<GLX_NONE>},
     {GLX_TRANSPARENT_TYPE, Rule::exact, GLX_NONE, constant<GLX_NONE>},
-    {GLX_TRANSPARENT_INDEX_VALUE, Rule::not_compared, kAny, constant<0>},
-    {GLX_TRANSPARENT_RED_VALUE, Rule::not_compared, kAny, constant<0>},
-    {GLX_TRANSPARENT_GREEN_VALUE, Rule::not_compared, kAny, constant<0>},
-    {GLX_TRANSPARENT_BLUE_VALUE, Rule::not_compared, kAny, constant<0>},
-    {GLX_TRANSPARENT_ALPHA_VALUE, Rule::not_compared, kAny, constant<0>},
-    {GLX_MAX_PBUFFER_WIDTH, Rule::not_compared, kAny, [](const FbConfig&) { return largest_side(); }},
-    {GLX_MAX_PBUFFER_HEIGHT, Rule::not_compared, kAny, [](const FbConfig&) { return largest_side(); }},
-    {GLX_MAX_PBUFFER_PIXELS, Rule::not_compared, kAny, [](const FbConfig&) { return largest_side() * largest_side(); }},
-    {GLX_VISUAL_ID, Rule::not_compared, kAny,
+    {GLX_TRANSPARENT_INDEX_VALUE, Rule::not_compared, kDontCare, constant<0>},
+    {GLX_TRANSPARENT_RED_VALUE, Rule::not_compared, kDontCare, constant<0>},
+    {GLX_TRANSPARENT_GREEN_VALUE, Rule::not_compared, kDontCare, constant<0>},
+    {GLX_TRANSPARENT_BLUE_VALUE, Rule::not_compared, kDontCare, constant<0>},
+    {GLX_TRANSPARENT_ALPHA_VALUE, Rule::not_compared, kDontCare, constant<0>},
+    {GLX_MAX_PBUFFER_WIDTH, Rule::not_compared, kDontCare, [](const FbConfig&) { return largest_side(); }},
+    {GLX_MAX_PBUFFER_HEIGHT, Rule::not_compared, kDontCare, [](const FbConfig&) { return largest_side(); }},
+    {GLX_MAX_PBUFFER_PIXELS, Rule::not_compared, kDontCare,
+     [](const FbConfig&) { return largest_side() * largest_side(); }},
+    {GLX_VISUAL_ID, Rule::not_compared, kDontCare,
      [](const FbConfig& c) { return static_cast<int>(c.format.visual.visualid); }},
 };
-
-const Attribute* attribute(int name) {
-  const auto* const found = std::ranges::find(kAttributes, name, &Attribute::name);
-  return found == std::end(kAttributes) ? nullptr : found;
-}
 
 Server* server_of(Display* display) { return Server::open(DisplayString(display)); }
 
@@ -138,18 +126,8 @@ using Wishes = std::map<int, int>;  // by name
 
 std::vector<const FbConfig*> matching(Display* display, int screen, const Wishes& wishes) {
   std::vector<const FbConfig*> result;
-  const auto id = wishes.find(GLX_FBCONFIG_ID);
-  const bool by_id = id != wishes.end() && id->second != kAny;  // then nothing else counts
-  for (const FbConfig& config : fb_configs(display, screen)) {
-    const bool fits = std::ranges::all_of(kAttributes, [&](const Attribute& a) {
-      const auto wish = wishes.find(a.name);
-      const int wanted = wish == wishes.end() ? a.by_default : wish->second, has = a.value(config);
-      if (by_id) return a.name != GLX_FBCONFIG_ID || has == wanted;
-      if (a.rule == Rule::not_compared || (wanted == kAny && a.name != GLX_LEVEL)) return true;
-      return a.rule == Rule::at_least ? has >= wanted : a.rule == Rule::mask ? (has & wanted) == wanted : has == wanted;
-    });
-    if (fits) result.push_back(&config);
-  }
+  for (const FbConfig& config : fb_configs(display, screen))
+    if (fits(kAttributes, config, wishes, GLX_FBCONFIG_ID)) result.push_back(&config);
   return result;
 }
 
@@ -394,7 +372,7 @@ XVisualInfo* glx_choose_visual(Display* display, int screen, int* list) {
       case GLX_DOUBLEBUFFER:
       case GLX_STEREO: wishes[*list] = 1; break;
       default:
-        if (attribute(*list) == nullptr) return nullptr;
+        if (find_attribute(kAttributes, *list) == nullptr) return nullptr;
         wishes[list[0]] = list[1];
         ++list;
     }
@@ -543,7 +521,7 @@ GLXFBConfig* glx_choose_fb_config(Display* display, int screen, const int* list,
   Wishes wishes;
   *count = 0;
   for (; list != nullptr && *list != 0; list += 2) {
-    if (attribute(list[0]) == nullptr) return nullptr;
+    if (find_attribute(kAttributes, list[0]) == nullptr) return nullptr;
     wishes[list[0]] = list[1];
   }
   return handles(matching(display, screen, wishes), count);
@@ -557,7 +535,7 @@ GLXFBConfig* glx_get_fb_configs(Display* display, int screen, int* count) {
 
 int glx_get_fb_config_attrib(Display* display, GLXFBConfig handle, int name, int* value) {
   const FbConfig* const config = find_config(display, handle);
-  const Attribute* const a = attribute(name);
+  const auto* const a = find_attribute(kAttributes, name);
   if (config == nullptr || a == nullptr) {
     if (config == nullptr) glx_error(display, GLXBadFBConfig, 0, X_GLXGetFBConfigs);
     return GLX_BAD_ATTRIBUTE;

@@ -10,6 +10,8 @@
 #include <span>
 #include <string>
 
+#include "../../model/stages/color_ops.hpp"
+
 #include <X11/Xlibint.h>
 #undef min
 #undef max
@@ -52,9 +54,8 @@ std::vector<PixelFormat> true_color_formats(Display* display, int screen) {
 
 /// 0xaarrggbb of a stored code.
 constexpr std::uint32_t argb(ColorFormat format, std::uint32_t code) {
-  if (format == ColorFormat::rgba8888) return (code & 0xff00ff00) | (code & 0xff) << 16 | (code >> 16 & 0xff);
-  const std::uint32_t r = code >> 11 & 31, g = code >> 5 & 63, b = code & 31;
-  return 0xff000000 | (r << 3 | r >> 2) << 16 | (g << 2 | g >> 4) << 8 | (b << 3 | b >> 2);
+  const auto [r, g, b, a] = widen_color(format, code);
+  return a << 24 | r << 16 | g << 8 | b;
 }
 
 /// An 8-bit channel as one of as many bits as `mask` has.
