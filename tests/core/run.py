@@ -127,7 +127,7 @@ def run(command, log, environment):
         sys.exit(f"{command[0]} failed with status {status}: {log}")
 
 
-def simulate(make, file, bench, arguments, folder, fault, tests):
+def simulate(make, file, bench, config, arguments, folder, fault, tests):
     """Runs the tests of `file`; returns the names of those that passed and of those that failed."""
     from cocotb_tools.runner import get_runner
 
@@ -137,6 +137,7 @@ def simulate(make, file, bench, arguments, folder, fault, tests):
     environment = {
         "PYTHONDONTWRITEBYTECODE": "1",
         "COCOTB_ANSI_OUTPUT": "0",
+        "HALFPLANE_CONFIG": config,
         "HALFPLANE_PROGRAM": str(arguments.program.resolve()),
         "HALFPLANE_PACKAGES": str(arguments.folder.resolve() / "rtl_ref/packages"),
         "HALFPLANE_LIBRARY": str(arguments.folder.resolve() / "capi/libhalfplane_c.so"),
@@ -182,12 +183,12 @@ def main():
     if arguments.faults:
         escaped = 0
         for number, (source, old, _, *tests) in enumerate(bench["faults"], 1):
-            passed, failed = simulate(make, file, bench, arguments, work.with_name(f"{work.name}_faults"), number, *tests or [""])
+            passed, failed = simulate(make, file, bench, config, arguments, work.with_name(f"{work.name}_faults"), number, *tests or [""])
             caught = bool(failed)
             escaped += not caught
             print(f"fault {number} in {source}, '{old}': {'caught by ' + failed[0] if caught else f'NOT caught by {len(passed)} tests'}")
         return 1 if escaped else 0
-    passed, failed = simulate(make, file, bench, arguments, work, 0, arguments.tests)
+    passed, failed = simulate(make, file, bench, config, arguments, work, 0, arguments.tests)
     if failed or not passed:
         print(*(work / "simulation.log").read_text().splitlines()[-200:], sep="\n")
     print(f"{arguments.name}: seed {SEED}, {len(passed)} tests passed, {len(failed)} failed")
