@@ -269,8 +269,10 @@ void Frame::Memory::end() {
   for (const char* key : {"cycles", "bytes", "bins", "pairs", "color_hash", "lacks"}) row[key] = nullptr;
   if (options.cycles && is_asked) {
     try {
-      const MemorySettings settings{options.memory.empty() ? MemoryKind::fixed : memory_kind(options.memory),
-                                    options.memory_latency, options.mhz >= 1 ? static_cast<int>(options.mhz) : 50};
+      MemorySettings settings;
+      if (!options.memory.empty()) set_memory(settings, options.memory);
+      settings.latency = options.memory_latency;
+      if (options.mhz >= 1) settings.mhz = static_cast<int>(options.mhz);
       const auto timing = make_memory(settings, config);
       CycleOptions cycle;
       cycle.textures = settings;

@@ -51,7 +51,7 @@ Options options_from_environment() {
     options.save_to = json.value("save_to", options.save_to);
     options.save_all = json.value("save_all", options.save_all);
     options.results = json.value("results", options.results);
-    if (!options.memory.empty()) (void)memory_kind(options.memory);
+    if (MemorySettings memory; !options.memory.empty()) set_memory(memory, options.memory);
     if (options.threads < 1 || options.threads > 1024 || options.memory_latency < 1)
       throw InputError("threads are 1 to 1024, memory_latency is at least 1");
   } catch (const nlohmann::json::exception& error) {

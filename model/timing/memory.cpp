@@ -1,6 +1,8 @@
 #include "memory.hpp"
 
 #include <algorithm>
+#include <charconv>
+#include <optional>
 #include <vector>
 
 #include "station.hpp"
@@ -10,27 +12,76 @@ namespace {
 
 using Picoseconds = std::uint64_t;
 
-class FixedMemory final : public MemoryTiming {
+/// Length of a cycle of the chip.
+Picoseconds cycle_of(int mhz) { return 1'000'000 / static_cast<Picoseconds>(mhz); }
+
+/// A memory with the other masters, if there are any.
+class SharedMemory : public MemoryTiming {
  public:
-  explicit FixedMemory(int latency) : latency_(static_cast<Cycle>(latency)) {}
-  [[nodiscard]] Cycle room() const override { return 0; }
-  BurstAnswer accept(const MemoryBurst&, Cycle cycle) override { return {cycle + latency_, 1, 1, 0}; }
+  SharedMemory(const MemorySettings& settings, const Config& config) : cycle_(cycle_of(settings.mhz)) {
+    if (!settings.traffic.is_none()) others_.emplace(settings.traffic, config, cycle_);
+  }
+  void show(int width, int height) final {
+    if (others_) others_->show(width, height);
+  }
+  [[nodiscard]] MemoryUse use() const final { return others_ ? others_->use() : MemoryUse{}; }
+
+ protected:
+  [[nodiscard]] bool is_shared() const { return others_.has_value(); }
+  [[nodiscard]] Picoseconds cycle() const { return cycle_; }
+  /// serve(address, bytes, arrives) their bursts up to `time`.
+  template <class Serve>
+  void serve_others(Picoseconds time, Serve&& serve) {
+    if (others_) others_->until(time, serve);
+  }
 
  private:
-  Cycle latency_;
+  Picoseconds cycle_;
+  std::optional<OtherMasters> others_;
+};
+
+/// Where other masters read too, all reads share a beat a cycle.
+class FixedMemory final : public SharedMemory {
+ public:
+  FixedMemory(const MemorySettings& settings, const Config& config, int latency)
+      : SharedMemory(settings, config),
+        latency_(static_cast<Cycle>(latency)),
+        port_bytes_(static_cast<std::uint64_t>(config.memory_port_bits / 8)) {}
+  [[nodiscard]] Cycle room() const override { return 0; }
+  BurstAnswer accept(const MemoryBurst& burst, Cycle cycle_taken) override {
+    if (!is_shared() || burst.is_write) return {cycle_taken + latency_, 1, 1, 0};
+    serve_others(cycle_taken * cycle(), [&](std::uint64_t, std::uint64_t bytes, Picoseconds arrives) {
+      return (read((arrives + cycle() - 1) / cycle(), (bytes - 1) / port_bytes_ + 1) + 1) * cycle();
+    });
+    const auto beats = static_cast<std::uint64_t>(burst.beats);
+    return {read(cycle_taken, beats) - (beats - 1), 1, 1, 0};
+  }
+
+ private:
+  /// The cycle of the last beat.
+  Cycle read(Cycle arrives, std::uint64_t beats) {
+    read_free_ = std::max(arrives + latency_, read_free_) + beats;
+    return read_free_ - 1;
+  }
+  Cycle latency_, read_free_ = 0;
+  std::uint64_t port_bytes_;
 };
 
 /// Common part of all memories with their own clock: a short queue, and time in picoseconds.
-class ClockedMemory : public MemoryTiming {
+class ClockedMemory : public SharedMemory {
  public:
-  ClockedMemory(const Config& config, int mhz, Picoseconds clock)
-      : port_bytes_(static_cast<std::uint64_t>(config.memory_port_bits / 8)),
-        cycle_(1'000'000 / static_cast<Picoseconds>(mhz)),
+  ClockedMemory(const MemorySettings& settings, const Config& config, Picoseconds clock)
+      : SharedMemory(settings, config),
+        port_bytes_(static_cast<std::uint64_t>(config.memory_port_bits / 8)),
+        cycle_(cycle_of(settings.mhz)),
         clock_(clock) {}
 
   [[nodiscard]] Cycle room() const final { return queue_.room(); }
-  BurstAnswer accept(const MemoryBurst& burst, Cycle cycle) final {
-    const Picoseconds arrives = round_up((cycle + 1) * cycle_);  // it has passed a register
+  BurstAnswer accept(const MemoryBurst& burst, Cycle taken) final {
+    const Picoseconds arrives = round_up((taken + 1) * cycle_);  // it has passed a register
+    serve_others(arrives, [&](std::uint64_t address, std::uint64_t bytes, Picoseconds at) {
+      return serve(false, address, bytes, round_up(at)).last;
+    });
     const auto beats = static_cast<std::uint64_t>(burst.beats);
     const Served served = serve(burst.is_write, burst.address, beats * port_bytes_, arrives);
     queue_.leave((served.last + cycle_ - 1) / cycle_);
@@ -73,16 +124,25 @@ struct DramTiming {
 };
 
 // Micron MT48LC16M16A2-6A, 256 Mbit x16: data sheet "256Mb: x4, x8, x16 SDRAM", table of AC characteristics. CL 3.
+// With another width it is chips side by side, with another clock the same times of rows.
 constexpr DramTiming kSdram{6'000, 4, 1024, 2, 1, 3, 0, 18'000, 18'000, 42'000, 60'000, 12'000, 0, 60'000, 7'812'500};
 // Micron MT41K128M16-125 at DDR3-800 (CL 6, CWL 5), 2 Gbit x16: data sheet "2Gb: x4, x8, x16 DDR3L SDRAM". BL8.
 constexpr DramTiming kDdr3{2'500,  8,      2048,   4,      4,      6,       5,        13'750,
                            13'750, 35'000, 48'750, 15'000, 10'000, 160'000, 7'800'000};
 
+DramTiming sdram_timing(const MemorySettings& settings) {
+  DramTiming timing = kSdram;
+  if (settings.sdram_mhz != MemorySettings{}.sdram_mhz) timing.clock = cycle_of(settings.sdram_mhz);
+  timing.bytes_per_clock = static_cast<std::uint64_t>(settings.sdram_width / 8);
+  if (settings.sdram_width > 16) timing.row_bytes *= static_cast<std::uint64_t>(settings.sdram_width / 16);
+  return timing;
+}
+
 /// In order, rows left open; a burst's column command goes out when its row is open and the data bus will be free.
 class Dram final : public ClockedMemory {
  public:
-  Dram(const Config& config, int mhz, const DramTiming& timing)
-      : ClockedMemory(config, mhz, timing.clock),
+  Dram(const MemorySettings& settings, const Config& config, const DramTiming& timing)
+      : ClockedMemory(settings, config, timing.clock),
         t_(timing),
         banks_(timing.banks),
         next_refresh_(timing.refresh_interval) {}
@@ -158,7 +218,7 @@ class Dram final : public ClockedMemory {
 /// burst has a command of its own; it refreshes itself while it is not selected, so a long burst is cut (tCEM).
 class Psram final : public ClockedMemory {
  public:
-  Psram(const Config& config, int mhz) : ClockedMemory(config, mhz, kClock) {}
+  Psram(const MemorySettings& settings, const Config& config) : ClockedMemory(settings, config, kClock) {}
 
  private:
   static constexpr Picoseconds kClock = 11'905, kDeselected = 18'000;        // tCPH
@@ -187,15 +247,55 @@ MemoryKind memory_kind(std::string_view name) {
   throw InputError("no memory '" + std::string(name) + "'; give fixed, sram, sdram, psram or ddr3");
 }
 
+void set_memory(MemorySettings& settings, std::string_view text) {
+  const auto next = [&text] {
+    const std::string_view word = text.substr(0, text.find(','));
+    text.remove_prefix(std::min(text.size(), word.size() + 1));
+    return word;
+  };
+  const MemoryKind kind = memory_kind(next());
+  MemorySettings changed = settings;
+  changed.kind = kind;
+  changed.sdram_width = MemorySettings{}.sdram_width;
+  changed.sdram_mhz = MemorySettings{}.sdram_mhz;
+  while (!text.empty()) {
+    const std::string_view word = next(), key = word.substr(0, word.find('='));
+    const bool is_width = key == "width";
+    if (kind != MemoryKind::sdram || (!is_width && key != "mhz"))
+      throw InputError("'" + std::string(word) + "' is no setting of " +
+                       std::string(kMemoryKinds[static_cast<std::size_t>(kind)]) +
+                       "; sdram has width=BITS and mhz=MHZ, as in sdram,width=32,mhz=133");
+    const std::string_view digits = word.substr(std::min(word.size(), key.size() + 1));
+    int value = 0;
+    const auto read = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (read.ec != std::errc{} || read.ptr != digits.data() + digits.size()) value = 0;
+    if (is_width && std::ranges::find(kSdramWidths, value) == kSdramWidths.end())
+      throw InputError("width: '" + std::string(digits) + "' is not 8, 16, 32 or 64 bits");
+    if (!is_width && (value < kSdramMinMhz || value > kSdramMaxMhz))
+      throw InputError("mhz: '" + std::string(digits) + "' is no clock of an SDRAM, " + std::to_string(kSdramMinMhz) +
+                       " to " + std::to_string(kSdramMaxMhz) + " MHz");
+    (is_width ? changed.sdram_width : changed.sdram_mhz) = value;
+  }
+  settings = changed;
+}
+
+std::string memory_name(const MemorySettings& settings) {
+  const MemorySettings standard;
+  std::string name(kMemoryKinds[static_cast<std::size_t>(settings.kind)]);
+  if (settings.sdram_width != standard.sdram_width) name += ",width=" + std::to_string(settings.sdram_width);
+  if (settings.sdram_mhz != standard.sdram_mhz) name += ",mhz=" + std::to_string(settings.sdram_mhz);
+  return name;
+}
+
 std::unique_ptr<MemoryTiming> make_memory(const MemorySettings& settings, const Config& config) {
   switch (settings.kind) {
     case MemoryKind::fixed: break;
-    case MemoryKind::sram: return std::make_unique<FixedMemory>(2);
-    case MemoryKind::sdram: return std::make_unique<Dram>(config, settings.mhz, kSdram);
-    case MemoryKind::psram: return std::make_unique<Psram>(config, settings.mhz);
-    case MemoryKind::ddr3: return std::make_unique<Dram>(config, settings.mhz, kDdr3);
+    case MemoryKind::sram: return std::make_unique<FixedMemory>(settings, config, 2);
+    case MemoryKind::sdram: return std::make_unique<Dram>(settings, config, sdram_timing(settings));
+    case MemoryKind::psram: return std::make_unique<Psram>(settings, config);
+    case MemoryKind::ddr3: return std::make_unique<Dram>(settings, config, kDdr3);
   }
-  return std::make_unique<FixedMemory>(settings.latency);
+  return std::make_unique<FixedMemory>(settings, config, settings.latency);
 }
 
 }  // namespace halfplane

@@ -5,9 +5,11 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <string_view>
 
 #include "../config.hpp"
+#include "other_masters.hpp"
 #include "stalls.hpp"
 
 namespace halfplane {
@@ -37,12 +39,16 @@ class MemoryTiming {
   [[nodiscard]] virtual Cycle room() const = 0;
   /// The last beat of the next burst is taken in `cycle` (the only beat of a read).
   virtual BurstAnswer accept(const MemoryBurst& burst, Cycle cycle) = 0;
+  /// The size of the picture that scan-out shows from now on, width and height: that of the frame that begins.
+  virtual void show(int, int) {}
+  /// What other masters got up to the last burst.
+  [[nodiscard]] virtual MemoryUse use() const { return {}; }
 };
 
 enum class MemoryKind : std::uint8_t {
   fixed,  ///< ideal: a request a cycle, an answer after `latency` cycles
   sram,   ///< block RAM with an output register: fixed, 2 cycles
-  sdram,  ///< 16-bit SDR SDRAM, 167 MHz
+  sdram,  ///< SDR SDRAM, 16 bits and 167 MHz unless said otherwise
   psram,  ///< quad SPI PSRAM, 84 MHz
   ddr3    ///< 16-bit DDR3-800
 };
@@ -50,10 +56,27 @@ inline constexpr std::array<std::string_view, 5> kMemoryKinds{"fixed", "sram", "
 
 struct MemorySettings {
   MemoryKind kind = MemoryKind::fixed;
-  int latency = 8;  ///< of `fixed`: cycles, at least 1
-  int mhz = 50;     ///< clock of the chip, MHz
+  int latency = 8;                        ///< of `fixed`: cycles, at least 1
+  int mhz = 50;                           ///< clock of the chip, MHz
+  int sdram_width = 16, sdram_mhz = 167;  ///< of `sdram`: bits, and its own clock
+  MemoryTraffic traffic;                  ///< of other masters
   bool operator==(const MemorySettings&) const = default;
 };
+
+inline constexpr std::array kSdramWidths{8, 16, 32, 64};
+inline constexpr int kSdramMinMhz = 50, kSdramMaxMhz = 200;
+
+/// The kind with that name, and of sdram what follows it: "sdram,width=32,mhz=133". Throws InputError.
+void set_memory(MemorySettings& settings, std::string_view text);
+
+/// What set_memory() takes.
+[[nodiscard]] std::string memory_name(const MemorySettings& settings);
+
+/// The same memory with nothing but the hardware's port, as that of textures is.
+[[nodiscard]] inline MemorySettings without_traffic(MemorySettings settings) {
+  settings.traffic = {};
+  return settings;
+}
 
 /// The kind with that name. Throws InputError when there is none.
 [[nodiscard]] MemoryKind memory_kind(std::string_view name);

@@ -61,7 +61,7 @@ std::map<std::string, Completion> known_completions() {
       {"--config", {Kind::preset, names_of(designs(), &Design::name), {".toml"}}},
       {"--set", {Kind::setting, {}, {}}},
       {"--vary", {Kind::key, keys, {}}},
-      {"--what-if", {Kind::key, with(with(keys, timing), {"memory", "memory.latency", "mhz"}), {}}},
+      {"--what-if", {Kind::key, with(with(keys, timing), words_of(kMemoryKeys)), {}}},
       {"--timing", {Kind::key, timing, {}}},
       {"--engine", {Kind::words, {"functional", "scalar", "cycle", "rtl", "golden", "golden32"}, {}}},
       {"--engines", {Kind::list, words_of(kBenchEngines), {}}},

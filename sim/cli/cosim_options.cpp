@@ -49,6 +49,7 @@ void add_stalls_option(CLI::App& app, CosimOptions& options) {
 void add_cosim_options(CLI::App& app, CosimOptions& options) {
   add_stalls_option(app, options);
   add_memory_options(app, options.memory);
+  add_traffic_options(app, options.memory);
   app.add_option("--mutant", options.mutant, "switch on one of the RTL's built-in faults, 0 for none")
       ->check(CLI::Range(0, 65535))
       ->capture_default_str();

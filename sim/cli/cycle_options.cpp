@@ -109,6 +109,13 @@ std::string bottleneck(const CycleResult& cycle) {
                 : ", and waits for the memory in " + percent(run.totals.memory_cycles, run.cycles));
   else
     text = std::string(slowest->name) + ": it works in " + percent(slowest->works, run.cycles) + " of all cycles";
+  if (run.others.late_bands != 0)
+    text += ". Memory is too slow for scan-out: " + with_commas(run.others.late_bands) + " of " +
+            with_commas(run.others.bands) + " rows of blocks come late";
+  for (const Trial& trial : cycle.reliefs)  // a tenth of the frame is worth its name
+    if ((trial.key == "scan_out" || trial.key == "other_traffic") && trial.cycles < run.cycles - run.cycles / 10)
+      text += trial.key == "scan_out" ? ". Scan-out limits: it takes memory from the frame"
+                                      : ". Other masters limit: they take memory from the frame";
   if (!cycle.is_explained) return text + "; --explain tries what would relieve it";
   if (cycle.reliefs.empty()) return text + "; nothing that was tried relieves it";
   text += ". Tried: ";
@@ -155,9 +162,11 @@ void vary(const CommonOptions& common, const CycleCommandOptions& options, const
 std::string CycleCommandOptions::given() const {
   const MemorySettings standard;
   std::string text;
-  for (const auto& [option, is_given] : {std::pair{"--memory", memory.kind != standard.kind},
+  for (const auto& [option, is_given] : {std::pair{"--memory", memory_name(memory) != memory_name(standard)},
                                          {"--memory-latency", memory.latency != standard.latency},
                                          {"--mhz", memory.mhz != standard.mhz},
+                                         {"--scan-out", memory.traffic.scan_out_hz != 0},
+                                         {"--other-traffic", memory.traffic.other_bytes_per_s != 0},
                                          {"--timing", !timing.empty()},
                                          {"--what-if", !what_if.empty()},
                                          {"--stalls", stalls != 0},
@@ -174,6 +183,7 @@ void add_cycle_options(CLI::App& app, CycleCommandOptions& options) {
   const std::string group = "For --engine cycle";
   CLI::Option_group& cycle = *app.add_option_group(group);
   add_memory_options(cycle, options.memory);
+  add_traffic_options(cycle, options.memory);
   cycle
       .add_option("--timing", options.timing, "KEY=VALUE: a size or rule that the RTL has one value of (config --list)")
       ->type_name("KEY=VALUE");
@@ -309,6 +319,11 @@ void add_cycle_json(Json& result, const CycleResult& cycle) {
     result["traffic_bytes"]["fill"]["texture"] = bytes.texels;
     result["texture"]["bytes"] = bytes.texels;
   }
+  if (!hardware.memory.traffic.is_none())
+    result["other_masters"] = {{"scan_out_bytes", run.others.scan_out_bytes},
+                               {"other_bytes", run.others.other_bytes},
+                               {"bands", run.others.bands},
+                               {"late_bands", run.others.late_bands}};
   result["bottleneck"] = bottleneck(cycle);
   if (cycle.is_explained) {
     Json saved = Json::object();
@@ -353,6 +368,10 @@ void print_cycles(std::ostream& out, const CycleResult& cycle) {
         << fixed(100 * static_cast<double>(c.texture.hits) / samples, 1) << " % hit, "
         << fixed(static_cast<double>(bytes.texels) / samples, 2) << " bytes each from memory";
   }
+  if (const MemoryUse& others = run.others; !hardware.memory.traffic.is_none())
+    out << "\nothers      scan-out " << kilobytes(others.scan_out_bytes) << " in " << with_commas(others.bands)
+        << " bands, " << with_commas(others.late_bands) << " of them late; other masters "
+        << kilobytes(others.other_bytes);
   out << "\n\nstage                 items         works   no item       waits for\n";
   for (const StageTime& stage : stage_times(run)) {
     out << left_aligned(std::string(stage.name), 16) << right_aligned(with_commas(stage.use.busy), 11)

@@ -1,23 +1,21 @@
 #include "sim/cli/memory_options.hpp"
 
+#include "sim/show/report/hardware.hpp"
+
 namespace halfplane {
-namespace {
-
-std::string name_of(MemoryKind kind) { return std::string(kMemoryKinds[static_cast<std::size_t>(kind)]); }
-
-}  // namespace
 
 void add_memory_options(CLI::App& app, MemorySettings& settings) {
   app.add_option_function<std::string>(
          "--memory",
          [&settings](const std::string& name) {
            try {
-             settings.kind = memory_kind(name);
+             set_memory(settings, name);
            } catch (const InputError& error) {
              throw InputError(std::string("--memory: ") + error.what());
            }
          },
-         "what is behind the memory port: fixed (ideal), sram, sdram, psram, ddr3")
+         "what is behind the memory port: fixed (ideal), sram, sdram, psram, ddr3; sdram,width=32,mhz=133 is another "
+         "SDRAM")
       ->default_str("fixed");
   app.add_option("--memory-latency", settings.latency, "of the fixed memory: cycles from a read request to its answer")
       ->check(CLI::Range(1, 10000))
@@ -28,25 +26,54 @@ void add_memory_options(CLI::App& app, MemorySettings& settings) {
       ->capture_default_str();
 }
 
+void add_traffic_options(CLI::App& app, MemorySettings& settings) {
+  app.add_option("--scan-out", settings.traffic.scan_out_hz,
+                 "pictures a second that scan-out reads from the same memory; 0: none")
+      ->check(CLI::Range(0, kMaxScanOutHz))
+      ->type_name("HZ")
+      ->capture_default_str();
+  app.add_option("--other-traffic", settings.traffic.other_bytes_per_s,
+                 "bytes a second that other masters read from the same memory; 0: none")
+      ->check(CLI::Range(0, kMaxOtherBytes))
+      ->type_name("BYTES/S")
+      ->capture_default_str();
+}
+
 std::string memory_arguments(const MemorySettings& settings) {
   const MemorySettings standard;
   std::string text;
-  if (settings.kind != standard.kind) text += " --memory " + name_of(settings.kind);
+  if (settings.kind != standard.kind) text += " --memory " + memory_name(settings);
   if (settings.latency != standard.latency) text += " --memory-latency " + std::to_string(settings.latency);
   if (settings.mhz != standard.mhz) text += " --mhz " + std::to_string(settings.mhz);
+  const MemoryTraffic& traffic = settings.traffic;
+  if (traffic.scan_out_hz != 0) text += " --scan-out " + std::to_string(traffic.scan_out_hz);
+  if (traffic.other_bytes_per_s != 0) text += " --other-traffic " + std::to_string(traffic.other_bytes_per_s);
   return text;
 }
 
 Json memory_json(const MemorySettings& settings) {
   const bool is_fixed = settings.kind == MemoryKind::fixed;
-  return {{"kind", name_of(settings.kind)},
-          {"latency", is_fixed ? Json(settings.latency) : Json(nullptr)},
-          {"mhz", settings.mhz}};
+  Json json{{"kind", kMemoryKinds[static_cast<std::size_t>(settings.kind)]},
+            {"latency", is_fixed ? Json(settings.latency) : Json(nullptr)},
+            {"mhz", settings.mhz}};
+  if (settings.kind == MemoryKind::sdram) {
+    json["width"] = settings.sdram_width;
+    json["memory_mhz"] = settings.sdram_mhz;
+  }
+  if (settings.traffic.scan_out_hz != 0) json["scan_out_hz"] = settings.traffic.scan_out_hz;
+  if (settings.traffic.other_bytes_per_s != 0) json["other_bytes_per_s"] = settings.traffic.other_bytes_per_s;
+  return json;
 }
 
 std::string memory_text(const MemorySettings& settings) {
-  if (settings.kind == MemoryKind::fixed) return "fixed, " + std::to_string(settings.latency) + " cycles";
-  return name_of(settings.kind) + ", the chip at " + std::to_string(settings.mhz) + " MHz";
+  std::string text = settings.kind == MemoryKind::fixed
+                         ? "fixed, " + std::to_string(settings.latency) + " cycles"
+                         : memory_name(settings) + ", the chip at " + std::to_string(settings.mhz) + " MHz";
+  const MemoryTraffic& traffic = settings.traffic;
+  if (traffic.scan_out_hz != 0) text += ", scan-out at " + std::to_string(traffic.scan_out_hz) + " Hz";
+  if (traffic.other_bytes_per_s != 0)
+    text += ", " + std::to_string(traffic.other_bytes_per_s) + " bytes/s of other masters";
+  return text;
 }
 
 }  // namespace halfplane

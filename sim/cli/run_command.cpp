@@ -108,7 +108,7 @@ Json driver_options(const RunCommand& options, const Config& config, const Frame
           {"first_frame", span.first},
           {"last_frame", span.last},
           {"mhz", options.memory.mhz},
-          {"memory", kMemoryKinds[static_cast<std::size_t>(options.memory.kind)]},
+          {"memory", memory_name(options.memory)},
           {"memory_latency", options.memory.latency},
           {"save", options.save},
           {"save_to", save_target(options)},

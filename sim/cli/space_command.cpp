@@ -117,6 +117,7 @@ void add_space_options(CLI::App& command, SpaceOptions& options) {
       ->allow_extra_args(false)
       ->type_name("DIR");
   add_memory_options(command, options.memory);
+  add_traffic_options(command, options.memory);
 }
 
 std::string space_arguments(const SpaceOptions& options) {

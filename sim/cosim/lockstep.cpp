@@ -57,7 +57,7 @@ Lockstep::Lockstep(Dut& dut, const Config& config, LockstepOptions options)
       bytes_(packet_bytes(widths_)),
       expected_(widths_),
       memory_(config_, widths_, options_.memory, options_.layout.value_or(default_layout(widths_))),
-      textures_(config_, widths_, make_memory(options_.memory, config_)),
+      textures_(config_, widths_, make_memory(without_traffic(options_.memory), config_)),
       counter_bytes_(static_cast<std::size_t>(packet_bits<CounterPacket>(widths_) + 7) / 8),
       primitive_(words_of(packet_bits<PrimitivePacket>(widths_))),
       lines_(words_of(packet_bits<LineSetup>(widths_))),
@@ -99,7 +99,9 @@ void Lockstep::begin(const Scene& scene) {
   last_drawn_ = ~0ULL;
   textures_.hold(scene);
   model_->hold_textures(scene);
+  memory_.show(scene.width, scene.height);
   if (cycle_model_) {
+    model_memory_->show(scene.width, scene.height);
     cycle_model_->hold_textures(scene);
     cycle_model_->begin(scene.width, scene.height, cycle_);
   }
@@ -127,7 +129,7 @@ void Lockstep::run_and_reset(const Scene& scene, std::uint64_t cycles) {
     step(host);
   options_.compares = true;
   memory_.rest(make_memory(options_.memory, config_));
-  textures_.rest(make_memory(options_.memory, config_));
+  textures_.rest(make_memory(without_traffic(options_.memory), config_));
   start_models(memory_.tiles());
 }
 

@@ -97,6 +97,7 @@ class MemoryModel {
     if (--left_ == 0) push({true, {}}, timing_->accept(burst_, cycle).at(0));
   }
 
+  void show(int width, int height) { timing_->show(width, height); }
   /// The answer that is due in this cycle, or null.
   [[nodiscard]] const std::uint32_t* due(std::uint64_t cycle) const { return due_of(answers_, cycle); }
   void pop() { answers_.pop(); }

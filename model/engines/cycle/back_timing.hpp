@@ -69,7 +69,7 @@ class BackTiming {
         compresses_(config.compress_units != 0) {
     if (config.cache_kind == CacheKind::blocks) blocks_.emplace(config, widths);
     if (!has_texture_planes(config)) return;
-    textures_ = make_memory(textures, config);
+    textures_ = make_memory(without_traffic(textures), config);
     texture_port_.emplace(*textures_, stream(Arrow::texture), stream(Arrow::texel));
   }
 

@@ -22,10 +22,16 @@ TimingTotals since(TimingTotals now, const TimingTotals& before) {
   return now;
 }
 
+MemoryUse since(MemoryUse now, const MemoryUse& before) {
+  for (auto count : {&MemoryUse::scan_out_bytes, &MemoryUse::other_bytes, &MemoryUse::bands, &MemoryUse::late_bands})
+    now.*count -= before.*count;
+  return now;
+}
+
 }  // namespace
 
 CycleFrames::CycleFrames(const Config& config, MemoryTiming& memory, const CycleOptions& options)
-    : config_(config), model_(make_cycle_model(config, memory, options)) {}
+    : config_(config), memory_(memory), model_(make_cycle_model(config, memory, options)) {}
 
 CycleRendering CycleFrames::draw(const Scene& scene, const RenderOptions& render) {
   if (!render.skip.bins) held_.forget();
@@ -38,6 +44,7 @@ CycleRendering CycleFrames::draw(const Scene& scene, const RenderOptions& render
   const auto started = std::chrono::steady_clock::now();
   HostStream host(scene, config_, held);
   model_->hold_textures(scene);
+  memory_.show(scene.width, scene.height);
   model_->begin(scene.width, scene.height, start_);
   DrawnCount drawn;
   std::uint32_t sent = 0;
@@ -66,6 +73,8 @@ CycleRendering CycleFrames::draw(const Scene& scene, const RenderOptions& render
     use.stalled = now.stalled - before.stalled;
     use.starved = run.cycles - use.busy - use.stalled;
   }
+  run.others = since(memory_.use(), others_);
+  others_ = memory_.use();
   counted_ = model_->counters();
   totals_ = model_->totals();
   start_ = totals_.last + 1;

@@ -20,7 +20,7 @@ struct CycleOptions {
   TimingParameters parameters;                ///< sizes of buffers; the default is the RTL
   TransferSink* sink = nullptr;               ///< sees every crossing; slows the model down. Must outlive the model
   std::optional<MemoryLayout> layout;         ///< addresses of the buffers in memory; default_layout() unless given
-  MemorySettings textures;                    ///< of the texture unit's memory, if there is one
+  MemorySettings textures;                    ///< of the texture unit's memory, if there is one; without its traffic
   bool want_count = false, want_ids = false;  ///< fill Rendering::count (without tiles behind HiZ), ids
   bool want_cost = false;                     ///< fill CycleRendering::cost
   bool want_misses = false;                   ///< fill CycleRendering::misses
@@ -59,6 +59,7 @@ struct CycleRun {
   std::uint64_t tile_cycles = 0;    ///< of these, cycles in which the framebuffer moved tiles and served no access
   TimingTotals totals;
   std::array<StreamUse, kArrows> use{};  ///< of each elastic arrow
+  MemoryUse others;                      ///< what other masters got of the memory
 };
 
 struct CycleRendering {
@@ -90,11 +91,13 @@ class CycleFrames {
   [[nodiscard]] CycleRendering draw(const Scene& scene, const RenderOptions& render, BinContents* held);
 
   Config config_;
+  MemoryTiming& memory_;
   std::unique_ptr<CycleModel> model_;
   BinContents held_;
   CounterPacket counted_;  ///< up to the frame before, like the members below
   TimingTotals totals_;
   std::array<StreamUse, kArrows> use_{};
+  MemoryUse others_;
   Cycle start_ = 0;
 };
 

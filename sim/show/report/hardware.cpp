@@ -67,7 +67,16 @@ std::vector<StageTime::Wait> waits_of(Arrow out, const CycleRun& run) {
 
 void change(Hardware& hardware, std::string_view key, std::string_view value) {
   if (key == "memory") {
-    hardware.memory.kind = memory_kind(value);
+    set_memory(hardware.memory, value);
+  } else if (key == "memory.width" || key == "memory.mhz") {
+    MemorySettings other = hardware.memory;
+    (key == "memory.width" ? other.sdram_width : other.sdram_mhz) = number(key, value, 1, 1000);
+    set_memory(other, memory_name(other));
+    hardware.memory = other;
+  } else if (key == "scan_out") {
+    hardware.memory.traffic.scan_out_hz = number(key, value, 0, kMaxScanOutHz);
+  } else if (key == "other_traffic") {
+    hardware.memory.traffic.other_bytes_per_s = static_cast<std::uint64_t>(number(key, value, 0, kMaxOtherBytes));
   } else if (key == "memory.latency") {
     hardware.memory.latency = number(key, value, 1, 10000);
   } else if (key == "mhz") {
@@ -77,16 +86,22 @@ void change(Hardware& hardware, std::string_view key, std::string_view value) {
   } else if (find_setting(key) != nullptr) {
     set(hardware.config, key, value);
   } else {
-    std::vector<std::string_view> keys{"memory", "memory.latency", "mhz"};
+    std::vector<std::string_view> keys(kMemoryKeys.begin(), kMemoryKeys.end());
     for (const TimingSetting& known : timing_settings()) keys.push_back(known.key);
     for (const Setting& known : settings()) keys.push_back(known.key);
-    throw InputError("no setting '" + std::string(key) + "';" + did_you_mean(key, keys) +
-                     " give one of 'halfplane config --list', memory, memory.latency or mhz");
+    throw InputError(
+        "no setting '" + std::string(key) + "';" + did_you_mean(key, keys) +
+        " give one of 'halfplane config --list', memory, memory.latency, memory.width, memory.mhz, mhz, scan_out or "
+        "other_traffic");
   }
 }
 
 std::string value_of(const Hardware& hardware, std::string_view key) {
-  if (key == "memory") return std::string(kMemoryKinds[static_cast<std::size_t>(hardware.memory.kind)]);
+  if (key == "memory") return memory_name(hardware.memory);
+  if (key == "memory.width") return std::to_string(hardware.memory.sdram_width);
+  if (key == "memory.mhz") return std::to_string(hardware.memory.sdram_mhz);
+  if (key == "scan_out") return std::to_string(hardware.memory.traffic.scan_out_hz);
+  if (key == "other_traffic") return std::to_string(hardware.memory.traffic.other_bytes_per_s);
   if (key == "memory.latency") return std::to_string(hardware.memory.latency);
   if (key == "mhz") return std::to_string(hardware.memory.mhz);
   if (const TimingSetting* setting = find_timing_setting(key))
@@ -166,6 +181,10 @@ std::vector<Trial> try_reliefs(const Scene& scene, const Hardware& hardware, con
   if (hardware.memory.kind != MemoryKind::fixed || hardware.memory.latency > 1)
     trials.push_back(hardware.memory.kind == MemoryKind::fixed ? Trial{"memory.latency", "1", 0}
                                                                : Trial{"memory", "sram", 0});
+  if (hardware.memory.kind == MemoryKind::sdram && hardware.memory.sdram_width < kSdramWidths.back())
+    times("memory.width", 2);
+  for (const char* master : {"scan_out", "other_traffic"})
+    if (value_of(hardware, master) != "0") trials.push_back({master, "0", 0});
   std::vector<Trial> helped;
   for (std::size_t i = 0; i < trials.size(); ++i) {
     if (progress) progress(static_cast<double>(i) / static_cast<double>(trials.size()));

@@ -18,8 +18,13 @@ struct Hardware {
   MemorySettings memory;
 };
 
-/// Changes one setting: a key of the configuration, of the timing parameters, or memory, memory.latency, mhz. Throws
-/// InputError for an unknown key or a value outside its range.
+/// Keys of change() that are no settings of the configuration or the timing.
+inline constexpr std::array<std::string_view, 7> kMemoryKeys{"memory", "memory.latency", "memory.width", "memory.mhz",
+                                                             "mhz",    "scan_out",       "other_traffic"};
+inline constexpr int kMaxScanOutHz = 1000, kMaxOtherBytes = 2'000'000'000;  ///< pictures, bytes a second
+
+/// Changes one setting: a key of the configuration, of the timing parameters, or of the memory. Throws InputError for
+/// an unknown key or a value outside its range.
 void change(Hardware& hardware, std::string_view key, std::string_view value);
 
 /// The value of one setting of change().
