@@ -133,7 +133,7 @@ module scan_out #(
     end
   endgenerate
 
-  // Requests. --------------------------------------------------------------------------------------------------------------
+  // Requests.
   localparam logic [2:0] REST = 3'd0, START = 3'd1, CLEARED = 3'd2, PIXELS = 3'd3, WAIT = 3'd4, READ = 3'd5;
   logic [             2:0] state_q;
   logic [        BAND-1:0] band_q;
@@ -244,7 +244,7 @@ module scan_out #(
       .data_o (head)
   );
 
-  // Answers. ---------------------------------------------------------------------------------------------------------------
+  // Answers.
   logic [TILE-1:0] head_tile;
   logic [UNIT-1:0] head_unit;
   logic [BEAT-1:0] beat_q;           // beats of the item that have arrived
@@ -268,8 +268,12 @@ module scan_out #(
                          (ADDRESS'(head_unit) << $clog2(UNIT_WORDS)) |
                          ADDRESS'(head_of_pixels ? 32'(beat_q) >> $clog2(GATHER_PIXEL) : 32'(beat_q) >> $clog2(WORD_BEATS));
 
-  logic fills, frees;  // a buffer is full from now on, or free
+  logic fills, frees, starts;  // a buffer is full from now on, or free, or begins to be filled
   logic shown_buffer_q;
+  function [1:0] bit_of(input buffer);
+    bit_of = {buffer, !buffer};
+  endfunction
+  assign starts = state_q == START && may_fetch;
   assign fills = head_valid && head_taken && head_is_last;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -281,10 +285,8 @@ module scan_out #(
     end else begin
       if (arrives) beat_q <= head_taken ? '0 : beat_q + 1'b1;
       filled_buffer_q <= filled_buffer_q ^ fills;
-      if (fills) is_full_q[filled_buffer_q] <= 1'b1;
-      if (frees) is_full_q[shown_buffer_q] <= 1'b0;
-      if (state_q == START && may_fetch) is_used_q[asked_buffer_q] <= 1'b1;
-      if (frees) is_used_q[shown_buffer_q] <= 1'b0;
+      is_full_q       <= (is_full_q | (fills ? bit_of(filled_buffer_q) : 2'd0)) & ~(frees ? bit_of(shown_buffer_q) : 2'd0);
+      is_used_q       <= (is_used_q | (starts ? bit_of(asked_buffer_q) : 2'd0)) & ~(frees ? bit_of(shown_buffer_q) : 2'd0);
     end
   end
 
@@ -316,7 +318,8 @@ module scan_out #(
     end else begin : gen_collect
       logic [(WORD-STEP)*COLOR-1:0] earlier_q;
       assign word = {mean, earlier_q};
-      always_ff @(posedge clk_i) if (arrives && (32'(beat_q) & 32'(GATHER - 1)) == 32'(GATHER - 1)) earlier_q <= word[WORD*COLOR-1:STEP*COLOR];
+      always_ff @(posedge clk_i)
+        if (arrives && (32'(beat_q) & 32'(GATHER - 1)) == 32'(GATHER - 1)) earlier_q <= word[WORD*COLOR-1:STEP*COLOR];
     end
     if (COMPRESS) begin : gen_pixels
       assign written_word = head_of_pixels ? raw[(GATHER-GATHER_PIXEL)*PORT+:WORD*COLOR] : word;
@@ -325,14 +328,14 @@ module scan_out #(
     end
   endgenerate
 
-  // Pixels. ---------------------------------------------------------------------------------------------------------------
+  // Pixels.
   localparam int LANE = (WORD < 2) ? 1 : $clog2(WORD);
   localparam int BLOCK = (UNIT_BLOCKS < 2) ? 1 : $clog2(UNIT_BLOCKS);
   localparam int STAMP = raster_pkg::STAMP_SIZE;
   logic [raster_pkg::PIXEL_X_BITS-1:0] x_q;
   logic [raster_pkg::PIXEL_Y_BITS-1:0] y_q;
   logic                                is_valid_q, is_last_q, is_first_q, begun_q, underrun_q;
-  logic                                has_pixel, is_line_end, is_frame_end;
+  logic                                has_pixel, shows, is_line_end, is_frame_end;
   logic [LANE-1:0]                     lane_q;
   logic [BLOCK-1:0]                    block_q;
   logic [31:0]                         x, y, p;  // in the tile, in the band, and the pixel's number there
@@ -340,7 +343,7 @@ module scan_out #(
 
   sram #(
       .WIDTH    (WORD * COLOR),
-      .DEPTH    (2 * TILES * UNITS * UNIT_WORDS),
+      .DEPTH    (1 << ADDRESS),  // a power of two needs no multiplexer
       .READS_OLD(0),
       .BLOCK    (1)
   ) u_buffers (
@@ -355,12 +358,14 @@ module scan_out #(
 
   // Flags of cleared blocks, and of blocks with one colour a pixel: those of a beat, and of the first for each block shown.
   logic [UNIT_BLOCKS-1:0] shown_cleared;
+  localparam int PLACE = (FLAG_TILES * UNITS < 2) ? 1 : $clog2(FLAG_TILES * UNITS);
   generate
     if (FLAGS != 0) begin : gen_cleared
+      logic [PLACE-1:0] place;  // of the unit's flags in the beat
+      assign place = PLACE'((32'(tile_q) << $clog2(UNITS)) | (UNITS == 1 ? 32'd0 : 32'(unit_q)));
       logic [PORT-1:0] flags_q;
       always_ff @(posedge clk_i) if (arrives && head_is_flags && !head_of_pixels) flags_q <= scan_rdata;
-      assign unit_cleared = UNIT_BLOCKS'(flags_q >> (((32'(tile_q) & 32'(FLAG_TILES - 1)) << $clog2(PER_TILE)) |
-                                                     (UNITS == 1 ? 32'd0 : 32'(unit_q))));
+      assign unit_cleared = flags_q[(32'(place)*UNIT_BLOCKS)+:UNIT_BLOCKS];
       sram #(
           .WIDTH    (UNIT_BLOCKS),
           .DEPTH    (2 * TILES * UNITS),
@@ -383,9 +388,11 @@ module scan_out #(
       assign shown_cleared = '0;
     end
     if (COMPRESS) begin : gen_pixel_flags
+      logic [PLACE-1:0] place;  // of the unit's flags in the beat
+      assign place = PLACE'((32'(tile_q) << $clog2(UNITS)) | (UNITS == 1 ? 32'd0 : 32'(unit_q)));
       logic [PORT-1:0] flags_q;
       always_ff @(posedge clk_i) if (arrives && head_is_flags && head_of_pixels) flags_q <= scan_rdata;
-      assign unit_of_pixels = 1'(flags_q >> (((32'(tile_q) & 32'(FLAG_TILES - 1)) << $clog2(PER_TILE)) | 32'(unit_q)));
+      assign unit_of_pixels = flags_q[place];
     end else begin : gen_no_pixel_flags
       assign unit_of_pixels = 1'b0;
     end
@@ -400,11 +407,12 @@ module scan_out #(
   assign read_address = (ADDRESS'(32'(x_q) >> $clog2(raster_pkg::TILE_SIZE)) << (INDEX + 1)) |
                         (ADDRESS'(shown_buffer_q) << INDEX) | ADDRESS'(p >> $clog2(WORD));
 
+  assign shows        = moves && has_pixel;
   assign moves        = !is_valid_q || m_axis_video_tready;
   assign has_pixel    = is_active_q && !is_shown_q && is_full_q[shown_buffer_q];
   assign is_line_end  = x_q == last_x_q;
   assign is_frame_end = is_line_end && y_q == last_y_q;
-  assign frees        = moves && has_pixel && (is_frame_end || (is_line_end && &(y | ~32'(SIDE - 1))));
+  assign frees        = shows && (is_frame_end || (is_line_end && &(y | ~32'(SIDE - 1))));
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
@@ -413,25 +421,23 @@ module scan_out #(
       begun_q        <= 1'b0;
       underrun_q     <= 1'b0;
       shown_buffer_q <= 1'b0;
-      x_q            <= '0;
-      y_q            <= '0;
     end else begin
       if (moves) is_valid_q <= has_pixel;
-      is_shown_q     <= is_active_q && (is_shown_q || (moves && has_pixel && is_frame_end));
-      begun_q        <= is_active_q && !is_shown_q && (begun_q || (moves && has_pixel));
+      is_shown_q     <= is_active_q && (is_shown_q || (shows && is_frame_end));
+      begun_q        <= is_active_q && !is_shown_q && (begun_q || shows);
       underrun_q     <= !clear_underrun_i && (underrun_q || (begun_q && !is_valid_q && m_axis_video_tready));
       shown_buffer_q <= shown_buffer_q ^ frees;
-      if (moves && has_pixel) begin
-        x_q <= is_line_end ? '0 : x_q + 1'b1;
-        if (is_line_end) y_q <= is_frame_end ? '0 : y_q + 1'b1;
-      end
     end
   end
 
   always_ff @(posedge clk_i) begin
+    if (vblank_o || (shows && is_line_end)) x_q <= '0;
+    else if (shows) x_q <= x_q + 1'b1;
+    if (vblank_o) y_q <= '0;
+    else if (shows && is_line_end) y_q <= y_q + 1'b1;
     if (moves) begin
       is_last_q  <= is_line_end;
-      is_first_q <= x_q == '0 && y_q == '0;
+      is_first_q <= !begun_q;
       lane_q     <= LANE'(p & 32'(WORD - 1));
       block_q    <= BLOCK'(p >> (2 * $clog2(SIDE)));
     end
