@@ -11,32 +11,11 @@
 #include <string>
 #include <string_view>
 
-#include "model/config.hpp"
-#include "model/engines/hardware.hpp"
-#include "model/engines/scalar.hpp"
-#include "model/host/primitive_stream.hpp"
+#include "frame_memory.hpp"
 #include "sim/cosim/random_scene.hpp"
-#include "sim/show/image/framebuffer_files.hpp"
 
 namespace halfplane {
 namespace {
-
-/// Buffers that are not those of default_layout(), so that no base is 0 and rows have a gap.
-MemoryLayout layout_of(const Config& config) {
-  const Widths widths = derive_widths(config);
-  const MemoryGrid& m = widths.memory;
-  MemoryLayout layout = default_layout(widths);
-  const std::uint32_t tile = std::uint32_t{1} << m.tile(), gap = 5 * tile;
-  layout.depth_base += gap;
-  layout.color_base += gap;
-  layout.row_stride += tile;
-  const auto rows = static_cast<std::uint32_t>(widths.tiles_y);
-  const std::uint32_t end = gap + (rows + 1) * layout.row_stride;
-  layout.color_flags_base = (((end - 1) >> m.flag_row) + 1) << m.flag_row;
-  layout.depth_flags_base =
-      layout.color_flags_base + (rows * static_cast<std::uint32_t>(widths.blocks.per_tile) << m.flag_row);
-  return layout;
-}
 
 void run(int argc, char** argv) {
   if (argc != 6) throw InputError("usage: frame_memory CONFIG SEED WIDTH HEIGHT FILE");
@@ -47,15 +26,8 @@ void run(int argc, char** argv) {
     scene.width = width;
     scene.height = std::atoi(argv[4]);
   }
-  PacketSink nobody;
-  HardwareModel model(config, nobody, TileMemory(config, layout_of(config)));
-  model.hold_textures(scene);
-  HostStream host(scene, config);
-  while (const auto primitive = host.next()) model.run(primitive->packet, primitive->line);
-  const TileMemory& memory = model.memory();
-
-  // The picture of the specification, so that the hardware's own way back from memory is not what is compared.
-  const Picture picture = color_picture(render_scalar(scene, config).frame, config.color_format);
+  const TileMemory memory = test::memory_after(scene, config);
+  const Picture picture = test::picture_of(scene, config);
   nlohmann::json head{{"config", argv[1]},
                       {"seed", seed},
                       {"width", scene.width},
