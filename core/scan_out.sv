@@ -1,20 +1,20 @@
 // Scan-out: reads the colour buffer ahead of the display and gives one pixel a clock as AXI4-Stream video.
 //
-// A band is a row of blocks (4 lines; with cache.kind tiles a row of tiles). Two bands lie in block RAM as they lie in memory:
-// one is filled while the other is shown. Memory is read in units: the blocks that a tile has in the band, which are consecutive,
-// or single blocks where they can have one colour a pixel. A unit whose blocks are all cleared is not read; where samples are
-// stored, their mean enters the buffer. Up to AHEAD units are asked for before their answers arrive.
+// A band is a row of blocks (4 lines; with cache.kind tiles a row of tiles). Two bands lie in block RAM as they lie in
+// memory: one is filled while the other is shown. Memory is read in units: the blocks that a tile has in the band, which
+// are consecutive, or single blocks where they can have one colour a pixel. A unit whose blocks are all cleared is not
+// read; where samples are stored, their mean enters the buffer. Up to AHEAD units are asked for before they are answered.
 //
-// The registers are sampled in the cycle of vblank_o, which is after the last pixel of a frame was taken; so a frame is never
-// torn, and from then on the earlier buffer is not read. Blanking is the time in which the display takes nothing (tready), or
+// The registers are sampled in the cycle of vblank_o, after the last pixel of a frame was taken; so a frame is never torn,
+// and from then on the earlier buffer is not read. Blanking is the time in which the display takes nothing (tready), or
 // BLANK cycles. Layout: docs/memory.md; the same in C: driver/detile.c.
 module scan_out #(
-    parameter int FLAGS = raster_pkg::FRAME_CLEARS == 1 ? 1 : 0,  // 1: memory holds flags of cleared blocks (frame.clears flags)
-    parameter int WIDEST = raster_pkg::TARGET_WIDTH,      // pixels of a line at most: the size of the buffers
-    parameter int BURST = 16,                             // beats of a burst at most; a power of two
-    parameter int AHEAD = 16,                             // units under way at most; a power of two
-    parameter int BLANK = 0,                              // cycles from vblank_o to the first read at least
-    parameter int PORT = raster_pkg::MEMORY_PORT_BITS     // derived; not to be set
+    parameter int FLAGS = raster_pkg::FRAME_CLEARS == 1 ? 1 : 0,  // 1: frame.clears flags: cleared blocks have a flag
+    parameter int WIDEST = raster_pkg::TARGET_WIDTH,  // pixels of a line at most: the size of the buffers
+    parameter int BURST = 16,                         // beats of a burst at most; a power of two
+    parameter int AHEAD = 16,                         // units under way at most; a power of two
+    parameter int BLANK = 0,                          // cycles from vblank_o to the first read at least
+    parameter int PORT = raster_pkg::MEMORY_PORT_BITS // derived; not to be set
 ) (
     input logic clk_i,
     input logic rst_ni,
@@ -57,13 +57,13 @@ module scan_out #(
   localparam bit COMPRESS = raster_pkg::COMPRESS_UNIT != 0;
   localparam int COLOR = raster_pkg::STORED_COLOR_BITS;
   localparam int N = raster_pkg::MEMORY_COLORS / raster_pkg::PIXELS;          // colours of a pixel in memory
-  localparam int SIDE = raster_pkg::BLOCK_SIDE * raster_pkg::STAMP_SIZE;      // pixels along a block: the lines of a band
-  localparam int PER_TILE = raster_pkg::BLOCKS_PER_ROW;                       // blocks of a tile in a band, bands of a tile
+  localparam int SIDE = raster_pkg::BLOCK_SIDE * raster_pkg::STAMP_SIZE;      // pixels along a block; lines of a band
+  localparam int PER_TILE = raster_pkg::BLOCKS_PER_ROW;              // blocks of a tile in a band, bands of a tile
   localparam int UNITS = COMPRESS ? PER_TILE : 1;                             // of a tile in a band
   localparam int UNIT_BLOCKS = PER_TILE / UNITS;
   localparam int UNIT_PIXELS = UNIT_BLOCKS * SIDE * SIDE;
   localparam int UNIT_BEATS = (UNIT_PIXELS * N * COLOR <= PORT) ? 1 : UNIT_PIXELS * N * COLOR / PORT;
-  localparam int PIXEL_BEATS = (UNIT_PIXELS * COLOR <= PORT) ? 1 : UNIT_PIXELS * COLOR / PORT;  // with one colour a pixel
+  localparam int PIXEL_BEATS = (UNIT_PIXELS * COLOR <= PORT) ? 1 : UNIT_PIXELS * COLOR / PORT;  // one colour a pixel
   localparam int FULL_BURST = UNIT_BEATS < BURST ? UNIT_BEATS : BURST;
   localparam int PIXEL_BURST = PIXEL_BEATS < BURST ? PIXEL_BEATS : BURST;
   localparam int UNIT_SHIFT = $clog2(UNIT_PIXELS * N * COLOR / 8);            // log2 of the bytes
@@ -79,13 +79,13 @@ module scan_out #(
   localparam int UNIT_WORDS = UNIT_PIXELS / WORD;
   localparam int GATHER = (PORT < N * COLOR) ? N * COLOR / PORT : 1;          // beats of a pixel
   localparam int GATHER_PIXEL = (PORT < COLOR) ? COLOR / PORT : 1;            // the same with one colour a pixel
-  localparam int STEP = (PORT < 2 * N * COLOR) ? 1 : (PORT / (N * COLOR) < WORD) ? PORT / (N * COLOR) : WORD;  // pixels a beat
+  localparam int STEP = (PORT < 2 * N * COLOR) ? 1 : (PORT / (N * COLOR) < WORD) ? PORT / (N * COLOR) : WORD;  // of a beat
   localparam int WORD_BEATS = GATHER * (WORD / STEP);
 
   localparam int TILE = (TILES < 2) ? 1 : $clog2(TILES);
   localparam int UNIT = (UNITS < 2) ? 1 : $clog2(UNITS);
   localparam int BEAT = (UNIT_BEATS < 2) ? 1 : $clog2(UNIT_BEATS);
-  localparam int INDEX = $clog2(UNITS * UNIT_WORDS);                          // bits of a word's number in its tile and band
+  localparam int INDEX = $clog2(UNITS * UNIT_WORDS);  // bits of a word's number in its tile and band
   localparam int ADDRESS = $clog2(2 * TILES * UNITS * UNIT_WORDS);
   localparam int FLAG_ADDRESS = $clog2(2 * TILES * UNITS);
   localparam int BAND = raster_pkg::PIXEL_Y_BITS - $clog2(SIDE);
@@ -153,7 +153,8 @@ module scan_out #(
   logic [        ITEM-1:0] item, head;
 
   assign is_first      = sent_q == '0;
-  assign is_last_burst = unit_of_pixels ? sent_q == BEAT'(PIXEL_BEATS - PIXEL_BURST) : sent_q == BEAT'(UNIT_BEATS - FULL_BURST);
+  assign is_last_burst = unit_of_pixels ? sent_q == BEAT'(PIXEL_BEATS - PIXEL_BURST)
+                                        : sent_q == BEAT'(UNIT_BEATS - FULL_BURST);
   assign is_last_tile  = tile_q == TILE'(32'(last_x_q) >> $clog2(raster_pkg::TILE_SIZE));
   assign is_last_unit  = is_last_tile && unit_q == UNIT'(UNITS - 1);
   assign is_last_band  = band_q == BAND'(32'(last_y_q) >> $clog2(SIDE));
@@ -166,13 +167,14 @@ module scan_out #(
   assign unit_ends    = state_q == READ && (is_cleared ? item_ready : asked && is_last_burst);
   assign band_ends    = unit_ends && is_last_unit;
   assign item_valid   = (asked && (asks_flags || is_first)) || (state_q == READ && is_cleared && is_last_unit);
-  assign item         = {tile_q, unit_q, asks_flags, asks_flags ? state_q == PIXELS : unit_of_pixels, !is_cleared || asks_flags,
-                         is_last_unit && !asks_flags};
+  assign item         = {tile_q, unit_q, asks_flags, asks_flags ? state_q == PIXELS : unit_of_pixels,
+                         !is_cleared || asks_flags, is_last_unit && !asks_flags};
 
   assign at_tile       = row_q[31:TILE_PITCH] + (32 - TILE_PITCH)'(tile_q);
   assign burst_address = 32'(sent_q) << PORT_SHIFT;
   assign unit_address  = {at_tile, row_q[PLANE], PLANE'(0)} | burst_address |
-                         (32'(unit_q) << UNIT_SHIFT) | ((32'(band_q) & 32'(PER_TILE - 1)) << (UNIT_SHIFT + $clog2(UNITS)));
+                         (32'(unit_q) << UNIT_SHIFT) |
+                         ((32'(band_q) & 32'(PER_TILE - 1)) << (UNIT_SHIFT + $clog2(UNITS)));
   assign flags_address = {flags_base_q[31:FLAG_ROW] + (32 - FLAG_ROW)'(band_q),
                           FLAG_ROW'(0)} |
                          ((32'(tile_q) >> $clog2(FLAG_TILES)) << PORT_SHIFT) |
@@ -210,7 +212,8 @@ module scan_out #(
       band_q <= '0;
     end else if (band_ends) begin
       band_q <= band_q + 1'b1;
-      if ((32'(band_q) & 32'(PER_TILE - 1)) == 32'(PER_TILE - 1)) row_q[31:TILE_PITCH] <= row_q[31:TILE_PITCH] + stride_q;
+      if ((32'(band_q) & 32'(PER_TILE - 1)) == 32'(PER_TILE - 1))
+        row_q[31:TILE_PITCH] <= row_q[31:TILE_PITCH] + stride_q;
     end
     if (state_q == START) begin
       tile_q <= '0;
@@ -259,21 +262,24 @@ module scan_out #(
   assign arrives     = scan_rvalid && scan_rready;
   assign head_taken  = !head_has_data || (arrives && (head_is_flags ||
                        beat_q == (head_of_pixels ? BEAT'(PIXEL_BEATS - 1) : BEAT'(UNIT_BEATS - 1))));
-  assign has_flags   = head_valid && head_taken && head_is_flags && head_of_pixels == COMPRESS;  // those of pixels come last
+  assign has_flags   = head_valid && head_taken && head_is_flags && head_of_pixels == COMPRESS;  // the last of them
   assign error_o     = arrives && scan_rerror;
   assign word_ends   = head_of_pixels ? (32'(beat_q) & 32'(GATHER_PIXEL - 1)) == 32'(GATHER_PIXEL - 1)
                                       : (32'(beat_q) & 32'(WORD_BEATS - 1)) == 32'(WORD_BEATS - 1);
   assign written     = arrives && !head_is_flags && word_ends;
   assign write_address = (ADDRESS'(head_tile) << (INDEX + 1)) | (ADDRESS'(filled_buffer_q) << INDEX) |
                          (ADDRESS'(head_unit) << $clog2(UNIT_WORDS)) |
-                         ADDRESS'(head_of_pixels ? 32'(beat_q) >> $clog2(GATHER_PIXEL) : 32'(beat_q) >> $clog2(WORD_BEATS));
+                         ADDRESS'(head_of_pixels ? 32'(beat_q) >> $clog2(GATHER_PIXEL)
+                                                 : 32'(beat_q) >> $clog2(WORD_BEATS));
 
   logic fills, frees, starts;  // a buffer is full from now on, or free, or begins to be filled
   logic shown_buffer_q;
   function [1:0] bit_of(input buffer);
     bit_of = {buffer, !buffer};
   endfunction
+  logic [1:0] freed;
   assign starts = state_q == START && may_fetch;
+  assign freed  = frees ? bit_of(shown_buffer_q) : 2'd0;
   assign fills = head_valid && head_taken && head_is_last;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -285,8 +291,8 @@ module scan_out #(
     end else begin
       if (arrives) beat_q <= head_taken ? '0 : beat_q + 1'b1;
       filled_buffer_q <= filled_buffer_q ^ fills;
-      is_full_q       <= (is_full_q | (fills ? bit_of(filled_buffer_q) : 2'd0)) & ~(frees ? bit_of(shown_buffer_q) : 2'd0);
-      is_used_q       <= (is_used_q | (starts ? bit_of(asked_buffer_q) : 2'd0)) & ~(frees ? bit_of(shown_buffer_q) : 2'd0);
+      is_full_q       <= (is_full_q | (fills ? bit_of(filled_buffer_q) : 2'd0)) & ~freed;
+      is_used_q       <= (is_used_q | (starts ? bit_of(asked_buffer_q) : 2'd0)) & ~freed;
     end
   end
 
@@ -356,7 +362,7 @@ module scan_out #(
       .data_i         (written_word)
   );
 
-  // Flags of cleared blocks, and of blocks with one colour a pixel: those of a beat, and of the first for each block shown.
+  // Flags of cleared blocks and of blocks with one colour a pixel: those of a beat; of cleared ones, too, of both bands.
   logic [UNIT_BLOCKS-1:0] shown_cleared;
   localparam int PLACE = (FLAG_TILES * UNITS < 2) ? 1 : $clog2(FLAG_TILES * UNITS);
   generate
@@ -379,8 +385,8 @@ module scan_out #(
                            (UNITS == 1 ? '0 : FLAG_ADDRESS'(p >> (2 * $clog2(SIDE))))),
           .data_o         (shown_cleared),
           .write_i        (unit_ends),
-          .write_address_i((FLAG_ADDRESS'(tile_q) << ($clog2(UNITS) + 1)) | (FLAG_ADDRESS'(asked_buffer_q) << $clog2(UNITS)) |
-                           FLAG_ADDRESS'(unit_q)),
+          .write_address_i((FLAG_ADDRESS'(tile_q) << ($clog2(UNITS) + 1)) |
+                           (FLAG_ADDRESS'(asked_buffer_q) << $clog2(UNITS)) | FLAG_ADDRESS'(unit_q)),
           .data_i         (unit_cleared)
       );
     end else begin : gen_none_cleared

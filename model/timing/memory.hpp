@@ -59,7 +59,7 @@ struct MemorySettings {
   int latency = 8;                        ///< of `fixed`: cycles, at least 1
   int mhz = 50;                           ///< clock of the chip, MHz
   int sdram_width = 16, sdram_mhz = 167;  ///< of `sdram`: bits, and its own clock
-  MemoryTraffic traffic;                  ///< of other masters
+  MemoryTraffic traffic{};                ///< of other masters
   bool operator==(const MemorySettings&) const = default;
 };
 

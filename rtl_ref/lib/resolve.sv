@@ -1,5 +1,5 @@
-// Resolve: the one colour of each multisampled pixel, of a stamp unless said otherwise: the mean of each stored channel,
-// rounded to the nearest code, halves up. Combinational. Specification: mean_color of model/stages/resolve.hpp.
+// Resolve: the one colour of each multisampled pixel, of a stamp unless said otherwise: the mean of each stored
+// channel, rounded to the nearest code, halves up. Combinational. Specification: mean_color of model/stages/resolve.hpp.
 module resolve #(
     parameter int PIXELS = raster_pkg::PIXELS,    // whose samples come together
     parameter int N = raster_pkg::MSAA_SAMPLES    // of a pixel; not to be set

@@ -186,6 +186,24 @@ TEST(Cosim, EveryMemoryKeepsRtlAndCycleModelTogether) {
     }
 }
 
+// Scan-out, other masters and another SDRAM take the same time from the RTL's memory and from the model's.
+TEST(Cosim, OtherMastersAtTheMemoryKeepRtlAndCycleModelTogether) {
+  std::size_t number = 0;
+  for (const DutFactory& factory : verilated_duts()) {
+    for (const char* const memory : {"sdram,width=32,mhz=133", "fixed", "ddr3"}) {
+      if (number++ % 4 != 0 && !test::runs_all()) continue;
+      LockstepOptions options;
+      set_memory(options.memory, memory);
+      options.memory.traffic = {120, 20'000'000};
+      SCOPED_TRACE(factory.name + ", " + memory);
+      const Session session = run(factory, options, random_scenes(factory.config, 9, 250));
+      EXPECT_EQ(describe(session), "");
+      EXPECT_EQ(session.result.model_cycles, session.result.cycles);
+      EXPECT_GT(session.result.cycles_compared[index(Arrow::beat)], 100u);
+    }
+  }
+}
+
 /// Clears inside a scissor, then whole ones, and a triangle that is culled: what is written comes before it in program
 /// order and around it in time.
 Scene clears_before_a_culled_triangle(int scissored, int whole) {

@@ -121,5 +121,99 @@ TEST(Memory, AnUnknownNameIsRefusedWithTheKnownOnes) {
   }
 }
 
+MemorySettings sdram_with(const char* text, MemoryTraffic traffic = {}) {
+  MemorySettings settings;
+  set_memory(settings, text);
+  settings.mhz = 100;
+  settings.traffic = traffic;
+  return settings;
+}
+
+TEST(Memory, AWiderSdramMovesMoreAndASlowerOneLess) {
+  const Config config = preset("embedded");
+  const auto cycles = [&](const char* text) { return read_run(*make_memory(sdram_with(text), config), 512, 8, 0); };
+  const Cycle usual = cycles("sdram");
+  EXPECT_EQ(cycles("sdram,width=16,mhz=167"), usual);
+  EXPECT_GT(cycles("sdram,width=8"), usual * 3 / 2);
+  EXPECT_LT(cycles("sdram,width=32"), usual * 2 / 3);
+  EXPECT_GT(cycles("sdram,mhz=100"), usual * 3 / 2);
+  EXPECT_LT(cycles("sdram,width=32,mhz=133"), usual);
+}
+
+TEST(Memory, SettingsThatNoSdramHasAreRefusedInOneLine) {
+  for (const char* const text : {"sdram,width=24", "sdram,width=", "sdram,mhz=5", "sdram,mhz=133x", "sdram,cl=3",
+                                 "sdram,", "ddr3,width=32", "fixed,mhz=100", "hbm"}) {
+    MemorySettings settings;
+    try {
+      set_memory(settings, text);
+      ADD_FAILURE() << text;
+    } catch (const InputError& error) {
+      EXPECT_EQ(std::string_view(error.what()).find('\n'), std::string_view::npos);
+      EXPECT_EQ(settings, MemorySettings{}) << text;
+    }
+  }
+  EXPECT_EQ(memory_name(sdram_with("sdram,mhz=133,width=32")), "sdram,width=32,mhz=133");
+}
+
+TEST(Memory, WithoutOtherMastersNothingChanges) {
+  const Config config = preset("embedded");
+  for (const MemoryKind kind : {MemoryKind::fixed, MemoryKind::sdram, MemoryKind::psram, MemoryKind::ddr3}) {
+    const auto alone = make_memory({kind, 8, 100}, config), shown = make_memory({kind, 8, 100}, config);
+    shown->show(640, 480);
+    EXPECT_EQ(read_run(*alone, 300, 24, 0), read_run(*shown, 300, 24, 0));
+    EXPECT_EQ(shown->use(), MemoryUse{});
+  }
+}
+
+/// The bytes that scan-out reads in a second of a target, in a memory that is asked for nothing else but at the end.
+MemoryUse use_in_a_second(const char* text, const Config& config, int width, int height, MemoryTraffic traffic) {
+  const auto memory = make_memory(sdram_with(text, traffic), config);
+  memory->show(width, height);
+  (void)memory->accept({false, 0, 1}, 100'000'000 - 2);
+  return memory->use();
+}
+
+TEST(Memory, ScanOutReadsThePictureAtItsRate) {
+  // 640 x 480 in 2 bytes, 60 times a second: 36,864,000 bytes in 7,200 bands of four lines.
+  const Config config = preset("embedded");
+  const MemoryUse use = use_in_a_second("sdram", config, 640, 480, {60, 0});
+  EXPECT_NEAR(static_cast<double>(use.scan_out_bytes), 640.0 * 480 * 2 * 60, 640.0 * 4 * 2);
+  EXPECT_NEAR(static_cast<double>(use.bands), 7200, 1);
+  EXPECT_EQ(use.late_bands, 0u);
+  // With flags a beat for each 32 tiles in addition: three of them in a band.
+  Config flags = config;
+  flags.frame_clears = FrameClears::flags;
+  const MemoryUse with_flags = use_in_a_second("sdram", flags, 640, 480, {60, 0});
+  EXPECT_NEAR(static_cast<double>(with_flags.scan_out_bytes - use.scan_out_bytes), 7200.0 * 3 * 8, 640.0 * 4 * 2);
+  // Whole tiles: 641 pixels are 81 tiles, of 481 lines the last band is whole, too.
+  const MemoryUse odd = use_in_a_second("sdram", config, 641, 481, {60, 0});
+  EXPECT_NEAR(static_cast<double>(odd.scan_out_bytes), 648.0 * 484 * 2 * 60, 648.0 * 4 * 2);
+}
+
+TEST(Memory, OtherMastersReadTheirBytes) {
+  const MemoryUse use = use_in_a_second("sdram", preset("embedded"), 640, 480, {0, 50'000'000});
+  EXPECT_NEAR(static_cast<double>(use.other_bytes), 50e6, 128);
+  EXPECT_EQ(use.scan_out_bytes, 0u);
+}
+
+TEST(Memory, AMemoryThatIsTooSlowForScanOutIsLate) {
+  // QSPI at 42 MB/s against 110 MB/s.
+  const MemoryUse use = use_in_a_second("psram", preset("embedded"), 1280, 720, {60, 0});
+  EXPECT_GT(use.late_bands, use.bands / 2);
+  EXPECT_LT(use.scan_out_bytes, 45'000'000u);
+}
+
+TEST(Memory, OtherMastersTakeTheTimeOfThePort) {
+  const Config config = preset("embedded");
+  for (const char* const text : {"fixed", "sdram", "ddr3"}) {
+    const auto alone = make_memory(sdram_with(text), config);
+    const auto shared = make_memory(sdram_with(text, {60, 40'000'000}), config);
+    shared->show(640, 480);
+    const Cycle quick = read_run(*alone, 20'000, 8, 0), slow = read_run(*shared, 20'000, 8, 0);
+    EXPECT_GT(slow, quick + quick / 50) << text;
+    EXPECT_LT(slow, 3 * quick) << text;
+  }
+}
+
 }  // namespace
 }  // namespace halfplane
