@@ -253,13 +253,13 @@ void set_memory(MemorySettings& settings, std::string_view text) {
     text.remove_prefix(std::min(text.size(), word.size() + 1));
     return word;
   };
-  const bool ends_open = text.ends_with(',');  // a setting without a text is refused as one
+  if (text.ends_with(',')) throw InputError("'" + std::string(text) + "' ends with a comma; leave it out");
   const MemoryKind kind = memory_kind(next());
   MemorySettings changed = settings;
   changed.kind = kind;
   changed.sdram_width = MemorySettings{}.sdram_width;
   changed.sdram_mhz = MemorySettings{}.sdram_mhz;
-  for (bool has_more = ends_open; has_more || !text.empty(); has_more = false) {
+  while (!text.empty()) {
     const std::string_view word = next(), key = word.substr(0, word.find('='));
     const bool is_width = key == "width";
     if (kind != MemoryKind::sdram || (!is_width && key != "mhz"))
