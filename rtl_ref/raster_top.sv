@@ -67,7 +67,10 @@ module raster_top (
     output raster_pkg::counter_packet_t counters_o,
     // Nothing is under way: every primitive of the cycles before has been drawn, and memory has answered everything. What was
     // drawn may lie on the chip alone; after a flush all of it is in memory.
-    output logic                        idle_o
+    output logic                        idle_o,
+    // For a cycle, once for each flush in their order: it and everything before it is in memory. At most three flushes may
+    // be under way when somebody counts these.
+    output logic                        flushed_o
 );
 
   localparam int SAMPLES = raster_pkg::SAMPLES;
@@ -139,6 +142,7 @@ module raster_top (
   logic             is_fill, is_evict, is_clear;
   logic [6:0]       texture_use;
   logic             framebuffer_idle, port_idle, moves_tiles;
+  logic             flush_ends;  // memory_port has taken all of its requests
 
   // --------------------------------------------------------- primitives to fragments: pipelined, or a step at a time
   logic shaded_valid, shaded_ready;  // output of interpolate
@@ -460,10 +464,12 @@ module raster_top (
           .request_i(request_data),
           .bytes_o  (request_bytes)
       );
-      assign written = tested_written;
-      assign killed  = tested_killed;
+      assign written    = tested_written;
+      assign killed     = tested_killed;
+      assign flush_ends = access_valid && access_ready && access.kind == raster_pkg::PRIMITIVE_KIND_FLUSH;
     end else begin : gen_blocks
       assign access_ready     = 1'b1;
+      assign flush_ends       = fragment_valid && fragment_accepted && fragment_data.kind == raster_pkg::PRIMITIVE_KIND_FLUSH;
       assign written          = LATE ? late_written : tested_written;
       assign killed           = LATE ? late_killed : tested_killed;
       assign is_evict         = stores || is_resolved;
@@ -740,7 +746,9 @@ module raster_top (
       .answer_valid_i  (answer_valid_i && !stall_i[raster_pkg::STALL_ANSWER]),
       .answer_ready_o  (answer_ready),
       .answer_i,
-      .idle_o          (port_idle)
+      .idle_o          (port_idle),
+      .flush_ends_i    (flush_ends),
+      .flushed_o
   );
 
   // -------------------------------------------------------------------------------------------------------- idle, and counters

@@ -104,7 +104,8 @@ module raster_cosim (
       .texel_i(texel_q),
       .counters_hold_i(counters_hold_q),
       .counters_o,
-      .idle_o
+      .idle_o,
+      .flushed_o()
   );
 
   assign moves_tiles_o = u_raster.moves_tiles;

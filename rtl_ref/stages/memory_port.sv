@@ -41,7 +41,11 @@ module memory_port (
     output logic                       answer_ready_o,
     input  raster_pkg::memory_answer_t answer_i,
 
-    output logic idle_o  // every request has been answered
+    output logic idle_o,  // every request has been answered
+
+    // A flush ends: all of its requests have been taken. Later, once for each, they and all before them are in memory.
+    input  logic flush_ends_i,
+    output logic flushed_o
 );
 
   localparam int SAMPLES = raster_pkg::SAMPLES;
@@ -461,6 +465,23 @@ module memory_port (
       reads_q  <= reads_q + (takes && !request_i.is_write ? READS'(length[TAKEN-1:0]) : '0) - READS'(answers && is_read);
       writes_q <= writes_q + 8'(takes && begins) - 8'(answers && answer_i.is_write);
     end
+  end
+
+  // Writes that the last flush waits for. Answers come in order, so a flush that ends while another waits takes that one
+  // with it. The host has at most three flushes under way.
+  logic [7:0] unwritten_q;
+  logic [1:0] flushes_q;
+  logic       is_written;
+  assign is_written = answers && answer_i.is_write;
+  assign flushed_o  = flushes_q != '0 && unwritten_q == '0;
+  always_ff @(posedge clk_i or negedge power_on_ni) begin
+    if (!power_on_ni) flushes_q <= '0;
+    else if (discards) flushes_q <= '0;
+    else flushes_q <= flushes_q + 2'(flush_ends_i) - 2'(flushed_o);
+  end
+  always_ff @(posedge clk_i) begin
+    if (flush_ends_i) unwritten_q <= writes_q + 8'(takes && begins) - 8'(is_written);
+    else if (unwritten_q != '0) unwritten_q <= unwritten_q - 8'(is_written);
   end
 
   assign is_done = !valid_q && !gathers_q && !owes && reads_q == '0 && writes_q == '0;
