@@ -56,7 +56,6 @@ module core_registers (
     output logic        control_start_o,
     output logic        control_stop_o,
     output logic        control_restart_o,
-    output logic        control_snapshot_o,
     input  logic        status_running_i,
     input  logic        status_idle_i,
     input  logic        status_written_i,
@@ -84,13 +83,15 @@ module core_registers (
     input  logic [15:0] frames_vblanks_i,
     input  logic [31:0] words_count_i,
     output logic [21:0] ring_base_base_o,
-    output logic [4:0]  ring_size_log2_words_o,
+    output logic [10:0] ring_size_last_word_o,
     input  logic [19:0] ring_head_index_i,
     input  logic        ring_tail_index_clear_i,
     output logic [19:0] ring_tail_index_o,
     output logic [4:0]  counter_index_index_o,
+    output logic        counter_index_hold_o,
     input  logic [31:0] counter_data_value_i,
     output logic        scan_control_enable_o,
+    output logic        scan_control_clear_underrun_o,
     output logic [15:0] scan_size_last_x_o,
     output logic [15:0] scan_size_last_y_o,
     output logic [19:0] scan_stride_stride_o,
@@ -131,9 +132,10 @@ module core_registers (
   logic irq_pending_stopped_q;
   logic irq_pending_ring_empty_q;
   logic [21:0] ring_base_base_q;
-  logic [4:0] ring_size_log2_words_q;
+  logic [10:0] ring_size_last_word_q;
   logic [19:0] ring_tail_index_q;
   logic [4:0] counter_index_index_q;
+  logic counter_index_hold_q;
   logic scan_control_enable_q;
   logic [15:0] scan_size_last_x_q;
   logic [15:0] scan_size_last_y_q;
@@ -148,9 +150,10 @@ module core_registers (
       irq_pending_stopped_q <= 1'd0;
       irq_pending_ring_empty_q <= 1'd0;
       ring_base_base_q <= 22'd0;
-      ring_size_log2_words_q <= 5'd8;
+      ring_size_last_word_q <= 11'd0;
       ring_tail_index_q <= 20'd0;
       counter_index_index_q <= 5'd0;
+      counter_index_hold_q <= 1'd0;
       scan_control_enable_q <= 1'd0;
       scan_size_last_x_q <= 16'd0;
       scan_size_last_y_q <= 16'd0;
@@ -164,10 +167,11 @@ module core_registers (
       irq_pending_stopped_q <= irq_pending_stopped_set_i || (irq_pending_stopped_q && !(is_whole && write_word == 5'd11 && s_axil_wdata[3]));
       irq_pending_ring_empty_q <= irq_pending_ring_empty_set_i || (irq_pending_ring_empty_q && !(is_whole && write_word == 5'd11 && s_axil_wdata[4]));
       if (is_whole && write_word == 5'd16) ring_base_base_q <= s_axil_wdata[10+:22];
-      if (is_whole && write_word == 5'd17) ring_size_log2_words_q <= s_axil_wdata[0+:5];
+      if (is_whole && write_word == 5'd17) ring_size_last_word_q <= s_axil_wdata[8+:11];
       if (ring_tail_index_clear_i) ring_tail_index_q <= '0;
       else if (is_whole && write_word == 5'd19) ring_tail_index_q <= s_axil_wdata[0+:20];
       if (is_whole && write_word == 5'd20) counter_index_index_q <= s_axil_wdata[0+:5];
+      if (is_whole && write_word == 5'd20) counter_index_hold_q <= s_axil_wdata[8];
       if (is_whole && write_word == 5'd24) scan_control_enable_q <= s_axil_wdata[0];
       if (is_whole && write_word == 5'd25) scan_size_last_x_q <= s_axil_wdata[0+:16];
       if (is_whole && write_word == 5'd25) scan_size_last_y_q <= s_axil_wdata[16+:16];
@@ -179,7 +183,6 @@ module core_registers (
   assign control_start_o = is_whole && write_word == 5'd8 && s_axil_wdata[0];
   assign control_stop_o = is_whole && write_word == 5'd8 && s_axil_wdata[1];
   assign control_restart_o = is_whole && write_word == 5'd8 && s_axil_wdata[2];
-  assign control_snapshot_o = is_whole && write_word == 5'd8 && s_axil_wdata[3];
   assign irq_enable_enable_o = irq_enable_enable_q;
   assign irq_pending_fence_o = irq_pending_fence_q;
   assign irq_pending_vblank_o = irq_pending_vblank_q;
@@ -187,10 +190,12 @@ module core_registers (
   assign irq_pending_stopped_o = irq_pending_stopped_q;
   assign irq_pending_ring_empty_o = irq_pending_ring_empty_q;
   assign ring_base_base_o = ring_base_base_q;
-  assign ring_size_log2_words_o = ring_size_log2_words_q;
+  assign ring_size_last_word_o = ring_size_last_word_q;
   assign ring_tail_index_o = ring_tail_index_q;
   assign counter_index_index_o = counter_index_index_q;
+  assign counter_index_hold_o = counter_index_hold_q;
   assign scan_control_enable_o = scan_control_enable_q;
+  assign scan_control_clear_underrun_o = is_whole && write_word == 5'd24 && s_axil_wdata[1];
   assign scan_size_last_x_o = scan_size_last_x_q;
   assign scan_size_last_y_o = scan_size_last_y_q;
   assign scan_stride_stride_o = scan_stride_stride_q;
@@ -282,7 +287,7 @@ module core_registers (
         read_data[10+:22] = ring_base_base_q;
       end
       5'd17: begin  // RING_SIZE
-        read_data[0+:5] = ring_size_log2_words_q;
+        read_data[8+:11] = ring_size_last_word_q;
       end
       5'd18: begin  // RING_HEAD
         read_data[0+:20] = ring_head_index_i;
@@ -292,6 +297,7 @@ module core_registers (
       end
       5'd20: begin  // COUNTER_INDEX
         read_data[0+:5] = counter_index_index_q;
+        read_data[8] = counter_index_hold_q;
       end
       5'd21: begin  // COUNTER_DATA
         read_data[0+:32] = counter_data_value_i;

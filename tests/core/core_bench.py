@@ -1,0 +1,241 @@
+"""halfplane_core under cocotb: registers through AXI4-Lite, commands through a ring in memory, pictures of the model.
+
+    core = Core(dut)
+    await core.start()
+    frame = core.frame(scene)      # packets of a capture's text, and what the model draws
+    await core.draw(frame)         # encodes, writes the ring, waits for the fence
+    core.check(frame)              # every pixel of colour and depth
+"""
+
+import os
+import pathlib
+import random
+import re
+import struct
+import subprocess
+import tempfile
+import zlib
+
+import cocotb
+from axi_memory import Behaviour, Memory
+from cocotb.clock import Clock
+from cocotb.triggers import RisingEdge
+from cocotbext.axi import AxiLiteBus, AxiLiteMaster
+from command_words import Encoder, Package, encode, picture, read_hex
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PROGRAM = os.environ["HALFPLANE_PROGRAM"]
+PACKAGES = pathlib.Path(os.environ["HALFPLANE_PACKAGES"])
+REGISTERS = {}
+for line in (ROOT / "core/registers/halfplane.rdl").read_text().splitlines():
+    if match := re.match(r"    } (\w+) @ (0x\w+);", line):
+        REGISTERS[match[1]] = int(match[2], 16)
+RUNNING, IDLE, WRITTEN, RESTARTING, TIMED_OUT, RING_EMPTY = (1 << i for i in range(6))
+START, STOP, RESTART = 1, 2, 4
+FENCE, VBLANK, ERROR, STOPPED, EMPTY = (1 << i for i in range(5))
+
+RING, RING_WORDS = 0x100000, 1024
+SIZE = 1 << 21
+
+
+def random_scene(seed, width=64, height=64, lines=True, primitives=24):
+    """A capture with triangles, strips, points, lines and clears in random states; the same for the same seed."""
+    r = random.Random(seed)
+    text = ["halfplane 1", f"target {width} {height}", "space window"]
+    colour = lambda: " ".join(str(r.randrange(256)) for _ in range(4))
+    text.append(f"clear color {colour()} depth {r.choice([1, 0.5])}")
+    vertices = 0
+
+    def vertex(x, y):
+        nonlocal vertices
+        text.append(f"v {x:.17g} {y:.17g} {r.random():.17g} 1 {colour()}")
+        vertices += 1
+        return vertices - 1
+
+    for _ in range(primitives):
+        for state, values in (("depth_test", "never less lequal equal greater gequal notequal always"), ("depth_write", "on on on off"),
+                              ("color_write", "on on on off"), ("cull", "none none back front"), ("front", "ccw cw")):
+            if r.random() < 0.3:
+                text.append(f"state {state} {r.choice(values.split())}")
+        if r.random() < 0.2:
+            x, y = r.randrange(width), r.randrange(height)
+            text.append(f"state scissor {x} {y} {r.randint(1, width - x)} {r.randint(1, height - y)}" if r.random() < 0.7 else "state scissor off")
+        what = r.choice("tttsssfpcl" if lines else "tttsssfpc")
+        reach = r.choice([8, 24, 96])
+        at = r.randint(-8, width + 8), r.randint(-8, height + 8)
+        points = [vertex(at[0] + r.uniform(-reach, reach), at[1] + r.uniform(-reach, reach)) for _ in range(r.randint(3, 7))]
+        words = " ".join(map(str, points))
+        if what == "t":
+            text.append(f"t {' '.join(map(str, points[:3]))}")
+        elif what == "c":
+            text.append(f"clear color {colour()}" if r.random() < 0.6 else f"clear depth {r.random():.3f}")
+        else:
+            text.append({"s": "ts", "f": "tf", "p": "p", "l": "ls"}[what] + " " + words)
+    return "\n".join(text) + "\n"
+
+
+def read_png(file):
+    """The bytes of an 8-bit RGB picture, row by row."""
+    data, at, packed = pathlib.Path(file).read_bytes(), 8, b""
+    while at < len(data):
+        length, kind = struct.unpack(">I4s", data[at:at + 8])
+        body = data[at + 8:at + 8 + length]
+        if kind == b"IHDR":
+            width, height, bits, colours = struct.unpack(">IIBB", body[:10])
+            assert (bits, colours) == (8, 2)
+        if kind == b"IDAT":
+            packed += body
+        at += 12 + length
+    raw, pitch, above, out = zlib.decompress(packed), 3 * width, bytes(3 * width), bytearray()
+    for y in range(height):
+        method, row = raw[y * (pitch + 1)], bytearray(raw[y * (pitch + 1) + 1:(y + 1) * (pitch + 1)])
+        for i in range(pitch):
+            left, up, corner = (row[i - 3] if i >= 3 else 0), above[i], (above[i - 3] if i >= 3 else 0)
+            nearest = min((left, up, corner), key=lambda v: abs(left + up - corner - v))
+            row[i] = row[i] + (0, left, up, (left + up) // 2, nearest)[method] & 255
+        out += row
+        above = row
+    return bytes(out)
+
+
+def read_npy(file):
+    """The words of a .npy of the program."""
+    data = pathlib.Path(file).read_bytes()
+    start = 10 + int.from_bytes(data[8:10], "little")
+    return list(struct.unpack(f"<{(len(data) - start) // 4}I", data[start:]))
+
+
+class Frame:
+    """A scene: its packets, its picture as the model draws it."""
+
+    def __init__(self, config, settings, text):
+        with tempfile.TemporaryDirectory() as folder:
+            scene = pathlib.Path(folder) / "scene.hpt"
+            scene.write_text(text)
+            options = ["--config", config, "--quiet", *(word for key, value in settings.items() for word in ("--set", f"{key}={value}"))]
+            run = lambda *words: subprocess.run([PROGRAM, *map(str, words), *options], check=True)
+            found = []
+            for stage, name in (("cull", "primitive"), ("line_raster", "line")):
+                run("vectors", scene, "--stage", stage, "--format", "hex", "-o", pathlib.Path(folder) / name)
+                found.append(read_hex(pathlib.Path(folder) / name / f"{name}.hex"))
+            run("render", scene, "-o", f"{folder}/color.png", "--depth", f"{folder}/depth.npy")
+            rgb, self.depth = read_png(f"{folder}/color.png"), read_npy(f"{folder}/depth.npy")
+        self.packets, self.lines = found
+        self.color = [rgb[i] >> 3 << 11 | rgb[i + 1] >> 2 << 5 | rgb[i + 2] >> 3 for i in range(0, len(rgb), 3)]  # rgb565
+        self.width, self.height = map(int, re.search(r"target (\d+) (\d+)", text).groups())
+
+
+class Core:
+    def __init__(self, dut, config="embedded", behaviour=None, seed=0):
+        self.dut, self.config, self.random = dut, config, random.Random(cocotb.RANDOM_SEED + seed)
+        self.package = Package(PACKAGES / config / "raster_pkg.sv")
+        self.behaviour = behaviour or Behaviour()
+        self.tag = self.tail = 0
+        self.encoder = Encoder(self.package)
+        self.log = dut._log
+
+    async def start(self, bursts=True):
+        d = self.dut
+        d.rst_ni.value = 0
+        for name in ("s_axis_tvalid", "s_axis_tdata", "m_axi_bid", "m_axi_rid", "m_axis_video_tready", "m_axi_texture_arready",
+                     "m_axi_texture_rvalid"):
+            getattr(d, name).value = 0
+        self.clock = cocotb.start_soon(Clock(d.clk_i, 2, "ns").start())
+        self.memory = Memory(d, SIZE, self.behaviour, self.random)
+        self.tasks = [cocotb.start_soon(self.memory.run())]
+        self.bus = AxiLiteMaster(AxiLiteBus.from_prefix(d, "s_axil"), d.clk_i, d.rst_ni, reset_active_level=False)
+        for logger in (self.bus.write_if.log, self.bus.read_if.log):
+            logger.setLevel("WARNING")
+        await self.cycles(5)
+        d.rst_ni.value = 1
+        await self.cycles(10)
+        await self.set_up()
+
+    async def set_up(self):
+        """After a reset: the ring, and the core runs."""
+        self.tail, self.encoder = 0, Encoder(self.package)
+        await self.write("RING_BASE", RING)
+        await self.write("RING_SIZE", RING_WORDS - 1)
+        await self.write("CONTROL", START)
+
+    async def cycles(self, count):
+        for _ in range(count):
+            await RisingEdge(self.dut.clk_i)
+
+    async def write(self, register, value):
+        await self.bus.write_dword(REGISTERS[register], value)
+
+    async def read(self, register):
+        return await self.bus.read_dword(REGISTERS[register])
+
+    async def wait(self, condition, what, polls=4000):
+        """Until a status has all bits of `condition`."""
+        for _ in range(polls):
+            status = await self.read("STATUS")
+            if status & condition == condition:
+                return status
+            await self.cycles(20)
+        raise AssertionError(f"{what}: STATUS stays {status:#x}, error {status >> 8 & 15}, {await self.read('WORDS')} words, "
+                             f"head {await self.read('RING_HEAD')} of {self.tail}")
+
+    def layout(self, where, width):
+        """Buffers of a frame from an address on; 64 KB of them."""
+        p = self.package
+        stride = (width + p.TILE_SIZE - 1) // p.TILE_SIZE << p.PLANE_SHIFT + 1
+        return dict(depth=where, color=where + (1 << p.PLANE_SHIFT), depth_flags=where + 0xC000, color_flags=where + 0xE000, stride=stride)
+
+    def frame(self, text, **settings):
+        return Frame(self.config, settings, text)
+
+    def words(self, frame, where=0, present=False):
+        """The words of a frame, ended by a fence."""
+        e = self.encoder
+        e.words = []
+        e.layout(**self.layout(where, frame.width))
+        encode(e, frame.packets, frame.lines)
+        self.tag += 1
+        if present:
+            layout = self.layout(where, frame.width)
+            e.command("PRESENT", 0, [layout["color"], layout["color_flags"]])
+        e.command("FENCE", 0, [self.tag])
+        return e.words
+
+    async def send(self, words):
+        """Into the ring, as the driver does: waits for room, writes, moves the tail by parts of any size."""
+        words = list(words)
+        while words:
+            head = await self.read("RING_HEAD")
+            room = RING_WORDS - (self.tail - head) % (1 << 20)
+            part = min(len(words), room, self.random.randint(1, 300))
+            for i in range(part):
+                at = RING + (self.tail + i) % RING_WORDS * 4
+                self.memory.bytes[at:at + 4] = words[i].to_bytes(4, "little")
+            del words[:part]
+            self.tail = (self.tail + part) % (1 << 20)
+            if part:
+                await self.write("RING_TAIL", self.tail)
+            else:
+                status = await self.read("STATUS")
+                assert status & RUNNING, f"the ring is full and the core has stopped: STATUS {status:#x}"
+                await self.cycles(50)
+
+    async def fence(self, tag, polls=20000):
+        for _ in range(polls):
+            if await self.read("FENCE") == tag:
+                return
+            await self.cycles(30)
+            status = await self.read("STATUS")
+            assert status >> 8 & 15 == 0, f"error {status >> 8 & 15} after {await self.read('WORDS')} words"
+        raise AssertionError(f"fence {tag} does not come: STATUS {await self.read('STATUS'):#x}")
+
+    async def draw(self, frame, where=0, **options):
+        await self.send(self.words(frame, where, **options))
+        await self.fence(self.tag)
+
+    def check(self, frame, where=0):
+        at, p = self.layout(where, frame.width), self.package
+        got = picture(p, self.memory.bytes, at["color"], at["stride"], frame.width, frame.height)
+        wrong = [i for i, (a, b) in enumerate(zip(got, frame.color)) if a != b]
+        assert not wrong, f"{len(wrong)} colours differ, first at pixel {wrong[0] % frame.width}, {wrong[0] // frame.width}: " \
+            f"{got[wrong[0]]:#x}, model {frame.color[wrong[0]]:#x}"
+        return len(got)
