@@ -21,7 +21,7 @@ from axi_memory import Behaviour, Memory
 from cocotb.clock import Clock
 from cocotb.triggers import RisingEdge
 from cocotbext.axi import AxiLiteBus, AxiLiteMaster
-from command_words import Encoder, Package, encode, picture, read_hex
+from command_words import FAST_CLEAR, Encoder, Package, encode, picture, read_hex
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = os.environ["HALFPLANE_PROGRAM"]
@@ -34,7 +34,7 @@ RUNNING, IDLE, WRITTEN, RESTARTING, TIMED_OUT, RING_EMPTY = (1 << i for i in ran
 START, STOP, RESTART = 1, 2, 4
 FENCE, VBLANK, ERROR, STOPPED, EMPTY = (1 << i for i in range(5))
 
-RING, RING_WORDS = 0x100000, 1024
+RING = 0x100000
 SIZE = 1 << 21
 
 
@@ -124,17 +124,22 @@ class Frame:
         self.color = [rgb[i] >> 3 << 11 | rgb[i + 1] >> 2 << 5 | rgb[i + 2] >> 3 for i in range(0, len(rgb), 3)]  # rgb565
         self.width, self.height = map(int, re.search(r"target (\d+) (\d+)", text).groups())
 
+    def cleared_depth(self, package):
+        """The depth of the last fast clear of it."""
+        clears = [f for f in map(package.unpack, self.packets) if f["kind"] == FAST_CLEAR and f["depth_write"]]
+        return clears[-1]["vertices"][0][2] & (1 << package.DEPTH_CODE_BITS) - 1
 
 class Core:
-    def __init__(self, dut, config="embedded", behaviour=None, seed=0):
-        self.dut, self.config, self.random = dut, config, random.Random(cocotb.RANDOM_SEED + seed)
-        self.package = Package(PACKAGES / config / "raster_pkg.sv")
+    def __init__(self, dut, behaviour=None, ring_words=1024):
+        self.dut, self.config, self.random = dut, os.environ["HALFPLANE_CONFIG"], random.Random(cocotb.RANDOM_SEED)
+        self.package = Package(PACKAGES / self.config / "raster_pkg.sv")
+        self.ring_words = ring_words
         self.behaviour = behaviour or Behaviour()
         self.tag = self.tail = 0
         self.encoder = Encoder(self.package)
         self.log = dut._log
 
-    async def start(self, bursts=True):
+    async def start(self):
         d = self.dut
         d.rst_ni.value = 0
         for name in ("s_axis_tvalid", "s_axis_tdata", "m_axi_bid", "m_axi_rid", "m_axis_video_tready", "m_axi_texture_arready",
@@ -155,8 +160,29 @@ class Core:
         """After a reset: the ring, and the core runs."""
         self.tail, self.encoder = 0, Encoder(self.package)
         await self.write("RING_BASE", RING)
-        await self.write("RING_SIZE", RING_WORDS - 1)
+        await self.write("RING_SIZE", self.ring_words - 1)
         await self.write("CONTROL", START)
+
+    async def reset(self):
+        """That of the bus: memory forgets as well."""
+        await RisingEdge(self.dut.clk_i)
+        self.dut.rst_ni.value = 0
+        await self.cycles(self.random.randint(1, 4))
+        self.memory.forget()
+        self.dut.rst_ni.value = 1
+        await self.cycles(6)
+        await self.set_up()
+
+    async def restart(self):
+        """From the register, while memory goes on."""
+        await self.write("CONTROL", RESTART)
+        for _ in range(4000):
+            if not await self.read("STATUS") & RESTARTING:
+                break
+            await self.cycles(20)
+        else:
+            raise AssertionError("the restart does not end")
+        await self.set_up()
 
     async def cycles(self, count):
         for _ in range(count):
@@ -205,10 +231,10 @@ class Core:
         words = list(words)
         while words:
             head = await self.read("RING_HEAD")
-            room = RING_WORDS - (self.tail - head) % (1 << 20)
+            room = self.ring_words - (self.tail - head) % (1 << 20)
             part = min(len(words), room, self.random.randint(1, 300))
             for i in range(part):
-                at = RING + (self.tail + i) % RING_WORDS * 4
+                at = RING + (self.tail + i) % self.ring_words * 4
                 self.memory.bytes[at:at + 4] = words[i].to_bytes(4, "little")
             del words[:part]
             self.tail = (self.tail + part) % (1 << 20)
@@ -233,9 +259,12 @@ class Core:
         await self.fence(self.tag)
 
     def check(self, frame, where=0):
+        """Every pixel of both buffers."""
         at, p = self.layout(where, frame.width), self.package
-        got = picture(p, self.memory.bytes, at["color"], at["stride"], frame.width, frame.height)
-        wrong = [i for i, (a, b) in enumerate(zip(got, frame.color)) if a != b]
-        assert not wrong, f"{len(wrong)} colours differ, first at pixel {wrong[0] % frame.width}, {wrong[0] // frame.width}: " \
-            f"{got[wrong[0]]:#x}, model {frame.color[wrong[0]]:#x}"
-        return len(got)
+        for what, model in (("color", frame.color), ("depth", frame.depth)):
+            is_depth = what == "depth"
+            got = picture(p, self.memory.bytes, at[what], at["stride"], frame.width, frame.height, is_depth and at["depth_flags"] or None,
+                          is_depth, frame.cleared_depth(p))
+            wrong = [i for i, (a, b) in enumerate(zip(got, model, strict=True)) if a != b]
+            assert not wrong, f"{what} of {len(wrong)} pixels differs, first at {wrong[0] % frame.width}, {wrong[0] // frame.width}: " \
+                f"{got[wrong[0]]:#x}, model {model[wrong[0]]:#x}"

@@ -101,7 +101,7 @@ def build(name, bench, config, folder, waves):
         run([str(word) for word in command], make / "verilator.log", environment)
         cache = ["OBJCACHE=ccache"] if subprocess.run(["which", "ccache"], capture_output=True).returncode == 0 else []
         jobs = f"-j{os.cpu_count()}"
-        run(["make", jobs, "-C", str(make), "-f", "Vtop.mk", f"VM_TRACE={int(waves)}", *cache], make / "make.log", environment)
+        run(["make", jobs, "-C", str(make), "-f", "Vtop.mk", f"VM_TRACE={int(waves)}", "CFG_CXXFLAGS_PCH_I=-include", *cache], make / "make.log", environment)
     return make
 
 

@@ -1,31 +1,347 @@
-"""halfplane_core as a whole: random scenes through ring, pipeline and memory are the model's pictures, whatever the bus does."""
+"""halfplane_core as a whole: random scenes through ring, pipeline and memory are the model's pictures, whatever the bus does.
+
+HALFPLANE_LONG=N: N times as many scenes.
+"""
+
+import os
+import random
 
 import cocotb
 from axi_memory import Behaviour
-from core_bench import Core, random_scene
+from cocotb.triggers import FallingEdge, RisingEdge
+from command_words import COMMAND, ERROR, LINE, POINT, TRIANGLE
+from core_bench import (
+    EMPTY,
+    FENCE,
+    IDLE,
+    RESTART,
+    RESTARTING,
+    RING_EMPTY,
+    RUNNING,
+    START,
+    STOP,
+    STOPPED,
+    TIMED_OUT,
+    VBLANK,
+    WRITTEN,
+    Core,
+    random_scene,
+)
+from core_bench import ERROR as ERROR_IRQ
 
 BENCH = {
     "top": "halfplane_core",
-    "sources": ["core/core_pkg.sv"],
-    "parameters": {"SCAN_OUT": 0},
+    "sources": ["core/core_pkg.sv", "tests/core/core_checkers.sv"],
 }
+
+LONG = int(os.environ.get("HALFPLANE_LONG", "1"))
+BACK = 0x10000  # the other buffers
+HOSTILE = dict(latency=(1, 300), ready=0.5, valid=0.5)
+
+
+def base():
+    return cocotb.RANDOM_SEED * 1000
 
 
 @cocotb.test()
-async def a_triangle_is_the_model_s(dut):
+async def registers_say_what_the_core_is(dut):
     core = Core(dut)
     await core.start()
-    frame = core.frame("halfplane 1\ntarget 64 64\nspace window\nclear color 10 20 30 255 depth 1\nv 5 5 .5 1 255 0 0 255\n"
-                       "v 60 9 .5 1 0 255 0 255\nv 20 58 .5 1 0 0 255 255\nt 0 1 2\n")
-    await core.draw(frame)
-    core.check(frame)
+    p = core.package
+    assert await core.read("ID") == 0x48504C4E
+    assert await core.read("VERSION") == 1 << 16
+    assert await core.read("CONFIG_ID_LOW") | await core.read("CONFIG_ID_HIGH") << 32 == p.CONFIG_ID
+    units = await core.read("UNITS")
+    assert (units & 1, units >> 1 & 1, units >> 2 & 1, units >> 4 & 3) == (p.LINES_UNIT, p.COUNTERS_UNIT, p.CACHE_KIND, p.TEXTURE_UNIT)
+    assert units >> 16 & 15 == p.MSAA_SAMPLES and units >> 24 & 3 == 3
+    assert await core.read("LIMITS") == p.TARGET_WIDTH | p.TARGET_HEIGHT << 16
+    widths = await core.read("WIDTHS")
+    assert (widths & 15, widths >> 4 & 31, widths >> 9 & 63) == (p.SUBPIXEL_BITS, p.COORDINATE_BITS, p.DEPTH_BITS)
+    assert (widths >> 15 & 7, widths >> 20 & 7) == (p.TILE_SHIFT, p.PORT_SHIFT)
+    for register, mask in (("RING_BASE", 0xFFFFFC00), ("RING_SIZE", 0x7FF00), ("SCAN_SIZE", 0xFFFFFFFF), ("SCAN_STRIDE", 0xFFFFF),
+                           ("SCAN_CLEAR", 0xFFFFFFFF), ("IRQ_ENABLE", 0x1F), ("COUNTER_INDEX", 0x11F)):
+        for value in (0xFFFFFFFF, 0x5A5A5A5A, 0):
+            await core.write(register, value)
+            assert await core.read(register) == value & mask, register
+    assert await core.read("CONTROL") == 0 and await core.bus.read_dword(0x1C) == 0 and await core.bus.read_dword(0x7C) == 0
+    answer = await core.bus.write(0x28, b"\xff")  # a byte
+    assert int(answer.resp) == 2 and await core.read("IRQ_ENABLE") == 0, "half a word is written"
 
 
 @cocotb.test()
 async def random_scenes_are_the_model_s(dut):
     core = Core(dut)
     await core.start()
-    for seed in range(3):
-        frame = core.frame(random_scene(seed + 1))
-        await core.draw(frame, where=seed % 2 * 0x10000)
-        core.check(frame, where=seed % 2 * 0x10000)
+    for seed in range(2 * LONG):
+        frame = core.frame(random_scene(base() + seed))
+        await core.draw(frame, where=seed % 2 * BACK)
+        core.check(frame, where=seed % 2 * BACK)
+        status = await core.wait(IDLE | WRITTEN | RING_EMPTY, "after the fence")
+        assert status & RUNNING and status >> 8 == 0
+    assert (await core.read("FRAMES")) & 0xFFFF == 2 * LONG
+
+
+@cocotb.test()
+async def back_pressure_and_latency_change_no_pixel(dut):
+    core = Core(dut, Behaviour(**HOSTILE), ring_words=256)
+    await core.start()
+    for seed in range(LONG):
+        frame = core.frame(random_scene(base() + 100 + seed, primitives=14))
+        await core.draw(frame)
+        core.check(frame)
+
+
+@cocotb.test()
+async def two_frames_are_in_flight_and_the_display_never_tears(dut):
+    core = Core(dut, Behaviour(latency=(4, 20)))
+    await core.start()
+    frames = [core.frame(random_scene(base() + 200 + n, 32, 32)) for n in range(3)]
+    await core.write("SCAN_SIZE", 31 | 31 << 16)
+    await core.write("SCAN_STRIDE", core.layout(0, 32)["stride"])
+    shown = []
+    video = cocotb.start_soon(watch(dut, core.random, shown))
+    await core.draw(frames[0], present=True)
+    await core.write("SCAN_CONTROL", 1)
+    words = core.words(frames[1], BACK, present=True)
+    words = words[:-2] + [COMMAND["FENCE"] << 24, 100, COMMAND["WAIT_VBLANK"] << 24]
+    cocotb.start_soon(core.send(words + core.words(frames[2], 0, present=True)))
+    await core.fence(core.tag)
+    before = len(shown)
+    for _ in range(4000):
+        await core.cycles(10)
+        if len(shown) >= before + 3:
+            break
+    video.cancel()
+    assert len(shown) >= before + 3, f"{len(shown)} frames are shown"
+    pictures = [[rgb(code) for code in frame.color] for frame in frames]
+    order = [pictures.index(picture) if picture in pictures else f"torn: {sum(a != b for a, b in zip(picture, pictures[0]))}" for picture in shown]
+    dut._log.info("frames shown: %s", order)
+    assert set(order) == {0, 1, 2} and order == sorted(order), f"shown {order}"
+    assert await core.read("FRAMES") >> 16 >= len(shown)
+
+
+def rgb(code):
+    red, green, blue = code >> 11, code >> 5 & 63, code & 31
+    return (red << 3 | red >> 2) << 16 | (green << 2 | green >> 4) << 8 | blue << 3 | blue >> 2
+
+
+async def watch(dut, rng, shown):
+    """A display that takes pixels at random; whole frames go to `shown`."""
+    picture = []
+    dut.m_axis_video_tready.value = 1
+    while True:
+        await FallingEdge(dut.clk_i)
+        takes = rng.random() < 0.8
+        dut.m_axis_video_tready.value = takes
+        if takes and dut.m_axis_video_tvalid.value == 1:
+            if dut.m_axis_video_tuser.value == 1:
+                assert len(picture) in (0, 1024), f"a frame has {len(picture)} pixels"
+                picture = []
+            picture.append(int(dut.m_axis_video_tdata.value))
+            assert (dut.m_axis_video_tlast.value == 1) == (len(picture) % 32 == 0)
+            if len(picture) == 1024:
+                shown.append(list(picture))
+        await RisingEdge(dut.clk_i)
+
+
+@cocotb.test()
+async def resets_in_the_middle_of_everything_leave_nothing_behind(dut):
+    core = Core(dut, Behaviour(latency=(1, 60), ready=0.7, valid=0.7))
+    await core.start()
+    frame = core.frame(random_scene(base() + 300, primitives=10))
+    for n in range(6 * LONG):
+        sending = cocotb.start_soon(core.send(core.words(frame)))
+        await core.cycles(core.random.choice([30, 200, 1000, 3000]))
+        sending.cancel()
+        await core.cycles(2)
+        if n % 2:
+            await core.reset()
+        else:
+            await core.restart()
+        assert await core.read("FENCE") == 0 and await core.read("WORDS") == 0 and await core.read("RING_HEAD") == 0
+        if n % 3 == 2:
+            await core.draw(frame)
+            core.check(frame)
+
+
+@cocotb.test()
+async def errors_of_memory_are_reported_and_survived(dut):
+    core = Core(dut, Behaviour(latency=(1, 10)))
+    await core.start()
+    frame = core.frame(random_scene(base() + 400, primitives=10))
+    await core.write("IRQ_ENABLE", ERROR_IRQ)
+    words = core.words(frame)
+    await core.send(words[:40])
+    for _ in range(1000):  # these are fetched without an error
+        if await core.read("RING_HEAD") == 40:
+            break
+    core.behaviour.errors = 1.0
+    read_ring(core)
+    await core.send(words[40:])
+    await core.fence(core.tag)
+    status = await core.read("STATUS")
+    assert status & 1 << 13 and dut.irq.value == 1, f"errors of writes are not told: STATUS {status:#x}"
+    core.behaviour.errors = 0.0
+    await core.restart()
+    assert await core.read("STATUS") >> 12 & 7 == 0
+    await core.write("IRQ_PENDING", 31)
+    assert dut.irq.value == 0
+    await core.draw(frame)
+    core.check(frame)
+
+
+def read_ring(core):
+    """From here on the ring is read without errors, whatever happens elsewhere."""
+    plain = core.memory.has_error
+
+    def has_error():
+        s = core.memory.s
+        at = int(s["araddr"].value)
+        return False if s["arvalid"].value == 1 and 0x100000 <= at < 0x200000 else plain()
+
+    core.memory.has_error = has_error
+
+
+@cocotb.test()
+async def an_error_of_the_ring_stops_the_stream(dut):
+    core = Core(dut)
+    await core.start()
+    core.behaviour.errors = 1.0
+    await core.write("IRQ_ENABLE", ERROR_IRQ)
+    await core.send([COMMAND["NOP"] << 24] * 3)
+    await wait_irq(core)
+    assert await core.read("STATUS") >> 8 & 15 == ERROR["BUS"] and await core.read("WORDS") == 1
+    core.behaviour.errors = 0.0
+    await core.restart()
+    assert await core.read("STATUS") >> 8 & 15 == 0
+
+
+async def wait_irq(core, cycles=3000):
+    for _ in range(cycles):
+        await RisingEdge(core.dut.clk_i)
+        if core.dut.irq.value == 1:
+            return
+    raise AssertionError(f"no interrupt comes: IRQ_PENDING {await core.read('IRQ_PENDING'):#x}, STATUS {await core.read('STATUS'):#x}")
+
+
+@cocotb.test()
+async def a_wrong_word_is_told_with_its_place_and_the_rest_is_drawn(dut):
+    core = Core(dut)
+    await core.start()
+    frame = core.frame(random_scene(base() + 500, primitives=6))
+    words = core.words(frame)
+    await core.write("IRQ_ENABLE", STOPPED)
+    await core.send(words[:-2] + [0x7F000000] + words[-2:])
+    await wait_irq(core, 60000)
+    assert await core.read("IRQ_PENDING") & (ERROR_IRQ | STOPPED) == ERROR_IRQ | STOPPED
+    status = await core.wait(WRITTEN, "what was sent before")
+    assert status & RUNNING == 0 and status >> 8 & 15 == ERROR["UNKNOWN_OPCODE"]
+    assert await core.read("WORDS") == len(words) - 1 == await core.read("RING_HEAD")
+    core.check(frame)
+    await core.restart()
+    await core.draw(frame, where=BACK)
+    core.check(frame, where=BACK)
+
+
+@cocotb.test()
+async def interrupts_are_pending_until_they_are_cleared(dut):
+    core = Core(dut)
+    await core.start()
+    await core.write("IRQ_PENDING", 31)
+    await core.write("IRQ_ENABLE", FENCE)
+    await core.send([COMMAND["FENCE"] << 24, 77])
+    await wait_irq(core)
+    assert await core.read("FENCE") == 77
+    pending = await core.read("IRQ_PENDING")
+    assert pending & FENCE and not pending & (VBLANK | ERROR_IRQ | STOPPED)
+    await core.write("IRQ_PENDING", STOPPED)
+    assert dut.irq.value == 1, "another bit clears it"
+    await core.write("IRQ_PENDING", FENCE)
+    assert dut.irq.value == 0
+    await core.write("IRQ_ENABLE", EMPTY)
+    await wait_irq(core, 2)
+    await core.write("IRQ_PENDING", EMPTY)
+    assert dut.irq.value == 0
+    await core.send([COMMAND["NOP"] << 24])
+    await wait_irq(core)
+    await core.write("IRQ_ENABLE", STOPPED)
+    await core.send([COMMAND["STOP"] << 24, COMMAND["FENCE"] << 24, 78])
+    await wait_irq(core)
+    assert await core.read("STATUS") & RUNNING == 0 and await core.read("FENCE") == 77
+    await core.write("CONTROL", START)
+    await core.fence(78)
+    await core.write("IRQ_PENDING", STOPPED)
+    await core.write("CONTROL", STOP)
+    await wait_irq(core, 20)
+
+
+@cocotb.test()
+async def registers_are_read_and_written_while_the_core_draws(dut):
+    core = Core(dut, Behaviour(latency=(1, 40), ready=0.8, valid=0.8))
+    await core.start()
+    frame = core.frame(random_scene(base() + 600, primitives=16))
+    sending = cocotb.start_soon(core.send(core.words(frame)))
+    r = random.Random(base())
+    reads = 0
+    while not sending.done() or await core.read("FENCE") != core.tag:
+        await core.write("IRQ_ENABLE", r.getrandbits(5))
+        await core.write("COUNTER_INDEX", r.getrandbits(5) | r.getrandbits(1) << 8)
+        await core.write("SCAN_SIZE", r.getrandbits(32))
+        for register in r.sample(["STATUS", "WORDS", "RING_HEAD", "COUNTER_DATA", "FRAMES", "IRQ_PENDING", "LIMITS"], 3):
+            await core.read(register)
+        reads += 3
+        assert reads < 20000
+    core.check(frame)
+    # The counters: those of the whole frame, in a snapshot.
+    assert reads > 30
+    drawn = sum(p >> core.package.PRIMITIVE_PACKET_BITS - 3 in (TRIANGLE, POINT, LINE) for p in frame.packets)
+    assert await counter(core, 15) == drawn, "primitives in"
+    assert await counter(core, 16) == 0, "overflow"
+
+
+async def counter(core, index):
+    await core.write("COUNTER_INDEX", index | 1 << 8)
+    return await core.read("COUNTER_DATA")
+
+
+@cocotb.test()
+async def a_restart_waits_for_what_memory_owes(dut):
+    core = Core(dut, Behaviour(latency=(1, 20)))
+    await core.start()
+    frame = core.frame(random_scene(base() + 700, primitives=6))
+    sending = cocotb.start_soon(core.send(core.words(frame)))
+    await core.cycles(core.random.randint(100, 900))
+    core.behaviour.answers = False
+    while not core.memory.reads and not core.memory.written:
+        await core.cycles(1)
+    sending.cancel()
+    await core.cycles(5)
+    await core.write("CONTROL", RESTART)
+    await core.cycles(300)
+    status = await core.read("STATUS")
+    assert status & RESTARTING and not status & IDLE, f"the restart does not wait: STATUS {status:#x}"
+    core.behaviour.answers = True
+    await core.restart()
+    await core.draw(frame)
+    core.check(frame)
+
+
+@cocotb.test(skip=LONG == 1)
+async def a_restart_gives_up_when_memory_is_silent_and_goes_on_when_it_speaks(dut):
+    core = Core(dut, Behaviour(latency=(1, 20)))
+    await core.start()
+    frame = core.frame(random_scene(base() + 800, primitives=6))
+    sending = cocotb.start_soon(core.send(core.words(frame)))
+    core.behaviour.answers = False
+    while not core.memory.reads and not core.memory.written:
+        await core.cycles(1)
+    sending.cancel()
+    await core.write("CONTROL", RESTART)
+    while await core.read("STATUS") & RESTARTING:
+        await core.cycles(500)
+    assert await core.read("STATUS") & TIMED_OUT
+    core.behaviour.answers = True
+    await core.cycles(500)
+    await core.restart()
+    await core.draw(frame)
+    core.check(frame)
