@@ -157,6 +157,8 @@ def simulate(make, file, bench, config, arguments, folder, fault, tests):
             bad = case.find("failure") is not None or case.find("error") is not None
             if case.find("skipped") is None:
                 (failed if bad else passed).append(case.get("name"))
+    elif "Assertion failed" in (folder / "simulation.log").read_text():
+        failed.append("an assertion")  # which ends the simulation at once
     return passed, failed
 
 
