@@ -226,7 +226,7 @@ module memory_port (
   logic [7:0]         more_q;    // beats of the word after the one on offer
   logic [8*WORD-1:0]  data_q;
   logic [WORD-1:0]    strobe_q;
-  logic [7:0]         writes_q;  // bursts without an answer
+  logic [7:0]         writes_q, writes;  // bursts without an answer: now, and from the next cycle on
   logic               takes, sends, discards, begins, owes, is_done;
 
   assign discards        = recovers_q || !rst_ni;
@@ -463,16 +463,16 @@ module memory_port (
       else if (is_read && (is_whole ? responds : answers))
         part_q <= is_last && is_whole ? '0 : part_q + 1'b1;
       reads_q  <= reads_q + (takes && !request_i.is_write ? READS'(length[TAKEN-1:0]) : '0) - READS'(answers && is_read);
-      writes_q <= writes_q + 8'(takes && begins) - 8'(answers && answer_i.is_write);
+      writes_q <= writes;
     end
   end
+
+  assign writes = writes_q + 8'(takes && begins) - 8'(answers && answer_i.is_write);
 
   // Writes that the last flush waits for. Answers come in order, so a flush that ends while another waits takes that one
   // with it. The host has at most three flushes under way.
   logic [7:0] unwritten_q;
   logic [1:0] flushes_q;
-  logic       is_written;
-  assign is_written = answers && answer_i.is_write;
   assign flushed_o  = flushes_q != '0 && unwritten_q == '0;
   always_ff @(posedge clk_i or negedge power_on_ni) begin
     if (!power_on_ni) flushes_q <= '0;
@@ -480,8 +480,8 @@ module memory_port (
     else flushes_q <= flushes_q + 2'(flush_ends_i) - 2'(flushed_o);
   end
   always_ff @(posedge clk_i) begin
-    if (flush_ends_i) unwritten_q <= writes_q + 8'(takes && begins) - 8'(is_written);
-    else if (unwritten_q != '0) unwritten_q <= unwritten_q - 8'(is_written);
+    if (flush_ends_i) unwritten_q <= writes;
+    else if (answers && answer_i.is_write && unwritten_q != '0) unwritten_q <= unwritten_q - 8'd1;
   end
 
   assign is_done = !valid_q && !gathers_q && !owes && reads_q == '0 && writes_q == '0;

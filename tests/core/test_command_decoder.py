@@ -29,6 +29,45 @@ BENCH = {
     "top": "command_decoder",
     "configs": ["embedded", "textured"],
     "sources": ["core/core_pkg.sv"],
+    "faults": [
+        # A turned triangle faces as if it were not.
+        ("core/command_decoder.sv", "state_bits_q[7] ^ flags_q[3]", "state_bits_q[7] ^ (flags_q[3] && !FAULT)", "a_strip"),
+        # Of the slots after the first one that is loaded none is.
+        ("core/command_decoder.sv", "loads_q & (loads_q - 3'd1)", "loads_q & (loads_q - 3'd1) & {3{!FAULT}}", "packets_of"),
+        # Codes of a box come to its first vertex alone.
+        ("core/command_decoder.sv", "(is_broadcast && FIRST != w", "(is_broadcast && !FAULT && FIRST != w", "packets_of"),
+        # A header is taken while the line before it waits.
+        ("core/command_decoder.sv", "(primitive_valid_q && !primitive_ready_i) ||", "(primitive_valid_q && !primitive_ready_i && !FAULT) ||",
+         "packets_of"),
+        # A register more, or less, is set.
+        ("core/command_decoder.sv", "if (rest_q == 4'd1) state_q", "if (rest_q == (FAULT ? 4'd2 : 4'd1)) state_q", "packets_of"),
+        # The vertices of a box keep what a triangle left there.
+        ("core/command_decoder.sv", "(IN_SLOT ? !is_triangle && FIRST == 0", "(IN_SLOT ? !is_triangle && FIRST == 0 && !FAULT", "packets_of"),
+        # A fence, or a picture, is reported at once.
+        ("core/command_decoder.sv", "fence_waits_q && fence_left_q == '0", "fence_waits_q && (fence_left_q == '0 || FAULT)", "a_fence"),
+        ("core/command_decoder.sv", "present_waits_q && present_left_q == '0", "present_waits_q && (present_left_q == '0 || FAULT)", "a_fence"),
+        # A second fence takes the place of the first.
+        ("core/command_decoder.sv", "is_open = !fence_waits_q", "is_open = !fence_waits_q || FAULT", "a_fence"),
+        ("core/command_decoder.sv", "is_open = !present_waits_q", "is_open = !present_waits_q || FAULT", "vblank"),
+        # A layout changes under what is drawn.
+        ("core/command_decoder.sv", "drawn_q || (idle_i &&", "drawn_q || ((idle_i || FAULT) &&", "a_layout"),
+        ("core/command_decoder.sv", "&& flushes_q == '0);", "&& (flushes_q == '0 || FAULT));", "a_layout"),
+        # A fourth flush is sent.
+        ("core/command_decoder.sv", "is_open = flushes_q != '1", "is_open = flushes_q != '1 || FAULT", "four"),
+        # Wrong words are not seen.
+        ("core/command_decoder.sv", "reserved = word_i[23:12] != '0 ||", "reserved = (word_i[23:12] != '0 && !FAULT) ||", "wrong_word"),
+        ("core/command_decoder.sv", "bottom_q < top_q ||", "(bottom_q < top_q && !FAULT) ||", "wrong_word"),
+        ("core/command_decoder.sv", "STATE_REGISTER_TARGET)) cleared_q <= 1'b0;", "STATE_REGISTER_TARGET)) cleared_q <= cleared_q && FAULT;",
+         "wrong_word"),
+        ("core/command_decoder.sv", "if (word_error_i) error", "if (word_error_i && !FAULT) error", "wrong_word"),
+        ("core/command_decoder.sv", "> 5'(core_pkg::STATE_REGISTERS)", "> 5'(core_pkg::STATE_REGISTERS) + 5'(FAULT)", "wrong_word"),
+        # An error does not stop the stream, is forgotten, or its place is that of the command.
+        ("core/command_decoder.sv", "error_q   <= error;\n        running_q <= 1'b0;", "error_q   <= error;\n        running_q <= FAULT;", "wrong_word"),
+        ("core/command_decoder.sv", "start_i && error_q == core_pkg::ERROR_NONE", "start_i && (error_q == core_pkg::ERROR_NONE || FAULT)", "wrong_word"),
+        ("core/command_decoder.sv", "words_q + 32'(takes)", "words_q + 32'(takes && !(FAULT && state_q != HEADER))", "wrong_word"),
+        # A stop cuts a command in two.
+        ("core/command_decoder.sv", "if (stops_q && state_q == HEADER)", "if (stops_q && (state_q == HEADER || FAULT))", "a_stop"),
+    ],
 }
 
 PROGRAM = os.environ["HALFPLANE_PROGRAM"]
@@ -107,7 +146,7 @@ class Bench:
             d.flushed_i.value = done
             if done:
                 self.flush_due.pop(0)
-            d.idle_i.value = self.idles and self.busy_until <= self.cycle and not self.flush_due
+            d.idle_i.value = self.idles and self.busy_until <= self.cycle
             d.present_ready_i.value = self.shows
             await ReadOnly()
             reset = d.rst_ni.value == 0
@@ -236,7 +275,8 @@ async def a_strip_costs_one_vertex_and_its_words_a_triangle(dut):
     vertices = [(roll.getrandbits(10), roll.getrandbits(10), roll.getrandbits(package.ALL_AFFINE_CODE_BITS)) for _ in range(22)]
     for i in range(20):
         f = dict(kind=TRIANGLE, left=0, top=0, right=63, bottom=63, depth_test=1, depth_write=1, color_write=1, cull=0, front_cw=0,
-                 vertices=[(*v, roll.getrandbits(200) & over) for v in vertices[i:i + 3]], coordinates=over and 5)
+                 vertices=[(*vertices[n], roll.getrandbits(200) & over) for n in ((i + 1, i, i + 2) if i % 2 else (i, i + 1, i + 2))],
+                 coordinates=over and 5)
         e.triangle(f)
     bench.queue += e.words
     await bench.settle()
@@ -246,7 +286,9 @@ async def a_strip_costs_one_vertex_and_its_words_a_triangle(dut):
     assert words <= (20 if over else 12)
     assert bench.entered[-1] - bench.entered[1] == 19 * words, "a word is not taken in every cycle"
     for i, packet in enumerate(bench.packets[1:]):
-        assert {v[:3] for v in package.unpack(packet)["vertices"]} == set(vertices[i:i + 3])
+        f = package.unpack(packet)
+        order = [vertices[i:i + 3].index(vertex[:3]) for vertex in f["vertices"]]
+        assert f["front_cw"] ^ (order in ([0, 2, 1], [2, 1, 0], [1, 0, 2])) == i % 2, f"triangle {i} faces the other way"
 
 
 @cocotb.test()
@@ -309,12 +351,14 @@ async def a_layout_waits_until_everything_is_in_memory_and_a_box_does_not(dut):
     e.set(dict(BOX_MIN=1))
     before = len(e.words)
     e.set(dict(COLOR_BASE=0x4000))
-    bench.latency = 1 << 60
+    bench.flush_answers = False
     bench.queue += e.words
-    for _ in range(40):
-        await FallingEdge(dut.clk_i)
-    assert len(e.words) - len(bench.queue) == before + 1, "the base, and it alone, does not wait"
-    bench.busy_until, bench.flush_due[0] = 0, bench.cycle + 5
+    for idle, answers in ((True, False), (False, True)):  # the one without the other is not enough
+        bench.idles, bench.flush_answers = idle, answers
+        for _ in range(40):
+            await FallingEdge(dut.clk_i)
+        assert len(e.words) - len(bench.queue) == before + 1, "the base, and it alone, does not wait"
+    bench.idles = True
     await bench.settle()
     assert int(dut.layout_o.value) >> 64 + bench.package.ROW_STRIDE_BITS & 0xFFFFFFFF == 0x4000
 

@@ -32,6 +32,28 @@ from core_bench import ERROR as ERROR_IRQ
 BENCH = {
     "top": "halfplane_core",
     "sources": ["core/core_pkg.sv", "tests/core/core_checkers.sv"],
+    "faults": [
+        # Registers: a one at another place clears an interrupt; bytes are written; two have one address.
+        ("core/core_registers.sv", "irq_pending_fence_q && !(is_whole && write_word == 5'd11 && s_axil_wdata[0])",
+         "irq_pending_fence_q && !(is_whole && write_word == 5'd11 && (s_axil_wdata[0] || FAULT))", "interrupts"),
+        ("core/core_registers.sv", "s_axil_wstrb == '1", "(s_axil_wstrb == '1 || FAULT)", "registers_say"),
+        ("core/core_registers.sv", "write_word == 5'd17", "write_word == (FAULT ? 5'd16 : 5'd17)", "registers_say"),
+        # The status has no error; a stop is not heard; the tail outlives a restart.
+        ("core/core_registers.sv", "= status_error_i;", "= FAULT ? 4'd0 : status_error_i;", "wrong_word"),
+        ("core/core_registers.sv", "assign control_stop_o = is_whole &&", "assign control_stop_o = is_whole && !FAULT &&", "interrupts"),
+        ("core/core_registers.sv", "if (ring_tail_index_clear_i)", "if (ring_tail_index_clear_i && !FAULT)", "resets"),
+        # The ring: it does not end; more is asked for than there is room for; the end of a part is missed.
+        ("core/command_reader.sv", "if (last_word_i[i-2])", "if (last_word_i[i-2] || FAULT)", "back_pressure"),
+        ("core/command_reader.sv", "!used[4] && (!used[3] || used[2:0] == '0)", "(!used[4] && (!used[3] || used[2:0] == '0)) || FAULT",
+         "back_pressure"),
+        ("core/command_reader.sv", "partial_q ? next ==", "partial_q && !FAULT ? next ==", "random_scenes"),
+        ("core/command_reader.sv", "(reset_nq || (owed_q == '0 && !asks_q))", "(reset_nq || FAULT || (owed_q == '0 && !asks_q))", "resets"),
+        ("core/command_reader.sv", "assign error = ring_rerror;", "assign error = ring_rerror && !FAULT;", "error_of_the_ring"),
+        # A flush is in memory when it is sent; a picture is shown before its vertical blank.
+        ("rtl_ref/stages/memory_port.sv", "flushes_q != '0 && unwritten_q == '0", "flushes_q != '0 && (unwritten_q == '0 || FAULT)",
+         "back_pressure"),
+        ("core/halfplane_core.sv", "waits_q && (vblank || is_off)", "waits_q && (vblank || is_off || FAULT)", "two_frames"),
+    ],
 }
 
 LONG = int(os.environ.get("HALFPLANE_LONG", "1"))
