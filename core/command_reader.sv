@@ -1,14 +1,14 @@
 // Command reader: fetches words of the command stream from a ring in memory.
 //
 // The ring has a power of two of words, 256 at least, at base, which is a multiple of its size in bytes; last_word_i is its
-// words less one. The processor writes words and then tail_i; head_o counts the words that were taken. Both count modulo 2^20
+// words less one. The processor writes words and then tail_i; head_i counts the words that were taken. Both count modulo 2^20
 // from reset, so full and empty differ.
 //
 // An entry is a beat, or the beats that a word takes. Bursts are of up to 8 entries, at most two are under way, and they
 // end where a block of 8 entries does. Whole entries are fetched ahead; one that the tail is in is fetched alone, when all
 // before it have been taken, and again when more of it is there. A burst is asked for only with room for all of it.
 //
-// clear_i forgets the stream at any time; answers still to come are dropped, and only then the head is 0 and new requests go.
+// clear_i forgets the stream at any time; answers still to come are dropped, and only then new requests go; head_i is 0 then.
 module command_reader #(
     parameter int PORT = raster_pkg::MEMORY_PORT_BITS  // data of a beat
 ) (
@@ -20,7 +20,7 @@ module command_reader #(
     input  logic [31:10] base_i,
     input  logic [18:8]  last_word_i,
     input  logic [19:0]  tail_i,
-    output logic [19:0]  head_o,
+    input  logic [19:0]  head_i,  // words taken
     output logic         is_empty_o,
 
     // Words
@@ -52,7 +52,7 @@ module command_reader #(
   logic        asks_q, partial_q; // the entry of the tail is under way or in the queue: nothing else is
   logic [3:0]  length_q;          // entries of the burst on offer
   logic [4:0]  owed_q;            // entries without an answer
-  logic [19:0] head_q, fetch_q;   // words
+  logic [19:0] fetch_q;           // words
   logic        asks, answers, ends_entry, takes, pops;
   logic [3:0]  fetched;           // whole entries of the burst on offer
 
@@ -63,7 +63,7 @@ module command_reader #(
   logic           none_whole, is_partial, is_alone, can_ask, has_room;
   assign whole      = tail_i[19:WORD] - fetch_q[19:WORD];
   assign none_whole = whole == '0;
-  assign used       = fetch_q[WORD+:5] - head_q[WORD+:5];
+  assign used       = fetch_q[WORD+:5] - head_i[WORD+:5];
   assign has_room   = !used[4] && (!used[3] || used[2:0] == '0);  // for 8
   assign to_end     = 4'd8 - {1'b0, fetch_q[WORD+:3]};
   assign length     = none_whole ? 4'd1 : whole[19:WORD+3] == '0 && {1'b0, whole[WORD+:3]} < to_end ? {1'b0, whole[WORD+:3]} : to_end;
@@ -124,11 +124,11 @@ module command_reader #(
   generate
     if (WORDS > 1) begin : gen_words
       logic [WORD-1:0] next;  // of the word on offer
-      assign next       = head_q[WORD-1:0] + 1'b1;
-      assign word_o     = offered[32*head_q[WORD-1:0]+:32];
+      assign next       = head_i[WORD-1:0] + 1'b1;
+      assign word_o     = offered[32*head_i[WORD-1:0]+:32];
       assign pops       = takes && (partial_q ? next == fetch_q[WORD-1:0] : next == '0);
       assign is_partial = none_whole && tail_i[WORD-1:0] != fetch_q[WORD-1:0];
-      assign is_alone   = used == '0 && head_q[WORD-1:0] == fetch_q[WORD-1:0];
+      assign is_alone   = used == '0 && head_i[WORD-1:0] == fetch_q[WORD-1:0];
       logic [WORD-1:0] part_words_q;  // of the burst on offer that the tail is in: up to here; else 0
       always_ff @(posedge clk_i) if (can_ask) part_words_q <= is_partial ? tail_i[WORD-1:0] : '0;
       always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -158,25 +158,19 @@ module command_reader #(
       asks_q           <= 1'b0;
       owed_q           <= '0;
       part_q           <= '0;
-      head_q           <= '0;
       fetch_q[19:WORD] <= '0;
     end else begin
       reset_nq <= !clear_i && (reset_nq || (owed_q == '0 && !asks_q));
       asks_q   <= can_ask || (asks_q && !ring_arready);
       owed_q   <= owed_q + (asks ? 5'(length_q) : 5'd0) - 5'(ends_entry);
       if (BEATS > 1 && answers) part_q <= ends_entry ? '0 : part_q + 1'b1;
-      if (takes) head_q <= head_q + 1'b1;
       if (asks) fetch_q[19:WORD] <= fetch_q[19:WORD] + (20 - WORD)'(fetched);
-      if (!reset_nq && !asks_q) begin
-        head_q           <= '0;
-        fetch_q[19:WORD] <= '0;
-      end
+      if (!reset_nq && !asks_q) fetch_q[19:WORD] <= '0;
     end
   end
   always_ff @(posedge clk_i) if (can_ask) length_q <= length;
 
-  assign head_o     = head_q;
-  assign is_empty_o = head_q == tail_i;
+  assign is_empty_o = head_i == tail_i;
   assign idle_o     = owed_q == '0 && !asks_q;
 
 endmodule

@@ -84,7 +84,6 @@ module core_registers (
     input  logic [31:0] words_count_i,
     output logic [21:0] ring_base_base_o,
     output logic [10:0] ring_size_last_word_o,
-    input  logic [19:0] ring_head_index_i,
     input  logic        ring_tail_index_clear_i,
     output logic [19:0] ring_tail_index_o,
     output logic [4:0]  counter_index_index_o,
@@ -283,15 +282,6 @@ module core_registers (
       5'd14: begin  // WORDS
         read_data[0+:32] = words_count_i;
       end
-      5'd16: begin  // RING_BASE
-        read_data[10+:22] = ring_base_base_q;
-      end
-      5'd17: begin  // RING_SIZE
-        read_data[8+:11] = ring_size_last_word_q;
-      end
-      5'd18: begin  // RING_HEAD
-        read_data[0+:20] = ring_head_index_i;
-      end
       5'd19: begin  // RING_TAIL
         read_data[0+:20] = ring_tail_index_q;
       end
@@ -304,16 +294,6 @@ module core_registers (
       end
       5'd24: begin  // SCAN_CONTROL
         read_data[0] = scan_control_enable_q;
-      end
-      5'd25: begin  // SCAN_SIZE
-        read_data[0+:16] = scan_size_last_x_q;
-        read_data[16+:16] = scan_size_last_y_q;
-      end
-      5'd26: begin  // SCAN_STRIDE
-        read_data[0+:20] = scan_stride_stride_q;
-      end
-      5'd27: begin  // SCAN_CLEAR
-        read_data[0+:32] = scan_clear_color_q;
       end
       default: ;
     endcase

@@ -141,7 +141,7 @@ module halfplane_core #(
   logic [15:0] flushed_q, vblanks_q, last_x, last_y;
   logic [21:0] ring_base;
   logic [10:0] ring_last;
-  logic [19:0] ring_head, ring_tail, scan_stride;
+  logic [19:0] ring_tail, scan_stride;
   logic        flushed, had_error_q, was_running_q, was_empty_q;
   assign has_error = error != core_pkg::ERROR_NONE || read_error || write_error || texture_error;
 
@@ -225,7 +225,6 @@ module halfplane_core #(
       .words_count_i               (words),
       .ring_base_base_o            (ring_base),
       .ring_size_last_word_o       (ring_last),
-      .ring_head_index_i           (ring_head),
       .ring_tail_index_clear_i     (is_restarting),
       .ring_tail_index_o           (ring_tail),
       .counter_index_index_o       (counter_index),
@@ -275,7 +274,7 @@ module halfplane_core #(
           .base_i      (ring_base),
           .last_word_i (ring_last),
           .tail_i      (ring_tail),
-          .head_o      (ring_head),
+          .head_i      (words[19:0]),
           .is_empty_o  (ring_is_empty),
           .word_valid_o(word_valid),
           .word_ready_i(word_ready),
@@ -297,7 +296,6 @@ module halfplane_core #(
       assign word             = s_axis_tdata;
       assign word_error       = 1'b0;
       assign s_axis_tready    = word_ready && core_n;
-      assign ring_head        = '0;
       assign ring_is_empty    = 1'b1;
       assign reader_idle      = 1'b1;
       assign s_arvalid[3]     = 1'b0;

@@ -163,7 +163,8 @@ def table(registers):
         about = ' '.join((register.get_property('desc') or '').split())
         for n, field in enumerate(fields):
             bits = f'{field.low}' if field.bits == 1 else f'{field.low + field.bits - 1}:{field.low}'
-            access = 'write' if field.is_pulse else 'clear by 1' if field.is_event else 'read, write' if field.is_stored else 'read'
+            access = ('write' if not field.is_read else 'clear by 1' if field.is_event else 'read, write' if field.is_stored else
+                      'read')
             reset = '' if field.reset is None or field.is_pulse else f'{field.reset:#x}' if field.reset > 9 else field.reset
             first = f'0x{register.address_offset:02x} | `{register.inst_name}`' if n == 0 else ' | '
             what = ' '.join(field.node.get_property('desc').split()) + (f'. {about}' if n == 0 and about else '')

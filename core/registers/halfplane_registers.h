@@ -229,11 +229,6 @@ extern "C" {
 #define HALFPLANE__RING_SIZE__LAST_WORD_bw 11
 #define HALFPLANE__RING_SIZE__LAST_WORD_reset 0x0
 
-// reg - halfplane::RING_HEAD
-#define HALFPLANE__RING_HEAD__INDEX_bm 0xfffff
-#define HALFPLANE__RING_HEAD__INDEX_bp 0
-#define HALFPLANE__RING_HEAD__INDEX_bw 20
-
 // reg - halfplane::RING_TAIL
 #define HALFPLANE__RING_TAIL__INDEX_bm 0xfffff
 #define HALFPLANE__RING_TAIL__INDEX_bp 0
@@ -307,7 +302,7 @@ typedef struct __attribute__ ((__packed__)) {
     uint8_t RESERVED_3c_3f[0x4];
     uint32_t RING_BASE;
     uint32_t RING_SIZE;
-    uint32_t RING_HEAD;
+    uint8_t RESERVED_48_4b[0x4];
     uint32_t RING_TAIL;
     uint32_t COUNTER_INDEX;
     uint32_t COUNTER_DATA;

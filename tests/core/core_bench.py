@@ -202,7 +202,7 @@ class Core:
                 return status
             await self.cycles(20)
         raise AssertionError(f"{what}: STATUS stays {status:#x}, error {status >> 8 & 15}, {await self.read('WORDS')} words, "
-                             f"head {await self.read('RING_HEAD')} of {self.tail}")
+                             f"tail {self.tail}")
 
     def layout(self, where, width):
         """Buffers of a frame from an address on; 64 KB of them."""
@@ -230,7 +230,7 @@ class Core:
         """Into the ring, as the driver does: waits for room, writes, moves the tail by parts of any size."""
         words = list(words)
         while words:
-            head = await self.read("RING_HEAD")
+            head = await self.read("WORDS")
             room = self.ring_words - (self.tail - head) % (1 << 20)
             part = min(len(words), room, self.random.randint(1, 300))
             for i in range(part):
