@@ -7,6 +7,7 @@
     core.check(frame)              # every pixel of colour and depth
 """
 
+import json
 import os
 import pathlib
 import random
@@ -106,23 +107,25 @@ def read_npy(file):
 
 
 class Frame:
-    """A scene: its packets, its picture as the model draws it."""
+    """A scene: its packets, its picture and cycles as the model has them. `scene`: words of the program instead of a capture."""
 
-    def __init__(self, config, settings, text):
+    def __init__(self, config, settings, text, scene=None):
         with tempfile.TemporaryDirectory() as folder:
-            scene = pathlib.Path(folder) / "scene.hpt"
-            scene.write_text(text)
+            if scene is None:
+                scene = [pathlib.Path(folder) / "scene.hpt"]
+                scene[0].write_text(text)
             options = ["--config", config, "--quiet", *(word for key, value in settings.items() for word in ("--set", f"{key}={value}"))]
             run = lambda *words: subprocess.run([PROGRAM, *map(str, words), *options], check=True)
             found = []
             for stage, name in (("cull", "primitive"), ("line_raster", "line")):
-                run("vectors", scene, "--stage", stage, "--format", "hex", "-o", pathlib.Path(folder) / name)
+                run("vectors", *scene, "--stage", stage, "--format", "hex", "-o", pathlib.Path(folder) / name)
                 found.append(read_hex(pathlib.Path(folder) / name / f"{name}.hex"))
-            run("render", scene, "-o", f"{folder}/color.png", "--depth", f"{folder}/depth.npy")
+            run("render", *scene, "--engine", "cycle", "-o", f"{folder}/color.png", "--depth", f"{folder}/depth.npy", f"--json={folder}/r.json")
+            result = json.loads(pathlib.Path(f"{folder}/r.json").read_text())
             rgb, self.depth = read_png(f"{folder}/color.png"), read_npy(f"{folder}/depth.npy")
         self.packets, self.lines = found
         self.color = [rgb[i] >> 3 << 11 | rgb[i + 1] >> 2 << 5 | rgb[i + 2] >> 3 for i in range(0, len(rgb), 3)]  # rgb565
-        self.width, self.height = map(int, re.search(r"target (\d+) (\d+)", text).groups())
+        self.cycles, self.width, self.height = result["cycles"], result["width"], result["height"]
 
     def cleared_depth(self, package):
         """The depth of the last fast clear of it."""
@@ -204,24 +207,25 @@ class Core:
         raise AssertionError(f"{what}: STATUS stays {status:#x}, error {status >> 8 & 15}, {await self.read('WORDS')} words, "
                              f"tail {self.tail}")
 
-    def layout(self, where, width):
-        """Buffers of a frame from an address on; 64 KB of them."""
+    def layout(self, where, width, height=64):
+        """Buffers of a frame from an address on: of 64x64 pixels 64 KB."""
         p = self.package
         stride = (width + p.TILE_SIZE - 1) // p.TILE_SIZE << p.PLANE_SHIFT + 1
-        return dict(depth=where, color=where + (1 << p.PLANE_SHIFT), depth_flags=where + 0xC000, color_flags=where + 0xE000, stride=stride)
+        flags = where + max(0xC000, stride * ((height + p.TILE_SIZE - 1) // p.TILE_SIZE))
+        return dict(depth=where, color=where + (1 << p.PLANE_SHIFT), depth_flags=flags, color_flags=flags + 0x2000, stride=stride)
 
-    def frame(self, text, **settings):
-        return Frame(self.config, settings, text)
+    def frame(self, text, scene=None, **settings):
+        return Frame(self.config, settings, text, scene)
 
     def words(self, frame, where=0, present=False):
         """The words of a frame, ended by a fence."""
         e = self.encoder
         e.words = []
-        e.layout(**self.layout(where, frame.width))
+        e.layout(**self.layout(where, frame.width, frame.height))
         encode(e, frame.packets, frame.lines)
         self.tag += 1
         if present:
-            layout = self.layout(where, frame.width)
+            layout = self.layout(where, frame.width, frame.height)
             e.command("PRESENT", 0, [layout["color"], layout["color_flags"]])
         e.command("FENCE", 0, [self.tag])
         return e.words
@@ -260,7 +264,7 @@ class Core:
 
     def check(self, frame, where=0):
         """Every pixel of both buffers."""
-        at, p = self.layout(where, frame.width), self.package
+        at, p = self.layout(where, frame.width, frame.height), self.package
         for what, model in (("color", frame.color), ("depth", frame.depth)):
             is_depth = what == "depth"
             got = picture(p, self.memory.bytes, at[what], at["stride"], frame.width, frame.height, is_depth and at["depth_flags"] or None,

@@ -24,7 +24,7 @@ def main():
         for file in sorted((ROOT / "core").glob("*.sv")):
             for design in DESIGNS if file.stem in WHOLE else ["embedded"]:
                 command = [tool, "--lint-only", "-Wall", "--timing", *(f"-I{f}" for f in ("core", "rtl_ref", "rtl_ref/lib", "rtl_ref/stages")),
-                           "rtl_ref/lint.vlt", packages / design / "raster_pkg.sv", *sorted((ROOT / "core").glob("*_pkg.sv"))]
+                           "rtl_ref/lint.vlt", "core/lint.vlt", packages / design / "raster_pkg.sv", *sorted((ROOT / "core").glob("*_pkg.sv"))]
                 command += [] if file.stem.endswith("_pkg") else ["--top-module", file.stem, file]
                 done = subprocess.run(list(map(str, command)), cwd=ROOT, env=os.environ | environment, capture_output=True, text=True)
                 runs += 1

@@ -16,6 +16,7 @@ from core_bench import (
     IDLE,
     RESTART,
     RESTARTING,
+    RING,
     RING_EMPTY,
     RUNNING,
     START,
@@ -376,3 +377,24 @@ async def a_restart_gives_up_when_memory_is_silent_and_goes_on_when_it_speaks(du
     await core.restart()
     await core.draw(frame)
     core.check(frame)
+
+
+@cocotb.test()
+async def feeding_and_bus_cost_few_cycles_of_a_frame(dut):
+    core = Core(dut, Behaviour(latency=(8, 8)))
+    await core.start()
+    frame = core.frame(None, scene=["teapot:4", "--size", "96x96"] if LONG == 1 else ["teapot", "--size", "320x240"])
+    words = core.words(frame)
+    for i, word in enumerate(words):  # all at once: the processor does not limit
+        core.memory.bytes[RING + 4 * i:RING + 4 * i + 4] = word.to_bytes(4, "little")
+    await core.write("RING_SIZE", (1 << 18) - 1)
+    await core.write("IRQ_ENABLE", FENCE)
+    start = core.memory.cycle
+    await core.write("RING_TAIL", len(words))
+    await wait_irq(core, 400000)
+    cycles = core.memory.cycle - start
+    triangles = sum(p >> core.package.PRIMITIVE_PACKET_BITS - 3 == TRIANGLE for p in frame.packets)
+    dut._log.info("%d triangles, %d words, %.2f words a triangle; %d cycles to the fence, the model alone %d: %+.1f %%", triangles, len(words),
+                  len(words) / triangles, cycles, frame.cycles, 100 * (cycles / frame.cycles - 1))
+    core.check(frame)
+    assert cycles < 1.05 * frame.cycles + 100
