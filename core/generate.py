@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes what core/stream.toml says of the command stream: SystemVerilog constants, a C header, the tables of docs/core.md.
+"""Writes what core/stream.toml says of the command stream: SystemVerilog constants, a C header, tables and picture of docs/core.md.
 
 usage: core/generate.py [--check]   --check: compares instead, and names the files that differ
 """
@@ -70,6 +70,29 @@ def tables(stream):
     return {'commands': commands, 'state registers': registers, 'errors': errors}
 
 
+def picture(stream):
+    """A row of 32 bits for each header, and each state register with fields, as WaveDrom draws them: bit 31 to the left."""
+    bit, left, y = 26, 150, 18
+    rows = [(c['name'], [('opcode ' + f'0x{c["opcode"]:02x}', 24, 8), *c.get('fields', [])]) for c in stream['command']]
+    rows += [(r['name'], r['fields']) for r in stream['state_register'] if 'fields' in r]
+    out = []
+    for name, fields in rows:
+        turned = [6.5 * len(field) > bits * bit for field, _, bits in fields]  # names that are wider than their bits
+        height = max([18, *(10 + 6.5 * len(field) for (field, _, _), turns in zip(fields, turned) if turns)])
+        out.append(f'<text x="{left - 10}" y="{y + 13}" text-anchor="end">{name}</text>')
+        out.append(f'<rect x="{left}" y="{y}" width="{32 * bit}" height="{height:g}" fill="#ddd" stroke="black"/>')
+        for (field, low, bits), turns in zip(fields, turned):
+            x, middle = left + (32 - low - bits) * bit, left + (32 - low - bits / 2) * bit
+            turn = f' transform="rotate(-90 {middle:g} {y + height / 2:g})"' if turns else ''
+            out.append(f'<rect x="{x}" y="{y}" width="{bits * bit}" height="{height:g}" fill="white" stroke="black"/>')
+            out.append(f'<text x="{middle:g}" y="{y + height / 2 + 4:g}"{turn}>{field}</text>')
+            out += [f'<text x="{left + (31.5 - edge) * bit:g}" y="{y - 3:g}" font-size="9">{edge}</text>' for edge in sorted({low, low + bits - 1})]
+        y += height + 20
+    head = (f'<svg xmlns="http://www.w3.org/2000/svg" width="{left + 32 * bit + 10}" height="{y:g}" font-family="sans-serif" '
+            'font-size="11" text-anchor="middle">\n<rect width="100%" height="100%" fill="white"/>')
+    return '\n'.join([head, *out, '</svg>', ''])
+
+
 def page(stream, text):
     for name, lines in tables(stream).items():
         begin, end = f'<!-- {name}: core/generate.py -->\n', f'<!-- end of {name} -->'
@@ -82,8 +105,8 @@ def main():
     stream = tomllib.loads((HERE / 'stream.toml').read_text())
     docs = ROOT / 'docs/core.md'
     files = {HERE / 'core_pkg.sv': package(stream), HERE / 'registers/halfplane_stream.h': header(stream)}
-    if docs.exists():
-        files[docs] = page(stream, docs.read_text())
+    files[docs] = page(stream, docs.read_text())
+    files[ROOT / 'docs/images/core-words.svg'] = picture(stream)
     if sys.argv[1:] == ['--check']:
         different = [str(path.relative_to(ROOT)) for path, text in files.items() if not path.exists() or path.read_text() != text]
         for path in different:

@@ -87,7 +87,8 @@ module pin_wrapper (
       .texel_i          (in_q[TEXEL+:raster_pkg::TEXEL_BEAT_BITS]),
       .counters_hold_i  (in_q[4]),
       .counters_o       (out[OUT-1-:raster_pkg::COUNTER_PACKET_BITS]),
-      .idle_o           (out[6])
+      .idle_o           (out[6]),
+      .flushed_o        ()
   );
 
 endmodule
