@@ -109,7 +109,7 @@ def read_npy(file):
 class Frame:
     """A scene: its packets, its picture and cycles as the model has them. `scene`: words of the program instead of a capture."""
 
-    def __init__(self, config, settings, text, scene=None):
+    def __init__(self, config, settings, text, scene=None, lines=True):
         with tempfile.TemporaryDirectory() as folder:
             if scene is None:
                 scene = [pathlib.Path(folder) / "scene.hpt"]
@@ -117,13 +117,13 @@ class Frame:
             options = ["--config", config, "--quiet", *(word for key, value in settings.items() for word in ("--set", f"{key}={value}"))]
             run = lambda *words: subprocess.run([PROGRAM, *map(str, words), *options], check=True)
             found = []
-            for stage, name in (("cull", "primitive"), ("line_raster", "line")):
+            for stage, name in (("cull", "primitive"), ("line_raster", "line"))[:1 + lines]:
                 run("vectors", *scene, "--stage", stage, "--format", "hex", "-o", pathlib.Path(folder) / name)
                 found.append(read_hex(pathlib.Path(folder) / name / f"{name}.hex"))
             run("render", *scene, "--engine", "cycle", "-o", f"{folder}/color.png", "--depth", f"{folder}/depth.npy", f"--json={folder}/r.json")
             result = json.loads(pathlib.Path(f"{folder}/r.json").read_text())
             rgb, self.depth = read_png(f"{folder}/color.png"), read_npy(f"{folder}/depth.npy")
-        self.packets, self.lines = found
+        self.packets, self.lines = found[0], found[1] if lines else []
         self.color = [rgb[i] >> 3 << 11 | rgb[i + 1] >> 2 << 5 | rgb[i + 2] >> 3 for i in range(0, len(rgb), 3)]  # rgb565
         self.cycles, self.width, self.height = result["cycles"], result["width"], result["height"]
 
@@ -214,8 +214,11 @@ class Core:
         flags = where + max(0xC000, stride * ((height + p.TILE_SIZE - 1) // p.TILE_SIZE))
         return dict(depth=where, color=where + (1 << p.PLANE_SHIFT), depth_flags=flags, color_flags=flags + 0x2000, stride=stride)
 
+    def scene(self, seed, *size, **options):
+        return random_scene(seed, *size, lines=self.package.LINES_UNIT != 0, **options)
+
     def frame(self, text, scene=None, **settings):
-        return Frame(self.config, settings, text, scene)
+        return Frame(self.config, settings, text, scene, self.package.LINES_UNIT)
 
     def words(self, frame, where=0, present=False):
         """The words of a frame, ended by a fence."""
