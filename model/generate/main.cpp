@@ -9,6 +9,7 @@
 #include <string>
 
 #include "../config.hpp"
+#include "c_header.hpp"
 #include "dpi_package.hpp"
 #include "raster_pkg.hpp"
 #include "raster_taps.hpp"
@@ -16,11 +17,12 @@
 namespace halfplane {
 namespace {
 
-constexpr const char* kUsage = "give package LABEL FILE, dpi LABEL FILE, or taps FILE";
+constexpr const char* kUsage = "give package LABEL FILE, c LABEL FILE, dpi LABEL FILE, or taps FILE";
 
 std::string generated(std::span<const char* const> words) {
   const std::string what = words.empty() ? "" : words[0];
   if (what == "package" && words.size() == 3) return raster_pkg(labelled(words[1]));
+  if (what == "c" && words.size() == 3) return c_header(labelled(words[1]));
   if (what == "dpi" && words.size() == 3) return vectors::dpi_package(labelled(words[1]));
   if (what == "taps" && words.size() == 2) return raster_taps();
   throw InputError(kUsage);

@@ -13,6 +13,7 @@
 #include "../stages/surface.hpp"
 #include "../stages/texture_levels.hpp"
 #include "../stages/texture_packets.hpp"
+#include "constants.hpp"
 #include "raster_taps.hpp"
 
 namespace halfplane {
@@ -30,31 +31,9 @@ struct WireEnum<StencilOp> {
 
 namespace {
 
-std::string constant_name(std::string_view name) {
-  std::string upper;
-  for (const char c : name)
-    upper += c == ' ' || c == '.' ? '_' : static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-  return upper;
-}
-
 void print_constant(std::ostream& out, const std::string& name, long long value, const std::string& why) {
   out << "  localparam int " << name << " = " << value << ";  // " << why << "\n";
 }
-
-/// The word for a member of AttributeWidths in the names of its tables: CODE_BITS_OF, CODE_AT, ALL_CODE_BITS.
-struct PlaneTable {
-  const char* word;
-  Width AttributeWidths::*width;
-  const char* what;
-};
-constexpr PlaneTable kPlaneTables[] = {{"CODE", &AttributeWidths::code, "codes"},
-                                       {"RECIPROCAL", &AttributeWidths::reciprocal, "reciprocals of the area"},
-                                       {"PLANE", &AttributeWidths::plane, "values and gradients"},
-                                       {"LOCAL", &AttributeWidths::local, "values and gradients inside a tile"},
-                                       {"STEP", &AttributeWidths::step, "gradients per pixel inside a tile"},
-                                       {"FRAGMENT", &AttributeWidths::fragment, "values of a sample"},
-                                       {"AFFINE_CODE", &AttributeWidths::affine_code, "codes that are clamped"},
-                                       {"LINE", &AttributeWidths::line, "values along a line"}};
 
 std::string all_bits(Width AttributeWidths::*width) {
   const auto* table = std::ranges::find(kPlaneTables, width, &PlaneTable::width);
@@ -292,15 +271,11 @@ void print_blocks(std::ostream& out, const Config& config) {
          "  endfunction\n";
 }
 
-/// A named value is printed as its number.
 void print_setting(std::ostream& out, const Setting& setting, const std::string& value) {
-  long long number = setting.is_number() ? std::stoll(value) : 0;
   std::string names;
-  for (std::size_t i = 0; i < setting.names.size(); ++i) {
-    if (setting.names[i] == value) number = static_cast<long long>(i);
+  for (std::size_t i = 0; i < setting.names.size(); ++i)
     names += (i == 0 ? "" : ", ") + std::to_string(i) + " " + std::string(setting.names[i]);
-  }
-  print_constant(out, constant_name(setting.key), number,
+  print_constant(out, constant_name(setting.key), number_of(setting, value),
                  names + (names.empty() ? "" : ": ") + std::string(setting.meaning));
 }
 
@@ -340,48 +315,8 @@ std::string raster_pkg(const Config& config) {
   char id[17];
   std::snprintf(id, sizeof id, "%016llx", static_cast<unsigned long long>(config_id(config)));
   out << "  localparam logic [63:0] CONFIG_ID = 64'h" << id << ";  // hash of the above\n\n  // Derived constants.\n";
-  print_constant(out, "GRID_BITS", widths.grid_bits, "s: fraction bits of a coordinate, at least 1");
-  print_constant(out, "GUARD_BITS", widths.guard_bits, "G: fraction bits of a gradient per pixel");
-  print_constant(out, "PLANE_FRACTION", widths.plane_fraction, "F = G + s");
-  print_constant(out, "TILE_SHIFT", widths.tile_shift, "log2 of the tile size");
-  print_constant(out, "LINE_GUARD_BITS", widths.line_guard_bits, "G': fraction bits of the planes along a line");
-  print_constant(out, "STAMPS_PER_ROW", widths.stamps.stamps_per_row, "stamps along the side of a tile");
-  print_constant(out, "PLANES", widths.planes, "that are interpolated: depth, the colours and what follows them");
-  print_constant(out, "COLOR_PLANES", widths.color_planes, "of the stored colour: plane 1 and the next ones");
-  print_constant(out, "AFFINE_PLANES", widths.affine_planes,
-                 "linear in the window: depth and colours, which come first");
-  print_constant(out, "COORDINATES", widths.coordinates, "of a texture, planes behind that of 1/w");
-  print_constant(out, "PERSPECTIVE_GUARD_BITS", kPerspectiveGuardBits, "l: fraction bits of those inside a tile");
-  print_constant(out, "COORDINATE_FRACTION", perspective_format(config).coordinate.fraction_bits,
-                 "f: of a texture coordinate, texels");
-  print_constant(out, "COLORS_OVER_W", widths.colors_over_w, "colour planes divided by w");
-  print_constant(out, "COLOR_NARROW_BITS", kColorNarrowBits, "mantissa bits of the reciprocal of w, for colours");
-  print_constant(out, "NORMALS", widths.normals, "planes of those, over w; instead of colours");
-  print_constant(out, "STATE_WORD_BITS", state_word_bits(widths), "of a token: the codes of all planes but those");
-  print_constant(out, "TEXTURE_STAMPS", texture_stamps(config),
-                 "stamps between depth test and stored colours, with a texture unit");
-  print_constant(out, "TEXTURE_PORT_BITS", 8 * widths.texture_port_bytes, "data of a beat of texels");
-  print_constant(out, "PIXELS", widths.pixels, "pixels of a stamp");
-  print_constant(out, "SAMPLES", widths.samples, "samples of a stamp, those of a pixel beside each other");
-  print_constant(out, "TILES_X", widths.tiles_x, "tiles along the top of the widest target");
-  print_constant(out, "TILES_Y", widths.tiles_y, "tiles along the side of the highest target");
-  print_constant(out, "HIZ_GROUP_BITS", widths.hiz_group_bits, "bounds of 2^this tiles of a row are cleared at once");
-  print_constant(out, "LINE_X_BITS", widths.line_x_bits, "low bits of a tile's or block's x in a cache line's number");
-  print_constant(out, "LINE_Y_BITS", widths.line_y_bits, "likewise of its y, above those");
-  print_constant(out, "BLOCK_SIDE", widths.blocks.side, "stamps along the side of a block");
-  print_constant(out, "BLOCKS_PER_ROW", widths.blocks.per_tile, "blocks along the side of a tile");
-  print_constant(out, "FLAG_WORD", widths.blocks.flag_word,
-                 "flags of cleared blocks in a word, those of a row of blocks");
-  const MemoryGrid& memory = widths.memory;
-  print_constant(out, "PORT_SHIFT", memory.port, "log2 of the bytes of a beat");
-  print_constant(out, "DEPTH_SAMPLE_BYTES", 1 << memory.sample[0], "of a stored depth");
-  print_constant(out, "COLOR_SAMPLE_BYTES", 1 << memory.sample[1], "of a stored colour");
-  print_constant(out, "MEMORY_COLORS", widths.memory_colors, "of a stamp in memory: of its samples, or of its pixels");
-  const int stamp_bytes = std::max(widths.samples << memory.sample[0], widths.memory_colors << memory.sample[1]);
-  print_constant(out, "REQUEST_BYTES", std::max(stamp_bytes, widths.blocks.flag_word / 8),
-                 "data of a request, as they lie in memory: a stamp of the larger plane, or a word of flags");
-  print_constant(out, "PLANE_SHIFT", memory.plane, "log2 of the bytes of a plane of a tile");
-  print_constant(out, "FLAG_ROW_SHIFT", memory.flag_row, "log2 of the bytes from one row of flags to the next");
+  for (const DerivedConstant& constant : derived_constants(config, widths))
+    print_constant(out, constant.name, constant.value, constant.why);
   out << stall_constants() << "\n  // Derived widths, each with its bound.\n";
   for (const Width* width : widths.all())
     print_constant(out, constant_name(width->name) + "_BITS", width->bits, std::string(width->bound));

@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "model/engines/cycle/stage_table.hpp"
+#include "model/generate/c_header.hpp"
 #include "model/generate/dpi_package.hpp"
 #include "model/generate/raster_pkg.hpp"
 #include "model/generate/raster_taps.hpp"
@@ -92,7 +93,8 @@ Json widths_json(const std::vector<const Width*>& widths) {
 }
 
 struct ConfigOptions : CommonOptions {
-  bool list = false, widths = false, stages = false, sv = false, taps = false, dpi = false, toml = false;
+  bool list = false, widths = false, stages = false, sv = false, taps = false, dpi = false, c_header = false,
+       toml = false;
   std::string path;
 };
 
@@ -101,7 +103,7 @@ int run(const ConfigOptions& options) {
   const Config config = effective_config(options);
   check_output(options.path, options.path.empty() ? "" : ".toml");
   check_distinct({options.config, options.json, options.path});
-  if (options.path == "-" && (options.toml || options.sv || options.taps))
+  if (options.path == "-" && (options.toml || options.sv || options.taps || options.dpi || options.c_header))
     throw InputError("-o - and another output both write to stdout; leave one of them out");
   std::ostream& out = human(options);
   if (!options.path.empty()) {
@@ -118,6 +120,10 @@ int run(const ConfigOptions& options) {
   }
   if (options.dpi) {
     std::cout << vectors::dpi_package(config);
+    return exit_ok;
+  }
+  if (options.c_header) {
+    std::cout << c_header(config);
     return exit_ok;
   }
   if (options.taps) {
@@ -180,11 +186,17 @@ void add_config_command(CLI::App& app, Action& selected) {
       ->excludes("--json")
       ->excludes("--sv")
       ->excludes("--taps");
-  command->add_flag("--toml", options->toml, "prints this configuration as --config reads it")
+  command->add_flag("--c-header", options->c_header, "prints this configuration as a C header, for driver/")
       ->excludes("--json")
       ->excludes("--sv")
       ->excludes("--taps")
       ->excludes("--dpi");
+  command->add_flag("--toml", options->toml, "prints this configuration as --config reads it")
+      ->excludes("--json")
+      ->excludes("--sv")
+      ->excludes("--taps")
+      ->excludes("--dpi")
+      ->excludes("--c-header");
   add_file_option(*command, "-o", options->path, "writes this configuration as --config reads it, .toml");
   command->footer(
       "\nExample:\n  halfplane config --set depth.bits=20 -o mine.toml\n  halfplane config --list\n  halfplane config "
