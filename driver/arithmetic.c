@@ -1,0 +1,50 @@
+#include "internal.h"
+
+uint32_t hp_divide(uint64_t n, uint32_t d) {
+  if ((n >> 32) == 0) return (uint32_t)n / d;
+  const uint32_t shift = 32 - hp_bits32(d); /* the divisor's highest bit to bit 31 */
+  const uint32_t divisor = d << shift, high = divisor >> 16, low = divisor & 0xffffu;
+  const uint64_t dividend = n << shift;
+  uint32_t rest = (uint32_t)(dividend >> 32), quotient = 0;
+  for (uint32_t digit = 2; digit-- != 0;) {
+    const uint32_t next = (uint32_t)(dividend >> (16 * digit)) & 0xffffu;
+    uint32_t q = rest / high, r = rest % high;
+    /* At most two too large. Neither side leaves 32 bits: q and r are below 2^16 where they are compared. */
+    while (q > 0xffffu || q * low > ((r << 16) | next)) {
+      --q;
+      r += high;
+      if (r > 0xffffu) break;
+    }
+    rest = (rest << 16) + next - q * divisor; /* modulo 2^32: the rest is below the divisor */
+    quotient = (quotient << 16) | q;
+  }
+  return quotient;
+}
+
+int64_t hp_divide_rounded(int64_t n, uint32_t d) {
+  n += d / 2;
+  const uint64_t size = n < 0 ? (uint64_t)-n + (d - 1) : (uint64_t)n;
+  const int64_t quotient = (size >> 32) >= d ? (int64_t)1 << 33 : (int64_t)hp_divide(size, d);
+  return n < 0 ? -quotient : quotient;
+}
+
+void hp_put_bits(uint32_t* words, uint32_t at, uint32_t bits, uint64_t value) {
+  if (bits < 64) value &= ((uint64_t)1 << bits) - 1;
+  uint32_t* word = words + at / 32;
+  const uint32_t shift = at % 32;
+  *word |= (uint32_t)(value << shift);
+  for (uint32_t put = 32 - shift; put < bits; put += 32) *++word |= (uint32_t)(value >> put);
+}
+
+uint32_t hp_depth_code(uint32_t depth) {
+  uint64_t product = (uint64_t)depth * (((uint64_t)1 << HALFPLANE_DEPTH_BITS) - 1); /* 31 fraction bits */
+#if HALFPLANE_DEPTH_BITS > 22
+  const uint32_t bits = hp_bits64(product);
+  if (bits > 53) { /* of which binary64 keeps 53, the nearest, halves to even */
+    const uint32_t dropped = bits - 53;
+    const uint64_t half = (uint64_t)1 << (dropped - 1), odd = (product >> dropped) & 1;
+    product = ((product + half - 1 + odd) >> dropped) << dropped;
+  }
+#endif
+  return (uint32_t)((product + ((uint64_t)1 << 30)) >> 31);
+}

@@ -1,0 +1,103 @@
+/* Draws: vertices of triangles, lines and points. */
+#include "internal.h"
+
+typedef struct source {
+  hp_context* context;
+  const hp_vertices* vertices;
+  const uint16_t* indices;
+} source;
+
+static uint32_t index_of(const source* from, uint32_t i) { return from->indices != NULL ? from->indices[i] : i; }
+
+/* Transformed vertices; false: one is out of range. An entry of the cache that another of them takes is copied first. */
+static uint8_t fetch(const source* from, const uint32_t at[3], uint32_t count, const hp_vertex* v[3]) {
+  hp_context* context = from->context;
+  uint32_t index[3];
+  for (uint32_t i = 0; i < count; ++i) {
+    index[i] = index_of(from, at[i]);
+    for (uint32_t j = 0; j < i; ++j)
+      if (index[j] != index[i] && index[j] % HP_CACHE == index[i] % HP_CACHE) {
+        hp_vertex* kept = &context->corner[HP_CORNERS - 3 + j];
+        if (v[j] != kept) *kept = *v[j];
+        v[j] = kept;
+      }
+    v[i] = hp_fetch(context, from->vertices, index[i]);
+    if (v[i] == NULL) {
+      context->status |= HP_OUT_OF_RANGE;
+      return 0;
+    }
+  }
+  return 1;
+}
+
+static void triangle(const source* from, uint32_t a, uint32_t b, uint32_t c) {
+  const uint32_t at[3] = {a, b, c};
+  const hp_vertex* v[3];
+  ++from->context->counts.triangles;
+  if (fetch(from, at, 3, v) != 0) hp_draw_triangle(from->context, v);
+}
+
+static void line(const source* from, uint32_t a, uint32_t b) {
+  const uint32_t at[3] = {a, b, 0};
+  const hp_vertex* v[3];
+  ++from->context->counts.lines;
+  if (fetch(from, at, 2, v) != 0) hp_draw_line(from->context, v[0], v[1]);
+}
+
+static void point(const source* from, uint32_t a) {
+  const uint32_t at[3] = {a, 0, 0};
+  const hp_vertex* v[3];
+  ++from->context->counts.points;
+  if (fetch(from, at, 1, v) != 0) hp_draw_point(from->context, v[0]);
+}
+
+/* One run of indices between restarts, from `first` on. What is left over makes no primitive. */
+static void draw_run(const source* from, enum hp_topology topology, uint32_t first, uint32_t count) {
+  switch (topology) {
+    case HP_TRIANGLES:
+      for (uint32_t i = 0; i + 2 < count; i += 3) triangle(from, first + i, first + i + 1, first + i + 2);
+      break;
+    case HP_TRIANGLE_STRIP: /* every second one is turned */
+      for (uint32_t i = 0; i + 2 < count; ++i) triangle(from, first + i, first + i + 1 + i % 2, first + i + 2 - i % 2);
+      break;
+    case HP_TRIANGLE_FAN:
+      for (uint32_t i = 0; i + 2 < count; ++i) triangle(from, first + i + 1, first + i + 2, first);
+      break;
+    case HP_LINES:
+      for (uint32_t i = 0; i + 1 < count; i += 2) line(from, first + i, first + i + 1);
+      break;
+    case HP_LINE_STRIP:
+    case HP_LINE_LOOP:
+      for (uint32_t i = 0; i + 1 < count; ++i) line(from, first + i, first + i + 1);
+      if (topology == HP_LINE_LOOP && count > 1) line(from, first + count - 1, first);
+      break;
+    case HP_POINTS:
+      for (uint32_t i = 0; i < count; ++i) point(from, first + i);
+      break;
+  }
+}
+
+void hp_draw(hp_context* context, enum hp_topology topology, const hp_vertices* vertices, const uint16_t* indices,
+             uint32_t count) {
+  if (vertices->position == NULL || (indices == NULL && count > HP_CORNER_TAG) || (uint32_t)topology > HP_POINTS) {
+    context->status |= HP_BAD_VALUE;
+    return;
+  }
+#if HALFPLANE_LINES_UNIT == 0
+  if (topology >= HP_LINES && topology <= HP_LINE_LOOP) {
+    context->status |= HP_UNSUPPORTED;
+    return;
+  }
+#endif
+  for (uint32_t i = 0; i < HP_CACHE; ++i) context->cache[i].tag = HP_NO_TAG; /* of other vertices */
+  if (hp_prepare(context, topology <= HP_TRIANGLE_FAN) == 0) return;
+  for (uint32_t i = 0; i < 3; ++i) context->slot[i] = HP_NO_TAG;
+  const source from = {context, vertices, indices};
+  uint32_t first = 0;
+  for (uint32_t i = 0; indices != NULL && i < count; ++i)
+    if (indices[i] == HP_RESTART) {
+      draw_run(&from, topology, first, i - first);
+      first = i + 1;
+    }
+  draw_run(&from, topology, first, count - first);
+}

@@ -1,0 +1,445 @@
+/* Stream, target, state: the words that are no primitive of a draw. Only registers that differ are sent. */
+#include <string.h>
+
+#include "internal.h"
+
+#define HP_KNOWS_TOKEN(which, side) ((uint32_t)1 << (2 * (uint32_t)(which) + (uint32_t)(side)))
+#define HP_KNOWS_STATE ((uint32_t)1 << 16)
+#define HP_KNOWS_BOX ((uint32_t)1 << 17)
+#define HP_LONGEST_TOKEN (1 + HP_AFFINE_WORDS + (HALFPLANE_STATE_WORD_BITS - HALFPLANE_ALL_AFFINE_CODE_BITS + 31) / 32)
+
+/* ---- Once, and begin */
+
+hp_state hp_default_state(void) {
+  hp_state state;
+  memset(&state, 0, sizeof state);
+  state.depth_test = HP_LESS;
+  state.depth_write = 1;
+  state.color_mask = 15;
+  state.src = state.src_alpha = HP_ONE_FACTOR;
+  state.alpha_func = HP_ALWAYS;
+  for (uint32_t i = 0; i < 2; ++i) {
+    state.stencil[i].func = HP_ALWAYS;
+    state.stencil[i].read_mask = state.stencil[i].write_mask = 255;
+  }
+  state.line_rule = HP_DIAMOND;
+  state.line_width = 1;
+  state.point_size = HP_ONE;
+  return state;
+}
+
+void hp_init(hp_context* context) {
+  memset(context, 0, sizeof *context);
+  context->state = hp_default_state();
+}
+
+uint64_t hp_config_id(void) { return ((uint64_t)HALFPLANE_CONFIG_ID_HIGH << 32) | HALFPLANE_CONFIG_ID_LOW; }
+
+void hp_begin(hp_context* context, const hp_stream* stream) {
+  if (stream->words == NULL || stream->size < HP_LONGEST) {
+    context->status |= HP_BAD_VALUE;
+    return;
+  }
+  context->stream = *stream;
+  context->at = context->written = context->read = 0;
+  context->known = 0;
+  context->is_drawn = context->is_set = 0;
+  memset(&context->counts, 0, sizeof context->counts);
+}
+
+uint32_t hp_written(const hp_context* context) { return context->written; }
+uint32_t hp_status(const hp_context* context) { return context->status; }
+const hp_counts* hp_count(const hp_context* context) { return &context->counts; }
+
+/* ---- Words */
+
+uint8_t hp_reserve(hp_context* context, uint32_t words) {
+  const hp_stream* stream = &context->stream;
+  if (stream->size - (context->written - context->read) >= words) return 1;
+  if (stream->wait != NULL) {
+    context->read = stream->wait(stream->user, context->written);
+    if (stream->size - (context->written - context->read) >= words) return 1;
+  }
+  context->status |= HP_FULL;
+  return 0;
+}
+
+void hp_put_codes(hp_context* context, uint32_t depth, uint32_t color) {
+  uint64_t codes =
+      depth | ((uint64_t)(color & (0xffffffffu >> (32 - 8 * HALFPLANE_COLOR_PLANES))) << HALFPLANE_DEPTH_BITS);
+  for (uint32_t i = 0; i < HP_AFFINE_WORDS; ++i) {
+    hp_put(context, (uint32_t)codes);
+    codes >>= 32;
+  }
+}
+
+/* After hp_reserve(). */
+static void send_state(hp_context* context, uint32_t word) {
+  if ((context->known & HP_KNOWS_STATE) != 0 && context->state_word == word) return;
+  context->known |= HP_KNOWS_STATE;
+  context->state_word = word;
+  hp_put(context, HP_SET_OF(HP_STATE, 1));
+  hp_put(context, word);
+}
+
+/* Likewise. */
+void hp_send_box(hp_context* context, int32_t left, int32_t top, int32_t right, int32_t bottom) {
+  const uint32_t low = (uint32_t)left | ((uint32_t)top << 16), high = (uint32_t)right | ((uint32_t)bottom << 16);
+  if ((context->known & HP_KNOWS_BOX) != 0 && context->box[0] == low && context->box[1] == high) return;
+  context->known |= HP_KNOWS_BOX;
+  context->box[0] = low;
+  context->box[1] = high;
+  hp_put(context, HP_SET_OF(HP_BOX_MIN, 2));
+  hp_put(context, low);
+  hp_put(context, high);
+}
+
+#if HP_HAS_TOKENS
+/* A register of a unit; it overwrites the vertex slots, which a draw loads anew. */
+static void send_token(hp_context* context, uint32_t which, uint64_t value) {
+  const uint64_t low = value & (((uint64_t)1 << (HALFPLANE_ALL_AFFINE_CODE_BITS % 64)) - 1);
+  if (hp_reserve(context, HP_LONGEST_TOKEN) == 0) return;
+  hp_put(context, HP_HEADER(HP_TOKEN, which));
+  for (uint32_t i = 0; i < HP_AFFINE_WORDS; ++i) hp_put(context, (uint32_t)(low >> (32 * i)));
+  uint64_t rest = value >> (HALFPLANE_ALL_AFFINE_CODE_BITS % 64);
+  for (uint32_t i = 1 + HP_AFFINE_WORDS; i < HP_LONGEST_TOKEN; ++i) {
+    hp_put(context, (uint32_t)rest);
+    rest >>= 32;
+  }
+}
+
+/* Whether a register does not have the value yet. */
+static uint8_t differs(hp_context* context, uint32_t which, uint32_t side, uint64_t value, uint32_t low_at) {
+  uint32_t* held = context->token[which];
+  const uint32_t known = HP_KNOWS_TOKEN(which, side);
+  const uint8_t is_there = (context->known & known) != 0 && held[low_at] == (uint32_t)value &&
+                           (low_at != 0 || (value >> 32) == 0 || held[1] == (uint32_t)(value >> 32));
+  context->known |= known;
+  held[low_at] = (uint32_t)value;
+  return is_there == 0;
+}
+
+static void set_token(hp_context* context, uint32_t which, uint32_t value) {
+  if (differs(context, which, 0, value, 0) != 0) send_token(context, which, value);
+}
+#endif
+
+/* ---- Unit registers of a draw */
+
+#if HP_HAS_COLOR_OPS
+static uint8_t is_constant(uint8_t factor) {
+  return factor >= HP_CONSTANT_COLOR && factor <= HP_ONE_MINUS_CONSTANT_ALPHA;
+}
+
+/* The word of the colour operations, normalised as model/stages/color_ops.hpp does it: equal effect, equal word. */
+static uint32_t color_ops(const hp_state* state, uint8_t* reads_constant) {
+  const uint8_t has_alpha = HALFPLANE_COLOR_FORMAT == 1;
+  uint8_t factor[4] = {HP_ONE_FACTOR, HP_ZERO, HP_ONE_FACTOR, HP_ZERO}, equation[2] = {HP_ADD, HP_ADD};
+  if (state->blends != 0) {
+    equation[0] = state->equation;
+    if (has_alpha != 0) equation[1] = state->equation_alpha;
+    if (equation[0] < HP_MIN) {
+      factor[0] = state->src;
+      factor[1] = state->dst;
+    }
+    if (has_alpha != 0 && equation[1] < HP_MIN) {
+      factor[2] = state->src_alpha;
+      factor[3] = state->dst_alpha;
+    }
+    for (uint32_t part = 0; part < 2; ++part)
+      if (equation[part] == HP_SUBTRACT && factor[2 * part] == HP_ONE_FACTOR && factor[2 * part + 1] == HP_ZERO)
+        equation[part] = HP_ADD;
+  }
+  uint32_t word = 0;
+  *reads_constant = 0;
+  for (uint32_t i = 0; i < 4; ++i) {
+    word |= (uint32_t)factor[i] << (4 * i);
+    if (is_constant(factor[i]) != 0) *reads_constant = 1;
+  }
+  word |= ((uint32_t)equation[0] << 16) | ((uint32_t)equation[1] << 19);
+  const uint32_t plain = HP_ONE_FACTOR | ((uint32_t)HP_ONE_FACTOR << 8); /* one, zero, add */
+  const uint32_t blends = word != plain, writes = (state->color_mask & 15u) | (has_alpha != 0 ? 0u : 8u);
+  const uint32_t dithers = state->dithers != 0 && has_alpha == 0;
+  return word | (writes << 22) | (dithers << 26) | (blends << 27) | ((uint32_t)(blends != 0 || writes != 15) << 28);
+}
+#endif
+
+static uint8_t writes_color(const hp_state* state) {
+  return (state->color_mask & (HALFPLANE_COLOR_FORMAT == 1 ? 15 : 7)) != 0;
+}
+
+#if HP_HAS_COLOR_OPS || HP_HAS_ALPHA_TEST
+static void set_colors(hp_context* context, const hp_state* state) {
+#if HP_HAS_COLOR_OPS
+  if (writes_color(state) != 0) {
+    uint8_t reads_constant = 0;
+    set_token(context, HP_COLOR_OPS, color_ops(state, &reads_constant));
+    if (reads_constant != 0) set_token(context, HP_BLEND_CONSTANT, state->blend_color);
+  }
+#endif
+#if HP_HAS_ALPHA_TEST
+  set_token(context, HP_ALPHA_TEST, (uint32_t)state->alpha_func | ((uint32_t)state->alpha_reference << 3));
+#endif
+}
+#endif
+
+#if HP_HAS_STENCIL
+static uint32_t test_word(const hp_stencil* s) {
+  return (uint32_t)s->func | ((uint32_t)s->reference << 3) | ((uint32_t)s->read_mask << 11);
+}
+static uint32_t update_word(const hp_stencil* s) {
+  return (uint32_t)s->stencil_fails | ((uint32_t)s->depth_fails << 3) | ((uint32_t)s->passes << 6) |
+         ((uint32_t)s->write_mask << 9);
+}
+
+/* A register of `sides` (bit 0: of fronts). Two equal sides are one token. */
+static void set_sides(hp_context* context, uint32_t which, const uint32_t words[2], uint32_t sides) {
+  const uint32_t at = which == HP_STENCIL_TEST ? 19 : 17;
+  uint32_t wanted = 0;
+  for (uint32_t n = 0; n < 2; ++n)
+    if ((sides >> n & 1u) != 0 && differs(context, which, n, words[n], n) != 0) wanted |= 1u << n;
+  if (wanted == 3 && words[0] == words[1]) {
+    send_token(context, which, words[0] | ((uint32_t)3 << at));
+    return;
+  }
+  for (uint32_t n = 0; n < 2; ++n)
+    if ((wanted >> n & 1u) != 0) send_token(context, which, words[n] | ((uint32_t)1 << (at + n)));
+}
+
+static void set_stencil(hp_context* context, const hp_stencil side[2], uint32_t tests, uint32_t updates) {
+  const uint32_t test[2] = {test_word(&side[0]), test_word(&side[1])};
+  const uint32_t update[2] = {update_word(&side[0]), update_word(&side[1])};
+  set_sides(context, HP_STENCIL_TEST, test, tests);
+  set_sides(context, HP_STENCIL_UPDATE, update, updates);
+}
+
+/* What a primitive says of the stencil: reads it, writes it, also where a test fails. */
+static uint32_t stencil_flags(const hp_stencil side[2]) {
+  uint32_t flags = 0;
+  for (uint32_t i = 0; i < 2; ++i) {
+    const hp_stencil* s = &side[i];
+    const uint8_t fails = s->stencil_fails != HP_KEEP || s->depth_fails != HP_KEEP;
+    if (s->write_mask != 0 && (fails != 0 || s->passes != HP_KEEP)) flags |= 3u << 8;
+    if (s->func != HP_ALWAYS) flags |= 1u << 8;
+    if (s->write_mask != 0 && fails != 0) flags |= 4u << 8;
+  }
+  return flags;
+}
+#endif
+
+#if HP_HAS_TEXTURES
+static void set_texture(hp_context* context, const hp_state* state) {
+  const hp_texture* texture = state->texture;
+  uint64_t value = 0;
+  if (texture != NULL) {
+    value = 1u | ((uint64_t)texture->format << 2) | ((uint64_t)state->combine << 5) | ((uint64_t)state->wrap_u << 7) |
+            ((uint64_t)state->wrap_v << 9) | ((uint64_t)texture->log2_width << 11) |
+            ((uint64_t)texture->log2_height << 15) | ((uint64_t)(texture->address >> 6) << 19) |
+            ((uint64_t)(state->is_linear != 0 ? 1 : 0) << 45);
+  }
+  const uint8_t drops = context->drops_texels != 0 || (context->known & HP_KNOWS_TOKEN(HP_TEXTURE, 0)) == 0;
+  const uint8_t is_new =
+      differs(context, HP_TEXTURE, 0, value | ((uint64_t)1 << 46), 0); /* bit 46: the high word counts */
+  if (is_new != 0 || drops != 0) send_token(context, HP_TEXTURE, value | (drops != 0 ? 2u : 0u));
+  context->token[HP_TEXTURE][1] = (uint32_t)(value >> 32) | ((uint32_t)1 << 14);
+  context->drops_texels = 0;
+#if HALFPLANE_TEXTURE_UNIT == 3
+  /* Level 0 alone, with one filter. */
+  if (texture != NULL) set_token(context, HP_LEVELS, (state->is_linear != 0 ? 1u : 0u) | ((uint32_t)(12 * 256) << 19));
+#endif
+}
+#endif
+
+/* ---- Draws */
+
+uint8_t hp_prepare(hp_context* context, uint8_t is_triangle) {
+  const hp_state* state = &context->state;
+  const int32_t* rect = context->rect;
+  if (context->is_set == 0) context->status |= HP_BAD_VALUE;
+  if (context->is_set == 0 || rect[0] > rect[2] || rect[1] > rect[3]) return 0;
+  uint32_t word = (uint32_t)state->depth_test | ((uint32_t)(state->depth_write != 0 ? 1 : 0) << 3) |
+                  ((uint32_t)writes_color(state) << 4);
+  if (is_triangle != 0) word |= ((uint32_t)state->cull << 5) | ((uint32_t)state->front << 7);
+#if HP_HAS_STENCIL
+  if (state->has_stencil != 0) word |= stencil_flags(state->stencil);
+#endif
+  if (hp_reserve(context, 5) == 0) return 0;
+  send_state(context, word);
+  if (is_triangle != 0) hp_send_box(context, rect[0], rect[1], rect[2], rect[3]);
+#if HP_HAS_COLOR_OPS || HP_HAS_ALPHA_TEST
+  set_colors(context, state);
+#endif
+#if HP_HAS_STENCIL
+  if ((word >> 8 & 1u) != 0) set_stencil(context, state->stencil, 3, 3);
+#endif
+#if HP_HAS_TEXTURES
+  if (is_triangle != 0) set_texture(context, state);
+#endif
+  context->is_drawn = 1;
+  return 1;
+}
+
+/* Target, scissor and the pixels whose centres lie in the viewport. */
+static void derive_rect(hp_context* context) {
+  const hp_viewport* view = &context->viewport;
+  const int32_t size[2] = {context->target.width, context->target.height};
+  for (uint32_t axis = 0; axis < 2; ++axis) {
+    const int32_t first = axis == 0 ? view->x : view->y, extent = axis == 0 ? view->width : view->height;
+    const int64_t low = ((int64_t)first + 32767) >> 16, high = (((int64_t)first + extent + 32767) >> 16) - 1;
+    const int32_t left = (int32_t)low, right = (int32_t)high;
+    context->rect[axis] = hp_max(hp_max(0, context->scissor[axis]), left);
+    context->rect[2 + axis] = hp_min(hp_min(size[axis] - 1, context->scissor[2 + axis]), right);
+  }
+}
+
+void hp_clear(hp_context* context, uint32_t buffers, uint32_t color, uint32_t depth, uint8_t stencil) {
+  const int32_t right = (int32_t)context->target.width - 1, bottom = (int32_t)context->target.height - 1;
+  const int32_t box[4] = {hp_max(0, context->scissor[0]), hp_max(0, context->scissor[1]),
+                          hp_min(right, context->scissor[2]), hp_min(bottom, context->scissor[3])};
+  if (context->is_set == 0 || buffers == 0 || buffers > 3 || depth > HP_DEPTH_ONE) {
+    context->status |= HP_BAD_VALUE;
+    return;
+  }
+  if (box[0] > box[2] || box[1] > box[3]) return;
+  const uint8_t is_whole = box[0] == 0 && box[1] == 0 && box[2] == right && box[3] == bottom;
+  uint32_t word = HP_ALWAYS | (buffers & HP_CLEAR_DEPTH) << 3 | (buffers & HP_CLEAR_COLOR) << 3;
+#if HP_HAS_STENCIL
+  if ((buffers & HP_CLEAR_DEPTH) != 0) {
+    const hp_stencil replaces = {HP_ALWAYS, stencil, 255, 255, HP_REPLACE, HP_REPLACE, HP_REPLACE};
+    const hp_stencil side[2] = {replaces, replaces};
+    if (is_whole == 0) word |= stencil_flags(side);
+    set_stencil(context, side, 1, is_whole != 0 ? 0 : 1);
+  }
+#else
+  (void)stencil;
+#endif
+#if HP_HAS_COLOR_OPS || HP_HAS_ALPHA_TEST
+  if (is_whole == 0) { /* for earlier draws */
+    hp_state plain = hp_default_state();
+    if ((buffers & HP_CLEAR_COLOR) == 0) plain.color_mask = 0;
+    set_colors(context, &plain);
+  }
+#endif
+  if (hp_reserve(context, 5 + 1 + HP_AFFINE_WORDS) == 0) return;
+  if (is_whole == 0) {
+    send_state(context, word);
+    hp_send_box(context, box[0], box[1], box[2], box[3]);
+  }
+  hp_put(context, is_whole != 0 ? HP_HEADER(HP_FAST_CLEAR, buffers) : HP_HEADER(HP_RECTANGLE, 0));
+  hp_put_codes(context, (buffers & HP_CLEAR_DEPTH) != 0 ? hp_depth_code(depth) : 0,
+               (buffers & HP_CLEAR_COLOR) != 0 ? color : 0);
+  context->is_drawn = 1;
+}
+
+/* ---- The end of a frame */
+
+static void put_command(hp_context* context, uint32_t header, uint32_t words, uint32_t first, uint32_t second) {
+  if (hp_reserve(context, 1 + words) == 0) return;
+  hp_put(context, header);
+  if (words > 0) hp_put(context, first);
+  if (words > 1) hp_put(context, second);
+}
+
+void hp_flush(hp_context* context, uint8_t loses_depth) {
+  const uint32_t flag = loses_depth != 0 && HALFPLANE_CACHE_KIND == 1 ? 1 : 0; /* a cache of tiles has none */
+  put_command(context, HP_HEADER(HP_FLUSH, flag), 0, 0, 0);
+  context->is_drawn = 0;
+}
+void hp_fence(hp_context* context, uint32_t tag) { put_command(context, HP_HEADER(HP_FENCE, 0), 1, tag, 0); }
+void hp_present(hp_context* context, uint32_t color, uint32_t color_flags) {
+  put_command(context, HP_HEADER(HP_PRESENT, 0), 2, color, color_flags);
+}
+void hp_wait_vblank(hp_context* context) { put_command(context, HP_HEADER(HP_WAIT_VBLANK, 0), 0, 0, 0); }
+void hp_stop(hp_context* context) { put_command(context, HP_HEADER(HP_STOP, 0), 0, 0, 0); }
+
+/* ---- State */
+
+void hp_set_target(hp_context* context, const hp_target* target) {
+  if (target->width == 0 || target->height == 0 || target->width > HALFPLANE_TARGET_WIDTH ||
+      target->height > HALFPLANE_TARGET_HEIGHT) {
+    context->status |= HP_BAD_VALUE;
+    return;
+  }
+  if (context->is_drawn != 0) hp_flush(context, 0);
+  if (hp_reserve(context, 8) == 0) return;
+  hp_put(context, HP_SET_OF(HP_TARGET, 7));
+  hp_put(context, (uint32_t)(target->width - 1) | ((uint32_t)(target->height - 1) << 16));
+  hp_put(context, target->depth);
+  hp_put(context, target->color);
+  hp_put(context, target->depth_flags);
+  hp_put(context, target->color_flags);
+  hp_put(context, target->row_stride);
+  hp_put(context, target->textures);
+  context->target = *target;
+  context->is_set = 1;
+  const hp_viewport whole = {0, 0, target->width * HP_ONE, target->height * HP_ONE, 0, HP_DEPTH_ONE, 0};
+  context->scissor[0] = context->scissor[1] = 0;
+  context->scissor[2] = target->width - 1;
+  context->scissor[3] = target->height - 1;
+  hp_set_viewport(context, &whole);
+}
+
+void hp_set_viewport(hp_context* context, const hp_viewport* viewport) {
+  /* Inside the guard band, so that no sample of it is cut away. */
+  const int64_t limit = (int64_t)hp_min(HALFPLANE_GUARD_BAND, 32767) << 16;
+  const int64_t right = (int64_t)viewport->x + viewport->width, bottom = (int64_t)viewport->y + viewport->height;
+  if (viewport->width <= 0 || viewport->height <= 0 || viewport->x <= -limit || viewport->y <= -limit ||
+      right >= limit || bottom >= limit || viewport->near_depth > HP_DEPTH_ONE || viewport->far_depth > HP_DEPTH_ONE) {
+    context->status |= HP_BAD_VALUE;
+    return;
+  }
+  context->viewport = *viewport;
+  hp_derive_view(context);
+  derive_rect(context);
+}
+
+void hp_set_scissor(hp_context* context, int32_t x, int32_t y, int32_t width, int32_t height) {
+  if (width < 0 || height < 0 || x < -65536 || y < -65536 || x > 65536 || y > 65536 || width > 65536 ||
+      height > 65536) {
+    context->status |= HP_BAD_VALUE;
+    return;
+  }
+  context->scissor[0] = x;
+  context->scissor[1] = y;
+  context->scissor[2] = x + width - 1;
+  context->scissor[3] = y + height - 1;
+  derive_rect(context);
+}
+
+static uint8_t is_supported(const hp_state* state) {
+  if (HP_HAS_TEXTURES == 0 && state->texture != NULL) return 0;
+  if (state->texture != NULL && state->is_linear != 0 && HALFPLANE_TEXTURE_UNIT < 2) return 0;
+  if (HALFPLANE_COLORS_OVER_W == 0 && state->perspective_colors != 0) return 0;
+  if (HP_HAS_STENCIL == 0 && state->has_stencil != 0) return 0;
+  if (HP_HAS_ALPHA_TEST == 0 && state->alpha_func != HP_ALWAYS) return 0;
+  if (HALFPLANE_DITHER_UNIT == 0 && state->dithers != 0 && HALFPLANE_COLOR_FORMAT == 0) return 0;
+  const uint32_t all = HALFPLANE_COLOR_FORMAT == 1 ? 15 : 7, mask = state->color_mask & all;
+  return HALFPLANE_BLEND_LANES != 0 || (state->blends == 0 && (mask == 0 || mask == all));
+}
+
+static uint8_t is_valid(const hp_state* state) {
+  const int32_t beside = HALFPLANE_GUARD_BAND - hp_max(HALFPLANE_TARGET_WIDTH, HALFPLANE_TARGET_HEIGHT);
+  const int32_t widest = 2 * (beside - 1);
+  const hp_texture* texture = state->texture;
+  if (state->depth_test > HP_ALWAYS || state->cull > HP_CULL_BOTH || state->front > HP_CW || state->color_mask > 15)
+    return 0;
+  if (state->line_rule > HP_DIAMOND || state->line_width == 0 || (state->line_width > 1 && state->line_width > widest))
+    return 0;
+  if (state->point_size < HP_ONE || (state->point_size > HP_ONE && (state->point_size + 65535) >> 16 > widest))
+    return 0;
+  if (texture != NULL && (texture->log2_width > 12 || texture->log2_height > 12 || texture->format > HP_RGBA8888 ||
+                          (texture->address & 63u) != 0 || state->wrap_u > HP_MIRROR || state->wrap_v > HP_MIRROR ||
+                          state->combine > HP_ADD_COLOR))
+    return 0;
+  /* A triangle has one Q. */
+  return texture == NULL || state->is_affine == 0 || state->perspective_colors == 0;
+}
+
+void hp_set_state(hp_context* context, const hp_state* state) {
+  if (is_valid(state) == 0)
+    context->status |= HP_BAD_VALUE;
+  else if (is_supported(state) == 0)
+    context->status |= HP_UNSUPPORTED;
+  else
+    context->state = *state;
+}
