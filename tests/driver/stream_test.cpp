@@ -11,6 +11,9 @@
 namespace halfplane::test {
 namespace {
 
+using driver::DecodedPrimitive;
+using driver::Decoder;
+
 constexpr std::uint32_t kSeed = 5400;
 
 /// What the hardware does with a packet does not depend on the order of a triangle's vertices (cull sorts them), on numbers of
