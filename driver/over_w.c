@@ -37,7 +37,7 @@ static void quantize_q(const uint32_t w[3], uint32_t q[3]) {
 }
 
 /* P of three values, 2^-16. */
-static void quantize(const int64_t value[3], const uint32_t q[3], const format* format, over_w* out) {
+static void quantize(const int64_t value[3], const uint32_t q[3], const format* of, over_w* out) {
   int64_t low = value[0], high = value[0], product[3];
   for (uint32_t i = 1; i < 3; ++i) {
     if (value[i] < low) low = value[i];

@@ -87,7 +87,8 @@ class CaseMaker {
       TexelImage image{1 << t.log2_width, 1 << t.log2_height, {}};
       for (int i = 0; i < image.width * image.height; ++i)
         image.texel.push_back({static_cast<std::uint8_t>(random_.index(256)), static_cast<std::uint8_t>(i), 7, 200});
-      out_.scene.textures.push_back(make_texture("texels", image, kFormats[t.format], Mips::none));
+      out_.scene.textures.push_back(
+          make_texture("texels" + std::to_string(out_.scene.textures.size()), image, kFormats[t.format], Mips::none));
     }
     const TextureMemory memory(out_.scene, config_);
     for (std::size_t n = 0; n < textures_.size(); ++n) {
