@@ -6,6 +6,7 @@
 #define HP_KNOWS_TOKEN(which, side) ((uint32_t)1 << (2 * (uint32_t)(which) + (uint32_t)(side)))
 #define HP_KNOWS_STATE ((uint32_t)1 << 16)
 #define HP_KNOWS_BOX ((uint32_t)1 << 17)
+#define HP_KNOWS_UNITS ((uint32_t)1 << 18) /* fog and light are off */
 #define HP_LONGEST_TOKEN (1 + HP_AFFINE_WORDS + (HALFPLANE_STATE_WORD_BITS - HALFPLANE_ALL_AFFINE_CODE_BITS + 31) / 32)
 
 /* ---- Once, and begin */
@@ -243,6 +244,13 @@ static void set_texture(hp_context* context, const hp_state* state) {
   if (is_new != 0 || drops != 0) send_token(context, HP_TEXTURE, value | (drops != 0 ? 2u : 0u));
   context->token[HP_TEXTURE][1] = (uint32_t)(value >> 32) | ((uint32_t)1 << 14);
   context->drops_texels = 0;
+#if HALFPLANE_FOG_UNIT != 0 || HALFPLANE_SHADE_UNIT != 0
+  if ((context->known & HP_KNOWS_UNITS) == 0) {
+    context->known |= HP_KNOWS_UNITS;
+    if (HALFPLANE_SHADE_UNIT != 0) send_token(context, HP_LEVELS, (uint64_t)3 << 43);
+    if (HALFPLANE_FOG_UNIT != 0) send_token(context, HP_LEVELS, (uint64_t)1 << 43);
+  }
+#endif
 #if HALFPLANE_TEXTURE_UNIT == 3
   /* Level 0 alone, with one filter. */
   if (texture != NULL) set_token(context, HP_LEVELS, (state->is_linear != 0 ? 1u : 0u) | ((uint32_t)(12 * 256) << 19));

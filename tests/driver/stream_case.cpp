@@ -156,6 +156,7 @@ class CaseMaker {
   void add_blend(hp_state& s, State& state) {
     if (chance(2)) {
       s.color_mask = static_cast<std::uint8_t>(random_.index(16));
+      state.color_write = true;
       for (std::size_t c = 0; c < 4; ++c) state.color_mask[c] = (s.color_mask >> c & 1) != 0;
     }
     if (chance(2)) return;

@@ -5,6 +5,7 @@
 #include "driver/backend/decode.hpp"
 #include "model/host/primitive_stream.hpp"
 #include "model/packets/packet_words.hpp"
+#include "model/packets/state_packets.hpp"
 #include "sim/scene/host_geometry.hpp"
 #include "stream_case.hpp"
 
@@ -33,22 +34,86 @@ DecodedPrimitive canonical_form(PrimitivePacket packet, std::optional<LineSetup>
   return {packet, line};
 }
 
-/// The model's packets, without triangles that the hardware's cull drops for area or facing: the driver does not send them.
-std::vector<DecodedPrimitive> of_model(const Scene& scene, const Config& config) {
+/// A packet of the model, and what it needs in the registers of units.
+struct Wanted {
+  DecodedPrimitive primitive;
+  UnitWords units;
+};
+
+/// The model's packets, without triangles that the hardware's cull drops for area or facing, which the driver does not send, and
+/// without tokens.
+std::vector<Wanted> of_model(const Scene& scene, const Config& config) {
   const Scene projected = in_host_numbers(scene, TransformNumbers::s15_16, config);
   HostStream stream(projected, config);
-  std::vector<DecodedPrimitive> packets;
+  std::vector<Wanted> wanted;
   while (const auto primitive = stream.next()) {
     const PrimitivePacket& packet = primitive->packet;
+    if (packet.kind == PrimitiveKind::state) continue;
     if (packet.kind == PrimitiveKind::triangle) {
       const auto v = to_snapped(packet.vertex);
       const auto front = packet.front_cw ? FrontFace::cw : FrontFace::ccw;
       if (cull(signed_area(v[0], v[1], v[2]), packet.cull, front) != CullResult::keep) continue;
     }
-    packets.push_back(canonical_form(packet, primitive->line));
+    wanted.push_back({canonical_form(packet, primitive->line), primitive->units});
   }
-  return packets;
+  return wanted;
 }
+
+/// The registers of the units, from the driver's tokens.
+class Registers {
+ public:
+  Registers(const Config& config, const Widths& widths) : config_(config), widths_(widths) {}
+
+  void set(const PrimitivePacket& token) {
+    const StateRegister which = state_register(token.state);
+    const std::uint64_t word = state_word(token.vertex.code[0], widths_);
+    colors_.set(which, word);
+    stencil_.set(which, word);
+    const LevelsWord kind = levels_word(word);
+    if (which == StateRegister::texture) {
+      const TextureState state = TextureState::unpack(word);
+      EXPECT_TRUE(has_texture_ || state.invalidates) << "texels of an earlier frame";
+      texture_ = state;
+      texture_.invalidates = false;
+      has_texture_ = true;
+    } else if (which == StateRegister::texture_levels && kind == LevelsWord::levels) {
+      levels_ = static_cast<std::uint32_t>(word);
+    } else if (which == StateRegister::texture_levels) {
+      EXPECT_EQ(word, kind == LevelsWord::fog ? FogState{}.pack() : no_light_word());
+      is_off_[kind == LevelsWord::fog ? 0 : 1] = true;
+    }
+  }
+
+  /// A difference from what a packet needs, or an empty text.
+  [[nodiscard]] std::string difference(const Wanted& wanted) const {
+    const auto& [colors, stencil] = std::tie(wanted.units.colors, wanted.units.stencil);
+    if (colors.ops && *colors.ops != pack(colors_.ops)) return "color_ops";
+    if (colors.constant && *colors.constant != pack(colors_.ops.constant)) return "blend_constant";
+    if (colors.alpha && *colors.alpha != pack(colors_.alpha, colors_.alpha_covers)) return "alpha_test";
+    for (const std::size_t n : {0U, 1U}) {
+      if (stencil.test[n] && *stencil.test[n] != pack_test(stencil_.side[n])) return "stencil_test";
+      if (stencil.update[n] && *stencil.update[n] != pack_update(stencil_.side[n])) return "stencil_update";
+    }
+    if (wanted.primitive.packet.kind != PrimitiveKind::triangle || config_.texture_unit == TextureUnitKind::off)
+      return "";
+    if (wanted.units.texture_state != texture_.pack() || !has_texture_) return "texture";
+    if (config_.texture_unit == TextureUnitKind::trilinear && texture_.enable && wanted.units.texture_levels != levels_)
+      return "texture_levels";
+    if (wanted.units.texture_lines || wanted.units.fog || wanted.units.light) return "the driver has no such token";
+    if (wanted.units.looks_at_fog && !is_off_[0]) return "fog";
+    return wanted.units.looks_at_light && !is_off_[1] ? "light" : "";
+  }
+
+ private:
+  const Config& config_;
+  const Widths& widths_;
+  ColorState colors_;
+  StencilState stencil_;
+  TextureState texture_;
+  std::uint32_t levels_ = 0;
+  bool has_texture_ = false;
+  std::array<bool, 2> is_off_{};  ///< fog, light
+};
 
 std::string difference(const DecodedPrimitive& driver, const DecodedPrimitive& model, const Widths& widths) {
   std::string text;
@@ -74,17 +139,24 @@ void expect_equal(const StreamCase& made, const Config& config, std::array<std::
   const Widths widths = derive_widths(config);
   Decoder decoder(config);
   decoder.read(made.words);
-  const auto model = of_model(made.scene, config);
-  const auto& driver = decoder.primitives();
-  for (std::size_t i = 0; i < std::min(driver.size(), model.size()); ++i) {
-    ++kinds[static_cast<std::size_t>(model[i].packet.kind)];
-    const std::string found = difference(canonical_form(driver[i].packet, driver[i].line), model[i], widths);
-    ASSERT_EQ(found, "") << "packet " << i << " of " << model.size() << ", kind "
-                         << static_cast<int>(model[i].packet.kind);
+  const std::vector<Wanted> model = of_model(made.scene, config);
+  Registers registers(config, widths);
+  std::size_t next = 0;
+  for (const auto& [packet, line] : decoder.primitives()) {
+    ++kinds[static_cast<std::size_t>(packet.kind)];
+    if (packet.kind == PrimitiveKind::state) {
+      registers.set(packet);
+      continue;
+    }
+    ASSERT_LT(next, model.size()) << "the driver has more";
+    const Wanted& wanted = model[next++];
+    ASSERT_EQ(difference(canonical_form(packet, line), wanted.primitive, widths), "")
+        << "packet " << next << " of " << model.size() << ", kind " << static_cast<int>(packet.kind);
+    ASSERT_EQ(registers.difference(wanted), "") << "packet " << next << " of " << model.size();
   }
-  ASSERT_EQ(driver.size(), model.size());
-  const TextureMemory textures =
-      config.texture_unit == TextureUnitKind::off ? TextureMemory() : TextureMemory(made.scene, config);
+  ASSERT_EQ(next, model.size()) << "the driver has fewer";
+  if (config.texture_unit == TextureUnitKind::off) return;
+  const TextureMemory textures(made.scene, config);
   std::vector<std::uint8_t> bytes(made.textures.size());
   textures.read(0, bytes);
   ASSERT_EQ(bytes, made.textures);
@@ -119,6 +191,8 @@ TEST(DriverStream, WordsAreTheModelsPackets) {
   EXPECT_GT(kinds[static_cast<std::size_t>(PrimitiveKind::rectangle)], 10U);
   EXPECT_GT(kinds[static_cast<std::size_t>(PrimitiveKind::fast_clear)], 10U);
   EXPECT_EQ(kinds[static_cast<std::size_t>(PrimitiveKind::line)] > wanted / 100, config.line_units != 0);
+  EXPECT_EQ(kinds[static_cast<std::size_t>(PrimitiveKind::state)] > 100,
+            config.texture_unit != TextureUnitKind::off || config.blend_lanes != 0);
 }
 
 }  // namespace
