@@ -79,7 +79,8 @@ class HardwareModel final : private MemoryPort {
   /// With a memory that may already have content.
   HardwareModel(const Config& config, PacketSink& sink, TileMemory memory);
   /// From now on the texture memory holds the textures of `scene`.
-  void hold_textures(const Scene& scene) { texels_ = TextureMemory(scene, config_); }
+  void hold_textures(const Scene& scene) { hold_textures(TextureMemory(scene, config_)); }
+  void hold_textures(TextureMemory textures) { texels_ = std::move(textures); }
   /// Runs one primitive, to its last write: every packet that follows from it. `line`: present if and only if its kind
   /// is line.
   void run(const PrimitivePacket& primitive, const std::optional<LineSetup>& line = std::nullopt);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "../config.hpp"
@@ -16,6 +17,8 @@ class TextureMemory {
   static constexpr std::uint32_t kAlignment = 64;  ///< alignment of an image, bytes
 
   TextureMemory() = default;
+  /// Memory with this content.
+  explicit TextureMemory(std::vector<std::uint8_t> bytes) : bytes_(std::move(bytes)) {}
   TextureMemory(const Scene& scene, const Config& config) {
     const bool has_levels = config.texture_unit == TextureUnitKind::trilinear;
     for (const Texture& texture : scene.textures) {

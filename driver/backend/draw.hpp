@@ -1,0 +1,18 @@
+// The software backend: draws a command stream on a host, with the model of the hardware.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "decode.hpp"
+#include "model/stages/framebuffer.hpp"
+
+namespace halfplane::driver {
+
+/// The frame that is in memory when the stream has run; the last target. `textures`: memory from hp_target::textures on.
+/// Throws InputError for a word that the core would refuse.
+[[nodiscard]] Framebuffer draw(std::span<const std::uint32_t> words, const Config& config,
+                               std::vector<std::uint8_t> textures = {});
+
+}  // namespace halfplane::driver

@@ -1,0 +1,305 @@
+// The driver's interface: what it refuses, rings, and pictures of the software backend.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <memory>
+
+#include "../committed.hpp"
+#include "driver/backend/draw.hpp"
+#include "driver/stream.h"
+#include "model/engines/hardware.hpp"
+#include "model/generate/c_header.hpp"
+#include "sim/scene/host_geometry.hpp"
+#include "stream_case.hpp"
+
+namespace halfplane::test {
+namespace {
+
+using driver::Decoder;
+
+constexpr std::array<hp_fixed, 12> kSquare{-HP_ONE, -HP_ONE, 0, HP_ONE, -HP_ONE, 0,
+                                           -HP_ONE, HP_ONE,  0, HP_ONE, HP_ONE,  0};
+constexpr hp_vertices kVertices{kSquare.data(), nullptr, nullptr, 12, 0, 0, 0};
+constexpr hp_target kTarget{16, 16, 0, 0, 0, 0, 4096, 0};
+
+/// A context with a stream and a target.
+class DriverInterface : public testing::Test {
+ protected:
+  explicit DriverInterface(std::uint32_t size = 4096) : words_(size) {
+    hp_init(driver_.get());
+    const hp_stream stream{words_.data(), size, nullptr, nullptr};
+    hp_begin(driver_.get(), &stream);
+    hp_set_target(driver_.get(), &kTarget);
+    hp_clear(driver_.get(), HP_CLEAR_COLOR | HP_CLEAR_DEPTH, 0, HP_DEPTH_ONE, 0);
+  }
+
+  /// Expects a call to set exactly `status` and to send nothing.
+  void expect_refused(std::uint32_t status, const std::function<void(hp_context*)>& call) {
+    const auto driver = std::make_unique<hp_context>(*driver_);
+    call(driver.get());
+    EXPECT_EQ(hp_status(driver.get()), status);
+    EXPECT_EQ(hp_written(driver.get()), hp_written(driver_.get()));
+  }
+  void expect_refused_state(std::uint32_t status, const std::function<void(hp_state&)>& change) {
+    SCOPED_TRACE(status);
+    hp_state state = hp_default_state();
+    change(state);
+    expect_refused(status, [&](hp_context* driver) { hp_set_state(driver, &state); });
+  }
+
+  std::vector<std::uint32_t> words_;
+  std::unique_ptr<hp_context> driver_ = std::make_unique<hp_context>();
+};
+
+TEST(DriverConfiguration, TheCommittedHeaderIsWhatTheConfigurationYields) {
+  test::expect_committed("driver/halfplane_config.h", [](const auto&) { return c_header(preset("embedded")); });
+}
+
+TEST_F(DriverInterface, RefusesValuesOutOfTheirRange) {
+  const auto bad = [&](const std::function<void(hp_context*)>& call) { expect_refused(HP_BAD_VALUE, call); };
+  const hp_stream none{nullptr, 100, nullptr, nullptr}, tiny{words_.data(), 3, nullptr, nullptr};
+  for (const hp_stream& stream : {none, tiny}) bad([&](hp_context* d) { hp_begin(d, &stream); });
+  for (hp_target target : {hp_target{0, 16, 0, 0, 0, 0, 0, 0}, hp_target{16, 0, 0, 0, 0, 0, 0, 0},
+                           hp_target{20000, 16, 0, 0, 0, 0, 0, 0}, hp_target{16, 20000, 0, 0, 0, 0, 0, 0}})
+    bad([&](hp_context* d) { hp_set_target(d, &target); });
+  const hp_viewport whole{0, 0, 16 * HP_ONE, 16 * HP_ONE, 0, HP_DEPTH_ONE, 0};
+  const std::array<std::function<void(hp_viewport&)>, 8> changes{
+      [](hp_viewport& v) { v.width = 0; },         [](hp_viewport& v) { v.height = -1; },
+      [](hp_viewport& v) { v.x = INT32_MIN; },     [](hp_viewport& v) { v.y = INT32_MIN; },
+      [](hp_viewport& v) { v.width = INT32_MAX; }, [](hp_viewport& v) { v.height = INT32_MAX; },
+      [](hp_viewport& v) { v.near_depth = ~0U; },  [](hp_viewport& v) { v.far_depth = ~0U; }};
+  for (const auto& change : changes) {
+    hp_viewport viewport = whole;
+    change(viewport);
+    bad([&](hp_context* d) { hp_set_viewport(d, &viewport); });
+  }
+  for (const std::array<std::int32_t, 4>& r : std::vector<std::array<std::int32_t, 4>>{{0, 0, -1, 1},
+                                                                                       {0, 0, 1, -1},
+                                                                                       {-70000, 0, 1, 1},
+                                                                                       {0, -70000, 1, 1},
+                                                                                       {70000, 0, 1, 1},
+                                                                                       {0, 70000, 1, 1},
+                                                                                       {0, 0, 70000, 1},
+                                                                                       {0, 0, 1, 70000}})
+    bad([&](hp_context* d) { hp_set_scissor(d, r[0], r[1], r[2], r[3]); });
+  std::array<hp_fixed, 16> large{};
+  large[12] = INT32_MIN;
+  large[13] = INT32_MAX;
+  large[14] = INT32_MAX;
+  bad([&](hp_context* d) { hp_set_matrices(d, large.data(), nullptr); });
+  bad([&](hp_context* d) { hp_set_matrices(d, nullptr, large.data()); });
+  bad([&](hp_context* d) { hp_clear(d, 0, 0, 0, 0); });
+  bad([&](hp_context* d) { hp_clear(d, 4, 0, 0, 0); });
+  bad([&](hp_context* d) { hp_clear(d, 1, 0, ~0U, 0); });
+  const hp_vertices nothing{};
+  bad([&](hp_context* d) { hp_draw(d, HP_POINTS, &nothing, nullptr, 1); });
+  bad([&](hp_context* d) { hp_draw(d, HP_POINTS, &kVertices, nullptr, 70000); });
+  bad([&](hp_context* d) { hp_draw(d, static_cast<hp_topology>(7), &kVertices, nullptr, 1); });
+  hp_stream stream{words_.data(), 100, nullptr, nullptr};
+  hp_context fresh{};
+  hp_init(&fresh);
+  hp_begin(&fresh, &stream);
+  hp_clear(&fresh, 3, 0, 0, 0);
+  hp_draw(&fresh, HP_TRIANGLES, &kVertices, nullptr, 3);
+  EXPECT_EQ(hp_status(&fresh), HP_BAD_VALUE) << "no target";
+  EXPECT_EQ(hp_written(&fresh), 0U);
+}
+
+TEST_F(DriverInterface, RefusesStates) {
+  const Config& config = driver_config();
+  hp_texture texture{0, 0, 4, 4};
+  const std::vector<std::function<void(hp_state&)>> bad{[](hp_state& s) { s.depth_test = 8; },
+                                                        [](hp_state& s) { s.cull = 4; },
+                                                        [](hp_state& s) { s.front = 2; },
+                                                        [](hp_state& s) { s.color_mask = 16; },
+                                                        [](hp_state& s) { s.line_rule = 3; },
+                                                        [](hp_state& s) { s.line_width = 0; },
+                                                        [](hp_state& s) { s.line_width = 60000; },
+                                                        [](hp_state& s) { s.point_size = 0; },
+                                                        [](hp_state& s) { s.point_size = INT32_MAX - 65535; }};
+  for (const auto& change : bad) expect_refused_state(HP_BAD_VALUE, change);
+  const std::vector<std::function<void(hp_state&)>> bad_texture{
+      [&](hp_state&) { texture.log2_width = 13; }, [&](hp_state&) { texture.log2_height = 13; },
+      [&](hp_state&) { texture.format = 6; },      [&](hp_state&) { texture.address = 32; },
+      [](hp_state& s) { s.wrap_u = 3; },           [](hp_state& s) { s.wrap_v = 3; },
+      [](hp_state& s) { s.combine = 4; },          [](hp_state& s) { s.is_affine = s.perspective_colors = 1; }};
+  for (const auto& change : bad_texture)
+    expect_refused_state(HP_BAD_VALUE, [&](hp_state& s) {
+      texture = {0, 0, 4, 4};
+      s.texture = &texture;
+      change(s);
+    });
+  texture = {0, 0, 4, 4};
+  if (config.texture_unit == TextureUnitKind::off)
+    expect_refused_state(HP_UNSUPPORTED, [&](hp_state& s) { s.texture = &texture; });
+  if (config.texture_unit == TextureUnitKind::nearest)
+    expect_refused_state(HP_UNSUPPORTED, [&](hp_state& s) { s.texture = &texture, s.is_linear = 1; });
+  if (config.perspective_colors == 0)
+    expect_refused_state(HP_UNSUPPORTED, [](hp_state& s) { s.perspective_colors = 1; });
+  if (config.stencil_bits == 0) expect_refused_state(HP_UNSUPPORTED, [](hp_state& s) { s.has_stencil = 1; });
+  if (config.alpha_units == 0) expect_refused_state(HP_UNSUPPORTED, [](hp_state& s) { s.alpha_func = HP_LESS; });
+  if (config.dither_units == 0) expect_refused_state(HP_UNSUPPORTED, [](hp_state& s) { s.dithers = 1; });
+  if (config.blend_lanes == 0) {
+    expect_refused_state(HP_UNSUPPORTED, [](hp_state& s) { s.blends = 1; });
+    expect_refused_state(HP_UNSUPPORTED, [](hp_state& s) { s.color_mask = 1; });
+  }
+  if (config.line_units == 0)
+    expect_refused(HP_UNSUPPORTED, [](hp_context* d) { hp_draw(d, HP_LINES, &kVertices, nullptr, 2); });
+}
+
+TEST_F(DriverInterface, LeavesOutVerticesBeyondItsNumbers) {
+  const std::array<hp_fixed, 9> far{INT32_MAX, 0, 0, 0, INT32_MAX, 0, 0, 0, 0};
+  const hp_vertices vertices{far.data(), nullptr, nullptr, 12, 0, 0, 0};
+  std::array<hp_fixed, 16> twice{};
+  for (const std::size_t i : {0U, 5U, 10U, 15U}) twice[i] = 2 * HP_ONE;
+  for (const bool is_view : {true, false}) {
+    const auto driver = std::make_unique<hp_context>(*driver_);
+    hp_set_matrices(driver.get(), is_view ? twice.data() : nullptr, is_view ? nullptr : twice.data());
+    hp_draw(driver.get(), HP_TRIANGLES, &vertices, nullptr, 3);
+    EXPECT_EQ(hp_count(driver.get())->sent, 0U);
+    hp_draw(driver.get(), HP_POINTS, &vertices, nullptr, 3);
+    EXPECT_EQ(hp_count(driver.get())->sent, 1U) << "the last one is in range";
+    if (driver_config().line_units != 0) {
+      hp_draw(driver.get(), HP_LINES, &vertices, nullptr, 2);
+      EXPECT_EQ(hp_count(driver.get())->sent, 1U);
+    }
+    EXPECT_EQ(hp_status(driver.get()), HP_OUT_OF_RANGE);
+  }
+}
+
+TEST_F(DriverInterface, AStripCostsOneVertexATriangle) {
+  std::vector<hp_fixed> position;
+  for (int i = 0; i < 40; ++i)
+    position.insert(position.end(), {(i - 20) * HP_ONE / 32, (i % 2 * 2 - 1) * HP_ONE / 2, 0});
+  const hp_vertices vertices{position.data(), nullptr, nullptr, 12, 0, 0, 0};
+  hp_draw(driver_.get(), HP_TRIANGLE_STRIP, &vertices, nullptr, 40);
+  EXPECT_EQ(hp_count(driver_.get())->sent, 38U);
+  EXPECT_EQ(hp_count(driver_.get())->vertices, 40U);
+  EXPECT_EQ(hp_count(driver_.get())->transformed, 40U);
+  hp_draw(driver_.get(), HP_TRIANGLE_FAN, &vertices, nullptr, 17);
+  EXPECT_EQ(hp_count(driver_.get())->transformed, 58U) << "the first one once more: the cache has 16";
+}
+
+TEST_F(DriverInterface, WordsThatDoNotFitAreLeftOut) {
+  const hp_stream stream{words_.data(), 64, nullptr, nullptr};
+  hp_begin(driver_.get(), &stream);
+  hp_set_target(driver_.get(), &kTarget);
+  hp_clear(driver_.get(), 3, 0, 0, 0);
+  std::uint32_t fences = 0;
+  while (hp_status(driver_.get()) == 0) hp_fence(driver_.get(), ++fences);
+  EXPECT_EQ(hp_status(driver_.get()), HP_FULL);
+  EXPECT_LE(hp_written(driver_.get()), 64U);
+  const std::uint32_t before = hp_written(driver_.get());
+  hp_set_target(driver_.get(), &kTarget);
+  hp_clear(driver_.get(), 3, 0, 0, 0);
+  hp_set_scissor(driver_.get(), 1, 1, 3, 3);
+  hp_clear(driver_.get(), 3, 0, 0, 0);
+  for (const hp_topology topology : {HP_TRIANGLES, HP_POINTS}) hp_draw(driver_.get(), topology, &kVertices, nullptr, 3);
+  EXPECT_LE(hp_written(driver_.get()), before + 1) << "a flush of one word, if at all";
+  Decoder decoder(driver_config());
+  decoder.read(std::span(words_).first(before));
+  EXPECT_EQ(decoder.fences().size(), fences - 1);
+}
+
+/// A core that reads a ring in steps.
+struct Ring {
+  std::vector<std::uint32_t> words = std::vector<std::uint32_t>(80), taken;
+  std::uint32_t read = 0;
+  int waits = 0;
+  bool is_stuck = false;
+
+  void take(std::uint32_t written) {
+    for (; read != written; ++read) taken.push_back(words[read % words.size()]);
+  }
+  static std::uint32_t wait(void* user, std::uint32_t written) {
+    auto* ring = static_cast<Ring*>(user);
+    ++ring->waits;
+    if (!ring->is_stuck) ring->take(written);
+    return ring->read;
+  }
+};
+
+TEST_F(DriverInterface, ARingHasTheSameWords) {
+  Ring ring;
+  const auto draw = [&](const hp_stream& stream) {
+    hp_begin(driver_.get(), &stream);
+    hp_set_target(driver_.get(), &kTarget);
+    hp_clear(driver_.get(), 3, 7, 9, 0);
+    for (int i = 0; i < 30; ++i) hp_draw(driver_.get(), HP_TRIANGLE_STRIP, &kVertices, nullptr, 4);
+    hp_flush(driver_.get(), 1);
+    hp_present(driver_.get(), 1, 2);
+    hp_wait_vblank(driver_.get());
+    hp_stop(driver_.get());
+  };
+  draw({ring.words.data(), static_cast<std::uint32_t>(ring.words.size()), Ring::wait, &ring});
+  ring.take(hp_written(driver_.get()));
+  EXPECT_GT(ring.waits, 2);
+  draw({words_.data(), static_cast<std::uint32_t>(words_.size()), nullptr, nullptr});
+  words_.resize(hp_written(driver_.get()));
+  EXPECT_EQ(ring.taken, words_);
+  EXPECT_EQ(hp_status(driver_.get()), 0U);
+  ring.is_stuck = true;
+  draw({ring.words.data(), static_cast<std::uint32_t>(ring.words.size()), Ring::wait, &ring});
+  EXPECT_EQ(hp_status(driver_.get()), HP_FULL);
+}
+
+TEST_F(DriverInterface, MultipliesMatrices) {
+  std::array<hp_fixed, 16> a{}, b{}, out{};
+  for (std::size_t i = 0; i < 16; ++i) {
+    a[i] = static_cast<hp_fixed>(i * 9000) - 70000;
+    b[i] = 50000 - static_cast<hp_fixed>(i * 7001);
+  }
+  hp_multiply(out.data(), a.data(), b.data());
+  for (std::size_t row = 0; row < 4; ++row)
+    for (std::size_t column = 0; column < 4; ++column) {
+      double sum = 0;
+      for (std::size_t i = 0; i < 4; ++i) sum += static_cast<double>(a[4 * row + i]) * b[4 * i + column];
+      EXPECT_EQ(out[4 * row + column], std::floor(sum / 65536 + 0.5));
+    }
+}
+
+/// A clear, a target or a draw where there is nothing to draw sends no primitive; another target flushes the one before.
+TEST_F(DriverInterface, AnEmptyScissorDrawsNothing) {
+  hp_set_scissor(driver_.get(), 3, 3, 0, 5);
+  const std::uint32_t before = hp_written(driver_.get());
+  hp_draw(driver_.get(), HP_TRIANGLES, &kVertices, nullptr, 3);
+  hp_clear(driver_.get(), 3, 0, 0, 0);
+  hp_set_scissor(driver_.get(), 3, 3, 5, 0);
+  hp_draw(driver_.get(), HP_TRIANGLES, &kVertices, nullptr, 3);
+  hp_clear(driver_.get(), 3, 0, 0, 0);
+  EXPECT_EQ(hp_written(driver_.get()), before);
+  hp_set_target(driver_.get(), &kTarget);
+  EXPECT_EQ(words_[before], HP_HEADER(HP_FLUSH, 0));
+}
+
+/// The backend's picture of a stream is the hardware model's of the scene.
+TEST(DriverBackend, DrawsThePictureOfTheScene) {
+  const Config& config = driver_config();
+  for (std::uint32_t seed = 100; seed < 105; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const StreamCase made = random_case(seed, 60);
+    const Framebuffer frame = driver::draw(made.words, config, made.textures);
+    const Rendering wanted = render_hardware(in_host_numbers(made.scene, TransformNumbers::s15_16, config), config);
+    ASSERT_EQ(frame.width, made.scene.width);
+    ASSERT_EQ(frame.color, wanted.frame.color);
+    ASSERT_EQ(frame.depth, wanted.frame.depth);
+    EXPECT_NE(std::ranges::count(frame.color, frame.color[0]), static_cast<std::ptrdiff_t>(frame.color.size()));
+  }
+}
+
+TEST(DriverBackend, RefusesWordsThatTheCoreRefuses) {
+  const auto refused = [](std::vector<std::uint32_t> words) {
+    Decoder decoder(driver_config());
+    EXPECT_THROW(decoder.read(words), InputError);
+  };
+  refused({0xff000000});
+  refused({HP_SET_OF(0, 0)});
+  refused({HP_SET_OF(9, 2), 0, 0});
+  refused({HP_SET_OF(0, 2), 0});
+  refused({HP_HEADER(HP_RECTANGLE, 0), 0, 0});
+}
+
+}  // namespace
+}  // namespace halfplane::test
