@@ -240,8 +240,9 @@ TEST_F(DriverInterface, ARingHasTheSameWords) {
   words_.resize(hp_written(driver_.get()));
   EXPECT_EQ(ring.taken, words_);
   EXPECT_EQ(hp_status(driver_.get()), 0U);
-  ring.is_stuck = true;
-  draw({ring.words.data(), static_cast<std::uint32_t>(ring.words.size()), Ring::wait, &ring});
+  Ring stuck;
+  stuck.is_stuck = true;
+  draw({stuck.words.data(), static_cast<std::uint32_t>(stuck.words.size()), Ring::wait, &stuck});
   EXPECT_EQ(hp_status(driver_.get()), HP_FULL);
 }
 
