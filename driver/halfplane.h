@@ -225,7 +225,8 @@ struct hp_context {
   hp_viewport viewport;
   int32_t scissor[4], rect[4]; /* left, top, right, bottom: as given; what is drawn */
   hp_fixed view[16], projection[16];
-  uint8_t has_view, has_projection, covers_view; /* covers_view: nothing inside the view is outside the guard band */
+  uint8_t has_view, has_projection, is_affine,
+      covers_view; /* covers_view: nothing inside the view is outside the guard band */
   hp_fixed center[2], half[2];
   hp_plane planes[6];
   hp_state state;

@@ -20,6 +20,7 @@ void hp_set_matrices(hp_context* context, const hp_fixed view[16], const hp_fixe
     context->status |= HP_BAD_VALUE;
     return;
   }
+  context->is_affine = view != NULL && view[12] == 0 && view[13] == 0 && view[14] == 0 && view[15] == HP_ONE;
   context->has_view = view != NULL;
   context->has_projection = projection != NULL;
   if (view != NULL) memcpy(context->view, view, sizeof context->view);

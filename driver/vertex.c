@@ -1,7 +1,5 @@
 /* Vertices: matrices, outcode, division, viewport, snap. Bit for bit the model's --transform s15.16 (sim/scene/vertex_transform.hpp,
    host_geometry.hpp) and snap (model/host/viewport.hpp). */
-#include <string.h>
-
 #include "internal.h"
 
 #define HP_LIMIT                 \
@@ -9,15 +7,18 @@
        ? (int32_t)32767 * HP_ONE \
        : (int32_t)(HALFPLANE_GUARD_BAND * 65536 - (65536 >> HALFPLANE_SUBPIXEL_BITS))) /* guard band */
 
-/* Sums of four products do not leave 64 bits: hp_set_matrices(). */
-static uint8_t multiply(const hp_fixed matrix[16], const hp_fixed in[4], hp_fixed out[4]) {
+/* Replaces a point by its product with a matrix. Sums of four products do not leave 64 bits: hp_set_matrices(). is_affine: w is 1 and
+   stays 1. */
+static uint8_t multiply(const hp_fixed matrix[16], hp_fixed point[4], uint8_t is_affine) {
+  const hp_fixed x = point[0], y = point[1], z = point[2], w = point[3];
   uint8_t fits = 1;
-  for (uint32_t row = 0; row < 4; ++row) {
-    int64_t sum = 0;
-    for (uint32_t i = 0; i < 4; ++i) sum += (int64_t)matrix[4 * row + i] * in[i];
-    sum = (sum + 32768) >> 16;
-    out[row] = (hp_fixed)sum;
-    if (sum != out[row]) fits = 0;
+  for (uint32_t row = 0; row < (is_affine != 0 ? 3u : 4u); ++row) {
+    const hp_fixed* m = &matrix[4 * row];
+    int64_t sum = (int64_t)m[0] * x + (int64_t)m[1] * y + (int64_t)m[2] * z + 32768;
+    sum += is_affine != 0 ? (int64_t)m[3] * HP_ONE : (int64_t)m[3] * w;
+    sum >>= 16;
+    point[row] = (hp_fixed)sum;
+    if (sum != point[row]) fits = 0;
   }
   return fits;
 }
@@ -99,27 +100,27 @@ const hp_vertex* hp_fetch(hp_context* context, const hp_vertices* vertices, uint
   hp_vertex* vertex = &context->cache[index % HP_CACHE];
   if (vertex->tag == index) return vertex;
   ++context->counts.transformed;
-  hp_fixed in[4] = {0, 0, 0, HP_ONE}, seen[4];
-  memcpy(in, element(vertices->position, index, vertices->position_stride),
-         vertices->has_w != 0 ? 4 * sizeof *in : 3 * sizeof *in);
+  const hp_fixed* in = element(vertices->position, index, vertices->position_stride);
+  hp_fixed* clip = vertex->clip;
+  clip[0] = in[0];
+  clip[1] = in[1];
+  clip[2] = in[2];
+  clip[3] = vertices->has_w != 0 ? in[3] : HP_ONE;
   vertex->tag = HP_NO_TAG;
-  if (context->has_view != 0) {
-    if (multiply(context->view, in, seen) == 0) return NULL;
-    memcpy(in, seen, sizeof in);
-  }
-  if (context->has_projection != 0) {
-    if (multiply(context->projection, in, seen) == 0) return NULL;
-    memcpy(in, seen, sizeof in);
-  }
-  memcpy(vertex->clip, in, sizeof in);
+  const uint8_t is_affine = vertices->has_w == 0 && context->is_affine != 0;
+  if (context->has_view != 0 && multiply(context->view, clip, is_affine) == 0) return NULL;
+  if (context->has_projection != 0 && multiply(context->projection, clip, 0) == 0) return NULL;
   vertex->tag = index;
   vertex->color = HP_RGBA(255, 255, 255, 255);
   if (vertices->color != NULL)
-    memcpy(&vertex->color, element(vertices->color, index, vertices->color_stride), sizeof vertex->color);
+    vertex->color = *(const uint32_t*)element(vertices->color, index, vertices->color_stride);
   vertex->texcoord[0] = vertex->texcoord[1] = 0;
-  if (vertices->texcoord != NULL)
-    memcpy(vertex->texcoord, element(vertices->texcoord, index, vertices->texcoord_stride), sizeof vertex->texcoord);
-  vertex->outcode = hp_outcode(context, in);
-  if (vertex->outcode == 0) hp_project(context, in, vertex);
+  if (vertices->texcoord != NULL) {
+    const hp_fixed* texcoord = element(vertices->texcoord, index, vertices->texcoord_stride);
+    vertex->texcoord[0] = texcoord[0];
+    vertex->texcoord[1] = texcoord[1];
+  }
+  vertex->outcode = hp_outcode(context, clip);
+  if (vertex->outcode == 0) hp_project(context, clip, vertex);
   return vertex;
 }

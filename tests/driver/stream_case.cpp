@@ -269,7 +269,11 @@ class CaseMaker {
     const bool is_white = chance(6), is_untextured = chance(6);
     const bool transforms = chance(3);
     std::array<hp_fixed, 16> view{}, projection{};
-    const Mat4 v = matrix(view, 0.3), p = matrix(projection, 0.3);
+    Mat4 v = matrix(view, 0.3), p = matrix(projection, 0.3);
+    if (chance(2)) {
+      for (std::size_t i = 12; i < 16; ++i) view[i] = i == 15 ? HP_ONE : 0;
+      v[3] = {0, 0, 0, 1};
+    }
     const VertexTransform transform(v, p, TransformNumbers::s15_16);
     for (int i = 0; i < count; ++i) {
       std::array<hp_fixed, 4> at = position();

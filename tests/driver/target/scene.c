@@ -1,0 +1,86 @@
+/* What instructions are counted of: a mesh of triangle strips, or nothing; for processors without an operating system. The
+   program's only output is its exit code. -DWORK=0: init alone, 1: transform and strips, 2: the same out of view's edge. */
+#include "halfplane.h"
+
+#ifndef COLUMNS
+#define COLUMNS 32
+#endif
+#define ROWS 4
+
+static hp_context context;
+static uint32_t words[16384];
+static hp_fixed position[(COLUMNS + 1) * 2 * ROWS * 3], texcoord[(COLUMNS + 1) * 2 * ROWS * 2];
+static uint32_t color[(COLUMNS + 1) * 2 * ROWS];
+
+static int draw(void) {
+  static const hp_fixed view[16] = {60000, 0, 0, 0, 0, 60000, 0, 0, 0, 0, 65536, -3 * 65536, 0, 0, 0, 65536};
+  static const hp_fixed projection[16] = {65536, 0, 0, 0, 0, 87381, 0, 0, 0, 0, -67000, -13000, 0, 0, -65536, 0};
+  const hp_stream stream = {words, sizeof words / sizeof *words, 0, 0};
+  const hp_target target = {320, 240, 0, 0x80, 0x60000, 0x68000, 320 / 8 * 256, 0x80000};
+  const hp_vertices vertices = {position, color, texcoord, 12, 4, 8, 0};
+  uint32_t n = 0;
+  for (uint32_t row = 0; row < ROWS; ++row)
+    for (uint32_t i = 0; i <= COLUMNS; ++i)
+      for (uint32_t side = 0; side < 2; ++side, ++n) {
+        position[3 * n] = (hp_fixed)(i * (131072 / COLUMNS)) - 65536;
+        position[3 * n + 1] = (hp_fixed)((row + side) * (131072 / ROWS)) - 65536;
+        position[3 * n + 2] = (hp_fixed)((i * 7 + side * 1000) % 9000);
+        texcoord[2 * n] = (hp_fixed)(i * 3000);
+        texcoord[2 * n + 1] = (hp_fixed)(side * 65536);
+        color[n] = n * 0x01030507u;
+      }
+  hp_init(&context);
+  hp_begin(&context, &stream);
+  hp_set_target(&context, &target);
+  hp_set_matrices(&context, view, projection);
+  hp_clear(&context, HP_CLEAR_COLOR | HP_CLEAR_DEPTH, 0, HP_DEPTH_ONE, 0);
+  hp_state state = hp_default_state();
+#ifdef TEXTURED
+  static const hp_texture texture = {0, HP_RGB565, 6, 6};
+  state.texture = &texture;
+#endif
+  hp_set_state(&context, &state);
+#if WORK == 1
+  for (uint32_t row = 0; row < ROWS; ++row) {
+    static uint16_t indices[2 * (COLUMNS + 1)];
+    for (uint32_t i = 0; i < 2 * (COLUMNS + 1); ++i) indices[i] = (uint16_t)(row * 2 * (COLUMNS + 1) + i);
+    hp_draw(&context, HP_TRIANGLE_STRIP, &vertices, indices, 2 * (COLUMNS + 1));
+  }
+  if (hp_count(&context)->sent != 2 * COLUMNS * ROWS) return 2;
+#elif WORK == 2
+  for (uint32_t i = 0; i < (COLUMNS + 1) * 2 * ROWS; ++i) hp_draw(&context, HP_POINTS, &vertices, 0, 0);
+#endif
+  (void)vertices;
+  hp_flush(&context, 1);
+  return (int)hp_status(&context);
+}
+
+void* memcpy(void* to, const void* from, size_t size) {
+  unsigned char* t = to;
+  const unsigned char* f = from;
+  if ((((uintptr_t)t | (uintptr_t)f | size) & 3u) == 0) {
+    for (; size != 0; size -= 4, t += 4, f += 4) *(uint32_t*)(void*)t = *(const uint32_t*)(const void*)f;
+    return to;
+  }
+  for (; size != 0; --size) *t++ = *f++;
+  return to;
+}
+void* memset(void* to, int value, size_t size) {
+  unsigned char* t = to;
+  for (; size != 0; --size) *t++ = (unsigned char)value;
+  return to;
+}
+
+void _start(void);
+void _start(void) {
+  const int code = draw();
+#if defined(__riscv)
+  register long a0 __asm__("a0") = code, a7 __asm__("a7") = 93;
+  __asm__ volatile("ecall" : : "r"(a0), "r"(a7));
+#else
+  register int r0 __asm__("r0") = code, r7 __asm__("r7") = 1;
+  __asm__ volatile("svc 0" : : "r"(r0), "r"(r7));
+#endif
+  for (;;) {
+  }
+}
