@@ -97,7 +97,7 @@ class Bench:
             if offers:
                 dut.packet.value = self.packets[self.next]
 
-    async def draw(self, scene, limit=10_000_000):
+    async def draw(self, scene):
         """Cycles from the first packet on offer to the last answer."""
         self.dut.row_stride.value = scene.stride
         self.packets, self.next = scene.packets, 0
@@ -105,7 +105,7 @@ class Bench:
         start = self.memory.cycle
         while self.next < len(self.packets) or self.dut.idle_o.value == 0:
             await RisingEdge(self.dut.clk_i)
-            assert self.memory.cycle - start < limit, "the frame does not end"
+            assert self.memory.cycle - start < 20 * scene.cycles, "the frame does not end"
         return self.memory.cycle - start
 
     def check(self, scene):
@@ -204,4 +204,4 @@ class Rest:
     """The packets of a scene that have not gone."""
 
     def __init__(self, scene, gone):
-        self.packets, self.stride = scene.packets[gone:], scene.stride
+        self.packets, self.stride, self.cycles = scene.packets[gone:], scene.stride, scene.cycles
