@@ -37,6 +37,7 @@ clang-tidy           lint  clang-tidy
 shellcheck           lint  shellcheck
 python3-venv         lint  /var/lib/dpkg/info/python3-venv.list
 python3-venv         core  /var/lib/dpkg/info/python3-venv.list
+iverilog             core  iverilog
 libpython3-dev       core  /usr/lib/*/libpython3*.so
 yosys                area  yosys
 yosys                prove yosys
