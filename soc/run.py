@@ -1,0 +1,78 @@
+#!/usr/bin/env python3
+"""Builds and simulates the system of soc/: the firmware with the driver, LiteX's SoC around halfplane_core, a display. What is scanned
+out must be, bit for bit and in order, what `halfplane render` draws of the same scene and cameras.
+
+usage: run.py HALFPLANE FOLDER    with build/python's python; FOLDER is made. The status is 1 when a picture differs.
+"""
+
+import os
+import pathlib
+import subprocess
+import sys
+
+import scene
+import verilator
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+HERE = ROOT / "soc"
+CONFIG = ["--config", "embedded", "--set", "memory.port_bits=32"]  # LiteX's bus
+GCC = "riscv64-unknown-elf-gcc --specs=picolibc.specs -march=rv32im -mabi=ilp32 -O2 -std=gnu99 -ffreestanding -ffunction-sections"
+LINK = "-Wl,--gc-sections -nostartfiles -Wall -Wextra -Werror"
+
+
+def run(command, folder, name, **options):
+    """Keeps what it says in NAME.log, and shows the end of it when it fails."""
+    with open(folder / f"{name}.log", "w") as log:
+        status = subprocess.run([str(word) for word in command], cwd=folder, stdout=log, stderr=subprocess.STDOUT, **options).returncode
+    if status != 0:
+        sys.exit("\n".join((folder / f"{name}.log").read_text().splitlines()[-30:]) + f"\n{name}: status {status}")
+
+
+def halfplane(program, *words):
+    return subprocess.run([program, *map(str, words)], capture_output=True, text=True)
+
+
+def build(program, folder):
+    (folder / "raster_pkg.sv").write_text(halfplane(program, "config", *CONFIG, "--sv").stdout)
+    (folder / "halfplane_config.h").write_text(halfplane(program, "config", *CONFIG, "--c-header").stdout)
+    run([sys.executable, HERE / "scene.py", program, folder], folder, "scene")
+    run([*GCC.split(), *LINK.split(), "-I", folder, "-I", ROOT / "driver", "-I", ROOT / "core/registers",
+         f'-DHALFPLANE_CONFIG_FILE="{folder}/halfplane_config.h"', "-T", HERE / "firmware/link.ld", *sorted(HERE.glob("firmware/*.[cS]")),
+         *sorted((ROOT / "driver").glob("*.c")), "-o", "firmware.elf"], folder, "firmware")
+    run(["riscv64-unknown-elf-objcopy", "-O", "binary", "firmware.elf", "firmware.bin"], folder, "objcopy")
+    run([sys.executable, HERE / "halfplane_soc.py", "firmware.bin", folder], folder, "litex")
+    home = pathlib.Path(verilator.__file__).parent
+    includes = [f"-I{ROOT / name}" for name in ("core", "rtl_ref/lib", "rtl_ref/stages", "rtl_ref")]
+    cache = {"OBJCACHE": "ccache"} if subprocess.run(["which", "ccache"], capture_output=True).returncode == 0 else {}
+    run([home / "bin/verilator", "--binary", "--timing", "-Wno-fatal", "-Wno-lint", "-Wno-style", "-CFLAGS", "-O1 -std=c++20", "-j", "2", "-MAKEFLAGS",
+         "CFG_CXXFLAGS_PCH_I=-include", "--Mdir", "obj",
+         "--top-module", "testbench", *includes, "raster_pkg.sv", ROOT / "core/core_pkg.sv", ROOT / "core/halfplane_core.sv", "soc.v",
+         *(folder / "sources.txt").read_text().split(), HERE / "testbench.sv", "-o", "simulation"], folder, "verilator",
+        env=os.environ | {"VERILATOR_ROOT": str(home)} | cache)
+
+
+def main():
+    program, folder = str(pathlib.Path(sys.argv[1]).resolve()), pathlib.Path(sys.argv[2]).resolve()
+    folder.mkdir(parents=True, exist_ok=True)
+    for old in folder.glob("picture_*"):
+        old.unlink()
+    build(program, folder)
+    run(["obj/simulation", f"+pictures={scene.FRAMES}", f"+width={scene.WIDTH}"], folder, "simulation")
+    print((folder / "simulation.log").read_text(), end="")
+    equal = 0
+    for number, camera in enumerate((folder / "cameras.txt").read_text().split("\n")[:-1]):
+        picture = folder / f"picture_{number}"
+        if not picture.with_suffix(".ppm").exists():
+            continue
+        run([ROOT / "examples/raster_top/ppm_to_png.py", f"{picture}.ppm", f"{picture}.png"], folder, "png")
+        text = halfplane(program, "compare", folder / "scene.obj", *CONFIG, "--size", f"{scene.WIDTH}x{scene.HEIGHT}", "--transform",
+                         "s15.16", "--cull-objects", "none", "--camera", camera, "--against", f"{picture}.png")
+        said = [line for line in text.stdout.splitlines() if line.startswith("against ")] or [text.stderr]
+        print(said[0].replace(f"{folder}/", ""))
+        equal += ": 0 of " in said[0]
+    print(f"{equal} of {scene.FRAMES} pictures are bit for bit what render draws")
+    return 0 if equal == scene.FRAMES else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
