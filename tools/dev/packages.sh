@@ -37,6 +37,8 @@ clang-tidy           lint  clang-tidy
 shellcheck           lint  shellcheck
 python3-venv         lint  /var/lib/dpkg/info/python3-venv.list
 python3-venv         core  /var/lib/dpkg/info/python3-venv.list
+gcc-riscv64-unknown-elf core riscv64-unknown-elf-gcc
+picolibc-riscv64-unknown-elf core /usr/lib/picolibc/riscv64-unknown-elf/lib/libc.a
 iverilog             core  iverilog
 libpython3-dev       core  /usr/lib/*/libpython3*.so
 yosys                area  yosys
