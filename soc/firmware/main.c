@@ -18,6 +18,7 @@
 #define BUFFER (STRIDE * TILES(SCENE_HEIGHT))
 #define FLAGS ((SCENE_HEIGHT / 4 + 1u) << HALFPLANE_FLAG_ROW_SHIFT)
 #define BUFFERS (MEMORY + 0x10000u)
+#define TEXTURE 0x70000u /* from MEMORY on */
 
 static hp_context context;
 static volatile uint32_t fence;
@@ -60,13 +61,22 @@ static uint32_t wait_for_room(void* user, uint32_t written) {
   return read;
 }
 
+static const hp_texture texture = {TEXTURE, HP_RGBA8888, SCENE_LOG2_TEXELS, SCENE_LOG2_TEXELS};
+
 static void draw(uint32_t frame) {
   const uint32_t back = frame & 1u, color = BUFFERS + PLANE + back * BUFFER, flags = BUFFERS + 3 * BUFFER;
   const hp_target target = {SCENE_WIDTH, SCENE_HEIGHT, BUFFERS, color, flags, flags + FLAGS * (1 + back), STRIDE, MEMORY};
-  const hp_vertices mesh = {scene_position, scene_color, NULL, 12, 4, 0, 0};
+  const hp_vertices mesh = {scene_position, scene_color, scene_texcoord, 12, 4, 8, 0};
+  hp_state state = hp_default_state();
   hp_set_target(&context, &target);
   hp_set_matrices(&context, scene_view[frame], scene_projection);
   hp_clear(&context, HP_CLEAR_DEPTH | HP_CLEAR_COLOR, SCENE_CLEAR, HP_DEPTH_ONE, 0);
+  state.texture = &texture;
+  state.is_linear = 1;
+  hp_set_state(&context, &state);
+  hp_draw(&context, HP_TRIANGLES, &mesh, scene_floor, SCENE_FLOOR);
+  state.texture = NULL;
+  hp_set_state(&context, &state);
   hp_draw(&context, HP_TRIANGLES, &mesh, scene_triangles, SCENE_TRIANGLES);
   hp_draw(&context, HP_LINES, &mesh, scene_lines, SCENE_LINES);
   hp_flush(&context, 1);
@@ -87,6 +97,7 @@ int main(void) {
   enable_interrupts();
   hp_init(&context);
   hp_begin(&context, &ring);
+  hp_upload_texture(&context, (void*)(MEMORY + TEXTURE), &texture, scene_texels);
   for (uint32_t frame = 0; frame < SCENE_FRAMES; ++frame) {
     draw(frame);
     wait_for(frame + 1);
