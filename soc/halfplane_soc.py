@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A system that draws, in LiteX: VexRiscv, integrated RAM, halfplane_core as a slave and a master of the bus, and its video as pins.
+"""A system that draws, in LiteX: VexRiscv, integrated RAM, halfplane_core as slave and master of the bus, video pins.
 
 usage: halfplane_soc.py FIRMWARE.bin FOLDER    writes soc.v, the memories' contents and sources.txt into FOLDER
 """
@@ -21,12 +21,24 @@ CORE_IRQ = 3
 IO = [
     ("clk", 0, Pins(1)),
     ("reset", 0, Pins(1)),
-    ("video", 0, Subsignal("data", Pins(24)), Subsignal("valid", Pins(1)), Subsignal("ready", Pins(1)), Subsignal("last", Pins(1)),
-     Subsignal("user", Pins(1))),
+    (
+        "video",
+        0,
+        Subsignal("data", Pins(24)),
+        Subsignal("valid", Pins(1)),
+        Subsignal("ready", Pins(1)),
+        Subsignal("last", Pins(1)),
+        Subsignal("user", Pins(1)),
+    ),
 ]
 # Signals of the AXI channels that both sides have, by the direction seen from the master.
-OUT = {"aw": "id addr len size burst lock cache prot valid", "w": "data strb last valid", "b": "ready",
-       "ar": "id addr len size burst lock cache prot valid", "r": "ready"}
+OUT = {
+    "aw": "id addr len size burst lock cache prot valid",
+    "w": "data strb last valid",
+    "b": "ready",
+    "ar": "id addr len size burst lock cache prot valid",
+    "r": "ready",
+}
 IN = {"aw": "ready", "w": "ready", "b": "id resp valid", "ar": "ready", "r": "id data resp last valid"}
 
 
@@ -38,10 +50,20 @@ class Core(Module):
         self.memory = axi.AXIInterface(data_width=32, address_width=32, id_width=1)
         self.irq = Signal()
         self.ev = self  # LiteX connects ev.irq
-        ports = {"i_clk_i": ClockSignal("sys"), "i_rst_ni": ~ResetSignal("sys"), "o_irq": self.irq,
-                 "i_s_axis_tdata": 0, "i_s_axis_tvalid": 0, "i_m_axi_texture_arready": 0, "i_m_axi_texture_rid": 0,
-                 "i_m_axi_texture_rdata": 0, "i_m_axi_texture_rresp": 0, "i_m_axi_texture_rlast": 0, "i_m_axi_texture_rvalid": 0,
-                 "i_m_axis_video_tready": video.ready}
+        ports = {
+            "i_clk_i": ClockSignal("sys"),
+            "i_rst_ni": ~ResetSignal("sys"),
+            "o_irq": self.irq,
+            "i_s_axis_tdata": 0,
+            "i_s_axis_tvalid": 0,
+            "i_m_axi_texture_arready": 0,
+            "i_m_axi_texture_rid": 0,
+            "i_m_axi_texture_rdata": 0,
+            "i_m_axi_texture_rresp": 0,
+            "i_m_axi_texture_rlast": 0,
+            "i_m_axi_texture_rvalid": 0,
+            "i_m_axis_video_tready": video.ready,
+        }
         ports |= {f"o_m_axis_video_t{name}": getattr(video, name) for name in ("data", "valid", "last", "user")}
         for direction, table in (("o", OUT), ("i", IN)):
             for channel, names in table.items():
@@ -58,14 +80,29 @@ class HalfplaneSoC(SoCCore):
     def __init__(self, platform, firmware):
         self.crg = Module()
         self.crg.clock_domains.cd_sys = ClockDomain("sys")
-        self.comb += [self.crg.cd_sys.clk.eq(platform.request("clk")), self.crg.cd_sys.rst.eq(platform.request("reset"))]
-        SoCCore.__init__(self, platform, clk_freq=50_000_000, cpu_type="vexriscv", cpu_variant="standard", with_uart=False,
-                         with_timer=False, ident="", integrated_rom_size=0x20000,
-                         integrated_rom_init=get_mem_data(firmware, data_width=32, endianness="little"),
-                         integrated_sram_size=0x8000, integrated_main_ram_size=0x80000)
+        self.comb += [
+            self.crg.cd_sys.clk.eq(platform.request("clk")),
+            self.crg.cd_sys.rst.eq(platform.request("reset")),
+        ]
+        SoCCore.__init__(
+            self,
+            platform,
+            clk_freq=50_000_000,
+            cpu_type="vexriscv",
+            cpu_variant="standard",
+            with_uart=False,
+            with_timer=False,
+            ident="",
+            integrated_rom_size=0x20000,
+            integrated_rom_init=get_mem_data(firmware, data_width=32, endianness="little"),
+            integrated_sram_size=0x8000,
+            integrated_main_ram_size=0x80000,
+        )
         self.submodules.halfplane = Core(platform.request("video"))
         self.irq.add("halfplane", n=CORE_IRQ)
-        self.bus.add_slave("halfplane", self.halfplane.registers, SoCRegion(origin=CORE_BASE, size=0x1000, cached=False))
+        self.bus.add_slave(
+            "halfplane", self.halfplane.registers, SoCRegion(origin=CORE_BASE, size=0x1000, cached=False)
+        )
         self.bus.add_master("halfplane", master=self.halfplane.memory)
 
 

