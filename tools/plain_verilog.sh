@@ -1,20 +1,26 @@
 #!/bin/sh
-# One file of plain Verilog for one configuration of raster_top: no packages, no structs, for tools that read no SystemVerilog
-# (Icarus, older FPGA tools). Made by Yosys; a port that was a struct is a vector, its first field highest, widths and fields as
-# `halfplane config --sv` prints them. usage: plain_verilog.sh HALFPLANE FILE CONFIG [--set KEY=VALUE]...
+# One file of plain Verilog for one configuration of raster_top, or with TOP=halfplane_core in the environment of that: no
+# packages, no structs, for tools that read no SystemVerilog (Icarus, older FPGA tools). Made by Yosys; a port that was a
+# struct is a vector, its first field highest; widths and fields are those that `halfplane config --sv` prints.
+# usage: plain_verilog.sh HALFPLANE FILE CONFIG [--set KEY=VALUE]...
 set -eu
-halfplane=$1 file=$2
+halfplane=$1 file=$2 top=${TOP:-raster_top}
 shift 2
-rtl=$(cd "$(dirname "$0")/../rtl_ref" && pwd)
+root=$(cd "$(dirname "$0")/.." && pwd)
+rtl=$root/rtl_ref core=
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 "$halfplane" config --config "$@" --sv >"$work/raster_pkg.sv"
-yosys -q -p "read_verilog -sv $work/raster_pkg.sv $rtl/lib/*.sv $rtl/stages/*.sv $rtl/raster_top.sv
-  hierarchy -check -top raster_top; proc; opt_clean; write_verilog -noattr $work/raster_top.v" >"$work/log" 2>&1 ||
+if [ "$top" != raster_top ]; then
+  core=$root/core/core_pkg.sv
+  for module in "$root"/core/*.sv; do case $module in *_pkg.sv | *_checker.sv) ;; *) core="$core $module" ;; esac done
+fi
+yosys -q -p "read_verilog -sv $work/raster_pkg.sv $rtl/lib/*.sv $rtl/stages/*.sv $rtl/raster_top.sv $core
+  hierarchy -check -top $top; proc; opt_clean; write_verilog -noattr $work/plain.v" >"$work/log" 2>&1 ||
   { cat "$work/log" >&2; exit 3; }
 {
-  echo "// raster_top of Halfplane, $("$halfplane" --version | cut -d, -f1)), as plain Verilog; do not edit."
-  echo "// tools/plain_verilog.sh build/halfplane raster_top.v $*"
+  echo "// $top of Halfplane, $("$halfplane" --version | cut -d, -f1)), as plain Verilog; do not edit."
+  echo "// tools/plain_verilog.sh build/halfplane FILE $*"
   sed -n '/^  localparam logic \[63:0\] CONFIG_ID/s/.*= \(.*\);.*/\/\/ CONFIG_ID \1/p' "$work/raster_pkg.sv"
-  cat "$work/raster_top.v"
+  cat "$work/plain.v"
 } >"$file"

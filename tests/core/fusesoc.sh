@@ -18,6 +18,7 @@ auto-sync = false
 END
 run() { fusesoc --config fusesoc.conf run "$@" >log 2>&1 || { cat log >&2; exit 1; } }
 run --target lint halfplane:graphics:raster
+run --target lint halfplane:graphics:core
 run --target sim halfplane:examples:raster_top --picture "$folder/picture.ppm"
 grep -q 'CACHE_LINES = 8;' build/*/*/src/*raster_top-package*/raster_pkg.sv
 "$root/examples/raster_top/ppm_to_png.py" picture.ppm picture.png
