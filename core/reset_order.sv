@@ -33,7 +33,7 @@ module reset_order #(
 
   assign is_busy_o = !core_no;
   assign starts    = restart_i && core_no;
-  assign gives_up  = waited_q == ~PATIENCE'(1);  // the cycle before the last
+  assign gives_up  = waited_q == {{(PATIENCE - 1) {1'b1}}, 1'b0};  // the cycle before the last
 
   // raster_top's idle_o is low in the cycles after its reset only because of the reset, so the first look is at 4.
   always_ff @(posedge clk_i or negedge rst_ni) begin

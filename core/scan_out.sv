@@ -418,7 +418,7 @@ module scan_out #(
   assign has_pixel    = is_active_q && !is_shown_q && is_full_q[shown_buffer_q];
   assign is_line_end  = x_q == last_x_q;
   assign is_frame_end = is_line_end && y_q == last_y_q;
-  assign frees        = shows && (is_frame_end || (is_line_end && &(y | ~32'(SIDE - 1))));
+  assign frees        = shows && (is_frame_end || (is_line_end && &(y | ~(32'(SIDE - 1)))));
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin

@@ -1,11 +1,14 @@
 #!/usr/bin/env python3
 """Every module of core/ in two Verilators with -Wall: the whole core with each design's package, the others with `embedded`'s.
+And no operator in front of a cast, in rtl_ref neither: of ~8'(x) Yosys 0.23 loses the ~, without a word. It reads ~(8'(x)), but
+a constant there keeps its 32 bits in a comparison: write the bits.
 
 usage: lint.py PACKAGES VERILATOR_BIN    PACKAGES: the build's rtl_ref/packages. The status is 1 when one warns.
 """
 
 import os
 import pathlib
+import re
 import subprocess
 import sys
 
@@ -16,10 +19,20 @@ DESIGNS = ["embedded", "small", "tiny", "textured", "blended"]
 WHOLE = ["halfplane_core", "halfplane_core_wishbone"]
 
 
+def operators_before_casts():
+    unary = re.compile(r"(~|!|[=(,?:&|<>+*]\s*-)\s*(\([^()]*\)|[A-Za-z_][\w:]*|\d+)'\(")
+    for file in sorted(path for folder in ("core", "rtl_ref") for path in (ROOT / folder).rglob("*.sv")):
+        for number, line in enumerate(file.read_text().splitlines(), 1):
+            if unary.search(line.split("//")[0]):
+                yield f"{file.relative_to(ROOT)}:{number}: put the cast in parentheses: {line.strip()}"
+
+
 def main():
     packages, other = pathlib.Path(sys.argv[1]), sys.argv[2]
     home = pathlib.Path(verilator.__file__).parent
-    status = runs = 0
+    found = list(operators_before_casts())
+    print(*found, sep="\n")
+    status, runs = int(bool(found)), 0
     for tool, environment in ((other, {}), (home / "bin/verilator_bin", {"VERILATOR_ROOT": str(home)})):
         for file in sorted((ROOT / "core").glob("*.sv")):
             for design in DESIGNS if file.stem in WHOLE else ["embedded"]:
