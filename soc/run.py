@@ -2,7 +2,8 @@
 """Builds and simulates the system of soc/: the firmware with the driver, LiteX's SoC around halfplane_core, a display.
 What is scanned out must be, bit for bit and in order, what `halfplane render` draws of the same scene and cameras.
 
-usage: run.py HALFPLANE FOLDER    with build/python's python; FOLDER is made. The status is 1 when a picture differs.
+usage: run.py HALFPLANE FOLDER [plain]    with build/python's python; FOLDER is made. The status is 1 when a picture differs.
+plain: the core is the plain Verilog that Yosys makes of it (tools/plain_verilog.sh), so Yosys reads what Verilator reads.
 """
 
 import os
@@ -41,7 +42,7 @@ def halfplane(program, *words):
     return subprocess.run([program, *map(str, words)], capture_output=True, text=True)
 
 
-def build(program, folder):
+def build(program, folder, is_plain):
     (folder / "raster_pkg.sv").write_text(halfplane(program, "config", *CONFIG, "--sv").stdout)
     (folder / "halfplane_config.h").write_text(halfplane(program, "config", *CONFIG, "--c-header").stdout)
     run([sys.executable, HERE / "scene.py", program, folder], folder, "scene")
@@ -68,6 +69,11 @@ def build(program, folder):
     )
     run(["riscv64-unknown-elf-objcopy", "-O", "binary", "firmware.elf", "firmware.bin"], folder, "objcopy")
     run([sys.executable, HERE / "halfplane_soc.py", "firmware.bin", folder], folder, "litex")
+    core = [folder / "raster_pkg.sv", ROOT / "core/core_pkg.sv", ROOT / "core/halfplane_core.sv"]
+    if is_plain:
+        core = [folder / "halfplane_core.v"]
+        command = [ROOT / "tools/plain_verilog.sh", program, *core, *CONFIG[1:]]
+        run(command, folder, "yosys", env=os.environ | {"TOP": "halfplane_core"})
     home = pathlib.Path(verilator.__file__).parent
     includes = [f"-I{ROOT / name}" for name in ("core", "rtl_ref/lib", "rtl_ref/stages", "rtl_ref")]
     cache = {"OBJCACHE": "ccache"} if subprocess.run(["which", "ccache"], capture_output=True).returncode == 0 else {}
@@ -90,9 +96,7 @@ def build(program, folder):
             "--top-module",
             "testbench",
             *includes,
-            folder / "raster_pkg.sv",
-            ROOT / "core/core_pkg.sv",
-            ROOT / "core/halfplane_core.sv",
+            *core,
             "soc.v",
             *(folder / "sources.txt").read_text().split(),
             HERE / "testbench.sv",
@@ -110,7 +114,7 @@ def main():
     folder.mkdir(parents=True, exist_ok=True)
     for old in folder.glob("picture_*"):
         old.unlink()
-    build(program, folder)
+    build(program, folder, is_plain=sys.argv[3:] == ["plain"])
     run(["obj/simulation", f"+pictures={scene.FRAMES}", f"+width={scene.WIDTH}"], folder, "simulation")
     print((folder / "simulation.log").read_text(), end="")
     equal = 0
