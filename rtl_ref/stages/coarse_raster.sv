@@ -433,7 +433,7 @@ module coarse_raster (
     end else begin
       is_visited_o     <= steps && is_triangle;
       is_outside_o     <= steps && is_outside && is_triangle;
-      is_hiz_o         <= left_valid_q && left_behind && left_is_free;
+      is_hiz_o         <= left_valid_q && left_q.is_visit && left_behind && left_is_free;  // a token's bound is undefined
       is_accepted_o    <= starts_visit && left_q.is_inside && left_is_triangle;
       samples_tested_o <= starts_visit && !left_q.is_inside && left_is_triangle ?
                           (2 * TS + 1 + SAMPLE_SHIFT)'(area) << SAMPLE_SHIFT : '0;
