@@ -42,12 +42,11 @@ BENCH = [
     {
         "top": "scan_out", "configs": ["sampled"], "parameters": {"WIDEST": 104, "FLAGS": 1},
         "faults": [
+            ("core/scan_out.sv", "unit_of_pixels ? 8'(PIXEL_BURST - 1)", "unit_of_pixels && !FAULT ? 8'(PIXEL_BURST - 1)", "frames_are"),
             ("core/scan_out.sv", "state_q == PIXELS ? 32'd1 <<",
              "state_q == PIXELS && !FAULT ? 32'd1 <<", "frames_are"),
             ("core/scan_out.sv", "if (asked) state_q <= COMPRESS ? PIXELS : WAIT;",
              "if (asked) state_q <= COMPRESS && !FAULT ? PIXELS : WAIT;", "an_error"),
-            ("core/scan_out.sv", "unit_of_pixels ? sent_q == BEAT'(PIXEL_BEATS",
-             "(unit_of_pixels || FAULT) ? sent_q == BEAT'(PIXEL_BEATS", "frames_are"),
             ("core/scan_out.sv", "32'(beat_q) & 32'(WORD_BEATS - 1)) == 32'(WORD_BEATS - 1)",
              "32'(beat_q) & 32'(WORD_BEATS - 1)) == (FAULT ? 32'd0 : 32'(WORD_BEATS - 1))", "frames_are"),
         ],
