@@ -28,14 +28,6 @@ int64_t hp_divide_rounded(int64_t n, uint32_t d) {
   return n < 0 ? -quotient : quotient;
 }
 
-void hp_put_bits(uint32_t* words, uint32_t at, uint32_t bits, uint64_t value) {
-  if (bits < 64) value &= ((uint64_t)1 << bits) - 1;
-  uint32_t* word = words + at / 32;
-  const uint32_t shift = at % 32;
-  *word |= (uint32_t)(value << shift);
-  for (uint32_t put = 32 - shift; put < bits; put += 32) *++word |= (uint32_t)(value >> put);
-}
-
 uint32_t hp_depth_code(uint32_t depth) {
   uint64_t product = (uint64_t)depth * (((uint64_t)1 << HALFPLANE_DEPTH_BITS) - 1); /* 31 fraction bits */
 #if HALFPLANE_DEPTH_BITS > 22

@@ -64,7 +64,13 @@ static inline void hp_put(hp_context* context, uint32_t word) {
   ++context->written;
 }
 /* ORs the low `bits` bits (1 to 64) of a value into zeroed words. */
-void hp_put_bits(uint32_t* words, uint32_t at, uint32_t bits, uint64_t value);
+static inline void hp_put_bits(uint32_t* words, uint32_t at, uint32_t bits, uint64_t value) {
+  if (bits < 64) value &= ((uint64_t)1 << bits) - 1;
+  uint32_t* word = words + at / 32;
+  const uint32_t shift = at % 32;
+  *word |= (uint32_t)(value << shift);
+  for (uint32_t put = 32 - shift; put < bits; put += 32) *++word |= (uint32_t)(value >> put);
+}
 /* The affine codes of a vertex. */
 void hp_put_codes(hp_context* context, uint32_t depth, uint32_t color);
 

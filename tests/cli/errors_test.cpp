@@ -36,6 +36,7 @@ TEST_F(BadInput, WrongUsageNamesTheOptionAndWhereItIsExplained) {
   expect_refused({"compare", "triangle", "--golden", "binary16"}, "binary32");
   expect_refused({"scenes", "extra"}, "extra");
   expect_refused({"config", "--sv", "--json"}, "--sv");
+  expect_refused({"config", "--c-header", "--sv"}, "--sv");
   expect_refused({"--json", "render", "triangle"}, "--json");
 }
 
@@ -257,6 +258,7 @@ TEST_F(BadInput, ResultThatNobodyTakesIsAnError) {
                                        {"render", "triangle"},
                                        {"scenes"},
                                        {"config", "--sv"},
+                                       {"config", "--c-header"},
                                        {"--help"}})
       expect_refused(arguments, "stdout", 2, {out, 0, 0, ""});
     EXPECT_EQ(run({"render", "triangle", "--quiet"}, {out, 0, 0, ""}).status, 0);  // no output, so nothing is lost
