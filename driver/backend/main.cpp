@@ -28,7 +28,7 @@ void run(const std::vector<std::string>& words) {
   std::string picture = "P6\n" + std::to_string(frame.width) + " " + std::to_string(frame.height) + "\n255\n";
   for (int y = 0; y < frame.height; ++y)
     for (int x = 0; x < frame.width; ++x) {
-      const auto rgba = unpack_color<std::uint32_t>(config.color_format, frame.color[frame.at(x, y)]);
+      const auto rgba = widen_color<std::uint32_t>(config.color_format, frame.color[frame.at(x, y)]);
       for (std::size_t c = 0; c < 3; ++c) picture += static_cast<char>(rgba[c]);
     }
   std::ofstream file(words[2], std::ios::binary);
