@@ -9,7 +9,8 @@ typedef struct source {
 
 static uint32_t index_of(const source* from, uint32_t i) { return from->indices != NULL ? from->indices[i] : i; }
 
-/* Transformed vertices; false: one is out of range. An entry of the cache that another of them takes is copied first. */
+/* Transformed vertices; false: one is out of range. An entry of the cache that another of them takes is copied
+   first. */
 static uint8_t fetch(const source* from, const uint32_t at[3], uint32_t count, const hp_vertex* v[3]) {
   hp_context* context = from->context;
   uint32_t index[3];

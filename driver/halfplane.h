@@ -67,7 +67,8 @@ enum hp_combine { HP_MODULATE, HP_REPLACE_COLOR, HP_DECAL, HP_ADD_COLOR };
 typedef struct hp_stream {
   uint32_t* words;
   uint32_t size; /* words, at least HP_LONGEST */
-  /* Called where the next command does not fit: hands `written` (words since hp_begin, modulo 2^32) to the core, waits, and
+  /* Called where the next command does not fit: hands `written` (words since hp_begin, modulo 2^32) to the core,
+     waits, and
      returns how many of them the core has read. Null: a buffer; where it ends, HP_FULL. */
   uint32_t (*wait)(void* user, uint32_t written);
   void* user;
@@ -142,7 +143,8 @@ void hp_init(hp_context* context);
 /* The configuration that the driver was compiled for: the core's register CONFIG_ID must have the same. */
 uint64_t hp_config_id(void);
 
-/* ---- A frame. A frame begins with hp_begin() and hp_target(); the first thing drawn is hp_clear() of colour and depth. */
+/* ---- A frame. A frame begins with hp_begin() and hp_target(); the first thing drawn is hp_clear() of colour and
+   depth. */
 
 void hp_begin(hp_context* context, const hp_stream* stream);
 /* Buffers and viewport (the whole of it); after another one was drawn to, flushes that first. */
@@ -172,7 +174,8 @@ hp_state hp_default_state(void);
 void hp_set_state(hp_context* context, const hp_state* state);
 void hp_set_viewport(hp_context* context, const hp_viewport* viewport);
 void hp_set_scissor(hp_context* context, int32_t x, int32_t y, int32_t width, int32_t height); /* pixels */
-/* Row-major; a vertex is a column. Null: the identity. With both, a vertex is rounded after each. Elements of a row must
+/* Row-major; a vertex is a column. Null: the identity. With both, a vertex is rounded after each. Elements of a row
+   must
    be below 65536 in sum. */
 void hp_set_matrices(hp_context* context, const hp_fixed view[16], const hp_fixed projection[16]);
 /* out = a b, rounded once. `out` may be neither. */
@@ -182,7 +185,8 @@ void hp_multiply(hp_fixed out[16], const hp_fixed a[16], const hp_fixed b[16]);
 
 /* Bytes of a texture in memory. */
 size_t hp_texture_bytes(const hp_texture* texture);
-/* Writes texels (rows from the top, each of its format, low byte first) as the unit reads them; `memory`: where the unit finds
+/* Writes texels (rows from the top, each of its format, low byte first) as the unit reads them; `memory`: where the
+   unit finds
    the texture. Texels that the unit had read before are dropped at the next draw. */
 void hp_upload_texture(hp_context* context, void* memory, const hp_texture* texture, const void* texels);
 

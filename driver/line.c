@@ -8,7 +8,8 @@
 #define HP_S HALFPLANE_GRID_BITS
 #define HP_PIXEL ((int32_t)1 << HP_S)
 
-/* The line in its own octant: along the major axis from a0 to a1, along the minor one from b0 to b1, both growing. Reversing an axis
+/* The line in its own octant: along the major axis from a0 to a1, along the minor one from b0 to b1, both growing.
+   Reversing an axis
    maps v to -v, and so pixel i to -1 - i. */
 typedef struct octant {
   int32_t a0, b0, a1, b1;
@@ -43,7 +44,8 @@ static uint8_t tie_moves(const octant* line, uint8_t rule) {
   return line->is_major_negative == 0 && line->b1 != line->b0;
 }
 
-/* Diamond exit: the first column that a line from (a, b) on would cover, one past the last that a line to (a, b) does. */
+/* Diamond exit: the first column that a line from (a, b) on would cover, one past the last that a line to (a, b)
+   does. */
 static int32_t exit_column(const octant* line, int32_t a, int32_t b) {
   const int32_t half = HP_PIXEL / 2;
   const int32_t column = line->is_major_negative != 0 ? ((a - half) >> HP_S) + 1 : (a - half + HP_PIXEL - 1) >> HP_S;

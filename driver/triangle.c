@@ -130,7 +130,8 @@ static void piece_of(const hp_context* context, uint32_t size, uint32_t start, u
   v[2] = &context->corner[(start + i + 1) % size];
 }
 
-/* Rounding can dent the polygon: then the fan begins at a corner from which no piece is reversed, the smallest by y and x; or at the
+/* Rounding can dent the polygon: then the fan begins at a corner from which no piece is reversed, the smallest by y
+   and x; or at the
    smallest of all, without the pieces that are. */
 static uint32_t fan_start(const hp_context* context, uint32_t size, int64_t whole) {
   uint32_t best = 0;

@@ -1,4 +1,5 @@
-/* Vertices: matrices, outcode, division, viewport, snap. Bit for bit the model's --transform s15.16 (sim/scene/vertex_transform.hpp,
+/* Vertices: matrices, outcode, division, viewport, snap. Bit for bit the model's --transform s15.16
+   (sim/scene/vertex_transform.hpp,
    host_geometry.hpp) and snap (model/host/viewport.hpp). */
 #include "internal.h"
 
@@ -7,7 +8,8 @@
        ? (int32_t)32767 * HP_ONE \
        : (int32_t)(HALFPLANE_GUARD_BAND * 65536 - (65536 >> HALFPLANE_SUBPIXEL_BITS))) /* guard band */
 
-/* Replaces a point by its product with a matrix. Sums of four products do not leave 64 bits: hp_set_matrices(). is_affine: w is 1 and
+/* Replaces a point by its product with a matrix. Sums of four products do not leave 64 bits: hp_set_matrices().
+   is_affine: w is 1 and
    stays 1. */
 static uint8_t multiply(const hp_fixed matrix[16], hp_fixed point[4], uint8_t is_affine) {
   const hp_fixed x = point[0], y = point[1], z = point[2], w = point[3];

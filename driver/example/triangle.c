@@ -30,6 +30,7 @@ int main(void) {
   hp_present(&context, target.color, target.color_flags);
   hp_stop(&context);
   if (hp_status(&context) != 0) return 1;
-  /* In a system: clean the cache, give the address and hp_written() words to the core, and wait for the fence's interrupt. */
+  /* In a system: clean the cache, give the address and hp_written() words to the core, and wait for the fence's
+     interrupt. */
   return fwrite(words, sizeof *words, hp_written(&context), stdout) == hp_written(&context) ? 0 : 1;
 }

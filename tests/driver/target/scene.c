@@ -1,4 +1,5 @@
-/* What instructions are counted of: a mesh of triangle strips, or nothing; for processors without an operating system. The
+/* What instructions are counted of: a mesh of triangle strips, or nothing; for processors without an operating
+   system. The
    program's only output is its exit code. WORK 0: the mesh and a clear; 1: and the mesh's strips; 2: and the strips, with every triangle culled. */
 #include "halfplane.h"
 
