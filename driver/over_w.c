@@ -1,7 +1,7 @@
 /* Codes over w: Q = 2^e / w and P = u' Q of texture coordinates and colours (model/stages/perspective.hpp), in
    integers. Q is the
-   exact quotient rounded, P the exact product rounded; binary64, as the model has it, gives the same wherever a product has at most 53
-   bits (docs/driver.md). */
+   exact quotient rounded, P the exact product rounded; binary64, as the model has it, gives the same wherever a product has at most
+   53    bits (docs/driver.md). */
 #include "internal.h"
 
 #if HP_HAS_TEXTURES

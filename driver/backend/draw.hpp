@@ -10,7 +10,7 @@
 
 namespace halfplane::driver {
 
-/// The frame that is in memory when the stream has run; the last target. `textures`: memory from hp_target::textures on.
+/// The frame in memory when the stream has run, of the last target. `textures`: memory from hp_target::textures on.
 /// Throws InputError for a word that the core would refuse.
 [[nodiscard]] Framebuffer draw(std::span<const std::uint32_t> words, const Config& config,
                                std::vector<std::uint8_t> textures = {});

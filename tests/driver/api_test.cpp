@@ -261,7 +261,7 @@ TEST_F(DriverInterface, MultipliesMatrices) {
     }
 }
 
-/// A clear, a target or a draw where there is nothing to draw sends no primitive; another target flushes the one before.
+/// A clear or a draw where there is nothing to draw sends nothing; another target flushes the one before.
 TEST_F(DriverInterface, AnEmptyScissorDrawsNothing) {
   hp_set_scissor(driver_.get(), 3, 3, 0, 5);
   const std::uint32_t before = hp_written(driver_.get());

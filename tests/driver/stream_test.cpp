@@ -17,8 +17,8 @@ using driver::Decoder;
 
 constexpr std::uint32_t kSeed = 5400;
 
-/// What the hardware does with a packet does not depend on the order of a triangle's vertices (cull sorts them), on numbers of
-/// primitives, on the box of tokens and on the facing of what is no triangle: a form without them.
+/// What the hardware does with a packet does not depend on the order of a triangle's vertices (cull sorts them), on numbers
+/// of primitives, on the box of tokens and on the facing of what is no triangle: a form without them.
 DecodedPrimitive canonical_form(PrimitivePacket packet, std::optional<LineSetup> line) {
   packet.primitive_id = 0;
   if (line) line->primitive_id = 0;
@@ -40,8 +40,8 @@ struct Wanted {
   UnitWords units;
 };
 
-/// The model's packets, without triangles that the hardware's cull drops for area or facing, which the driver does not send, and
-/// without tokens.
+/// The model's packets, without triangles that the hardware's cull drops for area or facing, which the driver does not send,
+/// and without tokens.
 std::vector<Wanted> of_model(const Scene& scene, const Config& config) {
   const Scene projected = in_host_numbers(scene, TransformNumbers::s15_16, config);
   HostStream stream(projected, config);
