@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <map>
+#include <memory>
 #include <span>
 #include <string>
 
@@ -107,26 +109,19 @@ Server::Server(Display* display) : display_(display), has_shm_(XShmQueryExtensio
   for (int screen = 0; screen < ScreenCount(display); ++screen) formats_.push_back(true_color_formats(display, screen));
 }
 
-std::optional<Server::Geometry> Server::geometry(XID drawable) {
+std::optional<Server::Geometry> Server::geometry(XID drawable, bool must_be_window) {
   const std::lock_guard lock(mutex_);
   ::Window root = 0;
   int x = 0, y = 0;
   unsigned width = 0, height = 0, border = 0, depth = 0;
-  if (drawable == 0 || XGetGeometry(display_, drawable, &root, &x, &y, &width, &height, &border, &depth) == 0)
+  XWindowAttributes attributes;
+  if (drawable == 0 || (must_be_window && XGetWindowAttributes(display_, drawable, &attributes) == 0) ||
+      XGetGeometry(display_, drawable, &root, &x, &y, &width, &height, &border, &depth) == 0)
     return std::nullopt;
   Geometry result{0, static_cast<int>(depth), static_cast<int>(width), static_cast<int>(height)};
   for (int screen = 0; screen < screens(); ++screen)
     if (RootWindow(display_, screen) == root) result.screen = screen;
   return result;
-}
-
-std::optional<Server::Geometry> Server::window_geometry(XID window) {
-  const auto is_window = [&] {
-    const std::lock_guard lock(mutex_);
-    XWindowAttributes attributes;
-    return window != 0 && XGetWindowAttributes(display_, window, &attributes) != 0;
-  };
-  return is_window() ? geometry(window) : std::nullopt;
 }
 
 Window::Window(DrawableKind what, Server* x_server, XID x_drawable, const PixelFormat& its_format, int width,

@@ -1,10 +1,12 @@
 // What GLX and EGL have in common: a connection to the X server, its pixel formats, and drawables that show themselves.
 #pragma once
 
-#include <map>
-#include <memory>
+#include <algorithm>
+#include <climits>
+#include <cstdint>
 #include <mutex>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "../core/context.hpp"
@@ -54,10 +56,8 @@ class Server {
   struct Geometry {
     int screen = 0, depth = 0, width = 0, height = 0;
   };
-  /// Of a window or pixmap. None: there is no such drawable.
-  [[nodiscard]] std::optional<Geometry> geometry(XID drawable);
-  /// Of a window. None: it is none.
-  [[nodiscard]] std::optional<Geometry> window_geometry(XID window);
+  /// Of a window or pixmap, or of a window alone. None: there is no such drawable.
+  [[nodiscard]] std::optional<Geometry> geometry(XID drawable, bool must_be_window = false);
 
  private:
   friend class Window;
@@ -102,5 +102,31 @@ class Window final : public Drawable {
   XShmSegmentInfo segment_{};  // shmaddr null: image_ has memory of its own
   GC gc_ = nullptr;
 };
+
+/// A pbuffer by `make(width, height)`. One that is to be the largest is halved until there is memory; else throws what make() does.
+template <class Make>
+auto make_pbuffer(std::intptr_t width, std::intptr_t height, bool largest, Make make) {
+  const std::intptr_t most = largest ? largest_side() : INT_MAX;
+  auto w = static_cast<int>(std::clamp<std::intptr_t>(width, 1, most));
+  auto h = static_cast<int>(std::clamp<std::intptr_t>(height, 1, most));
+  for (;; w -= w / 2, h -= h / 2) {
+    try {
+      return make(w, h);
+    } catch (const std::exception&) {
+      if (!largest || (w == 1 && h == 1)) throw;
+    }
+  }
+}
+
+/// A function that libglvnd asks for by its name.
+struct Named {
+  std::string_view name;
+  void* function;
+  void* dispatch = nullptr;  ///< of GLX extensions: what finds the vendor's function
+};
+template <class Function>
+void* address(Function* function) {
+  return reinterpret_cast<void*>(function);
+}
 
 }  // namespace halfplane::gl
