@@ -5,22 +5,26 @@
   programs.py compare -o FOLDER [NAME...]   draws a frame of each recording twice and compares: table.md, sheet.png
   programs.py list                          the programs, and whether they are installed
 
-Needs Debian's apitrace, xvfb and libgl1-mesa-dri, and for `compare` build/halfplane with the driver. Pictures stay in FOLDER
+Needs Debian's apitrace, xvfb, libgl1-mesa-dri and python3-pil, and for `compare` build/halfplane with the driver. Pictures stay in FOLDER
 as NAME.mesa.ppm and NAME.halfplane.png. Exit status 1: a program of `compare` failed or lies over --most.
 """
 import argparse
 import concurrent.futures
 import glob
+import io
 import os
 import pathlib
 import re
 import shutil
 import signal
-import struct
 import subprocess
 import sys
 import time
-import zlib
+
+try:
+    from PIL import Image, ImageChops, ImageStat
+except ImportError:
+    sys.exit("programs.py: this Python has no Pillow; install python3-pil")
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 # Name: the command and its package. Screen savers are added by look_for_savers().
@@ -116,101 +120,30 @@ def record(name, folder, display, seconds):
 # --- pictures ---------------------------------------------------------------------------------------------------------
 
 
-class Picture:
-    """RGB bytes, rows from the top."""
-
-    def __init__(self, width, height, rgb):
-        self.width, self.height, self.rgb = width, height, rgb
-
-    def cropped(self, width, height):
-        """The part at the bottom left, where OpenGL's window begins."""
-        rows = [self.rgb[3 * y * self.width:3 * (y * self.width + width)]
-                for y in range(self.height - height, self.height)]
-        return Picture(width, height, b''.join(rows))
-
-    def is_blank(self):
-        return self.rgb == self.rgb[:3] * (self.width * self.height)
-
-    def shrunk(self, width, height):
-        pixels = bytearray()
-        for y in range(height):
-            for x in range(width):
-                at = 3 * (y * self.height // height * self.width + x * self.width // width)
-                pixels += self.rgb[at:at + 3]
-        return Picture(width, height, bytes(pixels))
-
-
-def read_ppm(data):
-    head = re.match(rb'P6\s+(?:#[^\n]*\n\s*)*(\d+)\s+(\d+)\s+255\s', data)
-    width, height = int(head[1]), int(head[2])
-    return Picture(width, height, data[head.end():head.end() + 3 * width * height])
-
-
-def read_png(path):
-    """8-bit RGB, as `halfplane render` writes it."""
-    data = path.read_bytes()
-    packed, at = b'', 8
-    while at < len(data):
-        length, kind = struct.unpack('>I4s', data[at:at + 8])
-        body = data[at + 8:at + 8 + length]
-        if kind == b'IHDR':
-            width, height = struct.unpack('>II', body[:8])
-        elif kind == b'IDAT':
-            packed += body
-        at += 12 + length
-    raw, stride = zlib.decompress(packed), 3 * width
-    out, above = bytearray(), bytearray(stride)
-    for y in range(height):
-        kind, row = raw[y * (stride + 1)], bytearray(raw[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
-        for i in range(stride if kind else 0):
-            left, up, corner = row[i - 3] if i > 2 else 0, above[i], above[i - 3] if i > 2 else 0
-            if kind == 4:
-                guess = left + up - corner
-                base = min((left, up, corner), key=lambda value, guess=guess: abs(guess - value))
-            else:
-                base = (0, left, up, (left + up) // 2)[kind]
-            row[i] = (row[i] + base) & 255
-        out += row
-        above = row
-    return Picture(width, height, bytes(out))
-
-
-def write_png(path, picture):
-    def chunk(kind, body):
-        return struct.pack('>I', len(body)) + kind + body + struct.pack('>I', zlib.crc32(kind + body))
-
-    stride = 3 * picture.width
-    rows = b''.join(b'\0' + picture.rgb[y * stride:(y + 1) * stride] for y in range(picture.height))
-    path.write_bytes(b'\x89PNG\r\n\x1a\n' + chunk(b'IHDR', struct.pack('>IIBBBBB', picture.width, picture.height, 8, 2, 0, 0, 0)) +
-                     chunk(b'IDAT', zlib.compress(rows)) + chunk(b'IEND', b''))
+def is_blank(picture):
+    return all(low == high for low, high in picture.getextrema())
 
 
 def differences(a, b):
-    """Share of pixels that differ by more than SEEN in a channel, and mean difference of the channels, of 255."""
+    """Share of pixels that differ by more than SEEN in a channel, and mean difference of the channels, of 255. What both
+    have is compared, from the bottom left, where OpenGL's window begins."""
     width, height = min(a.width, b.width), min(a.height, b.height)
-    a, b = a.cropped(width, height).rgb, b.cropped(width, height).rgb
-    gaps = [abs(x - y) for x, y in zip(a, b)]
-    seen = sum(max(gaps[i:i + 3]) > SEEN for i in range(0, len(gaps), 3))
-    return seen / (width * height), sum(gaps) / len(gaps)
+    gaps = ImageChops.difference(*(picture.crop((0, picture.height - height, width, picture.height)) for picture in (a, b)))
+    red, green, blue = gaps.split()
+    largest = ImageChops.lighter(ImageChops.lighter(red, green), blue)
+    return sum(largest.histogram()[SEEN + 1:]) / (width * height), sum(ImageStat.Stat(gaps).mean) / 3
 
 
 def sheet(pairs, columns=4, width=200, height=150, gap=4):
     """Pairs side by side, Mesa's left: in the order of the table, row by row."""
-    cell = 2 * width + gap
-    rows = (len(pairs) + columns - 1) // columns
-    total, tall = columns * (cell + 2 * gap), rows * (height + 2 * gap)
-    pixels = bytearray(b'\x60' * (3 * total * tall))
+    cell_width, cell_height = 2 * width + 3 * gap, height + 2 * gap
+    whole = Image.new('RGB', (columns * cell_width, -(-len(pairs) // columns) * cell_height), '#606060')
     for number, pair in enumerate(pairs):
         for side, picture in enumerate(pair):
-            if picture is None:
-                continue
-            small = picture.shrunk(width, height)
-            x = number % columns * (cell + 2 * gap) + gap + side * (width + gap)
-            y = number // columns * (height + 2 * gap) + gap
-            for line in range(height):
-                at = 3 * ((y + line) * total + x)
-                pixels[at:at + 3 * width] = small.rgb[3 * line * width:3 * (line + 1) * width]
-    return Picture(total, tall, bytes(pixels))
+            if picture is not None:
+                at = (number % columns * cell_width + gap + side * (width + gap), number // columns * cell_height + gap)
+                whole.paste(picture.resize((width, height)), at)
+    return whole
 
 
 # --- comparison -------------------------------------------------------------------------------------------------------
@@ -240,7 +173,7 @@ def in_mesa(name, folder, call, env):
     if at < 0:
         raise RuntimeError(f'{replay}: {done.stderr.decode(errors="replace").strip().splitlines()[-1:]}')
     (folder / f'{name}.mesa.ppm').write_bytes(done.stdout[at:])
-    return read_ppm(done.stdout[at:])
+    return Image.open(io.BytesIO(done.stdout[at:])).convert('RGB')
 
 
 def in_halfplane(name, folder, frame, options):
@@ -257,7 +190,7 @@ def in_halfplane(name, folder, frame, options):
             raise RuntimeError(said.strip().splitlines()[-1] if said.strip() else f'exit status {done.returncode}')
     seconds = time.monotonic() - begun
     (folder / f'{name}.said').write_text(said, encoding='utf-8')
-    return read_png(picture), seconds, [line.removeprefix('halfplane: ') for line in said.splitlines()]
+    return Image.open(picture).convert('RGB'), seconds, [line.removeprefix('halfplane: ') for line in said.splitlines()]
 
 
 def compare(name, folder, env, options):
@@ -270,9 +203,9 @@ def compare(name, folder, env, options):
         row['mesa'] = in_mesa(name, folder, calls[row['frame']], env)
         row['ours'], row['seconds'], row['said'] = in_halfplane(name, folder, row['frame'], options)
         row['seen'], row['mean'] = differences(row['mesa'], row['ours'])
-        if row['mesa'].is_blank() and row['ours'].is_blank():
+        if is_blank(row['mesa']) and is_blank(row['ours']):
             row['said'].insert(0, 'both blank: says nothing')
-    except (RuntimeError, OSError, zlib.error, struct.error, TypeError) as error:
+    except (RuntimeError, OSError) as error:
         row['error'] = str(error)
     return row
 
@@ -327,7 +260,7 @@ def main():
             rows.append(row)
             print(table([row]).splitlines()[-1], flush=True)
     (folder / 'table.md').write_text(table(rows), encoding='utf-8')
-    write_png(folder / 'sheet.png', sheet([(row['mesa'], row['ours']) for row in rows]))
+    sheet([(row['mesa'], row['ours']) for row in rows]).save(folder / 'sheet.png')
     return int(any(row['error'] or 100 * row['seen'] > options.most for row in rows))
 
 
