@@ -70,6 +70,7 @@ void pop_attrib(Context& context) {
   for (const Group& group : kGroups)
     if ((saved.mask & group.bit) != 0) group.copy(context.state, saved.state);
   if ((saved.mask & GL_ENABLE_BIT) != 0) copy_enables(context.state, saved.state);
+  if ((saved.mask & GL_COLOR_BUFFER_BIT) != 0) follow_draw_buffer(context);
   track_color(context);  // current colour, material and what follows it may not belong together any more
   if ((saved.mask & GL_TEXTURE_BIT) == 0) return;
   auto parameters = saved.textures.begin();

@@ -155,6 +155,8 @@ void sample_coverage(Context&, double value, GLboolean invert);
 void hint(Context&, GLenum target, GLenum mode);
 void draw_buffer(Context&, GLenum mode);
 void read_buffer(Context&, GLenum mode);
+void follow_draw_buffer(Context&);               ///< the drawable draws where the state says
+[[nodiscard]] bool reads_front(const Context&);  ///< of two buffers
 void clear(Context&, GLbitfield mask);
 void clear_color(Context&, double r, double g, double b, double a);
 void clear_depth(Context&, double depth);

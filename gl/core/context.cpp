@@ -1,5 +1,6 @@
 #include "context.hpp"
 
+#include "commands.hpp"
 #include "list.hpp"
 
 namespace halfplane::gl {
@@ -14,6 +15,37 @@ void leave(const Context& context) {
 }
 
 }  // namespace
+
+void Drawable::swap() {
+  const bool was_front = draws_to_front_;
+  draw_to(false);
+  frame.end();
+  show();
+  if (other_ != nullptr) make_front(true);
+  draw_to(was_front);
+}
+
+void Drawable::draw_to(bool front) {
+  if (single_buffered || front == draws_to_front_) return;
+  if (draws_to_front_) show();  // no swap does
+  make_front();
+  frame.exchange_colors(*other_);
+  draws_to_front_ = front;
+}
+
+const Framebuffer::Image& Drawable::colors(bool front) {
+  const Framebuffer& picture = frame.picture();
+  const bool is_other = other_ != nullptr && front != draws_to_front_ && other_->color.size() == picture.color.size();
+  return is_other ? other_->color : picture.color;
+}
+
+void Drawable::make_front(bool copies) {
+  const Framebuffer& picture = frame.picture();
+  if (other_ == nullptr)
+    other_ = std::make_unique<Framebuffer>(picture);
+  else if (copies || other_->width != picture.width || other_->height != picture.height)
+    *other_ = picture;
+}
 
 Context::Context(std::shared_ptr<SharedObjects> shared_objects) : shared(std::move(shared_objects)) {
   texture_matrix.fill({kIdentity});
@@ -33,7 +65,8 @@ void make_current(Context* context, Drawable* draw, Drawable* read) {
   context->drawable = draw;
   context->read_drawable = read;
   ++context->revision;
-  if (context->was_current || draw == nullptr) return;
+  if (draw == nullptr) return;
+  if (context->was_current) return follow_draw_buffer(*context);
   context->was_current = true;
   const int width = draw->frame.width(), height = draw->frame.height();
   State& state = context->state;

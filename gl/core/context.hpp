@@ -16,18 +16,36 @@
 
 namespace halfplane::gl {
 
-/// Where contexts draw: a window, a pbuffer. Made by the window system's side (glx/, egl/), which shows `frame` in present().
+/// Where contexts draw: a window, a pbuffer. Made by the window system's side (glx/, egl/), which shows `frame` in show().
 struct Drawable {
   Drawable(const Options& options, int width, int height) : frame(options, width, height) {}
   virtual ~Drawable() = default;
   Drawable(const Drawable&) = delete;
   Drawable& operator=(const Drawable&) = delete;
 
-  /// Shows the picture; called by swaps, and by glFlush and glFinish where `single_buffered`.
+  /// Shows the picture of `frame`.
+  virtual void show() {}
+  /// Ends the frame and shows it; called by glFlush and glFinish where what is drawn is in front.
   virtual void present() {}
+  /// Ends the frame of the back buffer and copies it to the front one.
+  void swap();
+
+  // Two colour buffers from the first call on that names the front one of two; before it, and for programs that never do, the
+  // front buffer is what the back one has, which after a swap is so.
+
+  /// Makes `frame` draw to the front or the back buffer.
+  void draw_to(bool front);
+  /// Colours of the front or the back buffer, as `frame` has them. Valid until the next call.
+  [[nodiscard]] const Framebuffer::Image& colors(bool front);
+  /// Makes a front buffer; `copies`: in any case one that has the colours of the picture.
+  void make_front(bool copies = false);
 
   Frame frame;
   bool single_buffered = false;
+
+ private:
+  std::unique_ptr<Framebuffer> other_;  ///< its colours are those of the buffer that `frame` does not draw to
+  bool draws_to_front_ = false;
 };
 
 using Mat4 = std::array<double, 16>;  ///< column by column, as OpenGL has them

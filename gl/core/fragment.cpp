@@ -1,6 +1,7 @@
 // State of fragments and of the framebuffer, clears and the accumulation buffer (OpenGL 1.5, 4.1 and 4.2).
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "commands.hpp"
 #include "context.hpp"
@@ -41,6 +42,9 @@ bool has_buffer(Context& context, GLenum mode, bool is_single) {
   context.fail(is_absent ? GL_INVALID_OPERATION : GL_INVALID_ENUM);
   return false;
 }
+bool is_front(GLenum buffer) { return buffer == GL_FRONT || buffer == GL_FRONT_LEFT; }
+/// The back buffer stands for both.
+bool is_front_and_back(GLenum buffer) { return buffer == GL_FRONT_AND_BACK || buffer == GL_LEFT; }
 bool is_single(const Drawable* drawable) { return drawable != nullptr && drawable->single_buffered; }
 
 /// The state of masked clears: all pixels in the scissor.
@@ -199,11 +203,27 @@ void hint(Context& context, GLenum target, GLenum mode) {
 
 void draw_buffer(Context& context, GLenum mode) {
   if (mode != GL_NONE && mode != GL_FRONT_AND_BACK && !has_buffer(context, mode, is_single(context.drawable))) return;
-  context.state.color.draw_buffer = mode;
+  const GLenum before = std::exchange(context.state.color.draw_buffer, mode);
+  if (context.drawable != nullptr && !context.drawable->single_buffered && is_front_and_back(before))
+    context.drawable->make_front(true);
+  follow_draw_buffer(context);
+}
+
+void follow_draw_buffer(Context& context) {
+  const GLenum mode = context.state.color.draw_buffer;
+  if (context.drawable != nullptr && mode != GL_NONE) context.drawable->draw_to(is_front(mode));
 }
 
 void read_buffer(Context& context, GLenum mode) {
-  if (has_buffer(context, mode, is_single(context.read_drawable))) context.state.pixel.read_buffer = mode;
+  Drawable* const drawable = context.read_drawable;
+  if (!has_buffer(context, mode, is_single(drawable))) return;
+  context.state.pixel.read_buffer = mode;
+  if (drawable != nullptr && !drawable->single_buffered && is_front(mode)) drawable->make_front();
+}
+
+bool reads_front(const Context& context) {
+  const bool both = context.drawable == context.read_drawable && is_front_and_back(context.state.color.draw_buffer);
+  return !both && is_front(context.state.pixel.read_buffer);
 }
 
 void clear(Context& context, GLbitfield mask) {
@@ -277,9 +297,8 @@ void accum(Context& context, GLenum op, double value) {
 void flush(Context& context) {
   Drawable* const drawable = context.drawable;
   if (drawable == nullptr) return;
-  const bool draws_to_front =
-      is_one_of(context.state.color.draw_buffer, {GL_FRONT, GL_FRONT_LEFT, GL_LEFT, GL_FRONT_AND_BACK});
-  if (drawable->single_buffered || draws_to_front) drawable->present();
+  const GLenum buffer = context.state.color.draw_buffer;
+  if (drawable->single_buffered || is_front(buffer) || is_front_and_back(buffer)) drawable->present();
 }
 
 void finish(Context& context) { flush(context); }

@@ -573,6 +573,14 @@ const Framebuffer& Frame::picture() {
   return *memory_->picture;
 }
 
+void Frame::exchange_colors(Framebuffer& other) {
+  memory_->rebase();
+  Framebuffer& base = memory_->base;
+  base.color.swap(other.color);
+  for (std::size_t i = 0; i < base.samples.size(); ++i) base.samples[i].color.swap(other.samples[i].color);
+  memory_->picture = &base;
+}
+
 std::uint64_t Frame::samples_passed() {
   memory_->flush();
   return memory_->samples + memory_->counters.depth_passed - memory_->counters.alpha_killed;

@@ -62,6 +62,9 @@ class Frame {
 
   /// What has been drawn, after drawing what waits. Valid until the next call.
   [[nodiscard]] const Framebuffer& picture();
+  /// Takes the colours of another buffer of this size for its own; depths and stencil values stay. A capture of the frame
+  /// begins here.
+  void exchange_colors(Framebuffer& other);
   /// Samples that passed the depth test since the program began, after drawing what waits: for occlusion queries.
   [[nodiscard]] std::uint64_t samples_passed();
   /// Ends the frame: draws what waits, then saves and measures what the options ask for.

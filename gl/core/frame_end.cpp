@@ -1,4 +1,9 @@
 // The end of a frame: captures, cycles, results, and the line of figures over the picture.
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -65,6 +70,23 @@ Json stages_json(const CycleRun& run) {
           {"busy", use.busy}, {"stalled", use.stalled}, {"starved", use.starved}, {"items", use.busy}};
   }
   return stages;
+}
+
+/// Adds a line to a file that `halfplane run` renames and reads at any time: not to one that was renamed in between.
+bool append_line(const std::string& path, std::string line) {
+  line += '\n';
+  for (int i = 0; i < 100; ++i) {
+    const int file = open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0600);
+    if (file < 0) return false;
+    struct stat opened {
+    }, named{};
+    const bool is_named = flock(file, LOCK_EX) == 0 && fstat(file, &opened) == 0 && stat(path.c_str(), &named) == 0 &&
+                          opened.st_ino == named.st_ino;
+    const bool is_written = is_named && write(file, line.data(), line.size()) == static_cast<ssize_t>(line.size());
+    close(file);
+    if (is_named) return is_written;
+  }
+  return false;
 }
 
 /// FNV-1a of the codes, as `halfplane render` has it.
@@ -304,9 +326,8 @@ void Frame::Memory::end() {
   last_primitives = counters.primitives_in;
   row["missing"] = std::exchange(missing, {});
   if (options.results.empty() || !is_asked) return;
-  std::ofstream out(options.results, std::ios::app);
-  out << row.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n" << std::flush;
-  if (!out) say_once(options.results + ": cannot be written");
+  if (!append_line(options.results, row.dump(-1, ' ', false, Json::error_handler_t::replace)))
+    say_once(options.results + ": cannot be written");
 }
 
 // --- the HUD ----------------------------------------------------------------------------------------------------------

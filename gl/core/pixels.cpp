@@ -301,6 +301,7 @@ Image read_rectangle(Context& context, int x, int y, int width, int height, GLen
   Frame& frame = context.read_drawable->frame;
   const Config& config = frame.options().config;
   const Framebuffer& picture = frame.picture();
+  const Framebuffer::Image& color = context.read_drawable->colors(reads_front(context));
   for (int j = 0; j < height; ++j) {
     const std::int64_t row = picture.height - 1 - (std::int64_t{y} + j);  // the picture's are from the top
     if (row < 0 || row >= picture.height) continue;
@@ -311,7 +312,7 @@ Image read_rectangle(Context& context, int x, int y, int width, int height, GLen
       auto& pixel =
           image.pixel[static_cast<std::size_t>(j) * static_cast<std::size_t>(width) + static_cast<std::size_t>(i)];
       if (format == GL_RGBA) {
-        const auto channels = widen_color<std::uint32_t>(config.color_format, picture.color[at]);
+        const auto channels = widen_color<std::uint32_t>(config.color_format, color[at]);
         for (std::size_t c = 0; c < 4; ++c) pixel[c] = static_cast<float>(channels[c]) / 255;
       } else {
         pixel[0] = format == GL_STENCIL_INDEX ? static_cast<float>(picture.stencil[at])

@@ -215,8 +215,10 @@ Drawable* Replay::surface(std::int64_t id) {
 void Replay::end_frame(std::int64_t id) {
   Drawable* drawable = surface(id);
   if (drawable == nullptr) return;
+  drawable->draw_to(false);
   hooks_.frame(frame_++, drawable->frame);
-  drawable->frame.end();
+  drawable->swap();
+  if (Context* const context = current(); context != nullptr) follow_draw_buffer(*context);
 }
 
 void Replay::command(const TraceCall& call) {

@@ -140,12 +140,16 @@ Window::~Window() {
 
 void Window::present() {
   frame.end();
+  show();
+}
+
+void Window::show() {
   if (kind != DrawableKind::pbuffer) show(xid);
 }
 
 void Window::swap() {
   if (single_buffered) return;
-  present();
+  Drawable::swap();
   follow_size();
 }
 

@@ -77,7 +77,7 @@ class Window final : public Drawable {
   Window(DrawableKind what, Server* x_server, XID x_drawable, const PixelFormat& its_format, int width, int height);
   ~Window() override;
 
-  /// Of single-buffered drawables: ends the frame, too, for no swap does.
+  void show() override;
   void present() override;
   /// Ends the frame, shows it, and takes over the window's size.
   void swap();

@@ -1,5 +1,6 @@
 // `halfplane run`: a program whose OpenGL is the model's, by the driver in gl/.
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -53,6 +54,14 @@ FrameSpan parse_frames(const std::string& text) {
   return span;
 }
 
+/// The frame after which the program ends; -1: it ends by itself. Where captures are all that was asked for, their last one.
+int last_frame(const RunCommand& options, const FrameSpan& span) {
+  const bool saves_alone = !options.save.empty() && options.frames.empty() && !options.hud &&
+                           options.engine == "functional" && options.json.empty() && options.csv_path.empty() &&
+                           options.chart_path.empty();
+  return saves_alone ? std::ranges::max(options.save) : span.last;
+}
+
 /// Where the driver lies: in the build folder of this program, or where it is installed. Throws when it was not built.
 std::filesystem::path driver_folder() {
   const std::filesystem::path here = std::filesystem::read_symlink("/proc/self/exe").parent_path();
@@ -90,6 +99,20 @@ std::string save_target(const RunCommand& options) {
   std::string name = options.save_folder.empty() ? options.save_path : options.save_folder;
   if (name.empty()) name = options.save.size() == 1 ? "frame-" + std::to_string(options.save[0]) + ".hpt" : "frame.hpt";
   return std::filesystem::absolute(name).string();
+}
+
+/// Captures that a program was ended in are not whole: the driver writes NAME.part and then renames it.
+void remove_unfinished(const RunCommand& options) {
+  if (options.save.empty() && options.save_folder.empty()) return;
+  const std::filesystem::path target = save_target(options);
+  std::error_code error;
+  const auto folder = options.save_folder.empty() ? target.parent_path() : target;
+  const std::string start = options.save_folder.empty() ? target.stem().string() : "frame";
+  std::vector<std::filesystem::path> unfinished;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error))
+    if (entry.path().filename().string().starts_with(start) && entry.path().extension() == ".part")
+      unfinished.push_back(entry.path());
+  for (const auto& path : unfinished) std::filesystem::remove(path, error);
 }
 
 /// The driver's options, as gl/core/options.cpp reads them.
@@ -228,14 +251,19 @@ struct RunTotals {
   }
 };
 
-/// The lines of JSON that the driver appends to a file. It is taken away at each reading, and read at the next one, when no
-/// line of it is under way any more: a game of an hour has a hundred thousand frames.
+/// The lines of JSON that the driver appends to a file. It is taken away at each reading: a game of an hour has a hundred
+/// thousand frames.
 class ResultLines {
  public:
   /// `keeps_rows`: else there are totals alone.
   ResultLines(std::string path, bool keeps_rows) : path_(std::move(path)), keeps_rows_(keeps_rows) {}
   void read() {
     const std::string taken = path_ + ".taken";
+    std::error_code error;
+    std::filesystem::rename(path_, taken, error);
+    if (error) return;
+    const int lock = open(taken.c_str(), O_RDONLY | O_CLOEXEC);
+    flock(lock, LOCK_EX);  // until a line that is under way is whole; later ones go to a new file
     std::ifstream in(taken);
     for (std::string line; std::getline(in, line);) {
       Json row = Json::parse(line, nullptr, false);
@@ -243,9 +271,8 @@ class ResultLines {
       totals.add(row);
       if (keeps_rows_) rows.push_back(std::move(row));
     }
-    std::error_code error;
+    close(lock);
     std::filesystem::remove(taken, error);
-    std::filesystem::rename(path_, taken, error);
   }
   RunTotals totals;
   Json rows = Json::array();
@@ -310,18 +337,20 @@ int run(const RunCommand& options) {
   stop_in_order();
   bool is_partial = false, has_all = false;
   int status = 0;
+  const int last = last_frame(options, span);
   {
     Child child(options.program, environment(folder, driver_options(options, config, span, folder)),
                 options.json != "-");
     while (!child.has_ended()) {
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
       lines.read();
-      has_all = span.last >= 0 && !totals.last.is_null() && totals.last["frame"].get<int>() >= span.last;
+      has_all = last >= 0 && !totals.last.is_null() && totals.last["frame"].get<int>() >= last;
       if (has_all || is_interrupted()) child.end();
     }
     status = child.status();
   }
-  for (int i = 0; i < 2; ++i) lines.read();
+  lines.read();
+  remove_unfinished(options);
   is_partial = is_interrupted();
 
   Json result = result_head("run", options, config);
@@ -371,7 +400,10 @@ void add_run_command(CLI::App& app, Action& selected) {
   command
       ->add_option("--frames", options->frames, "A..B: figures of these frames, counted from 0; then the program ends")
       ->type_name("A..B");
-  command->add_option("--save", options->save, "frame N as a capture; may be given several times")
+  command
+      ->add_option("--save", options->save,
+                   "frame N as a capture; may be given several times; the program ends after the "
+                   "last one if no figures are asked for")
       ->check(CLI::Range(0, 1'000'000'000))
       ->type_name("N");
   command->add_option("--save-all", options->save_folder, "every frame as a capture in this folder")

@@ -81,6 +81,26 @@ TEST_F(Run, EndsTheProgramAfterTheLastFrame) {
   EXPECT_FALSE(exists("all/frame-0002.hpt"));
 }
 
+TEST_F(Run, EndsTheProgramAfterTheLastCaptureIfNothingElseIsAskedFor) {
+  const Outcome outcome = run({"run", "--save", "2", "--save", "4", "-o", "a.hpt", "--", kProgram, "1000000000"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  for (const char* name : {"a-0002.hpt", "a-0004.hpt"}) EXPECT_EQ(run({"render", name, "--quiet"}).status, 0) << name;
+  const Outcome whole = run({"run", "--save", "2", "-o", "b.hpt", "--json=b.json", "--", kProgram, "6"});
+  EXPECT_NE(whole.out.find("frames      6 in "), std::string::npos) << whole.out;
+}
+
+/// Whatever is there after it is a whole capture.
+TEST_F(Run, AProgramThatIsKilledLeavesWholeCaptures) {
+  const Outcome outcome =
+      paste("timeout -s KILL 5 '" HALFPLANE_PROGRAM "' run --save-all all -- sh -c '\"" HALFPLANE_EGL_PROGRAM
+            "\" 1000000000 & sleep 1; kill -9 $!'");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  const Outcome check =
+      paste("set -e; ls all | grep -qv hpt$ && exit 9; n=0; for f in $(ls all | tail -3); do '" HALFPLANE_PROGRAM
+            "' render all/$f --quiet; n=1; done; test $n = 1");
+  EXPECT_EQ(check.status, 0) << check.out << check.err;
+}
+
 TEST_F(Run, AProgramThatFailsIsSaid) {
   const Outcome outcome = run({"run", "--", kProgram, "1", "7"});
   EXPECT_EQ(outcome.status, 1);
