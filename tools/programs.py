@@ -5,8 +5,8 @@
   programs.py compare -o FOLDER [NAME...]   draws a frame of each recording twice and compares: table.md, sheet.png
   programs.py list                          the programs, and whether they are installed
 
-Needs Debian's apitrace, xvfb, libgl1-mesa-dri and python3-pil, and for `compare` build/halfplane with the driver. Pictures stay in FOLDER
-as NAME.mesa.ppm and NAME.halfplane.png. Exit status 1: a program of `compare` failed or lies over --most.
+Needs Debian's apitrace, xvfb, libgl1-mesa-dri and python3-pil, and for `compare` build/halfplane with the driver. Pictures
+stay in FOLDER as NAME.mesa.ppm and NAME.halfplane.png. Exit status 1: a program of `compare` failed or lies over --most.
 """
 import argparse
 import concurrent.futures

@@ -30,14 +30,14 @@ struct Drawable {
   /// Ends the frame of the back buffer and copies it to the front one.
   void swap();
 
-  // Two colour buffers from the first call on that names the front one of two; before it, and for programs that never do, the
-  // front buffer is what the back one has, which after a swap is so.
+  // There are two colour buffers from the first call on that names the front one. Until then the front buffer has the colours
+  // of the back one, as it has them after a swap.
 
   /// Makes `frame` draw to the front or the back buffer.
   void draw_to(bool front);
   /// Colours of the front or the back buffer, as `frame` has them. Valid until the next call.
   [[nodiscard]] const Framebuffer::Image& colors(bool front);
-  /// Makes a front buffer; `copies`: in any case one that has the colours of the picture.
+  /// Makes a front buffer with the colours of the picture, where there is none or `copies`.
   void make_front(bool copies = false);
 
   Frame frame;

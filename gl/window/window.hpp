@@ -103,7 +103,7 @@ class Window final : public Drawable {
   GC gc_ = nullptr;
 };
 
-/// A pbuffer by `make(width, height)`. One that is to be the largest is halved until there is memory; else throws what make() does.
+/// A pbuffer by `make(width, height)`. One that is to be the largest is halved until there is memory. Throws what make() does.
 template <class Make>
 auto make_pbuffer(std::intptr_t width, std::intptr_t height, bool largest, Make make) {
   const std::intptr_t most = largest ? largest_side() : INT_MAX;
