@@ -73,7 +73,7 @@ void release() {
   t_state.unbind();
 }
 
-/// Binds what may be bound to the calling thread.
+/// Throws EGL_BAD_ACCESS for what is current in another thread.
 void require_free(std::thread::id bound) {
   require(bound == std::thread::id() || bound == std::this_thread::get_id(), EGL_BAD_ACCESS);
 }
