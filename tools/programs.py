@@ -3,22 +3,28 @@
 
   programs.py record -o FOLDER [NAME...]    records programs under Xvfb: FOLDER/NAME.trace
   programs.py compare -o FOLDER [NAME...]   draws a frame of each recording twice and compares: table.md, sheet.png
+  programs.py speed -o FOLDER [NAME...]     replays each recording on both in turn, --runs times: speed.md
   programs.py list                          the programs, and whether they are installed
 
-Needs Debian's apitrace, xvfb, libgl1-mesa-dri and python3-pil, and for `compare` build/halfplane with the driver. Pictures
-stay in FOLDER as NAME.mesa.ppm and NAME.halfplane.png. Exit status 1: a program of `compare` failed or lies over --most.
+Needs Debian's apitrace, xvfb, libgl1-mesa-dri and python3-pil, for `compare` build/halfplane with the driver, for `speed`
+the driver. Pictures stay in FOLDER as NAME.mesa.ppm and NAME.halfplane.png. Exit status 1: a program of `compare` failed or
+lies over --most, or one of `speed` failed.
 """
 import argparse
 import concurrent.futures
 import glob
 import io
+import json
 import os
 import pathlib
 import re
 import shutil
 import signal
+import statistics
 import subprocess
 import sys
+import tempfile
+import threading
 import time
 
 try:
@@ -58,6 +64,10 @@ def look_for_savers():
 
 def api_of(command):
     return 'egl' if 'libEGL.so' in libraries(shutil.which(command.split()[0]) or '') else 'gl'
+
+
+def replayer(name):
+    return 'eglretrace' if api_of(PROGRAMS[name][0]) == 'egl' else 'glretrace'
 
 
 class Display:
@@ -167,11 +177,10 @@ def in_mesa(name, folder, call, env):
     for old in glob.glob(f'{prefix}*'):
         os.unlink(old)
     trace = folder / f'{name}.trace'
-    replay = 'eglretrace' if api_of(PROGRAMS[name][0]) == 'egl' else 'glretrace'
-    done = run([replay, '--headless', '-s', '-', '-S', str(call), str(trace)], 240, env=env)
+    done = run([replayer(name), '--headless', '-s', '-', '-S', str(call), str(trace)], 240, env=env)
     at = done.stdout.find(b'P6')
     if at < 0:
-        raise RuntimeError(f'{replay}: {done.stderr.decode(errors="replace").strip().splitlines()[-1:]}')
+        raise RuntimeError(f'{replayer(name)}: {done.stderr.decode(errors="replace").strip().splitlines()[-1:]}')
     (folder / f'{name}.mesa.ppm').write_bytes(done.stdout[at:])
     return Image.open(io.BytesIO(done.stdout[at:])).convert('RGB')
 
@@ -223,9 +232,88 @@ def table(rows):
     return '\n'.join(out) + '\n'
 
 
+# --- speed ------------------------------------------------------------------------------------------------------------
+
+
+def replay(words, env, seconds):
+    """Frames, their seconds, and seconds of processors of the whole replay."""
+    with tempfile.TemporaryFile() as said:
+        process = subprocess.Popen(words, stdout=said, stderr=said, stdin=subprocess.DEVNULL, env=env)
+        watch = threading.Timer(seconds, process.kill)
+        watch.start()
+        used = os.wait4(process.pid, 0)[2]
+        watch.cancel()
+        said.seek(0)
+        text = said.read().decode(errors='replace')
+    done = re.search(r'Rendered (\d+) frames in ([\d.e-]+) secs', text)
+    if not done or int(done[1]) == 0:
+        raise RuntimeError(f'{words[0]}: {" ".join(text.split())[-120:]}')
+    return int(done[1]), float(done[2]), used.ru_utime + used.ru_stime
+
+
+def speed(name, folder, env, options):
+    """Medians of --runs replays on llvmpipe and on the driver in turn; one more replay tells what part of a frame is raster."""
+    row = {'name': name, 'error': ''}
+    driver = options.halfplane.resolve().parent / 'gl'
+    results = folder / f'{name}.results'
+    wishes = {'preset': options.config, 'config': options.set, 'threads': options.threads}
+    mesa = env | {'LP_NUM_THREADS': str(options.threads)}
+    ours = env | {'__GLX_VENDOR_LIBRARY_NAME': 'halfplane', '__EGL_VENDOR_LIBRARY_FILENAMES': str(driver / 'halfplane.json'),
+                  'LD_LIBRARY_PATH': str(driver), 'HALFPLANE_GL': json.dumps(wishes)}
+    words = [replayer(name), '-b', str(folder / f'{name}.trace')]
+    try:
+        told = ours | {'HALFPLANE_GL': json.dumps(wishes | {'results': str(results)})}
+        _, seconds, _ = replay(words, told, 240)
+        if not results.exists():
+            raise RuntimeError('the driver did not answer')
+        rows = [json.loads(line) for line in results.read_text(encoding='utf-8').splitlines()]
+        raster = sum(one['time_s']['geometry'] + one['time_s']['raster'] for one in rows) / seconds
+        pairs = [(replay(words, mesa, 240), replay(words, ours, 240)) for _ in range(options.runs)]
+    except (RuntimeError, OSError, json.JSONDecodeError) as error:
+        row['error'] = str(error)
+        return row
+    finally:
+        results.unlink(missing_ok=True)
+    row |= {'frames': pairs[0][1][0], 'width': rows[-1]['width'], 'height': rows[-1]['height']}
+    for key, at in (('', 1), ('used_', 2)):  # seconds a frame
+        row |= {f'{key}mesa': statistics.median(m[at] / m[0] for m, _ in pairs),
+                f'{key}ours': statistics.median(o[at] / o[0] for _, o in pairs),
+                f'{key}ratio': statistics.median(m[at] / m[0] / (o[at] / o[0]) for m, o in pairs)}
+    row |= {'raster': raster * row['ours'], 'host': (1 - raster) * row['ours']}
+    return row
+
+
+def speed_table(rows):
+    out = ['| program | pixels | frames | llvmpipe, frames/s | Halfplane, frames/s | times as fast | host, ms | raster, ms '
+           '| llvmpipe, CPU ms | Halfplane, CPU ms | times less CPU |', '| --- | --- ' + '| --- ' * 9 + '|']
+    for row in rows:
+        if row['error']:
+            out.append(f'| {row["name"]} | | | | | | | | | | **{row["error"][:100]}** |')
+            continue
+        ms = {key: f'{1e3 * row[key]:.2f}' for key in ('host', 'raster', 'used_mesa', 'used_ours')}
+        out.append(f'| {row["name"]} | {row["width"]}x{row["height"]} | {row["frames"]} | {1 / row["mesa"]:.1f} | '
+                   f'{1 / row["ours"]:.1f} | {row["ratio"]:.2f} | {ms["host"]} | {ms["raster"]} | {ms["used_mesa"]} | '
+                   f'{ms["used_ours"]} | {row["used_ratio"]:.2f} |')
+    good = [row for row in rows if not row['error']]
+    if len(good) > 1:
+        out.append(f'| **median** | | | | | **{statistics.median(row["ratio"] for row in good):.2f}** | | | | | '
+                   f'**{statistics.median(row["used_ratio"] for row in good):.2f}** |')
+    return '\n'.join(out) + '\n'
+
+
+def measure_speed(names, folder, env, options):
+    rows = []
+    for name in names:
+        rows.append(speed(name, folder, env, options))
+        print(speed_table(rows[-1:]).splitlines()[2], flush=True)
+    (folder / 'speed.md').write_text(speed_table(rows), encoding='utf-8')
+    print(speed_table(rows).splitlines()[-1])
+    return int(any(row['error'] for row in rows))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('what', choices=['record', 'compare', 'list'])
+    parser.add_argument('what', choices=['record', 'compare', 'speed', 'list'])
     parser.add_argument('names', nargs='*', metavar='NAME')
     parser.add_argument('-o', '--output', type=pathlib.Path, default=ROOT / 'out/programs')
     parser.add_argument('--seconds', type=float, default=6, help='of a recording')
@@ -234,9 +322,13 @@ def main():
     parser.add_argument('--config', default='full')
     parser.add_argument('--set', action='append', default=[], help='key=value; stencil.bits=8 without one')
     parser.add_argument('--most', type=float, default=100, help='percent of differing pixels that is let through')
+    parser.add_argument('--runs', type=int, default=3, help='of `speed`, on each of the two')
+    parser.add_argument('--threads', type=int, default=2, help='of `speed`, likewise')
     parser.add_argument('-j', '--jobs', type=int, default=1)
     options = parser.parse_intermixed_args()
-    options.set = options.set or ['stencil.bits=8']
+    # `speed`: what a driver has that nobody has configured (gl/core/options.cpp).
+    options.set = options.set or ['stencil.bits=8'] + ['perspective.colors=1', 'texture.unit=trilinear', 'alpha.unit=1',
+                                                       'blend.lanes=4', 'fog.unit=1'] * (options.what == 'speed')
     look_for_savers()
     unknown = [name for name in options.names if name not in PROGRAMS]
     if unknown:
@@ -255,6 +347,8 @@ def main():
             return 0
         names = [name for name in options.names or PROGRAMS if (folder / f'{name}.trace').exists()]
         env = environment(display.name, folder)
+        if options.what == 'speed':
+            return measure_speed(names, folder, env, options)
         rows = []
         for row in pool.map(lambda name: compare(name, folder, env, options), names):
             rows.append(row)

@@ -400,7 +400,7 @@ struct Frame::Memory::Part {
 void Frame::Memory::render() {
   {
     Part part(*this);
-    PreparedScene prepared(part.scene, std::move(part.blocks));
+    PreparedScene prepared(part.scene, std::move(part.blocks), Footprints::when_known);
     RenderOptions render;
     render.onto = picture;
     render.threads = options.threads;

@@ -272,14 +272,8 @@ void Frame::Memory::save(int number) const {
 
 // --- the end of a frame -----------------------------------------------------------------------------------------------
 
-void Frame::Memory::end() {
-  flush();
-  if (!has_begun) begin();
-  const int number = next_frame_number();
-  const bool is_asked = number >= options.first_frame && (options.last_frame < 0 || number <= options.last_frame);
-  const bool is_saved = options.save_all ? is_asked : std::ranges::find(options.save, number) != options.save.end();
-  if (is_saved) save(number);
-
+/// Those that are known without drawing the frame again.
+nlohmann::ordered_json Frame::Memory::figures(int number) const {
   Json row{{"frame", number}, {"width", scene.width}, {"height", scene.height}, {"goes_on", goes_on}};
   row.update(counters_json(counters));
   const auto draws = std::ranges::count_if(
@@ -289,6 +283,19 @@ void Frame::Memory::end() {
       std::ranges::count_if(slots, [this](const Slot& slot) { return slot.frame == frame && slot.key != 0; });
   row["texture_bytes"] = texture_bytes;
   for (const char* key : {"cycles", "bytes", "bins", "pairs", "color_hash", "lacks"}) row[key] = nullptr;
+  return row;
+}
+
+void Frame::Memory::end() {
+  flush();
+  if (!has_begun) begin();
+  const int number = next_frame_number();
+  const bool is_asked = number >= options.first_frame && (options.last_frame < 0 || number <= options.last_frame);
+  const bool is_saved = options.save_all ? is_asked : std::ranges::find(options.save, number) != options.save.end();
+  if (is_saved) save(number);
+
+  const bool is_told = is_asked && (!options.results.empty() || options.cycles);
+  Json row = is_told ? figures(number) : Json();
   if (options.cycles && is_asked) {
     try {
       MemorySettings settings;
@@ -311,21 +318,21 @@ void Frame::Memory::end() {
       say_once(std::string("no cycles: ") + error.what());
     }
   }
-  if (is_saved || !row["cycles"].is_null()) row["color_hash"] = color_hash(*picture, config.color_format);
+  if (is_told && (is_saved || !row["cycles"].is_null()))
+    row["color_hash"] = color_hash(*picture, config.color_format);
 
   const Clock::time_point now = Clock::now();
   const double frame_s = std::chrono::duration<double>(now - std::exchange(frame_start, now)).count();
   const double drawing = raster_s - std::exchange(raster_before_s, raster_s), geometry = std::exchange(geometry_s, 0);
-  row["time_s"] = {{"geometry", geometry},
-                   {"raster", drawing - geometry},
-                   {"driver", std::exchange(driver_s, 0)},
-                   {"frame", frame_s}};
+  const double driver = std::exchange(driver_s, 0);
   // Over the last frames, so that the figure can be read.
   const double rate = 1 / std::max(frame_s, 1e-6);
   frames_per_second = frames_per_second == 0 ? rate : frames_per_second + (rate - frames_per_second) / 8;
   last_primitives = counters.primitives_in;
-  row["missing"] = std::exchange(missing, {});
-  if (options.results.empty() || !is_asked) return;
+  const std::set<std::string> was_missing = std::exchange(missing, {});
+  if (!is_told || options.results.empty()) return;
+  row["time_s"] = {{"geometry", geometry}, {"raster", drawing - geometry}, {"driver", driver}, {"frame", frame_s}};
+  row["missing"] = was_missing;
   if (!append_line(options.results, row.dump(-1, ' ', false, Json::error_handler_t::replace)))
     say_once(options.results + ": cannot be written");
 }

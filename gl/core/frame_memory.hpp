@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <set>
 #include <string>
@@ -121,6 +122,7 @@ struct Frame::Memory {
   void rebase();
   void drop_textures(std::size_t most_bytes, std::uint64_t least_frame);
   void restore(Scene& whole) const;
+  [[nodiscard]] nlohmann::ordered_json figures(int number) const;
   void save(int number) const;
 };
 

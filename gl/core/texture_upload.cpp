@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -226,6 +227,12 @@ halfplane::Texture made(const Sampled& sampled, const Fit& fit, bool has_levels)
   std::vector<TexelImage> levels;
   for (std::size_t l = sampled.first; l <= sampled.last; ++l) {
     TexelImage image{sampled.level(l).width, sampled.level(l).height, {}};
+    if (!fit.folds && sampled.level(l).base_format != GL_DEPTH_COMPONENT) {
+      const std::span<const Texel> texels(sampled.level(l).texel);
+      image.texel.assign(texels.begin(), texels.begin() + static_cast<std::ptrdiff_t>(sampled.texels(l)));
+      levels.push_back(std::move(image));
+      continue;
+    }
     image.texel.reserve(sampled.texels(l));
     for (std::size_t i = 0; i < sampled.texels(l); ++i) {
       const Texel texel = sampled.texel(l, i);

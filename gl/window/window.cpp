@@ -225,7 +225,10 @@ void Window::show(XID target) {
   for (int y = 0; y < height; ++y) {
     const auto row = pixels.begin() + static_cast<std::ptrdiff_t>(y) * pitch;
     const auto codes = picture.color.begin() + static_cast<std::ptrdiff_t>(picture.at(0, y));
-    std::transform(codes, codes + width, row, [=](std::uint32_t code) { return argb(color_format, code); });
+    if (color_format == ColorFormat::rgba8888)  // in lanes
+      std::transform(codes, codes + width, row, [](std::uint32_t code) { return argb(ColorFormat::rgba8888, code); });
+    else
+      std::transform(codes, codes + width, row, [=](std::uint32_t code) { return argb(color_format, code); });
   }
   frame.draw_hud(pixels, width, height, pitch);
   if (!is_direct) {

@@ -311,7 +311,7 @@ class OutlineBuilder {
 
   /// Adds a pixel of a smooth primitive: a point of its own.
   void add_pixel(const SmoothPixel& pixel, PerPlane<std::uint32_t> code) {
-    if (color_planes(attributes_of(context_.config)) == 4) {
+    if (widths_.color_planes == 4) {
       std::uint32_t& alpha = code[kColorPlane + 3];
       alpha = (alpha * pixel.coverage + kWholePixel / 2) / kWholePixel;
     }

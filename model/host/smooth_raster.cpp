@@ -1,6 +1,7 @@
 #include "smooth_raster.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace halfplane {
@@ -76,15 +77,41 @@ double area_at(const Sides& sides, int x, int y) {
   return area_of(left);
 }
 
-/// The pixels of a box with an area(x, y) that does not round to 0.
-template <class Area>
-std::vector<SmoothPixel> pixels_of(const PixelBounds& box, Area&& area) {
+/// To the nearest, halves up; of a number that is not negative.
+std::uint32_t rounded(double value) {
+  const auto whole = static_cast<std::uint32_t>(value);
+  return whole + (value - whole >= 0.5 ? 1 : 0);
+}
+
+/// The columns from `left` to `right` that may have an area in row y: outside, area_at() is 0. A column is spared on each
+/// side for rounding.
+std::array<int, 2> columns_of(const Sides& sides, int y, int left, int right) {
+  constexpr double kFlat = 1e-4;  // sides that bound no column
+  double first = left, last = right;
+  for (const Side& side : sides) {
+    if (std::abs(side.a) < kFlat) continue;
+    const double reach = (std::abs(side.a) + std::abs(side.b)) / 2;
+    const double bound = -(reach + side.b * (y + 0.5) + side.c) / side.a - 0.5;
+    if (side.a > 0)
+      first = std::max(first, bound - 1);
+    else
+      last = std::min(last, bound + 1);
+  }
+  if (!(first <= last)) return {0, -1};
+  return {static_cast<int>(std::floor(first)), static_cast<int>(std::ceil(last))};
+}
+
+/// The pixels of a box with an area(x, y) that does not round to 0. columns(y): the first and the last that may have one.
+template <class Columns, class Area>
+std::vector<SmoothPixel> pixels_of(const PixelBounds& box, Columns&& columns, Area&& area) {
   std::vector<SmoothPixel> pixels;
-  for (int y = box.top; y <= box.bottom; ++y)
-    for (int x = box.left; x <= box.right; ++x) {
-      const auto coverage = static_cast<std::uint32_t>(std::lround(area(x, y) * kWholePixel));
+  for (int y = box.top; y <= box.bottom; ++y) {
+    const auto [first, last] = columns(y);
+    for (int x = std::max(first, box.left); x <= std::min(last, box.right); ++x) {
+      const std::uint32_t coverage = rounded(area(x, y) * kWholePixel);
       if (coverage != 0) pixels.push_back({x, y, coverage});
     }
+  }
   return pixels;
 }
 
@@ -104,7 +131,9 @@ std::vector<SmoothPixel> smooth_raster(const std::array<SnappedVertex, 4>& corne
   const auto [top, bottom] = std::minmax({corners[0].y, corners[1].y, corners[2].y, corners[3].y});
   const PixelBounds box{std::max(limit.left, left >> grid_bits), std::max(limit.top, top >> grid_bits),
                         std::min(limit.right, right >> grid_bits), std::min(limit.bottom, bottom >> grid_bits)};
-  return pixels_of(box, [&sides](int x, int y) { return area_at(sides, x, y); });
+  return pixels_of(
+      box, [&](int y) { return columns_of(sides, y, box.left, box.right); },
+      [&](int x, int y) { return area_at(sides, x, y); });
 }
 
 double area_in_pixel(const SnappedVertex& point, std::int32_t size, PointShape shape, int x, int y, int grid_bits) {
@@ -128,7 +157,12 @@ std::vector<SmoothPixel> smooth_raster(const SnappedVertex& point, std::int32_t 
   const std::int32_t half = (size + 1) / 2;
   const PixelBounds box{std::max(limit.left, pixel(point.x - half)), std::max(limit.top, pixel(point.y - half)),
                         std::min(limit.right, pixel(point.x + half)), std::min(limit.bottom, pixel(point.y + half))};
-  return pixels_of(box, [&](int x, int y) { return area_in_pixel(point, size, shape, x, y, grid_bits); });
+  return pixels_of(
+      box,
+      [&box](int) {
+        return std::array{box.left, box.right};
+      },
+      [&](int x, int y) { return area_in_pixel(point, size, shape, x, y, grid_bits); });
 }
 
 PerPlane<std::uint32_t> codes_beside(const SnappedVertex& start, const SnappedVertex& end, int x, int y,
@@ -140,7 +174,17 @@ PerPlane<std::uint32_t> codes_beside(const SnappedVertex& start, const SnappedVe
   const std::int64_t part = std::clamp<std::int64_t>((centre(x) - start.x) * dx + (centre(y) - start.y) * dy, 0, whole);
   PerPlane<std::uint32_t> code{};
   for (std::size_t p = 0; p < static_cast<std::size_t>(widths.affine_planes); ++p) {
+    const std::uint32_t largest = std::max(start.code[p], end.code[p]);
+    if (start.code[p] == end.code[p]) {
+      code[p] = largest;
+      continue;
+    }
     // Both are weights of non-negative codes: the division rounds down.
+    if (std::bit_width(largest) + std::bit_width(static_cast<std::uint64_t>(whole)) <= 61) {
+      const std::int64_t sum = std::int64_t{start.code[p]} * (whole - part) + std::int64_t{end.code[p]} * part;
+      code[p] = static_cast<std::uint32_t>((2 * sum + whole) / (2 * whole));
+      continue;
+    }
     const int128 sum = int128{start.code[p]} * (whole - part) + int128{end.code[p]} * part;
     code[p] = static_cast<std::uint32_t>((2 * sum + whole) / (2 * int128{whole}));
   }

@@ -58,13 +58,15 @@ bool is_linear(const State& state) {
 
 }  // namespace
 
-PreparedScene::PreparedScene(const Scene& scene, std::vector<TexelBlocks> known)
+PreparedScene::PreparedScene(const Scene& scene, std::vector<TexelBlocks> known, Footprints footprints)
     : draws(scene.commands.size()), textures(std::move(known)), scene_(&scene) {
+  const std::size_t known_textures = textures.size();
   validate(scene);
-  for (std::size_t i = textures.size(); i < scene.textures.size(); ++i) textures.emplace_back(scene.textures[i]);
+  for (std::size_t i = known_textures; i < scene.textures.size(); ++i) textures.emplace_back(scene.textures[i]);
   for (const State& state : scene.states)
     if (state.texture) {
-      if (is_linear(state)) textures[*state.texture].add_quads(state.texture_wrap);
+      const bool is_seen_again = footprints == Footprints::at_once || *state.texture < known_textures;
+      if (is_linear(state) && is_seen_again) textures[*state.texture].add_quads(state.texture_wrap);
       if (state.alpha_test.func != DepthFunc::always) textures[*state.texture].add_alphas();
     }
   constexpr std::size_t kSpare = 16;

@@ -22,12 +22,17 @@ struct alignas(32) SurfaceRow {
 };
 [[nodiscard]] inline SurfaceRow surface_row(double w, double u, double v) { return {w, u, v, 1 / w}; }
 
+/// When textures get the footprints of linear filters, which take as long as drawing each texel once: at once, or when they
+/// are known from an earlier scene, for programs that draw many textures once.
+enum class Footprints : std::uint8_t { at_once, when_known };
+
 /// References the scene, which must not change. Its colours are snapped; nothing else is computed.
 class PreparedScene {
  public:
   /// `known`: `textures` of an earlier prepared scene with the same textures, which then need not be decoded again.
   /// Throws InputError for an invalid scene.
-  explicit PreparedScene(const Scene& scene, std::vector<TexelBlocks> known = {});
+  explicit PreparedScene(const Scene& scene, std::vector<TexelBlocks> known = {},
+                         Footprints footprints = Footprints::at_once);
   [[nodiscard]] const Scene& scene() const { return *scene_; }
 
   /// Consecutive primitives of a draw, at most kChunk.

@@ -22,23 +22,44 @@ std::size_t index_of(const std::array<TextureWrap, 2>& wrap) {
   return (wrap[0] == TextureWrap::repeat ? 1U : 0U) + (wrap[1] == TextureWrap::repeat ? 2U : 0U);
 }
 
+std::uint32_t packed(const Texel& t) {
+  return t[0] | std::uint32_t{t[1]} << 8 | std::uint32_t{t[2]} << 16 | std::uint32_t{t[3]} << 24;
+}
+
+/// Calls use(decode): decode(code) is a texel of the texture, R lowest. The formats of large images have their own.
+template <class Use>
+void with_decoder(const Texture& texture, const Use& use) {
+  switch (texture.format) {
+    case TextureFormat::rgba8888: return use([](std::uint32_t code) { return __builtin_bswap32(code); });
+    case TextureFormat::la88: return use([](std::uint32_t code) { return (code >> 8) * 0x10101U | code << 24; });
+    case TextureFormat::l8: return use([](std::uint32_t code) { return code * 0x10101U | 0xff000000U; });
+    default:
+      return use([&](std::uint32_t code) { return packed(decode_texel(texture.format, code, texture.palette)); });
+  }
+}
+
 }  // namespace
 
 TexelBlocks::TexelBlocks(const Texture& texture) {
+  std::size_t count = 0;
   for (std::size_t n = 0; n < texture.level.size(); ++n) {
     const TextureLevel& level = texture.level[n];
     size_.push_back({level.width, level.height});
-    first[n] = static_cast<std::int32_t>(blocks.size() * kTexels);
-    blocks.resize(blocks.size() + static_cast<std::size_t>(blocks_along(level.width)) *
-                                      static_cast<std::size_t>(blocks_along(level.height)));
-    for (int y = 0; y < level.height; ++y)
-      for (int x = 0; x < level.width; ++x) {
-        const Texel t = texture.texel(static_cast<int>(n), x, y);
-        const std::size_t place = place_of(n, x, y);
-        blocks[place / kTexels].texel[place % kTexels] =
-            t[0] | std::uint32_t{t[1]} << 8 | std::uint32_t{t[2]} << 16 | std::uint32_t{t[3]} << 24;
-      }
+    first[n] = static_cast<std::int32_t>(count * kTexels);
+    count += static_cast<std::size_t>(blocks_along(level.width)) * static_cast<std::size_t>(blocks_along(level.height));
   }
+  blocks.resize(count);
+  with_decoder(texture, [&](const auto& decode) {
+    for (std::size_t n = 0; n < texture.level.size(); ++n) {
+      const TextureLevel& level = texture.level[n];
+      const std::uint32_t* code = level.code.data();
+      for (int y = 0; y < level.height; ++y)
+        for (int x = 0; x < level.width; x += kSize) {
+          std::uint32_t* const row = row_of(n, x, y);
+          for (int i = 0; i < std::min(kSize, level.width - x); ++i) row[i] = decode(*code++);
+        }
+    }
+  });
 }
 
 std::size_t TexelBlocks::place_of(std::size_t level, int x, int y) const {
@@ -50,13 +71,21 @@ void TexelBlocks::add_quads(const std::array<TextureWrap, 2>& wrap) {
   std::vector<Quad>& quads = quads_[index_of(wrap)];
   if (is_mirrored(wrap) || !quads.empty() || blocks.size() * kTexels > kMostQuads) return;
   quads.resize(blocks.size() * kTexels);
-  for (std::size_t n = 0; n < size_.size(); ++n)
-    for (int y = 0; y < size_[n].height; ++y)
-      for (int x = 0; x < size_[n].width; ++x) {
-        const int right = next(x, size_[n].width, wrap[0]), below = next(y, size_[n].height, wrap[1]);
-        quads[place_of(n, x, y)] = {texel(place_of(n, x, y)), texel(place_of(n, right, y)),
-                                    texel(place_of(n, x, below)), texel(place_of(n, right, below))};
+  for (std::size_t n = 0; n < size_.size(); ++n) {
+    const auto [width, height] = size_[n];
+    for (int y = 0; y < height; ++y) {
+      const int below = next(y, height, wrap[1]);
+      for (int x = 0; x < width; x += kSize) {
+        // The texels of a block's row, of the row below, and the ones next to their ends.
+        const int count = std::min(kSize, width - x), right = next(x + count - 1, width, wrap[0]);
+        const std::uint32_t *const upper = row_of(n, x, y), *const lower = row_of(n, x, below);
+        Quad* const quad = quads.data() + place_of(n, x, y);
+        for (int i = 0; i + 1 < count; ++i) quad[i] = {upper[i], upper[i + 1], lower[i], lower[i + 1]};
+        quad[count - 1] = {upper[count - 1], texel(place_of(n, right, y)), lower[count - 1],
+                           texel(place_of(n, right, below))};
       }
+    }
+  }
 }
 
 const TexelBlocks::Quad* TexelBlocks::quads(const std::array<TextureWrap, 2>& wrap) const {

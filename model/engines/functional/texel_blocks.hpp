@@ -66,6 +66,11 @@ class TexelBlocks {
     int width, height;
   };
   [[nodiscard]] std::size_t place_of(std::size_t level, int x, int y) const;
+  /// The part of a row of texels from (x, y) that lies in one block.
+  [[nodiscard]] std::uint32_t* row_of(std::size_t level, int x, int y) {
+    const std::size_t place = place_of(level, x, y);
+    return blocks[place / kTexels].texel.data() + place % kTexels;
+  }
   [[nodiscard]] std::uint32_t texel(std::size_t place) const { return blocks[place / kTexels].texel[place % kTexels]; }
 
   std::vector<Size> size_;                  ///< of each level
