@@ -595,11 +595,12 @@ void Frame::end() {
   m.drop_textures(kMostTextureBytes, m.frame > kFramesKept ? m.frame - kFramesKept : 0);
 }
 
-void Frame::missing(const std::string& what, const std::string& instead) {
+void Frame::missing(std::string_view what, std::string_view instead) {
   const Options& options = memory_->options;
-  memory_->missing.insert(what);
-  const std::string text = "this configuration does not have " + what;
-  if (options.on_missing == OnMissing::warn) say_once(text + "; " + instead);
+  if (memory_->missing.contains(what)) return;  // said in this frame
+  memory_->missing.emplace(what);
+  const std::string text = "this configuration does not have " + std::string(what);
+  if (options.on_missing == OnMissing::warn) say_once(text + "; " + std::string(instead));
   if (options.on_missing != OnMissing::stop) return;
   say_once(text + "; --on-missing stop ends the program");
   std::_Exit(2);  // nothing of the program runs any more: it may hold locks

@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "../../model/config.hpp"
@@ -20,7 +21,7 @@ enum class OnMissing { host, warn, stop };
 /// What `halfplane run` decides, in the environment variable HALFPLANE_GL as JSON (options.cpp).
 struct Options {
   Config config;
-  int threads = 1;
+  int threads = 2;
   OnMissing on_missing = OnMissing::warn;
   bool hud = false;
   bool cycles = false;                   ///< the cycle engine draws the frames from `first_frame` to `last_frame`, too
@@ -72,7 +73,7 @@ class Frame {
 
   /// Says once for each `what` that this configuration does not have it, and how it is drawn instead; ends the program
   /// where the options say stop.
-  void missing(const std::string& what, const std::string& instead);
+  void missing(std::string_view what, std::string_view instead);
 
   /// What Options::hud asks for, into a picture that is about to be shown: 0xrrggbb, rows from the top. Leaves the frame as
   /// it is; does nothing without the option.

@@ -318,8 +318,7 @@ void Frame::Memory::end() {
       say_once(std::string("no cycles: ") + error.what());
     }
   }
-  if (is_told && (is_saved || !row["cycles"].is_null()))
-    row["color_hash"] = color_hash(*picture, config.color_format);
+  if (is_told && (is_saved || !row["cycles"].is_null())) row["color_hash"] = color_hash(*picture, config.color_format);
 
   const Clock::time_point now = Clock::now();
   const double frame_s = std::chrono::duration<double>(now - std::exchange(frame_start, now)).count();
@@ -329,7 +328,7 @@ void Frame::Memory::end() {
   const double rate = 1 / std::max(frame_s, 1e-6);
   frames_per_second = frames_per_second == 0 ? rate : frames_per_second + (rate - frames_per_second) / 8;
   last_primitives = counters.primitives_in;
-  const std::set<std::string> was_missing = std::exchange(missing, {});
+  const auto was_missing = std::exchange(missing, {});
   if (!is_told || options.results.empty()) return;
   row["time_s"] = {{"geometry", geometry}, {"raster", drawing - geometry}, {"driver", driver}, {"frame", frame_s}};
   row["missing"] = was_missing;

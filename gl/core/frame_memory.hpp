@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -98,7 +99,7 @@ struct Frame::Memory {
   double frames_per_second = 0;
   std::optional<std::uint64_t> last_cycles;
   std::uint64_t last_primitives = 0;
-  std::set<std::string> missing;  ///< of this frame
+  std::set<std::string, std::less<>> missing;  ///< of this frame
 
   /// The frame as a scene of its own. `restores`: begins with the picture that it was drawn on, where it looks at that.
   [[nodiscard]] Scene whole(bool restores) const;

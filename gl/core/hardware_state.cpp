@@ -195,7 +195,7 @@ std::uint8_t operated(unsigned op, unsigned source, unsigned stored) {
   return static_cast<std::uint8_t>(result & 255);
 }
 
-void draw_channels(Context& context, halfplane::State state, Topology topology, std::vector<Vertex>& vertices,
+void draw_channels(Context& context, halfplane::State state, Topology topology, std::span<Vertex> vertices,
                    std::span<const std::uint32_t> indices, const std::array<bool, 4>& channels,
                    const std::array<double, 4>& color) {
   for (std::size_t c = 0; c < 4; ++c) state.color_mask[c] = state.color_mask[c] && channels[c];
@@ -209,7 +209,7 @@ unsigned stored_operation(unsigned op, bool is_one) { return (is_one ? op : op >
 
 /// A logic operation on any colours: the draw replaces what is stored and marks its pixels by an alpha of 0, the host puts
 /// both together. Where a draw comes to a pixel more than once, the last time counts.
-void draw_through_host(Context& context, halfplane::State state, Topology topology, const std::vector<Vertex>& vertices,
+void draw_through_host(Context& context, halfplane::State state, Topology topology, std::span<const Vertex> vertices,
                        std::span<const std::uint32_t> indices) {
   Frame& frame = context.drawable->frame;
   frame.missing("logic operations on colours that are not all zeros or ones", "the host carries them out");
@@ -327,7 +327,7 @@ std::optional<halfplane::State> hardware_state(Context& context, DrawKind kind) 
   return hardware_state(context, kind, kind == DrawKind::triangles, use);
 }
 
-void draw_in(Context& context, halfplane::State state, Topology topology, std::vector<Vertex> vertices,
+void draw_in(Context& context, halfplane::State state, Topology topology, std::span<Vertex> vertices,
              std::span<const std::uint32_t> indices) {
   Frame& frame = context.drawable->frame;
   const unsigned op = context.state.color.logic_func - GL_CLEAR;
@@ -399,7 +399,7 @@ void draw_texels(Context& context, halfplane::State state, const halfplane::Text
                          column.texel / side(texels.width()),
                          row.texel / side(texels.height())});
   static constexpr std::array<std::uint32_t, 4> kStrip{0, 1, 2, 3};
-  if (has_logic_op) return draw_in(context, state, Topology::triangle_strip, std::move(corners), kStrip);
+  if (has_logic_op) return draw_in(context, state, Topology::triangle_strip, corners, kStrip);
   frame.draw(state, Topology::triangle_strip, corners, kStrip);
 }
 

@@ -47,8 +47,8 @@ enum class DrawKind { triangles, lines, points, rectangle };
 [[nodiscard]] halfplane::State all_pixels();
 /// Fills the target in such a state, colours 0...255.
 void fill_target(Context& context, const halfplane::State& state, const std::array<double, 4>& rgba);
-/// Draws in the state as it is, but for the logic operation.
-void draw_in(Context& context, halfplane::State state, Topology topology, std::vector<Vertex> vertices,
+/// Draws in the state as it is, but for the logic operation, which may change the vertices' colours.
+void draw_in(Context& context, halfplane::State state, Topology topology, std::span<Vertex> vertices,
              std::span<const std::uint32_t> indices);
 /// Texels as draw_rectangle() has them, in a state of space window. Culling and texture are set here.
 void draw_texels(Context& context, halfplane::State state, const halfplane::Texture& texels, double x, double y,

@@ -118,13 +118,17 @@ TexelImage box_filtered(const TexelImage& image, int width, int height, bool is_
 TextureLevel encoded(const Texture& texture, const TexelImage& image) {
   TextureLevel level{image.width, image.height, {}};
   level.code.resize(image.texel.size());
-  if (texture.format == TextureFormat::rgba8888)
-    std::ranges::transform(image.texel, level.code.begin(), [](const Texel& t) {
-      return std::uint32_t{t[0]} << 24 | std::uint32_t{t[1]} << 16 | std::uint32_t{t[2]} << 8 | t[3];
-    });
-  else
-    std::ranges::transform(image.texel, level.code.begin(),
-                           [&texture](const Texel& t) { return encode_texel(texture.format, t, texture.palette); });
+  const auto fill = [&](const auto& encode) { std::ranges::transform(image.texel, level.code.begin(), encode); };
+  switch (texture.format) {  // those of large images
+    case TextureFormat::rgba8888:
+      fill([](const Texel& t) {
+        return std::uint32_t{t[0]} << 24 | std::uint32_t{t[1]} << 16 | std::uint32_t{t[2]} << 8 | t[3];
+      });
+      break;
+    case TextureFormat::la88: fill([](const Texel& t) { return std::uint32_t{luminance(t)} << 8 | t[3]; }); break;
+    case TextureFormat::l8: fill([](const Texel& t) { return std::uint32_t{luminance(t)}; }); break;
+    default: fill([&texture](const Texel& t) { return encode_texel(texture.format, t, texture.palette); });
+  }
   return level;
 }
 

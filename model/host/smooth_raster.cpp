@@ -68,12 +68,17 @@ Sides sides_of(const std::array<SnappedVertex, 4>& corners, int grid_bits) {
 
 double area_at(const Sides& sides, int x, int y) {
   const Point centre{x + 0.5, y + 0.5};
-  Polygon left = kSquare;
-  for (const Side& side : sides) {
-    const double distance = side.distance(centre), reach = (std::abs(side.a) + std::abs(side.b)) / 2;
-    if (distance <= -reach) return 0;
-    if (distance < reach) left = cut(left, {side.a, side.b, distance});
+  std::array<double, 4> distance{}, reach{};
+  bool is_outside = false;
+  for (std::size_t i = 0; i < 4; ++i) {
+    distance[i] = sides[i].distance(centre);
+    reach[i] = (std::abs(sides[i].a) + std::abs(sides[i].b)) / 2;
+    is_outside |= distance[i] <= -reach[i];
   }
+  if (is_outside) return 0;
+  Polygon left = kSquare;
+  for (std::size_t i = 0; i < 4; ++i)
+    if (distance[i] < reach[i]) left = cut(left, {sides[i].a, sides[i].b, distance[i]});
   return area_of(left);
 }
 
@@ -105,6 +110,8 @@ std::array<int, 2> columns_of(const Sides& sides, int y, int left, int right) {
 template <class Columns, class Area>
 std::vector<SmoothPixel> pixels_of(const PixelBounds& box, Columns&& columns, Area&& area) {
   std::vector<SmoothPixel> pixels;
+  if (box.is_empty()) return pixels;
+  pixels.reserve(4 * static_cast<std::size_t>(box.right - box.left + box.bottom - box.top + 2));
   for (int y = box.top; y <= box.bottom; ++y) {
     const auto [first, last] = columns(y);
     for (int x = std::max(first, box.left); x <= std::min(last, box.right); ++x) {

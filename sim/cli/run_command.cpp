@@ -32,6 +32,7 @@ struct RunCommand : CommonOptions {
   MemorySettings memory;
   std::vector<int> save;
   bool hud = false;
+  RunCommand() { threads = 2; }  // a program is there to be looked at
   std::vector<std::string> program;
 };
 
@@ -295,7 +296,7 @@ Json csv_rows(const Json& rows) {
 void print_run(std::ostream& out, const RunCommand& options, const RunTotals& totals,
                const std::vector<std::string>& answered, const Config& config) {
   out << joined(options.program, " ") << ": " << label(config) << ", engine " << options.engine << ", "
-      << joined(answered) << '\n'
+      << options.threads << (options.threads == 1 ? " thread, " : " threads, ") << joined(answered) << '\n'
       << "frames      " << with_commas(totals.frames);
   if (totals.frames > 0)
     out << " in " << fixed(totals.seconds, 2) << " s, "

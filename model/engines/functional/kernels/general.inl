@@ -4,6 +4,7 @@
 #pragma once
 
 #include "bin.inl"
+#include "dots.inl"
 #include "fragments.inl"
 #include "lines.inl"
 #include "setup.inl"
@@ -77,6 +78,10 @@ HALFPLANE_NOINLINE void draw_records_general(Bin& bin, const Slice& slice, const
     draw_lines<GeneralFragments>(bin, slice);
     if (record.kind() == RecordKind::cut_line) {
       draw_cut_line<GeneralFragments>(bin, slice.lines[record.v[0]]);
+      continue;
+    }
+    if (is_dot(bin, slice, record)) {
+      first = draw_dots<GeneralFragments>(bin, slice, first, last) - 1;
       continue;
     }
     BinTriangle triangle;

@@ -169,6 +169,13 @@ void draw_records(Bin& bin, const Slice& slice, const std::uint32_t* first, cons
       draw_cut_line<Fragments>(bin, slice.lines[record.v[0]]);
       continue;
     }
+    if (Fragments::kIsOpaque && !bin.has_operations && is_dot(bin, slice, record)) {
+      bin.small_run = 0;
+      draw_batch<Fragments>(bin, slice);
+      draw_lines<Fragments>(bin, slice);
+      first = draw_dots<Fragments>(bin, slice, first - 1, last);
+      continue;
+    }
     const BinBounds box = box_of(bin, record);
     const std::uint64_t live = seen_tiles<Fragments>(bin, record, box);
     if (live == 0) continue;
@@ -225,7 +232,7 @@ enum class RecordWay {
   laid_over,  ///< only blended by alpha
   killed,     ///< fails the alpha test
   operated,   ///< full operations.inl
-  general     ///< lines, one fragment after the other
+  general     ///< lines and dots, one fragment after the other
 };
 
 /// The ways of a slice's records.
@@ -250,6 +257,7 @@ struct RecordWays {
 
   HALFPLANE_INLINE RecordWay operator()(const Bin& bin, const Record& record) const {
     const RecordKind kind = record.kind();
+    if (is_dot(bin, slice, record)) return RecordWay::general;
     const bool is_line = kind == RecordKind::whole_line || kind == RecordKind::cut_line;
     const RecordWay otherwise = is_line ? RecordWay::general : RecordWay::operated;
     if (!knows_alpha || kind == RecordKind::cut_line)
