@@ -23,6 +23,14 @@ struct Group {
   bool operator==(const Group&) const = default;
 };
 
+/// Memory of this thread that is kept from draw to draw.
+template <class Element>
+std::vector<Element>& empty_scratch() {
+  thread_local std::vector<Element> elements;
+  elements.clear();
+  return elements;
+}
+
 bool makes_triangles(Topology topology) {
   return topology == Topology::triangles || topology == Topology::triangle_strip || topology == Topology::triangle_fan;
 }
@@ -240,7 +248,7 @@ class Batch {
   halfplane::State state_;
   TextureUse use_;
   bool is_textured_ = false, has_host_fog_ = false;
-  std::vector<Vertex> model_;
+  std::vector<Vertex>& model_ = empty_scratch<Vertex>();  // one batch is drawn at a time
 };
 
 void draw_batch(Context& context, const Group& group, std::span<const ShadedVertex> vertices,
@@ -659,8 +667,9 @@ bool is_taken_apart(const Context& context, Shape shape, std::span<const ShadedV
     const auto is_two_sided = [](const ShadedVertex& v) {
       return v.color[0] != v.color[1] || v.secondary[0] != v.secondary[1];
     };
+    const bool may_be = state.lighting.enabled && state.lighting.two_side;  // else both colours are the same
     return state.polygon.mode != std::array<GLenum, 2>{GL_FILL, GL_FILL} || state.polygon.stipple ||
-           std::ranges::any_of(vertices, is_two_sided);
+           (may_be && std::ranges::any_of(vertices, is_two_sided));
   }
   if (is_textured(context)) return true;
   const auto bends = [&](std::uint32_t a, std::uint32_t b) { return fog_bends(state.fog, vertices[a], vertices[b]); };
@@ -687,7 +696,7 @@ void draw_primitives(Context& context, GLenum mode, std::span<const ShadedVertex
       group.point_size = pipeline.point_size(vertices[indices[0]]);
     }
     if (assembly.topology) return draw_batch(context, group, vertices, indices);
-    std::vector<std::uint32_t> triangles;
+    std::vector<std::uint32_t>& triangles = empty_scratch<std::uint32_t>();
     for_each_primitive(mode, indices.size(), [&](const std::vector<std::size_t>& place, std::size_t last) {
       const std::size_t corners = place.size();
       for (std::size_t i = 1; i + 1 < corners; ++i)

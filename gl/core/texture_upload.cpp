@@ -2,6 +2,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -382,7 +383,8 @@ TextureUse use_texture(Context& context, halfplane::State& state) {
                                                 : "GL_ADD with GL_INTENSITY",
                     "drawn as for white vertices, multiplied with their colours");
   }
-  state.texture = frame.texture(key.value(), [&] { return made(sampled, *fit, has_levels); });
+  const auto make = [&] { return made(sampled, *fit, has_levels); };
+  state.texture = frame.texture(key.value(), std::cref(make));  // no memory for the function
 
   const GLenum min = has_levels || !is_mipmapped      ? texture->min_filter
                      : is_linear(texture->min_filter) ? GLenum{GL_LINEAR}

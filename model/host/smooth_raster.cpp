@@ -9,7 +9,7 @@ namespace {
 
 /// Pixels.
 struct Point {
-  double x = 0, y = 0;
+  double x, y;
 };
 
 /// A line: inside where a x + b y + c >= 0, which is the distance from it.
@@ -27,25 +27,31 @@ struct Polygon {
   }
 };
 
-constexpr Polygon kSquare{{{{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}}, 4};
+constexpr std::array<Point, 4> kSquare{{{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}};
 
-Polygon cut(const Polygon& polygon, const Side& side) {
-  Polygon kept;
+/// Writes the part of a polygon inside a line to `kept`.
+void cut(const Polygon& polygon, const Side& side, Polygon& kept) {
+  kept.size = 0;
+  if (polygon.size == 0) return;
+  const double d_first = side.distance(polygon.corner[0]);
+  double d_from = d_first;
   for (std::size_t i = 0; i < polygon.size; ++i) {
-    const Point &from = polygon.corner[i], &to = polygon.corner[(i + 1) % polygon.size];
-    const double d_from = side.distance(from), d_to = side.distance(to);
+    const bool is_last = i + 1 == polygon.size;
+    const Point &from = polygon.corner[i], &to = polygon.corner[is_last ? 0 : i + 1];
+    const double d_to = is_last ? d_first : side.distance(to);
     if (d_from >= 0) kept.add(from);
-    if ((d_from < 0) == (d_to < 0)) continue;
-    const double t = d_from / (d_from - d_to);
-    kept.add({from.x + t * (to.x - from.x), from.y + t * (to.y - from.y)});
+    if ((d_from < 0) != (d_to < 0)) {
+      const double t = d_from / (d_from - d_to);
+      kept.add({from.x + t * (to.x - from.x), from.y + t * (to.y - from.y)});
+    }
+    d_from = d_to;
   }
-  return kept;
 }
 
 double area_of(const Polygon& polygon) {
   double doubled = 0;
   for (std::size_t i = 0; i < polygon.size; ++i) {
-    const Point &a = polygon.corner[i], &b = polygon.corner[(i + 1) % polygon.size];
+    const Point &a = polygon.corner[i], &b = polygon.corner[i + 1 == polygon.size ? 0 : i + 1];
     doubled += a.x * b.y - b.x * a.y;
   }
   return std::abs(doubled) / 2;
@@ -76,10 +82,16 @@ double area_at(const Sides& sides, int x, int y) {
     is_outside |= distance[i] <= -reach[i];
   }
   if (is_outside) return 0;
-  Polygon left = kSquare;
-  for (std::size_t i = 0; i < 4; ++i)
-    if (distance[i] < reach[i]) left = cut(left, {sides[i].a, sides[i].b, distance[i]});
-  return area_of(left);
+  std::array<Polygon, 2> polygon;  // by turns
+  std::ranges::copy(kSquare, polygon[0].corner.begin());
+  polygon[0].size = kSquare.size();
+  std::size_t now = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (!(distance[i] < reach[i])) continue;
+    cut(polygon[now], {sides[i].a, sides[i].b, distance[i]}, polygon[1 - now]);
+    now = 1 - now;
+  }
+  return area_of(polygon[now]);
 }
 
 /// To the nearest, halves up; of a number that is not negative.
