@@ -8,6 +8,7 @@
 
 #include "config.hpp"
 #include "draw_states.hpp"
+#include "known_textures.hpp"
 
 namespace halfplane {
 namespace {
@@ -144,7 +145,9 @@ std::string place_of_draw(std::string_view file, std::uint32_t line) {
   return place;
 }
 
-void validate(const Scene& scene) {
+void validate(const Scene& scene) { validate(scene, 0); }
+
+void validate(const Scene& scene, std::size_t known_textures) {
   const Place place(scene);
   if (!is_between(scene.width, 1, kLargestSide) || !is_between(scene.height, 1, kLargestSide))
     place.fail("a target of " + std::to_string(scene.width) + "x" + std::to_string(scene.height) +
@@ -155,7 +158,7 @@ void validate(const Scene& scene) {
   }
   check_vertices(scene, place);
   check_normals(scene, place);
-  for (std::size_t i = 0; i < scene.textures.size(); ++i) check_texture(scene, i, place);
+  for (std::size_t i = known_textures; i < scene.textures.size(); ++i) check_texture(scene, i, place);
   for (std::size_t i = 0; i < scene.states.size(); ++i) check_state(scene, i, place);
   std::size_t primitives = 0;  // an upper bound: an index makes at most one
   for (std::size_t i = 0; i < scene.commands.size(); ++i) {

@@ -76,7 +76,8 @@ class Display:
     def __enter__(self):
         read, write = os.pipe()
         self.server = subprocess.Popen(
-            ['Xvfb', '-displayfd', str(write), '-screen', '0', '800x600x24', '+extension', 'GLX', '-nolisten', 'tcp'],
+            ['Xvfb', '-displayfd', str(write), '-screen', '0', '800x600x24', '+extension', 'GLX', '-nolisten', 'tcp',
+             '-noreset'],
             pass_fds=[write], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         os.close(write)
         with os.fdopen(read) as pipe:
@@ -252,13 +253,14 @@ def replay(words, env, seconds):
 
 
 def speed(name, folder, env, options):
-    """Medians of --runs replays on llvmpipe and on the driver in turn; one more replay tells what part of a frame is raster."""
+    """Medians of --runs replays on llvmpipe and on the driver in turn. One more says what part of a frame is raster."""
     row = {'name': name, 'error': ''}
     driver = options.halfplane.resolve().parent / 'gl'
     results = folder / f'{name}.results'
     wishes = {'preset': options.config, 'config': options.set, 'threads': options.threads}
     mesa = env | {'LP_NUM_THREADS': str(options.threads)}
-    ours = env | {'__GLX_VENDOR_LIBRARY_NAME': 'halfplane', '__EGL_VENDOR_LIBRARY_FILENAMES': str(driver / 'halfplane.json'),
+    ours = env | {'__GLX_VENDOR_LIBRARY_NAME': 'halfplane',
+                  '__EGL_VENDOR_LIBRARY_FILENAMES': str(driver / 'halfplane.json'),
                   'LD_LIBRARY_PATH': str(driver), 'HALFPLANE_GL': json.dumps(wishes)}
     words = [replayer(name), '-b', str(folder / f'{name}.trace')]
     try:
@@ -284,8 +286,8 @@ def speed(name, folder, env, options):
 
 
 def speed_table(rows):
-    out = ['| program | pixels | frames | llvmpipe, frames/s | Halfplane, frames/s | times as fast | host, ms | raster, ms '
-           '| llvmpipe, CPU ms | Halfplane, CPU ms | times less CPU |', '| --- | --- ' + '| --- ' * 9 + '|']
+    out = ['| program | pixels | frames | llvmpipe, frames/s | Halfplane, frames/s | times as fast | host, ms '
+           '| raster, ms | llvmpipe, CPU ms | Halfplane, CPU ms | times less CPU |', '| --- | --- ' + '| --- ' * 9 + '|']
     for row in rows:
         if row['error']:
             out.append(f'| {row["name"]} | | | | | | | | | | **{row["error"][:100]}** |')

@@ -15,6 +15,7 @@ struct Point {
 /// A line: inside where a x + b y + c >= 0, which is the distance from it.
 struct Side {
   double a = 0, b = 0, c = 0;
+  double reach = 0;  ///< the largest distance of a pixel's corner from the line through its centre
   [[nodiscard]] double distance(const Point& p) const { return a * p.x + b * p.y + c; }
 };
 
@@ -68,18 +69,18 @@ Sides sides_of(const std::array<SnappedVertex, 4>& corners, int grid_bits) {
     const double length = std::sqrt(dx * dx + dy * dy);
     const double c = std::ldexp(dy * from.x - dx * from.y, -grid_bits);
     sides[i] = {-sign * dy / length, sign * dx / length, sign * c / length};
+    sides[i].reach = (std::abs(sides[i].a) + std::abs(sides[i].b)) / 2;
   }
   return sides;
 }
 
 double area_at(const Sides& sides, int x, int y) {
   const Point centre{x + 0.5, y + 0.5};
-  std::array<double, 4> distance{}, reach{};
+  std::array<double, 4> distance{};
   bool is_outside = false;
   for (std::size_t i = 0; i < 4; ++i) {
     distance[i] = sides[i].distance(centre);
-    reach[i] = (std::abs(sides[i].a) + std::abs(sides[i].b)) / 2;
-    is_outside |= distance[i] <= -reach[i];
+    is_outside |= distance[i] <= -sides[i].reach;
   }
   if (is_outside) return 0;
   std::array<Polygon, 2> polygon;  // by turns
@@ -87,7 +88,7 @@ double area_at(const Sides& sides, int x, int y) {
   polygon[0].size = kSquare.size();
   std::size_t now = 0;
   for (std::size_t i = 0; i < 4; ++i) {
-    if (!(distance[i] < reach[i])) continue;
+    if (!(distance[i] < sides[i].reach)) continue;
     cut(polygon[now], {sides[i].a, sides[i].b, distance[i]}, polygon[1 - now]);
     now = 1 - now;
   }
@@ -100,23 +101,39 @@ std::uint32_t rounded(double value) {
   return whole + (value - whole >= 0.5 ? 1 : 0);
 }
 
-/// The columns from `left` to `right` that may have an area in row y: outside, area_at() is 0. A column is spared on each
-/// side for rounding.
-std::array<int, 2> columns_of(const Sides& sides, int y, int left, int right) {
-  constexpr double kFlat = 1e-4;  // sides that bound no column
-  double first = left, last = right;
-  for (const Side& side : sides) {
-    if (std::abs(side.a) < kFlat) continue;
-    const double reach = (std::abs(side.a) + std::abs(side.b)) / 2;
-    const double bound = -(reach + side.b * (y + 0.5) + side.c) / side.a - 0.5;
-    if (side.a > 0)
-      first = std::max(first, bound - 1);
-    else
-      last = std::min(last, bound + 1);
+/// The columns that may have an area in a row: outside, area_at() is 0. A column is spared on each side for rounding.
+class Columns {
+ public:
+  explicit Columns(const Sides& sides) {
+    constexpr double kFlat = 1e-4;  // sides that bound no column
+    for (const Side& side : sides) {
+      if (std::abs(side.a) < kFlat) continue;
+      Bound& bound = bound_[count_++];
+      bound = {-(side.reach + side.c + side.b / 2) / side.a - 0.5, -side.b / side.a, side.a > 0};
+      bound.at_zero += bound.is_first ? -1 : 1;
+    }
   }
-  if (!(first <= last)) return {0, -1};
-  return {static_cast<int>(std::floor(first)), static_cast<int>(std::ceil(last))};
-}
+  [[nodiscard]] std::array<int, 2> operator()(int y, int left, int right) const {
+    double first = left, last = right;
+    for (std::size_t i = 0; i < count_; ++i) {
+      const double bound = bound_[i].at_zero + bound_[i].per_row * y;
+      if (bound_[i].is_first)
+        first = std::max(first, bound);
+      else
+        last = std::min(last, bound);
+    }
+    if (!(first <= last)) return {0, -1};
+    return {static_cast<int>(first), static_cast<int>(last) + 1};
+  }
+
+ private:
+  struct Bound {
+    double at_zero = 0, per_row = 0;
+    bool is_first = false;
+  };
+  std::array<Bound, 4> bound_{};
+  std::size_t count_ = 0;
+};
 
 /// The pixels of a box with an area(x, y) that does not round to 0. columns(y): the first and the last that may have one.
 template <class Columns, class Area>
@@ -151,7 +168,7 @@ std::vector<SmoothPixel> smooth_raster(const std::array<SnappedVertex, 4>& corne
   const PixelBounds box{std::max(limit.left, left >> grid_bits), std::max(limit.top, top >> grid_bits),
                         std::min(limit.right, right >> grid_bits), std::min(limit.bottom, bottom >> grid_bits)};
   return pixels_of(
-      box, [&](int y) { return columns_of(sides, y, box.left, box.right); },
+      box, [&, columns = Columns(sides)](int y) { return columns(y, box.left, box.right); },
       [&](int x, int y) { return area_at(sides, x, y); });
 }
 

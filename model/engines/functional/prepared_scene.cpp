@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "../../host/primitives.hpp"
+#include "../../known_textures.hpp"
 #include "../../stages/surface.hpp"
 
 namespace halfplane {
@@ -61,7 +62,7 @@ bool is_linear(const State& state) {
 PreparedScene::PreparedScene(const Scene& scene, std::vector<TexelBlocks> known, Footprints footprints)
     : draws(scene.commands.size()), textures(std::move(known)), scene_(&scene) {
   const std::size_t known_textures = textures.size();
-  validate(scene);
+  validate(scene, known_textures);
   for (std::size_t i = known_textures; i < scene.textures.size(); ++i) textures.emplace_back(scene.textures[i]);
   for (const State& state : scene.states)
     if (state.texture) {

@@ -26,7 +26,7 @@ Record record_of(const std::array<std::uint32_t, 3>& v, std::int64_t z_low, std:
 }
 
 /// Appends; Slice::records may be longer than its content.
-void add_record(Slice& slice, const Record& record, std::size_t room) {
+inline void add_record(Slice& slice, const Record& record, std::size_t room) {
   if (slice.records.size() < slice.record_count + 1 + room) slice.records.resize(2 * (slice.record_count + 1 + room));
   slice.records[slice.record_count++] = record;
 }
@@ -114,6 +114,8 @@ void add_outline(Slice& slice, const Outline& outline, const Rect& rect, const W
     add_record(slice, record_of({at, 0, 0}, low, high, line_box(line.setup), RecordKind::cut_line), room);
     slice.lines.push_back(line.setup);
   }
+  const std::size_t most = slice.record_count + outline.points.size() + room;
+  if (slice.records.size() < most) slice.records.resize(2 * most);
   for (const PointPrimitive& point : outline.points) {
     const auto at = static_cast<std::uint32_t>(slice.vertices.size());
     slice.vertices.push_back(row_of(point.drawn.at));
