@@ -667,9 +667,8 @@ bool is_taken_apart(const Context& context, Shape shape, std::span<const ShadedV
     const auto is_two_sided = [](const ShadedVertex& v) {
       return v.color[0] != v.color[1] || v.secondary[0] != v.secondary[1];
     };
-    const bool may_be = state.lighting.enabled && state.lighting.two_side;  // else both colours are the same
     return state.polygon.mode != std::array<GLenum, 2>{GL_FILL, GL_FILL} || state.polygon.stipple ||
-           (may_be && std::ranges::any_of(vertices, is_two_sided));
+           std::ranges::any_of(vertices, is_two_sided);
   }
   if (is_textured(context)) return true;
   const auto bends = [&](std::uint32_t a, std::uint32_t b) { return fog_bends(state.fog, vertices[a], vertices[b]); };
