@@ -62,6 +62,20 @@ Items items_of(const Scene& scene) {
   return items;
 }
 
+/// Adds the textures of the states, which have their numbers in `like`.
+void add_textures(const Scene& like, Scene& scene) {
+  std::vector<std::uint32_t> number(like.textures.size(), ~0U);
+  for (State& state : scene.states) {
+    if (!state.texture) continue;
+    std::uint32_t& added = number[*state.texture];
+    if (added == ~0U) {
+      added = static_cast<std::uint32_t>(scene.textures.size());
+      scene.textures.push_back(like.textures[*state.texture]);
+    }
+    state.texture = added;
+  }
+}
+
 /// Neighbours of one state and kind become one draw.
 Scene scene_of(Items items, const Scene& like, int width, int height) {
   Scene scene;
@@ -91,6 +105,7 @@ Scene scene_of(Items items, const Scene& like, int width, int height) {
     }
     draw->count += item.corners().size();
   }
+  add_textures(like, scene);
   return scene;
 }
 

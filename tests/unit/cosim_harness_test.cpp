@@ -496,6 +496,35 @@ TEST(CosimReduce, AFaultInALineLeavesALine) {
   EXPECT_EQ(std::get<Draw>(reduced->scene.commands.at(0)).topology, Topology::lines);
 }
 
+TEST(CosimReduce, OfTheTexturesTheOneThatIsShownIsLeft) {
+  Config config = preset("embedded");
+  config.texture_unit = TextureUnitKind::nearest;
+  std::uint64_t seed = 1;
+  while (random_scene(config, seed, 60).textures.size() < 3) ++seed;
+  const Scene scene = random_scene(config, seed, 60);
+  const auto shows = [](const Scene& s, std::string_view name) {
+    return std::ranges::any_of(s.commands, [&](const Command& command) {
+      const auto* draw = std::get_if<Draw>(&command);
+      return draw != nullptr && s.states[draw->state].texture &&
+             s.textures.at(*s.states[draw->state].texture).name == name;
+    });
+  };
+  std::size_t shown = 0;
+  for (const Texture& texture : scene.textures) {
+    if (!shows(scene, texture.name)) continue;
+    ++shown;
+    const auto reduced = reduce(scene, config, {}, [&](const Scene& s, const LockstepOptions&) {
+      validate(s);
+      return shows(s, texture.name) ? std::optional(Mismatch{}) : std::nullopt;
+    });
+    ASSERT_TRUE(reduced.has_value());
+    EXPECT_EQ(reduced->primitives_after, 1u);
+    ASSERT_EQ(reduced->scene.textures.size(), 1u);
+    EXPECT_EQ(reduced->scene.textures[0].name, texture.name);
+  }
+  EXPECT_GT(shown, 1u);
+}
+
 TEST(CosimReduce, WindowSpaceSendsTheSamePrimitives) {
   const Config config = preset("embedded");
   test::SceneBuilder builder(64, 48, State{});
