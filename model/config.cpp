@@ -102,6 +102,11 @@ Setting of_host(Setting setting) {
   return setting;
 }
 
+Setting unnamed_at_0(Setting setting) {
+  setting.is_unnamed_at_0 = true;
+  return setting;
+}
+
 Setting no_pixel(Setting setting) {
   setting.may_change_pixels = false;
   return setting;
@@ -181,6 +186,9 @@ std::vector<Setting> all_settings() {
           choice<&Config::reciprocal_kind>("reciprocal.kind", {"table", "restoring"},
                                            "what the texture unit divides by 1/w with: a RAM and two multipliers, or "
                                            "subtractions; the same bits and time")),
+      unnamed_at_0(number<&Config::texture_constants>(
+          "texture.constant", "units",
+          "1: the RTL's texture unit blends with a constant colour (texture_combine blend); 0: it does not", 0, 1)),
       number<&Config::alpha_units>(
           "alpha.unit", "units",
           "1: the RTL interpolates alpha, whatever color.format keeps, and (blocks, pipelined) tests it; 0: neither", 0,

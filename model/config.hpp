@@ -77,6 +77,7 @@ struct Config {
   int texture_ways = 1;      ///< places in the cache for a block: 1 or 2
   int texture_queue = 32;    ///< samples between their coordinates and their texels; a power of two
   ReciprocalKind reciprocal_kind = ReciprocalKind::table;  ///< of the texture unit
+  int texture_constants = 0;                               ///< 1: the RTL's texture unit blends with a constant colour
   int alpha_units = 0;    ///< 1: alpha is interpolated for any stored format, and tested
   int blend_lanes = 0;    ///< samples blended per clock: 0 (no unit), 1 or 4
   int dither_units = 0;   ///< 1: the RTL dithers colours of rgb565
@@ -132,6 +133,7 @@ struct Setting {
   std::vector<std::string_view> names = {};  ///< names of an enumeration's values, in order
   bool is_host = false;                      ///< the RTL does not depend on it
   bool may_change_pixels = true;             ///< false: it affects time and area only
+  bool is_unnamed_at_0 = false;              ///< at 0 it is no part of CONFIG_ID: IDs are older than the setting
   std::string (*read)(const Config&, const Setting&) = nullptr;
   void (*write)(Config&, const Setting&, std::string_view) = nullptr;
 

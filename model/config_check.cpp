@@ -57,6 +57,9 @@ void validate(const Config& config) {
       config.texture_ways == 1 || config.texture_unit != TextureUnitKind::nearest || config.texture_lanes != 1,
       "a texture unit with one nearest texel a clock has one way: use texture.unit=bilinear or trilinear, "
       "texture.lanes=4, or texture.ways=1");
+  refuse_unless(config.texture_constants == 0 || config.texture_unit != TextureUnitKind::off,
+                "a constant colour is blended by the texels of a texture unit: use texture.unit=nearest, or "
+                "texture.constant=0");
   refuse_unless(config.fog_units == 0 || config.texture_unit != TextureUnitKind::off,
                 "fog looks at the plane of 1/w, which a texture unit brings: use texture.unit=nearest, or fog.unit=0");
   refuse_unless(config.shade_units == 0 || config.texture_unit != TextureUnitKind::off,

@@ -202,7 +202,8 @@ constexpr std::array<Words, 6> texture_min_words{"nearest",
                                                  "linear_mipmap_linear"};
 constexpr std::array<Words, 2> texture_mag_words{"nearest", "linear"};
 constexpr std::array<Words, 3> wrap_words{"repeat", "clamp", "mirror"};
-constexpr std::array<Words, 4> combine_words{"modulate", "replace", "decal", "add"};
+constexpr std::array<Words, 5> combine_words{"modulate", "replace", "decal", "add", "blend"};
+static_assert(combine_words.size() == enumerators<TextureCombine>());
 
 constexpr std::array<Words, 3> fog_words{"linear", "exp", "exp2"};
 static_assert(fog_words.size() == enumerators<FogKind>());
@@ -310,6 +311,9 @@ constexpr std::array<StateNumber, 3> texture_lod_numbers{{
     {"texture_lod's least level", 0, 12, false, false, 0, 0.5, 4},
     {"texture_lod's largest level", 0, 12, false, false, 2, 0.5, 21},
 }};
+constexpr std::array<StateNumber, 3> texture_constant_numbers{{byte_number("texture_constant's red"),
+                                                               byte_number("texture_constant's green"),
+                                                               byte_number("texture_constant's blue")}};
 constexpr std::array<StateNumber, 4> scissor_numbers{{
     {"scissor x", -far_away, far_away, true, false, -5, 1, 26},
     {"scissor y", -far_away, far_away, true, false, -5, 1, 26},
@@ -462,7 +466,13 @@ constexpr std::array table{
                               .purpose = "added to the level of detail, which is then held between min and max"}),
     row<&State::texture_combine>({.name = "texture_combine",
                                   .words = combine_words,
-                                  .purpose = "what becomes of the triangle's colour and the texel"}),
+                                  .purpose = "what becomes of the triangle's colour and the texel; `blend`: from the "
+                                             "colour to the constant, by the texel's channels"}),
+    row<&State::texture_constant>({.name = "texture_constant",
+                                   .numbers = texture_constant_numbers,
+                                   .form = "r g b",
+                                   .purpose = "the constant of `texture_combine blend`",
+                                   .home = StateHome::unit}),
     row<&State::fog>({.name = "fog",
                       .words = off_words,
                       .numbers = fog_numbers,

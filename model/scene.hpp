@@ -54,8 +54,8 @@ enum class TextureMin {
 enum class TextureMag { nearest, linear };
 /// Texels beyond the image: repeated, the last texel, or mirrored. Along u and v.
 enum class TextureWrap { repeat, clamp, mirror };
-/// Combination with the primitive's colour.
-enum class TextureCombine { modulate, replace, decal, add };
+/// Combination with the primitive's colour. blend: from that to State::texture_constant, by the texel's channels.
+enum class TextureCombine { modulate, replace, decal, add, blend };
 
 /// Density of fog by the distance from the eye.
 enum class FogKind { linear, exp, exp2 };
@@ -198,7 +198,8 @@ struct State {
   std::array<TextureWrap, 2> texture_wrap{};
   std::array<double, 3> texture_lod{0.0, 0.0, 12.0};  ///< bias, least and largest level
   TextureCombine texture_combine = TextureCombine::modulate;
-  std::optional<Fog> fog;  ///< none: colours are unchanged
+  std::array<std::uint8_t, 3> texture_constant{};  ///< of texture_combine blend
+  std::optional<Fog> fog;                          ///< none: colours are unchanged
   std::array<std::uint8_t, 3> fog_color{};
   // For shade phong: a fragment of colour C and normal N becomes C (ambient + diffuse N.L) + specular (N.H)^shininess,
   // the highlight where N.L > 0, clamped to 255. L and H may have any length.

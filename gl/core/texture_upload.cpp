@@ -17,7 +17,7 @@ namespace {
 
 /// How RGB and alpha come from the vertex's colour and the texel that is handed to the model. of_white: not exactly; the
 /// environment's result for white vertices is multiplied with their colour.
-enum class Rgb : std::uint8_t { modulate, replace, add, decal, decal_constant, of_white };
+enum class Rgb : std::uint8_t { modulate, replace, add, decal, decal_constant, blend, of_white };
 enum class Alpha : std::uint8_t { multiply, replace, of_white };
 struct Fit {
   Rgb rgb = Rgb::modulate;
@@ -132,8 +132,8 @@ Result environment(const TextureUnit& unit, GLenum base, const Vec4& texel, cons
 
 Vec4 real(const Texel& texel) { return {texel[0] / 255.0, texel[1] / 255.0, texel[2] / 255.0, texel[3] / 255.0}; }
 
-/// Of the modes that take texels as they are; none: the texels decide.
-std::optional<Fit> direct_fit(GLenum mode, GLenum base) {
+/// Of the modes that take texels as they are; none: the texels decide. `blends`: the hardware has a constant color.
+std::optional<Fit> direct_fit(GLenum mode, GLenum base, bool blends) {
   const bool is_opaque = base == GL_RGB || base == GL_LUMINANCE;
   switch (mode) {
     case GL_MODULATE: return Fit{};
@@ -146,6 +146,7 @@ std::optional<Fit> direct_fit(GLenum mode, GLenum base) {
       break;
     case GL_BLEND:
       if (base == GL_ALPHA) return Fit{};
+      if (blends && base != GL_INTENSITY) return Fit{Rgb::blend};
       break;
     default: break;
   }
@@ -172,9 +173,9 @@ struct Sampled {
 };
 
 /// Which of the model's modes gives the results of all texels.
-Fit fit_texels(const Sampled& sampled) {
-  std::array<bool, 5> rgb{true, true, true, true, true};  // by Rgb
-  std::array<bool, 2> alpha{true, true};                  // by Alpha
+Fit fit_texels(const Sampled& sampled, bool blends) {
+  std::array<bool, 6> rgb{true, true, true, true, true, blends};  // by Rgb
+  std::array<bool, 2> alpha{true, true};                          // by Alpha
   bool keeps_alpha = true;
   const Vec4& constant = sampled.unit.env_color;
   for (std::size_t l = sampled.first; l <= sampled.last; ++l)
@@ -192,10 +193,14 @@ Fit fit_texels(const Sampled& sampled) {
           keeps_alpha = keeps_alpha && modulates && is_near(a, 1);
           continue;
         }
-        const bool is_even = is_exact && is_near(a, result[0].a) && a > -kTolerance && a < 1 + kTolerance;
-        const std::array<bool, 5> holds{modulates, replaces, is_exact && is_near(a, 1) && b > -kTolerance,
+        const bool is_part = is_exact && a > -kTolerance && a < 1 + kTolerance;
+        const bool is_even = is_part && is_near(a, result[0].a);
+        const std::array<bool, 6> holds{modulates,
+                                        replaces,
+                                        is_exact && is_near(a, 1) && b > -kTolerance,
                                         is_even && is_near(b, (1 - a) * texel[c] / 255.0),
-                                        is_even && is_near(b, (1 - a) * constant[c])};
+                                        is_even && is_near(b, (1 - a) * constant[c]),
+                                        is_part && is_near(b, (1 - a) * constant[c])};
         for (std::size_t k = 0; k < rgb.size(); ++k) rgb[k] = rgb[k] && holds[k];
       }
     }
@@ -214,7 +219,8 @@ Texel folded(const Fit& fit, const Result& result, const Texel& texel, const Vec
     const auto& [a, b, is_exact] = result[c];
     const bool is_of_white = c == 3 ? fit.alpha == Alpha::of_white : fit.rgb == Rgb::of_white;
     const bool takes_a = c == 3 ? fit.alpha == Alpha::multiply : fit.rgb == Rgb::modulate;
-    color[c] = static_cast<float>(is_of_white ? a + b : takes_a ? a : b);
+    const bool takes_rest = c != 3 && fit.rgb == Rgb::blend;
+    color[c] = static_cast<float>(is_of_white ? a + b : takes_rest ? 1 - a : takes_a ? a : b);
   }
   if (fit.rgb == Rgb::decal || fit.rgb == Rgb::decal_constant) {
     for (std::size_t c = 0; c < 3; ++c)
@@ -273,12 +279,12 @@ class Key {
 };
 
 /// The fit of an environment that has to be folded, found once for each key.
-Fit folded_fit(Context& context, const Sampled& sampled, std::uint64_t key) {
+Fit folded_fit(Context& context, const Sampled& sampled, bool blends, std::uint64_t key) {
   constexpr std::size_t kMost = 1024;
   if (const auto known = context.texture_fits.find(key); known != context.texture_fits.end())
     return {static_cast<Rgb>(known->second & 255), static_cast<Alpha>(known->second >> 8), true};
   if (context.texture_fits.size() >= kMost) context.texture_fits.clear();
-  const Fit fit = fit_texels(sampled);
+  const Fit fit = fit_texels(sampled, blends);
   context.texture_fits[key] = static_cast<std::uint32_t>(fit.rgb) | static_cast<std::uint32_t>(fit.alpha) << 8;
   return fit;
 }
@@ -366,7 +372,10 @@ TextureUse use_texture(Context& context, halfplane::State& state) {
   const Sampled sampled{*texture, unit, base_of(*texture, image), first, last};
 
   Key key(texture->revision, first, last, sampled.base);
-  std::optional<Fit> fit = direct_fit(unit.env_mode, sampled.base);
+  // A configuration without a texture unit has no hardware to keep to.
+  const Config& config = frame.options().config;
+  const bool blends = config.texture_unit == TextureUnitKind::off || config.texture_constants != 0;
+  std::optional<Fit> fit = direct_fit(unit.env_mode, sampled.base, blends);
   if (!fit) {
     key.add(unit.env_mode);
     for (const double channel : unit.env_color) key.add(std::bit_cast<std::uint64_t>(channel));
@@ -376,7 +385,7 @@ TextureUse use_texture(Context& context, halfplane::State& state) {
       key.add(static_cast<std::uint64_t>(combiner.scale));
       for (std::size_t i = 0; i < 3; ++i) key.add(std::uint64_t{combiner.source[i]} << 32 | combiner.operand[i]);
     }
-    fit = folded_fit(context, sampled, key.value());
+    fit = folded_fit(context, sampled, blends, key.value());
     if (!fit->is_exact())
       frame.missing(unit.env_mode == GL_COMBINE ? "this GL_COMBINE environment"
                     : unit.env_mode == GL_BLEND ? "this GL_BLEND environment"
@@ -401,8 +410,12 @@ TextureUse use_texture(Context& context, halfplane::State& state) {
   const bool replaces_alpha = fit->alpha == Alpha::replace;
   state.texture_combine = fit->rgb == Rgb::add                                        ? TextureCombine::add
                           : fit->rgb == Rgb::decal || fit->rgb == Rgb::decal_constant ? TextureCombine::decal
+                          : fit->rgb == Rgb::blend                                    ? TextureCombine::blend
                           : fit->rgb == Rgb::replace && replaces_alpha                ? TextureCombine::replace
                                                                                       : TextureCombine::modulate;
+  if (fit->rgb == Rgb::blend)
+    for (std::size_t c = 0; c < 3; ++c)
+      state.texture_constant[c] = static_cast<std::uint8_t>(std::lround(255 * in(unit.env_color[c], 0, 1)));
   return {fit->rgb == Rgb::replace, replaces_alpha};
 }
 

@@ -185,6 +185,7 @@ void print_blocks(std::ostream& out, const Config& config) {
            "a fragment as it waits for memory");
   print_constant(out, "UNIT_WORD_BITS", kLevelsWordBit,
                  "a token's value for light or fog; two bits above it say which");
+  print_constant(out, "CONSTANT_WORD_BIT", kConstantWordBit, "of levels: the token is the texture's constant");
   print_constant(out, "FOG_PLACE_BITS", kFogPlaceBits + kFogOctaves, "where in the table of a fog a pixel lies");
   constant("FOG_PLACES_BITS", "FOG_PLACE_BITS * PIXELS > UNIT_WORD_BITS ? FOG_PLACE_BITS * PIXELS : UNIT_WORD_BITS",
            "that of a stamp's pixels, or a token's value");
@@ -288,9 +289,11 @@ std::uint64_t config_id(const Config& config) {
   };
   for (const Setting& setting : settings()) {
     if (!setting.is_hardware()) continue;
+    const std::string value = get(config, setting);
+    if (setting.is_unnamed_at_0 && value == "0") continue;
     feed(setting.key);
     feed("=");
-    feed(get(config, setting));
+    feed(value);
     feed("\n");
   }
   return hash;

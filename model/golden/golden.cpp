@@ -506,7 +506,7 @@ class Renderer {
     if (d.state.texture) {
       const Texture& texture = scene_.textures[*d.state.texture];
       const Color color = combined(widen(fragment.rgba), filtered(texture, d.state, fragment.texture),
-                                   d.state.texture_combine, has_alpha(texture.format));
+                                   d.state.texture_combine, has_alpha(texture.format), d.state.texture_constant);
       for (std::size_t c = 0; c < 4; ++c) fragment.rgba[c] = static_cast<Real>(color[c]);
     }
     add_fog(fragment.rgba, fragment.inverse_w, d.state);

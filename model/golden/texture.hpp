@@ -109,16 +109,18 @@ struct TexelPlace {
 }
 
 /// The primitive's colour and the texture's combined: OpenGL ES 1.1's table 3.17; alpha is unchanged if the format has
-/// none.
-[[nodiscard]] inline Color combined(const Color& color, const Color& texel, TextureCombine combine, bool has_alpha) {
+/// none. `constant`: of blend, 0...255.
+[[nodiscard]] inline Color combined(const Color& color, const Color& texel, TextureCombine combine, bool has_alpha,
+                                    const std::array<std::uint8_t, 3>& constant) {
   Color c = color;
   for (std::size_t i = 0; i < 3; ++i) switch (combine) {
       case TextureCombine::modulate: c[i] = color[i] * texel[i] / 255; break;
       case TextureCombine::replace: c[i] = texel[i]; break;
       case TextureCombine::decal: c[i] = color[i] + (texel[i] - color[i]) * texel[3] / 255; break;
       case TextureCombine::add: c[i] = std::min(color[i] + texel[i], 255.0); break;
+      case TextureCombine::blend: c[i] = color[i] * (1 - texel[i] / 255) + constant[i] * (texel[i] / 255); break;
     }
-  if (combine == TextureCombine::modulate || combine == TextureCombine::add) c[3] = color[3] * texel[3] / 255;
+  if (combine != TextureCombine::replace && combine != TextureCombine::decal) c[3] = color[3] * texel[3] / 255;
   if (combine == TextureCombine::replace && has_alpha) c[3] = texel[3];
   return c;
 }

@@ -29,6 +29,10 @@ std::string surface_fault(const Scene& scene, const State& state, const Config& 
            "it; make both perspective or both affine";
   if (config.texture_unit == TextureUnitKind::off)
     return "texture: this hardware has no texture unit; set texture.unit=nearest";
+  if (state.texture_combine == TextureCombine::blend && config.texture_constants == 0)
+    return "texture_combine blend: this texture unit has no constant colour; set texture.constant=1, or use another "
+           "way "
+           "to combine";
   const bool is_linear = state.texture_min == TextureMin::linear && state.texture_mag == TextureMag::linear;
   if (is_linear && config.texture_unit == TextureUnitKind::nearest)
     return "texture_min and texture_mag: this texture unit takes nearest texels alone; use nearest, or set "

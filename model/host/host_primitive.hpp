@@ -16,16 +16,17 @@ namespace halfplane {
 
 /// The unit registers that a primitive needs, as words of tokens.
 struct UnitWords {
-  std::uint64_t texture_state = 0;              ///< of a triangle: TextureState
-  std::uint32_t texture_levels = 0;             ///< likewise TextureLevels
-  std::optional<TextureLines> texture_lines{};  ///< if its samples have a level of detail
-  bool looks_at_fog = false;                    ///< triangle whose colours are written, with a fog unit
-  std::shared_ptr<const FogTable> fog{};        ///< then: its fog; null: none
-  bool looks_at_light = false;                  ///< likewise
-  std::shared_ptr<const PhongLight> light{};    ///< then: its light; null: none
-  ColorWords colors{};                          ///< of the draw
-  StencilWords stencil{};                       ///< likewise; for a fast clear: its value
-  Signature texels{};                           ///< of the texture of a triangle, where bins are compared
+  std::uint64_t texture_state = 0;                  ///< of a triangle: TextureState
+  std::uint32_t texture_levels = 0;                 ///< likewise TextureLevels
+  std::optional<TextureLines> texture_lines{};      ///< if its samples have a level of detail
+  std::optional<std::uint64_t> texture_constant{};  ///< if it blends by its texels: TextureConstant
+  bool looks_at_fog = false;                        ///< triangle whose colours are written, with a fog unit
+  std::shared_ptr<const FogTable> fog{};            ///< then: its fog; null: none
+  bool looks_at_light = false;                      ///< likewise
+  std::shared_ptr<const PhongLight> light{};        ///< then: its light; null: none
+  ColorWords colors{};                              ///< of the draw
+  StencilWords stencil{};                           ///< likewise; for a fast clear: its value
+  Signature texels{};                               ///< of the texture of a triangle, where bins are compared
 };
 
 /// The packet, and its origin.

@@ -148,6 +148,10 @@ void HostStream::set_texture(const HostPrimitive& triangle) {
     texture_state_ = triangle.units.texture_state;
     in_front_.push_back(state_token(StateRegister::texture, next.pack(), triangle));
   }
+  if (triangle.units.texture_constant && triangle.units.texture_constant != texture_constant_) {
+    texture_constant_ = triangle.units.texture_constant;
+    in_front_.push_back(state_token(StateRegister::texture_levels, *texture_constant_, triangle));
+  }
   if (config_.texture_unit != TextureUnitKind::trilinear || !TextureState::unpack(triangle.units.texture_state).enable)
     return;
   if (triangle.units.texture_levels != texture_levels_) {
@@ -415,6 +419,8 @@ void HostStream::set_coordinates(const Triangle& triangle, HostPrimitive& out) {
     packet.coordinates.origin[axis] = coordinates.reference[axis];
   }
   out.units.texture_state = texture_state(texture, state, textures_->base(*state.texture)).pack();
+  if (state.texture_combine == TextureCombine::blend)
+    out.units.texture_constant = TextureConstant{state.texture_constant}.pack();
   if (held_ != nullptr) out.units.texels = texels_of(*state.texture);
   if (config_.texture_unit == TextureUnitKind::trilinear) set_levels(triangle, coordinates, format, out);
 }

@@ -102,10 +102,11 @@ class HostStream {
   std::vector<std::optional<Signature>> texels_;  ///< of each texture, likewise
   std::vector<HostPrimitive> pending_;            ///< made but not yet pulled
   std::size_t pending_first_ = 0;
-  std::optional<TextureMemory> textures_;        ///< with a texture unit
-  std::optional<std::uint64_t> texture_state_;   ///< the unit's state since the scene began
-  std::optional<std::uint32_t> texture_levels_;  ///< likewise, with levels
-  std::optional<FogState> fog_state_;            ///< likewise, and the lines of its table
+  std::optional<TextureMemory> textures_;          ///< with a texture unit
+  std::optional<std::uint64_t> texture_state_;     ///< the unit's state since the scene began
+  std::optional<std::uint32_t> texture_levels_;    ///< likewise, with levels
+  std::optional<std::uint64_t> texture_constant_;  ///< likewise
+  std::optional<FogState> fog_state_;              ///< likewise, and the lines of its table
   std::array<std::optional<FogLine>, std::size_t{1} << kFogLines> fog_line_{};
   std::array<std::optional<std::uint64_t>, kLightWords> light_word_{};  ///< likewise for light
   std::array<std::optional<FallingLine>, std::size_t{1} << kPowerLines> light_line_{};

@@ -79,6 +79,7 @@ void Surface::set_normals(const Triangle& triangle, const Divisor& divisor) {
 void Surface::set_texture(const Triangle& triangle, const State& state, const Texture& texture) {
   sampler_ = Sampler(texture, state);
   combine_ = state.texture_combine;
+  constant_ = state.texture_constant;
   TextureCoordinates coordinates = texture_coordinates(
       {triangle.surface[order_[0]], triangle.surface[order_[1]], triangle.surface[order_[2]]}, state, texture, format_);
   texture_divisor_ = make_divisor(coordinates.q);
@@ -164,7 +165,7 @@ void Surface::add_texture(int x, int y, int weight_bits, const PixelPlace& pixel
   }
   s.lod = level_of_detail(lod_, q, x, y);
   s.texel = sample(sampler_, s.place, s.lod);
-  s.clear = combined(s.lit, s.texel, combine_, has_alpha(sampler_.texture->format));
+  s.clear = combined(s.lit, s.texel, combine_, has_alpha(sampler_.texture->format), constant_);
 }
 
 void Surface::add_fog(const PixelPlace& pixel, SurfaceSample& s) const {

@@ -109,6 +109,7 @@ class Surface {
   [[nodiscard]] const LodSetup& lod() const { return lod_; }
   [[nodiscard]] const Sampler& sampler() const { return sampler_; }
   [[nodiscard]] TextureCombine combine() const { return combine_; }
+  [[nodiscard]] const std::array<std::uint8_t, 3>& constant() const { return constant_; }
 
  private:
   [[nodiscard]] Divisor make_divisor(const QCodes& q) const;
@@ -144,6 +145,7 @@ class Surface {
   LodSetup lod_;
   Sampler sampler_;
   TextureCombine combine_ = TextureCombine::modulate;
+  std::array<std::uint8_t, 3> constant_{};
 };
 
 }  // namespace halfplane

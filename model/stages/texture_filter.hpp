@@ -175,8 +175,9 @@ template <class Fetch>
 }
 
 /// The primitive's colour and the texture's combined: OpenGL ES 1.1, table 3.17. A format without alpha keeps the
-/// primitive's alpha; its texels have 255 there.
-[[nodiscard]] constexpr Texel combined(const Texel& color, const Texel& texel, TextureCombine combine, bool has_alpha) {
+/// primitive's alpha; its texels have 255 there. `constant`: for blend, which modulates alpha.
+[[nodiscard]] constexpr Texel combined(const Texel& color, const Texel& texel, TextureCombine combine, bool has_alpha,
+                                       const std::array<std::uint8_t, 3>& constant) {
   const auto rounded = [](std::uint32_t value) { return static_cast<std::uint8_t>(divide_by_255(value)); };
   const auto product = [rounded](std::uint32_t a, std::uint32_t b) { return rounded(a * b); };
   Texel result = color;
@@ -188,9 +189,12 @@ template <class Fetch>
         result[c] = rounded(std::uint32_t{color[c]} * (255U - texel[3]) + std::uint32_t{texel[c]} * texel[3]);
         break;
       case TextureCombine::add: result[c] = static_cast<std::uint8_t>(std::min(color[c] + texel[c], 255)); break;
+      case TextureCombine::blend:
+        result[c] = rounded(std::uint32_t{color[c]} * (255U - texel[c]) + std::uint32_t{constant[c]} * texel[c]);
+        break;
     }
   }
-  if (combine == TextureCombine::modulate || combine == TextureCombine::add) result[3] = product(color[3], texel[3]);
+  if (combine != TextureCombine::replace && combine != TextureCombine::decal) result[3] = product(color[3], texel[3]);
   if (combine == TextureCombine::replace && has_alpha) result[3] = texel[3];
   return result;
 }

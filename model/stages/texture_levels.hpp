@@ -18,15 +18,18 @@
 namespace halfplane {
 
 /// Kinds of words for the register texture_levels. All eight token registers are in use, and the levels word is short,
-/// so fog and light share it; two upper bits tell them apart.
-enum class LevelsWord : std::uint8_t { levels, fog, fog_line, light };
-inline constexpr int kLevelsWordBit = 43;  ///< the lower of the two bits
+/// so fog, light and the texture's constant share it; two upper bits tell them apart, and of the first kind a third one.
+enum class LevelsWord : std::uint8_t { levels, fog, fog_line, light, constant };
+inline constexpr int kLevelsWordBit = 43;    ///< the lower of the two bits
+inline constexpr int kConstantWordBit = 42;  ///< the third one: the constant, not levels
 [[nodiscard]] constexpr LevelsWord levels_word(std::uint64_t word) {
-  return static_cast<LevelsWord>(word >> kLevelsWordBit & 3);
+  const auto which = static_cast<LevelsWord>(word >> kLevelsWordBit & 3);
+  return which == LevelsWord::levels && (word >> kConstantWordBit & 1) != 0 ? LevelsWord::constant : which;
 }
-/// The two bits of a kind.
+/// The bits of a kind.
 [[nodiscard]] constexpr std::uint64_t tag_of(LevelsWord which) {
-  return std::uint64_t{static_cast<std::uint8_t>(which)} << kLevelsWordBit;
+  return which == LevelsWord::constant ? std::uint64_t{1} << kConstantWordBit
+                                       : std::uint64_t{static_cast<std::uint8_t>(which)} << kLevelsWordBit;
 }
 
 /// The levels of a draw.

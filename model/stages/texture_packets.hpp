@@ -39,13 +39,14 @@ namespace halfplane {
   return sample;
 }
 
-/// Tokens for the light and fog units, which pass through the texture unit unchanged.
+/// Tokens that pass through the texture unit in the time of a stamp without texture: those for the light and fog units,
+/// and the constant, which is set where they leave.
 template <class Codes>
 [[nodiscard]] LevelsWord word_beside_texture(StateRegister which, const Codes& token, const Widths& widths) {
   return which == StateRegister::texture_levels ? levels_word(state_word(token, widths)) : LevelsWord::levels;
 }
 
-/// Sets one of the unit's three registers from a token. `token`: its codes at a vertex, or the fragment that it has
+/// Sets one of the unit's registers from a token. `token`: its codes at a vertex, or the fragment that it has
 /// become.
 template <class Codes>
 void set_register(TextureUnit& unit, StateRegister which, const Codes& token, const Widths& widths) {
@@ -54,6 +55,8 @@ void set_register(TextureUnit& unit, StateRegister which, const Codes& token, co
     unit.move_in(wide_state_word(token, widths));
   else if (beside == LevelsWord::light)
     unit.light().set(state_word(token, widths));
+  else if (beside == LevelsWord::constant)
+    unit.set_constant(TextureConstant::unpack(state_word(token, widths)));
   else if (beside != LevelsWord::levels)
     unit.fog().set(state_word(token, widths));
   else if (which == StateRegister::texture_levels)

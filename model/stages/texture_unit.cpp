@@ -50,11 +50,12 @@ std::uint64_t TextureState::pack() const {
   put(enable ? 1 : 0, 1);
   put(invalidates ? 1 : 0, 1);
   put(static_cast<std::uint64_t>(format), 3);
-  put(static_cast<std::uint64_t>(combine), 2);
+  put(static_cast<std::uint64_t>(combine) & 3, 2);
   for (const TextureWrap w : wrap) put(static_cast<std::uint64_t>(w), 2);
   for (const int size : log2_size) put(static_cast<std::uint64_t>(size), 4);
   put(base / kTextureLine, 26);
   put(is_linear ? 1 : 0, 1);
+  put(static_cast<std::uint64_t>(combine) >> 2, 1);
   return word;
 }
 
@@ -68,11 +69,12 @@ TextureState TextureState::unpack(std::uint64_t word) {
   state.enable = take(1) != 0;
   state.invalidates = take(1) != 0;
   state.format = static_cast<TextureFormat>(take(3));
-  state.combine = static_cast<TextureCombine>(take(2));
+  const std::uint64_t combine = take(2);
   for (TextureWrap& w : state.wrap) w = static_cast<TextureWrap>(take(2));
   for (int& size : state.log2_size) size = static_cast<int>(take(4));
   state.base = static_cast<std::uint32_t>(take(26)) * kTextureLine;
   state.is_linear = take(1) != 0;
+  state.combine = static_cast<TextureCombine>(combine | take(1) << 2);
   return state;
 }
 

@@ -58,7 +58,7 @@ using TextureLine = std::array<std::uint8_t, kTextureLine>;
 
 /// The unit's state for a draw.
 struct TextureState {
-  static constexpr int kBits = 46;
+  static constexpr int kBits = 47;
   bool enable = false;
   bool invalidates = false;                  ///< drops the cache's content. Needed if the texels in memory have changed
   TextureFormat format = TextureFormat::l8;  ///< without palette
@@ -68,11 +68,26 @@ struct TextureState {
   std::uint32_t base = 0;          ///< byte address, a multiple of 64
   bool is_linear = false;          ///< only with that filter; with levels: texture_mag
 
-  /// From the lowest bit: enable, invalidates, format 3, combine 2, wraps 2 + 2, sizes 4 + 4, base / 64 26, is_linear.
+  /// From the lowest bit: enable, invalidates, format 3, combine 2, wraps 2 + 2, sizes 4 + 4, base / 64 26, is_linear,
+  /// the third bit of combine: only of a unit with the constant.
   [[nodiscard]] std::uint64_t pack() const;
   [[nodiscard]] static TextureState unpack(std::uint64_t word);
   [[nodiscard]] TextureAxes axes() const;
   bool operator==(const TextureState&) const = default;
+};
+
+/// The constant colour of a draw that blends by its texels (texture.constant).
+struct TextureConstant {
+  std::array<std::uint8_t, 3> color{};
+
+  /// From the lowest bit: R, G, B.
+  [[nodiscard]] constexpr std::uint64_t pack() const {
+    return tag_of(LevelsWord::constant) | std::uint64_t{color[2]} << 16 | std::uint64_t{color[1]} << 8 | color[0];
+  }
+  [[nodiscard]] static constexpr TextureConstant unpack(std::uint64_t word) {
+    return {
+        {static_cast<std::uint8_t>(word), static_cast<std::uint8_t>(word >> 8), static_cast<std::uint8_t>(word >> 16)}};
+  }
 };
 
 /// The state of a texture with power-of-two sides at `base`.
@@ -229,6 +244,7 @@ class TextureUnit {
         data_(static_cast<std::size_t>(settings.lines)) {}
 
   [[nodiscard]] const TextureState& state() const { return state_; }
+  void set_constant(const TextureConstant& constant) { constant_ = constant.color; }
   void set(const TextureState& state) {
     state_ = state;
     sampler_.mag = state.is_linear ? TextureMag::linear : TextureMag::nearest;
@@ -363,7 +379,8 @@ class TextureUnit {
     last.samples = last.hits = 1;
     for (std::size_t n = first; n < lookups_.size(); ++n)
       if (lookups_[n].is_miss) last.hits = 0;
-    colors[s] = combined(colors[s], texel_of(filter, lower, upper), state_.combine, has_alpha(state_.format));
+    colors[s] =
+        combined(colors[s], texel_of(filter, lower, upper), state_.combine, has_alpha(state_.format), constant_);
   }
 
   /// Samples of a square, agreeing ones together: all on their only or lower level, then samples between two levels on
@@ -440,7 +457,7 @@ class TextureUnit {
       ++last.samples;
       if (!lacks) ++last.hits;
       colors[s] = combined(colors[s], texel_of(filter, has_two(filter) ? at.lower[s] : sum, sum), state_.combine,
-                           has_alpha(state_.format));
+                           has_alpha(state_.format), constant_);
     });
   }
 
@@ -538,6 +555,7 @@ class TextureUnit {
   FogUnit fog_;
   LightUnit light_;
   TextureState state_;
+  std::array<std::uint8_t, 3> constant_{};
   TextureLevels levels_;
   LineRegister lines_;
   LodSetup lod_;     ///< the lines in it

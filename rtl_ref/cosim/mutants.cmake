@@ -725,3 +725,15 @@ mutant(473 stages/triangle_setup.sv "two clocks, dropped stall: a plane begins w
   [=[begins | moves[START+i]]=] [=[begins | at_q[START+i]]=])
 mutant(474 lib/long_product.sv "products: the last digit of the left number has no sign"
   [=[i == LEFT_DIGITS - 1 && left[i*DIGIT+DIGIT]]=] [=[1'b0]=])
+
+# The texture unit's constant
+mutant(480 lib/texture_combine.sv "colours, the texture's constant: its green counts for all channels"
+  [=[constant_i[8*n+:8]]=] [=[constant_i[15:8]]=])
+mutant(481 lib/texture_combine.sv "colours, the texture's constant: colours are added to it"
+  [=[{8{is_decal || is_blended}}]=] [=[{8{is_decal}}]=])
+mutant(482 stages/texture_unit.sv "colours, the texture's constant: it is set as the token enters, by a stamp that leaves"
+  [=[passes && stamp_flags[FLAGS-1]]=] [=[stamp_valid_i && sets_constant_i]=])
+mutant(483 stages/texture_stage.sv "colours, the texture's constant: its token sets levels as well"
+  [=[is_levels && !is_constant]=] [=[is_levels]=])
+mutant(484 stages/texture_stage.sv "colours, the texture's constant: no token sets it"
+  [=[is_levels && word[raster_pkg::CONSTANT_WORD_BIT]]=] [=[1'b0]=])

@@ -4,23 +4,27 @@
 //   modulate  s = c t            replace  s = 255 t
 //   decal     s = 255 c + a (t - c)
 //   add       s = 255 min(c + t, 255), alpha as modulate
+//   blend     s = 255 c + t (k - c), alpha as modulate: to the constant k
 // Specification: combined of model/stages/texture_filter.hpp.
 module texture_combine #(
     parameter int CHANNELS = 4,  // of the primitive's colour: 3 or 4
-    parameter int SOFT = 0       // this many channels, R first, have no multiplier
+    parameter int SOFT = 0,      // this many channels, R first, have no multiplier
+    parameter int CONSTANT = 0   // 1: blend exists
 ) (
     input  logic [31:0]           texel_i,      // 8 bits a channel, R lowest
     input  logic [8*CHANNELS-1:0] color_i,      // the primitive's, likewise
-    input  logic [1:0]            combine_i,    // 0 modulate, 1 replace, 2 decal, 3 add
+    input  logic [2:0]            combine_i,    // 0 modulate, 1 replace, 2 decal, 3 add, 4 blend
+    input  logic [23:0]           constant_i,   // for blend
     input  logic                  has_alpha_i,  // the format stores alpha
     output logic [8*CHANNELS-1:0] color_o
 );
 
-  logic is_modulated, is_replaced, is_decal, is_added;
-  assign is_modulated = combine_i == 2'd0;
-  assign is_replaced  = combine_i == 2'd1;
-  assign is_decal     = combine_i == 2'd2;
-  assign is_added     = combine_i == 2'd3;
+  logic is_modulated, is_replaced, is_decal, is_added, is_blended;
+  assign is_blended   = CONSTANT != 0 && combine_i[2];
+  assign is_modulated = combine_i[1:0] == 2'd0 && !is_blended;
+  assign is_replaced  = combine_i[1:0] == 2'd1;
+  assign is_decal     = combine_i[1:0] == 2'd2;
+  assign is_added     = combine_i[1:0] == 2'd3;
 
   genvar n;
   generate
@@ -45,9 +49,10 @@ module texture_combine #(
       if (n < 3) begin : gen_color
         logic [8:0] sum;
         assign sum   = {1'b0, color} + {1'b0, texel};
-        assign whole = is_replaced ? texel : is_added ? sum[7:0] | {8{sum[8]}} : is_decal ? color : '0;
-        assign left  = is_decal ? texel_i[31:24] : is_modulated ? color : '0;
-        assign right = $signed({1'b0, texel}) - $signed({1'b0, color & {8{is_decal}}});
+        assign whole = is_replaced ? texel : is_added ? sum[7:0] | {8{sum[8]}} : is_decal || is_blended ? color : '0;
+        assign left  = is_decal ? texel_i[31:24] : is_blended ? texel : is_modulated ? color : '0;
+        assign right = $signed({1'b0, is_blended ? constant_i[8*n+:8] : texel}) -
+                       $signed({1'b0, color & {8{is_decal || is_blended}}});
         // 255 times a colour: 256 times less once.
         assign rounded = {whole, 8'd128} - {8'd0, whole} + product[15:0];
         assign color_o[8*n+:8] = quotient[15:8];
@@ -56,7 +61,7 @@ module texture_combine #(
         assign left    = color;
         assign right   = $signed({1'b0, texel});
         assign rounded = product[15:0] + 16'd128;
-        assign color_o[8*n+:8] = is_modulated || is_added ? quotient[15:8] : whole;
+        assign color_o[8*n+:8] = is_modulated || is_added || is_blended ? quotient[15:8] : whole;
       end
     end
     if (CHANNELS == 3) begin : gen_opaque

@@ -33,13 +33,14 @@ module texture_unit #(
     parameter int LINES = 64,           // of the cache; a power of two
     parameter int WAYS = 1,             // ways of the cache: 1 or 2; 1 with one nearest texel
     parameter int PORT_BITS = 64,       // bits of a beat
-    parameter int WORD = 46,            // bits of a state: 70 or 104 with the lines of a level, else 46
+    parameter int WORD = 46,            // bits of a state: 70 or 104 with the lines of a level, else 46 + CONSTANT
     parameter int PIXEL = 12,           // bits of a pixel's column and row
     parameter int OVER_W = 0,           // 1: the unit divides colours as well
     parameter int COLOR_P_BITS = 24,    // bits of colours over w in a tile, signed
     parameter int COLOR_NARROW = 13,    // k_P of colours
     parameter int COLOR_SHIFT_BITS = 6, // bits of c of colours, signed
-    parameter int COLOR_REACH_BITS = 4  // bits of x of colours
+    parameter int COLOR_REACH_BITS = 4, // bits of x of colours
+    parameter int CONSTANT = 0          // 1: texels blend to a constant colour
 ) (
     input logic clk_i,
     input logic rst_ni,
@@ -59,6 +60,7 @@ module texture_unit #(
     input logic [2*REFERENCE_BITS-1:0]        reference_i,
     input logic                               sets_state_i,   // for later stamps; without a mask
     input logic                               sets_levels_i,
+    input logic                               sets_constant_i,  // with CONSTANT: the colour, of 24 bits, in state_i
     input logic                               moves_in_i,     // a part of a triangle's lines arrives
     input logic [PIXEL-1:0]                   x_i,            // column of the stamp's first sample
     input logic [PIXEL-1:0]                   y_i,
@@ -115,7 +117,8 @@ module texture_unit #(
   // ---------------------------------------------------------------------------------------------------------------- the door
   logic       is_shaded, is_textured, divides, enters, door_enable_q;
   logic [2:0] door_format_q;
-  logic [1:0] door_combine_q;
+  localparam int COMBINE = 2 + CONSTANT;  // bits of a mode
+  logic [COMBINE-1:0] door_combine, door_combine_q;
   assign is_shaded   = stamp_valid_i && !sets_state_i && is_triangle_i && mask_i != '0;
   assign is_textured = is_shaded && door_enable_q;
   assign divides     = OVER_W != 0 && is_shaded && divides_colors_i;
@@ -127,14 +130,21 @@ module texture_unit #(
   always_ff @(posedge clk_i)
     if (stamp_valid_i && sets_state_i) begin
       door_format_q  <= state_i[4:2];
-      door_combine_q <= state_i[6:5];
+      door_combine_q <= door_combine;
     end
+  generate
+    if (CONSTANT != 0) begin : gen_combine_bits
+      assign door_combine = {state_i[46], state_i[6:5]};
+    end else begin : gen_combine_bits
+      assign door_combine = state_i[6:5];
+    end
+  endgenerate
 
   // Coordinates packed by sample, and the order in which samples enter.
   localparam int SIDE = $clog2(SAMPLES) / 2;  // log2 of the samples along a stamp's side
   logic [COORDINATES-1:0]   places;
   logic [SAMPLES-1:0]       door_mask;
-  logic [SAMPLES*COLOR-1:0] door_color, color_q;
+  logic [SAMPLES*COLOR-1:0] door_color, entering_color, color_q;
   logic [SAMPLES-1:0]       mask_q;
   genvar s;
   generate
@@ -161,21 +171,38 @@ module texture_unit #(
   logic                   passes_door, has_alpha, stamp_waits, stamp_is_textured, stamp_has_alpha, stamp_leaves;
   logic                   waiting_divides;
   logic                   waiting_is_textured, stamp_divides;
-  logic [1:0]             stamp_combine;
+  logic [COMBINE-1:0]     stamp_combine;
   logic [PAYLOAD-1:0]     stamp_payload;
   logic [SAMPLES-1:0]     stamp_mask;
   logic [SAMPLES*COLOR-1:0] stamp_color;
   logic                   waiting_ready, stamps_ready;
   assign passes_door = enters || (stamp_valid_i && token != '0);
   assign has_alpha   = door_format_q != 3'd0 && door_format_q != 3'd2;
-  // Flags of a stamp: it is textured; with OVER_W: its colours are divided.
-  localparam int FLAGS = (OVER_W != 0) ? 2 : 1;
+  // Flags of a stamp: it is textured; with OVER_W: its colours are divided; with CONSTANT: it sets the constant, which
+  // it has in the place of its colours, where it leaves.
+  localparam int DIVIDES = (OVER_W != 0) ? 1 : 0;
+  localparam int FLAGS = 1 + DIVIDES + CONSTANT;
   logic [FLAGS-1:0]  door_flags, stamp_flags;
   logic [PLACED-1:0] placed;
-  assign door_flags        = FLAGS'({divides, is_textured});
   assign stamp_is_textured = stamp_flags[0];
-  assign stamp_divides     = stamp_flags[FLAGS-1] && OVER_W != 0;
+  assign stamp_divides     = stamp_flags[DIVIDES] && OVER_W != 0;
+  logic [23:0] constant;  // of samples that are combined
   generate
+    if (CONSTANT != 0) begin : gen_constant
+      logic [23:0]      constant_q;
+      logic [DIVIDES:0] shades;
+      assign shades         = (DIVIDES + 1)'({divides, is_textured});
+      assign door_flags     = {sets_constant_i, shades};
+      assign entering_color = sets_constant_i ? (SAMPLES * COLOR)'(state_i[23:0]) : door_color;
+      assign constant       = constant_q;
+      always_ff @(posedge clk_i) if (passes && stamp_flags[FLAGS-1]) constant_q <= stamp_color[23:0];
+    end else begin : gen_no_constant
+      logic unused;
+      assign unused         = sets_constant_i;
+      assign door_flags     = FLAGS'({divides, is_textured});
+      assign entering_color = door_color;
+      assign constant       = '0;
+    end
     if (OVER_W != 0) begin : gen_flags
       assign entering            = {divides, is_textured, placed};
       assign waiting_is_textured = waiting[PLACED];
@@ -210,14 +237,14 @@ module texture_unit #(
       .data_o ({waiting_token, waiting_mask, waiting})
   );
   fifo #(
-      .WIDTH(PAYLOAD + SAMPLES * (1 + COLOR) + FLAGS + 3),
+      .WIDTH(PAYLOAD + SAMPLES * (1 + COLOR) + FLAGS + COMBINE + 1),
       .DEPTH(QUEUE)
   ) u_stamps (
       .clk_i,
       .rst_ni,
       .valid_i(stamp_valid_i),
       .ready_o(stamps_ready),
-      .data_i ({payload_i, door_mask, door_color, door_flags, door_combine_q, has_alpha}),
+      .data_i ({payload_i, door_mask, entering_color, door_flags, door_combine_q, has_alpha}),
       .valid_o(stamp_waits),
       .ready_i(stamp_leaves),
       .data_o ({stamp_payload, stamp_mask, stamp_color, stamp_flags, stamp_combine, stamp_has_alpha})
@@ -667,11 +694,13 @@ module texture_unit #(
     for (s = 0; s < LANES; s++) begin : gen_combine
       texture_combine #(
           .CHANNELS(CHANNELS),
-          .SOFT    (SOFT)
+          .SOFT    (SOFT),
+          .CONSTANT(CONSTANT)
       ) u_combine (
           .texel_i    (e_texel_q[s*32+:32]),
           .color_i    (e_color[s*COLOR+:COLOR]),
-          .combine_i  (stamp_combine),
+          .combine_i  (3'(stamp_combine)),
+          .constant_i (constant),
           .has_alpha_i(stamp_has_alpha),
           .color_o    (combined[s*COLOR+:COLOR])
       );

@@ -91,6 +91,7 @@ class Generator {
   void set_units();
   void set_stencils();
   void set_textures();
+  void set_constants();
   void set_shapes();
   void set_fogs();
   void set_lights();
@@ -279,6 +280,17 @@ void Generator::set_stencils() {
     }
 }
 
+/// Lets some states blend by their texels. From separate random numbers, as above.
+void Generator::set_constants() {
+  Random random(seed_ ^ 0xc057u);
+  for (State& state : scene_.states) {
+    if (random.next() % 3 != 0) continue;
+    state.texture_combine = TextureCombine::blend;
+    for (std::uint8_t& channel : state.texture_constant)
+      channel = static_cast<std::uint8_t>(random.next() % 4 == 0 ? 255 * (random.next() % 2) : random.next() % 256);
+  }
+}
+
 /// Makes a few small textures, with levels if the unit has them, and triangles that show them: w ratios up to 2^10,
 /// coordinates from next to a texel's border to many repeats away. From separate random numbers, as above.
 void Generator::set_textures() {
@@ -317,6 +329,7 @@ void Generator::set_textures() {
     if (chance(0.2)) state.texture_lod[1] = random.uniform(0, 4);
     if (chance(0.2)) state.texture_lod[2] = random.uniform(0, 12);
   }
+  if (config_.texture_constants != 0) set_constants();
   const double reach = std::ldexp(1.0, static_cast<int>(below(8)) - 2);  // of the coordinates, in repeats
   for (Vertex& v : scene_.vertices) {
     v.w = chance(0.3) ? 1.0 : std::exp2(random.uniform(-5, 5));

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -143,8 +144,6 @@ TEST_F(GlTexture, EnvironmentsAreThoseOfTheTable) {
         if (mode == GL_DECAL && base.format != GL_RGB && base.format != GL_RGBA) continue;  // undefined
         // What the model has not: see texture_upload.cpp.
         if (mode == GL_ADD && base.format == GL_INTENSITY) continue;
-        const bool is_black = constant == Vec4{0, 0, 0, 0};
-        if (mode == GL_BLEND && !is_black && base.format != GL_LUMINANCE && base.format != GL_ALPHA) continue;
         SCOPED_TRACE("mode " + std::to_string(mode) + " format " + std::to_string(base.format));
         upload(0, base.format, image(2, 2, kTexels));
         environment(GL_TEXTURE_ENV_MODE, mode);
@@ -155,6 +154,49 @@ TEST_F(GlTexture, EnvironmentsAreThoseOfTheTable) {
                       expected(mode, base.format, fragment, seen(base, kTexels[i]), constant));
       }
   EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
+}
+
+/// A texture unit without a constant takes the nearest mode, one with it is exact, folded environments included.
+TEST(GlTextureConstant, IsTheHardwaresWhereItHasATextureUnit) {
+  const auto texels = std::make_shared<Image>(Image{1, 1, 1, GL_RGBA, {{0.25F, 0.5F, 0.75F, 1.0F}}});
+  const Vec4 fragment{0.8, 0.4, 0.2, 0.6}, constant{0.2, 0.9, 0.5, 0};
+  const auto drawn = [&](const char* settings, GLenum mode) {
+    Options options;
+    options.config = labelled(settings);
+    options.on_missing = OnMissing::host;
+    Drawable drawable(options, 8, 8);
+    Context context;
+    context.drawable = context.read_drawable = &drawable;
+    context.state.viewport.width = context.state.viewport.height = 8;
+    enable(context, GL_TEXTURE_2D, true);
+    tex_parameter(context, GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, {{GL_NEAREST}, true, false});
+    tex_image(context, 2, GL_TEXTURE_2D, 0, GL_RGBA, 1, 1, 1, 0, texels);
+    tex_env(context, GL_TEXTURE_ENV, GL_TEXTURE_ENV_COLOR, {constant, false, true});
+    const auto environment = [&](GLenum pname, double value) {
+      tex_env(context, GL_TEXTURE_ENV, pname, {{value}, true, false});
+    };
+    environment(GL_TEXTURE_ENV_MODE, mode);
+    // The same by hand.
+    environment(GL_COMBINE_RGB, GL_INTERPOLATE);
+    environment(GL_SOURCE0_RGB, GL_CONSTANT);
+    environment(GL_SOURCE2_RGB, GL_TEXTURE);
+    environment(GL_OPERAND2_RGB, GL_SRC_COLOR);
+    ++context.revision;
+    gl::color(context, fragment[0], fragment[1], fragment[2], fragment[3]);
+    begin(context, GL_QUADS);
+    for (const auto& [x, y] : {std::array{-1, -1}, std::array{1, -1}, std::array{1, 1}, std::array{-1, 1}})
+      vertex(context, x, y, 0, 1);
+    gl::end(context);
+    Bytes read{};
+    read_pixels(context, 4, 4, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, read.data());
+    return read;
+  };
+  const Vec4 wanted = expected(GL_BLEND, GL_RGBA, fragment, {64 / 255.0, 128 / 255.0, 191 / 255.0, 1}, constant);
+  for (const GLenum mode : {GL_BLEND, GL_COMBINE}) {
+    expect_near(drawn("full", mode), wanted);
+    expect_near(drawn("full texture.unit=trilinear texture.constant=1", mode), wanted);
+    EXPECT_GT(std::abs(drawn("full texture.unit=trilinear", mode)[1] - wanted[1] * 255), 10) << mode;
+  }
 }
 
 /// A combiner, and its result by the formulas of table 3.23 of one channel.

@@ -169,6 +169,15 @@ texture_fault(level_of_detail 95 [=[(k == 0 ? 32'd0 : step)]=] [=[32'd0]=])
 texture_fault(level_of_detail 96 [=[length_q[32*(SIDE+k%2)+:32]]=] [=[length_q[32*SIDE+:32]]=])
 texture_fault(texture_unit 97 [=[PIXEL'(group) & PIXEL'((1 << ROW) - 1)]=] [=[PIXEL'(0)]=])
 texture_fault(texture_rounds 98 [=[!scaled_valid_q && !wrapped_valid_q && !agreed_valid_q]=] [=[!scaled_valid_q && !wrapped_valid_q]=])
+set(texture_lanes_faults ${texture_faults})
+# The constant: towards what a colour goes, the colour that it leaves, alpha, a token that brings nothing, one that sets it as it
+# enters, which stamps blend.
+texture_fault(texture_combine 99 [=[is_blended ? constant_i[8*n+:8] : texel]=] [=[texel]=])
+texture_fault(texture_combine 100 [=[color & {8{is_decal || is_blended}}]=] [=[color & {8{is_decal}}]=])
+texture_fault(texture_combine 101 [=[is_modulated || is_added || is_blended]=] [=[is_modulated || is_added]=])
+texture_fault(texture_unit 102 [=[sets_constant_i ? (SAMPLES * COLOR)'(state_i[23:0]) : door_color]=] [=[door_color]=])
+texture_fault(texture_unit 103 [=[passes && stamp_flags[FLAGS-1]]=] [=[stamp_valid_i && sets_constant_i]=])
+texture_fault(texture_unit 104 [=[{state_i[46], state_i[6:5]}]=] [=[{1'b0, state_i[6:5]}]=])
 foreach(name IN LISTS texture_names)
   file(CONFIGURE OUTPUT "${FOLDER}/${name}.sv" CONTENT "${texture_text_${name}}" @ONLY)
 endforeach()
@@ -176,5 +185,6 @@ file(CONFIGURE OUTPUT "${FOLDER}/texture_faults.hpp" CONTENT "#pragma once
 // Written by tests/rtl_units/faults.cmake: the last fault of each kind.
 inline constexpr int kNearestFaults = ${texture_nearest_faults}, kLinearFaults = ${texture_linear_faults},
                      kLevelsFaults = ${texture_levels_faults}, kColorsFaults = ${texture_colors_faults},
-                     kWaysFaults = ${texture_ways_faults}, kTextureFaults = ${texture_faults};
+                     kWaysFaults = ${texture_ways_faults}, kLanesFaults = ${texture_lanes_faults},
+                     kTextureFaults = ${texture_faults};
 " @ONLY)

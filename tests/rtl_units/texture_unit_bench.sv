@@ -18,7 +18,8 @@ module texture_unit_bench #(
     parameter int PORT_BITS = 64,
     parameter int WORD = 46,
     parameter int OVER_W = 0,
-    parameter int COLOR_P_BITS = 24
+    parameter int COLOR_P_BITS = 24,
+    parameter int CONSTANT = 0
 ) (
     input logic       clk_i,
     input logic       rst_ni,
@@ -38,6 +39,7 @@ module texture_unit_bench #(
     input logic [47:0]                   reference_i,
     input logic                          sets_state_i,
     input logic                          sets_levels_i,
+    input logic                          sets_constant_i,
     input logic                          moves_in_i,
     input logic [11:0]                   x_i,
     input logic [11:0]                   y_i,
@@ -89,7 +91,8 @@ module texture_unit_bench #(
       .PORT_BITS(PORT_BITS),
       .WORD     (WORD),
       .OVER_W   (OVER_W),
-      .COLOR_P_BITS(COLOR_P_BITS)
+      .COLOR_P_BITS(COLOR_P_BITS),
+      .CONSTANT (CONSTANT)
   ) u_texture_unit (
       .clk_i,
       .rst_ni,
@@ -107,6 +110,7 @@ module texture_unit_bench #(
       .reference_i,
       .sets_state_i,
       .sets_levels_i,
+      .sets_constant_i,
       .moves_in_i,
       .x_i,
       .y_i,

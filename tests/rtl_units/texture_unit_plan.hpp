@@ -22,6 +22,7 @@ struct UnitFormat {
   TextureSettings settings;
   PerspectiveFormat perspective;
   bool divides_colors = false;  ///< OVER_W
+  bool has_constant = false;    ///< CONSTANT
 };
 
 struct PlannedStamp {
@@ -36,6 +37,11 @@ struct PlannedStamp {
   TextureFrame frame;
   Cycle enters = 0, offered = 0, left = 0;
 };
+
+[[nodiscard]] inline bool sets_constant(const PlannedStamp& stamp) {
+  return stamp.sets == StateRegister::texture_levels &&
+         levels_word(static_cast<std::uint64_t>(stamp.word)) == LevelsWord::constant;
+}
 
 struct PlannedRequest {
   std::uint32_t address = 0;
@@ -91,6 +97,10 @@ class Program {
       const TextureState state = new_state();
       token(StateRegister::texture, state.pack());
       if (format_.settings.has_levels) token(StateRegister::texture_levels, new_levels(state).pack());
+      if (format_.has_constant && (!has_constant_ || pick(random_, 0, 1) == 0)) {
+        token(StateRegister::texture_levels, new_constant().pack());
+        has_constant_ = true;
+      }
     }
     if (tokens_.empty() && pick(random_, 0, 9) == 0) new_triangle();
     if (!tokens_.empty()) {
@@ -126,6 +136,12 @@ class Program {
     stamp.sets = sets;
     stamp.word = word;
     tokens_.push_back(stamp);
+  }
+
+  TextureConstant new_constant() {
+    TextureConstant constant;
+    for (std::uint8_t& channel : constant.color) channel = static_cast<std::uint8_t>(random_());
+    return constant;
   }
 
   TextureLevels new_levels(const TextureState& state) {
@@ -169,7 +185,7 @@ class Program {
     state.format = t.format;
     state.log2_size = t.log2_size;
     state.base = t.base;
-    state.combine = static_cast<TextureCombine>(pick(random_, 0, 3));
+    state.combine = static_cast<TextureCombine>(pick(random_, 0, format_.has_constant ? 4 : 3));
     for (TextureWrap& wrap : state.wrap) wrap = static_cast<TextureWrap>(pick(random_, 0, 2));
     state.is_linear = format_.settings.has_linear && pick(random_, 0, 3) != 0;
     return state;
@@ -246,6 +262,7 @@ class Program {
   const UnitFormat& format_;
   int left_ = 0;
   std::deque<PlannedStamp> tokens_;  ///< in front of the next stamp
+  bool has_constant_ = false;        ///< one has been sent; before that it is undefined
   int x_ = 0, y_ = 0;                ///< about where the triangle is
   std::array<TextureState, 4> texture_{};
   TextureFrame frame_;
@@ -303,6 +320,9 @@ inline Plan make_plan(const UnitFormat& format, const World& world, Random& rand
       if (state.invalidates) contents = random();
       unit.set(state);
       stamp.offered = timing.set(x, state.invalidates);
+    } else if (sets_constant(stamp)) {
+      unit.set_constant(TextureConstant::unpack(static_cast<std::uint64_t>(stamp.word)));
+      stamp.offered = timing.pass(x);
     } else if (stamp.sets == StateRegister::texture_levels) {
       unit.set_levels(TextureLevels::unpack(static_cast<std::uint32_t>(stamp.word)));
       stamp.offered = timing.set(x, false);

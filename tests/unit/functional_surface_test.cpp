@@ -52,7 +52,10 @@ State random_surface(Random& random) {
   state.texture_min = static_cast<TextureMin>(random.index(6));
   state.texture_mag = static_cast<TextureMag>(random.index(2));
   for (TextureWrap& wrap : state.texture_wrap) wrap = static_cast<TextureWrap>(random.index(3));
+  Random own = random;  // of the constant, so that the other numbers are the same with it and without
   state.texture_combine = static_cast<TextureCombine>(random.index(4));
+  if (own.index(5) == 4) state.texture_combine = TextureCombine::blend;
+  for (std::uint8_t& channel : state.texture_constant) channel = static_cast<std::uint8_t>(own.index(256));
   state.texture_lod[0] = random.index(3) == 0 ? random.between(-16, 16) : random.between(-1, 1);
   state.texture_lod[1] = random.index(4) == 0 ? random.between(0, 12) : 0;
   state.texture_lod[2] = random.index(4) == 0 ? random.between(0, 12) : 12;
@@ -318,6 +321,7 @@ TEST(FunctionalSurface, TexturedMeshesAreTheSameOnEveryPath) {
         state.texture_mag = surface.texture_mag;
         state.texture_wrap = surface.texture_wrap;
         state.texture_combine = surface.texture_combine;
+        state.texture_constant = surface.texture_constant;
       }
       EXPECT_TRUE(functional::is_supported(scene, with_colors("embedded"), {}));
       expect_all_same(scene, with_colors("embedded"));

@@ -156,7 +156,7 @@ TEST(GoldenTexture, CombinesColourAndTexel) {
   using golden::combined;
   const golden::Color color{200, 100, 0, 128}, texel{51, 255, 128, 64};
   const auto expect = [&](TextureCombine combine, bool has_alpha, golden::Color wanted) {
-    const golden::Color got = combined(color, texel, combine, has_alpha);
+    const golden::Color got = combined(color, texel, combine, has_alpha, {100, 0, 51});
     for (std::size_t c = 0; c < 4; ++c) EXPECT_NEAR(got[c], wanted[c], 1e-9) << static_cast<int>(combine) << ' ' << c;
   };
   expect(TextureCombine::modulate, true, {40, 100, 0, 128.0 * 64 / 255});
@@ -164,6 +164,7 @@ TEST(GoldenTexture, CombinesColourAndTexel) {
   expect(TextureCombine::replace, false, {51, 255, 128, 128});
   expect(TextureCombine::decal, true, {200 - 149.0 * 64 / 255, 100 + 155.0 * 64 / 255, 128.0 * 64 / 255, 128});
   expect(TextureCombine::add, true, {251, 255, 128, 128.0 * 64 / 255});
+  expect(TextureCombine::blend, true, {180, 0, 51.0 * 128 / 255, 128.0 * 64 / 255});
 }
 
 // The same picture with and without geometric clipping: the ground from the eye to the horizon.

@@ -168,7 +168,8 @@ TEST(Surface, BothEnginesDrawTheSamePicture) {
       state.texture_mag = static_cast<TextureMag>(random.index(2));
       state.texture_wrap[0] = static_cast<TextureWrap>(random.index(3));
       state.texture_wrap[1] = static_cast<TextureWrap>(random.index(3));
-      state.texture_combine = static_cast<TextureCombine>(random.index(4));
+      state.texture_combine = static_cast<TextureCombine>(random.index(5));
+      for (std::uint8_t& channel : state.texture_constant) channel = static_cast<std::uint8_t>(random.index(256));
       state.texture_lod[0] = random.between(-2, 2);
       const int width = 1 + random.index(40), height = 1 << random.index(6);
       const Mips mips = static_cast<Mips>(random.index(3));

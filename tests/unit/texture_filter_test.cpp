@@ -238,12 +238,28 @@ TEST(TextureCombine, EveryProductIsRoundedExactly) {
 
 TEST(TextureCombine, IsOpenGLsTable) {
   const Texel color{200, 100, 50, 128}, texel{255, 128, 0, 64};
-  const auto of = [&](TextureCombine combine, bool has_alpha) { return combined(color, texel, combine, has_alpha); };
+  const auto of = [&](TextureCombine combine, bool has_alpha) {
+    return combined(color, texel, combine, has_alpha, {10, 20, 30});
+  };
   EXPECT_EQ(of(TextureCombine::modulate, true), (Texel{200, 50, 0, 32}));
   EXPECT_EQ(of(TextureCombine::replace, true), (Texel{255, 128, 0, 64}));
   EXPECT_EQ(of(TextureCombine::replace, false), (Texel{255, 128, 0, 128}));
   EXPECT_EQ(of(TextureCombine::decal, true), (Texel{214, 107, 37, 128}));
   EXPECT_EQ(of(TextureCombine::add, true), (Texel{255, 228, 50, 32}));
+  EXPECT_EQ(of(TextureCombine::blend, true), (Texel{10, 60, 50, 32}));
+}
+
+// Every colour and texel: C (255 - T) + K T over 255, to the nearest.
+TEST(TextureCombine, BlendIsRoundedExactly) {
+  for (int color = 0; color < 256; ++color)
+    for (int texel = 0; texel < 256; ++texel)
+      for (const int constant : {0, 1, 84, 127, 128, 200, 254, 255}) {
+        const auto c = static_cast<std::uint8_t>(color), t = static_cast<std::uint8_t>(texel),
+                   k = static_cast<std::uint8_t>(constant);
+        const int sum = color * (255 - texel) + constant * texel;  // 2 sum + 255 is odd: no ties
+        const Texel got = combined({c, c, c, 255}, {t, t, t, 255}, TextureCombine::blend, true, {k, k, k});
+        ASSERT_EQ(got[0], (2 * sum + 255) / 510) << color << ' ' << texel << ' ' << constant;
+      }
 }
 
 }  // namespace

@@ -190,7 +190,7 @@ TEST(TexturedHardware, ASecondLevelThatAddsNothingIsNotAsked) {
   }
 }
 
-// One word of 45 bits, over the codes of a vertex and back from a fragment that setup and interpolation have made of it.
+// One word of 47 bits, over the codes of a vertex and back from a fragment that setup and interpolation have made of it.
 TEST(TexturedHardware, ATokenKeepsItsWordThroughThePlanes) {
   for (const Config& config : configurations()) {
     const Widths widths = derive_widths(config);
@@ -201,6 +201,65 @@ TEST(TexturedHardware, ATokenKeepsItsWordThroughThePlanes) {
       EXPECT_EQ(TextureState::unpack(state_word(code, widths)), state) << label(config);
     }
   }
+}
+
+/// The room, its wall blended by its texels.
+std::string blended_room(const std::string& constant) {
+  std::string text = kRoom;
+  const std::string decal = "state texture_combine decal\n";
+  text.replace(text.find(decal), decal.size(),
+               "state texture_combine blend\nstate texture_constant " + constant + '\n');
+  return text;
+}
+
+// And the constant is seen.
+TEST(TexturedHardware, BlendsToTheConstantAsTheScalarEngine) {
+  for (Config config : configurations()) {
+    config.texture_constants = 1;
+    config.target_width = std::max(config.target_width, 64);
+    config.target_height = std::max(config.target_height, 64);
+    config.guard_band = std::max(config.guard_band, 128);
+    expect_equal(read_capture(blended_room("10 200 90"), "blended room"), config);
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) expect_equal(random_scene(config, seed, 25), config);
+    EXPECT_NE(render_hardware(read_capture(blended_room("10 200 90"), "room"), config).frame.color,
+              render_hardware(read_capture(blended_room("10 90 90"), "room"), config).frame.color);
+  }
+}
+
+TEST(TexturedHardware, AConstantIsRefusedByNameWhereThereIsNone) {
+  Config config = preset("embedded");
+  config.texture_unit = TextureUnitKind::trilinear;
+  try {
+    check_hardware_scene(read_capture(blended_room("1 2 3"), "room"), config);
+    FAIL() << "not refused";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("texture.constant=1"), std::string::npos) << error.what();
+  }
+}
+
+// One token for each other constant; none for draws that have none.
+TEST(TexturedHardware, AConstantCostsATokenWhereItIsNeeded) {
+  Config config = preset("embedded");
+  config.texture_unit = TextureUnitKind::trilinear;
+  const auto tokens = [&config](const std::string& text) {
+    const Scene scene = read_capture(text, "room");
+    HostStream stream(scene, config);
+    const Widths widths = derive_widths(config);
+    int all = 0, constants = 0;
+    while (const auto next = stream.next()) {
+      if (next->packet.kind != PrimitiveKind::state) continue;
+      ++all;
+      constants += state_register(next->packet.state) == StateRegister::texture_levels &&
+                           levels_word(state_word(next->packet.vertex.code[0], widths)) == LevelsWord::constant
+                       ? 1
+                       : 0;
+    }
+    return std::pair(all, constants);
+  };
+  const auto without = tokens(kRoom);
+  config.texture_constants = 1;
+  EXPECT_EQ(tokens(kRoom), without);
+  EXPECT_EQ(tokens(blended_room("1 2 3")), std::pair(without.first + 1, 1));
 }
 
 // The same of levels and lines, whose parts may come behind any others.

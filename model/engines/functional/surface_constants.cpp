@@ -87,7 +87,7 @@ LaneOverW::LaneOverW(const OverWFormat& attribute, const PerspectiveFormat& form
       lower_bits((1 << split) - 1) {}
 
 LaneTexture texture_lanes(const Sampler& sampler, const TexelBlocks& texels, TextureCombine combine,
-                          int fraction_bits) {
+                          const std::array<std::uint8_t, 3>& constant, int fraction_bits) {
   LaneTexture lanes;
   for (std::size_t axis = 0; axis < 2; ++axis) {
     lanes.bits[axis] = floor_log2(static_cast<unsigned>(sampler.axes[axis].size));
@@ -109,6 +109,7 @@ LaneTexture texture_lanes(const Sampler& sampler, const TexelBlocks& texels, Tex
   const bool has_levels = sampler.min != TextureMin::nearest && sampler.min != TextureMin::linear;
   lanes.magnified = sampler.mag == TextureMag::linear && is_nearest(sampler.min) && has_levels ? 128 : 0;
   lanes.combine = combine;
+  lanes.constant = {constant[2] << 16 | constant[0], constant[1]};
   lanes.has_alpha = has_alpha(sampler.texture->format);
   return lanes;
 }
@@ -133,7 +134,7 @@ SurfaceStyle::SurfaceStyle(const FrameContext& frame, const DrawContext& draw)
   is_affine = state.texture_interp == TextureInterp::affine;
   for (std::size_t axis = 0; axis < 2; ++axis) size[axis] = sampler.axes[axis].size;
   texture = texture_lanes(sampler, frame.prepared.textures[*state.texture], state.texture_combine,
-                          format.coordinate.fraction_bits);
+                          state.texture_constant, format.coordinate.fraction_bits);
   sampling = sampling_of(texture);
 }
 
@@ -210,7 +211,7 @@ void SurfaceConstants::set_texture(const StageSurface& from, const Widths& width
   const Surface::Divisor& divisor = *surface.texture_divisor();
   const Sampler& sampler = surface.sampler();
   coordinate.q = lanes_of(divisor.plane, from.setup, format.guard_bits, division.up, widths);
-  texture = texture_lanes(sampler, texels, surface.combine(), format.coordinate.fraction_bits);
+  texture = texture_lanes(sampler, texels, surface.combine(), surface.constant(), format.coordinate.fraction_bits);
   texture.alpha_ranges = texels.alpha_ranges();
   for (std::size_t axis = 0; axis < 2; ++axis) {
     texture.margin[axis] = coordinates_margin(surface.coordinate(axis).over_w.reach, format);

@@ -103,6 +103,7 @@ struct LaneTexture {
   Lod magnified = 0;  ///< up to this lambda mag applies
   TextureCombine combine = TextureCombine::modulate;
   bool has_alpha = false;
+  std::array<std::int32_t, 2> constant{};                  ///< of blend: red and blue, green, in the halves of a lane
   const std::uint32_t* alpha_quads = nullptr;              ///< alphas of TexelBlocks, if present
   const TexelBlocks::AlphaRanges* alpha_ranges = nullptr;  ///< of level 0, if present
   std::array<std::int32_t, 2> margin{};                    ///< coordinates_margin(), 2^-8 texels
@@ -127,9 +128,10 @@ enum class Sampling { none, nearest, linear, any };
   return static_cast<std::int32_t>(std::ceil(2 * off * (1 << kTexelFraction))) + 2;
 }
 
-/// Constants of a texture and its sampler. `combine`: with the primitive's colour; `fraction_bits`: of a coordinate.
+/// Constants of a texture and its sampler. `combine`: with the primitive's colour, blend with `constant`;
+/// `fraction_bits`: of a coordinate.
 [[nodiscard]] LaneTexture texture_lanes(const Sampler& sampler, const TexelBlocks& texels, TextureCombine combine,
-                                        int fraction_bits);
+                                        const std::array<std::uint8_t, 3>& constant, int fraction_bits);
 
 /// Constants common to the surfaces of a draw, where lanes set up sixteen surfaces at a time and shade pixels of any of
 /// them: one texture and affine colours.

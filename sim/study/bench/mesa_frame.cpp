@@ -38,8 +38,8 @@ Shaders shaders_of(const State& state, bool has_texture, bool has_alpha) {
   return {head + color + " out vec4 color; " + place + " out vec2 place;\n" + kInputs +
               "layout(location = 2) in vec2 uv;\nvoid main() { gl_Position = position; color = rgba; place = uv; }\n",
           head + color + " in vec4 color; " + place + " in vec2 place;\nuniform sampler2D image; out vec4 result;\n" +
-              "void main() { vec4 texel = texture(image, place); result = " +
-              gl::combine_source(state.texture_combine, has_alpha) + "; " + test + " }\n"};
+              "void main() { vec4 texel = texture(image, place); result = " + gl::combine_source(state, has_alpha) +
+              "; " + test + " }\n"};
 }
 
 [[noreturn]] void refuse(const std::string& what) {

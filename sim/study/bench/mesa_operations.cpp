@@ -55,11 +55,17 @@ void apply_texture(const Functions& gl, Name texture, const State& state) {
     gl.tex_parameterf(kTexture2d, kLods[i], static_cast<float>(state.texture_lod[i]));
 }
 
-std::string combine_source(TextureCombine combine, bool has_alpha) {
-  switch (combine) {
+std::string combine_source(const State& state, bool has_alpha) {
+  switch (state.texture_combine) {
     case TextureCombine::modulate: return "color * texel";
     case TextureCombine::replace: return has_alpha ? "texel" : "vec4(texel.rgb, color.a)";
     case TextureCombine::decal: return "vec4(mix(color.rgb, texel.rgb, texel.a), color.a)";
+    case TextureCombine::blend: {
+      std::string constant = "vec3(";
+      for (std::size_t c = 0; c < 3; ++c)
+        constant += std::to_string(int{state.texture_constant[c]}) + (c == 2 ? ".0)" : ".0, ");
+      return "vec4(mix(color.rgb, " + constant + " / 255.0, texel.rgb), color.a * texel.a)";
+    }
     case TextureCombine::add: break;
   }
   return "vec4(color.rgb + texel.rgb, color.a * texel.a)";

@@ -18,7 +18,7 @@ namespace halfplane::gl {
 void apply_texture(const Functions& gl, Name texture, const State& state);
 
 /// GLSL that combines `vec4 color` and `vec4 texel` as OpenGL ES 1.1 does.
-[[nodiscard]] std::string combine_source(TextureCombine combine, bool has_alpha);
+[[nodiscard]] std::string combine_source(const State& state, bool has_alpha);
 
 /// The name of a comparison.
 [[nodiscard]] Enum comparison(DepthFunc func);

@@ -245,7 +245,8 @@ void SurfaceOracle::compare_texels(const SurfaceSample& sample, const golden::Fr
     errors.texel.rounding[i] = grid_units(d) - grid_units(w[i]);
     errors.filter.value = std::max(errors.filter.value, std::abs(d - l[i]));
   }
-  errors.exact = golden::combined(errors.exact, s, state_.texture_combine, has_alpha(texture_->format));
+  errors.exact =
+      golden::combined(errors.exact, s, state_.texture_combine, has_alpha(texture_->format), state_.texture_constant);
 }
 
 namespace {

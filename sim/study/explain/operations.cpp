@@ -121,6 +121,9 @@ Result texture(FragmentAtWork& f, OperationStep& step) {
   step.figures = {{"combine", {}, 0, word_of("texture_combine", f.context.state)},
                   channels("before", f.color),
                   channels("texel", sample.texel)};
+  const State& state = f.context.state;
+  if (const auto& [r, g, b] = state.texture_constant; state.texture_combine == TextureCombine::blend)
+    step.figures.push_back(channels("constant", Texel{r, g, b, 255}));
   for (std::size_t c = 0; c < 4; ++c) f.color[c] = sample.clear[c];
   step.figures.push_back(channels("after", f.color));
   return {};

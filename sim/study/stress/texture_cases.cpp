@@ -42,7 +42,8 @@ State random_sampler(Unit& unit) {
   state.texture_mag = static_cast<TextureMag>(random.index(2));
   const auto wrap = [&] { return static_cast<TextureWrap>(random.index(3)); };
   state.texture_wrap = {wrap(), wrap()};
-  state.texture_combine = static_cast<TextureCombine>(random.index(4));
+  state.texture_combine = static_cast<TextureCombine>(random.index(5));
+  for (std::uint8_t& channel : state.texture_constant) channel = static_cast<std::uint8_t>(random.index(256));
   return state;
 }
 

@@ -35,6 +35,14 @@ HALFPLANE_INLINE ColorPairs combined(const ColorPairs& color, const ColorPairs& 
                                         HALFPLANE_LAMBDA { return divide_by_255(a * (255 - part) + b * part); });
       return with_alpha(mixed, color.green_alpha);
     }
+    case TextureCombine::blend: {
+      const auto blended = [&](std::size_t pair, const S32& a, const S32& part) HALFPLANE_LAMBDA {
+        return as<I16>(divide_by_255(a * (255 - part) + as<S32>(I16(texture.constant[pair])) * part));
+      };
+      return with_alpha(ColorPairs(blended(0, as<S32>(color.red_blue), as<S32>(texel.red_blue)),
+                                   blended(1, as<S32>(color.green_alpha), as<S32>(texel.green_alpha))),
+                        by_channel(product).green_alpha);
+    }
     default: {
       const auto sum = by_channel([](const S32& a, const S32& b) HALFPLANE_LAMBDA { return min(a + b, S32(255)); });
       return with_alpha(sum, by_channel(product).green_alpha);
