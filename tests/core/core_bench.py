@@ -233,13 +233,13 @@ class Core:
         e.command("FENCE", 0, [self.tag])
         return e.words
 
-    async def send(self, words):
+    async def send(self, words, most=300):
         """Into the ring, as the driver does: waits for room, writes, moves the tail by parts of any size."""
         words = list(words)
         while words:
             head = await self.read("WORDS")
             room = self.ring_words - (self.tail - head) % (1 << 20)
-            part = min(len(words), room, self.random.randint(1, 300))
+            part = min(len(words), room, self.random.randint(1, most))
             for i in range(part):
                 at = RING + (self.tail + i) % self.ring_words * 4
                 self.memory.bytes[at:at + 4] = words[i].to_bytes(4, "little")
