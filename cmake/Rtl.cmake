@@ -83,7 +83,7 @@ function(halfplane_verilate target)
   # What runs in every clock; what runs once, and writes waveforms: there optimisation costs build time and gains little.
   set(parts fast slow)
   if(RTL_TRACE)
-    list(APPEND arguments --trace-fst)
+    list(APPEND arguments --trace-fst --no-trace-params)  # parameters would be two of five signals
     list(APPEND parts trace)
   endif()
   set(optimised -O1)  # -O2 takes 1.7 times as long to compile; co-simulation takes a tenth longer without it
