@@ -1,29 +1,31 @@
-/* The command stream's numbers, those of core/. */
+/* The command stream's numbers, those of core/, under the driver's names. */
 #ifndef HALFPLANE_DRIVER_STREAM_H
 #define HALFPLANE_DRIVER_STREAM_H
 
-#define HP_SET 0x01u
-#define HP_FENCE 0x02u
-#define HP_PRESENT 0x03u
-#define HP_WAIT_VBLANK 0x04u
-#define HP_STOP 0x05u
-#define HP_TRIANGLE 0x10u
-#define HP_RECTANGLE 0x11u
-#define HP_FAST_CLEAR 0x12u
-#define HP_FLUSH 0x13u
-#define HP_POINT 0x14u
-#define HP_LINE 0x16u
-#define HP_TOKEN 0x17u
+#include "../core/registers/halfplane_stream.h"
+
+#define HP_SET HALFPLANE_COMMAND_SET
+#define HP_FENCE HALFPLANE_COMMAND_FENCE
+#define HP_PRESENT HALFPLANE_COMMAND_PRESENT
+#define HP_WAIT_VBLANK HALFPLANE_COMMAND_WAIT_VBLANK
+#define HP_STOP HALFPLANE_COMMAND_STOP
+#define HP_TRIANGLE HALFPLANE_COMMAND_TRIANGLE
+#define HP_RECTANGLE HALFPLANE_COMMAND_RECTANGLE
+#define HP_FAST_CLEAR HALFPLANE_COMMAND_CLEAR
+#define HP_FLUSH HALFPLANE_COMMAND_FLUSH
+#define HP_POINT HALFPLANE_COMMAND_POINT
+#define HP_LINE HALFPLANE_COMMAND_LINE
+#define HP_TOKEN HALFPLANE_COMMAND_STATE
 
 #define HP_HEADER(opcode, fields) (((uint32_t)(opcode) << 24) | (uint32_t)(fields))
 #define HP_SET_OF(first, count) HP_HEADER(HP_SET, (uint32_t)(first) | ((uint32_t)(count) << 8))
-#define HP_FLIP 8u /* of a triangle */
-#define HP_OVER_W 16u
+#define HP_FLIP HALFPLANE_TRIANGLE_FLIP_MASK
+#define HP_OVER_W HALFPLANE_TRIANGLE_OVER_W_MASK
 
 /* State registers */
-#define HP_BOX_MIN 0u
-#define HP_STATE 2u
-#define HP_TARGET 3u
+#define HP_BOX_MIN HALFPLANE_STATE_REGISTER_BOX_MIN
+#define HP_STATE HALFPLANE_STATE_REGISTER_STATE
+#define HP_TARGET HALFPLANE_STATE_REGISTER_TARGET
 
 /* Registers of units: tokens */
 enum {
