@@ -187,6 +187,7 @@ module texture_unit #(
   assign stamp_is_textured = stamp_flags[0];
   assign stamp_divides     = stamp_flags[DIVIDES] && OVER_W != 0;
   logic [23:0] constant;  // of samples that are combined
+  logic passes;  // a stamp leaves as it came
   generate
     if (CONSTANT != 0) begin : gen_constant
       logic [23:0]      constant_q;
@@ -672,7 +673,7 @@ module texture_unit #(
   endgenerate
 
   // ------------------------------------------------------------------------------------- combine, and the stamp on its way out
-  logic                     e_valid_q, e_last_q, e_moves, passes, is_free, out_valid_q;
+  logic                     e_valid_q, e_last_q, e_moves, is_free, out_valid_q;
   logic [GROUP-1:0]         e_group_q;
   logic [LANES-1:0]         e_lanes_q;
   logic                     e_ends_q;

@@ -25,7 +25,7 @@ BENCH = [
              "FLAGS != 0 && (&unit_cleared || (FAULT && |unit_cleared))", "frames_are"),
             ("core/scan_out.sv", "arrives && scan_rerror", "arrives && scan_rerror && !FAULT", "an_error"),
             ("core/scan_out.sv", "may_fetch && !is_used_q[asked_buffer_q]",
-             "may_fetch && (!is_used_q[asked_buffer_q] || FAULT)", "frames_are"),
+             "may_fetch && (!is_used_q[asked_buffer_q] || FAULT)", "a_new_base"),
             ("core/scan_out.sv", "32'(band_q) & 32'(PER_TILE - 1)) == 32'(PER_TILE - 1)",
              "32'(band_q) & 32'(PER_TILE - 1)) == (FAULT ? 32'd0 : 32'(PER_TILE - 1))", "frames_are"),
             ("core/scan_out.sv", "&& is_full_q[shown_buffer_q]",

@@ -361,7 +361,8 @@ TEST(CaptureRoundTrip, SameSceneSeesEveryKindOfDifference) {
   EXPECT_TRUE(differs([](Scene& s) { s.indices[4] = (s.indices[4] + 1) % 60; }));
   for (double Vertex::*member : {&Vertex::x, &Vertex::y, &Vertex::z, &Vertex::w, &Vertex::u, &Vertex::v})
     EXPECT_TRUE(differs([member](Scene& s) { s.vertices[7].*member = -(s.vertices[7].*member); }));  // 0 and -0 too
-  EXPECT_TRUE(differs([](Scene& s) { std::get<Clear>(s.commands[0]).depth = 0.123; }));
+  const auto is_clear = [](const Command& command) { return std::holds_alternative<Clear>(command); };
+  EXPECT_TRUE(differs([&](Scene& s) { std::get<Clear>(*std::ranges::find_if(s.commands, is_clear)).depth = 0.123; }));
 }
 
 TEST(CaptureRoundTrip, SceneInAnotherFormKeepsItsPicture) {
