@@ -21,7 +21,7 @@ module axi_frame_port #(
     parameter int WRITES = 64,       // write bursts without an answer, at most: a power of two
     parameter int READ_BEATS = 32,   // beats of reads under way or not taken, at most: a power of two, 16 at least
     parameter int WRITE_BEATS = 32,  // beats of writes that wait: a power of two, 16 at least
-    parameter int BUCKETS = 6,       // log2 of the buckets of the table
+    parameter int BUCKETS = 10,      // log2 of the buckets of the table: one block RAM
     parameter int NUMBER = 12        // bits of a burst's number: an older one is taken for an unanswered one at times
 ) (
     input logic clk_i,
@@ -189,7 +189,7 @@ module axi_frame_port #(
   localparam int ROOM = $clog2(READ_BEATS + 1);
   logic               split_valid, split_ready, is_behind_write, has_room;
   logic [ROOM-1:0]    room_q;
-  logic [BUCKETS-1:0] bucket, read_bucket_q;
+  logic [BUCKETS-1:0] bucket;
   logic               asks, answers_read;
 
   burst_split #(
@@ -214,22 +214,34 @@ module axi_frame_port #(
   assign split_ready   = frame_arready && !is_behind_write && has_room;
   assign asks          = frame_arvalid && frame_arready;
 
-  // The table. After reset it is filled once, so that no bucket is undefined.
-  logic [NUMBER-1:0] table_q[0:(1<<BUCKETS)-1];
+  // The table. After reset it is filled once, so that no bucket is undefined: as many cycles as it has buckets. A beat is a
+  // read or a write, so no bucket is read while it is written; later writes do not change what a read waits for.
   logic [BUCKETS:0]  fill_q;
-  logic [NUMBER-1:0] age;  // of the bucket's burst, 0: the oldest without B
+  logic [NUMBER-1:0] noted;  // in the bucket of the read
+  logic [NUMBER-1:0] age;    // of that burst, 0: the oldest without B
   assign is_clearing     = !fill_q[BUCKETS];
   assign bucket          = bucket_of(32'(beat_i.address));
-  assign age             = table_q[read_bucket_q] - answered_q;
+  assign age             = noted - answered_q;
   assign is_behind_write = age < NUMBER'(pending_q);
+
+  sram #(
+      .WIDTH    (NUMBER),
+      .DEPTH    (1 << BUCKETS),
+      .READS_OLD(0),
+      .BLOCK    (1)
+  ) u_table (
+      .clk_i,
+      .read_i         (takes_read),
+      .read_address_i (bucket),
+      .data_o         (noted),
+      .write_i        (is_clearing || takes_write),
+      .write_address_i(is_clearing ? fill_q[BUCKETS-1:0] : bucket),
+      .data_i         (is_clearing ? '0 : next_q)
+  );
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) fill_q <= '0;
     else if (is_clearing) fill_q <= fill_q + 1'b1;
-  end
-  always_ff @(posedge clk_i) begin
-    if (is_clearing || takes_write) table_q[is_clearing ? fill_q[BUCKETS-1:0] : bucket] <= is_clearing ? '0 : next_q;
-    if (takes_read) read_bucket_q <= bucket;
   end
 
   // --------------------------------------------------------------------------------------------------------------- answers

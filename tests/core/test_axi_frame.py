@@ -77,7 +77,7 @@ class Bench:
         cocotb.start_soon(self.step())
         while dut.is_busy_o.value == 1 or dut.rst_ni.value == 0:
             await RisingEdge(dut.clk_i)
-        for _ in range(80):  # the port fills its table
+        for _ in range(1100):  # the port fills its table
             await RisingEdge(dut.clk_i)
 
     async def step(self):

@@ -18,7 +18,7 @@ BENCH = [{
         # A read passes an unanswered write to its place.
         ("core/axi_frame_port.sv", "age < NUMBER'(pending_q)", "age < NUMBER'(pending_q) && !FAULT", "every_read"),
         # Only the last granule of a burst is noted.
-        ("core/axi_frame_port.sv", "if (is_clearing || takes_write)", "if (is_clearing || (takes_write && !(FAULT && !ends)))",
+        ("core/axi_frame_port.sv", "(is_clearing || takes_write)", "(is_clearing || (takes_write && !(FAULT && !ends)))",
          "every_read"),
         # A read is sent without room for its answer.
         ("core/axi_frame_port.sv", "room_q > ROOM'(frame_arlen)", "(room_q > ROOM'(frame_arlen) || FAULT)", "nobody"),
