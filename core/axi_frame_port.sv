@@ -20,7 +20,7 @@
 module axi_frame_port #(
     parameter int WRITES = 64,       // write bursts without an answer, at most: a power of two
     parameter int READ_BEATS = 32,   // beats of reads under way or not taken, at most: a power of two, 16 at least
-    parameter int WRITE_BEATS = 32,  // beats of writes that wait: a power of two, 16 at least
+    parameter int WRITE_BEATS = 16,  // beats of writes that wait: a power of two, 16 at least
     parameter int BUCKETS = 10,      // log2 of the buckets of the table: one block RAM
     parameter int NUMBER = 12        // bits of a burst's number: an older one is taken for an unanswered one at times
 ) (
