@@ -5,7 +5,6 @@
 module testbench;
   localparam int WIDTH = 64, HEIGHT = 48;  // of the target, pixels
   localparam int BYTES = raster_pkg::MEMORY_PORT_BITS / 8;
-  localparam int BEATS = 65536 / BYTES;  // of the memory
   localparam int LATENCY = 20;  // cycles from a beat to its answer, at least
 
   logic clk = 1'b0, rst_n = 1'b0;
@@ -18,6 +17,7 @@ module testbench;
   localparam int STRIDE = 2 * PLANE * ((WIDTH + TILE - 1) / TILE);
   localparam int FLAGS = STRIDE * ((HEIGHT + TILE - 1) / TILE);
   localparam int FLAG_ROWS = ((HEIGHT + 3) / 4) << raster_pkg::FLAG_ROW_SHIFT;
+  localparam int BEATS = (FLAGS + 2 * FLAG_ROWS) / BYTES;  // of the memory
   localparam int ADDRESS = raster_pkg::ADDRESS_BITS;
   localparam int LAYOUT = 4 * ADDRESS + raster_pkg::ROW_STRIDE_BITS;
   logic [LAYOUT-1:0] layout;  // bases of depth, colour, flags of depth, flags of colour; from one row of tiles to the next
@@ -121,12 +121,13 @@ module testbench;
   localparam logic [2:0] TRIANGLE = 3'd0, FAST_CLEAR = 3'd2, FLUSH = 3'd3;  // raster_pkg::primitive_kind_t
   localparam logic [2:0] LESS = 3'd1, ALWAYS = 3'd7;                        // raster_pkg::depth_func_t
   localparam logic [raster_pkg::PRIMITIVE_ID_BITS-1:0] NUMBER = '0;         // no hardware looks at it
+  localparam logic [7:0] RED = 8'd20, GREEN = 8'd20, BLUE = 8'd30;          // of the clear
   int step = 0;  // packets taken
   assign primitive_valid = rst_n && step < 3;
   always_comb
     case (step)
       // The codes of a clear stand at all three vertices. Depth 1.0 is all ones.
-      0: packet = {FAST_CLEAR, NUMBER, box, ALWAYS, 2'b11, 3'b0, {6 * X{1'b0}}, {3{codes({D{1'b1}}, 8'd20, 8'd20, 8'd30)}}};
+      0: packet = {FAST_CLEAR, NUMBER, box, ALWAYS, 2'b11, 3'b0, {6 * X{1'b0}}, {3{codes({D{1'b1}}, RED, GREEN, BLUE)}}};
       // triangle.hpt: (32, 4), (58, 44), (6, 40) in subpixels, depths 0.5, 0.25, 0.75, red, green, blue.
       1: packet = {TRIANGLE, NUMBER, box, LESS, 2'b11, 3'b0,
                    X'(6 * GRID), X'(58 * GRID), X'(32 * GRID), X'(40 * GRID), X'(44 * GRID), X'(4 * GRID),
@@ -163,6 +164,9 @@ module testbench;
 
   // Of a tile: blocks row by row, in each its stamps, in each its pixels; rgb565, lowest byte first. (With the cache of tiles a tile
   // is one block.) A block whose flag is set has the colour of the clear (frame.clears=flags; otherwise the flush wrote that).
+  // Codes are rounded to 5 and 6 bits.
+  logic [15:0] cleared;
+  assign cleared = {5'((int'(RED) * 249 + 1014) >> 11), 6'((int'(GREEN) * 253 + 505) >> 10), 5'((int'(BLUE) * 249 + 1014) >> 11)};
   function [15:0] pixel(input int x, input int y);
     int stamp, block, place, at;
     stamp = raster_pkg::STAMP_SIZE;
@@ -172,7 +176,7 @@ module testbench;
     at = PLANE + y / TILE * STRIDE + x / TILE * 2 * PLANE + 2 * place;
     pixel = {byte_of(at + 1), byte_of(at)};
     at = FLAGS + FLAG_ROWS + ((y / block) << raster_pkg::FLAG_ROW_SHIFT) + x / block / 8;
-    if (raster_pkg::FRAME_CLEARS == 1 && byte_of(at) >> x / block % 8 & 1'b1) pixel = {5'd2, 6'd5, 5'd4};  // 20 20 30
+    if (raster_pkg::FRAME_CLEARS == 1 && byte_of(at) >> x / block % 8 & 1'b1) pixel = cleared;
   endfunction
 
   task write_picture;
