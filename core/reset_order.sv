@@ -29,30 +29,34 @@ module reset_order #(
 );
 
   logic [PATIENCE-1:0] waited_q;
+  logic                core_q, raster_q, power_on_q;  // resets, active high: why is in reset_sync
   logic                starts, gives_up, was_idle_q;
 
-  assign is_busy_o = !core_no;
-  assign starts    = restart_i && core_no;
-  assign gives_up  = waited_q == {{(PATIENCE - 1) {1'b1}}, 1'b0};  // the cycle before the last
+  assign core_no     = !core_q;
+  assign raster_no   = !raster_q;
+  assign power_on_no = !power_on_q;
+  assign is_busy_o   = core_q;
+  assign starts      = restart_i && !core_q;
+  assign gives_up    = core_q && waited_q == {{(PATIENCE - 1) {1'b1}}, 1'b0};  // the cycle before the last
 
   // raster_top's idle_o is low in the cycles after its reset only because of the reset, so the first look is at 4.
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      core_no     <= 1'b0;
-      raster_no   <= 1'b0;
-      power_on_no <= 1'b0;
+      core_q      <= 1'b1;
+      raster_q    <= 1'b1;
+      power_on_q  <= 1'b1;
       forget_o    <= 1'b0;
       timed_out_o <= 1'b0;
       was_idle_q  <= 1'b0;
       waited_q    <= '0;
     end else begin
-      waited_q    <= core_no ? '0 : waited_q + 1'b1;
+      waited_q    <= core_q ? waited_q + 1'b1 : '0;
       was_idle_q  <= idle_i;
-      raster_no   <= !(starts || (!core_no && (waited_q == '0 || gives_up)));
-      power_on_no <= !(!core_no && gives_up);
-      forget_o    <= !core_no && gives_up;
-      timed_out_o <= (!core_no && gives_up) || (timed_out_o && !starts);
-      core_no     <= !starts && (core_no || (waited_q[PATIENCE-1:2] != '0 && idle_i && was_idle_q) || waited_q == '1);
+      raster_q    <= starts || (core_q && waited_q == '0) || gives_up;
+      power_on_q  <= gives_up;
+      forget_o    <= gives_up;
+      timed_out_o <= gives_up || (timed_out_o && !starts);
+      core_q      <= starts || (core_q && !((waited_q[PATIENCE-1:2] != '0 && idle_i && was_idle_q) || waited_q == '1));
     end
   end
 

@@ -5,10 +5,13 @@ module reset_sync (
     output logic rst_no
 );
 
-  logic meta_q;
+  // Held as rst, not as its inverse: a part whose flip-flops have an active-high reset needs no inverter, of which Yosys 0.23
+  // otherwise makes one a flip-flop (docs/core.md).
+  logic rst_q, meta_q;
+  assign rst_no = !rst_q;
   always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) {rst_no, meta_q} <= 2'b00;
-    else {rst_no, meta_q} <= {meta_q, 1'b1};
+    if (!rst_ni) {rst_q, meta_q} <= 2'b11;
+    else {rst_q, meta_q} <= {meta_q, 1'b0};
   end
 
 endmodule
