@@ -155,7 +155,7 @@ module axi_frame_port #(
       next_q     <= '0;
       answered_q <= '0;
     end else begin
-      pending_q  <= pending_q + PENDING'(enters_burst) - PENDING'(is_answered);
+      if (enters_burst != is_answered) pending_q <= pending_q + (enters_burst ? PENDING'(1) : {PENDING{1'b1}});  // or -1
       next_q     <= next_q + NUMBER'(enters_burst);
       answered_q <= answered_q + NUMBER'(is_answered);
     end
@@ -245,7 +245,7 @@ module axi_frame_port #(
   end
 
   // --------------------------------------------------------------------------------------------------------------- answers
-  logic               answer_waits;
+  logic               answer_waits, tells_write;
   logic [BITS-1:0]    answer;
   logic [PENDING-1:0] owed_q;  // answers to writes
   logic               holds_q;  // an answer to a read is on offer, and stays
@@ -267,6 +267,7 @@ module axi_frame_port #(
   assign answer_o.is_write = owed_q != '0 && !holds_q;
   assign answer_o.data     = answer;
   assign answer_valid_o    = !forgets_q && (answer_o.is_write || answer_waits);
+  assign tells_write       = answer_valid_o && answer_ready_i && answer_o.is_write;
   assign answers_read      = answer_waits && (forgets_q || (answer_ready_i && !answer_o.is_write));
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -277,7 +278,7 @@ module axi_frame_port #(
       room_q    <= ROOM'(READ_BEATS);
     end else begin
       if (forgets_q) owed_q <= '0;
-      else owed_q <= owed_q + PENDING'(is_owed) - PENDING'(answer_valid_o && answer_ready_i && answer_o.is_write);
+      else if (is_owed != tells_write) owed_q <= owed_q + (is_owed ? PENDING'(1) : {PENDING{1'b1}});  // or -1
       holds_q   <= answer_valid_o && !answer_ready_i && !answer_o.is_write;
       forgets_q <= forget_i || (forgets_q && !idle_o);
       room_q    <= room_q - (asks ? ROOM'(frame_arlen) + 1'b1 : '0) + ROOM'(answers_read);

@@ -169,7 +169,7 @@ module command_decoder (
   always_comb begin
     error = core_pkg::ERROR_NONE;
     if (state_q == HEADER) begin
-      if (opcode > core_pkg::COMMAND_STOP && !draws) error = core_pkg::ERROR_UNKNOWN_OPCODE;
+      if (!draws && (opcode[7:3] != '0 || opcode[2:0] > core_pkg::COMMAND_STOP[2:0])) error = core_pkg::ERROR_UNKNOWN_OPCODE;
       else if (lacks_unit) error = core_pkg::ERROR_NOT_SUPPORTED;
       else if (reserved) error = core_pkg::ERROR_RESERVED;
       else if (is_set && (word_i[11:8] == '0 || 5'(word_i[3:0]) + 5'(word_i[11:8]) > 5'(core_pkg::STATE_REGISTERS)))

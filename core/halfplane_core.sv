@@ -241,21 +241,22 @@ module halfplane_core #(
 
   always_ff @(posedge clk_i or negedge rst_n) begin
     if (!rst_n) begin
-      fence_q       <= '0;
       flushed_q     <= '0;
       vblanks_q     <= '0;
       had_error_q   <= 1'b0;
       was_running_q <= 1'b0;
       was_empty_q   <= 1'b1;
     end else begin
-      if (fence_valid) fence_q <= fence;
-      if (!core_n) fence_q <= '0;
       flushed_q     <= flushed_q + 16'(flushed);
       vblanks_q     <= vblanks_q + 16'(vblank);
       had_error_q   <= has_error;
       was_running_q <= is_running;
       was_empty_q   <= ring_is_empty;
     end
+  end
+  always_ff @(posedge clk_i or negedge core_n) begin
+    if (!core_n) fence_q <= '0;
+    else if (fence_valid) fence_q <= fence;
   end
 
   // ------------------------------------------------------------------------------------------------------------ commands
@@ -388,7 +389,8 @@ module halfplane_core #(
   assign counter_bits = (COUNTERS * COUNTER)'(counters);
   always_comb begin
     counter = '0;
-    for (int i = 0; i < COUNTERS; i++) if (counter_index == 5'(i)) counter = 32'(counter_bits[COUNTER*i+:COUNTER]);
+    for (int i = 0; i < COUNTERS; i++)
+      counter = counter | (32'(counter_bits[COUNTER*i+:COUNTER]) & {32{counter_index == 5'(i)}});
   end
 
   // -------------------------------------------------------------------------------------------------------------- memory
