@@ -1,5 +1,13 @@
 #include "internal.h"
 
+#define HP_8(n) n, n, n, n, n, n, n, n
+#define HP_32(n) HP_8(n), HP_8(n), HP_8(n), HP_8(n)
+const uint8_t hp_bits_of_byte[256] = {0,        1,        2,        2,        3,        3,        3,        3,
+                                      HP_8(4),  HP_8(5),  HP_8(5),  HP_32(6), HP_32(7), HP_32(7), HP_32(8), HP_32(8),
+                                      HP_32(8), HP_32(8)};
+#undef HP_32
+#undef HP_8
+
 uint32_t hp_divide(uint64_t n, uint32_t d) {
   if ((n >> 32) == 0) return (uint32_t)n / d;
   const uint32_t shift = 32 - hp_bits32(d); /* the divisor's highest bit to bit 31 */
@@ -29,14 +37,17 @@ int64_t hp_divide_rounded(int64_t n, uint32_t d) {
 }
 
 uint32_t hp_depth_code(uint32_t depth) {
+#if HALFPLANE_DEPTH_BITS <= 22
+  const uint64_t product = (uint64_t)depth * (((uint32_t)2 << HALFPLANE_DEPTH_BITS) - 2); /* 32 fraction bits */
+  return (uint32_t)(product >> 32) + ((uint32_t)product >> 31);
+#else
   uint64_t product = (uint64_t)depth * (((uint64_t)1 << HALFPLANE_DEPTH_BITS) - 1); /* 31 fraction bits */
-#if HALFPLANE_DEPTH_BITS > 22
   const uint32_t bits = hp_bits64(product);
   if (bits > 53) { /* of which binary64 keeps 53, the nearest, halves to even */
     const uint32_t dropped = bits - 53;
     const uint64_t half = (uint64_t)1 << (dropped - 1), odd = (product >> dropped) & 1;
     product = ((product + half - 1 + odd) >> dropped) << dropped;
   }
-#endif
   return (uint32_t)((product + ((uint64_t)1 << 30)) >> 31);
+#endif
 }

@@ -9,9 +9,15 @@ typedef struct source {
 
 static uint32_t index_of(const source* from, uint32_t i) { return from->indices != NULL ? from->indices[i] : i; }
 
+/* Vertex `index`, transformed; null: out of range. */
+static hp_vertex* vertex_of(const source* from, uint32_t index) {
+  hp_vertex* vertex = &from->context->cache[index % HP_CACHE];
+  return vertex->tag == index ? vertex : hp_transform(from->context, from->vertices, index, vertex);
+}
+
 /* Transformed vertices; false: one is out of range. An entry of the cache that another of them takes is copied
    first. */
-static uint8_t fetch(const source* from, const uint32_t at[3], uint32_t count, const hp_vertex* v[3]) {
+static uint8_t fetch(const source* from, const uint32_t at[3], uint32_t count, hp_vertex* v[3]) {
   hp_context* context = from->context;
   uint32_t index[3];
   for (uint32_t i = 0; i < count; ++i) {
@@ -22,7 +28,7 @@ static uint8_t fetch(const source* from, const uint32_t at[3], uint32_t count, c
         if (v[j] != kept) *kept = *v[j];
         v[j] = kept;
       }
-    v[i] = hp_fetch(context, from->vertices, index[i]);
+    v[i] = vertex_of(from, index[i]);
     if (v[i] == NULL) {
       context->status |= HP_OUT_OF_RANGE;
       return 0;
@@ -32,28 +38,38 @@ static uint8_t fetch(const source* from, const uint32_t at[3], uint32_t count, c
 }
 
 static void triangle(const source* from, uint32_t a, uint32_t b, uint32_t c) {
-  const uint32_t at[3] = {a, b, c};
-  const hp_vertex* v[3];
-  ++from->context->counts.triangles;
-  if (fetch(from, at, 3, v) != 0) hp_draw_triangle(from->context, v);
+  const uint32_t i = index_of(from, a), j = index_of(from, b), k = index_of(from, c);
+  if ((i ^ j) % HP_CACHE != 0 && (j ^ k) % HP_CACHE != 0 && (i ^ k) % HP_CACHE != 0) {
+    hp_vertex *first = vertex_of(from, i), *second = vertex_of(from, j), *third = vertex_of(from, k);
+    if (first != NULL && second != NULL && third != NULL)
+      hp_draw_triangle(from->context, first, second, third);
+    else
+      from->context->status |= HP_OUT_OF_RANGE;
+  } else { /* two share an entry */
+    const uint32_t at[3] = {a, b, c};
+    hp_vertex* v[3];
+    if (fetch(from, at, 3, v) != 0) hp_draw_triangle(from->context, v[0], v[1], v[2]);
+  }
 }
 
 static void line(const source* from, uint32_t a, uint32_t b) {
   const uint32_t at[3] = {a, b, 0};
-  const hp_vertex* v[3];
+  hp_vertex* v[3];
   ++from->context->counts.lines;
   if (fetch(from, at, 2, v) != 0) hp_draw_line(from->context, v[0], v[1]);
 }
 
 static void point(const source* from, uint32_t a) {
   const uint32_t at[3] = {a, 0, 0};
-  const hp_vertex* v[3];
+  hp_vertex* v[3];
   ++from->context->counts.points;
   if (fetch(from, at, 1, v) != 0) hp_draw_point(from->context, v[0]);
 }
 
 /* One run of indices between restarts, from `first` on. What is left over makes no primitive. */
 static void draw_run(const source* from, enum hp_topology topology, uint32_t first, uint32_t count) {
+  if (topology <= HP_TRIANGLE_FAN && count > 2)
+    from->context->counts.triangles += topology == HP_TRIANGLES ? count / 3 : count - 2;
   switch (topology) {
     case HP_TRIANGLES:
       for (uint32_t i = 0; i + 2 < count; i += 3) triangle(from, first + i, first + i + 1, first + i + 2);

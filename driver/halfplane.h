@@ -210,6 +210,7 @@ typedef struct hp_vertex { /* transformed; window coordinates where outcode is 0
   hp_fixed texcoord[2], w;
   int16_t x, y; /* snapped */
   uint8_t outcode;
+  uint8_t slot; /* of the core, if that slot has the tag */
 } hp_vertex;
 
 typedef struct hp_corner { /* of a triangle that is cut */
@@ -229,11 +230,12 @@ struct hp_context {
   hp_viewport viewport;
   int32_t scissor[4], rect[4]; /* left, top, right, bottom: as given; what is drawn */
   hp_fixed view[16], projection[16];
-  uint8_t has_view, has_projection, is_affine,
-      covers_view; /* covers_view: nothing inside the view is outside the guard band */
+  uint8_t view_kind, projection_kind; /* what of them is not computed: matrix.c */
+  uint8_t covers_view, is_quick;      /* nothing inside the view is outside the guard band; and its numbers are short */
   hp_fixed center[2], half[2];
   hp_plane planes[6];
   hp_state state;
+  uint8_t culls[2];                       /* triangles of negative, of positive area */
   uint32_t box[2], state_word;            /* of the core */
   uint32_t token[8][2];                   /* of its units */
   uint32_t known;                         /* a bit for each of these that the core has */

@@ -20,6 +20,8 @@
 #define HP_OVER_W_BITS (HALFPLANE_ALL_CODE_BITS - HALFPLANE_ALL_AFFINE_CODE_BITS)
 #define HP_OVER_W_WORDS ((HP_OVER_W_BITS + 31) / 32)
 #define HP_FRAME_WORDS ((HALFPLANE_COORDINATE_FRAME_BITS + 31) / 32)
+#define HP_TRIANGLE_WORDS \
+  (1 + 3 * (1 + HP_AFFINE_WORDS) + (HP_HAS_TEXTURES ? 3 * HP_OVER_W_WORDS + HP_FRAME_WORDS : 0)) /* at most */
 #define HP_LINE_WORDS ((HALFPLANE_LINE_SETUP_BITS - HALFPLANE_PRIMITIVE_ID_BITS + 31) / 32)
 
 #define HP_NO_TAG ((uint32_t)0xffffffffu)
@@ -28,14 +30,14 @@
 /* ---- Arithmetic */
 
 /* Bits of a number: 0 of 0. */
+extern const uint8_t hp_bits_of_byte[256];
 static inline uint32_t hp_bits32(uint32_t v) {
-  uint32_t bits = 0;
-  for (uint32_t step = 16; step != 0; step >>= 1)
-    if ((v >> step) != 0) {
-      bits += step;
-      v >>= step;
-    }
-  return bits + v;
+#if defined(__ARM_FEATURE_CLZ) && defined(__GNUC__)
+  return v == 0 ? 0 : 32 - (uint32_t)__builtin_clz(v);
+#else
+  const uint32_t low = (v >> 16) != 0 ? ((v >> 24) != 0 ? 24 : 16) : ((v >> 8) != 0 ? 8 : 0);
+  return low + hp_bits_of_byte[v >> low];
+#endif
 }
 static inline uint32_t hp_bits64(uint64_t v) {
   const uint32_t high = (uint32_t)(v >> 32);
@@ -47,6 +49,24 @@ uint32_t hp_divide(uint64_t n, uint32_t d);
 /* floor(n / d + 1/2), d > 0; beyond +-2^32 some number beyond. */
 int64_t hp_divide_rounded(int64_t n, uint32_t d);
 
+/* The high word of a product. */
+static inline uint32_t hp_high(uint32_t a, uint32_t b) { return (uint32_t)(((uint64_t)a * b) >> 32); }
+
+/* The number of bits by which w goes to the left to have 32. */
+static inline uint32_t hp_shift_of(uint32_t w) { return 32 - hp_bits32(w); }
+/* 2^62 / (w 2^shift), wrong by less than 2^-28 of it; it has 31 bits. A step of Newton's from a quotient of 17 bits. */
+static inline uint32_t hp_reciprocal(uint32_t w, uint32_t shift) {
+  const uint32_t normal = w << shift, first = (0xffffffffu / (normal >> 16)) << 15;
+  return hp_high(first, 0u - hp_high(first, normal));
+}
+/* floor(n / w) from a guess and the low words of n and w; the guess is wrong by fewer than 2^31 / w. */
+static inline uint32_t hp_corrected(uint32_t guess, uint32_t n, uint32_t w) {
+  int32_t rest = (int32_t)(n - guess * w);
+  for (; rest < 0; rest += (int32_t)w) --guess;
+  for (; rest >= (int32_t)w; rest -= (int32_t)w) ++guess;
+  return guess;
+}
+
 /* floor(v / 2^bits + 1/2); negative bits: v 2^-bits. */
 static inline int64_t hp_round_shift(int64_t v, int32_t bits) {
   return bits <= 0 ? (int64_t)((uint64_t)v << -bits) : ((v >> (bits - 1)) + 1) >> 1;
@@ -56,12 +76,30 @@ static inline int32_t hp_max(int32_t a, int32_t b) { return a > b ? a : b; }
 
 /* ---- Words */
 
+/* Waits for room for a command of `words` words; false: it is left out. */
+uint8_t hp_make_room(hp_context* context, uint32_t words);
 /* Room for a command of `words` words; false: it is left out. */
-uint8_t hp_reserve(hp_context* context, uint32_t words);
+static inline uint8_t hp_reserve(hp_context* context, uint32_t words) {
+  return context->stream.size - (context->written - context->read) >= words ? 1 : hp_make_room(context, words);
+}
 static inline void hp_put(hp_context* context, uint32_t word) {
   context->stream.words[context->at] = word;
   if (++context->at == context->stream.size) context->at = 0;
   ++context->written;
+}
+/* Where a command of `words` words goes, after hp_reserve(): into the stream, or, where that wraps, into `local`. */
+static inline uint32_t* hp_place(hp_context* context, uint32_t words, uint32_t* local) {
+  return context->stream.size - context->at >= words ? context->stream.words + context->at : local;
+}
+/* Takes it: `from` is what hp_place() gave. */
+static inline void hp_take(hp_context* context, const uint32_t* from, uint32_t words, const uint32_t* local) {
+  if (from == local) {
+    for (uint32_t i = 0; i < words; ++i) hp_put(context, local[i]);
+  } else {
+    context->at += words;
+    if (context->at == context->stream.size) context->at = 0;
+    context->written += words;
+  }
 }
 /* ORs the low `bits` bits (1 to 64) of a value into zeroed words. */
 static inline void hp_put_bits(uint32_t* words, uint32_t at, uint32_t bits, uint64_t value) {
@@ -71,10 +109,24 @@ static inline void hp_put_bits(uint32_t* words, uint32_t at, uint32_t bits, uint
   *word |= (uint32_t)(value << shift);
   for (uint32_t put = 32 - shift; put < bits; put += 32) *++word |= (uint32_t)(value >> put);
 }
-/* The affine codes of a vertex. */
+/* The affine codes of a vertex: HP_AFFINE_WORDS words. */
+static inline void hp_write_codes(uint32_t* to, uint32_t depth, uint32_t color) {
+  const uint32_t planes = color & (0xffffffffu >> (32 - 8 * HALFPLANE_COLOR_PLANES));
+#if HALFPLANE_DEPTH_BITS < 32
+  to[0] = depth | (planes << HALFPLANE_DEPTH_BITS);
+  if (HP_AFFINE_WORDS > 1) to[1] = planes >> (32 - HALFPLANE_DEPTH_BITS);
+#else
+  to[0] = depth;
+  to[1] = planes;
+#endif
+}
 void hp_put_codes(hp_context* context, uint32_t depth, uint32_t color);
 
 /* ---- Vertices */
+
+/* A matrix: the last row is 0 0 0 1; or 0 0 -1 0, and none but the diagonal and the fourth element of the third row
+   is there. */
+enum { HP_IDENTITY, HP_GENERAL, HP_AFFINE, HP_PERSPECTIVE };
 
 /* Code of a depth, u1.31: as binary64 rounds its product with 2^B - 1. */
 uint32_t hp_depth_code(uint32_t depth);
@@ -85,8 +137,8 @@ uint8_t hp_outcode(const hp_context* context, const hp_fixed clip[4]);
 int64_t hp_distance(const hp_plane* plane, const hp_fixed clip[4]);
 /* Planes and constants from viewport and target. */
 void hp_derive_view(hp_context* context);
-/* A vertex of a draw, transformed and projected; null: out of range. */
-const hp_vertex* hp_fetch(hp_context* context, const hp_vertices* vertices, uint32_t index);
+/* A vertex of a draw, transformed and projected into its place of the cache; null: out of range. */
+hp_vertex* hp_transform(hp_context* context, const hp_vertices* vertices, uint32_t index, hp_vertex* vertex);
 
 /* ---- Primitives */
 
@@ -94,17 +146,16 @@ const hp_vertex* hp_fetch(hp_context* context, const hp_vertices* vertices, uint
 uint8_t hp_prepare(hp_context* context, uint8_t is_triangle);
 /* Sends the box, inclusive, if it differs. */
 void hp_send_box(hp_context* context, int32_t left, int32_t top, int32_t right, int32_t bottom);
-void hp_draw_triangle(hp_context* context, const hp_vertex* const v[3]);
+void hp_draw_triangle(hp_context* context, hp_vertex* a, hp_vertex* b, hp_vertex* c);
 void hp_draw_line(hp_context* context, const hp_vertex* a, const hp_vertex* b);
 void hp_draw_point(hp_context* context, const hp_vertex* v);
 void hp_corner_of(const hp_vertex* v, hp_corner* corner);
 void hp_cut(hp_corner* made, const hp_corner* in, const hp_corner* out, int64_t d_in, int64_t d_out);
 /* A corner in the window. */
 void hp_project_corner(const hp_context* context, const hp_corner* corner, hp_vertex* vertex);
-/* The codes over w of three vertices and their frame: words[i] those of vertex i. */
+/* The codes over w of the vertices of the three slots, and their frame: 3 HP_OVER_W_WORDS + HP_FRAME_WORDS words. */
 #if HP_HAS_TEXTURES
-void hp_over_w(const hp_context* context, const hp_vertex* const v[3], uint32_t words[3][HP_OVER_W_WORDS],
-               uint32_t frame[HP_FRAME_WORDS]);
+void hp_over_w(const hp_context* context, const hp_vertex* const v[3], uint32_t* words);
 #endif
 
 #endif

@@ -15,14 +15,23 @@ static uint8_t fits(const hp_fixed matrix[16]) {
   return 1;
 }
 
+static uint8_t kind_of(const hp_fixed m[16]) {
+  if (m == NULL) return HP_IDENTITY;
+  if (m[12] == 0 && m[13] == 0 && m[14] == 0 && m[15] == HP_ONE) return HP_AFFINE;
+  uint8_t is_perspective = m[14] == -HP_ONE;
+  static const uint8_t zero[] = {1, 2, 3, 4, 6, 7, 8, 9, 12, 13, 15};
+  for (uint32_t i = 0; i < sizeof zero; ++i)
+    if (m[zero[i]] != 0) is_perspective = 0;
+  return is_perspective != 0 ? HP_PERSPECTIVE : HP_GENERAL;
+}
+
 void hp_set_matrices(hp_context* context, const hp_fixed view[16], const hp_fixed projection[16]) {
   if ((view != NULL && fits(view) == 0) || (projection != NULL && fits(projection) == 0)) {
     context->status |= HP_BAD_VALUE;
     return;
   }
-  context->is_affine = view != NULL && view[12] == 0 && view[13] == 0 && view[14] == 0 && view[15] == HP_ONE;
-  context->has_view = view != NULL;
-  context->has_projection = projection != NULL;
+  context->view_kind = kind_of(view);
+  context->projection_kind = kind_of(projection);
   if (view != NULL) memcpy(context->view, view, sizeof context->view);
   if (projection != NULL) memcpy(context->projection, projection, sizeof context->projection);
 }

@@ -78,8 +78,9 @@ static int32_t wrapped(int32_t reference, uint32_t log2_size, uint8_t wrap) {
   return reference & (((int32_t)1 << (log2_size + (wrap == HP_MIRROR ? 1u : 0u))) - 1);
 }
 
-void hp_over_w(const hp_context* context, const hp_vertex* const v[3], uint32_t words[3][HP_OVER_W_WORDS],
-               uint32_t frame[HP_FRAME_WORDS]) {
+void hp_over_w(const hp_context* context, const hp_vertex* const v[3], uint32_t* out) {
+  uint32_t* const words[3] = {out, out + HP_OVER_W_WORDS, out + 2 * HP_OVER_W_WORDS};
+  uint32_t* const frame = out + 3 * HP_OVER_W_WORDS;
   const hp_state* state = &context->state;
   const format coordinate = {HP_Q_BITS, HALFPLANE_PERSPECTIVE_MANTISSA_BITS - 1, 1};
   uint32_t w[3], q[3];

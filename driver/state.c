@@ -54,9 +54,8 @@ const hp_counts* hp_count(const hp_context* context) { return &context->counts; 
 
 /* ---- Words */
 
-uint8_t hp_reserve(hp_context* context, uint32_t words) {
+uint8_t hp_make_room(hp_context* context, uint32_t words) {
   const hp_stream* stream = &context->stream;
-  if (stream->size - (context->written - context->read) >= words) return 1;
   if (stream->wait != NULL) {
     context->read = stream->wait(stream->user, context->written);
     if (stream->size - (context->written - context->read) >= words) return 1;
@@ -66,12 +65,9 @@ uint8_t hp_reserve(hp_context* context, uint32_t words) {
 }
 
 void hp_put_codes(hp_context* context, uint32_t depth, uint32_t color) {
-  uint64_t codes =
-      depth | ((uint64_t)(color & (0xffffffffu >> (32 - 8 * HALFPLANE_COLOR_PLANES))) << HALFPLANE_DEPTH_BITS);
-  for (uint32_t i = 0; i < HP_AFFINE_WORDS; ++i) {
-    hp_put(context, (uint32_t)codes);
-    codes >>= 32;
-  }
+  uint32_t words[HP_AFFINE_WORDS];
+  hp_write_codes(words, depth, color);
+  for (uint32_t i = 0; i < HP_AFFINE_WORDS; ++i) hp_put(context, words[i]);
 }
 
 /* After hp_reserve(). */
@@ -444,10 +440,15 @@ static uint8_t is_valid(const hp_state* state) {
 }
 
 void hp_set_state(hp_context* context, const hp_state* state) {
-  if (is_valid(state) == 0)
+  if (is_valid(state) == 0) {
     context->status |= HP_BAD_VALUE;
-  else if (is_supported(state) == 0)
+  } else if (is_supported(state) == 0) {
     context->status |= HP_UNSUPPORTED;
-  else
+  } else {
     context->state = *state;
+    for (uint32_t area_is_positive = 0; area_is_positive < 2; ++area_is_positive) {
+      const uint8_t is_front = (area_is_positive != 0) == (state->front == HP_CW);
+      context->culls[area_is_positive] = (state->cull & (is_front != 0 ? HP_CULL_FRONT : HP_CULL_BACK)) != 0;
+    }
+  }
 }

@@ -10,60 +10,64 @@ static int64_t area_of(const hp_vertex* a, const hp_vertex* b, const hp_vertex* 
   return (int64_t)ax * by - (int64_t)ay * bx;
 }
 
-static uint8_t is_culled(const hp_state* state, int64_t area) {
-  const uint8_t is_front = (area > 0) == (state->front == HP_CW);
-  return area == 0 || (state->cull & (is_front != 0 ? HP_CULL_FRONT : HP_CULL_BACK)) != 0;
+/* The core's slot of a vertex that is in one, as a bit; 0: it is in none. */
+static inline uint32_t held(const hp_context* context, const hp_vertex* v) {
+  return context->slot[v->slot] == v->tag ? (uint32_t)1 << v->slot : 0;
+}
+
+/* A vertex that is in no slot takes the first one that this triangle does not use. */
+static inline void take_slot(hp_context* context, hp_vertex* v, uint32_t* used) {
+  const uint8_t slot = (*used & 1u) == 0 ? 0 : (*used & 2u) == 0 ? 1 : 2;
+  *used |= (uint32_t)1 << slot;
+  v->slot = slot;
+  context->slot[slot] = v->tag;
+}
+
+static inline uint32_t* write_vertex(uint32_t* to, const hp_vertex* v) {
+  to[0] = (uint32_t)(uint16_t)v->x | ((uint32_t)(uint16_t)v->y << 16);
+  hp_write_codes(to + 1, v->depth, v->color);
+  return to + 1 + HP_AFFINE_WORDS;
 }
 
 /* Vertices go to the core's slots: one that is in a slot already is not sent again. */
-static void send(hp_context* context, const hp_vertex* const v[3]) {
-  if (is_culled(&context->state, area_of(v[0], v[1], v[2])) != 0) {
+static void send(hp_context* context, hp_vertex* a, hp_vertex* b, hp_vertex* c) {
+  const int64_t area = area_of(a, b, c);
+  if (area == 0 || context->culls[area > 0 ? 1 : 0] != 0) {
     ++context->counts.culled;
     return;
   }
-  uint32_t words = 1 + 3 * (1 + HP_AFFINE_WORDS), place[3], loads = 0, used = 0;
-#if HP_HAS_TEXTURES
-  const uint8_t is_over_w = context->state.texture != NULL || context->state.perspective_colors != 0;
-  if (is_over_w != 0) words += 3 * HP_OVER_W_WORDS + HP_FRAME_WORDS;
-#endif
-  if (hp_reserve(context, words) == 0) return;
-  for (uint32_t i = 0; i < 3; ++i) {
-    place[i] = 3;
-    for (uint32_t s = 0; s < 3; ++s)
-      if (context->slot[s] == v[i]->tag) place[i] = s;
-    if (place[i] != 3) used |= 1u << place[i];
-  }
-  const hp_vertex* in_slot[3] = {NULL, NULL, NULL};
-  for (uint32_t i = 0; i < 3; ++i) {
-    if (place[i] == 3) {
-      place[i] = (used & 1u) == 0 ? 0 : (used & 2u) == 0 ? 1 : 2;
-      used |= 1u << place[i];
-      loads |= 1u << place[i];
-      context->slot[place[i]] = v[i]->tag;
-    }
-    in_slot[place[i]] = v[i];
-  }
+  uint32_t local[HP_TRIANGLE_WORDS];
+  if (hp_reserve(context, HP_TRIANGLE_WORDS) == 0) return;
+  uint32_t* const words = hp_place(context, HP_TRIANGLE_WORDS, local);
+  const uint32_t held_a = held(context, a), held_b = held(context, b), held_c = held(context, c);
+  uint32_t used = held_a | held_b | held_c;
+  const uint32_t kept = used;
+  if (held_a == 0) take_slot(context, a, &used);
+  if (held_b == 0) take_slot(context, b, &used);
+  if (held_c == 0) take_slot(context, c, &used);
+  const uint32_t loads = used & ~kept;
   uint32_t header = HP_HEADER(HP_TRIANGLE, loads);
-  if ((place[0] + 1) % 3 != place[1]) header |= HP_FLIP; /* an odd permutation */
-#if HP_HAS_TEXTURES
-  if (is_over_w != 0) header |= HP_OVER_W;
-#endif
-  hp_put(context, header);
+  const int32_t turn = (int32_t)b->slot - a->slot;
+  if (turn != 1 && turn != -2) header |= HP_FLIP; /* an odd permutation */
+  uint32_t* to = words + 1;
+  const hp_vertex* in_slot[3];
+  in_slot[a->slot] = a;
+  in_slot[b->slot] = b;
+  in_slot[c->slot] = c;
   for (uint32_t s = 0; s < 3; ++s)
     if ((loads >> s & 1u) != 0) {
-      hp_put(context, (uint32_t)(uint16_t)in_slot[s]->x | ((uint32_t)(uint16_t)in_slot[s]->y << 16));
-      hp_put_codes(context, in_slot[s]->depth, in_slot[s]->color);
+      to = write_vertex(to, in_slot[s]);
       ++context->counts.vertices;
     }
 #if HP_HAS_TEXTURES
-  if (is_over_w != 0) {
-    uint32_t codes[3][HP_OVER_W_WORDS], frame[HP_FRAME_WORDS];
-    hp_over_w(context, in_slot, codes, frame);
-    for (uint32_t s = 0; s < 3; ++s)
-      for (uint32_t i = 0; i < HP_OVER_W_WORDS; ++i) hp_put(context, codes[s][i]);
-    for (uint32_t i = 0; i < HP_FRAME_WORDS; ++i) hp_put(context, frame[i]);
+  if (context->state.texture != NULL || context->state.perspective_colors != 0) {
+    header |= HP_OVER_W;
+    hp_over_w(context, in_slot, to);
+    to += 3 * HP_OVER_W_WORDS + HP_FRAME_WORDS;
   }
 #endif
+  words[0] = header;
+  hp_take(context, words, (uint32_t)(to - words), local);
   ++context->counts.sent;
 }
 
@@ -124,7 +128,7 @@ static uint32_t clip(hp_context* context) {
 }
 
 /* Piece i of the fan from corner `start`. */
-static void piece_of(const hp_context* context, uint32_t size, uint32_t start, uint32_t i, const hp_vertex* v[3]) {
+static void piece_of(hp_context* context, uint32_t size, uint32_t start, uint32_t i, hp_vertex* v[3]) {
   v[0] = &context->corner[start];
   v[1] = &context->corner[(start + i) % size];
   v[2] = &context->corner[(start + i + 1) % size];
@@ -133,13 +137,13 @@ static void piece_of(const hp_context* context, uint32_t size, uint32_t start, u
 /* Rounding can dent the polygon: then the fan begins at a corner from which no piece is reversed, the smallest by y
    and x; or at the
    smallest of all, without the pieces that are. */
-static uint32_t fan_start(const hp_context* context, uint32_t size, int64_t whole) {
+static uint32_t fan_start(hp_context* context, uint32_t size, int64_t whole) {
   uint32_t best = 0;
   uint8_t best_agrees = 0;
   for (uint32_t start = 0; start < size; ++start) {
     uint8_t agrees = 1;
     for (uint32_t i = 1; i + 1 < size; ++i) {
-      const hp_vertex* v[3];
+      hp_vertex* v[3];
       piece_of(context, size, start, i, v);
       const int64_t area = area_of(v[0], v[1], v[2]);
       if (area != 0 && (area > 0) != (whole > 0)) agrees = 0;
@@ -159,10 +163,11 @@ static void send_pieces(hp_context* context, uint32_t size) {
     hp_vertex* corner = &context->corner[i];
     hp_project_corner(context, &context->polygon[0][i], corner);
     corner->tag = HP_CORNER_TAG + i;
+    corner->slot = 0;
   }
   for (uint32_t s = 0; s < 3; ++s) /* corners of an earlier polygon */
     if (context->slot[s] >= HP_CORNER_TAG) context->slot[s] = HP_NO_TAG;
-  const hp_vertex* v[3];
+  hp_vertex* v[3];
   int64_t whole = 0;
   for (uint32_t i = 1; i + 1 < size; ++i) {
     piece_of(context, size, 0, i, v);
@@ -173,17 +178,19 @@ static void send_pieces(hp_context* context, uint32_t size) {
   for (uint32_t i = 1; i + 1 < size; ++i) {
     piece_of(context, size, start, i, v);
     const int64_t area = area_of(v[0], v[1], v[2]);
-    if (area != 0 && (area > 0) == (whole > 0)) send(context, v);
+    if (area != 0 && (area > 0) == (whole > 0)) send(context, v[0], v[1], v[2]);
   }
 }
 
-void hp_draw_triangle(hp_context* context, const hp_vertex* const v[3]) {
-  if ((v[0]->outcode | v[1]->outcode | v[2]->outcode) == 0) {
-    send(context, v);
-  } else if ((v[0]->outcode & v[1]->outcode & v[2]->outcode) != 0) {
+void hp_draw_triangle(hp_context* context, hp_vertex* a, hp_vertex* b, hp_vertex* c) {
+  if ((a->outcode | b->outcode | c->outcode) == 0) {
+    send(context, a, b, c);
+  } else if ((a->outcode & b->outcode & c->outcode) != 0) {
     ++context->counts.outside;
   } else {
-    for (uint32_t i = 0; i < 3; ++i) hp_corner_of(v[i], &context->polygon[0][i]);
+    hp_corner_of(a, &context->polygon[0][0]);
+    hp_corner_of(b, &context->polygon[0][1]);
+    hp_corner_of(c, &context->polygon[0][2]);
     const uint32_t size = clip(context);
     ++*(size < 3 ? &context->counts.outside : &context->counts.cut);
     if (size >= 3) send_pieces(context, size);

@@ -8,21 +8,38 @@
        ? (int32_t)32767 * HP_ONE \
        : (int32_t)(HALFPLANE_GUARD_BAND * 65536 - (65536 >> HALFPLANE_SUBPIXEL_BITS))) /* guard band */
 
-/* Replaces a point by its product with a matrix. Sums of four products do not leave 64 bits: hp_set_matrices().
-   is_affine: w is 1 and
-   stays 1. */
-static uint8_t multiply(const hp_fixed matrix[16], hp_fixed point[4], uint8_t is_affine) {
+/* Half a viewport and a w, below which numbers of the quick way fit: 4,096 pixels, and 4,096. */
+#define HP_QUICK ((hp_fixed)1 << 28)
+
+/* A row's sum of products, rounded; `out_of_range` gets a bit where it does not fit. */
+static inline hp_fixed rounded(int64_t sum, uint32_t* out_of_range) {
+  const int32_t high = (int32_t)(sum >> 32);
+  *out_of_range |= ((uint32_t)high + 32768u) >> 16;
+  return (hp_fixed)(((uint32_t)high << 16) | ((uint32_t)sum >> 16));
+}
+
+/* Replaces a point by its product with a matrix; 0: out of range. Sums of four products do not leave 64 bits:
+   hp_set_matrices(). */
+static uint8_t multiply(const hp_fixed matrix[16], uint8_t kind, hp_fixed point[4]) {
   const hp_fixed x = point[0], y = point[1], z = point[2], w = point[3];
-  uint8_t fits = 1;
-  for (uint32_t row = 0; row < (is_affine != 0 ? 3u : 4u); ++row) {
-    const hp_fixed* m = &matrix[4 * row];
-    int64_t sum = (int64_t)m[0] * x + (int64_t)m[1] * y + (int64_t)m[2] * z + 32768;
-    sum += is_affine != 0 ? (int64_t)m[3] * HP_ONE : (int64_t)m[3] * w;
-    sum >>= 16;
-    point[row] = (hp_fixed)sum;
-    if (sum != point[row]) fits = 0;
+  uint32_t out_of_range = 0;
+  if (kind == HP_PERSPECTIVE) {
+    point[0] = rounded((int64_t)matrix[0] * x + 32768, &out_of_range);
+    point[1] = rounded((int64_t)matrix[5] * y + 32768, &out_of_range);
+    point[2] = rounded((int64_t)matrix[10] * z + (int64_t)matrix[11] * w + 32768, &out_of_range);
+    point[3] = (hp_fixed)(0u - (uint32_t)z);
+    if (z == INT32_MIN) out_of_range = 1;
+  } else if (kind == HP_AFFINE && w == HP_ONE) {
+    for (const hp_fixed* m = matrix; m != matrix + 12; m += 4, ++point)
+      *point = rounded((int64_t)m[0] * x + (int64_t)m[1] * y + (int64_t)m[2] * z +
+                           (((int64_t)m[3] * 65536) | 32768),
+                       &out_of_range);
+  } else {
+    for (const hp_fixed* m = matrix; m != matrix + 16; m += 4, ++point)
+      *point = rounded((int64_t)m[0] * x + (int64_t)m[1] * y + (int64_t)m[2] * z + (int64_t)m[3] * w + 32768,
+                       &out_of_range);
   }
-  return fits;
+  return out_of_range == 0;
 }
 
 int64_t hp_distance(const hp_plane* plane, const hp_fixed clip[4]) {
@@ -70,37 +87,73 @@ void hp_derive_view(hp_context* context) {
     planes[3 + 2 * axis] = high;
   }
   context->covers_view = covers;
+  const int64_t limit = HP_LIMIT;
+  context->is_quick = covers != 0 && context->half[0] < HP_QUICK && context->half[1] < HP_QUICK &&
+                      view->x >= -limit && view->y >= -limit && (int64_t)view->x + view->width < limit &&
+                      (int64_t)view->y + view->height < limit;
 }
 
 /* A place in the window, s15.16, snapped. */
-static int16_t snapped(int64_t place) {
-  if (place < -HP_LIMIT) place = -HP_LIMIT;
-  if (place > HP_LIMIT) place = HP_LIMIT;
-  const int32_t subpixel = ((int32_t)place + (32768 >> HALFPLANE_SUBPIXEL_BITS)) >> (16 - HALFPLANE_SUBPIXEL_BITS);
+static int16_t snapped(int32_t place) {
+  const int32_t subpixel = (place + (32768 >> HALFPLANE_SUBPIXEL_BITS)) >> (16 - HALFPLANE_SUBPIXEL_BITS);
   return (int16_t)(subpixel * (1 << (HALFPLANE_GRID_BITS - HALFPLANE_SUBPIXEL_BITS)));
+}
+static int16_t clamped(int64_t place) {
+  return snapped((int32_t)(place < -HP_LIMIT ? -HP_LIMIT : place > HP_LIMIT ? HP_LIMIT : place));
+}
+
+/* The code of a depth in the view, 31 fraction bits. */
+static uint32_t ranged(const hp_viewport* view, uint32_t depth) {
+  if (view->near_depth != 0 || view->far_depth != HP_DEPTH_ONE) {
+    const int64_t range = (int64_t)view->far_depth - (int64_t)view->near_depth;
+    depth = (uint32_t)(view->near_depth + ((range * depth + ((int64_t)1 << 30)) >> 31));
+  }
+  return hp_depth_code(depth);
 }
 
 void hp_project(const hp_context* context, const hp_fixed clip[4], hp_vertex* vertex) {
-  const hp_viewport* view = &context->viewport;
   const uint32_t w = clip[3] > 0 ? (uint32_t)clip[3] : 1;
   vertex->w = (hp_fixed)w;
-  vertex->x = snapped(context->center[0] + hp_divide_rounded((int64_t)clip[0] * context->half[0], w));
-  vertex->y = snapped(context->center[1] + hp_divide_rounded(-(int64_t)clip[1] * context->half[1], w));
-  int64_t up = view->zero_to_one != 0 ? 2 * (int64_t)clip[2] : (int64_t)clip[2] + w; /* 2 w times the depth */
+  vertex->x = clamped(context->center[0] + hp_divide_rounded((int64_t)clip[0] * context->half[0], w));
+  vertex->y = clamped(context->center[1] + hp_divide_rounded(-(int64_t)clip[1] * context->half[1], w));
+  /* 2 w times the depth */
+  int64_t up = context->viewport.zero_to_one != 0 ? 2 * (int64_t)clip[2] : (int64_t)clip[2] + w;
   if (up < 0) up = 0;
   if (up > 2 * (int64_t)w) up = 2 * (int64_t)w;
-  const int64_t depth = hp_divide_rounded(up << 30, w);
-  const int64_t range = (int64_t)view->far_depth - (int64_t)view->near_depth;
-  vertex->depth = hp_depth_code((uint32_t)(view->near_depth + ((range * depth + ((int64_t)1 << 30)) >> 31)));
+  vertex->depth = ranged(&context->viewport, (uint32_t)hp_divide_rounded(up << 30, w));
+}
+
+/* floor(x half / w + 1/2): a guess by the reciprocal, wrong by 3 at most, made exact. */
+static inline int32_t over_w(int32_t x, int32_t half, uint32_t w, int32_t reciprocal, uint32_t shift) {
+  const int32_t ratio = (int32_t)(((int64_t)(int32_t)((uint32_t)x << (shift - 1)) * reciprocal) >> 32); /* 2^29 x / w */
+  const uint32_t guess = (uint32_t)(((int64_t)ratio * (half * 8)) >> 32);
+  return (int32_t)hp_corrected(guess, (uint32_t)x * (uint32_t)half + w / 2, w);
+}
+
+/* hp_project() of a point inside the view, with one division of 32 bits in place of six; 0: it is not inside, or its
+   numbers are too long. The results are the same bits. */
+static uint8_t project_quickly(const hp_context* context, const hp_fixed clip[4], hp_vertex* vertex) {
+  const uint32_t w = (uint32_t)clip[3], twice = 2 * w;
+  const uint8_t zero_to_one = context->viewport.zero_to_one;
+  const uint32_t above = zero_to_one != 0 ? (uint32_t)clip[2] : (uint32_t)clip[2] + w; /* the near plane */
+  if (context->is_quick == 0 || w - 1 >= (uint32_t)HP_QUICK - 1 || (uint32_t)clip[0] + w > twice ||
+      (uint32_t)clip[1] + w > twice || above > (zero_to_one != 0 ? w : twice))
+    return 0;
+  const uint32_t shift = hp_shift_of(w), reciprocal = hp_reciprocal(w, shift);
+  const uint32_t up = zero_to_one != 0 ? 2 * above : above; /* 2 w times the depth */
+  const uint32_t depth = hp_corrected(hp_high(up << (shift - 1), reciprocal) << 1, (up << 30) + w / 2, w);
+  vertex->w = (hp_fixed)w;
+  vertex->x = snapped(context->center[0] + over_w(clip[0], context->half[0], w, (int32_t)reciprocal, shift));
+  vertex->y = snapped(context->center[1] + over_w(-clip[1], context->half[1], w, (int32_t)reciprocal, shift));
+  vertex->depth = ranged(&context->viewport, depth);
+  return 1;
 }
 
 static const void* element(const void* array, uint32_t index, uint32_t stride) {
-  return (const unsigned char*)array + (size_t)index * stride;
+  return (const unsigned char*)array + index * stride;
 }
 
-const hp_vertex* hp_fetch(hp_context* context, const hp_vertices* vertices, uint32_t index) {
-  hp_vertex* vertex = &context->cache[index % HP_CACHE];
-  if (vertex->tag == index) return vertex;
+hp_vertex* hp_transform(hp_context* context, const hp_vertices* vertices, uint32_t index, hp_vertex* vertex) {
   ++context->counts.transformed;
   const hp_fixed* in = element(vertices->position, index, vertices->position_stride);
   hp_fixed* clip = vertex->clip;
@@ -109,9 +162,9 @@ const hp_vertex* hp_fetch(hp_context* context, const hp_vertices* vertices, uint
   clip[2] = in[2];
   clip[3] = vertices->has_w != 0 ? in[3] : HP_ONE;
   vertex->tag = HP_NO_TAG;
-  const uint8_t is_affine = vertices->has_w == 0 && context->is_affine != 0;
-  if (context->has_view != 0 && multiply(context->view, clip, is_affine) == 0) return NULL;
-  if (context->has_projection != 0 && multiply(context->projection, clip, 0) == 0) return NULL;
+  if (context->view_kind != HP_IDENTITY && multiply(context->view, context->view_kind, clip) == 0) return NULL;
+  if (context->projection_kind != HP_IDENTITY && multiply(context->projection, context->projection_kind, clip) == 0)
+    return NULL;
   vertex->tag = index;
   vertex->color = HP_RGBA(255, 255, 255, 255);
   if (vertices->color != NULL)
@@ -122,6 +175,9 @@ const hp_vertex* hp_fetch(hp_context* context, const hp_vertices* vertices, uint
     vertex->texcoord[0] = texcoord[0];
     vertex->texcoord[1] = texcoord[1];
   }
+  vertex->slot = context->slot[1] == index ? 1 : context->slot[2] == index ? 2 : 0;
+  vertex->outcode = 0;
+  if (project_quickly(context, clip, vertex) != 0) return vertex;
   vertex->outcode = hp_outcode(context, clip);
   if (vertex->outcode == 0) hp_project(context, clip, vertex);
   return vertex;

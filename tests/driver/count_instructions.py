@@ -35,7 +35,7 @@ def build(folder, target, config, level, work):
     compiler, _ = TARGETS[target]
     program = folder / f'{target}_{config}_{level}_{work}'
     options = ['-std=c99', level, '-ffreestanding', '-fno-builtin', '-nostartfiles', '-nostdlib', '-ffunction-sections',
-               '-Wl,--gc-sections', '-Wl,--no-relax', '-Wl,-e,_start', '-I', ROOT / 'driver', f'-DWORK={work}',
+               '-Wl,--gc-sections', '-Wl,--no-relax', '-Wl,-e,_start,--no-warn-rwx-segments', '-I', ROOT / 'driver', f'-DWORK={work}',
                f'-DHALFPLANE_CONFIG_FILE="{folder}/{config}.h"']
     if config == 'textured':
         options.append('-DTEXTURED')
