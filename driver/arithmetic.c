@@ -35,19 +35,3 @@ int64_t hp_divide_rounded(int64_t n, uint32_t d) {
   const int64_t quotient = (size >> 32) >= d ? (int64_t)1 << 33 : (int64_t)hp_divide(size, d);
   return n < 0 ? -quotient : quotient;
 }
-
-uint32_t hp_depth_code(uint32_t depth) {
-#if HALFPLANE_DEPTH_BITS <= 22
-  const uint64_t product = (uint64_t)depth * (((uint32_t)2 << HALFPLANE_DEPTH_BITS) - 2); /* 32 fraction bits */
-  return (uint32_t)(product >> 32) + ((uint32_t)product >> 31);
-#else
-  uint64_t product = (uint64_t)depth * (((uint64_t)1 << HALFPLANE_DEPTH_BITS) - 1); /* 31 fraction bits */
-  const uint32_t bits = hp_bits64(product);
-  if (bits > 53) { /* of which binary64 keeps 53, the nearest, halves to even */
-    const uint32_t dropped = bits - 53;
-    const uint64_t half = (uint64_t)1 << (dropped - 1), odd = (product >> dropped) & 1;
-    product = ((product + half - 1 + odd) >> dropped) << dropped;
-  }
-  return (uint32_t)((product + ((uint64_t)1 << 30)) >> 31);
-#endif
-}

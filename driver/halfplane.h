@@ -223,7 +223,11 @@ typedef struct hp_plane {
 
 struct hp_context {
   hp_stream stream;
-  uint32_t at, written, read; /* the next word's place in the stream; words since hp_begin */
+  uint32_t *next, *end;         /* where words go next, and the end of the room there: in the stream or in wrapped */
+  uint32_t written, read;       /* since hp_begin: words before stream.words[at] or wrapped, words that the core has read */
+  uint32_t at;                  /* a place in the stream: where next was when `written` was counted */
+  uint8_t wraps;                /* next is in: */
+  uint32_t wrapped[HP_LONGEST]; /* a command over the end of a ring, on its way there */
   uint32_t status;
   hp_counts counts;
   hp_target target;
@@ -233,9 +237,10 @@ struct hp_context {
   uint8_t view_kind, projection_kind; /* what of them is not computed: matrix.c */
   uint8_t covers_view, is_quick;      /* nothing inside the view is outside the guard band; and its numbers are short */
   hp_fixed center[2], half[2];
+  int64_t view_offset[3]; /* of an affine view: the fourth column, and what rounds */
   hp_plane planes[6];
   hp_state state;
-  uint8_t culls[2];                       /* triangles of negative, of positive area */
+  uint8_t culls[2];                       /* triangles of positive, of negative area */
   uint32_t box[2], state_word;            /* of the core */
   uint32_t token[8][2];                   /* of its units */
   uint32_t known;                         /* a bit for each of these that the core has */

@@ -78,29 +78,13 @@ static inline int32_t hp_max(int32_t a, int32_t b) { return a > b ? a : b; }
 
 /* Waits for room for a command of `words` words; false: it is left out. */
 uint8_t hp_make_room(hp_context* context, uint32_t words);
-/* Room for a command of `words` words; false: it is left out. */
+/* Room for a command of `words` words from context->next on; false: it is left out. */
 static inline uint8_t hp_reserve(hp_context* context, uint32_t words) {
-  return context->stream.size - (context->written - context->read) >= words ? 1 : hp_make_room(context, words);
+  return (uint32_t)(context->end - context->next) >= words ? 1 : hp_make_room(context, words);
 }
-static inline void hp_put(hp_context* context, uint32_t word) {
-  context->stream.words[context->at] = word;
-  if (++context->at == context->stream.size) context->at = 0;
-  ++context->written;
-}
-/* Where a command of `words` words goes, after hp_reserve(): into the stream, or, where that wraps, into `local`. */
-static inline uint32_t* hp_place(hp_context* context, uint32_t words, uint32_t* local) {
-  return context->stream.size - context->at >= words ? context->stream.words + context->at : local;
-}
-/* Takes it: `from` is what hp_place() gave. */
-static inline void hp_take(hp_context* context, const uint32_t* from, uint32_t words, const uint32_t* local) {
-  if (from == local) {
-    for (uint32_t i = 0; i < words; ++i) hp_put(context, local[i]);
-  } else {
-    context->at += words;
-    if (context->at == context->stream.size) context->at = 0;
-    context->written += words;
-  }
-}
+/* Before a function of the interface returns: every word is in the stream. */
+void hp_settle(hp_context* context);
+static inline void hp_put(hp_context* context, uint32_t word) { *context->next++ = word; }
 /* ORs the low `bits` bits (1 to 64) of a value into zeroed words. */
 static inline void hp_put_bits(uint32_t* words, uint32_t at, uint32_t bits, uint64_t value) {
   if (bits < 64) value &= ((uint64_t)1 << bits) - 1;
@@ -129,7 +113,21 @@ void hp_put_codes(hp_context* context, uint32_t depth, uint32_t color);
 enum { HP_IDENTITY, HP_GENERAL, HP_AFFINE, HP_PERSPECTIVE };
 
 /* Code of a depth, u1.31: as binary64 rounds its product with 2^B - 1. */
-uint32_t hp_depth_code(uint32_t depth);
+static inline uint32_t hp_depth_code(uint32_t depth) {
+#if HALFPLANE_DEPTH_BITS <= 22
+  const uint64_t product = (uint64_t)depth * (((uint32_t)2 << HALFPLANE_DEPTH_BITS) - 2); /* 32 fraction bits */
+  return (uint32_t)(product >> 32) + ((uint32_t)product >> 31);
+#else
+  uint64_t product = (uint64_t)depth * (((uint64_t)1 << HALFPLANE_DEPTH_BITS) - 1); /* 31 fraction bits */
+  const uint32_t bits = hp_bits64(product);
+  if (bits > 53) { /* of which binary64 keeps 53, the nearest, halves to even */
+    const uint32_t dropped = bits - 53;
+    const uint64_t half = (uint64_t)1 << (dropped - 1), odd = (product >> dropped) & 1;
+    product = ((product + half - 1 + odd) >> dropped) << dropped;
+  }
+  return (uint32_t)((product + ((uint64_t)1 << 30)) >> 31);
+#endif
+}
 /* From clip space to the window: writes x, y, depth and w. */
 void hp_project(const hp_context* context, const hp_fixed clip[4], hp_vertex* vertex);
 /* A bit for each plane that has the point outside. */
@@ -146,7 +144,15 @@ hp_vertex* hp_transform(hp_context* context, const hp_vertices* vertices, uint32
 uint8_t hp_prepare(hp_context* context, uint8_t is_triangle);
 /* Sends the box, inclusive, if it differs. */
 void hp_send_box(hp_context* context, int32_t left, int32_t top, int32_t right, int32_t bottom);
-void hp_draw_triangle(hp_context* context, hp_vertex* a, hp_vertex* b, hp_vertex* c);
+/* Vertices without an outcode; and any others. */
+void hp_send_triangle(hp_context* context, hp_vertex* a, hp_vertex* b, hp_vertex* c);
+void hp_clip_triangle(hp_context* context, const hp_vertex* a, const hp_vertex* b, const hp_vertex* c);
+/* Twice the area in subpixels, positive where the corners turn to the right on the screen. */
+static inline int64_t hp_area(const hp_vertex* a, const hp_vertex* b, const hp_vertex* c) {
+  const int32_t ax = (int32_t)b->x - a->x, ay = (int32_t)b->y - a->y;
+  const int32_t bx = (int32_t)c->x - a->x, by = (int32_t)c->y - a->y;
+  return (int64_t)ax * by - (int64_t)ay * bx;
+}
 void hp_draw_line(hp_context* context, const hp_vertex* a, const hp_vertex* b);
 void hp_draw_point(hp_context* context, const hp_vertex* v);
 void hp_corner_of(const hp_vertex* v, hp_corner* corner);

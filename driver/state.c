@@ -43,6 +43,9 @@ void hp_begin(hp_context* context, const hp_stream* stream) {
   }
   context->stream = *stream;
   context->at = context->written = context->read = 0;
+  context->wraps = 0;
+  context->next = stream->words;
+  context->end = stream->words + stream->size;
   context->known = 0;
   context->is_drawn = context->is_set = 0;
   memset(&context->counts, 0, sizeof context->counts);
@@ -54,20 +57,51 @@ const hp_counts* hp_count(const hp_context* context) { return &context->counts; 
 
 /* ---- Words */
 
+/* Counts the words up to context->next; those that wrap go to their places. */
+void hp_settle(hp_context* context) {
+  const hp_stream* stream = &context->stream;
+  if (context->end == NULL) return; /* no stream */
+  if (context->wraps != 0) {
+    const uint32_t count = (uint32_t)(context->next - context->wrapped);
+    for (uint32_t i = 0; i < count; ++i) {
+      stream->words[context->at] = context->wrapped[i];
+      if (++context->at == stream->size) context->at = 0;
+    }
+    context->written += count;
+    context->wraps = 0;
+  } else {
+    const uint32_t at = (uint32_t)(context->next - stream->words);
+    context->written += at - context->at;
+    context->at = at == stream->size ? 0 : at;
+  }
+  /* The words that are free and in one piece. */
+  const uint32_t room = stream->size - (context->written - context->read), whole = stream->size - context->at;
+  context->next = stream->words + context->at;
+  context->end = context->next + (room < whole ? room : whole);
+}
+
 uint8_t hp_make_room(hp_context* context, uint32_t words) {
   const hp_stream* stream = &context->stream;
-  if (stream->wait != NULL) {
+  hp_settle(context);
+  if ((uint32_t)(context->end - context->next) >= words) return 1;
+  if (stream->size - (context->written - context->read) < words && stream->wait != NULL) {
     context->read = stream->wait(stream->user, context->written);
-    if (stream->size - (context->written - context->read) >= words) return 1;
+    hp_settle(context);
+    if ((uint32_t)(context->end - context->next) >= words) return 1;
   }
-  context->status |= HP_FULL;
-  return 0;
+  if (context->end == NULL || stream->size - (context->written - context->read) < words) {
+    context->status |= HP_FULL;
+    return 0;
+  }
+  context->wraps = 1;
+  context->next = context->wrapped;
+  context->end = context->wrapped + words;
+  return 1;
 }
 
 void hp_put_codes(hp_context* context, uint32_t depth, uint32_t color) {
-  uint32_t words[HP_AFFINE_WORDS];
-  hp_write_codes(words, depth, color);
-  for (uint32_t i = 0; i < HP_AFFINE_WORDS; ++i) hp_put(context, words[i]);
+  hp_write_codes(context->next, depth, color);
+  context->next += HP_AFFINE_WORDS;
 }
 
 /* After hp_reserve(). */
@@ -332,6 +366,7 @@ void hp_clear(hp_context* context, uint32_t buffers, uint32_t color, uint32_t de
   hp_put(context, is_whole != 0 ? HP_HEADER(HP_FAST_CLEAR, buffers) : HP_HEADER(HP_RECTANGLE, 0));
   hp_put_codes(context, (buffers & HP_CLEAR_DEPTH) != 0 ? hp_depth_code(depth) : 0,
                (buffers & HP_CLEAR_COLOR) != 0 ? color : 0);
+  hp_settle(context);
   context->is_drawn = 1;
 }
 
@@ -342,6 +377,7 @@ static void put_command(hp_context* context, uint32_t header, uint32_t words, ui
   hp_put(context, header);
   if (words > 0) hp_put(context, first);
   if (words > 1) hp_put(context, second);
+  hp_settle(context);
 }
 
 void hp_flush(hp_context* context, uint8_t loses_depth) {
@@ -374,6 +410,7 @@ void hp_set_target(hp_context* context, const hp_target* target) {
   hp_put(context, target->color_flags);
   hp_put(context, target->row_stride);
   hp_put(context, target->textures);
+  hp_settle(context);
   context->target = *target;
   context->is_set = 1;
   const hp_viewport whole = {0, 0, target->width * HP_ONE, target->height * HP_ONE, 0, HP_DEPTH_ONE, 0};
@@ -446,9 +483,9 @@ void hp_set_state(hp_context* context, const hp_state* state) {
     context->status |= HP_UNSUPPORTED;
   } else {
     context->state = *state;
-    for (uint32_t area_is_positive = 0; area_is_positive < 2; ++area_is_positive) {
-      const uint8_t is_front = (area_is_positive != 0) == (state->front == HP_CW);
-      context->culls[area_is_positive] = (state->cull & (is_front != 0 ? HP_CULL_FRONT : HP_CULL_BACK)) != 0;
+    for (uint32_t is_negative = 0; is_negative < 2; ++is_negative) {
+      const uint8_t is_front = (is_negative == 0) == (state->front == HP_CW);
+      context->culls[is_negative] = (state->cull & (is_front != 0 ? HP_CULL_FRONT : HP_CULL_BACK)) != 0;
     }
   }
 }

@@ -1,198 +1,55 @@
-/* Triangles: clip, fan, cull, and the words of those that are left. Clip and fan are the model's --transform s15.16
-   (sim/scene/host_geometry.cpp). A triangle that shows the side that is culled, or has no area, is not sent. */
+/* Triangles inside the guard band: cull and words. One that shows the side that is culled, or has no area, is not
+   sent. */
 #include "internal.h"
-
-/* ---- Words */
-
-static int64_t area_of(const hp_vertex* a, const hp_vertex* b, const hp_vertex* c) {
-  const int32_t ax = (int32_t)b->x - a->x, ay = (int32_t)b->y - a->y;
-  const int32_t bx = (int32_t)c->x - a->x, by = (int32_t)c->y - a->y;
-  return (int64_t)ax * by - (int64_t)ay * bx;
-}
 
 /* The core's slot of a vertex that is in one, as a bit; 0: it is in none. */
 static inline uint32_t held(const hp_context* context, const hp_vertex* v) {
   return context->slot[v->slot] == v->tag ? (uint32_t)1 << v->slot : 0;
 }
 
-/* A vertex that is in no slot takes the first one that this triangle does not use. */
-static inline void take_slot(hp_context* context, hp_vertex* v, uint32_t* used) {
-  const uint8_t slot = (*used & 1u) == 0 ? 0 : (*used & 2u) == 0 ? 1 : 2;
-  *used |= (uint32_t)1 << slot;
-  v->slot = slot;
-  context->slot[slot] = v->tag;
-}
-
-static inline uint32_t* write_vertex(uint32_t* to, const hp_vertex* v) {
+/* A vertex that is in no slot takes the first one that this triangle does not use. So the slots are loaded in
+   ascending order. */
+static inline uint32_t* load(hp_context* context, hp_vertex* v, uint32_t* used, uint32_t* to) {
+  const uint32_t taken = ~*used & (*used + 1); /* the lowest 0 */
+  *used |= taken;
+  v->slot = (uint8_t)(taken >> 1);
+  context->slot[v->slot] = v->tag;
+  ++context->counts.vertices;
   to[0] = (uint32_t)(uint16_t)v->x | ((uint32_t)(uint16_t)v->y << 16);
   hp_write_codes(to + 1, v->depth, v->color);
   return to + 1 + HP_AFFINE_WORDS;
 }
 
 /* Vertices go to the core's slots: one that is in a slot already is not sent again. */
-static void send(hp_context* context, hp_vertex* a, hp_vertex* b, hp_vertex* c) {
-  const int64_t area = area_of(a, b, c);
-  if (area == 0 || context->culls[area > 0 ? 1 : 0] != 0) {
+void hp_send_triangle(hp_context* context, hp_vertex* a, hp_vertex* b, hp_vertex* c) {
+  const int64_t area = hp_area(a, b, c);
+  if (area == 0 || context->culls[(uint64_t)area >> 63] != 0) {
     ++context->counts.culled;
     return;
   }
-  uint32_t local[HP_TRIANGLE_WORDS];
   if (hp_reserve(context, HP_TRIANGLE_WORDS) == 0) return;
-  uint32_t* const words = hp_place(context, HP_TRIANGLE_WORDS, local);
+  uint32_t *const words = context->next, *to = words + 1;
   const uint32_t held_a = held(context, a), held_b = held(context, b), held_c = held(context, c);
   uint32_t used = held_a | held_b | held_c;
   const uint32_t kept = used;
-  if (held_a == 0) take_slot(context, a, &used);
-  if (held_b == 0) take_slot(context, b, &used);
-  if (held_c == 0) take_slot(context, c, &used);
-  const uint32_t loads = used & ~kept;
-  uint32_t header = HP_HEADER(HP_TRIANGLE, loads);
+  if (held_a == 0) to = load(context, a, &used, to);
+  if (held_b == 0) to = load(context, b, &used, to);
+  if (held_c == 0) to = load(context, c, &used, to);
+  uint32_t header = HP_HEADER(HP_TRIANGLE, used ^ kept);
   const int32_t turn = (int32_t)b->slot - a->slot;
   if (turn != 1 && turn != -2) header |= HP_FLIP; /* an odd permutation */
-  uint32_t* to = words + 1;
-  const hp_vertex* in_slot[3];
-  in_slot[a->slot] = a;
-  in_slot[b->slot] = b;
-  in_slot[c->slot] = c;
-  for (uint32_t s = 0; s < 3; ++s)
-    if ((loads >> s & 1u) != 0) {
-      to = write_vertex(to, in_slot[s]);
-      ++context->counts.vertices;
-    }
 #if HP_HAS_TEXTURES
   if (context->state.texture != NULL || context->state.perspective_colors != 0) {
+    const hp_vertex* in_slot[3];
+    in_slot[a->slot] = a;
+    in_slot[b->slot] = b;
+    in_slot[c->slot] = c;
     header |= HP_OVER_W;
     hp_over_w(context, in_slot, to);
     to += 3 * HP_OVER_W_WORDS + HP_FRAME_WORDS;
   }
 #endif
   words[0] = header;
-  hp_take(context, words, (uint32_t)(to - words), local);
+  context->next = to;
   ++context->counts.sent;
-}
-
-/* ---- Clip */
-
-void hp_corner_of(const hp_vertex* v, hp_corner* corner) {
-  for (uint32_t i = 0; i < 4; ++i) {
-    corner->part[i] = v->clip[i];
-    corner->part[4 + i] = (hp_fixed)((v->color >> (8 * i) & 255u) << 16);
-  }
-  corner->part[8] = v->texcoord[0];
-  corner->part[9] = v->texcoord[1];
-}
-
-void hp_cut(hp_corner* made, const hp_corner* in, const hp_corner* out, int64_t d_in, int64_t d_out) {
-  /* t, 31 fraction bits, from the inside end. */
-  const uint64_t whole = (uint64_t)d_in - (uint64_t)d_out;
-  const uint32_t bits = hp_bits64(whole), shift = bits > 32 ? bits - 32 : 0, divisor = (uint32_t)(whole >> shift);
-  const int64_t t = hp_divide((((uint64_t)d_in >> shift) << 31) + divisor / 2, divisor);
-  for (uint32_t i = 0; i < 10; ++i) {
-    const int64_t step = (int64_t)out->part[i] - in->part[i];
-    made->part[i] = (hp_fixed)(in->part[i] + ((step * t + ((int64_t)1 << 30)) >> 31));
-  }
-}
-
-void hp_project_corner(const hp_context* context, const hp_corner* corner, hp_vertex* vertex) {
-  hp_project(context, corner->part, vertex);
-  vertex->color = 0;
-  for (uint32_t i = 0; i < 4; ++i) /* between the ends, which are codes */
-    vertex->color |= (uint32_t)((corner->part[4 + i] + 32768) >> 16) << (8 * i);
-  vertex->texcoord[0] = corner->part[8];
-  vertex->texcoord[1] = corner->part[9];
-}
-
-/* Sutherland and Hodgman, plane by plane; returns the number of corners of polygon[0]. */
-static uint32_t clip(hp_context* context) {
-  uint32_t size = 3, side = 0;
-  for (uint32_t p = 0; p < 6; ++p) {
-    const hp_plane* plane = &context->planes[p];
-    const hp_corner* given = context->polygon[side];
-    hp_corner* made = context->polygon[1 - side];
-    uint32_t count = 0;
-    for (uint32_t i = 0; i < size; ++i) {
-      const hp_corner *from = &given[i], *to = &given[i + 1 == size ? 0 : i + 1];
-      const int64_t d_from = hp_distance(plane, from->part), d_to = hp_distance(plane, to->part);
-      if (count + 2 > HP_CORNERS) {
-        context->status |= HP_POLYGON;
-        return 0;
-      }
-      if (d_from >= 0) made[count++] = *from;
-      if (d_from >= 0 && d_to < 0) hp_cut(&made[count++], from, to, d_from, d_to);
-      if (d_from < 0 && d_to >= 0) hp_cut(&made[count++], to, from, d_to, d_from);
-    }
-    size = count;
-    side = 1 - side;
-  }
-  return size; /* of polygon[0]: six planes */
-}
-
-/* Piece i of the fan from corner `start`. */
-static void piece_of(hp_context* context, uint32_t size, uint32_t start, uint32_t i, hp_vertex* v[3]) {
-  v[0] = &context->corner[start];
-  v[1] = &context->corner[(start + i) % size];
-  v[2] = &context->corner[(start + i + 1) % size];
-}
-
-/* Rounding can dent the polygon: then the fan begins at a corner from which no piece is reversed, the smallest by y
-   and x; or at the
-   smallest of all, without the pieces that are. */
-static uint32_t fan_start(hp_context* context, uint32_t size, int64_t whole) {
-  uint32_t best = 0;
-  uint8_t best_agrees = 0;
-  for (uint32_t start = 0; start < size; ++start) {
-    uint8_t agrees = 1;
-    for (uint32_t i = 1; i + 1 < size; ++i) {
-      hp_vertex* v[3];
-      piece_of(context, size, start, i, v);
-      const int64_t area = area_of(v[0], v[1], v[2]);
-      if (area != 0 && (area > 0) != (whole > 0)) agrees = 0;
-    }
-    const hp_vertex *a = &context->corner[start], *b = &context->corner[best];
-    const uint8_t is_before = a->y != b->y ? a->y < b->y : a->x < b->x;
-    if (agrees == best_agrees ? (start == 0 || is_before != 0) : agrees != 0) {
-      best = start;
-      best_agrees = agrees;
-    }
-  }
-  return best;
-}
-
-static void send_pieces(hp_context* context, uint32_t size) {
-  for (uint32_t i = 0; i < size; ++i) {
-    hp_vertex* corner = &context->corner[i];
-    hp_project_corner(context, &context->polygon[0][i], corner);
-    corner->tag = HP_CORNER_TAG + i;
-    corner->slot = 0;
-  }
-  for (uint32_t s = 0; s < 3; ++s) /* corners of an earlier polygon */
-    if (context->slot[s] >= HP_CORNER_TAG) context->slot[s] = HP_NO_TAG;
-  hp_vertex* v[3];
-  int64_t whole = 0;
-  for (uint32_t i = 1; i + 1 < size; ++i) {
-    piece_of(context, size, 0, i, v);
-    whole += area_of(v[0], v[1], v[2]);
-  }
-  if (whole == 0) return;
-  const uint32_t start = fan_start(context, size, whole);
-  for (uint32_t i = 1; i + 1 < size; ++i) {
-    piece_of(context, size, start, i, v);
-    const int64_t area = area_of(v[0], v[1], v[2]);
-    if (area != 0 && (area > 0) == (whole > 0)) send(context, v[0], v[1], v[2]);
-  }
-}
-
-void hp_draw_triangle(hp_context* context, hp_vertex* a, hp_vertex* b, hp_vertex* c) {
-  if ((a->outcode | b->outcode | c->outcode) == 0) {
-    send(context, a, b, c);
-  } else if ((a->outcode & b->outcode & c->outcode) != 0) {
-    ++context->counts.outside;
-  } else {
-    hp_corner_of(a, &context->polygon[0][0]);
-    hp_corner_of(b, &context->polygon[0][1]);
-    hp_corner_of(c, &context->polygon[0][2]);
-    const uint32_t size = clip(context);
-    ++*(size < 3 ? &context->counts.outside : &context->counts.cut);
-    if (size >= 3) send_pieces(context, size);
-  }
 }

@@ -20,26 +20,50 @@ static inline hp_fixed rounded(int64_t sum, uint32_t* out_of_range) {
 
 /* Replaces a point by its product with a matrix; 0: out of range. Sums of four products do not leave 64 bits:
    hp_set_matrices(). */
-static uint8_t multiply(const hp_fixed matrix[16], uint8_t kind, hp_fixed point[4]) {
+static uint8_t multiply(const hp_fixed matrix[16], hp_fixed point[4]) {
   const hp_fixed x = point[0], y = point[1], z = point[2], w = point[3];
   uint32_t out_of_range = 0;
-  if (kind == HP_PERSPECTIVE) {
-    point[0] = rounded((int64_t)matrix[0] * x + 32768, &out_of_range);
-    point[1] = rounded((int64_t)matrix[5] * y + 32768, &out_of_range);
-    point[2] = rounded((int64_t)matrix[10] * z + (int64_t)matrix[11] * w + 32768, &out_of_range);
-    point[3] = (hp_fixed)(0u - (uint32_t)z);
-    if (z == INT32_MIN) out_of_range = 1;
-  } else if (kind == HP_AFFINE && w == HP_ONE) {
-    for (const hp_fixed* m = matrix; m != matrix + 12; m += 4, ++point)
-      *point = rounded((int64_t)m[0] * x + (int64_t)m[1] * y + (int64_t)m[2] * z +
-                           (((int64_t)m[3] * 65536) | 32768),
-                       &out_of_range);
-  } else {
-    for (const hp_fixed* m = matrix; m != matrix + 16; m += 4, ++point)
-      *point = rounded((int64_t)m[0] * x + (int64_t)m[1] * y + (int64_t)m[2] * z + (int64_t)m[3] * w + 32768,
-                       &out_of_range);
-  }
+  for (const hp_fixed* m = matrix; m != matrix + 16; m += 4, ++point)
+    *point = rounded((int64_t)m[0] * x + (int64_t)m[1] * y + (int64_t)m[2] * z + (int64_t)m[3] * w + 32768,
+                     &out_of_range);
   return out_of_range == 0;
+}
+
+/* The product of a row and a point whose w is 1. */
+static inline hp_fixed affine_row(const hp_fixed m[4], int64_t offset, hp_fixed x, hp_fixed y, hp_fixed z,
+                                  uint32_t* out_of_range) {
+  return rounded((int64_t)m[0] * x + (int64_t)m[1] * y + (int64_t)m[2] * z + offset, out_of_range);
+}
+
+/* A vertex's point in clip space; 0: out of range. */
+static uint8_t to_clip(const hp_context* context, const hp_fixed* in, uint8_t has_w, hp_fixed clip[4]) {
+  hp_fixed x = in[0], y = in[1], z = in[2];
+  const uint8_t is_affine = context->view_kind == HP_AFFINE && has_w == 0;
+  uint32_t out_of_range = 0;
+  if (is_affine != 0) {
+    const hp_fixed* m = context->view;
+    const int64_t* offset = context->view_offset;
+    const hp_fixed a = affine_row(m, offset[0], x, y, z, &out_of_range);
+    const hp_fixed b = affine_row(m + 4, offset[1], x, y, z, &out_of_range);
+    z = affine_row(m + 8, offset[2], x, y, z, &out_of_range);
+    x = a;
+    y = b;
+    if (out_of_range != 0) return 0;
+    if (context->projection_kind == HP_PERSPECTIVE) {
+      const hp_fixed* p = context->projection;
+      clip[0] = rounded((int64_t)p[0] * x + 32768, &out_of_range);
+      clip[1] = rounded((int64_t)p[5] * y + 32768, &out_of_range);
+      clip[2] = rounded((int64_t)p[10] * z + (((int64_t)p[11] * 65536) | 32768), &out_of_range);
+      clip[3] = (hp_fixed)(0u - (uint32_t)z);
+      return out_of_range == 0 && z != INT32_MIN;
+    }
+  }
+  clip[0] = x;
+  clip[1] = y;
+  clip[2] = z;
+  clip[3] = has_w != 0 ? in[3] : HP_ONE;
+  if (is_affine == 0 && context->view_kind != HP_IDENTITY && multiply(context->view, clip) == 0) return 0;
+  return context->projection_kind == HP_IDENTITY || multiply(context->projection, clip) != 0;
 }
 
 int64_t hp_distance(const hp_plane* plane, const hp_fixed clip[4]) {
@@ -113,7 +137,9 @@ static uint32_t ranged(const hp_viewport* view, uint32_t depth) {
 
 void hp_project(const hp_context* context, const hp_fixed clip[4], hp_vertex* vertex) {
   const uint32_t w = clip[3] > 0 ? (uint32_t)clip[3] : 1;
+#if HP_HAS_TEXTURES
   vertex->w = (hp_fixed)w;
+#endif
   vertex->x = clamped(context->center[0] + hp_divide_rounded((int64_t)clip[0] * context->half[0], w));
   vertex->y = clamped(context->center[1] + hp_divide_rounded(-(int64_t)clip[1] * context->half[1], w));
   /* 2 w times the depth */
@@ -142,7 +168,9 @@ static uint8_t project_quickly(const hp_context* context, const hp_fixed clip[4]
   const uint32_t shift = hp_shift_of(w), reciprocal = hp_reciprocal(w, shift);
   const uint32_t up = zero_to_one != 0 ? 2 * above : above; /* 2 w times the depth */
   const uint32_t depth = hp_corrected(hp_high(up << (shift - 1), reciprocal) << 1, (up << 30) + w / 2, w);
+#if HP_HAS_TEXTURES
   vertex->w = (hp_fixed)w;
+#endif
   vertex->x = snapped(context->center[0] + over_w(clip[0], context->half[0], w, (int32_t)reciprocal, shift));
   vertex->y = snapped(context->center[1] + over_w(-clip[1], context->half[1], w, (int32_t)reciprocal, shift));
   vertex->depth = ranged(&context->viewport, depth);
@@ -157,24 +185,20 @@ hp_vertex* hp_transform(hp_context* context, const hp_vertices* vertices, uint32
   ++context->counts.transformed;
   const hp_fixed* in = element(vertices->position, index, vertices->position_stride);
   hp_fixed* clip = vertex->clip;
-  clip[0] = in[0];
-  clip[1] = in[1];
-  clip[2] = in[2];
-  clip[3] = vertices->has_w != 0 ? in[3] : HP_ONE;
   vertex->tag = HP_NO_TAG;
-  if (context->view_kind != HP_IDENTITY && multiply(context->view, context->view_kind, clip) == 0) return NULL;
-  if (context->projection_kind != HP_IDENTITY && multiply(context->projection, context->projection_kind, clip) == 0)
-    return NULL;
+  if (to_clip(context, in, vertices->has_w, clip) == 0) return NULL;
   vertex->tag = index;
   vertex->color = HP_RGBA(255, 255, 255, 255);
   if (vertices->color != NULL)
     vertex->color = *(const uint32_t*)element(vertices->color, index, vertices->color_stride);
+#if HP_HAS_TEXTURES
   vertex->texcoord[0] = vertex->texcoord[1] = 0;
   if (vertices->texcoord != NULL) {
     const hp_fixed* texcoord = element(vertices->texcoord, index, vertices->texcoord_stride);
     vertex->texcoord[0] = texcoord[0];
     vertex->texcoord[1] = texcoord[1];
   }
+#endif
   vertex->slot = context->slot[1] == index ? 1 : context->slot[2] == index ? 2 : 0;
   vertex->outcode = 0;
   if (project_quickly(context, clip, vertex) != 0) return vertex;
