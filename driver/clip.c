@@ -57,7 +57,7 @@ static uint32_t clip(hp_context* context) {
 }
 
 /* Piece i of the fan from corner `start`. */
-static void piece_of(hp_context* context, uint32_t size, uint32_t start, uint32_t i, hp_vertex* v[3]) {
+static void piece_of(const hp_context* context, uint32_t size, uint32_t start, uint32_t i, const hp_vertex* v[3]) {
   v[0] = &context->corner[start];
   v[1] = &context->corner[(start + i) % size];
   v[2] = &context->corner[(start + i + 1) % size];
@@ -66,13 +66,13 @@ static void piece_of(hp_context* context, uint32_t size, uint32_t start, uint32_
 /* Rounding can dent the polygon: then the fan begins at a corner from which no piece is reversed, the smallest by y
    and x; or at the
    smallest of all, without the pieces that are. */
-static uint32_t fan_start(hp_context* context, uint32_t size, int64_t whole) {
+static uint32_t fan_start(const hp_context* context, uint32_t size, int64_t whole) {
   uint32_t best = 0;
   uint8_t best_agrees = 0;
   for (uint32_t start = 0; start < size; ++start) {
     uint8_t agrees = 1;
     for (uint32_t i = 1; i + 1 < size; ++i) {
-      hp_vertex* v[3];
+      const hp_vertex* v[3];
       piece_of(context, size, start, i, v);
       const int64_t area = hp_area(v[0], v[1], v[2]);
       if (area != 0 && (area > 0) != (whole > 0)) agrees = 0;
@@ -92,11 +92,10 @@ static void send_pieces(hp_context* context, uint32_t size) {
     hp_vertex* corner = &context->corner[i];
     hp_project_corner(context, &context->polygon[0][i], corner);
     corner->tag = HP_CORNER_TAG + i;
-    corner->slot = 0;
   }
   for (uint32_t s = 0; s < 3; ++s) /* corners of an earlier polygon */
     if (context->slot[s] >= HP_CORNER_TAG) context->slot[s] = HP_NO_TAG;
-  hp_vertex* v[3];
+  const hp_vertex* v[3];
   int64_t whole = 0;
   for (uint32_t i = 1; i + 1 < size; ++i) {
     piece_of(context, size, 0, i, v);

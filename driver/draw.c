@@ -10,20 +10,20 @@ typedef struct source {
 static uint32_t index_of(const source* from, uint32_t i) { return from->indices != NULL ? from->indices[i] : i; }
 
 /* Vertex `index`, transformed; null: out of range. */
-static hp_vertex* vertex_of(const source* from, uint32_t index) {
+static const hp_vertex* vertex_of(const source* from, uint32_t index) {
   hp_vertex* vertex = &from->context->cache[index % HP_CACHE];
   return vertex->tag == index ? vertex : hp_transform(from->context, from->vertices, index, vertex);
 }
 
 /* Likewise, if it is there already. */
-static hp_vertex* cached(const source* from, uint32_t index) {
-  hp_vertex* vertex = &from->context->cache[index % HP_CACHE];
+static const hp_vertex* cached(const source* from, uint32_t index) {
+  const hp_vertex* vertex = &from->context->cache[index % HP_CACHE];
   return vertex->tag == index ? vertex : NULL;
 }
 
 /* Transformed vertices; false: one is out of range. An entry of the cache that another of them takes is copied
    first. */
-static uint8_t fetch(const source* from, const uint32_t at[3], uint32_t count, hp_vertex* v[3]) {
+static uint8_t fetch(const source* from, const uint32_t at[3], uint32_t count, const hp_vertex* v[3]) {
   hp_context* context = from->context;
   uint32_t index[3];
   for (uint32_t i = 0; i < count; ++i) {
@@ -43,7 +43,7 @@ static uint8_t fetch(const source* from, const uint32_t at[3], uint32_t count, h
   return 1;
 }
 
-static inline void send_triangle(hp_context* context, hp_vertex* a, hp_vertex* b, hp_vertex* c) {
+static inline void send_triangle(hp_context* context, const hp_vertex* a, const hp_vertex* b, const hp_vertex* c) {
   if ((a->outcode | b->outcode | c->outcode) == 0)
     hp_send_triangle(context, a, b, c);
   else
@@ -56,51 +56,42 @@ static inline uint8_t share(uint32_t i, uint32_t j) { return (i ^ j) % HP_CACHE 
 static void triangle(const source* from, uint32_t a, uint32_t b, uint32_t c) {
   const uint32_t i = index_of(from, a), j = index_of(from, b), k = index_of(from, c);
   if (share(i, j) == 0 && share(j, k) == 0 && share(i, k) == 0) {
-    hp_vertex *first = vertex_of(from, i), *second = vertex_of(from, j), *third = vertex_of(from, k);
+    const hp_vertex *first = vertex_of(from, i), *second = vertex_of(from, j), *third = vertex_of(from, k);
     if (first != NULL && second != NULL && third != NULL)
       send_triangle(from->context, first, second, third);
     else
       from->context->status |= HP_OUT_OF_RANGE;
   } else {
     const uint32_t at[3] = {a, b, c};
-    hp_vertex* v[3];
+    const hp_vertex* v[3];
     if (fetch(from, at, 3, v) != 0) send_triangle(from->context, v[0], v[1], v[2]);
   }
 }
 
-/* A strip or a fan: the triangle of two vertices of the one before and a new one. */
-static void chain(const source* from, uint32_t first, uint32_t count, uint8_t is_fan) {
-  hp_vertex *a = NULL, *b = NULL; /* that stay, where they lie in the cache */
+/* A strip: the triangle of two vertices of the one before, where they lie in the cache, and a new one. Every second
+   one is turned. */
+static void strip(const source* from, uint32_t first, uint32_t count) {
+  const hp_vertex *a = NULL, *b = NULL;
   uint32_t i = 0, j = 0;
   for (uint32_t n = first + 2; n < first + count; ++n) {
-    const uint8_t is_turned = is_fan == 0 && (n - first) % 2 != 0;
-    const uint32_t k = index_of(from, n);
-    hp_vertex* c = NULL;
-    if (a != NULL && b != NULL && share(i, k) == 0 && share(j, k) == 0) {
+    const uint32_t turn = (n - first) & 1u, k = index_of(from, n);
+    const hp_vertex* c = NULL;
+    if (a != NULL && share(i, k) == 0 && share(j, k) == 0) {
       c = vertex_of(from, k);
       if (c == NULL)
         from->context->status |= HP_OUT_OF_RANGE;
-      else if (is_fan != 0)
-        send_triangle(from->context, b, c, a);
-      else if (is_turned != 0)
+      else if (turn != 0)
         send_triangle(from->context, a, c, b);
       else
         send_triangle(from->context, a, b, c);
     } else {
-      if (is_fan != 0)
-        triangle(from, n - 1, n, first);
-      else
-        triangle(from, n - 2, n - (is_turned != 0 ? 0 : 1), n - (is_turned != 0 ? 1 : 0));
-      c = cached(from, k);
+      triangle(from, n - 2, n - 1 + turn, n - turn);
       j = index_of(from, n - 1);
       b = cached(from, j);
-      i = index_of(from, first);
-      a = cached(from, i);
+      c = cached(from, k);
     }
-    if (is_fan == 0) {
-      a = b;
-      i = j;
-    }
+    a = c != NULL ? b : NULL;
+    i = j;
     b = c;
     j = k;
   }
@@ -108,14 +99,14 @@ static void chain(const source* from, uint32_t first, uint32_t count, uint8_t is
 
 static void line(const source* from, uint32_t a, uint32_t b) {
   const uint32_t at[3] = {a, b, 0};
-  hp_vertex* v[3];
+  const hp_vertex* v[3];
   ++from->context->counts.lines;
   if (fetch(from, at, 2, v) != 0) hp_draw_line(from->context, v[0], v[1]);
 }
 
 static void point(const source* from, uint32_t a) {
   const uint32_t at[3] = {a, 0, 0};
-  hp_vertex* v[3];
+  const hp_vertex* v[3];
   ++from->context->counts.points;
   if (fetch(from, at, 1, v) != 0) hp_draw_point(from->context, v[0]);
 }
@@ -128,8 +119,10 @@ static void draw_run(const source* from, enum hp_topology topology, uint32_t fir
     case HP_TRIANGLES:
       for (uint32_t i = 0; i + 2 < count; i += 3) triangle(from, first + i, first + i + 1, first + i + 2);
       break;
-    case HP_TRIANGLE_STRIP: /* every second one is turned */
-    case HP_TRIANGLE_FAN: chain(from, first, count, topology == HP_TRIANGLE_FAN); break;
+    case HP_TRIANGLE_STRIP: strip(from, first, count); break;
+    case HP_TRIANGLE_FAN:
+      for (uint32_t i = 0; i + 2 < count; ++i) triangle(from, first + i + 1, first + i + 2, first);
+      break;
     case HP_LINES:
       for (uint32_t i = 0; i + 1 < count; i += 2) line(from, first + i, first + i + 1);
       break;

@@ -210,7 +210,8 @@ typedef struct hp_vertex { /* transformed; window coordinates where outcode is 0
   hp_fixed texcoord[2], w;
   int16_t x, y; /* snapped */
   uint8_t outcode;
-  uint8_t slot; /* of the core, if that slot has the tag */
+  uint8_t shift; /* of w, and 2^62 / (w 2^shift), for what is over w */
+  uint32_t reciprocal;
 } hp_vertex;
 
 typedef struct hp_corner { /* of a triangle that is cut */
@@ -235,7 +236,9 @@ struct hp_context {
   int32_t scissor[4], rect[4]; /* left, top, right, bottom: as given; what is drawn */
   hp_fixed view[16], projection[16];
   uint8_t view_kind, projection_kind; /* what of them is not computed: matrix.c */
-  uint8_t covers_view, is_quick;      /* nothing inside the view is outside the guard band; and its numbers are short */
+  uint8_t covers_view, is_quick; /* nothing inside the view is outside the guard band; and its numbers are short */
+  uint8_t is_whole_range;        /* of depth */
+  int32_t quick_center[2];       /* the viewport's centre, and half a subpixel */
   hp_fixed center[2], half[2];
   int64_t view_offset[3]; /* of an affine view: the fourth column, and what rounds */
   hp_plane planes[6];

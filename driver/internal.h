@@ -115,8 +115,9 @@ enum { HP_IDENTITY, HP_GENERAL, HP_AFFINE, HP_PERSPECTIVE };
 /* Code of a depth, u1.31: as binary64 rounds its product with 2^B - 1. */
 static inline uint32_t hp_depth_code(uint32_t depth) {
 #if HALFPLANE_DEPTH_BITS <= 22
-  const uint64_t product = (uint64_t)depth * (((uint32_t)2 << HALFPLANE_DEPTH_BITS) - 2); /* 32 fraction bits */
-  return (uint32_t)(product >> 32) + ((uint32_t)product >> 31);
+  /* (depth (2^B - 1) + 2^30) / 2^31: what is left over of depth / 2^B takes one from the floor. */
+  const uint32_t part = (depth + (((uint32_t)1 << HALFPLANE_DEPTH_BITS) - 1)) >> HALFPLANE_DEPTH_BITS;
+  return (depth - part + ((uint32_t)1 << (30 - HALFPLANE_DEPTH_BITS))) >> (31 - HALFPLANE_DEPTH_BITS);
 #else
   uint64_t product = (uint64_t)depth * (((uint64_t)1 << HALFPLANE_DEPTH_BITS) - 1); /* 31 fraction bits */
   const uint32_t bits = hp_bits64(product);
@@ -136,7 +137,7 @@ int64_t hp_distance(const hp_plane* plane, const hp_fixed clip[4]);
 /* Planes and constants from viewport and target. */
 void hp_derive_view(hp_context* context);
 /* A vertex of a draw, transformed and projected into its place of the cache; null: out of range. */
-hp_vertex* hp_transform(hp_context* context, const hp_vertices* vertices, uint32_t index, hp_vertex* vertex);
+const hp_vertex* hp_transform(hp_context* context, const hp_vertices* vertices, uint32_t index, hp_vertex* vertex);
 
 /* ---- Primitives */
 
@@ -145,7 +146,7 @@ uint8_t hp_prepare(hp_context* context, uint8_t is_triangle);
 /* Sends the box, inclusive, if it differs. */
 void hp_send_box(hp_context* context, int32_t left, int32_t top, int32_t right, int32_t bottom);
 /* Vertices without an outcode; and any others. */
-void hp_send_triangle(hp_context* context, hp_vertex* a, hp_vertex* b, hp_vertex* c);
+void hp_send_triangle(hp_context* context, const hp_vertex* a, const hp_vertex* b, const hp_vertex* c);
 void hp_clip_triangle(hp_context* context, const hp_vertex* a, const hp_vertex* b, const hp_vertex* c);
 /* Twice the area in subpixels, positive where the corners turn to the right on the screen. */
 static inline int64_t hp_area(const hp_vertex* a, const hp_vertex* b, const hp_vertex* c) {

@@ -16,29 +16,35 @@ typedef struct format {
 } format;
 
 typedef struct over_w {
-  int64_t p[3];
+  int32_t p[3];
   int32_t shift, reach;
   int32_t reference;
 } over_w;
 
 /* Q of a vertex: 2^e / w, rounded; w in 2^-16. */
-static uint32_t q_code(uint32_t w, uint32_t e) { return hp_divide(((uint64_t)1 << e) + w / 2, w); }
-
-/* The largest Q has HP_Q_BITS bits: e is that of the nearest vertex. */
-static void quantize_q(const uint32_t w[3], uint32_t q[3]) {
-  uint32_t nearest = w[0];
-  for (uint32_t i = 1; i < 3; ++i)
-    if (w[i] < nearest) nearest = w[i];
-  uint32_t e = HP_Q_BITS - 1 + hp_bits32(nearest);
-  if (q_code(nearest, e) >> HP_Q_BITS != 0) --e;
-  for (uint32_t i = 0; i < 3; ++i) {
-    q[i] = q_code(w[i], e);
-    if (q[i] == 0) q[i] = 1;
-  }
+static inline uint32_t q_code(const hp_vertex* v, uint32_t e) {
+  const uint32_t w = (uint32_t)v->w, down = 62 - v->shift - e;
+  if (w >> 30 != 0) return hp_divide(((uint64_t)1 << e) + w / 2, w);
+  return hp_corrected(down < 32 ? v->reciprocal >> down : 0, (e < 32 ? (uint32_t)1 << e : 0) + w / 2, w);
 }
 
-/* P of three values, 2^-16. */
-static void quantize(const int64_t value[3], const uint32_t q[3], const format* of, over_w* out) {
+/* The largest Q has HP_Q_BITS bits: e is that of the nearest vertex. */
+static void quantize_q(const hp_vertex* const v[3], uint32_t q[3]) {
+  uint32_t shift = v[0]->shift;
+  if (v[1]->shift > shift) shift = v[1]->shift;
+  if (v[2]->shift > shift) shift = v[2]->shift;
+  for (uint32_t e = HP_Q_BITS - 1 + 32 - shift;; --e) {
+    q[0] = q_code(v[0], e);
+    q[1] = q_code(v[1], e);
+    q[2] = q_code(v[2], e);
+    if ((q[0] | q[1] | q[2]) >> HP_Q_BITS == 0) break;
+  }
+  for (uint32_t i = 0; i < 3; ++i)
+    if (q[i] == 0) q[i] = 1;
+}
+
+/* P of three values, 2^-16, of any size. */
+static void quantize_wide(const int64_t value[3], const uint32_t q[3], const format* of, over_w* out) {
   int64_t low = value[0], high = value[0], product[3];
   for (uint32_t i = 1; i < 3; ++i) {
     if (value[i] < low) low = value[i];
@@ -62,13 +68,64 @@ static void quantize(const int64_t value[3], const uint32_t q[3], const format* 
   for (uint32_t again = 0; again < 2; ++again) {
     uint8_t fits = 1;
     for (uint32_t i = 0; i < 3; ++i) {
-      out->p[i] = hp_round_shift(product[i], 16 + exponent);
-      if ((uint64_t)(out->p[i] < 0 ? -out->p[i] : out->p[i]) >> of->bits != 0) fits = 0;
+      out->p[i] = (int32_t)hp_round_shift(product[i], 16 + exponent);
+      if ((uint32_t)(out->p[i] < 0 ? -out->p[i] : out->p[i]) >> of->bits != 0) fits = 0;
     }
     if (fits != 0) break;
     ++exponent; /* rounded up to one bit more */
   }
   out->shift = 1 + out->reach - exponent - (int32_t)of->narrow_bits;
+}
+
+/* A value, from the reference on, times Q. */
+typedef struct part {
+  uint32_t size, is_negative;
+  uint64_t product; /* of the size */
+} part;
+
+static inline part part_of(int32_t value, int32_t from, uint32_t q) {
+  const int32_t u = value - from;
+  const uint32_t size = (uint32_t)(u < 0 ? -u : u);
+  const part made = {size, (uint32_t)u >> 31, (uint64_t)size * q};
+  return made;
+}
+
+/* The product's magnitude over 2^shift, rounded, halves up: down if it is negative. 0 < shift < 63. */
+static inline uint32_t rounded(const part* of, uint32_t shift) {
+  const uint64_t sum = of->product + (((uint64_t)1 << (shift - 1)) - of->is_negative);
+  const uint32_t high = (uint32_t)(sum >> 32);
+  return shift >= 32 ? high >> (shift - 32) : ((uint32_t)sum >> shift) | (high << (32 - shift));
+}
+static inline int32_t with_sign(uint32_t size, uint32_t is_negative) {
+  return (int32_t)((size ^ (0u - is_negative)) + is_negative);
+}
+
+/* P of three values of less than 2^30; 0: they need the wide way. */
+static uint8_t quantize_quickly(int32_t a, int32_t b, int32_t c, const uint32_t q[3], const format* of, over_w* out) {
+  const int32_t low = hp_min(hp_min(a, b), c), high = hp_max(hp_max(a, b), c);
+  out->reference = of->is_centred != 0 ? (low + high) >> 17 : 0;
+  const int32_t from = out->reference * HP_ONE;
+  const part x = part_of(a, from, q[0]), y = part_of(b, from, q[1]), z = part_of(c, from, q[2]);
+  uint32_t farthest = x.size > y.size ? x.size : y.size;
+  if (z.size > farthest) farthest = z.size;
+  out->reach = (int32_t)hp_bits32(hp_high(farthest, 1025u << 6));
+  /* The bits of the largest product. */
+  uint32_t bits = hp_bits64(x.product | y.product | z.product);
+  const uint32_t least = (uint32_t)(out->reach + 15);
+  if (bits < least) bits = least;
+  if (bits <= of->bits) return 0;
+  uint32_t shift = bits - of->bits, p, r, s;
+  for (;; ++shift) { /* again, where one is rounded up to one bit more */
+    p = rounded(&x, shift);
+    r = rounded(&y, shift);
+    s = rounded(&z, shift);
+    if ((p | r | s) >> of->bits == 0) break;
+  }
+  out->p[0] = with_sign(p, x.is_negative);
+  out->p[1] = with_sign(r, y.is_negative);
+  out->p[2] = with_sign(s, z.is_negative);
+  out->shift = 17 + out->reach - (int32_t)shift - (int32_t)of->narrow_bits;
+  return 1;
 }
 
 /* The reference as the unit wants it: modulo the period, or held. */
@@ -78,45 +135,68 @@ static int32_t wrapped(int32_t reference, uint32_t log2_size, uint8_t wrap) {
   return reference & (((int32_t)1 << (log2_size + (wrap == HP_MIRROR ? 1u : 0u))) - 1);
 }
 
-void hp_over_w(const hp_context* context, const hp_vertex* const v[3], uint32_t* out) {
-  uint32_t* const words[3] = {out, out + HP_OVER_W_WORDS, out + 2 * HP_OVER_W_WORDS};
+/* P of three numbers times 2^log2_size, each in 2^-16. */
+static void quantize(int32_t a, int32_t b, int32_t c, uint32_t log2_size, const uint32_t q[3], const format* of,
+                     over_w* out) {
+  const uint32_t limit = (uint32_t)1 << (30 - log2_size);
+  if ((((uint32_t)a + limit) | ((uint32_t)b + limit) | ((uint32_t)c + limit)) < 2 * limit &&
+      quantize_quickly(a * (1 << log2_size), b * (1 << log2_size), c * (1 << log2_size), q, of, out) != 0)
+    return;
+  const int64_t scale = (int64_t)1 << log2_size, value[3] = {a * scale, b * scale, c * scale};
+  quantize_wide(value, q, of, out);
+}
+
+/* A field of at most 32 bits, at a place that the compiler knows. */
+static inline void put(uint32_t* words, uint32_t at, uint32_t bits, uint32_t value) {
+  const uint32_t shift = at % 32, field = bits < 32 ? value & (((uint32_t)1 << (bits % 32)) - 1) : value;
+  words[at / 32] |= field << shift;
+  if (shift + bits > 32) words[at / 32 + 1] |= field >> (32 - shift);
+}
+
+static inline void put_coordinate(uint32_t* out, uint32_t axis, const over_w* made, int32_t reference) {
   uint32_t* const frame = out + 3 * HP_OVER_W_WORDS;
+  const uint32_t at = HP_Q_BITS + axis * (HP_Q_BITS + 1);
+  put(out, at, HP_Q_BITS + 1, (uint32_t)made->p[0]);
+  put(out + HP_OVER_W_WORDS, at, HP_Q_BITS + 1, (uint32_t)made->p[1]);
+  put(out + 2 * HP_OVER_W_WORDS, at, HP_Q_BITS + 1, (uint32_t)made->p[2]);
+  put(frame, HALFPLANE_COORDINATE_FRAME_SHIFT_AT + axis * HALFPLANE_COORDINATE_SHIFT_BITS,
+      HALFPLANE_COORDINATE_SHIFT_BITS, (uint32_t)made->shift);
+  put(frame, HALFPLANE_COORDINATE_FRAME_REACH_AT + axis * HALFPLANE_COORDINATE_REACH_BITS,
+      HALFPLANE_COORDINATE_REACH_BITS, (uint32_t)made->reach);
+  put(frame, HALFPLANE_COORDINATE_FRAME_ORIGIN_AT + axis * HALFPLANE_COORDINATE_REFERENCE_BITS,
+      HALFPLANE_COORDINATE_REFERENCE_BITS, (uint32_t)reference);
+}
+
+void hp_over_w(const hp_context* context, const hp_vertex* const v[3], uint32_t* out) {
   const hp_state* state = &context->state;
+  const hp_texture* texture = state->texture;
   const format coordinate = {HP_Q_BITS, HALFPLANE_PERSPECTIVE_MANTISSA_BITS - 1, 1};
-  uint32_t w[3], q[3];
-  int64_t value[3];
+  uint32_t q[3] = {(uint32_t)1 << (HP_Q_BITS - 1), (uint32_t)1 << (HP_Q_BITS - 1), (uint32_t)1 << (HP_Q_BITS - 1)};
   over_w made;
-  for (uint32_t i = 0; i < 3; ++i) {
-    w[i] = state->texture != NULL && state->is_affine != 0 ? (uint32_t)HP_ONE : (uint32_t)v[i]->w;
-    for (uint32_t n = 0; n < HP_OVER_W_WORDS; ++n) words[i][n] = 0;
-  }
-  for (uint32_t n = 0; n < HP_FRAME_WORDS; ++n) frame[n] = 0;
-  quantize_q(w, q);
-  for (uint32_t i = 0; i < 3; ++i) hp_put_bits(words[i], 0, HP_Q_BITS, q[i]);
-  for (uint32_t axis = 0; state->texture != NULL && axis < 2; ++axis) {
-    const uint32_t log2_size = axis == 0 ? state->texture->log2_width : state->texture->log2_height;
-    for (uint32_t i = 0; i < 3; ++i) value[i] = (int64_t)v[i]->texcoord[axis] * ((int64_t)1 << log2_size);
-    quantize(value, q, &coordinate, &made);
-    for (uint32_t i = 0; i < 3; ++i)
-      hp_put_bits(words[i], HP_Q_BITS + axis * (HP_Q_BITS + 1), HP_Q_BITS + 1, (uint64_t)made.p[i]);
-    hp_put_bits(frame, HALFPLANE_COORDINATE_FRAME_SHIFT_AT + axis * HALFPLANE_COORDINATE_SHIFT_BITS,
-                HALFPLANE_COORDINATE_SHIFT_BITS, (uint64_t)(int64_t)made.shift);
-    hp_put_bits(frame, HALFPLANE_COORDINATE_FRAME_REACH_AT + axis * HALFPLANE_COORDINATE_REACH_BITS,
-                HALFPLANE_COORDINATE_REACH_BITS, (uint64_t)(int64_t)made.reach);
-    hp_put_bits(frame, HALFPLANE_COORDINATE_FRAME_ORIGIN_AT + axis * HALFPLANE_COORDINATE_REFERENCE_BITS,
-                HALFPLANE_COORDINATE_REFERENCE_BITS,
-                (uint64_t)(int64_t)wrapped(made.reference, log2_size, axis == 0 ? state->wrap_u : state->wrap_v));
+  for (uint32_t n = 0; n < 3 * HP_OVER_W_WORDS + HP_FRAME_WORDS; ++n) out[n] = 0;
+  if (texture == NULL || state->is_affine == 0) quantize_q(v, q);
+  put(out, 0, HP_Q_BITS, q[0]);
+  put(out + HP_OVER_W_WORDS, 0, HP_Q_BITS, q[1]);
+  put(out + 2 * HP_OVER_W_WORDS, 0, HP_Q_BITS, q[2]);
+  if (texture != NULL) {
+    quantize(v[0]->texcoord[0], v[1]->texcoord[0], v[2]->texcoord[0], texture->log2_width, q, &coordinate, &made);
+    put_coordinate(out, 0, &made, wrapped(made.reference, texture->log2_width, state->wrap_u));
+    quantize(v[0]->texcoord[1], v[1]->texcoord[1], v[2]->texcoord[1], texture->log2_height, q, &coordinate, &made);
+    put_coordinate(out, 1, &made, wrapped(made.reference, texture->log2_height, state->wrap_v));
   }
 #if HALFPLANE_COLORS_OVER_W != 0
   if (state->perspective_colors != 0) {
     const uint32_t code_bits = HALFPLANE_COLOR_OVER_W_CODE_BITS;
     const format color = {code_bits - 1, HALFPLANE_COLOR_NARROW_BITS, 0};
+    uint32_t* const frame = out + 3 * HP_OVER_W_WORDS;
     hp_put_bits(frame, HALFPLANE_COORDINATE_FRAME_DIVIDES_COLORS_AT, 1, 1);
     for (uint32_t c = 0; c < HALFPLANE_COLORS_OVER_W; ++c) {
-      for (uint32_t i = 0; i < 3; ++i) value[i] = (int64_t)(v[i]->color >> (8 * c) & 255u) << 16;
-      quantize(value, q, &color, &made);
+      int32_t value[3];
+      for (uint32_t i = 0; i < 3; ++i) value[i] = (int32_t)(v[i]->color >> (8 * c) & 255u) * HP_ONE;
+      quantize(value[0], value[1], value[2], 0, q, &color, &made);
       for (uint32_t i = 0; i < 3; ++i)
-        hp_put_bits(words[i], 3 * HP_Q_BITS + 2 + c * code_bits, code_bits, (uint64_t)made.p[i]);
+        hp_put_bits(out + i * HP_OVER_W_WORDS, 3 * HP_Q_BITS + 2 + c * code_bits, code_bits,
+                    (uint64_t)(int64_t)made.p[i]);
       hp_put_bits(frame, HALFPLANE_COORDINATE_FRAME_COLOR_SHIFT_AT + c * HALFPLANE_COLOR_SHIFT_BITS,
                   HALFPLANE_COLOR_SHIFT_BITS, (uint64_t)(int64_t)made.shift);
       hp_put_bits(frame, HALFPLANE_COORDINATE_FRAME_COLOR_REACH_AT + c * HALFPLANE_COLOR_REACH_BITS,

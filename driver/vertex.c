@@ -8,8 +8,11 @@
        ? (int32_t)32767 * HP_ONE \
        : (int32_t)(HALFPLANE_GUARD_BAND * 65536 - (65536 >> HALFPLANE_SUBPIXEL_BITS))) /* guard band */
 
-/* Half a viewport and a w, below which numbers of the quick way fit: 4,096 pixels, and 4,096. */
-#define HP_QUICK ((hp_fixed)1 << 28)
+#define HP_HALF_SUBPIXEL (32768 >> HALFPLANE_SUBPIXEL_BITS)
+
+/* Half a viewport and a w, for which numbers of the quick way fit: 4,096 pixels, and 4,096. */
+#define HP_QUICK_BITS 28
+#define HP_QUICK ((hp_fixed)1 << HP_QUICK_BITS)
 
 /* A row's sum of products, rounded; `out_of_range` gets a bit where it does not fit. */
 static inline hp_fixed rounded(int64_t sum, uint32_t* out_of_range) {
@@ -94,6 +97,7 @@ void hp_derive_view(hp_context* context) {
     const int64_t twice = 2 * first + size; /* the centre, 2^-17 */
     context->half[axis] = (hp_fixed)((size + 1) >> 1);
     context->center[axis] = (hp_fixed)(first + context->half[axis]);
+    context->quick_center[axis] = context->center[axis] + HP_HALF_SUBPIXEL;
     hp_plane low = {0, 0, 0, 0}, high = {0, 0, 0, 0};
     /* y is down in the window. */
     const int64_t up = (size + 1) >> 1, down = (1 - size) >> 1;
@@ -111,24 +115,26 @@ void hp_derive_view(hp_context* context) {
     planes[3 + 2 * axis] = high;
   }
   context->covers_view = covers;
+  context->is_whole_range = view->near_depth == 0 && view->far_depth == HP_DEPTH_ONE;
   const int64_t limit = HP_LIMIT;
   context->is_quick = covers != 0 && context->half[0] < HP_QUICK && context->half[1] < HP_QUICK &&
                       view->x >= -limit && view->y >= -limit && (int64_t)view->x + view->width < limit &&
                       (int64_t)view->y + view->height < limit;
 }
 
-/* A place in the window, s15.16, snapped. */
+/* A place in the window and half a subpixel, s15.16, snapped. */
 static int16_t snapped(int32_t place) {
-  const int32_t subpixel = (place + (32768 >> HALFPLANE_SUBPIXEL_BITS)) >> (16 - HALFPLANE_SUBPIXEL_BITS);
+  const int32_t subpixel = place >> (16 - HALFPLANE_SUBPIXEL_BITS);
   return (int16_t)(subpixel * (1 << (HALFPLANE_GRID_BITS - HALFPLANE_SUBPIXEL_BITS)));
 }
 static int16_t clamped(int64_t place) {
-  return snapped((int32_t)(place < -HP_LIMIT ? -HP_LIMIT : place > HP_LIMIT ? HP_LIMIT : place));
+  return snapped((int32_t)(place < -HP_LIMIT ? -HP_LIMIT : place > HP_LIMIT ? HP_LIMIT : place) + HP_HALF_SUBPIXEL);
 }
 
 /* The code of a depth in the view, 31 fraction bits. */
-static uint32_t ranged(const hp_viewport* view, uint32_t depth) {
-  if (view->near_depth != 0 || view->far_depth != HP_DEPTH_ONE) {
+static inline uint32_t ranged(const hp_context* context, uint32_t depth) {
+  if (context->is_whole_range == 0) {
+    const hp_viewport* view = &context->viewport;
     const int64_t range = (int64_t)view->far_depth - (int64_t)view->near_depth;
     depth = (uint32_t)(view->near_depth + ((range * depth + ((int64_t)1 << 30)) >> 31));
   }
@@ -139,6 +145,8 @@ void hp_project(const hp_context* context, const hp_fixed clip[4], hp_vertex* ve
   const uint32_t w = clip[3] > 0 ? (uint32_t)clip[3] : 1;
 #if HP_HAS_TEXTURES
   vertex->w = (hp_fixed)w;
+  vertex->shift = (uint8_t)hp_shift_of(w);
+  vertex->reciprocal = hp_reciprocal(w, vertex->shift);
 #endif
   vertex->x = clamped(context->center[0] + hp_divide_rounded((int64_t)clip[0] * context->half[0], w));
   vertex->y = clamped(context->center[1] + hp_divide_rounded(-(int64_t)clip[1] * context->half[1], w));
@@ -146,7 +154,7 @@ void hp_project(const hp_context* context, const hp_fixed clip[4], hp_vertex* ve
   int64_t up = context->viewport.zero_to_one != 0 ? 2 * (int64_t)clip[2] : (int64_t)clip[2] + w;
   if (up < 0) up = 0;
   if (up > 2 * (int64_t)w) up = 2 * (int64_t)w;
-  vertex->depth = ranged(&context->viewport, (uint32_t)hp_divide_rounded(up << 30, w));
+  vertex->depth = ranged(context, (uint32_t)hp_divide_rounded(up << 30, w));
 }
 
 /* floor(x half / w + 1/2): a guess by the reciprocal, wrong by 3 at most, made exact. */
@@ -162,7 +170,7 @@ static uint8_t project_quickly(const hp_context* context, const hp_fixed clip[4]
   const uint32_t w = (uint32_t)clip[3], twice = 2 * w;
   const uint8_t zero_to_one = context->viewport.zero_to_one;
   const uint32_t above = zero_to_one != 0 ? (uint32_t)clip[2] : (uint32_t)clip[2] + w; /* the near plane */
-  if (context->is_quick == 0 || w - 1 >= (uint32_t)HP_QUICK - 1 || (uint32_t)clip[0] + w > twice ||
+  if (context->is_quick == 0 || (w - 1) >> HP_QUICK_BITS != 0 || (uint32_t)clip[0] + w > twice ||
       (uint32_t)clip[1] + w > twice || above > (zero_to_one != 0 ? w : twice))
     return 0;
   const uint32_t shift = hp_shift_of(w), reciprocal = hp_reciprocal(w, shift);
@@ -170,10 +178,12 @@ static uint8_t project_quickly(const hp_context* context, const hp_fixed clip[4]
   const uint32_t depth = hp_corrected(hp_high(up << (shift - 1), reciprocal) << 1, (up << 30) + w / 2, w);
 #if HP_HAS_TEXTURES
   vertex->w = (hp_fixed)w;
+  vertex->shift = (uint8_t)shift;
+  vertex->reciprocal = reciprocal;
 #endif
-  vertex->x = snapped(context->center[0] + over_w(clip[0], context->half[0], w, (int32_t)reciprocal, shift));
-  vertex->y = snapped(context->center[1] + over_w(-clip[1], context->half[1], w, (int32_t)reciprocal, shift));
-  vertex->depth = ranged(&context->viewport, depth);
+  vertex->x = snapped(context->quick_center[0] + over_w(clip[0], context->half[0], w, (int32_t)reciprocal, shift));
+  vertex->y = snapped(context->quick_center[1] + over_w(-clip[1], context->half[1], w, (int32_t)reciprocal, shift));
+  vertex->depth = ranged(context, depth);
   return 1;
 }
 
@@ -181,16 +191,17 @@ static const void* element(const void* array, uint32_t index, uint32_t stride) {
   return (const unsigned char*)array + index * stride;
 }
 
-hp_vertex* hp_transform(hp_context* context, const hp_vertices* vertices, uint32_t index, hp_vertex* vertex) {
+const hp_vertex* hp_transform(hp_context* context, const hp_vertices* vertices, uint32_t index, hp_vertex* vertex) {
   ++context->counts.transformed;
   const hp_fixed* in = element(vertices->position, index, vertices->position_stride);
   hp_fixed* clip = vertex->clip;
-  vertex->tag = HP_NO_TAG;
-  if (to_clip(context, in, vertices->has_w, clip) == 0) return NULL;
+  if (to_clip(context, in, vertices->has_w, clip) == 0) {
+    vertex->tag = HP_NO_TAG;
+    return NULL;
+  }
   vertex->tag = index;
-  vertex->color = HP_RGBA(255, 255, 255, 255);
-  if (vertices->color != NULL)
-    vertex->color = *(const uint32_t*)element(vertices->color, index, vertices->color_stride);
+  vertex->color = vertices->color != NULL ? *(const uint32_t*)element(vertices->color, index, vertices->color_stride)
+                                          : HP_RGBA(255, 255, 255, 255);
 #if HP_HAS_TEXTURES
   vertex->texcoord[0] = vertex->texcoord[1] = 0;
   if (vertices->texcoord != NULL) {
@@ -199,7 +210,6 @@ hp_vertex* hp_transform(hp_context* context, const hp_vertices* vertices, uint32
     vertex->texcoord[1] = texcoord[1];
   }
 #endif
-  vertex->slot = context->slot[1] == index ? 1 : context->slot[2] == index ? 2 : 0;
   vertex->outcode = 0;
   if (project_quickly(context, clip, vertex) != 0) return vertex;
   vertex->outcode = hp_outcode(context, clip);

@@ -274,6 +274,14 @@ class CaseMaker {
       for (std::size_t i = 12; i < 16; ++i) view[i] = i == 15 ? HP_ONE : 0;
       v[3] = {0, 0, 0, 1};
     }
+    if (chance(2)) { /* perspective */
+      constexpr std::array<std::size_t, 5> kPlaces{0, 5, 10, 11, 14};
+      std::array<hp_fixed, 16> only{};
+      for (const std::size_t i : kPlaces) only[i] = i == 14 ? -HP_ONE : projection[i];
+      if (chance(9)) only[(kPlaces[static_cast<std::size_t>(random_.index(5))] + 4) % 16] += 3;
+      projection = only;
+      for (std::size_t i = 0; i < 16; ++i) p[i / 4][i % 4] = real(only[i]);
+    }
     const VertexTransform transform(v, p, TransformNumbers::s15_16);
     for (int i = 0; i < count; ++i) {
       std::array<hp_fixed, 4> at = position();

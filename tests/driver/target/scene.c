@@ -45,15 +45,14 @@ static int draw(void) {
   state.texture = &texture;
 #endif
   hp_set_state(&context, &state);
+  static uint16_t indices[ROWS * 2 * (COLUMNS + 1)];
+  for (uint32_t i = 0; i < ROWS * 2 * (COLUMNS + 1); ++i) indices[i] = (uint16_t)i;
 #if WORK != 0
-  for (uint32_t row = 0; row < ROWS; ++row) {
-    static uint16_t indices[2 * (COLUMNS + 1)];
-    for (uint32_t i = 0; i < 2 * (COLUMNS + 1); ++i) indices[i] = (uint16_t)(row * 2 * (COLUMNS + 1) + i);
-    hp_draw(&context, HP_TRIANGLE_STRIP, &vertices, indices, 2 * (COLUMNS + 1));
-  }
+  for (uint32_t row = 0; row < ROWS; ++row)
+    hp_draw(&context, HP_TRIANGLE_STRIP, &vertices, &indices[row * 2 * (COLUMNS + 1)], 2 * (COLUMNS + 1));
   if (hp_count(&context)->triangles != 2 * COLUMNS * ROWS) return 2;
 #endif
-  if (vertices.position[0] == 1) return 3; /* the mesh is made in any case */
+  if (vertices.position[0] == 1 || indices[9] == 1) return 3; /* the mesh is made in any case */
   hp_flush(&context, 1);
   return (int)hp_status(&context);
 }
