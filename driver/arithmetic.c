@@ -2,9 +2,9 @@
 
 #define HP_8(n) n, n, n, n, n, n, n, n
 #define HP_32(n) HP_8(n), HP_8(n), HP_8(n), HP_8(n)
-const uint8_t hp_bits_of_byte[256] = {0,        1,        2,        2,        3,        3,        3,        3,
-                                      HP_8(4),  HP_8(5),  HP_8(5),  HP_32(6), HP_32(7), HP_32(7), HP_32(8), HP_32(8),
-                                      HP_32(8), HP_32(8)};
+const uint8_t hp_bits_of_byte[256] = {0,        1,        2,        2,        3,        3,
+                                      3,        3,        HP_8(4),  HP_8(5),  HP_8(5),  HP_32(6),
+                                      HP_32(7), HP_32(7), HP_32(8), HP_32(8), HP_32(8), HP_32(8)};
 #undef HP_32
 #undef HP_8
 

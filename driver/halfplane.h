@@ -224,10 +224,10 @@ typedef struct hp_plane {
 
 struct hp_context {
   hp_stream stream;
-  uint32_t *next, *end;         /* where words go next, and the end of the room there: in the stream or in wrapped */
-  uint32_t written, read;       /* since hp_begin: words before stream.words[at] or wrapped, words that the core has read */
-  uint32_t at;                  /* a place in the stream: where next was when `written` was counted */
-  uint8_t wraps;                /* next is in: */
+  uint32_t *next, *end;   /* where words go next, and the end of the room there: in the stream or in wrapped */
+  uint32_t written, read; /* since hp_begin: words before stream.words[at] or wrapped, words that the core has read */
+  uint32_t at;            /* a place in the stream: where next was when `written` was counted */
+  uint8_t wraps;          /* next is in: */
   uint32_t wrapped[HP_LONGEST]; /* a command over the end of a ring, on its way there */
   uint32_t status;
   hp_counts counts;
@@ -236,9 +236,9 @@ struct hp_context {
   int32_t scissor[4], rect[4]; /* left, top, right, bottom: as given; what is drawn */
   hp_fixed view[16], projection[16];
   uint8_t view_kind, projection_kind; /* what of them is not computed: matrix.c */
-  uint8_t covers_view, is_quick; /* nothing inside the view is outside the guard band; and its numbers are short */
-  uint8_t is_whole_range;        /* of depth */
-  int32_t quick_center[2];       /* the viewport's centre, and half a subpixel */
+  uint8_t covers_view, is_quick;      /* nothing inside the view is outside the guard band; and its numbers are short */
+  uint8_t is_whole_range;             /* of depth */
+  int32_t quick_center[2];            /* the viewport's centre, and half a subpixel */
   hp_fixed center[2], half[2];
   int64_t view_offset[3]; /* of an affine view: the fourth column, and what rounds */
   hp_plane planes[6];

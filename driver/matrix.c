@@ -32,8 +32,7 @@ void hp_set_matrices(hp_context* context, const hp_fixed view[16], const hp_fixe
   }
   context->view_kind = kind_of(view);
   context->projection_kind = kind_of(projection);
-  for (uint32_t i = 0; view != NULL && i < 3; ++i)
-    context->view_offset[i] = ((int64_t)view[4 * i + 3] * 65536) | 32768;
+  for (uint32_t i = 0; view != NULL && i < 3; ++i) context->view_offset[i] = ((int64_t)view[4 * i + 3] * 65536) | 32768;
   if (view != NULL) memcpy(context->view, view, sizeof context->view);
   if (projection != NULL) memcpy(context->projection, projection, sizeof context->projection);
 }

@@ -7,13 +7,12 @@
 #if HP_HAS_TEXTURES
 
 #define HP_Q_BITS HALFPLANE_PERSPECTIVE_BITS
+#if HALFPLANE_COLORS_OVER_W != 0
+#define HP_COLOR_BITS (HALFPLANE_COLOR_OVER_W_CODE_BITS - 1)
+#else
+#define HP_COLOR_BITS HP_Q_BITS /* none */
+#endif
 #define HP_FARTHEST (((int64_t)(1 << 20) - (1 << 11)) << 16) /* of a coordinate from its reference: 2^20 (1 - 2^-9) */
-
-typedef struct format {
-  uint32_t bits;        /* N_P */
-  uint32_t narrow_bits; /* k_P */
-  uint8_t is_centred;
-} format;
 
 typedef struct over_w {
   int32_t p[3];
@@ -44,13 +43,15 @@ static void quantize_q(const hp_vertex* const v[3], uint32_t q[3]) {
 }
 
 /* P of three values, 2^-16, of any size. */
-static void quantize_wide(const int64_t value[3], const uint32_t q[3], const format* of, over_w* out) {
+static void quantize_wide(const int64_t value[3], const uint32_t q[3], uint8_t is_color, over_w* out) {
+  const uint32_t bits = is_color != 0 ? HP_COLOR_BITS : HP_Q_BITS;
+  const int32_t narrow_bits = is_color != 0 ? HALFPLANE_COLOR_NARROW_BITS : HALFPLANE_PERSPECTIVE_MANTISSA_BITS - 1;
   int64_t low = value[0], high = value[0], product[3];
   for (uint32_t i = 1; i < 3; ++i) {
     if (value[i] < low) low = value[i];
     if (value[i] > high) high = value[i];
   }
-  out->reference = of->is_centred != 0 ? (int32_t)((low + high) >> 17) : 0;
+  out->reference = is_color != 0 ? 0 : (int32_t)((low + high) >> 17);
   uint64_t farthest = 0, largest = 0;
   for (uint32_t i = 0; i < 3; ++i) {
     int64_t u = value[i] - (int64_t)out->reference * HP_ONE;
@@ -64,17 +65,17 @@ static void quantize_wide(const int64_t value[3], const uint32_t q[3], const for
   out->reach = (int32_t)hp_bits64((farthest * 1025) >> 26);
   int32_t above = largest != 0 ? (int32_t)hp_bits64(largest) - 16 : out->reach - 1;
   if (above < out->reach - 1) above = out->reach - 1;
-  int32_t exponent = above - (int32_t)of->bits;
+  int32_t exponent = above - (int32_t)bits;
   for (uint32_t again = 0; again < 2; ++again) {
     uint8_t fits = 1;
     for (uint32_t i = 0; i < 3; ++i) {
       out->p[i] = (int32_t)hp_round_shift(product[i], 16 + exponent);
-      if ((uint32_t)(out->p[i] < 0 ? -out->p[i] : out->p[i]) >> of->bits != 0) fits = 0;
+      if ((uint32_t)(out->p[i] < 0 ? -out->p[i] : out->p[i]) >> bits != 0) fits = 0;
     }
     if (fits != 0) break;
     ++exponent; /* rounded up to one bit more */
   }
-  out->shift = 1 + out->reach - exponent - (int32_t)of->narrow_bits;
+  out->shift = 1 + out->reach - exponent - narrow_bits;
 }
 
 /* A value, from the reference on, times Q. */
@@ -101,9 +102,12 @@ static inline int32_t with_sign(uint32_t size, uint32_t is_negative) {
 }
 
 /* P of three values of less than 2^30; 0: they need the wide way. */
-static uint8_t quantize_quickly(int32_t a, int32_t b, int32_t c, const uint32_t q[3], const format* of, over_w* out) {
+static inline uint8_t quantize_quickly(int32_t a, int32_t b, int32_t c, const uint32_t q[3], uint8_t is_color,
+                                       over_w* out) {
+  const uint32_t to_bits = is_color != 0 ? HP_COLOR_BITS : HP_Q_BITS;
+  const int32_t narrow_bits = is_color != 0 ? HALFPLANE_COLOR_NARROW_BITS : HALFPLANE_PERSPECTIVE_MANTISSA_BITS - 1;
   const int32_t low = hp_min(hp_min(a, b), c), high = hp_max(hp_max(a, b), c);
-  out->reference = of->is_centred != 0 ? (low + high) >> 17 : 0;
+  out->reference = is_color != 0 ? 0 : (low + high) >> 17;
   const int32_t from = out->reference * HP_ONE;
   const part x = part_of(a, from, q[0]), y = part_of(b, from, q[1]), z = part_of(c, from, q[2]);
   uint32_t farthest = x.size > y.size ? x.size : y.size;
@@ -113,18 +117,18 @@ static uint8_t quantize_quickly(int32_t a, int32_t b, int32_t c, const uint32_t 
   uint32_t bits = hp_bits64(x.product | y.product | z.product);
   const uint32_t least = (uint32_t)(out->reach + 15);
   if (bits < least) bits = least;
-  if (bits <= of->bits) return 0;
-  uint32_t shift = bits - of->bits, p, r, s;
+  if (bits <= to_bits) return 0;
+  uint32_t shift = bits - to_bits, p, r, s;
   for (;; ++shift) { /* again, where one is rounded up to one bit more */
     p = rounded(&x, shift);
     r = rounded(&y, shift);
     s = rounded(&z, shift);
-    if ((p | r | s) >> of->bits == 0) break;
+    if ((p | r | s) >> to_bits == 0) break;
   }
   out->p[0] = with_sign(p, x.is_negative);
   out->p[1] = with_sign(r, y.is_negative);
   out->p[2] = with_sign(s, z.is_negative);
-  out->shift = 17 + out->reach - (int32_t)shift - (int32_t)of->narrow_bits;
+  out->shift = 17 + out->reach - (int32_t)shift - narrow_bits;
   return 1;
 }
 
@@ -135,15 +139,14 @@ static int32_t wrapped(int32_t reference, uint32_t log2_size, uint8_t wrap) {
   return reference & (((int32_t)1 << (log2_size + (wrap == HP_MIRROR ? 1u : 0u))) - 1);
 }
 
-/* P of three numbers times 2^log2_size, each in 2^-16. */
-static void quantize(int32_t a, int32_t b, int32_t c, uint32_t log2_size, const uint32_t q[3], const format* of,
-                     over_w* out) {
+/* P of three coordinates, each in 2^-16, times 2^log2_size. */
+static void quantize(int32_t a, int32_t b, int32_t c, uint32_t log2_size, const uint32_t q[3], over_w* out) {
   const uint32_t limit = (uint32_t)1 << (30 - log2_size);
   if ((((uint32_t)a + limit) | ((uint32_t)b + limit) | ((uint32_t)c + limit)) < 2 * limit &&
-      quantize_quickly(a * (1 << log2_size), b * (1 << log2_size), c * (1 << log2_size), q, of, out) != 0)
+      quantize_quickly(a * (1 << log2_size), b * (1 << log2_size), c * (1 << log2_size), q, 0, out) != 0)
     return;
   const int64_t scale = (int64_t)1 << log2_size, value[3] = {a * scale, b * scale, c * scale};
-  quantize_wide(value, q, of, out);
+  quantize_wide(value, q, 0, out);
 }
 
 /* A field of at most 32 bits, at a place that the compiler knows. */
@@ -153,12 +156,24 @@ static inline void put(uint32_t* words, uint32_t at, uint32_t bits, uint32_t val
   if (shift + bits > 32) words[at / 32 + 1] |= field >> (32 - shift);
 }
 
-static inline void put_coordinate(uint32_t* out, uint32_t axis, const over_w* made, int32_t reference) {
-  uint32_t* const frame = out + 3 * HP_OVER_W_WORDS;
-  const uint32_t at = HP_Q_BITS + axis * (HP_Q_BITS + 1);
-  put(out, at, HP_Q_BITS + 1, (uint32_t)made->p[0]);
-  put(out + HP_OVER_W_WORDS, at, HP_Q_BITS + 1, (uint32_t)made->p[1]);
-  put(out + 2 * HP_OVER_W_WORDS, at, HP_Q_BITS + 1, (uint32_t)made->p[2]);
+static inline void zero(uint32_t* words, uint32_t count) { /* 3 to 6 */
+  words[0] = words[1] = words[2] = 0;
+  if (count > 3) words[3] = 0;
+  if (count > 4) words[4] = 0;
+  if (count > 5) words[5] = 0;
+}
+#if HP_OVER_W_WORDS < 3 || HP_OVER_W_WORDS > 6 || HP_FRAME_WORDS < 3 || HP_FRAME_WORDS > 6
+#error "codes over w and coordinate frames have 3 to 6 words"
+#endif
+
+static inline void put_vertex(uint32_t* words, uint32_t q, int32_t u, int32_t v) {
+  zero(words, HP_OVER_W_WORDS);
+  put(words, 0, HP_Q_BITS, q);
+  put(words, HP_Q_BITS, HP_Q_BITS + 1, (uint32_t)u);
+  put(words, 2 * HP_Q_BITS + 1, HP_Q_BITS + 1, (uint32_t)v);
+}
+
+static inline void put_axis(uint32_t* frame, uint32_t axis, const over_w* made, int32_t reference) {
   put(frame, HALFPLANE_COORDINATE_FRAME_SHIFT_AT + axis * HALFPLANE_COORDINATE_SHIFT_BITS,
       HALFPLANE_COORDINATE_SHIFT_BITS, (uint32_t)made->shift);
   put(frame, HALFPLANE_COORDINATE_FRAME_REACH_AT + axis * HALFPLANE_COORDINATE_REACH_BITS,
@@ -167,40 +182,40 @@ static inline void put_coordinate(uint32_t* out, uint32_t axis, const over_w* ma
       HALFPLANE_COORDINATE_REFERENCE_BITS, (uint32_t)reference);
 }
 
-void hp_over_w(const hp_context* context, const hp_vertex* const v[3], uint32_t* out) {
+void hp_over_w(const hp_context* context, const hp_vertex* const vertex[3], uint32_t* out) {
   const hp_state* state = &context->state;
   const hp_texture* texture = state->texture;
-  const format coordinate = {HP_Q_BITS, HALFPLANE_PERSPECTIVE_MANTISSA_BITS - 1, 1};
+  uint32_t* const frame = out + 3 * HP_OVER_W_WORDS;
   uint32_t q[3] = {(uint32_t)1 << (HP_Q_BITS - 1), (uint32_t)1 << (HP_Q_BITS - 1), (uint32_t)1 << (HP_Q_BITS - 1)};
-  over_w made;
-  for (uint32_t n = 0; n < 3 * HP_OVER_W_WORDS + HP_FRAME_WORDS; ++n) out[n] = 0;
-  if (texture == NULL || state->is_affine == 0) quantize_q(v, q);
-  put(out, 0, HP_Q_BITS, q[0]);
-  put(out + HP_OVER_W_WORDS, 0, HP_Q_BITS, q[1]);
-  put(out + 2 * HP_OVER_W_WORDS, 0, HP_Q_BITS, q[2]);
+  over_w u = {{0, 0, 0}, 0, 0, 0}, v = {{0, 0, 0}, 0, 0, 0};
+  if (texture == NULL || state->is_affine == 0) quantize_q(vertex, q);
   if (texture != NULL) {
-    quantize(v[0]->texcoord[0], v[1]->texcoord[0], v[2]->texcoord[0], texture->log2_width, q, &coordinate, &made);
-    put_coordinate(out, 0, &made, wrapped(made.reference, texture->log2_width, state->wrap_u));
-    quantize(v[0]->texcoord[1], v[1]->texcoord[1], v[2]->texcoord[1], texture->log2_height, q, &coordinate, &made);
-    put_coordinate(out, 1, &made, wrapped(made.reference, texture->log2_height, state->wrap_v));
+    quantize(vertex[0]->texcoord[0], vertex[1]->texcoord[0], vertex[2]->texcoord[0], texture->log2_width, q, &u);
+    quantize(vertex[0]->texcoord[1], vertex[1]->texcoord[1], vertex[2]->texcoord[1], texture->log2_height, q, &v);
+    u.reference = wrapped(u.reference, texture->log2_width, state->wrap_u);
+    v.reference = wrapped(v.reference, texture->log2_height, state->wrap_v);
   }
+  put_vertex(out, q[0], u.p[0], v.p[0]);
+  put_vertex(out + HP_OVER_W_WORDS, q[1], u.p[1], v.p[1]);
+  put_vertex(out + 2 * HP_OVER_W_WORDS, q[2], u.p[2], v.p[2]);
+  zero(frame, HP_FRAME_WORDS);
+  put_axis(frame, 0, &u, u.reference);
+  put_axis(frame, 1, &v, v.reference);
 #if HALFPLANE_COLORS_OVER_W != 0
   if (state->perspective_colors != 0) {
-    const uint32_t code_bits = HALFPLANE_COLOR_OVER_W_CODE_BITS;
-    const format color = {code_bits - 1, HALFPLANE_COLOR_NARROW_BITS, 0};
-    uint32_t* const frame = out + 3 * HP_OVER_W_WORDS;
-    hp_put_bits(frame, HALFPLANE_COORDINATE_FRAME_DIVIDES_COLORS_AT, 1, 1);
+    put(frame, HALFPLANE_COORDINATE_FRAME_DIVIDES_COLORS_AT, 1, 1);
     for (uint32_t c = 0; c < HALFPLANE_COLORS_OVER_W; ++c) {
-      int32_t value[3];
-      for (uint32_t i = 0; i < 3; ++i) value[i] = (int32_t)(v[i]->color >> (8 * c) & 255u) * HP_ONE;
-      quantize(value[0], value[1], value[2], 0, q, &color, &made);
+      int64_t value[3];
+      for (uint32_t i = 0; i < 3; ++i) value[i] = (int64_t)(vertex[i]->color >> (8 * c) & 255u) << 16;
+      if (quantize_quickly((int32_t)value[0], (int32_t)value[1], (int32_t)value[2], q, 1, &u) == 0)
+        quantize_wide(value, q, 1, &u);
       for (uint32_t i = 0; i < 3; ++i)
-        hp_put_bits(out + i * HP_OVER_W_WORDS, 3 * HP_Q_BITS + 2 + c * code_bits, code_bits,
-                    (uint64_t)(int64_t)made.p[i]);
-      hp_put_bits(frame, HALFPLANE_COORDINATE_FRAME_COLOR_SHIFT_AT + c * HALFPLANE_COLOR_SHIFT_BITS,
-                  HALFPLANE_COLOR_SHIFT_BITS, (uint64_t)(int64_t)made.shift);
-      hp_put_bits(frame, HALFPLANE_COORDINATE_FRAME_COLOR_REACH_AT + c * HALFPLANE_COLOR_REACH_BITS,
-                  HALFPLANE_COLOR_REACH_BITS, (uint64_t)(int64_t)made.reach);
+        put(out + i * HP_OVER_W_WORDS, 3 * HP_Q_BITS + 2 + c * (HP_COLOR_BITS + 1), HP_COLOR_BITS + 1,
+            (uint32_t)u.p[i]);
+      put(frame, HALFPLANE_COORDINATE_FRAME_COLOR_SHIFT_AT + c * HALFPLANE_COLOR_SHIFT_BITS, HALFPLANE_COLOR_SHIFT_BITS,
+          (uint32_t)u.shift);
+      put(frame, HALFPLANE_COORDINATE_FRAME_COLOR_REACH_AT + c * HALFPLANE_COLOR_REACH_BITS, HALFPLANE_COLOR_REACH_BITS,
+          (uint32_t)u.reach);
     }
   }
 #endif

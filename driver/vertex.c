@@ -27,8 +27,8 @@ static uint8_t multiply(const hp_fixed matrix[16], hp_fixed point[4]) {
   const hp_fixed x = point[0], y = point[1], z = point[2], w = point[3];
   uint32_t out_of_range = 0;
   for (const hp_fixed* m = matrix; m != matrix + 16; m += 4, ++point)
-    *point = rounded((int64_t)m[0] * x + (int64_t)m[1] * y + (int64_t)m[2] * z + (int64_t)m[3] * w + 32768,
-                     &out_of_range);
+    *point =
+        rounded((int64_t)m[0] * x + (int64_t)m[1] * y + (int64_t)m[2] * z + (int64_t)m[3] * w + 32768, &out_of_range);
   return out_of_range == 0;
 }
 
@@ -117,8 +117,8 @@ void hp_derive_view(hp_context* context) {
   context->covers_view = covers;
   context->is_whole_range = view->near_depth == 0 && view->far_depth == HP_DEPTH_ONE;
   const int64_t limit = HP_LIMIT;
-  context->is_quick = covers != 0 && context->half[0] < HP_QUICK && context->half[1] < HP_QUICK &&
-                      view->x >= -limit && view->y >= -limit && (int64_t)view->x + view->width < limit &&
+  context->is_quick = covers != 0 && context->half[0] < HP_QUICK && context->half[1] < HP_QUICK && view->x >= -limit &&
+                      view->y >= -limit && (int64_t)view->x + view->width < limit &&
                       (int64_t)view->y + view->height < limit;
 }
 

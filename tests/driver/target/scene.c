@@ -14,8 +14,8 @@ static hp_fixed position[(COLUMNS + 1) * 2 * ROWS * 3], texcoord[(COLUMNS + 1) *
 static uint32_t color[(COLUMNS + 1) * 2 * ROWS];
 
 static int draw(void) {
-  static const hp_fixed view[16] = {60000, 3000, -2000, 500, -3000, 60000, 900, 0, 2100, -1000, 65536, -3 * 65536,
-                                      0, 0, 0, 65536};
+  static const hp_fixed view[16] = {60000, 3000,  -2000, 500,        -3000, 60000, 900, 0,
+                                    2100,  -1000, 65536, -3 * 65536, 0,     0,     0,   65536};
   static const hp_fixed projection[16] = {65536, 0, 0, 0, 0, 87381, 0, 0, 0, 0, -67000, -13000, 0, 0, -65536, 0};
   const hp_stream stream = {words, sizeof words / sizeof *words, 0, 0};
   const hp_target target = {320, 240, 0, 0x80, 0x60000, 0x68000, 320 / 8 * 256, 0x80000};
