@@ -107,6 +107,8 @@ typedef struct hp_state {
   uint32_t blend_color;
   uint8_t dithers;
   uint8_t alpha_func, alpha_reference;
+  uint8_t sample_mask;       /* bit k: sample k of a pixel is drawn (msaa.samples); 255: all */
+  uint8_t alpha_to_coverage; /* alpha gives the number of samples that are drawn */
   uint8_t has_stencil;       /* then: */
   hp_stencil stencil[2];     /* of fronts, of backs */
   const hp_texture* texture; /* null: none; of triangles; it must stay until the state is replaced */

@@ -156,14 +156,16 @@ static inline void put(uint32_t* words, uint32_t at, uint32_t bits, uint32_t val
   if (shift + bits > 32) words[at / 32 + 1] |= field >> (32 - shift);
 }
 
-static inline void zero(uint32_t* words, uint32_t count) { /* 3 to 6 */
-  words[0] = words[1] = words[2] = 0;
+static inline void zero(uint32_t* words, uint32_t count) { /* 1 to 6, without a loop */
+  words[0] = 0;
+  if (count > 1) words[1] = 0;
+  if (count > 2) words[2] = 0;
   if (count > 3) words[3] = 0;
   if (count > 4) words[4] = 0;
   if (count > 5) words[5] = 0;
 }
-#if HP_OVER_W_WORDS < 3 || HP_OVER_W_WORDS > 6 || HP_FRAME_WORDS < 3 || HP_FRAME_WORDS > 6
-#error "codes over w and coordinate frames have 3 to 6 words"
+#if HP_OVER_W_WORDS > 6 || HP_FRAME_WORDS > 6
+#error "codes over w and coordinate frames have at most 6 words"
 #endif
 
 static inline void put_vertex(uint32_t* words, uint32_t q, int32_t u, int32_t v) {

@@ -19,6 +19,7 @@ hp_state hp_default_state(void) {
   state.color_mask = 15;
   state.src = state.src_alpha = HP_ONE_FACTOR;
   state.alpha_func = HP_ALWAYS;
+  state.sample_mask = 255;
   for (uint32_t i = 0; i < 2; ++i) {
     state.stencil[i].func = HP_ALWAYS;
     state.stencil[i].read_mask = state.stencil[i].write_mask = 255;
@@ -209,7 +210,9 @@ static void set_colors(hp_context* context, const hp_state* state) {
   }
 #endif
 #if HP_HAS_ALPHA_TEST
-  set_token(context, HP_ALPHA_TEST, (uint32_t)state->alpha_func | ((uint32_t)state->alpha_reference << 3));
+  set_token(context, HP_ALPHA_TEST,
+            (uint32_t)state->alpha_func | ((uint32_t)state->alpha_reference << 3) |
+                ((uint32_t)(state->alpha_to_coverage != 0 ? 1 : 0) << 11));
 #endif
 }
 #endif
@@ -297,6 +300,9 @@ uint8_t hp_prepare(hp_context* context, uint8_t is_triangle) {
   if (context->is_set == 0 || rect[0] > rect[2] || rect[1] > rect[3]) return 0;
   uint32_t word = (uint32_t)state->depth_test | ((uint32_t)(state->depth_write != 0 ? 1 : 0) << 3) |
                   ((uint32_t)writes_color(state) << 4);
+#if HALFPLANE_MSAA_SAMPLES > 1
+  word |= (~(uint32_t)state->sample_mask & (((uint32_t)1 << HALFPLANE_MSAA_SAMPLES) - 1)) << 16;
+#endif
   if (is_triangle != 0) word |= ((uint32_t)state->cull << 5) | ((uint32_t)state->front << 7);
 #if HP_HAS_STENCIL
   if (state->has_stencil != 0) word |= stencil_flags(state->stencil);
@@ -453,6 +459,8 @@ static uint8_t is_supported(const hp_state* state) {
   if (HALFPLANE_COLORS_OVER_W == 0 && state->perspective_colors != 0) return 0;
   if (HP_HAS_STENCIL == 0 && state->has_stencil != 0) return 0;
   if (HP_HAS_ALPHA_TEST == 0 && state->alpha_func != HP_ALWAYS) return 0;
+  if (HALFPLANE_MSAA_SAMPLES == 1 && (state->sample_mask != 255 || state->alpha_to_coverage != 0)) return 0;
+  if (HP_HAS_ALPHA_TEST == 0 && state->alpha_to_coverage != 0) return 0;
   if (HALFPLANE_DITHER_UNIT == 0 && state->dithers != 0 && HALFPLANE_COLOR_FORMAT == 0) return 0;
   const uint32_t all = HALFPLANE_COLOR_FORMAT == 1 ? 15 : 7, mask = state->color_mask & all;
   return HALFPLANE_BLEND_LANES != 0 || (state->blends == 0 && (mask == 0 || mask == all));

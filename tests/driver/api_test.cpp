@@ -140,6 +140,9 @@ TEST_F(DriverInterface, RefusesStates) {
     expect_refused_state(HP_UNSUPPORTED, [](hp_state& s) { s.perspective_colors = 1; });
   if (config.stencil_bits == 0) expect_refused_state(HP_UNSUPPORTED, [](hp_state& s) { s.has_stencil = 1; });
   if (config.alpha_units == 0) expect_refused_state(HP_UNSUPPORTED, [](hp_state& s) { s.alpha_func = HP_LESS; });
+  if (config.msaa_samples == 1) expect_refused_state(HP_UNSUPPORTED, [](hp_state& s) { s.sample_mask = 1; });
+  if (config.msaa_samples == 1 || !tests_alpha(config))
+    expect_refused_state(HP_UNSUPPORTED, [](hp_state& s) { s.alpha_to_coverage = 1; });
   if (config.dither_units == 0) expect_refused_state(HP_UNSUPPORTED, [](hp_state& s) { s.dithers = 1; });
   if (config.blend_lanes == 0) {
     expect_refused_state(HP_UNSUPPORTED, [](hp_state& s) { s.blends = 1; });

@@ -139,6 +139,11 @@ class CaseMaker {
       s.alpha_func = choose(state.alpha_test.func, 8);
       s.alpha_reference = state.alpha_test.reference = static_cast<std::uint8_t>(random_.index(256));
     }
+    if (config_.msaa_samples > 1 && chance(2)) {
+      s.sample_mask = static_cast<std::uint8_t>(random_.index(256));
+      state.sample_mask = s.sample_mask;
+      if (tests_alpha(config_) && chance(2)) s.alpha_to_coverage = 1, state.alpha_to_coverage = true;
+    }
     if (config_.stencil_bits != 0 && chance(2)) add_stencil(s, state);
     s.line_rule = choose(state.line_rule, 3);
     s.line_last = chance(2) ? 1 : 0;
@@ -376,7 +381,7 @@ class CaseMaker {
 const Config& driver_config() {
   static const Config config = [] {
     for (const Design& design : designs())
-      if (design.config.msaa_samples == 1 && config_id(design.config) == hp_config_id()) return design.config;
+      if (config_id(design.config) == hp_config_id()) return design.config;
     throw InputError("the driver is compiled for a configuration that is no design");
   }();
   return config;
