@@ -61,6 +61,7 @@ enum hp_stencil_op { HP_KEEP, HP_TO_ZERO, HP_REPLACE, HP_INCR, HP_DECR, HP_INVER
 enum hp_line_rule { HP_MIDPOINT, HP_BRESENHAM, HP_DIAMOND };
 enum hp_texture_format { HP_L8, HP_LA88, HP_RGB565, HP_RGBA5551, HP_RGBA4444, HP_RGBA8888 };
 enum hp_wrap { HP_REPEAT, HP_CLAMP, HP_MIRROR };
+enum hp_levels { HP_LEVEL_0, HP_NEAREST_LEVEL, HP_TWO_LEVELS };
 enum hp_combine { HP_MODULATE, HP_REPLACE_COLOR, HP_DECAL, HP_ADD_COLOR };
 
 /* Where the words go: memory of the caller, a buffer or a ring. */
@@ -95,6 +96,7 @@ typedef struct hp_texture {
   uint32_t address; /* from hp_target.textures on; a multiple of 64 */
   uint8_t format;
   uint8_t log2_width, log2_height; /* 0 to 12 */
+  uint8_t levels;                  /* in memory, each half of the one before; 0: 1 */
 } hp_texture;
 
 /* The state of draws; hp_default_state() has that of OpenGL. */
@@ -113,12 +115,16 @@ typedef struct hp_state {
   hp_stencil stencil[2];     /* of fronts, of backs */
   const hp_texture* texture; /* null: none; of triangles; it must stay until the state is replaced */
   uint8_t wrap_u, wrap_v, combine;
-  uint8_t is_linear;            /* the filter */
-  uint8_t is_affine;            /* coordinates are linear in the window, not on the surface */
-  uint8_t perspective_colors;   /* colours are linear on the surface */
-  uint8_t line_rule, line_last; /* line_last: the last pixel, too; never with HP_DIAMOND */
-  uint16_t line_width;          /* pixels */
-  hp_fixed point_size;          /* pixels, at least 1: squares */
+  uint8_t is_linear;                   /* the filter */
+  uint8_t minifies_otherwise;          /* the other filter where a pixel spans more than a texel */
+  uint8_t levels;                      /* there: of a texture with levels */
+  int16_t level_bias;                  /* 1/256 of a level */
+  uint16_t least_level, largest_level; /* likewise: 0 to 12 levels */
+  uint8_t is_affine;                   /* coordinates are linear in the window, not on the surface */
+  uint8_t perspective_colors;          /* colours are linear on the surface */
+  uint8_t line_rule, line_last;        /* line_last: the last pixel, too; never with HP_DIAMOND */
+  uint16_t line_width;                 /* pixels */
+  hp_fixed point_size;                 /* pixels, at least 1: squares */
 } hp_state;
 
 /* Vertices: an array of each attribute, or one of structures. Strides are bytes from one vertex to the next. */
@@ -187,7 +193,7 @@ void hp_multiply(hp_fixed out[16], const hp_fixed a[16], const hp_fixed b[16]);
 
 /* Bytes of a texture in memory. */
 size_t hp_texture_bytes(const hp_texture* texture);
-/* Writes texels (rows from the top, each of its format, low byte first) as the unit reads them; `memory`: where the
+/* Writes texels (rows from the top, each of its format, low byte first; level after level) as the unit reads them; `memory`: where the
    unit finds
    the texture. Texels that the unit had read before are dropped at the next draw. */
 void hp_upload_texture(hp_context* context, void* memory, const hp_texture* texture, const void* texels);
@@ -248,6 +254,8 @@ struct hp_context {
   uint8_t culls[2];                       /* triangles of positive, of negative area */
   uint32_t box[2], state_word;            /* of the core */
   uint32_t token[8][2];                   /* of its units */
+  uint32_t lines[7];                      /* of the level of detail */
+  uint8_t needs_lines, has_lines;         /* triangles do; the core has those */
   uint32_t known;                         /* a bit for each of these that the core has */
   uint8_t is_drawn, drops_texels, is_set; /* since the last flush; a target is set */
   uint32_t slot[3];                       /* tags of the core's vertex slots */

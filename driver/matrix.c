@@ -52,19 +52,43 @@ static uint32_t texel_bytes(const hp_texture* texture) {
 }
 static uint32_t blocks(uint32_t log2_size) { return log2_size < 2 ? 1 : (uint32_t)1 << (log2_size - 2); }
 
+/* Where a level begins, in blocks from level 0 on: levels follow each other. After the first one of a block two more may
+   come; they share the next block, the last one at its texel (2, 2). */
+static uint32_t level_place(const hp_texture* texture, uint32_t level, uint8_t* is_corner) {
+  uint32_t place = 0, width = texture->log2_width, height = texture->log2_height, n = 0;
+  for (; n < level && (width > 2 || height > 2); ++n) {
+    place += blocks(width) * blocks(height);
+    if (width > 0) --width;
+    if (height > 0) --height;
+  }
+  *is_corner = level == n + 2;
+  return level > n ? place + 1 : place;
+}
+static uint32_t side(uint32_t log2_size, uint32_t level) { return log2_size > level ? log2_size - level : 0; }
+
 size_t hp_texture_bytes(const hp_texture* texture) {
-  return (size_t)16 * texel_bytes(texture) * blocks(texture->log2_width) * blocks(texture->log2_height);
+  const uint32_t last = texture->levels > 1 ? texture->levels - 1u : 0;
+  uint8_t is_corner;
+  const uint32_t place = level_place(texture, last, &is_corner);
+  return (size_t)16 * texel_bytes(texture) *
+         (place + blocks(side(texture->log2_width, last)) * blocks(side(texture->log2_height, last)));
 }
 
 void hp_upload_texture(hp_context* context, void* memory, const hp_texture* texture, const void* texels) {
-  const uint32_t bytes = texel_bytes(texture), width = (uint32_t)1 << texture->log2_width;
-  const uint32_t height = (uint32_t)1 << texture->log2_height, run = width < 4 ? width : 4;
+  const uint32_t bytes = texel_bytes(texture);
   const unsigned char* from = texels;
-  for (uint32_t y = 0; y < height; ++y)
-    for (uint32_t x = 0; x < width; x += 4) {
-      const uint32_t block = (y / 4) * blocks(texture->log2_width) + x / 4;
-      memcpy((unsigned char*)memory + (size_t)(16 * block + 4 * (y % 4)) * bytes, from, (size_t)run * bytes);
-      from += (size_t)run * bytes;
-    }
+  for (uint32_t level = 0; level == 0 || level < texture->levels; ++level) {
+    const uint32_t log2_width = side(texture->log2_width, level);
+    const uint32_t width = (uint32_t)1 << log2_width, run = width < 4 ? width : 4;
+    const uint32_t height = (uint32_t)1 << side(texture->log2_height, level);
+    uint8_t is_corner;
+    const uint32_t place = level_place(texture, level, &is_corner), corner = is_corner != 0 ? 4 * 2 + 2 : 0;
+    for (uint32_t y = 0; y < height; ++y)
+      for (uint32_t x = 0; x < width; x += 4) {
+        const uint32_t block = place + (y / 4) * blocks(log2_width) + x / 4;
+        memcpy((unsigned char*)memory + (size_t)(16 * block + 4 * (y % 4) + corner) * bytes, from, (size_t)run * bytes);
+        from += (size_t)run * bytes;
+      }
+  }
   context->drops_texels = 1;
 }

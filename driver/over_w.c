@@ -28,7 +28,11 @@ static inline uint32_t q_code(const hp_vertex* v, uint32_t e) {
 }
 
 /* The largest Q has HP_Q_BITS bits: e is that of the nearest vertex. */
-static void quantize_q(const hp_vertex* const v[3], uint32_t q[3]) {
+void hp_quantize_q(const hp_context* context, const hp_vertex* const v[3], uint32_t q[3]) {
+  if (context->state.texture != NULL && context->state.is_affine != 0) { /* w is 1 */
+    q[0] = q[1] = q[2] = (uint32_t)1 << (HP_Q_BITS - 1);
+    return;
+  }
   uint32_t shift = v[0]->shift;
   if (v[1]->shift > shift) shift = v[1]->shift;
   if (v[2]->shift > shift) shift = v[2]->shift;
@@ -188,9 +192,9 @@ void hp_over_w(const hp_context* context, const hp_vertex* const vertex[3], uint
   const hp_state* state = &context->state;
   const hp_texture* texture = state->texture;
   uint32_t* const frame = out + 3 * HP_OVER_W_WORDS;
-  uint32_t q[3] = {(uint32_t)1 << (HP_Q_BITS - 1), (uint32_t)1 << (HP_Q_BITS - 1), (uint32_t)1 << (HP_Q_BITS - 1)};
+  uint32_t q[3];
   over_w u = {{0, 0, 0}, 0, 0, 0}, v = {{0, 0, 0}, 0, 0, 0};
-  if (texture == NULL || state->is_affine == 0) quantize_q(vertex, q);
+  hp_quantize_q(context, vertex, q);
   if (texture != NULL) {
     quantize(vertex[0]->texcoord[0], vertex[1]->texcoord[0], vertex[2]->texcoord[0], texture->log2_width, q, &u);
     quantize(vertex[0]->texcoord[1], vertex[1]->texcoord[1], vertex[2]->texcoord[1], texture->log2_height, q, &v);

@@ -20,6 +20,7 @@ hp_state hp_default_state(void) {
   state.src = state.src_alpha = HP_ONE_FACTOR;
   state.alpha_func = HP_ALWAYS;
   state.sample_mask = 255;
+  state.largest_level = 12 * 256;
   for (uint32_t i = 0; i < 2; ++i) {
     state.stencil[i].func = HP_ALWAYS;
     state.stencil[i].read_mask = state.stencil[i].write_mask = 255;
@@ -48,6 +49,7 @@ void hp_begin(hp_context* context, const hp_stream* stream) {
   context->next = stream->words;
   context->end = stream->words + stream->size;
   context->known = 0;
+  context->has_lines = 0;
   context->is_drawn = context->is_set = 0;
   memset(&context->counts, 0, sizeof context->counts);
 }
@@ -127,17 +129,23 @@ void hp_send_box(hp_context* context, int32_t left, int32_t top, int32_t right, 
 }
 
 #if HP_HAS_TOKENS
-/* A register of a unit; it overwrites the vertex slots, which a draw loads anew. */
-static void send_token(hp_context* context, uint32_t which, uint64_t value) {
-  const uint64_t low = value & (((uint64_t)1 << (HALFPLANE_ALL_AFFINE_CODE_BITS % 64)) - 1);
+void hp_send_token(hp_context* context, uint32_t which, const uint32_t value[4]) {
   if (hp_reserve(context, HP_LONGEST_TOKEN) == 0) return;
   hp_put(context, HP_HEADER(HP_TOKEN, which));
-  for (uint32_t i = 0; i < HP_AFFINE_WORDS; ++i) hp_put(context, (uint32_t)(low >> (32 * i)));
-  uint64_t rest = value >> (HALFPLANE_ALL_AFFINE_CODE_BITS % 64);
-  for (uint32_t i = 1 + HP_AFFINE_WORDS; i < HP_LONGEST_TOKEN; ++i) {
-    hp_put(context, (uint32_t)rest);
-    rest >>= 32;
+  /* The low bits in the words of the affine codes, then the rest. */
+  const uint32_t bits = HALFPLANE_ALL_AFFINE_CODE_BITS % 32;
+  for (uint32_t i = 0; i < HP_AFFINE_WORDS; ++i)
+    hp_put(context, i + 1 == HP_AFFINE_WORDS && bits != 0 ? value[i] & (((uint32_t)1 << bits) - 1) : value[i]);
+  for (uint32_t i = HALFPLANE_ALL_AFFINE_CODE_BITS / 32, n = 1 + HP_AFFINE_WORDS; n < HP_LONGEST_TOKEN; ++i, ++n) {
+    const uint32_t low = i < 4 ? value[i] : 0, high = i < 3 ? value[i + 1] : 0;
+    hp_put(context, bits == 0 ? low : (low >> bits) | (high << (32 - bits)));
   }
+  context->slot[0] = context->slot[1] = context->slot[2] = HP_NO_TAG;
+}
+
+static void send_token(hp_context* context, uint32_t which, uint64_t value) {
+  const uint32_t words[4] = {(uint32_t)value, (uint32_t)(value >> 32), 0, 0};
+  hp_send_token(context, which, words);
 }
 
 /* Whether a register does not have the value yet. */
@@ -285,8 +293,16 @@ static void set_texture(hp_context* context, const hp_state* state) {
   }
 #endif
 #if HALFPLANE_TEXTURE_UNIT == 3
-  /* Level 0 alone, with one filter. */
-  if (texture != NULL) set_token(context, HP_LEVELS, (state->is_linear != 0 ? 1u : 0u) | ((uint32_t)(12 * 256) << 19));
+  context->needs_lines = 0;
+  if (texture == NULL) return;
+  const uint32_t is_linear = (state->is_linear != 0) != (state->minifies_otherwise != 0) ? 1 : 0;
+  const uint32_t largest = (uint32_t)hp_min(4095, hp_max(state->least_level, state->largest_level));
+  const uint32_t last = texture->levels > 1 ? texture->levels - 1u : 0;
+  set_token(
+      context, HP_LEVELS,
+      is_linear | ((uint32_t)state->levels << 1) | (last << 3) | ((uint32_t)state->least_level << 7) | (largest << 19));
+  context->needs_lines =
+      state->least_level != largest && (state->levels != HP_LEVEL_0 || state->minifies_otherwise != 0);
 #endif
 }
 #endif
@@ -456,6 +472,9 @@ void hp_set_scissor(hp_context* context, int32_t x, int32_t y, int32_t width, in
 static uint8_t is_supported(const hp_state* state) {
   if (HP_HAS_TEXTURES == 0 && state->texture != NULL) return 0;
   if (state->texture != NULL && state->is_linear != 0 && HALFPLANE_TEXTURE_UNIT < 2) return 0;
+  if (HALFPLANE_TEXTURE_UNIT != 3 && state->texture != NULL &&
+      (state->levels != HP_LEVEL_0 || state->minifies_otherwise != 0 || state->texture->levels > 1))
+    return 0;
   if (HALFPLANE_COLORS_OVER_W == 0 && state->perspective_colors != 0) return 0;
   if (HP_HAS_STENCIL == 0 && state->has_stencil != 0) return 0;
   if (HP_HAS_ALPHA_TEST == 0 && state->alpha_func != HP_ALWAYS) return 0;
@@ -476,6 +495,10 @@ static uint8_t is_valid(const hp_state* state) {
     return 0;
   if (state->point_size < HP_ONE || (state->point_size > HP_ONE && (state->point_size + 65535) >> 16 > widest))
     return 0;
+  if (state->levels > HP_TWO_LEVELS || state->level_bias < -4096 || state->level_bias > 4096 ||
+      state->least_level > 3072 || state->largest_level > 3072)
+    return 0;
+  if (texture != NULL && texture->levels > 1 + hp_max(texture->log2_width, texture->log2_height)) return 0;
   if (texture != NULL && (texture->log2_width > 12 || texture->log2_height > 12 || texture->format > HP_RGBA8888 ||
                           (texture->address & 63u) != 0 || state->wrap_u > HP_MIRROR || state->wrap_v > HP_MIRROR ||
                           state->combine > HP_ADD_COLOR))

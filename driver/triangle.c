@@ -20,6 +20,34 @@ static inline uint32_t load(hp_context* context, const hp_vertex* v, uint32_t us
   return bit;
 }
 
+#if HALFPLANE_TEXTURE_UNIT == 3
+/* Sends the lines of a triangle's level of detail, if they differ from those before it. */
+static void send_lines(hp_context* context, const hp_vertex* a, const hp_vertex* b, const hp_vertex* c, int64_t area) {
+  const hp_vertex* const v[3] = {a, b, c};
+  uint32_t lines[8] = {0};
+  hp_lines_of_levels(context, v, area, lines);
+  uint8_t differs = context->has_lines == 0;
+  for (uint32_t i = 0; i < 7; ++i)
+    if (context->lines[i] != lines[i]) differs = 1;
+  if (differs == 0) return;
+  for (uint32_t i = 0; i < 7; ++i) context->lines[i] = lines[i];
+  context->has_lines = 1;
+  const uint32_t bits = HALFPLANE_STATE_WORD_BITS >= 104 ? 104 : 70; /* of a part, the lowest first */
+  for (uint32_t at = 0; at < 208; at += bits) {
+    const uint32_t shift = at % 32;
+    uint32_t part[4];
+    for (uint32_t i = 0; i < 4; ++i) {
+      const uint32_t n = at / 32 + i;
+      part[i] = n < 7 ? lines[n] >> shift : 0;
+      if (shift != 0 && n < 6) part[i] |= lines[n + 1] << (32 - shift);
+    }
+    part[bits / 32] &= ((uint32_t)1 << bits % 32) - 1;
+    if (bits < 96) part[3] = 0;
+    hp_send_token(context, HP_LINES_OF_LEVELS, part);
+  }
+}
+#endif
+
 /* Vertices go to the core's slots: one that is in a slot already is not sent again. */
 void hp_send_triangle(hp_context* context, const hp_vertex* a, const hp_vertex* b, const hp_vertex* c) {
   const int64_t area = hp_area(a, b, c);
@@ -27,6 +55,9 @@ void hp_send_triangle(hp_context* context, const hp_vertex* a, const hp_vertex* 
     ++context->counts.culled;
     return;
   }
+#if HALFPLANE_TEXTURE_UNIT == 3
+  if (context->needs_lines != 0) send_lines(context, a, b, c, area);
+#endif
   if (hp_reserve(context, HP_TRIANGLE_WORDS) == 0) return;
   uint32_t* const words = context->next++;
   uint32_t slot_a = held(context->slot, a->tag), slot_b = held(context->slot, b->tag);

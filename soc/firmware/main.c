@@ -64,7 +64,7 @@ static uint32_t wait_for_room(void* user, uint32_t written) {
   return read;
 }
 
-static const hp_texture texture = {TEXTURE, HP_RGBA8888, SCENE_LOG2_TEXELS, SCENE_LOG2_TEXELS};
+static const hp_texture texture = {TEXTURE, HP_RGBA8888, SCENE_LOG2_TEXELS, SCENE_LOG2_TEXELS, 1};
 
 static void draw(uint32_t frame) {
   const uint32_t back = frame & 1u, color = BUFFERS + PLANE + back * BUFFER, flags = BUFFERS + 3 * BUFFER;

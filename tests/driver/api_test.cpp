@@ -109,7 +109,7 @@ TEST_F(DriverInterface, RefusesValuesOutOfTheirRange) {
 
 TEST_F(DriverInterface, RefusesStates) {
   const Config& config = driver_config();
-  hp_texture texture{0, 0, 4, 4};
+  hp_texture texture{0, 0, 4, 4, 0};
   const std::vector<std::function<void(hp_state&)>> bad{[](hp_state& s) { s.depth_test = 8; },
                                                         [](hp_state& s) { s.cull = 4; },
                                                         [](hp_state& s) { s.front = 2; },
@@ -123,19 +123,29 @@ TEST_F(DriverInterface, RefusesStates) {
   const std::vector<std::function<void(hp_state&)>> bad_texture{
       [&](hp_state&) { texture.log2_width = 13; }, [&](hp_state&) { texture.log2_height = 13; },
       [&](hp_state&) { texture.format = 6; },      [&](hp_state&) { texture.address = 32; },
+      [&](hp_state&) { texture.levels = 6; },      [](hp_state& s) { s.levels = 3; },
+      [](hp_state& s) { s.level_bias = 5000; },    [](hp_state& s) { s.level_bias = -5000; },
+      [](hp_state& s) { s.least_level = 4000; },   [](hp_state& s) { s.largest_level = 4000; },
       [](hp_state& s) { s.wrap_u = 3; },           [](hp_state& s) { s.wrap_v = 3; },
       [](hp_state& s) { s.combine = 4; },          [](hp_state& s) { s.is_affine = s.perspective_colors = 1; }};
   for (const auto& change : bad_texture)
     expect_refused_state(HP_BAD_VALUE, [&](hp_state& s) {
-      texture = {0, 0, 4, 4};
+      texture = {0, 0, 4, 4, 0};
       s.texture = &texture;
       change(s);
     });
-  texture = {0, 0, 4, 4};
+  texture = {0, 0, 4, 4, 0};
   if (config.texture_unit == TextureUnitKind::off)
     expect_refused_state(HP_UNSUPPORTED, [&](hp_state& s) { s.texture = &texture; });
   if (config.texture_unit == TextureUnitKind::nearest)
     expect_refused_state(HP_UNSUPPORTED, [&](hp_state& s) { s.texture = &texture, s.is_linear = 1; });
+  if (config.texture_unit == TextureUnitKind::bilinear || config.texture_unit == TextureUnitKind::nearest) {
+    expect_refused_state(HP_UNSUPPORTED, [&](hp_state& s) { s.texture = &texture, s.levels = HP_TWO_LEVELS; });
+    expect_refused_state(HP_UNSUPPORTED, [&](hp_state& s) { s.texture = &texture, s.minifies_otherwise = 1; });
+    texture.levels = 2;
+    expect_refused_state(HP_UNSUPPORTED, [&](hp_state& s) { s.texture = &texture; });
+    texture.levels = 0;
+  }
   if (config.perspective_colors == 0)
     expect_refused_state(HP_UNSUPPORTED, [](hp_state& s) { s.perspective_colors = 1; });
   if (config.stencil_bits == 0) expect_refused_state(HP_UNSUPPORTED, [](hp_state& s) { s.has_stencil = 1; });

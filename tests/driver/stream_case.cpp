@@ -88,7 +88,9 @@ class CaseMaker {
       for (int i = 0; i < image.width * image.height; ++i)
         image.texel.push_back({static_cast<std::uint8_t>(random_.index(256)), static_cast<std::uint8_t>(i), 7, 200});
       out_.scene.textures.push_back(
-          make_texture("texels" + std::to_string(out_.scene.textures.size()), image, kFormats[t.format], Mips::none));
+          make_texture("texels" + std::to_string(out_.scene.textures.size()), image, kFormats[t.format],
+                       config_.texture_unit == TextureUnitKind::trilinear && chance(2) ? Mips::box : Mips::none));
+      t.levels = static_cast<std::uint8_t>(out_.scene.textures.back().level.size());
     }
     const TextureMemory memory(out_.scene, config_);
     for (std::size_t n = 0; n < textures_.size(); ++n) {
@@ -96,9 +98,10 @@ class CaseMaker {
       t.address = memory.base(n);
       std::vector<std::uint8_t> texels;
       const Texture& texture = out_.scene.textures[n];
-      for (const std::uint32_t code : texture.level[0].code)
-        for (int byte = 0; byte < (texel_bits(texture.format) + 7) / 8; ++byte)
-          texels.push_back(static_cast<std::uint8_t>(code >> (8 * byte)));
+      for (const TextureLevel& level : texture.level)
+        for (const std::uint32_t code : level.code)
+          for (int byte = 0; byte < (texel_bits(texture.format) + 7) / 8; ++byte)
+            texels.push_back(static_cast<std::uint8_t>(code >> (8 * byte)));
       const std::size_t end = t.address + hp_texture_bytes(&t);
       if (out_.textures.size() < end) out_.textures.resize(end);
       hp_upload_texture(context_.get(), out_.textures.data() + t.address, &t, texels.data());
@@ -214,6 +217,7 @@ class CaseMaker {
       s.combine = choose(state.texture_combine, 4);
       s.is_linear = config_.texture_unit != TextureUnitKind::nearest && chance(2) ? 1 : 0;
       state.texture_min = s.is_linear != 0 ? TextureMin::linear : TextureMin::nearest;
+      if (config_.texture_unit == TextureUnitKind::trilinear) add_levels(s, state);
       state.texture_mag = s.is_linear != 0 ? TextureMag::linear : TextureMag::nearest;
       s.is_affine = chance(5) ? 1 : 0;
       if (s.is_affine != 0) state.texture_interp = TextureInterp::affine;
@@ -222,6 +226,17 @@ class CaseMaker {
       s.perspective_colors = 1;
       state.color_interp = ColorInterp::perspective;
     }
+  }
+
+  void add_levels(hp_state& s, State& state) {
+    s.minifies_otherwise = chance(3) ? 1 : 0;
+    s.levels = static_cast<std::uint8_t>(random_.index(3));
+    state.texture_min = static_cast<TextureMin>(2 * s.levels + (s.is_linear ^ s.minifies_otherwise));
+    if (chance(2)) return;
+    s.level_bias = static_cast<std::int16_t>(random_.index(1600) - 800);
+    s.least_level = static_cast<std::uint16_t>(random_.index(chance(2) ? 3073 : 300));
+    s.largest_level = chance(4) ? s.least_level : static_cast<std::uint16_t>(random_.index(3073));
+    state.texture_lod = {s.level_bias / 256.0, s.least_level / 256.0, s.largest_level / 256.0};
   }
 
   void clear(std::uint32_t buffers) {

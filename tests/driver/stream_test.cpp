@@ -62,10 +62,15 @@ std::vector<Wanted> of_model(const Scene& scene, const Config& config) {
 /// The registers of the units, from the driver's tokens.
 class Registers {
  public:
-  Registers(const Config& config, const Widths& widths) : config_(config), widths_(widths) {}
+  Registers(const Config& config, const Widths& widths)
+      : config_(config), widths_(widths), lines_(line_part_bits(state_word_bits(widths))) {}
 
   void set(const PrimitivePacket& token) {
     const StateRegister which = state_register(token.state);
+    if (which == StateRegister::texture_lines) {
+      ++line_tokens_;
+      return lines_.move_in(wide_state_word(token.vertex.code[0], widths_));
+    }
     const std::uint64_t word = state_word(token.vertex.code[0], widths_);
     colors_.set(which, word);
     stencil_.set(which, word);
@@ -84,6 +89,8 @@ class Registers {
     }
   }
 
+  [[nodiscard]] std::uint64_t line_tokens() const { return line_tokens_; }
+
   /// A difference from what a packet needs, or an empty text.
   [[nodiscard]] std::string difference(const Wanted& wanted) const {
     const auto& [colors, stencil] = std::tie(wanted.units.colors, wanted.units.stencil);
@@ -99,7 +106,8 @@ class Registers {
     if (wanted.units.texture_state != texture_.pack() || !has_texture_) return "texture";
     if (config_.texture_unit == TextureUnitKind::trilinear && texture_.enable && wanted.units.texture_levels != levels_)
       return "texture_levels";
-    if (wanted.units.texture_lines || wanted.units.fog || wanted.units.light) return "the driver has no such token";
+    if (wanted.units.texture_lines && *wanted.units.texture_lines != lines_.lines()) return "texture_lines";
+    if (wanted.units.fog || wanted.units.light) return "the driver has no such token";
     if (wanted.units.looks_at_fog && !is_off_[0]) return "fog";
     return wanted.units.looks_at_light && !is_off_[1] ? "light" : "";
   }
@@ -111,7 +119,9 @@ class Registers {
   StencilState stencil_;
   TextureState texture_;
   std::uint32_t levels_ = 0;
+  LineRegister lines_;
   bool has_texture_ = false;
+  std::uint64_t line_tokens_ = 0;
   std::array<bool, 2> is_off_{};  ///< fog, light
 };
 
@@ -135,7 +145,8 @@ std::string difference(const DecodedPrimitive& driver, const DecodedPrimitive& m
 }
 
 /// Compares a case; what it holds of each kind is added to `kinds`.
-void expect_equal(const StreamCase& made, const Config& config, std::array<std::uint64_t, 8>& kinds) {
+void expect_equal(const StreamCase& made, const Config& config, std::array<std::uint64_t, 8>& kinds,
+                  std::uint64_t& line_tokens) {
   const Widths widths = derive_widths(config);
   Decoder decoder(config);
   decoder.read(made.words);
@@ -155,6 +166,7 @@ void expect_equal(const StreamCase& made, const Config& config, std::array<std::
     ASSERT_EQ(registers.difference(wanted), "") << "packet " << next << " of " << model.size();
   }
   ASSERT_EQ(next, model.size()) << "the driver has fewer";
+  line_tokens += registers.line_tokens();
   if (config.texture_unit == TextureUnitKind::off) return;
   const TextureMemory textures(made.scene, config);
   std::vector<std::uint8_t> bytes(made.textures.size());
@@ -167,12 +179,12 @@ TEST(DriverStream, WordsAreTheModelsPackets) {
   const std::uint64_t wanted = cases<std::uint64_t>(100'000, 1'000'000);
   std::array<std::uint64_t, 8> kinds{};
   hp_counts counts{};
-  std::uint64_t primitives = 0, words = 0;
+  std::uint64_t primitives = 0, words = 0, line_tokens = 0;
   for (std::uint32_t n = 0; primitives < wanted; ++n) {
     SCOPED_TRACE("seed " + std::to_string(kSeed + n) + ", " + label(config));
     const StreamCase made = random_case(kSeed + n, 400);
     ASSERT_EQ(made.status, 0U);
-    ASSERT_NO_FATAL_FAILURE(expect_equal(made, config, kinds));
+    ASSERT_NO_FATAL_FAILURE(expect_equal(made, config, kinds, line_tokens));
     primitives += made.counts.triangles + made.counts.lines + made.counts.points;
     words += made.words.size();
     counts.cut += made.counts.cut;
@@ -190,6 +202,7 @@ TEST(DriverStream, WordsAreTheModelsPackets) {
   EXPECT_GT(kinds[static_cast<std::size_t>(PrimitiveKind::point)], wanted / 100);
   EXPECT_GT(kinds[static_cast<std::size_t>(PrimitiveKind::rectangle)], 10U);
   EXPECT_GT(kinds[static_cast<std::size_t>(PrimitiveKind::fast_clear)], 10U);
+  EXPECT_EQ(line_tokens > wanted / 100, config.texture_unit == TextureUnitKind::trilinear);
   EXPECT_EQ(kinds[static_cast<std::size_t>(PrimitiveKind::line)] > wanted / 100, config.line_units != 0);
   EXPECT_EQ(kinds[static_cast<std::size_t>(PrimitiveKind::state)] > 100,
             config.texture_unit != TextureUnitKind::off || config.blend_lanes != 0);

@@ -7,6 +7,9 @@
 #define COLUMNS 32
 #endif
 #define ROWS 4
+#ifndef LEVELS
+#define LEVELS 1
+#endif
 
 static hp_context context;
 static uint32_t words[16384];
@@ -41,8 +44,12 @@ static int draw(void) {
   state.cull = HP_CULL_BOTH;
 #endif
 #ifdef TEXTURED
-  static const hp_texture texture = {0, HP_RGB565, 6, 6};
+  static const hp_texture texture = {0, HP_RGB565, 6, 6, LEVELS};
   state.texture = &texture;
+#if LEVELS > 1
+  state.is_linear = 1;
+  state.levels = HP_TWO_LEVELS;
+#endif
 #endif
   hp_set_state(&context, &state);
   static uint16_t indices[ROWS * 2 * (COLUMNS + 1)];
