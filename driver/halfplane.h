@@ -99,6 +99,16 @@ typedef struct hp_texture {
   uint8_t levels;                  /* in memory, each half of the one before; 0: 1 */
 } hp_texture;
 
+/* A table of fog over the distance w, for triangles (fog.unit): halfplane_fog_table writes one. */
+typedef struct hp_fog_line {
+  int32_t start, rise; /* 2^-15 */
+} hp_fog_line;
+typedef struct hp_fog {
+  const hp_fog_line* lines; /* 256 */
+  int16_t first;            /* of 2^octave_bits octaves of 1/w, log2 */
+  uint8_t octave_bits;
+} hp_fog;
+
 /* The state of draws; hp_default_state() has that of OpenGL. */
 typedef struct hp_state {
   uint8_t depth_test, depth_write;
@@ -122,9 +132,11 @@ typedef struct hp_state {
   uint16_t least_level, largest_level; /* likewise: 0 to 12 levels */
   uint8_t is_affine;                   /* coordinates are linear in the window, not on the surface */
   uint8_t perspective_colors;          /* colours are linear on the surface */
-  uint8_t line_rule, line_last;        /* line_last: the last pixel, too; never with HP_DIAMOND */
-  uint16_t line_width;                 /* pixels */
-  hp_fixed point_size;                 /* pixels, at least 1: squares */
+  const hp_fog* fog;                   /* null: none; of triangles; it must stay, too */
+  uint32_t fog_color;
+  uint8_t line_rule, line_last; /* line_last: the last pixel, too; never with HP_DIAMOND */
+  uint16_t line_width;          /* pixels */
+  hp_fixed point_size;          /* pixels, at least 1: squares */
 } hp_state;
 
 /* Vertices: an array of each attribute, or one of structures. Strides are bytes from one vertex to the next. */
@@ -256,6 +268,9 @@ struct hp_context {
   uint32_t token[8][2];                   /* of its units */
   uint32_t lines[7];                      /* of the level of detail */
   uint8_t needs_lines, has_lines;         /* triangles do; the core has those */
+  uint8_t is_over_w, is_fogged;           /* of triangles: they have codes over w */
+  uint32_t fog_word;                      /* of the core */
+  const hp_fog_line* fog_lines;           /* likewise; null: unknown */
   uint32_t known;                         /* a bit for each of these that the core has */
   uint8_t is_drawn, drops_texels, is_set; /* since the last flush; a target is set */
   uint32_t slot[3];                       /* tags of the core's vertex slots */

@@ -163,7 +163,7 @@ void hp_project_corner(const hp_context* context, const hp_corner* corner, hp_ve
 /* The codes over w of the vertices of the three slots, and their frame: 3 HP_OVER_W_WORDS + HP_FRAME_WORDS words. */
 #if HP_HAS_TEXTURES
 void hp_over_w(const hp_context* context, const hp_vertex* const v[3], uint32_t* words);
-void hp_quantize_q(const hp_context* context, const hp_vertex* const v[3], uint32_t q[3]);
+uint32_t hp_quantize_q(const hp_context* context, const hp_vertex* const v[3], uint32_t q[3]);
 /* The lines of the level of detail as words: 208 bits. */
 void hp_lines_of_levels(const hp_context* context, const hp_vertex* const v[3], int64_t area, uint32_t words[7]);
 /* A register of a unit; it overwrites the vertex slots. `value`: 128 bits. */

@@ -27,16 +27,17 @@ static inline uint32_t q_code(const hp_vertex* v, uint32_t e) {
   return hp_corrected(down < 32 ? v->reciprocal >> down : 0, (e < 32 ? (uint32_t)1 << e : 0) + w / 2, w);
 }
 
-/* The largest Q has HP_Q_BITS bits: e is that of the nearest vertex. */
-void hp_quantize_q(const hp_context* context, const hp_vertex* const v[3], uint32_t q[3]) {
+/* The largest Q has HP_Q_BITS bits: e is that of the nearest vertex. Returns it. */
+uint32_t hp_quantize_q(const hp_context* context, const hp_vertex* const v[3], uint32_t q[3]) {
   if (context->state.texture != NULL && context->state.is_affine != 0) { /* w is 1 */
     q[0] = q[1] = q[2] = (uint32_t)1 << (HP_Q_BITS - 1);
-    return;
+    return HP_Q_BITS - 1 + 16;
   }
   uint32_t shift = v[0]->shift;
   if (v[1]->shift > shift) shift = v[1]->shift;
   if (v[2]->shift > shift) shift = v[2]->shift;
-  for (uint32_t e = HP_Q_BITS - 1 + 32 - shift;; --e) {
+  uint32_t e = HP_Q_BITS - 1 + 32 - shift;
+  for (;; --e) {
     q[0] = q_code(v[0], e);
     q[1] = q_code(v[1], e);
     q[2] = q_code(v[2], e);
@@ -44,6 +45,7 @@ void hp_quantize_q(const hp_context* context, const hp_vertex* const v[3], uint3
   }
   for (uint32_t i = 0; i < 3; ++i)
     if (q[i] == 0) q[i] = 1;
+  return e;
 }
 
 /* P of three values, 2^-16, of any size. */
@@ -194,7 +196,7 @@ void hp_over_w(const hp_context* context, const hp_vertex* const vertex[3], uint
   uint32_t* const frame = out + 3 * HP_OVER_W_WORDS;
   uint32_t q[3];
   over_w u = {{0, 0, 0}, 0, 0, 0}, v = {{0, 0, 0}, 0, 0, 0};
-  hp_quantize_q(context, vertex, q);
+  const uint32_t e = hp_quantize_q(context, vertex, q);
   if (texture != NULL) {
     quantize(vertex[0]->texcoord[0], vertex[1]->texcoord[0], vertex[2]->texcoord[0], texture->log2_width, q, &u);
     quantize(vertex[0]->texcoord[1], vertex[1]->texcoord[1], vertex[2]->texcoord[1], texture->log2_height, q, &v);
@@ -207,6 +209,15 @@ void hp_over_w(const hp_context* context, const hp_vertex* const vertex[3], uint
   zero(frame, HP_FRAME_WORDS);
   put_axis(frame, 0, &u, u.reference);
   put_axis(frame, 1, &v, v.reference);
+#if HALFPLANE_FOG_UNIT != 0
+  if (context->is_fogged != 0) { /* the octave of Q = 1 in the table; w is in 2^-16 */
+    const int32_t octave = 16 - (int32_t)e - HALFPLANE_PERSPECTIVE_GUARD_BITS - state->fog->first;
+    put(frame, HALFPLANE_COORDINATE_FRAME_FOG_OCTAVE_AT, HALFPLANE_COORDINATE_FRAME_FOG_OCTAVE_BITS,
+        (uint32_t)hp_max(-32, hp_min(31, octave)));
+  }
+#else
+  (void)e;
+#endif
 #if HALFPLANE_COLORS_OVER_W != 0
   if (state->perspective_colors != 0) {
     put(frame, HALFPLANE_COORDINATE_FRAME_DIVIDES_COLORS_AT, 1, 1);

@@ -6,7 +6,8 @@
 #define HP_KNOWS_TOKEN(which, side) ((uint32_t)1 << (2 * (uint32_t)(which) + (uint32_t)(side)))
 #define HP_KNOWS_STATE ((uint32_t)1 << 16)
 #define HP_KNOWS_BOX ((uint32_t)1 << 17)
-#define HP_KNOWS_UNITS ((uint32_t)1 << 18) /* fog and light are off */
+#define HP_KNOWS_FOG ((uint32_t)1 << 18)
+#define HP_KNOWS_LIGHT ((uint32_t)1 << 19) /* it is off */
 #define HP_LONGEST_TOKEN (1 + HP_AFFINE_WORDS + (HALFPLANE_STATE_WORD_BITS - HALFPLANE_ALL_AFFINE_CODE_BITS + 31) / 32)
 
 /* ---- Once, and begin */
@@ -50,6 +51,7 @@ void hp_begin(hp_context* context, const hp_stream* stream) {
   context->end = stream->words + stream->size;
   context->known = 0;
   context->has_lines = 0;
+  context->fog_lines = NULL;
   context->is_drawn = context->is_set = 0;
   memset(&context->counts, 0, sizeof context->counts);
 }
@@ -285,12 +287,9 @@ static void set_texture(hp_context* context, const hp_state* state) {
   if (is_new != 0 || drops != 0) send_token(context, HP_TEXTURE, value | (drops != 0 ? 2u : 0u));
   context->token[HP_TEXTURE][1] = (uint32_t)(value >> 32) | ((uint32_t)1 << 14);
   context->drops_texels = 0;
-#if HALFPLANE_FOG_UNIT != 0 || HALFPLANE_SHADE_UNIT != 0
-  if ((context->known & HP_KNOWS_UNITS) == 0) {
-    context->known |= HP_KNOWS_UNITS;
-    if (HALFPLANE_SHADE_UNIT != 0) send_token(context, HP_LEVELS, (uint64_t)3 << 43);
-    if (HALFPLANE_FOG_UNIT != 0) send_token(context, HP_LEVELS, (uint64_t)1 << 43);
-  }
+#if HALFPLANE_SHADE_UNIT != 0
+  if ((context->known & HP_KNOWS_LIGHT) == 0) send_token(context, HP_LEVELS, (uint64_t)3 << 43);
+  context->known |= HP_KNOWS_LIGHT;
 #endif
 #if HALFPLANE_TEXTURE_UNIT == 3
   context->needs_lines = 0;
@@ -304,6 +303,26 @@ static void set_texture(hp_context* context, const hp_state* state) {
   context->needs_lines =
       state->least_level != largest && (state->levels != HP_LEVEL_0 || state->minifies_otherwise != 0);
 #endif
+}
+#endif
+
+#if HALFPLANE_FOG_UNIT != 0
+/* The words of fog share the register of levels: bits 44 and 43 tell them apart. */
+static void set_fog(hp_context* context, const hp_state* state) {
+  const hp_fog* fog = state->fog;
+  uint32_t word = 0;
+  if (fog != NULL) word = (state->fog_color & 0xffffffu) | ((uint32_t)fog->octave_bits << 24) | ((uint32_t)1 << 27);
+  if ((context->known & HP_KNOWS_FOG) == 0 || context->fog_word != word)
+    send_token(context, HP_LEVELS, ((uint64_t)1 << 43) | word);
+  context->known |= HP_KNOWS_FOG;
+  context->fog_word = word;
+  if (fog == NULL || context->fog_lines == fog->lines) return;
+  for (uint32_t i = 0; i < 256; ++i)
+    send_token(context, HP_LEVELS,
+               ((uint64_t)2 << 43) | ((uint64_t)i << 35) |
+                   ((uint64_t)((uint32_t)fog->lines[i].start & 0x3ffffu) << 17) |
+                   ((uint32_t)fog->lines[i].rise & 0x1ffffu));
+  context->fog_lines = fog->lines;
 }
 #endif
 
@@ -333,7 +352,14 @@ uint8_t hp_prepare(hp_context* context, uint8_t is_triangle) {
   if ((word >> 8 & 1u) != 0) set_stencil(context, state->stencil, 3, 3);
 #endif
 #if HP_HAS_TEXTURES
-  if (is_triangle != 0) set_texture(context, state);
+  if (is_triangle != 0) {
+    set_texture(context, state);
+    context->is_fogged = state->fog != NULL && writes_color(state) != 0;
+    context->is_over_w = state->texture != NULL || state->perspective_colors != 0 || context->is_fogged != 0;
+#if HALFPLANE_FOG_UNIT != 0
+    if (writes_color(state) != 0) set_fog(context, state);
+#endif
+  }
 #endif
   context->is_drawn = 1;
   return 1;
@@ -476,6 +502,7 @@ static uint8_t is_supported(const hp_state* state) {
       (state->levels != HP_LEVEL_0 || state->minifies_otherwise != 0 || state->texture->levels > 1))
     return 0;
   if (HALFPLANE_COLORS_OVER_W == 0 && state->perspective_colors != 0) return 0;
+  if (HALFPLANE_FOG_UNIT == 0 && state->fog != NULL) return 0;
   if (HP_HAS_STENCIL == 0 && state->has_stencil != 0) return 0;
   if (HP_HAS_ALPHA_TEST == 0 && state->alpha_func != HP_ALWAYS) return 0;
   if (HALFPLANE_MSAA_SAMPLES == 1 && (state->sample_mask != 255 || state->alpha_to_coverage != 0)) return 0;
@@ -503,8 +530,9 @@ static uint8_t is_valid(const hp_state* state) {
                           (texture->address & 63u) != 0 || state->wrap_u > HP_MIRROR || state->wrap_v > HP_MIRROR ||
                           state->combine > HP_ADD_COLOR))
     return 0;
+  if (state->fog != NULL && (state->fog->lines == NULL || state->fog->octave_bits > 4)) return 0;
   /* A triangle has one Q. */
-  return texture == NULL || state->is_affine == 0 || state->perspective_colors == 0;
+  return texture == NULL || state->is_affine == 0 || (state->perspective_colors == 0 && state->fog == NULL);
 }
 
 void hp_set_state(hp_context* context, const hp_state* state) {

@@ -69,7 +69,7 @@ void hp_send_triangle(hp_context* context, const hp_vertex* a, const hp_vertex* 
   uint32_t header = HP_HEADER(HP_TRIANGLE, kept ^ 7u);
   if (slot_b != 2 * slot_a && slot_a != 4 * slot_b) header |= HP_FLIP; /* an odd permutation */
 #if HP_HAS_TEXTURES
-  if (context->state.texture != NULL || context->state.perspective_colors != 0) {
+  if (context->is_over_w != 0) {
     const hp_vertex* in_slot[3];
     in_slot[slot_a >> 1] = a;
     in_slot[slot_b >> 1] = b;

@@ -149,6 +149,12 @@ TEST_F(DriverInterface, RefusesStates) {
   if (config.perspective_colors == 0)
     expect_refused_state(HP_UNSUPPORTED, [](hp_state& s) { s.perspective_colors = 1; });
   if (config.stencil_bits == 0) expect_refused_state(HP_UNSUPPORTED, [](hp_state& s) { s.has_stencil = 1; });
+  const hp_fog_line line{0, 0};
+  const hp_fog fog{&line, 0, 0}, no_lines{nullptr, 0, 0}, too_many{&line, 0, 5};
+  if (config.fog_units == 0) expect_refused_state(HP_UNSUPPORTED, [&](hp_state& s) { s.fog = &fog; });
+  expect_refused_state(HP_BAD_VALUE, [&](hp_state& s) { s.fog = &no_lines; });
+  expect_refused_state(HP_BAD_VALUE, [&](hp_state& s) { s.fog = &too_many; });
+  expect_refused_state(HP_BAD_VALUE, [&](hp_state& s) { s.texture = &texture, s.is_affine = 1, s.fog = &fog; });
   if (config.alpha_units == 0) expect_refused_state(HP_UNSUPPORTED, [](hp_state& s) { s.alpha_func = HP_LESS; });
   if (config.msaa_samples == 1) expect_refused_state(HP_UNSUPPORTED, [](hp_state& s) { s.sample_mask = 1; });
   if (config.msaa_samples == 1 || !tests_alpha(config))

@@ -36,6 +36,7 @@ class CaseMaker {
     hp_set_target(context_.get(), &target);
     set_viewport();
     if (config_.texture_unit != TextureUnitKind::off) add_textures();
+    if (config_.fog_units != 0) add_fogs();
     scene.states.push_back(base_);
     clear(HP_CLEAR_DEPTH | HP_CLEAR_COLOR);
     while (count_ < primitives_) {
@@ -108,6 +109,20 @@ class CaseMaker {
     }
   }
 
+  void add_fogs() {
+    for (std::size_t n = 0; n < fogs_.size(); ++n) {
+      FogOfBoth& both = fogs_[n];
+      both.fog.kind = static_cast<FogKind>(n);
+      both.fog.start = n == 0 ? random_.between(0, 5) : random_.between(0.01, 3);
+      both.fog.end = both.fog.start + random_.between(0.1, 90);
+      for (std::uint8_t& channel : both.color) channel = static_cast<std::uint8_t>(random_.index(256));
+      const FogTable table(both.fog, both.color);
+      for (const FogLine& line : table.lines()) both.lines.push_back({line.start, line.rise});
+      both.of_driver = {both.lines.data(), static_cast<std::int16_t>(table.first()),
+                        static_cast<std::uint8_t>(table.octave_bits())};
+    }
+  }
+
   /// The driver's scissor, and that of the scene's next states.
   void set_scissor() {
     const Scene& scene = out_.scene;
@@ -157,6 +172,13 @@ class CaseMaker {
     outline_ = s;
     outline_state_ = state;
     if (!textures_.empty() && !chance(3)) add_texture(s, state);
+    if (config_.fog_units != 0 && s.is_affine == 0 && chance(2)) {
+      const FogOfBoth& both = fogs_[static_cast<std::size_t>(random_.index(3))];
+      s.fog = &both.of_driver;
+      s.fog_color = HP_RGBA(both.color[0], both.color[1], both.color[2], 0);
+      state.fog = both.fog;
+      state.fog_color = both.color;
+    }
     filled_ = s;
     filled_state_ = state;
   }
@@ -166,6 +188,7 @@ class CaseMaker {
       s.color_mask = static_cast<std::uint8_t>(random_.index(16));
       state.color_write = true;
       for (std::size_t c = 0; c < 4; ++c) state.color_mask[c] = (s.color_mask >> c & 1) != 0;
+      if ((s.color_mask & (config_.color_format == ColorFormat::rgba8888 ? 15 : 7)) == 0) state.color_write = false;
     }
     if (chance(2)) return;
     s.blends = 1;
@@ -385,6 +408,13 @@ class CaseMaker {
   hp_state filled_{}, outline_{};
   State filled_state_, outline_state_;
   std::vector<hp_texture> textures_;
+  struct FogOfBoth {
+    Fog fog;
+    std::array<std::uint8_t, 3> color{};
+    std::vector<hp_fog_line> lines;
+    hp_fog of_driver{};
+  };
+  std::array<FogOfBoth, 3> fogs_;  ///< of each kind
   std::vector<hp_fixed> position_, texcoord_;
   std::vector<std::uint32_t> color_;
   std::uint32_t first_ = 0;

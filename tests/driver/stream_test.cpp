@@ -83,9 +83,14 @@ class Registers {
       has_texture_ = true;
     } else if (which == StateRegister::texture_levels && kind == LevelsWord::levels) {
       levels_ = static_cast<std::uint32_t>(word);
+    } else if (which == StateRegister::texture_levels && kind == LevelsWord::fog) {
+      fog_state_ = FogState::unpack(word);
+    } else if (which == StateRegister::texture_levels && kind == LevelsWord::fog_line) {
+      const auto start = static_cast<std::int32_t>(wrap_signed(static_cast<std::int64_t>(word >> 17), 18));
+      fog_line_[word >> 35 & 255] = FogLine{start, static_cast<std::int32_t>(word & 0x1ffff)};
     } else if (which == StateRegister::texture_levels) {
-      EXPECT_EQ(word, kind == LevelsWord::fog ? FogState{}.pack() : no_light_word());
-      is_off_[kind == LevelsWord::fog ? 0 : 1] = true;
+      EXPECT_EQ(word, no_light_word());
+      is_light_off_ = true;
     }
   }
 
@@ -107,9 +112,11 @@ class Registers {
     if (config_.texture_unit == TextureUnitKind::trilinear && texture_.enable && wanted.units.texture_levels != levels_)
       return "texture_levels";
     if (wanted.units.texture_lines && *wanted.units.texture_lines != lines_.lines()) return "texture_lines";
-    if (wanted.units.fog || wanted.units.light) return "the driver has no such token";
-    if (wanted.units.looks_at_fog && !is_off_[0]) return "fog";
-    return wanted.units.looks_at_light && !is_off_[1] ? "light" : "";
+    if (wanted.units.light || (wanted.units.looks_at_light && !is_light_off_)) return "light";
+    if (!wanted.units.looks_at_fog) return "";
+    const FogTable* fog = wanted.units.fog.get();
+    if (fog_state_ != (fog != nullptr ? FogState{true, fog->octave_bits(), fog->color()} : FogState{})) return "fog";
+    return fog != nullptr && fog_line_ != fog->lines() ? "lines of the fog" : "";
   }
 
  private:
@@ -122,7 +129,9 @@ class Registers {
   LineRegister lines_;
   bool has_texture_ = false;
   std::uint64_t line_tokens_ = 0;
-  std::array<bool, 2> is_off_{};  ///< fog, light
+  bool is_light_off_ = false;
+  std::optional<FogState> fog_state_;
+  std::vector<FogLine> fog_line_ = std::vector<FogLine>(256);
 };
 
 std::string difference(const DecodedPrimitive& driver, const DecodedPrimitive& model, const Widths& widths) {
