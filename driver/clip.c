@@ -42,10 +42,7 @@ static uint32_t clip(hp_context* context) {
     for (uint32_t i = 0; i < size; ++i) {
       const hp_corner *from = &given[i], *to = &given[i + 1 == size ? 0 : i + 1];
       const int64_t d_from = hp_distance(plane, from->part), d_to = hp_distance(plane, to->part);
-      if (count + 2 > HP_CORNERS) {
-        context->status |= HP_POLYGON;
-        return 0;
-      }
+      if (count + 2 > HP_CORNERS) return hp_refuse(context, HP_POLYGON);
       if (d_from >= 0) made[count++] = *from;
       if (d_from >= 0 && d_to < 0) hp_cut(&made[count++], from, to, d_from, d_to);
       if (d_from < 0 && d_to >= 0) hp_cut(&made[count++], to, from, d_to, d_from);

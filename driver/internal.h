@@ -74,6 +74,12 @@ static inline int64_t hp_round_shift(int64_t v, int32_t bits) {
 static inline int32_t hp_min(int32_t a, int32_t b) { return a < b ? a : b; }
 static inline int32_t hp_max(int32_t a, int32_t b) { return a > b ? a : b; }
 
+/* An error, which sticks. */
+static inline uint8_t hp_refuse(hp_context* context, uint32_t status) {
+  context->status |= status;
+  return 0;
+}
+
 /* ---- Words */
 
 /* Waits for room for a command of `words` words; false: it is left out. */

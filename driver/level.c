@@ -20,14 +20,11 @@ static real made(uint64_t size, int32_t exponent, uint8_t is_negative, uint8_t i
   size <<= shift;
   result.exponent = exponent - (int32_t)shift;
   const uint32_t rest = (uint32_t)size & 0x7ffu;
-  result.size = size - rest;
-  if (rest > 0x400u || (rest == 0x400u && (is_more != 0 || (size & 0x800u) != 0))) {
-    result.size += 0x800u;
-    if (result.size == 0) { /* one bit more */
-      result.size = (uint64_t)1 << 63;
-      ++result.exponent;
-    }
-  }
+  const uint8_t is_up = rest > 0x400u || (rest == 0x400u && (is_more != 0 || (size & 0x800u) != 0));
+  const uint64_t kept = (size >> 11) + is_up; /* 2^53 at most: then it has one bit more */
+  const uint32_t carry = (uint32_t)(kept >> 53);
+  result.size = (kept >> carry) << 11;
+  result.exponent += (int32_t)carry;
   return result;
 }
 
@@ -67,15 +64,11 @@ static real plus(real a, real b) {
   return made(whole - part - is_more, a.exponent + 1, a.is_negative, is_more);
 }
 
-/* floor(a + 1/2), modulo 2^32. */
+/* floor(a + 1/2), modulo 2^32. |a| is below 2^40: the largest value is below 2^31, a line's ends are half a subpixel
+   apart at least. */
 static uint32_t residue(real a) {
   const real half = {(uint64_t)1 << 63, -64, 0};
   a = plus(a, half);
-  if (a.size == 0 || a.exponent >= 32) return 0;
-  if (a.exponent >= 0) { /* an integer */
-    const uint32_t low = (uint32_t)a.size << a.exponent;
-    return a.is_negative != 0 ? 0u - low : low;
-  }
   const uint32_t down = (uint32_t)-a.exponent;
   const uint64_t whole = down < 64 ? a.size >> down : 0;
   const uint8_t has_part = down < 64 ? (whole << down) != a.size : 1;

@@ -72,14 +72,13 @@ static void quantize_wide(const int64_t value[3], const uint32_t q[3], uint8_t i
   int32_t above = largest != 0 ? (int32_t)hp_bits64(largest) - 16 : out->reach - 1;
   if (above < out->reach - 1) above = out->reach - 1;
   int32_t exponent = above - (int32_t)bits;
-  for (uint32_t again = 0; again < 2; ++again) {
-    uint8_t fits = 1;
+  for (;; ++exponent) { /* again, where one is rounded up to one bit more */
+    uint32_t all = 0;
     for (uint32_t i = 0; i < 3; ++i) {
       out->p[i] = (int32_t)hp_round_shift(product[i], 16 + exponent);
-      if ((uint32_t)(out->p[i] < 0 ? -out->p[i] : out->p[i]) >> bits != 0) fits = 0;
+      all |= (uint32_t)(out->p[i] < 0 ? -out->p[i] : out->p[i]);
     }
-    if (fits != 0) break;
-    ++exponent; /* rounded up to one bit more */
+    if (all >> bits == 0) break;
   }
   out->shift = 1 + out->reach - exponent - narrow_bits;
 }

@@ -94,10 +94,8 @@ uint8_t hp_make_room(hp_context* context, uint32_t words) {
     hp_settle(context);
     if ((uint32_t)(context->end - context->next) >= words) return 1;
   }
-  if (context->end == NULL || stream->size - (context->written - context->read) < words) {
-    context->status |= HP_FULL;
-    return 0;
-  }
+  if (context->end == NULL || stream->size - (context->written - context->read) < words)
+    return hp_refuse(context, HP_FULL);
   context->wraps = 1;
   context->next = context->wrapped;
   context->end = context->wrapped + words;

@@ -159,7 +159,8 @@ TEST_F(DriverInterface, RefusesStates) {
   if (config.msaa_samples == 1) expect_refused_state(HP_UNSUPPORTED, [](hp_state& s) { s.sample_mask = 1; });
   if (config.msaa_samples == 1 || !tests_alpha(config))
     expect_refused_state(HP_UNSUPPORTED, [](hp_state& s) { s.alpha_to_coverage = 1; });
-  if (config.dither_units == 0) expect_refused_state(HP_UNSUPPORTED, [](hp_state& s) { s.dithers = 1; });
+  if (config.dither_units == 0 && config.color_format == ColorFormat::rgb565)
+    expect_refused_state(HP_UNSUPPORTED, [](hp_state& s) { s.dithers = 1; });
   if (config.blend_lanes == 0) {
     expect_refused_state(HP_UNSUPPORTED, [](hp_state& s) { s.blends = 1; });
     expect_refused_state(HP_UNSUPPORTED, [](hp_state& s) { s.color_mask = 1; });
@@ -180,9 +181,14 @@ TEST_F(DriverInterface, LeavesOutVerticesBeyondItsNumbers) {
     EXPECT_EQ(hp_count(driver.get())->sent, 0U);
     hp_draw(driver.get(), HP_POINTS, &vertices, nullptr, 3);
     EXPECT_EQ(hp_count(driver.get())->sent, 1U) << "the last one is in range";
+    const std::uint32_t before = hp_count(driver.get())->sent;
+    const std::array<hp_fixed, 15> near{0, 0, 0, 9000, 0, 0, 0, 9000, 0, INT32_MAX, 0, 0, 9000, 9000, 0};
+    const hp_vertices strip{near.data(), nullptr, nullptr, 12, 0, 0, 0};
+    hp_draw(driver.get(), HP_TRIANGLE_STRIP, &strip, nullptr, 5);
+    EXPECT_EQ(hp_count(driver.get())->sent, before + 1) << "the others have the fourth one";
     if (driver_config().line_units != 0) {
       hp_draw(driver.get(), HP_LINES, &vertices, nullptr, 2);
-      EXPECT_EQ(hp_count(driver.get())->sent, 1U);
+      EXPECT_EQ(hp_count(driver.get())->sent, before + 1);
     }
     EXPECT_EQ(hp_status(driver.get()), HP_OUT_OF_RANGE);
   }

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Instructions that the driver takes for a vertex and for a triangle of a strip, counted by qemu (docs/driver.md).
 
-usage: tests/driver/count_instructions.py HALFPLANE [--only TEXT] [--profile] [--limit FILE]
+usage: tests/driver/count_instructions.py HALFPLANE [--only TEXT] [--profile] [--page FILE]
 
 HALFPLANE: the program `halfplane`, which writes a configuration's C header. --only: rows whose name has TEXT.
---profile: by function, of the strips alone. --limit FILE: exit 1 where a count is not what FILE (a page with this
-table) says, more than 1 % off: counts depend on the compiler, the table is that of Debian 12's gcc.
+--profile: by function, of the strips alone. --page FILE: exit 1 where a count is more than 1 % off what FILE, a page
+with this table, says. Counts depend on the compiler: the page has those of Debian 12's gcc.
 
 tests/driver/target/scene.c draws four strips of 64 triangles; the same program without its draws is subtracted, and
 that which culls every triangle tells the vertex from the triangle. Cortex-M4 code runs on qemu's Cortex-A7.
@@ -28,19 +28,20 @@ TARGETS = {
 }
 TRIANGLES, VERTICES = 256, 264
 NOTHING, DRAWS, CULLS = 0, 1, 2  # WORK of scene.c
+SCENES = {'embedded': ('embedded', []), 'textured': ('textured', ['-DTEXTURED']),
+          'textured, levels': ('textured', ['-DTEXTURED', '-DLEVELS=7'])}
 PRODUCT, DIVISION = re.compile(r'mul|ml[as]|smm'), re.compile(r'u?s?div|rem')
 
 
-def build(folder, target, config, level, work):
+def build(folder, target, scene, level, work):
     compiler, _ = TARGETS[target]
+    config, defines = SCENES[scene]
     program = folder / f'{target}_{config}_{level}_{work}'
     options = ['-std=c99', level, '-ffreestanding', '-fno-builtin', '-nostartfiles', '-nostdlib', '-ffunction-sections',
                '-Wl,--gc-sections', '-Wl,--no-relax', '-Wl,-e,_start,--no-warn-rwx-segments', '-I', ROOT / 'driver', f'-DWORK={work}',
                f'-DHALFPLANE_CONFIG_FILE="{folder}/{config}.h"']
-    if config == 'textured':
-        options.append('-DTEXTURED')
     sources = [ROOT / 'tests/driver/target/scene.c', *sorted((ROOT / 'driver').glob('*.c'))]
-    subprocess.run([*compiler, *options, '-o', program, *sources, '-lgcc'], check=True)
+    subprocess.run([*compiler, *options, *defines, '-o', program, *sources, '-lgcc'], check=True)
     return program
 
 
@@ -68,11 +69,11 @@ def code_bytes(target, program):
     return int(text.splitlines()[1].split()[0])
 
 
-def measure(folder, target, config, level, profile):
+def measure(folder, target, scene, level, profile):
     """Instructions a vertex, a triangle; products and divisions a triangle; bytes of code."""
     counts, total, kinds = {}, {}, {}
     for work in (NOTHING, DRAWS, CULLS):
-        program = build(folder, target, config, level, work)
+        program = build(folder, target, scene, level, work)
         counts[work] = executed(target, program)
         total[work] = sum(counts[work].values())
         names, kinds[work] = mnemonics(target, program), collections.Counter()
@@ -103,10 +104,10 @@ def rows(halfplane, only, profile):
             (folder / f'{config}.h').write_bytes(header.stdout)
         for target in TARGETS:
             for level in ('-O2', '-O3'):
-                for config in ('embedded', 'textured'):
-                    row = f'{target} {level} {config}'
+                for scene in SCENES:
+                    row = f'{target} {level} {scene}'
                     if only in row:
-                        yield row, measure(folder, target, config, level, profile)
+                        yield row, measure(folder, target, scene, level, profile)
 
 
 def main():
@@ -114,12 +115,12 @@ def main():
     parser.add_argument('halfplane')
     parser.add_argument('--only', default='')
     parser.add_argument('--profile', action='store_true')
-    parser.add_argument('--limit')
+    parser.add_argument('--page')
     options = parser.parse_args()
     missing = [words[0] for pair in TARGETS.values() for words in pair if not shutil.which(words[0])]
     if missing:
         sys.exit(f'count_instructions.py: not installed: {" ".join(missing)}')
-    page = pathlib.Path(options.limit).read_text() if options.limit else ''
+    page = pathlib.Path(options.page).read_text() if options.page else ''
     wrong = 0
     print('| processor, options, configuration | vertex | triangle | products | divisions | triangles/s at 100 MHz | code |')
     print('| --- | ---: | ---: | ---: | ---: | ---: | ---: |')
@@ -130,7 +131,7 @@ def main():
             said = re.search(rf'^\| {row} \| ([\d,]+) \| ([\d,]+) \|', page, re.M)
             if not said or any(abs(int(text.replace(',', '')) - value) > value / 100
                                for text, value in zip(said.groups(), (vertex, triangle))):
-                print(f'{options.limit} says {said[0] if said else "nothing of " + row}', file=sys.stderr)
+                print(f'{options.page} says {said[0] if said else "nothing of " + row}', file=sys.stderr)
                 wrong = 1
     return wrong
 
