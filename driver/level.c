@@ -1,6 +1,6 @@
 /* Lines of a triangle's level of detail (model/stages/level_of_detail.cpp): what a texture with levels needs besides
    codes over w. The model has them in binary64, products of 89 bits rounded to 53: so they are that here, in integers,
-   step by step. Some 6,000 instructions a triangle on RV32IM. */
+   step by step. Some 13,000 instructions a triangle on RV32IM. */
 #include "internal.h"
 
 #if HALFPLANE_TEXTURE_UNIT == 3
@@ -20,7 +20,7 @@ static real made(uint64_t size, int32_t exponent, uint8_t is_negative, uint8_t i
   size <<= shift;
   result.exponent = exponent - (int32_t)shift;
   const uint32_t rest = (uint32_t)size & 0x7ffu;
-  const uint8_t is_up = rest > 0x400u || (rest == 0x400u && (is_more != 0 || (size & 0x800u) != 0));
+  const uint8_t is_up = rest > 0x400u || (rest == 0x400u && (is_more != 0 || (size & 0x800u) != 0)) ? 1 : 0;
   const uint64_t kept = (size >> 11) + is_up; /* 2^53 at most: then it has one bit more */
   const uint32_t carry = (uint32_t)(kept >> 53);
   result.size = (kept >> carry) << 11;
@@ -45,8 +45,8 @@ static real times(real a, real b) {
 
 /* Whether |a| < |b|. */
 static uint8_t is_smaller(real a, real b) {
-  if (a.size == 0 || b.size == 0) return a.size == 0 && b.size != 0;
-  return a.exponent != b.exponent ? a.exponent < b.exponent : a.size < b.size;
+  if (a.size == 0 || b.size == 0) return a.size == 0 && b.size != 0 ? 1 : 0;
+  return (a.exponent != b.exponent ? a.exponent < b.exponent : a.size < b.size) ? 1 : 0;
 }
 
 static real plus(real a, real b) {
@@ -58,7 +58,7 @@ static real plus(real a, real b) {
   if (b.size == 0) return a;
   const uint32_t apart = (uint32_t)(a.exponent - b.exponent) + 1; /* and one bit for the carry */
   const uint64_t part = apart < 64 ? b.size >> apart : 0;
-  const uint8_t is_more = apart < 64 ? (part << apart) != b.size : 1;
+  const uint8_t is_more = apart >= 64 || (part << apart) != b.size ? 1 : 0;
   const uint64_t whole = a.size >> 1;
   if (a.is_negative == b.is_negative) return made(whole + part, a.exponent + 1, a.is_negative, is_more);
   return made(whole - part - is_more, a.exponent + 1, a.is_negative, is_more);
@@ -71,7 +71,7 @@ static uint32_t residue(real a) {
   a = plus(a, half);
   const uint32_t down = (uint32_t)-a.exponent;
   const uint64_t whole = down < 64 ? a.size >> down : 0;
-  const uint8_t has_part = down < 64 ? (whole << down) != a.size : 1;
+  const uint8_t has_part = down >= 64 || (whole << down) != a.size ? 1 : 0;
   return a.is_negative != 0 ? 0u - ((uint32_t)whole + has_part) : (uint32_t)whole;
 }
 

@@ -71,16 +71,15 @@ static void quantize_wide(const int64_t value[3], const uint32_t q[3], uint8_t i
   out->reach = (int32_t)hp_bits64((farthest * 1025) >> 26);
   int32_t above = largest != 0 ? (int32_t)hp_bits64(largest) - 16 : out->reach - 1;
   if (above < out->reach - 1) above = out->reach - 1;
-  int32_t exponent = above - (int32_t)bits;
-  for (;; ++exponent) { /* again, where one is rounded up to one bit more */
+  for (int32_t exponent = above - (int32_t)bits;; ++exponent) { /* again, where one is rounded up to one bit more */
     uint32_t all = 0;
     for (uint32_t i = 0; i < 3; ++i) {
       out->p[i] = (int32_t)hp_round_shift(product[i], 16 + exponent);
       all |= (uint32_t)(out->p[i] < 0 ? -out->p[i] : out->p[i]);
     }
-    if (all >> bits == 0) break;
+    out->shift = 1 + out->reach - exponent - narrow_bits;
+    if (all >> bits == 0) return;
   }
-  out->shift = 1 + out->reach - exponent - narrow_bits;
 }
 
 /* A value, from the reference on, times Q. */
