@@ -45,8 +45,17 @@ def header(stream):
                 name = f'HALFPLANE_{"" if kind == "command" else "STATE_"}{entry["name"]}_{field.upper()}'
                 lines.append(f'#define {name}_SHIFT {low}u')
                 lines.append(f'#define {name}_MASK {((1 << bits) - 1) << low:#010x}u')
+    lines += ['', "/* X(name, header bits that a command names): every command; X(name, when): every error */"]
+    named = lambda entry: sum(((1 << bits) - 1) << low for _, low, bits in entry.get('fields', []))
+    lines += list_of('COMMANDS', [f'X({entry["name"]}, {named(entry):#08x}u)' for entry in stream['command']])
+    lines += list_of('ERRORS', [f'X({entry["name"]}, "{entry["effect"]}")' for entry in stream['error']])
     lines += ['', '#endif', '']
     return '\n'.join(lines)
+
+
+def list_of(name, entries):
+    """A macro of a line an entry."""
+    return [f'#define HALFPLANE_{name}(X) \\', *(f'  {entry} \\' for entry in entries[:-1]), f'  {entries[-1]}']
 
 
 def bits_of(low, bits):

@@ -1,8 +1,8 @@
 /* The driver of the core: draws into a command stream of 32-bit words. Freestanding C99: no heap, no floating point, of
-   libc memcpy alone. docs/driver.md shows the whole of it on one page; core/ has the stream's words.
+   libc memcpy and memset alone. docs/driver.md shows the whole of it on one page; core/ has the stream's words.
 
-   Numbers are s15.16 (hp_fixed: 65536 is 1) unless a comment says otherwise. Errors stick: hp_status() has them, and
-   nothing that would be wrong is sent. One driver is compiled for one configuration, halfplane_config.h. */
+   Numbers are s15.16 (hp_fixed: 65536 is 1) unless a comment says otherwise. Errors stick: hp_status() has them, and no
+   word is sent that the core refuses. One driver is compiled for one configuration, halfplane_config.h. */
 #ifndef HALFPLANE_DRIVER_H
 #define HALFPLANE_DRIVER_H
 
@@ -34,6 +34,9 @@ typedef struct hp_context hp_context; /* at the end of this file; its content is
 #define HP_OUT_OF_RANGE ((uint32_t)4) /* a vertex beyond +-32768 after a matrix: its primitives were left out */
 #define HP_POLYGON ((uint32_t)8)      /* a clipped triangle of too many corners was left out */
 #define HP_UNSUPPORTED ((uint32_t)16) /* this configuration has no unit for it; the call did nothing */
+/* A call before its turn, which did nothing: a draw, hp_flush() or another clear before the hp_clear() of depth and
+   colour of the whole target, or hp_present() of what was drawn without hp_flush(). */
+#define HP_WRONG_ORDER ((uint32_t)32)
 
 enum hp_topology { HP_TRIANGLES, HP_TRIANGLE_STRIP, HP_TRIANGLE_FAN, HP_LINES, HP_LINE_STRIP, HP_LINE_LOOP, HP_POINTS };
 enum hp_func { HP_NEVER, HP_LESS, HP_LEQUAL, HP_EQUAL, HP_GREATER, HP_GEQUAL, HP_NOTEQUAL, HP_ALWAYS };
@@ -75,10 +78,13 @@ typedef struct hp_stream {
   void* user;
 } hp_stream;
 
-/* The buffers in memory: bytes, as docs/memory.md says. */
+/* The buffers in memory, as docs/memory.md says: byte addresses, and the bytes from one row of tiles to the next. */
 typedef struct hp_target {
-  uint16_t width, height; /* pixels */
-  uint32_t depth, color, depth_flags, color_flags, row_stride, textures;
+  uint16_t width, height;            /* pixels */
+  uint32_t depth, color;             /* multiples of 1 << HALFPLANE_PLANE_SHIFT */
+  uint32_t depth_flags, color_flags; /* of 1 << HALFPLANE_FLAG_ROW_SHIFT */
+  uint32_t row_stride;               /* of 1 << HALFPLANE_PLANE_SHIFT; at least two of these for each tile of a row */
+  uint32_t textures;                 /* of 4096 */
 } hp_target;
 
 typedef struct hp_viewport {
@@ -163,8 +169,8 @@ void hp_init(hp_context* context);
 /* The configuration that the driver was compiled for: the core's register CONFIG_ID must have the same. */
 uint64_t hp_config_id(void);
 
-/* ---- A frame. A frame begins with hp_begin() and hp_target(); the first thing drawn is hp_clear() of colour and
-   depth. */
+/* ---- A frame. A frame begins with hp_begin() and hp_set_target(); the first thing drawn is hp_clear() of colour and
+   depth of the whole target. */
 
 void hp_begin(hp_context* context, const hp_stream* stream);
 /* Buffers and viewport (the whole of it); after another one was drawn to, flushes that first. */
@@ -185,7 +191,8 @@ void hp_present(hp_context* context, uint32_t color, uint32_t color_flags);
 void hp_wait_vblank(hp_context* context);
 /* The stream stops here until it is started again: the end of a buffer. */
 void hp_stop(hp_context* context);
-/* Words since hp_begin(), modulo 2^32: what a ring's head register gets. */
+/* Words since hp_begin(), modulo 2^32. Where the core was restarted before hp_begin(), its low 20 bits are what the
+   register RING_TAIL gets. */
 uint32_t hp_written(const hp_context* context);
 
 /* ---- State */
@@ -272,7 +279,8 @@ struct hp_context {
   uint32_t fog_word;                      /* of the core */
   const hp_fog_line* fog_lines;           /* likewise; null: unknown */
   uint32_t known;                         /* a bit for each of these that the core has */
-  uint8_t is_drawn, drops_texels, is_set; /* since the last flush; a target is set */
+  uint8_t is_drawn, drops_texels;         /* since the last flush */
+  uint8_t is_set, is_cleared;             /* the target */
   uint32_t slot[3];                       /* tags of the core's vertex slots */
   hp_vertex cache[HP_CACHE];
   hp_vertex corner[HP_CORNERS];

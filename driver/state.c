@@ -52,7 +52,7 @@ void hp_begin(hp_context* context, const hp_stream* stream) {
   context->known = 0;
   context->has_lines = 0;
   context->fog_lines = NULL;
-  context->is_drawn = context->is_set = 0;
+  context->is_drawn = context->is_set = context->is_cleared = 0;
   memset(&context->counts, 0, sizeof context->counts);
 }
 
@@ -326,11 +326,16 @@ static void set_fog(hp_context* context, const hp_state* state) {
 
 /* ---- Draws */
 
+static uint8_t is_after_clear(hp_context* context) {
+  if (context->is_cleared == 0) context->status |= HP_WRONG_ORDER;
+  return context->is_cleared;
+}
+
 uint8_t hp_prepare(hp_context* context, uint8_t is_triangle) {
   const hp_state* state = &context->state;
   const int32_t* rect = context->rect;
   if (context->is_set == 0) context->status |= HP_BAD_VALUE;
-  if (context->is_set == 0 || rect[0] > rect[2] || rect[1] > rect[3]) return 0;
+  if (context->is_set == 0 || is_after_clear(context) == 0 || rect[0] > rect[2] || rect[1] > rect[3]) return 0;
   uint32_t word = (uint32_t)state->depth_test | ((uint32_t)(state->depth_write != 0 ? 1 : 0) << 3) |
                   ((uint32_t)writes_color(state) << 4);
 #if HALFPLANE_MSAA_SAMPLES > 1
@@ -384,8 +389,9 @@ void hp_clear(hp_context* context, uint32_t buffers, uint32_t color, uint32_t de
     context->status |= HP_BAD_VALUE;
     return;
   }
-  if (box[0] > box[2] || box[1] > box[3]) return;
   const uint8_t is_whole = box[0] == 0 && box[1] == 0 && box[2] == right && box[3] == bottom;
+  const uint8_t is_first = is_whole != 0 && buffers == (HP_CLEAR_DEPTH | HP_CLEAR_COLOR);
+  if ((is_first == 0 && is_after_clear(context) == 0) || box[0] > box[2] || box[1] > box[3]) return;
   uint32_t word = HP_ALWAYS | (buffers & HP_CLEAR_DEPTH) << 3 | (buffers & HP_CLEAR_COLOR) << 3;
 #if HP_HAS_STENCIL
   if ((buffers & HP_CLEAR_DEPTH) != 0) {
@@ -414,40 +420,62 @@ void hp_clear(hp_context* context, uint32_t buffers, uint32_t color, uint32_t de
                (buffers & HP_CLEAR_COLOR) != 0 ? color : 0);
   hp_settle(context);
   context->is_drawn = 1;
+  if (is_first != 0) context->is_cleared = 1;
 }
 
 /* ---- The end of a frame */
 
-static void put_command(hp_context* context, uint32_t header, uint32_t words, uint32_t first, uint32_t second) {
-  if (hp_reserve(context, 1 + words) == 0) return;
+static uint8_t put_command(hp_context* context, uint32_t header, uint32_t words, uint32_t first, uint32_t second) {
+  if (hp_reserve(context, 1 + words) == 0) return 0;
   hp_put(context, header);
   if (words > 0) hp_put(context, first);
   if (words > 1) hp_put(context, second);
   hp_settle(context);
+  return 1;
 }
 
 void hp_flush(hp_context* context, uint8_t loses_depth) {
   const uint32_t flag = loses_depth != 0 && HALFPLANE_CACHE_KIND == 1 ? 1 : 0; /* a cache of tiles has none */
-  put_command(context, HP_HEADER(HP_FLUSH, flag), 0, 0, 0);
-  context->is_drawn = 0;
+  if (is_after_clear(context) == 0) return;
+  if (put_command(context, HP_HEADER(HP_FLUSH, flag), 0, 0, 0) != 0) context->is_drawn = 0;
 }
-void hp_fence(hp_context* context, uint32_t tag) { put_command(context, HP_HEADER(HP_FENCE, 0), 1, tag, 0); }
+void hp_fence(hp_context* context, uint32_t tag) { (void)put_command(context, HP_HEADER(HP_FENCE, 0), 1, tag, 0); }
+static uint8_t is_multiple(uint32_t address, uint32_t shift) { return (address & (((uint32_t)1 << shift) - 1)) == 0; }
+
 void hp_present(hp_context* context, uint32_t color, uint32_t color_flags) {
-  put_command(context, HP_HEADER(HP_PRESENT, 0), 2, color, color_flags);
+  if (is_multiple(color, HALFPLANE_PLANE_SHIFT) == 0 || is_multiple(color_flags, HALFPLANE_FLAG_ROW_SHIFT) == 0) {
+    context->status |= HP_BAD_VALUE;
+    return;
+  }
+  if (context->is_drawn != 0) {
+    context->status |= HP_WRONG_ORDER;
+    return;
+  }
+  (void)put_command(context, HP_HEADER(HP_PRESENT, 0), 2, color, color_flags);
 }
-void hp_wait_vblank(hp_context* context) { put_command(context, HP_HEADER(HP_WAIT_VBLANK, 0), 0, 0, 0); }
-void hp_stop(hp_context* context) { put_command(context, HP_HEADER(HP_STOP, 0), 0, 0, 0); }
+void hp_wait_vblank(hp_context* context) { (void)put_command(context, HP_HEADER(HP_WAIT_VBLANK, 0), 0, 0, 0); }
+void hp_stop(hp_context* context) { (void)put_command(context, HP_HEADER(HP_STOP, 0), 0, 0, 0); }
 
 /* ---- State */
 
+static uint8_t is_valid_target(const hp_target* t) {
+  const uint32_t tiles = ((uint32_t)t->width + HALFPLANE_TILE_SIZE - 1) >> HALFPLANE_TILE_SHIFT;
+  if (t->width == 0 || t->height == 0 || t->width > HALFPLANE_TARGET_WIDTH || t->height > HALFPLANE_TARGET_HEIGHT)
+    return 0;
+  if ((t->row_stride >> HALFPLANE_ROW_STRIDE_BITS) != 0 || t->row_stride < tiles << (HALFPLANE_PLANE_SHIFT + 1))
+    return 0;
+  return is_multiple(t->depth | t->color | t->row_stride, HALFPLANE_PLANE_SHIFT) != 0 &&
+         is_multiple(t->depth_flags | t->color_flags, HALFPLANE_FLAG_ROW_SHIFT) != 0 &&
+         is_multiple(t->textures, 12) != 0;
+}
+
 void hp_set_target(hp_context* context, const hp_target* target) {
-  if (target->width == 0 || target->height == 0 || target->width > HALFPLANE_TARGET_WIDTH ||
-      target->height > HALFPLANE_TARGET_HEIGHT) {
+  if (is_valid_target(target) == 0) {
     context->status |= HP_BAD_VALUE;
     return;
   }
   if (context->is_drawn != 0) hp_flush(context, 0);
-  if (hp_reserve(context, 8) == 0) return;
+  if (context->is_drawn != 0 || hp_reserve(context, 8) == 0) return;
   hp_put(context, HP_SET_OF(HP_TARGET, 7));
   hp_put(context, (uint32_t)(target->width - 1) | ((uint32_t)(target->height - 1) << 16));
   hp_put(context, target->depth);
@@ -459,6 +487,7 @@ void hp_set_target(hp_context* context, const hp_target* target) {
   hp_settle(context);
   context->target = *target;
   context->is_set = 1;
+  context->is_cleared = 0;
   const hp_viewport whole = {0, 0, target->width * HP_ONE, target->height * HP_ONE, 0, HP_DEPTH_ONE, 0};
   context->scissor[0] = context->scissor[1] = 0;
   context->scissor[2] = target->width - 1;

@@ -91,4 +91,30 @@
 #define HALFPLANE_STATE_TEXTURE_BASE_BASE_SHIFT 12u
 #define HALFPLANE_STATE_TEXTURE_BASE_BASE_MASK 0xfffff000u
 
+/* X(name, header bits that a command names): every command; X(name, when): every error */
+#define HALFPLANE_COMMANDS(X) \
+  X(NOP, 0x000000u) \
+  X(SET, 0x000f0fu) \
+  X(FENCE, 0x000000u) \
+  X(PRESENT, 0x000000u) \
+  X(WAIT_VBLANK, 0x000000u) \
+  X(STOP, 0x000000u) \
+  X(TRIANGLE, 0x00001fu) \
+  X(RECTANGLE, 0x000000u) \
+  X(CLEAR, 0x00000fu) \
+  X(FLUSH, 0x000001u) \
+  X(POINT, 0x000000u) \
+  X(LINE, 0x000000u) \
+  X(STATE, 0x000007u)
+#define HALFPLANE_ERRORS(X) \
+  X(NONE, "no error") \
+  X(UNKNOWN_OPCODE, "the header has no command's opcode") \
+  X(RESERVED, "a header bit that its command does not name is set, or a CLEAR of nothing, or of a bin with depth") \
+  X(BAD_REGISTER, "SET of no register, or beyond the last") \
+  X(NOT_FLUSHED, "SET of target, layout or texture base after drawing without a FLUSH") \
+  X(NO_CLEAR, "drawing, a bin's CLEAR or a FLUSH before the first CLEAR of depth and colour of the target") \
+  X(BAD_BOX, "the box is inverted or ends beyond the target") \
+  X(NOT_SUPPORTED, "this configuration lacks the unit") \
+  X(BUS, "the word came with an error of the bus")
+
 #endif

@@ -1,67 +1,162 @@
 #include "decode.hpp"
 
-#include <cstdio>
+#include <algorithm>
+#include <string_view>
 
 #include "../stream.h"
 #include "model/packets/packet_words.hpp"
 #include "model/packets/state_packets.hpp"
+#include "model/stages/line_raster.hpp"
 
 namespace halfplane::driver {
 namespace {
 
-constexpr int kBoxMax = 1, kDepthBase = 4, kColorBase = 5, kDepthFlagsBase = 6, kColorFlagsBase = 7, kRowStride = 8,
-              kTextureBase = 9;
+constexpr std::uint32_t kBoxMax = HALFPLANE_STATE_REGISTER_BOX_MAX, kDepthBase = HALFPLANE_STATE_REGISTER_DEPTH_BASE,
+                        kRowStride = HALFPLANE_STATE_REGISTER_ROW_STRIDE,
+                        kTextureBase = HALFPLANE_STATE_REGISTER_TEXTURE_BASE;
+
+#define NAME_AND_TEXT(name, when) std::string_view{#name ": " when},
+constexpr std::array kErrors{HALFPLANE_ERRORS(NAME_AND_TEXT)};
+#undef NAME_AND_TEXT
+
+std::string word_text(std::uint32_t number) {
+  return "word " + std::to_string(number) + " of the command stream (of which the first is word 1): ";
+}
+
+/// The header bits that a command names; nothing for an opcode that is none.
+std::optional<std::uint32_t> named_bits(std::uint32_t opcode) {
+  switch (opcode) {
+#define BITS_OF(name, bits) \
+  case HALFPLANE_COMMAND_##name: return bits;
+    HALFPLANE_COMMANDS(BITS_OF)
+#undef BITS_OF
+    default: return std::nullopt;
+  }
+}
+
+bool draws(std::uint32_t opcode) { return opcode >= HP_TRIANGLE; }
+
+bool clears_bin(std::uint32_t fields) { return (fields & HALFPLANE_CLEAR_BIN_MASK) != 0; }
+bool clears_both(std::uint32_t fields) {
+  return (fields & (HALFPLANE_CLEAR_BIN_MASK | HALFPLANE_CLEAR_DEPTH_MASK | HALFPLANE_CLEAR_COLOR_MASK)) ==
+         (HALFPLANE_CLEAR_DEPTH_MASK | HALFPLANE_CLEAR_COLOR_MASK);
+}
+/// A clear of nothing, or of a bin with more than colour.
+bool is_no_clear(std::uint32_t fields) {
+  constexpr std::uint32_t kBuffers = HALFPLANE_CLEAR_DEPTH_MASK | HALFPLANE_CLEAR_COLOR_MASK;
+  if (clears_bin(fields)) return fields != (HALFPLANE_CLEAR_BIN_MASK | HALFPLANE_CLEAR_COLOR_MASK);
+  return (fields & kBuffers) == 0;
+}
+
+/// Whether a line is one: its pixels lie in the target, and its error keeps to its register.
+bool is_line_inside(const LineSetup& line, const Widths& widths, int width, int height) {
+  LineState state = first_state(line);
+  for (;;) {
+    if (state.x < 0 || state.y < 0 || state.x >= width || state.y >= height ||
+        state.error != wrap_signed(state.error, widths.line_error.bits))
+      return false;
+    if (state.remaining == 0) return true;
+    advance(state, line, widths);
+  }
+}
 
 }  // namespace
 
+RefusedWord::RefusedWord(std::uint32_t code, std::uint32_t number)
+    : InputError(word_text(number) + std::string(kErrors[code])), error(code), words(number) {}
+
 Decoder::Decoder(const Config& config) : config_(config), widths_(derive_widths(config)) {}
 
-void Decoder::refuse(const std::string& why) const {
-  throw InputError("word " + std::to_string(at_) + " of the command stream: " + why);
+void Decoder::refuse(std::uint32_t error) const { throw RefusedWord(error, taken_ + static_cast<std::uint32_t>(at_)); }
+
+void Decoder::undefined(const std::string& why) const {
+  throw InputError(word_text(taken_ + static_cast<std::uint32_t>(at_)) + why);
 }
 
 std::uint32_t Decoder::next() {
-  if (at_ == words_.size()) refuse("the stream ends inside a command");
+  if (at_ == words_.size()) undefined("the stream ends inside a command, and the core waits for the rest of it");
   return words_[at_++];
 }
 
-void Decoder::read(std::span<const std::uint32_t> words) {
+std::size_t Decoder::read(std::span<const std::uint32_t> words) {
   words_ = words;
   at_ = 0;
-  while (at_ < words_.size()) {
+  bool is_stopped = false;
+  while (at_ < words_.size() && !is_stopped) {
     const std::uint32_t header = next(), opcode = header >> 24, fields = header & 0xffffff;
+    check_header(opcode, fields);
     switch (opcode) {
       case HP_SET: {
         const std::uint32_t first = fields & 15, count = fields >> 8 & 15;
-        if (count == 0 || first + count > kTextureBase + 1) refuse("SET of registers that there are not");
         for (std::uint32_t i = 0; i < count; ++i) set(first + i, next());
         break;
       }
       case HP_FENCE: fences_.push_back(next()); break;
-      case HP_PRESENT:
-        (void)next();
-        (void)next();
+      case HP_PRESENT: {
+        const std::uint32_t color = next();
+        presented_.push_back({color, next()});
         break;
-      case HP_WAIT_VBLANK:
-      case HP_STOP: break;
-      case HP_TRIANGLE:
-      case HP_RECTANGLE:
-      case HP_FAST_CLEAR:
-      case HP_FLUSH:
-      case HP_POINT:
-      case HP_LINE:
-      case HP_TOKEN: draw(static_cast<PrimitiveKind>(opcode & 7), fields); break;
-      default: refuse("unknown opcode " + std::to_string(opcode));
+      }
+      case HP_STOP: is_stopped = true; break;
+      default:
+        if (draws(opcode)) draw(static_cast<PrimitiveKind>(opcode & 7), fields);
     }
+  }
+  taken_ += static_cast<std::uint32_t>(at_);
+  return at_;
+}
+
+bool Decoder::lacks_unit(std::uint32_t opcode, std::uint32_t fields) const {
+  const bool has_blocks = config_.cache_kind == CacheKind::blocks;
+  switch (opcode) {
+    case HP_LINE: return config_.line_units == 0;
+    case HP_TOKEN:
+      return widths_.coordinates == 0 && config_.stencil_bits == 0 && config_.blend_lanes == 0 &&
+             config_.alpha_units == 0;
+    case HP_TRIANGLE: return (fields & HP_OVER_W) != 0 && widths_.planes == widths_.affine_planes;
+    case HP_FAST_CLEAR:
+      return (fields & (HALFPLANE_CLEAR_BIN_MASK | HALFPLANE_CLEAR_LOSES_DEPTH_MASK)) != 0 && !has_blocks;
+    case HP_FLUSH: return (fields & HALFPLANE_FLUSH_LOSES_DEPTH_MASK) != 0 && !has_blocks;
+    default: return false;
   }
 }
 
+/// The first error of a header, in the order of docs/core.md.
+void Decoder::check_header(std::uint32_t opcode, std::uint32_t fields) const {
+  const std::optional<std::uint32_t> named = named_bits(opcode);
+  if (!named) refuse(HALFPLANE_ERROR_UNKNOWN_OPCODE);
+  if (lacks_unit(opcode, fields)) refuse(HALFPLANE_ERROR_NOT_SUPPORTED);
+  if ((fields & ~*named) != 0 || (opcode == HP_FAST_CLEAR && is_no_clear(fields))) refuse(HALFPLANE_ERROR_RESERVED);
+  if (opcode == HP_SET) {
+    const std::uint32_t first = fields & 15, count = fields >> 8 & 15;
+    if (count == 0 || first + count > kTextureBase + 1) refuse(HALFPLANE_ERROR_BAD_REGISTER);
+  }
+  if (!draws(opcode) || opcode == HP_TOKEN) return;
+  if (!is_cleared_ && !(opcode == HP_FAST_CLEAR && clears_both(fields))) refuse(HALFPLANE_ERROR_NO_CLEAR);
+  const bool has_box = !is_token(static_cast<PrimitiveKind>(opcode & 7));
+  if (has_box || (opcode == HP_FAST_CLEAR && clears_bin(fields))) {
+    check_is_set(HP_BOX_MIN, kBoxMax);
+    if (box_.left > box_.right || box_.top > box_.bottom || box_.right >= width_ || box_.bottom >= height_)
+      refuse(HALFPLANE_ERROR_BAD_BOX);
+  }
+  if (has_box || opcode == HP_LINE) check_is_set(HP_STATE, HP_STATE);
+  check_is_set(kDepthBase, kRowStride);
+}
+
+void Decoder::check_is_set(std::uint32_t first, std::uint32_t last) const {
+  for (std::uint32_t which = first; which <= last; ++which)
+    if ((is_set_ >> which & 1) == 0)
+      undefined("it draws, and state register " + std::to_string(which) + " was never set");
+}
+
 void Decoder::set(std::uint32_t which, std::uint32_t value) {
-  const auto low = static_cast<std::uint16_t>(value), high = static_cast<std::uint16_t>(value >> 16);
-  if (which >= HP_TARGET && is_drawn_) refuse("SET of the layout after drawing without a flush");
+  const auto column = static_cast<std::uint16_t>(wrap_unsigned(value & 0xffff, widths_.pixel_x.bits)),
+             row = static_cast<std::uint16_t>(wrap_unsigned(value >> 16, widths_.pixel_y.bits));
+  if (which >= HP_TARGET && is_drawn_) refuse(HALFPLANE_ERROR_NOT_FLUSHED);
+  is_set_ |= 1U << which;
   switch (which) {
-    case HP_BOX_MIN: box_.left = low, box_.top = high; break;
-    case kBoxMax: box_.right = low, box_.bottom = high; break;
+    case HP_BOX_MIN: box_.left = column, box_.top = row; break;
+    case kBoxMax: box_.right = column, box_.bottom = row; break;
     case HP_STATE:
       state_ = {static_cast<DepthFunc>(value & 7), (value >> 3 & 1) != 0, (value >> 4 & 1) != 0};
       cull_ = static_cast<Cull>(value >> 5 & 3);
@@ -69,18 +164,28 @@ void Decoder::set(std::uint32_t which, std::uint32_t value) {
       state_.tests_stencil = (value >> 8 & 1) != 0;
       state_.writes_stencil = (value >> 9 & 1) != 0;
       state_.marks_failed = (value >> 10 & 1) != 0;
+      state_.is_back = (value >> 11 & 1) != 0;
       state_.masked_samples = static_cast<std::uint8_t>(value >> 16);
       break;
-    case HP_TARGET:
-      width_ = low + 1;
-      height_ = high + 1;
+    case HP_TARGET: {
+      const std::uint32_t width = (value & 0xffff) + 1, height = (value >> 16) + 1;
+      if (width > static_cast<std::uint32_t>(config_.target_width) ||
+          height > static_cast<std::uint32_t>(config_.target_height))
+        undefined("a target of " + std::to_string(width) + "x" + std::to_string(height) +
+                  ", and this configuration has " + std::to_string(config_.target_width) + "x" +
+                  std::to_string(config_.target_height));
+      width_ = static_cast<int>(width);
+      height_ = static_cast<int>(height);
       is_cleared_ = false;
       break;
+    }
     case kDepthBase: layout_.depth_base = value; break;
-    case kColorBase: layout_.color_base = value; break;
-    case kDepthFlagsBase: layout_.depth_flags_base = value; break;
-    case kColorFlagsBase: layout_.color_flags_base = value; break;
-    case kRowStride: layout_.row_stride = value; break;
+    case HALFPLANE_STATE_REGISTER_COLOR_BASE: layout_.color_base = value; break;
+    case HALFPLANE_STATE_REGISTER_DEPTH_FLAGS_BASE: layout_.depth_flags_base = value; break;
+    case HALFPLANE_STATE_REGISTER_COLOR_FLAGS_BASE: layout_.color_flags_base = value; break;
+    case kRowStride:
+      layout_.row_stride = static_cast<std::uint32_t>(wrap_unsigned(value, widths_.row_stride.bits));
+      break;
     default: break;  // the base of textures
   }
 }
@@ -115,11 +220,14 @@ void Decoder::read_triangle(std::uint32_t fields, PrimitivePacket& packet) {
   for (std::size_t s = 0; s < 3; ++s) {
     if ((fields >> s & 1) != 0) {
       const std::uint32_t xy = next();
-      slot_[s] = {static_cast<std::int16_t>(xy), static_cast<std::int16_t>(xy >> 16), {}};
+      const auto coordinate = [&](std::uint32_t half) {
+        return from_bits<decltype(slot_[s].x)>(half, widths_.coordinate);
+      };
+      slot_[s] = {coordinate(xy & 0xffff), coordinate(xy >> 16), {}};
       read_affine(slot_[s].code);
       is_loaded_[s] = true;
     }
-    if (!is_loaded_[s]) refuse("TRIANGLE of a vertex slot that is not loaded");
+    if (!is_loaded_[s]) undefined("a TRIANGLE, and vertex slot " + std::to_string(s) + " holds no vertex");
     packet.vertex.x[s] = slot_[s].x;
     packet.vertex.y[s] = slot_[s].y;
     packet.vertex.code[s] = slot_[s].code;
@@ -156,13 +264,12 @@ void Decoder::draw(PrimitiveKind kind, std::uint32_t fields) {
   DecodedPrimitive out;
   PrimitivePacket& packet = out.packet;
   packet.kind = kind;
-  packet.box = {0, 0, static_cast<std::uint16_t>(width_ - 1), static_cast<std::uint16_t>(height_ - 1)};
+  packet.box = {0, 0, static_cast<std::uint16_t>(std::max(width_, 1) - 1),
+                static_cast<std::uint16_t>(std::max(height_, 1) - 1)};
   if (!is_token(kind)) packet.box = box_;
   packet.state = state_;
   if (kind == PrimitiveKind::fast_clear || kind == PrimitiveKind::flush)
     packet.state = {DepthFunc::always, false, false};
-  if (!is_cleared_ && kind != PrimitiveKind::state && kind != PrimitiveKind::fast_clear)
-    refuse("drawing before the first clear of depth and colour");
   switch (kind) {
     case PrimitiveKind::triangle: read_triangle(fields, packet); break;
     case PrimitiveKind::rectangle:
@@ -173,23 +280,26 @@ void Decoder::draw(PrimitiveKind kind, std::uint32_t fields) {
     case PrimitiveKind::fast_clear:
       read_affine(packet.vertex.code[0]);
       packet.vertex.code.fill(packet.vertex.code[0]);
-      packet.state.depth_write = (fields & 1) != 0;
-      packet.state.color_write = (fields & 2) != 0;
-      is_cleared_ = is_cleared_ || (fields & 3) == 3;
+      packet.state.depth_write = (fields & HALFPLANE_CLEAR_DEPTH_MASK) != 0;
+      packet.state.color_write = (fields & HALFPLANE_CLEAR_COLOR_MASK) != 0;
+      if ((fields & HALFPLANE_CLEAR_LOSES_DEPTH_MASK) != 0) packet.state.depth_test = DepthFunc::never;
+      if (clears_bin(fields)) packet.state.depth_test = DepthFunc::equal, packet.box = box_;
+      is_cleared_ = is_cleared_ || clears_both(fields);
       break;
     case PrimitiveKind::flush:
-      if ((fields & 1) != 0) packet.state.depth_test = DepthFunc::never;
+      if ((fields & HALFPLANE_FLUSH_LOSES_DEPTH_MASK) != 0) packet.state.depth_test = DepthFunc::never;
       break;
-    case PrimitiveKind::line: out.line = read_line(); break;
+    case PrimitiveKind::line:
+      out.line = read_line();
+      if (!is_line_inside(*out.line, widths_, width_, height_))
+        undefined("the end of a LINE whose setup is none, or draws outside of the target");
+      break;
     case PrimitiveKind::state:
       packet.state = sets_register(static_cast<StateRegister>(fields));
       read_token(packet);
       break;
   }
-  if (!is_token(kind) && (packet.box.left > packet.box.right || packet.box.top > packet.box.bottom ||
-                          packet.box.right >= width_ || packet.box.bottom >= height_))
-    refuse("the box is inverted or ends beyond the target");
-  if (kind != PrimitiveKind::triangle && kind != PrimitiveKind::flush) is_loaded_ = {};
+  if (kind != PrimitiveKind::triangle) is_loaded_ = {};
   if (kind != PrimitiveKind::state) is_drawn_ = kind != PrimitiveKind::flush;
   primitives_.push_back(std::move(out));
 }

@@ -8,7 +8,9 @@ namespace halfplane::driver {
 
 Framebuffer draw(std::span<const std::uint32_t> words, const Config& config, std::vector<std::uint8_t> textures) {
   Decoder decoder(config);
+  if (words.empty()) throw InputError("there are no words");
   decoder.read(words);
+  if (decoder.primitives().empty()) throw InputError("the words draw nothing, so there is no picture");
   PacketSink nobody;
   HardwareModel model(config, nobody);
   model.hold_textures(TextureMemory(std::move(textures)));

@@ -10,8 +10,8 @@
 
 namespace halfplane::driver {
 
-/// The frame in memory when the stream has run, of the last target. `textures`: memory from hp_target::textures on.
-/// Throws InputError for a word that the core would refuse.
+/// The frame in memory when the stream has run, up to a STOP, of the last target. `textures`: memory from
+/// hp_target::textures on. Throws as Decoder does.
 [[nodiscard]] Framebuffer draw(std::span<const std::uint32_t> words, const Config& config,
                                std::vector<std::uint8_t> textures = {});
 

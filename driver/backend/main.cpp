@@ -22,6 +22,9 @@ void run(const std::vector<std::string>& words) {
     throw InputError("give CONFIG FILE.words FILE.ppm, and the bytes of textures in a file if there are any");
   const Config config = labelled(words[0]);
   const std::vector<std::uint8_t> bytes = bytes_of(words[1]);
+  if (bytes.empty() || bytes.size() % 4 != 0)
+    throw InputError("'" + words[1] + "' has " + std::to_string(bytes.size()) +
+                     " bytes; give a file of words of 4 bytes, at least one");
   std::vector<std::uint32_t> stream(bytes.size() / 4);
   for (std::size_t i = 0; i < 4 * stream.size(); ++i) stream[i / 4] |= std::uint32_t{bytes[i]} << (8 * (i % 4));
   const Framebuffer frame = draw(stream, config, words.size() == 4 ? bytes_of(words[3]) : std::vector<std::uint8_t>());

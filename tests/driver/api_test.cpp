@@ -11,6 +11,7 @@
 #include "driver/stream.h"
 #include "model/engines/hardware.hpp"
 #include "model/generate/c_header.hpp"
+#include "model/packets/packet_words.hpp"
 #include "sim/scene/host_geometry.hpp"
 #include "stream_case.hpp"
 
@@ -22,7 +23,7 @@ using driver::Decoder;
 constexpr std::array<hp_fixed, 12> kSquare{-HP_ONE, -HP_ONE, 0, HP_ONE, -HP_ONE, 0,
                                            -HP_ONE, HP_ONE,  0, HP_ONE, HP_ONE,  0};
 constexpr hp_vertices kVertices{kSquare.data(), nullptr, nullptr, 12, 0, 0, 0};
-constexpr hp_target kTarget{16, 16, 0, 0, 0, 0, 4096, 0};
+const hp_target kTarget = target_of(16, 16);
 
 /// A context with a stream and a target.
 class DriverInterface : public testing::Test {
@@ -61,9 +62,21 @@ TEST_F(DriverInterface, RefusesValuesOutOfTheirRange) {
   const auto bad = [&](const std::function<void(hp_context*)>& call) { expect_refused(HP_BAD_VALUE, call); };
   const hp_stream none{nullptr, 100, nullptr, nullptr}, tiny{words_.data(), 3, nullptr, nullptr};
   for (const hp_stream& stream : {none, tiny}) bad([&](hp_context* d) { hp_begin(d, &stream); });
-  for (hp_target target : {hp_target{0, 16, 0, 0, 0, 0, 0, 0}, hp_target{16, 0, 0, 0, 0, 0, 0, 0},
-                           hp_target{20000, 16, 0, 0, 0, 0, 0, 0}, hp_target{16, 20000, 0, 0, 0, 0, 0, 0}})
+  const std::array<std::function<void(hp_target&)>, 13> wrong{
+      [](hp_target& t) { t.width = 0; },       [](hp_target& t) { t.height = 0; },
+      [](hp_target& t) { t.width = 20000; },   [](hp_target& t) { t.height = 20000; },
+      [](hp_target& t) { t.depth = 7; },       [](hp_target& t) { t.color = 64; },
+      [](hp_target& t) { t.depth_flags = 8; }, [](hp_target& t) { t.color_flags = 1; },
+      [](hp_target& t) { t.row_stride = 3; },  [](hp_target& t) { t.row_stride += 1; },
+      [](hp_target& t) { t.row_stride /= 2; }, [](hp_target& t) { t.row_stride += 1U << 20; },
+      [](hp_target& t) { t.textures = 2048; }};
+  for (const auto& change : wrong) {
+    hp_target target = kTarget;
+    change(target);
     bad([&](hp_context* d) { hp_set_target(d, &target); });
+  }
+  for (const std::array<std::uint32_t, 2>& buffer : {std::array{1U, 0U}, {0U, 1U}})
+    bad([&](hp_context* d) { hp_present(d, buffer[0], buffer[1]); });
   const hp_viewport whole{0, 0, 16 * HP_ONE, 16 * HP_ONE, 0, HP_DEPTH_ONE, 0};
   const std::array<std::function<void(hp_viewport&)>, 8> changes{
       [](hp_viewport& v) { v.width = 0; },         [](hp_viewport& v) { v.height = -1; },
@@ -105,6 +118,39 @@ TEST_F(DriverInterface, RefusesValuesOutOfTheirRange) {
   hp_draw(&fresh, HP_TRIANGLES, &kVertices, nullptr, 3);
   EXPECT_EQ(hp_status(&fresh), HP_BAD_VALUE) << "no target";
   EXPECT_EQ(hp_written(&fresh), 0U);
+}
+
+TEST_F(DriverInterface, RefusesWhatComesBeforeTheClearOrTheFlush) {
+  const auto wrong = [&](const std::function<void(hp_context*)>& call) { expect_refused(HP_WRONG_ORDER, call); };
+  wrong([](hp_context* d) { hp_present(d, 0, 0); });  // a clear is drawn, and is not flushed
+  hp_flush(driver_.get(), 0);
+  hp_set_target(driver_.get(), &kTarget);  // which is not cleared
+  for (const hp_topology topology : {HP_TRIANGLES, HP_POINTS})
+    wrong([&](hp_context* d) { hp_draw(d, topology, &kVertices, nullptr, 3); });
+  wrong([](hp_context* d) { hp_flush(d, 0); });
+  for (const std::uint32_t half : {HP_CLEAR_DEPTH, HP_CLEAR_COLOR})
+    wrong([&](hp_context* d) { hp_clear(d, half, 0, 0, 0); });
+  hp_set_scissor(driver_.get(), 1, 0, 99, 99);
+  wrong([](hp_context* d) { hp_clear(d, HP_CLEAR_DEPTH | HP_CLEAR_COLOR, 0, 0, 0); });
+  hp_set_scissor(driver_.get(), 0, 0, 16, 16);
+  hp_clear(driver_.get(), HP_CLEAR_DEPTH | HP_CLEAR_COLOR, 0, 0, 0);
+  hp_draw(driver_.get(), HP_TRIANGLES, &kVertices, nullptr, 3);
+  hp_flush(driver_.get(), 0);
+  hp_present(driver_.get(), 0, 0);
+  EXPECT_EQ(hp_status(driver_.get()), 0U);
+}
+
+TEST_F(DriverInterface, AFlushWithoutRoomIsStillToCome) {
+  const hp_stream stream{words_.data(), 64, nullptr, nullptr};
+  hp_begin(driver_.get(), &stream);
+  hp_set_target(driver_.get(), &kTarget);
+  hp_clear(driver_.get(), 3, 0, 0, 0);
+  while (hp_written(driver_.get()) < 64) hp_wait_vblank(driver_.get());
+  ASSERT_EQ(hp_status(driver_.get()), 0U);
+  hp_flush(driver_.get(), 0);
+  EXPECT_EQ(hp_status(driver_.get()), HP_FULL);
+  hp_present(driver_.get(), 0, 0);
+  EXPECT_EQ(hp_status(driver_.get()), HP_FULL | HP_WRONG_ORDER);
 }
 
 TEST_F(DriverInterface, RefusesStates) {
@@ -254,7 +300,7 @@ TEST_F(DriverInterface, ARingHasTheSameWords) {
     hp_clear(driver_.get(), 3, 7, 9, 0);
     for (int i = 0; i < 30; ++i) hp_draw(driver_.get(), HP_TRIANGLE_STRIP, &kVertices, nullptr, 4);
     hp_flush(driver_.get(), 1);
-    hp_present(driver_.get(), 1, 2);
+    hp_present(driver_.get(), 1U << 16, 1U << 17);
     hp_wait_vblank(driver_.get());
     hp_stop(driver_.get());
   };
@@ -315,16 +361,122 @@ TEST(DriverBackend, DrawsThePictureOfTheScene) {
   }
 }
 
+int affine_bits() {
+  const Widths widths = derive_widths(driver_config());
+  int bits = 0;
+  for (int p = 0; p < widths.affine_planes; ++p) bits += widths.of_plane(static_cast<std::size_t>(p)).code.bits;
+  return bits;
+}
+
+/// Words of a frame of 16x16 pixels up to the first clear, with a box and a state.
+std::vector<std::uint32_t> begun() {
+  std::vector<std::uint32_t> words{HP_SET_OF(HP_BOX_MIN, 10),  0, 0xf000f, 0x19, 0xf000f, 0, 0, 0, 0, 0x800, 0,
+                                   HP_HEADER(HP_FAST_CLEAR, 3)};
+  words.resize(words.size() + words_of(affine_bits()));
+  return words;
+}
+
+/// The words after begun(), and the error at which of them, counted from 1. tests/core/test_backend_decoder.py holds
+/// all errors against the core's decoder.
 TEST(DriverBackend, RefusesWordsThatTheCoreRefuses) {
-  const auto refused = [](std::vector<std::uint32_t> words) {
+  const auto refused = [](std::uint32_t error, std::uint32_t word, const std::vector<std::uint32_t>& more) {
+    std::vector<std::uint32_t> words = begun();
+    const auto before = static_cast<std::uint32_t>(words.size());
+    words.insert(words.end(), more.begin(), more.end());
     Decoder decoder(driver_config());
-    EXPECT_THROW(decoder.read(words), InputError);
+    try {
+      decoder.read(words);
+      ADD_FAILURE() << "error " << error << " is not seen";
+    } catch (const driver::RefusedWord& said) {
+      EXPECT_EQ(said.error, error);
+      EXPECT_EQ(said.words, before + word);
+      EXPECT_NE(std::string(said.what()).find("word " + std::to_string(before + word) + " of"), std::string::npos);
+    }
   };
-  refused({0xff000000});
-  refused({HP_SET_OF(0, 0)});
-  refused({HP_SET_OF(9, 2), 0, 0});
-  refused({HP_SET_OF(0, 2), 0});
-  refused({HP_HEADER(HP_RECTANGLE, 0), 0, 0});
+  const std::uint32_t nop = HP_HEADER(HALFPLANE_COMMAND_NOP, 0), flush = HP_HEADER(HP_FLUSH, 0);
+  refused(HALFPLANE_ERROR_UNKNOWN_OPCODE, 1, {0xff000000});
+  for (const std::uint32_t header : {HP_HEADER(HP_FENCE, 1), HP_HEADER(HP_FLUSH, 2), HP_HEADER(HP_TRIANGLE, 0x107),
+                                     HP_SET_OF(4, 5) | 1U << 16, HP_HEADER(HP_FAST_CLEAR, 0), nop | 1})
+    refused(HALFPLANE_ERROR_RESERVED, 2, {nop, header});
+  refused(HALFPLANE_ERROR_BAD_REGISTER, 1, {HP_SET_OF(0, 0)});
+  refused(HALFPLANE_ERROR_BAD_REGISTER, 1, {HP_SET_OF(9, 2), 0, 0});
+  refused(HALFPLANE_ERROR_NOT_FLUSHED, 2, {HP_SET_OF(HP_TARGET, 1), 0});
+  refused(HALFPLANE_ERROR_NO_CLEAR, 4, {flush, HP_SET_OF(HP_TARGET, 1), 0, HP_HEADER(HP_RECTANGLE, 0)});
+  refused(HALFPLANE_ERROR_BAD_BOX, 3, {HP_SET_OF(HALFPLANE_STATE_REGISTER_BOX_MAX, 1), 16, HP_HEADER(HP_POINT, 0)});
+  const Config& config = driver_config();
+  if (config.cache_kind == CacheKind::tiles) {
+    for (const std::uint32_t header :
+         {HP_HEADER(HP_FLUSH, 1), HP_HEADER(HP_FAST_CLEAR, 11), HP_HEADER(HP_FAST_CLEAR, 6)})
+      refused(HALFPLANE_ERROR_NOT_SUPPORTED, 1, {header});
+  } else {
+    refused(HALFPLANE_ERROR_RESERVED, 1, {HP_HEADER(HP_FAST_CLEAR, 7)});
+    refused(HALFPLANE_ERROR_BAD_BOX, 3, {HP_SET_OF(HP_BOX_MIN, 1), 16, HP_HEADER(HP_FAST_CLEAR, 6)});
+  }
+  if (config.line_units == 0) refused(HALFPLANE_ERROR_NOT_SUPPORTED, 1, {HP_HEADER(HP_LINE, 0)});
+  if (config.texture_unit == TextureUnitKind::off && config.blend_lanes == 0) {
+    refused(HALFPLANE_ERROR_NOT_SUPPORTED, 1, {HP_HEADER(HP_TOKEN, 0)});
+    refused(HALFPLANE_ERROR_NOT_SUPPORTED, 1, {HP_HEADER(HP_TRIANGLE, 0x17)});
+  }
+}
+
+/// What the core does not check, and what has no meaning: one line, and no picture.
+TEST(DriverBackend, RefusesWhatTheCoreDrawsUndefined) {
+  const Config& config = driver_config();
+  const auto refused = [&](const std::vector<std::uint32_t>& words, const std::string& why) {
+    try {
+      (void)driver::draw(words, config);
+      ADD_FAILURE() << why;
+    } catch (const driver::RefusedWord& said) {
+      ADD_FAILURE() << said.what();
+    } catch (const InputError& said) {
+      EXPECT_NE(std::string(said.what()).find(why), std::string::npos) << said.what();
+    }
+  };
+  const auto after = [](std::vector<std::uint32_t> more) {
+    std::vector<std::uint32_t> words = begun();
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  };
+  refused({}, "no words");
+  refused({HP_HEADER(HALFPLANE_COMMAND_NOP, 0)}, "draw nothing");
+  refused(after({HP_HEADER(HP_FENCE, 0)}), "ends inside a command");
+  refused(after({HP_HEADER(HP_TRIANGLE, 0)}), "slot 0 holds no vertex");
+  refused(after({HP_HEADER(HP_FLUSH, 0), HP_SET_OF(HP_TARGET, 1), 0x0fff0fff}),
+          "4096x4096, and this configuration has");
+  refused({HP_SET_OF(HP_TARGET, 1), 0xf000f, HP_HEADER(HP_FAST_CLEAR, 3)}, "state register 4 was never set");
+  // A flush overwrites the slots.
+  std::vector<std::uint32_t> drawn = after({HP_HEADER(HP_TRIANGLE, 7)});
+  drawn.resize(drawn.size() + 3 * (1 + words_of(affine_bits())));
+  drawn.push_back(HP_HEADER(HP_TRIANGLE, 0));
+  EXPECT_NO_THROW((void)driver::draw(drawn, config));
+  drawn.insert(drawn.end() - 1, HP_HEADER(HP_FLUSH, 0));
+  refused(drawn, "slot 0 holds no vertex");
+  if (config.line_units == 0) return;
+  const Widths widths = derive_widths(config);
+  const auto line_words = words_of(packet_bits<LineSetup>(widths) - widths.primitive_id.bits);
+  for (const std::uint32_t garbage : {0xffffffffU, 0x12345678U}) {
+    std::vector<std::uint32_t> line(1, HP_HEADER(HP_LINE, 0));
+    line.resize(1 + line_words, garbage);
+    refused(after(line), "a LINE whose setup is none");
+  }
+}
+
+/// Words after a STOP are those of the next start; NOP is a command.
+TEST(DriverBackend, StopsAtAStopAndGoesOnAfterIt) {
+  std::vector<std::uint32_t> words = begun();
+  words.insert(words.end(),
+               {HP_HEADER(HALFPLANE_COMMAND_NOP, 0), HP_HEADER(HP_STOP, 0), HP_HEADER(HP_FENCE, 0), 5, 0xffffffff});
+  Decoder decoder(driver_config());
+  const std::size_t taken = decoder.read(words);
+  EXPECT_EQ(taken, words.size() - 3);
+  EXPECT_TRUE(decoder.fences().empty());
+  try {
+    decoder.read(std::span(words).subspan(taken));
+    ADD_FAILURE();
+  } catch (const driver::RefusedWord& said) {
+    EXPECT_EQ(said.words, words.size());
+  }
+  EXPECT_EQ(decoder.fences(), std::vector{5U});
 }
 
 }  // namespace

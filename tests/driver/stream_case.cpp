@@ -35,8 +35,7 @@ class CaseMaker {
     hp_init(context_.get());
     hp_stream stream{words_.data(), static_cast<std::uint32_t>(words_.size()), nullptr, nullptr};
     hp_begin(context_.get(), &stream);
-    const hp_target target{
-        static_cast<std::uint16_t>(scene.width), static_cast<std::uint16_t>(scene.height), 0, 0, 0, 0, 4096, 0};
+    const hp_target target = target_of(scene.width, scene.height);
     hp_set_target(context_.get(), &target);
     set_viewport();
     if (config_.texture_unit != TextureUnitKind::off) add_textures();
@@ -436,6 +435,13 @@ const Config& driver_config() {
     throw InputError("the driver is compiled for a configuration that the tests do not know");
   }();
   return config;
+}
+
+hp_target target_of(int width, int height) {
+  const Config& config = driver_config();
+  const int tiles = (width + config.tile_size - 1) / config.tile_size;
+  const auto stride = static_cast<std::uint32_t>(tiles) << derive_widths(config).memory.tile();
+  return {static_cast<std::uint16_t>(width), static_cast<std::uint16_t>(height), 0, 0, 0, 0, stride, 0};
 }
 
 StreamCase random_case(std::uint32_t seed, int primitives) { return CaseMaker(seed, primitives).make(); }

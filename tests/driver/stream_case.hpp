@@ -15,6 +15,9 @@ namespace halfplane::test {
 /// The configuration that the linked driver is compiled for.
 [[nodiscard]] const Config& driver_config();
 
+/// A target of the driver with all its buffers at 0.
+[[nodiscard]] hp_target target_of(int width, int height);
+
 /// A frame, and the words and texture memory that the driver makes of it.
 struct StreamCase {
   Scene scene;
