@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "station.hpp"
@@ -15,27 +16,46 @@ using Picoseconds = std::uint64_t;
 /// Length of a cycle of the chip.
 Picoseconds cycle_of(int mhz) { return 1'000'000 / static_cast<Picoseconds>(mhz); }
 
+[[noreturn]] void refuse_traffic(const MemorySettings& settings, std::uint64_t given) {
+  throw InputError("other masters ask for " + std::to_string(settings.traffic.other_bytes_per_s) +
+                   " bytes a second, and the memory " + memory_name(settings) + " gives them " + std::to_string(given) +
+                   "; ask for less, the frame needs some of it");
+}
+
 /// A memory with the other masters, if there are any.
 class SharedMemory : public MemoryTiming {
  public:
-  SharedMemory(const MemorySettings& settings, const Config& config) : cycle_(cycle_of(settings.mhz)) {
+  SharedMemory(const MemorySettings& settings, const Config& config)
+      : settings_(settings), cycle_(cycle_of(settings.mhz)) {
     if (!settings.traffic.is_none()) others_.emplace(settings.traffic, config, cycle_);
   }
   void show(int width, int height) final {
     if (others_) others_->show(width, height);
   }
   [[nodiscard]] MemoryUse use() const final { return others_ ? others_->use() : MemoryUse{}; }
+  /// A read of another master, which the memory gets at `arrives`, in order; its end.
+  virtual Picoseconds serve_other(std::uint64_t address, std::uint64_t bytes, Picoseconds arrives) = 0;
 
  protected:
   [[nodiscard]] bool is_shared() const { return others_.has_value(); }
   [[nodiscard]] Picoseconds cycle() const { return cycle_; }
-  /// serve(address, bytes, arrives) their bursts up to `time`.
-  template <class Serve>
-  void serve_others(Picoseconds time, Serve&& serve) {
-    if (others_) others_->until(time, serve);
+  /// Serves what other masters ask for up to `time`.
+  void serve_others(Picoseconds time) {
+    if (!others_) return;
+    others_->until(time, [&](std::uint64_t address, std::uint64_t bytes, Picoseconds arrives) {
+      const Picoseconds ends = serve_other(address, bytes, arrives);
+      if (ends > arrives + kPatience) refuse_traffic(settings_, bytes_given(ends));
+      return ends;
+    });
   }
 
  private:
+  /// Others that ask for nearly all of the memory delay the port more and more: a frame would not end in sensible time.
+  static constexpr Picoseconds kPatience = 10'000'000'000;
+  [[nodiscard]] std::uint64_t bytes_given(Picoseconds time) const {
+    return static_cast<std::uint64_t>(static_cast<double>(use().other_bytes) / static_cast<double>(time) * 1e12);
+  }
+  MemorySettings settings_;
   Picoseconds cycle_;
   std::optional<OtherMasters> others_;
 };
@@ -49,12 +69,13 @@ class FixedMemory final : public SharedMemory {
         port_bytes_(static_cast<std::uint64_t>(config.memory_port_bits / 8)) {}
   [[nodiscard]] Cycle room() const override { return 0; }
   BurstAnswer accept(const MemoryBurst& burst, Cycle cycle_taken) override {
+    serve_others(cycle_taken * cycle());
     if (!is_shared() || burst.is_write) return {cycle_taken + latency_, 1, 1, 0};
-    serve_others(cycle_taken * cycle(), [&](std::uint64_t, std::uint64_t bytes, Picoseconds arrives) {
-      return (read((arrives + cycle() - 1) / cycle(), (bytes - 1) / port_bytes_ + 1) + 1) * cycle();
-    });
     const auto beats = static_cast<std::uint64_t>(burst.beats);
     return {read(cycle_taken, beats) - (beats - 1), 1, 1, 0};
+  }
+  Picoseconds serve_other(std::uint64_t, std::uint64_t bytes, Picoseconds arrives) override {
+    return (read((arrives + cycle() - 1) / cycle(), (bytes - 1) / port_bytes_ + 1) + 1) * cycle();
   }
 
  private:
@@ -79,14 +100,15 @@ class ClockedMemory : public SharedMemory {
   [[nodiscard]] Cycle room() const final { return queue_.room(); }
   BurstAnswer accept(const MemoryBurst& burst, Cycle taken) final {
     const Picoseconds arrives = round_up((taken + 1) * cycle_);  // it has passed a register
-    serve_others(arrives, [&](std::uint64_t address, std::uint64_t bytes, Picoseconds at) {
-      return serve(false, address, bytes, round_up(at)).last;
-    });
+    serve_others(arrives);
     const auto beats = static_cast<std::uint64_t>(burst.beats);
     const Served served = serve(burst.is_write, burst.address, beats * port_bytes_, arrives);
     queue_.leave((served.last + cycle_ - 1) / cycle_);
     const Picoseconds step = port_bytes_ * served.byte;
     return {burst.is_write ? served.last : served.last - (beats - 1) * step, step, cycle_, 1};
+  }
+  Picoseconds serve_other(std::uint64_t address, std::uint64_t bytes, Picoseconds arrives) final {
+    return serve(false, address, bytes, round_up(arrives)).last;
   }
 
  protected:
@@ -239,6 +261,30 @@ class Psram final : public ClockedMemory {
   Picoseconds free_ = 0;
 };
 
+std::unique_ptr<SharedMemory> make_shared_memory(const MemorySettings& settings, const Config& config) {
+  switch (settings.kind) {
+    case MemoryKind::fixed: break;
+    case MemoryKind::sram: return std::make_unique<FixedMemory>(settings, config, 2);
+    case MemoryKind::sdram: return std::make_unique<Dram>(settings, config, sdram_timing(settings));
+    case MemoryKind::psram: return std::make_unique<Psram>(settings, config);
+    case MemoryKind::ddr3: return std::make_unique<Dram>(settings, config, kDdr3);
+  }
+  return std::make_unique<FixedMemory>(settings, config, settings.latency);
+}
+
+/// Bytes a second of a memory that serves the reads of other masters and nothing else, one after the other.
+std::uint64_t most_other_bytes(const MemorySettings& settings, const Config& config) {
+  constexpr std::uint64_t kReads = 1 << 14;  // refresh counts
+  const auto memory = make_shared_memory(settings, config);
+  Picoseconds first = 0, last = 0;
+  for (std::uint64_t n = 0; n <= kReads; ++n) {
+    last = memory->serve_other(OtherMasters::place(n), OtherMasters::kOtherBurst, 0);
+    if (n == 0) first = last;
+  }
+  return static_cast<std::uint64_t>(static_cast<double>(kReads * OtherMasters::kOtherBurst) /
+                                    static_cast<double>(last - first) * 1e12);
+}
+
 }  // namespace
 
 MemoryKind memory_kind(std::string_view name) {
@@ -259,6 +305,7 @@ void set_memory(MemorySettings& settings, std::string_view text) {
   changed.kind = kind;
   changed.sdram_width = MemorySettings{}.sdram_width;
   changed.sdram_mhz = MemorySettings{}.sdram_mhz;
+  std::array<bool, 2> is_given{};  // mhz, width
   while (!text.empty()) {
     const std::string_view word = next(), key = word.substr(0, word.find('='));
     const bool is_width = key == "width";
@@ -266,6 +313,8 @@ void set_memory(MemorySettings& settings, std::string_view text) {
       throw InputError("'" + std::string(word) + "' is no setting of " +
                        std::string(kMemoryKinds[static_cast<std::size_t>(kind)]) +
                        "; sdram has width=BITS and mhz=MHZ, as in sdram,width=32,mhz=133");
+    if (std::exchange(is_given[is_width ? 1 : 0], true))
+      throw InputError("'" + std::string(word) + "' sets " + std::string(key) + " a second time; give it once");
     const std::string_view digits = word.substr(std::min(word.size(), key.size() + 1));
     int value = 0;
     const auto read = std::from_chars(digits.data(), digits.data() + digits.size(), value);
@@ -289,14 +338,11 @@ std::string memory_name(const MemorySettings& settings) {
 }
 
 std::unique_ptr<MemoryTiming> make_memory(const MemorySettings& settings, const Config& config) {
-  switch (settings.kind) {
-    case MemoryKind::fixed: break;
-    case MemoryKind::sram: return std::make_unique<FixedMemory>(settings, config, 2);
-    case MemoryKind::sdram: return std::make_unique<Dram>(settings, config, sdram_timing(settings));
-    case MemoryKind::psram: return std::make_unique<Psram>(settings, config);
-    case MemoryKind::ddr3: return std::make_unique<Dram>(settings, config, kDdr3);
+  if (const std::uint64_t asked = settings.traffic.other_bytes_per_s; asked != 0) {
+    const std::uint64_t most = most_other_bytes(without_traffic(settings), config);
+    if (asked >= most) refuse_traffic(settings, most);
   }
-  return std::make_unique<FixedMemory>(settings, config, settings.latency);
+  return make_shared_memory(settings, config);
 }
 
 }  // namespace halfplane

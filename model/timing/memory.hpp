@@ -81,7 +81,8 @@ void set_memory(MemorySettings& settings, std::string_view text);
 /// The kind with that name. Throws InputError when there is none.
 [[nodiscard]] MemoryKind memory_kind(std::string_view name);
 
-/// A memory after power-up. Each row is filled before the next bank's.
+/// A memory after power-up. Each row is filled before the next bank's. Throws InputError, as its accept() may, when other
+/// masters ask for more than it gives.
 [[nodiscard]] std::unique_ptr<MemoryTiming> make_memory(const MemorySettings& settings, const Config& config);
 
 }  // namespace halfplane

@@ -60,10 +60,6 @@ OtherMasters::Picoseconds OtherMasters::arrives_of_other(std::uint64_t n) const 
          static_cast<Picoseconds>(static_cast<double>(rest) / static_cast<double>(rate) * 1e12);
 }
 
-std::uint64_t OtherMasters::other_address() const {
-  return others_base_ + others_ * 0x9E3779B1U % (1U << 24) / 64 * 64;
-}
-
 std::uint64_t OtherMasters::scan_address() const {
   const std::uint64_t band = (scan_.band - scan_.first_band) % bands_;
   const auto per_tile = static_cast<std::uint64_t>(bands_per_tile_),

@@ -33,6 +33,11 @@ struct MemoryUse {
 class OtherMasters {
  public:
   using Picoseconds = std::uint64_t;
+  static constexpr std::uint64_t kOtherBurst = 64;  ///< bytes of a read of the others
+  /// Where the others read for the n-th time, in their part of memory.
+  [[nodiscard]] static constexpr std::uint64_t place(std::uint64_t n) {
+    return n * 0x9E3779B1U % (1U << 24) / kOtherBurst * kOtherBurst;
+  }
   OtherMasters(const MemoryTraffic& traffic, const Config& config, Picoseconds cycle);
 
   /// The picture that scan-out shows, from its next band on.
@@ -48,7 +53,7 @@ class OtherMasters {
         const std::uint64_t address = scan_address(), bytes = scan_bytes();
         scanned(bytes, serve(address, bytes, arrives));
       } else {
-        serve(other_address(), kOtherBurst, arrives);
+        serve(others_base_ + place(others_), kOtherBurst, arrives);
         use_.other_bytes += kOtherBurst;
         other_arrives_ = arrives_of_other(++others_);
       }
@@ -58,7 +63,7 @@ class OtherMasters {
 
  private:
   static constexpr Picoseconds kNever = ~Picoseconds{0};
-  static constexpr std::uint64_t kOtherBurst = 64, kPicosecondsPerSecond = 1'000'000'000'000;
+  static constexpr std::uint64_t kPicosecondsPerSecond = 1'000'000'000'000;
   static constexpr int kAhead = 16;  ///< AHEAD of scan_out.sv
   static constexpr int kBurst = 16;  ///< its BURST, beats
 
@@ -66,7 +71,6 @@ class OtherMasters {
   [[nodiscard]] Picoseconds arrives_of_other(std::uint64_t n) const;
   [[nodiscard]] std::uint64_t scan_address() const;
   [[nodiscard]] std::uint64_t scan_bytes() const;
-  [[nodiscard]] std::uint64_t other_address() const;
   void scanned(std::uint64_t bytes, Picoseconds done);
 
   MemoryTraffic traffic_;

@@ -141,8 +141,9 @@ TEST(Memory, AWiderSdramMovesMoreAndASlowerOneLess) {
 }
 
 TEST(Memory, SettingsThatNoSdramHasAreRefusedInOneLine) {
-  for (const char* const text : {"sdram,width=24", "sdram,width=", "sdram,mhz=5", "sdram,mhz=133x", "sdram,cl=3",
-                                 "sdram,", "ddr3,width=32", "fixed,mhz=100", "hbm"}) {
+  for (const char* const text :
+       {"sdram,width=24", "sdram,width=", "sdram,mhz=5", "sdram,mhz=133x", "sdram,cl=3", "sdram,",
+        "sdram,width=16,width=32", "sdram,mhz=100,width=8,mhz=100", "ddr3,width=32", "fixed,mhz=100", "hbm"}) {
     MemorySettings settings;
     try {
       set_memory(settings, text);
@@ -201,6 +202,54 @@ TEST(Memory, AMemoryThatIsTooSlowForScanOutIsLate) {
   const MemoryUse use = use_in_a_second("psram", preset("embedded"), 1280, 720, {60, 0});
   EXPECT_GT(use.late_bands, use.bands / 2);
   EXPECT_LT(use.scan_out_bytes, 45'000'000u);
+}
+
+TEST(Memory, OtherMastersAreServedWhileThePortOnlyWrites) {
+  const Config config = preset("embedded");
+  for (const char* const text : {"fixed", "sram", "sdram", "ddr3"}) {
+    const auto memory = make_memory(sdram_with(text, {0, 50'000'000}), config);
+    for (Cycle at = 0; at < 100'000; at += 100) (void)memory->accept({true, 0, 1}, std::max(at, memory->room()));
+    EXPECT_NEAR(static_cast<double>(memory->use().other_bytes), 50e3, 200) << text;  // a millisecond
+  }
+}
+
+/// The message of a refusal, or an empty text.
+std::string refusal(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Memory, MoreTrafficThanMemoryGivesIsRefusedWithBothRates) {
+  const Config config = preset("embedded");
+  // 8 bytes a cycle of 100 MHz; a byte a clock of 50 MHz.
+  for (const auto& [text, most] : {std::pair{"fixed", 800'000'000U},
+                                   {"sram", 800'000'000U},
+                                   {"sdram,width=8,mhz=50", 50'000'000U},
+                                   {"ddr3", 1'600'000'000U}}) {
+    EXPECT_EQ(refusal([&] { (void)make_memory(sdram_with(text, {0, most / 2}), config); }), "") << text;
+    const std::string said = refusal([&] { (void)make_memory(sdram_with(text, {0, most + 1}), config); });
+    EXPECT_NE(said.find("ask for " + std::to_string(most + 1) + " bytes"), std::string::npos) << text << ": " << said;
+    EXPECT_NE(said.find(std::string("the memory ") + text + " gives them "), std::string::npos) << said;
+  }
+}
+
+/// Bytes that are nearly all that memory has would delay the port without end.
+TEST(Memory, AFrameThatOtherMastersDelayWithoutEndIsGivenUp) {
+  const Config config = preset("embedded");
+  std::uint64_t low = 300'000'000, high = 334'000'000;  // the most that is accepted
+  while (high - low > 1) {
+    const std::uint64_t middle = (low + high) / 2;
+    const bool refuses = !refusal([&] { (void)make_memory(sdram_with("sdram", {0, middle}), config); }).empty();
+    (refuses ? high : low) = middle;
+  }
+  std::cout << "sdram: " << low << " bytes/s at most\n";
+  const auto memory = make_memory(sdram_with("sdram", {0, low}), config);
+  const std::string said = refusal([&] { (void)read_run(*memory, 2'000'000, 8, 0); });
+  EXPECT_NE(said.find("ask for " + std::to_string(low) + " bytes"), std::string::npos) << said;
 }
 
 TEST(Memory, OtherMastersTakeTheTimeOfThePort) {
