@@ -14,6 +14,7 @@
 #include "sim/cli/commands.hpp"
 #include "sim/cli/progress.hpp"
 #include "sim/cli/space_study.hpp"
+#include "sim/cli/whole_number.hpp"
 #include "sim/config_file.hpp"
 #include "sim/show/report/page.hpp"
 #include "sim/study/bench/engines.hpp"
@@ -355,14 +356,14 @@ void add_bench_command(CLI::App& app, Action& selected) {
                    "numbers of threads: a row of each, for functional and llvmpipe; the first for --skips and --growth")
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->check(CLI::Range(1, 1024))
+      ->check(whole_number(1, 1024))
       ->default_str("1")
       ->type_name("LIST");
   command->add_option("--size", options->size, "target, WxH pixels")
       ->check(refuse_empty)
       ->default_str("fits the target");
   command->add_option("--repeat", options->repeat, "turns behind the first, of which the median counts")
-      ->check(CLI::Range(1, 1000))
+      ->check(whole_number(1, 1000))
       ->capture_default_str();
   add_seed_option(*command, *options, "seed of scenes with something random in them");
   command->add_flag("--no-errors", options->has_no_errors, "only the time: no comparison with the golden");
@@ -371,7 +372,7 @@ void add_bench_command(CLI::App& app, Action& selected) {
   command->add_flag("--growth", options->wants_growth,
                     "instead: time by triangle size, triangle count, depth complexity, resolution and threads");
   command->add_option("--growth-max", options->growth_max, "triangles of the largest frame of --growth")
-      ->check(CLI::Range(100, 10'000'000))
+      ->check(whole_number(100, 10'000'000))
       ->capture_default_str();
   command->add_flag(
       "--antialiasing", options->wants_antialiasing,

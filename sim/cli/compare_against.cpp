@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "sim/cli/whole_number.hpp"
 namespace halfplane {
 namespace {
 
@@ -70,7 +71,7 @@ void add_against_options(CLI::App& app, AgainstWords& words) {
       ->check(refuse_empty)
       ->type_name("LIST");
   app.add_option("--first", words.listed, "of --against: list the first N pixels that differ")
-      ->check(CLI::Range(0, 1000000))
+      ->check(whole_number(0, 1000000))
       ->capture_default_str()
       ->each([&words](const std::string&) { words.has_listed = true; })
       ->type_name("N");

@@ -2,6 +2,7 @@
 #include <array>
 #include <iomanip>
 #include <iostream>
+#include <tuple>
 
 #include "model/engines/cycle/stage_table.hpp"
 #include "model/generate/c_header.hpp"
@@ -178,25 +179,18 @@ void add_config_command(CLI::App& app, Action& selected) {
   command->add_flag("--list", options->list, "every setting with its range and meaning");
   command->add_flag("--widths", options->widths, "every derived width with its bound");
   command->add_flag("--stages", options->stages, "latency and interval of every stage, in cycles");
-  command->add_flag("--sv", options->sv, "prints raster_pkg.sv for this configuration")->excludes("--json");
-  command->add_flag("--taps", options->taps, "prints cosim/taps.svh, the taps of the co-simulation")
-      ->excludes("--json")
-      ->excludes("--sv");
-  command->add_flag("--dpi", options->dpi, "prints halfplane_dpi.sv, the stages as functions of SystemVerilog")
-      ->excludes("--json")
-      ->excludes("--sv")
-      ->excludes("--taps");
-  command->add_flag("--c-header", options->c_header, "prints this configuration as a C header, for driver/")
-      ->excludes("--json")
-      ->excludes("--sv")
-      ->excludes("--taps")
-      ->excludes("--dpi");
-  command->add_flag("--toml", options->toml, "prints this configuration as --config reads it")
-      ->excludes("--json")
-      ->excludes("--sv")
-      ->excludes("--taps")
-      ->excludes("--dpi")
-      ->excludes("--c-header");
+  // Each of these is all of the output.
+  std::vector<std::string> others{"--list", "--widths", "--stages", "--json"};
+  for (const auto& [name, flag, meaning] :
+       {std::tuple{"--sv", &options->sv, "prints raster_pkg.sv for this configuration"},
+        {"--taps", &options->taps, "prints cosim/taps.svh, the taps of the co-simulation"},
+        {"--dpi", &options->dpi, "prints halfplane_dpi.sv, the stages as functions of SystemVerilog"},
+        {"--c-header", &options->c_header, "prints this configuration as a C header, for driver/"},
+        {"--toml", &options->toml, "prints this configuration as --config reads it"}}) {
+    CLI::Option* const option = command->add_flag(name, *flag, meaning);
+    for (const std::string& other : others) option->excludes(other);
+    others.emplace_back(name);
+  }
   add_file_option(*command, "-o", options->path, "writes this configuration as --config reads it, .toml");
   command->footer(
       "\nExample:\n  halfplane config --set depth.bits=20 -o mine.toml\n  halfplane config --list\n  halfplane config "

@@ -4,6 +4,7 @@
 #include "sim/cli/commands.hpp"
 #include "sim/cli/convert_trace.hpp"
 #include "sim/cli/options.hpp"
+#include "sim/cli/whole_number.hpp"
 #include "sim/cosim/session.hpp"
 #include "sim/show/image/whole_file.hpp"
 
@@ -95,7 +96,7 @@ void add_convert_command(CLI::App& app, Action& selected) {
       ->add_option("--random", options->random,
                    "the scenes of `cosim --random N` with this --config and --seed: FILE-1.hpt and on where they are "
                    "several")
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}))
+      ->check(whole_number(std::uint64_t{1}, std::uint64_t{1'000'000'000}))
       ->type_name("N");
   command
       ->add_option("--frame", options->frames, "of a FILE.trace: frame N, or A to B, counted from 0; else all of them")

@@ -8,6 +8,7 @@
 #include "sim/cli/commands.hpp"
 #include "sim/cli/cosim_options.hpp"
 #include "sim/cli/progress.hpp"
+#include "sim/cli/whole_number.hpp"
 #include "sim/cosim/report.hpp"
 #include "sim/cosim/specification.hpp"
 #include "sim/show/image/whole_file.hpp"
@@ -288,7 +289,7 @@ void add_cosim_command(CLI::App& app, Action& selected) {
   command
       ->add_option("--random", options->random,
                    "N random triangles, lines and points of all sizes and states instead of a scene")
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}))
+      ->check(whole_number(std::uint64_t{1}, std::uint64_t{1'000'000'000}))
       ->type_name("N");
   add_cosim_options(*command, *options);
   command

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "sim/cli/progress.hpp"
+#include "sim/cli/whole_number.hpp"
 #include "sim/cosim/report.hpp"
 #include "sim/show/image/whole_file.hpp"
 
@@ -51,10 +52,10 @@ void add_cosim_options(CLI::App& app, CosimOptions& options) {
   add_memory_options(app, options.memory);
   add_traffic_options(app, options.memory);
   app.add_option("--mutant", options.mutant, "switch on one of the RTL's built-in faults, 0 for none")
-      ->check(CLI::Range(0, 65535))
+      ->check(whole_number(0, 65535))
       ->capture_default_str();
   app.add_option("--resets", options.resets, "times that each scene is begun and cut by a reset before it is run")
-      ->check(CLI::Range(0, 1000))
+      ->check(whole_number(0, 1000))
       ->capture_default_str();
   add_file_option(
       app, "--trace", options.trace_path,

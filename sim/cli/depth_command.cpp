@@ -11,6 +11,7 @@
 #include "sim/cli/commands.hpp"
 #include "sim/cli/depth_study.hpp"
 #include "sim/cli/progress.hpp"
+#include "sim/cli/whole_number.hpp"
 #include "sim/show/image/whole_file.hpp"
 #include "sim/show/report/page.hpp"
 
@@ -350,7 +351,7 @@ void add_depth_command(CLI::App& app, Action& selected) {
   options->mappings = "std,rev,w";
   command->add_option("--format", options->formats, "some of u<b>, bins<b>, f16, f32, uf<e>.<m> (default u16)")
       ->type_name("LIST");
-  command->add_option("--bits", options->bits, "short for --format u<N>")->check(CLI::Range(2, 32))->type_name("N");
+  command->add_option("--bits", options->bits, "short for --format u<N>")->check(whole_number(2, 32))->type_name("N");
   command->add_option("--z", options->z, "eye depths to look at (default: near, powers of ten, far)")
       ->check(refuse_empty)
       ->type_name("LIST");
@@ -380,7 +381,7 @@ void add_depth_command(CLI::App& app, Action& selected) {
   command->add_option("--camera", options->camera, "as for render");
   add_seed_option(*command, *options, "seed of scenes with something random in them");
   command->add_option("--threads", options->threads, "use at most N threads (default: as many as there are cores)")
-      ->check(CLI::Range(1, 1024));
+      ->check(whole_number(1, 1024));
   add_output_options(*command, *options);
   add_file_option(*command, "--csv", options->csv_path, "rows of mapping,format,near,far,z,metric,value; - for stdout");
   add_file_option(*command, "-o", options->paths.page, "everything as one HTML page, .html");

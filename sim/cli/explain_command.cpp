@@ -9,6 +9,7 @@
 #include "sim/cli/options.hpp"
 #include "sim/cli/progress.hpp"
 #include "sim/cli/study_options.hpp"
+#include "sim/cli/whole_number.hpp"
 #include "sim/cosim/dut.hpp"
 #include "sim/show/image/png.hpp"
 #include "sim/show/report/page.hpp"
@@ -228,12 +229,12 @@ void add_explain_command(CLI::App& app, Action& selected) {
   add_file_option(*command, "-o", options->output,
                   "the neighbourhood enlarged, .png: grid, samples, edges; or .html: a page to step through");
   command->add_option("--margin", options->margin, "of -o: so many pixels around")
-      ->check(CLI::Range(0, 24))
+      ->check(whole_number(0, 24))
       ->capture_default_str()
       ->type_name("N");
   command->add_flag("--steps", options->steps, "of lines and triangles every pixel, step by step");
   command->add_option("--mutant", options->mutant, "with --rtl: one of the RTL's built-in faults, 0 for none")
-      ->check(CLI::Range(0, 65535))
+      ->check(whole_number(0, 65535))
       ->type_name("N");
   command->footer(
       "\nSpecification, hardware model, functional engine, golden and oracle are held against each other: the status\n"

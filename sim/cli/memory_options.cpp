@@ -1,5 +1,6 @@
 #include "sim/cli/memory_options.hpp"
 
+#include "sim/cli/whole_number.hpp"
 #include "sim/show/report/hardware.hpp"
 
 namespace halfplane {
@@ -18,23 +19,23 @@ void add_memory_options(CLI::App& app, MemorySettings& settings) {
          "SDRAM")
       ->default_str("fixed");
   app.add_option("--memory-latency", settings.latency, "of the fixed memory: cycles from a read request to its answer")
-      ->check(CLI::Range(1, 10000))
+      ->check(whole_number(1, 10000))
       ->capture_default_str();
   app.add_option("--mhz", settings.mhz,
                  "clock of the hardware: turns cycles into seconds, and those of memories into cycles")
-      ->check(CLI::Range(1, 1000))
+      ->check(whole_number(1, 1000))
       ->capture_default_str();
 }
 
 void add_traffic_options(CLI::App& app, MemorySettings& settings) {
   app.add_option("--scan-out", settings.traffic.scan_out_hz,
                  "pictures a second that scan-out reads from the same memory; 0: none")
-      ->check(CLI::Range(0, kMaxScanOutHz))
+      ->check(whole_number(0, kMaxScanOutHz))
       ->type_name("HZ")
       ->capture_default_str();
   app.add_option("--other-traffic", settings.traffic.other_bytes_per_s,
                  "bytes a second that other masters read from the same memory; 0: none")
-      ->check(CLI::Range(0, kMaxOtherBytes))
+      ->check(whole_number(0, kMaxOtherBytes))
       ->type_name("BYTES/S")
       ->capture_default_str();
 }

@@ -8,6 +8,7 @@
 #include "sim/cli/commands.hpp"
 #include "sim/cli/cosim_options.hpp"
 #include "sim/cli/progress.hpp"
+#include "sim/cli/whole_number.hpp"
 #include "sim/cosim/rtl_engine.hpp"
 #include "sim/scene/builtin.hpp"
 #include "sim/show/image/framebuffer_files.hpp"
@@ -216,7 +217,7 @@ void add_mutants_command(CLI::App& app, Action& selected) {
   add_output_options(*command, *options);
   add_seed_option(*command, *options, "seed of the random run and its stalls");
   command->add_option("--random", options->random, "primitives of the random run")
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000}))
+      ->check(whole_number(std::uint64_t{1}, std::uint64_t{1'000'000}))
       ->capture_default_str();
   add_stalls_option(*command, *options);
   command->add_option("--only", options->only, "these mutants alone: numbers with commas")

@@ -12,6 +12,7 @@
 
 #include "model/capture/capture.hpp"
 #include "sim/cli/progress.hpp"
+#include "sim/cli/whole_number.hpp"
 #include "sim/config_file.hpp"
 #include "sim/scene/convention.hpp"
 #include "sim/scene/depth_collision.hpp"
@@ -108,7 +109,7 @@ void add_scene_options(CLI::App& app, CommonOptions& options) {
       ->check(refuse_empty);
   add_seed_option(app, options, "seed of scenes with something random in them");
   app.add_option("--threads", options.threads, "use at most N threads (functional engine, depth)")
-      ->check(CLI::Range(1, 1024));
+      ->check(whole_number(1, 1024));
   app.add_option("--skip", options.skip, "work that may be skipped: all, none or a list with commas")
       ->capture_default_str();
   app.add_option("--convention", options.convention,

@@ -10,6 +10,7 @@
 #include "sim/cli/commands.hpp"
 #include "sim/cli/progress.hpp"
 #include "sim/cli/render_frames.hpp"
+#include "sim/cli/whole_number.hpp"
 #include "sim/show/image/framebuffer_files.hpp"
 #include "sim/show/image/panel.hpp"
 #include "sim/show/image/png.hpp"
@@ -362,7 +363,7 @@ void add_render_command(CLI::App& app, Action& selected) {
           "the first one's, counts those of all")
       ->type_name("GRID");
   command->add_option("--repeat", options->repeat, "render N more times and print min and median")
-      ->check(CLI::Range(1, 100000));
+      ->check(whole_number(1, 100000));
   add_frames_options(*command, *options);
   command->footer(
       "\nExample:\n  halfplane render teapot --size 1280x720 -o teapot.png --depth teapot.npy --json\n"

@@ -19,6 +19,7 @@
 #include "sim/cli/commands.hpp"
 #include "sim/cli/progress.hpp"
 #include "sim/cli/render_frames.hpp"
+#include "sim/cli/whole_number.hpp"
 #include "sim/show/image/whole_file.hpp"
 #include "sim/show/report/page.hpp"
 
@@ -405,7 +406,7 @@ void add_run_command(CLI::App& app, Action& selected) {
       ->add_option("--save", options->save,
                    "frame N as a capture; may be given several times; the program ends after the "
                    "last one if no figures are asked for")
-      ->check(CLI::Range(0, 1'000'000'000))
+      ->check(whole_number(0, 1'000'000'000))
       ->type_name("N");
   command->add_option("--save-all", options->save_folder, "every frame as a capture in this folder")
       ->check(refuse_empty)
@@ -419,7 +420,7 @@ void add_run_command(CLI::App& app, Action& selected) {
       ->check(CLI::IsMember({"host", "warn", "stop"}))
       ->capture_default_str();
   command->add_option("--threads", options->threads, "threads that draw")
-      ->check(CLI::Range(1, 1024))
+      ->check(whole_number(1, 1024))
       ->capture_default_str();
   add_file_option(*command, "--csv", options->csv_path, "a row of figures for each frame, .csv");
   add_file_option(*command, "--chart", options->chart_path, "the figures over time, .html");

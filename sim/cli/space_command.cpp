@@ -129,8 +129,8 @@ std::string space_arguments(const SpaceOptions& options) {
 
 void check_space_options(const CommonOptions& common, const SpaceOptions& options, const std::string& page) {
   if (!options.is_wanted()) {
-    if (!memory_arguments(options.memory).empty())
-      throw InputError("--memory, --memory-latency and --mhz are for --area and --space; add one of them");
+    if (const std::string given = memory_arguments(options.memory); !given.empty())
+      throw InputError("'" + given.substr(1) + "' is for --area and --space; add one of them");
     return;
   }
   for (const std::string& part : options.parts)

@@ -5,6 +5,7 @@
 
 #include "sim/cli/commands.hpp"
 #include "sim/cli/progress.hpp"
+#include "sim/cli/whole_number.hpp"
 #include "sim/config_file.hpp"
 #include "sim/cosim/junit.hpp"
 #include "sim/show/image/whole_file.hpp"
@@ -271,9 +272,9 @@ void add_stress_command(CLI::App& app, Action& selected) {
       ->check(is_number)
       ->type_name("N");
   command->add_option("--unit", options->unit, "only the unit of that number: repeats a failure")
-      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 62))
+      ->check(whole_number(std::int64_t{0}, std::int64_t{1} << 62))
       ->type_name("N");
-  command->add_option("--threads", options->threads, "threads")->check(CLI::Range(1, 1024))->type_name("N");
+  command->add_option("--threads", options->threads, "threads")->check(whole_number(1, 1024))->type_name("N");
   command->add_option("--captures", options->captures, "folder for the worst input of each property, .hpt")
       ->check(refuse_empty)
       ->type_name("DIR");

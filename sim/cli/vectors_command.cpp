@@ -5,6 +5,7 @@
 #include "sim/cli/commands.hpp"
 #include "sim/cli/options.hpp"
 #include "sim/cli/progress.hpp"
+#include "sim/cli/whole_number.hpp"
 #include "sim/vectors/vector_file.hpp"
 
 namespace halfplane {
@@ -90,7 +91,7 @@ void add_vectors_command(CLI::App& app, Action& selected) {
   command
       ->add_option("--random", options->random,
                    "N random triangles, lines and points of all sizes and states instead of a scene")
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{10'000'000}))
+      ->check(whole_number(std::uint64_t{1}, std::uint64_t{10'000'000}))
       ->type_name("N");
   command->add_option("--stage", options->stage, "the stage: cull, triangle_setup, coarse_raster ...")
       ->required()

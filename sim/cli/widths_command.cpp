@@ -10,6 +10,7 @@
 #include "model/widths.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/progress.hpp"
+#include "sim/cli/whole_number.hpp"
 #include "sim/show/image/whole_file.hpp"
 #include "sim/study/compare/surface_oracle.hpp"
 #include "sim/study/widths/study.hpp"
@@ -262,7 +263,7 @@ void add_widths_command(CLI::App& app, Action& selected) {
   add_seed_option(*command, *options, "seed of the random primitives, and of scenes with something random in them");
   CLI::Option* samples =
       command->add_option("--samples", options->samples, "random primitives; the search for extremes comes on top")
-          ->check(CLI::Range(1, 100000000))
+          ->check(whole_number(1, 100000000))
           ->capture_default_str();
   CLI::Option* captures =
       command->add_option("--captures", options->captures, "writes each input that overflows a bit less, as a capture")

@@ -37,6 +37,10 @@ TEST_F(BadInput, WrongUsageNamesTheOptionAndWhereItIsExplained) {
   expect_refused({"scenes", "extra"}, "extra");
   expect_refused({"config", "--sv", "--json"}, "--sv");
   expect_refused({"config", "--c-header", "--sv"}, "--sv");
+  for (const char* output : {"--sv", "--taps", "--dpi", "--c-header", "--toml"})
+    for (const char* other : {"--list", "--widths", "--stages"}) expect_refused({"config", output, other}, other);
+  expect_refused({"bench", "teapot", "--scan-out", "60", "--size", "32x32"},
+                 "'--scan-out 60' is for --area and --space");
   expect_refused({"--json", "render", "triangle"}, "--json");
 }
 
@@ -57,6 +61,14 @@ TEST_F(BadInput, RefusalsSayWhatIsWrongAndThenWhatToDo) {
 }
 
 TEST_F(BadInput, NumbersOfOptionsAreCheckedWhole) {
+  for (const auto& [option, word] : {std::pair{"--other-traffic", "1e7"},
+                                     {"--other-traffic", "10M"},
+                                     {"--mhz", "1.5"},
+                                     {"--scan-out", "abc"},
+                                     {"--scan-out", ""}})
+    expect_refused({"render", "triangle", "--engine", "cycle", option, word},
+                   "'" + std::string(word) + "' is not a whole number; give ");
+  expect_refused({"render", "triangle", "--engine", "cycle", "--scan-out", "1001"}, "1001 not in range 0 to 1000");
   for (const char* size : {"", "0x0", "0x480", "640x0", "-4x4", "640", "640x", "x480", "640x480x", "640*480", "4.5x4",
                            "99999999999x1", "nanxnan"})
     expect_refused({"render", "triangle", "--size", size}, "--size");
