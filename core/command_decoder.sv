@@ -7,7 +7,10 @@
 //
 // Waiting: a write of the layout until nothing is under way; FENCE and PRESENT for an earlier one of their kind;
 // WAIT_VBLANK for scan-out; FLUSH while three are under way. A wrong word stops the stream, with error_o, until reset.
-module command_decoder (
+// So does the watchdog where it waits for something else than the display and nothing moves for 2^WATCHDOG cycles.
+module command_decoder #(
+    parameter int WATCHDOG = 24  // 0: none
+) (
     input logic clk_i,
     input logic rst_ni,
 
@@ -36,6 +39,7 @@ module command_decoder (
     output logic [31:12]                  texture_base_o,
     input  logic                          idle_i,
     input  logic                          flushed_i,
+    input  logic                          moves_i,  // something moves between raster_top and memory
 
     // A fence: everything before it is in memory
     output logic        fence_valid_o,  // for a cycle
@@ -181,7 +185,7 @@ module command_decoder (
       error = core_pkg::ERROR_NOT_FLUSHED;
     if (word_error_i) error = core_pkg::ERROR_BUS;
   end
-  logic fails, begins;  // a header begins its command
+  logic fails, begins, is_stuck;  // a header begins its command
   assign fails  = takes && error != core_pkg::ERROR_NONE;
   assign begins = takes_header && !fails;
 
@@ -280,6 +284,23 @@ module command_decoder (
     end
   end
 
+  // ------------------------------------------------------------------------------------------------------- the watchdog
+  generate
+    if (WATCHDOG != 0) begin : gen_watchdog
+      logic [WATCHDOG:0] waited_q;
+      logic              has_work;  // the display may be slow
+      assign has_work = ((running_q && (word_valid_i || state_q != HEADER)) || primitive_valid_q || fence_waits_q ||
+                         flushes_q != '0) && !present_valid_o;
+      always_ff @(posedge clk_i) begin  // its own clear is synchronous, which costs no LUTs
+        if (!rst_ni || !has_work || takes || moves_i || error_q != core_pkg::ERROR_NONE) waited_q <= '0;
+        else waited_q <= waited_q + 1'b1;
+      end
+      assign is_stuck = waited_q[WATCHDOG];
+    end else begin : gen_no_watchdog
+      assign is_stuck = 1'b0;
+    end
+  endgenerate
+
   // ------------------------------------------------------------------------------------------------- the next state
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
@@ -309,8 +330,8 @@ module command_decoder (
       if (present_valid_o && present_ready_i) present_waits_q <= 1'b0;
       flushes_q <= flushes_q + 2'(begins && draws && is_flush) - 2'(flushed_i);
 
-      if (fails) begin
-        error_q   <= error;
+      if (fails || is_stuck) begin
+        error_q   <= fails ? error : core_pkg::ERROR_STUCK;
         running_q <= 1'b0;
       end else if (takes) begin
         case (state_q)

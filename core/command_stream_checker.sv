@@ -187,6 +187,9 @@ module command_stream_checker #(
       else $error("word %0d draws in a box that is inverted or ends beyond the target; cut it with the target", words_o - 1);
       assert (error_o != core_pkg::ERROR_NOT_SUPPORTED)
       else $error("word %0d needs a unit that this configuration lacks; see the register UNITS", words_o - 1);
+      assert (error_o != core_pkg::ERROR_STUCK)
+      else
+        $error("nothing moves, after %0d words; does memory answer, is the last command whole?", words_o);
       assert (error_o != core_pkg::ERROR_BUS) else $error("word %0d came with an error of the bus; is the ring's base right?", words_o - 1);
     end
   end

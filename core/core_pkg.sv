@@ -35,6 +35,7 @@ package core_pkg;
   localparam logic [3:0] ERROR_BAD_BOX = 4'd6;  // the box is inverted or ends beyond the target
   localparam logic [3:0] ERROR_NOT_SUPPORTED = 4'd7;  // this configuration lacks the unit
   localparam logic [3:0] ERROR_BUS = 4'd8;  // the word came with an error of the bus
+  localparam logic [3:0] ERROR_STUCK = 4'd9;  // nothing moved for 2^WATCHDOG cycles while there was something to do: memory does not answer, or the rest of a command does not come
 
   localparam int STATE_REGISTERS = 10;
 

@@ -11,7 +11,8 @@
 module halfplane_core #(
     parameter bit RING = 1,           // commands come from a ring in memory; 0: from s_axis
     parameter bit SCAN_OUT = 1,       // with scan-out; 0: m_axis_video is silent, and PRESENT is done at once
-    parameter bit TEXTURE_MASTER = 0  // textures have m_axi_texture; 0: they use m_axi
+    parameter bit TEXTURE_MASTER = 0,  // textures have m_axi_texture; 0: they use m_axi
+    parameter int WATCHDOG = 24        // error STUCK after 2 to the power of so many cycles without progress; 0: never
 ) (
     input logic clk_i,
     input logic rst_ni,  // asynchronous, that of the bus
@@ -313,7 +314,10 @@ module halfplane_core #(
   logic [31:12]                     texture_base;
   logic                             present_valid, present_ready;
   logic [31:0]                      present_base, present_flags_base;
-  command_decoder u_decoder (
+  logic                             beat_valid, beat_ready, answer_valid, answer_ready;  // between raster_top and memory
+  command_decoder #(
+      .WATCHDOG(WATCHDOG)
+  ) u_decoder (
       .clk_i,
       .rst_ni                    (core_n),
       .start_i                   (starts),
@@ -336,6 +340,7 @@ module halfplane_core #(
       .texture_base_o            (texture_base),
       .idle_i                    (raster_idle),
       .flushed_i                 (flushed),
+      .moves_i                   ((beat_valid && beat_ready) || (answer_valid && answer_ready)),
       .fence_valid_o             (fence_valid),
       .fence_o                   (fence),
       .present_valid_o           (present_valid),
@@ -345,7 +350,6 @@ module halfplane_core #(
   );
 
   // ------------------------------------------------------------------------------------------------------------ pipeline
-  logic                         beat_valid, beat_ready, answer_valid, answer_ready;
   logic                         texture_valid, texture_ready, texel_valid, texel_ready;
   raster_pkg::memory_beat_t     beat;
   raster_pkg::memory_answer_t   answer;

@@ -34,6 +34,7 @@
 #define HALFPLANE_ERROR_BAD_BOX 0x06u
 #define HALFPLANE_ERROR_NOT_SUPPORTED 0x07u
 #define HALFPLANE_ERROR_BUS 0x08u
+#define HALFPLANE_ERROR_STUCK 0x09u
 #define HALFPLANE_SET_FIRST_SHIFT 0u
 #define HALFPLANE_SET_FIRST_MASK 0x0000000fu
 #define HALFPLANE_SET_COUNT_SHIFT 8u
@@ -115,6 +116,7 @@
   X(NO_CLEAR, "drawing, a bin's CLEAR or a FLUSH before the first CLEAR of depth and colour of the target") \
   X(BAD_BOX, "the box is inverted or ends beyond the target") \
   X(NOT_SUPPORTED, "this configuration lacks the unit") \
-  X(BUS, "the word came with an error of the bus")
+  X(BUS, "the word came with an error of the bus") \
+  X(STUCK, "nothing moved for 2^WATCHDOG cycles while there was something to do: memory does not answer, or the rest of a command does not come")
 
 #endif

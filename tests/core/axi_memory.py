@@ -22,14 +22,21 @@ class Behaviour:
     answers: bool = True          # False: nothing is answered until it is set
 
 
+class Unconnected:
+    """A signal of a channel that the port does not have."""
+    value = 0
+
+
 class Memory:
-    def __init__(self, dut, size, behaviour, random, prefix="m_axi"):
+    """`content`: the bytes of another memory, to share; a port without writes has the channels of reads alone."""
+
+    def __init__(self, dut, size, behaviour, random, prefix="m_axi", content=None):
         self.dut, self.behaviour, self.random = dut, behaviour, random
-        self.bytes = bytearray(size)
-        self.s = {n: getattr(dut, f"{prefix}_{n}") for n in (
-            "awvalid awready awaddr awlen wvalid wready wdata wstrb wlast bvalid bready bresp "
-            "arvalid arready araddr arlen rvalid rready rdata rlast rresp").split()}
-        self.beat = len(self.s["wstrb"])
+        self.bytes = bytearray(size) if content is None else content
+        self.s = {n: getattr(dut, f"{prefix}_{n}") for n in "arvalid arready araddr arlen rvalid rready rdata rlast rresp".split()}
+        for n in "awvalid awready awaddr awlen wvalid wready wdata wstrb wlast bvalid bready bresp".split():
+            self.s[n] = getattr(dut, f"{prefix}_{n}") if hasattr(dut, f"{prefix}_awvalid") else Unconnected()
+        self.beat = len(self.s["rdata"]) // 8
         self.cycle = 0
         self.counts = dict(ar=0, aw=0, r=0, w=0, b=0, errors=0)
         self.trace = None  # a list: (cycle, "AR" or "AW", address, beats)

@@ -20,7 +20,7 @@ import zlib
 import cocotb
 from axi_memory import Behaviour, Memory
 from cocotb.clock import Clock
-from cocotb.triggers import RisingEdge
+from cocotb.triggers import ReadOnly, RisingEdge
 from cocotbext.axi import AxiLiteBus, AxiLiteMaster
 from command_words import FAST_CLEAR, Encoder, Package, encode, picture, read_hex
 
@@ -133,11 +133,12 @@ class Frame:
         return clears[-1]["vertices"][0][2] & (1 << package.DEPTH_CODE_BITS) - 1
 
 class Core:
-    def __init__(self, dut, behaviour=None, ring_words=1024):
+    def __init__(self, dut, behaviour=None, ring_words=1024, has_ring=True, has_texture_master=False):
         self.dut, self.config, self.random = dut, os.environ["HALFPLANE_CONFIG"], random.Random(cocotb.RANDOM_SEED)
         self.package = Package(PACKAGES / self.config / "raster_pkg.sv")
         self.ring_words = ring_words
         self.behaviour = behaviour or Behaviour()
+        self.has_ring, self.has_texture_master = has_ring, has_texture_master  # the parameters of the core
         self.tag = self.tail = 0
         self.encoder = Encoder(self.package)
         self.log = dut._log
@@ -146,11 +147,15 @@ class Core:
         d = self.dut
         d.rst_ni.value = 0
         for name in ("s_axis_tvalid", "s_axis_tdata", "m_axi_bid", "m_axi_rid", "m_axis_video_tready", "m_axi_texture_arready",
-                     "m_axi_texture_rvalid"):
+                     "m_axi_texture_rvalid", "m_axi_texture_rlast", "m_axi_texture_rid"):
             getattr(d, name).value = 0
         self.clock = cocotb.start_soon(Clock(d.clk_i, 2, "ns").start())
         self.memory = Memory(d, SIZE, self.behaviour, self.random)
         self.tasks = [cocotb.start_soon(self.memory.run())]
+        self.memories = [self.memory]
+        if self.has_texture_master:
+            self.memories.append(Memory(d, SIZE, self.behaviour, self.random, "m_axi_texture", self.memory.bytes))
+            self.tasks.append(cocotb.start_soon(self.memories[1].run()))
         self.bus = AxiLiteMaster(AxiLiteBus.from_prefix(d, "s_axil"), d.clk_i, d.rst_ni, reset_active_level=False)
         for logger in (self.bus.write_if.log, self.bus.read_if.log):
             logger.setLevel("WARNING")
@@ -171,14 +176,17 @@ class Core:
         await RisingEdge(self.dut.clk_i)
         self.dut.rst_ni.value = 0
         await self.cycles(self.random.randint(1, 4))
-        self.memory.forget()
+        for memory in self.memories:
+            memory.forget()
         self.dut.rst_ni.value = 1
         await self.cycles(6)
         await self.set_up()
 
-    async def restart(self):
-        """From the register, while memory goes on."""
+    async def restart(self, drops_word=False):
+        """From the register, while memory goes on. drops_word: one is on offer to s_axis that was not taken."""
         await self.write("CONTROL", RESTART)
+        if drops_word:
+            self.dut.s_axis_tvalid.value = 0
         for _ in range(4000):
             if not await self.read("STATUS") & RESTARTING:
                 break
@@ -234,8 +242,10 @@ class Core:
         return e.words
 
     async def send(self, words, most=300):
-        """Into the ring, as the driver does: waits for room, writes, moves the tail by parts of any size."""
+        """Into the ring, as the driver does: waits for room, writes, moves the tail by parts of any size. Or to s_axis."""
         words = list(words)
+        if not self.has_ring:
+            return await self.stream(words)
         while words:
             head = await self.read("WORDS")
             room = self.ring_words - (self.tail - head) % (1 << 20)
@@ -251,6 +261,24 @@ class Core:
                 status = await self.read("STATUS")
                 assert status & RUNNING, f"the ring is full and the core has stopped: STATUS {status:#x}"
                 await self.cycles(50)
+
+    async def stream(self, words, offers=0.8):
+        """To s_axis, with gaps; returns when all are taken, or the core has stopped with an error."""
+        d = self.dut
+        for word in words:
+            while self.random.random() >= offers:
+                await RisingEdge(d.clk_i)
+            d.s_axis_tdata.value, d.s_axis_tvalid.value = word, 1
+            taken = False
+            while not taken:
+                await ReadOnly()
+                taken = d.s_axis_tready.value == 1
+                await RisingEdge(d.clk_i)
+                if d.irq.value == 1:  # of an error, where it is enabled
+                    break
+            if not taken:
+                return
+            d.s_axis_tvalid.value = 0
 
     async def fence(self, tag, polls=20000):
         for _ in range(polls):
@@ -268,6 +296,7 @@ class Core:
     def check(self, frame, where=0):
         """Every pixel of both buffers."""
         at, p = self.layout(where, frame.width, frame.height), self.package
+        assert len(frame.color) == len(frame.depth) == frame.width * frame.height
         for what, model in (("color", frame.color), ("depth", frame.depth)):
             is_depth = what == "depth"
             got = picture(p, self.memory.bytes, at[what], at["stride"], frame.width, frame.height, is_depth and at["depth_flags"] or None,

@@ -35,6 +35,7 @@ module stream_player;
       .texture_base_o(),
       .idle_i(1'b1),
       .flushed_i(flushed),
+      .moves_i(1'b0),
       .fence_valid_o(),
       .fence_o(),
       .present_valid_o(),
