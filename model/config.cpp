@@ -189,6 +189,9 @@ std::vector<Setting> all_settings() {
       unnamed_at_0(number<&Config::texture_constants>(
           "texture.constant", "units",
           "1: the RTL's texture unit blends with a constant colour (texture_combine blend); 0: it does not", 0, 1)),
+      unnamed_at_0(number<&Config::texture_borders>(
+          "texture.border", "units",
+          "1: the RTL's texture unit has a border colour (texture_wrap border and half_border); 0: it has none", 0, 1)),
       number<&Config::alpha_units>(
           "alpha.unit", "units",
           "1: the RTL interpolates alpha, whatever color.format keeps, and (blocks, pipelined) tests it; 0: neither", 0,

@@ -78,6 +78,7 @@ struct Config {
   int texture_queue = 32;    ///< samples between their coordinates and their texels; a power of two
   ReciprocalKind reciprocal_kind = ReciprocalKind::table;  ///< of the texture unit
   int texture_constants = 0;                               ///< 1: the RTL's texture unit blends with a constant colour
+  int texture_borders = 0;                                 ///< 1: the RTL's texture unit has a border colour
   int alpha_units = 0;    ///< 1: alpha is interpolated for any stored format, and tested
   int blend_lanes = 0;    ///< samples blended per clock: 0 (no unit), 1 or 4
   int dither_units = 0;   ///< 1: the RTL dithers colours of rgb565

@@ -60,6 +60,8 @@ void validate(const Config& config) {
   refuse_unless(config.texture_constants == 0 || config.texture_unit != TextureUnitKind::off,
                 "a constant colour is blended by the texels of a texture unit: use texture.unit=nearest, or "
                 "texture.constant=0");
+  refuse_unless(config.texture_borders == 0 || config.texture_unit != TextureUnitKind::off,
+                "a border colour is a texel of a texture unit: use texture.unit=nearest, or texture.border=0");
   refuse_unless(config.fog_units == 0 || config.texture_unit != TextureUnitKind::off,
                 "fog looks at the plane of 1/w, which a texture unit brings: use texture.unit=nearest, or fog.unit=0");
   refuse_unless(config.shade_units == 0 || config.texture_unit != TextureUnitKind::off,

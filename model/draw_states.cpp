@@ -201,7 +201,8 @@ constexpr std::array<Words, 6> texture_min_words{"nearest",
                                                  "nearest_mipmap_linear",
                                                  "linear_mipmap_linear"};
 constexpr std::array<Words, 2> texture_mag_words{"nearest", "linear"};
-constexpr std::array<Words, 3> wrap_words{"repeat", "clamp", "mirror"};
+constexpr std::array<Words, 5> wrap_words{"repeat", "clamp", "mirror", "border", "half_border"};
+static_assert(wrap_words.size() == enumerators<TextureWrap>());
 constexpr std::array<Words, 5> combine_words{"modulate", "replace", "decal", "add", "blend"};
 static_assert(combine_words.size() == enumerators<TextureCombine>());
 
@@ -303,9 +304,12 @@ constexpr std::array<StateNumber, 1> texture_numbers{{
     {"texture", 0, 65535, true, false, 0, 1, 0, {}, true},
 }};
 constexpr std::array<StateNumber, 2> texture_wrap_numbers{{
-    {"texture_wrap along u", 0, 2, true, false, 0, 1, 3, wrap_words},
-    {"texture_wrap along v", 0, 2, true, false, 0, 1, 3, wrap_words},
+    {"texture_wrap along u", 0, 4, true, false, 0, 1, 3, wrap_words},
+    {"texture_wrap along v", 0, 4, true, false, 0, 1, 3, wrap_words},
 }};
+constexpr std::array<StateNumber, 4> texture_border_numbers{
+    {byte_number("texture_border's red"), byte_number("texture_border's green"), byte_number("texture_border's blue"),
+     byte_number("texture_border's alpha")}};
 constexpr std::array<StateNumber, 3> texture_lod_numbers{{
     {"texture_lod's bias", -16, 16, false, false, -2, 0.25, 17},
     {"texture_lod's least level", 0, 12, false, false, 0, 0.5, 4},
@@ -459,7 +463,14 @@ constexpr std::array table{
     row<&State::texture_wrap>({.name = "texture_wrap",
                                .numbers = texture_wrap_numbers,
                                .form = "S T",
-                               .purpose = "what lies beyond the image along u and v; `clamp` is to its edge"}),
+                               .purpose = "what lies beyond the image along u and v; `clamp` is to its edge, `border` "
+                                          "a colour, `half_border` holds the coordinate in the image, so that a "
+                                          "linear filter mixes half of that colour at its sides"}),
+    row<&State::texture_border>({.name = "texture_border",
+                                 .numbers = texture_border_numbers,
+                                 .form = "r g b a",
+                                 .purpose = "that colour; of a texture without alpha a counts as 255",
+                                 .home = StateHome::unit}),
     row<&State::texture_lod>({.name = "texture_lod",
                               .numbers = texture_lod_numbers,
                               .form = "bias min max",

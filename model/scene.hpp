@@ -52,8 +52,17 @@ enum class TextureMin {
   linear_mipmap_linear
 };
 enum class TextureMag { nearest, linear };
-/// Texels beyond the image: repeated, the last texel, or mirrored. Along u and v.
-enum class TextureWrap { repeat, clamp, mirror };
+/// Texels beyond the image: repeated, the last texel, mirrored, or State::texture_border. half_border holds a coordinate
+/// in the image, so that a linear filter at its sides mixes half the border, and a nearest one sees none of it. Along u
+/// and v.
+enum class TextureWrap { repeat, clamp, mirror, border, half_border };
+[[nodiscard]] constexpr bool has_border(TextureWrap wrap) {
+  return wrap == TextureWrap::border || wrap == TextureWrap::half_border;
+}
+/// Whether the image comes again; else coordinates far away are all alike.
+[[nodiscard]] constexpr bool has_period(TextureWrap wrap) {
+  return wrap == TextureWrap::repeat || wrap == TextureWrap::mirror;
+}
 /// Combination with the primitive's colour. blend: from that to State::texture_constant, by the texel's channels.
 enum class TextureCombine { modulate, replace, decal, add, blend };
 
@@ -196,6 +205,7 @@ struct State {
   TextureMin texture_min = TextureMin::nearest;
   TextureMag texture_mag = TextureMag::nearest;
   std::array<TextureWrap, 2> texture_wrap{};
+  Texel texture_border{};                             ///< of texture_wrap border and half_border
   std::array<double, 3> texture_lod{0.0, 0.0, 12.0};  ///< bias, least and largest level
   TextureCombine texture_combine = TextureCombine::modulate;
   std::array<std::uint8_t, 3> texture_constant{};  ///< of texture_combine blend

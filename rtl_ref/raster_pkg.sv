@@ -34,6 +34,7 @@ package raster_pkg;
   localparam int TEXTURE_QUEUE = 32;  // samples that wait for their texels, so that misses overlap; a power of two
   localparam int RECIPROCAL_KIND = 0;  // 0 table, 1 restoring: what the texture unit divides by 1/w with: a RAM and two multipliers, or subtractions; the same bits and time
   localparam int TEXTURE_CONSTANT = 0;  // 1: the RTL's texture unit blends with a constant colour (texture_combine blend); 0: it does not
+  localparam int TEXTURE_BORDER = 0;  // 1: the RTL's texture unit has a border colour (texture_wrap border and half_border); 0: it has none
   localparam int ALPHA_UNIT = 0;  // 1: the RTL interpolates alpha, whatever color.format keeps, and (blocks, pipelined) tests it; 0: neither
   localparam int BLEND_LANES = 0;  // samples blended per cycle by the RTL, 1 or 4; 0: neither blending nor partial color masks
   localparam int DITHER_UNIT = 0;  // 1: the RTL dithers colours of rgb565; 0: it rounds them
@@ -556,6 +557,7 @@ package raster_pkg;
   localparam int STORED_FRAGMENT_BITS = FRAGMENT_PACKET_BITS - (STORE_CONSTANTS_SEPARATELY != 0 ? COORDINATE_FRAME_BITS - TRIANGLE_BITS + (PIXELS - 1) * (ALL_FRAGMENT_BITS - ALL_AFFINE_CODE_BITS) : 0);  // a fragment as it waits for memory
   localparam int UNIT_WORD_BITS = 43;  // a token's value for light or fog; two bits above it say which
   localparam int CONSTANT_WORD_BIT = 42;  // of levels: the token is the texture's constant
+  localparam int BORDER_WORD_BIT = 41;  // likewise: the texture's border
   localparam int FOG_PLACE_BITS = 19;  // where in the table of a fog a pixel lies
   localparam int FOG_PLACES_BITS = FOG_PLACE_BITS * PIXELS > UNIT_WORD_BITS ? FOG_PLACE_BITS * PIXELS : UNIT_WORD_BITS;  // that of a stamp's pixels, or a token's value
   localparam int FOG_WORD_BITS = FOG_UNIT == 0 ? 1 : FOG_PLACES_BITS + 3;  // with it: there is fog; a token sets its colour; a line of its table

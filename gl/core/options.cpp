@@ -11,8 +11,9 @@ namespace {
 /// Of a driver that nobody has configured: what programs expect of a visual, and every unit.
 Config plain_config() {
   return labelled(
-      "full stencil.bits=8 perspective.colors=1 texture.unit=trilinear texture.constant=1 alpha.unit=1 blend.lanes=4 "
-      "fog.unit=1");
+      "full stencil.bits=8 perspective.colors=1 texture.unit=trilinear texture.constant=1 texture.border=1 "
+      "alpha.unit=1 "
+      "blend.lanes=4 fog.unit=1");
 }
 
 OnMissing on_missing_of(const std::string& word) {

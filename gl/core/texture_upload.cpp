@@ -132,6 +132,10 @@ Result environment(const TextureUnit& unit, GLenum base, const Vec4& texel, cons
 
 Vec4 real(const Texel& texel) { return {texel[0] / 255.0, texel[1] / 255.0, texel[2] / 255.0, texel[3] / 255.0}; }
 
+bool is_linear(GLenum filter) {
+  return filter == GL_LINEAR || filter == GL_LINEAR_MIPMAP_NEAREST || filter == GL_LINEAR_MIPMAP_LINEAR;
+}
+
 /// Of the modes that take texels as they are; none: the texels decide. `blends`: the hardware has a constant color.
 std::optional<Fit> direct_fit(GLenum mode, GLenum base, bool blends) {
   const bool is_opaque = base == GL_RGB || base == GL_LUMINANCE;
@@ -166,21 +170,47 @@ struct Sampled {
     if (level(l).base_format != GL_DEPTH_COMPONENT || base == GL_INTENSITY) return t;
     return base == GL_ALPHA ? Texel{255, 255, 255, t[0]} : Texel{t[0], t[0], t[0], 255};
   }
+  /// The border's colour as a texel of the base format.
+  [[nodiscard]] Texel border() const {
+    Texel t{};
+    for (std::size_t c = 0; c < 4; ++c) {
+      const double channel = texture.border_color[c];
+      t[c] = static_cast<std::uint8_t>(std::lround(255 * (channel > 0 ? std::min(channel, 1.0) : 0)));  // NaN: 0
+    }
+    const std::uint8_t of_alpha = level(first).base_format == GL_DEPTH_COMPONENT ? t[0] : t[3];
+    switch (base) {
+      case GL_ALPHA: return {255, 255, 255, of_alpha};
+      case GL_INTENSITY: return {t[0], t[0], t[0], t[0]};
+      case GL_LUMINANCE: return {t[0], t[0], t[0], 255};
+      case GL_LUMINANCE_ALPHA: return {t[0], t[0], t[0], t[3]};
+      case GL_RGB: return {t[0], t[1], t[2], 255};
+      default: return t;
+    }
+  }
   /// Texels of one level: of a texture with several layers the first.
   [[nodiscard]] std::size_t texels(std::size_t l) const {
     return static_cast<std::size_t>(level(l).width) * static_cast<std::size_t>(level(l).height);
   }
 };
 
-/// Which of the model's modes gives the results of all texels.
-Fit fit_texels(const Sampled& sampled, bool blends) {
+/// A side whose coordinates may show the border; `filters`: the texture has a linear filter.
+bool shows_border(GLenum wrap, bool filters) { return wrap == GL_CLAMP_TO_BORDER || (wrap == GL_CLAMP && filters); }
+bool shows_border(const TextureObject& texture) {
+  const bool filters = is_linear(texture.min_filter) || is_linear(texture.mag_filter);
+  return shows_border(texture.wrap[0], filters) ||
+         (texture.target != GL_TEXTURE_1D && shows_border(texture.wrap[1], filters));
+}
+
+/// Which of the model's modes gives the results of all texels, and of the border where `has_border`.
+Fit fit_texels(const Sampled& sampled, bool blends, bool has_border) {
   std::array<bool, 6> rgb{true, true, true, true, true, blends};  // by Rgb
   std::array<bool, 2> alpha{true, true};                          // by Alpha
   bool keeps_alpha = true;
   const Vec4& constant = sampled.unit.env_color;
+  const std::size_t borders = has_border ? 1 : 0;
   for (std::size_t l = sampled.first; l <= sampled.last; ++l)
-    for (std::size_t i = 0; i < sampled.texels(l); ++i) {
-      const Texel texel = sampled.texel(l, i);
+    for (std::size_t i = 0; i < sampled.texels(l) + borders; ++i) {
+      const Texel texel = i < sampled.texels(l) ? sampled.texel(l, i) : sampled.border();
       if (i != 0 && texel == sampled.texel(l, i - 1)) continue;
       const Result result = environment(sampled.unit, sampled.base, real(texel));
       for (std::size_t c = 0; c < 4; ++c) {
@@ -230,6 +260,10 @@ Texel folded(const Fit& fit, const Result& result, const Texel& texel, const Vec
   return texel_of(color);
 }
 
+Texel folded(const Sampled& sampled, const Fit& fit, const Texel& texel) {
+  return folded(fit, environment(sampled.unit, sampled.base, real(texel)), texel, sampled.unit.env_color);
+}
+
 halfplane::Texture made(const Sampled& sampled, const Fit& fit, bool has_levels) {
   std::vector<TexelImage> levels;
   for (std::size_t l = sampled.first; l <= sampled.last; ++l) {
@@ -243,9 +277,7 @@ halfplane::Texture made(const Sampled& sampled, const Fit& fit, bool has_levels)
     image.texel.reserve(sampled.texels(l));
     for (std::size_t i = 0; i < sampled.texels(l); ++i) {
       const Texel texel = sampled.texel(l, i);
-      image.texel.push_back(
-          fit.folds ? folded(fit, environment(sampled.unit, sampled.base, real(texel)), texel, sampled.unit.env_color)
-                    : texel);
+      image.texel.push_back(fit.folds ? folded(sampled, fit, texel) : texel);
     }
     levels.push_back(std::move(image));
   }
@@ -279,23 +311,19 @@ class Key {
 };
 
 /// The fit of an environment that has to be folded, found once for each key.
-Fit folded_fit(Context& context, const Sampled& sampled, bool blends, std::uint64_t key) {
+Fit folded_fit(Context& context, const Sampled& sampled, bool blends, bool has_border, std::uint64_t key) {
   constexpr std::size_t kMost = 1024;
   if (const auto known = context.texture_fits.find(key); known != context.texture_fits.end())
     return {static_cast<Rgb>(known->second & 255), static_cast<Alpha>(known->second >> 8), true};
   if (context.texture_fits.size() >= kMost) context.texture_fits.clear();
-  const Fit fit = fit_texels(sampled, blends);
+  const Fit fit = fit_texels(sampled, blends, has_border);
   context.texture_fits[key] = static_cast<std::uint32_t>(fit.rgb) | static_cast<std::uint32_t>(fit.alpha) << 8;
   return fit;
 }
 
-bool is_linear(GLenum filter) {
-  return filter == GL_LINEAR || filter == GL_LINEAR_MIPMAP_NEAREST || filter == GL_LINEAR_MIPMAP_LINEAR;
-}
-
-void say_what_is_missing(Frame& frame, const TextureObject& texture) {
+void say_what_is_missing(Frame& frame, const TextureObject& texture, bool has_borders) {
   const bool filters = is_linear(texture.min_filter) || is_linear(texture.mag_filter);
-  for (std::size_t i = 0; i < (texture.target == GL_TEXTURE_1D ? 1U : 2U); ++i) {
+  for (std::size_t i = 0; !has_borders && i < (texture.target == GL_TEXTURE_1D ? 1U : 2U); ++i) {
     if (texture.wrap[i] == GL_CLAMP_TO_BORDER) frame.missing("GL_CLAMP_TO_BORDER", "drawn as GL_CLAMP_TO_EDGE");
     if (texture.wrap[i] == GL_CLAMP && filters)
       frame.missing("GL_CLAMP with a linear filter", "drawn as GL_CLAMP_TO_EDGE");
@@ -325,7 +353,14 @@ Vec4 sampled_at(const Sampled& sampled, double s, double t) {
   const TextureObject& texture = sampled.texture;
   const bool is_linear = texture.mag_filter == GL_LINEAR;
   const double shift = is_linear ? 0.5 : 0;
-  const double u = s * image.width - shift, v = t * image.height - shift;
+  const auto place = [&](double coordinate, int size, GLenum wrap) {
+    const double held = wrap == GL_CLAMP ? std::clamp(coordinate, 0.0, 1.0) : coordinate;
+    return held * size - shift;
+  };
+  const double u = place(s, image.width, texture.wrap[0]), v = place(t, image.height, texture.wrap[1]);
+  const auto is_beyond = [&](double at, int size, GLenum wrap) {
+    return shows_border(wrap, is_linear) && (at < 0 || at >= size);
+  };
   Vec4 sum{};
   for (const int j : {0, 1})
     for (const int i : {0, 1}) {
@@ -334,9 +369,11 @@ Vec4 sampled_at(const Sampled& sampled, double s, double t) {
       const double weight = is_linear ? wide * high : (i == 0 && j == 0 ? 1 : 0);
       const int x = wrapped(texture.wrap[0], std::floor(u) + i, image.width);
       const int y = wrapped(texture.wrap[1], std::floor(v) + j, image.height);
-      const Vec4 texel =
-          real(sampled.texel(sampled.first, static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
-                                                static_cast<std::size_t>(x)));
+      const bool is_border = is_beyond(std::floor(u) + i, image.width, texture.wrap[0]) ||
+                             is_beyond(std::floor(v) + j, image.height, texture.wrap[1]);
+      const std::size_t at =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x);
+      const Vec4 texel = real(is_border ? sampled.border() : sampled.texel(sampled.first, at));
       for (std::size_t c = 0; c < 4; ++c) sum[c] += weight * texel[c];
     }
   return sum;
@@ -346,9 +383,11 @@ GLenum base_of(const TextureObject& texture, const TextureImage& image) {
   return image.base_format == GL_DEPTH_COMPONENT ? texture.depth_mode : image.base_format;
 }
 
-TextureWrap wrap_of(GLenum wrap) {
+TextureWrap wrap_of(GLenum wrap, bool shows_border) {
   if (wrap == GL_REPEAT) return TextureWrap::repeat;
-  return wrap == GL_MIRRORED_REPEAT ? TextureWrap::mirror : TextureWrap::clamp;
+  if (wrap == GL_MIRRORED_REPEAT) return TextureWrap::mirror;
+  if (!shows_border) return TextureWrap::clamp;
+  return wrap == GL_CLAMP ? TextureWrap::half_border : TextureWrap::border;
 }
 
 }  // namespace
@@ -357,7 +396,11 @@ TextureUse use_texture(Context& context, halfplane::State& state) {
   const TextureObject* texture = context.drawable == nullptr ? nullptr : sampled_texture(context, 0);
   if (texture == nullptr) return {};
   Frame& frame = context.drawable->frame;
-  say_what_is_missing(frame, *texture);
+  // A configuration without a texture unit has no hardware to keep to.
+  const Config& config = frame.options().config;
+  const bool has_unit = config.texture_unit != TextureUnitKind::off;
+  const bool blends = !has_unit || config.texture_constants != 0, borders = !has_unit || config.texture_borders != 0;
+  say_what_is_missing(frame, *texture, borders);
   if (texture->target == GL_TEXTURE_CUBE_MAP) return {};
   const TextureUnit& unit = context.state.texture.unit[0];
   const auto first = static_cast<std::size_t>(texture->base_level);
@@ -372,9 +415,7 @@ TextureUse use_texture(Context& context, halfplane::State& state) {
   const Sampled sampled{*texture, unit, base_of(*texture, image), first, last};
 
   Key key(texture->revision, first, last, sampled.base);
-  // A configuration without a texture unit has no hardware to keep to.
-  const Config& config = frame.options().config;
-  const bool blends = config.texture_unit == TextureUnitKind::off || config.texture_constants != 0;
+  const bool has_border = borders && shows_border(*texture);
   std::optional<Fit> fit = direct_fit(unit.env_mode, sampled.base, blends);
   if (!fit) {
     key.add(unit.env_mode);
@@ -385,7 +426,9 @@ TextureUse use_texture(Context& context, halfplane::State& state) {
       key.add(static_cast<std::uint64_t>(combiner.scale));
       for (std::size_t i = 0; i < 3; ++i) key.add(std::uint64_t{combiner.source[i]} << 32 | combiner.operand[i]);
     }
-    fit = folded_fit(context, sampled, blends, key.value());
+    if (has_border)
+      for (const double channel : texture->border_color) key.add(std::bit_cast<std::uint64_t>(channel));
+    fit = folded_fit(context, sampled, blends, has_border, key.value());
     if (!fit->is_exact())
       frame.missing(unit.env_mode == GL_COMBINE ? "this GL_COMBINE environment"
                     : unit.env_mode == GL_BLEND ? "this GL_BLEND environment"
@@ -401,8 +444,12 @@ TextureUse use_texture(Context& context, halfplane::State& state) {
   state.texture_min = static_cast<TextureMin>(min >= GL_NEAREST_MIPMAP_NEAREST ? min - GL_NEAREST_MIPMAP_NEAREST + 2
                                                                                : min - GL_NEAREST);
   state.texture_mag = is_linear(texture->mag_filter) ? TextureMag::linear : TextureMag::nearest;
-  state.texture_wrap = {wrap_of(texture->wrap[0]),
-                        texture->target == GL_TEXTURE_1D ? TextureWrap::clamp : wrap_of(texture->wrap[1])};
+  const bool filters = is_linear(texture->min_filter) || is_linear(texture->mag_filter);
+  const auto wrap = [&](std::size_t axis) {
+    return wrap_of(texture->wrap[axis], has_border && shows_border(texture->wrap[axis], filters));
+  };
+  state.texture_wrap = {wrap(0), texture->target == GL_TEXTURE_1D ? TextureWrap::clamp : wrap(1)};
+  if (has_border) state.texture_border = fit->folds ? folded(sampled, *fit, sampled.border()) : sampled.border();
   const double largest = has_levels ? static_cast<double>(last - first) : 12;
   const auto in = [](double value, double low, double high) { return value > low ? std::min(value, high) : low; };
   state.texture_lod = {in(texture->lod_bias + unit.lod_bias, -16, 16), in(texture->min_lod, 0, largest),

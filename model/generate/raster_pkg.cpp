@@ -186,6 +186,7 @@ void print_blocks(std::ostream& out, const Config& config) {
   print_constant(out, "UNIT_WORD_BITS", kLevelsWordBit,
                  "a token's value for light or fog; two bits above it say which");
   print_constant(out, "CONSTANT_WORD_BIT", kConstantWordBit, "of levels: the token is the texture's constant");
+  print_constant(out, "BORDER_WORD_BIT", kBorderWordBit, "likewise: the texture's border");
   print_constant(out, "FOG_PLACE_BITS", kFogPlaceBits + kFogOctaves, "where in the table of a fog a pixel lies");
   constant("FOG_PLACES_BITS", "FOG_PLACE_BITS * PIXELS > UNIT_WORD_BITS ? FOG_PLACE_BITS * PIXELS : UNIT_WORD_BITS",
            "that of a stamp's pixels, or a token's value");

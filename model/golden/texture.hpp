@@ -26,22 +26,35 @@ using Color = std::array<double, 4>;
   return std::log2(std::max(std::hypot(at.u_x * width, at.v_x * height), std::hypot(at.u_y * width, at.v_y * height)));
 }
 
-/// The texel of the image for a whole number, with `size` texels along the axis.
+/// The texel of the image for a whole number, with `size` texels along the axis; next to the border, if it is there.
 [[nodiscard]] inline int wrapped(double texel, int size, TextureWrap wrap) {
   const auto modulo = [texel](double period) {
     const double rest = std::fmod(texel, period);  // exact, unlike a quotient
     return rest < 0 ? rest + period : rest;
   };
-  if (wrap == TextureWrap::clamp) return static_cast<int>(std::clamp(texel, 0.0, static_cast<double>(size - 1)));
+  if (!has_period(wrap)) return static_cast<int>(std::clamp(texel, 0.0, static_cast<double>(size - 1)));
   if (wrap == TextureWrap::repeat) return static_cast<int>(modulo(size));
   const int i = static_cast<int>(modulo(2.0 * size));
   return i < size ? i : 2 * size - 1 - i;
 }
 
-[[nodiscard]] inline Color texel_at(const Texture& texture, const State& state, int n, double x, double y) {
+/// Whether a whole number is on the border: OpenGL 1.5, 3.8.7 and 3.8.8; CLAMP, which is half_border, selects no border
+/// texel for a nearest filter.
+[[nodiscard]] inline bool is_on_border(double texel, int size, TextureWrap wrap, bool is_linear) {
+  const bool has_one = wrap == TextureWrap::border || (wrap == TextureWrap::half_border && is_linear);
+  return has_one && (texel < 0 || texel >= size);
+}
+
+[[nodiscard]] inline Color texel_at(const Texture& texture, const State& state, int n, double x, double y,
+                                    bool is_linear) {
   const TextureLevel& level = texture.level[static_cast<std::size_t>(n)];
-  const Texel t =
+  Texel t =
       texture.texel(n, wrapped(x, level.width, state.texture_wrap[0]), wrapped(y, level.height, state.texture_wrap[1]));
+  if (is_on_border(x, level.width, state.texture_wrap[0], is_linear) ||
+      is_on_border(y, level.height, state.texture_wrap[1], is_linear)) {
+    t = state.texture_border;
+    if (!has_alpha(texture.format)) t[3] = 255;
+  }
   return {static_cast<double>(t[0]), static_cast<double>(t[1]), static_cast<double>(t[2]), static_cast<double>(t[3])};
 }
 
@@ -67,13 +80,16 @@ struct TexelPlace {
 [[nodiscard]] inline Color filtered_level(const Texture& texture, const State& state, const TexelPlace& at, int n,
                                           bool is_linear) {
   const TextureLevel& level = texture.level[static_cast<std::size_t>(n)];
-  const auto on_level = [is_linear](double texels, int size, int whole) {
-    const double place = is_linear ? texels * size / whole - 0.5 : on_border(texels * size / whole, size);
+  const auto on_level = [is_linear](double texels, int size, int whole, TextureWrap wrap) {
+    double place = texels * size / whole;
+    if (wrap == TextureWrap::half_border) place = std::clamp<double>(place, 0, size);
+    place = is_linear ? place - 0.5 : on_border(place, size);
     return std::isfinite(place) ? place : 0;  // an overflow has no place
   };
-  const double x = on_level(at.x, level.width, texture.width()), y = on_level(at.y, level.height, texture.height());
+  const double x = on_level(at.x, level.width, texture.width(), state.texture_wrap[0]),
+               y = on_level(at.y, level.height, texture.height(), state.texture_wrap[1]);
   const double left = std::floor(x), top = std::floor(y);
-  const auto texel = [&](int i, int j) { return texel_at(texture, state, n, left + i, top + j); };
+  const auto texel = [&](int i, int j) { return texel_at(texture, state, n, left + i, top + j, is_linear); };
   if (!is_linear) return texel(0, 0);
   return between(between(texel(0, 0), texel(1, 0), x - left), between(texel(0, 1), texel(1, 1), x - left), y - top);
 }

@@ -122,6 +122,7 @@ Signature FrameBins::signature_of(const HostPrimitive& primitive, const WholeLin
   hash.add(units.texture_state);
   hash.add(units.texture_levels);
   add_optional(units.texture_constant);
+  add_optional(units.texture_border);
   hash.add(units.texels);
   if (units.texture_lines)
     for (const uint128 part : {units.texture_lines->low, units.texture_lines->high}) {

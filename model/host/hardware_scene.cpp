@@ -33,6 +33,9 @@ std::string surface_fault(const Scene& scene, const State& state, const Config& 
     return "texture_combine blend: this texture unit has no constant colour; set texture.constant=1, or use another "
            "way "
            "to combine";
+  if ((has_border(state.texture_wrap[0]) || has_border(state.texture_wrap[1])) && config.texture_borders == 0)
+    return "texture_wrap border and half_border: this texture unit has no border colour; set texture.border=1, or use "
+           "clamp";
   const bool is_linear = state.texture_min == TextureMin::linear && state.texture_mag == TextureMag::linear;
   if (is_linear && config.texture_unit == TextureUnitKind::nearest)
     return "texture_min and texture_mag: this texture unit takes nearest texels alone; use nearest, or set "

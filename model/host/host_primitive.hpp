@@ -20,6 +20,7 @@ struct UnitWords {
   std::uint32_t texture_levels = 0;                 ///< likewise TextureLevels
   std::optional<TextureLines> texture_lines{};      ///< if its samples have a level of detail
   std::optional<std::uint64_t> texture_constant{};  ///< if it blends by its texels: TextureConstant
+  std::optional<std::uint64_t> texture_border{};    ///< if a side of it has one: TextureBorder
   bool looks_at_fog = false;                        ///< triangle whose colours are written, with a fog unit
   std::shared_ptr<const FogTable> fog{};            ///< then: its fog; null: none
   bool looks_at_light = false;                      ///< likewise

@@ -152,6 +152,10 @@ void HostStream::set_texture(const HostPrimitive& triangle) {
     texture_constant_ = triangle.units.texture_constant;
     in_front_.push_back(state_token(StateRegister::texture_levels, *texture_constant_, triangle));
   }
+  if (triangle.units.texture_border && triangle.units.texture_border != texture_border_) {
+    texture_border_ = triangle.units.texture_border;
+    in_front_.push_back(state_token(StateRegister::texture_levels, *texture_border_, triangle));
+  }
   if (config_.texture_unit != TextureUnitKind::trilinear || !TextureState::unpack(triangle.units.texture_state).enable)
     return;
   if (triangle.units.texture_levels != texture_levels_) {
@@ -421,6 +425,8 @@ void HostStream::set_coordinates(const Triangle& triangle, HostPrimitive& out) {
   out.units.texture_state = texture_state(texture, state, textures_->base(*state.texture)).pack();
   if (state.texture_combine == TextureCombine::blend)
     out.units.texture_constant = TextureConstant{state.texture_constant}.pack();
+  if (has_border(state.texture_wrap[0]) || has_border(state.texture_wrap[1]))
+    out.units.texture_border = TextureBorder{border_texel(state.texture_border, texture.format)}.pack();
   if (held_ != nullptr) out.units.texels = texels_of(*state.texture);
   if (config_.texture_unit == TextureUnitKind::trilinear) set_levels(triangle, coordinates, format, out);
 }

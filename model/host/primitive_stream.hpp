@@ -106,6 +106,7 @@ class HostStream {
   std::optional<std::uint64_t> texture_state_;     ///< the unit's state since the scene began
   std::optional<std::uint32_t> texture_levels_;    ///< likewise, with levels
   std::optional<std::uint64_t> texture_constant_;  ///< likewise
+  std::optional<std::uint64_t> texture_border_;    ///< likewise
   std::optional<FogState> fog_state_;              ///< likewise, and the lines of its table
   std::array<std::optional<FogLine>, std::size_t{1} << kFogLines> fog_line_{};
   std::array<std::optional<std::uint64_t>, kLightWords> light_word_{};  ///< likewise for light

@@ -160,8 +160,9 @@ enum class PrimitiveKind : std::uint8_t {
 
 /// Register that a token of kind state sets.
 enum class StateRegister : std::uint8_t {
-  texture = 0,         ///< TextureState
-  texture_levels = 1,  ///< TextureLevels; also FogState, a line of its table, light, TextureConstant: LevelsWord
+  texture = 0,  ///< TextureState
+  texture_levels =
+      1,  ///< TextureLevels; also FogState, a line of its table, light, TextureConstant, TextureBorder: LevelsWord
   texture_lines = 2,   ///< a part of a TextureLines, shifted in after the ones before
   color_ops = 4,       ///< ColorOps without its constant (stages/color_packets.hpp)
   blend_constant = 5,  ///< the constant of ColorOps

@@ -7,7 +7,8 @@
 //   1/2, v - 1/2
 //   trilinear  linear on two levels, each kept to 8 fraction bits of a channel, then (256 - c, c)
 // A sum is rounded once, (sum + 2^15) >> 16; between two levels twice, with an error of 2^-9 of a code, which saves a
-// multiplier of 25 bits. `fetch(level, x, y)` gives the texel there, R, G, B, A.
+// multiplier of 25 bits. `fetch(level, x, y)` gives the texel there, R, G, B, A; `border` is the colour beyond the image
+// of an axis that has one.
 #pragma once
 
 #include <algorithm>
@@ -32,7 +33,7 @@ struct TextureAxis {
   TextureWrap wrap = TextureWrap::repeat;
 
   [[nodiscard]] constexpr bool is_power_of_two() const { return std::has_single_bit(static_cast<unsigned>(size)); }
-  /// Period of the image in texels. Not for clamp.
+  /// Period of the image in texels, if it has one.
   [[nodiscard]] constexpr std::int64_t period() const {
     return wrap == TextureWrap::mirror ? std::int64_t{2} * size : std::int64_t{size};
   }
@@ -45,10 +46,10 @@ struct TextureAxis {
   return rest < 0 ? rest + period : rest;
 }
 
-/// u_ref as passed to the hardware: modulo the period; or, with clamp, moved without effect on any coordinate of the
+/// u_ref as passed to the hardware: modulo the period; or, without one, moved without effect on any coordinate of the
 /// triangle. Host.
 [[nodiscard]] inline std::int32_t wrapped_reference(double reference, const TextureAxis& axis) {
-  if (axis.wrap == TextureWrap::clamp) {
+  if (!has_period(axis.wrap)) {
     const double limit = std::ldexp(1.0, kMaxReach + 2);  // twice the largest U
     return static_cast<std::int32_t>(std::clamp(reference, -limit, limit));
   }
@@ -61,7 +62,7 @@ struct TextureAxis {
 [[nodiscard]] constexpr std::int64_t texture_coordinate(std::int64_t u, std::int32_t reference, int fraction_bits,
                                                         const TextureAxis& axis) {
   const std::int64_t sum = u + reference * (std::int64_t{1} << fraction_bits);
-  return axis.wrap == TextureWrap::clamp ? sum : floor_modulo(sum, axis.period() << fraction_bits);
+  return !has_period(axis.wrap) ? sum : floor_modulo(sum, axis.period() << fraction_bits);
 }
 
 /// A coordinate of level 0, f fraction bits, on another level, 8 fraction bits: coordinate size_n / size, truncated.
@@ -79,13 +80,18 @@ struct TextureAxis {
   return round_shift(at_level(2 * coordinate, fraction_bits, axis, level), 1);
 }
 
-/// The texel of the image for texel number i.
+/// The texel of the image for texel number i; where that is the border's, the one next to it.
 [[nodiscard]] constexpr int wrapped_texel(std::int64_t i, const TextureAxis& axis) {
   const std::int64_t last = axis.size - 1;
-  if (axis.wrap == TextureWrap::clamp) return static_cast<int>(std::clamp<std::int64_t>(i, 0, last));
+  if (!has_period(axis.wrap)) return static_cast<int>(std::clamp<std::int64_t>(i, 0, last));
   const std::int64_t period = axis.period();
   const std::int64_t rest = axis.is_power_of_two() ? i & (period - 1) : floor_modulo(i, period);
   return static_cast<int>(rest > last ? period - 1 - rest : rest);  // beyond the last texel: mirrored
+}
+
+/// Whether texel number i is the border's.
+[[nodiscard]] constexpr bool is_on_border(std::int64_t i, const TextureAxis& axis) {
+  return has_border(axis.wrap) && (i < 0 || i >= axis.size);
 }
 
 /// A sample's place on a texture: coordinates of level 0 with f fraction bits.
@@ -101,34 +107,50 @@ using TextureAxes = std::array<TextureAxis, 2>;
 struct TexelPair {
   int first = 0, second = 0;
   std::uint32_t part = 0;
+  bool is_first_border = false, is_second_border = false;  ///< the border's colour instead of the texel
 };
 [[nodiscard]] constexpr TexelPair texels_around(const TexturePlace& place, const TextureAxes& axes, std::size_t axis,
                                                 int level) {
-  const std::int64_t from_middle =
-      rounded_at_level(place.coordinate[axis], place.fraction_bits, axes[axis], level) - (1 << (kTexelFraction - 1));
-  const std::int64_t first = from_middle >> kTexelFraction;
   const TextureAxis on_level = axes[axis].at_level(level);
+  std::int64_t u = rounded_at_level(place.coordinate[axis], place.fraction_bits, axes[axis], level);
+  if (on_level.wrap == TextureWrap::half_border)
+    u = std::clamp<std::int64_t>(u, 0, std::int64_t{on_level.size} << kTexelFraction);
+  const std::int64_t from_middle = u - (1 << (kTexelFraction - 1));
+  const std::int64_t first = from_middle >> kTexelFraction;
   const int dropped = kTexelFraction - place.weight_bits;
   return {wrapped_texel(first, on_level), wrapped_texel(first + 1, on_level),
-          static_cast<std::uint32_t>(round_shift(from_middle & 255, dropped) << dropped)};
+          static_cast<std::uint32_t>(round_shift(from_middle & 255, dropped) << dropped), is_on_border(first, on_level),
+          is_on_border(first + 1, on_level)};
+}
+/// Input of one axis of a nearest filter, twice. half_border shows no border.
+[[nodiscard]] constexpr TexelPair nearest_texel(const TexturePlace& place, const TextureAxes& axes, std::size_t axis,
+                                                int level) {
+  const std::int64_t i = at_level(place.coordinate[axis], place.fraction_bits, axes[axis], level) >> kTexelFraction;
+  const TextureAxis on_level = axes[axis].at_level(level);
+  const int texel = wrapped_texel(i, on_level);
+  const bool is_border = on_level.wrap == TextureWrap::border && is_on_border(i, on_level);
+  return {texel, texel, 0, is_border, is_border};
 }
 
 template <class Fetch>
-[[nodiscard]] Texel filter_nearest(Fetch&& fetch, const TextureAxes& axes, const TexturePlace& place, int level) {
-  const auto texel = [&](std::size_t axis) {
-    return wrapped_texel(at_level(place.coordinate[axis], place.fraction_bits, axes[axis], level) >> kTexelFraction,
-                         axes[axis].at_level(level));
-  };
-  return fetch(level, texel(0), texel(1));
+[[nodiscard]] Texel filter_nearest(Fetch&& fetch, const TextureAxes& axes, const TexturePlace& place, int level,
+                                   const Texel& border = {}) {
+  const TexelPair x = nearest_texel(place, axes, 0, level), y = nearest_texel(place, axes, 1, level);
+  return x.is_first_border || y.is_first_border ? border : fetch(level, x.first, y.first);
 }
 
 /// The sums of a linear filter, 16 fraction bits.
 template <class Fetch>
 [[nodiscard]] std::array<std::uint32_t, 4> linear_sums(Fetch&& fetch, const TextureAxes& axes,
-                                                       const TexturePlace& place, int level) {
+                                                       const TexturePlace& place, int level, const Texel& border = {}) {
   const TexelPair x = texels_around(place, axes, 0, level), y = texels_around(place, axes, 1, level);
-  const std::array<Texel, 4> texel{fetch(level, x.first, y.first), fetch(level, x.second, y.first),
-                                   fetch(level, x.first, y.second), fetch(level, x.second, y.second)};
+  const auto at = [&](int column, int row, bool is_border) -> Texel {
+    return is_border ? border : fetch(level, column, row);
+  };
+  const std::array<Texel, 4> texel{at(x.first, y.first, x.is_first_border || y.is_first_border),
+                                   at(x.second, y.first, x.is_second_border || y.is_first_border),
+                                   at(x.first, y.second, x.is_first_border || y.is_second_border),
+                                   at(x.second, y.second, x.is_second_border || y.is_second_border)};
   const std::array weight{(256 - x.part) * (256 - y.part), x.part * (256 - y.part), (256 - x.part) * y.part,
                           x.part * y.part};
   std::array<std::uint32_t, 4> sum{};
@@ -138,8 +160,9 @@ template <class Fetch>
 }
 
 template <class Fetch>
-[[nodiscard]] Texel filter_linear(Fetch&& fetch, const TextureAxes& axes, const TexturePlace& place, int level) {
-  const auto sum = linear_sums(fetch, axes, place, level);
+[[nodiscard]] Texel filter_linear(Fetch&& fetch, const TextureAxes& axes, const TexturePlace& place, int level,
+                                  const Texel& border = {}) {
+  const auto sum = linear_sums(fetch, axes, place, level, border);
   Texel result{};
   for (std::size_t c = 0; c < 4; ++c) result[c] = static_cast<std::uint8_t>(round_shift(sum[c], 16));
   return result;
@@ -153,9 +176,9 @@ template <class Fetch>
 /// Linear on two levels (linear_mipmap_linear).
 template <class Fetch>
 [[nodiscard]] Texel filter_trilinear(Fetch&& fetch, const TextureAxes& axes, const TexturePlace& place,
-                                     const LevelPair& levels) {
-  const auto lower = linear_sums(fetch, axes, place, levels.lower),
-             upper = linear_sums(fetch, axes, place, levels.upper);
+                                     const LevelPair& levels, const Texel& border = {}) {
+  const auto lower = linear_sums(fetch, axes, place, levels.lower, border),
+             upper = linear_sums(fetch, axes, place, levels.upper, border);
   Texel result{};
   for (std::size_t c = 0; c < 4; ++c)
     result[c] = blend_levels(round_shift(lower[c], 8), round_shift(upper[c], 8), levels.part);
@@ -165,9 +188,9 @@ template <class Fetch>
 /// Nearest on two levels (nearest_mipmap_linear).
 template <class Fetch>
 [[nodiscard]] Texel filter_between_nearest(Fetch&& fetch, const TextureAxes& axes, const TexturePlace& place,
-                                           const LevelPair& levels) {
-  const Texel lower = filter_nearest(fetch, axes, place, levels.lower),
-              upper = filter_nearest(fetch, axes, place, levels.upper);
+                                           const LevelPair& levels, const Texel& border = {}) {
+  const Texel lower = filter_nearest(fetch, axes, place, levels.lower, border),
+              upper = filter_nearest(fetch, axes, place, levels.upper, border);
   Texel result{};
   for (std::size_t c = 0; c < 4; ++c)
     result[c] = blend_levels(std::uint32_t{lower[c]} << 8, std::uint32_t{upper[c]} << 8, levels.part);

@@ -18,18 +18,23 @@
 namespace halfplane {
 
 /// Kinds of words for the register texture_levels. All eight token registers are in use, and the levels word is short,
-/// so fog, light and the texture's constant share it; two upper bits tell them apart, and of the first kind a third one.
-enum class LevelsWord : std::uint8_t { levels, fog, fog_line, light, constant };
+/// so fog, light and the texture's constant and border share it; two upper bits tell them apart, and of the first kind
+/// two more.
+enum class LevelsWord : std::uint8_t { levels, fog, fog_line, light, constant, border };
 inline constexpr int kLevelsWordBit = 43;    ///< the lower of the two bits
 inline constexpr int kConstantWordBit = 42;  ///< the third one: the constant, not levels
+inline constexpr int kBorderWordBit = 41;    ///< the fourth one: the border
 [[nodiscard]] constexpr LevelsWord levels_word(std::uint64_t word) {
   const auto which = static_cast<LevelsWord>(word >> kLevelsWordBit & 3);
-  return which == LevelsWord::levels && (word >> kConstantWordBit & 1) != 0 ? LevelsWord::constant : which;
+  if (which != LevelsWord::levels) return which;
+  if ((word >> kConstantWordBit & 1) != 0) return LevelsWord::constant;
+  return (word >> kBorderWordBit & 1) != 0 ? LevelsWord::border : which;
 }
 /// The bits of a kind.
 [[nodiscard]] constexpr std::uint64_t tag_of(LevelsWord which) {
-  return which == LevelsWord::constant ? std::uint64_t{1} << kConstantWordBit
-                                       : std::uint64_t{static_cast<std::uint8_t>(which)} << kLevelsWordBit;
+  if (which == LevelsWord::constant) return std::uint64_t{1} << kConstantWordBit;
+  if (which == LevelsWord::border) return std::uint64_t{1} << kBorderWordBit;
+  return std::uint64_t{static_cast<std::uint8_t>(which)} << kLevelsWordBit;
 }
 
 /// The levels of a draw.

@@ -40,7 +40,7 @@ namespace halfplane {
 }
 
 /// Tokens that pass through the texture unit in the time of a stamp without texture: those for the light and fog units,
-/// and the constant, which is set where they leave.
+/// and the constant, which is set where they leave; and the border, which waits for the samples in front of it.
 template <class Codes>
 [[nodiscard]] LevelsWord word_beside_texture(StateRegister which, const Codes& token, const Widths& widths) {
   return which == StateRegister::texture_levels ? levels_word(state_word(token, widths)) : LevelsWord::levels;
@@ -57,6 +57,8 @@ void set_register(TextureUnit& unit, StateRegister which, const Codes& token, co
     unit.light().set(state_word(token, widths));
   else if (beside == LevelsWord::constant)
     unit.set_constant(TextureConstant::unpack(state_word(token, widths)));
+  else if (beside == LevelsWord::border)
+    unit.set_border(TextureBorder::unpack(state_word(token, widths)));
   else if (beside != LevelsWord::levels)
     unit.fog().set(state_word(token, widths));
   else if (which == StateRegister::texture_levels)

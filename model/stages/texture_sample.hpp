@@ -9,6 +9,12 @@
 
 namespace halfplane {
 
+/// The border's colour as a texel of a format: R, G, B, A.
+[[nodiscard]] inline Texel border_texel(Texel border, TextureFormat format) {
+  if (!has_alpha(format)) border[3] = 255;
+  return border;
+}
+
 struct Sampler {
   const Texture* texture = nullptr;
   TextureAxes axes{};
@@ -16,6 +22,7 @@ struct Sampler {
   TextureMag mag = TextureMag::nearest;
   Lod bias = 0, least = 0, largest = 0;
   int last_level = 0;
+  Texel border{};  ///< opaque for a format without alpha
 
   Sampler() = default;
   Sampler(const Texture& texture_, const State& state)
@@ -27,7 +34,8 @@ struct Sampler {
         bias(to_lod(state.texture_lod[0])),
         least(to_lod(state.texture_lod[1])),
         largest(std::max(least, to_lod(state.texture_lod[2]))),
-        last_level(texture_.last_level()) {}
+        last_level(texture_.last_level()),
+        border(border_texel(state.texture_border, texture_.format)) {}
 
  private:
   [[nodiscard]] static Lod to_lod(double level) { return static_cast<Lod>(std::floor(level * 256 + 0.5)); }
@@ -59,10 +67,10 @@ struct SampleFilter {
   const auto fetch = [&s](int level, int x, int y) { return s.texture->texel(level, x, y); };
   const auto [is_linear, is_between, levels] = filter_of(s, lod);
   if (is_between)
-    return is_linear ? filter_trilinear(fetch, s.axes, place, levels)
-                     : filter_between_nearest(fetch, s.axes, place, levels);
-  return is_linear ? filter_linear(fetch, s.axes, place, levels.lower)
-                   : filter_nearest(fetch, s.axes, place, levels.lower);
+    return is_linear ? filter_trilinear(fetch, s.axes, place, levels, s.border)
+                     : filter_between_nearest(fetch, s.axes, place, levels, s.border);
+  return is_linear ? filter_linear(fetch, s.axes, place, levels.lower, s.border)
+                   : filter_nearest(fetch, s.axes, place, levels.lower, s.border);
 }
 
 }  // namespace halfplane

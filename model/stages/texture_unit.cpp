@@ -23,6 +23,15 @@ void put_level(std::vector<std::uint8_t>& memory, const Texture& texture, int le
     }
 }
 
+/// TextureWrap in a state's word.
+constexpr std::uint64_t kHalfBorder = 5;
+std::uint64_t code_of(TextureWrap wrap) {
+  return wrap == TextureWrap::half_border ? kHalfBorder : static_cast<std::uint64_t>(wrap);
+}
+TextureWrap wrap_of(std::uint64_t code) {
+  return code == kHalfBorder ? TextureWrap::half_border : static_cast<TextureWrap>(code);
+}
+
 }  // namespace
 
 TextureFormat stored_format(TextureFormat format) {
@@ -51,11 +60,12 @@ std::uint64_t TextureState::pack() const {
   put(invalidates ? 1 : 0, 1);
   put(static_cast<std::uint64_t>(format), 3);
   put(static_cast<std::uint64_t>(combine) & 3, 2);
-  for (const TextureWrap w : wrap) put(static_cast<std::uint64_t>(w), 2);
+  for (const TextureWrap w : wrap) put(code_of(w) & 3, 2);
   for (const int size : log2_size) put(static_cast<std::uint64_t>(size), 4);
   put(base / kTextureLine, 26);
   put(is_linear ? 1 : 0, 1);
   put(static_cast<std::uint64_t>(combine) >> 2, 1);
+  for (const TextureWrap w : wrap) put(code_of(w) >> 2, 1);
   return word;
 }
 
@@ -70,11 +80,13 @@ TextureState TextureState::unpack(std::uint64_t word) {
   state.invalidates = take(1) != 0;
   state.format = static_cast<TextureFormat>(take(3));
   const std::uint64_t combine = take(2);
-  for (TextureWrap& w : state.wrap) w = static_cast<TextureWrap>(take(2));
+  std::array<std::uint64_t, 2> wrap{};
+  for (std::uint64_t& code : wrap) code = take(2);
   for (int& size : state.log2_size) size = static_cast<int>(take(4));
   state.base = static_cast<std::uint32_t>(take(26)) * kTextureLine;
   state.is_linear = take(1) != 0;
   state.combine = static_cast<TextureCombine>(combine | take(1) << 2);
+  for (const std::size_t i : {0U, 1U}) state.wrap[i] = wrap_of(wrap[i] | take(1) << 2);
   return state;
 }
 

@@ -22,6 +22,9 @@
 // Colours over w are divided here, by the reciprocal of the coordinates; the quotient is combined with the texture. A
 // flag of the triangle selects this.
 //
+// A texel of the border counts as the one next to it: its line is looked up, and its colour replaced. So a draw with
+// half_border, whose samples have a texel of the image next to each of the border, uses the cache as with clamp.
+//
 // A state holds for later stamps. Stamps of primitives other than triangles, stamps without live samples, and all
 // stamps while the state's texture is off and colours are affine pass unchanged.
 #pragma once
@@ -58,7 +61,7 @@ using TextureLine = std::array<std::uint8_t, kTextureLine>;
 
 /// The unit's state for a draw.
 struct TextureState {
-  static constexpr int kBits = 47;
+  static constexpr int kBits = 49;
   bool enable = false;
   bool invalidates = false;                  ///< drops the cache's content. Needed if the texels in memory have changed
   TextureFormat format = TextureFormat::l8;  ///< without palette
@@ -69,7 +72,8 @@ struct TextureState {
   bool is_linear = false;          ///< only with that filter; with levels: texture_mag
 
   /// From the lowest bit: enable, invalidates, format 3, combine 2, wraps 2 + 2, sizes 4 + 4, base / 64 26, is_linear,
-  /// the third bit of combine: only of a unit with the constant.
+  /// the third bit of combine: only of a unit with the constant, the third bits of the wraps: only of one with the border
+  /// (0 repeat, 1 clamp, 2 mirror, 3 border, 5 half_border: the lowest bit keeps texels in the image).
   [[nodiscard]] std::uint64_t pack() const;
   [[nodiscard]] static TextureState unpack(std::uint64_t word);
   [[nodiscard]] TextureAxes axes() const;
@@ -87,6 +91,21 @@ struct TextureConstant {
   [[nodiscard]] static constexpr TextureConstant unpack(std::uint64_t word) {
     return {
         {static_cast<std::uint8_t>(word), static_cast<std::uint8_t>(word >> 8), static_cast<std::uint8_t>(word >> 16)}};
+  }
+};
+
+/// The border's colour (texture.border), as texel of the draw's format.
+struct TextureBorder {
+  Texel color{};
+
+  /// From the lowest bit: R, G, B, A.
+  [[nodiscard]] constexpr std::uint64_t pack() const {
+    return tag_of(LevelsWord::border) | std::uint64_t{color[3]} << 24 | std::uint64_t{color[2]} << 16 |
+           std::uint64_t{color[1]} << 8 | color[0];
+  }
+  [[nodiscard]] static constexpr TextureBorder unpack(std::uint64_t word) {
+    return {{static_cast<std::uint8_t>(word), static_cast<std::uint8_t>(word >> 8),
+             static_cast<std::uint8_t>(word >> 16), static_cast<std::uint8_t>(word >> 24)}};
   }
 };
 
@@ -245,6 +264,8 @@ class TextureUnit {
 
   [[nodiscard]] const TextureState& state() const { return state_; }
   void set_constant(const TextureConstant& constant) { constant_ = constant.color; }
+  /// For later stamps.
+  void set_border(const TextureBorder& border) { border_ = border.color; }
   void set(const TextureState& state) {
     state_ = state;
     sampler_.mag = state.is_linear ? TextureMag::linear : TextureMag::nearest;
@@ -303,15 +324,8 @@ class TextureUnit {
   [[nodiscard]] std::array<TexelPair, 2> texels_of(const TexturePlace& place, bool is_linear, int level) const {
     const TextureAxes axes = state_.axes();
     std::array<TexelPair, 2> texels{};
-    for (const std::size_t i : {0U, 1U}) {
-      if (is_linear) {
-        texels[i] = texels_around(place, axes, i, level);
-      } else {
-        texels[i].first = texels[i].second =
-            wrapped_texel(at_level(place.coordinate[i], place.fraction_bits, axes[i], level) >> kTexelFraction,
-                          axes[i].at_level(level));
-      }
-    }
+    for (const std::size_t i : {0U, 1U})
+      texels[i] = is_linear ? texels_around(place, axes, i, level) : nearest_texel(place, axes, i, level);
     return texels;
   }
 
@@ -503,9 +517,9 @@ class TextureUnit {
   /// The sums of the filter on a level, 16 fraction bits, if its lines are present.
   [[nodiscard]] Sums sums(const TexturePlace& place, bool is_linear, int level) const {
     if (is_linear)
-      return linear_sums([this](int l, int u, int v) { return texel(l, u, v); }, state_.axes(), place, level);
+      return linear_sums([this](int l, int u, int v) { return texel(l, u, v); }, state_.axes(), place, level, border_);
     const auto [x, y] = texels_of(place, is_linear, level);
-    const Texel nearest = texel(level, x.first, y.first);
+    const Texel nearest = x.is_first_border || y.is_first_border ? border_ : texel(level, x.first, y.first);
     Sums sums{};
     for (std::size_t c = 0; c < 4; ++c) sums[c] = std::uint32_t{nearest[c]} << 16;
     return sums;
@@ -556,6 +570,7 @@ class TextureUnit {
   LightUnit light_;
   TextureState state_;
   std::array<std::uint8_t, 3> constant_{};
+  Texel border_{};
   TextureLevels levels_;
   LineRegister lines_;
   LodSetup lod_;     ///< the lines in it

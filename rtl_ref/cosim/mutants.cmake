@@ -737,3 +737,17 @@ mutant(483 stages/texture_stage.sv "colours, the texture's constant: its token s
   [=[is_levels && !is_constant]=] [=[is_levels]=])
 mutant(484 stages/texture_stage.sv "colours, the texture's constant: no token sets it"
   [=[is_levels && word[raster_pkg::CONSTANT_WORD_BIT]]=] [=[1'b0]=])
+
+# The texture unit's border
+mutant(485 lib/texture_border.sv "texture, border: a coordinate beyond the image is not held"
+  [=[is_held ? 8'h80 : part_i]=] [=[part_i]=])
+mutant(486 lib/texture_border.sv "texture, border: where coordinates are held there is none beyond the last texel"
+  [=[(holds && next_is_above)]=] [=[1'b0]=])
+mutant(487 lib/texture_filter.sv "texture, border: rows have none"
+  [=[part_i[18+n/2]]=] [=[1'b0]=])
+mutant(488 stages/texture_unit.sv "texture, border: its token does not wait for samples"
+  [=[inside_q == '0]=] [=[1'b1]=])
+mutant(489 stages/texture_stage.sv "texture, border: its token sets levels as well"
+  [=[!is_border]=] [=[1'b1]=])
+mutant(490 stages/texture_stage.sv "texture, border: no token sets it"
+  [=[is_levels && word[raster_pkg::BORDER_WORD_BIT]]=] [=[1'b0]=])

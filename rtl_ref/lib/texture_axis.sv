@@ -13,7 +13,8 @@ module texture_axis #(
     parameter int FRACTION = 8,         // f
     parameter int REFERENCE_BITS = 24,  // with its sign
     parameter int SIDE_BITS = 12,       // log2 of the longest side
-    parameter int LINEAR = 0  // 1 also gives the two texels whose centres are around the place, 2 the place alone
+    parameter int LINEAR = 0,  // 1 also gives the two texels whose centres are around the place, 2 the place alone
+    parameter int BORDER = 0   // 1: texels may be the border's
 ) (
     input logic clk_i,
 
@@ -26,13 +27,14 @@ module texture_axis #(
 
     // Constants of the texture: they stay while samples are under way
     input logic [SIDE_BITS-1:0] last_i,   // size - 1
-    input logic [1:0]           wrap_i,   // 0 repeat, 1 clamp, 2 mirror
+    input logic [2:0]           wrap_i,   // 0 repeat, 1 clamp, 2 mirror; with BORDER 3 border, 5 half_border
     input logic                 is_linear_i,
 
     // Of the input six clocks ago
     output logic [SIDE_BITS-1:0] texel_o,
     output logic [SIDE_BITS-1:0] next_o,  // the next texel, where the filter is linear
     output logic [7:0]           part_o,  // weight of the next texel, in 256ths
+    output logic [1:0]           border_o,  // the first texel, the next one: it is the border's
     output logic [REFERENCE_BITS+7:0] coordinate_o  // or the place before wrapping, 2^-8 texels
 );
 
@@ -122,13 +124,14 @@ module texture_axis #(
       assign texel_o = '0;
       assign next_o  = '0;
       assign part_o  = '0;
+      assign border_o = '0;
       logic unused;
       assign unused = &{last_i, wrap_i, is_linear_i};
     end else if (LINEAR == 1) begin : gen_linear
       // Less half a texel: measured from the centre of the previous texel.
       logic [FRACTION-1:0]       part_q;
-      logic [7:0]                part;
-      logic [REFERENCE_BITS-1:0] first;
+      logic [7:0]                part, weight;
+      logic [REFERENCE_BITS-1:0] first, second;
       logic [SIDE_BITS-1:0]      texel, next;
       always_ff @(posedge clk_i) part_q <= rounded_part;
       assign part  = {part_q, {(8 - FRACTION) {1'b0}}};
@@ -139,22 +142,49 @@ module texture_axis #(
       ) u_first (
           .number_i(first),
           .last_i,
-          .wrap_i,
+          .wrap_i  (wrap_i[1:0]),
           .texel_o (texel)
       );
       texture_wrap #(
           .NUMBER_BITS(REFERENCE_BITS),
           .SIDE_BITS  (SIDE_BITS)
       ) u_next (
-          .number_i(first + REFERENCE_BITS'(is_linear_i)),
+          .number_i(second),
           .last_i,
-          .wrap_i,
+          .wrap_i  (wrap_i[1:0]),
           .texel_o (next)
       );
+      assign second = first + REFERENCE_BITS'(is_linear_i);
+      assign weight = is_linear_i ? part ^ 8'h80 : '0;
+      if (BORDER != 0) begin : gen_border
+        logic [1:0] border;
+        logic [7:0] held_weight;
+        texture_border #(
+            .NUMBER_BITS(REFERENCE_BITS),
+            .SIDE_BITS  (SIDE_BITS)
+        ) u_border (
+            .first_i (first),
+            .next_i  (second),
+            .last_i,
+            .wrap_i,
+            .is_linear_i,
+            .part_i  (weight),
+            .border_o(border),
+            .part_o  (held_weight)
+        );
+        always_ff @(posedge clk_i) begin
+          border_o <= border;
+          part_o   <= held_weight;
+        end
+      end else begin : gen_no_border
+        assign border_o = '0;
+        always_ff @(posedge clk_i) part_o <= weight;
+        logic unused;
+        assign unused = wrap_i[2];
+      end
       always_ff @(posedge clk_i) begin
         texel_o <= texel;
         next_o  <= next;
-        part_o  <= is_linear_i ? part ^ 8'h80 : '0;
       end
       assign coordinate_o = '0;
     end else begin : gen_nearest
@@ -165,10 +195,34 @@ module texture_axis #(
       ) u_wrap (
           .number_i(number),
           .last_i,
-          .wrap_i,
+          .wrap_i  (wrap_i[1:0]),
           .texel_o (texel)
       );
       always_ff @(posedge clk_i) texel_o <= texel;
+      if (BORDER != 0) begin : gen_border
+        logic [1:0] border;
+        logic [7:0] no_weight;
+        texture_border #(
+            .NUMBER_BITS(REFERENCE_BITS),
+            .SIDE_BITS  (SIDE_BITS)
+        ) u_border (
+            .first_i    (number),
+            .next_i     (number),
+            .last_i,
+            .wrap_i,
+            .is_linear_i(1'b0),
+            .part_i     ('0),
+            .border_o   (border),
+            .part_o     (no_weight)
+        );
+        always_ff @(posedge clk_i) border_o <= border;
+        logic unused;
+        assign unused = &no_weight;
+      end else begin : gen_no_border
+        assign border_o = '0;
+        logic unused;
+        assign unused = wrap_i[2];
+      end
       assign next_o       = '0;
       assign part_o       = '0;
       assign coordinate_o = '0;

@@ -2,8 +2,10 @@
 // (sum + 2^15) >> 16 at the end, or the raw sum where it is blended with that of another level. Specification:
 // linear_sums and filter_linear of model/stages/texture_filter.hpp.
 module texture_filter #(
-    parameter int LEVELS = 0,  // 1: sum_o is the output
-    parameter int TAIL = 1     // bits that go along
+    parameter int LEVELS = 0,               // 1: sum_o is the output
+    parameter int TAIL = 1,                 // bits that go along
+    parameter int BORDER = 0,               // 1: texels may be the border's
+    parameter int PART = 16 + 4 * BORDER    // derived; not to be set
 ) (
     input logic clk_i,
     input logic rst_ni,
@@ -12,7 +14,9 @@ module texture_filter #(
     output logic            ready_o,
     input  logic [127:0]    code_i,    // first row, second row
     input  logic [2:0]      format_i,
-    input  logic [15:0]     part_i,    // weight of the second column and row, in 256ths; the column's lowest
+    input  logic [PART-1:0] part_i,    // weight of the second column and row, in 256ths; the column's lowest. With BORDER
+                                       // above them: the first column, the second one, the rows are the border's
+    input  logic [31:0]     border_i,  // its colour, R lowest
     input  logic [TAIL-1:0] tail_i,
 
     output logic            valid_o,
@@ -45,7 +49,7 @@ module texture_filter #(
   always_ff @(posedge clk_i) begin
     if (ready_o) begin
       texel_q  <= texel;
-      part_q   <= part_i;
+      part_q   <= part_i[15:0];
       tail_1_q <= tail_i;
     end
     if (ready_2) begin
@@ -59,11 +63,21 @@ module texture_filter #(
   genvar n;
   generate
     for (n = 0; n < 4; n++) begin : gen_decode
+      logic [31:0] decoded;
       texture_decode u_decode (
           .code_i  (code_i[32*n+:32]),
           .format_i(format_i),
-          .texel_o (texel[32*n+:32])
+          .texel_o (decoded)
       );
+      if (BORDER != 0) begin : gen_border
+        assign texel[32*n+:32] = part_i[16+n%2] || part_i[18+n/2] ? border_i : decoded;
+      end else begin : gen_image
+        assign texel[32*n+:32] = decoded;
+      end
+    end
+    if (BORDER == 0) begin : gen_no_border
+      logic unused;
+      assign unused = &border_i;
     end
     for (n = 0; n < 8; n++) begin : gen_row
       localparam int ROW = n / 4;

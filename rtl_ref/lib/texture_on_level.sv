@@ -6,7 +6,8 @@
 // Both have enables. Specification: at_level, rounded_at_level and texels_around of model/stages/texture_filter.hpp.
 module texture_on_level #(
     parameter int REFERENCE_BITS = 24,  // bits of a place's texel number, with its sign
-    parameter int SIDE_BITS = 12        // log2 of the longest side
+    parameter int SIDE_BITS = 12,       // log2 of the longest side
+    parameter int BORDER = 0            // 1: texels may be the border's
 ) (
     input logic clk_i,
     input logic scales_i,  // enable of the first clock
@@ -18,12 +19,13 @@ module texture_on_level #(
 
     // Constants of the texture: they stay while samples are under way
     input logic [3:0] log2_size_i,
-    input logic [1:0] wrap_i,
+    input logic [2:0] wrap_i,
 
     input  logic                 is_corner_i,  // in the second clock: the level's texel is (2, 2) of its block
     output logic [SIDE_BITS-1:0] texel_o,
     output logic [SIDE_BITS-1:0] next_o,
-    output logic [7:0]           part_o
+    output logic [7:0]           part_o,
+    output logic [1:0]           border_o  // the texel, the next one: it is the border's
 );
 
   localparam int PLACE = REFERENCE_BITS + 8;
@@ -33,6 +35,9 @@ module texture_on_level #(
   logic [SIDE_BITS-1:0] last_q, first_texel, next_texel;
   logic                 is_linear_q;
   logic [PLACE-1:0]     place;
+  logic [REFERENCE_BITS-1:0] first, second;
+  logic [7:0]           part, weight;
+  logic [1:0]           border;
   assign by   = level_i < log2_size_i ? level_i : log2_size_i;
   assign left = log2_size_i - by;
   assign long = {coordinate_i, 1'b0};
@@ -48,25 +53,52 @@ module texture_on_level #(
       .NUMBER_BITS(REFERENCE_BITS),
       .SIDE_BITS  (SIDE_BITS)
   ) u_first (
-      .number_i(place[PLACE-1:8]),
+      .number_i(first),
       .last_i  (last_q),
-      .wrap_i,
+      .wrap_i  (wrap_i[1:0]),
       .texel_o (first_texel)
   );
   texture_wrap #(
       .NUMBER_BITS(REFERENCE_BITS),
       .SIDE_BITS  (SIDE_BITS)
   ) u_next (
-      .number_i(place[PLACE-1:8] + REFERENCE_BITS'(is_linear_q)),
+      .number_i(second),
       .last_i  (last_q),
-      .wrap_i,
+      .wrap_i  (wrap_i[1:0]),
       .texel_o (next_texel)
   );
   always_ff @(posedge clk_i)
     if (wraps_i) begin
-      texel_o <= first_texel | SIDE_BITS'({is_corner_i, 1'b0});
-      next_o  <= next_texel | SIDE_BITS'({is_corner_i, 1'b0});
-      part_o  <= is_linear_q ? place[7:0] : '0;
+      texel_o  <= first_texel | SIDE_BITS'({is_corner_i, 1'b0});
+      next_o   <= next_texel | SIDE_BITS'({is_corner_i, 1'b0});
+      part_o   <= weight;
+      border_o <= border;
     end
+
+  assign first  = place[PLACE-1:8];
+  assign second = first + REFERENCE_BITS'(is_linear_q);
+  assign part   = is_linear_q ? place[7:0] : '0;
+  generate
+    if (BORDER != 0) begin : gen_border
+      texture_border #(
+          .NUMBER_BITS(REFERENCE_BITS),
+          .SIDE_BITS  (SIDE_BITS)
+      ) u_border (
+          .first_i    (first),
+          .next_i     (second),
+          .last_i     (last_q),
+          .wrap_i,
+          .is_linear_i(is_linear_q),
+          .part_i     (part),
+          .border_o   (border),
+          .part_o     (weight)
+      );
+    end else begin : gen_no_border
+      assign border = '0;
+      assign weight = part;
+      logic unused;
+      assign unused = wrap_i[2];
+    end
+  endgenerate
 
 endmodule

@@ -21,6 +21,7 @@ module texture_coordinates #(
     parameter int SIDE_BITS = 12,         // log2 of the longest side, texels
     parameter int LINEAR = 0,  // 1: also the two texels whose centres are around the place; 2: the place alone
     parameter int RECIPROCAL = 0,         // 0 from a table, 1 by division
+    parameter int BORDER = 0,             // 1: texels may be the border's
     parameter int INDEX = $clog2(QUEUE),  // derived; not to be set
     parameter int EXPONENT = 5            // bits of e
 ) (
@@ -41,13 +42,14 @@ module texture_coordinates #(
 
     // Constants of the texture
     input logic [2*SIDE_BITS-1:0] last_i,
-    input logic [3:0]             wrap_i,
+    input logic [5:0]             wrap_i,
     input logic                   is_linear_i,
 
     // For the samples of eight clocks ago, x lowest
     output logic [LANES*2*SIDE_BITS-1:0] texel_o,
     output logic [LANES*2*SIDE_BITS-1:0] next_o,  // LINEAR 1: the next texel, and its weight
     output logic [LANES*16-1:0]          part_o,
+    output logic [LANES*4-1:0]           border_o,  // with BORDER: the texel, the next one is the border's
     output logic [LANES*(2*REFERENCE_BITS+16)-1:0] coordinate_o,  // LINEAR 2: the place before wrapping, 2^-8 texels
 
     // For the samples of one clock ago: floor(log2 q), and the bits of q after its highest
@@ -142,7 +144,8 @@ module texture_coordinates #(
             .FRACTION      (FRACTION),
             .REFERENCE_BITS(REFERENCE_BITS),
             .SIDE_BITS     (SIDE_BITS),
-            .LINEAR        (LINEAR)
+            .LINEAR        (LINEAR),
+            .BORDER        (BORDER)
         ) u_axis (
             .clk_i,
             .p_i         (p_2_q[n*P_BITS+:P_BITS]),
@@ -151,11 +154,12 @@ module texture_coordinates #(
             .reach_i     (5'(reach[n*REACH_BITS+:REACH_BITS])),
             .reference_i (reference[n*REFERENCE_BITS+:REFERENCE_BITS]),
             .last_i      (last_i[n*SIDE_BITS+:SIDE_BITS]),
-            .wrap_i      (wrap_i[2*n+:2]),
+            .wrap_i      (wrap_i[3*n+:3]),
             .is_linear_i,
             .texel_o     (texel_o[(2*k+n)*SIDE_BITS+:SIDE_BITS]),
             .next_o      (next_o[(2*k+n)*SIDE_BITS+:SIDE_BITS]),
             .part_o      (part_o[16*k+8*n+:8]),
+            .border_o    (border_o[4*k+2*n+:2]),
             .coordinate_o(coordinate_o[(REFERENCE_BITS+8)*(2*k+n)+:REFERENCE_BITS+8])
         );
       end

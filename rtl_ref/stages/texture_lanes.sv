@@ -20,6 +20,7 @@ module texture_lanes #(
     parameter int PORT_BITS = 64,             // 16, 32 or 64
     parameter int IN_FLIGHT = 32,             // passes in the queue; a power of two
     parameter int TAIL = 1,                   // bits that go along with a group
+    parameter int BORDER = 0,                 // 1: texels may be the border's
     parameter int PLACE = REFERENCE_BITS + 8  // derived; not to be set
 ) (
     input logic clk_i,
@@ -32,6 +33,7 @@ module texture_lanes #(
     input  logic [4*2*SIDE_BITS-1:0] texel_i,
     input  logic [4*2*SIDE_BITS-1:0] next_i,
     input  logic [4*16-1:0]          part_i,
+    input  logic [4*4-1:0]           border_i,
     input  logic [4*2*PLACE-1:0]     coordinate_i,
     input  logic [15:0]              level_i,
     input  logic [31:0]              level_part_i,
@@ -43,12 +45,13 @@ module texture_lanes #(
     // Constants of the texture: they stay while samples are upstream of the tags
     input logic        sets_state_i,
     input logic [7:0]  log2_size_i,
-    input logic [3:0]  wrap_i,
+    input logic [5:0]  wrap_i,
     input logic [3:0]  row_i,
     input logic        shares_i,
     input logic [2:0]  format_i,
     input logic [25:0] base_i,
     input logic [1:0]  size_i,
+    input logic [31:0] border_color_i,  // it stays while samples are under way
 
     input  logic drop_i,
     output logic tags_are_empty_o,
@@ -85,7 +88,9 @@ module texture_lanes #(
   localparam int LEVELS = (FILTER == 2) ? 1 : 0;
   localparam int LINEAR = (FILTER != 0) ? 1 : 0;
   localparam int LEVEL_PARTS = 32 + 4 + 1;  // weights of the upper levels; there are two levels; this is the second
-  localparam int PARTS = (LEVELS != 0) ? 64 + LEVEL_PARTS : (LINEAR != 0) ? 64 : 1;  // bits of the filters' inputs
+  localparam int PART = 16 + 4 * BORDER;  // weights of a sample, and which of its texels are the border's
+  localparam int PARTS = (LEVELS != 0) ? 4 * PART + LEVEL_PARTS : (LINEAR != 0) ? 4 * PART :
+                         (BORDER != 0) ? 4 : 1;  // bits of the filters' inputs
   localparam int ENDS = (LINEAR != 0) ? 2 : 1;    // texels of a sample along an axis
   localparam int TEXELS = 4 * ENDS * 2 * SIDE_BITS;
 
@@ -112,6 +117,11 @@ module texture_lanes #(
       logic [3:0]         group_is_linear, group_is_between, group_live, is_between;
       logic [TAIL-1:0]    group_tail;
       logic [63:0]        part;
+      logic [15:0]        border;
+      logic [4*PART-1:0]  part_and_border;
+      for (l = 0; l < 4; l++) begin : gen_part
+        assign part_and_border[PART*l+:PART] = PART'({border[4*l+:4], part[16*l+:16]});
+      end
       fifo #(
           .WIDTH(8 * PLACE + 16 + 32 + 12 + TAIL),
           .DEPTH(AHEAD)
@@ -128,7 +138,8 @@ module texture_lanes #(
       texture_rounds #(
           .REFERENCE_BITS(REFERENCE_BITS),
           .SIDE_BITS     (SIDE_BITS),
-          .TAIL          (TAIL)
+          .TAIL          (TAIL),
+          .BORDER        (BORDER)
       ) u_rounds (
           .clk_i,
           .rst_ni,
@@ -153,6 +164,7 @@ module texture_lanes #(
           .is_second_o (is_second),
           .texel_o     (waiting),
           .part_o      (part),
+          .border_o    (border),
           .agree_o     (agree_q),
           .level_part_o(level_part),
           .is_between_o(is_between),
@@ -163,7 +175,9 @@ module texture_lanes #(
           .is_odd_o    (is_odd),
           .is_empty_o  (rounds_are_empty)
       );
-      assign parts = {level_part, is_between, is_second, part};
+      assign parts = {level_part, is_between, is_second, part_and_border};
+      logic unused;
+      assign unused = &border_i;
     end else begin : gen_groups
       logic [TEXELS-1:0] entering;
       logic [5:0]        agree;
@@ -175,7 +189,13 @@ module texture_lanes #(
         end
       end
       if (LINEAR != 0) begin : gen_parts
-        assign entering_parts = part_i;
+        for (l = 0; l < 4; l++) begin : gen_part
+          assign entering_parts[PART*l+:PART] = PART'({border_i[4*l+:4], part_i[16*l+:16]});
+        end
+      end else if (BORDER != 0) begin : gen_border
+        for (l = 0; l < 4; l++) begin : gen_part
+          assign entering_parts[l] = border_i[4*l] || border_i[4*l+2];
+        end
       end else begin : gen_no_parts
         assign entering_parts = '0;
       end
@@ -207,7 +227,7 @@ module texture_lanes #(
       assign is_odd           = 1'b0;
       assign rounds_are_empty = 1'b1;
       logic unused;
-      assign unused = &{lowest, 1'b0};
+      assign unused = &{lowest, border_i, 1'b0};
     end
   endgenerate
 
@@ -412,7 +432,7 @@ module texture_lanes #(
       end
     end
     if (LEVELS != 0) begin : gen_second_look
-      assign is_second_look = t_parts[64];
+      assign is_second_look = t_parts[4*PART];
     end else begin : gen_only_look
       assign is_second_look = 1'b0;
     end
@@ -497,7 +517,7 @@ module texture_lanes #(
   logic [TAIL:0]    sum_rest;
   generate
     if (LEVELS != 0) begin : gen_along_levels
-      assign along = {d_parts_q[64+:LEVEL_PARTS], d_joins_q, d_joins_q & ~d_waits_q, d_ends_q, d_tail_q};
+      assign along = {d_parts_q[4*PART+:LEVEL_PARTS], d_joins_q, d_joins_q & ~d_waits_q, d_ends_q, d_tail_q};
       assign {sum_level_part, sum_is_between, sum_is_second, sum_joins, sum_leaves, sum_rest} = filtered;
     end else begin : gen_along_level
       assign along = {d_joins_q, d_ends_q, d_tail_q};
@@ -538,7 +558,8 @@ module texture_lanes #(
         logic              sum_valid;
         texture_filter #(
             .LEVELS(LEVELS),
-            .TAIL  (BESIDE)
+            .TAIL  (BESIDE),
+            .BORDER(BORDER)
         ) u_filter (
             .clk_i,
             .rst_ni,
@@ -546,7 +567,8 @@ module texture_lanes #(
             .ready_o (filter_ready[l]),
             .code_i  (corner),
             .format_i(d_format_q),
-            .part_i  (d_parts_q[16*l+:16]),
+            .part_i  (d_parts_q[PART*l+:PART]),
+            .border_i(border_color_i),
             .tail_i  (beside),
             .valid_o (sum_valid),
             .ready_i (sum_ready[0]),
@@ -603,15 +625,21 @@ module texture_lanes #(
           end
         end
       end else begin : gen_nearest
+        logic [31:0] decoded;
         texture_decode u_decode (
             .code_i  (corner[31:0]),
             .format_i(d_format_q),
-            .texel_o (texel_o[32*l+:32])
+            .texel_o (decoded)
         );
+        if (BORDER != 0) begin : gen_border
+          assign texel_o[32*l+:32] = d_parts_q[l] ? border_color_i : decoded;
+        end else begin : gen_image
+          assign texel_o[32*l+:32] = decoded;
+        end
         assign filter_ready[l] = texel_ready_i;
         assign sum_ready[l]    = texel_ready_i;
         logic unused;
-        assign unused = &{corner, d_parts_q};
+        assign unused = &{corner, d_parts_q, border_color_i};
         if (l == 0) begin : gen_along
           assign filtered      = along;
           assign texel_valid_o = d_valid_q;

@@ -10,6 +10,7 @@ module texture_levels #(
     parameter int REFERENCE_BITS = 24,        // bits of a place's texel number, with its sign
     parameter int SIDE_BITS = 12,             // log2 of the longest side, texels
     parameter int TAIL = 1,                   // bits that go along
+    parameter int BORDER = 0,                 // 1: texels may be the border's
     parameter int PLACE = REFERENCE_BITS + 8  // derived; not to be set
 ) (
     input logic clk_i,
@@ -28,7 +29,7 @@ module texture_levels #(
     // Constants of the texture: they stay while samples are under way
     input logic       sets_state_i,
     input logic [7:0] log2_size_i,  // width lowest
-    input logic [3:0] wrap_i,
+    input logic [5:0] wrap_i,
     input logic [1:0] size_i,       // log2 of a line's bytes, less 4
 
     // Passes
@@ -37,6 +38,7 @@ module texture_levels #(
     output logic [2*SIDE_BITS-1:0] texel_o,
     output logic [2*SIDE_BITS-1:0] next_o,
     output logic [15:0]            part_o,        // weights of the next texels, along x lowest
+    output logic [3:0]             border_o,      // the texel, the next one is the border's, likewise
     output logic [23:0]            offset_o,      // address of the level's first line, 16 bytes
     output logic [3:0]             row_o,         // log2 of the lines in a row, likewise
     output logic                   is_odd_o,      // the level is odd
@@ -128,7 +130,8 @@ module texture_levels #(
     for (n = 0; n < 2; n++) begin : gen_axis
       texture_on_level #(
           .REFERENCE_BITS(REFERENCE_BITS),
-          .SIDE_BITS     (SIDE_BITS)
+          .SIDE_BITS     (SIDE_BITS),
+          .BORDER        (BORDER)
       ) u_axis (
           .clk_i,
           .scales_i    (scales),
@@ -137,11 +140,12 @@ module texture_levels #(
           .level_i     (level),
           .is_linear_i (is_linear_i),
           .log2_size_i (log2_size_q[4*n+:4]),
-          .wrap_i      (wrap_i[2*n+:2]),
+          .wrap_i      (wrap_i[3*n+:3]),
           .is_corner_i (is_corner_q),
           .texel_o     (texel_o[SIDE_BITS*n+:SIDE_BITS]),
           .next_o      (next_o[SIDE_BITS*n+:SIDE_BITS]),
-          .part_o      (part_o[8*n+:8])
+          .part_o      (part_o[8*n+:8]),
+          .border_o    (border_o[2*n+:2])
       );
     end
   endgenerate

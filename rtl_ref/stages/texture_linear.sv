@@ -14,6 +14,7 @@ module texture_linear #(
     parameter int PORT_BITS = 64,             // of a beat: 16, 32 or 64
     parameter int IN_FLIGHT = 32,             // samples that wait for memory; a power of two
     parameter int TAIL = 1,                   // bits that go along with a sample
+    parameter int BORDER = 0,                 // 1: texels may be the border's
     parameter int PLACE = REFERENCE_BITS + 8  // derived; not to be set
 ) (
     input logic clk_i,
@@ -25,6 +26,7 @@ module texture_linear #(
     input  logic [2*SIDE_BITS-1:0] texel_i,
     input  logic [2*SIDE_BITS-1:0] next_i,
     input  logic [15:0]            part_i,
+    input  logic [3:0]             border_i,
     input  logic [2*PLACE-1:0]     coordinate_i,
     input  logic [3:0]             level_i,
     input  logic [7:0]             level_part_i,
@@ -36,12 +38,13 @@ module texture_linear #(
     // Constants of the texture: they stay while samples are upstream of the tags
     input logic        sets_state_i,
     input logic [7:0]  log2_size_i,
-    input logic [3:0]  wrap_i,
+    input logic [5:0]  wrap_i,
     input logic [3:0]  row_i,
     input logic        shares_i,
     input logic [2:0]  format_i,
     input logic [25:0] base_i,
     input logic [1:0]  size_i,
+    input logic [31:0] border_color_i,  // it stays while samples are under way
 
     input  logic drop_i,
     output logic tags_are_empty_o,
@@ -66,7 +69,8 @@ module texture_linear #(
     output logic idle_o
 );
 
-  localparam int CARRIED = (LEVELS != 0) ? 27 + TAIL : 16 + TAIL;  // bits carried through the cache
+  localparam int PART = 16 + 4 * BORDER;  // weights, and which texels are the border's
+  localparam int CARRIED = (LEVELS != 0) ? PART + 11 + TAIL : PART + TAIL;  // bits carried through the cache
 
   logic                   found_valid, found_ready, pass_valid, pass_ready, tags_are_empty, is_odd, code_valid, code_ready;
   logic [2*SIDE_BITS-1:0] pass_texel, pass_next;
@@ -78,7 +82,7 @@ module texture_linear #(
   logic                   sum_valid, sum_ready;
   logic [95:0]            sum;
   logic [31:0]            sum_texel;
-  logic [CARRIED-17:0]    sum_carried;
+  logic [CARRIED-PART-1:0] sum_carried;
   logic                   found_has_room;
   assign pops_o = found_valid && found_ready;
 
@@ -106,6 +110,7 @@ module texture_linear #(
       logic [7:0]         found_part, pass_level_part;
       logic               found_is_linear, found_is_between, pass_is_between, is_first, is_second, levels_are_empty;
       logic [15:0]        pass_part;
+      logic [3:0]         pass_border;
       logic [TAIL-1:0]    found_tail, pass_tail;
       fifo #(
           .WIDTH(2 * PLACE + 14 + TAIL),
@@ -123,7 +128,8 @@ module texture_linear #(
       texture_levels #(
           .REFERENCE_BITS(REFERENCE_BITS),
           .SIDE_BITS     (SIDE_BITS),
-          .TAIL          (TAIL)
+          .TAIL          (TAIL),
+          .BORDER        (BORDER)
       ) u_texture_levels (
           .clk_i,
           .rst_ni,
@@ -144,6 +150,7 @@ module texture_linear #(
           .texel_o     (pass_texel),
           .next_o      (pass_next),
           .part_o      (pass_part),
+          .border_o    (pass_border),
           .offset_o    (offset),
           .row_o       (row),
           .is_odd_o    (is_odd),
@@ -154,7 +161,7 @@ module texture_linear #(
           .tail_o      (pass_tail),
           .is_empty_o  (levels_are_empty)
       );
-      assign pass_carried     = {pass_part, pass_level_part, pass_is_between, is_first, is_second, pass_tail};
+      assign pass_carried     = {PART'({pass_border, pass_part}), pass_level_part, pass_is_between, is_first, is_second, pass_tail};
       assign tags_are_empty_o = tags_are_empty && levels_are_empty;
 
       logic [7:0]      sum_level_part;
@@ -181,19 +188,19 @@ module texture_linear #(
           .tail_o      (texel_tail_o)
       );
       logic unused;
-      assign unused = &sum_texel;
+      assign unused = &{sum_texel, border_i};
     end else begin : gen_level
-      logic [15:0]     found_part;
+      logic [PART-1:0] found_part;
       logic [TAIL-1:0] found_tail;
       fifo #(
-          .WIDTH(4 * SIDE_BITS + 16 + TAIL),
+          .WIDTH(4 * SIDE_BITS + PART + TAIL),
           .DEPTH(AHEAD)
       ) u_places (
           .clk_i,
           .rst_ni,
           .valid_i,
           .ready_o(found_has_room),
-          .data_i ({texel_i, next_i, part_i, tail_i}),
+          .data_i ({texel_i, next_i, PART'({border_i, part_i}), tail_i}),
           .valid_o(found_valid),
           .ready_i(found_ready),
           .data_o ({pass_texel, pass_next, found_part, found_tail})
@@ -259,7 +266,8 @@ module texture_linear #(
   );
   texture_filter #(
       .LEVELS(LEVELS),
-      .TAIL  (CARRIED - 16)
+      .TAIL  (CARRIED - PART),
+      .BORDER(BORDER)
   ) u_filter (
       .clk_i,
       .rst_ni,
@@ -267,8 +275,9 @@ module texture_linear #(
       .ready_o (code_ready),
       .code_i  (code),
       .format_i(code_format),
-      .part_i  (code_carried[CARRIED-1-:16]),
-      .tail_i  (code_carried[CARRIED-17:0]),
+      .part_i  (code_carried[CARRIED-1-:PART]),
+      .border_i(border_color_i),
+      .tail_i  (code_carried[CARRIED-PART-1:0]),
       .valid_o (sum_valid),
       .ready_i (sum_ready),
       .sum_o   (sum),

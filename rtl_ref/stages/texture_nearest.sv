@@ -10,7 +10,8 @@ module texture_nearest #(
     parameter int LINES = 64,      // of the cache, 64 bytes each; a power of two, at least 2
     parameter int PORT_BITS = 64,  // of a beat: 16 to 128
     parameter int IN_FLIGHT = 32,  // samples that wait for memory; a power of two
-    parameter int TAIL = 1         // bits that go along with a sample
+    parameter int TAIL = 1,        // bits that go along with a sample
+    parameter int BORDER = 0       // 1: texels may be the border's
 ) (
     input logic clk_i,
     input logic rst_ni,
@@ -19,6 +20,7 @@ module texture_nearest #(
     // Texels, x lowest; at most AHEAD between here and pops_o
     input  logic                   valid_i,
     input  logic [2*SIDE_BITS-1:0] texel_i,
+    input  logic                   border_i,  // with BORDER: it is the border's
     input  logic [TAIL-1:0]        tail_i,
     output logic                   pops_o,  // a texel has left the queue
 
@@ -27,6 +29,7 @@ module texture_nearest #(
     input logic [25:0] base_i,
     input logic [1:0]  size_i,
     input logic [3:0]  row_i,
+    input logic [31:0] border_color_i,  // it stays while samples are under way
 
     input  logic drop_i,
     output logic tags_are_empty_o,
@@ -62,7 +65,9 @@ module texture_nearest #(
   logic [27:0]      address, found_address;
   logic [LINE-1:0]  line, found_line;
   logic [3:0]       texel, found_texel;
-  logic [TAIL-1:0]  found_tail;
+  localparam int KEPT = TAIL + BORDER;
+  logic [KEPT-1:0]  kept, found_tail, code_tail;
+  logic [31:0]      decoded;
   logic [31:0]      code;
   logic [2:0]       code_format;
   logic             found_valid, found_ready;
@@ -81,14 +86,14 @@ module texture_nearest #(
   endgenerate
 
   fifo #(
-      .WIDTH(28 + LINE + 4 + TAIL),
+      .WIDTH(28 + LINE + 4 + KEPT),
       .DEPTH(AHEAD)
   ) u_addresses (
       .clk_i,
       .rst_ni,
       .valid_i,
       .ready_o(found_has_room),
-      .data_i ({address, line, texel, tail_i}),
+      .data_i ({address, line, texel, kept}),
       .valid_o(found_valid),
       .ready_i(found_ready),
       .data_o ({found_address, found_line, found_texel, found_tail})
@@ -97,7 +102,7 @@ module texture_nearest #(
       .LINES    (LINES),
       .PORT_BITS(PORT_BITS),
       .IN_FLIGHT(IN_FLIGHT),
-      .TAIL     (TAIL)
+      .TAIL     (KEPT)
   ) u_cache (
       .clk_i,
       .rst_ni,
@@ -115,7 +120,7 @@ module texture_nearest #(
       .code_ready_i    (texel_ready_i),
       .code_o          (code),
       .code_format_o   (code_format),
-      .code_tail_o     (texel_tail_o),
+      .code_tail_o     (code_tail),
       .request_valid_o,
       .request_ready_i,
       .request_address_o,
@@ -130,8 +135,19 @@ module texture_nearest #(
   texture_decode u_decode (
       .code_i  (code),
       .format_i(code_format),
-      .texel_o
+      .texel_o (decoded)
   );
+  assign kept         = KEPT'({border_i, tail_i});
+  assign texel_tail_o = code_tail[TAIL-1:0];
+  generate
+    if (BORDER != 0) begin : gen_border
+      assign texel_o = code_tail[KEPT-1] ? border_color_i : decoded;
+    end else begin : gen_image
+      assign texel_o = decoded;
+      logic unused;
+      assign unused = &{border_i, border_color_i};
+    end
+  endgenerate
 
   assign sample_o = hit_o || miss_o;
 

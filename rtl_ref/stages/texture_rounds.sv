@@ -11,6 +11,7 @@ module texture_rounds #(
     parameter int REFERENCE_BITS = 24,        // bits of a place's texel number, with its sign
     parameter int SIDE_BITS = 12,             // log2 of the longest side, texels
     parameter int TAIL = 1,                   // bits that go along with a group
+    parameter int BORDER = 0,                 // 1: texels may be the border's
     parameter int PLACE = REFERENCE_BITS + 8  // derived; not to be set
 ) (
     input logic clk_i,
@@ -30,7 +31,7 @@ module texture_rounds #(
     // Constants of the texture: they stay while groups are under way
     input logic       sets_state_i,
     input logic [7:0] log2_size_i,  // width lowest
-    input logic [3:0] wrap_i,
+    input logic [5:0] wrap_i,
     input logic [1:0] size_i,       // log2 of a line's bytes, less 4
 
     // Rounds
@@ -42,6 +43,7 @@ module texture_rounds #(
     output logic                      is_second_o,   // second of two rounds
     output logic [16*SIDE_BITS-1:0]   texel_o,       // for each sample x, y of its texel, then of the next texel
     output logic [63:0]               part_o,        // weight of the next texel, along x lowest
+    output logic [15:0]               border_o,      // with BORDER: the texel, the next one is the border's, likewise
     output logic [5:0]                agree_o,       // 0 and 1, 0 and 2, 1 and 2, 0 and 3, 1 and 3, 2 and 3
     output logic [31:0]               level_part_o,
     output logic [3:0]                is_between_o,
@@ -114,6 +116,7 @@ module texture_rounds #(
   // ----------------------------------------------------------------------------------------------------------- the samples
   logic [16*SIDE_BITS-1:0] texel;
   logic [63:0]             part;
+  logic [15:0]             border;
   logic [15:0]             scaled_level_q, wrapped_level_q;
   logic [4*LEVEL-1:0]      place_q;
   genvar l, m, d;
@@ -144,7 +147,8 @@ module texture_rounds #(
       for (d = 0; d < 2; d++) begin : gen_axis
         texture_on_level #(
             .REFERENCE_BITS(REFERENCE_BITS),
-            .SIDE_BITS     (SIDE_BITS)
+            .SIDE_BITS     (SIDE_BITS),
+            .BORDER        (BORDER)
         ) u_axis (
             .clk_i,
             .scales_i    (scales),
@@ -153,11 +157,12 @@ module texture_rounds #(
             .level_i     (level),
             .is_linear_i (is_linear_i[l]),
             .log2_size_i (log2_size[4*d+:4]),
-            .wrap_i      (wrap_i[2*d+:2]),
+            .wrap_i      (wrap_i[3*d+:3]),
             .is_corner_i (is_corner_q),
             .texel_o     (texel[SIDE_BITS*(4*l+d)+:SIDE_BITS]),
             .next_o      (texel[SIDE_BITS*(4*l+2+d)+:SIDE_BITS]),
-            .part_o      (part[16*l+8*d+:8])
+            .part_o      (part[16*l+8*d+:8]),
+            .border_o    (border[4*l+2*d+:2])
         );
       end
     end
@@ -184,6 +189,7 @@ module texture_rounds #(
     if (agrees) begin
       texel_o <= texel;
       part_o  <= part;
+      border_o <= border;
       agree_o <= agree;
     end
 

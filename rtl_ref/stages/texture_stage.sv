@@ -45,11 +45,12 @@ module texture_stage #(
   localparam int Q = raster_pkg::FRAGMENT_BITS_OF[32*AFFINE+:32];
   localparam int P = raster_pkg::FRAGMENT_BITS_OF[32*(AFFINE+1)+:32];
   localparam int Q_AT = raster_pkg::FRAGMENT_AT[32*AFFINE+:32];
-  localparam int WORD = raster_pkg::TEXTURE_UNIT != 3 ? 46 + raster_pkg::TEXTURE_CONSTANT : raster_pkg::STATE_WORD_BITS >= 104 ? 104 : 70;
+  localparam int WORD = raster_pkg::TEXTURE_UNIT == 3 ? (raster_pkg::STATE_WORD_BITS >= 104 ? 104 : 70) :
+                        raster_pkg::TEXTURE_BORDER != 0 ? 49 : 46 + raster_pkg::TEXTURE_CONSTANT;
   localparam int PIXEL = 12;
   localparam int PAYLOAD = raster_pkg::TESTED_STAMP_BITS + (raster_pkg::FOG_UNIT == 0 ? 0 : FOG);
 
-  logic                                   is_token, is_levels, is_constant;
+  logic                                   is_token, is_levels, is_constant, is_border;
   logic [1:0]                             unit;
   logic [raster_pkg::DEPTH_FUNC_BITS-1:0] register;
   logic [raster_pkg::STATE_WORD_BITS-1:0] word;
@@ -62,6 +63,7 @@ module texture_stage #(
   );
   assign is_levels   = is_token && register == raster_pkg::STATE_REGISTER_TEXTURE_LEVELS && unit == 2'd0;
   assign is_constant = raster_pkg::TEXTURE_CONSTANT != 0 && is_levels && word[raster_pkg::CONSTANT_WORD_BIT];
+  assign is_border   = raster_pkg::TEXTURE_BORDER != 0 && is_levels && word[raster_pkg::BORDER_WORD_BIT];
 
   // Coordinates, and the stamp's first pixel, which levels need.
   localparam int TILE = raster_pkg::TILE_SHIFT;
@@ -145,7 +147,8 @@ module texture_stage #(
       .COLOR_NARROW    (raster_pkg::COLOR_NARROW_BITS),
       .COLOR_SHIFT_BITS(raster_pkg::COLOR_SHIFT_BITS),
       .COLOR_REACH_BITS(raster_pkg::COLOR_REACH_BITS),
-      .CONSTANT        (raster_pkg::TEXTURE_CONSTANT)
+      .CONSTANT        (raster_pkg::TEXTURE_CONSTANT),
+      .BORDER          (raster_pkg::TEXTURE_BORDER)
   ) u_texture (
       .clk_i,
       .power_on_ni,
@@ -162,8 +165,9 @@ module texture_stage #(
       .reach_i          (fragment_i.coordinates.reach),
       .reference_i      (fragment_i.coordinates.origin),
       .sets_state_i     (is_token && register == raster_pkg::STATE_REGISTER_TEXTURE),
-      .sets_levels_i    (is_levels && !is_constant),
+      .sets_levels_i    (is_levels && !is_constant && !is_border),
       .sets_constant_i  (is_constant),
+      .sets_border_i    (is_border),
       .moves_in_i       (is_token && register == raster_pkg::STATE_REGISTER_TEXTURE_LINES),
       .x_i              (stamp_x),
       .y_i              (stamp_y),

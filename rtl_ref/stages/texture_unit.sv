@@ -33,14 +33,15 @@ module texture_unit #(
     parameter int LINES = 64,           // of the cache; a power of two
     parameter int WAYS = 1,             // ways of the cache: 1 or 2; 1 with one nearest texel
     parameter int PORT_BITS = 64,       // bits of a beat
-    parameter int WORD = 46,            // bits of a state: 70 or 104 with the lines of a level, else 46 + CONSTANT
+    parameter int WORD = 46,            // bits of a state: 70 or 104 with the lines of a level, else 46 + CONSTANT, or 49
     parameter int PIXEL = 12,           // bits of a pixel's column and row
     parameter int OVER_W = 0,           // 1: the unit divides colours as well
     parameter int COLOR_P_BITS = 24,    // bits of colours over w in a tile, signed
     parameter int COLOR_NARROW = 13,    // k_P of colours
     parameter int COLOR_SHIFT_BITS = 6, // bits of c of colours, signed
     parameter int COLOR_REACH_BITS = 4, // bits of x of colours
-    parameter int CONSTANT = 0          // 1: texels blend to a constant colour
+    parameter int CONSTANT = 0,         // 1: texels blend to a constant colour
+    parameter int BORDER = 0            // 1: beyond its image a texture may have a border
 ) (
     input logic clk_i,
     input logic rst_ni,
@@ -61,6 +62,7 @@ module texture_unit #(
     input logic                               sets_state_i,   // for later stamps; without a mask
     input logic                               sets_levels_i,
     input logic                               sets_constant_i,  // with CONSTANT: the colour, of 24 bits, in state_i
+    input logic                               sets_border_i,  // with BORDER: the colour, of 32 bits, in state_i
     input logic                               moves_in_i,     // a part of a triangle's lines arrives
     input logic [PIXEL-1:0]                   x_i,            // column of the stamp's first sample
     input logic [PIXEL-1:0]                   y_i,
@@ -109,7 +111,7 @@ module texture_unit #(
   localparam int GROUP_PLACE = LANES * PLACE;
   localparam int AHEAD = 16;  // groups between split and tags
   localparam int CLOCKS = (FILTER == 2) ? 10 : 8;  // latency of texture_coordinates, or of level_of_detail
-  localparam int TOKEN = (FILTER == 2) ? 3 : 1;    // bits of a state's kind
+  localparam int TOKEN = ((FILTER == 2) ? 3 : 1) + BORDER;  // bits of a state's kind
   localparam int PIXELS = COORDINATES + 2 * PIXEL;
   localparam int PLACED = (FILTER != 2) ? COORDINATES : (PIXELS > WORD) ? PIXELS : WORD + 1;
   localparam int WAITING = PLACED + ((OVER_W != 0) ? 2 : 0);  // with two flags: textured, divides colours
@@ -214,11 +216,11 @@ module texture_unit #(
       assign waiting_divides     = 1'b0;
     end
     if (FILTER == 2) begin : gen_pixels
-      assign token    = {moves_in_i, sets_levels_i, sets_state_i};
+      assign token    = TOKEN'({sets_border_i, moves_in_i, sets_levels_i, sets_state_i});
       assign placed   = PLACED'({y_i, x_i, places});
       assign is_state = waiting_token[1:0] != '0;
     end else begin : gen_places
-      assign token    = sets_state_i;
+      assign token    = TOKEN'({sets_border_i, sets_state_i});
       assign placed   = places;
       assign is_state = waiting_token[0];
     end
@@ -263,7 +265,7 @@ module texture_unit #(
     place_of = left[GROUP_PLACE-1:0];
   endfunction
 
-  logic               splits, can_set, sets_state, moves_in, is_last, leaves_queue, tags_are_empty;
+  logic               splits, can_set, sets_state, sets_border, moves_in, is_last, leaves_queue, tags_are_empty;
   logic [GROUPS-1:0]  done_q, left;  // groups of the stamp that are complete; groups left
   logic [GROUP-1:0]   group;
   logic [4:0]         ahead_q;
@@ -277,7 +279,7 @@ module texture_unit #(
   assign splits     = waits && !is_token && ahead_q != 5'(AHEAD);  // 0 after a state that disables the texture
   assign can_set    = waits && is_state && ahead_q == '0 && tags_are_empty;
   assign sets_state = can_set && waiting_token[0];
-  assign takes      = can_set || moves_in || (splits && is_last);
+  assign takes      = can_set || sets_border || moves_in || (splits && is_last);
 
   logic [GROUP_PLACE-1:0] place_q;  // the samples of the group
   logic [INDEX-1:0] place_index_q;
@@ -301,7 +303,7 @@ module texture_unit #(
 
   // The active state.
   logic [2:0]             format_q;
-  logic [3:0]             wrap_q;
+  logic [5:0]             wrap_q;
   logic [2*SIDE_BITS-1:0] last_q;   // number of the last texel of each side
   logic                   is_linear_q;
   logic [1:0]             size_q;   // log2 of a line's bytes, less 4
@@ -309,12 +311,20 @@ module texture_unit #(
   logic [25:0]            base_q;   // unit 64 bytes
   logic [3:0]             log2_width;
   logic [1:0]             size;
+  logic [5:0]             wrap;
   assign log2_width = waiting[14:11];
+  generate
+    if (BORDER != 0) begin : gen_wrap_bits
+      assign wrap = {waiting[48], waiting[10:9], waiting[47], waiting[8:7]};
+    end else begin : gen_wrap_bits
+      assign wrap = {1'b0, waiting[10:9], 1'b0, waiting[8:7]};
+    end
+  endgenerate
   assign size       = waiting[4:2] == 3'd0 ? 2'd0 : waiting[4:2] == 3'd5 ? 2'd2 : 2'd1;
   always_ff @(posedge clk_i)
     if (sets_state) begin
       format_q    <= waiting[4:2];
-      wrap_q      <= waiting[10:7];
+      wrap_q      <= wrap;
       last_q      <= {~(12'hfff << waiting[18:15]), ~(12'hfff << log2_width)};
       size_q      <= size;
       row_q       <= 4'(size) + (log2_width[3:1] == '0 ? 4'd0 : log2_width - 4'd2);
@@ -328,6 +338,7 @@ module texture_unit #(
   logic [LANES*2*SIDE_BITS-1:0] texel;
   logic [LANES*2*SIDE_BITS-1:0] next;
   logic [LANES*16-1:0]        part;
+  logic [LANES*4-1:0]         border;
   logic [LANES*(2*REFERENCE_BITS+16)-1:0] place;  // with levels, until the level is known
   logic [LANES*(2*REFERENCE_BITS+16)-1:0] coordinate;
   logic [LANES*5-1:0]         exponent;
@@ -382,7 +393,8 @@ module texture_unit #(
       .QUEUE         (QUEUE),
       .SIDE_BITS     (SIDE_BITS),
       .LINEAR        (FILTER),
-      .RECIPROCAL    (RECIPROCAL)
+      .RECIPROCAL    (RECIPROCAL),
+      .BORDER        (BORDER)
   ) u_texture_coordinates (
       .clk_i,
       .frame_valid_i(enters),
@@ -400,6 +412,7 @@ module texture_unit #(
       .texel_o      (texel),
       .next_o       (next),
       .part_o       (part),
+      .border_o     (border),
       .coordinate_o (place),
       .exponent_o   (exponent),
       .below_o      (below),
@@ -458,6 +471,31 @@ module texture_unit #(
   logic [LANES-1:0]    texel_lanes;  // samples whose texels have come
   logic                texel_ends;   // these samples are the last of their group
   assign drops = sets_state && waiting[1];
+
+  // The border's colour, where the filter looks at it. It waits until no sample is left upstream of `combine`.
+  logic [31:0] border_color;
+  generate
+    if (BORDER != 0) begin : gen_border
+      localparam int INSIDE = $clog2(AHEAD + IN_FLIGHT + 16);  // and a few in registers
+      logic [INSIDE-1:0] inside_q;  // groups between the split and combine
+      logic [31:0]       border_q;
+      assign sets_border  = waits && waiting_token[TOKEN-1] && inside_q == '0;
+      assign border_color = border_q;
+      always_ff @(posedge clk_i or negedge rst_ni) begin
+        if (!rst_ni) inside_q <= '0;
+        else
+          inside_q <= inside_q + INSIDE'(splits && waiting_is_textured) -
+              INSIDE'(texel_valid && texel_ready && texel_ends);
+      end
+      always_ff @(posedge clk_i) if (sets_border) border_q <= waiting[31:0];
+    end else begin : gen_no_border
+      assign sets_border  = 1'b0;
+      assign border_color = '0;
+      logic unused;
+      assign unused = sets_border_i;
+    end
+  endgenerate
+
   generate
     if (LANES != 1) begin : gen_lanes
       texture_lanes #(
@@ -469,7 +507,8 @@ module texture_unit #(
           .WAYS          (WAYS),
           .PORT_BITS     (PORT_BITS),
           .IN_FLIGHT     (IN_FLIGHT),
-          .TAIL          (TAIL)
+          .TAIL          (TAIL),
+          .BORDER        (BORDER)
       ) u_texture_lanes (
           .clk_i,
           .rst_ni,
@@ -479,6 +518,7 @@ module texture_unit #(
           .texel_i         (texel),
           .next_i          (next),
           .part_i          (part),
+          .border_i        (border),
           .coordinate_i    (coordinate),
           .level_i         (level),
           .level_part_i    (level_part),
@@ -494,6 +534,7 @@ module texture_unit #(
           .format_i        (format_q),
           .base_i          (base_q),
           .size_i          (size_q),
+          .border_color_i  (border_color),
           .drop_i          (drops),
           .tags_are_empty_o(tags_are_empty),
           .texel_valid_o   (texel_valid),
@@ -523,19 +564,22 @@ module texture_unit #(
           .LINES    (LINES),
           .PORT_BITS(PORT_BITS),
           .IN_FLIGHT(IN_FLIGHT),
-          .TAIL     (TAIL)
+          .TAIL     (TAIL),
+          .BORDER   (BORDER)
       ) u_texture_nearest (
           .clk_i,
           .rst_ni,
           .power_on_ni,
           .valid_i         (valid_q[CLOCKS]),
           .texel_i         (texel),
+          .border_i        (border != '0),
           .tail_i          (tail_q[AHEAD_TAIL*CLOCKS+:TAIL]),
           .pops_o          (leaves_queue),
           .format_i        (format_q),
           .base_i          (base_q),
           .size_i          (size_q),
           .row_i           (row_q),
+          .border_color_i  (border_color),
           .drop_i          (drops),
           .tags_are_empty_o(tags_are_empty),
           .texel_valid_o   (texel_valid),
@@ -566,7 +610,8 @@ module texture_unit #(
           .WAYS          (WAYS),
           .PORT_BITS     (PORT_BITS),
           .IN_FLIGHT     (IN_FLIGHT),
-          .TAIL          (TAIL)
+          .TAIL          (TAIL),
+          .BORDER        (BORDER)
       ) u_texture_linear (
           .clk_i,
           .rst_ni,
@@ -575,6 +620,7 @@ module texture_unit #(
           .texel_i         (texel),
           .next_i          (next),
           .part_i          (part),
+          .border_i        (border),
           .coordinate_i    (coordinate),
           .level_i         (level),
           .level_part_i    (level_part),
@@ -590,6 +636,7 @@ module texture_unit #(
           .size_i          (size_q),
           .row_i           (row_q),
           .shares_i        (shares),
+          .border_color_i  (border_color),
           .drop_i          (drops),
           .tags_are_empty_o(tags_are_empty),
           .texel_valid_o   (texel_valid),

@@ -86,13 +86,15 @@ Json surface_json(const SurfaceFigure& figure) {
   json["filter"] = figure.filter.is_linear ? "linear" : "nearest";
   json["between_levels"] = figure.filter.is_between;
   Json texels = Json::array();
-  for (const TexelFigure& t : figure.texels)
+  for (const TexelFigure& t : figure.texels) {
     texels.push_back({{"level", t.level},
                       {"x", t.x},
                       {"y", t.y},
                       {"weight", std::ldexp(t.weight, -24)},
                       {"address", t.address},
                       {"color", texel_color(t.color)}});
+    if (t.is_border) texels.back()["border"] = true;
+  }
   json["texels"] = texels;
   json["texel"] = texel_color(s.texel);
   return json;

@@ -117,8 +117,8 @@ void print_surface(std::ostream& out, const SurfaceFigure& figure) {
       << fixed(s.coordinate[1], 4) << " texels, level " << fixed(std::ldexp(s.lod, -kLodFraction), 3) << ", "
       << (figure.filter.is_linear ? "linear" : "nearest") << (figure.filter.is_between ? " on two levels" : "") << '\n';
   for (const TexelFigure& t : figure.texels) {
-    out << label_text("") << "level " << t.level << " texel " << t.x << ' ' << t.y << ", weight "
-        << fixed(std::ldexp(t.weight, -24), 6) << ": " << texel_text(t.color);
+    out << label_text("") << "level " << t.level << (t.is_border ? " border by texel " : " texel ") << t.x << ' ' << t.y
+        << ", weight " << fixed(std::ldexp(t.weight, -24), 6) << ": " << texel_text(t.color);
     if (t.address) out << ", byte " << hex_text(*t.address, 32);
     out << '\n';
   }

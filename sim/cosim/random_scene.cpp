@@ -92,6 +92,7 @@ class Generator {
   void set_stencils();
   void set_textures();
   void set_constants();
+  void set_borders();
   void set_shapes();
   void set_fogs();
   void set_lights();
@@ -291,6 +292,18 @@ void Generator::set_constants() {
   }
 }
 
+/// Lets some states have a border. From separate random numbers, as above.
+void Generator::set_borders() {
+  Random random(seed_ ^ 0xb0bdu);
+  for (State& state : scene_.states) {
+    for (TextureWrap& wrap : state.texture_wrap)
+      if (random.next() % 3 == 0) wrap = random.next() % 2 == 0 ? TextureWrap::border : TextureWrap::half_border;
+    const bool is_same = random.next() % 2 == 0;  // as that of other states: no token in between
+    for (std::uint8_t& channel : state.texture_border)
+      channel = static_cast<std::uint8_t>(is_same ? 77 : random.next() % 4 == 0 ? 255 : random.next() % 256);
+  }
+}
+
 /// Makes a few small textures, with levels if the unit has them, and triangles that show them: w ratios up to 2^10,
 /// coordinates from next to a texel's border to many repeats away. From separate random numbers, as above.
 void Generator::set_textures() {
@@ -330,6 +343,7 @@ void Generator::set_textures() {
     if (chance(0.2)) state.texture_lod[2] = random.uniform(0, 12);
   }
   if (config_.texture_constants != 0) set_constants();
+  if (config_.texture_borders != 0) set_borders();
   const double reach = std::ldexp(1.0, static_cast<int>(below(8)) - 2);  // of the coordinates, in repeats
   for (Vertex& v : scene_.vertices) {
     v.w = chance(0.3) ? 1.0 : std::exp2(random.uniform(-5, 5));

@@ -69,11 +69,12 @@ void expect_broken(const Scene& scene, void (*damage)(SurfaceSample&), const cha
 TEST(CompareTextures, AFloorBreaksNoBoundInAnyPresetAndStateOfItsTexture) {
   for (const std::string name : {"tiny", "small", "embedded", "full"})
     for (int min = 0; min < 6; ++min)
-      for (int wrap = 0; wrap < 3; ++wrap) {
+      for (int wrap = 0; wrap < 5; ++wrap) {
         State state = textured_state();
+        state.texture_border = {250, 10, 128, 60};
         state.texture_min = static_cast<TextureMin>(min);
         state.texture_mag = static_cast<TextureMag>(min % 2);
-        state.texture_wrap = {static_cast<TextureWrap>(wrap), static_cast<TextureWrap>((wrap + 1) % 3)};
+        state.texture_wrap = {static_cast<TextureWrap>(wrap), static_cast<TextureWrap>((wrap + 1) % 5)};
         state.texture_interp = min == 3 ? TextureInterp::affine : TextureInterp::perspective;
         state.color_interp = wrap == 1 ? ColorInterp::perspective : ColorInterp::affine;
         state.texture_lod = {0.3 * wrap - 0.21, 0.13, 4.77};

@@ -178,6 +178,21 @@ texture_fault(texture_combine 101 [=[is_modulated || is_added || is_blended]=] [
 texture_fault(texture_unit 102 [=[sets_constant_i ? (SAMPLES * COLOR)'(state_i[23:0]) : door_color]=] [=[door_color]=])
 texture_fault(texture_unit 103 [=[passes && stamp_flags[FLAGS-1]]=] [=[stamp_valid_i && sets_constant_i]=])
 texture_fault(texture_unit 104 [=[{state_i[46], state_i[6:5]}]=] [=[{1'b0, state_i[6:5]}]=])
+set(texture_constant_faults ${texture_faults})
+# The border: a coordinate that is not held, or only a texel later, on either side; who has a border, beyond the last texel as
+# well, and far beyond; that of rows; a token that does not wait for samples, or counts passes for groups; half_border; another
+# sample's.
+texture_fault(texture_border 105 [=[is_held ? 8'h80 : part_i]=] [=[part_i]=])
+texture_fault(texture_border 106 [=[(next_is_below || !part_i[7])]=] [=[next_is_below]=])
+texture_fault(texture_border 107 [=[(first_is_above || part_i[7])]=] [=[first_is_above]=])
+texture_fault(texture_border 108 [=[wrap_i[1:0] == 2'd3]=] [=[1'b0]=])
+texture_fault(texture_border 109 [=[(holds && next_is_above)]=] [=[1'b0]=])
+texture_fault(texture_border 110 [=[number[NUMBER_BITS-2:SIDE_BITS] != '0]=] [=[1'b0]=])
+texture_fault(texture_filter 111 [=[part_i[18+n/2]]=] [=[1'b0]=])
+texture_fault(texture_unit 112 [=[inside_q == '0]=] [=[1'b1]=])
+texture_fault(texture_unit 113 [=[texel_valid && texel_ready && texel_ends]=] [=[texel_valid && texel_ready]=])
+texture_fault(texture_unit 114 [=[{waiting[48], waiting[10:9], waiting[47], waiting[8:7]}]=] [=[{1'b0, waiting[10:9], 1'b0, waiting[8:7]}]=])
+texture_fault(texture_lanes 115 [=[PART'({border[4*l+:4], part[16*l+:16]})]=] [=[PART'({border[3:0], part[16*l+:16]})]=])
 foreach(name IN LISTS texture_names)
   file(CONFIGURE OUTPUT "${FOLDER}/${name}.sv" CONTENT "${texture_text_${name}}" @ONLY)
 endforeach()
@@ -186,5 +201,5 @@ file(CONFIGURE OUTPUT "${FOLDER}/texture_faults.hpp" CONTENT "#pragma once
 inline constexpr int kNearestFaults = ${texture_nearest_faults}, kLinearFaults = ${texture_linear_faults},
                      kLevelsFaults = ${texture_levels_faults}, kColorsFaults = ${texture_colors_faults},
                      kWaysFaults = ${texture_ways_faults}, kLanesFaults = ${texture_lanes_faults},
-                     kTextureFaults = ${texture_faults};
+                     kConstantFaults = ${texture_constant_faults}, kTextureFaults = ${texture_faults};
 " @ONLY)

@@ -69,7 +69,7 @@ class Coordinates {
     for (int i = 0; i < 2; ++i) {
       dut_.last_i |= ((1U << state.log2_size[static_cast<std::size_t>(i)]) - 1) << (12 * i);
       dut_.wrap_i =
-          static_cast<CData>(dut_.wrap_i | static_cast<int>(state.wrap[static_cast<std::size_t>(i)]) << (2 * i));
+          static_cast<CData>(dut_.wrap_i | static_cast<int>(state.wrap[static_cast<std::size_t>(i)]) << (3 * i));
     }
     const int narrow = format_.coordinate.narrow_bits;
     dut_.frame_valid_i = 1;

@@ -19,7 +19,8 @@ module texture_unit_bench #(
     parameter int WORD = 46,
     parameter int OVER_W = 0,
     parameter int COLOR_P_BITS = 24,
-    parameter int CONSTANT = 0
+    parameter int CONSTANT = 0,
+    parameter int BORDER = 0
 ) (
     input logic       clk_i,
     input logic       rst_ni,
@@ -40,6 +41,7 @@ module texture_unit_bench #(
     input logic                          sets_state_i,
     input logic                          sets_levels_i,
     input logic                          sets_constant_i,
+    input logic                          sets_border_i,
     input logic                          moves_in_i,
     input logic [11:0]                   x_i,
     input logic [11:0]                   y_i,
@@ -92,7 +94,8 @@ module texture_unit_bench #(
       .WORD     (WORD),
       .OVER_W   (OVER_W),
       .COLOR_P_BITS(COLOR_P_BITS),
-      .CONSTANT (CONSTANT)
+      .CONSTANT (CONSTANT),
+      .BORDER   (BORDER)
   ) u_texture_unit (
       .clk_i,
       .rst_ni,
@@ -111,6 +114,7 @@ module texture_unit_bench #(
       .sets_state_i,
       .sets_levels_i,
       .sets_constant_i,
+      .sets_border_i,
       .moves_in_i,
       .x_i,
       .y_i,

@@ -23,6 +23,7 @@ struct UnitFormat {
   PerspectiveFormat perspective;
   bool divides_colors = false;  ///< OVER_W
   bool has_constant = false;    ///< CONSTANT
+  bool has_border = false;      ///< BORDER
 };
 
 struct PlannedStamp {
@@ -38,9 +39,8 @@ struct PlannedStamp {
   Cycle enters = 0, offered = 0, left = 0;
 };
 
-[[nodiscard]] inline bool sets_constant(const PlannedStamp& stamp) {
-  return stamp.sets == StateRegister::texture_levels &&
-         levels_word(static_cast<std::uint64_t>(stamp.word)) == LevelsWord::constant;
+[[nodiscard]] inline bool sets(const PlannedStamp& stamp, LevelsWord which) {
+  return stamp.sets == StateRegister::texture_levels && levels_word(static_cast<std::uint64_t>(stamp.word)) == which;
 }
 
 struct PlannedRequest {
@@ -100,6 +100,12 @@ class Program {
       if (format_.has_constant && (!has_constant_ || pick(random_, 0, 1) == 0)) {
         token(StateRegister::texture_levels, new_constant().pack());
         has_constant_ = true;
+      }
+      if (format_.has_border && (!has_border_ || pick(random_, 0, 1) == 0)) {
+        TextureBorder border;
+        for (std::uint8_t& channel : border.color) channel = static_cast<std::uint8_t>(random_());
+        token(StateRegister::texture_levels, border.pack());
+        has_border_ = true;
       }
     }
     if (tokens_.empty() && pick(random_, 0, 9) == 0) new_triangle();
@@ -186,7 +192,7 @@ class Program {
     state.log2_size = t.log2_size;
     state.base = t.base;
     state.combine = static_cast<TextureCombine>(pick(random_, 0, format_.has_constant ? 4 : 3));
-    for (TextureWrap& wrap : state.wrap) wrap = static_cast<TextureWrap>(pick(random_, 0, 2));
+    for (TextureWrap& wrap : state.wrap) wrap = static_cast<TextureWrap>(pick(random_, 0, format_.has_border ? 4 : 2));
     state.is_linear = format_.settings.has_linear && pick(random_, 0, 3) != 0;
     return state;
   }
@@ -263,6 +269,7 @@ class Program {
   int left_ = 0;
   std::deque<PlannedStamp> tokens_;  ///< in front of the next stamp
   bool has_constant_ = false;        ///< one has been sent; before that it is undefined
+  bool has_border_ = false;          ///< likewise
   int x_ = 0, y_ = 0;                ///< about where the triangle is
   std::array<TextureState, 4> texture_{};
   TextureFrame frame_;
@@ -320,7 +327,10 @@ inline Plan make_plan(const UnitFormat& format, const World& world, Random& rand
       if (state.invalidates) contents = random();
       unit.set(state);
       stamp.offered = timing.set(x, state.invalidates);
-    } else if (sets_constant(stamp)) {
+    } else if (sets(stamp, LevelsWord::border)) {
+      unit.set_border(TextureBorder::unpack(static_cast<std::uint64_t>(stamp.word)));
+      stamp.offered = timing.set_border(x);
+    } else if (sets(stamp, LevelsWord::constant)) {
       unit.set_constant(TextureConstant::unpack(static_cast<std::uint64_t>(stamp.word)));
       stamp.offered = timing.pass(x);
     } else if (stamp.sets == StateRegister::texture_levels) {

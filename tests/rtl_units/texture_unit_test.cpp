@@ -31,18 +31,18 @@ namespace halfplane::texture_test {
 namespace {
 
 const UnitFormat kEmbedded{4, 4, {64, 64, 16, 32}, kEmbeddedPerspective, true};
-const UnitFormat kTiny{1, 3, {4, 16, 4, 8}, kTinyPerspective, true, true};
-const UnitFormat kLinear{4, 4, {64, 64, 16, 32, true}, kEmbeddedPerspective};
+const UnitFormat kTiny{1, 3, {4, 16, 4, 8}, kTinyPerspective, true, true, true};
+const UnitFormat kLinear{4, 4, {64, 64, 16, 32, true}, kEmbeddedPerspective, false, false, true};
 const UnitFormat kLinearTiny{1, 3, {16, 16, 4, 8, true}, kTinyPerspective};
 const UnitFormat kLevels{4, 4, {64, 64, 16, 32, true, true, 104}, kEmbeddedPerspective, true};
-const UnitFormat kLevelsTiny{1, 3, {16, 16, 4, 8, true, true, 70}, kTinyPerspective};
+const UnitFormat kLevelsTiny{1, 3, {16, 16, 4, 8, true, true, 70}, kTinyPerspective, false, false, true};
 const UnitFormat kLevelsWays{1, 3, {16, 16, 4, 8, true, true, 70, 1, 1, 2}, kTinyPerspective};
-const UnitFormat kLanes{4, 4, {64, 64, 32, 32, true, false, 104, 4, 2}, kEmbeddedPerspective, true};
+const UnitFormat kLanes{4, 4, {64, 64, 32, 32, true, false, 104, 4, 2}, kEmbeddedPerspective, true, false, true};
 const UnitFormat kLanesWays{4, 4, {16, 64, 32, 32, true, false, 104, 4, 2, 2}, kEmbeddedPerspective, true};
-const UnitFormat kLanesFull{16, 4, {256, 16, 8, 8, false, false, 104, 4, 4, 2}, kFullPerspective, true};
+const UnitFormat kLanesFull{16, 4, {256, 16, 8, 8, false, false, 104, 4, 4, 2}, kFullPerspective, true, false, true};
 const UnitFormat kLanesLevels{4, 4, {64, 64, 32, 32, true, true, 104, 4, 2}, kEmbeddedPerspective, true};
 const UnitFormat kLanesLevelsFull{16, 4, {16, 16, 8, 8, true, true, 104, 4, 4, 2}, kFullPerspective};
-const UnitFormat kLanesLevelsFaults{16, 4, {64, 64, 8, 32, true, true, 104, 4, 4}, kFullPerspective, false, true};
+const UnitFormat kLanesLevelsFaults{16, 4, {64, 64, 8, 32, true, true, 104, 4, 4}, kFullPerspective, false, true, true};
 const UnitFormat kFull{16, 4, {256, 128, 16, 64}, kFullPerspective, true};
 
 std::uint64_t seed_of_run() {
@@ -191,13 +191,15 @@ class Bench {
     put(dut_.mask_i, 0, format_.samples, stamp.mask.bits());
     dut_.is_triangle_i = stamp.is_triangle;
     dut_.sets_state_i = stamp.sets == StateRegister::texture;
-    dut_.sets_levels_i = stamp.sets == StateRegister::texture_levels && !sets_constant(stamp);
-    dut_.sets_constant_i = sets_constant(stamp);
+    dut_.sets_levels_i = sets(stamp, LevelsWord::levels);
+    dut_.sets_constant_i = sets(stamp, LevelsWord::constant);
+    dut_.sets_border_i = sets(stamp, LevelsWord::border);
     dut_.moves_in_i = stamp.sets == StateRegister::texture_lines;
     dut_.x_i = static_cast<SData>(stamp.x);
     dut_.y_i = static_cast<SData>(stamp.y);
-    const int word_bits =
-        format_.settings.has_levels ? format_.settings.line_bits : TextureState::kBits - (format_.has_constant ? 0 : 1);
+    const int word_bits = format_.settings.has_levels ? format_.settings.line_bits
+                          : format_.has_border        ? TextureState::kBits
+                                                      : TextureState::kBits - (format_.has_constant ? 2 : 3);
     put(dut_.state_i, 0, std::min(word_bits, 64), static_cast<std::uint64_t>(stamp.word));
     if (word_bits > 64) put(dut_.state_i, 64, word_bits - 64, static_cast<std::uint64_t>(stamp.word >> 64));
     for (std::size_t s = 0; s < static_cast<std::size_t>(format_.samples); ++s) {
@@ -330,7 +332,10 @@ TEST(TextureUnit, FaultsOfLevelsAreFound) {
   expect_found<VTextureUnitLevels>(kLevels, kLinearFaults + 1, kLevelsFaults);
 }
 TEST(TextureUnit, FaultsOfTheConstantAreFound) {
-  expect_found<VTextureUnitLanesLevelsQueue>(kLanesLevelsFaults, kLanesFaults + 1, kTextureFaults);
+  expect_found<VTextureUnitLanesLevelsQueue>(kLanesLevelsFaults, kLanesFaults + 1, kConstantFaults);
+}
+TEST(TextureUnit, FaultsOfTheBorderAreFound) {
+  expect_found<VTextureUnitLanesLevelsQueue>(kLanesLevelsFaults, kConstantFaults + 1, kTextureFaults);
 }
 TEST(TextureUnit, FaultsOfColorsOverWAreFound) {
   expect_found<VTextureUnit>(kEmbedded, kLevelsFaults + 1, kColorsFaults);

@@ -41,6 +41,9 @@ Texture noise(Random& random, int width, int height, TextureFormat format, Mips 
   return make_texture("t" + std::to_string(random.index(1 << 20)), image, format, mips);
 }
 
+constexpr std::array kWraps{TextureWrap::repeat, TextureWrap::clamp, TextureWrap::mirror, TextureWrap::border,
+                            TextureWrap::half_border};
+
 State random_surface(Random& random) {
   State state = SceneBuilder::window_state();
   state.depth_test = static_cast<DepthFunc>(random.index(8));
@@ -56,6 +59,9 @@ State random_surface(Random& random) {
   state.texture_combine = static_cast<TextureCombine>(random.index(4));
   if (own.index(5) == 4) state.texture_combine = TextureCombine::blend;
   for (std::uint8_t& channel : state.texture_constant) channel = static_cast<std::uint8_t>(own.index(256));
+  for (TextureWrap& wrap : state.texture_wrap)
+    if (own.index(4) == 0) wrap = own.index(2) == 0 ? TextureWrap::border : TextureWrap::half_border;
+  for (std::uint8_t& channel : state.texture_border) channel = static_cast<std::uint8_t>(own.index(256));
   state.texture_lod[0] = random.index(3) == 0 ? random.between(-16, 16) : random.between(-1, 1);
   state.texture_lod[1] = random.index(4) == 0 ? random.between(0, 12) : 0;
   state.texture_lod[2] = random.index(4) == 0 ? random.between(0, 12) : 12;
@@ -243,7 +249,7 @@ TEST(FunctionalSurface, EveryPrecisionIsTheSameOnEveryPath) {
 
 TEST(FunctionalSurface, TheSmallestAndTheLargestTexturesAreTheSameOnEveryPath) {
   for (const auto& [width, height] : {std::pair{1, 1}, {1, 64}, {64, 1}, {2, 2}, {4096, 4}, {4, 4096}, {3, 5}})
-    for (const TextureWrap wrap : {TextureWrap::repeat, TextureWrap::clamp, TextureWrap::mirror})
+    for (const TextureWrap wrap : kWraps)
       for (int min = 0; min < 6; ++min) {
         SCOPED_TRACE(std::to_string(width) + "x" + std::to_string(height) + ", wrap " +
                      std::to_string(static_cast<int>(wrap)) + ", min " + std::to_string(min));
@@ -252,6 +258,7 @@ TEST(FunctionalSurface, TheSmallestAndTheLargestTexturesAreTheSameOnEveryPath) {
         State state = SceneBuilder::window_state();
         state.texture = 0;
         state.texture_wrap = {wrap, wrap};
+        state.texture_border = {200, 40, 90, 130};
         state.texture_min = static_cast<TextureMin>(min);
         state.texture_mag = TextureMag::linear;
         builder.scene.states.push_back(state);
@@ -266,7 +273,7 @@ TEST(FunctionalSurface, TheSmallestAndTheLargestTexturesAreTheSameOnEveryPath) {
 TEST(FunctionalSurface, SmallTrianglesOfEveryReachAreTheSameOnEveryPath) {
   std::uint32_t seed = 300;
   for (const char* name : {"small", "embedded", "full"})
-    for (const TextureWrap wrap : {TextureWrap::repeat, TextureWrap::clamp, TextureWrap::mirror})
+    for (const TextureWrap wrap : kWraps)
       for (const TextureMin min : {TextureMin::nearest, TextureMin::linear, TextureMin::linear_mipmap_linear}) {
         SCOPED_TRACE(std::string(name) + ", wrap " + std::to_string(static_cast<int>(wrap)) + ", min " +
                      std::to_string(static_cast<int>(min)) + ", seed " + std::to_string(seed));
@@ -275,6 +282,7 @@ TEST(FunctionalSurface, SmallTrianglesOfEveryReachAreTheSameOnEveryPath) {
         State state = SceneBuilder::window_state();
         state.texture = 0;
         state.texture_wrap = {wrap, wrap};
+        state.texture_border = {200, 40, 90, 130};
         state.texture_min = min;
         state.texture_mag = min == TextureMin::nearest ? TextureMag::nearest : TextureMag::linear;
         builder.scene.textures.push_back(noise(random, 64, 16, TextureFormat::rgba8888, Mips::box));
@@ -320,6 +328,7 @@ TEST(FunctionalSurface, TexturedMeshesAreTheSameOnEveryPath) {
         state.texture_min = surface.texture_min;
         state.texture_mag = surface.texture_mag;
         state.texture_wrap = surface.texture_wrap;
+        state.texture_border = surface.texture_border;
         state.texture_combine = surface.texture_combine;
         state.texture_constant = surface.texture_constant;
       }

@@ -73,6 +73,28 @@ TEST(GoldenTexture, LinearMagnificationBlendsFourTexels) {
   EXPECT_NEAR(color_at(image, 5, 3)[1], 255 * 0.375, 1e-9);
 }
 
+TEST(GoldenTexture, BeyondTheImageIsTheBorder) {
+  State state = textured();
+  state.texture_border = {100, 200, 50, 255};
+  const Texture texture = gradient(4, 4);
+  const auto red = [&](TextureWrap wrap, bool is_linear, double x) {
+    state.texture_wrap = {wrap, TextureWrap::clamp};
+    return golden::filtered_level(texture, state, {x, 1.5}, 0, is_linear)[0];
+  };
+  const double first = texture.texel(0, 0, 1)[0], last = texture.texel(0, 3, 1)[0];
+  EXPECT_NEAR(red(TextureWrap::border, false, -0.01), 100, 1e-9);
+  EXPECT_NEAR(red(TextureWrap::border, false, 0), first, 1e-9);
+  EXPECT_NEAR(red(TextureWrap::border, false, 4), 100, 1e-9);
+  EXPECT_NEAR(red(TextureWrap::border, true, -0.25), first * 0.25 + 100 * 0.75, 1e-9);
+  EXPECT_NEAR(red(TextureWrap::border, true, 4.5), 100, 1e-9);
+  for (const double beyond : {0.0, 0.01, 3.0, 1e200}) {
+    EXPECT_NEAR(red(TextureWrap::half_border, true, -beyond), (first + 100) / 2, 1e-9);
+    EXPECT_NEAR(red(TextureWrap::half_border, true, 4 + beyond), (last + 100) / 2, 1e-9);
+    EXPECT_NEAR(red(TextureWrap::half_border, false, -beyond), first, 1e-9);
+    EXPECT_NEAR(red(TextureWrap::half_border, false, 4 + beyond), last, 1e-9);
+  }
+}
+
 TEST(GoldenTexture, BeyondTheImageItWrapsClampsOrTurns) {
   using golden::wrapped;
   for (const auto [texel, repeat, clamp, mirror] : {std::array{-5.0, 3.0, 0.0, 3.0},

@@ -166,8 +166,8 @@ TEST(Surface, BothEnginesDrawTheSamePicture) {
       state.texture_interp = static_cast<TextureInterp>(random.index(2));
       state.texture_min = static_cast<TextureMin>(random.index(6));
       state.texture_mag = static_cast<TextureMag>(random.index(2));
-      state.texture_wrap[0] = static_cast<TextureWrap>(random.index(3));
-      state.texture_wrap[1] = static_cast<TextureWrap>(random.index(3));
+      for (TextureWrap& wrap : state.texture_wrap) wrap = static_cast<TextureWrap>(random.index(5));
+      for (std::uint8_t& channel : state.texture_border) channel = static_cast<std::uint8_t>(random.index(256));
       state.texture_combine = static_cast<TextureCombine>(random.index(5));
       for (std::uint8_t& channel : state.texture_constant) channel = static_cast<std::uint8_t>(random.index(256));
       state.texture_lod[0] = random.between(-2, 2);
@@ -180,6 +180,43 @@ TEST(Surface, BothEnginesDrawTheSamePicture) {
       config.color_format = ColorFormat::rgb565;
       expect_engines_agree(scene, config, name + " rgb565 " + std::to_string(n));
     }
+}
+
+// A texture with a border is one of four times its side with the border's colour around it: the same places in texels.
+TEST(Surface, ABorderIsALargerImage) {
+  Random random(4);
+  int seen = 0;
+  for (int n = 0; n < 60; ++n) {
+    State state = SceneBuilder::window_state();
+    state.texture = 0;
+    state.texture_min = random.index(2) == 0 ? TextureMin::nearest : TextureMin::linear;
+    state.texture_mag = static_cast<TextureMag>(random.index(2));
+    state.texture_wrap = {TextureWrap::border, TextureWrap::border};
+    for (std::uint8_t& channel : state.texture_border) channel = static_cast<std::uint8_t>(random.index(256));
+    const int side = 1 << random.index(6);
+    const Texture texture = pattern(TexturePattern::grid, side, side);
+    Scene scene = random_surfaces(random, state, texture, 32, 6, 3 * side);
+    for (Vertex& vertex : scene.vertices)
+      for (double* place : {&vertex.u, &vertex.v}) *place = std::round(std::ldexp(*place, 20)) / (1 << 20);
+    Scene larger = scene;
+    TexelImage image{4 * side, 4 * side, {}};
+    for (int y = 0; y < 4 * side; ++y)
+      for (int x = 0; x < 4 * side; ++x) {
+        const bool is_inside = x >= side && x < 2 * side && y >= side && y < 2 * side;
+        image.texel.push_back(is_inside ? texture.texel(0, x - side, y - side) : state.texture_border);
+      }
+    larger.textures = {make_texture("larger", image, TextureFormat::rgba8888, Mips::none)};
+    for (State& drawn : larger.states) drawn.texture_wrap = {TextureWrap::clamp, TextureWrap::clamp};
+    for (Vertex& vertex : larger.vertices) {
+      vertex.u = (vertex.u + 1) / 4;
+      vertex.v = (vertex.v + 1) / 4;
+    }
+    const Config config = with_colors(n % 2 == 0 ? "embedded" : "full");
+    EXPECT_EQ(render_scalar(scene, config, {}).frame.color, render_scalar(larger, config, {}).frame.color) << n;
+    for (State& drawn : scene.states) drawn.texture_wrap = {TextureWrap::clamp, TextureWrap::clamp};
+    seen += render_scalar(scene, config, {}).frame.color != render_scalar(larger, config, {}).frame.color ? 1 : 0;
+  }
+  EXPECT_GT(seen, 50);
 }
 
 // Clip space, a triangle from behind the eye: clipped pieces keep the texture.

@@ -10,7 +10,8 @@
 namespace halfplane {
 namespace {
 
-constexpr std::array kWraps{TextureWrap::repeat, TextureWrap::clamp, TextureWrap::mirror};
+constexpr std::array kWraps{TextureWrap::repeat, TextureWrap::clamp, TextureWrap::mirror, TextureWrap::border,
+                            TextureWrap::half_border};
 
 /// A texel that any two places and levels have in common only by chance.
 Texel noise(int level, int x, int y) {
@@ -43,7 +44,7 @@ TEST(TextureWrap, EveryTexelIsTheOneThatAWalkComesTo) {
   for (const TextureWrap wrap : kWraps)
     for (const int size : {1, 2, 3, 4, 5, 7, 8, 12, 16, 31, 64})
       for (int i = -3 * size - 2; i <= 3 * size + 2; ++i) {
-        if (wrap == TextureWrap::clamp) {
+        if (!has_period(wrap)) {
           EXPECT_EQ(wrapped_texel(i, {size, wrap}), std::clamp(i, 0, size - 1));
         } else {
           EXPECT_EQ(wrapped_texel(i, {size, wrap}), walked_texel(i, {size, wrap})) << size << " " << i;
@@ -59,7 +60,7 @@ TEST(TextureWrap, MaskAndModuloAreTheSameForEverySize) {
       for (const int i : {-8193, -size - 1, -size, -1, 0, 1, size - 1, size, 2 * size - 1, 2 * size, 8193}) {
         const int texel = wrapped_texel(i, axis);
         ASSERT_TRUE(texel >= 0 && texel < size) << size << " " << i;
-        if (wrap == TextureWrap::clamp) continue;
+        if (!has_period(wrap)) continue;
         ASSERT_EQ(texel, wrapped_texel(i + axis.period(), axis)) << size << " " << i;
       }
     }
@@ -72,13 +73,13 @@ TEST(TextureWrap, AReferenceAddedModuloThePeriodChangesNoTexel) {
   };
   for (int n = 0; n < 20000; ++n) {
     const TextureAxis axis{between(0, 1) == 0 ? 1 << between(0, 12) : between(1, 4096),
-                           kWraps[static_cast<std::size_t>(between(0, 2))]};
+                           kWraps[static_cast<std::size_t>(between(0, 4))]};
     const int reference = between(-100000, 100000), u = between(-(1 << 20), 1 << 20);
     const std::int64_t plain = u + reference * std::int64_t{256};
     const std::int64_t coordinate = texture_coordinate(u, wrapped_reference(reference, axis), 8, axis);
     EXPECT_EQ(wrapped_texel(coordinate >> 8, axis), wrapped_texel(plain >> 8, axis));
     EXPECT_EQ(coordinate & 255, plain & 255);
-    if (axis.wrap == TextureWrap::clamp) continue;
+    if (!has_period(axis.wrap)) continue;
     EXPECT_GE(coordinate, 0);
     EXPECT_LT(coordinate, axis.period() << 8);
   }
@@ -176,6 +177,39 @@ TEST(TextureFilter, NearestIsTheTexelThatHoldsThePlace) {
                 noise(1, walked_texel(u >> 7, {4, TextureWrap::repeat}),
                       walked_texel(static_cast<int>(std::floor(v / 64.0 * 2 / 5)), {2, TextureWrap::mirror})));
     }
+}
+
+// OpenGL 1.5, 3.8.7: CLAMP_TO_BORDER takes the border for every texel beyond the image; CLAMP holds the coordinate in
+// [0, 1], so that a linear filter at a side mixes half the border, and a nearest one sees none of it.
+TEST(TextureFilter, BeyondTheImageIsTheBorder) {
+  const Texel border{201, 17, 99, 54};
+  for (const int size : {1, 2, 5, 8})
+    for (int u = -5 * 256; u <= (size + 5) * 256; u += 3)
+      for (const TextureWrap wrap : {TextureWrap::border, TextureWrap::half_border}) {
+        const TextureAxes axes{TextureAxis{size, wrap}, TextureAxis{4, TextureWrap::clamp}};
+        const TexturePlace place{{u, 2 * 256 + 128}, 8};  // on the middle of a row
+        const bool is_held = wrap == TextureWrap::half_border;
+        const auto texel = [&](int x, bool shows_border) {
+          return shows_border && (x < 0 || x >= size) ? border : noise(0, std::clamp(x, 0, size - 1), 2);
+        };
+        EXPECT_EQ(filter_nearest(noise, axes, place, 0, border), texel(u >> 8, !is_held)) << size << ' ' << u;
+        const double at = (is_held ? std::clamp(u / 256.0, 0.0, double(size)) : u / 256.0) - 0.5, left = std::floor(at);
+        const Texel first = texel(static_cast<int>(left), true), second = texel(static_cast<int>(left) + 1, true),
+                    linear = filter_linear(noise, axes, place, 0, border);
+        for (std::size_t c = 0; c < 4; ++c)
+          EXPECT_EQ(linear[c], std::floor(first[c] + (at - left) * (second[c] - first[c]) + 0.5)) << size << ' ' << u;
+      }
+}
+
+TEST(TextureFilter, ABorderIsThatOfEachLevel) {
+  const Texel border{1, 2, 3, 4};
+  const TextureAxes axes{TextureAxis{16, TextureWrap::border}, TextureAxis{16, TextureWrap::border}};
+  for (int level = 0; level < 5; ++level) {
+    EXPECT_EQ(filter_nearest(noise, axes, {{16 * 256 - 1, 0}, 8}, level, border), noise(level, (16 >> level) - 1, 0));
+    EXPECT_EQ(filter_nearest(noise, axes, {{16 * 256, 0}, 8}, level, border), border);
+    EXPECT_EQ(filter_nearest(noise, axes, {{5, -1}, 8}, level, border), border);
+    EXPECT_EQ(filter_linear(noise, axes, {{-(128 << level), 5}, 8}, level, border), border);
+  }
 }
 
 TEST(TextureFilter, TheMiddleOfATexelIsThatTexelWhateverTheFilter) {

@@ -190,7 +190,7 @@ TEST(TexturedHardware, ASecondLevelThatAddsNothingIsNotAsked) {
   }
 }
 
-// One word of 47 bits, over the codes of a vertex and back from a fragment that setup and interpolation have made of it.
+// One word of 49 bits, over the codes of a vertex and back from a fragment that setup and interpolation have made of it.
 TEST(TexturedHardware, ATokenKeepsItsWordThroughThePlanes) {
   for (const Config& config : configurations()) {
     const Widths widths = derive_widths(config);
@@ -237,6 +237,74 @@ TEST(TexturedHardware, AConstantIsRefusedByNameWhereThereIsNone) {
   }
 }
 
+/// The room, its ground with a border.
+std::string bordered_room(const std::string& wrap, const std::string& border) {
+  std::string text = kRoom;
+  const std::string repeat = "state texture_wrap repeat mirror\n";
+  text.replace(text.find(repeat), repeat.size(),
+               "state texture_wrap " + wrap + "\nstate texture_border " + border + '\n');
+  return text;
+}
+
+// And the border is seen.
+TEST(TexturedHardware, HasABorderAsTheScalarEngine) {
+  for (Config config : configurations()) {
+    config.texture_borders = 1;
+    config.target_width = std::max(config.target_width, 64);
+    config.target_height = std::max(config.target_height, 64);
+    config.guard_band = std::max(config.guard_band, 128);
+    for (const char* wrap : {"border border", "half_border half_border", "clamp border", "half_border repeat"})
+      expect_equal(read_capture(bordered_room(wrap, "10 200 90 120"), wrap), config);
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) expect_equal(random_scene(config, seed, 25), config);
+    EXPECT_NE(render_hardware(read_capture(bordered_room("border border", "10 200 90 0"), "room"), config).frame.color,
+              render_hardware(read_capture(bordered_room("border border", "10 90 90 0"), "room"), config).frame.color);
+  }
+}
+
+TEST(TexturedHardware, ABorderIsRefusedByNameWhereThereIsNone) {
+  Config config = preset("embedded");
+  config.texture_unit = TextureUnitKind::trilinear;
+  for (const char* wrap : {"border clamp", "clamp half_border"}) try {
+      check_hardware_scene(read_capture(bordered_room(wrap, "1 2 3 4"), "room"), config);
+      FAIL() << "not refused";
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("texture.border=1"), std::string::npos) << error.what();
+    }
+}
+
+// The lines of half_border, and of border, are those of clamp.
+TEST(TexturedHardware, ABorderReadsNoMoreThanTheEdge) {
+  for (Config config : configurations()) {
+    config.texture_borders = 1;
+    config.target_width = std::max(config.target_width, 64);
+    config.target_height = std::max(config.target_height, 64);
+    config.guard_band = std::max(config.guard_band, 128);
+    const auto counters = [&config](const char* wrap) {
+      return render_hardware(read_capture(bordered_room(wrap, "1 2 3 4"), "room"), config).counters;
+    };
+    const CounterPacket clamped = counters("clamp clamp");
+    for (const char* wrap : {"border border", "half_border half_border"}) {
+      EXPECT_EQ(counters(wrap).texture_samples, clamped.texture_samples);
+      EXPECT_EQ(counters(wrap).texture_hits, clamped.texture_hits);
+      EXPECT_EQ(counters(wrap).texture_fills, clamped.texture_fills);
+    }
+  }
+}
+
+TEST(TexturedHardware, ATextureStateKeepsItsWrapsInTheWord) {
+  for (int u = 0; u < 5; ++u)
+    for (int v = 0; v < 5; ++v) {
+      TextureState state;
+      state.combine = TextureCombine::blend;
+      state.wrap = {static_cast<TextureWrap>(u), static_cast<TextureWrap>(v)};
+      EXPECT_EQ(TextureState::unpack(state.pack()), state);
+      EXPECT_EQ(state.pack() >> TextureState::kBits, 0U);
+    }
+  const Texel border{1, 2, 3, 255};
+  EXPECT_EQ(TextureBorder::unpack(TextureBorder{border}.pack()).color, border);
+  EXPECT_EQ(levels_word(TextureBorder{border}.pack()), LevelsWord::border);
+}
+
 // One token for each other constant; none for draws that have none.
 TEST(TexturedHardware, AConstantCostsATokenWhereItIsNeeded) {
   Config config = preset("embedded");
@@ -260,6 +328,10 @@ TEST(TexturedHardware, AConstantCostsATokenWhereItIsNeeded) {
   config.texture_constants = 1;
   EXPECT_EQ(tokens(kRoom), without);
   EXPECT_EQ(tokens(blended_room("1 2 3")), std::pair(without.first + 1, 1));
+  config.texture_borders = 1;
+  EXPECT_EQ(tokens(kRoom), without);
+  const auto clamped = tokens(bordered_room("clamp clamp", "1 2 3 4"));
+  EXPECT_EQ(tokens(bordered_room("border border", "1 2 3 4")).first, clamped.first + 1);
 }
 
 // The same of levels and lines, whose parts may come behind any others.

@@ -69,16 +69,16 @@ soak_cosim() {
   local corners=('embedded tile.size=16 stamp.size=4 cache.lines=4 context.slots=2 hiz.bits=6 depth.bits=24'
     'embedded tile.size=4 stamp.size=1 cache.lines=64 context.slots=8 hiz.bits=0'
     'small lines.unit=1 tile.size=16 context.slots=4 hiz.bits=5'
-    'embedded stamp.size=4 memory.port_bits=32 texture.unit=nearest texture.cache_kb=1 texture.queue=8 texture.constant=1'
+    'embedded stamp.size=4 memory.port_bits=32 texture.unit=nearest texture.cache_kb=1 texture.queue=8 texture.constant=1 texture.border=1'
     'full msaa.samples=2' 'full msaa.samples=4' 'full stamp.size=2 msaa.samples=8'
     'full msaa.samples=8 stamp.size=2 compress.unit=1 blend.lanes=1 memory.port_bits=512'
     'embedded stamp.size=1 msaa.samples=4 compress.unit=1 memory.port_bits=32'
     'embedded texture.unit=bilinear texture.lanes=4 alpha.unit=1 blend.lanes=4 dither.unit=1 fog.unit=1 shade.unit=1 stencil.bits=8 msaa.samples=4'
-    'embedded texture.unit=trilinear texture.constant=1 alpha.unit=1 blend.lanes=4 fog.unit=1 shade.unit=1'
+    'embedded texture.unit=trilinear texture.constant=1 texture.border=1 alpha.unit=1 blend.lanes=4 fog.unit=1 shade.unit=1'
     'embedded setup.plane_clocks=2' 'full setup.plane_clocks=2' 'tiny setup.plane_clocks=2'
     'embedded texture.unit=trilinear perspective.colors=1 setup.plane_clocks=2'
     'embedded texture.unit=trilinear texture.lanes=4 texture.ways=2 texture.cache_kb=1 memory.port_bits=32 perspective.colors=1 fog.unit=1 alpha.unit=1 blend.lanes=4 stencil.bits=8 msaa.samples=4'
-    'full texture.unit=trilinear texture.lanes=4 texture.cache_kb=1 memory.port_bits=128 perspective.colors=1 texture.constant=1'
+    'full texture.unit=trilinear texture.lanes=4 texture.cache_kb=1 memory.port_bits=128 perspective.colors=1 texture.constant=1 texture.border=1'
     'full texture.unit=trilinear' 'full texture.unit=nearest texture.lanes=4 texture.cache_kb=1 texture.ways=2 texture.queue=8')
   [[ $primitives =~ ^[1-9][0-9]*$ ]] || { say "./dev soak-cosim: N is a whole number, not '$primitives'"; exit 2; }
   ensure "${everyday[@]}"

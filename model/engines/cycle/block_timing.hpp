@@ -104,6 +104,7 @@ struct TextureWork {
   int divided = 0;                         ///< groups of samples whose colours lie over w
   int lit = 0;                             ///< lit samples
   bool sets_light = false;                 ///< a token for the light
+  bool sets_border = false;                ///< a token with the border's colour
 };
 
 /// A fragment after the depth test.
@@ -266,6 +267,7 @@ class BlockTiming {
     const Cycle x = light_ ? light_->take(tested_, work.lit, work.sets_light) : tested_;
     if (work.sets == StateRegister::texture_lines) return texture_->set_lines(x);
     if (work.sets) return texture_->set(x, work.invalidates);
+    if (work.sets_border) return texture_->set_border(x);
     if (work.lookups.empty()) return work.divided != 0 ? texture_->divide(x, work.divided) : texture_->pass(x);
     return texture_->take(x, work.lookups, [&ask](Cycle cycle, std::uint32_t address, int beats) {
       return ask.texture(cycle, address, beats);

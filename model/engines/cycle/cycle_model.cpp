@@ -427,6 +427,7 @@ class CycleModelOf final : public CycleModel {
     if (!is_of_texture(which)) return set_tags();
     const LevelsWord beside = word_beside_texture(which, codes, widths_);
     texture.sets_light = beside == LevelsWord::light;
+    texture.sets_border = beside == LevelsWord::border;
     if (beside != LevelsWord::levels) return;
     texture.sets = which;
     texture.invalidates = which == StateRegister::texture && path_.texture()->state().invalidates;

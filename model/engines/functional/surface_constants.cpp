@@ -92,11 +92,16 @@ LaneTexture texture_lanes(const Sampler& sampler, const TexelBlocks& texels, Tex
   for (std::size_t axis = 0; axis < 2; ++axis) {
     lanes.bits[axis] = floor_log2(static_cast<unsigned>(sampler.axes[axis].size));
     lanes.last[axis] = sampler.axes[axis].size - 1;
-    lanes.wrap[axis] = sampler.axes[axis].wrap;
+    lanes.beyond[axis] = sampler.axes[axis].wrap;
+    lanes.wrap[axis] = has_border(lanes.beyond[axis]) ? TextureWrap::clamp : lanes.beyond[axis];
+    lanes.has_border |= has_border(lanes.beyond[axis]);
   }
+  for (std::size_t c = 0; c < 4; ++c)
+    lanes.border =
+        static_cast<std::int32_t>(static_cast<std::uint32_t>(lanes.border) | std::uint32_t{sampler.border[c]} << 8 * c);
   lanes.texels = texels.blocks.data();
   lanes.quads = texels.quads(lanes.wrap);
-  lanes.alpha_quads = texels.alpha_quads(lanes.wrap);
+  lanes.alpha_quads = lanes.has_border ? nullptr : texels.alpha_quads(lanes.wrap);
   lanes.pitch = std::max(lanes.bits[0], TexelBlocks::kShift);
   lanes.first = texels.first;
   lanes.up = kTexelFraction - fraction_bits;
@@ -212,7 +217,7 @@ void SurfaceConstants::set_texture(const StageSurface& from, const Widths& width
   const Sampler& sampler = surface.sampler();
   coordinate.q = lanes_of(divisor.plane, from.setup, format.guard_bits, division.up, widths);
   texture = texture_lanes(sampler, texels, surface.combine(), surface.constant(), format.coordinate.fraction_bits);
-  texture.alpha_ranges = texels.alpha_ranges();
+  texture.alpha_ranges = texture.has_border ? nullptr : texels.alpha_ranges();
   for (std::size_t axis = 0; axis < 2; ++axis) {
     texture.margin[axis] = coordinates_margin(surface.coordinate(axis).over_w.reach, format);
     coordinate.attribute[axis] =

@@ -92,7 +92,7 @@ struct LaneTexture {
   std::array<int, 2> bits{};                ///< log2 of its sides
   std::array<std::int32_t, 2> last{};       ///< last texel along them
   int pitch = 0;                            ///< from a row's number, without the two lowest bits, to its place
-  std::array<TextureWrap, 2> wrap{};        ///
+  std::array<TextureWrap, 2> wrap{};        ///< clamp where there is a border
   std::array<std::int32_t, 2> reference{};  ///< u_ref, 2^-8 texels
   int up = 0;                               ///< from a coordinate to 2^-8 texels
   TextureMin min = TextureMin::nearest;
@@ -104,15 +104,19 @@ struct LaneTexture {
   TextureCombine combine = TextureCombine::modulate;
   bool has_alpha = false;
   std::array<std::int32_t, 2> constant{};                  ///< of blend: red and blue, green, in the halves of a lane
-  const std::uint32_t* alpha_quads = nullptr;              ///< alphas of TexelBlocks, if present
-  const TexelBlocks::AlphaRanges* alpha_ranges = nullptr;  ///< of level 0, if present
+  const std::uint32_t* alpha_quads = nullptr;              ///< alphas of TexelBlocks, if present and without a border
+  const TexelBlocks::AlphaRanges* alpha_ranges = nullptr;  ///< of level 0, likewise
+  std::array<TextureWrap, 2> beyond{};                     ///< as given
+  bool has_border = false;                                 ///< along u or v
+  std::int32_t border = 0;                                 ///< R lowest
   std::array<std::int32_t, 2> margin{};                    ///< coordinates_margin(), 2^-8 texels
 };
 
 /// How much of sample() is needed.
 enum class Sampling { none, nearest, linear, any };
 [[nodiscard]] inline Sampling sampling_of(const LaneTexture& texture) {
-  if (texture.min == TextureMin::nearest && texture.mag == TextureMag::nearest) return Sampling::nearest;
+  const bool is_nearest = texture.min == TextureMin::nearest && texture.mag == TextureMag::nearest;
+  if (is_nearest) return texture.has_border ? Sampling::any : Sampling::nearest;
   if (texture.min == TextureMin::linear && texture.mag == TextureMag::linear) return Sampling::linear;
   return Sampling::any;
 }

@@ -172,6 +172,8 @@ void MesaFrame::check_draw_state(const State& state, Topology topology) const {
   const bool is_triangle = primitive_type(topology) == PrimitiveType::triangle;
   if (state.shade == Shade::phong && drawn_as(state, topology) == PrimitiveType::triangle) refuse("shade phong");
   if (state.fog && drawn_as(state, topology) == PrimitiveType::line) refuse("fog at the ends of lines");
+  if (state.texture && (has_border(state.texture_wrap[0]) || has_border(state.texture_wrap[1])))
+    refuse("texture_wrap border or half_border");
   const bool is_line = is_triangle ? state.polygon_mode == PolygonMode::line : topology != Topology::points;
   if (drawn_as(state, topology) == PrimitiveType::point && state.point_shape == PointShape::round)
     refuse("point_shape round");

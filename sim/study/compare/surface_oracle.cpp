@@ -32,8 +32,8 @@ std::array<double, 4> weighted_texel(const Sampler& s, const SurfaceSample& samp
   const auto [is_linear, is_between, levels] = filter_of(s, sample.lod);
   const auto on_level = [&, linear = is_linear](int level) {
     std::array<double, 4> color{};
-    const Texel nearest = filter_nearest(fetch, s.axes, sample.place, level);
-    const auto sums = linear_sums(fetch, s.axes, sample.place, level);
+    const Texel nearest = filter_nearest(fetch, s.axes, sample.place, level, s.border);
+    const auto sums = linear_sums(fetch, s.axes, sample.place, level, s.border);
     for (std::size_t c = 0; c < 4; ++c) color[c] = linear ? std::ldexp(sums[c], -16) : nearest[c];
     return color;
   };

@@ -49,24 +49,22 @@ int weight_bits(const StudyRules& rules) { return rules.weights == Weights::four
 /// Four texels of a linear filter, or one texel of a nearest filter, on one level.
 void add_texels(const Sampler& sampler, const SurfaceSample& sample, bool is_linear, int level, std::uint32_t part,
                 std::vector<TexelFigure>& texels) {
-  const auto add = [&](int x, int y, std::uint32_t weight) {
-    texels.push_back({level, x, y, weight, {}, sampler.texture->texel(level, x, y)});
+  const auto add = [&](int x, int y, std::uint32_t weight, bool is_border) {
+    texels.push_back(
+        {level, x, y, weight, {}, is_border ? sampler.border : sampler.texture->texel(level, x, y), is_border});
   };
   const auto& axes = sampler.axes;
   const TexturePlace& place = sample.place;
   if (!is_linear) {
-    const auto texel = [&](std::size_t axis) {
-      const std::int64_t at = at_level(place.coordinate[axis], place.fraction_bits, axes[axis], level);
-      return wrapped_texel(at >> kTexelFraction, axes[axis].at_level(level));
-    };
-    add(texel(0), texel(1), (kWhole >> 8) * part);
+    const TexelPair x = nearest_texel(place, axes, 0, level), y = nearest_texel(place, axes, 1, level);
+    add(x.first, y.first, (kWhole >> 8) * part, x.is_first_border || y.is_first_border);
     return;
   }
   const TexelPair x = texels_around(place, axes, 0, level), y = texels_around(place, axes, 1, level);
-  add(x.first, y.first, (256 - x.part) * (256 - y.part) * part);
-  add(x.second, y.first, x.part * (256 - y.part) * part);
-  add(x.first, y.second, (256 - x.part) * y.part * part);
-  add(x.second, y.second, x.part * y.part * part);
+  add(x.first, y.first, (256 - x.part) * (256 - y.part) * part, x.is_first_border || y.is_first_border);
+  add(x.second, y.first, x.part * (256 - y.part) * part, x.is_second_border || y.is_first_border);
+  add(x.first, y.second, (256 - x.part) * y.part * part, x.is_first_border || y.is_second_border);
+  add(x.second, y.second, x.part * y.part * part, x.is_second_border || y.is_second_border);
 }
 
 SurfaceFigure surface_figure(const DrawContext& context, const Surface& surface, const SurfaceOracle& oracle,
@@ -83,7 +81,9 @@ SurfaceFigure surface_figure(const DrawContext& context, const Surface& surface,
   add_texels(sampler, figure.sample, is_linear, levels.lower, is_between ? 256 - levels.part : 256, figure.texels);
   if (is_between) add_texels(sampler, figure.sample, is_linear, levels.upper, levels.part, figure.texels);
   for (TexelFigure& texel : figure.texels)
-    texel.address = texel_address(context.scene, context.config, *context.state.texture, texel.level, texel.x, texel.y);
+    if (!texel.is_border)
+      texel.address =
+          texel_address(context.scene, context.config, *context.state.texture, texel.level, texel.x, texel.y);
   return figure;
 }
 

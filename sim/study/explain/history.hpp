@@ -129,6 +129,7 @@ struct TexelFigure {
   std::uint32_t weight = 0;              ///< 2^-24
   std::optional<std::uint32_t> address;  ///< byte address in the texture unit's memory, if there is one
   Texel color{};
+  bool is_border = false;  ///< the colour is the border's, beyond this texel
 };
 
 /// A colour over w, its light or a texture at the pixel.

@@ -12,6 +12,7 @@ SpaceJson number_or_null(const std::optional<double>& value) { return value ? Sp
 SpaceJson abilities(const Config& config) {
   return {{"texture", static_cast<int>(config.texture_unit)},
           {"texture_constant", config.texture_constants},
+          {"texture_border", config.texture_borders},
           {"colors_over_w", config.perspective_colors},
           {"alpha", config.alpha_units},
           {"blending", config.blend_lanes > 0 ? 1 : 0},

@@ -40,10 +40,11 @@ State random_sampler(Unit& unit) {
   state.texture = 0;
   state.texture_min = static_cast<TextureMin>(random.index(6));
   state.texture_mag = static_cast<TextureMag>(random.index(2));
-  const auto wrap = [&] { return static_cast<TextureWrap>(random.index(3)); };
+  const auto wrap = [&] { return static_cast<TextureWrap>(random.index(5)); };
   state.texture_wrap = {wrap(), wrap()};
   state.texture_combine = static_cast<TextureCombine>(random.index(5));
   for (std::uint8_t& channel : state.texture_constant) channel = static_cast<std::uint8_t>(random.index(256));
+  for (std::uint8_t& channel : state.texture_border) channel = static_cast<std::uint8_t>(random.index(256));
   return state;
 }
 
@@ -113,7 +114,7 @@ void check_periods(Unit& unit, const Scene& scene) {
   Scene moved = scene;
   const auto& wrap = scene.states.back().texture_wrap;
   const auto periods = [&](std::size_t axis) {
-    return wrap[axis] == TextureWrap::clamp ? 0 : 2.0 * static_cast<double>(unit.random.integer(-500, 500));
+    return !has_period(wrap[axis]) ? 0 : 2.0 * static_cast<double>(unit.random.integer(-500, 500));
   };
   const double u = periods(0), v = periods(1);
   for (Vertex& vertex : moved.vertices) {
@@ -217,8 +218,9 @@ void texture_mirrors(Unit& unit) {
 
 void texture_of_one_texel(Unit& unit) {
   State state = random_sampler(unit);
-  const Scene scene = random_scene(unit, state, random_texture(unit, 1, 1), 20, 100);
+  Scene scene = random_scene(unit, state, random_texture(unit, 1, 1), 20, 100);
   const Texel only = scene.textures[0].texel(0, 0, 0);
+  for (State& drawn : scene.states) drawn.texture_border = only;
   std::uint64_t wrong = 0;
   (void)check_surfaces(unit, scene, [&](const TappedFragment&, const SurfaceSample& s) { wrong += s.texel != only; });
   unit.measure("texel", "samples", static_cast<double>(wrong), 0, scene);

@@ -107,10 +107,20 @@ HALFPLANE_INLINE I16 nearest_places(const LaneTexture& texture, const Coordinate
   return level.first() + column_place(x) + row_place(y, level.pitch());
 }
 
+/// is_on_border() of texels along one axis.
+HALFPLANE_INLINE I16 is_on_border(const I16& texel, const I16& last) { return (texel < I16(0)) | (texel > last); }
+
 /// R lowest.
 template <class Level>
 HALFPLANE_INLINE I16 filter_nearest(const LaneTexture& texture, const CoordinateLanes& at, const Level& level) {
-  return gather(texture.texels, nearest_places(texture, at, level));
+  I16 texel = gather(texture.texels, nearest_places(texture, at, level));
+  if (texture.beyond[0] == TextureWrap::border)
+    texel = select(is_on_border(level.template cut<0>(at.u) >> kTexelFraction, level.template last<0>()),
+                   I16(texture.border), texel);
+  if (texture.beyond[1] == TextureWrap::border)
+    texel = select(is_on_border(level.template cut<1>(at.v) >> kTexelFraction, level.template last<1>()),
+                   I16(texture.border), texel);
+  return texel;
 }
 
 /// Numbers stored by lanes, to be used as addresses. They are read from memory: GCC would extract them from the lanes
@@ -185,6 +195,47 @@ HALFPLANE_INLINE Footprints footprints_of_quads(const LaneTexture& texture, cons
           part_of(from_middle.v, texture.wrap[1])};
 }
 
+/// The coordinate of half_border, from the middle of a texel.
+HALFPLANE_INLINE I16 held_in_image(const I16& from_middle, TextureWrap beyond, const I16& last) {
+  constexpr std::int32_t kHalf = 1 << (kTexelFraction - 1);
+  if (beyond != TextureWrap::half_border) return from_middle;
+  return min(max(from_middle, I16(-kHalf)), (last << kTexelFraction) + kHalf);
+}
+
+/// Footprints of a texture with a border along u, v or both.
+template <class Level>
+HALFPLANE_NOINLINE Footprints bordered_footprints(const LaneTexture& texture, const CoordinateLanes& from_middle,
+                                                  const Level& level) {
+  const CoordinateLanes at{held_in_image(from_middle.u, texture.beyond[0], level.template last<0>()),
+                           held_in_image(from_middle.v, texture.beyond[1], level.template last<1>())};
+  Footprints texels =
+      texture.quads != nullptr ? footprints_of_quads(texture, at, level) : gathered_footprints(texture, at, level);
+  // Before the first texel a quad begins with that one; so the texel to the right of -1 is its left one.
+  I16 is_left_border(0), is_right_border(0), is_upper_border(0), is_lower_border(0);
+  if (has_border(texture.beyond[0])) {
+    const I16 x = at.u >> kTexelFraction, last = level.template last<0>(), is_before = x < I16(0);
+    texels.upper_right = select(is_before, texels.upper_left, texels.upper_right);
+    texels.lower_right = select(is_before, texels.lower_left, texels.lower_right);
+    texels.across = at.u & 255;
+    is_left_border = is_on_border(x, last);
+    is_right_border = is_on_border(x + 1, last);
+  }
+  if (has_border(texture.beyond[1])) {
+    const I16 y = at.v >> kTexelFraction, last = level.template last<1>(), is_before = y < I16(0);
+    texels.lower_left = select(is_before, texels.upper_left, texels.lower_left);
+    texels.lower_right = select(is_before, texels.upper_right, texels.lower_right);
+    texels.down = at.v & 255;
+    is_upper_border = is_on_border(y, last);
+    is_lower_border = is_on_border(y + 1, last);
+  }
+  const I16 border(texture.border);
+  texels.upper_left = select(is_left_border | is_upper_border, border, texels.upper_left);
+  texels.upper_right = select(is_right_border | is_upper_border, border, texels.upper_right);
+  texels.lower_left = select(is_left_border | is_lower_border, border, texels.lower_left);
+  texels.lower_right = select(is_right_border | is_lower_border, border, texels.lower_right);
+  return texels;
+}
+
 /// Sums of R, G, B and A.
 struct ChannelSums {
   I16 of[4];
@@ -203,8 +254,9 @@ template <class Level>
 HALFPLANE_INLINE ChannelSums linear_sums(const LaneTexture& texture, const CoordinateLanes& at, const Level& level,
                                          int drop) {
   const CoordinateLanes from_middle{level.template rounded<0>(at.u) - 128, level.template rounded<1>(at.v) - 128};
-  const Footprints texels = texture.quads != nullptr ? footprints_of_quads(texture, from_middle, level)
-                                                     : gathered_footprints(texture, from_middle, level);
+  const Footprints texels = texture.has_border         ? bordered_footprints(texture, from_middle, level)
+                            : texture.quads != nullptr ? footprints_of_quads(texture, from_middle, level)
+                                                       : gathered_footprints(texture, from_middle, level);
   const auto across = as<S32>(doubled(texels.across));
   // Two channels of a row: at most 255 * 256.
   const auto mixed = [&across](const S32& left, const S32& right)
