@@ -156,6 +156,57 @@ TEST_F(GlTexture, EnvironmentsAreThoseOfTheTable) {
   EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
 }
 
+/// GL_CLAMP and GL_CLAMP_TO_BORDER at and beyond a side: exact without a texture unit and with texture.border, else the edge.
+TEST(GlTextureBorder, IsTheHardwaresWhereItHasATextureUnit) {
+  const std::vector<std::array<float, 4>> white(4, {1, 1, 1, 1});
+  // Red of one colour everywhere: that of texture coordinate s, with a white texture and a border of red 0.2.
+  const auto red = [&](const char* settings, GLenum wrap, GLenum filter, GLenum base, double s) {
+    Options options;
+    options.config = labelled(settings);
+    options.on_missing = OnMissing::host;
+    Drawable drawable(options, 8, 8);
+    Context context;
+    context.drawable = context.read_drawable = &drawable;
+    context.state.viewport.width = context.state.viewport.height = 8;
+    enable(context, GL_TEXTURE_2D, true);
+    const auto parameter = [&](GLenum pname, double value) {
+      tex_parameter(context, GL_TEXTURE_2D, pname, {{value}, true, false});
+    };
+    parameter(GL_TEXTURE_MIN_FILTER, filter);
+    parameter(GL_TEXTURE_MAG_FILTER, filter);
+    parameter(GL_TEXTURE_WRAP_S, wrap);
+    parameter(GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    tex_parameter(context, GL_TEXTURE_2D, GL_TEXTURE_BORDER_COLOR, {{0.2, 0.4, 0.6, 0.8}, false, true});
+    const auto texels = std::make_shared<Image>(Image{2, 2, 1, GL_RGBA, white});
+    tex_image(context, 2, GL_TEXTURE_2D, 0, static_cast<GLint>(base), 2, 2, 1, 0, texels);
+    tex_env(context, GL_TEXTURE_ENV, GL_TEXTURE_ENV_MODE, {{GL_REPLACE}, true, false});
+    ++context.revision;
+    begin(context, GL_QUADS);
+    for (const auto& [x, y] : {std::array{-1, -1}, std::array{1, -1}, std::array{1, 1}, std::array{-1, 1}}) {
+      tex_coord(context, GL_TEXTURE0, s, 0.5, 0, 1);
+      vertex(context, x, y, 0, 1);
+    }
+    gl::end(context);
+    Bytes read{};
+    read_pixels(context, 4, 4, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, read.data());
+    return read[0] / 255.0;
+  };
+  constexpr double kNear = 1.5 / 255;
+  for (const char* settings : {"full", "full texture.unit=trilinear texture.border=1"}) {
+    EXPECT_NEAR(red(settings, GL_CLAMP, GL_LINEAR, GL_RGBA, -3), 0.6, kNear);
+    EXPECT_NEAR(red(settings, GL_CLAMP, GL_LINEAR, GL_LUMINANCE, 9), 0.6, kNear);
+    EXPECT_NEAR(red(settings, GL_CLAMP, GL_LINEAR, GL_RGB, 0.125), 0.8, kNear);
+    EXPECT_NEAR(red(settings, GL_CLAMP, GL_NEAREST, GL_RGBA, -3), 1, kNear);
+    EXPECT_NEAR(red(settings, GL_CLAMP_TO_BORDER, GL_LINEAR, GL_RGBA, -3), 0.2, kNear);
+    EXPECT_NEAR(red(settings, GL_CLAMP_TO_BORDER, GL_LINEAR, GL_RGBA, 1), 0.6, kNear);
+    EXPECT_NEAR(red(settings, GL_CLAMP_TO_BORDER, GL_NEAREST, GL_RGBA, 1.01), 0.2, kNear);
+    EXPECT_NEAR(red(settings, GL_CLAMP_TO_BORDER, GL_NEAREST, GL_ALPHA, 1.01), 1, kNear);
+    EXPECT_NEAR(red(settings, GL_CLAMP_TO_EDGE, GL_LINEAR, GL_RGBA, -3), 1, kNear);
+  }
+  for (const GLenum wrap : {GL_CLAMP, GL_CLAMP_TO_BORDER})
+    EXPECT_NEAR(red("full texture.unit=trilinear", wrap, GL_LINEAR, GL_RGBA, -3), 1, kNear);
+}
+
 /// A texture unit without a constant takes the nearest mode, one with it is exact, folded environments included.
 TEST(GlTextureConstant, IsTheHardwaresWhereItHasATextureUnit) {
   const auto texels = std::make_shared<Image>(Image{1, 1, 1, GL_RGBA, {{0.25F, 0.5F, 0.75F, 1.0F}}});
