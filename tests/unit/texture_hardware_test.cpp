@@ -282,11 +282,11 @@ TEST(TexturedHardware, ABorderReadsNoMoreThanTheEdge) {
     const auto counters = [&config](const char* wrap) {
       return render_hardware(read_capture(bordered_room(wrap, "1 2 3 4"), "room"), config).counters;
     };
-    const CounterPacket clamped = counters("clamp clamp");
+    const auto clamped = counters("clamp clamp").texture;
     for (const char* wrap : {"border border", "half_border half_border"}) {
-      EXPECT_EQ(counters(wrap).texture_samples, clamped.texture_samples);
-      EXPECT_EQ(counters(wrap).texture_hits, clamped.texture_hits);
-      EXPECT_EQ(counters(wrap).texture_fills, clamped.texture_fills);
+      EXPECT_EQ(counters(wrap).texture.samples, clamped.samples);
+      EXPECT_EQ(counters(wrap).texture.hits, clamped.hits);
+      EXPECT_EQ(counters(wrap).texture.fills, clamped.fills);
     }
   }
 }
