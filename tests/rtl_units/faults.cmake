@@ -187,7 +187,7 @@ texture_fault(texture_border 106 [=[(next_is_below || !part_i[7])]=] [=[next_is_
 texture_fault(texture_border 107 [=[(first_is_above || part_i[7])]=] [=[first_is_above]=])
 texture_fault(texture_border 108 [=[wrap_i[1:0] == 2'd3]=] [=[1'b0]=])
 texture_fault(texture_border 109 [=[(holds && next_is_above)]=] [=[1'b0]=])
-texture_fault(texture_border 110 [=[number[NUMBER_BITS-2:SIDE_BITS] != '0]=] [=[1'b0]=])
+texture_fault(texture_border 110 [=[texel[NUMBER_BITS-2:SIDE_BITS] != '0]=] [=[1'b0]=])
 texture_fault(texture_filter 111 [=[part_i[18+n/2]]=] [=[1'b0]=])
 texture_fault(texture_unit 112 [=[inside_q == '0]=] [=[1'b1]=])
 texture_fault(texture_unit 113 [=[texel_valid && texel_ready && texel_ends]=] [=[texel_valid && texel_ready]=])
