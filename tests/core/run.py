@@ -14,6 +14,7 @@ A bench is a file tests/core/test_X.py with cocotb tests and, as a literal, BENC
 usage: run.py list                                        name, tier, has faults: a line a bench and configuration
        run.py test NAME FOLDER PROGRAM [--faults] [--tests REGEX] [--waves]
 FOLDER is the build's (build/ci), PROGRAM the halfplane program. HALFPLANE_SEED: the random seed, 1 if not set.
+A fault that makes its test endless costs little where the run without one was before: four times its length is the limit.
 The status is 0 when everything passed (with --faults: when each fault was caught), 1 when not.
 """
 
@@ -22,6 +23,9 @@ import ast
 import fcntl
 import os
 import pathlib
+import re
+import resource
+import shutil
 import subprocess
 import sys
 import xml.etree.ElementTree
@@ -90,7 +94,7 @@ def build(name, bench, config, folder, waves):
         libraries = cocotb_tools.config.libs_dir
         command = [
             home / "bin/verilator", "--cc", "--exe", "--vpi", "--assert", "--timing", "-Wno-lint", "-Wno-style", "--prefix", "Vtop",
-            "--Mdir", make, "--top-module", top, "-o", top, "--timescale", "1ns/1ps", "-CFLAGS", "-O1",
+            "--Mdir", make, "--top-module", top, "-o", top, "--timescale", "1ns/1ps",
             "-LDFLAGS", f"-Wl,-rpath,{libraries} -L{libraries} -lcocotbvpi_verilator",
             *(["--trace"] if waves else []), *(["--public-flat-rw"] if bench.get("internals") else []),
             *([f"-I{faulty}"] if faulty else []), *(f"-I{ROOT / f}" for f in FOLDERS), *parameters, *defines, make / "public.vlt",
@@ -99,10 +103,29 @@ def build(name, bench, config, folder, waves):
         ]
         environment = os.environ | {"VERILATOR_ROOT": str(home)}
         run([str(word) for word in command], make / "verilator.log", environment)
-        cache = ["OBJCACHE=ccache"] if subprocess.run(["which", "ccache"], capture_output=True).returncode == 0 else []
-        jobs = f"-j{os.cpu_count()}"
-        run(["make", jobs, "-C", str(make), "-f", "Vtop.mk", f"VM_TRACE={int(waves)}", "CFG_CXXFLAGS_PCH_I=-include", *cache], make / "make.log", environment)
+        compile_in(make, home, folder / "core", waves, environment)
     return make
+
+
+def compile_in(make, home, shared, waves, environment):
+    """What runs every clock at -O1. Verilator's own library is compiled once for all benches, in `shared`: most of a small one."""
+    cache = ["OBJCACHE=ccache"] if shutil.which("ccache") else []
+    command = ["make", f"-j{os.cpu_count()}", "-C", str(make), "-f", "Vtop.mk", f"VM_TRACE={int(waves)}", "CFG_CXXFLAGS_PCH_I=-include",
+               "OPT_FAST=-O1", "OPT_SLOW=-O0", "OPT_GLOBAL=-O1", *cache]
+    settings = re.findall(r"^VM_(?:TIMING|COVERAGE|TRACE\w*) = .*", (make / "Vtop_classes.mk").read_text(), re.MULTILINE)
+    library = shared / f"library_{hash_of([str(home), str((home / 'include/verilated.cpp').stat().st_mtime_ns), *settings])}"
+    library.mkdir(exist_ok=True)
+    objects = [f"verilated{part}.o" for part in ("", "_vpi", "_dpi", "_threads")]
+    with open(library / "lock", "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not all((library / name).exists() for name in objects):
+            run([*command, *objects], make / "library.log", environment)
+            for name in objects:
+                shutil.copy2(make / name, library / name)
+    for name in objects:
+        if not (make / name).exists():
+            shutil.copy2(library / name, make / name)
+    run(command, make / "make.log", environment)
 
 
 def hash_of(words):
@@ -127,8 +150,20 @@ def run(command, log, environment):
         sys.exit(f"{command[0]} failed with status {status}: {log}")
 
 
-def simulate(make, file, bench, config, arguments, folder, fault, tests):
-    """Runs the tests of `file`; returns the names of those that passed and of those that failed."""
+def cases(results):
+    """The tests that a simulation ran."""
+    found = xml.etree.ElementTree.parse(results).getroot().iter("testcase") if results.exists() else []
+    return [case for case in found if case.find("skipped") is None]
+
+
+def longest(results, tests):
+    """ns that a simulation with a fault may take: four times what the tests take without it; 0 when that is not known."""
+    lengths = [case.find("properties/property[@name='sim_time_duration']") for case in cases(results) if re.search(tests, case.get("name"))]
+    return 4 * int(sum(float(length.get("value")) for length in lengths))
+
+
+def simulate(make, file, bench, config, arguments, folder, fault, tests, limit=0):
+    """Runs the tests of `file`; returns the names of those that passed and of those that failed. `limit`: ns, 0 if there is none."""
     from cocotb_tools.runner import get_runner
 
     folder.mkdir(parents=True, exist_ok=True)
@@ -141,25 +176,32 @@ def simulate(make, file, bench, config, arguments, folder, fault, tests):
         "HALFPLANE_PROGRAM": str(arguments.program.resolve()),
         "HALFPLANE_PACKAGES": str(arguments.folder.resolve() / "rtl_ref/packages"),
         "HALFPLANE_LIBRARY": str(arguments.folder.resolve() / "capi/libhalfplane_c.so"),
+        "HALFPLANE_LIMIT": str(limit),
     }
     sys.path[:0] = [path for path in (str(HERE), str(ROOT / "examples/python")) if path not in sys.path]
     runner = get_runner("verilator")
     runner.waves = False
     try:
-        runner.test(test_module=file.stem, hdl_toplevel=bench["top"], hdl_toplevel_lang="verilog", build_dir=make, test_dir=folder,
+        runner.test(test_module=[*(["limit"] if limit else []), file.stem], hdl_toplevel=bench["top"], hdl_toplevel_lang="verilog", build_dir=make, test_dir=folder,
                     results_xml=str(results), log_file=folder / "simulation.log", plusargs=[f"+fault={fault}"], seed=SEED,
                     test_args=["--trace"] if arguments.waves else [], test_filter=tests or None, extra_env=environment)
     except (SystemExit, subprocess.CalledProcessError, RuntimeError):
         pass  # the simulation ended otherwise than by its tests: what they left is judged
     passed, failed = [], []
-    if results.exists():
-        for case in xml.etree.ElementTree.parse(results).getroot().iter("testcase"):
-            bad = case.find("failure") is not None or case.find("error") is not None
-            if case.find("skipped") is None:
-                (failed if bad else passed).append(case.get("name"))
-    elif "Assertion failed" in (folder / "simulation.log").read_text():
+    for case in cases(results):
+        bad = case.find("failure") is not None or case.find("error") is not None
+        (failed if bad else passed).append(case.get("name"))
+    log = (folder / "simulation.log").read_text()
+    if not results.exists() and "Assertion failed" in log:
         failed.append("an assertion")  # which ends the simulation at once
+    if not results.exists() and "no end after" in log:
+        failed.append(f"its length: {tests or 'the tests'} had not ended after {limit} ns, four times what they take without the fault")
     return passed, failed
+
+
+def seconds():
+    """Of processor, of the simulations that have ended."""
+    return sum(resource.getrusage(resource.RUSAGE_CHILDREN)[:2])
 
 
 def main():
@@ -185,10 +227,12 @@ def main():
     if arguments.faults:
         escaped = 0
         for number, (source, old, _, *tests) in enumerate(bench["faults"], 1):
-            passed, failed = simulate(make, file, bench, config, arguments, work.with_name(f"{work.name}_faults"), number, *tests or [""])
-            caught = bool(failed)
-            escaped += not caught
-            print(f"fault {number} in {source}, '{old}': {'caught by ' + failed[0] if caught else f'NOT caught by {len(passed)} tests'}")
+            before = seconds()
+            limit = longest(work / "results.xml", *tests or [""])
+            passed, failed = simulate(make, file, bench, config, arguments, work.with_name(f"{work.name}_faults"), number, *tests or [""], limit)
+            escaped += not failed
+            print(f"fault {number} in {source}, '{old}': {f'caught by {failed[0]}' if failed else f'NOT caught by {len(passed)} tests'}, "
+                  f"{seconds() - before:.1f} s of processor", flush=True)
         return 1 if escaped else 0
     passed, failed = simulate(make, file, bench, config, arguments, work, 0, arguments.tests)
     if failed or not passed:
