@@ -12,7 +12,7 @@ if [ "${4:-}" = bug ]; then set -- -DEDGE_UNIT_BUG; else set --; fi
 mkdir -p "$folder"
 "$halfplane" config --config tiny --set depth.bits=$depth_bits --sv >"$folder/raster_pkg.sv"
 "$halfplane" config --config tiny --dpi >"$folder/halfplane_dpi.sv"
-verilator --binary --timing -Wno-fatal -Wno-WIDTH -Wno-UNUSED --top-module testbench_dpi "$@" --Mdir "$folder/obj" \
+verilator --binary --timing -Wno-fatal -Wno-WIDTH -Wno-UNUSED -MAKEFLAGS "OPT_FAST=-O0 OPT_GLOBAL=-O0" --top-module testbench_dpi "$@" --Mdir "$folder/obj" \
   "$folder/raster_pkg.sv" "$folder/halfplane_dpi.sv" "$here/edge_unit.sv" "$here/testbench_dpi.sv" \
   -LDFLAGS "$library -Wl,-rpath,$(dirname "$library")" -o testbench_dpi >"$folder/verilator.log" 2>&1 ||
   { cat "$folder/verilator.log" >&2; exit 3; }

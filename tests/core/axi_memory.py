@@ -47,9 +47,16 @@ class Memory:
         self.aw, self.w, self.written = deque(), deque(), deque()  # addresses; whole bursts of data; bursts owed B
         self.burst, self.reads = [], deque()                       # data of the burst under way; reads owed R
         self.give_b = self.give_r = None
+        self.driven = {}  # the last value of each
         for name in ("awready", "wready", "arready", "bvalid", "rvalid"):
-            self.s[name].value = 0
+            self.put(name, False)
         self.taking = dict(aw=False, w=False, ar=False)
+
+    def put(self, name, value):
+        """Drives a flag; most clocks change none, and a write costs more than all else here."""
+        if self.driven.get(name) is not value:
+            self.driven[name] = value
+            self.s[name].value = value
 
     def due(self):
         return self.cycle + self.random.randint(*self.behaviour.latency)
@@ -119,7 +126,7 @@ class Memory:
         s, b, r = self.s, self.behaviour, self.random.random
         for name in ("aw", "w", "ar"):
             self.taking[name] = b.ready >= 1 or r() < b.ready
-            s[name + "ready"].value = self.taking[name]
+            self.put(name + "ready", self.taking[name])
         # Writes reach memory in order: a lazy one holds back those after it.
         for write in self.written:
             if write["lazy"] and not write["stored"]:
@@ -130,7 +137,7 @@ class Memory:
             self.give_b = self.written.popleft()
             self.store(self.give_b)
             s["bresp"].value = 2 + (self.cycle & 1) if self.give_b["error"] else 0
-        s["bvalid"].value = self.give_b is not None
+        self.put("bvalid", self.give_b is not None)
         if self.give_r is None and self.reads and self.reads[0]["due"] <= self.cycle and b.answers and (
                 b.valid >= 1 or r() < b.valid):
             self.give_r = read = self.reads[0]
@@ -139,7 +146,7 @@ class Memory:
             s["rdata"].value = self.random.getrandbits(8 * self.beat) if read["error"] else read["data"][i]
             s["rresp"].value = 2 + (self.cycle & 1) if read["error"] else 0
             s["rlast"].value = i + 1 == read["length"]
-        s["rvalid"].value = self.give_r is not None
+        self.put("rvalid", self.give_r is not None)
 
     @property
     def is_idle(self):

@@ -177,6 +177,7 @@ def simulate(make, file, bench, config, arguments, folder, fault, tests, limit=0
         "HALFPLANE_PACKAGES": str(arguments.folder.resolve() / "rtl_ref/packages"),
         "HALFPLANE_LIBRARY": str(arguments.folder.resolve() / "capi/libhalfplane_c.so"),
         "HALFPLANE_LIMIT": str(limit),
+        "COCOTB_MAX_FAILURES": str(int(fault != 0)),  # the first is enough
     }
     sys.path[:0] = [path for path in (str(HERE), str(ROOT / "examples/python")) if path not in sys.path]
     runner = get_runner("verilator")

@@ -3,6 +3,7 @@
 
 #include <iostream>
 
+#include "../tier.hpp"
 #include "model/engines/cycle/texture_timing.hpp"
 #include "model/timing/memory.hpp"
 
@@ -147,11 +148,13 @@ TEST(TextureRate, FourLanesTakeAStampAClock) {
 // With levels a stamp takes a clock where its samples look at one, and two where they look at two, up to more than a texel a
 // pixel. What is lacking there is lines: they come at four beats each.
 TEST(TextureRate, FourLanesBetweenLevels) {
+  int number = 0;
   Config config;
   config.memory_port_bits = 64;
   for (const TextureMin min : {TextureMin::linear_mipmap_nearest, TextureMin::linear_mipmap_linear})
     for (const Lod lod : {-256, 0, 64, 128, 192})
       for (const double degrees : {0.0, 30.0}) {
+        if (number++ % 3 != 0 && !test::runs_all()) continue;  // every day a third, with each value of each
         const bool is_between = min == TextureMin::linear_mipmap_linear && lod > 0;
         std::array<Rate, 2> of_lanes{};
         for (const int lanes : {1, 4}) {
@@ -176,11 +179,13 @@ TEST(TextureRate, FourLanesBetweenLevels) {
 
 // Where two levels' lines want one place each, again and again, a second place keeps both.
 TEST(TextureRate, TwoWaysHoldTwoLevels) {
+  int number = 0;
   Config config;
   config.memory_port_bits = 64;
   for (const int lines : {16, 32, 64})
     for (const Lod lod : {64, 128, 192})
       for (const double degrees : {0.0, 30.0, 90.0}) {
+        if (number++ % 4 != 0 && !test::runs_all()) continue;  // every day a quarter, with each value of each
         std::array<Rate, 2> of_ways{};
         for (const int ways : {1, 2}) {
           TextureSettings settings{lines, 64, 16, 32, true, true};

@@ -49,13 +49,25 @@ Scene random_triangles(const Config& config, std::uint64_t seed) {
   return scene;
 }
 
+/// Whether a row has the same bits in both.
+template <class Plane>
+bool is_same_row(const Framebuffer& a, const Framebuffer& b, Plane Framebuffer::*plane, int y) {
+  const auto first = [y](const Framebuffer& f) { return static_cast<std::ptrdiff_t>(f.at(0, y)); };
+  const auto from = (a.*plane).begin() + first(a);
+  return std::equal(from, from + a.width, (b.*plane).begin() + first(b));
+}
+
 void expect_same_images(const Framebuffer& a, const Framebuffer& b) {
-  for (int y = 0; y < a.height; ++y)
+  for (int y = 0; y < a.height; ++y) {
+    if (is_same_row(a, b, &Framebuffer::depth, y) && is_same_row(a, b, &Framebuffer::color, y) &&
+        is_same_row(a, b, &Framebuffer::stencil, y))
+      continue;  // a check of each pixel takes longer than to draw it
     for (int x = 0; x < a.width; ++x) {
       ASSERT_EQ(a.depth[a.at(x, y)], b.depth[b.at(x, y)]) << x << ", " << y;
       ASSERT_EQ(a.color[a.at(x, y)], b.color[b.at(x, y)]) << x << ", " << y;
       ASSERT_EQ(a.stencil[a.at(x, y)], b.stencil[b.at(x, y)]) << x << ", " << y;
     }
+  }
 }
 
 void expect_same_samples(const Framebuffer& a, const Framebuffer& b) {
