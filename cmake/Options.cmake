@@ -16,7 +16,9 @@ if(PROJECT_IS_TOP_LEVEL)
     if(denied)
       message(STATUS "ccache left out: its folder cannot be written to")
     else()
-      set(CMAKE_CXX_COMPILER_LAUNCHER "${CCACHE_PROGRAM}")
+      # Another checkout's objects serve as well, precompiled headers included.
+      set(CMAKE_CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND}" -E env "CCACHE_BASEDIR=${PROJECT_SOURCE_DIR}" CCACHE_NOHASHDIR=1
+        CCACHE_SLOPPINESS=pch_defines,time_macros "${CCACHE_PROGRAM}")
     endif()
   endif()
 endif()
@@ -25,6 +27,8 @@ set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
 include(GNUInstallDirs)
+# GCC collects garbage every few MB otherwise, for a tenth of its time.
+add_compile_options($<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=400000>)
 
 # All code, Verilated code and tests included: an object without them would hide a fault or fail to link.
 if(HALFPLANE_FUZZ)

@@ -101,12 +101,13 @@ function(halfplane_verilate target)
       -P "${PROJECT_SOURCE_DIR}/cmake/VerilatedParts.cmake"
     DEPENDS "${VERILATOR_BIN_PROGRAM}" "${waivers}" ${sources} ${includes} "${PROJECT_SOURCE_DIR}/cmake/VerilatedParts.cmake"
     COMMENT "Verilating ${RTL_PREFIX}" VERBATIM)
-  set_source_files_properties(${objects} PROPERTIES COMPILE_OPTIONS "-O0;-w" SKIP_PRECOMPILE_HEADERS ON)
   list(GET objects 0 fast)
-  set_source_files_properties("${fast}" PROPERTIES COMPILE_OPTIONS "${optimised};-w")
+  set_source_files_properties("${fast}" PROPERTIES COMPILE_OPTIONS "${optimised}" SKIP_UNITY_BUILD_INCLUSION ON)
 
   if(NOT TARGET ${target})
     add_library(${target} STATIC)
+    target_compile_options(${target} PRIVATE -O0 -w)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ${HALFPLANE_UNITY} UNITY_BUILD_BATCH_SIZE 4)
     target_link_libraries(${target} PUBLIC halfplane_verilator)
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
   endif()

@@ -5,17 +5,11 @@
 
 #include "commands.hpp"
 #include "context.hpp"
+#include "matrix.hpp"
 #include "primitive.hpp"
 
 namespace halfplane::gl {
 namespace {
-
-double held(double value, double low = 0) { return value > low ? std::min(value, 1.0) : low; }
-Vec4 held(const Vec4& color, double low = 0) {
-  Vec4 out{};
-  std::ranges::transform(color, out.begin(), [low](double c) { return held(c, low); });
-  return out;
-}
 
 bool is_one_of(GLenum value, std::initializer_list<GLenum> values) {
   return std::ranges::find(values, value) != values.end();
@@ -136,7 +130,7 @@ void blend_equation(Context& context, GLenum mode) {
 }
 
 void blend_color(Context& context, double r, double g, double b, double a) {
-  context.state.color.blend_color = held({r, g, b, a});
+  context.state.color.blend_color = held_color({r, g, b, a});
 }
 
 void depth_func(Context& context, GLenum func) {
@@ -263,13 +257,13 @@ void clear(Context& context, GLbitfield mask) {
 }
 
 void clear_color(Context& context, double r, double g, double b, double a) {
-  context.state.color.clear = held({r, g, b, a});
+  context.state.color.clear = held_color({r, g, b, a});
 }
 void clear_depth(Context& context, double depth) { context.state.depth.clear = held(depth); }
 void clear_stencil(Context& context, GLint value) { context.state.stencil.clear = value & 255; }
 void clear_index(Context& context, double index) { context.state.color.clear_index = index; }
 void clear_accum(Context& context, double r, double g, double b, double a) {
-  context.state.accum.clear = held({r, g, b, a}, -1);
+  context.state.accum.clear = held_color({r, g, b, a}, -1);
 }
 
 void accum(Context& context, GLenum op, double value) {

@@ -7,6 +7,7 @@
 #include "../../model/signature.hpp"
 #include "../../model/stages/color_ops.hpp"
 #include "context.hpp"
+#include "matrix.hpp"
 #include "primitive.hpp"
 
 namespace halfplane::gl {
@@ -68,9 +69,7 @@ StencilOp stencil_op_of(GLenum op) {
 }
 
 /// Held to low...high; a NaN is `low`.
-double held(double value, double low, double high) { return value > low ? std::min(value, high) : low; }
-
-std::uint8_t byte_of(double value) { return static_cast<std::uint8_t>(std::lround(held(value, 0, 1) * 255)); }
+std::uint8_t byte_of(double value) { return static_cast<std::uint8_t>(std::lround(held(value) * 255)); }
 
 Rect scissor_of(const ScissorState& scissor) {
   const auto interval = [](int start, int size) {
@@ -111,7 +110,7 @@ void set_samples(const MultisampleState& multisample, int samples, halfplane::St
   state.alpha_to_coverage = multisample.alpha_to_coverage;
   if (!multisample.coverage) return;
   const std::uint32_t all = (1U << samples) - 1;
-  const std::uint32_t mask = (1U << std::lround(held(multisample.value, 0, 1) * samples)) - 1;
+  const std::uint32_t mask = (1U << std::lround(held(multisample.value) * samples)) - 1;
   state.sample_mask = multisample.invert ? all & ~mask : mask;
 }
 
@@ -282,7 +281,7 @@ std::optional<halfplane::State> hardware_state(Context& context, DrawKind kind, 
     if (v.width <= 0 || v.height <= 0) return std::nullopt;
     state.viewport = {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.width),
                       static_cast<double>(v.height)};
-    state.depth_range = {held(v.near, 0, 1), held(v.far, 0, 1)};
+    state.depth_range = {held(v.near), held(v.far)};
     state.shade = from.lighting.shade_model == GL_FLAT ? Shade::flat : Shade::smooth;
     state.provoking = Provoking::last;
   }
@@ -393,7 +392,7 @@ void draw_texels(Context& context, halfplane::State state, const halfplane::Text
     for (const End& column : *across)
       corners.push_back({column.at,
                          row.at,
-                         held(z, 0, 1),
+                         held(z),
                          w > 0 ? w : 1e-6,  // the distance that fog takes
                          {255, 255, 255, 255},
                          column.texel / side(texels.width()),

@@ -8,8 +8,13 @@
 
 namespace halfplane::gl {
 
-/// Into 0...1, NaN as 0.
-[[nodiscard]] constexpr double held(double value) { return value > 0 ? (value < 1 ? value : 1) : 0; }
+/// Into low...high, NaN as low.
+[[nodiscard]] constexpr double held(double value, double low = 0, double high = 1) {
+  return value > low ? (value < high ? value : high) : low;
+}
+[[nodiscard]] constexpr Vec4 held_color(const Vec4& v, double low = 0) {
+  return {held(v[0], low), held(v[1], low), held(v[2], low), held(v[3], low)};
+}
 
 [[nodiscard]] constexpr Vec4 transformed(const Mat4& m, const Vec4& v) {
   Vec4 result{};

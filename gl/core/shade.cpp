@@ -25,7 +25,6 @@ Vec3 unit(const Vec3& a) {
 constexpr Vec3 point_of(const Vec4& v) {
   return v[3] == 1 || v[3] == 0 ? xyz(v) : Vec3{v[0] / v[3], v[1] / v[3], v[2] / v[3]};
 }
-constexpr Vec4 held(const Vec4& v) { return {gl::held(v[0]), gl::held(v[1]), gl::held(v[2]), gl::held(v[3])}; }
 
 constexpr Vec3 kTowardsViewer{0, 0, 1};  // for a viewer at infinity
 
@@ -93,11 +92,11 @@ void light_vertex(const Context& context, const Vec3& normal, ShadedVertex& vert
     Vec4 &color = vertex.color[side], &secondary = vertex.secondary[side];
     for (std::size_t i = 0; i < 3; ++i) {
       const double shine = material.specular[i] * arrived[side].specular[i];
-      color[i] = gl::held(material.emission[i] + material.ambient[i] * ambient[i] +
-                          material.diffuse[i] * arrived[side].diffuse[i] + (separate ? 0 : shine));
-      secondary[i] = separate ? gl::held(shine) : 0;
+      color[i] = held(material.emission[i] + material.ambient[i] * ambient[i] +
+                      material.diffuse[i] * arrived[side].diffuse[i] + (separate ? 0 : shine));
+      secondary[i] = separate ? held(shine) : 0;
     }
-    color[3] = gl::held(material.diffuse[3]);
+    color[3] = held(material.diffuse[3]);
     secondary[3] = 0;
   }
   if (sides == 1) vertex.color[1] = vertex.color[0], vertex.secondary[1] = vertex.secondary[0];
@@ -147,10 +146,10 @@ void shade_vertex(const Context& context, const Vec4& position, const Attributes
   if (state.lighting.enabled) {
     light_vertex(context, normal, vertex);
   } else {
-    vertex.color[0] = vertex.color[1] = held(given.color);
+    vertex.color[0] = vertex.color[1] = held_color(given.color);
     Vec4 secondary{};
     if (state.fog.color_sum)
-      for (std::size_t i = 0; i < 3; ++i) secondary[i] = gl::held(given.secondary[i]);
+      for (std::size_t i = 0; i < 3; ++i) secondary[i] = held(given.secondary[i]);
     vertex.secondary[0] = vertex.secondary[1] = secondary;
   }
 

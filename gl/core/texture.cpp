@@ -233,16 +233,16 @@ void changed(TextureObject& texture, std::size_t face, GLint level) {
   }
 }
 
-enum class Fit { refused, too_large, fits };
+enum class SizeCheck { refused, too_large, fits };
 
 /// The errors that an image has by its sizes. Too large is an error but for proxies.
-Fit check_size(Context& context, const ImageTarget& target, GLint level, const std::array<int, 3>& sides,
-               GLint border) {
+SizeCheck check_size(Context& context, const ImageTarget& target, GLint level, const std::array<int, 3>& sides,
+                     GLint border) {
   const auto refuse = [&context] {
     context.fail(GL_INVALID_VALUE);
-    return Fit::refused;
+    return SizeCheck::refused;
   };
-  if (!is_level(context, level)) return Fit::refused;
+  if (!is_level(context, level)) return SizeCheck::refused;
   if (border != 0 && border != 1) return refuse();
   const int largest = target.dimensions == 3 ? kLargestTexture3D : kLargestTexture;
   bool fits = true;
@@ -254,7 +254,7 @@ Fit check_size(Context& context, const ImageTarget& target, GLint level, const s
   }
   if (target.index == 3 && sides[0] != sides[1]) return refuse();
   if (!fits && !target.is_proxy) return refuse();
-  return fits ? Fit::fits : Fit::too_large;
+  return fits ? SizeCheck::fits : SizeCheck::too_large;
 }
 
 void store_image(Context& context, const ImageTarget& target, GLint level, TextureImage image) {
@@ -407,10 +407,10 @@ void tex_image(Context& context, int dimensions, GLenum target, GLint level, GLi
   if (to == nullptr) return;
   const GLenum base = base_format(internal_format);
   if (base == GL_NONE) return context.fail(GL_INVALID_VALUE);
-  const Fit fit = check_size(context, *to, level, {width, height, depth}, border);
-  if (fit == Fit::refused || !takes_base(context, *to, base)) return;
+  const SizeCheck fit = check_size(context, *to, level, {width, height, depth}, border);
+  if (fit == SizeCheck::refused || !takes_base(context, *to, base)) return;
   if (image != nullptr && !go_together(context, image->format, base)) return;
-  if (fit == Fit::too_large) return store_image(context, *to, level, {});
+  if (fit == SizeCheck::too_large) return store_image(context, *to, level, {});
   if (to->is_proxy || image == nullptr || image->pixel.empty()) {
     const std::array<int, 3> cut{border_along(width, border), border_along(height, border),
                                  border_along(depth, border)};
@@ -438,7 +438,7 @@ void copy_tex_image(Context& context, int dimensions, GLenum target, GLint level
   const GLenum base = base_format(format);
   if (to->is_proxy || base == GL_NONE || format <= 4) return context.fail(GL_INVALID_ENUM);
   if (dimensions == 1) height = 1;
-  if (check_size(context, *to, level, {width, height, 1}, border) != Fit::fits || !takes_base(context, *to, base))
+  if (check_size(context, *to, level, {width, height, 1}, border) != SizeCheck::fits || !takes_base(context, *to, base))
     return;
   store_image(context, *to, level, *stored_image(*copied(context, x, y, width, height, base), format, border));
 }

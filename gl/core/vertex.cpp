@@ -106,7 +106,7 @@ void window_pos(Context& context, double x, double y, double z) {
   raster.window = {x, y, viewport.near + held(z) * (viewport.far - viewport.near), 1};
   raster.distance = context.state.fog.coord_source == GL_FOG_COORDINATE ? current.fog_coord : 0;
   // Not lit: the current attributes as they are.
-  std::ranges::transform(current.color, raster.color.begin(), held);
+  raster.color = held_color(current.color);
   raster.secondary = {};
   if (context.state.fog.color_sum)
     for (std::size_t i = 0; i < 3; ++i) raster.secondary[i] = held(current.secondary[i]);

@@ -8,7 +8,7 @@
 #include "model/engines/functional.hpp"
 #include "sim/study/compare/compare.hpp"
 
-namespace halfplane {
+namespace halfplane::compare_lines_test {
 namespace {
 
 using test::at;
@@ -339,4 +339,4 @@ TEST(CompareLinesMustFail, PixelOwnedByALineThatDoesNotCoverItIsReported) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::compare_lines_test

@@ -11,7 +11,7 @@
 #include "model/engines/scalar.hpp"
 #include "sim/study/compare/eye_depth.hpp"
 
-namespace halfplane {
+namespace halfplane::compare_test {
 namespace {
 
 using test::at;
@@ -429,4 +429,4 @@ TEST(Compare, FragmentsAreJudgedHiddenOnesToo) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::compare_test

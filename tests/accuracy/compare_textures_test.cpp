@@ -8,7 +8,7 @@
 #include "model/engines/scalar.hpp"
 #include "sim/study/compare/compare.hpp"
 
-namespace halfplane {
+namespace halfplane::compare_textures_test {
 namespace {
 
 using test::SceneBuilder;
@@ -185,4 +185,4 @@ TEST(CompareTextures, WhereNothingIsPromisedNothingIsBroken) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::compare_textures_test

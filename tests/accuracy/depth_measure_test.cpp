@@ -12,7 +12,7 @@
 #include "sim/study/depth/measure.hpp"
 #include "sim/study/depth/two_planes.hpp"
 
-namespace halfplane {
+namespace halfplane::depth_measure_test {
 namespace {
 
 constexpr std::array kMappings{DepthMapping::std,    DepthMapping::rev, DepthMapping::stdinf,
@@ -165,4 +165,4 @@ TEST(DepthMeasure, SamplesThatOnlyTheSnapCoversHaveNoEyeDepth) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::depth_measure_test

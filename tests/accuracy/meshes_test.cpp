@@ -10,7 +10,7 @@
 #include "sim/study/compare/compare.hpp"
 #include "sim/study/stress/delaunay.hpp"
 
-namespace halfplane {
+namespace halfplane::meshes_test {
 namespace {
 
 using test::at;
@@ -235,4 +235,4 @@ TEST(StressMeshes, HundredThousandShuffledTrianglesCoverEveryPixelExactlyOnce) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::meshes_test

@@ -9,7 +9,7 @@
 
 #include "../perspective_case.hpp"
 
-namespace halfplane {
+namespace halfplane::perspective_test {
 namespace {
 
 using test::OverWRandom;
@@ -171,4 +171,4 @@ TEST(PerspectiveAccuracyMustFail, ACoordinateFromZeroNeedsMoreBits) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::perspective_test

@@ -15,7 +15,7 @@
 #include "model/widths.hpp"
 #include "sim/study/compare/compare.hpp"
 
-namespace halfplane {
+namespace halfplane::random_triangles_test {
 namespace {
 
 using test::at;
@@ -225,4 +225,4 @@ TEST(StressRandomTriangles, FreshSeedsMeetTheBoundsInEveryPreset) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::random_triangles_test

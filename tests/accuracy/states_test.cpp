@@ -8,7 +8,7 @@
 #include "../scene_builder.hpp"
 #include "sim/study/compare/compare.hpp"
 
-namespace halfplane {
+namespace halfplane::states_test {
 namespace {
 
 using test::at;
@@ -134,4 +134,4 @@ TEST(States, ClippedTrianglesDifferFromTheGoldenOnlyBesideAnEdge) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::states_test

@@ -4,7 +4,7 @@
 #include "program.hpp"
 #include "sim/show/image/png.hpp"
 
-namespace halfplane::cli {
+namespace halfplane::cli::against_test {
 namespace {
 
 class Against : public Cli {
@@ -319,4 +319,4 @@ TEST_F(Against, BadImagesAreRefused) {
 }
 
 }  // namespace
-}  // namespace halfplane::cli
+}  // namespace halfplane::cli::against_test

@@ -5,7 +5,7 @@
 
 #include "program.hpp"
 
-namespace halfplane::cli {
+namespace halfplane::cli::antialiasing_test {
 namespace {
 
 class AntialiasingCommand : public Cli {};
@@ -91,4 +91,4 @@ TEST_F(AntialiasingCommand, WhoHasOneSampleAPixelSaysSo) {
 }
 
 }  // namespace
-}  // namespace halfplane::cli
+}  // namespace halfplane::cli::antialiasing_test

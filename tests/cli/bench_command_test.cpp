@@ -5,7 +5,7 @@
 
 #include "program.hpp"
 
-namespace halfplane::cli {
+namespace halfplane::cli::bench_command_test {
 namespace {
 
 class BenchCommandLine : public Cli {};
@@ -206,4 +206,4 @@ TEST_F(BenchCommandLine, BadInputIsRefusedWithOneLine) {
 }
 
 }  // namespace
-}  // namespace halfplane::cli
+}  // namespace halfplane::cli::bench_command_test

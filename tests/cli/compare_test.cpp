@@ -3,7 +3,7 @@
 
 #include "program.hpp"
 
-namespace halfplane::cli {
+namespace halfplane::cli::compare_test {
 namespace {
 
 class CompareCommand : public Cli {};
@@ -273,4 +273,4 @@ TEST_F(ConfigCommand, EveryResultBeginsWithTheSameHead) {
 }
 
 }  // namespace
-}  // namespace halfplane::cli
+}  // namespace halfplane::cli::compare_test

@@ -9,7 +9,7 @@
 #include "program.hpp"
 #include "sim/scene/builtin.hpp"
 
-namespace halfplane::cli {
+namespace halfplane::cli::completions_test {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -217,4 +217,4 @@ TEST_F(CommandLine, UnknownShellsAndPagesAreRefused) {
 }
 
 }  // namespace
-}  // namespace halfplane::cli
+}  // namespace halfplane::cli::completions_test

@@ -1,7 +1,7 @@
 // --convention and --cull-objects, as typed.
 #include "program.hpp"
 
-namespace halfplane::cli {
+namespace halfplane::cli::convention_test {
 namespace {
 
 class ConventionOption : public Cli {};
@@ -75,4 +75,4 @@ TEST_F(CullObjectsOption, BoxesAreTheDefault) {
 }
 
 }  // namespace
-}  // namespace halfplane::cli
+}  // namespace halfplane::cli::convention_test

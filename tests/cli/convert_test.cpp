@@ -10,7 +10,7 @@
 #include "sim/show/image/png.hpp"
 #include "tests/gltf_builder.hpp"
 
-namespace halfplane::cli {
+namespace halfplane::cli::convert_test {
 namespace {
 
 class ConvertCommand : public Cli {
@@ -150,4 +150,4 @@ TEST_F(ConvertCommand, BadRequestsGetOneLine) {
 }
 
 }  // namespace
-}  // namespace halfplane::cli
+}  // namespace halfplane::cli::convert_test

@@ -5,7 +5,7 @@
 #include "sim/cosim/dut.hpp"
 #include "sim/scene/builtin.hpp"
 
-namespace halfplane::cli {
+namespace halfplane::cli::cosim_test {
 namespace {
 
 class RtlCommands : public Cli {
@@ -328,4 +328,4 @@ TEST_F(RtlCommands, MutantsThatARunTooShortMissesAreAFailure) {
 }
 
 }  // namespace
-}  // namespace halfplane::cli
+}  // namespace halfplane::cli::cosim_test

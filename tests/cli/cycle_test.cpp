@@ -6,7 +6,7 @@
 #include "halfplane_paths.hpp"
 #include "program.hpp"
 
-namespace halfplane::cli {
+namespace halfplane::cli::cycle_test {
 namespace {
 
 class CycleCommand : public Cli {};
@@ -279,4 +279,4 @@ TEST_F(CycleCommand, ConfigListsWhatTheCycleEngineCanVaryAndWhatEveryStageTakes)
 }
 
 }  // namespace
-}  // namespace halfplane::cli
+}  // namespace halfplane::cli::cycle_test

@@ -5,7 +5,7 @@
 
 #include "program.hpp"
 
-namespace halfplane::cli {
+namespace halfplane::cli::depth_command_test {
 namespace {
 
 class DepthCommandLine : public Cli {};
@@ -299,4 +299,4 @@ TEST_F(DepthCommandLine, EveryMappingAndFormatDrawsTheSamePicture) {
 }
 
 }  // namespace
-}  // namespace halfplane::cli
+}  // namespace halfplane::cli::depth_command_test

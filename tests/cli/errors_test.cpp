@@ -2,7 +2,7 @@
 // file made.
 #include "program.hpp"
 
-namespace halfplane::cli {
+namespace halfplane::cli::errors_test {
 namespace {
 
 class BadInput : public Cli {
@@ -337,4 +337,4 @@ TEST_F(BadInput, MissingMaterialsAreAWarningAndDefaultColours) {
 }
 
 }  // namespace
-}  // namespace halfplane::cli
+}  // namespace halfplane::cli::errors_test

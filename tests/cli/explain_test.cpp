@@ -6,7 +6,7 @@
 #include "model/capture/capture_textures.hpp"
 #include "program.hpp"
 
-namespace halfplane::cli {
+namespace halfplane::cli::explain_test {
 namespace {
 
 class ExplainCommand : public Cli {
@@ -300,4 +300,4 @@ TEST_F(RtlExplainCommand, AFaultInTheRtlShowsAtThePixel) {
 }
 
 }  // namespace
-}  // namespace halfplane::cli
+}  // namespace halfplane::cli::explain_test

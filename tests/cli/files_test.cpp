@@ -9,7 +9,7 @@
 #define STBI_ONLY_PNG
 #include <stb_image.h>
 
-namespace halfplane::cli {
+namespace halfplane::cli::files_test {
 namespace {
 
 class RenderFiles : public Cli {
@@ -318,4 +318,4 @@ TEST_F(Streams, AFullDiskOrAReaderThatWentAwayIsToldOfFilesOnStdoutToo) {
 }
 
 }  // namespace
-}  // namespace halfplane::cli
+}  // namespace halfplane::cli::files_test

@@ -5,7 +5,7 @@
 #include "program.hpp"
 #include "tests/gltf_builder.hpp"
 
-namespace halfplane::cli {
+namespace halfplane::cli::frames_test {
 namespace {
 
 class Frames : public Cli {
@@ -236,4 +236,4 @@ TEST_F(CaptureFrames, ANumberThatItDoesNotHaveIsRefused) {
 }
 
 }  // namespace
-}  // namespace halfplane::cli
+}  // namespace halfplane::cli::frames_test

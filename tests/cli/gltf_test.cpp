@@ -2,7 +2,7 @@
 #include "program.hpp"
 #include "tests/gltf_builder.hpp"
 
-namespace halfplane::cli {
+namespace halfplane::cli::gltf_test {
 namespace {
 
 class GltfScene : public Cli {
@@ -56,4 +56,4 @@ TEST_F(GltfScene, ABrokenFileOrAnUnknownCameraIsRefusedInOneLine) {
 }
 
 }  // namespace
-}  // namespace halfplane::cli
+}  // namespace halfplane::cli::gltf_test

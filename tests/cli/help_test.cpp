@@ -3,7 +3,7 @@
 
 #include "program.hpp"
 
-namespace halfplane::cli {
+namespace halfplane::cli::help_test {
 namespace {
 
 class Help : public Cli {};
@@ -108,4 +108,4 @@ TEST_F(Help, VersionIsOneLine) {
 }
 
 }  // namespace
-}  // namespace halfplane::cli
+}  // namespace halfplane::cli::help_test

@@ -11,7 +11,7 @@
 #include "model/config.hpp"
 #include "program.hpp"
 
-namespace halfplane::cli {
+namespace halfplane::cli::interface_test {
 namespace {
 
 class Interface : public Cli {
@@ -133,4 +133,4 @@ TEST_F(Interface, ConfigurationFilesAreNamedSo) {
 }
 
 }  // namespace
-}  // namespace halfplane::cli
+}  // namespace halfplane::cli::interface_test

@@ -4,7 +4,7 @@
 
 #include "program.hpp"
 
-namespace halfplane::cli {
+namespace halfplane::cli::interrupt_test {
 namespace {
 
 class CliInterrupt : public Cli {
@@ -174,4 +174,4 @@ TEST_F(RtlInterrupt, MutantsKeepTheirVerdicts) {
 }
 
 }  // namespace
-}  // namespace halfplane::cli
+}  // namespace halfplane::cli::interrupt_test

@@ -6,7 +6,7 @@
 #include "halfplane_paths.hpp"
 #include "program.hpp"
 
-namespace halfplane::cli {
+namespace halfplane::cli::json_schema_test {
 namespace {
 
 class JsonSchema : public Cli {
@@ -261,4 +261,4 @@ TEST_F(JsonSchema, KeysThatAreAddedAreNoFaultButAreNotDescribed) {
 }
 
 }  // namespace
-}  // namespace halfplane::cli
+}  // namespace halfplane::cli::json_schema_test

@@ -7,7 +7,7 @@
 #include "halfplane_paths.hpp"
 #include "program.hpp"
 
-namespace halfplane::cli {
+namespace halfplane::cli::pages_test {
 namespace {
 
 class Pages : public Cli {};
@@ -84,4 +84,4 @@ TEST_F(Pages, ALineThatIsNotPrintedIsFound) {
 }
 
 }  // namespace
-}  // namespace halfplane::cli
+}  // namespace halfplane::cli::pages_test

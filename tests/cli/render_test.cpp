@@ -4,7 +4,7 @@
 
 #include "program.hpp"
 
-namespace halfplane::cli {
+namespace halfplane::cli::render_test {
 namespace {
 
 class RenderCommand : public Cli {};
@@ -236,4 +236,4 @@ TEST_F(RenderCommand, WhatTheModelHasNotYetIsNamed) {
 }
 
 }  // namespace
-}  // namespace halfplane::cli
+}  // namespace halfplane::cli::render_test

@@ -1,7 +1,7 @@
 // `command` of every JSON and JUnit: the command that gives the result again, which is typed again here.
 #include "program.hpp"
 
-namespace halfplane::cli {
+namespace halfplane::cli::repeat_test {
 namespace {
 
 /// The result without its times: keys that end in _s.
@@ -123,4 +123,4 @@ TEST_F(RtlRepeat, CosimAndWhatFailsAreRepeated) {
 }
 
 }  // namespace
-}  // namespace halfplane::cli
+}  // namespace halfplane::cli::repeat_test

@@ -5,7 +5,7 @@
 #include "halfplane_paths.hpp"
 #include "program.hpp"
 
-namespace halfplane::cli {
+namespace halfplane::cli::run_test {
 namespace {
 
 /// Programs that are no scenes: the driver itself must have been built.
@@ -118,4 +118,4 @@ TEST_F(Run, MissingStatesEndTheProgramIfAsked) {
 #endif
 
 }  // namespace
-}  // namespace halfplane::cli
+}  // namespace halfplane::cli::run_test

@@ -6,7 +6,7 @@
 #include "halfplane_paths.hpp"
 #include "program.hpp"
 
-namespace halfplane::cli {
+namespace halfplane::cli::space_test {
 namespace {
 
 class SpaceCommand : public Cli {
@@ -203,4 +203,4 @@ TEST_F(SpaceCommand, ThePageOpensInHeadlessChromium) {
 }
 
 }  // namespace
-}  // namespace halfplane::cli
+}  // namespace halfplane::cli::space_test

@@ -4,7 +4,7 @@
 #include "../tier.hpp"
 #include "program.hpp"
 
-namespace halfplane::cli {
+namespace halfplane::cli::stress_command_test {
 namespace {
 
 class CliStress : public Cli {};
@@ -124,4 +124,4 @@ TEST_F(StressQuickSet, HoldsEveryBoundOverTheWholeGrid) {
 }
 
 }  // namespace
-}  // namespace halfplane::cli
+}  // namespace halfplane::cli::stress_command_test

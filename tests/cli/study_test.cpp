@@ -4,7 +4,7 @@
 #include "halfplane_paths.hpp"
 #include "program.hpp"
 
-namespace halfplane::cli {
+namespace halfplane::cli::study_test {
 namespace {
 
 class StudyRules : public Cli {};
@@ -306,4 +306,4 @@ TEST_F(StudyRules, UnknownNamesAreRefusedWithTheLegalOnes) {
 }
 
 }  // namespace
-}  // namespace halfplane::cli
+}  // namespace halfplane::cli::study_test

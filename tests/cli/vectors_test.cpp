@@ -4,7 +4,7 @@
 
 #include "program.hpp"
 
-namespace halfplane::cli {
+namespace halfplane::cli::vectors_test {
 namespace {
 
 class VectorsCommand : public Cli {
@@ -175,4 +175,4 @@ TEST_F(VectorsCommand, BadInputIsRefusedWithFileAndLine) {
 }
 
 }  // namespace
-}  // namespace halfplane::cli
+}  // namespace halfplane::cli::vectors_test

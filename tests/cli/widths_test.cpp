@@ -4,7 +4,7 @@
 
 #include "program.hpp"
 
-namespace halfplane::cli {
+namespace halfplane::cli::widths_test {
 namespace {
 
 class WidthsCommandLine : public Cli {};
@@ -130,4 +130,4 @@ TEST_F(WidthsCommandLine, BadInputIsRefusedWithTheMend) {
 }
 
 }  // namespace
-}  // namespace halfplane::cli
+}  // namespace halfplane::cli::widths_test

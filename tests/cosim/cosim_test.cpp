@@ -18,7 +18,7 @@
 #include "sim/scene/depth_mapping.hpp"
 #include "sim/scene/load.hpp"
 
-namespace halfplane {
+namespace halfplane::cosim_test {
 namespace {
 
 /// Compares cycles as well, and in a random run (drawn orders) the model with the specification.
@@ -392,4 +392,4 @@ TEST(Cosim, ACycleModelThatIsWrongInOneThingIsCaught) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::cosim_test

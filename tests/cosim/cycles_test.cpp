@@ -10,7 +10,7 @@
 #include "sim/cosim/session.hpp"
 #include "sim/scene/random.hpp"
 
-namespace halfplane {
+namespace halfplane::cycles_test {
 namespace {
 
 using Triangle = std::array<std::array<double, 2>, 3>;  // pixels
@@ -204,4 +204,4 @@ TEST(Cycles, ShorterLinesTakeAtMost4MoreThanTheirPixels) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::cycles_test

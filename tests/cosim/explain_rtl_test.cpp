@@ -8,7 +8,7 @@
 #include "sim/scene/random.hpp"
 #include "sim/study/explain/explain.hpp"
 
-namespace halfplane::explain {
+namespace halfplane::explain::explain_rtl_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 26;
@@ -50,4 +50,4 @@ TEST(ExplainRtl, RandomPixelsAgreeWithTheRtlInEveryPacketAndCycle) {
 }
 
 }  // namespace
-}  // namespace halfplane::explain
+}  // namespace halfplane::explain::explain_rtl_test

@@ -15,7 +15,7 @@
 #include "sim/cosim/dut.hpp"
 #include "sim/cosim/session.hpp"
 
-namespace halfplane {
+namespace halfplane::mutants_test {
 namespace {
 
 /// A co-simulation of random scenes.
@@ -130,4 +130,4 @@ TEST(Mutants, WithoutAFaultNoDesignDiffers) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::mutants_test

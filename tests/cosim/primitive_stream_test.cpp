@@ -14,7 +14,7 @@
 #include "sim/cosim/session.hpp"
 #include "sim/scene/builtin.hpp"
 
-namespace halfplane {
+namespace halfplane::primitive_stream_test {
 namespace {
 
 constexpr int kSide = 8;         // pixels of the target
@@ -263,4 +263,4 @@ TEST_F(PrimitiveStream, AFailedAssertionEndsACoSimulationWithItsMessage) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::primitive_stream_test

@@ -14,7 +14,7 @@
 #include "model/generate/raster_pkg.hpp"
 #include "sim/scene/random.hpp"
 
-namespace halfplane {
+namespace halfplane::rtl_lint_test {
 namespace {
 
 const std::filesystem::path kRtl = std::filesystem::path(HALFPLANE_SOURCE_DIR) / "rtl_ref";
@@ -104,4 +104,4 @@ TEST(RtlLintMustFail, ASignalThatNothingReadsIsFoundDespiteTheWaivers) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::rtl_lint_test

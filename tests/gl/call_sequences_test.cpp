@@ -25,7 +25,7 @@
 #include "sim/scene/random.hpp"
 #include "tests/tier.hpp"
 
-namespace halfplane::gl {
+namespace halfplane::gl::call_sequences_test {
 namespace {
 
 constexpr std::size_t kPool = std::size_t{16} << 20;  // bytes that any pointer may be followed and preceded by
@@ -201,4 +201,4 @@ TEST(CallSequences, RandomCommandsNeitherCrashNorLeaveTheirMemory) {
 }
 
 }  // namespace
-}  // namespace halfplane::gl
+}  // namespace halfplane::gl::call_sequences_test

@@ -5,7 +5,7 @@
 
 #include "picture.hpp"
 
-namespace halfplane::gl {
+namespace halfplane::gl::color_buffers_test {
 namespace {
 
 TEST(ColorBuffers, FrontAndBackAreTwoOnceTheFrontIsNamed) {
@@ -62,4 +62,4 @@ TEST(ColorBuffers, DepthsAreOfBoth) {
 }
 
 }  // namespace
-}  // namespace halfplane::gl
+}  // namespace halfplane::gl::color_buffers_test

@@ -10,7 +10,7 @@
 
 #include "entry_point_case.hpp"
 
-namespace halfplane::gl {
+namespace halfplane::gl::entry_points_test {
 namespace {
 
 class EntryPoints : public EntryPointCase {};
@@ -434,4 +434,4 @@ TEST_F(EntryPoints, AnyCallsInAnyOrderDoNoHarm) {
 }
 
 }  // namespace
-}  // namespace halfplane::gl
+}  // namespace halfplane::gl::entry_points_test

@@ -6,7 +6,7 @@
 
 #include "gl/core/commands.hpp"
 
-namespace halfplane::gl {
+namespace halfplane::gl::eval_test {
 namespace {
 
 struct Evaluators : testing::Test {
@@ -149,4 +149,4 @@ TEST_F(Evaluators, Errors) {
 }
 
 }  // namespace
-}  // namespace halfplane::gl
+}  // namespace halfplane::gl::eval_test

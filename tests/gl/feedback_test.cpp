@@ -6,7 +6,7 @@
 #include "gl/core/primitive.hpp"
 #include "picture.hpp"
 
-namespace halfplane::gl {
+namespace halfplane::gl::feedback_test {
 namespace {
 
 class GlFeedback : public ::testing::Test {
@@ -177,4 +177,4 @@ TEST_F(GlFeedback, Errors) {
 }
 
 }  // namespace
-}  // namespace halfplane::gl
+}  // namespace halfplane::gl::feedback_test

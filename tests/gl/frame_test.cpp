@@ -17,7 +17,7 @@
 #include "model/engines/functional.hpp"
 #include "sim/scene/random_state.hpp"
 
-namespace halfplane::gl {
+namespace halfplane::gl::frame_test {
 namespace {
 
 constexpr int kWidth = 70, kHeight = 52;
@@ -415,4 +415,4 @@ TEST(GlOptions, ComeFromTheEnvironment) {
 }
 
 }  // namespace
-}  // namespace halfplane::gl
+}  // namespace halfplane::gl::frame_test

@@ -12,7 +12,7 @@
 
 #include "gl/core/commands.hpp"
 
-namespace halfplane::gl {
+namespace halfplane::gl::image_test {
 namespace {
 
 constexpr auto kFormats =
@@ -182,4 +182,4 @@ TEST(GlImage, PixelTransfer) {
 }
 
 }  // namespace
-}  // namespace halfplane::gl
+}  // namespace halfplane::gl::image_test

@@ -8,7 +8,7 @@
 
 #include "gl/core/commands.hpp"
 
-namespace halfplane::gl {
+namespace halfplane::gl::light_test {
 namespace {
 
 Vec3 operator+(const Vec3& a, const Vec3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
@@ -239,4 +239,4 @@ TEST_F(Lighting, ErrorsChangeNothing) {
 }
 
 }  // namespace
-}  // namespace halfplane::gl
+}  // namespace halfplane::gl::light_test

@@ -1,7 +1,7 @@
 // Display lists (OpenGL 1.5, 5.4).
 #include "entry_point_case.hpp"
 
-namespace halfplane::gl {
+namespace halfplane::gl::list_test {
 namespace {
 
 class Lists : public EntryPointCase {
@@ -183,4 +183,4 @@ TEST_F(Lists, BeginMayBeInOneAndEndInAnother) {
 }
 
 }  // namespace
-}  // namespace halfplane::gl
+}  // namespace halfplane::gl::list_test

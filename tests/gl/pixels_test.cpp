@@ -9,7 +9,7 @@
 #include "gl/core/commands.hpp"
 #include "model/config.hpp"
 
-namespace halfplane::gl {
+namespace halfplane::gl::pixels_test {
 namespace {
 
 constexpr int kSide = 64;
@@ -186,4 +186,4 @@ TEST_F(GlPixels, ErrorsDrawNothing) {
 }
 
 }  // namespace
-}  // namespace halfplane::gl
+}  // namespace halfplane::gl::pixels_test

@@ -9,7 +9,7 @@
 #include "model/formats/texture.hpp"
 #include "picture.hpp"
 
-namespace halfplane::gl {
+namespace halfplane::gl::primitive_test {
 namespace {
 
 using Rgb = std::array<int, 3>;
@@ -636,4 +636,4 @@ TEST(GlPrimitive, AnyNumbersAreTaken) {
 }
 
 }  // namespace
-}  // namespace halfplane::gl
+}  // namespace halfplane::gl::primitive_test

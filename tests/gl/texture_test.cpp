@@ -15,7 +15,7 @@
 #include "gl/core/commands.hpp"
 #include "model/config.hpp"
 
-namespace halfplane::gl {
+namespace halfplane::gl::texture_test {
 namespace {
 
 constexpr int kSide = 64;
@@ -631,4 +631,4 @@ TEST_F(GlTexture, EyePlanesAreOfTheModelviewMatrix) {
 }
 
 }  // namespace
-}  // namespace halfplane::gl
+}  // namespace halfplane::gl::texture_test

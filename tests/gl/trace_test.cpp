@@ -15,7 +15,7 @@
 #include "../../gl/trace/trace_file.hpp"
 #include "../../model/config.hpp"
 
-namespace halfplane::gl {
+namespace halfplane::gl::trace_test {
 namespace {
 
 /// A trace of version 6, value by value.
@@ -234,5 +234,5 @@ TEST_F(Trace, AnyDamageEndsInAPictureOrALine) {
 }
 
 }  // namespace
-}  // namespace halfplane::gl
+}  // namespace halfplane::gl::trace_test
 #endif

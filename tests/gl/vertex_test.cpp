@@ -9,7 +9,7 @@
 #include "gl/core/list.hpp"
 #include "gl/core/matrix.hpp"
 
-namespace halfplane::gl {
+namespace halfplane::gl::vertex_test {
 namespace {
 
 struct Vertices : testing::Test {
@@ -444,4 +444,4 @@ TEST_F(Arrays, Queries) {
 }
 
 }  // namespace
-}  // namespace halfplane::gl
+}  // namespace halfplane::gl::vertex_test

@@ -3,7 +3,7 @@
 
 #include "model/timing/queue.hpp"
 
-namespace halfplane {
+namespace halfplane::blocks_test {
 namespace {
 
 TEST(Station, ARegisterWhoseReadyPassesThroughTakesTheNextItemInTheCycleInWhichOneLeaves) {
@@ -72,4 +72,4 @@ TEST(Queue, TheSenderIsFreeWhileAnItemWaitsInTheQueue) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::blocks_test

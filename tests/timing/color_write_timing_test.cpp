@@ -6,7 +6,7 @@
 #include "model/engines/cycle/block_timing.hpp"
 #include "model/engines/cycle/port_timing.hpp"
 
-namespace halfplane {
+namespace halfplane::color_write_timing_test {
 namespace {
 
 /// A memory that nothing is asked of.
@@ -68,4 +68,4 @@ TEST(ColorWriteTiming, AStampIsTestedAgainInTheNextClock) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::color_write_timing_test

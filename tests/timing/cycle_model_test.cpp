@@ -12,7 +12,7 @@
 #include "sim/scene/builtin.hpp"
 #include "sim/show/report/hardware.hpp"
 
-namespace halfplane {
+namespace halfplane::cycle_model_test {
 namespace {
 
 using test::at;
@@ -278,4 +278,4 @@ TEST(WholeFrames, OneTriangleOfOnePixelTakesAtMost10000CyclesAndResolved80000) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::cycle_model_test

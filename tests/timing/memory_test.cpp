@@ -5,7 +5,7 @@
 
 #include "model/timing/memory.hpp"
 
-namespace halfplane {
+namespace halfplane::memory_test {
 namespace {
 
 std::unique_ptr<MemoryTiming> memory(MemoryKind kind, int mhz = 100) {
@@ -265,4 +265,4 @@ TEST(Memory, OtherMastersTakeTheTimeOfThePort) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::memory_test

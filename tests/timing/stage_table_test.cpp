@@ -8,7 +8,7 @@
 #include "halfplane_paths.hpp"
 #include "model/engines/cycle/stage_table.hpp"
 
-namespace halfplane {
+namespace halfplane::stage_table_test {
 namespace {
 
 TEST(StageTable, TheOnesInThePipelinePageAreThoseOfTheCode) {
@@ -38,4 +38,4 @@ TEST(StageTable, TwoClocksAPlaneMakeASetupHalfAsOftenInFewerParts) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::stage_table_test

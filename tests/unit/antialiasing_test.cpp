@@ -13,7 +13,7 @@
 #include "sim/study/antialiasing/exact_area.hpp"
 #include "sim/study/antialiasing/study.hpp"
 
-namespace halfplane::antialiasing {
+namespace halfplane::antialiasing::antialiasing_test {
 namespace {
 
 constexpr int kGrid = 4, kSide = 12;
@@ -168,4 +168,4 @@ TEST(AreaStudy, MoreSamplesAreNearerToTheArea) {
 }
 
 }  // namespace
-}  // namespace halfplane::antialiasing
+}  // namespace halfplane::antialiasing::antialiasing_test

@@ -17,7 +17,7 @@
 #include "sim/scene/builtin.hpp"
 #include "sim/scene/object_cull.hpp"
 
-namespace halfplane {
+namespace halfplane::bench_scenes_test {
 namespace {
 
 Scene work(const std::string& name, int width = 320, int height = 180, std::uint64_t seed = 1) {
@@ -207,4 +207,4 @@ TEST(WorkScenes, SizesAreCheckedAndClipSpaceTakesNoCamera) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::bench_scenes_test

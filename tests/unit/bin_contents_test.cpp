@@ -11,7 +11,7 @@
 #include "tests/hardware_scene.hpp"
 #include "tests/scene_builder.hpp"
 
-namespace halfplane {
+namespace halfplane::bin_contents_test {
 namespace {
 
 using test::at;
@@ -269,4 +269,4 @@ TEST(Signature, EveryBitOfEveryWordChangesAboutHalfOfIt) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::bin_contents_test

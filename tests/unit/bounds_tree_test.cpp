@@ -22,7 +22,7 @@
 
 #include "halfplane_paths.hpp"
 
-namespace halfplane {
+namespace halfplane::bounds_tree_test {
 namespace {
 
 constexpr std::array kTests{CullObjects::sphere, CullObjects::box, CullObjects::both};
@@ -315,4 +315,4 @@ TEST(BoundsTree, TheMeshOfABuiltInSceneIsMadeOnceAndIsTheSame) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::bounds_tree_test

@@ -17,7 +17,7 @@
 #include "sim/scene/load.hpp"
 #include "sim/scene/random.hpp"
 
-namespace halfplane {
+namespace halfplane::builtin_test {
 namespace {
 
 // The edges of a mesh by place, each in the direction in which its triangle runs along it.
@@ -265,4 +265,4 @@ TEST(Load, SizesApplyToMeshesAndToClipSpaceCapturesOnly) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::builtin_test

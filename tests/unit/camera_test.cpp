@@ -10,7 +10,7 @@
 #include "sim/scene/mesh_scene.hpp"
 #include "sim/scene/random.hpp"
 
-namespace halfplane {
+namespace halfplane::camera_test {
 namespace {
 
 // A cloud of points in a box; one triangle, so that it can be a mesh.
@@ -180,4 +180,4 @@ TEST(MeshScene, ACameraThatThrowsVerticesOutOfBinary64IsRefused) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::camera_test

@@ -7,7 +7,7 @@
 #include "model/capture/capture.hpp"
 #include "model/config.hpp"
 
-namespace halfplane {
+namespace halfplane::capture_errors_test {
 namespace {
 
 const std::string three_vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
@@ -231,4 +231,4 @@ TEST(CaptureErrors, FileThatCannotBeReadIsNamed) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::capture_errors_test

@@ -20,7 +20,7 @@
 
 #include "sim/scene/random_state.hpp"
 
-namespace halfplane {
+namespace halfplane::capture_test {
 namespace {
 
 Scene read(const std::string& body) { return read_capture("halfplane 1\n" + body, "test.hpt"); }
@@ -403,4 +403,4 @@ TEST(CaptureFiles, FileIsReadAsItsTextIs) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::capture_test

@@ -14,7 +14,7 @@
 #include "model/stages/color_packets.hpp"
 #include "sim/cosim/random_scene.hpp"
 
-namespace halfplane {
+namespace halfplane::color_hardware_test {
 namespace {
 
 using test::with;
@@ -227,4 +227,4 @@ TEST(ColorHardware, RefusesByNameWhatItHasNoUnitFor) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::color_hardware_test

@@ -7,7 +7,7 @@
 
 #include "sim/config_file.hpp"
 
-namespace halfplane {
+namespace halfplane::config_file_test {
 namespace {
 
 std::string error_of(std::string_view text) {
@@ -151,4 +151,4 @@ TEST(ConfigOption, WhatIsNeitherIsRefusedWithTheChoices) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::config_file_test

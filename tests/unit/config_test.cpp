@@ -12,7 +12,7 @@
 #include "model/widths.hpp"
 #include "tests/committed.hpp"
 
-namespace halfplane {
+namespace halfplane::config_test {
 namespace {
 
 std::string refusal(const Config& config) {
@@ -237,4 +237,4 @@ TEST(RasterPkg, AnyOtherSettingGivesAnotherIdentity) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::config_test

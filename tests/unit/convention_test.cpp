@@ -18,7 +18,7 @@
 #include "sim/scene/random.hpp"
 #include "sim/scene/random_state.hpp"
 
-namespace halfplane {
+namespace halfplane::convention_test {
 namespace {
 
 constexpr const char* kStandard[] = {"d3d", "mit3dcg", "fcg:standard"};
@@ -263,4 +263,4 @@ TEST(Convention, ANameThatIsNoneIsRefusedWithTheList) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::convention_test

@@ -14,7 +14,7 @@
 #include "sim/scene/random.hpp"
 #include "tests/scene_builder.hpp"
 
-namespace halfplane {
+namespace halfplane::cosim_harness_test {
 namespace {
 
 /// A faulty design's treatment of packet `number` of `arrow`.
@@ -548,4 +548,4 @@ TEST(CosimReduce, WindowSpaceSendsTheSamePrimitives) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::cosim_harness_test

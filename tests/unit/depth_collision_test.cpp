@@ -6,7 +6,7 @@
 #include "../scene_builder.hpp"
 #include "sim/scene/builtin.hpp"
 
-namespace halfplane {
+namespace halfplane::depth_collision_test {
 namespace {
 
 /// Two squares before the eye, at two distances, as a camera with these planes projects them.
@@ -48,4 +48,4 @@ TEST(DepthCollision, NeighboursAndWhatIsNotOrderedByDepthAreNone) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::depth_collision_test

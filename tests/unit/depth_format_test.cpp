@@ -16,7 +16,7 @@
 #include "sim/study/compare/compare.hpp"
 #include "sim/study/depth/exact_depth.hpp"
 
-namespace halfplane {
+namespace halfplane::depth_format_test {
 namespace {
 
 constexpr std::array<std::string_view, 12> kFormats{"u8",     "u16", "u31", "u32",    "bins8",  "bins16",
@@ -206,4 +206,4 @@ TEST(DepthMapping, WindowDepthIsTheStoredDepthItself) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::depth_format_test

@@ -13,7 +13,7 @@
 #include "model/config.hpp"
 #include "sim/study/depth/theory.hpp"
 
-namespace halfplane {
+namespace halfplane::depth_theory_test {
 namespace {
 
 DepthMapping mapping_named(std::string_view name) {
@@ -217,4 +217,4 @@ TEST(DepthTheory, ReadsDecimalsExactly) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::depth_theory_test

@@ -19,7 +19,7 @@
 #include "model/pipeline_graph.hpp"
 #include "tests/committed.hpp"
 
-namespace halfplane {
+namespace halfplane::docs_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -273,4 +273,4 @@ TEST(Docs, TheCommittedCoreListsTheModulesOfTheRtl) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::docs_test

@@ -21,7 +21,7 @@
 #include "tests/pipeline_case.hpp"
 #include "tests/scene_builder.hpp"
 
-namespace halfplane {
+namespace halfplane::draw_states_test {
 namespace {
 
 /// Every word of a row, and numbers once.
@@ -285,4 +285,4 @@ TEST(DrawStates, RandomScenesOfCosimHaveEveryValueThatRidesWithThePrimitive) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::draw_states_test

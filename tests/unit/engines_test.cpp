@@ -8,7 +8,7 @@
 #include "model/engines/scalar.hpp"
 #include "sim/scene/builtin.hpp"
 
-namespace halfplane {
+namespace halfplane::engines_test {
 namespace {
 
 using test::at;
@@ -339,4 +339,4 @@ TEST(Engines, SceneWithoutAClearStartsFarAndBlack) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::engines_test

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace halfplane {
+namespace halfplane::exact_test {
 namespace {
 
 /// Coordinates in half pixels: grid_bits = 1.
@@ -95,4 +95,4 @@ TEST(Exact, ColorPlaneReadsItsOwnChannel) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::exact_test

@@ -21,7 +21,7 @@
 #include "sim/study/explain/line_walk.hpp"
 #include "sim/study/explain/verify.hpp"
 
-namespace halfplane::explain {
+namespace halfplane::explain::explain_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 26;
@@ -444,4 +444,4 @@ TEST(Explain, PixelsOutsideAreRefused) {
 }
 
 }  // namespace
-}  // namespace halfplane::explain
+}  // namespace halfplane::explain::explain_test

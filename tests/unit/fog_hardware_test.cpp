@@ -13,7 +13,7 @@
 #include "model/packets/state_packets.hpp"
 #include "sim/cosim/random_scene.hpp"
 
-namespace halfplane {
+namespace halfplane::fog_hardware_test {
 namespace {
 
 using test::with;
@@ -151,4 +151,4 @@ TEST(FogHardware, RefusesByNameWhatItHasNoUnitFor) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::fog_hardware_test

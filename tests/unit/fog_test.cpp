@@ -17,7 +17,7 @@
 #include "sim/scene/random_state.hpp"
 #include "sim/study/compare/compare.hpp"
 
-namespace halfplane {
+namespace halfplane::fog_test {
 namespace {
 
 using test::expect_all_same;
@@ -354,4 +354,4 @@ TEST(Fog, ADistanceThatIsNoneIsRefusedAndSaysHow) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::fog_test

@@ -11,7 +11,7 @@
 #include "sim/scene/random_state.hpp"
 #include "tests/scene_builder.hpp"
 
-namespace halfplane {
+namespace halfplane::fragment_ops_test {
 namespace {
 
 using test::Random;
@@ -253,4 +253,4 @@ TEST(Blend, LanesDoWhatTheScalarInstanceDoes) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::fragment_ops_test

@@ -12,7 +12,7 @@
 #include "tests/hardware_scene.hpp"
 #include "tests/scene_builder.hpp"
 
-namespace halfplane {
+namespace halfplane::frame_bins_test {
 namespace {
 
 using test::at;
@@ -225,4 +225,4 @@ TEST_F(ClearsInBins, OneInsideAScissorIsCutToItsBins) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::frame_bins_test

@@ -14,7 +14,7 @@
 #include "sim/scene/random_state.hpp"
 #include "sim/study/stress/unit.hpp"
 
-namespace halfplane {
+namespace halfplane::functional_samples_test {
 namespace {
 
 Config sampled(std::string_view name, int samples, std::string_view pattern = "standard") {
@@ -237,4 +237,4 @@ TEST(FunctionalSamples, BuiltInScenesAreTheScalarEngines) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::functional_samples_test

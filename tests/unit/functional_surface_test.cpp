@@ -14,7 +14,7 @@
 #include "sim/scene/builtin.hpp"
 #include "sim/scene/random_state.hpp"
 
-namespace halfplane {
+namespace halfplane::functional_surface_test {
 namespace {
 
 using test::expect_all_same;
@@ -474,4 +474,4 @@ TEST(FunctionalSurface, SmallTrianglesOfUsualDrawsAreSetUpInLanes) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::functional_surface_test

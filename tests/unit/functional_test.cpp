@@ -15,7 +15,7 @@
 #include "sim/scene/depth_mapping.hpp"
 #include "sim/scene/random_state.hpp"
 
-namespace halfplane {
+namespace halfplane::functional_test {
 namespace {
 
 using test::expect_all_same;
@@ -544,4 +544,4 @@ TEST(Functional, TheFirstErrorIsReportedWhateverTheThreads) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::functional_test

@@ -10,7 +10,7 @@
 #include "sim/scene/gltf.hpp"
 #include "tests/gltf_builder.hpp"
 
-namespace halfplane {
+namespace halfplane::gltf_animation_test {
 namespace {
 
 using test::GltfBuilder;
@@ -174,4 +174,4 @@ TEST(GltfAnimation, WhatIsNoneIsRefusedWithItsPlace) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::gltf_animation_test

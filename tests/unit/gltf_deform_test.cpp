@@ -10,7 +10,7 @@
 #include "sim/scene/gltf.hpp"
 #include "tests/gltf_builder.hpp"
 
-namespace halfplane {
+namespace halfplane::gltf_deform_test {
 namespace {
 
 using test::GltfBuilder;
@@ -247,4 +247,4 @@ TEST(GltfMorph, WhatIsNoneIsRefusedWithItsPlace) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::gltf_deform_test

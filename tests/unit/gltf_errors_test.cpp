@@ -7,7 +7,7 @@
 #include "sim/scene/gltf.hpp"
 #include "tests/gltf_builder.hpp"
 
-namespace halfplane {
+namespace halfplane::gltf_errors_test {
 namespace {
 
 using test::GltfBuilder;
@@ -220,4 +220,4 @@ TEST(GltfErrors, AFewBytesThatAskForBillionsOfTrianglesAreRefused) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::gltf_errors_test

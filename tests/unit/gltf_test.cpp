@@ -17,7 +17,7 @@
 #include "sim/show/image/framebuffer_files.hpp"
 #include "tests/gltf_builder.hpp"
 
-namespace halfplane {
+namespace halfplane::gltf_test {
 namespace {
 
 using test::GltfBuilder;
@@ -502,4 +502,4 @@ TEST(Gltf, FilesFindTheirBuffersBesideThem) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::gltf_test

@@ -8,11 +8,12 @@
 #include "model/golden/primitive_assembly.hpp"
 #include "model/host/primitive_assembly.hpp"
 
-namespace halfplane {
+namespace halfplane::golden_lines_test {
 namespace {
 
 using namespace test;
 using golden::Image;
+using test::Random;  // beside sim's, which another file of the unity build may include
 using GoldenLine = golden::Line<double>;
 
 constexpr golden::PixelRange kEverywhere{-10000, -10000, 10000, 10000};
@@ -459,4 +460,4 @@ TEST(GoldenOffset, IsClampedToTheDepthRangePixelByPixelAndLeavesLinesAlone) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::golden_lines_test

@@ -9,7 +9,7 @@
 #include "../scene_builder.hpp"
 #include "model/golden/fragment_buffer.hpp"
 
-namespace halfplane {
+namespace halfplane::golden_test {
 namespace {
 
 using golden::Image;
@@ -268,4 +268,4 @@ TEST(GoldenFragmentBuffer, RunsTheOperationsOfTheStateAndRoundsNothing) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::golden_test

@@ -10,7 +10,7 @@
 #include "model/golden/golden.hpp"
 #include "model/golden/interpolate.hpp"
 
-namespace halfplane {
+namespace halfplane::golden_texture_test {
 namespace {
 
 using golden::Image;
@@ -234,4 +234,4 @@ TEST(GoldenTexture, ClippingDoesNotMoveTheTexture) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::golden_texture_test

@@ -9,7 +9,7 @@
 #include "sim/cosim/random_scene.hpp"
 #include "tests/hardware_scene.hpp"
 
-namespace halfplane {
+namespace halfplane::hardware_lines_test {
 namespace {
 
 using test::with;
@@ -184,4 +184,4 @@ TEST(HardwareLines, AConfigurationWithoutTheUnitRefusesLinesInOneLine) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::hardware_lines_test

@@ -22,7 +22,7 @@
 #include "sim/study/vertices.hpp"
 #include "tests/packet_values.hpp"
 
-namespace halfplane {
+namespace halfplane::hardware_test {
 namespace {
 
 using test::at;
@@ -375,4 +375,4 @@ TEST(Hardware, EveryVisitEndsOnceWithItsLastStampAndRetiresOnce) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::hardware_test

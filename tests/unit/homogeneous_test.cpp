@@ -17,7 +17,7 @@
 #include "sim/scene/builtin.hpp"
 #include "sim/study/compare/double_draws.hpp"
 
-namespace halfplane {
+namespace halfplane::homogeneous_test {
 namespace {
 
 using test::clip_at;
@@ -492,4 +492,4 @@ TEST(Homogeneous, SkipChangesNothingAndWhatIsNotThereIsRefused) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::homogeneous_test

@@ -15,7 +15,7 @@
 #include "model/fixed.hpp"
 #include "sim/scene/builtin.hpp"
 
-namespace halfplane {
+namespace halfplane::host_geometry_test {
 namespace {
 
 using test::clip_at;
@@ -439,4 +439,4 @@ TEST(HostGeometry, PicturesOfSmallerNumbersAreNearlyTheSame) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::host_geometry_test

@@ -15,7 +15,7 @@
 #define STBI_ONLY_PNG
 #include <stb_image.h>
 
-namespace halfplane {
+namespace halfplane::image_files_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -274,4 +274,4 @@ TEST(Hash, IsSixteenLowercaseHexDigitsWithLeadingZeros) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::image_files_test

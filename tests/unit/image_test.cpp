@@ -9,7 +9,7 @@
 #include "sim/show/image/panel.hpp"
 #include "sim/show/image/terminal.hpp"
 
-namespace halfplane {
+namespace halfplane::image_test {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -324,4 +324,4 @@ TEST(Terminal, ExtremeShapesStillGiveOneLine) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::image_test

@@ -7,7 +7,7 @@
 
 #include "../perspective_case.hpp"
 
-namespace halfplane {
+namespace halfplane::level_of_detail_test {
 namespace {
 
 using test::OverWRandom;
@@ -165,4 +165,4 @@ TEST(LevelOfDetail, LevelsAreChosenAsOpenGLSays) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::level_of_detail_test

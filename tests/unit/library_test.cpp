@@ -15,7 +15,7 @@
 #include "sim/scene/builtin.hpp"
 #include "sim/scene/random.hpp"
 
-namespace halfplane {
+namespace halfplane::library_test {
 namespace {
 
 /// As many inputs as HALFPLANE_API_INPUTS says, for the sanitizers: ./dev test --preset asan-ubsan -R AnyScene
@@ -271,4 +271,4 @@ TEST(Library, ATargetRefusesMemoryThatItsRowsDoNotFit) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::library_test

@@ -9,7 +9,7 @@
 #include "model/golden/light.hpp"
 #include "sim/scene/random.hpp"
 
-namespace halfplane {
+namespace halfplane::light_test {
 namespace {
 
 using golden::Real3;
@@ -165,4 +165,4 @@ TEST(Light, WhatIsKnownWithoutArithmetic) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::light_test

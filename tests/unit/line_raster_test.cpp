@@ -6,10 +6,11 @@
 #include "model/packets/packet_words.hpp"
 #include "tests/packet_values.hpp"
 
-namespace halfplane {
+namespace halfplane::line_raster_test {
 namespace {
 
 using namespace test;
+using test::Random;  // beside sim's, which another file of the unity build may include
 
 /// The midpoint loop of the books for 0 <= slope <= 1, drawn from left to right, literally: f(x + 1, y + 1/2).
 Positions midpoint_loop(int x0, int y0, int x1, int y1) {
@@ -475,4 +476,4 @@ TEST(Point, ARoundOneCoversThePixelsOfItsSquareWhoseCentresLieInItsDisc) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::line_raster_test

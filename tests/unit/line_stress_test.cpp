@@ -1,10 +1,11 @@
 // The long and the many: item 19 of the stress list at full length, and lines in random configurations.
 #include "../line_builder.hpp"
 
-namespace halfplane {
+namespace halfplane::line_stress_test {
 namespace {
 
 using namespace test;
+using test::Random;  // beside sim's, which another file of the unity build may include
 
 /// (u, v) in one of the eight octants.
 SnappedVertex in_octant(int u, int v, int octant) {
@@ -132,4 +133,4 @@ TEST(StressLine, RandomLinesInRandomConfigurationsEqualTheOracle) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::line_stress_test

@@ -8,7 +8,7 @@
 
 #include "../hardware_scene.hpp"
 
-namespace halfplane {
+namespace halfplane::memory_port_test {
 namespace {
 
 using test::with;
@@ -219,4 +219,4 @@ TEST(MemoryPort, ARowOfFlagsIsOneBurst) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::memory_port_test

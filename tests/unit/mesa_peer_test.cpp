@@ -20,7 +20,7 @@
 #include "sim/show/image/framebuffer_files.hpp"
 #include "sim/study/bench/engines.hpp"
 
-namespace halfplane {
+namespace halfplane::mesa_peer_test {
 namespace {
 
 constexpr int kWidth = 96, kHeight = 64;
@@ -241,4 +241,4 @@ TEST_F(MesaPeerTest, PeersOfDifferentThreadCountsLiveSideBySide) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::mesa_peer_test

@@ -14,7 +14,7 @@
 #include "sim/scene/obj.hpp"
 #include "sim/scene/random.hpp"
 
-namespace halfplane {
+namespace halfplane::mesh_light_test {
 namespace {
 
 using Rgba = std::array<double, 4>;
@@ -349,4 +349,4 @@ TEST(GltfLight, BrokenLightsAreRefusedWithTheirPlace) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::mesh_light_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace halfplane {
+namespace halfplane::mesh_scene_test {
 namespace {
 
 /// Squares that face the camera, one object each, at these distances along z.
@@ -64,4 +64,4 @@ TEST(MeshScene, OpacityBecomesAlphaTestAndBlending) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::mesh_scene_test

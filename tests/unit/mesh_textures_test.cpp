@@ -17,7 +17,7 @@
 #include "sim/show/image/png.hpp"
 #include "tests/gltf_builder.hpp"
 
-namespace halfplane {
+namespace halfplane::mesh_textures_test {
 namespace {
 
 using test::GltfBuilder;
@@ -397,4 +397,4 @@ TEST(MeshTextures, ATriangleThatIsClippedKeepsItsPlaceOnTheTexture) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::mesh_textures_test

@@ -21,7 +21,7 @@
 #include "sim/study/compare/compare.hpp"
 #include "sim/study/stress/unit.hpp"
 
-namespace halfplane {
+namespace halfplane::multisample_test {
 namespace {
 
 Config sampled(std::string_view name, int samples, std::string_view pattern = "standard") {
@@ -415,4 +415,4 @@ TEST(CompareSamplesMustFail, ADamagedSampleAndAWrongMeanAreReported) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::multisample_test

@@ -4,7 +4,7 @@
 
 #include <array>
 
-namespace halfplane {
+namespace halfplane::nearest_word_test {
 namespace {
 
 constexpr std::array<std::string_view, 4> kWords{"tiny", "small", "embedded", "full"};
@@ -31,4 +31,4 @@ TEST(NearestWord, TheHintIsAQuestion) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::nearest_word_test

@@ -12,7 +12,7 @@
 #include "sim/scene/polygon.hpp"
 #include "sim/scene/random.hpp"
 
-namespace halfplane {
+namespace halfplane::obj_test {
 namespace {
 
 struct Parsed {
@@ -408,4 +408,4 @@ TEST(Obj, FilesFindTheirLibraryBesideThemselvesAndMissingFilesAreNamed) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::obj_test

@@ -18,7 +18,7 @@
 #include "sim/scene/mesh_scene.hpp"
 #include "sim/scene/random.hpp"
 
-namespace halfplane {
+namespace halfplane::object_cull_test {
 namespace {
 
 Rendering draw(const Scene& scene) {
@@ -169,4 +169,4 @@ TEST(ObjectCull, AWordThatIsNoneIsRefused) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::object_cull_test

@@ -12,10 +12,11 @@
 #include "model/golden/golden.hpp"
 #include "model/host/primitives.hpp"
 
-namespace halfplane {
+namespace halfplane::outline_test {
 namespace {
 
 using namespace test;
+using test::Random;  // beside sim's, which another file of the unity build may include
 
 using Indices = std::vector<std::uint32_t>;
 constexpr auto R = kRestart;
@@ -318,4 +319,4 @@ TEST(PolygonOffset, TheConstantIsInCodesAndTheFactorMultipliesTheSteeperSlope) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::outline_test

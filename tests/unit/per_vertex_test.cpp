@@ -11,7 +11,7 @@
 #include "sim/study/compare/compare.hpp"
 #include "sim/study/compare/per_vertex.hpp"
 
-namespace halfplane {
+namespace halfplane::per_vertex_test {
 namespace {
 
 using test::with;
@@ -100,4 +100,4 @@ TEST(PerVertex, HardwareThatCannotHaveTheUnitIsSaidSo) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::per_vertex_test

@@ -9,7 +9,7 @@
 #include "../perspective_case.hpp"
 #include "model/stages/reciprocal.hpp"
 
-namespace halfplane {
+namespace halfplane::perspective_test {
 namespace {
 
 using test::OverWRandom;
@@ -297,4 +297,4 @@ TEST(Perspective, ItsWidthsAreThoseOfTheContract) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::perspective_test

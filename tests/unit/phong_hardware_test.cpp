@@ -14,7 +14,7 @@
 #include "model/stages/light_unit.hpp"
 #include "sim/cosim/random_scene.hpp"
 
-namespace halfplane {
+namespace halfplane::phong_hardware_test {
 namespace {
 
 using test::with;
@@ -169,4 +169,4 @@ TEST(PhongHardware, RefusesByNameWhatItHasNoUnitFor) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::phong_hardware_test

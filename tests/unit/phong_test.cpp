@@ -20,7 +20,7 @@
 #include "sim/scene/mesh_scene.hpp"
 #include "sim/study/compare/compare.hpp"
 
-namespace halfplane {
+namespace halfplane::phong_test {
 namespace {
 
 using test::expect_all_same;
@@ -542,4 +542,4 @@ TEST(Phong, ANormalThatCannotBeDividedIsRefused) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::phong_test

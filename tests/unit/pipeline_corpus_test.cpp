@@ -11,7 +11,7 @@
 #include "halfplane_paths.hpp"
 #include "sim/scene/random.hpp"
 
-namespace halfplane {
+namespace halfplane::pipeline_corpus_test {
 namespace {
 
 TEST(PipelineCorpus, EveryInputHolds) {
@@ -59,4 +59,4 @@ TEST(PipelineCorpus, ADifferenceIsSeen) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::pipeline_corpus_test

@@ -12,7 +12,7 @@
 
 #include "model/engines/cycle/stage_table.hpp"
 
-namespace halfplane {
+namespace halfplane::pipeline_graph_test {
 namespace {
 
 const std::filesystem::path kRoot = HALFPLANE_SOURCE_DIR;
@@ -82,4 +82,4 @@ TEST(PipelineGraph, AStallKeepsItsNumber) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::pipeline_graph_test

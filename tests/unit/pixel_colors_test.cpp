@@ -8,7 +8,7 @@
 #include "model/engines/scalar.hpp"
 #include "model/stages/pixel_colors.hpp"
 
-namespace halfplane {
+namespace halfplane::pixel_colors_test {
 namespace {
 
 using test::at;
@@ -133,4 +133,4 @@ TEST(PixelColors, WantSeveralSamplesInMemory) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::pixel_colors_test

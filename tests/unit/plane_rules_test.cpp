@@ -14,7 +14,7 @@
 #include "model/golden/exact.hpp"
 #include "sim/study/compare/compare.hpp"
 
-namespace halfplane {
+namespace halfplane::plane_rules_test {
 namespace {
 
 using test::Random;
@@ -273,4 +273,4 @@ TEST(PlaneRules, SaturatedPlanesAreTheSameByEveryTraversal) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::plane_rules_test

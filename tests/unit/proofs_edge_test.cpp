@@ -9,7 +9,7 @@
 #include "model/stages/triangle_setup.hpp"
 #include "model/study/fill_rule.hpp"
 
-namespace halfplane {
+namespace halfplane::proofs_edge_test {
 namespace {
 
 using test::is_whole;
@@ -205,4 +205,4 @@ TEST(Proofs, ReciprocalOfEveryAreaIsTheNearestAndInItsRange) {
 TEST(ProofsMustFail, ReciprocalsRoundedDownAreNotTheNearest) { EXPECT_GT(bad_reciprocals(0), 0U); }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::proofs_edge_test

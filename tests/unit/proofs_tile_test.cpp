@@ -9,7 +9,7 @@
 #include "model/stages/fine_raster.hpp"
 #include "model/stages/fragment_ops.hpp"
 
-namespace halfplane {
+namespace halfplane::proofs_tile_test {
 namespace {
 
 using test::is_whole;
@@ -218,4 +218,4 @@ TEST(ProofsMustFail, HizThatTakesLequalForLessRejectsWhatWouldPass) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::proofs_tile_test

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace halfplane {
+namespace halfplane::reciprocal_test {
 namespace {
 
 /// How many mantissas of k bits an algorithm has, and of how many its result is not the floor, by multiplication.
@@ -88,4 +88,4 @@ TEST(ReciprocalMustFail, WithoutItsCorrectionNeitherLaneNorTableIsTheFloor) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::reciprocal_test

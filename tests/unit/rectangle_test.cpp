@@ -13,7 +13,7 @@
 #include "model/host/primitives.hpp"
 #include "sim/study/compare/compare.hpp"
 
-namespace halfplane {
+namespace halfplane::rectangle_test {
 namespace {
 
 using test::at;
@@ -295,4 +295,4 @@ TEST(RectanglesMustFail, TheOracleNoticesASampleOfOneThatIsMissingOrDrawnTwice) 
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::rectangle_test

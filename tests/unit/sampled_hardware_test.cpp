@@ -15,7 +15,7 @@
 #include "sim/show/image/framebuffer_files.hpp"
 #include "sim/show/report/hardware.hpp"
 
-namespace halfplane {
+namespace halfplane::sampled_hardware_test {
 namespace {
 
 Config hardware(std::string_view name, int samples, std::string_view pattern = "standard", bool has_units = false) {
@@ -267,4 +267,4 @@ TEST(SampledHardware, MeansWantFramesWhoseBlocksLeaveOnce) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::sampled_hardware_test

@@ -17,7 +17,7 @@
 #include "sim/study/antialiasing/exact_area.hpp"
 #include "sim/study/compare/compare.hpp"
 
-namespace halfplane {
+namespace halfplane::smooth_test {
 namespace {
 
 using test::at;
@@ -214,4 +214,4 @@ TEST(Smooth, WithoutAlphaToSeeItTheyAreEveryPixelTheyTouch) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::smooth_test

@@ -14,7 +14,7 @@
 #include "model/study/fill_rule.hpp"
 #include "model/study/homogeneous_setup.hpp"
 
-namespace halfplane {
+namespace halfplane::stage_corners_test {
 namespace {
 
 std::string refusal(const WindowPosition& p, const Config& config) {
@@ -287,4 +287,4 @@ TEST(LineRaster, EveryFieldOfAPixelHasTheWidthOfWhatItHolds) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::stage_corners_test

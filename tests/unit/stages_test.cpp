@@ -19,7 +19,7 @@
 #include "sim/cosim/arrows.hpp"
 #include "tests/packet_values.hpp"
 
-namespace halfplane {
+namespace halfplane::stages_test {
 namespace {
 
 using test::Random;
@@ -419,4 +419,4 @@ TEST(Packets, DifferenceNamesTheFieldAndTheElement) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::stages_test

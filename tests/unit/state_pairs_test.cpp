@@ -14,7 +14,7 @@
 #include "model/engines/scalar.hpp"
 #include "sim/cosim/random_scene.hpp"
 
-namespace halfplane {
+namespace halfplane::state_pairs_test {
 namespace {
 
 using test::Dimension;
@@ -84,4 +84,4 @@ TEST(StatePairs, AFewScenesDrawEveryPairAndAllEnginesDrawThemAlike) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::state_pairs_test

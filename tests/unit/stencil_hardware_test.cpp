@@ -13,7 +13,7 @@
 #include "model/host/primitive_stream.hpp"
 #include "sim/cosim/random_scene.hpp"
 
-namespace halfplane {
+namespace halfplane::stencil_hardware_test {
 namespace {
 
 using test::with;
@@ -289,4 +289,4 @@ TEST(StencilHardware, WithoutOneItIsRefusedByName) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::stencil_hardware_test

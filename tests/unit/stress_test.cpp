@@ -14,7 +14,7 @@
 #include "sim/study/stress/shapes.hpp"
 #include "sim/study/stress/triangle_families.hpp"
 
-namespace halfplane::stress {
+namespace halfplane::stress::stress_test {
 namespace {
 
 std::vector<CaseResult> run_one(std::string_view name, const Engine& engine, std::uint64_t unit) {
@@ -393,4 +393,4 @@ TEST(SuiteRun, TheSameWhateverTheNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace halfplane::stress
+}  // namespace halfplane::stress::stress_test

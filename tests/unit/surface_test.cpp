@@ -14,7 +14,7 @@
 #include "model/golden/golden.hpp"
 #include "model/host/primitive_stream.hpp"
 
-namespace halfplane {
+namespace halfplane::surface_test {
 namespace {
 
 using test::Random;
@@ -305,4 +305,4 @@ TEST(Surface, CoordinatesOfAnySizeAreDrawn) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::surface_test

@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-namespace halfplane {
+namespace halfplane::texture_filter_test {
 namespace {
 
 constexpr std::array kWraps{TextureWrap::repeat, TextureWrap::clamp, TextureWrap::mirror, TextureWrap::border,
@@ -297,4 +297,4 @@ TEST(TextureCombine, BlendIsRoundedExactly) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::texture_filter_test

@@ -17,7 +17,7 @@
 #include "model/stages/texture_packets.hpp"
 #include "sim/cosim/random_scene.hpp"
 
-namespace halfplane {
+namespace halfplane::texture_hardware_test {
 namespace {
 
 using test::with;
@@ -562,4 +562,4 @@ TEST(TexturedHardware, RefusesATriangleBehindTheEye) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::texture_hardware_test

@@ -6,7 +6,7 @@
 #include "model/capture/capture.hpp"
 #include "sim/study/compare/compare.hpp"
 
-namespace halfplane {
+namespace halfplane::texture_reach_test {
 namespace {
 
 /// A wall of one triangle, 1024 texels wide and `repeats` times as high, upright or in perspective.
@@ -45,4 +45,4 @@ TEST(TextureReach, IsSaidAndJudgedByABoundThatHolds) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::texture_reach_test

@@ -11,7 +11,7 @@
 #include "model/capture/capture.hpp"
 #include "model/config.hpp"
 
-namespace halfplane {
+namespace halfplane::texture_test {
 namespace {
 
 constexpr std::array<TextureFormat, 6> kPlainFormats{TextureFormat::l8,       TextureFormat::la88,
@@ -240,4 +240,4 @@ TEST(CaptureTextures, ASceneWithBrokenTexturesIsRefused) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::texture_test

@@ -8,7 +8,7 @@
 #include "model/engines/functional.hpp"
 #include "model/engines/scalar.hpp"
 
-namespace halfplane {
+namespace halfplane::tile_memory_test {
 namespace {
 
 using test::at;
@@ -476,4 +476,4 @@ TEST(HostStream, RefusesWhatTheHardwareDoesNotHave) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::tile_memory_test

@@ -12,7 +12,7 @@
 #include "sim/study/compare/compare.hpp"
 #include "sim/study/compare/double_draws.hpp"
 
-namespace halfplane {
+namespace halfplane::traversal_test {
 namespace {
 
 using test::at;
@@ -385,4 +385,4 @@ TEST(FillRules, FunctionalEngineRefusesWhatItDoesNotHave) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::traversal_test

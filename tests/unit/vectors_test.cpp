@@ -13,7 +13,7 @@
 #include "sim/vectors/check.hpp"
 #include "sim/vectors/vector_file.hpp"
 
-namespace halfplane::vectors {
+namespace halfplane::vectors::vectors_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 27;
@@ -241,4 +241,4 @@ TEST(Vectors, InputThatEndsEarlyIsRefused) {
 }
 
 }  // namespace
-}  // namespace halfplane::vectors
+}  // namespace halfplane::vectors::vectors_test

@@ -9,7 +9,7 @@
 #include "sim/scene/builtin.hpp"
 #include "sim/study/compare/transform_errors.hpp"
 
-namespace halfplane {
+namespace halfplane::vertex_transform_test {
 namespace {
 
 constexpr Mat4 kIdentity{Vec4{1, 0, 0, 0}, Vec4{0, 1, 0, 0}, Vec4{0, 0, 1, 0}, Vec4{0, 0, 0, 1}};
@@ -75,4 +75,4 @@ TEST(TransformErrors, TheSmallerTheNumbersTheLargerTheErrorsOfEachStep) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::vertex_transform_test

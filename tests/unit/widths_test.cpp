@@ -11,7 +11,7 @@
 #include "sim/study/widths/smallest.hpp"
 #include "sim/study/widths/study.hpp"
 
-namespace halfplane {
+namespace halfplane::widths_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 20240229;
@@ -334,4 +334,4 @@ TEST(SmallestConfiguration, BitsOverWAreThoseThatATextureNeeds) {
 }
 
 }  // namespace
-}  // namespace halfplane
+}  // namespace halfplane::widths_test
