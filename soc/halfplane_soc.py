@@ -1,22 +1,37 @@
 #!/usr/bin/env python3
-"""A system that draws, in LiteX: VexRiscv, integrated RAM, halfplane_core as slave and master of the bus, video pins.
+"""A system that draws, in LiteX: VexRiscv, memory, halfplane_core, a display.
 
-usage: halfplane_soc.py FIRMWARE.bin FOLDER    writes soc.v, the memories' contents and sources.txt into FOLDER
+Without SDRAM the memory is integrated RAM, and the core is a master of the Wishbone bus by LiteX's bridges. With SDRAM the
+core has a port of LiteDRAM of its own, by LiteDRAM's AXI frontend, and there is no cache between processor and SDRAM.
+
+usage: halfplane_soc.py FOLDER [sdram]    writes soc.v, the memories' contents, sources.txt and system.h into FOLDER; the
+processor's program is FOLDER/firmware.bin, if there is one. sdram: LiteDRAM with its model of SDRAM, and display.py
 """
 
 import pathlib
 import sys
 
+import display
+from litedram.frontend.axi import LiteDRAMAXI2Native
+from litedram.init import get_sdram_phy_init_sequence
+from litedram.modules import MT48LC16M16
+from litedram.phy.model import SDRAMPHYModel
 from litex.build.generic_platform import Pins, Subsignal
 from litex.build.sim import SimPlatform
 from litex.soc.integration.common import get_mem_data
+from litex.soc.integration.export import get_csr_header
 from litex.soc.integration.soc import SoCRegion
 from litex.soc.integration.soc_core import SoCCore
-from litex.soc.interconnect import axi
+from litex.soc.interconnect import axi, stream
 from migen import ClockDomain, ClockSignal, Instance, Module, ResetSignal, Signal
 
+MEMORY_BASE = 0x40000000
 CORE_BASE = 0x90000000  # registers of the core; uncached
 CORE_IRQ = 3
+CLOCK = 50_000_000
+# Bits of LiteDRAM's registers sdram_dfii_control and sdram_dfii_pi0_command, from bit 0 on
+CONTROLS = ["SEL", "CKE", "ODT", "RESET_N"]
+COMMANDS = ["CS", "WE", "CAS", "RAS", "WRDATA", "RDDATA"]
 
 IO = [
     ("clk", 0, Pins(1)),
@@ -45,7 +60,8 @@ IN = {"aw": "ready", "w": "ready", "b": "id resp valid", "ar": "ready", "r": "id
 class Core(Module):
     """halfplane_core.sv: registers on AXI-Lite, memory on AXI, video."""
 
-    def __init__(self, video):
+    def __init__(self):
+        self.video = video = stream.Endpoint(display.PIXEL)
         self.registers = axi.AXILiteInterface(data_width=32, address_width=32)
         self.memory = axi.AXIInterface(data_width=32, address_width=32, id_width=1)
         self.irq = Signal()
@@ -77,42 +93,86 @@ class Core(Module):
 
 
 class HalfplaneSoC(SoCCore):
-    def __init__(self, platform, firmware):
-        self.crg = Module()
-        self.crg.clock_domains.cd_sys = ClockDomain("sys")
-        self.comb += [
-            self.crg.cd_sys.clk.eq(platform.request("clk")),
-            self.crg.cd_sys.rst.eq(platform.request("reset")),
-        ]
+    """`sdram`: the PHY and the module that it is connected to."""
+
+    def __init__(self, platform, crg, firmware, clock=50_000_000, rom_size=0x20000, sram_size=0x8000, sdram=None):
+        self.crg = crg
         SoCCore.__init__(
             self,
             platform,
-            clk_freq=50_000_000,
+            clk_freq=clock,
             cpu_type="vexriscv",
             cpu_variant="standard",
             with_uart=False,
             with_timer=False,
             ident="",
-            integrated_rom_size=0x20000,
-            integrated_rom_init=get_mem_data(firmware, data_width=32, endianness="little"),
-            integrated_sram_size=0x8000,
-            integrated_main_ram_size=0x80000,
+            integrated_rom_size=rom_size,
+            integrated_rom_init=get_mem_data(firmware, data_width=32, endianness="little") if firmware else [],
+            integrated_sram_size=sram_size,
+            integrated_main_ram_size=0 if sdram else 0x80000,
         )
-        self.submodules.halfplane = Core(platform.request("video"))
+        self.submodules.halfplane = core = Core()
         self.irq.add("halfplane", n=CORE_IRQ)
-        self.bus.add_slave(
-            "halfplane", self.halfplane.registers, SoCRegion(origin=CORE_BASE, size=0x1000, cached=False)
-        )
-        self.bus.add_master("halfplane", master=self.halfplane.memory)
+        self.bus.add_slave("halfplane", core.registers, SoCRegion(origin=CORE_BASE, size=0x1000, cached=False))
+        if sdram:
+            self.submodules.sdrphy, module = sdram
+            self.add_sdram("sdram", phy=self.sdrphy, module=module, origin=MEMORY_BASE, l2_cache_size=0)
+            port = self.sdram.crossbar.get_port(data_width=32)
+            self.submodules += LiteDRAMAXI2Native(core.memory, port, base_address=MEMORY_BASE)
+        else:
+            self.bus.add_master("halfplane", master=core.memory)
+
+    def header(self):
+        """What the firmware knows of the system: addresses of LiteX's registers, and how the SDRAM is begun."""
+        text = get_csr_header(self.csr_regions, self.constants, with_access_functions=False)
+        if not hasattr(self, "sdram"):
+            return text
+        timing = self.sdram.controller.settings.timing
+        steps, _ = get_sdram_phy_init_sequence(self.sdrphy.settings, timing)
+        text += "".join(f"#define DFII_CONTROL_{name} {1 << bit}\n" for bit, name in enumerate(CONTROLS))
+        text += "".join(f"#define DFII_COMMAND_{name} {1 << bit}\n" for bit, name in enumerate(COMMANDS))
+        rows = (f"  {{{a}, {bank}, {command}, {int('CONTROL' in command)}, {delay}}}, /* {what} */"
+                for what, a, bank, command, delay in steps)
+        return text + "\n".join(
+            ["static const struct { uint16_t address; uint8_t bank, word, is_control; uint16_t delay; } sdram_steps[] = {",
+             *rows, "};", ""])
+
+
+def write(soc, platform, folder, name, **options):
+    """The Verilog and what belongs to it."""
+    soc.finalize()
+    (folder / "system.h").write_text("/* Generated by soc/. */\n#include <stdint.h>\n" + soc.header())
+    platform.get_verilog(soc, name=name, **options).write(str(folder / f"{name}.v"))
+    (folder / "sources.txt").write_text("".join(f"{source[0]}\n" for source in platform.sources))
 
 
 def main():
-    firmware, folder = sys.argv[1], pathlib.Path(sys.argv[2])
+    folder, with_sdram = pathlib.Path(sys.argv[1]), sys.argv[2:] == ["sdram"]
+    firmware = folder / "firmware.bin"
     platform = SimPlatform("SIM", list(IO))
-    soc = HalfplaneSoC(platform, firmware)
-    soc.finalize()
-    platform.get_verilog(soc, name="soc", regs_init=True).write(str(folder / "soc.v"))
-    (folder / "sources.txt").write_text("".join(f"{source[0]}\n" for source in platform.sources))
+    crg = Module()
+    crg.clock_domains.cd_sys = ClockDomain("sys")
+    crg.comb += [crg.cd_sys.clk.eq(platform.request("clk")), crg.cd_sys.rst.eq(platform.request("reset"))]
+    sdram = None
+    if with_sdram:
+        module = MT48LC16M16(CLOCK, "1:1")
+        sdram = SDRAMPHYModel(module, data_width=32, clk_freq=CLOCK), module
+    soc = HalfplaneSoC(platform, crg, str(firmware) if firmware.exists() else None, CLOCK, sdram=sdram)
+    video, pads = soc.halfplane.video, platform.request("video")
+    if with_sdram:
+        soc.submodules.display = shown = display.Display(display.SIMULATED)
+        soc.comb += [
+            video.connect(shown.sink),
+            shown.source.ready.eq(pads.ready),
+            pads.valid.eq(shown.source.valid & shown.is_pixel),
+            pads.data.eq(shown.pixel.data),
+            pads.user.eq(shown.pixel.user),
+            pads.last.eq(shown.pixel.last),
+        ]
+    else:
+        soc.comb += [pads.valid.eq(video.valid), video.ready.eq(pads.ready)]
+        soc.comb += [getattr(pads, name).eq(getattr(video, name)) for name in ("data", "user", "last")]
+    write(soc, platform, folder, "soc", regs_init=True)
 
 
 if __name__ == "__main__":

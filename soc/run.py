@@ -2,8 +2,9 @@
 """Builds and simulates the system of soc/: the firmware with the driver, LiteX's SoC around halfplane_core, a display.
 What is scanned out must be, bit for bit and in order, what `halfplane render` draws of the same scene and cameras.
 
-usage: run.py HALFPLANE FOLDER [plain]    with build/python's python; FOLDER is made. The status is 1 when a picture differs.
+usage: run.py HALFPLANE FOLDER [plain] [sdram]    with build/python's python; FOLDER is made. The status is 1 when a picture differs.
 plain: the core is the plain Verilog that Yosys makes of it (tools/plain_verilog.sh), so Yosys reads what Verilator reads.
+sdram: memory is LiteDRAM with its model of SDRAM, and pixels pass through display.py.
 """
 
 import os
@@ -42,10 +43,12 @@ def halfplane(program, *words):
     return subprocess.run([program, *map(str, words)], capture_output=True, text=True)
 
 
-def build(program, folder, is_plain):
+def build(program, folder, is_plain, memory):
     (folder / "raster_pkg.sv").write_text(halfplane(program, "config", *CONFIG, "--sv").stdout)
     (folder / "halfplane_config.h").write_text(halfplane(program, "config", *CONFIG, "--c-header").stdout)
     run([sys.executable, HERE / "scene.py", program, folder], folder, "scene")
+    (folder / "firmware.bin").unlink(missing_ok=True)
+    run([sys.executable, HERE / "halfplane_soc.py", folder, *memory], folder, "litex")  # the firmware wants its header
     run(
         [
             *GCC.split(),
@@ -68,7 +71,7 @@ def build(program, folder, is_plain):
         "firmware",
     )
     run(["riscv64-unknown-elf-objcopy", "-O", "binary", "firmware.elf", "firmware.bin"], folder, "objcopy")
-    run([sys.executable, HERE / "halfplane_soc.py", "firmware.bin", folder], folder, "litex")
+    run([sys.executable, HERE / "halfplane_soc.py", folder, *memory], folder, "litex")
     core = [folder / "raster_pkg.sv", ROOT / "core/core_pkg.sv", ROOT / "core/halfplane_core.sv"]
     if is_plain:
         core = [folder / "halfplane_core.v"]
@@ -114,7 +117,8 @@ def main():
     folder.mkdir(parents=True, exist_ok=True)
     for old in folder.glob("picture_*"):
         old.unlink()
-    build(program, folder, is_plain=sys.argv[3:] == ["plain"])
+    options = sys.argv[3:]
+    build(program, folder, "plain" in options, ["sdram"] if "sdram" in options else [])
     run(["obj/simulation", f"+pictures={scene.FRAMES}", f"+width={scene.WIDTH}"], folder, "simulation")
     print((folder / "simulation.log").read_text(), end="")
     equal = 0

@@ -3,6 +3,7 @@
 #include "halfplane.h"
 #include "halfplane_registers.h"
 #include "scene.h"
+#include "system.h"
 
 /* A register by its name; the struct is packed, so it is not read through. */
 #define CORE(name) (*(volatile uint32_t*)(0x90000000u + offsetof(halfplane_t, name)))
@@ -18,7 +19,7 @@
 #define BUFFER (STRIDE * TILES(SCENE_HEIGHT))
 #define FLAGS ((SCENE_HEIGHT / 4 + 1u) << HALFPLANE_FLAG_ROW_SHIFT)
 #define BUFFERS (MEMORY + 0x10000u)
-#define TEXTURE 0x70000u /* from MEMORY on */
+#define TEXTURE 0x8000u /* from MEMORY on */
 
 static hp_context context;
 static volatile uint32_t fence;
@@ -91,10 +92,37 @@ static void draw(uint32_t frame) {
   (void)submit(hp_written(&context));
 }
 
+#ifdef CSR_SDRAM_BASE
+#define REGISTER(address) (*(volatile uint32_t*)(address))
+
+static void delay(uint32_t turns) {
+  while (turns--) __asm__ volatile("nop");
+}
+
+/* What LiteX's BIOS does: the steps of the SDRAM's data sheet, then LiteDRAM's controller has it. */
+static void begin_sdram(void) {
+  for (uint32_t step = 0; step < sizeof sdram_steps / sizeof *sdram_steps; ++step) {
+    REGISTER(CSR_SDRAM_DFII_PI0_ADDRESS_ADDR) = sdram_steps[step].address;
+    REGISTER(CSR_SDRAM_DFII_PI0_BADDRESS_ADDR) = sdram_steps[step].bank;
+    if (sdram_steps[step].is_control) {
+      REGISTER(CSR_SDRAM_DFII_CONTROL_ADDR) = sdram_steps[step].word;
+    } else {
+      REGISTER(CSR_SDRAM_DFII_PI0_COMMAND_ADDR) = sdram_steps[step].word;
+      REGISTER(CSR_SDRAM_DFII_PI0_COMMAND_ISSUE_ADDR) = 1;
+    }
+    delay(sdram_steps[step].delay);
+  }
+  REGISTER(CSR_SDRAM_DFII_CONTROL_ADDR) = DFII_CONTROL_SEL;
+}
+#endif
+
 int main(void) {
   const hp_stream ring = {(uint32_t*)RING, RING_WORDS, wait_for_room, NULL};
   if (CORE(CONFIG_ID_LOW) != (uint32_t)hp_config_id() || CORE(CONFIG_ID_HIGH) != (uint32_t)(hp_config_id() >> 32))
     return 1;
+#ifdef CSR_SDRAM_BASE
+  begin_sdram();
+#endif
   CORE(RING_BASE) = RING;
   CORE(RING_SIZE) = RING_WORDS - 1;
   CORE(SCAN_SIZE) = (SCENE_WIDTH - 1) | (uint32_t)(SCENE_HEIGHT - 1) << 16;

@@ -1,0 +1,45 @@
+"""A display: pixels of the core in the time of a screen, with its sync signals, in front of a PHY of LiteX."""
+
+from litex.soc.cores.video import VideoTimingGenerator, video_data_layout
+from litex.soc.interconnect import stream
+from migen import ClockDomainsRenamer, If, Module, Signal
+
+PIXEL = [("data", 24), ("user", 1)]  # red highest; user: the first of a frame. The last of a line is `last`
+SIMULATED = {
+    "pix_clk": 0,
+    "h_active": 96,
+    "h_blanking": 32,
+    "h_sync_offset": 8,
+    "h_sync_width": 8,
+    "v_active": 72,
+    "v_blanking": 8,
+    "v_sync_offset": 2,
+    "v_sync_width": 2,
+}
+
+
+class Display(Module):
+    """A pixel that is late is black, and its frame is in step again from the next vertical sync on: what is left of the old
+    frame is thrown away there, and no pixel of the next one is shown before its time."""
+
+    def __init__(self, timings, clock_domain="sys"):
+        self.sink = stream.Endpoint(PIXEL)
+        self.source = source = stream.Endpoint(video_data_layout)
+        self.is_pixel = Signal()  # source is a pixel of the core
+        self.submodules.timing = ClockDomainsRenamer(clock_domain)(VideoTimingGenerator(timings))
+        self.submodules.crossing = stream.ClockDomainCrossing(PIXEL, cd_from="sys", cd_to=clock_domain, depth=16)
+        time, self.pixel = self.timing.source, self.crossing.source
+        pixel, wants_first = self.pixel, Signal()
+        self.comb += [
+            self.sink.connect(self.crossing.sink),
+            source.valid.eq(time.valid),
+            time.ready.eq(source.ready),
+            source.hsync.eq(time.hsync),
+            source.vsync.eq(time.vsync),
+            source.de.eq(time.de),
+            self.is_pixel.eq(time.de & pixel.valid & (pixel.user == wants_first)),
+            If(self.is_pixel, source.r.eq(pixel.data[16:]), source.g.eq(pixel.data[8:16]), source.b.eq(pixel.data[:8])),
+            pixel.ready.eq((self.is_pixel & source.valid & source.ready) | (wants_first & ~pixel.user)),
+        ]
+        sync = getattr(self.sync, clock_domain)
+        sync += If(time.vsync, wants_first.eq(1)).Elif(self.is_pixel & source.valid & source.ready, wants_first.eq(0))
