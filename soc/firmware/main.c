@@ -65,7 +65,9 @@ static uint32_t wait_for_room(void* user, uint32_t written) {
   return read;
 }
 
+#if HALFPLANE_TEXTURE_UNIT
 static const hp_texture texture = {TEXTURE, HP_RGBA8888, SCENE_LOG2_TEXELS, SCENE_LOG2_TEXELS, 1};
+#endif
 
 static void draw(uint32_t frame) {
   const uint32_t back = frame & 1u, color = BUFFERS + PLANE + back * BUFFER, flags = BUFFERS + 3 * BUFFER;
@@ -74,13 +76,15 @@ static void draw(uint32_t frame) {
   const hp_vertices mesh = {scene_position, scene_color, scene_texcoord, 12, 4, 8, 0};
   hp_state state = hp_default_state();
   hp_set_target(&context, &target);
-  hp_set_matrices(&context, scene_view[frame], scene_projection);
+  hp_set_matrices(&context, scene_view[frame % SCENE_FRAMES], scene_projection);
   hp_clear(&context, HP_CLEAR_DEPTH | HP_CLEAR_COLOR, SCENE_CLEAR, HP_DEPTH_ONE, 0);
+#if HALFPLANE_TEXTURE_UNIT
   state.texture = &texture;
   state.is_linear = 1;
   hp_set_state(&context, &state);
   hp_draw(&context, HP_TRIANGLES, &mesh, scene_floor, SCENE_FLOOR);
   state.texture = NULL;
+#endif
   hp_set_state(&context, &state);
   hp_draw(&context, HP_TRIANGLES, &mesh, scene_triangles, SCENE_TRIANGLES);
   hp_draw(&context, HP_LINES, &mesh, scene_lines, SCENE_LINES);
@@ -131,8 +135,10 @@ int main(void) {
   enable_interrupts();
   hp_init(&context);
   hp_begin(&context, &ring);
+#if HALFPLANE_TEXTURE_UNIT
   hp_upload_texture(&context, (void*)(MEMORY + TEXTURE), &texture, scene_texels);
-  for (uint32_t frame = 0; frame < SCENE_FRAMES; ++frame) {
+#endif
+  for (uint32_t frame = 0; SCENE_IS_ENDLESS || frame < SCENE_FRAMES; ++frame) {
     draw(frame);
     wait_for(frame + 1);
     CORE(SCAN_CONTROL) = HALFPLANE__SCAN_CONTROL__ENABLE_bm; /* from the first picture on */

