@@ -52,14 +52,14 @@ IO = [
 class HalfplaneSoC(SoCCore):
     """`sdram`: the PHY and the module that it is connected to."""
 
-    def __init__(self, platform, crg, firmware, clock=50_000_000, rom_size=0x20000, sram_size=0x8000, sdram=None):
+    def __init__(self, platform, crg, firmware, clock, variant="standard", rom_size=0x20000, sram_size=0x8000, sdram=None):
         self.crg = crg
         SoCCore.__init__(
             self,
             platform,
             clk_freq=clock,
             cpu_type="vexriscv",
-            cpu_variant="standard",
+            cpu_variant=variant,
             with_uart=False,
             with_timer=False,
             ident="",

@@ -126,7 +126,7 @@ def main():
     faces = [0, 1, 2, 0, 2, 3]
     width, height, angles = WIDTH, HEIGHT, (0.3, 1.1, 1.9)[:FRAMES]
     if sys.argv[3:] == ["screen"]:
-        width, height, angles = 640, 480, [2 * math.pi * n / 128 for n in range(128)]
+        width, height, angles = 640, 480, [2 * math.pi * n / 64 for n in range(64)]
     eyes = [(DISTANCE * math.sin(angle), UP, DISTANCE * math.cos(angle)) for angle in angles]
     eyes = [tuple(round(c * 4096) / 4096 for c in eye) for eye in eyes]
 

@@ -25,6 +25,7 @@ SETTINGS = {
     "25F": [*SCREEN, "hiz.bits=8", "cache.lines=64", "counters.unit=0"],
 }
 CLOCKS = {"85F": 50_000_000, "25F": 50_000_000}
+PROCESSORS = {"85F": ("standard", 0xA000), "25F": ("lite", 0x8000)}  # VexRiscv's variant, bytes of ROM
 PARTS = {"85F": (83_640, 156, 208), "25F": (24_288, 28, 56)}  # places, multipliers, block RAMs
 SYNTH = "synth_ecp5 -top ulx3s -json ulx3s.json"
 
@@ -48,7 +49,8 @@ def generate(folder, device):
         crg,
         str(firmware) if firmware.exists() else None,
         clock,
-        rom_size=0xA000,
+        variant=PROCESSORS[device][0],
+        rom_size=PROCESSORS[device][1],
         sram_size=0x2000,
         sdram=sdram,
     )

