@@ -19,7 +19,7 @@ SIMULATED = {
 
 
 class Display(Module):
-    """A pixel that is late is black, and its frame is in step again from the next vertical sync on: what is left of the old
+    """A pixel that is late is black, and pixels are in step again from the next vertical sync on: what is left of the old
     frame is thrown away there, and no pixel of the next one is shown before its time."""
 
     def __init__(self, timings, clock_domain="sys"):

@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 """A system that draws, in LiteX: VexRiscv, memory, halfplane_core, a display.
 
-Without SDRAM the memory is integrated RAM, and the core is wishbone_shell.py's module, a master of the Wishbone bus. With SDRAM the
-core has a port of LiteDRAM of its own, by LiteDRAM's AXI frontend, and there is no cache between processor and SDRAM.
+Without SDRAM the memory is integrated RAM, and the core is wishbone_shell.py's module, a master of the Wishbone bus. With
+SDRAM the core has a port of LiteDRAM of its own, by LiteDRAM's AXI frontend, and there is no cache between processor and
+SDRAM.
 
-usage: halfplane_soc.py FOLDER [sdram]    writes soc.v, the memories' contents, sources.txt, and system.h and
-regions.ld for the firmware; the processor's program is FOLDER/firmware.bin, if there is one. sdram: LiteDRAM with its model of SDRAM, and display.py
+usage: halfplane_soc.py FOLDER [sdram]    writes soc.v, the memories' contents, sources.txt, and system.h and regions.ld for
+the firmware; the processor's program is FOLDER/firmware.bin, if there is one. sdram: LiteDRAM with its model of SDRAM, and
+display.py
 """
 
 import pathlib
@@ -52,7 +54,9 @@ IO = [
 class HalfplaneSoC(SoCCore):
     """`sdram`: the PHY and the module that it is connected to."""
 
-    def __init__(self, platform, crg, firmware, clock, variant="standard", rom_size=0x20000, sram_size=0x8000, sdram=None):
+    def __init__(
+        self, platform, crg, firmware, clock, variant="standard", rom_size=0x20000, sram_size=0x8000, sdram=None
+    ):
         self.crg = crg
         SoCCore.__init__(
             self,
@@ -98,8 +102,17 @@ class HalfplaneSoC(SoCCore):
         rows = (f"  {{{a}, {bank}, {command}, {int('CONTROL' in command)}, {delay}}}, /* {what} */"
                 for what, a, bank, command, delay in steps)
         return text + "\n".join(
-            ["static const struct { uint16_t address; uint8_t bank, word, is_control; uint16_t delay; } sdram_steps[] = {",
-             *rows, "};", ""])
+            [
+                "static const struct {",
+                "  uint16_t address;",
+                "  uint8_t bank, word, is_control;",
+                "  uint16_t delay;",
+                "} sdram_steps[] = {",
+                *rows,
+                "};",
+                "",
+            ]
+        )
 
 
 def main():

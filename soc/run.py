@@ -2,7 +2,8 @@
 """Builds and simulates the system of soc/: the firmware with the driver, LiteX's SoC around halfplane_core, a display.
 What is scanned out must be, bit for bit and in order, what `halfplane render` draws of the same scene and cameras.
 
-usage: run.py HALFPLANE FOLDER [plain] [sdram]    with build/python's python; FOLDER is made. The status is 1 when a picture differs.
+usage: run.py HALFPLANE FOLDER [plain] [sdram]    with build/python's python; FOLDER is made. The status is 1 when a
+picture differs.
 plain: the core is the plain Verilog that Yosys makes of it (tools/plain_verilog.sh), so Yosys reads what Verilator reads.
 sdram: memory is LiteDRAM with its model of SDRAM, and pixels pass through display.py.
 """

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""halfplane_core as a Verilog module on Wishbone: registers as a slave, memory as a master, by LiteX's bridges around the
-AXI ports. Classic cycles, a beat at a time, words of 32 bits, addresses in words. Memory's `err` ends a beat as `ack` does:
-the bridge tells nobody of it.
+"""halfplane_core as a Verilog module on Wishbone: registers as a slave, memory as a master, by LiteX's bridges around
+the AXI ports. Classic cycles, a beat at a time, words of 32 bits, addresses in words. Memory's `err` ends a beat as `ack`
+does: the bridge does not report it.
 
-usage: wishbone_shell.py FILE    writes the module halfplane_core_wishbone, which wants core/ and rtl_ref/; build/python's python
+usage: wishbone_shell.py FILE    with build/python's python: writes the module halfplane_core_wishbone, which wants core/
+and rtl_ref/
 """
 
 import sys
