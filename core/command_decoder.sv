@@ -289,8 +289,8 @@ module command_decoder #(
     if (WATCHDOG != 0) begin : gen_watchdog
       logic [WATCHDOG:0] waited_q;
       logic              has_work;  // the display may be slow
-      assign has_work = ((running_q && (word_valid_i || state_q != HEADER)) || primitive_valid_q || fence_waits_q ||
-                         flushes_q != '0) && !present_valid_o;
+      assign has_work = ((running_q && (word_valid_i || state_q != HEADER)) || primitive_valid_q || flushes_q != '0) &&
+                        !present_valid_o;
       always_ff @(posedge clk_i) begin  // its own clear is synchronous, which costs no LUTs
         if (!rst_ni || !has_work || takes || moves_i || error_q != core_pkg::ERROR_NONE) waited_q <= '0;
         else waited_q <= waited_q + 1'b1;

@@ -51,7 +51,7 @@ class SharedMemory : public MemoryTiming {
 
  private:
   /// Others that ask for nearly all of the memory delay the port more and more: a frame would not end in sensible time.
-  static constexpr Picoseconds kPatience = 10'000'000'000;
+  static constexpr Picoseconds kPatience = 1'000'000'000;
   [[nodiscard]] std::uint64_t bytes_given(Picoseconds time) const {
     return static_cast<std::uint64_t>(static_cast<double>(use().other_bytes) / static_cast<double>(time) * 1e12);
   }

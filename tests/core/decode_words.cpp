@@ -28,8 +28,9 @@ std::string hex(const Packet& packet, const Widths& widths) {
 nlohmann::json decode(const std::vector<std::uint32_t>& stream, const Config& config, const Widths& widths) {
   driver::Decoder decoder(config);
   nlohmann::json result{{"outcome", "taken"}, {"packets", nlohmann::json::array()}, {"lines", nlohmann::json::array()}};
+  int starts = 0;
   try {
-    for (std::span<const std::uint32_t> rest = stream; !rest.empty();) rest = rest.subspan(decoder.read(rest));
+    for (std::span<const std::uint32_t> rest = stream; !rest.empty(); ++starts) rest = rest.subspan(decoder.read(rest));
   } catch (const driver::RefusedWord& refused) {
     result["outcome"] = "refused";
     result["error"] = refused.error;
@@ -41,6 +42,7 @@ nlohmann::json decode(const std::vector<std::uint32_t>& stream, const Config& co
     result["packets"].push_back(hex(primitive.packet, widths));
     if (primitive.line) result["lines"].push_back(hex(*primitive.line, widths));
   }
+  result["starts"] = starts;
   result["fences"] = decoder.fences();
   result["presented"] = nlohmann::json::array();
   for (const driver::Presented& shown : decoder.presented())

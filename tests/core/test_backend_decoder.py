@@ -163,18 +163,20 @@ async def the_backend_refuses_and_makes_what_the_core_does(dut):
         await bench.reset()
         await bench.pulse(dut.start_i)
         bench.queue += words
+        starts = 1
         while True:  # started again after each STOP
             await bench.settle()
             if dut.is_running_o.value == 1 or bench.error() or not bench.queue:
                 break
             await bench.pulse(dut.start_i)
+            starts += 1
         outcome, taken = wanted["outcome"], int(dut.words_o.value)
         where += f"error {bench.error()}, {taken} words, {len(bench.packets)} packets"
         packets = [int(packet, 16) for packet in wanted["packets"]]
         if outcome == "refused":
             assert (bench.error(), taken) == (wanted["error"], wanted["words"]), where
         elif outcome == "taken":
-            assert (bench.error(), taken) == (0, len(words)), where
+            assert (bench.error(), taken, starts) == (0, len(words), wanted["starts"]), where
         else:  # undefined: the core goes on, as it likes
             at = int(outcome.split()[1])
             assert taken >= at and (bench.error() == 0 or taken > at or bench.error() == ERROR["BAD_BOX"]), where

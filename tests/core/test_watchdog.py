@@ -11,11 +11,11 @@ BENCH = {
     "parameters": {"WATCHDOG": 6},
     "sources": ["core/core_pkg.sv"],
     "faults": [
-        # It never bites; it bites though something moves, or while the display is slow; nothing of a fence or of a command's rest.
+        # It never bites; it bites though something moves, or while the display is slow; not for a flush or a command's rest.
         ("core/command_decoder.sv", "assign is_stuck = waited_q[WATCHDOG]", "assign is_stuck = waited_q[WATCHDOG] && !FAULT"),
         ("core/command_decoder.sv", "takes || moves_i ||", "takes || (moves_i && !FAULT) ||"),
-        ("core/command_decoder.sv", "flushes_q != '0) && !present_valid_o", "flushes_q != '0) && (!present_valid_o || FAULT)"),
-        ("core/command_decoder.sv", "fence_waits_q ||\n", "(fence_waits_q && !FAULT) ||\n"),
+        ("core/command_decoder.sv", "                        !present_valid_o;", "                        (!present_valid_o || FAULT);"),
+        ("core/command_decoder.sv", "primitive_valid_q || flushes_q != '0)", "primitive_valid_q || (flushes_q != '0 && !FAULT))"),
         ("core/command_decoder.sv", "(word_valid_i || state_q != HEADER)", "(word_valid_i || (state_q != HEADER && !FAULT))"),
     ],
 }
