@@ -69,7 +69,8 @@ module axi_protocol_checker #(
     written = 0;
   endfunction
 
-  // wlast comes at the beat that awlen says, whichever is first. B belongs to a burst whose address and last beat were taken
+  // wlast comes at the beat that awlen says, whichever is first. B belongs to a burst whose address and last beat were
+  // taken
   // in earlier cycles.
   function static void check_writes();
     assert (!m_axi_bvalid || written > 0)
@@ -142,10 +143,12 @@ module axi_protocol_checker #(
 
       // Addresses.
       assert (!m_axi_awvalid || (is_whole(m_axi_awaddr, m_axi_awlen) && m_axi_awsize == SIZE && m_axi_awburst == 2'd1))
-      else $error("axi: AW %h of %0d beats is not aligned, too long, over 4 KB, or not INCR of whole beats", m_axi_awaddr,
+      else
+        $error("axi: AW %h of %0d beats is not aligned, too long, over 4 KB, or not INCR of whole beats", m_axi_awaddr,
                   int'(m_axi_awlen) + 1);
       assert (!m_axi_arvalid || (is_whole(m_axi_araddr, m_axi_arlen) && m_axi_arsize == SIZE && m_axi_arburst == 2'd1))
-      else $error("axi: AR %h of %0d beats is not aligned, too long, over 4 KB, or not INCR of whole beats", m_axi_araddr,
+      else
+        $error("axi: AR %h of %0d beats is not aligned, too long, over 4 KB, or not INCR of whole beats", m_axi_araddr,
                   int'(m_axi_arlen) + 1);
 
       check_writes();

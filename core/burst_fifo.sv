@@ -28,7 +28,8 @@ module burst_fifo #(
   localparam int INDEX = $clog2(DEPTH);
 
   logic [WIDTH-1:0] memory_q[0:DEPTH-1];
-  logic [INDEX:0]   head_q, whole_q, tail_q;  // the beat on offer, the one after the last whole burst, the next to enter
+  // the beat on offer, the one after the last whole burst, the next to enter
+  logic [INDEX:0]   head_q, whole_q, tail_q;
   logic             enters, leaves;
 
   assign ready_o    = head_q != (tail_q ^ {1'b1, {INDEX{1'b0}}});

@@ -2,7 +2,8 @@
 //
 // In: 32-bit words, valid/ready. Out: primitives and lines, the layout of buffers, fences and what scan-out is to show.
 // The words of a primitive go into `payload_q`, each to its place, from which packet and line are read as they are: a
-// flip-flop with an enable for each bit and no multiplexer. A primitive is on offer in the cycle after its last word; the
+// flip-flop with an enable for each bit and no multiplexer. A primitive is on offer in the cycle after its last word;
+// the
 // next header is taken in the cycle in which it leaves, so a triangle of n words takes n cycles.
 //
 // Waiting: a write of the layout until nothing is under way; FENCE and PRESENT for an earlier one of their kind;
@@ -158,8 +159,10 @@ module command_decoder #(
   logic          reserved, is_bad_box, lacks_unit, needs_target;
   assign is_bad_box   = right_q < left_q || bottom_q < top_q || target_right_q < right_q || target_bottom_q < bottom_q;
   assign needs_target = draws && !is_state && !(is_clear && word_i[2:0] == 3'b011);
-  assign lacks_unit   = draws && ((is_line && !HAS_LINES) || (is_state && !HAS_STATES) || (is_triangle && word_i[4] && !HAS_FRAME) ||
-                                  (is_clear && (word_i[2] || word_i[3]) && !HAS_BLOCKS) || (is_flush && word_i[0] && !HAS_BLOCKS));
+  assign lacks_unit   = draws && ((is_line && !HAS_LINES) || (is_state && !HAS_STATES) ||
+                                  (is_triangle && word_i[4] && !HAS_FRAME) ||
+                                  (is_clear && (word_i[2] || word_i[3]) && !HAS_BLOCKS) ||
+                                  (is_flush && word_i[0] && !HAS_BLOCKS));
   always_comb begin
     // Header bits that a command does not name are 0.
     reserved = word_i[23:12] != '0 || word_i[7:5] != '0;
@@ -267,7 +270,8 @@ module command_decoder #(
     if (sets && register_q == 4'(core_pkg::STATE_REGISTER_COLOR_BASE)) color_base_q <= word_i;
     if (sets && register_q == 4'(core_pkg::STATE_REGISTER_DEPTH_FLAGS_BASE)) depth_flags_q <= word_i;
     if (sets && register_q == 4'(core_pkg::STATE_REGISTER_COLOR_FLAGS_BASE)) color_flags_q <= word_i;
-    if (sets && register_q == 4'(core_pkg::STATE_REGISTER_ROW_STRIDE)) stride_q <= word_i[0+:raster_pkg::ROW_STRIDE_BITS];
+    if (sets && register_q == 4'(core_pkg::STATE_REGISTER_ROW_STRIDE))
+      stride_q <= word_i[0+:raster_pkg::ROW_STRIDE_BITS];
     if (sets && register_q == 4'(core_pkg::STATE_REGISTER_TEXTURE_BASE)) texture_base_q <= word_i[31:12];
     if (takes && state_q == FENCE) fence_o <= word_i;
     if (takes && state_q == PRESENT) present_color_base_o <= word_i;
@@ -284,7 +288,8 @@ module command_decoder #(
     end
   end
 
-  // ------------------------------------------------------------------------------------------------------- the watchdog
+  // ------------------------------------------------------------------------------------------------------- the
+  // watchdog
   generate
     if (WATCHDOG != 0) begin : gen_watchdog
       logic [WATCHDOG:0] waited_q;
@@ -396,7 +401,8 @@ module command_decoder #(
   end
 
   assign is_running_o = running_q;
-  assign is_written_o = state_q == HEADER && !primitive_valid_q && !line_valid_q && !drawn_q && flushes_q == '0 && idle_i;
+  assign is_written_o = state_q == HEADER && !primitive_valid_q && !line_valid_q && !drawn_q && flushes_q == '0 &&
+                        idle_i;
   assign error_o      = error_q;
   assign words_o      = words_q;
 
@@ -424,7 +430,8 @@ module command_decoder #(
 
   // Enums among the fields are set with a neighbour: Yosys 0.23 reads no cast.
   assign primitive_valid_o = primitive_valid_q;
-  assign {primitive_o.kind, primitive_o.primitive_id} = {kind_q, {raster_pkg::PRIMITIVE_ID_BITS{1'b0}}};  // no stage reads it
+  // no stage reads it
+  assign {primitive_o.kind, primitive_o.primitive_id} = {kind_q, {raster_pkg::PRIMITIVE_ID_BITS{1'b0}}};
   assign primitive_o.box.left   = has_target ? '0 : left_q;
   assign primitive_o.box.top    = has_target ? '0 : top_q;
   assign primitive_o.box.right  = has_target ? target_right_q : right_q;

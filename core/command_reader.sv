@@ -1,14 +1,19 @@
 // Command reader: fetches words of the command stream from a ring in memory.
 //
-// The ring has a power of two of words, 256 at least, at base, which is a multiple of its size in bytes; last_word_i is its
-// words less one. The processor writes words and then tail_i; head_i counts the words that were taken. Both count modulo 2^20
+// The ring has a power of two of words, 256 at least, at base, which is a multiple of its size in bytes; last_word_i is
+// its
+// words less one. The processor writes words and then tail_i; head_i counts the words that were taken. Both count
+// modulo 2^20
 // from reset, so full and empty differ.
 //
-// An entry is a beat, or the beats that a word takes. Bursts are of up to 8 entries, at most two are under way, and they
-// end where a block of 8 entries does. Whole entries are fetched ahead; one that the tail is in is fetched alone, when all
+// An entry is a beat, or the beats that a word takes. Bursts are of up to 8 entries, at most two are under way, and
+// they
+// end where a block of 8 entries does. Whole entries are fetched ahead; one that the tail is in is fetched alone, when
+// all
 // before it have been taken, and again when more of it is there. A burst is asked for only with room for all of it.
 //
-// clear_i forgets the stream at any time; answers still to come are dropped, and only then new requests go; head_i is 0 then.
+// clear_i forgets the stream at any time; answers still to come are dropped, and only then new requests go; head_i is 0
+// then.
 module command_reader #(
     parameter int PORT = raster_pkg::MEMORY_PORT_BITS  // data of a beat
 ) (
@@ -56,7 +61,8 @@ module command_reader #(
   logic        asks, answers, ends_entry, takes, pops;
   logic [3:0]  fetched;           // whole entries of the burst on offer
 
-  // ------------------------------------------------------------------------------------------------------- what to fetch
+  // ------------------------------------------------------------------------------------------------------- what to
+  // fetch
   logic [19:WORD] whole;  // entries before the tail
   logic [4:0]     used;   // places of the queue, taken or promised
   logic [3:0]     to_end, length;
@@ -66,8 +72,10 @@ module command_reader #(
   assign used       = fetch_q[WORD+:5] - head_i[WORD+:5];
   assign has_room   = !used[4] && (!used[3] || used[2:0] == '0);  // for 8
   assign to_end     = 4'd8 - {1'b0, fetch_q[WORD+:3]};
-  assign length     = none_whole ? 4'd1 : whole[19:WORD+3] == '0 && {1'b0, whole[WORD+:3]} < to_end ? {1'b0, whole[WORD+:3]} : to_end;
-  assign can_ask    = reset_nq && !clear_i && !asks_q && !partial_q && (is_partial ? is_alone : !none_whole && has_room);
+  assign length     = none_whole ? 4'd1 :
+                      whole[19:WORD+3] == '0 && {1'b0, whole[WORD+:3]} < to_end ? {1'b0, whole[WORD+:3]} : to_end;
+  assign can_ask    = reset_nq && !clear_i && !asks_q && !partial_q &&
+                      (is_partial ? is_alone : !none_whole && has_room);
 
   // The address: the ring's base above its size, the index below.
   always_comb begin
@@ -79,7 +87,8 @@ module command_reader #(
   assign ring_arlen   = 8'(length_q) * 8'(BEATS) - 8'd1;
   assign asks         = asks_q && ring_arready;
 
-  // ------------------------------------------------------------------------------------------------------------ answers
+  // ------------------------------------------------------------------------------------------------------------
+  // answers
   logic [PART-1:0]  part_q;
   logic [ENTRY-1:0] entry;
   logic             error;

@@ -2,9 +2,12 @@
 //
 //   bind command_decoder command_stream_checker u_command_stream_checker (.*);
 //
-// A broken rule is an assertion that fails, with a message: what is wrong, at which word, what to send instead. Words are
-// counted from reset, the first is 0. What the decoder itself refuses (docs/core.md, errors) is said here in words; the rest
-// are rules that hardware does not check. Verilator wants --assert. CHECKS_ERRORS = 0: for test benches that send wrong words.
+// A broken rule is an assertion that fails, with a message: what is wrong, at which word, what to send instead. Words
+// are
+// counted from reset as WORDS counts them, the first is 1. What the decoder itself refuses (docs/core.md, errors) is
+// said here in words; the rest
+// are rules that hardware does not check. Verilator wants --assert. CHECKS_ERRORS = 0: for test benches that send wrong
+// words.
 module command_stream_checker #(
     parameter bit CHECKS_ERRORS = 1,
     parameter int PATIENCE = 1 << 20  // cycles that a word may wait
@@ -35,8 +38,8 @@ module command_stream_checker #(
   localparam int LINE = raster_pkg::LINE_SETUP_BITS - raster_pkg::PRIMITIVE_ID_BITS;
   localparam int LINE_WORDS = (LINE + 31) / 32;
   localparam int STATE = raster_pkg::STATE_WORD_BITS - AFFINE;
-  localparam bit HAS_STATES = raster_pkg::COORDINATES != 0 || raster_pkg::STENCIL_BITS != 0 || raster_pkg::BLEND_LANES != 0 ||
-                              raster_pkg::ALPHA_UNIT != 0;
+  localparam bit HAS_STATES = raster_pkg::COORDINATES != 0 || raster_pkg::STENCIL_BITS != 0 ||
+                              raster_pkg::BLEND_LANES != 0 || raster_pkg::ALPHA_UNIT != 0;
   localparam int STATE_WORDS = HAS_STATES && STATE > 0 ? (STATE + 31) / 32 : 0;
 
   logic takes;
@@ -72,7 +75,8 @@ module command_stream_checker #(
   logic [7:0] opcode;
   assign is_header  = left_q == 0;
   assign opcode     = word_i[31:24];
-  assign is_draw    = opcode == core_pkg::COMMAND_TRIANGLE || opcode == core_pkg::COMMAND_RECTANGLE || opcode == core_pkg::COMMAND_POINT ||
+  assign is_draw    = opcode == core_pkg::COMMAND_TRIANGLE || opcode == core_pkg::COMMAND_RECTANGLE ||
+                      opcode == core_pkg::COMMAND_POINT ||
                       opcode == core_pkg::COMMAND_LINE;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -122,12 +126,14 @@ module command_stream_checker #(
       assert (!$isunknown(word_valid_i)) else $error("word_valid_i is unknown; drive it, 0 from reset on");
       if (waits_q)
         assert (word_valid_i && word_i == waiting_q)
-        else $error("word %0d was taken back or changed before it was taken; hold valid and word until ready", words_o);
+        else
+          $error("word %0d was taken back or changed before it was taken; hold valid and word until ready",
+                 words_o + 1);
       if (word_valid_i && word_ready_o)
-        assert (!$isunknown(word_i)) else $error("word %0d has unknown bits; write the whole word", words_o);
+        assert (!$isunknown(word_i)) else $error("word %0d has unknown bits; write the whole word", words_o + 1);
       assert (waited_q != PATIENCE)
       else
-        $error("word %0d, 0x%08h, has waited for %0d cycles; %s", words_o, word_i, PATIENCE,
+        $error("word %0d, 0x%08h, has waited for %0d cycles; %s", words_o + 1, word_i, PATIENCE,
                line_valid_o || primitive_valid_o ? "the pipeline takes nothing: does memory answer?" :
                "it waits for an earlier fence, flush, picture or layout: does memory answer, does scan-out run?");
     end
@@ -138,31 +144,35 @@ module command_stream_checker #(
     if (rst_ni && takes && is_header) begin
       if (is_draw) begin
         assert (has_state_q)
-        else $error("word %0d draws before the state is set; SET the register STATE first", words_o);
+        else $error("word %0d draws before the state is set; SET the register STATE first", words_o + 1);
         assert (has_box_q || opcode == core_pkg::COMMAND_LINE)
-        else $error("word %0d draws before the box is set; SET the registers BOX_MIN and BOX_MAX first", words_o);
+        else $error("word %0d draws before the box is set; SET the registers BOX_MIN and BOX_MAX first", words_o + 1);
       end
       if (is_draw || opcode == core_pkg::COMMAND_CLEAR || opcode == core_pkg::COMMAND_FLUSH)
         assert (has_layout_q == '1)
-        else $error("word %0d draws before the layout is set; SET the registers DEPTH_BASE to ROW_STRIDE first", words_o);
+        else
+          $error("word %0d draws before the layout is set; SET the registers DEPTH_BASE to ROW_STRIDE first",
+                 words_o + 1);
       if (opcode == core_pkg::COMMAND_TRIANGLE)
         assert ((slots_q | word_i[2:0]) == 3'b111)
         else
-          $error("word %0d is a triangle without a vertex in slot %0d; load all three after any other command that draws or sets a state",
-                 words_o, !(slots_q[0] || word_i[0]) ? 0 : !(slots_q[1] || word_i[1]) ? 1 : 2);
+          $error("word %0d is a triangle without a vertex in slot %0d; all three are lost after any other drawing or state",
+                 words_o + 1, !(slots_q[0] || word_i[0]) ? 0 : !(slots_q[1] || word_i[1]) ? 1 : 2);
       if (opcode == core_pkg::COMMAND_PRESENT)
         assert (drawn_q == '0)
-        else $error("word %0d presents a picture of which %0d primitives may not be in memory; FLUSH first", words_o, drawn_q);
+        else
+          $error("word %0d presents a picture of which %0d primitives may not be in memory; FLUSH first",
+                 words_o + 1, drawn_q);
     end
     // Bits above a field are 0: what they may say one day is not known today.
     if (rst_ni && takes && !is_header) begin
       case (header_q[31:24])
         core_pkg::COMMAND_RECTANGLE, core_pkg::COMMAND_POINT, core_pkg::COMMAND_CLEAR:
         assert (left_q != 1 || AFFINE % 32 == 0 || word_i >> (AFFINE % 32) == '0)
-        else $error("word %0d, 0x%08h, has bits above those of the codes; they are 0", words_o, word_i);
+        else $error("word %0d, 0x%08h, has bits above those of the codes; they are 0", words_o + 1, word_i);
         core_pkg::COMMAND_LINE:
         assert (left_q != 1 || LINE % 32 == 0 || word_i >> (LINE % 32) == '0)
-        else $error("word %0d, 0x%08h, has bits above those of the line; they are 0", words_o, word_i);
+        else $error("word %0d, 0x%08h, has bits above those of the line; they are 0", words_o + 1, word_i);
         default: ;
       endcase
     end
@@ -174,23 +184,25 @@ module command_stream_checker #(
     error_q <= rst_ni ? error_o : '0;
     if (CHECKS_ERRORS && rst_ni && error_o != error_q) begin
       assert (error_o != core_pkg::ERROR_UNKNOWN_OPCODE)
-      else $error("word %0d is no command; was the header before it right about its words?", words_o - 1);
+      else $error("word %0d is no command; was the header before it right about its words?", words_o);
       assert (error_o != core_pkg::ERROR_RESERVED)
-      else $error("word %0d sets a bit that its command does not have, or clears nothing; see docs/core.md", words_o - 1);
+      else $error("word %0d sets a bit that its command does not have, or clears nothing; see docs/core.md", words_o);
       assert (error_o != core_pkg::ERROR_BAD_REGISTER)
-      else $error("word %0d sets registers that are not there; there are %0d", words_o - 1, core_pkg::STATE_REGISTERS);
+      else $error("word %0d sets registers that are not there; there are %0d", words_o, core_pkg::STATE_REGISTERS);
       assert (error_o != core_pkg::ERROR_NOT_FLUSHED)
-      else $error("word %0d changes target or addresses while drawings are on the chip alone; FLUSH first", words_o - 1);
+      else $error("word %0d changes target or addresses while drawings are on the chip alone; FLUSH first", words_o);
       assert (error_o != core_pkg::ERROR_NO_CLEAR)
-      else $error("word %0d draws before the target is cleared; send CLEAR of depth and colour first", words_o - 1);
+      else $error("word %0d draws before the target is cleared; send CLEAR of depth and colour first", words_o);
       assert (error_o != core_pkg::ERROR_BAD_BOX)
-      else $error("word %0d draws in a box that is inverted or ends beyond the target; cut it with the target", words_o - 1);
+      else
+        $error("word %0d draws in a box that is inverted or ends beyond the target; cut it with the target", words_o);
       assert (error_o != core_pkg::ERROR_NOT_SUPPORTED)
-      else $error("word %0d needs a unit that this configuration lacks; see the register UNITS", words_o - 1);
+      else $error("word %0d needs a unit that this configuration lacks; see the register UNITS", words_o);
       assert (error_o != core_pkg::ERROR_STUCK)
       else
         $error("nothing moves, after %0d words; does memory answer, is the last command whole?", words_o);
-      assert (error_o != core_pkg::ERROR_BUS) else $error("word %0d came with an error of the bus; is the ring's base right?", words_o - 1);
+      assert (error_o != core_pkg::ERROR_BUS)
+      else $error("word %0d came with an error of the bus; is the ring's base right?", words_o);
     end
   end
 
@@ -210,7 +222,8 @@ module command_stream_checker #(
       assert (!primitive_waits_q || primitive_valid_o) else $error("the decoder takes a primitive back");
       assert (!line_waits_q || line_valid_o) else $error("the decoder takes a line back");
       assert (!(flushed_i && flushes_q == '0)) else $error("a flush is answered that was not sent");
-      assert (!is_written_o || drawn_q == '0) else $error("the decoder says written with %0d drawings on the chip", drawn_q);
+      assert (!is_written_o || drawn_q == '0)
+      else $error("the decoder says written with %0d drawings on the chip", drawn_q);
       assert (error_o == core_pkg::ERROR_NONE || !takes) else $error("the decoder takes a word after an error");
     end
   end

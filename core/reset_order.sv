@@ -5,12 +5,15 @@
 //  - restart_i, from a register: the core alone begins anew; the bus, and whoever else uses it, goes on.
 //
 // restart_i takes these steps, each at an edge of the clock, so that raster_top may use its resets as data:
-//  1. raster_no is low for two cycles: raster_top forgets what it draws. core_no, of everything that feeds it, is low to
+//  1. raster_no is low for two cycles: raster_top forgets what it draws. core_no, of everything that feeds it, is low
+// to
 //     the end.
 //  2. raster_top ends its burst with beats that write nothing, and memory answers everything (idle_i).
 //  3. If it does not within 2^PATIENCE cycles: raster_top is powered on again (power_on_no) and the ports forget
-//     (forget_o). timed_out_o stays high until the next restart or rst_ni. Registers work again; the ports take no request
-//     until the last answer has come and was dropped. If none will ever come, only rst_ni helps, together with the bus's.
+//     (forget_o). timed_out_o stays high until the next restart or rst_ni. Registers work again; the ports take no
+// request
+//     until the last answer has come and was dropped. If none will ever come, only rst_ni helps, together with the
+// bus's.
 module reset_order #(
     parameter int PATIENCE = 16
 ) (

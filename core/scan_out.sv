@@ -1,11 +1,14 @@
 // Scan-out: reads the colour buffer ahead of the display and gives one pixel a clock as AXI4-Stream video.
 //
 // A band is a row of blocks (4 lines; with cache.kind tiles a row of tiles). Two bands lie in block RAM as they lie in
-// memory: one is filled while the other is shown. Memory is read in units: the blocks that a tile has in the band, which
+// memory: one is filled while the other is shown. Memory is read in units: the blocks that a tile has in the band,
+// which
 // are consecutive, or single blocks where they can have one colour a pixel. A unit whose blocks are all cleared is not
-// read; where samples are stored, their mean enters the buffer. Up to AHEAD units are asked for before they are answered.
+// read; where samples are stored, their mean enters the buffer. Up to AHEAD units are asked for before they are
+// answered.
 //
-// The registers are sampled in the cycle of vblank_o, after the last pixel of a frame was taken; so a frame is never torn,
+// The registers are sampled in the cycle of vblank_o, after the last pixel of a frame was taken; so a frame is never
+// torn,
 // and from then on the earlier buffer is not read. Blanking is the time in which the display takes nothing (tready), or
 // BLANK cycles. Layout: docs/memory.md; the same in C: driver/detile.c.
 module scan_out #(
@@ -79,7 +82,8 @@ module scan_out #(
   localparam int UNIT_WORDS = UNIT_PIXELS / WORD;
   localparam int GATHER = (PORT < N * COLOR) ? N * COLOR / PORT : 1;          // beats of a pixel
   localparam int GATHER_PIXEL = (PORT < COLOR) ? COLOR / PORT : 1;            // the same with one colour a pixel
-  localparam int STEP = (PORT < 2 * N * COLOR) ? 1 : (PORT / (N * COLOR) < WORD) ? PORT / (N * COLOR) : WORD;  // of a beat
+  // of a beat
+  localparam int STEP = (PORT < 2 * N * COLOR) ? 1 : (PORT / (N * COLOR) < WORD) ? PORT / (N * COLOR) : WORD;
   localparam int WORD_BEATS = GATHER * (WORD / STEP);
 
   localparam int TILE = (TILES < 2) ? 1 : $clog2(TILES);
@@ -362,7 +366,8 @@ module scan_out #(
       .data_i         (written_word)
   );
 
-  // Flags of cleared blocks and of blocks with one colour a pixel: those of a beat; of cleared ones, too, of both bands.
+  // Flags of cleared blocks and of blocks with one colour a pixel: those of a beat; of cleared ones, too, of both
+  // bands.
   logic [UNIT_BLOCKS-1:0] shown_cleared;
   localparam int PLACE = (FLAG_TILES * UNITS < 2) ? 1 : $clog2(FLAG_TILES * UNITS);
   generate

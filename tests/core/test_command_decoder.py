@@ -62,7 +62,8 @@ BENCH = {
         ("core/command_decoder.sv", "if (word_error_i) error", "if (word_error_i && !FAULT) error", "wrong_word"),
         ("core/command_decoder.sv", "> 5'(core_pkg::STATE_REGISTERS)", "> 5'(core_pkg::STATE_REGISTERS) + 5'(FAULT)", "wrong_word"),
         # An error does not stop the stream, is forgotten, or its place is that of the command.
-        ("core/command_decoder.sv", "error_q   <= error;\n        running_q <= 1'b0;", "error_q   <= error;\n        running_q <= FAULT;", "wrong_word"),
+        ("core/command_decoder.sv", "ERROR_STUCK;\n        running_q <= 1'b0;",
+         "ERROR_STUCK;\n        running_q <= FAULT;", "wrong_word"),
         ("core/command_decoder.sv", "start_i && error_q == core_pkg::ERROR_NONE", "start_i && (error_q == core_pkg::ERROR_NONE || FAULT)", "wrong_word"),
         ("core/command_decoder.sv", "words_q + 32'(takes)", "words_q + 32'(takes && !(FAULT && state_q != HEADER))", "wrong_word"),
         # A stop cuts a command in two.
