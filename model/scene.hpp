@@ -52,9 +52,9 @@ enum class TextureMin {
   linear_mipmap_linear
 };
 enum class TextureMag { nearest, linear };
-/// Texels beyond the image: repeated, the last texel, mirrored, or State::texture_border. half_border holds a coordinate
-/// in the image, so that a linear filter at its sides mixes half the border, and a nearest one sees none of it. Along u
-/// and v.
+/// Texels beyond the image: repeated, the last texel, mirrored, or State::texture_border. half_border holds a
+/// coordinate in the image, so that a linear filter at its sides mixes half the border, and a nearest one sees none of
+/// it. Along u and v.
 enum class TextureWrap { repeat, clamp, mirror, border, half_border };
 [[nodiscard]] constexpr bool has_border(TextureWrap wrap) {
   return wrap == TextureWrap::border || wrap == TextureWrap::half_border;

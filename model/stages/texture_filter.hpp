@@ -7,8 +7,8 @@
 //   1/2, v - 1/2
 //   trilinear  linear on two levels, each kept to 8 fraction bits of a channel, then (256 - c, c)
 // A sum is rounded once, (sum + 2^15) >> 16; between two levels twice, with an error of 2^-9 of a code, which saves a
-// multiplier of 25 bits. `fetch(level, x, y)` gives the texel there, R, G, B, A; `border` is the colour beyond the image
-// of an axis that has one.
+// multiplier of 25 bits. `fetch(level, x, y)` gives the texel there, R, G, B, A; `border` is the colour beyond the
+// image of an axis that has one.
 #pragma once
 
 #include <algorithm>

@@ -72,8 +72,8 @@ struct TextureState {
   bool is_linear = false;          ///< only with that filter; with levels: texture_mag
 
   /// From the lowest bit: enable, invalidates, format 3, combine 2, wraps 2 + 2, sizes 4 + 4, base / 64 26, is_linear,
-  /// the third bit of combine: only of a unit with the constant, the third bits of the wraps: only of one with the border
-  /// (0 repeat, 1 clamp, 2 mirror, 3 border, 5 half_border: the lowest bit keeps texels in the image).
+  /// the third bit of combine: only of a unit with the constant, the third bits of the wraps: only of one with the
+  /// border (0 repeat, 1 clamp, 2 mirror, 3 border, 5 half_border: the lowest bit keeps texels in the image).
   [[nodiscard]] std::uint64_t pack() const;
   [[nodiscard]] static TextureState unpack(std::uint64_t word);
   [[nodiscard]] TextureAxes axes() const;

@@ -1,5 +1,5 @@
-// Texture border: which of a linear filter's two texels along an axis are the border's, and the weight of the second where
-// half_border holds the place in the image; for a nearest filter both texels are the same one. Combinational.
+// Texture border: which of a linear filter's two texels along an axis are the border's, and the weight of the second
+// where half_border holds the place in the image; for a nearest filter both texels are the same one. Combinational.
 // Specification: is_on_border, texels_around and nearest_texel of model/stages/texture_filter.hpp.
 module texture_border #(
     parameter int NUMBER_BITS = 24,  // with its sign

@@ -14,8 +14,9 @@ module texture_filter #(
     output logic            ready_o,
     input  logic [127:0]    code_i,    // first row, second row
     input  logic [2:0]      format_i,
-    input  logic [PART-1:0] part_i,    // weight of the second column and row, in 256ths; the column's lowest. With BORDER
-                                       // above them: the first column, the second one, the rows are the border's
+    input  logic [PART-1:0] part_i,    // weight of the second column and row, in 256ths; the column's lowest. With
+                                       // BORDER above them: whether the first column, the second one, the first
+                                       // row, the second one are the border's
     input  logic [31:0]     border_i,  // its colour, R lowest
     input  logic [TAIL-1:0] tail_i,
 

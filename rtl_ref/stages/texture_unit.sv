@@ -33,7 +33,7 @@ module texture_unit #(
     parameter int LINES = 64,           // of the cache; a power of two
     parameter int WAYS = 1,             // ways of the cache: 1 or 2; 1 with one nearest texel
     parameter int PORT_BITS = 64,       // bits of a beat
-    parameter int WORD = 46,            // bits of a state: 70 or 104 with the lines of a level, else 46 + CONSTANT, or 49
+    parameter int WORD = 46,            // bits of a state: 70 or 104 with lines of a level, else 46 + CONSTANT, or 49
     parameter int PIXEL = 12,           // bits of a pixel's column and row
     parameter int OVER_W = 0,           // 1: the unit divides colours as well
     parameter int COLOR_P_BITS = 24,    // bits of colours over w in a tile, signed

@@ -156,7 +156,8 @@ TEST_F(GlTexture, EnvironmentsAreThoseOfTheTable) {
   EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
 }
 
-/// GL_CLAMP and GL_CLAMP_TO_BORDER at and beyond a side: exact without a texture unit and with texture.border, else the edge.
+/// GL_CLAMP and GL_CLAMP_TO_BORDER at and beyond a side: exact without a texture unit and with texture.border, else the
+/// edge.
 TEST(GlTextureBorder, IsTheHardwaresWhereItHasATextureUnit) {
   const std::vector<std::array<float, 4>> white(4, {1, 1, 1, 1});
   // Red of one colour everywhere: that of texture coordinate s, with a white texture and a border of red 0.2.

@@ -16,8 +16,8 @@
 //
 // With a linear filter a sample requests its lines one by one, and leaves the tags with the last request or later. A
 // stamp is offered to the colour stage in g(m) + 1. A state is set when no sample is left upstream of h: max(x(m) + 2,
-// s + 1, t + 1); lines of a triangle as soon as they come: max(x(m) + 2, s + 1). The border's colour is set when no sample
-// is left upstream of e: max(x(m) + 2, s + 1, the last sample left the stage before e, + 1).
+// s + 1, t + 1); lines of a triangle as soon as they come: max(x(m) + 2, s + 1). The border's colour is set when no
+// sample is left upstream of e: max(x(m) + 2, s + 1, the cycle after the last sample left the stage before e).
 //
 // With levels a sample's level is known two clocks later, and the sample goes through two more stages upstream of the
 // tags and one more after the filter, once or twice. For its pass i, counted over all samples:
