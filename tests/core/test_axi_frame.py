@@ -160,7 +160,7 @@ async def hostile_memory_changes_no_bit(dut, name):
 @cocotb.test()
 async def restarts_in_the_middle_leave_nothing_behind(dut):
     """With a memory that answers, one that answers late, and one that answers only after the time-out."""
-    scene = Scene("walk", "160x120" if LONG else "96x96", 8)
+    scene = Scene("walk", "160x120" if LONG or "HALFPLANE_ALL" in os.environ else "96x96", 8)
     bench = Bench(dut, Behaviour(latency=(1, 40)))
     await bench.start()
     late = 0
