@@ -50,8 +50,9 @@ RUNS = [
     ('ECP5-45', 'halfplane_core', 'embedded, VGA, textures'),
     ('ECP5-85', 'halfplane_core', 'embedded, VGA, textures'),
     ('ECP5-85', 'raster_top', 'full'),
+    ('GW2A-18', 'raster_top', 'small'),
+    ('GW2A-18', 'halfplane_core', 'small'),
     ('GW2A-18', 'raster_top', 'embedded, VGA'),
-    ('GW2A-18', 'halfplane_core', 'embedded, VGA'),
 ]
 SYNTH = {'ecp5': 'synth_ecp5', 'gowin': 'synth_gowin -family gw2a', 'ice40': area.SYNTH_ICE40.replace(' -top pin_wrapper', '')}
 # nextpnr for GW2A wants every pin's place; any will do.
@@ -192,6 +193,7 @@ def row(program, part, top, design):
     if placed:
         *used, mhz = placed
         said = f'{mhz:.1f}'
+    used = [f'{n:,} of {have:,}' for n, have in zip(used, kind[:3])]
     return [part, f'`{top}`', design, *used, said, f'{frames(program, design, mhz):.1f}' if placed else '']
 
 
