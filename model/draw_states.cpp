@@ -226,6 +226,9 @@ constexpr std::array<Words, 15> factor_words{"zero",
 static_assert(factor_words.size() == enumerators<BlendFactor>());
 constexpr std::array<Words, 5> equation_words{"add", "subtract", "reverse_subtract", "min", "max"};
 static_assert(equation_words.size() == enumerators<BlendEquation>());
+constexpr std::array<Words, 16> logic_op_words{
+    "clear", "and",   "and_reverse", "copy",       "and_inverted",  "noop",        "xor",  "or",
+    "nor",   "equiv", "invert",      "or_reverse", "copy_inverted", "or_inverted", "nand", "set"};
 constexpr std::array<Words, 8> stencil_op_words{"keep", "zero",   "replace",   "incr",
                                                 "decr", "invert", "incr_wrap", "decr_wrap"};
 static_assert(stencil_op_words.size() == enumerators<StencilOp>());
@@ -551,6 +554,11 @@ constexpr std::array table{
                               .form = "r g b a",
                               .purpose = "the constant of blend factors",
                               .home = StateHome::unit}),
+    row<&State::logic_op>({.name = "logic_op",
+                           .words = logic_op_words,
+                           .purpose = "what is stored of the fragment's code and the stored one, bit by bit, instead "
+                                      "of blending; `copy`: no operation, `blend` holds",
+                           .home = StateHome::unit}),
     row<&State::color_mask>({.name = "color_mask",
                              .numbers = color_mask_numbers,
                              .form = "r g b a",

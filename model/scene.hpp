@@ -89,6 +89,26 @@ enum class BlendFactor {
 };
 /// Combination of the products; min and max take the colours themselves.
 enum class BlendEquation { add, subtract, reverse_subtract, min, max };
+/// Bitwise operation of a fragment's code s and the stored code d (OpenGL 1.5, table 4.2). The value is its truth table:
+/// bit 0 is the result for s = d = 1, bit 1 for s = 1 and d = 0, bit 2 for s = 0 and d = 1, bit 3 for s = d = 0.
+enum class LogicOp {
+  clear,
+  and_op,
+  and_reverse,  ///< s & ~d
+  copy,
+  and_inverted,  ///< ~s & d
+  noop,
+  xor_op,
+  or_op,
+  nor,
+  equiv,
+  invert,
+  or_reverse,  ///< s | ~d
+  copy_inverted,
+  or_inverted,  ///< ~s | d
+  nand,
+  set
+};
 /// Update of a stored stencil value.
 enum class StencilOp { keep, zero, replace, incr, decr, invert, incr_wrap, decr_wrap };
 
@@ -221,6 +241,7 @@ struct State {
   std::optional<BlendFactors> blend;                       ///< none: the fragment's colour replaces the stored one
   std::array<BlendEquation, 2> blend_equation{};           ///< of colour and of alpha
   std::array<std::uint8_t, 4> blend_color{};               ///< the constant of blend factors
+  LogicOp logic_op = LogicOp::copy;                        ///< but for copy: instead of blending, of stored codes
   std::array<bool, 4> color_mask{true, true, true, true};  ///< channels that color_write writes
   std::optional<Stencil> stencil;                          ///< none: no test, no stencil is written
   std::optional<Stencil> stencil_back;                     ///< of triangles that show their back; none: as `stencil`

@@ -1,9 +1,10 @@
 // Golden colour operations: blending, in real arithmetic. Channels are 0...255; in a target without alpha the last is
-// 255.
+// 255. A logic operation is one of codes: it rounds both colours to those of the target.
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -38,12 +39,52 @@ using RealColor = std::array<double, 4>;
   return 0;
 }
 
-/// The colour after a write of `src` over `dst`: blended, under the mask.
-[[nodiscard]] inline RealColor blended(const State& state, const RealColor& src, const RealColor& dst) {
+/// A logic operation on codes whose bits are those of `most`.
+[[nodiscard]] inline int operated(LogicOp op, int s, int d, int most) {
+  int result = 0;
+  switch (op) {
+    case LogicOp::clear: result = 0; break;
+    case LogicOp::and_op: result = s & d; break;
+    case LogicOp::and_reverse: result = s & ~d; break;
+    case LogicOp::copy: result = s; break;
+    case LogicOp::and_inverted: result = ~s & d; break;
+    case LogicOp::noop: result = d; break;
+    case LogicOp::xor_op: result = s ^ d; break;
+    case LogicOp::or_op: result = s | d; break;
+    case LogicOp::nor: result = ~(s | d); break;
+    case LogicOp::equiv: result = ~(s ^ d); break;
+    case LogicOp::invert: result = ~d; break;
+    case LogicOp::or_reverse: result = s | ~d; break;
+    case LogicOp::copy_inverted: result = ~s; break;
+    case LogicOp::or_inverted: result = ~s | d; break;
+    case LogicOp::nand: result = ~(s & d); break;
+    case LogicOp::set: result = ~0; break;
+  }
+  return result & most;
+}
+
+/// The largest code of channel c.
+[[nodiscard]] inline int largest_code(bool has_alpha, std::size_t c) { return has_alpha ? 255 : c == 1 ? 63 : 31; }
+
+/// The nearest code, 0...most, of a value 0...255.
+[[nodiscard]] inline int nearest_code(double value, int most) {
+  return static_cast<int>(std::floor(std::clamp(value, 0.0, 255.0) * most / 255 + 0.5));
+}
+
+/// The colour after a write of `src` over `dst`: operated on or blended, under the mask. `has_alpha`: the target is
+/// rgba8888, else rgb565.
+[[nodiscard]] inline RealColor blended(const State& state, const RealColor& src, const RealColor& dst,
+                                       bool has_alpha = true) {
   RealColor result = src;
   for (std::size_t c = 0; c < 4; ++c) {
     if (!state.color_mask[c]) {
       result[c] = dst[c];
+      continue;
+    }
+    if (state.logic_op != LogicOp::copy) {
+      const int most = largest_code(has_alpha, c);
+      const int code = operated(state.logic_op, nearest_code(src[c], most), nearest_code(dst[c], most), most);
+      result[c] = code * 255.0 / most;
       continue;
     }
     if (!state.blend) continue;

@@ -66,7 +66,7 @@ class FragmentBuffer {
     if (state.depth_write) depth_[pixel] = fragment.depth;
     if constexpr (std::is_same_v<Value, RealColor>) {
       if (!has_alpha_) value_[pixel][3] = 255;
-      if (writes_color) value_[pixel] = blended(state, value, value_[pixel]);
+      if (writes_color) value_[pixel] = blended(state, value, value_[pixel], has_alpha_);
     } else {
       if (writes_color) value_[pixel] = value;
     }

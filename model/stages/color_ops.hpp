@@ -1,5 +1,5 @@
-// Operations on a fragment's colour after the tests and its texture: alpha test, blending, dithering, masks. The
-// arithmetic of each exists once.
+// Operations on a fragment's colour after the tests and its texture: alpha test, blending, dithering, logic operations,
+// masks. The arithmetic of each exists once.
 //
 // Colours are codes of 8 bits, 0...255 for 0...1; a stored colour is widened to 8 bits by repeating its upper bits. A
 // blend is
@@ -161,6 +161,35 @@ template <class Lane>
   return Lane{};
 }
 
+// --- logic operations -----------------------------------------------------------------------------------------------
+
+/// Whether the result depends on the stored code.
+[[nodiscard]] constexpr bool reads_stored(LogicOp op) {
+  const auto table = static_cast<unsigned>(op);
+  return ((table ^ table >> 1) & 0b0101U) != 0;
+}
+
+/// A logic operation as an exclusive or of products, each term all ones or zero: without a choice per bit or lane.
+struct LogicTerms {
+  std::uint32_t none, source, stored, both;
+
+  constexpr explicit LogicTerms(LogicOp op) {
+    const auto result = [table = static_cast<unsigned>(op)](unsigned bit) {
+      return (table >> bit & 1) != 0 ? ~std::uint32_t{} : 0;
+    };
+    none = result(3);
+    source = result(1) ^ none;
+    stored = result(2) ^ none;
+    both = result(0) ^ result(1) ^ result(2) ^ none;
+  }
+};
+
+/// The operation on every bit of the codes, of unused bits as well.
+template <class Lane>
+[[nodiscard]] constexpr Lane operated(const LogicTerms& terms, const Lane& source, const Lane& stored) {
+  return (source & terms.source) ^ (stored & terms.stored) ^ (source & stored & terms.both) ^ terms.none;
+}
+
 // --- the operations of a draw ---------------------------------------------------------------------------------------
 
 /// Colour operations of a draw. Normalised so that draws with equal effect are equal.
@@ -168,6 +197,7 @@ struct ColorOps {
   BlendFactors factors;                                ///< one, zero: the fragment's colour unchanged
   std::array<BlendEquation, 2> equation{};             ///< of colour, of alpha
   BlendColor constant{};                               ///< 0 unless a factor uses it
+  LogicOp logic = LogicOp::copy;                       ///< but for copy nothing blends
   std::array<bool, 4> writes{true, true, true, true};  ///< channels
   bool dithers = false;
   bool operator==(const ColorOps&) const = default;
@@ -178,7 +208,9 @@ struct ColorOps {
     return factors != BlendFactors{} || equation != std::array<BlendEquation, 2>{};
   }
   /// Whether the result depends on the stored colour.
-  [[nodiscard]] constexpr bool reads_stored() const { return blends() || writes != std::array{true, true, true, true}; }
+  [[nodiscard]] constexpr bool reads_stored() const {
+    return blends() || halfplane::reads_stored(logic) || writes != std::array{true, true, true, true};
+  }
   /// Whether a factor uses the constant.
   [[nodiscard]] constexpr bool reads_constant() const {
     const auto is_constant = [](BlendFactor factor) {
@@ -198,7 +230,8 @@ struct ColorOps {
   const bool has_color = is_one(f.src) && is_zero(f.dst) && takes_source(ops.equation[0]);
   const bool has_alpha = (is_one(f.src_alpha) || f.src_alpha == BlendFactor::src_alpha_saturate) &&
                          is_zero(f.dst_alpha) && takes_source(ops.equation[1]);
-  return has_color && (has_alpha || format != ColorFormat::rgba8888) && !ops.dithers && ops.writes == ColorOps{}.writes;
+  return has_color && (has_alpha || format != ColorFormat::rgba8888) && !ops.dithers && ops.logic == LogicOp::copy &&
+         ops.writes == ColorOps{}.writes;
 }
 
 /// The operations of `state` that affect a format: rgb565 has no alpha, rgba8888 needs no dithering.
@@ -206,7 +239,8 @@ struct ColorOps {
   const bool has_alpha = format == ColorFormat::rgba8888;
   const auto takes_factors = [](BlendEquation e) { return e != BlendEquation::min && e != BlendEquation::max; };
   ColorOps ops;
-  if (state.blend) {
+  ops.logic = state.logic_op;
+  if (state.blend && ops.logic == LogicOp::copy) {
     ops.equation = state.blend_equation;
     ops.factors = *state.blend;
     if (!has_alpha) ops.equation[1] = BlendEquation::add;
@@ -263,7 +297,9 @@ template <class Lane>
 [[nodiscard]] constexpr Lane store_color(const ColorOps& ops, ColorFormat format, const Channels<Lane>& source,
                                          const Lane& stored, const Lane& threshold) {
   const Channels<Lane> c = ops.blends() ? blended<Lane>(ops, source, widen_color<Lane>(format, stored)) : source;
-  const Lane code = ops.dithers ? pack_rgb565_dithered<Lane>(c[0], c[1], c[2], threshold) : pack_color<Lane>(format, c);
+  const Lane packed =
+      ops.dithers ? pack_rgb565_dithered<Lane>(c[0], c[1], c[2], threshold) : pack_color<Lane>(format, c);
+  const Lane code = ops.logic == LogicOp::copy ? packed : operated<Lane>(LogicTerms(ops.logic), packed, stored);
   const std::uint32_t bits = written_bits(ops, format);
   return (code & bits) | (stored & ~bits);
 }

@@ -264,7 +264,7 @@ TEST(DrawStates, RandomNumbersAreWithinTheirBounds) {
 TEST(DrawStates, TheBytesOfTheFuzzerReachEveryValue) {
   Random random(2);
   Seen seen;
-  for (int n = 0; n < 400; ++n) {
+  for (int n = 0; n < 800; ++n) {
     std::vector<std::uint8_t> bytes(400);
     for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random.next());
     for (const State& state : read_capture(test::pipeline_case(bytes).capture, "bytes.hpt").states) seen.add(state);

@@ -9,6 +9,7 @@
 
 #include "model/golden/color.hpp"
 #include "sim/scene/random_state.hpp"
+#include "sim/study/compare/layers.hpp"
 #include "tests/scene_builder.hpp"
 
 namespace halfplane::fragment_ops_test {
@@ -250,6 +251,94 @@ TEST(Blend, LanesDoWhatTheScalarInstanceDoes) {
     const Four after = apply_stencil(op, s, values);
     for (int i = 0; i < 4; ++i) ASSERT_EQ(after[i], apply_stencil(op, s, std::uint32_t{values[i]}));
   }
+}
+
+// The golden's operations are written one by one, the model's are one sum.
+TEST(LogicOp, StoresWhatTheGoldenHasOnTheSameCodes) {
+  Random random(41);
+  for (const auto format : {ColorFormat::rgb565, ColorFormat::rgba8888})
+    for (int n = 0; n < 64000; ++n) {
+      State state;
+      state.logic_op = static_cast<LogicOp>(n % 16);
+      if (state.logic_op == LogicOp::copy) continue;  // it is none: the golden rounds nothing
+      state.blend = BlendFactors{BlendFactor::one, BlendFactor::one, BlendFactor::one, BlendFactor::one};
+      if (n % 3 == 0) state.color_mask[random.index(4)] = false;
+      const bool has_alpha = format == ColorFormat::rgba8888;
+      Channels<std::uint32_t> source;
+      for (auto& c : source) c = static_cast<std::uint32_t>(random.index(256));
+      const auto stored = static_cast<std::uint32_t>(random.unit() * (has_alpha ? 4294967296.0 : 65536.0));
+      const Channels<std::uint32_t> held = unpack_color(format, stored);
+      golden::RealColor s{}, d{};
+      for (std::size_t c = 0; c < 4; ++c) {
+        s[c] = source[c];
+        d[c] = held[c] * 255.0 / golden::largest_code(has_alpha, c);
+      }
+      const golden::RealColor real = golden::blended(state, s, d, has_alpha);
+      const std::uint32_t made = store_color(color_ops(state, format), format, source, stored, 0U);
+      ASSERT_TRUE(has_alpha || made <= 0xffffU);
+      const Channels<std::uint32_t> channels = unpack_color(format, made);
+      for (std::size_t c = 0; c < (has_alpha ? 4U : 3U); ++c)
+        ASSERT_NEAR(channels[c], real[c] * golden::largest_code(has_alpha, c) / 255, 1e-9)
+            << draw_state("logic_op").words[static_cast<std::size_t>(n % 16)] << ", channel " << c;
+    }
+}
+
+TEST(LogicOp, ReadsWhatIsStoredWhereItsResultDependsOnIt) {
+  for (int op = 0; op < 16; ++op) {
+    State state;
+    state.logic_op = static_cast<LogicOp>(op);
+    const ColorOps ops = color_ops(state, ColorFormat::rgba8888);
+    bool depends = false;
+    for (const std::uint32_t source : {0U, 255U}) {
+      const Channels<std::uint32_t> all{source, source, source, source};
+      depends = depends || store_color(ops, ColorFormat::rgba8888, all, 0U, 0U) !=
+                               store_color(ops, ColorFormat::rgba8888, all, ~0U, 0U);
+    }
+    EXPECT_EQ(ops.reads_stored(), depends) << op;
+    EXPECT_FALSE(ops.blends());
+    EXPECT_EQ(ops.is_plain(), state.logic_op == LogicOp::copy);
+    EXPECT_EQ(replaces_where_opaque(ops, ColorFormat::rgba8888), state.logic_op == LogicOp::copy);
+  }
+}
+
+TEST(LogicOp, CopyLeavesBlendingAndAnyOtherTakesItsPlace) {
+  State state;
+  state.blend = BlendFactors{BlendFactor::src_alpha, BlendFactor::one, BlendFactor::one, BlendFactor::one};
+  EXPECT_TRUE(color_ops(state, ColorFormat::rgb565).blends());
+  state.logic_op = LogicOp::xor_op;
+  EXPECT_FALSE(color_ops(state, ColorFormat::rgb565).blends());
+  state.blend.reset();
+  const ColorOps without = color_ops(state, ColorFormat::rgb565);
+  state.blend = BlendFactors{BlendFactor::dst_color, BlendFactor::one, BlendFactor::one, BlendFactor::one};
+  EXPECT_EQ(color_ops(state, ColorFormat::rgb565), without);
+}
+
+/// One fragment under an operation, over a cleared pixel.
+double part_of_bound(LogicOp op, const std::array<double, 4>& cleared, std::uint32_t stored) {
+  LayeredColors layers(1, ColorFormat::rgb565);
+  State state;
+  state.logic_op = op;
+  layers.clear(0, cleared);
+  layers.write(0, state, {200, 100, 50, 255});
+  layers.judge(0, stored);
+  return layers.rows().back().part_of_bound;
+}
+
+// 24, 25 and 6 are the codes of 200, 100 and 50; 8, 16 and 31 those of 66, 65 and 255.
+TEST(LogicOp, OnCertainCodesTheBoundTakesNoOtherBit) {
+  const std::array<double, 4> whole{66, 65, 255, 255};
+  const auto rgb = [](unsigned r, unsigned g, unsigned b) { return r << 11 | g << 5 | b; };
+  EXPECT_LE(part_of_bound(LogicOp::xor_op, whole, rgb(24 ^ 8, 25 ^ 16, 6 ^ 31)), 1);
+  EXPECT_GT(part_of_bound(LogicOp::xor_op, whole, rgb(24 ^ 8, 25 ^ 16, 6 ^ 30)), 1000);
+  EXPECT_GT(part_of_bound(LogicOp::or_op, whole, rgb(24 ^ 8, 25 ^ 16, 6 ^ 31)), 1000);
+}
+
+TEST(LogicOp, WhereACodeIsUncertainTheBoundHasEveryCodeItMayBe) {
+  const std::array<double, 4> between{66.4, 65, 255, 255};  // 7 to 9 is within the bound of a clear
+  const auto rgb = [](unsigned r, unsigned g, unsigned b) { return r << 11 | g << 5 | b; };
+  for (const unsigned red : {8U, 9U})
+    EXPECT_LE(part_of_bound(LogicOp::xor_op, between, rgb(24 ^ red, 25 ^ 16, 6 ^ 31)), 1) << red;
+  EXPECT_GT(part_of_bound(LogicOp::xor_op, between, rgb(24 ^ 24, 25 ^ 16, 6 ^ 31)), 1);
 }
 
 }  // namespace

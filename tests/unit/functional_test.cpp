@@ -133,6 +133,27 @@ TEST(Functional, EveryFragmentOperationIsTheSameOnEveryPath) {
   EXPECT_GT(killed, 1000U);
 }
 
+/// Triangles of all sizes, textured or not, lines and dots under logic operations.
+TEST(Functional, EveryLogicOperationIsTheSameOnEveryPath) {
+  std::size_t draws = 0;
+  for (const char* settings :
+       {"tiny", "embedded", "embedded color.format=rgba8888", "embedded texture.unit=bilinear", "full msaa.samples=4"})
+    for (std::uint64_t seed = 21; seed <= 26; ++seed) {
+      const Config config = labelled(settings);
+      SCOPED_TRACE(std::string(settings) + ", seed " + std::to_string(seed));
+      Scene scene = random_scene(config, seed, 300);
+      test::Random random(static_cast<std::uint32_t>(seed));
+      const StateRows rows = states_named({"color_mask", "dither", "alpha_test", "stencil"});
+      for (State& state : scene.states) {
+        if (seed % 3 == 0) state = random_state(state, rows, chooser(random));
+        state.logic_op = static_cast<LogicOp>(draws++ % 16);
+      }
+      for (Vertex& vertex : scene.vertices) vertex.rgba[3] = random.index(256);
+      expect_all_same(scene, config);
+    }
+  EXPECT_GT(draws, 16 * 15U);
+}
+
 /// Lines show their front, whatever the triangle before them showed; a clear leaves the padding of the target alone.
 TEST(Functional, LinesBehindATriangleThatShowsItsBackTakeTheFrontOfTheStencil) {
   State state = test::SceneBuilder::window_state();

@@ -56,6 +56,7 @@ void find_state_functions(const Finder& find, Functions& f) {
   find(f.blend_func_separate, "glBlendFuncSeparate");
   find(f.blend_equation_separate, "glBlendEquationSeparate");
   find(f.blend_color, "glBlendColor");
+  find(f.logic_op, "glLogicOp");
   find(f.stencil_func_separate, "glStencilFuncSeparate");
   find(f.stencil_op_separate, "glStencilOpSeparate");
   find(f.stencil_mask_separate, "glStencilMaskSeparate");

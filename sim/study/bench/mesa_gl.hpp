@@ -18,7 +18,7 @@ inline constexpr Enum kCw = 0x900, kCcw = 0x901;                                
 inline constexpr Enum kPoint = 0x1b00, kLine = 0x1b01, kFill = 0x1b02;                      // PolygonMode
 inline constexpr Enum kCullFace = 0xb44, kDepthTest = 0xb71, kDither = 0xbd0;               // Enable
 inline constexpr Enum kScissorTest = 0xc11, kPrimitiveRestart = 0x8f9d;                     // likewise
-inline constexpr Enum kBlend = 0xbe2, kStencilTest = 0xb90;                                 // likewise
+inline constexpr Enum kBlend = 0xbe2, kColorLogicOp = 0xbf2, kStencilTest = 0xb90;          // likewise
 inline constexpr Enum kOffsetPoint = 0x2a01, kOffsetLine = 0x2a02, kOffsetFill = 0x8037;
 inline constexpr Enum kFirstVertex = 0x8e4d, kLastVertex = 0x8e4e;                        // ProvokingVertex
 inline constexpr Enum kLowerLeft = 0x8ca1, kMinusOneToOne = 0x935e, kZeroToOne = 0x935f;  // ClipControl
@@ -52,6 +52,7 @@ struct Functions {
   void (*color_mask)(unsigned char, unsigned char, unsigned char, unsigned char);
   void (*blend_func_separate)(Enum, Enum, Enum, Enum);
   void (*blend_equation_separate)(Enum, Enum);
+  void (*logic_op)(Enum);
   void (*blend_color)(float, float, float, float);
   void (*stencil_func_separate)(Enum, Enum, int, unsigned);
   void (*stencil_op_separate)(Enum, Enum, Enum, Enum);

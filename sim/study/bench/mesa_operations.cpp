@@ -75,6 +75,7 @@ namespace {
 constexpr std::array<Enum, 15> kFactors{0,     1,     0x300,  0x301,  0x306,  0x307,  0x302, 0x303,
                                         0x304, 0x305, 0x8001, 0x8002, 0x8003, 0x8004, 0x308};
 constexpr std::array<Enum, 5> kEquations{0x8006, 0x800a, 0x800b, 0x8007, 0x8008};
+constexpr Enum kClear = 0x1500;  // the first of sixteen logic operations, which LogicOp has in the same order
 constexpr std::array<Enum, 8> kStencilOps{0x1e00, 0, 0x1e01, 0x1e02, 0x1e03, 0x150a, 0x8507, 0x8508};
 
 Enum factor(BlendFactor f) { return kFactors[static_cast<std::size_t>(f)]; }
@@ -101,6 +102,9 @@ void apply_operations(const Functions& gl, const State& state) {
     const auto part = [&](std::size_t c) { return static_cast<float>(state.blend_color[c] / 255.0); };
     gl.blend_color(part(0), part(1), part(2), part(3));
   }
+  const bool has_logic_op = state.logic_op != LogicOp::copy;
+  has_logic_op ? gl.enable(kColorLogicOp) : gl.disable(kColorLogicOp);
+  if (has_logic_op) gl.logic_op(kClear + static_cast<Enum>(state.logic_op));
   state.stencil ? gl.enable(kStencilTest) : gl.disable(kStencilTest);
   if (!state.stencil) return;
   for (const Enum side : {kFront, kBack}) {

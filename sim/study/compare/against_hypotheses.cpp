@@ -144,10 +144,12 @@ class Hypotheses {
     if (!of_.is_depth)
       for (const char* name : {"blend_equation", "blend"})
         add_states(ForeignDifference::blend, name, [](const State& s) { return s.blend.has_value(); });
+    if (!of_.is_depth) add_states(ForeignDifference::blend, "logic_op", has_logic_op);
     return std::move(list_);
   }
 
  private:
+  static bool has_logic_op(const State& state) { return state.logic_op != LogicOp::copy; }
   static bool is_textured(const State* state) { return state->texture.has_value(); }
 
   void add(ForeignDifference kind, std::string change, std::function<std::optional<ImageValues>()> draw) {

@@ -51,6 +51,7 @@ void LayeredColors::clear(std::size_t pixel, const std::array<double, 4>& color)
   at.real = color;
   if (channels_ == 3) at.real[3] = 255;
   at.bound.fill(1);  // to 8 bits, then to the stored ones
+  for (std::size_t c = 0; c < 4; ++c) at.is_certain[c] = color[c] == std::floor(color[c]);
 }
 
 double LayeredColors::bound_of_blend(const Pixel& before, const State& state, const golden::RealColor& source,
@@ -76,16 +77,46 @@ double LayeredColors::bound_of_blend(const Pixel& before, const State& state, co
   return std::min(stored, most_[c]);
 }
 
+void LayeredColors::bound_logic_op(Pixel& at, const Pixel& before, const State& state, double source,
+                                   std::size_t c) const {
+  struct Codes {
+    int low, high;
+  };
+  const int most = static_cast<int>(most_[c]);
+  const auto within = [&](double value, double bound, bool is_certain) {
+    constexpr double kTiny = 1e-4;  // more than a binary32 bound is off by, less than a code of 255 is from a tie
+    if (is_certain) bound = 0.5 - kTiny;
+    const Codes codes{static_cast<int>(std::ceil(value - bound - kTiny)),
+                      static_cast<int>(std::floor(value + bound + kTiny))};
+    return Codes{std::max(codes.low, 0), std::min(codes.high, most)};
+  };
+  const bool dithers = state.dither && format_ == ColorFormat::rgb565;
+  const Codes s = within(source * most_[c] / 255, 1 - 1e-3, !dithers),
+              d = within(before.real[c] * most_[c] / 255, before.bound[c], before.is_certain[c]);
+  const int wanted = golden::nearest_code(at.real[c], most);
+  int worst = 0;
+  for (int i = s.low; i <= s.high; ++i)
+    for (int j = d.low; j <= d.high; ++j)
+      worst = std::max(worst, std::abs(golden::operated(state.logic_op, i, j, most) - wanted));
+  at.is_certain[c] = worst == 0;
+  at.bound[c] = static_cast<float>(worst * (1 + 1e-6) + 1e-6);  // and what binary64 makes of a code as a real number
+}
+
 void LayeredColors::write(std::size_t pixel, const State& state, const std::array<std::uint8_t, 4>& color) {
   Pixel& at = at_[pixel];
   const ColorOps ops = color_ops(state, format_);
   golden::RealColor source{};
   for (std::size_t c = 0; c < 4; ++c) source[c] = color[c];
   const Pixel before = at;
-  at.real = golden::blended(state, source, before.real);
+  at.real = golden::blended(state, source, before.real, format_ == ColorFormat::rgba8888);
   if (channels_ == 3) at.real[3] = 255;
   for (std::size_t c = 0; c < channels_; ++c) {
     if (!state.color_mask[c]) continue;
+    if (ops.logic != LogicOp::copy) {
+      bound_logic_op(at, before, state, source[c], c);
+      continue;
+    }
+    at.is_certain[c] = !ops.blends() && !ops.dithers;
     at.bound[c] = static_cast<float>(ops.blends() ? bound_of_blend(before, state, source, c) : ops.dithers ? 1.0 : 0.5);
   }
   at.layers = ops.reads_stored() ? before.layers + 1 : 0;

@@ -3,6 +3,8 @@
 // grows with it:
 //
 //   a plain write   1/2 LSB, dithered 1
+//   a logic op.     the largest difference over all pairs of codes that the operands' bounds leave; where both codes
+//                   are certain none
 //   a blend         |d_m - d| f_d + (d + |d_m - d|) |delta f_d| + s |delta f_s|, then 1/2 of a 255th, then 1/2 LSB of rgb565
 //
 // d_m is the stored code at the blend's input: rgb565 is widened to 8 bits. A stored code was rounded from 8 bits, k,
@@ -51,13 +53,16 @@ class LayeredColors {
 
  private:
   struct Pixel {
-    golden::RealColor real{0, 0, 0, 255};  ///< 0...255
-    std::array<float, 4> bound{};          ///< LSB of the stored format
+    golden::RealColor real{0, 0, 0, 255};                    ///< 0...255
+    std::array<float, 4> bound{};                            ///< LSB of the stored format
+    std::array<bool, 4> is_certain{true, true, true, true};  ///< the code nearest to `real` must be the stored one
     std::uint32_t layers = 0;
     bool is_layered = false;
   };
   [[nodiscard]] double bound_of_blend(const Pixel& before, const State& state, const golden::RealColor& source,
                                       std::size_t channel) const;
+  /// Sets a channel's bound, and whether its code is certain.
+  void bound_logic_op(Pixel& at, const Pixel& before, const State& state, double source, std::size_t channel) const;
 
   ColorFormat format_;
   std::array<double, 4> most_;  ///< the largest code of each channel

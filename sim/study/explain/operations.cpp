@@ -162,6 +162,19 @@ Result pack(FragmentAtWork& f, OperationStep& step) {
   return {};
 }
 
+bool has_logic_op(const FragmentAtWork& f) {
+  return writes_color(f) && f.context.fragment_ops.color.logic != LogicOp::copy;
+}
+Result operate(FragmentAtWork& f, OperationStep& step) {
+  step.figures = {{"op", {}, 0, word_of("logic_op", f.context.state)},
+                  {"before", {f.packed}, color_bits(f)},
+                  {"stored", {f.stored.color}, color_bits(f)}};
+  const std::uint32_t all = f.context.config.color_format == ColorFormat::rgb565 ? 0xffffU : ~0U;
+  f.packed = operated(LogicTerms(f.context.fragment_ops.color.logic), f.packed, f.stored.color) & all;
+  step.figures.push_back({"after", {f.packed}, color_bits(f)});
+  return {};
+}
+
 bool writes_depth(const FragmentAtWork& f) { return f.context.fragment_ops.state.depth_write; }
 Result write_depth(FragmentAtWork& f, OperationStep& step) {
   const int bits = f.context.depth_encode.format().bits;
@@ -198,6 +211,7 @@ constexpr Operation kOperations[] = {
     {"write_stencil", Stage::depth_test, changes_stencil, change_stencil},
     {"blend", Stage::rop, blends, blend},
     {"pack_color", Stage::rop, writes_color, pack},
+    {"logic_op", Stage::rop, has_logic_op, operate},
     {"write_depth", Stage::framebuffer, writes_depth, write_depth},
     {"write_color", Stage::framebuffer, writes_color, write_color},
 };

@@ -67,6 +67,8 @@ constexpr std::array kCases{
     Case{"stencil_counts", "f6", "a stencil that counts: how many cover each pixel", stencil_counts},
     Case{"fog", "f7", "fog of all kinds, w ratios to 10^4: colours within the bound of table and q", fog},
     Case{"light", "f8", "light of fragments, w ratios to 10^3: colours within the bound of normals and tables", light},
+    Case{"logic_ops", "f9", "1 to 16 logic operations over each other, some blends between: within the bound",
+         logic_ops},
     Case{"samples", "m1", "2, 4, 8 samples a pixel in any pattern: coverage, depth and colour of each; both engines",
          samples},
     Case{"rectangles", "m2", "lines as rectangles, 1 to 8 samples a pixel: as triangles are, and smooth; both engines",

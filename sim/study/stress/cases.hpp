@@ -37,7 +37,7 @@ RunCase lines_random, lines_octants, lines_long, polylines, wires;
 RunCase textured_w_ratio, textured_slivers, texel_borders, texture_repeats, texture_mirrors, texture_of_one_texel,
     constant_coordinate, equal_w, q_near_one, wrap_across_a_tile, levels_along_a_scanline, texture_viewport;
 // fragment_cases.cpp
-RunCase random_operations, layers, opaque_blend, alpha_parts, mask_parts, stencil_counts, fog, light;
+RunCase random_operations, layers, opaque_blend, alpha_parts, mask_parts, stencil_counts, fog, light, logic_ops;
 // sample_cases.cpp
 RunCase samples, rectangles;
 // engine_cases.cpp

@@ -88,17 +88,10 @@ void random_operations(Unit& unit) {
   (void)rendered(unit, builder.scene);
 }
 
-void layers(Unit& unit) {
-  State state = SceneBuilder::window_state();
-  state.depth_test = DepthFunc::always;
-  state = with(unit, state, {"blend", "blend_equation", "blend_color", "dither"});
-  if (!state.blend || unit.random.coin())
-    state.blend = BlendFactors{BlendFactor::src_alpha, BlendFactor::one_minus_src_alpha, BlendFactor::one,
-                               BlendFactor::one_minus_src_alpha};
-  SceneBuilder builder(unit.width(12), unit.height(10), state);
-  const int count = 1 << unit.random.index(7);
-  add_triangles(unit, builder, count);
-  const Scene& scene = builder.scene;
+namespace {
+
+/// Judges the colours of a scene by the bound of their layers.
+void judge_layers(Unit& unit, const Scene& scene) {
   const Config config = with_alpha(unit.config, scene);
   FragmentFrame frame(scene, config);
   RenderOptions options = render_options();
@@ -115,6 +108,35 @@ void layers(Unit& unit) {
     unit.count_checks(row.pixels);
     unit.measure("layers", "of its bound", row.part_of_bound, 1, scene);
   }
+}
+
+}  // namespace
+
+void layers(Unit& unit) {
+  State state = SceneBuilder::window_state();
+  state.depth_test = DepthFunc::always;
+  state = with(unit, state, {"blend", "blend_equation", "blend_color", "dither"});
+  if (!state.blend || unit.random.coin())
+    state.blend = BlendFactors{BlendFactor::src_alpha, BlendFactor::one_minus_src_alpha, BlendFactor::one,
+                               BlendFactor::one_minus_src_alpha};
+  SceneBuilder builder(unit.width(12), unit.height(10), state);
+  const int count = 1 << unit.random.index(7);
+  add_triangles(unit, builder, count);
+  judge_layers(unit, builder.scene);
+}
+
+void logic_ops(Unit& unit) {
+  State state = SceneBuilder::window_state();
+  state.depth_test = DepthFunc::always;
+  SceneBuilder builder(unit.width(12), unit.height(10), state);
+  const int count = 1 << unit.random.index(5);
+  for (int n = 0; n < count; ++n) {
+    builder.with_state(unit.random.index(4) == 0 ? with(unit, state, {"blend", "blend_equation", "blend_color"})
+                                                 : with(unit, state, {"logic_op", "color_mask", "dither"}));
+    add_triangles(unit, builder, 1);
+  }
+  judge_layers(unit, builder.scene);
+  (void)rendered(unit, builder.scene);
 }
 
 void opaque_blend(Unit& unit) {

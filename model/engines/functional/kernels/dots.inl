@@ -44,7 +44,9 @@ HALFPLANE_INLINE unsigned operate_on_dots(Bin& bin, const FragmentLanes& group, 
   const ColorPairs mixed =
       ops.blends() ? BlendLanes(ops, source, widened(stored, format))(format == ColorFormat::rgba8888) : source;
   const auto written = static_cast<std::int32_t>(written_bits(ops, format));
-  ((packed(mixed.red_blue, mixed.green_alpha, format) & written) | (stored & ~written)).store(color.data());
+  I16 code = packed(mixed.red_blue, mixed.green_alpha, format);
+  if (ops.logic != LogicOp::copy) code = LogicLanes(ops.logic)(code, stored);
+  ((code & written) | (stored & ~written)).store(color.data());
   for (std::uint32_t left = passed; left != 0; left &= left - 1) {
     const auto k = static_cast<std::size_t>(std::countr_zero(left));
     pixels[static_cast<std::size_t>(group.place[k])] = static_cast<std::uint32_t>(color[k]);

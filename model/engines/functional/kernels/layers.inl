@@ -21,7 +21,8 @@ namespace {
 [[nodiscard]] inline bool is_over(const ColorOps& ops, ColorFormat format) {
   const BlendFactors& f = ops.factors;
   if (f.src != BlendFactor::src_alpha || f.dst != BlendFactor::one_minus_src_alpha ||
-      ops.equation[0] != BlendEquation::add || ops.dithers || ops.writes != ColorOps{}.writes)
+      ops.equation[0] != BlendEquation::add || ops.dithers || ops.logic != LogicOp::copy ||
+      ops.writes != ColorOps{}.writes)
     return false;
   return format != ColorFormat::rgba8888 ||
          ((f.src_alpha == BlendFactor::src_alpha || f.src_alpha == BlendFactor::one) &&

@@ -1,4 +1,4 @@
-// Operations in lanes: alpha test, blending, dithering and masks of a triangle's pixels in a tile, from color_ops.hpp.
+// Operations in lanes: alpha test, blending, dithering, logic operations and masks of a triangle's pixels in a tile, from color_ops.hpp.
 // Colours have the layout of surfaces: red with blue and green with alpha in the halves of lanes.
 //
 // Such a triangle reads stored values, so it owns no tile and defers no colour; hidden tiles are still skipped.
@@ -197,6 +197,22 @@ HALFPLANE_NOINLINE std::uint64_t test_linear_alpha(const Bin& bin, const DrawnSu
   });
 }
 
+/// A draw's logic operation in lanes: operated() of color_ops.hpp.
+struct LogicLanes {
+  std::int32_t none, source, stored, both;
+
+  HALFPLANE_INLINE explicit LogicLanes(LogicOp op) {
+    const LogicTerms terms(op);
+    none = static_cast<std::int32_t>(terms.none);
+    source = static_cast<std::int32_t>(terms.source);
+    stored = static_cast<std::int32_t>(terms.stored);
+    both = static_cast<std::int32_t>(terms.both);
+  }
+  HALFPLANE_INLINE I16 operator()(const I16& code, const I16& before) const {
+    return (code & source) ^ (before & stored) ^ (code & before & both) ^ none;
+  }
+};
+
 /// Writes depths of `pixels`, which have passed every test.
 HALFPLANE_INLINE void write_depths(Bin& bin, const BinTriangle& t, int tile, std::uint64_t pixels) {
   if (pixels == 0) return;
@@ -219,15 +235,17 @@ HALFPLANE_INLINE void store_colors(Bin& bin, std::uint32_t* to, std::uint64_t pi
   const ColorFormat format = bin.config.color_format;
   const bool has_alpha = format == ColorFormat::rgba8888, blends = ops.blends(), dithers = ops.dithers;
   const bool writes_some = bin.ops->state.color_write,  // false only without Skip::masked_draws
-      writes_all = writes_some && ops.writes == ColorOps{}.writes;
+      has_logic = ops.logic != LogicOp::copy, writes_all = writes_some && !has_logic && ops.writes == ColorOps{}.writes;
   const auto written = writes_some ? static_cast<std::int32_t>(written_bits(ops, format)) : 0;
   const S32 thresholds = dithers ? block_thresholds() : S32(0);
+  const LogicLanes logic(ops.logic);
   store_pixels(bin, to, pixels, bin.skip.operations_early_z, [&](auto block, const I16& stored) HALFPLANE_LAMBDA {
     const auto mixed = [&]() HALFPLANE_LAMBDA {
       if (!blends) return colors[block];
       return BlendLanes(ops, colors[block], widened(stored, format))(has_alpha);
     }();
-    const I16 code = dithers ? packed_dithered(mixed, thresholds) : packed(mixed.red_blue, mixed.green_alpha, format);
+    I16 code = dithers ? packed_dithered(mixed, thresholds) : packed(mixed.red_blue, mixed.green_alpha, format);
+    if (has_logic) code = logic(code, stored);
     return writes_all ? code : (code & written) | (stored & ~written);
   });
 }
