@@ -199,6 +199,9 @@ std::vector<Setting> all_settings() {
       no_pixel(one_of<&Config::blend_lanes>(
           "blend.lanes", "samples",
           "samples blended per cycle by the RTL, 1 or 4; 0: neither blending nor partial color masks", {0, 1, 4})),
+      unnamed_at_0(no_pixel(number<&Config::logic_units>(
+          "logic.unit", "units",
+          "1: the RTL combines stored colours with new ones bit by bit (logic_op); 0: it does not", 0, 1))),
       number<&Config::dither_units>("dither.unit", "units", "1: the RTL dithers colours of rgb565; 0: it rounds them",
                                     0, 1),
       number<&Config::fog_units>("fog.unit", "units",

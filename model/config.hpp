@@ -82,6 +82,7 @@ struct Config {
   int alpha_units = 0;    ///< 1: alpha is interpolated for any stored format, and tested
   int blend_lanes = 0;    ///< samples blended per clock: 0 (no unit), 1 or 4
   int dither_units = 0;   ///< 1: the RTL dithers colours of rgb565
+  int logic_units = 0;    ///< 1: the RTL combines stored codes with new ones bit by bit
   int fog_units = 0;      ///< 1: the RTL fogs triangles, downstream of its texture unit
   int shade_units = 0;    ///< 1: the RTL lights fragments, upstream of its texture unit
   int stencil_bits = 0;   ///< bits of the stencil stored above each depth: 0 (none) or 8

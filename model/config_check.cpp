@@ -77,6 +77,8 @@ void validate(const Config& config) {
       !packs_at_write(config) || (config.cache_kind == CacheKind::blocks && config.setup_kind == SetupKind::pipelined),
       "colours are blended and dithered where the framebuffer of blocks writes them, by states that the pipelined "
       "setup lets through: use cache.kind=blocks and setup.kind=pipelined, or blend.lanes=0 and dither.unit=0");
+  refuse_unless(config.logic_units == 0 || config.blend_lanes != 0,
+                "logic operations take the stored colours that blending reads: use blend.lanes=4, or logic.unit=0");
   refuse_unless(
       config.stencil_bits == 0 || (config.cache_kind == CacheKind::blocks &&
                                    config.setup_kind == SetupKind::pipelined && config.depth_bits <= 24),

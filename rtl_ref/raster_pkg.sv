@@ -37,6 +37,7 @@ package raster_pkg;
   localparam int TEXTURE_BORDER = 0;  // 1: the RTL's texture unit has a border colour (texture_wrap border and half_border); 0: it has none
   localparam int ALPHA_UNIT = 0;  // 1: the RTL interpolates alpha, whatever color.format keeps, and (blocks, pipelined) tests it; 0: neither
   localparam int BLEND_LANES = 0;  // samples blended per cycle by the RTL, 1 or 4; 0: neither blending nor partial color masks
+  localparam int LOGIC_UNIT = 0;  // 1: the RTL combines stored colours with new ones bit by bit (logic_op); 0: it does not
   localparam int DITHER_UNIT = 0;  // 1: the RTL dithers colours of rgb565; 0: it rounds them
   localparam int FOG_UNIT = 0;  // 1: the RTL fogs triangles behind its texture unit; 0: it has no fog
   localparam int SHADE_UNIT = 0;  // 1: the RTL lights the fragments of shade phong in front of its texture unit; 0: it lights none

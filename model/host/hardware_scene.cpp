@@ -68,7 +68,8 @@ std::string fragment_fault(const State& state, const Config& config) {
   if (state.fog && config.fog_units == 0)
     return "fog, but this hardware has no unit for it; set fog.unit=1 (with texture.unit=nearest), or leave it "
            "out";
-  if (ops.color.logic != LogicOp::copy) return "logic_op, but no hardware has a unit for it; leave it out";
+  if (ops.color.logic != LogicOp::copy && config.logic_units == 0)
+    return "logic_op" + unit("logic.unit=1 and blend.lanes=4");
   if (ops.color.blends() && config.blend_lanes == 0) return "blend" + unit("blend.lanes=4");
   if (ops.color.reads_stored() && config.blend_lanes == 0) return "color_mask of some channels" + unit("blend.lanes=4");
   if (ops.color.dithers && config.dither_units == 0) return "dither" + unit("dither.unit=1");

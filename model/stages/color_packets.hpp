@@ -16,10 +16,12 @@ struct ColorWords {
 
 namespace color_packets_detail {
 inline constexpr int kFactor = 4, kEquation = 3, kFunction = 3, kByte = 8;  // bits
-}
+inline constexpr unsigned kLogic = 5;  // no equation: the first factor is a logic operation
+}  // namespace color_packets_detail
 
 /// ColorOps without the constant, lowest first: four factors, two equations, channels to write, dithers, blends, reads
-/// stored colours. The last two follow from the rest, stored for readers that need no other field.
+/// stored colours. The last two follow from the rest, stored for readers that need no other field. A logic operation,
+/// with which nothing blends, is in the place of the first factor; the first equation says so.
 [[nodiscard]] constexpr std::uint32_t pack(const ColorOps& ops) {
   using namespace color_packets_detail;
   std::uint32_t word = 0;
@@ -28,11 +30,13 @@ inline constexpr int kFactor = 4, kEquation = 3, kFunction = 3, kByte = 8;  // b
     word |= static_cast<std::uint32_t>(value) << at;
     at += bits;
   };
-  put(ops.factors.src, kFactor);
+  const bool is_logic = ops.logic != LogicOp::copy;
+  put(is_logic ? static_cast<unsigned>(ops.logic) : static_cast<unsigned>(ops.factors.src), kFactor);
   put(ops.factors.dst, kFactor);
   put(ops.factors.src_alpha, kFactor);
   put(ops.factors.dst_alpha, kFactor);
-  for (const BlendEquation equation : ops.equation) put(equation, kEquation);
+  put(is_logic ? kLogic : static_cast<unsigned>(ops.equation[0]), kEquation);
+  put(ops.equation[1], kEquation);
   for (const bool writes : ops.writes) put(writes, 1);
   put(ops.dithers, 1);
   put(ops.blends(), 1);
@@ -48,11 +52,16 @@ constexpr void unpack(std::uint64_t word, ColorOps& ops) {
     word >>= bits;
     return value;
   };
-  ops.factors.src = static_cast<BlendFactor>(take(kFactor));
+  const auto first = take(kFactor);
   ops.factors.dst = static_cast<BlendFactor>(take(kFactor));
   ops.factors.src_alpha = static_cast<BlendFactor>(take(kFactor));
   ops.factors.dst_alpha = static_cast<BlendFactor>(take(kFactor));
-  for (BlendEquation& equation : ops.equation) equation = static_cast<BlendEquation>(take(kEquation));
+  const auto equation = take(kEquation);
+  const bool is_logic = equation == kLogic;
+  ops.logic = is_logic ? static_cast<LogicOp>(first) : LogicOp::copy;
+  ops.factors.src = is_logic ? BlendFactor::one : static_cast<BlendFactor>(first);
+  ops.equation[0] = is_logic ? BlendEquation::add : static_cast<BlendEquation>(equation);
+  ops.equation[1] = static_cast<BlendEquation>(take(kEquation));
   for (bool& writes : ops.writes) writes = take(1) != 0;
   ops.dithers = take(1) != 0;
 }

@@ -751,3 +751,14 @@ mutant(489 stages/texture_stage.sv "texture, border: its token sets levels as we
   [=[!is_border]=] [=[1'b1]=])
 mutant(490 stages/texture_stage.sv "texture, border: no token sets it"
   [=[is_levels && word[raster_pkg::BORDER_WORD_BIT]]=] [=[1'b0]=])
+
+# Logic operations
+mutant(491 stages/color_write.sv "colours, logic operations: a new one on a stored zero counts as a zero on a one"
+  [=[(rounded & ~old & {COLOR{truth[1]}})]=] [=[(rounded & ~old & {COLOR{truth[2]}})]=])
+mutant_text(492 stages/color_write.sv "colours, logic operations: they take what the stamp in front has made"
+  [=[assign old          = stored_2_q[s*COLOR+:COLOR];]=]
+  [=[assign old          = raster_cosim.mutant_q == 16'd492 ? code_3_q[s*COLOR+:COLOR] : stored_2_q[s*COLOR+:COLOR];]=])
+mutant(493 stages/color_write.sv "colours, logic operations: a factor of blending counts as one"
+  [=[ops_q[EQUATION+:3] == IS_LOGIC]=] [=[ops_q[EQUATION+2]]=])
+mutant(494 stages/color_write.sv "colours, logic operations: zeros on zeros stay"
+  [=[(~rounded & ~old & {COLOR{truth[3]}})]=] [=['0]=])

@@ -11,7 +11,8 @@
 // memory; it takes a clock for each group of BLEND_LANES samples that are blended, one at least, and writes two clocks
 // after the read, in order. Writes in flight to these samples are newer than the RAM and forwarded, so that the same
 // stamp may come every clock; a stamp that reads waits until the reads of an eviction are complete, and an eviction
-// waits for the writes in flight to its line and a clock more. Samples are packed here, rounded or dithered.
+// waits for the writes in flight to its line and a clock more. Samples are packed here, rounded or dithered; with
+// LOGIC_UNIT a logic operation then takes all samples of a stamp in a clock, beside the lanes.
 // Specification: model/stages/block_cache.hpp, rop.hpp; the times are those of model/engines/cycle/block_timing.hpp.
 module color_write #(
     parameter int STAMPS = raster_pkg::BLOCK_STAMPS,  // derived; not to be set
@@ -233,7 +234,8 @@ module color_write #(
       localparam int CHANNELS = raster_pkg::COLOR_FORMAT == 0 ? 3 : 4;  // stored channels
 
       // The registers: operations, from the lowest bit: four factors, two equations, channels to write, dithering,
-      // blending.
+      // blending. The first equation may be a logic operation, whose truth table is then in the first factor: bit 0 is
+      // the result for ones, bit 1 for a new one on a stored zero, bit 2 for a new zero on a stored one.
       localparam int EQUATION = 16;
       localparam int WRITES = 22;
       localparam int DITHERS = 26;
@@ -405,6 +407,19 @@ module color_write #(
         );
       end
 
+      // The truth table of the logic operation, else that of the new code.
+      logic [3:0] truth;
+      if (raster_pkg::LOGIC_UNIT != 0) begin : gen_truth
+        localparam logic [2:0] IS_LOGIC = 3'd5;
+        logic [3:0] truth_2_q;
+        always_ff @(posedge clk_i) truth_2_q <= ops_q[EQUATION+:3] == IS_LOGIC ? ops_q[3:0] : 4'b0011;
+        assign truth = truth_2_q;
+      end else begin : gen_no_truth
+        logic unused;
+        assign truth  = 4'b0011;
+        assign unused = &truth;
+      end
+
       // Packed: each channel new or stored.
       assign out           = out_2_q;
       assign write_address = {line_2_q, stamp_2_q};
@@ -413,7 +428,7 @@ module color_write #(
       assign code_new      = made;
       for (s = 0; s < SAMPLES; s++) begin : gen_rop
         logic [SHADED-1:0] rgba;
-        logic [COLOR-1:0]  packed_color, channels;
+        logic [COLOR-1:0]  rounded, packed_color, channels;
         always_comb begin
           rgba = color_2_q[s*SHADED+:SHADED];
           // With a lane for each sample, colours that are not blended pass through it as well.
@@ -422,7 +437,7 @@ module color_write #(
         if (raster_pkg::DITHER_UNIT == 0) begin : gen_rounded
           rop u_rop (
               .rgba_i (rgba),
-              .color_o(packed_color)
+              .color_o(rounded)
           );
         end else begin : gen_dithered
           logic [1:0] x, y;
@@ -437,8 +452,16 @@ module color_write #(
               .rgba_i     (rgba),
               .dithers_i  (out[4]),
               .threshold_i(threshold_of(x, y)),
-              .color_o    (packed_color)
+              .color_o    (rounded)
           );
+        end
+        if (raster_pkg::LOGIC_UNIT != 0) begin : gen_logic
+          logic [COLOR-1:0] old;
+          assign old          = stored_2_q[s*COLOR+:COLOR];
+          assign packed_color = (rounded & old & {COLOR{truth[0]}}) | (rounded & ~old & {COLOR{truth[1]}}) |
+                                (~rounded & old & {COLOR{truth[2]}}) | (~rounded & ~old & {COLOR{truth[3]}});
+        end else begin : gen_no_logic
+          assign packed_color = rounded;
         end
         if (raster_pkg::COLOR_FORMAT == 0) begin : gen_rgb565
           assign channels = {{5{out[0]}}, {6{out[1]}}, {5{out[2]}}};

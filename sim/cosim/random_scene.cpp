@@ -56,6 +56,7 @@ class Generator {
     set_newer();
     if (has_lines_ || has_points_ || config_.line_units == 0) set_shapes();
     set_units();
+    if (config_.logic_units != 0) set_logic_ops();
     if (config_.stencil_bits != 0) set_stencils();
     if (has_texture_planes(config_)) set_textures();
     if (config_.fog_units != 0) set_fogs();
@@ -89,6 +90,7 @@ class Generator {
   void set_any(State& s, std::string_view name);
   void set_newer();
   void set_units();
+  void set_logic_ops();
   void set_stencils();
   void set_textures();
   void set_constants();
@@ -230,6 +232,13 @@ void Generator::set_units() {
     if (random.next() % 4 == 0) has_units = !has_units;
     if (has_units) state = random_state(state, rows, chooser(random));
   }
+}
+
+/// Gives some states a logic operation, in the place of blending. From separate random numbers, as above.
+void Generator::set_logic_ops() {
+  Random random(seed_ ^ 0x106100u);
+  for (State& state : scene_.states)
+    if (random.next() % 4 == 0) state.logic_op = static_cast<LogicOp>(random.next() % 16);
 }
 
 /// Sets stencil tests in runs of draws, with few values so that they meet, and clears of the stencil, alone and with

@@ -355,6 +355,16 @@ class Explained:
                                for c, (top, low) in enumerate(tops))
                     j.same("packed colour", int(step["after"], 16), code)
                 packed = int(step["after"], 16)
+            elif name == "logic_op":
+                j.same("logic operation", step["op"], state["logic_op"][0])
+                j.same("colour before the logic operation", int(step["before"], 16), packed)
+                j.same("stored colour", step["stored"], stored["color"])
+                s, d = packed, int(stored["color"], 16)
+                made = {"clear": 0, "and": s & d, "and_reverse": s & ~d, "copy": s, "and_inverted": ~s & d, "noop": d,
+                        "xor": s ^ d, "or": s | d, "nor": ~(s | d), "equiv": ~(s ^ d), "invert": ~d, "or_reverse": s | ~d,
+                        "copy_inverted": ~s, "or_inverted": ~s | d, "nand": ~(s & d), "set": -1}[step["op"]]
+                packed = made & (0xffff if self.is_565 else 0xffffffff)
+                j.same("colour of the logic operation", int(step["after"], 16), packed)
             elif name in ("write_depth", "write_color"):
                 key = name[6:]
                 j.same(key + " before", step["before"], stored[key])

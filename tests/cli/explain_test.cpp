@@ -173,6 +173,8 @@ TEST_F(ExplainCommand, AJudgeFromOutsideFindsNoFigureWrong) {
       "--set stencil.bits=8 --set blend.lanes=4 --set dither.unit=1",
       "2");
   judged("--config full --set msaa.samples=4", "3");
+  judged("--config embedded --set blend.lanes=4 --set dither.unit=1 --set logic.unit=1", "6");
+  judged("--config full --set blend.lanes=4 --set logic.unit=1", "11");
 }
 
 TEST_F(ExplainCommand, BadPixelsAreRefused) {

@@ -27,6 +27,9 @@ const std::vector<Config>& configurations() {
       with("embedded", {{"dither.unit", "1"}}),
       with("embedded", {{"texture.unit", "nearest"}, {"alpha.unit", "1"}, {"blend.lanes", "4"}, {"dither.unit", "1"}}),
       with("full", {{"blend.lanes", "1"}, {"alpha.unit", "1"}, {"texture.unit", "bilinear"}}),
+      with("embedded", {{"blend.lanes", "4"}, {"logic.unit", "1"}, {"dither.unit", "1"}, {"cache.lines", "4"}}),
+      with("full", {{"blend.lanes", "1"}, {"logic.unit", "1"}, {"alpha.unit", "1"}}),
+      with("embedded", {{"blend.lanes", "1"}, {"logic.unit", "1"}, {"msaa.samples", "4"}, {"compress.unit", "1"}}),
       with("tiny", {{"cache.kind", "blocks"}, {"blend.lanes", "4"}, {"dither.unit", "1"}, {"alpha.unit", "1"}})};
   return all;
 }
@@ -65,6 +68,11 @@ TEST(ColorHardware, OperationsComeOutOfTheirTokensAsTheyWentIn) {
     for (bool& writes : wanted.ops.writes) writes = below(2) != 0;
     for (std::uint8_t& channel : wanted.ops.constant) channel = static_cast<std::uint8_t>(below(256));
     wanted.ops.dithers = below(2) != 0;
+    if (n % 4 == 0) {
+      wanted.ops.logic = static_cast<LogicOp>(below(16));
+      wanted.ops.factors = {};
+      wanted.ops.equation = {};
+    }
     wanted.alpha = {static_cast<DepthFunc>(below(8)), static_cast<std::uint8_t>(below(256))};
     state.set(StateRegister::color_ops, pack(wanted.ops));
     state.set(StateRegister::blend_constant, pack(wanted.ops.constant));
@@ -74,6 +82,13 @@ TEST(ColorHardware, OperationsComeOutOfTheirTokensAsTheyWentIn) {
     EXPECT_EQ(pack(wanted.ops) >> 27 & 1, wanted.ops.blends() ? 1u : 0u);
     EXPECT_EQ(pack(wanted.ops) >> 28, wanted.ops.reads_stored() ? 1u : 0u);
   }
+}
+
+TEST(ColorHardware, AWordWithoutALogicOperationIsWhatItWasBeforeThereWereAny) {
+  EXPECT_EQ(pack(ColorOps{}), 0x03c00101U) << "one, zero, one, zero; four channels";
+  ColorOps ops;
+  ops.logic = LogicOp::xor_op;
+  EXPECT_EQ(pack(ops), 0x13c50106U) << "the operation, the code 5 in the place of the equation; it reads colours";
 }
 
 /// A rectangle of 8x8 pixels at the origin, in halves, under a state.

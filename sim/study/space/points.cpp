@@ -16,6 +16,7 @@ SpaceJson abilities(const Config& config) {
           {"colors_over_w", config.perspective_colors},
           {"alpha", config.alpha_units},
           {"blending", config.blend_lanes > 0 ? 1 : 0},
+          {"logic_op", config.logic_units},
           {"dither", config.dither_units},
           {"fog", config.fog_units},
           {"shade", config.shade_units},
