@@ -202,6 +202,12 @@ void draw_channels(Context& context, halfplane::State state, Topology topology, 
   context.drawable->frame.draw(state, topology, vertices, indices);
 }
 
+/// LogicOp has the order of OpenGL's enumerants.
+bool has_logic_unit(const Context& context) { return context.drawable->frame.options().config.logic_units != 0; }
+static_assert(static_cast<int>(LogicOp::copy) == GL_COPY - GL_CLEAR &&
+              static_cast<int>(LogicOp::invert) == GL_INVERT - GL_CLEAR &&
+              static_cast<int>(LogicOp::set) == GL_SET - GL_CLEAR);
+
 /// A logic operation on a channel whose bits are all `is_one` as one on what is stored: bit 0 is the result of stored ones,
 /// bit 1 that of stored zeros.
 unsigned stored_operation(unsigned op, bool is_one) { return (is_one ? op : op >> 2) & 3; }
@@ -333,6 +339,10 @@ void draw_in(Context& context, halfplane::State state, Topology topology, std::s
   const bool is_same_for_all = (op & 3) == op >> 2;
   if (vertices.empty() || !context.state.color.logic_op || context.state.color.logic_func == GL_COPY)
     return frame.draw(state, topology, vertices, indices);
+  if (has_logic_unit(context)) {
+    state.logic_op = static_cast<LogicOp>(op);
+    return frame.draw(state, topology, vertices, indices);
+  }
   const bool is_plain = !state.texture && !state.fog;
   if (context.state.color.logic_func == GL_COPY_INVERTED && is_plain) {
     for (Vertex& v : vertices)
@@ -417,7 +427,8 @@ void draw_rectangle(Context& context, const halfplane::Texture& texels, double x
   if (!state) return;
   Frame& frame = context.drawable->frame;
   const unsigned op = context.state.color.logic_func - GL_CLEAR;
-  const bool looks_at_both = context.state.color.logic_op && op != GL_COPY - GL_CLEAR && (op & 3) != op >> 2;
+  const bool looks_at_both =
+      context.state.color.logic_op && op != GL_COPY - GL_CLEAR && (op & 3) != op >> 2 && !has_logic_unit(context);
   const bool has_other_fog = context.state.fog.enabled && !state->fog;
   if (!looks_at_both && !has_other_fog) return draw_texels(context, *state, texels, x, y, zoom_x, zoom_y, z, w, true);
 

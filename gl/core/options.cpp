@@ -12,8 +12,7 @@ namespace {
 Config plain_config() {
   return labelled(
       "full stencil.bits=8 perspective.colors=1 texture.unit=trilinear texture.constant=1 texture.border=1 "
-      "alpha.unit=1 "
-      "blend.lanes=4 fog.unit=1");
+      "alpha.unit=1 blend.lanes=4 logic.unit=1 fog.unit=1");
 }
 
 OnMissing on_missing_of(const std::string& word) {

@@ -15,8 +15,9 @@ namespace halfplane::gl {
 struct Picture {
   static constexpr int kSide = 64;
 
-  explicit Picture(const std::string& config = "full stencil.bits=8 texture.unit=trilinear perspective.colors=1")
-      : options(options_of(config)), drawable(options, kSide, kSide) {
+  explicit Picture(const std::string& config = "full stencil.bits=8 texture.unit=trilinear perspective.colors=1",
+                   OnMissing on_missing = OnMissing::warn)
+      : options(options_of(config, on_missing)), drawable(options, kSide, kSide) {
     context.drawable = context.read_drawable = &drawable;
     viewport(context, 0, 0, kSide, kSide);
     pixels();
@@ -86,9 +87,10 @@ struct Picture {
     return code;
   }
 
-  [[nodiscard]] static Options options_of(const std::string& config) {
+  [[nodiscard]] static Options options_of(const std::string& config, OnMissing on_missing) {
     Options options;
     options.config = labelled(config);
+    options.on_missing = on_missing;
     return options;
   }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "model/formats/texture.hpp"
+#include "model/stages/color_ops.hpp"
 #include "picture.hpp"
 
 namespace halfplane::gl::primitive_test {
@@ -358,6 +359,38 @@ TEST(GlFragment, LogicOperationsOfAnyColors) {
   picture.draw(GL_QUADS, {{8, 8}, {16, 8}, {16, 16}, {8, 16}});
   EXPECT_EQ(picture.rgb(8, 8), (Rgb{0x53, 0x3c, 0xc3}));
   EXPECT_EQ(picture.pixel(20, 20)[3], 0);
+}
+
+/// Hardware with the unit draws the operation itself, in either format; hardware without it is named.
+TEST(GlFragment, LogicOperationsAreTheHardwaresWhereItHasTheUnit) {
+  testing::GTEST_FLAG(death_test_style) = "threadsafe";
+  const auto draw = [](Picture& picture) {
+    enable(picture.context, GL_COLOR_LOGIC_OP, true);
+    logic_op(picture.context, GL_XOR);
+    set_color(picture.context, {0x35, 0xf0, 0x0f});
+    picture.draw(GL_QUADS, {{8, 8}, {16, 8}, {16, 16}, {8, 16}});
+  };
+  for (const auto format : {ColorFormat::rgb565, ColorFormat::rgba8888}) {
+    const std::string without = std::string("embedded stencil.bits=8 blend.lanes=4 color.format=") +
+                                (format == ColorFormat::rgb565 ? "rgb565" : "rgba8888");
+    Picture picture(without + " logic.unit=1", OnMissing::stop);
+    clear_color(picture.context, 0x53 / 255.0, 0x3c / 255.0, 0xc3 / 255.0, 0);
+    clear(picture.context, GL_COLOR_BUFFER_BIT);
+    const Framebuffer before = picture.drawable.frame.picture();
+    draw(picture);
+    const Framebuffer once = picture.drawable.frame.picture();
+    const auto own = pack_color(format, std::array<std::uint8_t, 4>{0x35, 0xf0, 0x0f, 0xff});
+    const std::size_t inside = once.at(8, Picture::kSide - 1 - 8);
+    EXPECT_EQ(once.color[inside], before.color[inside] ^ own);
+    draw(picture);
+    EXPECT_EQ(picture.drawable.frame.picture().color, before.color);
+    const auto draw_without = [&] {
+      Picture other(without, OnMissing::stop);
+      draw(other);
+      (void)other.drawable.frame.picture();
+    };
+    EXPECT_EXIT(draw_without(), testing::ExitedWithCode(2), "logic operations");
+  }
 }
 
 TEST(GlPrimitive, FogBendsAlongALine) {
