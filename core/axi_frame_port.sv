@@ -6,12 +6,9 @@
 //          <- count of answers owed <- B
 //
 // Every burst has ID 0, is INCR, and lies in an aligned window of 16 beats. Longer bursts of raster_top are cut; of a
-// cut
-// write the last B is the answer. Answers of reads keep their order. The answer to a write comes when B has come, and
-// may
-// pass answers of earlier reads: raster_top counts these. R and B are always taken: a read is sent only when there is
-// room
-// for its answer, so no other client of the same R channel waits for raster_top.
+// cut write the last B is the answer. Answers of reads keep their order. The answer to a write comes when B has come,
+// and may pass answers of earlier reads: raster_top counts these. R and B are always taken: a read is sent only when
+// there is room for its answer, so no other client of the same R channel waits for raster_top.
 //
 // Order. AXI does not order a read after a write that has no answer, and raster_top reads blocks that it has just
 // evicted.
@@ -20,9 +17,8 @@
 // for B. A write needs not wait for earlier reads: raster_top writes a place only after it has used what it read there.
 //
 // Reset: rst_ni is that of the bus: everything is forgotten. forget_i drops what raster_top has asked for when
-// raster_top
-// alone begins anew (reset_order): no beat is taken until memory has answered everything, and these answers are
-// dropped.
+// raster_top alone begins anew (reset_order): no beat is taken until memory has answered everything, and these answers
+// are dropped.
 module axi_frame_port #(
     parameter int WRITES = 64,       // write bursts without an answer, at most: a power of two
     parameter int READ_BEATS = 32,   // beats of reads under way or not taken, at most: a power of two, 16 at least
@@ -102,8 +98,7 @@ module axi_frame_port #(
   assign takes_read   = beat_valid_i && beat_ready_o && !beat_i.is_write;
   assign takes_write  = beat_valid_i && beat_ready_o && beat_i.is_write;
 
-  // ---------------------------------------------------------------------------------------------------------------
-  // writes
+  // ---------------------------------------------------------------------------------------------------------- writes
   localparam int PENDING = $clog2(WRITES + 1);
   logic [3:0]         index, start, start_q;  // place in the window: of the beat, and of the burst's first
   logic               ends, enters_burst, beats_ready, bursts_ready, read_waits, is_whole;
@@ -192,8 +187,7 @@ module axi_frame_port #(
     end
   endgenerate
 
-  // ----------------------------------------------------------------------------------------------------------------
-  // reads
+  // ----------------------------------------------------------------------------------------------------------- reads
   localparam int ROOM = $clog2(READ_BEATS + 1);
   logic               split_valid, split_ready, is_behind_write, has_room;
   logic [ROOM-1:0]    room_q;
@@ -223,8 +217,7 @@ module axi_frame_port #(
   assign asks          = frame_arvalid && frame_arready;
 
   // The table. After reset it is filled once, so that no bucket is undefined: as many cycles as it has buckets. A beat
-  // is a
-  // read or a write, so no bucket is read while it is written; later writes do not change what a read waits for.
+  // is a read or a write, so no bucket is read while it is written; later writes do not change what a read waits for.
   logic [BUCKETS:0]  fill_q;
   logic [NUMBER-1:0] noted;  // in the bucket of the read
   logic [NUMBER-1:0] age;    // of that burst, 0: the oldest without B
@@ -253,8 +246,7 @@ module axi_frame_port #(
     else if (is_clearing) fill_q <= fill_q + 1'b1;
   end
 
-  // ---------------------------------------------------------------------------------------------------------------
-  // answers
+  // --------------------------------------------------------------------------------------------------------- answers
   logic               answer_waits, tells_write;
   logic [BITS-1:0]    answer;
   logic [PENDING-1:0] owed_q;  // answers to writes
@@ -296,8 +288,7 @@ module axi_frame_port #(
   end
   assign idle_o = !split_valid && room_q == ROOM'(READ_BEATS) && pending_q == '0 && owed_q == '0 && is_whole;
 
-  // ----------------------------------------------------------------------------------------------------------------
-  // errors
+  // ---------------------------------------------------------------------------------------------------------- errors
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
       read_error_o  <= 1'b0;

@@ -70,8 +70,7 @@ module axi_protocol_checker #(
   endfunction
 
   // wlast comes at the beat that awlen says, whichever is first. B belongs to a burst whose address and last beat were
-  // taken
-  // in earlier cycles.
+  // taken in earlier cycles.
   function static void check_writes();
     assert (!m_axi_bvalid || written > 0)
     else $error("axi: memory gave B without a write that waits for it");

@@ -3,8 +3,7 @@
 // In: 32-bit words, valid/ready. Out: primitives and lines, the layout of buffers, fences and what scan-out is to show.
 // The words of a primitive go into `payload_q`, each to its place, from which packet and line are read as they are: a
 // flip-flop with an enable for each bit and no multiplexer. A primitive is on offer in the cycle after its last word;
-// the
-// next header is taken in the cycle in which it leaves, so a triangle of n words takes n cycles.
+// the next header is taken in the cycle in which it leaves, so a triangle of n words takes n cycles.
 //
 // Waiting: a write of the layout until nothing is under way; FENCE and PRESENT for an earlier one of their kind;
 // WAIT_VBLANK for scan-out; FLUSH while three are under way. A wrong word stops the stream, with error_o, until reset.
@@ -288,8 +287,7 @@ module command_decoder #(
     end
   end
 
-  // ------------------------------------------------------------------------------------------------------- the
-  // watchdog
+  // ---------------------------------------------------------------------------------------------------- the watchdog
   generate
     if (WATCHDOG != 0) begin : gen_watchdog
       logic [WATCHDOG:0] waited_q;

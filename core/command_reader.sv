@@ -1,16 +1,13 @@
 // Command reader: fetches words of the command stream from a ring in memory.
 //
 // The ring has a power of two of words, 256 at least, at base, which is a multiple of its size in bytes; last_word_i is
-// its
-// words less one. The processor writes words and then tail_i; head_i counts the words that were taken. Both count
-// modulo 2^20
-// from reset, so full and empty differ.
+// its words less one. The processor writes words and then tail_i; head_i counts the words that were taken. Both count
+// modulo 2^20 from reset, so full and empty differ.
 //
 // An entry is a beat, or the beats that a word takes. Bursts are of up to 8 entries, at most two are under way, and
 // they
 // end where a block of 8 entries does. Whole entries are fetched ahead; one that the tail is in is fetched alone, when
-// all
-// before it have been taken, and again when more of it is there. A burst is asked for only with room for all of it.
+// all before it have been taken, and again when more of it is there. A burst is asked for only with room for all of it.
 //
 // clear_i forgets the stream at any time; answers still to come are dropped, and only then new requests go; head_i is 0
 // then.
@@ -61,8 +58,7 @@ module command_reader #(
   logic        asks, answers, ends_entry, takes, pops;
   logic [3:0]  fetched;           // whole entries of the burst on offer
 
-  // ------------------------------------------------------------------------------------------------------- what to
-  // fetch
+  // --------------------------------------------------------------------------------------------------- what to fetch
   logic [19:WORD] whole;  // entries before the tail
   logic [4:0]     used;   // places of the queue, taken or promised
   logic [3:0]     to_end, length;
@@ -87,8 +83,7 @@ module command_reader #(
   assign ring_arlen   = 8'(length_q) * 8'(BEATS) - 8'd1;
   assign asks         = asks_q && ring_arready;
 
-  // ------------------------------------------------------------------------------------------------------------
-  // answers
+  // --------------------------------------------------------------------------------------------------------- answers
   logic [PART-1:0]  part_q;
   logic [ENTRY-1:0] entry;
   logic             error;

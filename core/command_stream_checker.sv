@@ -3,11 +3,9 @@
 //   bind command_decoder command_stream_checker u_command_stream_checker (.*);
 //
 // A broken rule is an assertion that fails, with a message: what is wrong, at which word, what to send instead. Words
-// are
-// counted from reset as WORDS counts them, the first is 1. What the decoder itself refuses (docs/core.md, errors) is
-// said here in words; the rest
-// are rules that hardware does not check. Verilator wants --assert. CHECKS_ERRORS = 0: for test benches that send wrong
-// words.
+// are counted from reset as WORDS counts them, the first is 1. What the decoder itself refuses (docs/core.md, errors)
+// is said here in words; the rest are rules that hardware does not check. Verilator wants --assert. CHECKS_ERRORS = 0:
+// for test benches that send wrong words.
 module command_stream_checker #(
     parameter bit CHECKS_ERRORS = 1,
     parameter int PATIENCE = 1 << 20  // cycles that a word may wait

@@ -112,8 +112,7 @@ module halfplane_core #(
   localparam logic [2:0] TEXTURE_SIZE = 3'($clog2(raster_pkg::TEXTURE_PORT_BITS / 8));
   localparam bit HAS_TEXTURE = raster_pkg::COORDINATES != 0;
 
-  // --------------------------------------------------------------------------------------------------------------
-  // resets
+  // ---------------------------------------------------------------------------------------------------------- resets
   logic rst_n, core_n, raster_n, power_on_n, forgets, restarts, is_restarting, timed_out;
   logic raster_idle, frame_idle, texture_idle, reader_idle;
   reset_sync u_reset_sync (
@@ -134,8 +133,7 @@ module halfplane_core #(
       .timed_out_o(timed_out)
   );
 
-  // -----------------------------------------------------------------------------------------------------------
-  // registers
+  // ------------------------------------------------------------------------------------------------------- registers
   logic        starts, stops, is_running, is_written, ring_is_empty, underrun, clears_underrun, scan_enable, scan_error;
   logic [3:0]  error;
   logic [4:0]  irq_enable, irq_pending, counter_index;
@@ -262,8 +260,7 @@ module halfplane_core #(
     else if (fence_valid) fence_q <= fence;
   end
 
-  // ------------------------------------------------------------------------------------------------------------
-  // commands
+  // -------------------------------------------------------------------------------------------------------- commands
   logic            word_valid, word_ready, word_error, s_rerror;
   logic [31:0]     word;
   logic [3:0]      s_arvalid, s_arready, s_rvalid, s_rready;  // scan-out, frame, texture, ring
@@ -353,8 +350,7 @@ module halfplane_core #(
       .present_color_flags_base_o(present_flags_base)
   );
 
-  // ------------------------------------------------------------------------------------------------------------
-  // pipeline
+  // -------------------------------------------------------------------------------------------------------- pipeline
   logic                         texture_valid, texture_ready, texel_valid, texel_ready;
   raster_pkg::memory_beat_t     beat;
   raster_pkg::memory_answer_t   answer;
@@ -402,8 +398,7 @@ module halfplane_core #(
       counter = counter | (32'(counter_bits[COUNTER*i+:COUNTER]) & {32{counter_index == 5'(i)}});
   end
 
-  // --------------------------------------------------------------------------------------------------------------
-  // memory
+  // ---------------------------------------------------------------------------------------------------------- memory
   axi_frame_port u_frame (
       .clk_i,
       .rst_ni        (rst_n),
@@ -536,8 +531,7 @@ module halfplane_core #(
   assign m_axi_arcache = 4'd3;
   assign m_axi_arprot  = 3'd0;
 
-  // ------------------------------------------------------------------------------------------------------------ scan-
-  // out
+  // -------------------------------------------------------------------------------------------------------- scan-out
   generate
     if (SCAN_OUT) begin : gen_scan_out
       // A frame that is in memory becomes the one to be shown at once; scan-out samples it at the next vertical blank.

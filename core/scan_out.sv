@@ -8,9 +8,8 @@
 // answered.
 //
 // The registers are sampled in the cycle of vblank_o, after the last pixel of a frame was taken; so a frame is never
-// torn,
-// and from then on the earlier buffer is not read. Blanking is the time in which the display takes nothing (tready), or
-// BLANK cycles. Layout: docs/memory.md; the same in C: driver/detile.c.
+// torn, and from then on the earlier buffer is not read. Blanking is the time in which the display takes nothing
+// (tready), or BLANK cycles. Layout: docs/memory.md; the same in C: driver/detile.c.
 module scan_out #(
     parameter int FLAGS = raster_pkg::FRAME_CLEARS == 1 ? 1 : 0,  // 1: frame.clears flags: cleared blocks have a flag
     parameter int WIDEST = raster_pkg::TARGET_WIDTH,  // pixels of a line at most: the size of the buffers
