@@ -38,10 +38,11 @@ BENCH = [{
          "irq_pending_fence_q && !(is_whole && write_word == 5'd11 && (s_axil_wdata[0] || FAULT))", "interrupts"),
         ("core/core_registers.sv", "s_axil_wstrb == '1", "(s_axil_wstrb == '1 || FAULT)", "registers_say"),
         ("core/core_registers.sv", "write_word == 5'd17", "write_word == (FAULT ? 5'd16 : 5'd17)", "random_scenes"),
-        # The status has no error; a stop is not heard; the tail outlives a restart.
+        # The status has no error; a stop is not heard; the tail, or the fence's tag, outlives a restart.
         ("core/core_registers.sv", "= status_error_i;", "= FAULT ? 4'd0 : status_error_i;", "wrong_word"),
         ("core/core_registers.sv", "assign control_stop_o = is_whole &&", "assign control_stop_o = is_whole && !FAULT &&", "interrupts"),
         ("core/core_registers.sv", "if (ring_tail_index_clear_i)", "if (ring_tail_index_clear_i && !FAULT)", "resets"),
+        ("core/halfplane_core.sv", "if (!core_n) fence_q", "if (!core_n && !FAULT) fence_q", "resets"),
         # The ring: it does not end; more is asked for than there is room for; the end of a part is missed; a restart goes on where it was.
         ("core/command_reader.sv", "if (last_word_i[i-2])", "if (last_word_i[i-2] || FAULT)", "back_pressure"),
         ("core/command_reader.sv", "!used[4] && (!used[3] || used[2:0] == '0)", "(!used[4] && (!used[3] || used[2:0] == '0)) || FAULT",
