@@ -154,7 +154,7 @@ module command_stream_checker #(
       if (opcode == core_pkg::COMMAND_TRIANGLE)
         assert ((slots_q | word_i[2:0]) == 3'b111)
         else
-          $error("word %0d is a triangle without a vertex in slot %0d; all three are lost after any other drawing or state",
+          $error("word %0d is a triangle without a vertex in slot %0d; any other drawing or state empties all",
                  words_o + 1, !(slots_q[0] || word_i[0]) ? 0 : !(slots_q[1] || word_i[1]) ? 1 : 2);
       if (opcode == core_pkg::COMMAND_PRESENT)
         assert (drawn_q == '0)

@@ -17,8 +17,10 @@ package core_pkg;
 
   localparam int STATE_REGISTER_BOX_MIN = 0;  // pixels that are drawn: the first column and row
   localparam int STATE_REGISTER_BOX_MAX = 1;  // the last column and row
-  localparam int STATE_REGISTER_STATE = 2;  // the state of triangles, rectangles, points and lines; stencil and samples where the configuration has them
-  localparam int STATE_REGISTER_TARGET = 3;  // the target's last column and row; the next command that draws is a CLEAR of depth and colour
+  // the state of triangles, rectangles, points and lines; stencil and samples where the configuration has them
+  localparam int STATE_REGISTER_STATE = 2;
+  // the target's last column and row; the next command that draws is a CLEAR of depth and colour
+  localparam int STATE_REGISTER_TARGET = 3;
   localparam int STATE_REGISTER_DEPTH_BASE = 4;  // byte address of the depth buffer
   localparam int STATE_REGISTER_COLOR_BASE = 5;  // of the colour buffer
   localparam int STATE_REGISTER_DEPTH_FLAGS_BASE = 6;  // of the flags of depth
@@ -28,14 +30,19 @@ package core_pkg;
 
   localparam logic [3:0] ERROR_NONE = 4'd0;  // no error
   localparam logic [3:0] ERROR_UNKNOWN_OPCODE = 4'd1;  // the header has no command's opcode
-  localparam logic [3:0] ERROR_RESERVED = 4'd2;  // a header bit that its command does not name is set, or a CLEAR of nothing, or of a bin with depth
+  // a header bit that its command does not name is set, or a CLEAR of nothing, or of a bin with depth
+  localparam logic [3:0] ERROR_RESERVED = 4'd2;
   localparam logic [3:0] ERROR_BAD_REGISTER = 4'd3;  // SET of no register, or beyond the last
-  localparam logic [3:0] ERROR_NOT_FLUSHED = 4'd4;  // SET of target, layout or texture base after drawing without a FLUSH
-  localparam logic [3:0] ERROR_NO_CLEAR = 4'd5;  // drawing, a bin's CLEAR or a FLUSH before the first CLEAR of depth and colour of the target
+  // SET of target, layout or texture base after drawing without a FLUSH
+  localparam logic [3:0] ERROR_NOT_FLUSHED = 4'd4;
+  // drawing, a bin's CLEAR or a FLUSH before the first CLEAR of depth and colour of the target
+  localparam logic [3:0] ERROR_NO_CLEAR = 4'd5;
   localparam logic [3:0] ERROR_BAD_BOX = 4'd6;  // the box is inverted or ends beyond the target
   localparam logic [3:0] ERROR_NOT_SUPPORTED = 4'd7;  // this configuration lacks the unit
   localparam logic [3:0] ERROR_BUS = 4'd8;  // the word came with an error of the bus
-  localparam logic [3:0] ERROR_STUCK = 4'd9;  // nothing moved for 2^WATCHDOG cycles while there was something to do: memory does not answer, or the rest of a command does not come
+  // nothing moved for 2^WATCHDOG cycles while there was something to do: memory does not answer, or the rest of a
+  // command does not come
+  localparam logic [3:0] ERROR_STUCK = 4'd9;
 
   localparam int STATE_REGISTERS = 10;
 

@@ -5,6 +5,7 @@ usage: core/generate.py [--check]   --check: compares instead, and names the fil
 """
 import pathlib
 import sys
+import textwrap
 import tomllib
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -30,7 +31,11 @@ def package(stream):
         last = prefix
         type_ = {'COMMAND': "logic [7:0]", 'ERROR': 'logic [3:0]'}.get(prefix, 'int')
         literal = {'COMMAND': f"8'h{value:02x}", 'ERROR': f"4'd{value}"}.get(prefix, str(value))
-        lines.append(f'  localparam {type_} {prefix}_{name} = {literal};' + (f'  // {comment}' if comment else ''))
+        line = f'  localparam {type_} {prefix}_{name} = {literal};'
+        if comment and len(line) + 5 + len(comment) > 120:
+            lines += textwrap.wrap(comment, 120, initial_indent='  // ', subsequent_indent='  // ')
+            comment = None
+        lines.append(line + (f'  // {comment}' if comment else ''))
     lines += ['', f'  localparam int STATE_REGISTERS = {len(stream["state_register"])};', '', 'endpackage', '']
     return '\n'.join(lines)
 

@@ -65,8 +65,8 @@ TEST_F(DriverInterface, RefusesValuesOutOfTheirRange) {
   const std::array<std::function<void(hp_target&)>, 13> wrong{
       [](hp_target& t) { t.width = 0; },       [](hp_target& t) { t.height = 0; },
       [](hp_target& t) { t.width = 20000; },   [](hp_target& t) { t.height = 20000; },
-      [](hp_target& t) { t.depth = 7; },       [](hp_target& t) { t.color = 64; },
-      [](hp_target& t) { t.depth_flags = 8; }, [](hp_target& t) { t.color_flags = 1; },
+      [](hp_target& t) { t.depth = 7; },       [](hp_target& t) { t.color = 1; },
+      [](hp_target& t) { t.depth_flags = 1; }, [](hp_target& t) { t.color_flags = 1; },
       [](hp_target& t) { t.row_stride = 3; },  [](hp_target& t) { t.row_stride += 1; },
       [](hp_target& t) { t.row_stride /= 2; }, [](hp_target& t) { t.row_stride += 1U << 20; },
       [](hp_target& t) { t.textures = 2048; }};
@@ -368,9 +368,9 @@ int affine_bits() {
   return bits;
 }
 
-/// Words of a frame of 16x16 pixels up to the first clear, with a box and a state.
+/// Words of a frame of 8x8 pixels up to the first clear, with a box and a state.
 std::vector<std::uint32_t> begun() {
-  std::vector<std::uint32_t> words{HP_SET_OF(HP_BOX_MIN, 10),  0, 0xf000f, 0x19, 0xf000f, 0, 0, 0, 0, 0x800, 0,
+  std::vector<std::uint32_t> words{HP_SET_OF(HP_BOX_MIN, 10),  0, 0x70007, 0x19, 0x70007, 0, 0, 0, 0, 0x800, 0,
                                    HP_HEADER(HP_FAST_CLEAR, 3)};
   words.resize(words.size() + words_of(affine_bits()));
   return words;
@@ -402,7 +402,7 @@ TEST(DriverBackend, RefusesWordsThatTheCoreRefuses) {
   refused(HALFPLANE_ERROR_BAD_REGISTER, 1, {HP_SET_OF(9, 2), 0, 0});
   refused(HALFPLANE_ERROR_NOT_FLUSHED, 2, {HP_SET_OF(HP_TARGET, 1), 0});
   refused(HALFPLANE_ERROR_NO_CLEAR, 4, {flush, HP_SET_OF(HP_TARGET, 1), 0, HP_HEADER(HP_RECTANGLE, 0)});
-  refused(HALFPLANE_ERROR_BAD_BOX, 3, {HP_SET_OF(HALFPLANE_STATE_REGISTER_BOX_MAX, 1), 16, HP_HEADER(HP_POINT, 0)});
+  refused(HALFPLANE_ERROR_BAD_BOX, 3, {HP_SET_OF(HALFPLANE_STATE_REGISTER_BOX_MAX, 1), 8, HP_HEADER(HP_POINT, 0)});
   const Config& config = driver_config();
   if (config.cache_kind == CacheKind::tiles) {
     for (const std::uint32_t header :
@@ -410,7 +410,7 @@ TEST(DriverBackend, RefusesWordsThatTheCoreRefuses) {
       refused(HALFPLANE_ERROR_NOT_SUPPORTED, 1, {header});
   } else {
     refused(HALFPLANE_ERROR_RESERVED, 1, {HP_HEADER(HP_FAST_CLEAR, 7)});
-    refused(HALFPLANE_ERROR_BAD_BOX, 3, {HP_SET_OF(HP_BOX_MIN, 1), 16, HP_HEADER(HP_FAST_CLEAR, 6)});
+    refused(HALFPLANE_ERROR_BAD_BOX, 3, {HP_SET_OF(HP_BOX_MIN, 1), 8, HP_HEADER(HP_FAST_CLEAR, 6)});
   }
   if (config.line_units == 0) refused(HALFPLANE_ERROR_NOT_SUPPORTED, 1, {HP_HEADER(HP_LINE, 0)});
   if (config.texture_unit == TextureUnitKind::off && config.blend_lanes == 0) {
@@ -443,7 +443,7 @@ TEST(DriverBackend, RefusesWhatTheCoreDrawsUndefined) {
   refused(after({HP_HEADER(HP_TRIANGLE, 0)}), "slot 0 holds no vertex");
   refused(after({HP_HEADER(HP_FLUSH, 0), HP_SET_OF(HP_TARGET, 1), 0x0fff0fff}),
           "4096x4096, and this configuration has");
-  refused({HP_SET_OF(HP_TARGET, 1), 0xf000f, HP_HEADER(HP_FAST_CLEAR, 3)}, "state register 4 was never set");
+  refused({HP_SET_OF(HP_TARGET, 1), 0x70007, HP_HEADER(HP_FAST_CLEAR, 3)}, "state register 4 was never set");
   // A flush overwrites the slots.
   std::vector<std::uint32_t> drawn = after({HP_HEADER(HP_TRIANGLE, 7)});
   drawn.resize(drawn.size() + 3 * (1 + words_of(affine_bits())));
