@@ -169,7 +169,7 @@ class PairCounts {
 /// Values of all states, a row a draw, so that each pair is in some row: the first missing pair, then state by state
 /// the value that adds most of the missing pairs.
 inline std::vector<std::vector<int>> pair_rows(const std::vector<Dimension>& all, std::uint64_t seed) {
-  Random random(seed);
+  halfplane::Random random(seed);
   PairCounts counts(all);
   std::vector<std::vector<int>> rows;
   constexpr int kUnset = -2;

@@ -477,15 +477,15 @@ module texture_unit #(
   generate
     if (BORDER != 0) begin : gen_border
       localparam int INSIDE = $clog2(AHEAD + IN_FLIGHT + 16);  // and a few in registers
+      logic              leaves;
       logic [INSIDE-1:0] inside_q;  // groups between the split and combine
       logic [31:0]       border_q;
       assign sets_border  = waits && waiting_token[TOKEN-1] && inside_q == '0;
       assign border_color = border_q;
+      assign leaves       = texel_valid && texel_ready && texel_ends;
       always_ff @(posedge clk_i or negedge rst_ni) begin
         if (!rst_ni) inside_q <= '0;
-        else
-          inside_q <= inside_q + INSIDE'(splits && waiting_is_textured) -
-              INSIDE'(texel_valid && texel_ready && texel_ends);
+        else inside_q <= inside_q + INSIDE'(splits && waiting_is_textured) - INSIDE'(leaves);
       end
       always_ff @(posedge clk_i) if (sets_border) border_q <= waiting[31:0];
     end else begin : gen_no_border

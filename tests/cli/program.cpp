@@ -17,7 +17,7 @@
 #include "halfplane_paths.hpp"
 #include "sim/cosim/dut.hpp"
 
-namespace halfplane::cli::program {
+namespace halfplane::cli {
 namespace {
 
 namespace fs = std::filesystem;
@@ -202,4 +202,4 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-}  // namespace halfplane::cli::program
+}  // namespace halfplane::cli

@@ -13,7 +13,7 @@ namespace halfplane::test {
 namespace {
 
 /// No design has alpha in memory, or a depth of more than 22 bits, and coordinates of 16 bits: tests/driver/CMakeLists.txt.
-const std::string kRgba =
+constexpr std::string_view kRgba =
     "embedded depth.bits=24 hiz.bits=24 color.format=rgba8888 alpha.unit=1 blend.lanes=4 texture.unit=bilinear";
 
 double real(hp_fixed v) { return std::ldexp(v, -16); }
@@ -430,8 +430,8 @@ const Config& driver_config() {
   static const Config config = [] {
     for (const Design& design : designs())
       if (config_id(design.config) == hp_config_id()) return design.config;
-    for (const std::string& words : {kRgba})
-      if (config_id(labelled(words)) == hp_config_id()) return labelled(words);
+    const Config rgba = labelled(kRgba);
+    if (config_id(rgba) == hp_config_id()) return rgba;
     throw InputError("the driver is compiled for a configuration that the tests do not know");
   }();
   return config;
