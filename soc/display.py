@@ -3,7 +3,7 @@
 from core_module import PIXEL
 from litex.soc.cores.video import VideoTimingGenerator, video_data_layout
 from litex.soc.interconnect import stream
-from migen import ClockDomainsRenamer, If, Module, Signal
+from migen import ClockDomainsRenamer, If, Module, Mux, Signal
 
 SIMULATED = {
     "pix_clk": 0,
@@ -20,7 +20,7 @@ SIMULATED = {
 
 class Display(Module):
     """A pixel that is late is black, and pixels are in step again from the next vertical sync on: what is left of the old
-    frame is thrown away there, and no pixel of the next one is shown before its time."""
+    frame is thrown away there. A frame begins in the screen's first pixel; one that is late there waits for the next screen."""
 
     def __init__(self, timings, clock_domain="sys"):
         self.sink = stream.Endpoint(PIXEL)
@@ -29,7 +29,7 @@ class Display(Module):
         self.submodules.timing = ClockDomainsRenamer(clock_domain)(VideoTimingGenerator(timings))
         self.submodules.crossing = stream.ClockDomainCrossing(PIXEL, cd_from="sys", cd_to=clock_domain, depth=16)
         time, self.pixel = self.timing.source, self.crossing.source
-        pixel, wants_first = self.pixel, Signal()
+        pixel, is_first, in_frame = self.pixel, Signal(), Signal()
         self.comb += [
             self.sink.connect(self.crossing.sink),
             source.valid.eq(time.valid),
@@ -37,9 +37,11 @@ class Display(Module):
             source.hsync.eq(time.hsync),
             source.vsync.eq(time.vsync),
             source.de.eq(time.de),
-            self.is_pixel.eq(time.de & pixel.valid & (pixel.user == wants_first)),
+            self.is_pixel.eq(time.de & pixel.valid & Mux(pixel.user, is_first, in_frame)),
             If(self.is_pixel, source.r.eq(pixel.data[16:]), source.g.eq(pixel.data[8:16]), source.b.eq(pixel.data[:8])),
-            pixel.ready.eq((self.is_pixel & source.valid & source.ready) | (wants_first & ~pixel.user)),
+            pixel.ready.eq((self.is_pixel & source.valid & source.ready) | (~in_frame & ~pixel.user)),
         ]
         sync = getattr(self.sync, clock_domain)
-        sync += If(time.vsync, wants_first.eq(1)).Elif(self.is_pixel & source.valid & source.ready, wants_first.eq(0))
+        sync += If(time.vsync, is_first.eq(1), in_frame.eq(0)).Elif(
+            time.de & source.valid & source.ready, is_first.eq(0), If(is_first, in_frame.eq(self.is_pixel))
+        )

@@ -19,7 +19,7 @@ from core_bench import IDLE, RESTART, RUNNING, START, WRITTEN, Core
 BENCH = {
     "top": "halfplane_core",
     "configs": ["textured"],
-    "parameters": {"RING": 0, "TEXTURE_MASTER": 1, "WATCHDOG": 12},
+    "parameters": {"RING": 0, "TEXTURE_MASTER": 1, "WATCHDOG": 14},
     "sources": ["core/core_pkg.sv", "tests/core/core_checkers.sv"],
     "faults": [
         # Words are taken that the decoder does not take.
