@@ -203,13 +203,16 @@ TEST(TexturedHardware, ATokenKeepsItsWordThroughThePlanes) {
   }
 }
 
+/// The room with another line in place of one.
+std::string changed_room(const std::string& line, const std::string& other) {
+  std::string text = kRoom;
+  return text.replace(text.find(line), line.size(), other);
+}
+
 /// The room, its wall blended by its texels.
 std::string blended_room(const std::string& constant) {
-  std::string text = kRoom;
-  const std::string decal = "state texture_combine decal\n";
-  text.replace(text.find(decal), decal.size(),
-               "state texture_combine blend\nstate texture_constant " + constant + '\n');
-  return text;
+  return changed_room("state texture_combine decal\n",
+                      "state texture_combine blend\nstate texture_constant " + constant + '\n');
 }
 
 // And the constant is seen.
@@ -239,11 +242,8 @@ TEST(TexturedHardware, AConstantIsRefusedByNameWhereThereIsNone) {
 
 /// The room, its ground with a border.
 std::string bordered_room(const std::string& wrap, const std::string& border) {
-  std::string text = kRoom;
-  const std::string repeat = "state texture_wrap repeat mirror\n";
-  text.replace(text.find(repeat), repeat.size(),
-               "state texture_wrap " + wrap + "\nstate texture_border " + border + '\n');
-  return text;
+  return changed_room("state texture_wrap repeat mirror\n",
+                      "state texture_wrap " + wrap + "\nstate texture_border " + border + '\n');
 }
 
 // And the border is seen.
