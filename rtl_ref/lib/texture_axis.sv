@@ -130,7 +130,8 @@ module texture_axis #(
     end else if (LINEAR == 1) begin : gen_linear
       // Less half a texel: measured from the centre of the previous texel.
       logic [FRACTION-1:0]       part_q;
-      logic [7:0]                part, weight;
+      logic [7:0]                part, weight, held_weight;
+      logic [1:0]                border;
       logic [REFERENCE_BITS-1:0] first, second;
       logic [SIDE_BITS-1:0]      texel, next;
       always_ff @(posedge clk_i) part_q <= rounded_part;
@@ -156,39 +157,31 @@ module texture_axis #(
       );
       assign second = first + REFERENCE_BITS'(is_linear_i);
       assign weight = is_linear_i ? part ^ 8'h80 : '0;
-      if (BORDER != 0) begin : gen_border
-        logic [1:0] border;
-        logic [7:0] held_weight;
-        texture_border #(
-            .NUMBER_BITS(REFERENCE_BITS),
-            .SIDE_BITS  (SIDE_BITS)
-        ) u_border (
-            .first_i (first),
-            .next_i  (second),
-            .last_i,
-            .wrap_i,
-            .is_linear_i,
-            .part_i  (weight),
-            .border_o(border),
-            .part_o  (held_weight)
-        );
-        always_ff @(posedge clk_i) begin
-          border_o <= border;
-          part_o   <= held_weight;
-        end
-      end else begin : gen_no_border
-        assign border_o = '0;
-        always_ff @(posedge clk_i) part_o <= weight;
-        logic unused;
-        assign unused = wrap_i[2];
-      end
+      texture_border #(
+          .NUMBER_BITS(REFERENCE_BITS),
+          .SIDE_BITS  (SIDE_BITS),
+          .BORDER     (BORDER)
+      ) u_border (
+          .first_i (first),
+          .next_i  (second),
+          .last_i,
+          .wrap_i,
+          .is_linear_i,
+          .part_i  (weight),
+          .border_o(border),
+          .part_o  (held_weight)
+      );
       always_ff @(posedge clk_i) begin
-        texel_o <= texel;
-        next_o  <= next;
+        texel_o  <= texel;
+        next_o   <= next;
+        part_o   <= held_weight;
+        border_o <= border;
       end
       assign coordinate_o = '0;
     end else begin : gen_nearest
       logic [SIDE_BITS-1:0] texel;
+      logic [1:0]           border;
+      logic [7:0]           no_weight;
       texture_wrap #(
           .NUMBER_BITS(REFERENCE_BITS),
           .SIDE_BITS  (SIDE_BITS)
@@ -198,31 +191,26 @@ module texture_axis #(
           .wrap_i  (wrap_i[1:0]),
           .texel_o (texel)
       );
-      always_ff @(posedge clk_i) texel_o <= texel;
-      if (BORDER != 0) begin : gen_border
-        logic [1:0] border;
-        logic [7:0] no_weight;
-        texture_border #(
-            .NUMBER_BITS(REFERENCE_BITS),
-            .SIDE_BITS  (SIDE_BITS)
-        ) u_border (
-            .first_i    (number),
-            .next_i     (number),
-            .last_i,
-            .wrap_i,
-            .is_linear_i(1'b0),
-            .part_i     ('0),
-            .border_o   (border),
-            .part_o     (no_weight)
-        );
-        always_ff @(posedge clk_i) border_o <= border;
-        logic unused;
-        assign unused = &no_weight;
-      end else begin : gen_no_border
-        assign border_o = '0;
-        logic unused;
-        assign unused = wrap_i[2];
+      texture_border #(
+          .NUMBER_BITS(REFERENCE_BITS),
+          .SIDE_BITS  (SIDE_BITS),
+          .BORDER     (BORDER)
+      ) u_border (
+          .first_i    (number),
+          .next_i     (number),
+          .last_i,
+          .wrap_i,
+          .is_linear_i(1'b0),
+          .part_i     ('0),
+          .border_o   (border),
+          .part_o     (no_weight)
+      );
+      always_ff @(posedge clk_i) begin
+        texel_o  <= texel;
+        border_o <= border;
       end
+      logic unused;
+      assign unused = &no_weight;
       assign next_o       = '0;
       assign part_o       = '0;
       assign coordinate_o = '0;

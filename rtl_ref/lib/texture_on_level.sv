@@ -78,27 +78,19 @@ module texture_on_level #(
   assign first  = place[PLACE-1:8];
   assign second = first + REFERENCE_BITS'(is_linear_q);
   assign part   = is_linear_q ? place[7:0] : '0;
-  generate
-    if (BORDER != 0) begin : gen_border
-      texture_border #(
-          .NUMBER_BITS(REFERENCE_BITS),
-          .SIDE_BITS  (SIDE_BITS)
-      ) u_border (
-          .first_i    (first),
-          .next_i     (second),
-          .last_i     (last_q),
-          .wrap_i,
-          .is_linear_i(is_linear_q),
-          .part_i     (part),
-          .border_o   (border),
-          .part_o     (weight)
-      );
-    end else begin : gen_no_border
-      assign border = '0;
-      assign weight = part;
-      logic unused;
-      assign unused = wrap_i[2];
-    end
-  endgenerate
+  texture_border #(
+      .NUMBER_BITS(REFERENCE_BITS),
+      .SIDE_BITS  (SIDE_BITS),
+      .BORDER     (BORDER)
+  ) u_border (
+      .first_i    (first),
+      .next_i     (second),
+      .last_i     (last_q),
+      .wrap_i,
+      .is_linear_i(is_linear_q),
+      .part_i     (part),
+      .border_o   (border),
+      .part_o     (weight)
+  );
 
 endmodule
