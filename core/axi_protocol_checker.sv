@@ -42,7 +42,7 @@ module axi_protocol_checker #(
   localparam int BYTES = PORT_BITS / 8;
   localparam bit [2:0] SIZE = 3'($clog2(BYTES));
 
-  // What was on offer and not taken in the cycle before.
+  // Items offered and not taken in the previous cycle.
   logic                           aw_waits_q, w_waits_q, b_waits_q, ar_waits_q, r_waits_q;
   logic [39:0]                    aw_q, ar_q;
   logic [PORT_BITS+PORT_BITS/8:0] w_q;
@@ -128,7 +128,7 @@ module axi_protocol_checker #(
       b_q  <= m_axi_bresp;
       r_q  <= {m_axi_rresp, m_axi_rlast, m_axi_rdata};
 
-      // What is on offer stays.
+      // An offer stays until it is taken.
       assert (!aw_waits_q || (m_axi_awvalid && aw_q == {m_axi_awaddr, m_axi_awlen}))
       else $error("axi: AW was taken back or changed before awready");
       assert (!ar_waits_q || (m_axi_arvalid && ar_q == {m_axi_araddr, m_axi_arlen}))

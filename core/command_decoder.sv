@@ -276,7 +276,7 @@ module command_decoder #(
     if (takes && state_q == PRESENT) present_color_base_o <= word_i;
     if (takes && state_q == PRESENT_FLAGS) present_color_flags_base_o <= word_i;
   end
-  // What is drawn before the target is known is refused, but a state has its box.
+  // A primitive before the target is known is refused, but a state has its box.
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
       target_right_q  <= '0;

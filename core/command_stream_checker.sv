@@ -176,7 +176,7 @@ module command_stream_checker #(
     end
   end
 
-  // What the decoder refuses, in words.
+  // Words that the decoder refuses.
   logic [3:0] error_q;
   always_ff @(posedge clk_i) begin
     error_q <= rst_ni ? error_o : '0;
@@ -204,7 +204,7 @@ module command_stream_checker #(
     end
   end
 
-  // What the decoder itself promises.
+  // Guarantees of the decoder.
   logic primitive_waits_q, line_waits_q;
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin

@@ -235,7 +235,7 @@ module scan_out #(
     end
   end
 
-  // What is under way: an item for each unit or beat of flags, in order.
+  // Requests in flight: an item for each unit or beat of flags, in order.
   fifo #(
       .WIDTH(ITEM),
       .DEPTH(AHEAD)

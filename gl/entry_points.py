@@ -50,7 +50,7 @@ INSIDE_BEGIN = re.compile(
     r"(begin|end|vertex|normal|color|secondary_color|index|tex_coord|fog_coord|edge_flag|material|eval_coord.|eval_point."
     r"|array_element|draw_(arrays|elements|range_elements)|multi_draw_\w+|call_list)$")
 
-# What follows from no rule: the body; $1 is the first argument, $* all.
+# Entry points that follow no rule: the body; $1 is the first argument, $* all.
 BODIES = {
     "Enable": "listed<&enable>($1, true)",
     "Disable": "listed<&enable>($1, false)",

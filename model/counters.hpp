@@ -15,15 +15,15 @@ struct Skip {
   bool zero_area = true;           ///< triangles of area 0 likewise
   bool empty = true;               ///< triangles whose box holds no pixel centre likewise
   bool no_sample = true;           ///< triangles of a few pixel centres that cover none likewise
-  bool objects_hiz = true;         ///< objects behind the depths drawn so far skip everything
-  bool tiles_hiz = true;           ///< tiles behind the depths drawn so far skip the fine raster
+  bool objects_hiz = true;         ///< objects hidden by the depths drawn so far skip everything
+  bool tiles_hiz = true;           ///< tiles hidden by the depths drawn so far skip the fine raster
   bool tiles_outside = true;       ///< tiles wholly outside one edge skip the fine raster
   bool trivially_accepted = true;  ///< tiles wholly inside all edges skip the edge tests
   bool fragments_early_z = true;   ///< fragments that fail the depth test skip the other attributes
   bool attributes = true;          ///< fragments that are overdrawn skip the other attributes
   bool clear = true;               ///< a clear is deferred until the tile is touched
   // For draws that blend, test alpha, dither or mask channels:
-  bool operations_early_z = true;  ///< tiles behind and fragments that fail the depth test skip all operations
+  bool operations_early_z = true;  ///< hidden tiles, and fragments that fail the depth test skip all operations
   bool alpha_tiles = true;         ///< tiles and triangles whose alpha all fails, or passes, skip the alpha test
   bool opaque_blends = true;       ///< triangles with an opaque source replace, without blending
   bool masked_draws = true;        ///< draws that write no channel skip colours

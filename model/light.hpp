@@ -17,7 +17,7 @@ struct Light {
   std::array<double, 3> ambient{0, 0, 0}, diffuse{1, 1, 1}, specular{1, 1, 1};
   std::array<double, 3> attenuation{1, 0, 0};  ///< 1 / (constant + linear d + quadratic d^2), for a light with a place
   double range = 0;                            ///< likewise: it fades as 1 - (d / range)^4; 0: no fade
-  /// Of a spot: its direction, length 1, and the square of clamp(cosine scale + offset), 0...1. Scale 0: in all
+  /// A spot light's direction, length 1, and the square of clamp(cosine scale + offset), 0...1. Scale 0: in all
   /// directions.
   std::array<double, 3> spot_direction{0, 0, -1};
   double spot_scale = 0, spot_offset = 1;
@@ -44,7 +44,7 @@ struct Lighting {
 
 using FixedPlace = std::array<std::int32_t, 3>;      ///< s15.16, of places scaled by a power of two
 using FixedDirection = std::array<std::int32_t, 3>;  ///< s1.30, length 1 within 2^-29; or zero
-/// Of a light: the largest channel of all three colours takes 31 bits, `bits` of them fraction.
+/// A light's colour: the largest channel of all three colours takes 31 bits, `bits` of them fraction.
 using FixedColor = std::array<std::uint32_t, 3>;
 
 /// Fraction bits; materials and sums of light are u.24.

@@ -216,7 +216,7 @@ struct State {
   PointClip point_clip = PointClip::pixel;
   ClipZ clip_z = ClipZ::minus_one_one;
   PixelCenter pixel_center = PixelCenter::half;  ///< of window-space vertices and the viewport
-  Origin origin = Origin::top_left;              ///< of these and the scissor; `front` is as seen in any case
+  Origin origin = Origin::top_left;              ///< origin of both and of the scissor; `front` is as seen in any case
   std::optional<Rect> scissor;                   ///< none: the whole target
   std::optional<Viewport> viewport;              ///< none: the whole target
   std::array<double, 2> depth_range{0.0, 1.0};

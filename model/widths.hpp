@@ -36,7 +36,7 @@ struct Interval {
 /// One intermediate: its name, the reason for its bound, and its number of bits.
 struct Width {
   std::string name;   ///< "edge value"; also the base of its constant in raster_pkg.sv: EDGE_VALUE_BITS
-  std::string bound;  ///< the formula behind `range`, in the symbols of docs/spec.md
+  std::string bound;  ///< the formula of `range`, in the symbols of docs/spec.md
   Interval range;     ///< all its values; for a modular quantity, the residues
   int bits = 0;
   bool is_signed = false;
@@ -89,7 +89,7 @@ struct Widths {
   BlockGrid blocks;        ///< content of a cache line
   MemoryGrid memory;
   int port_bytes = 0;                    ///< of a beat on the memory port
-  int planes = 0;                        ///< of all attributes together
+  int planes = 0;                        ///< planes of all attributes together
   int affine_planes = 0;                 ///< depth and colour, which come first
   int alpha_counters = 0;                ///< 1: the alpha test counts
   int texture_counters = 0;              ///< 1: likewise with a texture unit

@@ -39,7 +39,7 @@ package raster_pkg;
   localparam int BLEND_LANES = 0;  // samples blended per cycle by the RTL, 1 or 4; 0: neither blending nor partial color masks
   localparam int LOGIC_UNIT = 0;  // 1: the RTL combines stored colours with new ones bit by bit (logic_op); 0: it does not
   localparam int DITHER_UNIT = 0;  // 1: the RTL dithers colours of rgb565; 0: it rounds them
-  localparam int FOG_UNIT = 0;  // 1: the RTL fogs triangles behind its texture unit; 0: it has no fog
+  localparam int FOG_UNIT = 0;  // 1: the RTL fogs triangles, downstream of its texture unit; 0: it has no fog
   localparam int SHADE_UNIT = 0;  // 1: the RTL lights the fragments of shade phong in front of its texture unit; 0: it lights none
   localparam int STENCIL_BITS = 0;  // bits of stencil that the RTL stores above each depth: 8, or 0 (blocks, pipelined; depth.bits up to 24)
   localparam int LINES_UNIT = 1;  // 1: the RTL has the unit that draws lines; 0: it takes none
@@ -62,7 +62,7 @@ package raster_pkg;
   localparam int PLANES = 4;  // that are interpolated: depth, the colours and what follows them
   localparam int COLOR_PLANES = 3;  // of the stored colour: plane 1 and the next ones
   localparam int AFFINE_PLANES = 4;  // linear in the window: depth and colours, which come first
-  localparam int COORDINATES = 0;  // of a texture, planes behind that of 1/w
+  localparam int COORDINATES = 0;  // planes of texture coordinates, after the plane of 1/w
   localparam int PERSPECTIVE_GUARD_BITS = 4;  // l: fraction bits of those inside a tile
   localparam int COORDINATE_FRACTION = 8;  // f: of a texture coordinate, texels
   localparam int COLORS_OVER_W = 0;  // colour planes divided by w

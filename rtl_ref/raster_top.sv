@@ -69,7 +69,7 @@ module raster_top (
     // drawn may lie on the chip alone; after a flush all of it is in memory.
     output logic                        idle_o,
     // For a cycle, once for each flush in their order: it and everything before it is in memory. At most three flushes may
-    // be under way when somebody counts these.
+    // be in flight where these pulses are counted.
     output logic                        flushed_o
 );
 

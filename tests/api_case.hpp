@@ -14,7 +14,7 @@
 
 namespace halfplane::test {
 
-/// A scene that nobody has checked.
+/// A scene that no function has checked.
 class SceneFromBytes {
  public:
   SceneFromBytes(ByteSource& bytes, const Config& config) : bytes_(bytes), config_(config) {}
@@ -178,7 +178,7 @@ inline Rendering by_target(const Scene& scene, const Config& config) {
   return rendering;
 }
 
-/// What does not hold for the case; nothing when all does. What is thrown but InputError passes through.
+/// The property that does not hold for the case; empty when all hold. Exceptions but InputError pass through.
 inline std::string api_fault(const ApiCase& input) {
   const Scene& scene = input.scene;
   const Config& config = input.config;

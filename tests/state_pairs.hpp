@@ -188,7 +188,7 @@ inline std::vector<std::vector<int>> pair_rows(const std::vector<Dimension>& all
     if (!is_missing) return rows;
     for (std::size_t n = 0; n < all.size(); ++n)
       if (row[n] >= 0 && !all[n].part_of.empty()) row[index_of(all[n].part_of)] = 1;
-    std::vector<std::size_t> order;  // what has parts in front of them
+    std::vector<std::size_t> order;  // parts in order, after the commands before them
     for (const bool parts : {false, true}) {
       const auto first = static_cast<std::ptrdiff_t>(order.size());
       for (std::size_t n = 0; n < all.size(); ++n)

@@ -17,7 +17,7 @@ struct DecodedPrimitive {
   std::optional<LineSetup> line;  ///< with a packet of kind line
 };
 
-/// What PRESENT shows.
+/// The picture that PRESENT shows.
 struct Presented {
   std::uint32_t color = 0, color_flags = 0;
   bool operator==(const Presented&) const = default;

@@ -112,7 +112,7 @@ struct Stream {
   int size = 0;
   Read read = nullptr;
 
-  /// Those that there are memory for.
+  /// Number of elements that lie in memory.
   [[nodiscard]] std::size_t elements() const {
     return read == nullptr || memory.bytes < element_bytes ? 0 : (memory.bytes - element_bytes) / stride + 1;
   }
@@ -198,7 +198,7 @@ bool check_draw(Context& context, GLenum mode, GLsizei count) {
   return error == GL_NO_ERROR;
 }
 
-/// Those of several draws.
+/// Checks the counts of several draws.
 bool check_draws(Context& context, GLenum mode, const GLsizei* count, GLsizei draws) {
   return check_draw(context, mode, draws) &&
          std::all_of(count, count + draws, [&](GLsizei n) { return check_draw(context, mode, n); });

@@ -40,7 +40,7 @@ void eval_coord2(Context&, double u, double v);
 void eval_point1(Context&, GLint i);
 void eval_point2(Context&, GLint i, GLint j);
 
-// Of the same, list (vertex.cpp).
+// More list commands (vertex.cpp).
 void rect(Context&, double x1, double y1, double x2, double y2);
 void raster_pos(Context&, double x, double y, double z, double w);
 void window_pos(Context&, double x, double y, double z);

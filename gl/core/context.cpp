@@ -8,7 +8,7 @@ namespace {
 
 thread_local Context* g_current = nullptr;
 
-/// What waits in the command buffer of a context that a thread leaves (glXMakeCurrent and eglMakeCurrent flush it). Draws
+/// Flushes a context that a thread leaves, as glXMakeCurrent and eglMakeCurrent must. Draws
 /// wait in the drawable's frame in their order, so only a picture that no swap will show is to be shown.
 void leave(const Context& context) {
   if (context.drawable != nullptr && context.drawable->single_buffered) context.drawable->present();

@@ -83,7 +83,7 @@ struct Context {
   Drawable* read_drawable = nullptr;  ///< where glReadPixels reads
   bool was_current = false;           ///< viewport and scissor have been set to the size of the first drawable
   bool is_embedded = false;           ///< of OpenGL ES-CM, for glGetString
-  std::string renderer;               ///< what glGetString answered to GL_RENDERER
+  std::string renderer;               ///< the answer of glGetString to GL_RENDERER
 
   GLenum error = GL_NO_ERROR;
   /// Keeps the first error until glGetError.
@@ -110,7 +110,7 @@ struct Context {
   std::vector<SavedAttributes> attributes;          ///< glPushAttrib
   std::vector<std::pair<GLbitfield, ClientState>> client_attributes;
   std::array<TextureObject, 4> default_textures;  ///< name 0, by kTextureTargets
-  /// What TextureUnit::bound names, kept while another context deletes it. One with another name is out of date.
+  /// Textures named by TextureUnit::bound, kept while another context deletes them. Another name: out of date.
   std::array<std::array<std::shared_ptr<TextureObject>, 4>, kTextureUnits> bound_textures;
   std::array<std::array<TextureImage, 13>, 4> proxies;
   std::map<std::uint64_t, std::uint32_t> texture_fits;  ///< how the model combines a texture (texture_upload.cpp)

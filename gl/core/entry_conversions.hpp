@@ -1,4 +1,4 @@
-// What entry_points.cpp is made of: from the arguments of an entry point to those of its command (OpenGL 1.5, 2.3, table 2.6
+// Conversions of entry_points.cpp: from the arguments of an entry point to those of its command (OpenGL 1.5, 2.3, table 2.6
 // and 6.1.2), and the way there.
 #pragma once
 
@@ -38,7 +38,7 @@ template <auto Command, class... Args>
 void listed_inside(const Args&... args) {
   with_context([&](Context& context) { issue<Command, InsideBegin::allowed>(context, args...); });
 }
-/// For what is no list command: calls `body` with the context, not between glBegin and glEnd.
+/// For commands that no list holds: calls `body` with the context, not between glBegin and glEnd.
 template <class Body>
 auto outside_begin(const Body& body) {
   return with_context([&](Context& context) {

@@ -18,7 +18,7 @@ struct Alias {
   std::string_view name, of;
 };
 
-// Of a lambda without captures, with the calling convention of C.
+// The address of a lambda without captures, with the calling convention of C.
 template <class Lambda>
 const void* function(Lambda lambda) {
   return reinterpret_cast<const void*>(+lambda);

@@ -8,7 +8,7 @@
 namespace halfplane::gl {
 namespace {
 
-/// What a map gives, in the order of GL_MAP1_COLOR_4... and GL_MAP2_COLOR_4...
+/// Values that a map gives, in the order of GL_MAP1_COLOR_4... and GL_MAP2_COLOR_4...
 constexpr std::size_t kColor = 0, kIndex = 1, kNormal = 2, kTexture1 = 3, kTexture4 = 6, kVertex3 = 7, kVertex4 = 8,
                       kKinds = 9;
 constexpr std::array<int, kKinds> kComponents{4, 1, 3, 1, 2, 3, 4, 3, 4};
@@ -70,7 +70,7 @@ Point evaluate(const EvaluatorMap& map, double u, double v) {
 
 /// The normal of a surface: the product of its tangents, of unit length. Zero where they have none.
 Vec3 normal_of(const Point& point) {
-  // Of x / w, the derivative is that of x times w less x times that of w, over w squared.
+  // The derivative of x / w is (x' w - x w') / w^2.
   Vec3 u, v;
   for (std::size_t i = 0; i < 3; ++i) {
     u[i] = point.along_u[i] * point.value[3] - point.value[i] * point.along_u[3];

@@ -9,7 +9,7 @@
 namespace halfplane::gl {
 namespace {
 
-/// What a vertex has in feedback beside x and y.
+/// Values of a vertex in feedback beside x and y.
 struct FeedbackType {
   GLenum type;
   int coordinates;

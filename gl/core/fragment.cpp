@@ -81,7 +81,7 @@ void for_each_accumulated(Context& context, const Visit& visit) {
       visit(context.accumulation[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)], place++);
 }
 
-/// What is accumulated, times `value`, to the colour buffer.
+/// Writes the accumulation buffer, times `value`, to the colour buffer.
 void return_accumulated(Context& context, float value) {
   if (context.state.color.draw_buffer == GL_NONE) return;
   const Pixels in = pixels_in_scissor(context);

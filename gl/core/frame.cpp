@@ -17,8 +17,8 @@ namespace halfplane::gl {
 namespace {
 
 constexpr std::size_t kMostTextureBytes = std::size_t{512} << 20;
-constexpr std::uint64_t kFramesKept = 30;  ///< that a texture is kept while nobody uses it
-/// Vertices after which a frame that nobody records is forgotten: a program may draw for ever and never swap.
+constexpr std::uint64_t kFramesKept = 30;  ///< for which an unused texture is kept
+/// Vertices after which an unrecorded frame is dropped: a program may draw for ever and never swap.
 constexpr std::size_t kMostVertices = std::size_t{1} << 20;
 constexpr std::size_t kMostRecordedVertices = std::size_t{1} << 25;
 
@@ -194,7 +194,7 @@ void Frame::Memory::draw(const halfplane::State& state, Topology topology, std::
     scene.indices.push_back(index == kRestart ? index : first_vertex + index);
   }
   if (!is_plain) draw = as_list(draw, true);
-  // What is not finite must not be in a scene, though nobody draws it.
+  // A scene must not hold coordinates that are not finite, even undrawn ones.
   if (!is_plain)
     for (Vertex& vertex : std::span(scene.vertices).subspan(first_vertex))
       for (double* coordinate : {&vertex.x, &vertex.y, &vertex.z, &vertex.w})
@@ -317,8 +317,8 @@ std::uint32_t Frame::Memory::texture(std::uint64_t key, const std::function<half
   return place;
 }
 
-/// Those last used before `least_frame`; then, while they are more than `most_bytes`, those unused for longest. What the frame
-/// uses stays.
+/// Drops textures last used before `least_frame`; then, above `most_bytes`, the longest unused. Textures that the frame
+/// uses stay.
 void Frame::Memory::drop_textures(std::size_t most_bytes, std::uint64_t least_frame) {
   std::vector<std::pair<std::uint64_t, std::uint32_t>> unused;
   for (std::uint32_t i = 0; i < slots.size(); ++i)
@@ -335,7 +335,7 @@ void Frame::Memory::drop_textures(std::size_t most_bytes, std::uint64_t least_fr
 
 // --- drawing ----------------------------------------------------------------------------------------------------------
 
-/// What waits as a scene of its own. Vertices and textures are lent by the frame, and given back at the end.
+/// The waiting draws as a scene of their own. Vertices and textures are lent by the frame, and given back at the end.
 struct Frame::Memory::Part {
   explicit Part(Memory& memory_) : memory(memory_), scene(memory_.empty_scene()) {
     Scene& frame = memory.scene;
@@ -364,7 +364,7 @@ struct Frame::Memory::Part {
             if constexpr (requires { of.first; }) of.first -= from.commands == 0 ? 0 : from.indices;
           },
           command);
-    // Those whose texels are prepared come first: only the others are decoded.
+    // Textures with prepared texels come first: only the others are decoded.
     for (const halfplane::State& state : scene.states)
       if (state.texture && std::ranges::find(slot, *state.texture) == slot.end()) slot.push_back(*state.texture);
     std::ranges::stable_partition(slot, [this](std::uint32_t i) { return memory.slots[i].blocks.has_value(); });
@@ -396,7 +396,7 @@ struct Frame::Memory::Part {
   std::vector<TexelBlocks> blocks;  ///< of the first ones
 };
 
-/// What is not drawn yet. Throws InputError; then the picture may hold some of it.
+/// Renders the waiting draws. Throws InputError; then the picture may hold some of them.
 void Frame::Memory::render() {
   {
     Part part(*this);
@@ -413,7 +413,7 @@ void Frame::Memory::render() {
   drawn = end_mark();
 }
 
-/// What of the picture before this frame it looks at.
+/// Begins a frame: finds out which buffers of the previous picture it reads.
 void Frame::Memory::begin() {
   has_begun = true;
   cleared = {};

@@ -18,7 +18,7 @@ namespace halfplane::gl {
 
 enum class OnMissing { host, warn, stop };
 
-/// What `halfplane run` decides, in the environment variable HALFPLANE_GL as JSON (options.cpp).
+/// Settings of `halfplane run`, in the environment variable HALFPLANE_GL as JSON (options.cpp).
 struct Options {
   Config config;
   int threads = 2;
@@ -34,7 +34,7 @@ struct Options {
   bool save_all = false;
   std::string results;  ///< file that takes one line of JSON for each frame; empty: none
 };
-/// Of HALFPLANE_GL, or the defaults. Throws InputError.
+/// The options of HALFPLANE_GL, or the defaults. Throws InputError.
 [[nodiscard]] Options options_from_environment();
 
 /// The file that frame `number` is saved to.
@@ -61,7 +61,7 @@ class Frame {
   /// another one); made once and kept over frames while it is used.
   [[nodiscard]] std::uint32_t texture(std::uint64_t key, const std::function<halfplane::Texture()>& make);
 
-  /// What has been drawn, after drawing what waits. Valid until the next call.
+  /// The picture, after drawing what waits. Valid until the next call.
   [[nodiscard]] const Framebuffer& picture();
   /// Takes the colours of another buffer of this size for its own; depths and stencil values stay. A capture of the frame
   /// begins here.
@@ -75,7 +75,7 @@ class Frame {
   /// where the options say stop.
   void missing(std::string_view what, std::string_view instead);
 
-  /// What Options::hud asks for, into a picture that is about to be shown: 0xrrggbb, rows from the top. Leaves the frame as
+  /// Draws the figures of Options::hud into a picture to be shown: 0xrrggbb, rows from the top. Leaves the frame as
   /// it is; does nothing without the option.
   void draw_hud(std::span<std::uint32_t> xrgb, int width, int height, int pitch_pixels) const;
 

@@ -109,7 +109,7 @@ std::string numbered(const std::string& path, int number) {
   return (name.parent_path() / (name.stem().string() + digits.data() + name.extension().string())).string();
 }
 
-/// Of a stored colour: channels 0 to 255.
+/// Channels of a stored colour, 0 to 255.
 template <class Channel>
 std::array<Channel, 4> channels_of(std::uint32_t code, ColorFormat format) {
   const auto [r, g, b, a] = widen_color(format, code);
@@ -272,7 +272,7 @@ void Frame::Memory::save(int number) const {
 
 // --- the end of a frame -----------------------------------------------------------------------------------------------
 
-/// Those that are known without drawing the frame again.
+/// Figures that are known without drawing the frame again.
 nlohmann::ordered_json Frame::Memory::figures(int number) const {
   Json row{{"frame", number}, {"width", scene.width}, {"height", scene.height}, {"goes_on", goes_on}};
   row.update(counters_json(counters));

@@ -1,4 +1,4 @@
-// What a Frame remembers: the frame's commands so far (frame.cpp), and what is told of it at its end (frame_end.cpp).
+// Memory of a Frame: the frame's commands so far (frame.cpp), and its figures at its end (frame_end.cpp).
 #pragma once
 
 #include <chrono>
@@ -19,7 +19,7 @@ namespace halfplane::gl {
 
 /// One line on stderr, once for each text; numbers in it do not make it another one.
 void say_once(const std::string& what);
-/// Of the process: frames of all its drawables count together, so that a number names one picture.
+/// The process's next frame: frames of all its drawables count together, so that a number names one picture.
 [[nodiscard]] int next_frame_number();
 
 using Clock = std::chrono::steady_clock;
@@ -70,9 +70,9 @@ struct Frame::Memory {
     std::size_t commands = 0, vertices = 0, indices = 0;
   };
   Mark drawn;
-  Counters counters;  ///< of what has been drawn
+  Counters counters;  ///< of all draws so far
 
-  Framebuffer base;        ///< what the frame is drawn on, where `goes_on`
+  Framebuffer base;        ///< the picture that the frame continues, where `goes_on`
   bool goes_on = false;    ///< the frame looks at some of the picture before it
   bool has_begun = false;  ///< some of it has been drawn: what follows is known
   struct Cleared {

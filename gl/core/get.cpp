@@ -9,7 +9,7 @@
 namespace halfplane::gl {
 namespace {
 
-// What follows from a value's type: its kind, and it as doubles.
+// Properties of a value's type: its kind, and its conversion to doubles.
 struct Numbers : Values {
   template <class T>
   requires std::is_arithmetic_v<T> Numbers(T number) : Values{kind_of<T>(), {static_cast<double>(number)}} {}

@@ -74,7 +74,7 @@ GLuint gen_lists(Context& context, GLsizei range) {
   if (range == 0) return 0;
   const std::lock_guard lock(context.shared->mutex);
   auto& lists = context.shared->lists;
-  // Behind the largest name, or else in the first gap.
+  // Names after the largest one, or else in the first gap.
   const auto count = static_cast<GLuint>(range);
   const GLuint largest =
       std::max(lists.empty() ? 0 : lists.rbegin()->first, context.compiling != nullptr ? context.compiling_name : 0);

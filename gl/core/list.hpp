@@ -42,7 +42,7 @@ class DisplayList {
   using Play = void (*)(Context&, const void*);
   struct alignas(kAlignment) Header {
     Play play;            ///< null: the next one of owned_
-    std::uint64_t bytes;  ///< of the arguments behind it, a multiple of kAlignment
+    std::uint64_t bytes;  ///< of the arguments that follow it, a multiple of kAlignment
   };
   /// Where the arguments go. Valid until the next call.
   void* add(Play play, std::size_t bytes);
@@ -51,7 +51,7 @@ class DisplayList {
   std::vector<std::function<void(Context&)>> owned_;
 };
 
-/// What a command is in glBegin and glEnd: refused, or allowed.
+/// Whether a command is refused or allowed between glBegin and glEnd.
 enum class InsideBegin { refused, allowed };
 
 template <auto Command, InsideBegin Inside, class... Args>
@@ -63,7 +63,7 @@ void run(Context& context, const Args&... args) {
   Command(context, args...);
 }
 
-/// Of commands that go into display lists.
+/// Entry of commands that go into display lists.
 template <auto Command, InsideBegin Inside = InsideBegin::refused, class... Args>
 void issue(Context& context, const Args&... args) {
   if (context.compiling != nullptr) {

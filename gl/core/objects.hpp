@@ -1,4 +1,4 @@
-// What contexts that share have together: textures, display lists, buffer objects (OpenGL 1.5, 5.4 and 2.9).
+// Objects that contexts share: textures, display lists, buffer objects (OpenGL 1.5, 5.4 and 2.9).
 #pragma once
 
 #include <cstddef>
@@ -26,7 +26,7 @@ struct TextureImage {
 
 inline constexpr GLenum kTextureCropRect = 0x8b9d;  ///< GL_TEXTURE_CROP_RECT_OES
 
-/// What GL_TEXTURE_BIT saves of a texture.
+/// The state of a texture that GL_TEXTURE_BIT saves.
 struct TextureParameters {
   GLenum min_filter = GL_NEAREST_MIPMAP_LINEAR, mag_filter = GL_LINEAR;
   std::array<GLenum, 3> wrap{GL_REPEAT, GL_REPEAT, GL_REPEAT};

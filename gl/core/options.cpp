@@ -8,7 +8,7 @@
 namespace halfplane::gl {
 namespace {
 
-/// Of a driver that nobody has configured: what programs expect of a visual, and every unit.
+/// The configuration of a driver without options: the visual that programs expect, and every unit.
 Config plain_config() {
   return labelled(
       "full stencil.bits=8 perspective.colors=1 texture.unit=trilinear texture.constant=1 texture.border=1 "

@@ -214,7 +214,7 @@ void copy_pixels(Context& context, GLint x, GLint y, GLsizei width, GLsizei heig
     return;
   if (!context.state.current.raster.valid || feed_raster(context, GL_COPY_PIXEL_TOKEN)) return;
   if (context.read_drawable == nullptr) return;
-  // What lies outside the window is undefined, and not copied.
+  // Pixels outside the window are undefined, and not copied.
   const Frame& frame = context.read_drawable->frame;
   const auto part = [](GLint first, GLsizei count, int size) {
     const std::int64_t last = std::min<std::int64_t>(std::int64_t{first} + count, size);

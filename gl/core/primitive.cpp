@@ -13,7 +13,7 @@
 namespace halfplane::gl {
 namespace {
 
-/// What one draw of the model has in common.
+/// State that one draw of the model shares.
 struct Group {
   DrawKind kind = DrawKind::triangles;
   Topology topology = Topology::triangles;
@@ -54,7 +54,7 @@ bool fog_bends(const FogState& fog, const ShadedVertex& a, const ShadedVertex& b
   return std::abs(fog_factor(fog, a.fog_distance) - fog_factor(fog, b.fog_distance)) > kMost;
 }
 
-/// What decides how a batch of vertices is drawn.
+/// State that decides how a batch of vertices is drawn.
 struct BatchTraits {
   bool has_one_color = true, has_one_w = true, has_one_q = true, has_positive_q = true;
   bool has_secondary = false;
@@ -474,7 +474,7 @@ class Pipeline {
     const double code = 1 / (std::ldexp(1.0, context_.drawable->frame.options().config.depth_bits) - 1);
     const double offset = 2 * (slope * polygon.offset_factor + code * polygon.offset_units) / range;
     if (!std::isfinite(offset)) return;
-    // What is beyond near and far goes before the offset moves vertices beyond them, where they are held.
+    // Parts beyond near and far are cut off before the offset moves vertices beyond them, where depths are clamped.
     const auto planes = view_volume(state_.viewport, 0);
     clip(vertices, std::span(planes).first(2));
     for (ShadedVertex& v : vertices)
@@ -530,7 +530,7 @@ class Pipeline {
     stipple_at_ += static_cast<std::uint64_t>(std::max(end - first, 0.0));
   }
 
-  /// Of a pixel of the line at work.
+  /// The stipple's bit at a pixel of the current line.
   [[nodiscard]] bool stipple_bit(double pixel) const {
     const std::uint64_t count = stipple_at_ + static_cast<std::uint64_t>(pixel);
     return (state_.line.stipple_pattern >> (count / static_cast<std::uint64_t>(state_.line.stipple_factor) % 16) & 1) !=

@@ -43,7 +43,7 @@ enum class DrawKind { triangles, lines, points, rectangle };
                                                              TextureUse& use);
 /// As hardware_state(), for a clear: scissor and masks.
 [[nodiscard]] halfplane::State clear_state(Context& context);
-/// For what the host writes: in the window, without tests, depth and stencil.
+/// State for pixels that the host writes: in the window, without tests, depth and stencil.
 [[nodiscard]] halfplane::State all_pixels();
 /// Fills the target in such a state, colours 0...255.
 void fill_target(Context& context, const halfplane::State& state, const std::array<double, 4>& rgba);
@@ -54,7 +54,7 @@ void draw_in(Context& context, halfplane::State state, Topology topology, std::s
 void draw_texels(Context& context, halfplane::State state, const halfplane::Texture& texels, double x, double y,
                  double zoom_x, double zoom_y, double z, double w, bool has_logic_op);
 
-/// Of an image of any size the part from (left, top) on that a texture holds.
+/// The part of an image of any size, from (left, top) on, that a texture holds.
 [[nodiscard]] halfplane::Texture part_of(const TexelImage& image, int left, int top);
 
 /// Where glRenderMode is not GL_RENDER: takes a point, a line or a polygon after clipping, `clip` in window coordinates as

@@ -31,7 +31,7 @@ struct ShadedVertex {
   bool edge_flag = true;                        ///< the edge to the next vertex is one of the polygon's
 };
 
-/// What shading reads from the state, in the form that it needs; brought up to date by Context::revision.
+/// The state in the form that shading reads; brought up to date by Context::revision.
 struct ShadingConstants;
 struct ShadingConstantsDeleter {
   void operator()(ShadingConstants* constants) const;

@@ -1,4 +1,4 @@
-// What OpenGL 1.5 keeps as state, a struct for each attribute group of glPushAttrib (OpenGL 1.5, tables 6.5 to 6.33). The
+// The state of OpenGL 1.5, a struct for each attribute group of glPushAttrib (OpenGL 1.5, tables 6.5 to 6.33). The
 // initial values are those of the specification. Colours are real numbers as the program gave them, not yet held to 0...1.
 #pragma once
 

@@ -21,7 +21,7 @@ std::uint64_t next_revision() {
   return ++last;
 }
 
-/// What a command can give images to.
+/// Targets that a command can give images to.
 struct ImageTarget {
   GLenum name;
   int dimensions;
@@ -90,7 +90,7 @@ GLenum base_format(GLint internal_format) {
   return GL_NONE;
 }
 
-/// What an image answers as its format: a generic compressed one is its base format.
+/// The format that an image reports: a generic compressed one is its base format.
 GLint kept_format(GLint internal_format) {
   const bool is_compressed = internal_format >= GL_COMPRESSED_ALPHA && internal_format <= GL_COMPRESSED_RGBA;
   return is_compressed ? static_cast<GLint>(base_format(internal_format)) : internal_format;
@@ -383,7 +383,7 @@ const TextureObject* sampled_texture(const Context& context, int unit) {
     const TextureObject* texture = &context.default_textures[index];
     if (name != 0) {
       const auto& bound = context.bound_textures[u][index];
-      // Of attributes that were popped, the object may not be at hand yet.
+      // The texture of popped attributes may not be bound yet.
       texture = bound != nullptr && bound->name == name
                     ? bound.get()
                     : named_texture(*context.shared, name, kTextureTargets[index], false).get();

@@ -35,7 +35,7 @@ struct TextureUse {
 };
 [[nodiscard]] TextureUse use_texture(Context& context, halfplane::State& state);
 
-/// What the unit's texture makes of the colors of fragments at the raster position, where it is magnified. Empty: no
+/// The function that the unit's texture applies to colors of fragments at the raster position, where it is magnified. Empty: no
 /// texture. Valid while the state of the context stays.
 [[nodiscard]] std::function<Vec4(const Vec4&)> raster_texture(const Context& context);
 

@@ -47,7 +47,7 @@ Affine product(const Affine& x, const Affine& y) {
 }
 Affine complement(const Affine& x) { return {-x.a, 1 - x.b, x.is_exact}; }
 
-/// What an environment sees: the texture's color as table 3.20 fills it in, the constant, and the fragment's color where
+/// Inputs of an environment: the texture's color as table 3.20 fills it in, the constant, and the fragment's color where
 /// it is known.
 struct Inputs {
   Vec4 texel, constant;
@@ -88,7 +88,7 @@ Affine combined(const TextureCombiner& combiner, std::size_t channel, const Inpu
       result = {};
       for (std::size_t c = 0; c < 3; ++c)
         result = sum(result, product(sum(arg(0, c), {}, 0, -0.5), sum(arg(1, c), {}, 0, -0.5)), 4, 0);
-      result.is_exact = result.is_exact && result.a == 0;  // of all channels together
+      result.is_exact = result.is_exact && result.a == 0;  // sum over all channels
       break;
     }
     default: break;
@@ -136,7 +136,7 @@ bool is_linear(GLenum filter) {
   return filter == GL_LINEAR || filter == GL_LINEAR_MIPMAP_NEAREST || filter == GL_LINEAR_MIPMAP_LINEAR;
 }
 
-/// Of the modes that take texels as they are; none: the texels decide. `blends`: the hardware has a constant color.
+/// The fit of modes that take texels as they are; none: the texels decide. `blends`: the hardware has a constant color.
 std::optional<Fit> direct_fit(GLenum mode, GLenum base, bool blends) {
   const bool is_opaque = base == GL_RGB || base == GL_LUMINANCE;
   switch (mode) {

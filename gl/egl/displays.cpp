@@ -100,7 +100,7 @@ void initialize(EGLDisplay handle, EGLint* major, EGLint* minor) {
 void terminate(EGLDisplay handle) {
   const Call call(handle, false);
   call.display.initialized = false;
-  call.display.surfaces.clear();  // what is current stays until it is not
+  call.display.surfaces.clear();  // a current surface stays until another one is made current
   call.display.contexts.clear();
   call.display.syncs.clear();
 }

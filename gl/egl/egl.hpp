@@ -1,4 +1,4 @@
-// What the files of the EGL library share: displays, surfaces, contexts, and how a call ends with an error.
+// Shared by the files of the EGL library: displays, surfaces, contexts, and how a call ends with an error.
 #pragma once
 
 #include <map>
@@ -66,7 +66,7 @@ struct ThreadState {
 };
 inline thread_local ThreadState t_state;
 
-/// Of displays and what they own: held through every call that looks at them.
+/// The lock of displays and their objects: held through every call that reads them.
 [[nodiscard]] std::recursive_mutex& mutex();
 /// By the native display, or what stands for one, and the screen.
 [[nodiscard]] std::map<std::pair<void*, int>, std::unique_ptr<EglDisplay>>& displays();
@@ -117,7 +117,7 @@ template <class Object>
   return found->second;
 }
 
-/// What a call looks at, locked. Its functions throw the error of a handle that is none.
+/// The objects of a call, locked. Its functions throw the error of an invalid handle.
 struct Call {
   std::unique_lock<std::recursive_mutex> lock{mutex()};
   EglDisplay& display;

@@ -12,14 +12,14 @@ void* keep(EglDisplay& display, std::shared_ptr<Surface> surface) {
   return handle;
 }
 
-/// Of every surface. There is no other colour space than the linear one, and no OpenVG.
+/// Attributes of every surface. There is no other colour space than the linear one, and no OpenVG.
 Wishes surface_wishes() {
   return {{EGL_GL_COLORSPACE, EGL_GL_COLORSPACE_LINEAR},
           {EGL_VG_COLORSPACE, EGL_VG_COLORSPACE_LINEAR},
           {EGL_VG_ALPHA_FORMAT, EGL_VG_ALPHA_FORMAT_NONPRE}};
 }
 
-/// Of an X window or pixmap.
+/// The surface of an X window or pixmap.
 template <class T>
 EGLSurface create_on(EGLDisplay handle, DrawableKind kind, EGLConfig config_handle, XID xid, const T* list) {
   const bool is_window = kind == DrawableKind::window;
@@ -81,7 +81,7 @@ EGLSurface create_pbuffer_surface(EGLDisplay handle, EGLConfig config_handle, co
   return keep(call.display, surface);
 }
 
-/// Of OpenVG's images, which do not exist here.
+/// Pbuffers of OpenVG's images, which do not exist here.
 EGLSurface create_pbuffer_from_client_buffer(EGLDisplay handle, EGLenum, EGLClientBuffer, EGLConfig config,
                                              const EGLint*) {
   static_cast<void>(Call(handle).config(config));

@@ -121,7 +121,7 @@ void copy_context(Display*, GLXContext source, GLXContext destination, unsigned 
   GlxContext& to = context_of(destination);
   if (!from.config->is_of_screen(*to.config)) x_error(BadMatch);
   if (to.is_current) x_error(BadAccess);
-  // What glPushAttrib saves of one, glPopAttrib gives to the other.
+  // glPushAttrib on the source and glPopAttrib on the target copy the attributes.
   std::vector<SavedAttributes> stack;
   stack.swap(from.attributes);
   push_attrib(from, static_cast<GLbitfield>(mask));

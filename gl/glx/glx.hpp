@@ -1,4 +1,4 @@
-// What the files of the GLX library share: configurations, drawables, contexts, and how a call ends with an error. GLX objects
+// Shared by the files of the GLX library: configurations, drawables, contexts, and how a call ends with an error. GLX objects
 // live in the program alone, so errors are made here as the X server would send them.
 #pragma once
 
@@ -79,7 +79,7 @@ struct FbConfig {
 
 /// Null: no server answers.
 [[nodiscard]] Server* server_of(Display* display);
-/// Of a screen, in the order of glXChooseFBConfig(). They stay where they are.
+/// A screen's configurations in the order of glXChooseFBConfig(). Their addresses stay valid.
 [[nodiscard]] const std::vector<FbConfig>& fb_configs(Display* display, int screen);
 /// Throws GLXBadFBConfig.
 [[nodiscard]] const FbConfig& config_of(Display* display, GLXFBConfig handle);

@@ -13,7 +13,7 @@
 
 namespace halfplane::gl {
 
-/// What a command takes where the trace has no memory for a pointer.
+/// Arguments for a pointer whose memory the trace lacks.
 enum class Addresses { none, null, offsets };
 
 /// The arguments of a call in the types of its entry point. What they point at is held here, followed by zeros up to `reach`

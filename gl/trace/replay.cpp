@@ -39,7 +39,7 @@ std::string_view core_name(std::string_view name) {
   return name;
 }
 
-/// What GLX and EGL calls say that a replay needs.
+/// Information in GLX and EGL calls that a replay needs.
 struct Binding {
   std::int64_t context = 0, draw = 0, read = 0;
 };
@@ -131,7 +131,7 @@ class Replay {
     if (warned_.insert(function).second) hooks_.warn(function + " " + what);
   }
 
-  // What keeps commands inside the memory that the trace has.
+  // Checks that keep commands inside the trace's memory.
   using Bytes = std::span<const std::byte>;
   [[nodiscard]] static double reach(const TraceCall& call, const Context& context);
   [[nodiscard]] std::optional<Bytes> memory_of(const Context& context, const ArrayPointer& array) const;

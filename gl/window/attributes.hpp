@@ -11,7 +11,7 @@ namespace halfplane::gl {
 /// GLX_DONT_CARE and EGL_DONT_CARE.
 inline constexpr int kDontCare = -1;
 
-/// What a program asks for, by the attribute's name.
+/// Requests of a program, by the attribute's name.
 using Wishes = std::map<std::intptr_t, std::intptr_t>;
 
 /// Overwrites what a list says. False: it names what `wishes` does not have.
@@ -55,7 +55,7 @@ template <class Config, std::size_t N>
   return found == std::end(attributes) ? nullptr : found;
 }
 
-/// What a program that says nothing asks for.
+/// Defaults of a program's requests.
 template <class Config, std::size_t N>
 [[nodiscard]] Wishes defaults(const ConfigAttribute<Config> (&attributes)[N]) {
   Wishes wishes;

@@ -1,4 +1,4 @@
-// What GLX and EGL have in common: a connection to the X server, its pixel formats, and drawables that show themselves.
+// Shared by GLX and EGL: a connection to the X server, its pixel formats, and drawables that show themselves.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +27,7 @@ namespace halfplane::gl {
 /// variable HALFPLANE_GL_ANSWERED names, so that `halfplane run` knows which libraries were loaded.
 [[nodiscard]] bool answers(const char* system);
 
-// What every pixel has, whatever the configuration stores of it.
+// Bits of every pixel, whatever the configuration stores of it.
 inline constexpr int kColorBits = 8;  ///< of each of R, G, B, A
 inline constexpr int kDepthBits = 24, kStencilBits = 8;
 inline constexpr int kAccumBits = 16;  ///< of each of R, G, B, A
@@ -42,12 +42,12 @@ struct PixelFormat {
 /// program. Any thread may use it.
 class Server {
  public:
-  /// Of the name of a display, null for that of the environment. Kept until the process ends. Null: no server answers.
+  /// The server of a display's name, null for that of the environment. Kept until the process ends. Null: no server answers.
   [[nodiscard]] static Server* open(const char* name);
 
   [[nodiscard]] int screens() const { return static_cast<int>(formats_.size()); }
   [[nodiscard]] int default_screen() const { return DefaultScreen(display_); }
-  /// Of every TrueColor visual of a screen. The default visual comes first, visuals with alpha last. The second visual of each
+  /// A screen's TrueColor visuals. The default visual comes first, visuals with alpha last. The second visual of each
   /// depth is single-buffered; where there is none, the first stands for both.
   [[nodiscard]] const std::vector<PixelFormat>& formats(int screen) const {
     return formats_[static_cast<std::size_t>(screen)];
@@ -56,7 +56,7 @@ class Server {
   struct Geometry {
     int screen = 0, depth = 0, width = 0, height = 0;
   };
-  /// Of a window or pixmap, or of a window alone. None: there is no such drawable.
+  /// The geometry of a window or pixmap, or of a window alone. None: there is no such drawable.
   [[nodiscard]] std::optional<Geometry> geometry(XID drawable, bool must_be_window = false);
 
  private:

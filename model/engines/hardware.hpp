@@ -23,7 +23,7 @@ namespace halfplane {
 /// Initial value of a byte of memory: the same in every TileMemory, and different in neighbouring bytes.
 [[nodiscard]] std::uint8_t memory_garbage(std::uint32_t address);
 
-/// The memory behind the memory port: bytes, with the buffers and flags laid out by the host. Pages are allocated on
+/// The memory downstream of the memory port: bytes, with the buffers and flags laid out by the host. Pages are allocated on
 /// the first write.
 class TileMemory {
  public:

@@ -119,7 +119,7 @@ TextureLevel encoded(const Texture& texture, const TexelImage& image) {
   TextureLevel level{image.width, image.height, {}};
   level.code.resize(image.texel.size());
   const auto fill = [&](const auto& encode) { std::ranges::transform(image.texel, level.code.begin(), encode); };
-  switch (texture.format) {  // those of large images
+  switch (texture.format) {  // formats of large images
     case TextureFormat::rgba8888:
       fill([](const Texel& t) {
         return std::uint32_t{t[0]} << 24 | std::uint32_t{t[1]} << 16 | std::uint32_t{t[2]} << 8 | t[3];

@@ -59,7 +59,7 @@ std::int64_t exit_column(const OctantLine& line, std::int64_t a, std::int64_t b,
   const std::int64_t pixel = std::int64_t{1} << s, half = pixel / 2;
   // The first column whose centre is not before the moved point. A turned axis moves it forward, off a centre it is on.
   const std::int64_t column = line.is_major_negative ? ((a - half) >> s) + 1 : (a - half + pixel - 1) >> s;
-  // The column before: its centre lies behind the point, which may still be inside the diamond of a pixel there.
+  // The previous column: the point is past its centre, but may still be inside the diamond of a pixel there.
   const std::int64_t u = a - ((column - 1) << s) - half;  // 0...pixel
   const std::int64_t v = (b & (pixel - 1)) - half;        // -half...half - 1
   const std::int64_t reach = u + std::abs(v);
@@ -128,7 +128,7 @@ Bounds clip_to_rows(Bounds steps, const Bounds& rows, std::int64_t q, std::int64
   return steps;
 }
 
-/// What the attributes of one line share.
+/// Constants common to the attributes of one line.
 struct Slope {
   Reciprocal reciprocal;    ///< of D; value 0 for a single pixel, whose steps are then 0
   std::int64_t offset = 0;  ///< from the start to the first pixel's centre along the major axis, subpixels

@@ -509,7 +509,7 @@ struct FragmentPacket {
   FIELD(std::uint32_t, greatest_color, &Widths::vertex_color, &Widths::has_colors_over_w)  ///< quotients, R lowest
   using Depths = std::array<std::uint32_t, kMaxSamples>;
   FIELD(Depths, further_depth, &Widths::further_depth,
-        &Widths::further_samples)  ///< of all samples but the first of each pixel
+        &Widths::further_samples)  ///< depths of all samples but the first of each pixel
   FIELD(Codes, code, &AttributeWidths::fragment,
         &Widths::pixels)  ///< of each pixel: clamped codes, local Q and P; its depth
                           ///< is that of its first sample

@@ -5,7 +5,7 @@
 //
 // Visit n sees the updates of all visits up to n - lag and of no later one, so that the visible updates follow from
 // program order alone and no visit waits for one that has just begun. The visits between can only have lowered depths,
-// which keeps a bound valid; if one of them may have raised a depth, by its state, no tile is behind its bound. A fast
+// which keeps a bound valid; if one of them may have raised a depth, by its state, no tile is hidden. A fast
 // clear of depth sets all bounds, and updates of earlier visits are dropped.
 //
 // Lines belong to no tile visit, so no retirement could raise a bound after them. A line whose depth test can raise a

@@ -132,7 +132,7 @@ inline void set_flag_word(MemoryRequest& request, std::uint64_t bits, const Widt
 /// row.
 struct BeatShare {
   int per_stamp = 1;  ///< beats of each; 1 where several share a beat
-  int per_beat = 1;   ///< of them in a beat; 1 where each fills one
+  int per_beat = 1;   ///< stamps in a beat; 1 where each fills a beat
   int first = 0;      ///< index in its beat
   BeatShare(int shift, int port, std::uint32_t place)
       : per_stamp(1 << std::max(0, shift - port)),

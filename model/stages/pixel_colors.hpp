@@ -22,8 +22,8 @@ struct LeavingColors {
 
 /// The form in which colours go to memory.
 enum class ColorMove : std::uint8_t {
-  samples,  ///< those present, one colour per sample
-  pixels,   ///< those present, one colour per pixel
+  samples,  ///< colours present, one per sample
+  pixels,   ///< colours present, one per pixel
   merge,    ///< all, one colour per sample: missing ones are read, one colour per pixel
 };
 

@@ -141,7 +141,7 @@ struct TextureLookup {
   bool continues = false;  ///< and the sample needs another level, or other samples of the group follow
   bool turns = false;      ///< of samples that go together: the next lookups are on upper levels, this one on lower
   int samples = 0;         ///< of the last line: samples completed
-  int hits = 0;            ///< of these samples, those whose lines were all there
+  int hits = 0;            ///< samples among them whose lines were all present
 };
 
 /// The samples' use of the cache, each counted once for any number of levels.

@@ -41,7 +41,7 @@ class MemoryTiming {
   virtual BurstAnswer accept(const MemoryBurst& burst, Cycle cycle) = 0;
   /// The size of the picture that scan-out shows from now on, width and height: that of the frame that begins.
   virtual void show(int, int) {}
-  /// What other masters got up to the last burst.
+  /// Traffic of other masters up to the last burst.
   [[nodiscard]] virtual MemoryUse use() const { return {}; }
 };
 
@@ -69,7 +69,7 @@ inline constexpr int kSdramMinMhz = 50, kSdramMaxMhz = 200;
 /// The kind with that name, and of sdram what follows it: "sdram,width=32,mhz=133". Throws InputError.
 void set_memory(MemorySettings& settings, std::string_view text);
 
-/// What set_memory() takes.
+/// Arguments of set_memory().
 [[nodiscard]] std::string memory_name(const MemorySettings& settings);
 
 /// The same memory with nothing but the hardware's port, as that of textures is.

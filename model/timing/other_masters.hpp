@@ -1,4 +1,4 @@
-// What else the memory serves: the reads of scan-out (core/scan_out.sv) and a steady flow of other masters' bytes. Their bursts
+// Other traffic of the memory: the reads of scan-out (core/scan_out.sv) and a steady flow of other masters' bytes. Their bursts
 // are served in order of arrival with those of the port, and take the memory's time. No data.
 #pragma once
 
@@ -12,16 +12,16 @@ namespace halfplane {
 /// Masters beside the hardware's port. The default: none.
 struct MemoryTraffic {
   int scan_out_hz = 0;                  ///< pictures a second that scan-out reads; 0: it is off
-  std::uint64_t other_bytes_per_s = 0;  ///< of all other masters
+  std::uint64_t other_bytes_per_s = 0;  ///< total of all other masters
   [[nodiscard]] bool is_none() const { return scan_out_hz == 0 && other_bytes_per_s == 0; }
   bool operator==(const MemoryTraffic&) const = default;
 };
 
-/// What they got so far.
+/// Their traffic so far.
 struct MemoryUse {
   std::uint64_t scan_out_bytes = 0, other_bytes = 0;
   std::uint64_t bands = 0;       ///< that scan-out has read: rows of blocks
-  std::uint64_t late_bands = 0;  ///< of these, bands whose last pixel came after the display wanted the first one
+  std::uint64_t late_bands = 0;  ///< bands among them whose last pixel came after the display wanted the first one
   bool operator==(const MemoryUse&) const = default;
 };
 
@@ -29,7 +29,7 @@ struct MemoryUse {
 ///
 /// Scan-out reads a band in each 1 / (hz * bands) of a second, from its beginning on and as fast as memory answers, with
 /// kAhead units under way, and needs it a band later. Every block counts as drawn, with all of its samples. Its picture lies
-/// behind the target. The others read 64 bytes at equal distances, each from another row of memory.
+/// after the target's. The other masters read 64 bytes at equal distances, each from another row of memory.
 class OtherMasters {
  public:
   using Picoseconds = std::uint64_t;

@@ -210,7 +210,7 @@ class Gates:
                     yosys(f'read_rtlil {netlist}; {command}; tee -o {stat} stat', log)
                     found = cells(stat.read_text(encoding='utf-8'))
                 units = {name.lstrip('\\') for name in re.findall(r'^module (\S+)$', text, flags=re.M)}
-                # Of the unit itself; it may hold other units, which are counted where they stand.
+                # Cells of the unit itself; units inside it are counted where they stand.
                 own = {cell: n for cell, n in found[unit.lstrip('\\')].items() if cell.lstrip('\\') not in units}
                 write_whole(kept, json.dumps({'unit': module_label(unit), 'part': part, 'cells': own, 'cpu_s': round(
                     resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - spent, 1)}))

@@ -290,7 +290,7 @@ mutant(95 stages/cache_tags.sv "flush: the depth of the last blocks is stored wh
 mutant_text(96 stages/clear_flags.sv "flags: a fragment looks at the word of a flag that falls, not at its own"
   [=[is_busy_o = reads_q]=] [=[is_busy_o = reads_q && raster_cosim.mutant_q != 16'd96]=])
 
-# A clear of one bin, behind a frame that holds others.
+# A clear of one bin, after a frame that holds other bins.
 mutant(404 stages/cache_tags.sv "bins: a clear of one forgets the flags that share its words"
   [=[(clears_bin ? word_color : '0)]=] [=['0]=])
 mutant(405 stages/cache_tags.sv "bins: a clear of one begins with the first column"
@@ -488,7 +488,7 @@ mutant(255 stages/texture_linear.sv "texture counter: what a sample's first leve
 mutant(256 lib/texture_answers.sv "texture: a line begins with the last beat of the one before"
   [=[ends_line_o ? '0 : beat_q + BEATS'(takes)]=] [=[beat_q + BEATS'(takes)]=])
 
-# Colours that are on their way, given to the stamp behind.
+# Colours in flight, forwarded to the next stamp.
 mutant(300 stages/color_write.sv "colours: hazard: a stamp does not have what was written while it was read"
   [=[{line_3_q, stamp_3_q} == {line_1_q, stamp_1_q}]=] [=[1'b0]=])
 mutant(301 stages/color_write.sv "colours: what a clear has left is mixed with an answer of before"

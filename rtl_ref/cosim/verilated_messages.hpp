@@ -1,4 +1,4 @@
-// What Verilated code says: failed assertions, $error, $fatal. Verilator prints it to stdout, where results go; here it is
+// Messages of Verilated code: failed assertions, $error, $fatal. Verilator prints it to stdout, where results go; here it is
 // kept for the harness. cmake/Rtl.cmake compiles Verilator's run time with these functions in the place of its own.
 #pragma once
 

@@ -30,7 +30,7 @@ module texture_axis #(
     input logic [2:0]           wrap_i,   // 0 repeat, 1 clamp, 2 mirror; with BORDER 3 border, 5 half_border
     input logic                 is_linear_i,
 
-    // Of the input six clocks ago
+    // Outputs for the input six clocks ago
     output logic [SIDE_BITS-1:0] texel_o,
     output logic [SIDE_BITS-1:0] next_o,  // the next texel, where the filter is linear
     output logic [7:0]           part_o,  // weight of the next texel, in 256ths

@@ -404,7 +404,7 @@ module cull (
   endgenerate
   assign triangle_o.state = state;
 
-  // Of a triangle of negative area vertices 1 and 2 change places: its edges run the opposite way, edge i is edge 2 - i
+  // In a triangle of negative area vertices 1 and 2 change places: its edges run the opposite way, edge i is edge 2 - i
   // reversed.
   genvar i;
   generate

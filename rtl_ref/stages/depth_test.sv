@@ -2,7 +2,7 @@
 //
 // In: fragments. Out: an access of the framebuffer for each stamp with a covered sample and for each token (fast clear,
 // flush); one cycle later, with the stored codes, the write of the passed samples; another cycle later the retirement
-// of the tile visit. One stamp a cycle. With tiles a stamp waits one cycle behind a stamp whose depth it has to see; a
+// of the tile visit. One stamp a cycle. With tiles a stamp waits one cycle after a stamp whose depth it must read; a
 // framebuffer of blocks forwards it. Specification: model/stages/depth_test.hpp.
 module depth_test (
     input logic clk_i,

@@ -21,7 +21,7 @@ struct MutantsCommand : CosimOptions {
   std::vector<int> only;  ///< numbers of mutants; none: all
 };
 
-/// Those that are asked for, in the order of their list.
+/// The mutants that are asked for, in the order of their list.
 std::vector<Mutant> asked_for(const MutantsCommand& options) {
   if (options.only.empty()) return {mutants().begin(), mutants().end()};
   std::vector<Mutant> some;
@@ -69,7 +69,7 @@ bool shows(Dut& dut, const Config& config, const ModelPicture& picture, std::uin
   return frame && color_hash(*frame, config.color_format) == picture.color && depth_hash(*frame) == picture.depth;
 }
 
-/// What comes of the random run on another design that has mutants, and parts that this one does not have.
+/// Results of the random run on another design that has mutants, and parts that this one lacks.
 std::optional<Mismatch> elsewhere(const LockstepOptions& options, const DutFactory& here, std::uint64_t random) {
   for (const DutFactory& factory : verilated_duts()) {
     if (!factory.has_mutants || factory.name == here.name) continue;

@@ -227,7 +227,7 @@ class Child {
   bool has_group_ = false, has_ended_ = false;
 };
 
-/// What all frames together took.
+/// Totals of all frames.
 struct RunTotals {
   std::uint64_t frames = 0;
   double seconds = 0, drawing = 0;

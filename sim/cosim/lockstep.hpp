@@ -100,7 +100,7 @@ struct LockstepResult {
   std::uint64_t triangles = 0, lines = 0, points = 0;  ///< taken by the RTL
   std::uint64_t cycles = 0;                            ///< to the last packet anywhere, memory included
   std::uint64_t raster_cycles = 0;  ///< from the first primitive taken to the last write into the on-chip tiles
-  std::uint64_t tile_cycles = 0;    ///< of these, cycles in which the framebuffer moved tiles and served no access
+  std::uint64_t tile_cycles = 0;    ///< cycles among them in which the framebuffer moved tiles and served no access
   std::uint64_t model_cycles = 0;   ///< the cycle model's `cycles`; 0 if not computed
   std::uint64_t model_raster_cycles = 0, model_tile_cycles = 0;  ///< likewise of `raster_cycles`, `tile_cycles`
   std::uint64_t clocks = 0;  ///< simulated clocks, including the wait for an extra packet

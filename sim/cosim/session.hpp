@@ -25,7 +25,7 @@ using SceneSource = std::function<std::optional<Scene>()>;
 enum class HostOrders { configured, drawn };
 
 struct Session {
-  LockstepResult result;        ///< of all scenes together
+  LockstepResult result;        ///< result of all scenes together
   std::optional<Scene> failed;  ///< the scene with the mismatch, or whose model differs from the specification
   std::string disagreement;     ///< difference_from_specification() of it
   Config config;                ///< of the last scene

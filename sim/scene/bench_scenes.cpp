@@ -77,7 +77,7 @@ Scene textured_layers_scene(int width, int height, int layers, bool is_front_fir
   return scene;
 }
 
-// The layers as coloured glass: each passes a third to two thirds of the light behind it.
+// The layers as coloured glass: each passes a third to two thirds of the light from behind.
 Scene glass_scene(int width, int height, int layers) {
   Scene scene = layers_scene(width, height, layers, false);
   for (std::size_t i = 0; i < scene.vertices.size(); ++i)

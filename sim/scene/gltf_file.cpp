@@ -124,7 +124,7 @@ constexpr std::array<std::string_view, 9> kKnownExtensions{
     "KHR_mesh_quantization", "KHR_animation_pointer", "KHR_xmp",
     "KHR_xmp_json_ld",       "MSFT_texture_dds",      "KHR_node_selectability",
     "KHR_node_hoverability", "KHR_node_visibility",   "EXT_mesh_gpu_instancing"};
-// Of materials base colour, sides and `unlit` are read, of textures their transform, of lights none.
+// Material extensions read: base colour, sides, `unlit`; of textures the transform; of lights none.
 constexpr std::array<std::string_view, 5> kKnownFamilies{"KHR_materials_", "KHR_texture_", "EXT_texture_",
                                                          "KHR_lights_", "EXT_lights_"};
 constexpr std::string_view kDraco = "KHR_draco_mesh_compression", kMeshopt = "EXT_meshopt_compression";

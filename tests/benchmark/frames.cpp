@@ -1,5 +1,5 @@
 // Draws frames of a built-in scene with the functional engine's AVX2 kernels on one thread, for tools/instructions.py to
-// count: the first makes memory, those behind it only draw. Arguments: scene, width, height, frames. Status 77: no AVX2.
+// count: the first allocates memory, later ones only draw. Arguments: scene, width, height, frames. Status 77: no AVX2.
 #include <algorithm>
 #include <cstdlib>
 

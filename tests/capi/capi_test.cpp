@@ -1,4 +1,4 @@
-// The C interface: the same bits as the engines and stages behind it, and one line for everything that is wrong.
+// The C interface: the same bits as the engines and stages, and one line for every error.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -65,7 +65,7 @@ TEST_F(Capi, ASceneOfArraysIsTheSceneOfItsCapture) {
   ASSERT_EQ(halfplane_scene_draw(scene, "triangles", indices, 3), 0) << halfplane_last_error();
   EXPECT_EQ(plane("functional", "color"), color);
   EXPECT_EQ(plane("functional", "depth"), depth);
-  // Another state for another draw: what an always-drawn triangle behind the first one covers is its own.
+  // Another state for another draw: a triangle behind the first one, always drawn, owns the pixels it covers.
   const std::string always = "space window\nstate depth_test always\n";
   ASSERT_EQ(halfplane_scene_say(scene, always.data(), always.size()), 0);
   ASSERT_EQ(halfplane_scene_draw(scene, "points", indices, 1), 0) << halfplane_last_error();

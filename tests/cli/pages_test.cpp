@@ -18,7 +18,7 @@ struct Transcript {
   std::vector<std::string> lines;
 };
 
-/// Of each block between fences: what follows a line "$ build/halfplane ..." up to the next one.
+/// Transcripts in blocks between fences: the text from a line "$ build/halfplane ..." to the next one.
 std::vector<Transcript> transcripts(const std::filesystem::path& page) {
   std::vector<Transcript> list;
   const std::string prompt = "$ build/halfplane ";

@@ -108,7 +108,7 @@ TEST_F(Run, AProgramThatFailsIsSaid) {
   EXPECT_NE(outcome.out.find("1.5"), std::string::npos) << outcome.out;
 }
 
-/// What the hardware does not have: an end that says so. This program's colours run over w.
+/// A feature that the hardware lacks: an error that names it. This program's colours run over w.
 TEST_F(Run, MissingStatesEndTheProgramIfAsked) {
   const Outcome outcome = run({"run", "--on-missing", "stop", "--", kProgram});
   EXPECT_EQ(outcome.status, 2) << outcome.err;

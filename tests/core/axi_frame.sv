@@ -19,7 +19,7 @@ module axi_frame #(
     input  logic [31:0]                                color_flags_base,
     input  logic [31:0]                                row_stride,
 
-    // Of raster_top's own port, to be watched
+    // Signals of raster_top's own port, for checks
     output logic        beat_moves_o,
     output logic        beat_is_write_o,
     output logic [31:0] beat_address_o,
@@ -115,7 +115,7 @@ module axi_frame #(
       .flushed_o        ()
   );
 
-  logic [1:0]      s_arvalid, s_arready, s_rvalid, s_rready;  // nobody, frame
+  logic [1:0]      s_arvalid, s_arready, s_rvalid, s_rready;  // no master, frame
   logic [63:0]     s_araddr;
   logic [15:0]     s_arlen;
   logic [PORT-1:0] s_rdata;

@@ -1,4 +1,4 @@
-// What the software backend's decoder makes of streams: for the test that holds it against core/command_decoder.sv.
+// Output of the software backend's decoder: for the test that holds it against core/command_decoder.sv.
 //
 // usage: decode_words CONFIG <STREAMS >RESULTS; a line of STREAMS is the words of a stream in hexadecimal, a line of RESULTS
 // JSON. After a STOP the stream is started again.

@@ -74,7 +74,7 @@ def main():
             return 1
         whole += shown == [(number, number) for number in range(WIDTH * HEIGHT)]
     print(f"seed {seed}: {whole} of {FRAMES} frames shown whole")
-    return 0 if FRAMES // 3 < whole < FRAMES else 1  # a third come late, and some of those behind them do
+    return 0 if FRAMES // 3 < whole < FRAMES else 1  # a third come late, and some of the later ones do
 
 
 if __name__ == "__main__":

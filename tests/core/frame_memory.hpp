@@ -1,4 +1,4 @@
-// What memory holds after a frame of the model, and the frame's picture: for the tests of scan-out and of halfplane_detile.
+// The memory after a frame of the model, and the frame's picture: for the tests of scan-out and of halfplane_detile.
 #pragma once
 
 #include <vector>

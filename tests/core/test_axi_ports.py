@@ -342,7 +342,7 @@ async def a_late_answer_after_a_restart_is_dropped(dut):
             assert seen == (raster.read_answers + raster.write_answers, readers[1].beats)
             held += 1
         memory.behaviour.answers = True
-        raster.trusts = False  # what a dropped burst has written is not known
+        raster.trusts = False  # bytes that a dropped burst has written are not known
         await finish(dut, [raster, *readers], 20000)
         raster.shadow[:] = memory.bytes
         raster.trusts = True

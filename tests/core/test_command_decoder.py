@@ -32,7 +32,7 @@ BENCH = {
     "faults": [
         # A turned triangle faces as if it were not.
         ("core/command_decoder.sv", "state_bits_q[7] ^ flags_q[3]", "state_bits_q[7] ^ (flags_q[3] && !FAULT)", "a_strip"),
-        # Of the slots after the first one that is loaded none is.
+        # Slots after the first loaded one are not loaded.
         ("core/command_decoder.sv", "loads_q & (loads_q - 3'd1)", "loads_q & (loads_q - 3'd1) & {3{!FAULT}}", "packets_of"),
         # Codes of a box come to its first vertex alone.
         ("core/command_decoder.sv", "(is_broadcast && FIRST != w", "(is_broadcast && !FAULT && FIRST != w", "packets_of"),

@@ -115,7 +115,7 @@ class Bench:
         self.flags = int(dut.FLAGS.value)
         self.port = len(dut.scan_rdata) // 8
         self.memory = None
-        # Of a cycle in which something is asked, answered, and of a display's that takes a pixel.
+        # Probabilities of a request, of an answer, and of a display's cycle that takes a pixel.
         self.asks, self.answers, self.takes, self.latency = 1.0, 1.0, 1.0, (3, 3)
         self.error_at = None  # the beat that is answered with an error
         self.cycle = self.beats = self.vblanks = self.errors = 0

@@ -100,7 +100,7 @@ std::optional<Run> search(const Mutant& mutant) {
   return std::nullopt;
 }
 
-/// Of the faults those whose number is `part` modulo 2, so that two processors share the work. A known run is tried first; one
+/// Faults whose number is `part` modulo 2, so that two processors share the work. A known run is tried first; one
 /// that does not catch its fault any more (scenes change) costs time, and its new line is printed.
 void expect_all_caught(std::size_t part) {
   const std::map<int, Run> known = test::runs_all() ? std::map<int, Run>() : known_runs();

@@ -47,7 +47,7 @@ Config random_config(Random& random) {
   }
 }
 
-/// What Verilator says of the design with this package; empty: nothing.
+/// Messages of Verilator on the design with this package; empty: none.
 std::string lint(const std::string& package, const std::string& top = "raster_top") {
   const std::string test = testing::UnitTest::GetInstance()->current_test_info()->name();  // others run beside it
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / ("halfplane_lint_" + test);

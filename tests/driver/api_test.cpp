@@ -419,7 +419,7 @@ TEST(DriverBackend, RefusesWordsThatTheCoreRefuses) {
   }
 }
 
-/// What the core does not check, and what has no meaning: one line, and no picture.
+/// Errors that the core does not check, and words without meaning: one line, and no picture.
 TEST(DriverBackend, RefusesWhatTheCoreDrawsUndefined) {
   const Config& config = driver_config();
   const auto refused = [&](const std::vector<std::uint32_t>& words, const std::string& why) {

@@ -17,7 +17,7 @@ using driver::Decoder;
 
 constexpr std::uint32_t kSeed = 5400;
 
-/// What the hardware does with a packet does not depend on the order of a triangle's vertices (cull sorts them), on numbers
+/// The effect of a packet in hardware does not depend on the order of a triangle's vertices (cull sorts them), on numbers
 /// of primitives, on the box of tokens and on the facing of what is no triangle: a form without them.
 DecodedPrimitive canonical_form(PrimitivePacket packet, std::optional<LineSetup> line) {
   packet.primitive_id = 0;

@@ -1,6 +1,6 @@
 
   // An arbitrary item: the n-th from now that enters is the n-th from now that leaves, unchanged. The choice is free;
-  // so all items are covered. The FIFO behind the register is cut out; fifo_stream is assumed for it.
+  // so all items are covered. The FIFO downstream of the register is cut out; fifo_stream is assumed for it.
   (* anyconst *) logic [WIDTH-1:0] any_data;
   (* anyseq *) logic               is_chosen;
   logic            waits_q, is_out_q, was_chosen_q;  // the chosen item is in the FIFO, in the register

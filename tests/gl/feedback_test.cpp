@@ -11,7 +11,7 @@ namespace {
 
 class GlFeedback : public ::testing::Test {
  protected:
-  /// What `commands` feed back.
+  /// Feedback of `commands`.
   template <class Commands>
   std::vector<float> feedback(GLenum type, const Commands& commands) {
     std::vector<float> buffer(1000);

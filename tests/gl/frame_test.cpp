@@ -117,7 +117,7 @@ halfplane::Texture chequer(int side) {
   return make_texture("any", pattern_image(TexturePattern::grid, side, side), TextureFormat::rgba8888, Mips::box);
 }
 
-/// What every topology, a texture and a blend make of a ring.
+/// A ring drawn by every topology, with a texture and a blend.
 void draw_some(Frame& frame, double z) {
   halfplane::State state = clip_state();
   const std::vector<Vertex> vertices = ring(6, 0.8, z);

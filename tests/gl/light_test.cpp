@@ -172,7 +172,7 @@ TEST_F(Lighting, ColorMaterialFollowsTheColor) {
   EXPECT_EQ(state.material[0].ambient, given);
   EXPECT_EQ(state.material[0].diffuse, given);
   EXPECT_EQ(state.material[1].diffuse, Material().diffuse);
-  // What follows the colour is not glMaterial's; the rest is.
+  // Material values that follow the colour are not set by glMaterial; the others are.
   material(context, GL_FRONT_AND_BACK, GL_DIFFUSE, vector({1, 1, 1, 1}));
   EXPECT_EQ(state.material[0].diffuse, given);
   EXPECT_EQ(state.material[1].diffuse, (Vec4{1, 1, 1, 1}));

@@ -142,7 +142,7 @@ TEST_F(GlTexture, EnvironmentsAreThoseOfTheTable) {
     for (const BaseFormat& base : kBases)
       for (const Vec4& constant : {Vec4{0, 0, 0, 0}, Vec4{0.2, 0.9, 0.5, 0}}) {
         if (mode == GL_DECAL && base.format != GL_RGB && base.format != GL_RGBA) continue;  // undefined
-        // What the model has not: see texture_upload.cpp.
+        // Modes that the model lacks: see texture_upload.cpp.
         if (mode == GL_ADD && base.format == GL_INTENSITY) continue;
         SCOPED_TRACE("mode " + std::to_string(mode) + " format " + std::to_string(base.format));
         upload(0, base.format, image(2, 2, kTexels));

@@ -99,7 +99,7 @@ class Trace : public testing::Test {
     std::ofstream(path_, std::ios::binary) << bytes;
     return path_;
   }
-  /// What reading `bytes` says; empty: nothing is wrong.
+  /// The error of reading `bytes`; empty: none.
   std::string fault(const std::string& bytes) {
     try {
       TraceFile file(write(bytes));

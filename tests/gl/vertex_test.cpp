@@ -202,7 +202,7 @@ struct Packed {
   std::array<float, 3> normal, position;
 };
 
-/// What feedback says of primitives that are issued in several ways.
+/// Feedback of primitives that are issued in several ways.
 struct Arrays : Vertices {
   std::vector<Packed> packed;
   std::vector<GLushort> indices;

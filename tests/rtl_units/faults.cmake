@@ -23,7 +23,7 @@ reciprocal_fault(reciprocal_restoring 0 [=[quotient_q[BITS-2:0], !trial[BITS+1]]
 reciprocal_fault(reciprocal_restoring 1 [=[{1'b0, ~mantissa_i, 1'b1}]=] [=[{1'b0, ~mantissa_i, 1'b0}]=])
 reciprocal_fault(reciprocal_restoring 2 [=[{2'b01, mantissa_q, 1'b1}]=] [=[{2'b01, mantissa_q, 1'b0}]=])
 
-# Of the row of subtractions: its comparison, its first remainder, a bit that the last clock leaves out.
+# The row of subtractions: its comparison, its first remainder, a bit that the last clock leaves out.
 reciprocal_fault(reciprocal_division 0 [=[bits_d[BITS-3:0], !trial[BITS+1]]=] [=[bits_d[BITS-3:0], !trial[BITS]]=])
 reciprocal_fault(reciprocal_division 1 [=[{1'b0, ~mantissa_i, 1'b1}]=] [=[{1'b0, ~mantissa_i, 1'b0}]=])
 reciprocal_fault(reciprocal_division 2 [=[{2'b01, mantissa, 1'b1}]=] [=[{2'b01, mantissa, 1'b0}]=])
@@ -48,7 +48,7 @@ texture_fault(texture_axis 2 [=[&placed[FRACTION:0]]=] [=[&placed[FRACTION:1]]=]
 texture_fault(texture_wrap 3 [=[is_mirrored && turn != '0]=] [=[1'b0]=])
 texture_fault(texture_wrap 4 [=[number_i[NUMBER_BITS-2:SIDE_BITS] != '0 || beyond != '0]=] [=[beyond != '0]=])
 # Cache: tag, line's place, a sample ahead of its line, a word's place, invalidation, a stale answer, a place that is still
-# read, two samples of one place, its last sample behind an invalidation.
+# read, two samples of one place, its last sample after an invalidation.
 texture_fault(texture_cache 5 [=[tag == t_address_q]=] [=[tag[9:0] == t_address_q[9:0]]=])
 texture_fault(texture_cache 6 [=[{line, offset[5:WORD]}]=] [=[{line[LINE-1:1], 1'b0, offset[5:WORD]}]=])
 texture_fault(texture_cache 7 [=[(!is_miss || has_come)]=] [=[1'b1]=])
@@ -109,7 +109,7 @@ texture_fault(texture_unit 51 [=[waits && waiting_token[2]]=] [=[waits && waitin
 texture_fault(texture_blend 52 [=[product[23:0]]=] [=[{product[23:12], 12'd0}]=])
 set(texture_levels_faults ${texture_faults})
 # Colours over w: rounding, both ends of the range, the binary point and the reach of one channel, another triangle's range, the
-# affine colour behind a texel, a quotient that stays, P beyond its bits, beyond what can be shifted.
+# affine colour after a texel, a quotient that stays, P beyond its bits, beyond the largest shift.
 texture_fault(colors_over_w 53 [=[WHOLE'(placed[POINT-1])]=] [=[WHOLE'(1'b0)]=])
 texture_fault(colors_over_w 54 [=[code_q < $signed(WHOLE'(least[n*8+:8]))]=] [=[1'b0]=])
 texture_fault(colors_over_w 55 [=[code_q > $signed(WHOLE'(greatest[n*8+:8]))]=] [=[1'b0]=])
@@ -137,7 +137,7 @@ texture_fault(texture_unit 71 [=[e_moves && e_last_q && e_ends_q]=] [=[e_moves &
 texture_fault(texture_unit 72 [=[e_lanes_q[i%LANES]]=] [=[1'b1]=])
 texture_fault(texture_lanes 73 [=[first[2] ? first[3] : second[3]]=] [=[first[3]]=])
 texture_fault(texture_unit 74 [=[waiting_mask[i*LANES+:LANES] & {LANES{group == GROUP'(i)}}]=] [=[{LANES{group == GROUP'(i)}}]=])
-# Two ways: the older of a set in the clock behind its line in front, which was newer, what lies in front in which way, a line
+# Two ways: the older way of a set one clock after its newer line, which way was newer, the newer line of each way, a line
 # in both, a line that is still to be read in the other way, the way of a texel.
 texture_fault(texture_tags 75 [=[same_place_q ? !recent_way_q : !newer]=] [=[!newer]=])
 texture_fault(texture_tags 76 [=[way[b] && !sweeps_q]=] [=[1'b0]=])

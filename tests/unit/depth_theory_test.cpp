@@ -65,7 +65,7 @@ TEST(DepthTheory, NineTenthsOfTheCodesServeTheFirstTenthOfTheDepth) {
   EXPECT_NEAR(theory.code(number("10")) / 65535.0, 0.909, 0.0005);
 }
 
-/// Of 10,001 depths from near to far, evenly spaced or evenly by their logarithm: neighbours that share a code.
+/// Neighbours that share a code among 10,001 depths from near to far, spaced evenly or evenly in their logarithm.
 int indistinguishable(const ExactDepth& theory, bool is_logarithmic) {
   const double near = theory.near().get_d(), far = theory.far().get_d();
   int same = 0;

@@ -204,7 +204,7 @@ TEST(GltfMorph, WeightsAtRestAreTheMeshsOrItsNodes) {
 
 TEST(GltfMorph, AnAnimationMovesEachWeight) {
   GltfBuilder builder = morphed();
-  builder.json["nodes"][0]["scale"] = {10, 10, 10};  // behind the targets
+  builder.json["nodes"][0]["scale"] = {10, 10, 10};  // after the targets
   animate(builder, 0, "weights", {0, 2}, builder.accessor(kF32, 1, {0, 1, 1, 0}));
   const Mesh mesh = mesh_at(builder, 0.5);
   expect_near(mesh.vertices[0].position, {0, 0, 2.5});

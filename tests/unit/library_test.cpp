@@ -92,7 +92,7 @@ TEST(Library, ValidateNamesWhatIsWrongAndWhere) {
   EXPECT_EQ(refusal([](Scene& s) { s.planes = {0.1, std::numeric_limits<double>::infinity()}; }), "");
 }
 
-/// Of every kind that a Target draws in: the fast path, other tiles, a mapping that is stored otherwise.
+/// Configurations of every kind that a Target draws in: the fast path, other tiles, a mapping that is stored otherwise.
 std::vector<Config> target_configs() {
   std::vector<Config> configs{preset("tiny"), preset("embedded"), preset("full")};
   set(configs.emplace_back(preset("embedded")), "tile.size", "16");

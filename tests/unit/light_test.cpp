@@ -131,7 +131,7 @@ TEST(Light, ColoursOfVerticesAreWithinAHundredthOfACodeOfRealArithmetic) {
     ASSERT_LT(worst, 0.01) << "case " << i;
   }
   RecordProperty("worst_lsb", std::to_string(worst));
-  EXPECT_GT(worst, 1.0 / 512);  // a code has 8 bits behind the point: the comparison sees its rounding
+  EXPECT_GT(worst, 1.0 / 512);  // a code has 8 fraction bits: the comparison sees its rounding
 }
 
 TEST(LightMustFail, AnotherShininessIsSeen) {

@@ -89,7 +89,7 @@ TEST(StencilHardware, StatesComeOutOfTheirTokensAsTheyWentIn) {
   }
 }
 
-/// Squares of `side` pixels at the origin, in halves, one a state, the first behind a whole clear of all three planes.
+/// Squares of `side` pixels at the origin, in halves, one a state, the first after a whole clear of all three planes.
 Scene squares(const std::vector<State>& states, double side = 8, int size = 16) {
   Scene scene;
   scene.name = "squares";

@@ -334,7 +334,7 @@ TEST(TexturedHardware, AConstantCostsATokenWhereItIsNeeded) {
   EXPECT_EQ(tokens(bordered_room("border border", "1 2 3 4")).first, clamped.first + 1);
 }
 
-// The same of levels and lines, whose parts may come behind any others.
+// The same for levels and lines, whose parts may follow any others.
 TEST(TexturedHardware, TokensBringLevelsAndLines) {
   std::mt19937_64 random(7);
   for (const Config& config : configurations()) {

@@ -47,7 +47,7 @@ TEST(Hiz, BoundOfATileFollowsTheDepthsInIt) {
   hiz.clear(5, 5, 0x1234);
   EXPECT_EQ(hiz.bound(3, 2), 0x12FFu);
   const auto visit = [&hiz, &config](const RetirePacket& retired) {
-    for (int n = 0; n < config.hiz_lag; ++n) {  // others lag behind it, elsewhere
+    for (int n = 0; n < config.hiz_lag; ++n) {  // other visits retire later, elsewhere
       hiz.begin_visit({DepthFunc::less, true, true});
       hiz.retire(n == 0 ? retired : RetirePacket{});
     }
@@ -90,7 +90,7 @@ TEST(Hiz, AVisitSeesTheUpdatesOfTheVisitsUpToItsOwnNumberLessTheLag) {
     }
     EXPECT_EQ(hiz.bound(1, 0), 0x100u);
     EXPECT_EQ(hiz.bound(2, 0), 0xFFFFu);
-    // While one that may raise a depth has not been seen, nothing is behind anything.
+    // Until the update of a visit that may raise a depth is seen, no tile is hidden.
     visit(3, DepthFunc::always, 0x300);
     for (int n = 1; n < config.hiz_lag; ++n) {
       EXPECT_FALSE(hiz.rejects(far, 1, 0)) << lag << ", " << n << " visits later";
@@ -166,7 +166,7 @@ TEST(TileCache, OfATileThatNobodyTouchesAFlushWritesTheColourOrNothing) {
       EXPECT_EQ(sink.requests[n].plane, n < 16 ? TilePlane::depth : TilePlane::color);
       EXPECT_EQ(sink.requests[n].stamp, n % 16);
     }
-    const std::uint64_t flags = ~std::uint64_t{1};  // of all tiles of the word but the first
+    const std::uint64_t flags = ~std::uint64_t{1};  // flags of all tiles of the word but the first
     EXPECT_EQ(sink.requests[32].plane, TilePlane::depth_flags);
     EXPECT_EQ(flag_word(sink.requests[32], derive_widths(tiles("16"))), flags);
     if (!resolves) {

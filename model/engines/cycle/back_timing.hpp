@@ -146,7 +146,7 @@ class BackTiming {
     });
   }
 
-  /// The same in a framebuffer of blocks: look_up(item) looks up the tags of the pixel, and sets the result of its
+  /// The same in a framebuffer of blocks: look_up(item) looks up the tags of the pixel, and sets the outcome of its
   /// test.
   template <class Step, class LookUp>
   Cycle take_block_pixels(Cycle offered, Step&& step, LookUp&& look_up) {

@@ -21,7 +21,7 @@ struct CycleOptions {
   TransferSink* sink = nullptr;               ///< sees every crossing; slows the model down. Must outlive the model
   std::optional<MemoryLayout> layout;         ///< addresses of the buffers in memory; default_layout() unless given
   MemorySettings textures;                    ///< of the texture unit's memory, if there is one; without its traffic
-  bool want_count = false, want_ids = false;  ///< fill Rendering::count (without tiles behind HiZ), ids
+  bool want_count = false, want_ids = false;  ///< fill Rendering::count (without tiles that HiZ skips), ids
   bool want_cost = false;                     ///< fill CycleRendering::cost
   bool want_misses = false;                   ///< fill CycleRendering::misses
 };
@@ -56,10 +56,10 @@ class CycleModel {
 struct CycleRun {
   Cycle cycles = 0;                 ///< to the last item that crossed any boundary, memory included
   std::uint64_t raster_cycles = 0;  ///< from the first primitive taken to the last write into the on-chip tiles
-  std::uint64_t tile_cycles = 0;    ///< of these, cycles in which the framebuffer moved tiles and served no access
+  std::uint64_t tile_cycles = 0;    ///< cycles among them in which the framebuffer moved tiles and served no access
   TimingTotals totals;
   std::array<StreamUse, kArrows> use{};  ///< of each elastic arrow
-  MemoryUse others;                      ///< what other masters got of the memory
+  MemoryUse others;                      ///< the memory traffic of other masters
 };
 
 struct CycleRendering {

@@ -1,4 +1,4 @@
-// What-if parameters: sizes and rules that are fixed in rtl_ref. The cycle model takes other values.
+// Parameters of what-if runs: sizes and rules that are fixed in rtl_ref. The cycle model takes other values.
 #pragma once
 
 #include <span>

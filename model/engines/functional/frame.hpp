@@ -105,7 +105,7 @@ struct Slice {
   const DrawContext* context = nullptr;  ///< of its first part; all parts have the same state
   SliceState state;
   std::vector<Part> parts;
-  std::size_t triangles = 0;                 ///< of all parts
+  std::size_t triangles = 0;                 ///< triangles of all parts
   bool is_lines = false;                     ///< the triangles are lines
   std::vector<AssembledPrimitive> outlines;  ///< or primitives not for lanes: points, polygon modes; then of one part
 

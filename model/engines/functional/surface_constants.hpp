@@ -14,7 +14,7 @@
 
 namespace halfplane::functional {
 
-/// Of binary32.
+/// Format of binary32.
 inline constexpr int kFloatFraction = 23, kFloatBias = 127;
 
 /// The surface of a record, through the stages. `place`: kAtCentre, or a sample of pixels.

@@ -23,7 +23,7 @@ constexpr std::array kOwn{kFineGrid, kGlassBehind, kFaint, kOpaqueGlass, kMasked
 
 /// The reasons for the pairs. objects, nodes and frustum: nearly all of `objects` lies outside, and the teapot inside.
 /// backface: a closed mesh, and triangles of which none faces away. zero_area and empty: triangles smaller than the
-/// snap grid and smaller than a pixel, and half-screen triangles. objects_hiz: whole objects behind a wall, and objects
+/// snap grid and smaller than a pixel, and half-screen triangles. objects_hiz: whole objects hidden by a wall, and objects
 /// drawn from front to back that mostly show. tiles_hiz: the same layers in either order. attributes: layers, and
 /// triangles that take no tile as a whole. tiles_outside: long diagonal triangles, whose boxes are mostly empty, and
 /// ones of about a pixel. trivially_accepted: large triangles, and ones that fill no tile. fragments_early_z: overlap

@@ -361,7 +361,7 @@ class AttributeComparison {
   std::vector<std::optional<EyeMapping>> eye_mappings_;
   std::optional<exact::TriangleOracle> oracle_;        // of the current triangle
   std::uint32_t oracle_item_ = 0;                      // its number
-  std::optional<exact::TriangleOracle> color_oracle_;  // of it, where the current pixel is shaded
+  std::optional<exact::TriangleOracle> color_oracle_;  // oracle of its colour where the current pixel is shaded
   std::optional<SurfaceOracle> surface_oracle_;        // likewise
   std::optional<int> shaded_at_;                       // that place
   ErrorSet depth_, color_, eye_;

@@ -63,7 +63,7 @@ void FragmentFrame::add(const TappedFragment& fragment) {
   const golden::Tested<double> tested{static_cast<double>(depth_encode_(fragment.plane[kDepthPlane].code)), alpha,
                                       shows_back(fragment, state, draw.topology), is_drawn_by_alpha};
   const golden::Fate fate = pixels_.apply(p, state, tested, {}, owner);
-  // Of several lines or points of one primitive that store the same value there, the last counts.
+  // Where several lines or points of one primitive store the same value, the last one counts.
   const bool is_another = !fate.written && fragment.kind != PrimitiveKind::triangle && pixels_.owners()[p] == owner &&
                           is_equal(fragment, shown_[p], state);
   if (fate.written || is_another) shown_[p] = fragment;

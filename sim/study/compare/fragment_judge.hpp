@@ -94,7 +94,7 @@ class FragmentJudge {
   std::uint64_t repeated_ = 0;                                  // samples
   std::uint64_t misplaced_ = 0;                                 // samples with a colour from a wrong place
   std::optional<std::uint32_t> item_;                           // number of the current triangle
-  std::vector<exact::TriangleOracle> oracles_;                  // of it: at the centre, at each of several samples
+  std::vector<exact::TriangleOracle> oracles_;                  // of the triangle at the centre, at each of several samples
   std::vector<SurfaceOracle> surfaces_;                         // likewise, if it has a surface
   std::vector<std::map<std::pair<int, int>, TileMask>> tiles_;  // by sample: by tile row, column
 };

@@ -48,7 +48,7 @@ class LayeredColors {
 
   /// Compares a stored colour with it.
   void judge(std::size_t pixel, std::uint32_t stored);
-  /// Of the judged pixels, by their layers.
+  /// Rows of the judged pixels, by number of layers.
   [[nodiscard]] std::vector<LayerRow> rows() const;
 
  private:

@@ -17,7 +17,7 @@ namespace halfplane {
 struct PerVertexRow {
   double area = 0;              ///< minimum, pixels; the maximum is twice that. 0: below one pixel
   std::uint64_t triangles = 0;  ///< visible ones
-  std::uint64_t pixels = 0;     ///< of these
+  std::uint64_t pixels = 0;     ///< pixels of these triangles
   double max = 0, rms = 0;      ///< colour lit at vertices less lit at fragments, red, green and blue, LSB of 8 bits
 };
 

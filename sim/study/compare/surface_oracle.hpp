@@ -107,7 +107,7 @@ struct TextureErrors {
   ErrorMoments footprints;         ///< the same in extents of a pixel on the texture
   double coordinate_of_bound = 0;  ///< the largest fraction of a triangle's bound used by a coordinate
   ErrorMoments level;              ///< model less real, levels
-  /// Of the texel's channels, LSB of 8 bits: they sum to `total`, the texel less the exact one.
+  /// Errors of the texel's channels, LSB of 8 bits: they sum to `total`, the texel less the exact one.
   PartStats part_coordinate, part_level, part_weights, part_rounding, total;
 
   /// Per pixel, rows from the top, NaN without a texture: `coordinate`, `footprints`, `level` as above; for a part its

@@ -47,7 +47,7 @@ struct DepthMeasurement {
   double eye_min = 0, eye_max = 0;
   ErrorStats total;                           ///< D - U, eye-space units
   ErrorMoments snap, interpolation, storage;  ///< S - U, H - S, D - H: they sum to the total
-  std::vector<DepthDecade> decades;           ///< those with fragments
+  std::vector<DepthDecade> decades;           ///< the decades with fragments
   double worst_share = 0;                     ///< of the predicted bound, over all fragments
   DepthOrder order;
   std::uint64_t stage_mismatches = 0;  ///< pixels whose stored code differs from the stages'

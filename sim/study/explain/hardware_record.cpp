@@ -205,7 +205,7 @@ class Recorder final : public EveryPacket<Recorder> {
   const HostPrimitive* host_ = nullptr;  ///< the current one
   bool is_wanted_ = false, is_tile_ = false;
   TileKey tile_;
-  std::vector<PacketId> shared_;  ///< of all pixels
+  std::vector<PacketId> shared_;  ///< packets that all pixels share
   std::vector<HardwareVisit> at_;
   std::vector<bool> awaits_write_;
 };

@@ -58,7 +58,7 @@ enum class Verdict : std::uint8_t { HALFPLANE_VERDICTS(HALFPLANE_NAME) };
 struct VerdictInfo {
   std::string_view name;
   Stage stage;      ///< that usually decides it
-  bool is_covered;  ///< as far as tested; a tile behind HiZ may contain uncovered pixels too
+  bool is_covered;  ///< as far as tested; a tile hidden by HiZ may contain uncovered pixels too
   std::string_view why;
 };
 
@@ -286,7 +286,7 @@ struct Explanation {
   std::vector<PixelHistory> pixels;         ///< in the requested order, each sample separately
   int samples = 1;                          ///< of a pixel
   FillRule fill_rule = FillRule::top_left;  ///< of the specification
-  PacketStore packets;                      ///< those named in a history
+  PacketStore packets;                      ///< packets named in a history
   std::uint64_t primitives = 0;             ///< of the scene
   std::string no_hardware;                  ///< why the hardware cannot draw the scene; empty: it can
   std::uint64_t checks = 0;                 ///< compared figures

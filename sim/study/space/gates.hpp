@@ -1,4 +1,4 @@
-// What a configuration of the RTL costs in cells, by Yosys. rtl_ref/area/gates.py does the work and keeps what it found,
+// Cells of a configuration of the RTL, by Yosys. rtl_ref/area/gates.py does the work and keeps what it found,
 // module by module: it is in the folder of the RTL, and ./dev area imports it.
 #pragma once
 

@@ -252,7 +252,7 @@ void light(Unit& unit) {
   add_triangles(unit, builder, 3);
   Scene& scene = builder.scene;
   const double ratio = std::exp2(random.between(0, 10)), scale = std::exp2(random.between(-20, 20));
-  // Of a flat triangle, of a curved one, or all at random; and where highlights are.
+  // Normals of a flat triangle, of a curved one, or random ones; and some where highlights are.
   const double bend = std::exp2(random.between(-8, 1));
   const auto middle = random.coin() ? state.light_half : direction();
   for (Vertex& vertex : scene.vertices) {

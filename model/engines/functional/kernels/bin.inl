@@ -270,7 +270,7 @@ struct Bin {
   SampleMemory& sample_memory;  ///< not of_thread() in a loop: that is an opaque call for the compiler
   SliceState state;
   const FragmentOps* ops = nullptr;  ///< of the slice
-  // Of the current primitive, once its alpha has been tested:
+  // State of the current primitive after its alpha test:
   bool has_operations = false;      ///< operations that are more than plain: operations.inl
   bool lays_over = false;           ///< the only operation is blending by alpha
   bool tests_alpha = false;         ///< colours are not known to pass

@@ -82,7 +82,7 @@ struct DepthLanes {
   HALFPLANE_INLINE U64 clamped(const S64& distance) const { return as<U64>(min(max(distance, low), high) + middle); }
 };
 
-/// Of the three edges; the fourth lane is unused.
+/// Words of the three edges; the fourth lane is unused.
 using EdgeWords __attribute__((vector_size(16))) = std::int32_t;
 HALFPLANE_INLINE EdgeWords load_edges(const std::array<std::int32_t, 4>& from) {
   EdgeWords words;
