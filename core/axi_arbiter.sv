@@ -2,10 +2,10 @@
 //
 // Clients: 0 scan-out, which must not wait; then frame, textures, command ring. None of them starves for good: scan-out
 // asks at the rate of the display, and frame and textures stop asking when the pipeline has no more commands.
-// Arrays are flat, client 0 lowest. Data, last and error are those of all clients; valid tells whose they are.
+// Arrays are flat, client 0 lowest. Data, last and error are shared by all clients; valid names the client.
 //
 // An address on offer stays on offer. Every burst has ID 0, so answers come in the order of the bursts; a queue has the
-// client of each. A client that is not ready holds back all others: each should ask only for what it has room for.
+// client of each. A client that is not ready holds back all others: each should request only items that it has room for.
 module axi_arbiter #(
     parameter int CLIENTS = 2,     // 2 at least
     parameter int PORT_BITS = 64,  // data of a beat

@@ -13,10 +13,10 @@
 // Order. AXI does not order a read after a write that has no answer, and raster_top reads blocks that it has just
 // evicted.
 // So every write beat notes the number of its burst in a table, in the bucket of its granule's hash, and a read waits
-// while its bucket's number is among those without B. Two granules may share a bucket: the read waits in vain, at most
-// for B. A write needs not wait for earlier reads: raster_top writes a place only after it has used what it read there.
+// while its bucket's number is among the numbers without B. Two granules may share a bucket: the read waits in vain, at most
+// for B. A write needs not wait for earlier reads: raster_top writes a place only after it has used the data read there.
 //
-// Reset: rst_ni is that of the bus: everything is forgotten. forget_i drops what raster_top has asked for when
+// Reset: rst_ni is that of the bus: everything is forgotten. forget_i drops the requests of raster_top when
 // raster_top alone begins anew (reset_order): no beat is taken until memory has answered everything, and these answers
 // are dropped.
 module axi_frame_port #(
@@ -217,7 +217,7 @@ module axi_frame_port #(
   assign asks          = frame_arvalid && frame_arready;
 
   // The table. After reset it is filled once, so that no bucket is undefined: as many cycles as it has buckets. A beat
-  // is a read or a write, so no bucket is read while it is written; later writes do not change what a read waits for.
+  // is a read or a write, so no bucket is read while it is written; later writes do not change the data of a waiting read.
   logic [BUCKETS:0]  fill_q;
   logic [NUMBER-1:0] noted;  // in the bucket of the read
   logic [NUMBER-1:0] age;    // of that burst, 0: the oldest without B

@@ -1,4 +1,4 @@
-// Checks both sides of an AXI4 port of the core: what the core sends, and what the memory answers. Simulation only:
+// Checks both sides of an AXI4 port of the core: the core's requests, and the memory's answers. Simulation only:
 //
 //   bind halfplane_core axi_protocol_checker #(.PORT_BITS(64)) u_axi_protocol_checker (.*);
 //

@@ -5,7 +5,7 @@
 //
 // Reset: as in axi_frame_port.sv. After forget_i no request is taken until memory has answered everything.
 module axi_texture_port #(
-    // Bits of the count of beats without an answer: those of 2 to the power of it, less 64
+    // Bits of the count of beats without an answer: at most 2 to that power, less 64
     parameter int UNDER_WAY = 10
 ) (
     input logic clk_i,

@@ -28,7 +28,7 @@ module burst_fifo #(
   localparam int INDEX = $clog2(DEPTH);
 
   logic [WIDTH-1:0] memory_q[0:DEPTH-1];
-  // the beat on offer, the one after the last whole burst, the next to enter
+  // numbers of the beat on offer, of the beat after the last whole burst, of the next beat to enter
   logic [INDEX:0]   head_q, whole_q, tail_q;
   logic             enters, leaves;
 

@@ -1,6 +1,6 @@
 // Command decoder: words of the command stream to the packets of raster_top. docs/core.md has the stream bit by bit.
 //
-// In: 32-bit words, valid/ready. Out: primitives and lines, the layout of buffers, fences and what scan-out is to show.
+// In: 32-bit words, valid/ready. Out: primitives and lines, the layout of buffers, fences and the picture for scan-out.
 // The words of a primitive go into `payload_q`, each to its place, from which packet and line are read as they are: a
 // flip-flop with an enable for each bit and no multiplexer. A primitive is on offer in the cycle after its last word;
 // the next header is taken in the cycle in which it leaves, so a triangle of n words takes n cycles.
@@ -82,7 +82,7 @@ module command_decoder #(
   localparam int PX = raster_pkg::PIXEL_X_BITS;
   localparam int PY = raster_pkg::PIXEL_Y_BITS;
 
-  // ---------------------------------------------------------------------------------------------- what a header says
+  // ---------------------------------------------------------------------------------------------- fields of a header
   logic [7:0] opcode;
   logic [2:0] kind;
   logic       is_set, is_fence, is_present, is_wait, is_stop, draws, is_triangle, is_clear, is_flush, is_line, is_state;
@@ -129,7 +129,7 @@ module command_decoder #(
   assign takes            = word_valid_i && word_ready_o;
   assign takes_header     = takes && state_q == HEADER;
 
-  // A fence, and what scan-out is to show: they wait for so many flushes.
+  // A fence and scan-out's next picture wait for this many flushes.
   logic       fence_waits_q, present_waits_q;
   logic [1:0] fence_left_q, present_left_q;
   assign fence_valid_o   = fence_waits_q && fence_left_q == '0;
@@ -233,7 +233,7 @@ module command_decoder #(
       logic writes, clears;
       assign writes = takes && state_q == PAYLOAD &&
                       (index_q == INDEX'(w) || (is_broadcast && FIRST != w && index_q == INDEX'(FIRST)));
-      // Boxes have vertices at 0, and what is over w is 0 unless it comes.
+      // Boxes have vertices at 0, and planes over w are 0 unless the words give them.
       assign clears = takes_header && draws && (IN_SLOT ? !is_triangle && FIRST == 0 : !is_triangle || !word_i[4]);
       always_ff @(posedge clk_i) begin
         if (clears) payload_q[32*w+:32] <= '0;

@@ -15,7 +15,7 @@ module command_reader #(
     parameter int PORT = raster_pkg::MEMORY_PORT_BITS  // data of a beat
 ) (
     input logic clk_i,
-    input logic rst_ni,   // synchronised: memory forgets what it owes
+    input logic rst_ni,   // synchronised: memory drops outstanding answers
     input logic clear_i,
 
     // Registers
@@ -58,7 +58,7 @@ module command_reader #(
   logic        asks, answers, ends_entry, takes, pops;
   logic [3:0]  fetched;           // whole entries of the burst on offer
 
-  // --------------------------------------------------------------------------------------------------- what to fetch
+  // --------------------------------------------------------------------------------------------------- addresses of fetches
   logic [19:WORD] whole;  // entries before the tail
   logic [4:0]     used;   // places of the queue, taken or promised
   logic [3:0]     to_end, length;

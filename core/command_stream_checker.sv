@@ -1,10 +1,10 @@
-// Checks the stream of command words, and what comes of it. Simulation only, bound from outside:
+// Checks the stream of command words, and the decoder's outputs. Simulation only, bound from outside:
 //
 //   bind command_decoder command_stream_checker u_command_stream_checker (.*);
 //
-// A broken rule is an assertion that fails, with a message: what is wrong, at which word, what to send instead. Words
-// are counted from reset as WORDS counts them, the first is 1. What the decoder itself refuses (docs/core.md, errors)
-// is said here in words; the rest are rules that hardware does not check. Verilator wants --assert. CHECKS_ERRORS = 0:
+// A broken rule is an assertion that fails, with a message: the error, its word, the word to send instead. Words
+// are counted from reset as WORDS counts them, the first is 1. Errors that the decoder itself reports (docs/core.md, errors)
+// are said here in words; the rest are rules that hardware does not check. Verilator wants --assert. CHECKS_ERRORS = 0:
 // for test benches that send wrong words.
 module command_stream_checker #(
     parameter bit CHECKS_ERRORS = 1,
@@ -162,7 +162,7 @@ module command_stream_checker #(
           $error("word %0d presents a picture of which %0d primitives may not be in memory; FLUSH first",
                  words_o + 1, drawn_q);
     end
-    // Bits above a field are 0: what they may say one day is not known today.
+    // Bits above a field are 0: reserved.
     if (rst_ni && takes && !is_header) begin
       case (header_q[31:24])
         core_pkg::COMMAND_RECTANGLE, core_pkg::COMMAND_POINT, core_pkg::COMMAND_CLEAR:

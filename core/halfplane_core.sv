@@ -534,7 +534,7 @@ module halfplane_core #(
   // -------------------------------------------------------------------------------------------------------- scan-out
   generate
     if (SCAN_OUT) begin : gen_scan_out
-      // A frame that is in memory becomes the one to be shown at once; scan-out samples it at the next vertical blank.
+      // A frame that is in memory is the next shown frame at once; scan-out samples it at the next vertical blank.
       logic [31:0] base_q, flags_base_q;
       logic        waits_q, is_off;
       assign present_ready = waits_q && (vblank || is_off);

@@ -1,11 +1,11 @@
 // The order of resets inside the core, for a memory that may still owe answers.
 //
 // Two resets, for two purposes:
-//  - rst_ni, through reset_sync: that of the bus. Memory forgets what it owes, so everything here begins anew at once.
-//  - restart_i, from a register: the core alone begins anew; the bus, and whoever else uses it, goes on.
+//  - rst_ni, through reset_sync: that of the bus. Memory drops outstanding answers, so everything here begins anew at once.
+//  - restart_i, from a register: the core alone begins anew; the bus and its other masters go on.
 //
 // restart_i takes these steps, each at an edge of the clock, so that raster_top may use its resets as data:
-//  1. raster_no is low for two cycles: raster_top forgets what it draws. core_no, of everything that feeds it, is low
+//  1. raster_no is low for two cycles: raster_top drops its work. core_no, of all modules upstream of it, is low
 // to
 //     the end.
 //  2. raster_top ends its burst with beats that write nothing, and memory answers everything (idle_i).

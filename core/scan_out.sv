@@ -365,7 +365,7 @@ module scan_out #(
       .data_i         (written_word)
   );
 
-  // Flags of cleared blocks and of blocks with one colour a pixel: those of a beat; of cleared ones, too, of both
+  // Flags of cleared blocks and of blocks with one colour a pixel: one beat; of cleared blocks, too, of both
   // bands.
   logic [UNIT_BLOCKS-1:0] shown_cleared;
   localparam int PLACE = (FLAG_TILES * UNITS < 2) ? 1 : $clog2(FLAG_TILES * UNITS);

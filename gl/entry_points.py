@@ -40,7 +40,7 @@ PARAMS = ["Light", "Material", "LightModel", "Fog", "TexParameter", "TexEnv", "T
 # With results by Values.
 GETS = ["Light", "Material", "TexEnv", "TexGen", "TexParameter", "TexLevelParameter", "Map", "PixelMap"]
 
-# Commands that no display list takes, of those that are not void and do not begin with gen_, delete_ or get_.
+# Commands outside display lists that return a value and do not begin with gen_, delete_ or get_.
 AT_ONCE = re.compile(
     r"(\w+_pointer|interleaved_arrays|client_\w+|\w+_client_attrib|draw_(arrays|elements|range_elements)|multi_draw_\w+"
     r"|array_element|bind_buffer|buffer_(sub_)?data|begin_query|end_query|finish|flush|read_pixels|pixel_store|new_list"
@@ -100,7 +100,7 @@ for rule in ("Map1", "Map2", "PixelMap"):
 for rule in ("Boolean", "Integer", "Float", "Double"):
     BODIES[f"Get{rule}v"] = "outside_begin([&](Context& c) { store(get(c, $1), $2); })"
 
-# Names of extensions that gl.xml gives no alias: those of the name without EXT, and arrays with a count that is not used.
+# Names of extensions that gl.xml gives no alias: the name without EXT, and arrays with a count that is not used.
 SAME_WITHOUT_EXT = ["glGenTexturesEXT", "glDeleteTexturesEXT", "glIsTextureEXT", "glAreTexturesResidentEXT"]
 COUNTED = [f"gl{array}PointerEXT" for array in ("Vertex", "Normal", "Color", "Index", "TexCoord", "EdgeFlag")]
 NOTHING = ["glLockArraysEXT", "glUnlockArraysEXT"]

@@ -1,4 +1,4 @@
-// The system with a clock, a reset and a display: every picture that differs from the one before is written to picture_N.ppm.
+// The system with a clock, a reset and a display: every picture that differs from the previous one is written to picture_N.ppm.
 // A picture of two frames (torn) would be one of them. +pictures=N: ends after so many; +cycles=N: and after these in any case.
 `timescale 1ns / 1ps
 module testbench;

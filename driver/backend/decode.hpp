@@ -27,7 +27,7 @@ struct Presented {
 struct RefusedWord : InputError {
   RefusedWord(std::uint32_t error, std::uint32_t words);
   std::uint32_t error;  ///< as STATUS.error has it: HALFPLANE_ERROR_*
-  std::uint32_t words;  ///< as WORDS has it: those taken, of which the wrong one is the last
+  std::uint32_t words;  ///< as in WORDS: words taken, of which the wrong word is the last
 };
 
 /// Reads a stream as core/command_decoder.sv does. Throws

@@ -270,7 +270,7 @@ void generate(Context& context, std::map<GLuint, Object>& objects, GLsizei n, GL
   }
 }
 
-/// The binding of a target; null and GL_INVALID_ENUM for what is no target.
+/// The binding of a target; null and GL_INVALID_ENUM for an unknown target.
 GLuint* binding_of(Context& context, GLenum target) {
   if (target == GL_ARRAY_BUFFER) return &context.client.array_buffer;
   if (target == GL_ELEMENT_ARRAY_BUFFER) return &context.client.element_buffer;

@@ -71,7 +71,7 @@ void pop_attrib(Context& context) {
     if ((saved.mask & group.bit) != 0) group.copy(context.state, saved.state);
   if ((saved.mask & GL_ENABLE_BIT) != 0) copy_enables(context.state, saved.state);
   if ((saved.mask & GL_COLOR_BUFFER_BIT) != 0) follow_draw_buffer(context);
-  track_color(context);  // current colour, material and what follows it may not belong together any more
+  track_color(context);  // current colour and the material that follows it may differ now
   if ((saved.mask & GL_TEXTURE_BIT) == 0) return;
   auto parameters = saved.textures.begin();
   const auto bound = saved.state.texture.unit;

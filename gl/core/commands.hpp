@@ -1,6 +1,6 @@
 // Every command of OpenGL 1.5, once for all its variants: coordinates are doubles, colours are doubles with 1 as the largest
 // integer, arrays of a known length are arrays. Entry points (entry_points.py) convert to these. Each takes the context that
-// it works on and reports errors by Context::fail(), as the specification has them. "List": what goes into display lists;
+// it works on and reports errors by Context::fail(), as the specification has them. "List": commands of display lists;
 // the others are carried out at once (OpenGL 1.5, 5.4).
 #pragma once
 
@@ -20,7 +20,7 @@ struct Params {
   bool is_integer = false, is_vector = false;
 };
 [[nodiscard]] Vec4 color_of(const Params& params);  // light.cpp, as param_count()
-/// Values that `pname` takes in the v variants of light, material, fog, ...: 1, 3 or 4; 1 for what is none.
+/// Values that `pname` takes in the v variants of light, material, fog, ...: 1, 3 or 4; 1 for unknown names.
 [[nodiscard]] int param_count(GLenum pname);
 
 // Vertices and attributes: list, allowed between glBegin and glEnd (vertex.cpp).
@@ -168,7 +168,7 @@ void accum(Context&, GLenum op, double value);
 void finish(Context&);
 void flush(Context&);
 
-// Pixels: list but for read_pixels and pixel_store (pixels.cpp). An Image is what unpack() gave when the command was issued.
+// Pixels: list but for read_pixels and pixel_store (pixels.cpp). An Image is unpack()'s result when the command was issued.
 void draw_pixels(Context&, std::shared_ptr<const Image> image);
 void bitmap(Context&, const std::shared_ptr<const Bitmap>& bitmap, double x_origin, double y_origin, double x_move,
             double y_move);
@@ -238,8 +238,8 @@ GLint set_render_mode(Context&, GLenum mode);
 void select_buffer(Context&, GLsizei size, GLuint* buffer);
 void feedback_buffer(Context&, GLsizei size, GLenum type, GLfloat* buffer);
 
-// Queries of state: not list (get.cpp, a table; texture.cpp, light.cpp and eval.cpp for what is theirs). Values come as
-// doubles with what they are, and the entry point converts them to the type asked for (OpenGL 1.5, 6.1.2).
+// Queries of state: not list (get.cpp, a table; texture.cpp, light.cpp and eval.cpp for their own state). Values come as
+// doubles with their kind, and the entry point converts them to the type asked for (OpenGL 1.5, 6.1.2).
 enum class ValueKind { boolean, integer, real, color };  ///< color: also normals and depths, 1 is the largest integer
 struct Values {
   ValueKind kind = ValueKind::real;

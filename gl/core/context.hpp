@@ -1,4 +1,4 @@
-// A context: the state of OpenGL 1.5, what is shared with others, and where it draws. Commands are functions on it
+// A context: the state of OpenGL 1.5, objects shared with other contexts, and its drawable. Commands are functions on it
 // (commands.hpp); entry points are generated from gl.xml (entry_points.py).
 #pragma once
 
@@ -25,7 +25,7 @@ struct Drawable {
 
   /// Shows the picture of `frame`.
   virtual void show() {}
-  /// Ends the frame and shows it; called by glFlush and glFinish where what is drawn is in front.
+  /// Ends the frame and shows it; called by glFlush and glFinish where the drawn buffer is the front one.
   virtual void present() {}
   /// Ends the frame of the back buffer and copies it to the front one.
   void swap();
@@ -44,7 +44,7 @@ struct Drawable {
   bool single_buffered = false;
 
  private:
-  std::unique_ptr<Framebuffer> other_;  ///< its colours are those of the buffer that `frame` does not draw to
+  std::unique_ptr<Framebuffer> other_;  ///< colours of the buffer that `frame` does not draw to
   bool draws_to_front_ = false;
 };
 
@@ -101,7 +101,7 @@ struct Context {
   std::vector<ShadedVertex> vertices;
   [[nodiscard]] bool inside_begin() const { return primitive != kNoPrimitive; }
 
-  /// Raised by every command that is not a vertex or an attribute of one, so that what follows from state is computed once.
+  /// Raised by every command that is not a vertex or an attribute of one, so that values derived from state are computed once.
   std::uint64_t revision = 1;
   std::unique_ptr<ShadingConstants, ShadingConstantsDeleter> shading;  ///< shade.cpp
 

@@ -34,7 +34,7 @@ void draw_tex(Context& context, double x, double y, double z, double width, doub
     corners[i] = vertex;
   }
 
-  // In a viewport of the whole window, without what polygons have and this has not.
+  // In a viewport of the whole window, without the states of polygons that do not apply here.
   context.state.viewport = {0, 0, frame.width(), frame.height(), 0, 1};
   context.state.polygon = {};
   context.state.transform.clip_enabled = {};

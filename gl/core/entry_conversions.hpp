@@ -155,7 +155,7 @@ void store_clip_plane(Context& context, GLenum plane, T* equation) {
     *equation++ = static_cast<T>(std::is_integral_v<T> ? std::clamp(part * 65536, -2147483648.0, 2147483647.0) : part);
 }
 
-// Commands with arrays, and what has no simple row in entry_points.py (entry_conversions.cpp). Each is called at any time.
+// Commands with arrays, and others without a simple row in entry_points.py (entry_conversions.cpp). Each is called at any time.
 void enter_draw_pixels(Context& context, GLsizei width, GLsizei height, GLenum format, GLenum type, const void* pixels);
 void enter_bitmap(Context& context, GLsizei width, GLsizei height, double x_origin, double y_origin, double x_move,
                   double y_move, const GLubyte* bits);

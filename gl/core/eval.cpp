@@ -52,7 +52,7 @@ const EvaluatorMap& map_of(const Context& context, GLenum target) {
   return kInitial[target - (is_map2(target) ? GL_MAP2_COLOR_4 : GL_MAP1_COLOR_4)];
 }
 
-/// With what a map does not have as vertices and texture coordinates have it: 0 0 0 1.
+/// Coordinates that a map lacks are as for vertices and texture coordinates: 0 0 0 1.
 Point evaluate(const EvaluatorMap& map, double u, double v) {
   const auto& [u1, u2, v1, v2] = map.range;
   const Basis along_u(map.order[0], (u - u1) / (u2 - u1)), along_v(map.order[1], (v - v1) / (v2 - v1));

@@ -56,7 +56,7 @@ void feed_vertex(Context& context, const Vec4& window, const Vec4& color, const 
     if (type.has_texture) feed(context, c);
 }
 
-/// Whether names are kept, with the record of a hit under those before the change written.
+/// Whether names are kept, after writing the record of a hit under the names before the change.
 bool changes_names(Context& context, bool is_allowed, GLenum error) {
   if (context.render_mode != GL_SELECT) return false;
   if (!is_allowed) {

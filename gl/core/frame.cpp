@@ -40,7 +40,7 @@ Topology list_of(PrimitiveType type) {
 
 bool is_list(Topology topology) { return list_of(primitive_type(topology)) == topology; }
 
-/// Draws of one kind may be in one scene: the engine is fast for those that it has fast paths for, all or none.
+/// Draws of one kind may be in one scene: the engine takes its fast path for all of them or for none.
 int kind_of(const halfplane::State& state) {
   if (!has_surface(state)) return 0;
   return state.stencil ? 2 : state.space == Space::window ? 1 : 0;
@@ -202,7 +202,7 @@ void Frame::Memory::draw(const halfplane::State& state, Topology topology, std::
   add(draw);
 }
 
-/// Goes on with the draw before where that is alike.
+/// Extends the previous draw where its state is equal.
 void Frame::Memory::add(Draw draw) {
   if (draw.count == 0) return;
   Draw* before = scene.commands.size() > drawn.commands ? std::get_if<Draw>(&scene.commands.back()) : nullptr;
@@ -218,7 +218,7 @@ void Frame::Memory::add(Draw draw) {
   before->count += draw.count;
 }
 
-/// Whether the engine takes a primitive of these vertices. What would not be seen it need not take.
+/// Whether the engine takes a primitive of these vertices. Invisible primitives may be left out.
 bool Frame::Memory::can_draw(const halfplane::State& state, std::span<const std::uint32_t> primitive) const {
   double largest = 0, nearest = -std::numeric_limits<double>::infinity();
   int left = 0, right = 0, above = 0, below = 0;
@@ -257,7 +257,7 @@ bool Frame::Memory::can_draw(const halfplane::State& state, std::span<const std:
   return is_inside;
 }
 
-/// The draw as a list of its primitives, or of those that can_draw(), at the end of the scene's indices. In place of the
+/// The draw as a list of its primitives, or of the ones that can_draw(), at the end of the scene's indices. In place of the
 /// draw where it is the last one.
 Draw Frame::Memory::as_list(const Draw& draw, bool only_good) {
   const halfplane::State& state = scene.states[draw.state];
@@ -446,7 +446,7 @@ void Frame::Memory::flush() {
   }
 }
 
-/// Draws the frame again without what the engine refuses.
+/// Draws the frame again without the draws that the engine refuses.
 void Frame::Memory::recover() {
   const std::size_t before = drawn.commands;
   std::vector<Command> kept(scene.commands.begin(), scene.commands.begin() + static_cast<std::ptrdiff_t>(before));
@@ -474,7 +474,7 @@ void Frame::Memory::recover() {
   }
 }
 
-/// Halves it until what is refused is left alone.
+/// Halves the list until the refused draws are isolated.
 void Frame::Memory::keep_good(const Draw& draw, std::vector<Command>& kept) {
   const std::string fault = fault_of(draw);
   if (fault.empty()) {

@@ -1,4 +1,4 @@
-// A frame of a program as a scene of the model: what is drawn is collected, and drawn when the program looks at it or swaps.
+// A frame of a program as a scene of the model: draws are collected, and rendered when the program reads pixels or swaps.
 // So that a saved frame is a capture, and any engine can draw it again.
 #pragma once
 
@@ -49,7 +49,7 @@ class Frame {
   [[nodiscard]] int width() const;
   [[nodiscard]] int height() const;
   [[nodiscard]] const Options& options() const;
-  /// Another size: what was drawn is lost. Beyond the largest target of the configuration: held to that, and said.
+  /// Another size: the picture is lost. Beyond the largest target of the configuration: held to that, and said.
   void resize(int width, int height);
 
   /// Clears inside the scissor of `state`, all channels.
@@ -57,7 +57,7 @@ class Frame {
   /// `indices` count within `vertices`.
   void draw(const halfplane::State& state, Topology topology, std::span<const Vertex> vertices,
             std::span<const std::uint32_t> indices);
-  /// The number, for State::texture, of the texture that was made for `key` (TextureObject::revision and what else makes it
+  /// The number, for State::texture, of the texture that was made for `key` (TextureObject::revision and all else that makes it
   /// another one); made once and kept over frames while it is used.
   [[nodiscard]] std::uint32_t texture(std::uint64_t key, const std::function<halfplane::Texture()>& make);
 
@@ -66,12 +66,12 @@ class Frame {
   /// Takes the colours of another buffer of this size for its own; depths and stencil values stay. A capture of the frame
   /// begins here.
   void exchange_colors(Framebuffer& other);
-  /// Samples that passed the depth test since the program began, after drawing what waits: for occlusion queries.
+  /// Samples that passed the depth test since the program began, after rendering the waiting draws: for occlusion queries.
   [[nodiscard]] std::uint64_t samples_passed();
-  /// Ends the frame: draws what waits, then saves and measures what the options ask for.
+  /// Ends the frame: renders the waiting draws, then saves and measures as the options ask.
   void end();
 
-  /// Says once for each `what` that this configuration does not have it, and how it is drawn instead; ends the program
+  /// Reports once for each `what` that this configuration does not have it, and how it is drawn instead; ends the program
   /// where the options say stop.
   void missing(std::string_view what, std::string_view instead);
 
@@ -79,7 +79,7 @@ class Frame {
   /// it is; does nothing without the option.
   void draw_hud(std::span<std::uint32_t> xrgb, int width, int height, int pitch_pixels) const;
 
-  /// Seconds spent in the engine since the program began, beside those in the driver.
+  /// Seconds spent in the engine since the program began, beside the seconds in the driver.
   [[nodiscard]] double raster_seconds() const;
 
  private:

@@ -171,7 +171,7 @@ Scene Frame::Memory::whole(bool restores) const {
   return whole;
 }
 
-/// The picture that the frame goes on with, but for what it clears: colours as rectangles with a texture, depths and stencil
+/// The picture that the frame goes on with, but for cleared buffers: colours as rectangles with a texture, depths and stencil
 /// values as points.
 void Frame::Memory::restore(Scene& whole) const {
   const std::uint32_t far = DepthEncode(config, {}).of_window(1.0);

@@ -47,7 +47,7 @@ struct Frame::Memory {
             std::span<const std::uint32_t> indices);
   [[nodiscard]] std::uint32_t texture(std::uint64_t key, const std::function<halfplane::Texture()>& make);
 
-  /// Draws what waits.
+  /// Renders the waiting draws.
   void flush();
   void end();
 
@@ -62,7 +62,7 @@ struct Frame::Memory {
   Scene scene;
   std::unordered_map<halfplane::State, std::uint32_t, StateHash> states;  ///< of `scene`
   std::vector<std::uint8_t> checked, refused;                             ///< by state: primitive types, a bit each
-  std::uint32_t last_state = 0;                                           ///< the one that was asked for last
+  std::uint32_t last_state = 0;                                           ///< the state that was asked for last
   int kind = -1;  ///< of the draws that wait, see kind_of(); -1: none does
 
   /// How much of the scene has been drawn.
@@ -74,7 +74,7 @@ struct Frame::Memory {
 
   Framebuffer base;        ///< the picture that the frame continues, where `goes_on`
   bool goes_on = false;    ///< the frame looks at some of the picture before it
-  bool has_begun = false;  ///< some of it has been drawn: what follows is known
+  bool has_begun = false;  ///< some of it has been drawn: goes_on is known
   struct Cleared {
     bool color = false, depth = false, stencil = false;
   };

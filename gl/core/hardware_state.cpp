@@ -208,11 +208,11 @@ static_assert(static_cast<int>(LogicOp::copy) == GL_COPY - GL_CLEAR &&
               static_cast<int>(LogicOp::invert) == GL_INVERT - GL_CLEAR &&
               static_cast<int>(LogicOp::set) == GL_SET - GL_CLEAR);
 
-/// A logic operation on a channel whose bits are all `is_one` as one on what is stored: bit 0 is the result of stored ones,
+/// A logic operation on a channel whose bits are all `is_one` as one on stored bits: bit 0 is the result of stored ones,
 /// bit 1 that of stored zeros.
 unsigned stored_operation(unsigned op, bool is_one) { return (is_one ? op : op >> 2) & 3; }
 
-/// A logic operation on any colours: the draw replaces what is stored and marks its pixels by an alpha of 0, the host puts
+/// A logic operation on any colours: the draw replaces the stored colour and marks its pixels by an alpha of 0, the host puts
 /// both together. Where a draw comes to a pixel more than once, the last time counts.
 void draw_through_host(Context& context, halfplane::State state, Topology topology, std::span<const Vertex> vertices,
                        std::span<const std::uint32_t> indices) {

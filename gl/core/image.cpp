@@ -102,7 +102,7 @@ float decoded(std::uint32_t raw, const PixelType& type, bool is_index) {
   if (type.kind == TypeKind::real) return std::bit_cast<float>(raw);
   const int bits = 8 * type.bytes;
   const double value = type.kind == TypeKind::whole ? double{1} * raw : extended(raw, bits);
-  // A float holds 24 bits: of larger indices it gets the low ones, which are those that count.
+  // A float holds 24 bits: of larger indices it gets the low bits, which decide.
   constexpr std::uint32_t kHeld = 1U << 24;
   if (is_index) return static_cast<float>(std::abs(value) < kHeld ? value : raw & (kHeld - 1));
   return static_cast<float>((type.kind == TypeKind::whole ? value : 2 * value + 1) / largest(bits));

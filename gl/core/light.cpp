@@ -1,4 +1,4 @@
-// Lights, materials and fog as state (OpenGL 1.5, 2.14 and 3.10). What they do to a vertex: shade.cpp.
+// Lights, materials and fog as state (OpenGL 1.5, 2.14 and 3.10). Their effect on a vertex: shade.cpp.
 #include <limits>
 #include <span>
 
@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kNoBound = std::numeric_limits<double>::max();
 
-/// A parameter that is numbers: where it is, and what it may be.
+/// A parameter that is numbers: its place and its legal values.
 template <class Object>
 struct Parameter {
   GLenum pname;
@@ -94,7 +94,7 @@ GLenum enum_of(const Params& params) {
   return value >= 0 && value <= 0xffff ? static_cast<GLenum>(value) : 0;
 }
 
-/// Front and back, of which `face` is one or both; false and GL_INVALID_ENUM for what is no face.
+/// Front and back, of which `face` is one or both; false and GL_INVALID_ENUM for an unknown face.
 bool faces_of(Context& context, GLenum face, std::array<bool, 2>& faces) {
   faces = {face != GL_BACK, face != GL_FRONT};
   if (face == GL_FRONT || face == GL_BACK || face == GL_FRONT_AND_BACK) return true;
@@ -102,7 +102,7 @@ bool faces_of(Context& context, GLenum face, std::array<bool, 2>& faces) {
   return false;
 }
 
-/// The light of `name`; null and GL_INVALID_ENUM for what is none.
+/// The light of `name`; null and GL_INVALID_ENUM for an unknown name.
 Light* light_of(Context& context, GLenum name) {
   if (name >= GL_LIGHT0 && name < GL_LIGHT0 + kLights) return &context.state.lighting.light[name - GL_LIGHT0];
   context.fail(GL_INVALID_ENUM);

@@ -23,7 +23,7 @@ namespace halfplane::gl {
   return result;
 }
 
-/// A row times a matrix: how planes go from one space to the other, by the inverse of what takes points there.
+/// A row times a matrix: how planes go from one space to the other, by the inverse of the matrix of points.
 [[nodiscard]] constexpr Vec4 transformed_plane(const Vec4& plane, const Mat4& m) {
   Vec4 result{};
   for (std::size_t column = 0; column < 4; ++column)
@@ -35,7 +35,7 @@ namespace halfplane::gl {
 /// The adjugate where there is none.
 [[nodiscard]] Mat4 inverse(const Mat4& m);
 
-/// Sets `where`, or GL_INVALID_ENUM for what is not allowed.
+/// Sets `where`, or GL_INVALID_ENUM for illegal values.
 inline void set_enum(Context& context, GLenum& where, GLenum value, std::initializer_list<GLenum> allowed) {
   if (std::ranges::find(allowed, value) == allowed.end()) return context.fail(GL_INVALID_ENUM);
   where = value;

@@ -15,7 +15,7 @@ namespace halfplane::gl {
 
 class DisplayList;  // list.hpp
 
-/// One image of a texture, as it is stored: 8 bits a channel, what the base format lacks filled in as it is sampled
+/// One image of a texture, as it is stored: 8 bits a channel, channels that the base format lacks filled in as for sampling
 /// (OpenGL 1.5, table 3.21: LUMINANCE is L L L 1, ALPHA 1 1 1 A for modulate, INTENSITY I I I I).
 struct TextureImage {
   int width = 0, height = 0, depth = 0, border = 0;  ///< without the border; 0: no image

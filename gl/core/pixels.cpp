@@ -17,7 +17,7 @@ namespace halfplane::gl {
 namespace {
 
 struct Range {
-  int first = 0, last = 0;  ///< the one after it
+  int first = 0, last = 0;  ///< the index after it
 };
 
 /// The pixels within [0, size) whose centres lie in the zoomed square of texel `i`, with its lower edge.

@@ -1,4 +1,4 @@
-// Primitives: from vertices to draws of the model. What the model draws as OpenGL does is handed over as it is; the rest is
+// Primitives: from vertices to draws of the model. Those that the model draws as OpenGL does pass unchanged; the rest is
 // taken apart here, primitive by primitive.
 #include "primitive.hpp"
 
@@ -132,7 +132,7 @@ class Batch {
     cut.y = std::min(cut.y, kLargestViewport);
   }
 
-  /// Positions and texture coordinates. Where q differs, x y z w divided by q are the same place, and what is interpolated
+  /// Positions and texture coordinates. Where q differs, x y z w divided by q are the same place, and the interpolated value
   /// over w / q is the projected coordinate.
   void place() {
     const bool divides_w = is_textured_ && !traits_.has_one_q && traits_.has_positive_q;
@@ -208,7 +208,7 @@ class Batch {
     if (!fails_zero) state_.alpha_test = {DepthFunc::greater, 0};
   }
 
-  /// Lays colours over what the batch has drawn, for what the model's textures do not have.
+  /// Draws colours over the batch, for features that the model's textures lack.
   template <class ColorOf>
   void draw_over(const char* what, BlendFactors blend, std::array<std::uint8_t, 3> fog_color, const ColorOf& color_of) {
     const ColorState& color = context_.state.color;

@@ -13,12 +13,12 @@ namespace halfplane::gl {
 
 struct Context;
 
-/// Draws what glBegin(mode) makes of vertices[indices[0]], vertices[indices[1]], ...: clip planes, two-sided light, polygon
+/// Draws glBegin(mode) with vertices[indices[0]], vertices[indices[1]], ...: clip planes, two-sided light, polygon
 /// modes, stipples, selection and feedback; then Frame::draw in the state of the context.
 void draw_primitives(Context& context, GLenum mode, std::span<const ShadedVertex> vertices,
                      std::span<const std::uint32_t> indices);
 
-/// Pixels of the window as points, for glBitmap and what has no better way: x and y from the bottom left, the centre of a
+/// Pixels of the window as points, for glBitmap and pixels without a faster way: x and y from the bottom left, the centre of a
 /// pixel at one half, with z in 0...1 and colours in 0...1. They pass fog, for which w is the distance, and the fragment
 /// operations of the context's state, but no texture.
 struct WindowFragment {
@@ -35,8 +35,8 @@ void draw_rectangle(Context& context, const halfplane::Texture& texels, double x
 
 enum class DrawKind { triangles, lines, points, rectangle };
 
-/// The model's state of what the context's state says. None: nothing can be drawn (a face culled away, no buffer).
-/// Says by Frame::missing() what the model does not have.
+/// The model's state for the context's state. None: nothing can be drawn (a face culled away, no buffer).
+/// Reports by Frame::missing() features that the model lacks.
 [[nodiscard]] std::optional<halfplane::State> hardware_state(Context& context, DrawKind kind);
 /// The same; with `is_textured` for triangles whatever `kind` is, and how the texture takes their colours.
 [[nodiscard]] std::optional<halfplane::State> hardware_state(Context& context, DrawKind kind, bool is_textured,

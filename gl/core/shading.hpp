@@ -1,4 +1,4 @@
-// The state as shading reads it (shade.cpp), for what makes vertices: vertex.cpp, arrays.cpp, eval.cpp.
+// The state as shading reads it (shade.cpp), for the sources of vertices: vertex.cpp, arrays.cpp, eval.cpp.
 #pragma once
 
 #include <cstdint>

@@ -18,7 +18,7 @@ inline constexpr int kLights = 8;
 inline constexpr int kClipPlanes = 6;
 inline constexpr int kLargestTexture = 4096;  ///< texels along a side
 inline constexpr int kLargestTexture3D = 256;
-inline constexpr int kLargestPoint = 64, kLargestLine = 64;  ///< pixels: what sizes and widths are held to
+inline constexpr int kLargestPoint = 64, kLargestLine = 64;  ///< pixels: limits of sizes and widths
 inline constexpr int kEvalOrder = 30;                        ///< GL_MAX_EVAL_ORDER
 inline constexpr int kPixelMapTable = 256;                   ///< GL_MAX_PIXEL_MAP_TABLE
 inline constexpr int kListNesting = 64;                      ///< GL_MAX_LIST_NESTING

@@ -43,7 +43,7 @@ constexpr auto kImageTargets = std::to_array<ImageTarget>({{GL_TEXTURE_1D, 1, 0,
                                                            {GL_PROXY_TEXTURE_3D, 3, 2, 0, true},
                                                            {GL_PROXY_TEXTURE_CUBE_MAP, 2, 3, 0, true}});
 
-/// Null and GL_INVALID_ENUM for what is none. `dimensions` 0: of any.
+/// Null and GL_INVALID_ENUM for an unknown target. `dimensions` 0: of any.
 const ImageTarget* image_target(Context& context, GLenum name, int dimensions) {
   const auto* target = std::ranges::find(kImageTargets, name, &ImageTarget::name);
   if (target != kImageTargets.end() && (dimensions == 0 || target->dimensions == dimensions)) return target;
@@ -83,7 +83,7 @@ constexpr auto kInternalFormats =
                                     {GL_DEPTH_COMPONENT, GL_DEPTH_COMPONENT, GL_DEPTH_COMPONENT},
                                     {GL_DEPTH_COMPONENT16, GL_DEPTH_COMPONENT32, GL_DEPTH_COMPONENT}});
 
-/// GL_NONE for what is no internal format.
+/// GL_NONE for an unknown internal format.
 GLenum base_format(GLint internal_format) {
   for (const InternalFormats& row : kInternalFormats)
     if (internal_format >= row.first && internal_format <= row.last) return row.base;
@@ -132,7 +132,7 @@ std::size_t texel_at(int width, int height, int x, int y, int z) {
              static_cast<std::size_t>(width) +
          static_cast<std::size_t>(x);
 }
-/// The border along one of an image's sides: those that a target does not have are 1, and have none.
+/// The border along a side of an image: a side that a target lacks has length 1 and no border.
 int border_along(int side, int border) { return side > 1 ? border : 0; }
 
 /// The object that a name is bound to. `create`: a name without one gets one.
@@ -182,7 +182,7 @@ bool go_together(Context& context, GLenum format, GLenum base) {
   return false;
 }
 
-/// Halves the sides of an image of sums, adding up what falls together.
+/// Halves the sides of an image of sums, adding texels that fall together.
 template <class Sum, class Value>
 std::vector<Sum> halved(const std::vector<Value>& from, const TextureImage& size, const TextureImage& smaller) {
   std::vector<Sum> sums(texel_count(smaller));
@@ -316,7 +316,7 @@ std::shared_ptr<const Image> copied(Context& context, GLint x, GLint y, GLsizei 
   return transferred(context, std::make_shared<const Image>(read_rectangle(context, x, y, width, height, format)));
 }
 
-/// Whether an image is what half the sides of `larger` ask for.
+/// Whether an image has the size of the level after `larger`.
 bool is_next_level(const TextureImage& image, const TextureImage& larger) {
   return image.width == std::max(1, larger.width / 2) && image.height == std::max(1, larger.height / 2) &&
          image.depth == std::max(1, larger.depth / 2) && image.internal_format == larger.internal_format &&
@@ -529,7 +529,7 @@ void get_tex_image(Context& context, GLenum target, GLint level, GLenum format, 
   const TextureImage* stored = image_of(context, *from, level);
   if (stored == nullptr || stored->texel.empty()) return;
   if (!go_together(context, format, stored->base_format)) return;
-  // Texels of the border are not kept, and read as those beside them.
+  // Texels of the border are not kept: reads give the texels next to them.
   const std::array<int, 3> border{stored->border, from->dimensions > 1 ? stored->border : 0,
                                   from->dimensions > 2 ? stored->border : 0};
   Image image{stored->width + 2 * border[0], stored->height + 2 * border[1], stored->depth + 2 * border[2], format, {}};

@@ -15,7 +15,7 @@ struct Context;
 
 /// The texture that a unit samples: of the last target that is enabled, when it is complete. Null: none.
 [[nodiscard]] const TextureObject* sampled_texture(const Context& context, int unit);
-/// The object bound to `target` of the active unit; null and GL_INVALID_ENUM for what is no target.
+/// The object bound to `target` of the active unit; null and GL_INVALID_ENUM for an unknown target.
 [[nodiscard]] TextureObject* bound_texture(Context& context, GLenum target);
 
 /// RGBA as 8 bits a channel, held to 0...1.
@@ -28,7 +28,7 @@ struct Context;
 [[nodiscard]] std::optional<TextureImage> stored_image(const Image& image, GLint internal_format, int border);
 
 /// Fills texture, filters, wraps, level of detail and combine mode of `state` as the unit's texture and environment ask,
-/// and says by Frame::missing() what the model has not. Where the result says so, vertices are white or opaque: GL_REPLACE
+/// and reports by Frame::missing() what the model lacks. Where the result says so, vertices are white or opaque: GL_REPLACE
 /// by a texture without alpha is modulate with white, which leaves alpha.
 struct TextureUse {
   bool replaces_rgb = false, replaces_alpha = false;  ///< the vertex's colour counts as 1 there

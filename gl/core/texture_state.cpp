@@ -12,7 +12,7 @@
 namespace halfplane::gl {
 namespace {
 
-/// Where a parameter is kept, and what it takes.
+/// Place of a parameter, and its legal values.
 struct Place {
   std::variant<GLenum*, int*, bool*, double*, Vec4*, std::array<int, 4>*> where;
   std::span<const GLenum> allowed{};  ///< of an enum

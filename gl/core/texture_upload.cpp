@@ -161,7 +161,7 @@ std::optional<Fit> direct_fit(GLenum mode, GLenum base, bool blends) {
 struct Sampled {
   const TextureObject& texture;
   const TextureUnit& unit;
-  GLenum base;              ///< of depth textures what they are read as
+  GLenum base;              ///< of depth textures the format that they are read as
   std::size_t first, last;  ///< levels
 
   [[nodiscard]] const TextureImage& level(std::size_t l) const { return texture.face[0][l]; }

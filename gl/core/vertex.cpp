@@ -10,7 +10,7 @@
 namespace halfplane::gl {
 namespace {
 
-/// Sets a size, or GL_INVALID_VALUE for what is not above `above`.
+/// Sets a size, or GL_INVALID_VALUE for a value not above `above`.
 void set_size(Context& context, double& where, double size, double above = 0) {
   if (!(size > above)) return context.fail(GL_INVALID_VALUE);
   where = size;

@@ -1,4 +1,4 @@
-// Contexts, what is current in each thread, and fences.
+// Contexts, the current one of each thread, and fences.
 #include "egl.hpp"
 
 namespace halfplane::gl::egl {
@@ -73,7 +73,7 @@ void release() {
   t_state.unbind();
 }
 
-/// Throws EGL_BAD_ACCESS for what is current in another thread.
+/// Throws EGL_BAD_ACCESS for an object that is current in another thread.
 void require_free(std::thread::id bound) {
   require(bound == std::thread::id() || bound == std::this_thread::get_id(), EGL_BAD_ACCESS);
 }

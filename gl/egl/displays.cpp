@@ -8,7 +8,7 @@ namespace halfplane::gl::egl {
 namespace {
 
 constexpr EGLint kApis = EGL_OPENGL_BIT | EGL_OPENGL_ES_BIT;
-/// EGL 1.5, table 3.1, with how eglChooseConfig() compares and what it takes where the program does not say (table 3.4).
+/// EGL 1.5, table 3.1, with how eglChooseConfig() compares and its default (table 3.4).
 constexpr ConfigAttribute<EglConfig> kAttributes[] = {
     {EGL_BUFFER_SIZE, Rule::at_least, 0, constant<4 * kColorBits>},
     {EGL_RED_SIZE, Rule::at_least, 0, constant<kColorBits>},

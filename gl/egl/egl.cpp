@@ -1,4 +1,4 @@
-// The vendor library that libglvnd loads for EGL 1.5. libEGL keeps what is current in each thread and which library a display
+// The vendor library that libglvnd loads for EGL 1.5. libEGL keeps each thread's current context and which library a display
 // belongs to; the rest is here. Platforms: X11, and surfaceless with pbuffers alone.
 #include <utility>
 

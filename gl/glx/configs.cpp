@@ -4,7 +4,7 @@
 namespace halfplane::gl::glx {
 namespace {
 
-/// GLX 1.4, table 3.1, with how glXChooseFBConfig() compares and what it takes where the program does not say (table 3.4).
+/// GLX 1.4, table 3.1, with how glXChooseFBConfig() compares and its default (table 3.4).
 constexpr ConfigAttribute<FbConfig> kAttributes[] = {
     {GLX_FBCONFIG_ID, Rule::exact, kDontCare, [](const FbConfig& c) { return c.id; }},
     {GLX_BUFFER_SIZE, Rule::at_least, 0, constant<4 * kColorBits>},

@@ -1,4 +1,4 @@
-// Contexts, and what is current in each thread.
+// Contexts, and the current one of each thread.
 #include "glx.hpp"
 
 namespace halfplane::gl::glx {

@@ -40,7 +40,7 @@ XID create_on(Display* display, DrawableKind kind, const FbConfig& config, XID x
   return keep(display, std::make_shared<GlxDrawable>(kind, config, xid, geometry->width, geometry->height));
 }
 
-/// GLX 1.4 defines no attributes of windows and pixmaps; what extensions define of them changes nothing here.
+/// GLX 1.4 defines no attributes of windows and pixmaps; attributes of extensions have no effect here.
 template <DrawableKind Kind>
 XID create(Display* display, GLXFBConfig handle, XID xid, const int*) {
   return create_on(display, Kind, config_of(display, handle), xid);

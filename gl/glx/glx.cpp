@@ -1,4 +1,4 @@
-// The vendor library that libglvnd loads for GLX 1.4. libGLX keeps what is current in each thread and which library owns an
+// The vendor library that libglvnd loads for GLX 1.4. libGLX keeps each thread's current context and which library owns an
 // object; the rest is here.
 #include "glx.hpp"
 
@@ -43,7 +43,7 @@ const char* get_client_string(Display*, int name) {
 const char* query_server_string(Display* display, int, int name) { return get_client_string(display, name); }
 const char* query_extensions_string(Display*, int) { return kExtensions; }
 
-// Extensions: what a program calls, and how libGLX finds this library for it.
+// Extensions: their functions, and how libGLX finds this library for it.
 
 void swap_interval_ext(Display* display, GLXDrawable id, int interval) {
   const std::shared_ptr<GlxDrawable> drawable = find_drawable(display, id);

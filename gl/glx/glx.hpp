@@ -69,7 +69,7 @@ struct FbConfig {
   Server* server = nullptr;
   int screen = 0, id = 0;
   PixelFormat format;
-  bool shares_visual = false;  ///< another configuration is what glXGetConfig() says of the visual
+  bool shares_visual = false;  ///< glXGetConfig() reports another configuration of the visual
 
   [[nodiscard]] GLXFBConfig handle() const { return reinterpret_cast<GLXFBConfig>(const_cast<FbConfig*>(this)); }
   [[nodiscard]] bool is_of_screen(const FbConfig& other) const {
@@ -119,7 +119,7 @@ struct Objects {
 /// The drawable of `id` for a context; an X window that no call has named becomes one. Throws.
 [[nodiscard]] std::shared_ptr<GlxDrawable> drawable_for(Display* display, XID id, const GlxContext& context);
 
-// Functions, by name. Those of extensions come first in theirs: their place is their number with libglvnd.
+// Functions, by name. Functions of extensions come first in their table: their place is their number with libglvnd.
 [[nodiscard]] std::span<const Named> extension_functions();
 [[nodiscard]] std::span<const Named> config_functions();
 [[nodiscard]] std::span<const Named> drawable_functions();

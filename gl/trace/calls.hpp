@@ -16,8 +16,8 @@ namespace halfplane::gl {
 /// Arguments for a pointer whose memory the trace lacks.
 enum class Addresses { none, null, offsets };
 
-/// The arguments of a call in the types of its entry point. What they point at is held here, followed by zeros up to `reach`
-/// bytes: what the command may read however short the recorded memory is.
+/// The arguments of a call in the types of its entry point. Their data is held here, followed by zeros up to `reach`
+/// bytes: the bytes that the command may read however short the recorded memory is.
 class Arguments {
  public:
   Arguments(std::span<const TraceValue> values, std::size_t reach, Addresses addresses)
@@ -70,7 +70,7 @@ class Arguments {
 };
 
 /// Calls `entry`, which is the command `name` without its ARB or EXT; false: there is none, or it takes other arguments.
-/// Not for commands that write to the program's memory: `reach` is what they read.
+/// Not for commands that write to the program's memory: `reach` is the number of bytes they read.
 bool call_entry(std::string_view name, const void* entry, Arguments& arguments);
 
 }  // namespace halfplane::gl

@@ -416,7 +416,7 @@ bool Replay::map(const TraceCall& call, Context& context) {
 }
 
 void Replay::copy_to_map(const TraceCall& call) {
-  // apitrace writes what a program stored in a mapped buffer as one copy.
+  // apitrace records a program's stores into a mapped buffer as one copy.
   const std::int64_t to = call.argument("dest").integer;
   const std::string& from = call.argument("src").bytes;
   auto mapping = mapped_.upper_bound(to);

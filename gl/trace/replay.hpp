@@ -32,7 +32,7 @@ struct ReplayHooks {
   std::function<void(int number, Frame& frame)> frame = [](int, Frame&) {};
 };
 
-/// Draws the first `frames` frames; each saves and measures what `options` ask for. Throws InputError for
+/// Draws the first `frames` frames; each saves and measures as `options` ask. Throws InputError for
 /// a damaged file, and for surfaces that the configuration does not take.
 void replay(const std::string& path, const TraceContents& contents, const Options& options, int frames,
             const ReplayHooks& hooks);

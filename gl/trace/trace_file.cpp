@@ -119,7 +119,7 @@ std::uint64_t TraceFile::count() {
 }
 
 std::string TraceFile::text() {
-  // By parts: memory grows with what is there, not with what is announced.
+  // By parts: memory grows with the bytes present, not with the size announced.
   constexpr std::uint64_t kPart = std::uint64_t{1} << 20;
   std::string result;
   for (std::uint64_t left = count(); left > 0;) {

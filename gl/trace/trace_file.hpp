@@ -50,7 +50,7 @@ class TraceFile {
  public:
   /// Throws InputError: no file, or none of apitrace's.
   explicit TraceFile(const std::string& path);
-  /// The next call that returned; false at the end. Throws InputError for what is damaged or cut off.
+  /// The next call that returned; false at the end. Throws InputError for a damaged or truncated file.
   bool next(TraceCall& call);
 
  private:

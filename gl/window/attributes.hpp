@@ -14,7 +14,7 @@ inline constexpr int kDontCare = -1;
 /// Requests of a program, by the attribute's name.
 using Wishes = std::map<std::intptr_t, std::intptr_t>;
 
-/// Overwrites what a list says. False: it names what `wishes` does not have.
+/// Overwrites values by a list's. False: it names an attribute that `wishes` lacks.
 template <std::intptr_t End, class T>
 [[nodiscard]] bool read_list(const T* list, Wishes& wishes) {
   for (; list != nullptr && *list != End; list += 2) {
@@ -25,7 +25,7 @@ template <std::intptr_t End, class T>
   return true;
 }
 
-/// How a configuration's value compares with the one that a program asks for. `level`: exactly, kDontCare is a level, too.
+/// How a configuration's value compares with the value that a program asks for. `level`: exactly, kDontCare is a level, too.
 enum class Rule { at_least, exact, level, mask, not_compared };
 
 template <class Config>

@@ -250,7 +250,7 @@ void Window::show(XID target) {
     XShmPutImage(display, target, gc_, image_, 0, 0, 0, 0, w, h, 0);
   else
     XPutImage(display, target, gc_, image_, 0, 0, 0, 0, w, h);
-  XSync(display, 0);  // the image is free again, and glFinish is to mean what it says
+  XSync(display, 0);  // the image is free again, and glFinish has to wait for the server
 }
 
 }  // namespace halfplane::gl

@@ -20,10 +20,10 @@ namespace halfplane::gl {
 /// Options of this process, read once. Throws InputError.
 [[nodiscard]] const Options& options();
 
-/// Pixels along a side of a drawable, at most: those that window coordinates reach.
+/// Pixels along a side of a drawable, at most: the range of window coordinates.
 [[nodiscard]] int largest_side();
 
-/// Whether the options can be read; says on stderr what is wrong with them. Writes `system` to the file that the environment
+/// Whether the options can be read; prints their errors on stderr. Writes `system` to the file that the environment
 /// variable HALFPLANE_GL_ANSWERED names, so that `halfplane run` knows which libraries were loaded.
 [[nodiscard]] bool answers(const char* system);
 
@@ -38,7 +38,7 @@ struct PixelFormat {
   bool double_buffered = true;
 };
 
-/// A connection of the driver's own to an X server: what goes wrong on it (a window that is gone) reaches no handler of the
+/// A connection of the driver's own to an X server: its errors (a window that is gone) reach no handler of the
 /// program. Any thread may use it.
 class Server {
  public:
@@ -103,7 +103,7 @@ class Window final : public Drawable {
   GC gc_ = nullptr;
 };
 
-/// A pbuffer by `make(width, height)`. One that is to be the largest is halved until there is memory. Throws what make() does.
+/// A pbuffer by `make(width, height)`. One that is to be the largest is halved until there is memory. Throws as make() does.
 template <class Make>
 auto make_pbuffer(std::intptr_t width, std::intptr_t height, bool largest, Make make) {
   const std::intptr_t most = largest ? largest_side() : INT_MAX;
@@ -122,7 +122,7 @@ auto make_pbuffer(std::intptr_t width, std::intptr_t height, bool largest, Make 
 struct Named {
   std::string_view name;
   void* function;
-  void* dispatch = nullptr;  ///< of GLX extensions: what finds the vendor's function
+  void* dispatch = nullptr;  ///< of GLX extensions: data for finding the vendor's function
 };
 template <class Function>
 void* address(Function* function) {
