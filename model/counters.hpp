@@ -54,7 +54,7 @@ struct Counters {
     std::uint64_t tiles_hiz = 0, tiles_outside = 0, trivially_accepted = 0;            ///< visits of tiles
     std::uint64_t fragments_early_z = 0, attributes = 0;                               ///< fragments
     std::uint64_t clear = 0;               ///< tiles without a written pixel between two clears, or a clear and the end
-    std::uint64_t operations_early_z = 0;  ///< visits of tiles in which no fragment passes; includes those of tiles_hiz
+    std::uint64_t operations_early_z = 0;  ///< visits of tiles in which no fragment passes; includes tiles_hiz
     std::uint64_t alpha_tiles = 0;         ///< visits of tiles in which the alpha test drops every fragment
     std::uint64_t opaque_blends = 0;       ///< fragments
     std::uint64_t masked_draws = 0;        ///< primitives

@@ -45,7 +45,7 @@ namespace halfplane {
 enum class Side : std::uint8_t { host, rtl, memory };
 
 // clang-format off
-/// STAGE(name, side, timed, what). Timed: the cycle model counts the cycles in which it is at work; the other RTL
+/// STAGE(name, side, timed, what). Timed: the cycle model counts the cycles in which it is busy; the other RTL
 /// stages add none.
 #define HALFPLANE_STAGES(STAGE)                                                                             \
   /*    name                side    timed  what it makes of what */                                         \

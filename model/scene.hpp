@@ -59,7 +59,7 @@ enum class TextureWrap { repeat, clamp, mirror, border, half_border };
 [[nodiscard]] constexpr bool has_border(TextureWrap wrap) {
   return wrap == TextureWrap::border || wrap == TextureWrap::half_border;
 }
-/// Whether the image comes again; else coordinates far away are all alike.
+/// Whether the image comes again; else all far coordinates have the same texel.
 [[nodiscard]] constexpr bool has_period(TextureWrap wrap) {
   return wrap == TextureWrap::repeat || wrap == TextureWrap::mirror;
 }

@@ -2,7 +2,7 @@
 //
 //   bind raster_top primitive_stream_checker u_primitive_stream_checker (.*);
 //
-// A broken rule is an assertion that fails, with a message: what is wrong, in which primitive of the stream, what to send
+// A broken rule is an assertion that fails, with a message: the error, the primitive's number in the stream, the packet to send
 // instead. Primitives are counted from reset, the first is 0. Verilator wants --assert.
 //
 // A test bench waits for is_written before it reads the picture from memory. idle_o alone is not enough: pixels drawn

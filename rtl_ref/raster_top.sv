@@ -65,8 +65,8 @@ module raster_top (
     // Snapshot of the counters of one cycle: it stays while hold is high, to be read word by word; counting goes on
     input  logic                        counters_hold_i,
     output raster_pkg::counter_packet_t counters_o,
-    // Nothing is under way: every primitive of the cycles before has been drawn, and memory has answered everything. What was
-    // drawn may lie on the chip alone; after a flush all of it is in memory.
+    // Nothing is in flight: every primitive of earlier cycles has been drawn, and memory has answered all requests. Pixels
+    // drawn may lie on the chip alone; after a flush all of them are in memory.
     output logic                        idle_o,
     // For a cycle, once for each flush in their order: it and everything before it is in memory. At most three flushes may
     // be in flight where these pulses are counted.

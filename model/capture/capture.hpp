@@ -10,7 +10,7 @@
 namespace halfplane {
 
 /// The scene that `text` describes. `file_name` becomes Scene::name and begins every message. Linear in the size of
-/// the text, in time and in memory. Throws InputError: "file:line: what is wrong; what to write instead".
+/// the text, in time and in memory. Throws InputError: "file:line: the error; the remedy".
 [[nodiscard]] Scene read_capture(std::string_view text, std::string_view file_name);
 
 /// The same for a file or a pipe. Throws InputError, also when the file cannot be read.

@@ -40,7 +40,7 @@ class TextureReader {
 /// Appends the lines of a texture, including its texels.
 void write_texture(const Texture& texture, std::string& out);
 
-/// The image of a PNG, JPEG, BMP or TGA file, 8 bits a channel. Throws InputError: "path: what is wrong".
+/// The image of a PNG, JPEG, BMP or TGA file, 8 bits a channel. Throws InputError: "path: the error".
 [[nodiscard]] TexelImage read_image_file(const std::string& path);
 /// The same from its bytes; `what` names the image in messages.
 [[nodiscard]] TexelImage read_image(std::string_view bytes, const std::string& what);

@@ -17,7 +17,7 @@ class FunctionalEngine {
   FunctionalEngine(const FunctionalEngine&) = delete;
   FunctionalEngine& operator=(const FunctionalEngine&) = delete;
 
-  /// Renders every command of `scene` in program order. If options say that the frame follows the one before, bins of
+  /// Renders every command of `scene` in program order. If options say that the frame follows the previous frame, bins of
   /// 64x64 pixels with the same draws over the same clears keep their pixels, and their draws are not counted; only for
   /// frames whose clears cover the whole target and come first, without stencil. The result lives until the next call.
   /// Throws InputError for a scene that this configuration does not support: a target that is too large, a window-space

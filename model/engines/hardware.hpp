@@ -141,7 +141,7 @@ class DrawnCount {
 };
 
 /// Frame after frame by one hardware model and its memory. With frame.order bins and frame.store color, bins whose
-/// content equals what the frame draws in them are skipped.
+/// content equals the frame's drawing in them are skipped.
 class HardwareFrames {
  public:
   explicit HardwareFrames(const Config& config) : config_(config), model_(config, nobody_) {}

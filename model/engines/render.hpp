@@ -58,7 +58,7 @@ struct RenderOptions {
   bool general_fragments = false;     ///< likewise: draws fragments one by one, for tests
   StudyRules rules;                   ///< other than the default only in render_scalar
   const Framebuffer* onto = nullptr;  ///< the frame to draw on, made by the same engine; null: an empty one
-  bool follows = false;         ///< for FunctionalEngine: the frame may be compared with the one before, see Skip::bins
+  bool follows = false;  ///< for FunctionalEngine: the frame may be compared with the previous frame, see Skip::bins
   bool resolved_only = false;   ///< Framebuffer::samples is not read: the functional engine may leave it empty
   bool want_count = false;      ///< fill Rendering::count
   bool want_ids = false;        ///< fill Rendering::ids

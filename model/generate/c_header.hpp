@@ -1,4 +1,4 @@
-// A configuration as a C header: what a program that feeds the hardware needs to know of it.
+// A configuration as a C header, for programs that feed the hardware.
 #pragma once
 
 #include <string>

@@ -17,7 +17,7 @@ struct DerivedConstant {
 };
 [[nodiscard]] std::vector<DerivedConstant> derived_constants(const Config& config, const Widths& widths);
 
-/// "edge value" and "depth.bits" in capitals, with _ for what joins the words.
+/// "edge value" and "depth.bits" in capitals, with _ between words.
 [[nodiscard]] std::string constant_name(std::string_view name);
 
 /// The value of a setting as a number; for one with names, the number of its name.

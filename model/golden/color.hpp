@@ -1,5 +1,5 @@
 // Golden colour operations: blending, in real arithmetic. Channels are 0...255; in a target without alpha the last is
-// 255. A logic operation is one of codes: it rounds both colours to those of the target.
+// 255. A logic operation works on codes: both colours are rounded to the target's codes.
 #pragma once
 
 #include <algorithm>
@@ -39,7 +39,7 @@ using RealColor = std::array<double, 4>;
   return 0;
 }
 
-/// A logic operation on codes whose bits are those of `most`.
+/// A logic operation on codes with the bits of `most`.
 [[nodiscard]] inline int operated(LogicOp op, int s, int d, int most) {
   int result = 0;
   switch (op) {

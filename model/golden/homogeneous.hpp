@@ -94,7 +94,7 @@ template <class Real>
   return t;
 }
 
-/// The pixels to test: those around the vertices, or all of `region` if a vertex has no window position.
+/// The pixels to test: around the vertices, or all of `region` if a vertex has no window position.
 template <class Real>
 [[nodiscard]] PixelRange homogeneous_range(const HomogeneousSetup<Real>& t, const PixelRange& region,
                                            const Scene& scene) {

@@ -51,7 +51,7 @@ struct Line {
 /// Diamond exit: whether the segment, moved by (-e, -e^2) for every small enough e > 0, meets the open diamond |x -
 /// x_c| + |y - y_c| < 1/2 of the pixel, and does not end in it. On the axes x + y and x - y the diamond is a square and
 /// a moved point lies inside it when it was in (-1/2, 1/2]. Segment and square meet unless one of three axes separates
-/// them: the square's own two, and the one across the segment.
+/// them: the square's own two, and the axis across the segment.
 template <class Real>
 [[nodiscard]] bool leaves_diamond(Real x0, Real y0, Real x1, Real y1, int x, int y) {
   const Real cx = static_cast<Real>(x) + Real(0.5), cy = static_cast<Real>(y) + Real(0.5), half = Real(0.5);

@@ -65,7 +65,7 @@ class SharedSignature {
 
 class FrameBins {
  public:
-  /// For a target of width x height pixels. `compares`: compares bins with those of the frame before, on hardware with
+  /// For a target of width x height pixels. `compares`: compares bins with the previous frame's, on hardware with
   /// these clears.
   FrameBins(const Widths& widths, int width, int height, std::optional<FrameClears> compares = {});
 

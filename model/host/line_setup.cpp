@@ -113,7 +113,7 @@ Positions positions_of(const OctantLine& line, LineRule rule, std::int64_t first
   return q;
 }
 
-/// Cuts `steps` to those n whose row, floor((Q + d n) / D), lies in `rows` (relative to the base). Rows never fall.
+/// Cuts `steps` to the n whose row, floor((Q + d n) / D), lies in `rows` (relative to the base). Rows never fall.
 Bounds clip_to_rows(Bounds steps, const Bounds& rows, std::int64_t q, std::int64_t d, std::int64_t D) {
   const Bounds none{0, -1};
   if (q + d * steps.low < rows.low * D) {
@@ -163,7 +163,7 @@ std::optional<std::array<SnappedVertex, 4>> line_rectangle(const SnappedVertex& 
                                                            double width, int grid_bits) {
   const double dx = static_cast<double>(end.x) - start.x, dy = static_cast<double>(end.y) - start.y;
   if (dx == 0 && dy == 0) return std::nullopt;
-  // Half the width in grid steps, by a quarter turn of the direction; rounded alike for both signs.
+  // Half the width in grid steps, by a quarter turn of the direction; rounded symmetrically for both signs.
   const double scale = std::ldexp(width / 2, grid_bits) / std::sqrt(dx * dx + dy * dy);
   const auto x = static_cast<std::int32_t>(std::llround(-dy * scale)),
              y = static_cast<std::int32_t>(std::llround(dx * scale));

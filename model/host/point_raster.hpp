@@ -19,7 +19,7 @@ namespace halfplane {
 /// an integer and the centre of pixel i is at (2 i + 1) 2^grid_bits.
 [[nodiscard]] constexpr int first_centre(std::int64_t border, int grid_bits) {
   const std::int64_t centre = std::int64_t{1} << grid_bits, pixel = 2 * centre;
-  // The last pixel whose centre is before the border is the one before the next.
+  // The last pixel whose centre is before the border: one less than the first one not before it.
   return static_cast<int>((border - centre + pixel - 1) >> (grid_bits + 1));
 }
 

@@ -27,7 +27,7 @@ struct DrawContext {
   const Scene& scene;
   const Config& config;
   const std::shared_ptr<const State> state_of_rectangles;  ///< for a draw of rectangles
-  const State& state;                                      ///< of the draw, or the one above
+  const State& state;                                      ///< the draw's, or *state_of_rectangles
   const Draw& draw;
   std::uint32_t command = 0;  ///< index of the draw in Scene::commands
   Viewport viewport;
@@ -122,7 +122,7 @@ struct Outline {
   return state.line_rule == LineRule::rectangle && drawn_as(state, topology) == PrimitiveType::line;
 }
 
-/// The state for those triangles. A line has no texture, is fogged at its ends, and shows its front.
+/// The state of these triangles. A line has no texture, is fogged at its ends, and shows its front.
 [[nodiscard]] State rectangle_state(State state);
 
 /// The host side of one primitive that is not filled: clip, viewport, cull (of triangles), line_setup or point_raster.

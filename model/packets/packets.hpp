@@ -22,7 +22,7 @@ namespace halfplane {
 /// The widest memory port.
 inline constexpr std::size_t kMaxPortBytes = 64;
 
-// ------------------------------------------------------------------------------------------------------- what a field is
+// ------------------------------------------------------------------------------------------------------- types of fields
 
 /// Placeholder for the width of a member with fields of its own.
 struct Nested {};
@@ -163,7 +163,7 @@ enum class StateRegister : std::uint8_t {
   texture = 0,  ///< TextureState
   texture_levels =
       1,  ///< TextureLevels; also FogState, a line of its table, light, TextureConstant, TextureBorder: LevelsWord
-  texture_lines = 2,   ///< a part of a TextureLines, shifted in after the ones before
+  texture_lines = 2,   ///< a part of a TextureLines, shifted in after the earlier parts
   color_ops = 4,       ///< ColorOps without its constant (stages/color_packets.hpp)
   blend_constant = 5,  ///< the constant of ColorOps
   alpha_test = 6,      ///< AlphaTest
@@ -366,7 +366,7 @@ struct CoordinateFrame {
 };
 
 /// Addresses of the buffers in memory, chosen by the host: bytes. Constant while anything is under way. Bases of tiles
-/// and the stride are multiples of a tile's buffer, those of flags of a row of flags (MemoryGrid); lower bits count as
+/// and the stride are multiples of a tile's buffer, flag strides of a row of flags (MemoryGrid); lower bits count as
 /// 0.
 struct MemoryLayout {
   PACKET(MemoryLayout, "memory_layout");

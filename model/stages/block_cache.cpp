@@ -51,7 +51,7 @@ std::span<const std::uint32_t> BlockCache::access(const FragmentPacket& fragment
   return stored_;
 }
 
-/// Reads stored colours; those missing on the chip come from the clear value or from memory. Samples of the stamp
+/// Reads stored colours; colours missing on the chip come from the clear value or from memory. Samples of the stamp
 /// already written are newer.
 void BlockCache::read_colors(MemoryPort& memory, CounterPacket& counters) {
   std::ranges::fill(stored_color_, last_.color_source == DepthSource::clear ? clear_value_[1] : 0);

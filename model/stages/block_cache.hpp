@@ -1,7 +1,7 @@
 // Block cache: the on-chip depth and colour of blocks of 4x4 pixels, and the evicted blocks on their way to memory.
 //
 // In: fragments, writes, fast clears, flushes, in program order. Out: stored depths, memory requests in the order of
-// cache_tags.hpp, which decides what moves; this class holds the data.
+// cache_tags.hpp, which decides on transfers; this class holds the data.
 #pragma once
 
 #include <span>

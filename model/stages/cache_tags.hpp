@@ -1,9 +1,9 @@
 // Cache tags: which blocks of 4x4 pixels are on the chip, with which stamps, and which blocks a fast clear has flagged.
-// They decide, in program order and before the depth test, what moves between chip and memory: block_cache.hpp moves
+// They decide, in program order and before the depth test, the transfers between chip and memory: block_cache.hpp moves
 // the data, the cycle model adds the time, rtl_ref/stages/cache_tags.sv is the hardware.
 //
 // Direct mapped: a line holds depth and colour of one block. Depth is fetched a stamp at a time, when a fragment first
-// reads it. Colour is only written, until the operations of a fragment read stored colours: then those of its stamp are
+// reads it. Colour is only written, until the operations of a fragment read stored colours: then the colours of its stamp are
 // fetched like depth, after it, and stay known. A block that leaves the chip is an eviction. Its data wait until
 // `cache.victims` later evictions have come, or until the block is needed again; then they go to memory, oldest first.
 #pragma once

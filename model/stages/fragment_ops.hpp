@@ -19,7 +19,7 @@
 
 namespace halfplane {
 
-// --- what a draw asks of its fragments ------------------------------------------------------------------------------
+// --- a draw's states of its fragments ------------------------------------------------------------------------------
 
 /// The state travels with its primitives.
 using FragmentState = PrimitiveState;
@@ -139,7 +139,7 @@ struct DepthOutcomes {
   }
 };
 
-/// Whether a fragment that passes may have a larger code than the one it replaces.
+/// Whether a fragment that passes may have a larger code than the stored one.
 [[nodiscard]] constexpr bool can_raise_depth(DepthFunc func) { return depth_passes(func, 1, 0); }
 
 /// The stencil test of a stored value.
@@ -189,7 +189,7 @@ struct TestedSample {
 /// The fate of a fragment.
 enum class Fate {
   failed,  ///< the stencil or the depth test
-  killed,  ///< passed those, but not the alpha test
+  killed,  ///< passed both, but not the alpha test
   passed
 };
 

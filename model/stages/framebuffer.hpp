@@ -2,7 +2,7 @@
 //
 // In: depth-tested stamps, clears. Out: the two images. Depth is one code per pixel, colour one stored code per pixel
 // (Config::color_format), stencil 8 bits. Rows are padded to whole tiles, so that an engine may touch a tile as a
-// whole. With several samples per pixel each sample has its own images, and resolve() computes those of the pixel.
+// whole. With several samples per pixel each sample has its own images, and resolve() computes the pixel's images.
 #pragma once
 
 #include <cstddef>

@@ -64,7 +64,7 @@ class Hiz {
     quiet_ = state.depth_write && can_raise_depth(state.depth_test) ? 0 : std::min(quiet_ + 1, lag_ - 1);
   }
 
-  /// The visit has retired: the next visit sees the update of the one `lag` visits before it.
+  /// The visit has retired: the next visit sees the update of the visit `lag` visits before it.
   void retire(const RetirePacket& retired) {
     unseen_[newest_] = retired;
     newest_ = (newest_ + 1) % unseen_.size();

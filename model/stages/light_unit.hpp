@@ -2,7 +2,7 @@
 // texture. Normals come with a triangle, as planes; light, half, colours and the table of the power are registers, set
 // by tokens.
 //
-// Tokens use the number of a texture's levels, like those of fog (LevelsWord): above 40 bits three bits select the
+// Tokens use the number of a texture's levels, like the fog's tokens (LevelsWord): above 40 bits three bits select the
 // register.
 #pragma once
 

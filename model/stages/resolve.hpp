@@ -29,7 +29,7 @@ template <class Color>
   return mean;
 }
 
-/// Fills the images of the pixels from those of their samples. Does nothing with one sample per pixel.
+/// Fills the images of the pixels from the samples' images. Does nothing with one sample per pixel.
 inline void resolve(Framebuffer& frame, ColorFormat format) {
   if (frame.samples.empty()) return;
   const int samples = static_cast<int>(frame.samples.size());

@@ -80,7 +80,7 @@ struct TextureAxis {
   return round_shift(at_level(2 * coordinate, fraction_bits, axis, level), 1);
 }
 
-/// The texel of the image for texel number i; where that is the border's, the one next to it.
+/// The texel of the image for texel number i; where that is in the border, the texel next to it.
 [[nodiscard]] constexpr int wrapped_texel(std::int64_t i, const TextureAxis& axis) {
   const std::int64_t last = axis.size - 1;
   if (!has_period(axis.wrap)) return static_cast<int>(std::clamp<std::int64_t>(i, 0, last));

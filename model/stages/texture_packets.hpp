@@ -39,7 +39,7 @@ namespace halfplane {
   return sample;
 }
 
-/// Tokens that pass through the texture unit in the time of a stamp without texture: those for the light and fog units,
+/// Tokens that pass through the texture unit in the time of a stamp without texture: tokens of the light and fog units,
 /// and the constant, which is set where they leave; and the border, which waits for the samples in front of it.
 template <class Codes>
 [[nodiscard]] LevelsWord word_beside_texture(StateRegister which, const Codes& token, const Widths& widths) {

@@ -3,7 +3,7 @@
 namespace halfplane {
 namespace {
 
-/// Appends a level to the ones before it.
+/// Appends a level to the earlier levels.
 void put_level(std::vector<std::uint8_t>& memory, const Texture& texture, int level, const LevelPlace& place) {
   const TextureLevel& image = texture.level[static_cast<std::size_t>(level)];
   const TextureFormat format = stored_format(texture.format);

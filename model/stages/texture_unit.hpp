@@ -22,7 +22,7 @@
 // Colours over w are divided here, by the reciprocal of the coordinates; the quotient is combined with the texture. A
 // flag of the triangle selects this.
 //
-// A texel of the border counts as the one next to it: its line is looked up, and its colour replaced. So a draw with
+// A texel of the border counts as the texel next to it: its line is looked up, and its colour replaced. So a draw with
 // half_border, whose samples have a texel of the image next to each of the border, uses the cache as with clamp.
 //
 // A state holds for later stamps. Stamps of primitives other than triangles, stamps without live samples, and all

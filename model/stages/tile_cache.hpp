@@ -3,7 +3,7 @@
 // In: accesses to tiles, writes, fast clears, flushes, in program order. Out: memory requests in program order: on a
 // miss the written stamps of the old tile, with one strobe per sample, then reads of the new tile's depth. If a buffer
 // is flagged as cleared the tile begins with the clear value, and all of it goes to memory: then the flag falls.
-// tile_directory.hpp decides what moves; this class holds the data.
+// tile_directory.hpp decides on transfers; this class holds the data.
 #pragma once
 
 #include <span>

@@ -1,5 +1,5 @@
 // Tile directory: which tiles are on the chip, which of their stamps have been written, which tiles a fast clear has flagged.
-// It decides what moves between chip and memory, and in what order; a mover moves it: tile_cache.hpp the data, the cycle
+// It decides on transfers between chip and memory, and their order; a mover performs them: tile_cache.hpp the data, the cycle
 // model the time.
 //
 // Direct mapped: a line holds both buffers of one tile. Depth is fetched with the tile, colour is only ever written.

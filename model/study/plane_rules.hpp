@@ -3,7 +3,7 @@
 //
 //   two_reciprocals  g_x = N_x R_x, g_y = N_y R_y with R_x = floor(2^k/A), R_y = ceil(2^k/A): two units for one quotient
 //   truncated        g = floor(N R 2^(l+s-k)) in 2^-l LSB per pixel: one narrow accumulator over the whole triangle,
-//                    with no guard bits but those of a tile, and no rounding
+//                    with no guard bits but the tile's, and no rounding
 //   saturate         gradients and the value at the first anchor are clamped to [-2^bits, 2^bits) LSB, the range of
 //                    their registers, and the value again wherever it is stepped: down the first column of tiles, then
 //                    along the row
@@ -20,7 +20,7 @@ void set_planes(TriangleSetup& setup, const std::array<SnappedVertex, 3>& v, con
                 const Config& config, const Widths& widths);
 
 /// interpolate_at() for planes from set_planes() with the same rules. Saturated values depend on the setup's first
-/// tile: they are those of a walk over its box, and no closed form of (triangle, tile, pixel).
+/// tile: they result from a walk over its box, not from a closed form of (triangle, tile, pixel).
 [[nodiscard]] Interpolated interpolate_by_rules(const TriangleSetup& setup, const StudyRules& rules,
                                                 const Widths& widths, int x, int y);
 

@@ -12,8 +12,8 @@ namespace halfplane {
 enum class FillRule {
   top_left,      ///< samples on top and left edges: the pipeline's own rule
   offset_point,  ///< samples on edges that have the point (-1, -1) on the triangle's side: Shirley's rule
-  inclusive,     ///< all samples: those on a shared edge are drawn twice
-  exclusive      ///< no sample (E > 0 on all three edges): those on a shared edge are a crack
+  inclusive,     ///< all samples: a sample on a shared edge is drawn twice
+  exclusive      ///< no sample (E > 0 on all three edges): samples on a shared edge are a crack
 };
 
 /// Order and arithmetic of the search for a triangle's samples.

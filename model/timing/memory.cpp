@@ -39,7 +39,7 @@ class SharedMemory : public MemoryTiming {
  protected:
   [[nodiscard]] bool is_shared() const { return others_.has_value(); }
   [[nodiscard]] Picoseconds cycle() const { return cycle_; }
-  /// Serves what other masters ask for up to `time`.
+  /// Serves the requests of other masters up to `time`.
   void serve_others(Picoseconds time) {
     if (!others_) return;
     others_->until(time, [&](std::uint64_t address, std::uint64_t bytes, Picoseconds arrives) {

@@ -66,7 +66,7 @@ struct MemorySettings {
 inline constexpr std::array kSdramWidths{8, 16, 32, 64};
 inline constexpr int kSdramMinMhz = 50, kSdramMaxMhz = 200;
 
-/// The kind with that name, and of sdram what follows it: "sdram,width=32,mhz=133". Throws InputError.
+/// The kind with that name, and of sdram its parameters: "sdram,width=32,mhz=133". Throws InputError.
 void set_memory(MemorySettings& settings, std::string_view text);
 
 /// Arguments of set_memory().

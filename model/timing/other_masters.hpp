@@ -1,5 +1,5 @@
 // Other traffic of the memory: the reads of scan-out (core/scan_out.sv) and a steady flow of other masters' bytes. Their bursts
-// are served in order of arrival with those of the port, and take the memory's time. No data.
+// are served in order of arrival with the port's bursts, and take the memory's time. No data.
 #pragma once
 
 #include <array>

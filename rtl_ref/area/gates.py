@@ -25,14 +25,14 @@ import subprocess
 import sys
 import tempfile
 
-# The modules that stay apart: what is inside of them is flattened.
+# The modules that stay separate: their hierarchy is flattened.
 UNITS = ['raster_top', 'skid_buffer', 'cull', 'cull_serial', 'triangle_setup', 'triangle_setup_serial', 'coarse_raster',
          'coarse_raster_serial', 'hiz', 'fine_raster', 'fine_raster_serial', 'interpolate', 'interpolate_serial',
          'line_raster', 'primitive_join', 'depth_test', 'framebuffer', 'cache_tags', 'depth_cache', 'memory_answers',
          'write_back', 'color_write', 'memory_port', 'texture_unit']
 KEEP = 'setattr -mod -set keep_hierarchy 1 ' + ' '.join(UNITS) + ' *skid_buffer*'
 SYNTH = {'ecp5': 'synth_ecp5 -top {top} -nowidelut', 'ice40': 'synth_ice40 -top {top} -abc9'}
-# Grows when what is kept for a unit, or how it is made, is no longer the same.
+# Version of the stored figures of a unit: increases when they or their computation change.
 FORMAT = 3
 
 

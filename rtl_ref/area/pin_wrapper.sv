@@ -11,7 +11,7 @@ module pin_wrapper (
     output logic data_o     // the register's signature
 );
 
-  // Where each input begins in the register. The layout has no bits of its own but reuses those of the primitive: core
+  // Where each input begins in the register. The layout has no bits of its own but reuses the primitive's: core
   // registers stand between the uses of the two, so no gate sees both, and synthesis saves nothing. Below the primitive
   // are the five valid and ready bits, at the end the inputs that some cores do not read: without them they are gone.
   localparam int PRIMITIVE = 5;

@@ -300,7 +300,7 @@ mutant(406 stages/cache_tags.sv "bins: a clear of one is that of its last row of
 mutant(407 stages/cache_tags.sv "bins: a clear of one looks for lines to write"
   [=[clears_all || clears_bin]=] [=[clears_all]=])
 
-# a texture unit and what feeds it
+# a texture unit and its inputs
 mutant(141 stages/triangle_setup.sv "texture: planes over w start at vertex 0"
   [=[{is_2_less, is_1_less && !is_2_less}]=] [=[2'b00]=])
 mutant(142 stages/triangle_setup.sv "texture: planes over w have the window of codes"

@@ -116,7 +116,7 @@ module raster_cosim (
   assign config_id_o = raster_pkg::CONFIG_ID;
 
   // Whole packets of the specification for arrows that raster_top carries in parts. A fragment whose triangle constants
-  // are stored separately gets those of its triangle number; a line's fragment has no planes beyond the colours.
+  // are stored separately gets the constants of its triangle number; a line's fragment has no planes beyond the colours.
   raster_pkg::fragment_packet_t fragment_data;
   raster_pkg::write_packet_t    write_data;
   raster_pkg::memory_request_t  request_data;

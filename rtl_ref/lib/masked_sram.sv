@@ -22,7 +22,7 @@ module masked_sram #(
   genvar b;
   generate
     if (HAS_MASK != 0) begin : gen_masked
-      // Synthesis takes for the enable of a block RAM what any bit of it is enabled by. A bit that nothing reads is written
+      // The enable of a block RAM in synthesis is the OR of its bits' enables. A bit that nothing reads is written
       // with may_write_i: then may_write_i alone is the enable.
       localparam int BITS = EARLY ? WIDTH + 1 : WIDTH;
       logic [BITS-1:0] write, data;

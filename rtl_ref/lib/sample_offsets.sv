@@ -2,7 +2,7 @@
 // Y * step_y, X and Y constant subpixels of MSAA_X and MSAA_Y. Shifts and adds; modulo 2^WIDTH.
 //
 // Samples lie opposite each other, and their X and Y have few magnitudes: an offset is made for the sample to the
-// right, from products of magnitudes, and negated for the one to the left. So terms that two samples share exist once.
+// right, from products of magnitudes, and negated for the sample to the left. So terms that two samples share exist once.
 module sample_offsets #(
     parameter int WIDTH = 1  // bits of a value
 ) (

@@ -18,7 +18,7 @@ module texture_wrap #(
   assign low         = number_i[SIDE_BITS-1:0];
   assign beyond      = low & ~last_i;
   assign is_above    = number_i[NUMBER_BITS-2:SIDE_BITS] != '0 || beyond != '0;
-  assign turn        = number_i[SIDE_BITS:0] & ({last_i, 1'b1} ^ {1'b0, last_i});  // the bit above those of the image
+  assign turn        = number_i[SIDE_BITS:0] & ({last_i, 1'b1} ^ {1'b0, last_i});  // the bit above the image's bits
   assign is_turned   = is_mirrored && turn != '0;
   assign texel_o     = is_clamped && number_i[NUMBER_BITS-1] ? '0 :
                        is_clamped && is_above ? last_i : (low ^ {SIDE_BITS{is_turned}}) & last_i;

@@ -57,7 +57,7 @@ module victim_bytes #(
           COLOR_WIDTH'(clear_color_i) & {COLOR_WIDTH{clears_color && is_written[s]}};
     end
     if (COMPRESSES) begin : gen_compress
-      // The slot's colours over those read from memory; or the first sample of each pixel.
+      // The slot's colours over the colours read from memory; or the first sample of each pixel.
       logic [SAMPLES*COLOR-1:0] all_color;
       logic [SAMPLES-1:0]       here;
       assign here         = color_strobe_i & {SAMPLES{is_here_i}};

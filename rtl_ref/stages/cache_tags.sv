@@ -4,7 +4,7 @@
 // In: fragments, in program order. Out: items for the test, each with the result of its tag lookup, and orders: write
 // back a number of evicted blocks, then read a stamp of depth, and with blending one of colour. A fragment becomes an
 // item in three cycles, one per cycle: its line is read, compared, and the result leaves. Where the flag of a cleared
-// block falls, a fragment of another block than the one before waits a cycle (clear_flags). Tokens stay until all their
+// block falls, a fragment of another block than the previous one's waits a cycle (clear_flags). Tokens stay until all their
 // work is done: a walk over the lines that evicts the dirty ones, the marks of a fast clear, a word of flags a cycle,
 // or a flush's requests. The words of a fast clear of one bin also hold flags of other bins: each is read, then
 // written. Specification: model/stages/cache_tags.hpp.

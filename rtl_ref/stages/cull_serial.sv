@@ -125,8 +125,8 @@ module cull_serial (
 
   // -------------------------------------------------------------------------------------------------------------- box
   // The first and the last pixel whose centre is not before, not after a vertex. The box is from the smallest first to
-  // the largest last of the three vertices, cut by the scissor; a cycle a vertex, one for the scissor, one to see what
-  // is left.
+  // the largest last of the three vertices, cut by the scissor; a cycle a vertex, one for the scissor, one to check whether
+  // a pixel is left.
   localparam int B = C + 1;      // a coordinate plus half a pixel
   localparam int N = C - S + 1;  // bits of a pixel in the guard band, or one outside it
   localparam logic signed [B-1:0] HALF = B'(1 << (S - 1));

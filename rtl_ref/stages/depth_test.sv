@@ -62,7 +62,7 @@ module depth_test (
   logic [SAMPLES*COLOR-1:0] color_q;
   logic [SAMPLES*CODE-1:0]  depth;
   logic [SAMPLES-1:0]       is_nearer, passes_stencil;  // passes the depth test; the stencil test
-  logic [SAMPLES-1:0]       passed, kept;  // samples that pass both, and of those the alpha test
+  logic [SAMPLES-1:0]       passed, kept;  // samples that pass both, and samples that pass the alpha test too
   logic [SAMPLES-1:0]       opaque;        // samples that pass the alpha test, if it is here
   logic [SAMPLES-1:0]       takes;         // samples whose depth is written
   logic [SAMPLES-1:0]       changes;       // samples whose stored word is

@@ -37,7 +37,7 @@ module fine_raster (
   localparam int PIXELS = raster_pkg::PIXELS;   // pixels of a stamp
   localparam int CENTRES = PER_ROW * PIXELS;
   localparam int S = raster_pkg::GRID_BITS;
-  localparam int ROW = PER_ROW * SAMPLES;  // samples of a row of stamps; those of one stamp are neighbours
+  localparam int ROW = PER_ROW * SAMPLES;  // samples of a row of stamps; samples of one stamp are neighbours
   localparam int COLUMN = PER_ROW > 1 ? $clog2(PER_ROW) : 1;
 
   // -------------------------------------------------------------------------------------------------------------- rows

@@ -5,7 +5,7 @@
 //   x, y  from the anchor to the stamp's first sample; from there to each sample, of which the code is a part
 // Step y ends in a block RAM, from which a fragment is also offered: at most three wait there, the newest in step y,
 // the others as in a skid buffer. So later stages wait for the framebuffer by registers alone. The fields that decide
-// first, whether and what a fragment accesses, stand in registers all the way. Specification:
+// first, the accesses of a fragment, stand in registers all the way. Specification:
 // model/stages/interpolate.hpp.
 module interpolate_serial (
     input logic clk_i,

@@ -9,7 +9,7 @@
 //   8     held between the draw's least and largest
 //   9     which levels, and which filter
 // The samples of 2x2 share N_y along a row and N_x along a column; the odd ones are one step further. The lines come in
-// parts, each shifted in after the ones before, and hold for later samples; the levels of a draw stay while samples are
+// parts, each shifted in after the earlier parts, and hold for later samples; the levels of a draw stay while samples are
 // under way. A fixed pipeline without enables. Specification: level_of_detail of model/stages/level_of_detail.hpp,
 // filter_of of texture_sample.hpp, TextureLevels and TextureLines of texture_levels.hpp.
 module level_of_detail #(

@@ -1,7 +1,7 @@
 // Light stage: light_unit in the stream of tested stamps. The normals of a fragment end here; its other fields go
 // along.
 //
-// A stamp never waits on its way in: depth_cache counts those inside. Without normals stamps pass as they are.
+// A stamp never waits on its way in: depth_cache counts the stamps inside. Without normals stamps pass as they are.
 // Specification: model/stages/light_unit.hpp, texture_stage.hpp.
 module light_stage #(
     parameter int PIXELS = raster_pkg::PIXELS,  // derived; not to be set

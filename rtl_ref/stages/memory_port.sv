@@ -7,7 +7,7 @@
 // In: requests, in program order; a run of them is a burst, whose length the first request gives. Out: beats, each with
 // its byte address and the number of beats left in its burst. A request waits a cycle in a register, which takes the
 // next one in the cycle in which its last beat moves. Answers come in the order of the bursts: each beat that was read,
-// and one word for each burst that was written. Those are counted, so idle_o means written, not taken.
+// and one word for each burst that was written. Bursts are counted, so idle_o means written, not taken.
 //
 // Reset: power_on_ni resets the port, rst_ni everything upstream of it at any time, for a cycle at least. A burst under
 // way is then ended with beats that write nothing, and the answers that are still to come are dropped; only then
@@ -223,7 +223,7 @@ module memory_port (
   logic [ADDRESS-TILE-1:0] above_q;
   logic [LENGTH-1:0]  length_q;  // beats left in the burst
   localparam bit SEVERAL = WORD > BYTES;  // beats in a word
-  logic [7:0]         more_q;    // beats of the word after the one on offer
+  logic [7:0]         more_q;    // beats of the word after the beat on offer
   logic [8*WORD-1:0]  data_q;
   logic [WORD-1:0]    strobe_q;
   logic [7:0]         writes_q, writes;  // bursts without an answer: now, and from the next cycle on

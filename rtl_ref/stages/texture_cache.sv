@@ -81,7 +81,7 @@ module texture_cache #(
   logic [LINE-1:0]   sweep_q;
   logic [LINE-1:0]   tag_write_line;
   logic [NUMBER+28:0] tag_new;
-  logic [COUNT-1:0]  issued_q, read_q;  // samples that have left the tags; samples of those that have been read
+  logic [COUNT-1:0]  issued_q, read_q;  // samples that have left the tags; samples among them that have been read
   logic [COUNT-1:0]  last;              // number of the last sample that has left
   logic              waiting_ready, waiting_valid, reads;
   logic              may_ask, answers_are_idle;

@@ -1,6 +1,6 @@
 // Texture stage: texture_unit in the stream of tested stamps, and the fields of fragments and tokens that it uses.
 //
-// A stamp never waits on its way in: depth_cache counts those inside, at most SHADED_STAMPS.
+// A stamp never waits on its way in: depth_cache counts the stamps inside, at most SHADED_STAMPS.
 // Specification: model/stages/texture_stage.hpp.
 module texture_stage #(
     parameter int PIXELS = raster_pkg::PIXELS,  // derived; not to be set

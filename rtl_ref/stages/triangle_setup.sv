@@ -3,8 +3,8 @@
 //
 // A triangle goes from phase to phase, a cycle each. A part is a group of phases as long as all planes take, a cycle or
 // two each (setup.plane_clocks); a part holds one triangle, which waits in its last phase until the next part is free.
-// Plane p is processed p or 2 p phases after plane 0, so that planes follow each other, and those of one triangle
-// follow those of the triangle before:
+// Plane p is processed p or 2 p phases after plane 0, so that planes follow each other, and planes of one triangle
+// follow the previous triangle's planes:
 //   divide       the highest bit of the area; R = floor(2^k / A + 1/2), two quotient bits a cycle
 //                (for each plane as many bits of R as its codes need, rounded separately)
 //   differences  of the codes, and their ranges
@@ -149,7 +149,7 @@ module triangle_setup (
   // Non-restoring division of 2^m, from the bit before the point, which is 1 only for A = 2^m. The sign of the
   // remainder less the area is the next bit. A negative remainder is not restored: the next step adds the area instead
   // of subtracting it. So the chain subtracts or adds, and the register holds twice its last result. Each divider
-  // continues the one before it.
+  // continues the previous one.
   localparam int AREA_AT = 3 * raster_pkg::EDGE_VALUE_BITS +  // in a packet
                            (raster_pkg::MSAA_SAMPLES > 1 ? 3 * raster_pkg::GRID_BITS : 0);
   localparam int REMAINDER = A + 2;                          // bounds: -2 A <= remainder < 2 A

@@ -62,7 +62,7 @@ module triangle_setup_serial (
   localparam logic [3:0] IDLE = 4'd0, SUBTRACT = 4'd1, FIRST = 4'd2, TURN_A = 4'd3, SECOND = 4'd4, GRADIENT = 4'd5,
       TURN_B = 4'd6, TURN_C = 4'd7, VALUE_X = 4'd8, TURN_D = 4'd9, VALUE_Y = 4'd10, OFFER = 4'd11, TAKE = 4'd12;
   (* fsm_encoding = "none" *) logic [3:0] state_q;
-  logic             is_x_q;  // the numerators and gradients in progress are those of x
+  logic             is_x_q;  // the numerators and gradients in progress are of x
   logic [UNIT-1:0]  unit_q;  // plane, or word of the ring
   logic [COUNT-1:0] bit_q, last_bit, shift_q;  // shift_q: SHIFT + LEAD - 1
   logic             keeps_q;  // GRADIENT: the dropped bits have passed

@@ -265,7 +265,7 @@ module write_back #(
     end
   endgenerate
 
-  // --------------------------------------------------- the request: a victim's stamp, a read, or what a flush writes
+  // --------------------------------------------------- the request: a victim's stamp, a read, or a flush's write
   logic [raster_pkg::TILE_X_BITS-1:0]      sent_tile_x;
   logic [raster_pkg::TILE_Y_BITS-1:0]      sent_tile_y;
   logic [raster_pkg::STAMP_INDEX_BITS-1:0] sent_index;

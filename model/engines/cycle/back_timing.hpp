@@ -36,7 +36,7 @@ struct TimingTotals {
   Cycle first_primitive = 0;        ///< the cycle in which the first triangle, point or line was taken
   Cycle last_write = 0;             ///< the last write into the on-chip tiles
   std::uint64_t tile_cycles = 0;    ///< between these two: the framebuffer moved tiles and served no access
-  std::uint64_t hazard_cycles = 0;  ///< tiles: a fragment waited for the write of the one before
+  std::uint64_t hazard_cycles = 0;  ///< tiles: a fragment waited for the write of the previous fragment
   std::uint64_t move_cycles = 0;    ///< of the whole run: the framebuffer served no access
   std::uint64_t memory_cycles = 0;  ///< of move_cycles: waiting for a request or an answer
   std::uint64_t bound_cycles = 0;   ///< coarse_raster waited for a visit to retire before it read a bound
@@ -395,7 +395,7 @@ class BackTiming {
 
   /// Writes of these stamps of a tile: a stamp is read out of the RAMs, from `cycle` on, and offered in the next cycle;
   /// the next stamp is read when it is taken. A row without stamps takes a cycle, the last row none. `cycle` becomes
-  /// the one after the last request and row.
+  /// the cycle after the last request and row.
   void write_stamps(Cycle& cycle, const TileAddress& address, const StampRows& rows, bool is_whole, MoveCause cause) {
     const int per_row = widths_.stamps.stamps_per_row;
     Cycle first = 0, taken = 0;

@@ -10,7 +10,7 @@
 //   t(m) = max(s(m) + 1, x(m-queue) + 1, room for an order, if a flag falls: two cycles after the last fall)
 //   moved(m) >= s(m-1), and not the cycle after a t in which a flag fell, unless it is in the block of the fragment
 //   before
-//   requests: those of the order before, then evictions that both stages have finished, then the read, a request a
+//   requests: of the previous order, then evictions that both stages have finished, then the read, a request a
 //   cycle
 //   x(m) = max(t + 2, x(m-1) + 1, the read's answer + 1, w(m-2)), whatever the stamp before
 //   w(m) = max(x + 2, w(m-1) + 1); with a texture unit between x and w given by texture_timing.hpp

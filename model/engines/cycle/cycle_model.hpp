@@ -74,7 +74,7 @@ struct CycleRendering {
 };
 
 /// Frame after frame through one chip and its memory. With frame.order bins and frame.store color, bins whose content
-/// equals what the frame draws in them are skipped.
+/// equals the frame's drawing in them are skipped.
 class CycleFrames {
  public:
   /// `memory` and the objects that `options` points to must outlive this. Throws InputError as make_cycle_model().

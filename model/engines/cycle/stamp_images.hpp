@@ -60,7 +60,7 @@ class StampImages {
     });
   }
 
-  /// Whether in each pixel of the stamp all samples are in `mask` and stored alike, or none is.
+  /// Whether in each pixel of the stamp all samples are in `mask` and stored equally, or none is.
   [[nodiscard]] bool has_one_color(SampleMask mask) const {
     return halfplane::has_one_color(mask, widths_, [&](std::size_t s) { return color(s); });
   }

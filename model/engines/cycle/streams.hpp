@@ -1,4 +1,4 @@
-// A run of the cycle model as seen from outside: when items cross the arrows of the pipeline, and what stalls them.
+// A run of the cycle model as seen from outside: when items cross the arrows of the pipeline, and the causes of stalls.
 #pragma once
 
 #include <array>

@@ -26,7 +26,7 @@
 //   b(i) = max(f(i) + 1, a(i-1))    its coordinates are on their level
 //   a(i) = max(b(i) + 1, t(i-1), tags swept)
 //
-// and the first of two passes does not reach e: it ends in the filter's last stage, a clock after the one before.
+// and the first of two passes does not reach e: it ends in the filter's last stage, a clock after the previous pass.
 //
 // With four lanes n counts groups, and a group goes through cache and filter in one pass or more, of samples that
 // agree. Their lines are requested one by one, also without a linear filter, and a register holds a pass upstream of

@@ -76,7 +76,7 @@ struct SerialCycles {
   [[nodiscard]] Cycle setup(int log2_area) const {
     const int delta = widths_.delta.bits, fraction = widths_.plane_fraction, kept = widths_.reciprocal.bits;
     const int lead = std::max(fraction + 3 - kept, 0);
-    const int dropped = lead - fraction - 2 + log2_area + kept;  // bits of a product below those of the gradient
+    const int dropped = lead - fraction - 2 + log2_area + kept;  // bits of a product below the gradient's bits
     int chain = 0, gradient = 0;                                 // cycles of one pass over all planes
     for (std::size_t p = 0; p < static_cast<std::size_t>(widths_.planes); ++p) {
       const int bits = widths_.of_plane(p).plane.bits;

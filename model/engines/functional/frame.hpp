@@ -42,7 +42,7 @@ inline constexpr int kSmallPixelBits = 4, kMediumPixelBits = 5;
 struct SliceState : FragmentState {
   bool is_flat = false;      ///< the colour of the first vertex is used
   bool is_opaque = true;     ///< a passing fragment replaces the stored values, a failing one has no effect
-  bool has_surface = false;  ///< colours are those of surface.hpp
+  bool has_surface = false;  ///< colours are computed by surface.hpp
   bool is_masked = false;    ///< no colour channel is written or read
 };
 
@@ -63,7 +63,7 @@ static_assert(sizeof(VertexRow) == 16 && offsetof(VertexRow, y) == 4 && offsetof
   return channel[0] | channel[1] << 8 | channel[2] << 16 | channel[3] << 24;
 }
 
-/// The one place where a snapped vertex of the host side becomes a row.
+/// The only place where a snapped vertex of the host side becomes a row.
 [[nodiscard]] inline VertexRow row_of(const SnappedVertex& v) { return {v.x, v.y, v.depth(), packed_channels(v.code)}; }
 
 enum class RecordKind : std::uint8_t { triangle, whole_line, cut_line, rectangle };
@@ -115,7 +115,7 @@ struct Slice {
   bool is_wide = false;
   std::vector<VertexRow> vertices;
   /// Attributes of each vertex, where the state has surfaces; normals where fragments are lit. They are the prepared
-  /// scene's, if the slice's vertices are exactly those.
+  /// scene's, if the slice has exactly these vertices.
   const SurfaceRow* surface = nullptr;
   const Normal* normals = nullptr;
   std::vector<SurfaceRow> own_surface;  ///< else these copies
@@ -158,7 +158,7 @@ struct TileStates {
       held;  ///< the same bits: the target's memory holds that clear, from this frame or an earlier one
 };
 
-/// Bits of a code below those that a range keeps.
+/// Bits of a code below the bits that a range keeps.
 [[nodiscard]] inline int range_drop(const Config& config) { return std::max(config.depth_bits - 16, 0); }
 
 /// The bin being drawn.

@@ -91,7 +91,7 @@ class FrameRenderer {
   std::uint32_t primitive_ = 0;
   std::size_t entries_done_ = 0;
   std::vector<Counters> bin_counters_;
-  bool compares_ = false;             ///< compares bins with those of the frame before
+  bool compares_ = false;             ///< compares bins with the previous frame's
   std::vector<Signature> held_bins_;  ///< content of each bin of the frame; empty: unknown
   std::vector<Signature> texels_;     ///< of each texture, where bins are compared
 };

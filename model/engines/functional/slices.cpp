@@ -31,7 +31,7 @@ inline void add_record(Slice& slice, const Record& record, std::size_t room) {
   slice.records[slice.record_count++] = record;
 }
 
-/// Appends the attributes over w of a triangle's vertices, before the vertices. Those of the scene are copied first.
+/// Appends the attributes over w of a triangle's vertices, before the vertices. The scene's own attributes are copied first.
 void add_surface_vertices(Slice& slice, const Triangle& triangle) {
   const bool is_lit = slice.normals != nullptr;
   if (slice.surface != slice.own_surface.data()) {

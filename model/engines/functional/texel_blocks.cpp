@@ -76,7 +76,7 @@ void TexelBlocks::add_quads(const std::array<TextureWrap, 2>& wrap) {
     for (int y = 0; y < height; ++y) {
       const int below = next(y, height, wrap[1]);
       for (int x = 0; x < width; x += kSize) {
-        // The texels of a block's row, of the row below, and the ones next to their ends.
+        // The texels of a block's row, of the row below, and the texels next to their ends.
         const int count = std::min(kSize, width - x), right = next(x + count - 1, width, wrap[0]);
         const std::uint32_t *const upper = row_of(n, x, y), *const lower = row_of(n, x, below);
         Quad* const quad = quads.data() + place_of(n, x, y);

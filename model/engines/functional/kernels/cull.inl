@@ -140,7 +140,7 @@ struct CullLanes {
     std::uint32_t lanes, slow = 0,
                          frustum = 0;   ///< present; on the slow path; outside a plane of the view volume
     std::uint32_t zero, culled, empty;  ///< of the others, by the first reason that holds
-    std::uint32_t drawn, sampleless;    ///< of the rest; of these the ones without a sample
+    std::uint32_t drawn, sampleless;    ///< drawn triangles; among them triangles without a sample
   };
 
   /// The corners and boxes of triangles whose t.v is known.

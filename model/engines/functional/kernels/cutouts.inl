@@ -341,7 +341,7 @@ HALFPLANE_INLINE std::int16_t add_plane(Bin& bin, const BinTriangle& t) {
   return static_cast<std::int16_t>(bin.plane_count++);
 }
 
-/// The samples of a tile that a triangle covers, and those that have passed the depth test: a bit per pixel.
+/// The samples of a tile that a triangle covers, and the samples that have passed the depth test: a bit per pixel.
 struct SamplePixels {
   std::uint64_t centre = ~std::uint64_t{0};
   PixelsOfSamples covered, passed;

@@ -1,4 +1,4 @@
-// Fragments with operations beyond those of opaque ones and of operations.inl: one by one, tile after tile, nothing
+// Fragments with operations that neither opaque fragments nor operations.inl have: one by one, tile after tile, nothing
 // skipped or deferred. A triangle of any size is set up alone. For draws with a stencil;
 // RenderOptions::general_fragments uses it for all.
 #pragma once

@@ -12,7 +12,7 @@
 namespace halfplane::functional::HALFPLANE_ISA_NAME {
 namespace {
 
-/// Unrolled over the registers of a pack: GCC takes packs apart before it unrolls loops, and otherwise keeps those of
+/// Unrolled over the registers of a pack: GCC takes packs apart before it unrolls loops, and otherwise keeps the registers of
 /// four registers and more in memory.
 #define HALFPLANE_PART(parts, i, at, ...) \
   if constexpr ((parts) > at) {           \

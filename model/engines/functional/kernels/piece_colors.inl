@@ -49,7 +49,7 @@ class BlockPieces {
     const I16 in_group = load_narrow(numbers) & 15;
     of_two_ = select_by_bits(lanes_[1], in_group + 16, in_group, to_sign);
   }
-  /// Lane by lane the rows of the pixel's piece, `first` being those of the first group; 0 for a pixel without a piece.
+  /// Lane by lane the rows of the pixel's piece, `first` being the rows of the first group; 0 for a pixel without a piece.
   /// `group_size`: bytes from one group to the next.
   template <std::size_t N>
   HALFPLANE_INLINE void rows(const PieceRow* const (&first)[N], std::size_t group_size, ColumnsOfRows<N>& to) const {

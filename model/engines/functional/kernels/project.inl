@@ -1,4 +1,4 @@
-// Viewport and cull, lanes at a time: the bits of stages/viewport and stages/cull for what needs no clipping. Triangles
+// Viewport and cull, lanes at a time: the bits of stages/viewport and stages/cull for vertices that need no clipping. Triangles
 // that need clipping, or may not be drawn at all, take the slow path: the host side's own function, which makes the
 // messages.
 #pragma once

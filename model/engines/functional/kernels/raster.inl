@@ -87,7 +87,7 @@ HALFPLANE_INLINE std::uint64_t seen_tiles(Bin& bin, const Record& record, const 
   return tiles & ~behind;
 }
 
-/// Draws a triangle or rectangle alone, in those of its tiles that are `live`.
+/// Draws a triangle or rectangle alone, in its `live` tiles.
 template <class Fragments>
 HALFPLANE_INLINE void draw_alone(Bin& bin, const Slice& slice, const Record& record, const BinBounds& box,
                                  std::uint64_t live) {

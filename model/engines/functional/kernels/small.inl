@@ -75,7 +75,7 @@ struct Coverage {
   using Blocks = std::array<std::uint16_t, kMost * Quad::kBlocks>;
   std::size_t quads = 0;
   unsigned pixels = 0;
-  std::array<std::uint8_t, kMost> lane, first;  ///< and the quad's first block, among those of the window
+  std::array<std::uint8_t, kMost> lane, first;  ///< and the quad's first block, among the window's blocks
   alignas(64) Blocks block;
 
   HALFPLANE_INLINE Coverage() = default;

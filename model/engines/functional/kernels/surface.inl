@@ -117,7 +117,7 @@ HALFPLANE_INLINE ColorPairs texels_at(const LaneTexture& texture, const Coordina
 }
 
 /// Colours of a tile's `pixels`. Each step runs for all four blocks before the next: the steps of one block depend on
-/// each other, and would hide those of the next block from the scheduler.
+/// each other, and would hide the loads of the next block from the scheduler.
 template <Sampling kSampling>
 HALFPLANE_NOINLINE void shade(Bin& bin, const DrawnSurface& surface, int tile, std::uint64_t pixels,
                               std::uint32_t* const colors, ColorFormat format) {

@@ -12,7 +12,7 @@ struct CoordinateLanes {
   I16 u, v;
 };
 
-/// The coordinate along an axis from a quotient of over_q(). Far beyond the image all texels are alike, and so 32 bits
+/// The coordinate along an axis from a quotient of over_q(). Far beyond the image all texels are equal, and so 32 bits
 /// hold twice that.
 template <class Reference>
 HALFPLANE_INLINE I16 on_axis(const LaneTexture& texture, std::size_t axis, const I16& u, const Reference& reference) {

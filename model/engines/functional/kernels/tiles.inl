@@ -440,7 +440,7 @@ HALFPLANE_INLINE void take_out(std::uint64_t& live, std::uint64_t out, std::uint
   live &= ~out;
 }
 
-/// Draws a triangle or rectangle alone. Of its `live` tiles, those outside its edges are rejected first, then hidden
+/// Draws a triangle or rectangle alone. Among its `live` tiles, tiles outside its edges are rejected first, then hidden
 /// ones: depths are set up for the rest, then colours.
 template <class Fragments, class Samples>
 HALFPLANE_INLINE void draw_large(Bin& bin, const Slice& slice, const Record& record, std::uint64_t live,
