@@ -24,7 +24,7 @@ int fail(ExitStatus status, std::string message) {
   return status;
 }
 
-/// CLI11 names what a command lacks, but not a command that does not exist.
+/// CLI11 names missing arguments of a command, but not a command that does not exist.
 void check_command(const CLI::App& app, int argc, char** argv) {
   if (argc < 2) throw InputError("no command; try `halfplane render teapot -o teapot.png` or `halfplane --help`");
   const std::string word = argv[1];

@@ -156,7 +156,7 @@ inline ApiCase api_case(std::span<const std::uint8_t> data) {
 
 /// The scene through a Target, command by command, by one to three threads.
 inline Rendering by_target(const Scene& scene, const Config& config) {
-  validate(scene);  // as a whole, as the others do: a Target has drawn what comes before a bad command
+  validate(scene);  // as a whole, as the others do: a Target has drawn the commands before a bad one
   check_scene(scene, config);
   Target target(config, scene.width, scene.height, scene.planes);
   target.set_threads(1 + static_cast<int>(scene.vertices.size() % 3));
@@ -224,7 +224,7 @@ inline std::string api_fault(const ApiCase& input) {
   if (is_valid != unwritten.empty()) return "write_capture and validate differ: " + unwritten;
   if (!is_valid) return {};
   const Scene again = read_capture(text.str(), "again.hpt");
-  if (!scalar.rendering) return {};  // the capture leaves out what draws nothing, and may then be drawn
+  if (!scalar.rendering) return {};  // the capture leaves out draws without effect, and may then be drawn
   const Outcome read = outcome_of([&] { return render_scalar(again, config); });
   if (!read.rendering) return "refused by capture: " + read.refusal;
   if (scalar.rendering->frame.depth != read.rendering->frame.depth) return "another depth by capture";

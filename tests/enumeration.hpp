@@ -1,7 +1,7 @@
 // Proofs by enumeration: every case of a claim at the widths of `tiny`, through the functions of model/stages.
 //
 // Each counts its cases, and must find the claim broken once the rule is. By itself each takes a second or two; with
-// HALFPLANE_EXHAUSTIVE=whole (./dev prove) the ranges are wider. docs/proofs.md says what follows from what.
+// HALFPLANE_EXHAUSTIVE=whole (./dev prove) the ranges are wider. docs/proofs.md says which claims follow.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // The functional engine's fast path against the scalar engine: image and program-order counters, whatever the thread
-// count, the instruction set and what may be skipped.
+// count, the instruction set and the skips.
 #pragma once
 
 #include <gtest/gtest.h>

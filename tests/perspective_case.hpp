@@ -164,7 +164,7 @@ class OverWRandom {
   std::mt19937_64 engine_;
 };
 
-/// Calls visit(x, y, weight) for some pixels inside: those nearest to the vertices, and others from all over the box.
+/// Calls visit(x, y, weight) for some pixels inside: the pixels nearest to the vertices, and others from all over the box.
 template <class Visit>
 void for_some_pixels(const OverWTriangle& t, const TriangleSetup& setup, const PerspectiveDesign& design, int others,
                      OverWRandom& random, Visit&& visit) {

@@ -100,7 +100,7 @@ std::vector<VariedConfig> varied_configs(const Config& base, const std::vector<V
   return configs;
 }
 
-/// Loads a scene once for all configurations that load it alike.
+/// Loads a scene once for all configurations that load it equally.
 class BenchScenes {
  public:
   explicit BenchScenes(const BenchCommand& options) : options_(options) {}

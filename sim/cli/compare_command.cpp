@@ -175,7 +175,7 @@ std::vector<std::string> cycles_lines(const PerVertexCycles& cycles) {
           "    " + with + "; at vertices with shade.unit=0: " + with_commas(cycles.without_unit)};
 }
 
-/// The figures to look at first, for terminal and picture alike.
+/// The figures to look at first, for terminal and picture.
 std::vector<std::string> summary_lines(const Comparison& c, const std::optional<PerVertexCycles>& cycles,
                                        const std::vector<std::string>& bounds) {
   std::vector<std::string> lines{

@@ -64,7 +64,7 @@ std::string bound_text(const Width& width) {
   return formatted("%.6g", static_cast<double>(std::max(-width.range.lo, width.range.hi)));
 }
 
-/// The hardware's widths, then those of the scalar engine only.
+/// The hardware's widths, then widths of the scalar engine alone.
 std::vector<const Width*> all_widths(const Widths& widths, const HomogeneousWidths& homogeneous) {
   std::vector<const Width*> all = widths.all();
   const auto more = homogeneous.all();

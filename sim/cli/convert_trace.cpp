@@ -20,7 +20,7 @@ namespace {
 struct FrameRange {
   int first = 0, last = 0;
 };
-/// Throws InputError for what names no frames of a trace with so many.
+/// Throws InputError for ranges outside the trace's frames.
 FrameRange parse_frames(const std::string& text, int frames) {
   if (text.empty()) return {0, frames - 1};
   FrameRange range;
@@ -74,7 +74,7 @@ int convert_trace(const CommonOptions& options, const ConvertTraceOptions& trace
     if (number < range.first) return;
     written.push_back(gl::saved_name(driver, number));
     std::error_code ignored;
-    std::filesystem::remove(written.back(), ignored);  // so that what is there later is this frame
+    std::filesystem::remove(written.back(), ignored);  // so that the file, if it exists, is this frame's
   };
   gl::replay(options.scene, contents, driver, range.last + 1, hooks);
   int status = exit_ok;

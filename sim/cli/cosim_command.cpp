@@ -47,7 +47,7 @@ Session run_stimulus(const CosimOptions& options, const Config& config, Dut& dut
   lockstep.trace = options.trace_path;
   lockstep.trace_first = window.first;
   lockstep.trace_last = window.last;
-  std::uint64_t primitives = 0, before = 0;  // given out, and of those before the scene at work
+  std::uint64_t primitives = 0, before = 0;  // primitives given out, and primitives before the current scene
   const auto counted = [&]() -> std::optional<Scene> {
     auto scene = source();
     before = primitives;

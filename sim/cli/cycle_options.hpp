@@ -1,4 +1,4 @@
-// Options and output of `render --engine cycle` beyond those of every engine.
+// Options and output of `render --engine cycle` beyond the options and output of every engine.
 #pragma once
 
 #include <iosfwd>

@@ -40,7 +40,7 @@ struct ModelPicture {
   std::uint64_t cycles = ~0ULL;  ///< limit: four times the RTL's own
 };
 
-/// One seeded fault and what became of it.
+/// One seeded fault and its result.
 struct Verdict {
   Mutant mutant;
   std::optional<Mismatch> mismatch;

@@ -23,7 +23,7 @@ struct PlannedFrame {
   bool goes_on = false;  ///< on the picture of the frame before
 };
 
-/// One frame's figures, in the order of the columns of --csv: those of `halfplane render`.
+/// One frame's figures, in the order of the columns of --csv.
 Json frame_row(int frame, const Moment& moment, const Rendering& rendering, const CycleFacts& facts,
                const RenderCommand& options, const Config& config) {
   Json row{{"frame", frame}, {"time", moment.time}, {"turn", moment.turn}};
@@ -42,7 +42,7 @@ Json frame_row(int frame, const Moment& moment, const Rendering& rendering, cons
   return row;
 }
 
-/// Throws InputError if a frame draws on the picture of the one before, and the engine no longer has it.
+/// Throws InputError if a frame draws on the picture of the previous frame, and the engine no longer has it.
 void refuse_to_go_on(const RenderCommand& options, std::size_t frame) {
   const bool keeps = options.engine == "functional" || options.engine == "scalar";
   if (keeps && options.supersample.empty()) return;

@@ -141,7 +141,7 @@ Json driver_options(const RunCommand& options, const Config& config, const Frame
           {"results", folder.file("results")}};
 }
 
-/// This program's environment, with what leads the program to the driver.
+/// This program's environment, with the variables that lead the program to the driver.
 std::vector<std::string> environment(const RunFolder& folder, const Json& driver) {
   const std::filesystem::path libraries = driver_folder();
   const Json vendor{{"file_format_version", "1.0.0"},
@@ -170,10 +170,10 @@ std::vector<char*> pointers(const std::vector<std::string>& words) {
   return list;
 }
 
-/// The program, and whoever it starts. From a terminal it stays in the terminal's group, so that Ctrl-C and reading work.
+/// The program and its children. From a terminal it stays in the terminal's group, so that Ctrl-C and reading work.
 class Child {
  public:
-  /// `has_stdout`: else what it prints goes to stderr. Throws InputError when it cannot be started.
+  /// `has_stdout`: else its output goes to stderr. Throws InputError when it cannot be started.
   Child(const std::vector<std::string>& program, const std::vector<std::string>& environment, bool has_stdout) {
     has_group_ = isatty(STDIN_FILENO) == 0;
     const std::vector<char*> words = pointers(program), variables = pointers(environment);
@@ -284,7 +284,7 @@ class ResultLines {
   bool keeps_rows_;
 };
 
-/// A frame's figures without the ones that not every frame has.
+/// The figures that every frame has.
 Json csv_rows(const Json& rows) {
   Json list = Json::array();
   for (Json row : rows) {

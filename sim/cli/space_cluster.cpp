@@ -62,7 +62,7 @@ Json read_json(const fs::path& path) {
 void write_cluster(const CommonOptions& common, const SpaceOptions& options, const std::vector<BenchCase>& cases,
                    const std::function<std::string(const BenchCase&)>& arguments, const SpaceStudy& study) {
   if (options.wants_area)
-    (void)Gates(options.rtl, options.cache, options.parts);  // reports early what would be missing on the cluster
+    (void)Gates(options.rtl, options.cache, options.parts);  // reports early the tools that the cluster would miss
   std::error_code error;
   const fs::path folder = fs::absolute(options.slurm, error).lexically_normal();
   for (const char* part : {"points", "logs"}) {

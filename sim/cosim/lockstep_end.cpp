@@ -83,7 +83,7 @@ void Lockstep::explain_standstill(Mismatch& mismatch) {
                   (waiting.empty() ? "no stream holds a packet" : "offered and not taken: " + waiting);
 }
 
-/// Reports, of the packets that never came, the one of the earliest primitive: everything later waits for it.
+/// Reports the missing packet of the earliest primitive: everything later waits for it.
 void Lockstep::report_missing() {
   std::optional<Arrow> first;
   for (const Arrow arrow : kCompared) {

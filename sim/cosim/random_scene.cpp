@@ -121,7 +121,7 @@ class Generator {
   bool hiz_chunk_ = false;  // large triangles and `less`: many tiles for HiZ to reject
   bool has_lines_ = false, has_points_ = false;
   bool lines_raise_ = false;  // lines may raise depths, which disables HiZ until the next fast clear
-  bool is_pile_ = false;      // one triangle repeatedly: a stamp meets the one right ahead, a tile its last visit
+  bool is_pile_ = false;      // one triangle repeatedly: a stamp meets the previous stamp, a tile its last visit
   std::array<Point, 3> last_{};
   std::uint64_t last_depth_ = 0;  // code
 };
@@ -207,7 +207,7 @@ void Generator::set_samples() {
     if (random.next() % 3 == 0) state = random_state(state, rows, chooser(random));
 }
 
-/// Keeps, of the clears after a draw, only those of colours.
+/// Of the clears after a draw, keeps clears of colours alone.
 void Generator::drop_later_clears() {
   bool is_behind = false;
   std::erase_if(scene_.commands, [&](const Command& command) {

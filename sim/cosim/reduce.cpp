@@ -226,7 +226,7 @@ void Reducer::to_window_space() {
   if (has_other) try_items(items_of(window_scene(scene_, config_)));
 }
 
-/// Removes items after the failing primitive, which are rarely needed, and often most of those before it.
+/// Removes items after the failing primitive, which are rarely needed, and often most of the earlier items.
 void Reducer::cut_after_failure() {
   if (!best_.mismatch.primitive) return;
   std::size_t end = 0;

@@ -355,7 +355,7 @@ void morph_run(const GltfRun& run, const std::vector<double>& weights, Mesh& mes
   }
 }
 
-/// Transforms a run's vertices to world space, those of a skin by `joints`, and orients its triangles.
+/// Transforms a run's vertices to world space, the vertices of a skin by `joints`, and orients its triangles.
 void place_run(const GltfRun& run, const Mat4& node, const std::vector<Mat4>& joints, Mesh& mesh) {
   Placing placing = placing_of(node);
   std::vector<bool> is_mirrored;  // of each vertex of a skin

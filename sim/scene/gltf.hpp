@@ -40,7 +40,7 @@ struct GltfWorld {
 inline constexpr std::size_t kMostGltfTriangles = std::size_t{1} << 25;
 
 /// Reads the default scene. `file` is the name for messages. Each kind of warning comes once. Throws InputError "file:
-/// place: what; the remedy", also when the file has more than `most_triangles`, or none.
+/// place: the error; the remedy", also when the file has more than `most_triangles`, or none.
 [[nodiscard]] GltfWorld parse_gltf_world(std::string bytes, const std::string& file, const BufferSource& source,
                                          std::vector<std::string>& warnings,
                                          std::size_t most_triangles = kMostGltfTriangles);

@@ -99,7 +99,7 @@ void read_values(const GltfAccessor& output, const JsonPlace& place, GltfTrack& 
   }
 }
 
-/// Adds a channel of weights: for each keyframe those of all targets; for a spline all in-tangents, then all values,
+/// Adds a channel of weights: for each keyframe the weights of all targets; for a spline all in-tangents, then all values,
 /// then all out-tangents.
 void add_weights(const GltfAccessor& output, const JsonPlace& place, const GltfTrack& common,
                  std::vector<GltfTrack>& tracks) {

@@ -35,7 +35,7 @@ struct GltfAnimation {
 [[nodiscard]] std::size_t choose_animation(const GltfFile& file, const std::string& name);
 
 /// Reads entry `number` of the list of animations. Unsupported tracks (pointers) are left out; a channel of weights is
-/// a track for each morph target. Throws InputError "file: place: what; the remedy".
+/// a track for each morph target. Throws InputError "file: place: the error; the remedy".
 [[nodiscard]] GltfAnimation read_animation(GltfFile& file, std::size_t number);
 
 /// The value of a track at a time, a rotation normalised to length 1: constant before its first and after its last

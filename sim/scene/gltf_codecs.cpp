@@ -54,7 +54,7 @@ std::string meshopt_fault(const MeshoptStream& stream, std::size_t packed_bytes)
                         (stream.filter == "QUATERNION" && stream.stride == 8) || stream.filter == "EXPONENTIAL");
     if (!is_filter) return "filter '" + stream.filter + "' for elements of " + std::to_string(stream.stride) + " bytes";
   }
-  // A byte can state at most that 64 are equal to those before: no larger memory is allocated.
+  // A byte can state at most that 64 are equal to earlier ones: no larger memory is allocated.
   constexpr std::uint64_t kMostRatio = 256;
   if (stream.count * stream.stride > packed_bytes * kMostRatio)
     return std::to_string(packed_bytes) + " bytes cannot hold " + std::to_string(stream.count) + " elements";

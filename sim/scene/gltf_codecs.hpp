@@ -42,7 +42,7 @@ struct DracoMesh {
 
 /// Whether these are the bytes of a WebP image.
 [[nodiscard]] bool is_webp(ByteSpan bytes);
-/// The image's texels. Throws InputError: "`what`: what is wrong".
+/// The image's texels. Throws InputError: "`what`: the error".
 [[nodiscard]] TexelImage decode_webp(ByteSpan bytes, const std::string& what);
 
 }  // namespace halfplane

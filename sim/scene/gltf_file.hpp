@@ -18,11 +18,11 @@ namespace halfplane {
 
 // A value in a JSON document that knows its place, so that every error names file and place.
 
-/// Parses a whole text. Throws InputError "file:line: what; the remedy" when it is not JSON.
+/// Parses a whole text. Throws InputError "file:line: the error; the remedy" when it is not JSON.
 [[nodiscard]] std::shared_ptr<const nlohmann::json> parse_json(std::string_view text, const std::string& file);
 
 /// One value and its path from the root, as `nodes[3].mesh`. A view: document and file name must outlive it. Every read
-/// of a value of another kind throws InputError "file: path: what; the remedy".
+/// of a value of another kind throws InputError "file: path: the error; the remedy".
 class JsonPlace {
  public:
   JsonPlace(const nlohmann::json& value, const std::string& file, std::string path = "")
@@ -56,7 +56,7 @@ class JsonPlace {
   /// This value as an index into a list of `count` things called `what` ("meshes").
   [[nodiscard]] std::size_t index(std::size_t count, std::string_view what) const;
 
-  /// Throws InputError "file: path: what; remedy".
+  /// Throws InputError "file: path: the error; the remedy".
   [[noreturn]] void fail(const std::string& what, const std::string& mend) const;
 
   [[nodiscard]] const std::string& path() const { return path_; }

@@ -33,7 +33,7 @@ struct GltfCameraNode {
   CameraRequest lens;
 };
 
-/// A light of KHR_lights_punctual at a node: in the node's space at the origin, shining along -z. Its colours are those
+/// A light of KHR_lights_punctual at a node: in the node's space at the origin, shining along -z. Its colours are the colours
 /// of a white surface facing it, at a distance of 1 if the light has a place.
 struct GltfLightNode {
   std::size_t node = 0;  ///< in GltfNodes::nodes
@@ -55,7 +55,7 @@ struct GltfCamera {
   CameraRequest request;
 };
 
-/// Walks the default scene, without what KHR_node_visibility hides: `scene`, else the first one, else (a file without
+/// Walks the default scene, without nodes that KHR_node_visibility hides: `scene`, else the first one, else (a file without
 /// scenes) every node that is no child. Throws InputError when the nodes are no forest, and for a degenerate camera.
 [[nodiscard]] GltfNodes walk_nodes(GltfFile& file, std::vector<std::string>& warnings);
 

@@ -15,7 +15,7 @@ namespace halfplane {
 inline constexpr std::size_t kMostMeshTexels = std::size_t{1} << 27;
 
 /// Appends an image as rgba8888 and returns its number. Its name is `wanted` as a word of a capture, made unique.
-/// Throws InputError "place: what; the remedy" when the texels exceed `most`.
+/// Throws InputError "place: the error; the remedy" when the texels exceed `most`.
 [[nodiscard]] std::uint32_t add_texture(std::vector<Texture>& textures, const TexelImage& image,
                                         std::string_view wanted, const std::string& place,
                                         std::size_t most = kMostMeshTexels);

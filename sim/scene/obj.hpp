@@ -27,7 +27,7 @@ using MaterialSource = std::function<std::optional<std::string>(const std::strin
 /// all have colours (which are not lit). Opacity (d, Tr, map_d) blends or cuts out. Corners without a normal get one
 /// smoothed over the faces of their smoothing group, weighted by the angle at the corner; `s off` makes flat ones;
 /// without any `s` line the whole file is one group. A missing library, material or image is a warning. Throws
-/// InputError "file:line: what; the remedy".
+/// InputError "file:line: the error; the remedy".
 [[nodiscard]] Mesh parse_obj(std::string_view text, const std::string& file, const MaterialSource& materials,
                              std::vector<std::string>& warnings);
 

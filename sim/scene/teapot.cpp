@@ -10,7 +10,7 @@ namespace {
 
 #include "sim/scene/teapot_patches.inc"
 
-// The weights of four control points at i / n, or those of the derivative.
+// The weights of four control points at i / n, or the weights of the derivative.
 using Weights = std::array<double, 4>;
 
 // Integers before the one division, so that i / n and (n - i) / n give the same weights in reverse.

@@ -39,7 +39,7 @@ class TextCursor {
   [[nodiscard]] std::uint32_t line() const { return line_; }
   [[nodiscard]] const std::string& file() const { return file_; }
 
-  /// Throws InputError "file:line: what; remedy".
+  /// Throws InputError "file:line: the error; the remedy".
   [[noreturn]] void fail(const std::string& what, const std::string& mend) const;
 
  private:
@@ -53,7 +53,7 @@ class TextCursor {
   std::uint32_t lines_passed_ = 0;  // line ends before at_, including joined ones
 };
 
-/// Throws InputError "file:line: what; remedy".
+/// Throws InputError "file:line: the error; the remedy".
 [[noreturn]] void fail_at(const std::string& file, std::uint32_t line, const std::string& what,
                           const std::string& mend);
 

@@ -36,7 +36,7 @@ class Judge final : public StageIo {
         result_.first->hint = "what comes here is the packet that should come next: this one was lost";
       return;
     }
-    if (may_be_extra && is_equal(list, at.next + 1, expected)) {  // so was the one before: an extra one
+    if (may_be_extra && is_equal(list, at.next + 1, expected)) {  // so was the previous packet: an extra packet
       at.next += 2;
       return;
     }

@@ -15,7 +15,7 @@ struct FieldDifference {
   std::uint64_t undefined = 0;          ///< bits of `got` without a value; they are 0 there
 };
 
-/// The first packet that differs; of several, the one that the stage sends first.
+/// The first packet that differs; of several, the packet that the stage sends first.
 struct FirstDifference {
   enum class Kind : std::uint8_t { differs, missing, extra };
   Kind kind = Kind::differs;

@@ -147,7 +147,7 @@ TEST(GltfCodecs, MeshoptFiltersGiveWhatTheExtensionSays) {
                                             number(0, 0),  number(3, 1),  number(0, 0), number(0, 0)};
   Json& primitive = b.mesh(b.add(packed_vertices(places.data(), 3, 12), "ATTRIBUTES", "EXPONENTIAL", 3, 12,
                                  GltfBuilder::f32, "VEC3", false));
-  // x, y and what is one: z is 1 - |x| - |y|.
+  // x, y and the value of one: z is 1 - |x| - |y|.
   const std::array<std::int8_t, 12> normals{0, 0, 127, 0, 127, 0, 127, 0, 0, -127, 127, 0};
   primitive["attributes"]["NORMAL"] =
       b.add(packed_vertices(normals.data(), 3, 4), "ATTRIBUTES", "OCTAHEDRAL", 3, 4, GltfBuilder::i8, "VEC3", true);

@@ -3,7 +3,7 @@
 # library is installed; without it the library is built, alone.
 
 file(REMOVE_RECURSE "${WORK}")
-# Unoptimised: what is looked at is whether it is found, links and runs.
+# Unoptimised: the test is that the library is found, links and runs.
 set(common -G "${GENERATOR}" -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 "-DCMAKE_CXX_COMPILER=${COMPILER}"
   "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}")
 

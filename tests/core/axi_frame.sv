@@ -1,4 +1,4 @@
-// raster_top and its ports to memory, driven with packets: what the bus alone costs, without commands.
+// raster_top and its ports to memory, driven with packets: the cost of the bus alone, without commands.
 module axi_frame #(
     parameter int PORT = raster_pkg::MEMORY_PORT_BITS
 ) (

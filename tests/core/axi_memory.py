@@ -127,7 +127,7 @@ class Memory:
         for name in ("aw", "w", "ar"):
             self.taking[name] = b.ready >= 1 or r() < b.ready
             self.put(name + "ready", self.taking[name])
-        # Writes reach memory in order: a lazy one holds back those after it.
+        # Writes reach memory in order: a lazy write holds back later writes.
         for write in self.written:
             if write["lazy"] and not write["stored"]:
                 break

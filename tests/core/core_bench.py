@@ -2,7 +2,7 @@
 
     core = Core(dut)
     await core.start()
-    frame = core.frame(scene)      # packets of a capture's text, and what the model draws
+    frame = core.frame(scene)      # packets of a capture's text, and the model's picture
     await core.draw(frame)         # encodes, writes the ring, waits for the fence
     core.check(frame)              # every pixel of colour and depth
 """

@@ -1,4 +1,4 @@
-# halfplane.core against the RTL: every source at the top of rtl_ref is listed, what is listed is there, and, where
+# halfplane.core against the RTL: every source at the top of rtl_ref is listed, every listed file exists, and, where
 # Verilator is, the list in its order lints.   cmake -DSOURCE= -DVERILATOR= -P core_file.cmake
 file(STRINGS "${SOURCE}/halfplane.core" lines REGEX "^      - ")
 cmake_minimum_required(VERSION 3.25)

@@ -1,4 +1,4 @@
-// halfplane_detile beside the specification: what memory holds after a flush of the hardware model is the picture of the
+// halfplane_detile against the specification: memory after a flush of the hardware model is the picture of the
 // scalar engine, in configurations of every layout.
 #include "driver/detile.h"
 

@@ -1,7 +1,7 @@
-// Writes what memory holds after a frame, and the frame's picture: the input of the tests of scan-out and of halfplane_detile.
+// Writes the memory after a frame, and the frame's picture: the input of the tests of scan-out and of halfplane_detile.
 //
 // usage: frame_memory "CONFIG KEY=VALUE ..." SEED WIDTH HEIGHT FILE
-// FILE: one line of JSON (layout, clear colour, what each page is), the bytes of the pages, and width * height * 3 bytes of
+// FILE: one line of JSON (layout, clear colour, the kind of each page), the bytes of the pages, and width * height * 3 bytes of
 // the picture. WIDTH 0: the random scene's own size.
 #include <cstdio>
 #include <cstdlib>

@@ -10,7 +10,7 @@
 
 namespace halfplane::test {
 
-/// Buffers that are not those of default_layout(), so that no base is 0 and rows have a gap.
+/// Buffers at other places than in default_layout(), so that no base is 0 and rows have a gap.
 inline MemoryLayout layout_of(const Config& config) {
   const Widths widths = derive_widths(config);
   const MemoryGrid& m = widths.memory;
@@ -37,7 +37,7 @@ inline TileMemory memory_after(const Scene& scene, const Config& config) {
   return model.memory();
 }
 
-/// The picture of the specification, so that the hardware's own way back from memory is not what is compared.
+/// The picture of the specification, so that the hardware's own read-back is not compared with itself.
 inline Picture picture_of(const Scene& scene, const Config& config) {
   return color_picture(render_scalar(scene, config).frame, config.color_format);
 }

@@ -187,7 +187,7 @@ def simulate(make, file, bench, config, arguments, folder, fault, tests, limit=0
                     results_xml=str(results), log_file=folder / "simulation.log", plusargs=[f"+fault={fault}"], seed=SEED,
                     test_args=["--trace"] if arguments.waves else [], test_filter=tests or None, extra_env=environment)
     except (SystemExit, subprocess.CalledProcessError, RuntimeError):
-        pass  # the simulation ended otherwise than by its tests: what they left is judged
+        pass  # the simulation ended otherwise than by its tests: their results file is judged
     passed, failed = [], []
     for case in cases(results):
         bad = case.find("failure") is not None or case.find("error") is not None

@@ -41,7 +41,7 @@ BENCH = {
          "packets_of"),
         # A register more, or less, is set.
         ("core/command_decoder.sv", "if (rest_q == 4'd1) state_q", "if (rest_q == (FAULT ? 4'd2 : 4'd1)) state_q", "packets_of"),
-        # The vertices of a box keep what a triangle left there.
+        # The vertices of a box keep a triangle's values.
         ("core/command_decoder.sv", "(IN_SLOT ? !is_triangle && FIRST == 0", "(IN_SLOT ? !is_triangle && FIRST == 0 && !FAULT", "packets_of"),
         # A fence, or a picture, is reported at once.
         ("core/command_decoder.sv", "fence_waits_q && fence_left_q == '0", "fence_waits_q && (fence_left_q == '0 || FAULT)", "a_fence"),
@@ -49,7 +49,7 @@ BENCH = {
         # A second fence takes the place of the first.
         ("core/command_decoder.sv", "is_open = !fence_waits_q", "is_open = !fence_waits_q || FAULT", "a_fence"),
         ("core/command_decoder.sv", "is_open = !present_waits_q", "is_open = !present_waits_q || FAULT", "vblank"),
-        # A layout changes under what is drawn.
+        # A layout changes while primitives are in flight.
         ("core/command_decoder.sv", "drawn_q || (idle_i &&", "drawn_q || ((idle_i || FAULT) &&", "a_layout"),
         ("core/command_decoder.sv", "&& flushes_q == '0);", "&& (flushes_q == '0 || FAULT));", "a_layout"),
         # A fourth flush is sent.
@@ -352,7 +352,7 @@ async def a_layout_waits_until_everything_is_in_memory_and_a_box_does_not(dut):
     e.set(dict(COLOR_BASE=0x4000))
     bench.flush_answers = False
     bench.queue += e.words
-    for idle, answers in ((True, False), (False, True)):  # the one without the other is not enough
+    for idle, answers in ((True, False), (False, True)):  # one without the other is not enough
         bench.idles, bench.flush_answers = idle, answers
         for _ in range(40):
             await FallingEdge(dut.clk_i)

@@ -340,7 +340,7 @@ async def registers_are_read_and_written_while_the_core_draws(dut):
         reads += 3
         assert reads < 20000
     core.check(frame)
-    # The counters: those of the whole frame, in a snapshot.
+    # The counters of the whole frame, in a snapshot.
     assert reads > 30
     drawn = sum(p >> core.package.PRIMITIVE_PACKET_BITS - 3 in (TRIANGLE, POINT, LINE) for p in frame.packets)
     has = core.package.COUNTERS_UNIT

@@ -284,7 +284,7 @@ async def a_pixel_a_clock_leaves_when_memory_is_fast(dut):
     bench.latency = (20, 20)
     colors = detile.Layout.of_package(bench.package)
     beats_a_pixel = colors.colors * colors.color_bytes / bench.port
-    if beats_a_pixel >= 0.9:  # a beat a clock is not enough: memory is what limits
+    if beats_a_pixel >= 0.9:  # a beat a clock is not enough: memory is the limit
         await bench.take(frame)
         return
     for _ in range(2):

@@ -204,7 +204,7 @@ TEST(Cosim, OtherMastersAtTheMemoryKeepRtlAndCycleModelTogether) {
   }
 }
 
-/// Clears inside a scissor, then whole ones, and a triangle that is culled: what is written comes before it in program
+/// Clears inside a scissor, then whole ones, and a triangle that is culled: the writes come before it in program
 /// order and around it in time.
 Scene clears_before_a_culled_triangle(int scissored, int whole) {
   Scene scene;

@@ -145,7 +145,7 @@ TEST(Cycles, ATriangleOf128By128TakesAtMost4TenthsPerPixelWithItsEvictions) {
 double behind_a_wall(std::size_t hidden, double size) {
   constexpr int kWidth = 640, kHeight = 480;
   const Triangle wall{{{0, 0}, {2 * kWidth, 0}, {0, 2 * kHeight}}};
-  std::vector<Triangle> triangles{wall, wall};  // the second one's visits make those of the first one seen
+  std::vector<Triangle> triangles{wall, wall};  // the second wall's visits make the first wall's updates visible
   Random random(5);
   for (std::size_t i = 0; i < hidden; ++i) {
     const double x = random.uniform(0, kWidth - size), y = random.uniform(0, kHeight - size);

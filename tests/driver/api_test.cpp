@@ -1,4 +1,4 @@
-// The driver's interface: what it refuses, rings, and pictures of the software backend.
+// The driver's interface: refused calls, rings, and pictures of the software backend.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -332,7 +332,7 @@ TEST_F(DriverInterface, MultipliesMatrices) {
     }
 }
 
-/// A clear or a draw where there is nothing to draw sends nothing; another target flushes the one before.
+/// A clear or a draw where there is nothing to draw sends nothing; another target flushes the previous one.
 TEST_F(DriverInterface, AnEmptyScissorDrawsNothing) {
   hp_set_scissor(driver_.get(), 3, 3, 0, 5);
   const std::uint32_t before = hp_written(driver_.get());
@@ -461,7 +461,7 @@ TEST(DriverBackend, RefusesWhatTheCoreDrawsUndefined) {
   }
 }
 
-/// Words after a STOP are those of the next start; NOP is a command.
+/// Words after a STOP belong to the next start; NOP is a command.
 TEST(DriverBackend, StopsAtAStopAndGoesOnAfterIt) {
   std::vector<std::uint32_t> words = begun();
   words.insert(words.end(),

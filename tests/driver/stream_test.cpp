@@ -18,7 +18,7 @@ using driver::Decoder;
 constexpr std::uint32_t kSeed = 5400;
 
 /// The effect of a packet in hardware does not depend on the order of a triangle's vertices (cull sorts them), on numbers
-/// of primitives, on the box of tokens and on the facing of what is no triangle: a form without them.
+/// of primitives, on the box of tokens and on the facing of other primitives than triangles: a form without them.
 DecodedPrimitive canonical_form(PrimitivePacket packet, std::optional<LineSetup> line) {
   packet.primitive_id = 0;
   if (line) line->primitive_id = 0;
@@ -34,7 +34,7 @@ DecodedPrimitive canonical_form(PrimitivePacket packet, std::optional<LineSetup>
   return {packet, line};
 }
 
-/// A packet of the model, and what it needs in the registers of units.
+/// A packet of the model, and the values it needs in the registers of units.
 struct Wanted {
   DecodedPrimitive primitive;
   UnitWords units;
@@ -96,7 +96,7 @@ class Registers {
 
   [[nodiscard]] std::uint64_t line_tokens() const { return line_tokens_; }
 
-  /// A difference from what a packet needs, or an empty text.
+  /// A difference from a packet's needs, or an empty text.
   [[nodiscard]] std::string difference(const Wanted& wanted) const {
     const auto& [colors, stencil] = std::tie(wanted.units.colors, wanted.units.stencil);
     if (colors.ops && *colors.ops != pack(colors_.ops)) return "color_ops";
@@ -153,7 +153,7 @@ std::string difference(const DecodedPrimitive& driver, const DecodedPrimitive& m
   return text;
 }
 
-/// Compares a case; what it holds of each kind is added to `kinds`.
+/// Compares a case; its number of each kind of word is added to `kinds`.
 void expect_equal(const StreamCase& made, const Config& config, std::array<std::uint64_t, 8>& kinds,
                   std::uint64_t& line_tokens) {
   const Widths widths = derive_widths(config);

@@ -10,7 +10,7 @@
   // An arbitrary place of the RAMs: a sample m of a stamp of a line.
   (* anyconst *) logic [LINE-1:0]   any_line;
   (* anyconst *) logic [STAMP-1:0]  any_stamp;
-  // The data of an eviction: those after all earlier writes and before any later one. Memory gets exactly these, each
+  // The data of an eviction: after all earlier writes and before any later one. Memory gets exactly these, each
   // sample once, and only then the slot is free. In between the data are in the RAM, in flight, or in the slot.
   logic [STAMPS-1:0] any_bit;
   logic              sends_any;

@@ -13,7 +13,7 @@
   logic [SAMPLES*COLOR-1:0] w_ram_code, w_ram_code_new;
 
   // Evictions that color_write has begun: the number of clocks since the begin of the older one, of the next one, and
-  // of the one of any_slot, which is reported complete in its slot after more than DELAY. Its remaining stamps are read
+  // of the block in any_slot, which is reported complete in its slot after more than DELAY. Its remaining stamps are read
   // until then.
   logic [TIME-1:0] first_time_q, second_time_q, any_time_q, first_left, second_left, started;
   always_comb begin

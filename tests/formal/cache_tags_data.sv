@@ -1,7 +1,7 @@
 
-  // An arbitrary block, and an arbitrary stamp of it: what a cache with one line for it, and memory, must do with it.
+  // An arbitrary block, and an arbitrary stamp of it: the actions of a cache with one line for it, and of memory.
   // `g_` is the specification (model/stages/cache_tags.hpp), fed with the outputs of this stage, in order; the RAM may
-  // answer anything except for the words in which the block is (sram_word), and the flags anything except for those of
+  // answer anything except for the words in which the block is (sram_word), and the flags anything except for the flags of
   // the block (clear_flags_data, whose assumptions are asserted here). From the host: tokens cover all blocks that are
   // ever drawn to.
   (* anyconst *) logic [BLOCK_X-1:0] any_x;

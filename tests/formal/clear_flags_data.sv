@@ -1,5 +1,5 @@
 
-  // An arbitrary block, and its flags: those that tokens write, less the fallen ones. `g_` is the specification
+  // An arbitrary block, and its flags: set by tokens, less the fallen ones. `g_` is the specification
   // (model/stages/clear_flags.hpp); the RAMs may answer anything except for the word in which the block is (sram_word).
   (* anyconst *) logic [BLOCK_X-1:0] any_x;
   (* anyconst *) logic [BLOCK_Y-1:0] any_y;

@@ -43,7 +43,7 @@
       end
       always_comb if (runs_q && (walks || (state_q == PREPARE && has_walk)))
         assert (gen_edge[k].value_q == $signed(tile_q) && (starts ? row_first_q == tile_q : gen_edge[k].row_q == $signed(row_first_q)));
-      // The increments to the tile's corners: T - 1 times those of a pixel (coarse_raster_corners).
+      // The increments to the tile's corners: T - 1 times the increments of a pixel (coarse_raster_corners).
       logic signed [TE-1:0] best, worst;
       assign best  = (TE'(gen_edge[k].best) <<< TS) - TE'(gen_edge[k].best);
       assign worst = (TE'(gen_edge[k].worst) <<< TS) - TE'(gen_edge[k].worst);

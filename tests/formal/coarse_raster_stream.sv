@@ -1,6 +1,6 @@
 
   // Each setup ends with exactly one packet that ends the primitive; an offer stays; no slot is assigned twice; the
-  // stage is stuck only if a neighbour stalls it. At most two primitives are in the stage: the walked one, and the one
+  // stage is stuck only if a neighbour stalls it. At most two primitives are in the stage: the walked one, and a primitive
   // before it, whose last tile is on offer.
   logic       walked_q, ends, is_ending;
   logic [1:0] owed_q;  // primitives that came and have not ended

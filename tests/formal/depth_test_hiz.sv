@@ -24,7 +24,7 @@
   // A pixel of a line has no visit to end; a packet without samples changes and sends nothing else.
   always_comb if (fragment_i.kind[1]) assume (!fragment_i.ends_visit);
 
-  // Content of D1: the stamps up to the one in fragment_q.
+  // Content of D1: the stamps up to the stamp in fragment_q.
   logic [STAMP_BITS:0] before_q;  // next_q when that stamp was taken
   always_ff @(posedge clk_i) before_q <= next_q;
   logic [HIZ-1:0] h00, h01, h10, h11;

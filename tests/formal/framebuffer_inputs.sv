@@ -4,7 +4,7 @@
   // an access with samples comes in the next cycle, and writes no sample whose depth the access of that cycle reads
   // (depth_test_stream); a token has no samples (fine_raster_stream: none without a visit; coarse_raster_stream). From
   // memory: an answer belongs to a read that was taken in an earlier cycle. All outputs of RAMs may be anything except
-  // for what sram_word proves: they stay until the next read.
+  // for the property of sram_word: they stay until the next read.
   logic token;  // fast clear, flush
   assign token = access_i.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR || access_i.kind == raster_pkg::PRIMITIVE_KIND_FLUSH;
   logic access_waits_q, access_waited_q, access_taken_q, takes_request;

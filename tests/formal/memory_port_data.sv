@@ -40,7 +40,7 @@
       strobed_q <= request_i.strobe[any_sample];
     end
   end
-  logic [ADDRESS-1:PORT] behind;  // beats from the one on offer to that of the byte
+  logic [ADDRESS-1:PORT] behind;  // beats from the beat on offer to the byte's beat
   logic [WORD-1:0]       strobe_there;
   logic [8*WORD-1:0]     data_there;
   assign behind       = at_q[ADDRESS-1:PORT] - sent;

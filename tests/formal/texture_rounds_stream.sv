@@ -23,7 +23,7 @@
   assign {scaled_turns, scaled_waits, scaled_tail} =
       scaled_valid_q ? {!scaled_along_q[ENDS], scaled_along_q[WAITS+:4], scaled_along_q[TAIL-1:0]} :
       {wrapped_turns, wrapped_waits, wrapped_tail};
-  // Relation of a round to the one before it.
+  // Relation of a round to the previous round.
   function automatic [0:0] follows(input [ALONG-1:0] round, input turned, input [3:0] waited, input [TAIL-1:0] tail);
     follows = round[SECOND] == turned && round[LIVE+:4] != '0 && round[ENDS] == (round[WAITS+:4] == '0) &&
               (round[WAITS+:4] & ~round[LIVE+:4]) == '0 &&

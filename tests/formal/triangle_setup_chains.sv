@@ -149,7 +149,7 @@
     end
   endgenerate
 
-  // The quotient, divider by divider: each continues the one before.
+  // The quotient, divider by divider: each continues the previous divider.
   genvar g;
   generate
     for (g = 0; g < DIVIDERS; g++) begin : gen_quotient

@@ -1,5 +1,5 @@
 // Random sequences of commands: any enum, any nesting, valid memory. Nothing may crash or touch memory that is not the
-// command's; sanitizers see more of it (the preset asan-ubsan). What a command accepted once is tried again with one argument
+// command's; sanitizers see more of it (the preset asan-ubsan). Accepted arguments are tried again with one argument
 // changed, so that sequences get past the checks of enums.
 #define GL_GLEXT_PROTOTYPES
 #include <GL/gl.h>

@@ -1,4 +1,4 @@
-// Evaluators: curves and surfaces against their polynomials, normals against differences, grids, and what they leave alone.
+// Evaluators: curves and surfaces against their polynomials, normals against differences, grids, and unchanged state.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ struct Evaluators : testing::Test {
   }
   void enable1(GLenum target) { context.state.eval.map1[target - GL_MAP1_COLOR_4] = true; }
   void enable2(GLenum target) { context.state.eval.map2[target - GL_MAP2_COLOR_4] = true; }
-  /// The vertices of what `draw` issues within a primitive.
+  /// The vertices that `draw` issues within a primitive.
   template <class Draw>
   std::vector<ShadedVertex> drawn(Draw&& draw) {
     ++context.revision;

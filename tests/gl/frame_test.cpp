@@ -1,4 +1,4 @@
-// Frames as the driver collects them: what is drawn is the scene that is saved, whatever the program looks at on the way.
+// Frames as the driver collects them: the drawn scene equals the saved scene, whatever the program looks at on the way.
 #include "gl/core/frame.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ namespace {
 
 constexpr int kWidth = 70, kHeight = 52;
 
-/// A folder of this test's own, removed with what is in it.
+/// A folder of this test's own, removed with its content.
 class Folder {
  public:
   Folder()

@@ -126,7 +126,7 @@ TEST_F(Lighting, IsTheFormula) {
     const Vec4 position{number(-1, 1), number(-1, 1), number(-1, 1), coin() ? 1 : number(0.5, 2)};
     const ShadedVertex shaded = vertex_of(position);
 
-    // A normal is at right angles to what it was at right angles to.
+    // A normal stays perpendicular to its surface.
     const Mat4& m = context.modelview.back();
     const auto moved = [&](const Vec3& d) {
       return Vec3{m[0] * d[0] + m[4] * d[1] + m[8] * d[2], m[1] * d[0] + m[5] * d[1] + m[9] * d[2],

@@ -6,7 +6,7 @@ namespace {
 
 class Lists : public EntryPointCase {
  protected:
-  // A list of what `commands` calls.
+  // A list of the calls of `commands`.
   template <class Commands>
   void compile(GLuint name, const Commands& commands, GLenum mode = GL_COMPILE) {
     HALFPLANE_GL(glNewList)(name, mode);

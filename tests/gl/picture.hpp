@@ -11,7 +11,7 @@
 
 namespace halfplane::gl {
 
-/// Window coordinates are those of glOrtho(0, 64, 0, 64, ...): a unit is a pixel, y up.
+/// Window coordinates follow glOrtho(0, 64, 0, 64, ...): a unit is a pixel, y up.
 struct Picture {
   static constexpr int kSide = 64;
 

@@ -40,7 +40,7 @@ TEST(GlPrimitive, EveryModeCoversItsPixels) {
   EXPECT_EQ(pixels(GL_POLYGON, {{0, 0}, {8, 0}}), 0);
 }
 
-/// Colours of the vertices in their order, and those of the primitives at the given pixels.
+/// Colours of the vertices in their order, and colours of the primitives at the given pixels.
 struct FlatCase {
   GLenum mode;
   std::vector<std::array<double, 2>> places;
@@ -310,7 +310,7 @@ TEST(GlFragment, XorOfEachChannel) {
   EXPECT_EQ(picture.rgb(5, 5), (Rgb{204, 0, 0}));
   picture.draw(GL_QUADS, {{0, 0}, {64, 0}, {64, 64}, {0, 64}});
   EXPECT_EQ(picture.rgb(5, 5), (Rgb{51, 255, 0}));
-  logic_op(picture.context, GL_NAND);  // 1 where it is zero; not what is stored where it is one
+  logic_op(picture.context, GL_NAND);  // 1 where it is zero; the stored bit inverted where it is one
   picture.draw(GL_QUADS, {{0, 0}, {64, 0}, {64, 64}, {0, 64}});
   EXPECT_EQ(picture.rgb(5, 5), (Rgb{204, 0, 255}));
 }

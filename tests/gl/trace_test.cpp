@@ -1,4 +1,4 @@
-// Traces of apitrace's: what is written here by hand is read as it is, damage is one line, and a replay draws.
+// Traces of apitrace's: hand-written traces are read unchanged, damage is one line, and a replay draws.
 #ifdef HALFPLANE_HAS_TRACES
 #include <gtest/gtest.h>
 #include <unistd.h>

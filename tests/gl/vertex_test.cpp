@@ -1,4 +1,4 @@
-// Vertices: matrices, texture coordinates, raster positions; arrays, buffers and lists give what glBegin and glEnd give.
+// Vertices: matrices, texture coordinates, raster positions; arrays, buffers and lists give the results of glBegin and glEnd.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -33,7 +33,7 @@ if(NOT said STREQUAL installed)
   message(SEND_ERROR "the completion that is installed is not what the program says")
 endif()
 
-# Every page and schema, and every command's manual page, which says what --help says.
+# Every page and schema, and every command's manual page, which equals --help.
 file(GLOB_RECURSE pages RELATIVE "${SOURCE}" "${SOURCE}/docs/*.md" "${SOURCE}/docs/*.json")
 list(LENGTH pages count)
 if(count LESS 50)

@@ -2,7 +2,7 @@
 #
 #   cmake -DSOURCE=rtl_ref "-DTEXTURE=stages/texture_unit.sv;..." -DFOLDER=DIR -P faults.cmake
 #
-# writes into FOLDER the modules TEXTURE with faults, those of lib/reciprocal_*.sv, and texture_faults.hpp: the number of the
+# writes into FOLDER the modules TEXTURE with faults, lib/reciprocal_*.sv, and texture_faults.hpp: the number of the
 # last fault of each kind. A file whose text stays is not written again.
 cmake_policy(VERSION 3.25)
 include("${CMAKE_CURRENT_LIST_DIR}/../../cmake/ReplaceOnce.cmake")
@@ -80,7 +80,7 @@ texture_fault(texture_tags 27 [=[asked_q | (asks & {4{any_asks}})]=] [=[asked_q]
 set(texture_linear_faults ${texture_faults})
 # Levels: the bow and the ends of the logarithm, the octagon's half and its eighth, the other of two slopes, which filter a
 # magnified sample has, the nearest level's rounding, the least level, rounding on a level, a size that is not halved any more,
-# where a level begins, the level of one texel, the second pass, its weight, rounding of what is blended, a level in the other's
+# where a level begins, the level of one texel, the second pass, its weight, rounding of the blend, a level in the other's
 # half, lines that come while samples wait.
 texture_fault(log2_below 28 [=[below_i + 8'(bow_rom[from_end])]=] [=[below_i]=])
 texture_fault(level_of_detail 29 [=[lines_q[128+32*(n%2)+:32]]=] [=[lines_q[128+:32]]=])
@@ -149,7 +149,7 @@ set(texture_ways_faults ${texture_faults})
 # Lanes with levels: the level of the second round, who takes part in it, samples of two levels in a pass, whose level has a
 # part, a round of samples that do not live, where a level begins, whose level a pass has; whose weight the upper level has, a
 # sum that waits and another's, a pass of which some leave, what waits and leaves, a stamp that goes with the first round, an
-# odd level's half, what the lower level lacked; rows and columns of 2x2, squares of a stamp, a state while a round is under
+# odd level's half, samples lacked below; rows and columns of 2x2, squares of a stamp, a state while a round is under
 # way.
 texture_fault(texture_rounds 81 [=[level_i[4*l+:4] + 4'(is_second_q)]=] [=[level_i[4*l+:4]]=])
 texture_fault(texture_rounds 82 [=[is_second_q ? live_i & has_upper : live_i]=] [=[live_i]=])
@@ -170,7 +170,7 @@ texture_fault(level_of_detail 96 [=[length_q[32*(SIDE+k%2)+:32]]=] [=[length_q[3
 texture_fault(texture_unit 97 [=[PIXEL'(group) & PIXEL'((1 << ROW) - 1)]=] [=[PIXEL'(0)]=])
 texture_fault(texture_rounds 98 [=[!scaled_valid_q && !wrapped_valid_q && !agreed_valid_q]=] [=[!scaled_valid_q && !wrapped_valid_q]=])
 set(texture_lanes_faults ${texture_faults})
-# The constant: towards what a colour goes, the colour that it leaves, alpha, a token that brings nothing, one that sets it as it
+# The constant: its target, its source, alpha, a token that brings nothing, one that sets it as it
 # enters, which stamps blend.
 texture_fault(texture_combine 99 [=[is_blended ? constant_i[8*n+:8] : texel]=] [=[texel]=])
 texture_fault(texture_combine 100 [=[color & {8{is_decal || is_blended}}]=] [=[color & {8{is_decal}}]=])

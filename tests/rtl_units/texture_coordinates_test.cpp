@@ -37,7 +37,7 @@ class Coordinates {
         wrong += drain();
         new_texture();
       }
-      // The mantissa counts; the exponent, and what is below the mantissa, is drawn.
+      // The mantissa is enumerated; the exponent and the bits below the mantissa are random.
       const int k = format_.mantissa_bits, exponent = pick(0, q_bits - 1);
       const std::uint64_t mantissa = (n & ((1U << (k - 1)) - 1)) | 1U << (k - 1);
       TextureSample sample;

@@ -120,7 +120,7 @@ TEST(TextureRate, ALevelASampleOrTwo) {
 }
 
 // A clock takes a stamp, nearest or linear, turned or not, where its lines are there, up to more than a texel a pixel. Then
-// lines are what it waits for, one a clock at most and four beats each, and farther away samples are in each other's way too.
+// it waits for lines, one a clock at most and four beats each, and farther away samples are in each other's way too.
 TEST(TextureRate, FourLanesTakeAStampAClock) {
   Config config;
   config.memory_port_bits = 64;
@@ -146,7 +146,7 @@ TEST(TextureRate, FourLanesTakeAStampAClock) {
 }
 
 // With levels a stamp takes a clock where its samples look at one, and two where they look at two, up to more than a texel a
-// pixel. What is lacking there is lines: they come at four beats each.
+// pixel. It waits for lines there: they come at four beats each.
 TEST(TextureRate, FourLanesBetweenLevels) {
   int number = 0;
   Config config;

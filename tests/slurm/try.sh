@@ -2,7 +2,7 @@
 # Tries `bench --slurm` on a cluster of one node: this machine, Debian's slurm-wlm, munge with a key of its own, everything
 # on the loopback. Needs root and `apt-get install slurm-wlm munge`; not part of ./dev test.
 #   tests/slurm/try.sh [build/halfplane]
-# Submits a small space, kills a task under way, submits again, and compares what is gathered with the same measured here.
+# Submits a small space, kills a task under way, submits again, and compares the gathered figures with local ones.
 set -euo pipefail
 program=$(realpath "${1:-build/halfplane}")
 for tool in slurmctld slurmd sbatch squeue munged mungekey; do

@@ -25,7 +25,7 @@ struct Fault {
   int bit = 0;
 };
 
-/// Takes a primitive when it has sent everything of the one before; every arrow moves a packet in every cycle in which it
+/// Takes a primitive when it has sent all packets of the previous one; every arrow moves a packet in every cycle in which it
 /// is not stalled.
 class FakeDut final : public Dut {
  public:

@@ -190,7 +190,7 @@ void expect_texels(const SurfaceFigure& surface, const Scene& scene, const Confi
   EXPECT_EQ(sum, 1U << 24);
 }
 
-/// Whether the table of operations has fog, and leaves of the colour what the surface has. Which alpha it has does not matter.
+/// Whether the table of operations has fog, and leaves the surface's colour out. Which alpha it has does not matter.
 bool is_told_in_fog(const Entry& entry) {
   for (const OperationStep& step : entry.operations) {
     if (step.name != "fog") continue;

@@ -56,7 +56,7 @@ TEST(Blend, OneBlendIsWithinHalfACodeOfRealArithmeticWhateverItsFactors) {
   EXPECT_LE(worst, 0.5 + 1e-9);
 }
 
-// A stored code of rgb565 is widened to 8 bits, which is off by up to 0.082 codes of 5 bits and 0.177 of 6; what is blended is
+// A stored code of rgb565 is widened to 8 bits, which is off by up to 0.082 codes of 5 bits and 0.177 of 6; a blend is
 // rounded to 8 bits (0.061, 0.124) and then to the code (0.5). A factor at the stored colour, or on it, says how much of the
 // first is left. Every source, alpha and stored code; the factors of each kind that are worst.
 TEST(Blend, OneBlendOfRgb565IsWithinItsBoundOverEveryValue) {
@@ -324,7 +324,7 @@ double part_of_bound(LogicOp op, const std::array<double, 4>& cleared, std::uint
   return layers.rows().back().part_of_bound;
 }
 
-// 24, 25 and 6 are the codes of 200, 100 and 50; 8, 16 and 31 those of 66, 65 and 255.
+// 24, 25 and 6 are the codes of 200, 100 and 50; 8, 16 and 31 the codes of 66, 65 and 255.
 TEST(LogicOp, OnCertainCodesTheBoundTakesNoOtherBit) {
   const std::array<double, 4> whole{66, 65, 255, 255};
   const auto rgb = [](unsigned r, unsigned g, unsigned b) { return r << 11 | g << 5 | b; };

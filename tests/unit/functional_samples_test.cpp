@@ -122,7 +122,7 @@ TEST(FunctionalSamples, RandomScenesAreTheScalarEngines) {
 }
 
 /// Draws of many triangles of about so many pixels, slivers among them, one or two large ones in between, each draw with
-/// another depth test and other writes: what is set up sixteen at a time, and tiles that are whole, split and whole again.
+/// another depth test and other writes: triangles set up sixteen at a time, and tiles that are whole, split and whole again.
 Scene small_triangles(std::uint64_t seed, double size) {
   constexpr int kWidth = 150, kHeight = 140, kDraws = 8, kOfDraw = 70;
   Scene scene = cleared_scene(kWidth, kHeight);

@@ -30,7 +30,7 @@ Config with_colors(const std::string& name) {
   return config;
 }
 
-/// Noise: no two texels alike, so that a wrong one shows.
+/// Noise: no two texels equal, so that a wrong one shows.
 Texture noise(Random& random, int width, int height, TextureFormat format, Mips mips) {
   TexelImage image{width, height, {}};
   for (int i = 0; i < width * height; ++i) {

@@ -1,5 +1,5 @@
 // The functional engine's fast path against the scalar engine: image and program-order counters, whatever the thread
-// count, the instruction set and what may be skipped.
+// count, the instruction set and the skips.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -215,8 +215,8 @@ Config config_with(ColorFormat format, int depth_bits = 16) {
   return config;
 }
 
-/// Large triangles, small ones and lines, some of glass, some opaque, some of both, some with a texture: what waits must
-/// be there when another asks for it. More layers than wait at a time.
+/// Large triangles, small ones and lines, some of glass, some opaque, some of both, some with a texture: waiting colours must
+/// be there when another primitive needs them. More layers than wait at a time.
 TEST(Functional, LayersThatWaitAreThereForWhateverComesNext) {
   for (std::uint32_t seed = 1; seed <= 8; ++seed)
     for (const auto format : {ColorFormat::rgb565, ColorFormat::rgba8888}) {

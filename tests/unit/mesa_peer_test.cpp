@@ -127,7 +127,7 @@ TEST_F(MesaPeerTest, StatesMeanTheSame) {
 }
 
 // llvmpipe has the standard places of four samples, and draws lines with several samples as rectangles. One colour: with
-// several samples its colours are those of a place beside the pixel's centre.
+// several samples its colours are computed at a place beside the pixel's centre.
 TEST_F(MesaPeerTest, RectanglesOfLinesHaveTheSameSamples) {
   start(24, 4);
   for (const char* width : {"1", "1.5", "2", "3", "7.25"}) {
@@ -182,7 +182,8 @@ TEST_F(MesaPeerTest, FragmentOperationsMeanTheSame) {
   std::vector<std::string> states;
   const DrawState& blend = draw_state("blend");
   const auto factors = blend.numbers[0].words;
-  for (std::size_t src = 0; src < factors.size(); ++src)  // each with four others, each of those with four
+  for (std::size_t src = 0; src < factors.size();
+       ++src)  // each source factor with four others, each of these with four
     for (std::size_t n = 0; n < 4; ++n)
       states.push_back("blend " + std::string(factors[src]) + " " +
                        std::string(factors[(src + 4 * n) % factors.size()]));

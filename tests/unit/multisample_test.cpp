@@ -163,7 +163,7 @@ TEST(Multisample, ASetupAtASampleHasTheEdgesOfTheMovedTriangleAndItsPlanesButFor
         EXPECT_EQ(edges_at_tile(at, x >> shift, y >> shift, widths),
                   edges_at_tile(expected, x >> shift, y >> shift, widths));
         for (std::size_t p = 0; p < static_cast<std::size_t>(widths.affine_planes); ++p)
-          // The moved triangle's anchor is rounded once; here the steps to the sample are, and what they come to.
+          // The moved triangle's anchor is rounded once; here the steps to the sample are, and their sum.
           EXPECT_LE(std::abs(plane_at(at, p, widths, x, y).unrounded - plane_at(expected, p, widths, x, y).unrounded),
                     2);
       }

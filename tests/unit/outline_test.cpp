@@ -248,7 +248,7 @@ TEST(Outlines, ALineOfTwoPixelsLiesToBothSidesOfItsMiddle) {
     state.line_rule = rule;
     std::set<int> rows;
     for (const auto& [x, y] : covered(one_draw(state, Topology::lines, {at(2, 10), at(20, 10)}))) rows.insert(y);
-    // On the border of rows 9 and 10: the two beside it; of whole pixels the end's own and the one below.
+    // On the border of rows 9 and 10: the two rows beside it; of whole pixels the end's own row and the row below.
     EXPECT_EQ(rows, (rule == LineRule::diamond ? std::set<int>{9, 10} : std::set<int>{10, 11}));
   }
 }

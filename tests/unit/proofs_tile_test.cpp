@@ -164,7 +164,7 @@ TEST(ProofsMustFail, SteppedCoverageIsAnotherWhenXAndYStepsChangePlaces) {
 // --- d: HiZ -----------------------------------------------------------------------------------------------------------
 
 /// Every smallest vertex code, bound and depth function that is tested at all: how many tiles are rejected although some
-/// code not below the one, against some stored code not above the other, passes. `asked`: the function that HiZ is told.
+/// code not below one bound, against a stored code not above the other, passes. `asked`: the function that HiZ is told.
 TileTally every_bound(int hiz_bits, DepthFunc func, DepthFunc asked) {
   Config config = tiny();
   config.hiz_bits = hiz_bits;

@@ -1,4 +1,4 @@
-// Several samples a pixel in hardware: its packets and its cycle engine draw what the specification draws, sample by sample.
+// Several samples a pixel in hardware: its packets and its cycle engine draw the specification's picture, sample by sample.
 #include <gtest/gtest.h>
 
 #include "../tier.hpp"

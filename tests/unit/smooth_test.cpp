@@ -1,5 +1,5 @@
 // Smooth lines and points: their coverage of a pixel is the exact area, their codes are the line's, and every engine
-// draws them alike.
+// draws them equally.
 #include <gtest/gtest.h>
 
 #include <array>

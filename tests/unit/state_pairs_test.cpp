@@ -1,5 +1,5 @@
 // Pairs of values of two draw states: the random scenes of the co-simulation, with all units of fragment operations, draw each
-// of them; and so do a few scenes that are made for it, which every engine draws alike (and the RTL: tests/cosim).
+// of them; and so do a few scenes that are made for it, which every engine draws equally (and the RTL: tests/cosim).
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -272,7 +272,7 @@ TEST(TexturedHardware, ABorderIsRefusedByNameWhereThereIsNone) {
     }
 }
 
-// The lines of half_border, and of border, are those of clamp.
+// The lines of half_border, and of border, equal the lines of clamp.
 TEST(TexturedHardware, ABorderReadsNoMoreThanTheEdge) {
   for (Config config : configurations()) {
     config.texture_borders = 1;
@@ -440,7 +440,7 @@ Scene small_triangles(const std::string& states, int side) {
   return read_capture(text, "small triangles");
 }
 
-// The whole frame: clear and flush, the framebuffer's memory and the texture's, which the cache holds: what the pipeline takes.
+// The whole frame: clear and flush, the framebuffer's memory and the texture's, which the cache holds: the pipeline's cycles.
 // Each triangle has lines of its own, two tokens.
 TEST(TexturedHardware, ATriangleOf2x2PixelsTakesAtMost16CyclesBetweenLevelsAndWithoutThem) {
   const Config config = with("embedded", {{"texture.unit", "trilinear"}, {"frame.clears", "flags"}});

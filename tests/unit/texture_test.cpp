@@ -76,7 +76,7 @@ TEST(Texture, ABoxIsTheMeanOfItsTexelsRoundedOnce) {
   EXPECT_EQ(texture.texel(2, 0, 0), (Texel{2, 15, 191, 64}));
 }
 
-// A side of three becomes one: its texels weigh alike, and none is left out.
+// A side of three becomes one: its texels have equal weights, and none is left out.
 TEST(Texture, AnOddSideLosesNoTexel) {
   TexelImage image{3, 1, {{30, 0, 0, 255}, {60, 0, 0, 255}, {90, 0, 0, 255}}};
   EXPECT_EQ(make_texture("t", image, TextureFormat::rgba8888, Mips::box).texel(1, 0, 0)[0], 60);

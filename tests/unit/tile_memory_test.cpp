@@ -98,7 +98,7 @@ TEST(Hiz, AVisitSeesTheUpdatesOfTheVisitsUpToItsOwnNumberLessTheLag) {
     }
     EXPECT_TRUE(hiz.rejects(far, 1, 0));
     EXPECT_EQ(hiz.bound(3, 0), 0x300u);
-    // A clear follows the visits before it, even those without a result so far.
+    // A clear follows all earlier visits, even visits without a result so far.
     visit(4, DepthFunc::always, 0x400);
     hiz.clear(5, 5, 0x8000);
     EXPECT_TRUE(hiz.rejects(far, 4, 0));

@@ -1,6 +1,6 @@
 // The comparison picture: panels with captions and legends on one dark sheet.
 //
-// Pixels stay whole: small pictures are enlarged by an integer factor, those wider or higher than kMaxPanelSide are
+// Pixels stay whole: small pictures are enlarged by an integer factor, pictures wider or higher than kMaxPanelSide are
 // reduced by one, and then a pixel of a difference panel shows the worst of its block, so that no difference is lost.
 #pragma once
 

@@ -83,7 +83,7 @@ struct OrderTrial {
 [[nodiscard]] std::vector<OrderTrial> try_orders(const Scene& scene, const Hardware& hardware, const Stalls& stalls,
                                                  const std::function<void(double)>& progress);
 
-/// The one of the first two with fewer cycles; if equal, with fewer bytes.
+/// The run with fewer cycles of the first two; if equal, with fewer bytes.
 [[nodiscard]] const std::string& recommended(const std::vector<OrderTrial>& orders);
 
 /// Work that hardware skips, and the additional cycles of a frame without skipping. Negative: the test costs more.

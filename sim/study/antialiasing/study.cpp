@@ -84,7 +84,7 @@ std::optional<AreaHardware> hardware_frame(const Scene& scene, const Config& con
     return result;
   }
   (void)supersampled(scene, result.config, *kind.grid, draw);
-  const int pictures = kind.grid->side * kind.grid->side + 1;  // pictures read, and the one written
+  const int pictures = kind.grid->side * kind.grid->side + 1;  // pictures read, and the picture written
   const std::uint64_t pixel = derive_widths(result.config).stored_color.bits <= 16 ? 2 : 4;
   result.bytes += static_cast<std::uint64_t>(pictures) * static_cast<std::uint64_t>(scene.width * scene.height) * pixel;
   return result;

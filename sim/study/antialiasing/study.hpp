@@ -50,7 +50,7 @@ struct AreaStudy {
 [[nodiscard]] Scene spokes(int width, int height, std::uint64_t seed);
 
 /// Every kind: 1, 2, 4 and 8 samples, supersampling 2x2 and 4x4 in rows and rotated, and smooth for lines; as far as
-/// `config` supports them. The scene has no triangles other than those of rectangles, or no lines. `repeat` frames are
+/// `config` supports them. The scene has no triangles other than the rectangles', or no lines. `repeat` frames are
 /// measured of each.
 [[nodiscard]] AreaStudy measure_areas(const Scene& scene, const Config& config, int repeat,
                                       const std::function<void(double)>& progress);

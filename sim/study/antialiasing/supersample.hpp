@@ -29,7 +29,7 @@ struct Place {
 };
 [[nodiscard]] std::vector<Place> places_of(const SupersampleGrid& grid);
 
-/// The scene moved so that its pixel centres are at those places of its pixels.
+/// The scene moved so that its pixel centres are at the given places of its pixels.
 [[nodiscard]] Scene seen_from(Scene scene, const Place& place);
 
 /// Draws the scene from each place of the grid and returns the first rendering with the mean of all colours, the sum of all

@@ -156,7 +156,7 @@ struct Prediction {
   std::uint64_t wrong = 0;           ///< pixels changed and not predicted
 };
 
-/// Draws hypotheses and attributes pixels to those that cannot be coincidence.
+/// Draws hypotheses and attributes pixels to the ones beyond coincidence.
 class HypothesisTest {
  public:
   HypothesisTest(const HypothesisScene& of, const ImageValues& expected, const ForeignImage& image, const Judge& judge,

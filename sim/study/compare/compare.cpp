@@ -114,7 +114,7 @@ class AttributeComparison {
   }
 
  private:
-  /// The content of the one sample of pixels, or of one of several: in the model, in the specification, in the golden.
+  /// The content of a sample of each pixel: in the model, in the specification, in the golden.
   struct View {
     const Framebuffer &stored, &made;
     const std::vector<std::int32_t>& ids;
@@ -147,7 +147,7 @@ class AttributeComparison {
     for (const LayerRow& row : layers_->rows()) add_row(layer_rows_, row);
   }
 
-  /// Compares the one colour of each pixel: the mean of its samples, rounded, and the golden's.
+  /// Compares the resolved colour of each pixel: the mean of its samples, rounded, and the golden's.
   void resolved_colors() {
     const auto max = golden::channel_max(config_.color_format);
     const Framebuffer& frame = result_.rendering.frame;

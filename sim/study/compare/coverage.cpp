@@ -33,7 +33,7 @@ class OracleCheck {
   OracleCheck(const Config& config, const CoverageLog& log, FillRule rule)
       : log_(log), tile_size_(config.tile_size), grid_bits_(derive_widths(config).grid_bits), rule_(rule) {}
 
-  /// `visit` runs over the log's visits; those of triangle `index` are consumed.
+  /// `visit` runs over the log's visits; the visits of triangle `index` are consumed.
   void triangle(const Triangle& t, std::uint32_t index, const golden::PixelRange& region,
                 std::vector<CoverageLog::Visit>::const_iterator& visit) {
     const golden::PixelRange range = intersect(region, range_of(t, grid_bits_));

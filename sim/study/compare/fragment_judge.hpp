@@ -20,7 +20,7 @@
 
 namespace halfplane {
 
-// The planes that compare and stress judge: those of model/attributes.hpp.
+// The planes that compare and stress judge: all of model/attributes.hpp.
 
 /// Plane i of TappedFragment::plane.
 struct JudgedPlane {
@@ -89,13 +89,13 @@ class FragmentJudge {
   const Widths widths_;
   const FillRule rule_;
   FragmentVerdict verdict_;
-  std::vector<CoverageLog> logs_;                               // of each sample of a pixel
-  std::vector<PixelLog> pixels_;                                // likewise
-  std::uint64_t repeated_ = 0;                                  // samples
-  std::uint64_t misplaced_ = 0;                                 // samples with a colour from a wrong place
-  std::optional<std::uint32_t> item_;                           // number of the current triangle
-  std::vector<exact::TriangleOracle> oracles_;                  // of the triangle at the centre, at each of several samples
-  std::vector<SurfaceOracle> surfaces_;                         // likewise, if it has a surface
+  std::vector<CoverageLog> logs_;               // of each sample of a pixel
+  std::vector<PixelLog> pixels_;                // likewise
+  std::uint64_t repeated_ = 0;                  // samples
+  std::uint64_t misplaced_ = 0;                 // samples with a colour from a wrong place
+  std::optional<std::uint32_t> item_;           // number of the current triangle
+  std::vector<exact::TriangleOracle> oracles_;  // of the triangle at the centre, at each of several samples
+  std::vector<SurfaceOracle> surfaces_;         // likewise, if it has a surface
   std::vector<std::map<std::pair<int, int>, TileMask>> tiles_;  // by sample: by tile row, column
 };
 

@@ -99,7 +99,7 @@ void LayeredColors::bound_logic_op(Pixel& at, const Pixel& before, const State& 
     for (int j = d.low; j <= d.high; ++j)
       worst = std::max(worst, std::abs(golden::operated(state.logic_op, i, j, most) - wanted));
   at.is_certain[c] = worst == 0;
-  at.bound[c] = static_cast<float>(worst * (1 + 1e-6) + 1e-6);  // and what binary64 makes of a code as a real number
+  at.bound[c] = static_cast<float>(worst * (1 + 1e-6) + 1e-6);  // and the error of a code in binary64
 }
 
 void LayeredColors::write(std::size_t pixel, const State& state, const std::array<std::uint8_t, 4>& color) {

@@ -32,7 +32,7 @@ struct LayerRow {
   double part_of_bound = 0;  ///< the largest error as a fraction of its pixel's bound
 };
 
-/// Adds a row to those of other samples, in the order of their layers.
+/// Adds a row to the rows of other samples, in the order of their layers.
 void add_row(std::vector<LayerRow>& rows, const LayerRow& row);
 
 class LayeredColors {

@@ -24,7 +24,7 @@ struct PerVertexRow {
 /// Whether a draw of the scene has `shade phong`, of filled triangles.
 [[nodiscard]] bool has_light_of_fragments(const Scene& scene);
 
-/// The scene with those draws lit at their vertices, in real arithmetic, and `shade smooth`.
+/// The scene with these draws lit at their vertices, in real arithmetic, and `shade smooth`.
 [[nodiscard]] Scene lit_at_vertices(const Scene& scene);
 
 /// `rendering`: with its triangles; `fragments`, `vertices`: the golden's pictures of the scene, and lit at vertices.

@@ -1,4 +1,4 @@
-// Error statistics: what a comparison reports about a set of signed errors.
+// Error statistics: figures that a comparison reports about a set of signed errors.
 #pragma once
 
 #include <cstdint>

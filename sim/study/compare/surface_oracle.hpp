@@ -62,7 +62,7 @@ class SurfaceOracle {
   /// there (moved_to_sample).
   SurfaceOracle(const Scene& scene, const Config& config, const Triangle& triangle, const SampleOffset& offset = {});
   [[nodiscard]] SurfaceErrors errors(const SurfaceSample& sample, int x, int y) const;
-  /// Distance of coordinates that are affine on the screen from those over w, texels; 0 if the state has the latter.
+  /// Distance of coordinates that are affine on the screen from coordinates over w, texels; 0 if the state has the latter.
   [[nodiscard]] double affine_texels(int x, int y) const;
 
  private:

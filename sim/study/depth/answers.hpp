@@ -20,7 +20,7 @@ struct DepthTrial {
 };
 
 /// Another near plane, reversed float, w, one more bit, two more subpixel bits, each at the same storage unless its
-/// name says otherwise; without those that `base` already has, and those that a study ended early did not reach. Best
+/// name says otherwise; without answers that `base` already has, and answers that a study ended early did not reach. Best
 /// first: fewest fights, to a tenth of a percent of the pairs, then the least rms error.
 [[nodiscard]] std::vector<DepthTrial> try_changes(const Scene& scene, const DepthVariant& base,
                                                   const DepthMeasurement& measured, int threads,

@@ -15,7 +15,7 @@ struct NamedDepth {
   double z = 0;
 };
 
-/// The figures at logarithmically spaced eye depths, from near to far, and at those in `also`, so that a table of these
+/// The figures at logarithmically spaced eye depths, from near to far, and at the depths in `also`, so that a table of these
 /// agrees with the curve. Eye-space units.
 struct DepthCurve {
   std::vector<double> z, bin_width, max_recon_err, first_order;
@@ -37,7 +37,7 @@ struct CodeShare {
 [[nodiscard]] std::optional<int> fewest_bits(DepthMapping mapping, const Rational& near, const Rational& far,
                                              const Rational& low, const Rational& high, double length);
 
-/// The small float with the fewest bits that does the same, among those with 2 to 6 bits of exponent.
+/// The small float with the fewest bits that does the same, among floats with 2 to 6 bits of exponent.
 [[nodiscard]] std::optional<DepthFormat> smallest_float(DepthMapping mapping, const Rational& near, const Rational& far,
                                                         const Rational& low, const Rational& high, double length);
 

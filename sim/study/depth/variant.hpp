@@ -22,7 +22,7 @@ struct DepthVariant {
 /// screen; else four more, for floats 32, plus `more`; at most 32.
 [[nodiscard]] int interpolated_bits(const DepthFormat& format, bool is_linear, int more);
 
-/// The mapping and format on top of `config`. Bits of the interpolated depth: those of the format if it can be stored
+/// The mapping and format on top of `config`. Bits of the interpolated depth: the format's bits if it can be stored
 /// unchanged (u<b> of 8 bits and more under a mapping that is affine on the screen); else enough for the format's
 /// finest step at far, 32 at most. Throws InputError as validate() does.
 [[nodiscard]] DepthVariant make_variant(const Config& config, DepthMapping mapping, const DepthFormat& format,

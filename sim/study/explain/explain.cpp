@@ -23,7 +23,7 @@ namespace halfplane::explain {
 
 namespace {
 
-/// Distance of a piece's corners from those of an outline, in the best assignment, pixels.
+/// Distance of a piece's corners from the corners of an outline, in the best assignment, pixels.
 double distance_between(const Entry& entry, const golden::Outline& outline, int grid_bits) {
   if (entry.corners.size() != outline.corners) return std::numeric_limits<double>::infinity();
   double sum = 0;
@@ -68,7 +68,7 @@ void match_outlines(PixelHistory& pixel, std::span<const golden::Outline> outlin
 
 bool is_same(const golden::Outline& a, const golden::Outline& b) { return a.x == b.x && a.y == b.y; }
 
-/// The entry of a fragment: the one with its outline, or another one of its primitive without an outline.
+/// The entry of a fragment: the entry with its outline, or another entry of its primitive without an outline.
 Entry* entry_of(PixelHistory& pixel, const golden::TappedFragment& fragment,
                 std::span<const golden::Outline> outlines) {
   // The strands of a wide line have one outline: the strand that draws the pixel comes first.
@@ -106,7 +106,7 @@ void add_parts(Entry& entry, std::size_t colors) {
 }
 
 /// Draws the golden at the pixels of `result` only, and adds its triangles, fragments and stored values to their
-/// entries. Clipped triangles have other pieces there: a piece is matched with the one with the nearest corners.
+/// entries. Clipped triangles have other pieces there: a piece is matched with the piece that has the nearest corners.
 /// `progress` gets the fraction done; it may throw.
 void record_golden(const Scene& scene, const Config& config, const std::function<void(double)>& progress,
                    Explanation& result) {

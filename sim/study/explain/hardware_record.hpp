@@ -36,7 +36,7 @@ struct HardwareRecord {
                                              const std::unordered_set<std::uint32_t>& wanted,
                                              const std::function<void(double)>& progress, PacketStore& packets);
 
-/// Adds the cycles of the cycle model to `packets`: of the arrows that are boundaries, and of those that move with
+/// Adds the cycles of the cycle model to `packets`: of the arrows that are boundaries, and of the arrows that move with
 /// them.
 void record_cycles(const Scene& scene, const Config& config, PacketStore& packets);
 

@@ -18,7 +18,7 @@ struct Window {
 [[nodiscard]] bool is_in(const Rect& box, Pixel at);
 
 /// `around`: explained pixels of the window, row by row. Draws the primitives in the histories of the pixels of `box`:
-/// those that cover one of them, and if there are none those nearby.
+/// primitives that cover one of them, else primitives nearby.
 [[nodiscard]] Picture neighbourhood_picture(const Explanation& around, const Window& window, const Rect& box,
                                             const Config& config, std::string_view title);
 

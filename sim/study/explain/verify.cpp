@@ -183,7 +183,7 @@ void join_visit(const HardwareVisit& visit, const PixelHistory& pixel, Entry& en
   const std::string place = place_of(pixel, entry);
   const bool is_first = !entry.hardware;
   if (is_first) entry.hardware = HardwareFigure{visit.outcome, visit.hiz, visit.packets};
-  // In bins the parts of a primitive are successive; the one that came furthest at the pixel counts.
+  // In bins the parts of a primitive are successive; the part that came furthest at the pixel counts.
   const bool is_further = !is_first && (visit.fragment || (!entry.hardware->hiz && visit.hiz));
   if (is_further) entry.hardware = HardwareFigure{visit.outcome, visit.hiz, visit.packets};
   if (entry.kind == Kind::clear) return;

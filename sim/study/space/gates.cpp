@@ -59,7 +59,7 @@ struct Said {
 
 Said run(const std::string& command) {
   Said said;
-  FILE* pipe = ::popen(command.c_str(), "r");  // NOLINT: the shell is what joins stderr to it
+  FILE* pipe = ::popen(command.c_str(), "r");  // NOLINT: the shell joins stderr to stdout
   if (pipe == nullptr) throw std::runtime_error("--area: no process can be started");
   std::array<char, 4096> part{};
   for (std::size_t n = 0; (n = std::fread(part.data(), 1, part.size(), pipe)) > 0;) said.out.append(part.data(), n);

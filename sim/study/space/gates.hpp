@@ -21,7 +21,7 @@ class Gates {
   Gates(std::string rtl, std::string cache, const std::vector<std::string>& parts);
 
   /// Cells of the design by part: {"ecp5": {"places", "lut4", "ccu2c", "dpr16x4", "ff", "multipliers", "block_rams"},
-  /// "ice40": {"lut4", "carries", "ff", "block_rams"}}. Throws std::runtime_error with what Yosys said, and Interrupted.
+  /// "ice40": {"lut4", "carries", "ff", "block_rams"}}. Throws std::runtime_error with Yosys's message, and Interrupted.
   [[nodiscard]] nlohmann::ordered_json of(const Config& config) const;
 
  private:

@@ -17,7 +17,7 @@ class PointStudy {
  public:
   explicit PointStudy(const MemorySettings& memory) : memory_(memory) {}
 
-  /// Errors (those of `compare`), cycles and bytes of a whole frame in the cycle engine, milliseconds at the memory's
+  /// Errors (as of `compare`), cycles and bytes of a whole frame in the cycle engine, milliseconds at the memory's
   /// clock, and the abilities of the hardware; without gates. Throws InputError for a scene that this hardware does not
   /// support.
   [[nodiscard]] SpaceJson measure(const BenchCase& at, const std::function<void(double)>& progress);

@@ -176,7 +176,7 @@ void hardware_surfaces(Unit& unit) {
 }
 
 void frames(Unit& unit) {
-  // Skipped bins are those with equal signatures: in the functional engine and, if such hardware exists, in its model.
+  // Skipped bins have equal signatures: in the functional engine and, if such hardware exists, in its model.
   Random& random = unit.random;
   FunctionalEngine engine(unit.config);
   Config bins = unit.config;

@@ -156,7 +156,7 @@ void WidthObserver::observe_triangle(const std::array<SnappedVertex, 3>& v) {
   observe_edges(stages.packet);
   observe_planes(stages);
 
-  // The tiles of the corners and vertices, and those in which an edge crosses a border or a middle line of the box.
+  // The tiles of the corners and vertices, and tiles in which an edge crosses a border or a middle line of the box.
   const auto& box = stages.packet.box;
   const int to_pixel = widths_.grid_bits, to_tile = widths_.tile_shift;
   const std::array<int, 3> columns{box.left, (box.left + box.right) / 2, box.right},
