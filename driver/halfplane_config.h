@@ -60,32 +60,32 @@
 #define HALFPLANE_TILE_SHIFT 3  /* log2 of the tile size */
 #define HALFPLANE_LINE_GUARD_BITS 14  /* G': fraction bits of the planes along a line */
 #define HALFPLANE_STAMPS_PER_ROW 4  /* stamps along the side of a tile */
-#define HALFPLANE_PLANES 4  /* that are interpolated: depth, the colours and what follows them */
-#define HALFPLANE_COLOR_PLANES 3  /* of the stored colour: plane 1 and the next ones */
+#define HALFPLANE_PLANES 4  /* interpolated planes: depth, the colours and planes over w */
+#define HALFPLANE_COLOR_PLANES 3  /* planes of the stored colour: plane 1 and the next ones */
 #define HALFPLANE_AFFINE_PLANES 4  /* linear in the window: depth and colours, which come first */
-#define HALFPLANE_COORDINATES 0  /* of a texture, planes behind that of 1/w */
-#define HALFPLANE_PERSPECTIVE_GUARD_BITS 4  /* l: fraction bits of those inside a tile */
+#define HALFPLANE_COORDINATES 0  /* planes of texture coordinates, after the plane of 1/w */
+#define HALFPLANE_PERSPECTIVE_GUARD_BITS 4  /* l: fraction bits of planes over w inside a tile */
 #define HALFPLANE_COORDINATE_FRACTION 8  /* f: of a texture coordinate, texels */
 #define HALFPLANE_COLORS_OVER_W 0  /* colour planes divided by w */
 #define HALFPLANE_COLOR_NARROW_BITS 13  /* mantissa bits of the reciprocal of w, for colours */
-#define HALFPLANE_NORMALS 0  /* planes of those, over w; instead of colours */
-#define HALFPLANE_STATE_WORD_BITS 40  /* of a token: the codes of all planes but those */
+#define HALFPLANE_NORMALS 0  /* planes of normals over w; instead of colours */
+#define HALFPLANE_STATE_WORD_BITS 40  /* bits of a token's value */
 #define HALFPLANE_TEXTURE_STAMPS 16  /* stamps between depth test and stored colours, with a texture unit */
 #define HALFPLANE_TEXTURE_PORT_BITS 64  /* data of a beat of texels */
 #define HALFPLANE_PIXELS 4  /* pixels of a stamp */
-#define HALFPLANE_SAMPLES 4  /* samples of a stamp, those of a pixel beside each other */
+#define HALFPLANE_SAMPLES 4  /* samples of a stamp, the samples of a pixel next to each other */
 #define HALFPLANE_TILES_X 240  /* tiles along the top of the widest target */
 #define HALFPLANE_TILES_Y 135  /* tiles along the side of the highest target */
 #define HALFPLANE_HIZ_GROUP_BITS 3  /* bounds of 2^this tiles of a row are cleared at once */
 #define HALFPLANE_LINE_X_BITS 4  /* low bits of a tile's or block's x in a cache line's number */
-#define HALFPLANE_LINE_Y_BITS 4  /* likewise of its y, above those */
+#define HALFPLANE_LINE_Y_BITS 4  /* likewise of its y, above the bits of x */
 #define HALFPLANE_BLOCK_SIDE 2  /* stamps along the side of a block */
 #define HALFPLANE_BLOCKS_PER_ROW 2  /* blocks along the side of a tile */
-#define HALFPLANE_FLAG_WORD 64  /* flags of cleared blocks in a word, those of a row of blocks */
+#define HALFPLANE_FLAG_WORD 64  /* flags of cleared blocks in a word, blocks of one row */
 #define HALFPLANE_PORT_SHIFT 3  /* log2 of the bytes of a beat */
-#define HALFPLANE_DEPTH_SAMPLE_BYTES 2  /* of a stored depth */
-#define HALFPLANE_COLOR_SAMPLE_BYTES 2  /* of a stored colour */
-#define HALFPLANE_MEMORY_COLORS 4  /* of a stamp in memory: of its samples, or of its pixels */
+#define HALFPLANE_DEPTH_SAMPLE_BYTES 2  /* bytes of a stored depth */
+#define HALFPLANE_COLOR_SAMPLE_BYTES 2  /* bytes of a stored colour */
+#define HALFPLANE_MEMORY_COLORS 4  /* colours of a stamp in memory: one a sample, or one a pixel */
 #define HALFPLANE_REQUEST_BYTES 8  /* data of a request, as they lie in memory: a stamp of the larger plane, or a word of flags */
 #define HALFPLANE_PLANE_SHIFT 7  /* log2 of the bytes of a plane of a tile */
 #define HALFPLANE_FLAG_ROW_SHIFT 6  /* log2 of the bytes from one row of flags to the next */

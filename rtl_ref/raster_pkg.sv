@@ -39,7 +39,7 @@ package raster_pkg;
   localparam int BLEND_LANES = 0;  // samples blended per cycle by the RTL, 1 or 4; 0: neither blending nor partial color masks
   localparam int LOGIC_UNIT = 0;  // 1: the RTL combines stored colours with new ones bit by bit (logic_op); 0: it does not
   localparam int DITHER_UNIT = 0;  // 1: the RTL dithers colours of rgb565; 0: it rounds them
-  localparam int FOG_UNIT = 0;  // 1: the RTL fogs triangles, downstream of its texture unit; 0: it has no fog
+  localparam int FOG_UNIT = 0;  // 1: the RTL fogs triangles behind its texture unit; 0: it has no fog
   localparam int SHADE_UNIT = 0;  // 1: the RTL lights the fragments of shade phong in front of its texture unit; 0: it lights none
   localparam int STENCIL_BITS = 0;  // bits of stencil that the RTL stores above each depth: 8, or 0 (blocks, pipelined; depth.bits up to 24)
   localparam int LINES_UNIT = 1;  // 1: the RTL has the unit that draws lines; 0: it takes none
@@ -59,32 +59,32 @@ package raster_pkg;
   localparam int TILE_SHIFT = 3;  // log2 of the tile size
   localparam int LINE_GUARD_BITS = 14;  // G': fraction bits of the planes along a line
   localparam int STAMPS_PER_ROW = 4;  // stamps along the side of a tile
-  localparam int PLANES = 4;  // that are interpolated: depth, the colours and what follows them
-  localparam int COLOR_PLANES = 3;  // of the stored colour: plane 1 and the next ones
+  localparam int PLANES = 4;  // interpolated planes: depth, the colours and planes over w
+  localparam int COLOR_PLANES = 3;  // planes of the stored colour: plane 1 and the next ones
   localparam int AFFINE_PLANES = 4;  // linear in the window: depth and colours, which come first
   localparam int COORDINATES = 0;  // planes of texture coordinates, after the plane of 1/w
-  localparam int PERSPECTIVE_GUARD_BITS = 4;  // l: fraction bits of those inside a tile
+  localparam int PERSPECTIVE_GUARD_BITS = 4;  // l: fraction bits of planes over w inside a tile
   localparam int COORDINATE_FRACTION = 8;  // f: of a texture coordinate, texels
   localparam int COLORS_OVER_W = 0;  // colour planes divided by w
   localparam int COLOR_NARROW_BITS = 13;  // mantissa bits of the reciprocal of w, for colours
-  localparam int NORMALS = 0;  // planes of those, over w; instead of colours
-  localparam int STATE_WORD_BITS = 40;  // of a token: the codes of all planes but those
+  localparam int NORMALS = 0;  // planes of normals over w; instead of colours
+  localparam int STATE_WORD_BITS = 40;  // bits of a token's value
   localparam int TEXTURE_STAMPS = 16;  // stamps between depth test and stored colours, with a texture unit
   localparam int TEXTURE_PORT_BITS = 64;  // data of a beat of texels
   localparam int PIXELS = 4;  // pixels of a stamp
-  localparam int SAMPLES = 4;  // samples of a stamp, those of a pixel beside each other
+  localparam int SAMPLES = 4;  // samples of a stamp, the samples of a pixel next to each other
   localparam int TILES_X = 240;  // tiles along the top of the widest target
   localparam int TILES_Y = 135;  // tiles along the side of the highest target
   localparam int HIZ_GROUP_BITS = 3;  // bounds of 2^this tiles of a row are cleared at once
   localparam int LINE_X_BITS = 4;  // low bits of a tile's or block's x in a cache line's number
-  localparam int LINE_Y_BITS = 4;  // likewise of its y, above those
+  localparam int LINE_Y_BITS = 4;  // likewise of its y, above the bits of x
   localparam int BLOCK_SIDE = 2;  // stamps along the side of a block
   localparam int BLOCKS_PER_ROW = 2;  // blocks along the side of a tile
-  localparam int FLAG_WORD = 64;  // flags of cleared blocks in a word, those of a row of blocks
+  localparam int FLAG_WORD = 64;  // flags of cleared blocks in a word, blocks of one row
   localparam int PORT_SHIFT = 3;  // log2 of the bytes of a beat
-  localparam int DEPTH_SAMPLE_BYTES = 2;  // of a stored depth
-  localparam int COLOR_SAMPLE_BYTES = 2;  // of a stored colour
-  localparam int MEMORY_COLORS = 4;  // of a stamp in memory: of its samples, or of its pixels
+  localparam int DEPTH_SAMPLE_BYTES = 2;  // bytes of a stored depth
+  localparam int COLOR_SAMPLE_BYTES = 2;  // bytes of a stored colour
+  localparam int MEMORY_COLORS = 4;  // colours of a stamp in memory: one a sample, or one a pixel
   localparam int REQUEST_BYTES = 8;  // data of a request, as they lie in memory: a stamp of the larger plane, or a word of flags
   localparam int PLANE_SHIFT = 7;  // log2 of the bytes of a plane of a tile
   localparam int FLAG_ROW_SHIFT = 6;  // log2 of the bytes from one row of flags to the next
@@ -182,40 +182,40 @@ package raster_pkg;
   // The planes: depth, then the colours. Each table has 32 bits for a plane, plane 0 lowest.
   localparam logic [32*PLANES-1:0] CODE_BITS_OF = {32'd8, 32'd8, 32'd8, 32'd16};  // codes
   localparam logic [32*PLANES-1:0] CODE_AT = {32'd32, 32'd24, 32'd16, 32'd0};
-  localparam int ALL_CODE_BITS = 40;  // of one for each plane
-  localparam int MAX_CODE_BITS = 16;  // of the widest
+  localparam int ALL_CODE_BITS = 40;  // of all planes together
+  localparam int MAX_CODE_BITS = 16;  // of the widest plane
   localparam logic [32*PLANES-1:0] RECIPROCAL_BITS_OF = {32'd13, 32'd13, 32'd13, 32'd21};  // reciprocals of the area
   localparam logic [32*PLANES-1:0] RECIPROCAL_AT = {32'd47, 32'd34, 32'd21, 32'd0};
-  localparam int ALL_RECIPROCAL_BITS = 60;  // of one for each plane
-  localparam int MAX_RECIPROCAL_BITS = 21;  // of the widest
+  localparam int ALL_RECIPROCAL_BITS = 60;  // of all planes together
+  localparam int MAX_RECIPROCAL_BITS = 21;  // of the widest plane
   localparam logic [32*PLANES-1:0] PLANE_BITS_OF = {32'd30, 32'd30, 32'd30, 32'd38};  // values and gradients
   localparam logic [32*PLANES-1:0] PLANE_AT = {32'd98, 32'd68, 32'd38, 32'd0};
-  localparam int ALL_PLANE_BITS = 128;  // of one for each plane
-  localparam int MAX_PLANE_BITS = 38;  // of the widest
+  localparam int ALL_PLANE_BITS = 128;  // of all planes together
+  localparam int MAX_PLANE_BITS = 38;  // of the widest plane
   localparam logic [32*PLANES-1:0] LOCAL_BITS_OF = {32'd15, 32'd15, 32'd15, 32'd23};  // values and gradients inside a tile
   localparam logic [32*PLANES-1:0] LOCAL_AT = {32'd53, 32'd38, 32'd23, 32'd0};
-  localparam int ALL_LOCAL_BITS = 68;  // of one for each plane
-  localparam int MAX_LOCAL_BITS = 23;  // of the widest
+  localparam int ALL_LOCAL_BITS = 68;  // of all planes together
+  localparam int MAX_LOCAL_BITS = 23;  // of the widest plane
   localparam logic [32*PLANES-1:0] STEP_BITS_OF = {32'd15, 32'd15, 32'd15, 32'd23};  // gradients per pixel inside a tile
   localparam logic [32*PLANES-1:0] STEP_AT = {32'd53, 32'd38, 32'd23, 32'd0};
-  localparam int ALL_STEP_BITS = 68;  // of one for each plane
-  localparam int MAX_STEP_BITS = 23;  // of the widest
+  localparam int ALL_STEP_BITS = 68;  // of all planes together
+  localparam int MAX_STEP_BITS = 23;  // of the widest plane
   localparam logic [32*PLANES-1:0] FRAGMENT_BITS_OF = {32'd8, 32'd8, 32'd8, 32'd16};  // values of a sample
   localparam logic [32*PLANES-1:0] FRAGMENT_AT = {32'd32, 32'd24, 32'd16, 32'd0};
-  localparam int ALL_FRAGMENT_BITS = 40;  // of one for each plane
-  localparam int MAX_FRAGMENT_BITS = 16;  // of the widest
+  localparam int ALL_FRAGMENT_BITS = 40;  // of all planes together
+  localparam int MAX_FRAGMENT_BITS = 16;  // of the widest plane
   localparam logic [32*PLANES-1:0] AFFINE_CODE_BITS_OF = {32'd8, 32'd8, 32'd8, 32'd16};  // codes that are clamped
   localparam logic [32*PLANES-1:0] AFFINE_CODE_AT = {32'd32, 32'd24, 32'd16, 32'd0};
-  localparam int ALL_AFFINE_CODE_BITS = 40;  // of one for each plane
-  localparam int MAX_AFFINE_CODE_BITS = 16;  // of the widest
+  localparam int ALL_AFFINE_CODE_BITS = 40;  // of all planes together
+  localparam int MAX_AFFINE_CODE_BITS = 16;  // of the widest plane
   localparam logic [32*PLANES-1:0] LINE_BITS_OF = {32'd22, 32'd22, 32'd22, 32'd30};  // values along a line
   localparam logic [32*PLANES-1:0] LINE_AT = {32'd74, 32'd52, 32'd30, 32'd0};
-  localparam int ALL_LINE_BITS = 96;  // of one for each plane
-  localparam int MAX_LINE_BITS = 30;  // of the widest
+  localparam int ALL_LINE_BITS = 96;  // of all planes together
+  localparam int MAX_LINE_BITS = 30;  // of the widest plane
   localparam int MAX_DELTA_BITS = 17;  // of the widest plane
   localparam int MAX_NUMERATOR_BITS = 33;  // likewise
 
-  // What a field can say.
+  // Values of fields.
   typedef enum logic [KIND_BITS-1:0] {
     PRIMITIVE_KIND_TRIANGLE = 3'd0,
     PRIMITIVE_KIND_RECTANGLE = 3'd1,
@@ -288,7 +288,7 @@ package raster_pkg;
     DEPTH_SOURCE_MEMORY = 2'd3
   } depth_source_t;
 
-  // Parts of packets. Array fields are flat, element 0 lowest; those over the planes have plane 0 lowest.
+  // Parts of packets. Array fields are flat, element 0 lowest; arrays over the planes have plane 0 lowest.
   typedef struct packed {
     logic [PIXEL_X_BITS-1:0] left;
     logic [PIXEL_Y_BITS-1:0] top;
@@ -325,7 +325,7 @@ package raster_pkg;
     logic [ALL_AFFINE_CODE_BITS-1:0] low;
     logic [ALL_AFFINE_CODE_BITS-1:0] high;
   } code_range_t;
-  localparam int COORDINATE_FRAME_BITS = 0;  // of the struct above; none without a texture unit
+  localparam int COORDINATE_FRAME_BITS = 0;  // bits of the struct above; none without a texture unit
 
   typedef struct packed {
     logic [ADDRESS_BITS-1:0] depth_base;
@@ -345,7 +345,7 @@ package raster_pkg;
     logic [FLAG_BITS-1:0] front_cw;
     triangle_vertices_t vertex;
   } primitive_packet_t;
-  localparam int PRIMITIVE_PACKET_BITS = 287;  // of the struct above
+  localparam int PRIMITIVE_PACKET_BITS = 287;  // bits of the struct above
 
   typedef struct packed {
     logic [PRIMITIVE_ID_BITS-1:0] primitive_id;
@@ -363,7 +363,7 @@ package raster_pkg;
     logic [ALL_LINE_BITS-1:0] step;
     logic [ALL_AFFINE_CODE_BITS-1:0] start;
   } line_setup_t;
-  localparam int LINE_SETUP_BITS = 335;  // of the struct above
+  localparam int LINE_SETUP_BITS = 335;  // bits of the struct above
 
   typedef struct packed {
     primitive_kind_t kind;
@@ -374,7 +374,7 @@ package raster_pkg;
     logic [AREA_BITS-1:0] area;
     logic [3*EDGE_VALUE_BITS-1:0] edge_value;
   } triangle_packet_t;
-  localparam int TRIANGLE_PACKET_BITS = 403;  // of the struct above
+  localparam int TRIANGLE_PACKET_BITS = 403;  // bits of the struct above
 
   typedef struct packed {
     primitive_kind_t kind;
@@ -389,7 +389,7 @@ package raster_pkg;
     logic [ALL_PLANE_BITS-1:0] step_y;
     code_range_t range;
   } setup_packet_t;
-  localparam int SETUP_PACKET_BITS = 721;  // of the struct above
+  localparam int SETUP_PACKET_BITS = 721;  // bits of the struct above
 
   typedef struct packed {
     primitive_state_t state;
@@ -397,7 +397,7 @@ package raster_pkg;
     logic [ALL_STEP_BITS-1:0] step_y;
     code_range_t range;
   } context_packet_t;
-  localparam int CONTEXT_PACKET_BITS = 221;  // of the struct above
+  localparam int CONTEXT_PACKET_BITS = 221;  // bits of the struct above
 
   typedef struct packed {
     primitive_kind_t kind;
@@ -410,13 +410,13 @@ package raster_pkg;
     logic [3*TILE_EDGE_BITS-1:0] edge_value;
     logic [ALL_LOCAL_BITS-1:0] anchor;
   } tile_packet_t;
-  localparam int TILE_PACKET_BITS = 183;  // of the struct above
+  localparam int TILE_PACKET_BITS = 183;  // bits of the struct above
 
   typedef struct packed {
     logic [3*EDGE_STEP_BITS-1:0] step_x;
     logic [3*EDGE_STEP_BITS-1:0] step_y;
   } edge_context_t;
-  localparam int EDGE_CONTEXT_BITS = 102;  // of the struct above
+  localparam int EDGE_CONTEXT_BITS = 102;  // bits of the struct above
 
   typedef struct packed {
     primitive_kind_t kind;
@@ -428,7 +428,7 @@ package raster_pkg;
     logic [SAMPLE_MASK_BITS-1:0] mask;
     logic [ALL_LOCAL_BITS-1:0] anchor;
   } stamp_packet_t;
-  localparam int STAMP_PACKET_BITS = 115;  // of the struct above
+  localparam int STAMP_PACKET_BITS = 115;  // bits of the struct above
 
   typedef struct packed {
     logic [PRIMITIVE_ID_BITS-1:0] primitive_id;
@@ -437,7 +437,7 @@ package raster_pkg;
     logic [FLAG_BITS-1:0] is_last;
     logic [ALL_AFFINE_CODE_BITS-1:0] code;
   } line_pixel_t;
-  localparam int LINE_PIXEL_BITS = 79;  // of the struct above
+  localparam int LINE_PIXEL_BITS = 79;  // bits of the struct above
 
   typedef struct packed {
     primitive_kind_t kind;
@@ -449,7 +449,7 @@ package raster_pkg;
     primitive_state_t state;
     logic [4*ALL_FRAGMENT_BITS-1:0] code;
   } fragment_packet_t;
-  localparam int FRAGMENT_PACKET_BITS = 210;  // of the struct above
+  localparam int FRAGMENT_PACKET_BITS = 210;  // bits of the struct above
 
   typedef struct packed {
     tile_key_t key;
@@ -460,14 +460,14 @@ package raster_pkg;
     logic [4*STORED_DEPTH_BITS-1:0] depth;
     logic [4*WRITTEN_COLOR_BITS-1:0] color;
   } write_packet_t;
-  localparam int WRITE_PACKET_BITS = 176;  // of the struct above
+  localparam int WRITE_PACKET_BITS = 176;  // bits of the struct above
 
   typedef struct packed {
     tile_key_t key;
     hiz_update_t update;
     logic [HIZ_CODE_BITS-1:0] hiz_code;
   } retire_packet_t;
-  localparam int RETIRE_PACKET_BITS = 50;  // of the struct above
+  localparam int RETIRE_PACKET_BITS = 50;  // bits of the struct above
 
   typedef struct packed {
     logic [FLAG_BITS-1:0] is_write;
@@ -479,7 +479,7 @@ package raster_pkg;
     logic [SAMPLE_MASK_BITS-1:0] strobe;
     logic [4*MEMORY_LANE_BITS-1:0] data;
   } memory_request_t;
-  localparam int MEMORY_REQUEST_BITS = 97;  // of the struct above
+  localparam int MEMORY_REQUEST_BITS = 97;  // bits of the struct above
 
   typedef struct packed {
     logic [FLAG_BITS-1:0] is_write;
@@ -489,35 +489,35 @@ package raster_pkg;
     logic [PORT_STROBE_BITS-1:0] strobe;
     logic [8*PORT_BYTE_BITS-1:0] data;
   } memory_beat_t;
-  localparam int MEMORY_BEAT_BITS = 111;  // of the struct above
+  localparam int MEMORY_BEAT_BITS = 111;  // bits of the struct above
 
   typedef struct packed {
     logic [FLAG_BITS-1:0] is_write;
     logic [8*PORT_BYTE_BITS-1:0] data;
   } memory_answer_t;
-  localparam int MEMORY_ANSWER_BITS = 65;  // of the struct above
+  localparam int MEMORY_ANSWER_BITS = 65;  // bits of the struct above
 
   typedef struct packed {
     logic [4*MEMORY_LANE_BITS-1:0] data;
   } memory_response_t;
-  localparam int MEMORY_RESPONSE_BITS = 64;  // of the struct above
+  localparam int MEMORY_RESPONSE_BITS = 64;  // bits of the struct above
 
   typedef struct packed {
     logic [ADDRESS_BITS-1:0] address;
     logic [TEXTURE_BEATS_BITS-1:0] beats;
   } texture_request_t;
-  localparam int TEXTURE_REQUEST_BITS = 38;  // of the struct above
+  localparam int TEXTURE_REQUEST_BITS = 38;  // bits of the struct above
 
   typedef struct packed {
     logic [8*TEXTURE_BYTE_BITS-1:0] data;
   } texel_beat_t;
-  localparam int TEXEL_BEAT_BITS = 64;  // of the struct above
+  localparam int TEXEL_BEAT_BITS = 64;  // bits of the struct above
 
   typedef struct packed {
     logic [SAMPLE_MASK_BITS-1:0] mask;
     logic [4*SHADED_COLOR_BITS-1:0] color;
   } color_packet_t;
-  localparam int COLOR_PACKET_BITS = 68;  // of the struct above
+  localparam int COLOR_PACKET_BITS = 68;  // bits of the struct above
 
   typedef struct packed {
     logic [FLAG_BITS-1:0] overflow;
@@ -538,7 +538,7 @@ package raster_pkg;
     logic [COUNTER_BITS-1:0] tile_evictions;
     logic [COUNTER_BITS-1:0] tile_clears;
   } counter_packet_t;
-  localparam int COUNTER_PACKET_BITS = 513;  // of the struct above
+  localparam int COUNTER_PACKET_BITS = 513;  // bits of the struct above
 
   // The framebuffer of blocks.
   localparam int BLOCK_STAMPS = BLOCK_SIDE * BLOCK_SIDE;  // stamps of a block
@@ -546,32 +546,32 @@ package raster_pkg;
   localparam int BLOCK_X_BITS = TILE_X_BITS + $clog2(BLOCKS_PER_ROW);  // a block's column in the target
   localparam int BLOCK_Y_BITS = TILE_Y_BITS + $clog2(BLOCKS_PER_ROW);  // its row
   localparam int CACHE_LINE_BITS = CACHE_LINES == 1 ? 1 : LINE_X_BITS + LINE_Y_BITS;  // a line's number
-  localparam int TAG_X_BITS = BLOCK_X_BITS > LINE_X_BITS ? BLOCK_X_BITS - LINE_X_BITS : 1;  // of a block's column, its tag
-  localparam int TAG_Y_BITS = BLOCK_Y_BITS > LINE_Y_BITS ? BLOCK_Y_BITS - LINE_Y_BITS : 1;  // of its row
+  localparam int TAG_X_BITS = BLOCK_X_BITS > LINE_X_BITS ? BLOCK_X_BITS - LINE_X_BITS : 1;  // tag of a block's column
+  localparam int TAG_Y_BITS = BLOCK_Y_BITS > LINE_Y_BITS ? BLOCK_Y_BITS - LINE_Y_BITS : 1;  // tag of a block's row
   localparam int FLAG_WORD_X_BITS = BLOCK_X_BITS > $clog2(FLAG_WORD) ? BLOCK_X_BITS - $clog2(FLAG_WORD) : 1;  // a word's number in its row of flags
   localparam int SAMPLE_COUNT_BITS = $clog2(SAMPLES + 1);  // samples of a stamp, counted
   localparam int VICTIM_SLOT_BITS = $clog2(CACHE_VICTIMS);  // a slot for an evicted block
-  localparam int VICTIM_COUNT_BITS = $clog2(CACHE_VICTIMS + 1);  // so many of them
+  localparam int VICTIM_COUNT_BITS = $clog2(CACHE_VICTIMS + 1);  // number of evicted blocks
   localparam int SHADED_STAMPS = COORDINATES == 0 ? 2 : TEXTURE_STAMPS;  // stamps between depth and colour, at most
-  localparam int STORE_CONSTANTS_SEPARATELY = COORDINATES != 0 && MSAA_SAMPLES == 1 ? 1 : 0;  // 1: what a triangle's fragments share over w lies in a RAM, by the triangle's number
-  localparam int TRIANGLE_BITS = $clog2(CONTEXT_SLOTS + CACHE_QUEUE + 16);  // that number: of all between setup and depth test
+  localparam int STORE_CONSTANTS_SEPARATELY = COORDINATES != 0 && MSAA_SAMPLES == 1 ? 1 : 0;  // 1: texture constants lie in a RAM, by the triangle's number
+  localparam int TRIANGLE_BITS = $clog2(CONTEXT_SLOTS + CACHE_QUEUE + 16);  // bits of that number: one for each triangle between setup and depth test
   localparam int STORED_FRAGMENT_BITS = FRAGMENT_PACKET_BITS - (STORE_CONSTANTS_SEPARATELY != 0 ? COORDINATE_FRAME_BITS - TRIANGLE_BITS + (PIXELS - 1) * (ALL_FRAGMENT_BITS - ALL_AFFINE_CODE_BITS) : 0);  // a fragment as it waits for memory
   localparam int UNIT_WORD_BITS = 43;  // a token's value for light or fog; two bits above it say which
-  localparam int CONSTANT_WORD_BIT = 42;  // of levels: the token is the texture's constant
+  localparam int CONSTANT_WORD_BIT = 42;  // bit of a token of levels: it is the texture's constant
   localparam int BORDER_WORD_BIT = 41;  // likewise: the texture's border
   localparam int FOG_PLACE_BITS = 19;  // where in the table of a fog a pixel lies
-  localparam int FOG_PLACES_BITS = FOG_PLACE_BITS * PIXELS > UNIT_WORD_BITS ? FOG_PLACE_BITS * PIXELS : UNIT_WORD_BITS;  // that of a stamp's pixels, or a token's value
-  localparam int FOG_WORD_BITS = FOG_UNIT == 0 ? 1 : FOG_PLACES_BITS + 3;  // with it: there is fog; a token sets its colour; a line of its table
+  localparam int FOG_PLACES_BITS = FOG_PLACE_BITS * PIXELS > UNIT_WORD_BITS ? FOG_PLACE_BITS * PIXELS : UNIT_WORD_BITS;  // the places of a stamp's pixels, or a token's value
+  localparam int FOG_WORD_BITS = FOG_UNIT == 0 ? 1 : FOG_PLACES_BITS + 3;  // the places, and three flags: fog, a token of its colour, a token of its table
   localparam int LATE_ALPHA = ALPHA_UNIT != 0 && COORDINATES != 0 ? 1 : 0;  // 1: alpha is tested downstream of the texture
 
   typedef struct packed {
     logic [CACHE_LINE_BITS-1:0] line;  // where the fragment's block lies
     logic [BLOCK_STAMP_BITS-1:0] stamp;  // its stamp there
-    depth_source_t source;  // of the stored depths
+    depth_source_t source;  // place of the stored depths
     logic [FLAG_BITS-1:0] starts_color;  // no colour of the stamp is on the chip
     logic [FLAG_BITS-1:0] evicts;  // another block leaves the line
-    logic [TAG_X_BITS-1:0] tag_x;  // that block's tag: of its column
-    logic [TAG_Y_BITS-1:0] tag_y;  // of its row
+    logic [TAG_X_BITS-1:0] tag_x;  // tag of that block's column
+    logic [TAG_Y_BITS-1:0] tag_y;  // tag of its row
     logic [BLOCK_STAMPS-1:0] depth;  // stamps of it whose depths may have been written
     logic [BLOCK_STAMPS-1:0] color;  // likewise colours
     logic [2-1:0] fills;  // colour, depth: memory holds garbage
@@ -579,7 +579,7 @@ package raster_pkg;
   localparam int TAG_RESULT_BITS = CACHE_LINE_BITS + BLOCK_STAMP_BITS + DEPTH_SOURCE_BITS + FLAG_BITS + FLAG_BITS + TAG_X_BITS + TAG_Y_BITS + BLOCK_STAMPS + BLOCK_STAMPS + 2;  // of the struct above
 
   typedef struct packed {
-    logic [VICTIM_COUNT_BITS-1:0] writes;  // so many evicted blocks go to memory first
+    logic [VICTIM_COUNT_BITS-1:0] writes;  // number of evicted blocks that go to memory first
     logic [FLAG_BITS-1:0] reads;  // then a stamp of depths is read
     logic [TILE_X_BITS-1:0] tile_x;  // the stamp's tile, its column
     logic [TILE_Y_BITS-1:0] tile_y;  // its tile's row
@@ -596,15 +596,15 @@ package raster_pkg;
   localparam int VICTIM_BITS = BLOCK_X_BITS + BLOCK_Y_BITS + BLOCK_STAMPS + BLOCK_STAMPS;  // of the struct above
 
   typedef struct packed {
-    logic [VICTIM_SLOT_BITS-1:0] slot;  // that the block gets
+    logic [VICTIM_SLOT_BITS-1:0] slot;  // slot of the block
     logic [2-1:0] fills;  // colour, depth: memory holds garbage
-    victim_t block;  // where it belongs, and what comes into its slot
+    victim_t block;  // its place, and the stamps that enter the slot
   } eviction_t;
   localparam int EVICTION_BITS = VICTIM_SLOT_BITS + 2 + VICTIM_BITS;  // of the struct above
 
   typedef struct packed {
-    logic [FLAG_BITS-1:0] last;  // of its block
-    logic [VICTIM_SLOT_BITS-1:0] slot;  // of its block
+    logic [FLAG_BITS-1:0] last;  // last stamp of its block
+    logic [VICTIM_SLOT_BITS-1:0] slot;  // slot of its block
     logic [BLOCK_STAMP_BITS-1:0] stamp;  // its number in the block
     logic [SAMPLE_MASK_BITS-1:0] strobe;  // samples that memory does not have
     logic [SAMPLES*STORED_DEPTH_BITS-1:0] depth;  // words of all
@@ -612,10 +612,10 @@ package raster_pkg;
   localparam int DEPTH_VICTIM_BITS = FLAG_BITS + VICTIM_SLOT_BITS + BLOCK_STAMP_BITS + SAMPLE_MASK_BITS + SAMPLES*STORED_DEPTH_BITS;  // of the struct above
 
   typedef struct packed {
-    logic [VICTIM_SLOT_BITS-1:0] slot;  // of its block
+    logic [VICTIM_SLOT_BITS-1:0] slot;  // slot of its block
     logic [BLOCK_STAMP_BITS-1:0] stamp;  // its number in the block
     logic [SAMPLE_MASK_BITS-1:0] strobe;  // samples that memory does not have
-    logic [SAMPLES*STORED_COLOR_BITS-1:0] color;  // of all
+    logic [SAMPLES*STORED_COLOR_BITS-1:0] color;  // colours of all samples
   } color_victim_t;
   localparam int COLOR_VICTIM_BITS = VICTIM_SLOT_BITS + BLOCK_STAMP_BITS + SAMPLE_MASK_BITS + SAMPLES*STORED_COLOR_BITS;  // of the struct above
 
@@ -624,7 +624,7 @@ package raster_pkg;
     logic [FLAG_BITS-1:0] writes;  // or written
     logic [FLAG_WORD_X_BITS-1:0] x;  // its number in the row
     logic [BLOCK_Y_BITS-1:0] y;  // the row of blocks
-    logic [FLAG_WORD-1:0] word;  // what is written
+    logic [FLAG_WORD-1:0] word;  // the word written
   } pixel_word_t;
   localparam int PIXEL_WORD_BITS = FLAG_BITS + FLAG_BITS + FLAG_WORD_X_BITS + BLOCK_Y_BITS + FLAG_WORD;  // of the struct above
 
@@ -639,7 +639,7 @@ package raster_pkg;
   } tested_stamp_t;
   localparam int TESTED_STAMP_BITS = CACHE_LINE_BITS + BLOCK_STAMP_BITS + FLAG_BITS + SAMPLE_MASK_BITS + FLAG_BITS + FLAG_BITS + BLOCK_STAMPS;  // of the struct above
 
-  // Of a set of stamps of a block the lowest one alone; the number of that one; so many samples.
+  // In a set of stamps of a block: the lowest stamp alone, its number; the number of samples in a mask.
   function automatic [BLOCK_STAMPS-1:0] lowest_stamp(input [BLOCK_STAMPS-1:0] set);
     lowest_stamp = set & (~set + 1'b1);
   endfunction

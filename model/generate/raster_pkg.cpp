@@ -55,8 +55,8 @@ void print_plane_table(std::ostream& out, const PlaneTable& table, const Widths&
   }
   const std::string word = table.word, type = "  localparam logic [32*PLANES-1:0] " + word;
   out << type << "_BITS_OF = {" << bits << "};  // " << table.what << "\n" << type << "_AT = {" << at << "};\n";
-  print_constant(out, "ALL_" + word + "_BITS", sum, "of one for each plane");
-  print_constant(out, "MAX_" + word + "_BITS", most, "of the widest");
+  print_constant(out, "ALL_" + word + "_BITS", sum, "of all planes together");
+  print_constant(out, "MAX_" + word + "_BITS", most, "of the widest plane");
 }
 
 /// msaa.pattern: the offset of each sample from a pixel's centre.
@@ -124,7 +124,7 @@ void print_struct(std::ostream& out, const Widths& widths) {
 template <class Packet>
 void print_packet(std::ostream& out, const Widths& widths) {
   print_struct<Packet>(out, widths);
-  print_constant(out, constant_name(Packet::name) + "_BITS", packet_bits<Packet>(widths), "of the struct above");
+  print_constant(out, constant_name(Packet::name) + "_BITS", packet_bits<Packet>(widths), "bits of the struct above");
 }
 
 /// A member of a struct that exists only in the RTL.
@@ -165,18 +165,18 @@ void print_blocks(std::ostream& out, const Config& config) {
   constant("BLOCK_X_BITS", "TILE_X_BITS + $clog2(BLOCKS_PER_ROW)", "a block's column in the target");
   constant("BLOCK_Y_BITS", "TILE_Y_BITS + $clog2(BLOCKS_PER_ROW)", "its row");
   constant("CACHE_LINE_BITS", "CACHE_LINES == 1 ? 1 : LINE_X_BITS + LINE_Y_BITS", "a line's number");
-  constant("TAG_X_BITS", "BLOCK_X_BITS > LINE_X_BITS ? BLOCK_X_BITS - LINE_X_BITS : 1", "of a block's column, its tag");
-  constant("TAG_Y_BITS", "BLOCK_Y_BITS > LINE_Y_BITS ? BLOCK_Y_BITS - LINE_Y_BITS : 1", "of its row");
+  constant("TAG_X_BITS", "BLOCK_X_BITS > LINE_X_BITS ? BLOCK_X_BITS - LINE_X_BITS : 1", "tag of a block's column");
+  constant("TAG_Y_BITS", "BLOCK_Y_BITS > LINE_Y_BITS ? BLOCK_Y_BITS - LINE_Y_BITS : 1", "tag of a block's row");
   constant("FLAG_WORD_X_BITS", "BLOCK_X_BITS > $clog2(FLAG_WORD) ? BLOCK_X_BITS - $clog2(FLAG_WORD) : 1",
            "a word's number in its row of flags");
   constant("SAMPLE_COUNT_BITS", "$clog2(SAMPLES + 1)", "samples of a stamp, counted");
   constant("VICTIM_SLOT_BITS", "$clog2(CACHE_VICTIMS)", "a slot for an evicted block");
-  constant("VICTIM_COUNT_BITS", "$clog2(CACHE_VICTIMS + 1)", "so many of them");
+  constant("VICTIM_COUNT_BITS", "$clog2(CACHE_VICTIMS + 1)", "number of evicted blocks");
   constant("SHADED_STAMPS", "COORDINATES == 0 ? 2 : TEXTURE_STAMPS", "stamps between depth and colour, at most");
   constant("STORE_CONSTANTS_SEPARATELY", "COORDINATES != 0 && MSAA_SAMPLES == 1 ? 1 : 0",
-           "1: what a triangle's fragments share over w lies in a RAM, by the triangle's number");
+           "1: texture constants lie in a RAM, by the triangle's number");
   constant("TRIANGLE_BITS", "$clog2(CONTEXT_SLOTS + CACHE_QUEUE + 16)",
-           "that number: of all between setup and depth test");
+           "bits of that number: one for each triangle between setup and depth test");
   constant("STORED_FRAGMENT_BITS",
            "FRAGMENT_PACKET_BITS - (STORE_CONSTANTS_SEPARATELY != 0 ? COORDINATE_FRAME_BITS - TRIANGLE_BITS + (PIXELS "
            "- 1) * "
@@ -185,29 +185,29 @@ void print_blocks(std::ostream& out, const Config& config) {
            "a fragment as it waits for memory");
   print_constant(out, "UNIT_WORD_BITS", kLevelsWordBit,
                  "a token's value for light or fog; two bits above it say which");
-  print_constant(out, "CONSTANT_WORD_BIT", kConstantWordBit, "of levels: the token is the texture's constant");
+  print_constant(out, "CONSTANT_WORD_BIT", kConstantWordBit, "bit of a token of levels: it is the texture's constant");
   print_constant(out, "BORDER_WORD_BIT", kBorderWordBit, "likewise: the texture's border");
   print_constant(out, "FOG_PLACE_BITS", kFogPlaceBits + kFogOctaves, "where in the table of a fog a pixel lies");
   constant("FOG_PLACES_BITS", "FOG_PLACE_BITS * PIXELS > UNIT_WORD_BITS ? FOG_PLACE_BITS * PIXELS : UNIT_WORD_BITS",
-           "that of a stamp's pixels, or a token's value");
+           "the places of a stamp's pixels, or a token's value");
   constant("FOG_WORD_BITS", "FOG_UNIT == 0 ? 1 : FOG_PLACES_BITS + 3",
-           "with it: there is fog; a token sets its colour; a line of its table");
+           "the places, and three flags: fog, a token of its colour, a token of its table");
   constant("LATE_ALPHA", "ALPHA_UNIT != 0 && COORDINATES != 0 ? 1 : 0", "1: alpha is tested downstream of the texture");
   print_members(out, "tag_result",
                 {{"CACHE_LINE_BITS", "line", "where the fragment's block lies"},
                  {"BLOCK_STAMP_BITS", "stamp", "its stamp there"},
-                 {"depth_source_t", "source", "of the stored depths"},
-                 {"depth_source_t", "color_source", "of the stored colours, which operations read", blends},
+                 {"depth_source_t", "source", "place of the stored depths"},
+                 {"depth_source_t", "color_source", "place of the stored colours, which operations read", blends},
                  {"FLAG_BITS", "starts_color", "no colour of the stamp is on the chip"},
                  {"FLAG_BITS", "evicts", "another block leaves the line"},
-                 {"TAG_X_BITS", "tag_x", "that block's tag: of its column"},
-                 {"TAG_Y_BITS", "tag_y", "of its row"},
+                 {"TAG_X_BITS", "tag_x", "tag of that block's column"},
+                 {"TAG_Y_BITS", "tag_y", "tag of its row"},
                  {"BLOCK_STAMPS", "depth", "stamps of it whose depths may have been written"},
                  {"BLOCK_STAMPS", "color", "likewise colours"},
                  {"2", "fills", "colour, depth: memory holds garbage"}});
   print_members(out, "block_order",
-                {{"FLAG_BITS", "reads_color", "behind that, a stamp of colours is read", blends},
-                 {"VICTIM_COUNT_BITS", "writes", "so many evicted blocks go to memory first"},
+                {{"FLAG_BITS", "reads_color", "after that, a stamp of colours is read", blends},
+                 {"VICTIM_COUNT_BITS", "writes", "number of evicted blocks that go to memory first"},
                  {"FLAG_BITS", "reads", "then a stamp of depths is read"},
                  {"TILE_X_BITS", "tile_x", "the stamp's tile, its column"},
                  {"TILE_Y_BITS", "tile_y", "its tile's row"},
@@ -218,39 +218,39 @@ void print_blocks(std::ostream& out, const Config& config) {
                  {"BLOCK_STAMPS", "depth", "stamps whose depths come into its slot"},
                  {"BLOCK_STAMPS", "color", "likewise colours"}});
   print_members(out, "eviction",
-                {{"VICTIM_SLOT_BITS", "slot", "that the block gets"},
+                {{"VICTIM_SLOT_BITS", "slot", "slot of the block"},
                  {"2", "fills", "colour, depth: memory holds garbage"},
-                 {"victim_t", "block", "where it belongs, and what comes into its slot"}});
+                 {"victim_t", "block", "its place, and the stamps that enter the slot"}});
   print_members(out, "depth_victim",
-                {{"FLAG_BITS", "last", "of its block"},
-                 {"VICTIM_SLOT_BITS", "slot", "of its block"},
+                {{"FLAG_BITS", "last", "last stamp of its block"},
+                 {"VICTIM_SLOT_BITS", "slot", "slot of its block"},
                  {"BLOCK_STAMP_BITS", "stamp", "its number in the block"},
                  {"SAMPLE_MASK_BITS", "strobe", "samples that memory does not have"},
                  {"SAMPLES*STORED_DEPTH_BITS", "depth", "words of all"}});
   print_members(out, "color_victim",
-                {{"VICTIM_SLOT_BITS", "slot", "of its block"},
+                {{"VICTIM_SLOT_BITS", "slot", "slot of its block"},
                  {"BLOCK_STAMP_BITS", "stamp", "its number in the block"},
                  {"SAMPLE_MASK_BITS", "strobe", "samples that memory does not have"},
-                 {"SAMPLES*STORED_COLOR_BITS", "color", "of all"}});
+                 {"SAMPLES*STORED_COLOR_BITS", "color", "colours of all samples"}});
   print_members(out, "pixel_word",
                 {{"FLAG_BITS", "reads", "a word of the bits of blocks with one colour a pixel is read"},
                  {"FLAG_BITS", "writes", "or written"},
                  {"FLAG_WORD_X_BITS", "x", "its number in the row"},
                  {"BLOCK_Y_BITS", "y", "the row of blocks"},
-                 {"FLAG_WORD", "word", "what is written"}});
+                 {"FLAG_WORD", "word", "the word written"}});
   print_members(
       out, "tested_stamp",
-      {{"depth_source_t", "color_source", "of the stored colours", blends},
+      {{"depth_source_t", "color_source", "place of the stored colours", blends},
        {"SAMPLE_MASK_BITS", "changes", "samples whose stencil or depth changes", tests_alpha_late && has_stencil},
        {"FLAG_BITS", "is_late", "its depths are written when alpha has been tested", tests_alpha_late},
-       {"FLAG_BITS", "on_chip", "its depths were", tests_alpha_late},
-       {"FLAG_BITS", "is_counted", "of a triangle, point or line", tests_alpha_late},
+       {"FLAG_BITS", "on_chip", "its depths were on the chip", tests_alpha_late},
+       {"FLAG_BITS", "is_counted", "a sample of a triangle, point or line", tests_alpha_late},
        {"FLAG_BITS", "writes", "depth or colour", tests_alpha_late},
        {"SAMPLE_MASK_BITS", "passed", "samples that passed depth and stencil test", tests_alpha_late},
-       {"SAMPLES*STORED_DEPTH_BITS", "word", "what they have from now on", tests_alpha_late},
-       {"SAMPLES*STORED_DEPTH_BITS", "stored", "and had before", tests_alpha_late},
+       {"SAMPLES*STORED_DEPTH_BITS", "word", "words of these samples from now on", tests_alpha_late},
+       {"SAMPLES*STORED_DEPTH_BITS", "stored", "words of these samples before", tests_alpha_late},
        {"FLAG_BITS", "sets_state", "a token", has_color_states},
-       {"DEPTH_FUNC_BITS", "state_register", "of these registers one", has_color_states},
+       {"DEPTH_FUNC_BITS", "state_register", "number of the register that a token sets", has_color_states},
        {"32", "state", "its value", has_color_states},
        {"CACHE_LINE_BITS", "line", "where its block lies"},
        {"BLOCK_STAMP_BITS", "stamp", "its number in the block"},
@@ -259,7 +259,7 @@ void print_blocks(std::ostream& out, const Config& config) {
        {"FLAG_BITS", "evicts", "another block leaves the line"},
        {"FLAG_BITS", "fills", "memory holds garbage of its colours"},
        {"BLOCK_STAMPS", "evicted", "stamps of it whose colours leave"}});
-  out << "\n  // Of a set of stamps of a block the lowest one alone; the number of that one; so many samples.\n"
+  out << "\n  // In a set of stamps of a block: the lowest stamp alone, its number; the number of samples in a mask.\n"
          "  function automatic [BLOCK_STAMPS-1:0] lowest_stamp(input [BLOCK_STAMPS-1:0] set);\n"
          "    lowest_stamp = set & (~set + 1'b1);\n"
          "  endfunction\n"
@@ -328,7 +328,7 @@ std::string raster_pkg(const Config& config) {
   for (const PlaneTable& table : kPlaneTables) print_plane_table(out, table, widths);
   print_constant(out, "MAX_DELTA_BITS", widest(widths, &AttributeWidths::delta).bits, "of the widest plane");
   print_constant(out, "MAX_NUMERATOR_BITS", widest(widths, &AttributeWidths::numerator).bits, "likewise");
-  out << "\n  // What a field can say.";
+  out << "\n  // Values of fields.";
   print_enum<PrimitiveKind>(out, widths);
   print_enum<StateRegister>(out, widths);
   print_enum<DepthFunc>(out, widths);
@@ -337,7 +337,8 @@ std::string raster_pkg(const Config& config) {
   print_enum<HizUpdate>(out, widths);
   print_enum<TilePlane>(out, widths);
   print_enum<DepthSource>(out, widths);
-  out << "\n  // Parts of packets. Array fields are flat, element 0 lowest; those over the planes have plane 0 lowest.";
+  out << "\n  // Parts of packets. Array fields are flat, element 0 lowest; arrays over the planes have plane 0 "
+         "lowest.";
   print_struct<PixelBox>(out, widths);
   print_struct<TileBox>(out, widths);
   print_struct<PrimitiveState>(out, widths);
@@ -346,7 +347,7 @@ std::string raster_pkg(const Config& config) {
   print_struct<CodeRange>(out, widths);
   print_struct<CoordinateFrame>(out, widths);
   print_constant(out, "COORDINATE_FRAME_BITS", packet_bits<CoordinateFrame>(widths),
-                 "of the struct above; none without a texture unit");
+                 "bits of the struct above; none without a texture unit");
   print_struct<MemoryLayout>(out, widths);
   out << "\n  // Packets.";
   std::set<std::string_view> printed;
