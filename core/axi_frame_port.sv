@@ -175,7 +175,7 @@ module axi_frame_port #(
           .clk_i,
           .rst_ni,
           .valid_i(enters_burst),
-          .ready_o(),  // of WRITES bursts no more are without B
+          .ready_o(),  // fewer than WRITES bursts are without B
           .data_i (beat_i.length == 1),
           .valid_o(),
           .ready_i(is_answered),
@@ -220,7 +220,7 @@ module axi_frame_port #(
   // is a read or a write, so no bucket is read while it is written; later writes do not change the data of a waiting read.
   logic [BUCKETS:0]  fill_q;
   logic [NUMBER-1:0] noted;  // in the bucket of the read
-  logic [NUMBER-1:0] age;    // of that burst, 0: the oldest without B
+  logic [NUMBER-1:0] age;    // age of that burst, 0: the oldest without B
   assign is_clearing     = !fill_q[BUCKETS];
   assign bucket          = bucket_of(32'(beat_i.address));
   assign age             = noted - answered_q;

@@ -49,10 +49,10 @@ module axi_protocol_checker #(
   logic [1:0]                     b_q;
   logic [PORT_BITS+2:0]           r_q;
 
-  int aw_lengths[$];  // of addresses whose data have not ended
-  int w_lengths[$];   // of data whose address has not come
-  int ar_lengths[$];  // of reads without their last beat
-  int beats;    // of the write burst under way
+  int aw_lengths[$];  // lengths of addresses whose data have not ended
+  int w_lengths[$];   // lengths of data whose address has not come
+  int ar_lengths[$];  // lengths of reads without their last beat
+  int beats;    // beats of the write burst in flight
   int read;     // beats of the read that is answered
   int written;  // write bursts, address and data, without B
 

@@ -50,7 +50,7 @@ module command_reader #(
   localparam int WORD = $clog2(WORDS);
   localparam int PART = (BEATS > 1) ? $clog2(BEATS) : 1;
 
-  logic        reset_nq;          // of the stream: low from clear_i until nothing is owed
+  logic        reset_nq;          // reset of the stream: low from clear_i until no answer is outstanding
   logic        asks_q, partial_q; // the entry of the tail is under way or in the queue: nothing else is
   logic [3:0]  length_q;          // entries of the burst on offer
   logic [4:0]  owed_q;            // entries without an answer
@@ -133,7 +133,7 @@ module command_reader #(
       assign pops       = takes && (partial_q ? next == fetch_q[WORD-1:0] : next == '0);
       assign is_partial = none_whole && tail_i[WORD-1:0] != fetch_q[WORD-1:0];
       assign is_alone   = used == '0 && head_i[WORD-1:0] == fetch_q[WORD-1:0];
-      logic [WORD-1:0] part_words_q;  // of the burst on offer that the tail is in: up to here; else 0
+      logic [WORD-1:0] part_words_q;  // words of the burst on offer up to the tail; 0 if the tail is not in it
       always_ff @(posedge clk_i) if (can_ask) part_words_q <= is_partial ? tail_i[WORD-1:0] : '0;
       always_ff @(posedge clk_i or negedge rst_ni) begin
         if (!rst_ni) partial_q <= 1'b0;

@@ -23,7 +23,7 @@ module reset_order #(
     input logic restart_i,  // a pulse, or longer
     input logic idle_i,     // raster_top's idle_o, and the idle_o of all ports to memory
 
-    output logic core_no,      // of commands, scan-out and whatever else asks memory for something
+    output logic core_no,      // reset of commands, scan-out and all other masters of the memory
     output logic raster_no,    // rst_ni of raster_top
     output logic power_on_no,  // power_on_ni of raster_top
     output logic forget_o,     // to the ports

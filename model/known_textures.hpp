@@ -7,7 +7,7 @@
 
 namespace halfplane {
 
-/// As validate(scene), for a scene whose first textures have been validated with an earlier one.
+/// validate(scene) for a scene whose first textures have been validated with an earlier one.
 void validate(const Scene& scene, std::size_t known_textures);
 
 }  // namespace halfplane

@@ -31,7 +31,7 @@ struct Tables {
   Tables() {
     constexpr int kBits = 62;
     constexpr std::uint64_t one = std::uint64_t{1} << kBits;
-    std::array<std::uint64_t, kLogBits + 2> root{};  // of 2, u2.62
+    std::array<std::uint64_t, kLogBits + 2> root{};  // roots of 2, u2.62
     root[0] = one << 1;
     for (std::size_t k = 1; k < root.size(); ++k) root[k] = integer_sqrt(uint128{root[k - 1]} << kBits);
     for (int i = 0; i <= kLines; ++i) {

@@ -26,9 +26,9 @@
 // A stage is a pair of files of its name: model/stages/NAME.hpp, for the host model/host/NAME.hpp, is the
 // specification, and rtl_ref/stages/NAME.sv the hardware (stages of the host have no hardware, the memory has neither).
 // The model of framebuffer is in cache_tags.hpp and block_cache.hpp, with tiles in tile_directory.hpp and
-// tile_cache.hpp. An arrow carries packets: their fields are in packets/packets.hpp. engines/hardware.cpp sends them, the cycle model gives their cycles (engines/cycle/), raster_top.sv
-// wires them, rtl_ref/cosim/taps.svh, generated from this file, shows them to the co-simulation, which compares model
-// and RTL.
+// tile_cache.hpp. An arrow carries packets: their fields are in packets/packets.hpp. engines/hardware.cpp sends them,
+// the cycle model gives their cycles (engines/cycle/), raster_top.sv wires them, rtl_ref/cosim/taps.svh, generated from
+// this file, shows them to the co-simulation, which compares model and RTL.
 #pragma once
 
 #include <array>

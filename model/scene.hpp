@@ -210,7 +210,7 @@ struct State {
   LineRule line_rule = LineRule::diamond;
   std::optional<bool> line_last;  ///< whether a line's last pixel is drawn; none: by the rule
   double line_width = 1;          ///< pixels, at least 1: across the minor axis, rounded; of a rectangle its true width
-  bool smooth = false;            ///< of lines, with one sample per pixel: the covered area multiplies alpha
+  bool smooth = false;            ///< lines with one sample per pixel: the covered area multiplies alpha
   double point_size = 1;          ///< side of the square, pixels, at least 1
   PointShape point_shape = PointShape::square;
   PointClip point_clip = PointClip::pixel;

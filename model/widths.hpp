@@ -46,7 +46,7 @@ struct Width {
 /// Widths of each plane of an attribute.
 struct AttributeWidths {
   Width code, delta, numerator, reciprocal, product, plane, local;
-  Width step;               ///< of a local plane; with several samples s bits more, of which d uses the upper ones
+  Width step;               ///< step of a local plane; with several samples s bits more, whose upper bits d uses
   Width fragment;           ///< its value in a fragment: the code, or without a clamp the local value
   Width line, affine_code;  ///< along a line, and a clamped code; no bits if the attribute has none
 
@@ -112,7 +112,7 @@ struct Widths {
   int pixels = 1;           ///< of a stamp
   int has_samples = 0;      ///< 1: several samples per pixel
   int edge_lows = 0;        ///< 3 then: for each edge the bits dropped by edge_function()
-  int further_samples = 0;  ///< of a stamp, without the first of each pixel
+  int further_samples = 0;  ///< samples of a stamp, without the first of each pixel
   int memory_colors = 0;    ///< of a stamp in memory: one per sample, or per pixel if the chip stores the mean
   std::array<SampleOffset, kMaxPixelSamples> sample_offset{};  ///< of each, from the pixel's centre, 2^-s pixel
 

@@ -81,7 +81,7 @@ module raster_top (
   localparam bit LATE = raster_pkg::LATE_ALPHA != 0;
 
   // ---------------------------------------------------------------------------------------------------------- the streams
-  // As the consumer sees them.
+  // Signals at the consumer.
   logic triangle_valid, triangle_ready, setup_valid, setup_ready, tile_valid, tile_ready, stamp_valid, stamp_ready;
   logic line_pixel_valid, line_pixel_ready, fragment_valid, fragment_ready, request_valid, request_ready;
   logic response_valid, response_ready, write_valid, retire_valid, color_valid, color_ready;

@@ -16,7 +16,7 @@ import sys
 import zlib
 
 WIDTH, HEIGHT, FRAMES = 96, 72, 3
-SEGMENTS = 2  # of a patch of the teapot along a side
+SEGMENTS = 2  # segments of a patch of the teapot along a side
 CLEAR = (20, 20, 30)
 FOV, NEAR, FAR, DISTANCE, UP = 45, 1, 16, 5, 1.75
 REACH = 1.75  # half a side of the frame

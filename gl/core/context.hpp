@@ -31,7 +31,7 @@ struct Drawable {
   void swap();
 
   // There are two colour buffers from the first call on that names the front one. Until then the front buffer has the colours
-  // of the back one, as it has them after a swap.
+  // of the back buffer, as after a swap.
 
   /// Makes `frame` draw to the front or the back buffer.
   void draw_to(bool front);
@@ -61,7 +61,7 @@ struct EvaluatorMap {
 struct SavedAttributes {
   GLbitfield mask = 0;
   State state;
-  std::vector<TextureParameters> textures;  ///< of GL_TEXTURE_BIT: of bound ones, unit by unit, as kTextureTargets
+  std::vector<TextureParameters> textures;  ///< GL_TEXTURE_BIT: bound textures, unit by unit, as kTextureTargets
 };
 
 struct Query {
@@ -82,7 +82,7 @@ struct Context {
   Drawable* drawable = nullptr;       ///< null: nothing is drawn
   Drawable* read_drawable = nullptr;  ///< where glReadPixels reads
   bool was_current = false;           ///< viewport and scissor have been set to the size of the first drawable
-  bool is_embedded = false;           ///< of OpenGL ES-CM, for glGetString
+  bool is_embedded = false;           ///< a context of OpenGL ES-CM, for glGetString
   std::string renderer;               ///< the answer of glGetString to GL_RENDERER
 
   GLenum error = GL_NO_ERROR;

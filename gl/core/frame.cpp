@@ -392,8 +392,8 @@ struct Frame::Memory::Part {
 
   Memory& memory;
   Scene scene;
-  std::vector<std::uint32_t> slot;  ///< of each texture
-  std::vector<TexelBlocks> blocks;  ///< of the first ones
+  std::vector<std::uint32_t> slot;  ///< slot of each texture
+  std::vector<TexelBlocks> blocks;  ///< blocks of the first textures
 };
 
 /// Renders the waiting draws. Throws InputError; then the picture may hold some of them.

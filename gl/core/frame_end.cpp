@@ -164,7 +164,7 @@ Scene Frame::Memory::whole(bool restores) const {
       if (is_new) whole.textures.push_back(slots[at->first].texture);
       state.texture = at->second;
     } else {
-      state.texture.reset();  // of draws that were refused
+      state.texture.reset();  // refused draws lose their texture
     }
     whole.states.push_back(state);
   }

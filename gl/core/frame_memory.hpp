@@ -60,10 +60,10 @@ struct Frame::Memory {
 
   // The frame so far. Textures of its states are numbers of slots.
   Scene scene;
-  std::unordered_map<halfplane::State, std::uint32_t, StateHash> states;  ///< of `scene`
+  std::unordered_map<halfplane::State, std::uint32_t, StateHash> states;  ///< number in `scene`
   std::vector<std::uint8_t> checked, refused;                             ///< by state: primitive types, a bit each
   std::uint32_t last_state = 0;                                           ///< the state that was asked for last
-  int kind = -1;  ///< of the draws that wait, see kind_of(); -1: none does
+  int kind = -1;  ///< kind of the waiting draws, see kind_of(); -1: none
 
   /// How much of the scene has been drawn.
   struct Mark {
@@ -78,7 +78,7 @@ struct Frame::Memory {
   struct Cleared {
     bool color = false, depth = false, stencil = false;
   };
-  Cleared cleared;            ///< of the whole target, before anything is drawn
+  Cleared cleared;            ///< buffers cleared as a whole before the first draw
   bool uses_stencil = false;  ///< since the program began
 
   struct Slot {
@@ -93,7 +93,7 @@ struct Frame::Memory {
   std::uint64_t frame = 0, textures_made = 0;
 
   // Results and the HUD (frame_end.cpp).
-  double driver_s = 0, geometry_s = 0;  ///< of this frame: collecting; the engine's host side
+  double driver_s = 0, geometry_s = 0;  ///< this frame: seconds of collecting, and of the engine's host side
   double raster_before_s = 0;
   Clock::time_point frame_start = Clock::now();
   double frames_per_second = 0;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kLargestScissor = 1048576;       ///< pixels, a bound of the model
 constexpr double kLargestNumber = 1e12;        ///< likewise, of polygon offset and fog
-constexpr double kClosestStart = 255 / 256.0;  ///< of linear fog, the end is 1: the model's bound
+constexpr double kClosestStart = 255 / 256.0;  ///< start of linear fog with end 1: the model's bound
 
 template <class To>
 using Table = std::initializer_list<std::pair<GLenum, To>>;

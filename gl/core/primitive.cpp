@@ -97,7 +97,7 @@ class Batch {
     if (has_host_fog_) state_.fog.reset();
     if (has_host_fog_ && traits_.has_one_color) state_.shade = Shade::smooth;  // fog has not one colour
     const bool colors_differ = !traits_.has_one_color || (has_host_fog_ && !is_textured_);
-    // As exact, and hardware of any configuration has it.
+    // Equally exact, and in hardware of any configuration.
     if (!colors_differ || traits_.has_one_w || state_.shade == Shade::flat) state_.color_interp = ColorInterp::affine;
     const Options& options = context_.drawable->frame.options();
     if (state_.color_interp == ColorInterp::perspective && !has_colors_over_w(options.config) &&
@@ -115,7 +115,7 @@ class Batch {
  private:
   void missing(const char* what, const char* instead) { context_.drawable->frame.missing(what, instead); }
 
-  /// As clip space does it.
+  /// As in clip space.
   void cut_to_viewport() {
     const ViewportState& v = context_.state.viewport;
     Rect& cut = state_.scissor ? *state_.scissor : state_.scissor.emplace(Rect{v.x, v.y, v.width, v.height});

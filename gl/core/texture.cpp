@@ -199,7 +199,7 @@ std::vector<Sum> halved(const std::vector<Value>& from, const TextureImage& size
 
 /// All levels below an image down to 1x1: means over boxes of it, rounded once.
 std::vector<TextureImage> box_levels(const TextureImage& image) {
-  using Sum = std::array<std::uint32_t, 4>;  // of 2^24 texels at most
+  using Sum = std::array<std::uint32_t, 4>;  // sum of 2^24 texels at most
   std::vector<TextureImage> levels;
   std::vector<Sum> sums;
   TextureImage size{image.width, image.height, image.depth, image.border, image.internal_format, image.base_format, {}};

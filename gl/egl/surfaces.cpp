@@ -97,7 +97,7 @@ void query_surface(EGLDisplay handle, EGLSurface surface, EGLint name, EGLint* v
   const Call call(handle);
   const Surface& s = *call.surface(surface);
   const auto of_pbuffer = [&](EGLint v) {
-    if (s.window.kind == DrawableKind::pbuffer) *value = v;  // of other surfaces nothing changes
+    if (s.window.kind == DrawableKind::pbuffer) *value = v;  // other surfaces do not change
   };
   switch (name) {
     case EGL_WIDTH: *value = s.window.frame.width(); break;

@@ -33,7 +33,7 @@ XID create_on(Display* display, DrawableKind kind, const FbConfig& config, XID x
   if (geometry->depth != config.format.visual.depth || geometry->screen != config.screen) x_error(BadMatch, xid);
   if (is_window) {
     const std::lock_guard lock(objects().mutex);
-    objects().drawables.erase({config.server, xid});  // of a window that was made current as it is
+    objects().drawables.erase({config.server, xid});  // a window that was made current without glXCreateWindow
     for (const auto& [key, drawable] : objects().drawables)
       if (key.first == config.server && drawable->window.xid == xid) x_error(BadAlloc, xid);
   }

@@ -378,7 +378,7 @@ std::optional<std::uint64_t> Replay::largest_index(const Context& context, GLsiz
 }
 
 bool Replay::multi_draw(const TraceCall& call, Context& context) {
-  // As as many single draws (OpenGL 1.5, 2.8).
+  // Equal to as many single draws (OpenGL 1.5, 2.8).
   static const auto draw_arrays_signature =
       std::make_shared<TraceSignature>(TraceSignature{"glDrawArrays", {"mode", "first", "count"}});
   static const auto draw_elements_signature =

@@ -17,7 +17,7 @@ namespace {
 /// draw.
 struct Canvas {
   Scene scene;
-  std::vector<TexelBlocks> texels;  ///< of its texture, after the first draw with it
+  std::vector<TexelBlocks> texels;  ///< blocks of its texture, after the first draw with it
 
   /// The scene with only the texture and one state.
   Scene& with(const State& state) {

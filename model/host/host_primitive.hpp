@@ -27,7 +27,7 @@ struct UnitWords {
   std::shared_ptr<const PhongLight> light{};        ///< then: its light; null: none
   ColorWords colors{};                              ///< of the draw
   StencilWords stencil{};                           ///< likewise; for a fast clear: its value
-  Signature texels{};                               ///< of the texture of a triangle, where bins are compared
+  Signature texels{};                               ///< signature of a triangle's texture, where bins are compared
 };
 
 /// The packet, and its origin.

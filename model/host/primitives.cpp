@@ -243,7 +243,7 @@ class OutlineBuilder {
                  Outline& out)
       : context_(context), widths_(widths), cache_(cache), number_(number), out_(out) {}
 
-  std::optional<PerPlane<std::uint32_t>> color;  ///< of every vertex, if shading is flat
+  std::optional<PerPlane<std::uint32_t>> color;  ///< colour of every vertex, if shading is flat
   std::int64_t depth_offset = 0;                 ///< codes
   bool is_cut = false;                           ///< an earlier part of a line was cut
 

@@ -306,7 +306,7 @@ struct PrimitiveState {
   FIELD(bool, tests_stencil, &Widths::flag, &Widths::stencil_flags)   ///< the stored stencil is read, or changes
   FIELD(bool, writes_stencil, &Widths::flag, &Widths::stencil_flags)  ///< it may change, on a side and for some sample
   FIELD(bool, marks_failed, &Widths::flag, &Widths::stencil_flags)    ///< also where a sample fails one of the tests
-  FIELD(bool, is_back, &Widths::flag, &Widths::stencil_flags)  ///< of a triangle that shows its back, from cull on
+  FIELD(bool, is_back, &Widths::flag, &Widths::stencil_flags)  ///< set for a triangle that shows its back, from cull on
   FIELD(std::uint8_t, masked_samples, &Widths::masked_samples, &Widths::has_samples)  ///< per pixel: not drawn
   PACKET_END
   [[nodiscard]] constexpr bool writes() const { return depth_write || color_write; }
@@ -685,7 +685,7 @@ struct CounterPacket {
   FIELD(std::uint64_t, tile_fills,
         &Widths::counter)  ///< stamps read, like the next two; with blending colours too
   FIELD(std::uint64_t, tile_evictions, &Widths::counter)
-  FIELD(std::uint64_t, tile_clears, &Widths::counter)  ///< of depth only
+  FIELD(std::uint64_t, tile_clears, &Widths::counter)  ///< clears of depth only
   /// Only with a texture unit: samples looked up, samples whose lines were all in the cache, lines requested.
   FIELD(std::uint64_t, texture_samples, &Widths::counter, &Widths::texture_counters)
   FIELD(std::uint64_t, texture_hits, &Widths::counter, &Widths::texture_counters)

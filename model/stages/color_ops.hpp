@@ -32,7 +32,7 @@ template <class Lane, class Comparison>
   if constexpr (std::is_integral_v<Lane>)
     return holds ? static_cast<Lane>(~Lane{}) : Lane{};
   else
-    return (Lane)holds;  // as wide
+    return (Lane)holds;  // a mask as wide as the lane
 }
 
 /// `value` where the mask is set, `stored` elsewhere.

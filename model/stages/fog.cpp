@@ -128,7 +128,7 @@ std::uint32_t FogTable::factor(std::int32_t position) const {
 double FogTable::error_bound() const {
   const double rounding = std::ldexp(1.0, -kFogStartFraction) + std::ldexp(0.5, -kFogFactorBits);
   if (is_constant(fog_)) return rounding;
-  const double lines = std::ldexp(static_cast<double>(line_.size()), -octave_bits_);  // of an octave
+  const double lines = std::ldexp(static_cast<double>(line_.size()), -octave_bits_);  // lines of an octave
   const Bends bends = bends_of(fog_, lines);
   const double straight = (bends.second + 1.5 * bends.third / lines) / (16 * lines * lines);
   const double far = fog_factor(fog_, std::ldexp(1.0, -first_)),

@@ -16,7 +16,7 @@
 
 namespace halfplane {
 
-inline constexpr int kLightWordBit = 40;  ///< of a token's word: LightWord, three bits
+inline constexpr int kLightWordBit = 40;  ///< bit of a token's word: LightWord, three bits
 
 /// Registers set by a word of light, each with its fields from the lowest bit.
 enum class LightWord : std::uint8_t {

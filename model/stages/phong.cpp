@@ -76,7 +76,7 @@ OverW quantize_normal(const std::array<std::int32_t, 3>& component, const QCodes
 }
 
 Normal block_normal(const std::array<std::int64_t, 3>& p) {
-  std::uint64_t bits = 0;  // of the largest; the last bit of a negative number may differ
+  std::uint64_t bits = 0;  // bits of the largest component; the last bit of a negative number may differ
   for (const std::int64_t c : p) bits |= static_cast<std::uint64_t>(c ^ (c >> 63));
   const int drop = (bits == 0 ? 0 : floor_log2(bits)) + 1 - kBlockBits;
   Normal m;
@@ -145,7 +145,7 @@ double PhongLight::real_power(double x) const {
   return half_length_ > 0 ? power_of(x / half_length_, shininess_code(given_.shininess)) : 0;
 }
 
-/// As narrow as the power allows: the rest of the range shows no trace.
+/// The table is as narrow as the power allows: the rest of the range shows no trace.
 void PhongLight::make_power() {
   const std::uint32_t n = shininess_code(given_.shininess);
   int& narrow = registers_.narrow;

@@ -106,7 +106,7 @@ class LineRegister {
 
  private:
   int part_bits_;
-  std::array<uint128, 3> part_{};  ///< as many as a triangle has
+  std::array<uint128, 3> part_{};  ///< parts of a triangle's lines
 };
 
 }  // namespace halfplane

@@ -139,8 +139,8 @@ struct TextureLookup {
   std::size_t sample = 0;  ///< number in the stamp: the first sample that needs it
   bool ends = true;        ///< the last of the lines that are looked up together
   bool continues = false;  ///< and the sample needs another level, or other samples of the group follow
-  bool turns = false;      ///< of samples that go together: the next lookups are on upper levels, this one on lower
-  int samples = 0;         ///< of the last line: samples completed
+  bool turns = false;      ///< samples of one round: the next lookups are on upper levels, this one on lower
+  int samples = 0;         ///< samples completed by the last line
   int hits = 0;            ///< samples among them whose lines were all present
 };
 
@@ -223,7 +223,7 @@ class TextureCache {
  private:
   struct Line {
     bool is_valid = false;
-    bool is_second_newer = false;  ///< of a first way: the second way was looked up later
+    bool is_second_newer = false;  ///< in a first way: the second way was looked up later
     std::uint32_t address = 0;
   };
   [[nodiscard]] bool is_at(std::uint32_t address, std::uint32_t line) const {

@@ -9,7 +9,7 @@ module reciprocal_division #(
     input logic clk_i,
 
     input  logic [BITS-2:0] mantissa_i,   // m below its highest bit, which is set
-    output logic [BITS-1:0] reciprocal_o  // of the mantissa four clocks ago; the highest bit is set
+    output logic [BITS-1:0] reciprocal_o  // for the mantissa of four clocks ago; the highest bit is set
 );
 
   localparam int CLOCKS = 4;
@@ -28,7 +28,7 @@ module reciprocal_division #(
       logic [BITS+1:0] trial;  // its highest bit: negative
       if (c == 0) begin : gen_first
         assign mantissa = mantissa_i;
-        assign left     = {1'b0, ~mantissa_i, 1'b1};  // of 2^(k+1), after the highest bit: -d modulo 2^(k+1)
+        assign left     = {1'b0, ~mantissa_i, 1'b1};  // the remainder of 2^(k+1) after the highest bit: -d modulo 2^(k+1)
         assign bits     = '0;
       end else begin : gen_next
         assign mantissa = mantissa_q[(c-1)*(BITS-1)+:BITS-1];

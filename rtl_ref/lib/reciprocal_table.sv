@@ -11,7 +11,7 @@ module reciprocal_table #(
     input logic clk_i,
 
     input  logic [BITS-2:0] mantissa_i,   // m below its highest bit, which is set
-    output logic [BITS-1:0] reciprocal_o  // of four clocks ago; its highest bit is set
+    output logic [BITS-1:0] reciprocal_o  // for the mantissa of four clocks ago; its highest bit is set
 );
 
   localparam int INTERVAL = (BITS + 1) / 2;

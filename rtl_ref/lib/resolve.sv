@@ -2,7 +2,7 @@
 // channel, rounded to the nearest code, halves up. Combinational. Specification: mean_color of model/stages/resolve.hpp.
 module resolve #(
     parameter int PIXELS = raster_pkg::PIXELS,    // whose samples come together
-    parameter int N = raster_pkg::MSAA_SAMPLES    // of a pixel; not to be set
+    parameter int N = raster_pkg::MSAA_SAMPLES    // samples of a pixel; not to be set
 ) (
     input  logic [PIXELS*N*raster_pkg::STORED_COLOR_BITS-1:0] color_i,
     output logic [PIXELS*raster_pkg::STORED_COLOR_BITS-1:0]   color_o

@@ -71,7 +71,7 @@ module coarse_raster (
   localparam int SLOT = raster_pkg::SLOT_BITS;
 
   localparam logic [2:0] IDLE = 3'd0, PREPARE = 3'd1, WALK = 3'd2, CLEAR = 3'd3, PASS = 3'd4;
-  logic [2:0] state_q;  // of the walk. PASS: a token after its CLEAR
+  logic [2:0] state_q;  // state of the walk. PASS: a token after its CLEAR
 
   raster_pkg::setup_packet_t s_q;
   logic [TX-1:0]   tile_x_q;

@@ -81,7 +81,7 @@ module color_write #(
   assign hits_second = second_line == tested_i.line && (second & own) != '0;
   assign hits        = hits_first || hits_second;
   assign of_second   = hits_second || (!hits_first && first_q == '0);
-  assign left        = first_q != '0 ? first_q : second;  // of the older eviction
+  assign left        = first_q != '0 ? first_q : second;  // the older eviction comes first
   assign next        = hits ? own : raster_pkg::lowest_stamp(left);
   assign reads       = left != '0;
   assign first_left  = of_second ? first_q : first_q & ~next;

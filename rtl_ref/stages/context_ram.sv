@@ -16,7 +16,7 @@ module context_ram #(
     input logic                                  write_i,
     input logic [SLOT-1:0]                       write_slot_i,
     input raster_pkg::context_packet_t           context_i,
-    input logic [raster_pkg::ALL_LOCAL_BITS-1:0] step_i,  // of the serial front: x a cycle after write_i, then y
+    input logic [raster_pkg::ALL_LOCAL_BITS-1:0] step_i,  // steps of the serial stages: x a cycle after write_i, then y
 
     // To interpolate, in the cycle after the read
     input  logic                        read_i,

@@ -30,7 +30,7 @@ module cull (
     output logic is_backface_o,
     output logic is_empty_o,
     output logic is_no_sample_o,
-    output logic is_dropped_o  // of any kind; not delayed
+    output logic is_dropped_o  // a dropped primitive of any kind; not delayed
 );
 
   localparam int C = raster_pkg::COORDINATE_BITS;

@@ -27,7 +27,7 @@ module cull_serial (
     output logic is_backface_o,
     output logic is_empty_o,
     output logic is_no_sample_o,  // always 0: this stage tests no samples
-    output logic is_dropped_o  // of any kind
+    output logic is_dropped_o  // a dropped primitive of any kind
 );
 
   localparam int C = raster_pkg::COORDINATE_BITS;

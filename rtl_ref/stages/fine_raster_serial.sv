@@ -17,7 +17,7 @@ module fine_raster_serial (
     output logic                      tile_ready_o,
     input  raster_pkg::tile_packet_t  tile_i,
     input  raster_pkg::edge_context_t edges_i,
-    input  logic [3*raster_pkg::TILE_EDGE_BITS-1:0] visit_edges_i,  // of a visit
+    input  logic [3*raster_pkg::TILE_EDGE_BITS-1:0] visit_edges_i,  // edges at the start of a visit
 
     // To interpolate
     output logic                      stamp_valid_o,

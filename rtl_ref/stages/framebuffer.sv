@@ -76,7 +76,7 @@ module framebuffer (
 
   logic [2:0]        state_q, state_d;
   logic [LINE-1:0]   line_q;    // under eviction or fill
-  logic              plane_q;   // of an eviction or walk; 1: colour
+  logic              plane_q;   // buffer of an eviction or walk; 1: colour
   logic [TILE_X-1:0] walk_x_q;  // tile of a fast clear's or flush's walk
   logic [TILE_Y-1:0] walk_y_q;
   logic              walked_q;  // the walk is complete

@@ -245,7 +245,7 @@ module interpolate (
       assign made.coordinates = samples_context_q.coordinates;
     end
     if (raster_pkg::COLORS_OVER_W != 0) begin : gen_color_range
-      localparam int AT = raster_pkg::AFFINE_CODE_AT[32+:32];  // of red
+      localparam int AT = raster_pkg::AFFINE_CODE_AT[32+:32];  // place of red
       assign made.least_color    = samples_context_q.range.low[AT+:8*raster_pkg::COLOR_PLANES];
       assign made.greatest_color = samples_context_q.range.high[AT+:8*raster_pkg::COLOR_PLANES];
     end

@@ -160,7 +160,7 @@ module interpolate_serial (
   );
 
   // The word on offer in the next cycle was written in an earlier one: a fragment is in step y first.
-  logic [1:0] write_q, read_q, read;  // of four words: place of the next fragment; of the offer, now and next
+  logic [1:0] write_q, read_q, read;  // places in four words: of the next fragment; of the offer, now and next
   assign read = read_q + 2'(fragment_valid_o && fragment_ready_i);
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin

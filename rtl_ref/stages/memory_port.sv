@@ -57,7 +57,7 @@ module memory_port (
   localparam int COLORS = raster_pkg::MEMORY_COLORS;  // colours of a stamp
   localparam int COLOR_SHIFT = $clog2(COLORS * raster_pkg::COLOR_SAMPLE_BYTES);
   localparam bit COMPRESSES = raster_pkg::COMPRESS_UNIT != 0;
-  localparam int PIXEL_SHIFT = $clog2(raster_pkg::PIXELS * raster_pkg::COLOR_SAMPLE_BYTES);  // of one colour per pixel
+  localparam int PIXEL_SHIFT = $clog2(raster_pkg::PIXELS * raster_pkg::COLOR_SAMPLE_BYTES);  // bytes of one colour per pixel
   localparam int FLAG_BYTES = raster_pkg::FLAG_WORD / 8;
   localparam int FLAG_SHIFT = $clog2(FLAG_BYTES);
   localparam int STAMP_SHIFT = (DEPTH_SHIFT > COLOR_SHIFT) ? DEPTH_SHIFT : COLOR_SHIFT;

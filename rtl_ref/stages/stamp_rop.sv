@@ -7,7 +7,7 @@ module stamp_rop #(
 ) (
     input  logic [PIXELS-1:0]                     mask_i,
     input  logic [PIXELS*RGBA-1:0]                rgba_i,
-    output logic [raster_pkg::SAMPLES*COLOR-1:0]  color_o,  // as color_write takes it
+    output logic [raster_pkg::SAMPLES*COLOR-1:0]  color_o,  // input of color_write
     output logic [PIXELS*8-1:0]                   alpha_o,
     output raster_pkg::color_packet_t             packet_o  // the same with 0 for samples that are not written
 );

@@ -59,7 +59,7 @@ module texture_cache #(
   localparam int NUMBER = 7;  // bits of a group's number, as many as fit next to a tag into a block RAM
   localparam int GROUP = 3;   // log2 of the samples in a group
   localparam int COUNT = NUMBER + GROUP;
-  localparam int WORD_BITS = (PORT_BITS < 32) ? 32 : PORT_BITS;  // of the RAM
+  localparam int WORD_BITS = (PORT_BITS < 32) ? 32 : PORT_BITS;  // width of the RAM
   localparam int WORD = $clog2(WORD_BITS / 8);   // log2 of the bytes of a word
   localparam int WORDS = 6 - WORD;               // log2 of the words of a line of 64 bytes
 

@@ -188,7 +188,7 @@ module texture_unit #(
   logic [PLACED-1:0] placed;
   assign stamp_is_textured = stamp_flags[0];
   assign stamp_divides     = stamp_flags[DIVIDES] && OVER_W != 0;
-  logic [23:0] constant;  // of samples that are combined
+  logic [23:0] constant;  // constant of the samples that are combined
   logic passes;  // a stamp leaves as it came
   generate
     if (CONSTANT != 0) begin : gen_constant

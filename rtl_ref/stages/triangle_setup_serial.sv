@@ -145,7 +145,7 @@ module triangle_setup_serial (
 
   always_ff @(posedge clk_i) begin
     if (load) begin
-      not_remainder_q <= {{A{1'b1}}, 1'b0};  // of 1
+      not_remainder_q <= {{A{1'b1}}, 1'b0};  // remainder of 1
       quotient_q      <= '0;
       shift_q         <= COUNT'(LEAD - F - 3);
     end else if (!quotient_q[R-1]) begin

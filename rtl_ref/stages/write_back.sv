@@ -106,7 +106,7 @@ module write_back #(
   logic [SLOT:0]     depth_ready_q, color_ready_q;  // blocks whose depths, and colours, are complete
   logic              is_ready;
   logic [WRITES-1:0] written_q;  // blocks written of the order at the head
-  logic              depth_asked_q;  // of the order at the head: its depth read has been taken, its colour read has not
+  logic              depth_asked_q;  // the order at the head: its depth read has been taken, its colour read has not
 
   logic                     sends, skips, wants_write, wants_read, is_color, ends_victim, is_here, takes_request, finishes;
   logic                     reads_color, colors_known, asks_pixels;  // the colours' form is known; a read of a merge

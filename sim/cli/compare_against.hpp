@@ -11,7 +11,7 @@
 
 namespace halfplane {
 
-/// As typed.
+/// Options as typed.
 struct AgainstWords {
   std::string path;       ///< path of the image; empty: none
   std::string tolerance;  ///< "color=1,depth=1"

@@ -85,7 +85,7 @@ Json session_json(const CosimOptions& options, const Config& config, const DutFa
   result["arrows"] = arrows;
   result["memory_stamps"] = r.memory_compared;
   result["counters"] = r.counters_compared;
-  result["frame"] = nullptr;  // of random scenes each has an order of its own
+  result["frame"] = nullptr;  // each random scene has an order of its own
   if (options.random == 0)
     result["frame"] = {
         {"order", result["config"]["frame.order"]}, {"bins", session.counters.bins}, {"pairs", session.counters.pairs}};

@@ -21,8 +21,8 @@ namespace {
 struct DepthCommand : CommonOptions {
   std::string near, far, mappings, formats, z, range;
   std::string error;                ///< a length: where bins exceed it, and the bits needed
-  std::string slope;                ///< of two surfaces: their minimum separation
-  std::string fight_rate = "0.01";  ///< of overlapping pairs, for the fewest bits
+  std::string slope;                ///< slope of two surfaces, for their minimum separation
+  std::string fight_rate = "0.01";  ///< share of overlapping pairs, for the fewest bits
   double fov = 45;                  ///< degrees, vertical
   int bits = 0;                     ///< short for --format u<bits>
   bool sweeps = false;

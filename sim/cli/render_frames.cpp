@@ -252,7 +252,7 @@ int run_frames(const RenderCommand& options, const Config& config) {
   Json rows = Json::array();
   int width = 0, height = 0;
   FrameDrawer drawer(options, config);
-  Rendering rendering;  // of the frame before
+  Rendering rendering;  // rendering of the previous frame
   try {
     Progress progress(options, "rendering", "frames");
     for (int i = 0; i < frames; ++i) {

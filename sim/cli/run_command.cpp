@@ -217,7 +217,7 @@ class Child {
     signal(SIGKILL);
     has_ended_ = waitpid(pid_, &status_, 0) == pid_;
   }
-  /// As a shell has it: 128 and the signal that ended it.
+  /// Status as in a shell: 128 plus the number of the signal.
   [[nodiscard]] int status() const { return WIFEXITED(status_) ? WEXITSTATUS(status_) : 128 + WTERMSIG(status_); }
 
  private:

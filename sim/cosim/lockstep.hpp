@@ -65,7 +65,7 @@ struct Mismatch {
 };
 
 struct LockstepOptions {
-  std::uint64_t seed = 1;        ///< of stalls and start values
+  std::uint64_t seed = 1;        ///< seed of stalls and start values
   double stall_probability = 0;  ///< per stream and cycle, in [0, 1)
   MemorySettings memory;         ///< connected to the RTL's memory port
   std::uint16_t mutant = 0;
@@ -76,7 +76,7 @@ struct LockstepOptions {
   int resets =
       0;  ///< with `compares`: each scene is started and cut by a reset at a random cycle this often, before it runs
   std::optional<MemoryLayout> layout;          ///< addresses of the buffers in memory; default_layout() unless given
-  TimingParameters parameters;                 ///< of the cycle model; the default is the RTL
+  TimingParameters parameters;                 ///< parameters of the cycle model; the default is the RTL
   std::optional<MemorySettings> model_memory;  ///< likewise: `memory` unless given
   std::string trace;                           ///< FST file, empty: none; contains the cycles of the window
   std::uint64_t trace_first = 0, trace_last = ~0ULL;
@@ -211,7 +211,7 @@ class Lockstep {
   BinContents bins_;                     // content of the memories, for the host
   std::vector<std::uint32_t> snapshot_;  // counters of the RTL, held since the last primitive was taken
   std::uint64_t snapshot_at_ = 0;        // the cycle in which they are read
-  std::size_t counter_bytes_;            // of their packet
+  std::size_t counter_bytes_;            // bytes of the counters' packet
 
   LockstepResult result_;                 // of the current run
   std::vector<HostPrimitive> sent_;       // of the current run, without their packets: tags index it

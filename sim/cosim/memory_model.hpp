@@ -102,7 +102,7 @@ class MemoryModel {
   [[nodiscard]] const std::uint32_t* due(std::uint64_t cycle) const { return due_of(answers_, cycle); }
   void pop() { answers_.pop(); }
   [[nodiscard]] bool is_idle() const { return answers_.empty() && left_ == 0; }
-  /// As after a long rest: forgets bursts under way, not its content.
+  /// State after a long rest: drops bursts in flight, keeps the content.
   void rest(std::unique_ptr<MemoryTiming> timing) {
     timing_ = std::move(timing);
     while (!answers_.empty()) answers_.pop();
@@ -146,7 +146,7 @@ class TextureModel {
       pack_words(beat, widths_, answers_.push(static_cast<std::uint32_t>(due.at(static_cast<int>(n)))));
     }
   }
-  /// As in MemoryModel.
+  /// The same as in MemoryModel.
   [[nodiscard]] const std::uint32_t* due(std::uint64_t cycle) const { return due_of(answers_, cycle); }
   void pop() { answers_.pop(); }
   [[nodiscard]] bool is_idle() const { return answers_.empty(); }

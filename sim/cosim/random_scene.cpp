@@ -307,7 +307,7 @@ void Generator::set_borders() {
   for (State& state : scene_.states) {
     for (TextureWrap& wrap : state.texture_wrap)
       if (random.next() % 3 == 0) wrap = random.next() % 2 == 0 ? TextureWrap::border : TextureWrap::half_border;
-    const bool is_same = random.next() % 2 == 0;  // as that of other states: no token in between
+    const bool is_same = random.next() % 2 == 0;  // equal to other states' textures: no token in between
     for (std::uint8_t& channel : state.texture_border)
       channel = static_cast<std::uint8_t>(is_same ? 77 : random.next() % 4 == 0 ? 255 : random.next() % 256);
   }
@@ -353,7 +353,7 @@ void Generator::set_textures() {
   }
   if (config_.texture_constants != 0) set_constants();
   if (config_.texture_borders != 0) set_borders();
-  const double reach = std::ldexp(1.0, static_cast<int>(below(8)) - 2);  // of the coordinates, in repeats
+  const double reach = std::ldexp(1.0, static_cast<int>(below(8)) - 2);  // offset of the coordinates, in repeats
   for (Vertex& v : scene_.vertices) {
     v.w = chance(0.3) ? 1.0 : std::exp2(random.uniform(-5, 5));
     v.u = random.uniform(-reach, reach);

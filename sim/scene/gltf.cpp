@@ -336,7 +336,7 @@ class GltfMeshBuilder {
   std::uint32_t surface_ = 0;
   Attributes attributes_;
   std::unordered_map<std::uint64_t, std::uint32_t> new_index_;
-  std::vector<std::uint64_t> sources_;  // of its vertices, in its accessors
+  std::vector<std::uint64_t> sources_;  // indices of its vertices in its accessors
 };
 
 /// Applies the morph targets to a run's vertices.

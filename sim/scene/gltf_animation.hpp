@@ -19,7 +19,7 @@ struct GltfTrack {
 
   std::size_t node = 0;  ///< in the file's list of nodes
   Path path = Path::translation;
-  std::size_t target = 0;  ///< of a weight: the morph target
+  std::size_t target = 0;  ///< morph target of a weight
   Interpolation interpolation = Interpolation::linear;
   std::vector<double> times;  ///< of the keyframes, seconds, ascending; at least one
   std::vector<std::array<double, 4>>

@@ -9,7 +9,7 @@ namespace halfplane {
 /// Joints, and for each the matrix from the mesh's space to the joint's.
 struct GltfSkin {
   std::vector<std::size_t> joints;  ///< in GltfNodes::nodes
-  std::vector<Mat4> inverse_bind;   ///< as many
+  std::vector<Mat4> inverse_bind;   ///< as many as joints
 };
 
 /// The influence of a joint on a vertex.

@@ -260,7 +260,7 @@ State phong_state(State state, const Mesh& mesh, const MeshMaterial& material, c
 }
 
 double exposure_of(const Mesh& mesh) {
-  std::vector<double> brightest;  // of a white surface at each vertex
+  std::vector<double> brightest;  // brightness of a white surface at each vertex
   for (const MeshVertex& vertex : mesh.vertices) {
     if (vertex.normal == Vec3{}) continue;
     Vec3 sum{};

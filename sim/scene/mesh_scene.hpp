@@ -46,8 +46,8 @@ struct MeshOptions {
   /// of places is that of all vertices.
   CullObjects leaves_out = CullObjects::none;
   bool has_tree = true;                       ///< false: each object is tested separately
-  const MeshPlaces* places = nullptr;         ///< of the mesh; null: bounds are computed, without a tree
-  MeshWork* work = nullptr;                   ///< of the last picture; may be null
+  const MeshPlaces* places = nullptr;         ///< places of the mesh; null: bounds are computed, without a tree
+  MeshWork* work = nullptr;                   ///< work of the last picture; may be null
   std::optional<PlacedMesh>* kept = nullptr;  ///< for a built-in scene: the mesh, from picture to picture; may be null
 };
 

@@ -15,7 +15,7 @@ namespace {
 struct Work {
   const char* name;
   const char* scene;
-  State change;  ///< of every state: cull and depth test
+  State change;  ///< every state: cull and depth test
   bool skips;
   std::uint64_t (*items)(const Counters&);
 };

@@ -274,7 +274,7 @@ class Core:
                 await ReadOnly()
                 taken = d.s_axis_tready.value == 1
                 await RisingEdge(d.clk_i)
-                if d.irq.value == 1:  # of an error, where it is enabled
+                if d.irq.value == 1:  # interrupt of an error, where it is enabled
                     break
             if not taken:
                 return

@@ -92,7 +92,7 @@ class RasterPort:
                 operation = ("read", base + self.rng.randrange(beats // self.read) * self.read * self.bytes, self.read)
             else:
                 first = self.rng.randrange(beats)
-                if self.rng.random() < 0.5:  # as an evicted block
+                if self.rng.random() < 0.5:  # one line, as for an evicted block
                     first -= first % 4
                     operation = ("write", base + first * self.bytes, min(4, beats - first))
                 else:

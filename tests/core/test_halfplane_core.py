@@ -184,7 +184,7 @@ async def watch(dut, rng, shown):
                 assert len(picture) in (0, 1024), f"a frame has {len(picture)} pixels"
                 picture, begun = [], True
             if not begun:
-                continue  # of a frame that another display had begun
+                continue  # answers of a frame of the previous display
             picture.append(int(dut.m_axis_video_tdata.value))
             assert (dut.m_axis_video_tlast.value == 1) == (len(picture) % 32 == 0)
             if len(picture) == 1024:

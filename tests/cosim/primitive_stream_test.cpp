@@ -124,7 +124,7 @@ TEST_F(PrimitiveStream, ARightOneIsNotSpokenOf) {
   for (int frame = 0; frame < 3; ++frame) {
     EXPECT_EQ(send(clear()), "");
     EXPECT_EQ(send(triangle()), "");
-    PrimitivePacket depth = clear();  // of depth alone, in the middle of the frame
+    PrimitivePacket depth = clear();  // a clear of depth alone, in the middle of the frame
     depth.state.color_write = false;
     EXPECT_EQ(send(depth), "");
     EXPECT_EQ(send(triangle()), "");

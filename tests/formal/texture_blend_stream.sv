@@ -3,7 +3,7 @@
   // order, and an offer stays.
   logic        first_waits_q;  // the last item was the first of two
   logic        second_q;       // the current item is the second
-  logic [15:0] first_value_q;  // of its lowest channel, 8 fraction bits
+  logic [15:0] first_value_q;  // value of its lowest channel, 8 fraction bits
   always_ff @(posedge clk_i) begin
     if (!rst_ni) first_waits_q <= 1'b0;
     else if (valid_i && ready_o) first_waits_q <= is_first_i;

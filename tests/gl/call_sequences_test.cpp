@@ -29,7 +29,7 @@ namespace halfplane::gl::call_sequences_test {
 namespace {
 
 constexpr std::size_t kPool = std::size_t{16} << 20;  // bytes that any pointer may be followed and preceded by
-constexpr int kLargest = 33;                          // of numbers that count something
+constexpr int kLargest = 33;                          // largest of numbers that count something
 
 /// First and last value of the runs in which the enums of OpenGL 1.5 lie.
 constexpr std::array<std::pair<unsigned, unsigned>, 50> kEnums{

@@ -96,7 +96,7 @@ TEST_F(Evaluators, AttributesOfTheMomentOnly) {
   const CurrentState before = context.state.current;
   const auto vertices = drawn([&] { eval_coord1(context, 0.25); });
   EXPECT_EQ(vertices.at(0).color[0], (Vec4{0.25, 0.25, 0.25, 1}));
-  EXPECT_EQ(vertices[0].tex_coord[0], (Vec4{0.5, 5, 0, 1}));  // of the maps of texture coordinates the largest counts
+  EXPECT_EQ(vertices[0].tex_coord[0], (Vec4{0.5, 5, 0, 1}));  // the largest map of texture coordinates counts
   EXPECT_EQ(context.state.current.color, before.color);
   EXPECT_EQ(context.state.current.tex_coord, before.tex_coord);
 }

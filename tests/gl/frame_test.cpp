@@ -148,7 +148,7 @@ TEST(GlFrame, TheSavedCaptureIsThePicture) {
   ASSERT_EQ(rows.size(), 1U);
   EXPECT_FALSE(rows[0]["goes_on"]);
   EXPECT_EQ(rows[0]["primitives"]["in"], 6 + 3 + 3 + 2 * 7 + 8);
-  EXPECT_EQ(rows[0]["draws"], 5);  // of one state and topology: one
+  EXPECT_EQ(rows[0]["draws"], 5);  // draws of one state and topology are one
   EXPECT_EQ(rows[0]["textures"], 1);
 }
 

@@ -133,7 +133,7 @@ TEST(GlImage, RowsLieAsPixelStoreSays) {
   EXPECT_EQ(image.pixel[0][0], 12);
   EXPECT_EQ(image.pixel[6][0], 24);
   image = unpack(context, 3, 2, 1, GL_STENCIL_INDEX, GL_UNSIGNED_BYTE, bytes.data());
-  EXPECT_EQ(image.pixel[0][0], 0);  // of two dimensions: images are not skipped
+  EXPECT_EQ(image.pixel[0][0], 0);  // two dimensions: images are not skipped
 }
 
 TEST(GlImage, BitmapsFromBothEnds) {

@@ -469,7 +469,7 @@ TEST(GlFragment, BuffersThatDoNotExistAreErrors) {
   EXPECT_EQ(draws(GL_RGBA), GLenum{GL_INVALID_ENUM});
   picture.drawable.single_buffered = true;
   EXPECT_EQ(draws(GL_BACK), GLenum{GL_INVALID_OPERATION});
-  EXPECT_EQ(context.state.color.draw_buffer, GLenum{GL_NONE});  // as it was
+  EXPECT_EQ(context.state.color.draw_buffer, GLenum{GL_NONE});  // unchanged
 }
 
 TEST(GlFragment, SettersRefuseWhatIsNone) {

@@ -186,7 +186,7 @@ TEST_F(Vertices, BeginAndEnd) {
   EXPECT_EQ(error_of([&] { end(context); }), GLenum{GL_INVALID_OPERATION});
   EXPECT_EQ(error_of([&] { begin(context, GL_POLYGON + 1); }), GLenum{GL_INVALID_ENUM});
   EXPECT_FALSE(context.inside_begin());
-  vertex(context, 1, 2, 3, 4);  // of no primitive
+  vertex(context, 1, 2, 3, 4);  // a vertex without a primitive
   begin(context, GL_LINES);
   EXPECT_TRUE(context.vertices.empty());
   EXPECT_EQ(error_of([&] { begin(context, GL_LINES); }), GLenum{GL_INVALID_OPERATION});
@@ -345,7 +345,7 @@ TEST_F(Arrays, OfBuffersAreReadWithinThem) {
         [&] { draw_elements(context, GL_TRIANGLES, count, GL_UNSIGNED_SHORT, reinterpret_cast<const void*>(offset)); });
   };
   EXPECT_EQ(draw(12), elements);
-  EXPECT_EQ(draw(2000000000), elements);  // as many as there are
+  EXPECT_EQ(draw(2000000000), elements);  // all elements
   EXPECT_TRUE(draw(3, 25).empty());
   EXPECT_EQ(fed([&] { draw_arrays(context, GL_POINTS, 11, 2000000000); }),
             immediate(GL_POINTS, std::vector<GLushort>{11}));

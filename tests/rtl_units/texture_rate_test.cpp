@@ -16,7 +16,7 @@ struct Rate {
   double samples = 0;  ///< a clock
   double passes = 0;   ///< a stamp
   double hits = 0;     ///< of the samples
-  double bytes = 0;    ///< of lines, a sample
+  double bytes = 0;    ///< bytes of lines, a sample
 };
 
 /// 2x2 stamps of tiles over 640x480, a texture of 1024x512, turned by so many degrees. A pixel holds 2^(lod/256) texels.

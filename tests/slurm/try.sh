@@ -70,7 +70,7 @@ space=(bench city --size 320x240 --space --vary depth.bits=16,24 --vary stamp.si
 (cd "$work" && "$program" "${space[@]}" --slurm job)
 drained() { while [[ -n $(squeue -h) ]]; do sleep 0.5; done; }
 job=$(sbatch --parsable "$work/job/job.sh")
-scancel "${job}_12"  # as when a node dies
+scancel "${job}_12"  # a task ends as when a node dies
 drained
 missing=$("$program" bench --collect "$work/job" --json --quiet | sed -n 's/.*"missing": \([0-9]*\).*/\1/p')
 echo "== job $job, task 12 cancelled: $missing missing"

@@ -90,7 +90,7 @@ Texts untrue_paths(std::string_view text) {
     const bool is_pattern = at != text.end() && (*at == '*' || *at == '<' || *at == '{' || *at == '$');
     while (!word.empty() && (word.back() == '.' || word.back() == '/')) word.pop_back();
     while (word.rfind("../", 0) == 0) word.erase(0, 3);
-    if (word.rfind("halfplane/", 0) == 0) word.erase(0, 10);  // as installed
+    if (word.rfind("halfplane/", 0) == 0) word.erase(0, 10);  // path as installed
     const std::string top = word.substr(0, word.find('/'));
     const bool is_rooted = top != word && std::find(kFolders.begin(), kFolders.end(), top) != kFolders.end();
     if (is_pattern || (!is_rooted && !is_code(word))) continue;

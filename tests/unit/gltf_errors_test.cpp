@@ -82,7 +82,7 @@ const Damage kDamages[] = {
     {"/nodes/0/scale", "[1, 1e200, 1]", "nodes[0].scale[1]: beyond"},
     {"/nodes/0/matrix", "[1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,2]", "a last row"},
     {"/nodes/0", "{\"mesh\": 0, \"matrix\": [1], \"scale\": [1, 1, 1]}", "a matrix besides"},
-    {"/nodes/0/translation", "[1e30, 1e30, 1e30]", ""},  // as far as it goes: taken
+    {"/nodes/0/translation", "[1e30, 1e30, 1e30]", ""},  // within the range: taken
     {"/nodes/0/name", "3", "nodes[0].name: not a string"},
     {"/nodes/1/scale", "[1, 0, 1]", "axes are scaled to 0"},
     {"/nodes/1/camera", "3", "index 3 of 1 cameras"},

@@ -152,7 +152,7 @@ std::vector<exact::Line> strands(const exact::Line& thin, double width) {
   std::vector<exact::Line> lines;
   const int count = static_cast<int>(std::lround(width));
   for (int i = 0; i < count; ++i) {
-    const int halves = 2 * i - (count - 1);  // of a pixel
+    const int halves = 2 * i - (count - 1);  // half pixels
     const int across = is_rounded ? (halves - (count % 2 == 0 ? -1 : 0)) / 2 * 16 : halves * 8;
     exact::Line line = thin;
     (run >= rise ? line.start.y : line.start.x) += across;

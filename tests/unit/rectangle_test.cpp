@@ -277,7 +277,7 @@ TEST(RectanglesMustFail, TheOracleNoticesASampleOfOneThatIsMissingOrDrawnTwice) 
   const Scene scene = scene_of_lines(rectangle_lines(3), zigzag(), Topology::line_strip);
   const auto mismatches = [&](int turn) {
     CompareOptions options;
-    int left = 5;  // of the tiles: the sixth is damaged
+    int left = 5;  // tiles left: the sixth is damaged
     options.engine = [&](const Scene& drawn, const Config& of, const RenderOptions& asked) {
       RenderOptions changed = asked;
       changed.coverage_tap = [&](std::uint32_t triangle, int x, int y, TileMask mask, int sample) {

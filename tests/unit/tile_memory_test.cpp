@@ -406,7 +406,7 @@ TEST(HostStream, BeginsWithAClearOfBothPlanesAndEndsWithAFlush) {
   builder.scene.commands.push_back(Clear{1, std::nullopt, 1.0});
   builder.scene.commands.push_back(Clear{0, std::array<double, 4>{255, 1, 2, 3}, std::nullopt});
   builder.scene.commands.push_back(Clear{0, std::nullopt, std::nullopt});
-  builder.triangle(at(1, 1), at(1, 1), at(1, 1));  // of no area: the hardware's to drop
+  builder.triangle(at(1, 1), at(1, 1), at(1, 1));  // a triangle without area, which hardware drops
   HostStream host(builder.scene, preset("embedded"));
   auto p = host.next();
   ASSERT_TRUE(p);

@@ -37,8 +37,8 @@ struct TimingTotals {
   Cycle last_write = 0;             ///< the last write into the on-chip tiles
   std::uint64_t tile_cycles = 0;    ///< between these two: the framebuffer moved tiles and served no access
   std::uint64_t hazard_cycles = 0;  ///< tiles: a fragment waited for the write of the previous fragment
-  std::uint64_t move_cycles = 0;    ///< of the whole run: the framebuffer served no access
-  std::uint64_t memory_cycles = 0;  ///< of move_cycles: waiting for a request or an answer
+  std::uint64_t move_cycles = 0;    ///< cycles of the whole run in which the framebuffer served no access
+  std::uint64_t memory_cycles = 0;  ///< part of move_cycles: waiting for a request or an answer
   std::uint64_t bound_cycles = 0;   ///< coarse_raster waited for a visit to retire before it read a bound
   std::uint64_t visit_cycles = 0;   ///< the same because too many visits were under way
   std::uint64_t slot_cycles = 0;    ///< a setup waited for a context slot

@@ -278,7 +278,7 @@ class TextureTiming {
   Cycle sweep_, swept_;                             ///< duration of a sweep of the tags; its end
   Cycle request_room_;                              ///< when the next request may leave the tags
   Cycle split_ = 0, looked_up_ = 0, combined_ = 0;  ///< times of the last sample
-  Cycle divided_ = 0;                               ///< of the last sample with a colour and no texture
+  Cycle divided_ = 0;                               ///< time of the last sample with a colour and no texture
   Cycle on_level_ = 0, tag_read_ = 0;               ///< times of the last pass, with levels
   Cycle round_left_ = 0, agreed_ = 0, passed_ = 0;  ///< f and c of the last round, p of the last pass
   bool is_next_round_ = true;                       ///< the next pass is the first of a round

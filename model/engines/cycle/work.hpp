@@ -64,8 +64,8 @@ struct SetupCycles {
 
 /// Cycles of the serial stages: bit-serial products, so they follow from widths.
 struct SerialCycles {
-  static constexpr Cycle sort = 6, box = 5;    ///< of cull
-  static constexpr Cycle turn = 4;             ///< of coarse_raster: the edges rotate once
+  static constexpr Cycle sort = 6, box = 5;    ///< cycles of cull
+  static constexpr Cycle turn = 4;             ///< cycles of coarse_raster: the edges rotate once
   static constexpr int interpolate_steps = 2;  ///< each holds one stamp
   int product;                                 ///< of one cross product in cull
 

@@ -25,7 +25,7 @@ struct StageSurface {
 
   Triangle triangle;
   TriangleSetup setup;
-  Surface surface;  ///< of that setup
+  Surface surface;  ///< surface of that setup
 };
 
 /// A plane over w, 2^-l codes, in the upper bits of a lane: it wraps by overflow.
@@ -105,8 +105,8 @@ struct LaneTexture {
   bool has_alpha = false;
   std::array<std::int32_t, 2> constant{};                  ///< of blend: red and blue, green, in the halves of a lane
   const std::uint32_t* alpha_quads = nullptr;              ///< alphas of TexelBlocks, if present and without a border
-  const TexelBlocks::AlphaRanges* alpha_ranges = nullptr;  ///< of level 0, likewise
-  std::array<TextureWrap, 2> beyond{};                     ///< as given
+  const TexelBlocks::AlphaRanges* alpha_ranges = nullptr;  ///< alpha ranges of level 0, likewise
+  std::array<TextureWrap, 2> beyond{};                     ///< wraps as given
   bool has_border = false;                                 ///< along u or v
   std::int32_t border = 0;                                 ///< R lowest
   std::array<std::int32_t, 2> margin{};                    ///< coordinates_margin(), 2^-8 texels
@@ -167,7 +167,7 @@ struct LaneFog {
 struct LaneLight {
   std::array<LanePlane, 3> normal;
   int up = 0;                          ///< bits below P in a lane
-  const FallingLine* roots = nullptr;  ///< of 1 / sqrt
+  const FallingLine* roots = nullptr;  ///< table of 1 / sqrt
   const FallingLine* power = nullptr;
   int place_bits = 0, drop = 0;  ///< bits of a place in a power's line; shift from a line's sum to its value
   Normal direction{}, half{};

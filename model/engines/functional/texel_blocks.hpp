@@ -18,7 +18,7 @@ namespace halfplane {
 class TexelBlocks {
  public:
   static constexpr int kShift = 2, kSize = 1 << kShift, kTexels = kSize * kSize;
-  static constexpr std::size_t kLevels = 16;  ///< of 4096 texels, and a few empty ones
+  static constexpr std::size_t kLevels = 16;  ///< levels of 4096 texels, and a few empty ones
   static constexpr std::size_t kMostQuads = std::size_t{1}
                                             << 21;  ///< texels of a texture with footprints: 32 MB of them
   struct alignas(64) Block {
@@ -50,7 +50,7 @@ class TexelBlocks {
     /// log2 of the squares along an axis.
     [[nodiscard]] int bits_along(std::size_t axis, int shift) const { return std::max(bits_[axis] - shift, 0); }
     std::array<int, 2> bits_;
-    std::vector<std::vector<Range>> squares_;  ///< of 4, 8, ... texels, row after row
+    std::vector<std::vector<Range>> squares_;  ///< ranges of squares of 4, 8, ... texels, row after row
   };
   /// Makes the ranges, if sides are powers of two; and separate alphas of existing footprints.
   void add_alphas();

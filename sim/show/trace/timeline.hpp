@@ -85,7 +85,8 @@ class Timeline final : public TransferSink {
   void end_primitive();
 
   std::string text_;
-  std::string name_, tile_name_, next_tile_name_;  ///< of the primitive, of the tile in fine_raster, of the next tile
+  std::string name_, tile_name_,
+      next_tile_name_;  ///< names of the primitive, of the tile in fine_raster, of the next tile
   bool has_tile_ = false, has_stamps_ = false, has_fragments_ = false, has_setup_ = false, has_line_ = false;
   Cycle taken_ = 0, triangle_ = 0, setup_ = 0, last_tile_ = 0, tile_ = 0, first_stamp_ = 0, last_stamp_ = 0,
         first_fragment_ = 0, last_fragment_ = 0, line_ = 0, last_pixel_ = 0;

@@ -40,9 +40,10 @@ using SkipSceneOpener = std::function<SkipMaker(const std::string& name, bool ha
 
 struct SkipRow {
   std::string skip, scene;
-  bool is_made_for = false;   ///< by the table of pairs
-  FrameTimes with, without;   ///< this kind of skipping on and off, all others on
-  std::uint64_t counter = 0;  ///< of that name, with everything on; of `objects`, primitives, of `nodes`, vertices
+  bool is_made_for = false;  ///< by the table of pairs
+  FrameTimes with, without;  ///< this kind of skipping on and off, all others on
+  std::uint64_t counter =
+      0;  ///< counter of that name, with everything on; for `objects` primitives, for `nodes` vertices
   /// Fraction of the frame time saved; negative if the test costs more.
   [[nodiscard]] double saved() const { return 1 - with.median() / without.median(); }
 };

@@ -21,7 +21,7 @@ using Frame = std::function<FrameCost()>;
 /// The measured frames.
 struct FrameTimes {
   std::vector<double> seconds;  ///< in order of time; empty if refused
-  std::uint64_t cycles = 0;     ///< of the last one
+  std::uint64_t cycles = 0;     ///< cycles of the last turn
   std::exception_ptr refusal;   ///< the InputError or missing tool that ended its first frame
 
   /// Seconds; of an even number the mean of the middle two. At least a nanosecond, so that rates are finite.

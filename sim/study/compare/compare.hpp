@@ -74,7 +74,7 @@ struct Comparison {
   std::optional<TextureErrors> texture;  ///< of textured pixels; none: no such pixel
   std::vector<PerVertexRow> per_vertex;  ///< the error of light at vertices; empty if no fragment is lit
   std::vector<LayerRow> layers;          ///< pixels whose colour is from several fragments; not in `color_parts`
-  std::uint64_t visible_triangles = 0;   ///< of the model, in these figures
+  std::uint64_t visible_triangles = 0;   ///< triangles of the model in these figures
   std::uint64_t stage_mismatches = 0;    ///< stored values, and owners, that differ from the result of the fragments
 
   // Per pixel, width * height, rows from the top. NaN if not compared. Signed; for a colour, its worst channel.

@@ -188,7 +188,7 @@ OracleResult check_sample(const Scene& scene, const Config& config, std::span<co
                    golden::draw_region(scene, state), visit);
   }
   OracleResult result = check.result();
-  for (; visit != log.visits().end(); ++visit) result.mismatches += log.sample_count(*visit);  // of no triangle
+  for (; visit != log.visits().end(); ++visit) result.mismatches += log.sample_count(*visit);  // samples of no triangle
   return result;
 }
 

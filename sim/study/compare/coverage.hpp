@@ -64,9 +64,10 @@ struct OracleResult {
 [[nodiscard]] std::vector<CoverageLog> coverage_logs(const Config& config);
 
 struct PixelCoverage {
-  std::uint64_t missing = 0;    ///< samples that U covers and the model does not
-  std::uint64_t extra = 0;      ///< samples that the model covers and U does not
-  std::uint64_t near_edge = 0;  ///< of both: at an edge of U, or where a line or point changes within a snap step
+  std::uint64_t missing = 0;  ///< samples that U covers and the model does not
+  std::uint64_t extra = 0;    ///< samples that the model covers and U does not
+  std::uint64_t near_edge =
+      0;  ///< missing and extra ones at an edge of U, or where a line or point changes within a snap step
 };
 
 /// Compares counts per pixel with the golden's; needs Image::outlines.

@@ -25,7 +25,7 @@ struct LanePositions {
     S32 channel_column, channel_row;  ///< of the tile's left half, four channels a pixel
   };
   std::array<Block, 4> block;                ///< blocks of a tile, likewise
-  std::array<Quad::Part, 2> quad_x, quad_y;  ///< of the first part of a quad; of the next part
+  std::array<Quad::Part, 2> quad_x, quad_y;  ///< x, y of the first part of a quad; of the next part
 
   LanePositions() {
     pair_x = I16::of([](int i) { return i % 8; });
@@ -135,8 +135,8 @@ struct PieceConstants {
     PieceRow coordinates;  ///< anchors of Q and of P of u and v, in lanes; u_ref of v
     PieceRow colors;       ///< anchors of red and green, blue and alpha; codes of the vertices, lowest, highest
   };
-  PieceRow step_x;           ///< of Q and P; and, a byte each, drops of LaneAttribute: narrow, drop
-  PieceRow step_y;           ///< of Q and P; u_ref of u
+  PieceRow step_x;           ///< steps of Q and P; and, a byte each, LaneAttribute::narrow and drop
+  PieceRow step_y;           ///< steps of Q and P; u_ref of u
   PieceRow color;            ///< steps in x, red and green first, and in y
   std::array<Tile, 4> tile;  ///< by the lowest bit of its column, and that of its row
 };
@@ -255,13 +255,13 @@ struct Bin {
   const Widths& widths;
   Skip skip;  ///< as it applies to the current draw
   LaneFormat depth_format, color_format;
-  LaneFormat centred_depth, centred_color;  ///< of small triangles
+  LaneFormat centred_depth, centred_color;  ///< formats of small triangles
   bool is_short;                            ///< small triangles use the short arithmetic
   bool has_short_edges;                     ///< 16 bits hold their edges
   int first_x, first_y;                     ///< pixels
   double pixel;                             ///< a subpixel, in pixels
   bool are_lines;                           ///< sixteen pixels of a row of the target are a cache line
-  unsigned samples;                         ///< of a pixel; several: multisample.inl
+  unsigned samples;                         ///< samples of a pixel; several: multisample.inl
   bool is_narrow;                           ///< depths are in BinMemory::narrow_depth
   bool tests_narrow;  ///< 16 bits hold the codes of a tile modulo their wrap window, and fifteen of its fractions
   int range_bits_dropped;
@@ -279,7 +279,7 @@ struct Bin {
   bool is_back = false;             ///< the current triangle shows its back; set for draws with a stencil
   [[nodiscard]] HALFPLANE_INLINE bool sees_surfaces() const { return state.has_surface && state.color_write; }
   std::int32_t low = 0, high = 0;  ///< range of the bin's depths, or wider
-  std::int32_t lowest_high = 0;    ///< of its tiles' upper bounds, or of earlier ones
+  std::int32_t lowest_high = 0;    ///< lowest of its tiles' upper bounds, now or earlier
   static constexpr std::int32_t kOpen = 1 << 16;
   std::int32_t closed_from = kOpen;  ///< with the test less, all tiles hide depths from here on
   const LanePositions& position = lane_positions();

@@ -139,7 +139,7 @@ struct CullLanes {
   struct Sets {
     std::uint32_t lanes, slow = 0,
                          frustum = 0;   ///< present; on the slow path; outside a plane of the view volume
-    std::uint32_t zero, culled, empty;  ///< of the others, by the first reason that holds
+    std::uint32_t zero, culled, empty;  ///< numbers of dropped triangles, by the first reason that holds
     std::uint32_t drawn, sampleless;    ///< drawn triangles; among them triangles without a sample
   };
 

@@ -117,7 +117,7 @@ struct SampledTriangle {
   HALFPLANE_INLINE unsigned count() const { return samples_of<kSamples>(bin); }
 
   /// Edge values at the first pixel of a tile, at the centre and then at each sample; less than the limit is outside.
-  /// As in outside_edges().
+  /// The same test as in outside_edges().
   using FirstValues = std::array<std::array<std::int32_t, 4>, 1 + kMaxPixelSamples>;
   HALFPLANE_INLINE FirstValues first_values(const EdgeWords& smallest) const {
     FirstValues first;

@@ -120,7 +120,7 @@ struct TileColors {
   const ColorSteps& steps;
   const LaneFormat& format;
   bool is_surface;
-  alignas(64) std::array<std::uint32_t, kTilePixels> rgba;  ///< of a surface
+  alignas(64) std::array<std::uint32_t, kTilePixels> rgba;  ///< colours of a surface
 
   HALFPLANE_INLINE TileColors(Bin& bin, const BinTriangle& t, int tile, std::uint64_t pixels)
       : steps(t.color), format(bin.color_format), is_surface(t.surface != 0) {

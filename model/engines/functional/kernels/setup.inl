@@ -15,7 +15,7 @@ struct PlaneSteps {
 
 /// The factor from numerators to gradients.
 struct GradientFactor {
-  std::int64_t reciprocal;  ///< of the area
+  std::int64_t reciprocal;  ///< reciprocal of the area
   int k;                    ///< bits that a product with the reciprocal drops
 
   HALFPLANE_INLINE GradientFactor(const AreaQuotient& quotient, const AttributeWidths& attribute,

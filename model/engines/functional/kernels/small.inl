@@ -309,7 +309,7 @@ struct NarrowTest {
 /// The blocks of a window, row after row.
 struct alignas(16) WindowBlock {
   std::uint32_t place;        ///< from the window's first tile in the bin's memory
-  std::uint32_t tile, block;  ///< of the window, of its tile
+  std::uint32_t tile, block;  ///< index in the window, in its tile
 };
 /// By the first block of a quad; blocks beyond the window are touched by no box.
 static constexpr std::array<std::array<WindowBlock, Quad::kBlocks>, 16> kWindowBlocks = [] {

@@ -48,8 +48,8 @@ struct SmallBatch {
   alignas(64) LaneArray<3> edge_x, edge_y;          ///< from pixel to pixel
   alignas(64) LaneArray<3> edge_aside, edge_below;  ///< from block to block; in both halves where 16 bits hold them
   alignas(64) Lane first_block;                     ///< of the first quad, among the four by four of the window
-  alignas(64) Lane columns_rows;                    ///< of blocks, less 1: two bits each
-  alignas(64) Lane place;                           ///< of the window's first tile in the bin's memory
+  alignas(64) Lane columns_rows;                    ///< columns and rows of blocks, less 1: two bits each
+  alignas(64) Lane place;                           ///< place of the window's first tile in the bin's memory
   /// Planes at the anchors of the window's tiles, centred; colours with 16 bits a channel.
   struct alignas(256) Tile {
     Lane depth;
