@@ -1,6 +1,6 @@
 // Several clients that read, and one AXI4 read channel. The client with the lowest number is served first.
 //
-// Clients: 0 scan-out, which must not wait; then frame, textures, command ring. None of them starves for good: scan-out
+// Clients: 0 scan-out, which must not wait; then frame, textures, command ring. No client starves for good: scan-out
 // asks at the rate of the display, and frame and textures stop asking when the pipeline has no more commands.
 // Arrays are flat, client 0 lowest. Data, last and error are shared by all clients; valid names the client.
 //

@@ -115,7 +115,7 @@ module command_decoder #(
   logic [2:0]       kind_q;
   logic [3:0]       flags_q;   // of a triangle: flip; of a clear or flush, or the register of a state
   logic [2:0]       loads_q;   // slots that a triangle loads
-  logic             over_q;    // and more after them
+  logic             over_q;    // values over w follow the slots
   logic [INDEX-1:0] index_q;   // the next word of the payload
   logic [3:0]       register_q, rest_q;  // of SET: its next register, words to come
   logic [1:0]       flushes_q;        // under way

@@ -185,7 +185,7 @@ module scan_out #(
   assign scan_araddr   = asks_flags ? flags_address : unit_address;
   assign scan_arlen    = asks_flags ? 8'd0 : unit_of_pixels ? 8'(PIXEL_BURST - 1) : 8'(FULL_BURST - 1);
 
-  // Where the flags of a beat of them begin.
+  // The first state that asks for flags.
   localparam logic [2:0] TO_FLAGS = FLAGS != 0 ? CLEARED : COMPRESS ? PIXELS : READ;
   logic begins_flags;  // the next tile is the first one of a beat of flags
   assign begins_flags = ((32'(tile_q) + 32'd1) & 32'(FLAG_TILES - 1)) == '0;
@@ -265,7 +265,7 @@ module scan_out #(
   assign arrives     = scan_rvalid && scan_rready;
   assign head_taken  = !head_has_data || (arrives && (head_is_flags ||
                        beat_q == (head_of_pixels ? BEAT'(PIXEL_BEATS - 1) : BEAT'(UNIT_BEATS - 1))));
-  assign has_flags   = head_valid && head_taken && head_is_flags && head_of_pixels == COMPRESS;  // the last of them
+  assign has_flags   = head_valid && head_taken && head_is_flags && head_of_pixels == COMPRESS;  // the last beat of flags
   assign error_o     = arrives && scan_rerror;
   assign word_ends   = head_of_pixels ? (32'(beat_q) & 32'(GATHER_PIXEL - 1)) == 32'(GATHER_PIXEL - 1)
                                       : (32'(beat_q) & 32'(WORD_BEATS - 1)) == 32'(WORD_BEATS - 1);

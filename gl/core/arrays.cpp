@@ -237,7 +237,7 @@ void draw(Context& context, const Streams& streams, GLenum mode, std::uint32_t f
     streams.issue_attributes(context, first + i);
     shade_current(context, streams.position(first + i), context.vertices.emplace_back());
   };
-  // Where each element of the range has been put; a sparse range is shaded index by index instead.
+  // The place of each element of the range; a sparse range is shaded index by index instead.
   constexpr auto kNowhere = std::numeric_limits<std::uint32_t>::max();
   const auto [low, high] = std::ranges::minmax(are_distinct ? indices.first(1) : indices);
   if (are_distinct || (high - low) / 8 > indices.size()) {

@@ -260,7 +260,7 @@ const GLubyte* get_string(Context&, GLenum name);
 void get_pointer(Context&, GLenum pname, void** params);
 void get_polygon_stipple(Context&, GLubyte* mask);
 GLboolean is_enabled(Context&, GLenum cap);
-/// Where an enable is kept; null: `cap` is none. Of texgen and texture targets: of the active unit.
+/// The place of an enable; null: `cap` is unknown. Of texgen and texture targets: of the active unit.
 [[nodiscard]] bool* enable_flag(State&, GLenum cap);
 [[nodiscard]] inline bool* enable_flag(Context& context, GLenum cap) { return enable_flag(context.state, cap); }
 /// GL_ENABLE_BIT.

@@ -16,7 +16,7 @@
 
 namespace halfplane::gl {
 
-/// Where contexts draw: a window, a pbuffer. Made by the window system's side (glx/, egl/), which shows `frame` in show().
+/// A target of contexts: a window, a pbuffer. Made by the window system's side (glx/, egl/), which shows `frame` in show().
 struct Drawable {
   Drawable(const Options& options, int width, int height) : frame(options, width, height) {}
   virtual ~Drawable() = default;
@@ -80,7 +80,7 @@ struct Context {
   ClientState client;
   std::shared_ptr<SharedObjects> shared;
   Drawable* drawable = nullptr;       ///< null: nothing is drawn
-  Drawable* read_drawable = nullptr;  ///< where glReadPixels reads
+  Drawable* read_drawable = nullptr;  ///< source of glReadPixels
   bool was_current = false;           ///< viewport and scissor have been set to the size of the first drawable
   bool is_embedded = false;           ///< a context of OpenGL ES-CM, for glGetString
   std::string renderer;               ///< the answer of glGetString to GL_RENDERER

@@ -492,7 +492,7 @@ void Frame::Memory::keep_good(const Draw& draw, std::vector<Command>& kept) {
   keep_good(other, kept);
 }
 
-/// Why the engine refuses the draw; empty: it does not.
+/// The reason why the engine refuses the draw; empty: accepted.
 std::string Frame::Memory::fault_of(const Draw& draw) {
   Scene one = empty_scene();
   one.states = {scene.states[draw.state]};

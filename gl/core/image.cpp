@@ -123,7 +123,7 @@ std::uint32_t encoded(float value, const PixelType& type, bool is_index) {
   return static_cast<std::uint32_t>(static_cast<std::int64_t>(std::floor((in_range * largest(bits) - 1) / 2 + 0.5)));
 }
 
-/// Where the component `i` of a packed type begins.
+/// The first bit of component `i` of a packed type.
 int shift_of(const PixelType& type, std::size_t i) {
   int below = 0;
   for (std::size_t k = 0; k < i; ++k) below += type.bits[k];

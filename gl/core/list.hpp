@@ -44,7 +44,7 @@ class DisplayList {
     Play play;            ///< null: the next one of owned_
     std::uint64_t bytes;  ///< of the arguments that follow it, a multiple of kAlignment
   };
-  /// Where the arguments go. Valid until the next call.
+  /// The place of the arguments. Valid until the next call.
   void* add(Play play, std::size_t bytes);
 
   std::vector<std::byte> calls_;

@@ -178,7 +178,7 @@ class Batch {
       if (is_textured_ && use_.replaces_rgb) color[c] = 1;
     }
     if (is_textured_ && use_.replaces_alpha) color[3] = 1;
-    // A texel of the stipple is alpha: this one must tell it from none.
+    // A texel of the stipple is alpha: the test must tell it from 0.
     if (group_.is_stippled && color[3] < 1 / 255.0) color[3] = 1 / 255.0;
     return color;
   }
@@ -293,7 +293,7 @@ struct Plane {
   bool shows_cut;  ///< the edge along the cut is one of the polygon's
 };
 
-/// Near and far, then the sides, so many pixels farther out.
+/// Planes near and far, then the sides, `margin` pixels farther out.
 std::array<Plane, 6> view_volume(const ViewportState& viewport, double margin) {
   const double x = 1 + 2 * margin / viewport.width, y = 1 + 2 * margin / viewport.height;
   return {{{&ShadedVertex::clip, {0, 0, 1, 1}, false},
@@ -546,7 +546,7 @@ class Pipeline {
     return v;
   }
 
-  /// Fog is the model's at the ends of a line: this one is halved until that shows no more.
+  /// The model fogs the ends of a line: a line is halved until the error is invisible.
   void fogged_piece(const ShadedVertex& a, const ShadedVertex& b, int halvings) {
     if (halvings == 0 || !fog_bends(a, b)) return add({DrawKind::lines, Topology::lines, true, false, 1}, {a, b});
     const ShadedVertex middle = window_mix(a, b, 0.5);
@@ -613,7 +613,7 @@ struct Assembly {
   std::size_t size, step;
   std::array<std::size_t, 4> order;  ///< around the primitive
   std::size_t provoking;             ///< which of `order` gives the colour
-  std::optional<Topology> topology;  ///< that draws the same
+  std::optional<Topology> topology;  ///< topology of the model that draws the same
   bool has_edge_flags = false;
 };
 

@@ -57,7 +57,7 @@ void draw_texels(Context& context, halfplane::State state, const halfplane::Text
 /// The part of an image of any size, from (left, top) on, that a texture holds.
 [[nodiscard]] halfplane::Texture part_of(const TexelImage& image, int left, int top);
 
-/// Where glRenderMode is not GL_RENDER: takes a point, a line or a polygon after clipping, `clip` in window coordinates as
+/// In selection and feedback: takes a point, a line or a polygon after clipping, `clip` in window coordinates as
 /// RasterPosition::window and colours in the first place. `token`: GL_POINT_TOKEN, GL_LINE_TOKEN, ...
 void feed_primitive(Context& context, GLenum token, std::span<const ShadedVertex> vertices);
 /// Likewise the raster position of glBitmap, glDrawPixels and glCopyPixels (GL_BITMAP_TOKEN, ...). Whether the command is

@@ -37,7 +37,7 @@ struct ShadingConstantsDeleter {
   void operator()(ShadingConstants* constants) const;
 };
 
-/// `shade` of a whole batch is this for each vertex. Material is that of Context::state at the time of the call.
+/// `shade` of a whole batch calls this function for each vertex. Material is that of Context::state at the time of the call.
 [[nodiscard]] ShadedVertex shade(Context& context, const InputVertex& vertex);
 
 }  // namespace halfplane::gl

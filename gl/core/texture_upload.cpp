@@ -29,7 +29,7 @@ struct Fit {
 /// One channel of an environment's result for one texel: a times the vertex's, plus b.
 struct Affine {
   double a = 0, b = 0;
-  bool is_exact = true;  ///< else right for white, opaque vertices
+  bool is_exact = true;  ///< false: right for white, opaque vertices only
 
   [[nodiscard]] double of_white() const { return a + b; }
 };
@@ -114,7 +114,7 @@ Result environment(const TextureUnit& unit, GLenum base, const Vec4& texel, cons
   for (std::size_t c = 0; c < 4; ++c) {
     const double t = texel[c];
     const Affine kept{1, 0}, product{t, 0};
-    const bool is_alpha = c == 3 && base != GL_INTENSITY;  // that is a color in all channels, but for GL_DECAL
+    const bool is_alpha = c == 3 && base != GL_INTENSITY;  // alpha is then a color in all channels, but for GL_DECAL
     switch (unit.env_mode) {
       case GL_REPLACE: result[c] = (c == 3 ? is_opaque : base == GL_ALPHA) ? kept : Affine{0, t}; break;
       case GL_DECAL:

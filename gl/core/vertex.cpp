@@ -105,7 +105,7 @@ void window_pos(Context& context, double x, double y, double z) {
   raster.valid = true;
   raster.window = {x, y, viewport.near + held(z) * (viewport.far - viewport.near), 1};
   raster.distance = context.state.fog.coord_source == GL_FOG_COORDINATE ? current.fog_coord : 0;
-  // Not lit: the current attributes as they are.
+  // Not lit: the current attributes unchanged.
   raster.color = held_color(current.color);
   raster.secondary = {};
   if (context.state.fog.color_sum)

@@ -6,7 +6,7 @@
 namespace halfplane::gl::glx {
 namespace {
 
-/// No call says that an X window which was made current as it is has been destroyed.
+/// GLX reports no destruction of a plain X window that was made current.
 void forget_gone_windows() {
   const std::lock_guard lock(objects().mutex);
   std::erase_if(objects().drawables, [](const auto& entry) {

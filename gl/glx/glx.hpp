@@ -93,7 +93,7 @@ struct GlxDrawable {
       : window(kind, its_config.server, xid, its_config.format, width, height), config(&its_config) {}
   gl::Window window;
   const FbConfig* config;
-  bool is_plain = false;  ///< an X window that was made current as it is
+  bool is_plain = false;  ///< an X window made current without glXCreateWindow
   bool preserved = true, largest = false;
 };
 
@@ -112,7 +112,7 @@ struct Objects {
 };
 [[nodiscard]] Objects& objects();
 
-/// That of this thread; null: none.
+/// The context of this thread; null: none.
 [[nodiscard]] GlxContext* here();
 /// Null where it is none.
 [[nodiscard]] std::shared_ptr<GlxDrawable> find_drawable(Display* display, XID id);

@@ -18,8 +18,8 @@ struct TraceContents {
   };
   std::map<std::int64_t, Surface> surfaces;
   int frames = 0;              ///< swaps of any surface
-  std::int64_t unswapped = 0;  ///< where nothing is ever swapped: the surface whose one frame the trace is
-  std::string damage;          ///< where the file ends too early and how, empty: it is whole
+  std::int64_t unswapped = 0;  ///< without swaps: the surface whose only frame is the trace
+  std::string damage;          ///< place and kind of the file's early end, empty: complete
 };
 
 /// Reads a trace without drawing. Throws InputError for a file that is no trace, or in which nothing is drawn.
