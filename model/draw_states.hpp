@@ -15,7 +15,7 @@
 
 namespace halfplane {
 
-/// Where a state is needed once its draw is under way.
+/// The place that needs a state after its draw is sent.
 enum class StateHome {
   host,       ///< consumed by geometry: the hardware sees only its effect on the vertices
   primitive,  ///< travels with the primitive through the hardware

@@ -76,7 +76,7 @@ class CaptureText {
   std::size_t head_;                // lines that are not counted
   std::size_t next_ = 0;            // start of the next line in text_
   std::size_t line_;                // 0: before the first counted line; modulo 2^64 before that
-  const char* at_ = nullptr;        // where the search for the next word starts
+  const char* at_ = nullptr;        // start of the search for the next word
   const char* line_end_ = nullptr;  // before its LF or CR LF
 };
 

@@ -37,7 +37,7 @@ struct TappedFragment {
   std::uint32_t primitive = 0;                   ///< as in Rendering::ids
   std::uint32_t draw = 0;                        ///< index into Scene::commands
   std::uint32_t item = 0;                        ///< index into Rendering::triangles, lines or points
-  const Triangle* triangle = nullptr;            ///< that item, valid during the call; null for the other two kinds
+  const Triangle* triangle = nullptr;            ///< the triangle, valid during the call; null for the other two kinds
   const DrawnLine* line = nullptr;               ///< likewise
   const DrawnPoint* point = nullptr;             ///< likewise
   int x = 0, y = 0;                              ///< pixels

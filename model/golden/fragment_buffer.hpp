@@ -20,7 +20,7 @@ namespace halfplane::golden {
 /// The fate of a fragment.
 struct Fate {
   bool passed = false;   ///< the stencil and the depth test
-  bool killed = false;   ///< and then failed the alpha test
+  bool killed = false;   ///< passed the other tests, and failed the alpha test
   bool written = false;  ///< it owns the pixel now: it passed, and its draw writes depth, colour or both
   bool stencil_failed = false;
 };

@@ -68,7 +68,7 @@ template <class SignedLane, class Lane>
   return round_shift(step_x * o.x + step_y * o.y, grid_bits);
 }
 
-/// A plane at a sample, modulo 2^64: its value at pixel centres is the original at that sample. `guard_bits`: l, kept in its
+/// A plane at a sample, modulo 2^64: its value at a centre is the original's at that sample. `guard_bits`: l, kept in its
 /// tiles.
 [[nodiscard]] inline Plane plane_at_sample(Plane plane, int guard_bits, const SampleOffset& o, const Widths& widths) {
   const int drop = widths.plane_fraction - guard_bits;

@@ -44,7 +44,7 @@ struct TextureLevels {
   int last = 0;                ///< number of the smallest level
   Lod least = 0, largest = 0;  ///< 0 to kLargest
 
-  /// A greater level of detail has no other effect than this one.
+  /// A greater level of detail has the effect of this limit.
   static constexpr Lod kLargest = (1 << 12) - 1;
 
   /// From the lowest bit: min 3 (its lowest: linear; the others: none, the nearest level, two levels), last 4, least 12,

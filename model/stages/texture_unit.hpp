@@ -138,7 +138,7 @@ struct TextureLookup {
   int bank = 0;
   std::size_t sample = 0;  ///< number in the stamp: the first sample that needs it
   bool ends = true;        ///< the last of the lines that are looked up together
-  bool continues = false;  ///< and the sample needs another level, or other samples of the group follow
+  bool continues = false;  ///< the sample needs another level, or other samples of the group follow
   bool turns = false;      ///< samples of one round: the next lookups are on upper levels, this one on lower
   int samples = 0;         ///< samples completed by the last line
   int hits = 0;            ///< samples among them whose lines were all present

@@ -95,7 +95,7 @@ void OtherMasters::scanned(std::uint64_t bytes, Picoseconds done) {
   if (scan_.unit == tiles_ * units) {
     ++use_.bands;
     ++scan_.band;
-    // Its buffer is free a band before the display wants it, which is when this one is wanted.
+    // The next band has its buffer a band before the display wants it: from the time at which this band is wanted.
     use_.late_bands += done > band_begins(scan_.band) ? 1U : 0U;
     earliest = std::max(earliest, band_begins(scan_.band));
     scan_.unit = 0;

@@ -20,7 +20,7 @@ struct MemoryTraffic {
 /// Their traffic so far.
 struct MemoryUse {
   std::uint64_t scan_out_bytes = 0, other_bytes = 0;
-  std::uint64_t bands = 0;       ///< that scan-out has read: rows of blocks
+  std::uint64_t bands = 0;       ///< bands that scan-out has read: rows of blocks
   std::uint64_t late_bands = 0;  ///< bands among them whose last pixel came after the display wanted the first one
   bool operator==(const MemoryUse&) const = default;
 };
@@ -34,7 +34,7 @@ class OtherMasters {
  public:
   using Picoseconds = std::uint64_t;
   static constexpr std::uint64_t kOtherBurst = 64;  ///< bytes of a read of the others
-  /// Where the others read for the n-th time, in their part of memory.
+  /// Address of the other masters' n-th read, in their part of memory.
   [[nodiscard]] static constexpr std::uint64_t place(std::uint64_t n) {
     return n * 0x9E3779B1U % (1U << 24) / kOtherBurst * kOtherBurst;
   }
@@ -82,7 +82,7 @@ class OtherMasters {
   struct {
     Picoseconds arrives = kNever;            ///< of the next burst
     std::uint64_t first_band = 0;            ///< the band since power-up with which the picture begins
-    Picoseconds begins = 0;                  ///< when that one began
+    Picoseconds begins = 0;                  ///< begin of that band
     std::uint64_t band = 0;                  ///< since power-up
     std::uint64_t unit = 0;                  ///< in the band
     std::uint64_t sent = 0;                  ///< bytes of the unit

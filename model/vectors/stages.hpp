@@ -37,7 +37,7 @@ class StageIo {
 struct JudgedStage {
   Stage stage;
   std::vector<Port> in, out;
-  std::string_view why_not = {};  ///< why its packets cannot be judged from the input; empty: they can
+  std::string_view why_not = {};  ///< reason why its packets cannot be judged from the input; empty: they can
 
   [[nodiscard]] bool can_run() const { return why_not.empty(); }
 };

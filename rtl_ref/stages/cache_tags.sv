@@ -108,7 +108,7 @@ module cache_tags #(
   endfunction
 
   assign is_clear      = fragment_i.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR;
-  assign is_token      = is_clear || fragment_i.kind == raster_pkg::PRIMITIVE_KIND_FLUSH;  // and no pixel of a line
+  assign is_token      = is_clear || fragment_i.kind == raster_pkg::PRIMITIVE_KIND_FLUSH;  // excludes pixels of lines
   assign clears_bin    = is_clear && fragment_i.state.depth_test == raster_pkg::DEPTH_FUNC_EQUAL;
   assign clears_all    = is_clear && fragment_i.state.depth_write && fragment_i.state.color_write;
   assign skips_walk    = clears_all || clears_bin;  // over the lines: they are dropped, or empty

@@ -102,7 +102,7 @@ module framebuffer (
   logic flag_depth, flag_color;  // the tile's buffer in memory is stale: the value of the last fast clear counts
 
   assign is_clear    = access_i.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR;
-  assign is_token    = is_clear || access_i.kind == raster_pkg::PRIMITIVE_KIND_FLUSH;  // and no pixel of a line
+  assign is_token    = is_clear || access_i.kind == raster_pkg::PRIMITIVE_KIND_FLUSH;  // excludes pixels of lines
   assign clears_all  = is_clear && access_i.state.depth_write && access_i.state.color_write;
   assign access_line = (LINE'(access_i.key.tile_x) & LINE_X_MASK) | ((LINE'(access_i.key.tile_y) & LINE_Y_MASK) << LINE_X);
   assign write_line  = (LINE'(write_i.key.tile_x) & LINE_X_MASK) | ((LINE'(write_i.key.tile_y) & LINE_Y_MASK) << LINE_X);

@@ -21,7 +21,7 @@ module hiz (
     input logic [raster_pkg::TILE_X_BITS-1:0] read_x_i,
     input logic [raster_pkg::TILE_Y_BITS-1:0] read_y_i,
     input logic                               starts_visit_i,
-    input logic                               raises_i,  // and may raise a depth by its state
+    input logic                               raises_i,  // the visit may raise a depth by its state
 
     output logic is_eligible_o,    // bounds may reject its tiles
     output logic is_settled_o,     // visit n - LAG has been seen: a bound may be read, a visit may start

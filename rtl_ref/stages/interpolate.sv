@@ -112,7 +112,7 @@ module interpolate (
   logic [PIXELS*CODES-1:0]      code;
   raster_pkg::fragment_packet_t made;
 
-  // Where each pixel is shaded, a bit per sample: its centre if covered or if no sample is, else the first covered
+  // The shading point of each pixel, a bit per sample: its centre if covered or if no sample is, else the first covered
   // sample.
   logic [PIXELS*N-1:0] shaded_at;
   generate
@@ -132,7 +132,7 @@ module interpolate (
       localparam int W = LOCAL_BITS_OF[32*p+:32];
       localparam int LOCAL = LOCAL_AT[32*p+:32];
       localparam int B = FRAGMENT_BITS_OF[32*p+:32];
-      localparam int CODE = FRAGMENT_AT[32*p+:32];  // and ranges; these planes come first
+      localparam int CODE = FRAGMENT_AT[32*p+:32];  // its place; planes with ranges come first
       localparam int STEP = STEP_AT[32*p+:32];
       logic signed [W-1:0] anchor, context_step_x, x_step_y, y_step_x, y_step_y;  // modulo 2^W signs do not matter
       logic signed [W-1:0] x_value_q, y_value_q;

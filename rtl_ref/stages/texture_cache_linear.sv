@@ -54,7 +54,7 @@ module texture_cache_linear #(
     input  logic [PORT_BITS-1:0] answer_data_i,
 
     output logic            looked_up_o,  // of a sample, or one of its passes
-    output logic            hit_o,        // and all its lines were there
+    output logic            hit_o,        // all its lines were present
     output logic [TAIL-1:0] looked_up_tail_o,
     output logic            miss_o,       // a line has been requested
     output logic idle_o

@@ -64,7 +64,7 @@ module texture_linear #(
     input  logic [PORT_BITS-1:0] answer_data_i,
 
     output logic sample_o,  // a sample has been looked up, on all of its levels
-    output logic hit_o,     // and all of its lines were there
+    output logic hit_o,     // all of its lines were present
     output logic miss_o,    // a line has been requested
     output logic idle_o
 );

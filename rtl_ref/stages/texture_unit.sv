@@ -102,7 +102,7 @@ module texture_unit #(
   localparam int GROUPS = SAMPLES / LANES;
   localparam int GROUP = (GROUPS == 1) ? 1 : $clog2(GROUPS);
   localparam int TAIL = GROUP + 1;  // bits of a group's tail: its number, and whether it is the last of its stamp
-  localparam int AHEAD_TAIL = TAIL + ((LANES != 1) ? LANES : 0);  // and the live samples, with several lanes
+  localparam int AHEAD_TAIL = TAIL + ((LANES != 1) ? LANES : 0);  // the tail, and with several lanes the live samples
   localparam int INDEX = $clog2(QUEUE);
   localparam int COLOR = 8 * CHANNELS;
   localparam int COLOR_P = CHANNELS * COLOR_P_BITS;
@@ -476,7 +476,7 @@ module texture_unit #(
   logic [31:0] border_color;
   generate
     if (BORDER != 0) begin : gen_border
-      localparam int INSIDE = $clog2(AHEAD + IN_FLIGHT + 16);  // and a few in registers
+      localparam int INSIDE = $clog2(AHEAD + IN_FLIGHT + 16);  // of a count of groups, with a few in registers
       logic              leaves;
       logic [INSIDE-1:0] inside_q;  // groups between the split and combine
       logic [31:0]       border_q;

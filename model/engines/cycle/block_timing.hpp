@@ -346,7 +346,7 @@ class BlockTiming {
   /// Returns the last.
   Cycle write_colors(Cycle w, std::size_t line, const BlockItem& item, bool writes_all) {
     const int groups = item.blends ? widths_.samples / lanes_ : 1, size = widths_.samples / groups;
-    SampleMask writes;  // that go with the first group: no group reads the writes of another
+    SampleMask writes;  // samples written with the first group: no group reads the writes of another
     if (writes_all) writes = SampleMask(SampleMask::all(widths_.samples).bits() & ~item.colors.bits());
     bool has_gone = false;
     for (int group = 0; group < groups; ++group) {
@@ -491,11 +491,12 @@ class BlockTiming {
   std::deque<Victim> victims_;
   std::vector<std::array<std::uint64_t, 2>> dirty_;  ///< by line and plane: stamps that differ from memory
   bool compresses_;                                  ///< compress.unit
-  std::vector<SampleMask> dirty_colors_;  ///< if so, by line and stamp: samples whose colours differ from memory
-  BlockBits of_pixels_;                   ///< likewise: blocks that lie in memory with one colour per pixel
-  Cycle answered_ = 0;                    ///< answer of the last read
-  std::vector<Cycle> late_;               ///< by place: when the colour stage took the last late item
-  Cycle last_late_ = 0;                   ///< the latest of all
+  std::vector<SampleMask>
+      dirty_colors_;         ///< with compress.unit, by line and stamp: samples whose colours differ from memory
+  BlockBits of_pixels_;      ///< likewise: blocks that lie in memory with one colour per pixel
+  Cycle answered_ = 0;       ///< answer of the last read
+  std::vector<Cycle> late_;  ///< by place: when the colour stage took the last late item
+  Cycle last_late_ = 0;      ///< the latest of all
 };
 
 }  // namespace halfplane

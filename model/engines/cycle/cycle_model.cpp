@@ -422,7 +422,7 @@ class CycleModelOf final : public CycleModel {
   /// Applies a token's state, here and in the tags; `texture`: its work in the texture unit.
   void set_state(const TrianglePacket& token, TextureWork& texture) {
     const StateRegister which = state_register(token.state);
-    const PerPlane<std::uint32_t>& codes = token.vertex.code[2];  // where the lane of states puts it
+    const PerPlane<std::uint32_t>& codes = token.vertex.code[2];  // the place of a state's word
     path_.set(which, codes);
     if (!is_of_texture(which)) return set_tags();
     const LevelsWord beside = word_beside_texture(which, codes, widths_);

@@ -15,7 +15,7 @@ namespace halfplane {
 struct StageRow {
   Stage stage;
   std::string latency;   ///< from an item in to its results out
-  std::string interval;  ///< one item every so many cycles
+  std::string interval;  ///< cycles between two items
   std::string holds;     ///< items under way at most
 };
 

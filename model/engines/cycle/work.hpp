@@ -21,7 +21,7 @@ struct PipelinedCycles {
   static constexpr int cull_state = 1;                  ///< the same for a state, where states have a lane
   /// coarse_raster: from a setup to the walk at its first tile, a cycle from its offer.
   static constexpr Cycle walk_begins = 2;
-  /// Where bounds are read, after each visit: the next tile's bound, and its verdict.
+  /// With HiZ bounds, cycles after each visit: the next tile's bound is read, and compared.
   static constexpr Cycle read_again = 2;
   static constexpr Cycle clear_ends = 1;       ///< after the clear of bounds
   static constexpr int interpolate_steps = 6;  ///< each holds one stamp, the last but one is the FIFO

@@ -118,7 +118,7 @@ struct Slice {
   /// scene's, if the slice has exactly these vertices.
   const SurfaceRow* surface = nullptr;
   const Normal* normals = nullptr;
-  std::vector<SurfaceRow> own_surface;  ///< else these copies
+  std::vector<SurfaceRow> own_surface;  ///< otherwise rows point to these copies
   std::vector<Normal> own_normals;
   std::vector<std::uint32_t> codes;  ///< kVolume and kSlow bits of each vertex
   std::uint32_t any_code = 0;        ///< their union

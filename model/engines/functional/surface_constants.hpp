@@ -143,7 +143,7 @@ struct SurfaceStyle {
   SurfaceStyle(const FrameContext& frame, const DrawContext& draw);
 
   const DrawContext* context;
-  bool is_in_lanes = false;  ///< else the other members are unused
+  bool is_in_lanes = false;  ///< false: the other members are unused
   Sampling sampling = Sampling::none;
   bool is_affine = false;            ///< w does not change coordinates
   bool is_tame = true;               ///< the coordinates of all surfaces set up so far are tame: LaneAttribute
@@ -158,7 +158,7 @@ struct SurfaceStyle {
 struct LaneFog {
   LanePlane q;
   const FogTable::Line* lines = nullptr;
-  std::int32_t first = 0, last = 0;  ///< that number at the first place; the last place
+  std::int32_t first = 0, last = 0;  ///< the exponent and mantissa at the first place; the last place
   int place_bits = 0, drop = 0;      ///< bits of a place in a line; shift from a line's sum to f
   std::array<std::int32_t, 3> color{};
 };
@@ -178,8 +178,8 @@ struct SurfaceConstants {
   SurfaceConstants(const StageSurface& from, const FrameContext& frame, const TexelBlocks* texels);
 
   bool are_in_lanes = true;  ///< the members below are complete
-  bool has_texture = false;  ///< else only the colour counts
-  bool has_color = true;     ///< else only the texture's colour counts, except for lit surfaces
+  bool has_texture = false;  ///< false: only the colour counts
+  bool has_color = true;     ///< false: only the texture's colour counts, except for lit surfaces
   bool is_color_over_w = false;
   bool has_fog = false;
   LaneDivision division;

@@ -150,7 +150,7 @@ struct PieceLevels {
 /// The pixels of a bin: tile after tile, block after block, row after row. And the triangles that own tiles.
 struct BinMemory {
   static constexpr std::size_t kPlanes = 256;              ///< limit of pending triangles: more than two for each tile
-  alignas(64) std::array<std::int32_t, kBinPixels> depth;  ///< this one or, if 16 bits suffice, the next
+  alignas(64) std::array<std::int32_t, kBinPixels> depth;  ///< unused where 16 bits suffice
   alignas(64) std::array<std::uint16_t, kBinPixels> narrow_depth;
   alignas(64) std::array<std::uint32_t, kBinPixels> color;
   alignas(64) std::array<BinTriangle, kPlanes> planes;

@@ -194,7 +194,7 @@ struct SplitLanes {
 /// The same for products that fit binary64: numerators times reciprocals below 2^53, gradients below 2^51.
 struct ExactGradientLanes {
   D16 factor;  ///< R 2^-k
-  int place;   ///< where a gradient is split
+  int place;   ///< bit at which a gradient is split
 
   HALFPLANE_LEAF ExactGradientLanes(const I16& reciprocal, const I16& k, int place_) : place(place_) {
     const L16 power = convert<std::int64_t>(1023 - k) << 52;

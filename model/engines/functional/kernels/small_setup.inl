@@ -50,7 +50,7 @@ HALFPLANE_INLINE bool fits_split(const LaneFormat& format, const Widths& widths)
   return format.drop + widths.grid_bits + kOffset < 32 && format.step_drop > 0;
 }
 
-/// That value in a tile's precision.
+/// The plane's value in a tile's precision.
 HALFPLANE_INLINE I16 narrowed(const I16& value, const LaneFormat& format) {
   return shift_right_logical(value, format.drop) << format.up;
 }

@@ -22,7 +22,7 @@ template <Over over, class T>
 struct Ramp {
   using Lanes = Pack<T, 64>;
   using Register = typename Lanes::Register;
-  Register start, by_8, by_16, by_32;  ///< first lane plus offsets within the first register; steps by so many lanes
+  Register start, by_8, by_16, by_32;  ///< first lane plus offsets within the first register; steps by 8, 16, 32 lanes
 
   HALFPLANE_INLINE Ramp() = default;
   HALFPLANE_INLINE Ramp(const Bin& bin, T step_x, T step_y) {
@@ -134,7 +134,7 @@ HALFPLANE_INLINE TileClasses classify_tiles(const Bin& bin, const BinTriangle& t
 /// Ranges of a triangle's depths in its tiles: the plane at their anchors, held in lanes as the distance to the middle
 /// of the vertices' depths, plus the offsets to the lowest and the highest.
 struct TileDepths {
-  bool is_known;  ///< else they are the range of the vertices
+  bool is_known;  ///< otherwise bounds are the range of the vertices
   std::int32_t first, last, middle, to_low, to_high;
   S64 anchor;
 
