@@ -49,7 +49,7 @@ void on_signal(int) {
 
 }  // namespace
 
-// Also if a script's background job was started with SIGINT ignored: a SIGINT sent there is intended.
+// Also for a script's background job, which starts with SIGINT ignored: a SIGINT sent to it is intended.
 void catch_signals() {
   struct sigaction action {};
   action.sa_handler = on_signal;

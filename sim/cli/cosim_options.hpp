@@ -42,7 +42,7 @@ struct SavedFinding {
   Finding finding;
   std::string capture, trace;  ///< files; trace is empty when there is none
   std::string repeat;          ///< command
-  std::string failure;         ///< why the capture could not be written; empty: written
+  std::string failure;         ///< reason why the capture was not written; empty: written
 };
 [[nodiscard]] SavedFinding save_finding(const CosimOptions& options, const Config& config, Dut& dut,
                                         const Scene& failed, const Mismatch& mismatch, double seconds);

@@ -64,7 +64,7 @@ int last_frame(const RunCommand& options, const FrameSpan& span) {
   return saves_alone ? std::ranges::max(options.save) : span.last;
 }
 
-/// Where the driver lies: in the build folder of this program, or where it is installed. Throws when it was not built.
+/// The driver's folder: in the build folder of this program, or the installation. Throws when it was not built.
 std::filesystem::path driver_folder() {
   const std::filesystem::path here = std::filesystem::read_symlink("/proc/self/exe").parent_path();
   for (const char* folder : {"gl", "../" HALFPLANE_LIBDIR})
@@ -96,7 +96,7 @@ class RunFolder {
   std::filesystem::path path_;
 };
 
-/// Where the driver saves; absolute, because programs change their folder.
+/// The driver's output folder; absolute, because programs change their folder.
 std::string save_target(const RunCommand& options) {
   std::string name = options.save_folder.empty() ? options.save_path : options.save_folder;
   if (name.empty()) name = options.save.size() == 1 ? "frame-" + std::to_string(options.save[0]) + ".hpt" : "frame.hpt";

@@ -72,7 +72,7 @@ int list_cases(const StressCommand& options) {
   return exit_ok;
 }
 
-/// The command that runs one unit again; a property of all units together needs all of them.
+/// The command that runs one unit again; a property of all units together needs all units.
 std::string repeat_command(const StressCommand& options, const stress::CaseResult& result, const std::string& property,
                            std::uint64_t unit) {
   std::string command =

@@ -75,7 +75,7 @@ struct Mutant {
   std::string_view what;
 };
 
-/// All of them; none without Verilator.
+/// All designs; none without Verilator.
 [[nodiscard]] std::span<const Mutant> mutants();
 
 /// The design with exactly this configuration, under any preset name. Throws std::runtime_error, one line with the

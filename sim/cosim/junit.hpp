@@ -11,7 +11,7 @@ struct JunitCase {
   std::string failure;    ///< one line; empty: passed
   std::string details;    ///< of the failure
   std::string output;     ///< output of a passed case
-  std::string skipped{};  ///< why it was not run; empty: it was run
+  std::string skipped{};  ///< reason why it was not run; empty: it was run
 };
 
 /// A property of the whole suite.

@@ -165,7 +165,7 @@ class Lockstep {
   [[nodiscard]] const Counters& host_counters() const { return host_counters_; }
   /// Closes the waveform and moves it to its final path. Returns whether there is one.
   bool finish_trace();
-  /// Why there is no waveform, one line; empty without a failure. The run continues without it.
+  /// Reason of a missing waveform, one line; empty without a failure. The run continues without it.
   [[nodiscard]] const std::string& trace_failure() const { return trace_failure_; }
 
  private:
@@ -205,7 +205,7 @@ class Lockstep {
   TextureModel textures_;
   std::optional<HardwareModel> model_;
   ExpectedCycles expected_cycles_;
-  std::unique_ptr<MemoryTiming> model_memory_;  // and the cycle model in front of it: only if cycles are compared
+  std::unique_ptr<MemoryTiming> model_memory_;  // memory of the cycle model: only if cycles are compared
   std::unique_ptr<CycleModel> cycle_model_;
   Counters host_counters_;
   BinContents bins_;                     // content of the memories, for the host

@@ -32,7 +32,7 @@ struct Session {
   Counters counters;            ///< the host's, of that scene
   std::uint64_t scenes = 0;
   bool has_trace = false;     ///< `options.trace` has been written
-  std::string trace_failure;  ///< why it could not be
+  std::string trace_failure;  ///< reason why the trace was not written
   double seconds = 0;         ///< the model's work included
 };
 
@@ -50,7 +50,7 @@ struct Finding {
   std::optional<Reduced> reduced;  ///< none: after a reset the scene alone does not fail, or no time to find out
   bool is_stopped = false;         ///< by reducing.progress, before that was known
   bool has_trace = false;          ///< `trace` has been written
-  std::string trace_failure;       ///< why it could not be
+  std::string trace_failure;       ///< reason why the trace was not written
 };
 
 /// Reduces, and writes, completely or not at all, the waveform around the mismatch to `trace` (empty: none; also if the

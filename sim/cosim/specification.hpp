@@ -23,7 +23,7 @@ using PictureOf = std::function<Framebuffer(const Scene&, const Config&)>;
 [[nodiscard]] std::string difference_from_specification(const Scene& scene, const Config& config,
                                                         const PictureOf& model = hardware_picture);
 
-/// That difference as a test for reduce(): a mismatch of the stage "specification" with the words as its hint.
+/// The difference as a test for reduce(): a mismatch of the stage "specification" with the words as its hint.
 [[nodiscard]] FailTest specification_test(const Config& config, const PictureOf& model = hardware_picture);
 
 /// A random legal configuration with several samples per pixel and all units that shade over w: texture unit and lanes,

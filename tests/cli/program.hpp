@@ -17,7 +17,7 @@ using Bytes = std::vector<std::uint8_t>;
 using Json = nlohmann::json;
 using Arguments = std::vector<std::string>;
 
-/// Where the program's stdout leads.
+/// Destination of the program's stdout.
 enum class Stdout { captured, closed, full_disk, pipe_without_reader };
 
 /// Limits of the machine; 0: no limit.

@@ -15,9 +15,9 @@ from cocotb.triggers import RisingEdge
 class Behaviour:
     latency: tuple = (1, 8)       # cycles, from the last of the request to the answer: least and most
     ready: float = 1.0            # probability that an address or a beat is taken in a cycle
-    valid: float = 1.0            # that an answer that is due is given
+    valid: float = 1.0            # probability that a due answer is given
     eager_reads: float = 0.5      # probability that a read looks at memory when its address is taken, not when answered
-    lazy_writes: float = 0.5      # that a write reaches memory only with B
+    lazy_writes: float = 0.5      # probability that a write reaches memory only with B
     errors: float = 0.0           # of an error response to a burst
     answers: bool = True          # False: nothing is answered until it is set
 

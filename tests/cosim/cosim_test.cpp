@@ -55,7 +55,7 @@ bool has_lines(const Scene& scene) {
   });
 }
 
-// The part of them in `./dev test --quick`.
+// The share of random scenes in `./dev test --quick`.
 TEST(CosimOfEmbedded, ThousandRandomPrimitivesAreEqualInEveryPacketAndCycle) {
   LockstepOptions options;
   options.seed = 29;

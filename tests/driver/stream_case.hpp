@@ -27,7 +27,7 @@ struct StreamCase {
   std::uint32_t status = 0;
 };
 
-/// `primitives`: about so many. Vertices, states, clears and topologies at random.
+/// `primitives`: their approximate number. Vertices, states, clears and topologies at random.
 [[nodiscard]] StreamCase random_case(std::uint32_t seed, int primitives);
 
 }  // namespace halfplane::test

@@ -18,7 +18,7 @@ void require(bool holds) {
 }
 
 void check_mesh(const halfplane::Mesh& mesh) {
-  std::size_t triangles = 0, indices = 0;  // that parts have named so far
+  std::size_t triangles = 0, indices = 0;  // triangles and indices of the parts so far
   for (const auto& part : mesh.parts) {
     std::size_t& named = part.topology == halfplane::Topology::triangles ? triangles : indices;
     require(part.first == named && part.object < mesh.objects.size());

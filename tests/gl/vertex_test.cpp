@@ -127,7 +127,7 @@ TEST_F(Vertices, TextureCoordinatesAreGenerated) {
   expect_near(with_mode(GL_SPHERE_MAP).tex_coord[0], {r[0] / m + 0.5, r[1] / m + 0.5, 7, 6});
   expect_near(with_mode(GL_NORMAL_MAP).tex_coord[0], {eye_normal[0], eye_normal[1], eye_normal[2], 6});
   expect_near(with_mode(GL_REFLECTION_MAP).tex_coord[0], {r[0], r[1], r[2], 6});
-  // And go through the texture matrix.
+  // Generated coordinates pass the texture matrix.
   matrix_mode(context, GL_TEXTURE);
   scale(context, 2, 3, 4);
   expect_near(with_mode(GL_OBJECT_LINEAR).tex_coord[0], {36, 54, 72, 18});

@@ -19,7 +19,7 @@ struct Rate {
   double bytes = 0;    ///< bytes of lines, a sample
 };
 
-/// 2x2 stamps of tiles over 640x480, a texture of 1024x512, turned by so many degrees. A pixel holds 2^(lod/256) texels.
+/// 2x2 stamps of tiles over 640x480, a texture of 1024x512, turned by `degrees`. A pixel holds 2^(lod/256) texels.
 Rate rate(TextureFormat format, MemoryTiming& memory, const TextureSettings& settings, double degrees, int tile = 16,
           TextureMin min = TextureMin::nearest, Lod lod = 0) {
   const PerspectiveFormat perspective;

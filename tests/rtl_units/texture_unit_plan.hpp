@@ -281,7 +281,7 @@ class Program {
   int q_bits_ = 8;
 };
 
-/// A program of so many stamps, begun with the unit's rst_ni high from `start` on.
+/// A program of `stamps` stamps, begun with the unit's rst_ni high from `start` on.
 inline Plan make_plan(const UnitFormat& format, const World& world, Random& random, int stamps, Cycle start,
                       Cycle recovered, Cycle answered) {
   Plan plan;

@@ -24,7 +24,7 @@ using test::expect_all_same;
 using test::Random;
 using test::SceneBuilder;
 
-constexpr double kCut = 1.0 / 65536;  // error of q: half of a place
+constexpr double kCut = 1.0 / 65536;  // half of a place of q
 
 Fog linear(double start, double end) { return {FogKind::linear, start, end}; }
 Fog exponential(FogKind kind, double density) { return {kind, density, density}; }

@@ -121,7 +121,7 @@ TEST(FunctionalSamples, RandomScenesAreTheScalarEngines) {
   EXPECT_GT(drawn, 100U);
 }
 
-/// Draws of many triangles of about so many pixels, slivers among them, one or two large ones in between, each draw with
+/// Draws of many triangles of about `size` pixels, slivers among them, one or two large ones in between, each draw with
 /// another depth test and other writes: triangles set up sixteen at a time, and tiles that are whole, split and whole again.
 Scene small_triangles(std::uint64_t seed, double size) {
   constexpr int kWidth = 150, kHeight = 140, kDraws = 8, kOfDraw = 70;

@@ -337,7 +337,7 @@ TEST(FunctionalSurface, TexturedMeshesAreTheSameOnEveryPath) {
     }
 }
 
-/// That pictures are compared: a row of texels that differ, and eight bits less in a reciprocal.
+/// The comparison fails where it must: a row of texels that differ, and eight bits less in a reciprocal.
 TEST(FunctionalSurfaceMustFail, WrongTexelsAndShorterReciprocalsAreSeen) {
   const Config config = with_colors("embedded");
   const Scene scene = make_builtin("layers_nearest:4", kWidth, kHeight, {}, 1);

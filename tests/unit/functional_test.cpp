@@ -303,7 +303,7 @@ TEST(Functional, TheWidestReciprocalsAreTheSameOnEveryPath) {
   }
 }
 
-/// Where lines are hard: on borders of bins, tiles, pixels and rows, along the axes and the diagonals, shorter than a
+/// Hard places of lines: on borders of bins, tiles, pixels and rows, along the axes and the diagonals, shorter than a
 /// pixel, over the whole depth range. `step`: pixels between the coordinates' neighbours.
 Scene hard_lines(std::uint32_t seed, int width, int height, double step) {
   test::Random random(seed);

@@ -39,7 +39,7 @@ GltfWorld world_of(const GltfBuilder& builder) {
 
 GltfAnimation animation_of(const GltfBuilder& builder) { return read_animation(*world_of(builder).file, 0); }
 
-/// Where the triangle's corner `i` is at a time.
+/// The place of the triangle's corner `i` at a time.
 Vec3 corner_at(const GltfBuilder& builder, double time, std::size_t i) {
   const GltfWorld world = world_of(builder);
   const GltfAnimation animation = read_animation(*world.file, 0);

@@ -320,7 +320,7 @@ TEST(SuiteMustFail, EveryCaseThatDrawsSeesAFaultOfTheEngine) {
     const Engine fault = c.name == "wires"                                     ? lost_line_pixel()
                          : c.name == "adversarial_color" || c.name == "layers" ? colors_turned()
                          : c.name == "unit_area_slivers"
-                             ? every_depth_one_more()  // they cover few pixels, and not that one
+                             ? every_depth_one_more()  // they cover few pixels, and not the judged one
                              : one_pixel_wrong();
     EXPECT_TRUE(is_caught(c.name, fault));
   }

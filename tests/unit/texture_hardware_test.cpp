@@ -215,7 +215,7 @@ std::string blended_room(const std::string& constant) {
                       "state texture_combine blend\nstate texture_constant " + constant + '\n');
 }
 
-// And the constant is seen.
+// The constant shows.
 TEST(TexturedHardware, BlendsToTheConstantAsTheScalarEngine) {
   for (Config config : configurations()) {
     config.texture_constants = 1;
@@ -246,7 +246,7 @@ std::string bordered_room(const std::string& wrap, const std::string& border) {
                       "state texture_wrap " + wrap + "\nstate texture_border " + border + '\n');
 }
 
-// And the border is seen.
+// The border shows.
 TEST(TexturedHardware, HasABorderAsTheScalarEngine) {
   for (Config config : configurations()) {
     config.texture_borders = 1;

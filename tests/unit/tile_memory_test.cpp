@@ -125,7 +125,7 @@ TEST(Hiz, DepthThatCanRiseTakesTheBoundAway) {
   }
 }
 
-/// `embedded` with a cache of so many tiles of 16 stamps.
+/// `embedded` with a cache of `lines` tiles of 16 stamps.
 Config tiles(const char* lines, const char* clears = "resolve") {
   return with("embedded", {{"cache.lines", lines}, {"cache.kind", "tiles"}, {"frame.clears", clears}});
 }
@@ -244,7 +244,7 @@ TEST(TileCache, ClearOfOnePlaneKeepsTheOther) {
     }
 }
 
-/// `embedded` with a cache of so many blocks of 4x4 pixels.
+/// `embedded` with a cache of `lines` blocks of 4x4 pixels.
 Config blocks(const char* lines, const char* clears = "flags") {
   return with("embedded", {{"cache.kind", "blocks"}, {"cache.lines", lines}, {"frame.clears", clears}});
 }

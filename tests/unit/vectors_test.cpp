@@ -63,7 +63,7 @@ Scene small_scene(const Config& config) {
   return read_capture(text + "t 2 1 0\nl 2 1\n", "small");
 }
 
-/// That, and random ones.
+/// The same, and random ones.
 SceneSource scenes_of(const Config& config) {
   SceneSource random = random_scenes(config, kSeed, 60);
   return [random, small = std::optional(small_scene(config))]() mutable -> std::optional<Scene> {

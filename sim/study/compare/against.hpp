@@ -91,7 +91,7 @@ struct AgainstOptions {
 struct AgainstResult {
   std::uint64_t pixels = 0;
   std::uint64_t different = 0;         ///< by more than the tolerance; the other members are about these
-  std::uint64_t within_tolerance = 0;  ///< that differ within the tolerance
+  std::uint64_t within_tolerance = 0;  ///< pixels that differ within the tolerance
   std::array<DifferenceStats, kForeignDifferences.size()> kinds{};
   std::vector<Explanation> explanations;
   std::optional<ForeignPixel> first_pixel;  ///< row by row

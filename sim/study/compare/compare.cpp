@@ -363,7 +363,7 @@ class AttributeComparison {
   std::uint32_t oracle_item_ = 0;                      // its number
   std::optional<exact::TriangleOracle> color_oracle_;  // oracle of its colour where the current pixel is shaded
   std::optional<SurfaceOracle> surface_oracle_;        // likewise
-  std::optional<int> shaded_at_;                       // that place
+  std::optional<int> shaded_at_;                       // shading point of that oracle
   ErrorSet depth_, color_, eye_;
   MomentSet datapath_, line_datapath_, color_datapath_, datapath_bias_, color_datapath_bias_, color_over_w_, fog_,
       light_;

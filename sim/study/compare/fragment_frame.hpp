@@ -50,7 +50,7 @@ class FragmentFrame {
 /// then by primitive of the points.
 struct OwnedPixels {
   std::vector<std::uint32_t> pixels;  // a target has at most 2^28
-  std::uint64_t triangles = 0;        // that are visible
+  std::uint64_t triangles = 0;        // visible triangles
 
   explicit OwnedPixels(const FragmentFrame& frame);
 };

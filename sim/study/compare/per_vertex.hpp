@@ -40,7 +40,7 @@ struct PerVertexCycles {
   std::uint64_t vertices = 0;      ///< of the scene lit at its vertices, on the same hardware
   std::uint64_t without_unit = 0;  ///< likewise, on hardware with shade.unit=0
   std::vector<std::string> set;    ///< "shade.unit=1": changes of the configuration to get the unit
-  std::string refused;             ///< why there are no figures: no such hardware, or it refuses the scene
+  std::string refused;             ///< reason without figures: no such hardware, or it refuses the scene
 };
 
 /// Runs the cycle engine on hardware of this configuration, with shade.unit and a texture unit for the scene set if

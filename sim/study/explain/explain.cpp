@@ -161,7 +161,7 @@ Stored stored_at(const Framebuffer& frame, Pixel pixel) {
   return {frame.depth[at], frame.color[at], -1, frame.stencil[at]};
 }
 
-/// Why the hardware cannot draw the scene; empty: it can.
+/// The reason why the hardware cannot draw the scene; empty: it can.
 std::string hardware_refusal(const Scene& scene, const Config& config, const StudyRules& rules) {
   if (rules != StudyRules{})
     return "hardware has its own rules for traversal, fill rule, gradients, accumulator and weights; "

@@ -210,7 +210,7 @@ class Recorder final : public EveryPacket<Recorder> {
   std::vector<bool> awaits_write_;
 };
 
-/// Why cull dropped the primitive between these counts; none: not dropped.
+/// The reason of cull's drop between these counts; none: not dropped.
 std::optional<Outcome> dropped_by_cull(const CounterPacket& before, const CounterPacket& after) {
   if (after.zero_area != before.zero_area) return Outcome(Verdict::zero_area);
   if (after.backface != before.backface) return Outcome(Verdict::backface);

@@ -20,7 +20,7 @@ struct HardwareVisit {
   std::optional<HizLook> hiz;
   std::vector<PacketId> packets;
   std::size_t sample = 0;                  ///< of the pixel in its stamp
-  std::optional<FragmentPacket> fragment;  ///< that covers the pixel
+  std::optional<FragmentPacket> fragment;  ///< the fragment that covers the pixel
   std::optional<WritePacket> write;
   std::optional<std::uint32_t> textured;  ///< stored colour after the texture unit
 };

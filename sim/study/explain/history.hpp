@@ -57,7 +57,7 @@ enum class Verdict : std::uint8_t { HALFPLANE_VERDICTS(HALFPLANE_NAME) };
 
 struct VerdictInfo {
   std::string_view name;
-  Stage stage;      ///< that usually decides it
+  Stage stage;      ///< stage that usually decides the fate
   bool is_covered;  ///< as far as tested; a tile hidden by HiZ may contain uncovered pixels too
   std::string_view why;
 };
@@ -288,7 +288,7 @@ struct Explanation {
   FillRule fill_rule = FillRule::top_left;  ///< of the specification
   PacketStore packets;                      ///< packets named in a history
   std::uint64_t primitives = 0;             ///< of the scene
-  std::string no_hardware;                  ///< why the hardware cannot draw the scene; empty: it can
+  std::string no_hardware;                  ///< reason why the hardware cannot draw the scene; empty: it can
   std::uint64_t checks = 0;                 ///< compared figures
   std::vector<std::string> differences;     ///< differing figures, a line each
 };

@@ -91,7 +91,7 @@ Shape shape_of(std::initializer_list<SnappedVertex> corners, double margin, int 
   return shape;
 }
 
-/// Why the host dropped a primitive.
+/// The reason why the host dropped a primitive.
 Outcome dropped_by_host(const Counters& before, const Counters& after) {
   const auto &a = before.skipped, &b = after.skipped;
   if (b.frustum != a.frustum) return Outcome(Verdict::frustum);

@@ -213,7 +213,7 @@ void closed_meshes(Unit& unit) {
         }
       }
   const Rendering rendering = check_scene(unit, builder.scene);
-  if (has_fold) return;  // folded as in slabs
+  if (has_fold) return;  // the same as in slabs
   expect_count(unit, builder.scene, rendering, [](int, int) { return 1; });
 }
 

@@ -38,7 +38,7 @@ struct Overflow {
 /// One width, derived and observed.
 struct WidthRow {
   Width width;
-  bool is_observed = false;  ///< else exact by construction: see WidthObserver::is_observed()
+  bool is_observed = false;  ///< false: exact by construction: see WidthObserver::is_observed()
   Interval range;            ///< value_range()
   Seen seen;
   int needed_bits = 0;                ///< for the observed values
