@@ -48,7 +48,7 @@ enum class Side : std::uint8_t { host, rtl, memory };
 /// STAGE(name, side, timed, what). Timed: the cycle model counts the cycles in which it is busy; the other RTL
 /// stages add none.
 #define HALFPLANE_STAGES(STAGE)                                                                             \
-  /*    name                side    timed  what it makes of what */                                         \
+  /*    name                side    timed  input -> output       */                                         \
   STAGE(primitive_assembly, host,   false, "indices and topology -> triangles, lines, points")              \
   STAGE(clip,               host,   false, "homogeneous triangle or line -> what is inside the guard band") \
   STAGE(viewport,           host,   false, "clip coordinates -> snapped window vertex")                     \

@@ -68,7 +68,7 @@ inline thread_local ThreadState t_state;
 
 /// The lock of displays and their objects: held through every call that reads them.
 [[nodiscard]] std::recursive_mutex& mutex();
-/// By the native display, or its substitute, and the screen.
+/// The displays, by native display, or its substitute, and screen.
 [[nodiscard]] std::map<std::pair<void*, int>, std::unique_ptr<EglDisplay>>& displays();
 
 // Calls throw the error that they end with.

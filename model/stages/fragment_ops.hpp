@@ -57,7 +57,7 @@ struct FragmentOps {
   ColorOps color;
   int alpha_samples = 0;  ///< samples of a pixel, with alpha to coverage; else 0
 
-  /// Only the depth test and colours that replace stored ones.
+  /// Whether the operations are the depth test alone, and colours replace stored ones.
   [[nodiscard]] constexpr bool is_plain() const {
     return alpha.func == DepthFunc::always && alpha_samples == 0 && !stencil &&
            (!state.color_write || color.is_plain());

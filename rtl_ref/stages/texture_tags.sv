@@ -125,7 +125,7 @@ module texture_tags #(
     for (b = 0; b < 4; b++) begin : gen_tags
       localparam int X = b % 2;
       localparam int Y = b / 2;
-      logic                   same_place_q, same_line_q, writes, recent_way;  // the way of the line before
+      logic                   same_place_q, same_line_q, writes, recent_way;  // the way of the previous line
       logic [WAYS-1:0]        is_there;
       logic [WAYS*NUMBER-1:0] groups;
       logic [27:0]            address;

@@ -32,9 +32,8 @@ struct FrameTimes {
 /// A frame whose warm-up takes longer than this, seconds, is not rendered again: that frame is its only measurement.
 inline constexpr double kSlowFrame = 2;
 
-/// Before each measurement of a frame shorter than the first figure, seconds, frames are rendered unmeasured for the
-/// second figure, seconds: caches and threads are then as a preceding frame leaves them, not as a second of other work
-/// does.
+/// Before each measurement of a frame shorter than kShortFrame, frames are rendered unmeasured for kWarmUp, both in
+/// seconds: caches and threads are then as after a preceding frame, not as after a second of other work.
 inline constexpr double kShortFrame = 0.1, kWarmUp = 0.02;
 
 /// Measures every frame `repeat` times, in turns, so that other load of the machine affects all of them equally; the

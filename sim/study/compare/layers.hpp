@@ -46,7 +46,7 @@ class LayeredColors {
   /// Whether the pixel shows more than the code of one fragment.
   [[nodiscard]] bool is_layered(std::size_t pixel) const { return at_[pixel].is_layered; }
 
-  /// Compares a stored colour with it.
+  /// Compares a stored colour with the pixel's.
   void judge(std::size_t pixel, std::uint32_t stored);
   /// Rows of the judged pixels, by number of layers.
   [[nodiscard]] std::vector<LayerRow> rows() const;

@@ -158,8 +158,8 @@ struct BinMemory {
   alignas(64) std::array<std::uint16_t, kBinPixels> surface;  ///< into `seen`, 0: the colour is in memory
   std::array<SeenSurface, kSurfaces> seen;                    ///< from 1 on
   std::vector<DrawnSurface> drawn;
-  // Pending pieces, by group, from 1 on; the pixel of a piece stores 16 times the group's number, plus the piece's own,
-  // plus this.
+  // Pending pieces, by group, from 1 on; the pixel of a piece stores kFirstPiece, plus 16 times the group's number, plus
+  // the piece's number in its group.
   static constexpr std::size_t kFirstPiece = kSurfaces, kGroups = kSurfaces / 16;
   std::vector<PieceGroup> groups;         ///< kGroups, if there are any
   std::vector<PieceConstants> constants;  ///< likewise; group 0 is unused
