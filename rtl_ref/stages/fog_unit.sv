@@ -42,7 +42,7 @@ module fog_unit #(
   localparam int FACTOR = 13;  // 0 to 2^12
   localparam int COLORS = 8 * CHANNELS * SAMPLES;
 
-  // ------------------------------------------------------------------------------------------------------- registers to set
+  // ----------------------------------------------------------------------------------------------------- pipeline registers
   logic valid_1_q, valid_2_q, valid_3_q, enters_1, enters_2, enters_3, frees_1, frees_2, frees_3;
   assign frees_3       = !valid_3_q || stamp_ready_i;
   assign frees_2       = !valid_2_q || frees_3;
