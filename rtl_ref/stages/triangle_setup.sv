@@ -14,7 +14,7 @@
 // With one cycle per plane there are two lanes, for x and for y. With two there is one, which has x in a plane's first
 // cycle and y in its second: half of the multipliers, one shifter. The result of a plane in a phase stands in one
 // register until the next plane's. Such a register moves while any plane is in the phases around it, in whichever part:
-// no register is overwritten while in use, because a triangle is never a step later than the younger one in the part
+// no register is overwritten while in use, because a triangle is never a step less far than the younger one in the part
 // before. Occupancy: the cycles of all planes. Latency (embedded): 21, with two cycles per plane 25. As many triangles
 // are under way as there are parts, six or four. With the planes of a texture unit states bypass the parts
 // (setup_states.sv), a cycle each. Specification: model/stages/triangle_setup.hpp.
