@@ -576,7 +576,7 @@ package raster_pkg;
     logic [BLOCK_STAMPS-1:0] color;  // likewise colours
     logic [2-1:0] fills;  // colour, depth: memory holds garbage
   } tag_result_t;
-  localparam int TAG_RESULT_BITS = CACHE_LINE_BITS + BLOCK_STAMP_BITS + DEPTH_SOURCE_BITS + FLAG_BITS + FLAG_BITS + TAG_X_BITS + TAG_Y_BITS + BLOCK_STAMPS + BLOCK_STAMPS + 2;  // of the struct above
+  localparam int TAG_RESULT_BITS = CACHE_LINE_BITS + BLOCK_STAMP_BITS + DEPTH_SOURCE_BITS + FLAG_BITS + FLAG_BITS + TAG_X_BITS + TAG_Y_BITS + BLOCK_STAMPS + BLOCK_STAMPS + 2;  // bits of the struct above
 
   typedef struct packed {
     logic [VICTIM_COUNT_BITS-1:0] writes;  // number of evicted blocks that go to memory first
@@ -585,7 +585,7 @@ package raster_pkg;
     logic [TILE_Y_BITS-1:0] tile_y;  // its tile's row
     logic [STAMP_INDEX_BITS-1:0] stamp;  // its number in the tile
   } block_order_t;
-  localparam int BLOCK_ORDER_BITS = VICTIM_COUNT_BITS + FLAG_BITS + TILE_X_BITS + TILE_Y_BITS + STAMP_INDEX_BITS;  // of the struct above
+  localparam int BLOCK_ORDER_BITS = VICTIM_COUNT_BITS + FLAG_BITS + TILE_X_BITS + TILE_Y_BITS + STAMP_INDEX_BITS;  // bits of the struct above
 
   typedef struct packed {
     logic [BLOCK_X_BITS-1:0] x;  // the block's column in the target
@@ -593,14 +593,14 @@ package raster_pkg;
     logic [BLOCK_STAMPS-1:0] depth;  // stamps whose depths come into its slot
     logic [BLOCK_STAMPS-1:0] color;  // likewise colours
   } victim_t;
-  localparam int VICTIM_BITS = BLOCK_X_BITS + BLOCK_Y_BITS + BLOCK_STAMPS + BLOCK_STAMPS;  // of the struct above
+  localparam int VICTIM_BITS = BLOCK_X_BITS + BLOCK_Y_BITS + BLOCK_STAMPS + BLOCK_STAMPS;  // bits of the struct above
 
   typedef struct packed {
     logic [VICTIM_SLOT_BITS-1:0] slot;  // slot of the block
     logic [2-1:0] fills;  // colour, depth: memory holds garbage
     victim_t block;  // its place, and the stamps that enter the slot
   } eviction_t;
-  localparam int EVICTION_BITS = VICTIM_SLOT_BITS + 2 + VICTIM_BITS;  // of the struct above
+  localparam int EVICTION_BITS = VICTIM_SLOT_BITS + 2 + VICTIM_BITS;  // bits of the struct above
 
   typedef struct packed {
     logic [FLAG_BITS-1:0] last;  // last stamp of its block
@@ -609,7 +609,7 @@ package raster_pkg;
     logic [SAMPLE_MASK_BITS-1:0] strobe;  // samples that memory does not have
     logic [SAMPLES*STORED_DEPTH_BITS-1:0] depth;  // words of all
   } depth_victim_t;
-  localparam int DEPTH_VICTIM_BITS = FLAG_BITS + VICTIM_SLOT_BITS + BLOCK_STAMP_BITS + SAMPLE_MASK_BITS + SAMPLES*STORED_DEPTH_BITS;  // of the struct above
+  localparam int DEPTH_VICTIM_BITS = FLAG_BITS + VICTIM_SLOT_BITS + BLOCK_STAMP_BITS + SAMPLE_MASK_BITS + SAMPLES*STORED_DEPTH_BITS;  // bits of the struct above
 
   typedef struct packed {
     logic [VICTIM_SLOT_BITS-1:0] slot;  // slot of its block
@@ -617,7 +617,7 @@ package raster_pkg;
     logic [SAMPLE_MASK_BITS-1:0] strobe;  // samples that memory does not have
     logic [SAMPLES*STORED_COLOR_BITS-1:0] color;  // colours of all samples
   } color_victim_t;
-  localparam int COLOR_VICTIM_BITS = VICTIM_SLOT_BITS + BLOCK_STAMP_BITS + SAMPLE_MASK_BITS + SAMPLES*STORED_COLOR_BITS;  // of the struct above
+  localparam int COLOR_VICTIM_BITS = VICTIM_SLOT_BITS + BLOCK_STAMP_BITS + SAMPLE_MASK_BITS + SAMPLES*STORED_COLOR_BITS;  // bits of the struct above
 
   typedef struct packed {
     logic [FLAG_BITS-1:0] reads;  // a word of the bits of blocks with one colour a pixel is read
@@ -626,7 +626,7 @@ package raster_pkg;
     logic [BLOCK_Y_BITS-1:0] y;  // the row of blocks
     logic [FLAG_WORD-1:0] word;  // the word written
   } pixel_word_t;
-  localparam int PIXEL_WORD_BITS = FLAG_BITS + FLAG_BITS + FLAG_WORD_X_BITS + BLOCK_Y_BITS + FLAG_WORD;  // of the struct above
+  localparam int PIXEL_WORD_BITS = FLAG_BITS + FLAG_BITS + FLAG_WORD_X_BITS + BLOCK_Y_BITS + FLAG_WORD;  // bits of the struct above
 
   typedef struct packed {
     logic [CACHE_LINE_BITS-1:0] line;  // where its block lies
@@ -637,7 +637,7 @@ package raster_pkg;
     logic [FLAG_BITS-1:0] fills;  // memory holds garbage of its colours
     logic [BLOCK_STAMPS-1:0] evicted;  // stamps of it whose colours leave
   } tested_stamp_t;
-  localparam int TESTED_STAMP_BITS = CACHE_LINE_BITS + BLOCK_STAMP_BITS + FLAG_BITS + SAMPLE_MASK_BITS + FLAG_BITS + FLAG_BITS + BLOCK_STAMPS;  // of the struct above
+  localparam int TESTED_STAMP_BITS = CACHE_LINE_BITS + BLOCK_STAMP_BITS + FLAG_BITS + SAMPLE_MASK_BITS + FLAG_BITS + FLAG_BITS + BLOCK_STAMPS;  // bits of the struct above
 
   // In a set of stamps of a block: the lowest stamp alone, its number; the number of samples in a mask.
   function automatic [BLOCK_STAMPS-1:0] lowest_stamp(input [BLOCK_STAMPS-1:0] set);

@@ -148,7 +148,7 @@ void print_members(std::ostream& out, const std::string& name, std::initializer_
     bits.append(bits.empty() ? "" : " + ").append(is_type ? of_type : std::string(member.type));
   }
   out << "  } " << name << "_t;\n  localparam int " << constant_name(name) << "_BITS = " << bits
-      << ";  // of the struct above\n";
+      << ";  // bits of the struct above\n";
 }
 
 /// The parts of the framebuffer of blocks, and the signals between them: no arrow of the graph.

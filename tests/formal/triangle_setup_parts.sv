@@ -50,8 +50,8 @@
     assert (ready_q[LAST_PART] == (at_q[OFFER:LAST_PART*STEPS] == '0));
     for (int i = 0; i < LAST_PART; i++) assert (ready_q[i] == (at_q[i*STEPS+:STEPS] == '0 || moves[i*STEPS+STEPS-1]));
   end
-  // A part holds one triangle, which is never a step less far than the one in the previous part; in the last part it may wait
-  // for long.
+  // A part holds one triangle, which is never a step less far than the one in the previous part; in the last part it may
+  // wait for long.
   genvar m, n;
   generate
     for (m = 0; m <= OFFER; m++) begin : gen_order

@@ -31,7 +31,7 @@ inline constexpr std::size_t kTilePixels = std::size_t{kTileSize} * kTileSize,
 /// up so.
 inline constexpr int kSmallTiles = 2, kMediumTiles = 3;
 
-/// Bits of their extent: less than that many pixels, and such that 32 bits hold products of two.
+/// Bits of the extent of small or medium triangles: below 2^pixel_bits pixels; 32 bits hold products of two extents.
 [[nodiscard]] inline int extent_bits(int pixel_bits, const Widths& widths) {
   return std::min(pixel_bits + widths.grid_bits, 14);
 }

@@ -151,7 +151,7 @@ struct LineStep {
 };
 struct LineWalk {
   LineRule rule = LineRule::midpoint;
-  std::vector<LineStep> steps;  ///< at the pixel's place along the major axis only, or all of them
+  std::vector<LineStep> steps;  ///< of the whole line, or of the pixel's column alone
 };
 inline constexpr std::array<std::string_view, 3> kLineRuleNames{"midpoint", "bresenham", "diamond"};
 struct LineFigure {
