@@ -60,12 +60,32 @@ enum hp_factor {
   HP_SRC_ALPHA_SATURATE
 };
 enum hp_equation { HP_ADD, HP_SUBTRACT, HP_REVERSE_SUBTRACT, HP_MIN, HP_MAX };
+/* A fragment's code s and the stored code d, bit by bit. */
+enum hp_logic {
+  HP_LOGIC_CLEAR,
+  HP_LOGIC_AND,
+  HP_LOGIC_AND_REVERSE, /* s & ~d */
+  HP_LOGIC_COPY,
+  HP_LOGIC_AND_INVERTED, /* ~s & d */
+  HP_LOGIC_NOOP,
+  HP_LOGIC_XOR,
+  HP_LOGIC_OR,
+  HP_LOGIC_NOR,
+  HP_LOGIC_EQUIV,
+  HP_LOGIC_INVERT,
+  HP_LOGIC_OR_REVERSE, /* s | ~d */
+  HP_LOGIC_COPY_INVERTED,
+  HP_LOGIC_OR_INVERTED, /* ~s | d */
+  HP_LOGIC_NAND,
+  HP_LOGIC_SET
+};
 enum hp_stencil_op { HP_KEEP, HP_TO_ZERO, HP_REPLACE, HP_INCR, HP_DECR, HP_INVERT, HP_INCR_WRAP, HP_DECR_WRAP };
 enum hp_line_rule { HP_MIDPOINT, HP_BRESENHAM, HP_DIAMOND };
 enum hp_texture_format { HP_L8, HP_LA88, HP_RGB565, HP_RGBA5551, HP_RGBA4444, HP_RGBA8888 };
-enum hp_wrap { HP_REPEAT, HP_CLAMP, HP_MIRROR };
+/* Beyond the image; HP_HALF_BORDER: the last texel, of which a linear filter mixes half with the border (GL_CLAMP). */
+enum hp_wrap { HP_REPEAT, HP_CLAMP, HP_MIRROR, HP_BORDER, HP_HALF_BORDER };
 enum hp_levels { HP_LEVEL_0, HP_NEAREST_LEVEL, HP_TWO_LEVELS };
-enum hp_combine { HP_MODULATE, HP_REPLACE_COLOR, HP_DECAL, HP_ADD_COLOR };
+enum hp_combine { HP_MODULATE, HP_REPLACE_COLOR, HP_DECAL, HP_ADD_COLOR, HP_BLEND_COLOR }; /* the last: to a constant */
 
 /* Where the words go: memory of the caller, a buffer or a ring. */
 typedef struct hp_stream {
@@ -123,6 +143,7 @@ typedef struct hp_state {
   uint8_t blends; /* then: */
   uint8_t src, dst, src_alpha, dst_alpha, equation, equation_alpha;
   uint32_t blend_color;
+  uint8_t logic_op; /* but with HP_LOGIC_COPY nothing blends */
   uint8_t dithers;
   uint8_t alpha_func, alpha_reference;
   uint8_t sample_mask;       /* bit k: sample k of a pixel is drawn (msaa.samples); 255: all */
@@ -131,14 +152,15 @@ typedef struct hp_state {
   hp_stencil stencil[2];     /* of fronts, of backs */
   const hp_texture* texture; /* null: none; of triangles; it must stay until the state is replaced */
   uint8_t wrap_u, wrap_v, combine;
-  uint8_t is_linear;                   /* the filter */
-  uint8_t minifies_otherwise;          /* the other filter where a pixel spans more than a texel */
-  uint8_t levels;                      /* there: of a texture with levels */
-  int16_t level_bias;                  /* 1/256 of a level */
-  uint16_t least_level, largest_level; /* likewise: 0 to 12 levels */
-  uint8_t is_affine;                   /* coordinates are linear in the window, not on the surface */
-  uint8_t perspective_colors;          /* colours are linear on the surface */
-  const hp_fog* fog;                   /* null: none; of triangles; it must stay, too */
+  uint32_t texture_constant, texture_border; /* HP_RGBA: of HP_BLEND_COLOR; of HP_BORDER and HP_HALF_BORDER */
+  uint8_t is_linear;                         /* the filter */
+  uint8_t minifies_otherwise;                /* the other filter where a pixel spans more than a texel */
+  uint8_t levels;                            /* there: of a texture with levels */
+  int16_t level_bias;                        /* 1/256 of a level */
+  uint16_t least_level, largest_level;       /* likewise: 0 to 12 levels */
+  uint8_t is_affine;                         /* coordinates are linear in the window, not on the surface */
+  uint8_t perspective_colors;                /* colours are linear on the surface */
+  const hp_fog* fog;                         /* null: none; of triangles; it must stay, too */
   uint32_t fog_color;
   uint8_t line_rule, line_last; /* line_last: the last pixel, too; never with HP_DIAMOND */
   uint16_t line_width;          /* pixels */
@@ -270,18 +292,18 @@ struct hp_context {
   int64_t view_offset[3]; /* of an affine view: the fourth column, and what rounds */
   hp_plane planes[6];
   hp_state state;
-  uint8_t culls[2];                       /* triangles of positive, of negative area */
-  uint32_t box[2], state_word;            /* of the core */
-  uint32_t token[8][2];                   /* of its units */
-  uint32_t lines[7];                      /* of the level of detail */
-  uint8_t needs_lines, has_lines;         /* triangles do; the core has those */
-  uint8_t is_over_w, is_fogged;           /* of triangles: they have codes over w */
-  uint32_t fog_word;                      /* of the core */
-  const hp_fog_line* fog_lines;           /* likewise; null: unknown */
-  uint32_t known;                         /* a bit for each of these that the core has */
-  uint8_t is_drawn, drops_texels;         /* since the last flush */
-  uint8_t is_set, is_cleared;             /* the target */
-  uint32_t slot[3];                       /* tags of the core's vertex slots */
+  uint8_t culls[2];                                    /* triangles of positive, of negative area */
+  uint32_t box[2], state_word;                         /* of the core */
+  uint32_t token[8][2];                                /* of its units */
+  uint32_t lines[7];                                   /* of the level of detail */
+  uint8_t needs_lines, has_lines;                      /* triangles do; the core has those */
+  uint8_t is_over_w, is_fogged;                        /* of triangles: they have codes over w */
+  uint32_t fog_word, texture_constant, texture_border; /* of the core */
+  const hp_fog_line* fog_lines;                        /* likewise; null: unknown */
+  uint32_t known;                                      /* a bit for each of these that the core has */
+  uint8_t is_drawn, drops_texels;                      /* since the last flush */
+  uint8_t is_set, is_cleared;                          /* the target */
+  uint32_t slot[3];                                    /* tags of the core's vertex slots */
   hp_vertex cache[HP_CACHE];
   hp_vertex corner[HP_CORNERS];
   hp_corner polygon[2][HP_CORNERS];

@@ -139,7 +139,7 @@ static inline uint8_t quantize_quickly(int32_t a, int32_t b, int32_t c, const ui
 /* The reference as the unit wants it: modulo the period, or held. */
 static int32_t wrapped(int32_t reference, uint32_t log2_size, uint8_t wrap) {
   const int32_t limit = (int32_t)1 << 22;
-  if (wrap == HP_CLAMP) return hp_max(-limit, hp_min(limit, reference));
+  if (wrap != HP_REPEAT && wrap != HP_MIRROR) return hp_max(-limit, hp_min(limit, reference));
   return reference & (((int32_t)1 << (log2_size + (wrap == HP_MIRROR ? 1u : 0u))) - 1);
 }
 

@@ -8,6 +8,8 @@
 #define HP_KNOWS_BOX ((uint32_t)1 << 17)
 #define HP_KNOWS_FOG ((uint32_t)1 << 18)
 #define HP_KNOWS_LIGHT ((uint32_t)1 << 19) /* it is off */
+#define HP_KNOWS_CONSTANT ((uint32_t)1 << 20)
+#define HP_KNOWS_BORDER ((uint32_t)1 << 21)
 #define HP_LONGEST_TOKEN (1 + HP_AFFINE_WORDS + (HALFPLANE_STATE_WORD_BITS - HALFPLANE_ALL_AFFINE_CODE_BITS + 31) / 32)
 
 /* ---- Once, and begin */
@@ -19,6 +21,7 @@ hp_state hp_default_state(void) {
   state.depth_write = 1;
   state.color_mask = 15;
   state.src = state.src_alpha = HP_ONE_FACTOR;
+  state.logic_op = HP_LOGIC_COPY;
   state.alpha_func = HP_ALWAYS;
   state.sample_mask = 255;
   state.largest_level = 12 * 256;
@@ -171,11 +174,16 @@ static uint8_t is_constant(uint8_t factor) {
   return factor >= HP_CONSTANT_COLOR && factor <= HP_ONE_MINUS_CONSTANT_ALPHA;
 }
 
+/* Whether the result depends on the stored code: the operation's truth table has bits 1 and 3 where the stored bit is 0,
+   and bits 0 and 2 where it is 1. */
+static uint32_t reads_stored(uint8_t logic_op) { return ((uint32_t)logic_op ^ (uint32_t)logic_op >> 1) & 5u; }
+
 /* The word of the colour operations, normalised as model/stages/color_ops.hpp does it: equal effect, equal word. */
 static uint32_t color_ops(const hp_state* state, uint8_t* reads_constant) {
   const uint8_t has_alpha = HALFPLANE_COLOR_FORMAT == 1;
   uint8_t factor[4] = {HP_ONE_FACTOR, HP_ZERO, HP_ONE_FACTOR, HP_ZERO}, equation[2] = {HP_ADD, HP_ADD};
-  if (state->blends != 0) {
+  const uint8_t is_logic = HALFPLANE_LOGIC_UNIT != 0 && state->logic_op != HP_LOGIC_COPY;
+  if (state->blends != 0 && is_logic == 0) {
     equation[0] = state->equation;
     if (has_alpha != 0) equation[1] = state->equation_alpha;
     if (equation[0] < HP_MIN) {
@@ -200,7 +208,12 @@ static uint32_t color_ops(const hp_state* state, uint8_t* reads_constant) {
   const uint32_t plain = HP_ONE_FACTOR | ((uint32_t)HP_ONE_FACTOR << 8); /* one, zero, add */
   const uint32_t blends = word != plain, writes = (state->color_mask & 15u) | (has_alpha != 0 ? 0u : 8u);
   const uint32_t dithers = state->dithers != 0 && has_alpha == 0;
-  return word | (writes << 22) | (dithers << 26) | (blends << 27) | ((uint32_t)(blends != 0 || writes != 15) << 28);
+  uint32_t reads = blends != 0 || writes != 15;
+  if (is_logic != 0) { /* in the place of the first factor; the first equation, which is none, says so */
+    word ^= ((uint32_t)HP_ONE_FACTOR ^ state->logic_op) | ((uint32_t)5 << 16);
+    reads |= reads_stored(state->logic_op) != 0;
+  }
+  return word | (writes << 22) | (dithers << 26) | (blends << 27) | (reads << 28);
 }
 #endif
 
@@ -270,21 +283,44 @@ static uint32_t stencil_flags(const hp_stencil side[2]) {
 #endif
 
 #if HP_HAS_TEXTURES
+/* The words of fog, light, a texture's constant and its border share the register of levels: bits 44 to 41, `tag`, tell
+   them apart. */
+static void set_shared(hp_context* context, uint32_t known, uint32_t* held, uint64_t tag, uint32_t word) {
+  if ((context->known & known) == 0 || *held != word) send_token(context, HP_LEVELS, tag | word);
+  context->known |= known;
+  *held = word;
+}
+
+static uint8_t has_border(uint8_t wrap) { return wrap >= HP_BORDER; }
+/* In the unit's word, where the lowest bit keeps texels in the image. */
+static uint32_t wrap_code(uint8_t wrap) { return wrap == HP_HALF_BORDER ? 5 : wrap; }
+
 static void set_texture(hp_context* context, const hp_state* state) {
   const hp_texture* texture = state->texture;
   uint64_t value = 0;
   if (texture != NULL) {
-    value = 1u | ((uint64_t)texture->format << 2) | ((uint64_t)state->combine << 5) | ((uint64_t)state->wrap_u << 7) |
-            ((uint64_t)state->wrap_v << 9) | ((uint64_t)texture->log2_width << 11) |
+    const uint32_t wrap_u = wrap_code(state->wrap_u), wrap_v = wrap_code(state->wrap_v);
+    value = 1u | ((uint64_t)texture->format << 2) | ((uint64_t)(state->combine & 3u) << 5) |
+            ((uint64_t)(wrap_u & 3u) << 7) | ((uint64_t)(wrap_v & 3u) << 9) | ((uint64_t)texture->log2_width << 11) |
             ((uint64_t)texture->log2_height << 15) | ((uint64_t)(texture->address >> 6) << 19) |
-            ((uint64_t)(state->is_linear != 0 ? 1 : 0) << 45);
+            ((uint64_t)(state->is_linear != 0 ? 1 : 0) << 45) | ((uint64_t)(state->combine >> 2) << 46) |
+            ((uint64_t)(wrap_u >> 2) << 47) | ((uint64_t)(wrap_v >> 2) << 48);
   }
   const uint8_t drops = context->drops_texels != 0 || (context->known & HP_KNOWS_TOKEN(HP_TEXTURE, 0)) == 0;
   const uint8_t is_new =
-      differs(context, HP_TEXTURE, 0, value | ((uint64_t)1 << 46), 0); /* bit 46: the high word counts */
+      differs(context, HP_TEXTURE, 0, value | ((uint64_t)1 << 63), 0); /* bit 63: the high word counts */
   if (is_new != 0 || drops != 0) send_token(context, HP_TEXTURE, value | (drops != 0 ? 2u : 0u));
-  context->token[HP_TEXTURE][1] = (uint32_t)(value >> 32) | ((uint32_t)1 << 14);
+  context->token[HP_TEXTURE][1] = (uint32_t)(value >> 32) | ((uint32_t)1 << 31);
   context->drops_texels = 0;
+  if (HALFPLANE_TEXTURE_CONSTANT != 0 && texture != NULL && state->combine == HP_BLEND_COLOR)
+    set_shared(context, HP_KNOWS_CONSTANT, &context->texture_constant, (uint64_t)1 << 42,
+               state->texture_constant & 0xffffffu);
+  if (HALFPLANE_TEXTURE_BORDER != 0 && texture != NULL &&
+      (has_border(state->wrap_u) | has_border(state->wrap_v)) != 0) {
+    const uint8_t has_alpha = texture->format != HP_L8 && texture->format != HP_RGB565;
+    set_shared(context, HP_KNOWS_BORDER, &context->texture_border, (uint64_t)1 << 41,
+               state->texture_border | (has_alpha != 0 ? 0 : 0xff000000u));
+  }
 #if HALFPLANE_SHADE_UNIT != 0
   if ((context->known & HP_KNOWS_LIGHT) == 0) send_token(context, HP_LEVELS, (uint64_t)3 << 43);
   context->known |= HP_KNOWS_LIGHT;
@@ -305,15 +341,11 @@ static void set_texture(hp_context* context, const hp_state* state) {
 #endif
 
 #if HALFPLANE_FOG_UNIT != 0
-/* The words of fog share the register of levels: bits 44 and 43 tell them apart. */
 static void set_fog(hp_context* context, const hp_state* state) {
   const hp_fog* fog = state->fog;
   uint32_t word = 0;
   if (fog != NULL) word = (state->fog_color & 0xffffffu) | ((uint32_t)fog->octave_bits << 24) | ((uint32_t)1 << 27);
-  if ((context->known & HP_KNOWS_FOG) == 0 || context->fog_word != word)
-    send_token(context, HP_LEVELS, ((uint64_t)1 << 43) | word);
-  context->known |= HP_KNOWS_FOG;
-  context->fog_word = word;
+  set_shared(context, HP_KNOWS_FOG, &context->fog_word, (uint64_t)1 << 43, word);
   if (fog == NULL || context->fog_lines == fog->lines) return;
   for (uint32_t i = 0; i < 256; ++i)
     send_token(context, HP_LEVELS,
@@ -528,12 +560,17 @@ static uint8_t is_supported(const hp_state* state) {
   if (HALFPLANE_TEXTURE_UNIT != 3 && state->texture != NULL &&
       (state->levels != HP_LEVEL_0 || state->minifies_otherwise != 0 || state->texture->levels > 1))
     return 0;
+  if (HALFPLANE_TEXTURE_CONSTANT == 0 && state->texture != NULL && state->combine == HP_BLEND_COLOR) return 0;
+  if (HALFPLANE_TEXTURE_BORDER == 0 && state->texture != NULL &&
+      (state->wrap_u >= HP_BORDER || state->wrap_v >= HP_BORDER))
+    return 0;
   if (HALFPLANE_COLORS_OVER_W == 0 && state->perspective_colors != 0) return 0;
   if (HALFPLANE_FOG_UNIT == 0 && state->fog != NULL) return 0;
   if (HP_HAS_STENCIL == 0 && state->has_stencil != 0) return 0;
   if (HP_HAS_ALPHA_TEST == 0 && state->alpha_func != HP_ALWAYS) return 0;
   if (HALFPLANE_MSAA_SAMPLES == 1 && (state->sample_mask != 255 || state->alpha_to_coverage != 0)) return 0;
   if (HP_HAS_ALPHA_TEST == 0 && state->alpha_to_coverage != 0) return 0;
+  if (HALFPLANE_LOGIC_UNIT == 0 && state->logic_op != HP_LOGIC_COPY) return 0;
   if (HALFPLANE_DITHER_UNIT == 0 && state->dithers != 0 && HALFPLANE_COLOR_FORMAT == 0) return 0;
   const uint32_t all = HALFPLANE_COLOR_FORMAT == 1 ? 15 : 7, mask = state->color_mask & all;
   return HALFPLANE_BLEND_LANES != 0 || (state->blends == 0 && (mask == 0 || mask == all));
@@ -543,7 +580,8 @@ static uint8_t is_valid(const hp_state* state) {
   const int32_t beside = HALFPLANE_GUARD_BAND - hp_max(HALFPLANE_TARGET_WIDTH, HALFPLANE_TARGET_HEIGHT);
   const int32_t widest = 2 * (beside - 1);
   const hp_texture* texture = state->texture;
-  if (state->depth_test > HP_ALWAYS || state->cull > HP_CULL_BOTH || state->front > HP_CW || state->color_mask > 15)
+  if (state->depth_test > HP_ALWAYS || state->cull > HP_CULL_BOTH || state->front > HP_CW || state->color_mask > 15 ||
+      state->logic_op > HP_LOGIC_SET)
     return 0;
   if (state->line_rule > HP_DIAMOND || state->line_width == 0 || (state->line_width > 1 && state->line_width > widest))
     return 0;
@@ -554,8 +592,8 @@ static uint8_t is_valid(const hp_state* state) {
     return 0;
   if (texture != NULL && texture->levels > 1 + hp_max(texture->log2_width, texture->log2_height)) return 0;
   if (texture != NULL && (texture->log2_width > 12 || texture->log2_height > 12 || texture->format > HP_RGBA8888 ||
-                          (texture->address & 63u) != 0 || state->wrap_u > HP_MIRROR || state->wrap_v > HP_MIRROR ||
-                          state->combine > HP_ADD_COLOR))
+                          (texture->address & 63u) != 0 || state->wrap_u > HP_HALF_BORDER ||
+                          state->wrap_v > HP_HALF_BORDER || state->combine > HP_BLEND_COLOR))
     return 0;
   if (state->fog != NULL && (state->fog->lines == NULL || state->fog->octave_bits > 4)) return 0;
   /* A triangle has one Q. */

@@ -156,15 +156,12 @@ TEST_F(DriverInterface, AFlushWithoutRoomIsStillToCome) {
 TEST_F(DriverInterface, RefusesStates) {
   const Config& config = driver_config();
   hp_texture texture{0, 0, 4, 4, 0};
-  const std::vector<std::function<void(hp_state&)>> bad{[](hp_state& s) { s.depth_test = 8; },
-                                                        [](hp_state& s) { s.cull = 4; },
-                                                        [](hp_state& s) { s.front = 2; },
-                                                        [](hp_state& s) { s.color_mask = 16; },
-                                                        [](hp_state& s) { s.line_rule = 3; },
-                                                        [](hp_state& s) { s.line_width = 0; },
-                                                        [](hp_state& s) { s.line_width = 60000; },
-                                                        [](hp_state& s) { s.point_size = 0; },
-                                                        [](hp_state& s) { s.point_size = INT32_MAX - 65535; }};
+  const std::vector<std::function<void(hp_state&)>> bad{
+      [](hp_state& s) { s.depth_test = 8; }, [](hp_state& s) { s.cull = 4; },
+      [](hp_state& s) { s.front = 2; },      [](hp_state& s) { s.color_mask = 16; },
+      [](hp_state& s) { s.logic_op = 16; },  [](hp_state& s) { s.line_rule = 3; },
+      [](hp_state& s) { s.line_width = 0; }, [](hp_state& s) { s.line_width = 60000; },
+      [](hp_state& s) { s.point_size = 0; }, [](hp_state& s) { s.point_size = INT32_MAX - 65535; }};
   for (const auto& change : bad) expect_refused_state(HP_BAD_VALUE, change);
   const std::vector<std::function<void(hp_state&)>> bad_texture{
       [&](hp_state&) { texture.log2_width = 13; }, [&](hp_state&) { texture.log2_height = 13; },
@@ -172,8 +169,8 @@ TEST_F(DriverInterface, RefusesStates) {
       [&](hp_state&) { texture.levels = 6; },      [](hp_state& s) { s.levels = 3; },
       [](hp_state& s) { s.level_bias = 5000; },    [](hp_state& s) { s.level_bias = -5000; },
       [](hp_state& s) { s.least_level = 4000; },   [](hp_state& s) { s.largest_level = 4000; },
-      [](hp_state& s) { s.wrap_u = 3; },           [](hp_state& s) { s.wrap_v = 3; },
-      [](hp_state& s) { s.combine = 4; },          [](hp_state& s) { s.is_affine = s.perspective_colors = 1; }};
+      [](hp_state& s) { s.wrap_u = 5; },           [](hp_state& s) { s.wrap_v = 5; },
+      [](hp_state& s) { s.combine = 5; },          [](hp_state& s) { s.is_affine = s.perspective_colors = 1; }};
   for (const auto& change : bad_texture)
     expect_refused_state(HP_BAD_VALUE, [&](hp_state& s) {
       texture = {0, 0, 4, 4, 0};
@@ -192,6 +189,13 @@ TEST_F(DriverInterface, RefusesStates) {
     expect_refused_state(HP_UNSUPPORTED, [&](hp_state& s) { s.texture = &texture; });
     texture.levels = 0;
   }
+  if (config.texture_constants == 0)
+    expect_refused_state(HP_UNSUPPORTED, [&](hp_state& s) { s.texture = &texture, s.combine = HP_BLEND_COLOR; });
+  if (config.texture_borders == 0) {
+    expect_refused_state(HP_UNSUPPORTED, [&](hp_state& s) { s.texture = &texture, s.wrap_u = HP_BORDER; });
+    expect_refused_state(HP_UNSUPPORTED, [&](hp_state& s) { s.texture = &texture, s.wrap_v = HP_HALF_BORDER; });
+  }
+  if (config.logic_units == 0) expect_refused_state(HP_UNSUPPORTED, [](hp_state& s) { s.logic_op = HP_LOGIC_XOR; });
   if (config.perspective_colors == 0)
     expect_refused_state(HP_UNSUPPORTED, [](hp_state& s) { s.perspective_colors = 1; });
   if (config.stencil_bits == 0) expect_refused_state(HP_UNSUPPORTED, [](hp_state& s) { s.has_stencil = 1; });

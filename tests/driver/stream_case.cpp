@@ -14,7 +14,8 @@ namespace {
 
 /// No design has alpha in memory, or a depth of more than 22 bits, and coordinates of 16 bits: tests/driver/CMakeLists.txt.
 constexpr std::string_view kRgba =
-    "embedded depth.bits=24 hiz.bits=24 color.format=rgba8888 alpha.unit=1 blend.lanes=4 texture.unit=bilinear";
+    "embedded depth.bits=24 hiz.bits=24 color.format=rgba8888 alpha.unit=1 blend.lanes=4 logic.unit=1 "
+    "texture.unit=bilinear texture.constant=1 texture.border=1";
 
 double real(hp_fixed v) { return std::ldexp(v, -16); }
 
@@ -193,6 +194,7 @@ class CaseMaker {
       for (std::size_t c = 0; c < 4; ++c) state.color_mask[c] = (s.color_mask >> c & 1) != 0;
       if ((s.color_mask & (config_.color_format == ColorFormat::rgba8888 ? 15 : 7)) == 0) state.color_write = false;
     }
+    if (config_.logic_units != 0 && chance(3)) s.logic_op = choose(state.logic_op, 16);
     if (chance(2)) return;
     s.blends = 1;
     state.blend.emplace();
@@ -238,9 +240,15 @@ class CaseMaker {
     if (n < 3) {
       s.texture = &textures_[static_cast<std::size_t>(n)];
       state.texture = static_cast<std::uint32_t>(n);
-      s.wrap_u = choose(state.texture_wrap[0], 3);
-      s.wrap_v = choose(state.texture_wrap[1], 3);
-      s.combine = choose(state.texture_combine, 4);
+      s.wrap_u = choose(state.texture_wrap[0], config_.texture_borders != 0 ? 5 : 3);
+      s.wrap_v = choose(state.texture_wrap[1], config_.texture_borders != 0 ? 5 : 3);
+      s.combine = choose(state.texture_combine, config_.texture_constants != 0 ? 5 : 4);
+      for (std::size_t c = 0; c < 4; ++c) {
+        state.texture_border[c] = static_cast<std::uint8_t>(random_.index(256));
+        s.texture_border |= std::uint32_t{state.texture_border[c]} << (8 * c);
+        if (c < 3) state.texture_constant[c] = static_cast<std::uint8_t>(random_.index(256));
+        s.texture_constant |= std::uint32_t{c < 3 ? state.texture_constant[c] : std::uint8_t{9}} << (8 * c);
+      }
       s.is_linear = config_.texture_unit != TextureUnitKind::nearest && chance(2) ? 1 : 0;
       state.texture_min = s.is_linear != 0 ? TextureMin::linear : TextureMin::nearest;
       if (config_.texture_unit == TextureUnitKind::trilinear) add_levels(s, state);

@@ -73,6 +73,7 @@ class Registers {
     }
     const std::uint64_t word = state_word(token.vertex.code[0], widths_);
     colors_.set(which, word);
+    if (which == StateRegister::color_ops) ops_ = static_cast<std::uint32_t>(word);
     stencil_.set(which, word);
     const LevelsWord kind = levels_word(word);
     if (which == StateRegister::texture) {
@@ -88,6 +89,10 @@ class Registers {
     } else if (which == StateRegister::texture_levels && kind == LevelsWord::fog_line) {
       const auto start = static_cast<std::int32_t>(wrap_signed(static_cast<std::int64_t>(word >> 17), 18));
       fog_line_[word >> 35 & 255] = FogLine{start, static_cast<std::int32_t>(word & 0x1ffff)};
+    } else if (which == StateRegister::texture_levels && kind == LevelsWord::constant) {
+      constant_ = word;
+    } else if (which == StateRegister::texture_levels && kind == LevelsWord::border) {
+      border_ = word;
     } else if (which == StateRegister::texture_levels) {
       EXPECT_EQ(word, no_light_word());
       is_light_off_ = true;
@@ -99,7 +104,7 @@ class Registers {
   /// A difference from a packet's needs, or an empty text.
   [[nodiscard]] std::string difference(const Wanted& wanted) const {
     const auto& [colors, stencil] = std::tie(wanted.units.colors, wanted.units.stencil);
-    if (colors.ops && *colors.ops != pack(colors_.ops)) return "color_ops";
+    if (colors.ops && colors.ops != ops_) return "color_ops";
     if (colors.constant && *colors.constant != pack(colors_.ops.constant)) return "blend_constant";
     if (colors.alpha && *colors.alpha != pack(colors_.alpha, colors_.alpha_covers)) return "alpha_test";
     for (const std::size_t n : {0U, 1U}) {
@@ -111,6 +116,8 @@ class Registers {
     if (wanted.units.texture_state != texture_.pack() || !has_texture_) return "texture";
     if (config_.texture_unit == TextureUnitKind::trilinear && texture_.enable && wanted.units.texture_levels != levels_)
       return "texture_levels";
+    if (wanted.units.texture_constant && wanted.units.texture_constant != constant_) return "texture_constant";
+    if (wanted.units.texture_border && wanted.units.texture_border != border_) return "texture_border";
     if (wanted.units.texture_lines && *wanted.units.texture_lines != lines_.lines()) return "texture_lines";
     if (wanted.units.light || (wanted.units.looks_at_light && !is_light_off_)) return "light";
     if (!wanted.units.looks_at_fog) return "";
@@ -123,9 +130,11 @@ class Registers {
   const Config& config_;
   const Widths& widths_;
   ColorState colors_;
+  std::optional<std::uint32_t> ops_;  ///< as it came: some of its bits follow from others
   StencilState stencil_;
   TextureState texture_;
   std::uint32_t levels_ = 0;
+  std::optional<std::uint64_t> constant_, border_;
   LineRegister lines_;
   bool has_texture_ = false;
   std::uint64_t line_tokens_ = 0;
