@@ -9,6 +9,9 @@ void hp_corner_of(const hp_vertex* v, hp_corner* corner) {
   }
   corner->part[8] = v->texcoord[0];
   corner->part[9] = v->texcoord[1];
+#if HALFPLANE_NORMALS != 0
+  for (uint32_t i = 0; i < 3; ++i) corner->part[10 + i] = v->normal[i];
+#endif
 }
 
 void hp_cut(hp_corner* made, const hp_corner* in, const hp_corner* out, int64_t d_in, int64_t d_out) {
@@ -16,7 +19,7 @@ void hp_cut(hp_corner* made, const hp_corner* in, const hp_corner* out, int64_t 
   const uint64_t whole = (uint64_t)d_in - (uint64_t)d_out;
   const uint32_t bits = hp_bits64(whole), shift = bits > 32 ? bits - 32 : 0, divisor = (uint32_t)(whole >> shift);
   const int64_t t = hp_divide((((uint64_t)d_in >> shift) << 31) + divisor / 2, divisor);
-  for (uint32_t i = 0; i < 10; ++i) {
+  for (uint32_t i = 0; i < HP_PARTS; ++i) {
     const int64_t step = (int64_t)out->part[i] - in->part[i];
     made->part[i] = (hp_fixed)(in->part[i] + ((step * t + ((int64_t)1 << 30)) >> 31));
   }
@@ -29,6 +32,9 @@ void hp_project_corner(const hp_context* context, const hp_corner* corner, hp_ve
     vertex->color |= (uint32_t)((corner->part[4 + i] + 32768) >> 16) << (8 * i);
   vertex->texcoord[0] = corner->part[8];
   vertex->texcoord[1] = corner->part[9];
+#if HALFPLANE_NORMALS != 0
+  if (context->is_lit != 0) hp_normal_codes(&corner->part[10], vertex->normal_code);
+#endif
 }
 
 /* Sutherland and Hodgman, plane by plane; returns the number of corners of polygon[0]. */

@@ -135,6 +135,19 @@ typedef struct hp_fog {
   uint8_t octave_bits;
 } hp_fog;
 
+/* Light of each fragment of triangles, from the normals of their vertices (shade.unit): the colour C becomes
+   C (ambient + diffuse N.L) + specular (N.H)^shininess. halfplane_light_table writes one; direction and colours may be
+   changed in a copy. */
+typedef struct hp_light_line {
+  uint16_t start, fall; /* 2^-15 */
+} hp_light_line;
+typedef struct hp_light {
+  int16_t direction[3], half[3];       /* L to the light, H between that and the eye: of length 1, 2^-15 */
+  uint32_t ambient, diffuse, specular; /* HP_RGBA */
+  const hp_light_line* lines;          /* 256, of the power */
+  uint8_t narrow;                      /* they cover 1 - N.H below 2^-narrow: 0 to 7 */
+} hp_light;
+
 /* The state of draws; hp_default_state() has that of OpenGL. */
 typedef struct hp_state {
   uint8_t depth_test, depth_write;
@@ -162,6 +175,7 @@ typedef struct hp_state {
   uint8_t perspective_colors;                /* colours are linear on the surface */
   const hp_fog* fog;                         /* null: none; of triangles; it must stay, too */
   uint32_t fog_color;
+  const hp_light* light;        /* likewise */
   uint8_t line_rule, line_last; /* line_last: the last pixel, too; never with HP_DIAMOND */
   uint16_t line_width;          /* pixels */
   hp_fixed point_size;          /* pixels, at least 1: squares */
@@ -174,6 +188,8 @@ typedef struct hp_vertices {
   const hp_fixed* texcoord; /* u v, 1 is the whole texture; null: 0 */
   uint16_t position_stride, color_stride, texcoord_stride;
   uint8_t has_w;
+  const hp_fixed* normal; /* x y z of any length, in the space of the light; null: 0 */
+  uint16_t normal_stride;
 } hp_vertices;
 
 /* What happened since hp_begin(). */
@@ -252,6 +268,8 @@ const hp_counts* hp_count(const hp_context* context);
 #define HP_CACHE 16 /* vertices that stay transformed; a power of two */
 #endif
 
+#define HP_PARTS (10 + HALFPLANE_NORMALS)
+
 typedef struct hp_vertex { /* transformed; window coordinates where outcode is 0 */
   uint32_t tag;            /* its index; beyond 65535: no vertex, or a corner */
   hp_fixed clip[4];
@@ -261,10 +279,14 @@ typedef struct hp_vertex { /* transformed; window coordinates where outcode is 0
   uint8_t outcode;
   uint8_t shift; /* of w, and 2^62 / (w 2^shift), for what is over w */
   uint32_t reciprocal;
+#if HALFPLANE_NORMALS != 0
+  hp_fixed normal[3];
+  int32_t normal_code[3]; /* of length 1, 2^-15 */
+#endif
 } hp_vertex;
 
 typedef struct hp_corner { /* of a triangle that is cut */
-  hp_fixed part[10];       /* x y z w, R G B A, u v */
+  hp_fixed part[HP_PARTS]; /* x y z w, R G B A, u v; the normal */
 } hp_corner;
 
 typedef struct hp_plane {
@@ -300,10 +322,15 @@ struct hp_context {
   uint8_t is_over_w, is_fogged;                        /* of triangles: they have codes over w */
   uint32_t fog_word, texture_constant, texture_border; /* of the core */
   const hp_fog_line* fog_lines;                        /* likewise; null: unknown */
-  uint32_t known;                                      /* a bit for each of these that the core has */
-  uint8_t is_drawn, drops_texels;                      /* since the last flush */
-  uint8_t is_set, is_cleared;                          /* the target */
-  uint32_t slot[3];                                    /* tags of the core's vertex slots */
+#if HALFPLANE_NORMALS != 0
+  uint8_t is_lit;                   /* of triangles */
+  uint64_t light_word[6];           /* of the core */
+  const hp_light_line* light_lines; /* likewise; null: unknown */
+#endif
+  uint32_t known;                 /* a bit for each of these that the core has */
+  uint8_t is_drawn, drops_texels; /* since the last flush */
+  uint8_t is_set, is_cleared;     /* the target */
+  uint32_t slot[3];               /* tags of the core's vertex slots */
   hp_vertex cache[HP_CACHE];
   hp_vertex corner[HP_CORNERS];
   hp_corner polygon[2][HP_CORNERS];

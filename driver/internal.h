@@ -9,6 +9,9 @@
 #if HALFPLANE_COORDINATE_BITS > 16
 #error "the command stream has 16 bits for a coordinate: make guard.band or subpixel.bits smaller"
 #endif
+#if HALFPLANE_RESOLVE_UNIT != 0
+#error "resolve.unit=1 wants a frame sorted by bins, and this driver sends draws as they come: set resolve.unit=0"
+#endif
 
 #define HP_HAS_TEXTURES (HALFPLANE_COORDINATES != 0)
 #define HP_HAS_COLOR_OPS (HALFPLANE_BLEND_LANES != 0 || HALFPLANE_DITHER_UNIT != 0)
@@ -23,6 +26,15 @@
 #define HP_TRIANGLE_WORDS \
   (1 + 3 * (1 + HP_AFFINE_WORDS) + (HP_HAS_TEXTURES ? 3 * HP_OVER_W_WORDS + HP_FRAME_WORDS : 0)) /* at most */
 #define HP_LINE_WORDS ((HALFPLANE_LINE_SETUP_BITS - HALFPLANE_PRIMITIVE_ID_BITS + 31) / 32)
+
+/* Bits of hp_context.known */
+#define HP_KNOWS_TOKEN(which, side) ((uint32_t)1 << (2 * (uint32_t)(which) + (uint32_t)(side)))
+#define HP_KNOWS_STATE ((uint32_t)1 << 16)
+#define HP_KNOWS_BOX ((uint32_t)1 << 17)
+#define HP_KNOWS_FOG ((uint32_t)1 << 18)
+#define HP_KNOWS_CONSTANT ((uint32_t)1 << 19)
+#define HP_KNOWS_BORDER ((uint32_t)1 << 20)
+#define HP_KNOWS_LIGHT ((uint32_t)1 << 21) /* and of its other five words the next ones */
 
 #define HP_NO_TAG ((uint32_t)0xffffffffu)
 #define HP_CORNER_TAG ((uint32_t)0x10000u) /* tags from here on: corners of one polygon */
@@ -172,8 +184,15 @@ void hp_over_w(const hp_context* context, const hp_vertex* const v[3], uint32_t*
 uint32_t hp_quantize_q(const hp_context* context, const hp_vertex* const v[3], uint32_t q[3]);
 /* The lines of the level of detail as words: 208 bits. */
 void hp_lines_of_levels(const hp_context* context, const hp_vertex* const v[3], int64_t area, uint32_t words[7]);
+#if HALFPLANE_NORMALS != 0
+/* Codes of a normal of length 1, 2^-15; 0 of 0. */
+void hp_normal_codes(const hp_fixed normal[3], int32_t code[3]);
+/* Sends what the unit of light does not have yet; null: no light. */
+void hp_set_light(hp_context* context, const hp_light* light);
+#endif
 /* A register of a unit; it overwrites the vertex slots. `value`: 128 bits. */
 void hp_send_token(hp_context* context, uint32_t which, const uint32_t value[4]);
+void hp_send_word(hp_context* context, uint32_t which, uint64_t value);
 #endif
 
 #endif

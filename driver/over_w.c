@@ -12,6 +12,7 @@
 #else
 #define HP_COLOR_BITS HP_Q_BITS /* none */
 #endif
+#define HP_NORMAL_DROP (HP_Q_BITS < 20 ? 15 : HP_Q_BITS - 5) /* so that P of a normal has 20 bits, or those of Q */
 #define HP_FARTHEST (((int64_t)(1 << 20) - (1 << 11)) << 16) /* of a coordinate from its reference: 2^20 (1 - 2^-9) */
 
 typedef struct over_w {
@@ -215,6 +216,14 @@ void hp_over_w(const hp_context* context, const hp_vertex* const vertex[3], uint
   }
 #else
   (void)e;
+#endif
+#if HALFPLANE_NORMALS != 0
+  if (context->is_lit != 0)
+    for (uint32_t c = 0; c < 3; ++c)
+      for (uint32_t i = 0; i < 3; ++i)
+        put(out + i * HP_OVER_W_WORDS, 3 * HP_Q_BITS + 2 + c * HALFPLANE_NORMAL_OVER_W_CODE_BITS,
+            HALFPLANE_NORMAL_OVER_W_CODE_BITS,
+            (uint32_t)hp_round_shift((int64_t)vertex[i]->normal_code[c] * q[i], HP_NORMAL_DROP));
 #endif
 #if HALFPLANE_COLORS_OVER_W != 0
   if (state->perspective_colors != 0) {

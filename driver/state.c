@@ -3,13 +3,6 @@
 
 #include "internal.h"
 
-#define HP_KNOWS_TOKEN(which, side) ((uint32_t)1 << (2 * (uint32_t)(which) + (uint32_t)(side)))
-#define HP_KNOWS_STATE ((uint32_t)1 << 16)
-#define HP_KNOWS_BOX ((uint32_t)1 << 17)
-#define HP_KNOWS_FOG ((uint32_t)1 << 18)
-#define HP_KNOWS_LIGHT ((uint32_t)1 << 19) /* it is off */
-#define HP_KNOWS_CONSTANT ((uint32_t)1 << 20)
-#define HP_KNOWS_BORDER ((uint32_t)1 << 21)
 #define HP_LONGEST_TOKEN (1 + HP_AFFINE_WORDS + (HALFPLANE_STATE_WORD_BITS - HALFPLANE_ALL_AFFINE_CODE_BITS + 31) / 32)
 
 /* ---- Once, and begin */
@@ -55,6 +48,9 @@ void hp_begin(hp_context* context, const hp_stream* stream) {
   context->known = 0;
   context->has_lines = 0;
   context->fog_lines = NULL;
+#if HALFPLANE_NORMALS != 0
+  context->light_lines = NULL;
+#endif
   context->is_drawn = context->is_set = context->is_cleared = 0;
   memset(&context->counts, 0, sizeof context->counts);
 }
@@ -146,7 +142,7 @@ void hp_send_token(hp_context* context, uint32_t which, const uint32_t value[4])
   context->slot[0] = context->slot[1] = context->slot[2] = HP_NO_TAG;
 }
 
-static void send_token(hp_context* context, uint32_t which, uint64_t value) {
+void hp_send_word(hp_context* context, uint32_t which, uint64_t value) {
   const uint32_t words[4] = {(uint32_t)value, (uint32_t)(value >> 32), 0, 0};
   hp_send_token(context, which, words);
 }
@@ -163,7 +159,7 @@ static uint8_t differs(hp_context* context, uint32_t which, uint32_t side, uint6
 }
 
 static void set_token(hp_context* context, uint32_t which, uint32_t value) {
-  if (differs(context, which, 0, value, 0) != 0) send_token(context, which, value);
+  if (differs(context, which, 0, value, 0) != 0) hp_send_word(context, which, value);
 }
 #endif
 
@@ -254,11 +250,11 @@ static void set_sides(hp_context* context, uint32_t which, const uint32_t words[
   for (uint32_t n = 0; n < 2; ++n)
     if ((sides >> n & 1u) != 0 && differs(context, which, n, words[n], n) != 0) wanted |= 1u << n;
   if (wanted == 3 && words[0] == words[1]) {
-    send_token(context, which, words[0] | ((uint32_t)3 << at));
+    hp_send_word(context, which, words[0] | ((uint32_t)3 << at));
     return;
   }
   for (uint32_t n = 0; n < 2; ++n)
-    if ((wanted >> n & 1u) != 0) send_token(context, which, words[n] | ((uint32_t)1 << (at + n)));
+    if ((wanted >> n & 1u) != 0) hp_send_word(context, which, words[n] | ((uint32_t)1 << (at + n)));
 }
 
 static void set_stencil(hp_context* context, const hp_stencil side[2], uint32_t tests, uint32_t updates) {
@@ -286,7 +282,7 @@ static uint32_t stencil_flags(const hp_stencil side[2]) {
 /* The words of fog, light, a texture's constant and its border share the register of levels: bits 44 to 41, `tag`, tell
    them apart. */
 static void set_shared(hp_context* context, uint32_t known, uint32_t* held, uint64_t tag, uint32_t word) {
-  if ((context->known & known) == 0 || *held != word) send_token(context, HP_LEVELS, tag | word);
+  if ((context->known & known) == 0 || *held != word) hp_send_word(context, HP_LEVELS, tag | word);
   context->known |= known;
   *held = word;
 }
@@ -309,7 +305,7 @@ static void set_texture(hp_context* context, const hp_state* state) {
   const uint8_t drops = context->drops_texels != 0 || (context->known & HP_KNOWS_TOKEN(HP_TEXTURE, 0)) == 0;
   const uint8_t is_new =
       differs(context, HP_TEXTURE, 0, value | ((uint64_t)1 << 63), 0); /* bit 63: the high word counts */
-  if (is_new != 0 || drops != 0) send_token(context, HP_TEXTURE, value | (drops != 0 ? 2u : 0u));
+  if (is_new != 0 || drops != 0) hp_send_word(context, HP_TEXTURE, value | (drops != 0 ? 2u : 0u));
   context->token[HP_TEXTURE][1] = (uint32_t)(value >> 32) | ((uint32_t)1 << 31);
   context->drops_texels = 0;
   if (HALFPLANE_TEXTURE_CONSTANT != 0 && texture != NULL && state->combine == HP_BLEND_COLOR)
@@ -321,10 +317,6 @@ static void set_texture(hp_context* context, const hp_state* state) {
     set_shared(context, HP_KNOWS_BORDER, &context->texture_border, (uint64_t)1 << 41,
                state->texture_border | (has_alpha != 0 ? 0 : 0xff000000u));
   }
-#if HALFPLANE_SHADE_UNIT != 0
-  if ((context->known & HP_KNOWS_LIGHT) == 0) send_token(context, HP_LEVELS, (uint64_t)3 << 43);
-  context->known |= HP_KNOWS_LIGHT;
-#endif
 #if HALFPLANE_TEXTURE_UNIT == 3
   context->needs_lines = 0;
   if (texture == NULL) return;
@@ -348,10 +340,10 @@ static void set_fog(hp_context* context, const hp_state* state) {
   set_shared(context, HP_KNOWS_FOG, &context->fog_word, (uint64_t)1 << 43, word);
   if (fog == NULL || context->fog_lines == fog->lines) return;
   for (uint32_t i = 0; i < 256; ++i)
-    send_token(context, HP_LEVELS,
-               ((uint64_t)2 << 43) | ((uint64_t)i << 35) |
-                   ((uint64_t)((uint32_t)fog->lines[i].start & 0x3ffffu) << 17) |
-                   ((uint32_t)fog->lines[i].rise & 0x1ffffu));
+    hp_send_word(context, HP_LEVELS,
+                 ((uint64_t)2 << 43) | ((uint64_t)i << 35) |
+                     ((uint64_t)((uint32_t)fog->lines[i].start & 0x3ffffu) << 17) |
+                     ((uint32_t)fog->lines[i].rise & 0x1ffffu));
   context->fog_lines = fog->lines;
 }
 #endif
@@ -391,6 +383,11 @@ uint8_t hp_prepare(hp_context* context, uint8_t is_triangle) {
     set_texture(context, state);
     context->is_fogged = state->fog != NULL && writes_color(state) != 0;
     context->is_over_w = state->texture != NULL || state->perspective_colors != 0 || context->is_fogged != 0;
+#if HALFPLANE_NORMALS != 0
+    context->is_lit = state->light != NULL && writes_color(state) != 0;
+    if (context->is_lit != 0) context->is_over_w = 1;
+    if (writes_color(state) != 0) hp_set_light(context, state->light);
+#endif
 #if HALFPLANE_FOG_UNIT != 0
     if (writes_color(state) != 0) set_fog(context, state);
 #endif
@@ -566,6 +563,7 @@ static uint8_t is_supported(const hp_state* state) {
     return 0;
   if (HALFPLANE_COLORS_OVER_W == 0 && state->perspective_colors != 0) return 0;
   if (HALFPLANE_FOG_UNIT == 0 && state->fog != NULL) return 0;
+  if (HALFPLANE_NORMALS == 0 && state->light != NULL) return 0;
   if (HP_HAS_STENCIL == 0 && state->has_stencil != 0) return 0;
   if (HP_HAS_ALPHA_TEST == 0 && state->alpha_func != HP_ALWAYS) return 0;
   if (HALFPLANE_MSAA_SAMPLES == 1 && (state->sample_mask != 255 || state->alpha_to_coverage != 0)) return 0;
@@ -596,8 +594,10 @@ static uint8_t is_valid(const hp_state* state) {
                           state->wrap_v > HP_HALF_BORDER || state->combine > HP_BLEND_COLOR))
     return 0;
   if (state->fog != NULL && (state->fog->lines == NULL || state->fog->octave_bits > 4)) return 0;
+  if (state->light != NULL && (state->light->lines == NULL || state->light->narrow > 7)) return 0;
   /* A triangle has one Q. */
-  return texture == NULL || state->is_affine == 0 || (state->perspective_colors == 0 && state->fog == NULL);
+  return texture == NULL || state->is_affine == 0 ||
+         (state->perspective_colors == 0 && state->fog == NULL && state->light == NULL);
 }
 
 void hp_set_state(hp_context* context, const hp_state* state) {

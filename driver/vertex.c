@@ -210,6 +210,14 @@ const hp_vertex* hp_transform(hp_context* context, const hp_vertices* vertices, 
     vertex->texcoord[1] = texcoord[1];
   }
 #endif
+#if HALFPLANE_NORMALS != 0
+  if (context->is_lit != 0) {
+    const hp_fixed* normal = vertices->normal;
+    if (normal != NULL) normal = element(normal, index, vertices->normal_stride);
+    for (uint32_t i = 0; i < 3; ++i) vertex->normal[i] = normal != NULL ? normal[i] : 0;
+    hp_normal_codes(vertex->normal, vertex->normal_code);
+  }
+#endif
   vertex->outcode = 0;
   if (project_quickly(context, clip, vertex) != 0) return vertex;
   vertex->outcode = hp_outcode(context, clip);

@@ -10,7 +10,7 @@ int main(void) {
   /* x, y, z; the corners turn to the left */
   static const hp_fixed position[] = {-HP_ONE / 2, -HP_ONE / 2, 0, HP_ONE / 2, -HP_ONE / 2, 0, 0, HP_ONE / 2, 0};
   static const uint32_t color[] = {HP_RGBA(255, 0, 0, 255), HP_RGBA(0, 255, 0, 255), HP_RGBA(0, 0, 255, 255)};
-  const hp_vertices vertices = {position, color, NULL, 3 * sizeof(hp_fixed), sizeof(uint32_t), 0, 0};
+  const hp_vertices vertices = {position, color, NULL, 3 * sizeof(hp_fixed), sizeof(uint32_t), 0, 0, NULL, 0};
   const hp_stream stream = {words, sizeof words / sizeof *words, NULL, NULL};
   /* 320x240 pixels; rows of tiles of 8x8 pixels, of which each takes 256 bytes: depth, then colour */
   const hp_target target = {320, 240, 0x0000, 0x0080, 0x60000, 0x68000, 320 / 8 * 256, 0x80000};

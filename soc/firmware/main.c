@@ -73,7 +73,7 @@ static void draw(uint32_t frame) {
   const uint32_t back = frame & 1u, color = BUFFERS + PLANE + back * BUFFER, flags = BUFFERS + 3 * BUFFER;
   const hp_target target = {SCENE_WIDTH, SCENE_HEIGHT, BUFFERS, color, flags, flags + FLAGS * (1 + back),
                             STRIDE,      MEMORY};
-  const hp_vertices mesh = {scene_position, scene_color, scene_texcoord, 12, 4, 8, 0};
+  const hp_vertices mesh = {scene_position, scene_color, scene_texcoord, 12, 4, 8, 0, NULL, 0};
   hp_state state = hp_default_state();
   hp_set_target(&context, &target);
   hp_set_matrices(&context, scene_view[frame % SCENE_FRAMES], scene_projection);

@@ -22,7 +22,7 @@ using driver::Decoder;
 
 constexpr std::array<hp_fixed, 12> kSquare{-HP_ONE, -HP_ONE, 0, HP_ONE, -HP_ONE, 0,
                                            -HP_ONE, HP_ONE,  0, HP_ONE, HP_ONE,  0};
-constexpr hp_vertices kVertices{kSquare.data(), nullptr, nullptr, 12, 0, 0, 0};
+constexpr hp_vertices kVertices{kSquare.data(), nullptr, nullptr, 12, 0, 0, 0, nullptr, 0};
 const hp_target kTarget = target_of(16, 16);
 
 /// A context with a stream and a target.
@@ -205,6 +205,13 @@ TEST_F(DriverInterface, RefusesStates) {
   expect_refused_state(HP_BAD_VALUE, [&](hp_state& s) { s.fog = &no_lines; });
   expect_refused_state(HP_BAD_VALUE, [&](hp_state& s) { s.fog = &too_many; });
   expect_refused_state(HP_BAD_VALUE, [&](hp_state& s) { s.texture = &texture, s.is_affine = 1, s.fog = &fog; });
+  const hp_light_line light_line{0, 0};
+  const hp_light light{{}, {}, 0, 0, 0, &light_line, 7}, dark{{}, {}, 0, 0, 0, nullptr, 0},
+      narrow{{}, {}, 0, 0, 0, &light_line, 8};
+  if (!has_normals(config)) expect_refused_state(HP_UNSUPPORTED, [&](hp_state& s) { s.light = &light; });
+  for (const hp_light* wrong : {&dark, &narrow})
+    expect_refused_state(HP_BAD_VALUE, [&](hp_state& s) { s.light = wrong; });
+  expect_refused_state(HP_BAD_VALUE, [&](hp_state& s) { s.texture = &texture, s.is_affine = 1, s.light = &light; });
   if (config.alpha_units == 0) expect_refused_state(HP_UNSUPPORTED, [](hp_state& s) { s.alpha_func = HP_LESS; });
   if (config.msaa_samples == 1) expect_refused_state(HP_UNSUPPORTED, [](hp_state& s) { s.sample_mask = 1; });
   if (config.msaa_samples == 1 || !tests_alpha(config))
@@ -221,7 +228,7 @@ TEST_F(DriverInterface, RefusesStates) {
 
 TEST_F(DriverInterface, LeavesOutVerticesBeyondItsNumbers) {
   const std::array<hp_fixed, 9> far{INT32_MAX, 0, 0, 0, INT32_MAX, 0, 0, 0, 0};
-  const hp_vertices vertices{far.data(), nullptr, nullptr, 12, 0, 0, 0};
+  const hp_vertices vertices{far.data(), nullptr, nullptr, 12, 0, 0, 0, nullptr, 0};
   std::array<hp_fixed, 16> twice{};
   for (const std::size_t i : {0U, 5U, 10U, 15U}) twice[i] = 2 * HP_ONE;
   for (const bool is_view : {true, false}) {
@@ -233,7 +240,7 @@ TEST_F(DriverInterface, LeavesOutVerticesBeyondItsNumbers) {
     EXPECT_EQ(hp_count(driver.get())->sent, 1U) << "the last one is in range";
     const std::uint32_t before = hp_count(driver.get())->sent;
     const std::array<hp_fixed, 15> near{0, 0, 0, 9000, 0, 0, 0, 9000, 0, INT32_MAX, 0, 0, 9000, 9000, 0};
-    const hp_vertices strip{near.data(), nullptr, nullptr, 12, 0, 0, 0};
+    const hp_vertices strip{near.data(), nullptr, nullptr, 12, 0, 0, 0, nullptr, 0};
     hp_draw(driver.get(), HP_TRIANGLE_STRIP, &strip, nullptr, 5);
     EXPECT_EQ(hp_count(driver.get())->sent, before + 1) << "the others have the fourth one";
     if (driver_config().line_units != 0) {
@@ -248,7 +255,7 @@ TEST_F(DriverInterface, AStripCostsOneVertexATriangle) {
   std::vector<hp_fixed> position;
   for (int i = 0; i < 40; ++i)
     position.insert(position.end(), {(i - 20) * HP_ONE / 32, (i % 2 * 2 - 1) * HP_ONE / 2, 0});
-  const hp_vertices vertices{position.data(), nullptr, nullptr, 12, 0, 0, 0};
+  const hp_vertices vertices{position.data(), nullptr, nullptr, 12, 0, 0, 0, nullptr, 0};
   hp_draw(driver_.get(), HP_TRIANGLE_STRIP, &vertices, nullptr, 40);
   EXPECT_EQ(hp_count(driver_.get())->sent, 38U);
   EXPECT_EQ(hp_count(driver_.get())->vertices, 40U);

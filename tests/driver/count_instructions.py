@@ -29,7 +29,8 @@ TARGETS = {
 TRIANGLES, VERTICES = 256, 264
 NOTHING, DRAWS, CULLS = 0, 1, 2  # WORK of scene.c
 SCENES = {'embedded': ('embedded', []), 'textured': ('textured', ['-DTEXTURED']),
-          'textured, levels': ('textured', ['-DTEXTURED', '-DLEVELS=7'])}
+          'textured, levels': ('textured', ['-DTEXTURED', '-DLEVELS=7']),
+          'stencilled, light': ('stencilled', ['-DLIT'])}
 PRODUCT, DIVISION = re.compile(r'mul|ml[as]|smm'), re.compile(r'u?s?div|rem')
 
 
@@ -99,7 +100,7 @@ def measure(folder, target, scene, level, profile):
 def rows(halfplane, only, profile):
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        for config in ('embedded', 'textured'):
+        for config in ('embedded', 'textured', 'stencilled'):
             header = subprocess.run([halfplane, 'config', '--config', config, '--c-header'], check=True, capture_output=True)
             (folder / f'{config}.h').write_bytes(header.stdout)
         for target in TARGETS:

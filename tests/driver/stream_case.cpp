@@ -7,6 +7,7 @@
 
 #include "model/generate/raster_pkg.hpp"
 #include "model/host/primitive_stream.hpp"
+#include "model/stages/phong.hpp"
 #include "sim/scene/vertex_transform.hpp"
 
 namespace halfplane::test {
@@ -41,6 +42,7 @@ class CaseMaker {
     set_viewport();
     if (config_.texture_unit != TextureUnitKind::off) add_textures();
     if (config_.fog_units != 0) add_fogs();
+    if (has_normals(config_)) add_lights();
     scene.states.push_back(base_);
     clear(HP_CLEAR_DEPTH | HP_CLEAR_COLOR);
     while (count_ < primitives_) {
@@ -127,6 +129,33 @@ class CaseMaker {
     }
   }
 
+  void add_lights() {
+    for (LightOfBoth& both : lights_) {
+      State& state = both.state;
+      for (std::size_t c = 0; c < 3; ++c) {
+        state.light_direction[c] = random_.between(-1, 1);
+        state.light_half[c] = random_.between(-1, 1);
+        for (auto* color : {&state.light_ambient, &state.light_diffuse, &state.light_specular})
+          (*color)[c] = static_cast<std::uint8_t>(random_.index(256));
+      }
+      state.light_shininess = random_.between(1, 100);
+      const PhongLight light(PhongLight::given_by(state));
+      for (const FallingLine& line : light.lines())
+        both.lines.push_back({static_cast<std::uint16_t>(line.start), static_cast<std::uint16_t>(line.fall)});
+      hp_light& of = both.of_driver;
+      for (std::size_t c = 0; c < 3; ++c) {
+        of.direction[c] = static_cast<std::int16_t>(light.direction()[c]);
+        of.half[c] = static_cast<std::int16_t>(light.half()[c]);
+      }
+      const auto rgb = [](const auto& color) { return HP_RGBA(color[0], color[1], color[2], 77); };
+      of.ambient = rgb(state.light_ambient);
+      of.diffuse = rgb(state.light_diffuse);
+      of.specular = rgb(state.light_specular);
+      of.lines = both.lines.data();
+      of.narrow = static_cast<std::uint8_t>(light.narrow());
+    }
+  }
+
   /// The driver's scissor, and that of the scene's next states.
   void set_scissor() {
     const Scene& scene = out_.scene;
@@ -182,6 +211,17 @@ class CaseMaker {
       s.fog_color = HP_RGBA(both.color[0], both.color[1], both.color[2], 0);
       state.fog = both.fog;
       state.fog_color = both.color;
+    }
+    if (has_normals(config_) && s.is_affine == 0 && chance(2)) {
+      const LightOfBoth& both = lights_[static_cast<std::size_t>(random_.index(2))];
+      s.light = &both.of_driver;
+      state.shade = Shade::phong;
+      state.light_direction = both.state.light_direction;
+      state.light_half = both.state.light_half;
+      state.light_ambient = both.state.light_ambient;
+      state.light_diffuse = both.state.light_diffuse;
+      state.light_specular = both.state.light_specular;
+      state.light_shininess = both.state.light_shininess;
     }
     filled_ = s;
     filled_state_ = state;
@@ -319,8 +359,9 @@ class CaseMaker {
     position_.clear();
     color_.clear();
     texcoord_.clear();
+    normal_.clear();
     first_ = static_cast<std::uint32_t>(out_.scene.vertices.size());
-    const bool is_white = chance(6), is_black = chance(9), is_untextured = chance(6);
+    const bool is_white = chance(6), is_black = chance(9), is_untextured = chance(6), is_unlit = chance(9);
     const bool transforms = chance(3);
     std::array<hp_fixed, 16> view{}, projection{};
     Mat4 v = matrix(view, 0.3), p = matrix(projection, 0.3);
@@ -361,6 +402,7 @@ class CaseMaker {
         }
       }
       out_.scene.vertices.push_back(vertex);
+      if (has_normals(config_)) out_.scene.normals.push_back(is_unlit ? Vec3{} : normal());
     }
     hp_set_matrices(context_.get(), transforms ? view.data() : nullptr, transforms ? projection.data() : nullptr);
     const auto parts = static_cast<std::uint16_t>(transforms ? 12 : 16);
@@ -370,7 +412,28 @@ class CaseMaker {
                  parts,
                  4,
                  8,
-                 static_cast<std::uint8_t>(transforms ? 0 : 1)};
+                 static_cast<std::uint8_t>(transforms ? 0 : 1),
+                 is_unlit ? nullptr : normal_.data(),
+                 12};
+  }
+
+  /// The next normal: any length, along an axis, short, 0; and with a z whose code is next to a tie.
+  Vec3 normal() {
+    const double size = std::exp2(random_.between(-15, 14));
+    const bool is_short = chance(4), is_axis = chance(8);
+    Vec3 made{};
+    for (double& part : made) {
+      hp_fixed n = is_short ? static_cast<hp_fixed>(random_.index(9)) - 4 : between(-size, size);
+      if (is_axis && chance(2)) n = 0;
+      if (&part == &made[2] && chance(3)) {
+        const double code = (random_.index(30000) + 0.5) / 32768;
+        n = static_cast<hp_fixed>(
+            std::lround(65536 * std::hypot(made[0], made[1]) * code / std::sqrt(1 - code * code)));
+      }
+      normal_.push_back(n);
+      part = real(n);
+    }
+    return made;
   }
 
   void draw() {
@@ -426,7 +489,13 @@ class CaseMaker {
     hp_fog of_driver{};
   };
   std::array<FogOfBoth, 3> fogs_;  ///< of each kind
-  std::vector<hp_fixed> position_, texcoord_;
+  struct LightOfBoth {
+    State state;  ///< its light alone
+    std::vector<hp_light_line> lines;
+    hp_light of_driver{};
+  };
+  std::array<LightOfBoth, 2> lights_;
+  std::vector<hp_fixed> position_, texcoord_, normal_;
   std::vector<std::uint32_t> color_;
   std::uint32_t first_ = 0;
   hp_vertices vertices_{};

@@ -94,14 +94,24 @@ class Registers {
     } else if (which == StateRegister::texture_levels && kind == LevelsWord::border) {
       border_ = word;
     } else if (which == StateRegister::texture_levels) {
-      EXPECT_EQ(word, no_light_word());
-      is_light_off_ = true;
+      const auto kind_of_light = static_cast<std::size_t>(word >> kLightWordBit & 7);
+      if (kind_of_light < kLightWords)
+        light_word_[kind_of_light] = word;
+      else
+        light_line_[word >> 27 & 255] = word;
     }
   }
 
   [[nodiscard]] std::uint64_t line_tokens() const { return line_tokens_; }
 
-  /// A difference from a packet's needs, or an empty text.
+  [[nodiscard]] bool has_light(const PhongLight* light) const {
+    if (light == nullptr) return light_word_[0] == no_light_word();
+    for (std::size_t n = 0; n < light_line_.size(); ++n)
+      if (light_line_[n] != light_line_word(n, light->lines()[n])) return false;
+    return light_word_ == light_words(light->registers());
+  }
+
+  /// A difference from what a packet needs, or an empty text.
   [[nodiscard]] std::string difference(const Wanted& wanted) const {
     const auto& [colors, stencil] = std::tie(wanted.units.colors, wanted.units.stencil);
     if (colors.ops && colors.ops != ops_) return "color_ops";
@@ -119,7 +129,7 @@ class Registers {
     if (wanted.units.texture_constant && wanted.units.texture_constant != constant_) return "texture_constant";
     if (wanted.units.texture_border && wanted.units.texture_border != border_) return "texture_border";
     if (wanted.units.texture_lines && *wanted.units.texture_lines != lines_.lines()) return "texture_lines";
-    if (wanted.units.light || (wanted.units.looks_at_light && !is_light_off_)) return "light";
+    if (wanted.units.looks_at_light && !has_light(wanted.units.light.get())) return "light";
     if (!wanted.units.looks_at_fog) return "";
     const FogTable* fog = wanted.units.fog.get();
     if (fog_state_ != (fog != nullptr ? FogState{true, fog->octave_bits(), fog->color()} : FogState{})) return "fog";
@@ -138,7 +148,8 @@ class Registers {
   LineRegister lines_;
   bool has_texture_ = false;
   std::uint64_t line_tokens_ = 0;
-  bool is_light_off_ = false;
+  std::array<std::uint64_t, kLightWords> light_word_{};
+  std::array<std::uint64_t, std::size_t{1} << kPowerLines> light_line_{};
   std::optional<FogState> fog_state_;
   std::vector<FogLine> fog_line_ = std::vector<FogLine>(256);
 };

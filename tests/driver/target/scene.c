@@ -14,6 +14,7 @@
 static hp_context context;
 static uint32_t words[16384];
 static hp_fixed position[(COLUMNS + 1) * 2 * ROWS * 3], texcoord[(COLUMNS + 1) * 2 * ROWS * 2];
+static hp_fixed normal[(COLUMNS + 1) * 2 * ROWS * 3];
 static uint32_t color[(COLUMNS + 1) * 2 * ROWS];
 
 static int draw(void) {
@@ -21,8 +22,9 @@ static int draw(void) {
                                     2100,  -1000, 65536, -3 * 65536, 0,     0,     0,   65536};
   static const hp_fixed projection[16] = {65536, 0, 0, 0, 0, 87381, 0, 0, 0, 0, -67000, -13000, 0, 0, -65536, 0};
   const hp_stream stream = {words, sizeof words / sizeof *words, 0, 0};
-  const hp_target target = {320, 240, 0, 0x80, 0x60000, 0x68000, 320 / 8 * 256, 0x80000};
-  const hp_vertices vertices = {position, color, texcoord, 12, 4, 8, 0};
+  const hp_target target = {
+      320, 240, 0, 1u << HALFPLANE_PLANE_SHIFT, 0x60000, 0x68000, 320 / 8 * 2 << HALFPLANE_PLANE_SHIFT, 0x80000};
+  const hp_vertices vertices = {position, color, texcoord, 12, 4, 8, 0, normal, 12};
   uint32_t n = 0;
   for (uint32_t row = 0; row < ROWS; ++row)
     for (uint32_t i = 0; i <= COLUMNS; ++i)
@@ -32,6 +34,11 @@ static int draw(void) {
         position[3 * n + 2] = (hp_fixed)((i * 7 + side * 1000) % 9000);
         texcoord[2 * n] = (hp_fixed)(i * 3000);
         texcoord[2 * n + 1] = (hp_fixed)(side * 65536);
+#ifdef LIT
+        normal[3 * n] = (hp_fixed)(i * 5000) - 70000;
+        normal[3 * n + 1] = (hp_fixed)(side * 9000);
+        normal[3 * n + 2] = 65536;
+#endif
         color[n] = n * 0x01030507u;
       }
   hp_init(&context);
@@ -42,6 +49,11 @@ static int draw(void) {
   hp_state state = hp_default_state();
 #if WORK == 2
   state.cull = HP_CULL_BOTH;
+#endif
+#ifdef LIT
+  static hp_light_line lines[256];
+  static const hp_light light = {{0, 0, 32767}, {0, 0, 32767}, 0x333333, 0xffffff, 0x808080, lines, 2};
+  state.light = &light;
 #endif
 #ifdef TEXTURED
   static const hp_texture texture = {0, HP_RGB565, 6, 6, LEVELS};
@@ -59,7 +71,7 @@ static int draw(void) {
     hp_draw(&context, HP_TRIANGLE_STRIP, &vertices, &indices[row * 2 * (COLUMNS + 1)], 2 * (COLUMNS + 1));
   if (hp_count(&context)->triangles != 2 * COLUMNS * ROWS) return 2;
 #endif
-  if (vertices.position[0] == 1 || indices[9] == 1) return 3; /* the mesh is made in any case */
+  if (vertices.position[0] == 1 || normal[5] == 1 || indices[9] == 1) return 3; /* the mesh is made in any case */
   hp_flush(&context, 1);
   return (int)hp_status(&context);
 }
