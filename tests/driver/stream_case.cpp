@@ -74,6 +74,7 @@ class CaseMaker {
     v.width = between(1, 0.6 * room);
     v.height = between(1, 0.6 * room);
     if (chance(2)) v = {0, 0, out_.scene.width * HP_ONE, out_.scene.height * HP_ONE, 0, 0, 0};
+    if (chance(4)) v.x = v.y = 0, v.width = v.height = room > 256 ? 256 * HP_ONE : 16 * HP_ONE;
     v.near_depth = chance(2) ? 0 : static_cast<std::uint32_t>(random_.between(0, 0x1p31));
     v.far_depth = chance(2) ? HP_DEPTH_ONE : static_cast<std::uint32_t>(random_.between(0, 0x1p31));
     v.zero_to_one = chance(2) ? 1 : 0;
@@ -362,7 +363,8 @@ class CaseMaker {
     normal_.clear();
     first_ = static_cast<std::uint32_t>(out_.scene.vertices.size());
     const bool is_white = chance(6), is_black = chance(9), is_untextured = chance(6), is_unlit = chance(9);
-    const bool transforms = chance(3);
+    const bool is_grid = chance(6);  // ties, and powers of two where the viewport's size is one
+    const bool transforms = !is_grid && chance(3);
     std::array<hp_fixed, 16> view{}, projection{};
     Mat4 v = matrix(view, 0.3), p = matrix(projection, 0.3);
     if (chance(2)) {
@@ -380,6 +382,8 @@ class CaseMaker {
     const VertexTransform transform(v, p, TransformNumbers::s15_16);
     for (int i = 0; i < count; ++i) {
       std::array<hp_fixed, 4> at = position();
+      const auto quarter = [&] { return (random_.index(9) - 4) * HP_ONE / 4; };
+      if (is_grid) at = {quarter(), quarter(), quarter(), HP_ONE};
       Vertex vertex;
       if (transforms) {
         for (hp_fixed& part : at) part = between(-2, 2);
@@ -397,7 +401,7 @@ class CaseMaker {
       if (!is_untextured) {
         const double reach = chance(10) ? 30000 : chance(3) ? 40 : 1;
         for (double* of_model : {&vertex.u, &vertex.v}) {
-          texcoord_.push_back(between(-reach, reach));
+          texcoord_.push_back(is_grid ? quarter() : between(-reach, reach));
           *of_model = real(texcoord_.back());
         }
       }

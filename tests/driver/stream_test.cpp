@@ -222,9 +222,12 @@ TEST(DriverStream, WordsAreTheModelsPackets) {
     counts.sent += made.counts.sent;
     counts.vertices += made.counts.vertices;
   }
-  std::printf("%s, from seed %u: %llu primitives, %u outside, %u cut, %u culled, %u sent, %u vertices, %llu words\n",
-              label(config).c_str(), kSeed, static_cast<unsigned long long>(primitives), counts.outside, counts.cut,
-              counts.culled, counts.sent, counts.vertices, static_cast<unsigned long long>(words));
+  std::printf(
+      "%s, from seed %u: %llu primitives, %u outside, %u cut, %u culled, %u sent, %u vertices, %llu words, %llu tokens "
+      "of lines\n",
+      label(config).c_str(), kSeed, static_cast<unsigned long long>(primitives), counts.outside, counts.cut,
+      counts.culled, counts.sent, counts.vertices, static_cast<unsigned long long>(words),
+      static_cast<unsigned long long>(line_tokens));
   EXPECT_GT(counts.cut, wanted / 100);
   EXPECT_GT(counts.outside, wanted / 100);
   EXPECT_GT(kinds[static_cast<std::size_t>(PrimitiveKind::triangle)], wanted / 10);
