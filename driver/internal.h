@@ -123,6 +123,14 @@ static inline void hp_write_codes(uint32_t* to, uint32_t depth, uint32_t color) 
 #endif
 }
 void hp_put_codes(hp_context* context, uint32_t depth, uint32_t color);
+/* The word STATE and the box, inclusive, if they differ; after hp_reserve(). */
+void hp_send_state(hp_context* context, uint32_t word);
+void hp_send_box(hp_context* context, int32_t left, int32_t top, int32_t right, int32_t bottom);
+/* A header and 0 to 2 words after it; false: no room. */
+uint8_t hp_put_command(hp_context* context, uint32_t header, uint32_t words, uint32_t first, uint32_t second);
+/* A register of a unit; it overwrites the vertex slots. `value`: 128 bits; and one of 64. */
+void hp_send_token(hp_context* context, uint32_t which, const uint32_t value[4]);
+void hp_send_word(hp_context* context, uint32_t which, uint64_t value);
 
 /* ---- Vertices */
 
@@ -161,8 +169,13 @@ const hp_vertex* hp_transform(hp_context* context, const hp_vertices* vertices, 
 
 /* Sends the registers and tokens that differ; false: there is nothing to draw, or no room. */
 uint8_t hp_prepare(hp_context* context, uint8_t is_triangle);
-/* Sends the box, inclusive, if it differs. */
-void hp_send_box(hp_context* context, int32_t left, int32_t top, int32_t right, int32_t bottom);
+/* Whether the target is cleared; else an error. */
+uint8_t hp_is_after_clear(hp_context* context);
+/* The registers of colours and of stencil, if they differ: of fronts with bit 0 of `tests` and `updates`. */
+void hp_set_colors(hp_context* context, const hp_state* state);
+void hp_set_stencil(hp_context* context, const hp_stencil side[2], uint32_t tests, uint32_t updates);
+/* What a primitive says of the stencil in the word STATE: reads it, writes it, also where a test fails. */
+uint32_t hp_stencil_flags(const hp_stencil side[2]);
 /* Vertices without an outcode; and any others. */
 void hp_send_triangle(hp_context* context, const hp_vertex* a, const hp_vertex* b, const hp_vertex* c);
 void hp_clip_triangle(hp_context* context, const hp_vertex* a, const hp_vertex* b, const hp_vertex* c);
@@ -190,9 +203,6 @@ void hp_normal_codes(const hp_fixed normal[3], int32_t code[3]);
 /* Sends what the unit of light does not have yet; null: no light. */
 void hp_set_light(hp_context* context, const hp_light* light);
 #endif
-/* A register of a unit; it overwrites the vertex slots. `value`: 128 bits. */
-void hp_send_token(hp_context* context, uint32_t which, const uint32_t value[4]);
-void hp_send_word(hp_context* context, uint32_t which, uint64_t value);
 #endif
 
 #endif

@@ -1,152 +1,7 @@
-/* Stream, target, state: the words that are no primitive of a draw. Only registers that differ are sent. */
-#include <string.h>
-
+/* The state of draws. Only registers that differ are sent. */
 #include "internal.h"
 
-#define HP_LONGEST_TOKEN (1 + HP_AFFINE_WORDS + (HALFPLANE_STATE_WORD_BITS - HALFPLANE_ALL_AFFINE_CODE_BITS + 31) / 32)
-
-/* ---- Once, and begin */
-
-hp_state hp_default_state(void) {
-  hp_state state;
-  memset(&state, 0, sizeof state);
-  state.depth_test = HP_LESS;
-  state.depth_write = 1;
-  state.color_mask = 15;
-  state.src = state.src_alpha = HP_ONE_FACTOR;
-  state.logic_op = HP_LOGIC_COPY;
-  state.alpha_func = HP_ALWAYS;
-  state.sample_mask = 255;
-  state.largest_level = 12 * 256;
-  for (uint32_t i = 0; i < 2; ++i) {
-    state.stencil[i].func = HP_ALWAYS;
-    state.stencil[i].read_mask = state.stencil[i].write_mask = 255;
-  }
-  state.line_rule = HP_DIAMOND;
-  state.line_width = 1;
-  state.point_size = HP_ONE;
-  return state;
-}
-
-void hp_init(hp_context* context) {
-  memset(context, 0, sizeof *context);
-  context->state = hp_default_state();
-}
-
-uint64_t hp_config_id(void) { return ((uint64_t)HALFPLANE_CONFIG_ID_HIGH << 32) | HALFPLANE_CONFIG_ID_LOW; }
-
-void hp_begin(hp_context* context, const hp_stream* stream) {
-  if (stream->words == NULL || stream->size < HP_LONGEST) {
-    context->status |= HP_BAD_VALUE;
-    return;
-  }
-  context->stream = *stream;
-  context->at = context->written = context->read = 0;
-  context->wraps = 0;
-  context->next = stream->words;
-  context->end = stream->words + stream->size;
-  context->known = 0;
-  context->has_lines = 0;
-  context->fog_lines = NULL;
-#if HALFPLANE_NORMALS != 0
-  context->light_lines = NULL;
-#endif
-  context->is_drawn = context->is_set = context->is_cleared = 0;
-  memset(&context->counts, 0, sizeof context->counts);
-}
-
-uint32_t hp_written(const hp_context* context) { return context->written; }
-uint32_t hp_status(const hp_context* context) { return context->status; }
-const hp_counts* hp_count(const hp_context* context) { return &context->counts; }
-
-/* ---- Words */
-
-/* Counts the words up to context->next; those that wrap go to their places. */
-void hp_settle(hp_context* context) {
-  const hp_stream* stream = &context->stream;
-  if (context->end == NULL) return; /* no stream */
-  if (context->wraps != 0) {
-    const uint32_t count = (uint32_t)(context->next - context->wrapped);
-    for (uint32_t i = 0; i < count; ++i) {
-      stream->words[context->at] = context->wrapped[i];
-      if (++context->at == stream->size) context->at = 0;
-    }
-    context->written += count;
-    context->wraps = 0;
-  } else {
-    const uint32_t at = (uint32_t)(context->next - stream->words);
-    context->written += at - context->at;
-    context->at = at == stream->size ? 0 : at;
-  }
-  /* The words that are free and in one piece. */
-  const uint32_t room = stream->size - (context->written - context->read), whole = stream->size - context->at;
-  context->next = stream->words + context->at;
-  context->end = context->next + (room < whole ? room : whole);
-}
-
-uint8_t hp_make_room(hp_context* context, uint32_t words) {
-  const hp_stream* stream = &context->stream;
-  hp_settle(context);
-  if ((uint32_t)(context->end - context->next) >= words) return 1;
-  if (stream->size - (context->written - context->read) < words && stream->wait != NULL) {
-    context->read = stream->wait(stream->user, context->written);
-    hp_settle(context);
-    if ((uint32_t)(context->end - context->next) >= words) return 1;
-  }
-  if (context->end == NULL || stream->size - (context->written - context->read) < words)
-    return hp_refuse(context, HP_FULL);
-  context->wraps = 1;
-  context->next = context->wrapped;
-  context->end = context->wrapped + words;
-  return 1;
-}
-
-void hp_put_codes(hp_context* context, uint32_t depth, uint32_t color) {
-  hp_write_codes(context->next, depth, color);
-  context->next += HP_AFFINE_WORDS;
-}
-
-/* After hp_reserve(). */
-static void send_state(hp_context* context, uint32_t word) {
-  if ((context->known & HP_KNOWS_STATE) != 0 && context->state_word == word) return;
-  context->known |= HP_KNOWS_STATE;
-  context->state_word = word;
-  hp_put(context, HP_SET_OF(HP_STATE, 1));
-  hp_put(context, word);
-}
-
-/* Likewise. */
-void hp_send_box(hp_context* context, int32_t left, int32_t top, int32_t right, int32_t bottom) {
-  const uint32_t low = (uint32_t)left | ((uint32_t)top << 16), high = (uint32_t)right | ((uint32_t)bottom << 16);
-  if ((context->known & HP_KNOWS_BOX) != 0 && context->box[0] == low && context->box[1] == high) return;
-  context->known |= HP_KNOWS_BOX;
-  context->box[0] = low;
-  context->box[1] = high;
-  hp_put(context, HP_SET_OF(HP_BOX_MIN, 2));
-  hp_put(context, low);
-  hp_put(context, high);
-}
-
 #if HP_HAS_TOKENS
-void hp_send_token(hp_context* context, uint32_t which, const uint32_t value[4]) {
-  if (hp_reserve(context, HP_LONGEST_TOKEN) == 0) return;
-  hp_put(context, HP_HEADER(HP_TOKEN, which));
-  /* The low bits in the words of the affine codes, then the rest. */
-  const uint32_t bits = HALFPLANE_ALL_AFFINE_CODE_BITS % 32;
-  for (uint32_t i = 0; i < HP_AFFINE_WORDS; ++i)
-    hp_put(context, i + 1 == HP_AFFINE_WORDS && bits != 0 ? value[i] & (((uint32_t)1 << bits) - 1) : value[i]);
-  for (uint32_t i = HALFPLANE_ALL_AFFINE_CODE_BITS / 32, n = 1 + HP_AFFINE_WORDS; n < HP_LONGEST_TOKEN; ++i, ++n) {
-    const uint32_t low = i < 4 ? value[i] : 0, high = i < 3 ? value[i + 1] : 0;
-    hp_put(context, bits == 0 ? low : (low >> bits) | (high << (32 - bits)));
-  }
-  context->slot[0] = context->slot[1] = context->slot[2] = HP_NO_TAG;
-}
-
-void hp_send_word(hp_context* context, uint32_t which, uint64_t value) {
-  const uint32_t words[4] = {(uint32_t)value, (uint32_t)(value >> 32), 0, 0};
-  hp_send_token(context, which, words);
-}
-
 /* Whether a register does not have the value yet. */
 static uint8_t differs(hp_context* context, uint32_t which, uint32_t side, uint64_t value, uint32_t low_at) {
   uint32_t* held = context->token[which];
@@ -218,7 +73,7 @@ static uint8_t writes_color(const hp_state* state) {
 }
 
 #if HP_HAS_COLOR_OPS || HP_HAS_ALPHA_TEST
-static void set_colors(hp_context* context, const hp_state* state) {
+void hp_set_colors(hp_context* context, const hp_state* state) {
 #if HP_HAS_COLOR_OPS
   if (writes_color(state) != 0) {
     uint8_t reads_constant = 0;
@@ -257,15 +112,14 @@ static void set_sides(hp_context* context, uint32_t which, const uint32_t words[
     if ((wanted >> n & 1u) != 0) hp_send_word(context, which, words[n] | ((uint32_t)1 << (at + n)));
 }
 
-static void set_stencil(hp_context* context, const hp_stencil side[2], uint32_t tests, uint32_t updates) {
+void hp_set_stencil(hp_context* context, const hp_stencil side[2], uint32_t tests, uint32_t updates) {
   const uint32_t test[2] = {test_word(&side[0]), test_word(&side[1])};
   const uint32_t update[2] = {update_word(&side[0]), update_word(&side[1])};
   set_sides(context, HP_STENCIL_TEST, test, tests);
   set_sides(context, HP_STENCIL_UPDATE, update, updates);
 }
 
-/* What a primitive says of the stencil: reads it, writes it, also where a test fails. */
-static uint32_t stencil_flags(const hp_stencil side[2]) {
+uint32_t hp_stencil_flags(const hp_stencil side[2]) {
   uint32_t flags = 0;
   for (uint32_t i = 0; i < 2; ++i) {
     const hp_stencil* s = &side[i];
@@ -350,16 +204,11 @@ static void set_fog(hp_context* context, const hp_state* state) {
 
 /* ---- Draws */
 
-static uint8_t is_after_clear(hp_context* context) {
-  if (context->is_cleared == 0) context->status |= HP_WRONG_ORDER;
-  return context->is_cleared;
-}
-
 uint8_t hp_prepare(hp_context* context, uint8_t is_triangle) {
   const hp_state* state = &context->state;
   const int32_t* rect = context->rect;
   if (context->is_set == 0) context->status |= HP_BAD_VALUE;
-  if (context->is_set == 0 || is_after_clear(context) == 0 || rect[0] > rect[2] || rect[1] > rect[3]) return 0;
+  if (context->is_set == 0 || hp_is_after_clear(context) == 0 || rect[0] > rect[2] || rect[1] > rect[3]) return 0;
   uint32_t word = (uint32_t)state->depth_test | ((uint32_t)(state->depth_write != 0 ? 1 : 0) << 3) |
                   ((uint32_t)writes_color(state) << 4);
 #if HALFPLANE_MSAA_SAMPLES > 1
@@ -367,16 +216,16 @@ uint8_t hp_prepare(hp_context* context, uint8_t is_triangle) {
 #endif
   if (is_triangle != 0) word |= ((uint32_t)state->cull << 5) | ((uint32_t)state->front << 7);
 #if HP_HAS_STENCIL
-  if (state->has_stencil != 0) word |= stencil_flags(state->stencil);
+  if (state->has_stencil != 0) word |= hp_stencil_flags(state->stencil);
 #endif
   if (hp_reserve(context, 5) == 0) return 0;
-  send_state(context, word);
+  hp_send_state(context, word);
   if (is_triangle != 0) hp_send_box(context, rect[0], rect[1], rect[2], rect[3]);
 #if HP_HAS_COLOR_OPS || HP_HAS_ALPHA_TEST
-  set_colors(context, state);
+  hp_set_colors(context, state);
 #endif
 #if HP_HAS_STENCIL
-  if ((word >> 8 & 1u) != 0) set_stencil(context, state->stencil, 3, 3);
+  if ((word >> 8 & 1u) != 0) hp_set_stencil(context, state->stencil, 3, 3);
 #endif
 #if HP_HAS_TEXTURES
   if (is_triangle != 0) {
@@ -397,159 +246,7 @@ uint8_t hp_prepare(hp_context* context, uint8_t is_triangle) {
   return 1;
 }
 
-/* Target, scissor and the pixels whose centres lie in the viewport. */
-static void derive_rect(hp_context* context) {
-  const hp_viewport* view = &context->viewport;
-  const int32_t size[2] = {context->target.width, context->target.height};
-  for (uint32_t axis = 0; axis < 2; ++axis) {
-    const int32_t first = axis == 0 ? view->x : view->y, extent = axis == 0 ? view->width : view->height;
-    const int64_t low = ((int64_t)first + 32767) >> 16, high = (((int64_t)first + extent + 32767) >> 16) - 1;
-    const int32_t left = (int32_t)low, right = (int32_t)high;
-    context->rect[axis] = hp_max(hp_max(0, context->scissor[axis]), left);
-    context->rect[2 + axis] = hp_min(hp_min(size[axis] - 1, context->scissor[2 + axis]), right);
-  }
-}
-
-void hp_clear(hp_context* context, uint32_t buffers, uint32_t color, uint32_t depth, uint8_t stencil) {
-  const int32_t right = (int32_t)context->target.width - 1, bottom = (int32_t)context->target.height - 1;
-  const int32_t box[4] = {hp_max(0, context->scissor[0]), hp_max(0, context->scissor[1]),
-                          hp_min(right, context->scissor[2]), hp_min(bottom, context->scissor[3])};
-  if (context->is_set == 0 || buffers == 0 || buffers > 3 || depth > HP_DEPTH_ONE) {
-    context->status |= HP_BAD_VALUE;
-    return;
-  }
-  const uint8_t is_whole = box[0] == 0 && box[1] == 0 && box[2] == right && box[3] == bottom;
-  const uint8_t is_first = is_whole != 0 && buffers == (HP_CLEAR_DEPTH | HP_CLEAR_COLOR);
-  if ((is_first == 0 && is_after_clear(context) == 0) || box[0] > box[2] || box[1] > box[3]) return;
-  uint32_t word = HP_ALWAYS | (buffers & HP_CLEAR_DEPTH) << 3 | (buffers & HP_CLEAR_COLOR) << 3;
-#if HP_HAS_STENCIL
-  if ((buffers & HP_CLEAR_DEPTH) != 0) {
-    const hp_stencil replaces = {HP_ALWAYS, stencil, 255, 255, HP_REPLACE, HP_REPLACE, HP_REPLACE};
-    const hp_stencil side[2] = {replaces, replaces};
-    if (is_whole == 0) word |= stencil_flags(side);
-    set_stencil(context, side, 1, is_whole != 0 ? 0 : 1);
-  }
-#else
-  (void)stencil;
-#endif
-#if HP_HAS_COLOR_OPS || HP_HAS_ALPHA_TEST
-  if (is_whole == 0) { /* for earlier draws */
-    hp_state plain = hp_default_state();
-    if ((buffers & HP_CLEAR_COLOR) == 0) plain.color_mask = 0;
-    set_colors(context, &plain);
-  }
-#endif
-  if (hp_reserve(context, 5 + 1 + HP_AFFINE_WORDS) == 0) return;
-  if (is_whole == 0) {
-    send_state(context, word);
-    hp_send_box(context, box[0], box[1], box[2], box[3]);
-  }
-  hp_put(context, is_whole != 0 ? HP_HEADER(HP_FAST_CLEAR, buffers) : HP_HEADER(HP_RECTANGLE, 0));
-  hp_put_codes(context, (buffers & HP_CLEAR_DEPTH) != 0 ? hp_depth_code(depth) : 0,
-               (buffers & HP_CLEAR_COLOR) != 0 ? color : 0);
-  hp_settle(context);
-  context->is_drawn = 1;
-  if (is_first != 0) context->is_cleared = 1;
-}
-
-/* ---- The end of a frame */
-
-static uint8_t put_command(hp_context* context, uint32_t header, uint32_t words, uint32_t first, uint32_t second) {
-  if (hp_reserve(context, 1 + words) == 0) return 0;
-  hp_put(context, header);
-  if (words > 0) hp_put(context, first);
-  if (words > 1) hp_put(context, second);
-  hp_settle(context);
-  return 1;
-}
-
-void hp_flush(hp_context* context, uint8_t loses_depth) {
-  const uint32_t flag = loses_depth != 0 && HALFPLANE_CACHE_KIND == 1 ? 1 : 0; /* a cache of tiles has none */
-  if (is_after_clear(context) == 0) return;
-  if (put_command(context, HP_HEADER(HP_FLUSH, flag), 0, 0, 0) != 0) context->is_drawn = 0;
-}
-void hp_fence(hp_context* context, uint32_t tag) { (void)put_command(context, HP_HEADER(HP_FENCE, 0), 1, tag, 0); }
-static uint8_t is_multiple(uint32_t address, uint32_t shift) { return (address & (((uint32_t)1 << shift) - 1)) == 0; }
-
-void hp_present(hp_context* context, uint32_t color, uint32_t color_flags) {
-  if (is_multiple(color, HALFPLANE_PLANE_SHIFT) == 0 || is_multiple(color_flags, HALFPLANE_FLAG_ROW_SHIFT) == 0) {
-    context->status |= HP_BAD_VALUE;
-    return;
-  }
-  if (context->is_drawn != 0) {
-    context->status |= HP_WRONG_ORDER;
-    return;
-  }
-  (void)put_command(context, HP_HEADER(HP_PRESENT, 0), 2, color, color_flags);
-}
-void hp_wait_vblank(hp_context* context) { (void)put_command(context, HP_HEADER(HP_WAIT_VBLANK, 0), 0, 0, 0); }
-void hp_stop(hp_context* context) { (void)put_command(context, HP_HEADER(HP_STOP, 0), 0, 0, 0); }
-
 /* ---- State */
-
-static uint8_t is_valid_target(const hp_target* t) {
-  const uint32_t tiles = ((uint32_t)t->width + HALFPLANE_TILE_SIZE - 1) >> HALFPLANE_TILE_SHIFT;
-  if (t->width == 0 || t->height == 0 || t->width > HALFPLANE_TARGET_WIDTH || t->height > HALFPLANE_TARGET_HEIGHT)
-    return 0;
-  if ((t->row_stride >> HALFPLANE_ROW_STRIDE_BITS) != 0 || t->row_stride < tiles << (HALFPLANE_PLANE_SHIFT + 1))
-    return 0;
-  return is_multiple(t->depth | t->color | t->row_stride, HALFPLANE_PLANE_SHIFT) != 0 &&
-         is_multiple(t->depth_flags | t->color_flags, HALFPLANE_FLAG_ROW_SHIFT) != 0 &&
-         is_multiple(t->textures, 12) != 0;
-}
-
-void hp_set_target(hp_context* context, const hp_target* target) {
-  if (is_valid_target(target) == 0) {
-    context->status |= HP_BAD_VALUE;
-    return;
-  }
-  if (context->is_drawn != 0) hp_flush(context, 0);
-  if (context->is_drawn != 0 || hp_reserve(context, 8) == 0) return;
-  hp_put(context, HP_SET_OF(HP_TARGET, 7));
-  hp_put(context, (uint32_t)(target->width - 1) | ((uint32_t)(target->height - 1) << 16));
-  hp_put(context, target->depth);
-  hp_put(context, target->color);
-  hp_put(context, target->depth_flags);
-  hp_put(context, target->color_flags);
-  hp_put(context, target->row_stride);
-  hp_put(context, target->textures);
-  hp_settle(context);
-  context->target = *target;
-  context->is_set = 1;
-  context->is_cleared = 0;
-  const hp_viewport whole = {0, 0, target->width * HP_ONE, target->height * HP_ONE, 0, HP_DEPTH_ONE, 0};
-  context->scissor[0] = context->scissor[1] = 0;
-  context->scissor[2] = target->width - 1;
-  context->scissor[3] = target->height - 1;
-  hp_set_viewport(context, &whole);
-}
-
-void hp_set_viewport(hp_context* context, const hp_viewport* viewport) {
-  /* Inside the guard band, so that no sample of it is cut away. */
-  const int64_t limit = (int64_t)hp_min(HALFPLANE_GUARD_BAND, 32767) << 16;
-  const int64_t right = (int64_t)viewport->x + viewport->width, bottom = (int64_t)viewport->y + viewport->height;
-  if (viewport->width <= 0 || viewport->height <= 0 || viewport->x <= -limit || viewport->y <= -limit ||
-      right >= limit || bottom >= limit || viewport->near_depth > HP_DEPTH_ONE || viewport->far_depth > HP_DEPTH_ONE) {
-    context->status |= HP_BAD_VALUE;
-    return;
-  }
-  context->viewport = *viewport;
-  hp_derive_view(context);
-  derive_rect(context);
-}
-
-void hp_set_scissor(hp_context* context, int32_t x, int32_t y, int32_t width, int32_t height) {
-  if (width < 0 || height < 0 || x < -65536 || y < -65536 || x > 65536 || y > 65536 || width > 65536 ||
-      height > 65536) {
-    context->status |= HP_BAD_VALUE;
-    return;
-  }
-  context->scissor[0] = x;
-  context->scissor[1] = y;
-  context->scissor[2] = x + width - 1;
-  context->scissor[3] = y + height - 1;
-  derive_rect(context);
-}
 
 static uint8_t is_supported(const hp_state* state) {
   if (HP_HAS_TEXTURES == 0 && state->texture != NULL) return 0;
