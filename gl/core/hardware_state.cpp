@@ -174,11 +174,11 @@ std::optional<std::array<End, 2>> zoomed(double origin, double zoom, int texels,
   return std::array{End{origin + zoom * first, first}, End{origin + zoom * last, last}};
 }
 
-/// Pixels of an axis, and the texel of one: that of its centre.
-struct Pixels {
+/// PixelRange of an axis, and the texel of one: that of its centre.
+struct PixelRange {
   int first, end;
 };
-Pixels pixels_of(const std::array<End, 2>& ends, int target) {
+PixelRange pixels_of(const std::array<End, 2>& ends, int target) {
   const auto pixel = [&](double at) { return static_cast<int>(held(std::ceil(at - 0.5), 0, target)); };
   const auto [low, high] = std::minmax(ends[0].at, ends[1].at);
   return {pixel(low), pixel(high)};
@@ -273,7 +273,9 @@ halfplane::State clear_state(Context& context) {
   return state;
 }
 
-std::optional<halfplane::State> hardware_state(Context& context, DrawKind kind, bool is_textured, TextureUse& use) {
+bool has_hardware_fog(const FogState& fog) { return fog_of(fog).has_value(); }
+
+std::optional<halfplane::State> hardware_state(Context& context, DrawKind kind) {
   if (context.drawable == nullptr) return std::nullopt;
   Frame& frame = context.drawable->frame;
   const gl::State& from = context.state;
@@ -320,16 +322,7 @@ std::optional<halfplane::State> hardware_state(Context& context, DrawKind kind, 
     state.fog = fog_of(from.fog);
     for (std::size_t c = 0; c < 3; ++c) state.fog_color[c] = byte_of(from.fog.color[c]);
   }
-  if (is_textured) {
-    use = use_texture(context, state);
-    if (state.texture) state.color_interp = ColorInterp::perspective;
-  }
   return state;
-}
-
-std::optional<halfplane::State> hardware_state(Context& context, DrawKind kind) {
-  TextureUse use;
-  return hardware_state(context, kind, kind == DrawKind::triangles, use);
 }
 
 void draw_in(Context& context, halfplane::State state, Topology topology, std::span<Vertex> vertices,
@@ -435,7 +428,7 @@ void draw_rectangle(Context& context, const halfplane::Texture& texels, double x
   const auto across = zoomed(x, zoom_x, texels.width(), frame.width());
   const auto up = zoomed(y, zoom_y, texels.height(), frame.height());
   if (!across || !up) return;
-  const Pixels columns = pixels_of(*across, frame.width()), rows = pixels_of(*up, frame.height());
+  const PixelRange columns = pixels_of(*across, frame.width()), rows = pixels_of(*up, frame.height());
   const auto for_each_pixel = [&](const auto& visit) {
     for (int row = rows.first; row < rows.end; ++row)
       for (int column = columns.first; column < columns.end; ++column)

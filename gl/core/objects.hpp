@@ -21,7 +21,7 @@ struct TextureImage {
   int width = 0, height = 0, depth = 0, border = 0;  ///< without the border; 0: no image
   GLint internal_format = 1;                         ///< as the program asked
   GLenum base_format = GL_LUMINANCE;  ///< GL_ALPHA, LUMINANCE, LUMINANCE_ALPHA, INTENSITY, RGB, RGBA, DEPTH_COMPONENT
-  std::vector<Texel> texel;           ///< row 0 at t = 0; of depth textures the value in each channel
+  std::vector<Texel> texel;           ///< row 0 at t = 0; of depth textures texel_of_depth()
 };
 
 inline constexpr GLenum kTextureCropRect = 0x8b9d;  ///< GL_TEXTURE_CROP_RECT_OES

@@ -9,6 +9,7 @@
 
 #include "../../model/stages/color_ops.hpp"
 #include "commands.hpp"
+#include "host_shader.hpp"
 #include "matrix.hpp"
 #include "primitive.hpp"
 #include "texture.hpp"
@@ -53,10 +54,15 @@ Vec4 with_secondary(const Context& context, Vec4 color) {
   for (std::size_t c = 0; c < 3; ++c) color[c] = std::min(color[c] + context.state.current.raster.secondary[c], 1.0);
   return color;
 }
+/// The textures at the raster position, where they are magnified.
+Vec4 textured(const Context& context, const TextureEnvironments& environments, const Vec4& color) {
+  std::array<TexturePlace, kTextureUnits> places;
+  for (std::size_t unit = 0; unit < kTextureUnits; ++unit)
+    places[unit].at = context.state.current.raster.tex_coord[unit];
+  return with_secondary(context, environments(color, places));
+}
 Vec4 raster_color(const Context& context) {
-  const auto texture = raster_texture(context);
-  const Vec4& color = context.state.current.raster.color;
-  return with_secondary(context, texture ? texture(color) : color);
+  return textured(context, TextureEnvironments(context), context.state.current.raster.color);
 }
 
 /// Fragments are handed on in batches of this size.
@@ -65,12 +71,13 @@ constexpr std::size_t kBatch = 1 << 16;
 void draw_colors(Context& context, const Image& image, double x, double y) {
   const RasterPosition& raster = context.state.current.raster;
   const PixelState& state = context.state.pixel;
-  const auto texture = raster_texture(context);
-  const bool is_plain = !texture && raster.secondary[0] == 0 && raster.secondary[1] == 0 && raster.secondary[2] == 0;
+  const TextureEnvironments environments(context);
+  const bool is_plain =
+      textured_units(context) == 0 && raster.secondary[0] == 0 && raster.secondary[1] == 0 && raster.secondary[2] == 0;
   const auto texel = [&](const std::array<float, 4>& pixel) {
     if (is_plain) return texel_of(pixel);
     const Vec4 color{held(pixel[0]), held(pixel[1]), held(pixel[2]), held(pixel[3])};
-    const Vec4 drawn = with_secondary(context, texture ? texture(color) : color);
+    const Vec4 drawn = textured(context, environments, color);
     return texel_of({static_cast<float>(drawn[0]), static_cast<float>(drawn[1]), static_cast<float>(drawn[2]),
                      static_cast<float>(drawn[3])});
   };

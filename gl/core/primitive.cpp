@@ -6,365 +6,23 @@
 #include <cmath>
 #include <numeric>
 
-#include "../../model/attributes.hpp"
-#include "../../model/signature.hpp"
+#include "batch.hpp"
+#include "clip.hpp"
 #include "context.hpp"
+#include "matrix.hpp"
 
 namespace halfplane::gl {
 namespace {
 
-/// State that one draw of the model shares.
-struct Group {
-  DrawKind kind = DrawKind::triangles;
-  Topology topology = Topology::triangles;
-  bool is_window = false;    ///< ShadedVertex::clip is x, y, z in the window, and the w of clip space
-  bool is_stippled = false;  ///< polygons, in the window
-  double point_size = 1;
-  bool operator==(const Group&) const = default;
-};
-
-/// Memory of this thread that is kept from draw to draw.
-template <class Element>
-std::vector<Element>& empty_scratch() {
-  thread_local std::vector<Element> elements;
-  elements.clear();
-  return elements;
-}
-
-bool makes_triangles(Topology topology) {
-  return topology == Topology::triangles || topology == Topology::triangle_strip || topology == Topology::triangle_fan;
-}
-
-bool is_textured(const Context& context) { return sampled_texture(context, 0) != nullptr; }
-
-double limited(double value) { return value > 0 ? std::min(value, 1.0) : 0; }
-
-// ---- draws
-
-double fog_factor(const FogState& fog, double distance) {
-  const double x = fog.density * distance;
-  if (fog.mode == GL_LINEAR) return limited((fog.end - distance) / (fog.end - fog.start));
-  return limited(std::exp(fog.mode == GL_EXP ? -x : -x * x));
-}
-
-/// Whether fog between two vertices is not nearly linear.
-bool fog_bends(const FogState& fog, const ShadedVertex& a, const ShadedVertex& b) {
-  constexpr double kMost = 8 / 255.0;
-  if (a.clip[3] <= 0 || b.clip[3] <= 0) return true;  // the distance has a least value between them
-  return std::abs(fog_factor(fog, a.fog_distance) - fog_factor(fog, b.fog_distance)) > kMost;
-}
-
-/// State that decides how a batch of vertices is drawn.
-struct BatchTraits {
-  bool has_one_color = true, has_one_w = true, has_one_q = true, has_positive_q = true;
-  bool has_secondary = false;
-  bool is_fogged_by_w = true;  ///< clip w is the distance that fog takes
-};
-
-BatchTraits traits_of(std::span<const ShadedVertex> vertices) {
-  BatchTraits traits;
-  const ShadedVertex& first = vertices.front();
-  for (const ShadedVertex& v : vertices) {
-    traits.has_one_color &= v.color[0] == first.color[0] && v.secondary[0] == first.secondary[0];
-    traits.has_one_w &= v.clip[3] == first.clip[3];
-    traits.has_one_q &= v.tex_coord[0][3] == first.tex_coord[0][3];
-    traits.has_positive_q &= v.tex_coord[0][3] > 0;
-    for (std::size_t c = 0; c < 3; ++c) traits.has_secondary |= v.secondary[0][c] != 0;
-    traits.is_fogged_by_w &= std::abs(std::abs(v.clip[3]) - v.fog_distance) <= 1e-6 * v.fog_distance;
-  }
-  return traits;
-}
-
-/// Draws vertices in their first colour.
-class Batch {
- public:
-  Batch(Context& context, const Group& group, std::span<const ShadedVertex> vertices,
-        std::span<const std::uint32_t> indices)
-      : context_(context), group_(group), vertices_(vertices), indices_(indices), traits_(traits_of(vertices)) {}
-
-  void draw() {
-    const bool takes_texture = makes_triangles(group_.topology) && !group_.is_stippled;
-    const auto state = hardware_state(context_, group_.kind, takes_texture, use_);
-    if (!state) return;
-    state_ = *state;
-    if (group_.is_window) state_.space = Space::window;
-    if (group_.is_window && group_.kind != DrawKind::rectangle) cut_to_viewport();
-    if (group_.topology == Topology::points) state_.point_size = group_.point_size;
-    is_textured_ = state_.texture.has_value();
-    if (group_.is_stippled) stipple();
-    const FogState& fog = context_.state.fog;
-    has_host_fog_ = fog.enabled && !(state_.fog && traits_.is_fogged_by_w);
-    if (has_host_fog_) state_.fog.reset();
-    if (has_host_fog_ && traits_.has_one_color) state_.shade = Shade::smooth;  // fog has not one colour
-    const bool colors_differ = !traits_.has_one_color || (has_host_fog_ && !is_textured_);
-    // Equally exact, and in hardware of any configuration.
-    if (!colors_differ || traits_.has_one_w || state_.shade == Shade::flat) state_.color_interp = ColorInterp::affine;
-    const Options& options = context_.drawable->frame.options();
-    if (state_.color_interp == ColorInterp::perspective && !has_colors_over_w(options.config) &&
-        options.on_missing != OnMissing::host) {
-      missing("colours over w", "they are affine in the window; perspective.colors=1 has them");
-      state_.color_interp = ColorInterp::affine;
-    }
-    place();
-    paint([this](const ShadedVertex& v) { return main_color(v); });
-    draw_in(context_, state_, group_.topology, model_, indices_);
-    if (is_textured_ && traits_.has_secondary) add_secondary();
-    if (is_textured_ && has_host_fog_) add_fog();
-  }
-
- private:
-  void missing(const char* what, const char* instead) { context_.drawable->frame.missing(what, instead); }
-
-  /// As in clip space.
-  void cut_to_viewport() {
-    const ViewportState& v = context_.state.viewport;
-    Rect& cut = state_.scissor ? *state_.scissor : state_.scissor.emplace(Rect{v.x, v.y, v.width, v.height});
-    const auto limit = [](int& start, int& size, int low, int length) {
-      const std::int64_t end = std::min(std::int64_t{start} + size, std::int64_t{low} + length);
-      start = std::max(start, low);
-      size = static_cast<int>(std::clamp<std::int64_t>(end - start, 0, kLargestViewport));
-    };
-    limit(cut.x, cut.width, v.x, v.width);
-    limit(cut.y, cut.height, v.y, v.height);
-    limit(cut.x, cut.width, 0, kLargestViewport);
-    limit(cut.y, cut.height, 0, kLargestViewport);
-    cut.x = std::min(cut.x, kLargestViewport);
-    cut.y = std::min(cut.y, kLargestViewport);
-  }
-
-  /// Positions and texture coordinates. Where q differs, x y z w divided by q are the same place, and the interpolated value
-  /// over w / q is the projected coordinate.
-  void place() {
-    const bool divides_w = is_textured_ && !traits_.has_one_q && traits_.has_positive_q;
-    if (is_textured_ && !traits_.has_one_q) {
-      if (!divides_w) missing("texture coordinates with a q of 0 or less", "q is 1 there");
-      if (!traits_.has_one_color || state_.fog)
-        missing("projective textures under colours or fog that change", "these are interpolated over w / q");
-    }
-    model_.reserve(vertices_.size());
-    for (const ShadedVertex& v : vertices_) {
-      Vec4 at = v.clip;
-      const Vec4& tex = v.tex_coord[0];
-      const double q = tex[3] > 0 || (traits_.has_one_q && tex[3] != 0) ? tex[3] : 1;
-      if (divides_w)
-        for (std::size_t c = group_.is_window ? 3 : 0; c < 4; ++c) at[c] /= q;
-      Vertex& out = model_.emplace_back();
-      out.x = at[0], out.y = at[1], out.z = at[2], out.w = at[3];
-      if (group_.is_stippled) {
-        out.u = at[0] / 32, out.v = at[1] / 32;
-      } else if (is_textured_) {
-        out.u = tex[0] / q, out.v = tex[1] / q;
-        if (!std::isfinite(out.u)) out.u = 0;
-        if (!std::isfinite(out.v)) out.v = 0;
-      }
-    }
-  }
-
-  template <class ColorOf>
-  void paint(const ColorOf& color_of) {
-    for (std::size_t i = 0; i < vertices_.size(); ++i) {
-      const Vec4 color = color_of(vertices_[i]);
-      for (std::size_t c = 0; c < 4; ++c) model_[i].rgba[c] = 255 * limited(color[c]);
-    }
-  }
-
-  [[nodiscard]] Vec4 main_color(const ShadedVertex& v) const {
-    Vec4 color = v.color[0];
-    const Vec4& fog = context_.state.fog.color;
-    const double f = has_host_fog_ && !is_textured_ ? fog_factor(context_.state.fog, v.fog_distance) : 1;
-    for (std::size_t c = 0; c < 3; ++c) {
-      if (!is_textured_) color[c] = limited(color[c] + v.secondary[0][c]);
-      if (f < 1) color[c] = f * color[c] + (1 - f) * fog[c];
-      if (is_textured_ && use_.replaces_rgb) color[c] = 1;
-    }
-    if (is_textured_ && use_.replaces_alpha) color[3] = 1;
-    // A texel of the stipple is alpha: the test must tell it from 0.
-    if (group_.is_stippled && color[3] < 1 / 255.0) color[3] = 1 / 255.0;
-    return color;
-  }
-
-  /// The pattern as a texture over the window, whose zeros the alpha test drops.
-  void stipple() {
-    if (is_textured(context_)) missing("stippled polygons with a texture", "they are drawn without the texture");
-    const auto& rows = context_.state.stipple.row;
-    SignatureHash hash;
-    for (const std::uint32_t row : rows) hash.add(row);
-    state_.texture = context_.drawable->frame.texture(hash.signature().low | std::uint64_t{1} << 63, [&rows] {
-      halfplane::Texture texture;
-      texture.name = "stipple";
-      TextureLevel& level = texture.level.emplace_back(TextureLevel{32, 32, {}});
-      for (const std::uint32_t row : rows)
-        for (unsigned x = 0; x < 32; ++x) level.code.push_back((row >> (31 - x) & 1) != 0 ? 0xffffffffU : 0xffffff00U);
-      return texture;
-    });
-    state_.texture_interp = TextureInterp::affine;
-    const AlphaTest& test = state_.alpha_test;
-    const bool fails_zero = test.func == DepthFunc::never || test.func == DepthFunc::greater ||
-                            (test.func == DepthFunc::gequal && test.reference > 0) ||
-                            (test.func == DepthFunc::equal && test.reference > 0) ||
-                            (test.func == DepthFunc::notequal && test.reference == 0);
-    if (test.func != DepthFunc::always && !fails_zero)
-      missing("stippled polygons whose alpha test passes an alpha of 0", "they are drawn without the alpha test");
-    if (!fails_zero) state_.alpha_test = {DepthFunc::greater, 0};
-  }
-
-  /// Draws colours over the batch, for features that the model's textures lack.
-  template <class ColorOf>
-  void draw_over(const char* what, BlendFactors blend, std::array<std::uint8_t, 3> fog_color, const ColorOf& color_of) {
-    const ColorState& color = context_.state.color;
-    if (state_.blend || color.logic_op || state_.stencil || state_.alpha_test.func != DepthFunc::always)
-      return missing(what, "the texture is drawn without, as other fragment operations need its colour");
-    missing(what, "it is drawn in another pass");
-    halfplane::State over = state_;
-    over.texture.reset();
-    if (over.depth_write) over.depth_test = DepthFunc::equal;
-    over.depth_write = false;
-    over.blend = blend;
-    over.color_mask[3] = false;
-    over.fog_color = fog_color;
-    paint(color_of);
-    context_.drawable->frame.draw(over, group_.topology, model_, indices_);
-  }
-
-  void add_secondary() {
-    draw_over("colours that are added to a texture", {BlendFactor::one, BlendFactor::one}, {0, 0, 0},
-              [](const ShadedVertex& v) { return v.secondary[0]; });
-  }
-
-  void add_fog() {
-    draw_over("fog of a texture by other distances than w", {BlendFactor::src_alpha, BlendFactor::one_minus_src_alpha},
-              state_.fog_color, [this](const ShadedVertex& v) {
-                Vec4 color = context_.state.fog.color;
-                color[3] = 1 - fog_factor(context_.state.fog, v.fog_distance);
-                return color;
-              });
-  }
-
-  Context& context_;
-  Group group_;
-  std::span<const ShadedVertex> vertices_;
-  std::span<const std::uint32_t> indices_;
-  BatchTraits traits_;
-  halfplane::State state_;
-  TextureUse use_;
-  bool is_textured_ = false, has_host_fog_ = false;
-  std::vector<Vertex>& model_ = empty_scratch<Vertex>();  // one batch is drawn at a time
-};
-
-void draw_batch(Context& context, const Group& group, std::span<const ShadedVertex> vertices,
-                std::span<const std::uint32_t> indices) {
-  if (!vertices.empty() && !indices.empty()) Batch(context, group, vertices, indices).draw();
-}
-
-// ---- clipping
-
-template <std::size_t n>
-std::array<double, n> mix(const std::array<double, n>& a, const std::array<double, n>& b, double t) {
-  std::array<double, n> out;
-  for (std::size_t i = 0; i < n; ++i) out[i] = a[i] + t * (b[i] - a[i]);
-  return out;
-}
-template <class Element, std::size_t n>
-std::array<Element, n> mix(const std::array<Element, n>& a, const std::array<Element, n>& b, double t) {
-  std::array<Element, n> out;
-  for (std::size_t i = 0; i < n; ++i) out[i] = mix(a[i], b[i], t);
-  return out;
-}
-
-ShadedVertex mix(const ShadedVertex& a, const ShadedVertex& b, double t) {
-  // The distance of a line that passes the eye has no sign: it is that of the mixed place, unless it is a coordinate.
-  const auto is_depth = [](const ShadedVertex& v) { return v.fog_distance == std::abs(v.eye[2]); };
-  ShadedVertex out{.eye = mix(a.eye, b.eye, t),
-                   .clip = mix(a.clip, b.clip, t),
-                   .color = mix(a.color, b.color, t),
-                   .secondary = mix(a.secondary, b.secondary, t),
-                   .tex_coord = mix(a.tex_coord, b.tex_coord, t),
-                   .fog_distance = std::lerp(a.fog_distance, b.fog_distance, t),
-                   .point_size = std::lerp(a.point_size, b.point_size, t),
-                   .edge_flag = a.edge_flag};
-  if (is_depth(a) && is_depth(b)) out.fog_distance = std::abs(out.eye[2]);
-  return out;
-}
-
-/// Inside: the product with a vertex's member is not negative.
-struct Plane {
-  Vec4 ShadedVertex::*where;
-  Vec4 equation;
-  bool shows_cut;  ///< the edge along the cut is one of the polygon's
-};
-
-/// Planes near and far, then the sides, `margin` pixels farther out.
-std::array<Plane, 6> view_volume(const ViewportState& viewport, double margin) {
-  const double x = 1 + 2 * margin / viewport.width, y = 1 + 2 * margin / viewport.height;
-  return {{{&ShadedVertex::clip, {0, 0, 1, 1}, false},
-           {&ShadedVertex::clip, {0, 0, -1, 1}, false},
-           {&ShadedVertex::clip, {1, 0, 0, x}, false},
-           {&ShadedVertex::clip, {-1, 0, 0, x}, false},
-           {&ShadedVertex::clip, {0, 1, 0, y}, false},
-           {&ShadedVertex::clip, {0, -1, 0, y}, false}}};
-}
-
-double distance(const Plane& plane, const ShadedVertex& v) {
-  const Vec4& at = v.*plane.where;
-  return std::inner_product(at.begin(), at.end(), plane.equation.begin(), 0.0);
-}
-
-/// The same point for either order of the ends.
-ShadedVertex cut(const ShadedVertex& inside, double from, const ShadedVertex& outside, double to) {
-  return mix(inside, outside, from / (from - to));
-}
-
-using Vertices = std::vector<ShadedVertex>;
-
-void clip_polygon(Vertices& vertices, const Plane& plane) {
-  Vertices out;
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    const ShadedVertex &a = vertices[i], &b = vertices[(i + 1) % vertices.size()];
-    const double from = distance(plane, a), to = distance(plane, b);
-    const bool is_in = from >= 0;
-    if (is_in) out.push_back(a);
-    if (is_in == (to >= 0)) continue;
-    out.push_back(is_in ? cut(a, from, b, to) : cut(b, to, a, from));
-    out.back().edge_flag = is_in ? plane.shows_cut : a.edge_flag;
-  }
-  vertices = std::move(out);
-}
-
-/// Points, lines and polygons. Empty: nothing is left.
-void clip(Vertices& vertices, std::span<const Plane> planes) {
-  for (const Plane& plane : planes) {
-    if (vertices.size() > 2) {
-      clip_polygon(vertices, plane);
-      if (vertices.size() < 3) vertices.clear();
-      continue;
-    }
-    const Vertices whole = vertices;
-    for (std::size_t i = 0; i < whole.size(); ++i) {
-      const ShadedVertex &v = whole[i], &other = whole[whole.size() - 1 - i];
-      const double at = distance(plane, v), beyond = distance(plane, other);
-      if (at >= 0) continue;
-      if (!(beyond >= 0) || !(at < 0)) return vertices.clear();
-      vertices[i] = cut(other, beyond, v, at);
-      vertices[i].edge_flag = v.edge_flag;
-    }
-  }
-}
-
-Vec4 window_position(const ViewportState& v, const Vec4& clip) {
-  const double x = clip[0] / clip[3], y = clip[1] / clip[3], z = clip[2] / clip[3];
-  return {v.x + (x + 1) / 2 * v.width, v.y + (y + 1) / 2 * v.height, v.near + limited((z + 1) / 2) * (v.far - v.near),
-          clip[3]};
-}
-
-// ---- primitives one by one
-
 /// Takes primitives apart until the model, feedback or selection can take them.
 class Pipeline {
  public:
-  explicit Pipeline(Context& context)
+  /// `is_shaded`: the host shades the fragments of what is textured.
+  Pipeline(Context& context, bool is_shaded)
       : context_(context),
         state_(context.state),
-        is_textured_(is_textured(context)),
+        is_textured_(textured_units(context) != 0),
+        is_shaded_(is_shaded),
         is_fed_(context.render_mode != GL_RENDER) {
     const TransformState& transform = state_.transform;
     for (std::size_t i = 0; i < transform.clip_plane.size(); ++i)
@@ -391,14 +49,14 @@ class Pipeline {
   }
 
  private:
-  void add(const Group& group, const Vertices& vertices) {
+  void add(const BatchKind& group, const Vertices& vertices) {
     if (group != group_) flush();
     group_ = group;
     pending_.insert(pending_.end(), vertices.begin(), vertices.end());
   }
 
   /// Triangles of a polygon, each with the vertex `last` at its end.
-  void add_fan(const Group& group, const Vertices& v, std::size_t last) {
+  void add_fan(const BatchKind& group, const Vertices& v, std::size_t last) {
     for (std::size_t i = 1; i + 1 < v.size(); ++i)
       add(group, {v[(last + i) % v.size()], v[(last + i + 1) % v.size()], v[last % v.size()]});
   }
@@ -448,10 +106,11 @@ class Pipeline {
   }
 
   void fill(Vertices vertices, std::size_t provoking) {
-    if (!is_fed_ && !state_.polygon.stipple) return add_fan({}, vertices, provoking < vertices.size() ? provoking : 0);
+    if (!is_fed_ && !state_.polygon.stipple)
+      return add_fan({.is_shaded = is_shaded_}, vertices, provoking < vertices.size() ? provoking : 0);
     if (!to_window(vertices)) return;
     if (is_fed_) return feed_primitive(context_, GL_POLYGON_TOKEN, vertices);
-    add_fan({.is_window = true, .is_stippled = true}, vertices, 0);
+    add_fan({.is_window = true, .is_stippled = true, .is_shaded = is_shaded_}, vertices, 0);
   }
 
   /// Polygon offset of lines and points, which the model has of triangles alone.
@@ -483,7 +142,8 @@ class Pipeline {
 
   void point(Vertices vertices) {
     const double size = point_size(vertices.front());
-    if (!is_fed_ && !is_textured_) return add({DrawKind::points, Topology::points, false, false, size}, vertices);
+    if (!is_fed_ && !is_textured_)
+      return add({.kind = DrawKind::points, .topology = Topology::points, .point_size = size}, vertices);
     if (!to_window(vertices)) return;
     if (is_fed_) return feed_primitive(context_, GL_POINT_TOKEN, vertices);
     if (state_.point.smooth) missing("smooth points with a texture", "they are squares");
@@ -537,18 +197,10 @@ class Pipeline {
            0;
   }
 
-  /// In window coordinates: places are linear there, attributes over w.
-  [[nodiscard]] static ShadedVertex window_mix(const ShadedVertex& a, const ShadedVertex& b, double t) {
-    const double per_w = (1 - t) / a.clip[3] + t / b.clip[3];
-    ShadedVertex v = mix(a, b, t / b.clip[3] / per_w);
-    v.clip = mix(a.clip, b.clip, t);
-    v.clip[3] = 1 / per_w;
-    return v;
-  }
-
-  /// The model fogs the ends of a line: a line is halved until the error is invisible.
+  /// Fog is the model's at the ends of a line: this one is halved until that shows no more.
   void fogged_piece(const ShadedVertex& a, const ShadedVertex& b, int halvings) {
-    if (halvings == 0 || !fog_bends(a, b)) return add({DrawKind::lines, Topology::lines, true, false, 1}, {a, b});
+    if (halvings == 0 || !fog_bends(a, b))
+      return add({.kind = DrawKind::lines, .topology = Topology::lines, .is_window = true}, {a, b});
     const ShadedVertex middle = window_mix(a, b, 0.5);
     fogged_piece(a, middle, halvings - 1);
     fogged_piece(middle, b, halvings - 1);
@@ -579,7 +231,7 @@ class Pipeline {
         corner[i].clip[c] += (i < 2 ? -along[c] : along[c]) + (i % 2 == 0 ? -across[c] : across[c]);
     }
     missing(kind == DrawKind::points ? "textured points" : "textured lines", "they are drawn as two triangles");
-    add({kind, Topology::triangles, true, false, 1},
+    add({.kind = kind, .is_window = true, .is_shaded = is_shaded_},
         {corner[0], corner[2], corner[3], corner[0], corner[3], corner[1]});
   }
 
@@ -598,10 +250,10 @@ class Pipeline {
 
   Context& context_;
   const gl::State& state_;
-  const bool is_textured_, is_fed_;
+  const bool is_textured_, is_shaded_, is_fed_;
   std::vector<Plane> user_planes_;
   std::uint64_t stipple_at_ = 0;  ///< pixels since the stipple was reset
-  Group group_;
+  BatchKind group_;
   Vertices pending_;
   std::vector<std::uint32_t> indices_;
 };
@@ -670,7 +322,7 @@ bool is_taken_apart(const Context& context, Shape shape, std::span<const ShadedV
     return state.polygon.mode != std::array<GLenum, 2>{GL_FILL, GL_FILL} || state.polygon.stipple ||
            std::ranges::any_of(vertices, is_two_sided);
   }
-  if (is_textured(context)) return true;
+  if (textured_units(context) != 0) return true;
   const auto bends = [&](std::uint32_t a, std::uint32_t b) { return fog_bends(state.fog, vertices[a], vertices[b]); };
   if (shape == Shape::line && state.fog.enabled && std::ranges::adjacent_find(indices, bends) != indices.end())
     return true;
@@ -686,9 +338,11 @@ void draw_primitives(Context& context, GLenum mode, std::span<const ShadedVertex
   if (context.render_mode == GL_RENDER && context.drawable == nullptr) return;
   const Assembly& assembly = kAssemblies[mode];
   const Shape shape = shape_of(mode);
-  Pipeline pipeline(context);
-  if (!is_taken_apart(context, shape, vertices, indices)) {
-    Group group{.topology = assembly.topology.value_or(Topology::triangles)};
+  const char* const beyond = context.render_mode == GL_RENDER ? why_shaded(context, vertices) : nullptr;
+  if (beyond != nullptr) context.drawable->frame.missing(beyond, "the host shades its fragments");
+  Pipeline pipeline(context, beyond != nullptr);
+  if (beyond == nullptr && !is_taken_apart(context, shape, vertices, indices)) {
+    BatchKind group{.topology = assembly.topology.value_or(Topology::triangles)};
     if (shape == Shape::line) group.kind = DrawKind::lines;
     if (shape == Shape::point) {
       group.kind = DrawKind::points;
@@ -727,13 +381,14 @@ void draw_fragments(Context& context, std::span<const WindowFragment> fragments)
     const WindowFragment& f = fragments[i];
     if (f.x >= 0 && f.x < frame.width() && f.y >= 0 && f.y < frame.height()) {
       ShadedVertex& v = vertices.emplace_back();
-      v.clip = {f.x + 0.5, f.y + 0.5, limited(f.z), f.w};
+      v.clip = {f.x + 0.5, f.y + 0.5, held(f.z), f.w};
       v.color.fill(f.color);
       v.fog_distance = f.w;
       indices.push_back(static_cast<std::uint32_t>(indices.size()));
     }
     if (vertices.size() < kMost && i + 1 < fragments.size()) continue;
-    draw_batch(context, {DrawKind::rectangle, Topology::points, true, false, 1}, vertices, indices);
+    draw_batch(context, {.kind = DrawKind::rectangle, .topology = Topology::points, .is_window = true}, vertices,
+               indices);
     vertices.clear();
     indices.clear();
   }

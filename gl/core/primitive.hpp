@@ -35,12 +35,11 @@ void draw_rectangle(Context& context, const halfplane::Texture& texels, double x
 
 enum class DrawKind { triangles, lines, points, rectangle };
 
-/// The model's state for the context's state. None: nothing can be drawn (a face culled away, no buffer).
-/// Reports by Frame::missing() features that the model lacks.
+/// The model's state of what the context's state says, but for textures (use_texture()). None: nothing can be drawn (a face
+/// culled away, no buffer). Says by Frame::missing() what the model does not have.
 [[nodiscard]] std::optional<halfplane::State> hardware_state(Context& context, DrawKind kind);
-/// The same; with `is_textured` for triangles whatever `kind` is, and how the texture takes their colours.
-[[nodiscard]] std::optional<halfplane::State> hardware_state(Context& context, DrawKind kind, bool is_textured,
-                                                             TextureUse& use);
+/// Whether the model's numbers reach this fog.
+[[nodiscard]] bool has_hardware_fog(const FogState& fog);
 /// As hardware_state(), for a clear: scissor and masks.
 [[nodiscard]] halfplane::State clear_state(Context& context);
 /// State for pixels that the host writes: in the window, without tests, depth and stencil.

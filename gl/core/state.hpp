@@ -13,7 +13,7 @@ namespace halfplane::gl {
 using Vec3 = std::array<double, 3>;
 using Vec4 = std::array<double, 4>;
 
-inline constexpr int kTextureUnits = 1;  ///< GL_MAX_TEXTURE_UNITS
+inline constexpr int kTextureUnits = 2;  ///< GL_MAX_TEXTURE_UNITS
 inline constexpr int kLights = 8;
 inline constexpr int kClipPlanes = 6;
 inline constexpr int kLargestTexture = 4096;  ///< texels along a side

@@ -15,6 +15,7 @@ namespace {
 
 constexpr int kLastLevel = 12;
 static_assert(1 << kLastLevel == kLargestTexture);
+constexpr double kLargestDepth = 4294967295.0;  // of texel_of_depth()
 
 std::uint64_t next_revision() {
   static std::atomic<std::uint64_t> last{0};
@@ -98,19 +99,20 @@ GLint kept_format(GLint internal_format) {
 
 /// A base format's components: which channel each comes from, and where the texel holds them (TextureImage).
 Texel stored_texel(GLenum base, const std::array<float, 4>& color) {
+  if (base == GL_DEPTH_COMPONENT) return texel_of_depth(color[0]);
   const Texel t = texel_of(color);
   switch (base) {
     case GL_ALPHA: return {255, 255, 255, t[3]};
     case GL_LUMINANCE: return {t[0], t[0], t[0], 255};
     case GL_LUMINANCE_ALPHA: return {t[0], t[0], t[0], t[3]};
-    case GL_INTENSITY:
-    case GL_DEPTH_COMPONENT: return {t[0], t[0], t[0], t[0]};
+    case GL_INTENSITY: return {t[0], t[0], t[0], t[0]};
     case GL_RGB: return {t[0], t[1], t[2], 255};
     default: return t;
   }
 }
 /// The way back, for glGetTexImage (table 6.1; a luminance is the red component alone).
 std::array<float, 4> read_texel(GLenum base, const Texel& texel) {
+  if (base == GL_DEPTH_COMPONENT) return {static_cast<float>(depth_of_texel(texel)), 0, 0, 0};
   std::array<float, 4> color{};
   for (std::size_t c = 0; c < 4; ++c) color[c] = static_cast<float>(texel[c]) / 255;
   switch (base) {
@@ -212,6 +214,12 @@ std::vector<TextureImage> box_levels(const TextureImage& image) {
     const std::uint64_t texels = texel_count(image) / texel_count(smaller);
     for (const Sum& sum : sums) {
       Texel& texel = smaller.texel.emplace_back();
+      if (image.base_format == GL_DEPTH_COMPONENT) {
+        double depths = 0;
+        for (const std::uint32_t digit : sum) depths = 256 * depths + digit;
+        texel = texel_of_depth(depths / static_cast<double>(texels) / kLargestDepth);
+        continue;
+      }
       for (std::size_t c = 0; c < 4; ++c) texel[c] = static_cast<std::uint8_t>((sum[c] + texels / 2) / texels);
     }
     levels.push_back(std::move(smaller));
@@ -332,6 +340,18 @@ Texel texel_of(const std::array<float, 4>& color) {
   return texel;
 }
 
+Texel texel_of_depth(double depth) {
+  const auto code = static_cast<std::uint32_t>(std::llround(held(depth) * kLargestDepth));
+  Texel texel{};
+  for (std::size_t c = 0; c < 4; ++c) texel[c] = static_cast<std::uint8_t>(code >> (24 - 8 * c) & 255);
+  return texel;
+}
+double depth_of_texel(const Texel& texel) {
+  double code = 0;
+  for (const std::uint8_t digit : texel) code = 256 * code + digit;
+  return code / kLargestDepth;
+}
+
 std::optional<TextureImage> stored_image(const Image& image, GLint internal_format, int border) {
   const GLenum base = base_format(internal_format);
   if (base == GL_NONE) return std::nullopt;
@@ -391,6 +411,12 @@ const TextureObject* sampled_texture(const Context& context, int unit) {
     return texture != nullptr && is_complete(*texture) ? texture : nullptr;
   }
   return nullptr;
+}
+
+unsigned textured_units(const Context& context) {
+  unsigned units = 0;
+  for (int u = 0; u < kTextureUnits; ++u) units |= sampled_texture(context, u) != nullptr ? 1U << u : 0;
+  return units;
 }
 
 TextureObject* bound_texture(Context& context, GLenum target) {
@@ -570,7 +596,9 @@ Values get_tex_level_parameter(Context& context, GLenum target, GLint level, GLe
                                 {GL_TEXTURE_INTENSITY_SIZE, {GL_INTENSITY}},
                                 {GL_TEXTURE_DEPTH_SIZE, {GL_DEPTH_COMPONENT}}});
   if (const auto* row = std::ranges::find(kComponents, pname, &Component::pname); row != kComponents.end())
-    return one(image.width != 0 && std::ranges::find(row->base, image.base_format) != row->base.end() ? 8 : 0);
+    return one(image.width != 0 && std::ranges::find(row->base, image.base_format) != row->base.end()
+                   ? pname == GL_TEXTURE_DEPTH_SIZE ? 24 : 8  // depths pass an Image, whose floats hold 24
+                   : 0);
   switch (pname) {
     case GL_TEXTURE_WIDTH: return one(side(image.width, true));
     case GL_TEXTURE_HEIGHT: return one(side(image.height, from->dimensions > 1));

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 
 #include "../../model/scene.hpp"
@@ -21,22 +20,31 @@ struct Context;
 /// RGBA as 8 bits a channel, held to 0...1.
 [[nodiscard]] Texel texel_of(const std::array<float, 4>& color);
 
+/// Depth textures keep 32 bits in the four channels of a texel, the highest in the first.
+[[nodiscard]] Texel texel_of_depth(double depth);
+[[nodiscard]] double depth_of_texel(const Texel& texel);
+/// The border's colour as a texel of the base format.
+[[nodiscard]] Texel border_texel(const TextureObject& texture);
+
 /// Whether sampling finds all images that the filters ask for (OpenGL 1.5, 3.8.10).
 [[nodiscard]] bool is_complete(const TextureObject& texture);
 
 /// An image as an internal format keeps it, without its border. None: the format is none.
 [[nodiscard]] std::optional<TextureImage> stored_image(const Image& image, GLint internal_format, int border);
 
-/// Fills texture, filters, wraps, level of detail and combine mode of `state` as the unit's texture and environment ask,
-/// and reports by Frame::missing() what the model lacks. Where the result says so, vertices are white or opaque: GL_REPLACE
-/// by a texture without alpha is modulate with white, which leaves alpha.
+/// The units whose texture is on and complete: bit by bit.
+[[nodiscard]] unsigned textured_units(const Context& context);
+
+/// What of the context's textures and environments the model's texture unit does not have, so that fragments are shaded on
+/// the host (host_shader.hpp). Null: it has all of it.
+[[nodiscard]] const char* beyond_texture_unit(Context& context, unsigned units);
+
+/// Fills texture, filters, wraps, level of detail and combine mode of `state` as the texture and environment of `unit` ask,
+/// and says by Frame::missing() what the model has not. Where the result says so, vertices are white or opaque: GL_REPLACE
+/// by a texture without alpha is modulate with white, which leaves alpha. Precondition: beyond_texture_unit() is null.
 struct TextureUse {
   bool replaces_rgb = false, replaces_alpha = false;  ///< the vertex's colour counts as 1 there
 };
-[[nodiscard]] TextureUse use_texture(Context& context, halfplane::State& state);
-
-/// The function that the unit's texture applies to colors of fragments at the raster position, where it is magnified. Empty: no
-/// texture. Valid while the state of the context stays.
-[[nodiscard]] std::function<Vec4(const Vec4&)> raster_texture(const Context& context);
+[[nodiscard]] TextureUse use_texture(Context& context, std::size_t unit, halfplane::State& state);
 
 }  // namespace halfplane::gl

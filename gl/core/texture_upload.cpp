@@ -10,28 +10,27 @@
 
 #include "context.hpp"
 #include "matrix.hpp"
+#include "sampler.hpp"
 #include "texture.hpp"
 
 namespace halfplane::gl {
 namespace {
 
-/// How RGB and alpha come from the vertex's colour and the texel that is handed to the model. of_white: not exactly; the
-/// environment's result for white vertices is multiplied with their colour.
-enum class Rgb : std::uint8_t { modulate, replace, add, decal, decal_constant, blend, of_white };
-enum class Alpha : std::uint8_t { multiply, replace, of_white };
+/// How RGB and alpha come from the vertex's colour and the texel that is handed to the model. none: the model has no mode
+/// for it.
+enum class Rgb : std::uint8_t { modulate, replace, add, decal, decal_constant, blend, none };
+enum class Alpha : std::uint8_t { multiply, replace, none };
 struct Fit {
   Rgb rgb = Rgb::modulate;
   Alpha alpha = Alpha::multiply;
   bool folds = false;  ///< the environment is folded into the texels
-  [[nodiscard]] bool is_exact() const { return rgb != Rgb::of_white && alpha != Alpha::of_white; }
+  [[nodiscard]] bool is_exact() const { return rgb != Rgb::none && alpha != Alpha::none; }
 };
 
 /// One channel of an environment's result for one texel: a times the vertex's, plus b.
 struct Affine {
   double a = 0, b = 0;
-  bool is_exact = true;  ///< false: right for white, opaque vertices only
-
-  [[nodiscard]] double of_white() const { return a + b; }
+  bool is_exact = true;  ///< else it has another form
 };
 using Result = std::array<Affine, 4>;
 
@@ -42,16 +41,14 @@ Affine sum(const Affine& x, const Affine& y, double factor, double bias) {
   return {x.a + factor * y.a, x.b + factor * y.b + bias, x.is_exact && y.is_exact};
 }
 Affine product(const Affine& x, const Affine& y) {
-  if (x.a != 0 && y.a != 0) return {x.of_white() * y.of_white(), 0, false};
+  if (x.a != 0 && y.a != 0) return {0, 0, false};
   return {x.a * y.b + y.a * x.b, x.b * y.b, x.is_exact && y.is_exact};
 }
 Affine complement(const Affine& x) { return {-x.a, 1 - x.b, x.is_exact}; }
 
-/// Inputs of an environment: the texture's color as table 3.20 fills it in, the constant, and the fragment's color where
-/// it is known.
+/// What an environment sees: the texture's color as table 3.20 fills it in, and the constant.
 struct Inputs {
   Vec4 texel, constant;
-  const Vec4* fragment;
 };
 
 /// An argument of GL_COMBINE in one channel (tables 3.24 and 3.25).
@@ -63,7 +60,7 @@ Affine argument(const TextureCombiner& combiner, std::size_t i, std::size_t chan
   if (source == GL_CONSTANT)
     value.b = inputs.constant[c];
   else if (source == GL_PRIMARY_COLOR || source == GL_PREVIOUS)  // the first unit's previous color is the primary one
-    value = inputs.fragment != nullptr ? Affine{0, (*inputs.fragment)[c]} : Affine{1, 0, c == channel};
+    value = {1, 0, c == channel};
   else
     value.b = inputs.texel[c];
   return operand == GL_ONE_MINUS_SRC_COLOR || operand == GL_ONE_MINUS_SRC_ALPHA ? complement(value) : value;
@@ -100,10 +97,10 @@ Affine combined(const TextureCombiner& combiner, std::size_t channel, const Inpu
 }
 
 /// The environment of a unit: tables 3.21 and 3.22, and GL_COMBINE. `texel`: as it is stored, in 0...1.
-Result environment(const TextureUnit& unit, GLenum base, const Vec4& texel, const Vec4* fragment = nullptr) {
+Result environment(const TextureUnit& unit, GLenum base, const Vec4& texel) {
   Result result;
   if (unit.env_mode == GL_COMBINE) {
-    Inputs inputs{texel, unit.env_color, fragment};
+    Inputs inputs{texel, unit.env_color};
     if (base == GL_ALPHA) inputs.texel[0] = inputs.texel[1] = inputs.texel[2] = 0;
     const auto& [rgb, alpha] = unit.combine;
     for (std::size_t c = 0; c < 3; ++c) result[c] = combined(rgb, c, inputs);
@@ -132,11 +129,7 @@ Result environment(const TextureUnit& unit, GLenum base, const Vec4& texel, cons
 
 Vec4 real(const Texel& texel) { return {texel[0] / 255.0, texel[1] / 255.0, texel[2] / 255.0, texel[3] / 255.0}; }
 
-bool is_linear(GLenum filter) {
-  return filter == GL_LINEAR || filter == GL_LINEAR_MIPMAP_NEAREST || filter == GL_LINEAR_MIPMAP_LINEAR;
-}
-
-/// The fit of modes that take texels as they are; none: the texels decide. `blends`: the hardware has a constant color.
+/// Of the modes that take texels as they are; none: the texels decide. `blends`: the hardware has a constant color.
 std::optional<Fit> direct_fit(GLenum mode, GLenum base, bool blends) {
   const bool is_opaque = base == GL_RGB || base == GL_LUMINANCE;
   switch (mode) {
@@ -167,27 +160,14 @@ struct Sampled {
   [[nodiscard]] const TextureImage& level(std::size_t l) const { return texture.face[0][l]; }
   [[nodiscard]] Texel texel(std::size_t l, std::size_t i) const {
     const Texel& t = level(l).texel[i];
-    if (level(l).base_format != GL_DEPTH_COMPONENT || base == GL_INTENSITY) return t;
-    return base == GL_ALPHA ? Texel{255, 255, 255, t[0]} : Texel{t[0], t[0], t[0], 255};
+    if (level(l).base_format != GL_DEPTH_COMPONENT) return t;
+    const auto depth = static_cast<std::uint8_t>(std::lround(255 * depth_of_texel(t)));
+    return base == GL_ALPHA       ? Texel{255, 255, 255, depth}
+           : base == GL_INTENSITY ? Texel{depth, depth, depth, depth}
+                                  : Texel{depth, depth, depth, 255};
   }
-  /// The border's colour as a texel of the base format.
-  [[nodiscard]] Texel border() const {
-    Texel t{};
-    for (std::size_t c = 0; c < 4; ++c) {
-      const double channel = texture.border_color[c];
-      t[c] = static_cast<std::uint8_t>(std::lround(255 * (channel > 0 ? std::min(channel, 1.0) : 0)));  // NaN: 0
-    }
-    const std::uint8_t of_alpha = level(first).base_format == GL_DEPTH_COMPONENT ? t[0] : t[3];
-    switch (base) {
-      case GL_ALPHA: return {255, 255, 255, of_alpha};
-      case GL_INTENSITY: return {t[0], t[0], t[0], t[0]};
-      case GL_LUMINANCE: return {t[0], t[0], t[0], 255};
-      case GL_LUMINANCE_ALPHA: return {t[0], t[0], t[0], t[3]};
-      case GL_RGB: return {t[0], t[1], t[2], 255};
-      default: return t;
-    }
-  }
-  /// Texels of one level: of a texture with several layers the first.
+  [[nodiscard]] Texel border() const { return border_texel(texture); }
+  /// Texels of one level.
   [[nodiscard]] std::size_t texels(std::size_t l) const {
     return static_cast<std::size_t>(level(l).width) * static_cast<std::size_t>(level(l).height);
   }
@@ -247,10 +227,9 @@ Texel folded(const Fit& fit, const Result& result, const Texel& texel, const Vec
   std::array<float, 4> color{};
   for (std::size_t c = 0; c < 4; ++c) {
     const auto& [a, b, is_exact] = result[c];
-    const bool is_of_white = c == 3 ? fit.alpha == Alpha::of_white : fit.rgb == Rgb::of_white;
     const bool takes_a = c == 3 ? fit.alpha == Alpha::multiply : fit.rgb == Rgb::modulate;
     const bool takes_rest = c != 3 && fit.rgb == Rgb::blend;
-    color[c] = static_cast<float>(is_of_white ? a + b : takes_rest ? 1 - a : takes_a ? a : b);
+    color[c] = static_cast<float>(takes_rest ? 1 - a : takes_a ? a : b);
   }
   if (fit.rgb == Rgb::decal || fit.rgb == Rgb::decal_constant) {
     for (std::size_t c = 0; c < 3; ++c)
@@ -321,6 +300,41 @@ Fit folded_fit(Context& context, const Sampled& sampled, bool blends, bool has_b
   return fit;
 }
 
+/// How the model's unit draws a texture of a unit, if it does.
+struct Choice {
+  Choice(Context& context, const TextureObject& texture, const TextureUnit& unit)
+      : sampled{texture, unit, base_of(texture), static_cast<std::size_t>(texture.base_level), last_level(texture)},
+        key(texture.revision, sampled.first, sampled.last, sampled.base) {
+    // A configuration without a texture unit has no hardware to keep to.
+    const Config& config = context.drawable->frame.options().config;
+    const bool has_unit = config.texture_unit != TextureUnitKind::off;
+    const bool blends = !has_unit || config.texture_constants != 0;
+    borders = !has_unit || config.texture_borders != 0;
+    has_border = borders && shows_border(texture);
+    if (const std::optional<Fit> direct = direct_fit(unit.env_mode, sampled.base, blends)) {
+      fit = *direct;
+      return;
+    }
+    key.add(unit.env_mode);
+    for (const double channel : unit.env_color) key.add(std::bit_cast<std::uint64_t>(channel));
+    for (const TextureCombiner& combiner : unit.combine) {
+      if (unit.env_mode != GL_COMBINE) break;
+      key.add(combiner.function);
+      key.add(static_cast<std::uint64_t>(combiner.scale));
+      for (std::size_t i = 0; i < 3; ++i) key.add(std::uint64_t{combiner.source[i]} << 32 | combiner.operand[i]);
+    }
+    if (has_border)
+      for (const double channel : texture.border_color) key.add(std::bit_cast<std::uint64_t>(channel));
+    fit = folded_fit(context, sampled, blends, has_border, key.value());
+  }
+
+  Sampled sampled;
+  Key key;
+  Fit fit;
+  bool borders = false;     ///< the hardware has them
+  bool has_border = false;  ///< the texture shows one
+};
+
 void say_what_is_missing(Frame& frame, const TextureObject& texture, bool has_borders) {
   const bool filters = is_linear(texture.min_filter) || is_linear(texture.mag_filter);
   for (std::size_t i = 0; !has_borders && i < (texture.target == GL_TEXTURE_1D ? 1U : 2U); ++i) {
@@ -330,57 +344,6 @@ void say_what_is_missing(Frame& frame, const TextureObject& texture, bool has_bo
   }
   const TextureImage& image = texture.face[0][static_cast<std::size_t>(texture.base_level)];
   if (image.border != 0) frame.missing("borders of textures", "their texels are left out");
-  if (texture.target == GL_TEXTURE_3D) frame.missing("three-dimensional textures", "the first layer is drawn");
-  if (texture.target == GL_TEXTURE_CUBE_MAP) frame.missing("cube maps", "drawn without the texture");
-  if (image.base_format == GL_DEPTH_COMPONENT && texture.compare_mode != GL_NONE)
-    frame.missing("depth textures that compare", "the depths are drawn");
-}
-
-/// The texel that a coordinate in texels means along a side.
-int wrapped(GLenum wrap, double at, int size) {
-  const double last = size - 1;
-  if (wrap == GL_REPEAT || wrap == GL_MIRRORED_REPEAT) {
-    const double period = wrap == GL_REPEAT ? size : 2 * size;
-    at -= std::floor(at / period) * period;
-    if (at > last && wrap == GL_MIRRORED_REPEAT) at = period - 1 - at;
-  }
-  return static_cast<int>(at > 0 ? std::min(at, last) : 0);  // NaN: 0
-}
-
-/// A texture at one place, magnified.
-Vec4 sampled_at(const Sampled& sampled, double s, double t) {
-  const TextureImage& image = sampled.level(sampled.first);
-  const TextureObject& texture = sampled.texture;
-  const bool is_linear = texture.mag_filter == GL_LINEAR;
-  const double shift = is_linear ? 0.5 : 0;
-  const auto place = [&](double coordinate, int size, GLenum wrap) {
-    const double held = wrap == GL_CLAMP ? std::clamp(coordinate, 0.0, 1.0) : coordinate;
-    return held * size - shift;
-  };
-  const double u = place(s, image.width, texture.wrap[0]), v = place(t, image.height, texture.wrap[1]);
-  const auto is_beyond = [&](double at, int size, GLenum wrap) {
-    return shows_border(wrap, is_linear) && (at < 0 || at >= size);
-  };
-  Vec4 sum{};
-  for (const int j : {0, 1})
-    for (const int i : {0, 1}) {
-      const double wide = i == 0 ? 1 - (u - std::floor(u)) : u - std::floor(u);
-      const double high = j == 0 ? 1 - (v - std::floor(v)) : v - std::floor(v);
-      const double weight = is_linear ? wide * high : (i == 0 && j == 0 ? 1 : 0);
-      const int x = wrapped(texture.wrap[0], std::floor(u) + i, image.width);
-      const int y = wrapped(texture.wrap[1], std::floor(v) + j, image.height);
-      const bool is_border = is_beyond(std::floor(u) + i, image.width, texture.wrap[0]) ||
-                             is_beyond(std::floor(v) + j, image.height, texture.wrap[1]);
-      const std::size_t at =
-          static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x);
-      const Vec4 texel = real(is_border ? sampled.border() : sampled.texel(sampled.first, at));
-      for (std::size_t c = 0; c < 4; ++c) sum[c] += weight * texel[c];
-    }
-  return sum;
-}
-
-GLenum base_of(const TextureObject& texture, const TextureImage& image) {
-  return image.base_format == GL_DEPTH_COMPONENT ? texture.depth_mode : image.base_format;
 }
 
 TextureWrap wrap_of(GLenum wrap, bool shows_border) {
@@ -392,93 +355,74 @@ TextureWrap wrap_of(GLenum wrap, bool shows_border) {
 
 }  // namespace
 
-TextureUse use_texture(Context& context, halfplane::State& state) {
-  const TextureObject* texture = context.drawable == nullptr ? nullptr : sampled_texture(context, 0);
-  if (texture == nullptr) return {};
-  Frame& frame = context.drawable->frame;
-  // A configuration without a texture unit has no hardware to keep to.
-  const Config& config = frame.options().config;
-  const bool has_unit = config.texture_unit != TextureUnitKind::off;
-  const bool blends = !has_unit || config.texture_constants != 0, borders = !has_unit || config.texture_borders != 0;
-  say_what_is_missing(frame, *texture, borders);
-  if (texture->target == GL_TEXTURE_CUBE_MAP) return {};
-  const TextureUnit& unit = context.state.texture.unit[0];
-  const auto first = static_cast<std::size_t>(texture->base_level);
-  const TextureImage& image = texture->face[0][first];
-  const int side = std::max(image.width, image.height);
-  const bool is_mipmapped = texture->min_filter != GL_NEAREST && texture->min_filter != GL_LINEAR;
-  const std::size_t last =
-      !is_mipmapped ? first
-                    : std::min(first + static_cast<std::size_t>(std::bit_width(static_cast<unsigned>(side))) - 1,
-                               static_cast<std::size_t>(texture->max_level));
-  const bool has_levels = last > first;
-  const Sampled sampled{*texture, unit, base_of(*texture, image), first, last};
-
-  Key key(texture->revision, first, last, sampled.base);
-  const bool has_border = borders && shows_border(*texture);
-  std::optional<Fit> fit = direct_fit(unit.env_mode, sampled.base, blends);
-  if (!fit) {
-    key.add(unit.env_mode);
-    for (const double channel : unit.env_color) key.add(std::bit_cast<std::uint64_t>(channel));
-    for (const TextureCombiner& combiner : unit.combine) {
-      if (unit.env_mode != GL_COMBINE) break;
-      key.add(combiner.function);
-      key.add(static_cast<std::uint64_t>(combiner.scale));
-      for (std::size_t i = 0; i < 3; ++i) key.add(std::uint64_t{combiner.source[i]} << 32 | combiner.operand[i]);
-    }
-    if (has_border)
-      for (const double channel : texture->border_color) key.add(std::bit_cast<std::uint64_t>(channel));
-    fit = folded_fit(context, sampled, blends, has_border, key.value());
-    if (!fit->is_exact())
-      frame.missing(unit.env_mode == GL_COMBINE ? "this GL_COMBINE environment"
-                    : unit.env_mode == GL_BLEND ? "this GL_BLEND environment"
-                                                : "GL_ADD with GL_INTENSITY",
-                    "drawn as for white vertices, multiplied with their colours");
+Texel border_texel(const TextureObject& texture) {
+  std::array<float, 4> color{};
+  std::ranges::transform(texture.border_color, color.begin(), [](double c) { return static_cast<float>(c); });
+  const Texel t = texel_of(color);
+  const bool is_depth = texture.face[0][static_cast<std::size_t>(texture.base_level)].base_format == GL_DEPTH_COMPONENT;
+  switch (base_of(texture)) {
+    case GL_ALPHA: return {255, 255, 255, is_depth ? t[0] : t[3]};
+    case GL_INTENSITY: return {t[0], t[0], t[0], t[0]};
+    case GL_LUMINANCE: return {t[0], t[0], t[0], 255};
+    case GL_LUMINANCE_ALPHA: return {t[0], t[0], t[0], t[3]};
+    case GL_RGB: return {t[0], t[1], t[2], 255};
+    default: return t;
   }
-  const auto make = [&] { return made(sampled, *fit, has_levels); };
-  state.texture = frame.texture(key.value(), std::cref(make));  // no memory for the function
-
-  const GLenum min = has_levels || !is_mipmapped      ? texture->min_filter
-                     : is_linear(texture->min_filter) ? GLenum{GL_LINEAR}
-                                                      : GLenum{GL_NEAREST};
-  state.texture_min = static_cast<TextureMin>(min >= GL_NEAREST_MIPMAP_NEAREST ? min - GL_NEAREST_MIPMAP_NEAREST + 2
-                                                                               : min - GL_NEAREST);
-  state.texture_mag = is_linear(texture->mag_filter) ? TextureMag::linear : TextureMag::nearest;
-  const bool filters = is_linear(texture->min_filter) || is_linear(texture->mag_filter);
-  const auto wrap = [&](std::size_t axis) {
-    return wrap_of(texture->wrap[axis], has_border && shows_border(texture->wrap[axis], filters));
-  };
-  state.texture_wrap = {wrap(0), texture->target == GL_TEXTURE_1D ? TextureWrap::clamp : wrap(1)};
-  if (has_border) state.texture_border = fit->folds ? folded(sampled, *fit, sampled.border()) : sampled.border();
-  const double largest = has_levels ? static_cast<double>(last - first) : 12;
-  const auto in = [](double value, double low, double high) { return value > low ? std::min(value, high) : low; };
-  state.texture_lod = {in(texture->lod_bias + unit.lod_bias, -16, 16), in(texture->min_lod, 0, largest),
-                       in(texture->max_lod, 0, largest)};
-  const bool replaces_alpha = fit->alpha == Alpha::replace;
-  state.texture_combine = fit->rgb == Rgb::add                                        ? TextureCombine::add
-                          : fit->rgb == Rgb::decal || fit->rgb == Rgb::decal_constant ? TextureCombine::decal
-                          : fit->rgb == Rgb::blend                                    ? TextureCombine::blend
-                          : fit->rgb == Rgb::replace && replaces_alpha                ? TextureCombine::replace
-                                                                                      : TextureCombine::modulate;
-  if (fit->rgb == Rgb::blend)
-    for (std::size_t c = 0; c < 3; ++c)
-      state.texture_constant[c] = static_cast<std::uint8_t>(std::lround(255 * in(unit.env_color[c], 0, 1)));
-  return {fit->rgb == Rgb::replace, replaces_alpha};
 }
 
-std::function<Vec4(const Vec4&)> raster_texture(const Context& context) {
-  const TextureObject* texture = sampled_texture(context, 0);
-  if (texture == nullptr || texture->target == GL_TEXTURE_CUBE_MAP) return {};
-  const TextureUnit& unit = context.state.texture.unit[0];
-  const auto base = static_cast<std::size_t>(texture->base_level);
-  const Sampled sampled{*texture, unit, base_of(*texture, texture->face[0][base]), base, base};
-  const auto& [s, t, r, q] = context.state.current.raster.tex_coord[0];
-  return [&unit, format = sampled.base, texel = sampled_at(sampled, s / q, t / q)](const Vec4& color) {
-    const Result result = environment(unit, format, texel, &color);
-    Vec4 textured{};
-    for (std::size_t c = 0; c < 4; ++c) textured[c] = held(result[c].a * color[c] + result[c].b);
-    return textured;
+const char* beyond_texture_unit(Context& context, unsigned units) {
+  if (!std::has_single_bit(units)) return units == 0 ? nullptr : "several textures at once";
+  const auto unit = static_cast<std::size_t>(std::countr_zero(units));
+  const TextureObject& texture = *sampled_texture(context, static_cast<int>(unit));
+  if (texture.target == GL_TEXTURE_3D) return "three-dimensional textures";
+  if (texture.target == GL_TEXTURE_CUBE_MAP) return "cube maps";
+  const TextureImage& image = texture.face[0][static_cast<std::size_t>(texture.base_level)];
+  if (image.base_format == GL_DEPTH_COMPONENT && texture.compare_mode != GL_NONE) return "depth textures that compare";
+  const TextureUnit& state = context.state.texture.unit[unit];
+  if (Choice(context, texture, state).fit.is_exact()) return nullptr;
+  return state.env_mode == GL_COMBINE ? "this GL_COMBINE environment"
+         : state.env_mode == GL_BLEND ? "this GL_BLEND environment"
+                                      : "GL_ADD with GL_INTENSITY";
+}
+
+TextureUse use_texture(Context& context, std::size_t unit, halfplane::State& state) {
+  Frame& frame = context.drawable->frame;
+  const TextureObject& texture = *sampled_texture(context, static_cast<int>(unit));
+  const TextureUnit& from = context.state.texture.unit[unit];
+  const Choice choice(context, texture, from);
+  const Fit& fit = choice.fit;
+  const Sampled& sampled = choice.sampled;
+  say_what_is_missing(frame, texture, choice.borders);
+  const bool has_levels = sampled.last > sampled.first;
+  const auto make = [&] { return made(sampled, fit, has_levels); };
+  state.texture = frame.texture(choice.key.value(), std::cref(make));  // no memory for the function
+
+  const bool is_mipmapped = texture.min_filter != GL_NEAREST && texture.min_filter != GL_LINEAR;
+  const GLenum min = has_levels || !is_mipmapped     ? texture.min_filter
+                     : is_linear(texture.min_filter) ? GLenum{GL_LINEAR}
+                                                     : GLenum{GL_NEAREST};
+  state.texture_min = static_cast<TextureMin>(min >= GL_NEAREST_MIPMAP_NEAREST ? min - GL_NEAREST_MIPMAP_NEAREST + 2
+                                                                               : min - GL_NEAREST);
+  state.texture_mag = is_linear(texture.mag_filter) ? TextureMag::linear : TextureMag::nearest;
+  const bool filters = is_linear(texture.min_filter) || is_linear(texture.mag_filter);
+  const auto wrap = [&](std::size_t axis) {
+    return wrap_of(texture.wrap[axis], choice.has_border && shows_border(texture.wrap[axis], filters));
   };
+  state.texture_wrap = {wrap(0), texture.target == GL_TEXTURE_1D ? TextureWrap::clamp : wrap(1)};
+  if (choice.has_border) state.texture_border = fit.folds ? folded(sampled, fit, sampled.border()) : sampled.border();
+  const double largest = has_levels ? static_cast<double>(sampled.last - sampled.first) : 12;
+  state.texture_lod = {held(texture.lod_bias + from.lod_bias, -16, 16), held(texture.min_lod, 0, largest),
+                       held(texture.max_lod, 0, largest)};
+  const bool replaces_alpha = fit.alpha == Alpha::replace;
+  state.texture_combine = fit.rgb == Rgb::add                                       ? TextureCombine::add
+                          : fit.rgb == Rgb::decal || fit.rgb == Rgb::decal_constant ? TextureCombine::decal
+                          : fit.rgb == Rgb::blend                                   ? TextureCombine::blend
+                          : fit.rgb == Rgb::replace && replaces_alpha               ? TextureCombine::replace
+                                                                                    : TextureCombine::modulate;
+  if (fit.rgb == Rgb::blend)
+    for (std::size_t c = 0; c < 3; ++c)
+      state.texture_constant[c] = static_cast<std::uint8_t>(std::lround(255 * held(from.env_color[c])));
+  return {fit.rgb == Rgb::replace, replaces_alpha};
 }
 
 }  // namespace halfplane::gl

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "../stages/surface.hpp"
+#include "clip_fan.hpp"
 #include "smooth_raster.hpp"
 
 namespace halfplane {
@@ -20,38 +21,13 @@ struct SnappedPolygon {
   int size = 0;
   [[nodiscard]] const SnappedVertex& at(int i) const { return v[static_cast<std::size_t>(i % size)]; }
   [[nodiscard]] const SurfaceVertex& surface_at(int i) const { return surface[static_cast<std::size_t>(i % size)]; }
+  [[nodiscard]] std::span<const SnappedVertex> corners() const {
+    return std::span(v).first(static_cast<std::size_t>(size));
+  }
   [[nodiscard]] std::int64_t fan_area(int start, int i) const {
-    return signed_area(at(start), at(start + i), at(start + i + 1));
+    return halfplane::fan_area(corners(), static_cast<std::size_t>(start), static_cast<std::size_t>(i));
   }
 };
-
-std::int64_t total_area(const SnappedPolygon& polygon) {
-  std::int64_t sum = 0;
-  for (int i = 1; i + 1 < polygon.size; ++i) sum += polygon.fan_area(0, i);
-  return sum;
-}
-
-/// The start of a clipped polygon's fan. The snap can dent a convex polygon by a subpixel, and a fan across the dent
-/// would draw some pixels twice; a fan with no reversed piece covers the polygon exactly once. Among the corners with
-/// such a fan, or among all if there is none, the smallest (Y, X, Z): the result must not depend on the order of the
-/// vertices.
-int fan_start(const SnappedPolygon& polygon, std::int64_t area) {
-  int best = 0;
-  bool best_agrees = false;
-  for (int start = 0; start < polygon.size; ++start) {
-    bool agrees = true;
-    for (int i = 1; i + 1 < polygon.size && agrees; ++i) {
-      const std::int64_t piece = polygon.fan_area(start, i);
-      agrees = piece == 0 || (piece > 0) == (area > 0);
-    }
-    const bool is_smaller = canonically_before(polygon.at(start), polygon.at(best));
-    if (agrees == best_agrees ? is_smaller : agrees) {
-      best = start;
-      best_agrees = agrees;
-    }
-  }
-  return best;
-}
 
 double largest_coordinate(std::span<const Vertex> v) {
   double largest = 0;
@@ -217,7 +193,7 @@ void apply_polygon_offset(SnappedPolygon& polygon, const DrawContext& context) {
 template <class Visit>
 void for_each_piece(const SnappedPolygon& polygon, std::int64_t area, std::uint32_t primitive, std::uint32_t command,
                     Visit&& visit) {
-  const int start = polygon.size == 3 ? 0 : fan_start(polygon, area);
+  const int start = polygon.size == 3 ? 0 : static_cast<int>(fan_start(polygon.corners()));
   for (int i = 1; i + 1 < polygon.size; ++i) {
     const std::int64_t piece_area = polygon.fan_area(start, i);
     if (piece_area == 0 || (piece_area > 0) != (area > 0)) continue;
@@ -488,7 +464,7 @@ void geometry(const DrawContext& context, VertexCache& cache, std::array<std::ui
   Projected projected = project(context, cache, index, skip, counters);
   SnappedPolygon& polygon = projected.polygon;
   if (polygon.size < 3) return;
-  const std::int64_t area = total_area(polygon);
+  const std::int64_t area = total_area(polygon.corners());
   if (is_culled(area, context.state, counters)) return;
   apply_polygon_offset(polygon, context);
   bool is_drawn = false;
@@ -516,7 +492,8 @@ void geometry(const DrawContext& context, const Widths& widths, VertexCache& cac
   if (primitive.type == PrimitiveType::triangle) {
     const Skip no_skip{.frustum = false};
     const Projected projected = project(context, cache, index, no_skip, counters);
-    if (projected.polygon.size < 3 || is_culled(total_area(projected.polygon), context.state, counters)) return;
+    if (projected.polygon.size < 3 || is_culled(total_area(projected.polygon.corners()), context.state, counters))
+      return;
     builder.depth_offset = offset_codes(projected.polygon, context);
   } else {
     ++counters.primitives_in;
@@ -550,7 +527,7 @@ bool geometry_for_hardware(const DrawContext& context, VertexCache& cache, std::
                    {polygon.surface_at(0), polygon.surface_at(1), polygon.surface_at(2)}});
     return false;
   }
-  const std::int64_t area = total_area(polygon);
+  const std::int64_t area = total_area(polygon.corners());
   if (is_culled(area, context.state, counters)) return true;
   bool is_drawn = false;
   for_each_piece(polygon, area, primitive, context.command, [&](const Triangle& piece) {

@@ -1,0 +1,220 @@
+#include "batch.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "../../model/attributes.hpp"
+#include "../../model/signature.hpp"
+#include "context.hpp"
+#include "host_shader.hpp"
+#include "matrix.hpp"
+
+namespace halfplane::gl {
+namespace {
+
+bool makes_triangles(Topology topology) {
+  return topology == Topology::triangles || topology == Topology::triangle_strip || topology == Topology::triangle_fan;
+}
+
+/// What decides how a batch of vertices is drawn.
+struct BatchTraits {
+  bool has_one_color = true, has_one_w = true, has_one_q = true, has_positive_q = true;
+  bool has_secondary = false;
+  bool is_fogged_by_w = true;  ///< clip w is the distance that fog takes
+};
+
+BatchTraits traits_of(std::span<const ShadedVertex> vertices, std::size_t unit) {
+  BatchTraits traits;
+  const ShadedVertex& first = vertices.front();
+  for (const ShadedVertex& v : vertices) {
+    traits.has_one_color &= v.color[0] == first.color[0] && v.secondary[0] == first.secondary[0];
+    traits.has_one_w &= v.clip[3] == first.clip[3];
+    traits.has_one_q &= v.tex_coord[unit][3] == first.tex_coord[unit][3];
+    traits.has_positive_q &= v.tex_coord[unit][3] > 0;
+    for (std::size_t c = 0; c < 3; ++c) traits.has_secondary |= v.secondary[0][c] != 0;
+    traits.is_fogged_by_w &= std::abs(std::abs(v.clip[3]) - v.fog_distance) <= 1e-6 * v.fog_distance;
+  }
+  return traits;
+}
+
+/// The first of textured_units(); 0 of none.
+std::size_t unit_of(unsigned units) { return units == 0 ? 0 : static_cast<std::size_t>(std::countr_zero(units)); }
+
+/// Draws vertices in their first colour.
+class Batch {
+ public:
+  Batch(Context& context, const BatchKind& group, std::span<const ShadedVertex> vertices,
+        std::span<const std::uint32_t> indices)
+      : context_(context),
+        group_(group),
+        vertices_(vertices),
+        indices_(indices),
+        units_(textured_units(context)),
+        unit_(unit_of(units_)),
+        traits_(traits_of(vertices, unit_)) {}
+
+  void draw() {
+    const auto state = hardware_state(context_, group_.kind);
+    if (!state) return;
+    state_ = *state;
+    if (units_ != 0 && makes_triangles(group_.topology) && !group_.is_stippled && !group_.is_shaded)
+      use_ = use_texture(context_, unit_, state_);
+    if (state_.texture) state_.color_interp = ColorInterp::perspective;
+    if (group_.is_window) state_.space = Space::window;
+    if (group_.is_window && group_.kind != DrawKind::rectangle) cut_to_viewport();
+    if (group_.topology == Topology::points) state_.point_size = group_.point_size;
+    is_textured_ = state_.texture.has_value();
+    if (group_.is_stippled && !group_.is_shaded) stipple();
+    const FogState& fog = context_.state.fog;
+    has_host_fog_ = fog.enabled && !(state_.fog && traits_.is_fogged_by_w);
+    if (has_host_fog_) state_.fog.reset();
+    if (group_.is_shaded)
+      return draw_shaded(context_, state_, vertices_, {.has_fog = has_host_fog_, .is_stippled = group_.is_stippled});
+    if (has_host_fog_ && traits_.has_one_color) state_.shade = Shade::smooth;  // fog has not one colour
+    const bool colors_differ = !traits_.has_one_color || (has_host_fog_ && !is_textured_);
+    // As exact, and hardware of any configuration has it.
+    if (!colors_differ || traits_.has_one_w || state_.shade == Shade::flat) state_.color_interp = ColorInterp::affine;
+    const Options& options = context_.drawable->frame.options();
+    if (state_.color_interp == ColorInterp::perspective && !has_colors_over_w(options.config) &&
+        options.on_missing != OnMissing::host) {
+      missing("colours over w", "they are affine in the window; perspective.colors=1 has them");
+      state_.color_interp = ColorInterp::affine;
+    }
+    place();
+    paint([this](const ShadedVertex& v) { return main_color(v); });
+    draw_in(context_, state_, group_.topology, model_, indices_);
+  }
+
+ private:
+  void missing(const char* what, const char* instead) { context_.drawable->frame.missing(what, instead); }
+
+  /// As clip space does it.
+  void cut_to_viewport() {
+    const ViewportState& v = context_.state.viewport;
+    Rect& cut = state_.scissor ? *state_.scissor : state_.scissor.emplace(Rect{v.x, v.y, v.width, v.height});
+    const auto limit = [](int& start, int& size, int low, int length) {
+      const std::int64_t end = std::min(std::int64_t{start} + size, std::int64_t{low} + length);
+      start = std::max(start, low);
+      size = static_cast<int>(std::clamp<std::int64_t>(end - start, 0, kLargestViewport));
+    };
+    limit(cut.x, cut.width, v.x, v.width);
+    limit(cut.y, cut.height, v.y, v.height);
+    limit(cut.x, cut.width, 0, kLargestViewport);
+    limit(cut.y, cut.height, 0, kLargestViewport);
+    cut.x = std::min(cut.x, kLargestViewport);
+    cut.y = std::min(cut.y, kLargestViewport);
+  }
+
+  /// Positions and texture coordinates. Where q differs, x y z w divided by q are the same place, and what is interpolated
+  /// over w / q is the projected coordinate.
+  void place() {
+    const bool divides_w = is_textured_ && !traits_.has_one_q && traits_.has_positive_q;
+    model_.reserve(vertices_.size());
+    for (const ShadedVertex& v : vertices_) {
+      Vec4 at = v.clip;
+      const Vec4& tex = v.tex_coord[unit_];
+      const double q = tex[3] > 0 || (traits_.has_one_q && tex[3] != 0) ? tex[3] : 1;
+      if (divides_w)
+        for (std::size_t c = group_.is_window ? 3 : 0; c < 4; ++c) at[c] /= q;
+      Vertex& out = model_.emplace_back();
+      out.x = at[0], out.y = at[1], out.z = at[2], out.w = at[3];
+      if (group_.is_stippled) {
+        out.u = at[0] / 32, out.v = at[1] / 32;
+      } else if (is_textured_) {
+        out.u = tex[0] / q, out.v = tex[1] / q;
+        if (!std::isfinite(out.u)) out.u = 0;
+        if (!std::isfinite(out.v)) out.v = 0;
+      }
+    }
+  }
+
+  template <class ColorOf>
+  void paint(const ColorOf& color_of) {
+    for (std::size_t i = 0; i < vertices_.size(); ++i) {
+      const Vec4 color = color_of(vertices_[i]);
+      for (std::size_t c = 0; c < 4; ++c) model_[i].rgba[c] = 255 * held(color[c]);
+    }
+  }
+
+  [[nodiscard]] Vec4 main_color(const ShadedVertex& v) const {
+    Vec4 color = v.color[0];
+    const Vec4& fog = context_.state.fog.color;
+    const double f = has_host_fog_ && !is_textured_ ? fog_factor(context_.state.fog, v.fog_distance) : 1;
+    for (std::size_t c = 0; c < 3; ++c) {
+      if (!is_textured_) color[c] = held(color[c] + v.secondary[0][c]);
+      if (f < 1) color[c] = f * color[c] + (1 - f) * fog[c];
+      if (is_textured_ && use_.replaces_rgb) color[c] = 1;
+    }
+    if (is_textured_ && use_.replaces_alpha) color[3] = 1;
+    // A texel of the stipple is alpha: this one must tell it from none.
+    if (group_.is_stippled && color[3] < 1 / 255.0) color[3] = 1 / 255.0;
+    return color;
+  }
+
+  /// The pattern as a texture over the window, whose zeros the alpha test drops.
+  void stipple() {
+    const auto& rows = context_.state.stipple.row;
+    SignatureHash hash;
+    for (const std::uint32_t row : rows) hash.add(row);
+    state_.texture = context_.drawable->frame.texture(hash.signature().low | std::uint64_t{1} << 63, [&rows] {
+      halfplane::Texture texture;
+      texture.name = "stipple";
+      TextureLevel& level = texture.level.emplace_back(TextureLevel{32, 32, {}});
+      for (const std::uint32_t row : rows)
+        for (unsigned x = 0; x < 32; ++x) level.code.push_back((row >> (31 - x) & 1) != 0 ? 0xffffffffU : 0xffffff00U);
+      return texture;
+    });
+    state_.texture_interp = TextureInterp::affine;
+    const AlphaTest& test = state_.alpha_test;
+    const bool fails_zero = test.func == DepthFunc::never || test.func == DepthFunc::greater ||
+                            (test.func == DepthFunc::gequal && test.reference > 0) ||
+                            (test.func == DepthFunc::equal && test.reference > 0) ||
+                            (test.func == DepthFunc::notequal && test.reference == 0);
+    if (test.func != DepthFunc::always && !fails_zero)
+      missing("stippled polygons whose alpha test passes an alpha of 0", "they are drawn without the alpha test");
+    if (!fails_zero) state_.alpha_test = {DepthFunc::greater, 0};
+  }
+
+  Context& context_;
+  BatchKind group_;
+  std::span<const ShadedVertex> vertices_;
+  std::span<const std::uint32_t> indices_;
+  unsigned units_;    ///< that have textures
+  std::size_t unit_;  ///< the first of them
+  BatchTraits traits_;
+  halfplane::State state_;
+  TextureUse use_;
+  bool is_textured_ = false, has_host_fog_ = false;
+  std::vector<Vertex>& model_ = empty_scratch<Vertex>();  // one batch is drawn at a time
+};
+
+}  // namespace
+
+const char* why_shaded(Context& context, std::span<const ShadedVertex> vertices) {
+  const unsigned units = textured_units(context);
+  if (units == 0) return nullptr;
+  if (const char* beyond = beyond_texture_unit(context, units)) return beyond;
+  const gl::State& state = context.state;
+  if (state.polygon.stipple) return "stippled polygons with a texture";
+  const BatchTraits traits = traits_of(vertices, unit_of(units));
+  if (traits.has_secondary) return "colours that are added to a texture";
+  if (state.fog.enabled && !(has_hardware_fog(state.fog) && traits.is_fogged_by_w))
+    return "fog of a texture by other distances than w";
+  if (!traits.has_one_q && (!traits.has_positive_q || !traits.has_one_color || state.fog.enabled))
+    return "projective textures under colours or fog, or with a q of 0 or less";
+  return nullptr;
+}
+
+bool fog_bends(const FogState& fog, const ShadedVertex& a, const ShadedVertex& b) {
+  constexpr double kMost = 8 / 255.0;
+  if (a.clip[3] <= 0 || b.clip[3] <= 0) return true;  // the distance has a least value between them
+  return std::abs(fog_factor(fog, a.fog_distance) - fog_factor(fog, b.fog_distance)) > kMost;
+}
+
+void draw_batch(Context& context, const BatchKind& group, std::span<const ShadedVertex> vertices,
+                std::span<const std::uint32_t> indices) {
+  if (!vertices.empty() && !indices.empty()) Batch(context, group, vertices, indices).draw();
+}
+
+}  // namespace halfplane::gl
