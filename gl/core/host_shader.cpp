@@ -114,8 +114,9 @@ struct Window {
 struct Piece {
   std::span<const ShadedVertex> vertices;  ///< three
   std::array<Linear, 3> weight{};
-  std::array<double, 3> margin{};     ///< of a weight, that pixels may lie outside
-  std::vector<ShadedVertex> polygon;  ///< the part of it that the model need not cut
+  std::array<double, 3> margin{};                  ///< of a weight, that pixels may lie outside
+  std::array<TexturePlace, kTextureUnits> places;  ///< changes of coordinates, which are 0
+  std::vector<ShadedVertex> polygon;               ///< the part of it that the model need not cut
   PixelBox box;
   int x = 0, y = 0;  ///< of the box in the image
 };
@@ -146,8 +147,7 @@ class Shader {
     const double sum = part[0] + part[1] + part[2];
     Vec4 rgba{}, secondary{};
     double distance = 0;
-    std::array<TexturePlace, kTextureUnits> places;
-    for (TexturePlace& place : places) place.at = {};
+    std::array<TexturePlace, kTextureUnits> places = piece.places;
     for (std::size_t i = 0; i < 3; ++i) {
       const ShadedVertex& v = piece.vertices[i];
       const double share = part[i] / sum;
@@ -155,12 +155,7 @@ class Shader {
       for (std::size_t c = 0; c < 4; ++c) {
         rgba[c] += share * v.color[0][c];
         secondary[c] += share * v.secondary[0][c];
-        for (std::size_t unit = 0; unit < kTextureUnits; ++unit) {
-          TexturePlace& place = places[unit];
-          place.at[c] += part[i] * v.tex_coord[unit][c];
-          place.dx[c] += piece.weight[i][0] * v.tex_coord[unit][c];
-          place.dy[c] += piece.weight[i][1] * v.tex_coord[unit][c];
-        }
+        for (std::size_t unit = 0; unit < kTextureUnits; ++unit) places[unit].at[c] += part[i] * v.tex_coord[unit][c];
       }
     }
     for (double& channel : rgba) channel = held(channel);
@@ -240,6 +235,15 @@ class Packer {
     for (std::size_t i = 0; i < 3; ++i) {
       for (double& c : piece.weight[i]) c /= volume;
       piece.margin[i] = margin_ * std::hypot(piece.weight[i][0], piece.weight[i][1]);
+    }
+    for (std::size_t unit = 0; unit < kTextureUnits; ++unit) {
+      TexturePlace& place = piece.places[unit];
+      place.at = {};
+      for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t c = 0; c < 4; ++c) {
+          place.dx[c] += piece.weight[i][0] * piece.vertices[i].tex_coord[unit][c];
+          place.dy[c] += piece.weight[i][1] * piece.vertices[i].tex_coord[unit][c];
+        }
     }
     double left = bounds_.right, bottom = bounds_.top, right = bounds_.left, top = bounds_.bottom;
     for (const ShadedVertex& v : piece.polygon) {

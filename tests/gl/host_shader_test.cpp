@@ -561,7 +561,7 @@ TEST(HostShaderImages, ManyTrianglesAreEachShadedOnce) {
   shade_model(context, GL_FLAT);
   enable(context, GL_DEPTH_TEST, true);
   ++context.revision;
-  constexpr int kLayers = 12;
+  constexpr int kLayers = 6;
   begin(context, GL_QUADS);
   for (int i = 0; i < kLayers; ++i) {  // from the back to the front, each smaller
     color(context, (i + 1) / 255.0, 1, 0, 1);
