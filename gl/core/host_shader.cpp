@@ -177,7 +177,8 @@ class Shader {
 /// Triangles in order, packed into images row by row, and drawn.
 class Packer {
  public:
-  Packer(Context& context, halfplane::State state, const Shading& shading)
+  /// `part`: of the target, no wider and no higher than a texture.
+  Packer(Context& context, halfplane::State state, const Shading& shading, const PixelBox& part)
       : context_(context),
         frame_(context.drawable->frame),
         config_(frame_.options().config),
@@ -194,7 +195,7 @@ class Packer {
     state_.texture_combine = TextureCombine::replace;
     state_.color_interp = ColorInterp::affine;
     state_.shade = Shade::smooth;
-    bounds_ = {0, 0, frame_.width(), frame_.height()};
+    bounds_ = part;
     const auto cut = [this](double left, double bottom, double width, double height) {
       bounds_.left = static_cast<int>(std::max<double>(bounds_.left, left));
       bounds_.bottom = static_cast<int>(std::max<double>(bounds_.bottom, bottom));
@@ -204,6 +205,8 @@ class Packer {
     if (state_.scissor) cut(state_.scissor->x, state_.scissor->y, state_.scissor->width, state_.scissor->height);
     if (state_.space == Space::clip)
       cut(window_.viewport.x, window_.viewport.y, window_.viewport.width, window_.viewport.height);
+    if (!bounds_.is_empty() && (part.width() < frame_.width() || part.height() < frame_.height()))
+      state_.scissor = Rect{bounds_.left, bounds_.bottom, bounds_.width(), bounds_.height()};
   }
 
   void draw(std::span<const ShadedVertex> triangles) {
@@ -408,9 +411,14 @@ double fog_factor(const FogState& fog, double distance) {
   return held(std::exp(fog.mode == GL_EXP ? -x : -x * x));
 }
 
-void draw_shaded(Context& context, halfplane::State state, std::span<const ShadedVertex> vertices,
+void draw_shaded(Context& context, const halfplane::State& state, std::span<const ShadedVertex> vertices,
                  const Shading& shading) {
-  Packer(context, std::move(state), shading).draw(vertices);
+  const int width = context.drawable->frame.width(), height = context.drawable->frame.height();
+  for (int y = 0; y < height; y += kLargestTexture)
+    for (int x = 0; x < width; x += kLargestTexture)
+      Packer(context, state, shading,
+             {x, y, std::min(x + kLargestTexture, width), std::min(y + kLargestTexture, height)})
+          .draw(vertices);
 }
 
 }  // namespace halfplane::gl

@@ -34,7 +34,7 @@ struct Shading {
   bool is_stippled = false;  ///< by the polygon stipple
 };
 /// Draws a list of triangles in `state`, which says all but the texture; its space is that of the vertices' `clip`.
-void draw_shaded(Context& context, halfplane::State state, std::span<const ShadedVertex> vertices,
+void draw_shaded(Context& context, const halfplane::State& state, std::span<const ShadedVertex> vertices,
                  const Shading& shading);
 
 }  // namespace halfplane::gl

@@ -580,5 +580,28 @@ TEST(HostShaderImages, ManyTrianglesAreEachShadedOnce) {
     }
 }
 
+/// A target wider than a texture.
+TEST(HostShaderImages, OfLargeTargetsAreSeveral) {
+  TexturedWindow window("full target.width=5000 target.height=64 guard.band=8192", OnMissing::host);
+  Context& context = window.context;
+  window.drawable.frame.resize(5000, 8);
+  viewport(context, 0, 0, 5000, 8);
+  for (const GLenum unit : {GL_TEXTURE0, GL_TEXTURE1}) {
+    active_texture(context, unit);
+    enable(context, GL_TEXTURE_2D, true);
+    window.nearest();
+  }
+  window.upload(0, GL_RGB, TexturedWindow::filled(1, 1, {255, 255, 255, 255}));
+  ++context.revision;
+  begin(context, GL_TRIANGLES);
+  for (const auto& [x, y] : {std::array{-1, -1}, std::array{3, -1}, std::array{-1, 3}}) {
+    color(context, (x + 1) / 4.0, 1, 1, 1);
+    vertex(context, x, y, 0, 1);
+  }
+  end(context);
+  const Framebuffer& picture = window.drawable.frame.picture();
+  for (int x = 0; x < 5000; ++x) ASSERT_NEAR(picture.color[picture.at(x, 3)] & 255, 255 * (x + 0.5) / 10000, 1) << x;
+}
+
 }  // namespace
 }  // namespace halfplane::gl::host_shader_test
