@@ -121,18 +121,16 @@ bool is_table_of_settings(std::string_view name) {
                      [name](const Setting& setting) { return setting.key.starts_with(std::string(name) + "."); });
 }
 
-// Depth is bounded by refuse_hostile_text().
-void collect(const toml::table& table, const std::string& prefix, std::string_view file, std::vector<Entry>& entries) {
+// Depth is bounded by refuse_hostile_text(). An empty table is an entry without a value.
+void collect(const toml::table& table, const std::string& prefix, std::vector<Entry>& entries) {
   for (const auto& [key, value] : table) {
     const std::string name = prefix + std::string(key.str());
     const std::size_t line = key.source().begin.line;
     const toml::table* inner = value.as_table();
-    if (inner == nullptr)
-      entries.push_back({name, &value, line});
-    else if (inner->empty() && !is_table_of_settings(name))
-      fail({file, line}, unknown_key_message(name));
+    if (inner == nullptr || inner->empty())
+      entries.push_back({name, inner == nullptr ? &value : nullptr, line});
     else
-      collect(*inner, name + ".", file, entries);
+      collect(*inner, name + ".", entries);
   }
 }
 
@@ -177,7 +175,7 @@ Config config_of(const std::vector<Entry>& entries, std::string_view file) {
   for (const Entry& entry : entries) {
     if (entry.key != "preset") continue;
     const Place place{file, entry.line};
-    const auto* name = entry.value->as_string();
+    const auto* name = entry.value == nullptr ? nullptr : entry.value->as_string();
     if (name == nullptr) fail(place, "preset: give a name in quotes, as in preset = \"embedded\"");
     if (std::ranges::find(preset_names(), name->get()) == preset_names().end())
       fail(place, "no preset " + shown(name->get()) + ";" + did_you_mean(name->get(), preset_names()) +
@@ -185,38 +183,44 @@ Config config_of(const std::vector<Entry>& entries, std::string_view file) {
     config = preset(name->get());
   }
   for (const Entry& entry : entries) {
-    if (entry.key == "preset") continue;
+    if (entry.key == "preset" || (entry.value == nullptr && is_table_of_settings(entry.key))) continue;
     const Place place{file, entry.line};
     const Setting* setting = find_setting(entry.key);
-    if (setting == nullptr) fail(place, unknown_key_message(entry.key));
+    if (setting == nullptr || entry.value == nullptr) fail(place, unknown_key_message(entry.key));
     const std::string text = value_text(entry, *setting, place);
     at_place(place, [&] { set(config, entry.key, text); });
   }
   return config;
 }
 
-std::string read_text(const std::string& path) {
+std::string read_text(const std::string& path, const std::string& what) {
   errno = 0;
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
   std::string text(kMaxBytes + 1, '\0');  // one more, so that a too long file is detected
   if (file) text.resize(std::fread(text.data(), 1, text.size(), file.get()));
   if (!file || std::ferror(file.get()) != 0)
-    throw InputError("cannot read configuration '" + path + "': " + std::strerror(errno) +
-                     "; give a preset (tiny, small, embedded, full) or a .toml file");
+    throw InputError("cannot read " + what + " '" + path + "': " + std::strerror(errno) +
+                     (what == "configuration" ? "; give a preset (tiny, small, embedded, full) or a .toml file" : ""));
   return text;
+}
+
+/// The keys of the text, in their order; values are of `table`.
+std::vector<Entry> read_entries(std::string_view text, std::string_view file_name, toml::table& table) {
+  if (text.size() > kMaxBytes)
+    fail({file_name}, "a configuration is at most " + std::to_string(kMaxBytes) + " bytes; is this the right file?");
+  refuse_hostile_text(text, file_name);
+  table = parse(text, file_name);
+  std::vector<Entry> entries;
+  collect(table, "", entries);
+  std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.line < b.line; });
+  return entries;
 }
 
 }  // namespace
 
 Config read_config_toml(std::string_view text, std::string_view file_name) {
-  if (text.size() > kMaxBytes)
-    fail({file_name}, "a configuration is at most " + std::to_string(kMaxBytes) + " bytes; is this the right file?");
-  refuse_hostile_text(text, file_name);
-  const toml::table table = parse(text, file_name);
-  std::vector<Entry> entries;
-  collect(table, "", file_name, entries);
-  std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.line < b.line; });
-  Config config = config_of(entries, file_name);
+  toml::table table;
+  Config config = config_of(read_entries(text, file_name, table), file_name);
   at_place({file_name}, [&] { validate(config); });
   return config;
 }
@@ -248,7 +252,24 @@ void set_by_key(Config& config, std::string_view key, std::string_view value) {
   set(config, key, value);
 }
 
-Config read_config_file(const std::string& path) { return read_config_toml(read_text(path), path); }
+Config read_config_file(const std::string& path) { return read_config_toml(read_text(path, "configuration"), path); }
+
+std::vector<TomlWord> read_toml_words(const std::string& path) {
+  toml::table table;
+  std::vector<TomlWord> words;
+  for (const Entry& entry : read_entries(read_text(path, "file"), path, table)) {
+    TomlWord word{entry.key, "", entry.line};
+    if (entry.value != nullptr && entry.value->is_string()) {
+      word.value = entry.value->as_string()->get();
+    } else if (entry.value != nullptr && entry.value->is_integer()) {
+      word.value = std::to_string(entry.value->as_integer()->get());
+    } else if (entry.value != nullptr) {
+      fail({path, entry.line}, entry.key + ": give a whole number, or text in quotes");
+    }
+    words.push_back(word);
+  }
+  return words;
+}
 
 Config config_from_option(const std::string& option) {
   if (std::ranges::find(designs(), option, &Design::name) != designs().end()) return preset(option);

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "model/config.hpp"
 
@@ -20,6 +21,15 @@ namespace halfplane {
 
 /// The same for a file. Throws InputError when it cannot be read.
 [[nodiscard]] Config read_config_file(const std::string& path);
+
+/// One `key = value` of another TOML file, a dot being a table: its value as text. An empty table has an empty value.
+struct TomlWord {
+  std::string key, value;
+  std::size_t line = 0;
+};
+
+/// The keys of a file whose values are whole numbers or texts, in their order. Throws InputError as above.
+[[nodiscard]] std::vector<TomlWord> read_toml_words(const std::string& path);
 
 /// Text from which read_config_toml() reads the same configuration: the preset and every value, each with its meaning.
 [[nodiscard]] std::string config_toml(const Config& config);

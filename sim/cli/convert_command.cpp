@@ -3,16 +3,13 @@
 
 #include "sim/cli/commands.hpp"
 #include "sim/cli/convert_trace.hpp"
-#include "sim/cli/options.hpp"
-#include "sim/cli/whole_number.hpp"
-#include "sim/cosim/session.hpp"
+#include "sim/cli/random_options.hpp"
 #include "sim/show/image/whole_file.hpp"
 
 namespace halfplane {
 namespace {
 
-struct ConvertOptions : CommonOptions {
-  std::uint64_t random = 0;  ///< primitives; 0: a scene
+struct ConvertOptions : CommonOptions, RandomOptions {
   std::string output, frames;
 };
 
@@ -24,7 +21,7 @@ std::string numbered(const std::string& path, std::size_t number) {
 
 /// One scene, or the successive scenes of `cosim --random`.
 SceneSource scenes_of(const ConvertOptions& options, const Config& config) {
-  if (options.random != 0) return random_scenes(config, options.seed, options.random);
+  if (options.random != 0) return random_source(options, options, config);
   double load_s = 0;
   Config plain = config;  // a program that draws the capture maps its depth, and would map it twice
   plain.depth_mapping = DepthMapping::projection;
@@ -44,9 +41,7 @@ Json scene_json(const std::string& path, const Scene& scene, std::size_t bytes) 
 
 int run(const ConvertOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  if (options.scene.empty() == (options.random == 0))
-    throw InputError(options.scene.empty() ? "nothing to convert; give a SCENE or --random N"
-                                           : "a scene and --random together; give one of them");
+  check_random_options(options, options, "convert");
   check_distinct({options.scene, options.output, options.json});
   if (is_trace(options.scene)) {
     Json result = result_head("convert", options, effective_config(options));
@@ -69,10 +64,11 @@ int run(const ConvertOptions& options) {
                      " makes several scenes, and stdout takes one capture; give fewer primitives, or -o FILE.hpt");
   Json result = result_head("convert", options, config);
   result["seed"] = options.seed;
-  result["random"] = or_null(options.random != 0, options.random);
+  add_random_json(result, options);
   result["captures"] = Json::array();
   std::ostream& out = human(options);
-  for (std::size_t number = 1; scene; ++number, scene = std::move(following), following = next()) {
+  for (std::size_t number = std::max<std::size_t>(1, options.first_scene); scene;
+       ++number, scene = std::move(following), following = next()) {
     const std::string text = capture_text(*scene);
     const std::string path = is_several ? numbered(options.output, number) : options.output;
     write_text_file(path, text);
@@ -92,12 +88,10 @@ void add_convert_command(CLI::App& app, Action& selected) {
       add_command<ConvertOptions>(app, selected, "convert", "any scene as a capture, exact to the bit", run);
   add_scene_options(*command, *options);
   command->get_option("SCENE")->required(false);
-  command
-      ->add_option("--random", options->random,
-                   "the scenes of `cosim --random N` with this --config and --seed: FILE-1.hpt and on where they are "
-                   "several")
-      ->check(whole_number(std::uint64_t{1}, std::uint64_t{1'000'000'000}))
-      ->type_name("N");
+  add_random_options(
+      *command, *options,
+      "the scenes of `cosim --random N` with this --config and --seed: FILE-1.hpt and on where they are several",
+      1'000'000'000);
   command
       ->add_option("--frame", options->frames, "of a FILE.trace: frame N, or A to B, counted from 0; else all of them")
       ->type_name("N|A..B");

@@ -8,7 +8,6 @@
 #include "sim/cli/commands.hpp"
 #include "sim/cli/cosim_options.hpp"
 #include "sim/cli/progress.hpp"
-#include "sim/cli/whole_number.hpp"
 #include "sim/cosim/report.hpp"
 #include "sim/cosim/specification.hpp"
 #include "sim/show/image/whole_file.hpp"
@@ -62,7 +61,8 @@ Session run_stimulus(const CosimOptions& options, const Config& config, Dut& dut
     return progress.goes_on(done / total, static_cast<std::uint64_t>(done));
   };
   const bool is_random = options.random != 0;
-  return run_session(dut, config, lockstep, counted, is_random ? HostOrders::drawn : HostOrders::configured, is_random);
+  return run_session(dut, config, lockstep, counted, is_random ? HostOrders::drawn : HostOrders::configured, is_random,
+                     options.first_scene);
 }
 
 Json session_json(const CosimOptions& options, const Config& config, const DutFactory& factory,
@@ -70,7 +70,7 @@ Json session_json(const CosimOptions& options, const Config& config, const DutFa
   const LockstepResult& r = session.result;
   Json result = result_head("cosim", options, config);
   result["seed"] = options.seed;
-  result["random"] = or_null(options.random != 0, options.random);
+  add_random_json(result, options);
   result["rtl"] = factory.name;
   result["stalls"] = options.stalls;
   result["memory"] = memory_json(options.memory);
@@ -127,7 +127,10 @@ void print_equal(std::ostream& out, const CosimOptions& options, const Config& c
   out << (options.random != 0 ? "random scenes" : options.scene) << ", " << with_commas(r.triangles) << " triangles";
   if (r.lines != 0) out << ", " << with_commas(r.lines) << " lines";
   if (r.points != 0) out << ", " << with_commas(r.points) << " points";
-  out << (options.random != 0 ? " of " + with_commas(options.random) + " primitives" : "") << " sent to the RTL";
+  out << (options.random != 0 && options.scenes == 0 && options.first_scene == 0
+              ? " of " + with_commas(options.random) + " primitives"
+              : "")
+      << " sent to the RTL";
   out << ", " << label(config) << ", seed " << options.seed << ", stalls " << fixed(options.stalls, 2)
       << (options.memory == MemorySettings{} ? std::string() : ", memory " + memory_text(options.memory)) << '\n';
   for (const Mutant& mutant : mutants())
@@ -202,9 +205,7 @@ std::optional<Reduced> smallest_disagreement(const CosimOptions& options, const 
 
 int run(const CosimOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  if (options.scene.empty() == (options.random == 0))
-    throw InputError(options.scene.empty() ? "nothing to run; give a SCENE or --random N"
-                                           : "a SCENE and --random exclude each other; leave one of them out");
+  check_random_options(options, options, "run");
   const Config config = effective_config(options);
   require_sampled_hardware(config, "the RTL");
   check_output(options.save_path, ".hpt");
@@ -220,9 +221,8 @@ int run(const CosimOptions& options) {
     check_hardware_scene(*scene, config);
   }
   const std::unique_ptr<Dut> dut = make_dut(factory);
-  const Session session =
-      run_stimulus(options, config, *dut,
-                   scene ? single_scene(std::move(*scene)) : random_scenes(config, options.seed, options.random));
+  const Session session = run_stimulus(
+      options, config, *dut, scene ? single_scene(std::move(*scene)) : random_source(options, options, config));
   const bool is_empty = session.result.total() == 0 && !session.result.is_stopped;
 
   Json result = session_json(options, config, factory, session);
@@ -257,7 +257,10 @@ int run(const CosimOptions& options) {
     if (reduced) out << ", " << reduced->primitives_after << " of " << reduced->primitives_before << " primitives";
     out << '\n';
   } else if (saved) {
-    out << "first seen  " << mismatch_line(*session.result.mismatch) << "\n\n";
+    out << "first seen  " << mismatch_line(*session.result.mismatch);
+    if (options.random != 0)
+      out << ", in scene " << session.scene << " (--first-scene " << session.scene << " --scenes 1)";
+    out << "\n\n";
     print_finding(out, *saved);
   } else {
     out << (is_empty ? std::string("FAILED: nothing was compared\n")
@@ -286,11 +289,8 @@ void add_cosim_command(CLI::App& app, Action& selected) {
       add_command<CosimOptions>(app, selected, "cosim", "RTL against model, packet by packet", run);
   add_scene_options(*command, *options);
   command->get_option("SCENE")->required(false);
-  command
-      ->add_option("--random", options->random,
-                   "N random triangles, lines and points of all sizes and states instead of a scene")
-      ->check(whole_number(std::uint64_t{1}, std::uint64_t{1'000'000'000}))
-      ->type_name("N");
+  add_random_options(*command, *options,
+                     "N random triangles, lines and points of all sizes and states instead of a scene", 1'000'000'000);
   add_cosim_options(*command, *options);
   command
       ->add_option("--trace-cycles", options->trace_cycles,

@@ -109,7 +109,7 @@ std::string repeat_command(const CosimOptions& options, const Config& config, co
     mapped.depth_mapping = DepthMapping::projection;  // a saved capture is mapped already, and has a size
     command += " " + quoted(capture) + config_arguments(mapped);
   } else {
-    command += options.random != 0 ? " --random " + std::to_string(options.random) : " " + quoted(options.scene);
+    command += options.random != 0 ? random_arguments(options) : " " + quoted(options.scene);
     command += scene_arguments(options, config);
   }
   command += " --seed " + std::to_string(lockstep.seed);

@@ -5,12 +5,11 @@
 #include <string>
 
 #include "sim/cli/memory_options.hpp"
-#include "sim/cosim/session.hpp"
+#include "sim/cli/random_options.hpp"
 
 namespace halfplane {
 
-struct CosimOptions : CommonOptions {
-  std::uint64_t random = 0;  ///< triangles; 0: a scene
+struct CosimOptions : CommonOptions, RandomOptions {
   double stalls = 0;
   int mutant = 0, resets = 0;
   MemorySettings memory;

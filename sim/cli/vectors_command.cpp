@@ -3,16 +3,14 @@
 #include <ostream>
 
 #include "sim/cli/commands.hpp"
-#include "sim/cli/options.hpp"
 #include "sim/cli/progress.hpp"
-#include "sim/cli/whole_number.hpp"
+#include "sim/cli/random_options.hpp"
 #include "sim/vectors/vector_file.hpp"
 
 namespace halfplane {
 namespace {
 
-struct VectorsOptions : CommonOptions {
-  std::uint64_t random = 0;  ///< primitives; 0: a scene
+struct VectorsOptions : CommonOptions, RandomOptions {
   std::string stage, format = "jsonl", output;
 };
 
@@ -35,14 +33,12 @@ std::string ports_text(const std::vector<vectors::Port>& ports, const std::vecto
 }
 
 vectors::VectorSource vector_source(const VectorsOptions& options) {
-  return {options.random == 0 ? options.scene : "random " + std::to_string(options.random), options.seed};
+  return {options.random == 0 ? options.scene : random_arguments(options).substr(3), options.seed};
 }
 
 int run(const VectorsOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  if (options.scene.empty() == (options.random == 0))
-    throw InputError(options.scene.empty() ? "nothing to run; give a SCENE or --random N"
-                                           : "a SCENE and --random exclude each other; leave one of them out");
+  check_random_options(options, options, "run");
   if (options.skip != "all") throw InputError("--skip: hardware skips by its own rules; leave it out");
   const vectors::Format format = vector_format(options.format);
   if (format == vectors::Format::hex && options.output == "-")
@@ -53,8 +49,8 @@ int run(const VectorsOptions& options) {
   const vectors::JudgedStage& stage = vectors::judged_stage(options.stage);
   vectors::require_stage(stage, config);
   double load_s = 0;
-  const SceneSource scenes = options.random != 0 ? random_scenes(config, options.seed, options.random)
-                                                 : single_scene(load_scene(options, config, load_s));
+  const SceneSource scenes =
+      options.random != 0 ? random_source(options, options, config) : single_scene(load_scene(options, config, load_s));
   Progress progress(options, "recording", "primitives");
   const vectors::StagePackets packets = vectors::record_stage(stage, config, scenes, [&progress](std::uint64_t sent) {
     progress(std::numeric_limits<double>::quiet_NaN(), sent);
@@ -62,7 +58,7 @@ int run(const VectorsOptions& options) {
   const auto written = vectors::write_vectors(options.output, format, stage, config, packets, vector_source(options));
   Json result = result_head("vectors", options, config);
   result["seed"] = options.seed;
-  result["random"] = or_null(options.random != 0, options.random);
+  add_random_json(result, options);
   result["stage"] = options.stage;
   result["format"] = options.format;
   result["can_be_checked"] = stage.can_run();
@@ -88,11 +84,8 @@ void add_vectors_command(CLI::App& app, Action& selected) {
       app, selected, "vectors", "what goes into a stage and what must come out, for your own RTL", run);
   add_scene_options(*command, *options);
   command->get_option("SCENE")->required(false);
-  command
-      ->add_option("--random", options->random,
-                   "N random triangles, lines and points of all sizes and states instead of a scene")
-      ->check(whole_number(std::uint64_t{1}, std::uint64_t{10'000'000}))
-      ->type_name("N");
+  add_random_options(*command, *options,
+                     "N random triangles, lines and points of all sizes and states instead of a scene", 10'000'000);
   command->add_option("--stage", options->stage, "the stage: cull, triangle_setup, coarse_raster ...")
       ->required()
       ->check(refuse_empty)

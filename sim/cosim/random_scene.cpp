@@ -18,8 +18,8 @@ using Point = std::array<std::int64_t, 2>;  // subpixels of 2^-s pixel
 
 class Generator {
  public:
-  Generator(const Config& config, std::uint64_t seed)
-      : config_(config), widths_(derive_widths(config)), seed_(seed), random_(seed) {
+  Generator(const Config& config, std::uint64_t seed, const RandomProfile& profile)
+      : config_(config), profile_(profile), widths_(derive_widths(config)), seed_(seed), random_(seed) {
     unit_ = std::int64_t{1} << widths_.grid_bits;
     step_ = std::int64_t{1} << (widths_.grid_bits - config.subpixel_bits);  // at S = 0 a vertex has even coordinates
     scene_.name = "random-" + std::to_string(seed);
@@ -30,26 +30,34 @@ class Generator {
       scene_.width = std::max(scene_.width, std::min(12 * config.tile_size, config.target_width));
       scene_.height = std::max(scene_.height, std::min(12 * config.tile_size, config.target_height));
     }
+    if (profile.width != 0) {
+      scene_.width = profile.width;
+      scene_.height = profile.height;
+    }
     start_chunk();
   }
 
   Scene make(std::size_t count) {
     for (std::size_t made = 0; made < count;) {
       if (chance(0.04)) {
-        clear();
+        if (profile_.has_clears) clear();
         start_chunk();
       }
-      const Topology topology = has_lines_ && chance(0.25)    ? Topology::lines
+      const Topology topology = profile_.has_kinds()          ? one_of_kinds()
+                                : has_lines_ && chance(0.25)  ? Topology::lines
                                 : has_points_ && chance(0.15) ? Topology::points
                                                               : Topology::triangles;
-      is_pile_ = chance(hiz_chunk_ ? 0.3 : 0.15);
+      is_pile_ = chance(hiz_chunk_ ? 0.3 : 0.15) && !has_shapes();
       scene_.states.push_back(state());
       if (topology != Topology::triangles) line_and_point_state(scene_.states.back());
       const std::size_t run = std::min<std::size_t>(count - made, 1 + static_cast<std::size_t>(below(12)));
       const std::size_t corners = topology == Topology::triangles ? 3 : topology == Topology::lines ? 2 : 1;
       const Draw draw{
           static_cast<std::uint32_t>(scene_.states.size() - 1), 0, topology, scene_.indices.size(), corners * run, 0};
-      for (std::size_t i = 0; i < run; ++i) primitive(corners, is_pile_ && i > 0);
+      for (std::size_t i = 0; i < run; ++i) {
+        order_ = static_cast<double>(made + i) / static_cast<double>(count);
+        primitive(corners, is_pile_ && i > 0);
+      }
       scene_.commands.push_back(draw);
       made += run;
     }
@@ -64,6 +72,7 @@ class Generator {
     if (config_.msaa_samples > 1) set_samples();
     if (config_.resolve_units != 0) drop_later_clears();
     if (has_colors_over_w(config_)) set_colors_over_w();
+    keep_rules();
     return std::move(scene_);
   }
 
@@ -86,6 +95,12 @@ class Generator {
     has_points_ = chance(0.6);
     lines_raise_ = chance(0.3);
   }
+  Topology one_of_kinds();
+  /// Whether the profile says how corners lie to each other.
+  [[nodiscard]] bool has_shapes() const { return profile_.extent || profile_.reuse || profile_.overlap; }
+  std::array<Point, 3> profile_shape();
+  void keep_rules();
+  void settle(State& s, Topology topology) const;
   State state();
   void set_any(State& s, std::string_view name);
   void set_newer();
@@ -112,6 +127,7 @@ class Generator {
   double depth();
 
   const Config& config_;
+  const RandomProfile& profile_;
   Widths widths_;
   std::uint64_t seed_;
   Random random_;
@@ -124,7 +140,85 @@ class Generator {
   bool is_pile_ = false;      // one triangle repeatedly: a stamp meets the previous stamp, a tile its last visit
   std::array<Point, 3> last_{};
   std::uint64_t last_depth_ = 0;  // code
+  double order_ = 0;              // part of the scene's primitives before this one
 };
+
+/// Each kind of the profile as likely.
+Topology Generator::one_of_kinds() {
+  constexpr std::array kTopologies{Topology::triangles, Topology::lines, Topology::points};
+  auto left = below(std::ranges::count(profile_.kinds, true));
+  for (std::size_t kind = 0; kind < kTopologies.size(); ++kind)
+    if (profile_.kinds[kind] && left-- == 0) return kTopologies[kind];
+  return Topology::triangles;
+}
+
+/// The corners of the last primitive, its first edge and a third corner, or a box of the profile's extent with a corner
+/// on either side of its longer one.
+std::array<Point, 3> Generator::profile_shape() {
+  constexpr int kSixteenth = 6;  // of a hundred, as without knobs
+  const bool is_first = scene_.vertices.empty();
+  if (!is_first && below(100) < profile_.overlap.value_or(kSixteenth)) return last_;
+  const bool is_reused = !is_first && below(100) < profile_.reuse.value_or(kSixteenth);
+  const std::int64_t least = profile_.extent ? profile_.extent->least * unit_ : 1;
+  const std::int64_t most = profile_.extent ? profile_.extent->most * unit_ : 2 * config_.guard_band * unit_;
+  const std::int64_t extent = profile_.extent ? least + sized(most - least + 1) - 1 : sized(most);
+  if (is_reused) {
+    Point far;
+    for (std::size_t axis = 0; axis < 2; ++axis) {  // the box stays at most as large
+      const auto [low, high] = std::minmax(last_[0][axis], last_[1][axis]);
+      const std::int64_t room = std::max<std::int64_t>(0, most - (high - low));
+      far[axis] = low - room + below(high - low + 2 * room + 1);
+    }
+    return {last_[1], last_[0], far};
+  }
+  std::array<Point, 3> p;
+  for (Point& q : p) q = {below(extent + 1), below(extent + 1)};
+  const auto axis = static_cast<std::size_t>(below(2));
+  p[0][axis] = 0;
+  p[1][axis] = extent;
+  const Point corner{below(scene_.width * unit_) - extent / 2, below(scene_.height * unit_) - extent / 2};
+  for (Point& q : p) q = {q[0] + corner[0], q[1] + corner[1]};
+  return p;
+}
+
+/// Gives the profile's states one of their values in each draw, and keeps states that go together with them. From
+/// separate random numbers, so that states alone change nothing else.
+void Generator::keep_rules() {
+  Random random(seed_ ^ 0x701f11eu);
+  for (const Command& command : scene_.commands) {
+    const auto* draw = std::get_if<Draw>(&command);
+    State& state = scene_.states[draw != nullptr ? draw->state : std::get<Clear>(command).state];
+    for (const RandomProfile::StateRule& rule : profile_.rules)
+      rule.row->set(state, rule.values[random.next() % rule.values.size()]);
+    if (draw != nullptr && !profile_.text.empty()) settle(state, draw->topology);
+  }
+}
+
+/// Of two states that this hardware refuses together, changes the one that the profile does not have.
+void Generator::settle(State& s, Topology topology) const {
+  const bool is_triangle = topology == Topology::triangles;
+  const bool has_only_triangles = profile_.has_kinds() && !profile_.kinds[1];
+  if (is_triangle && (has_only_triangles || (config_.line_units == 0 && s.line_rule != LineRule::rectangle)) &&
+      profile_.rule("polygon_mode") == nullptr)
+    s.polygon_mode = PolygonMode::fill;
+  if (drawn_as(s, topology) != PrimitiveType::triangle) s.color_interp = ColorInterp::affine;
+  if (config_.texture_unit == TextureUnitKind::nearest || config_.texture_unit == TextureUnitKind::bilinear) {
+    if (profile_.rule("texture_min") == nullptr) s.texture_min = static_cast<TextureMin>(s.texture_mag);
+    s.texture_mag = static_cast<TextureMag>(s.texture_min);  // the unit knows one filter
+  }
+  if (!s.texture || s.texture_interp == TextureInterp::perspective) return;
+  if (profile_.rule("texture_interp") == nullptr && (s.fog || s.shade == Shade::phong)) {
+    s.texture_interp = TextureInterp::perspective;
+    return;
+  }
+  if (s.color_interp == ColorInterp::perspective && profile_.rule("texture_interp") == nullptr) {
+    s.texture_interp = TextureInterp::perspective;
+    return;
+  }
+  s.fog.reset();
+  if (s.shade == Shade::phong) s.shade = Shade::smooth;
+  s.color_interp = ColorInterp::affine;
+}
 
 State Generator::state() {
   State s;
@@ -320,10 +414,14 @@ void Generator::set_textures() {
   const auto below = [&random](std::uint64_t n) { return random.next() % n; };
   const auto chance = [&random](double probability) { return random.uniform(0, 1) < probability; };
   const bool has_levels = config_.texture_unit == TextureUnitKind::trilinear;
-  const std::size_t count = 1 + below(4);
+  const std::size_t drawn = 1 + below(4);
+  const auto count = static_cast<std::size_t>(profile_.textures.value_or(static_cast<int>(drawn)));
   for (std::size_t n = 0; n < count; ++n) {
     TexelImage image{1 << below(7), 1 << below(7), {}};
-    if (has_levels && chance(0.2)) (chance(0.5) ? image.width : image.height) <<= 4;
+    if (profile_.texels)
+      image.width = image.height = *profile_.texels;
+    else if (has_levels && chance(0.2))
+      (chance(0.5) ? image.width : image.height) <<= 4;
     image.texel.resize(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
     const bool has_few_colors = chance(0.5);
     for (Texel& texel : image.texel)
@@ -572,13 +670,24 @@ std::array<Point, 3> Generator::shape() {
 
 /// A line or a point uses the first corners of a triangle, close together or as far apart as the guard band.
 void Generator::primitive(std::size_t corners, bool is_again) {
-  std::array<Point, 3> p = is_again ? last_ : shape();
-  if (corners == 2 && chance(0.3)) p[1] = around(p[0], sized(24 * unit_))[0];  // visible if p[0] is
-  const int all = is_again ? 0 : static_cast<int>(below(8));  // 1 to 3: all three to the same kind of point
+  std::array<Point, 3> p = is_again ? last_ : has_shapes() ? profile_shape() : shape();
+  if (corners == 2 && !has_shapes() && chance(0.3)) p[1] = around(p[0], sized(24 * unit_))[0];  // visible if p[0] is
+  // 1 to 3: all three to the same kind of point
+  const int all = is_again        ? 0
+                  : profile_.ties ? static_cast<int>(below(100) < *profile_.ties)
+                  : has_shapes()  ? 0
+                                  : static_cast<int>(below(8));
   for (Point& q : p) q = snapped(q, all < 4 ? all : chance(0.2) ? static_cast<int>(below(4)) : 0);
   last_ = p;
-  const double flat_depth = depth();
-  const bool is_flat = chance(is_pile_ ? 0.7 : 0.25);
+  using DepthOrder = RandomProfile::DepthOrder;
+  const DepthOrder order = profile_.depth.value_or(DepthOrder::random);
+  const double largest = static_cast<double>((std::uint64_t{1} << config_.depth_bits) - 1);
+  const double flat_depth =
+      order == DepthOrder::random ? depth()
+      : order == DepthOrder::equal
+          ? std::floor(largest / 2) / largest
+          : std::floor(largest * (order == DepthOrder::front_to_back ? order_ : 1 - order_)) / largest;
+  const bool is_flat = order != DepthOrder::random || chance(is_pile_ ? 0.7 : 0.25);
   const auto first = static_cast<std::uint32_t>(scene_.vertices.size());
   const bool is_plain = chance(0.1);
   for (std::uint32_t i = 0; i < corners; ++i) {
@@ -595,8 +704,8 @@ void Generator::primitive(std::size_t corners, bool is_again) {
 
 }  // namespace
 
-Scene random_scene(const Config& config, std::uint64_t seed, std::size_t count) {
-  return Generator(config, seed).make(count);
+Scene random_scene(const Config& config, std::uint64_t seed, std::size_t count, const RandomProfile& profile) {
+  return Generator(config, seed, profile).make(count);
 }
 
 Scene next_frame(const Scene& scene, std::uint64_t seed) {

@@ -5,6 +5,7 @@
 
 #include "model/config.hpp"
 #include "model/scene.hpp"
+#include "sim/cosim/random_profile.hpp"
 
 namespace halfplane {
 
@@ -14,8 +15,9 @@ namespace halfplane {
 ///
 /// Frequent features: vertices on pixel centres and tile corners, shared edges, slivers, triangles of area 0 and
 /// outside, piles of one triangle, equal depths, every depth function, mask, cull, front and scissor, partial and whole
-/// clears, fully covered tiles.
-[[nodiscard]] Scene random_scene(const Config& config, std::uint64_t seed, std::size_t count);
+/// clears, fully covered tiles. The profile's knobs come on top; without any, the scenes of a seed stay what they are.
+[[nodiscard]] Scene random_scene(const Config& config, std::uint64_t seed, std::size_t count,
+                                 const RandomProfile& profile = {});
 
 /// `scene` one frame later: one draw less, two vertices with swapped colours, depths or texture coordinates, other
 /// clears, or unchanged.

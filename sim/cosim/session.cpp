@@ -35,18 +35,24 @@ SceneSource single_scene(Scene scene) {
   return [left = std::make_shared<std::optional<Scene>>(std::move(scene))] { return std::exchange(*left, {}); };
 }
 
-SceneSource random_scenes(const Config& config, std::uint64_t seed, std::uint64_t count) {
-  return [config, random = Random(seed), left = count, chunk = std::uint64_t{50}]() mutable -> std::optional<Scene> {
-    if (left == 0) return {};
-    const std::uint64_t n = std::min(left, chunk);
-    left -= n;
-    chunk = std::min(kLargestChunk, 2 * chunk);
-    return random_scene(config, random.next(), n);
+SceneSource random_scenes(const Config& config, std::uint64_t seed, std::uint64_t count, const RandomProfile& profile,
+                          SceneRange range) {
+  return [config, profile, range, random = Random(seed), left = count, chunk = std::uint64_t{50},
+          number = std::uint64_t{0}]() mutable -> std::optional<Scene> {
+    while (left != 0) {
+      const std::uint64_t n = std::min(left, chunk), scene_seed = random.next();
+      left -= n;
+      chunk = std::min(kLargestChunk, 2 * chunk);
+      if (++number < range.first) continue;
+      if (number - range.first >= range.count) break;
+      return random_scene(config, scene_seed, n, profile);
+    }
+    return {};
   };
 }
 
 Session run_session(Dut& dut, const Config& config, const LockstepOptions& options, const SceneSource& next,
-                    HostOrders orders, bool holds_model) {
+                    HostOrders orders, bool holds_model, std::uint64_t first) {
   const auto start = std::chrono::steady_clock::now();
   Session session;
   session.config = config;
@@ -63,10 +69,15 @@ Session run_session(Dut& dut, const Config& config, const LockstepOptions& optio
     if (result.mismatch || !session.disagreement.empty()) session.failed = std::move(scene);
     return goes_on && session.disagreement.empty();
   };
-  while (auto scene = next()) {
+  const auto drawn = [&]() -> std::optional<std::uint64_t> {  // what the seed gives a scene: orders, and a next frame
+    ++session.scene;
     if (draws) draw_order(random, session.config);
+    return is_drawn && compares_bins(session.config) ? std::optional(random.next()) : std::nullopt;
+  };
+  while (session.scene + 1 < first) (void)drawn();
+  while (auto scene = next()) {
     std::optional<Scene> second;  // a next frame, some of whose bins are unchanged
-    if (is_drawn && compares_bins(session.config)) second = next_frame(*scene, random.next());
+    if (const auto seed = drawn()) second = next_frame(*scene, *seed);
     if (!run(std::move(*scene), true) || (second && !run(std::move(*second), false))) break;
   }
   session.has_trace = lockstep.finish_trace();

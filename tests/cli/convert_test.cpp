@@ -130,6 +130,19 @@ TEST_F(ConvertCommand, RandomIsTheStimulusOfCosim) {
   EXPECT_TRUE(exists("one.hpt"));
 }
 
+TEST_F(ConvertCommand, OneSceneOfARandomRunIsThatOfTheWholeRun) {
+  const std::string knobs = " --random 400 --seed 9 --config tiny --random-only triangles,less,9x7 -o ";
+  ASSERT_EQ(run(split_words("convert" + knobs + "all.hpt")).status, 0);
+  ASSERT_EQ(run(split_words("convert --first-scene 3 --scenes 1" + knobs + "one.hpt")).status, 0);
+  ASSERT_EQ(run(split_words("convert --first-scene 2 --scenes 2" + knobs + "two.hpt")).status, 0);
+  EXPECT_EQ(read("all-3.hpt"), read("one.hpt"));
+  EXPECT_EQ(read("all-2.hpt"), read("two-2.hpt"));
+  EXPECT_EQ(read("all-3.hpt"), read("two-3.hpt"));
+  expect_refused(split_words("convert --first-scene 9" + knobs + "none.hpt"), "make fewer than 9 scenes");
+  expect_refused({"convert", "triangle", "--random-only", "less", "-o", "a.hpt"}, "add --random N");
+  expect_refused(split_words("convert --random 9 --config small --random-only lines -o a.hpt"), "set lines.unit=1");
+}
+
 TEST_F(ConvertCommand, StdoutTakesTheCaptureAndNothingElse) {
   const Outcome to_stdout = run(split_words("convert triangle --size 20x20 -o -"));
   ASSERT_EQ(to_stdout.status, 0) << to_stdout.err;
@@ -143,7 +156,7 @@ TEST_F(ConvertCommand, StdoutTakesTheCaptureAndNothingElse) {
 TEST_F(ConvertCommand, BadRequestsGetOneLine) {
   expect_refused({"convert", "triangle"}, "-o");
   expect_refused({"convert", "-o", "a.hpt"}, "nothing to convert");
-  expect_refused({"convert", "triangle", "--random", "5", "-o", "a.hpt"}, "give one of them");
+  expect_refused({"convert", "triangle", "--random", "5", "-o", "a.hpt"}, "leave one of them out");
   expect_refused({"convert", "triangle", "-o", "a.png"}, ".hpt");
   expect_refused({"convert", "--random", "500", "-o", "-"}, "several scenes");
   expect_refused({"convert", "triangle", "-o", "-", "--json"}, "stdout");

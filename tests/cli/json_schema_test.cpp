@@ -151,7 +151,8 @@ class RtlJsonSchema : public JsonSchema {
 };
 
 TEST_F(RtlJsonSchema, CosimIsDescribed) {
-  expect_results("cosim", {"triangle --size 16x16", "--random 20 --memory sdram"});
+  expect_results("cosim", {"triangle --size 16x16", "--random 20 --memory sdram",
+                           "--random 90 --random-only less --first-scene 2 --scenes 1"});
   expect_results("render",
                  {"triangle --size 16x16 --engine rtl", "triangle --size 16x16 --engine rtl --set frame.order=bins"});
   expect_results("explain", {"triangle 8 8 --size 16x16 --rtl"});

@@ -194,6 +194,27 @@ TEST_P(CosimHarness, AnEqualDesignPassesWithAndWithoutStallsAndEveryArrowIsCompa
   }
 }
 
+TEST(CosimSession, ASceneAloneTakesTheOrderThatItTakesInTheRun) {
+  const Config config = preset("embedded");
+  const RandomProfile profile = read_random_profile("triangles,16x16,size=1..9", config);
+  int bins = 0;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const auto run_from = [&](std::uint64_t first) {
+      FakeDut dut(config, {});
+      return run_session(dut, config, with_stalls(0, seed), random_scenes(config, seed, 180, profile, {first}),
+                         HostOrders::drawn, false, first);
+    };
+    const Session whole = run_from(1), alone = run_from(3);
+    EXPECT_EQ(whole.scene, 3u);
+    EXPECT_EQ(alone.scene, 3u);
+    EXPECT_LT(alone.result.triangles, whole.result.triangles);
+    EXPECT_EQ(alone.config, whole.config) << seed;
+    bins += whole.config.frame_order == FrameOrder::bins ? 1 : 0;
+  }
+  EXPECT_GT(bins, 0);
+  EXPECT_LT(bins, 8);
+}
+
 TEST_P(CosimHarness, OneFlippedBitOnAnyArrowIsNamedWithItsField) {
   const Widths widths = derive_widths(config);
   for (const Arrow arrow : kCompared) {
