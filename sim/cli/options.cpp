@@ -61,14 +61,18 @@ std::uint64_t parse_seed(const std::string& text) {
 
 bool is_capture(const std::string& name) { return name == "-" || (name.size() > 4 && name.ends_with(".hpt")); }
 
+void add_result_options(CLI::App& app, CommonOptions& options) {
+  app.add_flag("--json{-}", options.json, "result as JSON on stdout, human text on stderr; --json=FILE: to a file")
+      ->each(claim_stdout("--json"));
+  app.add_flag("--quiet", options.quiet, "no human text");
+}
+
 void add_output_options(CLI::App& app, CommonOptions& options) {
   app.add_option("--config", options.config, "preset (tiny, small, embedded, full) or FILE.toml")
       ->capture_default_str();
   app.add_option("--set", options.settings, "key=value: one setting, repeatable (halfplane config --list)")
       ->allow_extra_args(false);
-  app.add_flag("--json{-}", options.json, "result as JSON on stdout, human text on stderr; --json=FILE: to a file")
-      ->each(claim_stdout("--json"));
-  app.add_flag("--quiet", options.quiet, "no human text");
+  add_result_options(app, options);
 }
 
 void add_seed_option(CLI::App& app, CommonOptions& options, const std::string& meaning) {

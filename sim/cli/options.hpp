@@ -70,6 +70,9 @@ struct CommonOptions {
   bool quiet = false;
 };
 
+/// Adds --json and --quiet.
+void add_result_options(CLI::App& app, CommonOptions& options);
+
 /// Adds --config, --set, --json and --quiet.
 void add_output_options(CLI::App& app, CommonOptions& options);
 

@@ -16,14 +16,13 @@
 #include <map>
 #include <thread>
 
+#include "sim/cli/child.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/progress.hpp"
 #include "sim/cli/render_frames.hpp"
 #include "sim/cli/whole_number.hpp"
 #include "sim/show/image/whole_file.hpp"
 #include "sim/show/report/page.hpp"
-
-extern char** environ;
 
 namespace halfplane {
 namespace {
@@ -155,79 +154,13 @@ std::vector<std::string> environment(const RunFolder& folder, const Json& driver
       {"HALFPLANE_GL", driver.dump(-1, ' ', false, Json::error_handler_t::replace)},
       {"HALFPLANE_GL_ANSWERED", folder.file("answered")}};
   std::vector<std::string> all;
-  for (char** word = environ; *word != nullptr; ++word) {
-    const std::string variable(*word);
+  for (const std::string& variable : own_environment())
     if (!added.contains(variable.substr(0, variable.find('=')))) all.push_back(variable);
-  }
   for (const auto& [name, value] : added) all.push_back(name + "=" + value);
   return all;
 }
 
-std::vector<char*> pointers(const std::vector<std::string>& words) {
-  std::vector<char*> list;
-  for (const std::string& word : words) list.push_back(const_cast<char*>(word.c_str()));
-  list.push_back(nullptr);
-  return list;
-}
-
-/// The program and its children. From a terminal it stays in the terminal's group, so that Ctrl-C and reading work.
-class Child {
- public:
-  /// `has_stdout`: else its output goes to stderr. Throws InputError when it cannot be started.
-  Child(const std::vector<std::string>& program, const std::vector<std::string>& environment, bool has_stdout) {
-    has_group_ = isatty(STDIN_FILENO) == 0;
-    const std::vector<char*> words = pointers(program), variables = pointers(environment);
-    std::array<int, 2> failure{};
-    if (pipe2(failure.data(), O_CLOEXEC) != 0 || (pid_ = fork()) < 0)
-      throw std::runtime_error("run: cannot start a program: " + std::string(std::strerror(errno)));
-    if (pid_ == 0) {
-      if (has_group_) setpgid(0, 0);
-      prctl(PR_SET_PDEATHSIG, SIGTERM);
-      if (!has_stdout) dup2(STDERR_FILENO, STDOUT_FILENO);
-      for (const int signal : {SIGPIPE, SIGXFSZ, SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);
-      execvpe(words[0], words.data(), variables.data());
-      const int reason = errno;
-      (void)!write(failure[1], &reason, sizeof reason);
-      _exit(127);
-    }
-    close(failure[1]);
-    int reason = 0;
-    const bool has_failed = read(failure[0], &reason, sizeof reason) == sizeof reason;
-    close(failure[0]);
-    if (!has_failed) return;
-    waitpid(pid_, nullptr, 0);
-    throw InputError("run: cannot start '" + program[0] + "': " + std::strerror(reason));
-  }
-  ~Child() {
-    if (!has_ended_) end();
-  }
-  Child(const Child&) = delete;
-  Child& operator=(const Child&) = delete;
-
-  /// Whether it has ended by now.
-  bool has_ended() {
-    if (!has_ended_) has_ended_ = waitpid(pid_, &status_, WNOHANG) == pid_;
-    return has_ended_;
-  }
-  /// Asks it to end, and after three seconds does not ask.
-  void end() {
-    signal(SIGTERM);
-    for (int i = 0; i < 60 && !has_ended(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    if (has_ended_) return;
-    signal(SIGKILL);
-    has_ended_ = waitpid(pid_, &status_, 0) == pid_;
-  }
-  /// Status as in a shell: 128 plus the number of the signal.
-  [[nodiscard]] int status() const { return WIFEXITED(status_) ? WEXITSTATUS(status_) : 128 + WTERMSIG(status_); }
-
- private:
-  void signal(int number) const { kill(has_group_ ? -pid_ : pid_, number); }
-  pid_t pid_ = -1;
-  int status_ = 0;
-  bool has_group_ = false, has_ended_ = false;
-};
-
-/// Totals of all frames.
+/// What all frames together took.
 struct RunTotals {
   std::uint64_t frames = 0;
   double seconds = 0, drawing = 0;
@@ -341,8 +274,10 @@ int run(const RunCommand& options) {
   int status = 0;
   const int last = last_frame(options, span);
   {
+    // From a terminal it stays in the terminal's group, so that Ctrl-C and reading work.
     Child child(options.program, environment(folder, driver_options(options, config, span, folder)),
-                options.json != "-");
+                {.output = options.json == "-" ? ChildOptions::Output::to_stderr : ChildOptions::Output::as_here,
+                 .has_group = isatty(STDIN_FILENO) == 0});
     while (!child.has_ended()) {
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
       lines.read();

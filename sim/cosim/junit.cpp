@@ -28,6 +28,20 @@ std::string escaped(const std::string& text) {
   return xml;
 }
 
+std::string time_text(double seconds) {
+  char time[32];
+  std::snprintf(time, sizeof time, "%.3f", seconds);
+  return time;
+}
+
+std::string properties_xml(const std::vector<JunitProperty>& properties, const std::string& indent) {
+  if (properties.empty()) return "";
+  std::string xml = indent + "<properties>\n";
+  for (const JunitProperty& p : properties)
+    xml += indent + "  <property name=\"" + escaped(p.name) + "\" value=\"" + escaped(p.value) + "\"/>\n";
+  return xml + indent + "</properties>\n";
+}
+
 }  // namespace
 
 std::string junit_xml(const std::string& suite, const std::vector<JunitCase>& cases, double seconds,
@@ -35,24 +49,19 @@ std::string junit_xml(const std::string& suite, const std::vector<JunitCase>& ca
   const auto failures =
       std::count_if(cases.begin(), cases.end(), [](const JunitCase& c) { return !c.failure.empty(); });
   const auto skipped = std::count_if(cases.begin(), cases.end(), [](const JunitCase& c) { return !c.skipped.empty(); });
-  char time[32];
-  std::snprintf(time, sizeof time, "%.3f", seconds);
   const std::string name = escaped(suite);
   std::string xml = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n  <testsuite name=\"" + name +
                     "\" tests=\"" + std::to_string(cases.size()) + "\" failures=\"" + std::to_string(failures) +
                     "\" errors=\"0\"" + (skipped > 0 ? " skipped=\"" + std::to_string(skipped) + "\"" : std::string()) +
-                    " time=\"" + time + "\">\n";
-  if (!properties.empty()) xml += "    <properties>\n";
-  for (const JunitProperty& p : properties)
-    xml += "      <property name=\"" + escaped(p.name) + "\" value=\"" + escaped(p.value) + "\"/>\n";
-  if (!properties.empty()) xml += "    </properties>\n";
+                    " time=\"" + time_text(seconds) + "\">\n" + properties_xml(properties, "    ");
   for (const JunitCase& c : cases) {
     xml += "    <testcase classname=\"" + name + "\" name=\"" + escaped(c.name) + "\"";
-    if (c.failure.empty() && c.output.empty() && c.skipped.empty()) {
+    if (c.seconds >= 0) xml += " time=\"" + time_text(c.seconds) + "\"";
+    if (c.failure.empty() && c.output.empty() && c.skipped.empty() && c.properties.empty()) {
       xml += "/>\n";
       continue;
     }
-    xml += ">\n";
+    xml += ">\n" + properties_xml(c.properties, "      ");
     if (!c.skipped.empty()) xml += "      <skipped message=\"" + escaped(c.skipped) + "\"/>\n";
     if (!c.failure.empty())
       xml += "      <failure message=\"" + escaped(c.failure) + "\">" + escaped(c.details) + "</failure>\n";

@@ -66,7 +66,7 @@ TEST_F(Help, ProgramWithoutArgumentsShowsACommandThatWorks) {
 
 TEST_F(Help, ListsTheCommandsAndTheCommonOptions) {
   const std::string program = run({"--help"}).out;
-  for (const char* command : {"render", "compare", "cosim", "reduce", "mutants", "depth", "stress", "scenes", "widths",
+  for (const char* command : {"render", "compare", "cosim", "reduce", "mutants", "regress", "depth", "stress", "scenes", "widths",
                               "config", "explain", "vectors", "check"})
     EXPECT_NE(program.find(command), std::string::npos) << command;
   for (const char* command : {"render", "compare"}) {

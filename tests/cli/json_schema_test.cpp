@@ -159,6 +159,10 @@ TEST_F(RtlJsonSchema, CosimIsDescribed) {
 }
 
 TEST_F(RtlJsonSchema, MismatchesAreDescribed) {
+  write("p.toml", "[r]\nconfig = \"tiny\"\nrandom = 20\n");
+  expect_results("regress", {"p.toml"});
+  write("q.toml", "[r]\nrandom = 60\noptions = \"--mutant 3\"\n");
+  expect_results("regress", {"q.toml"}, 1);
   expect_results("cosim", {"triangle --size 32x32 --mutant 11"}, 1);
   expect_results("reduce", {"triangle --size 32x32 --mutant 11"});
   expect_results("mutants", {"--random 20 --only 11,432"}, 1);
