@@ -60,8 +60,10 @@ std::string count_text(const JudgedImage& judged) {
 }  // namespace
 
 void add_against_options(CLI::App& app, AgainstWords& words) {
-  app.add_option("--against", words.path,
-                 "another rasterizer's image: the model against it too, colours .png or depth codes .npy")
+  app.add_option(
+         "--against", words.path,
+         "another rasterizer's image: the model against it too, colours .png or depth codes .npy; with a folder as "
+         "SCENE, a folder: each scene against NAME.png, NAME.npy or both")
       ->check(refuse_empty)
       ->type_name("FILE");
   app.add_option(

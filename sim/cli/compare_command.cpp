@@ -9,6 +9,7 @@
 
 #include "sim/cli/commands.hpp"
 #include "sim/cli/compare_against.hpp"
+#include "sim/cli/compare_folder.hpp"
 #include "sim/cli/progress.hpp"
 #include "sim/cli/study_options.hpp"
 #include "sim/show/image/framebuffer_files.hpp"
@@ -316,7 +317,22 @@ void check_compare(const CompareCommand& options, const Config& config) {
                   options.junit_path});
 }
 
+int run_folder(const CompareCommand& options) {
+  for (const auto& [is_given, name] :
+       {std::pair(options.against.path.empty(), ""), std::pair(!options.sheet_path.empty(), "-o"),
+        std::pair(!options.model_path.empty(), "--model"), std::pair(!options.golden_path.empty(), "--golden-picture"),
+        std::pair(!options.panels.empty(), "--panels")})
+    if (is_given)
+      throw InputError(*name == '\0'
+                           ? "SCENE is a folder; add --against FOLDER with an image of each scene, or give one scene"
+                           : std::string(name) + ": it is of one scene, and SCENE is a folder; leave it out");
+  check_output(options.junit_path);
+  check_distinct({options.json, options.junit_path});
+  return compare_folder({options, options.study, options.against, options.junit_path});
+}
+
 int run(const CompareCommand& options) {
+  if (std::filesystem::is_directory(options.scene)) return run_folder(options);
   const auto start = std::chrono::steady_clock::now();
   const Config config = drawing_config(options);
   const StudyRules rules = study_rules(options.study);

@@ -265,8 +265,11 @@ int run(const CosimOptions& options) {
   } else {
     out << (is_empty ? std::string("FAILED: nothing was compared\n")
                      : std::string(is_partial ? "equal so far" : "equal      ") +
-                           " every bit of every packet, of memory and counters; the cycle of each of " +
-                           with_commas(session.result.total_cycles_compared()) + " crossings" +
+                           " every bit of every packet, of memory and counters; " +
+                           (options.ignores_cycles
+                                ? "no cycle was compared"
+                                : "the cycle of each of " + with_commas(session.result.total_cycles_compared()) +
+                                      " crossings") +
                            (options.random != 0 ? "; and the model's pictures the scalar engine's\n" : "\n"));
   }
   if (is_whole_run_traced && session.trace_failure.empty())

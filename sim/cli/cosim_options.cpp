@@ -54,6 +54,8 @@ void add_cosim_options(CLI::App& app, CosimOptions& options) {
   app.add_option("--mutant", options.mutant, "switch on one of the RTL's built-in faults, 0 for none")
       ->check(whole_number(0, 65535))
       ->capture_default_str();
+  app.add_flag("--ignore-cycles", options.ignores_cycles,
+               "compare every bit, and not when packets cross: for a stage with another latency (docs/your-rtl.md)");
   app.add_option("--resets", options.resets, "times that each scene is begun and cut by a reset before it is run")
       ->check(whole_number(0, 1000))
       ->capture_default_str();
@@ -95,7 +97,7 @@ LockstepOptions lockstep_options(const CosimOptions& options) {
   lockstep.seed = options.seed;
   lockstep.stall_probability = options.stalls;
   lockstep.memory = options.memory;
-  lockstep.compares_cycles = true;
+  lockstep.compares_cycles = !options.ignores_cycles;
   lockstep.resets = options.resets;
   lockstep.mutant = static_cast<std::uint16_t>(options.mutant);
   return lockstep;
@@ -116,6 +118,7 @@ std::string repeat_command(const CosimOptions& options, const Config& config, co
   if (lockstep.stall_probability != 0) command += " --stalls " + probability_text(lockstep.stall_probability);
   command += memory_arguments(lockstep.memory);
   if (lockstep.resets != 0) command += " --resets " + std::to_string(lockstep.resets);
+  if (!lockstep.compares_cycles) command += " --ignore-cycles";
   if (lockstep.mutant != 0) command += " --mutant " + std::to_string(lockstep.mutant);
   return command;
 }

@@ -12,6 +12,7 @@ namespace halfplane {
 struct CosimOptions : CommonOptions, RandomOptions {
   double stalls = 0;
   int mutant = 0, resets = 0;
+  bool ignores_cycles = false;
   MemorySettings memory;
   std::string junit_path, trace_path, save_path;
   std::string trace_cycles;  ///< FIRST:LAST

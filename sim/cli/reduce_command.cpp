@@ -3,6 +3,7 @@
 
 #include "sim/cli/commands.hpp"
 #include "sim/cli/cosim_options.hpp"
+#include "sim/cli/foreign_test.hpp"
 #include "sim/cli/progress.hpp"
 
 namespace halfplane {
@@ -10,6 +11,7 @@ namespace {
 
 struct ReduceCommand : CosimOptions {
   double seconds = 60;
+  ForeignOptions foreign;
 };
 
 /// The scene's mismatch. Throws Interrupted.
@@ -24,7 +26,49 @@ std::optional<Mismatch> first_mismatch(const ReduceCommand& options, const Confi
   return lockstep_test(dut, config)(scene, lockstep);
 }
 
+/// The same for a program of others in the place of the RTL.
+int run_foreign(const ReduceCommand& options) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::pair<bool, const char*> of_rtl[]{{options.mutant != 0, "--mutant"},
+                                              {options.stalls != 0, "--stalls"},
+                                              {options.resets != 0, "--resets"},
+                                              {!(options.memory == MemorySettings{}), "--memory"},
+                                              {!options.trace_path.empty(), "--trace"}};
+  for (const auto& [is_given, name] : of_rtl)
+    if (is_given) throw InputError(std::string(name) + ": the RTL is not run with --command; leave it out");
+  const Config config = effective_config(options);
+  check_output(options.save_path, ".hpt");
+  check_distinct({options.scene, options.json, options.save_path});
+  double load_s = 0;
+  const Scene scene = load_scene(options, config, load_s);
+  Progress progress(options, "reducing");
+  const ForeignTest foreign = foreign_test(options.foreign, scene);
+  ReduceOptions reducing;
+  reducing.seconds = options.seconds;
+  reducing.progress = [&progress](double fraction) { progress(fraction); };
+  const auto reduced = reduce(scene, config, {}, foreign.test, reducing);
+  if (!reduced) throw InputError("--command: the scene failed three times, and then did not; fix the program's seed");
+  const std::string capture = save_scene(options, reduced->scene);
+  const bool is_partial = is_interrupted();
+  Json result = result_head("reduce", options, config);
+  result["first_mismatch"] = nullptr;
+  result["status"] = foreign.status;
+  result["capture"] = capture;
+  result["trace"] = nullptr;
+  result["triangles"] = {{"before", reduced->primitives_before}, {"after", reduced->primitives_after}};
+  result["runs"] = reduced->runs;
+  result["minimal"] = reduced->is_minimal;
+  finish_json(options, result, start, is_partial);
+  std::ostream& out = human(options);
+  out << "fails with  " << (foreign.status == "timeout" ? "the end of its time" : "status " + foreign.status) << '\n'
+      << "saved       " << capture << ", " << reduced->primitives_after << " of " << reduced->primitives_before
+      << " primitives (" << reduced->runs << " runs" << (reduced->is_minimal ? "" : "; it may get smaller") << ")\n";
+  return ended(out, is_partial, exit_ok);
+}
+
 int run(const ReduceCommand& options) {
+  if (!options.foreign.command.empty()) return run_foreign(options);
+  if (!options.foreign.status.empty()) throw InputError("--status: there is no program that has one; add --command");
   const auto start = std::chrono::steady_clock::now();
   const Config config = effective_config(options);
   check_output(options.save_path, ".hpt");
@@ -68,6 +112,7 @@ void add_reduce_command(CLI::App& app, Action& selected) {
   command->add_option("--seconds", options->seconds, "stop after that, with what there is by then")
       ->check(CLI::Range(1.0, 86400.0))
       ->capture_default_str();
+  add_foreign_options(*command, options->foreign);
   command->footer("\nExample:\n  halfplane reduce out/cosim-random-7.hpt --mutant 3 -o small.hpt");
 }
 

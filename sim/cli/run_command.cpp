@@ -74,28 +74,7 @@ std::filesystem::path driver_folder() {
       "and build again");
 }
 
-/// A folder of this run's own, gone with it.
-class RunFolder {
- public:
-  RunFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "halfplane-run-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr)
-      throw std::runtime_error("run: cannot make a folder for temporary files: " + std::string(std::strerror(errno)));
-    path_ = name;
-  }
-  ~RunFolder() {
-    std::error_code error;
-    std::filesystem::remove_all(path_, error);
-  }
-  RunFolder(const RunFolder&) = delete;
-  RunFolder& operator=(const RunFolder&) = delete;
-  [[nodiscard]] std::string file(const char* name) const { return (path_ / name).string(); }
-
- private:
-  std::filesystem::path path_;
-};
-
-/// The driver's output folder; absolute, because programs change their folder.
+/// Where the driver saves; absolute, because programs change their folder.
 std::string save_target(const RunCommand& options) {
   std::string name = options.save_folder.empty() ? options.save_path : options.save_folder;
   if (name.empty()) name = options.save.size() == 1 ? "frame-" + std::to_string(options.save[0]) + ".hpt" : "frame.hpt";
@@ -117,7 +96,8 @@ void remove_unfinished(const RunCommand& options) {
 }
 
 /// The driver's options, as gl/core/options.cpp reads them.
-Json driver_options(const RunCommand& options, const Config& config, const FrameSpan& span, const RunFolder& folder) {
+Json driver_options(const RunCommand& options, const Config& config, const FrameSpan& span,
+                    const TemporaryFolder& folder) {
   Json settings_of_it = Json::array();
   const Config start = preset(config.preset);
   for (const Setting& setting : settings())
@@ -140,8 +120,8 @@ Json driver_options(const RunCommand& options, const Config& config, const Frame
           {"results", folder.file("results")}};
 }
 
-/// This program's environment, with the variables that lead the program to the driver.
-std::vector<std::string> environment(const RunFolder& folder, const Json& driver) {
+/// This program's environment, with what leads the program to the driver.
+std::vector<std::string> environment(const TemporaryFolder& folder, const Json& driver) {
   const std::filesystem::path libraries = driver_folder();
   const Json vendor{{"file_format_version", "1.0.0"},
                     {"ICD", {{"library_path", (libraries / "libEGL_halfplane.so.0").string()}}}};
@@ -265,7 +245,7 @@ int run(const RunCommand& options) {
   if (!options.chart_path.empty()) require_chart_library();
   make_folder("--save-all", options.save_folder);
 
-  const RunFolder folder;
+  const TemporaryFolder folder;
   const bool keeps_rows = !options.json.empty() || !options.csv_path.empty() || !options.chart_path.empty();
   ResultLines lines(folder.file("results"), keeps_rows);
   const RunTotals& totals = lines.totals;

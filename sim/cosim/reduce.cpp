@@ -222,8 +222,11 @@ class Reducer {
 };
 
 void Reducer::to_window_space() {
-  const bool has_other = std::any_of(items_.begin(), items_.end(), depends_on_target);
-  if (has_other) try_items(items_of(window_scene(scene_, config_)));
+  if (std::none_of(items_.begin(), items_.end(), depends_on_target)) return;
+  try {
+    try_items(items_of(window_scene(scene_, config_)));
+  } catch (const InputError&) {  // what this hardware does not have: a program of others may
+  }
 }
 
 /// Removes items after the failing primitive, which are rarely needed, and often most of the earlier items.

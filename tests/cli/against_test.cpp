@@ -295,6 +295,37 @@ TEST_F(Against, AColourThatIsACodeOffIsColourAndWhatNothingExplainsIsOther) {
   EXPECT_EQ(found["first"]["kind"], "color");
 }
 
+TEST_F(Against, EachSceneOfAFolderHasItsVerdict) {
+  ASSERT_EQ(paste("mkdir scenes images").status, 0);
+  for (const char* seed : {"1", "2", "3", "4"}) {
+    const std::string scene = std::string("scenes/s") + seed + ".hpt", image = std::string("images/s") + seed;
+    ASSERT_EQ(
+        run({"convert", "--random", "20", "--random-only", "triangles,48x48,size=8..40", "--seed", seed, "-o", scene})
+            .status,
+        0);
+    Arguments render{"render", scene, "-o", image + ".png", "--depth", image + ".npy", "--quiet"};
+    if (*seed == '2') render.insert(render.end(), {"--set", "subpixel.bits=0"});
+    ASSERT_EQ(run(render).status, 0);
+  }
+  ASSERT_EQ(paste("rm images/s3.png images/s4.png images/s4.npy").status, 0);
+  const Outcome outcome = run({"compare", "scenes", "--against", "images", "--json=r.json", "--junit", "r.xml"});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_NE(outcome.out.find("2 of 4 scenes equal"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("DIFFERENT  s2.png"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("FAILED     s4.hpt: no image s4.png or .npy"), std::string::npos) << outcome.out;
+  const Bytes bytes = read("r.json");
+  const Json result = Json::parse(bytes.begin(), bytes.end());
+  EXPECT_EQ(result["failed"], 2);
+  EXPECT_EQ(result["scenes"][0]["against"].size(), 2U) << "colour and depth";
+  EXPECT_EQ(result["scenes"][2]["against"].size(), 1U);
+  const Bytes xml = read("r.xml");
+  EXPECT_NE(std::string(xml.begin(), xml.end()).find("tests=\"6\" failures=\"3\""), std::string::npos);
+  expect_refused({"compare", "scenes"}, "add --against FOLDER");
+  expect_refused({"compare", "scenes", "--against", "scenes/s1.hpt"}, "so this is one, too");
+  expect_refused({"compare", "images", "--against", "images"}, "no scene in it");
+  expect_refused({"compare", "scenes", "--against", "images", "-o", "a.png"}, "-o: it is of one scene");
+}
+
 TEST_F(Against, BadImagesAreRefused) {
   ASSERT_EQ(run({"render", "triangle", "--size", "16x16", "-o", "r.png", "--depth", "r.npy", "--quiet"}).status, 0);
   expect_refused({"compare", "triangle", "--size", "17x16", "--against", "r.png"}, "give the same --size");

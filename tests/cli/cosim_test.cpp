@@ -255,6 +255,16 @@ TEST_F(RtlCommands, ReduceOfAFailingSceneStillFailsAndIsSmall) {
   expect_refused({"reduce", "small.hpt"}, "does not fail");
 }
 
+TEST_F(RtlCommands, CyclesCanBeLeftOutOfTheComparison) {
+  const Json result = this->result({"cosim", "--random", "50", "--config", "tiny", "--ignore-cycles"});
+  for (const auto& [name, crossings] : result["crossings"].items()) EXPECT_EQ(crossings, 0) << name;
+  EXPECT_GT(result["packets"]["fine_raster"], 0);
+  EXPECT_EQ(result["mismatches"], 0);
+  const Outcome outcome = run({"cosim", "--random", "60", "--mutant", "3", "--ignore-cycles"});
+  EXPECT_EQ(outcome.status, 1) << "bits are compared";
+  EXPECT_NE(outcome.out.find("--ignore-cycles --mutant 3"), std::string::npos) << outcome.out;
+}
+
 TEST_F(RtlCommands, WhatTheHardwareLacksIsNamed) {
   write("perspective.hpt",
         "halfplane 1\ntarget 32 32\nspace window\nstate color_interp perspective\nv 1 1 .5 1\nv 9 1 .5 1\nv 1 9 .5 1\n"

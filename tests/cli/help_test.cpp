@@ -66,8 +66,8 @@ TEST_F(Help, ProgramWithoutArgumentsShowsACommandThatWorks) {
 
 TEST_F(Help, ListsTheCommandsAndTheCommonOptions) {
   const std::string program = run({"--help"}).out;
-  for (const char* command : {"render", "compare", "cosim", "reduce", "mutants", "regress", "depth", "stress", "scenes", "widths",
-                              "config", "explain", "vectors", "check"})
+  for (const char* command : {"render", "compare", "cosim", "reduce", "mutants", "regress", "depth", "stress", "scenes",
+                              "widths", "config", "explain", "vectors", "check"})
     EXPECT_NE(program.find(command), std::string::npos) << command;
   for (const char* command : {"render", "compare"}) {
     const std::string help = run({command, "--help"}).out;

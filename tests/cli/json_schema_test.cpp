@@ -81,6 +81,21 @@ TEST_F(JsonSchema, ForeignImagesAreDescribed) {
   expect_results("compare", {"triangle --size 32x32 --against a.png"}, 1);
 }
 
+TEST_F(JsonSchema, FoldersOfScenesAreDescribed) {
+  ASSERT_EQ(paste("mkdir s i").status, 0);
+  ASSERT_EQ(run({"convert", "triangle", "--size", "16x16", "-o", "s/a.hpt"}).status, 0);
+  ASSERT_EQ(run({"render", "s/a.hpt", "-o", "i/a.png", "--quiet"}).status, 0);
+  ASSERT_EQ(run({"compare", "s", "--against", "i", "--quiet", "--json=f.json"}).status, 0);
+  for (const std::string& fault : faults("--described", "compare.folder", "f.json")) ADD_FAILURE() << fault;
+}
+
+TEST_F(JsonSchema, ReductionsByAForeignProgramAreDescribed) {
+  ASSERT_EQ(run({"convert", "triangle", "--size", "16x16", "-o", "a.hpt"}).status, 0);
+  ASSERT_EQ(run({"reduce", "a.hpt", "--command", "! grep -q ^t {}", "-o", "b.hpt", "--quiet", "--json=f.json"}).status,
+            0);
+  for (const std::string& fault : faults("--described", "reduce", "f.json")) ADD_FAILURE() << fault;
+}
+
 TEST_F(JsonSchema, DepthIsDescribed) {
   expect_results("depth",
                  {"--near 1 --far 100", "--near 1 --far 10 --mapping stdinf,revinf,log --format uf4.12 --error 0.1",
