@@ -27,7 +27,7 @@ def read_capture(path):
         for number, line in enumerate(file, 1):
             words = line.split('#', 1)[0].split()
             match words:
-                case [] | ['halfplane', '1'] | ['space', 'window']:
+                case [] | ['halfplane', '1'] | ['space', 'window' | 'clip']:  # clip: of a clear alone
                     pass
                 case ['target', width, height]:
                     size = int(width), int(height)
