@@ -177,6 +177,13 @@ void derive_memory(Widths& w, const Config& config) {
 
 }  // namespace
 
+Widths::Widths() = default;
+Widths::Widths(const Widths&) = default;
+Widths::Widths(Widths&&) noexcept = default;
+Widths& Widths::operator=(const Widths&) = default;
+Widths& Widths::operator=(Widths&&) noexcept = default;
+Widths::~Widths() = default;
+
 Widths derive_widths(const Config& config) {
   Widths w;
   w.grid_bits = coordinate_grid_bits(config);

@@ -80,6 +80,14 @@ struct MemoryGrid {
 
 /// The derived widths of a configuration, and a few derived constants.
 struct Widths {
+  // In widths.cpp: a hundred strings, inline they were a tenth of the library's code.
+  Widths();
+  Widths(const Widths&);
+  Widths(Widths&&) noexcept;
+  Widths& operator=(const Widths&);
+  Widths& operator=(Widths&&) noexcept;
+  ~Widths();
+
   // Constants.
   int grid_bits = 0;       ///< s, see coordinate_grid_bits()
   int guard_bits = 0;      ///< G: fraction bits of a gradient per pixel below one LSB

@@ -76,11 +76,11 @@ std::int64_t exit_column(const OctantLine& line, std::int64_t a, std::int64_t b,
 }
 
 /// Columns [first, end) of the whole line.
-struct Columns {
+struct ColumnSpan {
   std::int64_t first, end;
 };
 
-Columns columns_of(const OctantLine& line, LineRule rule, bool drops_last, int s) {
+ColumnSpan columns_of(const OctantLine& line, LineRule rule, bool drops_last, int s) {
   if (rule == LineRule::diamond)
     return {exit_column(line, line.a0, line.b0, s), exit_column(line, line.a1, line.b1, s)};
   return {line.a0 >> s, (line.a1 >> s) + (drops_last ? 0 : 1)};
@@ -180,7 +180,7 @@ std::optional<LineSetup> setup_line(const SnappedVertex& start, const SnappedVer
   const int s = widths.grid_bits;
   const OctantLine line = to_octant(start, end, rule, s);
   const std::int64_t d = line.minor_delta(), D = line.major_delta();
-  const Columns columns = columns_of(line, rule, drops_last, s);
+  const ColumnSpan columns = columns_of(line, rule, drops_last, s);
   const Positions q = positions_of(line, rule, columns.first, s);
 
   const Bounds x = turned(limit.left, limit.right, line.is_x_major ? line.is_major_negative : line.is_minor_negative);

@@ -6,12 +6,6 @@
 #include "resolve.hpp"
 
 namespace halfplane {
-namespace {
-
-std::size_t number(TilePlane plane) { return static_cast<std::size_t>(plane); }
-
-}  // namespace
-
 BlockCache::BlockCache(const Config& config, const Widths& widths)
     : config_(config),
       widths_(widths),

@@ -171,7 +171,6 @@ class CacheTags {
     return state.depth_test != DepthFunc::always || !is_full || (tests_alpha_ && state.writes_word()) ||
            (has_stencil_ && (state.tests_stencil || state.depth_write) && !replaces);
   }
-  [[nodiscard]] static constexpr std::size_t number(TilePlane plane) { return static_cast<std::size_t>(plane); }
   /// Index of a word in a row of blocks.
   [[nodiscard]] int word_of(int x) const { return x / widths_.blocks.flag_word; }
   [[nodiscard]] std::size_t line_of(const BlockAddress& block) const {

@@ -50,6 +50,10 @@ struct BlockStamp {
   return {static_cast<std::uint16_t>(word), static_cast<std::uint16_t>(y / per_tile),
           static_cast<std::uint16_t>(y % per_tile)};
 }
+
+/// Index of a buffer in arrays over both.
+[[nodiscard]] constexpr std::size_t number(TilePlane plane) { return static_cast<std::size_t>(plane); }
+
 [[nodiscard]] constexpr TilePlane flags_of(TilePlane plane) {
   return static_cast<TilePlane>(static_cast<unsigned>(plane) | 2U);
 }

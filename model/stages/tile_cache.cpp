@@ -3,11 +3,6 @@
 #include <algorithm>
 
 namespace halfplane {
-namespace {
-
-std::size_t number(TilePlane plane) { return static_cast<std::size_t>(plane); }
-
-}  // namespace
 
 /// Moves the codes of stamps between the lines and `memory`.
 struct TileCache::DataMover {

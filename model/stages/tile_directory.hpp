@@ -118,7 +118,6 @@ class TileDirectory {
     std::array<StampRows, 2> dirty{};  ///< likewise: written stamps
   };
 
-  [[nodiscard]] static constexpr std::size_t number(TilePlane plane) { return static_cast<std::size_t>(plane); }
   [[nodiscard]] std::uint32_t stamps() const { return static_cast<std::uint32_t>(widths_.stamps.stamps()); }
 
   template <class Mover>

@@ -1,7 +1,7 @@
 # shellcheck shell=bash
 # Part of ./dev: configuring and building.
 
-# configure PRESET [ARGS]: Ninja or, without it, make; what is not installed is left out.
+# configure PRESET [ARGS]: Ninja or, without it, make; what is not installed is left out. Every kernel, unless ARGS name some.
 configure() {
   local cache=build/$1/CMakeCache.txt generator=Ninja fresh=() rtl=REQUIRED tests=ON
   have ninja || generator='Unix Makefiles'
@@ -12,7 +12,8 @@ configure() {
     grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$PWD" "$cache"; }; then
     fresh=(--fresh)
   fi
-  cmake --preset "$1" -G "$generator" "${fresh[@]}" -DHALFPLANE_RTL=$rtl -DHALFPLANE_BUILD_TESTS=$tests "${@:2}"
+  cmake --preset "$1" -G "$generator" "${fresh[@]}" -DHALFPLANE_RTL=$rtl -DHALFPLANE_BUILD_TESTS=$tests -UHALFPLANE_KERNELS \
+    "${@:2}"
 }
 
 # build PRESET [TARGET]: everything, or one target.

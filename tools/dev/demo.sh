@@ -21,17 +21,29 @@ demo_rtl() {
   ((status == 1)) || { say "   the fault was not caught"; exit 1; }
 }
 
-# What a person sees stays on the screen, in a pipe too. One Verilated configuration is enough, if there are no others, and
-# no OpenGL driver.
+# The kernels of the functional engine that this machine runs, for CMake.
+best_kernels() {
+  if [[ ! -r /proc/cpuinfo ]]; then
+    echo 'avx2;avx512'
+  elif grep -qw avx512bw /proc/cpuinfo; then
+    echo avx512
+  else
+    echo avx2
+  fi
+}
+
+# What a person sees stays on the screen, in a pipe too. One Verilated configuration is enough, one set of kernels, and no
+# OpenGL driver, unless a build that has more is there.
 demo() {
   ensure "${everyday[@]}"
   if [[ -n $(lacking sim) ]]; then
     demo_library
     return
   fi
-  local rtl=(-DHALFPLANE_RTL_CONFIGS=embedded -DHALFPLANE_GL=OFF)
-  ! grep -q '^HALFPLANE_RTL_CONFIGS:' build/release/CMakeCache.txt 2>/dev/null || rtl=()
-  build_program "${rtl[@]}"
+  local less=(-DHALFPLANE_RTL_CONFIGS=embedded -DHALFPLANE_GL=OFF "-DHALFPLANE_KERNELS=$(best_kernels)")
+  local cache=build/release/CMakeCache.txt
+  [[ ! -f $cache ]] || grep -qx 'HALFPLANE_RTL_CONFIGS:STRING=embedded' $cache || less=()
+  build_program "${less[@]}"
   mkdir -p out
   say "== the teapot in three ways: fixed-point model, exact oracle, float golden"
   build/halfplane compare teapot -o out/teapot.png --model out/teapot-model.png --golden-picture out/teapot-golden.png \
