@@ -59,10 +59,10 @@ const Tables& tables() {
 }
 
 /// Interpolates between two entries: `place` is 0...1 in u0.`bits`.
-std::uint64_t on_line(const std::array<std::uint64_t, kLines + 1>& table, std::uint64_t place, int bits) {
+std::uint64_t on_line(const std::array<std::uint64_t, kLines + 1>& entries, std::uint64_t place, int bits) {
   const std::uint64_t line = place >> (bits - kTableBits);
   const std::uint64_t part = place & ((std::uint64_t{1} << (bits - kTableBits)) - 1);
-  const auto low = static_cast<std::int64_t>(table[line]), high = static_cast<std::int64_t>(table[line + 1]);
+  const auto low = static_cast<std::int64_t>(entries[line]), high = static_cast<std::int64_t>(entries[line + 1]);
   const auto moved = static_cast<int128>(high - low) * static_cast<std::int64_t>(part);
   return static_cast<std::uint64_t>(low + static_cast<std::int64_t>(moved >> (bits - kTableBits)));
 }

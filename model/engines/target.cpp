@@ -11,29 +11,25 @@
 
 namespace halfplane {
 
-namespace {
-
-/// The scene of one clear or draw, whose memory is reused. It keeps its texture, which is decoded once and not for each
-/// draw.
-struct Canvas {
-  Scene scene;
-  std::vector<TexelBlocks> texels;  ///< blocks of its texture, after the first draw with it
-
-  /// The scene with only the texture and one state.
-  Scene& with(const State& state) {
-    scene.vertices.clear();
-    scene.normals.clear();
-    scene.indices.clear();
-    scene.states.assign(1, state);
-    if (state.texture) scene.states[0].texture = 0;
-    scene.commands.clear();
-    return scene;
-  }
-};
-
-}  // namespace
-
 struct Target::Memory {
+  /// The scene of one clear or draw, whose memory is reused. It keeps its texture, which is decoded once and not for each
+  /// draw.
+  struct Canvas {
+    Scene scene;
+    std::vector<TexelBlocks> texels;  ///< of its texture, after the first draw with it
+
+    /// The scene with only the texture and one state.
+    Scene& with(const State& state) {
+      scene.vertices.clear();
+      scene.normals.clear();
+      scene.indices.clear();
+      scene.states.assign(1, state);
+      if (state.texture) scene.states[0].texture = 0;
+      scene.commands.clear();
+      return scene;
+    }
+  };
+
   Memory(const Config& config_, Scene empty) : config(config_), engine(config_), plain{std::move(empty), {}} {}
 
   const Config config;
@@ -117,7 +113,7 @@ void Target::clear(const Clear& what, const State& state) {
 
 Counters Target::draw(const State& state, Topology topology, std::span<const Vertex> vertices,
                       std::span<const std::uint32_t> indices, std::span<const std::array<double, 3>> normals) {
-  Canvas& canvas = memory_->canvas_of(state);
+  Memory::Canvas& canvas = memory_->canvas_of(state);
   Scene& scene = canvas.with(state);
   scene.vertices.assign(vertices.begin(), vertices.end());
   scene.normals.assign(normals.begin(), normals.end());

@@ -1,5 +1,6 @@
 #include "sim/show/report/page.hpp"
 
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "sim/show/image/whole_file.hpp"

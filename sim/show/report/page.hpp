@@ -1,7 +1,7 @@
 // Self-contained HTML pages: a template that CMake split at the place of its data, and the data.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 
