@@ -77,6 +77,8 @@ def place(folder, device, seed):
             "--seed",
             seed,
             "--timing-allow-fail",
+            "--router",
+            "router2",
             "--json",
             "ulx3s.json",
             "--lpf",
