@@ -112,13 +112,19 @@ Setting no_pixel(Setting setting) {
   return setting;
 }
 
+bool has_texture_unit(const Config& config) { return config.texture_unit != TextureUnitKind::off; }
+
+/// Cost: what an ECP5 takes more than with the smallest value: places (LUT4), multipliers, block RAMs by synth_ecp5 of
+/// Yosys 0.23, of the time of the page or ADR named. A key without a cost has not been measured by itself; one of the
+/// host costs nothing.
 std::vector<Setting> all_settings() {
   return {
       number<&Config::subpixel_bits>("subpixel.bits", "bits", "fraction bits S of a snapped window coordinate", 0, 12),
       powers<&Config::guard_band>("guard.band", "pixels", "window coordinates lie in [-band, band); a power of two", 16,
                                   1 << 20),
-      number<&Config::target_width>("target.width", "pixels", "widest target", 1, 16384),
-      number<&Config::target_height>("target.height", "pixels", "highest target", 1, 16384),
+      number<&Config::target_width>("target.width", "pixels", "widest target", 1, 16384).ability_named("target_width"),
+      number<&Config::target_height>("target.height", "pixels", "highest target", 1, 16384)
+          .ability_named("target_height"),
       number<&Config::depth_bits>("depth.bits", "bits", "bits B of an interpolated depth, and of its stored code", 8,
                                   32),
       number<&Config::local_guard_bits>("plane.local_guard_bits", "bits",
@@ -129,11 +135,17 @@ std::vector<Setting> all_settings() {
                                         12, 26),
       number<&Config::perspective_mantissa_bits>("perspective.mantissa_bits", "bits",
                                                  "bits k of 1/w that a pixel's reciprocal looks at", 8, 20),
+      // Cost: 3,049 places of the texture unit (ADR 55).
       no_pixel(number<&Config::perspective_colors>(
-          "perspective.colors", "units",
-          "1: the RTL's texture unit also interpolates colours over w; 0: colours are affine in the RTL", 0, 1)),
+                   "perspective.colors", "units",
+                   "1: the RTL's texture unit also interpolates colours over w; 0: colours are affine in the RTL", 0, 1)
+                   .ability_named("colors_over_w")
+                   .only_with(has_texture_unit,
+                              "colours over w are divided by the texture unit's 1/w: use texture.unit=nearest, or "
+                              "perspective.colors=0")),
       choice<&Config::color_format>("color.format", {"rgb565", "rgba8888"}, "layout of a stored colour"),
       powers<&Config::tile_size>("tile.size", "pixels", "side of a tile: 4, 8, 16 or 32", 4, 32),
+      // Cost: `embedded` with 1, 2, 4: 12,689, 15,227, 28,329 places (docs/area.md).
       no_pixel(powers<&Config::stamp_size>("stamp.size", "pixels",
                                            "side of the stamp tested in one clock: 1, 2, 4 or 8", 1, 8)),
       no_pixel(number<&Config::primitive_id_bits>("key.primitive_bits", "bits",
@@ -166,16 +178,21 @@ std::vector<Setting> all_settings() {
           "frame.store", {"all", "color"}, "blocks: planes of a frame that come to memory; color: its depth is lost"))),
       no_pixel(choice<&Config::setup_kind>("setup.kind", {"pipelined", "serial"},
                                            "RTL triangle setup: several multipliers, or one")),
+      // Cost: 2 saves 1,414 places and 13 multipliers with a texture unit (docs/area.md).
       no_pixel(number<&Config::setup_plane_clocks>(
           "setup.plane_clocks", "clocks",
           "cycles per plane of the RTL's pipelined triangle setup: 1, or 2 with half of the multipliers", 1, 2)),
+      // Cost: nearest 3,866 places, 8 multipliers, 4 block RAMs; bilinear 6,203, 20, 5; without the wider planes and
+      // queues (ADR 29).
       no_pixel(choice<&Config::texture_unit>("texture.unit", {"off", "nearest", "bilinear", "trilinear"},
-                                             "what the RTL's texture unit can do; off: it has none")),
+                                             "what the RTL's texture unit can do; off: it has none")
+                   .ability_named("texture")),
       no_pixel(one_of<&Config::texture_lanes>(
           "texture.lanes", "pixels", "texture pixels per cycle of the RTL, each with its divider and filter: 1 or 4",
           {1, 4})),
       no_pixel(powers<&Config::texture_cache_kb>(
           "texture.cache_kb", "KB", "texels that the texture unit holds on the chip; a power of two", 1, 64)),
+      // Cost: 2: 626 places (ADR 101).
       no_pixel(number<&Config::texture_ways>(
           "texture.ways", "places",
           "places of a block in the texture cache: 1, or 2, of which the less recently used is replaced", 1, 2)),
@@ -186,40 +203,83 @@ std::vector<Setting> all_settings() {
           choice<&Config::reciprocal_kind>("reciprocal.kind", {"table", "restoring"},
                                            "what the texture unit divides by 1/w with: a RAM and two multipliers, or "
                                            "subtractions; the same bits and time")),
-      unnamed_at_0(number<&Config::texture_constants>(
-          "texture.constant", "units",
-          "1: the RTL's texture unit blends with a constant colour (texture_combine blend); 0: it does not", 0, 1)),
-      unnamed_at_0(number<&Config::texture_borders>(
-          "texture.border", "units",
-          "1: the RTL's texture unit has a border colour (texture_wrap border and half_border); 0: it has none", 0, 1)),
+      unnamed_at_0(
+          number<&Config::texture_constants>(
+              "texture.constant", "units",
+              "1: the RTL's texture unit blends with a constant colour (texture_combine blend); 0: it does not", 0, 1)
+              .ability_named("texture_constant")
+              .only_with(has_texture_unit,
+                         "a constant colour is blended by the texels of a texture unit: use texture.unit=nearest, or "
+                         "texture.constant=0")),
+      unnamed_at_0(
+          number<&Config::texture_borders>(
+              "texture.border", "units",
+              "1: the RTL's texture unit has a border colour (texture_wrap border and half_border); 0: it has none", 0,
+              1)
+              .ability_named("texture_border")
+              .only_with(
+                  has_texture_unit,
+                  "a border colour is a texel of a texture unit: use texture.unit=nearest, or texture.border=0")),
+      // Cost: 871 places (docs/area.md).
       number<&Config::alpha_units>(
           "alpha.unit", "units",
           "1: the RTL interpolates alpha, whatever color.format keeps, and (blocks, pipelined) tests it; 0: neither", 0,
-          1),
+          1)
+          .ability_named("alpha"),
+      // Cost: 1: 1,935 places, 6 multipliers, 2 block RAMs; 4: 2,650, 24, 2 (docs/area.md).
       no_pixel(one_of<&Config::blend_lanes>(
-          "blend.lanes", "samples",
-          "samples blended per cycle by the RTL, 1 or 4; 0: neither blending nor partial color masks", {0, 1, 4})),
-      unnamed_at_0(no_pixel(number<&Config::logic_units>(
-          "logic.unit", "units",
-          "1: the RTL combines stored colours with new ones bit by bit (logic_op); 0: it does not", 0, 1))),
+                   "blend.lanes", "samples",
+                   "samples blended per cycle by the RTL, 1 or 4; 0: neither blending nor partial color masks",
+                   {0, 1, 4})
+                   .ability_named("blending")),
+      // Cost: 150 places in color_write (ADR 116).
+      unnamed_at_0(no_pixel(
+          number<&Config::logic_units>(
+              "logic.unit", "units",
+              "1: the RTL combines stored colours with new ones bit by bit (logic_op); 0: it does not", 0, 1)
+              .ability_named("logic_op")
+              .only_with(
+                  [](const Config& config) { return config.blend_lanes != 0; },
+                  "logic operations take the stored colours that blending reads: use blend.lanes=4, or logic.unit=0"))),
+      // Cost: 61 places (docs/area.md).
       number<&Config::dither_units>("dither.unit", "units", "1: the RTL dithers colours of rgb565; 0: it rounds them",
-                                    0, 1),
+                                    0, 1)
+          .ability_named("dither"),
+      // Cost: about 1,900 places, 16 multipliers, 4 block RAMs (ADR 60).
       number<&Config::fog_units>("fog.unit", "units",
-                                 "1: the RTL fogs triangles behind its texture unit; 0: it has no fog", 0, 1),
+                                 "1: the RTL fogs triangles behind its texture unit; 0: it has no fog", 0, 1)
+          .ability_named("fog")
+          .only_with(
+              has_texture_unit,
+              "fog looks at the plane of 1/w, which a texture unit brings: use texture.unit=nearest, or fog.unit=0"),
+      // Cost: 8,043 places, 22 multipliers, 2 block RAMs (ADR 99).
       number<&Config::shade_units>(
           "shade.unit", "units",
-          "1: the RTL lights the fragments of shade phong in front of its texture unit; 0: it lights none", 0, 1),
+          "1: the RTL lights the fragments of shade phong in front of its texture unit; 0: it lights none", 0, 1)
+          .ability_named("shade")
+          .only_with(has_texture_unit,
+                     "normals lie over w and start where 1/w is smallest, which a texture unit's planes say: use "
+                     "texture.unit=nearest, or shade.unit=0")
+          .only_with([](const Config& config) { return config.perspective_colors == 0; },
+                     "fragments are lit in front of the texture unit, which divides colours over w: use "
+                     "perspective.colors=0, or shade.unit=0"),
+      // Cost: 680 places, 5 block RAMs (docs/area.md).
       one_of<&Config::stencil_bits>(
           "stencil.bits", "bits",
           "bits of stencil that the RTL stores above each depth: 8, or 0 (blocks, pipelined; depth.bits up to 24)",
-          {0, 8}),
+          {0, 8})
+          .ability_named("stencil"),
+      // Cost: 577 places (docs/area.md).
       no_pixel(number<&Config::line_units>("lines.unit", "units",
-                                           "1: the RTL has the unit that draws lines; 0: it takes none", 0, 1)),
+                                           "1: the RTL has the unit that draws lines; 0: it takes none", 0, 1)
+                   .ability_named("lines")),
       no_pixel(number<&Config::counter_units>("counters.unit", "units",
-                                              "1: the RTL has performance counters; 0: it has none", 0, 1)),
+                                              "1: the RTL has performance counters; 0: it has none", 0, 1)
+                   .ability_named("counters")),
       no_pixel(number<&Config::counter_bits>(
           "counters.bits", "bits",
           "bits of each performance counter of the RTL; a sticky bit tells that one has wrapped", 16, 32)),
+      // Cost: 4: 9,508 places, 40 block RAMs (ADR 65).
       powers<&Config::msaa_samples>("msaa.samples", "samples",
                                     "samples of a pixel, 1, 2, 4 or 8, each with coverage, depth, stencil and colour",
                                     1, kMaxPixelSamples),
@@ -230,6 +290,7 @@ std::vector<Setting> all_settings() {
                                      "1: the RTL stores the mean of a pixel's samples as its block leaves the chip, of "
                                      "frames in bins that store colours alone; 0: it stores all samples",
                                      0, 1),
+      // Cost: 1,493 places, 10 block RAMs (ADR 103).
       number<&Config::compress_units>("compress.unit", "units",
                                       "1: the RTL stores one colour a pixel, not one a sample, of blocks whose pixels "
                                       "have one each, and a flag; 0: it stores all samples",

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "formats/depth_format.hpp"
@@ -124,6 +125,12 @@ void require_sampled_hardware(const Config& config, std::string_view who);
   return config.tile_size + (config.msaa_samples > 1 ? 2 : 0);
 }
 
+/// What the hardware of a unit builds on.
+struct Need {
+  bool (*holds)(const Config&);
+  std::string_view message;  ///< what the unit takes from the other one, and what to write instead
+};
+
 /// One setting: its key in TOML and `--set`, its values, and access to its member of Config.
 struct Setting {
   std::string_view key;                      ///< "depth.bits"
@@ -135,10 +142,20 @@ struct Setting {
   std::vector<std::string_view> names = {};  ///< names of an enumeration's values, in order
   bool is_host = false;                      ///< the RTL does not depend on it
   bool may_change_pixels = true;             ///< false: it affects time and area only
+  std::string_view ability = {};             ///< name among a design's abilities, where more is better; empty: none
+  std::vector<Need> needs = {};              ///< what must hold unless its value is 0
   bool is_unnamed_at_0 = false;              ///< at 0 it is no part of CONFIG_ID: IDs are older than the setting
   std::string (*read)(const Config&, const Setting&) = nullptr;
   void (*write)(Config&, const Setting&, std::string_view) = nullptr;
 
+  [[nodiscard]] Setting ability_named(std::string_view name) && {
+    ability = name;
+    return std::move(*this);
+  }
+  [[nodiscard]] Setting only_with(bool (*holds)(const Config&), std::string_view message) && {
+    needs.push_back({holds, message});
+    return std::move(*this);
+  }
   [[nodiscard]] bool is_number() const { return max > min; }
   [[nodiscard]] bool is_hardware() const { return !is_host; }
 };

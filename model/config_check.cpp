@@ -41,6 +41,9 @@ void validate(const Config& config) {
     refuse_unless(setting.values.empty() || std::ranges::count(setting.values, std::stoi(value)) == 1,
                   std::string(setting.key) + " must be " + listed(setting.values));
   }
+  for (const Setting& setting : settings())
+    if (!setting.needs.empty() && get(config, setting) != "0")
+      for (const Need& need : setting.needs) refuse_unless(need.holds(config), std::string(need.message));
   refuse_unless(config.setup_plane_clocks == 1 || config.setup_kind == SetupKind::pipelined,
                 "the serial setup takes as many clocks for a plane as its bits want: use setup.plane_clocks=1, or "
                 "setup.kind=pipelined");
@@ -57,28 +60,10 @@ void validate(const Config& config) {
       config.texture_ways == 1 || config.texture_unit != TextureUnitKind::nearest || config.texture_lanes != 1,
       "a texture unit with one nearest texel a clock has one way: use texture.unit=bilinear or trilinear, "
       "texture.lanes=4, or texture.ways=1");
-  refuse_unless(config.texture_constants == 0 || config.texture_unit != TextureUnitKind::off,
-                "a constant colour is blended by the texels of a texture unit: use texture.unit=nearest, or "
-                "texture.constant=0");
-  refuse_unless(config.texture_borders == 0 || config.texture_unit != TextureUnitKind::off,
-                "a border colour is a texel of a texture unit: use texture.unit=nearest, or texture.border=0");
-  refuse_unless(config.fog_units == 0 || config.texture_unit != TextureUnitKind::off,
-                "fog looks at the plane of 1/w, which a texture unit brings: use texture.unit=nearest, or fog.unit=0");
-  refuse_unless(config.shade_units == 0 || config.texture_unit != TextureUnitKind::off,
-                "normals lie over w and start where 1/w is smallest, which a texture unit's planes say: use "
-                "texture.unit=nearest, or shade.unit=0");
-  refuse_unless(config.shade_units == 0 || config.perspective_colors == 0,
-                "fragments are lit in front of the texture unit, which divides colours over w: use "
-                "perspective.colors=0, or shade.unit=0");
-  refuse_unless(config.perspective_colors == 0 || config.texture_unit != TextureUnitKind::off,
-                "colours over w are divided by the texture unit's 1/w: use texture.unit=nearest, or "
-                "perspective.colors=0");
   refuse_unless(
       !packs_at_write(config) || (config.cache_kind == CacheKind::blocks && config.setup_kind == SetupKind::pipelined),
       "colours are blended and dithered where the framebuffer of blocks writes them, by states that the pipelined "
       "setup lets through: use cache.kind=blocks and setup.kind=pipelined, or blend.lanes=0 and dither.unit=0");
-  refuse_unless(config.logic_units == 0 || config.blend_lanes != 0,
-                "logic operations take the stored colours that blending reads: use blend.lanes=4, or logic.unit=0");
   refuse_unless(
       config.stencil_bits == 0 || (config.cache_kind == CacheKind::blocks &&
                                    config.setup_kind == SetupKind::pipelined && config.depth_bits <= 24),

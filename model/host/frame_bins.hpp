@@ -43,26 +43,6 @@ struct BinContents {
   return config.frame_order == FrameOrder::bins && config.frame_store == FrameStore::color;
 }
 
-/// The signature of data shared by draws, computed again only when the data change.
-template <class Shared>
-class SharedSignature {
- public:
-  /// `add`: adds the data that count to a hash.
-  [[nodiscard]] const Signature& signature_of(const std::shared_ptr<const Shared>& shared, const auto& add) {
-    if (shared != last_) {
-      last_ = shared;
-      SignatureHash hash;
-      add(*shared, hash);
-      signature_ = hash.signature();
-    }
-    return signature_;
-  }
-
- private:
-  std::shared_ptr<const Shared> last_;
-  Signature signature_;
-};
-
 class FrameBins {
  public:
   /// For a target of width x height pixels. `compares`: compares bins with the previous frame's, on hardware with
@@ -129,8 +109,7 @@ class FrameBins {
   std::size_t bin_next_ = 0, item_next_ = 0;  ///< the next bin and item
   std::uint64_t bins_ = 0, pairs_ = 0, left_out_ = 0;
   std::optional<std::vector<PixelBounds>> cleared_;
-  SharedSignature<FogTable> fog_;
-  SharedSignature<PhongLight> light_;
+  UnitSignatures units_;
 };
 
 }  // namespace halfplane

@@ -1,5 +1,8 @@
 #include "sim/study/space/points.hpp"
 
+#include <algorithm>
+#include <string>
+
 #include "sim/show/image/framebuffer_files.hpp"
 #include "sim/show/report/hardware.hpp"
 
@@ -8,23 +11,17 @@ namespace {
 
 SpaceJson number_or_null(const std::optional<double>& value) { return value ? SpaceJson(*value) : SpaceJson(nullptr); }
 
-/// Abilities, where more is better: a point beats no other that has an ability it lacks.
+/// A point beats no other that has an ability it lacks.
 SpaceJson abilities(const Config& config) {
-  return {{"texture", static_cast<int>(config.texture_unit)},
-          {"texture_constant", config.texture_constants},
-          {"texture_border", config.texture_borders},
-          {"colors_over_w", config.perspective_colors},
-          {"alpha", config.alpha_units},
-          {"blending", config.blend_lanes > 0 ? 1 : 0},
-          {"logic_op", config.logic_units},
-          {"dither", config.dither_units},
-          {"fog", config.fog_units},
-          {"shade", config.shade_units},
-          {"stencil", config.stencil_bits},
-          {"lines", config.line_units},
-          {"counters", config.counter_units},
-          {"target_width", config.target_width},
-          {"target_height", config.target_height}};
+  SpaceJson values = SpaceJson::object();
+  for (const Setting& setting : settings()) {
+    if (setting.ability.empty()) continue;
+    const std::string value = get(config, setting);
+    values[setting.ability] =
+        setting.is_number() ? std::stoi(value) : std::ranges::find(setting.names, value) - setting.names.begin();
+  }
+  values["blending"] = std::min(config.blend_lanes, 1);  // more lanes blend faster, not more
+  return values;
 }
 
 }  // namespace
