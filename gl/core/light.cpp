@@ -4,6 +4,7 @@
 
 #include "commands.hpp"
 #include "matrix.hpp"
+#include "shading.hpp"
 
 namespace halfplane::gl {
 namespace {
@@ -194,6 +195,7 @@ void material(Context& context, GLenum face, GLenum pname, Params params) {
     if (!set<Material>(context, kMaterialParameters, material, is_both ? GL_AMBIENT : pname, params)) return;
     if (is_both) material.diffuse = material.ambient;
   }
+  forget_lit(context);
   track_color(context);
 }
 
@@ -219,6 +221,7 @@ void color_material(Context& context, GLenum face, GLenum mode) {
 void track_color(Context& context) {
   LightingState& lighting = context.state.lighting;
   if (!lighting.color_material) return;
+  forget_lit(context);
   const Vec4& color = context.state.current.color;
   const GLenum face = lighting.color_material_face, mode = lighting.color_material_mode;
   for (std::size_t i = 0; i < 2; ++i) {

@@ -50,14 +50,20 @@ struct Arrived {
 
 /// The colours of a vertex (OpenGL 1.5, 2.14.1). `normal` in eye space.
 void light_vertex(const Context& context, const Vec3& normal, ShadedVertex& vertex) {
+  ShadingConstants& constants = *context.shading;
+  if (constants.lit && constants.lit->normal == normal) {
+    vertex.color = constants.lit->color;
+    vertex.secondary = constants.lit->secondary;
+    return;
+  }
   const LightingState& state = context.state.lighting;
   const std::size_t sides = state.two_side ? 2 : 1;
   const Vec3 eye = point_of(vertex.eye);
   const bool is_far = vertex.eye[3] == 0;  // a direction
   const Vec3 to_viewer = state.local_viewer ? unit(scaled(eye, -1)) : kTowardsViewer;
-  Vec3 ambient = context.shading->scene_ambient;
+  Vec3 ambient = constants.scene_ambient;
   std::array<Arrived, 2> arrived{};
-  for (const LightConstants& light : context.shading->lights) {
+  for (const LightConstants& light : constants.lights) {
     Vec3 to_light = light.position;
     double strength = 1;
     if (light.is_positional) {
@@ -100,6 +106,7 @@ void light_vertex(const Context& context, const Vec3& normal, ShadedVertex& vert
     secondary[3] = 0;
   }
   if (sides == 1) vertex.color[1] = vertex.color[0], vertex.secondary[1] = vertex.secondary[0];
+  if (constants.depends_on_normal_alone) constants.lit = {normal, vertex.color, vertex.secondary};
 }
 
 /// Coordinates as glTexGen makes them (OpenGL 1.5, 2.11.4).
@@ -211,6 +218,9 @@ void update_shading(Context& context) {
   for (std::size_t i = 0; i < kLights; ++i)
     if (state.lighting.enabled && state.lighting.light_enabled[i])
       constants.lights.push_back(constants_of(state.lighting.light[i]));
+  constants.depends_on_normal_alone =
+      !state.lighting.local_viewer && std::ranges::none_of(constants.lights, &LightConstants::is_positional);
+  constants.lit.reset();
   constants.is_attenuated = state.point.attenuation != Vec3{1, 0, 0};
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -29,7 +30,20 @@ struct ShadingConstants {
   std::vector<LightConstants> lights;
   std::array<bool, kTextureUnits> has_texture{}, has_texgen{}, has_texture_matrix{};
   bool needs_normal = false, is_attenuated = false;  ///< attenuated: the size of points
+
+  /// The colours of the vertex before: they are the next one's where the normal is all that they depend on.
+  struct Lit {
+    Vec3 normal{};
+    std::array<Vec4, 2> color{}, secondary{};
+  };
+  bool depends_on_normal_alone = false;  ///< every light directional, the viewer at infinity
+  std::optional<Lit> lit;                ///< none after a change of a material
 };
+
+/// After a change of a material, which glBegin allows and which therefore raises no revision.
+inline void forget_lit(Context& context) {
+  if (context.shading) context.shading->lit.reset();
+}
 
 /// Brings Context::shading up to date; to be called before the first vertex after a change of state.
 void update_shading(Context& context);
@@ -48,6 +62,7 @@ class CurrentKept {
   ~CurrentKept() {
     context_.state.current = current_;
     context_.state.lighting.material = material_;
+    forget_lit(context_);
   }
   CurrentKept(const CurrentKept&) = delete;
   CurrentKept& operator=(const CurrentKept&) = delete;

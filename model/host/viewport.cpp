@@ -76,10 +76,6 @@ WindowPosition to_window(const Vertex& v, const State& state, const Viewport& vi
           state.depth_range[0] + (state.depth_range[1] - state.depth_range[0]) * std::clamp(depth, 0.0, 1.0)};
 }
 
-std::uint8_t snap_color(double channel) {
-  return static_cast<std::uint8_t>(std::clamp<std::int64_t>(snap(std::clamp(channel, 0.0, 255.0), 1.0), 0, 255));
-}
-
 PerPlane<std::uint32_t> snap_codes(double z, const Vertex& vertex, const Config& config) {
   PerPlane<std::uint32_t> code{};
   code[kDepthPlane] = snap_depth(z, config.depth_bits);

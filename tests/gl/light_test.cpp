@@ -189,6 +189,32 @@ TEST_F(Lighting, ColorMaterialFollowsTheColor) {
   EXPECT_EQ(context.vertices[1].color[1][0], 0);
 }
 
+TEST_F(Lighting, AMaterialThatChangesBetweenVerticesOfOneNormalChangesTheirColors) {
+  LightingState& state = context.state.lighting;
+  state.enabled = state.light_enabled[0] = true;
+  normal(context, 0, 0, 1);
+  begin(context, GL_POINTS);
+  const std::array<Vec4, 3> emission{{{0.25, 0, 0, 1}, {0.25, 0, 0, 1}, {0.5, 0, 0, 1}}};
+  for (const Vec4& color : emission) {
+    material(context, GL_FRONT, GL_EMISSION, vector(color));
+    vertex(context, 0, 0, 0, 1);
+    vertex(context, 1, 0, 0, 1);
+  }
+  material(context, GL_FRONT, GL_DIFFUSE, vector({0, 0, 0, 0.5}));
+  vertex(context, 1, 0, 0, 1);
+  normal(context, 0, 0, -1);
+  vertex(context, 1, 0, 0, 1);
+  for (std::size_t i = 0; i < context.vertices.size(); ++i) {
+    const Vec3 at{0, 0, i == 7 ? -1.0 : 1.0};
+    Material then = state.material[0];
+    if (i < 6) then.emission = emission[i / 2], then.diffuse = Material().diffuse;
+    const Lit lit = formula(state, then, context.vertices[i].eye, at);
+    for (std::size_t c = 0; c < 3; ++c)
+      EXPECT_NEAR(context.vertices[i].color[0][c], std::min(lit.primary[c], 1.0), 1e-12) << i << ' ' << c;
+    EXPECT_EQ(context.vertices[i].color[0][3], then.diffuse[3]) << i;
+  }
+}
+
 TEST_F(Lighting, LightsAreKeptInEyeSpace) {
   translate(context, 1, 2, 3);
   rotate(context, 90, 0, 0, 1);
