@@ -60,6 +60,13 @@ struct TexturedWindow {
     parameter(GL_TEXTURE_MAG_FILTER, both, target);
   }
   void nearest(GLenum target = GL_TEXTURE_2D) { filter(GL_NEAREST, target); }
+  /// Turns a texture of its own on in a unit, which is active from now on.
+  void use_unit(GLenum unit, GLenum target = GL_TEXTURE_2D) {
+    active_texture(context, unit);
+    if (target == GL_TEXTURE_2D) bind_texture(context, target, unit - GL_TEXTURE0 + 1);
+    enable(context, target, true);
+    nearest(target);
+  }
   /// The whole window, with texture coordinates `low` at the bottom left and `high` at the top right.
   void draw(const Vec4& c, const std::array<double, 2>& low, const std::array<double, 2>& high) {
     ++context.revision;
@@ -77,6 +84,13 @@ struct TexturedWindow {
     Bytes read{};
     read_pixels(context, x, y, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, read.data());
     return read;
+  }
+  /// Pixels with some red.
+  int drawn_pixels() {
+    int count = 0;
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 0; x < kSide; ++x) count += color(x, y)[0] != 0 ? 1 : 0;
+    return count;
   }
   GLenum error() { return get_error(context); }
   double level_parameter(GLenum target, int level, GLenum pname) {
