@@ -239,7 +239,7 @@ def generate(path):
              '#include "entry_conversions.hpp"', "", "namespace halfplane::gl {", "namespace {", "",
              "struct EntryPoint {", "  std::string_view name;", "  const void* function;", "};", "struct Alias {",
              "  std::string_view name, of;", "};", "",
-             "// Of a lambda without captures, with the calling convention of C.", "template <class Lambda>",
+             "// The address of a lambda without captures, with the calling convention of C.", "template <class Lambda>",
              "const void* function(Lambda lambda) {", "  return reinterpret_cast<const void*>(+lambda);", "}", "",
              "// Sorted by name.", "const std::array entry_points{std::to_array<EntryPoint>({"]
     lines += ["  " + rows[name] for name in sorted(rows)]

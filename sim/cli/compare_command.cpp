@@ -318,14 +318,12 @@ void check_compare(const CompareCommand& options, const Config& config) {
 }
 
 int run_folder(const CompareCommand& options) {
+  if (options.against.path.empty())
+    throw InputError(options.scene + ": a folder; add --against FOLDER with an image of each scene, or give one scene");
   for (const auto& [is_given, name] :
-       {std::pair(options.against.path.empty(), ""), std::pair(!options.sheet_path.empty(), "-o"),
-        std::pair(!options.model_path.empty(), "--model"), std::pair(!options.golden_path.empty(), "--golden-picture"),
-        std::pair(!options.panels.empty(), "--panels")})
-    if (is_given)
-      throw InputError(*name == '\0'
-                           ? "SCENE is a folder; add --against FOLDER with an image of each scene, or give one scene"
-                           : std::string(name) + ": it is of one scene, and SCENE is a folder; leave it out");
+       {std::pair(!options.sheet_path.empty(), "-o"), std::pair(!options.model_path.empty(), "--model"),
+        std::pair(!options.golden_path.empty(), "--golden-picture"), std::pair(!options.panels.empty(), "--panels")})
+    if (is_given) throw InputError(std::string(name) + ": it is of one scene, and SCENE is a folder; leave it out");
   check_output(options.junit_path);
   check_distinct({options.json, options.junit_path});
   return compare_folder({options, options.study, options.against, options.junit_path});
