@@ -83,18 +83,23 @@ TEST(HostCoverage, PartlyCoveredPixelsHaveTheirColour) {
   EXPECT_GT(drawn, 4 * 800);
 }
 
+/// The same white texel in both units, so that the host shades.
+void use_white_units(TexturedWindow& window) {
+  for (const GLenum unit : {GL_TEXTURE0, GL_TEXTURE1}) {
+    active_texture(window.context, unit);
+    enable(window.context, GL_TEXTURE_2D, true);
+    window.nearest();
+  }
+  window.upload(0, GL_RGB, TexturedWindow::filled(1, 1, {255, 255, 255, 255}));
+}
+
 /// Many triangles of all sizes need several images; each pixel has the colour of its own triangle.
 TEST(HostCoverage, ManyTrianglesAreEachShadedOnce) {
   TexturedWindow window("full target.width=1024 target.height=1024", OnMissing::host);
   Context& context = window.context;
   window.drawable.frame.resize(1000, 1000);
   viewport(context, 0, 0, 1000, 1000);
-  for (const GLenum unit : {GL_TEXTURE0, GL_TEXTURE1}) {
-    active_texture(context, unit);
-    enable(context, GL_TEXTURE_2D, true);
-    window.nearest();
-  }
-  window.upload(0, GL_RGB, TexturedWindow::filled(1, 1, {255, 255, 255, 255}));
+  use_white_units(window);
   shade_model(context, GL_FLAT);
   enable(context, GL_DEPTH_TEST, true);
   ++context.revision;
@@ -123,12 +128,7 @@ TEST(HostCoverage, OfLargeTargetsAreSeveral) {
   Context& context = window.context;
   window.drawable.frame.resize(5000, 8);
   viewport(context, 0, 0, 5000, 8);
-  for (const GLenum unit : {GL_TEXTURE0, GL_TEXTURE1}) {
-    active_texture(context, unit);
-    enable(context, GL_TEXTURE_2D, true);
-    window.nearest();
-  }
-  window.upload(0, GL_RGB, TexturedWindow::filled(1, 1, {255, 255, 255, 255}));
+  use_white_units(window);
   ++context.revision;
   begin(context, GL_TRIANGLES);
   for (const auto& [x, y] : {std::array{-1, -1}, std::array{3, -1}, std::array{-1, 3}}) {
