@@ -54,6 +54,9 @@ inline constexpr int kColorNarrowBits = 13;
 /// N_P of a normal over w: two bits more than a colour's, and at most as many as Q.
 [[nodiscard]] constexpr int normal_over_w_bits(const Config& config) { return std::min(config.perspective_bits, 20); }
 
+/// Codes of a normal, in 2^-15.
+using Normal = std::array<std::int32_t, 3>;
+
 /// One value for each plane. Elements from plane_count() on are unused.
 template <class T>
 using PerPlane = std::array<T, kMaxPlanes>;

@@ -78,6 +78,9 @@ struct MemoryGrid {
   [[nodiscard]] int tile() const { return plane + 1; }  ///< from one tile of a row to the next: both buffers
 };
 
+/// A primitive of at most so many tiles in x and in y is never tested against HiZ bounds.
+inline constexpr int kHizUntestedTiles = 2;
+
 /// The derived widths of a configuration, and a few derived constants.
 struct Widths {
   // In widths.cpp: a hundred strings, inline they were a tenth of the library's code.

@@ -20,6 +20,7 @@
 #include "model/engines/functional.hpp"
 #include "model/engines/functional/kernels.hpp"
 #include "model/engines/scalar.hpp"
+#include "model/host/primitive_stream.hpp"
 #include "model/widths.hpp"
 #include "sim/scene/random_state.hpp"
 #include "sim/study/compare/compare.hpp"

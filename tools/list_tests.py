@@ -6,6 +6,7 @@ docs/testing.md: quick, everyday (labelled slow), all. `shorter` marks a test wh
 tier (tests/tier.hpp). Exit status: 0, or 2 where git does not know the revision.
 """
 import argparse
+import fnmatch
 import re
 import subprocess
 import sys
@@ -13,6 +14,8 @@ import sys
 TEST = re.compile(r'^\s*TEST(?:_[FP])?\(\s*(\w+)\s*,\s*(\w+)\s*\)', re.MULTILINE)
 ADDED = re.compile(r'(?:add_test\(NAME|halfplane_consumer\()\s*"?([\w.$\{\}]+)')
 LABELS = re.compile(r'set_tests_properties\(([\w.$\{\}]+)[^)]*LABELS (\w+)')
+
+SLOW = 'tests/data/slow_tests.txt'
 
 
 def git(*arguments):
@@ -26,6 +29,7 @@ def git(*arguments):
 def tests_of(revision):
     """{name: tier}; no revision: the index."""
     listed = git('ls-tree', '-r', '--name-only', revision, 'tests') if revision else git('ls-files', 'tests')
+    slow = git('show', f'{revision}:{SLOW}').split() if SLOW in listed else ['Stress*']
     tests = {}
     for path in listed.split():
         if not path.endswith(('.cpp', '.hpp', 'CMakeLists.txt')):
@@ -37,7 +41,8 @@ def tests_of(revision):
                 tests[name] = {'slow': 'everyday'}.get(labels.get(name), labels.get(name, 'quick'))
         else:
             for suite, name in TEST.findall(text):
-                tier = 'everyday' if suite.startswith('Stress') else 'quick'
+                is_slow = any(fnmatch.fnmatchcase(f'{suite}.{name}', pattern) for pattern in slow)
+                tier = 'everyday' if is_slow else 'quick'
                 tests[f'{suite}.{name}'] = tier + (', shorter' if 'test::cases(' in text or 'runs_all()' in text else '')
     return tests
 

@@ -10,6 +10,7 @@
 #include "../stages/line_raster.hpp"
 #include "../stages/surface.hpp"
 #include "render.hpp"
+#include "tapped_fragment.hpp"
 
 namespace halfplane {
 

@@ -1,157 +1,70 @@
 #include "hardware.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <chrono>
+#include <deque>
 #include <utility>
+#include <variant>
 
 #include "../packets/packet_words.hpp"
+#include "../stages/block_cache.hpp"
 #include "../stages/coarse_raster.hpp"
 #include "../stages/cull.hpp"
 #include "../stages/fine_raster.hpp"
+#include "../stages/fragment_path.hpp"
+#include "../stages/hiz.hpp"
 #include "../stages/interpolate.hpp"
+#include "../stages/memory_port.hpp"
 #include "../stages/primitive_join.hpp"
-#include "../stages/resolve.hpp"
+#include "../stages/tile_cache.hpp"
 #include "../stages/triangle_setup.hpp"
 
 namespace halfplane {
 
-std::uint8_t memory_garbage(std::uint32_t address) {
-  const std::uint32_t mixed = (address ^ 0xDEADBEEFU) * 0x9E3779B1U;  // an odd factor: no bit is lost
-  return static_cast<std::uint8_t>(mixed >> 24);
-}
-
-TileMemory::TileMemory(const Config& config) : TileMemory(config, default_layout(derive_widths(config))) {}
-
-TileMemory::TileMemory(const Config& config, const MemoryLayout& layout)
-    : widths_(derive_widths(config)),
-      layout_(layout),
-      end_(layout_end(layout, widths_)),
-      has_flags_{true, config.frame_clears == FrameClears::flags},
-      compresses_(config.compress_units != 0),
-      page_((end_ - 1) / kPage + 1, kNone) {}
-
-std::uint8_t TileMemory::byte(std::uint32_t address) const {
-  const std::uint32_t page = page_[address / kPage];
-  return page == kNone ? memory_garbage(address) : bytes_[std::size_t{page} * kPage + address % kPage];
-}
-
-std::span<const std::uint8_t> TileMemory::page(std::size_t n) const {
-  if (page_[n] == kNone) return {};
-  return std::span(bytes_).subspan(std::size_t{page_[n]} * kPage, kPage);
-}
-
-void TileMemory::read(std::uint32_t address, MemoryBeat::Bytes& data) const {
-  for (int n = 0; n < widths_.port_bytes; ++n)
-    data[static_cast<std::size_t>(n)] = byte(address + static_cast<std::uint32_t>(n));
-}
-
-void TileMemory::write(const MemoryBeat& beat) {
-  if (beat.strobe == 0) return;
-  std::uint32_t& page = page_[beat.address / kPage];
-  if (page == kNone) {
-    page = static_cast<std::uint32_t>(bytes_.size() / kPage);
-    const std::uint32_t first = beat.address / kPage * kPage;
-    for (std::uint32_t n = 0; n < kPage; ++n) bytes_.push_back(memory_garbage(first + n));
+class HardwareModel::Pipeline final : private MemoryPort {
+ public:
+  Pipeline(const Config& config, PacketSink& sink, TileMemory memory)
+      : config_(config),
+        widths_(derive_widths(config)),
+        sink_(sink),
+        hiz_(config, widths_),
+        cache_(std::in_place_type<TileCache>, config, widths_),
+        memory_(std::move(memory)),
+        path_(config, widths_),
+        port_(widths_, memory_.layout()) {
+    if (config.cache_kind == CacheKind::blocks) cache_.emplace<BlockCache>(config, widths_);
   }
-  std::uint8_t* bytes = bytes_.data() + std::size_t{page} * kPage + beat.address % kPage;
-  for (std::uint64_t left = beat.strobe; left != 0; left &= left - 1) {
-    const auto n = static_cast<std::size_t>(std::countr_zero(left));
-    bytes[n] = beat.data[n];
-  }
-}
+  void hold_textures(TextureMemory textures) { texels_ = std::move(textures); }
+  void run(const PrimitivePacket& primitive, const std::optional<LineSetup>& line);
+  [[nodiscard]] const Config& config() const { return config_; }
+  [[nodiscard]] const CounterPacket& counters() const { return counters_; }
+  [[nodiscard]] const TileMemory& memory() const { return memory_; }
 
-void TileMemory::read(TilePlane plane, int tile_x, int tile_y, int stamp,
-                      std::span<std::uint32_t, kMaxSamples> data) const {
-  const bool is_color = halfplane::is_of_color(plane);
-  const Width& code = is_color ? widths_.stored_color : widths_.stored_depth;
-  std::uint32_t address = byte_address(plane, tile_x, tile_y, stamp, layout_, widths_);
-  for (int s = 0; s < codes_of_stamp(plane, widths_); ++s) {
-    std::uint32_t value = 0;
-    for (int n = 0; n < 1 << widths_.memory.sample[is_color ? 1 : 0]; ++n)
-      value |= std::uint32_t{byte(address++)} << 8 * n;
-    data[static_cast<std::size_t>(s)] = static_cast<std::uint32_t>(wrap_unsigned(value, code.bits));
-  }
-}
+ private:
+  void join(const FragmentPacket& fragment);
+  void shade(const FragmentPacket& fragment);
+  void request(const MemoryRequest& request) override;
+  const MemoryResponse& response() override;
+  void set_state(const FragmentPacket& token);
+  struct StampPort;
+  [[nodiscard]] TextureLine read_texels(std::uint32_t address, int beats);
 
-bool TileMemory::is_cleared(bool is_color, int tile_x, int tile_y, int stamp) const {
-  return has_flags_[is_color ? 1 : 0] &&
-         flag(is_color ? TilePlane::color_flags : TilePlane::depth_flags, tile_x, tile_y, stamp);
-}
+  Config config_;
+  Widths widths_;
+  PacketSink& sink_;
+  CounterPacket counters_;
+  Hiz hiz_;
+  std::variant<TileCache, BlockCache> cache_;
+  TileMemory memory_;
+  FragmentPath path_;
+  TextureMemory texels_;
+  PortStage port_;
+  std::deque<MemoryResponse> responses_;  ///< to earlier requests
+  MemoryResponse response_;
+  std::uint8_t slot_ = 0;  ///< context slot of the next primitive
+};
 
-bool TileMemory::is_of_pixels(int tile_x, int tile_y, int stamp) const {
-  return compresses_ && flag(TilePlane::pixel_flags, tile_x, tile_y, stamp);
-}
-
-bool TileMemory::flag(TilePlane flags, int tile_x, int tile_y, int stamp) const {
-  const BlockAddress block = block_stamp({static_cast<std::uint16_t>(tile_x), static_cast<std::uint16_t>(tile_y),
-                                          static_cast<std::uint16_t>(stamp)},
-                                         widths_)
-                                 .block;
-  const std::uint32_t row = byte_address(flags, 0, tile_y, block.y % widths_.blocks.per_tile, layout_, widths_);
-  return (byte(row + block.x / 8U) >> block.x % 8U & 1) != 0;
-}
-
-Framebuffer to_framebuffer(const TileMemory& memory, int width, int height, const Config& config) {
-  Framebuffer frame(width, height, config.tile_size);
-  std::ranges::fill(frame.depth, snap_depth(1.0, config.depth_bits));
-  std::ranges::fill(frame.color, pack_color(config.color_format, {0, 0, 0, 255}));
-  const bool has_samples = config.msaa_samples > 1 && config.resolve_units == 0;
-  frame.samples.assign(has_samples ? static_cast<std::size_t>(config.msaa_samples) : 0, frame);
-  const Widths widths = derive_widths(config);
-  const int tile = config.tile_size, size = config.stamp_size;
-  const StampGrid& stamps = widths.stamps;
-  std::array<std::uint32_t, kMaxSamples> data;
-  const auto copy_stamp = [&](bool is_color, int x, int y) {
-    const int stamp = stamps.stamp_at(x % tile, y % tile);
-    const bool of_pixels = is_color && (config.resolve_units != 0 || memory.is_of_pixels(x / tile, y / tile, stamp));
-    const TilePlane plane = !is_color                                 ? TilePlane::depth
-                            : of_pixels && config.compress_units != 0 ? TilePlane::pixel_color
-                                                                      : TilePlane::color;
-    if (memory.is_cleared(is_color, x / tile, y / tile, stamp))
-      data.fill(memory.clear_value(is_color));
-    else
-      memory.read(plane, x / tile, y / tile, stamp, data);
-    for (int s = 0; s < stamps.samples(); ++s) {
-      const PixelOffset pixel = stamps.pixel_of(s);
-      if (x + pixel.x >= width || y + pixel.y >= height) continue;
-      Framebuffer& of_sample =
-          frame.samples.empty() ? frame : frame.samples[static_cast<std::size_t>(s % stamps.per_pixel)];
-      const std::size_t at = frame.at(x + pixel.x, y + pixel.y);
-      const std::uint32_t code = data[static_cast<std::size_t>(of_pixels ? s / stamps.per_pixel : s)];
-      if (is_color) {
-        of_sample.color[at] = code;
-      } else {
-        of_sample.depth[at] = depth_of(code, widths);
-        of_sample.stencil[at] = stencil_of(code, widths);
-      }
-    }
-  };
-  for (int y = 0; y < height; y += size)
-    for (int x = 0; x < width; x += size) {
-      copy_stamp(false, x, y);
-      copy_stamp(true, x, y);
-    }
-  resolve(frame, config.color_format);
-  return frame;
-}
-
-HardwareModel::HardwareModel(const Config& config, PacketSink& sink)
-    : HardwareModel(config, sink, TileMemory(config)) {}
-
-HardwareModel::HardwareModel(const Config& config, PacketSink& sink, TileMemory memory)
-    : config_(config),
-      widths_(derive_widths(config)),
-      sink_(sink),
-      hiz_(config, widths_),
-      cache_(std::in_place_type<TileCache>, config, widths_),
-      memory_(std::move(memory)),
-      path_(config, widths_),
-      port_(widths_, memory_.layout()) {
-  if (config.cache_kind == CacheKind::blocks) cache_.emplace<BlockCache>(config, widths_);
-}
-
-void HardwareModel::run(const PrimitivePacket& primitive, const std::optional<LineSetup>& line) {
+void HardwareModel::Pipeline::run(const PrimitivePacket& primitive, const std::optional<LineSetup>& line) {
   const auto triangle = cull(primitive, widths_, counters_, config_.setup_kind == SetupKind::pipelined);
   if (!triangle) return;
   sink_.take(on<Arrow::triangle>, *triangle);
@@ -181,15 +94,15 @@ void HardwareModel::run(const PrimitivePacket& primitive, const std::optional<Li
   slot_ = static_cast<std::uint8_t>((slot_ + 1) % config_.context_slots);
 }
 
-void HardwareModel::join(const FragmentPacket& fragment) {
+void HardwareModel::Pipeline::join(const FragmentPacket& fragment) {
   sink_.take(on<Arrow::fragment>, fragment);
   shade(fragment);
 }
 
 /// The caches, the texture memory and the sink, as the fragment path sees them.
-struct HardwareModel::StampPort {
+struct HardwareModel::Pipeline::StampPort {
   static constexpr bool kSendsPackets = true;
-  HardwareModel& model;
+  Pipeline& model;
   const FragmentPacket& fragment;
 
   [[nodiscard]] std::span<const std::uint32_t> stored() const {
@@ -209,7 +122,7 @@ struct HardwareModel::StampPort {
 };
 
 /// depth_test, rop and framebuffer.
-void HardwareModel::shade(const FragmentPacket& fragment) {
+void HardwareModel::Pipeline::shade(const FragmentPacket& fragment) {
   switch (fragment.kind) {
     case PrimitiveKind::fast_clear: {
       const std::uint32_t color = stored_color(fragment.code[0], config_);
@@ -239,14 +152,14 @@ void HardwareModel::shade(const FragmentPacket& fragment) {
 }
 
 /// Sets a register of a unit downstream of the depth test.
-void HardwareModel::set_state(const FragmentPacket& token) {
+void HardwareModel::Pipeline::set_state(const FragmentPacket& token) {
   const StateRegister which = state_register(token.state);
   path_.set(which, token);
   if (!is_of_texture(which)) std::get<BlockCache>(cache_).set(path_.colors(), path_.stencil());
 }
 
 /// Reads a line of texels.
-TextureLine HardwareModel::read_texels(std::uint32_t address, int beats) {
+TextureLine HardwareModel::Pipeline::read_texels(std::uint32_t address, int beats) {
   sink_.take(on<Arrow::texture>, TextureRequest{address, static_cast<std::uint16_t>(beats)});
   TextureLine line{};
   const auto bytes = static_cast<std::size_t>(widths_.texture_port_bytes);
@@ -259,7 +172,7 @@ TextureLine HardwareModel::read_texels(std::uint32_t address, int beats) {
   return line;
 }
 
-void HardwareModel::request(const MemoryRequest& request) {
+void HardwareModel::Pipeline::request(const MemoryRequest& request) {
   sink_.take(on<Arrow::request>, request);
   port_.take(request, [&](const MemoryBeat& beat) {
     sink_.take(on<Arrow::beat>, beat);
@@ -280,11 +193,27 @@ void HardwareModel::request(const MemoryRequest& request) {
   });
 }
 
-const MemoryResponse& HardwareModel::response() {
+const MemoryResponse& HardwareModel::Pipeline::response() {
   response_ = responses_.front();
   responses_.pop_front();
   return response_;
 }
+
+HardwareModel::HardwareModel(const Config& config, PacketSink& sink)
+    : HardwareModel(config, sink, TileMemory(config)) {}
+HardwareModel::HardwareModel(const Config& config, PacketSink& sink, TileMemory memory)
+    : pipeline_(std::make_unique<Pipeline>(config, sink, std::move(memory))) {}
+HardwareModel::~HardwareModel() = default;
+HardwareModel::HardwareModel(HardwareModel&&) noexcept = default;
+HardwareModel& HardwareModel::operator=(HardwareModel&&) noexcept = default;
+
+void HardwareModel::hold_textures(const Scene& scene) { hold_textures(TextureMemory(scene, pipeline_->config())); }
+void HardwareModel::hold_textures(TextureMemory textures) { pipeline_->hold_textures(std::move(textures)); }
+void HardwareModel::run(const PrimitivePacket& primitive, const std::optional<LineSetup>& line) {
+  pipeline_->run(primitive, line);
+}
+const CounterPacket& HardwareModel::counters() const { return pipeline_->counters(); }
+const TileMemory& HardwareModel::memory() const { return pipeline_->memory(); }
 
 CounterPacket as_counted(CounterPacket counters, const Widths& widths) {
   counters.overflow = false;

@@ -1,8 +1,10 @@
 // The scenes that this hardware supports.
 #include "../stages/depth_encode.hpp"
 #include "../stages/fragment_ops.hpp"
+#include "../stages/stencil_packets.hpp"
 #include "../stages/surface.hpp"
 #include "primitive_stream.hpp"
+#include "primitives.hpp"
 
 namespace halfplane {
 namespace {

@@ -20,11 +20,4 @@ struct HostPrimitive {
   UnitWords units{};
 };
 
-/// The stencil value that a fast clear of depth leaves.
-[[nodiscard]] inline std::uint8_t clear_stencil(const HostPrimitive& clear) {
-  StencilState state;
-  if (const auto& test = clear.units.stencil.test[0]) state.set(StateRegister::stencil_test, front_only(*test));
-  return state.clear_value();
-}
-
 }  // namespace halfplane

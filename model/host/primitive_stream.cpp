@@ -1,13 +1,22 @@
 #include "primitive_stream.hpp"
 
 #include <algorithm>
+#include <array>
+#include <deque>
 #include <utility>
+#include <vector>
 
 #include "../packets/state_packets.hpp"
 #include "../stages/color_packets.hpp"
+#include "../stages/fog_unit.hpp"
 #include "../stages/fragment_ops.hpp"
+#include "../stages/light_unit.hpp"
+#include "../stages/stencil_packets.hpp"
 #include "../stages/surface.hpp"
 #include "../stages/texture_packets.hpp"
+#include "line_setup.hpp"
+#include "primitives.hpp"
+#include "texture_memory.hpp"
 
 namespace halfplane {
 namespace {
@@ -63,7 +72,87 @@ std::string stream_fault(const HostPrimitive& primitive, bool is_first) {
   return "";
 }
 
-HostStream::HostStream(const Scene& scene, const Config& config, BinContents* held)
+/// The host's side, from commands to primitives.
+class HostStream::Host {
+ public:
+  Host(const Scene& scene, const Config& config, BinContents* held);
+  Host(const Host&) = delete;  // context_ points into config_
+  Host& operator=(const Host&) = delete;
+  [[nodiscard]] std::optional<HostPrimitive> next();
+  [[nodiscard]] const Counters& counters() const { return counters_; }
+  [[nodiscard]] double progress() const;
+
+ private:
+  void advance();
+  void start_draw(const Draw& draw);
+  void send_next_primitive();
+  void send_outline(const AssembledPrimitive& assembled);
+  void send_clear(const Clear& command);
+  void send_triangle(const Triangle& triangle, bool is_culled);
+  void set_plane(std::size_t plane, const auto& codes, PrimitivePacket& packet) const;
+  void set_coordinates(const Triangle& triangle, HostPrimitive& out);
+  void set_distance(const Triangle& triangle, HostPrimitive& out) const;
+  void set_colors_over_w(const Triangle& triangle, PrimitivePacket& packet) const;
+  void set_normals(const Triangle& triangle, PrimitivePacket& packet) const;
+  void set_colors(const HostPrimitive& primitive);
+  void set_stencil(const HostPrimitive& primitive);
+  void set_levels(const Triangle& triangle, const TextureCoordinates& coordinates, const PerspectiveFormat& format,
+                  HostPrimitive& out) const;
+  void set_texture(const HostPrimitive& triangle);
+  void set_fog(const HostPrimitive& triangle);
+  void set_light(const HostPrimitive& triangle);
+  [[nodiscard]] HostPrimitive state_token(StateRegister which, uint128 word, const HostPrimitive& in_front_of) const;
+  [[nodiscard]] std::optional<HostPrimitive> next_primitive();
+  void send_line(const LinePrimitive& line);
+  [[nodiscard]] PrimitivePacket draw_packet(PrimitiveKind kind, const PixelBounds& box) const;
+  [[nodiscard]] PrimitivePacket fast_clear() const;
+  void fill_word(Clear& clear) const;
+  [[nodiscard]] bool begins_bins(const Command& command) const;
+  void close_bins();
+  void send_clears();
+  [[nodiscard]] Signature texels_of(std::size_t texture);
+  void note_words(const PrimitiveState& state);
+  [[nodiscard]] HostPrimitive host_primitive(const PrimitivePacket& packet, std::uint32_t primitive) const;
+  [[nodiscard]] HostPrimitive drawn_primitive(const PrimitivePacket& packet, std::uint32_t primitive) const;
+  void send(const HostPrimitive& primitive);
+
+  const Scene& scene_;
+  Config config_;
+  Widths widths_;
+  VertexCache vertices_;
+  Counters counters_;
+  std::size_t command_ = 0;                    ///< the next of Scene::commands
+  bool is_finished_ = false;                   ///< the flush has been queued
+  std::uint32_t primitive_ = 0;                ///< number of the next input primitive
+  std::optional<DrawContext> context_;         ///< of the current draw
+  std::vector<AssembledPrimitive> assembled_;  ///< of the current draw
+  std::size_t assembled_next_ = 0;             ///< the next of them
+  std::vector<Triangle> pieces_;               ///< scratch
+  Outline outline_;                            ///< scratch
+  std::optional<FrameBins> bins_;              ///< with frame.order bins: primitives that wait for the end of the frame
+  BinContents* held_ = nullptr;                ///< if bins are compared; then the initial clears wait
+  std::vector<HostPrimitive> clears_;
+  std::vector<std::optional<Signature>> texels_;  ///< of each texture, likewise
+  std::vector<HostPrimitive> pending_;            ///< made but not yet pulled
+  std::size_t pending_first_ = 0;
+  std::optional<TextureMemory> textures_;          ///< with a texture unit
+  std::optional<std::uint64_t> texture_state_;     ///< the unit's state since the scene began
+  std::optional<std::uint32_t> texture_levels_;    ///< likewise, with levels
+  std::optional<std::uint64_t> texture_constant_;  ///< likewise
+  std::optional<std::uint64_t> texture_border_;    ///< likewise
+  std::optional<FogState> fog_state_;              ///< likewise, and the lines of its table
+  std::array<std::optional<FogLine>, std::size_t{1} << kFogLines> fog_line_{};
+  std::array<std::optional<std::uint64_t>, kLightWords> light_word_{};  ///< likewise for light
+  std::array<std::optional<FallingLine>, std::size_t{1} << kPowerLines> light_line_{};
+  std::optional<TextureLines> texture_lines_;
+  ColorWords colors_;                                                 ///< other registers set since the scene began
+  StencilWords stencil_;                                              ///< likewise
+  std::optional<double> depth_everywhere_ = 1.0;                      ///< value of every pixel, if the host knows it
+  std::optional<std::uint8_t> stencil_everywhere_ = std::uint8_t{0};  ///< likewise
+  std::deque<HostPrimitive> in_front_;  ///< tokens to be sent first, and the triangle that waits for them
+};
+
+HostStream::Host::Host(const Scene& scene, const Config& config, BinContents* held)
     : scene_(scene), config_(config), vertices_(scene.vertices.size()) {
   validate(config);
   check_hardware_scene(scene, config);
@@ -88,7 +177,7 @@ HostStream::HostStream(const Scene& scene, const Config& config, BinContents* he
   send(out);
 }
 
-std::optional<HostPrimitive> HostStream::next() {
+std::optional<HostPrimitive> HostStream::Host::next() {
   if (in_front_.empty()) {
     std::optional<HostPrimitive> primitive = next_primitive();
     if (!primitive) return primitive;
@@ -107,7 +196,7 @@ std::optional<HostPrimitive> HostStream::next() {
 }
 
 /// Sets the colour registers that differ from the wanted values. At the start of a scene their content is unknown.
-void HostStream::set_colors(const HostPrimitive& primitive) {
+void HostStream::Host::set_colors(const HostPrimitive& primitive) {
   const auto set = [&](StateRegister which, std::optional<std::uint32_t> ColorWords::*word) {
     const auto& wanted = primitive.units.colors.*word;
     if (!wanted || wanted == colors_.*word) return;
@@ -120,7 +209,7 @@ void HostStream::set_colors(const HostPrimitive& primitive) {
 }
 
 /// Likewise for the stencil registers. Values common to both sides go in one token.
-void HostStream::set_stencil(const HostPrimitive& primitive) {
+void HostStream::Host::set_stencil(const HostPrimitive& primitive) {
   const auto set = [&](StateRegister which, auto member) {
     const auto& wanted = primitive.units.stencil.*member;
     auto& held = stencil_.*member;
@@ -141,7 +230,7 @@ void HostStream::set_stencil(const HostPrimitive& primitive) {
 }
 
 /// Sets the texture unit for a triangle. The first state of a scene drops texels of an earlier scene.
-void HostStream::set_texture(const HostPrimitive& triangle) {
+void HostStream::Host::set_texture(const HostPrimitive& triangle) {
   if (triangle.units.texture_state != texture_state_) {
     TextureState next = TextureState::unpack(triangle.units.texture_state);
     next.invalidates = !texture_state_;
@@ -171,7 +260,7 @@ void HostStream::set_texture(const HostPrimitive& triangle) {
 }
 
 /// Sets the fog of a triangle: only lines of its table that differ from the unit's.
-void HostStream::set_fog(const HostPrimitive& triangle) {
+void HostStream::Host::set_fog(const HostPrimitive& triangle) {
   if (!triangle.units.looks_at_fog) return;
   const FogTable* table = triangle.units.fog.get();
   const FogState next = table != nullptr ? FogState{true, table->octave_bits(), table->color()} : FogState{};
@@ -189,7 +278,7 @@ void HostStream::set_fog(const HostPrimitive& triangle) {
 }
 
 /// Sets the light of a triangle: only registers and lines of its table that differ from the unit's.
-void HostStream::set_light(const HostPrimitive& triangle) {
+void HostStream::Host::set_light(const HostPrimitive& triangle) {
   if (!triangle.units.looks_at_light) return;
   const PhongLight* light = triangle.units.light.get();
   const auto send_word = [&](std::uint64_t word) {
@@ -208,7 +297,7 @@ void HostStream::set_light(const HostPrimitive& triangle) {
 }
 
 /// A token that sets a register of a unit from here on.
-HostPrimitive HostStream::state_token(StateRegister which, uint128 word, const HostPrimitive& in_front_of) const {
+HostPrimitive HostStream::Host::state_token(StateRegister which, uint128 word, const HostPrimitive& in_front_of) const {
   PrimitivePacket packet;
   packet.kind = PrimitiveKind::state;
   packet.state = sets_register(which);
@@ -218,7 +307,7 @@ HostPrimitive HostStream::state_token(StateRegister which, uint128 word, const H
   return out;
 }
 
-std::optional<HostPrimitive> HostStream::next_primitive() {
+std::optional<HostPrimitive> HostStream::Host::next_primitive() {
   while (pending_first_ == pending_.size()) {
     if (bins_)
       if (auto part = bins_->next()) return part;
@@ -231,7 +320,7 @@ std::optional<HostPrimitive> HostStream::next_primitive() {
 }
 
 /// Does the next piece of work; it may send nothing.
-void HostStream::advance() {
+void HostStream::Host::advance() {
   if (assembled_next_ < assembled_.size()) {
     send_next_primitive();
   } else if (bins_ && (!bins_->is_empty() || !clears_.empty()) &&
@@ -250,7 +339,7 @@ void HostStream::advance() {
   }
 }
 
-void HostStream::close_bins() {
+void HostStream::Host::close_bins() {
   SignatureHash clears;
   for (const HostPrimitive& clear : clears_) {
     for (const std::uint32_t code : clear.packet.vertex.code[0]) clears.add(code);
@@ -267,7 +356,7 @@ void HostStream::close_bins() {
 
 /// Sends the clears that waited for the bins: unchanged, or, if some bins are skipped, the last colour in each of the
 /// others, and then depth, if any draw follows.
-void HostStream::send_clears() {
+void HostStream::Host::send_clears() {
   if (!bins_->cleared()) {
     pending_.insert(pending_.end(), clears_.begin(), clears_.end());
   } else {
@@ -292,14 +381,14 @@ void HostStream::send_clears() {
 }
 
 /// Signature of all data that can be read from a texture.
-Signature HostStream::texels_of(std::size_t texture) {
+Signature HostStream::Host::texels_of(std::size_t texture) {
   texels_.resize(scene_.textures.size());
   std::optional<Signature>& known = texels_[texture];
   if (!known) known = signature_of(scene_.textures[texture]);
   return *known;
 }
 
-void HostStream::start_draw(const Draw& draw) {
+void HostStream::Host::start_draw(const Draw& draw) {
   if (draw.outside != 0) {
     const std::size_t count = primitive_count(scene_, draw);
     primitive_ += static_cast<std::uint32_t>(count);
@@ -315,7 +404,7 @@ void HostStream::start_draw(const Draw& draw) {
                      [this](const AssembledPrimitive& assembled) { assembled_.push_back(assembled); });
 }
 
-void HostStream::send_next_primitive() {
+void HostStream::Host::send_next_primitive() {
   const AssembledPrimitive& assembled = assembled_[assembled_next_++];
   if (drawn_as(context_->state, context_->draw.topology) != PrimitiveType::triangle) {
     send_outline(assembled);
@@ -333,7 +422,7 @@ void HostStream::send_next_primitive() {
 
 /// Sends lines with a packet that holds their place, strand by strand, rectangles as triangles, points as boxes; only
 /// lines and points with at least one pixel.
-void HostStream::send_outline(const AssembledPrimitive& assembled) {
+void HostStream::Host::send_outline(const AssembledPrimitive& assembled) {
   outline_.clear();
   geometry(*context_, widths_, vertices_, assembled, primitive_, counters_, outline_);
   if (!bins_ && !outline_.triangles.empty()) --counters_.drawn;  // in program order the hardware counts triangles
@@ -347,7 +436,7 @@ void HostStream::send_outline(const AssembledPrimitive& assembled) {
     });
 }
 
-void HostStream::send_line(const LinePrimitive& line) {
+void HostStream::Host::send_line(const LinePrimitive& line) {
   const LineSetup& setup = line.setup;
   HostPrimitive place =
       drawn_primitive(draw_packet(PrimitiveKind::line, {setup.x, setup.y, setup.x, setup.y}), primitive_);
@@ -365,7 +454,7 @@ void HostStream::send_line(const LinePrimitive& line) {
   send(place);
 }
 
-PrimitivePacket HostStream::draw_packet(PrimitiveKind kind, const PixelBounds& box) const {
+PrimitivePacket HostStream::Host::draw_packet(PrimitiveKind kind, const PixelBounds& box) const {
   const State& state = context_->state;
   PrimitivePacket packet;
   packet.kind = kind;
@@ -378,7 +467,7 @@ PrimitivePacket HostStream::draw_packet(PrimitiveKind kind, const PixelBounds& b
   return packet;
 }
 
-void HostStream::send_triangle(const Triangle& triangle, bool is_culled) {
+void HostStream::Host::send_triangle(const Triangle& triangle, bool is_culled) {
   const State& state = context_->state;
   const Rect& rect = context_->rect;
   PrimitivePacket packet =
@@ -399,14 +488,14 @@ void HostStream::send_triangle(const Triangle& triangle, bool is_culled) {
 }
 
 /// Writes codes of a plane at the vertices, in the bits of the packet's field.
-void HostStream::set_plane(std::size_t plane, const auto& codes, PrimitivePacket& packet) const {
+void HostStream::Host::set_plane(std::size_t plane, const auto& codes, PrimitivePacket& packet) const {
   for (std::size_t i = 0; i < 3; ++i)
     packet.vertex.code[i][plane] = static_cast<std::uint32_t>(
         wrap_unsigned(static_cast<std::uint64_t>(codes[i]), widths_.of_plane(plane).code.bits));
 }
 
 /// Sets Q and P of the vertices, their format, and the state of the texture unit.
-void HostStream::set_coordinates(const Triangle& triangle, HostPrimitive& out) {
+void HostStream::Host::set_coordinates(const Triangle& triangle, HostPrimitive& out) {
   const State& state = context_->state;
   require_positive_w(*context_, triangle);
   const Texture& texture = scene_.textures[*state.texture];
@@ -432,7 +521,7 @@ void HostStream::set_coordinates(const Triangle& triangle, HostPrimitive& out) {
 }
 
 /// Sets Q of the vertices, and its octave in the fog's table. A texture has set the same Q.
-void HostStream::set_distance(const Triangle& triangle, HostPrimitive& out) const {
+void HostStream::Host::set_distance(const Triangle& triangle, HostPrimitive& out) const {
   require_positive_w(*context_, triangle);
   const PerspectiveFormat format = perspective_format(config_);
   const std::array<double, 3> w{triangle.surface[0].w, triangle.surface[1].w, triangle.surface[2].w};
@@ -442,7 +531,7 @@ void HostStream::set_distance(const Triangle& triangle, HostPrimitive& out) cons
 }
 
 /// Sets P of the normals, and Q, and the start of their planes. A texture and a fog have set the same Q.
-void HostStream::set_normals(const Triangle& triangle, PrimitivePacket& packet) const {
+void HostStream::Host::set_normals(const Triangle& triangle, PrimitivePacket& packet) const {
   require_positive_w(*context_, triangle);
   const PerspectiveFormat format = perspective_format(config_);
   const QCodes q = quantize_q({triangle.surface[0].w, triangle.surface[1].w, triangle.surface[2].w}, format.q_bits);
@@ -455,7 +544,7 @@ void HostStream::set_normals(const Triangle& triangle, PrimitivePacket& packet) 
 }
 
 /// Sets Q and P of the colours, and their format. With a texture over w Q is exactly that of its coordinates.
-void HostStream::set_colors_over_w(const Triangle& triangle, PrimitivePacket& packet) const {
+void HostStream::Host::set_colors_over_w(const Triangle& triangle, PrimitivePacket& packet) const {
   require_positive_w(*context_, triangle);
   const PerspectiveFormat format = perspective_format(config_);
   const QCodes q = quantize_q({triangle.surface[0].w, triangle.surface[1].w, triangle.surface[2].w}, format.q_bits);
@@ -473,8 +562,8 @@ void HostStream::set_colors_over_w(const Triangle& triangle, PrimitivePacket& pa
 }
 
 /// Sets the texture unit's levels. A triangle that the hardware drops needs none.
-void HostStream::set_levels(const Triangle& triangle, const TextureCoordinates& coordinates,
-                            const PerspectiveFormat& format, HostPrimitive& out) const {
+void HostStream::Host::set_levels(const Triangle& triangle, const TextureCoordinates& coordinates,
+                                  const PerspectiveFormat& format, HostPrimitive& out) const {
   const State& state = context_->state;
   const TextureLevels levels = texture_levels(scene_.textures[*state.texture], state);
   out.units.texture_levels = levels.pack();
@@ -494,7 +583,7 @@ void HostStream::set_levels(const Triangle& triangle, const TextureCoordinates& 
 }
 
 /// A fast clear of the whole target; of no buffer so far.
-PrimitivePacket HostStream::fast_clear() const {
+PrimitivePacket HostStream::Host::fast_clear() const {
   PrimitivePacket packet = flat_packet(PrimitiveKind::fast_clear, {0, 0, scene_.width, scene_.height});
   if (bins_ && config_.frame_store == FrameStore::color) packet.state.depth_test = DepthFunc::never;  // drops_depth()
   return packet;
@@ -502,7 +591,7 @@ PrimitivePacket HostStream::fast_clear() const {
 
 /// Depth and stencil are one word of memory. A clear of one of them clears both if the host knows the value of the
 /// other.
-void HostStream::fill_word(Clear& clear) const {
+void HostStream::Host::fill_word(Clear& clear) const {
   if (!has_stencil(config_)) {
     clear.stencil.reset();
     return;
@@ -512,7 +601,7 @@ void HostStream::fill_word(Clear& clear) const {
 }
 
 /// Whether new bins begin with a command: with a fast clear of depth.
-bool HostStream::begins_bins(const Command& command) const {
+bool HostStream::Host::begins_bins(const Command& command) const {
   const Clear* whole = whole_clear(scene_, command);
   if (whole == nullptr) return false;
   Clear clear = *whole;
@@ -520,7 +609,7 @@ bool HostStream::begins_bins(const Command& command) const {
   return clear.depth && clear.stencil.has_value() == has_stencil(config_);
 }
 
-void HostStream::send_clear(const Clear& command) {
+void HostStream::Host::send_clear(const Clear& command) {
   const Rect rect = clear_rect(scene_, command);
   Clear clear = command;
   const bool is_whole = rect == Rect{0, 0, scene_.width, scene_.height};
@@ -547,19 +636,19 @@ void HostStream::send_clear(const Clear& command) {
 }
 
 /// Marks the buffers that a primitive may write as no longer uniform.
-void HostStream::note_words(const PrimitiveState& state) {
+void HostStream::Host::note_words(const PrimitiveState& state) {
   if (state.depth_write) depth_everywhere_.reset();
   if (state.writes_stencil) stencil_everywhere_.reset();
 }
 
-HostPrimitive HostStream::host_primitive(const PrimitivePacket& packet, std::uint32_t primitive) const {
+HostPrimitive HostStream::Host::host_primitive(const PrimitivePacket& packet, std::uint32_t primitive) const {
   HostPrimitive out{packet, {}, primitive, static_cast<std::uint32_t>(command_ - 1), false};
   out.packet.primitive_id = static_cast<std::uint32_t>(wrap_unsigned(primitive, widths_.primitive_id.bits));
   return out;
 }
 
 /// A primitive of the current draw.
-HostPrimitive HostStream::drawn_primitive(const PrimitivePacket& packet, std::uint32_t primitive) const {
+HostPrimitive HostStream::Host::drawn_primitive(const PrimitivePacket& packet, std::uint32_t primitive) const {
   HostPrimitive out = host_primitive(packet, primitive);
   const FragmentOps& ops = context_->fragment_ops;
   out.units.colors = color_words(ops, config_);
@@ -568,7 +657,7 @@ HostPrimitive HostStream::drawn_primitive(const PrimitivePacket& packet, std::ui
 }
 
 /// Sends tokens at once, and in program order everything.
-void HostStream::send(const HostPrimitive& primitive) {
+void HostStream::Host::send(const HostPrimitive& primitive) {
   const PrimitiveKind kind = primitive.packet.kind;
   if (bins_ && kind != PrimitiveKind::fast_clear && kind != PrimitiveKind::flush) {
     if (!bins_->add(primitive)) ++counters_.skipped.no_sample;
@@ -582,7 +671,7 @@ void HostStream::send(const HostPrimitive& primitive) {
   if (is_counted(kind)) ++counters_.pairs;
 }
 
-double HostStream::progress() const {
+double HostStream::Host::progress() const {
   if (is_finished_) return 1;
   const auto part = [](std::size_t done, std::size_t all) {
     return all == 0 ? 0.0 : static_cast<double>(done) / static_cast<double>(all);
@@ -591,5 +680,12 @@ double HostStream::progress() const {
   const double left_of_draw = assembled_.empty() ? 0.0 : 1.0 - part(assembled_next_, assembled_.size());
   return commands == 0 ? 0.0 : (static_cast<double>(command_) - left_of_draw) / commands;
 }
+
+HostStream::HostStream(const Scene& scene, const Config& config, BinContents* held)
+    : host_(std::make_unique<Host>(scene, config, held)) {}
+HostStream::~HostStream() = default;
+std::optional<HostPrimitive> HostStream::next() { return host_->next(); }
+const Counters& HostStream::counters() const { return host_->counters(); }
+double HostStream::progress() const { return host_->progress(); }
 
 }  // namespace halfplane

@@ -8,7 +8,6 @@
 
 #include "../config.hpp"
 #include "../scene.hpp"
-#include "../stages/texture_unit.hpp"
 
 namespace halfplane {
 
@@ -19,15 +18,7 @@ class TextureMemory {
   TextureMemory() = default;
   /// Memory with this content.
   explicit TextureMemory(std::vector<std::uint8_t> bytes) : bytes_(std::move(bytes)) {}
-  TextureMemory(const Scene& scene, const Config& config) {
-    const bool has_levels = config.texture_unit == TextureUnitKind::trilinear;
-    for (const Texture& texture : scene.textures) {
-      bytes_.resize((bytes_.size() + kAlignment - 1) / kAlignment * kAlignment);
-      base_.push_back(static_cast<std::uint32_t>(bytes_.size()));
-      const auto image = texture_bytes(texture, has_levels);
-      bytes_.insert(bytes_.end(), image.begin(), image.end());
-    }
-  }
+  TextureMemory(const Scene& scene, const Config& config);
 
   /// Address of texture `n` of the scene.
   [[nodiscard]] std::uint32_t base(std::size_t n) const { return base_[n]; }

@@ -3,10 +3,39 @@
 // unchanged.
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <optional>
+
 #include "../fixed.hpp"
 #include "packets.hpp"
 
 namespace halfplane {
+
+/// The words of the colour registers that a draw needs; none: it does not use that register.
+struct ColorWords {
+  std::optional<std::uint32_t> ops, constant, alpha;
+};
+
+/// The words of the stencil registers that a draw needs, front and back; none: it does not use that register.
+struct StencilWords {
+  std::array<std::optional<std::uint32_t>, 2> test, update;
+};
+
+struct LodSetup;  // stages/level_of_detail.hpp
+
+/// The lines of a triangle in tokens: bits of along_y (at_zero of u, of v), along_x (likewise), the steps of u and of
+/// v, and 16 of the offset.
+struct TextureLines {
+  static constexpr int kBits = 208;
+  static constexpr int kOffsetBits = 16;  ///< +-2^7 levels: beyond that every level of detail is clamped
+  uint128 low = 0, high = 0;
+
+  /// `bias` is included in the offset.
+  [[nodiscard]] static TextureLines pack(const LodSetup& setup, std::int32_t bias);
+  [[nodiscard]] LodSetup unpack() const;
+  bool operator==(const TextureLines&) const = default;
+};
 
 /// Register that a token of kind state sets; stored in the field of the depth test.
 [[nodiscard]] constexpr StateRegister state_register(const PrimitiveState& state) {

@@ -9,11 +9,6 @@
 
 namespace halfplane {
 
-/// The words of the registers that a draw needs; none: it does not use that register.
-struct ColorWords {
-  std::optional<std::uint32_t> ops, constant, alpha;
-};
-
 namespace color_packets_detail {
 inline constexpr int kFactor = 4, kEquation = 3, kFunction = 3, kByte = 8;  // bits
 inline constexpr unsigned kLogic = 5;  // no equation: the first factor is a logic operation

@@ -25,10 +25,8 @@ namespace halfplane {
 /// The bounds of all tiles. Before the first clear they are all ones: no tile is skipped.
 class Hiz {
  public:
-  static constexpr int kUntestedTiles = 2;  ///< the RTL's
-
   /// A primitive of at most `untested_tiles` tiles in x and in y is never tested.
-  explicit Hiz(const Config& config, const Widths& widths, int untested_tiles = kUntestedTiles)
+  explicit Hiz(const Config& config, const Widths& widths, int untested_tiles = kHizUntestedTiles)
       : untested_tiles_(untested_tiles),
         bits_(config.hiz_bits),
         low_bits_(config.depth_bits - hiz_code_bits(config)),

@@ -32,8 +32,6 @@ inline constexpr int kPowerLines = 8;           ///< log2 of the lines of a powe
 inline constexpr int kPowerStartFraction = 15;  ///< fraction bits of a line's numbers
 inline constexpr int kLightFraction = 12;       ///< fraction bits of the factors of colours
 
-using Normal = std::array<std::int32_t, 3>;  ///< in 2^-15
-
 /// Precision of the planes of normals: as those of colours, with two bits more.
 [[nodiscard]] constexpr OverWFormat normal_format(const PerspectiveFormat& format) {
   return {format.q_bits < 20 ? format.q_bits : 20, 0, 0, false};

@@ -14,11 +14,6 @@ namespace halfplane {
 /// Whether the hardware has a stencil.
 [[nodiscard]] constexpr bool has_stencil(const Config& config) { return config.stencil_bits != 0; }
 
-/// The words of the registers that a draw needs, front and back; none: it does not use that register.
-struct StencilWords {
-  std::array<std::optional<std::uint32_t>, 2> test, update;
-};
-
 namespace stencil_packets_detail {
 inline constexpr int kFunction = 3, kOp = 3, kByte = 8, kTest = kFunction + 2 * kByte,
                      kUpdate = 3 * kOp + kByte;  // bits

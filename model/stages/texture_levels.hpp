@@ -13,6 +13,7 @@
 #include <cstdint>
 
 #include "../fixed.hpp"
+#include "../packets/state_packets.hpp"
 #include "texture_sample.hpp"
 
 namespace halfplane {
@@ -77,19 +78,6 @@ struct LevelPlace {
   place.is_corner = level == first_of_one + 2;
   return place;
 }
-
-/// The lines of a triangle in tokens: bits of along_y (at_zero of u, of v), along_x (likewise), the steps of u and of
-/// v, and 16 of the offset.
-struct TextureLines {
-  static constexpr int kBits = 208;
-  static constexpr int kOffsetBits = 16;  ///< +-2^7 levels: beyond that every level of detail is clamped
-  uint128 low = 0, high = 0;
-
-  /// `bias` is included in the offset.
-  [[nodiscard]] static TextureLines pack(const LodSetup& setup, Lod bias);
-  [[nodiscard]] LodSetup unpack() const;
-  bool operator==(const TextureLines&) const = default;
-};
 
 /// Bits of the lines in a token with `code_bits` bits of codes, and the number of tokens. Codes have at least 70 bits.
 [[nodiscard]] constexpr int line_part_bits(int code_bits) { return code_bits >= 104 ? 104 : 70; }

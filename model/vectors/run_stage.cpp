@@ -9,6 +9,7 @@
 #include "../engines/hardware.hpp"
 #include "../packets/packet_words.hpp"
 #include "../packets/state_packets.hpp"
+#include "../stages/block_cache.hpp"
 #include "../stages/coarse_raster.hpp"
 #include "../stages/color_packets.hpp"
 #include "../stages/cull.hpp"
@@ -19,6 +20,7 @@
 #include "../stages/rop.hpp"
 #include "../stages/surface.hpp"
 #include "../stages/texture_stage.hpp"
+#include "../stages/tile_cache.hpp"
 #include "../stages/triangle_setup.hpp"
 
 namespace halfplane::vectors {

@@ -3,7 +3,9 @@
 
 #include "model/draw_states.hpp"
 #include "model/packets/packet_words.hpp"
+#include "model/stages/depth_encode.hpp"
 #include "model/stages/multisample.hpp"
+#include "model/stages/stencil_packets.hpp"
 #include "sim/cli/explain_output.hpp"
 #include "sim/study/explain/verify.hpp"
 

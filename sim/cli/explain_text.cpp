@@ -2,6 +2,7 @@
 #include <cmath>
 #include <ostream>
 
+#include "model/stages/depth_encode.hpp"
 #include "model/stages/multisample.hpp"
 #include "sim/cli/explain_output.hpp"
 #include "sim/study/explain/verify.hpp"

@@ -7,6 +7,7 @@
 #include "model/engines/functional.hpp"
 #include "model/engines/scalar.hpp"
 #include "model/golden/golden.hpp"
+#include "model/stages/depth_encode.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/progress.hpp"
 #include "sim/cli/render_frames.hpp"

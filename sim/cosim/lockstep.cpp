@@ -1,4 +1,6 @@
 #include "sim/cosim/lockstep.hpp"
+#include "model/stages/memory_port.hpp"
+#include "model/stages/stencil_packets.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -11,6 +13,13 @@
 
 namespace halfplane {
 namespace {
+
+/// The stencil value that a fast clear of depth leaves.
+std::uint8_t clear_stencil(const HostPrimitive& clear) {
+  StencilState state;
+  if (const auto& test = clear.units.stencil.test[0]) state.set(StateRegister::stencil_test, front_only(*test));
+  return state.clear_value();
+}
 
 constexpr std::uint64_t kHangCycles = 100'000;  // cycles without any packet; walks over the clear flags are added
 constexpr std::uint64_t kCountingCycles = 8;    // cycles after the end, until all counts are shown

@@ -6,7 +6,10 @@
 #include <span>
 
 #include "model/draw_states.hpp"
+#include "model/host/primitive_assembly.hpp"
 #include "model/host/primitive_stream.hpp"
+#include "model/host/primitives.hpp"
+#include "model/host/viewport.hpp"
 #include "model/stages/line_raster.hpp"
 #include "sim/interrupt.hpp"
 

@@ -5,6 +5,7 @@
 
 #include "model/engines/hardware.hpp"
 #include "model/engines/scalar.hpp"
+#include "model/stages/stencil_packets.hpp"
 
 namespace halfplane {
 namespace {

@@ -9,6 +9,7 @@
 #include "../scene_builder.hpp"
 #include "model/engines/functional.hpp"
 #include "model/engines/scalar.hpp"
+#include "model/engines/tapped_fragment.hpp"
 #include "sim/study/compare/eye_depth.hpp"
 
 namespace halfplane::compare_test {

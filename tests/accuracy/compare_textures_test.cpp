@@ -6,7 +6,9 @@
 
 #include "../scene_builder.hpp"
 #include "model/engines/scalar.hpp"
+#include "model/engines/tapped_fragment.hpp"
 #include "sim/study/compare/compare.hpp"
+#include "sim/study/compare/surface_oracle.hpp"
 
 namespace halfplane::compare_textures_test {
 namespace {

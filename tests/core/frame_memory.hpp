@@ -6,6 +6,7 @@
 #include "model/engines/hardware.hpp"
 #include "model/engines/scalar.hpp"
 #include "model/host/primitive_stream.hpp"
+#include "model/stages/memory_port.hpp"
 #include "sim/show/image/framebuffer_files.hpp"
 
 namespace halfplane::test {

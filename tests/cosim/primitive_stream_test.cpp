@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "model/packets/packet_words.hpp"
+#include "model/stages/memory_port.hpp"
 #include "rtl_ref/cosim/verilated_messages.hpp"
 #include "sim/cosim/dut.hpp"
 #include "sim/cosim/memory_model.hpp"

@@ -7,6 +7,9 @@
 
 #include "model/generate/raster_pkg.hpp"
 #include "model/host/primitive_stream.hpp"
+#include "model/host/texture_memory.hpp"
+#include "model/stages/fog_unit.hpp"
+#include "model/stages/light_unit.hpp"
 #include "model/stages/phong.hpp"
 #include "sim/scene/vertex_transform.hpp"
 

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "model/capture/capture.hpp"
+#include "model/host/primitive_assembly.hpp"
 #include "sim/cosim/random_scene.hpp"
 #include "sim/cosim/report.hpp"
 #include "sim/cosim/session.hpp"

@@ -11,6 +11,8 @@
 #include "model/engines/scalar.hpp"
 #include "model/host/primitive_stream.hpp"
 #include "model/packets/state_packets.hpp"
+#include "model/stages/fog_unit.hpp"
+#include "model/stages/texture_levels.hpp"
 #include "sim/cosim/random_scene.hpp"
 
 namespace halfplane::fog_hardware_test {

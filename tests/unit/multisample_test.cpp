@@ -9,6 +9,7 @@
 #include "../scene_builder.hpp"
 #include "model/engines/functional.hpp"
 #include "model/engines/scalar.hpp"
+#include "model/engines/tapped_fragment.hpp"
 #include "model/engines/target.hpp"
 #include "model/generate/raster_pkg.hpp"
 #include "model/golden/exact.hpp"
@@ -19,6 +20,7 @@
 #include "sim/scene/builtin.hpp"
 #include "sim/scene/random_state.hpp"
 #include "sim/study/compare/compare.hpp"
+#include "sim/study/compare/fragment_judge.hpp"
 #include "sim/study/stress/unit.hpp"
 
 namespace halfplane::multisample_test {

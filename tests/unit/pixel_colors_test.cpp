@@ -6,6 +6,7 @@
 #include "../hardware_scene.hpp"
 #include "../scene_builder.hpp"
 #include "model/engines/scalar.hpp"
+#include "model/stages/memory_port.hpp"
 #include "model/stages/pixel_colors.hpp"
 
 namespace halfplane::pixel_colors_test {

@@ -6,6 +6,7 @@
 
 #include "model/capture/capture.hpp"
 #include "model/host/primitive_stream.hpp"
+#include "model/host/primitives.hpp"
 #include "sim/cosim/random_scene.hpp"
 #include "sim/cosim/session.hpp"
 #include "sim/show/image/framebuffer_files.hpp"

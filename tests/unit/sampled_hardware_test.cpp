@@ -7,6 +7,7 @@
 #include "model/engines/functional.hpp"
 #include "model/engines/hardware.hpp"
 #include "model/engines/scalar.hpp"
+#include "model/stages/stencil_packets.hpp"
 #include "model/timing/memory.hpp"
 #include "sim/cosim/random_scene.hpp"
 #include "sim/cosim/specification.hpp"

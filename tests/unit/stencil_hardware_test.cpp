@@ -11,6 +11,7 @@
 #include "model/engines/hardware.hpp"
 #include "model/engines/scalar.hpp"
 #include "model/host/primitive_stream.hpp"
+#include "model/stages/stencil_packets.hpp"
 #include "sim/cosim/random_scene.hpp"
 
 namespace halfplane::stencil_hardware_test {

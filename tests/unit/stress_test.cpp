@@ -5,6 +5,7 @@
 #include <set>
 
 #include "model/engines/scalar.hpp"
+#include "model/engines/tapped_fragment.hpp"
 #include "model/golden/exact.hpp"
 #include "sim/study/stress/check.hpp"
 #include "sim/study/stress/grid.hpp"

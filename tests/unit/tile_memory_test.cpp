@@ -7,6 +7,9 @@
 #include "../scene_builder.hpp"
 #include "model/engines/functional.hpp"
 #include "model/engines/scalar.hpp"
+#include "model/stages/hiz.hpp"
+#include "model/stages/memory_port.hpp"
+#include "model/stages/tile_directory.hpp"
 
 namespace halfplane::tile_memory_test {
 namespace {

@@ -8,6 +8,7 @@
 #include "sim/scene/builtin.hpp"
 #include "sim/scene/scene_builder.hpp"
 #include "sim/study/compare/compare.hpp"
+#include "sim/study/compare/surface_oracle.hpp"
 #include "sim/study/widths/smallest.hpp"
 #include "sim/study/widths/study.hpp"
 

@@ -5,13 +5,13 @@
 
 #include <memory>
 
-#include "../../host/primitive_stream.hpp"
+#include "../../host/frame_bins.hpp"
 #include "../../timing/memory.hpp"
 #include "../../timing/stream.hpp"
 #include "../render.hpp"
-#include "back_timing.hpp"
 #include "parameters.hpp"
-#include "work.hpp"
+#include "streams.hpp"
+#include "timing_totals.hpp"
 
 namespace halfplane {
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <string_view>
 
-#include "../../stages/hiz.hpp"
+#include "../../widths.hpp"
 
 namespace halfplane {
 
@@ -15,9 +15,9 @@ struct TimingParameters {
   int stamp_queue = 2;  ///< places in the FIFO (serial: the skid buffer) after interpolate, at least 1
   int divide_bits = 2;  ///< quotient bits a cycle of the pipelined triangle_setup
   int untested_tiles =
-      Hiz::kUntestedTiles;  ///< a triangle of at most this many tiles in x and in y never reads HiZ bounds
-  int rejects = 1;          ///< 0: tiles outside an edge go to fine_raster like all others
-  int fast_clear = 1;       ///< 0: clears of the whole target are drawn
+      kHizUntestedTiles;  ///< a triangle of at most this many tiles in x and in y never reads HiZ bounds
+  int rejects = 1;        ///< 0: tiles outside an edge go to fine_raster like all others
+  int fast_clear = 1;     ///< 0: clears of the whole target are drawn
   bool operator==(const TimingParameters&) const = default;
 };
 

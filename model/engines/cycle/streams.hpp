@@ -7,16 +7,9 @@
 
 #include "../../pipeline_graph.hpp"
 #include "../../timing/stalls.hpp"
+#include "timing_totals.hpp"
 
 namespace halfplane {
-
-/// The reason for moving a buffer of a tile between chip and memory.
-enum class MoveCause : std::uint8_t {
-  fill,   ///< a tile is needed
-  evict,  ///< its line is needed, or the flush writes it back
-  clear   ///< the flush writes the clear value of a tile that was never brought in again
-};
-inline constexpr std::array<std::string_view, 3> kMoveCauses{"fill", "evict", "clear"};
 
 struct HostPrimitive;
 

@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "../../attributes.hpp"
 #include "../../host/primitive_assembly.hpp"
 #include "../../packets/packets.hpp"
 #include "../../scene.hpp"
-#include "../../stages/phong.hpp"
 #include "texel_blocks.hpp"
 
 namespace halfplane {

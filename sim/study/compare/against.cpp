@@ -11,6 +11,7 @@
 #include "against_hypotheses.hpp"
 #include "model/capture/capture_textures.hpp"
 #include "model/engines/scalar.hpp"
+#include "model/engines/tapped_fragment.hpp"
 #include "model/golden/exact.hpp"
 #include "model/stages/depth_encode.hpp"
 #include "sim/show/image/framebuffer_files.hpp"

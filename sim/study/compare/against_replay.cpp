@@ -3,6 +3,7 @@
 
 #include "against_hypotheses.hpp"
 #include "model/engines/scalar.hpp"
+#include "model/engines/tapped_fragment.hpp"
 #include "model/stages/cull.hpp"
 #include "model/stages/depth_encode.hpp"
 

@@ -5,6 +5,7 @@
 
 #include "compare.hpp"
 #include "model/widths.hpp"
+#include "sim/study/compare/fragment_judge.hpp"
 
 namespace halfplane {
 namespace {

@@ -10,6 +10,7 @@
 
 #include "layers.hpp"
 #include "model/engines/render.hpp"
+#include "model/engines/tapped_fragment.hpp"
 #include "model/golden/fragment_buffer.hpp"
 #include "model/stages/depth_encode.hpp"
 

@@ -11,6 +11,7 @@
 #include "model/engines/hardware.hpp"
 #include "model/engines/scalar.hpp"
 #include "model/golden/depth_format.hpp"
+#include "model/host/primitives.hpp"
 #include "model/scene.hpp"
 #include "model/stages/fragment_ops.hpp"
 #include "model/stages/resolve.hpp"

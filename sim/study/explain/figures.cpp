@@ -4,11 +4,13 @@
 
 #include "line_walk.hpp"
 #include "model/engines/commands.hpp"
+#include "model/engines/tapped_fragment.hpp"
 #include "model/golden/exact_line.hpp"
 #include "model/host/texture_memory.hpp"
 #include "model/stages/fine_raster.hpp"
 #include "model/stages/interpolate.hpp"
 #include "model/stages/multisample.hpp"
+#include "model/stages/texture_unit.hpp"
 #include "model/study/fill_rule.hpp"
 #include "model/study/plane_rules.hpp"
 

@@ -7,6 +7,7 @@
 #include "history.hpp"
 #include "model/host/primitives.hpp"
 #include "model/study/rules.hpp"
+#include "sim/study/compare/surface_oracle.hpp"
 
 namespace halfplane::explain {
 

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "model/engines/tapped_fragment.hpp"
 #include "model/formats/sample_pattern.hpp"
 #include "model/golden/exact.hpp"
 #include "model/golden/golden.hpp"
@@ -23,7 +24,7 @@
 #include "model/stages/coarse_raster.hpp"
 #include "model/stages/surface.hpp"
 #include "model/study/rules.hpp"
-#include "sim/study/compare/surface_oracle.hpp"
+#include "sim/study/compare/surface_errors.hpp"
 
 namespace halfplane::explain {
 

@@ -6,6 +6,7 @@
 #include "model/engines/functional.hpp"
 #include "model/engines/hardware.hpp"
 #include "model/engines/scalar.hpp"
+#include "model/engines/tapped_fragment.hpp"
 #include "model/golden/exact.hpp"
 #include "sim/study/compare/fragment_judge.hpp"
 

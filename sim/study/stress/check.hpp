@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "sim/study/compare/fragment_judge.hpp"
 #include "sim/study/stress/unit.hpp"
 
 namespace halfplane::stress {

@@ -4,8 +4,10 @@
 #include <cmath>
 
 #include "model/engines/scalar.hpp"
+#include "model/engines/tapped_fragment.hpp"
 #include "sim/scene/random_state.hpp"
 #include "sim/study/compare/fragment_frame.hpp"
+#include "sim/study/compare/fragment_judge.hpp"
 #include "sim/study/stress/cases.hpp"
 #include "sim/study/stress/check.hpp"
 #include "sim/study/stress/shapes.hpp"

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "model/engines/scalar.hpp"
+#include "model/engines/tapped_fragment.hpp"
+#include "sim/study/compare/fragment_judge.hpp"
 #include "sim/study/stress/cases.hpp"
 #include "sim/study/stress/check.hpp"
 #include "sim/study/stress/shapes.hpp"
