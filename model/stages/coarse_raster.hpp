@@ -140,26 +140,7 @@ class TileWalk {
   return value;
 }
 
-/// From the first tile to another one, subpixels, modulo 2^64.
-struct TileOffset {
-  std::uint64_t dx, dy;
-};
-[[nodiscard]] inline TileOffset tile_offset(const TriangleSetup& setup, int tile_x, int tile_y, const Widths& widths) {
-  const auto subpixels = [&widths](int tiles) {
-    return static_cast<std::uint64_t>(std::int64_t{tiles} << (widths.tile_shift + widths.grid_bits));
-  };
-  return {subpixels(tile_x - (setup.left >> widths.tile_shift)), subpixels(tile_y - (setup.top >> widths.tile_shift))};
-}
-
-/// A plane at the anchor of the tile at that offset, modulo 2^bits.
-[[nodiscard]] inline PlaneValue plane_at_tile(const Plane& plane, const TileOffset& offset, int bits) {
-  return wrap_signed(static_cast<std::int64_t>(static_cast<std::uint64_t>(plane.value) +
-                                               static_cast<std::uint64_t>(plane.step_x) * offset.dx +
-                                               static_cast<std::uint64_t>(plane.step_y) * offset.dy),
-                     bits);
-}
-
-/// The same for a packet.
+/// The same of a packet.
 [[nodiscard]] inline EdgeValues edges_at_tile(const SetupPacket& setup, int tile_x, int tile_y, const Widths& widths) {
   const int steps_x = (tile_x - (setup.box.left >> widths.tile_shift)) << widths.tile_shift;
   const int steps_y = (tile_y - (setup.box.top >> widths.tile_shift)) << widths.tile_shift;

@@ -6,7 +6,7 @@
 // Final value: floor(v + 1/2), in the range of the triangle's vertices: engines that read uncovered samples clamp it.
 #pragma once
 
-#include "coarse_raster.hpp"
+#include "triangle_setup.hpp"
 
 namespace halfplane {
 

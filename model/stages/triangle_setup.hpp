@@ -103,4 +103,23 @@ struct PlaneFrame {
 /// The stage: any kind of primitive.
 [[nodiscard]] SetupPacket setup_packet(const TrianglePacket& primitive, const Config& config, const Widths& widths);
 
+/// From the first tile to another one, subpixels, modulo 2^64.
+struct TileOffset {
+  std::uint64_t dx, dy;
+};
+[[nodiscard]] inline TileOffset tile_offset(const TriangleSetup& setup, int tile_x, int tile_y, const Widths& widths) {
+  const auto subpixels = [&widths](int tiles) {
+    return static_cast<std::uint64_t>(std::int64_t{tiles} << (widths.tile_shift + widths.grid_bits));
+  };
+  return {subpixels(tile_x - (setup.left >> widths.tile_shift)), subpixels(tile_y - (setup.top >> widths.tile_shift))};
+}
+
+/// A plane at the anchor of the tile at that offset, modulo 2^bits.
+[[nodiscard]] inline PlaneValue plane_at_tile(const Plane& plane, const TileOffset& offset, int bits) {
+  return wrap_signed(static_cast<std::int64_t>(static_cast<std::uint64_t>(plane.value) +
+                                               static_cast<std::uint64_t>(plane.step_x) * offset.dx +
+                                               static_cast<std::uint64_t>(plane.step_y) * offset.dy),
+                     bits);
+}
+
 }  // namespace halfplane

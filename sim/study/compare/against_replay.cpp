@@ -6,6 +6,7 @@
 #include "model/engines/tapped_fragment.hpp"
 #include "model/stages/cull.hpp"
 #include "model/stages/depth_encode.hpp"
+#include "model/stages/fragment_ops.hpp"
 
 namespace halfplane {
 namespace {

@@ -4,6 +4,7 @@
 #include "model/engines/hardware.hpp"
 #include "model/engines/scalar.hpp"
 #include "model/golden/exact.hpp"
+#include "model/stages/coarse_raster.hpp"
 #include "model/stages/interpolate.hpp"
 #include "model/study/traversal.hpp"
 #include "sim/cosim/random_scene.hpp"

@@ -5,6 +5,7 @@
 
 #include "model/engines/scalar.hpp"
 #include "model/engines/tapped_fragment.hpp"
+#include "model/stages/fragment_ops.hpp"
 #include "sim/scene/random_state.hpp"
 #include "sim/study/compare/fragment_frame.hpp"
 #include "sim/study/compare/fragment_judge.hpp"

@@ -6,6 +6,7 @@
 #include "model/engines/hardware.hpp"
 #include "model/engines/scalar.hpp"
 #include "model/engines/tapped_fragment.hpp"
+#include "model/stages/fragment_ops.hpp"
 #include "sim/scene/random_state.hpp"
 #include "sim/study/compare/fragment_judge.hpp"
 #include "sim/study/stress/cases.hpp"
