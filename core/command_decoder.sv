@@ -82,6 +82,12 @@ module command_decoder #(
   localparam int PX = raster_pkg::PIXEL_X_BITS;
   localparam int PY = raster_pkg::PIXEL_Y_BITS;
 
+  generate
+    if (C > 16) begin : gen_refused
+      $fatal(1, "x and y of a vertex share a word: 16 bits each, not %0d", C);
+    end
+  endgenerate
+
   // ---------------------------------------------------------------------------------------------- fields of a header
   logic [7:0] opcode;
   logic [2:0] kind;

@@ -27,6 +27,15 @@ def operators_before_casts():
                 yield f"{file.relative_to(ROOT)}:{number}: put the cast in parentheses: {line.strip()}"
 
 
+def lint(tool, environment, package, file):
+    """What Verilator says of a module in a configuration."""
+    folders = [f"-I{folder}" for folder in ("core", "rtl_ref", "rtl_ref/lib", "rtl_ref/stages")]
+    command = [tool, "--lint-only", "-Wall", "--timing", *folders, "rtl_ref/lint.vlt", "core/lint.vlt"]
+    command += [package / "raster_pkg.sv", *sorted((ROOT / "core").glob("*_pkg.sv"))]
+    command += [] if file.stem.endswith("_pkg") else ["--top-module", file.stem, file]
+    return subprocess.run(list(map(str, command)), cwd=ROOT, env=os.environ | environment, capture_output=True, text=True)
+
+
 def main():
     packages, other = pathlib.Path(sys.argv[1]), sys.argv[2]
     home = pathlib.Path(verilator.__file__).parent
@@ -36,14 +45,15 @@ def main():
     for tool, environment in ((other, {}), (home / "bin/verilator_bin", {"VERILATOR_ROOT": str(home)})):
         for file in sorted((ROOT / "core").glob("*.sv")):
             for design in DESIGNS if file.stem in WHOLE else ["embedded"]:
-                command = [tool, "--lint-only", "-Wall", "--timing", *(f"-I{f}" for f in ("core", "rtl_ref", "rtl_ref/lib", "rtl_ref/stages")),
-                           "rtl_ref/lint.vlt", "core/lint.vlt", packages / design / "raster_pkg.sv", *sorted((ROOT / "core").glob("*_pkg.sv"))]
-                command += [] if file.stem.endswith("_pkg") else ["--top-module", file.stem, file]
-                done = subprocess.run(list(map(str, command)), cwd=ROOT, env=os.environ | environment, capture_output=True, text=True)
+                done = lint(tool, environment, packages / design, file)
                 runs += 1
                 if done.returncode != 0 or "%Warning" in done.stderr:
                     print(f"{file.name}, {design}, {tool}:\n{done.stderr[:4000]}")
                     status = 1
+        refused = lint(tool, environment, packages / "full", ROOT / "core/command_decoder.sv")
+        if refused.returncode == 0 or "share a word: 16 bits" not in refused.stderr:
+            print(f"command_decoder.sv, full, {tool}: coordinates of more than 16 bits are not refused\n{refused.stderr[:4000]}")
+            status = 1
     print(f"{runs} runs of two Verilators")
     return status
 
