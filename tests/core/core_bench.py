@@ -31,12 +31,12 @@ REGISTERS = {}
 for line in (ROOT / "core/registers/halfplane.rdl").read_text().splitlines():
     if match := re.match(r"    } (\w+) @ (0x\w+);", line):
         REGISTERS[match[1]] = int(match[2], 16)
-RUNNING, IDLE, WRITTEN, RESTARTING, TIMED_OUT, RING_EMPTY = (1 << i for i in range(6))
+RUNNING, IDLE, WRITTEN, RESTARTING, TIMED_OUT, RING_EMPTY, UNDERRUN = (1 << i for i in range(7))
 START, STOP, RESTART = 1, 2, 4
 FENCE, VBLANK, ERROR, STOPPED, EMPTY = (1 << i for i in range(5))
 
-RING = 0x100000
-SIZE = 1 << 21
+RING = 0x300000
+SIZE = 1 << 22
 
 
 def random_scene(seed, width=64, height=64, lines=True, primitives=24):
