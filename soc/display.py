@@ -1,9 +1,11 @@
-"""A display: pixels of the core in the time of a screen, with its sync signals, in front of a PHY of LiteX."""
+"""A display: pixels of the core in the time of a screen, with its sync signals, and as TMDS on a connector's pads."""
 
 from core_module import PIXEL
+from litex.build.io import DDROutput
+from litex.soc.cores.code_tmds import TMDSEncoder
 from litex.soc.cores.video import VideoTimingGenerator, video_data_layout
 from litex.soc.interconnect import stream
-from migen import ClockDomainsRenamer, If, Module, Mux, Signal
+from migen import Cat, ClockDomainsRenamer, ClockSignal, If, Module, Mux, Signal
 
 SIMULATED = {
     "pix_clk": 0,
@@ -45,3 +47,40 @@ class Display(Module):
         sync += If(time.vsync, is_first.eq(1), in_frame.eq(0)).Elif(
             time.de & source.valid & source.ready, is_first.eq(0), If(is_first, in_frame.eq(self.is_pixel))
         )
+
+
+class Gearbox(Module):
+    """Words of ten bits, one a channel and pixel, as pairs of bits in the domain of five times the clock, the least
+    first. A pair is in flip-flops, so the wire to the pad has a cycle of its own."""
+
+    def __init__(self, channels, clock_domain):
+        fast, width = clock_domain + "5x", 10 * channels
+        self.words = Signal(width)  # channel 0 lowest
+        self.pairs = [Signal(2) for _ in range(channels)]
+        self.submodules.crossing = stream.ClockDomainCrossing([("data", width)], cd_from=clock_domain, cd_to=fast)
+        words, turn = self.crossing.source, Signal(5, reset=1)
+        self.comb += [self.crossing.sink.valid.eq(1), self.crossing.sink.data.eq(self.words), words.ready.eq(turn[0])]
+        sync = getattr(self.sync, fast)
+        sync += turn.eq(Cat(turn[-1], turn[:-1]))
+        for channel, pair in enumerate(self.pairs):
+            bits = Signal(10)
+            sync += If(turn[0], bits.eq(words.data[10 * channel : 10 * channel + 10])).Else(bits.eq(bits[2:]))
+            self.comb += pair.eq(bits[:2])
+
+
+class Tmds(Module):
+    """Blue, green and red as channels 0, 1, 2. LiteX's VideoHDMIPHY is the same with five LUTs between the flip-flops of
+    a gearbox and its pad."""
+
+    def __init__(self, pads, clock_domain):
+        self.sink = sink = stream.Endpoint(video_data_layout)
+        self.submodules.gearbox = gearbox = Gearbox(3, clock_domain)
+        encoders = [ClockDomainsRenamer(clock_domain)(TMDSEncoder()) for _ in range(3)]
+        self.submodules += encoders
+        self.comb += [sink.ready.eq(1), gearbox.words.eq(Cat(*(encoder.out for encoder in encoders)))]
+        self.comb += encoders[0].c.eq(Cat(sink.hsync, sink.vsync))
+        self.specials += DDROutput(1, 0, pads.clk_p, ClockSignal(clock_domain))
+        for channel, (encoder, color) in enumerate(zip(encoders, (sink.b, sink.g, sink.r))):
+            pad, (first, second) = getattr(pads, f"data{channel}_p"), gearbox.pairs[channel]
+            self.comb += [encoder.d.eq(color), encoder.de.eq(sink.de)]
+            self.specials += DDROutput(first, second, pad, ClockSignal(clock_domain + "5x"))

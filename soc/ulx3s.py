@@ -39,7 +39,7 @@ def generate(folder, device):
     from halfplane_soc import HalfplaneSoC
     from litedram.modules import MT48LC16M16
     from litedram.phy import HalfRateGENSDRPHY
-    from litex.soc.cores.video import VideoHDMIPHY, video_timings
+    from litex.soc.cores.video import video_timings
     from litex_boards.platforms import radiona_ulx3s
     from litex_boards.targets.radiona_ulx3s import _CRG
 
@@ -59,7 +59,7 @@ def generate(folder, device):
         sdram=sdram,
     )
     soc.submodules.display = shown = display.Display(video_timings["640x480@60Hz"], "hdmi")
-    soc.submodules.video = phy = VideoHDMIPHY(platform.request("gpdi"), clock_domain="hdmi")
+    soc.submodules.video = phy = display.Tmds(platform.request("gpdi"), "hdmi")
     soc.comb += [soc.halfplane.video.connect(shown.sink), shown.source.connect(phy.sink)]
     soc.finalize()
     soc.write_header(folder)
