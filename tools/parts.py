@@ -25,6 +25,8 @@ SCREEN = ['target.width=640', 'target.height=480', 'memory.port_bits=32']
 # Name, preset, settings, size of teapot.
 DESIGNS = {
     'small': ('small', [], '320x240'),
+    'small, QQVGA': ('small', ['target.width=160', 'target.height=120', 'guard.band=256', 'subpixel.bits=3', 'hiz.bits=0',
+                               'cache.lines=2', 'cache.queue=8', 'cache.victims=2'], '160x120'),
     'embedded, VGA': ('embedded', [*SCREEN, 'hiz.bits=8', 'cache.lines=64', 'counters.unit=0'], '640x480'),
     'embedded, VGA, textures': ('embedded', [*SCREEN, 'texture.unit=bilinear'], '640x480'),
     'full': ('full', [], '1920x1080'),
@@ -42,6 +44,7 @@ PARTS = {
 # What is asked of which part. `full` is counted, not placed: no part of the list has its block RAMs.
 RUNS = [
     ('iCE40 UP5K', 'raster_top', 'small'),
+    ('iCE40 UP5K', 'raster_top', 'small, QQVGA'),
     ('iCE40 HX8K', 'raster_top', 'small'),
     ('iCE40 HX8K', 'halfplane_core', 'small'),
     ('ECP5-25', 'raster_top', 'embedded, VGA'),
@@ -183,13 +186,13 @@ def frames(program, design, mhz):
     return json.loads(out)['per_second']['frames']
 
 
-def row(program, part, top, design):
+def row(program, places_it, part, top, design):
     kind, name = PARTS[part], area.slug(f'{part} {top} {design}')
     json_file, stat = netlist(program, kind.family, top, design)
     used = count(stat, kind.family) if kind.family != 'ice40' else packed(part, json_file, name)
     lacks = [what for what, have, want in zip(('places', 'multipliers', 'block RAMs'), kind[:3], used) if want > have]
-    placed = None if lacks else place(part, top, json_file, name)
-    said = 'no: ' + ', '.join(lacks) if lacks else 'nextpnr does not place it'
+    placed = place(part, top, json_file, name) if places_it and not lacks else None
+    said = 'no: ' + ', '.join(lacks) if lacks else 'nextpnr does not place it' if places_it else 'synthesis only'
     if placed:
         *used, mhz = placed
         said = f'{mhz:.1f}'
@@ -202,15 +205,17 @@ def main():
     parser.add_argument('--jobs', type=int, default=2, metavar='N', help='tools at a time (2)')
     parser.add_argument('--program', default='build/halfplane', help='the halfplane program')
     parser.add_argument('--part', help='rows of this part alone, printed and not written')
+    parser.add_argument('--design', help='rows of this configuration alone, printed and not written')
+    parser.add_argument('--synthesis', action='store_true', help='nothing is placed; printed and not written')
     options = parser.parse_args()
     BUILD.mkdir(parents=True, exist_ok=True)
-    chosen = [run for run in RUNS if options.part in (None, run[0])]
+    chosen = [run for run in RUNS if options.part in (None, run[0]) and options.design in (None, run[2])]
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        rows = list(pool.map(lambda run: row(options.program, *run), chosen))
+        rows = list(pool.map(lambda run: row(options.program, not options.synthesis, *run), chosen))
     lines = area.table(['part', 'module', 'configuration', 'places', 'multipliers', 'block RAMs', 'MHz', '`teapot`, frames a second'],
                        rows)
     print('\n'.join(lines))
-    if options.part is None:
+    if options.part is None and options.design is None and not options.synthesis:
         text = PAGE.read_text(encoding='utf-8')
         head, rest = text.split(BEGIN)
         PAGE.write_text(head + BEGIN + '\n'.join(lines[1:]) + rest[rest.index(END):], encoding='utf-8')
