@@ -76,8 +76,9 @@ module axi_arbiter #(
       .data_o (answered)
   );
   assign is_answered  = m_axi_rvalid && m_axi_rready && m_axi_rlast;
-  assign m_axi_rready = s_rready[answered];
-  assign s_rvalid     = CLIENTS'(m_axi_rvalid) << answered;
+  // `answered` is undefined while no burst is under way: no port may be.
+  assign m_axi_rready = is_under_way && s_rready[answered];
+  assign s_rvalid     = {CLIENTS{m_axi_rvalid}} & (CLIENTS'(1) << answered);
   assign s_rdata      = m_axi_rdata;
   assign s_rlast      = m_axi_rlast;
   assign s_rerror     = m_axi_rresp[1];

@@ -27,6 +27,7 @@ module command_decoder #(
     output logic        word_ready_o,
     input  logic [31:0] word_i,
     input  logic        word_error_i,
+    input  logic        is_owed_i,  // there are words that are not on offer yet: memory has them
 
     // To raster_top
     output logic                          primitive_valid_o,
@@ -298,7 +299,7 @@ module command_decoder #(
     if (WATCHDOG != 0) begin : gen_watchdog
       logic [WATCHDOG:0] waited_q;
       logic              has_work;  // the display may be slow
-      assign has_work = ((running_q && (word_valid_i || state_q != HEADER)) || primitive_valid_q || flushes_q != '0) &&
+      assign has_work = ((running_q && (word_valid_i || is_owed_i || state_q != HEADER)) || primitive_valid_q || flushes_q != '0) &&
                         !present_valid_o;
       always_ff @(posedge clk_i) begin  // its own clear is synchronous, which costs no LUTs
         if (!rst_ni || !has_work || takes || moves_i || error_q != core_pkg::ERROR_NONE) waited_q <= '0;

@@ -98,23 +98,26 @@ module core_registers (
 );
 
   logic        writes, is_whole, reads, refused_q;
+  logic        is_awake_q;  // out of reset: what was taken before would have no response
   logic [4:0]  write_word, read_word;
   logic [31:0] read_data;
-  assign writes         = s_axil_awvalid && s_axil_wvalid && (!s_axil_bvalid || s_axil_bready);
+  assign writes         = is_awake_q && s_axil_awvalid && s_axil_wvalid && (!s_axil_bvalid || s_axil_bready);
   assign is_whole       = writes && s_axil_wstrb == '1;
   assign reads          = s_axil_arvalid && s_axil_arready;
   assign write_word     = s_axil_awaddr[6:2];
   assign read_word      = s_axil_araddr[6:2];
   assign s_axil_awready = writes;
   assign s_axil_wready  = writes;
-  assign s_axil_arready = !s_axil_rvalid || s_axil_rready;
+  assign s_axil_arready = is_awake_q && (!s_axil_rvalid || s_axil_rready);
   assign s_axil_rresp   = 2'd0;
   assign s_axil_bresp   = {refused_q, 1'b0};
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
+      is_awake_q    <= 1'b0;
       s_axil_bvalid <= 1'b0;
       s_axil_rvalid <= 1'b0;
     end else begin
+      is_awake_q    <= 1'b1;
       s_axil_bvalid <= writes || (s_axil_bvalid && !s_axil_bready);
       s_axil_rvalid <= reads || (s_axil_rvalid && !s_axil_rready);
     end

@@ -137,14 +137,16 @@ module halfplane_core #(
   logic        starts, stops, is_running, is_written, ring_is_empty, underrun, clears_underrun, scan_enable, scan_error;
   logic [3:0]  error;
   logic [4:0]  irq_enable, irq_pending, counter_index;
-  logic        counters_hold, fence_valid, vblank, read_error, write_error, texture_error, has_error;
+  logic        counters_hold, fence_valid, vblank, read_error, write_error, texture_error;
   logic [31:0] fence, fence_q, words, counter, clear_color;
   logic [15:0] flushed_q, vblanks_q, last_x, last_y;
   logic [21:0] ring_base;
   logic [10:0] ring_last;
   logic [19:0] ring_tail, scan_stride;
-  logic        flushed, had_error_q, was_running_q, was_empty_q;
-  assign has_error = error != core_pkg::ERROR_NONE || read_error || write_error || texture_error;
+  logic        flushed, was_running_q, was_empty_q;
+  logic        start_q;  // a start that came with a restart or during it, for its end
+  logic [3:0]  errors, errors_q;  // of the stream and of memory: each raises the interrupt, also while another one stays
+  assign errors = {error != core_pkg::ERROR_NONE, read_error, write_error, texture_error};
 
   core_registers u_registers (
       .clk_i,
@@ -214,7 +216,7 @@ module halfplane_core #(
       .irq_pending_fence_o         (irq_pending[0]),
       .irq_pending_vblank_set_i    (vblank),
       .irq_pending_vblank_o        (irq_pending[1]),
-      .irq_pending_error_set_i     ((has_error && !had_error_q) || scan_error),
+      .irq_pending_error_set_i     ((errors & ~errors_q) != '0 || scan_error),
       .irq_pending_error_o         (irq_pending[2]),
       .irq_pending_stopped_set_i   (was_running_q && !is_running),
       .irq_pending_stopped_o       (irq_pending[3]),
@@ -226,7 +228,7 @@ module halfplane_core #(
       .words_count_i               (words),
       .ring_base_base_o            (ring_base),
       .ring_size_last_word_o       (ring_last),
-      .ring_tail_index_clear_i     (is_restarting),
+      .ring_tail_index_clear_i     (restarts),
       .ring_tail_index_o           (ring_tail),
       .counter_index_index_o       (counter_index),
       .counter_index_hold_o        (counters_hold),
@@ -244,15 +246,17 @@ module halfplane_core #(
     if (!rst_n) begin
       flushed_q     <= '0;
       vblanks_q     <= '0;
-      had_error_q   <= 1'b0;
+      errors_q      <= '0;
       was_running_q <= 1'b0;
       was_empty_q   <= 1'b1;
+      start_q       <= 1'b0;
     end else begin
       flushed_q     <= flushed_q + 16'(flushed);
       vblanks_q     <= vblanks_q + 16'(vblank);
-      had_error_q   <= has_error;
+      errors_q      <= errors;
       was_running_q <= is_running;
       was_empty_q   <= ring_is_empty;
+      start_q       <= (restarts || is_restarting) && (starts || (start_q && !restarts && !stops));
     end
   end
   always_ff @(posedge clk_i or negedge core_n) begin
@@ -321,7 +325,7 @@ module halfplane_core #(
   ) u_decoder (
       .clk_i,
       .rst_ni                    (core_n),
-      .start_i                   (starts),
+      .start_i                   (starts || start_q),
       .stop_i                    (stops),
       .is_running_o              (is_running),
       .is_written_o              (is_written),
@@ -331,6 +335,7 @@ module halfplane_core #(
       .word_ready_o              (word_ready),
       .word_i                    (word),
       .word_error_i              (word_error),
+      .is_owed_i                 (!ring_is_empty),
       .primitive_valid_o         (primitive_valid),
       .primitive_ready_i         (primitive_ready),
       .primitive_o               (packet),

@@ -179,7 +179,6 @@ class Core:
         for memory in self.memories:
             memory.forget()
         self.dut.rst_ni.value = 1
-        await self.cycles(6)
         await self.set_up()
 
     async def restart(self, drops_word=False):

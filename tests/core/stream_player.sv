@@ -25,6 +25,7 @@ module stream_player;
       .word_ready_o(ready),
       .word_i(words[next]),
       .word_error_i(1'b0),
+      .is_owed_i(1'b0),
       .primitive_valid_o(primitive_valid),
       .primitive_ready_i(1'b1),
       .primitive_o(primitive_data),

@@ -104,7 +104,7 @@ class Bench:
 
     async def start(self):
         d = self.dut
-        for name in ("start_i", "stop_i", "word_valid_i", "word_error_i", "primitive_ready_i", "line_ready_i", "flushed_i",
+        for name in ("start_i", "stop_i", "word_valid_i", "word_error_i", "is_owed_i", "primitive_ready_i", "line_ready_i", "flushed_i",
                      "moves_i", "present_ready_i"):
             getattr(d, name).value = 0
         d.word_i.value, d.idle_i.value, d.rst_ni.value = 0, 1, 0

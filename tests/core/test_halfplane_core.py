@@ -9,7 +9,7 @@ import random
 import cocotb
 from axi_memory import Behaviour
 from cocotb.triggers import ClockCycles, FallingEdge, RisingEdge
-from command_words import COMMAND, ERROR, LINE, POINT, TRIANGLE
+from command_words import COMMAND, ERROR, LINE, POINT, TRIANGLE, Encoder
 from core_bench import (
     EMPTY,
     FENCE,
@@ -38,19 +38,24 @@ BENCH = [{
         ("core/core_registers.sv", "irq_pending_fence_q && !(is_whole && write_word == 5'd11 && s_axil_wdata[0])",
          "irq_pending_fence_q && !(is_whole && write_word == 5'd11 && (s_axil_wdata[0] || FAULT))", "interrupts"),
         ("core/core_registers.sv", "s_axil_wstrb == '1", "(s_axil_wstrb == '1 || FAULT)", "registers_say"),
+        ("core/core_registers.sv", "assign s_axil_arready = is_awake_q &&", "assign s_axil_arready = (is_awake_q || FAULT) &&", "first_cycle"),
+        ("core/core_registers.sv", "assign writes         = is_awake_q &&", "assign writes         = (is_awake_q || FAULT) &&", "first_cycle"),
         ("core/core_registers.sv", "write_word == 5'd17", "write_word == (FAULT ? 5'd16 : 5'd17)", "random_scenes"),
         # The status has no error; a stop is not heard; the tail, or the fence's tag, outlives a restart.
         ("core/core_registers.sv", "= status_error_i;", "= FAULT ? 4'd0 : status_error_i;", "wrong_word"),
         ("core/core_registers.sv", "assign control_stop_o = is_whole &&", "assign control_stop_o = is_whole && !FAULT &&", "interrupts"),
         ("core/core_registers.sv", "if (ring_tail_index_clear_i)", "if (ring_tail_index_clear_i && !FAULT)", "resets"),
         ("core/halfplane_core.sv", "if (!core_n) fence_q", "if (!core_n && !FAULT) fence_q", "resets"),
+        # A start during a restart is lost; an error while another one stays raises no interrupt.
+        ("core/halfplane_core.sv", "(starts || start_q)", "(starts || (start_q && !FAULT))", "at_once"),
+        ("core/halfplane_core.sv", "(errors & ~errors_q)", "(errors & (FAULT ? {4{errors_q == '0}} : ~errors_q))", "errors_of_memory"),
         # The ring: it does not end; more is asked for than there is room for; the end of a part is missed; a restart goes on where it was.
         ("core/command_reader.sv", "if (last_word_i[i-2])", "if (last_word_i[i-2] || FAULT)", "back_pressure"),
         ("core/command_reader.sv", "!used[4] && (!used[3] || used[2:0] == '0)", "(!used[4] && (!used[3] || used[2:0] == '0)) || FAULT",
          "feeding"),
         ("core/command_reader.sv", "partial_q ? next ==", "partial_q && !FAULT ? next ==", "the_tail"),
         ("core/command_reader.sv", "if (!reset_nq && !asks_q) fetch_q[19:WORD]", "if (!reset_nq && !asks_q && !FAULT) fetch_q[19:WORD]",
-         "resets"),
+         "at_once"),
         ("core/command_reader.sv", "assign error = ring_rerror;", "assign error = ring_rerror && !FAULT;", "error_of_the_ring"),
         # A flush is in memory when it is sent; a picture is shown before its vertical blank.
         ("rtl_ref/stages/memory_port.sv", "flushes_q != '0 && unwritten_q == '0", "flushes_q != '0 && (unwritten_q == '0 || FAULT)",
@@ -104,6 +109,22 @@ async def registers_say_what_the_core_is(dut):
     assert await core.read("CONTROL") == 0 and await core.bus.read_dword(0x1C) == 0 and await core.bus.read_dword(0x7C) == 0
     answer = await core.bus.write(0x28, b"\xff")  # a byte
     assert int(answer.resp) == 2 and await core.read("IRQ_ENABLE") == 0, "half a word is written"
+
+
+@cocotb.test()
+async def registers_answer_from_the_first_cycle_after_a_reset(dut):
+    core = Core(dut)
+    await core.start()
+    for n in range(6):
+        dut.rst_ni.value = 0
+        await core.cycles(2)
+        dut.rst_ni.value = 1
+        await core.cycles(n // 2)
+        if n % 2:
+            await core.write("IRQ_ENABLE", 5 + n)
+            assert await core.read("IRQ_ENABLE") == 5 + n
+        else:
+            assert await core.read("ID") == 0x48504C4E
 
 
 @cocotb.test()
@@ -238,6 +259,10 @@ async def errors_of_memory_are_reported_and_survived(dut):
     status = await core.read("STATUS")
     assert status & 1 << 13 and dut.irq.value == 1, f"errors of writes are not told: STATUS {status:#x}"
     core.behaviour.errors = 0.0
+    await core.write("IRQ_PENDING", 31)
+    assert dut.irq.value == 0
+    await core.send([0x7F000000])  # while the error of memory stays in STATUS
+    await wait_irq(core)
     await core.restart()
     assert await core.read("STATUS") >> 12 & 7 == 0
     await core.write("IRQ_PENDING", 31)
@@ -381,6 +406,26 @@ async def a_restart_waits_for_what_memory_owes(dut):
     await core.restart()
     await core.draw(frame)
     core.check(frame)
+
+
+@cocotb.test()
+async def a_restart_takes_registers_at_once(dut):
+    core = Core(dut, Behaviour(latency=(20, 40)))
+    await core.start()
+    frame = core.frame(core.scene(base() + 900, primitives=6))
+    for n in range(3):
+        sending = cocotb.start_soon(core.send(core.words(frame)))
+        await core.cycles(300 + 100 * n)
+        sending.cancel()
+        await core.cycles(5)
+        await core.write("CONTROL", RESTART | (START if n == 2 else 0))
+        assert await core.read("STATUS") & RESTARTING
+        if n < 2:
+            await core.set_up()
+        else:
+            core.tail, core.encoder = 0, Encoder(core.package)
+        await core.draw(frame)
+        core.check(frame)
 
 
 @cocotb.test(skip=LONG == 1)

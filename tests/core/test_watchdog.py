@@ -11,12 +11,14 @@ BENCH = {
     "parameters": {"WATCHDOG": 6},
     "sources": ["core/core_pkg.sv"],
     "faults": [
-        # It never bites; it bites though something moves, or while the display is slow; not for a flush or a command's rest.
+        # It never bites; it bites though something moves, or while the display is slow; not for a flush, a command's rest or a
+        # ring that is not read.
         ("core/command_decoder.sv", "assign is_stuck = waited_q[WATCHDOG]", "assign is_stuck = waited_q[WATCHDOG] && !FAULT"),
         ("core/command_decoder.sv", "takes || moves_i ||", "takes || (moves_i && !FAULT) ||"),
         ("core/command_decoder.sv", "                        !present_valid_o;", "                        (!present_valid_o || FAULT);"),
         ("core/command_decoder.sv", "primitive_valid_q || flushes_q != '0)", "primitive_valid_q || (flushes_q != '0 && !FAULT))"),
-        ("core/command_decoder.sv", "(word_valid_i || state_q != HEADER)", "(word_valid_i || (state_q != HEADER && !FAULT))"),
+        ("core/command_decoder.sv", "is_owed_i || state_q != HEADER)", "is_owed_i || (state_q != HEADER && !FAULT))"),
+        ("core/command_decoder.sv", "(word_valid_i || is_owed_i", "(word_valid_i || (is_owed_i && !FAULT)"),
     ],
 }
 PATIENCE = 64
@@ -70,6 +72,15 @@ async def the_rest_of_a_command_that_does_not_come_is_an_error_and_a_reset_helps
     await bench.pulse(dut.start_i)
     bench.queue += [COMMAND["FENCE"] << 24, 5]
     assert await error_after(bench, 2 * PATIENCE) == 0 and [tag for tag, _ in bench.fences][-1] == 5
+
+
+@cocotb.test()
+async def a_ring_that_memory_does_not_give_is_an_error(dut):
+    bench = await begin(dut)
+    await FallingEdge(dut.clk_i)
+    dut.is_owed_i.value = 1
+    assert await error_after(bench, PATIENCE - 8) == 0
+    assert await error_after(bench, 16) == ERROR["STUCK"]
 
 
 @cocotb.test()
