@@ -1,5 +1,6 @@
 // The long and the many: item 19 of the stress list at full length, and lines in random configurations.
 #include "../line_builder.hpp"
+#include "../tier.hpp"
 
 namespace halfplane::line_stress_test {
 namespace {
@@ -33,8 +34,20 @@ void check_line(const exact::Line& line, const LineSpace& space, Random& random,
   }
 }
 
+/// True for every line in --all, for one of `part` every day; no length of a loop is a multiple of `part`, so that each of its
+/// values has its turn.
+class Turns {
+ public:
+  explicit Turns(int part) : part_(test::cases(part, 1)) {}
+  bool next() { return number_++ % part_ == 0; }
+
+ private:
+  int part_, number_ = 0;
+};
+
 TEST(StressLine, LinesOf16384PixelsEqualTheOracleInAllOctants) {
   Random random(51);
+  Turns turns(9);
   for (const int bits : {0, 4, 8, 12}) {
     Config config = preset("full");
     config.subpixel_bits = bits;
@@ -46,7 +59,7 @@ TEST(StressLine, LinesOf16384PixelsEqualTheOracleInAllOctants) {
       for (int octant = 0; octant < 8; ++octant)
         for (const int shift : {0, 1, half})  // subpixels off the centre, which only diamond exit sees
           for (const auto& [rule, drops_last] : all_rules()) {
-            if (rule != LineRule::diamond && shift != 0) continue;
+            if ((rule != LineRule::diamond && shift != 0) || !turns.next()) continue;
             exact::Line line{in_octant((-8192 << s) + half + shift, (-8192 << s) + half, octant),
                              in_octant(((du - 8192) << s) + half + shift, ((dv - 8192) << s) + half, octant), rule,
                              drops_last, s};
@@ -65,6 +78,7 @@ TEST(StressLine, LinesOf16384PixelsEqualTheOracleInAllOctants) {
 
 TEST(StressLine, LinesOverTheWholeGuardBandEqualTheOracle) {
   Random random(52);
+  Turns turns(7);
   for (const auto name : preset_names()) {
     const LineSpace space(preset(name));
     const int lo = static_cast<int>(space.widths.coordinate.range.lo),
@@ -75,6 +89,7 @@ TEST(StressLine, LinesOverTheWholeGuardBandEqualTheOracle) {
         for (const int x1 : {lo, -1, hi})
           for (const int y1 : {lo, lo + 1, 1, hi - 1, hi})
             for (const auto& [rule, drops_last] : all_rules()) {
+              if (!turns.next()) continue;
               exact::Line line{snapped_vertex(x0, y0), snapped_vertex(x1, y1), rule, drops_last,
                                space.widths.grid_bits};
               line.end.depth() = static_cast<std::uint32_t>(space.widths.depth().code.range.hi);
@@ -105,7 +120,7 @@ TEST(StressLine, EverySubpixelLineOfThreePixelsEqualsTheOracleAtTwoAndThreeBits)
 TEST(StressLine, RandomLinesInRandomConfigurationsEqualTheOracle) {
   Random random(53);
   LineErrors worst_above_bound{-1, -1};
-  for (int n = 0; n < 400; ++n) {
+  for (int n = 0; n < test::cases(100, 400); ++n) {
     Config config = preset("small");
     config.subpixel_bits = random.index(13);
     config.guard_band = 1 << (9 + random.index(n % 50 == 0 ? 8 : 3));
