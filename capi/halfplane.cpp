@@ -211,6 +211,9 @@ halfplane_scene* halfplane_scene_read(const char* words, size_t bytes) {
     return new halfplane_scene{read_capture(std::string_view(&required(words, "the text"), bytes), "scene")};
   });
 }
+halfplane_scene* halfplane_scene_open(const char* path) {
+  return guarded(nullptr, [&] { return new halfplane_scene{read_capture_file(std::string(text(path, "the path")))}; });
+}
 halfplane_scene* halfplane_scene_new(int width, int height) {
   return guarded(nullptr, [&] {
     auto made = std::make_unique<halfplane_scene>();

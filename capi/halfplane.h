@@ -51,6 +51,8 @@ typedef struct halfplane_frame halfplane_frame;
 /* A capture (docs/capture.md) that lies in memory: exact to the bit, any state. The files of its
  * textures are looked for in the current folder; inline ones need none. */
 HALFPLANE_API halfplane_scene* halfplane_scene_read(const char* text, size_t bytes);
+/* A capture in a file; files of its textures are looked for next to it. */
+HALFPLANE_API halfplane_scene* halfplane_scene_open(const char* path);
 /* An empty scene of width * height pixels, to be filled by those below. */
 HALFPLANE_API halfplane_scene* halfplane_scene_new(int width, int height);
 /* Lines of a capture that hold from here on: clears, and what a draw depends on (space, state, texture, texels, planes). Each
@@ -150,6 +152,69 @@ HALFPLANE_API int halfplane_target_copy_to(const halfplane_target* target, void*
 HALFPLANE_API int halfplane_target_copy_from(halfplane_target* target, const void* color, size_t color_pitch,
                                              const uint32_t* depth, size_t depth_pitch);
 HALFPLANE_API void halfplane_target_free(halfplane_target* target);
+
+/* --- the whole pipeline -------------------------------------------------------------------------------------------------- */
+
+/* raster_top of a configuration from reset, with its memory: what a scoreboard holds a design against. In goes what is on the
+ * design's own input ports, packed structs of raster_pkg.sv as in the stages below, so that a monitor hands on what it sees.
+ * Out comes, in the order of the hardware, what each primitive does, without time. docs/your-rtl.md has scoreboards. */
+typedef struct halfplane_pipeline halfplane_pipeline;
+
+enum { HALFPLANE_WRITES = 1, HALFPLANE_RETIRED = 2, HALFPLANE_BEATS = 4 };
+/* `config_id`: raster_pkg::CONFIG_ID of the design, which must be that of the configuration. `outputs`: a sum of the three
+ * above. An output that is named here is kept until it is taken; the others are not kept. */
+HALFPLANE_API halfplane_pipeline* halfplane_pipeline_new(const halfplane_config* config, uint64_t config_id,
+                                                         int outputs);
+/* The next primitive_packet_t. Returns 0. One that breaks a rule of the stream (docs/interface.md) is an error, and nothing
+ * happens. */
+HALFPLANE_API int halfplane_pipeline_put_primitive(halfplane_pipeline* pipeline, const uint32_t* words);
+/* The next line_setup_t, before or after the primitive of kind line that holds its place, which waits for it. Returns 0. */
+HALFPLANE_API int halfplane_pipeline_put_line(halfplane_pipeline* pipeline, const uint32_t* words);
+
+/* What happened: HALFPLANE_WRITES, a sample's words change; HALFPLANE_RETIRED, a primitive is through, whether it drew
+ * anything or not. In SystemVerilog a packed struct, the last member first. */
+enum { HALFPLANE_DEPTH = 1, HALFPLANE_COLOR = 2 };
+typedef struct halfplane_event {
+  uint32_t kind;
+  uint32_t primitive;             /* counts all that were put, of every kind, from 0 */
+  uint32_t x, y, sample;          /* pixels from the top left; the sample of the pixel, 0 without msaa */
+  uint32_t parts;                 /* what is written: HALFPLANE_DEPTH (with the stencil), HALFPLANE_COLOR, or both */
+  uint32_t depth, stencil, color; /* codes as halfplane_frame_plane gives them; 0 of a part that is not written */
+} halfplane_event;
+/* The next event. Returns 1; or 0 when there is none before more is put in. Clears and flushes retire, and write no samples. */
+HALFPLANE_API int halfplane_pipeline_get_event(halfplane_pipeline* pipeline, halfplane_event* event);
+/* The next memory_beat_t on the port to memory, reads and writes, likewise. */
+HALFPLANE_API int halfplane_pipeline_get_beat(halfplane_pipeline* pipeline, uint32_t* words);
+
+/* Where the buffers lie, the members of memory_layout_t: bases of depth, colour, flags of depth and flags of colour, bytes
+ * from one row of tiles to the next. May be set before the first primitive. Returns 0. */
+HALFPLANE_API int halfplane_pipeline_layout(const halfplane_pipeline* pipeline, uint32_t* bytes);
+HALFPLANE_API int halfplane_pipeline_set_layout(halfplane_pipeline* pipeline, const uint32_t* bytes);
+/* The bytes of memory as the hardware leaves them, frame and flags. Before the first primitive: what a test bench's memory may
+ * begin with, so that bytes that nothing wrote are equal, too. */
+HALFPLANE_API int64_t halfplane_pipeline_memory_size(const halfplane_pipeline* pipeline);
+HALFPLANE_API int halfplane_pipeline_memory(const halfplane_pipeline* pipeline, uint32_t address, void* bytes,
+                                            size_t count);
+/* The picture in memory, as halfplane_frame_plane: of the target that the last fast clear gave. After a flush; what was drawn
+ * since the last one is an error. */
+HALFPLANE_API int64_t halfplane_pipeline_plane(const halfplane_pipeline* pipeline, const char* plane, uint32_t* values,
+                                               size_t count);
+/* From now on the texture memory holds the textures of a scene. Returns 0. */
+HALFPLANE_API int halfplane_pipeline_textures(halfplane_pipeline* pipeline, const halfplane_scene* scene);
+/* Bytes of the texture memory, for a test bench that answers its design; 0 beyond the textures. Returns 0. */
+HALFPLANE_API int halfplane_pipeline_texels(const halfplane_pipeline* pipeline, uint32_t address, void* bytes,
+                                            size_t count);
+HALFPLANE_API void halfplane_pipeline_free(halfplane_pipeline* pipeline);
+
+/* The host of a scene: the packets that raster_top gets for it, from a fast clear to the flush. */
+typedef struct halfplane_host halfplane_host;
+HALFPLANE_API halfplane_host* halfplane_host_new(const halfplane_scene* scene, const halfplane_config* config);
+/* The next primitive_packet_t, and the line_setup_t of one of kind line. Returns 1, 2 with a line, 0 after the flush. */
+HALFPLANE_API int halfplane_host_next(halfplane_host* host, uint32_t* primitive, uint32_t* line);
+HALFPLANE_API void halfplane_host_free(halfplane_host* host);
+
+/* Bits of the packets of an arrow of docs/pipeline.md: "primitive", "line", "beat". */
+HALFPLANE_API int halfplane_packet_bits(const halfplane_config* config, const char* arrow);
 
 /* --- a stage by itself --------------------------------------------------------------------------------------------------- */
 

@@ -4,9 +4,9 @@
 #include <string_view>
 
 #include "../stream.h"
+#include "model/host/stream_rules.hpp"
 #include "model/packets/packet_words.hpp"
 #include "model/packets/state_packets.hpp"
-#include "model/stages/line_raster.hpp"
 
 namespace halfplane::driver {
 namespace {
@@ -46,18 +46,6 @@ bool is_no_clear(std::uint32_t fields) {
   constexpr std::uint32_t kBuffers = HALFPLANE_CLEAR_DEPTH_MASK | HALFPLANE_CLEAR_COLOR_MASK;
   if (clears_bin(fields)) return fields != (HALFPLANE_CLEAR_BIN_MASK | HALFPLANE_CLEAR_COLOR_MASK);
   return (fields & kBuffers) == 0;
-}
-
-/// Whether a line is one: its pixels lie in the target, and its error keeps to its register.
-bool is_line_inside(const LineSetup& line, const Widths& widths, int width, int height) {
-  LineState state = first_state(line);
-  for (;;) {
-    if (state.x < 0 || state.y < 0 || state.x >= width || state.y >= height ||
-        state.error != wrap_signed(state.error, widths.line_error.bits))
-      return false;
-    if (state.remaining == 0) return true;
-    advance(state, line, widths);
-  }
 }
 
 }  // namespace

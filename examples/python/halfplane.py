@@ -1,7 +1,8 @@
 """Halfplane from Python, through ctypes: the C interface (halfplane.h) as classes. Needs the shared library alone.
 
 The library is looked for at HALFPLANE_LIBRARY, then as libhalfplane_c where the system looks. Everything that fails raises
-halfplane.Error with the library's one line. With cocotb, make a Stage in the test and give it what the bus carries.
+halfplane.Error with the library's one line. With cocotb, make a Pipeline or a Stage in the test and give it what the bus
+carries.
 
 Vertices, indices and texels may be lists, or any buffer: bytes, array.array, memoryview, ctypes and NumPy arrays. Planes are
 memoryviews of 32-bit words, which numpy.asarray() takes without copying: numpy.asarray(frame.plane("depth")).reshape(h, w).
@@ -11,6 +12,7 @@ import array
 import ctypes
 import ctypes.util
 import os
+import re
 
 ABI = 1
 
@@ -26,12 +28,16 @@ def _load():
     library = ctypes.CDLL(path)
     for name in ("last_error", "stage_port_name", "stage_field_name"):
         getattr(library, "halfplane_" + name).restype = ctypes.c_char_p
-    for name in ("config_new", "scene_read", "scene_new", "render_threads", "target_new", "stage_new"):
+    for name in "config scene target stage pipeline host".split():
+        getattr(library, f"halfplane_{name}_new").restype = ctypes.c_void_p
+    for name in ("scene_read", "render_threads"):
         getattr(library, "halfplane_" + name).restype = ctypes.c_void_p
     for name in (
-        "scene_vertices scene_records frame_plane frame_reals frame_counter target_plane target_counter".split()
+        "scene_vertices scene_records frame_plane frame_reals frame_counter target_plane target_counter "
+        "pipeline_memory_size pipeline_plane".split()
     ):
         getattr(library, "halfplane_" + name).restype = ctypes.c_int64
+    library.halfplane_config_id.restype = ctypes.c_uint64
     if library.halfplane_abi() != ABI:
         raise Error(f"the library has ABI {library.halfplane_abi()}, this module speaks {ABI}")
     return library
@@ -156,6 +162,19 @@ class Config(_Handle):
         value = ctypes.create_string_buffer(256)
         _checked(_c.halfplane_config_get(self, key.encode(), value, ctypes.c_size_t(len(value))))
         return value.value.decode()
+
+    def id(self):
+        """raster_pkg::CONFIG_ID of this configuration."""
+        return _checked(_c.halfplane_config_id(self) or None)
+
+
+def config_id(path):
+    """CONFIG_ID of a design, from its raster_pkg.sv or its plain Verilog."""
+    with open(path, encoding="utf-8") as file:
+        found = re.search(r"CONFIG_ID (?:= )?64'h(\w+)", file.read())
+    if not found:
+        raise Error(f"{path} has no CONFIG_ID; give a raster_pkg.sv, or what tools/plain_verilog.sh writes")
+    return int(found[1], 16)
 
 
 class Scene(_Handle):
@@ -286,6 +305,10 @@ class Frame(_Handle):
         return _checked(_c.halfplane_frame_counter(self, name.encode()))
 
 
+def _number(words):
+    return sum(word << 32 * i for i, word in enumerate(words))
+
+
 class Port:
     """One port of a stage: its packets as dictionaries of fields."""
 
@@ -311,7 +334,8 @@ class Port:
         return (ctypes.c_uint32 * count)(*(value >> 32 * i & 0xFFFFFFFF for i in range(count)))
 
     def packet(self, words):
-        value, fields = sum(word << 32 * i for i, word in enumerate(words)), {}
+        """Fields by name, of the words of a packet or of the whole as one number."""
+        value, fields = words if isinstance(words, int) else _number(words), {}
         for name, bits, is_signed in reversed(self.fields):
             field = value & (1 << bits) - 1
             fields[name] = field - (1 << bits) if is_signed and field >> bits - 1 else field
@@ -346,3 +370,95 @@ class Stage(_Handle):
         number = self._number(self.outputs, port)
         words = (ctypes.c_uint32 * ((self.outputs[number].bits + 31) // 32))()
         return self.outputs[number].packet(words) if _checked(_c.halfplane_stage_get(self, number, words)) else None
+
+
+class Host(_Handle):
+    """The packets that raster_top gets for a scene, from a fast clear to the flush: `for primitive, line in Host(...)`,
+    each one number, the packed struct; line is None but of a primitive of kind line.
+    """
+
+    kind = "host"
+
+    def __init__(self, scene, config):
+        super().__init__(_c.halfplane_host_new(scene, config))
+        bits = (_checked(_c.halfplane_packet_bits(config, arrow)) for arrow in (b"primitive", b"line"))
+        self._primitive, self._line = ((ctypes.c_uint32 * ((b + 31) // 32))() for b in bits)
+
+    def __iter__(self):
+        while got := _checked(_c.halfplane_host_next(self, self._primitive, self._line)):
+            yield _number(self._primitive), _number(self._line) if got == 2 else None
+
+
+class Event(ctypes.Structure):
+    """A sample that was written (kind WRITES), or a primitive that is through (RETIRED): halfplane.h."""
+
+    _fields_ = [(n, ctypes.c_uint32) for n in "kind primitive x y sample parts depth stencil color".split()]
+
+
+class Pipeline(_Handle):
+    """raster_top from reset with its memory: what a design is held against. Packets are one number, the packed struct.
+    `design_id`: CONFIG_ID of the design, as config_id() reads it. `outputs`: a sum of WRITES, RETIRED and BEATS; what is
+    named is kept until it is taken.
+    """
+
+    kind = "pipeline"
+    WRITES, RETIRED, BEATS = 1, 2, 4
+    DEPTH, COLOR = 1, 2
+
+    def __init__(self, config, design_id, outputs):
+        super().__init__(_c.halfplane_pipeline_new(config, ctypes.c_uint64(design_id), outputs))
+        self._words = {}
+        for arrow in ("primitive", "line", "beat"):
+            self._words[arrow] = (_checked(_c.halfplane_packet_bits(config, arrow.encode())) + 31) // 32
+
+    def _packet(self, arrow, number):
+        count = self._words[arrow]
+        return (ctypes.c_uint32 * count)(*(number >> 32 * i & 0xFFFFFFFF for i in range(count)))
+
+    def put_primitive(self, number):
+        _checked(_c.halfplane_pipeline_put_primitive(self, self._packet("primitive", number)))
+
+    def put_line(self, number):
+        _checked(_c.halfplane_pipeline_put_line(self, self._packet("line", number)))
+
+    def event(self):
+        """The next Event, or None when there is none before more is put in."""
+        event = Event()
+        return event if _checked(_c.halfplane_pipeline_get_event(self, ctypes.byref(event))) else None
+
+    def beat(self):
+        """The next memory_beat_t as a number, or None."""
+        words = self._packet("beat", 0)
+        return _number(words) if _checked(_c.halfplane_pipeline_get_beat(self, words)) else None
+
+    @property
+    def layout(self):
+        """Bases of depth, colour and their flags, bytes between rows of tiles. May be set before the first primitive."""
+        values = (ctypes.c_uint32 * 5)()
+        _checked(_c.halfplane_pipeline_layout(self, values))
+        return tuple(values)
+
+    @layout.setter
+    def layout(self, values):
+        _checked(_c.halfplane_pipeline_set_layout(self, (ctypes.c_uint32 * 5)(*values)))
+
+    def memory(self, address=0, count=None):
+        """Bytes of memory as the hardware leaves them: all of them, or `count` from an address on."""
+        count = _checked(_c.halfplane_pipeline_memory_size(self)) - address if count is None else count
+        return self._bytes(_c.halfplane_pipeline_memory, address, count)
+
+    def texels(self, address, count):
+        return self._bytes(_c.halfplane_pipeline_texels, address, count)
+
+    def _bytes(self, function, address, count):
+        room = (ctypes.c_uint8 * count)()
+        _checked(function(self, ctypes.c_uint32(address), room, ctypes.c_size_t(count)))
+        return bytes(room)
+
+    def textures(self, scene):
+        """From now on the texture memory holds the textures of `scene`."""
+        _checked(_c.halfplane_pipeline_textures(self, scene))
+
+    def plane(self, name, width, height, into=None):
+        """As Frame.plane(), of the picture in memory. After a flush."""
+        return _plane(_c.halfplane_pipeline_plane, self, name, width * height, into)

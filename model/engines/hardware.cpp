@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <deque>
+#include <functional>
 #include <utility>
 #include <variant>
 
@@ -35,6 +36,7 @@ class HardwareModel::Pipeline final : private MemoryPort {
     if (config.cache_kind == CacheKind::blocks) cache_.emplace<BlockCache>(config, widths_);
   }
   void hold_textures(TextureMemory textures) { texels_ = std::move(textures); }
+  void tap_writes(std::function<void(const WritePacket&)> tap) { written_ = std::move(tap); }
   void run(const PrimitivePacket& primitive, const std::optional<LineSetup>& line);
   [[nodiscard]] const Config& config() const { return config_; }
   [[nodiscard]] const CounterPacket& counters() const { return counters_; }
@@ -62,6 +64,7 @@ class HardwareModel::Pipeline final : private MemoryPort {
   std::deque<MemoryResponse> responses_;  ///< to earlier requests
   MemoryResponse response_;
   std::uint8_t slot_ = 0;  ///< context slot of the next primitive
+  std::function<void(const WritePacket&)> written_;
 };
 
 void HardwareModel::Pipeline::run(const PrimitivePacket& primitive, const std::optional<LineSetup>& line) {
@@ -118,6 +121,7 @@ struct HardwareModel::Pipeline::StampPort {
   void send(const ColorPacket& packet) const { model.sink_.take(on<Arrow::color>, packet); }
   void write(const WritePacket& packet) const {
     std::visit([&](auto& cache) { cache.write(fragment, packet); }, model.cache_);
+    if (model.written_) model.written_(packet);
   }
 };
 
@@ -209,6 +213,7 @@ HardwareModel& HardwareModel::operator=(HardwareModel&&) noexcept = default;
 
 void HardwareModel::hold_textures(const Scene& scene) { hold_textures(TextureMemory(scene, pipeline_->config())); }
 void HardwareModel::hold_textures(TextureMemory textures) { pipeline_->hold_textures(std::move(textures)); }
+void HardwareModel::tap_writes(std::function<void(const WritePacket&)> tap) { pipeline_->tap_writes(std::move(tap)); }
 void HardwareModel::run(const PrimitivePacket& primitive, const std::optional<LineSetup>& line) {
   pipeline_->run(primitive, line);
 }

@@ -2,6 +2,7 @@
 // to a PacketSink on its way; the co-simulation compares the RTL's with them. Timing is in cycle/cycle_model.hpp.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -25,6 +26,9 @@ class HardwareModel {
   /// From now on the texture memory holds the textures of `scene`.
   void hold_textures(const Scene& scene);
   void hold_textures(TextureMemory textures);
+  /// From now on `tap` gets what each stamp leaves in the framebuffer: the write's masks and words downstream of all
+  /// units, in the stored formats. The RTL has no wire with all of them.
+  void tap_writes(std::function<void(const WritePacket&)> tap);
   /// Runs one primitive, to its last write: every packet that follows from it. `line`: present if and only if its kind
   /// is line.
   void run(const PrimitivePacket& primitive, const std::optional<LineSetup>& line = std::nullopt);

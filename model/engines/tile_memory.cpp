@@ -41,6 +41,10 @@ void TileMemory::read(std::uint32_t address, MemoryBeat::Bytes& data) const {
     data[static_cast<std::size_t>(n)] = byte(address + static_cast<std::uint32_t>(n));
 }
 
+void TileMemory::read(std::uint32_t address, std::span<std::uint8_t> bytes) const {
+  for (std::uint8_t& out : bytes) out = byte(address++);
+}
+
 void TileMemory::write(const MemoryBeat& beat) {
   if (beat.strobe == 0) return;
   std::uint32_t& page = page_[beat.address / kPage];

@@ -25,6 +25,9 @@ class TileMemory {
   void write(const MemoryBeat& beat);
   /// The bytes of one beat.
   void read(std::uint32_t address, MemoryBeat::Bytes& data) const;
+  /// Any bytes before end().
+  void read(std::uint32_t address, std::span<std::uint8_t> bytes) const;
+  [[nodiscard]] std::uint64_t end() const { return end_; }  ///< one beyond the last byte
   /// Whether a beat lies in the target.
   [[nodiscard]] bool has(const MemoryBeat& beat) const { return beat.address < end_; }
   /// The codes of a stamp, of depth with the stencil above them: the first lanes of `data`, as many as memory stores
@@ -53,7 +56,7 @@ class TileMemory {
   [[nodiscard]] bool flag(TilePlane flags, int tile_x, int tile_y, int stamp) const;
   Widths widths_;
   MemoryLayout layout_;
-  std::uint64_t end_;              ///< one beyond the last byte
+  std::uint64_t end_;
   std::array<bool, 2> has_flags_;  ///< of depth, of colour
   bool compresses_;                ///< compress.unit
   std::array<std::uint32_t, 2> clear_value_{};
