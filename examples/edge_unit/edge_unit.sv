@@ -16,7 +16,7 @@ module edge_unit #(
   localparam int BITS = VALUE_BITS + STEP_BITS;  // more than the sum can need
 
   logic signed [BITS-1:0] sum;
-  assign sum = BITS'(value_i) + BITS'(step_x_i) * BITS'(signed'({1'b0, x_i})) + BITS'(step_y_i) * BITS'(signed'({1'b0, y_i}));
+  assign sum = BITS'(value_i) + BITS'(step_x_i) * BITS'($signed({1'b0, x_i})) + BITS'(step_y_i) * BITS'($signed({1'b0, y_i}));
 `ifdef EDGE_UNIT_BUG
   assign inside_o = sum > 0;
 `else
