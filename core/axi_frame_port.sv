@@ -83,7 +83,7 @@ module axi_frame_port #(
   localparam int PLACE = HAS_BLOCKS ? STAMP + 2 * $clog2(raster_pkg::BLOCK_SIDE) : READ;
   localparam int GRANULE = (PLACE > PORT) ? PLACE : PORT;
 
-  function [BUCKETS-1:0] bucket_of(input [31:0] address);
+  function automatic [BUCKETS-1:0] bucket_of(input [31:0] address);
     integer i;
     begin
       bucket_of = '0;

@@ -277,7 +277,7 @@ module scan_out #(
 
   logic fills, frees, starts;  // a buffer is full from now on, or free, or begins to be filled
   logic shown_buffer_q;
-  function [1:0] bit_of(input buffer);
+  function automatic [1:0] bit_of(input buffer);
     bit_of = {buffer, !buffer};
   endfunction
   logic [1:0] freed;

