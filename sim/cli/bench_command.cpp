@@ -19,6 +19,7 @@
 #include "sim/show/report/page.hpp"
 #include "sim/study/bench/engines.hpp"
 #include "sim/study/space/gates.hpp"
+#include "sim/words.hpp"
 
 namespace halfplane {
 namespace {
@@ -50,7 +51,7 @@ std::vector<Variation> parse_variations(const std::vector<std::string>& texts, c
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos || equals + 1 == text.size())
       throw InputError(shown + " names no values; give KEY=VALUE,VALUE... as in subpixel.bits=0,4,8");
-    Variation variation{text.substr(0, equals), split_at_commas(text.substr(equals + 1))};
+    Variation variation{text.substr(0, equals), split(text.substr(equals + 1), ',')};
     for (const std::string& value : variation.values) {
       if (value.empty()) throw InputError(shown + " has an empty value; give KEY=VALUE,VALUE...");
       if (std::count(variation.values.begin(), variation.values.end(), value) > 1)

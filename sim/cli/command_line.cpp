@@ -12,6 +12,7 @@
 #include "sim/show/report/hardware.hpp"
 #include "sim/study/bench/engines.hpp"
 #include "sim/study/stress/cases.hpp"
+#include "sim/words.hpp"
 
 namespace halfplane {
 namespace {
@@ -84,10 +85,7 @@ std::map<std::string, Completion> known_completions() {
 Words member_words(const std::string& type) {
   const auto open = type.find('{'), close = type.find('}', open);
   if (open == std::string::npos || close == std::string::npos) return {};
-  Words words;
-  std::istringstream text(type.substr(open + 1, close - open - 1));
-  for (std::string word; std::getline(text, word, ',');) words.push_back(word);
-  return words;
+  return split(type.substr(open + 1, close - open - 1), ',');
 }
 
 Completion completion_of(const OptionText& option, const CLI::Option& source, const std::string& type) {
@@ -206,8 +204,7 @@ std::vector<CommandText> command_texts(const CLI::App& program) {
 std::vector<std::string> setting_values(std::string_view unit) {
   std::vector<std::string> values;
   if (unit.find('|') == std::string_view::npos) return values;
-  std::istringstream text{std::string(unit)};
-  for (std::string value; std::getline(text, value, '|');)
+  for (const std::string& value : split(unit, '|'))
     if (value.find('<') == std::string::npos) values.push_back(value);  // u<b> stands for many values
   return values;
 }

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cstdlib>
 #include <filesystem>
-#include <sstream>
 
 #include "sim/cli/whole_number.hpp"
+#include "sim/words.hpp"
+
 namespace halfplane {
 namespace {
 
@@ -87,8 +87,7 @@ Tolerance parse_tolerance(const AgainstWords& words) {
     return {};
   }
   Tolerance tolerance;
-  std::istringstream parts(words.tolerance);
-  for (std::string part; std::getline(parts, part, ',');) {
+  for (const std::string& part : words_of(words.tolerance, ',')) {
     const auto equals = part.find('=');
     const std::string key = part.substr(0, equals), number = equals == std::string::npos ? "" : part.substr(equals + 1);
     std::uint32_t* const codes = key == "color" ? &tolerance.color : key == "depth" ? &tolerance.depth : nullptr;

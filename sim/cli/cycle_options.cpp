@@ -13,6 +13,7 @@
 #include "sim/show/image/png.hpp"
 #include "sim/show/image/whole_file.hpp"
 #include "sim/show/trace/timeline.hpp"
+#include "sim/words.hpp"
 
 namespace halfplane {
 
@@ -23,8 +24,8 @@ namespace {
 
 constexpr std::uint64_t kFewCycles = 4'000'000;  // cycles of a frame that is explained by default
 
-/// "key=rest". Throws InputError naming the option.
-std::pair<std::string, std::string> split(const std::string& option, const std::string& text) {
+/// "key=values". Throws InputError naming the option.
+std::pair<std::string, std::string> key_and_values(const std::string& option, const std::string& text) {
   const auto equals = text.find('=');
   if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
     throw InputError(option + ": '" + text + "' is not KEY=VALUE; write it so, as in cache.lines=16");
@@ -44,8 +45,8 @@ void change_for(const std::string& option, Hardware& hardware, const std::string
 std::vector<std::pair<std::string, std::string>> variations(const CycleCommandOptions& options) {
   std::vector<std::pair<std::string, std::string>> all;
   for (const std::string& text : options.what_if) {
-    const auto [key, values] = split("--what-if", text);
-    for (const std::string& value : split_at_commas(values)) all.emplace_back(key, value);
+    const auto [key, values] = key_and_values("--what-if", text);
+    for (const std::string& value : split(values, ',')) all.emplace_back(key, value);
   }
   return all;
 }
@@ -222,7 +223,7 @@ void check_cycle_options(const CycleCommandOptions& options, const Config& confi
 Hardware hardware_of(const CycleCommandOptions& options, const Config& config) {
   Hardware hardware{config, {}, options.memory};
   for (const std::string& text : options.timing) {
-    const auto [key, value] = split("--timing", text);
+    const auto [key, value] = key_and_values("--timing", text);
     if (find_timing_setting(key) == nullptr) {
       std::vector<std::string_view> keys;
       for (const TimingSetting& setting : timing_settings()) keys.push_back(setting.key);

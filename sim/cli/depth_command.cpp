@@ -14,6 +14,7 @@
 #include "sim/cli/whole_number.hpp"
 #include "sim/show/image/whole_file.hpp"
 #include "sim/show/report/page.hpp"
+#include "sim/words.hpp"
 
 namespace halfplane {
 namespace {
@@ -31,7 +32,7 @@ struct DepthCommand : CommonOptions {
 };
 
 std::vector<std::string> comma_parts(const std::string& option, const std::string& text) {
-  std::vector<std::string> parts = split_at_commas(text);
+  std::vector<std::string> parts = split(text, ',');
   if (std::ranges::find(parts, "") != parts.end())
     throw InputError(option + ": '" + text + "' has an empty part; give a list with commas");
   return parts;

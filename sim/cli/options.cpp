@@ -22,6 +22,7 @@
 #include "sim/scene/texture_reach.hpp"
 #include "sim/show/image/whole_file.hpp"
 #include "sim/study/depth/variant.hpp"
+#include "sim/words.hpp"
 
 namespace halfplane {
 namespace {
@@ -213,7 +214,7 @@ Skip parse_skip(const std::string& text) {
   if (text == "none") return skip;
   std::vector<std::string_view> names;
   for (const SkipName& entry : kSkipNames) names.emplace_back(entry.name);
-  for (const std::string& name : split_at_commas(text)) {
+  for (const std::string& name : split(text, ',')) {
     const auto* entry = std::find_if(std::begin(kSkipNames), std::end(kSkipNames),
                                      [&name](const SkipName& s) { return name == s.name; });
     if (entry == std::end(kSkipNames))
@@ -352,16 +353,6 @@ std::string with_commas(std::uint64_t value) {
   std::string digits = std::to_string(value);
   for (std::size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, ",");
   return digits;
-}
-
-std::vector<std::string> split_at_commas(const std::string& text) {
-  std::vector<std::string> parts(1);
-  for (const char c : text)
-    if (c == ',')
-      parts.emplace_back();
-    else
-      parts.back() += c;
-  return parts;
 }
 
 std::string formatted(const char* format, double value) {

@@ -189,9 +189,6 @@ template <class Range>
   return text;
 }
 
-/// The parts between commas, including empty ones.
-[[nodiscard]] std::vector<std::string> split_at_commas(const std::string& text);
-
 /// `printf` of one number.
 [[nodiscard]] std::string formatted(const char* format, double value);
 

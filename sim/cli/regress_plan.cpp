@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
-#include <sstream>
 
 #include "model/nearest_word.hpp"
 #include "sim/cli/options.hpp"
 #include "sim/config_file.hpp"
+#include "sim/words.hpp"
 
 namespace halfplane {
 namespace {
@@ -17,14 +17,6 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMostCases = 100'000;  // a file each
 constexpr std::array<std::string_view, 8> kKeys{"config", "scenes", "random",  "only",
                                                 "seeds",  "stalls", "options", "timeout"};
-
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts;
-  std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, separator);)
-    if (!part.empty()) parts.push_back(part);
-  return parts;
-}
 
 struct Row {
   std::string name, place;
@@ -46,7 +38,7 @@ std::uint64_t number_of(const std::string& text, const std::string& place) {
 /// "1..50", "1|4|9".
 std::vector<std::uint64_t> seeds_of(const std::string& text, const std::string& place) {
   std::vector<std::uint64_t> seeds;
-  for (const std::string& part : split(text, '|')) {
+  for (const std::string& part : words_of(text, '|')) {
     const std::size_t dots = part.find("..");
     const std::uint64_t first = number_of(part.substr(0, dots), place);
     const std::uint64_t last = dots == std::string::npos ? first : number_of(part.substr(dots + 2), place);
@@ -67,27 +59,27 @@ void set(Row& row, const std::string& key, const std::string& value, const std::
   if (value.empty()) throw InputError(place + ": " + key + " is empty; leave it out, or give a value");
   if (key == "config") {
     row.configs.clear();
-    for (const std::string& config : split(value, '|')) {
+    for (const std::string& config : words_of(value, '|')) {
       const std::size_t end = config.find(' ');
       row.configs.push_back(from_anywhere(config.substr(0, end), folder, config.substr(0, end).ends_with(".toml")) +
                             (end == std::string::npos ? "" : config.substr(end)));
     }
   } else if (key == "scenes") {
-    for (const std::string& scene : split(value, '|'))
+    for (const std::string& scene : words_of(value, '|'))
       row.scenes.push_back(from_anywhere(scene, folder, fs::exists(folder / scene)));
   } else if (key == "random") {
     row.random = number_of(value, place);
   } else if (key == "only") {
     std::vector<std::string> words;
-    for (const std::string& word : split(value, ','))
+    for (const std::string& word : words_of(value, ','))
       words.push_back(from_anywhere(word, folder, word.ends_with(".toml")));
     row.only = joined(words, ",");
   } else if (key == "seeds") {
     row.seeds = seeds_of(value, place);
   } else if (key == "stalls") {
-    row.stalls = split(value, '|');
+    row.stalls = words_of(value, '|');
   } else if (key == "options") {
-    row.options = split(value, ' ');
+    row.options = words_of(value, ' ');
   } else if (key == "timeout") {
     row.timeout_s = parse_duration(value, place + ": timeout");
   } else {
@@ -109,7 +101,7 @@ RegressCase case_of(const Row& row, const std::string& config, const std::string
     words.push_back(scene);
   }
   const char* option = "--config";
-  for (const std::string& word : split(config, ' ')) {
+  for (const std::string& word : words_of(config, ' ')) {
     words.insert(words.end(), {option, word});
     option = "--set";
   }

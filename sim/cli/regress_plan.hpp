@@ -1,7 +1,6 @@
 // The plan of `regress`: rows of scenes, configurations, stalls and seeds, and the cases that they make.
 #pragma once
 
-#include <cstddef>
 #include <string>
 #include <vector>
 

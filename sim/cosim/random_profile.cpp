@@ -4,12 +4,14 @@
 #include <bit>
 #include <charconv>
 #include <map>
-#include <sstream>
 
 #include "model/capture/capture.hpp"
 #include "model/host/primitive_stream.hpp"
+#include "model/host/primitives.hpp"
 #include "model/nearest_word.hpp"
 #include "sim/config_file.hpp"
+#include "sim/scene/random.hpp"
+#include "sim/words.hpp"
 
 namespace halfplane {
 namespace {
@@ -19,13 +21,6 @@ constexpr std::array<std::string_view, 4> kDepths{"random", "equal", "front_to_b
 constexpr std::array<std::string_view, 10> kKnobs{"kinds", "no",    "target",   "size",         "ties",
                                                   "reuse", "depth", "textures", "texture_size", "overlap"};
 constexpr int kMostTextures = 16, kMostTexels = 1024;
-
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts;
-  std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, separator);) parts.push_back(part);
-  return parts;
-}
 
 [[noreturn]] void fail(const std::string& place, const std::string& message) {
   throw InputError(place + ": " + message);
@@ -55,12 +50,38 @@ std::array<int, 2> pair_of(const std::string& text, std::string_view between, in
           whole_number_of(text.substr(at + between.size()), 1, most, place, key)};
 }
 
+/// Of two states that this hardware refuses together, changes the one that the profile does not have.
+void settle(State& s, Topology topology, const Config& config, const RandomProfile& profile) {
+  const bool is_triangle = topology == Topology::triangles;
+  const bool has_only_triangles = profile.has_kinds() && !profile.kinds[1];
+  if (is_triangle && (has_only_triangles || (config.line_units == 0 && s.line_rule != LineRule::rectangle)) &&
+      profile.rule("polygon_mode") == nullptr)
+    s.polygon_mode = PolygonMode::fill;
+  if (drawn_as(s, topology) != PrimitiveType::triangle) s.color_interp = ColorInterp::affine;
+  if (config.texture_unit == TextureUnitKind::nearest || config.texture_unit == TextureUnitKind::bilinear) {
+    if (profile.rule("texture_min") == nullptr) s.texture_min = static_cast<TextureMin>(s.texture_mag);
+    s.texture_mag = static_cast<TextureMag>(s.texture_min);  // the unit knows one filter
+  }
+  if (!s.texture || s.texture_interp == TextureInterp::perspective) return;
+  if (profile.rule("texture_interp") == nullptr && (s.fog || s.shade == Shade::phong)) {
+    s.texture_interp = TextureInterp::perspective;
+    return;
+  }
+  if (s.color_interp == ColorInterp::perspective && profile.rule("texture_interp") == nullptr) {
+    s.texture_interp = TextureInterp::perspective;
+    return;
+  }
+  s.fog.reset();
+  if (s.shade == Shade::phong) s.shade = Shade::smooth;
+  s.color_interp = ColorInterp::affine;
+}
+
 class Reader {
  public:
   explicit Reader(const Config& config) : config_(config) {}
 
   void list(const std::string& text, const std::string& place) {
-    for (const std::string& word : split(text, ',')) {
+    for (const std::string& word : words_of(text, ',')) {
       if (word.ends_with(".toml")) {
         for (const TomlWord& one : read_toml_words(word))
           knob(one.key, one.value, word + ":" + std::to_string(one.line));
@@ -115,7 +136,7 @@ class Reader {
   void knob(const std::string& key, const std::string& value, const std::string& place) {
     const auto percent = [&] { return whole_number_of(value, 0, 100, place, key); };
     if (key == "kinds") {
-      for (const std::string& kind : split(value, '|')) {
+      for (const std::string& kind : words_of(value, '|')) {
         const auto found = std::ranges::find(kKinds, kind);
         if (found == kKinds.end()) fail(place, "kinds: no '" + kind + "'; give some of triangles, lines, points");
         profile_.kinds[static_cast<std::size_t>(found - kKinds.begin())] = true;
@@ -123,7 +144,7 @@ class Reader {
       if (profile_.kinds[1] && config_.line_units == 0)
         fail(place, "lines: this hardware has no unit that draws them; set lines.unit=1, or leave lines out");
     } else if (key == "no") {
-      for (const std::string& name : split(value, '|')) leave_out(name, place);
+      for (const std::string& name : words_of(value, '|')) leave_out(name, place);
     } else if (key == "target") {
       const auto [width, height] = pair_of(value, "x", 16384, place, key);
       if (width > config_.target_width || height > config_.target_height)
@@ -156,7 +177,7 @@ class Reader {
       if (key == "texture_size" && !std::has_single_bit(static_cast<unsigned>(*number)))
         fail(place, "texture_size: " + value + " is not a power of two, which texture units take alone");
     } else if (is_state(key) && key != "space") {
-      for (const std::string& one : split(value, '|')) states_[key].push_back(state_value(key, one, place));
+      for (const std::string& one : words_of(value, '|')) states_[key].push_back(state_value(key, one, place));
     } else {
       unknown(key, place);
     }
@@ -218,6 +239,17 @@ RandomProfile read_random_profile(const std::string& text, const Config& config)
   Reader reader(config);
   reader.list(text, "--random-only");
   return reader.finish(text);
+}
+
+void apply_profile(Scene& scene, const Config& config, const RandomProfile& profile, std::uint64_t seed) {
+  Random random(seed ^ 0x701f11eu);
+  for (const Command& command : scene.commands) {
+    const auto* draw = std::get_if<Draw>(&command);
+    State& state = scene.states[draw != nullptr ? draw->state : std::get<Clear>(command).state];
+    for (const RandomProfile::StateRule& rule : profile.rules)
+      rule.row->set(state, rule.values[random.next() % rule.values.size()]);
+    if (draw != nullptr && !profile.text.empty()) settle(state, draw->topology, config, profile);
+  }
 }
 
 }  // namespace halfplane

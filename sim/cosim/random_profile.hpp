@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -9,6 +10,7 @@
 
 #include "model/config.hpp"
 #include "model/draw_states.hpp"
+#include "model/scene.hpp"
 
 namespace halfplane {
 
@@ -44,5 +46,9 @@ struct RandomProfile {
 /// Reads "triangles,less,16x16,no-scissor,size=1..64,FILE.toml". Throws InputError, one line that begins with
 /// "--random-only" or the file, for an unknown knob or value, and for one that the configuration does not have.
 [[nodiscard]] RandomProfile read_random_profile(const std::string& text, const Config& config);
+
+/// Gives the profile's states one of their values in each draw of a finished scene, and changes states that this hardware
+/// refuses together with them. From random numbers of its own, so that states alone change nothing else.
+void apply_profile(Scene& scene, const Config& config, const RandomProfile& profile, std::uint64_t seed);
 
 }  // namespace halfplane

@@ -8,6 +8,7 @@
 
 #include "sim/config_file.hpp"
 #include "sim/scene/text_cursor.hpp"
+#include "sim/words.hpp"
 #include "vector_file.hpp"
 
 namespace halfplane::vectors {
@@ -36,16 +37,6 @@ bool next_line(std::istream& in, std::string& text, const SourceLine& at) {
     text += static_cast<char>(c);
   }
   return !text.empty();
-}
-
-std::vector<std::string_view> split_at_commas(std::string_view text) {
-  std::vector<std::string_view> cells;
-  for (;;) {
-    const std::size_t comma = text.find(',');
-    cells.push_back(text.substr(0, comma));
-    if (comma == std::string_view::npos) return cells;
-    text.remove_prefix(comma + 1);
-  }
 }
 
 struct HexValue {
@@ -226,7 +217,7 @@ VectorFile read_jsonl(std::istream& in, const std::string& path) {
   return std::move(reader.file_);
 }
 
-void read_csv_row(Reader& reader, const std::vector<std::string_view>& cells, const SourceLine& at) {
+void read_csv_row(Reader& reader, const std::vector<std::string>& cells, const SourceLine& at) {
   if (cells.size() < 3) at.fail("a row has at least dir, packet and n");
   const Reader::Place place = reader.place_of(cells[0], cells[1], at);
   std::uint64_t number = 0;
@@ -242,7 +233,7 @@ void read_csv_row(Reader& reader, const std::vector<std::string_view>& cells, co
 }
 
 /// From the first row: halfplane.vectors/1,STAGE,SOURCE,seed=N.
-VectorSource csv_source(const std::vector<std::string_view>& cells) {
+VectorSource csv_source(const std::vector<std::string>& cells) {
   VectorSource source;
   if (cells.size() > 2) source.text = cells[2];
   constexpr std::string_view kSeed = "seed=";
@@ -262,7 +253,7 @@ VectorFile read_csv(std::istream& in, const std::string& path) {
     const SourceLine at{path, number};
     if (text.ends_with('\r')) text.pop_back();
     if (text.empty()) continue;
-    const auto cells = split_at_commas(text);
+    const auto cells = split(text, ',');
     if (number == 1) {
       if (cells[0] != "halfplane.vectors/1" || cells.size() < 2)
         at.fail("these are no vectors: the first line must begin with halfplane.vectors/1,STAGE");
@@ -273,8 +264,8 @@ VectorFile read_csv(std::istream& in, const std::string& path) {
       std::map<std::string, std::string> config;
       for (std::size_t i = 1; i < cells.size(); ++i) {
         const std::size_t equals = cells[i].find('=');
-        if (equals == std::string_view::npos) at.fail(in_quotes(cells[i]) + " is no key=value");
-        config[std::string(cells[i].substr(0, equals))] = cells[i].substr(equals + 1);
+        if (equals == std::string::npos) at.fail(in_quotes(cells[i]) + " is no key=value");
+        config[cells[i].substr(0, equals)] = cells[i].substr(equals + 1);
       }
       reader.begin(stage, config, at);
       reader.file_.source = source;
