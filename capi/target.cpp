@@ -1,9 +1,6 @@
 // Targets of the C interface: halfplane::Target, with textures by name and a state that lines of a capture say.
 #include <algorithm>
-#include <array>
-#include <memory>
 #include <numeric>
-#include <optional>
 
 #include "handles.hpp"
 #include "input.hpp"

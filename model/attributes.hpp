@@ -9,7 +9,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <string>
 #include <string_view>
 
 #include "config.hpp"
@@ -118,50 +117,28 @@ struct AttributeList {
             .stored = StoredAs::color});
   if (config.texture_unit == TextureUnitKind::off) return list;
   const int bits = config.perspective_bits;
-  list.add({.name = "reciprocal w",
-            .part = {"q"},
-            .planes = 1,
-            .bits = bits,
-            .symbol = "N",
-            .reciprocal_bits = bits - kPerspectiveReciprocalLess,
-            .guard_bits = kPerspectiveGuardBits,
-            .is_clamped = false,
-            .base = BaseVertex::smallest_q});
-  list.add({.name = "coordinate",
-            .part = {"u", "v"},
-            .planes = 2,
-            .bits = bits + 1,
-            .symbol = "N_P + 1",
-            .reciprocal_bits = bits - kPerspectiveReciprocalLess,
-            .guard_bits = kPerspectiveGuardBits,
-            .is_signed = true,
-            .is_clamped = false,
-            .interpolation = Interpolation::over_w,
-            .base = BaseVertex::smallest_q});
+  const auto add_with_w = [&](std::string_view name, std::array<std::string_view, 4> part, int planes, int code_bits,
+                              std::string_view symbol, bool is_over_w) {
+    list.add({.name = name,
+              .part = part,
+              .planes = planes,
+              .bits = code_bits,
+              .symbol = symbol,
+              .reciprocal_bits = bits - kPerspectiveReciprocalLess,
+              .guard_bits = kPerspectiveGuardBits,
+              .is_signed = is_over_w,
+              .is_clamped = false,
+              .interpolation = is_over_w ? Interpolation::over_w : Interpolation::affine,
+              .base = BaseVertex::smallest_q});
+  };
+  add_with_w("reciprocal w", {"q"}, 1, bits, "N", false);
+  add_with_w("coordinate", {"u", "v"}, 2, bits + 1, "N_P + 1", true);
   if (config.perspective_colors != 0)
-    list.add({.name = "color over w",
-              .part = {"red over w", "green over w", "blue over w", "alpha over w"},
-              .planes = needs_alpha(config) ? 4 : 3,
-              .bits = color_over_w_bits(config) + 1,
-              .symbol = "N_C + 1",
-              .reciprocal_bits = bits - kPerspectiveReciprocalLess,
-              .guard_bits = kPerspectiveGuardBits,
-              .is_signed = true,
-              .is_clamped = false,
-              .interpolation = Interpolation::over_w,
-              .base = BaseVertex::smallest_q});
-  if (has_normals(config))
-    list.add({.name = "normal over w",
-              .part = {"normal x over w", "normal y over w", "normal z over w"},
-              .planes = 3,
-              .bits = normal_over_w_bits(config) + 2,  // 2^N_P is a code: of a normal along an axis
-              .symbol = "N_N + 2",
-              .reciprocal_bits = bits - kPerspectiveReciprocalLess,
-              .guard_bits = kPerspectiveGuardBits,
-              .is_signed = true,
-              .is_clamped = false,
-              .interpolation = Interpolation::over_w,
-              .base = BaseVertex::smallest_q});
+    add_with_w("color over w", {"red over w", "green over w", "blue over w", "alpha over w"},
+               needs_alpha(config) ? 4 : 3, color_over_w_bits(config) + 1, "N_C + 1", true);
+  if (has_normals(config))  // 2^N_P is a code: of a normal along an axis
+    add_with_w("normal over w", {"normal x over w", "normal y over w", "normal z over w"}, 3,
+               normal_over_w_bits(config) + 2, "N_N + 2", true);
   return list;
 }
 

@@ -1,8 +1,6 @@
 #include "config.hpp"
 
-#include <bit>
 #include <charconv>
-#include <cstdio>
 
 namespace halfplane {
 namespace {

@@ -7,8 +7,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "fixed.hpp"
-
 namespace halfplane {
 
 /// In eye space. Full intensity of a colour is 1; lights may exceed it.

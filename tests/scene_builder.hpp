@@ -1,11 +1,8 @@
 // Small scenes for tests, one call per triangle, and the tests' own random numbers and states.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <random>
-#include <utility>
-#include <vector>
 
 #include "sim/scene/random_state.hpp"
 #include "sim/scene/scene_builder.hpp"

@@ -5,8 +5,6 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
-#include <cstring>
-#include <utility>
 
 #include "context.hpp"
 #include "matrix.hpp"

@@ -1,10 +1,7 @@
 // Pixels on their way between the program's memory and the driver (OpenGL 1.5, 3.6.3 to 3.6.5, 4.3.2).
 #pragma once
 
-#include <cstdint>
 #include <memory>
-#include <optional>
-#include <span>
 #include <vector>
 
 #include "state.hpp"

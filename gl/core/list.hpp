@@ -7,7 +7,6 @@
 #include <new>
 #include <tuple>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 #include "context.hpp"

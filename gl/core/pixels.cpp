@@ -4,7 +4,6 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <span>
 #include <utility>
 
 #include "../../model/stages/color_ops.hpp"

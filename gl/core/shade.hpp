@@ -2,8 +2,6 @@
 // (OpenGL 1.5, 2.11 to 2.14).
 #pragma once
 
-#include <memory>
-
 #include "state.hpp"
 
 namespace halfplane::gl {

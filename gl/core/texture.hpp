@@ -1,7 +1,6 @@
 // Textures as the driver keeps them, and as the model takes them (texture.cpp, texture_upload.cpp).
 #pragma once
 
-#include <cstdint>
 #include <optional>
 
 #include "../../model/scene.hpp"

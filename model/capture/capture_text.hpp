@@ -1,7 +1,6 @@
 // A capture's text, line by line and word by word, with the position for messages. Used by the capture reader only.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>

@@ -96,12 +96,6 @@ inline void tap_samples(TappedFragment fragment, int samples, const FragmentTap&
                                 context.config, widths, offset);
 }
 
-/// The surface's colour as codes.
-[[nodiscard]] inline std::array<std::uint32_t, 4> surface_channels(const Surface& surface, int x, int y) {
-  const Texel c = surface.color(x, y);
-  return {c[0], c[1], c[2], c[3]};
-}
-
 /// `visible` of a pixel owned by a line or a point.
 inline constexpr std::int32_t kVisibleOutline = -2;
 

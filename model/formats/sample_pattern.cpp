@@ -1,10 +1,8 @@
 #include "sample_pattern.hpp"
 
-#include <algorithm>
 #include <bit>
 #include <charconv>
 #include <cmath>
-#include <cstdint>
 
 #include "../input_error.hpp"
 

@@ -1,6 +1,5 @@
 #include "c_header.hpp"
 
-#include <algorithm>
 #include <cstdio>
 #include <sstream>
 

@@ -1,7 +1,6 @@
 #include "raster_pkg.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cstdio>
 #include <set>
 #include <sstream>

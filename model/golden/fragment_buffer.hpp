@@ -5,7 +5,6 @@
 // its owner. Operations: alpha, stencil and depth test, blending, the write masks.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>

@@ -12,7 +12,6 @@
 // once in 2^128 comparisons.
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <vector>
 

@@ -50,8 +50,6 @@ class CacheTags {
         flags_(widths) {}
 
   [[nodiscard]] std::size_t lines() const { return lines_.size(); }
-  /// Flags of a row of the widest target, in words.
-  [[nodiscard]] int flag_words() const { return words_of(widths_.tiles_x * widths_.blocks.per_tile - 1); }
 
   /// A fragment with covered samples; `is_full`: it covers all of its stamp.
   TagResult access(const StampAddress& at, const PrimitiveState& state, bool is_full) {

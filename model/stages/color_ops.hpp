@@ -9,7 +9,6 @@
 // Source: OpenGL ES 2.0.25, 4.1.6 to 4.1.9; alpha test: ES 1.1.12, 4.1.4.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>

@@ -1,6 +1,5 @@
 #include "depth_encode.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "../fixed.hpp"

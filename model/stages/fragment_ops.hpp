@@ -6,8 +6,6 @@
 // scalar instance is the specification; a test holds vectors against it.
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 

@@ -16,8 +16,6 @@
 // covered sample. There a plane over w is valid; at an uncovered centre it may not be.
 #pragma once
 
-#include <array>
-#include <optional>
 #include <vector>
 
 #include "coarse_raster.hpp"

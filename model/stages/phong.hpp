@@ -16,7 +16,6 @@
 #include <cstdint>
 #include <memory>
 
-#include "../config.hpp"
 #include "../scene.hpp"
 #include "perspective.hpp"
 

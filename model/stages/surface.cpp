@@ -1,6 +1,5 @@
 #include "surface.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "cull.hpp"

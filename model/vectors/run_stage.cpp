@@ -2,7 +2,6 @@
 #include "stages.hpp"
 
 #include <algorithm>
-#include <array>
 #include <type_traits>
 #include <variant>
 

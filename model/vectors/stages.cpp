@@ -1,6 +1,5 @@
 #include "stages.hpp"
 
-#include <algorithm>
 #include <type_traits>
 
 #include "../nearest_word.hpp"

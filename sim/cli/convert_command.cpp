@@ -28,17 +28,6 @@ SceneSource scenes_of(const ConvertOptions& options, const Config& config) {
   return single_scene(load_scene(options, plain, load_s));
 }
 
-Json scene_json(const std::string& path, const Scene& scene, std::size_t bytes) {
-  return {{"path", path},
-          {"width", scene.width},
-          {"height", scene.height},
-          {"vertices", scene.vertices.size()},
-          {"indices", scene.indices.size()},
-          {"states", scene.states.size()},
-          {"commands", scene.commands.size()},
-          {"bytes", bytes}};
-}
-
 int run(const ConvertOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   check_random_options(options, options, "convert");
@@ -72,7 +61,7 @@ int run(const ConvertOptions& options) {
     const std::string text = capture_text(*scene);
     const std::string path = is_several ? numbered(options.output, number) : options.output;
     write_text_file(path, text);
-    result["captures"].push_back(scene_json(path, *scene, text.size()));
+    result["captures"].push_back(capture_json(path, *scene, text.size()));
     out << (path == "-" ? "stdout" : path) << "  " << scene->width << "x" << scene->height << ", "
         << with_commas(scene->vertices.size()) << " vertices, " << with_commas(scene->commands.size()) << " commands, "
         << with_commas(text.size()) << " bytes\n";

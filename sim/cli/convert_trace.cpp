@@ -12,6 +12,17 @@
 
 namespace halfplane {
 
+Json capture_json(const std::string& path, const Scene& scene, std::size_t bytes) {
+  return {{"path", path},
+          {"width", scene.width},
+          {"height", scene.height},
+          {"vertices", scene.vertices.size()},
+          {"indices", scene.indices.size()},
+          {"states", scene.states.size()},
+          {"commands", scene.commands.size()},
+          {"bytes", bytes}};
+}
+
 bool is_trace(const std::string& name) { return name.ends_with(".trace"); }
 
 #ifdef HALFPLANE_HAS_TRACES
@@ -86,14 +97,7 @@ int convert_trace(const CommonOptions& options, const ConvertTraceOptions& trace
       continue;
     }
     const Scene scene = read_capture_file(path);
-    result["captures"].push_back({{"path", path},
-                                  {"width", scene.width},
-                                  {"height", scene.height},
-                                  {"vertices", scene.vertices.size()},
-                                  {"indices", scene.indices.size()},
-                                  {"states", scene.states.size()},
-                                  {"commands", scene.commands.size()},
-                                  {"bytes", bytes}});
+    result["captures"].push_back(capture_json(path, scene, bytes));
     out << path << "  " << scene.width << "x" << scene.height << ", " << with_commas(scene.vertices.size())
         << " vertices, " << with_commas(scene.commands.size()) << " commands, " << with_commas(bytes) << " bytes\n";
   }

@@ -12,6 +12,9 @@ struct ConvertTraceOptions {
   std::string output;
 };
 
+/// The element of `captures` for a capture of `bytes` bytes.
+[[nodiscard]] Json capture_json(const std::string& path, const Scene& scene, std::size_t bytes);
+
 /// Whether `name` is a trace of apitrace's.
 [[nodiscard]] bool is_trace(const std::string& name);
 

@@ -7,7 +7,6 @@
 #include <string>
 
 #include "sim/cli/options.hpp"
-#include "sim/interrupt.hpp"
 
 namespace halfplane {
 

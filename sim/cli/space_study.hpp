@@ -7,7 +7,6 @@
 
 #include "sim/cli/bench_study.hpp"
 #include "sim/cli/memory_options.hpp"
-#include "sim/study/space/front.hpp"
 
 namespace halfplane {
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "model/config.hpp"
-#include "sim/cosim/arrows.hpp"
+#include "model/pipeline_graph.hpp"
 
 namespace halfplane {
 

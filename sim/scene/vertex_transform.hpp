@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <string_view>
 
-#include "model/config.hpp"
 #include "sim/scene/camera.hpp"
 
 namespace halfplane {

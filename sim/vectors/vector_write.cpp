@@ -1,3 +1,4 @@
+#include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -38,36 +39,36 @@ Json header_json(const JudgedStage& stage, const Config& config, const Widths& w
           {"out", ports_json(stage.out, widths)}};
 }
 
-/// The names of a port's fields, looked up once.
-struct PortFields {
-  std::vector<std::vector<FieldName>> in, out;
-
-  PortFields(const JudgedStage& stage, const Widths& widths) {
-    for (const Port& port : stage.in) in.push_back(fields_of(port.like, widths));
-    for (const Port& port : stage.out) out.push_back(fields_of(port.like, widths));
-  }
-};
+/// Calls add(is_out, port, number, fields, values) for every packet, in the stage's order.
+template <class Add>
+void for_each_packet(const JudgedStage& stage, const Config& config, const StagePackets& packets, Add&& add) {
+  const Widths widths = derive_widths(config);
+  std::array<std::vector<std::vector<FieldName>>, 2> fields;  // in, out; looked up once
+  for (const Port& port : stage.in) fields[0].push_back(fields_of(port.like, widths));
+  for (const Port& port : stage.out) fields[1].push_back(fields_of(port.like, widths));
+  replay_stage(stage, config, packets,
+               [&](bool is_out, std::size_t p, std::size_t n, std::span<const std::uint32_t> words) {
+                 const Port& port = (is_out ? stage.out : stage.in)[p];
+                 add(is_out, port, n, fields[is_out ? 1 : 0][p], values_of(port.like, widths, words));
+               });
+}
 
 std::string jsonl_text(const JudgedStage& stage, const Config& config, const StagePackets& packets,
                        const VectorSource& source) {
   const Widths widths = derive_widths(config);
-  const PortFields fields(stage, widths);
   std::string text =
       header_json(stage, config, widths, source).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
-  replay_stage(stage, config, packets,
-               [&](bool is_out, std::size_t p, std::size_t n, std::span<const std::uint32_t> words) {
-                 const Port& port = (is_out ? stage.out : stage.in)[p];
-                 const auto& names = (is_out ? fields.out : fields.in)[p];
-                 const auto values = values_of(port.like, widths, words);
-                 text += is_out ? R"({"dir":"out","packet":")" : R"({"dir":"in","packet":")";
-                 text.append(port.name).append("\",\"n\":").append(std::to_string(n));
-                 for (std::size_t i = 0; i < names.size(); ++i) {
-                   text.append(",\"").append(names[i].name).append("\":\"0x");
-                   append_hex(text, values[i], names[i].bits);
-                   text += '"';
-                 }
-                 text += "}\n";
-               });
+  for_each_packet(stage, config, packets,
+                  [&text](bool is_out, const Port& port, std::size_t n, const auto& fields, const auto& values) {
+                    text += is_out ? R"({"dir":"out","packet":")" : R"({"dir":"in","packet":")";
+                    text.append(port.name).append("\",\"n\":").append(std::to_string(n));
+                    for (std::size_t i = 0; i < fields.size(); ++i) {
+                      text.append(",\"").append(fields[i].name).append("\":\"0x");
+                      append_hex(text, values[i], fields[i].bits);
+                      text += '"';
+                    }
+                    text += "}\n";
+                  });
   return text;
 }
 
@@ -89,19 +90,15 @@ std::string csv_text(const JudgedStage& stage, const Config& config, const Stage
   };
   add_fields("in", stage.in);
   add_fields("out", stage.out);
-  const PortFields fields(stage, widths);
-  replay_stage(stage, config, packets,
-               [&](bool is_out, std::size_t p, std::size_t n, std::span<const std::uint32_t> words) {
-                 const Port& port = (is_out ? stage.out : stage.in)[p];
-                 const auto& names = (is_out ? fields.out : fields.in)[p];
-                 const auto values = values_of(port.like, widths, words);
-                 text.append(is_out ? "out," : "in,").append(port.name).append(",").append(std::to_string(n));
-                 for (std::size_t i = 0; i < names.size(); ++i) {
-                   text += ",0x";
-                   append_hex(text, values[i], names[i].bits);
-                 }
-                 text += '\n';
-               });
+  for_each_packet(stage, config, packets,
+                  [&text](bool is_out, const Port& port, std::size_t n, const auto& fields, const auto& values) {
+                    text.append(is_out ? "out," : "in,").append(port.name).append(",").append(std::to_string(n));
+                    for (std::size_t i = 0; i < fields.size(); ++i) {
+                      text += ",0x";
+                      append_hex(text, values[i], fields[i].bits);
+                    }
+                    text += '\n';
+                  });
   return text;
 }
 

@@ -1,5 +1,4 @@
 // `bench`: its measurements, output, files and refusals. Times are never compared.
-#include <algorithm>
 #include <map>
 #include <set>
 

@@ -1,7 +1,6 @@
 // The options that the shells' completions and man pages list: all options of --help, and for bash by trying it.
 #include <algorithm>
 #include <cstdio>
-#include <map>
 #include <set>
 #include <sstream>
 

@@ -1,5 +1,4 @@
 // `halfplane convert`: any scene as a capture that draws the same picture.
-#include <set>
 
 #include "model/capture/capture.hpp"
 #include "model/engines/functional.hpp"

@@ -1,6 +1,5 @@
 // The files of `halfplane render`: formats, hashes recomputed from the contents, and writes that fail.
 #include <algorithm>
-#include <cstring>
 
 #include "program.hpp"
 

@@ -1,5 +1,4 @@
 // `halfplane render`: the contents of stdout, stderr and the JSON result, and the effect of each option.
-#include <algorithm>
 #include <set>
 
 #include "program.hpp"

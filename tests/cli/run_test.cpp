@@ -1,6 +1,5 @@
 // `halfplane run`: programs that draw through the driver, and others. tests/gl_program/egl_program.cpp needs no screen.
 #include <algorithm>
-#include <csignal>
 
 #include "halfplane_paths.hpp"
 #include "program.hpp"

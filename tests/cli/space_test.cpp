@@ -1,6 +1,5 @@
 // `bench --space`, --area, --slurm, --collect: the design space, its front, its page, and the same from a cluster's tasks.
 #include <filesystem>
-#include <fstream>
 #include <set>
 
 #include "halfplane_paths.hpp"

@@ -1,5 +1,4 @@
 // `halfplane stress`: its output, files and refusals; and the whole quick set.
-#include <algorithm>
 
 #include "program.hpp"
 

@@ -1,6 +1,5 @@
 // `halfplane vectors` and `halfplane check`: another implementation's stage, judged.
 #include <filesystem>
-#include <fstream>
 
 #include "program.hpp"
 

@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <sstream>
 #include <string>
-#include <vector>
 
 #include "model/capture/capture.hpp"
 #include "model/engines/functional.hpp"

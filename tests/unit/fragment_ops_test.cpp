@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <random>
 
 #include "model/golden/color.hpp"
 #include "sim/scene/random_state.hpp"

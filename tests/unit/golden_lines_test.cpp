@@ -1,5 +1,4 @@
 // Golden lines, points and polygon modes: against the exact oracle where snapping changes nothing, and by hand.
-#include <map>
 #include <numeric>
 
 #include "../line_builder.hpp"

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
-#include <numeric>
 
 #include "../scene_builder.hpp"
 #include "model/engines/functional.hpp"

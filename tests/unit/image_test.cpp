@@ -1,7 +1,6 @@
 // Pictures for people: colour maps, text, panels, sheets, previews.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 

@@ -1,7 +1,6 @@
 // The library as outside callers use it: unchecked scenes, and frames that stay.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstdlib>
 #include <functional>
 #include <limits>

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
-
 #include "../gltf_builder.hpp"
 #include "model/config.hpp"
 #include "model/golden/light.hpp"

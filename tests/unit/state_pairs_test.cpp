@@ -2,9 +2,7 @@
 // of them; and so do a few scenes that are made for it, which every engine draws equally (and the RTL: tests/cosim).
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <iostream>
-#include <string>
 #include <vector>
 
 #include "../state_pairs.hpp"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <type_traits>
 
 #include "../../host/viewport.hpp"
 #include "../../packets/state_packets.hpp"

@@ -3,8 +3,6 @@
 // of several streams at once.
 #pragma once
 
-#include <bit>
-
 #include "back_timing.hpp"
 #include "parameters.hpp"
 #include "work.hpp"

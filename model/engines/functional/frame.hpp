@@ -141,7 +141,7 @@ struct FrameContext {
   const Config& config;
   const Widths& widths;
   Skip skip;
-  int bins_x = 0, bins_y = 0;
+  int bins_x = 0;
   bool takes_one_by_one = false;  ///< draws all fragments one by one: RenderOptions::general_fragments
 };
 

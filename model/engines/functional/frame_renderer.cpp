@@ -8,7 +8,6 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
-#include <limits>
 #include <utility>
 
 #include "../../stages/surface.hpp"
@@ -555,7 +554,7 @@ void FrameRenderer::flush(bool is_last) {
   const auto built = Clock::now();
   const auto bins = static_cast<std::size_t>(bins_x_) * static_cast<std::size_t>(bins_y_);
   bin_counters_.assign(bins, {});
-  const FrameContext frame{*prepared_, config_, widths_, skip_, bins_x_, bins_y_, !is_opaque_};
+  const FrameContext frame{*prepared_, config_, widths_, skip_, bins_x_, !is_opaque_};
   std::vector<const Slice*> slices;
   for (std::size_t i = 0; i < slice_count_; ++i) slices.push_back(&slices_[i]);
   const bool is_known = held_bins_.size() == bins;

@@ -1,7 +1,5 @@
 #include "../functional.hpp"
 
-#include <optional>
-
 #include "../scalar.hpp"
 #include "frame_renderer.hpp"
 

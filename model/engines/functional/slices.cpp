@@ -148,7 +148,7 @@ void FrameRenderer::build(Slice& slice) const {
     slice.vertices.clear();
     build_outlines(slice);
   } else {
-    const FrameContext frame{*prepared_, config_, widths_, skip_, bins_x_, bins_y_, !is_opaque_};
+    const FrameContext frame{*prepared_, config_, widths_, skip_, bins_x_, !is_opaque_};
     const std::size_t range = std::size_t{slice.high_index} - slice.low_index + 1, corners = 3 * slice.triangles;
     slice.is_wide = range > corners;
     const std::size_t vertices = slice.is_wide ? corners : range;

@@ -11,8 +11,6 @@
 #include <iostream>
 #include <system_error>
 
-#include "model/config.hpp"
-
 namespace halfplane {
 namespace {
 

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "model/config.hpp"
-#include "model/scene.hpp"
 #include "model/timing/memory.hpp"
 #include "sim/study/bench/rows.hpp"
 #include "sim/study/space/front.hpp"

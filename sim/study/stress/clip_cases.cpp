@@ -94,10 +94,17 @@ bool is_folded(const Config& config, const Scene& scene, const std::array<Vertex
   return exact_area > 0 ? least < 0 : most > 0;
 }
 
-/// Adds a triangle to the scene; returns whether the snap folds its clipped polygon.
-bool add_triangle(const Unit& unit, SceneBuilder& builder, const Vertex& a, const Vertex& b, const Vertex& c) {
-  builder.triangle(a, b, c);
-  return is_folded(unit.config, builder.scene, {a, b, c});
+/// Adds the quadrilateral a, b, c, d, halved along either diagonal, in either winding; returns whether the snap folds the
+/// clipped polygon of one half.
+bool add_quad(Unit& unit, SceneBuilder& builder, const Vertex& a, const Vertex& b, const Vertex& c, const Vertex& d) {
+  using Half = std::array<Vertex, 3>;
+  bool is_any_folded = false;
+  for (const Half& v :
+       unit.random.coin() ? std::array{Half{a, b, c}, Half{a, c, d}} : std::array{Half{b, a, d}, Half{d, b, c}}) {
+    builder.triangle(v[0], v[1], v[2]);
+    is_any_folded |= is_folded(unit.config, builder.scene, v);
+  }
+  return is_any_folded;
 }
 
 /// Draws the triangle and compares every drawn corner, and every sample not at an edge, with the exact clip.
@@ -204,13 +211,7 @@ void closed_meshes(Unit& unit) {
           return face < 2 ? corner(r, s, t) : face < 4 ? corner(s, r, t) : corner(s, t, r);
         };
         const Vertex a = vertex(0, 0), b = vertex(1, 0), c = vertex(1, 1), d = vertex(0, 1);
-        if (random.coin()) {
-          has_fold |= add_triangle(unit, builder, a, b, c);
-          has_fold |= add_triangle(unit, builder, a, c, d);
-        } else {
-          has_fold |= add_triangle(unit, builder, b, a, d);
-          has_fold |= add_triangle(unit, builder, d, b, c);
-        }
+        has_fold |= add_quad(unit, builder, a, b, c, d);
       }
   const Rendering rendering = check_scene(unit, builder.scene);
   if (has_fold) return;  // the same as in slabs
@@ -235,13 +236,7 @@ void slabs(Unit& unit) {
   for (int j = 0; j < cells; ++j)
     for (int i = 0; i < cells; ++i) {
       const Vertex a = vertex(i, j), b = vertex(i + 1, j), c = vertex(i + 1, j + 1), d = vertex(i, j + 1);
-      if (random.coin()) {
-        has_fold |= add_triangle(unit, builder, a, b, c);
-        has_fold |= add_triangle(unit, builder, c, a, d);
-      } else {
-        has_fold |= add_triangle(unit, builder, a, b, d);
-        has_fold |= add_triangle(unit, builder, d, b, c);
-      }
+      has_fold |= add_quad(unit, builder, a, b, c, d);
     }
   const Rendering rendering = check_scene(unit, builder.scene);
   if (has_fold) return;  // nearly edge-on, on a coarse grid: the number of covers is not defined

@@ -1,5 +1,4 @@
 // Fragment operations: pictures that must be equal to the bit, and colours under layers against real arithmetic.
-#include <algorithm>
 #include <array>
 #include <cmath>
 

@@ -11,23 +11,6 @@ namespace {
 /// First pixel of a tile in the bin's memory.
 inline int first_of(int tile) { return tile * kTileSize * kTileSize; }
 
-/// First pixels of the blocks in the bin's memory: the offset of a column of blocks, and of a row.
-using BlockPlaces = std::array<std::int32_t, kBinSize / kBlockSize>;
-
-static constexpr BlockPlaces kColumnPlaces = [] {
-  BlockPlaces places{};
-  for (std::size_t i = 0; i < places.size(); ++i)
-    places[i] = static_cast<std::int32_t>((i >> 1) * kTileSize * kTileSize + (i & 1) * kBlockPixels);
-  return places;
-}();
-
-static constexpr BlockPlaces kRowPlaces = [] {
-  BlockPlaces places{};
-  for (std::size_t i = 0; i < places.size(); ++i)
-    places[i] = static_cast<std::int32_t>((i >> 1) * kBinTiles * kTileSize * kTileSize + (i & 1) * 2 * kBlockPixels);
-  return places;
-}();
-
 /// Place of pixel (x, y) of the bin in its memory.
 HALFPLANE_INLINE I16 place_of(const I16& x, const I16& y) {
   return (((x & 56) << 3) | ((x & 4) << 2) | (x & 3)) + (((y & 56) << 6) | ((y & 4) << 3) | ((y & 3) << 2));

@@ -134,13 +134,5 @@ HALFPLANE_INLINE I16 block_colors(const ColorSteps& t, const ColorRamp& ramp, st
   return packed(pair(0), pair(1), pixels);
 }
 
-/// Two channels' codes, in the halves of each lane; all arguments likewise: columns and rows from the anchor.
-[[nodiscard]] HALFPLANE_INLINE I16 channel_codes(const Bin& bin, const I16& column, const I16& row, const I16& step_x,
-                                                 const I16& step_y, const I16& anchor, const I16& low,
-                                                 const I16& high) {
-  return color_codes(as<S32>(column) * as<S32>(step_x) + as<S32>(row) * as<S32>(step_y) + as<S32>(anchor), low, high,
-                     bin.color_format);
-}
-
 }  // namespace
 }  // namespace halfplane::functional::HALFPLANE_ISA_NAME
