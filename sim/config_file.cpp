@@ -134,12 +134,6 @@ void collect(const toml::table& table, const std::string& prefix, std::vector<En
   }
 }
 
-const Setting* find_setting(std::string_view key) {
-  for (const Setting& setting : settings())
-    if (setting.key == key) return &setting;
-  return nullptr;
-}
-
 // The value in the form of `--set`.
 std::string value_text(const Entry& entry, const Setting& setting, const Place& place) {
   if (setting.is_number()) {
@@ -217,6 +211,12 @@ std::vector<Entry> read_entries(std::string_view text, std::string_view file_nam
 }
 
 }  // namespace
+
+const Setting* find_setting(std::string_view key) {
+  for (const Setting& setting : settings())
+    if (setting.key == key) return &setting;
+  return nullptr;
+}
 
 Config read_config_toml(std::string_view text, std::string_view file_name) {
   toml::table table;

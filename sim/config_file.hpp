@@ -34,6 +34,9 @@ struct TomlWord {
 /// Text from which read_config_toml() reads the same configuration: the preset and every value, each with its meaning.
 [[nodiscard]] std::string config_toml(const Config& config);
 
+/// The setting with that key; null: there is none.
+[[nodiscard]] const Setting* find_setting(std::string_view key);
+
 /// set(), with an InputError for an unknown key that names the nearest one.
 void set_by_key(Config& config, std::string_view key, std::string_view value);
 

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cstring>
 
+#include "../as_number.hpp"
 #include "../config.hpp"
 
 namespace halfplane {
@@ -189,10 +190,7 @@ double CaptureText::number(std::string_view what, double low, double high) {
 
 int CaptureText::integer(std::string_view what, int low, int high) {
   const std::string_view found = expect_word(what);
-  int value = 0;
-  const char* end = found.data() + found.size();
-  const auto result = std::from_chars(found.data(), end, value);
-  if (result.ec == std::errc{} && result.ptr == end && value >= low && value <= high) return value;
+  if (const auto value = as_number<int>(found); value && *value >= low && *value <= high) return *value;
   fail(std::string(what) + " is " + quoted_word(found) + "; write a whole number from " + std::to_string(low) + " to " +
        std::to_string(high));
 }

@@ -1,11 +1,11 @@
 #include "memory.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "../as_number.hpp"
 #include "station.hpp"
 
 namespace halfplane {
@@ -316,9 +316,7 @@ void set_memory(MemorySettings& settings, std::string_view text) {
     if (std::exchange(is_given[is_width ? 1 : 0], true))
       throw InputError("'" + std::string(word) + "' sets " + std::string(key) + " a second time; give it once");
     const std::string_view digits = word.substr(std::min(word.size(), key.size() + 1));
-    int value = 0;
-    const auto read = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (read.ec != std::errc{} || read.ptr != digits.data() + digits.size()) value = 0;
+    const int value = as_number<int>(digits).value_or(0);
     if (is_width && std::ranges::find(kSdramWidths, value) == kSdramWidths.end())
       throw InputError("width: '" + std::string(digits) + "' is not 8, 16, 32 or 64 bits");
     if (!is_width && (value < kSdramMinMhz || value > kSdramMaxMhz))

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <filesystem>
 
+#include "model/as_number.hpp"
 #include "sim/cli/whole_number.hpp"
 #include "sim/words.hpp"
 
@@ -93,8 +93,9 @@ Tolerance parse_tolerance(const AgainstWords& words) {
     std::uint32_t* const codes = key == "color" ? &tolerance.color : key == "depth" ? &tolerance.depth : nullptr;
     if (codes == nullptr)
       throw InputError("--tolerance: an image has no '" + key + "'; give color=N, depth=N, or both with a comma");
-    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), *codes);
-    if (error != std::errc() || end != number.data() + number.size())
+    if (const auto value = as_number<std::uint32_t>(number))
+      *codes = *value;
+    else
       throw InputError("--tolerance: '" + part + "' is no number of codes; give " + key + "=N, a whole number");
   }
   return tolerance;

@@ -6,6 +6,7 @@
 #include "sim/cli/command_line.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/options.hpp"
+#include "sim/words.hpp"
 
 namespace halfplane {
 namespace {
@@ -23,12 +24,7 @@ std::string replaced(std::string text, const std::string& characters, const std:
   return text;
 }
 
-/// Between single quotes, in any of the three shells.
-std::string in_single_quotes(const std::string& text, bool is_fish) {
-  std::string quoted_text;
-  for (const char c : text) quoted_text += c == '\'' ? (is_fish ? "\\'" : "'\\''") : std::string(1, c);
-  return "'" + quoted_text + "'";
-}
+std::string in_fish_quotes(const std::string& text) { return "'" + replaced(text, "'", "\\") + "'"; }
 
 std::vector<std::string> command_names(const std::vector<CommandText>& commands) {
   std::vector<std::string> names;
@@ -211,11 +207,11 @@ std::vector<std::string> zsh_specs(const OptionText& option) {
     spec += "[" + zsh_description(option.meaning) + "]";
     if (!option.value.empty())
       spec += (option.is_attached ? "::" : ":") + zsh_description(option.value) + ":" + zsh_action(option.completion);
-    specs.push_back(in_single_quotes(spec, false));
+    specs.push_back(in_single_quotes(spec));
   }
   if (option.names.empty())
-    specs.push_back(in_single_quotes(
-        (option.value.ends_with("...") ? "*:" : ":") + option.value + ":" + zsh_action(option.completion), false));
+    specs.push_back(in_single_quotes((option.value.ends_with("...") ? "*:" : ":") + option.value + ":" +
+                                     zsh_action(option.completion)));
   return specs;
 }
 
@@ -224,8 +220,8 @@ std::string zsh_words_or_files(const std::string& name, const std::string& what,
   Completion files = completion;
   files.kind = CompletionKind::file;
   return "\n_halfplane_" + name + "() {\n  _alternative " +
-         in_single_quotes(name + ":" + what + ":(" + spaced(completion.words).substr(1) + ")", false) + " " +
-         in_single_quotes("files:file:" + zsh_action(files), false) + "\n}\n";
+         in_single_quotes(name + ":" + what + ":(" + spaced(completion.words).substr(1) + ")") + " " +
+         in_single_quotes("files:file:" + zsh_action(files)) + "\n}\n";
 }
 
 /// The first completion of that kind in any command.
@@ -243,8 +239,7 @@ std::string zsh_setting() {
     const auto values = setting_values(setting.unit);
     text +=
         " \\\n    " + in_single_quotes(std::string(setting.key) + "[" + zsh_description(std::string(setting.meaning)) +
-                                           "]:value:" + (values.empty() ? " " : "(" + spaced(values).substr(1) + ")"),
-                                       false);
+                                       "]:value:" + (values.empty() ? " " : "(" + spaced(values).substr(1) + ")"));
   }
   return text + "\n}\n";
 }
@@ -264,7 +259,7 @@ std::string zsh_script(const std::vector<CommandText>& commands) {
       "commands=(\n";
   for (const CommandText& command : commands)
     if (!command.name.empty())
-      text += "        " + in_single_quotes(command.name + ":" + replaced(command.meaning, ":", "\\"), false) + "\n";
+      text += "        " + in_single_quotes(command.name + ":" + replaced(command.meaning, ":", "\\")) + "\n";
   text += "      )\n      _describe command commands && ret=0\n      ;;\n    argument)\n      case $words[1] in\n";
   for (const CommandText& command : commands) {
     if (command.name.empty()) continue;
@@ -330,14 +325,14 @@ std::string fish_script(const std::vector<CommandText>& commands) {
         (is_program ? "__fish_use_subcommand" : "'__fish_seen_subcommand_from " + command.name + "'");
     if (!is_program)
       text += "\ncomplete -c halfplane -n __fish_use_subcommand -a " + command.name + " -d " +
-              in_single_quotes(command.meaning, true) + "\n";
+              in_fish_quotes(command.meaning) + "\n";
     for (const OptionText& option : command.options) {
       std::string names;
       for (const std::string& name : option.names)
         names += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
       const bool takes_word = !option.value.empty() && !option.is_attached;
       text += start + names + (takes_word ? " -r" : "") + fish_arguments(option.completion) + " -d " +
-              in_single_quotes(option.meaning, true) + "\n";
+              in_fish_quotes(option.meaning) + "\n";
     }
     for (const OptionText& positional : command.positionals)
       text += start + fish_arguments(positional.completion) + "\n";

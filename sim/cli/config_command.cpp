@@ -107,28 +107,15 @@ int run(const ConfigOptions& options) {
   if (options.path == "-" && (options.toml || options.sv || options.taps || options.dpi || options.c_header))
     throw InputError("-o - and another output both write to stdout; leave one of them out");
   std::ostream& out = human(options);
-  if (!options.path.empty()) {
-    const std::string text = config_toml(config);
-    write_text_file(options.path, text);
-  }
-  if (options.toml) {
-    std::cout << config_toml(config);
-    return exit_ok;
-  }
-  if (options.sv) {
-    std::cout << raster_pkg(config);
-    return exit_ok;
-  }
-  if (options.dpi) {
-    std::cout << vectors::dpi_package(config);
-    return exit_ok;
-  }
-  if (options.c_header) {
-    std::cout << c_header(config);
-    return exit_ok;
-  }
-  if (options.taps) {
-    std::cout << raster_taps();
+  if (!options.path.empty()) write_text_file(options.path, config_toml(config));
+  const std::string file = options.toml       ? config_toml(config)
+                           : options.sv       ? raster_pkg(config)
+                           : options.dpi      ? vectors::dpi_package(config)
+                           : options.c_header ? c_header(config)
+                           : options.taps     ? raster_taps()
+                                              : "";
+  if (!file.empty()) {
+    std::cout << file;
     return exit_ok;
   }
   const Widths hardware = derive_widths(config);

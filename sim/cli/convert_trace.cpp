@@ -2,10 +2,10 @@
 
 #include <iostream>
 #ifdef HALFPLANE_HAS_TRACES
-#include <charconv>
 #include <filesystem>
 
 #include "gl/trace/replay.hpp"
+#include "model/as_number.hpp"
 #include "model/capture/capture.hpp"
 #include "sim/cli/progress.hpp"
 #endif
@@ -36,10 +36,8 @@ FrameRange parse_frames(const std::string& text, int frames) {
   if (text.empty()) return {0, frames - 1};
   FrameRange range;
   const auto number = [&](std::string_view word) {
-    int value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size() || value < 0)
-      throw InputError("--frame " + text + ": give N or A..B, counted from 0");
+    const int value = as_number<int>(word).value_or(-1);
+    if (value < 0) throw InputError("--frame " + text + ": give N or A..B, counted from 0");
     return value;
   };
   const std::size_t dots = text.find("..");

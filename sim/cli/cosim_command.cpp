@@ -1,9 +1,9 @@
 #include <algorithm>
-#include <charconv>
 #include <iostream>
 #include <memory>
 #include <sstream>
 
+#include "model/as_number.hpp"
 #include "model/host/primitive_assembly.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/cosim_options.hpp"
@@ -28,14 +28,12 @@ TraceWindow trace_window(const CosimOptions& options) {
   if (text.empty()) return {};
   if (options.trace_path.empty())
     throw InputError("--trace-cycles: there is no waveform to choose them for; add --trace FILE.fst");
-  TraceWindow window;
-  const char* const end = text.data() + text.size();
-  const auto [colon, first_error] = std::from_chars(text.data(), end, window.first);
-  const bool has_colon = first_error == std::errc() && colon != end && *colon == ':';
-  const auto [rest, last_error] = std::from_chars(has_colon ? colon + 1 : end, end, window.last);
-  if (!has_colon || last_error != std::errc() || rest != end || window.first > window.last)
+  const std::size_t colon = text.find(':');
+  const auto first = as_number<std::uint64_t>(text.substr(0, colon));
+  const auto last = colon == std::string::npos ? std::nullopt : as_number<std::uint64_t>(text.substr(colon + 1));
+  if (!first || !last || *first > *last)
     throw InputError("--trace-cycles: '" + text + "' is no window; give FIRST:LAST, both included, as in 0:999");
-  return window;
+  return {*first, *last};
 }
 
 /// Runs the whole stimulus, with progress over all of it.

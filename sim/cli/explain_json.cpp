@@ -8,6 +8,7 @@
 #include "model/stages/stencil_packets.hpp"
 #include "sim/cli/explain_output.hpp"
 #include "sim/study/explain/verify.hpp"
+#include "sim/words.hpp"
 
 namespace halfplane::explain {
 namespace {
@@ -313,13 +314,7 @@ Json final_json(const Resolved& of, const Scene& scene, const Config& config) {
 
 }  // namespace
 
-std::string hex_text(std::uint64_t value, int bits) {
-  static constexpr std::string_view kDigits = "0123456789abcdef";
-  std::string text = "0x";
-  if (bits < 64) value &= (std::uint64_t{1} << bits) - 1;
-  for (int digit = (bits + 3) / 4 - 1; digit >= 0; --digit) text += kDigits[value >> (4 * digit) & 15];
-  return text;
-}
+std::string hex_text(std::uint64_t value, int bits) { return "0x" + hex_digits(value, bits); }
 
 double to_real(const exact::Rational& value) {
   return static_cast<double>(static_cast<long double>(value.numerator) / static_cast<long double>(value.denominator));

@@ -1,10 +1,10 @@
 #include "sim/cli/foreign_test.hpp"
 
-#include <charconv>
 #include <csignal>
 #include <memory>
 #include <thread>
 
+#include "model/as_number.hpp"
 #include "sim/cli/child.hpp"
 #include "sim/interrupt.hpp"
 #include "sim/show/image/whole_file.hpp"
@@ -75,12 +75,9 @@ ForeignTest foreign_test(const ForeignOptions& options, const Scene& scene) {
   if (options.command.find("{}") == std::string::npos)
     throw InputError(
         "--command: no {} in it, so it gets no scene; write it where the capture belongs, as in './sim {}'");
-  int number = 0;
-  const char* const end = options.status.data() + options.status.size();
-  if (!options.status.empty() && options.status != "timeout")
-    if (const auto [read, error] = std::from_chars(options.status.data(), end, number);
-        error != std::errc() || read != end || number < 1 || number > 255)
-      throw InputError("--status: '" + options.status + "' is no failure; give 1 to 255, or timeout");
+  const auto number = as_number<int>(options.status);
+  if (!options.status.empty() && options.status != "timeout" && !(number && *number >= 1 && *number <= 255))
+    throw InputError("--status: '" + options.status + "' is no failure; give 1 to 255, or timeout");
   const auto program = std::make_shared<ForeignProgram>(options);
   std::string whole, seen;
   bool is_steady = true;

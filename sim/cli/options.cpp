@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cstdio>
 #include <filesystem>
 #include <functional>
@@ -10,6 +9,7 @@
 #include <sstream>
 #include <string_view>
 
+#include "model/as_number.hpp"
 #include "model/capture/capture.hpp"
 #include "sim/cli/progress.hpp"
 #include "sim/cli/whole_number.hpp"
@@ -51,11 +51,10 @@ std::vector<std::string>& typed_words() {
 
 // Decimal only; CLI11 would read -1, 010 and too large numbers as other numbers.
 std::uint64_t parse_seed(const std::string& text) {
-  std::uint64_t seed = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
-  if (error != std::errc() || end != text.data() + text.size())
+  const auto seed = as_number<std::uint64_t>(text);
+  if (!seed)
     throw InputError("--seed: '" + text + "' is not a seed; give a whole number from 0 to 18446744073709551615");
-  return seed;
+  return *seed;
 }
 
 }  // namespace
@@ -98,8 +97,7 @@ void add_scene_options(CLI::App& app, CommonOptions& options) {
   app.add_option("--light", options.lights,
                  "a light, each time it is given: 'from=X,Y,Z' where it comes from, 'at=X,Y,Z;range=R' where it is, "
                  "'eye', each with ';color=R,G,B'; 'ambient=R,G,B'; 'phong' beside one of them: at fragments; 'off' "
-                 "(without it: the file's own, else one at the "
-                 "eye; docs/light.md)")
+                 "(without it: the file's own, else one at the eye; docs/light.md)")
       ->check(refuse_empty)
       ->allow_extra_args(false);
   app.add_option("--transform", options.transform,
@@ -138,11 +136,9 @@ Size parse_size(const std::string& text) {
 
 double parse_part(const std::string& text, const std::string& option) {
   const bool is_percent = text.ends_with('%');
-  const char* const end = text.data() + text.size() - (is_percent ? 1 : 0);
-  double value = 0;
-  const auto [read, error] = std::from_chars(text.data(), end, value);
-  if (is_percent) value /= 100;
-  if (error != std::errc() || read != end || !(value > 0 && value <= 1))
+  const double value =
+      as_number<double>(text.substr(0, text.size() - (is_percent ? 1 : 0))).value_or(0) / (is_percent ? 100 : 1);
+  if (!(value > 0 && value <= 1))
     throw InputError(option + ": '" + text +
                      "' is no part of a whole; give more than 0 and at most 1, as in 0.01 or 1%");
   return value;
@@ -400,9 +396,7 @@ std::string quoted(const std::string& word) {
     return std::isalnum(c) != 0 || std::string_view("_-+=./:,%@").find(static_cast<char>(c)) != std::string_view::npos;
   };
   if (!word.empty() && std::all_of(word.begin(), word.end(), is_plain)) return word;
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
+  return in_single_quotes(word);
 }
 
 const std::string& program_word() { return typed_words().front(); }

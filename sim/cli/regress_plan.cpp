@@ -1,9 +1,9 @@
 #include "sim/cli/regress_plan.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 
+#include "model/as_number.hpp"
 #include "model/nearest_word.hpp"
 #include "sim/cli/options.hpp"
 #include "sim/config_file.hpp"
@@ -28,11 +28,9 @@ struct Row {
 };
 
 std::uint64_t number_of(const std::string& text, const std::string& place) {
-  std::uint64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size())
-    throw InputError(place + ": '" + text + "' is not a whole number");
-  return value;
+  const auto value = as_number<std::uint64_t>(text);
+  if (!value) throw InputError(place + ": '" + text + "' is not a whole number");
+  return *value;
 }
 
 /// "1..50", "1|4|9".
@@ -116,12 +114,10 @@ RegressCase case_of(const Row& row, const std::string& config, const std::string
 double parse_duration(const std::string& text, const std::string& option) {
   constexpr std::string_view kUnits = "smh";
   const std::size_t unit = text.empty() ? std::string_view::npos : kUnits.find(text.back());
-  double value = 0;
-  const char* const end = text.data() + text.size() - (unit == std::string_view::npos ? 0 : 1);
-  const auto [read, error] = std::from_chars(text.data(), end, value);
-  if (unit == std::string_view::npos || error != std::errc() || read != end || !(value >= 0 && value < 1e6))
+  const auto value = unit == std::string_view::npos ? std::nullopt : as_number<double>(text.substr(0, text.size() - 1));
+  if (!value || !(*value >= 0 && *value < 1e6))
     throw InputError(option + ": '" + text + "' is no time; give a number with s, m or h, as in 90s, 30m or 8h");
-  return value * (unit == 0 ? 1 : unit == 1 ? 60 : 3600);
+  return *value * (unit == 0 ? 1 : unit == 1 ? 60 : 3600);
 }
 
 std::vector<RegressCase> read_regress_plan(const std::string& path) {

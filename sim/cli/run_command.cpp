@@ -5,7 +5,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <charconv>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -13,6 +12,7 @@
 #include <map>
 #include <thread>
 
+#include "model/as_number.hpp"
 #include "sim/cli/child.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/progress.hpp"
@@ -38,18 +38,13 @@ struct FrameSpan {
 };
 /// `--frames A..B`. Throws InputError.
 FrameSpan parse_frames(const std::string& text) {
-  FrameSpan span;
-  if (text.empty()) return span;
+  if (text.empty()) return {};
   const std::size_t dots = text.find("..");
-  const auto number = [](std::string_view word, int& value) {
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    return error == std::errc() && end == word.data() + word.size() && value >= 0;
-  };
-  const std::string_view words(text);
-  if (dots == std::string::npos || !number(words.substr(0, dots), span.first) ||
-      !number(words.substr(dots + 2), span.last) || span.last < span.first)
+  const auto first = as_number<int>(text.substr(0, dots));
+  const auto last = dots == std::string::npos ? std::nullopt : as_number<int>(text.substr(dots + 2));
+  if (!first || !last || *first < 0 || *last < *first)
     throw InputError("--frames '" + text + "': give A..B, frames counted from 0");
-  return span;
+  return {*first, *last};
 }
 
 /// The frame after which the program ends; -1: it ends by itself. Where captures are all that was asked for, their last one.

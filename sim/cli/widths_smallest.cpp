@@ -1,9 +1,9 @@
 // `widths --smallest`: the search's answer as text and JSON.
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <iostream>
 
+#include "model/as_number.hpp"
 #include "model/stages/surface.hpp"
 #include "model/widths.hpp"
 #include "sim/cli/progress.hpp"
@@ -16,10 +16,8 @@ namespace {
 
 /// A positive number, all of `text`.
 std::optional<double> positive(std::string_view text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool is_whole = error == std::errc() && end == text.data() + text.size();
-  return is_whole && std::isfinite(value) && value > 0 ? std::optional(value) : std::nullopt;
+  const auto value = as_number<double>(text);
+  return value && std::isfinite(*value) && *value > 0 ? value : std::nullopt;
 }
 
 std::optional<double> positive_lsb(std::string_view text) {
@@ -44,12 +42,10 @@ ErrorBounds parse_bounds(const WidthsCommand& options, const Config& start) {
       throw InputError("--color-error: '" + options.color_error + "' is no bound; give LSB, as in 0.75lsb");
   }
   if (!options.coverage_error.empty()) {
-    std::uint64_t pixels = 0;
-    const std::string& text = options.coverage_error;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), pixels);
-    if (error != std::errc() || end != text.data() + text.size())
-      throw InputError("--coverage-error: '" + text + "' is no number of pixels; give a whole one, as in 100");
-    bounds.coverage = pixels;
+    bounds.coverage = as_number<std::uint64_t>(options.coverage_error);
+    if (!bounds.coverage)
+      throw InputError("--coverage-error: '" + options.coverage_error +
+                       "' is no number of pixels; give a whole one, as in 100");
   }
   if (!options.texture_error.empty()) {
     bounds.texture = positive(options.texture_error);

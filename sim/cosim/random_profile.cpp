@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <map>
 
+#include "model/as_number.hpp"
 #include "model/capture/capture.hpp"
 #include "model/host/primitive_stream.hpp"
 #include "model/host/primitives.hpp"
@@ -31,12 +31,11 @@ bool is_state(std::string_view name) {
 }
 
 int whole_number_of(const std::string& text, int least, int most, const std::string& place, const std::string& key) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || value < least || value > most)
+  const auto value = as_number<int>(text);
+  if (!value || *value < least || *value > most)
     fail(place,
          key + ": '" + text + "' is not a whole number from " + std::to_string(least) + " to " + std::to_string(most));
-  return value;
+  return *value;
 }
 
 /// Two numbers with `between` in between, the first at most the second if `is_range`.

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <numbers>
 #include <string>
 
+#include "model/as_number.hpp"
 #include "model/config.hpp"
 #include "sim/scene/bench_scenes.hpp"
 #include "sim/scene/builtin_meshes.hpp"
@@ -58,15 +58,12 @@ int size_of(const Builtin& builtin, std::string_view name) {
   if (colon == std::string_view::npos) return builtin.default_size;
   const std::string base(builtin.name);
   if (builtin.size.empty()) throw InputError("scene " + in_quotes(name) + ": has no sizes; write " + base);
-  const std::string_view digits = name.substr(colon + 1);
-  int value = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error != std::errc() || end != digits.data() + digits.size() || value < builtin.min_size ||
-      value > builtin.max_size) {
+  const auto value = as_number<int>(name.substr(colon + 1));
+  if (!value || *value < builtin.min_size || *value > builtin.max_size) {
     throw InputError("scene " + in_quotes(name) + ": N counts the " + std::string(builtin.size) + "; write " + base +
                      ":" + std::to_string(builtin.min_size) + " to " + base + ":" + std::to_string(builtin.max_size));
   }
-  return value;
+  return *value;
 }
 
 void add_draw(Scene& scene, const std::string& object) {

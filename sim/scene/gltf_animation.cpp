@@ -1,10 +1,10 @@
 #include "sim/scene/gltf_animation.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <numeric>
 
+#include "model/as_number.hpp"
 #include "model/config.hpp"
 #include "sim/scene/text_cursor.hpp"
 
@@ -129,9 +129,8 @@ std::size_t choose_animation(const GltfFile& file, const std::string& name) {
     if (known == name) return i;
     if (names.size() < 200) names += (names.empty() ? "" : ", ") + printable(known);
   }
-  std::size_t number = 0;  // many exporters give no names
-  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
-  if (error == std::errc() && end == name.data() + name.size() && number < count) return number;
+  // Many exporters give no names.
+  if (const auto number = as_number<std::size_t>(name); number && *number < count) return *number;
   throw InputError("--animation: no animation " + in_quotes(name) + " in this scene; there are " + names);
 }
 

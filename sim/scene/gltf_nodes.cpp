@@ -1,10 +1,10 @@
 #include "sim/scene/gltf_nodes.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <limits>
 #include <numbers>
 
+#include "model/as_number.hpp"
 #include "model/config.hpp"
 #include "sim/scene/camera.hpp"
 #include "sim/scene/text_cursor.hpp"
@@ -356,11 +356,8 @@ CameraRequest choose_camera(const std::vector<GltfCamera>& cameras, const Camera
   const std::string& name = *request.name;
   auto found = std::find_if(cameras.begin(), cameras.end(), [&](const GltfCamera& c) { return is_called(c, name); });
   if (found == cameras.end()) {  // many exporters give no names
-    std::size_t number = 0;
-    const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
-    if (error == std::errc() && end == name.data() + name.size()) {
-      found = std::find_if(cameras.begin(), cameras.end(), [&](const GltfCamera& c) { return c.number == number; });
-    }
+    const auto number = as_number<std::size_t>(name);
+    found = std::find_if(cameras.begin(), cameras.end(), [&](const GltfCamera& c) { return c.number == number; });
   }
   if (found == cameras.end()) {
     std::string names;

@@ -1,8 +1,8 @@
 #include "sim/scene/obj_text.hpp"
 
 #include <algorithm>
-#include <charconv>
 
+#include "model/as_number.hpp"
 #include "model/config.hpp"
 #include "sim/scene/mesh.hpp"
 #include "sim/scene/text_cursor.hpp"
@@ -282,11 +282,10 @@ class ObjReader {
   }
 
   std::int64_t read_index(std::string_view field, std::string_view word, std::size_t count) const {
-    std::int64_t value = 0;
-    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-    if (error != std::errc() || end != field.data() + field.size()) {
+    const auto number = as_number<std::int64_t>(field);
+    if (!number)
       cursor_.fail("a corner " + in_quotes(word) + " is not made of whole numbers", "write v, v/vt, v//vn or v/vt/vn");
-    }
+    const std::int64_t value = *number;
     if (value > 0) return value - 1;
     if (value == 0) cursor_.fail("index 0 in " + in_quotes(word), "OBJ counts from 1; -1 is the last one so far");
     if (value < -static_cast<std::int64_t>(count)) {
@@ -303,13 +302,9 @@ class ObjReader {
       face_.smoothing = 0;
       return;
     }
-    const std::string_view digits = word == "on" ? "1" : word;
-    std::uint32_t group = 0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), group);
-    if (error != std::errc() || end != digits.data() + digits.size()) {
-      cursor_.fail("smoothing group " + in_quotes(word), "write s off or s NUMBER");
-    }
-    face_.smoothing = group;
+    const auto group = as_number<std::uint32_t>(word == "on" ? "1" : word);
+    if (!group) cursor_.fail("smoothing group " + in_quotes(word), "write s off or s NUMBER");
+    face_.smoothing = *group;
   }
 
   // A name may contain blanks, or the line may contain several names: the whole line is tried first.

@@ -1,11 +1,11 @@
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "model/as_number.hpp"
 #include "sim/config_file.hpp"
 #include "sim/scene/text_cursor.hpp"
 #include "sim/words.hpp"
@@ -53,13 +53,7 @@ HexValue parse_hex(std::string_view text, const FieldName& field, const SourceLi
     undefined[i] = is_undefined ? 'f' : '0';
     if (is_undefined) known[i] = '0';
   }
-  const auto number = [](const std::string& word) -> std::optional<std::uint64_t> {
-    std::uint64_t value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value, 16);
-    if (word.empty() || error != std::errc() || end != word.data() + word.size()) return std::nullopt;
-    return value;
-  };
-  const auto value = number(known), mask = number(undefined);
+  const auto value = as_number<std::uint64_t>(known, 16), mask = as_number<std::uint64_t>(undefined, 16);
   if (!value || !mask)
     at.fail("'" + field.name + "' is " + in_quotes(text) + ", which is no hexadecimal number; give one as 0x1f");
   if (field.bits < 64 && *value >> field.bits != 0)
@@ -220,10 +214,9 @@ VectorFile read_jsonl(std::istream& in, const std::string& path) {
 void read_csv_row(Reader& reader, const std::vector<std::string>& cells, const SourceLine& at) {
   if (cells.size() < 3) at.fail("a row has at least dir, packet and n");
   const Reader::Place place = reader.place_of(cells[0], cells[1], at);
-  std::uint64_t number = 0;
-  const auto [end, error] = std::from_chars(cells[2].data(), cells[2].data() + cells[2].size(), number);
-  if (error != std::errc() || end != cells[2].data() + cells[2].size()) at.fail("the third cell is no number");
-  reader.check_number(place, number, at);
+  const auto number = as_number<std::uint64_t>(cells[2]);
+  if (!number) at.fail("the third cell is no number");
+  reader.check_number(place, *number, at);
   const auto& fields = reader.fields(place);
   if (cells.size() != fields.size() + 3)
     at.fail(std::to_string(cells.size() - 3) + " values where " + std::to_string(fields.size()) + " are due");
@@ -237,11 +230,8 @@ VectorSource csv_source(const std::vector<std::string>& cells) {
   VectorSource source;
   if (cells.size() > 2) source.text = cells[2];
   constexpr std::string_view kSeed = "seed=";
-  if (cells.size() < 4 || !cells.back().starts_with(kSeed)) return source;
-  const char* const end = cells.back().data() + cells.back().size();
-  std::uint64_t seed = 0;
-  if (std::from_chars(cells.back().data() + kSeed.size(), end, seed) == std::from_chars_result{end, std::errc()})
-    source.seed = seed;
+  if (cells.size() >= 4 && cells.back().starts_with(kSeed))
+    source.seed = as_number<std::uint64_t>(cells.back().substr(kSeed.size()));
   return source;
 }
 

@@ -1,9 +1,11 @@
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "sim/config_file.hpp"
 #include "sim/show/image/whole_file.hpp"
+#include "sim/words.hpp"
 #include "vector_file.hpp"
 
 namespace halfplane::vectors {
@@ -12,11 +14,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kSchema = "halfplane.vectors/1";
-
-/// As many digits as the bits need.
-void append_hex(std::string& text, std::uint64_t value, int bits) {
-  for (int digit = (bits + 3) / 4 - 1; digit >= 0; --digit) text += "0123456789abcdef"[value >> 4 * digit & 15];
-}
 
 Json ports_json(const std::vector<Port>& ports, const Widths& widths) {
   Json list = Json::array();
@@ -64,8 +61,7 @@ std::string jsonl_text(const JudgedStage& stage, const Config& config, const Sta
                     text.append(port.name).append("\",\"n\":").append(std::to_string(n));
                     for (std::size_t i = 0; i < fields.size(); ++i) {
                       text.append(",\"").append(fields[i].name).append("\":\"0x");
-                      append_hex(text, values[i], fields[i].bits);
-                      text += '"';
+                      text.append(hex_digits(values[i], fields[i].bits)).append(1, '"');
                     }
                     text += "}\n";
                   });
@@ -93,10 +89,8 @@ std::string csv_text(const JudgedStage& stage, const Config& config, const Stage
   for_each_packet(stage, config, packets,
                   [&text](bool is_out, const Port& port, std::size_t n, const auto& fields, const auto& values) {
                     text.append(is_out ? "out," : "in,").append(port.name).append(",").append(std::to_string(n));
-                    for (std::size_t i = 0; i < fields.size(); ++i) {
-                      text += ",0x";
-                      append_hex(text, values[i], fields[i].bits);
-                    }
+                    for (std::size_t i = 0; i < fields.size(); ++i)
+                      text.append(",0x").append(hex_digits(values[i], fields[i].bits));
                     text += '\n';
                   });
   return text;
@@ -113,8 +107,8 @@ std::string hex_text(const Port& port, const PacketList& list, const Widths& wid
   std::string text;
   for (std::size_t n = 0; n < list.size(); ++n) {
     const auto words = list[n];
-    for (int digit = (bits + 3) / 4 - 1; digit >= 0; --digit)
-      text += "0123456789abcdef"[words[static_cast<std::size_t>(digit / 8)] >> 4 * (digit % 8) & 15];
+    for (int low = (bits - 1) / 32 * 32; low >= 0; low -= 32)
+      text += hex_digits(words[static_cast<std::size_t>(low / 32)], std::min(32, bits - low));
     text += '\n';
   }
   return text;

@@ -8,6 +8,7 @@
 
 #include "model/stages/fragment_ops.hpp"
 #include "png.hpp"
+#include "sim/words.hpp"
 #include "whole_file.hpp"
 
 namespace halfplane {
@@ -30,18 +31,11 @@ struct Fnv1a {
   }
 };
 
-std::string hex16(std::uint64_t value) {
-  constexpr std::string_view digits = "0123456789abcdef";
-  std::string text(16, '0');
-  for (std::size_t i = 16; i-- > 0; value >>= 4) text[i] = digits[value & 15];
-  return text;
-}
-
 std::string hash_of(const Framebuffer& frame, const Framebuffer::Image& image, int bytes_per_pixel) {
   Fnv1a hash;
   for (int y = 0; y < frame.height; ++y)
     for (int x = 0; x < frame.width; ++x) hash.add_little_endian(image[frame.at(x, y)], bytes_per_pixel);
-  return hex16(hash.state);
+  return hex_digits(hash.state, 64);
 }
 
 // 5 or 6 bits to 8, the top bits repeated below: 0 stays 0 and full scale becomes 255.

@@ -2,28 +2,22 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <utility>
 #include <vector>
 
+#include "model/as_number.hpp"
 #include "model/nearest_word.hpp"
+#include "sim/config_file.hpp"
 
 namespace halfplane {
 namespace {
 
 int number(std::string_view key, std::string_view value, int min, int max) {
-  int result = 0;
-  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), result);
-  if (error != std::errc() || end != value.data() + value.size() || result < min || result > max)
+  const auto result = as_number<int>(value);
+  if (!result || *result < min || *result > max)
     throw InputError(std::string(key) + ": '" + std::string(value) + "' is no number in its range; give " +
                      std::to_string(min) + "..." + std::to_string(max));
-  return result;
-}
-
-const Setting* find_setting(std::string_view key) {
-  for (const Setting& setting : settings())
-    if (setting.key == key) return &setting;
-  return nullptr;
+  return *result;
 }
 
 /// `progress` gets the fraction of part `index` of `count`.

@@ -1,11 +1,11 @@
 #include "sim/study/depth/exact_depth.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <string>
 
+#include "model/as_number.hpp"
 #include "model/config.hpp"
 
 namespace halfplane {
@@ -68,10 +68,9 @@ Rational parse_decimal(std::string_view text, std::string_view what) {
   if (!rest.empty()) {
     if (rest.front() != 'e' && rest.front() != 'E') return fail();
     rest.remove_prefix(rest.size() > 1 && rest[1] == '+' ? 2 : 1);
-    int power_of_ten = 0;
-    const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), power_of_ten);
-    if (error != std::errc() || end != rest.data() + rest.size() || std::abs(power_of_ten) > 300) return fail();
-    exponent += power_of_ten;
+    const auto power_of_ten = as_number<int>(rest);
+    if (!power_of_ten || std::abs(*power_of_ten) > 300) return fail();
+    exponent += *power_of_ten;
   }
   const Rational scale = power(Rational(10), static_cast<unsigned long>(std::abs(exponent)));
   const mpz_class whole(digits, 10);

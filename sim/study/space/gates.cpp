@@ -11,6 +11,7 @@
 
 #include "model/generate/raster_pkg.hpp"
 #include "sim/interrupt.hpp"
+#include "sim/words.hpp"
 
 namespace halfplane {
 namespace {
@@ -42,13 +43,6 @@ std::string default_cache() {
   if (const char* home = std::getenv("HOME"); home != nullptr && *home == '/')
     return std::string(home) + "/.cache/halfplane/gates";
   return (fs::temp_directory_path() / "halfplane-gates").string();
-}
-
-/// In single quotes, as a word for a shell.
-std::string shell_word(const std::string& word) {
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
 }
 
 /// The output of a command, and its status.
@@ -102,13 +96,13 @@ Gates::Gates(std::string rtl, std::string cache, const std::vector<std::string>&
     throw std::runtime_error("--area: " + script.string() + " is not there; give the folder of raster_top.sv by --rtl");
   std::string list;
   for (const std::string& part : parts) list += (list.empty() ? "" : ",") + part;
-  command_ = "python3 " + shell_word(script.string()) + " --rtl " + shell_word(rtl) + " --cache " + shell_word(cache) +
-             " --parts " + list + " ";
+  command_ = "python3 " + in_single_quotes(script.string()) + " --rtl " + in_single_quotes(rtl) + " --cache " +
+             in_single_quotes(cache) + " --parts " + list + " ";
 }
 
 nlohmann::ordered_json Gates::of(const Config& config) const {
   const PackageFile package(raster_pkg(config));
-  const Said said = run(command_ + shell_word(package.path()) + " 2>&1");
+  const Said said = run(command_ + in_single_quotes(package.path()) + " 2>&1");
   stop_if_interrupted();
   if (said.status != 0) {
     const std::string line = said.out.substr(0, said.out.find('\n'));
