@@ -112,21 +112,25 @@ Setting no_pixel(Setting setting) {
 
 bool has_texture_unit(const Config& config) { return config.texture_unit != TextureUnitKind::off; }
 
-/// Cost: what an ECP5 takes more than with the smallest value: places (LUT4), multipliers, block RAMs by synth_ecp5 of
-/// Yosys 0.23, of the time of the page or ADR named. A key without a cost has not been measured by itself; one of the
-/// host costs nothing.
+/// Cost: what an ECP5 takes more than with the smallest value, or than with the value named second: places (LUT4),
+/// multipliers, block RAMs by synth_ecp5 of Yosys 0.23, of the time of the page or ADR named. A key without a cost has not
+/// been measured by itself; one of the host costs nothing.
 std::vector<Setting> all_settings() {
   return {
+      // Cost: 8 instead of 2: 3,008 places, 16 multipliers (docs/design-space.md).
       number<&Config::subpixel_bits>("subpixel.bits", "bits", "fraction bits S of a snapped window coordinate", 0, 12),
       powers<&Config::guard_band>("guard.band", "pixels", "window coordinates lie in [-band, band); a power of two", 16,
                                   1 << 20),
       number<&Config::target_width>("target.width", "pixels", "widest target", 1, 16384).ability_named("target_width"),
       number<&Config::target_height>("target.height", "pixels", "highest target", 1, 16384)
           .ability_named("target_height"),
+      // Cost: some 110 LUT4 and as many flip-flops a bit (docs/depth.md).
       number<&Config::depth_bits>("depth.bits", "bits", "bits B of an interpolated depth, and of its stored code", 8,
                                   32),
+      // Cost: 8 instead of 6: 96 places (docs/area.md).
       number<&Config::local_guard_bits>("plane.local_guard_bits", "bits",
                                         "fraction bits of a plane stepped inside one tile", 4, 12),
+      // Cost: 8 instead of 4: 252 places (docs/area.md).
       number<&Config::reciprocal_extra_bits>("reciprocal.extra_bits", "bits",
                                              "significant bits of 1/area beyond depth.bits", 2, 12),
       number<&Config::perspective_bits>("perspective.bits", "bits", "bits N of 1/w, and of what is interpolated over w",
@@ -141,6 +145,7 @@ std::vector<Setting> all_settings() {
                    .only_with(has_texture_unit,
                               "colours over w are divided by the texture unit's 1/w: use texture.unit=nearest, or "
                               "perspective.colors=0")),
+      // Cost: rgba8888: 674 places, 4 block RAMs, alpha included (docs/area.md).
       choice<&Config::color_format>("color.format", {"rgb565", "rgba8888"}, "layout of a stored colour"),
       powers<&Config::tile_size>("tile.size", "pixels", "side of a tile: 4, 8, 16 or 32", 4, 32),
       // Cost: `embedded` with 1, 2, 4: 12,689, 15,227, 28,329 places (docs/area.md).
@@ -148,8 +153,10 @@ std::vector<Setting> all_settings() {
                                            "side of the stamp tested in one clock: 1, 2, 4 or 8", 1, 8)),
       no_pixel(number<&Config::primitive_id_bits>("key.primitive_bits", "bits",
                                                   "bits of the primitive number in an RTL packet key", 4, 32)),
+      // Cost: 8 instead of 4: 2 places; constants lie in block RAM (docs/area.md).
       no_pixel(powers<&Config::context_slots>(
           "context.slots", "slots", "triangles whose constants the context RAM holds; a power of two", 2, 64)),
+      // Cost: 12: 434 places, 24 block RAMs (docs/area.md).
       no_pixel(number<&Config::hiz_bits>("hiz.bits", "bits",
                                          "bits of a tile's HiZ bound, or all of a depth code; 0: no HiZ", 0, 32)),
       no_pixel(powers<&Config::hiz_lag>(
@@ -157,16 +164,21 @@ std::vector<Setting> all_settings() {
           64)),
       no_pixel(choice<&Config::cache_kind>("cache.kind", {"tiles", "blocks"},
                                            "what a line of the on-chip RAM is: a tile, or 4x4 pixels fetched ahead")),
+      // Cost: 512 instead of 256: 88 places, 8 block RAMs (docs/design-space.md).
       no_pixel(powers<&Config::cache_lines>(
           "cache.lines", "lines", "tiles or blocks that the on-chip depth and colour RAM holds; a power of two", 1,
           4096)),
+      // Cost: 64 instead of 32: 652 places less, 7 block RAMs more, which take the place of LUT RAM (docs/area.md).
       no_pixel(powers<&Config::cache_queue>(
           "cache.queue", "fragments",
           "blocks: fragments between tags and depth test, so that misses overlap; a power of two", 4, 128)),
+      // Cost: 16 instead of 8: 1,152 places (docs/area.md).
       no_pixel(powers<&Config::cache_victims>("cache.victims", "blocks",
                                               "blocks: evicted blocks that wait to be written; a power of two", 2, 32)),
+      // Cost: flags: 22 places less (docs/area.md).
       no_pixel(choice<&Config::frame_clears>("frame.clears", {"resolve", "flags"},
                                              "what a flush writes of cleared blocks or tiles: colours, or flags")),
+      // Cost: 128 instead of 64: 208 places (docs/area.md).
       no_pixel(powers<&Config::memory_port_bits>(
           "memory.port_bits", "bits", "data that the memory port moves in a cycle; a power of two", 16, 512)),
       no_pixel(of_host(choice<&Config::frame_order>(
@@ -185,6 +197,7 @@ std::vector<Setting> all_settings() {
       no_pixel(choice<&Config::texture_unit>("texture.unit", {"off", "nearest", "bilinear", "trilinear"},
                                              "what the RTL's texture unit can do; off: it has none")
                    .ability_named("texture")),
+      // Cost: 4, trilinear: 16,582 places, 69 multipliers (ADR 108).
       no_pixel(one_of<&Config::texture_lanes>(
           "texture.lanes", "pixels", "texture pixels per cycle of the RTL, each with its divider and filter: 1 or 4",
           {1, 4})),
@@ -271,9 +284,11 @@ std::vector<Setting> all_settings() {
       no_pixel(number<&Config::line_units>("lines.unit", "units",
                                            "1: the RTL has the unit that draws lines; 0: it takes none", 0, 1)
                    .ability_named("lines")),
+      // Cost: 1,570 places (docs/area.md).
       no_pixel(number<&Config::counter_units>("counters.unit", "units",
                                               "1: the RTL has performance counters; 0: it has none", 0, 1)
                    .ability_named("counters")),
+      // Cost: 32 instead of 16: 768 places (docs/area.md).
       no_pixel(number<&Config::counter_bits>(
           "counters.bits", "bits",
           "bits of each performance counter of the RTL; a sticky bit tells that one has wrapped", 16, 32)),
