@@ -183,9 +183,10 @@ std::vector<Setting> all_settings() {
           "memory.port_bits", "bits", "data that the memory port moves in a cycle; a power of two", 16, 512)),
       no_pixel(of_host(choice<&Config::frame_order>(
           "frame.order", {"program", "bins"},
-          "blocks: order in which the host sends a frame: as named, or by parts that fit the chip"))),
+          "blocks: order in which the host sends a frame: program order, or bins that fit the on-chip RAM"))),
       no_pixel(of_host(choice<&Config::frame_store>(
-          "frame.store", {"all", "color"}, "blocks: planes of a frame that come to memory; color: its depth is lost"))),
+          "frame.store", {"all", "color"},
+          "blocks: buffers of a frame that are written to memory; color: its depth is lost"))),
       no_pixel(choice<&Config::setup_kind>("setup.kind", {"pipelined", "serial"},
                                            "RTL triangle setup: several multipliers, or one")),
       // Cost: 2 saves 1,414 places and 13 multipliers with a texture unit (docs/area.md).
@@ -258,21 +259,22 @@ std::vector<Setting> all_settings() {
           .ability_named("dither"),
       // Cost: about 1,900 places, 16 multipliers, 4 block RAMs (ADR 60).
       number<&Config::fog_units>("fog.unit", "units",
-                                 "1: the RTL fogs triangles behind its texture unit; 0: it has no fog", 0, 1)
+                                 "1: the RTL fogs triangles, downstream of its texture unit; 0: it has no fog", 0, 1)
           .ability_named("fog")
           .only_with(
               has_texture_unit,
-              "fog looks at the plane of 1/w, which a texture unit brings: use texture.unit=nearest, or fog.unit=0"),
+              "fog reads the plane of 1/w, which only a texture unit has: use texture.unit=nearest, or fog.unit=0"),
       // Cost: 8,043 places, 22 multipliers, 2 block RAMs (ADR 99).
       number<&Config::shade_units>(
           "shade.unit", "units",
-          "1: the RTL lights the fragments of shade phong in front of its texture unit; 0: it lights none", 0, 1)
+          "1: the RTL lights the fragments of shade phong, upstream of its texture unit; 0: it lights none", 0, 1)
           .ability_named("shade")
           .only_with(has_texture_unit,
-                     "normals lie over w and start where 1/w is smallest, which a texture unit's planes say: use "
+                     "normals are interpolated over w from the vertex with the smallest 1/w, by planes of the texture "
+                     "unit: use "
                      "texture.unit=nearest, or shade.unit=0")
           .only_with([](const Config& config) { return config.perspective_colors == 0; },
-                     "fragments are lit in front of the texture unit, which divides colours over w: use "
+                     "fragments are lit upstream of the texture unit, which divides colours over w: use "
                      "perspective.colors=0, or shade.unit=0"),
       // Cost: 680 places, 5 block RAMs (docs/area.md).
       one_of<&Config::stencil_bits>(
@@ -291,7 +293,7 @@ std::vector<Setting> all_settings() {
       // Cost: 32 instead of 16: 768 places (docs/area.md).
       no_pixel(number<&Config::counter_bits>(
           "counters.bits", "bits",
-          "bits of each performance counter of the RTL; a sticky bit tells that one has wrapped", 16, 32)),
+          "bits of each performance counter of the RTL; a sticky bit shows that one has wrapped", 16, 32)),
       // Cost: 4: 9,508 places, 40 block RAMs (ADR 65).
       powers<&Config::msaa_samples>("msaa.samples", "samples",
                                     "samples of a pixel, 1, 2, 4 or 8, each with coverage, depth, stencil and colour",
@@ -310,7 +312,7 @@ std::vector<Setting> all_settings() {
                                       0, 1),
       of_host(choice<&Config::depth_mapping>(
           "depth.mapping", {depth_mapping_names().begin(), depth_mapping_names().end()},
-          "what a depth means: as the scene's projection has it, or one of these (docs/depth.md)")),
+          "what a depth means: what the scene's projection says, or one of these (docs/depth.md)")),
       of_host(text<&Config::depth_format>("depth.format", "plane|u<b>|bins<b>|f16|f32|uf<e>.<m>",
                                           "how a depth is stored; plane: the depth.bits that are interpolated")),
   };

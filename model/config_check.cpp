@@ -45,16 +45,17 @@ void validate(const Config& config) {
     if (!setting.needs.empty() && get(config, setting) != "0")
       for (const Need& need : setting.needs) refuse_unless(need.holds(config), std::string(need.message));
   refuse_unless(config.setup_plane_clocks == 1 || config.setup_kind == SetupKind::pipelined,
-                "the serial setup takes as many clocks for a plane as its bits want: use setup.plane_clocks=1, or "
+                "the clocks of the serial setup for a plane follow from the plane's bits: use setup.plane_clocks=1, or "
                 "setup.kind=pipelined");
   if (config.texture_unit != TextureUnitKind::off) {
     refuse_unless(config.cache_kind == CacheKind::blocks && config.setup_kind == SetupKind::pipelined,
-                  "a texture unit stands behind the depth test of blocks, and its planes want the pipelined setup: use "
+                  "a texture unit is downstream of the depth test of a cache of blocks, and its planes need the "
+                  "pipelined setup: use "
                   "cache.kind=blocks and setup.kind=pipelined, or texture.unit=off");
     refuse_unless(config.stamp_size <= 4, "a texture unit takes stamps of at most 4x4 samples: lower stamp.size");
   }
   if (config.texture_lanes != 1) {
-    refuse_unless(config.stamp_size >= 2, "four lanes of a texture unit take 2x2 samples of a stamp: raise stamp.size");
+    refuse_unless(config.stamp_size >= 2, "texture.lanes=4 takes 2x2 samples of a stamp: raise stamp.size");
   }
   refuse_unless(
       config.texture_ways == 1 || config.texture_unit != TextureUnitKind::nearest || config.texture_lanes != 1,
@@ -62,20 +63,20 @@ void validate(const Config& config) {
       "texture.lanes=4, or texture.ways=1");
   refuse_unless(
       !packs_at_write(config) || (config.cache_kind == CacheKind::blocks && config.setup_kind == SetupKind::pipelined),
-      "colours are blended and dithered where the framebuffer of blocks writes them, by states that the pipelined "
-      "setup lets through: use cache.kind=blocks and setup.kind=pipelined, or blend.lanes=0 and dither.unit=0");
+      "colours are blended and dithered where a cache of blocks writes them, by states that only the pipelined setup "
+      "passes on: use cache.kind=blocks and setup.kind=pipelined, or blend.lanes=0 and dither.unit=0");
   refuse_unless(
       config.stencil_bits == 0 || (config.cache_kind == CacheKind::blocks &&
                                    config.setup_kind == SetupKind::pipelined && config.depth_bits <= 24),
-      "a stencil stands above the depth in one word of 32 bits at most, in the framebuffer of blocks, by states "
-      "that the pipelined setup lets through: use cache.kind=blocks, setup.kind=pipelined and depth.bits up to "
+      "a stencil is stored above the depth in one word of at most 32 bits, in a cache of blocks, and set by states "
+      "that only the pipelined setup passes on: use cache.kind=blocks, setup.kind=pipelined and depth.bits up to "
       "24, or stencil.bits=0");
   refuse_unless(config.cache_kind == CacheKind::blocks || config.cache_lines <= 256,
                 "a cache of tiles holds at most 256: lower cache.lines");
   refuse_unless(config.cache_kind == CacheKind::blocks || config.frame_order == FrameOrder::program,
                 "a cache of tiles has no bins: use frame.order=program or cache.kind=blocks");
   refuse_unless(config.cache_kind == CacheKind::blocks || config.frame_store == FrameStore::all,
-                "a cache of tiles stores both planes: use frame.store=all or cache.kind=blocks");
+                "a cache of tiles stores depth and colour: use frame.store=all or cache.kind=blocks");
   refuse_unless(config.stamp_size <= config.tile_size, "a stamp must fit into a tile: stamp.size <= tile.size");
   refuse_unless(config.target_width <= config.guard_band && config.target_height <= config.guard_band,
                 "the target must lie inside the guard band: target.width and target.height <= guard.band");
@@ -84,17 +85,17 @@ void validate(const Config& config) {
   refuse_unless(config.msaa_samples > 1 || config.msaa_pattern == SamplePattern{},
                 "the one sample of a pixel is its centre: raise msaa.samples, or leave msaa.pattern out");
   refuse_unless(config.resolve_units == 0 || (config.msaa_samples > 1 && config.cache_kind == CacheKind::blocks),
-                "a mean is taken of several samples, in the framebuffer of blocks: raise msaa.samples and use "
+                "resolve.unit takes the mean of several samples in a cache of blocks: raise msaa.samples and use "
                 "cache.kind=blocks, or resolve.unit=0");
   refuse_unless(
       config.resolve_units == 0 || (config.frame_order == FrameOrder::bins && config.frame_store == FrameStore::color),
-      "a pixel's samples become one colour as their block leaves the chip, so they must leave it once, in bins, "
-      "and without their depths: use frame.order=bins and frame.store=color, or resolve.unit=0");
+      "resolve.unit makes one colour of a pixel's samples when their block is evicted, so each block is evicted once, "
+      "in bins, without its depths: use frame.order=bins and frame.store=color, or resolve.unit=0");
   refuse_unless(
       config.compress_units == 0 ||
           (config.msaa_samples > 1 && config.cache_kind == CacheKind::blocks && config.resolve_units == 0),
-      "blocks whose pixels have one colour are told from others where pixels have several samples in memory, in the "
-      "framebuffer of blocks: raise msaa.samples, use cache.kind=blocks and resolve.unit=0, or compress.unit=0");
+      "compress.unit marks blocks whose pixels have one colour each, with several samples a pixel in memory and a "
+      "cache of blocks: raise msaa.samples, use cache.kind=blocks and resolve.unit=0, or compress.unit=0");
   refuse_unless(config.msaa_pattern.count == 0 || config.msaa_pattern.count == config.msaa_samples,
                 "msaa.pattern has " + std::to_string(config.msaa_pattern.count) + " places, but msaa.samples is " +
                     std::to_string(config.msaa_samples) + ": give as many");

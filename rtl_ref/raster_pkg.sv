@@ -39,12 +39,12 @@ package raster_pkg;
   localparam int BLEND_LANES = 0;  // samples blended per cycle by the RTL, 1 or 4; 0: neither blending nor partial color masks
   localparam int LOGIC_UNIT = 0;  // 1: the RTL combines stored colours with new ones bit by bit (logic_op); 0: it does not
   localparam int DITHER_UNIT = 0;  // 1: the RTL dithers colours of rgb565; 0: it rounds them
-  localparam int FOG_UNIT = 0;  // 1: the RTL fogs triangles behind its texture unit; 0: it has no fog
-  localparam int SHADE_UNIT = 0;  // 1: the RTL lights the fragments of shade phong in front of its texture unit; 0: it lights none
+  localparam int FOG_UNIT = 0;  // 1: the RTL fogs triangles, downstream of its texture unit; 0: it has no fog
+  localparam int SHADE_UNIT = 0;  // 1: the RTL lights the fragments of shade phong, upstream of its texture unit; 0: it lights none
   localparam int STENCIL_BITS = 0;  // bits of stencil that the RTL stores above each depth: 8, or 0 (blocks, pipelined; depth.bits up to 24)
   localparam int LINES_UNIT = 1;  // 1: the RTL has the unit that draws lines; 0: it takes none
   localparam int COUNTERS_UNIT = 1;  // 1: the RTL has performance counters; 0: it has none
-  localparam int COUNTERS_BITS = 32;  // bits of each performance counter of the RTL; a sticky bit tells that one has wrapped
+  localparam int COUNTERS_BITS = 32;  // bits of each performance counter of the RTL; a sticky bit shows that one has wrapped
   localparam int MSAA_SAMPLES = 1;  // samples of a pixel, 1, 2, 4 or 8, each with coverage, depth, stencil and colour
   localparam logic [32*MSAA_SAMPLES-1:0] MSAA_X = {32'sd0};  // from a pixel's centre to its samples, subpixels right, sample 0 lowest
   localparam logic [32*MSAA_SAMPLES-1:0] MSAA_Y = {32'sd0};  // and down

@@ -69,9 +69,8 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(
       "\nExample:\n  halfplane render teapot --size 1280x720 -o teapot.png\n\n"
-      "`halfplane COMMAND --help` shows a command's options. Exit status: 0 as it should be, 1 a mismatch or\n"
-      "a broken bound, 2 wrong usage or bad input, 3 something is lacking, 130 interrupted,\n141 nobody reads stdout "
-      "any more.");
+      "`halfplane COMMAND --help` shows a command's options. Exit status: 0 success, 1 a mismatch or\n"
+      "a broken bound, 2 wrong usage or bad input, 3 something is missing, 130 interrupted,\n141 stdout is closed.");
   Action selected;
   for (AddCommand* add :
        {add_render_command, add_compare_command, add_cosim_command, add_reduce_command, add_mutants_command,
@@ -103,10 +102,10 @@ int main(int argc, char** argv) {
   try {
     const int status = run(argc, argv);
     if (!std::cout.flush() && is_stdout_unread()) return status == exit_ok ? int{exit_unread} : status;
-    if (!std::cout) throw InputError("writing to stdout failed; give a place that takes it, or --quiet");
+    if (!std::cout) throw InputError("writing to stdout failed; give a place that can be written, or --quiet");
     return status;
   } catch (const Interrupted&) {
-    return fail(exit_interrupted, "interrupted: this work is whole or nothing, so nothing was written");
+    return fail(exit_interrupted, "interrupted: this command has no partial result, so nothing was written");
   } catch (const InputError& error) {
     return fail(exit_bad_input, error.what());
   } catch (const std::exception& error) {

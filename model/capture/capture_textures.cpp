@@ -81,7 +81,7 @@ void TextureReader::read_texture(CaptureText& text, std::vector<Texture>& textur
       if (mips == Mips::levels && source != 2)
         text.fail("mips levels of a texture that is not inline; write its levels in texels lines, or mips box");
     } else if (source == 2)
-      text.fail("format behind inline, which names it already");
+      text.fail("format after inline, which names it already");
     else
       format = static_cast<TextureFormat>(text.choice("the format", kTextureFormats));
   }
@@ -145,7 +145,7 @@ void TextureReader::expect_complete(const CaptureText& text) const {
   text.fail((n == 0 ? "" : "level " + std::to_string(n) + " of ") + "texture " +
             quoted_word(incomplete_->texture.name) + " from line " + std::to_string(incomplete_->line) + " has " +
             std::to_string(image.code.size()) + " of its " + std::to_string(image.width) + "x" +
-            std::to_string(image.height) + " texels; write the others in texels lines behind it");
+            std::to_string(image.height) + " texels; write the others in texels lines after it");
 }
 
 void write_texture(const Texture& texture, std::string& out) {

@@ -329,7 +329,7 @@ void check_options(const RenderOptions& options, const Config& config) {
   if (rules.clipping == Clipping::polygon) return;
   if (rules != StudyRules{.clipping = rules.clipping})
     throw InputError(
-        "clipping homogeneous has its own setup and samples: leave traversal, fill rule, gradients, accumulator and "
+        "clipping homogeneous replaces setup and sampling: leave traversal, fill rule, gradients, accumulator and "
         "weights as they are");
   if (options.keeps_triangles())
     throw InputError("clipping homogeneous has no snapped triangles to keep; use clipping polygon");

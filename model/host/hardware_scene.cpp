@@ -84,10 +84,9 @@ void check_hardware_scene(const Scene& scene, const Config& config) {
   require_sampled_hardware(config, "this hardware");
   check_scene(scene, config);
   if (config.resolve_units != 0 && !begins_once(scene))
-    throw InputError(
-        (scene.name.empty() ? "scene" : scene.name) +
-        ": a clear of the whole depth behind something drawn, but with resolve.unit the samples of what is "
-        "drawn are gone by then; use resolve.unit=0, or the functional, scalar or golden engine");
+    throw InputError((scene.name.empty() ? "scene" : scene.name) +
+                     ": a clear of the whole depth after a draw, but with resolve.unit the samples of what is drawn "
+                     "are gone by then; use resolve.unit=0, or the functional, scalar or golden engine");
   if (!DepthEncode(config, scene.planes).is_identity())
     throw InputError(
         "depth.mapping w and log and every depth.format but plane: this hardware stores the depth that it "

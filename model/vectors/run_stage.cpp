@@ -142,7 +142,8 @@ void set_stencil(const FragmentPacket& fragment, StencilState& stencil, const Wi
 void require_alpha(const Config& config) {
   if (packs_at_write(config) || config.color_format != ColorFormat::rgb565) return;
   throw InputError(
-      "an alpha test behind a texture, but no packet of this configuration tells alpha; judge the whole by cosim, or "
+      "an alpha test downstream of a texture, but no packet of this configuration tells alpha; judge the whole by "
+      "cosim, or "
       "use "
       "blend.lanes");
 }

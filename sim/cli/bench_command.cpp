@@ -218,7 +218,7 @@ void check_bench_options(const BenchCommand& options) {
       throw InputError("--threads: " + std::to_string(threads) + " is named twice; give every number once");
   if (!options.wants_rows() && !(options.engines.empty() && options.variations.empty()))
     throw InputError(
-        "--skips and --growth have the functional engine alone; leave out --engines and --vary, or add --all");
+        "--skips and --growth measure the functional engine only; leave out --engines and --vary, or add --all");
   const bool is_space = options.space.is_wanted();
   if (is_space && (options.wants_all || options.wants_skips || options.wants_growth || !options.engines.empty()))
     throw InputError("--area and --space measure the hardware; leave out --engines, --skips, --growth and --all");
@@ -226,7 +226,7 @@ void check_bench_options(const BenchCommand& options) {
       (options.wants_all || options.wants_skips || options.wants_growth || !options.scenes.empty() ||
        !options.engines.empty() || !options.variations.empty() || options.space.wants_more_than_area()))
     throw InputError(
-        "--antialiasing has scenes and engines of its own, and --area and --page alone; leave the other out");
+        "--antialiasing has scenes and engines of its own; only --area and -o go with it: leave the others out");
   check_space_options(options, options.space, options.page);
   check_output(options.page, ".html");
   check_distinct({options.json, options.page});
@@ -363,13 +363,13 @@ void add_bench_command(CLI::App& app, Action& selected) {
   command->add_option("--size", options->size, "target, WxH pixels")
       ->check(refuse_empty)
       ->default_str("fits the target");
-  command->add_option("--repeat", options->repeat, "turns behind the first, of which the median counts")
+  command->add_option("--repeat", options->repeat, "measurements after the first; their median counts")
       ->check(whole_number(1, 1000))
       ->capture_default_str();
-  add_seed_option(*command, *options, "seed of scenes with something random in them");
+  add_seed_option(*command, *options, "seed of scenes with random parts");
   command->add_flag("--no-errors", options->has_no_errors, "only the time: no comparison with the golden");
   command->add_flag("--skips", options->wants_skips,
-                    "instead: what each kind of skipping saves, on SCENES or on scenes made for it and others");
+                    "instead: the savings of each kind of skipping, on SCENES, or on scenes made for it and others");
   command->add_flag("--growth", options->wants_growth,
                     "instead: time by triangle size, triangle count, depth complexity, resolution and threads");
   command->add_option("--growth-max", options->growth_max, "triangles of the largest frame of --growth")

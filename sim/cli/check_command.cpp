@@ -147,7 +147,7 @@ int run(const CheckOptions& options) {
 
 void add_check_command(CLI::App& app, Action& selected) {
   const auto [command, options] =
-      add_command<CheckOptions>(app, selected, "check", "judges what another implementation of a stage gave", run);
+      add_command<CheckOptions>(app, selected, "check", "judges the outputs of another implementation of a stage", run);
   command->add_option("FILE", options->file, "vectors whose `out` is yours: jsonl, csv, or a folder of hex")
       ->required();
   add_output_options(*command, *options);
@@ -157,14 +157,13 @@ void add_check_command(CLI::App& app, Action& selected) {
       ->required()
       ->check(refuse_empty)
       ->type_name("NAME");
-  command
-      ->add_option("--vectors", options->vectors, "take what goes in from this file: FILE then need hold `out` alone")
+  command->add_option("--vectors", options->vectors, "take the inputs from this file; FILE then needs only `out`")
       ->check(refuse_empty)
       ->type_name("FILE");
   add_file_option(*command, "--junit", options->junit, "result as JUnit XML");
   command->footer(
-      "\nThe specification of the stage runs on what goes in, in order from reset, and every bit that comes out is\n"
-      "compared. The status is 1 where one differs.\n"
+      "\nThe specification of the stage runs on the inputs, in order from reset, and every output bit is\n"
+      "compared. The exit status is 1 where one differs.\n"
       "\nExample:\n  halfplane vectors triangle --size 64x64 --stage cull -o cull.jsonl\n"
       "  halfplane check --stage cull cull.jsonl");
 }

@@ -76,7 +76,7 @@ std::string kinds_text(const AgainstResult& result) {
 int compare_folder(const CompareFolder& options) {
   const auto start = std::chrono::steady_clock::now();
   if (!fs::is_directory(options.against.path))
-    throw InputError("--against: SCENE is a folder, so this is one, too: of the images NAME.png or NAME.npy");
+    throw InputError("--against: SCENE is a folder; give a folder of images here too, NAME.png or NAME.npy");
   const Config config = drawing_config(options.common);
   require_one_sample(config, "compare --against");
   const std::vector<fs::path> scenes = scenes_in(options.common.scene);

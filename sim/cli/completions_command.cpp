@@ -351,7 +351,7 @@ int run_completions(const CLI::App& program, const std::string& shell) {
 }  // namespace
 
 void add_completions_command(CLI::App& app, Action& selected) {
-  CLI::App* command = app.add_subcommand("completions", "prints what a shell needs to complete the command line");
+  CLI::App* command = app.add_subcommand("completions", "prints the completion of this command line for a shell");
   auto shell = std::make_shared<std::string>();
   command->add_option("SHELL", *shell, "bash, zsh or fish")->check(CLI::IsMember({"bash", "zsh", "fish"}))->required();
   command->footer("\nExample:\n  halfplane completions bash");

@@ -161,7 +161,7 @@ int run(const ConfigOptions& options) {
 
 void add_config_command(CLI::App& app, Action& selected) {
   const auto [command, options] = add_command<ConfigOptions>(
-      app, selected, "config", "shows or lists the settings and the widths that follow from them", run);
+      app, selected, "config", "shows or lists the settings and the widths derived from them", run);
   add_output_options(*command, *options);
   command->add_flag("--list", options->list, "every setting with its range and meaning");
   command->add_flag("--widths", options->widths, "every derived width with its bound");

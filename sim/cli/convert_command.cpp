@@ -81,8 +81,7 @@ void add_convert_command(CLI::App& app, Action& selected) {
       *command, *options,
       "the scenes of `cosim --random N` with this --config and --seed: FILE-1.hpt and on where they are several",
       1'000'000'000);
-  command
-      ->add_option("--frame", options->frames, "of a FILE.trace: frame N, or A to B, counted from 0; else all of them")
+  command->add_option("--frame", options->frames, "of a FILE.trace: frame N, or A to B, counted from 0 (default: all)")
       ->type_name("N|A..B");
   add_file_option(*command, "-o", options->output,
                   "the capture, .hpt, or - for stdout; of a FILE.trace with several frames FILE-0000.hpt and on, or a "

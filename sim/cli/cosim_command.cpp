@@ -295,7 +295,7 @@ void add_cosim_command(CLI::App& app, Action& selected) {
   add_cosim_options(*command, *options);
   command
       ->add_option("--trace-cycles", options->trace_cycles,
-                   "FIRST:LAST: cycles of a run without a mismatch that --trace takes (default 0:9999)")
+                   "FIRST:LAST: cycles of a run without a mismatch that --trace records (default 0:9999)")
       ->check(refuse_empty)
       ->type_name("WINDOW");
   add_file_option(*command, "--save", options->save_path, "capture of a mismatch, .hpt (default out/cosim-NAME.hpt)");

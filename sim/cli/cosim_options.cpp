@@ -54,14 +54,16 @@ void add_cosim_options(CLI::App& app, CosimOptions& options) {
   app.add_option("--mutant", options.mutant, "switch on one of the RTL's built-in faults, 0 for none")
       ->check(whole_number(0, 65535))
       ->capture_default_str();
-  app.add_flag("--ignore-cycles", options.ignores_cycles,
-               "compare every bit, and not when packets cross: for a stage with another latency (docs/your-rtl.md)");
-  app.add_option("--resets", options.resets, "times that each scene is begun and cut by a reset before it is run")
+  app.add_flag(
+      "--ignore-cycles", options.ignores_cycles,
+      "compare every bit, but not the cycles of the packets: for a stage with another latency (docs/your-rtl.md)");
+  app.add_option("--resets", options.resets,
+                 "number of times that each scene is started and cut off by a reset before it runs")
       ->check(whole_number(0, 1000))
       ->capture_default_str();
-  add_file_option(
-      app, "--trace", options.trace_path,
-      "waveform, .fst: around a mismatch (default beside the saved capture); cosim: of a run without one, too");
+  add_file_option(app, "--trace", options.trace_path,
+                  "waveform, .fst: around a mismatch (default: next to the saved capture); with cosim also of a run "
+                  "without a mismatch");
 }
 
 const DutFactory& dut_for(const CosimOptions& options, const Config& config) {

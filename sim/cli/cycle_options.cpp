@@ -186,14 +186,16 @@ void add_cycle_options(CLI::App& app, CycleCommandOptions& options) {
   add_memory_options(cycle, options.memory);
   add_traffic_options(cycle, options.memory);
   cycle
-      .add_option("--timing", options.timing, "KEY=VALUE: a size or rule that the RTL has one value of (config --list)")
+      .add_option("--timing", options.timing,
+                  "KEY=VALUE: a size or rule of the cycle model that is fixed in the RTL (config --list)")
       ->type_name("KEY=VALUE");
   cycle.add_option("--what-if", options.what_if, "KEY=V1,V2,...: a table of the cycles with each of these values")
       ->type_name("KEY=LIST");
   cycle.add_option("--stalls", options.stalls, "probability with which each stream is held back in a cycle")
       ->check(CLI::Range(0.0, 0.95))
       ->check(is_number);
-  cycle.add_flag("--explain", options.explain, "try what would relieve the bottleneck, and what skipping saves");
+  cycle.add_flag("--explain", options.explain,
+                 "try changes that might relieve the bottleneck, and measure what skipping saves");
   add_file_option(cycle, "--primitives", options.primitives_path, "listing: the cycles of each primitive, .csv");
   add_file_option(cycle, "--trace", options.trace_path, "timeline for ui.perfetto.dev, .json");
   add_file_option(cycle, "--heat", options.heat_path,

@@ -219,11 +219,12 @@ bool holds(const std::vector<DepthRow>& rows, const SceneStudy& study) {
 void check_depth_options(const DepthCommand& options, const Config& config) {
   if (config.depth_mapping != DepthMapping::projection || config.depth_format.kind != DepthFormat::Kind::plane)
     throw InputError(
-        "depth.mapping and depth.format: here --mapping and --format take them; leave them out of --config and --set");
+        "depth.mapping and depth.format: this command takes them by --mapping and --format; leave them out of --config "
+        "and --set");
   require_one_sample(config, "depth");
   for (const std::string& setting : options.settings)
     if (setting.starts_with("depth.bits="))
-      throw InputError("depth: the bits that are interpolated follow from the format; leave depth.bits out");
+      throw InputError("depth: the interpolated bits follow from --format; leave depth.bits out");
   if (options.scene.empty() && !options.camera.empty())
     throw InputError("--camera: there is no scene to look at; add --scene, or leave --camera out");
   if (!options.range.empty() && options.error.empty())
@@ -364,13 +365,13 @@ void add_depth_command(CLI::App& app, Action& selected) {
       ->type_name("A,B");
   command
       ->add_option("--slope", options->slope,
-                   "also the minimum separation of two surfaces that recede so many units for each unit across (0: "
-                   "facing), tried on such surfaces")
+                   "also the minimum separation of two surfaces of this slope, in units of depth per unit across (0: "
+                   "facing the eye), tried on such surfaces")
       ->type_name("S");
   command
       ->add_option("--fight-rate", options->fight_rate,
-                   "with --scene: the fewest bits with which less than this part of the overlapping pairs of fragments "
-                   "fights: '0.01' or '1%'")
+                   "with --scene: find the fewest bits with which less than this part of the overlapping pairs of "
+                   "fragments fight: '0.01' or '1%'")
       ->type_name("PART")
       ->capture_default_str();
   command->add_option("--fov", options->fov, "for --slope: vertical, degrees")
@@ -380,7 +381,7 @@ void add_depth_command(CLI::App& app, Action& selected) {
   command->add_option("--scene", options->scene, "measure it on this scene: built-in name or file");
   command->add_option("--size", options->size, "target, WxH pixels")->check(refuse_empty);
   command->add_option("--camera", options->camera, "as for render");
-  add_seed_option(*command, *options, "seed of scenes with something random in them");
+  add_seed_option(*command, *options, "seed of scenes with random parts");
   command->add_option("--threads", options->threads, "use at most N threads (default: as many as there are cores)")
       ->check(whole_number(1, 1024));
   add_output_options(*command, *options);

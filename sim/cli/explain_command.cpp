@@ -84,7 +84,7 @@ void print_explanation(std::ostream& out, const ExplainOptions& options, const C
   if (!told.no_hardware.empty()) out << "without hardware: " << told.no_hardware << '\n';
   for (const explain::PixelSamples& pixel : explain::pixels_of(told))
     explain::print_pixel(out, pixel, told, scene, config);
-  out << with_commas(told.checks) << " figures held against each other, "
+  out << with_commas(told.checks) << " figures compared with each other, "
       << (told.differences.empty() ? "all agree" : std::to_string(told.differences.size()) + " differ") << '\n';
   for (const std::string& difference : told.differences) out << "  " << difference << '\n';
 }
@@ -210,7 +210,7 @@ int run(const ExplainOptions& options) {
 
 void add_explain_command(CLI::App& app, Action& selected) {
   const auto [command, options] = add_command<ExplainOptions>(
-      app, selected, "explain", "one pixel's history: what touched it, and why it is what it is", run);
+      app, selected, "explain", "one pixel's history: the primitives that touched it, and why it has its values", run);
   add_scene_options(*command, *options);
   add_study_options(*command, options->study);
   add_interpolation_option(*command, options->study);
@@ -220,7 +220,7 @@ void add_explain_command(CLI::App& app, Action& selected) {
       ->check(refuse_empty)
       ->capture_default_str()
       ->type_name("SIZE");
-  command->add_option("--near", options->near, "also tell of primitives that pass within N pixels")
+  command->add_option("--near", options->near, "also list primitives that pass within N pixels")
       ->check(CLI::Range(1.0, 100000.0))
       ->check(is_number)
       ->capture_default_str()
@@ -228,17 +228,17 @@ void add_explain_command(CLI::App& app, Action& selected) {
   command->add_flag("--rtl", options->rtl, "the RTL's packets too, bit by bit, and the cycles in which they crossed");
   add_file_option(*command, "-o", options->output,
                   "the neighbourhood enlarged, .png: grid, samples, edges; or .html: a page to step through");
-  command->add_option("--margin", options->margin, "of -o: so many pixels around")
+  command->add_option("--margin", options->margin, "of -o: pixels shown on each side")
       ->check(whole_number(0, 24))
       ->capture_default_str()
       ->type_name("N");
-  command->add_flag("--steps", options->steps, "of lines and triangles every pixel, step by step");
+  command->add_flag("--steps", options->steps, "every pixel of lines and triangles, step by step");
   command->add_option("--mutant", options->mutant, "with --rtl: one of the RTL's built-in faults, 0 for none")
       ->check(whole_number(0, 65535))
       ->type_name("N");
   command->footer(
-      "\nSpecification, hardware model, functional engine, golden and oracle are held against each other: the status\n"
-      "is 1 where they differ.\n"
+      "\nSpecification, hardware model, functional engine, golden and oracle are compared with each other: the exit\n"
+      "status is 1 where they differ.\n"
       "\nExample:\n  halfplane explain teapot 320 240 -o pixel.html");
 }
 

@@ -62,10 +62,10 @@ void add_foreign_options(CLI::App& app, ForeignOptions& options) {
                  "instead of the RTL: a command for sh, {} being the capture, that fails with a status other than 0")
       ->check(refuse_empty)
       ->type_name("COMMAND");
-  app.add_option("--status", options.status, "of --command: fails with this status alone: a number, or timeout")
+  app.add_option("--status", options.status, "of --command: only this exit status is the failure: a number, or timeout")
       ->check(refuse_empty)
       ->type_name("STATUS");
-  app.add_option("--timeout", options.timeout_s, "of --command: seconds, after which a run is ended")
+  app.add_option("--timeout", options.timeout_s, "of --command: seconds after which a run is stopped")
       ->check(CLI::Range(0.01, 86400.0))
       ->check(is_number)
       ->capture_default_str();

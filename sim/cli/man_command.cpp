@@ -71,7 +71,7 @@ std::string synopsis(const CommandText& command) {
 constexpr const char* kEnding = R"(.SH EXIT STATUS
 .TP
 .B 0
-as it should be
+success
 .TP
 .B 1
 a mismatch or a broken bound
@@ -80,7 +80,7 @@ a mismatch or a broken bound
 wrong usage or bad input; one line on stderr says what and how to mend it
 .TP
 .B 3
-something that this machine or this build lacks
+this machine or this build lacks something
 .TP
 .B 130
 interrupted
@@ -154,7 +154,7 @@ int run_man(const CLI::App& program, const ManOptions& options) {
 void add_man_command(CLI::App& app, Action& selected) {
   CLI::App* command = app.add_subcommand("man", "prints or writes the manual pages");
   auto options = std::make_shared<ManOptions>();
-  command->add_option("COMMAND", options->command, "whose page is printed (default: the program's)");
+  command->add_option("COMMAND", options->command, "the command whose page is printed (default: the program's)");
   command->add_option("-o", options->folder, "writes every page into this folder instead")
       ->check(refuse_empty)
       ->type_name("DIR");

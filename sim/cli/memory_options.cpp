@@ -15,14 +15,14 @@ void add_memory_options(CLI::App& app, MemorySettings& settings) {
              throw InputError(std::string("--memory: ") + error.what());
            }
          },
-         "what is behind the memory port: fixed (ideal), sram, sdram, psram, ddr3; sdram,width=32,mhz=133 is another "
+         "memory at the memory port: fixed (ideal), sram, sdram, psram, ddr3; sdram,width=32,mhz=133 is another "
          "SDRAM")
       ->default_str("fixed");
   app.add_option("--memory-latency", settings.latency, "of the fixed memory: cycles from a read request to its answer")
       ->check(whole_number(1, 10000))
       ->capture_default_str();
   app.add_option("--mhz", settings.mhz,
-                 "clock of the hardware: turns cycles into seconds, and those of memories into cycles")
+                 "clock of the hardware: converts its cycles to seconds, and the times of memories to cycles")
       ->check(whole_number(1, 1000))
       ->capture_default_str();
 }

@@ -95,22 +95,21 @@ void add_scene_options(CLI::App& app, CommonOptions& options) {
                  "'eye=0,1,3;target=0,0,0;up=0,1,0;fov=45;near=.1;far=100' or 'ortho=HEIGHT' or "
                  "'name=NAME' for one of a glTF file's own; 'orbit' or 'orbit=DEGREES' turns it about the target");
   app.add_option("--light", options.lights,
-                 "a light, each time it is given: 'from=X,Y,Z' where it comes from, 'at=X,Y,Z;range=R' where it is, "
-                 "'eye', each with ';color=R,G,B'; 'ambient=R,G,B'; 'phong' beside one of them: at fragments; 'off' "
-                 "(without it: the file's own, else one at the eye; docs/light.md)")
+                 "a light, repeatable: 'from=X,Y,Z' (its direction), 'at=X,Y,Z;range=R' (its place) or 'eye', each "
+                 "with ';color=R,G,B'; 'ambient=R,G,B'; 'phong' next to one of them: computed at fragments; 'off' "
+                 "(default: the file's own, else one at the eye; docs/light.md)")
       ->check(refuse_empty)
       ->allow_extra_args(false);
   app.add_option("--transform", options.transform,
-                 "numbers that a mesh is taken to clip space in, clipped, divided by w and mapped to the window: "
-                 "binary64, binary32 or s15.16; compare says what the smaller ones cost (docs/light.md)")
+                 "number format of a mesh's transform, clip, division by w and viewport: binary64, binary32 or s15.16; "
+                 "compare shows the error of the smaller ones (docs/light.md)")
       ->capture_default_str();
-  app.add_option("--time", options.time,
-                 "seconds into the animation of a glTF file (without it: as the file is at rest)")
+  app.add_option("--time", options.time, "seconds into the animation of a glTF file (default: the file's rest pose)")
       ->check(refuse_empty);
   app.add_option("--animation", options.animation,
-                 "which of the file's animations, by name or number (without it: the first)")
+                 "which of the file's animations, by name or number (default: the first)")
       ->check(refuse_empty);
-  add_seed_option(app, options, "seed of scenes with something random in them");
+  add_seed_option(app, options, "seed of scenes with random parts");
   app.add_option("--threads", options.threads, "use at most N threads (functional engine, depth)")
       ->check(whole_number(1, 1024));
   app.add_option("--skip", options.skip, "work that may be skipped: all, none or a list with commas")
@@ -120,7 +119,7 @@ void add_scene_options(CLI::App& app, CommonOptions& options) {
                  "NAME:standard sets the order of depth")
       ->capture_default_str();
   app.add_option("--cull-objects", options.cull_objects,
-                 "leave out objects outside the view by their bounding: none, sphere, box or both")
+                 "leave out objects whose bounding volume is outside the view: none, sphere, box or both")
       ->capture_default_str();
 }
 
@@ -139,8 +138,7 @@ double parse_part(const std::string& text, const std::string& option) {
   const double value =
       as_number<double>(text.substr(0, text.size() - (is_percent ? 1 : 0))).value_or(0) / (is_percent ? 100 : 1);
   if (!(value > 0 && value <= 1))
-    throw InputError(option + ": '" + text +
-                     "' is no part of a whole; give more than 0 and at most 1, as in 0.01 or 1%");
+    throw InputError(option + ": '" + text + "' is not a fraction; give more than 0 and at most 1, as in 0.01 or 1%");
   return value;
 }
 
@@ -151,7 +149,8 @@ void check_output(const std::string& path, const std::string& extension) {
   std::transform(end.begin(), end.end(), end.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (end != extension)
-    throw InputError("cannot write '" + path + "': this file is a " + extension + "; give a name that ends so");
+    throw InputError("cannot write '" + path + "': this option writes " + extension +
+                     " files; give a name that ends in " + extension);
   std::error_code error;
   const fs::path folder = fs::path(path).parent_path();
   if (!folder.empty() && !fs::is_directory(folder, error))
@@ -200,8 +199,8 @@ Config drawing_config(const CommonOptions& options) {
 void warn_of_depth_bits(const CommonOptions& options, const Config& config) {
   if (!options.quiet && chooses_depth_bits(options, config))
     std::cerr << "halfplane: depth.bits=" << config.depth_bits
-              << ": depths of depth.format=" << to_string(config.depth_format)
-              << " are made from a plane of so many; --set depth.bits=N says others\n";
+              << ": chosen for depth.format=" << to_string(config.depth_format)
+              << "; --set depth.bits=N overrides it\n";
 }
 
 Skip parse_skip(const std::string& text) {
@@ -319,7 +318,7 @@ void write_json(const CommonOptions& options, const Json& result) {
   const std::string text = whole.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   if (options.json != "-") return write_text_file(options.json, text);
   write_stdout({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, "--json",
-               "give a place that takes it, or --json=FILE");
+               "give a place that can be written, or --json=FILE");
 }
 
 double seconds_since(TimePoint start) {
@@ -368,7 +367,7 @@ std::string decimal(int128 value) {
   return {digits.rbegin(), digits.rend()};
 }
 
-std::string refuse_empty(const std::string& text) { return text.empty() ? "nothing given, where a value is due" : ""; }
+std::string refuse_empty(const std::string& text) { return text.empty() ? "the value is empty" : ""; }
 
 std::string is_number(const std::string& text) {
   return std::isalpha(static_cast<unsigned char>(text.back())) != 0 ? "'" + text + "' is no number" : "";

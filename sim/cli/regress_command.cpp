@@ -291,11 +291,11 @@ void add_regress_command(CLI::App& app, Action& selected) {
   command->add_option("-j,--jobs", options->jobs, "cases at a time")
       ->check(whole_number(1, 1024))
       ->capture_default_str();
-  command->add_option("--until", options->until, "begin no case after that time: 90s, 30m, 8h")
+  command->add_option("--until", options->until, "start no case after this time: 90s, 30m, 8h")
       ->check(refuse_empty)
       ->type_name("TIME");
   command->add_flag("--resume", options->resumes,
-                    "go on with the results of this plan and program in the folder; without any, begin");
+                    "continue from the results of this plan and program in the folder, if there are any");
   command->add_option("-o,--folder", options->folder, "folder of the results (default out/regress-PLAN)")
       ->check(refuse_empty)
       ->type_name("DIR");
@@ -304,11 +304,10 @@ void add_regress_command(CLI::App& app, Action& selected) {
   command->add_option("--case", options->only_case, "case N of the plan alone, into the folder: a task of --slurm")
       ->check(whole_number(std::size_t{1}, std::size_t{100'000}))
       ->type_name("N");
-  command->add_flag("--report", options->reports, "runs nothing: the report of what is in the folder");
+  command->add_flag("--report", options->reports, "runs nothing: writes the report of the results in the folder");
   add_file_option(*command, "--junit", options->junit_path, "result as JUnit XML, a case each");
   command->footer(
-      "\nExit status, as `git bisect run` wants it: 0 every case that ran is equal, 1 one is not, 125 nothing can be "
-      "told,\n"
+      "\nExit status, as `git bisect run` wants it: 0 every case that ran matches, 1 one does not, 125 no verdict,\n"
       "because the plan or a case cannot be run; 130 interrupted.\n"
       "\nExample:\n  halfplane regress overnight.toml -j 2 --until 8h --resume --junit overnight.xml");
 }

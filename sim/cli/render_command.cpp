@@ -107,7 +107,7 @@ void check_options(const RenderCommand& options, const Config& config) {
   if ((options.engine == "rtl" || options.engine == "cycle") && options.skip != "all" && !chooses_bins)
     throw InputError(
         "--skip: the engine " + options.engine +
-        " skips by the hardware's rules, but for bins of frames behind each other: give none or bins with "
+        " skips by the hardware's rules, except for bins of successive frames: give none or bins with "
         "--frames, frame.order=bins and frame.store=color; else leave out --skip, or use another --engine");
   if (options.engine != "cycle" && !options.cycle.given().empty())
     throw InputError(options.cycle.given() + ": the engine " + options.engine +
@@ -358,10 +358,9 @@ void add_render_command(CLI::App& app, Action& selected) {
   add_file_option(*command, "--draws", options->draws_path,
                   "sheet: the picture, and how often each sample was drawn, .png");
   command
-      ->add_option(
-          "--supersample", options->supersample,
-          "NxN or NxN:rotated: the mean of so many pictures, each moved by a part of a pixel; depth and ids are "
-          "the first one's, counts those of all")
+      ->add_option("--supersample", options->supersample,
+                   "NxN or NxN:rotated: the mean of N*N pictures, each moved by a part of a pixel; depth and ids are "
+                   "those of the first, counts the sum of all")
       ->type_name("GRID");
   command->add_option("--repeat", options->repeat, "render N more times and print min and median")
       ->check(whole_number(1, 100000));

@@ -47,8 +47,8 @@ void refuse_to_go_on(const RenderCommand& options, std::size_t frame) {
   const bool keeps = options.engine == "functional" || options.engine == "scalar";
   if (keeps && options.supersample.empty()) return;
   const std::string number = std::to_string(frame);
-  throw InputError(options.scene + ": frame " + number + " goes on with the picture of frame " +
-                   std::to_string(frame - 1) + " (it does not begin with a clear of all that it looks at), which " +
+  throw InputError(options.scene + ": frame " + number + " draws on the picture of frame " + std::to_string(frame - 1) +
+                   " (it does not begin by clearing every buffer that it reads), which " +
                    (keeps ? "--supersample" : "the engine " + options.engine) +
                    " does not keep; begin it with `clear color ... depth ...`, or use --engine functional or scalar" +
                    (keeps ? " without --supersample" : ""));
@@ -206,10 +206,9 @@ void add_frames_options(CLI::App& app, RenderCommand& options) {
     word = std::to_string(kAllFrames);
     return std::string();
   };
-  app.add_option(
-         "--frames", options.frames,
-         "N pictures of a scene that moves: --time A..B of its animation (without it: all), --camera orbit; or the "
-         "first N that the `frame` lines of a capture end, or all of those; files get a number each")
+  app.add_option("--frames", options.frames,
+                 "N pictures of a moving scene: --time A..B of its animation (default: all of it), --camera orbit; or "
+                 "the first N frames of a capture with `frame` lines, or all of them; files are numbered")
       ->transform(CLI::Validator(number, "N or all"));
   add_file_option(app, "--csv", options.csv_path, "of --frames: a row of figures for each, .csv");
   add_file_option(app, "--chart", options.chart_path, "of --frames: the figures over time, .html");

@@ -299,8 +299,8 @@ int run(const RunCommand& options) {
 }  // namespace
 
 void add_run_command(CLI::App& app, Action& selected) {
-  const auto [command, options] =
-      add_command<RunCommand>(app, selected, "run", "a program whose OpenGL this model draws (Linux, libglvnd)", run);
+  const auto [command, options] = add_command<RunCommand>(
+      app, selected, "run", "runs a program with this model as its OpenGL driver (Linux, libglvnd)", run);
   add_output_options(*command, *options);
   command->add_option("--engine", options->engine, "functional, or cycle: the cycles of each frame as well")
       ->check(CLI::IsMember({"functional", "cycle"}))
@@ -321,9 +321,9 @@ void add_run_command(CLI::App& app, Action& selected) {
   add_file_option(*command, "-o", options->save_path, "the capture of --save, .hpt (default frame-N.hpt)");
   command->add_flag("--hud", options->hud, "frames a second and cycles in a corner of the window");
   command
-      ->add_option(
-          "--on-missing", options->on_missing,
-          "what this hardware does not have: drawn some other way (host), with a warning (warn), or the end (stop)")
+      ->add_option("--on-missing", options->on_missing,
+                   "a draw that this hardware cannot do: is drawn on the host (host), the same with a warning (warn), "
+                   "or ends the program (stop)")
       ->check(CLI::IsMember({"host", "warn", "stop"}))
       ->capture_default_str();
   command->add_option("--threads", options->threads, "threads that draw")

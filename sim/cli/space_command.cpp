@@ -111,8 +111,9 @@ void add_space_options(CLI::App& command, SpaceOptions& options) {
       ->check(refuse_empty)
       ->type_name("DIR");
   command
-      .add_option("--collect", options.collect,
-                  "measures nothing: the points that the tasks of DIR have left there; repeatable, for one page of all")
+      .add_option(
+          "--collect", options.collect,
+          "measures nothing: gathers the points that the tasks of DIR have written; repeatable, for one page of all")
       ->check(refuse_empty)
       ->allow_extra_args(false)
       ->type_name("DIR");

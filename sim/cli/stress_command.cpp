@@ -202,15 +202,15 @@ int run(const StressCommand& options) {
   if (options.quick && options.seconds > 0)
     throw InputError("--quick and --seconds exclude each other; leave one of them out");
   if (options.unit >= 0 && options.names.empty())
-    throw InputError("--unit: units are numbered case by case; add the --case that it belongs to");
+    throw InputError("--unit: units are numbered within a case; add the --case of the unit");
   if (options.unit >= 0 && (options.quick || options.seconds > 0))
-    throw InputError("--unit: one unit is all that runs; leave out --quick and --seconds");
+    throw InputError("--unit: runs a single unit; leave out --quick and --seconds");
   check_output(options.junit_path);
   make_folder("--captures", options.captures);
   check_distinct({options.json, options.junit_path});
   const Config config = effective_config(options);
   if (config.depth_format != DepthFormat{} || config.depth_mapping != DepthMapping::projection)
-    throw InputError("stress: its cases are of planes; leave depth.format and depth.mapping as they are");
+    throw InputError("stress: its cases test interpolated planes; leave depth.format and depth.mapping as they are");
   if (config.msaa_samples != 1)
     throw InputError("stress: the case `samples` chooses msaa.samples itself, the others have one; leave it as it is");
   stress::RunOptions run;
@@ -267,11 +267,11 @@ void add_stress_command(CLI::App& app, Action& selected) {
       ->type_name("NAME");
   command->add_flag("--list", options->list, "lists the cases: name, item of the stress list, property");
   command->add_flag("--quick", options->quick, "the quick set, under a minute (default)");
-  command->add_option("--seconds", options->seconds, "runs for that long instead, on and on with new inputs")
+  command->add_option("--seconds", options->seconds, "runs for this long instead, always with new inputs")
       ->check(CLI::Range(0.001, 1e7))
       ->check(is_number)
       ->type_name("N");
-  command->add_option("--unit", options->unit, "only the unit of that number: repeats a failure")
+  command->add_option("--unit", options->unit, "only the unit with this number: repeats a failure")
       ->check(whole_number(std::int64_t{0}, std::int64_t{1} << 62))
       ->type_name("N");
   command->add_option("--threads", options->threads, "threads")->check(whole_number(1, 1024))->type_name("N");

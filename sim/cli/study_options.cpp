@@ -24,18 +24,18 @@ constexpr Rule kRules[]{
     {Rule::Kind::samples, "--traversal", "traversal", &StudyOptions::traversal, kTraversalNames,
      "study, scalar engine: how samples are found; the image stays the same"},
     {Rule::Kind::samples, "--fill-rule", "fill_rule", &StudyOptions::fill_rule, kFillRuleNames,
-     "study, scalar engine: who owns samples exactly on an edge"},
+     "study, scalar engine: which triangle owns a sample exactly on an edge"},
     {Rule::Kind::clipping, "--clipping", "clipping", &StudyOptions::clipping, kClippingNames,
-     "study, scalar and golden engines: triangles cut to polygons, or homogeneous edge functions and no cut"},
+     "study, scalar and golden engines: triangles clipped to polygons, or homogeneous edge functions without clipping"},
     {Rule::Kind::planes, "--gradients", "gradients", &StudyOptions::gradients, kGradientsNames,
-     "study, scalar engine: how triangle setup makes them; two are faults"},
+     "study, scalar engine: how triangle setup computes gradients; two of the ways are faults"},
     {Rule::Kind::planes, "--accumulator", "accumulator", &StudyOptions::accumulator, kAccumulatorNames,
-     "study, scalar engine: what a plane does beyond the range of its register; saturate is a fault"},
+     "study, scalar engine: what the register of a plane does on overflow; saturate is a fault"},
     {Rule::Kind::planes, "--weights", "weights", &StudyOptions::weights, kWeightsNames,
      "study, scalar engine: bits of a linear texture filter's weights; 4 is a fault"},
     {Rule::Kind::interpolation, "--interpolation", "interpolation", &StudyOptions::interpolation, kInterpolationNames,
-     "study, every engine: all colours and texture coordinates affine on the screen, or over w, in place of what the "
-     "scene's states say"},
+     "study, every engine: interpolate all colours and texture coordinates affinely on the screen, or over w, whatever "
+     "the scene's states say"},
 };
 
 bool is_of_scalar_engine(const Rule& rule) {
@@ -99,7 +99,7 @@ void check_study_rules(const StudyOptions& options, const std::string& engine) {
     if (!is_of_scalar_engine(rule) || !is_unusual(rule, options)) continue;
     if (is_homogeneous)
       throw InputError(
-          "--clipping homogeneous has its own setup and samples: leave out --traversal, --fill-rule, --gradients, "
+          "--clipping homogeneous replaces setup and sampling: leave out --traversal, --fill-rule, --gradients, "
           "--accumulator and --weights");
     if (engine != "scalar")
       throw InputError(std::string(rule.option) + " " + options.*rule.value + ": the engine " + engine +

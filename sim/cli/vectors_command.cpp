@@ -81,7 +81,7 @@ int run(const VectorsOptions& options) {
 
 void add_vectors_command(CLI::App& app, Action& selected) {
   const auto [command, options] = add_command<VectorsOptions>(
-      app, selected, "vectors", "what goes into a stage and what must come out, for your own RTL", run);
+      app, selected, "vectors", "test vectors of a stage, inputs and expected outputs, for your own RTL", run);
   add_scene_options(*command, *options);
   command->get_option("SCENE")->required(false);
   add_random_options(*command, *options,
@@ -96,7 +96,7 @@ void add_vectors_command(CLI::App& app, Action& selected) {
   add_file_option(*command, "-o", options->output, "the file, or for hex the folder; - for stdout");
   command->get_option("-o")->required();
   command->footer(
-      "\nThe hardware model runs from reset. Judge what your implementation gave with `halfplane check`.\n"
+      "\nThe hardware model runs from reset. Judge the outputs of your implementation with `halfplane check`.\n"
       "\nExample:\n  halfplane vectors --random 200 --stage fine_raster -o fine_raster.jsonl");
 }
 

@@ -257,16 +257,17 @@ int run_table(const WidthsCommand& options) {
 }  // namespace
 
 void add_widths_command(CLI::App& app, Action& selected) {
-  CLI::App* command = app.add_subcommand("widths", "every intermediate: bound, width, what is seen of it, slack");
+  CLI::App* command = app.add_subcommand("widths", "every intermediate value: bound, width, largest value seen, slack");
   auto options = std::make_shared<WidthsCommand>();
   add_output_options(*command, *options);
-  add_seed_option(*command, *options, "seed of the random primitives, and of scenes with something random in them");
+  add_seed_option(*command, *options, "seed of the random primitives, and of scenes with random parts");
   CLI::Option* samples =
-      command->add_option("--samples", options->samples, "random primitives; the search for extremes comes on top")
+      command->add_option("--samples", options->samples, "random primitives, in addition to the search for extremes")
           ->check(whole_number(1, 100000000))
           ->capture_default_str();
   CLI::Option* captures =
-      command->add_option("--captures", options->captures, "writes each input that overflows a bit less, as a capture")
+      command
+          ->add_option("--captures", options->captures, "writes each input that overflows one bit less, as a capture")
           ->check(refuse_empty)
           ->type_name("FOLDER");
   CLI::Option* smallest = command->add_flag("--smallest", options->smallest,
@@ -283,26 +284,26 @@ void add_widths_command(CLI::App& app, Action& selected) {
       ->check(refuse_empty);
   command
       ->add_option("--depth-error", options->depth_error,
-                   "with --smallest: at most so much from the exact plane: '0.75lsb', of the starting depth.bits, or "
+                   "with --smallest: largest error against the exact plane: '0.75lsb' of the starting depth.bits, or "
                    "'1e-4' of the depth range")
       ->needs(smallest);
   command
       ->add_option("--fight-rate", options->fight_rate,
-                   "with --smallest: less than this part of the overlapping pairs of fragments may be stored out of "
-                   "order or alike: '0.01' or '1%'")
+                   "with --smallest: less than this part of the overlapping pairs of fragments is stored out of order "
+                   "or equal: '0.01' or '1%'")
       ->type_name("PART")
       ->needs(smallest);
   command
       ->add_option("--coverage-error", options->coverage_error,
-                   "with --smallest: at most so many pixels missing or extra a scene, against unsnapped vertices")
+                   "with --smallest: most pixels that are missing or extra in a scene, against unsnapped vertices")
       ->needs(smallest);
   command
       ->add_option("--color-error", options->color_error,
-                   "with --smallest: at most so much from the exact plane: '0.75lsb' of the stored colour")
+                   "with --smallest: largest error against the exact plane: '0.75lsb' of the stored colour")
       ->needs(smallest);
   command
       ->add_option("--texture-error", options->texture_error,
-                   "with --smallest: texture coordinates at most so many texels from the exact ones: '0.0625'")
+                   "with --smallest: largest error of texture coordinates, in texels: '0.0625'")
       ->needs(smallest)
       ->type_name("TEXELS");
   command->footer(

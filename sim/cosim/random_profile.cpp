@@ -174,7 +174,7 @@ class Reader {
       auto& number = key == "textures" ? profile_.textures : profile_.texels;
       number = whole_number_of(value, 1, key == "textures" ? kMostTextures : kMostTexels, place, key);
       if (key == "texture_size" && !std::has_single_bit(static_cast<unsigned>(*number)))
-        fail(place, "texture_size: " + value + " is not a power of two, which texture units take alone");
+        fail(place, "texture_size: " + value + " is not a power of two, the only sizes of texture units");
     } else if (is_state(key) && key != "space") {
       for (const std::string& one : words_of(value, '|')) states_[key].push_back(state_value(key, one, place));
     } else {

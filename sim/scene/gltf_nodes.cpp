@@ -186,7 +186,7 @@ class Walker {
 
   void visit(const Entry& entry) {
     const JsonPlace node = file_.item("nodes", entry.node);
-    if (reached_[entry.node]) node.fail("reached on two ways or in a ring", "give every node one parent");
+    if (reached_[entry.node]) node.fail("the child of two nodes, or its own ancestor", "give every node one parent");
     reached_[entry.node] = true;
     const std::size_t number = result_.nodes.size();
     GltfNode& made = result_.nodes.emplace_back();

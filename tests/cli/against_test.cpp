@@ -321,7 +321,7 @@ TEST_F(Against, EachSceneOfAFolderHasItsVerdict) {
   const Bytes xml = read("r.xml");
   EXPECT_NE(std::string(xml.begin(), xml.end()).find("tests=\"6\" failures=\"3\""), std::string::npos);
   expect_refused({"compare", "scenes"}, "add --against FOLDER");
-  expect_refused({"compare", "scenes", "--against", "scenes/s1.hpt"}, "so this is one, too");
+  expect_refused({"compare", "scenes", "--against", "scenes/s1.hpt"}, "give a folder of images here too");
   expect_refused({"compare", "images", "--against", "images"}, "no scene in it");
   expect_refused({"compare", "scenes", "--against", "images", "-o", "a.png"}, "-o: it is of one scene");
 }

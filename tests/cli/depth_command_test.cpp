@@ -247,14 +247,14 @@ TEST_F(DepthCommandLine, BadQuestionsGetOneLine) {
   refused({"--range", "5", "--error", "1"}, "two depths");
   refused({"--range", "5,10"}, "add --error");
   refused({"--camera", "fov=30"}, "add --scene");
-  refused({"--z", ""}, "nothing given");
+  refused({"--z", ""}, "the value is empty");
   refused({"--set", "depth.bits=20"}, "leave depth.bits out");
   refused({"--error", "-1"}, "'-1' is not above 0");
   refused({"--heat", "x.png"}, "add --scene");
   refused({"-o", "report.txt"}, ".html");
   refused({"-o", "nowhere/report.html"}, "no such folder");
   refused({"--csv", "-", "--json"}, "both write to stdout; give one of them a file");
-  refused({"--set", "depth.format=u16"}, "here --mapping and --format take them");
+  refused({"--set", "depth.format=u16"}, "this command takes them by --mapping and --format");
   refused({"--slope", "steep"}, "is no number");
   expect_refused({"depth", "--near", "0." + std::string(345, '0') + "1", "--far", "9"}, "1e-30");
   write("empty.hpt", "halfplane 1\nplanes 1 9\nv 0 0 0 2\nv 0 0 0 3\nt 0 0 1\n");
@@ -277,7 +277,7 @@ TEST_F(DepthCommandLine, AFormatIsMadeFromAPlaneThatHasItsCodes) {
   EXPECT_EQ(chosen["config"]["depth.bits"], 30);
   EXPECT_EQ(chosen["depth_hash"], result(with("depth.bits=30"))["depth_hash"]);
   EXPECT_NE(chosen["depth_hash"], result(with("depth.bits=16"))["depth_hash"]);
-  EXPECT_NE(run(render).err.find("depth.bits=30: depths of depth.format=u16"), std::string::npos);
+  EXPECT_NE(run(render).err.find("depth.bits=30: chosen for depth.format=u16"), std::string::npos);
   EXPECT_EQ(run(with("depth.bits=16")).err, "") << "nothing is chosen";
   EXPECT_EQ(result({"render", "coplanar", "--set", "depth.format=u12"})["config"]["depth.bits"], 12);
 }

@@ -46,8 +46,10 @@ TEST_F(BadInput, WrongUsageNamesTheOptionAndWhereItIsExplained) {
 
 TEST_F(BadInput, RefusalsSayWhatIsWrongAndThenWhatToDo) {
   write("a.hpt", "halfplane 1\n");
-  expect_refused({"render", "triangle", "-o", "picture"}, "'picture': this file is a .png; give a name that ends so");
-  expect_refused({"render", "triangle", "--depth", "d.txt"}, "or up to 16 bits a .png; give a name that ends so");
+  expect_refused({"render", "triangle", "-o", "picture"},
+                 "'picture': this option writes .png files; give a name that ends in .png");
+  expect_refused({"render", "triangle", "--depth", "d.txt"},
+                 "or up to 16 bits as .png; give a name that ends in one of them");
   expect_refused({"render", "triangle", "-o", "a.png", "--draws", "a.png"},
                  "two options name the file 'a.png', and one would replace the other; give each its own");
   expect_refused({"render", "triangle", "--heat", "h.png", "--mhz", "7"},

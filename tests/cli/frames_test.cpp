@@ -112,7 +112,7 @@ TEST_F(Frames, WhatHasNoMeaningIsRefusedInOneLine) {
   expect_refused({"render", "move.gltf", "--csv", "t.csv"}, "add --frames N");
   expect_refused({"render", "move.gltf", "--frames", "2", "--repeat", "3"}, "leave out --repeat");
   expect_refused({"render", "move.gltf", "--frames", "2", "-o", "-"}, "several files do not fit on stdout");
-  expect_refused({"render", "move.gltf", "--frames", "2", "--chart", "t.txt"}, "this file is a .html");
+  expect_refused({"render", "move.gltf", "--frames", "2", "--chart", "t.txt"}, "this option writes .html files");
 }
 
 TEST_F(Frames, TheOtherCommandsSeeTheSceneAtATime) {
@@ -211,7 +211,7 @@ TEST_F(CaptureFrames, HardwareAndGoldenDrawThoseThatBeginWithAClear) {
       EXPECT_GT(all["frames"][1]["cycles"], 0);
     }
     expect_refused({"render", "game.hpt", "--frames", "all", "-o", "a.png", "--engine", engine},
-                   "game.hpt: frame 1 goes on with the picture of frame 0");
+                   "game.hpt: frame 1 draws on the picture of frame 0");
   }
   expect_refused({"render", "game.hpt", "--frames", "2", "--supersample", "2x2"}, "without --supersample");
 }

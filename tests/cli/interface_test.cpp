@@ -124,7 +124,7 @@ TEST_F(Interface, ConfigurationsSurviveTheirFile) {
 TEST_F(Interface, AMisspeltPageIsGuessed) { expect_refused({"man", "rendr"}, "did you mean render?"); }
 
 TEST_F(Interface, ConfigurationFilesAreNamedSo) {
-  expect_refused({"config", "-o", "mine.json"}, "this file is a .toml");
+  expect_refused({"config", "-o", "mine.json"}, "this option writes .toml files");
   expect_refused({"config", "-o", "nowhere/mine.toml"}, "no such folder");
   expect_refused({"config", "--toml", "--json"}, "--toml");
   expect_refused({"config", "-o", "-", "--toml"}, "both write to stdout");

@@ -106,7 +106,7 @@ TEST_F(CliInterrupt, WhatIsWholeOrNothingEndsWithoutAFile) {
       {"compare", "city", "--config", "full", "--size", "1920x1080", "-o", "city.png", "--json=city.json"}, SIGTERM);
   EXPECT_EQ(outcome.status, 130);
   EXPECT_EQ(lines_of(outcome.err).back(),
-            "halfplane: interrupted: this work is whole or nothing, so nothing was written");
+            "halfplane: interrupted: this command has no partial result, so nothing was written");
   EXPECT_TRUE(listing().empty());
 }
 
@@ -117,7 +117,7 @@ TEST_F(CliInterrupt, ExplanationsAndVectorsAreWholeOrNothing) {
     const Outcome outcome = interrupt(words, SIGINT);
     EXPECT_EQ(outcome.status, 130) << words[0];
     EXPECT_EQ(lines_of(outcome.err).back(),
-              "halfplane: interrupted: this work is whole or nothing, so nothing was written");
+              "halfplane: interrupted: this command has no partial result, so nothing was written");
     EXPECT_TRUE(listing().empty());
   }
 }

@@ -74,7 +74,7 @@ Bytes npy_bytes(int width, int height, std::span<const T> values, std::string_vi
 
 void require_npy(const std::string& path) {
   if (path != "-" && extension(path) != ".npy")
-    throw InputError("cannot write '" + path + "': this file is a .npy; give a name that ends so");
+    throw InputError("cannot write '" + path + "': this option writes .npy files; give a name that ends in .npy");
 }
 
 }  // namespace
@@ -117,7 +117,8 @@ void check_depth_path(const std::string& path, int depth_bits) {
   const std::string kind = extension(path);
   if (path == "-") return;  // .npy
   if (kind != ".png" && kind != ".npy")
-    throw InputError("cannot write '" + path + "': depth is a .npy, or up to 16 bits a .png; give a name that ends so");
+    throw InputError("cannot write '" + path +
+                     "': depths are written as .npy, or up to 16 bits as .png; give a name that ends in one of them");
   if (kind == ".png" && depth_bits > kPngDepthBits)
     throw InputError("'" + path + "': " + std::to_string(depth_bits) +
                      " depth bits do not fit a 16-bit PNG; write a .npy instead");
