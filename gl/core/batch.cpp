@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #include "../../model/attributes.hpp"
 #include "../../model/signature.hpp"
@@ -17,49 +18,30 @@ bool makes_triangles(Topology topology) {
   return topology == Topology::triangles || topology == Topology::triangle_strip || topology == Topology::triangle_fan;
 }
 
-/// What decides how a batch of vertices is drawn.
-struct BatchTraits {
-  bool has_one_color = true, has_one_w = true, has_one_q = true, has_positive_q = true;
-  bool has_secondary = false;
-  bool is_fogged_by_w = true;  ///< clip w is the distance that fog takes
-};
-
-BatchTraits traits_of(std::span<const ShadedVertex> vertices, std::size_t unit) {
-  BatchTraits traits;
-  const ShadedVertex& first = vertices.front();
-  for (const ShadedVertex& v : vertices) {
-    traits.has_one_color &= v.color[0] == first.color[0] && v.secondary[0] == first.secondary[0];
-    traits.has_one_w &= v.clip[3] == first.clip[3];
-    traits.has_one_q &= v.tex_coord[unit][3] == first.tex_coord[unit][3];
-    traits.has_positive_q &= v.tex_coord[unit][3] > 0;
-    for (std::size_t c = 0; c < 3; ++c) traits.has_secondary |= v.secondary[0][c] != 0;
-    traits.is_fogged_by_w &= std::abs(std::abs(v.clip[3]) - v.fog_distance) <= 1e-6 * v.fog_distance;
-  }
-  return traits;
+const DrawSetup::OfKind& setup_of(Context& context, DrawSetup& setup, DrawKind kind, bool has_texture) {
+  DrawSetup::OfKind& of = setup.kind[static_cast<std::size_t>(kind)][has_texture ? 1 : 0];
+  if (std::exchange(of.is_known, true)) return of;
+  of.state = hardware_state(context, kind);
+  if (of.state && has_texture) of.use = use_texture(context, setup.unit, *of.state);
+  return of;
 }
-
-/// The first of textured_units(); 0 of none.
-std::size_t unit_of(unsigned units) { return units == 0 ? 0 : static_cast<std::size_t>(std::countr_zero(units)); }
 
 /// Draws vertices in their first colour.
 class Batch {
  public:
   Batch(Context& context, const BatchKind& group, std::span<const ShadedVertex> vertices,
-        std::span<const std::uint32_t> indices)
-      : context_(context),
-        group_(group),
-        vertices_(vertices),
-        indices_(indices),
-        units_(textured_units(context)),
-        unit_(unit_of(units_)),
-        traits_(traits_of(vertices, unit_)) {}
+        std::span<const std::uint32_t> indices, const BatchTraits& traits)
+      : context_(context), group_(group), vertices_(vertices), indices_(indices), traits_(traits) {}
 
   void draw() {
-    const auto state = hardware_state(context_, group_.kind);
-    if (!state) return;
-    state_ = *state;
-    if (units_ != 0 && makes_triangles(group_.topology) && !group_.is_stippled && !group_.is_shaded)
-      use_ = use_texture(context_, unit_, state_);
+    DrawSetup& setup = draw_setup(context_);
+    unit_ = setup.unit;
+    const DrawSetup::OfKind& of_kind =
+        setup_of(context_, setup, group_.kind,
+                 setup.units != 0 && makes_triangles(group_.topology) && !group_.is_stippled && !group_.is_shaded);
+    if (!of_kind.state) return;
+    state_ = *of_kind.state;
+    use_ = of_kind.use;
     if (state_.texture) state_.color_interp = ColorInterp::perspective;
     if (group_.is_window) state_.space = Space::window;
     if (group_.is_window && group_.kind != DrawKind::rectangle) cut_to_viewport();
@@ -180,9 +162,8 @@ class Batch {
   BatchKind group_;
   std::span<const ShadedVertex> vertices_;
   std::span<const std::uint32_t> indices_;
-  unsigned units_;    ///< that have textures
-  std::size_t unit_;  ///< the first of them
   BatchTraits traits_;
+  std::size_t unit_ = 0;  ///< DrawSetup::unit
   halfplane::State state_;
   TextureUse use_;
   bool is_textured_ = false, has_host_fog_ = false;
@@ -191,13 +172,43 @@ class Batch {
 
 }  // namespace
 
-const char* why_shaded(Context& context, std::span<const ShadedVertex> vertices) {
-  const unsigned units = textured_units(context);
-  if (units == 0) return nullptr;
-  if (const char* beyond = beyond_texture_unit(context, units)) return beyond;
+BatchTraits traits_of(std::span<const ShadedVertex> vertices, std::size_t unit) {
+  BatchTraits traits;
+  const ShadedVertex& first = vertices.front();
+  for (const ShadedVertex& v : vertices) {
+    traits.has_one_color &= v.color[0] == first.color[0] && v.secondary[0] == first.secondary[0];
+    traits.has_one_w &= v.clip[3] == first.clip[3];
+    traits.has_one_q &= v.tex_coord[unit][3] == first.tex_coord[unit][3];
+    traits.has_positive_q &= v.tex_coord[unit][3] > 0;
+    for (std::size_t c = 0; c < 3; ++c) traits.has_secondary |= v.secondary[0][c] != 0;
+    traits.is_fogged_by_w &= std::abs(std::abs(v.clip[3]) - v.fog_distance) <= 1e-6 * v.fog_distance;
+    traits.is_two_sided |= v.color[0] != v.color[1] || v.secondary[0] != v.secondary[1];
+  }
+  return traits;
+}
+
+DrawSetup& draw_setup(Context& context) {
+  if (!context.draw_setup) context.draw_setup = std::make_shared<DrawSetup>();
+  DrawSetup& setup = *context.draw_setup;
+  const std::uint64_t frame = context.drawable == nullptr ? 0 : context.drawable->frame.revision();
+  if (setup.revision == context.revision && setup.frame == frame) return setup;
+  setup.revision = context.revision;
+  setup.frame = frame;
+  setup.units = textured_units(context);
+  setup.unit = setup.units == 0 ? 0 : static_cast<std::size_t>(std::countr_zero(setup.units));
+  setup.beyond.reset();
+  for (auto& of : setup.kind)
+    for (DrawSetup::OfKind& kind : of) kind.is_known = false;
+  return setup;
+}
+
+const char* why_shaded(Context& context, const BatchTraits& traits) {
+  DrawSetup& setup = draw_setup(context);
+  if (setup.units == 0) return nullptr;
+  if (!setup.beyond) setup.beyond = beyond_texture_unit(context, setup.units);
+  if (*setup.beyond != nullptr) return *setup.beyond;
   const gl::State& state = context.state;
   if (state.polygon.stipple) return "stippled polygons with a texture";
-  const BatchTraits traits = traits_of(vertices, unit_of(units));
   if (traits.has_secondary) return "colours that are added to a texture";
   if (state.fog.enabled && !(has_hardware_fog(state.fog) && traits.is_fogged_by_w))
     return "fog of a texture by other distances than w";
@@ -213,8 +224,8 @@ bool fog_bends(const FogState& fog, const ShadedVertex& a, const ShadedVertex& b
 }
 
 void draw_batch(Context& context, const BatchKind& group, std::span<const ShadedVertex> vertices,
-                std::span<const std::uint32_t> indices) {
-  if (!vertices.empty() && !indices.empty()) Batch(context, group, vertices, indices).draw();
+                std::span<const std::uint32_t> indices, const BatchTraits& traits) {
+  if (!vertices.empty() && !indices.empty()) Batch(context, group, vertices, indices, traits).draw();
 }
 
 }  // namespace halfplane::gl

@@ -70,6 +70,8 @@ struct Query {
   std::uint64_t begun_at = 0, samples = 0;
 };
 
+struct DrawSetup;  // batch.hpp
+
 struct Context {
   explicit Context(std::shared_ptr<SharedObjects> shared_objects = std::make_shared<SharedObjects>());
   ~Context();
@@ -104,6 +106,7 @@ struct Context {
   /// Raised by every command that is not a vertex or an attribute of one, so that values derived from state are computed once.
   std::uint64_t revision = 1;
   std::unique_ptr<ShadingConstants, ShadingConstantsDeleter> shading;  ///< shade.cpp
+  std::shared_ptr<DrawSetup> draw_setup;                               ///< batch.cpp
 
   std::map<GLenum, EvaluatorMap> maps;              ///< by GL_MAP1_... and GL_MAP2_...
   std::map<GLenum, std::vector<float>> pixel_maps;  ///< by GL_PIXEL_MAP_...

@@ -137,7 +137,7 @@ bool Frame::Memory::takes(std::uint32_t state, Topology topology) {
 }
 
 void Frame::Memory::clear(const halfplane::State& state, Clear what) {
-  const Stopwatch watch(driver_s);
+  const Stopwatch watch(driver_s, is_timed());
   halfplane::State region;
   region.scissor = state.scissor;
   region.origin = state.origin;
@@ -165,7 +165,7 @@ void Frame::Memory::draw(const halfplane::State& state, Topology topology, std::
   if (kind >= 0 && kind_of(state) != kind) flush();
   if (scene.vertices.size() + vertices.size() > (is_recorded() ? kMostRecordedVertices : kMostVertices)) rebase();
 
-  const Stopwatch watch(driver_s);
+  const Stopwatch watch(driver_s, is_timed());
   const std::uint32_t number = state_number(state);
   if (!takes(number, topology)) return;
   kind = kind_of(state);
@@ -294,7 +294,7 @@ std::uint32_t Frame::Memory::texture(std::uint64_t key, const std::function<half
       drop_textures(0, frame + 1);
     }
   }
-  const Stopwatch watch(driver_s);
+  const Stopwatch watch(driver_s, is_timed());
   const std::string name = "t" + std::to_string(textures_made++);
   Scene alone = empty_scene();
   try {
@@ -524,6 +524,7 @@ void Frame::Memory::rebase() {
 }
 
 void Frame::Memory::forget() {
+  ++revision;
   scene.vertices.clear();
   scene.indices.clear();
   scene.states.clear();
@@ -605,6 +606,8 @@ void Frame::missing(std::string_view what, std::string_view instead) {
   say_once(text + "; --on-missing stop ends the program");
   std::_Exit(2);  // nothing of the program runs any more: it may hold locks
 }
+
+std::uint64_t Frame::revision() const { return memory_->revision; }
 
 double Frame::raster_seconds() const { return memory_->raster_s; }
 

@@ -61,6 +61,9 @@ class Frame {
   /// another one); made once and kept over frames while it is used.
   [[nodiscard]] std::uint32_t texture(std::uint64_t key, const std::function<halfplane::Texture()>& make);
 
+  /// Another number after numbers of textures and reported features are forgotten: in the next frame, at least.
+  [[nodiscard]] std::uint64_t revision() const;
+
   /// The picture, after drawing what waits. Valid until the next call.
   [[nodiscard]] const Framebuffer& picture();
   /// Takes the colours of another buffer of this size for its own; depths and stencil values stay. A capture of the frame

@@ -23,17 +23,22 @@ void say_once(const std::string& what);
 
 using Clock = std::chrono::steady_clock;
 
-/// Adds the seconds of its life to `seconds`.
+/// Adds the seconds of its life to `seconds`, if it runs.
 class Stopwatch {
  public:
-  explicit Stopwatch(double& seconds) : seconds_(seconds) {}
-  ~Stopwatch() { seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
+  explicit Stopwatch(double& seconds, bool runs = true) : seconds_(seconds), runs_(runs) {
+    if (runs) start_ = Clock::now();
+  }
+  ~Stopwatch() {
+    if (runs_) seconds_ += std::chrono::duration<double>(Clock::now() - start_).count();
+  }
   Stopwatch(const Stopwatch&) = delete;
   Stopwatch& operator=(const Stopwatch&) = delete;
 
  private:
   double& seconds_;
-  Clock::time_point start_ = Clock::now();
+  bool runs_;
+  Clock::time_point start_;
 };
 
 struct Frame::Memory {
@@ -90,6 +95,7 @@ struct Frame::Memory {
   std::unordered_map<std::uint64_t, std::uint32_t> slot_of;
   std::size_t texture_bytes = 0;
   std::uint64_t frame = 0, textures_made = 0;
+  std::uint64_t revision = 1;  ///< Frame::revision()
 
   // Results and the HUD (frame_end.cpp).
   double driver_s = 0, geometry_s = 0;  ///< this frame: seconds of collecting, and of the engine's host side
@@ -107,6 +113,8 @@ struct Frame::Memory {
   struct Part;
 
   [[nodiscard]] Scene empty_scene() const;
+  /// Whether someone reads the seconds of this frame.
+  [[nodiscard]] bool is_timed() const { return !options.results.empty(); }
   [[nodiscard]] bool is_recorded() const { return options.save_all || !options.save.empty() || options.cycles; }
   [[nodiscard]] std::uint32_t state_number(const halfplane::State& state);
   [[nodiscard]] bool takes(std::uint32_t state, Topology topology);

@@ -10,6 +10,7 @@
 #include "clip.hpp"
 #include "context.hpp"
 #include "matrix.hpp"
+#include "shading.hpp"
 
 namespace halfplane::gl {
 namespace {
@@ -21,7 +22,7 @@ class Pipeline {
   Pipeline(Context& context, bool is_shaded)
       : context_(context),
         state_(context.state),
-        is_textured_(textured_units(context) != 0),
+        is_textured_(draw_setup(context).units != 0),
         is_shaded_(is_shaded),
         is_fed_(context.render_mode != GL_RENDER) {
     const TransformState& transform = state_.transform;
@@ -44,7 +45,8 @@ class Pipeline {
   void flush() {
     indices_.resize(pending_.size());
     std::iota(indices_.begin(), indices_.end(), 0U);
-    draw_batch(context_, group_, pending_, indices_);
+    if (!pending_.empty())
+      draw_batch(context_, group_, pending_, indices_, traits_of(pending_, draw_setup(context_).unit));
     pending_.clear();
   }
 
@@ -286,23 +288,20 @@ constexpr std::array<Assembly, 10> kAssemblies{{
 template <class Visit>
 void for_each_primitive(GLenum mode, std::size_t count, const Visit& visit) {
   const Assembly& assembly = kAssemblies[mode];
-  std::vector<std::size_t> place;
   if (mode == GL_POLYGON) {
-    place.resize(count);
-    std::iota(place.begin(), place.end(), std::size_t{0});
-    if (count > 2) visit(place, 0);
+    if (count > 2) visit(counting(count), 0);
     return;
   }
+  std::array<std::uint32_t, 4> place{};
   for (std::size_t first = 0; first + assembly.size <= count; first += assembly.step) {
-    place.assign(assembly.order.begin(), assembly.order.begin() + static_cast<std::ptrdiff_t>(assembly.size));
-    for (std::size_t& p : place) p += first;
+    for (std::size_t i = 0; i < assembly.size; ++i) place[i] = static_cast<std::uint32_t>(first + assembly.order[i]);
     if (mode == GL_TRIANGLE_FAN) place[0] = 0;
     const bool is_turned = mode == GL_TRIANGLE_STRIP && first % 2 == 1;
     if (is_turned) std::swap(place[0], place[1]);
-    visit(place, assembly.provoking);
+    visit(std::span<const std::uint32_t>(place).first(assembly.size), assembly.provoking);
   }
-  place = {count - 1, 0};
-  if (mode == GL_LINE_LOOP && count > 1) visit(place, 1);
+  place = {static_cast<std::uint32_t>(count - 1), 0};
+  if (mode == GL_LINE_LOOP && count > 1) visit(std::span<const std::uint32_t>(place).first(2), 1);
 }
 
 enum class Shape { point, line, polygon };
@@ -310,19 +309,15 @@ Shape shape_of(GLenum mode) {
   return mode == GL_POINTS ? Shape::point : mode <= GL_LINE_STRIP ? Shape::line : Shape::polygon;
 }
 
-bool is_taken_apart(const Context& context, Shape shape, std::span<const ShadedVertex> vertices,
-                    std::span<const std::uint32_t> indices) {
+bool is_taken_apart(Context& context, Shape shape, std::span<const ShadedVertex> vertices,
+                    std::span<const std::uint32_t> indices, const BatchTraits& traits) {
   const gl::State& state = context.state;
   const auto is_set = [](bool b) { return b; };
   if (context.render_mode != GL_RENDER || std::ranges::any_of(state.transform.clip_enabled, is_set)) return true;
-  if (shape == Shape::polygon) {
-    const auto is_two_sided = [](const ShadedVertex& v) {
-      return v.color[0] != v.color[1] || v.secondary[0] != v.secondary[1];
-    };
+  if (shape == Shape::polygon)
     return state.polygon.mode != std::array<GLenum, 2>{GL_FILL, GL_FILL} || state.polygon.stipple ||
-           std::ranges::any_of(vertices, is_two_sided);
-  }
-  if (textured_units(context) != 0) return true;
+           traits.is_two_sided;
+  if (draw_setup(context).units != 0) return true;
   const auto bends = [&](std::uint32_t a, std::uint32_t b) { return fog_bends(state.fog, vertices[a], vertices[b]); };
   if (shape == Shape::line && state.fog.enabled && std::ranges::adjacent_find(indices, bends) != indices.end())
     return true;
@@ -338,30 +333,31 @@ void draw_primitives(Context& context, GLenum mode, std::span<const ShadedVertex
   if (context.render_mode == GL_RENDER && context.drawable == nullptr) return;
   const Assembly& assembly = kAssemblies[mode];
   const Shape shape = shape_of(mode);
-  const char* const beyond = context.render_mode == GL_RENDER ? why_shaded(context, vertices) : nullptr;
+  const BatchTraits traits = traits_of(vertices, draw_setup(context).unit);
+  const char* const beyond = context.render_mode == GL_RENDER ? why_shaded(context, traits) : nullptr;
   if (beyond != nullptr) context.drawable->frame.missing(beyond, "the host shades its fragments");
   Pipeline pipeline(context, beyond != nullptr);
-  if (beyond == nullptr && !is_taken_apart(context, shape, vertices, indices)) {
+  if (beyond == nullptr && !is_taken_apart(context, shape, vertices, indices, traits)) {
     BatchKind group{.topology = assembly.topology.value_or(Topology::triangles)};
     if (shape == Shape::line) group.kind = DrawKind::lines;
     if (shape == Shape::point) {
       group.kind = DrawKind::points;
       group.point_size = pipeline.point_size(vertices[indices[0]]);
     }
-    if (assembly.topology) return draw_batch(context, group, vertices, indices);
+    if (assembly.topology) return draw_batch(context, group, vertices, indices, traits);
     std::vector<std::uint32_t>& triangles = empty_scratch<std::uint32_t>();
-    for_each_primitive(mode, indices.size(), [&](const std::vector<std::size_t>& place, std::size_t last) {
+    for_each_primitive(mode, indices.size(), [&](std::span<const std::uint32_t> place, std::size_t last) {
       const std::size_t corners = place.size();
       for (std::size_t i = 1; i + 1 < corners; ++i)
         for (const std::size_t corner : {last + i, last + i + 1, last})
           triangles.push_back(indices[place[corner % corners]]);
     });
-    return draw_batch(context, group, vertices, triangles);
+    return draw_batch(context, group, vertices, triangles, traits);
   }
   bool resets = true;
-  for_each_primitive(mode, indices.size(), [&](const std::vector<std::size_t>& place, std::size_t provoking) {
+  for_each_primitive(mode, indices.size(), [&](std::span<const std::uint32_t> place, std::size_t provoking) {
     Vertices primitive;
-    for (const std::size_t p : place) {
+    for (const std::uint32_t p : place) {
       primitive.push_back(vertices[indices[p]]);
       primitive.back().edge_flag |= !assembly.has_edge_flags;
     }
@@ -387,8 +383,9 @@ void draw_fragments(Context& context, std::span<const WindowFragment> fragments)
       indices.push_back(static_cast<std::uint32_t>(indices.size()));
     }
     if (vertices.size() < kMost && i + 1 < fragments.size()) continue;
-    draw_batch(context, {.kind = DrawKind::rectangle, .topology = Topology::points, .is_window = true}, vertices,
-               indices);
+    if (!vertices.empty())
+      draw_batch(context, {.kind = DrawKind::rectangle, .topology = Topology::points, .is_window = true}, vertices,
+                 indices, traits_of(vertices, 0));
     vertices.clear();
     indices.clear();
   }

@@ -28,6 +28,16 @@ constexpr Vec3 point_of(const Vec4& v) {
 
 constexpr Vec3 kTowardsViewer{0, 0, 1};  // for a viewer at infinity
 
+/// base^exponent for an exponent of at most 128, most often an integer: by squaring.
+double power(double base, double exponent) {
+  const auto whole = static_cast<unsigned>(exponent);
+  if (whole != exponent) return std::pow(base, exponent);
+  double result = 1;
+  for (unsigned bits = whole; bits != 0; bits >>= 1, base *= base)
+    if ((bits & 1) != 0) result *= base;
+  return result;
+}
+
 LightConstants constants_of(const Light& light) {
   LightConstants constants{
       .ambient = xyz(light.ambient), .diffuse = xyz(light.diffuse), .specular = xyz(light.specular)};
@@ -78,7 +88,7 @@ void light_vertex(const Context& context, const Vec3& normal, ShadedVertex& vert
     if (light.is_spot) {
       const double cosine = -dot(to_light, light.spot_direction);
       if (!(cosine >= light.spot_cosine)) continue;
-      strength *= light.spot_exponent == 0 ? 1 : std::pow(std::max(cosine, 0.0), light.spot_exponent);
+      strength *= power(std::max(cosine, 0.0), light.spot_exponent);
     }
     ambient = sum(ambient, scaled(light.ambient, strength));
     const double front = dot(normal, to_light);
@@ -89,7 +99,7 @@ void light_vertex(const Context& context, const Vec3& normal, ShadedVertex& vert
     const Material& material = state.material[side];
     if (material.specular[0] == 0 && material.specular[1] == 0 && material.specular[2] == 0) continue;
     const Vec3 half = state.local_viewer || light.is_positional ? unit(sum(to_light, to_viewer)) : light.half;
-    const double shine = std::pow(std::max(sign * dot(normal, half), 0.0), material.shininess);
+    const double shine = power(std::max(sign * dot(normal, half), 0.0), material.shininess);
     arrived[side].specular = sum(arrived[side].specular, scaled(light.specular, strength * shine));
   }
   const bool separate = state.color_control == GL_SEPARATE_SPECULAR_COLOR;

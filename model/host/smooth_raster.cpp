@@ -74,21 +74,40 @@ Sides sides_of(const std::array<SnappedVertex, 4>& corners, int grid_bits) {
   return sides;
 }
 
+/// The part of a pixel inside one line, at `distance` from its centre and less than `reach`: all but a triangle or a trapezoid
+/// where that is positive.
+double part_inside(const Side& side, double distance) {
+  const double a = std::abs(side.a), b = std::abs(side.b), flat = std::min(a, b);
+  const double height = side.reach - std::abs(distance);  // of the smaller part, from the line to its corner
+  const double smaller = height < flat ? height * height / (2 * a * b) : (height - flat / 2) / std::max(a, b);
+  return distance < 0 ? smaller : 1 - smaller;
+}
+
 double area_at(const Sides& sides, int x, int y) {
   const Point centre{x + 0.5, y + 0.5};
   std::array<double, 4> distance{};
+  std::array<bool, 4> cuts{};
   bool is_outside = false;
   for (std::size_t i = 0; i < 4; ++i) {
     distance[i] = sides[i].distance(centre);
     is_outside |= distance[i] <= -sides[i].reach;
+    cuts[i] = distance[i] < sides[i].reach;
   }
   if (is_outside) return 0;
+  // Sides opposite each other cut off parts that do not meet.
+  for (const std::size_t i : {0U, 1U}) {
+    if (cuts[1 - i] || cuts[3 - i]) continue;
+    double area = 1;
+    for (const std::size_t k : {i, i + 2})
+      if (cuts[k]) area -= 1 - part_inside(sides[k], distance[k]);
+    return std::max(area, 0.0);
+  }
   std::array<Polygon, 2> polygon;  // by turns
   std::ranges::copy(kSquare, polygon[0].corner.begin());
   polygon[0].size = kSquare.size();
   std::size_t now = 0;
   for (std::size_t i = 0; i < 4; ++i) {
-    if (!(distance[i] < sides[i].reach)) continue;
+    if (!cuts[i]) continue;
     cut(polygon[now], {sides[i].a, sides[i].b, distance[i]}, polygon[1 - now]);
     now = 1 - now;
   }

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "../binary64.hpp"
+
 namespace halfplane {
 namespace {
 
@@ -32,12 +34,14 @@ Numerators numerators(const std::array<SnappedVertex, 3>& v, const QCodes& q, co
 /// step acts only inside the triangle.
 LodLine to_line(double value, double slope, int position, double scale, int grid_bits) {
   const auto residue = [](double number) {
-    return static_cast<std::uint32_t>(static_cast<std::int64_t>(std::remainder(std::floor(number + 0.5), 0x1p32)));
+    double whole = std::floor(number + 0.5);
+    if (!(std::abs(whole) < 0x1p62)) whole = std::remainder(whole, 0x1p32);
+    return static_cast<std::uint32_t>(static_cast<std::int64_t>(whole));
   };
   const int pixel = position >> grid_bits;
-  const double centre = std::ldexp(pixel + 0.5, grid_bits);
+  const double centre = scaled(pixel + 0.5, grid_bits);
   LodLine line;
-  line.step = residue(std::ldexp(slope * scale, grid_bits));
+  line.step = residue(scaled(slope * scale, grid_bits));
   line.at_zero = residue((value + slope * (centre - position)) * scale) - static_cast<std::uint32_t>(pixel) * line.step;
   return line;
 }
@@ -59,9 +63,9 @@ LodSetup setup_lod(const std::array<SnappedVertex, 3>& v, std::int64_t area, con
     return setup;
   }
   // N per pixel is N per subpixel times 2^s.
-  const double to_pixels = std::ldexp(1.0, grid_bits) / static_cast<double>(area);
-  const int g = 30 - std::ilogb(largest * to_pixels);
-  const double scale = std::ldexp(to_pixels, g);
+  const double to_pixels = power_of_two(grid_bits) / static_cast<double>(area);
+  const int g = 30 - floor_log2_of(largest * to_pixels);
+  const double scale = scaled(to_pixels, g);
   for (std::size_t c = 0; c < 2; ++c) {
     setup.along_y[c] = to_line(n[c].row[0], n[c].slope, v[0].y, scale, grid_bits);
     setup.along_x[c] = to_line(n[c].column[0], n[c].slope, v[0].x, scale, grid_bits);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../binary64.hpp"
 #include "reciprocal.hpp"
 
 namespace halfplane {
@@ -18,9 +19,9 @@ std::uint64_t value_at(const Plane& plane, const PixelPlace& place, int bits, co
 
 /// 2^e / w, rounded.
 std::uint32_t q_code(double w, int e) {
-  int exponent = 0;  // w = mantissa 2^exponent, 1/2 <= mantissa < 1
-  const double mantissa = std::frexp(w, &exponent);
-  return static_cast<std::uint32_t>(snap(1 / mantissa, std::ldexp(1.0, e - exponent)));
+  const int exponent = floor_log2_of(w) + 1;  // w = mantissa 2^exponent, 1/2 <= mantissa < 1
+  const double mantissa = scaled(w, -exponent);
+  return static_cast<std::uint32_t>(snap(1 / mantissa, power_of_two(e - exponent)));
 }
 
 }  // namespace
@@ -45,9 +46,7 @@ double coordinate_error_bound(double extent, double w_ratio, const PerspectiveFo
 
 int q_exponent(const std::array<double, 3>& w, int bits) {
   const double nearest = std::min({w[0], w[1], w[2]});
-  int exponent = 0;
-  (void)std::frexp(nearest, &exponent);
-  const int e = bits - 1 + exponent;
+  const int e = bits + floor_log2_of(nearest);
   return e - (q_code(nearest, e) >> bits != 0 ? 1 : 0);
 }
 
@@ -70,13 +69,13 @@ OverW quantize_over_w(const std::array<double, 3>& value, const QCodes& q, const
     farthest = std::max(farthest, std::abs(u));
     largest = std::max(largest, std::abs(product[i]));
   }
-  const auto bits_above_point = [](double number) { return number < 1 ? 0 : std::ilogb(number) + 1; };
-  result.reach = bits_above_point(farthest * (1 + std::ldexp(1.0, -10)));
+  const auto bits_above_point = [](double number) { return number < 1 ? 0 : floor_log2_of(number) + 1; };
+  result.reach = bits_above_point(farthest * (1 + 0x1p-10));
   // If all products are tiny, P needs no more bits than the result shows.
-  const int largest_bits = largest > 0 ? std::ilogb(largest) + 1 : result.reach - 1;
+  const int largest_bits = largest > 0 ? floor_log2_of(largest) + 1 : result.reach - 1;
   result.exponent = std::max(largest_bits, result.reach - 1) - attribute.bits;
   const auto codes = [&] {
-    for (std::size_t i = 0; i < 3; ++i) result.p[i] = snap(product[i], std::ldexp(1.0, -result.exponent));
+    for (std::size_t i = 0; i < 3; ++i) result.p[i] = snap(product[i], power_of_two(-result.exponent));
   };
   codes();
   const auto is_too_large = [&](std::int64_t p) { return std::abs(p) >> attribute.bits != 0; };

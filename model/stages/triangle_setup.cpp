@@ -108,7 +108,7 @@ Reciprocal reciprocal(std::int64_t area, int significant_bits) {
   return reciprocal(area_quotient(area, significant_bits), 0);
 }
 
-TriangleSetup setup_triangle(const Triangle& triangle, const Config& config, const Widths& widths, const Rect& rect) {
+TriangleSetup setup_outline(const Triangle& triangle, const Widths& widths, const Rect& rect) {
   TriangleSetup setup;
   setup.primitive = triangle.primitive;
   const std::int64_t area = signed_area(triangle.v[0], triangle.v[1], triangle.v[2]);
@@ -121,7 +121,16 @@ TriangleSetup setup_triangle(const Triangle& triangle, const Config& config, con
   setup.top = box.top;
   setup.right = box.right;
   setup.bottom = box.bottom;
-  finish_setup(setup, v, config, widths);
+  for (std::size_t p = 0; p < static_cast<std::size_t>(widths.affine_planes); ++p)
+    std::tie(setup.range.low[p], setup.range.high[p]) = std::minmax({v[0].code[p], v[1].code[p], v[2].code[p]});
+  return setup;
+}
+
+TriangleSetup setup_triangle(const Triangle& triangle, const Config& config, const Widths& widths, const Rect& rect) {
+  TriangleSetup setup = setup_outline(triangle, widths, rect);
+  if (setup.area != 0)
+    finish_setup(setup, canonical(triangle.v, signed_area(triangle.v[0], triangle.v[1], triangle.v[2])), config,
+                 widths);
   return setup;
 }
 

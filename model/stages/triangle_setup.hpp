@@ -82,6 +82,9 @@ struct PlaneFrame {
 [[nodiscard]] Plane setup_plane(std::int64_t base, std::int64_t next, std::int64_t last, const PlaneFrame& frame,
                                 const Reciprocal& reciprocal, int bits);
 
+/// Area, box and range of codes alone: edges and planes stay 0. Zero area gives an empty box.
+[[nodiscard]] TriangleSetup setup_outline(const Triangle& triangle, const Widths& widths, const Rect& rect);
+
 /// The whole setup. Zero area gives an empty box.
 [[nodiscard]] TriangleSetup setup_triangle(const Triangle& triangle, const Config& config, const Widths& widths,
                                            const Rect& rect);

@@ -376,7 +376,7 @@ functional::SurfaceConstants constants_of(const Scene& scene, const Config& conf
   const functional::FrameContext frame{prepared, config, widths, {}, 0, 0};
   const DrawContext context(scene, config, std::get<Draw>(scene.commands.back()), 0);
   const functional::Slice slice = slice_of(context, config);
-  return {functional::StageSurface(frame, slice, first_record(), kAtCentre), frame, texels};
+  return {functional::StageSurface(frame, slice, first_record(), kAtCentre, true), frame, texels};
 }
 
 /// coordinates_margin(): the coordinates of a covered tile's pixels lie between its corners' coordinates, plus this
@@ -400,7 +400,7 @@ TEST(FunctionalSurface, CoordinatesOfATileLieBetweenThoseOfItsCorners) {
       const functional::FrameContext frame{prepared, config, widths, {}, 0, 0};
       const DrawContext context(builder.scene, config, std::get<Draw>(builder.scene.commands.back()), 0);
       const functional::Slice slice = slice_of(context, config);
-      const functional::StageSurface stage(frame, slice, first_record(), kAtCentre);
+      const functional::StageSurface stage(frame, slice, first_record(), kAtCentre, true);
       const Surface& surface = stage.surface;
       const Framebuffer drawn = render_scalar(builder.scene, config).frame;
       const std::uint32_t nothing = render_scalar(SceneBuilder(kWidth, kHeight).scene, config).frame.depth.front();

@@ -64,10 +64,12 @@ bool is_nearest(TextureMin min) {
 
 }  // namespace
 
-StageSurface::StageSurface(const FrameContext& frame, const Slice& slice, const Record& record, int place)
+StageSurface::StageSurface(const FrameContext& frame, const Slice& slice, const Record& record, int place,
+                           bool has_planes)
     : triangle(triangle_of(slice, record, frame.widths)),
-      setup(setup_at_sample(setup_triangle(triangle, frame.config, frame.widths, slice.context->rect),
-                            offset_of(place, frame.widths), frame.widths)),
+      setup(has_planes ? setup_at_sample(setup_triangle(triangle, frame.config, frame.widths, slice.context->rect),
+                                         offset_of(place, frame.widths), frame.widths)
+                       : setup_outline(triangle, frame.widths, slice.context->rect)),
       surface(triangle, setup, slice.context->state, texture_of(*slice.context), slice.context->fog.get(),
               slice.context->phong.get(), frame.config, frame.widths, offset_of(place, frame.widths)) {}
 

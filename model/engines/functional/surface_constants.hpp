@@ -17,9 +17,10 @@ namespace halfplane::functional {
 /// Format of binary32.
 inline constexpr int kFloatFraction = 23, kFloatBias = 127;
 
-/// The surface of a record, through the stages. `place`: kAtCentre, or a sample of pixels.
+/// The surface of a record, through the stages. `place`: kAtCentre, or a sample of pixels. `has_planes`: false leaves out what
+/// lanes compute for themselves, the setup's edges and affine planes.
 struct StageSurface {
-  StageSurface(const FrameContext& frame, const Slice& slice, const Record& record, int place);
+  StageSurface(const FrameContext& frame, const Slice& slice, const Record& record, int place, bool has_planes);
   StageSurface(const StageSurface&) = delete;
   StageSurface& operator=(const StageSurface&) = delete;
 

@@ -34,12 +34,12 @@ inline const DrawnSurface& drawn_surface(Bin& bin, std::size_t number) {
   if (seen.drawn >= 0) return memory.drawn[static_cast<std::size_t>(seen.drawn)];
   seen.drawn = static_cast<std::int32_t>(memory.drawn.size());
   const FrameContext& frame = bin.job.frame;
-  auto stage = std::make_unique<StageSurface>(frame, *seen.slice, *seen.record, seen.place);
+  const StageSurface stage(frame, *seen.slice, *seen.record, seen.place, false);
   const auto& texture = seen.slice->context->state.texture;
   DrawnSurface& drawn = memory.drawn.emplace_back(DrawnSurface{
-      SurfaceConstants(*stage, frame, texture ? &frame.prepared.textures[*texture] : nullptr), {}, nullptr});
+      SurfaceConstants(stage, frame, texture ? &frame.prepared.textures[*texture] : nullptr), {}, nullptr});
   if (!drawn.constants.are_in_lanes)
-    drawn.stage = std::move(stage);
+    drawn.stage = std::make_unique<StageSurface>(frame, *seen.slice, *seen.record, seen.place, true);
   else if ((drawn.constants.has_color || drawn.constants.light) && !drawn.constants.is_color_over_w)
     set_up_surface_colors(bin, seen, drawn.colors);
   return drawn;
