@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes core/entry_points.cpp: a function for each command of OpenGL 1.5 and OpenGL ES-CM 1.0, and their other names;
+"""Writes core/entry_points.cpp: a function for each command of OpenGL 1.5 and OpenGL ES-CM 1.1, and their other names;
 and core/entry_names.inc: the names of OpenGL 1.5.
 
     gl/entry_points.py [--check] [gl.xml]
@@ -92,6 +92,7 @@ BODIES = {
     "GetBufferParameteriv": "now<&get_buffer_parameter>($*)",
     "GetBufferPointerv": "now<&get_buffer_pointer>($*)",
     "GetPointerv": "now<&get_pointer>($*)",
+    "CompressedTexImage2D": "with_context([&](Context& c) { enter_compressed_image(c, $*); })",
 }
 for rule in ("Map1", "Map2", "PixelMap"):
     for letters in ("f", "d", "fv", "uiv", "usv"):
@@ -104,7 +105,7 @@ for rule in ("Boolean", "Integer", "Float", "Double"):
 SAME_WITHOUT_EXT = ["glGenTexturesEXT", "glDeleteTexturesEXT", "glIsTextureEXT", "glAreTexturesResidentEXT"]
 COUNTED = [f"gl{array}PointerEXT" for array in ("Vertex", "Normal", "Color", "Index", "TexCoord", "EdgeFlag")]
 NOTHING = ["glLockArraysEXT", "glUnlockArraysEXT"]
-DRAW_TEX = [f"glDrawTex{letters}OES" for letters in ("s", "i", "f", "x", "sv", "iv", "fv", "xv")]
+OES = [f"glDrawTex{letters}OES" for letters in ("s", "i", "f", "x", "sv", "iv", "fv", "xv")] + ["glPointSizePointerOES"]
 
 
 def read_registry(path):
@@ -214,7 +215,7 @@ def generate(path):
     registry, desktop, embedded = read_registry(path)
     commands = read_commands()
     rows, missing = {}, []
-    for name in sorted(desktop | embedded) + DRAW_TEX:
+    for name in sorted(desktop | embedded) + OES:
         parameters = [(kind, parameter + "_" * (parameter in commands)) for kind, parameter in registry[name][1]]
         body = body_of(name, parameters, commands)
         rows[name] = entry(name, parameters, body or "")
@@ -236,6 +237,7 @@ def generate(path):
 
     lines = ["// Written by gl/entry_points.py from Khronos' gl.xml and core/commands.hpp: change that, not this.",
              "// clang-format off", '#include "entry_points.hpp"', "", "#include <algorithm>", "#include <array>", "",
+             '#include "embedded.hpp"',
              '#include "entry_conversions.hpp"', "", "namespace halfplane::gl {", "namespace {", "",
              "struct EntryPoint {", "  std::string_view name;", "  const void* function;", "};", "struct Alias {",
              "  std::string_view name, of;", "};", "",

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "commands.hpp"
+#include "embedded.hpp"
 #include "list.hpp"
 #include "matrix.hpp"
 #include "primitive.hpp"
@@ -65,8 +66,9 @@ constexpr std::initializer_list<GLenum> kColorTypes{GL_BYTE, GL_UNSIGNED_BYTE, G
 void set_pointer(Context& context, ArrayPointer& array, int size, std::array<int, 2> sizes, GLenum type,
                  std::initializer_list<GLenum> types, GLsizei stride, const void* pointer) {
   if (size < sizes[0] || size > sizes[1] || stride < 0) return context.fail(GL_INVALID_VALUE);
-  const bool is_of_embedded = context.is_embedded && (type == GL_FIXED || type == GL_BYTE);
-  if (std::ranges::find(types, type) == types.end() && !is_of_embedded) return context.fail(GL_INVALID_ENUM);
+  const bool is_known = context.is_embedded ? takes_array_type(context, type, &array == &context.client.color)
+                                            : std::ranges::find(types, type) != types.end();
+  if (!is_known) return context.fail(GL_INVALID_ENUM);
   array = {array.enabled, size, type, stride, pointer, context.client.array_buffer};
 }
 
@@ -97,11 +99,11 @@ Memory memory_of(const Context& context, GLuint buffer_name, const void* pointer
   return {buffer, buffer->data.data() + offset, buffer->data.size() - offset};
 }
 
-std::array<ArrayPointer*, 7 + kTextureUnits> arrays_of(ClientState& client) {
-  std::array<ArrayPointer*, 7 + kTextureUnits> arrays{&client.vertex,    &client.normal, &client.color,
-                                                      &client.secondary, &client.index,  &client.edge_flag,
-                                                      &client.fog_coord};
-  for (std::size_t i = 0; i < kTextureUnits; ++i) arrays[7 + i] = &client.tex_coord[i];
+std::array<ArrayPointer*, 8 + kTextureUnits> arrays_of(ClientState& client) {
+  std::array<ArrayPointer*, 8 + kTextureUnits> arrays{&client.vertex,    &client.normal,    &client.color,
+                                                      &client.secondary, &client.index,     &client.edge_flag,
+                                                      &client.fog_coord, &client.point_size};
+  for (std::size_t i = 0; i < kTextureUnits; ++i) arrays[8 + i] = &client.tex_coord[i];
   return arrays;
 }
 
@@ -126,7 +128,7 @@ struct Stream {
 
 /// All arrays of a draw.
 struct Streams {
-  Stream vertex, normal, color, secondary, index, edge_flag, fog_coord;
+  Stream vertex, normal, color, secondary, index, edge_flag, fog_coord, point_size;
   std::array<Stream, kTextureUnits> tex_coord;
   bool is_readable = true;
 
@@ -149,6 +151,7 @@ struct Streams {
     add(index, client.index, false);
     add(edge_flag, client.edge_flag, false);
     add(fog_coord, client.fog_coord, false);
+    add(point_size, client.point_size, false);
     for (std::size_t i = 0; i < kTextureUnits; ++i) add(tex_coord[i], client.tex_coord[i], false);
   }
 
@@ -168,6 +171,7 @@ struct Streams {
       with(tex_coord[unit], [&](const Vec4& v) {
         issue<&gl::tex_coord, kAllowed>(context, static_cast<GLenum>(GL_TEXTURE0 + unit), v[0], v[1], v[2], v[3]);
       });
+    with(point_size, [&](const Vec4& v) { context.state.point.size = v[0]; });
     with(fog_coord, [&](const Vec4& v) { issue<&gl::fog_coord, kAllowed>(context, v[0]); });
     with(index, [&](const Vec4& v) { issue<&gl::index, kAllowed>(context, v[0]); });
     with(secondary, [&](const Vec4& v) { issue<&gl::secondary_color, kAllowed>(context, v[0], v[1], v[2]); });
@@ -191,7 +195,7 @@ struct Streams {
 /// A draw's errors; false: it has one. Within glBegin and glEnd a list takes it, and it is refused when it is played.
 bool check_draw(Context& context, GLenum mode, GLsizei count) {
   const GLenum error = context.inside_begin() && context.compiling == nullptr ? GL_INVALID_OPERATION
-                       : mode > GL_POLYGON                                    ? GL_INVALID_ENUM
+                       : mode > last_mode(context)                            ? GL_INVALID_ENUM
                        : count < 0                                            ? GL_INVALID_VALUE
                                                                               : GL_NO_ERROR;
   if (error != GL_NO_ERROR) context.fail(error);
@@ -366,6 +370,10 @@ void fog_coord_pointer(Context& context, GLenum type, GLsizei stride, const void
   set_pointer(context, context.client.fog_coord, 1, {1, 1}, type, {GL_FLOAT, GL_DOUBLE}, stride, pointer);
 }
 
+void point_size_pointer(Context& context, GLenum type, GLsizei stride, const void* pointer) {
+  set_pointer(context, context.client.point_size, 1, {1, 1}, type, {GL_FLOAT, GL_FIXED}, stride, pointer);
+}
+
 void edge_flag_pointer(Context& context, GLsizei stride, const void* pointer) {
   set_pointer(context, context.client.edge_flag, 1, {1, 1}, GL_UNSIGNED_BYTE, {GL_UNSIGNED_BYTE}, stride, pointer);
 }
@@ -399,6 +407,7 @@ void client_state(Context& context, GLenum array, bool enabled) {
     case GL_SECONDARY_COLOR_ARRAY: client.secondary.enabled = enabled; return;
     case GL_INDEX_ARRAY: client.index.enabled = enabled; return;
     case GL_EDGE_FLAG_ARRAY: client.edge_flag.enabled = enabled; return;
+    case kPointSizeArray: client.point_size.enabled = enabled; return;
     case GL_FOG_COORDINATE_ARRAY: client.fog_coord.enabled = enabled; return;
     case GL_TEXTURE_COORD_ARRAY:
       client.tex_coord[static_cast<std::size_t>(client.active_texture)].enabled = enabled;

@@ -91,6 +91,7 @@ void secondary_color_pointer(Context&, GLint size, GLenum type, GLsizei stride, 
 void index_pointer(Context&, GLenum type, GLsizei stride, const void* pointer);
 void tex_coord_pointer(Context&, GLint size, GLenum type, GLsizei stride, const void* pointer);
 void fog_coord_pointer(Context&, GLenum type, GLsizei stride, const void* pointer);
+void point_size_pointer(Context&, GLenum type, GLsizei stride, const void* pointer);  // GL_OES_point_size_array
 void edge_flag_pointer(Context&, GLsizei stride, const void* pointer);
 void interleaved_arrays(Context&, GLenum format, GLsizei stride, const void* pointer);
 void client_state(Context&, GLenum array, bool enabled);
@@ -207,7 +208,7 @@ void delete_textures(Context&, GLsizei n, const GLuint* names);
 GLboolean is_texture(Context&, GLuint name);
 GLboolean are_textures_resident(Context&, GLsizei n, const GLuint* names, GLboolean* residences);
 void get_tex_image(Context&, GLenum target, GLint level, GLenum format, GLenum type, void* pixels);
-void compressed_image(Context&);  // every glCompressedTex...: no format is supported, GL_INVALID_ENUM
+void compressed_image(Context&);  // glCompressedTex... without a format: GL_INVALID_ENUM
 
 // Lists (list.cpp): call_list and call_lists are list themselves and allowed between glBegin and glEnd.
 void new_list(Context&, GLuint name, GLenum mode);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "embedded.hpp"
 #include "entry_conversions.hpp"
 
 namespace halfplane::gl {
@@ -96,7 +97,7 @@ const std::array entry_points{std::to_array<EntryPoint>({
   {"glColorPointer", function([](GLint size, GLenum type, GLsizei stride, const void* pointer) { return now<&color_pointer>(size, type, stride, pointer); })},
   {"glColorPointerEXT", function([](GLint size, GLenum type, GLsizei stride, GLsizei, const void* pointer) { return now<&color_pointer>(size, type, stride, pointer); })},
   {"glCompressedTexImage1D", function([](GLenum, GLint, GLenum, GLsizei, GLint, GLsizei, const void*) { return listed<&compressed_image>(); })},
-  {"glCompressedTexImage2D", function([](GLenum, GLint, GLenum, GLsizei, GLsizei, GLint, GLsizei, const void*) { return listed<&compressed_image>(); })},
+  {"glCompressedTexImage2D", function([](GLenum target, GLint level, GLenum internalformat, GLsizei width, GLsizei height, GLint border, GLsizei imageSize, const void* data) { return with_context([&](Context& c) { enter_compressed_image(c, target, level, internalformat, width, height, border, imageSize, data); }); })},
   {"glCompressedTexImage3D", function([](GLenum, GLint, GLenum, GLsizei, GLsizei, GLsizei, GLint, GLsizei, const void*) { return listed<&compressed_image>(); })},
   {"glCompressedTexSubImage1D", function([](GLenum, GLint, GLint, GLsizei, GLenum, GLsizei, const void*) { return listed<&compressed_image>(); })},
   {"glCompressedTexSubImage2D", function([](GLenum, GLint, GLint, GLint, GLsizei, GLsizei, GLenum, GLsizei, const void*) { return listed<&compressed_image>(); })},
@@ -353,6 +354,7 @@ const std::array entry_points{std::to_array<EntryPoint>({
   {"glPointParameterx", function([](GLenum pname, GLfixed param) { return listed<&point_parameter>(pname, scalar_fixed(pname, param)); })},
   {"glPointParameterxv", function([](GLenum pname, const GLfixed* params) { return listed<&point_parameter>(pname, vector_fixed(pname, params)); })},
   {"glPointSize", function([](GLfloat size) { return listed<&point_size>(real(size)); })},
+  {"glPointSizePointerOES", function([](GLenum type, GLsizei stride, const void* pointer) { return now<&point_size_pointer>(type, stride, pointer); })},
   {"glPointSizex", function([](GLfixed size) { return listed<&point_size>(fixed(size)); })},
   {"glPolygonMode", function([](GLenum face, GLenum mode) { return listed<&polygon_mode>(face, mode); })},
   {"glPolygonOffset", function([](GLfloat factor, GLfloat units) { return listed<&polygon_offset>(real(factor), real(units)); })},

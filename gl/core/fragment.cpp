@@ -5,6 +5,7 @@
 
 #include "commands.hpp"
 #include "context.hpp"
+#include "embedded.hpp"
 #include "matrix.hpp"
 #include "primitive.hpp"
 
@@ -104,6 +105,7 @@ void return_accumulated(Context& context, float value) {
 }  // namespace
 
 void enable(Context& context, GLenum cap, bool enabled) {
+  if (!takes_enable(context, cap)) return context.fail(GL_INVALID_ENUM);
   bool* const flag = enable_flag(context, cap);
   if (flag == nullptr) return client_state(context, cap, enabled);  // GL_EXT_vertex_array enables arrays here
   *flag = enabled;

@@ -1,8 +1,12 @@
 // Queries of state by tables (OpenGL 1.5, 6.1 and tables 6.5 to 6.35).
 #include <array>
+#include <bit>
+#include <cstring>
+#include <numeric>
 #include <utility>
 
 #include "commands.hpp"
+#include "embedded.hpp"
 
 namespace halfplane::gl {
 namespace {
@@ -35,6 +39,13 @@ Numbers transposed(const Mat4& m) {
   Mat4 rows;
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = m[i % 4 * 4 + i / 4];
   return rows;
+}
+
+/// GL_OES_matrix_get: the bits of its floats.
+Numbers bits_of(const Mat4& m) {
+  std::array<GLint, 16> bits;
+  std::ranges::transform(m, bits.begin(), [](double v) { return std::bit_cast<GLint>(static_cast<GLfloat>(v)); });
+  return bits;
 }
 
 Config config_of(const Context& context) {
@@ -106,6 +117,9 @@ const StateValue kStateValues[] = {
     {GL_TRANSPOSE_MODELVIEW_MATRIX, [](const Context& c) { return transposed(c.modelview.back()); }},
     {GL_TRANSPOSE_PROJECTION_MATRIX, [](const Context& c) { return transposed(c.projection.back()); }},
     {GL_TRANSPOSE_TEXTURE_MATRIX, [](const Context& c) { return transposed(active(c, c.texture_matrix).back()); }},
+    {kModelviewBits, [](const Context& c) { return bits_of(c.modelview.back()); }},
+    {kProjectionBits, [](const Context& c) { return bits_of(c.projection.back()); }},
+    {kTextureMatrixBits, [](const Context& c) { return bits_of(active(c, c.texture_matrix).back()); }},
     {GL_MODELVIEW_STACK_DEPTH, [](const Context& c) -> Numbers { return c.modelview.size(); }},
     {GL_PROJECTION_STACK_DEPTH, [](const Context& c) -> Numbers { return c.projection.size(); }},
     {GL_TEXTURE_STACK_DEPTH, [](const Context& c) -> Numbers { return active(c, c.texture_matrix).size(); }},
@@ -264,8 +278,14 @@ const StateValue kStateValues[] = {
     {GL_STEREO, [](const Context&) -> Numbers { return false; }},
     {GL_SAMPLE_BUFFERS, [](const Context& c) -> Numbers { return samples(c) == 0 ? 0 : 1; }},
     {GL_SAMPLES, [](const Context& c) -> Numbers { return samples(c); }},
-    {GL_NUM_COMPRESSED_TEXTURE_FORMATS, [](const Context&) -> Numbers { return 0; }},
-    {GL_COMPRESSED_TEXTURE_FORMATS, [](const Context&) -> Numbers { return std::array<int, 0>{}; }},
+    {GL_NUM_COMPRESSED_TEXTURE_FORMATS, [](const Context& c) -> Numbers { return c.is_embedded ? kPalettes : 0; }},
+    {GL_COMPRESSED_TEXTURE_FORMATS,
+     [](const Context& c) -> Numbers {
+       if (!c.is_embedded) return std::array<GLenum, 0>{};
+       std::array<GLenum, kPalettes> formats;
+       std::iota(formats.begin(), formats.end(), kFirstPalette);
+       return formats;
+     }},
     {GL_IMPLEMENTATION_COLOR_READ_TYPE, [](const Context&) -> Numbers { return GL_UNSIGNED_BYTE; }},
     {GL_IMPLEMENTATION_COLOR_READ_FORMAT, [](const Context&) -> Numbers { return GL_RGBA; }},
     // 6.33: bits of the buffers
@@ -321,6 +341,7 @@ constexpr Enable kEnables[] = {
     {GL_MAP2_COLOR_4, 9, [](State& s, std::size_t i) { return &s.eval.map2[i]; }},
     {GL_MULTISAMPLE, 1, [](State& s, std::size_t) { return &s.multisample.enabled; }},
     {GL_NORMALIZE, 1, [](State& s, std::size_t) { return &s.transform.normalize; }},
+    {GL_POINT_SPRITE, 1, [](State& s, std::size_t) { return &s.point.sprite; }},
     {GL_POINT_SMOOTH, 1, [](State& s, std::size_t) { return &s.point.smooth; }},
     {GL_POLYGON_OFFSET_FILL, 1, [](State& s, std::size_t) { return &s.polygon.offset_fill; }},
     {GL_POLYGON_OFFSET_LINE, 1, [](State& s, std::size_t) { return &s.polygon.offset_line; }},
@@ -364,6 +385,8 @@ constexpr ArrayNames kArrays[] = {
      }},
     {GL_FOG_COORD_ARRAY, 0, GL_FOG_COORD_ARRAY_TYPE, GL_FOG_COORD_ARRAY_STRIDE, GL_FOG_COORD_ARRAY_BUFFER_BINDING,
      GL_FOG_COORD_ARRAY_POINTER, [](const ClientState& c) -> const ArrayPointer& { return c.fog_coord; }},
+    {kPointSizeArray, 0, kPointSizeArrayType, kPointSizeArrayStride, kPointSizeArrayBufferBinding,
+     kPointSizeArrayPointer, [](const ClientState& c) -> const ArrayPointer& { return c.point_size; }},
     {GL_EDGE_FLAG_ARRAY, 0, 0, GL_EDGE_FLAG_ARRAY_STRIDE, GL_EDGE_FLAG_ARRAY_BUFFER_BINDING, GL_EDGE_FLAG_ARRAY_POINTER,
      [](const ClientState& c) -> const ArrayPointer& { return c.edge_flag; }},
 };
@@ -377,6 +400,7 @@ std::vector<float> pixel_map_of(const Context& context, GLenum map) {
 
 constexpr const char* kExtensions =
     "GL_ARB_depth_texture GL_ARB_multisample GL_ARB_multitexture GL_ARB_occlusion_query GL_ARB_point_parameters "
+    "GL_ARB_point_sprite "
     "GL_ARB_shadow GL_ARB_texture_cube_map GL_ARB_texture_env_add GL_ARB_texture_env_combine "
     "GL_ARB_texture_env_crossbar GL_ARB_texture_env_dot3 GL_ARB_texture_mirrored_repeat GL_ARB_transpose_matrix "
     "GL_ARB_vertex_buffer_object GL_ARB_window_pos GL_EXT_abgr GL_EXT_bgra GL_EXT_blend_color "
@@ -456,8 +480,8 @@ const GLubyte* get_string(Context& context, GLenum name) {
         context.renderer =
             context.drawable == nullptr ? "Halfplane" : "Halfplane " + label(context.drawable->frame.options().config);
       return text(context.renderer.c_str());
-    case GL_VERSION: return text(context.is_embedded ? "OpenGL ES-CM 1.0 Halfplane 0.1" : "1.5 Halfplane 0.1");
-    case GL_EXTENSIONS: return text(kExtensions);
+    case GL_VERSION: return text(context.is_embedded ? kEmbeddedVersion : "1.5 Halfplane 0.1");
+    case GL_EXTENSIONS: return text(context.is_embedded ? kEmbeddedExtensions : kExtensions);
     default: context.fail(GL_INVALID_ENUM); return nullptr;
   }
 }

@@ -148,7 +148,7 @@ class Pipeline {
       return add({.kind = DrawKind::points, .topology = Topology::points, .point_size = size}, vertices);
     if (!to_window(vertices)) return;
     if (is_fed_) return feed_primitive(context_, GL_POINT_TOKEN, vertices);
-    if (state_.point.smooth) missing("smooth points with a texture", "they are squares");
+    if (state_.point.smooth && !state_.point.sprite) missing("smooth points with a texture", "they are squares");
     rectangle(DrawKind::points, {vertices[0], vertices[0]}, {size / 2, 0}, {0, size / 2});
   }
 
@@ -229,6 +229,10 @@ class Pipeline {
     std::array<ShadedVertex, 4> corner;
     for (std::size_t i = 0; i < 4; ++i) {
       corner[i] = ends[i / 2];
+      if (kind == DrawKind::points && state_.point.sprite)  // from the upper left corner
+        for (std::size_t unit = 0; unit < kTextureUnits; ++unit)
+          if (state_.texture.unit[unit].coord_replace)
+            corner[i].tex_coord[unit] = {i < 2 ? 0.0 : 1.0, i % 2 == 0 ? 1.0 : 0.0, 0, 1};
       for (std::size_t c = 0; c < 2; ++c)
         corner[i].clip[c] += (i < 2 ? -along[c] : along[c]) + (i % 2 == 0 ? -across[c] : across[c]);
     }
@@ -240,7 +244,7 @@ class Pipeline {
  public:
   [[nodiscard]] double point_size(const ShadedVertex& v) const {
     const double size = v.point_size > 1 ? std::min<double>(v.point_size, kLargestPoint) : 1;
-    return state_.point.smooth ? size : std::rint(size);
+    return state_.point.smooth || (state_.point.sprite && is_textured_) ? size : std::rint(size);
   }
 
  private:

@@ -54,14 +54,18 @@ void shade_current(const Context& context, const Vec4& position, ShadedVertex& v
 /// 0, 1, ..., count - 1. Valid until the next call in this thread.
 [[nodiscard]] std::span<const std::uint32_t> counting(std::size_t count);
 
-/// Keeps the current attributes, and the materials that follow the colour, while others take their place.
+/// Keeps the current attributes, the materials that follow the colour, and the size of points, while others take their place.
 class CurrentKept {
  public:
   explicit CurrentKept(Context& context)
-      : context_(context), current_(context.state.current), material_(context.state.lighting.material) {}
+      : context_(context),
+        current_(context.state.current),
+        material_(context.state.lighting.material),
+        size_(context.state.point.size) {}
   ~CurrentKept() {
     context_.state.current = current_;
     context_.state.lighting.material = material_;
+    context_.state.point.size = size_;
     forget_lit(context_);
   }
   CurrentKept(const CurrentKept&) = delete;
@@ -71,6 +75,7 @@ class CurrentKept {
   Context& context_;
   CurrentState current_;
   std::array<Material, 2> material_;
+  double size_;
 };
 
 }  // namespace halfplane::gl

@@ -52,7 +52,7 @@ struct CurrentState {  // GL_CURRENT_BIT
 struct PointState {  // GL_POINT_BIT
   double size = 1, least = 0, largest = 1e6, fade = 1;
   Vec3 attenuation{1, 0, 0};  ///< 1 / sqrt(a + b d + c d^2) multiplies the size
-  bool smooth = false;
+  bool smooth = false, sprite = false;
 };
 
 struct LineState {  // GL_LINE_BIT
@@ -209,6 +209,7 @@ struct TextureUnit {
   GLenum env_mode = GL_MODULATE;
   Vec4 env_color{0, 0, 0, 0};
   double lod_bias = 0;
+  bool coord_replace = false;              ///< of point sprites
   std::array<TextureCombiner, 2> combine;  ///< RGB, alpha
   std::array<TexGen, 4> gen;               ///< s, t, r, q
   TextureUnit() {
@@ -266,13 +267,13 @@ struct ArrayPointer {
 /// Everything that glPushClientAttrib can save.
 struct ClientState {
   PixelStore pack, unpack;
-  ArrayPointer vertex, normal, color, secondary, index, edge_flag, fog_coord;
+  ArrayPointer vertex, normal, color, secondary, index, edge_flag, fog_coord, point_size;
   std::array<ArrayPointer, kTextureUnits> tex_coord;
   int active_texture = 0;
   GLuint array_buffer = 0, element_buffer = 0;
   ClientState() {
     normal.size = secondary.size = 3;
-    index.size = edge_flag.size = fog_coord.size = 1;
+    index.size = edge_flag.size = fog_coord.size = point_size.size = 1;
     edge_flag.type = GL_UNSIGNED_BYTE;
   }
 };

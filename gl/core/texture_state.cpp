@@ -67,6 +67,7 @@ std::optional<Place> texture_place(TextureObject& t, GLenum pname) {
 
 std::optional<Place> environment_place(TextureUnit& unit, GLenum target, GLenum pname) {
   if (target == GL_TEXTURE_FILTER_CONTROL && pname == GL_TEXTURE_LOD_BIAS) return Place{&unit.lod_bias};
+  if (target == GL_POINT_SPRITE && pname == GL_COORD_REPLACE) return Place{&unit.coord_replace};
   if (target != GL_TEXTURE_ENV) return std::nullopt;
   const std::span<const GLenum> functions = kFunctions, operands = kOperands;
   auto& [rgb, alpha] = unit.combine;

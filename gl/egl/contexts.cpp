@@ -32,7 +32,7 @@ EGLContext create_context(EGLDisplay handle, EGLConfig config, EGLContext share,
   constexpr EGLAttrib kForwardOrRobust =
       EGL_CONTEXT_OPENGL_FORWARD_COMPATIBLE_BIT_KHR | EGL_CONTEXT_OPENGL_ROBUST_ACCESS_BIT_KHR;
   require((flags & ~(EGL_CONTEXT_OPENGL_DEBUG_BIT_KHR | (is_es ? 0 : kForwardOrRobust))) == 0, EGL_BAD_ATTRIBUTE);
-  require(major == 1 && minor >= 0 && minor <= (is_es ? 0 : 5) && (flags & kForwardOrRobust) == 0 &&
+  require(major == 1 && minor >= 0 && minor <= (is_es ? 1 : 5) && (flags & kForwardOrRobust) == 0 &&
               wishes[EGL_CONTEXT_OPENGL_ROBUST_ACCESS] == EGL_FALSE &&
               (is_es || wishes[EGL_CONTEXT_OPENGL_FORWARD_COMPATIBLE] == EGL_FALSE),
           EGL_BAD_MATCH);
