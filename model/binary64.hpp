@@ -1,4 +1,5 @@
-// Powers of two and exponents of binary64 by its bits: what std::ldexp() and std::ilogb() answer, without a call for normal numbers.
+// Powers of two and exponents of binary64 by its bits: what std::ldexp() and std::ilogb() answer, without a call for
+// normal numbers.
 #pragma once
 
 #include <bit>

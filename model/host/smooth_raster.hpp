@@ -3,8 +3,8 @@
 // Host side, binary64, contraction off. Which of the rectangle's four sides cut a pixel's square is known by their distances
 // from its centre. What one side or two opposite ones cut off is a triangle or a trapezoid each; where others meet in the
 // square, it is cut by one after the other (Sutherland and Hodgman, CACM 17(1), 1974), and the rest is measured by the
-// shoelace formula. The corners are exact; distances and cuts round, so the error of areas is below 2^-40 pixel^2. The error for a disc is up to 0.004, in a pixel
-// with its top or bottom (tests/unit/smooth_test.cpp).
+// shoelace formula. The corners are exact; distances and cuts round, so the error of areas is below 2^-40 pixel^2. The error
+// for a disc is up to 0.004, in a pixel with its top or bottom (tests/unit/smooth_test.cpp).
 #pragma once
 
 #include <array>
