@@ -1,4 +1,5 @@
 // Queries of state by tables (OpenGL 1.5, 6.1 and tables 6.5 to 6.35).
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
