@@ -11,6 +11,8 @@
 #include "model/generate/raster_pkg.hpp"
 #include "model/host/stream_rules.hpp"
 #include "model/packets/packet_words.hpp"
+#include "model/stages/depth_test.hpp"
+#include "model/stages/memory_port.hpp"
 #include "model/vectors/stages.hpp"
 
 using namespace halfplane;

@@ -73,10 +73,10 @@ int run(int argc, char** argv) {
       "a broken bound, 2 wrong usage or bad input, 3 something is missing, 130 interrupted,\n141 stdout is closed.");
   Action selected;
   for (AddCommand* add :
-       {add_render_command, add_compare_command, add_cosim_command, add_reduce_command, add_mutants_command,
-        add_depth_command, add_bench_command, add_stress_command, add_scenes_command, add_widths_command,
-        add_config_command, add_convert_command, add_explain_command, add_vectors_command, add_check_command,
-        add_run_command, add_regress_command, add_completions_command, add_man_command})
+       {add_render_command, add_compare_command, add_cosim_command,   add_reduce_command,      add_mutants_command,
+        add_depth_command,  add_bench_command,   add_stress_command,  add_scenes_command,      add_widths_command,
+        add_config_command, add_convert_command, add_explain_command, add_vectors_command,     add_check_command,
+        add_run_command,    add_regress_command, add_cover_command,   add_completions_command, add_man_command})
     add(app, selected);
   check_command(app, argc, argv);
   try {

@@ -19,6 +19,7 @@
 #include "../stages/primitive_join.hpp"
 #include "../stages/tile_cache.hpp"
 #include "../stages/triangle_setup.hpp"
+#include "hardware_watch.hpp"
 
 namespace halfplane {
 
@@ -37,6 +38,7 @@ class HardwareModel::Pipeline final : private MemoryPort {
   }
   void hold_textures(TextureMemory textures) { texels_ = std::move(textures); }
   void tap_writes(std::function<void(const WritePacket&)> tap) { written_ = std::move(tap); }
+  void set_watch(HardwareWatch* watch) { watch_ = watch; }
   void run(const PrimitivePacket& primitive, const std::optional<LineSetup>& line);
   [[nodiscard]] const Config& config() const { return config_; }
   [[nodiscard]] const CounterPacket& counters() const { return counters_; }
@@ -54,6 +56,7 @@ class HardwareModel::Pipeline final : private MemoryPort {
   Config config_;
   Widths widths_;
   PacketSink& sink_;
+  HardwareWatch* watch_ = nullptr;
   CounterPacket counters_;
   Hiz hiz_;
   std::variant<TileCache, BlockCache> cache_;
@@ -109,7 +112,17 @@ struct HardwareModel::Pipeline::StampPort {
   const FragmentPacket& fragment;
 
   [[nodiscard]] std::span<const std::uint32_t> stored() const {
-    return std::visit([this](auto& cache) { return cache.access(fragment, model, model.counters_); }, model.cache_);
+    const std::span<const std::uint32_t> words = std::visit(
+        [this](auto& cache) -> std::span<const std::uint32_t> {
+          return cache.access(fragment, model, model.counters_);
+        },
+        model.cache_);
+    if (model.watch_ != nullptr) {
+      if (const auto* blocks = std::get_if<BlockCache>(&model.cache_))
+        model.watch_->looked_up(fragment, blocks->last_lookup());
+      model.watch_->meets(fragment, words, model.path_.stencil());
+    }
+    return words;
   }
   void interpolate_colors(SampleMask) const {}
   void interpolate_over_w(SampleMask) const {}
@@ -146,7 +159,8 @@ void HardwareModel::Pipeline::shade(const FragmentPacket& fragment) {
     case PrimitiveKind::line: break;
   }
   if (fragment.mask.any()) {
-    (void)path_.shade(fragment, counters_, StampPort{*this, fragment});
+    const StampFate fate = path_.shade(fragment, counters_, StampPort{*this, fragment});
+    if (watch_ != nullptr) watch_->shaded(fragment, fate, path_.colors());
   }
   if (fragment.ends_visit) {
     const RetirePacket retired = path_.retire(fragment);
@@ -213,6 +227,7 @@ HardwareModel& HardwareModel::operator=(HardwareModel&&) noexcept = default;
 
 void HardwareModel::hold_textures(const Scene& scene) { hold_textures(TextureMemory(scene, pipeline_->config())); }
 void HardwareModel::hold_textures(TextureMemory textures) { pipeline_->hold_textures(std::move(textures)); }
+void HardwareModel::set_watch(HardwareWatch* watch) { pipeline_->set_watch(watch); }
 void HardwareModel::tap_writes(std::function<void(const WritePacket&)> tap) { pipeline_->tap_writes(std::move(tap)); }
 void HardwareModel::run(const PrimitivePacket& primitive, const std::optional<LineSetup>& line) {
   pipeline_->run(primitive, line);

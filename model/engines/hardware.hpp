@@ -14,6 +14,8 @@
 
 namespace halfplane {
 
+class HardwareWatch;  // hardware_watch.hpp
+
 /// The whole chip and its memory, after reset. `sink` must outlive it.
 class HardwareModel {
  public:
@@ -29,6 +31,8 @@ class HardwareModel {
   /// From now on `tap` gets what each stamp leaves in the framebuffer: the write's masks and words downstream of all
   /// units, in the stored formats. The RTL has no wire with all of them.
   void tap_writes(std::function<void(const WritePacket&)> tap);
+  /// `watch`, which must outlive this, sees the work from now on; null: nothing does.
+  void set_watch(HardwareWatch* watch);
   /// Runs one primitive, to its last write: every packet that follows from it. `line`: present if and only if its kind
   /// is line.
   void run(const PrimitivePacket& primitive, const std::optional<LineSetup>& line = std::nullopt);

@@ -1,6 +1,7 @@
 #include <ostream>
 
 #include "sim/cli/commands.hpp"
+#include "sim/cli/coverage_option.hpp"
 #include "sim/cli/explain_output.hpp"
 #include "sim/cli/options.hpp"
 #include "sim/cosim/junit.hpp"
@@ -11,7 +12,7 @@ namespace halfplane {
 namespace {
 
 struct CheckOptions : CommonOptions {
-  std::string stage, file, vectors, junit;
+  std::string stage, file, vectors, junit, coverage;
 };
 
 /// The file to judge: with --vectors the input comes from that file, and the output from FILE.
@@ -121,12 +122,15 @@ int run(const CheckOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   check_output(options.json);
   check_output(options.junit);
-  check_distinct({options.file, options.vectors, options.json, options.junit});
+  check_output(options.coverage, ".json");
+  check_distinct({options.file, options.vectors, options.json, options.junit, options.coverage});
   (void)vectors::judged_stage(options.stage);
   const vectors::VectorFile file = checked_file(options);
   vectors::Judgement judgement;
+  std::optional<cover::PacketCoverage> coverage;
+  if (!options.coverage.empty()) coverage.emplace(file.config);
   try {
-    judgement = vectors::judge(*file.stage, file.config, file.packets);
+    judgement = vectors::judge(*file.stage, file.config, file.packets, coverage ? &*coverage : nullptr);
   } catch (const InputError& error) {
     throw InputError(options.file + ": " + error.what());
   }
@@ -136,10 +140,21 @@ int run(const CheckOptions& options) {
   result["stage"] = options.stage;
   result["file"] = options.file;
   result["packets"] = judgement_json(*file.stage, judgement);
+  std::string covered;
+  if (coverage) {
+    std::vector<Arrow> arrows;
+    for (const auto* ports : {&file.stage->in, &file.stage->out})
+      for (const vectors::Port& port : *ports)
+        if (port.name == info(port.like).name) arrows.push_back(port.like);
+    covered = save_coverage(options.coverage, coverage->hits(), file.config,
+                            {typed_command(), options.file, label(file.config), file.source.seed.value_or(0)},
+                            cover::Source::ports, result, arrows, options.stage);
+  }
   result["wall_s"] = seconds_since(start);
   write_check_junit(options, file, judgement, result);
   write_json(options, result);
   print_judgement(human(options), file, judgement);
+  human(options) << covered;
   return judgement.first || judgement.total_compared() == 0 ? exit_mismatch : exit_ok;
 }
 
@@ -161,6 +176,7 @@ void add_check_command(CLI::App& app, Action& selected) {
       ->check(refuse_empty)
       ->type_name("FILE");
   add_file_option(*command, "--junit", options->junit, "result as JUnit XML");
+  add_coverage_option(*command, options->coverage);
   command->footer(
       "\nThe specification of the stage runs on the inputs, in order from reset, and every output bit is\n"
       "compared. The exit status is 1 where one differs.\n"

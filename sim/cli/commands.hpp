@@ -16,7 +16,7 @@ using AddCommand = void(CLI::App& app, Action& selected);
 AddCommand add_render_command, add_compare_command, add_cosim_command, add_reduce_command, add_mutants_command,
     add_depth_command, add_bench_command, add_stress_command, add_scenes_command, add_widths_command,
     add_config_command, add_convert_command, add_explain_command, add_vectors_command, add_check_command,
-    add_run_command, add_regress_command, add_completions_command, add_man_command;
+    add_run_command, add_regress_command, add_cover_command, add_completions_command, add_man_command;
 
 template <class Options>
 struct AddedCommand {

@@ -7,6 +7,7 @@
 #include "model/host/primitive_assembly.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/cosim_options.hpp"
+#include "sim/cli/coverage_option.hpp"
 #include "sim/cli/progress.hpp"
 #include "sim/cosim/report.hpp"
 #include "sim/cosim/specification.hpp"
@@ -37,9 +38,14 @@ TraceWindow trace_window(const CosimOptions& options) {
 }
 
 /// Runs the whole stimulus, with progress over all of it.
-Session run_stimulus(const CosimOptions& options, const Config& config, Dut& dut, SceneSource source) {
+Session run_stimulus(const CosimOptions& options, const Config& config, Dut& dut, SceneSource source,
+                     cover::Collector* coverage) {
   Progress progress(options, "co-simulating", "primitives");
   LockstepOptions lockstep = lockstep_options(options);
+  if (coverage != nullptr) {
+    lockstep.counts_use = true;
+    lockstep.watch = [coverage](const Scene& scene, const Config& host) { coverage->run(scene, host); };
+  }
   const TraceWindow window = trace_window(options);
   lockstep.trace = options.trace_path;
   lockstep.trace_first = window.first;
@@ -207,7 +213,9 @@ int run(const CosimOptions& options) {
   const Config config = effective_config(options);
   require_sampled_hardware(config, "the RTL");
   check_output(options.save_path, ".hpt");
-  check_distinct({options.scene, options.json, options.save_path, options.junit_path, options.trace_path});
+  check_distinct(
+      {options.scene, options.json, options.save_path, options.junit_path, options.trace_path, options.coverage});
+  check_output(options.coverage, ".json");
   check_output(options.junit_path);
   (void)trace_window(options);
   if (!options.trace_path.empty()) (void)PartFile(options.trace_path);  // before a long run
@@ -219,8 +227,11 @@ int run(const CosimOptions& options) {
     check_hardware_scene(*scene, config);
   }
   const std::unique_ptr<Dut> dut = make_dut(factory);
+  std::optional<cover::Collector> coverage;
+  if (!options.coverage.empty()) coverage.emplace(config);
   const Session session = run_stimulus(
-      options, config, *dut, scene ? single_scene(std::move(*scene)) : random_source(options, options, config));
+      options, config, *dut, scene ? single_scene(std::move(*scene)) : random_source(options, options, config),
+      coverage ? &*coverage : nullptr);
   const bool is_empty = session.result.total() == 0 && !session.result.is_stopped;
 
   Json result = session_json(options, config, factory, session);
@@ -246,6 +257,13 @@ int run(const CosimOptions& options) {
     result["trace_cycles"] =
         session.has_trace ? Json({window.first, std::min(window.last, session.result.clocks - 1)}) : Json(nullptr);
   }
+  std::string covered;
+  if (coverage) {
+    coverage->add(session.result.use);
+    covered = save_coverage(options.coverage, coverage->hits(), config,
+                            {typed_command(), stimulus_text(options, options), label(config), options.seed},
+                            cover::Source::rtl, result);
+  }
   std::ostream& out = human(options);
   print_equal(out, options, config, session);
   if (!session.disagreement.empty()) {
@@ -270,6 +288,7 @@ int run(const CosimOptions& options) {
                                       " crossings") +
                            (options.random != 0 ? "; and the model's pictures the scalar engine's\n" : "\n"));
   }
+  if (coverage) out << covered;
   if (is_whole_run_traced && session.trace_failure.empty())
     out << "waveform    " << trace_text(options, factory, session) << '\n';
   if (!options.junit_path.empty()) write_cosim_junit(options, config, session, saved ? &*saved : nullptr, result);
@@ -300,6 +319,7 @@ void add_cosim_command(CLI::App& app, Action& selected) {
       ->type_name("WINDOW");
   add_file_option(*command, "--save", options->save_path, "capture of a mismatch, .hpt (default out/cosim-NAME.hpt)");
   add_file_option(*command, "--junit", options->junit_path, "result as JUnit XML");
+  add_coverage_option(*command, options->coverage);
   command->footer(
       "\nA mismatch is reduced to the fewest primitives, saved as a capture with a waveform, and printed bit by bit.\n"
       "\nExample:\n  halfplane cosim --random 10000 --stalls 0.3 --seed 7");

@@ -16,6 +16,7 @@ struct CosimOptions : CommonOptions, RandomOptions {
   MemorySettings memory;
   std::string junit_path, trace_path, save_path;
   std::string trace_cycles;  ///< FIRST:LAST
+  std::string coverage;      ///< file
 };
 
 /// Adds --stalls.

@@ -3,6 +3,7 @@
 #include <ostream>
 
 #include "sim/cli/commands.hpp"
+#include "sim/cli/coverage_option.hpp"
 #include "sim/cli/progress.hpp"
 #include "sim/cli/random_options.hpp"
 #include "sim/vectors/vector_file.hpp"
@@ -11,7 +12,7 @@ namespace halfplane {
 namespace {
 
 struct VectorsOptions : CommonOptions, RandomOptions {
-  std::string stage, format = "jsonl", output;
+  std::string stage, format = "jsonl", output, coverage;
 };
 
 vectors::Format vector_format(const std::string& name) {
@@ -44,13 +45,23 @@ int run(const VectorsOptions& options) {
   if (format == vectors::Format::hex && options.output == "-")
     throw InputError("-o: hex vectors are a folder, which cannot go to stdout; give its name");
   if (format != vectors::Format::hex) check_output(options.output);
-  check_distinct({options.scene, options.output, options.json});
+  check_distinct({options.scene, options.output, options.json, options.coverage});
+  check_output(options.coverage, ".json");
   const Config config = effective_config(options);
   const vectors::JudgedStage& stage = vectors::judged_stage(options.stage);
   vectors::require_stage(stage, config);
   double load_s = 0;
-  const SceneSource scenes =
+  SceneSource scenes =
       options.random != 0 ? random_source(options, options, config) : single_scene(load_scene(options, config, load_s));
+  std::optional<cover::Collector> coverage;
+  if (!options.coverage.empty()) {
+    coverage.emplace(config);
+    scenes = [source = std::move(scenes), &coverage, &config]() mutable {
+      auto scene = source();
+      if (scene) coverage->run(*scene, config);
+      return scene;
+    };
+  }
   Progress progress(options, "recording", "primitives");
   const vectors::StagePackets packets = vectors::record_stage(stage, config, scenes, [&progress](std::uint64_t sent) {
     progress(std::numeric_limits<double>::quiet_NaN(), sent);
@@ -66,6 +77,11 @@ int run(const VectorsOptions& options) {
   result["out"] = port_counts(stage.out, packets.out);
   result["files"] = Json::array();
   for (const auto& [path, bytes] : written) result["files"].push_back({{"path", path}, {"bytes", bytes}});
+  const std::string covered =
+      !coverage ? ""
+                : save_coverage(options.coverage, coverage->hits(), config,
+                                {typed_command(), stimulus_text(options, options), label(config), options.seed},
+                                cover::Source::model, result);
   finish_json(options, result, start);
   std::ostream& out = human(options);
   out << options.stage << " of " << vector_source(options).text << ", " << label(config) << ", seed " << options.seed
@@ -73,6 +89,7 @@ int run(const VectorsOptions& options) {
       << "in   " << ports_text(stage.in, packets.in) << '\n'
       << "out  " << ports_text(stage.out, packets.out) << '\n';
   for (const auto& [path, bytes] : written) out << path << "  " << with_commas(bytes) << " bytes\n";
+  out << covered;
   if (!stage.can_run()) out << "`halfplane check` cannot judge this stage: " << stage.why_not << '\n';
   return exit_ok;
 }
@@ -95,6 +112,7 @@ void add_vectors_command(CLI::App& app, Action& selected) {
       ->capture_default_str();
   add_file_option(*command, "-o", options->output, "the file, or for hex the folder; - for stdout");
   command->get_option("-o")->required();
+  add_coverage_option(*command, options->coverage);
   command->footer(
       "\nThe hardware model runs from reset. Judge the outputs of your implementation with `halfplane check`.\n"
       "\nExample:\n  halfplane vectors --random 200 --stage fine_raster -o fine_raster.jsonl");

@@ -143,6 +143,7 @@ void Lockstep::run_and_reset(const Scene& scene, std::uint64_t cycles) {
 }
 
 LockstepResult Lockstep::run(const Scene& scene, const Config& host_config, bool draws_all) {
+  if (options_.watch) options_.watch(scene, host_config);
   Random random(options_.seed + cycle_);
   for (int n = 0; n < options_.resets; ++n) {
     run_and_reset(scene, 1 + random.next() % kMostCyclesBeforeReset);
@@ -342,7 +343,7 @@ void Lockstep::step(HostStream& host) {
     fail_protocol(std::string(info(Stage::memory_port).name), "idle_o is high before memory has answered");
   was_idle_ = out.idle && !taken;  // a packet taken now is not yet under way
   if (moved) last_moved_ = cycle_;
-  if (!options_.compares) count_use(out);
+  if (!options_.compares || options_.counts_use) count_use(out);
   dut_.clock();
   ++cycle_;
 }

@@ -70,7 +70,10 @@ struct LockstepOptions {
   MemorySettings memory;         ///< connected to the RTL's memory port
   std::uint16_t mutant = 0;
   bool drains_clears = false;  ///< no packet enters after a fast clear until it is done: for cycles of primitives only
-  bool compares = true;        ///< false: only the design, for its image and counters
+  bool counts_use = false;     ///< counts the cycles of streams (LockstepResult::use) while it compares, too
+  /// Called with each scene that is run to its end, as it is sent, before it is. May be empty.
+  std::function<void(const Scene& scene, const Config& host)> watch;
+  bool compares = true;  ///< false: only the design, for its image and counters
   /// With `compares`, and without `drains_clears`: the cycle of every crossing of every boundary against the cycle model.
   bool compares_cycles = false;
   int resets =
@@ -105,7 +108,7 @@ struct LockstepResult {
   std::uint64_t model_raster_cycles = 0, model_tile_cycles = 0;  ///< likewise of `raster_cycles`, `tile_cycles`
   std::uint64_t clocks = 0;  ///< simulated clocks, including the wait for an extra packet
   std::uint64_t drawn = 0;   ///< input triangles with a piece that passed cull; only if nothing is compared
-  std::array<StreamUse, kStreams.size()> use{};  ///< by kStreams; only if nothing is compared
+  std::array<StreamUse, kStreams.size()> use{};  ///< by kStreams; if nothing is compared, or counts_use
 
   [[nodiscard]] std::uint64_t total() const;
   [[nodiscard]] std::uint64_t total_cycles_compared() const;

@@ -3,13 +3,25 @@
 #include <numeric>
 #include <utility>
 
+#include "model/packets/packet_words.hpp"
+
 namespace halfplane::vectors {
 namespace {
 
+/// Gives the sink the packet of an arrow, known by its number.
+template <std::size_t... I>
+void give(PacketSink& sink, Arrow arrow, std::span<const std::uint32_t> words, const Widths& widths,
+          std::index_sequence<I...>) {
+  const auto give_one = [&]<Arrow A>(On<A> which) {
+    if (arrow == A) sink.take(which, unpack_words<PacketOf<A>>(words.data(), widths));
+  };
+  (give_one(on<static_cast<Arrow>(I)>), ...);
+}
+
 class Judge final : public StageIo {
  public:
-  Judge(const JudgedStage& stage, const Widths& widths, const StagePackets& packets)
-      : stage_(stage), widths_(widths), packets_(packets) {
+  Judge(const JudgedStage& stage, const Widths& widths, const StagePackets& packets, PacketSink* sink)
+      : stage_(stage), widths_(widths), packets_(packets), sink_(sink) {
     result_.in.resize(packets.in.size());
     result_.compared.resize(packets.out.size());
     result_.differing.resize(packets.out.size());
@@ -18,10 +30,13 @@ class Judge final : public StageIo {
 
   std::span<const std::uint32_t> take(std::size_t port) override {
     if (result_.in[port] == packets_.in[port].size()) return {};
-    return packets_.in[port][result_.in[port]++];
+    const auto words = packets_.in[port][result_.in[port]++];
+    show(stage_.in[port], words);
+    return words;
   }
 
   void send(std::size_t port, std::span<const std::uint32_t> expected) override {
+    show(stage_.out[port], expected);
     Place& at = places_[port];
     const PacketList& list = packets_.out[port];
     ++result_.compared[port];
@@ -67,6 +82,12 @@ class Judge final : public StageIo {
     bool may_be_extra = false;  ///< the packet of that difference, if all later ones come a packet later
   };
 
+  /// Ports that are no arrows are not shown.
+  void show(const Port& port, std::span<const std::uint32_t> words) {
+    if (sink_ != nullptr && port.name == info(port.like).name)
+      give(*sink_, port.like, words, widths_, std::make_index_sequence<kArrows>());
+  }
+
   [[nodiscard]] static bool is_equal(const PacketList& list, std::size_t number,
                                      std::span<const std::uint32_t> expected) {
     return number < list.size() && list.undefined(number).empty() && std::ranges::equal(expected, list[number]);
@@ -94,6 +115,7 @@ class Judge final : public StageIo {
   const JudgedStage& stage_;
   const Widths& widths_;
   const StagePackets& packets_;
+  PacketSink* sink_;
   Judgement result_;
   std::vector<Place> places_;
 };
@@ -107,12 +129,12 @@ std::size_t sum_of(const std::vector<std::size_t>& list) {
 std::size_t Judgement::total_compared() const { return sum_of(compared); }
 std::size_t Judgement::total_differing() const { return sum_of(differing); }
 
-Judgement judge(const JudgedStage& stage, const Config& config, const StagePackets& packets) {
+Judgement judge(const JudgedStage& stage, const Config& config, const StagePackets& packets, PacketSink* sink) {
   if (!stage.can_run())
     throw InputError("stage " + std::string(info(stage.stage).name) +
                      " cannot be judged: " + std::string(stage.why_not));
   const Widths widths = derive_widths(config);
-  Judge judge(stage, widths, packets);
+  Judge judge(stage, widths, packets, sink);
   run_stage(stage, judge, config, widths);
   return judge.finish();
 }

@@ -34,7 +34,9 @@ struct Judgement {
   [[nodiscard]] std::size_t total_differing() const;
 };
 
-/// Throws InputError for a stage that cannot be judged, and when an input ends too early.
-[[nodiscard]] Judgement judge(const JudgedStage& stage, const Config& config, const StagePackets& packets);
+/// Throws InputError for a stage that cannot be judged, and when an input ends too early. `sink` sees the packets of the
+/// stage's arrows, inputs as they are taken, outputs as the specification sends them; null: nothing does.
+[[nodiscard]] Judgement judge(const JudgedStage& stage, const Config& config, const StagePackets& packets,
+                              PacketSink* sink = nullptr);
 
 }  // namespace halfplane::vectors

@@ -1,5 +1,6 @@
 // Runs the page of `halfplane explain -o FILE.html` in Node.js with as much of a browser as it uses: hovers over every pixel,
-// steps through every primitive, and prints what the page then says, as JSON. `node explain_page.js FILE.html`
+// steps through every primitive, and prints what the page then says, as JSON. A page without pixels, that of `cover`, just
+// says what it says. `node explain_page.js FILE.html`
 'use strict';
 const page = require('fs').readFileSync(process.argv[2], 'utf8');
 const scripts = [...page.matchAll(/<script([^>]*)>([^]*?)<\/script>/g)];
@@ -31,6 +32,10 @@ globalThis.innerWidth = 1000;
 const code = scripts.filter(s => !s[1].includes('application/json')).map(s => s[2]).join('\n');
 (0, eval)(code.replace(/'use strict';/g, ''));
 
+if (!byId.grid) {
+  console.log(JSON.stringify({main: byId.main.textContent}));
+  process.exit();
+}
 const data = JSON.parse(byId.data.textContent), w = data.window, hovered = [], steps = [];
 byId.next.onclick();
 for (let y = 0; y < w.height; ++y)

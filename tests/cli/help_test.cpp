@@ -31,6 +31,7 @@ TEST_F(Help, EveryCommandHasAWorkedExampleThatWorks) {
                                    {"explain"},
                                    {"vectors"},
                                    {"check"},
+                                   {"cover"},
                                    {"completions"},
                                    {"man"}}) {
     Arguments arguments = command;
@@ -67,7 +68,7 @@ TEST_F(Help, ProgramWithoutArgumentsShowsACommandThatWorks) {
 TEST_F(Help, ListsTheCommandsAndTheCommonOptions) {
   const std::string program = run({"--help"}).out;
   for (const char* command : {"render", "compare", "cosim", "reduce", "mutants", "regress", "depth", "stress", "scenes",
-                              "widths", "config", "explain", "vectors", "check"})
+                              "widths", "config", "explain", "vectors", "check", "cover"})
     EXPECT_NE(program.find(command), std::string::npos) << command;
   for (const char* command : {"render", "compare"}) {
     const std::string help = run({command, "--help"}).out;

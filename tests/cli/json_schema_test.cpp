@@ -143,10 +143,16 @@ TEST_F(JsonSchema, ExplanationsAreDescribed) {
                              "t.hpt 8 8 --set msaa.samples=2", "t.hpt 8 8 --set texture.unit=nearest"});
 }
 
+TEST_F(JsonSchema, CoverageIsDescribed) {
+  expect_results("vectors", {"--random 50 --stage cull -o v.jsonl --coverage c.json"});
+  expect_results("cover", {"c.json", "c.json c.json -o d.json"});
+  for (const std::string& fault : faults("--described", "coverage", "c.json d.json")) ADD_FAILURE() << fault;
+}
+
 TEST_F(JsonSchema, VectorsAndTheirJudgementAreDescribed) {
   expect_results("vectors",
                  {"triangle --size 16x16 --stage cull -o v.jsonl", "--random 20 --stage rop --format hex -o v"});
-  expect_results("check", {"--stage cull v.jsonl", "--stage rop v"});
+  expect_results("check", {"--stage cull v.jsonl", "--stage rop v", "--stage cull v.jsonl --coverage c.json"});
   std::string text;
   {
     std::ifstream file(folder_ / "v.jsonl");

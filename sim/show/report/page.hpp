@@ -12,10 +12,10 @@ struct ReportPage {
   std::string_view head, tail;
   bool has_library;  ///< the chart library, not needed by pages without charts
 };
-extern const ReportPage kBenchPage, kDepthPage, kExplainPage, kFramesPage, kSpacePage;
+extern const ReportPage kBenchPage, kCoveragePage, kDepthPage, kExplainPage, kFramesPage, kSpacePage;
 
 /// Throws std::runtime_error when this program was built without the chart library, which every page except
-/// kExplainPage uses.
+/// kExplainPage and kCoveragePage uses.
 void require_chart_library();
 
 /// Writes the page with `data`, in the form of its script. Throws InputError as write_whole_file().
