@@ -36,11 +36,12 @@ void judge(const std::string& design, const std::vector<judges::Case>& cases, st
 
 TEST(JudgesOfRtl, RasterizationIsAsSpecified) { judge("blended", judges::rasterization(), 1, 76); }
 TEST(JudgesOfRtl, FragmentOperationsAreAsSpecified) {
-  judge("blended", judges::fragment_operations(), test::cases<std::size_t>(13, 1), test::cases(50, 700));
-  judge("stencilled", judges::fragment_operations(), test::cases<std::size_t>(13, 1), test::cases(90, 1250));
+  judge("blended", judges::fragment_operations(), test::cases<std::size_t>(13, 1), test::cases<std::size_t>(50, 700));
+  judge("stencilled", judges::fragment_operations(), test::cases<std::size_t>(13, 1),
+        test::cases<std::size_t>(90, 1250));
 }
 TEST(JudgesOfRtl, TexturesAreAsSpecified) {
-  judge("blended", judges::textures(), test::cases<std::size_t>(7, 1), test::cases(50, 380));
+  judge("blended", judges::textures(), test::cases<std::size_t>(7, 1), test::cases<std::size_t>(50, 380));
 }
 
 // Seeded faults of the RTL, each by the cases that are about it.

@@ -118,11 +118,10 @@ inline std::vector<Case> rasterization() {
     }
     auto turned = p;  // the other winding is the same picture without culling
     std::reverse(turned.begin(), turned.end());
-    cases.push_back(
-        {"triangles/" + std::string(polygon.name) + "/counter_clockwise", fan(turned, centre, false),
-         [p](const Framebuffer& f, const Config& c) { return polygon_verdict(p, true, f, c); },
-         // an edge that two triangles own
-         p.size() > 3 && polygon.name != "one_centre" ? fan(turned, centre, false) + text("t 0 1 2\n") : ""});
+    cases.push_back({"triangles/" + std::string(polygon.name) + "/counter_clockwise", fan(turned, centre, false),
+                     [p](const Framebuffer& f, const Config& c) { return polygon_verdict(p, true, f, c); },
+                     // an edge that two triangles own
+                     p.size() > 3 && polygon.name != "one_centre" ? fan(turned, centre, false) + "t 0 1 2\n" : ""});
   }
   const Corner ends[][2] = {
       {{40, 41}, {440, 41}},  {{440, 43}, {40, 43}},  {{41, 40}, {41, 440}},  {{43, 440}, {43, 40}},
