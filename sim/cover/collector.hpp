@@ -11,6 +11,7 @@
 #include "model/engines/hardware.hpp"
 #include "model/engines/hardware_watch.hpp"
 #include "model/host/primitive_stream.hpp"
+#include "model/stages/hiz.hpp"
 #include "model/timing/stream.hpp"
 #include "sim/cover/bins.hpp"
 #include "sim/cover/state_pairs.hpp"
