@@ -1,8 +1,8 @@
 // The faults of docs/numerics.md: each makes the error that the page says, by the formula that it gives; without them the
 // same scenes keep every bound.
-#include "model/stages/cull.hpp"
 #include "model/study/plane_rules.hpp"
 #include "halfplane_paths.hpp"
+#include "model/stages/cull.hpp"
 
 #include <gtest/gtest.h>
 
