@@ -108,7 +108,7 @@ TEST_F(Cover, VerilatorReadsWhatIsWrittenForIt) {
 }
 
 /// In a small stand-in for a browser, if Node.js is installed.
-TEST_F(Cover, ThePageNamesHolesAndTheOptionsThatHitThem) {
+TEST_F(Cover, ThePageNamesHolesAndTheOptionsThatHitThemInNodeJs) {
   const Json coverage = vectors("triangle --size 16x16", "a.json");
   ASSERT_EQ(run({"cover", "a.json", "-o", "a.html", "--quiet"}).status, 0);
   if (paste("command -v node >node.txt").status != 0) GTEST_SKIP() << "no Node.js here";
