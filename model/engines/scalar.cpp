@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include "../stages/coarse_raster.hpp"
 #include "../stages/fine_raster.hpp"
 #include "../stages/interpolate.hpp"
 #include "../stages/multisample.hpp"
+#include "../stages/tile_walk.hpp"
 #include "../study/homogeneous_setup.hpp"
 #include "../study/plane_rules.hpp"
 #include "../study/traversal.hpp"

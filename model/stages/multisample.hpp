@@ -18,8 +18,8 @@
 
 #include <vector>
 
-#include "coarse_raster.hpp"
 #include "interpolate.hpp"
+#include "tile_walk.hpp"
 #include "triangle_setup.hpp"
 
 namespace halfplane {

@@ -5,6 +5,7 @@
 #include "sim/cli/explain_output.hpp"
 #include "sim/cli/options.hpp"
 #include "sim/cosim/junit.hpp"
+#include "sim/cover/collector.hpp"
 #include "sim/vectors/check.hpp"
 #include "sim/vectors/vector_file.hpp"
 
@@ -127,10 +128,10 @@ int run(const CheckOptions& options) {
   (void)vectors::judged_stage(options.stage);
   const vectors::VectorFile file = checked_file(options);
   vectors::Judgement judgement;
-  std::optional<cover::PacketCoverage> coverage;
+  std::optional<cover::Collector> coverage;
   if (!options.coverage.empty()) coverage.emplace(file.config);
   try {
-    judgement = vectors::judge(*file.stage, file.config, file.packets, coverage ? &*coverage : nullptr);
+    judgement = vectors::judge(*file.stage, file.config, file.packets, coverage ? &coverage->packets() : nullptr);
   } catch (const InputError& error) {
     throw InputError(options.file + ": " + error.what());
   }

@@ -11,6 +11,7 @@
 #include "sim/cli/progress.hpp"
 #include "sim/cosim/report.hpp"
 #include "sim/cosim/specification.hpp"
+#include "sim/cover/collector.hpp"
 #include "sim/show/image/whole_file.hpp"
 
 namespace halfplane {

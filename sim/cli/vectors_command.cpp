@@ -6,6 +6,7 @@
 #include "sim/cli/coverage_option.hpp"
 #include "sim/cli/progress.hpp"
 #include "sim/cli/random_options.hpp"
+#include "sim/cover/collector.hpp"
 #include "sim/vectors/vector_file.hpp"
 
 namespace halfplane {

@@ -2,12 +2,19 @@
 
 #include <algorithm>
 #include <bit>
+#include <optional>
+#include <span>
 #include <utility>
 
+#include "model/engines/hardware.hpp"
+#include "model/engines/hardware_watch.hpp"
+#include "model/host/primitive_stream.hpp"
 #include "model/stages/coarse_raster.hpp"
 #include "model/stages/depth_test.hpp"
 #include "model/stages/fine_raster.hpp"
+#include "model/stages/hiz.hpp"
 #include "model/stages/line_raster.hpp"
+#include "sim/cover/bins.hpp"
 
 namespace halfplane::cover {
 namespace {
@@ -30,10 +37,56 @@ bool walks_left(const SetupPacket& setup, const Widths& widths) {
 
 }  // namespace
 
-const std::vector<Dimension>& Hits::all_dimensions() {
-  static const std::vector<Dimension> kAll = dimensions();
-  return kAll;
-}
+/// Sees packets, in the order of a pipeline.
+class PacketCoverage : public PacketSink, public HardwareWatch {
+ public:
+  explicit PacketCoverage(const Config& config);
+  PacketCoverage(const PacketCoverage&) = delete;
+  PacketCoverage& operator=(const PacketCoverage&) = delete;
+
+  void take(On<Arrow::primitive>, const PrimitivePacket& packet) override;
+  void take(On<Arrow::line>, const LineSetup& packet) override;
+  void take(On<Arrow::triangle>, const TrianglePacket& packet) override;
+  void take(On<Arrow::setup>, const SetupPacket& packet) override;
+  void take(On<Arrow::tile>, const TilePacket& packet) override;
+  void take(On<Arrow::edges>, const EdgeContext& packet) override;
+  void take(On<Arrow::stamp>, const StampPacket& packet) override;
+  void take(On<Arrow::retire>, const RetirePacket& packet) override;
+  void take(On<Arrow::request>, const MemoryRequest& packet) override;
+  void take(On<Arrow::texture>, const TextureRequest& packet) override;
+  using PacketSink::take;
+
+  void looked_up(const FragmentPacket& fragment, const TagResult& tags) override;
+  void meets(const FragmentPacket& fragment, std::span<const std::uint32_t> stored, const StencilState& state) override;
+  void shaded(const FragmentPacket& fragment, const StampFate& fate, const ColorState& colors) override;
+
+ protected:
+  void see(Event event);
+
+  Config config_;
+  Widths widths_;
+  Hits hits_;
+  Seen seen_;
+
+ private:
+  struct Rule {
+    std::uint64_t (*hits)(const Seen&);
+    std::size_t first;  ///< bin of member 0
+  };
+
+  std::array<std::vector<Rule>, kEvents> rules_;
+  PrimitivePacket primitive_;
+  TrianglePacket triangle_;
+  SetupPacket setup_;
+  TilePacket tile_;
+  std::array<bool, 3> may_tie_{}, is_top_left_{};  ///< by edge of the triangle: a pixel centre may lie on it
+  bool has_triangle_ = false, has_setup_ = false;  ///< of the same primitive as the tiles
+  Hiz hiz_, newest_;  ///< with the configured lag, and without one; the second does not know of lines
+  int since_raise_;   ///< visits since one that may raise a depth
+  FragmentPacket last_;
+  bool has_last_ = false, has_stored_ = true;
+  std::vector<BlockAddress> victims_;  ///< oldest first
+};
 
 PacketCoverage::PacketCoverage(const Config& config)
     : config_(config),
@@ -222,9 +275,28 @@ void PacketCoverage::shaded(const FragmentPacket& fragment, const StampFate& fat
   see(Event::fate);
 }
 
-Collector::Collector(const Config& config) : PacketCoverage(config), model_(config_, *this) { model_.set_watch(this); }
+Hits::Hits() : bins(cover::bins().size()) {}
 
-void Collector::run(const Scene& scene, const Config& host) {
+const std::vector<Dimension>& Hits::all_dimensions() {
+  static const std::vector<Dimension> kAll = dimensions();
+  return kAll;
+}
+
+struct Collector::Run final : PacketCoverage {
+  explicit Run(const Config& config) : PacketCoverage(config) {}
+
+  void draw(const Scene& scene, const Config& host);
+  void add(const std::array<StreamUse, kStreams.size()>& use);
+  [[nodiscard]] const Hits& hits() const { return hits_; }
+
+ private:
+  std::optional<HardwareModel> model_;  ///< of the first scene on
+  BinContents held_;
+  CounterPacket counted_;
+};
+
+void Collector::Run::draw(const Scene& scene, const Config& host) {
+  if (!model_) model_.emplace(config_, *this).set_watch(this);
   for (const Command& command : scene.commands) {
     const auto* draw = std::get_if<Draw>(&command);
     if (draw == nullptr) continue;
@@ -234,7 +306,7 @@ void Collector::run(const Scene& scene, const Config& host) {
     see(Event::draw);
   }
   HostStream stream(scene, host, &held_);
-  model_.hold_textures(scene);
+  model_->hold_textures(scene);
   Counters before;
   while (const auto primitive = stream.next()) {
     const Counters& now = stream.counters();
@@ -244,18 +316,25 @@ void Collector::run(const Scene& scene, const Config& host) {
     before = now;
     take(on<Arrow::primitive>, primitive->packet);
     if (primitive->line) take(on<Arrow::line>, *primitive->line);
-    model_.run(primitive->packet, primitive->line);
-    seen_.counted = since(model_.counters(), counted_);
-    counted_ = model_.counters();
+    model_->run(primitive->packet, primitive->line);
+    seen_.counted = since(model_->counters(), counted_);
+    counted_ = model_->counters();
     see(Event::counted);
   }
 }
 
-void Collector::add(const std::array<StreamUse, kStreams.size()>& use) {
+void Collector::Run::add(const std::array<StreamUse, kStreams.size()>& use) {
   for (std::size_t n = 0; n < use.size(); ++n) {
     seen_.stream = n;
     if (use[n].stalled != 0) see(Event::stream);
   }
 }
+
+Collector::Collector(const Config& config) : run_(std::make_unique<Run>(config)) {}
+Collector::~Collector() = default;
+void Collector::run(const Scene& scene, const Config& host) { run_->draw(scene, host); }
+void Collector::add(const std::array<StreamUse, kStreams.size()>& use) { run_->add(use); }
+PacketSink& Collector::packets() { return *run_; }
+const Hits& Collector::hits() const { return run_->hits(); }
 
 }  // namespace halfplane::cover

@@ -10,7 +10,9 @@
 
 #include "model/capture/capture.hpp"
 #include "model/capture/capture_states.hpp"
+#include "model/host/primitive_stream.hpp"
 #include "model/input_error.hpp"
+#include "sim/cover/bins.hpp"
 #include "sim/show/image/whole_file.hpp"
 #include "sim/show/report/page.hpp"
 

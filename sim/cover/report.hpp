@@ -10,7 +10,9 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/cover/collector.hpp"
+#include "model/config.hpp"
+#include "model/pipeline_graph.hpp"
+#include "sim/cover/hits.hpp"
 
 namespace halfplane::cover {
 

@@ -13,6 +13,8 @@
 #include "sim/cosim/dut.hpp"
 #include "sim/cosim/random_scene.hpp"
 #include "sim/cosim/session.hpp"
+#include "sim/cover/bins.hpp"
+#include "sim/cover/collector.hpp"
 #include "sim/cover/report.hpp"
 
 namespace halfplane::coverage_bins_test {

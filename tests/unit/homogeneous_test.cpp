@@ -8,6 +8,7 @@
 #include <iostream>
 
 #include "../scene_builder.hpp"
+#include "../tier.hpp"
 #include "model/engines/functional.hpp"
 #include "model/engines/scalar.hpp"
 #include "model/golden/golden.hpp"
@@ -222,7 +223,7 @@ TEST(Homogeneous, RoundedEdgesDepthAndColorStayWithinTheirBoundsInEveryPreset) {
     Config config = preset(name);
     config.target_width = std::min(config.target_width, kWidth);
     config.target_height = std::min(config.target_height, kHeight);
-    const EdgeError error = measure_edges(config, 2000);
+    const EdgeError error = measure_edges(config, test::cases(500U, 2000U));
     const double bound = homogeneous_edge_bound(config);
     std::cout << name << ": " << error.differ << " of " << error.covered
               << " samples differ (clipped: " << error.clipped_differ << "), up to " << error.farthest
@@ -234,7 +235,7 @@ TEST(Homogeneous, RoundedEdgesDepthAndColorStayWithinTheirBoundsInEveryPreset) {
     // Unsnapped, and no reciprocal.
     EXPECT_LE(error.worst_depth, depth_error_bound(config) - std::ldexp(1.0, -config.reciprocal_extra_bits));
     EXPECT_LE(error.worst_color, 1);
-    EXPECT_GT(error.covered, 10000u);
+    EXPECT_GT(error.covered, test::cases(2500U, 10000U));
   }
 }
 

@@ -14,6 +14,7 @@
 #include "model/golden/exact.hpp"
 #include "model/golden/golden.hpp"
 #include "model/host/primitive_stream.hpp"
+#include "model/stages/fragment_ops.hpp"
 #include "model/stages/resolve.hpp"
 #include "sim/cosim/random_scene.hpp"
 #include "sim/scene/builtin.hpp"

@@ -8,6 +8,7 @@
 
 #include "history.hpp"
 #include "model/host/primitive_stream.hpp"
+#include "model/stages/coarse_raster.hpp"
 #include "sim/cosim/dut.hpp"
 
 namespace halfplane::explain {

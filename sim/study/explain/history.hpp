@@ -21,8 +21,8 @@
 #include "model/golden/golden.hpp"
 #include "model/packets/packets.hpp"
 #include "model/pipeline_graph.hpp"
-#include "model/stages/coarse_raster.hpp"
 #include "model/stages/surface.hpp"
+#include "model/stages/tile_walk.hpp"
 #include "model/study/rules.hpp"
 #include "sim/study/compare/surface_errors.hpp"
 

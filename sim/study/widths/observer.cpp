@@ -4,10 +4,10 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "model/stages/coarse_raster.hpp"
 #include "model/stages/fine_raster.hpp"
 #include "model/stages/interpolate.hpp"
 #include "model/stages/line_raster.hpp"
+#include "model/stages/tile_walk.hpp"
 
 namespace halfplane {
 namespace {

@@ -1,4 +1,4 @@
-#include "coarse_raster.hpp"
+#include "tile_walk.hpp"
 
 namespace halfplane {
 namespace {
