@@ -37,10 +37,11 @@ export function open(root, { set, run, scene }) {
   return {
     async update(state) {
       const common = ['--mapping', state.mapping, '--format', formatOf(state), '--json', '--quiet'];
+      const shown = scene(), [size] = shown.options.filter((word) => /^\d+x\d+$/.test(word));
+      if (shown.config !== 'embedded') common.push('--config', shown.config);
       const theory = await run(['depth', '--near', state.near, '--far', state.far, '--z', state.z, '--slope', state.slope, ...common]);
       bins.replaceChildren(...binsOf(theory, state));
       await drawChart(chart, theory);
-      const shown = scene(), [size] = shown.options.filter((word) => /^\d+x\d+$/.test(word));
       const planes = state.planes === 'above' ? ['--near', state.near, '--far', state.far] : [];
       const measured = await run(['depth', '--scene', shown.name, ...(size ? ['--size', size] : []), ...planes,
         '--fight-rate', `${state.rate}%`, '--fights', 'fights.png', ...common], shown.files);

@@ -15,7 +15,7 @@ export class Grid {
 
   constructor(label, longest = 680) {
     this.longest = longest;
-    this.canvas = element('canvas', { tabindex: '0', role: 'img', 'aria-label': label });
+    this.canvas = element('canvas', { tabindex: '0', role: 'application', 'aria-label': label });
     this.canvas.grid = this;
     this.pen = this.canvas.getContext('2d');
     this.canvas.addEventListener('keydown', (event) => {
@@ -68,8 +68,8 @@ export class Grid {
     this.pen.stroke();
   }
 
-  // A figure at the bottom of its cell; framed, it stands out.
-  text(x, y, text, isFramed, { path, result }) {
+  // A figure at the bottom of its cell, with a frame of that colour or without.
+  text(x, y, text, frameColor, { path, result }) {
     this.figures.push({ text, path, command: result.command });
     const most = this.cellSize - 4;
     let size = Math.min(16, this.cellSize * 0.34);
@@ -77,12 +77,12 @@ export class Grid {
     const wide = this.pen.measureText(text).width;
     if (wide > most) size *= most / wide;
     if (size < 5) return;
-    this.pen.font = `${isFramed ? 'bold ' : ''}${size}px system-ui, "Liberation Sans", sans-serif`;
+    this.pen.font = `${frameColor ? 'bold ' : ''}${size}px system-ui, "Liberation Sans", sans-serif`;
     this.pen.fillStyle = colors.ink;
     this.pen.textAlign = 'center';
     this.pen.textBaseline = 'alphabetic';
     this.pen.fillText(text, (x + 0.5) * this.cellSize, (y + 0.94) * this.cellSize, most);
-    if (isFramed) this.frame(x + 0.06, y + 0.06, 0.88, colors['mark-crack'], '', 2);
+    if (frameColor) this.frame(x + 0.06, y + 0.06, 0.88, frameColor, '', 2);
   }
 
   dot(x, y, isFilled) {

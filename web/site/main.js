@@ -21,6 +21,7 @@ const rules = { ...Object.fromEntries(Object.entries(views).map(([name, view]) =
 let state = parseLink(location.hash, rules);
 let shown = null;  // { name, root, update }
 const main = document.querySelector('main');
+main.rules = rules;  // tests read this, the commands, and what the results are of
 const sceneControls = document.querySelector('#scene');
 const errorLine = document.querySelector('#error');
 let linkTimer = null;
@@ -28,6 +29,7 @@ let commands = [];  // whose results are shown
 
 function say(error) {
   errorLine.hidden = !error;
+  main.classList.toggle('stale', Boolean(error));  // what is shown is of an earlier state
   errorLine.textContent = error ?? '';
 }
 
@@ -67,7 +69,7 @@ const results = latest(async () => {
   }
   main.classList.remove('busy');
   document.querySelector('#commands ul').replaceChildren(...commands.map(({ command }) => element('li', {}, command)));
-  main.commands = commands;  // for tests, as is the next
+  main.commands = commands;
   main.dataset.shown = formatLink(state, rules);
 });
 

@@ -15,7 +15,7 @@ export const rules = {
   lines: choice('256', '16', '64', '256', '1024'),
   queue: choice('32', '4', '8', '16', '32', '64'),
   stamp: choice('2', '1', '2', '4'),
-  hiz: choice('16', '0', '8', '16'),
+  hiz: choice('16', '0', '16'),
   unit: choice('off', 'off', 'nearest', 'bilinear', 'trilinear'),
   map: choice('progress', 'progress', 'heat'),
   vary: choice('none', 'none', ...Object.keys(VARIED)),
@@ -35,11 +35,12 @@ export function open(root, context) {
   const slide = element('input', { type: 'range', min: '0', max: '1', 'aria-label': 'cycle', class: 'wide', 'data-key': 'cycle' });
   slide.addEventListener('input', () => { pause(); set({ cycle: slide.value }); });
   const play = button('run', () => (timer ? pause() : start()), { 'data-action': 'run' });
-  const step = (label, by, name) => button(label, () => { pause(); go(Number(state().cycle) + by); }, { 'aria-label': name, 'data-step': by });
+  const step = (sign) => button('', () => { pause(); go(Number(state().cycle) + sign * Number(state().speed)); }, { 'data-step': sign });
+  const back = step(-1), on = step(1);
   root.append(
     element('section', { class: 'stage', 'aria-label': 'pipeline and picture' }, graph, now, slide,
-      element('div', { class: 'controls' }, step('−100', -100, 'back by 100 cycles'), step('−1', -1, 'back by a cycle'), play, step('+1', 1, 'on by a cycle'),
-        step('+100', 100, 'on by 100 cycles'), pick('speed', 'cycles a picture'), button('to the write', () => jump(), { 'data-action': 'jump' })),
+      element('div', { class: 'controls' }, back, play, on, pick('speed', 'cycles a step'),
+        button('to the write', () => jump(), { 'data-action': 'jump' })),
       map, grid.canvas, element('p', {}, 'Touch a pixel to jump to the cycle of its write. Tiles that no visit has left yet are pale.')),
     element('section', { 'aria-label': 'controls and figures' },
       group('hardware', pick('stamp', 'stamp'), pick('hiz', 'bits of HiZ', { 0: 'no HiZ' }), pick('lines', 'cache, blocks'),
@@ -83,12 +84,11 @@ export function open(root, context) {
   return {
     close: pause,
     async update(values) {
-      const { name, files, options } = scene();
+      const { name, files, options, config } = scene();
       const hardware = [...settings(values), ...(values.memory === 'fixed' ? [] : ['--memory', values.memory])];
       const result = await run(['render', name, ...options, '--engine', 'cycle', ...hardware, '--trace', 'trace.json', '--heat', 'heat.png',
         '-o', 'picture.png', '--json', '--quiet'], files);
-      const stages = await run(['config', ...options.filter((_, index) => options[index - 1] === '--config' || options[index] === '--config'),
-        ...settings(values), '--stages', '--json', '--quiet']);
+      const stages = await run(['config', '--config', config, ...settings(values), '--stages', '--json', '--quiet']);
       if (frame?.result !== result) {
         frame = frameOf(result, stages);
         frame.bitmap = await picture(result.made['picture.png']);
@@ -96,6 +96,8 @@ export function open(root, context) {
       }
       const cycle = Math.min(Number(values.cycle), frame.cycles);
       fill(root, values);
+      back.textContent = `−${values.speed}`;
+      on.textContent = `+${values.speed}`;
       now.replaceChildren(`cycle ${cycle} of `, figure(result, 'cycles'));
       drawGraph(graph, frame, cycle);
       grid.canvas.hidden = values.map === 'heat';

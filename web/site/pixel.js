@@ -72,6 +72,7 @@ export function explained(result, state) {
     .filter(([event]) => state.passing === 'on' || !PASSES_BY.includes(event.verdict));
   events.forEach(([event, index]) => parts.push(eventOf(result, event, `history/${index}`, state,
     event.primitive !== null && event.primitive === pixel.final.model.owner)));
+  if (!result.json.hardware.has_scene) parts.push(element('p', {}, 'no record of the hardware: ', figure(result, 'hardware/why_not')));
   const { length } = result.json.differences;
   parts.push(element('p', {}, figure(result, 'checks'), ` figures of model, golden, oracle and hardware compared with each other: ${length ? `${length} differ` : 'all agree'}.`));
   return parts;
@@ -105,13 +106,22 @@ function eventOf(result, event, where, state, isOpen) {
     element('summary', {}, element('b', {}, name), ': ', at('verdict'), ', ', at('why')), inner);
 }
 
-// The texels of a filter and their weights, of a `surface` of explain.
+// The texels of a filter and their weights, of a `surface` of explain: a square is as large as its weight.
 export function texels(result, path) {
-  const texture = valueAt(result.json, path);
+  const surface = valueAt(result.json, path);
   const at = (key) => figure(result, `${path}/${key}`);
+  const color = (texel) => `rgb(${texel.color.slice(0, 3)})`;
+  const heaviest = Math.max(...surface.texels.map(({ weight }) => weight));
+  const levels = [...new Set(surface.texels.map(({ level }) => level))];
   return element('div', {}, list(['texture', at('texture')], ['at, texels', at('coordinate')], ['level of detail', at('level_of_detail')],
     ['filter', at('filter')], ['between levels', at('between_levels')]),
-  table(['level', 'texel', 'weight', 'colour', 'byte'], texture.texels.map((texel, index) => [format(texel.level), [at(`texels/${index}/x`), ' ', at(`texels/${index}/y`)],
-    at(`texels/${index}/weight`), [element('span', { class: 'key', style: `background: rgb(${texel.color.slice(0, 3)})` }, ' '), at(`texels/${index}/color`)],
+  element('div', { class: 'controls' }, levels.map((level) => {
+    const shown = surface.texels.filter((texel) => texel.level === level);
+    return element('figure', {}, element('div', { class: 'weights', style: `grid-template-columns: repeat(${Math.ceil(Math.sqrt(shown.length))}, 3rem)` },
+      shown.map((texel) => element('div', {}, element('span', { style: `background: ${color(texel)}; width: ${3 * Math.sqrt(texel.weight / heaviest)}rem` })))),
+    element('figcaption', {}, `level ${level}`));
+  })),
+  table(['level', 'texel', 'weight', 'colour', 'byte'], surface.texels.map((texel, index) => [format(texel.level), [at(`texels/${index}/x`), ' ', at(`texels/${index}/y`)],
+    at(`texels/${index}/weight`), [element('span', { class: 'key', style: `background: ${color(texel)}` }, ' '), at(`texels/${index}/color`)],
     at(`texels/${index}/address`)])));
 }

@@ -10,16 +10,16 @@ export async function drop(file) {
   dropped.bytes.mark = `${file.name} ${file.lastModified}`;
 }
 
-// { name, files, options }: what a command is given. Captures say their own size.
+// { name, files, options, config }: what a command is given. Captures say their own size.
 export function sceneOf(values) {
   const { scene, size, config } = values.page;
   const options = config === 'embedded' ? [] : ['--config', config];
-  if (scene === 'drawn') return { name: 'drawn.hpt', files: { 'drawn.hpt': capture(values.triangle) }, options };
-  if (scene === 'floor') return { name: 'floor.hpt', files: { 'floor.hpt': floor(values.texture) }, options };
+  if (scene === 'drawn') return { name: 'drawn.hpt', files: { 'drawn.hpt': capture(values.triangle) }, options, config };
+  if (scene === 'floor') return { name: 'floor.hpt', files: { 'floor.hpt': floor(values.texture) }, options, config };
   if (scene === 'dropped') {
     if (!dropped.name) throw new Error('a link does not hold a dropped file; open it, or choose another scene');
     const isCapture = dropped.name.endsWith('.hpt');
-    return { name: dropped.name, files: { [dropped.name]: dropped.bytes }, options: isCapture ? options : ['--size', size, ...options] };
+    return { name: dropped.name, files: { [dropped.name]: dropped.bytes }, options: isCapture ? options : ['--size', size, ...options], config };
   }
-  return { name: scene, files: {}, options: ['--size', size, ...options] };
+  return { name: scene, files: {}, options: ['--size', size, ...options], config };
 }

@@ -128,18 +128,16 @@ export function open(root, context) {
     return null;
   };
 
-  let shown = null;
   const size = () => sizeOf(state());
   return {
     async update(values) {
       const picture = values.draw === 'line' ? await lineRuns(context, values) : await triangleRuns(context, values);
-      shown = picture;
       grid.figures = [];
       grid.resize(...size());
       (values.draw === 'line' ? drawLine : drawTriangles)(grid, picture, values);
       drawCorners(grid, corners(), values);
       grid.drawCursor(Number(values.x), Number(values.y));
-      legend.replaceChildren(...legendOf(values));
+      legend.replaceChildren(...legendOf(values).filter(Boolean));
       panel.replaceChildren(...(values.draw === 'line' ? lineFigures : triangleFigures)(picture, values));
       fill(root, values, disabled(values));
     },
@@ -210,7 +208,9 @@ function drawTriangles(grid, { pixels, reference, packets }, state) {
       // A shared edge is shown as the first triangle has it.
       if (edge < 0 || (event.primitive > 0 && !state.edge.includes('D'))) continue;
       const path = `pixels/${pixelIndex}/history/${index}/model/edges/${edge}/${state.label}`;
-      grid.text(pixel.x, pixel.y, format(valueAt(pixels.json, path)).replace('0x', ''), event.model.edges[edge].tie, { path, result: pixels });
+      const { tie, owns_ties } = event.model.edges[edge];
+      grid.text(pixel.x, pixel.y, format(valueAt(pixels.json, path)).replace('0x', ''), tie && colors[owns_ties ? 'mark-third' : 'mark-crack'],
+        { path, result: pixels });
     }
   }
   for (const pixel of pixels.json.pixels) {
@@ -248,8 +248,8 @@ function drawCorners(grid, names, state) {
 function legendOf(state) {
   const key = (paper, text) => element('span', { class: 'key', style: `background: var(--paper-${paper})` }, text);
   if (state.draw === 'line') return [key('first', 'pixels of the line')];
-  return [key('first', 'ABC'), ...(state.second === 'none' ? [] : [key('second', 'beside it'), key('double', 'drawn twice'),
-    key('crack', 'drawn by neither')]), 'Solid: edges after the snap; dashed: before. A framed figure: the sample lies exactly on the edge.'];
+  return [key('first', 'ABC'), ...(state.second === 'none' ? [] : [key('second', 'beside it'), state.second === 'junction' ? key('third', 'and') : null, key('double', 'drawn twice'),
+    key('crack', 'drawn by neither')]), 'Solid: edges after the snap; dashed: before. Framed figures: the sample lies exactly on the edge, which owns it (green) or does not (red).'];
 }
 
 function triangleFigures({ pixels, totals }, state) {
@@ -259,22 +259,26 @@ function triangleFigures({ pixels, totals }, state) {
   if (!pixel) return [element('p', {}, 'This pixel lies outside of the picture.')];
   const letters = lettersOf(state);
   const parts = [element('h2', {}, `pixel ${pixel.x} ${pixel.y}`)];
-  pixel.history.forEach((event, number) => {
-    if (event.kind !== 'triangle') return;
-    const names = letters[event.primitive], path = `pixels/${index}/history/${number}/model`;
-    parts.push(element('h3', {}, names, event.sample === undefined ? '' : `, sample ${event.sample}`, ': ', figure(pixels, `pixels/${index}/history/${number}/why`)));
-    if (event.model.edges) {
-      parts.push(table(['edge', 'side', 'owns ties', 'on it', 'value', 'bits', 'exact', 'square pixels'],
-        event.model.edges.map(({ from, to }, edge) => [`${names[from]}→${names[to]}`,
-          ...['side', 'owns_ties', 'tie', 'value', 'bits', 'exact', 'real'].map((key) => figure(pixels, `${path}/edges/${edge}/${key}`))])));
+  const at = (number, path) => figure(pixels, `pixels/${index}/history/${number}/${path}`);
+  const events = pixel.history.map((event, number) => ({ ...event, number })).filter(({ kind }) => kind === 'triangle');
+  for (const { primitive, number, model, sample } of events.filter(({ sample }) => !sample)) {
+    const names = letters[primitive];
+    const nameOf = ({ from, to }) => `${names[from]}→${names[to]}`;
+    parts.push(element('h3', {}, names, sample === undefined ? [': ', at(number, 'why')] : ''));
+    if (model.edges && sample === undefined) {
+      parts.push(table(['edge', 'side', 'owns ties', 'on it', 'value', 'bits', 'exact', 'square pixels'], model.edges.map((edge, place) => [nameOf(edge),
+        ...['side', 'owns_ties', 'tie', 'value', 'bits', 'exact', 'real'].map((key) => at(number, `model/edges/${place}/${key}`))])));
+    } else if (model.edges) {
+      parts.push(table(['sample', ...model.edges.map(nameOf), 'result'], events.filter((event) => event.primitive === primitive)
+        .map((event) => [String(event.sample), ...model.edges.map((_, place) => at(event.number, `model/edges/${place}/value`)), at(event.number, 'verdict')])));
     }
-    if (event.model.area) parts.push(list(['area, twice', figure(pixels, `${path}/area/value`), ' square subpixels']));
-  });
+    if (model.area) parts.push(list(['area, twice', at(number, 'model/area/value'), ' square subpixels']));
+  }
   parts.push(element('h3', {}, 'in the whole picture'), list(
-    ['drawn twice', figure(totals, 'double_draws'), ' samples that one triangle draws by top_left'],
-    ['not drawn', figure(totals, 'undrawn_samples'), ' samples that top_left draws'],
+    state.second !== 'junction' && ['drawn twice', figure(totals, 'double_draws'), ' samples that one triangle draws by top_left'],
+    state.second !== 'junction' && ['not drawn', figure(totals, 'undrawn_samples'), ' samples that top_left draws'],
     ['covered', figure(totals, 'fragments/covered'), ' samples']));
-  if (state.second === 'junction') parts.push(element('p', {}, 'Lit pixels are compared with the same square without M.'));
+  if (state.second === 'junction') parts.push(element('p', {}, 'M lies on edge BC until it is snapped. Lit pixels differ from those of two triangles without M.'));
   return parts;
 }
 
@@ -295,7 +299,7 @@ function drawLine(grid, { pixels, steps }, state) {
   grid.lines();
   if (line < 0) return;
   for (const [index, { x, y, error }] of (valueAt(steps.json, registers) ?? []).entries()) {
-    grid.text(x, y, format(error), error === 0, { path: `${registers}/${index}/error`, result: steps });
+    grid.text(x, y, format(error), null, { path: `${registers}/${index}/error`, result: steps });
   }
   const { model, golden } = steps.json.pixels[0].history[line];
   if (golden?.corners) grid.outline(golden.corners.map((corner) => [corner.x_pixels, corner.y_pixels]), colors['mark-first'], true);
@@ -315,8 +319,9 @@ function lineFigures({ steps }, state) {
     const at = `${path}/${kind}/${rule}/${index}`;
     return [figure(steps, `${at}/x`), ' ', figure(steps, `${at}/y`), ': ', figure(steps, `${at}/error`), ' ', figure(steps, `${at}/decision`)];
   };
+  const isChosen = (index) => columns.some(([kind, rule]) => found[kind]?.[rule]?.[index]?.x === Number(state.x) && found[kind][rule][index].y === Number(state.y));
   return [element('h2', {}, 'the decision at each pixel'),
     list(['major axis', figure(steps, `${path}/major_axis`)], ['D, d', figure(steps, `${path}/major`), ', ', figure(steps, `${path}/minor`), ' subpixels']),
     table(['step', 'midpoint', 'bresenham', 'diamond', 'book: p', 'book: 2F'],
-      Array.from({ length: longest }, (_, index) => [String(index), ...columns.map(([kind, rule]) => cell(kind, rule, index))]))];
+      Array.from({ length: longest }, (_, index) => [`${index}${isChosen(index) ? ' ◂' : ''}`, ...columns.map(([kind, rule]) => cell(kind, rule, index))]))];
 }
