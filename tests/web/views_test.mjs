@@ -17,9 +17,22 @@ const root = path.resolve(import.meta.dirname, '../..');
 // States in which each control of a view does something. In a square of two triangles ties lie on the shared edge, whose line meets (-1, -1).
 const SQUARE = 'second=shared&a=12,2&b=12,12&c=2,2&d=2,12&grid=16x12&label=value';
 const BASES = {
-  triangle: [`${SQUARE}&marks=both&rule=top_left`, `${SQUARE}&samples=4`, 'draw=line', 'draw=line&line=diamond&a=1,1&b=9,5', 'second=junction&a=2,2&b=14,11&c=2,2.5&d=3,11&sub=0'],
-  depth: ['page.scene=coplanar&page.size=64x48', 'page.scene=coplanar&page.size=64x48&planes=above&near=10&far=50&z=20&slope=1'],
-  pipeline: ['page.scene=city&page.size=64x48&cycle=3000&x=30&y=30', 'page.scene=floor&unit=trilinear&cycle=9000&memory=ddr3&lines=16', 'page.scene=city:100&page.size=160x120&cycle=9000&queue=4&lines=16&memory=sdram'],
+  triangle: [
+    `${SQUARE}&marks=both&rule=top_left`,
+    `${SQUARE}&samples=4`,
+    'draw=line',
+    'draw=line&line=diamond&a=1,1&b=9,5',
+    'second=junction&a=2,2&b=14,11&c=2,2.5&d=3,11&sub=0',
+  ],
+  depth: [
+    'page.scene=coplanar&page.size=64x48',
+    'page.scene=coplanar&page.size=64x48&planes=above&near=10&far=50&z=20&slope=1',
+  ],
+  pipeline: [
+    'page.scene=city&page.size=64x48&cycle=3000&x=30&y=30',
+    'page.scene=floor&unit=trilinear&cycle=9000&memory=ddr3&lines=16',
+    'page.scene=city:100&page.size=160x120&cycle=9000&queue=4&lines=16&memory=sdram',
+  ],
   pixel: ['page.scene=teapot&page.size=64x48&x=30&y=20&passing=on', 'page.scene=city&page.size=160x120&x=80&y=60'],
   texture: ['x=120&y=110&beside=misses&kb=1&memory=ddr3', 'x=120&y=60&beside=error&repeats=20'],
 };
@@ -44,10 +57,18 @@ page.on('pageerror', (error) => complaints.push(error.message));
 page.on('console', (message) => message.type() === 'error' && complaints.push(message.text()));
 
 // All results that were asked for are shown.
-const settled = () => page.waitForFunction(() => {
-  const main = document.querySelector('main');
-  return main.dataset.shown && !main.classList.contains('busy') && [...main.querySelectorAll('img')].every((image) => image.complete);
-}, { timeout: 120000, polling: 20 });
+const settled = () =>
+  page.waitForFunction(
+    () => {
+      const main = document.querySelector('main');
+      return (
+        main.dataset.shown &&
+        !main.classList.contains('busy') &&
+        [...main.querySelectorAll('img')].every((image) => image.complete)
+      );
+    },
+    { timeout: 120000, polling: 20 },
+  );
 
 async function visit(fragment) {
   await page.goto('about:blank');
@@ -58,21 +79,27 @@ async function visit(fragment) {
 const errorLine = () => page.$eval('#error', (line) => (line.hidden ? '' : line.textContent));
 
 // What the view shows, without its controls.
-const fingerprint = () => page.evaluate(() => {
-  const drawn = (image) => {
-    const canvas = document.createElement('canvas');
-    [canvas.width, canvas.height] = [image.naturalWidth, image.naturalHeight];
-    canvas.getContext('2d').drawImage(image, 0, 0);
-    return canvas.toDataURL();
-  };
-  const main = document.querySelector('main');
-  const figures = [...main.querySelectorAll('table, dl, p, svg, h2, h3, details, button')].map((node) => node.textContent);
-  const text = [...figures, ...[...main.querySelectorAll('canvas')].filter((canvas) => !canvas.hidden).map((canvas) => canvas.toDataURL()), ...[...main.querySelectorAll('img')].map(drawn),
-    ...[...main.querySelectorAll('.bar')].map((bar) => bar.style.width), document.querySelector('#error').textContent].join('\n');
-  let hash = 0;
-  for (let index = 0; index < text.length; index++) hash = (hash * 31 + text.charCodeAt(index)) | 0;
-  return `${text.length} ${hash}`;
-});
+const fingerprint = () =>
+  page.evaluate(() => {
+    const drawn = (image) => {
+      const canvas = document.createElement('canvas');
+      [canvas.width, canvas.height] = [image.naturalWidth, image.naturalHeight];
+      canvas.getContext('2d').drawImage(image, 0, 0);
+      return canvas.toDataURL();
+    };
+    const main = document.querySelector('main');
+    const figures = [...main.querySelectorAll('table, dl, p, svg, h2, h3, details, button')].map((node) => node.textContent);
+    const text = [
+      ...figures,
+      ...[...main.querySelectorAll('canvas')].filter((canvas) => !canvas.hidden).map((canvas) => canvas.toDataURL()),
+      ...[...main.querySelectorAll('img')].map(drawn),
+      ...[...main.querySelectorAll('.bar')].map((bar) => bar.style.width),
+      document.querySelector('#error').textContent,
+    ].join('\n');
+    let hash = 0;
+    for (let index = 0; index < text.length; index++) hash = (hash * 31 + text.charCodeAt(index)) | 0;
+    return `${text.length} ${hash}`;
+  });
 
 // Figures of the page against the program's JSON, by the command and the path that each names.
 const known = new Map();
@@ -82,16 +109,28 @@ async function checkFigures(state) {
     const shown = [...main.querySelectorAll('.figure')].map((node) => ({ text: node.textContent, ...node.dataset }));
     const inCanvas = [...main.querySelectorAll('canvas')].flatMap((canvas) => canvas.grid?.figures ?? []);
     const chart = main.querySelector('.chart');
-    return { figures: [...shown, ...inCanvas],
-      commands: main.commands.map(({ args, files, command }) => ({ args, command, files: Object.fromEntries(Object.entries(files).map(([name, content]) =>
-        [name, typeof content === 'string' ? content : { bytes: [...content] }])) })),
-      curve: chart?.chart && { data: chart.chart.data.map((row) => [...row]), ...chart.dataset } };
+    return {
+      figures: [...shown, ...inCanvas],
+      commands: main.commands.map(({ args, files, command }) => ({
+        args,
+        command,
+        files: Object.fromEntries(
+          Object.entries(files).map(([name, content]) => [
+            name,
+            typeof content === 'string' ? content : { bytes: [...content] },
+          ]),
+        ),
+      })),
+      curve: chart?.chart && { data: chart.chart.data.map((row) => [...row]), ...chart.dataset },
+    };
   });
   const resultOf = (command) => {
     const { args, files } = commands.find((one) => one.command === command);
     const key = JSON.stringify([args, files]);
     if (!known.has(key)) {
-      const given = Object.fromEntries(Object.entries(files).map(([name, content]) => [name, content.bytes ? Buffer.from(content.bytes) : content]));
+      const given = Object.fromEntries(
+        Object.entries(files).map(([name, content]) => [name, content.bytes ? Buffer.from(content.bytes) : content]),
+      );
       known.set(key, JSON.parse(runProgram(program, args, given).stdout));
     }
     return known.get(key);
@@ -106,7 +145,10 @@ async function checkFigures(state) {
   check(equal > 0, `${state}: no figure is shown`);
   if (curve) {
     const { z, bin_width, first_order } = valueAt(resultOf(curve.command), curve.path);
-    check(JSON.stringify([z, bin_width, first_order]) === JSON.stringify(curve.data), `${state}: the chart's curve is not the program's`);
+    check(
+      JSON.stringify([z, bin_width, first_order]) === JSON.stringify(curve.data),
+      `${state}: the chart's curve is not the program's`,
+    );
   }
   return equal;
 }
@@ -116,9 +158,15 @@ async function useControls(view) {
   const done = new Map();
   for (const base of BASES[view]) {
     await visit(`#view=${view}&${base}`);
-    const controls = await page.$$eval('main [data-key], #scene:not([hidden]) [data-key]', (nodes) => nodes.map((node) => ({
-      key: node.dataset.key, disabled: node.disabled, label: node.labels?.[0]?.textContent || node.getAttribute('aria-label'),
-      values: node.tagName === 'SELECT' ? [...node.options].map(({ value }) => value) : [node.min, node.max], start: node.value })));
+    const controls = await page.$$eval('main [data-key], #scene:not([hidden]) [data-key]', (nodes) =>
+      nodes.map((node) => ({
+        key: node.dataset.key,
+        disabled: node.disabled,
+        label: node.labels?.[0]?.textContent || node.getAttribute('aria-label'),
+        values: node.tagName === 'SELECT' ? [...node.options].map(({ value }) => value) : [node.min, node.max],
+        start: node.value,
+      })),
+    );
     for (const { key, label, values, start, disabled } of controls) {
       check(label, `${view}: control ${key} has no label`);
       if (disabled || key === 'scene') continue;
@@ -126,17 +174,24 @@ async function useControls(view) {
         const name = `${view}, ${key} = ${value}`;
         if (done.get(name)) continue;
         const before = await fingerprint();
-        const use = (to) => page.$eval(`[data-key=${key}]`, (node, text) => {
-          node.value = text;
-          node.dispatchEvent(new Event(node.type === 'range' ? 'input' : 'change', { bubbles: true }));
-        }, to).then(settled);
+        const use = (to) =>
+          page
+            .$eval(
+              `[data-key=${key}]`,
+              (node, text) => {
+                node.value = text;
+                node.dispatchEvent(new Event(node.type === 'range' ? 'input' : 'change', { bubbles: true }));
+              },
+              to,
+            )
+            .then(settled);
         await use(value);
-        const isChanged = before !== await fingerprint();
-        const isError = await errorLine() !== '';
+        const isChanged = before !== (await fingerprint());
+        const isError = (await errorLine()) !== '';
         if (isChanged && !isError) await checkFigures(name);
         done.set(name, isChanged);
         await use(start);
-        check(before === await fingerprint(), `${name} and back to ${start} shows something else than before, in ${base}`);
+        check(before === (await fingerprint()), `${name} and back to ${start} shows something else than before, in ${base}`);
       }
     }
   }
@@ -146,17 +201,24 @@ async function useControls(view) {
 
 async function useButtons(view) {
   await visit(`#view=${view}&${BASES[view][0]}`);
-  const selectors = await page.$$eval('main button', (nodes) => nodes.map((node) => Object.entries(node.dataset).map(([name, value]) => `[data-${name}="${value}"]`)[0]));
+  const selectors = await page.$$eval('main button', (nodes) =>
+    nodes.map((node) => Object.entries(node.dataset).map(([name, value]) => `[data-${name}="${value}"]`)[0]),
+  );
   for (const selector of selectors) {
     const before = await fingerprint();
     await page.click(`main button${selector}`);
     if (selector.includes('run')) {
-      await page.waitForFunction((text) => document.querySelector('main .answer').textContent !== text, {}, await page.$eval('main .answer', (node) => node.textContent));
+      await page.waitForFunction(
+        (text) => document.querySelector('main .answer').textContent !== text,
+        {},
+        await page.$eval('main .answer', (node) => node.textContent),
+      );
       await page.click(`main button${selector}`);
     }
-    if (selector.includes('jump')) await page.waitForFunction(() => !document.querySelector('main .answer').textContent.startsWith('cycle 3000 '), {});
+    if (selector.includes('jump'))
+      await page.waitForFunction(() => !document.querySelector('main .answer').textContent.startsWith('cycle 3000 '), {});
     await settled();
-    check(before !== await fingerprint(), `${view}: button ${selector} changes nothing`);
+    check(before !== (await fingerprint()), `${view}: button ${selector} changes nothing`);
   }
 }
 
@@ -174,13 +236,13 @@ async function useCanvas(view) {
   await page.focus('main canvas');
   await page.keyboard.press('ArrowRight');
   await settled();
-  check(before !== await fingerprint(), `${view}: an arrow key changes nothing`);
+  check(before !== (await fingerprint()), `${view}: an arrow key changes nothing`);
   const box = await (await page.$('main canvas')).boundingBox();
   before = await fingerprint();
   await page.touchscreen.tap(box.x + box.width * 0.41, box.y + Math.min(box.height, 300) * 0.52);
   await page.waitForNetworkIdle({ idleTime: 100 });
   await settled();
-  check(before !== await fingerprint(), `${view}: a touch changes nothing`);
+  check(before !== (await fingerprint()), `${view}: a touch changes nothing`);
   if (view !== 'triangle') return;
   const scale = box.width / 16;
   await page.mouse.move(box.x + 12 * scale, box.y + 2 * scale);
@@ -197,18 +259,30 @@ async function checkRules() {
     await visit(`#view=triangle&${SQUARE}&rule=${rule}`);
     const lit = await page.$eval('main canvas', (canvas) => ({ ...canvas.dataset }));
     const totals = await page.$eval('main', (main) => main.commands.find(({ args }) => args[0] === 'render').json);
-    check(Number(lit.doubles) === totals.double_draws && Number(lit.cracks) === totals.undrawn_samples,
-      `${rule}: ${lit.doubles} double draws and ${lit.cracks} cracks are lit, the program counts ${totals.double_draws} and ${totals.undrawn_samples}`);
-    check(rule === 'top_left' || totals.double_draws + totals.undrawn_samples > 0, `${rule}: the square has no sample on its diagonal`);
+    check(
+      Number(lit.doubles) === totals.double_draws && Number(lit.cracks) === totals.undrawn_samples,
+      `${rule}: ${lit.doubles} double draws and ${lit.cracks} cracks are lit, the program counts ${totals.double_draws} and ${totals.undrawn_samples}`,
+    );
+    check(
+      rule === 'top_left' || totals.double_draws + totals.undrawn_samples > 0,
+      `${rule}: the square has no sample on its diagonal`,
+    );
   }
 }
 
 async function checkErrors() {
-  for (const fragment of ['#view=pixel&page.scene=teapott', '#view=pixel&page.scene=teapot&page.config=tiny', '#view=pipeline&page.scene=floor']) {
+  for (const fragment of [
+    '#view=pixel&page.scene=teapott',
+    '#view=pixel&page.scene=teapot&page.config=tiny',
+    '#view=pipeline&page.scene=floor',
+  ]) {
     await visit(fragment);
-    const command = (await page.$$eval('#commands li', (items) => items.map((item) => item.textContent)));
+    const command = await page.$$eval('#commands li', (items) => items.map((item) => item.textContent));
     const shown = await errorLine();
-    check(shown !== '' && !shown.includes('\n') && !shown.startsWith('halfplane'), `${fragment}: the error is '${shown}' after ${command}`);
+    check(
+      shown !== '' && !shown.includes('\n') && !shown.startsWith('halfplane'),
+      `${fragment}: the error is '${shown}' after ${command}`,
+    );
   }
 }
 
@@ -217,15 +291,21 @@ async function checkFile() {
   await (await page.$('input[type=file]')).uploadFile(path.join(root, 'docs/spec/triangle.hpt'));
   await page.waitForFunction(() => document.querySelector('#commands ul').textContent.includes('triangle.hpt'), {});
   await settled();
-  check(await errorLine() === '', `a file: ${await errorLine()}`);
+  check((await errorLine()) === '', `a file: ${await errorLine()}`);
   await checkFigures('a file');
-  check((await page.$eval('main', (main) => main.textContent)).includes('0x603a'), 'docs/spec/triangle.hpt: pixel 6 3 has not the depth of docs/spec.md');
+  check(
+    (await page.$eval('main', (main) => main.textContent)).includes('0x603a'),
+    'docs/spec/triangle.hpt: pixel 6 3 has not the depth of docs/spec.md',
+  );
 }
 
 async function checkNarrow(view) {
   await page.setViewport({ width: 390, height: 844 });
   await visit(`#view=${view}&${BASES[view][0]}`);
-  check(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `${view}: wider than a screen of 390 pixels`);
+  check(
+    await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth),
+    `${view}: wider than a screen of 390 pixels`,
+  );
   await page.setViewport({ width: 1280, height: 800 });
 }
 
@@ -233,10 +313,13 @@ async function checkNarrow(view) {
 async function checkPage() {
   await visit('#view=triangle');
   const text = fs.readFileSync(path.join(root, 'docs/views.md'), 'utf8');
-  const keys = await page.$eval('main', (main) => Object.entries(main.rules).map(([view, rules]) => [view, Object.keys(rules)]));
+  const keys = await page.$eval('main', (main) =>
+    Object.entries(main.rules).map(([view, rules]) => [view, Object.keys(rules)]),
+  );
   for (const [view, names] of keys) {
     const row = text.split('\n').findLast((line) => line.startsWith(`| ${view} |`)) ?? '';
-    for (const name of names) check(row.includes(`\`${view === 'page' ? 'page.' : ''}${name}\``), `docs/views.md does not name ${name} of ${view}`);
+    for (const name of names)
+      check(row.includes(`\`${view === 'page' ? 'page.' : ''}${name}\``), `docs/views.md does not name ${name} of ${view}`);
   }
 }
 
@@ -246,11 +329,14 @@ for (const view of views) {
   let figures = 0;
   for (const base of BASES[view]) {
     await visit(`#view=${view}&${base}`);
-    check(await errorLine() === '', `${view}, ${base}: ${await errorLine()}`);
+    check((await errorLine()) === '', `${view}, ${base}: ${await errorLine()}`);
     figures += await checkFigures(`${view}, ${base}`);
     const [shown, hash] = [await fingerprint(), await page.$eval('main', (main) => main.dataset.shown)];
     await visit(hash);
-    check(shown === await fingerprint() && hash === await page.$eval('main', (main) => main.dataset.shown), `${view}: its link ${hash} shows something else`);
+    check(
+      shown === (await fingerprint()) && hash === (await page.$eval('main', (main) => main.dataset.shown)),
+      `${view}: its link ${hash} shows something else`,
+    );
   }
   const values = await useControls(view);
   await useButtons(view);

@@ -9,31 +9,54 @@ function labelled(label, control, extra = null) {
 
 // `names`: what a value is called, where that is not the value.
 export function select(key, label, values, set, names = {}) {
-  const control = element('select', { 'data-key': key, onchange: () => set({ [key]: control.value }) },
-    values.map((value) => element('option', { value }, names[value] ?? value)));
+  const control = element(
+    'select',
+    { 'data-key': key, onchange: () => set({ [key]: control.value }) },
+    values.map((value) => element('option', { value }, names[value] ?? value)),
+  );
   return labelled(label, control);
 }
 
 export function slider(key, label, { least, most, step = 1 }, set) {
-  const control = element('input', { type: 'range', min: least, max: most, step, 'data-key': key,
-    oninput: () => set({ [key]: control.value }) });
+  const control = element('input', {
+    type: 'range',
+    min: least,
+    max: most,
+    step,
+    'data-key': key,
+    oninput: () => set({ [key]: control.value }),
+  });
   return labelled(label, control, element('output', { for: '' }));
 }
 
 // A slider over powers of ten: the state holds the number in two digits.
 export function powerSlider(key, label, { least, most }, set) {
-  const control = element('input', { type: 'range', min: Math.log10(least), max: Math.log10(most), step: 0.05, 'data-key': key,
-    'data-power': true, oninput: () => set({ [key]: String(Number((10 ** control.value).toPrecision(2))) }) });
+  const control = element('input', {
+    type: 'range',
+    min: Math.log10(least),
+    max: Math.log10(most),
+    step: 0.05,
+    'data-key': key,
+    'data-power': true,
+    oninput: () => set({ [key]: String(Number((10 ** control.value).toPrecision(2))) }),
+  });
   return labelled(label, control, element('output', { for: '' }));
 }
 
 export function text(key, label, set, hint = '') {
-  const control = element('input', { type: 'text', 'data-key': key, autocomplete: 'off', spellcheck: 'false', title: hint,
-    onchange: () => set({ [key]: control.value }) });
+  const control = element('input', {
+    type: 'text',
+    'data-key': key,
+    autocomplete: 'off',
+    spellcheck: 'false',
+    title: hint,
+    onchange: () => set({ [key]: control.value }),
+  });
   return labelled(label, control);
 }
 
-export const button = (label, action, attributes = {}) => element('button', { type: 'button', onclick: action, ...attributes }, label);
+export const button = (label, action, attributes = {}) =>
+  element('button', { type: 'button', onclick: action, ...attributes }, label);
 
 export const group = (title, ...controls) => element('fieldset', {}, element('legend', {}, title), controls);
 

@@ -5,7 +5,8 @@ import { element, figure, image, list, table } from './elements.js';
 import { choice, real, whole } from './state.js';
 
 export const rules = {
-  near: real(1, 0.001, 100), far: real(1000, 10, 1000000),
+  near: real(1, 0.001, 100),
+  far: real(1000, 10, 1000000),
   mapping: choice('std', 'std', 'rev', 'stdinf', 'revinf', 'w', 'log'),
   format: choice('u', 'u', 'bins', 'uf3', 'uf4', 'uf5'),
   bits: whole(16, 8, 32),
@@ -16,37 +17,99 @@ export const rules = {
 };
 export const showsScene = true;
 
-const formatOf = ({ format, bits }) => (format.startsWith('uf') ? `${format}.${Number(bits) - Number(format[2])}` : `${format}${bits}`);
+const formatOf = ({ format, bits }) =>
+  format.startsWith('uf') ? `${format}.${Number(bits) - Number(format[2])}` : `${format}${bits}`;
 
 export function open(root, { set, run, scene }) {
   const pick = (key, label, names) => select(key, label, rules[key].values, set, names);
-  const chart = element('div', { class: 'chart', role: 'img', 'aria-label': 'length of a bin over distance: exact, and the first-order formula of textbooks' });
-  const fights = element('div', {}), bins = element('div', {}), answers = element('div', {});
+  const chart = element('div', {
+    class: 'chart',
+    role: 'img',
+    'aria-label': 'length of a bin over distance: exact, and the first-order formula of textbooks',
+  });
+  const fights = element('div', {}),
+    bins = element('div', {}),
+    answers = element('div', {});
   root.append(
-    element('section', { class: 'stage', 'aria-label': 'charts and pictures' },
-      element('h2', {}, 'how long a step of depth is'), chart, bins,
-      element('h2', {}, 'surfaces that fight'), fights),
-    element('section', { 'aria-label': 'controls and figures' },
+    element(
+      'section',
+      { class: 'stage', 'aria-label': 'charts and pictures' },
+      element('h2', {}, 'how long a step of depth is'),
+      chart,
+      bins,
+      element('h2', {}, 'surfaces that fight'),
+      fights,
+    ),
+    element(
+      'section',
+      { 'aria-label': 'controls and figures' },
       group('planes', powerSlider('near', 'near', rules.near, set), powerSlider('far', 'far', rules.far, set)),
-      group('buffer', pick('mapping', 'mapping'), pick('format', 'format',
-        { u: 'u, unsigned', bins: 'bins', uf3: 'float, 3 bits of exponent', uf4: 'float, 4 bits', uf5: 'float, 5 bits' }), slider('bits', 'bits', rules.bits, set)),
+      group(
+        'buffer',
+        pick('mapping', 'mapping'),
+        pick('format', 'format', {
+          u: 'u, unsigned',
+          bins: 'bins',
+          uf3: 'float, 3 bits of exponent',
+          uf4: 'float, 4 bits',
+          uf5: 'float, 5 bits',
+        }),
+        slider('bits', 'bits', rules.bits, set),
+      ),
       group('surfaces', powerSlider('z', 'distance z', rules.z, set), pick('slope', 'slope of two surfaces')),
-      group('on the scene', pick('planes', 'near and far', { scene: "the scene's", above: 'those above' }), pick('rate', 'fights allowed, percent')),
-      answers));
+      group(
+        'on the scene',
+        pick('planes', 'near and far', { scene: "the scene's", above: 'those above' }),
+        pick('rate', 'fights allowed, percent'),
+      ),
+      answers,
+    ),
+  );
 
   return {
     async update(state) {
       const common = ['--mapping', state.mapping, '--format', formatOf(state), '--json', '--quiet'];
-      const shown = scene(), [size] = shown.options.filter((word) => /^\d+x\d+$/.test(word));
+      const shown = scene(),
+        [size] = shown.options.filter((word) => /^\d+x\d+$/.test(word));
       if (shown.config !== 'embedded') common.push('--config', shown.config);
-      const theory = await run(['depth', '--near', state.near, '--far', state.far, '--z', state.z, '--slope', state.slope, ...common]);
+      const theory = await run([
+        'depth',
+        '--near',
+        state.near,
+        '--far',
+        state.far,
+        '--z',
+        state.z,
+        '--slope',
+        state.slope,
+        ...common,
+      ]);
       bins.replaceChildren(...binsOf(theory, state));
       await drawChart(chart, theory);
       const planes = state.planes === 'above' ? ['--near', state.near, '--far', state.far] : [];
-      const measured = await run(['depth', '--scene', shown.name, ...(size ? ['--size', size] : []), ...planes,
-        '--fight-rate', `${state.rate}%`, '--fights', 'fights.png', ...common], shown.files);
-      fights.replaceChildren(element('figure', {}, image(measured.made['fights.png'], 'where surfaces of the scene fight'),
-        element('figcaption', {}, 'Yellow: two surfaces have the same code; red: the farther one is stored as the nearer.')));
+      const measured = await run(
+        [
+          'depth',
+          '--scene',
+          shown.name,
+          ...(size ? ['--size', size] : []),
+          ...planes,
+          '--fight-rate',
+          `${state.rate}%`,
+          '--fights',
+          'fights.png',
+          ...common,
+        ],
+        shown.files,
+      );
+      fights.replaceChildren(
+        element(
+          'figure',
+          {},
+          image(measured.made['fights.png'], 'where surfaces of the scene fight'),
+          element('figcaption', {}, 'Yellow: two surfaces have the same code; red: the farther one is stored as the nearer.'),
+        ),
+      );
       answers.replaceChildren(...answersOf(measured));
       fill(root, state);
     },
@@ -60,48 +123,113 @@ function metric(result, name) {
 }
 
 function binsOf(result) {
-  return [table(['at z', 'result'], [['code', metric(result, 'code')], ['length of the bin, exact', metric(result, 'bin_width')],
-    ['Δz by the textbook, first order', metric(result, 'first_order')], ['largest error of a depth', metric(result, 'max_recon_err')],
-    ['two surfaces must be apart by', metric(result, 'separation')], ['of that storage', metric(result, 'separation_storage')],
-    ['of that datapath', metric(result, 'separation_datapath')], ['of that snap of the vertices', metric(result, 'separation_snap')],
-    ['pairs of fragments tried so far apart', metric(result, 'pairs_tried')], ['of them in the wrong order or tied', metric(result, 'fights_at_separation')],
-    ['part that fights at half of it', metric(result, 'fights_at_half')]]),
-  element('p', {}, 'the hardware needs: ', figure(result, 'series/0/hardware'))];
+  return [
+    table(
+      ['at z', 'result'],
+      [
+        ['code', metric(result, 'code')],
+        ['length of the bin, exact', metric(result, 'bin_width')],
+        ['Δz by the textbook, first order', metric(result, 'first_order')],
+        ['largest error of a depth', metric(result, 'max_recon_err')],
+        ['two surfaces must be apart by', metric(result, 'separation')],
+        ['of that storage', metric(result, 'separation_storage')],
+        ['of that datapath', metric(result, 'separation_datapath')],
+        ['of that snap of the vertices', metric(result, 'separation_snap')],
+        ['pairs of fragments tried so far apart', metric(result, 'pairs_tried')],
+        ['of them in the wrong order or tied', metric(result, 'fights_at_separation')],
+        ['part that fights at half of it', metric(result, 'fights_at_half')],
+      ],
+    ),
+    element('p', {}, 'the hardware needs: ', figure(result, 'series/0/hardware')),
+  ];
 }
 
 function answersOf(result) {
   const measured = result.json.series[0].measured;
   const bits = result.json.fewest_bits;
   const parts = [element('h2', {}, 'bits')];
-  if (bits?.length) parts.push(...bits.map((_, index) => element('p', { class: 'answer' }, 'You need ', figure(result, `fewest_bits/${index}/bits`), ' bits of ',
-    figure(result, `fewest_bits/${index}/mapping`), '.')));
+  if (bits?.length)
+    parts.push(
+      ...bits.map((_, index) =>
+        element(
+          'p',
+          { class: 'answer' },
+          'You need ',
+          figure(result, `fewest_bits/${index}/bits`),
+          ' bits of ',
+          figure(result, `fewest_bits/${index}/mapping`),
+          '.',
+        ),
+      ),
+    );
   if (measured) {
-    parts.push(list(['fragments', figure(result, 'series/0/measured/fragments')], ['overlapping pairs', figure(result, 'series/0/measured/pairs')],
-      ['same code', figure(result, 'series/0/measured/ties')], ['wrong order', figure(result, 'series/0/measured/inversions')],
-      ['part that fights', figure(result, 'series/0/measured/rate')], ['nearest fight at', figure(result, 'series/0/measured/nearest_fight')]));
-    parts.push(table(['error of the eye depth', 'rms', 'largest'], Object.keys(measured.parts).map((part) =>
-      [part, figure(result, `series/0/measured/parts/${part}/rms`), figure(result, `series/0/measured/parts/${part}/max`)])));
+    parts.push(
+      list(
+        ['fragments', figure(result, 'series/0/measured/fragments')],
+        ['overlapping pairs', figure(result, 'series/0/measured/pairs')],
+        ['same code', figure(result, 'series/0/measured/ties')],
+        ['wrong order', figure(result, 'series/0/measured/inversions')],
+        ['part that fights', figure(result, 'series/0/measured/rate')],
+        ['nearest fight at', figure(result, 'series/0/measured/nearest_fight')],
+      ),
+    );
+    parts.push(
+      table(
+        ['error of the eye depth', 'rms', 'largest'],
+        Object.keys(measured.parts).map((part) => [
+          part,
+          figure(result, `series/0/measured/parts/${part}/rms`),
+          figure(result, `series/0/measured/parts/${part}/max`),
+        ]),
+      ),
+    );
   }
   parts.push(...result.json.answers.map((_, index) => element('p', {}, figure(result, `answers/${index}`))));
   return parts;
 }
 
-let charts = null;  // uPlot, when it is first needed
+let charts = null; // uPlot, when it is first needed
 async function drawChart(place, result) {
   charts ??= (await import('./vendor/uPlot.esm.js')).default;
   const { curve, name } = result.json.series[0];
-  const width = Math.max(280, place.clientWidth), powers = (self, splits) => splits.map((value) => {
-    const power = Math.log10(value);
-    return Math.abs(power - Math.round(power)) < 1e-9 ? String(Number(value.toPrecision(3))) : '';
+  const width = Math.max(280, place.clientWidth),
+    powers = (self, splits) =>
+      splits.map((value) => {
+        const power = Math.log10(value);
+        return Math.abs(power - Math.round(power)) < 1e-9 ? String(Number(value.toPrecision(3))) : '';
+      });
+  const axis = (label) => ({
+    label,
+    stroke: colors.ink,
+    grid: { stroke: colors['paper-panel'] },
+    values: powers,
+    font: '14px system-ui, sans-serif',
+    labelFont: '14px system-ui, sans-serif',
+    size: label.startsWith('length') ? 76 : 44,
   });
-  const axis = (label) => ({ label, stroke: colors.ink, grid: { stroke: colors['paper-panel'] }, values: powers, font: '14px system-ui, sans-serif',
-    labelFont: '14px system-ui, sans-serif', size: label.startsWith('length') ? 76 : 44 });
-  const line = (label, stroke, dash) => ({ label, stroke, width: 2.5, dash, points: { show: false }, value: (self, value) => (value ? value.toPrecision(4) : '–') });
+  const line = (label, stroke, dash) => ({
+    label,
+    stroke,
+    width: 2.5,
+    dash,
+    points: { show: false },
+    value: (self, value) => (value ? value.toPrecision(4) : '–'),
+  });
   place.replaceChildren();
-  place.chart = new charts({ width, height: 320, scales: { x: { time: false, distr: 3 }, y: { distr: 3 } },
-    axes: [axis('distance from the eye'), axis('length, in units of distance')],
-    series: [{ label: 'z', value: (self, value) => (value ? value.toPrecision(4) : '–') }, line(`bin of ${name}, exact`, colors['mark-second']),
-      line('textbook, first order', colors['mark-first'], [8, 5])] },
-  [curve.z, curve.bin_width, curve.first_order], place);
+  place.chart = new charts(
+    {
+      width,
+      height: 320,
+      scales: { x: { time: false, distr: 3 }, y: { distr: 3 } },
+      axes: [axis('distance from the eye'), axis('length, in units of distance')],
+      series: [
+        { label: 'z', value: (self, value) => (value ? value.toPrecision(4) : '–') },
+        line(`bin of ${name}, exact`, colors['mark-second']),
+        line('textbook, first order', colors['mark-first'], [8, 5]),
+      ],
+    },
+    [curve.z, curve.bin_width, curve.first_order],
+    place,
+  );
   Object.assign(place.dataset, { command: result.command, path: 'series/0/curve' });
 }

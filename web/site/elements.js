@@ -1,7 +1,8 @@
 // Elements of the page, and figures that say where in a result of the program they come from.
 
 export function element(tag, attributes = {}, ...children) {
-  const node = tag.startsWith('svg:') ? document.createElementNS('http://www.w3.org/2000/svg', tag.slice(4))
+  const node = tag.startsWith('svg:')
+    ? document.createElementNS('http://www.w3.org/2000/svg', tag.slice(4))
     : document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
     if (name.startsWith('on')) node.addEventListener(name.slice(2), value);
@@ -25,17 +26,46 @@ export function format(value) {
 }
 
 // A figure of `result` (of program.js) at a path such as 'pixels/0/final/model/depth'. Tests read both attributes.
-export const figure = (result, path) => element('span', { 'data-command': result.command, 'data-path': path, class: 'figure' },
-  format(valueAt(result.json, path)));
+export const figure = (result, path) =>
+  element('span', { 'data-command': result.command, 'data-path': path, class: 'figure' }, format(valueAt(result.json, path)));
 
-export const table = (head, rows, attributes = {}) => element('div', { class: 'scroll', tabindex: '0' },
-  element('table', attributes,
-    element('thead', {}, element('tr', {}, head.map((text) => element('th', { scope: 'col' }, text)))),
-    element('tbody', {}, rows.map(([first, ...rest]) => element('tr', {},
-      element('th', { scope: 'row' }, first), rest.map((cell) => element('td', {}, cell)))))));
+export const table = (head, rows, attributes = {}) =>
+  element(
+    'div',
+    { class: 'scroll', tabindex: '0' },
+    element(
+      'table',
+      attributes,
+      element(
+        'thead',
+        {},
+        element(
+          'tr',
+          {},
+          head.map((text) => element('th', { scope: 'col' }, text)),
+        ),
+      ),
+      element(
+        'tbody',
+        {},
+        rows.map(([first, ...rest]) =>
+          element(
+            'tr',
+            {},
+            element('th', { scope: 'row' }, first),
+            rest.map((cell) => element('td', {}, cell)),
+          ),
+        ),
+      ),
+    ),
+  );
 
-export const list = (...pairs) => element('dl', {}, pairs.filter(Boolean).map(([name, ...value]) =>
-  [element('dt', {}, name), element('dd', {}, value)]));
+export const list = (...pairs) =>
+  element(
+    'dl',
+    {},
+    pairs.filter(Boolean).map(([name, ...value]) => [element('dt', {}, name), element('dd', {}, value)]),
+  );
 
 // A picture that the program wrote.
 export async function picture(bytes) {

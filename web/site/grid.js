@@ -2,16 +2,17 @@
 import { element } from './elements.js';
 
 // The style sheet's colours by their name without the dashes.
-export const colors = new Proxy({}, {
-  get: (_, name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim(),
-});
+export const colors = new Proxy(
+  {},
+  { get: (_, name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim() },
+);
 
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
 export class Grid {
-  figures = [];      // { text, path, command } of the figures in the cells: tests read them
-  onmove = null;     // (dx, dy, isFar): an arrow key, with shift or without
-  ongrab = null;     // (x, y, reach): the pointer goes down; gives what follows its moves, or null
+  figures = []; // { text, path, command } of the figures in the cells: tests read them
+  onmove = null; // (dx, dy, isFar): an arrow key, with shift or without
+  ongrab = null; // (x, y, reach): the pointer goes down; gives what follows its moves, or null
 
   constructor(label, longest = 680) {
     this.longest = longest;
@@ -30,18 +31,22 @@ export class Grid {
       drag = this.ongrab?.(...this.placeOf(event), (event.pointerType === 'touch' ? 24 : 16) / this.cellSize) ?? null;
     });
     this.canvas.addEventListener('pointermove', (event) => drag?.(...this.placeOf(event)));
-    this.canvas.addEventListener('pointerup', () => { drag = null; });
-    this.canvas.addEventListener('pointercancel', () => { drag = null; });
+    this.canvas.addEventListener('pointerup', () => {
+      drag = null;
+    });
+    this.canvas.addEventListener('pointercancel', () => {
+      drag = null;
+    });
   }
 
   placeOf(event) {
     const box = this.canvas.getBoundingClientRect();
-    return [(event.clientX - box.left) / box.width * this.width, (event.clientY - box.top) / box.height * this.height];
+    return [((event.clientX - box.left) / box.width) * this.width, ((event.clientY - box.top) / box.height) * this.height];
   }
 
   // Pixels of the picture; as large as the place beside it and the window's height allow.
   resize(width, height) {
-    const room = Math.min(this.canvas.parentNode.clientWidth - 2, Math.max(300, innerHeight - 190) * width / height);
+    const room = Math.min(this.canvas.parentNode.clientWidth - 2, (Math.max(300, innerHeight - 190) * width) / height);
     this.cellSize = Math.max(2, room / width);
     const ratio = devicePixelRatio || 1;
     Object.assign(this, { width, height });
@@ -63,8 +68,14 @@ export class Grid {
     this.pen.strokeStyle = colors['mark-line'];
     this.pen.lineWidth = 0.5;
     this.pen.beginPath();
-    for (let x = 0; x <= this.width; x++) { this.pen.moveTo(x * this.cellSize, 0); this.pen.lineTo(x * this.cellSize, this.height * this.cellSize); }
-    for (let y = 0; y <= this.height; y++) { this.pen.moveTo(0, y * this.cellSize); this.pen.lineTo(this.width * this.cellSize, y * this.cellSize); }
+    for (let x = 0; x <= this.width; x++) {
+      this.pen.moveTo(x * this.cellSize, 0);
+      this.pen.lineTo(x * this.cellSize, this.height * this.cellSize);
+    }
+    for (let y = 0; y <= this.height; y++) {
+      this.pen.moveTo(0, y * this.cellSize);
+      this.pen.lineTo(this.width * this.cellSize, y * this.cellSize);
+    }
     this.pen.stroke();
   }
 

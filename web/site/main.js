@@ -19,17 +19,17 @@ const page = {
 const rules = { ...Object.fromEntries(Object.entries(views).map(([name, view]) => [name, view.rules])), page };
 
 let state = parseLink(location.hash, rules);
-let shown = null;  // { name, root, update }
+let shown = null; // { name, root, update }
 const main = document.querySelector('main');
-main.rules = rules;  // tests read this, the commands, and what the results are of
+main.rules = rules; // tests read this, the commands, and what the results are of
 const sceneControls = document.querySelector('#scene');
 const errorLine = document.querySelector('#error');
 let linkTimer = null;
-let commands = [];  // whose results are shown
+let commands = []; // whose results are shown
 
 function say(error) {
   errorLine.hidden = !error;
-  main.classList.toggle('stale', Boolean(error));  // what is shown is of an earlier state
+  main.classList.toggle('stale', Boolean(error)); // what is shown is of an earlier state
   errorLine.textContent = error ?? '';
 }
 
@@ -50,7 +50,7 @@ function set(view, changes) {
   for (const [key, value] of Object.entries(changes))
     if (rules[view][key].accepts(String(value))) state.values[view][key] = String(value);
     else return say(`${key}: '${value}' is no value of it`);
-  clearTimeout(linkTimer);  // browsers refuse a link that changes with every move of the pointer
+  clearTimeout(linkTimer); // browsers refuse a link that changes with every move of the pointer
   linkTimer = setTimeout(() => history.replaceState(null, '', formatLink(state, rules)), 200);
   refresh();
 }
@@ -101,16 +101,39 @@ function show(view) {
 }
 
 async function start() {
-  document.querySelector('nav').append(...Object.keys(views).map((name) => element('a', { href: `#view=${name}`, 'data-view': name,
-    onclick: (event) => { event.preventDefault(); show(name); } }, name)));
+  document.querySelector('nav').append(
+    ...Object.keys(views).map((name) =>
+      element(
+        'a',
+        {
+          href: `#view=${name}`,
+          'data-view': name,
+          onclick: (event) => {
+            event.preventDefault();
+            show(name);
+          },
+        },
+        name,
+      ),
+    ),
+  );
   const built = (await run(['scenes', '--json'])).json.scenes.map(({ name }) => name);
   const setPage = (changes) => set('page', changes);
-  const open = element('input', { type: 'file', accept: '.hpt,.obj,.glb,.gltf', onchange: () => open.files[0] && take(open.files[0]) });
+  const open = element('input', {
+    type: 'file',
+    accept: '.hpt,.obj,.glb,.gltf',
+    onchange: () => open.files[0] && take(open.files[0]),
+  });
   sceneControls.append(
-    select('scene', 'scene', [...built, 'drawn', 'floor', 'dropped'], setPage,
-      { drawn: 'drawn (triangle view)', floor: 'floor (texture view)', dropped: 'a file' }),
-    select('size', 'size', page.size.values, setPage), select('config', 'configuration', page.config.values, setPage),
-    element('label', { class: 'control' }, 'open a file', open));
+    select('scene', 'scene', [...built, 'drawn', 'floor', 'dropped'], setPage, {
+      drawn: 'drawn (triangle view)',
+      floor: 'floor (texture view)',
+      dropped: 'a file',
+    }),
+    select('size', 'size', page.size.values, setPage),
+    select('config', 'configuration', page.config.values, setPage),
+    element('label', { class: 'control' }, 'open a file', open),
+  );
   refresh();
 }
 
@@ -120,10 +143,19 @@ async function take(file) {
   set('page', { scene: 'dropped' });
 }
 
-addEventListener('hashchange', () => { state = parseLink(location.hash, rules); refresh(); });
-addEventListener('popstate', () => { state = parseLink(location.hash, rules); refresh(); });
+addEventListener('hashchange', () => {
+  state = parseLink(location.hash, rules);
+  refresh();
+});
+addEventListener('popstate', () => {
+  state = parseLink(location.hash, rules);
+  refresh();
+});
 addEventListener('resize', () => refresh());
-addEventListener('dragover', (event) => { event.preventDefault(); document.body.classList.add('dropping'); });
+addEventListener('dragover', (event) => {
+  event.preventDefault();
+  document.body.classList.add('dropping');
+});
 addEventListener('dragleave', () => document.body.classList.remove('dropping'));
 addEventListener('drop', (event) => {
   event.preventDefault();

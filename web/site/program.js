@@ -6,14 +6,19 @@ export class ProgramError extends Error {}
 const bytesOf = (content) => (typeof content === 'string' ? new TextEncoder().encode(content) : content);
 const quoted = (word) => (/^[\w@%+=:,./-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`);
 
-const results = new Map();  // by command and files, the last ones asked for at the end
+const results = new Map(); // by command and files, the last ones asked for at the end
 const RESULTS_KEPT = 8;
 
 // A run of the program: { args, command, files, status, stdout, json, made }. `made` are the files that it wrote.
 // A wrong usage or bad input is a ProgramError with the program's one line.
 export function run(args, files = {}) {
-  const key = JSON.stringify([args, Object.entries(files).map(([name, content]) =>
-    [name, typeof content === 'string' ? content : `${content.length} bytes of ${content.mark}`])]);
+  const key = JSON.stringify([
+    args,
+    Object.entries(files).map(([name, content]) => [
+      name,
+      typeof content === 'string' ? content : `${content.length} bytes of ${content.mark}`,
+    ]),
+  ]);
   const known = results.get(key);
   results.delete(key);
   const result = known ?? start(args, files);
@@ -36,7 +41,8 @@ async function start(args, files) {
 
 // Of the calls that come while one is under way only the last one is made.
 export function latest(work) {
-  let isBusy = false, waiting = null;
+  let isBusy = false,
+    waiting = null;
   return async function ask(...values) {
     waiting = values;
     if (isBusy) return;

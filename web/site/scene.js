@@ -19,7 +19,12 @@ export function sceneOf(values) {
   if (scene === 'dropped') {
     if (!dropped.name) throw new Error('a link does not hold a dropped file; open it, or choose another scene');
     const isCapture = dropped.name.endsWith('.hpt');
-    return { name: dropped.name, files: { [dropped.name]: dropped.bytes }, options: isCapture ? options : ['--size', size, ...options], config };
+    return {
+      name: dropped.name,
+      files: { [dropped.name]: dropped.bytes },
+      options: isCapture ? options : ['--size', size, ...options],
+      config,
+    };
   }
   return { name: scene, files: {}, options: ['--size', size, ...options], config };
 }

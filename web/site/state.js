@@ -4,11 +4,15 @@
 // A key's rule: its start and whether a text is a value of it.
 export const choice = (start, ...values) => ({ start, values, accepts: (text) => values.includes(text) });
 export const whole = (start, least, most) => ({
-  start: String(start), least, most,
+  start: String(start),
+  least,
+  most,
   accepts: (text) => /^-?\d+$/.test(text) && Number(text) >= least && Number(text) <= most,
 });
 export const real = (start, least, most) => ({
-  start: String(start), least, most,
+  start: String(start),
+  least,
+  most,
   accepts: (text) => /^-?\d+(\.\d+)?(e-?\d+)?$/.test(text) && Number(text) >= least && Number(text) <= most,
 });
 export const matching = (start, pattern) => ({ start, accepts: (text) => pattern.test(text) });

@@ -5,8 +5,12 @@ import { element, figure, image, list, picture } from './elements.js';
 import { texels } from './pixel.js';
 import { choice, real, whole } from './state.js';
 
-const FILTERS = { nearest: ['nearest', 'nearest', 'nearest'], linear: ['linear', 'linear', 'bilinear'],
-  mipmap: ['linear_mipmap_nearest', 'linear', 'trilinear'], trilinear: ['linear_mipmap_linear', 'linear', 'trilinear'] };
+const FILTERS = {
+  nearest: ['nearest', 'nearest', 'nearest'],
+  linear: ['linear', 'linear', 'bilinear'],
+  mipmap: ['linear_mipmap_nearest', 'linear', 'trilinear'],
+  trilinear: ['linear_mipmap_linear', 'linear', 'trilinear'],
+};
 
 export const rules = {
   interpolation: choice('perspective', 'perspective', 'affine'),
@@ -19,15 +23,16 @@ export const rules = {
   ways: choice('1', '1', '2'),
   memory: choice('fixed', 'fixed', 'sram', 'sdram', 'psram', 'ddr3'),
   beside: choice('perspective', 'perspective', 'misses', 'error'),
-  x: whole(120, 0, 239), y: whole(100, 0, 149),
+  x: whole(120, 0, 239),
+  y: whole(100, 0, 149),
 };
 
 // A floor of two triangles from w = 1.3 to `far`, as docs/texture/floor.hpt has it.
 export function floor({ interpolation, filter, bias, pattern, repeats, far }) {
   const [min, mag] = FILTERS[filter];
   const [near, end] = [1.3, Number(far)];
-  const z = (w) => ((400.5 * w - 400) / 399.5).toFixed(6);  // clip space, near 0.5, far 400
-  const y = (w) => (0.75 * w - 2.2).toFixed(4);              // the eye 2.2 above the floor
+  const z = (w) => ((400.5 * w - 400) / 399.5).toFixed(6); // clip space, near 0.5, far 400
+  const y = (w) => (0.75 * w - 2.2).toFixed(4); // the eye 2.2 above the floor
   return `halfplane 1
 target 240 150
 planes 0.5 400
@@ -51,18 +56,50 @@ export function open(root, context) {
   const { set, run } = context;
   const pick = (key, label, names) => select(key, label, rules[key].values, set, names);
   const grid = new Grid('The floor. Arrow keys move the pixel whose texels are shown.');
-  const other = element('figure', {}), panel = element('div', {}), totals = element('div', {});
+  const other = element('figure', {}),
+    panel = element('div', {}),
+    totals = element('div', {});
   root.append(
-    element('section', { class: 'stage', 'aria-label': 'pictures' }, grid.canvas, element('p', {}, 'Touch a pixel for its texels.'), other),
-    element('section', { 'aria-label': 'controls and figures' },
-      group('floor', pick('pattern', 'texture'), pick('repeats', 'images along it'), slider('far', 'w at its far end', { least: 1.5, most: 200, step: 0.5 }, set)),
-      group('coordinates', pick('interpolation', 'interpolation', { perspective: 'over w', affine: 'affine' }), pick('filter', 'filter',
-        { mipmap: 'linear, nearest level', trilinear: 'linear, between levels' }), slider('bias', 'level bias', rules.bias, set)),
+    element(
+      'section',
+      { class: 'stage', 'aria-label': 'pictures' },
+      grid.canvas,
+      element('p', {}, 'Touch a pixel for its texels.'),
+      other,
+    ),
+    element(
+      'section',
+      { 'aria-label': 'controls and figures' },
+      group(
+        'floor',
+        pick('pattern', 'texture'),
+        pick('repeats', 'images along it'),
+        slider('far', 'w at its far end', { least: 1.5, most: 200, step: 0.5 }, set),
+      ),
+      group(
+        'coordinates',
+        pick('interpolation', 'interpolation', { perspective: 'over w', affine: 'affine' }),
+        pick('filter', 'filter', { mipmap: 'linear, nearest level', trilinear: 'linear, between levels' }),
+        slider('bias', 'level bias', rules.bias, set),
+      ),
       group('cache', pick('kb', 'kilobytes'), pick('ways', 'places of a block'), pick('memory', 'memory')),
-      group('below', pick('beside', 'shown below', { perspective: 'golden, over w', misses: 'misses of the cache', error: 'error of the coordinate' })),
-      panel, totals));
+      group(
+        'below',
+        pick('beside', 'shown below', {
+          perspective: 'golden, over w',
+          misses: 'misses of the cache',
+          error: 'error of the coordinate',
+        }),
+      ),
+      panel,
+      totals,
+    ),
+  );
   const move = (x, y) => set({ x: Math.max(0, Math.min(239, Math.floor(x))), y: Math.max(0, Math.min(149, Math.floor(y))) });
-  grid.ongrab = (x, y) => { move(x, y); return move; };
+  grid.ongrab = (x, y) => {
+    move(x, y);
+    return move;
+  };
   grid.onmove = (dx, dy, isFar) => {
     const { x, y } = context.values().texture;
     move(Number(x) + dx * (isFar ? 8 : 1), Number(y) + dy * (isFar ? 8 : 1));
@@ -78,20 +115,60 @@ export function open(root, context) {
       grid.drawCursor(Number(state.x), Number(state.y));
       fill(root, state, disabled(state));
       const unit = ['--set', `texture.unit=${FILTERS[state.filter][2]}`];
-      const result = await run(['explain', 'floor.hpt', state.x, state.y, ...(state.interpolation === 'affine' ? [] : unit), '--json', '--quiet'], files);
+      const result = await run(
+        ['explain', 'floor.hpt', state.x, state.y, ...(state.interpolation === 'affine' ? [] : unit), '--json', '--quiet'],
+        files,
+      );
       const index = result.json.pixels[0].history.findIndex(({ model, verdict }) => model.surface && verdict === 'written');
-      panel.replaceChildren(element('h2', {}, `pixel ${state.x} ${state.y}`), index < 0 ? element('p', {}, 'The floor does not cover it.')
-        : texels(result, `pixels/0/history/${index}/model/surface`));
-      const cached = await run(['render', 'floor.hpt', '--engine', 'cycle', ...unit, '--set', `texture.cache_kb=${state.kb}`, '--set', `texture.ways=${state.ways}`,
-        ...(state.memory === 'fixed' ? [] : ['--memory', state.memory]), '--misses', 'misses.png', '--json', '--quiet'], files);
-      totals.replaceChildren(element('h2', {}, 'the texture cache, whole frame'), list(['samples', figure(cached, 'texture/samples')], ['hits', figure(cached, 'texture/hits')],
-        ['misses', figure(cached, 'texture/misses')], ['bytes read', figure(cached, 'texture/bytes')], ['cycles', figure(cached, 'cycles')],
-        ['limited by', figure(cached, 'bottleneck')]));
+      panel.replaceChildren(
+        element('h2', {}, `pixel ${state.x} ${state.y}`),
+        index < 0
+          ? element('p', {}, 'The floor does not cover it.')
+          : texels(result, `pixels/0/history/${index}/model/surface`),
+      );
+      const cached = await run(
+        [
+          'render',
+          'floor.hpt',
+          '--engine',
+          'cycle',
+          ...unit,
+          '--set',
+          `texture.cache_kb=${state.kb}`,
+          '--set',
+          `texture.ways=${state.ways}`,
+          ...(state.memory === 'fixed' ? [] : ['--memory', state.memory]),
+          '--misses',
+          'misses.png',
+          '--json',
+          '--quiet',
+        ],
+        files,
+      );
+      totals.replaceChildren(
+        element('h2', {}, 'the texture cache, whole frame'),
+        list(
+          ['samples', figure(cached, 'texture/samples')],
+          ['hits', figure(cached, 'texture/hits')],
+          ['misses', figure(cached, 'texture/misses')],
+          ['bytes read', figure(cached, 'texture/bytes')],
+          ['cycles', figure(cached, 'cycles')],
+          ['limited by', figure(cached, 'bottleneck')],
+        ),
+      );
       if (state.beside === 'misses') {
         other.replaceChildren(image(cached.made['misses.png'], 'lines of texels that each pixel asked memory for'));
       } else {
-        const panelName = state.interpolation === 'affine' && state.beside === 'error' ? 'affine_coordinate' : state.beside === 'error' ? 'coordinate' : 'perspective';
-        const compared = await run(['compare', 'floor.hpt', '--panels', panelName, '-o', 'compared.png', '--json', '--quiet'], files);
+        const panelName =
+          state.interpolation === 'affine' && state.beside === 'error'
+            ? 'affine_coordinate'
+            : state.beside === 'error'
+              ? 'coordinate'
+              : 'perspective';
+        const compared = await run(
+          ['compare', 'floor.hpt', '--panels', panelName, '-o', 'compared.png', '--json', '--quiet'],
+          files,
+        );
         other.replaceChildren(image(compared.made['compared.png'], panelName));
       }
     },

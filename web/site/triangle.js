@@ -2,6 +2,7 @@
 import { button, fill, group, select, slider } from './controls.js';
 import { Grid, colors } from './grid.js';
 import { element, figure, format, list, table, valueAt } from './elements.js';
+import { UNCOVERED, drawLine, lineFigures, lineRuns } from './line.js';
 import { choice, matching, whole } from './state.js';
 
 const place = (start) => matching(start, /^-?\d{1,3}(\.\d{1,6})?,-?\d{1,3}(\.\d{1,6})?$/);
@@ -21,12 +22,15 @@ export const rules = {
   edge: choice('AB', 'AB', 'BC', 'CA', 'BD', 'DC'),
   label: choice('value', 'value', 'exact', 'bits', 'none'),
   grid: choice('16x12', '8x6', '12x9', '16x12', '24x18'),
-  a: place('2.3,1.2'), b: place('14.1,5.5'), c: place('4.9,10.5'), d: place('13,10.5'),
-  x: whole(6, 0, 23), y: whole(3, 0, 17),
+  a: place('2.3,1.2'),
+  b: place('14.1,5.5'),
+  c: place('4.9,10.5'),
+  d: place('13,10.5'),
+  x: whole(6, 0, 23),
+  y: whole(3, 0, 17),
   hand: choice('pixel', 'pixel', 'a', 'b', 'c', 'd'),
 };
 
-const UNCOVERED = ['uncovered', 'frustum', 'zero_area', 'backface', 'empty', 'no_sample', 'scissor', 'tiles_outside', 'tiles_hiz'];
 const sizeOf = (state) => state.grid.split('x').map(Number);
 const point = (text) => text.split(',').map(Number);
 const PAPERS = ['first', 'second', 'third'];
@@ -42,12 +46,28 @@ function lettersOf({ second }) {
 export function capture(state) {
   const [width, height] = sizeOf(state);
   const [b, c] = [point(state.b), point(state.c)];
-  const at = { A: point(state.a), B: b, C: c, D: point(state.d), M: [0, 1].map((axis) => b[axis] + 0.37 * (c[axis] - b[axis])) };
+  const at = {
+    A: point(state.a),
+    B: b,
+    C: c,
+    D: point(state.d),
+    M: [0, 1].map((axis) => b[axis] + 0.37 * (c[axis] - b[axis])),
+  };
   const colors = ['230 120 40', '60 130 210', '60 160 90'];
-  const lines = ['halfplane 1', `target ${width} ${height}`, 'clear color 255 255 255 255 depth 1', 'space window',
-    'state depth_test always'];
+  const lines = [
+    'halfplane 1',
+    `target ${width} ${height}`,
+    'clear color 255 255 255 255 depth 1',
+    'space window',
+    'state depth_test always',
+  ];
   if (state.draw === 'line') {
-    lines.push(`state line_rule ${state.line}`, `v ${at.A.join(' ')} .5 1 0 0 0 255`, `v ${at.B.join(' ')} .5 1 0 0 0 255`, 'l 0 1');
+    lines.push(
+      `state line_rule ${state.line}`,
+      `v ${at.A.join(' ')} .5 1 0 0 0 255`,
+      `v ${at.B.join(' ')} .5 1 0 0 0 255`,
+      'l 0 1',
+    );
     return lines.join('\n') + '\n';
   }
   lettersOf(state).forEach((letters, index) => {
@@ -61,16 +81,24 @@ export function capture(state) {
 function patternOf({ samples, pattern }) {
   const count = Number(samples);
   if (pattern === 'standard' || count === 1) return 'standard';
-  const columns = Math.ceil(Math.sqrt(count)), rows = count / columns;
-  const places = Array.from({ length: count }, (_, n) => (pattern === 'diagonal' ? [(n + 0.5) / count, (n + 0.5) / count]
-    : [((n % columns) + 0.5) / columns, (Math.floor(n / columns) + 0.5) / rows]));
+  const columns = Math.ceil(Math.sqrt(count)),
+    rows = count / columns;
+  const places = Array.from({ length: count }, (_, n) =>
+    pattern === 'diagonal'
+      ? [(n + 0.5) / count, (n + 0.5) / count]
+      : [((n % columns) + 0.5) / columns, (Math.floor(n / columns) + 0.5) / rows],
+  );
   return places.map(([x, y]) => `${x},${y}`).join(';');
 }
 
 export function disabled(state) {
   const off = {};
-  const none = (reason, ...keys) => keys.forEach((key) => { off[key] = reason; });
-  if (state.draw === 'line') none('of triangles', 'second', 'rule', 'samples', 'pattern', 'tile', 'stamp', 'marks', 'edge', 'label');
+  const none = (reason, ...keys) =>
+    keys.forEach((key) => {
+      off[key] = reason;
+    });
+  if (state.draw === 'line')
+    none('of triangles', 'second', 'rule', 'samples', 'pattern', 'tile', 'stamp', 'marks', 'edge', 'label');
   else none('of lines', 'line');
   if (state.draw === 'triangle' && state.samples !== '1') none('other fill rules are of pixels with one sample', 'rule');
   if (state.samples === '1') none('of several samples a pixel', 'pattern');
@@ -82,46 +110,90 @@ export function disabled(state) {
 export function open(root, context) {
   const { set } = context;
   const state = () => context.values().triangle;
-  const grid = new Grid('The pixels, with the corners A, B, C and D. Arrow keys move the pixel or the corner that is chosen beside it.');
+  const grid = new Grid(
+    'The pixels, with the corners A, B, C and D. Arrow keys move the pixel or the corner that is chosen beside it.',
+  );
   const panel = element('div', {});
   const legend = element('p', {});
-  const names = { shared: 'a second triangle on edge BC', junction: 'two triangles with a T-junction on BC', none: 'none',
-    a: 'corner A', b: 'corner B', c: 'corner C', d: 'corner D', value: 'value in the hardware', exact: 'exact, in square subpixels',
-    bits: 'bits, hexadecimal', pixel: 'the pixel', triangle: 'triangles', line: 'a line from A to B' };
+  const names = {
+    shared: 'a second triangle on edge BC',
+    junction: 'two triangles with a T-junction on BC',
+    none: 'none',
+    a: 'corner A',
+    b: 'corner B',
+    c: 'corner C',
+    d: 'corner D',
+    value: 'value in the hardware',
+    exact: 'exact, in square subpixels',
+    bits: 'bits, hexadecimal',
+    pixel: 'the pixel',
+    triangle: 'triangles',
+    line: 'a line from A to B',
+  };
   const pick = (key, label) => select(key, label, rules[key].values, set, names);
-  const arrows = element('div', { class: 'controls', role: 'group', 'aria-label': 'move' },
-    [['←', 'left', -1, 0], ['↑', 'up', 0, -1], ['↓', 'down', 0, 1], ['→', 'right', 1, 0]].map(([text, name, x, y]) =>
-      button(text, () => move(x, y, 1), { 'aria-label': `move ${name}`, 'data-move': name })));
+  const arrows = element(
+    'div',
+    { class: 'controls', role: 'group', 'aria-label': 'move' },
+    [
+      ['←', 'left', -1, 0],
+      ['↑', 'up', 0, -1],
+      ['↓', 'down', 0, 1],
+      ['→', 'right', 1, 0],
+    ].map(([text, name, x, y]) => button(text, () => move(x, y, 1), { 'aria-label': `move ${name}`, 'data-move': name })),
+  );
   root.append(
     element('section', { class: 'stage fixed', 'aria-label': 'picture' }, grid.canvas, legend),
-    element('section', { 'aria-label': 'controls and figures' },
+    element(
+      'section',
+      { 'aria-label': 'controls and figures' },
       group('drawn', pick('draw', 'draw'), pick('second', 'beside it'), pick('grid', 'pixels')),
-      group('rules', pick('rule', 'fill rule'), pick('line', 'line rule'),
-        slider('sub', 'subpixel bits', rules.sub, set), pick('samples', 'samples a pixel'), pick('pattern', 'their places')),
-      group('shown', pick('edge', 'edge'), pick('label', 'figures in the pixels'), pick('marks', 'marks'), pick('tile', 'tile'),
-        pick('stamp', 'stamp')),
+      group(
+        'rules',
+        pick('rule', 'fill rule'),
+        pick('line', 'line rule'),
+        slider('sub', 'subpixel bits', rules.sub, set),
+        pick('samples', 'samples a pixel'),
+        pick('pattern', 'their places'),
+      ),
+      group(
+        'shown',
+        pick('edge', 'edge'),
+        pick('label', 'figures in the pixels'),
+        pick('marks', 'marks'),
+        pick('tile', 'tile'),
+        pick('stamp', 'stamp'),
+      ),
       group('moved', pick('hand', 'arrow keys move'), arrows),
-      panel));
+      panel,
+    ),
+  );
 
   const bounded = (value, size) => Math.max(-size, Math.min(2 * size, value));
   function put(corner, x, y) {
-    const step = 2 ** -Number(state().sub), [width, height] = sizeOf(state());
-    const text = [bounded(x, width), bounded(y, height)].map((value) => Number((Math.round(value / step) * step).toFixed(6))).join(',');
+    const step = 2 ** -Number(state().sub);
+    const [width, height] = sizeOf(state());
+    const text = [bounded(x, width), bounded(y, height)]
+      .map((value) => Number((Math.round(value / step) * step).toFixed(6)))
+      .join(',');
     set({ [corner]: text });
   }
   function move(dx, dy, steps) {
-    const { hand, x, y, sub } = state(), [width, height] = sizeOf(state());
+    const { hand, x, y, sub } = state();
+    const [width, height] = sizeOf(state());
     if (hand === 'pixel') {
       set({ x: Math.max(0, Math.min(width - 1, Number(x) + dx)), y: Math.max(0, Math.min(height - 1, Number(y) + dy)) });
     } else {
-      const [px, py] = point(state()[hand]), step = steps * 2 ** -Number(sub);
+      const [px, py] = point(state()[hand]);
+      const step = steps * 2 ** -Number(sub);
       put(hand, px + dx * step, py + dy * step);
     }
   }
-  const corners = () => (state().draw === 'line' ? ['a', 'b'] : state().second === 'none' ? ['a', 'b', 'c'] : ['a', 'b', 'c', 'd']);
+  const corners = () =>
+    state().draw === 'line' ? ['a', 'b'] : state().second === 'none' ? ['a', 'b', 'c'] : ['a', 'b', 'c', 'd'];
   grid.onmove = (dx, dy, isFar) => move(dx, dy, isFar ? 2 ** Number(state().sub) : 1);
   grid.ongrab = (x, y, reach) => {
-    const near = corners().map((corner) => [corner, Math.hypot(point(state()[corner])[0] - x, point(state()[corner])[1] - y)])
+    const near = corners()
+      .map((corner) => [corner, Math.hypot(point(state()[corner])[0] - x, point(state()[corner])[1] - y)])
       .sort((left, right) => left[1] - right[1])[0];
     if (near[1] < reach) return (toX, toY) => put(near[0], toX, toY);
     set({ x: Math.floor(x), y: Math.floor(y) });
@@ -131,7 +203,8 @@ export function open(root, context) {
   const size = () => sizeOf(state());
   return {
     async update(values) {
-      const picture = values.draw === 'line' ? await lineRuns(context, values) : await triangleRuns(context, values);
+      const picture =
+        values.draw === 'line' ? await lineRuns(context, values, capture(values)) : await triangleRuns(context, values);
       grid.figures = [];
       grid.resize(...size());
       (values.draw === 'line' ? drawLine : drawTriangles)(grid, picture, values);
@@ -144,29 +217,81 @@ export function open(root, context) {
   };
 }
 
-const settings = (state) => ['--set', `subpixel.bits=${state.sub}`];
-
 async function triangleRuns({ run }, state) {
   const [width, height] = sizeOf(state);
   const files = (changes) => ({ 'drawn.hpt': capture({ ...state, ...changes }) });
   const pattern = patternOf(state);
-  const samples = state.samples === '1' ? [] : ['--set', `msaa.samples=${state.samples}`,
-    ...(pattern === 'standard' ? [] : ['--set', `msaa.pattern=${pattern}`])];
+  const samples =
+    state.samples === '1'
+      ? []
+      : ['--set', `msaa.samples=${state.samples}`, ...(pattern === 'standard' ? [] : ['--set', `msaa.pattern=${pattern}`])];
   // Another traversal draws the same picture and leaves out the hardware's packets, most of the result.
-  const explain = (rule, changes = {}) => run(['explain', 'drawn.hpt', '0', '0', '--box', `${width}x${height}`, '--near', '1000',
-    ...(state.samples === '1' ? ['--traversal', 'bbox', '--fill-rule', rule] : samples), ...settings(state), '--json', '--quiet'],
-  files(changes));
+  const explain = (rule, changes = {}) =>
+    run(
+      [
+        'explain',
+        'drawn.hpt',
+        '0',
+        '0',
+        '--box',
+        `${width}x${height}`,
+        '--near',
+        '1000',
+        ...(state.samples === '1' ? ['--traversal', 'bbox', '--fill-rule', rule] : samples),
+        '--set',
+        `subpixel.bits=${state.sub}`,
+        '--json',
+        '--quiet',
+      ],
+      files(changes),
+    );
   const rule = state.samples === '1' ? state.rule : 'top_left';
   const pixels = await explain(rule);
-  const reference = rule === 'top_left' && state.second !== 'junction' ? pixels
-    : await explain('top_left', state.second === 'junction' ? { second: 'shared' } : {});
-  const totals = await run(['render', 'drawn.hpt', '--engine', 'scalar', ...(samples.length ? samples : ['--fill-rule', rule]),
-    ...settings(state), '--json', '--quiet'], files());
+  const reference =
+    rule === 'top_left' && state.second !== 'junction'
+      ? pixels
+      : await explain('top_left', state.second === 'junction' ? { second: 'shared' } : {});
+  const totals = await run(
+    [
+      'render',
+      'drawn.hpt',
+      '--engine',
+      'scalar',
+      ...(samples.length ? samples : ['--fill-rule', rule]),
+      '--set',
+      `subpixel.bits=${state.sub}`,
+      '--json',
+      '--quiet',
+    ],
+    files(),
+  );
   let packets = null;
   if (state.marks !== 'none')
-    packets = (await run(['vectors', 'drawn.hpt', '--stage', 'fine_raster', '--set', `tile.size=${state.tile}`,
-      '--set', `stamp.size=${state.stamp}`, ...samples, ...settings(state), '-o', '-', '--quiet'], files()))
-      .stdout.trim().split('\n').slice(1).map(JSON.parse);
+    packets = (
+      await run(
+        [
+          'vectors',
+          'drawn.hpt',
+          '--stage',
+          'fine_raster',
+          '--set',
+          `tile.size=${state.tile}`,
+          '--set',
+          `stamp.size=${state.stamp}`,
+          ...samples,
+          '--set',
+          `subpixel.bits=${state.sub}`,
+          '-o',
+          '-',
+          '--quiet',
+        ],
+        files(),
+      )
+    ).stdout
+      .trim()
+      .split('\n')
+      .slice(1)
+      .map(JSON.parse);
   return { pixels, reference, totals, packets };
 }
 
@@ -185,7 +310,8 @@ function drawTriangles(grid, { pixels, reference, packets }, state) {
   const counts = { doubles: 0, cracks: 0 };
   pixels.json.pixels.forEach((pixel, index) => {
     const { x, y } = pixel;
-    const draws = drawsOf(pixel), others = drawsOf(reference.json.pixels[index]);
+    const draws = drawsOf(pixel),
+      others = drawsOf(reference.json.pixels[index]);
     draws.forEach((drawn) => drawn.length && grid.cell(x, y, colors[`paper-${PAPERS[drawn.at(-1)]}`], 1 / draws.length));
     const isDouble = draws.some((drawn, sample) => drawn.length > Math.max(1, others[sample].length));
     const isCrack = draws.some((drawn, sample) => drawn.length === 0 && others[sample].length > 0);
@@ -209,26 +335,45 @@ function drawTriangles(grid, { pixels, reference, packets }, state) {
       if (edge < 0 || (event.primitive > 0 && !state.edge.includes('D'))) continue;
       const path = `pixels/${pixelIndex}/history/${index}/model/edges/${edge}/${state.label}`;
       const { tie, owns_ties } = event.model.edges[edge];
-      grid.text(pixel.x, pixel.y, format(valueAt(pixels.json, path)).replace('0x', ''), tie && colors[owns_ties ? 'mark-third' : 'mark-crack'],
-        { path, result: pixels });
+      grid.text(
+        pixel.x,
+        pixel.y,
+        format(valueAt(pixels.json, path)).replace('0x', ''),
+        tie && colors[owns_ties ? 'mark-third' : 'mark-crack'],
+        { path, result: pixels },
+      );
     }
   }
   for (const pixel of pixels.json.pixels) {
     const places = pixel.samples ?? [{ x_pixels: 0.5, y_pixels: 0.5 }];
-    drawsOf(pixel).forEach((drawn, sample) => grid.dot(pixel.x + places[sample].x_pixels, pixel.y + places[sample].y_pixels, drawn.length > 0));
+    drawsOf(pixel).forEach((drawn, sample) =>
+      grid.dot(pixel.x + places[sample].x_pixels, pixel.y + places[sample].y_pixels, drawn.length > 0),
+    );
   }
   const first = pixels.json.pixels[0].history.filter(({ kind, sample }) => kind === 'triangle' && !sample);
   for (const { primitive, model, golden } of first) {
     const mark = colors[`mark-${PAPERS[primitive]}`];
-    if (golden?.corners) grid.outline(golden.corners.map((corner) => [corner.x_pixels, corner.y_pixels]), mark, true);
-    if (model.corners.length) grid.outline(model.corners.map((corner) => [corner.x_pixels, corner.y_pixels]), mark, false);
+    if (golden?.corners)
+      grid.outline(
+        golden.corners.map((corner) => [corner.x_pixels, corner.y_pixels]),
+        mark,
+        true,
+      );
+    if (model.corners.length)
+      grid.outline(
+        model.corners.map((corner) => [corner.x_pixels, corner.y_pixels]),
+        mark,
+        false,
+      );
   }
   grid.canvas.dataset.doubles = counts.doubles;
   grid.canvas.dataset.cracks = counts.cracks;
 }
 
 function drawPackets(grid, packets, state) {
-  const tile = Number(state.tile), stamp = Number(state.stamp), across = tile / stamp;
+  const tile = Number(state.tile),
+    stamp = Number(state.stamp),
+    across = tile / stamp;
   const code = (text) => parseInt(text, 16);
   for (const packet of packets) {
     const [x, y] = [code(packet.tile_x) * tile, code(packet.tile_y) * tile];
@@ -248,8 +393,18 @@ function drawCorners(grid, names, state) {
 function legendOf(state) {
   const key = (paper, text) => element('span', { class: 'key', style: `background: var(--paper-${paper})` }, text);
   if (state.draw === 'line') return [key('first', 'pixels of the line')];
-  return [key('first', 'ABC'), ...(state.second === 'none' ? [] : [key('second', 'beside it'), state.second === 'junction' ? key('third', 'and') : null, key('double', 'drawn twice'),
-    key('crack', 'drawn by neither')]), 'Solid: edges after the snap; dashed: before. Framed figures: the sample lies exactly on the edge, which owns it (green) or does not (red).'];
+  return [
+    key('first', 'ABC'),
+    ...(state.second === 'none'
+      ? []
+      : [
+          key('second', 'beside it'),
+          state.second === 'junction' ? key('third', 'and') : null,
+          key('double', 'drawn twice'),
+          key('crack', 'drawn by neither'),
+        ]),
+    'Solid: edges after the snap; dashed: before. Framed figures: the sample lies exactly on the edge, which owns it (green) or does not (red).',
+  ];
 }
 
 function triangleFigures({ pixels, totals }, state) {
@@ -266,62 +421,48 @@ function triangleFigures({ pixels, totals }, state) {
     const nameOf = ({ from, to }) => `${names[from]}→${names[to]}`;
     parts.push(element('h3', {}, names, sample === undefined ? [': ', at(number, 'why')] : ''));
     if (model.edges && sample === undefined) {
-      parts.push(table(['edge', 'side', 'owns ties', 'on it', 'value', 'bits', 'exact', 'square pixels'], model.edges.map((edge, place) => [nameOf(edge),
-        ...['side', 'owns_ties', 'tie', 'value', 'bits', 'exact', 'real'].map((key) => at(number, `model/edges/${place}/${key}`))])));
+      parts.push(
+        table(
+          ['edge', 'side', 'owns ties', 'on it', 'value', 'bits', 'exact', 'square pixels'],
+          model.edges.map((edge, place) => [
+            nameOf(edge),
+            ...['side', 'owns_ties', 'tie', 'value', 'bits', 'exact', 'real'].map((key) =>
+              at(number, `model/edges/${place}/${key}`),
+            ),
+          ]),
+        ),
+      );
     } else if (model.edges) {
-      parts.push(table(['sample', ...model.edges.map(nameOf), 'result'], events.filter((event) => event.primitive === primitive)
-        .map((event) => [String(event.sample), ...model.edges.map((_, place) => at(event.number, `model/edges/${place}/value`)), at(event.number, 'verdict')])));
+      parts.push(
+        table(
+          ['sample', ...model.edges.map(nameOf), 'result'],
+          events
+            .filter((event) => event.primitive === primitive)
+            .map((event) => [
+              String(event.sample),
+              ...model.edges.map((_, place) => at(event.number, `model/edges/${place}/value`)),
+              at(event.number, 'verdict'),
+            ]),
+        ),
+      );
     }
     if (model.area) parts.push(list(['area, twice', at(number, 'model/area/value'), ' square subpixels']));
   }
-  parts.push(element('h3', {}, 'in the whole picture'), list(
-    state.second !== 'junction' && ['drawn twice', figure(totals, 'double_draws'), ' samples that one triangle draws by top_left'],
-    state.second !== 'junction' && ['not drawn', figure(totals, 'undrawn_samples'), ' samples that top_left draws'],
-    ['covered', figure(totals, 'fragments/covered'), ' samples']));
-  if (state.second === 'junction') parts.push(element('p', {}, 'M lies on edge BC until it is snapped. Lit pixels differ from those of two triangles without M.'));
+  parts.push(
+    element('h3', {}, 'in the whole picture'),
+    list(
+      state.second !== 'junction' && [
+        'drawn twice',
+        figure(totals, 'double_draws'),
+        ' samples that one triangle draws by top_left',
+      ],
+      state.second !== 'junction' && ['not drawn', figure(totals, 'undrawn_samples'), ' samples that top_left draws'],
+      ['covered', figure(totals, 'fragments/covered'), ' samples'],
+    ),
+  );
+  if (state.second === 'junction')
+    parts.push(
+      element('p', {}, 'M lies on edge BC until it is snapped. Lit pixels differ from those of two triangles without M.'),
+    );
   return parts;
-}
-
-async function lineRuns({ run }, state) {
-  const [width, height] = sizeOf(state);
-  const files = { 'drawn.hpt': capture(state) };
-  const explain = (...more) => run(['explain', 'drawn.hpt', '0', '0', '--near', '1000', ...settings(state), ...more, '--json', '--quiet'], files);
-  return { pixels: await explain('--box', `${width}x${height}`, '--traversal', 'bbox'), steps: await explain('--steps') };
-}
-
-const lineOf = (pixel) => pixel.history.findIndex(({ kind }) => kind === 'line');
-
-function drawLine(grid, { pixels, steps }, state) {
-  const line = lineOf(steps.json.pixels[0]);
-  const registers = `pixels/0/history/${line}/model/line/registers/${state.line}`;
-  for (const pixel of pixels.json.pixels)
-    if (pixel.history.some(({ kind, model }) => kind === 'line' && !UNCOVERED.includes(model.verdict))) grid.cell(pixel.x, pixel.y, colors['paper-first']);
-  grid.lines();
-  if (line < 0) return;
-  for (const [index, { x, y, error }] of (valueAt(steps.json, registers) ?? []).entries()) {
-    grid.text(x, y, format(error), null, { path: `${registers}/${index}/error`, result: steps });
-  }
-  const { model, golden } = steps.json.pixels[0].history[line];
-  if (golden?.corners) grid.outline(golden.corners.map((corner) => [corner.x_pixels, corner.y_pixels]), colors['mark-first'], true);
-  grid.outline(model.corners.map((corner) => [corner.x_pixels, corner.y_pixels]), colors['mark-first'], false);
-}
-
-function lineFigures({ steps }, state) {
-  const line = lineOf(steps.json.pixels[0]);
-  const path = `pixels/0/history/${line}/model/line`;
-  const found = valueAt(steps.json, path);
-  if (!found) return [element('p', {}, 'The line draws no pixel.')];
-  const columns = [['registers', 'midpoint'], ['registers', 'bresenham'], ['registers', 'diamond'], ['textbook', 'bresenham'], ['textbook', 'midpoint']];
-  const longest = Math.max(...columns.map(([kind, rule]) => found[kind]?.[rule]?.length ?? 0));
-  const cell = (kind, rule, index) => {
-    const step = found[kind]?.[rule]?.[index];
-    if (!step) return '';
-    const at = `${path}/${kind}/${rule}/${index}`;
-    return [figure(steps, `${at}/x`), ' ', figure(steps, `${at}/y`), ': ', figure(steps, `${at}/error`), ' ', figure(steps, `${at}/decision`)];
-  };
-  const isChosen = (index) => columns.some(([kind, rule]) => found[kind]?.[rule]?.[index]?.x === Number(state.x) && found[kind][rule][index].y === Number(state.y));
-  return [element('h2', {}, 'the decision at each pixel'),
-    list(['major axis', figure(steps, `${path}/major_axis`)], ['D, d', figure(steps, `${path}/major`), ', ', figure(steps, `${path}/minor`), ' subpixels']),
-    table(['step', 'midpoint', 'bresenham', 'diamond', 'book: p', 'book: 2F'],
-      Array.from({ length: longest }, (_, index) => [`${index}${isChosen(index) ? ' ◂' : ''}`, ...columns.map(([kind, rule]) => cell(kind, rule, index))]))];
 }
