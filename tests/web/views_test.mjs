@@ -145,9 +145,13 @@ async function checkFigures(state) {
   check(equal > 0, `${state}: no figure is shown`);
   if (curve) {
     const { z, bin_width, first_order } = valueAt(resultOf(curve.command), curve.path);
+    const apart = resultOf(curve.apart).rows.filter(({ metric }) => metric === 'separation');
+    const at = (depth) => curve.data.slice(1).map((row) => row[curve.data[0].indexOf(depth)]);
+    const isCurve = z.every((depth, index) => at(depth)[0] === bin_width[index] && at(depth)[1] === first_order[index]);
+    check(isCurve, `${state}: the chart's curve is not the program's`);
     check(
-      JSON.stringify([z, bin_width, first_order]) === JSON.stringify(curve.data),
-      `${state}: the chart's curve is not the program's`,
+      apart.length > 0 && apart.every((row) => at(Number(row.z))[2] === row.value),
+      `${state}: the chart's separations are not the program's`,
     );
   }
   return equal;

@@ -68,39 +68,18 @@ export function open(root, { set, run, scene }) {
 
   return {
     async update(state) {
-      const common = ['--mapping', state.mapping, '--format', formatOf(state), '--json', '--quiet'];
-      const shown = scene(),
-        [size] = shown.options.filter((word) => /^\d+x\d+$/.test(word));
-      if (shown.config !== 'embedded') common.push('--config', shown.config);
-      const theory = await run([
-        'depth',
-        '--near',
-        state.near,
-        '--far',
-        state.far,
-        '--z',
-        state.z,
-        '--slope',
-        state.slope,
-        ...common,
-      ]);
+      const { name, files, view, config } = scene();
+      const buffer = `--mapping ${state.mapping} --format ${formatOf(state)} --config ${config}`;
+      const planes = `--near ${state.near} --far ${state.far}`;
+      const theory = await run(`depth ${planes} --z ${state.z} --slope ${state.slope} ${buffer}`);
       bins.replaceChildren(...binsOf(theory, state));
-      await drawChart(chart, theory);
-      const planes = state.planes === 'above' ? ['--near', state.near, '--far', state.far] : [];
+      const [near, far] = [Number(state.near), Number(state.far)];
+      const depths = [1, 2, 3, 4, 5, 6].map((step) => Number((near * (far / near) ** (step / 7)).toPrecision(2)));
+      const apart = await run(`depth ${planes} --z ${depths.join(',')} --slope ${state.slope} ${buffer}`);
+      await drawChart(chart, theory, apart);
       const measured = await run(
-        [
-          'depth',
-          '--scene',
-          shown.name,
-          ...(size ? ['--size', size] : []),
-          ...planes,
-          '--fight-rate',
-          `${state.rate}%`,
-          '--fights',
-          'fights.png',
-          ...common,
-        ],
-        shown.files,
+        `depth --scene ${name} ${view} ${state.planes === 'above' ? planes : ''} --fight-rate ${state.rate}% --fights fights.png ${buffer}`,
+        files,
       );
       fights.replaceChildren(
         element(
@@ -189,15 +168,16 @@ function answersOf(result) {
 }
 
 let charts = null; // uPlot, when it is first needed
-async function drawChart(place, result) {
+async function drawChart(place, result, apart) {
   charts ??= (await import('./vendor/uPlot.esm.js')).default;
   const { curve, name } = result.json.series[0];
-  const width = Math.max(280, place.clientWidth),
-    powers = (self, splits) =>
-      splits.map((value) => {
-        const power = Math.log10(value);
-        return Math.abs(power - Math.round(power)) < 1e-9 ? String(Number(value.toPrecision(3))) : '';
-      });
+  const separations = apart.json.rows.filter(({ metric }) => metric === 'separation');
+  const width = Math.max(280, place.clientWidth);
+  const powers = (self, splits) =>
+    splits.map((value) => {
+      const power = Math.log10(value);
+      return Math.abs(power - Math.round(power)) < 1e-9 ? String(Number(value.toPrecision(3))) : '';
+    });
   const axis = (label) => ({
     label,
     stroke: colors.ink,
@@ -226,10 +206,18 @@ async function drawChart(place, result) {
         { label: 'z', value: (self, value) => (value ? value.toPrecision(4) : '–') },
         line(`bin of ${name}, exact`, colors['mark-second']),
         line('textbook, first order', colors['mark-first'], [8, 5]),
+        {
+          ...line('surfaces must be apart by', colors['mark-double'], [2, 4]),
+          points: { show: true, size: 9 },
+          spanGaps: true,
+        },
       ],
     },
-    [curve.z, curve.bin_width, curve.first_order],
+    charts.join([
+      [curve.z, curve.bin_width, curve.first_order],
+      [separations.map(({ z }) => Number(z)), separations.map(({ value }) => value)],
+    ]),
     place,
   );
-  Object.assign(place.dataset, { command: result.command, path: 'series/0/curve' });
+  Object.assign(place.dataset, { command: result.command, path: 'series/0/curve', apart: apart.command });
 }

@@ -17,12 +17,8 @@ export const UNCOVERED = [
 
 export async function lineRuns({ run }, state, capture) {
   const files = { 'drawn.hpt': capture };
-  const explain = (...more) =>
-    run(
-      ['explain', 'drawn.hpt', '0', '0', '--near', '1000', '--set', `subpixel.bits=${state.sub}`, ...more, '--json', '--quiet'],
-      files,
-    );
-  return { pixels: await explain('--box', state.grid, '--traversal', 'bbox'), steps: await explain('--steps') };
+  const explain = (more) => run(`explain drawn.hpt 0 0 --near 1000 --set subpixel.bits=${state.sub} ${more}`, files);
+  return { pixels: await explain(`--box ${state.grid} --traversal bbox`), steps: await explain('--steps') };
 }
 
 const lineOf = (pixel) => pixel.history.findIndex(({ kind }) => kind === 'line');

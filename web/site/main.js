@@ -1,9 +1,9 @@
 // The page: its views, the link, the scene, errors.
-import { fill, select } from './controls.js';
+import { fill, select, slider } from './controls.js';
 import { element } from './elements.js';
 import { ProgramError, latest, run } from './program.js';
-import { drop, sceneOf } from './scene.js';
-import { choice, formatLink, matching, parseLink } from './state.js';
+import { drop, isCapture, sceneOf } from './scene.js';
+import { choice, formatLink, matching, parseLink, whole } from './state.js';
 import * as depth from './depth.js';
 import * as pipeline from './pipeline.js';
 import * as pixel from './pixel.js';
@@ -14,6 +14,7 @@ const views = { triangle, depth, pipeline, pixel, texture };
 const page = {
   scene: matching('teapot', /^[\w:]+$/),
   size: choice('320x240', '16x16', '64x48', '160x120', '320x240', '640x480'),
+  turn: whole(0, -180, 180), // degrees about the scene
   config: choice('embedded', 'tiny', 'small', 'embedded', 'full'),
 };
 const rules = { ...Object.fromEntries(Object.entries(views).map(([name, view]) => [name, view.rules])), page };
@@ -36,11 +37,10 @@ function say(error) {
 // What a view may use.
 const context = {
   set: (changes) => set(state.view, changes),
-  setOf: (view, changes) => set(view, changes),
   values: () => state.values,
   scene: () => sceneOf(state.values),
-  async run(args, files = {}) {
-    const result = await run(args, files);
+  async run(command, files, isJson) {
+    const result = await run(command, files, isJson);
     if (!commands.includes(result)) commands.push(result);
     return result;
   },
@@ -76,7 +76,11 @@ const results = latest(async () => {
 function refresh() {
   if (shown?.name !== state.view) open();
   fill(shown.root, state.values[state.view], views[state.view].disabled?.(state.values[state.view]));
-  fill(sceneControls, state.values.page);
+  const { scene } = state.values.page;
+  const names = sceneControls.querySelector('[data-key=scene]');
+  if (![...names.options].some(({ value }) => value === scene)) names.append(element('option', { value: scene }, scene));
+  const reason = 'a capture says its own size and view';
+  fill(sceneControls, state.values.page, isCapture(state.values) ? { size: reason, turn: reason } : {});
   sceneControls.hidden = !views[state.view].showsScene;
   results();
 }
@@ -117,7 +121,7 @@ async function start() {
       ),
     ),
   );
-  const built = (await run(['scenes', '--json'])).json.scenes.map(({ name }) => name);
+  const built = (await run('scenes')).json.scenes.map(({ name }) => name);
   const setPage = (changes) => set('page', changes);
   const open = element('input', {
     type: 'file',
@@ -131,6 +135,7 @@ async function start() {
       dropped: 'a file',
     }),
     select('size', 'size', page.size.values, setPage),
+    slider('turn', 'turn', { ...page.turn, step: 5 }, setPage),
     select('config', 'configuration', page.config.values, setPage),
     element('label', { class: 'control' }, 'open a file', open),
   );

@@ -32,16 +32,12 @@ export const rules = {
 };
 export const showsScene = true;
 
+// What is left at its start is the configuration's own.
+const SETTINGS = { lines: 'cache.lines', queue: 'cache.queue', stamp: 'stamp.size', hiz: 'hiz.bits', unit: 'texture.unit' };
 const settings = (state) =>
-  [
-    ['cache.lines', 'lines'],
-    ['cache.queue', 'queue'],
-    ['stamp.size', 'stamp'],
-    ['hiz.bits', 'hiz'],
-    ['texture.unit', 'unit'],
-  ]
-    .filter(([, key]) => state[key] !== rules[key].start)
-    .flatMap(([name, key]) => ['--set', `${name}=${state[key]}`]);
+  Object.entries(SETTINGS)
+    .map(([key, name]) => (state[key] === rules[key].start ? '' : `--set ${name}=${state[key]}`))
+    .join(' ');
 
 export function open(root, context) {
   const { set, run, scene } = context;
@@ -135,11 +131,7 @@ export function open(root, context) {
     };
     timer = requestAnimationFrame(tick);
   }
-  const explain = (x, y) =>
-    run(
-      ['explain', scene().name, String(x), String(y), ...scene().options, ...settings(state()), '--json', '--quiet'],
-      scene().files,
-    );
+  const explain = (x, y) => run(`explain ${scene().name} ${x} ${y} ${scene().options} ${settings(state())}`, scene().files);
 
   // To the cycle in which the pixel's visible primitive was written.
   async function jump(x = Number(state().x), y = Number(state().y)) {
@@ -162,27 +154,10 @@ export function open(root, context) {
     close: pause,
     async update(values) {
       const { name, files, options, config } = scene();
-      const hardware = [...settings(values), ...(values.memory === 'fixed' ? [] : ['--memory', values.memory])];
-      const result = await run(
-        [
-          'render',
-          name,
-          ...options,
-          '--engine',
-          'cycle',
-          ...hardware,
-          '--trace',
-          'trace.json',
-          '--heat',
-          'heat.png',
-          '-o',
-          'picture.png',
-          '--json',
-          '--quiet',
-        ],
-        files,
-      );
-      const stages = await run(['config', '--config', config, ...settings(values), '--stages', '--json', '--quiet']);
+      const hardware = `${settings(values)} --memory ${values.memory}`;
+      const render = `render ${name} ${options} --engine cycle ${hardware}`;
+      const result = await run(`${render} --trace trace.json --heat heat.png -o picture.png`, files);
+      const stages = await run(`config --config ${config} ${settings(values)} --stages`);
       if (frame?.result !== result) {
         frame = timelineOf(result, stages);
         frame.bitmap = await picture(result.made['picture.png']);
@@ -201,21 +176,7 @@ export function open(root, context) {
       figures.replaceChildren(...figuresOf(frame, cycle));
       if (values.x !== '-1' && values.y !== '-1') figures.prepend(...writeFigures(await explain(values.x, values.y), values));
       if (values.vary !== 'none') {
-        const tried = await run(
-          [
-            'render',
-            name,
-            ...options,
-            '--engine',
-            'cycle',
-            ...hardware,
-            '--what-if',
-            `${values.vary}=${VARIED[values.vary]}`,
-            '--json',
-            '--quiet',
-          ],
-          files,
-        );
+        const tried = await run(`${render} --what-if ${values.vary}=${VARIED[values.vary]}`, files);
         figures.prepend(...whatIf(tried));
       }
     },

@@ -70,20 +70,8 @@ export function open(root, context) {
   return {
     async update(state) {
       const scene = context.scene();
-      const drawn = await run(
-        [
-          'render',
-          scene.name,
-          ...scene.options,
-          '--engine',
-          state.image === 'golden' ? 'golden' : 'functional',
-          '-o',
-          'picture.png',
-          '--json',
-          '--quiet',
-        ],
-        scene.files,
-      );
+      const engine = state.image === 'golden' ? 'golden' : 'functional';
+      const drawn = await run(`render ${scene.name} ${scene.options} --engine ${engine} -o picture.png`, scene.files);
       size = [drawn.json.width, drawn.json.height];
       bitmap = await picture(drawn.made['picture.png']);
       const [x, y] = [inside(Number(state.x), size[0]), inside(Number(state.y), size[1])];
@@ -93,10 +81,7 @@ export function open(root, context) {
         grid.drawCursor(x, y);
       };
       draw();
-      const result = await run(
-        ['explain', scene.name, String(x), String(y), ...scene.options, '-o', 'pixel.png', '--json', '--quiet'],
-        scene.files,
-      );
+      const result = await run(`explain ${scene.name} ${x} ${y} ${scene.options} -o pixel.png`, scene.files);
       panel.replaceChildren(...explained(result, state));
       near.replaceChildren(
         element(

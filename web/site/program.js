@@ -9,9 +9,11 @@ const quoted = (word) => (/^[\w@%+=:,./-]+$/.test(word) ? word : `'${word.replac
 const results = new Map(); // by command and files, the last ones asked for at the end
 const RESULTS_KEPT = 8;
 
-// A run of the program: { args, command, files, status, stdout, json, made }. `made` are the files that it wrote.
-// A wrong usage or bad input is a ProgramError with the program's one line.
-export function run(args, files = {}) {
+// A run of a command with --json, or for its text alone: { args, command, files, status, stdout, json, made }. `made` are
+// the files that it wrote. No word of `command` holds blanks. A wrong usage or bad input is a ProgramError with the
+// program's one line.
+export function run(command, files = {}, isJson = true) {
+  const args = `${command} ${isJson ? '--json' : ''} --quiet`.split(' ').filter(Boolean);
   const key = JSON.stringify([
     args,
     Object.entries(files).map(([name, content]) => [
@@ -21,13 +23,13 @@ export function run(args, files = {}) {
   ]);
   const known = results.get(key);
   results.delete(key);
-  const result = known ?? start(args, files);
+  const result = known ?? start(args, files, isJson);
   results.set(key, result);
   if (results.size > RESULTS_KEPT) results.delete(results.keys().next().value);
   return result;
 }
 
-async function start(args, files) {
+async function start(args, files, isJson) {
   const given = Object.fromEntries(Object.entries(files).map(([name, content]) => [name, bytesOf(content)]));
   const { status, stdout, stderr, files: made } = await halfplane.run(args, given);
   // 1 says that a bound is broken, which the result states.
@@ -35,7 +37,7 @@ async function start(args, files) {
     const line = stderr.split('\n').find((text) => text.startsWith('halfplane: ')) ?? stderr;
     throw new ProgramError(line.replace('halfplane: ', '') || `halfplane ended with status ${status}`);
   }
-  const json = args.includes('--json') ? JSON.parse(stdout) : null;
+  const json = isJson ? JSON.parse(stdout) : null;
   return { args, files, status, stdout, json, made, command: ['halfplane', ...args].map(quoted).join(' ') };
 }
 

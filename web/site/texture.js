@@ -108,15 +108,15 @@ export function open(root, context) {
   return {
     async update(state) {
       const files = { 'floor.hpt': floor(state) };
-      const drawn = await run(['render', 'floor.hpt', '-o', 'picture.png', '--json', '--quiet'], files);
+      const drawn = await run('render floor.hpt -o picture.png', files);
       const bitmap = await picture(drawn.made['picture.png']);
       grid.resize(drawn.json.width, drawn.json.height);
       grid.picture(bitmap);
       grid.drawCursor(Number(state.x), Number(state.y));
       fill(root, state, disabled(state));
-      const unit = ['--set', `texture.unit=${FILTERS[state.filter][2]}`];
+      const unit = `--set texture.unit=${FILTERS[state.filter][2]}`;
       const result = await run(
-        ['explain', 'floor.hpt', state.x, state.y, ...(state.interpolation === 'affine' ? [] : unit), '--json', '--quiet'],
+        `explain floor.hpt ${state.x} ${state.y} ${state.interpolation === 'affine' ? '' : unit}`,
         files,
       );
       const index = result.json.pixels[0].history.findIndex(({ model, verdict }) => model.surface && verdict === 'written');
@@ -126,25 +126,8 @@ export function open(root, context) {
           ? element('p', {}, 'The floor does not cover it.')
           : texels(result, `pixels/0/history/${index}/model/surface`),
       );
-      const cached = await run(
-        [
-          'render',
-          'floor.hpt',
-          '--engine',
-          'cycle',
-          ...unit,
-          '--set',
-          `texture.cache_kb=${state.kb}`,
-          '--set',
-          `texture.ways=${state.ways}`,
-          ...(state.memory === 'fixed' ? [] : ['--memory', state.memory]),
-          '--misses',
-          'misses.png',
-          '--json',
-          '--quiet',
-        ],
-        files,
-      );
+      const cache = `--set texture.cache_kb=${state.kb} --set texture.ways=${state.ways} --memory ${state.memory}`;
+      const cached = await run(`render floor.hpt --engine cycle ${unit} ${cache} --misses misses.png`, files);
       totals.replaceChildren(
         element('h2', {}, 'the texture cache, whole frame'),
         list(
@@ -165,10 +148,7 @@ export function open(root, context) {
             : state.beside === 'error'
               ? 'coordinate'
               : 'perspective';
-        const compared = await run(
-          ['compare', 'floor.hpt', '--panels', panelName, '-o', 'compared.png', '--json', '--quiet'],
-          files,
-        );
+        const compared = await run(`compare floor.hpt --panels ${panelName} -o compared.png`, files);
         other.replaceChildren(image(compared.made['compared.png'], panelName));
       }
     },

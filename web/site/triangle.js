@@ -220,29 +220,13 @@ export function open(root, context) {
 async function triangleRuns({ run }, state) {
   const [width, height] = sizeOf(state);
   const files = (changes) => ({ 'drawn.hpt': capture({ ...state, ...changes }) });
-  const pattern = patternOf(state);
-  const samples =
-    state.samples === '1'
-      ? []
-      : ['--set', `msaa.samples=${state.samples}`, ...(pattern === 'standard' ? [] : ['--set', `msaa.pattern=${pattern}`])];
+  const subpixels = `--set subpixel.bits=${state.sub}`;
+  const samples = state.samples === '1' ? '' : `--set msaa.samples=${state.samples} --set msaa.pattern=${patternOf(state)}`;
   // Another traversal draws the same picture and leaves out the hardware's packets, most of the result.
   const explain = (rule, changes = {}) =>
     run(
-      [
-        'explain',
-        'drawn.hpt',
-        '0',
-        '0',
-        '--box',
-        `${width}x${height}`,
-        '--near',
-        '1000',
-        ...(state.samples === '1' ? ['--traversal', 'bbox', '--fill-rule', rule] : samples),
-        '--set',
-        `subpixel.bits=${state.sub}`,
-        '--json',
-        '--quiet',
-      ],
+      `explain drawn.hpt 0 0 --box ${width}x${height} --near 1000 ${subpixels} ` +
+        (state.samples === '1' ? `--traversal bbox --fill-rule ${rule}` : samples),
       files(changes),
     );
   const rule = state.samples === '1' ? state.rule : 'top_left';
@@ -251,47 +235,13 @@ async function triangleRuns({ run }, state) {
     rule === 'top_left' && state.second !== 'junction'
       ? pixels
       : await explain('top_left', state.second === 'junction' ? { second: 'shared' } : {});
-  const totals = await run(
-    [
-      'render',
-      'drawn.hpt',
-      '--engine',
-      'scalar',
-      ...(samples.length ? samples : ['--fill-rule', rule]),
-      '--set',
-      `subpixel.bits=${state.sub}`,
-      '--json',
-      '--quiet',
-    ],
-    files(),
-  );
+  const totals = await run(`render drawn.hpt --engine scalar ${subpixels} ${samples || `--fill-rule ${rule}`}`, files());
   let packets = null;
-  if (state.marks !== 'none')
-    packets = (
-      await run(
-        [
-          'vectors',
-          'drawn.hpt',
-          '--stage',
-          'fine_raster',
-          '--set',
-          `tile.size=${state.tile}`,
-          '--set',
-          `stamp.size=${state.stamp}`,
-          ...samples,
-          '--set',
-          `subpixel.bits=${state.sub}`,
-          '-o',
-          '-',
-          '--quiet',
-        ],
-        files(),
-      )
-    ).stdout
-      .trim()
-      .split('\n')
-      .slice(1)
-      .map(JSON.parse);
+  if (state.marks !== 'none') {
+    const sizes = `--set tile.size=${state.tile} --set stamp.size=${state.stamp}`;
+    const vectors = await run(`vectors drawn.hpt --stage fine_raster ${sizes} ${subpixels} ${samples} -o -`, files(), false);
+    packets = vectors.stdout.trim().split('\n').slice(1).map(JSON.parse);
+  }
   return { pixels, reference, totals, packets };
 }
 
