@@ -25,8 +25,8 @@ namespace fs = std::filesystem;
 using Texts = std::vector<std::string>;
 
 const fs::path kRoot{HALFPLANE_SOURCE_DIR};
-constexpr std::array<std::string_view, 12> kFolders{"cmake", "core",    "docs", "driver", "examples", "gl",
-                                                    "model", "rtl_ref", "sim",  "soc",    "tests",    "tools"};
+constexpr std::array<std::string_view, 13> kFolders{"cmake",   "core", "docs", "driver", "examples", "gl", "model",
+                                                    "rtl_ref", "sim",  "soc",  "tests",  "tools",    "web"};
 
 std::string read(const fs::path& path) {
   std::ifstream file(path);

@@ -73,10 +73,7 @@ export function open(root, { set, run, scene }) {
       const planes = `--near ${state.near} --far ${state.far}`;
       const theory = await run(`depth ${planes} --z ${state.z} --slope ${state.slope} ${buffer}`);
       bins.replaceChildren(...binsOf(theory, state));
-      const [near, far] = [Number(state.near), Number(state.far)];
-      const depths = [1, 2, 3, 4, 5, 6].map((step) => Number((near * (far / near) ** (step / 7)).toPrecision(2)));
-      const apart = await run(`depth ${planes} --z ${depths.join(',')} --slope ${state.slope} ${buffer}`);
-      await drawChart(chart, theory, apart);
+      await drawChart(chart, theory, null);
       const measured = await run(
         `depth --scene ${name} ${view} ${state.planes === 'above' ? planes : ''} --fight-rate ${state.rate}% --fights fights.png ${buffer}`,
         files,
@@ -90,6 +87,10 @@ export function open(root, { set, run, scene }) {
         ),
       );
       answers.replaceChildren(...answersOf(measured));
+      const [near, far] = [Number(state.near), Number(state.far)];
+      const depths = [1, 2, 3, 4, 5, 6].map((step) => Number((near * (far / near) ** (step / 7)).toPrecision(2)));
+      const apart = await run(`depth ${planes} --z ${depths.join(',')} --slope ${state.slope} ${buffer}`);
+      await drawChart(chart, theory, apart);
       fill(root, state);
     },
   };
@@ -171,7 +172,7 @@ let charts = null; // uPlot, when it is first needed
 async function drawChart(place, result, apart) {
   charts ??= (await import('./vendor/uPlot.esm.js')).default;
   const { curve, name } = result.json.series[0];
-  const separations = apart.json.rows.filter(({ metric }) => metric === 'separation');
+  const separations = (apart?.json.rows ?? []).filter(({ metric }) => metric === 'separation');
   const width = Math.max(280, place.clientWidth);
   const powers = (self, splits) =>
     splits.map((value) => {
@@ -219,5 +220,5 @@ async function drawChart(place, result, apart) {
     ]),
     place,
   );
-  Object.assign(place.dataset, { command: result.command, path: 'series/0/curve', apart: apart.command });
+  Object.assign(place.dataset, { command: result.command, path: 'series/0/curve', apart: apart?.command });
 }

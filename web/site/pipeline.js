@@ -20,11 +20,11 @@ export const rules = {
   cycle: whole(0, 0, 100000000),
   speed: choice('1', '1', '10', '100', '1000'),
   memory: choice('fixed', 'fixed', ...VARIED.memory.split(',')),
-  lines: choice('256', '16', '64', '256', '1024'),
-  queue: choice('32', '4', '8', '16', '32', '64'),
-  stamp: choice('2', '1', '2', '4'),
-  hiz: choice('16', '0', '16'),
-  unit: choice('off', 'off', 'nearest', 'bilinear', 'trilinear'),
+  lines: choice('own', 'own', '16', '64', '1024'),
+  queue: choice('own', 'own', '4', '8', '16', '64'),
+  stamp: choice('own', 'own', '1', '4'),
+  hiz: choice('own', 'own', '0'),
+  unit: choice('own', 'own', 'nearest', 'bilinear', 'trilinear'),
   map: choice('progress', 'progress', 'heat'),
   vary: choice('none', 'none', ...Object.keys(VARIED)),
   x: whole(-1, -1, 4095),
@@ -32,11 +32,11 @@ export const rules = {
 };
 export const showsScene = true;
 
-// What is left at its start is the configuration's own.
 const SETTINGS = { lines: 'cache.lines', queue: 'cache.queue', stamp: 'stamp.size', hiz: 'hiz.bits', unit: 'texture.unit' };
+const OWN = { own: "the configuration's" };
 const settings = (state) =>
   Object.entries(SETTINGS)
-    .map(([key, name]) => (state[key] === rules[key].start ? '' : `--set ${name}=${state[key]}`))
+    .map(([key, name]) => (state[key] === 'own' ? '' : `--set ${name}=${state[key]}`))
     .join(' ');
 
 export function open(root, context) {
@@ -97,12 +97,12 @@ export function open(root, context) {
       { 'aria-label': 'controls and figures' },
       group(
         'hardware',
-        pick('stamp', 'stamp'),
-        pick('hiz', 'bits of HiZ', { 0: 'no HiZ' }),
-        pick('lines', 'cache, blocks'),
-        pick('queue', 'queue before the depth test'),
+        pick('stamp', 'stamp', OWN),
+        pick('hiz', 'HiZ', { ...OWN, 0: 'none' }),
+        pick('lines', 'lines of the cache', OWN),
+        pick('queue', 'queue before the depth test', OWN),
         pick('memory', 'memory'),
-        pick('unit', 'texture unit'),
+        pick('unit', 'texture unit', OWN),
       ),
       group(
         'shown',
@@ -258,17 +258,14 @@ function drawGraph(place, frame, cycle) {
           height,
           rx: 5,
         }),
-        element('svg:text', { x: left + 8, y: top + 18, 'font-weight': 600 }, stage),
+        element(
+          'svg:text',
+          { x: left + 8, y: top + 18, 'font-weight': 600 },
+          stage === 'line_raster' ? 'line_raster → depth_test' : stage,
+        ),
       );
-      const rowsOf = frame.byStage.get(stage);
-      if (!rowsOf)
-        group.append(
-          element(
-            'svg:text',
-            { x: left + 8, y: top + 18 + lineHeight },
-            stage === 'line_raster' ? 'to depth_test' : 'not in the timeline',
-          ),
-        );
+      if (!frame.byStage.get(stage)?.some(({ events }) => events.length))
+        group.append(element('svg:text', { x: left + 8, y: top + 18 + lineHeight }, 'not in the timeline'));
       items
         .slice(0, 6)
         .forEach(({ name, ts }, index) =>
