@@ -79,20 +79,22 @@ export class Grid {
     this.pen.stroke();
   }
 
-  // A figure at the bottom of its cell, with a frame of that colour or without.
+  // A figure at the bottom of its cell, a long one above and below the sample; with a frame of that colour or without.
   text(x, y, text, frameColor, { path, result }) {
     this.figures.push({ text, path, command: result.command });
     const most = this.cellSize - 4;
-    let size = Math.min(16, this.cellSize * 0.34);
-    this.pen.font = `${size}px system-ui, "Liberation Sans", sans-serif`;
-    const wide = this.pen.measureText(text).width;
-    if (wide > most) size *= most / wide;
-    if (size < 5) return;
-    this.pen.font = `${frameColor ? 'bold ' : ''}${size}px system-ui, "Liberation Sans", sans-serif`;
+    const font = (size) => `${frameColor ? 'bold ' : ''}${size}px system-ui, "Liberation Sans", sans-serif`;
+    this.pen.font = font(10);
+    const half = Math.ceil(text.length / 2);
+    const parts = text.length > 6 ? [text.slice(0, half), text.slice(half)] : [text];
+    const widest = Math.max(...parts.map((part) => this.pen.measureText(part).width));
+    this.pen.font = font(Math.min(16, this.cellSize * 0.32, (10 * most) / widest));
     this.pen.fillStyle = colors.ink;
     this.pen.textAlign = 'center';
     this.pen.textBaseline = 'alphabetic';
-    this.pen.fillText(text, (x + 0.5) * this.cellSize, (y + 0.94) * this.cellSize, most);
+    parts
+      .reverse()
+      .forEach((part, line) => this.pen.fillText(part, (x + 0.5) * this.cellSize, (y + 0.94 - 0.57 * line) * this.cellSize));
     if (frameColor) this.frame(x + 0.06, y + 0.06, 0.88, frameColor, '', 2);
   }
 

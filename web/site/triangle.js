@@ -21,11 +21,11 @@ export const rules = {
   marks: choice('none', 'none', 'tiles', 'stamps', 'both'),
   edge: choice('AB', 'AB', 'BC', 'CA', 'BD', 'DC'),
   label: choice('value', 'value', 'exact', 'bits', 'none'),
-  grid: choice('16x12', '8x6', '12x9', '16x12', '24x18'),
+  grid: choice('16x16', '8x6', '16x12', '16x16', '24x18'),
   a: place('2.3,1.2'),
   b: place('14.1,5.5'),
-  c: place('4.9,10.5'),
-  d: place('13,10.5'),
+  c: place('4.9,11.5'),
+  d: place('14.2,14'),
   x: whole(6, 0, 23),
   y: whole(3, 0, 17),
   hand: choice('pixel', 'pixel', 'a', 'b', 'c', 'd'),
@@ -373,12 +373,10 @@ function triangleFigures({ pixels, totals }, state) {
     if (model.edges && sample === undefined) {
       parts.push(
         table(
-          ['edge', 'side', 'owns ties', 'on it', 'value', 'bits', 'exact', 'square pixels'],
+          ['edge', 'side', 'owns ties', 'on it', 'value', 'bits', 'exact'],
           model.edges.map((edge, place) => [
             nameOf(edge),
-            ...['side', 'owns_ties', 'tie', 'value', 'bits', 'exact', 'real'].map((key) =>
-              at(number, `model/edges/${place}/${key}`),
-            ),
+            ...['side', 'owns_ties', 'tie', 'value', 'bits', 'exact'].map((key) => at(number, `model/edges/${place}/${key}`)),
           ]),
         ),
       );
