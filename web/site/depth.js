@@ -1,5 +1,5 @@
 // How far apart surfaces must be: the exact bins of a depth buffer beside the textbook's step, and fights on a scene.
-import { fill, group, powerSlider, select, slider } from './controls.js';
+import { group, powerSlider, select, slider } from './controls.js';
 import { colors } from './grid.js';
 import { element, figure, image, list, table } from './elements.js';
 import { choice, real, whole } from './state.js';
@@ -27,9 +27,9 @@ export function open(root, { set, run, scene }) {
     role: 'img',
     'aria-label': 'length of a bin over distance: exact, and the first-order formula of textbooks',
   });
-  const fights = element('div', {}),
-    bins = element('div', {}),
-    answers = element('div', {});
+  const fights = element('div', {});
+  const bins = element('div', {});
+  const answers = element('div', {});
   root.append(
     element(
       'section',
@@ -91,7 +91,6 @@ export function open(root, { set, run, scene }) {
       const depths = [1, 2, 3, 4, 5, 6].map((step) => Number((near * (far / near) ** (step / 7)).toPrecision(2)));
       const apart = await run(`depth ${planes} --z ${depths.join(',')} --slope ${state.slope} ${buffer}`);
       await drawChart(chart, theory, apart);
-      fill(root, state);
     },
   };
 }

@@ -14,8 +14,7 @@ export class Grid {
   onmove = null; // (dx, dy, isFar): an arrow key, with shift or without
   ongrab = null; // (x, y, reach): the pointer goes down; gives what follows its moves, or null
 
-  constructor(label, longest = 680) {
-    this.longest = longest;
+  constructor(label) {
     this.canvas = element('canvas', { tabindex: '0', role: 'application', 'aria-label': label });
     this.canvas.grid = this;
     this.pen = this.canvas.getContext('2d');

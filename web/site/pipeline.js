@@ -1,5 +1,5 @@
 // Packets in the stages, cycle by cycle: what is where, what waits, and what another size would change.
-import { button, fill, group, select } from './controls.js';
+import { button, group, select } from './controls.js';
 import { Grid, colors } from './grid.js';
 import { element, figure, image, list, picture, table } from './elements.js';
 import { choice, whole } from './state.js';
@@ -43,10 +43,10 @@ export function open(root, context) {
   const { set, run, scene } = context;
   const state = () => context.values().pipeline;
   const pick = (key, label, names) => select(key, label, rules[key].values, set, names);
-  const graph = element('div', { class: 'graph' }),
-    map = element('div', {}),
-    figures = element('div', {}),
-    now = element('p', { class: 'answer' });
+  const graph = element('div', { class: 'graph' });
+  const map = element('div', {});
+  const figures = element('div', {});
+  const now = element('p', { class: 'answer' });
   const grid = new Grid('The picture as far as it is drawn. Arrow keys choose a pixel, Enter jumps to the cycle of its write.');
   const slide = element('input', {
     type: 'range',
@@ -70,8 +70,8 @@ export function open(root, context) {
       },
       { 'data-step': sign },
     );
-  const back = step(-1),
-    on = step(1);
+  const back = step(-1);
+  const on = step(1);
   root.append(
     element(
       'section',
@@ -113,8 +113,8 @@ export function open(root, context) {
     ),
   );
 
-  let frame = null,
-    timer = null;
+  let frame = null;
+  let timer = null;
   const go = (cycle) => set({ cycle: Math.max(0, Math.min(frame?.cycles ?? 0, cycle)) });
   function pause() {
     cancelAnimationFrame(timer);
@@ -163,8 +163,8 @@ export function open(root, context) {
         frame.bitmap = await picture(result.made['picture.png']);
         slide.max = frame.cycles;
       }
+      slide.value = values.cycle;
       const cycle = Math.min(Number(values.cycle), frame.cycles);
-      fill(root, values);
       back.textContent = `−${values.speed}`;
       on.textContent = `+${values.speed}`;
       now.replaceChildren(`cycle ${cycle} of `, figure(result, 'cycles'));
@@ -231,10 +231,10 @@ function drawGraph(place, frame, cycle) {
     (stage) => (frame.byStage.get(stage)?.some(({ events }) => events.length) ?? false) || frame.result.json.stages[stage],
   );
   const isChained = (stage) => stage !== undefined && stage !== 'line_raster';
-  const columns = place.clientWidth < 560 ? 2 : 4,
-    wide = 178,
-    gap = 26,
-    lineHeight = 17;
+  const columns = place.clientWidth < 560 ? 2 : 4;
+  const wide = 178;
+  const gap = 26;
+  const lineHeight = 17;
   const rows = [];
   for (let index = 0; index < shown.length; index += columns) rows.push(shown.slice(index, index + columns));
   const heightOf = (stage) => 30 + Math.max(1, Math.min(6, frame.byStage.get(stage)?.length ?? 1)) * lineHeight;
@@ -328,8 +328,8 @@ function drawProgress(grid, frame, cycle, { x, y }) {
   const { tile, width, height } = frame;
   grid.resize(width, height);
   grid.picture(frame.bitmap);
-  const across = Math.ceil(width / tile),
-    left = new Uint8Array(across * Math.ceil(height / tile));
+  const across = Math.ceil(width / tile);
+  const left = new Uint8Array(across * Math.ceil(height / tile));
   const placeOf = ({ name }) =>
     name
       .match(/tile \((\d+), (\d+)\)/)

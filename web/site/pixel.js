@@ -1,5 +1,5 @@
 // Why the pixel under the pointer is what it is: model, golden, oracle.
-import { fill, group, select } from './controls.js';
+import { group, select } from './controls.js';
 import { Grid } from './grid.js';
 import { element, figure, format, image, list, picture, table, valueAt } from './elements.js';
 import { latest } from './program.js';
@@ -19,8 +19,8 @@ const PASSES_BY = ['uncovered', 'frustum', 'zero_area', 'backface', 'empty', 'no
 export function open(root, context) {
   const { set, run } = context;
   const grid = new Grid('The picture. Arrow keys move the pixel that is explained, with shift by eight.');
-  const near = element('div', {}),
-    panel = element('div', { 'aria-live': 'off' });
+  const near = element('div', {});
+  const panel = element('div', { 'aria-live': 'off' });
   const pick = (key, label, names) => select(key, label, rules[key].values, set, names);
   root.append(
     element(
@@ -43,8 +43,8 @@ export function open(root, context) {
     ),
   );
 
-  let size = [1, 1],
-    bitmap = null;
+  let size = [1, 1];
+  let bitmap = null;
   const inside = (value, most) => Math.max(0, Math.min(most - 1, Math.floor(value)));
   const place = (x, y) => set({ x: inside(x, size[0]), y: inside(y, size[1]) });
   grid.onmove = (dx, dy, isFar) =>
@@ -95,15 +95,14 @@ export function open(root, context) {
           ),
         ),
       );
-      fill(root, state);
     },
   };
 }
 
 // Everything that `explain` says of its first pixel.
 export function explained(result, state) {
-  const path = 'pixels/0',
-    pixel = result.json.pixels[0];
+  const path = 'pixels/0';
+  const pixel = result.json.pixels[0];
   const at = (where) => figure(result, `${path}/${where}`);
   const parts = [
     element('h2', {}, `pixel ${pixel.x} ${pixel.y}`),

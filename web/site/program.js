@@ -43,8 +43,8 @@ async function start(args, files, isJson) {
 
 // Of the calls that come while one is under way only the last one is made.
 export function latest(work) {
-  let isBusy = false,
-    waiting = null;
+  let isBusy = false;
+  let waiting = null;
   return async function ask(...values) {
     waiting = values;
     if (isBusy) return;

@@ -1,5 +1,5 @@
 // A floor in perspective: affine coordinates, level of detail, weights of the filter, misses of the cache.
-import { fill, group, select, slider } from './controls.js';
+import { group, select, slider } from './controls.js';
 import { Grid } from './grid.js';
 import { element, figure, image, list, picture } from './elements.js';
 import { texels } from './pixel.js';
@@ -56,9 +56,9 @@ export function open(root, context) {
   const { set, run } = context;
   const pick = (key, label, names) => select(key, label, rules[key].values, set, names);
   const grid = new Grid('The floor. Arrow keys move the pixel whose texels are shown.');
-  const other = element('figure', {}),
-    panel = element('div', {}),
-    totals = element('div', {});
+  const other = element('figure', {});
+  const panel = element('div', {});
+  const totals = element('div', {});
   root.append(
     element(
       'section',
@@ -113,7 +113,6 @@ export function open(root, context) {
       grid.resize(drawn.json.width, drawn.json.height);
       grid.picture(bitmap);
       grid.drawCursor(Number(state.x), Number(state.y));
-      fill(root, state, disabled(state));
       const unit = `--set texture.unit=${FILTERS[state.filter][2]}`;
       const result = await run(
         `explain floor.hpt ${state.x} ${state.y} ${state.interpolation === 'affine' ? '' : unit}`,

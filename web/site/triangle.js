@@ -1,12 +1,11 @@
 // Triangles and lines on the subpixel grid: edge values at each pixel, who owns a tie, cracks and double draws.
-import { button, fill, group, select, slider } from './controls.js';
+import { button, group, select, slider } from './controls.js';
 import { Grid, colors } from './grid.js';
 import { element, figure, format, list, table, valueAt } from './elements.js';
 import { UNCOVERED, drawLine, lineFigures, lineRuns } from './line.js';
 import { choice, matching, whole } from './state.js';
 
 const place = (start) => matching(start, /^-?\d{1,3}(\.\d{1,6})?,-?\d{1,3}(\.\d{1,6})?$/);
-const PATTERNS = { standard: 'standard', grid: null, diagonal: null };
 
 export const rules = {
   draw: choice('triangle', 'triangle', 'line'),
@@ -15,7 +14,7 @@ export const rules = {
   line: choice('midpoint', 'midpoint', 'bresenham', 'diamond'),
   sub: whole(4, 0, 8),
   samples: choice('1', '1', '2', '4', '8'),
-  pattern: choice('standard', ...Object.keys(PATTERNS)),
+  pattern: choice('standard', 'standard', 'grid', 'diagonal'),
   tile: choice('8', '4', '8', '16'),
   stamp: choice('2', '1', '2', '4'),
   marks: choice('none', 'none', 'tiles', 'stamps', 'both'),
@@ -77,16 +76,16 @@ export function capture(state) {
   return lines.join('\n') + '\n';
 }
 
-// The places of a pixel's samples, of as many as there are: a row along the diagonal, or a grid.
+// The places of a pixel's samples, of as many as there are: a row along the diagonal, or two columns.
 function patternOf({ samples, pattern }) {
   const count = Number(samples);
   if (pattern === 'standard' || count === 1) return 'standard';
-  const columns = Math.ceil(Math.sqrt(count)),
-    rows = count / columns;
+  const columns = Math.ceil(Math.sqrt(count));
+  const rows = count / columns;
   const places = Array.from({ length: count }, (_, n) =>
     pattern === 'diagonal'
       ? [(n + 0.5) / count, (n + 0.5) / count]
-      : [((n % columns) + 0.5) / columns, (Math.floor(n / columns) + 0.5) / rows],
+      : [((n % 2) + 0.5) / 2, (Math.floor(n / 2) + 0.5) / (count / 2)],
   );
   return places.map(([x, y]) => `${x},${y}`).join(';');
 }
@@ -212,7 +211,6 @@ export function open(root, context) {
       grid.drawCursor(Number(values.x), Number(values.y));
       legend.replaceChildren(...legendOf(values).filter(Boolean));
       panel.replaceChildren(...(values.draw === 'line' ? lineFigures : triangleFigures)(picture, values));
-      fill(root, values, disabled(values));
     },
   };
 }
@@ -260,8 +258,8 @@ function drawTriangles(grid, { pixels, reference, packets }, state) {
   const counts = { doubles: 0, cracks: 0 };
   pixels.json.pixels.forEach((pixel, index) => {
     const { x, y } = pixel;
-    const draws = drawsOf(pixel),
-      others = drawsOf(reference.json.pixels[index]);
+    const draws = drawsOf(pixel);
+    const others = drawsOf(reference.json.pixels[index]);
     draws.forEach((drawn) => drawn.length && grid.cell(x, y, colors[`paper-${PAPERS[drawn.at(-1)]}`], 1 / draws.length));
     const isDouble = draws.some((drawn, sample) => drawn.length > Math.max(1, others[sample].length));
     const isCrack = draws.some((drawn, sample) => drawn.length === 0 && others[sample].length > 0);
@@ -321,9 +319,9 @@ function drawTriangles(grid, { pixels, reference, packets }, state) {
 }
 
 function drawPackets(grid, packets, state) {
-  const tile = Number(state.tile),
-    stamp = Number(state.stamp),
-    across = tile / stamp;
+  const tile = Number(state.tile);
+  const stamp = Number(state.stamp);
+  const across = tile / stamp;
   const code = (text) => parseInt(text, 16);
   for (const packet of packets) {
     const [x, y] = [code(packet.tile_x) * tile, code(packet.tile_y) * tile];
