@@ -120,7 +120,7 @@ bool has_anchor(const std::string& page, const std::string& anchor) {
   return false;
 }
 
-/// The links of a page at `folder` whose file or heading is not there. An empty `text` before '#' means the page itself.
+/// The links of a page at `folder` whose file or heading is not there; behind the # of an .html is a state. An empty `text` before '#' means the page itself.
 Texts untrue_links(const std::string& page, const fs::path& folder) {
   Texts result;
   for (std::size_t at = page.find("]("); at != std::string::npos; at = page.find("](", at + 2)) {
@@ -130,7 +130,9 @@ Texts untrue_links(const std::string& page, const fs::path& folder) {
     const fs::path target = folder / link.substr(0, hash);
     const bool is_there = hash == 0 || fs::exists(target);
     const std::string other = hash < link.size() && hash != 0 ? read(target) : page;
-    if (!is_there || (hash < link.size() && !has_anchor(other, link.substr(hash + 1)))) result.push_back(link);
+    const bool has_heading =
+        target.extension() == ".html" || hash == link.size() || has_anchor(other, link.substr(hash + 1));
+    if (!is_there || !has_heading) result.push_back(link);
   }
   return result;
 }
