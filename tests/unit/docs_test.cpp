@@ -120,7 +120,8 @@ bool has_anchor(const std::string& page, const std::string& anchor) {
   return false;
 }
 
-/// The links of a page at `folder` whose file or heading is not there; behind the # of an .html is a state. An empty `text` before '#' means the page itself.
+/// The links of a page at `folder` whose file or heading is not there. An empty `text` before '#' means the page itself;
+/// behind the # of an .html is a state.
 Texts untrue_links(const std::string& page, const fs::path& folder) {
   Texts result;
   for (std::size_t at = page.find("]("); at != std::string::npos; at = page.find("](", at + 2)) {
