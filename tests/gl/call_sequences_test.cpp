@@ -10,14 +10,11 @@
 #include <array>
 #include <cstdlib>
 #include <cstring>
-#include <functional>
 #include <iostream>
 #include <limits>
-#include <memory>
 #include <sstream>
 #include <string>
 #include <string_view>
-#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -61,7 +58,7 @@ class Caller {
       std::memcpy(&pools_.numbers[i], &bits, 8);
     }
     for (std::size_t i = 0; i < pools_.indices.size(); i += 4) pools_.indices[i] = static_cast<std::byte>(i / 4 % 16);
-#define HALFPLANE_ENTRY(name) command<decltype(::name)>(#name),
+#define HALFPLANE_ENTRY(name) Typed<decltype(::name)>::command(#name),
     commands_ = {
 #include "gl/core/entry_names.inc"
     };
@@ -82,13 +79,13 @@ class Caller {
     make_current(&context, &drawable, &drawable);
     calls_of_list_ = 0;
     for (int i = 0; i < calls; ++i) {
-      const Command& command = commands_[random_.next() % commands_.size()];
+      Command& command = commands_[random_.next() % commands_.size()];
       // A list that calls itself more than once takes for ever, as it would on any OpenGL.
       if (context.compiling != nullptr && command.name.starts_with("glCallList") &&
           (command.name == "glCallLists" || calls_of_list_++ > 0))
         continue;
       if (command.name == "glNewList") calls_of_list_ = 0;
-      command.call(*this, command);
+      call(command);
     }
     if (context.inside_begin()) end(context);
     (void)drawable.frame.picture();
@@ -97,48 +94,68 @@ class Caller {
   }
 
  private:
+  static constexpr std::size_t kMost = 64;          ///< accepted calls of a command that are kept
+  using Arguments = std::array<std::uint64_t, 12>;  ///< the bits of each
+
   struct Command {
     std::string_view name;
-    std::function<void(Caller&, const Command&)> call;
+    std::size_t count;  ///< of arguments
+    Arguments (*fresh)(Caller&, std::string_view name);
+    void (*call)(const void* entry, const Arguments&);
+    std::vector<Arguments> accepted{};
   };
 
+  /// All that depends on a command's type.
   template <class Function>
   struct Typed;
   template <class R, class... A>
   struct Typed<R(A...)> {
-    using Tuple = std::tuple<std::remove_const_t<A>...>;
-    static void call(Caller& caller, const Command& command, std::vector<Tuple>& accepted) {
-      const void* entry = entry_point(command.name);
-      ASSERT_NE(entry, nullptr) << command.name;
+    static Arguments fresh([[maybe_unused]] Caller& caller, [[maybe_unused]] std::string_view name) {
       [[maybe_unused]] const bool has_pointer = (std::is_pointer_v<A> || ...);
-      Tuple arguments{caller.value<std::remove_const_t<A>>(command.name, has_pointer)...};
-      constexpr std::size_t kCount = sizeof...(A);
-      if (!accepted.empty() && caller.random_.next() % 4 != 0) {
-        const Tuple fresh = arguments;
-        arguments = accepted[caller.random_.next() % accepted.size()];
-        const std::size_t changed = kCount == 0 ? 0 : caller.random_.next() % (kCount + 1);
-        [&]<std::size_t... I>(std::index_sequence<I...>) {
-          ((I == changed ? void(std::get<I>(arguments) = std::get<I>(fresh)) : void()), ...);
-        }
-        (std::index_sequence_for<A...>());
-      }
-      Context* context = current();
-      const GLenum before = std::exchange(context->error, GL_NO_ERROR);
-      std::apply(reinterpret_cast<R (*)(A...)>(const_cast<void*>(entry)), arguments);
-      constexpr std::size_t kMost = 64;
-      if (context->error == GL_NO_ERROR && context->compiling == nullptr) {
-        if (accepted.size() < kMost)
-          accepted.push_back(arguments);
-        else
-          accepted[caller.random_.next() % kMost] = arguments;
-      }
-      if (before != GL_NO_ERROR) context->error = before;
+      return {bits(caller.value<std::remove_const_t<A>>(name, has_pointer))...};
     }
+    static void call(const void* entry, [[maybe_unused]] const Arguments& arguments) {
+      [&]<std::size_t... I>(std::index_sequence<I...>) {
+        reinterpret_cast<R (*)(A...)>(const_cast<void*>(entry))(from_bits<std::remove_const_t<A>>(arguments[I])...);
+      }
+      (std::index_sequence_for<A...>());
+    }
+    static Command command(std::string_view name) { return {name, sizeof...(A), fresh, call}; }
   };
-  template <class Function>
-  static Command command(std::string_view name) {
-    return {name, [accepted = std::vector<typename Typed<Function>::Tuple>()](
-                      Caller& caller, const Command& self) mutable { Typed<Function>::call(caller, self, accepted); }};
+
+  template <class T>
+  static std::uint64_t bits(T value) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, &value, sizeof value);
+    return word;
+  }
+  template <class T>
+  static T from_bits(std::uint64_t word) {
+    T value;
+    std::memcpy(&value, &word, sizeof value);
+    return value;
+  }
+
+  void call(Command& command) {
+    const void* entry = entry_point(command.name);
+    ASSERT_NE(entry, nullptr) << command.name;
+    Arguments arguments = command.fresh(*this, command.name);
+    if (!command.accepted.empty() && random_.next() % 4 != 0) {
+      const Arguments fresh = arguments;
+      arguments = command.accepted[random_.next() % command.accepted.size()];
+      const std::size_t changed = command.count == 0 ? 0 : random_.next() % (command.count + 1);
+      if (changed < command.count) arguments[changed] = fresh[changed];
+    }
+    Context* context = current();
+    const GLenum before = std::exchange(context->error, GL_NO_ERROR);
+    command.call(entry, arguments);
+    if (context->error == GL_NO_ERROR && context->compiling == nullptr) {
+      if (command.accepted.size() < kMost)
+        command.accepted.push_back(arguments);
+      else
+        command.accepted[random_.next() % kMost] = arguments;
+    }
+    if (before != GL_NO_ERROR) context->error = before;
   }
 
   template <class T>
