@@ -52,6 +52,7 @@ const server = await serve(site);
 const browser = await launch();
 const page = await browser.newPage();
 await page.setViewport({ width: 1280, height: 800 });
+page.setDefaultTimeout(120000);
 const complaints = [];
 page.on('pageerror', (error) => complaints.push(error.message));
 page.on('console', (message) => message.type() === 'error' && complaints.push(message.text()));
@@ -67,7 +68,7 @@ const settled = () =>
         [...main.querySelectorAll('img')].every((image) => image.complete)
       );
     },
-    { timeout: 120000, polling: 20 },
+    { polling: 20 },
   );
 
 async function visit(fragment) {
@@ -228,7 +229,7 @@ async function useButtons(view) {
 
 const valueOf = (key) => page.$eval(`[data-key=${key}]`, (node) => node.value);
 const linkOf = async () => {
-  await page.waitForFunction((shown) => location.hash === document.querySelector('main').dataset.shown, { timeout: 5000 });
+  await page.waitForFunction((shown) => location.hash === document.querySelector('main').dataset.shown);
   return page.evaluate(() => location.hash);
 };
 
