@@ -4,7 +4,7 @@
 # The one list of packages: name (Debian 12, Ubuntu 24.04), what needs it, how we know that it is there (a command or
 # a header). build: anything at all; sim: the program; speed: only time; report: HTML reports;
 # gltf: compressed glTF files; gl: the OpenGL driver; test, rtl, coverage, prove, lint,
-# core, soak, docs: those commands; driver: counts of the driver's instructions (docs/driver.md).
+# core, soak, docs, web: those commands; browser: ./dev web --test; driver: counts of the driver's instructions (docs/driver.md).
 readonly packages='
 build-essential      build c++
 cmake                build cmake
@@ -52,7 +52,18 @@ gcc-riscv64-unknown-elf driver riscv64-unknown-elf-gcc
 gcc-arm-none-eabi    driver arm-none-eabi-gcc
 picolibc-riscv64-unknown-elf driver /usr/lib/picolibc/riscv64-unknown-elf/include/string.h
 picolibc-arm-none-eabi driver /usr/lib/picolibc/arm-none-eabi/include/string.h
-qemu-user            driver qemu-riscv32'
+qemu-user            driver qemu-riscv32
+emscripten           web   em++
+cmake                web   cmake
+ninja-build          web   ninja
+libcli11-dev         web   CLI/CLI.hpp
+nlohmann-json3-dev   web   nlohmann/json.hpp
+libtomlplusplus-dev  web   toml++/toml.h
+libstb-dev           web   stb/stb_image.h
+libboost-dev         web   boost/version.hpp
+libfmt-dev           web   fmt/format.h
+npm                  web   npm
+chromium             browser chromium'
 readonly everyday=(build sim speed report gltf gl test rtl coverage)
 
 # present PROBE: a header is looked for where compilers and CMake look, a command in the path, a file at its path (a pattern).

@@ -1,0 +1,130 @@
+// The module of WebAssembly says what the native program says, byte for byte but for times, and writes the same files:
+//   node --test tests/web/engine_test.mjs      with HALFPLANE_SITE (build/web/site) and HALFPLANE_PROGRAM (build/halfplane)
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import fs from 'node:fs';
+import os from 'node:os';
+import path from 'node:path';
+import test from 'node:test';
+import { pathToFileURL } from 'node:url';
+
+const root = path.resolve(import.meta.dirname ?? path.dirname(new URL(import.meta.url).pathname), '../..');
+const site = path.resolve(process.env.HALFPLANE_SITE ?? path.join(root, 'build/web/site'));
+const program = path.resolve(process.env.HALFPLANE_PROGRAM ?? path.join(root, 'build/halfplane'));
+const { load } = await import(pathToFileURL(path.join(site, 'engine/engine.mjs')).href);
+const halfplane = await load();
+
+function filesIn(folder, prefix = '', found = {}) {
+  for (const entry of fs.readdirSync(folder, { withFileTypes: true })) {
+    const at = path.join(folder, entry.name);
+    if (entry.isDirectory()) filesIn(at, `${prefix}${entry.name}/`, found);
+    else found[prefix + entry.name] = new Uint8Array(fs.readFileSync(at));
+  }
+  return found;
+}
+
+function native(args, files) {
+  const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'halfplane-engine-'));
+  try {
+    for (const [name, content] of Object.entries(files)) fs.writeFileSync(path.join(folder, name), content);
+    const { status, stdout, stderr } = spawnSync(program, args, { cwd: folder, maxBuffer: 1 << 28, encoding: 'utf8' });
+    const made = filesIn(folder);
+    for (const name of Object.keys(files)) delete made[name];
+    return { status, stdout, stderr, files: made };
+  } finally {
+    fs.rmSync(folder, { recursive: true });
+  }
+}
+
+/// Seconds are not compared: members that end in _s, with all that is in them.
+function withoutTimes(text) {
+  if (!text.startsWith('{')) return text;
+  return JSON.stringify(JSON.parse(text, (key, value) => (key.endsWith('_s') ? undefined : value)), null, 1);
+}
+
+const triangle = fs.readFileSync(path.join(root, 'tests/data/web_triangle.hpt'), 'utf8');
+const same = [
+  ['render teapot --size 160x120 --json --quiet -o teapot.png --depth teapot.npy'],
+  ['render teapot --size 160x120 --engine scalar --json --quiet'],
+  ['render teapot --size 160x120 --engine golden --json --quiet'],
+  ['render teapot --size 96x64 --engine cycle --json --quiet --what-if cache.lines=16,64 --memory sdram'],
+  ['render city --size 160x120 --config full --json --quiet -o city.png --set msaa.samples=4'],
+  ['render layers_glass:16 --size 96x64 --json --quiet'],
+  ['render teapot --size 64x48 --frames 3 --camera orbit --csv turn.csv --json --quiet'],
+  ['compare teapot --size 96x64 --json --quiet -o sheet.png'],
+  ['compare wires --size 96x64 --json --quiet'],
+  ['explain teapot 80 60 --size 160x120'],
+  ['explain teapot 80 60 --size 160x120 --json --quiet'],
+  ['explain drawn.hpt 4 4 --steps --json --quiet', { 'drawn.hpt': triangle }],
+  ['depth'],
+  ['depth --json --quiet --bits 16 --mapping log'],
+  ['depth --scene coplanar --size 64x48 --json --quiet'],
+  ['widths --config full'],
+  ['widths --json --quiet'],
+  ['scenes'],
+  ['config --config full'],
+  ['config --config tiny --sv'],
+  ['convert teapot --size 64x48 -o teapot.hpt'],
+  ['convert drawn.hpt -o again.hpt', { 'drawn.hpt': triangle }],
+  ['convert city -o city.hpt'],
+  ['vectors --random 20 --stage cull --format hex -o cull'],
+  ['stress --seconds 1 --case clip --json --quiet'],
+  ['--version'],
+  ['render --help'],
+  // Refusals: the same line, the same status.
+  [''],
+  ['rendr teapot'],
+  ['render teapott'],
+  ['render teapot --sise 10x10'],
+  ['render teapot --size 0x10'],
+  ['render teapot --set depth.bits=99'],
+  ['render nowhere.hpt'],
+  ['render bad.hpt', { 'bad.hpt': 'halfplane capture 1\nnonsense\n' }],
+  ['render bad.glb', { 'bad.glb': 'glTF' }],
+];
+
+for (const [line, files = {}] of same)
+  test(`halfplane ${line} says the same InNodeJs`, async () => {
+    const args = line.split(' ').filter(Boolean);
+    const expected = native(args, files);
+    const got = await halfplane.run(args, files);
+    const times = line === '--version' ? (text) => text.replace(/\(.*\)/, '') : withoutTimes;
+    assert.equal(got.stderr, expected.stderr);
+    assert.equal(got.status, expected.status);
+    assert.equal(times(got.stdout), times(expected.stdout));
+    assert.deepEqual(Object.keys(got.files).sort(), Object.keys(expected.files).sort());
+    for (const [name, bytes] of Object.entries(expected.files))
+      if (!name.endsWith('.csv')) assert.ok(Buffer.compare(bytes, got.files[name]) === 0, `${name} differs`); // .csv has times
+  });
+
+test('a comparison that finds a difference would fail InNodeJs', async () => {
+  const coarse = native('render teapot --size 160x120 --json --quiet --set subpixel.bits=2'.split(' '), {});
+  const got = await halfplane.run('render teapot --size 160x120 --json --quiet --set subpixel.bits=3'.split(' '));
+  assert.notEqual(withoutTimes(got.stdout), withoutTimes(coarse.stdout));
+});
+
+/// As color_hash of the program's results: FNV-1a of the stored codes, which `full` stores as bytes R, G, B, A.
+function hashOf(bytes) {
+  let hash = 0xcbf29ce484222325n;
+  for (const byte of bytes) hash = BigInt.asUintN(64, (hash ^ BigInt(byte)) * 0x100000001b3n);
+  return hash.toString(16).padStart(16, '0');
+}
+
+test('live pictures are those of render --frames InNodeJs', () => {
+  const { stdout } = native('render teapot --size 64x48 --config full --camera orbit --frames 4 --json --quiet'.split(' '), {});
+  const rows = JSON.parse(stdout).frames;
+  assert.equal(rows.length, 4);
+  for (const [i, row] of rows.entries()) {
+    const picture = halfplane.frame({ scene: 'teapot', config: 'full', width: 64, height: 48, camera: 'orbit', turn: i / 4 });
+    assert.deepEqual([picture.width, picture.height], [64, 48]);
+    assert.ok(row.color_hash.endsWith(hashOf(picture.rgba)), `frame ${i}`);
+  }
+  assert.throws(() => halfplane.frame({ scene: 'nothing' }), /nothing/);
+});
+
+test('a live picture follows its file InNodeJs', () => {
+  const of = (text) => halfplane.frame({ scene: 'drawn.hpt', files: { 'drawn.hpt': text } }).rgba;
+  const first = of(triangle), second = of(triangle.replace('255 0 0', '0 0 255'));
+  assert.notDeepEqual(first, second);
+  assert.deepEqual(of(triangle), first);
+});

@@ -1,0 +1,7 @@
+// The program in a worker: what the page's modules import. web/README.md.
+import { load } from './engine/client.mjs';
+
+const halfplane = load();
+
+export const run = async (...of) => (await halfplane).run(...of);
+export const frame = async (...of) => (await halfplane).frame(...of);
