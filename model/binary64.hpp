@@ -1,7 +1,8 @@
 // Powers of two and exponents of binary64 by its bits: what std::ldexp() and std::ilogb() answer, without a call for
-// normal numbers.
+// normal numbers; lengths whose bits do not depend on the standard library.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -26,6 +27,13 @@ inline constexpr int kBinary64Bias = 1023, kBinary64Fraction = 52;
 [[nodiscard]] inline int floor_log2_of(double number) {
   const auto exponent = static_cast<int>(std::bit_cast<std::uint64_t>(number) >> kBinary64Fraction & 0x7ff);
   return exponent == 0 ? std::ilogb(number) : exponent - kBinary64Bias;
+}
+
+/// sqrt(x^2 + y^2 + z^2) without intermediate overflow. std::hypot() of three numbers is rounded as each library likes.
+[[nodiscard]] inline double length3(double x, double y, double z) {
+  const double largest = std::max({std::abs(x), std::abs(y), std::abs(z)});
+  if (largest == 0) return 0;
+  return largest * std::sqrt((x / largest) * (x / largest) + (y / largest) * (y / largest) + (z / largest) * (z / largest));
 }
 
 }  // namespace halfplane

@@ -3,15 +3,19 @@
 const decoder = new TextDecoder();
 const encoder = new TextEncoder();
 
-/// The bytes at a URL; Node.js cannot fetch files.
+/// The bytes at a URL, uncompressed. Node.js cannot fetch files; some servers send .gz as what is in it.
 async function bytesAt(url) {
+  let bytes;
   if (url.protocol === 'file:' && typeof process === 'object') {
     const { readFile } = await import('node:fs/promises');
-    return readFile(url);
+    bytes = await readFile(url);
+  } else {
+    const answer = await fetch(url);
+    if (!answer.ok) throw new Error(`${url}: ${answer.status} ${answer.statusText}`);
+    bytes = new Uint8Array(await answer.arrayBuffer());
   }
-  const answer = await fetch(url);
-  if (!answer.ok) throw new Error(`${url}: ${answer.status} ${answer.statusText}`);
-  return new Uint8Array(await answer.arrayBuffer());
+  if (bytes[0] !== 0x1f || bytes[1] !== 0x8b) return bytes;
+  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'))).arrayBuffer();
 }
 
 /// What a run says, byte by byte.
@@ -57,20 +61,14 @@ function filesIn(FS, folder, known, prefix = '', found = {}) {
       continue;
     }
     const bytes = FS.readFile(path);
-    const before = known[prefix + name];
-    if (!before || before.length !== bytes.length || before.some((byte, i) => byte !== bytes[i])) found[prefix + name] = bytes;
+    if (!isSame(known[prefix + name], bytes)) found[prefix + name] = bytes;
   }
   return found;
 }
 
-function removeFolder(FS, folder) {
-  for (const name of FS.readdir(folder)) {
-    if (name === '.' || name === '..') continue;
-    const path = `${folder}/${name}`;
-    if (FS.isDir(FS.stat(path).mode)) removeFolder(FS, path);
-    else FS.unlink(path);
-  }
-  FS.rmdir(folder);
+/// Strings and bytes; those of a worker are copies.
+function isSame(a, b) {
+  return a === b || (a !== undefined && typeof a !== 'string' && a.length === b.length && a.every((byte, i) => byte === b[i]));
 }
 
 const work = '/work';
@@ -82,15 +80,14 @@ function putFile(FS, folder, name, bytes) {
   FS.writeFile(`${folder}/${name}`, bytes);
 }
 
-/// An instance of the module at `url`, the folder of halfplane.js and halfplane.wasm.
+/// An instance of the module at `url`, the folder of halfplane.js and halfplane.wasm.gz.
 export async function load(url = new URL('.', import.meta.url)) {
   const base = new URL(url, import.meta.url);
   const [{ default: Halfplane }, wasmBinary] =
-      await Promise.all([import(new URL('halfplane.js', base).href), bytesAt(new URL('halfplane.wasm', base))]);
+      await Promise.all([import(new URL('halfplane.js', base).href), bytesAt(new URL('halfplane.wasm.gz', base))]);
   const compiled = await WebAssembly.compile(wasmBinary);
-  const out = new Said(), err = new Said();
 
-  const start = () => Halfplane({
+  const start = (out, err) => Halfplane({
     instantiateWasm(imports, ready) {
       WebAssembly.instantiate(compiled, imports).then((instance) => ready(instance, compiled));
       return {};
@@ -100,12 +97,16 @@ export async function load(url = new URL('.', import.meta.url)) {
     stderr: (byte) => err.put(byte),
     thisProgram: 'halfplane',
   });
-  let module = await start();
+  const ignored = new Said();
+  const live = await start(ignored, ignored);
   let inLive = {}; // name -> bytes of the files of live pictures
 
   return {
-    /// Runs `halfplane ARGS` in an empty folder with `files` in it (name -> string or bytes).
+    /// Runs `halfplane ARGS` in an empty folder with `files` in it (name -> string or bytes): in an instance of its own, so
+    /// that nothing of one run is left for the next.
     async run(args, files = {}) {
+      const out = new Said(), err = new Said();
+      const module = await start(out, err);
       const { FS } = module;
       const known = {};
       FS.mkdir(work);
@@ -114,52 +115,44 @@ export async function load(url = new URL('.', import.meta.url)) {
         known[name] = typeof content === 'string' ? encoder.encode(content) : content;
         putFile(FS, work, name, known[name]);
       }
+      let status;
       try {
-        const status = module.callMain([...args]);
-        return { status, stdout: out.take(), stderr: err.take(), files: filesIn(FS, work, known) };
+        status = module.callMain([...args]);
       } catch (error) {
-        // The module's memory may be in any state: the stack is full, or there is no more memory.
-        const stderr = `${err.take()}halfplane: the module stopped: ${error?.message ?? error}\n`;
-        const stdout = out.take();
-        module = await start();
-        inLive = {};
-        return { status: 3, stdout, stderr, files: {} };
-      } finally {
-        if (module.FS.analyzePath(work).exists) {
-          module.FS.chdir('/');
-          removeFolder(module.FS, work);
-        }
+        // The stack is full, or there is no more memory.
+        return { status: 3, stdout: out.take(), stderr: `${err.take()}halfplane: the module stopped: ${error?.message ?? error}\n`, files: {} };
       }
+      return { status, stdout: out.take(), stderr: err.take(), files: filesIn(FS, work, known) };
     },
 
     /// Draws a frame of a live picture: { width, height, rgba }. `turn`: part of the camera's orbit; `time`: seconds of the
     /// scene's animation. The other members are those of the command line; a scene of `files` is given by its name.
     frame({ turn = 1, time = -1, files = {}, ...request }) {
-      const { FS } = module;
-      if (Object.keys(files).some((name) => inLive[name] !== files[name])) {
+      const { FS } = live;
+      if (Object.keys(files).some((name) => !isSame(inLive[name], files[name]))) {
         if (!FS.analyzePath(scenes).exists) FS.mkdir(scenes);
         for (const [name, content] of Object.entries(files)) putFile(FS, scenes, name, content);
         inLive = { ...files };
-        module._live_close();
+        live._live_close();
       }
       if (FS.analyzePath(scenes).exists) FS.chdir(scenes);
       const line = encoder.encode(`${words(request)}\0`);
-      const at = module._malloc(line.length);
-      module.HEAPU8.set(line, at);
+      const at = live._malloc(line.length);
+      live.HEAPU8.set(line, at);
       let size;
       try {
-        size = module._live_frame(at, turn, time);
+        size = live._live_frame(at, turn, time);
       } finally {
-        module._free(at);
+        live._free(at);
         FS.chdir('/');
-        err.take();
+        ignored.take();
       }
       if (size < 0) {
-        const start = module._live_message();
-        throw new Error(decoder.decode(module.HEAPU8.subarray(start, module.HEAPU8.indexOf(0, start))));
+        const start = live._live_message();
+        throw new Error(decoder.decode(live.HEAPU8.subarray(start, live.HEAPU8.indexOf(0, start))));
       }
-      const width = size >>> 16, height = size & 0xffff, pixels = module._live_pixels();
-      return { width, height, rgba: new Uint8ClampedArray(module.HEAPU8.slice(pixels, pixels + 4 * width * height).buffer) };
+      const width = size >>> 16, height = size & 0xffff, pixels = live._live_pixels();
+      return { width, height, rgba: new Uint8ClampedArray(live.HEAPU8.slice(pixels, pixels + 4 * width * height).buffer) };
     },
   };
 }

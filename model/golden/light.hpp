@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "../binary64.hpp"
 #include "../light.hpp"
 
 namespace halfplane::golden {
@@ -15,7 +16,7 @@ using Real3 = std::array<double, 3>;
 namespace light_detail {
 inline double dot(const Real3& a, const Real3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 inline Real3 normalized(const Real3& v) {
-  const double length = std::hypot(v[0], v[1], v[2]);
+  const double length = length3(v[0], v[1], v[2]);
   return length > 0 ? Real3{v[0] / length, v[1] / length, v[2] / length} : Real3{};
 }
 }  // namespace light_detail
@@ -32,7 +33,7 @@ inline LightAt light_at(const Light& light, const Real3& place) {
   LightAt at{{light.position[0], light.position[1], light.position[2]}};
   if (light.position[3] == 0) return {normalized(at.direction)};
   for (std::size_t i = 0; i < 3; ++i) at.direction[i] -= place[i];
-  const double d = std::hypot(at.direction[0], at.direction[1], at.direction[2]);
+  const double d = length3(at.direction[0], at.direction[1], at.direction[2]);
   at.strength = 1 / (light.attenuation[0] + light.attenuation[1] * d + light.attenuation[2] * d * d);
   if (light.range > 0) at.strength *= std::max(0.0, 1 - std::pow(d / light.range, 4));
   at.direction = normalized(at.direction);

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "model/binary64.hpp"
+
 namespace halfplane {
 
 using Vec3 = std::array<double, 3>;
@@ -12,7 +14,7 @@ using Vec3 = std::array<double, 3>;
 [[nodiscard]] inline Vec3 subtract(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 [[nodiscard]] inline Vec3 scaled(const Vec3& a, double factor) { return {a[0] * factor, a[1] * factor, a[2] * factor}; }
 [[nodiscard]] inline double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-[[nodiscard]] inline double length(const Vec3& a) { return std::hypot(a[0], a[1], a[2]); }  // no intermediate overflow
+[[nodiscard]] inline double length(const Vec3& a) { return length3(a[0], a[1], a[2]); }
 
 [[nodiscard]] inline Vec3 cross(const Vec3& a, const Vec3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};

@@ -27,7 +27,7 @@ function native(args, files) {
   const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'halfplane-engine-'));
   try {
     for (const [name, content] of Object.entries(files)) fs.writeFileSync(path.join(folder, name), content);
-    const { status, stdout, stderr } = spawnSync(program, args, { cwd: folder, maxBuffer: 1 << 28, encoding: 'utf8' });
+    const { status, stdout, stderr } = spawnSync(program, args, { argv0: 'halfplane', cwd: folder, maxBuffer: 1 << 28, encoding: 'utf8' });
     const made = filesIn(folder);
     for (const name of Object.keys(files)) delete made[name];
     return { status, stdout, stderr, files: made };
@@ -56,8 +56,8 @@ const same = [
   ['explain teapot 80 60 --size 160x120'],
   ['explain teapot 80 60 --size 160x120 --json --quiet'],
   ['explain drawn.hpt 4 4 --steps --json --quiet', { 'drawn.hpt': triangle }],
-  ['depth'],
-  ['depth --json --quiet --bits 16 --mapping log'],
+  ['depth --near 0.1 --far 100 --mapping std,rev,w,stdinf --format u16,f16 --json --quiet'],
+  ['depth --near 0.1 --far 100 --mapping log --format u24,uf4.12 --error 0.01 --slope 1'],
   ['depth --scene coplanar --size 64x48 --json --quiet'],
   ['widths --config full'],
   ['widths --json --quiet'],
@@ -68,10 +68,14 @@ const same = [
   ['convert drawn.hpt -o again.hpt', { 'drawn.hpt': triangle }],
   ['convert city -o city.hpt'],
   ['vectors --random 20 --stage cull --format hex -o cull'],
-  ['stress --seconds 1 --case clip --json --quiet'],
+  ['stress --case fans --unit 3 --json --quiet'],
+  ['stress --case adversarial_depth --unit 1 --config tiny --json --quiet'],
+  ['render knot --size 96x64 --engine golden --json --quiet --set depth.mapping=log'],
   ['--version'],
   ['render --help'],
-  // Refusals: the same line, the same status.
+];
+/// Wrong usage and bad input: the same line, the same status.
+const refused = [
   [''],
   ['rendr teapot'],
   ['render teapott'],
@@ -83,10 +87,11 @@ const same = [
   ['render bad.glb', { 'bad.glb': 'glTF' }],
 ];
 
-for (const [line, files = {}] of same)
+for (const [line, files = {}] of [...same, ...refused])
   test(`halfplane ${line} says the same InNodeJs`, async () => {
     const args = line.split(' ').filter(Boolean);
     const expected = native(args, files);
+    assert.equal(expected.status > 1, refused.some(([of]) => of === line), expected.stderr);
     const got = await halfplane.run(args, files);
     const times = line === '--version' ? (text) => text.replace(/\(.*\)/, '') : withoutTimes;
     assert.equal(got.stderr, expected.stderr);

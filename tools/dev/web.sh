@@ -1,4 +1,4 @@
-# shellcheck shell=bash
+# shellcheck shell=bash disable=SC2154
 # Part of ./dev: web.
 
 # web [--test]: the page with the program as WebAssembly, in build/web/site, and its archive. --test: against the native program.
@@ -6,7 +6,8 @@ web() {
   [[ $* == '' || $* == --test ]] || { say "./dev web: --test, not '$*'"; exit 2; }
   ensure web
   insist web
-  step 'configure' emcmake cmake -S web -B build/web/build -G Ninja -DCMAKE_BUILD_TYPE=Release
+  export NODE_PATH=/usr/share/nodejs # Debian's packages for Node.js, where that is not Debian's
+  step 'configure' emcmake cmake -S web -B build/web/build -G Ninja
   step 'build the module' cmake --build build/web/build --parallel "$(jobs)" --target halfplane_site
   step 'packages of npm' web_packages
   step 'the page' web_site

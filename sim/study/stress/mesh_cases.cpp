@@ -55,8 +55,12 @@ void pixel_centres(Unit& unit) {
   Random& random = unit.random;
   const int width = unit.width(8 + random.index(40)), height = unit.height(8 + random.index(40));
   const std::int64_t pixel = unit.pixel(), half = pixel / 2;
-  const auto columns = cuts(random, random.index(3), width - 1 - random.index(3), 2 + random.index(8));
-  const auto rows = cuts(random, random.index(3), height - 1 - random.index(3), 2 + random.index(8));
+  // One after the other: compilers evaluate arguments in orders of their own.
+  const auto some_cuts = [&random](int length) {
+    const int most = 2 + random.index(8), last = length - 1 - random.index(3), first = random.index(3);
+    return cuts(random, first, last, most);
+  };
+  const auto columns = some_cuts(width), rows = some_cuts(height);
   Mesh mesh;
   for (std::size_t j = 0; j + 1 < rows.size(); ++j)
     for (std::size_t i = 0; i + 1 < columns.size(); ++i)
@@ -97,7 +101,10 @@ void fans(Unit& unit) {
   check_mesh(unit, mesh, size, size, rim);
 }
 
-void delaunay_small(Unit& unit) { delaunay_mesh(unit, 20 + unit.random.index(44), 40 + unit.random.index(160)); }
+void delaunay_small(Unit& unit) {
+  const int points = 40 + unit.random.index(160), size = 20 + unit.random.index(44);  // one after the other, as above
+  delaunay_mesh(unit, size, points);
+}
 
 void delaunay_large(Unit& unit) {
   const int size = std::min(unit.width(512), unit.height(512));
