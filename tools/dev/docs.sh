@@ -6,5 +6,6 @@ docs() {
   insist docs
   mkdir -p build/docs
   step 'doxygen' doxygen docs/Doxyfile
-  say 'build/docs/html/index.html'
+  step 'mkdocs' tools/docs_site.py
+  say 'build/docs/site/index.html; with its search: python3 -m http.server --directory build/docs/site'
 }

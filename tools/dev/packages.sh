@@ -48,6 +48,8 @@ nextpnr-ice40        area  nextpnr-ice40
 python3              area  python3
 clang                soak  clang++
 doxygen              docs  doxygen
+mkdocs               docs  mkdocs
+mkdocs-material      docs  /usr/share/mkdocs/themes/material/main.html
 gcc-riscv64-unknown-elf driver riscv64-unknown-elf-gcc
 gcc-arm-none-eabi    driver arm-none-eabi-gcc
 picolibc-riscv64-unknown-elf driver /usr/lib/picolibc/riscv64-unknown-elf/include/string.h
