@@ -63,8 +63,12 @@ module command_decoder #(
   localparam bit HAS_BLOCKS = raster_pkg::CACHE_KIND == 1;
   localparam bit HAS_STENCIL = raster_pkg::STENCIL_BITS != 0;
   localparam bit HAS_SAMPLES = raster_pkg::MSAA_SAMPLES > 1;
-  localparam bit HAS_STATES = raster_pkg::COORDINATES != 0 || HAS_STENCIL || raster_pkg::BLEND_LANES != 0 ||
-                              raster_pkg::ALPHA_UNIT != 0;
+  localparam bit HAS_TEXTURE = raster_pkg::COORDINATES != 0;
+  localparam bit HAS_ALPHA = raster_pkg::ALPHA_UNIT != 0 && HAS_BLOCKS && raster_pkg::SETUP_KIND == 0;
+  localparam bit HAS_OPS = raster_pkg::BLEND_LANES != 0 || raster_pkg::DITHER_UNIT != 0;
+  // By the number of a unit's register: whether the unit is there (has_register in model/host/stream_rules.cpp).
+  localparam logic [7:0] UNIT_REGISTERS = {HAS_STENCIL, HAS_ALPHA, {2{HAS_OPS}}, HAS_STENCIL, {3{HAS_TEXTURE}}};
+  localparam bit HAS_STATES = UNIT_REGISTERS != '0;
 
   // Words of the payload: the slots of three vertices, each xy and its affine codes; the codes over w of the three; the
   // frame of coordinates. A line uses them from the first one on.
@@ -165,7 +169,7 @@ module command_decoder #(
   logic          reserved, is_bad_box, lacks_unit, needs_target;
   assign is_bad_box   = right_q < left_q || bottom_q < top_q || target_right_q < right_q || target_bottom_q < bottom_q;
   assign needs_target = draws && !is_state && !(is_clear && word_i[2:0] == 3'b011);
-  assign lacks_unit   = draws && ((is_line && !HAS_LINES) || (is_state && !HAS_STATES) ||
+  assign lacks_unit   = draws && ((is_line && !HAS_LINES) || (is_state && !UNIT_REGISTERS[word_i[2:0]]) ||
                                   (is_triangle && word_i[4] && !HAS_FRAME) ||
                                   (is_clear && (word_i[2] || word_i[3]) && !HAS_BLOCKS) ||
                                   (is_flush && word_i[0] && !HAS_BLOCKS));

@@ -36,9 +36,7 @@ module command_stream_checker #(
   localparam int LINE = raster_pkg::LINE_SETUP_BITS - raster_pkg::PRIMITIVE_ID_BITS;
   localparam int LINE_WORDS = (LINE + 31) / 32;
   localparam int STATE = raster_pkg::STATE_WORD_BITS - AFFINE;
-  localparam bit HAS_STATES = raster_pkg::COORDINATES != 0 || raster_pkg::STENCIL_BITS != 0 ||
-                              raster_pkg::BLEND_LANES != 0 || raster_pkg::ALPHA_UNIT != 0;
-  localparam int STATE_WORDS = HAS_STATES && STATE > 0 ? (STATE + 31) / 32 : 0;
+  localparam int STATE_WORDS = STATE > 0 ? (STATE + 31) / 32 : 0;
 
   logic takes;
   assign takes = word_valid_i && word_ready_o;

@@ -24,6 +24,12 @@ module primitive_stream_checker (
 
   /* verilator coverage_off */  // of the design alone
   localparam bit HAS_BLOCKS = raster_pkg::CACHE_KIND == 1;
+  localparam bit HAS_TEXTURE = raster_pkg::COORDINATES != 0;
+  localparam bit HAS_STENCIL = raster_pkg::STENCIL_BITS != 0;
+  localparam bit HAS_ALPHA = raster_pkg::ALPHA_UNIT != 0 && HAS_BLOCKS && raster_pkg::SETUP_KIND == 0;
+  localparam bit HAS_OPS = raster_pkg::BLEND_LANES != 0 || raster_pkg::DITHER_UNIT != 0;
+  // By the number of a unit's register (state_register_t): whether the unit is there.
+  localparam logic [7:0] UNIT_REGISTERS = {HAS_STENCIL, HAS_ALPHA, {2{HAS_OPS}}, HAS_STENCIL, {3{HAS_TEXTURE}}};
 
   logic [63:0] taken_q;      // primitives, of all kinds
   logic [63:0] unwritten_q;  // primitives since the last flush; states write nothing
@@ -98,6 +104,10 @@ module primitive_stream_checker (
       else
         $error("primitive %0d is of kind %0d, which this hardware does not have; send one of primitive_kind_t", taken_q,
                primitive_i.kind);
+      assert (!is_state || UNIT_REGISTERS[primitive_i.state.depth_test])
+      else
+        $error("primitive %0d sets state register %0d, of a unit that this hardware does not have", taken_q,
+               primitive_i.state.depth_test);
     end
     if (rst_ni && takes && !is_state) begin
       assert (has_target_q || clears_both)

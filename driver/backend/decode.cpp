@@ -98,9 +98,7 @@ bool Decoder::lacks_unit(std::uint32_t opcode, std::uint32_t fields) const {
   const bool has_blocks = config_.cache_kind == CacheKind::blocks;
   switch (opcode) {
     case HP_LINE: return config_.line_units == 0;
-    case HP_TOKEN:
-      return widths_.coordinates == 0 && config_.stencil_bits == 0 && config_.blend_lanes == 0 &&
-             config_.alpha_units == 0;
+    case HP_TOKEN: return !has_register(static_cast<StateRegister>(fields & 7), config_);
     case HP_TRIANGLE: return (fields & HP_OVER_W) != 0 && widths_.planes == widths_.affine_planes;
     case HP_FAST_CLEAR:
       return (fields & (HALFPLANE_CLEAR_BIN_MASK | HALFPLANE_CLEAR_LOSES_DEPTH_MASK)) != 0 && !has_blocks;

@@ -24,6 +24,20 @@ bool is_line_inside(const LineSetup& line, const Widths& widths, int width, int 
   }
 }
 
+bool has_register(StateRegister which, const Config& config) {
+  switch (which) {
+    case StateRegister::texture:
+    case StateRegister::texture_levels:
+    case StateRegister::texture_lines: return has_texture_planes(config);
+    case StateRegister::color_ops:
+    case StateRegister::blend_constant: return packs_at_write(config);
+    case StateRegister::alpha_test: return tests_alpha(config);
+    case StateRegister::stencil_test:
+    case StateRegister::stencil_update: return config.stencil_bits != 0;
+  }
+  return false;
+}
+
 std::string StreamRules::take(const PrimitivePacket& packet) {
   if (std::string broken = fault(packet); !broken.empty())
     return "primitive " + std::to_string(taken_) + " of the stream " + broken;
@@ -44,12 +58,6 @@ std::string StreamRules::fault(const LineSetup& line) const {
   return "a line leaves the target; send the part inside, as line_setup does";
 }
 
-/// Texture registers are the texture unit's, the others the framebuffer's of blocks.
-bool StreamRules::has_register(StateRegister which) const {
-  if (is_of_texture(which)) return has_texture_planes(config_);
-  return config_.cache_kind == CacheKind::blocks;
-}
-
 std::string StreamRules::fault(const PrimitivePacket& packet) const {
   const auto number = [](auto value) { return std::to_string(static_cast<unsigned>(value)); };
   switch (packet.kind) {
@@ -62,7 +70,7 @@ std::string StreamRules::fault(const PrimitivePacket& packet) const {
       if (config_.line_units == 0) return "is a line, and this hardware draws none; set lines.unit to 1";
       return box_fault(packet);
     case PrimitiveKind::state:
-      if (has_register(state_register(packet.state))) return {};
+      if (has_register(state_register(packet.state), config_)) return {};
       return "sets state register " + number(packet.state.depth_test) + ", of a unit that this hardware does not have";
   }
   return "is of kind " + number(packet.kind) + ", which no hardware has; send one of primitive_kind_t";

@@ -14,6 +14,9 @@ namespace halfplane {
 /// Whether a line's pixels lie in a target of this size, and its error keeps to its register.
 [[nodiscard]] bool is_line_inside(const LineSetup& line, const Widths& widths, int width, int height);
 
+/// Whether the unit of a state register is in the hardware; core/command_decoder.sv has the same in UNIT_REGISTERS.
+[[nodiscard]] bool has_register(StateRegister which, const Config& config);
+
 class StreamRules {
  public:
   StreamRules(const Config& config, const Widths& widths) : config_(config), widths_(widths) {}
@@ -29,7 +32,6 @@ class StreamRules {
  private:
   [[nodiscard]] std::string fault(const PrimitivePacket& packet) const;
   [[nodiscard]] std::string box_fault(const PrimitivePacket& packet) const;
-  [[nodiscard]] bool has_register(StateRegister which) const;
 
   Config config_;
   Widths widths_;

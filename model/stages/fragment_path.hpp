@@ -44,10 +44,14 @@ class FragmentPath {
   [[nodiscard]] const StencilState& stencil() const { return stencil_; }
   [[nodiscard]] const std::optional<TextureUnit>& texture() const { return texture_; }
 
-  /// A token sets one of the registers. `codes`: of its vertex, or of the fragment that it has become.
+  /// A token sets one of the registers; of a texture unit that is not there it sets nothing, as in raster_top.
+  /// `codes`: of its vertex, or of the fragment that it has become.
   template <class Codes>
   void set(StateRegister which, const Codes& codes) {
-    if (is_of_texture(which)) return set_register(*texture_, which, codes, widths_);
+    if (is_of_texture(which)) {
+      if (texture_) set_register(*texture_, which, codes, widths_);
+      return;
+    }
     stencil_.set(which, state_word(codes, widths_));
     colors_.set(which, state_word(codes, widths_));
   }

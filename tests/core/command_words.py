@@ -31,6 +31,10 @@ class Package:
         self.frame_words = words_of(self.COORDINATE_FRAME_BITS)
         self.state_words = words_of(max(self.STATE_WORD_BITS - affine, 0))
         self.line_words = words_of(self.LINE_SETUP_BITS - self.PRIMITIVE_ID_BITS) if self.LINES_UNIT else 0
+        tests_alpha = self.ALPHA_UNIT and self.CACHE_KIND == 1 and self.SETUP_KIND == 0
+        # state_register_t: whose unit is there
+        self.unit_registers = {*((0, 1, 2) if self.COORDINATES else ()), *((3, 7) if self.STENCIL_BITS else ()),
+                               *((4, 5) if self.BLEND_LANES or self.DITHER_UNIT else ()), *((6,) if tests_alpha else ())}
 
     def fields(self):
         """(name, bits) of primitive_packet_t, highest first."""

@@ -18,7 +18,7 @@ from test_command_decoder import Bench
 
 BENCH = {
     "top": "command_decoder",
-    "configs": ["small", "textured"],  # with little and with much
+    "configs": ["small", "textured", "sampled"],  # with little; with a texture unit and no blending; with blending and no texture unit
     "sources": ["core/core_pkg.sv"],
     "faults": [
         # A reserved bit is not looked at; a base changes under a drawing; a box may end beyond the target.
@@ -86,7 +86,7 @@ class Streams:
             words = self.payload(p.affine_words + p.state_words)
         elif name == "FLUSH" and not p.CACHE_KIND:
             header &= r.random() < 0.1
-        units = (name == "LINE" and not p.LINES_UNIT) or (name == "STATE" and not p.COORDINATES)
+        units = (name == "LINE" and not p.LINES_UNIT) or (name == "STATE" and header not in p.unit_registers)
         return [] if units and r.random() < 0.9 else [opcode << 24 | header, *words]
 
     def begin(self):
@@ -194,5 +194,5 @@ async def the_backend_refuses_and_makes_what_the_core_does(dut):
             if words[0] == COMMAND["SET"] << 24 | len(REGISTER) << 8 and outcome == "taken":
                 assert int(dut.layout_o.value) == int(wanted["layout"], 16), where
     dut._log.info("%s, seed %d: %d streams, %s", config, seed, len(streams), dict(outcomes))
-    rare = {"NONE", "BUS", "STUCK"} | ({"NOT_SUPPORTED"} if package.COORDINATES else set())
+    rare = {"NONE", "BUS", "STUCK"} | ({"NOT_SUPPORTED"} if package.unit_registers else set())
     assert all(outcomes[name] > 0 for name in ERROR if name not in rare) and outcomes["taken"] > len(streams) / 10

@@ -55,6 +55,8 @@ BENCH = {
         # A fourth flush is sent.
         ("core/command_decoder.sv", "is_open = flushes_q != '1", "is_open = flushes_q != '1 || FAULT", "four"),
         # Wrong words are not seen.
+        ("core/command_decoder.sv", "!UNIT_REGISTERS[word_i[2:0]]", "!UNIT_REGISTERS[word_i[2:0]] && !(FAULT && word_i[2:0] == 3'd7)",
+         "wrong_word"),
         ("core/command_decoder.sv", "reserved = word_i[23:12] != '0 ||", "reserved = (word_i[23:12] != '0 && !FAULT) ||", "wrong_word"),
         ("core/command_decoder.sv", "bottom_q < top_q ||", "(bottom_q < top_q && !FAULT) ||", "wrong_word"),
         ("core/command_decoder.sv", "STATE_REGISTER_TARGET)) cleared_q <= 1'b0;", "STATE_REGISTER_TARGET)) cleared_q <= cleared_q && FAULT;",
@@ -407,8 +409,9 @@ def wrong_words(package):
     yield "a box inverted in x", [*set_("BOX_MIN", 60), op("RECTANGLE")], "BAD_BOX"
     yield "a box inverted in y", [*set_("BOX_MIN", 60 << 16), op("RECTANGLE")], "BAD_BOX"
     yield "a bin inverted", [*set_("BOX_MIN", 60 << 16), op("CLEAR", 6)], "BAD_BOX"
+    for register in set(range(8)) - package.unit_registers:
+        yield f"register {register} of a unit that is not there", [op("STATE", register)], "NOT_SUPPORTED"
     if package.COORDINATES == 0:
-        yield "a state without units", [op("STATE", 0)], "NOT_SUPPORTED"
         yield "coordinates without textures", [op("TRIANGLE", 7 | 16)], "NOT_SUPPORTED"
     yield "an error of the bus in a header", [(op("NOP"), 1)], "BUS"
     yield "an error of the bus in codes", [op("RECTANGLE"), (0, 1)], "BUS"

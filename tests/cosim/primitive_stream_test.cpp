@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "model/packets/packet_words.hpp"
+#include "model/packets/state_packets.hpp"
 #include "model/stages/memory_port.hpp"
 #include "rtl_ref/cosim/verilated_messages.hpp"
 #include "sim/cosim/dut.hpp"
@@ -185,6 +186,9 @@ TEST_F(PrimitiveStream, KindsAndDepthTestsThatThisHardwareLacksAreNamed) {
   p = flush();
   p.state.depth_test = DepthFunc::less;
   expect_said(said_of(p), "has the depth test 1; give always");
+  p = packet(PrimitiveKind::state);
+  p.state = sets_register(StateRegister::texture);
+  expect_said(said_of(p), "primitive 2 sets state register 0, of a unit");
 }
 
 TEST_F(PrimitiveStream, AnOfferThatIsTakenBackOrChangedIsNamed) {

@@ -424,10 +424,16 @@ TEST(DriverBackend, RefusesWordsThatTheCoreRefuses) {
     refused(HALFPLANE_ERROR_BAD_BOX, 3, {HP_SET_OF(HP_BOX_MIN, 1), 8, HP_HEADER(HP_FAST_CLEAR, 6)});
   }
   if (config.line_units == 0) refused(HALFPLANE_ERROR_NOT_SUPPORTED, 1, {HP_HEADER(HP_LINE, 0)});
-  if (config.texture_unit == TextureUnitKind::off && config.blend_lanes == 0) {
-    refused(HALFPLANE_ERROR_NOT_SUPPORTED, 1, {HP_HEADER(HP_TOKEN, 0)});
+  const auto refuses_registers = [&](std::initializer_list<std::uint32_t> registers) {
+    for (const std::uint32_t which : registers) refused(HALFPLANE_ERROR_NOT_SUPPORTED, 1, {HP_HEADER(HP_TOKEN, which)});
+  };
+  if (config.texture_unit == TextureUnitKind::off) {
     refused(HALFPLANE_ERROR_NOT_SUPPORTED, 1, {HP_HEADER(HP_TRIANGLE, 0x17)});
+    refuses_registers({0, 1, 2});
   }
+  if (config.stencil_bits == 0) refuses_registers({3, 7});
+  if (config.blend_lanes == 0 && config.dither_units == 0) refuses_registers({4, 5});
+  if (config.alpha_units == 0) refuses_registers({6});
 }
 
 /// Errors that the core does not check, and words without meaning: one line, and no picture.

@@ -16,10 +16,12 @@
 namespace halfplane::test {
 namespace {
 
-/// No design has alpha in memory, or a depth of more than 22 bits, and coordinates of 16 bits: tests/driver/CMakeLists.txt.
-constexpr std::string_view kRgba =
+/// Of tests/driver/CMakeLists.txt: no design has alpha in memory, or a depth of more than 22 bits, and coordinates of 16
+/// bits; none dithers without blending.
+constexpr std::array<std::string_view, 2> kNoDesigns{
     "embedded depth.bits=24 hiz.bits=24 color.format=rgba8888 alpha.unit=1 blend.lanes=4 logic.unit=1 "
-    "texture.unit=bilinear texture.constant=1 texture.border=1";
+    "texture.unit=bilinear texture.constant=1 texture.border=1",
+    "embedded dither.unit=1"};
 
 double real(hp_fixed v) { return std::ldexp(v, -16); }
 
@@ -514,8 +516,8 @@ const Config& driver_config() {
   static const Config config = [] {
     for (const Design& design : designs())
       if (config_id(design.config) == hp_config_id()) return design.config;
-    const Config rgba = labelled(kRgba);
-    if (config_id(rgba) == hp_config_id()) return rgba;
+    for (const std::string_view label : kNoDesigns)
+      if (const Config other = labelled(label); config_id(other) == hp_config_id()) return other;
     throw InputError("the driver is compiled for a configuration that the tests do not know");
   }();
   return config;

@@ -243,7 +243,7 @@ TEST(DriverStream, WordsAreTheModelsPackets) {
   EXPECT_EQ(line_tokens > wanted / 100, config.texture_unit == TextureUnitKind::trilinear);
   EXPECT_EQ(kinds[static_cast<std::size_t>(PrimitiveKind::line)] > wanted / 100, config.line_units != 0);
   EXPECT_EQ(kinds[static_cast<std::size_t>(PrimitiveKind::state)] > 100,
-            config.texture_unit != TextureUnitKind::off || config.blend_lanes != 0);
+            config.texture_unit != TextureUnitKind::off || packs_at_write(config));
 }
 
 }  // namespace

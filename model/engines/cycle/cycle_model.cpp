@@ -424,6 +424,7 @@ class CycleModelOf final : public CycleModel {
     const PerPlane<std::uint32_t>& codes = token.vertex.code[2];  // the place of a state's word
     path_.set(which, codes);
     if (!is_of_texture(which)) return set_tags();
+    if (!path_.texture()) return;
     const LevelsWord beside = word_beside_texture(which, codes, widths_);
     texture.sets_light = beside == LevelsWord::light;
     texture.sets_border = beside == LevelsWord::border;
