@@ -131,7 +131,7 @@ static void draw_run(const source* from, enum hp_topology topology, uint32_t fir
       for (uint32_t i = 0; i + 1 < count; ++i) line(from, first + i, first + i + 1);
       if (topology == HP_LINE_LOOP && count > 1) line(from, first + count - 1, first);
       break;
-    case HP_POINTS:
+    default: /* points */
       for (uint32_t i = 0; i < count; ++i) point(from, first + i);
       break;
   }

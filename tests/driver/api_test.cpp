@@ -251,6 +251,57 @@ TEST_F(DriverInterface, LeavesOutVerticesBeyondItsNumbers) {
   }
 }
 
+/// In each place of a triangle, by the affine view, the perspective division's product, and w itself.
+TEST_F(DriverInterface, LeavesOutTrianglesWithAVertexBeyondItsNumbers) {
+  std::array<hp_fixed, 16> twice{}, none{}, perspective{};
+  for (const std::size_t i : {0U, 5U, 10U}) twice[i] = 2 * HP_ONE, none[i] = perspective[i] = HP_ONE;
+  twice[15] = none[15] = HP_ONE;
+  perspective[14] = -HP_ONE;
+  const auto draw = [&](const std::array<hp_fixed, 16>& view, const hp_fixed* projection, const hp_fixed far_corner[3],
+                        std::size_t place, std::uint16_t step) {
+    SCOPED_TRACE(place);
+    const auto driver = std::make_unique<hp_context>(*driver_);
+    std::vector<hp_fixed> position(3 * (2U * step + 1), -HP_ONE);
+    std::copy_n(far_corner, 3, position.begin() + static_cast<std::ptrdiff_t>(3 * place * step));
+    const hp_vertices vertices{position.data(), nullptr, nullptr, 12, 0, 0, 0, nullptr, 0};
+    const std::array<std::uint16_t, 3> indices{0, step, static_cast<std::uint16_t>(2 * step)};
+    hp_set_matrices(driver.get(), view.data(), projection);
+    hp_draw(driver.get(), HP_TRIANGLES, &vertices, indices.data(), 3);
+    EXPECT_EQ(hp_count(driver.get())->sent, 0U);
+    EXPECT_EQ(hp_status(driver.get()), HP_OUT_OF_RANGE);
+  };
+  const hp_fixed far_x[]{INT32_MAX, 0, -HP_ONE}, far_z[]{0, 0, INT32_MIN};
+  for (const std::size_t place : {0U, 1U, 2U})
+    for (const std::uint16_t step : {std::uint16_t{1}, std::uint16_t{16}}) {  // 16: all share an entry of the cache
+      draw(twice, nullptr, far_x, place, step);
+      draw(none, perspective.data(), far_z, place, step);
+      perspective[0] = 2 * HP_ONE;
+      draw(none, perspective.data(), far_x, place, step);
+      perspective[0] = HP_ONE;
+    }
+}
+
+TEST_F(DriverInterface, WithoutAStreamThereIsNoRoom) {
+  hp_init(driver_.get());
+  hp_fence(driver_.get(), 1);
+  EXPECT_EQ(hp_status(driver_.get()), HP_FULL);
+  EXPECT_EQ(hp_written(driver_.get()), 0U);
+}
+
+TEST_F(DriverInterface, LinesAndPointsThatDoNotFitAreLeftOut) {
+  for (const hp_topology topology : {HP_LINES, HP_POINTS}) {
+    if (topology == HP_LINES && driver_config().line_units == 0) continue;
+    const auto driver = std::make_unique<hp_context>(*driver_);
+    hp_draw(driver.get(), topology, &kVertices, nullptr, 4);
+    const std::uint32_t each = hp_written(driver.get());
+    while (hp_status(driver.get()) == 0 && hp_written(driver.get()) <= 4096)
+      hp_draw(driver.get(), topology, &kVertices, nullptr, 4);
+    EXPECT_EQ(hp_status(driver.get()), HP_FULL);
+    EXPECT_LE(hp_written(driver.get()), 4096U);
+    EXPECT_GT(hp_written(driver.get()) + each, 4096U);
+  }
+}
+
 TEST_F(DriverInterface, AStripCostsOneVertexATriangle) {
   std::vector<hp_fixed> position;
   for (int i = 0; i < 40; ++i)
