@@ -116,10 +116,8 @@ void hp_derive_view(hp_context* context) {
   }
   context->covers_view = covers;
   context->is_whole_range = view->near_depth == 0 && view->far_depth == HP_DEPTH_ONE;
-  const int64_t limit = HP_LIMIT;
-  context->is_quick = covers != 0 && context->half[0] < HP_QUICK && context->half[1] < HP_QUICK && view->x >= -limit &&
-                      view->y >= -limit && (int64_t)view->x + view->width < limit &&
-                      (int64_t)view->y + view->height < limit;
+  context->is_quick = covers != 0 && context->half[0] < HP_QUICK && context->half[1] < HP_QUICK &&
+                      (int64_t)view->x + view->width < HP_LIMIT && (int64_t)view->y + view->height < HP_LIMIT;
 }
 
 /* A place in the window and half a subpixel, s15.16, snapped. */

@@ -80,6 +80,15 @@ class CaseMaker {
     v.height = between(1, 0.6 * room);
     if (chance(2)) v = {0, 0, out_.scene.width * HP_ONE, out_.scene.height * HP_ONE, 0, 0, 0};
     if (chance(4)) v.x = v.y = 0, v.width = v.height = room > 256 ? 256 * HP_ONE : 16 * HP_ONE;
+    if (chance(12)) {  // a side at the guard band, where the driver clips and snaps another way
+      const hp_fixed end = std::min(config_.guard_band, 32767) * HP_ONE - 1;
+      const hp_fixed inside = end + 1 - (HP_ONE >> config_.subpixel_bits);
+      hp_fixed &first = chance(2) ? v.x : v.y, &size = &first == &v.x ? v.width : v.height;
+      if (chance(2))
+        first = -end;
+      else
+        size = (chance(2) ? end : inside) - first;
+    }
     v.near_depth = chance(2) ? 0 : static_cast<std::uint32_t>(random_.between(0, 0x1p31));
     v.far_depth = chance(2) ? HP_DEPTH_ONE : static_cast<std::uint32_t>(random_.between(0, 0x1p31));
     v.zero_to_one = chance(2) ? 1 : 0;
