@@ -46,7 +46,9 @@ BENCH = [{
         ("core/core_registers.sv", "assign control_stop_o = is_whole &&", "assign control_stop_o = is_whole && !FAULT &&", "interrupts"),
         ("core/core_registers.sv", "if (ring_tail_index_clear_i)", "if (ring_tail_index_clear_i && !FAULT)", "resets"),
         ("core/halfplane_core.sv", "if (!core_n) fence_q", "if (!core_n && !FAULT) fence_q", "resets"),
-        # A start during a restart is lost; an error while another one stays raises no interrupt.
+        # A restart drops the tail before the words that were taken; a start during a restart is lost; an error while another one stays raises no interrupt.
+        ("core/halfplane_core.sv", ".ring_tail_index_clear_i     (restarts)",
+         ".ring_tail_index_clear_i     (FAULT ? is_restarting : restarts)", "empty_ring"),
         ("core/halfplane_core.sv", "(starts || start_q)", "(starts || (start_q && !FAULT))", "at_once"),
         ("core/halfplane_core.sv", "(errors & ~errors_q)", "(errors & (FAULT ? {4{errors_q == '0}} : ~errors_q))", "errors_of_memory"),
         # The ring: it does not end; more is asked for than there is room for; the end of a part is missed; a restart goes on where it was.
@@ -426,6 +428,22 @@ async def a_restart_takes_registers_at_once(dut):
             core.tail, core.encoder = 0, Encoder(core.package)
         await core.draw(frame)
         core.check(frame)
+
+
+@cocotb.test()
+async def a_restart_of_an_empty_ring_raises_no_interrupt(dut):
+    core = Core(dut)
+    await core.start()
+    for drops in (False, True):
+        await core.send([COMMAND["NOP"] << 24] * 5)
+        await core.wait(RING_EMPTY, "five words")
+        if drops:
+            await core.write("CONTROL", STOP)
+            await core.send([COMMAND["NOP"] << 24] * 3)
+        await core.write("IRQ_PENDING", 31)
+        await core.restart()
+        await core.cycles(20)
+        assert bool(await core.read("IRQ_PENDING") & EMPTY) == drops
 
 
 @cocotb.test(skip=LONG == 1)
