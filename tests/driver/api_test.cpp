@@ -289,16 +289,15 @@ TEST_F(DriverInterface, WithoutAStreamThereIsNoRoom) {
 }
 
 TEST_F(DriverInterface, LinesAndPointsThatDoNotFitAreLeftOut) {
+  std::vector<std::uint16_t> indices(16384);
+  for (std::size_t i = 0; i < indices.size(); ++i) indices[i] = i % 4;
   for (const hp_topology topology : {HP_LINES, HP_POINTS}) {
     if (topology == HP_LINES && driver_config().line_units == 0) continue;
     const auto driver = std::make_unique<hp_context>(*driver_);
-    hp_draw(driver.get(), topology, &kVertices, nullptr, 4);
-    const std::uint32_t each = hp_written(driver.get());
-    while (hp_status(driver.get()) == 0 && hp_written(driver.get()) <= 4096)
-      hp_draw(driver.get(), topology, &kVertices, nullptr, 4);
+    hp_draw(driver.get(), topology, &kVertices, indices.data(), 16384);
     EXPECT_EQ(hp_status(driver.get()), HP_FULL);
     EXPECT_LE(hp_written(driver.get()), 4096U);
-    EXPECT_GT(hp_written(driver.get()) + each, 4096U);
+    EXPECT_GT(hp_written(driver.get()), 4000U);
   }
 }
 
