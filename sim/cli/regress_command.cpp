@@ -1,4 +1,9 @@
 // `regress`: the cases of a plan, each a run of `cosim` by a process of its own, with a file of its own for its result.
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -57,9 +62,15 @@ class Regression {
     if (options.only_case > cases_.size())
       throw InputError("--case: the plan has " + with_commas(cases_.size()) + " cases");
   }
+  ~Regression() {
+    if (lock_ >= 0) close(lock_);
+  }
+  Regression(const Regression&) = delete;
+  Regression& operator=(const Regression&) = delete;
 
   /// Makes the folder, or goes on with the results in it.
   void open_folder() {
+    if (!options_.reports && options_.only_case == 0) lock_folder();
     const fs::path manifest = folder_ / "plan.json";
     if (!fs::exists(manifest)) return begin();
     const bool is_same = read_task_json(manifest, "remove its folder") == manifest_;
@@ -121,6 +132,16 @@ class Regression {
     std::chrono::steady_clock::time_point start{};
     Json first;  ///< result of the first run, if it failed
   };
+
+  /// Two runs would write the same files. The lock ends with the process, however that ends.
+  void lock_folder() {
+    std::error_code error;
+    fs::create_directories(folder_, error);  // that it cannot be made says begin()
+    lock_ = open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (lock_ >= 0 && flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+      throw InputError(folder_.string() +
+                       ": another regress is running in it; wait for it, or give another folder with -o");
+  }
 
   void begin() {
     std::error_code error;
@@ -243,6 +264,7 @@ class Regression {
   std::vector<Json> results_;  ///< null: not run yet
   fs::path folder_;
   Json manifest_;
+  int lock_ = -1;  ///< of the folder
 };
 
 int run_plan(const RegressOptions& options) {

@@ -82,6 +82,21 @@ TEST_F(Regress, AKillLosesTheRunningCasesAlone) {
   for (const auto& [file, time] : before) EXPECT_EQ(fs::last_write_time(file), time) << "run once: " << file;
 }
 
+TEST_F(Regress, TwoRunsInOneFolderAreRefused) {
+  write("p.toml", "[r]\nconfig = \"tiny\"\nrandom = 500000\nonly = \"triangles\"\n");
+  const Outcome second = paste("'" HALFPLANE_PROGRAM
+                               "' regress p.toml --quiet -o out & pid=$!\n"
+                               "for i in $(seq 6000); do [ -e out/plan.json ] || sleep 0.01; done\n"
+                               "'" HALFPLANE_PROGRAM
+                               "' regress p.toml --quiet -o out --resume; status=$?\n"
+                               "'" HALFPLANE_PROGRAM
+                               "' regress p.toml --quiet -o out --report\n"
+                               "kill -9 $pid; wait $pid; exit $status");
+  EXPECT_EQ(second.status, 125);
+  EXPECT_NE(second.err.find("another regress is running in it"), std::string::npos) << second.err;
+  EXPECT_EQ(regress("p.toml -o out --resume --until 0s", 125)["ran"], 0) << "the lock ended with its process";
+}
+
 TEST_F(Regress, UntilBeginsNoCaseAndResumeGoesOnOfTheSamePlanAlone) {
   write("p.toml", "[r]\nconfig = \"tiny\"\nrandom = 20\nseeds = \"1..4\"\n");
   EXPECT_EQ(regress("p.toml --until 0s", 125)["ran"], 0);
