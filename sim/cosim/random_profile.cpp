@@ -17,7 +17,7 @@ namespace halfplane {
 namespace {
 
 constexpr std::array<std::string_view, 3> kKinds{"triangles", "lines", "points"};
-constexpr std::array<std::string_view, 4> kDepths{"random", "equal", "front_to_back", "back_to_front"};
+constexpr std::array<std::string_view, 5> kDepths{"random", "flat", "equal", "front_to_back", "back_to_front"};
 constexpr std::array<std::string_view, 10> kKnobs{"kinds", "no",    "target",   "size",         "ties",
                                                   "reuse", "depth", "textures", "texture_size", "overlap"};
 constexpr int kMostTextures = 16, kMostTexels = 1024;
@@ -166,7 +166,7 @@ class Reader {
     } else if (key == "depth") {
       const auto found = std::ranges::find(kDepths, value);
       if (found == kDepths.end())
-        fail(place, "depth: no order '" + value + "'; give random, equal, front_to_back or back_to_front");
+        fail(place, "depth: no order '" + value + "'; give random, flat, equal, front_to_back or back_to_front");
       profile_.depth = static_cast<RandomProfile::DepthOrder>(found - kDepths.begin());
     } else if (key == "textures" || key == "texture_size") {
       if (config_.texture_unit == TextureUnitKind::off)

@@ -21,7 +21,7 @@ struct RandomProfile {
     const DrawState* row = nullptr;
     std::vector<StateValue> values;
   };
-  enum class DepthOrder { random, equal, front_to_back, back_to_front };
+  enum class DepthOrder { random, flat, equal, front_to_back, back_to_front };
   /// Of a primitive's box, its longer side: pixels before corners are moved to pixel centres.
   struct Extent {
     int least = 0, most = 0;

@@ -310,7 +310,7 @@ void Generator::primitive(std::size_t corners, bool is_again) {
   const DepthOrder order = profile_.depth.value_or(DepthOrder::random);
   const double largest = static_cast<double>((std::uint64_t{1} << config_.depth_bits) - 1);
   const double flat_depth =
-      order == DepthOrder::random ? depth()
+      order == DepthOrder::random || order == DepthOrder::flat ? depth()
       : order == DepthOrder::equal
           ? std::floor(largest / 2) / largest
           : std::floor(largest * (order == DepthOrder::front_to_back ? order_ : 1 - order_)) / largest;
