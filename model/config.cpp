@@ -1,6 +1,9 @@
 #include "config.hpp"
 
 #include <charconv>
+#include <type_traits>
+
+#include "enum_names.hpp"
 
 namespace halfplane {
 namespace {
@@ -62,7 +65,9 @@ Setting powers(std::string_view key, std::string unit, std::string_view meaning,
 
 /// One of an enumeration's values.
 template <auto member>
-Setting choice(std::string_view key, std::vector<std::string_view> names, std::string_view meaning) {
+Setting choice(std::string_view key, std::string_view meaning) {
+  using Value = std::remove_cvref_t<decltype(std::declval<Config>().*member)>;
+  std::vector<std::string_view> names(kNamesOf<Value>.begin(), kNamesOf<Value>.end());
   return {.key = key,
           .unit = joined(names, "|"),
           .meaning = meaning,
@@ -146,7 +151,7 @@ std::vector<Setting> all_settings() {
                               "colours over w are divided by the texture unit's 1/w: use texture.unit=nearest, or "
                               "perspective.colors=0")),
       // Cost: rgba8888: 674 places, 4 block RAMs, alpha included (docs/area.md).
-      choice<&Config::color_format>("color.format", {"rgb565", "rgba8888"}, "layout of a stored colour"),
+      choice<&Config::color_format>("color.format", "layout of a stored colour"),
       powers<&Config::tile_size>("tile.size", "pixels", "side of a tile: 4, 8, 16 or 32", 4, 32),
       // Cost: `embedded` with 1, 2, 4: 12,689, 15,227, 28,329 places (docs/area.md).
       no_pixel(powers<&Config::stamp_size>("stamp.size", "pixels",
@@ -162,7 +167,7 @@ std::vector<Setting> all_settings() {
       no_pixel(powers<&Config::hiz_lag>(
           "hiz.lag", "visits", "tile visits after which a HiZ update is seen, and in flight at most; a power of two", 2,
           64)),
-      no_pixel(choice<&Config::cache_kind>("cache.kind", {"tiles", "blocks"},
+      no_pixel(choice<&Config::cache_kind>("cache.kind",
                                            "what a line of the on-chip RAM is: a tile, or 4x4 pixels fetched ahead")),
       // Cost: 512 instead of 256: 88 places, 8 block RAMs (docs/design-space.md).
       no_pixel(powers<&Config::cache_lines>(
@@ -176,27 +181,24 @@ std::vector<Setting> all_settings() {
       no_pixel(powers<&Config::cache_victims>("cache.victims", "blocks",
                                               "blocks: evicted blocks that wait to be written; a power of two", 2, 32)),
       // Cost: flags: 22 places less (docs/area.md).
-      no_pixel(choice<&Config::frame_clears>("frame.clears", {"resolve", "flags"},
+      no_pixel(choice<&Config::frame_clears>("frame.clears",
                                              "what a flush writes of cleared blocks or tiles: colours, or flags")),
       // Cost: 128 instead of 64: 208 places (docs/area.md).
       no_pixel(powers<&Config::memory_port_bits>(
           "memory.port_bits", "bits", "data that the memory port moves in a cycle; a power of two", 16, 512)),
       no_pixel(of_host(choice<&Config::frame_order>(
-          "frame.order", {"program", "bins"},
+          "frame.order",
           "blocks: order in which the host sends a frame: program order, or bins that fit the on-chip RAM"))),
       no_pixel(of_host(choice<&Config::frame_store>(
-          "frame.store", {"all", "color"},
-          "blocks: buffers of a frame that are written to memory; color: its depth is lost"))),
-      no_pixel(choice<&Config::setup_kind>("setup.kind", {"pipelined", "serial"},
-                                           "RTL triangle setup: several multipliers, or one")),
+          "frame.store", "blocks: buffers of a frame that are written to memory; color: its depth is lost"))),
+      no_pixel(choice<&Config::setup_kind>("setup.kind", "RTL triangle setup: several multipliers, or one")),
       // Cost: 2 saves 1,414 places and 13 multipliers with a texture unit (docs/area.md).
       no_pixel(number<&Config::setup_plane_clocks>(
           "setup.plane_clocks", "clocks",
           "cycles per plane of the RTL's pipelined triangle setup: 1, or 2 with half of the multipliers", 1, 2)),
       // Cost: nearest 3,866 places, 8 multipliers, 4 block RAMs; bilinear 6,203, 20, 5; without the wider planes and
       // queues (ADR 29).
-      no_pixel(choice<&Config::texture_unit>("texture.unit", {"off", "nearest", "bilinear", "trilinear"},
-                                             "what the RTL's texture unit can do; off: it has none")
+      no_pixel(choice<&Config::texture_unit>("texture.unit", "what the RTL's texture unit can do; off: it has none")
                    .ability_named("texture")),
       // Cost: 4, trilinear: 16,582 places, 69 multipliers (ADR 108).
       no_pixel(one_of<&Config::texture_lanes>(
@@ -212,7 +214,7 @@ std::vector<Setting> all_settings() {
           "texture.queue", "samples", "samples that wait for their texels, so that misses overlap; a power of two", 8,
           128)),
       no_pixel(
-          choice<&Config::reciprocal_kind>("reciprocal.kind", {"table", "restoring"},
+          choice<&Config::reciprocal_kind>("reciprocal.kind",
                                            "what the texture unit divides by 1/w with: a RAM and two multipliers, or "
                                            "subtractions; the same bits and time")),
       unnamed_at_0(
@@ -311,8 +313,7 @@ std::vector<Setting> all_settings() {
                                       "have one each, and a flag; 0: it stores all samples",
                                       0, 1),
       of_host(choice<&Config::depth_mapping>(
-          "depth.mapping", {depth_mapping_names().begin(), depth_mapping_names().end()},
-          "what a depth means: what the scene's projection says, or one of these (docs/depth.md)")),
+          "depth.mapping", "what a depth means: what the scene's projection says, or one of these (docs/depth.md)")),
       of_host(text<&Config::depth_format>("depth.format", "plane|u<b>|bins<b>|f16|f32|uf<e>.<m>",
                                           "how a depth is stored; plane: the depth.bits that are interpolated")),
   };

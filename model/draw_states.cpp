@@ -8,6 +8,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "enum_names.hpp"
+
 namespace halfplane {
 namespace {
 
@@ -120,31 +122,38 @@ void from_value(const StateValue& from, std::optional<Value>& to, std::size_t wo
 
 // ---- conditions on every row, as far as the compiler can check them
 
-/// Whether E has the value: compilers print a value without a name as a cast, "(E)7".
-template <auto value>
-consteval bool is_enumerator() {
-  constexpr std::string_view function = __PRETTY_FUNCTION__;
-  return function[function.find("value = ") + 8] != '(';
-}
+constexpr std::array<std::string_view, 2> switch_words{"off", "on"};
 
-template <class E, int n = 0>
-consteval std::size_t enumerators() {
-  if constexpr (is_enumerator<static_cast<E>(n)>())
-    return enumerators<E, n + 1>();
-  else
-    return n;
-}
-
-/// A row for a member. Does not compile for an enum if only some of its values have names, or none has.
+/// A row for a member. An enum has the names of its values, unless the row says other words, one for each; a bool has
+/// off and on.
 template <auto member>
 consteval DrawState row(DrawState state) {
   using Value = std::remove_cvref_t<decltype(std::declval<State>().*member)>;
+  if (state.words.empty() && state.numbers.empty()) {
+    if constexpr (std::is_enum_v<Value>) state.words = kNamesOf<Value>;
+    if constexpr (std::is_same_v<Value, bool>) state.words = switch_words;
+  }
   if constexpr (std::is_enum_v<Value>)
     if (state.words.size() != enumerators<Value>()) throw "an enumerator without a word, or a word too many";
   if (state.words.empty() && state.numbers.empty()) throw "a state without values";
   state.get_value = [](const State& from, std::size_t words) { return to_value(from.*member, words); };
   state.set_value = [](State& to, const StateValue& value, std::size_t words) { from_value(value, to.*member, words); };
   return state;
+}
+
+/// A row for a member whose value is a word; `words`: other ones than row() finds.
+template <auto member>
+consteval DrawState word_row(std::string_view name, std::string_view purpose, StateHome home = StateHome::host,
+                             std::span<const std::string_view> words = {}) {
+  return row<member>({.name = name, .words = words, .purpose = purpose, .home = home});
+}
+/// A row for a member whose value is numbers, or one of `words`.
+template <auto member>
+consteval DrawState number_row(std::string_view name, std::span<const StateNumber> numbers, std::string_view form,
+                               std::string_view purpose, StateHome home = StateHome::host,
+                               std::span<const std::string_view> words = {}) {
+  return row<member>(
+      {.name = name, .words = words, .numbers = numbers, .form = form, .purpose = purpose, .home = home});
 }
 
 /// Converts to any member type, so that members can be counted.
@@ -172,66 +181,12 @@ constexpr double far_away = 1 << 20;    // pixels
 constexpr double farthest = 1e12;       // eye-space units
 constexpr double widest_offset = 1e12;  // more than any slope between two codes of 32 bits
 
-constexpr std::array<Words, 2> space_words{"clip", "window"};
-constexpr std::array<Words, 8> depth_words{"never",   "less",   "lequal",   "equal",
-                                           "greater", "gequal", "notequal", "always"};
-constexpr std::array<Words, 2> switch_words{"off", "on"};
-constexpr std::array<Words, 4> cull_words{"none", "back", "front", "both"};
-constexpr std::array<Words, 2> front_words{"ccw", "cw"};
-constexpr std::array<Words, 3> shade_words{"smooth", "flat", "phong"};
-constexpr std::array<Words, 2> interp_words{"affine", "perspective"};
-constexpr std::array<Words, 2> clip_z_words{"minus_one_one", "zero_one"};
-constexpr std::array<Words, 2> pixel_center_words{"half", "integer"};
-constexpr std::array<Words, 2> origin_words{"top_left", "bottom_left"};
-constexpr std::array<Words, 1> scissor_words{"off"};
 constexpr std::array<Words, 1> viewport_words{"full"};
-constexpr std::array<Words, 2> provoking_words{"first", "last"};
-constexpr std::array<Words, 3> polygon_mode_words{"fill", "line", "point"};
-constexpr std::array<Words, 4> line_rule_words{"midpoint", "bresenham", "diamond", "rectangle"};
 constexpr std::array<Words, 3> line_last_words{"off", "on", "rule"};
-constexpr std::array<Words, 2> point_shape_words{"square", "round"};
-constexpr std::array<Words, 2> point_clip_words{"pixel", "center"};
 
-constexpr std::array<Words, 1> texture_words{"off"};
-constexpr std::array<Words, 2> texture_interp_words{"perspective", "affine"};
-constexpr std::array<Words, 6> texture_min_words{"nearest",
-                                                 "linear",
-                                                 "nearest_mipmap_nearest",
-                                                 "linear_mipmap_nearest",
-                                                 "nearest_mipmap_linear",
-                                                 "linear_mipmap_linear"};
-constexpr std::array<Words, 2> texture_mag_words{"nearest", "linear"};
-constexpr std::array<Words, 5> wrap_words{"repeat", "clamp", "mirror", "border", "half_border"};
-static_assert(wrap_words.size() == enumerators<TextureWrap>());
-constexpr std::array<Words, 5> combine_words{"modulate", "replace", "decal", "add", "blend"};
-static_assert(combine_words.size() == enumerators<TextureCombine>());
-
-constexpr std::array<Words, 3> fog_words{"linear", "exp", "exp2"};
-static_assert(fog_words.size() == enumerators<FogKind>());
-constexpr std::array<Words, 15> factor_words{"zero",
-                                             "one",
-                                             "src_color",
-                                             "one_minus_src_color",
-                                             "dst_color",
-                                             "one_minus_dst_color",
-                                             "src_alpha",
-                                             "one_minus_src_alpha",
-                                             "dst_alpha",
-                                             "one_minus_dst_alpha",
-                                             "constant_color",
-                                             "one_minus_constant_color",
-                                             "constant_alpha",
-                                             "one_minus_constant_alpha",
-                                             "src_alpha_saturate"};
-static_assert(factor_words.size() == enumerators<BlendFactor>());
-constexpr std::array<Words, 5> equation_words{"add", "subtract", "reverse_subtract", "min", "max"};
-static_assert(equation_words.size() == enumerators<BlendEquation>());
 constexpr std::array<Words, 16> logic_op_words{
     "clear", "and",   "and_reverse", "copy",       "and_inverted",  "noop",        "xor",  "or",
     "nor",   "equiv", "invert",      "or_reverse", "copy_inverted", "or_inverted", "nand", "set"};
-constexpr std::array<Words, 8> stencil_op_words{"keep", "zero",   "replace",   "incr",
-                                                "decr", "invert", "incr_wrap", "decr_wrap"};
-static_assert(stencil_op_words.size() == enumerators<StencilOp>());
 constexpr std::array<Words, 1> off_words{"off"};
 constexpr std::array<Words, 1> same_words{"same"};
 constexpr std::array<Words, 1> all_words{"all"};
@@ -254,7 +209,7 @@ constexpr StateNumber byte_number(Words what, double random_step = 51, unsigned 
 }
 // At most as far as the vertices of random scenes, and denser than visible.
 constexpr std::array<StateNumber, 3> fog_numbers{
-    {word_number("fog's kind", fog_words),
+    {word_number("fog's kind", kNamesOf<FogKind>),
      {"fog's start or density", 0, farthest, false, false, 0, 0.125, 9},
      {.what = "fog's end", .low = 0, .high = farthest, .random_step = 0.25, .random_count = 13, .repeats = 1}}};
 constexpr std::array<StateNumber, 3> fog_color_numbers{
@@ -275,13 +230,15 @@ constexpr std::array<StateNumber, 3> light_specular_numbers{
     {byte_number("light_specular's red"), byte_number("light_specular's green"), byte_number("light_specular's blue")}};
 constexpr std::array<StateNumber, 1> light_shininess_numbers{{{"light_shininess", 1, 128, false, false, 1, 0.75, 170}}};
 constexpr std::array<StateNumber, 2> alpha_test_numbers{
-    {word_number("alpha_test's function", depth_words), byte_number("alpha_test's reference")}};
+    {word_number("alpha_test's function", kNamesOf<DepthFunc>), byte_number("alpha_test's reference")}};
 constexpr std::array<StateNumber, 4> blend_numbers{
-    {word_number("the factor of the source", factor_words), word_number("the factor of the destination", factor_words),
-     word_number("the factor of the source's alpha", factor_words, 2),
-     word_number("the factor of the destination's alpha", factor_words, 2)}};
-constexpr std::array<StateNumber, 2> blend_equation_numbers{{word_number("the equation of the colour", equation_words),
-                                                             word_number("the equation of alpha", equation_words, 1)}};
+    {word_number("the factor of the source", kNamesOf<BlendFactor>),
+     word_number("the factor of the destination", kNamesOf<BlendFactor>),
+     word_number("the factor of the source's alpha", kNamesOf<BlendFactor>, 2),
+     word_number("the factor of the destination's alpha", kNamesOf<BlendFactor>, 2)}};
+constexpr std::array<StateNumber, 2> blend_equation_numbers{
+    {word_number("the equation of the colour", kNamesOf<BlendEquation>),
+     word_number("the equation of alpha", kNamesOf<BlendEquation>, 1)}};
 constexpr std::array<StateNumber, 4> blend_color_numbers{
     {byte_number("blend_color's red"), byte_number("blend_color's green"), byte_number("blend_color's blue"),
      byte_number("blend_color's alpha")}};
@@ -290,11 +247,11 @@ constexpr std::array<StateNumber, 4> color_mask_numbers{
      word_number("color_mask of blue", switch_words), word_number("color_mask of alpha", switch_words)}};
 // References, masks and stored values close together, so that all outcomes occur.
 constexpr std::array<StateNumber, 7> stencil_numbers{
-    {word_number("the stencil's function", depth_words), byte_number("the stencil's reference", 1, 4),
+    {word_number("the stencil's function", kNamesOf<DepthFunc>), byte_number("the stencil's reference", 1, 4),
      byte_number("the mask that is read through", 85, 4), byte_number("the mask that is written through", 85, 4),
-     word_number("what to do where the stencil test fails", stencil_op_words),
-     word_number("what to do where the depth test fails", stencil_op_words),
-     word_number("what to do where both pass", stencil_op_words)}};
+     word_number("what to do where the stencil test fails", kNamesOf<StencilOp>),
+     word_number("what to do where the depth test fails", kNamesOf<StencilOp>),
+     word_number("what to do where both pass", kNamesOf<StencilOp>)}};
 constexpr std::array<StateNumber, 1> sample_mask_numbers{{{.what = "sample_mask",
                                                            .low = 0,
                                                            .high = 255,
@@ -307,8 +264,8 @@ constexpr std::array<StateNumber, 1> texture_numbers{{
     {"texture", 0, 65535, true, false, 0, 1, 0, {}, true},
 }};
 constexpr std::array<StateNumber, 2> texture_wrap_numbers{{
-    {"texture_wrap along u", 0, 4, true, false, 0, 1, 3, wrap_words},
-    {"texture_wrap along v", 0, 4, true, false, 0, 1, 3, wrap_words},
+    {"texture_wrap along u", 0, 4, true, false, 0, 1, 3, kNamesOf<TextureWrap>},
+    {"texture_wrap along v", 0, 4, true, false, 0, 1, 3, kNamesOf<TextureWrap>},
 }};
 constexpr std::array<StateNumber, 4> texture_border_numbers{
     {byte_number("texture_border's red"), byte_number("texture_border's green"), byte_number("texture_border's blue"),
@@ -346,256 +303,147 @@ constexpr std::array<StateNumber, 1> point_size_numbers{{{"point_size", 1, far_a
 
 constexpr std::array table{
     row<&State::space>({.name = "space",
-                        .words = space_words,
                         .purpose = "what the coordinates of vertices mean; written as a line of its own",
                         .simplest = "window"}),
-    row<&State::depth_test>({.name = "depth_test",
-                             .words = depth_words,
-                             .purpose = "how a fragment's depth must compare with the stored one",
-                             .home = StateHome::primitive}),
-    row<&State::depth_write>({.name = "depth_write",
-                              .words = switch_words,
-                              .purpose = "whether a fragment that passes stores its depth",
-                              .home = StateHome::primitive}),
-    row<&State::color_write>({.name = "color_write",
-                              .words = switch_words,
-                              .purpose = "whether it stores its colour",
-                              .home = StateHome::primitive}),
-    row<&State::cull>({.name = "cull",
-                       .words = cull_words,
-                       .purpose = "which triangles are not drawn",
-                       .home = StateHome::primitive}),
-    row<&State::front>({.name = "front",
-                        .words = front_words,
-                        .purpose = "which triangles are front faces, as seen on the screen",
-                        .home = StateHome::primitive}),
+    word_row<&State::depth_test>("depth_test", "how a fragment's depth must compare with the stored one",
+                                 StateHome::primitive),
+    word_row<&State::depth_write>("depth_write", "whether a fragment that passes stores its depth",
+                                  StateHome::primitive),
+    word_row<&State::color_write>("color_write", "whether it stores its colour", StateHome::primitive),
+    word_row<&State::cull>("cull", "which triangles are not drawn", StateHome::primitive),
+    word_row<&State::front>("front", "which triangles are front faces, as seen on the screen", StateHome::primitive),
     row<&State::shade>({.name = "shade",
-                        .words = shade_words,
                         .purpose = "flat: the colour of the provoking vertex, all over the primitive; phong: of filled "
                                    "triangles, colours in the light of each fragment",
                         .refused = "phong"}),
-    row<&State::color_interp>({.name = "color_interp",
-                               .words = interp_words,
-                               .purpose = "how colours run over a primitive",
-                               .refused = "perspective"}),
-    row<&State::clip_z>({.name = "clip_z",
-                         .words = clip_z_words,
-                         .purpose = "where the near plane of clip space lies, at z = −w or at z = 0"}),
-    row<&State::pixel_center>({.name = "pixel_center",
-                               .words = pixel_center_words,
-                               .purpose = "where the pixel centres of window-space vertices and of the viewport lie; "
-                                          "the first one at ½ or at 0"}),
-    row<&State::origin>({.name = "origin",
-                         .words = origin_words,
-                         .purpose = "what window-space vertices, viewport and scissor count from, with y down from "
-                                    "the top, y up from the bottom; the y of a rectangle is that of its side at the "
-                                    "origin"}),
+    row<&State::color_interp>(
+        {.name = "color_interp", .purpose = "how colours run over a primitive", .refused = "perspective"}),
+    word_row<&State::clip_z>("clip_z", "where the near plane of clip space lies, at z = −w or at z = 0"),
+    word_row<&State::pixel_center>(
+        "pixel_center",
+        "where the pixel centres of window-space vertices and of the viewport lie; the first one at ½ or at 0"),
+    word_row<&State::origin>("origin",
+                             "what window-space vertices, viewport and scissor count from, with y down from the top, y "
+                             "up from the bottom; the y of a rectangle is that of its side at the origin"),
     row<&State::scissor>({.name = "scissor",
-                          .words = scissor_words,
+                          .words = off_words,
                           .numbers = scissor_numbers,
                           .form = "x y width height",
                           .unit = "pixels",
                           .purpose = "what may be drawn and cleared: whole pixels, numbered from the `origin`, the "
                                      "first one 0 under either `pixel_center`"}),
-    row<&State::viewport>({.name = "viewport",
-                           .words = viewport_words,
-                           .numbers = viewport_numbers,
-                           .form = "x y width height",
-                           .unit = "pixels",
-                           .purpose = "where clip space comes to lie: pixels in the window coordinates of "
-                                      "`pixel_center` and `origin`, fractions allowed (the whole target is `0 0 W H`, "
-                                      "or `-0.5 -0.5 W H` under `integer`)"}),
-    row<&State::depth_range>({.name = "depth_range",
-                              .numbers = depth_range_numbers,
-                              .form = "near far",
-                              .purpose = "window z of the near and the far plane, in either order"}),
-    row<&State::provoking>(
-        {.name = "provoking", .words = provoking_words, .purpose = "the vertex whose colour `shade flat` takes"}),
-    row<&State::polygon_mode>(
-        {.name = "polygon_mode", .words = polygon_mode_words, .purpose = "what is drawn of a triangle"}),
-    row<&State::polygon_offset>({.name = "polygon_offset",
-                                 .numbers = polygon_offset_numbers,
-                                 .form = "factor constant",
-                                 .purpose = "added to a triangle's depth, factor times its steeper slope per pixel "
-                                            "plus the constant, in depth codes"}),
-    row<&State::line_rule>({.name = "line_rule",
-                            .words = line_rule_words,
-                            .purpose = "which pixels a line covers; `rectangle`: the samples of a rectangle about it, "
-                                       "by two triangles"}),
-    row<&State::line_last>({.name = "line_last",
-                            .words = line_last_words,
-                            .purpose = "whether a line's last pixel is drawn; `rule`: as its rule has it"}),
-    row<&State::line_width>({.name = "line_width",
-                             .numbers = line_width_numbers,
-                             .form = "width",
-                             .unit = "pixels",
-                             .purpose = "pixels that a line covers across its minor axis, rounded to a whole number, "
-                                        "or the width of its rectangle; the draw refuses lines that could reach the "
-                                        "target from outside the guard band"}),
-    row<&State::smooth>(
-        {.name = "smooth",
-         .words = switch_words,
-         .purpose = "what a line's rectangle, or a point, covers of a pixel multiplies alpha; blend it to see it; with "
-                    "several samples a pixel nobody looks at it"}),
+    row<&State::viewport>(
+        {.name = "viewport",
+         .words = viewport_words,
+         .numbers = viewport_numbers,
+         .form = "x y width height",
+         .unit = "pixels",
+         .purpose = "where clip space comes to lie: pixels in the window coordinates of `pixel_center` and `origin`, "
+                    "fractions allowed (the whole target is `0 0 W H`, or `-0.5 -0.5 W H` under `integer`)"}),
+    number_row<&State::depth_range>("depth_range", depth_range_numbers, "near far",
+                                    "window z of the near and the far plane, in either order"),
+    word_row<&State::provoking>("provoking", "the vertex whose colour `shade flat` takes"),
+    word_row<&State::polygon_mode>("polygon_mode", "what is drawn of a triangle"),
+    number_row<&State::polygon_offset>(
+        "polygon_offset", polygon_offset_numbers, "factor constant",
+        "added to a triangle's depth, factor times its steeper slope per pixel plus the constant, in depth codes"),
+    word_row<&State::line_rule>(
+        "line_rule", "which pixels a line covers; `rectangle`: the samples of a rectangle about it, by two triangles"),
+    word_row<&State::line_last>("line_last", "whether a line's last pixel is drawn; `rule`: as its rule has it",
+                                StateHome::host, line_last_words),
+    row<&State::line_width>(
+        {.name = "line_width",
+         .numbers = line_width_numbers,
+         .form = "width",
+         .unit = "pixels",
+         .purpose = "pixels that a line covers across its minor axis, rounded to a whole number, or the width of its "
+                    "rectangle; the draw refuses lines that could reach the target from outside the guard band"}),
+    word_row<&State::smooth>("smooth",
+                             "what a line's rectangle, or a point, covers of a pixel multiplies alpha; blend it to see "
+                             "it; with several samples a pixel nobody looks at it"),
     row<&State::point_size>({.name = "point_size",
                              .numbers = point_size_numbers,
                              .form = "size",
                              .unit = "pixels",
                              .purpose = "side of the square, fractions allowed; the draw refuses points that could "
                                         "reach the target from outside the guard band"}),
-    row<&State::point_shape>({.name = "point_shape",
-                              .words = point_shape_words,
-                              .purpose = "which of its square's pixels a point covers: all, or those whose centres "
-                                         "lie in the disc that the square holds"}),
-    row<&State::point_clip>(
-        {.name = "point_clip", .words = point_clip_words, .purpose = "what the view's sides clip of a point"}),
-    row<&State::texture>({.name = "texture",
-                          .words = texture_words,
-                          .numbers = texture_numbers,
-                          .form = "NAME",
-                          .purpose = "the texture of filled triangles, by the name of its line"}),
-    row<&State::texture_interp>({.name = "texture_interp",
-                                 .words = texture_interp_words,
-                                 .purpose = "how its coordinates run over a triangle"}),
-    row<&State::texture_min>({.name = "texture_min",
-                              .words = texture_min_words,
-                              .purpose = "which texels count where a pixel holds more than one"}),
-    row<&State::texture_mag>({.name = "texture_mag",
-                              .words = texture_mag_words,
-                              .purpose = "which texels count where a pixel holds less than one"}),
-    row<&State::texture_wrap>({.name = "texture_wrap",
-                               .numbers = texture_wrap_numbers,
-                               .form = "S T",
-                               .purpose = "what lies beyond the image along u and v; `clamp` is to its edge, `border` "
-                                          "a colour, `half_border` holds the coordinate in the image, so that a "
-                                          "linear filter mixes half of that colour at its sides"}),
-    row<&State::texture_border>({.name = "texture_border",
-                                 .numbers = texture_border_numbers,
-                                 .form = "r g b a",
-                                 .purpose = "that colour; of a texture without alpha a counts as 255",
-                                 .home = StateHome::unit}),
-    row<&State::texture_lod>({.name = "texture_lod",
-                              .numbers = texture_lod_numbers,
-                              .form = "bias min max",
-                              .purpose = "added to the level of detail, which is then held between min and max"}),
-    row<&State::texture_combine>({.name = "texture_combine",
-                                  .words = combine_words,
-                                  .purpose = "what becomes of the triangle's colour and the texel; `blend`: from the "
-                                             "colour to the constant, by the texel's channels"}),
-    row<&State::texture_constant>({.name = "texture_constant",
-                                   .numbers = texture_constant_numbers,
-                                   .form = "r g b",
-                                   .purpose = "the constant of `texture_combine blend`",
-                                   .home = StateHome::unit}),
-    row<&State::fog>({.name = "fog",
-                      .words = off_words,
-                      .numbers = fog_numbers,
-                      .form = "kind start [end]",
-                      .purpose = "how much of the colour is left at a distance w from the eye: `linear start end` "
-                                 "(end − w) / (end − start), `exp density` e^(−density·w), `exp2 density` "
-                                 "e^(−(density·w)²)",
-                      .home = StateHome::unit}),
-    row<&State::fog_color>({.name = "fog_color",
-                            .numbers = fog_color_numbers,
-                            .form = "r g b",
-                            .purpose = "the colour of fog, which takes the place of the rest",
-                            .home = StateHome::unit}),
-    row<&State::light_direction>({.name = "light_direction",
-                                  .numbers = light_direction_numbers,
-                                  .form = "x y z",
-                                  .purpose = "of `shade phong`: to the light, in the space of the normals, of any "
-                                             "length",
-                                  .home = StateHome::unit}),
-    row<&State::light_half>(
-        {.name = "light_half",
-         .numbers = light_half_numbers,
-         .form = "x y z",
-         .purpose = "the direction between that one and the one to the eye, in which highlights lie",
-         .home = StateHome::unit}),
-    row<&State::light_ambient>({.name = "light_ambient",
-                                .numbers = light_ambient_numbers,
-                                .form = "r g b",
-                                .purpose = "what of a colour shows without light, 255 for all of it",
-                                .home = StateHome::unit}),
-    row<&State::light_diffuse>({.name = "light_diffuse",
-                                .numbers = light_diffuse_numbers,
-                                .form = "r g b",
-                                .purpose = "what shows besides where the light falls straight on it",
-                                .home = StateHome::unit}),
-    row<&State::light_specular>({.name = "light_specular",
-                                 .numbers = light_specular_numbers,
-                                 .form = "r g b",
-                                 .purpose = "the colour of highlights, which is added",
-                                 .home = StateHome::unit}),
-    row<&State::light_shininess>({.name = "light_shininess",
-                                  .numbers = light_shininess_numbers,
-                                  .form = "power",
-                                  .purpose = "the power of N·H that a highlight is",
-                                  .home = StateHome::unit}),
-    row<&State::alpha_test>({.name = "alpha_test",
-                             .numbers = alpha_test_numbers,
-                             .form = "func ref",
-                             .purpose = "how a fragment's alpha, after its texture, must compare with the reference",
-                             .home = StateHome::unit}),
-    row<&State::blend>({.name = "blend",
-                        .words = off_words,
-                        .numbers = blend_numbers,
-                        .form = "src dst [src_a dst_a]",
-                        .purpose = "what the fragment's and the stored colour are multiplied with before they are put "
-                                   "together; without the last two, alpha as the colour",
-                        .home = StateHome::unit}),
-    row<&State::blend_equation>({.name = "blend_equation",
-                                 .numbers = blend_equation_numbers,
-                                 .form = "eq [eq_a]",
-                                 .purpose = "how they are put together; `min` and `max` take no factors",
-                                 .home = StateHome::unit}),
-    row<&State::blend_color>({.name = "blend_color",
-                              .numbers = blend_color_numbers,
-                              .form = "r g b a",
-                              .purpose = "the constant of blend factors",
-                              .home = StateHome::unit}),
-    row<&State::logic_op>({.name = "logic_op",
-                           .words = logic_op_words,
-                           .purpose = "what is stored of the fragment's code and the stored one, bit by bit, instead "
-                                      "of blending; `copy`: no operation, `blend` holds",
-                           .home = StateHome::unit}),
-    row<&State::color_mask>({.name = "color_mask",
-                             .numbers = color_mask_numbers,
-                             .form = "r g b a",
-                             .purpose = "which channels `color_write` writes",
-                             .home = StateHome::unit}),
-    row<&State::stencil>({.name = "stencil",
-                          .words = off_words,
-                          .numbers = stencil_numbers,
-                          .form = "func ref read write sfail zfail zpass",
-                          .purpose = "how the reference must compare with the stored stencil value, both through the "
-                                     "mask `read`, and what becomes of that through the mask `write`",
-                          .home = StateHome::unit}),
-    row<&State::stencil_back>({.name = "stencil_back",
-                               .words = same_words,
-                               .numbers = stencil_numbers,
-                               .form = "func ref read write sfail zfail zpass",
-                               .purpose = "the same for triangles that show their back, while `stencil` is not off",
-                               .home = StateHome::unit}),
-    row<&State::dither>({.name = "dither",
-                         .words = switch_words,
-                         .purpose = "whether a colour is spread over its neighbours where it is stored in fewer than 8 "
-                                    "bits a channel",
-                         .home = StateHome::unit}),
-    row<&State::sample_mask>({.name = "sample_mask",
-                              .words = all_words,
-                              .numbers = sample_mask_numbers,
-                              .form = "HEX",
-                              .purpose =
-                                  "which samples of a pixel are drawn, in hexadecimal digits, sample 0 the lowest "
-                                  "bit; does nothing where a pixel has one sample",
-                              .home = StateHome::unit}),
-    row<&State::alpha_to_coverage>({.name = "alpha_to_coverage",
-                                    .words = switch_words,
-                                    .purpose =
-                                        "whether alpha says how many of a pixel's samples are drawn; does nothing "
-                                        "where a pixel has one sample",
-                                    .home = StateHome::unit}),
+    word_row<&State::point_shape>("point_shape",
+                                  "which of its square's pixels a point covers: all, or those whose centres lie in the "
+                                  "disc that the square holds"),
+    word_row<&State::point_clip>("point_clip", "what the view's sides clip of a point"),
+    number_row<&State::texture>("texture", texture_numbers, "NAME",
+                                "the texture of filled triangles, by the name of its line", StateHome::host, off_words),
+    word_row<&State::texture_interp>("texture_interp", "how its coordinates run over a triangle"),
+    word_row<&State::texture_min>("texture_min", "which texels count where a pixel holds more than one"),
+    word_row<&State::texture_mag>("texture_mag", "which texels count where a pixel holds less than one"),
+    number_row<&State::texture_wrap>(
+        "texture_wrap", texture_wrap_numbers, "S T",
+        "what lies beyond the image along u and v; `clamp` is to its edge, `border` a colour, `half_border` holds the "
+        "coordinate in the image, so that a linear filter mixes half of that colour at its sides"),
+    number_row<&State::texture_border>("texture_border", texture_border_numbers, "r g b a",
+                                       "that colour; of a texture without alpha a counts as 255", StateHome::unit),
+    number_row<&State::texture_lod>("texture_lod", texture_lod_numbers, "bias min max",
+                                    "added to the level of detail, which is then held between min and max"),
+    word_row<&State::texture_combine>("texture_combine",
+                                      "what becomes of the triangle's colour and the texel; `blend`: from the colour "
+                                      "to the constant, by the texel's channels"),
+    number_row<&State::texture_constant>("texture_constant", texture_constant_numbers, "r g b",
+                                         "the constant of `texture_combine blend`", StateHome::unit),
+    number_row<&State::fog>("fog", fog_numbers, "kind start [end]",
+                            "how much of the colour is left at a distance w from the eye: `linear start end` (end − w) "
+                            "/ (end − start), `exp density` e^(−density·w), `exp2 density` e^(−(density·w)²)",
+                            StateHome::unit, off_words),
+    number_row<&State::fog_color>("fog_color", fog_color_numbers, "r g b",
+                                  "the colour of fog, which takes the place of the rest", StateHome::unit),
+    number_row<&State::light_direction>("light_direction", light_direction_numbers, "x y z",
+                                        "of `shade phong`: to the light, in the space of the normals, of any length",
+                                        StateHome::unit),
+    number_row<&State::light_half>("light_half", light_half_numbers, "x y z",
+                                   "the direction between that one and the one to the eye, in which highlights lie",
+                                   StateHome::unit),
+    number_row<&State::light_ambient>("light_ambient", light_ambient_numbers, "r g b",
+                                      "what of a colour shows without light, 255 for all of it", StateHome::unit),
+    number_row<&State::light_diffuse>("light_diffuse", light_diffuse_numbers, "r g b",
+                                      "what shows besides where the light falls straight on it", StateHome::unit),
+    number_row<&State::light_specular>("light_specular", light_specular_numbers, "r g b",
+                                       "the colour of highlights, which is added", StateHome::unit),
+    number_row<&State::light_shininess>("light_shininess", light_shininess_numbers, "power",
+                                        "the power of N·H that a highlight is", StateHome::unit),
+    number_row<&State::alpha_test>("alpha_test", alpha_test_numbers, "func ref",
+                                   "how a fragment's alpha, after its texture, must compare with the reference",
+                                   StateHome::unit),
+    number_row<&State::blend>("blend", blend_numbers, "src dst [src_a dst_a]",
+                              "what the fragment's and the stored colour are multiplied with before they are put "
+                              "together; without the last two, alpha as the colour",
+                              StateHome::unit, off_words),
+    number_row<&State::blend_equation>("blend_equation", blend_equation_numbers, "eq [eq_a]",
+                                       "how they are put together; `min` and `max` take no factors", StateHome::unit),
+    number_row<&State::blend_color>("blend_color", blend_color_numbers, "r g b a", "the constant of blend factors",
+                                    StateHome::unit),
+    word_row<&State::logic_op>("logic_op",
+                               "what is stored of the fragment's code and the stored one, bit by bit, instead of "
+                               "blending; `copy`: no operation, `blend` holds",
+                               StateHome::unit, logic_op_words),
+    number_row<&State::color_mask>("color_mask", color_mask_numbers, "r g b a", "which channels `color_write` writes",
+                                   StateHome::unit),
+    number_row<&State::stencil>("stencil", stencil_numbers, "func ref read write sfail zfail zpass",
+                                "how the reference must compare with the stored stencil value, both through the mask "
+                                "`read`, and what becomes of that through the mask `write`",
+                                StateHome::unit, off_words),
+    number_row<&State::stencil_back>("stencil_back", stencil_numbers, "func ref read write sfail zfail zpass",
+                                     "the same for triangles that show their back, while `stencil` is not off",
+                                     StateHome::unit, same_words),
+    word_row<&State::dither>(
+        "dither", "whether a colour is spread over its neighbours where it is stored in fewer than 8 bits a channel",
+        StateHome::unit),
+    number_row<&State::sample_mask>("sample_mask", sample_mask_numbers, "HEX",
+                                    "which samples of a pixel are drawn, in hexadecimal digits, sample 0 the lowest "
+                                    "bit; does nothing where a pixel has one sample",
+                                    StateHome::unit, all_words),
+    word_row<&State::alpha_to_coverage>(
+        "alpha_to_coverage",
+        "whether alpha says how many of a pixel's samples are drawn; does nothing where a pixel has one sample",
+        StateHome::unit),
 };
 
 static_assert(table.size() == count_members<State>(), "a member of State has no row, or two");

@@ -6,13 +6,12 @@
 #include <cmath>
 #include <limits>
 
+#include "../enum_names.hpp"
 #include "../fixed.hpp"
 #include "../input_error.hpp"
 
 namespace halfplane {
 namespace {
-
-constexpr std::array<std::string_view, 7> kMappingNames{"projection", "std", "rev", "stdinf", "revinf", "w", "log"};
 
 std::uint64_t all_ones(int bits) { return (std::uint64_t{1} << bits) - 1; }
 
@@ -55,7 +54,7 @@ std::uint32_t float_code(const DepthFormat& format, long double steps, int expon
 
 }  // namespace
 
-std::span<const std::string_view> depth_mapping_names() { return kMappingNames; }
+std::span<const std::string_view> depth_mapping_names() { return kNamesOf<DepthMapping>; }
 
 DepthFormat parse_depth_format(std::string_view text) {
   using Kind = DepthFormat::Kind;

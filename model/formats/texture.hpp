@@ -13,21 +13,21 @@
 #include <string_view>
 #include <vector>
 
+#include "../enum_names.hpp"
 #include "../signature.hpp"
 
 namespace halfplane {
 
 enum class TextureFormat : std::uint8_t { l8, la88, rgb565, rgba5551, rgba4444, rgba8888, p4, p8 };
-inline constexpr std::array<std::string_view, 8> kTextureFormats{"l8",       "la88",     "rgb565", "rgba5551",
-                                                                 "rgba4444", "rgba8888", "p4",     "p8"};
+inline constexpr auto kTextureFormats = kNamesOf<TextureFormat>;
 
 /// Source of the smaller levels: none, means over boxes of the image (of the codes or of linear light, sRGB), or images of
 /// their own.
 enum class Mips : std::uint8_t { none, box, box_linear, levels };
-inline constexpr std::array<std::string_view, 4> kMips{"none", "box", "box_linear", "levels"};
+inline constexpr auto kMips = kNamesOf<Mips>;
 
 enum class TexturePattern : std::uint8_t { chequer, gradient, grid };
-inline constexpr std::array<std::string_view, 3> kTexturePatterns{"chequer", "gradient", "grid"};
+inline constexpr auto kTexturePatterns = kNamesOf<TexturePattern>;
 
 inline constexpr int kLargestTexture = 4096;  ///< texels along a side
 

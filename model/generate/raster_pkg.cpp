@@ -22,10 +22,6 @@ template <>
 struct WireEnum<StencilOp> {
   static constexpr std::string_view name = "stencil_op";
   static constexpr Width Widths::*width = &Widths::depth_func;  // eight on either side
-  static constexpr Enumerator<StencilOp> all[] = {
-      {StencilOp::keep, "keep"},           {StencilOp::zero, "zero"},          {StencilOp::replace, "replace"},
-      {StencilOp::incr, "incr"},           {StencilOp::decr, "decr"},          {StencilOp::invert, "invert"},
-      {StencilOp::incr_wrap, "incr_wrap"}, {StencilOp::decr_wrap, "decr_wrap"}};
 };
 
 namespace {
@@ -80,7 +76,7 @@ void print_enum(std::ostream& out, const Widths& widths) {
   const int bits = (widths.*Wire::width).bits;
   out << "\n  typedef enum logic [" << constant_name((widths.*Wire::width).name) << "_BITS-1:0] {";
   const char* separator = "\n";
-  for (const Enumerator<Enum>& entry : Wire::all) {
+  for (const Enumerator<Enum>& entry : kEnumerators<Enum>) {
     out << separator << "    " << constant_name(Wire::name) << "_" << constant_name(entry.name) << " = " << bits << "'d"
         << static_cast<int>(entry.value);
     separator = ",\n";

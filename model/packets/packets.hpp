@@ -11,6 +11,7 @@
 #include <tuple>
 #include <utility>
 
+#include "../enum_names.hpp"
 #include "../samples.hpp"
 #include "../scene.hpp"
 #include "../widths.hpp"
@@ -196,82 +197,54 @@ enum class DepthSource : std::uint8_t {
   memory,  ///< a read
 };
 
-/// An enum in the generated package: `depth_func_t` with DEPTH_FUNC_NEVER and so on.
+/// An enum in the generated package: `depth_func_t` with DEPTH_FUNC_NEVER and so on; its values are kEnumerators.
 template <class Enum>
-struct Enumerator {
-  Enum value;
-  std::string_view name;
-};
-template <class Enum>
-struct WireEnum;  // name; width; all: its enumerators
+struct WireEnum;  // name; width
 template <>
 struct WireEnum<PrimitiveKind> {
   static constexpr std::string_view name = "primitive_kind";
   static constexpr Width Widths::*width = &Widths::kind;
-  static constexpr Enumerator<PrimitiveKind> all[] = {{PrimitiveKind::triangle, "triangle"},
-                                                      {PrimitiveKind::rectangle, "rectangle"},
-                                                      {PrimitiveKind::fast_clear, "fast_clear"},
-                                                      {PrimitiveKind::flush, "flush"},
-                                                      {PrimitiveKind::point, "point"},
-                                                      {PrimitiveKind::line, "line"},
-                                                      {PrimitiveKind::state, "state"}};
 };
 template <>
 struct WireEnum<StateRegister> {
   static constexpr std::string_view name = "state_register";
   static constexpr Width Widths::*width = &Widths::depth_func;  // in whose place it stands
-  static constexpr Enumerator<StateRegister> all[] = {{StateRegister::texture, "texture"},
-                                                      {StateRegister::texture_levels, "texture_levels"},
-                                                      {StateRegister::texture_lines, "texture_lines"},
-                                                      {StateRegister::color_ops, "color_ops"},
-                                                      {StateRegister::blend_constant, "blend_constant"},
-                                                      {StateRegister::alpha_test, "alpha_test"},
-                                                      {StateRegister::stencil_test, "stencil_test"},
-                                                      {StateRegister::stencil_update, "stencil_update"}};
 };
+/// In the order of the units that have them.
+template <>
+inline constexpr std::array<Enumerator<StateRegister>, 8> kEnumerators<StateRegister>{
+    {{StateRegister::texture, "texture"},
+     {StateRegister::texture_levels, "texture_levels"},
+     {StateRegister::texture_lines, "texture_lines"},
+     {StateRegister::color_ops, "color_ops"},
+     {StateRegister::blend_constant, "blend_constant"},
+     {StateRegister::alpha_test, "alpha_test"},
+     {StateRegister::stencil_test, "stencil_test"},
+     {StateRegister::stencil_update, "stencil_update"}}};
 template <>
 struct WireEnum<DepthFunc> {
   static constexpr std::string_view name = "depth_func";
   static constexpr Width Widths::*width = &Widths::depth_func;
-  static constexpr Enumerator<DepthFunc> all[] = {{DepthFunc::never, "never"},       {DepthFunc::less, "less"},
-                                                  {DepthFunc::lequal, "lequal"},     {DepthFunc::equal, "equal"},
-                                                  {DepthFunc::greater, "greater"},   {DepthFunc::gequal, "gequal"},
-                                                  {DepthFunc::notequal, "notequal"}, {DepthFunc::always, "always"}};
 };
 template <>
 struct WireEnum<Cull> {
   static constexpr std::string_view name = "cull_mode";
   static constexpr Width Widths::*width = &Widths::cull_mode;
-  static constexpr Enumerator<Cull> all[] = {
-      {Cull::none, "none"}, {Cull::back, "back"}, {Cull::front, "front"}, {Cull::both, "both"}};
 };
 template <>
 struct WireEnum<HizUpdate> {
   static constexpr std::string_view name = "hiz_update";
   static constexpr Width Widths::*width = &Widths::hiz_update;
-  static constexpr Enumerator<HizUpdate> all[] = {
-      {HizUpdate::none, "none"}, {HizUpdate::set, "set"}, {HizUpdate::clear, "clear"}};
 };
-
 template <>
 struct WireEnum<TilePlane> {
   static constexpr std::string_view name = "tile_plane";
   static constexpr Width Widths::*width = &Widths::tile_plane;
-  static constexpr Enumerator<TilePlane> all[] = {{TilePlane::depth, "depth"},
-                                                  {TilePlane::color, "color"},
-                                                  {TilePlane::depth_flags, "depth_flags"},
-                                                  {TilePlane::color_flags, "color_flags"},
-                                                  {TilePlane::pixel_color, "pixel_color"},
-                                                  {TilePlane::pixel_flags, "pixel_flags"}};
 };
 template <>
 struct WireEnum<DepthSource> {
   static constexpr std::string_view name = "depth_source";
   static constexpr Width Widths::*width = &Widths::depth_source;
-  static constexpr Enumerator<DepthSource> all[] = {{DepthSource::none, "none"},
-                                                    {DepthSource::chip, "chip"},
-                                                    {DepthSource::clear, "clear"},
-                                                    {DepthSource::memory, "memory"}};
 };
 
 /// A rectangle of pixels, inclusive; empty when left > right or top > bottom.

@@ -5,6 +5,9 @@
 #include <array>
 #include <cstddef>
 #include <string_view>
+#include <type_traits>
+
+#include "../enum_names.hpp"
 
 namespace halfplane {
 
@@ -50,32 +53,14 @@ enum class Weights {
 };
 
 /// By enumerator, as typed on the command line and printed in results.
-inline constexpr std::array<std::string_view, 4> kFillRuleNames{"top_left", "offset_point", "inclusive", "exclusive"};
-inline constexpr std::array<std::string_view, 4> kTraversalNames{"tiled", "bbox", "scanline", "brute"};
-inline constexpr std::array<std::string_view, 2> kClippingNames{"polygon", "homogeneous"};
-inline constexpr std::array<std::string_view, 3> kGradientsNames{"one_reciprocal", "two_reciprocals", "truncated"};
-inline constexpr std::array<std::string_view, 2> kAccumulatorNames{"wrap", "saturate"};
-inline constexpr std::array<std::string_view, 2> kWeightsNames{"8", "4"};
+template <class Rule>
+inline constexpr auto kRuleNames = kNamesOf<Rule>;
+template <>
+inline constexpr std::array<std::string_view, 2> kRuleNames<Weights>{"8", "4"};
 
-[[nodiscard]] constexpr std::string_view name_of(FillRule rule) {
-  return kFillRuleNames[static_cast<std::size_t>(rule)];
-}
-[[nodiscard]] constexpr std::string_view name_of(Traversal traversal) {
-  return kTraversalNames[static_cast<std::size_t>(traversal)];
-}
-[[nodiscard]] constexpr std::string_view name_of(Clipping clipping) {
-  return kClippingNames[static_cast<std::size_t>(clipping)];
-}
-[[nodiscard]] constexpr std::string_view name_of(Gradients gradients) {
-  return kGradientsNames[static_cast<std::size_t>(gradients)];
-}
-[[nodiscard]] constexpr std::string_view name_of(Accumulator accumulator) {
-  return kAccumulatorNames[static_cast<std::size_t>(accumulator)];
-}
-
-[[nodiscard]] constexpr std::string_view name_of(Weights weights) {
-  return kWeightsNames[static_cast<std::size_t>(weights)];
-}
+template <class Rule>
+requires std::is_enum_v<Rule>
+[[nodiscard]] constexpr std::string_view name_of(Rule rule) { return kRuleNames<Rule>[static_cast<std::size_t>(rule)]; }
 
 /// The rules of a study.
 struct StudyRules {

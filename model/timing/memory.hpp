@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "../config.hpp"
+#include "../enum_names.hpp"
 #include "other_masters.hpp"
 #include "stalls.hpp"
 
@@ -52,7 +53,7 @@ enum class MemoryKind : std::uint8_t {
   psram,  ///< quad SPI PSRAM, 84 MHz
   ddr3    ///< 16-bit DDR3-800
 };
-inline constexpr std::array<std::string_view, 5> kMemoryKinds{"fixed", "sram", "sdram", "psram", "ddr3"};
+inline constexpr auto kMemoryKinds = kNamesOf<MemoryKind>;
 
 struct MemorySettings {
   MemoryKind kind = MemoryKind::fixed;

@@ -21,17 +21,17 @@ constexpr std::array<std::string_view, 3> kInterpolationNames{"scene", "affine",
 
 /// In the order of results.
 constexpr Rule kRules[]{
-    {Rule::Kind::samples, "--traversal", "traversal", &StudyOptions::traversal, kTraversalNames,
+    {Rule::Kind::samples, "--traversal", "traversal", &StudyOptions::traversal, kRuleNames<Traversal>,
      "study, scalar engine: how samples are found; the image stays the same"},
-    {Rule::Kind::samples, "--fill-rule", "fill_rule", &StudyOptions::fill_rule, kFillRuleNames,
+    {Rule::Kind::samples, "--fill-rule", "fill_rule", &StudyOptions::fill_rule, kRuleNames<FillRule>,
      "study, scalar engine: which triangle owns a sample exactly on an edge"},
-    {Rule::Kind::clipping, "--clipping", "clipping", &StudyOptions::clipping, kClippingNames,
+    {Rule::Kind::clipping, "--clipping", "clipping", &StudyOptions::clipping, kRuleNames<Clipping>,
      "study, scalar and golden engines: triangles clipped to polygons, or homogeneous edge functions without clipping"},
-    {Rule::Kind::planes, "--gradients", "gradients", &StudyOptions::gradients, kGradientsNames,
+    {Rule::Kind::planes, "--gradients", "gradients", &StudyOptions::gradients, kRuleNames<Gradients>,
      "study, scalar engine: how triangle setup computes gradients; two of the ways are faults"},
-    {Rule::Kind::planes, "--accumulator", "accumulator", &StudyOptions::accumulator, kAccumulatorNames,
+    {Rule::Kind::planes, "--accumulator", "accumulator", &StudyOptions::accumulator, kRuleNames<Accumulator>,
      "study, scalar engine: what the register of a plane does on overflow; saturate is a fault"},
-    {Rule::Kind::planes, "--weights", "weights", &StudyOptions::weights, kWeightsNames,
+    {Rule::Kind::planes, "--weights", "weights", &StudyOptions::weights, kRuleNames<Weights>,
      "study, scalar engine: bits of a linear texture filter's weights; 4 is a fault"},
     {Rule::Kind::interpolation, "--interpolation", "interpolation", &StudyOptions::interpolation, kInterpolationNames,
      "study, every engine: interpolate all colours and texture coordinates affinely on the screen, or over w, whatever "
@@ -51,8 +51,9 @@ void add_rule_option(CLI::App& app, StudyOptions& options, const Rule& rule) {
 }
 
 /// The enumerator of a name; CLI11 has refused all others.
-template <class Enum, class Names>
-Enum enumerator(const Names& names, const std::string& name) {
+template <class Enum>
+Enum enumerator(const std::string& name) {
+  const auto& names = kRuleNames<Enum>;
   return static_cast<Enum>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
@@ -85,16 +86,13 @@ std::string study_arguments(const StudyOptions& options) {
 }
 
 StudyRules study_rules(const StudyOptions& options) {
-  return {enumerator<Traversal>(kTraversalNames, options.traversal),
-          enumerator<FillRule>(kFillRuleNames, options.fill_rule),
-          enumerator<Clipping>(kClippingNames, options.clipping),
-          enumerator<Gradients>(kGradientsNames, options.gradients),
-          enumerator<Accumulator>(kAccumulatorNames, options.accumulator),
-          enumerator<Weights>(kWeightsNames, options.weights)};
+  return {enumerator<Traversal>(options.traversal),     enumerator<FillRule>(options.fill_rule),
+          enumerator<Clipping>(options.clipping),       enumerator<Gradients>(options.gradients),
+          enumerator<Accumulator>(options.accumulator), enumerator<Weights>(options.weights)};
 }
 
 void check_study_rules(const StudyOptions& options, const std::string& engine) {
-  const bool is_homogeneous = options.clipping != kClippingNames.front();
+  const bool is_homogeneous = options.clipping != kRuleNames<Clipping>.front();
   for (const Rule& rule : kRules) {
     if (!is_of_scalar_engine(rule) || !is_unusual(rule, options)) continue;
     if (is_homogeneous)

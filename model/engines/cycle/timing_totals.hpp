@@ -3,9 +3,9 @@
 
 #include <array>
 #include <cstdint>
-#include <string_view>
 
 #include "../../counters.hpp"
+#include "../../enum_names.hpp"
 #include "../../pipeline_graph.hpp"
 #include "../../timing/stalls.hpp"
 
@@ -17,7 +17,7 @@ enum class MoveCause : std::uint8_t {
   evict,  ///< its line is needed, or the flush writes it back
   clear   ///< the flush writes the clear value of a tile that was never brought in again
 };
-inline constexpr std::array<std::string_view, 3> kMoveCauses{"fill", "evict", "clear"};
+inline constexpr auto kMoveCauses = kNamesOf<MoveCause>;
 
 /// Begin and end of a run, and cycles not spent moving items.
 struct TimingTotals {

@@ -7,7 +7,7 @@
 namespace halfplane {
 
 std::string_view kind_name(PrimitiveKind kind) {
-  const auto& all = WireEnum<PrimitiveKind>::all;
+  const auto& all = kEnumerators<PrimitiveKind>;
   return std::ranges::find(all, kind, &Enumerator<PrimitiveKind>::value)->name;
 }
 
