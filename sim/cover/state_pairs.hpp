@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <type_traits>
@@ -31,54 +32,31 @@ inline std::vector<Dimension> dimensions() {
   static constexpr std::array<std::string_view, 2> kSwitch{"off", "on"}, kBack{"same", "other"};
   static constexpr std::array<std::string_view, 4> kFog{"off", "linear", "exp", "exp2"};
   static constexpr std::array<std::string_view, 8> kMask{"none", "r", "g", "rg", "b", "rb", "gb", "rgb"};
-  const Words functions = draw_state("depth_test").words, operations = draw_state("stencil").numbers[4].words;
-  /// A member, by the number of its enumerator.
-  const auto direct = [](std::string_view name, int values, auto member) {
-    using Value = std::remove_cvref_t<decltype(std::declval<State>().*member)>;
+  /// The word of a row, or the word of its number `number`.
+  const auto word = [](std::string_view name, const DrawState& row, std::optional<std::size_t> number = {},
+                       std::string_view part_of = {}) {
+    const Words words = number ? row.numbers[*number].words : row.words;
     return Dimension{name,
-                     values,
-                     [member](const State& s) { return static_cast<int>(s.*member); },
-                     [member](State& s, int v) { s.*member = static_cast<Value>(v); },
-                     name,
-                     draw_state(name).words};
-  };
-  const auto side = [](std::string_view name, auto member, Words words) {
-    using Value = std::remove_cvref_t<decltype(std::declval<Stencil>().*member)>;
-    return Dimension{name,
-                     8,
-                     [member](const State& s) { return s.stencil ? static_cast<int>((*s.stencil).*member) : -1; },
-                     [member](State& s, int v) { (*s.stencil).*member = static_cast<Value>(v); },
-                     "stencil",
+                     static_cast<int>(words.size()),
+                     [&row, number, part_of](const State& s) {
+                       if (!part_of.empty() && draw_state(part_of).value(s).word == 0) return -1;
+                       const StateValue value = row.value(s);
+                       return static_cast<int>(number ? value.numbers[*number] : static_cast<double>(value.word));
+                     },
+                     [&row, number](State& s, int v) {
+                       StateValue value = row.value(s);
+                       if (number)
+                         value.numbers[*number] = v;
+                       else
+                         value.word = static_cast<std::size_t>(v);
+                       row.set(s, value);
+                     },
+                     row.name,
                      words,
-                     "stencil"};
+                     part_of};
   };
-  const auto factor = [](std::string_view name, auto member) {
-    using Value = std::remove_cvref_t<decltype(std::declval<BlendFactors>().*member)>;
-    return Dimension{name,
-                     15,
-                     [member](const State& s) { return s.blend ? static_cast<int>((*s.blend).*member) : -1; },
-                     [member](State& s, int v) { (*s.blend).*member = static_cast<Value>(v); },
-                     "blend",
-                     draw_state("blend").numbers[0].words,
-                     "blend"};
-  };
-  const auto equation = [](std::string_view name, std::size_t n) {
-    return Dimension{name,
-                     5,
-                     [n](const State& s) { return s.blend ? static_cast<int>(s.blend_equation[n]) : -1; },
-                     [n](State& s, int v) { s.blend_equation[n] = static_cast<BlendEquation>(v); },
-                     "blend_equation",
-                     draw_state("blend_equation").numbers[0].words,
-                     "blend"};
-  };
-  const auto wrap = [](std::string_view name, std::size_t n) {
-    return Dimension{name,
-                     5,
-                     [n](const State& s) { return s.texture ? static_cast<int>(s.texture_wrap[n]) : -1; },
-                     [n](State& s, int v) { s.texture_wrap[n] = static_cast<TextureWrap>(v); },
-                     "texture_wrap",
-                     draw_state("texture_wrap").numbers[0].words,
-                     "texture"};
+  const auto direct = [word](std::string_view name, std::string_view part_of = {}) {
+    return word(name, draw_state(name), {}, part_of);
   };
   /// A state that is off, or has the value of `make`.
   const auto optional = [](std::string_view name, auto member, auto make) {
@@ -93,13 +71,12 @@ inline std::vector<Dimension> dimensions() {
                      kSwitch};
   };
   return {
-      direct("depth_test", 8, &State::depth_test),
-      direct("shade", 3, &State::shade),
-      direct("depth_write", 2, &State::depth_write),
-      direct("color_write", 2, &State::color_write),
-      direct("cull", 4, &State::cull),
-      {"alpha_test", 8, [](const State& s) { return static_cast<int>(s.alpha_test.func); },
-       [](State& s, int v) { s.alpha_test.func = static_cast<DepthFunc>(v); }, "alpha_test", functions},
+      direct("depth_test"),
+      direct("shade"),
+      direct("depth_write"),
+      direct("color_write"),
+      direct("cull"),
+      word("alpha_test", draw_state("alpha_test"), 0),
       optional("stencil", &State::stencil, Stencil{}),
       {"stencil_back", 2, [](const State& s) { return s.stencil ? (s.stencil_back ? 1 : 0) : -1; },
        [](State& s, int v) {
@@ -109,24 +86,24 @@ inline std::vector<Dimension> dimensions() {
                Stencil{DepthFunc::notequal, 1, 255, 15, StencilOp::incr, StencilOp::invert, StencilOp::decr_wrap};
        },
        "stencil_back", kBack, "stencil"},
-      side("stencil func", &Stencil::func, functions),
-      side("sfail", &Stencil::stencil_fails, operations),
-      side("zfail", &Stencil::depth_fails, operations),
-      side("zpass", &Stencil::passes, operations),
+      word("stencil func", draw_state("stencil"), 0, "stencil"),
+      word("sfail", draw_state("stencil"), 4, "stencil"),
+      word("zfail", draw_state("stencil"), 5, "stencil"),
+      word("zpass", draw_state("stencil"), 6, "stencil"),
       optional("blend", &State::blend, BlendFactors{}),
-      factor("src", &BlendFactors::src),
-      factor("dst", &BlendFactors::dst),
-      factor("src_alpha", &BlendFactors::src_alpha),
-      factor("dst_alpha", &BlendFactors::dst_alpha),
-      equation("equation", 0),
-      equation("alpha equation", 1),
+      word("src", draw_state("blend"), 0, "blend"),
+      word("dst", draw_state("blend"), 1, "blend"),
+      word("src_alpha", draw_state("blend"), 2, "blend"),
+      word("dst_alpha", draw_state("blend"), 3, "blend"),
+      word("equation", draw_state("blend_equation"), 0, "blend"),
+      word("alpha equation", draw_state("blend_equation"), 1, "blend"),
       {"color_mask", 8,
        [](const State& s) { return (s.color_mask[0] ? 1 : 0) + (s.color_mask[1] ? 2 : 0) + (s.color_mask[2] ? 4 : 0); },
        [](State& s, int v) {
          for (std::size_t n = 0; n < 3; ++n) s.color_mask[n] = (v >> n & 1) != 0;
        },
        "color_mask", kMask},
-      direct("dither", 2, &State::dither),
+      direct("dither"),
       {"fog", 4, [](const State& s) { return s.fog ? 1 + static_cast<int>(s.fog->kind) : 0; },
        [](State& s, int v) {
          if (v == 0) return s.fog.reset();
@@ -135,14 +112,10 @@ inline std::vector<Dimension> dimensions() {
        },
        "fog", kFog},
       optional("texture", &State::texture, std::uint32_t{0}),
-      {"texture_combine", 5, [](const State& s) { return s.texture ? static_cast<int>(s.texture_combine) : -1; },
-       [](State& s, int v) { s.texture_combine = static_cast<TextureCombine>(v); }, "texture_combine",
-       draw_state("texture_combine").words, "texture"},
-      {"texture_interp", 2, [](const State& s) { return s.texture ? static_cast<int>(s.texture_interp) : -1; },
-       [](State& s, int v) { s.texture_interp = static_cast<TextureInterp>(v); }, "texture_interp",
-       draw_state("texture_interp").words, "texture"},
-      wrap("texture_wrap s", 0),
-      wrap("texture_wrap t", 1),
+      direct("texture_combine", "texture"),
+      direct("texture_interp", "texture"),
+      word("texture_wrap s", draw_state("texture_wrap"), 0, "texture"),
+      word("texture_wrap t", draw_state("texture_wrap"), 1, "texture"),
   };
 }
 
