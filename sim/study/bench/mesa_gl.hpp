@@ -39,71 +39,94 @@ inline constexpr Enum kColorAttachment = 0x8ce0, kDepthAttachment = 0x8d00, kDep
 inline constexpr int kOsFormat = 0x22, kOsDepthBits = 0x30, kOsProfile = 0x33, kOsCoreProfile = 0x34, kOsMajor = 0x36,
                      kOsMinor = 0x37;
 
+using AnyFunction = void (*)();
+
+/// Finds a function by its name, for a pointer of any type.
+class Finder {
+ public:
+  explicit Finder(AnyFunction (*get)(const char*)) : get_(get) {}
+
+  struct Found {
+    AnyFunction function;
+    template <class F>
+    operator F*() const {  // NOLINT(google-explicit-constructor)
+      return reinterpret_cast<F*>(function);
+    }
+  };
+  /// Throws std::runtime_error where there is none.
+  Found operator()(const char* name) const;
+
+ private:
+  AnyFunction (*get_)(const char*);
+};
+
 /// The functions, as in OpenGL without the prefix, in our naming style.
 struct Functions {
-  const unsigned char* (*get_string)(Enum);
-  Enum (*get_error)();
-  void (*enable)(Enum);
-  void (*disable)(Enum);
-  void (*viewport_indexedf)(unsigned, float, float, float, float);
-  void (*depth_range)(double, double);
-  void (*depth_func)(Enum);
-  void (*depth_mask)(unsigned char);
-  void (*color_mask)(unsigned char, unsigned char, unsigned char, unsigned char);
-  void (*blend_func_separate)(Enum, Enum, Enum, Enum);
-  void (*blend_equation_separate)(Enum, Enum);
-  void (*logic_op)(Enum);
-  void (*blend_color)(float, float, float, float);
-  void (*stencil_func_separate)(Enum, Enum, int, unsigned);
-  void (*stencil_op_separate)(Enum, Enum, Enum, Enum);
-  void (*stencil_mask_separate)(Enum, unsigned);
-  void (*cull_face)(Enum);
-  void (*front_face)(Enum);
-  void (*scissor)(int, int, int, int);
-  void (*polygon_mode)(Enum, Enum);
-  void (*polygon_offset)(float, float);
-  void (*line_width)(float);
-  void (*point_size)(float);
-  void (*provoking_vertex)(Enum);
-  void (*clip_control)(Enum, Enum);
-  void (*clear_color)(float, float, float, float);
-  void (*clear_depth)(double);
-  void (*clear_stencil)(int);
-  void (*clear)(Enum);
-  void (*gen_textures)(int, Name*);
-  void (*bind_texture)(Enum, Name);
-  void (*tex_image_2d)(Enum, int, int, int, int, int, Enum, Enum, const void*);
-  void (*tex_parameteri)(Enum, Enum, int);
-  void (*tex_parameterf)(Enum, Enum, float);
-  void (*finish)();
-  void (*read_pixels)(int, int, int, int, Enum, Enum, void*);
-  void (*gen_buffers)(int, Name*);
-  void (*bind_buffer)(Enum, Name);
-  void (*buffer_data)(Enum, std::ptrdiff_t, const void*, Enum);
-  void (*gen_vertex_arrays)(int, Name*);
-  void (*bind_vertex_array)(Name);
-  void (*vertex_attrib_pointer)(Name, int, Enum, unsigned char, int, std::uintptr_t);  // an offset: a buffer is bound
-  void (*enable_vertex_attrib_array)(Name);
-  Name (*create_shader)(Enum);
-  void (*shader_source)(Name, int, const char* const*, const int*);
-  void (*compile_shader)(Name);
-  void (*get_shaderiv)(Name, Enum, int*);
-  Name (*create_program)();
-  void (*attach_shader)(Name, Name);
-  void (*link_program)(Name);
-  void (*get_programiv)(Name, Enum, int*);
-  void (*use_program)(Name);
-  void (*primitive_restart_index)(Name);
-  void (*draw_elements)(Enum, int, Enum, std::uintptr_t);  // likewise
-  void (*gen_renderbuffers)(int, Name*);
-  void (*bind_renderbuffer)(Enum, Name);
-  void (*renderbuffer_storage)(Enum, Enum, int, int);
-  void (*renderbuffer_storage_multisample)(Enum, int, Enum, int, int);
-  void (*gen_framebuffers)(int, Name*);
-  void (*bind_framebuffer)(Enum, Name);
-  void (*framebuffer_renderbuffer)(Enum, Enum, Enum, Name);
-  Enum (*check_framebuffer_status)(Enum);
-  void (*blit_framebuffer)(int, int, int, int, int, int, int, int, Enum, Enum);
+  Finder find;
+  const unsigned char* (*get_string)(Enum) = find("glGetString");
+  Enum (*get_error)() = find("glGetError");
+  void (*enable)(Enum) = find("glEnable");
+  void (*disable)(Enum) = find("glDisable");
+  void (*viewport_indexedf)(unsigned, float, float, float, float) = find("glViewportIndexedf");
+  void (*depth_range)(double, double) = find("glDepthRange");
+  void (*depth_func)(Enum) = find("glDepthFunc");
+  void (*depth_mask)(unsigned char) = find("glDepthMask");
+  void (*color_mask)(unsigned char, unsigned char, unsigned char, unsigned char) = find("glColorMask");
+  void (*blend_func_separate)(Enum, Enum, Enum, Enum) = find("glBlendFuncSeparate");
+  void (*blend_equation_separate)(Enum, Enum) = find("glBlendEquationSeparate");
+  void (*logic_op)(Enum) = find("glLogicOp");
+  void (*blend_color)(float, float, float, float) = find("glBlendColor");
+  void (*stencil_func_separate)(Enum, Enum, int, unsigned) = find("glStencilFuncSeparate");
+  void (*stencil_op_separate)(Enum, Enum, Enum, Enum) = find("glStencilOpSeparate");
+  void (*stencil_mask_separate)(Enum, unsigned) = find("glStencilMaskSeparate");
+  void (*cull_face)(Enum) = find("glCullFace");
+  void (*front_face)(Enum) = find("glFrontFace");
+  void (*scissor)(int, int, int, int) = find("glScissor");
+  void (*polygon_mode)(Enum, Enum) = find("glPolygonMode");
+  void (*polygon_offset)(float, float) = find("glPolygonOffset");
+  void (*line_width)(float) = find("glLineWidth");
+  void (*point_size)(float) = find("glPointSize");
+  void (*provoking_vertex)(Enum) = find("glProvokingVertex");
+  void (*clip_control)(Enum, Enum) = find("glClipControl");
+  void (*clear_color)(float, float, float, float) = find("glClearColor");
+  void (*clear_depth)(double) = find("glClearDepth");
+  void (*clear_stencil)(int) = find("glClearStencil");
+  void (*clear)(Enum) = find("glClear");
+  void (*gen_textures)(int, Name*) = find("glGenTextures");
+  void (*bind_texture)(Enum, Name) = find("glBindTexture");
+  void (*tex_image_2d)(Enum, int, int, int, int, int, Enum, Enum, const void*) = find("glTexImage2D");
+  void (*tex_parameteri)(Enum, Enum, int) = find("glTexParameteri");
+  void (*tex_parameterf)(Enum, Enum, float) = find("glTexParameterf");
+  void (*finish)() = find("glFinish");
+  void (*read_pixels)(int, int, int, int, Enum, Enum, void*) = find("glReadPixels");
+  void (*gen_buffers)(int, Name*) = find("glGenBuffers");
+  void (*bind_buffer)(Enum, Name) = find("glBindBuffer");
+  void (*buffer_data)(Enum, std::ptrdiff_t, const void*, Enum) = find("glBufferData");
+  void (*gen_vertex_arrays)(int, Name*) = find("glGenVertexArrays");
+  void (*bind_vertex_array)(Name) = find("glBindVertexArray");
+  void (*vertex_attrib_pointer)(Name, int, Enum, unsigned char, int,
+                                std::uintptr_t) = find("glVertexAttribPointer");  // an offset: a buffer is bound
+  void (*enable_vertex_attrib_array)(Name) = find("glEnableVertexAttribArray");
+  Name (*create_shader)(Enum) = find("glCreateShader");
+  void (*shader_source)(Name, int, const char* const*, const int*) = find("glShaderSource");
+  void (*compile_shader)(Name) = find("glCompileShader");
+  void (*get_shaderiv)(Name, Enum, int*) = find("glGetShaderiv");
+  Name (*create_program)() = find("glCreateProgram");
+  void (*attach_shader)(Name, Name) = find("glAttachShader");
+  void (*link_program)(Name) = find("glLinkProgram");
+  void (*get_programiv)(Name, Enum, int*) = find("glGetProgramiv");
+  void (*use_program)(Name) = find("glUseProgram");
+  void (*primitive_restart_index)(Name) = find("glPrimitiveRestartIndex");
+  void (*draw_elements)(Enum, int, Enum, std::uintptr_t) = find("glDrawElements");  // likewise
+  void (*gen_renderbuffers)(int, Name*) = find("glGenRenderbuffers");
+  void (*bind_renderbuffer)(Enum, Name) = find("glBindRenderbuffer");
+  void (*renderbuffer_storage)(Enum, Enum, int, int) = find("glRenderbufferStorage");
+  void (*renderbuffer_storage_multisample)(Enum, int, Enum, int, int) = find("glRenderbufferStorageMultisample");
+  void (*gen_framebuffers)(int, Name*) = find("glGenFramebuffers");
+  void (*bind_framebuffer)(Enum, Name) = find("glBindFramebuffer");
+  void (*framebuffer_renderbuffer)(Enum, Enum, Enum, Name) = find("glFramebufferRenderbuffer");
+  Enum (*check_framebuffer_status)(Enum) = find("glCheckFramebufferStatus");
+  void (*blit_framebuffer)(int, int, int, int, int, int, int, int, Enum, Enum) = find("glBlitFramebuffer");
 };
 
 /// Loads libOSMesa, makes a context current for the rest of the process and finds the functions. Throws
