@@ -164,9 +164,11 @@ std::vector<Setting> all_settings() {
       // Cost: 12: 434 places, 24 block RAMs (docs/area.md).
       no_pixel(number<&Config::hiz_bits>("hiz.bits", "bits",
                                          "bits of a tile's HiZ bound, or all of a depth code; 0: no HiZ", 0, 32)),
+      // Cost: 32 instead of 16: 106 places; 4: 34 places less (docs/area.md).
       no_pixel(powers<&Config::hiz_lag>(
           "hiz.lag", "visits", "tile visits after which a HiZ update is seen, and in flight at most; a power of two", 2,
           64)),
+      // Cost: blocks instead of tiles in `small`: 4,707 cells and 4 RAMs of an iCE40 (ADR 25).
       no_pixel(choice<&Config::cache_kind>("cache.kind",
                                            "what a line of the on-chip RAM is: a tile, or 4x4 pixels fetched ahead")),
       // Cost: 512 instead of 256: 88 places, 8 block RAMs (docs/design-space.md).
@@ -204,6 +206,7 @@ std::vector<Setting> all_settings() {
       no_pixel(one_of<&Config::texture_lanes>(
           "texture.lanes", "pixels", "texture pixels per cycle of the RTL, each with its divider and filter: 1 or 4",
           {1, 4})),
+      // Cost: 16 instead of 8: 7 places, 4 block RAMs (docs/area.md).
       no_pixel(powers<&Config::texture_cache_kb>(
           "texture.cache_kb", "KB", "texels that the texture unit holds on the chip; a power of two", 1, 64)),
       // Cost: 2: 626 places (ADR 101).
@@ -213,10 +216,12 @@ std::vector<Setting> all_settings() {
       no_pixel(powers<&Config::texture_queue>(
           "texture.queue", "samples", "samples that wait for their texels, so that misses overlap; a power of two", 8,
           128)),
+      // Cost: restoring: 606 places more, 2 multipliers and a block RAM less (docs/area.md).
       no_pixel(
           choice<&Config::reciprocal_kind>("reciprocal.kind",
                                            "what the texture unit divides by 1/w with: a RAM and two multipliers, or "
                                            "subtractions; the same bits and time")),
+      // Cost: 173 places (docs/area.md).
       unnamed_at_0(
           number<&Config::texture_constants>(
               "texture.constant", "units",
@@ -225,6 +230,7 @@ std::vector<Setting> all_settings() {
               .only_with(has_texture_unit,
                          "a constant colour is blended by the texels of a texture unit: use texture.unit=nearest, or "
                          "texture.constant=0")),
+      // Cost: 172 places (docs/area.md).
       unnamed_at_0(
           number<&Config::texture_borders>(
               "texture.border", "units",
