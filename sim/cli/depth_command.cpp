@@ -239,19 +239,58 @@ void check_depth_options(const DepthCommand& options, const Config& config) {
   if (!options.paths.page.empty()) require_chart_library();
 }
 
-/// The requested scene, if any. Throws InputError when its depth range is unknown.
+bool uses_depth(const State& state) { return state.depth_test != DepthFunc::always || state.depth_write; }
+
+/// Whether the near plane is at z = -w and the far one at z = w.
+bool has_usual_clip_space(const State& state) {
+  return state.space == Space::clip && state.clip_z == ClipZ::minus_one_one;
+}
+
+/// The vertices that the scene draws, each as often as it is used.
+std::vector<Vertex> drawn_vertices(const Scene& scene) {
+  std::vector<Vertex> vertices;
+  for (const Command& command : scene.commands)
+    if (const auto* draw = std::get_if<Draw>(&command))
+      for (std::size_t i = draw->first; i < draw->first + draw->count; ++i)
+        if (scene.indices[i] != kRestart) vertices.push_back(scene.vertices[scene.indices[i]]);
+  return vertices;
+}
+
+/// Near and far plane of the perspective projection that gave clip z = a w + b, -w at the near plane and w at the far one. None
+/// if the vertices are not of one projection.
+std::optional<std::array<double, 2>> projection_planes(const std::vector<Vertex>& vertices) {
+  constexpr double kRounding = 0x1p-20;  // of programs that compute in binary32
+  const auto [nearest, farthest] = std::ranges::minmax(vertices, {}, &Vertex::w);
+  const double a = (farthest.z - nearest.z) / (farthest.w - nearest.w), b = nearest.z - a * nearest.w;
+  const double largest = std::max({std::abs(farthest.w), std::abs(nearest.w), std::abs(b)});
+  if (!std::ranges::all_of(vertices,
+                           [&](const Vertex& v) { return std::abs(a * v.w + b - v.z) <= kRounding * largest; }))
+    return {};
+  const double near = -b / (1 + a), far = b / (1 - a);
+  if (!(near > 0 && near < far && std::isfinite(far))) return {};
+  return std::array{near, far};
+}
+
+/// The requested scene, if any, without draws that have no part in the depths, as a program's text over its picture. Throws
+/// InputError when its depth range is unknown.
 std::optional<Scene> depth_scene(const DepthCommand& options, const Config& config) {
   if (options.scene.empty()) return std::nullopt;
   double load_s = 0;
   Scene scene = load_scene(options, config, load_s);
+  std::erase_if(scene.commands, [&](const Command& command) {
+    const auto* draw = std::get_if<Draw>(&command);
+    return draw != nullptr && !uses_depth(scene.states[draw->state]);
+  });
   if (scene.planes) return scene;
-  const bool is_flat = std::all_of(scene.vertices.begin(), scene.vertices.end(),
-                                   [&](const Vertex& v) { return v.w == scene.vertices[0].w; });
+  const std::vector<Vertex> vertices = drawn_vertices(scene);
+  if (vertices.empty()) throw InputError(options.scene + ": no draw tests or writes depth; nothing to measure");
+  const bool is_flat = std::ranges::all_of(vertices, [&](const Vertex& v) { return v.w == vertices[0].w; });
   if (is_flat)
     throw InputError(options.scene +
                      ": every w is the same: no perspective projection, so no eye depth is known; "
                      "give a scene seen in perspective");
-  if (options.near.empty() || options.far.empty())
+  if (std::ranges::all_of(scene.states, has_usual_clip_space)) scene.planes = projection_planes(vertices);
+  if (!scene.planes && (options.near.empty() || options.far.empty()))
     throw InputError(options.scene + ": its near and far plane are not known; give --near and --far");
   return scene;
 }

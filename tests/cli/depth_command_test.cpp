@@ -42,6 +42,21 @@ TEST_F(DepthCommandLine, JsonHasRowsSeriesAndNoPictures) {
   EXPECT_FALSE(scene["trials"].empty());
 }
 
+// Clip z of near 1 and far 10 is (11 w - 20) / 9. Text in front, which neither tests nor writes depth, is no part of it.
+TEST_F(DepthCommandLine, PlanesOfACaptureAreThoseOfItsProjection) {
+  const std::string drawn = "v -1 -1 -1 1\nv 0 10 10 10\nv 5 -5 3.888888888888889 5\nt 0 1 2\n",
+                    front =
+                        "state depth_test always\nstate depth_write off\nv -1 -1 0 1\nv 0 1 0 1\nv 1 -1 0 1\nt 3 4 5\n";
+  write("found.hpt", "halfplane 1\ntarget 64 64\n" + drawn + front);
+  write("given.hpt", "halfplane 1\ntarget 64 64\nplanes 1 10\n" + drawn);
+  const Json found = result({"depth", "--scene", "found.hpt"}), given = result({"depth", "--scene", "given.hpt"});
+  EXPECT_NEAR(found["near"].get<double>(), 1, 1e-12);
+  EXPECT_NEAR(found["far"].get<double>(), 10, 1e-12);
+  const Json &a = found["series"][0]["measured"], &b = given["series"][0]["measured"];
+  EXPECT_EQ(a["fragments"], b["fragments"]);
+  EXPECT_EQ(a["pairs"], b["pairs"]);
+}
+
 // The options that a suggestion names reproduce its result.
 TEST_F(DepthCommandLine, EachTrialComesOutTheSameWhenItsOptionsAreTyped) {
   const Arguments common{"depth", "--scene", "coplanar", "--size", "80x60", "--far", "100", "--mapping", "std"};
@@ -257,6 +272,12 @@ TEST_F(DepthCommandLine, BadQuestionsGetOneLine) {
   refused({"--set", "depth.format=u16"}, "this command takes them by --mapping and --format");
   refused({"--slope", "steep"}, "is no number");
   expect_refused({"depth", "--near", "0." + std::string(345, '0') + "1", "--far", "9"}, "1e-30");
+  // Clip z is (11 w - 20) / 9 from near 1 to far 10, but for the third vertex.
+  write("bent.hpt", "halfplane 1\nv 0 0 -1 1\nv 0 1 10 10\nv 1 0 3 5\nt 0 1 2\n");
+  expect_refused({"depth", "--scene", "bent.hpt"}, "give --near and --far");
+  write("front.hpt",
+        "halfplane 1\nstate depth_test always\nstate depth_write off\nv 0 0 0 1\nv 0 1 0 2\nv 1 0 0 1\nt 0 1 2\n");
+  expect_refused({"depth", "--scene", "front.hpt"}, "no draw tests or writes depth");
   write("empty.hpt", "halfplane 1\nplanes 1 9\nv 0 0 0 2\nv 0 0 0 3\nt 0 0 1\n");
   expect_refused({"depth", "--scene", "empty.hpt"}, "nothing to measure");
   expect_refused({"depth", "--scene", "triangle", "--near", "1", "--far", "9"}, "every w is the same");
