@@ -66,7 +66,7 @@ def as_python_markdown(text):
         if FENCE.match(line):
             is_in_fence = not is_in_fence
         lines.append(" " * extra + line if line else line)
-    return "\n".join(lines).replace("<details><summary>", '<details markdown="1"><summary>')
+    return "\n".join(lines).replace("<details><summary>", '<details markdown="1">\n<summary>')
 
 
 class Pages:
@@ -173,7 +173,8 @@ def side_by_side(pages):
 def decisions(pages):
     text = "# Decisions\n\nOne a page: what was decided, why, and what was weighed against it.\n\n"
     for path in sorted((ROOT / "docs/adr").glob("*.md")):
-        text += f"- [{path.name[:4]}]({path.name}) {path.read_text().split(chr(10))[0].lstrip('# ')}\n"
+        title = re.match(r"# (?:ADR )?\d+[.:] (.*)", path.read_text())[1]
+        text += f"- {int(path.name[:4])}: [{title}]({path.name})\n"
     pages.write("adr/index.md", text)
 
 
