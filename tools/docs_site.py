@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""The pages as a site in build/docs/site, by MkDocs: `./dev docs` runs this. With --arrange its input alone, without MkDocs.
+"""The pages as a site in build/docs/site, by MkDocs: `./dev docs` runs this. --arrange: its input alone, no MkDocs.
 
 build/docs/pages is arranged for it:
   index.md            README.md; questions.md is its table of questions and commands
   the rest of docs/   where it is, so that links between pages hold
-  source/             each file outside docs/ that a page links: Markdown as a page, everything else as text, a folder as a list
+  source/             each file outside docs/ that a page links: Markdown as a page, a folder as a list, else text
   side-by-side/       C++ and SystemVerilog of each stage
   adr/index.md        the decisions by title
   reference/          what Doxygen made
@@ -51,8 +51,8 @@ def place(path):
 
 
 def as_python_markdown(text):
-    """What GitHub's Markdown allows and Python-Markdown does not: lists and tables that follow a paragraph at once, items whose
-    contents are indented by two or three columns, Markdown inside of <details>."""
+    """What GitHub's Markdown allows and Python-Markdown does not: lists and tables that follow a paragraph at once,
+    items whose contents are indented by two or three columns, Markdown inside of <details>."""
     lines, is_in_fence, extra = [], False, 0
     for line in text.split("\n"):
         indent = len(line) - len(line.lstrip(" "))
@@ -145,9 +145,9 @@ def side_by_side(pages):
 
     cull = (rtl / "cull.sv").read_text()
     fine = (rtl / "fine_raster.sv").read_text()
-    intro = ("In C++ one function for every pixel. The circuit computes it once for each edge, at the first pixel of the first "
-             "tile ([cull](cull.md)); from there on it adds `step_x` and `step_y` ([coarse_raster](coarse_raster.md), "
-             "[fine_raster](fine_raster.md)).")
+    intro = ("In C++ one function for every pixel. The circuit computes it once for each edge, at the first pixel of "
+             "the first tile ([cull](cull.md)); from there on it adds `step_x` and `step_y` "
+             "([coarse_raster](coarse_raster.md), [fine_raster](fine_raster.md)).")
     edge = section(cull, "Steps 1 to 3, edge_function", "-- decide")
     pages.write("side-by-side/edge_function.md",
                 pair("The edge function", [whole(model / "edge_function.hpp", "cpp")],
@@ -160,13 +160,14 @@ def side_by_side(pages):
         if not left:
             continue
         text = file.read_text()
-        comment = " ".join(line[3:] for line in text.split("\n//\n")[0].split("\nmodule ")[0].split("\n") if line.startswith("//"))
+        head = text.split("\n//\n")[0].split("\nmodule ")[0]
+        comment = " ".join(line[3:] for line in head.split("\n") if line.startswith("//"))
         rows += f"| [{file.stem}]({file.stem}.md) | {comment} |\n"
         pages.write(f"side-by-side/{file.stem}.md", pair(file.stem, left, [whole(file, "systemverilog")]))
     pages.write("side-by-side/index.md",
-                "# C++ and SystemVerilog side by side\n\nEach stage is written twice: as C++ that says what every bit is, and as "
-                "the circuit that computes it. Both have the same stem; exceptions are in "
-                "[rtl_ref/README.md](../source/rtl_ref/README.md#stems). `halfplane cosim` compares every packet between them.\n\n"
+                "# C++ and SystemVerilog side by side\n\nEach stage is written twice: as C++ that says what every bit "
+                "is, and as the circuit that computes it. Both have the same stem; exceptions are in "
+                "[rtl_ref/README.md](../source/rtl_ref/README.md#stems). `halfplane cosim` compares their packets.\n\n"
                 "| stage | what it does, from the head of its circuit |\n| --- | --- |\n" + rows)
 
 
@@ -226,20 +227,23 @@ def main():
     pages.all()
     readme = (ROOT / "README.md").read_text()
     questions = section(readme, "## What it answers", "## ")
-    pages.page("README.md", "questions.md", questions.replace("## What it answers", "# Which command answers my question", 1))
+    questions = questions.replace("## What it answers", "# Which command answers my question", 1)
+    pages.page("README.md", "questions.md", questions)
     side_by_side(pages)
     decisions(pages)
     pages.write("site.css", STYLE)
-    for made, where, command in (("build/docs/html", "reference", "./dev docs"), ("build/web/site", "web", "./dev web")):
-        if (ROOT / made).is_dir():
-            shutil.copytree(ROOT / made, PAGES / where)
+    for made, where, command in (("docs/html", "reference", "./dev docs"), ("web/site", "web", "./dev web")):
+        if (ROOT / "build" / made).is_dir():
+            shutil.copytree(ROOT / "build" / made, PAGES / where)
         else:
-            pages.write(f"{where}/index.html", f"<!doctype html><title>Halfplane</title><p><code>{command}</code> makes this page.\n")
+            text = f"<!doctype html><title>Halfplane</title><p><code>{command}</code> makes this page.\n"
+            pages.write(f"{where}/index.html", text)
     nav = (ROOT / "docs/mkdocs.yml").read_text()
     listed = [p.relative_to(ROOT / "docs").as_posix() for p in (ROOT / "docs").rglob("*.md") if p.parent.name != "adr"]
     faults = [f"docs/mkdocs.yml does not list {name}" for name in listed if f" {name}\n" not in nav]
     if not faults and "--arrange" not in sys.argv:
-        if subprocess.run(["mkdocs", "build", "--quiet", "--strict", "--config-file", ROOT / "docs/mkdocs.yml"]).returncode:
+        command = ["mkdocs", "build", "--quiet", "--strict", "--config-file", ROOT / "docs/mkdocs.yml"]
+        if subprocess.run(command).returncode != 0:
             return 1
         keep_code_out_of_the_search()
         faults = list(dead_links())
