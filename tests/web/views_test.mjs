@@ -343,7 +343,35 @@ async function checkPage() {
   }
 }
 
+// Links of the lessons: every key and value is one that the page knows, and the program has no complaint.
+async function checkLessons() {
+  const folder = path.join(root, 'docs/course');
+  const texts = fs.readdirSync(folder).filter((name) => name.endsWith('.md'));
+  const links = texts.flatMap((name) =>
+    [...fs.readFileSync(path.join(folder, name), 'utf8').matchAll(/index\.html(#[^)]*)\)/g)].map((match) => [name, match[1]]),
+  );
+  check(links.length >= 8, `${links.length} links from docs/course to the page`);
+  for (const [name, link] of links) {
+    await visit(link);
+    const unknown = await page.$eval(
+      'main',
+      (main, link) => {
+        const words = new URLSearchParams(link.slice(1));
+        const view = words.get('view');
+        return [...words].filter(([word, text]) => {
+          const [of, key] = word.includes('.') ? word.split('.', 2) : [view, word];
+          return word !== 'view' && !main.rules[of]?.[key]?.accepts(text);
+        });
+      },
+      link,
+    );
+    check(unknown.length === 0, `docs/course/${name}: ${link} has ${unknown.join(' ')}`);
+    check((await errorLine()) === '', `docs/course/${name}: ${link}: ${await errorLine()}`);
+  }
+}
+
 await checkPage();
+await checkLessons();
 for (const failure of contrastFailures(fs.readFileSync(path.join(root, 'web/site/style.css'), 'utf8'))) check(false, failure);
 for (const view of views) {
   let figures = 0;
