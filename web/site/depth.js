@@ -111,15 +111,15 @@ function binsOf(result) {
         ['Δz by the textbook, first order', metric(result, 'first_order')],
         ['largest error of a depth', metric(result, 'max_recon_err')],
         ['two surfaces must be apart by', metric(result, 'separation')],
-        ['of that storage', metric(result, 'separation_storage')],
-        ['of that datapath', metric(result, 'separation_datapath')],
-        ['of that snap of the vertices', metric(result, 'separation_snap')],
-        ['pairs of fragments tried so far apart', metric(result, 'pairs_tried')],
-        ['of them in the wrong order or tied', metric(result, 'fights_at_separation')],
-        ['part that fights at half of it', metric(result, 'fights_at_half')],
+        ['– share of storage', metric(result, 'separation_storage')],
+        ['– share of the datapath', metric(result, 'separation_datapath')],
+        ['– share of the snap of vertices', metric(result, 'separation_snap')],
+        ['pairs of fragments tried at that distance', metric(result, 'pairs_tried')],
+        ['– in the wrong order or tied', metric(result, 'fights_at_separation')],
+        ['part that fights at half that distance', metric(result, 'fights_at_half')],
       ],
     ),
-    element('p', {}, 'the hardware needs: ', figure(result, 'series/0/hardware')),
+    element('p', {}, 'extra hardware: ', figure(result, 'series/0/hardware')),
   ];
 }
 
@@ -137,7 +137,7 @@ function answersOf(result) {
           figure(result, `fewest_bits/${index}/bits`),
           ' bits of ',
           figure(result, `fewest_bits/${index}/mapping`),
-          '.',
+          ' for as few fights as are allowed.',
         ),
       ),
     );

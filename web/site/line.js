@@ -54,11 +54,11 @@ export function lineFigures({ steps }, state) {
   const found = valueAt(steps.json, path);
   if (!found) return [element('p', {}, 'The line draws no pixel.')];
   const columns = [
+    ['textbook', 'midpoint'],
+    ['textbook', 'bresenham'],
     ['registers', 'midpoint'],
     ['registers', 'bresenham'],
     ['registers', 'diamond'],
-    ['textbook', 'bresenham'],
-    ['textbook', 'midpoint'],
   ];
   const longest = Math.max(...columns.map(([kind, rule]) => found[kind]?.[rule]?.length ?? 0));
   const cell = (kind, rule, index) => {
@@ -86,7 +86,7 @@ export function lineFigures({ steps }, state) {
       ['D, d', figure(steps, `${path}/major`), ', ', figure(steps, `${path}/minor`), ' subpixels'],
     ),
     table(
-      ['step', 'midpoint', 'bresenham', 'diamond', 'book: p', 'book: 2F'],
+      ['step', 'book: 2F', 'book: p', 'midpoint', 'bresenham', 'diamond'],
       Array.from({ length: longest }, (_, index) => [
         `${index}${isChosen(index) ? ' ◂' : ''}`,
         ...columns.map(([kind, rule]) => cell(kind, rule, index)),

@@ -347,11 +347,11 @@ function legendOf(state) {
       ? []
       : [
           key('second', 'beside it'),
-          state.second === 'junction' ? key('third', 'and') : null,
+          state.second === 'junction' ? key('third', 'third triangle') : null,
           key('double', 'drawn twice'),
           key('crack', 'drawn by neither'),
         ]),
-    'Solid: edges after the snap; dashed: before. Framed figures: the sample lies exactly on the edge, which owns it (green) or does not (red).',
+    'Solid: edges after the snap; dashed: before. Framed figures: the sample lies exactly on the edge, which owns it (green) or does not (red: the value is 0 less the bias, −1).',
   ];
 }
 
@@ -371,7 +371,7 @@ function triangleFigures({ pixels, totals }, state) {
     if (model.edges && sample === undefined) {
       parts.push(
         table(
-          ['edge', 'side', 'owns ties', 'on it', 'value', 'bits', 'exact'],
+          ['edge', 'side', 'owns ties', 'on it', 'value', 'bits', 'exact, square subpixels'],
           model.edges.map((edge, place) => [
             nameOf(edge),
             ...['side', 'owns_ties', 'tie', 'value', 'bits', 'exact'].map((key) => at(number, `model/edges/${place}/${key}`)),
@@ -400,10 +400,10 @@ function triangleFigures({ pixels, totals }, state) {
       state.second !== 'junction' && [
         'drawn twice',
         figure(totals, 'double_draws'),
-        ' samples that one triangle draws by top_left',
+        ' samples, which top_left draws once',
       ],
       state.second !== 'junction' && ['not drawn', figure(totals, 'undrawn_samples'), ' samples that top_left draws'],
-      ['covered', figure(totals, 'fragments/covered'), ' samples'],
+      ['covered', figure(totals, 'fragments/covered'), ' samples, once for each triangle'],
     ),
   );
   if (state.second === 'junction')
