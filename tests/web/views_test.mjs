@@ -147,11 +147,12 @@ async function checkFigures(state) {
   if (curve) {
     const { z, bin_width, first_order } = valueAt(resultOf(curve.command), curve.path);
     const apart = resultOf(curve.apart).rows.filter(({ metric }) => metric === 'separation');
-    const at = (depth) => curve.data.slice(1).map((row) => row[curve.data[0].indexOf(depth)]);
-    const isCurve = z.every((depth, index) => at(depth)[0] === bin_width[index] && at(depth)[1] === first_order[index]);
+    const near = (is, should) => Math.abs(is - should) <= 1e-8 * Math.abs(should); // powers of ten: docs/web.md
+    const at = (depth) => curve.data.slice(1).map((row) => row[curve.data[0].findIndex((z) => near(z, depth))]);
+    const isCurve = z.every((depth, index) => near(at(depth)[0], bin_width[index]) && near(at(depth)[1], first_order[index]));
     check(isCurve, `${state}: the chart's curve is not the program's`);
     check(
-      apart.length > 0 && apart.every((row) => at(Number(row.z))[2] === row.value),
+      apart.length > 0 && apart.every((row) => near(at(Number(row.z))[2], row.value)),
       `${state}: the chart's separations are not the program's`,
     );
   }
