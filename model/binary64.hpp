@@ -33,7 +33,8 @@ inline constexpr int kBinary64Bias = 1023, kBinary64Fraction = 52;
 [[nodiscard]] inline double length3(double x, double y, double z) {
   const double largest = std::max({std::abs(x), std::abs(y), std::abs(z)});
   if (largest == 0) return 0;
-  return largest * std::sqrt((x / largest) * (x / largest) + (y / largest) * (y / largest) + (z / largest) * (z / largest));
+  return largest *
+         std::sqrt((x / largest) * (x / largest) + (y / largest) * (y / largest) + (z / largest) * (z / largest));
 }
 
 }  // namespace halfplane

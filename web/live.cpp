@@ -24,13 +24,37 @@ struct Live {
   FunctionalEngine engine;
 
   Live(std::string of, CommonOptions with)
-      : line(std::move(of)), options(std::move(with)), config(drawing_config(options)),
-        source(open_scene(options, config)), engine(config) {}
+      : line(std::move(of)),
+        options(std::move(with)),
+        config(drawing_config(options)),
+        source(open_scene(options, config)),
+        engine(config) {}
 };
 
 std::optional<Live> live;
 std::vector<std::uint32_t> pixels;  // bytes R, G, B, A
 std::string message;
+
+/// As color_picture(), for pictures that move. Of rgb565 the colours of all codes are one picture, made once.
+void take_pixels(const Framebuffer& frame, ColorFormat format) {
+  constexpr std::uint32_t kOpaque = 0xff000000;
+  static const std::vector<std::uint32_t> of_rgb565 = [] {
+    Framebuffer codes(256, 256, 8);
+    for (std::uint32_t code = 0; code < 65536; ++code) codes.color[code] = code;
+    const Picture colors = color_picture(codes, ColorFormat::rgb565);
+    std::vector<std::uint32_t> table;
+    for (std::size_t i = 0; i < colors.rgb.size(); i += 3)
+      table.push_back(kOpaque |
+                      static_cast<std::uint32_t>(colors.rgb[i + 2] << 16 | colors.rgb[i + 1] << 8 | colors.rgb[i]));
+    return table;
+  }();
+  pixels.clear();
+  for (int y = 0; y < frame.height; ++y)
+    for (int x = 0; x < frame.width; ++x) {
+      const std::uint32_t code = frame.color[frame.at(x, y)];
+      pixels.push_back(format == ColorFormat::rgb565 ? of_rgb565[code] : code | kOpaque);
+    }
+}
 
 /// Arguments in lines, as of `halfplane render`: the scene and the common options.
 void open_live(const char* lines) {
@@ -67,12 +91,8 @@ int live_frame(const char* lines, double turn, double time) {
     RenderOptions render;
     render.resolved_only = true;
     const Rendering& drawn = live->engine.render(scene, render);
-    const Picture picture = color_picture(drawn.frame, live->config.color_format);
-    pixels.resize(static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height));
-    for (std::size_t i = 0; i < pixels.size(); ++i)
-      pixels[i] = 0xff000000U | static_cast<std::uint32_t>(picture.rgb[3 * i + 2]) << 16 |
-                  static_cast<std::uint32_t>(picture.rgb[3 * i + 1]) << 8 | picture.rgb[3 * i];
-    return picture.width << 16 | picture.height;
+    take_pixels(drawn.frame, live->config.color_format);
+    return drawn.frame.width << 16 | drawn.frame.height;
   } catch (const std::exception& error) {
     live.reset();
     message = error.what();

@@ -78,7 +78,8 @@ Mesh city_mesh(int boxes, std::uint64_t seed) {
     // A few towers among many low houses.
     const double height = 0.25 + 3.2 * std::pow(random.uniform(0, 1), 3);
     // One after the other: compilers evaluate arguments in orders of their own.
-    const double value = random.uniform(0.65, 0.95), saturation = random.uniform(0.15, 0.45), hue = random.uniform(0, 1);
+    const double value = random.uniform(0.65, 0.95), saturation = random.uniform(0.15, 0.45),
+                 hue = random.uniform(0, 1);
     const Color color = from_hue(hue, saturation, value);
     const Vec3 low{x + inset, 0, z + inset}, high{x + 1 - inset, height, z + 1 - inset};
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -245,8 +245,10 @@ async function useCanvas(view) {
   check(before !== (await fingerprint()), `${view}: an arrow key changes nothing`);
   const box = await (await page.$('main canvas')).boundingBox();
   before = await fingerprint();
+  const link = await page.$eval('main', (main) => main.dataset.shown);
   await page.touchscreen.tap(box.x + box.width * 0.41, box.y + Math.min(box.height, 300) * 0.52);
-  await page.waitForNetworkIdle({ idleTime: 100 });
+  // The pipeline's view asks for the pixel's write first.
+  await page.waitForFunction((old) => document.querySelector('main').dataset.shown !== old, {}, link).catch(() => {});
   await settled();
   check(before !== (await fingerprint()), `${view}: a touch changes nothing`);
   if (view !== 'triangle') return;

@@ -105,9 +105,10 @@ class mpq_class {
   [[nodiscard]] double get_d() const {
     if (num_ == 0) return 0;
     const mpz_class size = abs(num_);
-    const int shift = 54 - static_cast<int>(size.bits()) + static_cast<int>(den_.bits());  // a quotient of 54 or 55 bits
-    const mpz_class quotient =
-        shift >= 0 ? (size << static_cast<mp_bitcnt_t>(shift)) / den_ : size / (den_ << static_cast<mp_bitcnt_t>(-shift));
+    const int shift =
+        54 - static_cast<int>(size.bits()) + static_cast<int>(den_.bits());  // a quotient of 54 or 55 bits
+    const mpz_class quotient = shift >= 0 ? (size << static_cast<mp_bitcnt_t>(shift)) / den_
+                                          : size / (den_ << static_cast<mp_bitcnt_t>(-shift));
     const double found = std::ldexp(quotient.get_d(), -shift);
     return num_ < 0 ? -found : found;
   }

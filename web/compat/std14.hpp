@@ -22,10 +22,11 @@ namespace ranges {
 namespace web {
 
 // A range, then what std:: takes after its two iterators.
-#define HALFPLANE_WEB_OF_RANGE(NAME)                                                        \
-  inline constexpr auto NAME = []<class Range, class... Rest>(Range&& range, Rest&&... rest) \
-    requires(!std::input_or_output_iterator<std::remove_cvref_t<Range>>)                     \
-  { return std::NAME(std::begin(range), std::end(range), std::forward<Rest>(rest)...); };
+#define HALFPLANE_WEB_OF_RANGE(NAME)                                                                           \
+  inline constexpr auto NAME = []<class Range, class... Rest>(                                                 \
+      Range && range, Rest && ... rest) requires(!std::input_or_output_iterator<std::remove_cvref_t<Range>>) { \
+    return std::NAME(std::begin(range), std::end(range), std::forward<Rest>(rest)...);                         \
+  };
 HALFPLANE_WEB_OF_RANGE(copy)
 HALFPLANE_WEB_OF_RANGE(count)
 HALFPLANE_WEB_OF_RANGE(fill)
@@ -35,12 +36,12 @@ HALFPLANE_WEB_OF_RANGE(replace)
 #undef HALFPLANE_WEB_OF_RANGE
 
 // A range, a predicate, a projection.
-#define HALFPLANE_WEB_IF(NAME)                                                                               \
+#define HALFPLANE_WEB_IF(NAME)                                                                                    \
   inline constexpr auto NAME = []<class Range, class Predicate, class Projection = std::identity, class... Rest>( \
-                                   Range&& range, Predicate is, Projection of = {}) {                          \
-    return std::NAME(std::begin(range), std::end(range), [&](auto&& value) -> bool {                           \
-      return std::invoke(is, std::invoke(of, std::forward<decltype(value)>(value)));                           \
-    });                                                                                                        \
+      Range && range, Predicate is, Projection of = {}) {                                                         \
+    return std::NAME(std::begin(range), std::end(range), [&](auto&& value) -> bool {                              \
+      return std::invoke(is, std::invoke(of, std::forward<decltype(value)>(value)));                              \
+    });                                                                                                           \
   };
 HALFPLANE_WEB_IF(all_of)
 HALFPLANE_WEB_IF(any_of)
@@ -50,9 +51,9 @@ HALFPLANE_WEB_IF(none_of)
 #undef HALFPLANE_WEB_IF
 
 // A range, an order, a projection.
-#define HALFPLANE_WEB_ORDERED(NAME)                                                                        \
+#define HALFPLANE_WEB_ORDERED(NAME)                                                                          \
   inline constexpr auto NAME = []<class Range, class Order = std::less<>, class Projection = std::identity>( \
-                                   Range&& range, Order order = {}, Projection of = {}) {                    \
+      Range && range, Order order = {}, Projection of = {}) {                                                \
     return std::NAME(std::begin(range), std::end(range), [&](auto&& a, auto&& b) -> bool {                   \
       return std::invoke(order, std::invoke(of, a), std::invoke(of, b));                                     \
     });                                                                                                      \
@@ -68,7 +69,7 @@ inline constexpr auto equal = [](auto&& a, auto&& b) {
 };
 
 inline constexpr auto find = []<class Range, class Value, class Projection = std::identity>(
-                                 Range&& range, const Value& wanted, Projection of = {}) {
+    Range && range, const Value& wanted, Projection of = {}) {
   return std::find_if(std::begin(range), std::end(range),
                       [&](auto&& value) -> bool { return std::invoke(of, value) == wanted; });
 };
@@ -80,7 +81,7 @@ struct Extremes {
   T min, max;
 };
 inline constexpr auto minmax = []<class Range, class Order = std::less<>, class Projection = std::identity>(
-                                   const Range& range, Order order = {}, Projection of = {}) {
+    const Range& range, Order order = {}, Projection of = {}) {
   using Value = std::remove_cvref_t<decltype(*std::begin(range))>;
   return Extremes<Value>{*min_element(range, order, of), *max_element(range, order, of)};
 };
@@ -93,7 +94,8 @@ inline constexpr auto replace_if = [](auto&& range, auto is, const auto& with) {
   std::replace_if(std::begin(range), std::end(range), is, with);
 };
 
-inline constexpr auto transform = []<class Range, class Second, class... Rest>(Range&& range, Second&& second, Rest&&... rest) {
+inline constexpr auto transform = []<class Range, class Second, class... Rest>(Range&& range, Second&& second,
+                                                                               Rest&&... rest) {
   if constexpr (sizeof...(rest) == 2)
     return std::transform(std::begin(range), std::end(range), std::begin(second), std::forward<Rest>(rest)...);
   else
@@ -117,8 +119,7 @@ using namespace web;
 }  // namespace ranges
 
 template <class To, class From>
-  requires(sizeof(To) == sizeof(From))
-[[nodiscard]] constexpr To bit_cast(const From& from) noexcept {
+requires(sizeof(To) == sizeof(From)) [[nodiscard]] constexpr To bit_cast(const From& from) noexcept {
   return __builtin_bit_cast(To, from);
 }
 
@@ -147,7 +148,8 @@ inline from_chars_result from_chars(const char* first, const char* last, double&
   const ptrdiff_t length = end - text.c_str() - (is_hex ? 2 : 0);
   if (length <= digits - first) return {first, errc::invalid_argument};
   const char* const stop = first + length;
-  if (isinf(read) && begins_number(*digits) && *digits != 'i' && *digits != 'I') return {stop, errc::result_out_of_range};
+  if (isinf(read) && begins_number(*digits) && *digits != 'i' && *digits != 'I')
+    return {stop, errc::result_out_of_range};
   if (read == 0)  // of digits that are not all zero: below the smallest number
     for (const char* c = digits; c != stop && *c != (is_hex ? 'p' : 'e') && *c != (is_hex ? 'P' : 'E'); ++c)
       if (*c != '0' && *c != '.') return {stop, errc::result_out_of_range};
