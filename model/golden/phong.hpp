@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "../binary64.hpp"
 #include "../scene.hpp"
 #include "color.hpp"
 
@@ -18,7 +19,7 @@ using Direction = std::array<double, 3>;
   const double largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
   if (!(largest > 0)) return {};
   const Direction scaled{v[0] / largest, v[1] / largest, v[2] / largest};
-  const double length = std::hypot(scaled[0], scaled[1], scaled[2]);
+  const double length = length3(scaled[0], scaled[1], scaled[2]);
   return {scaled[0] / length, scaled[1] / length, scaled[2] / length};
 }
 

@@ -1,6 +1,6 @@
 // The tiles of a primitive, as coarse_raster walks them: edges at the first pixel of each, their sort into outside, cut and
-// inside, the way through them, and their packets. A tile is outside when the largest value of one edge over its pixels is negative (trivial reject), inside when
-// the smallest value of every edge is not (trivial accept), cut otherwise.
+// inside, the way through them, and their packets. A tile is outside when the largest value of one edge over its pixels is
+// negative (trivial reject), inside when the smallest value of every edge is not (trivial accept), cut otherwise.
 #pragma once
 
 #include <algorithm>

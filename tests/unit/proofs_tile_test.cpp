@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "../enumeration.hpp"
+#include "model/stages/coarse_raster.hpp"
 #include "model/stages/fine_raster.hpp"
 #include "model/stages/fragment_ops.hpp"
-#include "model/stages/coarse_raster.hpp"
 
 namespace halfplane::proofs_tile_test {
 namespace {

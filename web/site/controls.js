@@ -17,6 +17,9 @@ export function select(key, label, values, set, names = {}) {
   return labelled(label, control);
 }
 
+// select() for the keys of a view, whose values its rules have.
+export const picker = (rules, set) => (key, label, names) => select(key, label, rules[key].values, set, names);
+
 export function slider(key, label, { least, most, step = 1 }, set) {
   const control = element('input', {
     type: 'range',
@@ -41,18 +44,6 @@ export function powerSlider(key, label, { least, most }, set) {
     oninput: () => set({ [key]: String(Number((10 ** control.value).toPrecision(2))) }),
   });
   return labelled(label, control, element('output', { for: '' }));
-}
-
-export function text(key, label, set, hint = '') {
-  const control = element('input', {
-    type: 'text',
-    'data-key': key,
-    autocomplete: 'off',
-    spellcheck: 'false',
-    title: hint,
-    onchange: () => set({ [key]: control.value }),
-  });
-  return labelled(label, control);
 }
 
 export const button = (label, action, attributes = {}) =>

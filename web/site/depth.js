@@ -1,5 +1,5 @@
 // How far apart surfaces must be: the exact bins of a depth buffer beside the textbook's step, and fights on a scene.
-import { group, powerSlider, select, slider } from './controls.js';
+import { group, picker, powerSlider, slider } from './controls.js';
 import { colors } from './grid.js';
 import { element, figure, image, list, table } from './elements.js';
 import { choice, real, whole } from './state.js';
@@ -21,7 +21,7 @@ const formatOf = ({ format, bits }) =>
   format.startsWith('uf') ? `${format}.${Number(bits) - Number(format[2])}` : `${format}${bits}`;
 
 export function open(root, { set, run, scene }) {
-  const pick = (key, label, names) => select(key, label, rules[key].values, set, names);
+  const pick = picker(rules, set);
   const chart = element('div', {
     class: 'chart',
     role: 'img',

@@ -4,4 +4,3 @@ import { load } from './engine/client.mjs';
 const halfplane = load();
 
 export const run = async (...of) => (await halfplane).run(...of);
-export const frame = async (...of) => (await halfplane).frame(...of);

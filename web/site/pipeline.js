@@ -1,5 +1,5 @@
 // Packets in the stages, cycle by cycle: what is where, what waits, and what another size would change.
-import { button, group, select } from './controls.js';
+import { button, group, picker } from './controls.js';
 import { Grid, colors } from './grid.js';
 import { element, figure, image, list, picture, table } from './elements.js';
 import { choice, whole } from './state.js';
@@ -42,7 +42,7 @@ const settings = (state) =>
 export function open(root, context) {
   const { set, run, scene } = context;
   const state = () => context.values().pipeline;
-  const pick = (key, label, names) => select(key, label, rules[key].values, set, names);
+  const pick = picker(rules, set);
   const graph = element('div', { class: 'graph' });
   const map = element('div', {});
   const figures = element('div', {});

@@ -1,5 +1,5 @@
 // Why the pixel under the pointer is what it is: model, golden, oracle.
-import { group, select } from './controls.js';
+import { group, picker } from './controls.js';
 import { Grid } from './grid.js';
 import { element, figure, format, image, list, picture, table, valueAt } from './elements.js';
 import { latest } from './program.js';
@@ -21,7 +21,7 @@ export function open(root, context) {
   const grid = new Grid('The picture. Arrow keys move the pixel that is explained, with shift by eight.');
   const near = element('div', {});
   const panel = element('div', { 'aria-live': 'off' });
-  const pick = (key, label, names) => select(key, label, rules[key].values, set, names);
+  const pick = picker(rules, set);
   root.append(
     element(
       'section',

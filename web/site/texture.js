@@ -1,5 +1,5 @@
 // A floor in perspective: affine coordinates, level of detail, weights of the filter, misses of the cache.
-import { group, select, slider } from './controls.js';
+import { group, picker, slider } from './controls.js';
 import { Grid } from './grid.js';
 import { element, figure, image, list, picture } from './elements.js';
 import { texels } from './pixel.js';
@@ -54,7 +54,7 @@ t 0 1 2 0 2 3
 
 export function open(root, context) {
   const { set, run } = context;
-  const pick = (key, label, names) => select(key, label, rules[key].values, set, names);
+  const pick = picker(rules, set);
   const grid = new Grid('The floor. Arrow keys move the pixel whose texels are shown.');
   const other = element('figure', {});
   const panel = element('div', {});

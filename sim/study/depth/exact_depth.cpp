@@ -127,7 +127,8 @@ double ExactDepth::distance(const Rational& d0, const Rational& d1) const {
 }
 
 Rational ExactDepth::value(std::uint32_t code) const {
-  if (format_.kind == DepthFormat::Kind::bins) return (2 * Rational(code) + 1) * rational_power_of_two(-format_.bits - 1);
+  if (format_.kind == DepthFormat::Kind::bins)
+    return (2 * Rational(code) + 1) * rational_power_of_two(-format_.bits - 1);
   if (!format_.is_float()) return Rational(code) / Rational(top_code(format_));
   const FloatSteps steps = float_steps(format_, code), one = float_steps(format_, top_code(format_));
   return Rational(steps.significand) / Rational(one.significand) * rational_power_of_two(steps.shift - one.shift);
@@ -135,7 +136,8 @@ Rational ExactDepth::value(std::uint32_t code) const {
 
 ExactDepth::Boundaries ExactDepth::boundaries(std::uint32_t code) const {
   if (format_.kind == DepthFormat::Kind::bins)
-    return {Rational(code) * rational_power_of_two(-format_.bits), (Rational(code) + 1) * rational_power_of_two(-format_.bits)};
+    return {Rational(code) * rational_power_of_two(-format_.bits),
+            (Rational(code) + 1) * rational_power_of_two(-format_.bits)};
   const Rational own = value(code);
   return {code == 0 ? Rational(0) : Rational((value(code - 1) + own) / 2),
           code == top_code(format_) ? Rational(1) : Rational((own + value(code + 1)) / 2)};
