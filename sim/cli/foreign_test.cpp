@@ -1,10 +1,12 @@
 #include "sim/cli/foreign_test.hpp"
 
+#include <algorithm>
 #include <csignal>
-#include <memory>
 #include <thread>
+#include <unordered_map>
 
 #include "model/as_number.hpp"
+#include "model/draw_states.hpp"
 #include "sim/cli/child.hpp"
 #include "sim/interrupt.hpp"
 #include "sim/show/image/whole_file.hpp"
@@ -31,10 +33,25 @@ class ForeignProgram {
  public:
   explicit ForeignProgram(const ForeignOptions& options) : options_(options) {}
 
-  /// "0", "1", "139", "timeout". Throws Interrupted.
+  std::size_t runs = 0;
+
+  /// "0", "1", "139", "timeout": of the program's last run on this scene, if there was one. Throws Interrupted.
   std::string status_of(const Scene& scene) {
+    const std::string text = capture_text(scene);
+    const auto known = known_.find(std::hash<std::string>{}(text));
+    return known == known_.end() ? run(text) : known->second;
+  }
+
+  /// The status of another run. Throws Interrupted.
+  std::string run(const std::string& text) {
+    ++runs;
+    return known_[std::hash<std::string>{}(text)] = status_of_run(text);
+  }
+
+ private:
+  std::string status_of_run(const std::string& text) {
     const std::string file = folder_.file("scene.hpt");
-    write_text_file(file, capture_text(scene));
+    write_text_file(file, text);
     Child child(
         {"/bin/sh", "-c", with_file(options_.command, file)}, own_environment(),
         {.output = ChildOptions::Output::to_file, .file = "/dev/null", .has_group = true, .signal_if_orphan = SIGKILL});
@@ -50,9 +67,9 @@ class ForeignProgram {
     return std::to_string(child.status());
   }
 
- private:
   ForeignOptions options_;
   TemporaryFolder folder_;
+  std::unordered_map<std::size_t, std::string> known_;  // statuses, by hashes of scenes
 };
 
 }  // namespace
@@ -69,6 +86,11 @@ void add_foreign_options(CLI::App& app, ForeignOptions& options) {
       ->check(CLI::Range(0.01, 86400.0))
       ->check(is_number)
       ->capture_default_str();
+  app.add_option("--keep", options.kept,
+                 "of --command: what its program has no other of, states and target (its size), comma-separated; it is "
+                 "not made simpler")
+      ->delimiter(',')
+      ->type_name("NAMES");
 }
 
 ForeignTest foreign_test(const ForeignOptions& options, const Scene& scene) {
@@ -78,11 +100,16 @@ ForeignTest foreign_test(const ForeignOptions& options, const Scene& scene) {
   const auto number = as_number<int>(options.status);
   if (!options.status.empty() && options.status != "timeout" && !(number && *number >= 1 && *number <= 255))
     throw InputError("--status: '" + options.status + "' is no failure; give 1 to 255, or timeout");
+  for (const std::string& name : options.kept)
+    if (name != "target" && std::none_of(draw_states().begin(), draw_states().end(),
+                                         [&name](const DrawState& row) { return row.name == name; }))
+      throw InputError("--keep: no state '" + name + "'; give target, or states by their names in captures, as shade");
   const auto program = std::make_shared<ForeignProgram>(options);
+  const std::string text = capture_text(scene);
   std::string whole, seen;
   bool is_steady = true;
   for (int i = 0; i < kRunsBefore; ++i) {
-    const std::string status = program->status_of(scene);
+    const std::string status = program->run(text);
     if (status == "126" || status == "127")
       throw InputError("--command: sh cannot run it (status " + status + "); check its path");
     is_steady = is_steady && (i == 0 || status == whole);
@@ -104,7 +131,7 @@ ForeignTest foreign_test(const ForeignOptions& options, const Scene& scene) {
             mismatch.hint = "status " + status;
             return mismatch;
           },
-          whole};
+          whole, std::shared_ptr<const std::size_t>(program, &program->runs)};
 }
 
 }  // namespace halfplane

@@ -45,6 +45,7 @@ int run_foreign(const ReduceCommand& options) {
   const ForeignTest foreign = foreign_test(options.foreign, scene);
   ReduceOptions reducing;
   reducing.seconds = options.seconds;
+  reducing.kept = options.foreign.kept;
   reducing.progress = [&progress](double fraction) { progress(fraction); };
   const auto reduced = reduce(scene, config, {}, foreign.test, reducing);
   if (!reduced) throw InputError("--command: the scene failed three times, and then did not; fix the program's seed");
@@ -56,19 +57,20 @@ int run_foreign(const ReduceCommand& options) {
   result["capture"] = capture;
   result["trace"] = nullptr;
   result["triangles"] = {{"before", reduced->primitives_before}, {"after", reduced->primitives_after}};
-  result["runs"] = reduced->runs;
+  result["runs"] = *foreign.runs;
   result["minimal"] = reduced->is_minimal;
   finish_json(options, result, start, is_partial);
   std::ostream& out = human(options);
   out << "fails with  " << (foreign.status == "timeout" ? "the end of its time" : "status " + foreign.status) << '\n'
       << "saved       " << capture << ", " << reduced->primitives_after << " of " << reduced->primitives_before
-      << " primitives (" << reduced->runs << " runs" << (reduced->is_minimal ? "" : "; it may get smaller") << ")\n";
+      << " primitives (" << *foreign.runs << " runs" << (reduced->is_minimal ? "" : "; it may get smaller") << ")\n";
   return ended(out, is_partial, exit_ok);
 }
 
 int run(const ReduceCommand& options) {
   if (!options.foreign.command.empty()) return run_foreign(options);
   if (!options.foreign.status.empty()) throw InputError("--status: there is no program that has one; add --command");
+  if (!options.foreign.kept.empty()) throw InputError("--keep: there is no program that has no other; add --command");
   const auto start = std::chrono::steady_clock::now();
   const Config config = effective_config(options);
   check_output(options.save_path, ".hpt");

@@ -94,9 +94,11 @@ class Regression {
     std::size_t next = options_.only_case == 0 ? 0 : options_.only_case - 1;
     const std::size_t end = options_.only_case == 0 ? cases_.size() : options_.only_case;
     std::vector<std::unique_ptr<Running>> running;
+    const std::size_t before = count_done();  // rate and time left are of what is run now
+    const double missing = std::max(1.0, static_cast<double>(cases_.size() - before));
     while (true) {
-      const bool goes_on =
-          progress.goes_on(static_cast<double>(count_done()) / static_cast<double>(cases_.size()), count_done());
+      const std::size_t now = count_done() - before;
+      const bool goes_on = progress.goes_on(static_cast<double>(now) / missing, now);
       if (!goes_on) return;  // ends the running ones
       while (next < end && running.size() < static_cast<std::size_t>(options_.jobs) && seconds_since(start) < until) {
         if (results_[next].is_null()) running.push_back(begin_case(next));

@@ -155,6 +155,10 @@ class Reducer {
   /// Whether some run has failed: from then on there is a result.
   [[nodiscard]] bool has_failed() const { return !best_.scene.commands.empty(); }
 
+  [[nodiscard]] bool keeps(std::string_view what) const {
+    return std::find(options_.kept.begin(), options_.kept.end(), what) != options_.kept.end();
+  }
+
   void report() const {
     if (options_.progress) options_.progress(elapsed() / options_.seconds);
   }
@@ -225,7 +229,7 @@ class Reducer {
 };
 
 void Reducer::to_window_space() {
-  if (std::none_of(items_.begin(), items_.end(), depends_on_target)) return;
+  if (keeps("space") || std::none_of(items_.begin(), items_.end(), depends_on_target)) return;
   try {
     try_items(items_of(window_scene(scene_, config_)));
   } catch (const InputError&) {  // what this hardware does not have: a program of others may
@@ -247,6 +251,7 @@ void Reducer::cut_after_failure() {
 
 /// Makes the target smaller: to the failing tile, then by halves. A flush of a large target would be most of every run.
 void Reducer::crop() {
+  if (keeps("target")) return;
   for (const Item& item : items_)
     if (depends_on_target(item)) return;  // the picture would change
   const Mismatch& m = best_.mismatch;
@@ -296,7 +301,8 @@ bool Reducer::simplify(Change change) {
 /// fails, so `front` may have to stay until `cull` is reset. Repeats until nothing changes.
 void Reducer::simplify_states() {
   std::vector<const DrawState*> rows;
-  for (const DrawState& row : draw_states()) rows.push_back(&row);
+  for (const DrawState& row : draw_states())
+    if (!keeps(row.name)) rows.push_back(&row);
   const auto hardware = std::stable_partition(rows.begin(), rows.end(),
                                               [](const DrawState* row) { return row->home == StateHome::host; });
   std::reverse(hardware, rows.end());

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "model/config.hpp"
 #include "model/scene.hpp"
@@ -21,6 +23,8 @@ struct ReduceOptions {
   double seconds = 20;  ///< stops after that with the best result so far
   /// Gets the fraction of the time; may be empty. Interrupted, thrown there, ends the search like the end of the time.
   std::function<void(double fraction)> progress;
+  /// What stays as it is in every scene that is tried: names of states, `target` for its size.
+  std::vector<std::string> kept;
 };
 
 struct Reduced {

@@ -1,4 +1,7 @@
 // `reduce --command`: somebody else's program as the predicate.
+#include <map>
+#include <sstream>
+
 #include "program.hpp"
 
 namespace halfplane::cli::reduce_command_test {
@@ -30,6 +33,39 @@ TEST_F(ReduceCommand, ReducesWhileAForeignProgramFails) {
     EXPECT_EQ(small.find(word), std::string::npos) << word << "\n" << small;
 }
 
+TEST_F(ReduceCommand, WhatIsKeptStaysAndNothingElse) {
+  // Any triangle of c.hpt fails, so that nothing but --keep holds a state or the target.
+  ASSERT_EQ(
+      run(split_words("convert --random 20 --random-only triangles,64x64,shade=flat,less,cull=back -o d.hpt")).status,
+      0);
+  const Arguments words{"reduce", "d.hpt", "--command", "if grep -q '^t ' {}; then exit 3; fi", "-o", "small.hpt"};
+  ASSERT_EQ(run(words).status, 0);
+  std::string small = text("small.hpt");
+  for (const char* word : {"target 64 64", "state shade", "state cull"})
+    EXPECT_EQ(small.find(word), std::string::npos) << word << "\n" << small;
+  Arguments keeping = words;
+  keeping.insert(keeping.end(), {"--keep", "target,shade"});
+  ASSERT_EQ(run(keeping).status, 0);
+  small = text("small.hpt");
+  for (const char* word : {"target 64 64", "state shade flat"})
+    EXPECT_NE(small.find(word), std::string::npos) << word << "\n" << small;
+  EXPECT_EQ(small.find("state cull"), std::string::npos) << small;
+}
+
+TEST_F(ReduceCommand, NoSceneIsRunTwiceButTheWholeOne) {
+  write("runs", "");
+  const Json result = this->result({"reduce", "c.hpt", "--command",
+                                    "cksum {} >>runs; if grep -q 'cull back' {}; then exit 3; fi", "-o", "small.hpt"});
+  std::istringstream lines(text("runs"));
+  std::map<std::string, int> times;
+  std::string whole;
+  for (std::string line; std::getline(lines, line); ++times[line])
+    if (whole.empty()) whole = line;
+  EXPECT_EQ(times.size() + 2, result["runs"]);
+  EXPECT_GT(times.size(), 5U);
+  for (const auto& [line, count] : times) EXPECT_EQ(count, line == whole ? 3 : 1) << line;
+}
+
 TEST_F(ReduceCommand, AStatusThatIsNamedCountsAlone) {
   const std::string command = "if grep -q 'cull back' {}; then exit 3; fi; if grep -q '^t' {}; then exit 4; fi";
   expect_refused({"reduce", "c.hpt", "--command", command, "--status", "4"}, "it ends with status 3");
@@ -57,6 +93,8 @@ TEST_F(ReduceCommand, AProgramThatDoesNotDoTheSameEachTimeIsRefused) {
   expect_refused({"reduce", "c.hpt", "--command", "false {}", "--status", "0"}, "is no failure");
   expect_refused({"reduce", "c.hpt", "--command", "false {}", "--mutant", "3"}, "leave it out");
   expect_refused({"reduce", "c.hpt", "--status", "3"}, "add --command");
+  expect_refused({"reduce", "c.hpt", "--keep", "shade"}, "add --command");
+  expect_refused({"reduce", "c.hpt", "--command", "false {}", "--keep", "size"}, "no state 'size'; give target");
 }
 
 }  // namespace
