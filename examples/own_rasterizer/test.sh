@@ -9,7 +9,7 @@ rm -rf "$folder"
 mkdir -p "$folder"
 sed 's/right > 0 : down < 0) != turns/(right > 0) != ($test$plusargs("fault") != 0 \&\& turns) : down < 0) != turns/' "$here/rasterizer.sv" >"$folder/seeded.sv"
 grep -q plusargs "$folder/seeded.sv"
-"$halfplane" convert --random 200 --random-only triangles,16x16,always,depth_write=off,color_write=on,shade=flat,no-cull,no-scissor,no-clears,depth=flat,ties=40 \
+"$halfplane" convert --random 200 --random-only triangles,16x16,always,depth_write=off,color_write=on,shade=flat,no-cull,no-scissor,no-clears,ties=40 \
   --config tiny --quiet -o "$folder/scene.hpt"
 RTL=$folder/seeded.sv "$here/run.sh" "$halfplane" "$library" "$folder" "$folder/scene-1.hpt"
 for scene in "$folder"/scene-[2-9].hpt; do "$folder/obj/testbench" "+scene=$scene"; done

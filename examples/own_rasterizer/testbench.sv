@@ -46,7 +46,10 @@ module testbench;
 
   // One colour, and states that the rasterizer has.
   function automatic bit is_plain(primitive_packet_t p);
-    return p.vertex.code == {3{p.vertex.code[0+:ALL_CODE_BITS]}} && p.cull == CULL_MODE_NONE &&
+    logic [2:0][ALL_CODE_BITS-1:0] code = p.vertex.code;
+    bit is_flat = code[0][ALL_CODE_BITS-1:DEPTH_CODE_BITS] == code[1][ALL_CODE_BITS-1:DEPTH_CODE_BITS] &&
+                  code[0][ALL_CODE_BITS-1:DEPTH_CODE_BITS] == code[2][ALL_CODE_BITS-1:DEPTH_CODE_BITS];
+    return is_flat && p.cull == CULL_MODE_NONE &&
            p.state.depth_test == DEPTH_FUNC_ALWAYS && !p.state.depth_write && p.state.color_write;
   endfunction
 
@@ -62,6 +65,7 @@ module testbench;
       else if (packet.kind != PRIMITIVE_KIND_FLUSH) begin
         $display("nothing for this rasterizer");
         $finish;
+        break;
       end
     end
     repeat (4) @(negedge clk);
