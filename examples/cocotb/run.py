@@ -66,6 +66,17 @@ def passes(runner, folder, environment, plusargs):
     return cases[0].find("failure") is None and cases[0].find("error") is None
 
 
+def cover(halfplane, folder):
+    """What the scenes stimulate, as bins (docs/functional-coverage.md); coverage.html names what they do not."""
+    runs = []
+    for scene in sorted(folder.glob("*.hpt")):
+        runs.append(scene.with_suffix(".json"))
+        subprocess.run([halfplane, "vectors", scene, "--config", PRESET, "--stage", "cull", "--quiet",
+                        "-o", folder / "cull.jsonl", "--coverage", runs[-1]], check=True)
+    text = subprocess.check_output([halfplane, "cover", *runs, "-o", folder / "coverage.html"], text=True)
+    print(text.split("\n\n")[0])
+
+
 def main(simulator, halfplane, library, folder):
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "raster_pkg.sv").write_bytes(subprocess.check_output([halfplane, "config", "--config", PRESET, "--sv"]))
@@ -82,6 +93,7 @@ def main(simulator, halfplane, library, folder):
         return 1
     if simulator == "verilator" and passes(runner, folder, environment, ["+fault"]):
         sys.exit("the fault is not caught")
+    cover(halfplane, folder)
     return 0
 
 
