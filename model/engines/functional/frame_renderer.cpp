@@ -62,12 +62,17 @@ void add(Counters& sum, const Counters& c) {
   for (const SkipName& one : kSkipNames) sum.skipped.*one.counter += c.skipped.*one.counter;
 }
 
-/// Whether the fast path takes all surfaces: opaque, and every w > 0. The scalar engine reports refused triangles.
+/// Whether the fast path takes all surfaces: opaque, and every w > 0 of those in window coordinates. The scalar engine
+/// reports refused triangles.
 bool has_plain_surfaces(const Scene& scene, const RenderOptions& options) {
   if (options.general_fragments) return false;
-  const auto is_window = [](const State& s) { return has_surface(s) && s.space == Space::window; };
-  return std::ranges::none_of(scene.states, is_window) ||
-         std::ranges::all_of(scene.vertices, [](const Vertex& v) { return v.w > 0; });
+  const auto is_in_front = [&scene](std::uint32_t index) { return index == kRestart || scene.vertices[index].w > 0; };
+  return std::ranges::all_of(scene.commands, [&](const Command& command) {
+    const auto* draw = std::get_if<Draw>(&command);
+    if (draw == nullptr || !has_surface(scene.states[draw->state]) || scene.states[draw->state].space != Space::window)
+      return true;
+    return std::ranges::all_of(std::span(scene.indices).subspan(draw->first, draw->count), is_in_front);
+  });
 }
 
 /// Whether the fast path takes multisampled pixels: triangles and points, no stencil, no alpha that selects samples.

@@ -165,7 +165,7 @@ void MesaFrame::make_vertices(const Scene& scene, Space space) {
 }
 
 void MesaFrame::check_draw_state(const State& state, Topology topology) const {
-  if (state.origin != Origin::top_left) refuse("origin bottom_left");
+  if (state.origin != Origin::top_left && state.space == Space::window) refuse("window coordinates from bottom_left");
   if (samples_ > 1 && state.sample_mask != State{}.sample_mask) refuse("sample_mask");
   if (samples_ > 1 && state.alpha_to_coverage) refuse("alpha_to_coverage");
   if (state.pixel_center != PixelCenter::half) refuse("pixel_center integer");
@@ -214,7 +214,6 @@ void MesaFrame::upload(const Scene& scene) {
   for (const Command& command : scene.commands) {
     if (const auto* next = std::get_if<Clear>(&command)) {
       const State& state = scene.states[next->state];
-      if (state.scissor && state.origin != Origin::top_left) refuse("origin bottom_left");
       calls_.push_back({state, *next, {}, true, false, 0, 0});
     }
     if (const auto* next = std::get_if<Draw>(&command)) add_draw(scene, *next);
@@ -236,7 +235,7 @@ void MesaFrame::apply_target(const State& state) const {
   if (!state.scissor) return gl_.disable(gl::kScissorTest);
   gl_.enable(gl::kScissorTest);
   const Rect& r = *state.scissor;
-  gl_.scissor(r.x, height_ - r.y - r.height, r.width, r.height);
+  gl_.scissor(r.x, state.origin == Origin::bottom_left ? r.y : height_ - r.y - r.height, r.width, r.height);
 }
 
 void MesaFrame::apply(const Call& call) const {
@@ -246,8 +245,9 @@ void MesaFrame::apply(const Call& call) const {
   const double width = width_, height = height_;
   Viewport view{0, 0, width, height};
   if (state.viewport && !is_window) view = *state.viewport;
-  gl_.viewport_indexedf(0, static_cast<float>(view.x), static_cast<float>(height_ - view.y - view.height),
-                        static_cast<float>(view.width), static_cast<float>(view.height));
+  const double bottom = state.origin == Origin::bottom_left ? view.y : height - view.y - view.height;
+  gl_.viewport_indexedf(0, static_cast<float>(view.x), static_cast<float>(bottom), static_cast<float>(view.width),
+                        static_cast<float>(view.height));
   gl_.depth_range(is_window ? 0 : state.depth_range[0], is_window ? 1 : state.depth_range[1]);
   gl_.clip_control(gl::kLowerLeft, !is_window && state.clip_z == ClipZ::zero_one ? gl::kZeroToOne : gl::kMinusOneToOne);
   gl_.depth_func(gl::comparison(state.depth_test));
