@@ -494,9 +494,10 @@ void FrameRenderer::draw_prepared(std::uint32_t command) {
       return;
     }
   }
-  // Vertices that neighbouring slices share are projected in each slice: fewer slices, fewer of these.
-  constexpr std::size_t kSlicesOfDraw = 16;
-  const std::size_t slice_limit = std::clamp(chunks.primitives / kSlicesOfDraw, kSlicePrimitives, 4 * kSlicePrimitives);
+  // Vertices that neighbouring slices share are projected in each slice: fewer slices, fewer of these. Lines of a bin are
+  // set up sixteen at a time, slice by slice: the more a slice has, the fewer lanes stay empty.
+  const std::size_t slices_of_draw = is_lines ? 4 : 16, most = (is_lines ? 8 : 4) * kSlicePrimitives,
+                    slice_limit = std::clamp(chunks.primitives / slices_of_draw, kSlicePrimitives, most);
   for (std::size_t i = chunks.first; i < chunks.first + chunks.count; ++i) {
     const PreparedScene::Chunk& chunk = prepared_->chunks[i];
     if (pending_primitives_ >= kBatchPrimitives && !compares_) flush();

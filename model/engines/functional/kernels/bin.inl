@@ -66,6 +66,11 @@ static const LanePositions& lane_positions() {
   return positions;
 }
 
+static const LinePositions& line_places() {
+  static const LinePositions positions;
+  return positions;
+}
+
 /// Constants of a triangle's colours, in lanes.
 struct ColorSteps {
   ChannelPairs step_x, step_y, low, high;  ///< steps per pixel; range of the vertices' codes
@@ -284,10 +289,12 @@ struct Bin {
   std::int32_t closed_from = kOpen;  ///< with the test less, all tiles hide depths from here on
   const LanePositions& position = lane_positions();
   SmallBatch small;
-  std::int32_t batch_surface = 0;     ///< surface number of its first triangle
-  int small_run = 0;                  ///< records in a row that were small or medium
-  LineBatch lines, cut_line;          ///< cut_line: one, in lane 0
-  std::uint64_t line_tiles = 0;       ///< touched by lines since triangles were last drawn
+  std::int32_t batch_surface = 0;  ///< surface number of its first triangle
+  int small_run = 0;               ///< records in a row that were small or medium
+  const LinePositions& line_positions = line_places();
+  LineBatch lines, cut_line;     ///< cut_line: one, in lane 0
+  std::uint64_t line_tiles = 0;  ///< touched by lines of line_state since triangles were last drawn
+  SliceState line_state;
   bool falls = false, rises = false;  ///< direction in which a passing depth may change the stored one
   std::size_t plane_count = 0;
   std::size_t surface_count = 0;  ///< of BinMemory::seen

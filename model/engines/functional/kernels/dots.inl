@@ -76,7 +76,8 @@ HALFPLANE_NOINLINE const std::uint32_t* draw_dots(Bin& bin, const Slice& slice, 
   std::uint64_t dots = 0, passed = 0, tiles = 0;
   alignas(64) FragmentLanes::Lane x{}, y{}, rgba{};
   FragmentLanes group;
-  const bool is_in_lanes = !Fragments::kIsOpaque && takes_dots_in_lanes(bin);
+  const bool is_in_lanes = !Fragments::kIsOpaque && takes_dots_in_lanes(bin),
+             are_apart = is_in_lanes || Fragments::kIsOpaque;
   while (first != last && is_dot(bin, slice, slice.records[*first])) {
     int count = 0;
     SeenPixels seen;
@@ -86,7 +87,7 @@ HALFPLANE_NOINLINE const std::uint32_t* draw_dots(Bin& bin, const Slice& slice, 
       const VertexRow& v = slice.vertices[record.v[0]];
       x[lane] = record.left() - bin.first_x;
       y[lane] = record.top() - bin.first_y;
-      if (is_in_lanes && !seen.add(x[lane], y[lane])) break;
+      if (are_apart && !seen.add(x[lane], y[lane])) break;
       group.depth[lane] = static_cast<std::int32_t>(v.z);
       rgba[lane] = static_cast<std::int32_t>(v.rgba);
     }

@@ -128,19 +128,30 @@ struct OpaqueFragments {
 
     HALFPLANE_INLINE explicit Writer(Bin& bin) : state(bin.state), depths(bin), pixels(bin.memory.color.data()) {}
 
-    /// Tests and writes the first `count`; returns how many passed. A failing fragment stores the old value: a branch
-    /// would be mispredicted.
+    /// Tests and writes the first `count`; returns how many passed.
     HALFPLANE_INLINE unsigned operator()(const FragmentLanes& fragments, int count) const {
-      unsigned passed_pixels = 0;
-      for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
-        const auto to = static_cast<std::size_t>(fragments.place[k]);
-        const std::int32_t stored = depths.at(to), depth = fragments.depth[k];
-        const std::uint32_t has_passed = passes_one(state, depth, stored) ? 1U : 0U, mask = 0U - has_passed;
-        passed_pixels += has_passed;
-        if (state.depth_write) depths.set(to, stored ^ ((stored ^ depth) & static_cast<std::int32_t>(mask)));
-        if (state.color_write) pixels[to] ^= (pixels[to] ^ static_cast<std::uint32_t>(fragments.color[k])) & mask;
+      return depths.is_narrow ? write(depths.narrow, fragments, count) : write(depths.wide, fragments, count);
+    }
+
+   private:
+    /// All tests, then the writes of those that pass: a branch for each test would be mispredicted. Places differ.
+    template <class Code>
+    HALFPLANE_INLINE unsigned write(Code* codes, const FragmentLanes& fragments, int count) const {
+      const auto place = [&fragments](std::size_t k)
+                             HALFPLANE_LAMBDA { return static_cast<std::uint32_t>(fragments.place[k]); };
+      std::uint32_t passed = 0;
+      for (int i = count - 1; i >= 0; --i) {
+        const auto k = static_cast<std::size_t>(i);
+        const auto stored = static_cast<std::uint32_t>(codes[place(k)]);
+        const bool passes = depth_passes(func(state), static_cast<std::uint32_t>(fragments.depth[k]), stored);
+        passed = passed + passed + (passes ? 1U : 0U);
       }
-      return passed_pixels;
+      for (std::uint32_t left = passed; left != 0; left &= left - 1) {
+        const auto k = static_cast<std::size_t>(std::countr_zero(left));
+        if (state.depth_write) codes[place(k)] = static_cast<Code>(fragments.depth[k]);
+        if (state.color_write) pixels[place(k)] = static_cast<std::uint32_t>(fragments.color[k]);
+      }
+      return static_cast<unsigned>(std::popcount(passed));
     }
   };
 };

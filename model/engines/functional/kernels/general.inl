@@ -93,6 +93,7 @@ HALFPLANE_NOINLINE void draw_records_general(Bin& bin, const Slice& slice, const
     bin.is_back = false;  // lines and points show their front
   }
   draw_lines<GeneralFragments>(bin, slice);
+  bin.line_tiles = 0;
 }
 
 }  // namespace

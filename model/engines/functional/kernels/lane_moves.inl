@@ -87,6 +87,16 @@ HALFPLANE_LEAF std::uint64_t nibbles_of(const I16& values) {
   return low | std::uint64_t{high} << 32;
 }
 
+/// Each lane's predecessor: the lanes of `v` one up, and below them the last lane of `before`.
+HALFPLANE_LEAF I16 moved_up(const I16& before, const I16& v) {
+  constexpr auto kAll = std::make_index_sequence<I16::kLanes>{};
+  I16 r;
+  r.part[0] = lanes_from<I16::Register, I16::kLanes - 1>(before.part[I16::kParts - 1], v.part[0], kAll);
+  HALFPLANE_EACH_PART(I16::kParts - 1, i,
+                      r.part[i + 1] = lanes_from<I16::Register, I16::kLanes - 1>(v.part[i], v.part[i + 1], kAll))
+  return r;
+}
+
 HALFPLANE_LEAF bool is_any(const I16& mask) { return bits_of(mask) != 0; }
 
 /// One bit for each of 32 lanes whose sign bit is set.
@@ -271,6 +281,31 @@ HALFPLANE_LEAF I16 channel_pair(const I16& rgba, std::size_t pair) {
 #else
   const I16 both = shift_right_logical(rgba, static_cast<int>(16 * pair));
   return (both & 0xff) | ((both << 8) & 0xff0000);
+#endif
+}
+
+/// The highest bytes of four lanes, the first one lowest.
+HALFPLANE_LEAF I16 highest_bytes(const I16& first, const I16& second, const I16& third, const I16& fourth) {
+#if HALFPLANE_ISA >= 256
+  const auto moved = [](const I16& v, int to) HALFPLANE_LAMBDA {
+    using Bytes __attribute__((vector_size(HALFPLANE_ISA / 8))) = std::int8_t;
+    Bytes from;
+    for (int i = 0; i < HALFPLANE_ISA / 8; ++i)
+      from[i] = static_cast<std::int8_t>(i % 4 == to ? i % 16 / 4 * 4 + 3 : -1);
+    I16 r;
+#if HALFPLANE_ISA == 512
+    r.part[0] = (I16::Register)_mm512_shuffle_epi8((__m512i)v.part[0], (__m512i)from);
+#else
+    for (int i = 0; i < 2; ++i) r.part[i] = (I16::Register)_mm256_shuffle_epi8((__m256i)v.part[i], (__m256i)from);
+#endif
+    return r;
+  };
+  return (moved(first, 0) | moved(second, 1)) | (moved(third, 2) | moved(fourth, 3));
+#else
+  const auto moved = [](const I16& v, int down) HALFPLANE_LAMBDA {
+    return shift_right_logical(v, down) & static_cast<std::int32_t>(0xff000000U >> down);
+  };
+  return (moved(first, 24) | moved(second, 16)) | (moved(third, 8) | moved(fourth, 0));
 #endif
 }
 

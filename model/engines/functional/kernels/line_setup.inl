@@ -15,11 +15,14 @@ struct LineBatch {
   using Lane = std::array<std::int32_t, 16>;
 
   int count = 0;
-  alignas(64) std::array<Lane, 3> v;                         ///< into Slice::vertices: start, end, provoking vertex
-  alignas(64) Lane pixels;                                   ///< in the bin; none if below 1
-  alignas(64) Lane x, y;                                     ///< of the first pixel, from the bin's first
-  alignas(64) Lane is_x_major, x_sign, y_sign, shows_start;  ///< masks: true is -1
-  alignas(64) std::array<double, 16> row, slope;             ///< row after n pixels: floor(row + n slope)
+  alignas(64) std::array<Lane, 3> v;   ///< into Slice::vertices: start, end, provoking vertex
+  alignas(64) Lane pixels;             ///< in the bin; none if below 1
+  alignas(64) Lane major;              ///< into LinePositions::place: the first pixel
+  alignas(64) Lane minor, minor_step;  ///< position across, below the point kMinorPoint; a step of it, at most a pixel
+  alignas(64) Lane is_x_major;         ///< masks: true is -1
+  alignas(64) Lane shows_start;
+  bool is_long;  ///< 32 bits do not tell the rows of these lines apart: take `row` and `slope`
+  alignas(64) std::array<double, 16> row, slope;  ///< rows moved after n pixels: floor(row + n slope)
   alignas(64) std::array<std::int64_t, 16> depth, depth_step;
   alignas(64) std::array<Lane, 4> color, color_step;
   alignas(64) Lane depth_start, color_start;
@@ -40,13 +43,41 @@ HALFPLANE_INLINE I16 floor_divide(const D16& numerator, const D16& denominator) 
   return truncated + convert<std::int32_t>(convert<double>(truncated) > quotient);
 }
 
+/// Fraction bits of LineBatch::minor: the pixels of a bin are the upper bits, so that it wraps inside the bin.
+inline constexpr int kMinorPoint = 32 - kBinShift;
+/// Positions are off by less than 2^-20 after 63 steps, and half a unit, 1 / (2 D), away from every border of pixels.
+inline constexpr std::int32_t kLongLine = 1 << 18;
+
+/// Places in the bin's memory of the pixels along a line.
+struct LinePositions {
+  static constexpr int kCourse = kBinSize + 16;  ///< a group that begins at the last pixel reads sixteen
+  /// By course: rightwards, leftwards, downwards, upwards.
+  alignas(64) std::array<std::int32_t, std::size_t{4} * kCourse> place;
+
+  LinePositions() {
+    for (int i = 0; i < 4 * kCourse; ++i) {
+      const int along = i % kCourse % kBinSize, course = i / kCourse,
+                at = course % 2 != 0 ? kBinSize - 1 - along : along;
+      place[static_cast<std::size_t>(i)] =
+          course < 2 ? (at & 56) << 3 | (at & 4) << 2 | (at & 3) : (at & 56) << 6 | (at & 4) << 3 | (at & 3) << 2;
+    }
+  }
+
+  /// Where the course of a line begins. `at`: the first pixel's column or row in the bin.
+  template <class Lanes>
+  HALFPLANE_INLINE static Lanes first(const Lanes& at, const Lanes& is_x_major, const Lanes& is_negative) {
+    return ((at ^ is_negative) & Lanes(kBinSize - 1)) + (is_negative & Lanes(kCourse)) +
+           (~is_x_major & Lanes(2 * kCourse));
+  }
+};
+
 /// The course of sixteen lines in the bin.
 struct LineWay {
   I16 offset;  ///< subpixels from the start to the centre of the first column
   I16 low;     ///< the first step in the bin
 };
 
-/// pixels, row, slope, x, y, signs of a batch.
+/// Pixels and positions of a batch.
 HALFPLANE_INLINE LineWay set_up_way(LineBatch& batch, const OctantLanes& line, const LineRules& rules, int first_x,
                                     int first_y) {
   // Q, as in stages/line_setup: n columns on, the line is in row floor((Q + n d) / D) from the start's.
@@ -83,14 +114,22 @@ HALFPLANE_INLINE LineWay set_up_way(LineBatch& batch, const OctantLanes& line, c
   const I16 moved = floor_divide(position, D);
   const D16 reciprocal_D = 1.0 / D;
   // Half a unit away from every border between rows: far more than the error of these products.
-  ((position - convert<double>(moved) * D + 0.5) * reciprocal_D).store(batch.row.data());
-  (d * reciprocal_D).store(batch.slope.data());
-  const I16 major = (line.first + low) ^ line.is_major_negative, minor = (base_row + moved) ^ line.is_minor_negative;
-  (select(line.is_x_major, major, minor) - first_x).store(batch.x.data());
-  (select(line.is_x_major, minor, major) - first_y).store(batch.y.data());
+  const D16 row = (position - convert<double>(moved) * D + 0.5) * reciprocal_D, slope = d * reciprocal_D;
+  batch.is_long = is_any(line.major >= kLongLine);
+  if (batch.is_long) {
+    row.store(batch.row.data());
+    slope.store(batch.slope.data());
+  }
+  constexpr double kPixel = 1 << kMinorPoint;
+  const I16 &is_minor_negative = line.is_minor_negative, &is_major_negative = line.is_major_negative;
+  const auto with_sign = [&](const I16& v) HALFPLANE_LAMBDA { return (v ^ is_minor_negative) - is_minor_negative; };
+  const I16 minor = ((base_row + moved) ^ is_minor_negative) - bin_minor;
+  (((minor - is_minor_negative) << kMinorPoint) + with_sign(convert<std::int32_t>(row * kPixel)))
+      .store(batch.minor.data());
+  with_sign(convert<std::int32_t>(slope * kPixel)).store(batch.minor_step.data());
+  const I16 major = ((line.first + low) ^ is_major_negative) - bin_major;
+  LinePositions::first(major, line.is_x_major, is_major_negative).store(batch.major.data());
   line.is_x_major.store(batch.is_x_major.data());
-  select(line.is_x_major, line.is_major_negative, line.is_minor_negative).store(batch.x_sign.data());
-  select(line.is_x_major, line.is_minor_negative, line.is_major_negative).store(batch.y_sign.data());
   ((low == 0) & (offset < 0)).store(batch.shows_start.data());
   return {offset, low};
 }

@@ -22,65 +22,133 @@ HALFPLANE_NOINLINE void touch_line_tiles(Bin& bin, std::uint64_t tiles) {
   if (!Fragments::kIsLess) find_bin_range(bin);
 }
 
-/// Colours of the pixels `n` of a line.
-HALFPLANE_INLINE I16 line_colors(const LineBatch& line, std::size_t i, const I16& n, ColorFormat format) {
-  const auto channel = [&](std::size_t c) HALFPLANE_LAMBDA { return n * line.color_step[c][i] + line.color[c][i]; };
-  const auto byte = [](const I16& value, int down) HALFPLANE_LAMBDA {
-    return shift_right_logical(value, down) & static_cast<std::int32_t>(0xff000000U >> down);
-  };
-  const I16 rgba =
-      shift_right_logical(channel(0), 24) | byte(channel(1), 16) | byte(channel(2), 8) | byte(channel(3), 0);
-  return packed(rgba, format);
-}
+/// Colours along a line, from its first pixel.
+struct LineColors {
+  I16 first[4], step[4];
+  ColorFormat format;
 
-/// `Depth`: an integer as wide as the depth register, or wider.
+  HALFPLANE_INLINE LineColors(const LineBatch& line, std::size_t i, ColorFormat format_) : format(format_) {
+    for (std::size_t c = 0; c < 4; ++c) {
+      first[c] = I16(line.color[c][i]);
+      step[c] = I16(line.color_step[c][i]);
+    }
+  }
+
+  /// Of the pixels `n`.
+  HALFPLANE_INLINE I16 operator()(const I16& n) const {
+    const auto channel = [&](std::size_t c) HALFPLANE_LAMBDA { return n * step[c] + first[c]; };
+    const I16 rgba = highest_bytes(channel(0), channel(1), channel(2), channel(3));
+    return format == ColorFormat::rgba8888 ? rgba : packed(rgba, format);
+  }
+};
+
+/// Places of the pixels of a line.
+struct LinePlaces {
+  const std::int32_t* major;
+  bool is_x_major, is_long;
+  int fine, block, tile;            ///< shifts of a position across to the bits of a place
+  I16 in_block, of_block, of_tile;  ///< those bits
+  I16 minor, step;
+  double row, slope;
+
+  HALFPLANE_INLINE LinePlaces(const std::int32_t* places, const LineBatch& line, std::size_t i)
+      : major(places + line.major[i]),
+        is_x_major(line.is_x_major[i] != 0),
+        is_long(line.is_long),
+        fine(kMinorPoint - (is_x_major ? 2 : 0)),
+        block(kMinorPoint - (is_x_major ? 3 : 2)),
+        tile(kMinorPoint - (is_x_major ? 6 : 3)),
+        in_block(is_x_major ? 3 << 2 : 3),
+        of_block(is_x_major ? 4 << 3 : 4 << 2),
+        of_tile(is_x_major ? 56 << 6 : 56 << 3),
+        minor(line.minor[i]),
+        step(line.minor_step[i]),
+        row(is_long ? line.row[i] : 0),
+        slope(is_long ? line.slope[i] : 0) {}
+
+  /// Of the pixels `n`, consecutive from `first` on. After the last pixel of the bin: anywhere in the bin.
+  HALFPLANE_INLINE I16 operator()(const I16& n, int first) const {
+    I16 position = n * step + minor;
+    if (is_long) [[unlikely]] {
+      const I16 moved = convert<std::int32_t>(convert<double>(n) * slope + row), sign = step >> 31;
+      position = (((moved ^ sign) - sign) << kMinorPoint) + minor;
+    }
+    return I16::load(major + first) + ((shift_right_logical(position, fine) & in_block) |
+                                       (shift_right_logical(position, block) & of_block) |
+                                       (shift_right_logical(position, tile) & of_tile));
+  }
+};
+
+/// Visits of tiles along a line, which never returns to a tile.
+struct TileVisits {
+  I16 previous;
+  unsigned visits = 1;
+
+  HALFPLANE_INLINE TileVisits() : previous(0) {}
+
+  /// Adds the first `count` of the next sixteen pixels.
+  HALFPLANE_INLINE void add(const I16& place, int count, bool is_first) {
+    constexpr std::int32_t kUpToSign = std::numeric_limits<std::int32_t>::max() - (int{kTilePixels} - 1);
+    const std::uint32_t lanes = (1U << count) - (is_first ? 2 : 1);
+    visits += static_cast<unsigned>(std::popcount(bits_of((place ^ moved_up(previous, place)) + kUpToSign) & lanes));
+    previous = place;
+  }
+};
+
+/// The first `count` lines of a batch. `Depth`: an integer as wide as the depth register, or wider.
 template <class Fragments, class Depth>
-HALFPLANE_NOINLINE void draw_pixels(Bin& bin, const LineBatch& line, std::size_t i) {
+HALFPLANE_NOINLINE void draw_pixels(Bin& bin, const LineBatch& lines, std::size_t count) {
   constexpr int kDepthBits = 8 * static_cast<int>(sizeof(Depth)), kGroup = 16;
   const int depth_down = kDepthBits - bin.config.depth_bits;
   const bool has_color = bin.state.color_write;
-  const auto depth_of = [](std::int64_t value)
-                            HALFPLANE_LAMBDA { return static_cast<Depth>(value >> (64 - kDepthBits)); };
-  const Depth first_depth = depth_of(line.depth[i]), depth_step = depth_of(line.depth_step[i]);
-  const I16 is_x_major(line.is_x_major[i]), x_sign(line.x_sign[i]), y_sign(line.y_sign[i]);
-  const I16 first_x(line.x[i] - line.x_sign[i]), first_y(line.y[i] - line.y_sign[i]);
   const ColorFormat format = Fragments::format(bin.config);
+  const std::int32_t* const places = bin.line_positions.place.data();
   const typename Fragments::Writer write(bin);
+  const I16 lane = bin.position.lane;
   FragmentLanes group;
-  std::uint64_t tiles = 0, passed_pixels = 0;
-  const int pixels_left = line.pixels[i];
-  for (int first = 0; first < pixels_left; first += kGroup) {
-    const int count = std::min(pixels_left - first, kGroup);
-    const I16 n = bin.position.lane + first;
-    const I16 moved = convert<std::int32_t>(convert<double>(n) * line.slope[i] + line.row[i]);
-    const I16 x = (select(is_x_major, n, moved) ^ x_sign) + first_x,
-              y = (select(is_x_major, moved, n) ^ y_sign) + first_y;
-    const I16 at = place_of(x, y);  // lanes after the last pixel: anywhere in the bin
-    at.store(group.place.data());
-    const std::uint64_t touched = or_of_bits(I16(1), at >> 6, (1U << count) - 1);
-    tiles |= touched;
-    if ((touched & ~bin.line_tiles) != 0) touch_line_tiles<Fragments>(bin, touched & ~bin.line_tiles);
-    const Pack<Depth, 16> depth = convert<Depth>(n) * depth_step + first_depth;
-    convert<std::int32_t>(shift_right_logical(depth, depth_down)).store(group.depth.data());
-    if (has_color) line_colors(line, i, n, format).store(group.color.data());
-    if (first == 0 && line.shows_start[i] != 0) {
-      group.depth[0] = line.depth_start[i];
-      if (has_color) group.color[0] = packed(I16(line.color_start[i]), format).part[0][0];
+  unsigned visits = 0;
+  std::uint64_t covered_pixels = 0, passed_pixels = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const int pixels_left = lines.pixels[i];
+    if (pixels_left <= 0) continue;
+    const auto depth_of = [](std::int64_t value)
+                              HALFPLANE_LAMBDA { return static_cast<Depth>(value >> (64 - kDepthBits)); };
+    const Pack<Depth, 16> first_depth(depth_of(lines.depth[i])), depth_step(depth_of(lines.depth_step[i]));
+    const LineColors color(lines, i, format);
+    const LinePlaces place(places, lines, i);
+    TileVisits tiles;
+    for (int first = 0; first < pixels_left; first += kGroup) {
+      const int pixels = std::min(pixels_left - first, kGroup);
+      const I16 n = lane + first, at = place(n, first);
+      at.store(group.place.data());
+      tiles.add(at, pixels, first == 0);
+      if (~bin.line_tiles != 0)
+        if (const std::uint64_t touched = or_of_bits(I16(1), at >> 6, (1U << pixels) - 1) & ~bin.line_tiles;
+            touched != 0)
+          touch_line_tiles<Fragments>(bin, touched);
+      const Pack<Depth, 16> depth = convert<Depth>(n) * depth_step + first_depth;
+      convert<std::int32_t>(shift_right_logical(depth, depth_down)).store(group.depth.data());
+      if (has_color) color(n).store(group.color.data());
+      if (first == 0 && lines.shows_start[i] != 0) {
+        group.depth[0] = lines.depth_start[i];
+        if (has_color) group.color[0] = packed(I16(lines.color_start[i]), format).part[0][0];
+      }
+      passed_pixels += write(group, pixels);
     }
-    passed_pixels += write(group, count);
+    visits += tiles.visits;
+    covered_pixels += static_cast<unsigned>(pixels_left);
   }
-  bin.job.counters.tiles_visited += static_cast<unsigned>(std::popcount(tiles));
-  count_fragments(bin, static_cast<std::uint64_t>(line.pixels[i]), passed_pixels);
+  bin.job.counters.tiles_visited += visits;
+  count_fragments(bin, covered_pixels, passed_pixels);
 }
 
-/// Line `i` of a batch.
 template <class Fragments>
-HALFPLANE_INLINE void draw_line(Bin& bin, const LineBatch& lines, std::size_t i) {
+HALFPLANE_INLINE void draw_set_up_lines(Bin& bin, const LineBatch& lines, std::size_t count) {
   using Narrow = std::conditional_t<Fragments::kIsOpaque, std::int32_t, std::int64_t>;  // one instance suffices
   if (bin.widths.depth().line.bits <= 32)
-    draw_pixels<Fragments, Narrow>(bin, lines, i);
+    draw_pixels<Fragments, Narrow>(bin, lines, count);
   else
-    draw_pixels<Fragments, std::int64_t>(bin, lines, i);
+    draw_pixels<Fragments, std::int64_t>(bin, lines, count);
 }
 
 /// Steps [first, last] of a line, counted from its first pixel, in which one coordinate is inside the bin.
@@ -120,14 +188,23 @@ HALFPLANE_NOINLINE bool set_up_cut_line(Bin& bin, const LineSetup& line) {
   const int right = is_x_major ? major : minor, down = is_x_major ? minor : major;
   LineBatch& part = bin.cut_line;
   part.pixels[0] = static_cast<std::int32_t>(steps.last - n + 1);
-  part.x_sign[0] = -line.is_x_negative;
-  part.y_sign[0] = -line.is_y_negative;
-  part.x[0] = x + (right ^ part.x_sign[0]) - part.x_sign[0];
-  part.y[0] = y + (down ^ part.y_sign[0]) - part.y_sign[0];
+  const auto moved_by = [](int from, int by, auto is_negative) { return is_negative != 0 ? from - by : from + by; };
+  const int first_x = moved_by(x, right, line.is_x_negative), first_y = moved_by(y, down, line.is_y_negative);
   part.is_x_major[0] = -line.is_x_major;
+  part.major[0] = LinePositions::first<std::int32_t>(is_x_major ? first_x : first_y, part.is_x_major[0],
+                                                     -(is_x_major ? line.is_x_negative : line.is_y_negative));
   part.shows_start[0] = n == 0 ? -line.is_before_start : 0;
+  part.is_long = D >= kLongLine;
   part.row[0] = (static_cast<double>(remainder - minor * D) + 0.5) / static_cast<double>(D);
   part.slope[0] = static_cast<double>(d) / static_cast<double>(D);
+  constexpr double kPixel = 1 << kMinorPoint;
+  const bool is_minor_negative = (is_x_major ? line.is_y_negative : line.is_x_negative) != 0;
+  const auto first_minor = static_cast<std::uint32_t>((is_x_major ? first_y : first_x) + (is_minor_negative ? 1 : 0));
+  const auto fraction = static_cast<std::int32_t>(part.row[0] * kPixel),
+             step = static_cast<std::int32_t>(part.slope[0] * kPixel);
+  part.minor[0] = static_cast<std::int32_t>((first_minor << kMinorPoint) +
+                                            static_cast<std::uint32_t>(is_minor_negative ? -fraction : fraction));
+  part.minor_step[0] = is_minor_negative ? -step : step;
   const int depth_up = 64 - bin.widths.depth().line.bits, color_up = 32 - bin.widths.color().line.bits;
   const auto steps_on = static_cast<std::uint64_t>(n);
   part.depth[0] = static_cast<std::int64_t>((line.value[kDepthPlane] + steps_on * line.step[kDepthPlane]) << depth_up);
@@ -145,7 +222,7 @@ HALFPLANE_NOINLINE bool set_up_cut_line(Bin& bin, const LineSetup& line) {
 
 template <class Fragments>
 HALFPLANE_INLINE void draw_cut_line(Bin& bin, const LineSetup& line) {
-  if (set_up_cut_line(bin, line)) draw_line<Fragments>(bin, bin.cut_line, 0);
+  if (set_up_cut_line(bin, line)) draw_set_up_lines<Fragments>(bin, bin.cut_line, 1);
 }
 
 /// Draws the pending lines.
@@ -153,8 +230,7 @@ template <class Fragments>
 void draw_lines(Bin& bin, const Slice& slice) {
   if (bin.lines.count == 0) return;
   set_up_lines(bin.lines, slice, bin.job.frame, bin.first_x, bin.first_y);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(bin.lines.count); ++i)
-    if (bin.lines.pixels[i] > 0) draw_line<Fragments>(bin, bin.lines, i);
+  draw_set_up_lines<Fragments>(bin, bin.lines, static_cast<std::size_t>(bin.lines.count));
   bin.lines.count = 0;
 }
 

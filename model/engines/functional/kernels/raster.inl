@@ -136,7 +136,12 @@ HALFPLANE_INLINE bool draw_sixteen(Bin& bin, const Slice& slice, const std::uint
 /// The records of one slice.
 template <class Fragments>
 void draw_records(Bin& bin, const Slice& slice, const std::uint32_t* first, const std::uint32_t* last) {
-  bin.line_tiles = 0;
+  if (const SliceState& touched = bin.line_state; touched.depth_test != bin.state.depth_test ||
+                                                  touched.depth_write != bin.state.depth_write ||
+                                                  touched.color_write != bin.state.color_write) {
+    bin.line_tiles = 0;
+    bin.line_state = bin.state;
+  }
   const std::uint32_t* next_sixteen = first;  // the next record at which it is worth a try
   while (first != last) {
     const Record& record = slice.records[*first];
