@@ -292,7 +292,7 @@ struct Bin {
   std::int32_t batch_surface = 0;  ///< surface number of its first triangle
   int small_run = 0;               ///< records in a row that were small or medium
   const LinePositions& line_positions = line_places();
-  LineBatch lines, cut_line;     ///< cut_line: one, in lane 0
+  LineBatch lines;
   std::uint64_t line_tiles = 0;  ///< touched by lines of line_state since triangles were last drawn
   SliceState line_state;
   bool falls = false, rises = false;  ///< direction in which a passing depth may change the stored one

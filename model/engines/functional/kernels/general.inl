@@ -71,15 +71,11 @@ HALFPLANE_NOINLINE void draw_records_general(Bin& bin, const Slice& slice, const
   bin.line_tiles = 0;
   for (; first != last; ++first) {
     const Record& record = slice.records[*first];
-    if (record.kind() == RecordKind::whole_line) {
+    if (record.kind() == RecordKind::whole_line || record.kind() == RecordKind::cut_line) {
       if (bin.lines.add(record)) draw_lines<GeneralFragments>(bin, slice);
       continue;
     }
     draw_lines<GeneralFragments>(bin, slice);
-    if (record.kind() == RecordKind::cut_line) {
-      draw_cut_line<GeneralFragments>(bin, slice.lines[record.v[0]]);
-      continue;
-    }
     if (is_dot(bin, slice, record)) {
       first = draw_dots<GeneralFragments>(bin, slice, first, last) - 1;
       continue;

@@ -15,9 +15,11 @@ struct LineBatch {
   using Lane = std::array<std::int32_t, 16>;
 
   int count = 0;
-  alignas(64) std::array<Lane, 3> v;   ///< into Slice::vertices: start, end, provoking vertex
-  alignas(64) Lane pixels;             ///< in the bin; none if below 1
-  alignas(64) Lane major;              ///< into LinePositions::place: the first pixel
+  std::uint32_t cut = 0;                   ///< lines that were set up alone, a bit each
+  std::array<std::uint32_t, 16> cut_line;  ///< of those: into Slice::lines
+  alignas(64) std::array<Lane, 3> v;       ///< into Slice::vertices: start, end, provoking vertex
+  alignas(64) Lane pixels;                 ///< in the bin; none if below 1
+  alignas(64) Lane major;                  ///< into LinePositions::place: the first pixel
   alignas(64) Lane minor, minor_step;  ///< position across, below the point kMinorPoint; a step of it, at most a pixel
   alignas(64) Lane is_x_major;         ///< masks: true is -1
   alignas(64) Lane shows_start;
@@ -27,10 +29,15 @@ struct LineBatch {
   alignas(64) std::array<Lane, 4> color, color_step;
   alignas(64) Lane depth_start, color_start;
 
-  /// True if the batch is full now.
+  /// True if the batch is full now. A cut line's lane is set up by the first vertices, then replaced.
   HALFPLANE_INLINE bool add(const Record& record) {
     const auto i = static_cast<std::size_t>(count);
-    for (std::size_t k = 0; k < 3; ++k) v[k][i] = static_cast<std::int32_t>(record.v[k]);
+    const bool is_cut = record.kind() == RecordKind::cut_line;
+    if (is_cut) {
+      cut |= 1U << i;
+      cut_line[i] = record.v[0];
+    }
+    for (std::size_t k = 0; k < 3; ++k) v[k][i] = is_cut ? 0 : static_cast<std::int32_t>(record.v[k]);
     return ++count == 16;
   }
 };
@@ -116,10 +123,8 @@ HALFPLANE_INLINE LineWay set_up_way(LineBatch& batch, const OctantLanes& line, c
   // Half a unit away from every border between rows: far more than the error of these products.
   const D16 row = (position - convert<double>(moved) * D + 0.5) * reciprocal_D, slope = d * reciprocal_D;
   batch.is_long = is_any(line.major >= kLongLine);
-  if (batch.is_long) {
-    row.store(batch.row.data());
-    slope.store(batch.slope.data());
-  }
+  row.store(batch.row.data());
+  slope.store(batch.slope.data());
   constexpr double kPixel = 1 << kMinorPoint;
   const I16 &is_minor_negative = line.is_minor_negative, &is_major_negative = line.is_major_negative;
   const auto with_sign = [&](const I16& v) HALFPLANE_LAMBDA { return (v ^ is_minor_negative) - is_minor_negative; };

@@ -142,15 +142,6 @@ HALFPLANE_NOINLINE void draw_pixels(Bin& bin, const LineBatch& lines, std::size_
   count_fragments(bin, covered_pixels, passed_pixels);
 }
 
-template <class Fragments>
-HALFPLANE_INLINE void draw_set_up_lines(Bin& bin, const LineBatch& lines, std::size_t count) {
-  using Narrow = std::conditional_t<Fragments::kIsOpaque, std::int32_t, std::int64_t>;  // one instance suffices
-  if (bin.widths.depth().line.bits <= 32)
-    draw_pixels<Fragments, Narrow>(bin, lines, count);
-  else
-    draw_pixels<Fragments, std::int64_t>(bin, lines, count);
-}
-
 /// Steps [first, last] of a line, counted from its first pixel, in which one coordinate is inside the bin.
 struct Steps {
   std::int64_t first = 0, last = 0;
@@ -173,65 +164,69 @@ HALFPLANE_INLINE void clip_steps(Steps& steps, std::int32_t start, bool is_negat
   if (leaves >= 0 && leaves < steps.last) steps.last = std::min(steps.last, step_of(leaves + 1) - 1);
 }
 
-/// A line that was set up alone: cut by the scissor or the clipper. Its part in the bin becomes bin.cut_line; false if
-/// there is none.
-HALFPLANE_NOINLINE bool set_up_cut_line(Bin& bin, const LineSetup& line) {
+/// Lane `i` of a batch: a line that was set up alone, cut by the scissor or the clipper.
+HALFPLANE_NOINLINE void set_up_cut_line(const Bin& bin, const LineSetup& line, LineBatch& part, std::size_t i) {
   const std::int64_t d = line.step_stay, D = line.step_stay - line.step_move;
   const bool is_x_major = line.is_x_major != 0;
   Steps steps{0, line.remaining};
   const int x = line.x - bin.first_x, y = line.y - bin.first_y;
   clip_steps(steps, x, line.is_x_negative != 0, line.error, d, is_x_major ? 0 : D);
   clip_steps(steps, y, line.is_y_negative != 0, line.error, d, is_x_major ? D : 0);
-  if (steps.first > steps.last) return false;
+  part.pixels[i] = static_cast<std::int32_t>(std::max<std::int64_t>(steps.last - steps.first + 1, 0));
+  if (part.pixels[i] == 0) return;
   const std::int64_t n = steps.first, remainder = line.error + (n - 1) * d + D;
   const auto major = static_cast<int>(n), minor = static_cast<int>(remainder / D);
   const int right = is_x_major ? major : minor, down = is_x_major ? minor : major;
-  LineBatch& part = bin.cut_line;
-  part.pixels[0] = static_cast<std::int32_t>(steps.last - n + 1);
   const auto moved_by = [](int from, int by, auto is_negative) { return is_negative != 0 ? from - by : from + by; };
   const int first_x = moved_by(x, right, line.is_x_negative), first_y = moved_by(y, down, line.is_y_negative);
-  part.is_x_major[0] = -line.is_x_major;
-  part.major[0] = LinePositions::first<std::int32_t>(is_x_major ? first_x : first_y, part.is_x_major[0],
+  part.is_x_major[i] = -line.is_x_major;
+  part.major[i] = LinePositions::first<std::int32_t>(is_x_major ? first_x : first_y, part.is_x_major[i],
                                                      -(is_x_major ? line.is_x_negative : line.is_y_negative));
-  part.shows_start[0] = n == 0 ? -line.is_before_start : 0;
-  part.is_long = D >= kLongLine;
-  part.row[0] = (static_cast<double>(remainder - minor * D) + 0.5) / static_cast<double>(D);
-  part.slope[0] = static_cast<double>(d) / static_cast<double>(D);
+  part.shows_start[i] = n == 0 ? -line.is_before_start : 0;
+  part.is_long |= D >= kLongLine;
+  part.row[i] = (static_cast<double>(remainder - minor * D) + 0.5) / static_cast<double>(D);
+  part.slope[i] = static_cast<double>(d) / static_cast<double>(D);
   constexpr double kPixel = 1 << kMinorPoint;
   const bool is_minor_negative = (is_x_major ? line.is_y_negative : line.is_x_negative) != 0;
   const auto first_minor = static_cast<std::uint32_t>((is_x_major ? first_y : first_x) + (is_minor_negative ? 1 : 0));
-  const auto fraction = static_cast<std::int32_t>(part.row[0] * kPixel),
-             step = static_cast<std::int32_t>(part.slope[0] * kPixel);
-  part.minor[0] = static_cast<std::int32_t>((first_minor << kMinorPoint) +
+  const auto fraction = static_cast<std::int32_t>(part.row[i] * kPixel),
+             step = static_cast<std::int32_t>(part.slope[i] * kPixel);
+  part.minor[i] = static_cast<std::int32_t>((first_minor << kMinorPoint) +
                                             static_cast<std::uint32_t>(is_minor_negative ? -fraction : fraction));
-  part.minor_step[0] = is_minor_negative ? -step : step;
+  part.minor_step[i] = is_minor_negative ? -step : step;
   const int depth_up = 64 - bin.widths.depth().line.bits, color_up = 32 - bin.widths.color().line.bits;
   const auto steps_on = static_cast<std::uint64_t>(n);
-  part.depth[0] = static_cast<std::int64_t>((line.value[kDepthPlane] + steps_on * line.step[kDepthPlane]) << depth_up);
-  part.depth_step[0] = static_cast<std::int64_t>(line.step[kDepthPlane] << depth_up);
+  part.depth[i] = static_cast<std::int64_t>((line.value[kDepthPlane] + steps_on * line.step[kDepthPlane]) << depth_up);
+  part.depth_step[i] = static_cast<std::int64_t>(line.step[kDepthPlane] << depth_up);
   for (std::size_t c = 0; c < 4; ++c) {
-    part.color[c][0] = static_cast<std::int32_t>(
+    part.color[c][i] = static_cast<std::int32_t>(
         static_cast<std::uint32_t>(line.value[kColorPlane + c] + steps_on * line.step[kColorPlane + c]) << color_up);
-    part.color_step[c][0] =
+    part.color_step[c][i] =
         static_cast<std::int32_t>(static_cast<std::uint32_t>(line.step[kColorPlane + c]) << color_up);
   }
-  part.depth_start[0] = static_cast<std::int32_t>(line.start[kDepthPlane]);
-  part.color_start[0] = static_cast<std::int32_t>(packed_channels(line.start));
-  return true;
-}
-
-template <class Fragments>
-HALFPLANE_INLINE void draw_cut_line(Bin& bin, const LineSetup& line) {
-  if (set_up_cut_line(bin, line)) draw_set_up_lines<Fragments>(bin, bin.cut_line, 1);
+  part.depth_start[i] = static_cast<std::int32_t>(line.start[kDepthPlane]);
+  part.color_start[i] = static_cast<std::int32_t>(packed_channels(line.start));
 }
 
 /// Draws the pending lines.
 template <class Fragments>
 void draw_lines(Bin& bin, const Slice& slice) {
-  if (bin.lines.count == 0) return;
-  set_up_lines(bin.lines, slice, bin.job.frame, bin.first_x, bin.first_y);
-  draw_set_up_lines<Fragments>(bin, bin.lines, static_cast<std::size_t>(bin.lines.count));
-  bin.lines.count = 0;
+  LineBatch& lines = bin.lines;
+  if (lines.count == 0) return;
+  lines.is_long = false;
+  if (lines.cut != (1U << lines.count) - 1) set_up_lines(lines, slice, bin.job.frame, bin.first_x, bin.first_y);
+  for (std::uint32_t left = lines.cut; left != 0; left &= left - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(left));
+    set_up_cut_line(bin, slice.lines[lines.cut_line[i]], lines, i);
+  }
+  if (bin.widths.depth().line.bits <= 32) {
+    using Narrow = std::conditional_t<Fragments::kIsOpaque, std::int32_t, std::int64_t>;  // one instance suffices
+    draw_pixels<Fragments, Narrow>(bin, lines, static_cast<std::size_t>(lines.count));
+  } else {
+    draw_pixels<Fragments, std::int64_t>(bin, lines, static_cast<std::size_t>(lines.count));
+  }
+  lines.count = 0;
+  lines.cut = 0;
 }
 
 }  // namespace

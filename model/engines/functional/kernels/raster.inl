@@ -165,13 +165,8 @@ void draw_records(Bin& bin, const Slice& slice, const std::uint32_t* first, cons
     if (kind == RecordKind::whole_line || kind == RecordKind::cut_line) {
       if (is_behind<Fragments>(bin, record, true)) continue;
       bin.small_run = 0;
-      if (kind == RecordKind::whole_line) {
-        if (bin.lines.add(record)) draw_lines<Fragments>(bin, slice);
-        continue;
-      }
-      draw_batch<Fragments>(bin, slice);
-      draw_lines<Fragments>(bin, slice);
-      draw_cut_line<Fragments>(bin, slice.lines[record.v[0]]);
+      if (!slice.is_lines) draw_batch<Fragments>(bin, slice);  // outlines: triangles may be before and after it
+      if (bin.lines.add(record) || !slice.is_lines) draw_lines<Fragments>(bin, slice);
       continue;
     }
     if (Fragments::kIsOpaque && !bin.has_operations && is_dot(bin, slice, record)) {
