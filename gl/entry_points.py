@@ -16,6 +16,10 @@ DESKTOP = [f"GL_VERSION_1_{minor}" for minor in range(6)]
 EMBEDDED = ["GL_VERSION_ES_CM_1_0"]
 CORE = pathlib.Path(__file__).parent / "core"
 
+def snake(name):
+    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower()
+
+
 # Name without "gl", count, type and v -> command, arguments before the components, how integers are read.
 COMPONENTS = {
     "Vertex": ("vertex", "", "real"),
@@ -94,6 +98,9 @@ BODIES = {
     "GetPointerv": "now<&get_pointer>($*)",
     "CompressedTexImage2D": "with_context([&](Context& c) { enter_compressed_image(c, $*); })",
 }
+for rule, size in {"Vertex": "", "Color": "", "SecondaryColor": "", "TexCoord": "", "Normal": "3, ", "Index": "1, ",
+                   "FogCoord": "1, ", "PointSize": "1, ", "EdgeFlag": "1, GLenum{GL_UNSIGNED_BYTE}, "}.items():
+    BODIES[rule + "Pointer"] = f"now<&array_pointer>(Array::{snake(rule)}, {size}$*)"
 for rule in ("Map1", "Map2", "PixelMap"):
     for letters in ("f", "d", "fv", "uiv", "usv"):
         command = "pixel_map" if rule == "PixelMap" else rule.lower()
@@ -135,10 +142,6 @@ def read_commands():
         parts = [part.split() for part in re.split(r",\s*(?![^<]*>)", parameters) if part.strip()]
         found[name] = [(" ".join(part[:-1]), part[-1]) for part in parts]
     return found
-
-
-def snake(name):
-    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower()
 
 
 def issued(command):

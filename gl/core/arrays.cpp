@@ -3,8 +3,8 @@
 #include <limits>
 #include <utility>
 
+#include "arrays.hpp"
 #include "commands.hpp"
-#include "embedded.hpp"
 #include "list.hpp"
 #include "matrix.hpp"
 #include "primitive.hpp"
@@ -60,18 +60,6 @@ const NumberType& number_type_of(GLenum type) {
   return found == kNumberTypes.end() ? kNumberTypes.front() : *found;
 }
 
-constexpr std::initializer_list<GLenum> kColorTypes{GL_BYTE, GL_UNSIGNED_BYTE, GL_SHORT, GL_UNSIGNED_SHORT,
-                                                    GL_INT,  GL_UNSIGNED_INT,  GL_FLOAT, GL_DOUBLE};
-
-void set_pointer(Context& context, ArrayPointer& array, int size, std::array<int, 2> sizes, GLenum type,
-                 std::initializer_list<GLenum> types, GLsizei stride, const void* pointer) {
-  if (size < sizes[0] || size > sizes[1] || stride < 0) return context.fail(GL_INVALID_VALUE);
-  const bool is_known = context.is_embedded ? takes_array_type(context, type, &array == &context.client.color)
-                                            : std::ranges::find(types, type) != types.end();
-  if (!is_known) return context.fail(GL_INVALID_ENUM);
-  array = {array.enabled, size, type, stride, pointer, context.client.array_buffer};
-}
-
 std::shared_ptr<BufferObject> buffer_of(const Context& context, GLuint name) {
   const std::lock_guard lock(context.shared->mutex);
   const auto found = context.shared->buffers.find(name);
@@ -99,14 +87,6 @@ Memory memory_of(const Context& context, GLuint buffer_name, const void* pointer
   return {buffer, buffer->data.data() + offset, buffer->data.size() - offset};
 }
 
-std::array<ArrayPointer*, 8 + kTextureUnits> arrays_of(ClientState& client) {
-  std::array<ArrayPointer*, 8 + kTextureUnits> arrays{&client.vertex,    &client.normal,    &client.color,
-                                                      &client.secondary, &client.index,     &client.edge_flag,
-                                                      &client.fog_coord, &client.point_size};
-  for (std::size_t i = 0; i < kTextureUnits; ++i) arrays[8 + i] = &client.tex_coord[i];
-  return arrays;
-}
-
 /// An enabled array, ready to be read.
 struct Stream {
   Memory memory;
@@ -128,65 +108,59 @@ struct Stream {
 
 /// All arrays of a draw.
 struct Streams {
-  Stream vertex, normal, color, secondary, index, edge_flag, fog_coord, point_size;
-  std::array<Stream, kTextureUnits> tex_coord;
+  std::array<Stream, kArrays> stream;
   bool is_readable = true;
 
   explicit Streams(const Context& context) {
-    const ClientState& client = context.client;
-    const auto add = [&](Stream& stream, const ArrayPointer& array, bool is_normalized) {
-      if (!array.enabled) return;
+    for (std::size_t i = 0; i < kArrays; ++i) {
+      const ArrayPointer& array = context.client.array[i];
+      if (!array.enabled) continue;
       const NumberType& type = number_type_of(array.type);
-      stream.memory = memory_of(context, array.buffer, array.pointer);
-      stream.element_bytes = type.bytes * static_cast<std::size_t>(array.size);
-      stream.stride = array.stride == 0 ? stream.element_bytes : static_cast<std::size_t>(array.stride);
-      stream.size = array.size;
-      stream.read = is_normalized ? type.normalized : type.plain;
-      is_readable &= stream.memory.is_readable();
-    };
-    add(vertex, client.vertex, false);
-    add(normal, client.normal, true);
-    add(color, client.color, true);
-    add(secondary, client.secondary, true);
-    add(index, client.index, false);
-    add(edge_flag, client.edge_flag, false);
-    add(fog_coord, client.fog_coord, false);
-    add(point_size, client.point_size, false);
-    for (std::size_t i = 0; i < kTextureUnits; ++i) add(tex_coord[i], client.tex_coord[i], false);
+      const Memory memory = memory_of(context, array.buffer, array.pointer);
+      const std::size_t bytes = type.bytes * static_cast<std::size_t>(array.size);
+      stream[i] = {memory, array.stride == 0 ? bytes : static_cast<std::size_t>(array.stride), bytes, array.size,
+                   array_kind(i).is_normalized ? type.normalized : type.plain};
+      is_readable &= memory.is_readable();
+    }
   }
+  [[nodiscard]] const Stream& operator[](Array array) const { return stream[static_cast<std::size_t>(array)]; }
 
   /// Issues the attributes of an element as commands.
   void issue_attributes(Context& context, std::uint32_t i) const {
-    const auto with = [&](const Stream& stream, auto&& command) {
-      if (stream.read == nullptr) return;
+    const auto with = [&](Array array, auto&& command, std::size_t unit = 0) {
+      const Stream& from = stream[static_cast<std::size_t>(array) + unit];
+      if (from.read == nullptr) return;
       Vec4 value{0, 0, 0, 1};
-      stream.get(i, value.data());
+      from.get(i, value.data());
       command(value);
     };
     constexpr auto kAllowed = InsideBegin::allowed;
-    with(edge_flag, [&](const Vec4& v) {
+    with(Array::edge_flag, [&](const Vec4& v) {
       issue<&gl::edge_flag, kAllowed>(context, static_cast<GLboolean>(v[0] != 0 ? GL_TRUE : GL_FALSE));
     });
-    for (std::size_t unit = 0; unit < kTextureUnits; ++unit)
-      with(tex_coord[unit], [&](const Vec4& v) {
+    for (std::size_t unit = 0; unit < kTextureUnits; ++unit) {
+      const auto command = [&](const Vec4& v) {
         issue<&gl::tex_coord, kAllowed>(context, static_cast<GLenum>(GL_TEXTURE0 + unit), v[0], v[1], v[2], v[3]);
-      });
-    with(point_size, [&](const Vec4& v) { context.state.point.size = v[0]; });
-    with(fog_coord, [&](const Vec4& v) { issue<&gl::fog_coord, kAllowed>(context, v[0]); });
-    with(index, [&](const Vec4& v) { issue<&gl::index, kAllowed>(context, v[0]); });
-    with(secondary, [&](const Vec4& v) { issue<&gl::secondary_color, kAllowed>(context, v[0], v[1], v[2]); });
-    with(color, [&](const Vec4& v) { issue<&gl::color, kAllowed>(context, v[0], v[1], v[2], v[3]); });
-    with(normal, [&](const Vec4& v) { issue<&gl::normal, kAllowed>(context, v[0], v[1], v[2]); });
+      };
+      with(Array::tex_coord, command, unit);
+    }
+    with(Array::point_size, [&](const Vec4& v) { context.state.point.size = v[0]; });
+    with(Array::fog_coord, [&](const Vec4& v) { issue<&gl::fog_coord, kAllowed>(context, v[0]); });
+    with(Array::index, [&](const Vec4& v) { issue<&gl::index, kAllowed>(context, v[0]); });
+    with(Array::secondary_color,
+         [&](const Vec4& v) { issue<&gl::secondary_color, kAllowed>(context, v[0], v[1], v[2]); });
+    with(Array::color, [&](const Vec4& v) { issue<&gl::color, kAllowed>(context, v[0], v[1], v[2], v[3]); });
+    with(Array::normal, [&](const Vec4& v) { issue<&gl::normal, kAllowed>(context, v[0], v[1], v[2]); });
   }
 
   [[nodiscard]] Vec4 position(std::uint32_t i) const {
     Vec4 value{0, 0, 0, 1};
-    vertex.get(i, value.data());
+    (*this)[Array::vertex].get(i, value.data());
     return value;
   }
   void issue_vertex(Context& context, std::uint32_t i) const {
     issue_attributes(context, i);
-    if (vertex.read == nullptr) return;
+    if ((*this)[Array::vertex].read == nullptr) return;
     const auto& [x, y, z, w] = position(i);
     issue<&gl::vertex, InsideBegin::allowed>(context, x, y, z, w);
   }
@@ -231,7 +205,7 @@ std::shared_ptr<const DisplayList> compiled(Context& context, const Streams& str
 void draw(Context& context, const Streams& streams, GLenum mode, std::uint32_t first,
           std::span<const std::uint32_t> indices, bool are_distinct) {
   if (!streams.is_readable) return context.fail(GL_INVALID_OPERATION);
-  if (streams.vertex.elements() == 0) indices = {};
+  if (streams[Array::vertex].elements() == 0) indices = {};
   if (context.compiling != nullptr) return issue<&play>(context, compiled(context, streams, mode, first, indices));
   if (indices.empty()) return;
   update_shading(context);
@@ -338,44 +312,22 @@ constexpr std::array kInterleaved{
 
 }  // namespace
 
-void vertex_pointer(Context& context, GLint size, GLenum type, GLsizei stride, const void* pointer) {
-  set_pointer(context, context.client.vertex, size, {2, 4}, type, {GL_SHORT, GL_INT, GL_FLOAT, GL_DOUBLE}, stride,
-              pointer);
+ClientState::ClientState() {
+  for (std::size_t i = 0; i < kArrays; ++i) array[i].size = array_kind(i).largest;
+  array[static_cast<std::size_t>(Array::edge_flag)].type = GL_UNSIGNED_BYTE;
 }
 
-void normal_pointer(Context& context, GLenum type, GLsizei stride, const void* pointer) {
-  set_pointer(context, context.client.normal, 3, {3, 3}, type, {GL_BYTE, GL_SHORT, GL_INT, GL_FLOAT, GL_DOUBLE}, stride,
-              pointer);
-}
+std::size_t array_type_bytes(GLenum type) { return number_type_of(type).bytes; }
 
-void color_pointer(Context& context, GLint size, GLenum type, GLsizei stride, const void* pointer) {
-  set_pointer(context, context.client.color, size, {3, 4}, type, kColorTypes, stride, pointer);
-}
-
-void secondary_color_pointer(Context& context, GLint size, GLenum type, GLsizei stride, const void* pointer) {
-  set_pointer(context, context.client.secondary, size, {3, 3}, type, kColorTypes, stride, pointer);
-}
-
-void index_pointer(Context& context, GLenum type, GLsizei stride, const void* pointer) {
-  set_pointer(context, context.client.index, 1, {1, 1}, type, {GL_UNSIGNED_BYTE, GL_SHORT, GL_INT, GL_FLOAT, GL_DOUBLE},
-              stride, pointer);
-}
-
-void tex_coord_pointer(Context& context, GLint size, GLenum type, GLsizei stride, const void* pointer) {
-  set_pointer(context, context.client.tex_coord[static_cast<std::size_t>(context.client.active_texture)], size, {1, 4},
-              type, {GL_SHORT, GL_INT, GL_FLOAT, GL_DOUBLE}, stride, pointer);
-}
-
-void fog_coord_pointer(Context& context, GLenum type, GLsizei stride, const void* pointer) {
-  set_pointer(context, context.client.fog_coord, 1, {1, 1}, type, {GL_FLOAT, GL_DOUBLE}, stride, pointer);
-}
-
-void point_size_pointer(Context& context, GLenum type, GLsizei stride, const void* pointer) {
-  set_pointer(context, context.client.point_size, 1, {1, 1}, type, {GL_FLOAT, GL_FIXED}, stride, pointer);
-}
-
-void edge_flag_pointer(Context& context, GLsizei stride, const void* pointer) {
-  set_pointer(context, context.client.edge_flag, 1, {1, 1}, GL_UNSIGNED_BYTE, {GL_UNSIGNED_BYTE}, stride, pointer);
+void array_pointer(Context& context, Array which, GLint size, GLenum type, GLsizei stride, const void* pointer) {
+  const std::size_t place = array_place(context.client, static_cast<std::size_t>(which));
+  const ArrayKind& kind = array_kind(place);
+  if (size < kind.least || size > kind.largest || stride < 0) return context.fail(GL_INVALID_VALUE);
+  const bool is_known = context.is_embedded ? takes_array_type(type, which == Array::color)
+                                            : type - GL_BYTE < 32 && (kind.types >> (type - GL_BYTE) & 1U) != 0;
+  if (!is_known) return context.fail(GL_INVALID_ENUM);
+  ArrayPointer& array = context.client.array[place];
+  array = {array.enabled, size, type, stride, pointer, context.client.array_buffer};
 }
 
 void interleaved_arrays(Context& context, GLenum format, GLsizei stride, const void* pointer) {
@@ -385,35 +337,25 @@ void interleaved_arrays(Context& context, GLenum format, GLsizei stride, const v
   if (stride == 0) stride = found->stride;
   ClientState& client = context.client;
   // An address, or an offset within a buffer; not arithmetic on a pointer, which may be null.
-  const auto set = [&](ArrayPointer& array, int size, GLenum type, int at) {
+  const auto set = [&](Array which, int size, GLenum type, int at) {
+    ArrayPointer& array = client.array[array_place(client, static_cast<std::size_t>(which))];
     array.enabled = size != 0;
     const std::uintptr_t address = reinterpret_cast<std::uintptr_t>(pointer) + static_cast<std::uintptr_t>(at);
     const auto* const where = reinterpret_cast<const void*>(address);  // NOLINT(performance-no-int-to-ptr)
     if (size != 0) array = {true, size, type, stride, where, client.array_buffer};
   };
-  client.edge_flag.enabled = client.index.enabled = client.secondary.enabled = client.fog_coord.enabled = false;
-  set(client.tex_coord[static_cast<std::size_t>(client.active_texture)], found->texture_size, GL_FLOAT, 0);
-  set(client.color, found->color_size, found->color_type, found->color_at);
-  set(client.normal, found->has_normal ? 3 : 0, GL_FLOAT, found->normal_at);
-  set(client.vertex, found->vertex_size, GL_FLOAT, found->vertex_at);
+  for (const Array array : {Array::edge_flag, Array::index, Array::secondary_color, Array::fog_coord})
+    client.array[static_cast<std::size_t>(array)].enabled = false;
+  set(Array::tex_coord, found->texture_size, GL_FLOAT, 0);
+  set(Array::color, found->color_size, found->color_type, found->color_at);
+  set(Array::normal, found->has_normal ? 3 : 0, GL_FLOAT, found->normal_at);
+  set(Array::vertex, found->vertex_size, GL_FLOAT, found->vertex_at);
 }
 
-void client_state(Context& context, GLenum array, bool enabled) {
-  ClientState& client = context.client;
-  switch (array) {
-    case GL_VERTEX_ARRAY: client.vertex.enabled = enabled; return;
-    case GL_NORMAL_ARRAY: client.normal.enabled = enabled; return;
-    case GL_COLOR_ARRAY: client.color.enabled = enabled; return;
-    case GL_SECONDARY_COLOR_ARRAY: client.secondary.enabled = enabled; return;
-    case GL_INDEX_ARRAY: client.index.enabled = enabled; return;
-    case GL_EDGE_FLAG_ARRAY: client.edge_flag.enabled = enabled; return;
-    case kPointSizeArray: client.point_size.enabled = enabled; return;
-    case GL_FOG_COORDINATE_ARRAY: client.fog_coord.enabled = enabled; return;
-    case GL_TEXTURE_COORD_ARRAY:
-      client.tex_coord[static_cast<std::size_t>(client.active_texture)].enabled = enabled;
-      return;
-    default: context.fail(GL_INVALID_ENUM);
-  }
+void client_state(Context& context, GLenum name, bool enabled) {
+  const std::size_t place = find_array(context.client, &ArrayKind::enable, name);
+  if (place == kArrays) return context.fail(GL_INVALID_ENUM);
+  context.client.array[place].enabled = enabled;
 }
 
 void client_active_texture(Context& context, GLenum unit) {
@@ -433,7 +375,7 @@ void draw_arrays(Context& context, GLenum mode, GLint first, GLsizei count) {
   if (first < 0) return context.fail(GL_INVALID_VALUE);
   // No element beyond the end of a buffer is drawn.
   const Streams streams(context);
-  const std::size_t elements = streams.vertex.elements(), at = static_cast<std::size_t>(first);
+  const std::size_t elements = streams[Array::vertex].elements(), at = static_cast<std::size_t>(first);
   const std::size_t drawn = std::min(static_cast<std::size_t>(count), elements > at ? elements - at : 0);
   draw(context, streams, mode, static_cast<std::uint32_t>(first), counting(drawn), true);
 }
@@ -498,8 +440,8 @@ void delete_buffers(Context& context, GLsizei n, const GLuint* names) {
       if (binding == names[i]) binding = 0;
     };
     unbind(client.array_buffer), unbind(client.element_buffer);
-    for (ArrayPointer* const array : arrays_of(client))
-      if (array->buffer == names[i]) array->buffer = 0, array->pointer = nullptr;
+    for (ArrayPointer& array : client.array)
+      if (array.buffer == names[i]) array.buffer = 0, array.pointer = nullptr;
   }
 }
 

@@ -84,15 +84,7 @@ void clip_plane(Context&, GLenum plane, Vec4 equation);
 
 // Vertex arrays (arrays.cpp). Pointers and enables are not list; draws and array_element are, and read the arrays when they
 // are compiled.
-void vertex_pointer(Context&, GLint size, GLenum type, GLsizei stride, const void* pointer);
-void normal_pointer(Context&, GLenum type, GLsizei stride, const void* pointer);
-void color_pointer(Context&, GLint size, GLenum type, GLsizei stride, const void* pointer);
-void secondary_color_pointer(Context&, GLint size, GLenum type, GLsizei stride, const void* pointer);
-void index_pointer(Context&, GLenum type, GLsizei stride, const void* pointer);
-void tex_coord_pointer(Context&, GLint size, GLenum type, GLsizei stride, const void* pointer);
-void fog_coord_pointer(Context&, GLenum type, GLsizei stride, const void* pointer);
-void point_size_pointer(Context&, GLenum type, GLsizei stride, const void* pointer);  // GL_OES_point_size_array
-void edge_flag_pointer(Context&, GLsizei stride, const void* pointer);
+void array_pointer(Context&, Array which, GLint size, GLenum type, GLsizei stride, const void* pointer);
 void interleaved_arrays(Context&, GLenum format, GLsizei stride, const void* pointer);
 void client_state(Context&, GLenum array, bool enabled);
 void client_active_texture(Context&, GLenum unit);

@@ -52,8 +52,7 @@ bool takes_enable(const Context& context, GLenum cap) {
          std::ranges::find(kEnables, static_cast<int>(cap)) != kEnables.end();
 }
 
-bool takes_array_type(const Context& context, GLenum type, bool is_color) {
-  if (!context.is_embedded) return true;
+bool takes_array_type(GLenum type, bool is_color) {
   if (type == GL_FLOAT || type == GL_FIXED) return true;
   return is_color ? type == GL_UNSIGNED_BYTE : type == GL_BYTE || type == GL_SHORT;
 }

@@ -10,8 +10,8 @@ namespace halfplane::gl {
 // GL_OES_point_size_array.
 inline constexpr GLenum kPointSizeArray = 0x8b9c, kPointSizeArrayType = 0x898a, kPointSizeArrayStride = 0x898b,
                         kPointSizeArrayPointer = 0x898c, kPointSizeArrayBufferBinding = 0x8b9f;
-// GL_OES_matrix_get: GL_MODELVIEW_MATRIX_FLOAT_AS_INT_BITS_OES, those of the projection and the texture.
-inline constexpr GLenum kModelviewBits = 0x898d, kProjectionBits = 0x898e, kTextureMatrixBits = 0x898f;
+/// GL_MODELVIEW_MATRIX_FLOAT_AS_INT_BITS_OES of GL_OES_matrix_get; those of the projection and the texture follow it.
+inline constexpr GLenum kModelviewBits = 0x898d;
 /// GL_PALETTE4_RGB8_OES; nine more formats follow it.
 inline constexpr GLenum kFirstPalette = 0x8b90;
 inline constexpr GLenum kPalettes = 10;
@@ -25,8 +25,8 @@ inline constexpr const char* kEmbeddedExtensions =
 
 /// Whether a context takes `cap` in glEnable: every cap that OpenGL has, or one of OpenGL ES.
 [[nodiscard]] bool takes_enable(const Context& context, GLenum cap);
-/// Likewise the type of an array; `is_color`: of colours.
-[[nodiscard]] bool takes_array_type(const Context& context, GLenum type, bool is_color);
+/// Whether OpenGL ES takes the type of an array; `is_color`: of colours.
+[[nodiscard]] bool takes_array_type(GLenum type, bool is_color);
 /// The last mode of glBegin that draws may have.
 [[nodiscard]] GLenum last_mode(const Context& context);
 

@@ -180,21 +180,10 @@ void sample_coverage(Context& context, double value, GLboolean invert) {
 }
 
 void hint(Context& context, GLenum target, GLenum mode) {
-  struct Target {
-    GLenum target;
-    GLenum HintState::*mode;
-  };
-  static constexpr std::array<Target, 7> kTargets{{{GL_PERSPECTIVE_CORRECTION_HINT, &HintState::perspective},
-                                                   {GL_POINT_SMOOTH_HINT, &HintState::point},
-                                                   {GL_LINE_SMOOTH_HINT, &HintState::line},
-                                                   {GL_POLYGON_SMOOTH_HINT, &HintState::polygon},
-                                                   {GL_FOG_HINT, &HintState::fog},
-                                                   {GL_GENERATE_MIPMAP_HINT, &HintState::mipmap},
-                                                   {GL_TEXTURE_COMPRESSION_HINT, &HintState::compression}}};
-  const auto* const at = std::ranges::find(kTargets, target, &Target::target);
-  if (at == kTargets.end() || !is_one_of(mode, {GL_FASTEST, GL_NICEST, GL_DONT_CARE}))
-    return context.fail(GL_INVALID_ENUM);
-  context.state.hint.*at->mode = mode;
+  const auto at = std::ranges::find(kHints, target);
+  if (at == kHints.end()) return context.fail(GL_INVALID_ENUM);
+  set_enum(context, context.state.hint[static_cast<std::size_t>(at - kHints.begin())], mode,
+           {GL_FASTEST, GL_NICEST, GL_DONT_CARE});
 }
 
 void draw_buffer(Context& context, GLenum mode) {

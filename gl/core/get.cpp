@@ -6,8 +6,8 @@
 #include <numeric>
 #include <utility>
 
-#include "commands.hpp"
-#include "embedded.hpp"
+#include "arrays.hpp"
+#include "parameter.hpp"
 
 namespace halfplane::gl {
 namespace {
@@ -80,7 +80,6 @@ template <class T>
 const T& active(const Context& context, const std::array<T, kTextureUnits>& units) {
   return units[static_cast<std::size_t>(context.state.texture.active)];
 }
-constexpr int kAccumulationBits = 16;
 constexpr std::array<double, 2> kPointSizes{1, kLargestPoint}, kLineWidths{1, kLargestLine};
 
 struct StateValue {
@@ -112,18 +111,6 @@ const StateValue kStateValues[] = {
     {GL_ARRAY_BUFFER_BINDING, [](const Context& c) -> Numbers { return c.client.array_buffer; }},
     {GL_ELEMENT_ARRAY_BUFFER_BINDING, [](const Context& c) -> Numbers { return c.client.element_buffer; }},
     // 6.7: transformation
-    {GL_MODELVIEW_MATRIX, [](const Context& c) -> Numbers { return c.modelview.back(); }},
-    {GL_PROJECTION_MATRIX, [](const Context& c) -> Numbers { return c.projection.back(); }},
-    {GL_TEXTURE_MATRIX, [](const Context& c) -> Numbers { return active(c, c.texture_matrix).back(); }},
-    {GL_TRANSPOSE_MODELVIEW_MATRIX, [](const Context& c) { return transposed(c.modelview.back()); }},
-    {GL_TRANSPOSE_PROJECTION_MATRIX, [](const Context& c) { return transposed(c.projection.back()); }},
-    {GL_TRANSPOSE_TEXTURE_MATRIX, [](const Context& c) { return transposed(active(c, c.texture_matrix).back()); }},
-    {kModelviewBits, [](const Context& c) { return bits_of(c.modelview.back()); }},
-    {kProjectionBits, [](const Context& c) { return bits_of(c.projection.back()); }},
-    {kTextureMatrixBits, [](const Context& c) { return bits_of(active(c, c.texture_matrix).back()); }},
-    {GL_MODELVIEW_STACK_DEPTH, [](const Context& c) -> Numbers { return c.modelview.size(); }},
-    {GL_PROJECTION_STACK_DEPTH, [](const Context& c) -> Numbers { return c.projection.size(); }},
-    {GL_TEXTURE_STACK_DEPTH, [](const Context& c) -> Numbers { return active(c, c.texture_matrix).size(); }},
     {GL_MATRIX_MODE, [](const Context& c) -> Numbers { return c.state.transform.matrix_mode; }},
     {GL_VIEWPORT, [](const Context& c) -> Numbers { return box(c.state.viewport); }},
     {GL_DEPTH_RANGE,
@@ -131,26 +118,11 @@ const StateValue kStateValues[] = {
        return color_values(std::array{c.state.viewport.near, c.state.viewport.far});
      }},
     // 6.8 and 6.9: colour, fog, light
-    {GL_FOG_COLOR, [](const Context& c) { return color_values(c.state.fog.color); }},
-    {GL_FOG_INDEX, [](const Context& c) -> Numbers { return c.state.fog.index; }},
-    {GL_FOG_DENSITY, [](const Context& c) -> Numbers { return c.state.fog.density; }},
-    {GL_FOG_START, [](const Context& c) -> Numbers { return c.state.fog.start; }},
-    {GL_FOG_END, [](const Context& c) -> Numbers { return c.state.fog.end; }},
-    {GL_FOG_MODE, [](const Context& c) -> Numbers { return c.state.fog.mode; }},
-    {GL_FOG_COORD_SRC, [](const Context& c) -> Numbers { return c.state.fog.coord_source; }},
     {GL_SHADE_MODEL, [](const Context& c) -> Numbers { return c.state.lighting.shade_model; }},
     {GL_COLOR_MATERIAL_PARAMETER, [](const Context& c) -> Numbers { return c.state.lighting.color_material_mode; }},
     {GL_COLOR_MATERIAL_FACE, [](const Context& c) -> Numbers { return c.state.lighting.color_material_face; }},
-    {GL_LIGHT_MODEL_AMBIENT, [](const Context& c) { return color_values(c.state.lighting.model_ambient); }},
-    {GL_LIGHT_MODEL_LOCAL_VIEWER, [](const Context& c) -> Numbers { return c.state.lighting.local_viewer; }},
-    {GL_LIGHT_MODEL_TWO_SIDE, [](const Context& c) -> Numbers { return c.state.lighting.two_side; }},
-    {GL_LIGHT_MODEL_COLOR_CONTROL, [](const Context& c) -> Numbers { return c.state.lighting.color_control; }},
     // 6.11 and 6.12: rasterization, multisampling
     {GL_POINT_SIZE, [](const Context& c) -> Numbers { return c.state.point.size; }},
-    {GL_POINT_SIZE_MIN, [](const Context& c) -> Numbers { return c.state.point.least; }},
-    {GL_POINT_SIZE_MAX, [](const Context& c) -> Numbers { return c.state.point.largest; }},
-    {GL_POINT_FADE_THRESHOLD_SIZE, [](const Context& c) -> Numbers { return c.state.point.fade; }},
-    {GL_POINT_DISTANCE_ATTENUATION, [](const Context& c) -> Numbers { return c.state.point.attenuation; }},
     {GL_LINE_WIDTH, [](const Context& c) -> Numbers { return c.state.line.width; }},
     {GL_LINE_STIPPLE_PATTERN, [](const Context& c) -> Numbers { return c.state.line.stipple_pattern; }},
     {GL_LINE_STIPPLE_REPEAT, [](const Context& c) -> Numbers { return c.state.line.stipple_factor; }},
@@ -162,8 +134,6 @@ const StateValue kStateValues[] = {
     {GL_SAMPLE_COVERAGE_VALUE, [](const Context& c) -> Numbers { return c.state.multisample.value; }},
     {GL_SAMPLE_COVERAGE_INVERT, [](const Context& c) -> Numbers { return c.state.multisample.invert; }},
     // 6.13 to 6.16: textures
-    {GL_TEXTURE_BINDING_1D, [](const Context& c) -> Numbers { return active(c, c.state.texture.unit).bound[0]; }},
-    {GL_TEXTURE_BINDING_2D, [](const Context& c) -> Numbers { return active(c, c.state.texture.unit).bound[1]; }},
     {GL_TEXTURE_BINDING_3D, [](const Context& c) -> Numbers { return active(c, c.state.texture.unit).bound[2]; }},
     {GL_TEXTURE_BINDING_CUBE_MAP, [](const Context& c) -> Numbers { return active(c, c.state.texture.unit).bound[3]; }},
     {GL_ACTIVE_TEXTURE, [](const Context& c) -> Numbers { return GL_TEXTURE0 + c.state.texture.active; }},
@@ -199,36 +169,6 @@ const StateValue kStateValues[] = {
     {GL_STENCIL_CLEAR_VALUE, [](const Context& c) -> Numbers { return c.state.stencil.clear; }},
     {GL_ACCUM_CLEAR_VALUE, [](const Context& c) { return color_values(c.state.accum.clear); }},
     // 6.21 to 6.24: pixels
-    {GL_UNPACK_SWAP_BYTES, [](const Context& c) -> Numbers { return c.client.unpack.swap_bytes; }},
-    {GL_UNPACK_LSB_FIRST, [](const Context& c) -> Numbers { return c.client.unpack.lsb_first; }},
-    {GL_UNPACK_IMAGE_HEIGHT, [](const Context& c) -> Numbers { return c.client.unpack.image_height; }},
-    {GL_UNPACK_SKIP_IMAGES, [](const Context& c) -> Numbers { return c.client.unpack.skip_images; }},
-    {GL_UNPACK_ROW_LENGTH, [](const Context& c) -> Numbers { return c.client.unpack.row_length; }},
-    {GL_UNPACK_SKIP_ROWS, [](const Context& c) -> Numbers { return c.client.unpack.skip_rows; }},
-    {GL_UNPACK_SKIP_PIXELS, [](const Context& c) -> Numbers { return c.client.unpack.skip_pixels; }},
-    {GL_UNPACK_ALIGNMENT, [](const Context& c) -> Numbers { return c.client.unpack.alignment; }},
-    {GL_PACK_SWAP_BYTES, [](const Context& c) -> Numbers { return c.client.pack.swap_bytes; }},
-    {GL_PACK_LSB_FIRST, [](const Context& c) -> Numbers { return c.client.pack.lsb_first; }},
-    {GL_PACK_IMAGE_HEIGHT, [](const Context& c) -> Numbers { return c.client.pack.image_height; }},
-    {GL_PACK_SKIP_IMAGES, [](const Context& c) -> Numbers { return c.client.pack.skip_images; }},
-    {GL_PACK_ROW_LENGTH, [](const Context& c) -> Numbers { return c.client.pack.row_length; }},
-    {GL_PACK_SKIP_ROWS, [](const Context& c) -> Numbers { return c.client.pack.skip_rows; }},
-    {GL_PACK_SKIP_PIXELS, [](const Context& c) -> Numbers { return c.client.pack.skip_pixels; }},
-    {GL_PACK_ALIGNMENT, [](const Context& c) -> Numbers { return c.client.pack.alignment; }},
-    {GL_MAP_COLOR, [](const Context& c) -> Numbers { return c.state.pixel.map_color; }},
-    {GL_MAP_STENCIL, [](const Context& c) -> Numbers { return c.state.pixel.map_stencil; }},
-    {GL_INDEX_SHIFT, [](const Context& c) -> Numbers { return c.state.pixel.index_shift; }},
-    {GL_INDEX_OFFSET, [](const Context& c) -> Numbers { return c.state.pixel.index_offset; }},
-    {GL_RED_SCALE, [](const Context& c) -> Numbers { return c.state.pixel.scale[0]; }},
-    {GL_GREEN_SCALE, [](const Context& c) -> Numbers { return c.state.pixel.scale[1]; }},
-    {GL_BLUE_SCALE, [](const Context& c) -> Numbers { return c.state.pixel.scale[2]; }},
-    {GL_ALPHA_SCALE, [](const Context& c) -> Numbers { return c.state.pixel.scale[3]; }},
-    {GL_DEPTH_SCALE, [](const Context& c) -> Numbers { return c.state.pixel.depth_scale; }},
-    {GL_RED_BIAS, [](const Context& c) -> Numbers { return c.state.pixel.bias[0]; }},
-    {GL_GREEN_BIAS, [](const Context& c) -> Numbers { return c.state.pixel.bias[1]; }},
-    {GL_BLUE_BIAS, [](const Context& c) -> Numbers { return c.state.pixel.bias[2]; }},
-    {GL_ALPHA_BIAS, [](const Context& c) -> Numbers { return c.state.pixel.bias[3]; }},
-    {GL_DEPTH_BIAS, [](const Context& c) -> Numbers { return c.state.pixel.depth_bias; }},
     {GL_ZOOM_X, [](const Context& c) -> Numbers { return c.state.pixel.zoom_x; }},
     {GL_ZOOM_Y, [](const Context& c) -> Numbers { return c.state.pixel.zoom_y; }},
     {GL_READ_BUFFER, [](const Context& c) -> Numbers { return c.state.pixel.read_buffer; }},
@@ -237,13 +177,6 @@ const StateValue kStateValues[] = {
     {GL_MAP2_GRID_DOMAIN, [](const Context& c) -> Numbers { return c.state.eval.range2; }},
     {GL_MAP1_GRID_SEGMENTS, [](const Context& c) -> Numbers { return c.state.eval.grid1; }},
     {GL_MAP2_GRID_SEGMENTS, [](const Context& c) -> Numbers { return c.state.eval.grid2; }},
-    {GL_PERSPECTIVE_CORRECTION_HINT, [](const Context& c) -> Numbers { return c.state.hint.perspective; }},
-    {GL_POINT_SMOOTH_HINT, [](const Context& c) -> Numbers { return c.state.hint.point; }},
-    {GL_LINE_SMOOTH_HINT, [](const Context& c) -> Numbers { return c.state.hint.line; }},
-    {GL_POLYGON_SMOOTH_HINT, [](const Context& c) -> Numbers { return c.state.hint.polygon; }},
-    {GL_FOG_HINT, [](const Context& c) -> Numbers { return c.state.hint.fog; }},
-    {GL_GENERATE_MIPMAP_HINT, [](const Context& c) -> Numbers { return c.state.hint.mipmap; }},
-    {GL_TEXTURE_COMPRESSION_HINT, [](const Context& c) -> Numbers { return c.state.hint.compression; }},
     // 6.27 and 6.28: limits
     {GL_MAX_LIGHTS, [](const Context&) -> Numbers { return kLights; }},
     {GL_MAX_CLIP_PLANES, [](const Context&) -> Numbers { return kClipPlanes; }},
@@ -290,17 +223,7 @@ const StateValue kStateValues[] = {
     {GL_IMPLEMENTATION_COLOR_READ_TYPE, [](const Context&) -> Numbers { return GL_UNSIGNED_BYTE; }},
     {GL_IMPLEMENTATION_COLOR_READ_FORMAT, [](const Context&) -> Numbers { return GL_RGBA; }},
     // 6.33: bits of the buffers
-    {GL_RED_BITS, [](const Context& c) -> Numbers { return buffer_bits(c)[0]; }},
-    {GL_GREEN_BITS, [](const Context& c) -> Numbers { return buffer_bits(c)[1]; }},
-    {GL_BLUE_BITS, [](const Context& c) -> Numbers { return buffer_bits(c)[2]; }},
-    {GL_ALPHA_BITS, [](const Context& c) -> Numbers { return buffer_bits(c)[3]; }},
     {GL_INDEX_BITS, [](const Context&) -> Numbers { return 0; }},
-    {GL_DEPTH_BITS, [](const Context& c) -> Numbers { return buffer_bits(c)[4]; }},
-    {GL_STENCIL_BITS, [](const Context& c) -> Numbers { return buffer_bits(c)[5]; }},
-    {GL_ACCUM_RED_BITS, [](const Context&) -> Numbers { return kAccumulationBits; }},
-    {GL_ACCUM_GREEN_BITS, [](const Context&) -> Numbers { return kAccumulationBits; }},
-    {GL_ACCUM_BLUE_BITS, [](const Context&) -> Numbers { return kAccumulationBits; }},
-    {GL_ACCUM_ALPHA_BITS, [](const Context&) -> Numbers { return kAccumulationBits; }},
     // 6.34: the rest
     {GL_LIST_BASE, [](const Context& c) -> Numbers { return c.state.list.base; }},
     {GL_LIST_INDEX, [](const Context& c) -> Numbers { return c.compiling == nullptr ? 0 : c.compiling_name; }},
@@ -312,6 +235,28 @@ const StateValue kStateValues[] = {
     {GL_SELECTION_BUFFER_SIZE, [](const Context& c) -> Numbers { return c.select_size; }},
     {GL_FEEDBACK_BUFFER_SIZE, [](const Context& c) -> Numbers { return c.feedback_size; }},
     {GL_FEEDBACK_BUFFER_TYPE, [](const Context& c) -> Numbers { return c.feedback_type; }},
+};
+
+// Names in a row: `first`, `first` + 1, ...
+struct StateRow {
+  GLenum first;
+  GLuint count;
+  Numbers (*value)(const Context& c, std::size_t i);
+};
+// Of the model view, the projection, and the active unit's texture coordinates.
+const std::vector<Mat4>& stack(const Context& c, std::size_t i) {
+  return i == 0 ? c.modelview : i == 1 ? c.projection : active(c, c.texture_matrix);
+}
+const StateRow kStateRows[] = {
+    {GL_MODELVIEW_STACK_DEPTH, 3, [](const Context& c, std::size_t i) -> Numbers { return stack(c, i).size(); }},
+    {GL_MODELVIEW_MATRIX, 3, [](const Context& c, std::size_t i) -> Numbers { return stack(c, i).back(); }},
+    {GL_TRANSPOSE_MODELVIEW_MATRIX, 3, [](const Context& c, std::size_t i) { return transposed(stack(c, i).back()); }},
+    {kModelviewBits, 3, [](const Context& c, std::size_t i) { return bits_of(stack(c, i).back()); }},
+    {GL_TEXTURE_BINDING_1D, 2,
+     [](const Context& c, std::size_t i) -> Numbers { return active(c, c.state.texture.unit).bound[i]; }},
+    {GL_RED_BITS, 6,
+     [](const Context& c, std::size_t i) -> Numbers { return buffer_bits(c)[i]; }},  // and depth, stencil
+    {GL_ACCUM_RED_BITS, 4, [](const Context&, std::size_t) -> Numbers { return 16; }},
 };
 
 // A row of flags: `first`, `first` + 1, ... of glEnable.
@@ -361,37 +306,6 @@ constexpr Enable kEnables[] = {
     {GL_TEXTURE_GEN_S, 4, [](State& s, std::size_t i) { return &active_unit(s).gen[i].enabled; }},
 };
 
-// The pnames of an array; 0: none.
-struct ArrayNames {
-  GLenum enable, size, type, stride, buffer, pointer;
-  const ArrayPointer& (*array)(const ClientState& c);
-};
-constexpr ArrayNames kArrays[] = {
-    {GL_VERTEX_ARRAY, GL_VERTEX_ARRAY_SIZE, GL_VERTEX_ARRAY_TYPE, GL_VERTEX_ARRAY_STRIDE,
-     GL_VERTEX_ARRAY_BUFFER_BINDING, GL_VERTEX_ARRAY_POINTER,
-     [](const ClientState& c) -> const ArrayPointer& { return c.vertex; }},
-    {GL_NORMAL_ARRAY, 0, GL_NORMAL_ARRAY_TYPE, GL_NORMAL_ARRAY_STRIDE, GL_NORMAL_ARRAY_BUFFER_BINDING,
-     GL_NORMAL_ARRAY_POINTER, [](const ClientState& c) -> const ArrayPointer& { return c.normal; }},
-    {GL_COLOR_ARRAY, GL_COLOR_ARRAY_SIZE, GL_COLOR_ARRAY_TYPE, GL_COLOR_ARRAY_STRIDE, GL_COLOR_ARRAY_BUFFER_BINDING,
-     GL_COLOR_ARRAY_POINTER, [](const ClientState& c) -> const ArrayPointer& { return c.color; }},
-    {GL_SECONDARY_COLOR_ARRAY, GL_SECONDARY_COLOR_ARRAY_SIZE, GL_SECONDARY_COLOR_ARRAY_TYPE,
-     GL_SECONDARY_COLOR_ARRAY_STRIDE, GL_SECONDARY_COLOR_ARRAY_BUFFER_BINDING, GL_SECONDARY_COLOR_ARRAY_POINTER,
-     [](const ClientState& c) -> const ArrayPointer& { return c.secondary; }},
-    {GL_INDEX_ARRAY, 0, GL_INDEX_ARRAY_TYPE, GL_INDEX_ARRAY_STRIDE, GL_INDEX_ARRAY_BUFFER_BINDING,
-     GL_INDEX_ARRAY_POINTER, [](const ClientState& c) -> const ArrayPointer& { return c.index; }},
-    {GL_TEXTURE_COORD_ARRAY, GL_TEXTURE_COORD_ARRAY_SIZE, GL_TEXTURE_COORD_ARRAY_TYPE, GL_TEXTURE_COORD_ARRAY_STRIDE,
-     GL_TEXTURE_COORD_ARRAY_BUFFER_BINDING, GL_TEXTURE_COORD_ARRAY_POINTER,
-     [](const ClientState& c) -> const ArrayPointer& {
-       return c.tex_coord[static_cast<std::size_t>(c.active_texture)];
-     }},
-    {GL_FOG_COORD_ARRAY, 0, GL_FOG_COORD_ARRAY_TYPE, GL_FOG_COORD_ARRAY_STRIDE, GL_FOG_COORD_ARRAY_BUFFER_BINDING,
-     GL_FOG_COORD_ARRAY_POINTER, [](const ClientState& c) -> const ArrayPointer& { return c.fog_coord; }},
-    {kPointSizeArray, 0, kPointSizeArrayType, kPointSizeArrayStride, kPointSizeArrayBufferBinding,
-     kPointSizeArrayPointer, [](const ClientState& c) -> const ArrayPointer& { return c.point_size; }},
-    {GL_EDGE_FLAG_ARRAY, 0, 0, GL_EDGE_FLAG_ARRAY_STRIDE, GL_EDGE_FLAG_ARRAY_BUFFER_BINDING, GL_EDGE_FLAG_ARRAY_POINTER,
-     [](const ClientState& c) -> const ArrayPointer& { return c.edge_flag; }},
-};
-
 constexpr GLuint kPixelMaps = 10;  // from GL_PIXEL_MAP_I_TO_I on
 // Until it is set, a map is a single zero.
 std::vector<float> pixel_map_of(const Context& context, GLenum map) {
@@ -418,17 +332,27 @@ constexpr const char* kExtensions =
 Values get(Context& context, GLenum pname) {
   for (const StateValue& row : kStateValues)
     if (row.pname == pname) return row.value(context);
+  for (const StateRow& row : kStateRows)
+    if (pname - row.first < row.count) return row.value(context, pname - row.first);
+  if (const auto hint = std::ranges::find(kHints, pname); hint != kHints.end())
+    return Numbers(context.state.hint[static_cast<std::size_t>(hint - kHints.begin())]);
+  State& state = context.state;
+  for (const std::optional<Place>& place :
+       {fog_place(state.fog, pname), light_model_place(state.lighting, pname), point_place(state.point, pname),
+        transfer_place(state.pixel, pname), store_place(context.client, pname)})
+    if (place) return parameter(context, place);
   if (const bool* flag = enable_flag(context, pname)) return Numbers(*flag);
   if (pname - GL_PIXEL_MAP_I_TO_I_SIZE < kPixelMaps)
     return Numbers(pixel_map_of(context, pname - GL_PIXEL_MAP_I_TO_I_SIZE + GL_PIXEL_MAP_I_TO_I).size());
-  for (const ArrayNames& names : kArrays) {
-    const ArrayPointer& array = names.array(context.client);
-    if (pname == names.enable) return Numbers(array.enabled);
-    if (pname == names.stride) return Numbers(array.stride);
-    if (pname == names.buffer) return Numbers(array.buffer);
-    if (pname != 0 && pname == names.size) return Numbers(array.size);
-    if (pname != 0 && pname == names.type) return Numbers(array.type);
-  }
+  const auto array_with = [&](GLenum ArrayKind::*name) {
+    const std::size_t place = find_array(context.client, name, pname);
+    return place == kArrays ? nullptr : &context.client.array[place];
+  };
+  if (const ArrayPointer* array = array_with(&ArrayKind::enable)) return Numbers(array->enabled);
+  if (const ArrayPointer* array = array_with(&ArrayKind::stride)) return Numbers(array->stride);
+  if (const ArrayPointer* array = array_with(&ArrayKind::buffer)) return Numbers(array->buffer);
+  if (const ArrayPointer* array = array_with(&ArrayKind::size)) return Numbers(array->size);
+  if (const ArrayPointer* array = array_with(&ArrayKind::type)) return Numbers(array->type);
   context.fail(GL_INVALID_ENUM);
   return {};
 }
@@ -451,8 +375,8 @@ void copy_enables(State& to, State from) {
 
 GLboolean is_enabled(Context& context, GLenum cap) {
   if (const bool* flag = enable_flag(context, cap)) return *flag;
-  for (const ArrayNames& names : kArrays)
-    if (cap == names.enable) return names.array(context.client).enabled;
+  const std::size_t array = find_array(context.client, &ArrayKind::enable, cap);
+  if (array != kArrays) return context.client.array[array].enabled;
   context.fail(GL_INVALID_ENUM);
   return GL_FALSE;
 }
@@ -488,12 +412,10 @@ const GLubyte* get_string(Context& context, GLenum name) {
 }
 
 void get_pointer(Context& context, GLenum pname, void** params) {
-  for (const ArrayNames& names : kArrays)
-    if (pname == names.pointer) {
-      *params = const_cast<void*>(names.array(context.client).pointer);
-      return;
-    }
-  if (pname == GL_SELECTION_BUFFER_POINTER)
+  const std::size_t array = find_array(context.client, &ArrayKind::pointer, pname);
+  if (array != kArrays)
+    *params = const_cast<void*>(context.client.array[array].pointer);
+  else if (pname == GL_SELECTION_BUFFER_POINTER)
     *params = context.select_buffer;
   else if (pname == GL_FEEDBACK_BUFFER_POINTER)
     *params = context.feedback_buffer;

@@ -1,98 +1,39 @@
 // Lights, materials and fog as state (OpenGL 1.5, 2.14 and 3.10). Their effect on a vertex: shade.cpp.
-#include <limits>
-#include <span>
-
-#include "commands.hpp"
 #include "matrix.hpp"
+#include "parameter.hpp"
 #include "shading.hpp"
 
 namespace halfplane::gl {
 namespace {
 
-constexpr double kNoBound = std::numeric_limits<double>::max();
+Place color_place(Vec4& color) { return {&color, {}, ValueKind::color}; }
 
-/// A parameter that is numbers: its place and its legal values.
-template <class Object>
-struct Parameter {
-  GLenum pname;
-  Vec4 Object::*four = nullptr;
-  Vec3 Object::*three = nullptr;
-  double Object::*one = nullptr;
-  ValueKind kind = ValueKind::real;
-  double low = -kNoBound, high = kNoBound, also = 0;  ///< bounds, and a value that is allowed beyond them
-};
-
-constexpr std::array kLightParameters{
-    Parameter<Light>{.pname = GL_AMBIENT, .four = &Light::ambient, .kind = ValueKind::color},
-    Parameter<Light>{.pname = GL_DIFFUSE, .four = &Light::diffuse, .kind = ValueKind::color},
-    Parameter<Light>{.pname = GL_SPECULAR, .four = &Light::specular, .kind = ValueKind::color},
-    Parameter<Light>{.pname = GL_POSITION, .four = &Light::position},
-    Parameter<Light>{.pname = GL_SPOT_DIRECTION, .three = &Light::spot_direction},
-    Parameter<Light>{.pname = GL_SPOT_EXPONENT, .one = &Light::spot_exponent, .low = 0, .high = 128},
-    Parameter<Light>{.pname = GL_SPOT_CUTOFF, .one = &Light::spot_cutoff, .low = 0, .high = 90, .also = 180}};
-
-constexpr std::array kMaterialParameters{
-    Parameter<Material>{.pname = GL_AMBIENT, .four = &Material::ambient, .kind = ValueKind::color},
-    Parameter<Material>{.pname = GL_DIFFUSE, .four = &Material::diffuse, .kind = ValueKind::color},
-    Parameter<Material>{.pname = GL_SPECULAR, .four = &Material::specular, .kind = ValueKind::color},
-    Parameter<Material>{.pname = GL_EMISSION, .four = &Material::emission, .kind = ValueKind::color},
-    Parameter<Material>{.pname = GL_SHININESS, .one = &Material::shininess, .low = 0, .high = 128},
-    Parameter<Material>{.pname = GL_COLOR_INDEXES, .three = &Material::indexes}};
-
-constexpr std::array kFogParameters{
-    Parameter<FogState>{.pname = GL_FOG_COLOR, .four = &FogState::color, .kind = ValueKind::color},
-    Parameter<FogState>{.pname = GL_FOG_DENSITY, .one = &FogState::density, .low = 0},
-    Parameter<FogState>{.pname = GL_FOG_START, .one = &FogState::start},
-    Parameter<FogState>{.pname = GL_FOG_END, .one = &FogState::end},
-    Parameter<FogState>{.pname = GL_FOG_INDEX, .one = &FogState::index}};
-
-template <class Object>
-const Parameter<Object>* find(std::span<const Parameter<Object>> parameters, GLenum pname) {
-  const auto found = std::ranges::find(parameters, pname, &Parameter<Object>::pname);
-  return found == parameters.end() ? nullptr : &*found;
+std::optional<Place> light_place(Light& light, GLenum pname) {
+  if (pname - GL_CONSTANT_ATTENUATION < 3)
+    return Place{.where = &light.attenuation[pname - GL_CONSTANT_ATTENUATION], .low = 0};
+  switch (pname) {
+    case GL_AMBIENT: return color_place(light.ambient);
+    case GL_DIFFUSE: return color_place(light.diffuse);
+    case GL_SPECULAR: return color_place(light.specular);
+    case GL_POSITION: return Place{&light.position};
+    case GL_SPOT_DIRECTION: return Place{&light.spot_direction};
+    case GL_SPOT_EXPONENT: return Place{.where = &light.spot_exponent, .low = 0, .high = 128};
+    case GL_SPOT_CUTOFF: return Place{.where = &light.spot_cutoff, .low = 0, .high = 90, .also = 180};
+    default: return std::nullopt;
+  }
 }
 
-/// Sets a parameter of the table. False: it is none of these, or an error was reported.
-template <class Object>
-bool set(Context& context, std::span<const Parameter<Object>> parameters, Object& object, GLenum pname,
-         const Params& params) {
-  const Parameter<Object>* parameter = find(parameters, pname);
-  if (parameter == nullptr) {
-    context.fail(GL_INVALID_ENUM);
-    return false;
+std::optional<Place> material_place(Material& material, GLenum pname) {
+  switch (pname) {
+    case GL_AMBIENT:
+    case GL_AMBIENT_AND_DIFFUSE: return color_place(material.ambient);
+    case GL_DIFFUSE: return color_place(material.diffuse);
+    case GL_SPECULAR: return color_place(material.specular);
+    case GL_EMISSION: return color_place(material.emission);
+    case GL_SHININESS: return Place{.where = &material.shininess, .low = 0, .high = 128};
+    case GL_COLOR_INDEXES: return Place{&material.indexes};
+    default: return std::nullopt;
   }
-  const Vec4& value = params.value;
-  if (parameter->four != nullptr) {
-    object.*parameter->four = parameter->kind == ValueKind::color ? color_of(params) : value;
-  } else if (parameter->three != nullptr) {
-    object.*parameter->three = {value[0], value[1], value[2]};
-  } else if (!(value[0] >= parameter->low && value[0] <= parameter->high) &&
-             !(parameter->also != 0 && value[0] == parameter->also)) {
-    context.fail(GL_INVALID_VALUE);
-    return false;
-  } else {
-    object.*parameter->one = value[0];
-  }
-  return true;
-}
-
-template <class Object>
-Values get(Context& context, std::span<const Parameter<Object>> parameters, const Object& object, GLenum pname) {
-  const Parameter<Object>* parameter = find(parameters, pname);
-  if (parameter == nullptr) {
-    context.fail(GL_INVALID_ENUM);
-    return {};
-  }
-  const auto values = [&](const auto& numbers) { return Values{parameter->kind, {numbers.begin(), numbers.end()}}; };
-  if (parameter->four != nullptr) return values(object.*parameter->four);
-  if (parameter->three != nullptr) return values(object.*parameter->three);
-  return {parameter->kind, {object.*parameter->one}};
-}
-
-/// A value that names something; 0, which is never allowed, for one that is no enumerator.
-GLenum enum_of(const Params& params) {
-  const double value = params.value[0];
-  return value >= 0 && value <= 0xffff ? static_cast<GLenum>(value) : 0;
 }
 
 /// Front and back, of which `face` is one or both; false and GL_INVALID_ENUM for an unknown face.
@@ -108,13 +49,6 @@ Light* light_of(Context& context, GLenum name) {
   if (name >= GL_LIGHT0 && name < GL_LIGHT0 + kLights) return &context.state.lighting.light[name - GL_LIGHT0];
   context.fail(GL_INVALID_ENUM);
   return nullptr;
-}
-
-/// The coefficient of attenuation that `pname` is; -1: none.
-int attenuation_of(GLenum pname) {
-  return pname >= GL_CONSTANT_ATTENUATION && pname <= GL_QUADRATIC_ATTENUATION
-             ? static_cast<int>(pname - GL_CONSTANT_ATTENUATION)
-             : -1;
 }
 
 }  // namespace
@@ -149,13 +83,7 @@ int param_count(GLenum pname) {
 
 void light(Context& context, GLenum name, GLenum pname, Params params) {
   Light* light = light_of(context, name);
-  if (light == nullptr) return;
-  if (const int i = attenuation_of(pname); i >= 0) {
-    if (!(params.value[0] >= 0)) return context.fail(GL_INVALID_VALUE);
-    light->attenuation[static_cast<std::size_t>(i)] = params.value[0];
-    return;
-  }
-  if (!set<Light>(context, kLightParameters, *light, pname, params)) return;
+  if (light == nullptr || !set_parameter(context, light_place(*light, pname), params)) return;
   const Mat4& to_eye = context.modelview.back();
   if (pname == GL_POSITION) light->position = transformed(to_eye, light->position);
   if (pname == GL_SPOT_DIRECTION) {
@@ -166,45 +94,42 @@ void light(Context& context, GLenum name, GLenum pname, Params params) {
 }
 
 Values get_light(Context& context, GLenum name, GLenum pname) {
-  const Light* light = light_of(context, name);
-  if (light == nullptr) return {};
-  if (const int i = attenuation_of(pname); i >= 0)
-    return {ValueKind::real, {light->attenuation[static_cast<std::size_t>(i)]}};
-  return get<Light>(context, kLightParameters, *light, pname);
+  Light* light = light_of(context, name);
+  return light == nullptr ? Values{} : parameter(context, light_place(*light, pname));
+}
+
+std::optional<Place> light_model_place(LightingState& lighting, GLenum pname) {
+  static constexpr std::array<GLenum, 2> kControls{GL_SINGLE_COLOR, GL_SEPARATE_SPECULAR_COLOR};
+  switch (pname) {
+    case GL_LIGHT_MODEL_LOCAL_VIEWER: return Place{&lighting.local_viewer};
+    case GL_LIGHT_MODEL_TWO_SIDE: return Place{&lighting.two_side};
+    case GL_LIGHT_MODEL_COLOR_CONTROL: return Place{&lighting.color_control, kControls};
+    case GL_LIGHT_MODEL_AMBIENT: return color_place(lighting.model_ambient);
+    default: return std::nullopt;
+  }
 }
 
 void light_model(Context& context, GLenum pname, Params params) {
-  LightingState& lighting = context.state.lighting;
-  switch (pname) {
-    case GL_LIGHT_MODEL_LOCAL_VIEWER: lighting.local_viewer = params.value[0] != 0; return;
-    case GL_LIGHT_MODEL_TWO_SIDE: lighting.two_side = params.value[0] != 0; return;
-    case GL_LIGHT_MODEL_COLOR_CONTROL:
-      return set_enum(context, lighting.color_control, enum_of(params), {GL_SINGLE_COLOR, GL_SEPARATE_SPECULAR_COLOR});
-    case GL_LIGHT_MODEL_AMBIENT: lighting.model_ambient = color_of(params); return;
-    default: context.fail(GL_INVALID_ENUM);
-  }
+  set_parameter(context, light_model_place(context.state.lighting, pname), params);
 }
 
 void material(Context& context, GLenum face, GLenum pname, Params params) {
   std::array<bool, 2> faces;
   if (!faces_of(context, face, faces)) return;
-  const bool is_both = pname == GL_AMBIENT_AND_DIFFUSE;
   for (std::size_t i = 0; i < 2; ++i) {
     if (!faces[i]) continue;
     Material& material = context.state.lighting.material[i];
-    if (!set<Material>(context, kMaterialParameters, material, is_both ? GL_AMBIENT : pname, params)) return;
-    if (is_both) material.diffuse = material.ambient;
+    if (!set_parameter(context, material_place(material, pname), params)) return;
+    if (pname == GL_AMBIENT_AND_DIFFUSE) material.diffuse = material.ambient;
   }
   forget_lit(context);
   track_color(context);
 }
 
 Values get_material(Context& context, GLenum face, GLenum pname) {
-  if (face != GL_FRONT && face != GL_BACK) {
-    context.fail(GL_INVALID_ENUM);
-    return {};
-  }
-  return get<Material>(context, kMaterialParameters, context.state.lighting.material[face == GL_FRONT ? 0 : 1], pname);
+  if ((face != GL_FRONT && face != GL_BACK) || pname == GL_AMBIENT_AND_DIFFUSE)
+    return context.fail(GL_INVALID_ENUM), Values{};
+  return parameter(context, material_place(context.state.lighting.material[face == GL_FRONT ? 0 : 1], pname));
 }
 
 void color_material(Context& context, GLenum face, GLenum mode) {
@@ -234,12 +159,24 @@ void track_color(Context& context) {
   }
 }
 
+std::optional<Place> fog_place(FogState& fog, GLenum pname) {
+  static constexpr std::array<GLenum, 3> kModes{GL_EXP, GL_EXP2, GL_LINEAR};
+  static constexpr std::array<GLenum, 2> kSources{GL_FRAGMENT_DEPTH, GL_FOG_COORDINATE};
+  const auto number = [](double& where, double low) { return Place{.where = &where, .low = low, .high = kFinite}; };
+  switch (pname) {
+    case GL_FOG_MODE: return Place{&fog.mode, kModes};
+    case GL_FOG_COORDINATE_SOURCE: return Place{&fog.coord_source, kSources};
+    case GL_FOG_COLOR: return color_place(fog.color);
+    case GL_FOG_DENSITY: return number(fog.density, 0);
+    case GL_FOG_START: return number(fog.start, -kFinite);
+    case GL_FOG_END: return number(fog.end, -kFinite);
+    case GL_FOG_INDEX: return number(fog.index, -kFinite);
+    default: return std::nullopt;
+  }
+}
+
 void fog(Context& context, GLenum pname, Params params) {
-  FogState& fog = context.state.fog;
-  if (pname == GL_FOG_MODE) return set_enum(context, fog.mode, enum_of(params), {GL_EXP, GL_EXP2, GL_LINEAR});
-  if (pname == GL_FOG_COORDINATE_SOURCE)
-    return set_enum(context, fog.coord_source, enum_of(params), {GL_FRAGMENT_DEPTH, GL_FOG_COORDINATE});
-  set<FogState>(context, kFogParameters, fog, pname, params);
+  set_parameter(context, fog_place(context.state.fog, pname), params);
 }
 
 }  // namespace halfplane::gl

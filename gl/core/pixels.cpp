@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "../../model/stages/color_ops.hpp"
-#include "commands.hpp"
 #include "host_shader.hpp"
 #include "matrix.hpp"
+#include "parameter.hpp"
 #include "primitive.hpp"
 #include "texture.hpp"
 
@@ -176,13 +176,6 @@ constexpr auto kStoreParameters = std::to_array<StoreParameter>({
     {GL_UNPACK_IMAGE_HEIGHT, GL_PACK_IMAGE_HEIGHT, &PixelStore::image_height, nullptr},
 });
 
-int rounded(double value) {
-  if (std::isnan(value)) return 0;
-  using Limits = std::numeric_limits<int>;
-  return static_cast<int>(
-      std::clamp(std::round(value), static_cast<double>(Limits::min()), static_cast<double>(Limits::max())));
-}
-
 }  // namespace
 
 void draw_pixels(Context& context, std::shared_ptr<const Image> image) {
@@ -251,24 +244,26 @@ void pixel_zoom(Context& context, double x, double y) {
   context.state.pixel.zoom_y = y;
 }
 
-void pixel_transfer(Context& context, GLenum pname, double value) {
-  PixelState& state = context.state.pixel;
+std::optional<Place> transfer_place(PixelState& state, GLenum pname) {
   constexpr std::array<GLenum, 8> kChannels{GL_RED_SCALE,  GL_RED_BIAS,  GL_GREEN_SCALE, GL_GREEN_BIAS,
                                             GL_BLUE_SCALE, GL_BLUE_BIAS, GL_ALPHA_SCALE, GL_ALPHA_BIAS};
   if (const auto found = std::ranges::find(kChannels, pname); found != kChannels.end()) {
     const auto i = static_cast<std::size_t>(found - kChannels.begin());
-    (i % 2 == 0 ? state.scale : state.bias)[i / 2] = value;
-    return;
+    return Place{&(i % 2 == 0 ? state.scale : state.bias)[i / 2]};
   }
   switch (pname) {
-    case GL_DEPTH_SCALE: state.depth_scale = value; break;
-    case GL_DEPTH_BIAS: state.depth_bias = value; break;
-    case GL_INDEX_SHIFT: state.index_shift = rounded(value); break;
-    case GL_INDEX_OFFSET: state.index_offset = rounded(value); break;
-    case GL_MAP_COLOR: state.map_color = value != 0; break;
-    case GL_MAP_STENCIL: state.map_stencil = value != 0; break;
-    default: context.fail(GL_INVALID_ENUM);
+    case GL_DEPTH_SCALE: return Place{&state.depth_scale};
+    case GL_DEPTH_BIAS: return Place{&state.depth_bias};
+    case GL_INDEX_SHIFT: return Place{&state.index_shift};
+    case GL_INDEX_OFFSET: return Place{&state.index_offset};
+    case GL_MAP_COLOR: return Place{&state.map_color};
+    case GL_MAP_STENCIL: return Place{&state.map_stencil};
+    default: return std::nullopt;
   }
+}
+
+void pixel_transfer(Context& context, GLenum pname, double value) {
+  set_parameter(context, transfer_place(context.state.pixel, pname), {{value}});
 }
 
 void pixel_map(Context& context, GLenum map, const std::shared_ptr<const std::vector<float>>& values) {
@@ -284,20 +279,19 @@ void pixel_map(Context& context, GLenum map, const std::shared_ptr<const std::ve
   context.pixel_maps[map] = std::move(table);
 }
 
-void pixel_store(Context& context, GLenum pname, double value) {
+std::optional<Place> store_place(ClientState& client, GLenum pname) {
   const auto* row = std::ranges::find_if(
       kStoreParameters, [pname](const StoreParameter& p) { return p.unpack == pname || p.pack == pname; });
-  if (row == kStoreParameters.end()) return context.fail(GL_INVALID_ENUM);
-  PixelStore& store = row->unpack == pname ? context.client.unpack : context.client.pack;
-  if (row->flag != nullptr) {
-    store.*row->flag = value != 0;
-    return;
-  }
-  const int number = rounded(value);
-  const bool is_alignment = row->number == &PixelStore::alignment;
-  if (number < 0 || (is_alignment && number != 1 && number != 2 && number != 4 && number != 8))
+  if (row == kStoreParameters.end()) return std::nullopt;
+  PixelStore& store = row->unpack == pname ? client.unpack : client.pack;
+  return row->flag != nullptr ? Place{&(store.*row->flag)} : Place{.where = &(store.*row->number), .low = 0};
+}
+
+void pixel_store(Context& context, GLenum pname, double value) {
+  const bool is_alignment = pname == GL_UNPACK_ALIGNMENT || pname == GL_PACK_ALIGNMENT;
+  if (const double rows = std::round(value); is_alignment && rows != 1 && rows != 2 && rows != 4 && rows != 8)
     return context.fail(GL_INVALID_VALUE);
-  store.*row->number = number;
+  set_parameter(context, store_place(context.client, pname), {{value}});
 }
 
 Image read_rectangle(Context& context, int x, int y, int width, int height, GLenum format) {

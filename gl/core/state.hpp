@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include <GL/gl.h>
@@ -155,9 +156,13 @@ struct AccumState {  // GL_ACCUM_BUFFER_BIT
   Vec4 clear{0, 0, 0, 0};
 };
 
-struct HintState {  // GL_HINT_BIT
-  GLenum perspective = GL_DONT_CARE, point = GL_DONT_CARE, line = GL_DONT_CARE, polygon = GL_DONT_CARE,
-         fog = GL_DONT_CARE, mipmap = GL_DONT_CARE, compression = GL_DONT_CARE;
+/// Targets of glHint.
+inline constexpr std::array<GLenum, 7> kHints{
+    GL_PERSPECTIVE_CORRECTION_HINT, GL_POINT_SMOOTH_HINT, GL_LINE_SMOOTH_HINT,
+    GL_POLYGON_SMOOTH_HINT,         GL_FOG_HINT,          GL_GENERATE_MIPMAP_HINT,
+    GL_TEXTURE_COMPRESSION_HINT};
+struct HintState : std::array<GLenum, kHints.size()> {  // GL_HINT_BIT
+  HintState() { fill(GL_DONT_CARE); }
 };
 
 struct MultisampleState {  // GL_MULTISAMPLE_BIT
@@ -255,6 +260,10 @@ struct PixelStore {
   int row_length = 0, image_height = 0, skip_rows = 0, skip_pixels = 0, skip_images = 0, alignment = 4;
 };
 
+/// Vertex arrays. Those of texture coordinates come last, one for each unit.
+enum class Array { vertex, normal, color, secondary_color, index, edge_flag, fog_coord, point_size, tex_coord };
+inline constexpr std::size_t kArrayKinds = 9, kArrays = kArrayKinds - 1 + kTextureUnits;
+
 struct ArrayPointer {
   bool enabled = false;
   int size = 4;
@@ -267,15 +276,10 @@ struct ArrayPointer {
 /// Everything that glPushClientAttrib can save.
 struct ClientState {
   PixelStore pack, unpack;
-  ArrayPointer vertex, normal, color, secondary, index, edge_flag, fog_coord, point_size;
-  std::array<ArrayPointer, kTextureUnits> tex_coord;
+  std::array<ArrayPointer, kArrays> array;  ///< by Array, texture coordinates unit by unit
   int active_texture = 0;
   GLuint array_buffer = 0, element_buffer = 0;
-  ClientState() {
-    normal.size = secondary.size = 3;
-    index.size = edge_flag.size = fog_coord.size = point_size.size = 1;
-    edge_flag.type = GL_UNSIGNED_BYTE;
-  }
+  ClientState();  // arrays.cpp
 };
 
 }  // namespace halfplane::gl

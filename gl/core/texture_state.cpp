@@ -1,23 +1,13 @@
 // Parameters of textures, environments and coordinate generation.
 #include <algorithm>
 #include <array>
-#include <optional>
-#include <span>
-#include <variant>
 
-#include "commands.hpp"
 #include "matrix.hpp"
+#include "parameter.hpp"
 #include "texture.hpp"
 
 namespace halfplane::gl {
 namespace {
-
-/// Place of a parameter, and its legal values.
-struct Place {
-  std::variant<GLenum*, int*, bool*, double*, Vec4*, std::array<int, 4>*> where;
-  std::span<const GLenum> allowed{};  ///< of an enum
-  ValueKind kind = ValueKind::real;   ///< color: held to 0...1, integers map linearly
-};
 
 constexpr std::array<GLenum, 6> kMinFilters{GL_NEAREST,
                                             GL_LINEAR,
@@ -49,13 +39,13 @@ std::optional<Place> texture_place(TextureObject& t, GLenum pname) {
     case GL_TEXTURE_WRAP_S: return Place{&t.wrap[0], kWraps};
     case GL_TEXTURE_WRAP_T: return Place{&t.wrap[1], kWraps};
     case GL_TEXTURE_WRAP_R: return Place{&t.wrap[2], kWraps};
-    case GL_TEXTURE_BORDER_COLOR: return Place{&t.border_color, {}, ValueKind::color};
-    case GL_TEXTURE_PRIORITY: return Place{&t.priority, {}, ValueKind::color};
+    case GL_TEXTURE_BORDER_COLOR: return Place{&t.border_color, {}, ValueKind::color, true};
+    case GL_TEXTURE_PRIORITY: return Place{&t.priority, {}, ValueKind::color, true};
     case GL_TEXTURE_MIN_LOD: return Place{&t.min_lod};
     case GL_TEXTURE_MAX_LOD: return Place{&t.max_lod};
     case GL_TEXTURE_LOD_BIAS: return Place{&t.lod_bias};
-    case GL_TEXTURE_BASE_LEVEL: return Place{&t.base_level};
-    case GL_TEXTURE_MAX_LEVEL: return Place{&t.max_level};
+    case GL_TEXTURE_BASE_LEVEL: return Place{.where = &t.base_level, .low = 0};
+    case GL_TEXTURE_MAX_LEVEL: return Place{.where = &t.max_level, .low = 0};
     case kTextureCropRect: return Place{&t.crop};
     case GL_GENERATE_MIPMAP: return Place{&t.generate_mipmap};
     case GL_DEPTH_TEXTURE_MODE: return Place{&t.depth_mode, kDepthModes};
@@ -77,7 +67,7 @@ std::optional<Place> environment_place(TextureUnit& unit, GLenum target, GLenum 
   if (pname - GL_OPERAND0_ALPHA < 3) return Place{&alpha.operand[pname - GL_OPERAND0_ALPHA], operands.first(2)};
   switch (pname) {
     case GL_TEXTURE_ENV_MODE: return Place{&unit.env_mode, kEnvModes};
-    case GL_TEXTURE_ENV_COLOR: return Place{&unit.env_color, {}, ValueKind::color};
+    case GL_TEXTURE_ENV_COLOR: return Place{&unit.env_color, {}, ValueKind::color, true};
     case GL_COMBINE_RGB: return Place{&rgb.function, functions};
     case GL_COMBINE_ALPHA: return Place{&alpha.function, functions.first(6)};
     case GL_RGB_SCALE: return Place{&rgb.scale};
@@ -105,90 +95,41 @@ TextureUnit& active_unit(Context& context) {
   return context.state.texture.unit[static_cast<std::size_t>(context.state.texture.active)];
 }
 
-/// Sets a parameter, or reports the error. Whether it was set. `takes_scalars`: also vectors, whose rest is then 0.
-bool set(Context& context, const std::optional<Place>& place, const Params& params, bool takes_scalars) {
-  const auto refuse = [&context](GLenum error) {
-    context.fail(error);
-    return false;
-  };
-  if (!place) return refuse(GL_INVALID_ENUM);
-  const Vec4 value = place->kind == ValueKind::color ? color_of(params) : params.value;
-  const auto in_range = [&place](double v) { return place->kind == ValueKind::color ? held(v) : v; };
-  if (GLenum* const* where = std::get_if<GLenum*>(&place->where)) {
-    const auto found = std::ranges::find_if(place->allowed, [&value](GLenum allowed) { return value[0] == allowed; });
-    if (found == place->allowed.end()) return refuse(GL_INVALID_ENUM);
-    **where = *found;
-  } else if (int* const* number = std::get_if<int*>(&place->where)) {
-    if (!(value[0] >= 0)) return refuse(GL_INVALID_VALUE);
-    **number = static_cast<int>(std::min(value[0] + 0.5, 2147483647.0));
-  } else if (bool* const* flag = std::get_if<bool*>(&place->where)) {
-    **flag = value[0] != 0;
-  } else if (double* const* real = std::get_if<double*>(&place->where)) {
-    **real = in_range(value[0]);
-  } else if (!params.is_vector && !takes_scalars) {
-    return refuse(GL_INVALID_ENUM);
-  } else if (Vec4* const* vector = std::get_if<Vec4*>(&place->where)) {
-    std::ranges::transform(value, (*vector)->begin(), in_range);
-  } else {
-    std::ranges::transform(value, std::get<std::array<int, 4>*>(place->where)->begin(), [](double v) {
-      return v > -2147483648.0 ? static_cast<int>(std::min(v, 2147483647.0)) : 0;
-    });
-  }
-  return true;
-}
-
-Values get(Context& context, const std::optional<Place>& place) {
-  if (!place) {
-    context.fail(GL_INVALID_ENUM);
-    return {};
-  }
-  if (GLenum* const* where = std::get_if<GLenum*>(&place->where))
-    return {ValueKind::integer, {static_cast<double>(**where)}};
-  if (int* const* number = std::get_if<int*>(&place->where))
-    return {ValueKind::integer, {static_cast<double>(**number)}};
-  if (bool* const* flag = std::get_if<bool*>(&place->where)) return {ValueKind::boolean, {**flag ? 1.0 : 0.0}};
-  if (double* const* real = std::get_if<double*>(&place->where)) return {place->kind, {**real}};
-  if (Vec4* const* vector = std::get_if<Vec4*>(&place->where))
-    return {place->kind, {(*vector)->begin(), (*vector)->end()}};
-  const auto& integers = *std::get<std::array<int, 4>*>(place->where);
-  return {ValueKind::integer, {integers.begin(), integers.end()}};
-}
-
 }  // namespace
 
 void tex_parameter(Context& context, GLenum target, GLenum pname, Params params) {
   TextureObject* texture = bound_texture(context, target);
-  if (texture != nullptr) set(context, texture_place(*texture, pname), params, false);
+  if (texture != nullptr) set_parameter(context, texture_place(*texture, pname), params, false);
 }
 
 void tex_env(Context& context, GLenum target, GLenum pname, Params params) {
   const bool is_scale = target == GL_TEXTURE_ENV && (pname == GL_RGB_SCALE || pname == GL_ALPHA_SCALE);
   if (const double scale = params.value[0]; is_scale && scale != 1 && scale != 2 && scale != 4)
     return context.fail(GL_INVALID_VALUE);
-  set(context, environment_place(active_unit(context), target, pname), params, true);
+  set_parameter(context, environment_place(active_unit(context), target, pname), params);
 }
 
 void tex_gen(Context& context, GLenum coord, GLenum pname, Params params) {
   TextureUnit& unit = active_unit(context);
-  if (set(context, generation_place(unit, coord, pname), params, true) && pname == GL_EYE_PLANE) {
+  if (set_parameter(context, generation_place(unit, coord, pname), params) && pname == GL_EYE_PLANE) {
     Vec4& plane = unit.gen[coord - GL_S].eye;
     plane = transformed_plane(plane, inverse(context.modelview.back()));
   }
 }
 
 Values get_tex_env(Context& context, GLenum target, GLenum pname) {
-  return get(context, environment_place(active_unit(context), target, pname));
+  return parameter(context, environment_place(active_unit(context), target, pname));
 }
 
 Values get_tex_gen(Context& context, GLenum coord, GLenum pname) {
-  return get(context, generation_place(active_unit(context), coord, pname));
+  return parameter(context, generation_place(active_unit(context), coord, pname));
 }
 
 Values get_tex_parameter(Context& context, GLenum target, GLenum pname) {
   TextureObject* texture = bound_texture(context, target);
   if (texture == nullptr) return {};
   if (pname == GL_TEXTURE_RESIDENT) return {ValueKind::boolean, {1}};
-  return get(context, texture_place(*texture, pname));
+  return parameter(context, texture_place(*texture, pname));
 }
 
 }  // namespace halfplane::gl

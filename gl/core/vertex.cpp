@@ -2,8 +2,8 @@
 // 2.10, 2.13, 3.3 to 3.5).
 #include <limits>
 
-#include "commands.hpp"
 #include "matrix.hpp"
+#include "parameter.hpp"
 #include "primitive.hpp"
 #include "shading.hpp"
 
@@ -11,8 +11,8 @@ namespace halfplane::gl {
 namespace {
 
 /// Sets a size, or GL_INVALID_VALUE for a value not above `above`.
-void set_size(Context& context, double& where, double size, double above = 0) {
-  if (!(size > above)) return context.fail(GL_INVALID_VALUE);
+void set_size(Context& context, double& where, double size) {
+  if (!(size > 0)) return context.fail(GL_INVALID_VALUE);
   where = size;
 }
 
@@ -128,15 +128,18 @@ void cull_face(Context& context, GLenum face) {
 
 void point_size(Context& context, double size) { set_size(context, context.state.point.size, size); }
 
+std::optional<Place> point_place(PointState& point, GLenum pname) {
+  switch (pname) {
+    case GL_POINT_SIZE_MIN: return Place{.where = &point.least, .low = 0};
+    case GL_POINT_SIZE_MAX: return Place{.where = &point.largest, .low = 0};
+    case GL_POINT_FADE_THRESHOLD_SIZE: return Place{.where = &point.fade, .low = 0};
+    case GL_POINT_DISTANCE_ATTENUATION: return Place{&point.attenuation};
+    default: return std::nullopt;
+  }
+}
+
 void point_parameter(Context& context, GLenum pname, Params params) {
-  PointState& point = context.state.point;
-  double* const where = pname == GL_POINT_SIZE_MIN              ? &point.least
-                        : pname == GL_POINT_SIZE_MAX            ? &point.largest
-                        : pname == GL_POINT_FADE_THRESHOLD_SIZE ? &point.fade
-                                                                : nullptr;
-  if (where != nullptr) return set_size(context, *where, params.value[0], -std::numeric_limits<double>::denorm_min());
-  if (pname != GL_POINT_DISTANCE_ATTENUATION) return context.fail(GL_INVALID_ENUM);
-  point.attenuation = {params.value[0], params.value[1], params.value[2]};
+  set_parameter(context, point_place(context.state.point, pname), params);
 }
 
 void line_width(Context& context, double width) { set_size(context, context.state.line.width, width); }

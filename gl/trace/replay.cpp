@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "../core/arrays.hpp"
 #include "../core/commands.hpp"
 #include "../core/entry_points.hpp"
 #include "calls.hpp"
@@ -327,27 +328,12 @@ std::optional<Replay::Bytes> Replay::memory_of(const Context& context, const Arr
   return std::nullopt;
 }
 
-std::uint64_t type_size(GLenum type) {
-  switch (type) {
-    case GL_BYTE:
-    case GL_UNSIGNED_BYTE: return 1;
-    case GL_SHORT:
-    case GL_UNSIGNED_SHORT: return 2;
-    case GL_DOUBLE: return 8;
-    default: return 4;
-  }
-}
-
 bool Replay::arrays_hold(const Context& context, std::uint64_t index) const {
-  const ClientState& client = context.client;
-  std::vector<const ArrayPointer*> arrays{&client.vertex, &client.normal,    &client.color,    &client.secondary,
-                                          &client.index,  &client.edge_flag, &client.fog_coord};
-  for (const ArrayPointer& array : client.tex_coord) arrays.push_back(&array);
-  return std::all_of(arrays.begin(), arrays.end(), [&](const ArrayPointer* array) {
-    if (!array->enabled) return true;
-    const std::uint64_t bytes = static_cast<std::uint64_t>(array->size) * type_size(array->type);
-    const std::uint64_t stride = array->stride != 0 ? static_cast<std::uint64_t>(array->stride) : bytes;
-    const auto memory = memory_of(context, *array);
+  return std::ranges::all_of(context.client.array, [&](const ArrayPointer& array) {
+    if (!array.enabled) return true;
+    const std::uint64_t bytes = static_cast<std::uint64_t>(array.size) * array_type_bytes(array.type);
+    const std::uint64_t stride = array.stride != 0 ? static_cast<std::uint64_t>(array.stride) : bytes;
+    const auto memory = memory_of(context, array);
     return memory && index * stride + bytes <= memory->size();
   });
 }
@@ -366,7 +352,7 @@ std::optional<std::uint64_t> Replay::largest_index(const Context& context, GLsiz
   array.pointer = reinterpret_cast<const void*>(indices.integer);
   std::optional<Bytes> bytes = std::as_bytes(std::span(indices.bytes));
   if (array.buffer != 0) bytes = memory_of(context, array);
-  const std::uint64_t size = type_size(type);
+  const std::uint64_t size = array_type_bytes(type);
   if (!bytes || bytes->size() < static_cast<std::uint64_t>(count) * size) return std::nullopt;
   std::uint64_t largest = 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {

@@ -44,10 +44,13 @@ TEST_F(Embedded, WhatOpenGlEsDoesNotHaveIsRefused) {
   for (const GLenum cap : {GL_TEXTURE_2D, GL_POINT_SPRITE, GL_CLIP_PLANE5, GL_LIGHT7, GL_ALPHA_TEST}) {
     EXPECT_EQ(error_after([&] { enable(context, cap, false); }), GLenum{GL_NO_ERROR});
   }
-  EXPECT_EQ(error_after([&] { vertex_pointer(context, 3, GL_DOUBLE, 0, nullptr); }), GLenum{GL_INVALID_ENUM});
-  EXPECT_EQ(error_after([&] { vertex_pointer(context, 3, GL_BYTE, 0, nullptr); }), GLenum{GL_NO_ERROR});
-  EXPECT_EQ(error_after([&] { color_pointer(context, 4, GL_SHORT, 0, nullptr); }), GLenum{GL_INVALID_ENUM});
-  EXPECT_EQ(error_after([&] { color_pointer(context, 4, GL_UNSIGNED_BYTE, 0, nullptr); }), GLenum{GL_NO_ERROR});
+  EXPECT_EQ(error_after([&] { array_pointer(context, Array::vertex, 3, GL_DOUBLE, 0, nullptr); }),
+            GLenum{GL_INVALID_ENUM});
+  EXPECT_EQ(error_after([&] { array_pointer(context, Array::vertex, 3, GL_BYTE, 0, nullptr); }), GLenum{GL_NO_ERROR});
+  EXPECT_EQ(error_after([&] { array_pointer(context, Array::color, 4, GL_SHORT, 0, nullptr); }),
+            GLenum{GL_INVALID_ENUM});
+  EXPECT_EQ(error_after([&] { array_pointer(context, Array::color, 4, GL_UNSIGNED_BYTE, 0, nullptr); }),
+            GLenum{GL_NO_ERROR});
 }
 
 TEST_F(Embedded, MatricesAsBitsOfFloats) {
@@ -93,8 +96,8 @@ TEST_F(Sprites, WithoutThemAPointHasTheCoordinatesOfItsVertex) {
 TEST_F(Embedded, EachPointHasItsSizeInAnArray) {
   const std::array<GLfloat, 4> places{-0.5F, 0, 0.5F, 0};
   const std::array<GLfixed, 2> sizes{2 << 16, 6 << 16};
-  vertex_pointer(context, 2, GL_FLOAT, 0, places.data());
-  point_size_pointer(context, GL_FIXED, 0, sizes.data());
+  array_pointer(context, Array::vertex, 2, GL_FLOAT, 0, places.data());
+  array_pointer(context, Array::point_size, 1, GL_FIXED, 0, sizes.data());
   client_state(context, GL_VERTEX_ARRAY, true);
   client_state(context, kPointSizeArray, true);
   draw_arrays(context, GL_POINTS, 0, 2);

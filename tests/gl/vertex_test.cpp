@@ -382,12 +382,12 @@ TEST_F(Arrays, IntegersOfColorsAreFractions) {
   const std::array<GLbyte, 3> bytes{127, -128, 0};
   const std::array<GLushort, 4> shorts{65535, 0, 32768, 65535};
   const std::array<GLshort, 2> positions{-3, 7};
-  color_pointer(context, 3, GL_BYTE, 0, bytes.data());
+  array_pointer(context, Array::color, 3, GL_BYTE, 0, bytes.data());
   client_state(context, GL_COLOR_ARRAY, true);
   array_element(context, 0);
   expect_near(context.state.current.color, {1, -1, 1 / 255.0, 1});
-  color_pointer(context, 4, GL_UNSIGNED_SHORT, 0, shorts.data());
-  vertex_pointer(context, 2, GL_SHORT, 0, positions.data());
+  array_pointer(context, Array::color, 4, GL_UNSIGNED_SHORT, 0, shorts.data());
+  array_pointer(context, Array::vertex, 2, GL_SHORT, 0, positions.data());
   client_state(context, GL_VERTEX_ARRAY, true);
   begin(context, GL_POINTS);
   array_element(context, 0);
@@ -396,17 +396,20 @@ TEST_F(Arrays, IntegersOfColorsAreFractions) {
   end(context);
   // Fixed-point numbers are OpenGL ES's alone.
   const std::array<GLfixed, 4> fixed{1 << 16, -(1 << 15), 0, 1};
-  EXPECT_EQ(error_of([&] { color_pointer(context, 4, GL_FIXED, 0, fixed.data()); }), GLenum{GL_INVALID_ENUM});
+  EXPECT_EQ(error_of([&] { array_pointer(context, Array::color, 4, GL_FIXED, 0, fixed.data()); }),
+            GLenum{GL_INVALID_ENUM});
   context.is_embedded = true;
-  EXPECT_EQ(error_of([&] { color_pointer(context, 4, GL_FIXED, 0, fixed.data()); }), GLenum{GL_NO_ERROR});
+  EXPECT_EQ(error_of([&] { array_pointer(context, Array::color, 4, GL_FIXED, 0, fixed.data()); }), GLenum{GL_NO_ERROR});
   array_element(context, 0);
   expect_near(context.state.current.color, {1, -0.5, 0, 1 / 65536.0});
 }
 
 TEST_F(Arrays, Errors) {
-  EXPECT_EQ(error_of([&] { vertex_pointer(context, 1, GL_FLOAT, 0, nullptr); }), GLenum{GL_INVALID_VALUE});
-  EXPECT_EQ(error_of([&] { vertex_pointer(context, 3, GL_BYTE, 0, nullptr); }), GLenum{GL_INVALID_ENUM});
-  EXPECT_EQ(error_of([&] { vertex_pointer(context, 3, GL_FLOAT, -4, nullptr); }), GLenum{GL_INVALID_VALUE});
+  EXPECT_EQ(error_of([&] { array_pointer(context, Array::vertex, 1, GL_FLOAT, 0, nullptr); }),
+            GLenum{GL_INVALID_VALUE});
+  EXPECT_EQ(error_of([&] { array_pointer(context, Array::vertex, 3, GL_BYTE, 0, nullptr); }), GLenum{GL_INVALID_ENUM});
+  EXPECT_EQ(error_of([&] { array_pointer(context, Array::vertex, 3, GL_FLOAT, -4, nullptr); }),
+            GLenum{GL_INVALID_VALUE});
   EXPECT_EQ(error_of([&] { client_state(context, GL_FLOAT, true); }), GLenum{GL_INVALID_ENUM});
   EXPECT_EQ(error_of([&] { interleaved_arrays(context, GL_FLOAT, 0, nullptr); }), GLenum{GL_INVALID_ENUM});
   EXPECT_EQ(error_of([&] { draw_arrays(context, 99, 0, 1); }), GLenum{GL_INVALID_ENUM});
