@@ -3,12 +3,15 @@
 
   programs.py record -o FOLDER [NAME...]    records programs under Xvfb: FOLDER/NAME.trace
   programs.py compare -o FOLDER [NAME...]   draws a frame of each recording twice and compares: table.md, sheet.png
+  programs.py window -o FOLDER [NAME...]    replays each recording on both in a window and compares every frame, names the
+                                            differences of the worst one by `halfplane compare`: window.md, window.png
   programs.py speed -o FOLDER [NAME...]     replays each recording on both in turn, --runs times: speed.md
   programs.py list                          the programs, and whether they are installed
 
-Needs Debian's apitrace, xvfb, libgl1-mesa-dri and python3-pil, for `compare` build/halfplane with the driver, for `speed`
-the driver. Pictures stay in FOLDER as NAME.mesa.ppm and NAME.halfplane.png. Exit status 1: a program of `compare` failed or
-lies over --most, or one of `speed` failed.
+`record --first N` keeps the first N frames of a recording, so that `window` and `speed` have as many of each program.
+Needs Debian's apitrace, xvfb, libgl1-mesa-dri and python3-pil, build/halfplane and the driver beside it. Pictures stay in
+FOLDER as NAME.mesa.png and NAME.halfplane.png. Exit status 1: a program failed, or one of `compare` or `window` lies over
+--most.
 """
 import argparse
 import concurrent.futures
@@ -110,7 +113,7 @@ def stop(process, patience=4):
             pass
 
 
-def record(name, folder, display, seconds):
+def record(name, folder, display, options):
     command = PROGRAMS[name][0].split()
     trace = folder / f'{name}.trace'
     trace.unlink(missing_ok=True)
@@ -120,12 +123,17 @@ def record(name, folder, display, seconds):
             stderr=log, stdin=subprocess.DEVNULL, start_new_session=True, cwd=folder / 'home',
             env=environment(display, folder))
         try:
-            process.wait(seconds)
+            process.wait(options.seconds)
         except subprocess.TimeoutExpired:
             pass
         stop(process)
-    size = trace.stat().st_size if trace.exists() else 0
-    return f'{name:20} {size / 1e6:7.1f} MB'
+    if not trace.exists():
+        return f'{name:20} no recording'
+    if options.first:
+        whole = trace.rename(folder / f'{name}.whole')
+        run(['apitrace', 'trim', f'--frames=0-{options.first - 1}', '-o', str(trace), str(whole)], 240)
+        whole.unlink()
+    return f'{name:20} {len(swaps(trace)):5} frames {trace.stat().st_size / 1e6:7.1f} MB'
 
 
 # --- pictures ---------------------------------------------------------------------------------------------------------
@@ -135,22 +143,26 @@ def is_blank(picture):
     return all(low == high for low, high in picture.getextrema())
 
 
-def differences(a, b):
-    """Share of pixels that differ by more than SEEN in a channel, and mean difference of the channels, of 255. What both
-    have is compared, from the bottom left, where OpenGL's window begins."""
+def gaps_of(a, b):
+    """Differences of what both have, from the bottom left, where OpenGL's window begins."""
     width, height = min(a.width, b.width), min(a.height, b.height)
-    gaps = ImageChops.difference(*(picture.crop((0, picture.height - height, width, picture.height)) for picture in (a, b)))
+    return ImageChops.difference(*(picture.crop((0, picture.height - height, width, picture.height)) for picture in (a, b)))
+
+
+def differences(a, b):
+    """Share of pixels that differ by more than SEEN in a channel, and mean difference of the channels, of 255."""
+    gaps = gaps_of(a, b)
     red, green, blue = gaps.split()
     largest = ImageChops.lighter(ImageChops.lighter(red, green), blue)
-    return sum(largest.histogram()[SEEN + 1:]) / (width * height), sum(ImageStat.Stat(gaps).mean) / 3
+    return sum(largest.histogram()[SEEN + 1:]) / (gaps.width * gaps.height), sum(ImageStat.Stat(gaps).mean) / 3
 
 
-def sheet(pairs, columns=4, width=200, height=150, gap=4):
-    """Pairs side by side, Mesa's left: in the order of the table, row by row."""
-    cell_width, cell_height = 2 * width + 3 * gap, height + 2 * gap
-    whole = Image.new('RGB', (columns * cell_width, -(-len(pairs) // columns) * cell_height), '#606060')
-    for number, pair in enumerate(pairs):
-        for side, picture in enumerate(pair):
+def sheet(groups, columns=4, width=200, height=150, gap=4):
+    """Pictures of a program side by side, Mesa's left: in the order of the table, row by row."""
+    cell_width, cell_height = gap + (width + gap) * max(map(len, groups)), height + 2 * gap
+    whole = Image.new('RGB', (columns * cell_width, -(-len(groups) // columns) * cell_height), '#606060')
+    for number, group in enumerate(groups):
+        for side, picture in enumerate(group):
             if picture is not None:
                 at = (number % columns * cell_width + gap + side * (width + gap), number // columns * cell_height + gap)
                 whole.paste(picture.resize((width, height)), at)
@@ -174,22 +186,24 @@ def swaps(trace):
 
 
 def in_mesa(name, folder, call, env):
-    prefix = folder / f'{name}.mesa-'
-    for old in glob.glob(f'{prefix}*'):
-        os.unlink(old)
     trace = folder / f'{name}.trace'
     done = run([replayer(name), '--headless', '-s', '-', '-S', str(call), str(trace)], 240, env=env)
     at = done.stdout.find(b'P6')
     if at < 0:
         raise RuntimeError(f'{replayer(name)}: {done.stderr.decode(errors="replace").strip().splitlines()[-1:]}')
-    (folder / f'{name}.mesa.ppm').write_bytes(done.stdout[at:])
-    return Image.open(io.BytesIO(done.stdout[at:])).convert('RGB')
+    picture = Image.open(io.BytesIO(done.stdout[at:])).convert('RGB')
+    picture.save(folder / f'{name}.mesa.png')
+    return picture
+
+
+def configuration(options):
+    return ['--config', options.config] + [word for setting in options.set for word in ('--set', setting)]
 
 
 def in_halfplane(name, folder, frame, options):
     capture, picture = folder / f'{name}.hpt', folder / f'{name}.halfplane.png'
     picture.unlink(missing_ok=True)
-    config = ['--config', options.config] + [word for setting in options.set for word in ('--set', setting)]
+    config = configuration(options)
     begun = time.monotonic()
     said = ''
     for words in (['convert', str(folder / f'{name}.trace'), '--frame', str(frame), '-o', str(capture)],
@@ -233,6 +247,106 @@ def table(rows):
     return '\n'.join(out) + '\n'
 
 
+# --- every frame ------------------------------------------------------------------------------------------------------
+
+
+def on_driver(env, options, **wishes):
+    """The environment of a program that draws on the driver."""
+    driver = options.halfplane.resolve().parent / 'gl'
+    wishes |= {'preset': options.config, 'config': options.set, 'threads': options.threads}
+    return env | {'__GLX_VENDOR_LIBRARY_NAME': 'halfplane', 'LD_LIBRARY_PATH': str(driver),
+                  '__EGL_VENDOR_LIBRARY_FILENAMES': str(driver / 'halfplane.json'), 'HALFPLANE_GL': json.dumps(wishes)}
+
+
+def pictures(name, folder, env):
+    """The picture before each swap of a replay."""
+    words = [replayer(name), '-s', '-', '-S', '*/frame', str(folder / f'{name}.trace')]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, env=env) as process:
+        try:
+            while header := process.stdout.readline():
+                if header != b'P6\n':  # what the replayer says
+                    continue
+                size = process.stdout.readline()
+                while size.startswith(b'#'):
+                    size = process.stdout.readline()
+                width, height = map(int, size.split())
+                process.stdout.readline()
+                yield Image.frombytes('RGB', (width, height), process.stdout.read(3 * width * height))
+        finally:
+            process.kill()
+
+
+def captured_pictures(name, folder, options):
+    """The same of the driver by captures: eglretrace asks GLX for the size of a picture where no framebuffer object is."""
+    with tempfile.TemporaryDirectory(dir=folder) as place:
+        run([str(options.halfplane), 'convert', str(folder / f'{name}.trace'), '-o', place + '/', '--quiet',
+             *configuration(options)], 600)
+        for capture in sorted(pathlib.Path(place).glob('*.hpt')):
+            picture = capture.with_suffix('.png')
+            run([str(options.halfplane), 'render', str(capture), '-o', str(picture), '--quiet', *configuration(options)], 60)
+            yield Image.open(picture).convert('RGB')
+
+
+def kinds_of(name, folder, row, options):
+    """What `compare` says about the differences of the worst frame, and how many pixels the two ways to it differ in: the
+    driver under the replayer, and the capture."""
+    capture, found = folder / f'{name}.hpt', {}
+    for words in (['convert', str(folder / f'{name}.trace'), '--frame', str(row['frame']), '-o', str(capture), '--quiet'],
+                  ['compare', str(capture), '--against', str(folder / f'{name}.mesa.png'), '--tolerance', f'color={SEEN}',
+                   '--json', '-o', str(folder / f'{name}.kinds.png'), '--panels', 'against', '--panels', 'difference',
+                   '--panels', 'kinds', '--model', str(folder / f'{name}.capture.png')]):
+        done = run([str(options.halfplane), *words, *configuration(options)], 240)
+    try:
+        found = json.loads(done.stdout)['against']['kinds']
+    except (json.JSONDecodeError, KeyError, TypeError):
+        raise RuntimeError(f'compare: {done.stderr.decode(errors="replace").strip()[-90:]}') from None
+    row['kinds'] = {kind: of['pixels'] for kind, of in found.items() if of['pixels']}
+    again = Image.open(folder / f'{name}.capture.png').convert('RGB')
+    row['capture'] = differences(row['ours'], again)[0]
+
+
+def compare_all(name, folder, env, options):
+    row = {'name': name, 'error': '', 'seen': -1.0}
+    shares, means = [], []
+    try:
+        is_glx = replayer(name) == 'glretrace'
+        drawn = pictures(name, folder, on_driver(env, options)) if is_glx else captured_pictures(name, folder, options)
+        both = zip(pictures(name, folder, env), drawn)
+        for number, (mesa, ours) in enumerate(both):
+            if number == 0:  # the replayer gives its window a size in it, and loses what was drawn
+                continue
+            seen, mean = differences(mesa, ours)
+            shares.append(seen)
+            means.append(mean)
+            row['blank'] = row.get('blank', 0) + (is_blank(mesa) and is_blank(ours))
+            if seen > row['seen']:
+                row |= {'seen': seen, 'frame': number, 'mesa': mesa, 'ours': ours}
+        if not shares:
+            raise RuntimeError('no frame')
+        row |= {'frames': len(shares), 'equal': shares.count(0), 'median': statistics.median(shares),
+                'mean': statistics.mean(means)}
+        for side in ('mesa', 'ours'):
+            row[side].save(folder / f'{name}.{side.replace("ours", "halfplane")}.png')
+        kinds_of(name, folder, row, options)
+    except (RuntimeError, OSError, ValueError) as error:
+        row['error'] = str(error)
+    return row
+
+
+def window_table(rows):
+    out = ['| program | pixels | frames | of these blank in both | without a pixel that differs | differ, %: median | worst '
+           '| at frame | mean of 255 | kinds at the worst frame, pixels | its capture, % |', '| --- ' * 11 + '|']
+    for row in rows:
+        if row['error']:
+            out.append(f'| {row["name"]} ' + '| ' * 9 + f'| **{row["error"][:100]}** |')
+            continue
+        kinds = ', '.join(f'{kind} {pixels}' for kind, pixels in row['kinds'].items()) or '–'
+        out.append(f'| {row["name"]} | {row["ours"].width}x{row["ours"].height} | {row["frames"]} | {row["blank"]} | '
+                   f'{row["equal"]} | {100 * row["median"]:.2f} | {100 * row["seen"]:.2f} | {row["frame"]} | '
+                   f'{row["mean"]:.2f} | {kinds} | {100 * row["capture"]:.2f} |')
+    return '\n'.join(out) + '\n'
+
+
 # --- speed ------------------------------------------------------------------------------------------------------------
 
 
@@ -255,17 +369,12 @@ def replay(words, env, seconds):
 def speed(name, folder, env, options):
     """Medians of --runs replays on llvmpipe and on the driver in turn. One more says what part of a frame is raster."""
     row = {'name': name, 'error': ''}
-    driver = options.halfplane.resolve().parent / 'gl'
     results = folder / f'{name}.results'
-    wishes = {'preset': options.config, 'config': options.set, 'threads': options.threads}
     mesa = env | {'LP_NUM_THREADS': str(options.threads)}
-    ours = env | {'__GLX_VENDOR_LIBRARY_NAME': 'halfplane',
-                  '__EGL_VENDOR_LIBRARY_FILENAMES': str(driver / 'halfplane.json'),
-                  'LD_LIBRARY_PATH': str(driver), 'HALFPLANE_GL': json.dumps(wishes)}
+    ours = on_driver(env, options)
     words = [replayer(name), '-b', str(folder / f'{name}.trace')]
     try:
-        told = ours | {'HALFPLANE_GL': json.dumps(wishes | {'results': str(results)})}
-        _, seconds, _ = replay(words, told, 240)
+        _, seconds, _ = replay(words, on_driver(env, options, results=str(results)), 240)
         if not results.exists():
             raise RuntimeError('the driver did not answer')
         rows = [json.loads(line) for line in results.read_text(encoding='utf-8').splitlines()]
@@ -315,22 +424,23 @@ def measure_speed(names, folder, env, options):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('what', choices=['record', 'compare', 'speed', 'list'])
+    parser.add_argument('what', choices=['record', 'compare', 'window', 'speed', 'list'])
     parser.add_argument('names', nargs='*', metavar='NAME')
     parser.add_argument('-o', '--output', type=pathlib.Path, default=ROOT / 'out/programs')
     parser.add_argument('--seconds', type=float, default=6, help='of a recording')
+    parser.add_argument('--first', type=int, default=0, help='frames of a recording that are kept; 0: all')
     parser.add_argument('--frame', type=int, default=100, help='that is compared, or three quarters of a shorter recording')
     parser.add_argument('--halfplane', type=pathlib.Path, default=ROOT / 'build/halfplane')
     parser.add_argument('--config', default='full')
     parser.add_argument('--set', action='append', default=[], help='key=value; stencil.bits=8 without one')
     parser.add_argument('--most', type=float, default=100, help='percent of differing pixels that is let through')
     parser.add_argument('--runs', type=int, default=3, help='of `speed`, on each of the two')
-    parser.add_argument('--threads', type=int, default=2, help='of `speed`, likewise')
+    parser.add_argument('--threads', type=int, default=2, help='of `speed`, likewise; of the driver in `window`')
     parser.add_argument('-j', '--jobs', type=int, default=1)
     options = parser.parse_intermixed_args()
-    # `speed`: what a driver has that nobody has configured (gl/core/options.cpp).
+    # `window`, `speed`: what a driver has that nobody has configured (gl/core/options.cpp).
     options.set = options.set or ['stencil.bits=8'] + ['perspective.colors=1', 'texture.unit=trilinear', 'alpha.unit=1',
-                                                       'blend.lanes=4', 'fog.unit=1'] * (options.what == 'speed')
+                                                       'blend.lanes=4', 'fog.unit=1'] * (options.what in ('window', 'speed'))
     look_for_savers()
     unknown = [name for name in options.names if name not in PROGRAMS]
     if unknown:
@@ -344,19 +454,24 @@ def main():
     with Display() as display, concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         if options.what == 'record':
             names = [name for name in options.names or PROGRAMS if shutil.which(PROGRAMS[name][0].split()[0])]
-            for line in pool.map(lambda name: record(name, folder, display.name, options.seconds), names):
+            for line in pool.map(lambda name: record(name, folder, display.name, options), names):
                 print(line, flush=True)
             return 0
         names = [name for name in options.names or PROGRAMS if (folder / f'{name}.trace').exists()]
         env = environment(display.name, folder)
         if options.what == 'speed':
             return measure_speed(names, folder, env, options)
+        look, lines = (compare_all, window_table) if options.what == 'window' else (compare, table)
         rows = []
-        for row in pool.map(lambda name: compare(name, folder, env, options), names):
+        for row in pool.map(lambda name: look(name, folder, env, options), names):
             rows.append(row)
-            print(table([row]).splitlines()[-1], flush=True)
-    (folder / 'table.md').write_text(table(rows), encoding='utf-8')
-    sheet([(row['mesa'], row['ours']) for row in rows]).save(folder / 'sheet.png')
+            print(lines([row]).splitlines()[-1], flush=True)
+    text, image = ('window.md', 'window.png') if options.what == 'window' else ('table.md', 'sheet.png')
+    (folder / text).write_text(lines(rows), encoding='utf-8')
+    groups = [[row.get('mesa'), row.get('ours')] for row in rows]
+    if options.what == 'window':  # with their differences, four times as large
+        groups = [[a, b, gaps_of(a, b).point(lambda v: min(4 * v, 255))] if a and b else [a, b] for a, b in groups]
+    sheet(groups, columns=4 if options.what == 'compare' else 2).quantize(128).save(folder / image)
     return int(any(row['error'] or 100 * row['seen'] > options.most for row in rows))
 
 
