@@ -64,12 +64,21 @@ struct StampGrid {
   int stamps_per_row = 1;  ///< stamps along the side of a tile
   int per_pixel = 1;       ///< samples of a pixel
 
+  constexpr StampGrid() = default;
+  constexpr StampGrid(int size_, int stamps_per_row_, int per_pixel_)
+      : size(size_),
+        stamps_per_row(stamps_per_row_),
+        per_pixel(per_pixel_),
+        size_log2_(log2(size)),
+        stamps_per_row_log2_(log2(stamps_per_row)),
+        per_pixel_log2_(log2(per_pixel)) {}
+
   [[nodiscard]] constexpr int stamps() const { return stamps_per_row * stamps_per_row; }
   [[nodiscard]] constexpr int pixels() const { return size * size; }
   [[nodiscard]] constexpr int samples() const { return pixels() * per_pixel; }
   /// The place of a pixel, by number, in its stamp; the pixel of a sample.
-  [[nodiscard]] constexpr PixelOffset place_of(int pixel) const { return {pixel & (size - 1), pixel >> log2(size)}; }
-  [[nodiscard]] constexpr int pixel_number(int sample) const { return sample >> log2(per_pixel); }
+  [[nodiscard]] constexpr PixelOffset place_of(int pixel) const { return {pixel & (size - 1), pixel >> size_log2_}; }
+  [[nodiscard]] constexpr int pixel_number(int sample) const { return sample >> per_pixel_log2_; }
   [[nodiscard]] constexpr PixelOffset pixel_of(int sample) const { return place_of(pixel_number(sample)); }
   /// The first sample of a pixel of the stamp.
   [[nodiscard]] constexpr int sample_at(int x, int y) const { return (y * size + x) * per_pixel; }
@@ -106,15 +115,19 @@ struct StampGrid {
   }
   /// The first pixel of a stamp, in its tile.
   [[nodiscard]] constexpr PixelOffset origin_of(int stamp) const {
-    return {(stamp & (stamps_per_row - 1)) << log2(size), stamp >> log2(stamps_per_row) << log2(size)};
+    return {column_of(stamp) << size_log2_, row_of(stamp) << size_log2_};
   }
+  /// Its column and row in the tile, in stamps.
+  [[nodiscard]] constexpr int column_of(int stamp) const { return stamp & (stamps_per_row - 1); }
+  [[nodiscard]] constexpr int row_of(int stamp) const { return stamp >> stamps_per_row_log2_; }
+  [[nodiscard]] constexpr int stamp_number(int column, int row) const { return (row << stamps_per_row_log2_) + column; }
   /// The stamp that holds a pixel of the tile.
-  [[nodiscard]] constexpr int stamp_at(int x, int y) const {
-    return (y >> log2(size) << log2(stamps_per_row)) + (x >> log2(size));
-  }
+  [[nodiscard]] constexpr int stamp_at(int x, int y) const { return stamp_number(x >> size_log2_, y >> size_log2_); }
 
  private:
   [[nodiscard]] static constexpr int log2(int power) { return std::countr_zero(static_cast<unsigned>(power)); }
+
+  int size_log2_ = 0, stamps_per_row_log2_ = 0, per_pixel_log2_ = 0;
 };
 
 }  // namespace halfplane

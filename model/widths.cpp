@@ -87,6 +87,11 @@ void derive_attributes(Widths& w, const Config& config, int128 side) {
     for (int i = 0; i < a.planes; ++i, ++plane) {
       w.attribute_of[plane] = static_cast<std::uint8_t>(index);
       if (a.is_clamped) w.line_mask[plane] = ~0ULL >> (64 - w.attribute[index].line.bits);
+      const bool is_code = static_cast<int>(plane) < w.affine_planes;
+      const int bits = w.attribute[index].fragment.bits;
+      w.code_place[plane] = {is_code ? w.attribute[index].guard_bits() : 0,
+                             is_code ? std::uint32_t{1} << (bits - 1) : 0,
+                             ~std::uint32_t{0} >> (32 - std::min(bits, 32))};
     }
     ++index;
   }
@@ -281,7 +286,10 @@ Widths derive_widths(const Config& config) {
   w.depth_source = count("depth source", "DepthSource", 4);
   w.memory_lane = bits("memory lane", "a stored depth or a stored colour", std::max(w.stored_depth.bits, color_bits));
   const int block = config.cache_kind == CacheKind::tiles ? config.tile_size : std::max(4, config.stamp_size);
-  w.blocks = {block / config.stamp_size, config.tile_size / block, 1};
+  w.blocks.side = block / config.stamp_size;
+  w.blocks.per_tile = config.tile_size / block;
+  w.blocks.side_log2 = floor_log2(static_cast<uint128>(w.blocks.side));
+  w.blocks.per_tile_log2 = floor_log2(static_cast<uint128>(w.blocks.per_tile));
   while (w.blocks.flag_word < 64 && 2 * w.blocks.flag_word <= w.samples * w.memory_lane.bits) w.blocks.flag_word *= 2;
   derive_line_widths(w, config);
   derive_memory(w, config);

@@ -56,10 +56,12 @@ struct AttributeWidths {
   [[nodiscard]] int guard_bits() const { return local.bits - code.bits - 1; }
 };
 
-/// The content of a cache line: 4x4 pixels of a tile, or a stamp if that is larger; with cache.kind tiles a tile.
+/// The content of a cache line: 4x4 pixels of a tile, or a stamp if that is larger; with cache.kind tiles a tile. Powers
+/// of two, so that a place needs shifts.
 struct BlockGrid {
-  int side = 1;       ///< stamps along the side of a block
-  int per_tile = 1;   ///< blocks along the side of a tile
+  int side = 1;      ///< stamps along the side of a block
+  int per_tile = 1;  ///< blocks along the side of a tile
+  int side_log2 = 0, per_tile_log2 = 0;
   int flag_word = 1;  ///< flags in a word: of blocks in one row; a power of two
 
   [[nodiscard]] constexpr int stamps() const { return side * side; }  ///< of a block
@@ -76,6 +78,13 @@ struct MemoryGrid {
   int plane = 0;                                        ///< a buffer of a tile
   int flag_row = 0;                                     ///< from the flags of one row of blocks to the next
   [[nodiscard]] int tile() const { return plane + 1; }  ///< from one tile of a row to the next: both buffers
+};
+
+/// The place of a code in the value of a local plane, modulo a power of two: its bits from `shift` on, less `offset`. In a
+/// fragment planes over w keep the whole value.
+struct CodePlace {
+  int shift = 0;
+  std::uint32_t offset = 0, mask = 0;
 };
 
 /// A primitive of at most so many tiles in x and in y is never tested against HiZ bounds.
@@ -133,8 +142,9 @@ struct Widths {
   AttributeList attributes;
   std::array<AttributeWidths, kMaxAttributes> attribute;
   PerPlane<std::uint8_t> attribute_of{};  ///< index of each plane's attribute
-  PerPlane<std::uint64_t> line_mask{};    ///< all ones in AttributeWidths::line
-  Width reciprocal, reciprocal_shift;     ///< the widest; the others are its upper bits
+  PerPlane<CodePlace> code_place{};
+  PerPlane<std::uint64_t> line_mask{};  ///< all ones in AttributeWidths::line
+  Width reciprocal, reciprocal_shift;   ///< the widest; the others are its upper bits
   // Keys and positions.
   Width primitive_id, slot, tile_x, tile_y, tile_pixel, stamp_index, sample_mask, stored_color, stored_depth;
   Width edge_low, pixel_mask, masked_samples, further_depth;  // with several samples per pixel

@@ -188,6 +188,7 @@ std::optional<HostPrimitive> HostStream::Host::next() {
       set_texture(*primitive);
       set_fog(*primitive);
     }
+    if (in_front_.empty()) return primitive;
     in_front_.push_back(std::move(*primitive));
   }
   HostPrimitive first = std::move(in_front_.front());

@@ -490,14 +490,16 @@ struct FragmentPacket {
 /// The depth code of sample `s` of a stamp.
 [[nodiscard]] inline std::uint32_t fragment_depth(const FragmentPacket& fragment, std::size_t s, const Widths& widths) {
   if (widths.has_samples == 0) return fragment.code[s][kDepthPlane];
-  const auto n = static_cast<std::size_t>(widths.pixel_samples), pixel = s / n, k = s % n;
+  const auto n = static_cast<std::size_t>(widths.pixel_samples);
+  const auto pixel = static_cast<std::size_t>(widths.stamps.pixel_number(static_cast<int>(s)));
+  const std::size_t k = s & (n - 1);
   return k == 0 ? fragment.code[pixel][kDepthPlane] : fragment.further_depth[pixel * (n - 1) + k - 1];
 }
 
 /// The codes of the pixel of sample `s`. Their depth is that of its first sample.
 [[nodiscard]] inline const PerPlane<std::uint32_t>& fragment_code(const FragmentPacket& fragment, std::size_t s,
                                                                   const Widths& widths) {
-  return fragment.code[s / static_cast<std::size_t>(widths.pixel_samples)];
+  return fragment.code[static_cast<std::size_t>(widths.stamps.pixel_number(static_cast<int>(s)))];
 }
 
 /// depth_test, rop -> framebuffer: the values to write, and their place; sent for every stamp with a covered sample.

@@ -4,6 +4,7 @@
 // cache_tags.hpp, which decides on transfers; this class holds the data.
 #pragma once
 
+#include <deque>
 #include <span>
 
 #include "cache_tags.hpp"

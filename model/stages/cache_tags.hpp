@@ -9,7 +9,6 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -47,7 +46,9 @@ class CacheTags {
         victims_(static_cast<std::size_t>(config.cache_victims)),
         has_stencil_(config.stencil_bits != 0),
         lines_(static_cast<std::size_t>(config.cache_lines)),
-        flags_(widths) {}
+        flags_(widths) {
+    unwritten_.reserve(victims_);
+  }
 
   [[nodiscard]] std::size_t lines() const { return lines_.size(); }
 
@@ -199,7 +200,7 @@ class CacheTags {
       if (e.fills[number(plane)]) flags_.fall(plane, line.block);
     }
     if (unwritten_.size() == victims_) {
-      unwritten_.pop_front();
+      unwritten_.erase(unwritten_.begin());
       ++result.writes;
     }
     unwritten_.push_back(line.block);
@@ -212,7 +213,7 @@ class CacheTags {
   bool reads_color_ = false, tests_alpha_ = false;
   std::array<bool, 2> replaces_stencil_{};  ///< front, back
   std::vector<Line> lines_;
-  std::deque<BlockAddress> unwritten_;  ///< evictions whose data wait, oldest first
+  std::vector<BlockAddress> unwritten_;  ///< evictions whose data wait, oldest first
   ClearFlags flags_;
 };
 

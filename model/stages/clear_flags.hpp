@@ -29,19 +29,20 @@ struct BlockStamp {
 
 [[nodiscard]] inline BlockStamp block_stamp(const StampAddress& at, const Widths& widths) {
   const BlockGrid& grid = widths.blocks;
-  const int x = at.stamp % widths.stamps.stamps_per_row, y = at.stamp / widths.stamps.stamps_per_row;
-  return {{static_cast<std::uint16_t>(at.tile_x * grid.per_tile + x / grid.side),
-           static_cast<std::uint16_t>(at.tile_y * grid.per_tile + y / grid.side)},
-          y % grid.side * grid.side + x % grid.side};
+  const int x = widths.stamps.column_of(at.stamp), y = widths.stamps.row_of(at.stamp), last = grid.side - 1;
+  return {{static_cast<std::uint16_t>((at.tile_x << grid.per_tile_log2) + (x >> grid.side_log2)),
+           static_cast<std::uint16_t>((at.tile_y << grid.per_tile_log2) + (y >> grid.side_log2))},
+          ((y & last) << grid.side_log2) + (x & last)};
 }
 
 [[nodiscard]] inline StampAddress stamp_address(const BlockStamp& at, const Widths& widths) {
   const BlockGrid& grid = widths.blocks;
-  const int x = at.block.x % grid.per_tile * grid.side + at.stamp % grid.side;
-  const int y = at.block.y % grid.per_tile * grid.side + at.stamp / grid.side;
-  return {static_cast<std::uint16_t>(at.block.x / grid.per_tile),
-          static_cast<std::uint16_t>(at.block.y / grid.per_tile),
-          static_cast<std::uint16_t>(y * widths.stamps.stamps_per_row + x)};
+  const int last = grid.per_tile - 1;  // block of a tile
+  const int x = ((at.block.x & last) << grid.side_log2) + (at.stamp & (grid.side - 1));
+  const int y = ((at.block.y & last) << grid.side_log2) + (at.stamp >> grid.side_log2);
+  return {static_cast<std::uint16_t>(at.block.x >> grid.per_tile_log2),
+          static_cast<std::uint16_t>(at.block.y >> grid.per_tile_log2),
+          static_cast<std::uint16_t>(widths.stamps.stamp_number(x, y))};
 }
 
 /// The address of a request for a word of flags: word x of the row y of blocks.

@@ -31,33 +31,59 @@ inline void complete_depths(const FragmentPacket& fragment, WritePacket& packet,
     if (!packet.write_depth.has(s)) packet.depth[s] = fragment_depth(fragment, s, widths);
 }
 
-/// A stored depth: the stencil above the depth code, if there is one.
+/// A stored word: a depth code, and the stencil above it, if there is one.
+class DepthWord {
+ public:
+  explicit DepthWord(const Widths& widths)
+      : has_stencil_(widths.stencil_flags != 0),
+        bits_(widths.depth().code.bits),
+        mask_(static_cast<std::uint32_t>(widths.depth().code.range.hi)) {}
+  [[nodiscard]] bool has_stencil() const { return has_stencil_; }
+  [[nodiscard]] std::uint32_t depth(std::uint32_t word) const { return word & mask_; }
+  [[nodiscard]] std::uint8_t stencil(std::uint32_t word) const {
+    return has_stencil_ ? static_cast<std::uint8_t>(word >> bits_) : std::uint8_t{0};
+  }
+  [[nodiscard]] std::uint32_t pack(std::uint32_t depth, std::uint32_t stencil) const {
+    return has_stencil_ ? stencil << bits_ | depth : depth;
+  }
+
+ private:
+  bool has_stencil_;
+  int bits_;  ///< of the code
+  std::uint32_t mask_;
+};
 [[nodiscard]] inline std::uint32_t depth_of(std::uint32_t word, const Widths& widths) {
-  return word & static_cast<std::uint32_t>(widths.depth().code.range.hi);
+  return DepthWord(widths).depth(word);
 }
 [[nodiscard]] inline std::uint8_t stencil_of(std::uint32_t word, const Widths& widths) {
-  return widths.stencil_flags != 0 ? static_cast<std::uint8_t>(word >> widths.depth().code.bits) : std::uint8_t{0};
+  return DepthWord(widths).stencil(word);
 }
 [[nodiscard]] inline std::uint32_t depth_word(std::uint32_t depth, std::uint32_t stencil, const Widths& widths) {
-  return widths.stencil_flags != 0 ? stencil << widths.depth().code.bits | depth : depth;
+  return DepthWord(widths).pack(depth, stencil);
 }
 
 /// The covered samples of a fragment against `stored`, the words of the stamp's samples in the depth RAM. Fills all of
 /// `packet` except its colours and the depths of samples that are not written.
 inline void test_samples(const FragmentPacket& fragment, std::span<const std::uint32_t> stored,
                          const StencilState& stencil, const Widths& widths, WritePacket& packet) {
-  const FragmentState& state = fragment.state;
-  const Stencil* side = state.tests_stencil ? &stencil.side[state.is_back ? 1 : 0] : nullptr;
+  const FragmentState state = fragment.state;
+  const DepthWord word(widths);
   packet.key = fragment.key;
   packet.stamp = fragment.stamp;
   SampleMask passed, changed;
-  fragment.mask.for_each([&](std::size_t s) {
-    const TestedSample sample = test_sample(state, side, fragment_depth(fragment, s, widths),
-                                            depth_of(stored[s], widths), stencil_of(stored[s], widths));
-    passed.set(static_cast<int>(s), sample.passes);
-    changed.set(static_cast<int>(s), sample.changes);
-    packet.depth[s] = depth_word(sample.depth, sample.stencil, widths);
-  });
+  const auto test = [&](const Stencil* side) {
+    fragment.mask.for_each([&](std::size_t s) {
+      const TestedSample sample =
+          test_sample(state, side, fragment_depth(fragment, s, widths), word.depth(stored[s]), word.stencil(stored[s]));
+      passed.set(static_cast<int>(s), sample.passes);
+      changed.set(static_cast<int>(s), sample.changes);
+      packet.depth[s] = word.pack(sample.depth, sample.stencil);
+    });
+  };
+  if (state.tests_stencil)
+    test(&stencil.side[state.is_back ? 1 : 0]);
+  else
+    test(nullptr);
   packet.passed = passed;
   packet.write_depth = changed;
   packet.write_color = state.color_write ? passed : SampleMask();
@@ -97,8 +123,9 @@ class TileVisit {
   /// `passed`: samples whose depth may be written, if the state writes any; `written`: those whose depth is certainly
   /// written.
   void add(const FragmentPacket& fragment, SampleMask passed, SampleMask written, const Widths& widths) {
-    full_stamps_ += written == SampleMask::all(widths.samples) ? 1 : 0;
     has_passed_ = has_passed_ || passed.any();
+    if (written != SampleMask::all(widths.samples)) return;
+    ++full_stamps_;
     passed.for_each([&](std::size_t s) { largest_ = std::max(largest_, fragment_depth(fragment, s, widths)); });
   }
 
@@ -113,7 +140,7 @@ class TileVisit {
  private:
   int full_stamps_ = 0;  ///< stamps with every sample covered and passed
   bool has_passed_ = false;
-  std::uint32_t largest_ = 0;  ///< depth code
+  std::uint32_t largest_ = 0;  ///< depth code of these stamps
 };
 
 }  // namespace halfplane

@@ -35,19 +35,6 @@ namespace halfplane {
 /// The edges of a triangle at one sample position of every pixel: increments from the pixel's centre.
 using EdgePlace = EdgeDeltas;
 
-/// Edges at the centre of pixels, the position of a single sample, and at each of several samples.
-struct EdgePlaces {
-  EdgePlace centre{};
-  std::array<EdgePlace, kMaxPixelSamples> sample{};  ///< with one sample: the centre
-
-  EdgePlaces(const EdgeContext& edges, const Widths& widths) {
-    for (std::size_t k = 0; widths.has_samples != 0 && k < static_cast<std::size_t>(widths.pixel_samples); ++k)
-      for (std::size_t e = 0; e < 3; ++e)
-        sample[k][e] = static_cast<std::int32_t>(sample_edge_offset(edges.low[e], edges.step_x[e], edges.step_y[e],
-                                                                    widths.sample_offset[k], widths.grid_bits));
-  }
-};
-
 /// The edge values at pixel (x, y) of the tile.
 [[nodiscard]] inline EdgeDeltas edges_at(const TilePacket& tile, const EdgeContext& edges, int x, int y) {
   EdgeDeltas value;
@@ -70,27 +57,77 @@ struct EdgePlaces {
   return is_in_box(tile, x, y) && (tile.is_inside || is_inside(edges_at(tile, edges, x, y), place));
 }
 
-/// Sets the coverage of a stamp whose first pixel is `origin` of the tile: of its samples, and of its pixels' centres.
-inline void cover_stamp(const TilePacket& tile, const EdgeContext& edges, const EdgePlaces& places, PixelOffset origin,
-                        const Widths& widths, StampPacket& stamp) {
-  const StampGrid stamps = widths.stamps;
-  SampleMask mask, centre;
-  for (int y = 0; y < stamps.size; ++y)
-    for (int x = 0; x < stamps.size; ++x) {
-      if (!is_in_box(tile, origin.x + x, origin.y + y)) continue;
-      const EdgeDeltas edge = edges_at(tile, edges, origin.x + x, origin.y + y);
-      const auto covers = [&](const EdgePlace& place) { return tile.is_inside || is_inside(edge, place); };
-      const bool is_centre_covered = covers(places.centre);
-      if (stamps.per_pixel == 1) {
-        mask.set(y * stamps.size + x, is_centre_covered);
-        continue;
-      }
-      centre.set(y * stamps.size + x, is_centre_covered);
-      for (int k = 0; k < stamps.per_pixel; ++k)
-        mask.set(stamps.sample_at(x, y) + k, covers(places.sample[static_cast<std::size_t>(k)]));
+/// The edges of a triangle over a stamp: their increments from the centre of its first pixel to each of its samples, and to
+/// the centre of each pixel.
+class StampEdges {
+ public:
+  StampEdges(const EdgeContext& edges, const Widths& widths)
+      : samples_(static_cast<std::size_t>(widths.samples)), pixels_(static_cast<std::size_t>(widths.pixels)) {
+    const StampGrid& stamps = widths.stamps;
+    for (std::size_t pixel = 0; pixel < pixels_; ++pixel) {
+      const PixelOffset at = stamps.place_of(static_cast<int>(pixel));
+      for (std::size_t e = 0; e < 3; ++e) centre_[pixel][e] = at.x * edges.step_x[e] + at.y * edges.step_y[e];
     }
-  stamp.mask = mask;
-  stamp.centre = centre;
+    for (std::size_t s = 0; widths.has_samples != 0 && s < samples_; ++s) {
+      const auto pixel = static_cast<std::size_t>(stamps.pixel_number(static_cast<int>(s)));
+      const SampleOffset& offset = widths.sample_offset[s & static_cast<std::size_t>(stamps.per_pixel - 1)];
+      for (std::size_t e = 0; e < 3; ++e)
+        sample_[s][e] =
+            centre_[pixel][e] + static_cast<std::int32_t>(sample_edge_offset(
+                                    edges.low[e], edges.step_x[e], edges.step_y[e], offset, widths.grid_bits));
+    }
+  }
+
+  /// The pixels of a stamp whose centre is inside all edges, and its samples that are. `first`: the edge values at its
+  /// first pixel. A single sample is the centre.
+  [[nodiscard]] SampleMask centres(const EdgeDeltas& first) const { return inside(first, centre_, pixels_); }
+  [[nodiscard]] SampleMask samples(const EdgeDeltas& first) const {
+    return samples_ == pixels_ ? centres(first) : inside(first, sample_, samples_);
+  }
+
+ private:
+  using Places = std::array<EdgePlace, kMaxSamples>;
+  [[nodiscard]] static SampleMask inside(const EdgeDeltas& first, const Places& places, std::size_t count) {
+    std::uint64_t mask = 0;
+    for (std::size_t n = 0; n < count; ++n) mask |= std::uint64_t{is_inside(first, places[n])} << n;
+    return SampleMask(mask);
+  }
+
+  std::size_t samples_, pixels_;
+  Places centre_, sample_;  ///< the second with several samples a pixel
+};
+
+/// The pixels of a stamp, whose first pixel is `origin` of the tile, that are in the tile's box.
+[[nodiscard]] inline SampleMask pixels_in_box(const TilePacket& tile, PixelOffset origin, const StampGrid& stamps) {
+  const int last = stamps.size - 1;
+  const int left = std::max(tile.box.left - origin.x, 0), right = std::min(tile.box.right - origin.x, last);
+  const int top = std::max(tile.box.top - origin.y, 0), bottom = std::min(tile.box.bottom - origin.y, last);
+  const std::uint64_t row = SampleMask::all(right - left + 1).bits() << left;
+  std::uint64_t mask = 0;
+  for (int y = top; y <= bottom; ++y) mask |= row << y * stamps.size;
+  return SampleMask(mask);
+}
+
+/// Calls visit(stamp, samples, centres) for every stamp of the tile with a covered sample, row by row: its covered samples,
+/// and with several samples a pixel the pixels whose centre is covered.
+template <class Visit>
+void cover_tile(const TilePacket& tile, const EdgeContext& edges, const StampEdges& places, const Widths& widths,
+                Visit&& visit) {
+  const StampGrid& stamps = widths.stamps;
+  const int first = stamps.stamp_at(tile.box.left, tile.box.top),
+            last = stamps.stamp_at(tile.box.right, tile.box.bottom);
+  for (int row = stamps.row_of(first); row <= stamps.row_of(last); ++row)
+    for (int column = stamps.column_of(first); column <= stamps.column_of(last); ++column) {
+      const int stamp = stamps.stamp_number(column, row);
+      const PixelOffset origin = stamps.origin_of(stamp);
+      SampleMask centres = pixels_in_box(tile, origin, stamps), samples = stamps.samples_of(centres);
+      if (!tile.is_inside) {
+        const EdgeDeltas edge = edges_at(tile, edges, origin.x, origin.y);
+        samples = samples & places.samples(edge);
+        if (stamps.per_pixel != 1) centres = centres & places.centres(edge);
+      }
+      if (samples.any()) visit(stamp, samples, stamps.per_pixel != 1 ? centres : SampleMask());
+    }
 }
 
 /// The fields of a stamp that are its tile's.
@@ -106,28 +143,24 @@ inline void cover_stamp(const TilePacket& tile, const EdgeContext& edges, const 
 /// Calls emit(StampPacket) for every stamp of the tile that has coverage or ends a visit.
 template <class Emit>
 void fine_raster(const TilePacket& tile, const EdgeContext& edges, const Widths& widths, Emit&& emit) {
-  const StampGrid& stamps = widths.stamps;
-  const int size = stamps.size, last_row = tile.box.bottom / size;
   StampPacket stamp = empty_stamp(tile);
   if (!tile.is_visit) {
     stamp.ends_primitive = tile.ends_primitive;
     emit(stamp);
     return;
   }
-  const EdgePlaces places(edges, widths);
-  StampPacket held = stamp;  // the last covered stamp of the last row so far
-  held.stamp = static_cast<std::uint16_t>(stamps.stamp_at(0, last_row * size));
-  for (int row = tile.box.top / size; row <= last_row; ++row) {
-    for (int column = tile.box.left / size; column <= tile.box.right / size; ++column) {
-      cover_stamp(tile, edges, places, {column * size, row * size}, widths, stamp);
-      if (!stamp.mask.any()) continue;
-      stamp.stamp = static_cast<std::uint16_t>(stamps.stamp_at(column * size, row * size));
-      const bool is_last_row = row == last_row;
-      if (!is_last_row) emit(stamp);
-      if (is_last_row && held.mask.any()) emit(held);
-      if (is_last_row) held = stamp;
-    }
-  }
+  const int last_row = widths.stamps.stamp_at(0, tile.box.bottom);  // its first stamp
+  StampPacket held = stamp;                                         // the last covered stamp of the last row so far
+  held.stamp = static_cast<std::uint16_t>(last_row);
+  cover_tile(tile, edges, StampEdges(edges, widths), widths, [&](int number, SampleMask samples, SampleMask centres) {
+    stamp.stamp = static_cast<std::uint16_t>(number);
+    stamp.mask = samples;
+    stamp.centre = centres;
+    const bool is_in_last_row = number >= last_row;
+    if (!is_in_last_row) emit(stamp);
+    if (is_in_last_row && held.mask.any()) emit(held);
+    if (is_in_last_row) held = stamp;
+  });
   held.ends_visit = true;
   held.ends_primitive = tile.ends_primitive;
   emit(held);

@@ -57,8 +57,23 @@ struct StampPlane {
             static_cast<std::uint64_t>(std::int64_t{from_anchor.x}) * step_x +
             static_cast<std::uint64_t>(std::int64_t{from_anchor.y}) * step_y;
   }
-  [[nodiscard]] std::uint64_t at(const PixelOffset& pixel) const {
-    return first + static_cast<std::uint64_t>(pixel.x) * step_x + static_cast<std::uint64_t>(pixel.y) * step_y;
+  /// visit(pixel, value): at each of `pixels`, row by row.
+  template <class Visit>
+  void for_each(SampleMask pixels, const StampGrid& stamps, Visit&& visit) const {
+    if (stamps.size == 2) return for_each<2>(pixels, visit);  // the frequent size, unrolled
+    pixels.for_each([&](std::size_t pixel) {
+      const PixelOffset at = stamps.place_of(static_cast<int>(pixel));
+      visit(pixel, first + static_cast<std::uint64_t>(at.x) * step_x + static_cast<std::uint64_t>(at.y) * step_y);
+    });
+  }
+  template <std::size_t kSize, class Visit>
+  void for_each(SampleMask pixels, Visit&& visit) const {
+    std::uint64_t row = first;
+    for (std::size_t y = 0; y < kSize; ++y, row += step_y) {
+      std::uint64_t value = row;
+      for (std::size_t x = 0; x < kSize; ++x, value += step_x)
+        if (pixels.has(y * kSize + x)) visit(y * kSize + x, value);
+    }
   }
   /// Increment from there to a sample of the pixel.
   [[nodiscard]] std::uint64_t to_sample(const SampleOffset& o, const Widths& widths) const {
@@ -76,9 +91,8 @@ PixelOffset from_anchor(int stamp, const Widths& widths) {
 /// The hardware's decode(): the rounded code modulo 2^bits, without the clamp. The error before rounding stays below
 /// 1/2 LSB (depth_error_bound() is at most 1), so at a covered sample the code equals decode(); at others it is
 /// undefined.
-std::uint32_t wrapped_code(std::uint64_t value, const LocalFormat<std::uint64_t>& format) {
-  const std::uint64_t half = std::uint64_t{1} << (format.bits - 1);
-  return static_cast<std::uint32_t>(((value >> format.guard_bits) - half) & (2 * half - 1));
+std::uint32_t wrapped_code(std::uint64_t value, const CodePlace& place) {
+  return (static_cast<std::uint32_t>(value >> place.shift) - place.offset) & place.mask;
 }
 
 /// The shading place of a pixel of a stamp: its centre, or if a sample is covered and the centre is not, the first
@@ -97,11 +111,8 @@ void start_fragment(const StampPacket& stamp, const ContextPacket& context, cons
   fragment.ends_visit = stamp.ends_visit;
   fragment.ends_primitive = stamp.ends_primitive;
   fragment.key = stamp.key;
-  fragment.stamp = stamp.stamp;
   fragment.state = context.state;
-  fragment.mask = stamp.mask;
-  if (context.state.masked_samples != 0)
-    fragment.mask = fragment.mask & widths.stamps.in_every_pixel(~unsigned{context.state.masked_samples});
+  enter_stamp(stamp, widths, fragment);
   if (widths.coordinates == 0) return;
   fragment.coordinates = context.coordinates;
   if (widths.has_colors_over_w == 0) return;
@@ -109,20 +120,25 @@ void start_fragment(const StampPacket& stamp, const ContextPacket& context, cons
   fragment.greatest_color = vertex_color(context.range.high, widths);
 }
 
+void enter_stamp(const StampPacket& stamp, const Widths& widths, FragmentPacket& fragment) {
+  fragment.stamp = stamp.stamp;
+  fragment.mask = stamp.mask;
+  if (fragment.state.masked_samples != 0)
+    fragment.mask = fragment.mask & widths.stamps.in_every_pixel(~unsigned{fragment.state.masked_samples});
+}
+
 void interpolate_depths(const StampPacket& stamp, const ContextPacket& context, SampleMask pixels, const Widths& widths,
                         FragmentPacket& fragment) {
-  const LocalFormat<std::uint64_t> format(widths.depth());
+  const CodePlace place = widths.code_place[kDepthPlane];
   const StampPlane plane(stamp, context, kDepthPlane, from_anchor(stamp.stamp, widths));
-  const StampGrid stamps = widths.stamps;
   if (widths.has_samples == 0)
-    return pixels.for_each([&](std::size_t pixel) {
-      fragment.code[pixel][kDepthPlane] = wrapped_code(plane.at(stamps.place_of(static_cast<int>(pixel))), format);
+    return plane.for_each(pixels, widths.stamps, [&](std::size_t pixel, std::uint64_t centre) {
+      fragment.code[pixel][kDepthPlane] = wrapped_code(centre, place);
     });
   const std::size_t further = static_cast<std::size_t>(widths.pixel_samples) - 1;
-  pixels.for_each([&](std::size_t pixel) {
-    const std::uint64_t centre = plane.at(stamps.place_of(static_cast<int>(pixel)));
+  plane.for_each(pixels, widths.stamps, [&](std::size_t pixel, std::uint64_t centre) {
     const auto code_at = [&](std::size_t k) {
-      return wrapped_code(centre + plane.to_sample(widths.sample_offset[k], widths), format);
+      return wrapped_code(centre + plane.to_sample(widths.sample_offset[k], widths), place);
     };
     fragment.code[pixel][kDepthPlane] = code_at(0);
     for (std::size_t k = 0; k < further; ++k) fragment.further_depth[pixel * further + k] = code_at(k + 1);
@@ -131,21 +147,14 @@ void interpolate_depths(const StampPacket& stamp, const ContextPacket& context, 
 
 void interpolate_planes(const StampPacket& stamp, const ContextPacket& context, int first, int end, SampleMask pixels,
                         const Widths& widths, FragmentPacket& fragment) {
-  const StampGrid stamps = widths.stamps;
   const PixelOffset origin = from_anchor(stamp.stamp, widths);
   const bool has_samples = widths.has_samples != 0;
   for (auto p = static_cast<std::size_t>(first); p < static_cast<std::size_t>(end); ++p) {
     const StampPlane plane(stamp, context, p, origin);
-    const LocalFormat<std::uint64_t> format(widths.of_plane(p));
-    const int local_bits = widths.of_plane(p).local.bits;
-    const bool is_affine = static_cast<int>(p) < widths.affine_planes;
-    pixels.for_each([&](std::size_t pixel) {
-      const int n = static_cast<int>(pixel);
-      std::uint64_t value = plane.at(stamps.place_of(n));
-      if (has_samples) value += plane.to_sample(shaded_offset(stamp, n, widths), widths);
-      fragment.code[pixel][p] = is_affine ? wrapped_code(value, format)
-                                          // Q and P are not rounded: the texture unit divides
-                                          : static_cast<std::uint32_t>(wrap_unsigned(value, local_bits));
+    const CodePlace place = widths.code_place[p];
+    plane.for_each(pixels, widths.stamps, [&](std::size_t pixel, std::uint64_t value) {
+      if (has_samples) value += plane.to_sample(shaded_offset(stamp, static_cast<int>(pixel), widths), widths);
+      fragment.code[pixel][p] = wrapped_code(value, place);
     });
   }
 }

@@ -106,6 +106,8 @@ void interpolate(const StampPacket& stamp, const ContextPacket& context, const W
 /// All fields except the codes.
 void start_fragment(const StampPacket& stamp, const ContextPacket& context, const Widths& widths,
                     FragmentPacket& fragment);
+/// Of these the fields that differ between the stamps of a tile visit: place and mask.
+void enter_stamp(const StampPacket& stamp, const Widths& widths, FragmentPacket& fragment);
 /// The depths of all samples of these pixels.
 void interpolate_depths(const StampPacket& stamp, const ContextPacket& context, SampleMask pixels, const Widths& widths,
                         FragmentPacket& fragment);

@@ -137,8 +137,12 @@ struct BeatShare {
   BeatShare(int shift, int port, std::uint32_t place)
       : per_stamp(1 << std::max(0, shift - port)),
         per_beat(1 << std::max(0, port - shift)),
-        first(static_cast<int>(place) % per_beat) {}
-  [[nodiscard]] int beats(int run) const { return (first + run + per_beat - 1) / per_beat * per_stamp; }
+        first(static_cast<int>(place & static_cast<std::uint32_t>(per_beat - 1))),
+        per_beat_log2_(std::max(0, port - shift)) {}
+  [[nodiscard]] int beats(int run) const { return ((first + run + per_beat - 1) >> per_beat_log2_) * per_stamp; }
+
+ private:
+  int per_beat_log2_ = 0;
 };
 
 class PortStage {

@@ -28,7 +28,8 @@ struct BurstAnswer {
   std::uint64_t unit = 1;             ///< of a cycle
   Cycle behind = 0;                   ///< additional cycles
   [[nodiscard]] Cycle at(int beat) const {
-    return (first + static_cast<std::uint64_t>(beat) * step + unit - 1) / unit + behind;
+    const std::uint64_t time = first + static_cast<std::uint64_t>(beat) * step;
+    return (unit == 1 ? time : (time + unit - 1) / unit) + behind;
   }
 };
 

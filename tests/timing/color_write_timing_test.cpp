@@ -12,9 +12,13 @@ namespace {
 /// A memory that nothing is asked of.
 struct NoMemory {
   LineTimes texture(Cycle, std::uint32_t, int) const { return {}; }
-  PortTimes operator()(Cycle, TilePlane, const StampAddress&, int, bool) const {
-    ADD_FAILURE() << "asked";
+  PortTimes read(Cycle, TilePlane, const StampAddress&) const {
+    ADD_FAILURE() << "read";
     return {};
+  }
+  Cycle write(Cycle, TilePlane, const StampAddress&, int) const {
+    ADD_FAILURE() << "written";
+    return 0;
   }
   [[nodiscard]] bool has_one_color(const StampAddress&, SampleMask) const { return false; }
 };

@@ -260,11 +260,28 @@ class BackTiming {
     const bool is_read = cause == MoveCause::fill;
     const std::uint64_t beats = port_.beats();
     const PortTimes times = port_.take({!is_read, plane, at.tile_x, at.tile_y, at.stamp, run}, cycle);
-    totals_.beats[static_cast<std::size_t>(cause)][is_of_color(plane) ? 1 : 0] += port_.beats() - beats;
     totals_.memory_cycles += times.asked - cycle;
-    totals_.last = std::max(totals_.last, port_.last());
-    work(Stage::memory_port, port_.beats() - beats);
+    count_beats(port_.beats() - beats, plane, cause);
     return times;
+  }
+
+  /// Writes `run` stamps of a block, from `at` on: a request a cycle, from `cycle` on. Returns when the last is taken.
+  Cycle write_run(Cycle cycle, TilePlane plane, const StampAddress& at, int run, MoveCause cause) {
+    const std::uint64_t beats = port_.beats();
+    Cycle last = 0;
+    port_.take_run({true, plane, at.tile_x, at.tile_y, at.stamp, run}, cycle, [&](Cycle offered, Cycle asked) {
+      totals_.memory_cycles += asked - offered;
+      last = asked;
+      if (sink_ != nullptr) sink_->move(cause, is_of_color(plane), at.tile_x, at.tile_y, asked, asked + 1);
+    });
+    count_beats(port_.beats() - beats, plane, cause);
+    return last;
+  }
+
+  void count_beats(std::uint64_t beats, TilePlane plane, MoveCause cause) {
+    totals_.beats[static_cast<std::size_t>(cause)][is_of_color(plane) ? 1 : 0] += beats;
+    totals_.last = std::max(totals_.last, port_.last());
+    work(Stage::memory_port, beats);
   }
 
   /// Requests a line for the texture unit, which takes its beats as they come.
@@ -283,8 +300,11 @@ class BackTiming {
     LineTimes texture(Cycle cycle, std::uint32_t address, int beats) const {
       return timing.ask_for_texels(cycle, address, beats);
     }
-    PortTimes operator()(Cycle cycle, TilePlane plane, const StampAddress& at, int run, bool is_write) const {
-      return timing.ask_of_block(cycle, plane, at, run, is_write ? MoveCause::evict : MoveCause::fill);
+    PortTimes read(Cycle cycle, TilePlane plane, const StampAddress& at) const {
+      return timing.ask_of_block(cycle, plane, at, 1, MoveCause::fill);
+    }
+    Cycle write(Cycle cycle, TilePlane plane, const StampAddress& at, int run) const {
+      return timing.write_run(cycle, plane, at, run, MoveCause::evict);
     }
     [[nodiscard]] bool has_one_color(const StampAddress& at, SampleMask mask) const {
       return timing.has_one_color_(at, mask);
@@ -309,15 +329,15 @@ class BackTiming {
   Cycle resolve_word(Cycle cycle, int word, int y, std::uint64_t bits) {
     if (bits == 0) ++cycle;
     for (int x = word * widths_.blocks.flag_word; bits != 0; bits >>= 1, ++x) {
-      if ((bits & 1) == 0) ++cycle;
-      for (int stamp = 0; (bits & 1) != 0 && stamp < widths_.blocks.stamps(); ++stamp) {
-        const BlockAddress block{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
-        const StampAddress at = stamp_address({block, stamp}, widths_);
-        const int run = widths_.blocks.stamps() - stamp;
-        const TilePlane plane = compresses_ ? TilePlane::pixel_color : TilePlane::color;
-        cycle = ask_of_block(cycle, plane, at, run, MoveCause::clear).asked + 1;
-        if (compresses_) blocks_->of_pixels().set(block, true);
+      if ((bits & 1) == 0) {
+        ++cycle;
+        continue;
       }
+      const BlockAddress block{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
+      const TilePlane plane = compresses_ ? TilePlane::pixel_color : TilePlane::color;
+      const StampAddress at = stamp_address({block, 0}, widths_);
+      cycle = write_run(cycle, plane, at, widths_.blocks.stamps(), MoveCause::clear) + 1;
+      if (compresses_) blocks_->of_pixels().set(block, true);
     }
     return cycle;
   }

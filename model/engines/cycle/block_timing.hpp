@@ -152,8 +152,9 @@ class BlockTiming {
   /// When the colour stage took the last fragment.
   [[nodiscard]] Cycle colored() const { return colored_; }
 
-  /// A fragment that the tags took in `moved`, or a line that was read then. ask(cycle, plane, stamp, run, is_write): a
-  /// request, in `cycle` at the earliest; returns PortTimes.
+  /// A fragment that the tags took in `moved`, or a line that was read then. ask.read(cycle, plane, stamp): a request, in
+  /// `cycle` at the earliest; returns PortTimes. ask.write(cycle, plane, first stamp, run): a burst, a request a cycle;
+  /// returns when the last is taken.
   template <class Ask>
   void take(Cycle moved, const TagResult& tags, const BlockItem& item, Ask&& ask) {
     const bool reads = tags.source == DepthSource::memory, reads_color = tags.color_source == DepthSource::memory;
@@ -381,14 +382,12 @@ class BlockTiming {
           cycle = merge(cycle, v.block, ask);
           left = all_stamps();
         }
-        for (; left != 0; left &= left - 1) {
-          const int stamp = std::countr_zero(left);
+        while (left != 0) {
+          const int stamp = std::countr_zero(left), run = std::countr_one(left >> stamp);
           const StampAddress at = stamp_address({v.block, stamp}, widths_);
-          behind = ask(cycle, move == ColorMove::pixels ? TilePlane::pixel_color : plane, at,
-                       std::countr_one(left >> stamp), true)
-                       .asked +
-                   1;
+          behind = ask.write(cycle, move == ColorMove::pixels ? TilePlane::pixel_color : plane, at, run) + 1;
           cycle = behind;
+          left &= left + (std::uint64_t{1} << stamp);  // without the run, which the sum carries through
         }
       }
       cycle = behind;
@@ -396,7 +395,7 @@ class BlockTiming {
       victims_.pop_front();
     }
     const auto read = [&](TilePlane plane) {
-      const auto [asked, answered] = ask(cycle, plane, stamp_address({tags.block, item->stamp}, widths_), 1, false);
+      const auto [asked, answered] = ask.read(cycle, plane, stamp_address({tags.block, item->stamp}, widths_));
       cycle = asked + 1;
       answered_ = answered;
       return answered;
@@ -416,8 +415,7 @@ class BlockTiming {
   Cycle merge(Cycle cycle, const BlockAddress& block, Ask&& ask) {
     cycle = std::max(cycle, answered_ + 1);
     for (int stamp = 0; stamp < widths_.blocks.stamps(); ++stamp) {
-      const auto [asked, answered] =
-          ask(cycle, TilePlane::pixel_color, stamp_address({block, stamp}, widths_), 1, false);
+      const auto [asked, answered] = ask.read(cycle, TilePlane::pixel_color, stamp_address({block, stamp}, widths_));
       cycle = asked + 1;
       answered_ = answered;
     }

@@ -64,9 +64,8 @@ class CycleModelOf final : public CycleModel {
     if (options.layout) timing_.set_layout(*options.layout);
     if (config_.compress_units != 0)
       timing_.look_at_colors([this](const StampAddress& at, SampleMask mask) {
-        StampImages images(frames(), widths_);
-        images.enter(at);
-        return images.has_one_color(mask);
+        images_->enter(at);
+        return images_->has_one_color(mask);
       });
   }
 
@@ -84,6 +83,7 @@ class CycleModelOf final : public CycleModel {
       if (widths_.has_samples != 0)
         rendering_.frame.samples.assign(static_cast<std::size_t>(config_.msaa_samples), Framebuffer(rendering_.frame));
     }
+    images_.emplace(frames(), widths_);
     const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     if (options_.want_count) rendering_.count.resize(pixels);
     if (options_.want_ids) rendering_.ids.assign(pixels, -1);
@@ -206,7 +206,6 @@ class CycleModelOf final : public CycleModel {
     fragment_.kind = token.kind;
     fragment_.state = state;
     fragment_.coordinates = token.coordinates;
-    StampImages images(frames(), widths_);
     LineState next = first_state(line);
     FragmentPlace place;
     place.depth_write = state.depth_write;
@@ -216,7 +215,7 @@ class CycleModelOf final : public CycleModel {
       set_line_pixel(pixel, widths_, fragment_);
       place = place_of(fragment_);
       fate = {};
-      if (place.mask.any()) fate = shade(images, nullptr, nullptr, primitive);
+      if (place.mask.any()) fate = shade(nullptr, nullptr, primitive);
       if (!pixel.is_last) advance(next, line, widths_);
       return !pixel.is_last;
     };
@@ -251,7 +250,7 @@ class CycleModelOf final : public CycleModel {
     item.stamp = block_stamp(at, widths_).stamp;
     item.depth_write = state.writes_word();
     item.color_write = state.color_write;
-    item.blends = colors.ops.blends();
+    item.blends = blends_;
     item.is_late = is_late(state, colors.tests_alpha(), config_);
     item.wrote_depth = fate.written.any();
     if (state.color_write) item.colors = fate.kept;
@@ -269,11 +268,10 @@ class CycleModelOf final : public CycleModel {
   struct StampPort {
     static constexpr bool kSendsPackets = false;
     CycleModelOf& model;
-    StampImages& images;
     const StampPacket* stamp;  ///< null: a pixel of a line, whose fragment has all of its codes
     const ContextPacket* context;
 
-    [[nodiscard]] std::span<const std::uint32_t> stored() const { return images.words(model.fragment_.mask); }
+    [[nodiscard]] std::span<const std::uint32_t> stored() const { return model.images_->words(model.fragment_.mask); }
     void interpolate_colors(SampleMask samples) const {
       interpolate(kColorPlane, model.widths_.affine_planes, samples);
     }
@@ -291,33 +289,32 @@ class CycleModelOf final : public CycleModel {
       return line;
     }
     [[nodiscard]] std::span<const std::uint32_t> stored_colors(SampleMask samples) const {
-      return images.colors(samples);
+      return model.images_->colors(samples);
     }
     void send(const WritePacket&) const {}
     void send(const ColorPacket&) const {}
-    void write(const WritePacket& packet) const { images.write(packet); }
+    void write(const WritePacket& packet) const { model.images_->write(packet); }
   };
 
   /// Takes the current fragment from depth_test to the framebuffer.
-  StampFate shade(StampImages& images, const StampPacket* stamp, const ContextPacket* context,
-                  std::uint32_t primitive) {
-    images.enter({fragment_.key.tile_x, fragment_.key.tile_y, fragment_.stamp});
-    const StampFate fate = path_.shade(fragment_, counters_, StampPort{*this, images, stamp, context});
-    if (options_.want_count || options_.want_ids) note_samples(images, fate.kept, primitive);
+  StampFate shade(const StampPacket* stamp, const ContextPacket* context, std::uint32_t primitive) {
+    images_->enter({fragment_.key.tile_x, fragment_.key.tile_y, fragment_.stamp});
+    const StampFate fate = path_.shade(fragment_, counters_, StampPort{*this, stamp, context});
+    if (options_.want_count || options_.want_ids) note_samples(fate.kept, primitive);
     if (options_.want_misses)
       for (const TextureLookup& lookup : fate.lookups)
         if (lookup.is_miss) {
-          const PixelOffset at = images.pixel(lookup.sample * static_cast<std::size_t>(widths_.pixel_samples));
+          const PixelOffset at = images_->pixel(lookup.sample * static_cast<std::size_t>(widths_.pixel_samples));
           misses_[plain_index(at.x, at.y)] += 1.0F;
         }
     return fate;
   }
 
   /// Counts the fragment's samples, and notes the owners of the stored ones: a pixel has the owner of its first sample.
-  void note_samples(const StampImages& images, SampleMask kept, std::uint32_t primitive) {
+  void note_samples(SampleMask kept, std::uint32_t primitive) {
     const bool counts = is_counted(fragment_.kind);
     fragment_.mask.for_each([&](std::size_t s) {
-      const PixelOffset at = images.pixel(s);
+      const PixelOffset at = images_->pixel(s);
       const std::size_t plain = plain_index(at.x, at.y);
       if (counts && !rendering_.count.empty()) ++rendering_.count[plain];
       if (s % static_cast<std::size_t>(widths_.pixel_samples) == 0 && kept.has(s) && !rendering_.ids.empty() &&
@@ -344,42 +341,45 @@ class CycleModelOf final : public CycleModel {
   void draw(const SetupPacket& setup, std::uint32_t primitive) {
     const ContextPacket context = make_context(setup, widths_);
     const EdgeContext edges = make_edge_context(setup);
+    const StampEdges places(edges, widths_);
     coarse_raster(
         setup, 0, hiz_, widths_, counters_,
         [&](const TilePacket& tile) {
           if (tile.is_visit)
-            visit(tile, edges, context, primitive);
+            visit(tile, edges, places, context, primitive);
           else
             timing_.end_walk([&](Cycle offered) { return timing_.pass(offered); });
         },
         WalkWatch{timing_, options_.parameters.rejects != 0});
   }
 
-  void visit(const TilePacket& tile, const EdgeContext& edges, const ContextPacket& context, std::uint32_t primitive) {
-    const int size = config_.stamp_size, per_row = widths_.stamps.stamps_per_row;
+  void visit(const TilePacket& tile, const EdgeContext& edges, const StampEdges& places, const ContextPacket& context,
+             std::uint32_t primitive) {
+    const StampGrid& stamps = widths_.stamps;
     const int tile_x = tile.key.tile_x, tile_y = tile.key.tile_y;
-    TileVisitWork work{tile.ends_primitive,  tile.box.top / size,   tile.box.bottom / size,
-                       tile.box.left / size, tile.box.right / size, {}};
-    fine_raster(tile, edges, widths_, [&](const StampPacket& stamp) {
-      coverage_[stamp.stamp] = {stamp.mask, stamp.centre};
-      if (stamp.mask.any()) work.columns[stamp.stamp / per_row] |= 1U << stamp.stamp % per_row;
+    const int first_stamp = stamps.stamp_at(tile.box.left, tile.box.top),
+              last_stamp = stamps.stamp_at(tile.box.right, tile.box.bottom);
+    TileVisitWork work{tile.ends_primitive,           stamps.row_of(first_stamp),   stamps.row_of(last_stamp),
+                       stamps.column_of(first_stamp), stamps.column_of(last_stamp), {}};
+    cover_tile(tile, edges, places, widths_, [&](int number, SampleMask samples, SampleMask centres) {
+      coverage_[static_cast<std::size_t>(number)] = {samples, centres};
+      work.columns[static_cast<std::size_t>(stamps.row_of(number))] |= 1U << stamps.column_of(number);
     });
     StampPacket stamp = empty_stamp(tile);
     start_fragment(stamp, context, widths_, fragment_);
-    StampImages images(frames(), widths_);
     bool is_resident = false;
     const Cycle before = timing_.last_fragment();
     if (options_.sink != nullptr) options_.sink->visit(tile_x, tile_y);
     timing_.visit(work, [&](Cycle offered, int row, int column) {
       if (column < 0) return timing_.pass(offered);
-      stamp.stamp = static_cast<std::uint16_t>(row * per_row + column);
+      stamp.stamp = static_cast<std::uint16_t>(stamps.stamp_number(column, row));
       stamp.mask = coverage_[stamp.stamp].samples;
       stamp.centre = coverage_[stamp.stamp].centres;
-      start_fragment(stamp, context, widths_, fragment_);
+      enter_stamp(stamp, widths_, fragment_);
       const FragmentPlace place = place_of(fragment_);
       if (!place.mask.any()) return timing_.pass(offered);  // no sample is drawn
       interpolate_depths(stamp, context, widths_.stamps.pixels_of(place.mask), widths_, fragment_);
-      const StampFate fate = shade(images, &stamp, &context, primitive);
+      const StampFate fate = shade(&stamp, &context, primitive);
       if (blocks_) {
         BlockItem item;
         const TagResult tags = block_access(place, fate, item);
@@ -440,6 +440,7 @@ class CycleModelOf final : public CycleModel {
   void set_tags() {
     if (!blocks_) return;
     const ColorState& colors = path_.colors();
+    blends_ = colors.ops.blends();
     blocks_->set(colors.ops.reads_stored(), colors.tests_alpha(), path_.stencil().replaces());
   }
 
@@ -452,12 +453,14 @@ class CycleModelOf final : public CycleModel {
   std::optional<TileDirectory> tiles_;  ///< one of the two, by cache.kind
   std::optional<CacheTags> blocks_;
   FragmentPath path_;
+  bool blends_ = false;  ///< by the current colour operations
   /// Coverage of a stamp of the current tile that is not empty.
   struct Coverage {
     SampleMask samples, centres;
   };
   std::vector<Coverage> coverage_;
-  FragmentPacket fragment_;  ///< the current one; holds only codes that have been requested
+  FragmentPacket fragment_;            ///< the current one; holds only codes that have been requested
+  std::optional<StampImages> images_;  ///< of the current frame, at the stamp of this fragment
   TextureMemory texels_;
   Rendering rendering_;
   std::vector<float> cost_, misses_;

@@ -141,18 +141,21 @@ class PipelinedTiming : public BackTiming {
     for (int row = tile.first_row;; ++row, ++row_at) {
       const bool is_last = row == tile.last_row;
       std::uint32_t columns = tile.columns[static_cast<std::size_t>(row)];
-      work(Stage::fine_raster, columns == 0 ? 1 : static_cast<std::uint64_t>(std::popcount(columns)));
       row_at = std::max(row_at, coverage_.room());
       Cycle leaves = coverage_.ready(row_at);
       const bool is_sent = columns != 0 || is_last;
       if (is_sent) leaves = std::max(leaves, stamps_.room());
       coverage_.leave(leaves);
-      if (!is_sent) continue;
+      if (!is_sent) {
+        work(Stage::fine_raster, 1);
+        continue;
+      }
       Cycle at = stamps_.ready(leaves);
       do {
         const int column = columns == 0 ? -1 : std::countr_zero(columns);
         columns &= columns - 1;
         const bool ends = tile.ends_primitive && is_last && columns == 0;
+        work(Stage::fine_raster, 1);
         at = send(at, ends, [&](Cycle shaded) { return shade(shaded, row, column); }) + 1;
       } while (columns != 0);
       stamps_.leave(at - 1);

@@ -56,15 +56,38 @@ class PortTiming {
 
   /// A request on offer from `cycle` on.
   PortTimes take(const PortRequest& request, Cycle cycle) {
-    const int shift = item_shift(request.plane, widths_.memory);
-    const std::uint32_t address =
-        byte_address(request.plane, request.tile_x, request.tile_y, request.stamp, layout_, widths_);
-    const BeatShare share(shift, widths_.memory.port, address >> shift);
-    return request.is_write ? write(request, share, address, cycle) : read(request, share, address, cycle);
+    const auto [share, address] = place_of(request);
+    if (!request.is_write) return read(request, share, address, cycle);
+    return {write(request, share, address, share.first, cycle), 0};
+  }
+
+  /// The `run` requests of a burst of writes: the first on offer from `cycle` on, each other from the cycle after the one
+  /// before was taken. taken(offered, asked): of each.
+  template <class Taken>
+  void take_run(const PortRequest& request, Cycle cycle, Taken&& taken) {
+    const auto [share, address] = place_of(request);
+    for (int n = 0; n < request.run; ++n) {
+      const Cycle asked = write(request, share, address, (share.first + n) & (share.per_beat - 1), cycle);
+      taken(cycle, asked);
+      cycle = asked + 1;
+    }
   }
 
  private:
-  PortTimes write(const PortRequest& request, const BeatShare& share, std::uint32_t address, Cycle cycle) {
+  struct Place {
+    BeatShare share;
+    std::uint32_t address;  ///< of the first byte
+  };
+  [[nodiscard]] Place place_of(const PortRequest& request) const {
+    const int shift = item_shift(request.plane, widths_.memory);
+    const std::uint32_t address =
+        byte_address(request.plane, request.tile_x, request.tile_y, request.stamp, layout_, widths_);
+    return {BeatShare(shift, widths_.memory.port, address >> shift), address};
+  }
+
+  /// A stamp, the number `in_beat` of its beat; if it begins a burst, `request` of the others in it. Returns when it is
+  /// taken.
+  Cycle write(const PortRequest& request, const BeatShare& share, std::uint32_t address, int in_beat, Cycle cycle) {
     const bool begins = left_ == 0;
     if (begins) {
       left_ = request.run;
@@ -74,7 +97,7 @@ class PortTiming {
     const Cycle asked = moves(Arrow::request, cycle, begins ? std::max(room_, unanswered_.room()) : room_);
     room_ = asked + 1;
     --left_;
-    if (left_ != 0 && share.first != share.per_beat - 1) return {asked, 0};  // the beat is not complete
+    if (left_ != 0 && in_beat != share.per_beat - 1) return asked;  // the beat is not complete
     Cycle beat = asked;
     for (int n = 0; n < share.per_stamp; ++n) {
       beat = moves(Arrow::beat, beat + 1, has_sent_ ? 0 : memory_.room());
@@ -86,7 +109,7 @@ class PortTiming {
       answered_ = moves(Arrow::answer, std::max(memory_.accept(burst_, beat).at(0), answered_ + 1), 0);
       unanswered_.leave(answered_);
     }
-    return {asked, 0};
+    return asked;
   }
 
   PortTimes read(const PortRequest& request, const BeatShare& share, std::uint32_t address, Cycle cycle) {

@@ -15,10 +15,12 @@ class StampImages {
  public:
   /// `frames`: one for each sample of a pixel. Both must outlive this.
   StampImages(std::span<Framebuffer> frames, const Widths& widths)
-      : frames_(frames), widths_(widths), stamps_(widths.stamps) {
-    for (int pixel = 0; pixel < stamps_.pixels(); ++pixel) {
-      const PixelOffset place = stamps_.place_of(pixel);
-      offset_[static_cast<std::size_t>(pixel)] = place.y * frames_[0].stride + place.x;
+      : frame_(frames[0]), widths_(widths), stamps_(widths.stamps), word_(widths) {
+    for (std::size_t s = 0; s < static_cast<std::size_t>(widths.samples); ++s) {
+      Framebuffer& frame = frames[s & (frames.size() - 1)];
+      const PixelOffset place = stamps_.pixel_of(static_cast<int>(s));
+      const int offset = place.y * frame.stride + place.x;
+      sample_[s] = {frame.depth.data() + offset, frame.color.data() + offset, frame.stencil.data() + offset};
     }
   }
 
@@ -26,7 +28,7 @@ class StampImages {
   void enter(const StampAddress& at) {
     const PixelOffset in_tile = stamps_.origin_of(at.stamp);
     first_ = {(at.tile_x << widths_.tile_shift) + in_tile.x, (at.tile_y << widths_.tile_shift) + in_tile.y};
-    index_ = frames_[0].at(first_.x, first_.y);
+    index_ = frame_.at(first_.x, first_.y);
   }
 
   /// The pixel of a sample, in the target.
@@ -37,10 +39,9 @@ class StampImages {
 
   /// The words of `samples` as in the depth RAM, and their colours; other samples are undefined.
   [[nodiscard]] std::span<const std::uint32_t> words(SampleMask samples) {
-    samples.for_each([&](std::size_t s) {
-      const auto& [frame, at] = stored(s);
-      code_[s] = depth_word(frame.depth[at], frame.stencil[at], widths_);
-    });
+    samples.for_each([this](std::size_t s) { code_[s] = sample_[s].depth[index_]; });
+    if (word_.has_stencil())
+      samples.for_each([this](std::size_t s) { code_[s] = word_.pack(code_[s], sample_[s].stencil[index_]); });
     return code_;
   }
   [[nodiscard]] std::span<const std::uint32_t> colors(SampleMask samples) {
@@ -49,15 +50,10 @@ class StampImages {
   }
 
   void write(const WritePacket& packet) const {
-    packet.write_depth.for_each([&](std::size_t s) {
-      const auto& [frame, at] = stored(s);
-      frame.depth[at] = depth_of(packet.depth[s], widths_);
-      frame.stencil[at] = stencil_of(packet.depth[s], widths_);
-    });
-    packet.write_color.for_each([&](std::size_t s) {
-      const auto& [frame, at] = stored(s);
-      frame.color[at] = packet.color[s];
-    });
+    packet.write_depth.for_each([&](std::size_t s) { sample_[s].depth[index_] = word_.depth(packet.depth[s]); });
+    if (word_.has_stencil())
+      packet.write_depth.for_each([&](std::size_t s) { sample_[s].stencil[index_] = word_.stencil(packet.depth[s]); });
+    packet.write_color.for_each([&](std::size_t s) { sample_[s].color[index_] = packet.color[s]; });
   }
 
   /// Whether in each pixel of the stamp all samples are in `mask` and stored equally, or none is.
@@ -66,25 +62,20 @@ class StampImages {
   }
 
  private:
-  struct Stored {
-    Framebuffer& frame;
-    std::size_t at;
+  /// A sample of the stamp at the first pixel, in its images.
+  struct Sample {
+    std::uint32_t *depth, *color;
+    std::uint8_t* stencil;
   };
-  [[nodiscard]] Stored stored(std::size_t s) const {
-    const auto pixel = static_cast<std::size_t>(stamps_.pixel_number(static_cast<int>(s)));
-    return {frames_[s & (frames_.size() - 1)], index_ + static_cast<std::size_t>(offset_[pixel])};
-  }
-  [[nodiscard]] std::uint32_t color(std::size_t s) const {
-    const auto& [frame, at] = stored(s);
-    return frame.color[at];
-  }
+  [[nodiscard]] std::uint32_t color(std::size_t s) const { return sample_[s].color[index_]; }
 
-  std::span<Framebuffer> frames_;
+  const Framebuffer& frame_;
   const Widths& widths_;
   StampGrid stamps_;
-  PixelOffset first_;                    ///< first pixel of the stamp, in the target
-  std::size_t index_ = 0;                ///< its index in the images
-  std::array<int, kMaxSamples> offset_;  ///< from there to each pixel of a stamp
+  DepthWord word_;
+  PixelOffset first_;      ///< first pixel of the stamp, in the target
+  std::size_t index_ = 0;  ///< its index in the images
+  std::array<Sample, kMaxSamples> sample_;
   std::array<std::uint32_t, kMaxSamples> code_;
 };
 
