@@ -33,6 +33,12 @@ class Stream {
     waited_ += moved - offered;
   }
 
+  /// Counts `items` that have waited that many cycles in all.
+  void count_run(std::uint64_t items, std::uint64_t waited) {
+    items_ += items;
+    waited_ += waited;
+  }
+
   [[nodiscard]] unsigned streams() const { return streams_; }
   [[nodiscard]] StreamUse use(Cycle cycles) const { return {items_, waited_, cycles - items_ - waited_}; }
 

@@ -268,14 +268,12 @@ class BackTiming {
   /// Writes `run` stamps of a block, from `at` on: a request a cycle, from `cycle` on. Returns when the last is taken.
   Cycle write_run(Cycle cycle, TilePlane plane, const StampAddress& at, int run, MoveCause cause) {
     const std::uint64_t beats = port_.beats();
-    Cycle last = 0;
-    port_.take_run({true, plane, at.tile_x, at.tile_y, at.stamp, run}, cycle, [&](Cycle offered, Cycle asked) {
-      totals_.memory_cycles += asked - offered;
-      last = asked;
+    const RunTimes times = port_.take_run({true, plane, at.tile_x, at.tile_y, at.stamp, run}, cycle, [&](Cycle asked) {
       if (sink_ != nullptr) sink_->move(cause, is_of_color(plane), at.tile_x, at.tile_y, asked, asked + 1);
     });
+    totals_.memory_cycles += times.waited;
     count_beats(port_.beats() - beats, plane, cause);
-    return last;
+    return times.last;
   }
 
   void count_beats(std::uint64_t beats, TilePlane plane, MoveCause cause) {

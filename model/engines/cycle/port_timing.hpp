@@ -33,6 +33,11 @@ struct PortTimes {
   Cycle asked = 0, answered = 0;
 };
 
+/// The cycle in which the last request of a run was taken, and those that all of them have waited.
+struct RunTimes {
+  Cycle last = 0, waited = 0;
+};
+
 class PortTiming {
  public:
   static constexpr int kUnanswered = 255;  ///< write bursts
@@ -62,15 +67,20 @@ class PortTiming {
   }
 
   /// The `run` requests of a burst of writes: the first on offer from `cycle` on, each other from the cycle after the one
-  /// before was taken. taken(offered, asked): of each.
-  template <class Taken>
-  void take_run(const PortRequest& request, Cycle cycle, Taken&& taken) {
+  /// before was taken. watch(asked): of each, if there is a sink.
+  template <class Watch>
+  RunTimes take_run(const PortRequest& request, Cycle cycle, Watch&& watch) {
     const auto [share, address] = place_of(request);
+    if (stalls_.threshold == 0 && sink_ == nullptr && share.per_beat == 1)
+      return write_at_once(request, share, address, cycle);
+    RunTimes times;
     for (int n = 0; n < request.run; ++n) {
-      const Cycle asked = write(request, share, address, (share.first + n) & (share.per_beat - 1), cycle);
-      taken(cycle, asked);
-      cycle = asked + 1;
+      times.last = write(request, share, address, (share.first + n) & (share.per_beat - 1), cycle);
+      times.waited += times.last - cycle;
+      cycle = times.last + 1;
+      watch(times.last);
     }
+    return times;
   }
 
  private:
@@ -105,11 +115,34 @@ class PortTiming {
     }
     room_ = beat;
     beats_ += static_cast<std::uint64_t>(share.per_stamp);
-    if (left_ == 0) {
-      answered_ = moves(Arrow::answer, std::max(memory_.accept(burst_, beat).at(0), answered_ + 1), 0);
-      unanswered_.leave(answered_);
-    }
+    if (left_ == 0) end_burst(burst_, beat);
     return asked;
+  }
+
+  /// A burst of writes in closed form, where nothing holds the streams back and no stamps share a beat: its first beat may
+  /// wait for memory; then each stamp is taken with the last beat of the one before.
+  RunTimes write_at_once(const PortRequest& request, const BeatShare& share, std::uint32_t address, Cycle cycle) {
+    const auto beats = static_cast<Cycle>(share.per_stamp), others = static_cast<Cycle>(request.run - 1);
+    const Cycle first = std::max({cycle, room_, unanswered_.room()}), sent = std::max(first + 1, memory_.room());
+    const Cycle second = sent + beats - 1;  // with the last beat of the first stamp
+    RunTimes times{first, first - cycle};
+    if (others != 0) {
+      times.last = second + (others - 1) * beats;
+      times.waited += second - first - 1 + (others - 1) * (beats - 1);
+    }
+    room_ = second + others * beats;
+    beats_ += (others + 1) * beats;
+    streams_[index(Arrow::request)].count_run(others + 1, times.waited);
+    streams_[index(Arrow::beat)].count_run((others + 1) * beats, sent - first - 1);
+    const MemoryBurst burst{true, address >> widths_.memory.port << widths_.memory.port, share.beats(request.run)};
+    end_burst(burst, room_);
+    return times;
+  }
+
+  /// The last beat of a burst of writes has been sent in `beat`.
+  void end_burst(const MemoryBurst& burst, Cycle beat) {
+    answered_ = moves(Arrow::answer, std::max(memory_.accept(burst, beat).at(0), answered_ + 1), 0);
+    unanswered_.leave(answered_);
   }
 
   PortTimes read(const PortRequest& request, const BeatShare& share, std::uint32_t address, Cycle cycle) {
