@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""What the functional engine spends on small triangles, in instructions (valgrind --tool=callgrind, AVX2, one thread).
+"""What engines spend, in instructions (valgrind --tool=callgrind, one thread): the functional engine on small triangles,
+with AVX2, and the cycle engine on the cycles of a frame.
 
 Time on a shared machine says little, and instructions do not lie about how much work there is: a gate that a slow
 neighbour cannot close. Counted is a frame whose memory is there from the frame before: three frames less one, halved.
 
-  tools/instructions.py PROGRAM [--valgrind FILE]     PROGRAM: halfplane_frames, of a release build
+  tools/instructions.py PROGRAM ENGINE [--valgrind FILE]     PROGRAM: halfplane_frames, of a release build
 
 Exit status: 0 within the bounds, 1 beyond one, 3 something is missing, 77 the machine has no AVX2.
 """
@@ -15,19 +16,24 @@ import subprocess
 import sys
 import tempfile
 
-# Scene, size, triangles that count, instructions that each may take: what was measured with g++ 12, and a twentieth.
+# Engine, scene, size, the things that count and their number, instructions that each may take: what was measured with g++ 12,
+# and a twentieth.
 GATES = [
-    ('dust:250000', (640, 360), 249_630, 343),
-    ('ball', (1280, 720), 51_200, 781),
+    ('functional', 'dust:250000', (640, 360), 'triangle', 249_630, 343),
+    ('functional', 'ball', (1280, 720), 'triangle', 51_200, 781),
+    ('cycle', 'city', (320, 240), 'cycle', 48_405, 1_757),
 ]
-COUNTED = 'halfplane::functional::FrameRenderer::render*'
+COUNTED = {
+    'functional': 'halfplane::functional::FrameRenderer::render*',
+    'cycle': 'halfplane::CycleFrames::draw(halfplane::Scene const&, halfplane::RenderOptions const&)',
+}
 
 
-def instructions(program, valgrind, scene, size, frames):
+def instructions(program, valgrind, engine, scene, size, frames):
     """Of all frames, inside the engine."""
     with tempfile.TemporaryDirectory() as folder:
-        command = [valgrind, '--tool=callgrind', f'--callgrind-out-file={folder}/out', f'--toggle-collect={COUNTED}',
-                   program, scene, *map(str, size), str(frames)]
+        command = [valgrind, '--tool=callgrind', f'--callgrind-out-file={folder}/out',
+                   f'--toggle-collect={COUNTED[engine]}', program, engine, scene, *map(str, size), str(frames)]
         run = subprocess.run(command, capture_output=True, text=True, check=False)
         if run.returncode == 77:
             print('this machine has no AVX2, whose instructions are counted')
@@ -36,21 +42,24 @@ def instructions(program, valgrind, scene, size, frames):
             sys.exit(f'{" ".join(command)}: status {run.returncode}\n{run.stderr}')
         summary = re.search(r'^(?:totals|summary): (\d+)', pathlib.Path(folder, 'out').read_text(), re.MULTILINE)
         if summary is None or int(summary[1]) == 0:
-            sys.exit(f'nothing was counted in {COUNTED}')
+            sys.exit(f'nothing was counted in {COUNTED[engine]}')
         return int(summary[1])
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split('\n', maxsplit=1)[0])
     parser.add_argument('program')
+    parser.add_argument('engine', choices=sorted(COUNTED))
     parser.add_argument('--valgrind', default='valgrind')
     options = parser.parse_args()
     within = True
-    for scene, size, triangles, bound in GATES:
-        one, three = (instructions(options.program, options.valgrind, scene, size, frames) for frames in (1, 3))
-        each = (three - one) / 2 / triangles
+    for engine, scene, size, thing, count, bound in GATES:
+        if engine != options.engine:
+            continue
+        one, three = (instructions(options.program, options.valgrind, engine, scene, size, frames) for frames in (1, 3))
+        each = (three - one) / 2 / count
         within &= each <= bound
-        print(f'{scene:12} {size[0]}x{size[1]}  {each:7.1f} instructions a triangle, at most {bound}')
+        print(f'{scene:12} {size[0]}x{size[1]}  {each:7.1f} instructions a {thing}, at most {bound}')
     return 0 if within else 1
 
 
