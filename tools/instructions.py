@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""What engines spend, in instructions (valgrind --tool=callgrind, one thread): the functional engine on small triangles,
-with AVX2, and the cycle engine on the cycles of a frame.
+"""What engines spend, in instructions (valgrind --tool=callgrind, one thread): the functional engine on small
+triangles, with AVX2, and the cycle engine on the cycles of a frame.
 
 Time on a shared machine says little, and instructions do not lie about how much work there is: a gate that a slow
 neighbour cannot close. Counted is a frame whose memory is there from the frame before: three frames less one, halved.
@@ -16,8 +16,8 @@ import subprocess
 import sys
 import tempfile
 
-# Engine, scene, size, the things that count and their number, instructions that each may take: what was measured with g++ 12,
-# and a twentieth.
+# Engine, scene, size, the things that count and their number, instructions that each may take: what was measured with
+# g++ 12, and a twentieth.
 GATES = [
     ('functional', 'dust:250000', (640, 360), 'triangle', 249_630, 343),
     ('functional', 'ball', (1280, 720), 'triangle', 51_200, 781),
