@@ -4,6 +4,7 @@
 
 #include <set>
 #include <string>
+#include <vector>
 
 #include "../hardware_scene.hpp"
 #include "../scene_builder.hpp"
@@ -80,12 +81,14 @@ TEST(CycleModel, WithoutHizItCountsEveryCoveredSample) {
 
 // Without an observer, whole bursts are one step.
 TEST(CycleModel, TheCyclesAreTheSameWhetherOrNotSomebodyLooksOn) {
-  for (const std::string_view name : preset_names())
+  std::vector<Config> configs;
+  for (const std::string_view name : preset_names()) configs.push_back(preset(name));
+  for (const char* bits : {"16", "256"}) configs.push_back(with("embedded", {{"memory.port_bits", bits}}));
+  for (const Config& config : configs)
     for (const Builtin& builtin : builtin_scenes()) {
-      const Config config = preset(name);
       const Scene scene = scene_for(builtin.name, config);
       if (!takes(scene, config)) continue;
-      SCOPED_TRACE(std::string(name) + ", " + std::string(builtin.name));
+      SCOPED_TRACE(label(config) + ", " + std::string(builtin.name));
       Nobody sink;
       CycleOptions watched;
       watched.sink = &sink;
@@ -94,6 +97,10 @@ TEST(CycleModel, TheCyclesAreTheSameWhetherOrNotSomebodyLooksOn) {
       EXPECT_EQ(a.raster_cycles, b.raster_cycles);
       EXPECT_EQ(a.tile_cycles, b.tile_cycles);
       EXPECT_EQ(a.totals.memory_cycles, b.totals.memory_cycles);
+      for (std::size_t arrow = 0; arrow < kArrows; ++arrow) {
+        EXPECT_EQ(a.use[arrow].busy, b.use[arrow].busy) << arrow;
+        EXPECT_EQ(a.use[arrow].stalled, b.use[arrow].stalled) << arrow;
+      }
       EXPECT_GT(sink.transfers, 100u);
     }
 }
