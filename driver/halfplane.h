@@ -263,7 +263,9 @@ const hp_counts* hp_count(const hp_context* context);
 /* ---- The driver's own memory. Nothing below is for the caller. */
 
 #define HP_LONGEST ((uint32_t)64) /* words of a command with the registers before it, at most */
-#define HP_CORNERS 16             /* of a clipped polygon */
+#ifndef HP_CORNERS
+#define HP_CORNERS 16 /* of a clipped polygon: six planes leave nine, and a few more where rounding dents it */
+#endif
 #ifndef HP_CACHE
 #define HP_CACHE 16 /* vertices that stay transformed; a power of two */
 #endif

@@ -103,9 +103,9 @@ static inline uint8_t hp_reserve(hp_context* context, uint32_t words) {
 /* Before a function of the interface returns: every word is in the stream. */
 void hp_settle(hp_context* context);
 static inline void hp_put(hp_context* context, uint32_t word) { *context->next++ = word; }
-/* ORs the low `bits` bits (1 to 64) of a value into zeroed words. */
+/* ORs the low `bits` bits (1 to 63) of a value into zeroed words. */
 static inline void hp_put_bits(uint32_t* words, uint32_t at, uint32_t bits, uint64_t value) {
-  if (bits < 64) value &= ((uint64_t)1 << bits) - 1;
+  value &= ((uint64_t)1 << bits) - 1;
   uint32_t* word = words + at / 32;
   const uint32_t shift = at % 32;
   *word |= (uint32_t)(value << shift);

@@ -217,7 +217,7 @@ static uint8_t find_quickly(const hp_vertex* const v[3], const uint32_t q[3], in
   }
   const uint32_t apart_bits = hp_bits64(largest_apart), both_bits = hp_bits64(largest_both),
                  reach_bits = hp_bits32(reach);
-  if (apart_bits > 63 - HP_LOW_BITS || both_bits > 2 * HP_LOW_BITS) return 0;
+  if (apart_bits > 63 - HP_LOW_BITS) return 0;
   /* Products of 60 - reach_bits bits, off by less than 2, so that a line's numerators have 61. */
   const int32_t drop = hp_max(0, (int32_t)(apart_bits + both_bits + reach_bits) - 60);
   uint64_t largest = 0;

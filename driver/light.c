@@ -33,10 +33,11 @@ void hp_normal_codes(const hp_fixed normal[3], int32_t code[3]) {
   }
   code[0] = code[1] = code[2] = 0;
   if (all == 0) return;
-  const uint32_t bits = hp_bits32(all); /* to 31: the sum of squares is below 2^64, and the root has 31 bits at least */
+  /* To 31 bits, of 32 there is -2^31 alone: the sum of squares is below 2^64, and the root has 31 bits at least. */
+  const int32_t up = 31 - hp_min(31, (int32_t)hp_bits32(all));
   uint64_t square = 0;
   for (uint32_t i = 0; i < 3; ++i) {
-    size[i] = bits > 31 ? size[i] >> 1 : size[i] << (31 - bits);
+    size[i] <<= up;
     square += (uint64_t)size[i] * size[i];
   }
   const uint32_t length = root(square);

@@ -4,6 +4,9 @@
 #if HALFPLANE_LINE_POSITION_BITS > 31
 #error "positions along a line need more than 32 bits: make guard.band or subpixel.bits smaller"
 #endif
+#if HALFPLANE_LINES_UNIT != 0 && HALFPLANE_RECIPROCAL_BITS > 31
+#error "one over a line's length needs more than 32 bits: make depth.bits or reciprocal.extra_bits smaller"
+#endif
 
 #define HP_S HALFPLANE_GRID_BITS
 #define HP_PIXEL ((int32_t)1 << HP_S)

@@ -96,11 +96,12 @@ static inline part part_of(int32_t value, int32_t from, uint32_t q) {
   return made;
 }
 
-/* The product's magnitude over 2^shift, rounded, halves up: down if it is negative. 0 < shift < 63. */
+/* The product's magnitude over 2^shift, rounded, halves up: down if it is negative. 0 < shift < 63; for Q of 24 bits and
+   less it is below 32, because coordinates have 30 bits more than is kept, and colours 6. */
 static inline uint32_t rounded(const part* of, uint32_t shift) {
   const uint64_t sum = of->product + (((uint64_t)1 << (shift - 1)) - of->is_negative);
   const uint32_t high = (uint32_t)(sum >> 32);
-  return shift >= 32 ? high >> (shift - 32) : ((uint32_t)sum >> shift) | (high << (32 - shift));
+  return HP_Q_BITS > 24 && shift >= 32 ? high >> (shift - 32) : ((uint32_t)sum >> shift) | (high << (32 - shift));
 }
 static inline int32_t with_sign(uint32_t size, uint32_t is_negative) {
   return (int32_t)((size ^ (0u - is_negative)) + is_negative);
@@ -154,24 +155,16 @@ static void quantize(int32_t a, int32_t b, int32_t c, uint32_t log2_size, const 
   quantize_wide(value, q, 0, out);
 }
 
-/* A field of at most 32 bits, at a place that the compiler knows. */
+/* A field of less than 32 bits, at a place that the compiler knows. */
 static inline void put(uint32_t* words, uint32_t at, uint32_t bits, uint32_t value) {
-  const uint32_t shift = at % 32, field = bits < 32 ? value & (((uint32_t)1 << (bits % 32)) - 1) : value;
+  const uint32_t shift = at % 32, field = value & (((uint32_t)1 << bits) - 1);
   words[at / 32] |= field << shift;
   if (shift + bits > 32) words[at / 32 + 1] |= field >> (32 - shift);
 }
 
-static inline void zero(uint32_t* words, uint32_t count) { /* 1 to 6, without a loop */
-  words[0] = 0;
-  if (count > 1) words[1] = 0;
-  if (count > 2) words[2] = 0;
-  if (count > 3) words[3] = 0;
-  if (count > 4) words[4] = 0;
-  if (count > 5) words[5] = 0;
+static inline void zero(uint32_t* words, uint32_t count) {
+  for (uint32_t i = 0; i < count; ++i) words[i] = 0;
 }
-#if HP_OVER_W_WORDS > 6 || HP_FRAME_WORDS > 6
-#error "codes over w and coordinate frames have at most 6 words"
-#endif
 
 static inline void put_vertex(uint32_t* words, uint32_t q, int32_t u, int32_t v) {
   zero(words, HP_OVER_W_WORDS);

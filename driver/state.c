@@ -263,8 +263,8 @@ static uint8_t is_supported(const hp_state* state) {
   if (HALFPLANE_NORMALS == 0 && state->light != NULL) return 0;
   if (HP_HAS_STENCIL == 0 && state->has_stencil != 0) return 0;
   if (HP_HAS_ALPHA_TEST == 0 && state->alpha_func != HP_ALWAYS) return 0;
-  if (HALFPLANE_MSAA_SAMPLES == 1 && (state->sample_mask != 255 || state->alpha_to_coverage != 0)) return 0;
-  if (HP_HAS_ALPHA_TEST == 0 && state->alpha_to_coverage != 0) return 0;
+  if (HALFPLANE_MSAA_SAMPLES == 1 && state->sample_mask != 255) return 0;
+  if ((HALFPLANE_MSAA_SAMPLES == 1 || HP_HAS_ALPHA_TEST == 0) && state->alpha_to_coverage != 0) return 0;
   if (HALFPLANE_LOGIC_UNIT == 0 && state->logic_op != HP_LOGIC_COPY) return 0;
   if (HALFPLANE_DITHER_UNIT == 0 && state->dithers != 0 && HALFPLANE_COLOR_FORMAT == 0) return 0;
   const uint32_t all = HALFPLANE_COLOR_FORMAT == 1 ? 15 : 7, mask = state->color_mask & all;

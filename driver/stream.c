@@ -3,6 +3,7 @@
 
 #include "internal.h"
 
+#define HP_TOKEN_REST (HALFPLANE_ALL_AFFINE_CODE_BITS % 32) /* bits of a token's last affine word; 0: all */
 #define HP_LONGEST_TOKEN (1 + HP_AFFINE_WORDS + (HALFPLANE_STATE_WORD_BITS - HALFPLANE_ALL_AFFINE_CODE_BITS + 31) / 32)
 
 hp_state hp_default_state(void) {
@@ -130,12 +131,12 @@ void hp_send_token(hp_context* context, uint32_t which, const uint32_t value[4])
   if (hp_reserve(context, HP_LONGEST_TOKEN) == 0) return;
   hp_put(context, HP_HEADER(HP_TOKEN, which));
   /* The low bits in the words of the affine codes, then the rest. */
-  const uint32_t bits = HALFPLANE_ALL_AFFINE_CODE_BITS % 32;
   for (uint32_t i = 0; i < HP_AFFINE_WORDS; ++i)
-    hp_put(context, i + 1 == HP_AFFINE_WORDS && bits != 0 ? value[i] & (((uint32_t)1 << bits) - 1) : value[i]);
+    hp_put(context,
+           HP_TOKEN_REST != 0 && i + 1 == HP_AFFINE_WORDS ? value[i] & (((uint32_t)1 << HP_TOKEN_REST) - 1) : value[i]);
   for (uint32_t i = HALFPLANE_ALL_AFFINE_CODE_BITS / 32, n = 1 + HP_AFFINE_WORDS; n < HP_LONGEST_TOKEN; ++i, ++n) {
     const uint32_t low = i < 4 ? value[i] : 0, high = i < 3 ? value[i + 1] : 0;
-    hp_put(context, bits == 0 ? low : (low >> bits) | (high << (32 - bits)));
+    hp_put(context, HP_TOKEN_REST == 0 ? low : (low >> HP_TOKEN_REST) | (high << (32 - HP_TOKEN_REST) % 32));
   }
   context->slot[0] = context->slot[1] = context->slot[2] = HP_NO_TAG;
 }

@@ -21,10 +21,12 @@ static inline uint32_t load(hp_context* context, const hp_vertex* v, uint32_t us
 }
 
 #if HALFPLANE_TEXTURE_UNIT == 3
+#define HP_PART_BITS (HALFPLANE_STATE_WORD_BITS >= 104 ? 104u : 70u) /* of the lines in a token, the lowest first */
+
 /* Sends the lines of a triangle's level of detail, if they differ from those before it. */
 static void send_lines(hp_context* context, const hp_vertex* a, const hp_vertex* b, const hp_vertex* c, int64_t area) {
   const hp_vertex* const v[3] = {a, b, c};
-  uint32_t lines[8] = {0};
+  uint32_t lines[9] = {0}; /* 7 of them, and what the last part has beyond */
   hp_lines_of_levels(context, v, area, lines);
   uint8_t differs = context->has_lines == 0;
   for (uint32_t i = 0; i < 7; ++i)
@@ -32,17 +34,16 @@ static void send_lines(hp_context* context, const hp_vertex* a, const hp_vertex*
   if (differs == 0) return;
   for (uint32_t i = 0; i < 7; ++i) context->lines[i] = lines[i];
   context->has_lines = 1;
-  const uint32_t bits = HALFPLANE_STATE_WORD_BITS >= 104 ? 104 : 70; /* of a part, the lowest first */
-  for (uint32_t at = 0; at < 208; at += bits) {
+  for (uint32_t at = 0; at < 208; at += HP_PART_BITS) {
     const uint32_t shift = at % 32;
     uint32_t part[4];
     for (uint32_t i = 0; i < 4; ++i) {
       const uint32_t n = at / 32 + i;
-      part[i] = n < 7 ? lines[n] >> shift : 0;
-      if (shift != 0 && n < 6) part[i] |= lines[n + 1] << (32 - shift);
+      part[i] = lines[n] >> shift;
+      if (shift != 0) part[i] |= lines[n + 1] << (32 - shift);
     }
-    part[bits / 32] &= ((uint32_t)1 << bits % 32) - 1;
-    if (bits < 96) part[3] = 0;
+    part[HP_PART_BITS / 32] &= ((uint32_t)1 << HP_PART_BITS % 32) - 1;
+    if (HP_PART_BITS < 96) part[3] = 0;
     hp_send_token(context, HP_LINES_OF_LEVELS, part);
   }
 }

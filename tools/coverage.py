@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""What the tests reach: lines and branches of model/stages (gcov), lines and bits of rtl_ref (Verilator).
+"""What the tests reach: lines and branches of model/stages and of driver/ (gcov), lines and bits of rtl_ref (Verilator).
 
   coverage.py model --objects FOLDER --exceptions FILE [-o TABLE] -- COMMAND...  runs COMMAND, built with --coverage
+  coverage.py driver --objects FOLDER [-o TABLE] PROGRAM...                      runs each, added up over configurations
   coverage.py rtl --exceptions FILE [--least PERCENT] [-o TABLE] DATA...         reads what Verilator's designs have written
 
-Prints a table and what was missed. Exit status 1: a line or a branch of the model is not reached (rtl: less than PERCENT
+Prints a table and what was missed. Exit status 1: a line or a branch of model or driver is not reached (rtl: less than PERCENT
 of a file's blocks or bits), or an exception excepts nothing.
 
 An exception is a line `FILE | KIND | PATTERN | REASON`: points of KIND (line, branch, toggle) in FILE, a pattern of names,
@@ -37,7 +38,7 @@ def read(path):
 class Exceptions:
     def __init__(self, path):
         self.path, self.rules, self.used = path, [], Counter()
-        for number, text in enumerate(read(path).splitlines(), 1):
+        for number, text in enumerate(read(path).splitlines() if path else [], 1):
             if not text.strip() or text.startswith('#'):
                 continue
             fields = [field.strip() for field in text.split(' | ')]
@@ -101,12 +102,12 @@ def is_stage(path):
     return path.parent in (ROOT / 'model/stages', ROOT / 'model/study') and path.stem not in OPERATIONS
 
 
-def gcov(data):
-    """What gcov says of one .gcda file: the stages in it, of the hardware, of the host, for study."""
+def gcov(data, is_measured):
+    """What gcov says of one .gcda file: the measured files in it."""
     report = subprocess.run(['gcov', '--json-format', '--stdout', '--branch-probabilities', data.name], cwd=data.parent,
                             check=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True).stdout
     return [file for text in report.splitlines() if text for file in json.loads(text)['files']
-            if is_stage((ROOT / file['file']).resolve())]
+            if is_measured((ROOT / file['file']).resolve())]
 
 
 def branch_counts(branches):
@@ -133,13 +134,10 @@ def model_points(objects, command, table):
     throw or return, and functions that the compiler has made up, do not count."""
     if shutil.which(command[0]) is None:
         sys.exit(f'{command[0]}: no such program')
-    for old in pathlib.Path(objects).rglob('*.gcda'):
-        old.unlink()
-    if subprocess.run(command, check=False).returncode:
-        sys.exit(f'{command[0]} failed: nothing was measured')
+    run(objects, [command])
     lines, branches, sources = Counter(), defaultdict(list), {}
     for data in sorted(pathlib.Path(objects).rglob('*.gcda')):
-        for file in gcov(data):
+        for file in gcov(data, is_stage):
             path = (ROOT / file['file']).resolve()
             name = str(path.relative_to(ROOT))
             source = sources.setdefault(name, path.read_text().splitlines())
@@ -162,6 +160,36 @@ def model_points(objects, command, table):
                 table.add(name, 'branch', count > 0, number, sources[name][number - 1])
 
 
+def run(objects, commands):
+    """The counts of earlier runs go first."""
+    for old in pathlib.Path(objects).rglob('*.gcda'):
+        old.unlink()
+    for command in commands:
+        if subprocess.run(command, check=False).returncode:
+            sys.exit(f'{command[0]} failed: nothing was measured')
+
+
+def driver_points(objects, programs, table):
+    """A line is cut into more branches or fewer by a configuration, whose settings decide conditions: each of its forms is
+    counted, a branch of it is reached when it is in one of the configurations that have this form."""
+    run(objects, [[program, '--gtest_brief=1'] for program in programs])
+    lines, forms = Counter(), {}
+    for data in sorted(pathlib.Path(objects).rglob('*.gcda')):
+        for file in gcov(data, lambda path: path.parent == ROOT / 'driver'):
+            name = str((ROOT / file['file']).resolve().relative_to(ROOT))
+            for line in file['lines']:
+                lines[name, line['line_number']] += line['count']
+                counts = [branch['count'] for branch in line['branches']]
+                before = forms.setdefault((name, line['line_number'], len(counts)), [0] * len(counts))
+                before[:] = map(sum, zip(before, counts))
+    sources = {name: (ROOT / name).read_text().splitlines() for name, _ in lines}
+    for (name, number), count in sorted(lines.items()):
+        table.add(name, 'line', count > 0, number, sources[name][number - 1])
+    for (name, number, _), counts in sorted(forms.items()):
+        for count in counts:
+            table.add(name, 'branch', count > 0, number, sources[name][number - 1])
+
+
 def rtl_points(data, table):
     """Of all instances of all configurations together: a point is reached when one of them has reached it."""
     hits = Counter()
@@ -181,26 +209,30 @@ def rtl_points(data, table):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('of', choices=['model', 'rtl'])
+    parser.add_argument('of', choices=['model', 'driver', 'rtl'])
     parser.add_argument('--objects', help='folder of the objects, .gcno and .gcda; old .gcda go')
-    parser.add_argument('--exceptions', required=True)
+    parser.add_argument('--exceptions')
     parser.add_argument('--least', type=float, default=95.0, help='percent that each file must reach (rtl)')
     parser.add_argument('-o', '--output', help='where the table goes as well')
-    parser.add_argument('inputs', nargs='+', metavar='COMMAND|DATA')
+    parser.add_argument('inputs', nargs='+', metavar='COMMAND|PROGRAM|DATA')
     arguments = parser.parse_args()
-    if arguments.of == 'model' and not arguments.objects:
-        parser.error('model: --objects is missing')
+    if arguments.of != 'rtl' and not arguments.objects:
+        parser.error(f'{arguments.of}: --objects is missing')
+    if arguments.of != 'driver' and not arguments.exceptions:
+        parser.error(f'{arguments.of}: --exceptions is missing')
     exceptions = Exceptions(arguments.exceptions)
-    kinds = ('line', 'branch') if arguments.of == 'model' else ('line', 'toggle')
+    kinds = ('line', 'toggle') if arguments.of == 'rtl' else ('line', 'branch')
     table = Table(kinds, exceptions)
     if arguments.of == 'model':
         model_points(arguments.objects, arguments.inputs, table)
+    elif arguments.of == 'driver':
+        driver_points(arguments.objects, arguments.inputs, table)
     else:
         rtl_points(arguments.inputs, table)
     if not table.count:
         sys.exit('nothing was measured')
     text = table.text()
-    least = 100.0 if arguments.of == 'model' else arguments.least
+    least = arguments.least if arguments.of == 'rtl' else 100.0
     missed = [f'{file}:{line}: {kind} not reached: {what}' for file, line, kind, what in table.missed]
     low = [f'{file}: less than {least:g} % of {kind}' for file in table.count for kind in kinds
            if table.percent(file, kind) < least]

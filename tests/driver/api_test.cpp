@@ -281,6 +281,51 @@ TEST_F(DriverInterface, LeavesOutTrianglesWithAVertexBeyondItsNumbers) {
     }
 }
 
+/// An affine view of vertices with a w of their own: w is 1 with and without them.
+TEST_F(DriverInterface, AWOfOneIsThatOfVerticesWithoutW) {
+  std::array<hp_fixed, 16> view{};
+  for (const std::size_t i : {0U, 5U, 10U}) view[i] = HP_ONE / 3;
+  view[3] = 4321, view[7] = -9876, view[15] = HP_ONE;
+  std::array<hp_fixed, 16> with_w{};
+  for (std::size_t i = 0; i < 16; ++i) with_w[i] = i % 4 == 3 ? HP_ONE : kSquare[i / 4 * 3 + i % 4];
+  const hp_vertices vertices{with_w.data(), nullptr, nullptr, 16, 0, 0, 1, nullptr, 0};
+  hp_set_matrices(driver_.get(), view.data(), nullptr);
+  std::array<std::uint32_t, 3> end{hp_written(driver_.get())};
+  hp_draw(driver_.get(), HP_TRIANGLE_STRIP, &kVertices, nullptr, 4);  // which sends the state as well
+  for (std::size_t n = 0; n < 2; ++n) {
+    end[n] = hp_written(driver_.get());
+    hp_draw(driver_.get(), HP_TRIANGLE_STRIP, n == 0 ? &kVertices : &vertices, nullptr, 4);
+  }
+  end[2] = hp_written(driver_.get());
+  ASSERT_GT(end[1], end[0]);
+  EXPECT_TRUE(std::equal(&words_[end[0]], &words_[end[1]], &words_[end[1]], &words_[end[2]]));
+  EXPECT_EQ(hp_count(driver_.get())->sent, 6U);
+}
+
+/// Of internal.h. Quotients of what is inside of the guard band are far from 2^32, with any guard band but the widest.
+extern "C" std::int64_t hp_divide_rounded(std::int64_t n, std::uint32_t d);
+
+TEST(DriverArithmetic, DividesAndRounds) {
+  Random random(1);
+  const auto number = [&](double bits) { return std::exp2(random.between(0, bits)); };
+  int beyond = 0;
+  for (int i = 0; i < 200'000; ++i) {
+    const auto d = static_cast<std::uint32_t>(number(31.9));
+    auto n = static_cast<std::int64_t>(number(62)) * (random.index(2) != 0 ? -1 : 1);
+    if (random.index(4) == 0) n = n / d * d + random.index(3) - 1 + (random.index(2) != 0 ? d / 2 : 0);  // about a tie
+    const std::int64_t twice = 2 * (n % d), whole = n / d;
+    const std::int64_t exact = whole + (twice >= d ? 1 : twice < -std::int64_t{d} ? -1 : 0);  // floor(n / d + 1/2)
+    const std::int64_t quotient = hp_divide_rounded(n, d);
+    if (exact > -(std::int64_t{1} << 32) && exact < std::int64_t{1} << 32) {
+      ASSERT_EQ(quotient, exact) << n << " / " << d;
+    } else {
+      ASSERT_TRUE(exact < 0 ? quotient <= -(std::int64_t{1} << 32) : quotient >= std::int64_t{1} << 32);
+      ++beyond;
+    }
+  }
+  EXPECT_GT(beyond, 1000);
+}
+
 TEST_F(DriverInterface, WithoutAStreamThereIsNoRoom) {
   hp_init(driver_.get());
   hp_fence(driver_.get(), 1);

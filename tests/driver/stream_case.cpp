@@ -16,12 +16,12 @@
 namespace halfplane::test {
 namespace {
 
-/// Of tests/driver/CMakeLists.txt: no design has alpha in memory, or a depth of more than 22 bits, and coordinates of 16
-/// bits; none dithers without blending.
+/// Of tests/driver/CMakeLists.txt: no design has alpha in memory, a depth of more than 22 bits or a Q of more than 24, and
+/// coordinates of 16 bits; none dithers without blending, or has a guard band of more than 4,096 pixels.
 constexpr std::array<std::string_view, 2> kNoDesigns{
-    "embedded depth.bits=24 hiz.bits=24 color.format=rgba8888 alpha.unit=1 blend.lanes=4 logic.unit=1 "
-    "texture.unit=bilinear texture.constant=1 texture.border=1",
-    "embedded dither.unit=1"};
+    "embedded lines.unit=0 depth.bits=32 hiz.bits=32 color.format=rgba8888 alpha.unit=1 blend.lanes=4 logic.unit=1 "
+    "texture.unit=bilinear texture.constant=1 texture.border=1 perspective.colors=1 perspective.bits=26",
+    "embedded depth.bits=24 hiz.bits=24 dither.unit=1 subpixel.bits=1 guard.band=8192"};
 
 double real(hp_fixed v) { return std::ldexp(v, -16); }
 
@@ -105,6 +105,7 @@ class CaseMaker {
     for (hp_texture& t : textures_) {
       t.log2_width = static_cast<std::uint8_t>(random_.index(7));
       t.log2_height = static_cast<std::uint8_t>(random_.index(7));
+      if (chance(4)) t.log2_width = 12, t.log2_height = 0;
       t.format = static_cast<std::uint8_t>(random_.index(6));
       TexelImage image{1 << t.log2_width, 1 << t.log2_height, {}};
       for (int i = 0; i < image.width * image.height; ++i)
@@ -127,7 +128,15 @@ class CaseMaker {
       const std::size_t end = t.address + hp_texture_bytes(&t);
       if (out_.textures.size() < end) out_.textures.resize(end);
       hp_upload_texture(context_.get(), out_.textures.data() + t.address, &t, texels.data());
+      texels_.push_back(std::move(texels));
     }
+  }
+
+  /// A texture's texels once more, as of a picture that changes: a draw drops those that the unit has.
+  void upload_again() {
+    const auto n = static_cast<std::size_t>(random_.index(static_cast<int>(textures_.size())));
+    const hp_texture& t = textures_[n];
+    hp_upload_texture(context_.get(), out_.textures.data() + t.address, &t, texels_[n].data());
   }
 
   void add_fogs() {
@@ -200,7 +209,8 @@ class CaseMaker {
     if (s.cull == 3 && !chance(10)) s.cull = 0, state.cull = Cull::none;
     s.front = choose(state.front, 2);
     if (config_.blend_lanes != 0) add_blend(s, state);
-    if (config_.dither_units != 0 && chance(2)) s.dithers = 1, state.dither = true;
+    if ((config_.dither_units != 0 || config_.color_format == ColorFormat::rgba8888) && chance(2))
+      s.dithers = 1, state.dither = true;
     if (config_.alpha_units != 0 && config_.cache_kind == CacheKind::blocks && chance(2)) {
       s.alpha_func = choose(state.alpha_test.func, 8);
       s.alpha_reference = state.alpha_test.reference = static_cast<std::uint8_t>(random_.index(256));
@@ -349,15 +359,24 @@ class CaseMaker {
 
   /// x y z w of a vertex: in the view, about a plane of it, far out, and where w is next to nothing.
   std::array<hp_fixed, 4> position() {
-    const hp_fixed w = chance(12)  ? between(-4, 4)
-                       : chance(8) ? static_cast<hp_fixed>(random_.index(40)) - 3
-                                   : between(0.01, std::exp2(random_.between(-4, 8)));
+    const hp_fixed w = chance(12)   ? between(-4, 4)
+                       : chance(40) ? between(16384, 32767)
+                       : chance(8)  ? static_cast<hp_fixed>(random_.index(40)) - 3
+                                    : between(0.01, std::exp2(random_.between(-4, 8)));
     const auto beside = [&](double reach) {
       return static_cast<hp_fixed>(std::clamp(random_.between(-reach, reach) * w, -0x1.0p31, 0x1.fffffep30));
     };
     const double reach = chance(6) ? std::exp2(random_.between(0, 12)) : 1.3;
     const hp_fixed x = beside(reach), y = beside(reach), z = beside(chance(6) ? 20 : 1);
     return {x, y, chance(9) ? w : chance(9) ? -w : z, w};
+  }
+
+  /// Vertex k of a triangle whose numbers are as far apart as any: w by 2^22 and more, two places by a subpixel or two.
+  std::array<hp_fixed, 4> far_apart(int k) {
+    const hp_fixed w = k == 0 ? 1 + random_.index(64) : between(4096, 32767);
+    const double reach = std::array{0.0, 0.001, 0.9}[static_cast<std::size_t>(k)];
+    const auto beside = [&] { return static_cast<hp_fixed>(random_.between(-reach, reach) * w); };
+    return {beside(), beside(), 0, w};
   }
 
   Mat4 matrix(std::array<hp_fixed, 16>& out, double size) {
@@ -378,12 +397,17 @@ class CaseMaker {
     first_ = static_cast<std::uint32_t>(out_.scene.vertices.size());
     const bool is_white = chance(6), is_black = chance(9), is_untextured = chance(6), is_unlit = chance(9);
     const bool is_grid = chance(6);  // ties, and powers of two where the viewport's size is one
-    const bool transforms = !is_grid && chance(3);
+    const bool is_far_apart = !is_grid && chance(12);
+    const bool transforms = !is_grid && !is_far_apart && chance(3);
     std::array<hp_fixed, 16> view{}, projection{};
     Mat4 v = matrix(view, 0.3), p = matrix(projection, 0.3);
     if (chance(2)) {
       for (std::size_t i = 12; i < 16; ++i) view[i] = i == 15 ? HP_ONE : 0;
       v[3] = {0, 0, 0, 1};
+      if (const auto near_it = static_cast<std::size_t>(random_.index(30)); near_it < 4) {
+        view[12 + near_it] += 3;
+        v[3][near_it] = real(view[12 + near_it]);
+      }
     }
     if (chance(2)) { /* perspective */
       constexpr std::array<std::size_t, 5> kPlaces{0, 5, 10, 11, 14};
@@ -398,6 +422,7 @@ class CaseMaker {
       std::array<hp_fixed, 4> at = position();
       const auto quarter = [&] { return (random_.index(9) - 4) * HP_ONE / 4; };
       if (is_grid) at = {quarter(), quarter(), quarter(), HP_ONE};
+      if (is_far_apart) at = far_apart(i % 3);
       Vertex vertex;
       if (transforms) {
         for (hp_fixed& part : at) part = between(-2, 2);
@@ -415,7 +440,11 @@ class CaseMaker {
       if (!is_untextured) {
         const double reach = chance(10) ? 30000 : chance(3) ? 40 : 1;
         for (double* of_model : {&vertex.u, &vertex.v}) {
-          texcoord_.push_back(is_grid ? quarter() : between(-reach, reach));
+          constexpr std::array kEnds{INT32_MAX, -INT32_MAX, 1 - INT32_MAX, 0, 0, 1};
+          const int end = is_far_apart && !chance(4) ? (i % 3) + 3 * chance(3) : random_.index(6);
+          texcoord_.push_back(is_far_apart || (is_grid && chance(2)) ? kEnds[static_cast<std::size_t>(end)]
+                              : is_grid                              ? quarter()
+                                                                     : between(-reach, reach));
           *of_model = real(texcoord_.back());
         }
       }
@@ -442,7 +471,7 @@ class CaseMaker {
     Vec3 made{};
     for (double& part : made) {
       hp_fixed n = is_short ? static_cast<hp_fixed>(random_.index(9)) - 4 : between(-size, size);
-      if (is_axis && chance(2)) n = 0;
+      if (is_axis && chance(2)) n = chance(4) ? INT32_MIN : 0;
       if (&part == &made[2] && chance(3)) {
         const double code = (random_.index(30000) + 0.5) / 32768;
         n = static_cast<hp_fixed>(
@@ -456,6 +485,7 @@ class CaseMaker {
 
   void draw() {
     if (chance(3)) set_scissor();
+    if (!textures_.empty() && chance(6)) upload_again();
     const int count = 3 + random_.index(40);
     make_vertices(count);
     const int last = config_.line_units != 0 ? 7 : 4;
@@ -500,6 +530,7 @@ class CaseMaker {
   hp_state filled_{}, outline_{};
   State filled_state_, outline_state_;
   std::vector<hp_texture> textures_;
+  std::vector<std::vector<std::uint8_t>> texels_;  ///< of each
   struct FogOfBoth {
     Fog fog;
     std::array<std::uint8_t, 3> color{};
