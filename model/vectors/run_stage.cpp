@@ -282,7 +282,11 @@ void run_framebuffer(StageIo& io, const Config& config, const Widths& widths) {
 void run_memory_port(StageIo& io, const Config& config, const Widths& widths) {
   const Run run{io, config, widths};
   PortStage port(widths, default_layout(widths));
-  while (const auto request = run.take<MemoryRequest>(0))
+  while (const auto request = run.take<MemoryRequest>(0)) {
+    const TilePlane plane = request->plane;
+    const int sample = widths.memory.sample[is_of_color(plane) ? 1 : 0];
+    if (!request->is_write && codes_of_stamp(plane, widths) << sample > 1 << item_shift(plane, widths.memory))
+      throw InputError("a read of flags, which hold no stamp's codes");
     port.take(*request, [&](const MemoryBeat& beat) {
       run.send(0, beat);
       const int answers = beat.is_write ? (beat.length == 1 ? 1 : 0) : beat.length;
@@ -291,6 +295,7 @@ void run_memory_port(StageIo& io, const Config& config, const Widths& widths) {
         if (!beat.is_write) port.answer(answer, [&](const MemoryResponse& response) { run.send(1, response); });
       }
     });
+  }
 }
 
 void run_memory(StageIo& io, const Config& config, const Widths& widths) {

@@ -323,6 +323,19 @@ TEST_F(Capi, RandomBitsAreTakenOrRefused) {
   }
 }
 
+TEST_F(Capi, AReadOfFlagsThatAreShorterThanAStampIsRefused) {
+  halfplane_config* stencilled = halfplane_config_new("embedded");
+  ASSERT_EQ(halfplane_config_set(stencilled, "stencil.bits", "8"),
+            0);  // a stamp's depths are 16 bytes, a word of flags 8
+  halfplane_stage* stage = halfplane_stage_new(stencilled, "memory_port");
+  ASSERT_NE(stage, nullptr) << halfplane_last_error();
+  PacketOf request(stage, 0, 0);
+  request.set("plane", 2);  // depth_flags
+  expect_error(halfplane_stage_put(stage, 0, request.words()), "a read of flags");
+  halfplane_stage_free(stage);
+  halfplane_config_free(stencilled);
+}
+
 TEST_F(Capi, ABoxThatEndsBeforeItBeginsIsRefused) {
   halfplane_stage* stage = halfplane_stage_new(config, "coarse_raster");
   ASSERT_NE(stage, nullptr) << halfplane_last_error();
