@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """What engines spend, in instructions (valgrind --tool=callgrind, one thread): the functional engine on small
-triangles, with AVX2, and the cycle engine on the cycles of a frame.
+triangles and lines, with AVX2, and the cycle engine on the cycles of a frame.
 
 Time on a shared machine says little, and instructions do not lie about how much work there is: a gate that a slow
 neighbour cannot close. Counted is a frame whose memory is there from the frame before: three frames less one, halved.
@@ -21,6 +21,7 @@ import tempfile
 GATES = [
     ('functional', 'dust:250000', (640, 360), 'triangle', 249_630, 343),
     ('functional', 'ball', (1280, 720), 'triangle', 51_200, 781),
+    ('functional', 'scratches', (1280, 720), 'line', 50_000, 3_180),
     ('cycle', 'city', (320, 240), 'cycle', 48_405, 1_757),
 ]
 COUNTED = {
