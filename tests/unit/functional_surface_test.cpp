@@ -337,6 +337,22 @@ TEST(FunctionalSurface, TexturedMeshesAreTheSameOnEveryPath) {
     }
 }
 
+/// A mesh around the eye beside textured triangles in window coordinates: its vertices behind the eye are the clipper's.
+TEST(FunctionalSurface, VerticesBehindTheEyeBesideWindowCoordinatesAreTheSameOnEveryPath) {
+  Random random(3);
+  Scene scene = make_builtin("walk", kWidth, kHeight, {}, 1);
+  ASSERT_TRUE(std::ranges::any_of(scene.vertices, [](const Vertex& v) { return v.w <= 0; }));
+  scene.textures.push_back(noise(random, 32, 32, TextureFormat::rgb565, Mips::none));
+  State state = SceneBuilder::window_state();
+  state.texture = static_cast<std::uint32_t>(scene.textures.size() - 1);
+  scene.states.push_back(state);
+  add_triangles(scene, random, 50, 40, 1, 40);
+  EXPECT_TRUE(functional::is_supported(scene, with_colors("embedded"), {}));
+  expect_all_same(scene, with_colors("embedded"));
+  scene.vertices.back().w = -1;
+  EXPECT_FALSE(functional::is_supported(scene, with_colors("embedded"), {}));
+}
+
 /// The comparison fails where it must: a row of texels that differ, and eight bits less in a reciprocal.
 TEST(FunctionalSurfaceMustFail, WrongTexelsAndShorterReciprocalsAreSeen) {
   const Config config = with_colors("embedded");
