@@ -88,7 +88,7 @@ struct TileVisits {
 
   /// Adds the first `count` of the next sixteen pixels.
   HALFPLANE_INLINE void add(const I16& place, int count, bool is_first) {
-    constexpr std::int32_t kUpToSign = std::numeric_limits<std::int32_t>::max() - (int{kTilePixels} - 1);
+    constexpr std::int32_t kUpToSign = 0x7fffffff - (int{kTilePixels} - 1);
     const std::uint32_t lanes = (1U << count) - (is_first ? 2 : 1);
     visits += static_cast<unsigned>(std::popcount(bits_of((place ^ moved_up(previous, place)) + kUpToSign) & lanes));
     previous = place;
