@@ -370,6 +370,7 @@ def speed(name, folder, env, options):
     """Medians of --runs replays on llvmpipe and on the driver in turn. One more says what part of a frame is raster."""
     row = {'name': name, 'error': ''}
     results = folder / f'{name}.results'
+    results.unlink(missing_ok=True)  # of a run that was ended; the driver appends
     mesa = env | {'LP_NUM_THREADS': str(options.threads)}
     ours = on_driver(env, options)
     words = [replayer(name), '-b', str(folder / f'{name}.trace')]
