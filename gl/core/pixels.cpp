@@ -3,7 +3,6 @@
 #include <bit>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <utility>
 
 #include "../../model/stages/color_ops.hpp"

@@ -1,6 +1,5 @@
 // Vertices between glBegin and glEnd, their attributes, and the state of points, lines and polygons (OpenGL 1.5, 2.6, 2.7,
 // 2.10, 2.13, 3.3 to 3.5).
-#include <limits>
 
 #include "matrix.hpp"
 #include "parameter.hpp"
@@ -10,7 +9,7 @@
 namespace halfplane::gl {
 namespace {
 
-/// Sets a size, or GL_INVALID_VALUE for a value not above `above`.
+/// Sets a size, or GL_INVALID_VALUE for one that is not positive.
 void set_size(Context& context, double& where, double size) {
   if (!(size > 0)) return context.fail(GL_INVALID_VALUE);
   where = size;
