@@ -111,7 +111,7 @@ PROOFS = [
           'overflows', is_combinational=True, twins=(24, ('.step_x_i (step_x)', '.step_x_i (step_y)'),
           ('(row_value + place_q[k*W+:W])', '(row_value + place_q[k*W+:W] + W\'(1))'))),
     Proof('coarse_raster_step', 'a', 'stages/coarse_raster.sv', 'edges and planes at each tile of the walk',
-          cuts=SRAMS, twins=(('assign from   = returns ?', 'assign from   = 1\'b0 ?'), ("best_q  <= (TE'(best) <<< TS) - TE'(best) + TE'(reach);", "best_q  <= TE'(best) <<< TS;"))),
+          cuts=SRAMS, twins=(('assign from   = returns ?', 'assign from   = 1\'b0 ?'), ('if (starts || goes_on) edge_is_outside', 'if (goes_on) edge_is_outside'), ("to_best  = (TE'(best) <<< TS) - TE'(best) +", "to_best  = (TE'(best) <<< TS) +"))),
     Proof('interpolate_step', 'a, e', 'stages/interpolate.sv', 'every plane at every sample; codes within the vertices\'',
           is_combinational=True, twins=(27, 29)),
     Proof('line_raster_step', 'a, e', 'stages/line_raster.sv', 'the row of pixel n is the quotient, the error its remainder',

@@ -80,7 +80,7 @@ module coarse_raster (
   logic [SLOT:0]   used_q;   // slots in use
 
   logic is_triangle, has_walk, clears_bounds;
-  logic takes, steps, is_last_column, is_last_row, is_last_tile, is_eligible, is_eligible_q, finishes;
+  logic takes, steps, is_last_row, is_last_tile, is_eligible, is_eligible_q, finishes;
   logic is_outside, is_inside, is_settled, visits_are_done;
   logic [raster_pkg::HIZ_CODE_BITS-1:0] bound;
   logic [raster_pkg::HIZ_CODE_BITS:0]   limit;
@@ -128,22 +128,21 @@ module coarse_raster (
   logic          goes_left_q;
   logic          must_return_q;  // there are tiles to the left of the start
   logic          is_empty_q;     // every tile of the row so far was outside
-  logic          is_last_group, is_leftmost, is_rightmost, exits, must_return, turns_back, row_ends, moves_left, moves_start;
+  logic          is_leftmost, is_rightmost, exits, must_return, turns_back, row_ends, moves_left, moves_start;
+  logic          is_last_column_q, is_last_row_q;  // known a cycle ahead, as edge_is_outside_q is
   logic          clears;     // the bounds of a group of tiles each cycle
   logic [TX-1:0] group_end;  // its last tile
-  logic [2:0]    edge_is_outside, no_better_left_q, no_better_right_q;
+  logic [2:0]    edge_is_outside_q, no_better_left_q, no_better_right_q;
   assign clears         = state_q == CLEAR;
   assign is_leftmost    = tile_x_q == s_q.box.left[PX-1:TS];
   assign is_rightmost   = tile_x_q == s_q.box.right[PX-1:TS];
-  assign is_last_group  = (tile_x_q ^ s_q.box.right[PX-1:TS]) >> raster_pkg::HIZ_GROUP_BITS == '0;
   assign group_end      = tile_x_q | TX'((1 << raster_pkg::HIZ_GROUP_BITS) - 1);
-  assign is_last_column = goes_left_q ? is_leftmost : (clears ? is_last_group : is_rightmost);
-  assign is_last_tile   = is_last_column && !must_return_q && is_last_row;
-  assign must_return    = must_return_q && (edge_is_outside & no_better_left_q) == '0;
-  assign exits          = is_last_column || (edge_is_outside & (goes_left_q ? no_better_left_q : no_better_right_q)) != '0;
+  assign is_last_tile   = is_last_column_q && !must_return_q && is_last_row_q;
+  assign must_return    = must_return_q && (edge_is_outside_q & no_better_left_q) == '0;
+  assign exits          = is_last_column_q || (edge_is_outside_q & (goes_left_q ? no_better_left_q : no_better_right_q)) != '0;
   assign turns_back     = exits && must_return;
   assign row_ends       = exits && !must_return;
-  assign ends_walk      = row_ends && is_last_row;
+  assign ends_walk      = row_ends && is_last_row_q;
   assign moves_left     = goes_left_q || turns_back;
   assign moves_start    = is_empty_q && is_outside;  // or moves all of it down
   assign next_x         = exits ? start_x_q - TX'(turns_back) : goes_left_q ? tile_x_q - TX'(1) : (clears ? group_end : tile_x_q) + TX'(1);
@@ -172,7 +171,11 @@ module coarse_raster (
   // The values at the row's start take the same path as all others; those of the first row in PREPARE, with a step of
   // 0.
   logic goes_on, starts, returns, notes_start, moves_right;
+  logic [TX-1:0] at_x;  // of the next tile, or of the first one
+  logic [TY-1:0] at_y;
   assign starts      = state_q == PREPARE;
+  assign at_x        = starts ? tile_x_q : next_x;
+  assign at_y        = starts ? tile_y_q : next_y;
   assign returns     = exits && !starts;
   assign moves_right = !starts && !row_ends && !moves_left;
   assign notes_start = starts || (goes_on && (row_ends || moves_start));
@@ -207,11 +210,17 @@ module coarse_raster (
       must_return_q <= row_ends ? start_x_q != s_q.box.left[PX-1:TS] : must_return && !turns_back;
       is_empty_q    <= row_ends || moves_start;
     end
-    if (state_q == PREPARE) is_eligible_q <= is_eligible;
+    if (starts) is_eligible_q <= is_eligible;
+    if (starts || goes_on) begin
+      is_last_column_q <= has_walk ? at_x == (moves_left && !row_ends ? s_q.box.left[PX-1:TS] : s_q.box.right[PX-1:TS]) :
+                                     (at_x ^ s_q.box.right[PX-1:TS]) >> raster_pkg::HIZ_GROUP_BITS == '0;
+      is_last_row_q    <= at_y == s_q.box.bottom[PY-1:TS];
+    end
   end
 
-  // --- Edges: one value each at the tile's first pixel, and the offsets to its best and its worst corner.
-  logic [2:0]      edge_is_inside;
+  // --- Edges: one value each at the tile's first pixel, and the ways to its best and its worst corner. Whether a tile is
+  // outside is known a cycle ahead, from the values that it will have: so the walk is decided by registers.
+  logic [2:0]      edge_is_inside, next_is_outside;
   logic [3*TE-1:0] edge_value;
   genvar i;
   generate
@@ -220,8 +229,8 @@ module coarse_raster (
       logic [V-TS-1:0]      step, sum;
       logic signed [D-1:0]  dx, dy;
       logic signed [D:0]    best, worst;
-      logic signed [TE-1:0] best_q, worst_q;
-      logic signed [V:0]    largest, smallest;
+      logic signed [TE-1:0] to_best, to_worst;  // times T - 1
+      logic signed [V:0]    largest, smallest;  // of the next tile; of this one
       assign dx    = s_q.dx[i*D+:D];
       assign dy    = s_q.dy[i*D+:D];
       assign best  = (dx[D-1] ? '0 : (D + 1)'(dx)) - (dy[D-1] ? (D + 1)'(dy) : '0);
@@ -247,23 +256,24 @@ module coarse_raster (
           .sum_o      (sum)
       );
 
+      assign to_best  = (TE'(best) <<< TS) - TE'(best) + TE'(reach);
+      assign to_worst = (TE'(worst) <<< TS) - TE'(worst) - TE'(reach);
+      assign largest  = (V + 1)'(next) + (V + 1)'(to_best);
+      assign smallest = (V + 1)'(value_q) + (V + 1)'(to_worst);
+      assign next_is_outside[i] = largest[V];
+      assign edge_is_inside[i]  = !smallest[V];
+
       always_ff @(posedge clk_i) begin
         if (state_q == IDLE) begin
           value_q <= setup_i.edge_value[i*V+:V];
         end else if (goes_on) value_q <= next;
         if (notes_start) row_q <= next;
-        if (state_q == PREPARE) begin  // times T - 1
-          best_q  <= (TE'(best) <<< TS) - TE'(best) + TE'(reach);
-          worst_q <= (TE'(worst) <<< TS) - TE'(worst) - TE'(reach);
+        if (starts || goes_on) edge_is_outside_q[i] <= next_is_outside[i];
+        if (state_q == PREPARE) begin
           no_better_left_q[i]  <= (dy[D-1] || dy == '0);
           no_better_right_q[i] <= !dy[D-1];
         end
       end
-
-      assign largest            = (V + 1)'(value_q) + (V + 1)'(best_q);
-      assign smallest           = (V + 1)'(value_q) + (V + 1)'(worst_q);
-      assign edge_is_outside[i] = largest[V];
-      assign edge_is_inside[i]  = !smallest[V];
 
       if (V > TE) begin : gen_saturate
         logic fits;
@@ -274,7 +284,7 @@ module coarse_raster (
       end
     end
   endgenerate
-  assign is_outside = edge_is_outside != '0;
+  assign is_outside = edge_is_outside_q != '0;
   assign is_inside  = edge_is_inside == '1;
 
   // --- Planes: the wide value at the tile's anchor, without the bits that no step changes; setup added the offset that

@@ -43,11 +43,13 @@
       end
       always_comb if (runs_q && (walks || (state_q == PREPARE && has_walk)))
         assert (gen_edge[k].value_q == $signed(tile_q) && (starts ? row_first_q == tile_q : gen_edge[k].row_q == $signed(row_first_q)));
-      // The increments to the tile's corners: T - 1 times the increments of a pixel (coarse_raster_corners).
-      logic signed [TE-1:0] best, worst;
-      assign best  = (TE'(gen_edge[k].best) <<< TS) - TE'(gen_edge[k].best);
-      assign worst = (TE'(gen_edge[k].worst) <<< TS) - TE'(gen_edge[k].worst);
-      always_comb if (walks) assert (gen_edge[k].best_q == best && gen_edge[k].worst_q == worst);
+      // The increment to the tile's best corner: T - 1 times that of a pixel (coarse_raster_corners). The verdict that was
+      // made a cycle ahead is that of this tile.
+      logic signed [TE-1:0] best;
+      logic signed [V:0]    largest;
+      assign best    = (TE'(gen_edge[k].best) <<< TS) - TE'(gen_edge[k].best) + TE'(gen_edge[k].reach);
+      assign largest = (V + 1)'($signed(tile_q)) + (V + 1)'(best);
+      always_comb if (walks) assert (edge_is_outside_q[k] == largest[V]);
     end
     for (k = 0; k < PLANES; k++) begin : gen_proof_plane
       localparam int P = PLANE_BITS_OF[32*k+:32];

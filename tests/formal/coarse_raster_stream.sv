@@ -50,6 +50,11 @@
       if (must_return_q) assert (start_x_q != s_q.box.left[PX-1:TS] && !goes_left_q);
       if (!has_walk) assert (start_x_q == s_q.box.left[PX-1:TS] && !goes_left_q && !must_return_q);
     end
+    // What is known a cycle ahead is so of the tile then.
+    if (state_q == WALK) assert (is_last_column_q == (goes_left_q ? is_leftmost : is_rightmost) && is_last_row_q == is_last_row);
+    if (clears)
+      assert (is_last_column_q == ((tile_x_q ^ s_q.box.right[PX-1:TS]) >> raster_pkg::HIZ_GROUP_BITS == '0) &&
+              is_last_row_q == is_last_row);
     if (state_q == PASS) assert (is_last_row && tile_x_q == s_q.box.right[PX-1:TS]);
     // With a ready consumer a tile goes on when HiZ is settled, soon after every visit has retired, and the walk goes
     // on with it: at once, or, where bounds matter, when the tile's bound has been read, which takes a cycle.
@@ -76,7 +81,7 @@
     for (k = 0; k < 3; k++) begin : gen_proof
       always_comb if (runs_q && state_q != IDLE && !is_triangle) begin
         assert (gen_edge[k].value_q == '0 && (starts || gen_edge[k].row_q == '0) && s_q.dx[k*D+:D] == '0 && s_q.dy[k*D+:D] == '0);
-        if (state_q != PREPARE) assert (gen_edge[k].best_q == '0);
+        if (!starts) assert (!edge_is_outside_q[k]);
       end
     end
   endgenerate
