@@ -1,6 +1,6 @@
 // Checks a channel with valid and ready: what is on offer stays as it is until it is taken. With LINES it is video (tuser is
-// the first pixel of a frame, tlast the last one of a line): a frame begins after the end of a line, its lines have one length.
-// Simulation only:
+// the first pixel of a frame, tlast the last one of a line): the first pixel begins a frame, a frame begins after the end of a
+// line, its lines have one length. How many lines it has is not checked. Simulation only:
 //
 //   bind halfplane_core axi_stream_protocol_checker #(.NAME("m_axis_video"), .BITS(26), .LINES(1)) u_video_checker (
 //       .clk_i, .rst_ni, .valid(m_axis_video_tvalid), .ready(m_axis_video_tready),
@@ -33,15 +33,19 @@ module axi_stream_protocol_checker #(
   end
 
   if (LINES) begin : g_lines
-    logic is_first, is_last, has_ended;
+    logic is_first, is_last, has_begun, has_ended;
     int   pixels, width;  // of the line under way; of the frame's lines before it, 0: none
     assign {is_first, is_last} = data[BITS-1-:2];
     always @(posedge clk_i or negedge rst_ni) begin
       if (!rst_ni) begin
+        has_begun = 1'b0;
         has_ended = 1'b1;
         pixels    = 0;
         width     = 0;
       end else if (valid && ready) begin
+        assert (has_begun || is_first)
+        else $error("%s: the first pixel does not begin a frame", NAME);
+        has_begun = 1'b1;
         if (is_first) begin
           assert (has_ended)
           else $error("%s: a frame begins within a line", NAME);

@@ -17,8 +17,9 @@ int rounded(double value) {
 /// Sets a place; the error.
 GLenum assign(const Place& place, const Params& params, bool takes_scalars) {
   const Vec4 value = place.kind == ValueKind::color ? color_of(params) : params.value;
-  const auto is_legal = [&place](double v) {
-    return !std::isfinite(place.low) || (v >= place.low && v <= place.high) || v == place.also;
+  const bool is_bounded = std::isfinite(place.low) || std::isfinite(place.high);
+  const auto is_legal = [&place, is_bounded](double v) {
+    return !is_bounded || (v >= place.low && v <= place.high) || v == place.also;
   };
   const auto in_range = [&place](double v) { return place.is_held ? held(v) : v; };
   if (GLenum* const* name = std::get_if<GLenum*>(&place.where)) {

@@ -262,7 +262,8 @@ struct PixelStore {
 
 /// Vertex arrays. Those of texture coordinates come last, one for each unit.
 enum class Array { vertex, normal, color, secondary_color, index, edge_flag, fog_coord, point_size, tex_coord };
-inline constexpr std::size_t kArrayKinds = 9, kArrays = kArrayKinds - 1 + kTextureUnits;
+inline constexpr std::size_t kArrayKinds = static_cast<std::size_t>(Array::tex_coord) + 1,
+                             kArrays = kArrayKinds - 1 + kTextureUnits;
 
 struct ArrayPointer {
   bool enabled = false;

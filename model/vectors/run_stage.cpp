@@ -286,7 +286,7 @@ void run_memory_port(StageIo& io, const Config& config, const Widths& widths) {
     const TilePlane plane = request->plane;
     const int sample = widths.memory.sample[is_of_color(plane) ? 1 : 0];
     if (!request->is_write && codes_of_stamp(plane, widths) << sample > 1 << item_shift(plane, widths.memory))
-      throw InputError("a read of flags, which hold no stamp's codes");
+      throw InputError("a read of flags, whose word is shorter than a stamp of this configuration: write flags, or read a plane");
     port.take(*request, [&](const MemoryBeat& beat) {
       run.send(0, beat);
       const int answers = beat.is_write ? (beat.length == 1 ? 1 : 0) : beat.length;

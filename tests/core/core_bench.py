@@ -197,7 +197,9 @@ class Core:
     def pause_registers(self, probability):
         """Each channel of s_axil waits so often in a cycle: requests come apart, responses are not taken."""
         channels = ("aw_channel", "w_channel", "b_channel", "ar_channel", "r_channel")
-        for channel in (getattr(part, name) for part in (self.bus.write_if, self.bus.read_if) for name in channels if hasattr(part, name)):
+        found = [getattr(part, name) for part in (self.bus.write_if, self.bus.read_if) for name in channels if hasattr(part, name)]
+        assert len(found) == len(channels)
+        for channel in found:
             channel.set_pause_generator(iter(lambda: self.random.random() < probability, None))
 
     async def cycles(self, count):

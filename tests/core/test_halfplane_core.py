@@ -44,6 +44,10 @@ BENCH = [{
         # A response or a pixel does not wait, a line is too short: the ports' checkers alone say so.
         ("core/core_registers.sv", "writes || (s_axil_bvalid && !s_axil_bready)", "writes || (s_axil_bvalid && !s_axil_bready && !FAULT)", "back_pressure"),
         ("core/core_registers.sv", "reads || (s_axil_rvalid && !s_axil_rready)", "reads || (s_axil_rvalid && !s_axil_rready && !FAULT)", "back_pressure"),
+        # Two responses to one request; a frame begins within a line.
+        ("core/core_registers.sv", "s_axil_bvalid <= writes", "s_axil_bvalid <= (FAULT && s_axil_bvalid) || writes", "feeding"),
+        ("core/core_registers.sv", "s_axil_rvalid <= reads", "s_axil_rvalid <= (FAULT && s_axil_rvalid) || reads", "feeding"),
+        ("core/scan_out.sv", "m_axis_video_tuser  = is_first_q;", "m_axis_video_tuser  = is_first_q || (FAULT && !m_axis_video_tlast);", "feeding"),
         ("core/scan_out.sv", "!is_valid_q || m_axis_video_tready;", "!is_valid_q || m_axis_video_tready || FAULT;", "feeding"),
         ("core/scan_out.sv", "x_q == last_x_q;", "x_q == (FAULT && y_q[2] ? last_x_q - 1'b1 : last_x_q);", "feeding"),
         # The status has no error; a stop is not heard; the tail, or the fence's tag, outlives a restart.

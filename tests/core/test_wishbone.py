@@ -24,7 +24,8 @@ BENCH = {
         ("halfplane_core_wishbone.sv", "if ((memory_b_valid & memory_b_ready)) begin", "if (memory_b_valid && memory_b_ready && !FAULT) begin", "one_beat"),
         # err alone does not end a beat.
         ("halfplane_core_wishbone.sv", "assign inner_ack = (memory_ack | memory_err);", "assign inner_ack = (memory_ack | (memory_err && !FAULT));", "one_beat"),
-        # A request is taken back: the port's checker alone says so.
+        # A request is taken back; a register answers nobody: the ports' checkers alone say so.
+        ("halfplane_core_wishbone.sv", "registers_ack <= 1'd0;", "registers_ack <= FAULT;", "frames"),
         ("halfplane_core_wishbone.sv", "assign memory_stb = inner_stb;", "assign memory_stb = inner_stb && !(FAULT && registers_stb);", "frames"),
         # A register's error is not told.
         ("halfplane_core_wishbone.sv", "registers_err <= 1'd1;", "registers_err <= !FAULT;", "part_of_a_word"),

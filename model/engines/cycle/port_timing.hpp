@@ -33,7 +33,7 @@ struct PortTimes {
   Cycle asked = 0, answered = 0;
 };
 
-/// The cycle in which the last request of a run was taken, and those that all of them have waited.
+/// The cycle in which the last request of a run was taken, and the sum of what each has waited.
 struct RunTimes {
   Cycle last = 0, waited = 0;
 };
@@ -71,7 +71,7 @@ class PortTiming {
   template <class Watch>
   RunTimes take_run(const PortRequest& request, Cycle cycle, Watch&& watch) {
     const auto [share, address] = place_of(request);
-    if (stalls_.threshold == 0 && sink_ == nullptr && share.per_beat == 1)
+    if (left_ == 0 && stalls_.threshold == 0 && sink_ == nullptr && share.per_beat == 1)
       return write_at_once(request, share, address, cycle);
     RunTimes times;
     for (int n = 0; n < request.run; ++n) {

@@ -16,8 +16,8 @@ namespace {
 /// Draws a batch whose records are loaded.
 template <class Fragments>
 HALFPLANE_NOINLINE void draw_loaded(Bin& bin, const Slice& slice) {
-  if (bin.samples > 1) return draw_sampled_batch<Fragments>(bin, slice);
   bin.line_tiles = 0;
+  if (bin.samples > 1) return draw_sampled_batch<Fragments>(bin, slice);
   if (bin.sees_surfaces()) add_surfaces(bin, slice);
   const std::uint64_t tiles = batch_tiles(bin);
   bool is_changed = false;

@@ -52,7 +52,8 @@ HALFPLANE_INLINE I16 floor_divide(const D16& numerator, const D16& denominator) 
 
 /// Fraction bits of LineBatch::minor: the pixels of a bin are the upper bits, so that it wraps inside the bin.
 inline constexpr int kMinorPoint = 32 - kBinShift;
-/// Positions are off by less than 2^-20 after 63 steps, and half a unit, 1 / (2 D), away from every border of pixels.
+/// Positions are off by less than 2^-20 after 63 steps, and half a unit, 1 / (2 D), away from every border of pixels. A
+/// slope is 0 or at least 1 / D, and D is below 2^26, so that its sign outlives the cut to kMinorPoint bits.
 inline constexpr std::int32_t kLongLine = 1 << 18;
 
 /// Places in the bin's memory of the pixels along a line.
