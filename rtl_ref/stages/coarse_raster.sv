@@ -218,7 +218,7 @@ module coarse_raster (
     end
   end
 
-  // --- Edges: one value each at the tile's first pixel, and the ways to its best and its worst corner. Whether a tile is
+  // --- Edges: one value each at the tile's first pixel, and the increments to its best and its worst corner. Whether a tile is
   // outside is known a cycle ahead, from the values that it will have: so the walk is decided by registers.
   logic [2:0]      edge_is_inside, next_is_outside;
   logic [3*TE-1:0] edge_value;

@@ -1,5 +1,5 @@
 // Every checker that halfplane_core has, bound as docs/core.md says. Tests send wrong words: these are not failures.
-// s_axis has none: of the core it has tready alone, and tests take back a word after an error.
+// s_axis has no checker: the core drives tready alone there, and tests withdraw a word after an error.
 bind command_decoder command_stream_checker #(.CHECKS_ERRORS(0)) u_command_stream_checker (.*);
 bind raster_top primitive_stream_checker u_primitive_stream_checker (.*);
 bind halfplane_core axi_protocol_checker #(.PORT_BITS(raster_pkg::MEMORY_PORT_BITS)) u_axi_protocol_checker (.*);

@@ -387,7 +387,7 @@ class BlockTiming {
           const StampAddress at = stamp_address({v.block, stamp}, widths_);
           behind = ask.write(cycle, move == ColorMove::pixels ? TilePlane::pixel_color : plane, at, run) + 1;
           cycle = behind;
-          left &= left + (std::uint64_t{1} << stamp);  // without the run, which the sum carries through
+          left &= left + (std::uint64_t{1} << stamp);  // clears the lowest run of ones
         }
       }
       cycle = behind;
