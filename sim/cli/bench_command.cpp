@@ -12,9 +12,9 @@
 
 #include "sim/cli/bench_study.hpp"
 #include "sim/cli/commands.hpp"
+#include "sim/cli/option_kinds.hpp"
 #include "sim/cli/progress.hpp"
 #include "sim/cli/space_study.hpp"
-#include "sim/cli/whole_number.hpp"
 #include "sim/config_file.hpp"
 #include "sim/show/report/page.hpp"
 #include "sim/study/bench/engines.hpp"
@@ -360,21 +360,17 @@ void add_bench_command(CLI::App& app, Action& selected) {
       ->check(whole_number(1, 1024))
       ->default_str("1")
       ->type_name("LIST");
-  command->add_option("--size", options->size, "target, WxH pixels")
-      ->check(refuse_empty)
-      ->default_str("fits the target");
-  command->add_option("--repeat", options->repeat, "measurements after the first; their median counts")
-      ->check(whole_number(1, 1000))
-      ->capture_default_str();
+  add_text_option(*command, "--size", options->size, "target, WxH pixels")->default_str("fits the target");
+  add_number_option(*command, "--repeat", options->repeat, 1, 1000,
+                    "measurements after the first; their median counts");
   add_seed_option(*command, *options, "seed of scenes with random parts");
   command->add_flag("--no-errors", options->has_no_errors, "only the time: no comparison with the golden");
   command->add_flag("--skips", options->wants_skips,
                     "instead: the savings of each kind of skipping, on SCENES, or on scenes made for it and others");
   command->add_flag("--growth", options->wants_growth,
                     "instead: time by triangle size, triangle count, depth complexity, resolution and threads");
-  command->add_option("--growth-max", options->growth_max, "triangles of the largest frame of --growth")
-      ->check(whole_number(100, 10'000'000))
-      ->capture_default_str();
+  add_number_option(*command, "--growth-max", options->growth_max, 100, 10'000'000,
+                    "triangles of the largest frame of --growth");
   command->add_flag(
       "--antialiasing", options->wants_antialiasing,
       "instead: error against the exact area of triangles in pixels, and time, cycles and bytes, of 1 to 8 samples a "

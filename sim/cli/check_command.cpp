@@ -3,6 +3,7 @@
 #include "sim/cli/commands.hpp"
 #include "sim/cli/coverage_option.hpp"
 #include "sim/cli/explain_output.hpp"
+#include "sim/cli/option_kinds.hpp"
 #include "sim/cli/options.hpp"
 #include "sim/cosim/junit.hpp"
 #include "sim/cover/collector.hpp"
@@ -169,13 +170,10 @@ void add_check_command(CLI::App& app, Action& selected) {
   add_output_options(*command, *options);
   command->remove_option(command->get_option("--config"));  // the header contains it
   command->remove_option(command->get_option("--set"));
-  command->add_option("--stage", options->stage, "the stage: cull, triangle_setup, coarse_raster ...")
-      ->required()
-      ->check(refuse_empty)
-      ->type_name("NAME");
-  command->add_option("--vectors", options->vectors, "take the inputs from this file; FILE then needs only `out`")
-      ->check(refuse_empty)
-      ->type_name("FILE");
+  add_text_option(*command, "--stage", options->stage, "the stage: cull, triangle_setup, coarse_raster ...", "NAME")
+      ->required();
+  add_text_option(*command, "--vectors", options->vectors, "take the inputs from this file; FILE then needs only `out`",
+                  "FILE");
   add_file_option(*command, "--junit", options->junit, "result as JUnit XML");
   add_coverage_option(*command, options->coverage);
   command->footer(

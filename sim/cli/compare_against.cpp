@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "model/as_number.hpp"
-#include "sim/cli/whole_number.hpp"
+#include "sim/cli/option_kinds.hpp"
 #include "sim/words.hpp"
 
 namespace halfplane {
@@ -60,23 +60,19 @@ std::string count_text(const JudgedImage& judged) {
 }  // namespace
 
 void add_against_options(CLI::App& app, AgainstWords& words) {
-  app.add_option(
-         "--against", words.path,
-         "another rasterizer's image: the model against it too, colours .png or depth codes .npy; with a folder as "
-         "SCENE, a folder: each scene against NAME.png, NAME.npy or both")
-      ->check(refuse_empty)
-      ->type_name("FILE");
-  app.add_option(
-         "--tolerance", words.tolerance,
-         "of --against: codes of the stored format that each channel, or the depth, of an equal pixel may be off: "
-         "color=1,depth=1")
-      ->check(refuse_empty)
-      ->type_name("LIST");
-  app.add_option("--first", words.listed, "of --against: list the first N pixels that differ")
-      ->check(whole_number(0, 1000000))
-      ->capture_default_str()
-      ->each([&words](const std::string&) { words.has_listed = true; })
-      ->type_name("N");
+  add_text_option(
+      app, "--against", words.path,
+      "another rasterizer's image: the model against it too, colours .png or depth codes .npy; with a folder as "
+      "SCENE, a folder: each scene against NAME.png, NAME.npy or both",
+      "FILE");
+  add_text_option(
+      app, "--tolerance", words.tolerance,
+      "of --against: codes of the stored format that each channel, or the depth, of an equal pixel may be off: "
+      "color=1,depth=1",
+      "LIST");
+  add_number_option(app, "--first", words.listed, 0, 1000000, "of --against: list the first N pixels that differ")
+      ->type_name("N")
+      ->each([&words](const std::string&) { words.has_listed = true; });
 }
 
 Tolerance parse_tolerance(const AgainstWords& words) {

@@ -10,6 +10,7 @@
 #include "sim/cli/commands.hpp"
 #include "sim/cli/compare_against.hpp"
 #include "sim/cli/compare_folder.hpp"
+#include "sim/cli/option_kinds.hpp"
 #include "sim/cli/progress.hpp"
 #include "sim/cli/study_options.hpp"
 #include "sim/show/image/framebuffer_files.hpp"
@@ -465,9 +466,8 @@ void add_compare_command(CLI::App& app, Action& selected) {
   const auto [command, options] = add_command<CompareCommand>(
       app, selected, "compare", "model against golden: coverage, depth and colour error with its parts", run);
   add_scene_options(*command, *options);
-  command->add_option("--golden", options->golden, "binary64, or binary32 to see what single precision would show")
-      ->check(CLI::IsMember({"binary64", "binary32"}))
-      ->capture_default_str();
+  add_choice_option(*command, "--golden", options->golden, {"binary64", "binary32"},
+                    "binary64, or binary32 to see what single precision would show");
   add_study_options(*command, options->study);
   add_interpolation_option(*command, options->study);
   add_file_option(*command, "-o", options->sheet_path,

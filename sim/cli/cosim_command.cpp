@@ -8,6 +8,7 @@
 #include "sim/cli/commands.hpp"
 #include "sim/cli/cosim_options.hpp"
 #include "sim/cli/coverage_option.hpp"
+#include "sim/cli/option_kinds.hpp"
 #include "sim/cli/progress.hpp"
 #include "sim/cosim/report.hpp"
 #include "sim/cosim/specification.hpp"
@@ -313,11 +314,8 @@ void add_cosim_command(CLI::App& app, Action& selected) {
   add_random_options(*command, *options,
                      "N random triangles, lines and points of all sizes and states instead of a scene", 1'000'000'000);
   add_cosim_options(*command, *options);
-  command
-      ->add_option("--trace-cycles", options->trace_cycles,
-                   "FIRST:LAST: cycles of a run without a mismatch that --trace records (default 0:9999)")
-      ->check(refuse_empty)
-      ->type_name("WINDOW");
+  add_text_option(*command, "--trace-cycles", options->trace_cycles,
+                  "FIRST:LAST: cycles of a run without a mismatch that --trace records (default 0:9999)", "WINDOW");
   add_file_option(*command, "--save", options->save_path, "capture of a mismatch, .hpt (default out/cosim-NAME.hpt)");
   add_file_option(*command, "--junit", options->junit_path, "result as JUnit XML");
   add_coverage_option(*command, options->coverage);

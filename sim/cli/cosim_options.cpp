@@ -6,8 +6,8 @@
 #include <ostream>
 #include <tuple>
 
+#include "sim/cli/option_kinds.hpp"
 #include "sim/cli/progress.hpp"
-#include "sim/cli/whole_number.hpp"
 #include "sim/cosim/report.hpp"
 #include "sim/show/image/whole_file.hpp"
 
@@ -41,9 +41,8 @@ std::string probability_text(double value) {
 }  // namespace
 
 void add_stalls_option(CLI::App& app, CosimOptions& options) {
-  app.add_option("--stalls", options.stalls, "probability with which each stream is held back in a cycle")
-      ->check(CLI::Range(0.0, 0.95))
-      ->check(is_number)
+  add_real_option(app, "--stalls", options.stalls, 0.0, 0.95,
+                  "probability with which each stream is held back in a cycle")
       ->capture_default_str();
 }
 
@@ -51,16 +50,13 @@ void add_cosim_options(CLI::App& app, CosimOptions& options) {
   add_stalls_option(app, options);
   add_memory_options(app, options.memory);
   add_traffic_options(app, options.memory);
-  app.add_option("--mutant", options.mutant, "switch on one of the RTL's built-in faults, 0 for none")
-      ->check(whole_number(0, 65535))
-      ->capture_default_str();
+  add_number_option(app, "--mutant", options.mutant, 0, 65535,
+                    "switch on one of the RTL's built-in faults, 0 for none");
   app.add_flag(
       "--ignore-cycles", options.ignores_cycles,
       "compare every bit, but not the cycles of the packets: for a stage with another latency (docs/your-rtl.md)");
-  app.add_option("--resets", options.resets,
-                 "number of times that each scene is started and cut off by a reset before it runs")
-      ->check(whole_number(0, 1000))
-      ->capture_default_str();
+  add_number_option(app, "--resets", options.resets, 0, 1000,
+                    "number of times that each scene is started and cut off by a reset before it runs");
   add_file_option(app, "--trace", options.trace_path,
                   "waveform, .fst: around a mismatch (default: next to the saved capture); with cosim also of a run "
                   "without a mismatch");

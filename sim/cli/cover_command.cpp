@@ -2,6 +2,7 @@
 #include <ostream>
 
 #include "sim/cli/commands.hpp"
+#include "sim/cli/option_kinds.hpp"
 #include "sim/cli/options.hpp"
 #include "sim/cover/report.hpp"
 #include "sim/show/image/whole_file.hpp"
@@ -49,14 +50,9 @@ int run(const CoverOptions& options) {
 void add_cover_command(CLI::App& app, Action& selected) {
   const auto [command, options] = add_command<CoverOptions>(
       app, selected, "cover", "what runs with --coverage have hit, merged, and what would hit the rest", run);
-  command->add_option("FILE", options->files, "coverage of runs, as --coverage and -o write it")
-      ->required()
-      ->check(refuse_empty);
-  command
-      ->add_option("-o", options->outputs,
-                   "writes the merged coverage: .json, .html a page, .dat for verilator_coverage; repeatable")
-      ->check(refuse_empty)
-      ->type_name("FILE")
+  add_text_option(*command, "FILE", options->files, "coverage of runs, as --coverage and -o write it")->required();
+  add_text_option(*command, "-o", options->outputs,
+                  "writes the merged coverage: .json, .html a page, .dat for verilator_coverage; repeatable", "FILE")
       ->allow_extra_args(false);
   command->add_flag("--strict", options->is_strict, "status 1 while a bin or a pair that can be hit is not");
   add_result_options(*command, *options);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "model/nearest_word.hpp"
+#include "sim/cli/option_kinds.hpp"
 #include "sim/cli/progress.hpp"
 #include "sim/show/image/framebuffer_files.hpp"
 #include "sim/show/image/panel.hpp"
@@ -191,9 +192,8 @@ void add_cycle_options(CLI::App& app, CycleCommandOptions& options) {
       ->type_name("KEY=VALUE");
   cycle.add_option("--what-if", options.what_if, "KEY=V1,V2,...: a table of the cycles with each of these values")
       ->type_name("KEY=LIST");
-  cycle.add_option("--stalls", options.stalls, "probability with which each stream is held back in a cycle")
-      ->check(CLI::Range(0.0, 0.95))
-      ->check(is_number);
+  add_real_option(cycle, "--stalls", options.stalls, 0.0, 0.95,
+                  "probability with which each stream is held back in a cycle");
   cycle.add_flag("--explain", options.explain,
                  "try changes that might relieve the bottleneck, and measure what skipping saves");
   add_file_option(cycle, "--primitives", options.primitives_path, "listing: the cycles of each primitive, .csv");

@@ -10,8 +10,8 @@
 
 #include "sim/cli/commands.hpp"
 #include "sim/cli/depth_study.hpp"
+#include "sim/cli/option_kinds.hpp"
 #include "sim/cli/progress.hpp"
-#include "sim/cli/whole_number.hpp"
 #include "sim/show/image/whole_file.hpp"
 #include "sim/show/report/page.hpp"
 #include "sim/words.hpp"
@@ -393,9 +393,7 @@ void add_depth_command(CLI::App& app, Action& selected) {
   command->add_option("--format", options->formats, "some of u<b>, bins<b>, f16, f32, uf<e>.<m> (default u16)")
       ->type_name("LIST");
   command->add_option("--bits", options->bits, "short for --format u<N>")->check(whole_number(2, 32))->type_name("N");
-  command->add_option("--z", options->z, "eye depths to look at (default: near, powers of ten, far)")
-      ->check(refuse_empty)
-      ->type_name("LIST");
+  add_text_option(*command, "--z", options->z, "eye depths to look at (default: near, powers of ten, far)", "LIST");
   command
       ->add_option("--error", options->error,
                    "a length: the depth where bins exceed it, the fewest bits and the least near plane that keep it")
@@ -413,12 +411,10 @@ void add_depth_command(CLI::App& app, Action& selected) {
                    "fragments fight: '0.01' or '1%'")
       ->type_name("PART")
       ->capture_default_str();
-  command->add_option("--fov", options->fov, "for --slope: vertical, degrees")
-      ->check(CLI::Range(0.01, 179.0))
-      ->check(is_number)
+  add_real_option(*command, "--fov", options->fov, 0.01, 179.0, "for --slope: vertical, degrees")
       ->capture_default_str();
   command->add_option("--scene", options->scene, "measure it on this scene: built-in name or file");
-  command->add_option("--size", options->size, "target, WxH pixels")->check(refuse_empty);
+  add_text_option(*command, "--size", options->size, "target, WxH pixels");
   command->add_option("--camera", options->camera, "as for render");
   add_seed_option(*command, *options, "seed of scenes with random parts");
   command->add_option("--threads", options->threads, "use at most N threads (default: as many as there are cores)")

@@ -6,10 +6,10 @@
 #include "model/stages/depth_encode.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/explain_output.hpp"
+#include "sim/cli/option_kinds.hpp"
 #include "sim/cli/options.hpp"
 #include "sim/cli/progress.hpp"
 #include "sim/cli/study_options.hpp"
-#include "sim/cli/whole_number.hpp"
 #include "sim/cosim/dut.hpp"
 #include "sim/show/image/png.hpp"
 #include "sim/show/report/page.hpp"
@@ -216,22 +216,15 @@ void add_explain_command(CLI::App& app, Action& selected) {
   add_interpolation_option(*command, options->study);
   command->add_option("X", options->x, "column of the pixel; the top left one is 0 0")->required();
   command->add_option("Y", options->y, "row of the pixel")->required();
-  command->add_option("--box", options->box, "WxH pixels with X Y as the top left one")
-      ->check(refuse_empty)
-      ->capture_default_str()
-      ->type_name("SIZE");
-  command->add_option("--near", options->near, "also list primitives that pass within N pixels")
-      ->check(CLI::Range(1.0, 100000.0))
-      ->check(is_number)
+  add_text_option(*command, "--box", options->box, "WxH pixels with X Y as the top left one", "SIZE")
+      ->capture_default_str();
+  add_real_option(*command, "--near", options->near, 1.0, 100000.0, "also list primitives that pass within N pixels")
       ->capture_default_str()
       ->type_name("N");
   command->add_flag("--rtl", options->rtl, "the RTL's packets too, bit by bit, and the cycles in which they crossed");
   add_file_option(*command, "-o", options->output,
                   "the neighbourhood enlarged, .png: grid, samples, edges; or .html: a page to step through");
-  command->add_option("--margin", options->margin, "of -o: pixels shown on each side")
-      ->check(whole_number(0, 24))
-      ->capture_default_str()
-      ->type_name("N");
+  add_number_option(*command, "--margin", options->margin, 0, 24, "of -o: pixels shown on each side")->type_name("N");
   command->add_flag("--steps", options->steps, "every pixel of lines and triangles, step by step");
   command->add_option("--mutant", options->mutant, "with --rtl: one of the RTL's built-in faults, 0 for none")
       ->check(whole_number(0, 65535))

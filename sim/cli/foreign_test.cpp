@@ -8,6 +8,7 @@
 #include "model/as_number.hpp"
 #include "model/draw_states.hpp"
 #include "sim/cli/child.hpp"
+#include "sim/cli/option_kinds.hpp"
 #include "sim/interrupt.hpp"
 #include "sim/show/image/whole_file.hpp"
 
@@ -75,16 +76,13 @@ class ForeignProgram {
 }  // namespace
 
 void add_foreign_options(CLI::App& app, ForeignOptions& options) {
-  app.add_option("--command", options.command,
-                 "instead of the RTL: a command for sh, {} being the capture, that fails with a status other than 0")
-      ->check(refuse_empty)
-      ->type_name("COMMAND");
-  app.add_option("--status", options.status, "of --command: only this exit status is the failure: a number, or timeout")
-      ->check(refuse_empty)
-      ->type_name("STATUS");
-  app.add_option("--timeout", options.timeout_s, "of --command: seconds after which a run is stopped")
-      ->check(CLI::Range(0.01, 86400.0))
-      ->check(is_number)
+  add_text_option(app, "--command", options.command,
+                  "instead of the RTL: a command for sh, {} being the capture, that fails with a status other than 0",
+                  "COMMAND");
+  add_text_option(app, "--status", options.status,
+                  "of --command: only this exit status is the failure: a number, or timeout", "STATUS");
+  add_real_option(app, "--timeout", options.timeout_s, 0.01, 86400.0,
+                  "of --command: seconds after which a run is stopped")
       ->capture_default_str();
   app.add_option("--keep", options.kept,
                  "of --command: what its program has no other of, states and target (its size), comma-separated; it is "

@@ -6,6 +6,7 @@
 #include "model/nearest_word.hpp"
 #include "sim/cli/command_line.hpp"
 #include "sim/cli/commands.hpp"
+#include "sim/cli/option_kinds.hpp"
 #include "sim/cli/options.hpp"
 #include "sim/show/image/whole_file.hpp"
 
@@ -155,9 +156,7 @@ void add_man_command(CLI::App& app, Action& selected) {
   CLI::App* command = app.add_subcommand("man", "prints or writes the manual pages");
   auto options = std::make_shared<ManOptions>();
   command->add_option("COMMAND", options->command, "the command whose page is printed (default: the program's)");
-  command->add_option("-o", options->folder, "writes every page into this folder instead")
-      ->check(refuse_empty)
-      ->type_name("DIR");
+  add_text_option(*command, "-o", options->folder, "writes every page into this folder instead", "DIR");
   command->footer("\nRead a page with `halfplane man render | man -l -`.\n\nExample:\n  halfplane man -o man1");
   command->callback([&selected, &app, options] { selected = [&app, options] { return run_man(app, *options); }; });
 }

@@ -1,6 +1,6 @@
 #include "sim/cli/memory_options.hpp"
 
-#include "sim/cli/whole_number.hpp"
+#include "sim/cli/option_kinds.hpp"
 #include "sim/show/report/hardware.hpp"
 
 namespace halfplane {
@@ -18,26 +18,19 @@ void add_memory_options(CLI::App& app, MemorySettings& settings) {
          "memory at the memory port: fixed (ideal), sram, sdram, psram, ddr3; sdram,width=32,mhz=133 is another "
          "SDRAM")
       ->default_str("fixed");
-  app.add_option("--memory-latency", settings.latency, "of the fixed memory: cycles from a read request to its answer")
-      ->check(whole_number(1, 10000))
-      ->capture_default_str();
-  app.add_option("--mhz", settings.mhz,
-                 "clock of the hardware: converts its cycles to seconds, and the times of memories to cycles")
-      ->check(whole_number(1, 1000))
-      ->capture_default_str();
+  add_number_option(app, "--memory-latency", settings.latency, 1, 10000,
+                    "of the fixed memory: cycles from a read request to its answer");
+  add_number_option(app, "--mhz", settings.mhz, 1, 1000,
+                    "clock of the hardware: converts its cycles to seconds, and the times of memories to cycles");
 }
 
 void add_traffic_options(CLI::App& app, MemorySettings& settings) {
-  app.add_option("--scan-out", settings.traffic.scan_out_hz,
-                 "pictures a second that scan-out reads from the same memory; 0: none")
-      ->check(whole_number(0, kMaxScanOutHz))
-      ->type_name("HZ")
-      ->capture_default_str();
-  app.add_option("--other-traffic", settings.traffic.other_bytes_per_s,
-                 "bytes a second that other masters read from the same memory; 0: none")
-      ->check(whole_number(0, kMaxOtherBytes))
-      ->type_name("BYTES/S")
-      ->capture_default_str();
+  add_number_option(app, "--scan-out", settings.traffic.scan_out_hz, 0, kMaxScanOutHz,
+                    "pictures a second that scan-out reads from the same memory; 0: none")
+      ->type_name("HZ");
+  add_number_option(app, "--other-traffic", settings.traffic.other_bytes_per_s, 0, kMaxOtherBytes,
+                    "bytes a second that other masters read from the same memory; 0: none")
+      ->type_name("BYTES/S");
 }
 
 std::string memory_arguments(const MemorySettings& settings) {

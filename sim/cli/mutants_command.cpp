@@ -7,8 +7,8 @@
 #include "model/engines/functional.hpp"
 #include "sim/cli/commands.hpp"
 #include "sim/cli/cosim_options.hpp"
+#include "sim/cli/option_kinds.hpp"
 #include "sim/cli/progress.hpp"
-#include "sim/cli/whole_number.hpp"
 #include "sim/cosim/rtl_engine.hpp"
 #include "sim/scene/builtin.hpp"
 #include "sim/show/image/framebuffer_files.hpp"
@@ -216,9 +216,8 @@ void add_mutants_command(CLI::App& app, Action& selected) {
   options->size = "160x120";
   add_output_options(*command, *options);
   add_seed_option(*command, *options, "seed of the random run and its stalls");
-  command->add_option("--random", options->random, "primitives of the random run")
-      ->check(whole_number(std::uint64_t{1}, std::uint64_t{1'000'000}))
-      ->capture_default_str();
+  add_number_option(*command, "--random", options->random, std::uint64_t{1}, std::uint64_t{1'000'000},
+                    "primitives of the random run");
   add_stalls_option(*command, *options);
   command->add_option("--only", options->only, "these mutants alone: numbers with commas")
       ->delimiter(',')

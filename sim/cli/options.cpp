@@ -11,8 +11,8 @@
 
 #include "model/as_number.hpp"
 #include "model/capture/capture.hpp"
+#include "sim/cli/option_kinds.hpp"
 #include "sim/cli/progress.hpp"
-#include "sim/cli/whole_number.hpp"
 #include "sim/config_file.hpp"
 #include "sim/scene/convention.hpp"
 #include "sim/scene/depth_collision.hpp"
@@ -81,7 +81,7 @@ void add_seed_option(CLI::App& app, CommonOptions& options, const std::string& m
 }
 
 void add_file_option(CLI::App& app, const std::string& name, std::string& path, const std::string& meaning) {
-  app.add_option(name, path, meaning)->check(refuse_empty)->each(claim_stdout(name))->type_name("FILE");
+  add_text_option(app, name, path, meaning, "FILE")->each(claim_stdout(name));
 }
 
 void add_scene_options(CLI::App& app, CommonOptions& options) {
@@ -89,26 +89,23 @@ void add_scene_options(CLI::App& app, CommonOptions& options) {
                  "built-in name (halfplane scenes), a file: .obj, .gltf, .glb, .hpt, or - for a capture on stdin")
       ->required();
   add_output_options(app, options);
-  app.add_option("--size", options.size, "target, WxH pixels (default 640x480, or what a capture says)")
-      ->check(refuse_empty);
+  add_text_option(app, "--size", options.size, "target, WxH pixels (default 640x480, or what a capture says)");
   app.add_option("--camera", options.camera,
                  "'eye=0,1,3;target=0,0,0;up=0,1,0;fov=45;near=.1;far=100' or 'ortho=HEIGHT' or "
                  "'name=NAME' for one of a glTF file's own; 'orbit' or 'orbit=DEGREES' turns it about the target");
-  app.add_option("--light", options.lights,
-                 "a light, repeatable: 'from=X,Y,Z' (its direction), 'at=X,Y,Z;range=R' (its place) or 'eye', each "
-                 "with ';color=R,G,B'; 'ambient=R,G,B'; 'phong' next to one of them: computed at fragments; 'off' "
-                 "(default: the file's own, else one at the eye; docs/light.md)")
-      ->check(refuse_empty)
+  add_text_option(app, "--light", options.lights,
+                  "a light, repeatable: 'from=X,Y,Z' (its direction), 'at=X,Y,Z;range=R' (its place) or 'eye', each "
+                  "with ';color=R,G,B'; 'ambient=R,G,B'; 'phong' next to one of them: computed at fragments; 'off' "
+                  "(default: the file's own, else one at the eye; docs/light.md)")
       ->allow_extra_args(false);
   app.add_option("--transform", options.transform,
                  "number format of a mesh's transform, clip, division by w and viewport: binary64, binary32 or s15.16; "
                  "compare shows the error of the smaller ones (docs/light.md)")
       ->capture_default_str();
-  app.add_option("--time", options.time, "seconds into the animation of a glTF file (default: the file's rest pose)")
-      ->check(refuse_empty);
-  app.add_option("--animation", options.animation,
-                 "which of the file's animations, by name or number (default: the first)")
-      ->check(refuse_empty);
+  add_text_option(app, "--time", options.time,
+                  "seconds into the animation of a glTF file (default: the file's rest pose)");
+  add_text_option(app, "--animation", options.animation,
+                  "which of the file's animations, by name or number (default: the first)");
   add_seed_option(app, options, "seed of scenes with random parts");
   app.add_option("--threads", options.threads, "use at most N threads (functional engine, depth)")
       ->check(whole_number(1, 1024));

@@ -2,18 +2,17 @@
 
 #include <memory>
 
-#include "sim/cli/whole_number.hpp"
+#include "sim/cli/option_kinds.hpp"
 
 namespace halfplane {
 
 void add_random_options(CLI::App& app, RandomOptions& options, const std::string& meaning, std::uint64_t most) {
   constexpr std::uint64_t kOne = 1, kMostScenes = 1'000'000'000;
   app.add_option("--random", options.random, meaning)->check(whole_number(kOne, most))->type_name("N");
-  app.add_option("--random-only", options.random_only,
-                 "knobs of --random, as triangles,less,16x16,size=1..40,ties=20,no-scissor or FILE.toml "
-                 "(docs/random.md)")
-      ->check(refuse_empty)
-      ->type_name("KNOBS");
+  add_text_option(app, "--random-only", options.random_only,
+                  "knobs of --random, as triangles,less,16x16,size=1..40,ties=20,no-scissor or FILE.toml "
+                  "(docs/random.md)",
+                  "KNOBS");
   app.add_option("--first-scene", options.first_scene, "of --random: begin with scene K of the run, counted from 1")
       ->check(whole_number(kOne, kMostScenes))
       ->type_name("K");

@@ -15,11 +15,11 @@
 #include "sim/cli/build_info.hpp"
 #include "sim/cli/child.hpp"
 #include "sim/cli/commands.hpp"
+#include "sim/cli/option_kinds.hpp"
 #include "sim/cli/progress.hpp"
 #include "sim/cli/regress_plan.hpp"
 #include "sim/cli/regress_report.hpp"
 #include "sim/cli/task_folder.hpp"
-#include "sim/cli/whole_number.hpp"
 #include "sim/show/image/framebuffer_files.hpp"
 #include "sim/show/image/whole_file.hpp"
 
@@ -310,19 +310,13 @@ int run(const RegressOptions& options) {
 void add_regress_command(CLI::App& app, Action& selected) {
   const auto [command, options] = add_command<RegressOptions>(
       app, selected, "regress", "a plan of co-simulations: scenes, configurations, seeds", run);
-  command->add_option("PLAN", options->plan, "the plan, .toml (docs/random.md)")->required()->check(refuse_empty);
+  add_text_option(*command, "PLAN", options->plan, "the plan, .toml (docs/random.md)")->required();
   add_result_options(*command, *options);
-  command->add_option("-j,--jobs", options->jobs, "cases at a time")
-      ->check(whole_number(1, 1024))
-      ->capture_default_str();
-  command->add_option("--until", options->until, "start no case after this time: 90s, 30m, 8h")
-      ->check(refuse_empty)
-      ->type_name("TIME");
+  add_number_option(*command, "-j,--jobs", options->jobs, 1, 1024, "cases at a time");
+  add_text_option(*command, "--until", options->until, "start no case after this time: 90s, 30m, 8h", "TIME");
   command->add_flag("--resume", options->resumes,
                     "continue from the results of this plan and program in the folder, if there are any");
-  command->add_option("-o,--folder", options->folder, "folder of the results (default out/regress-PLAN)")
-      ->check(refuse_empty)
-      ->type_name("DIR");
+  add_text_option(*command, "-o,--folder", options->folder, "folder of the results (default out/regress-PLAN)", "DIR");
   command->add_flag("--slurm", options->writes_tasks,
                     "runs nothing: writes tasks, a command for each case, and job.sh for sbatch into the folder");
   command->add_option("--case", options->only_case, "case N of the plan alone, into the folder: a task of --slurm")

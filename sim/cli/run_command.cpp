@@ -15,9 +15,9 @@
 #include "model/as_number.hpp"
 #include "sim/cli/child.hpp"
 #include "sim/cli/commands.hpp"
+#include "sim/cli/option_kinds.hpp"
 #include "sim/cli/progress.hpp"
 #include "sim/cli/render_frames.hpp"
-#include "sim/cli/whole_number.hpp"
 #include "sim/show/image/whole_file.hpp"
 #include "sim/show/report/page.hpp"
 
@@ -302,9 +302,8 @@ void add_run_command(CLI::App& app, Action& selected) {
   const auto [command, options] = add_command<RunCommand>(
       app, selected, "run", "runs a program with this model as its OpenGL driver (Linux, libglvnd)", run);
   add_output_options(*command, *options);
-  command->add_option("--engine", options->engine, "functional, or cycle: the cycles of each frame as well")
-      ->check(CLI::IsMember({"functional", "cycle"}))
-      ->capture_default_str();
+  add_choice_option(*command, "--engine", options->engine, {"functional", "cycle"},
+                    "functional, or cycle: the cycles of each frame as well");
   add_memory_options(*command, options->memory);
   command
       ->add_option("--frames", options->frames, "A..B: figures of these frames, counted from 0; then the program ends")
@@ -315,20 +314,13 @@ void add_run_command(CLI::App& app, Action& selected) {
                    "last one if no figures are asked for")
       ->check(whole_number(0, 1'000'000'000))
       ->type_name("N");
-  command->add_option("--save-all", options->save_folder, "every frame as a capture in this folder")
-      ->check(refuse_empty)
-      ->type_name("DIR");
+  add_text_option(*command, "--save-all", options->save_folder, "every frame as a capture in this folder", "DIR");
   add_file_option(*command, "-o", options->save_path, "the capture of --save, .hpt (default frame-N.hpt)");
   command->add_flag("--hud", options->hud, "frames a second and cycles in a corner of the window");
-  command
-      ->add_option("--on-missing", options->on_missing,
-                   "a draw that this hardware cannot do: is drawn on the host (host), the same with a warning (warn), "
-                   "or ends the program (stop)")
-      ->check(CLI::IsMember({"host", "warn", "stop"}))
-      ->capture_default_str();
-  command->add_option("--threads", options->threads, "threads that draw")
-      ->check(whole_number(1, 1024))
-      ->capture_default_str();
+  add_choice_option(*command, "--on-missing", options->on_missing, {"host", "warn", "stop"},
+                    "a draw that this hardware cannot do: is drawn on the host (host), the same with a warning (warn), "
+                    "or ends the program (stop)");
+  add_number_option(*command, "--threads", options->threads, 1, 1024, "threads that draw");
   add_file_option(*command, "--csv", options->csv_path, "a row of figures for each frame, .csv");
   add_file_option(*command, "--chart", options->chart_path, "the figures over time, .html");
   command->add_option("PROGRAM", options->program, "the program and its arguments, after --")->required();

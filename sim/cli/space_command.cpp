@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <iostream>
 
+#include "sim/cli/option_kinds.hpp"
 #include "sim/cli/progress.hpp"
 #include "sim/cli/space_study.hpp"
 #include "sim/show/image/color_map.hpp"
@@ -100,23 +101,16 @@ void add_space_options(CLI::App& command, SpaceOptions& options) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("LIST");
-  command.add_option("--cache", options.cache, "folder that keeps gates, module by module (default: the user's cache)")
-      ->check(refuse_empty);
-  command.add_option("--rtl", options.rtl, "folder of raster_top.sv (default: that of this program)")
-      ->check(refuse_empty);
+  add_text_option(command, "--cache", options.cache,
+                  "folder that keeps gates, module by module (default: the user's cache)");
+  add_text_option(command, "--rtl", options.rtl, "folder of raster_top.sv (default: that of this program)");
   add_file_option(command, "--csv", options.csv, "the points as CSV; - for stdout");
-  command
-      .add_option("--slurm", options.slurm,
-                  "measures nothing: writes DIR/tasks, a command for each point, and DIR/job.sh for sbatch")
-      ->check(refuse_empty)
-      ->type_name("DIR");
-  command
-      .add_option(
-          "--collect", options.collect,
-          "measures nothing: gathers the points that the tasks of DIR have written; repeatable, for one page of all")
-      ->check(refuse_empty)
-      ->allow_extra_args(false)
-      ->type_name("DIR");
+  add_text_option(command, "--slurm", options.slurm,
+                  "measures nothing: writes DIR/tasks, a command for each point, and DIR/job.sh for sbatch", "DIR");
+  add_text_option(
+      command, "--collect", options.collect,
+      "measures nothing: gathers the points that the tasks of DIR have written; repeatable, for one page of all", "DIR")
+      ->allow_extra_args(false);
   add_memory_options(command, options.memory);
   add_traffic_options(command, options.memory);
 }

@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "sim/cli/commands.hpp"
+#include "sim/cli/option_kinds.hpp"
 #include "sim/cli/progress.hpp"
-#include "sim/cli/whole_number.hpp"
 #include "sim/config_file.hpp"
 #include "sim/cosim/junit.hpp"
 #include "sim/show/image/whole_file.hpp"
@@ -261,23 +261,19 @@ void add_stress_command(CLI::App& app, Action& selected) {
   auto options = std::make_shared<StressCommand>();
   add_output_options(*command, *options);
   add_seed_option(*command, *options, "seed of everything random");
-  command->add_option("--case", options->names, "only these, with commas (--list names them)")
-      ->delimiter(',')
-      ->check(refuse_empty)
-      ->type_name("NAME");
+  add_text_option(*command, "--case", options->names, "only these, with commas (--list names them)", "NAME")
+      ->delimiter(',');
   command->add_flag("--list", options->list, "lists the cases: name, item of the stress list, property");
   command->add_flag("--quick", options->quick, "the quick set, under a minute (default)");
-  command->add_option("--seconds", options->seconds, "runs for this long instead, always with new inputs")
-      ->check(CLI::Range(0.001, 1e7))
-      ->check(is_number)
+  add_real_option(*command, "--seconds", options->seconds, 0.001, 1e7,
+                  "runs for this long instead, always with new inputs")
       ->type_name("N");
   command->add_option("--unit", options->unit, "only the unit with this number: repeats a failure")
       ->check(whole_number(std::int64_t{0}, std::int64_t{1} << 62))
       ->type_name("N");
   command->add_option("--threads", options->threads, "threads")->check(whole_number(1, 1024))->type_name("N");
-  command->add_option("--captures", options->captures, "folder for the worst input of each property, .hpt")
-      ->check(refuse_empty)
-      ->type_name("DIR");
+  add_text_option(*command, "--captures", options->captures, "folder for the worst input of each property, .hpt",
+                  "DIR");
   add_file_option(*command, "--junit", options->junit_path, "result as JUnit XML");
   command->footer(
       "\nWithout --config and --set: over presets, each setting through its range, and combinations.\n"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <span>
 
+#include "sim/cli/option_kinds.hpp"
 #include "sim/study/compare/double_draws.hpp"
 
 namespace halfplane {
@@ -45,9 +46,8 @@ bool is_of_scalar_engine(const Rule& rule) {
 bool is_unusual(const Rule& rule, const StudyOptions& options) { return options.*rule.value != rule.names.front(); }
 
 void add_rule_option(CLI::App& app, StudyOptions& options, const Rule& rule) {
-  app.add_option(rule.option, options.*rule.value, rule.meaning)
-      ->check(CLI::IsMember(std::vector<std::string>(rule.names.begin(), rule.names.end())))
-      ->capture_default_str();
+  add_choice_option(app, rule.option, options.*rule.value,
+                    std::vector<std::string>(rule.names.begin(), rule.names.end()), rule.meaning);
 }
 
 /// The enumerator of a name; CLI11 has refused all others.

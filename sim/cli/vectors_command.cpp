@@ -4,6 +4,7 @@
 
 #include "sim/cli/commands.hpp"
 #include "sim/cli/coverage_option.hpp"
+#include "sim/cli/option_kinds.hpp"
 #include "sim/cli/progress.hpp"
 #include "sim/cli/random_options.hpp"
 #include "sim/cover/collector.hpp"
@@ -104,13 +105,11 @@ void add_vectors_command(CLI::App& app, Action& selected) {
   command->get_option("SCENE")->required(false);
   add_random_options(*command, *options,
                      "N random triangles, lines and points of all sizes and states instead of a scene", 10'000'000);
-  command->add_option("--stage", options->stage, "the stage: cull, triangle_setup, coarse_raster ...")
-      ->required()
-      ->check(refuse_empty)
-      ->type_name("NAME");
-  command->add_option("--format", options->format, "how they are written")
-      ->check(CLI::IsMember(std::vector<std::string>(vectors::kFormats.begin(), vectors::kFormats.end())))
-      ->capture_default_str();
+  add_text_option(*command, "--stage", options->stage, "the stage: cull, triangle_setup, coarse_raster ...", "NAME")
+      ->required();
+  add_choice_option(*command, "--format", options->format,
+                    std::vector<std::string>(vectors::kFormats.begin(), vectors::kFormats.end()),
+                    "how they are written");
   add_file_option(*command, "-o", options->output, "the file, or for hex the folder; - for stdout");
   command->get_option("-o")->required();
   add_coverage_option(*command, options->coverage);

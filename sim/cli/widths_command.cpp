@@ -9,8 +9,8 @@
 
 #include "model/widths.hpp"
 #include "sim/cli/commands.hpp"
+#include "sim/cli/option_kinds.hpp"
 #include "sim/cli/progress.hpp"
-#include "sim/cli/whole_number.hpp"
 #include "sim/show/image/whole_file.hpp"
 #include "sim/study/compare/surface_oracle.hpp"
 #include "sim/study/widths/study.hpp"
@@ -261,15 +261,10 @@ void add_widths_command(CLI::App& app, Action& selected) {
   auto options = std::make_shared<WidthsCommand>();
   add_output_options(*command, *options);
   add_seed_option(*command, *options, "seed of the random primitives, and of scenes with random parts");
-  CLI::Option* samples =
-      command->add_option("--samples", options->samples, "random primitives, in addition to the search for extremes")
-          ->check(whole_number(1, 100000000))
-          ->capture_default_str();
-  CLI::Option* captures =
-      command
-          ->add_option("--captures", options->captures, "writes each input that overflows one bit less, as a capture")
-          ->check(refuse_empty)
-          ->type_name("FOLDER");
+  CLI::Option* samples = add_number_option(*command, "--samples", options->samples, 1, 100000000,
+                                           "random primitives, in addition to the search for extremes");
+  CLI::Option* captures = add_text_option(*command, "--captures", options->captures,
+                                          "writes each input that overflows one bit less, as a capture", "FOLDER");
   CLI::Option* smallest = command->add_flag("--smallest", options->smallest,
                                             "the smallest configuration that keeps the bounds below on the scenes");
   smallest->excludes(samples)->excludes(captures);
@@ -277,11 +272,9 @@ void add_widths_command(CLI::App& app, Action& selected) {
       ->delimiter(',')
       ->needs(smallest)
       ->type_name("SCENE,...");
-  command
-      ->add_option("--size", options->size,
-                   "with --smallest: target, WxH pixels (default 320x240, or what a capture says)")
-      ->needs(smallest)
-      ->check(refuse_empty);
+  add_text_option(*command, "--size", options->size,
+                  "with --smallest: target, WxH pixels (default 320x240, or what a capture says)")
+      ->needs(smallest);
   command
       ->add_option("--depth-error", options->depth_error,
                    "with --smallest: largest error against the exact plane: '0.75lsb' of the starting depth.bits, or "
