@@ -8,15 +8,11 @@
 
 #include "../packets/state_packets.hpp"
 #include "../stages/color_packets.hpp"
-#include "../stages/fog_unit.hpp"
 #include "../stages/fragment_ops.hpp"
-#include "../stages/light_unit.hpp"
 #include "../stages/stencil_packets.hpp"
 #include "../stages/surface.hpp"
-#include "../stages/texture_packets.hpp"
 #include "line_setup.hpp"
 #include "primitives.hpp"
-#include "texture_memory.hpp"
 
 namespace halfplane {
 namespace {
@@ -46,10 +42,14 @@ const Clear* whole_clear(const Scene& scene, const Command& command) {
   return clear != nullptr && clear_rect(scene, *clear) == Rect{0, 0, scene.width, scene.height} ? clear : nullptr;
 }
 
+const Config& checked(const Scene& scene, const Config& config) {
+  validate(config);
+  check_hardware_scene(scene, config);
+  return config;
+}
+
 }  // namespace
 
-/// Whether all clears of the whole target come before everything else, except clears of colours only: then its bins
-/// begin once.
 bool begins_once(const Scene& scene) {
   bool is_first = true;
   for (const Command& command : scene.commands) {
@@ -89,18 +89,6 @@ class HostStream::Host {
   void send_outline(const AssembledPrimitive& assembled);
   void send_clear(const Clear& command);
   void send_triangle(const Triangle& triangle, bool is_culled);
-  void set_plane(std::size_t plane, const auto& codes, PrimitivePacket& packet) const;
-  void set_coordinates(const Triangle& triangle, HostPrimitive& out);
-  void set_distance(const Triangle& triangle, HostPrimitive& out) const;
-  void set_colors_over_w(const Triangle& triangle, PrimitivePacket& packet) const;
-  void set_normals(const Triangle& triangle, PrimitivePacket& packet) const;
-  void set_colors(const HostPrimitive& primitive);
-  void set_stencil(const HostPrimitive& primitive);
-  void set_levels(const Triangle& triangle, const TextureCoordinates& coordinates, const PerspectiveFormat& format,
-                  HostPrimitive& out) const;
-  void set_texture(const HostPrimitive& triangle);
-  void set_fog(const HostPrimitive& triangle);
-  void set_light(const HostPrimitive& triangle);
   [[nodiscard]] HostPrimitive state_token(StateRegister which, uint128 word, const HostPrimitive& in_front_of) const;
   [[nodiscard]] std::optional<HostPrimitive> next_primitive();
   void send_line(const LinePrimitive& line);
@@ -110,7 +98,6 @@ class HostStream::Host {
   [[nodiscard]] bool begins_bins(const Command& command) const;
   void close_bins();
   void send_clears();
-  [[nodiscard]] Signature texels_of(std::size_t texture);
   void note_words(const PrimitiveState& state);
   [[nodiscard]] HostPrimitive host_primitive(const PrimitivePacket& packet, std::uint32_t primitive) const;
   [[nodiscard]] HostPrimitive drawn_primitive(const PrimitivePacket& packet, std::uint32_t primitive) const;
@@ -132,32 +119,20 @@ class HostStream::Host {
   std::optional<FrameBins> bins_;              ///< with frame.order bins: primitives that wait for the end of the frame
   BinContents* held_ = nullptr;                ///< if bins are compared; then the initial clears wait
   std::vector<HostPrimitive> clears_;
-  std::vector<std::optional<Signature>> texels_;  ///< of each texture, likewise
-  std::vector<HostPrimitive> pending_;            ///< made but not yet pulled
+  std::vector<HostPrimitive> pending_;  ///< made but not yet pulled
   std::size_t pending_first_ = 0;
-  std::optional<TextureMemory> textures_;          ///< with a texture unit
-  std::optional<std::uint64_t> texture_state_;     ///< the unit's state since the scene began
-  std::optional<std::uint32_t> texture_levels_;    ///< likewise, with levels
-  std::optional<std::uint64_t> texture_constant_;  ///< likewise
-  std::optional<std::uint64_t> texture_border_;    ///< likewise
-  std::optional<FogState> fog_state_;              ///< likewise, and the lines of its table
-  std::array<std::optional<FogLine>, std::size_t{1} << kFogLines> fog_line_{};
-  std::array<std::optional<std::uint64_t>, kLightWords> light_word_{};  ///< likewise for light
-  std::array<std::optional<FallingLine>, std::size_t{1} << kPowerLines> light_line_{};
-  std::optional<TextureLines> texture_lines_;
-  ColorWords colors_;                                                 ///< other registers set since the scene began
-  StencilWords stencil_;                                              ///< likewise
+  HostUnits units_;
   std::optional<double> depth_everywhere_ = 1.0;                      ///< value of every pixel, if the host knows it
   std::optional<std::uint8_t> stencil_everywhere_ = std::uint8_t{0};  ///< likewise
   std::deque<HostPrimitive> in_front_;  ///< tokens to be sent first, and the triangle that waits for them
 };
 
 HostStream::Host::Host(const Scene& scene, const Config& config, BinContents* held)
-    : scene_(scene), config_(config), vertices_(scene.vertices.size()) {
-  validate(config);
-  check_hardware_scene(scene, config);
-  widths_ = derive_widths(config);
-  if (has_texture_planes(config)) textures_.emplace(scene, config);
+    : scene_(scene),
+      config_(checked(scene, config)),
+      widths_(derive_widths(config)),
+      vertices_(scene.vertices.size()),
+      units_(scene, config_, widths_) {
   if (config.frame_order == FrameOrder::bins) {
     const bool compares =
         held != nullptr && compares_bins(config) && FrameBins::has_whole_tiles(widths_) && begins_once(scene);
@@ -181,120 +156,15 @@ std::optional<HostPrimitive> HostStream::Host::next() {
   if (in_front_.empty()) {
     std::optional<HostPrimitive> primitive = next_primitive();
     if (!primitive) return primitive;
-    set_colors(*primitive);
-    set_stencil(*primitive);
-    if (textures_ && primitive->packet.kind == PrimitiveKind::triangle) {
-      set_light(*primitive);
-      set_texture(*primitive);
-      set_fog(*primitive);
-    }
+    units_.set_for(primitive->packet.kind, primitive->units, [&](StateRegister which, uint128 word) {
+      in_front_.push_back(state_token(which, word, *primitive));
+    });
     if (in_front_.empty()) return primitive;
     in_front_.push_back(std::move(*primitive));
   }
   HostPrimitive first = std::move(in_front_.front());
   in_front_.pop_front();
   return first;
-}
-
-/// Sets the colour registers that differ from the wanted values. At the start of a scene their content is unknown.
-void HostStream::Host::set_colors(const HostPrimitive& primitive) {
-  const auto set = [&](StateRegister which, std::optional<std::uint32_t> ColorWords::*word) {
-    const auto& wanted = primitive.units.colors.*word;
-    if (!wanted || wanted == colors_.*word) return;
-    colors_.*word = wanted;
-    in_front_.push_back(state_token(which, *wanted, primitive));
-  };
-  set(StateRegister::color_ops, &ColorWords::ops);
-  set(StateRegister::blend_constant, &ColorWords::constant);
-  set(StateRegister::alpha_test, &ColorWords::alpha);
-}
-
-/// Likewise for the stencil registers. Values common to both sides go in one token.
-void HostStream::Host::set_stencil(const HostPrimitive& primitive) {
-  const auto set = [&](StateRegister which, auto member) {
-    const auto& wanted = primitive.units.stencil.*member;
-    auto& held = stencil_.*member;
-    std::uint32_t sides = 0;
-    for (const std::size_t n : {0U, 1U})
-      if (wanted[n] && wanted[n] != held[n]) sides |= 1U << n;
-    if (sides == 3 && wanted[0] == wanted[1])
-      in_front_.push_back(state_token(which, with_sides(which, *wanted[0], sides), primitive));
-    else
-      for (const std::size_t n : {0U, 1U})
-        if ((sides >> n & 1) != 0)
-          in_front_.push_back(state_token(which, with_sides(which, *wanted[n], 1U << n), primitive));
-    for (const std::size_t n : {0U, 1U})
-      if (wanted[n]) held[n] = wanted[n];
-  };
-  set(StateRegister::stencil_test, &StencilWords::test);
-  set(StateRegister::stencil_update, &StencilWords::update);
-}
-
-/// Sets the texture unit for a triangle. The first state of a scene drops texels of an earlier scene.
-void HostStream::Host::set_texture(const HostPrimitive& triangle) {
-  if (triangle.units.texture_state != texture_state_) {
-    TextureState next = TextureState::unpack(triangle.units.texture_state);
-    next.invalidates = !texture_state_;
-    texture_state_ = triangle.units.texture_state;
-    in_front_.push_back(state_token(StateRegister::texture, next.pack(), triangle));
-  }
-  if (triangle.units.texture_constant && triangle.units.texture_constant != texture_constant_) {
-    texture_constant_ = triangle.units.texture_constant;
-    in_front_.push_back(state_token(StateRegister::texture_levels, *texture_constant_, triangle));
-  }
-  if (triangle.units.texture_border && triangle.units.texture_border != texture_border_) {
-    texture_border_ = triangle.units.texture_border;
-    in_front_.push_back(state_token(StateRegister::texture_levels, *texture_border_, triangle));
-  }
-  if (config_.texture_unit != TextureUnitKind::trilinear || !TextureState::unpack(triangle.units.texture_state).enable)
-    return;
-  if (triangle.units.texture_levels != texture_levels_) {
-    texture_levels_ = triangle.units.texture_levels;
-    in_front_.push_back(state_token(StateRegister::texture_levels, triangle.units.texture_levels, triangle));
-  }
-  if (!triangle.units.texture_lines || triangle.units.texture_lines == texture_lines_) return;
-  texture_lines_ = triangle.units.texture_lines;
-  const int part_bits = line_part_bits(state_word_bits(widths_));
-  for (int n = 0; n < line_parts(part_bits); ++n)
-    in_front_.push_back(
-        state_token(StateRegister::texture_lines, line_part(*triangle.units.texture_lines, part_bits, n), triangle));
-}
-
-/// Sets the fog of a triangle: only lines of its table that differ from the unit's.
-void HostStream::Host::set_fog(const HostPrimitive& triangle) {
-  if (!triangle.units.looks_at_fog) return;
-  const FogTable* table = triangle.units.fog.get();
-  const FogState next = table != nullptr ? FogState{true, table->octave_bits(), table->color()} : FogState{};
-  const auto send_word = [&](std::uint64_t word) {
-    in_front_.push_back(state_token(StateRegister::texture_levels, word, triangle));
-  };
-  if (fog_state_ != next) send_word(next.pack());
-  fog_state_ = next;
-  if (table == nullptr) return;
-  for (std::size_t n = 0; n < table->lines().size(); ++n) {
-    if (fog_line_[n] == table->lines()[n]) continue;
-    fog_line_[n] = table->lines()[n];
-    send_word(fog_line_word(n, *fog_line_[n]));
-  }
-}
-
-/// Sets the light of a triangle: only registers and lines of its table that differ from the unit's.
-void HostStream::Host::set_light(const HostPrimitive& triangle) {
-  if (!triangle.units.looks_at_light) return;
-  const PhongLight* light = triangle.units.light.get();
-  const auto send_word = [&](std::uint64_t word) {
-    in_front_.push_back(state_token(StateRegister::texture_levels, word, triangle));
-  };
-  const auto set = [&](auto& held, const auto& wanted, std::uint64_t word) {
-    if (held == wanted) return;
-    held = wanted;
-    send_word(word);
-  };
-  if (light == nullptr) return set(light_word_[0], no_light_word(), no_light_word());
-  const auto words = light_words(light->registers());
-  for (std::size_t n = 0; n < words.size(); ++n) set(light_word_[n], words[n], words[n]);
-  for (std::size_t n = 0; n < light->lines().size(); ++n)
-    set(light_line_[n], light->lines()[n], light_line_word(n, light->lines()[n]));
 }
 
 /// A token that sets a register of a unit from here on.
@@ -379,14 +249,6 @@ void HostStream::Host::send_clears() {
     }
   }
   clears_.clear();
-}
-
-/// Signature of all data that can be read from a texture.
-Signature HostStream::Host::texels_of(std::size_t texture) {
-  texels_.resize(scene_.textures.size());
-  std::optional<Signature>& known = texels_[texture];
-  if (!known) known = signature_of(scene_.textures[texture]);
-  return *known;
 }
 
 void HostStream::Host::start_draw(const Draw& draw) {
@@ -477,110 +339,8 @@ void HostStream::Host::send_triangle(const Triangle& triangle, bool is_culled) {
   packet.front_cw = state.front == FrontFace::cw;
   set_vertices(packet.vertex, triangle.v);
   HostPrimitive out = drawn_primitive(packet, triangle.primitive);
-  out.units.looks_at_fog = config_.fog_units != 0 && state.color_write;
-  if (out.units.looks_at_fog && state.fog) out.units.fog = context_->fog;
-  out.units.looks_at_light = config_.shade_units != 0 && state.color_write;
-  if (out.units.looks_at_light) out.units.light = context_->phong;
-  if (textures_ && state.texture) set_coordinates(triangle, out);
-  if (state.color_interp == ColorInterp::perspective) set_colors_over_w(triangle, out.packet);
-  if (out.units.fog) set_distance(triangle, out);
-  if (out.units.light) set_normals(triangle, out.packet);
+  units_.fill(*context_, triangle, held_ != nullptr, out);
   send(out);
-}
-
-/// Writes codes of a plane at the vertices, in the bits of the packet's field.
-void HostStream::Host::set_plane(std::size_t plane, const auto& codes, PrimitivePacket& packet) const {
-  for (std::size_t i = 0; i < 3; ++i)
-    packet.vertex.code[i][plane] = static_cast<std::uint32_t>(
-        wrap_unsigned(static_cast<std::uint64_t>(codes[i]), widths_.of_plane(plane).code.bits));
-}
-
-/// Sets Q and P of the vertices, their format, and the state of the texture unit.
-void HostStream::Host::set_coordinates(const Triangle& triangle, HostPrimitive& out) {
-  const State& state = context_->state;
-  require_positive_w(*context_, triangle);
-  const Texture& texture = scene_.textures[*state.texture];
-  const PerspectiveFormat format = perspective_format(config_);
-  const TextureCoordinates coordinates = texture_coordinates(triangle.surface, state, texture, format);
-  PrimitivePacket& packet = out.packet;
-  set_plane(widths_.q_plane, coordinates.q, packet);
-  for (const std::size_t axis : {0U, 1U}) {
-    const OverW& over_w = coordinates.over_w[axis];
-    set_plane(widths_.q_plane + 1 + axis, over_w.p, packet);
-    const OverWScale scale = over_w_scale(over_w, format.coordinate);
-    packet.coordinates.shift[axis] = scale.shift;
-    packet.coordinates.reach[axis] = scale.reach;
-    packet.coordinates.origin[axis] = coordinates.reference[axis];
-  }
-  out.units.texture_state = texture_state(texture, state, textures_->base(*state.texture)).pack();
-  if (state.texture_combine == TextureCombine::blend)
-    out.units.texture_constant = TextureConstant{state.texture_constant}.pack();
-  if (has_border(state.texture_wrap[0]) || has_border(state.texture_wrap[1]))
-    out.units.texture_border = TextureBorder{border_texel(state.texture_border, texture.format)}.pack();
-  if (held_ != nullptr) out.units.texels = texels_of(*state.texture);
-  if (config_.texture_unit == TextureUnitKind::trilinear) set_levels(triangle, coordinates, format, out);
-}
-
-/// Sets Q of the vertices, and its octave in the fog's table. A texture has set the same Q.
-void HostStream::Host::set_distance(const Triangle& triangle, HostPrimitive& out) const {
-  require_positive_w(*context_, triangle);
-  const PerspectiveFormat format = perspective_format(config_);
-  const std::array<double, 3> w{triangle.surface[0].w, triangle.surface[1].w, triangle.surface[2].w};
-  const QCodes q = quantize_q(w, format.q_bits);
-  set_plane(widths_.q_plane, q, out.packet);
-  out.packet.coordinates.fog_octave = fog_octave(*context_->fog, q_exponent(w, format.q_bits) + format.guard_bits);
-}
-
-/// Sets P of the normals, and Q, and the start of their planes. A texture and a fog have set the same Q.
-void HostStream::Host::set_normals(const Triangle& triangle, PrimitivePacket& packet) const {
-  require_positive_w(*context_, triangle);
-  const PerspectiveFormat format = perspective_format(config_);
-  const QCodes q = quantize_q({triangle.surface[0].w, triangle.surface[1].w, triangle.surface[2].w}, format.q_bits);
-  set_plane(widths_.q_plane, q, packet);
-  for (std::size_t c = 0; c < 3; ++c) {
-    const auto component = [&](std::size_t i) { return triangle.surface[i].normal[c]; };
-    const OverW over_w = quantize_normal({component(0), component(1), component(2)}, q, format);
-    set_plane(widths_.normal_plane() + c, over_w.p, packet);
-  }
-}
-
-/// Sets Q and P of the colours, and their format. With a texture over w Q is exactly that of its coordinates.
-void HostStream::Host::set_colors_over_w(const Triangle& triangle, PrimitivePacket& packet) const {
-  require_positive_w(*context_, triangle);
-  const PerspectiveFormat format = perspective_format(config_);
-  const QCodes q = quantize_q({triangle.surface[0].w, triangle.surface[1].w, triangle.surface[2].w}, format.q_bits);
-  set_plane(widths_.q_plane, q, packet);
-  packet.coordinates.divides_colors = true;
-  for (std::size_t c = 0; c < static_cast<std::size_t>(widths_.colors_over_w); ++c) {
-    std::array<double, 3> value{};
-    for (std::size_t i = 0; i < 3; ++i) value[i] = triangle.v[i].code[kColorPlane + c];
-    const OverW over_w = quantize_over_w(value, q, format.color);
-    set_plane(widths_.color_over_w_plane() + c, over_w.p, packet);
-    const OverWScale scale = over_w_scale(over_w, format.color);
-    packet.coordinates.color_shift[c] = scale.shift;
-    packet.coordinates.color_reach[c] = scale.reach;
-  }
-}
-
-/// Sets the texture unit's levels. A triangle that the hardware drops needs none.
-void HostStream::Host::set_levels(const Triangle& triangle, const TextureCoordinates& coordinates,
-                                  const PerspectiveFormat& format, HostPrimitive& out) const {
-  const State& state = context_->state;
-  const TextureLevels levels = texture_levels(scene_.textures[*state.texture], state);
-  out.units.texture_levels = levels.pack();
-  const std::int64_t area = signed_area(triangle.v[0], triangle.v[1], triangle.v[2]);
-  if (!needs_level(levels, state.texture_mag) || cull(area, out.packet.cull, state.front) != CullResult::keep) return;
-  const auto order = canonical_order(triangle.v, area);
-  std::array<SnappedVertex, 3> v;
-  QCodes q{};
-  std::array<std::array<double, 3>, 2> texels{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    v[i] = triangle.v[order[i]];
-    q[i] = coordinates.q[order[i]];
-    for (const std::size_t axis : {0U, 1U}) texels[axis][i] = coordinates.texels[axis][order[i]];
-  }
-  const LodSetup lod = setup_lod(v, std::abs(area), q, texels, format.guard_bits, widths_.grid_bits);
-  out.units.texture_lines = TextureLines::pack(lod, Sampler(scene_.textures[*state.texture], state).bias);
 }
 
 /// A fast clear of the whole target; of no buffer so far.

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -12,8 +13,12 @@
 
 namespace halfplane {
 
-class FogTable;    // stages/fog.hpp
-class PhongLight;  // stages/phong.hpp
+class FogTable;        // stages/fog.hpp
+class PhongLight;      // stages/phong.hpp
+struct DrawContext;    // primitives.hpp
+struct HostPrimitive;  // host_primitive.hpp
+struct Scene;
+struct Triangle;
 
 /// The unit registers that a primitive needs, as words of tokens.
 struct UnitWords {
@@ -59,6 +64,26 @@ class UnitSignatures {
  private:
   SharedSignature<FogTable> fog_;
   SharedSignature<PhongLight> light_;
+};
+
+/// The host's part of the units in the stream of stamps: what a triangle needs of them, and the registers that the host
+/// has set since the scene began; before that their content is unknown.
+class HostUnits {
+ public:
+  using Send = std::function<void(StateRegister which, uint128 word)>;
+
+  /// All arguments must outlive this.
+  HostUnits(const Scene& scene, const Config& config, const Widths& widths);
+  ~HostUnits();
+  /// Fills in a triangle's planes over w, and the words of the units. `is_compared`: bins are, so the content of its
+  /// texture counts. Throws InputError for a w that is not positive.
+  void fill(const DrawContext& context, const Triangle& triangle, bool is_compared, HostPrimitive& out);
+  /// Calls `send` for each register that has another value than a primitive needs, in the order of the tokens.
+  void set_for(PrimitiveKind kind, const UnitWords& units, const Send& send);
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace halfplane

@@ -37,19 +37,19 @@ struct StampFate {
 class FragmentPath {
  public:
   FragmentPath(const Config& config, const Widths& widths) : config_(config), widths_(widths) {
-    if (has_texture_planes(config)) texture_.emplace(texture_settings(config, widths), perspective_format(config));
+    if (has_texture_planes(config)) units_.emplace(config, widths);
   }
 
   [[nodiscard]] const ColorState& colors() const { return colors_; }
   [[nodiscard]] const StencilState& stencil() const { return stencil_; }
-  [[nodiscard]] const std::optional<TextureUnit>& texture() const { return texture_; }
+  [[nodiscard]] const std::optional<FragmentUnits>& units() const { return units_; }
 
   /// A token sets one of the registers; of a texture unit that is not there it sets nothing, as in raster_top.
   /// `codes`: of its vertex, or of the fragment that it has become.
   template <class Codes>
   void set(StateRegister which, const Codes& codes) {
     if (is_of_texture(which)) {
-      if (texture_) set_register(*texture_, which, codes, widths_);
+      if (units_) units_->set(which, codes, widths_);
       return;
     }
     stencil_.set(which, state_word(codes, widths_));
@@ -70,10 +70,10 @@ class FragmentPath {
     fate.passed = fate.kept = packet_.passed;
     fate.changed = packet_.write_depth;
     port.interpolate_colors(tests_alpha ? fragment.mask : packet_.write_color);
-    if (!texture_ && tests_alpha) drop(opaque_samples(fragment, colors_, widths_), fate);
+    if (!units_ && tests_alpha) drop(opaque_samples(fragment, colors_, widths_), fate);
     // The texture unit takes a pixel's colour from its first sample.
     SampleMask colored = packet_.write_color;
-    if (texture_) colored = widths_.stamps.samples_of(widths_.stamps.pixels_of(shaded_samples(packet_, colors_)));
+    if (units_) colored = widths_.stamps.samples_of(widths_.stamps.pixels_of(shaded_samples(packet_, colors_)));
     if constexpr (std::remove_cvref_t<Port>::kSendsPackets) {
       complete_depths(fragment, packet_, widths_);
       colored = SampleMask::all(widths_.samples);
@@ -84,7 +84,7 @@ class FragmentPath {
       const bool may_fail = is_late(fragment.state, tests_alpha, config_);
       visit_.add(fragment, fate.kept, may_fail ? SampleMask() : fate.kept, widths_);
     }
-    if (texture_) texture(fragment, counters, fate, port);
+    if (units_) texture(fragment, counters, fate, port);
     if (packs_at_write(config_) && packet_.write_color.any())
       written_colors(colors_.ops, {fragment.key.tile_x, fragment.key.tile_y, fragment.stamp}, packet_.write_color,
                      port.stored_colors(packet_.write_color), packet_.color, config_, widths_);
@@ -108,9 +108,9 @@ class FragmentPath {
   /// Light, texture unit and fog, and the alpha test after them.
   template <class Port>
   void texture(const FragmentPacket& fragment, CounterPacket& counters, StampFate& fate, Port& port) {
-    if (changes_colors(*texture_, fragment)) port.interpolate_over_w(shaded_samples(packet_, colors_));
+    if (units_->change_colors(fragment)) port.interpolate_over_w(shaded_samples(packet_, colors_));
     const TexturedStamp shaded =
-        texture_stamp(*texture_, fragment, packet_, colors_, config_, widths_,
+        texture_stamp(*units_, fragment, packet_, colors_, config_, widths_,
                       [&port](std::uint32_t address, int beats) { return port.read(address, beats); });
     halfplane::count(use_of(shaded.lookups), counters);
     fate.shaded = shaded.live;
@@ -133,7 +133,7 @@ class FragmentPath {
   Widths widths_;
   StencilState stencil_;
   ColorState colors_;
-  std::optional<TextureUnit> texture_;
+  std::optional<FragmentUnits> units_;
   TileVisit visit_;     ///< state of the current tile visit after its stamps so far
   WritePacket packet_;  ///< of the current stamp
 };

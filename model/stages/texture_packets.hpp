@@ -46,21 +46,17 @@ template <class Codes>
   return which == StateRegister::texture_levels ? levels_word(state_word(token, widths)) : LevelsWord::levels;
 }
 
-/// Sets one of the unit's registers from a token. `token`: its codes at a vertex, or the fragment that it has
+/// Sets one of the texture unit's registers from a token. `token`: its codes at a vertex, or the fragment that it has
 /// become.
 template <class Codes>
 void set_register(TextureUnit& unit, StateRegister which, const Codes& token, const Widths& widths) {
   const LevelsWord beside = word_beside_texture(which, token, widths);
   if (which == StateRegister::texture_lines)
     unit.move_in(wide_state_word(token, widths));
-  else if (beside == LevelsWord::light)
-    unit.light().set(state_word(token, widths));
   else if (beside == LevelsWord::constant)
     unit.set_constant(TextureConstant::unpack(state_word(token, widths)));
   else if (beside == LevelsWord::border)
     unit.set_border(TextureBorder::unpack(state_word(token, widths)));
-  else if (beside != LevelsWord::levels)
-    unit.fog().set(state_word(token, widths));
   else if (which == StateRegister::texture_levels)
     unit.set_levels(TextureLevels::unpack(static_cast<std::uint32_t>(state_word(token, widths))));
   else
@@ -72,13 +68,6 @@ inline void count(const TextureUse& use, CounterPacket& counters) {
   counters.texture_samples += use.samples;
   counters.texture_hits += use.hits;
   counters.texture_fills += use.fills;
-}
-
-/// Blends the colours of a stamp's live pixels with fog, if enabled.
-inline void add_fog(const TextureUnit& unit, bool is_triangle, SampleMask live, std::span<const TextureSample> pixels,
-                    const CoordinateFrame& frame, std::span<Texel> colors) {
-  if (unit.fog().is_fogged(is_triangle))
-    live.for_each([&](std::size_t i) { unit.fog().add(pixels[i].q, frame.fog_octave, colors[i]); });
 }
 
 /// `least` and `greatest`: vertex_color() of the range of the vertices' codes.

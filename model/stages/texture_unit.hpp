@@ -38,8 +38,6 @@
 #include "../formats/texture.hpp"
 #include "../samples.hpp"
 #include "../scene.hpp"
-#include "fog_unit.hpp"
-#include "light_unit.hpp"
 #include "perspective.hpp"
 #include "texture_filter.hpp"
 #include "texture_levels.hpp"
@@ -283,12 +281,6 @@ class TextureUnit {
     lines_.move_in(line_part);
     lod_ = lines_.lines().unpack();
   }
-  /// The fog unit, downstream of it.
-  [[nodiscard]] FogUnit& fog() { return fog_; }
-  [[nodiscard]] const FogUnit& fog() const { return fog_; }
-  /// The light unit, upstream of it.
-  [[nodiscard]] LightUnit& light() { return light_; }
-  [[nodiscard]] const LightUnit& light() const { return light_; }
   [[nodiscard]] bool is_textured(bool is_triangle, SampleMask live) const {
     return state_.enable && is_triangle && live.any();
   }
@@ -566,8 +558,6 @@ class TextureUnit {
 
   TextureSettings settings_;
   PerspectiveFormat format_;
-  FogUnit fog_;
-  LightUnit light_;
   TextureState state_;
   std::array<std::uint8_t, 3> constant_{};
   Texel border_{};

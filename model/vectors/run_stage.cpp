@@ -286,7 +286,8 @@ void run_memory_port(StageIo& io, const Config& config, const Widths& widths) {
     const TilePlane plane = request->plane;
     const int sample = widths.memory.sample[is_of_color(plane) ? 1 : 0];
     if (!request->is_write && codes_of_stamp(plane, widths) << sample > 1 << item_shift(plane, widths.memory))
-      throw InputError("a read of flags, whose word is shorter than a stamp of this configuration: write flags, or read a plane");
+      throw InputError(
+          "a read of flags, whose word is shorter than a stamp of this configuration: write flags, or read a plane");
     port.take(*request, [&](const MemoryBeat& beat) {
       run.send(0, beat);
       const int answers = beat.is_write ? (beat.length == 1 ? 1 : 0) : beat.length;
@@ -320,7 +321,7 @@ void run_memory(StageIo& io, const Config& config, const Widths& widths) {
 
 void run_texture_unit(StageIo& io, const Config& config, const Widths& widths) {
   const Run run{io, config, widths};
-  TextureUnit unit(texture_settings(config, widths), perspective_format(config));
+  FragmentUnits units(config, widths);
   ColorState colors;
   const auto read = [&](std::uint32_t address, int beats) {
     run.send(0, TextureRequest{address, static_cast<std::uint16_t>(beats)});
@@ -334,10 +335,10 @@ void run_texture_unit(StageIo& io, const Config& config, const Widths& widths) {
   while (const auto fragment = run.take<FragmentPacket>(0)) {
     set_colors(*fragment, colors, widths);
     if (fragment->kind == PrimitiveKind::state && is_of_texture(state_register(fragment->state)))
-      set_register(unit, state_register(fragment->state), *fragment, widths);
+      units.set(state_register(fragment->state), *fragment, widths);
     if (!is_tested(*fragment)) continue;
     const auto write = run.need<WritePacket>(1, "write packet for a stamp");
-    const TexturedStamp shaded = texture_stamp(unit, *fragment, write, colors, config, widths, read);
+    const TexturedStamp shaded = texture_stamp(units, *fragment, write, colors, config, widths, read);
     if (shaded.packet.mask.any()) run.send(1, shaded.packet);
   }
 }

@@ -257,8 +257,8 @@ class CycleModelOf final : public CycleModel {
     item.is_shaded = (colors.tests_alpha() ? fate.passed | fate.changed : item.colors).any();
     item.texture.lookups = fate.lookups;
     if (fate.shaded.any()) {
-      if (fragment_.coordinates.divides_colors) item.texture.divided = path_.texture()->groups(fate.shaded);
-      if (path_.texture()->light().is_lit(fragment_.kind == PrimitiveKind::triangle))
+      if (fragment_.coordinates.divides_colors) item.texture.divided = path_.units()->texture.groups(fate.shaded);
+      if (path_.units()->light.is_lit(fragment_.kind == PrimitiveKind::triangle))
         item.texture.lit = fate.shaded.count();
     }
     return blocks_->access(at, state, place.mask == SampleMask::all(widths_.samples));
@@ -424,13 +424,13 @@ class CycleModelOf final : public CycleModel {
     const PerPlane<std::uint32_t>& codes = token.vertex.code[2];  // the place of a state's word
     path_.set(which, codes);
     if (!is_of_texture(which)) return set_tags();
-    if (!path_.texture()) return;
+    if (!path_.units()) return;
     const LevelsWord beside = word_beside_texture(which, codes, widths_);
     texture.sets_light = beside == LevelsWord::light;
     texture.sets_border = beside == LevelsWord::border;
     if (beside != LevelsWord::levels) return;
     texture.sets = which;
-    texture.invalidates = which == StateRegister::texture && path_.texture()->state().invalidates;
+    texture.invalidates = which == StateRegister::texture && path_.units()->texture.state().invalidates;
   }
 
   void set(const ColorState& colors, const StencilState& stencil) {
