@@ -96,7 +96,6 @@ struct AttributeList {
   return config.shade_units != 0 && config.texture_unit != TextureUnitKind::off && config.perspective_colors == 0;
 }
 
-/// The list.
 [[nodiscard]] constexpr AttributeList attributes_of(const Config& config) {
   AttributeList list;
   list.add({.name = "depth",
@@ -142,7 +141,6 @@ struct AttributeList {
   return list;
 }
 
-/// Whether the list has the planes of a texture unit.
 [[nodiscard]] constexpr bool has_texture_planes(const Config& config) {
   return config.texture_unit != TextureUnitKind::off;
 }

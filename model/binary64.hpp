@@ -11,7 +11,6 @@ namespace halfplane {
 
 inline constexpr int kBinary64Bias = 1023, kBinary64Fraction = 52;
 
-/// 2^exponent.
 [[nodiscard]] inline double power_of_two(int exponent) {
   if (exponent <= -kBinary64Bias || exponent > kBinary64Bias) return std::ldexp(1.0, exponent);
   return std::bit_cast<double>(static_cast<std::uint64_t>(exponent + kBinary64Bias) << kBinary64Fraction);

@@ -52,10 +52,4 @@ inline constexpr auto kNamesOf = []<std::size_t... n>(std::index_sequence<n...>)
 }
 (std::make_index_sequence<enumerators<Enum>()>{});
 
-/// The name of one value of such an enumeration.
-template <class Enum>
-[[nodiscard]] constexpr std::string_view enum_name(Enum value) {
-  return kNamesOf<Enum>[static_cast<std::size_t>(value)];
-}
-
 }  // namespace halfplane

@@ -189,7 +189,6 @@ inline constexpr auto kStreams = arrows_that<is_stream>();  ///< likewise of str
   return 0;
 }
 
-/// The bit of an elastic arrow in a set of stalls.
 [[nodiscard]] constexpr unsigned stall_bit(Arrow arrow) { return is_elastic(arrow) ? 1U << info(arrow).flow.stall : 0; }
 
 /// Bits of raster_top's stall_i, and the number of stall streams including the memory's.

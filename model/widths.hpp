@@ -163,7 +163,6 @@ struct Widths {
 
   /// r of the widest reciprocal.
   [[nodiscard]] int reciprocal_bits() const { return reciprocal.bits - 1; }
-  /// Widths of one plane.
   [[nodiscard]] const AttributeWidths& of_plane(std::size_t p) const { return attribute[attribute_of[p]]; }
   [[nodiscard]] const AttributeWidths& depth() const { return of_plane(kDepthPlane); }
   [[nodiscard]] const AttributeWidths& color() const { return of_plane(kColorPlane); }

@@ -176,7 +176,6 @@ void HardwareModel::Pipeline::set_state(const FragmentPacket& token) {
   if (!is_of_texture(which)) std::get<BlockCache>(cache_).set(path_.colors(), path_.stencil());
 }
 
-/// Reads a line of texels.
 TextureLine HardwareModel::Pipeline::read_texels(std::uint32_t address, int beats) {
   sink_.take(on<Arrow::texture>, TextureRequest{address, static_cast<std::uint16_t>(beats)});
   TextureLine line{};

@@ -156,7 +156,6 @@ void check_memory(const PixelMemory& memory, const Config& config, int width) {
   if (memory.depth != nullptr) check("depth", memory.depth_pitch, sizeof *memory.depth, pixels * sizeof *memory.depth);
 }
 
-/// Row `y` of an image in memory.
 std::byte* row_of(void* image, std::size_t pitch, int y) {
   return static_cast<std::byte*>(image) + pitch * static_cast<std::size_t>(y);
 }

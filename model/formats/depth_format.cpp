@@ -1,7 +1,6 @@
 #include "depth_format.hpp"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>

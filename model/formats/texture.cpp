@@ -211,7 +211,6 @@ void check_sides(const std::string& name, const TexelImage& image) {
                      " texels; give 1x1 to 4096x4096");
 }
 
-/// Level `n` decoded.
 TexelImage decoded(const Texture& texture, int n) {
   const TextureLevel& level = texture.level[static_cast<std::size_t>(n)];
   TexelImage image{level.width, level.height, {}};

@@ -62,7 +62,6 @@ using RealColor = std::array<double, 4>;
   return result & most;
 }
 
-/// The largest code of channel c.
 [[nodiscard]] inline int largest_code(bool has_alpha, std::size_t c) { return has_alpha ? 255 : c == 1 ? 63 : 31; }
 
 /// The nearest code, 0...most, of a value 0...255.

@@ -95,7 +95,6 @@ class Renderer {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(image_.width) + static_cast<std::size_t>(x);
   }
 
-  /// The pixel's first sample.
   std::size_t first_sample(std::size_t pixel) const { return pixel * samples_; }
 
   /// Splits the samples into images, and computes the pixels from them.

@@ -73,7 +73,6 @@ template <class Real>
   return has_left && has_right;
 }
 
-/// Whether the line covers pixel (x, y).
 template <class Real>
 [[nodiscard]] bool covers(const Line<Real>& line, int x, int y) {
   if (line.rule == LineRule::diamond) return leaves_diamond(line.start.x, line.start.y, line.end.x, line.end.y, x, y);

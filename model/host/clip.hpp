@@ -40,7 +40,6 @@ struct ClipPolygon {
 /// The clip planes: near, far, and the guard band as seen through `viewport`, its sides `limit` pixels from 0.
 [[nodiscard]] ClipPlanes guard_band_planes(ClipZ clip_z, const Viewport& viewport, double limit);
 
-/// The planes of the view volume.
 [[nodiscard]] ClipPlanes view_volume_planes(ClipZ clip_z);
 
 /// The same with its sides `margin` pixels farther out, as seen through `viewport`. A vertex outside the volume itself

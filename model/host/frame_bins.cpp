@@ -219,7 +219,6 @@ std::optional<HostPrimitive> FrameBins::next() {
   return std::nullopt;
 }
 
-/// The part of a primitive that lies in a bin.
 HostPrimitive FrameBins::part(const Item& item, const PixelBounds& bin) const {
   HostPrimitive out{item.packet, {}, item.primitive, item.command, true, item.units};
   if (item.line == kNoLine) {

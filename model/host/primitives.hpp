@@ -22,7 +22,6 @@
 
 namespace halfplane {
 
-/// Constants of a draw.
 struct DrawContext {
   const Scene& scene;
   const Config& config;

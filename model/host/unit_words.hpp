@@ -2,7 +2,6 @@
 // frames in bins keep and compare, and the hardware receives as tokens.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>

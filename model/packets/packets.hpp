@@ -487,7 +487,6 @@ struct FragmentPacket {
   PACKET_END
 };
 
-/// The depth code of sample `s` of a stamp.
 [[nodiscard]] inline std::uint32_t fragment_depth(const FragmentPacket& fragment, std::size_t s, const Widths& widths) {
   if (widths.has_samples == 0) return fragment.code[s][kDepthPlane];
   const auto n = static_cast<std::size_t>(widths.pixel_samples);

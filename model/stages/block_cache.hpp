@@ -27,7 +27,6 @@ class BlockCache {
   /// The stored colours under the fragment, where its operations read them: else 0.
   [[nodiscard]] std::span<const std::uint32_t> colors() const { return stored_color_; }
 
-  /// The tag lookup of the last access.
   [[nodiscard]] const TagResult& last_lookup() const { return last_; }
 
   /// A token has set the colour operations, or the stencil.

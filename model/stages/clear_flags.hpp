@@ -77,7 +77,6 @@ class BlockBits {
       std::fill_n(is_set_.begin() + static_cast<std::ptrdiff_t>(index(0, y)), (last_x + 1) * per_tile_, value ? 1 : 0);
   }
 
-  /// Sets the bits of the blocks `first` to `last`.
   void set_blocks(const BlockAddress& first, const BlockAddress& last, bool value) {
     for (int y = first.y; y <= last.y; ++y)
       std::fill_n(is_set_.begin() + static_cast<std::ptrdiff_t>(index(first.x, y)), last.x - first.x + 1,

@@ -2,8 +2,6 @@
 // (state_packets.hpp gives the place of the words).
 #pragma once
 
-#include <optional>
-
 #include "../packets/state_packets.hpp"
 #include "fragment_ops.hpp"
 

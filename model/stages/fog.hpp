@@ -48,7 +48,6 @@ struct FogLine {
 /// for linear.
 [[nodiscard]] double fog_factor(const Fog& fog, double w, bool held = true);
 
-/// The table of a fog.
 class FogTable {
  public:
   using Line = FogLine;

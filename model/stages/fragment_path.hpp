@@ -24,7 +24,6 @@
 
 namespace halfplane {
 
-/// The fate of a stamp's samples.
 struct StampFate {
   SampleMask passed;                       ///< by both tests
   SampleMask kept;                         ///< samples of these that the alpha test has kept

@@ -57,7 +57,6 @@ class Hiz {
     return setup.state.depth_test == DepthFunc::less ? nearest >= farthest : nearest > farthest;
   }
 
-  /// A visit of this primitive begins.
   void begin_visit(const PrimitiveState& state) {
     quiet_ = state.depth_write && can_raise_depth(state.depth_test) ? 0 : std::min(quiet_ + 1, lag_ - 1);
   }

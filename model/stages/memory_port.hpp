@@ -66,7 +66,6 @@ inline void set_flag_word(MemoryRequest& request, std::uint64_t bits, const Widt
 /// Colours one per pixel, or the flags of such blocks.
 [[nodiscard]] constexpr bool is_of_pixels(TilePlane plane) { return (static_cast<unsigned>(plane) & 4U) != 0; }
 
-/// Codes of a stamp in memory.
 [[nodiscard]] inline int codes_of_stamp(TilePlane plane, const Widths& widths) {
   return is_of_pixels(plane) ? widths.pixels : is_of_color(plane) ? widths.memory_colors : widths.samples;
 }

@@ -24,7 +24,6 @@
 
 namespace halfplane {
 
-/// The setup of a triangle at a sample.
 [[nodiscard]] inline TriangleSetup setup_at_sample(TriangleSetup setup, const SampleOffset& o, const Widths& widths) {
   for (std::size_t i = 0; i < 3; ++i)
     setup.edge[i].value +=

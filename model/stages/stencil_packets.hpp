@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 
 #include "../packets/state_packets.hpp"
 #include "fragment_ops.hpp"

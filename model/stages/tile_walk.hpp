@@ -141,13 +141,6 @@ class TileWalk {
   return value;
 }
 
-/// The part of a primitive's box that lies in tile (tile_x, tile_y), in pixels of the tile.
-[[nodiscard]] inline PixelBounds tile_box(const TriangleSetup& setup, int tile_x, int tile_y, const Widths& widths) {
-  const int x0 = tile_x << widths.tile_shift, y0 = tile_y << widths.tile_shift, last = (1 << widths.tile_shift) - 1;
-  return {std::max(setup.left - x0, 0), std::max(setup.top - y0, 0), std::min(setup.right - x0, last),
-          std::min(setup.bottom - y0, last)};
-}
-
 /// The packet of a visit to tile (tile_x, tile_y). `slot` is the context slot of the primitive; `ends`: no other follows.
 [[nodiscard]] TilePacket make_tile_packet(const SetupPacket& setup, int tile_x, int tile_y, std::uint8_t slot,
                                           bool ends, const Widths& widths);

@@ -62,7 +62,6 @@ template <class Rule>
 requires std::is_enum_v<Rule>
 [[nodiscard]] constexpr std::string_view name_of(Rule rule) { return kRuleNames<Rule>[static_cast<std::size_t>(rule)]; }
 
-/// The rules of a study.
 struct StudyRules {
   Traversal traversal = Traversal::tiled;
   FillRule fill_rule = FillRule::top_left;

@@ -138,7 +138,6 @@ void set_stencil(const FragmentPacket& fragment, StencilState& stencil, const Wi
   return has_texture_planes(config) && colors.tests_alpha();
 }
 
-/// Color packets of this hardware have alpha.
 void require_alpha(const Config& config) {
   if (packs_at_write(config) || config.color_format != ColorFormat::rgb565) return;
   throw InputError(

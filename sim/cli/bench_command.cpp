@@ -256,7 +256,6 @@ std::string bench_command_line(const BenchCommand& options) {
   return text + space_arguments(options.space) + (options.page.empty() ? "" : " -o " + quoted(options.page));
 }
 
-/// The head of every result of this command.
 Json bench_head(const BenchCommand& options, const Config& config, const BenchStudy& study = {}) {
   Json result = result_head("bench", options, config);
   result["seed"] = options.seed;
@@ -297,7 +296,6 @@ int run_space(const BenchCommand& options, const Config& config, std::chrono::st
   return study.is_partial ? exit_interrupted : exit_ok;
 }
 
-/// --antialiasing.
 int run_antialiasing(const BenchCommand& options, const Config& config, std::chrono::steady_clock::time_point start) {
   require_one_sample(config, "bench --antialiasing sets samples itself and");
   Json result = bench_head(options, config);

@@ -27,7 +27,6 @@ class Gates;
 void measure_antialiasing(const CommonOptions& options, const Config& config, int repeat, const Gates* gates,
                           Json& result);
 
-/// Writes the page of such a result.
 void write_antialiasing_page(const std::string& path, const Json& result, const std::string& command);
 
 /// Adds rows, and skips and growth if they were measured.

@@ -19,7 +19,6 @@ struct CosimOptions : CommonOptions, RandomOptions {
   std::string coverage;      ///< file
 };
 
-/// Adds --stalls.
 void add_stalls_option(CLI::App& app, CosimOptions& options);
 
 /// Adds all options except --random and --junit.

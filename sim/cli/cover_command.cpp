@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <ostream>
 
 #include "sim/cli/commands.hpp"

@@ -97,7 +97,6 @@ void check_picture(const ExplainOptions& options) {
   check_output(options.output);
 }
 
-/// The command for repetition.
 std::string explain_repeat(const ExplainOptions& options, const Config& config) {
   std::string command = program_word() + " explain " + quoted(options.scene) + " " + std::to_string(options.x) + " " +
                         std::to_string(options.y) + scene_arguments(options, config) + " --seed " +

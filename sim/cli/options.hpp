@@ -76,7 +76,6 @@ void add_result_options(CLI::App& app, CommonOptions& options);
 /// Adds --config, --set, --json and --quiet.
 void add_output_options(CLI::App& app, CommonOptions& options);
 
-/// Adds --seed.
 void add_seed_option(CLI::App& app, CommonOptions& options, const std::string& meaning);
 
 /// Adds an option that takes the name of a file to write, or - for stdout; an empty name is refused, and a second
@@ -163,7 +162,6 @@ HALFPLANE_JSON_OF_MEMBERS(ObjectCounts, in, culled_sphere, culled_box, primitive
 void write_json(const CommonOptions& options, const Json& result);
 
 using TimePoint = std::chrono::steady_clock::time_point;
-/// Seconds since `start`.
 [[nodiscard]] double seconds_since(TimePoint start);
 
 /// Adds `wall_s` and, for work that a signal cut short, `"partial": true`; then write_json().
@@ -172,7 +170,6 @@ void finish_json(const CommonOptions& options, Json& result, TimePoint start, bo
 /// Creates the folder that `option` names, unless it is empty. Throws InputError.
 void make_folder(const std::string& option, const std::string& folder);
 
-/// The scene as a capture.
 [[nodiscard]] std::string capture_text(const Scene& scene);
 
 /// 1234567 as "1,234,567".

@@ -25,7 +25,6 @@ void add_study_options(CLI::App& app, StudyOptions& options);
 /// Adds --clipping: for commands that need no snapped triangles.
 void add_clipping_option(CLI::App& app, StudyOptions& options);
 
-/// Adds --interpolation.
 void add_interpolation_option(CLI::App& app, StudyOptions& options);
 
 /// The scene with all colours and texture coordinates interpolated as given: "affine", "perspective", or unchanged,

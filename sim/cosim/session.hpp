@@ -14,7 +14,6 @@ namespace halfplane {
 /// Gives one scene after the other; none at the end.
 using SceneSource = std::function<std::optional<Scene>()>;
 
-/// One scene.
 [[nodiscard]] SceneSource single_scene(Scene scene);
 
 /// Scenes of a random run: all, or some of them alone.

@@ -1,7 +1,6 @@
 #include "sim/cover/bins.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <sstream>
 

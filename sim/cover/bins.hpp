@@ -6,7 +6,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -111,7 +110,6 @@ struct BinRow {
 
 [[nodiscard]] std::span<const BinRow> bin_rows();
 
-/// One bin.
 struct Bin {
   const BinRow* row;
   unsigned member;

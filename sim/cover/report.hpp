@@ -74,7 +74,6 @@ struct Totals {
 [[nodiscard]] Report read_coverage(const std::string& path);
 void write_coverage(const std::string& path, const Report& report);
 
-/// One line.
 [[nodiscard]] std::string summary_line(const Report& report);
 /// Totals, holes with the options that hit them, and what this hardware does not have. At most `most` missing pairs.
 void print_coverage(std::ostream& out, const Report& report, std::size_t most = 20);

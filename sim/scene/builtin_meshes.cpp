@@ -57,7 +57,6 @@ Vec3 knot_line(double t) {
   return {r * std::cos(2 * t), r * std::sin(2 * t), std::sin(3 * t)};
 }
 
-// Its tangent.
 Vec3 knot_tangent(double t) {
   const double r = 2 + std::cos(3 * t), slope = -3 * std::sin(3 * t);
   return normalized({slope * std::cos(2 * t) - 2 * r * std::sin(2 * t),

@@ -40,7 +40,6 @@ struct DracoMesh {
 [[nodiscard]] std::optional<DracoMesh> decode_draco(ByteSpan packed, std::vector<DracoAttribute>& attributes,
                                                     std::string& fault);
 
-/// Whether these are the bytes of a WebP image.
 [[nodiscard]] bool is_webp(ByteSpan bytes);
 /// The image's texels. Throws InputError: "`what`: the error".
 [[nodiscard]] TexelImage decode_webp(ByteSpan bytes, const std::string& what);

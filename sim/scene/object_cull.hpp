@@ -33,7 +33,6 @@ struct ObjectBounds {
   double radius = -1;  ///< of the sphere around `center` that contains every vertex; below 0: empty
 };
 
-/// The bounds of each of the mesh's objects.
 [[nodiscard]] std::vector<ObjectBounds> object_bounds(const Mesh& mesh);
 
 /// The tests that find the bounds outside the view volume -w <= x, y, z <= w of `to_clip`. Conservative: a test must

@@ -3,7 +3,6 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <optional>
 
 #include "model/as_number.hpp"
 #include "sim/config_file.hpp"

@@ -22,7 +22,6 @@ struct StageRow {
 /// The stages of a configuration, in the order of the pipeline, without the host.
 [[nodiscard]] std::vector<StageRow> stage_table(const Config& config);
 
-/// The same as a Markdown table.
 [[nodiscard]] std::string stage_table_markdown(const Config& config);
 
 }  // namespace halfplane

@@ -1,10 +1,6 @@
 // A run of the cycle model as seen from outside: when items cross the arrows of the pipeline, and the causes of stalls.
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <string_view>
-
 #include "../../pipeline_graph.hpp"
 #include "../../timing/stalls.hpp"
 #include "timing_totals.hpp"

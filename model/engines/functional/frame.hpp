@@ -135,7 +135,6 @@ struct Slice {
   static constexpr std::uint32_t kSlow = 0x40;    ///< outside the guard band, or not a vertex that may be drawn
 };
 
-/// Constants of a frame.
 struct FrameContext {
   const PreparedScene& prepared;
   const Config& config;

@@ -94,7 +94,6 @@ void find_surface_vertices(const FrameContext& frame, Slice& slice) {
   slice.normals = slice.own_normals.data();
 }
 
-/// The pixels of a line, as a box.
 PixelBounds line_box(const LineSetup& line) {
   const std::int64_t D = line.step_stay - line.step_move, n = line.remaining;
   const auto moved = static_cast<int>(n == 0 || D == 0 ? 0 : (line.error + (n - 1) * line.step_stay + D) / D);

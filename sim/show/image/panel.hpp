@@ -126,7 +126,6 @@ inline constexpr std::array<std::string_view, 5> kTexturePanelNames{"coordinate"
 inline constexpr std::array<std::string_view, 3> kAgainstPanelNames{"against", "difference", "kinds"};
 inline constexpr std::array<std::string_view, 3> kAffinePanelNames{"perspective", "affine", "affine_coordinate"};
 
-/// All panels.
 [[nodiscard]] std::vector<std::string> panel_names();
 
 /// Colour picture and draws panel side by side.

@@ -36,7 +36,6 @@ mpq_class area_of(const Polygon& polygon) {
   return abs(doubled) / 2;
 }
 
-/// A triangle in pixels.
 Polygon in_pixels(const Triangle& triangle, int grid_bits) {
   Polygon polygon;
   for (const SnappedVertex& v : triangle.v) {

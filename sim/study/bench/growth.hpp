@@ -25,7 +25,6 @@ struct LayeredGrid {
 
 /// Whole cells only: the rest of the target at its right and its bottom stays empty.
 [[nodiscard]] Scene make_layered_grid(const LayeredGrid& grid);
-/// Triangles of one layer.
 [[nodiscard]] std::size_t triangles_of_layer(const LayeredGrid& grid);
 
 struct GrowthRow {

@@ -20,7 +20,6 @@ struct PeerVertex {
 };
 using PeerCoordinates = std::array<float, 2>;  // in a separate buffer: unused without a texture
 
-/// Vertex and fragment shader of a state.
 struct Shaders {
   std::string vertex, fragment;
 };

@@ -9,7 +9,6 @@
 
 namespace halfplane {
 
-/// The cost of one frame.
 struct FrameCost {
   double seconds = 0;        ///< by the wall clock
   std::uint64_t cycles = 0;  ///< of the hardware; 0: the engine has none

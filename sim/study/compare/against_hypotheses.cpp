@@ -33,7 +33,6 @@ class ChangedScene {
  public:
   explicit ChangedScene(const HypothesisScene& of) : of_(of), scene_(of.scene) {}
 
-  /// The image with other states.
   std::optional<ImageValues> with_states(const std::function<void(State& state)>& change) {
     for (State& state : scene_.states) change(state);
     auto values = drawn_values(of_, scene_, of_.config, of_.rules);

@@ -15,9 +15,6 @@
 #pragma once
 
 #include <array>
-#include <cmath>
-#include <cstdint>
-#include <vector>
 
 #include "model/golden/interpolate.hpp"
 #include "model/scene.hpp"

@@ -12,7 +12,6 @@ namespace halfplane::stress {
 /// The window z that snaps to a code.
 [[nodiscard]] double depth_of(const Config& config, std::uint32_t code);
 
-/// The largest depth code.
 [[nodiscard]] std::uint32_t max_depth(const Config& config);
 
 /// A random code, one in four of them the smallest or the largest.

@@ -117,7 +117,6 @@ HALFPLANE_INLINE void write_color_rows(const Bin& bin, const BinTriangle& left, 
   }
 }
 
-/// The mean of the samples' colours.
 HALFPLANE_INLINE I16 mean_colors(const Bin& bin, std::size_t at) {
   ColorSums sums(bin);
   for (unsigned k = 0; k < bin.samples; ++k) sums.add(I16::load(bin.sample_memory.color[k] + at));

@@ -449,7 +449,6 @@ HALFPLANE_LEAF std::int32_t min_lane(const I16& v) {
 }
 HALFPLANE_LEAF std::int32_t max_lane(const I16& v) { return ~min_lane(~v); }
 
-/// OR of all lanes.
 HALFPLANE_LEAF std::int32_t or_of_lanes(const I16& v) {
 #if HALFPLANE_ISA == 512
   return _mm512_reduce_or_epi32((__m512i)v.part[0]);

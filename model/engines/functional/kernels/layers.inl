@@ -235,7 +235,6 @@ HALFPLANE_NOINLINE void lay_all(Bin& bin) {
   bin.layer_count = 0;
 }
 
-/// Adds a layer on `tiles`.
 HALFPLANE_NOINLINE void add_layer(Bin& bin, const BinTriangle& t, std::uint64_t tiles) {
   if (bin.layer_count == LayerMemory::kLayers) lay_all(bin);
   LayerMemory& memory = LayerMemory::of_thread();

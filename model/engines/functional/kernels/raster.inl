@@ -235,7 +235,6 @@ enum class RecordWay {
   general     ///< lines and dots, one fragment after the other
 };
 
-/// The ways of a slice's records.
 struct RecordWays {
   const Slice& slice;
   const FragmentOps& ops;

@@ -43,7 +43,6 @@ struct BaseLevel {
   HALFPLANE_INLINE static I16 first() { return I16(0); }
 };
 
-/// A level for each lane.
 struct LaneLevel {
   I16 down[2], last_texel[2], to_row, first_texel;
 
