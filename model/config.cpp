@@ -118,15 +118,18 @@ Setting no_pixel(Setting setting) {
 bool has_texture_unit(const Config& config) { return config.texture_unit != TextureUnitKind::off; }
 
 /// Cost: what an ECP5 takes more than with the smallest value, or than with the value named second: places (LUT4),
-/// multipliers, block RAMs by synth_ecp5 of Yosys 0.23, of the time of the page or ADR named. A key without a cost has not
-/// been measured by itself; one of the host costs nothing.
+/// multipliers, block RAMs by synth_ecp5 of Yosys 0.23, of the time of the page or ADR named; and cycles and bytes of a frame
+/// of 640x480 where the key changes them. A key of the host costs nothing.
 std::vector<Setting> all_settings() {
   return {
       // Cost: 8 instead of 2: 3,008 places, 16 multipliers (docs/design-space.md).
       number<&Config::subpixel_bits>("subpixel.bits", "bits", "fraction bits S of a snapped window coordinate", 0, 12),
+      // Cost: 4096 instead of 2048: 412 places (docs/area.md).
       powers<&Config::guard_band>("guard.band", "pixels", "window coordinates lie in [-band, band); a power of two", 16,
                                   1 << 20),
+      // Cost: 1920 instead of 960: 137 places, 16 block RAMs for flags of blocks and HiZ bounds (docs/area.md).
       number<&Config::target_width>("target.width", "pixels", "widest target", 1, 16384).ability_named("target_width"),
+      // Cost: 1080 instead of 540: 124 places, 16 block RAMs (docs/area.md).
       number<&Config::target_height>("target.height", "pixels", "highest target", 1, 16384)
           .ability_named("target_height"),
       // Cost: some 110 LUT4 and as many flip-flops a bit (docs/depth.md).
@@ -138,8 +141,10 @@ std::vector<Setting> all_settings() {
       // Cost: 8 instead of 4: 252 places (docs/area.md).
       number<&Config::reciprocal_extra_bits>("reciprocal.extra_bits", "bits",
                                              "significant bits of 1/area beyond depth.bits", 2, 12),
+      // Cost: 22 instead of 18: 563 places, a block RAM, with a texture unit (docs/area.md).
       number<&Config::perspective_bits>("perspective.bits", "bits", "bits N of 1/w, and of what is interpolated over w",
                                         12, 26),
+      // Cost: 18 instead of 14: 117 places, with a texture unit (docs/area.md).
       number<&Config::perspective_mantissa_bits>("perspective.mantissa_bits", "bits",
                                                  "bits k of 1/w that a pixel's reciprocal looks at", 8, 20),
       // Cost: 3,049 places of the texture unit (ADR 55).
@@ -152,10 +157,13 @@ std::vector<Setting> all_settings() {
                               "perspective.colors=0")),
       // Cost: rgba8888: 674 places, 4 block RAMs, alpha included (docs/area.md).
       choice<&Config::color_format>("color.format", "layout of a stored colour"),
+      // Cost: 16 instead of 8: 708 places, 16 block RAMs less, +0.1 % of cycles in a frame of `city`, -2.1 % of `teapot`;
+      // cycles with 4: +2.0 %, +8.1 % (docs/area.md).
       powers<&Config::tile_size>("tile.size", "pixels", "side of a tile: 4, 8, 16 or 32", 4, 32),
       // Cost: `embedded` with 1, 2, 4: 12,689, 15,227, 28,329 places (docs/area.md).
       no_pixel(powers<&Config::stamp_size>("stamp.size", "pixels",
                                            "side of the stamp tested in one clock: 1, 2, 4 or 8", 1, 8)),
+      // Cost: 16 instead of 8: 25 places, 200 flip-flops (docs/area.md).
       no_pixel(number<&Config::primitive_id_bits>("key.primitive_bits", "bits",
                                                   "bits of the primitive number in an RTL packet key", 4, 32)),
       // Cost: 8 instead of 4: 2 places; constants lie in block RAM (docs/area.md).
@@ -193,6 +201,8 @@ std::vector<Setting> all_settings() {
           "blocks: order in which the host sends a frame: program order, or bins that fit the on-chip RAM"))),
       no_pixel(of_host(choice<&Config::frame_store>(
           "frame.store", "blocks: buffers of a frame that are written to memory; color: its depth is lost"))),
+      // Cost: serial: 2,936 places and 22 multipliers less, 13 block RAMs more; 24 times the cycles in a frame of `city`, 61
+      // times of `teapot` (docs/area.md).
       no_pixel(choice<&Config::setup_kind>("setup.kind", "RTL triangle setup: several multipliers, or one")),
       // Cost: 2 saves 1,414 places and 13 multipliers with a texture unit (docs/area.md).
       no_pixel(number<&Config::setup_plane_clocks>(
@@ -213,6 +223,7 @@ std::vector<Setting> all_settings() {
       no_pixel(number<&Config::texture_ways>(
           "texture.ways", "places",
           "places of a block in the texture cache: 1, or 2, of which the less recently used is replaced", 1, 2)),
+      // Cost: 64 instead of 32: 1,471 places; -2.1 % of cycles in a frame of `ball_nearest`, none of `walk` (docs/area.md).
       no_pixel(powers<&Config::texture_queue>(
           "texture.queue", "samples", "samples that wait for their texels, so that misses overlap; a power of two", 8,
           128)),
@@ -306,9 +317,12 @@ std::vector<Setting> all_settings() {
       powers<&Config::msaa_samples>("msaa.samples", "samples",
                                     "samples of a pixel, 1, 2, 4 or 8, each with coverage, depth, stencil and colour",
                                     1, kMaxPixelSamples),
+      // Cost: of four samples, the standard places instead of a grid of 2x2: 577 places (docs/area.md).
       text<&Config::msaa_pattern>(
           "msaa.pattern", "standard|<X>,<Y>;...",
           "places of a pixel's samples: those of Direct3D and Vulkan, or pixels from its upper left corner"),
+      // Cost: 284 places; with four samples a quarter of the bytes of a frame in bins, and 0.41 of the cycles of `city`
+      // (docs/area.md).
       number<&Config::resolve_units>("resolve.unit", "units",
                                      "1: the RTL stores the mean of a pixel's samples as its block leaves the chip, of "
                                      "frames in bins that store colours alone; 0: it stores all samples",
