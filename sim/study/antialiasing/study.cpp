@@ -135,9 +135,7 @@ class Frames {
 
 Scene blades(int width, int height, std::uint64_t seed) {
   Random random(seed);
-  State state = SceneBuilder::window_state();
-  state.depth_test = DepthFunc::always;
-  SceneBuilder builder(width, height, state);
+  SceneBuilder builder(width, height);
   const double cx = width / 2.0, cy = height / 2.0, longest = std::min(width, height) * 0.48, inner = longest * 0.2;
   constexpr int kBlades = 64;
   const auto at = [&](double radius, double angle) {

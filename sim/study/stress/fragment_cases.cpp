@@ -116,7 +116,6 @@ void judge_layers(Unit& unit, const Scene& scene) {
 
 void layers(Unit& unit) {
   State state = SceneBuilder::window_state();
-  state.depth_test = DepthFunc::always;
   state = with(unit, state, {"blend", "blend_equation", "blend_color", "dither"});
   if (!state.blend || unit.random.coin())
     state.blend = BlendFactors{BlendFactor::src_alpha, BlendFactor::one_minus_src_alpha, BlendFactor::one,
@@ -129,7 +128,6 @@ void layers(Unit& unit) {
 
 void logic_ops(Unit& unit) {
   State state = SceneBuilder::window_state();
-  state.depth_test = DepthFunc::always;
   SceneBuilder builder(unit.width(12), unit.height(10), state);
   const int count = 1 << unit.random.index(5);
   for (int n = 0; n < count; ++n) {
@@ -155,7 +153,6 @@ void opaque_blend(Unit& unit) {
 void alpha_parts(Unit& unit) {
   // Fragments that pass a test, and fragments that pass its opposite, are all fragments: where order does not matter.
   State state = SceneBuilder::window_state();
-  state.depth_test = DepthFunc::always;
   state.blend = BlendFactors{BlendFactor::one, BlendFactor::one, BlendFactor::one, BlendFactor::one};
   state.blend_equation = {BlendEquation::max, BlendEquation::max};
   SceneBuilder builder(unit.width(40), unit.height(32), state);
@@ -179,7 +176,6 @@ void alpha_parts(Unit& unit) {
 
 void mask_parts(Unit& unit) {
   SceneBuilder builder(unit.width(40), unit.height(32));
-  builder.scene.states.back().depth_test = DepthFunc::always;
   add_triangles(unit, builder, 1);
   const Rendering whole = rendered(unit, builder.scene);
   Scene parts = builder.scene;
@@ -215,7 +211,6 @@ void stencil_counts(Unit& unit) {
 void fog(Unit& unit) {
   Random& random = unit.random;
   State state = SceneBuilder::window_state();
-  state.depth_test = DepthFunc::always;
   state = with(unit, state, {"fog_color", "color_interp", "alpha_test", "blend"});
   const double ratio = std::exp2(random.between(0, 13)), scale = std::exp2(random.between(-20, 20));
   const auto distance = [&] { return scale * std::pow(ratio, random.unit()); };
@@ -240,7 +235,6 @@ void fog(Unit& unit) {
 void light(Unit& unit) {
   Random& random = unit.random;
   State state = SceneBuilder::window_state();
-  state.depth_test = DepthFunc::always;
   state = with(unit, state, {"color_interp", "light_ambient", "light_diffuse", "light_specular", "blend"});
   if (random.coin()) state = with(unit, state, {"fog", "fog_color"});
   const auto direction = [&random] {
