@@ -35,7 +35,7 @@ using FragmentTap = std::function<void(const TappedFragment& fragment)>;
 
 struct RenderOptions {
   Skip skip;
-  int threads = 1;                    ///< of the functional engine; the image does not depend on it
+  int threads = 1;                    ///< of the functional and the cycle engine; no result depends on it
   std::string_view instruction_set;   ///< likewise: portable, avx2, avx512; otherwise the machine's best
   bool general_fragments = false;     ///< likewise: draws fragments one by one, for tests
   StudyRules rules;                   ///< other than the default only in render_scalar

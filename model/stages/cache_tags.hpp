@@ -29,6 +29,7 @@ struct Eviction {
 struct TagResult {
   std::size_t line = 0;
   BlockAddress block;  ///< the fragment's
+  int stamp = 0;       ///< likewise: its number in the block
   int writes = 0;      ///< number of evictions, oldest first, that go to memory now, ahead of this fragment's reads
   std::optional<Eviction> eviction;
   DepthSource source = DepthSource::none;
@@ -59,6 +60,7 @@ class CacheTags {
     TagResult result;
     result.line = line_of(place.block);
     result.block = place.block;
+    result.stamp = place.stamp;
     Line& line = lines_[result.line];
     if (!line.is_valid || line.block != place.block) {
       result.writes = write_up_to(place.block);

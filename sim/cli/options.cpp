@@ -107,7 +107,7 @@ void add_scene_options(CLI::App& app, CommonOptions& options) {
   add_text_option(app, "--animation", options.animation,
                   "which of the file's animations, by name or number (default: the first)");
   add_seed_option(app, options, "seed of scenes with random parts");
-  app.add_option("--threads", options.threads, "use at most N threads (functional engine, depth)")
+  app.add_option("--threads", options.threads, "use at most N threads (functional and cycle engine, depth)")
       ->check(whole_number(1, 1024));
   app.add_option("--skip", options.skip, "work that may be skipped: all, none or a list with commas")
       ->capture_default_str();

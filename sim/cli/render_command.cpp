@@ -290,7 +290,9 @@ int run(const RenderCommand& given) {
   result["engine"] = options.engine;
   result["width"] = scene.width;
   result["height"] = scene.height;
-  result["threads"] = options.engine == "functional" ? options.threads : 1;  // the others have one
+  result["threads"] = options.engine == "functional" ? options.threads
+                      : options.engine == "cycle"    ? std::min(options.threads, 2)
+                                                     : 1;  // the others have one
   result["supersample"] = or_null(options.supersample);
   result["objects"] = objects;
   if (options.engine == "scalar") add_study_json(result, options.study, scene, config);

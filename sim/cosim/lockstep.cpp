@@ -185,6 +185,7 @@ LockstepResult Lockstep::run(const Scene& scene, const Config& host_config, bool
   host_counters_ = host.counters();
   result_.cycles = last_moved_ + 1 - start;
   if (cycle_model_) {
+    cycle_model_->complete();
     result_.model_cycles = cycle_model_->totals().last + 1 - start;
     result_.model_raster_cycles = cycle_model_->totals().raster_cycles();
     result_.model_tile_cycles = cycle_model_->totals().tile_cycles;

@@ -38,7 +38,7 @@ TEST(ColorWriteTiming, AStampIsBlendedAgainInTheNextClock) {
     item.color_write = item.blends = true;
     Cycle before = 0;
     for (Cycle n = 0; n < 50; ++n) {
-      timing.take(100 + 4 * n / std::stoul(lanes), tags, item, NoMemory{});
+      timing.take(100 + 4 * n / std::stoul(lanes), tags, item, {}, NoMemory{});
       if (n > 0) {
         EXPECT_EQ(timing.colored() - before, 4 / std::stoul(lanes)) << lanes << " lanes, " << n;
       }
@@ -61,7 +61,7 @@ TEST(ColorWriteTiming, AStampIsTestedAgainInTheNextClock) {
     item.depth_write = item.wrote_depth = true;
     Cycle before = 0;
     for (Cycle n = 0; n < 50; ++n) {
-      timing.take(100 + n, tags, item, NoMemory{});
+      timing.take(100 + n, tags, item, {}, NoMemory{});
       if (n > 0) {
         EXPECT_EQ(timing.tested() - before, 1U) << "stencil.bits=" << stencil << ", " << n;
       }

@@ -95,7 +95,7 @@ class BackTiming {
 
   /// A stamp without a covered sample, on offer to depth_test from `offered` on. Returns when it moves.
   Cycle pass(Cycle offered, unsigned others = 0) {
-    if (blocks_) return take_block(offered, {}, {}, others);
+    if (blocks_) return access(offered, {}, {}, {}, others);
     const Cycle moved = stream(Arrow::fragment).transfer(offered, 0, others);
     note(Arrow::fragment, moved);
     last_fragment_ = moved;
@@ -105,41 +105,54 @@ class BackTiming {
 
   /// A stamp with covered samples. look_up(mover) makes its tile resident and returns whether it already was.
   template <class LookUp>
-  Cycle access(Cycle offered, const FragmentPlace& place, LookUp&& look_up) {
-    return access(offered, place, std::forward<LookUp>(look_up), 0);
+  Cycle access(Cycle offered, const FragmentPlace& place, LookUp&& look_up, unsigned others) {
+    Cycle ready = offered;
+    if (last_place_.depth_write && last_place_.stamp == place.stamp && last_place_.tile_x == place.tile_x &&
+        last_place_.tile_y == place.tile_y && (last_place_.mask & place.mask).any() && offered < last_fragment_ + 2) {
+      ready = last_fragment_ + 2;
+      totals_.hazard_cycles += ready - offered;
+    }
+    const Cycle begins = stalls_.next_free(stream(Arrow::fragment).streams() | others, ready);
+    Mover mover{*this, begins + 1};
+    if (!look_up(mover)) {
+      ready = mover.cycle;
+      count_moves(begins, ready);
+    }
+    const Cycle moved = stream(Arrow::fragment).transfer(offered, ready, others);
+    note(Arrow::fragment, moved);
+    note(Arrow::write, moved + 1);
+    totals_.last_write = moved + 1;
+    if (totals_.has_primitive) totals_.tile_cycles = moving_;
+    last_fragment_ = moved;
+    last_place_ = place;
+    return moved;
   }
 
   /// The same in a framebuffer of blocks, with the results of the tag lookup and the test.
-  Cycle access(Cycle offered, const TagResult& tags, const BlockItem& item) {
-    return take_block(offered, tags, item, 0);
+  Cycle access(Cycle offered, const TagResult& tags, const BlockItem& item, const TextureWork& texture,
+               unsigned others = 0) {
+    const unsigned streams = stream(Arrow::fragment).streams() | others;
+    Cycle moved = stalls_.next_free(streams, std::max(offered, blocks_->room()));
+    while (blocks_->is_busy(moved, tags, item)) moved = stalls_.next_free(streams, moved + 1);
+    stream(Arrow::fragment).count(offered, moved);
+    note(Arrow::fragment, moved);
+    last_fragment_ = moved;
+    blocks_->take(moved, tags, item, texture, BlockPort{*this});
+    work(Stage::texture_unit, texture.lookups.size());
+    if (textures_ && item.is_shaded) note(Arrow::color, blocks_->colored());
+    if (!item.mask.any()) return moved;
+    totals_.last_write = blocks_->tested() + 1;
+    note(Arrow::write, totals_.last_write);
+    if (totals_.has_primitive) totals_.tile_cycles = moving_;
+    return moved;
   }
 
-  /// The pixels of a line whose place is on offer from `offered` on: step() makes the next pixel and returns whether
-  /// another follows; `place` is then its place. Returns the cycle in which the last pixel moves.
-  template <class Step, class LookUp>
-  Cycle take_pixels(Cycle offered, const FragmentPlace& place, Step&& step, LookUp&& look_up) {
-    return take_pixels_by(offered, step, [&](Cycle at, unsigned others) {
-      return place.mask.any() ? access(at, place, look_up, others) : pass(at, others);
-    });
-  }
-
-  /// The same in a framebuffer of blocks: look_up(item) looks up the tags of the pixel, and sets the outcome of its
-  /// test.
-  template <class Step, class LookUp>
-  Cycle take_block_pixels(Cycle offered, Step&& step, LookUp&& look_up) {
-    return take_pixels_by(offered, step, [&](Cycle at, unsigned others) {
-      BlockItem item;
-      const TagResult tags = look_up(item);
-      return take_block(at, tags, item, others);
-    });
-  }
-
- private:
-  template <class Step, class Access>
-  Cycle take_pixels_by(Cycle offered, Step&& step, Access&& take) {
+  /// The pixels of a line, whose place is on offer from `offered` on. take(offered, others): the next one in
+  /// depth_test. Returns the cycle in which the last pixel moves.
+  template <class Take>
+  Cycle take_pixels(Cycle offered, std::uint32_t pixels, Take&& take) {
     Cycle pixel = first_pixel_, moved = 0;
-    for (bool more = true; more; pixel = moved + 1, offered = std::max(offered, pixel)) {
-      more = step();
+    for (; pixels > 0; --pixels, pixel = moved + 1, offered = std::max(offered, pixel)) {
       moved = take(std::max(offered, pixel), stream(Arrow::line_pixel).streams());
       stream(Arrow::line_pixel).count(pixel, moved);
       work(Stage::line_raster, 1);
@@ -149,7 +162,6 @@ class BackTiming {
     return moved;
   }
 
- public:
   /// A fast clear or a flush on its way through the framebuffer. walk(mover) visits lines and tiles.
   template <class Walk>
   Cycle pass_token(Cycle offered, Walk&& walk) {
@@ -237,24 +249,6 @@ class BackTiming {
   TimingTotals totals_;
 
  private:
-  /// A fragment into a framebuffer of blocks.
-  Cycle take_block(Cycle offered, const TagResult& tags, const BlockItem& item, unsigned others) {
-    const unsigned streams = stream(Arrow::fragment).streams() | others;
-    Cycle moved = stalls_.next_free(streams, std::max(offered, blocks_->room()));
-    while (blocks_->is_busy(moved, tags, item)) moved = stalls_.next_free(streams, moved + 1);
-    stream(Arrow::fragment).count(offered, moved);
-    note(Arrow::fragment, moved);
-    last_fragment_ = moved;
-    blocks_->take(moved, tags, item, BlockPort{*this});
-    work(Stage::texture_unit, item.texture.lookups.size());
-    if (textures_ && item.is_shaded) note(Arrow::color, blocks_->colored());
-    if (!item.mask.any()) return moved;
-    totals_.last_write = blocks_->tested() + 1;
-    note(Arrow::write, totals_.last_write);
-    if (totals_.has_primitive) totals_.tile_cycles = moving_;
-    return moved;
-  }
-
   /// Sends a request, in `cycle` at the earliest.
   PortTimes ask(Cycle cycle, TilePlane plane, const StampAddress& at, int run, MoveCause cause) {
     const bool is_read = cause == MoveCause::fill;
@@ -363,30 +357,6 @@ class BackTiming {
       timing.write_stamps(cycle, address, rows, true, MoveCause::clear);
     }
   };
-
-  template <class LookUp>
-  Cycle access(Cycle offered, const FragmentPlace& place, LookUp&& look_up, unsigned others) {
-    Cycle ready = offered;
-    if (last_place_.depth_write && last_place_.stamp == place.stamp && last_place_.tile_x == place.tile_x &&
-        last_place_.tile_y == place.tile_y && (last_place_.mask & place.mask).any() && offered < last_fragment_ + 2) {
-      ready = last_fragment_ + 2;
-      totals_.hazard_cycles += ready - offered;
-    }
-    const Cycle begins = stalls_.next_free(stream(Arrow::fragment).streams() | others, ready);
-    Mover mover{*this, begins + 1};
-    if (!look_up(mover)) {
-      ready = mover.cycle;
-      count_moves(begins, ready);
-    }
-    const Cycle moved = stream(Arrow::fragment).transfer(offered, ready, others);
-    note(Arrow::fragment, moved);
-    note(Arrow::write, moved + 1);
-    totals_.last_write = moved + 1;
-    if (totals_.has_primitive) totals_.tile_cycles = moving_;
-    last_fragment_ = moved;
-    last_place_ = place;
-    return moved;
-  }
 
   /// Writes of these stamps of a tile: a stamp is read out of the RAMs, from `cycle` on, and offered in the next cycle;
   /// the next stamp is read when it is taken. A row without stamps takes a cycle, the last row none. `cycle` becomes

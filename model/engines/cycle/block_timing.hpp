@@ -110,14 +110,12 @@ struct TextureWork {
 /// A fragment after the depth test.
 struct BlockItem {
   SampleMask mask;                                ///< covered samples; none: an empty stamp, or a line of a walk
-  int stamp = 0;                                  ///< number in its block
   bool depth_write = false, color_write = false;  ///< by its state
   bool wrote_depth = false;                       ///< for some sample
   SampleMask colors;                              ///< samples whose colour is written
   bool blends = false;                            ///< by the state
   bool is_late = false;                           ///< depth is written after the texture unit: is_late()
   bool is_shaded = false;                         ///< with a texture unit: a sample is live there
-  TextureWork texture;                            ///< with a texture unit
 };
 
 class BlockTiming {
@@ -152,11 +150,11 @@ class BlockTiming {
   /// When the colour stage took the last fragment.
   [[nodiscard]] Cycle colored() const { return colored_; }
 
-  /// A fragment that the tags took in `moved`, or a line that was read then. ask.read(cycle, plane, stamp): a request, in
+  /// A fragment that the tags took in `moved`, or a line that was read then; `texture`: with a texture unit. ask.read(cycle, plane, stamp): a request, in
   /// `cycle` at the earliest; returns PortTimes. ask.write(cycle, plane, first stamp, run): a burst, a request a cycle;
   /// returns when the last is taken.
   template <class Ask>
-  void take(Cycle moved, const TagResult& tags, const BlockItem& item, Ask&& ask) {
+  void take(Cycle moved, const TagResult& tags, const BlockItem& item, const TextureWork& texture, Ask&& ask) {
     const bool reads = tags.source == DepthSource::memory, reads_color = tags.color_source == DepthSource::memory;
     const bool is_order = reads || reads_color || tags.writes > 0;
     const Cycle t = leave(moved, tags.falls());
@@ -175,11 +173,11 @@ class BlockTiming {
     const Cycle depth_ready = depth_free_ + 1;
     items_.leave(x);
     tested_ = x;
-    const Cycle shaded_at = shaded(item.texture, ask);
+    const Cycle shaded_at = shaded(texture, ask);
     const Cycle fogged_at = fog_ ? fog_->take(shaded_at) : shaded_at;
     const Cycle color_ready = color(tags, item, fogged_at, answers.color);
     if (item.is_late && item.mask.any()) {
-      late_[late_place(tags.line, item.stamp)] = colored_;
+      late_[late_place(tags.line, tags.stamp)] = colored_;
       last_late_ = colored_;
     }
     if (texture_)
@@ -195,7 +193,7 @@ class BlockTiming {
   template <class Ask>
   Cycle walk(Cycle cycle, const TagResult& tags, Ask&& ask) {
     if (tags.eviction)
-      take(cycle, tags, {}, ask);
+      take(cycle, tags, {}, {}, ask);
     else
       leave(cycle, false);
     return looked_;
@@ -255,7 +253,7 @@ class BlockTiming {
   /// The first cycle in which the depth stage can let an item go, as far as late items decide it.
   [[nodiscard]] Cycle late_room(const TagResult& tags, const BlockItem& item) const {
     Cycle room = 0;
-    if (item.mask.any()) room = item.is_late ? late_[late_place(tags.line, item.stamp)] + 1 : last_late_ + 1;
+    if (item.mask.any()) room = item.is_late ? late_[late_place(tags.line, tags.stamp)] + 1 : last_late_ + 1;
     for (int stamp = 0; tags.eviction && stamp < widths_.blocks.stamps(); ++stamp)
       room = std::max(room, late_[late_place(tags.line, stamp)] + 1);
     return room;
@@ -338,7 +336,7 @@ class BlockTiming {
     if (source == DepthSource::memory) w = std::max(w, answer + 1);
     if (source != DepthSource::none && !tags.starts_color) w = std::max(w, reads_.all_done());  // reads the RAM
     reads_.pass(w);
-    if (item.colors.any() || writes_all) reads_.read(tags.line, std::uint64_t{1} << item.stamp);
+    if (item.colors.any() || writes_all) reads_.read(tags.line, std::uint64_t{1} << tags.stamp);
     colored_ = write_colors(w, tags.line, item, writes_all);
     return ready;
   }
@@ -395,7 +393,7 @@ class BlockTiming {
       victims_.pop_front();
     }
     const auto read = [&](TilePlane plane) {
-      const auto [asked, answered] = ask.read(cycle, plane, stamp_address({tags.block, item->stamp}, widths_));
+      const auto [asked, answered] = ask.read(cycle, plane, stamp_address({tags.block, tags.stamp}, widths_));
       cycle = asked + 1;
       answered_ = answered;
       return answered;
@@ -451,7 +449,7 @@ class BlockTiming {
     last_writes_ =
         item.mask.any() && !item.is_late && (item.depth_write || (starts_depth && tags.source != DepthSource::none));
     if (!item.mask.any()) return;
-    const std::uint64_t bit = std::uint64_t{1} << item.stamp;
+    const std::uint64_t bit = std::uint64_t{1} << tags.stamp;
     const auto note = [&](std::uint64_t& dirty, bool starts, bool writes) {
       if (starts) dirty &= ~bit;
       if (writes) dirty |= bit;
@@ -459,7 +457,7 @@ class BlockTiming {
     note(dirty_[tags.line][0], starts_depth, item.wrote_depth);
     note(dirty_[tags.line][1], tags.starts_color, item.colors.any());
     if (!compresses_) return;
-    SampleMask& dirty = dirty_colors_[color_place(tags.line, item.stamp)];
+    SampleMask& dirty = dirty_colors_[color_place(tags.line, tags.stamp)];
     dirty = tags.starts_color ? item.colors : dirty | item.colors;
   }
 

@@ -45,15 +45,14 @@ CycleRendering CycleFrames::draw(const Scene& scene, const RenderOptions& render
   HostStream host(scene, config_, held);
   model_->hold_textures(scene);
   memory_.show(scene.width, scene.height);
-  model_->begin(scene.width, scene.height, start_);
+  model_->begin(scene.width, scene.height, start_, render.threads);
   DrawnCount drawn;
   std::uint32_t sent = 0;
   while (const auto primitive = host.next()) {
-    const std::uint64_t dropped_before = drawn.dropped(model_->counters());
-    model_->run(*primitive);
-    drawn.add(*primitive, drawn.dropped(model_->counters()) == dropped_before);
+    drawn.add(*primitive, model_->run(*primitive));
     if (render.progress && ++sent % 256 == 0) render.progress(host.progress());
   }
+  model_->complete();
   resolve(model_->rendering().frame, config_.color_format);
   CycleRendering result{std::move(model_->rendering()), {}, std::move(model_->cost()), std::move(model_->misses())};
   result.rendering.counters = host.counters();

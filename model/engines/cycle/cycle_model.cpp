@@ -13,9 +13,10 @@
 #include "../../stages/interpolate.hpp"
 #include "../../stages/primitive_join.hpp"
 #include "../hardware.hpp"
-#include "pipelined_timing.hpp"
-#include "serial_timing.hpp"
+#include "cycle_times.hpp"
 #include "stamp_images.hpp"
+#include "stamp_lanes.hpp"
+#include "step_queue.hpp"
 
 namespace halfplane {
 namespace {
@@ -44,34 +45,24 @@ PrimitiveWork work_of(const PrimitivePacket& packet, bool is_dropped) {
   return work;
 }
 
-/// Computes the bits of the stages, stamp by stamp, and `Timing` for each. Packets leave a stage in an order that does
-/// not depend on time.
-template <class Timing>
-class CycleModelOf final : public CycleModel {
+/// Computes the bits of the stages, stamp by stamp, and hands on the steps whose times CycleTimes computes. Packets leave
+/// a stage in an order that does not depend on time.
+class BitsAndTimes final : public CycleModel {
  public:
-  CycleModelOf(const Config& config, MemoryTiming& memory, const CycleOptions& options)
+  BitsAndTimes(const Config& config, MemoryTiming& memory, const CycleOptions& options)
       : config_(config),
         widths_(derive_widths(config)),
         options_(options),
-        timing_(config_, widths_, options.stalls, memory, options.parameters, options.sink, options.textures),
+        times_(make_cycle_times(config, memory, options)),
+        queue_(*times_),
         hiz_(config_, widths_, options.parameters.untested_tiles),
         path_(config_, widths_),
-        coverage_(static_cast<std::size_t>(widths_.stamps.stamps())) {
-    if (config_.cache_kind == CacheKind::blocks)
-      blocks_.emplace(config_, widths_);
-    else
-      tiles_.emplace(config_, widths_);
-    if (options.layout) timing_.set_layout(*options.layout);
-    if (config_.compress_units != 0)
-      timing_.look_at_colors([this](const StampAddress& at, SampleMask mask) {
-        images_->enter(at);
-        return images_->has_one_color(mask);
-      });
-  }
+        lanes_(config_, widths_),
+        is_watched_(options.sink != nullptr) {}
 
   void hold_textures(const Scene& scene) override { texels_ = TextureMemory(scene, config_); }
 
-  void begin(int width, int height, Cycle cycle) override {
+  void begin(int width, int height, Cycle cycle, int threads) override {
     Framebuffer held = std::move(rendering_.frame);
     rendering_ = {};
     if (held.width == width && held.height == height) {
@@ -87,13 +78,43 @@ class CycleModelOf final : public CycleModel {
     const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     if (options_.want_count) rendering_.count.resize(pixels);
     if (options_.want_ids) rendering_.ids.assign(pixels, -1);
-    if (options_.want_cost) cost_.assign(pixels, 0);
     if (options_.want_misses) misses_.assign(pixels, 0);
-    timing_.begin(cycle);
+    times_->begin(width, height, cycle);
+    queue_.begin(is_watched_ ? 1 : threads);
   }
 
-  void run(const HostPrimitive& host) override {
-    if (options_.sink != nullptr) options_.sink->primitive(host);
+  bool run(const HostPrimitive& host) override {
+    if (is_watched_) options_.sink->primitive(host);
+    const std::uint64_t dropped = DrawnCount::dropped(counters_);
+    draw(host);
+    if (is_watched_) queue_.hand_over();
+    return DrawnCount::dropped(counters_) == dropped;
+  }
+
+  void complete() override {
+    queue_.complete();
+    const CounterPacket& moves = times_->counters();
+    all_counters_ = counters_;
+    all_counters_.tile_fills += moves.tile_fills;
+    all_counters_.tile_evictions += moves.tile_evictions;
+    all_counters_.tile_clears += moves.tile_clears;
+  }
+
+  [[nodiscard]] const CounterPacket& counters() const override { return all_counters_; }
+  [[nodiscard]] const TimingTotals& totals() const override { return times_->totals(); }
+  [[nodiscard]] const Stream& stream(Arrow boundary) const override { return times_->stream(boundary); }
+  [[nodiscard]] Rendering& rendering() override { return rendering_; }
+  [[nodiscard]] std::vector<float>& cost() override { return times_->cost(); }
+  [[nodiscard]] std::vector<float>& misses() override { return misses_; }
+
+ private:
+  [[nodiscard]] Steps& steps() { return queue_.filling(); }
+  /// A whole step has been added.
+  void added() {
+    if (queue_.filling().is_full()) queue_.hand_over();
+  }
+
+  void draw(const HostPrimitive& host) {
     if (host.packet.kind != PrimitiveKind::fast_clear || options_.parameters.fast_clear != 0) {
       send(host, host.packet);
       return;
@@ -113,28 +134,22 @@ class CycleModelOf final : public CycleModel {
     set(held, held_stencil);
   }
 
-  [[nodiscard]] const CounterPacket& counters() const override { return counters_; }
-  [[nodiscard]] const TimingTotals& totals() const override { return timing_.totals(); }
-  [[nodiscard]] const Stream& stream(Arrow boundary) const override { return timing_.stream(boundary); }
-  [[nodiscard]] Rendering& rendering() override { return rendering_; }
-  [[nodiscard]] std::vector<float>& cost() override { return cost_; }
-  [[nodiscard]] std::vector<float>& misses() override { return misses_; }
-
- private:
   /// Sends a primitive of the host down the pipeline as `primitive`.
   void send(const HostPrimitive& host, const PrimitivePacket& primitive) {
     const auto triangle = cull(primitive, widths_, counters_, config_.setup_kind == SetupKind::pipelined);
-    timing_.take(work_of(primitive, !triangle));
-    if (!triangle) return;
+    steps().add(StepKind::take);
+    steps().primitives.push_back({work_of(primitive, !triangle), triangle ? triangle->state : PrimitiveState{}});
+    if (!triangle) return added();
     switch (triangle->kind) {
       case PrimitiveKind::fast_clear: fast_clear(*triangle); return;
-      case PrimitiveKind::flush: flush(*triangle); return;
+      case PrimitiveKind::flush:
+        steps().add(StepKind::flush);
+        steps().areas.push_back(area_of(*triangle));
+        added();
+        return;
       case PrimitiveKind::state:
-        timing_.end_token([&](Cycle offered) {
-          BlockItem item;
-          set_state(*triangle, item.texture);
-          return timing_.access(offered, TagResult{}, item);
-        });
+        set_state(*triangle);
+        added();
         return;
       case PrimitiveKind::line: draw_line(*triangle, *host.line, host.primitive); return;
       case PrimitiveKind::triangle:
@@ -143,29 +158,31 @@ class CycleModelOf final : public CycleModel {
     }
   }
 
+  [[nodiscard]] AreaStep area_of(const TrianglePacket& token) const {
+    const PixelBounds box = to_bounds(token.box);
+    return {box.right >> widths_.tile_shift, box.bottom >> widths_.tile_shift, 0, box};
+  }
+
   void fast_clear(const TrianglePacket& clear) {
-    const int last_x = clear.box.right >> widths_.tile_shift, last_y = clear.box.bottom >> widths_.tile_shift;
+    AreaStep area = area_of(clear);
     const PerPlane<std::uint32_t>& code = clear.vertex.code[0];
-    const std::array<bool, 2> planes{clear.state.depth_write, clear.state.color_write};
-    if (planes[0]) {
-      hiz_.clear(last_x, last_y, code[kDepthPlane]);
+    if (clear.state.depth_write) {
+      hiz_.clear(area.last_x, area.last_y, code[kDepthPlane]);
       if (config_.hiz_bits != 0)
-        timing_.clear_bounds(static_cast<std::uint64_t>((last_x >> widths_.hiz_group_bits) + 1) *
-                             static_cast<std::uint64_t>(last_y + 1));
+        area.bounds = static_cast<std::uint64_t>((area.last_x >> widths_.hiz_group_bits) + 1) *
+                      static_cast<std::uint64_t>(area.last_y + 1);
       for (Framebuffer& frame : frames()) {
-        fill(frame.depth, to_bounds(clear.box), code[kDepthPlane]);
-        if (has_stencil(config_)) fill(frame.stencil, to_bounds(clear.box), path_.stencil().clear_value());
+        fill(frame.depth, area.box, code[kDepthPlane]);
+        if (has_stencil(config_)) fill(frame.stencil, area.box, path_.stencil().clear_value());
       }
     }
-    timing_.end_token([&](Cycle offered) {
-      if (blocks_) return timing_.pass_token(offered, *blocks_, true, clear.state, last_x, last_y);
-      return timing_.pass_token(offered,
-                                [&](auto& mover) { tiles_->fast_clear(last_x, last_y, planes, mover, counters_); });
-    });
-    if (planes[1])  // after the blocks evicted before it
+    steps().add(StepKind::clear);
+    steps().areas.push_back(area);
+    added();
+    if (clear.state.color_write)
       for (Framebuffer& frame : frames())
-        fill(frame.color, to_bounds(clear.box), pack_color(config_.color_format, color_channels(code)));
-    if (planes[0] || planes[1]) std::ranges::fill(rendering_.ids, -1);
+        fill(frame.color, area.box, pack_color(config_.color_format, color_channels(code)));
+    if (clear.state.writes()) std::ranges::fill(rendering_.ids, -1);
   }
 
   /// One image for each sample of a pixel.
@@ -190,14 +207,6 @@ class CycleModelOf final : public CycleModel {
                   box.right - box.left + 1, code);
   }
 
-  void flush(const TrianglePacket& packet) {
-    const int last_x = packet.box.right >> widths_.tile_shift, last_y = packet.box.bottom >> widths_.tile_shift;
-    timing_.end_token([&](Cycle offered) {
-      if (blocks_) return timing_.pass_token(offered, *blocks_, false, packet.state, last_x, last_y);
-      return timing_.pass_token(offered, [&](auto& mover) { tiles_->flush(last_x, last_y, mover, counters_); });
-    });
-  }
-
   void draw_line(const TrianglePacket& token, const LineSetup& line, std::uint32_t primitive) {
     const PrimitiveState& state = token.state;
     SetupPacket setup;  // input of HiZ
@@ -207,47 +216,37 @@ class CycleModelOf final : public CycleModel {
     fragment_.state = state;
     fragment_.coordinates = token.coordinates;
     LineState next = first_state(line);
-    FragmentPlace place;
-    place.depth_write = state.depth_write;
-    StampFate fate;
-    const auto step = [&] {
+    const auto pixels = static_cast<std::size_t>(line.remaining) + 1;
+    steps().add(StepKind::line_pixels, pixels);
+    for (std::size_t n = 0; n < pixels; ++n) {
       const LinePixel pixel = pixel_of(next, line, widths_);
       set_line_pixel(pixel, widths_, fragment_);
-      place = place_of(fragment_);
-      fate = {};
-      if (place.mask.any()) fate = shade(nullptr, nullptr, primitive);
+      StampStep& step = add_stamp();
+      step.pixel = static_cast<std::uint8_t>(
+          widths_.stamps.pixel_number(widths_.stamps.sample_at(pixel.x & (widths_.stamps.size - 1),
+                                                               pixel.y & (widths_.stamps.size - 1))));
+      if (fragment_.mask.any()) {
+        const StampFate fate = shade(nullptr, nullptr, primitive);
+        note_fate(fate, fate.kept.any(), step);
+      }
       if (!pixel.is_last) advance(next, line, widths_);
-      return !pixel.is_last;
-    };
-    const auto look_up = [&](auto& mover) {
-      const bool hits = tiles_->access(place.tile_x, place.tile_y, mover, counters_);
-      if (fate.kept.any()) tiles_->wrote(place.tile_x, place.tile_y, place.stamp, state.depth_write, state.color_write);
-      return hits;
-    };
-    const auto look_up_block = [&](BlockItem& item) {
-      return place.mask.any() ? block_access(place, fate, item) : TagResult{};  // no sample is drawn
-    };
-    const Cycle before = timing_.last_fragment();
-    timing_.end_token([&](Cycle offered) {
-      return blocks_ ? timing_.take_block_pixels(offered, step, look_up_block)
-                     : timing_.take_pixels(offered, place, step, look_up);
-    });
-    if (!options_.want_cost) return;
-    const float cycles = static_cast<float>(timing_.last_fragment() - before) / static_cast<float>(line.remaining + 1);
-    line_raster(line, widths_, [&](const LinePixel& pixel) { cost_[plain_index(pixel.x, pixel.y)] += cycles; });
+    }
+    added();
   }
 
-  [[nodiscard]] static FragmentPlace place_of(const FragmentPacket& fragment) {
-    return {fragment.key.tile_x, fragment.key.tile_y, fragment.stamp, fragment.mask, fragment.state.depth_write};
+  /// A step for the current fragment, which passes.
+  [[nodiscard]] StampStep& add_stamp() {
+    StampStep& step = steps().stamps.emplace_back();
+    step.at = {fragment_.key.tile_x, fragment_.key.tile_y, fragment_.stamp};
+    return step;
   }
 
-  /// Looks up the current fragment in the tags of a framebuffer of blocks, and records its fate.
-  TagResult block_access(const FragmentPlace& place, const StampFate& fate, BlockItem& item) {
+  /// The current fragment's fate, for its times.
+  void note_fate(const StampFate& fate, bool is_dirty, StampStep& step) {
     const PrimitiveState& state = fragment_.state;
     const ColorState& colors = path_.colors();
-    const StampAddress at{fragment_.key.tile_x, fragment_.key.tile_y, fragment_.stamp};
-    item.mask = place.mask;
-    item.stamp = block_stamp(at, widths_).stamp;
+    BlockItem& item = step.item;
+    item.mask = fragment_.mask;
     item.depth_write = state.writes_word();
     item.color_write = state.color_write;
     item.blends = blends_;
@@ -255,19 +254,22 @@ class CycleModelOf final : public CycleModel {
     item.wrote_depth = fate.written.any();
     if (state.color_write) item.colors = fate.kept;
     item.is_shaded = (colors.tests_alpha() ? fate.passed | fate.changed : item.colors).any();
-    item.texture.lookups = fate.lookups;
-    if (fate.shaded.any()) {
-      if (fragment_.coordinates.divides_colors) item.texture.divided = path_.units()->texture.groups(fate.shaded);
-      if (path_.units()->light.is_lit(fragment_.kind == PrimitiveKind::triangle))
-        item.texture.lit = fate.shaded.count();
-    }
-    return blocks_->access(at, state, place.mask == SampleMask::all(widths_.samples));
+    step.is_dirty = is_dirty;
+    if (config_.compress_units != 0) step.even = images_->even_pixels();
+    if (!path_.units()) return;
+    TextureStep& texture = steps().textures.emplace_back();
+    texture.lookups = static_cast<std::uint32_t>(fate.lookups.size());
+    steps().lookups.insert(steps().lookups.end(), fate.lookups.begin(), fate.lookups.end());
+    if (!fate.shaded.any()) return;
+    if (fragment_.coordinates.divides_colors) texture.work.divided = path_.units()->texture.groups(fate.shaded);
+    if (path_.units()->light.is_lit(fragment_.kind == PrimitiveKind::triangle))
+      texture.work.lit = fate.shaded.count();
   }
 
   /// The images and the texture memory, as the fragment path sees them.
   struct StampPort {
     static constexpr bool kSendsPackets = false;
-    CycleModelOf& model;
+    BitsAndTimes& model;
     const StampPacket* stamp;  ///< null: a pixel of a line, whose fragment has all of its codes
     const ContextPacket* context;
 
@@ -327,110 +329,122 @@ class CycleModelOf final : public CycleModel {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(rendering_.frame.width) + static_cast<std::size_t>(x);
   }
 
-  /// The times of coarse_raster's walk.
+  /// The steps of coarse_raster's walk.
   struct WalkWatch {
-    Timing& timing;
+    BitsAndTimes& model;
     bool rejects;
-    void read_ahead() const { timing.read_ahead(); }
-    void skip_outside() const { timing.skip_outside(); }
-    void read_bound() const { timing.read_bound(); }
-    void skip_behind() const { timing.skip_behind(); }
+    void read_ahead() const { model.steps().add(StepKind::read_ahead); }
+    void skip_outside() const { model.steps().add_outside(); }
+    void read_bound() const { model.steps().add(StepKind::read_bound); }
+    void skip_behind() const { model.steps().add(StepKind::behind); }
   };
 
   /// Runs coarse_raster, and for each visit the rest of the pipeline.
   void draw(const SetupPacket& setup, std::uint32_t primitive) {
     const ContextPacket context = make_context(setup, widths_);
     const EdgeContext edges = make_edge_context(setup);
-    const StampEdges places(edges, widths_);
+    const bool is_in_lanes = !options_.want_count && !options_.want_ids &&
+                             lanes_.draws(setup.state, path_.colors().tests_alpha());
+    std::optional<StampEdges> places;
+    if (is_in_lanes)
+      lanes_.begin(context, edges);
+    else
+      places.emplace(edges, widths_);
     coarse_raster(
         setup, 0, hiz_, widths_, counters_,
         [&](const TilePacket& tile) {
-          if (tile.is_visit)
-            visit(tile, edges, places, context, primitive);
+          if (!tile.is_visit)
+            steps().add(StepKind::end_walk);
+          else if (is_in_lanes)
+            visit_in_lanes(tile);
           else
-            timing_.end_walk([&](Cycle offered) { return timing_.pass(offered); });
+            visit(tile, edges, *places, context, primitive);
+          added();
         },
-        WalkWatch{timing_, options_.parameters.rejects != 0});
+        WalkWatch{*this, options_.parameters.rejects != 0});
+  }
+
+  /// The step of a visit, without its stamps.
+  TileVisitWork& add_visit(const TilePacket& tile) {
+    const StampGrid& stamps = widths_.stamps;
+    const int first_stamp = stamps.stamp_at(tile.box.left, tile.box.top),
+              last_stamp = stamps.stamp_at(tile.box.right, tile.box.bottom);
+    VisitStep& step = steps().visits.emplace_back();
+    step.tile_x = tile.key.tile_x;
+    step.tile_y = tile.key.tile_y;
+    step.box = to_bounds(tile.box);
+    step.work.ends_primitive = tile.ends_primitive;
+    step.work.first_row = stamps.row_of(first_stamp);
+    step.work.last_row = stamps.row_of(last_stamp);
+    step.work.first_column = stamps.column_of(first_stamp);
+    step.work.last_column = stamps.column_of(last_stamp);
+    return step.work;
+  }
+  void note_stamp(int number, TileVisitWork& work) const {
+    work.columns[static_cast<std::size_t>(widths_.stamps.row_of(number))] |= 1U << widths_.stamps.column_of(number);
+  }
+
+  void visit_in_lanes(const TilePacket& tile) {
+    TileVisitWork& work = add_visit(tile);
+    const PrimitiveState& state = lanes_.state();
+    std::vector<StampStep>& stamps = steps().stamps;
+    const std::size_t stamps_before = stamps.size();
+    StampStep step;
+    step.item.depth_write = state.writes_word();
+    step.item.color_write = state.color_write;
+    step.at = {tile.key.tile_x, tile.key.tile_y, 0};
+    const RetirePacket retired =
+        lanes_.draw(tile, rendering_.frame, counters_, [&](int number, SampleMask covered, SampleMask passed) {
+          note_stamp(number, work);
+          step.at.stamp = static_cast<std::uint16_t>(number);
+          step.item.mask = covered;
+          step.item.wrote_depth = state.depth_write && passed.any();
+          if (state.color_write) step.item.colors = passed;
+          step.is_dirty = passed.any();
+          stamps.push_back(step);
+        });
+    steps().add(StepKind::visit, stamps.size() - stamps_before);
+    if (config_.hiz_bits != 0) hiz_.retire(retired);
   }
 
   void visit(const TilePacket& tile, const EdgeContext& edges, const StampEdges& places, const ContextPacket& context,
              std::uint32_t primitive) {
-    const StampGrid& stamps = widths_.stamps;
-    const int tile_x = tile.key.tile_x, tile_y = tile.key.tile_y;
-    const int first_stamp = stamps.stamp_at(tile.box.left, tile.box.top),
-              last_stamp = stamps.stamp_at(tile.box.right, tile.box.bottom);
-    TileVisitWork work{tile.ends_primitive,           stamps.row_of(first_stamp),   stamps.row_of(last_stamp),
-                       stamps.column_of(first_stamp), stamps.column_of(last_stamp), {}};
-    cover_tile(tile, edges, places, widths_, [&](int number, SampleMask samples, SampleMask centres) {
-      coverage_[static_cast<std::size_t>(number)] = {samples, centres};
-      work.columns[static_cast<std::size_t>(stamps.row_of(number))] |= 1U << stamps.column_of(number);
-    });
+    TileVisitWork& work = add_visit(tile);
     StampPacket stamp = empty_stamp(tile);
     start_fragment(stamp, context, widths_, fragment_);
-    bool is_resident = false;
-    const Cycle before = timing_.last_fragment();
-    if (options_.sink != nullptr) options_.sink->visit(tile_x, tile_y);
-    timing_.visit(work, [&](Cycle offered, int row, int column) {
-      if (column < 0) return timing_.pass(offered);
-      stamp.stamp = static_cast<std::uint16_t>(stamps.stamp_number(column, row));
-      stamp.mask = coverage_[stamp.stamp].samples;
-      stamp.centre = coverage_[stamp.stamp].centres;
+    const std::size_t stamps_before = steps().stamps.size();
+    cover_tile(tile, edges, places, widths_, [&](int number, SampleMask samples, SampleMask centres) {
+      note_stamp(number, work);
+      stamp.stamp = static_cast<std::uint16_t>(number);
+      stamp.mask = samples;
+      stamp.centre = centres;
       enter_stamp(stamp, widths_, fragment_);
-      const FragmentPlace place = place_of(fragment_);
-      if (!place.mask.any()) return timing_.pass(offered);  // no sample is drawn
-      interpolate_depths(stamp, context, widths_.stamps.pixels_of(place.mask), widths_, fragment_);
+      StampStep& sent = add_stamp();
+      if (!fragment_.mask.any()) return;  // no sample is drawn
+      interpolate_depths(stamp, context, widths_.stamps.pixels_of(fragment_.mask), widths_, fragment_);
       const StampFate fate = shade(&stamp, &context, primitive);
-      if (blocks_) {
-        BlockItem item;
-        const TagResult tags = block_access(place, fate, item);
-        return timing_.access(offered, tags, item);
-      }
-      const Cycle moved = timing_.access(offered, place, [&](auto& mover) {
-        return is_resident || ((is_resident = true), tiles_->access(tile_x, tile_y, mover, counters_));
-      });
-      if (fate.passed.any())
-        tiles_->wrote(tile_x, tile_y, place.stamp, context.state.depth_write, context.state.color_write);
-      return moved;
+      note_fate(fate, fate.passed.any(), sent);
     });
+    steps().add(StepKind::visit, steps().stamps.size() - stamps_before);
     if (config_.hiz_bits != 0) hiz_.retire(path_.retire(fragment_));
-    if (options_.want_cost) share_cost(tile, work, static_cast<float>(timing_.last_fragment() - before));
   }
 
-  /// Shares the cycles of a visit among its covered pixels, or, if there are none, the pixels of its box. Pixels with
-  /// several samples all have equal shares.
-  void share_cost(const TilePacket& tile, const TileVisitWork& work, float cycles) {
-    const int per_row = widths_.stamps.stamps_per_row, size = config_.stamp_size;
-    const auto is_covered = [&](int x, int y) {
-      const int column = x / size, row = y / size;
-      return (work.columns[static_cast<std::size_t>(row)] >> column & 1) != 0 &&
-             coverage_[static_cast<std::size_t>(row * per_row + column)].samples.has(
-                 static_cast<std::size_t>(y % size * size + x % size));
-    };
-    const PixelBounds box = to_bounds(tile.box);
-    std::uint64_t covered = 0;
-    for (int y = box.top; widths_.has_samples == 0 && y <= box.bottom; ++y)
-      for (int x = box.left; x <= box.right; ++x) covered += is_covered(x, y) ? 1 : 0;
-    const float share = cycles / static_cast<float>(covered == 0 ? box.samples() : covered);
-    for (int y = box.top; y <= box.bottom; ++y)
-      for (int x = box.left; x <= box.right; ++x)
-        if (covered == 0 || is_covered(x, y))
-          cost_[plain_index((tile.key.tile_x << widths_.tile_shift) + x,
-                            (tile.key.tile_y << widths_.tile_shift) + y)] += share;
-  }
-
-  /// Applies a token's state, here and in the tags; `texture`: its work in the texture unit.
-  void set_state(const TrianglePacket& token, TextureWork& texture) {
+  /// Applies a token's state, here and in the tags, and notes its work in the texture unit.
+  void set_state(const TrianglePacket& token) {
     const StateRegister which = state_register(token.state);
     const PerPlane<std::uint32_t>& codes = token.vertex.code[2];  // the place of a state's word
     path_.set(which, codes);
-    if (!is_of_texture(which)) return set_tags();
+    if (!is_of_texture(which)) set_tags();
+    steps().add(StepKind::set_state);
     if (!path_.units()) return;
+    TextureWork& work = steps().textures.emplace_back().work;
+    if (!is_of_texture(which)) return;
     const LevelsWord beside = word_beside_texture(which, codes, widths_);
-    texture.sets_light = beside == LevelsWord::light;
-    texture.sets_border = beside == LevelsWord::border;
+    work.sets_light = beside == LevelsWord::light;
+    work.sets_border = beside == LevelsWord::border;
     if (beside != LevelsWord::levels) return;
-    texture.sets = which;
-    texture.invalidates = which == StateRegister::texture && path_.units()->texture.state().invalidates;
+    work.sets = which;
+    work.invalidates = which == StateRegister::texture && path_.units()->texture.state().invalidates;
   }
 
   void set(const ColorState& colors, const StencilState& stencil) {
@@ -438,32 +452,29 @@ class CycleModelOf final : public CycleModel {
     set_tags();
   }
   void set_tags() {
-    if (!blocks_) return;
     const ColorState& colors = path_.colors();
     blends_ = colors.ops.blends();
-    blocks_->set(colors.ops.reads_stored(), colors.tests_alpha(), path_.stencil().replaces());
+    steps().add(StepKind::set_tags);
+    steps().tags.push_back({colors.ops.reads_stored(), colors.tests_alpha(), path_.stencil().replaces()});
   }
 
   Config config_;
   Widths widths_;
   CycleOptions options_;
-  Timing timing_;
-  CounterPacket counters_;
+  std::unique_ptr<CycleTimes> times_;
+  StepQueue queue_;
+  CounterPacket counters_;      ///< without the caches'
+  CounterPacket all_counters_;  ///< up to the last complete()
   Hiz hiz_;
-  std::optional<TileDirectory> tiles_;  ///< one of the two, by cache.kind
-  std::optional<CacheTags> blocks_;
   FragmentPath path_;
+  StampLanes lanes_;
   bool blends_ = false;  ///< by the current colour operations
-  /// Coverage of a stamp of the current tile that is not empty.
-  struct Coverage {
-    SampleMask samples, centres;
-  };
-  std::vector<Coverage> coverage_;
   FragmentPacket fragment_;            ///< the current one; holds only codes that have been requested
   std::optional<StampImages> images_;  ///< of the current frame, at the stamp of this fragment
   TextureMemory texels_;
   Rendering rendering_;
-  std::vector<float> cost_, misses_;
+  std::vector<float> misses_;
+  bool is_watched_;  ///< by a sink: each primitive's times come with its bits
 };
 
 }  // namespace
@@ -471,9 +482,7 @@ class CycleModelOf final : public CycleModel {
 std::unique_ptr<CycleModel> make_cycle_model(const Config& config, MemoryTiming& memory, const CycleOptions& options) {
   validate(config);
   validate(options.parameters, config);
-  if (config.setup_kind == SetupKind::pipelined)
-    return std::make_unique<CycleModelOf<PipelinedTiming>>(config, memory, options);
-  return std::make_unique<CycleModelOf<SerialTiming>>(config, memory, options);
+  return std::make_unique<BitsAndTimes>(config, memory, options);
 }
 
 }  // namespace halfplane

@@ -31,12 +31,15 @@ class CycleModel {
  public:
   virtual ~CycleModel() = default;
   /// Begins the next frame, of any size: pixels that the host does not clear stay, if the size stays. The host offers
-  /// its next primitive from `cycle` on.
-  virtual void begin(int width, int height, Cycle cycle) = 0;
+  /// its next primitive from `cycle` on. With more than one thread, and without a sink, the times of the frame are
+  /// computed by a thread of their own; nothing depends on it.
+  virtual void begin(int width, int height, Cycle cycle, int threads = 1) = 0;
   /// From now on the texture memory holds the textures of `scene`.
   virtual void hold_textures(const Scene& scene) = 0;
-  /// Runs one primitive, to its last write.
-  virtual void run(const HostPrimitive& primitive) = 0;
+  /// Runs one primitive, to its last write. With a sink its times have been seen then. Returns false if cull dropped it.
+  virtual bool run(const HostPrimitive& primitive) = 0;
+  /// The times of all primitives so far. What follows is up to this. Throws what the memory throws, as run() may.
+  virtual void complete() = 0;
   [[nodiscard]] virtual const CounterPacket& counters() const = 0;  ///< as the RTL's, since reset
   [[nodiscard]] virtual const TimingTotals& totals() const = 0;
   [[nodiscard]] virtual const Stream& stream(Arrow boundary) const = 0;

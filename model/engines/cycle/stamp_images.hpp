@@ -7,7 +7,6 @@
 
 #include "../../stages/depth_test.hpp"
 #include "../../stages/framebuffer.hpp"
-#include "../../stages/pixel_colors.hpp"
 
 namespace halfplane {
 
@@ -56,9 +55,17 @@ class StampImages {
     packet.write_color.for_each([&](std::size_t s) { sample_[s].color[index_] = packet.color[s]; });
   }
 
-  /// Whether in each pixel of the stamp all samples are in `mask` and stored equally, or none is.
-  [[nodiscard]] bool has_one_color(SampleMask mask) const {
-    return halfplane::has_one_color(mask, widths_, [&](std::size_t s) { return color(s); });
+  /// The pixels of the stamp whose samples are stored with one colour.
+  [[nodiscard]] SampleMask even_pixels() const {
+    SampleMask even;
+    for (int pixel = 0; pixel < widths_.pixels; ++pixel) {
+      const auto first = static_cast<std::size_t>(pixel * widths_.pixel_samples);
+      bool is_even = true;
+      for (std::size_t s = first; s < first + static_cast<std::size_t>(widths_.pixel_samples); ++s)
+        is_even = is_even && color(s) == color(first);
+      even.set(pixel, is_even);
+    }
+    return even;
   }
 
  private:

@@ -54,13 +54,14 @@ Frame llvmpipe_frame(const Scene& scene, const Config& config, int threads) {
 
 }  // namespace
 
-bool has_threads(std::string_view engine) { return engine == "functional" || engine == "llvmpipe"; }
+bool has_threads(std::string_view engine) { return engine == "functional" || engine == "cycle" || engine == "llvmpipe"; }
 
 bool is_bit_exact(std::string_view engine) { return engine != "golden" && engine != "llvmpipe"; }
 
 Frame make_frame(std::string_view engine, std::shared_ptr<const Scene> scene, const Config& config, int threads,
                  const std::function<void()>& poll) {
   RenderOptions options;
+  options.threads = threads;
   if (poll) options.progress = [poll](double) { poll(); };
   if (engine == "llvmpipe" &&
       ((config.msaa_samples != 1 && config.msaa_samples != 4) || config.msaa_pattern.count != 0))

@@ -1,0 +1,105 @@
+// What the bits of a frame hand to its times: each primitive, step of a walk, tile visit, stamp and token, in program
+// order. That order does not depend on time, so the bits may be ahead, or on another thread (step_queue.hpp).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "../../packets/packets.hpp"
+#include "../../stages/clear_flags.hpp"
+#include "../../stages/cull.hpp"
+#include "block_timing.hpp"
+#include "work.hpp"
+
+namespace halfplane {
+
+enum class StepKind : std::uint8_t {
+  take,         ///< cull takes the next of Steps::primitives
+  outside,      ///< the walk skips `count` tiles outside an edge
+  read_ahead,   ///< bounds are read from here on
+  read_bound,   ///< the bound of the next tile
+  behind,       ///< that tile is behind it
+  end_walk,     ///< the primitive ends without a visit
+  visit,        ///< the next of Steps::visits, with the next `count` of Steps::stamps
+  line_pixels,  ///< the next `count` of Steps::stamps are the pixels of a line
+  set_tags,     ///< the next of Steps::tags
+  set_state,    ///< a token in the shading units; with a texture unit the next of Steps::textures
+  clear,        ///< a fast clear of the next of Steps::areas
+  flush         ///< a flush of the next of Steps::areas
+};
+
+struct PrimitiveStep {
+  PrimitiveWork work;
+  PrimitiveState state;  ///< downstream of cull
+};
+
+struct VisitStep {
+  TileVisitWork work;
+  int tile_x = 0, tile_y = 0;
+  PixelBounds box;  ///< in pixels of the tile
+};
+
+/// A stamp in the framebuffer. Without covered samples it passes.
+struct StampStep {
+  BlockItem item;
+  StampAddress at;
+  std::uint8_t pixel = 0;  ///< of a line: its number in the stamp
+  bool is_dirty = false;   ///< for a cache of tiles: some sample may have been written
+  SampleMask even;         ///< with compress.unit: pixels that are stored with one colour in all samples
+};
+
+/// Arguments of CacheTags::set().
+struct TagsStep {
+  bool reads_color = false, tests_alpha = false;
+  std::array<bool, 2> replaces_stencil{};
+};
+
+/// The last tile of a token, and for a fast clear the groups of tiles whose bounds it sets.
+struct AreaStep {
+  int last_x = 0, last_y = 0;
+  std::uint64_t bounds = 0;
+  PixelBounds box;  ///< in pixels
+};
+
+struct TextureStep {
+  TextureWork work;           ///< without its lookups
+  std::uint32_t lookups = 0;  ///< the next of Steps::lookups
+};
+
+/// A batch of steps.
+struct Steps {
+  struct Step {
+    StepKind kind;
+    std::uint32_t count = 1;
+  };
+  std::vector<Step> order;
+  std::vector<PrimitiveStep> primitives;
+  std::vector<VisitStep> visits;
+  std::vector<StampStep> stamps;
+  std::vector<TagsStep> tags;
+  std::vector<AreaStep> areas;
+  std::vector<TextureStep> textures;  ///< with a texture unit: one for each stamp with covered samples, and each token
+  std::vector<TextureLookup> lookups;
+
+  void add(StepKind kind, std::size_t count = 1) { order.push_back({kind, static_cast<std::uint32_t>(count)}); }
+  void add_outside() {
+    if (!order.empty() && order.back().kind == StepKind::outside)
+      ++order.back().count;
+    else
+      add(StepKind::outside);
+  }
+  /// Long enough to be worth a hand-over between threads, and short enough for a second-level cache.
+  [[nodiscard]] bool is_full() const { return stamps.size() >= 1024 || order.size() >= 4096; }
+  void clear() {
+    order.clear();
+    primitives.clear();
+    visits.clear();
+    stamps.clear();
+    tags.clear();
+    areas.clear();
+    textures.clear();
+    lookups.clear();
+  }
+};
+
+}  // namespace halfplane
