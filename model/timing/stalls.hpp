@@ -33,7 +33,11 @@ struct Stalls {
 
   /// The first cycle from `cycle` on in which none of `streams` (a bit each) is stalled.
   [[nodiscard]] constexpr Cycle next_free(unsigned streams, Cycle cycle) const {
-    if (threshold == 0) return cycle;
+    return threshold == 0 ? cycle : next_not_stalled(streams, cycle);
+  }
+
+ private:
+  [[nodiscard]] constexpr Cycle next_not_stalled(unsigned streams, Cycle cycle) const {
     for (;; ++cycle) {
       bool is_free = true;
       for (int s = 0; streams >> s != 0; ++s)

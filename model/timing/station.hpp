@@ -21,7 +21,8 @@ class Station {
   Station(int capacity, int latency, int turnaround)
       : latency_(static_cast<Cycle>(latency)),
         turnaround_(static_cast<Cycle>(turnaround)),
-        free_at_(static_cast<std::size_t>(capacity)) {}
+        capacity_(static_cast<std::size_t>(capacity)),
+        free_at_(capacity_) {}
 
   /// The first cycle in which the next item can enter, as far as earlier items decide.
   [[nodiscard]] Cycle room() const { return free_at_[next_]; }
@@ -30,13 +31,14 @@ class Station {
   /// The next item leaves. Call once for every item, in order, before room() for the item `capacity` after it.
   void leave(Cycle cycle) {
     free_at_[next_] = cycle + turnaround_;
-    if (++next_ == free_at_.size()) next_ = 0;
+    if (++next_ == capacity_) next_ = 0;
   }
   /// The cycle from which on all items have left, turnaround included.
-  [[nodiscard]] Cycle empty() const { return free_at_[next_ == 0 ? free_at_.size() - 1 : next_ - 1]; }
+  [[nodiscard]] Cycle empty() const { return free_at_[next_ == 0 ? capacity_ - 1 : next_ - 1]; }
 
  private:
   Cycle latency_, turnaround_;
+  std::size_t capacity_;
   std::vector<Cycle> free_at_;  ///< ring: when the place of item n - capacity is free
   std::size_t next_ = 0;
 };

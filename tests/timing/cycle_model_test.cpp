@@ -65,6 +65,15 @@ TEST(CycleModel, ItsBitsAreThoseOfTheFunctionalEngine) {
         EXPECT_EQ(cycle.counters.depth_passed, expected.counters.depth_passed);
         EXPECT_EQ(cycle.counters.written, expected.counters.written);
         EXPECT_EQ(cycle.counters.drawn, expected.counters.drawn);
+        wanted = {};  // neither needs every stamp's samples one by one
+        wanted.threads = 2;
+        const Rendering alone = render(scene, config, {}, {}, wanted).rendering;
+        EXPECT_EQ(alone.frame.depth, expected.frame.depth);
+        EXPECT_EQ(alone.frame.color, expected.frame.color);
+        EXPECT_EQ(alone.counters.covered, cycle.counters.covered);
+        EXPECT_EQ(alone.counters.depth_passed, expected.counters.depth_passed);
+        EXPECT_EQ(alone.counters.written, expected.counters.written);
+        EXPECT_EQ(alone.counters.skipped.tiles_hiz, cycle.counters.skipped.tiles_hiz);
         ++scenes;
       }
   EXPECT_GT(scenes, 100);
@@ -138,6 +147,74 @@ TEST(CycleModel, AFasterMemoryIsNeverSlower) {
     EXPECT_GT(cycles, before);
     before = cycles;
   }
+}
+
+/// Everything that a run measures.
+void expect_equal(const CycleRendering& a, const CycleRendering& b) {
+  EXPECT_EQ(a.rendering.frame.depth, b.rendering.frame.depth);
+  EXPECT_EQ(a.rendering.frame.color, b.rendering.frame.color);
+  EXPECT_EQ(a.rendering.counters.covered, b.rendering.counters.covered);
+  EXPECT_EQ(a.rendering.counters.texture.fills, b.rendering.counters.texture.fills);
+  EXPECT_EQ(a.run.cycles, b.run.cycles);
+  EXPECT_EQ(a.run.raster_cycles, b.run.raster_cycles);
+  EXPECT_EQ(a.run.tile_cycles, b.run.tile_cycles);
+  EXPECT_EQ(a.run.totals.works, b.run.totals.works);
+  EXPECT_EQ(a.run.totals.beats, b.run.totals.beats);
+  EXPECT_EQ(a.run.totals.texel_beats, b.run.totals.texel_beats);
+  for (const Arrow arrow : kElastic) {
+    EXPECT_EQ(a.run.use[index(arrow)].busy, b.run.use[index(arrow)].busy) << info(arrow).name;
+    EXPECT_EQ(a.run.use[index(arrow)].stalled, b.run.use[index(arrow)].stalled) << info(arrow).name;
+  }
+  EXPECT_EQ(a.cost, b.cost);
+  EXPECT_EQ(a.misses, b.misses);
+}
+
+// Long enough that the ring of batches is full, and all kinds of steps are in it.
+TEST(CycleModel, TimesOnAThreadOfTheirOwnAreTheSame) {
+  const Config sampled = with("embedded", {{"msaa.samples", "4"},
+                                           {"compress.unit", "1"},
+                                           {"alpha.unit", "1"},
+                                           {"blend.lanes", "4"},
+                                           {"cache.lines", "16"}});
+  const Config textured = with("embedded", {{"texture.unit", "trilinear"}});
+  for (const auto& [config, scene] : {std::pair{preset("embedded"), "city"},
+                                      {preset("small"), "knot"},
+                                      {preset("full"), "teapot"},
+                                      {sampled, "city"},
+                                      {sampled, "wires"},
+                                      {textured, "ball_linear"}}) {
+    SCOPED_TRACE(scene);
+    CycleOptions options;
+    options.want_cost = options.want_misses = true;
+    RenderOptions one, two;
+    two.threads = 2;
+    const Scene drawn =
+        make_builtin(scene, config.target_width < 320 ? 160 : 320, config.target_width < 320 ? 120 : 240, {}, 1);
+    const CycleRendering alone = render(drawn, config, options, {}, one);
+    expect_equal(alone, render(drawn, config, options, {}, two));
+    Nobody nobody;  // bits and times, primitive by primitive
+    options.sink = &nobody;
+    expect_equal(alone, render(drawn, config, options, {}, two));
+  }
+}
+
+TEST(CycleModel, AnErrorEndsTheThreadOfTheTimes) {
+  struct Full final : MemoryTiming {
+    int bursts = 0;
+    [[nodiscard]] Cycle room() const override { return 0; }
+    BurstAnswer accept(const MemoryBurst&, Cycle cycle) override {
+      if (++bursts == 1000) throw InputError("full");
+      return {cycle + 8};
+    }
+  };
+  const Config config = preset("embedded");
+  const Scene scene = make_builtin("city", 320, 240, {}, 1);
+  RenderOptions wanted;
+  wanted.threads = 2;
+  Full memory;
+  EXPECT_THROW((void)render_cycle(scene, config, memory, wanted), InputError);
+  wanted.progress = [](double) { throw InputError("stopped"); };
+  EXPECT_THROW((void)render(scene, config, {}, {}, wanted), InputError);
 }
 
 TEST(CycleModel, StallsCostCyclesAndNoBits) {

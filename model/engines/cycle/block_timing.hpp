@@ -41,60 +41,10 @@
 #include "../../stages/pixel_colors.hpp"
 #include "../../stages/texture_packets.hpp"
 #include "../../timing/station.hpp"
+#include "shade_timing.hpp"
 #include "texture_timing.hpp"
 
 namespace halfplane {
-
-/// Fog downstream of a texture unit, rtl_ref/stages/fog_unit.sv: three registers, each of which loads as soon as its
-/// content moves on.
-class FogTiming {
- public:
-  /// A stamp on offer from `offered` on. Returns when it is on offer to the colour stage.
-  Cycle take(Cycle offered) {
-    Cycle at = offered;
-    for (std::size_t n = 0; n < entered_.size(); ++n) {
-      const Cycle free = n + 1 < entered_.size() ? entered_[n + 1] : left_;  // when the stamp before moves on
-      at = std::max(at, free);
-      entered_[n] = at++;
-    }
-    return at;
-  }
-  /// When it was taken.
-  [[nodiscard]] Cycle taken() const { return entered_.front(); }
-  /// The colour stage took it.
-  void leave(Cycle w) { left_ = w; }
-
- private:
-  std::array<Cycle, 3> entered_{};  ///< by the last stamp
-  Cycle left_ = 0;
-};
-
-/// Light upstream of a texture unit, rtl_ref/stages/light_unit.sv: a queue, and a lane that takes a lit sample per
-/// clock, or a stamp without any. For stamp m:
-///
-///   l(m) = max(x + 2, l(m-1) + 1), then a clock per sample; a token of the light waits for the last lit l + 10
-///   leaves kClocks after the last one
-class LightTiming {
- public:
-  /// A stamp leaves the depth stage in `x`, with `lit` lit samples. Returns the cycle in which it would have left
-  /// without a unit.
-  Cycle take(Cycle x, int lit, bool sets) {
-    last_ = std::max(x + kDoor, last_ + 1);
-    if (sets) last_ = std::max(last_, looked_at_);
-    if (lit > 0) {
-      last_ += static_cast<Cycle>(lit) - 1;
-      looked_at_ = last_ + kLooks;
-    }
-    return last_ + kClocks - 1;
-  }
-
- private:
-  static constexpr Cycle kDoor = 2;     ///< from the depth stage to the head of the queue
-  static constexpr Cycle kClocks = 12;  ///< from there to the input of the texture unit
-  static constexpr Cycle kLooks = 10;   ///< part of these, up to the last read of a register of the light
-  Cycle last_ = 0;                      ///< when the last sample, or stamp without any, entered the lane
-  Cycle looked_at_ = 0;                 ///< when the last sample has read all registers
-};
 
 /// The work of a fragment in a texture unit and its neighbours.
 struct TextureWork {
@@ -160,7 +110,7 @@ class BlockTiming {
     const Cycle t = leave(moved, tags.falls());
     last_block_.reset();
     if (item.mask.any()) last_block_ = tags.block;
-    const Answers answers = is_order ? order(t, tags.writes, &item, tags, ask) : Answers{};
+    const Answers answers = is_order ? order(t, tags.writes, tags, ask) : Answers{};
     Cycle x = std::max({items_.ready(t), tested_ + 1, texture_ ? texture_->room() : behind_.room()});
     if (reads) x = std::max(x, answers.depth + 1);
     if (tags.source == DepthSource::chip || tags.eviction) x = std::max(x, depth_free_);
@@ -208,7 +158,7 @@ class BlockTiming {
     last_block_.reset();
     if (writes > 0) {
       cycle = std::max(cycle, orders_.room());
-      (void)order(cycle, writes, nullptr, TagResult{}, ask);
+      (void)order(cycle, writes, TagResult{}, ask);
     }
     return std::max({cycle + 1, tested_ + 1, colored_ + 1, ordered_ + 1});
   }
@@ -252,6 +202,7 @@ class BlockTiming {
 
   /// The first cycle in which the depth stage can let an item go, as far as late items decide it.
   [[nodiscard]] Cycle late_room(const TagResult& tags, const BlockItem& item) const {
+    if (!texture_) return 0;  // no item is late
     Cycle room = 0;
     if (item.mask.any()) room = item.is_late ? late_[late_place(tags.line, tags.stamp)] + 1 : last_late_ + 1;
     for (int stamp = 0; tags.eviction && stamp < widths_.blocks.stamps(); ++stamp)
@@ -344,24 +295,32 @@ class BlockTiming {
   /// The clocks in which an item passes the colour stage from `w` on: one for each group of lanes with a sample to blend.
   /// Returns the last.
   Cycle write_colors(Cycle w, std::size_t line, const BlockItem& item, bool writes_all) {
-    const int groups = item.blends ? widths_.samples / lanes_ : 1, size = widths_.samples / groups;
     SampleMask writes;  // samples written with the first group: no group reads the writes of another
     if (writes_all) writes = SampleMask(SampleMask::all(widths_.samples).bits() & ~item.colors.bits());
+    if (!item.blends) {
+      note_color_write({w, line, writes | item.colors});
+      return w;
+    }
+    const int groups = widths_.samples / lanes_, size = lanes_;
     bool has_gone = false;
     for (int group = 0; group < groups; ++group) {
       const SampleMask own = item.colors & SampleMask((SampleMask::all(size).bits()) << group * size);
       if (!own.any() && !(group + 1 == groups && !has_gone)) continue;
       if (has_gone) ++w;
-      color_writes_[next_write_] = {w, line, writes | own};
-      next_write_ = (next_write_ + 1) % color_writes_.size();
+      note_color_write({w, line, writes | own});
       writes = {};
       has_gone = true;
     }
     return w;
   }
 
+  void note_color_write(const ColorWrite& write) {
+    color_writes_[next_write_] = write;
+    if (++next_write_ == color_writes_.size()) next_write_ = 0;
+  }
+
   template <class Ask>
-  Answers order(Cycle pushed, int writes, const BlockItem* item, const TagResult& tags, Ask&& ask) {
+  Answers order(Cycle pushed, int writes, const TagResult& tags, Ask&& ask) {
     Cycle cycle = std::max(ordered_ + 1, orders_.ready(pushed));
     Answers answers;
     for (; writes > 0; --writes) {

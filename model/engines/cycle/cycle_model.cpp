@@ -222,9 +222,8 @@ class BitsAndTimes final : public CycleModel {
       const LinePixel pixel = pixel_of(next, line, widths_);
       set_line_pixel(pixel, widths_, fragment_);
       StampStep& step = add_stamp();
-      step.pixel = static_cast<std::uint8_t>(
-          widths_.stamps.pixel_number(widths_.stamps.sample_at(pixel.x & (widths_.stamps.size - 1),
-                                                               pixel.y & (widths_.stamps.size - 1))));
+      step.pixel = static_cast<std::uint8_t>(widths_.stamps.pixel_number(
+          widths_.stamps.sample_at(pixel.x & (widths_.stamps.size - 1), pixel.y & (widths_.stamps.size - 1))));
       if (fragment_.mask.any()) {
         const StampFate fate = shade(nullptr, nullptr, primitive);
         note_fate(fate, fate.kept.any(), step);
@@ -343,8 +342,8 @@ class BitsAndTimes final : public CycleModel {
   void draw(const SetupPacket& setup, std::uint32_t primitive) {
     const ContextPacket context = make_context(setup, widths_);
     const EdgeContext edges = make_edge_context(setup);
-    const bool is_in_lanes = !options_.want_count && !options_.want_ids &&
-                             lanes_.draws(setup.state, path_.colors().tests_alpha());
+    const bool is_in_lanes =
+        !options_.want_count && !options_.want_ids && lanes_.draws(setup.state, path_.colors().tests_alpha());
     std::optional<StampEdges> places;
     if (is_in_lanes)
       lanes_.begin(context, edges);
@@ -468,7 +467,7 @@ class BitsAndTimes final : public CycleModel {
   Hiz hiz_;
   FragmentPath path_;
   StampLanes lanes_;
-  bool blends_ = false;  ///< by the current colour operations
+  bool blends_ = false;                ///< by the current colour operations
   FragmentPacket fragment_;            ///< the current one; holds only codes that have been requested
   std::optional<StampImages> images_;  ///< of the current frame, at the stamp of this fragment
   TextureMemory texels_;

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <vector>
 
 #include "../../pipeline_graph.hpp"
 #include "../../stages/memory_port.hpp"
@@ -51,7 +52,11 @@ class PortTiming {
         memory_(memory),
         streams_(streams),
         sink_(sink),
-        unanswered_(kUnanswered, 0, 1) {}
+        unanswered_(kUnanswered, 0, 1) {
+    for (std::size_t plane = 0; plane < offsets_.size(); ++plane)
+      for (int stamp = 0; stamp < widths.stamps.stamps(); ++stamp)
+        offsets_[plane].push_back(stamp_offset(static_cast<TilePlane>(plane), stamp, widths));
+  }
 
   void set_layout(const MemoryLayout& layout) { layout_ = layout; }
   /// Beats moved, for writes and reads.
@@ -62,7 +67,9 @@ class PortTiming {
   /// A request on offer from `cycle` on.
   PortTimes take(const PortRequest& request, Cycle cycle) {
     const auto [share, address] = place_of(request);
-    if (!request.is_write) return read(request, share, address, cycle);
+    if (!request.is_write)
+      return request.run == 1 && stalls_.threshold == 0 && sink_ == nullptr ? read_at_once(share, address, cycle)
+                                                                            : read(request, share, address, cycle);
     return {write(request, share, address, share.first, cycle), 0};
   }
 
@@ -90,8 +97,12 @@ class PortTiming {
   };
   [[nodiscard]] Place place_of(const PortRequest& request) const {
     const int shift = item_shift(request.plane, widths_.memory);
-    const std::uint32_t address =
-        byte_address(request.plane, request.tile_x, request.tile_y, request.stamp, layout_, widths_);
+    std::uint32_t address = 0;
+    if (is_flags(request.plane))
+      address = byte_address(request.plane, request.tile_x, request.tile_y, request.stamp, layout_, widths_);
+    else
+      address = byte_address(request.plane, request.tile_x, request.tile_y, 0, layout_, widths_) +
+                offsets_[number(request.plane)][static_cast<std::size_t>(request.stamp)];
     return {BeatShare(shift, widths_.memory.port, address >> shift), address};
   }
 
@@ -145,6 +156,23 @@ class PortTiming {
     unanswered_.leave(answered_);
   }
 
+  /// A read of a stamp where nothing holds the streams back.
+  PortTimes read_at_once(const BeatShare& share, std::uint32_t address, Cycle cycle) {
+    const Cycle asked = std::max(cycle, room_);
+    room_ = std::max(asked + 1, memory_.room());
+    const MemoryBurst burst{false, address >> widths_.memory.port << widths_.memory.port, share.per_stamp};
+    const BurstAnswer answer = memory_.accept(burst, room_);
+    for (int n = 0; n < burst.beats; ++n) answered_ = std::max(answer.at(n), answered_ + 1);
+    const auto beats = static_cast<std::uint64_t>(burst.beats);
+    beats_ += beats;
+    streams_[index(Arrow::request)].count_run(1, asked - cycle);
+    streams_[index(Arrow::beat)].count_run(1, room_ - asked - 1);
+    streams_[index(Arrow::answer)].count_run(beats, 0);
+    streams_[index(Arrow::response)].count_run(1, 0);
+    last_ = std::max({last_, room_, answered_});
+    return {asked, answered_};
+  }
+
   PortTimes read(const PortRequest& request, const BeatShare& share, std::uint32_t address, Cycle cycle) {
     const Cycle asked = moves(Arrow::request, cycle, room_);
     room_ = moves(Arrow::beat, asked + 1, memory_.room());
@@ -189,10 +217,11 @@ class PortTiming {
   MemoryTiming& memory_;
   std::array<Stream, kArrows>& streams_;
   TransferSink* sink_;
-  Station unanswered_;     ///< write bursts
-  MemoryBurst burst_;      ///< the burst being written
-  int left_ = 0;           ///< stamps of it that have not come
-  bool has_sent_ = false;  ///< a beat of it has been sent
+  Station unanswered_;                                 ///< write bursts
+  MemoryBurst burst_;                                  ///< the burst being written
+  int left_ = 0;                                       ///< stamps of it that have not come
+  std::array<std::vector<std::uint32_t>, 6> offsets_;  ///< stamp_offset() by plane, but for flags
+  bool has_sent_ = false;                              ///< a beat of it has been sent
   Cycle room_ = 0, answered_ = 0;
   std::uint64_t beats_ = 0;
   Cycle last_ = 0;

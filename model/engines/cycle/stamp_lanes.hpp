@@ -33,8 +33,7 @@ class StampLanes {
     for (std::size_t e = 0; e < 3; ++e)
       edges_[e] = Steps(static_cast<std::uint32_t>(edges.step_x[e]), static_cast<std::uint32_t>(edges.step_y[e]));
     for (std::size_t p = 0; p < kPlanes; ++p)
-      planes_[p] =
-          Steps(static_cast<std::uint32_t>(context.step_x[p]), static_cast<std::uint32_t>(context.step_y[p]));
+      planes_[p] = Steps(static_cast<std::uint32_t>(context.step_x[p]), static_cast<std::uint32_t>(context.step_y[p]));
   }
 
   /// Of the primitive.
@@ -48,14 +47,15 @@ class StampLanes {
     const PixelBounds box = to_bounds(tile.box);
     const int half_tile = 1 << (widths_.tile_shift - 1);
     const DepthOutcomes passes(state_.depth_test);
-    int covered = 0, passed = 0, full = 0;
-    Lanes largest{};
+    int full = 0;
+    Lanes covered{}, passed{}, largest{};  // the first two: counts
     for (int y = box.top & -kSize; y <= box.bottom; y += kSize) {
       const unsigned rows = (y >= box.top ? 3U : 0U) | (y + 1 <= box.bottom ? 12U : 0U);
       int x = box.left & -kSize;
       std::array<Lanes, 3> edge;
       for (std::size_t e = 0; e < 3; ++e) edge[e] = edges_[e].at(static_cast<std::uint32_t>(tile.edge_value[e]), x, y);
-      std::size_t at = frame.at((tile.key.tile_x << widths_.tile_shift) + x, (tile.key.tile_y << widths_.tile_shift) + y);
+      std::size_t at =
+          frame.at((tile.key.tile_x << widths_.tile_shift) + x, (tile.key.tile_y << widths_.tile_shift) + y);
       for (; x <= box.right; x += kSize, at += kSize) {
         const unsigned in_box = rows & ((x >= box.left ? 5U : 0U) | (x + 1 <= box.right ? 10U : 0U));
         Lanes drawn = kLanesOf[in_box];
@@ -86,19 +86,19 @@ class StampLanes {
             largest = halfplane::largest(largest, depth);
           }
         }
-        covered += std::popcount(mask);
-        passed += std::popcount(bits);
+        covered -= drawn;  // 1 more where the mask is set
+        passed -= pass;
         visit(stamps.stamp_at(x, y), SampleMask(mask), SampleMask(bits));
       }
     }
     if (is_counted(tile.kind)) {
-      counters.covered += static_cast<std::uint64_t>(covered);
-      counters.depth_passed += static_cast<std::uint64_t>(passed);
-      if (state_.writes()) counters.written += static_cast<std::uint64_t>(passed);
+      counters.covered += sum(covered);
+      counters.depth_passed += sum(passed);
+      if (state_.writes()) counters.written += sum(passed);
     }
     RetirePacket retired;
     retired.key = tile.key;
-    set_hiz_update(retired, state_, full == stamps.stamps(), passed != 0,
+    set_hiz_update(retired, state_, full == stamps.stamps(), sum(passed) != 0,
                    std::max({largest[0], largest[1], largest[2], largest[3]}), config_, widths_);
     return retired;
   }
@@ -116,13 +116,15 @@ class StampLanes {
     Lanes stamp_x{};             ///< from a stamp to the next
     Lanes in_stamp{};            ///< from the first pixel of a stamp to each
     Steps() = default;
-    Steps(std::uint32_t x_, std::uint32_t y_) : x(x_), y(y_), stamp_x(Lanes{} + kSize * x_), in_stamp{0, x_, y_, x_ + y_} {}
+    Steps(std::uint32_t x_, std::uint32_t y_)
+        : x(x_), y(y_), stamp_x(Lanes{} + kSize * x_), in_stamp{0, x_, y_, x_ + y_} {}
     /// At the pixels of the stamp that lies i and j pixels from a pixel with value `from`.
     [[nodiscard]] Lanes at(std::uint32_t from, int i, int j) const {
       return (Lanes{} + (from + static_cast<std::uint32_t>(i) * x + static_cast<std::uint32_t>(j) * y)) + in_stamp;
     }
   };
 
+  [[nodiscard]] static std::uint32_t sum(const Lanes& v) { return v[0] + v[1] + v[2] + v[3]; }
   /// A bit for each lane whose mask is set.
   [[nodiscard]] static unsigned bits_of(const Lanes& mask) {
     const auto rows = reinterpret_cast<Rows>(mask & Lanes{1, 2, 4, 8});

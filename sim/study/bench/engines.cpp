@@ -54,7 +54,9 @@ Frame llvmpipe_frame(const Scene& scene, const Config& config, int threads) {
 
 }  // namespace
 
-bool has_threads(std::string_view engine) { return engine == "functional" || engine == "cycle" || engine == "llvmpipe"; }
+bool has_threads(std::string_view engine) {
+  return engine == "functional" || engine == "cycle" || engine == "llvmpipe";
+}
 
 bool is_bit_exact(std::string_view engine) { return engine != "golden" && engine != "llvmpipe"; }
 
