@@ -367,7 +367,7 @@ def replay(words, env, seconds):
 
 
 def speed(name, folder, env, options):
-    """Medians of --runs replays on llvmpipe and on the driver in turn. One more says what part of a frame is raster."""
+    """Medians of --runs replays on llvmpipe and on the driver in turn. One more says what of a frame is host and raster."""
     row = {'name': name, 'error': ''}
     results = folder / f'{name}.results'
     results.unlink(missing_ok=True)  # of a run that was ended; the driver appends
@@ -379,7 +379,8 @@ def speed(name, folder, env, options):
         if not results.exists():
             raise RuntimeError('the driver did not answer')
         rows = [json.loads(line) for line in results.read_text(encoding='utf-8').splitlines()]
-        raster = sum(one['time_s']['geometry'] + one['time_s']['raster'] for one in rows) / seconds
+        raster = statistics.mean(one['time_s']['geometry'] + one['time_s']['raster'] for one in rows)
+        host = seconds / len(rows) - statistics.mean(one['time_s']['waited'] for one in rows)
         pairs = [(replay(words, mesa, 240), replay(words, ours, 240)) for _ in range(options.runs)]
     except (RuntimeError, OSError, json.JSONDecodeError) as error:
         row['error'] = str(error)
@@ -391,7 +392,7 @@ def speed(name, folder, env, options):
         row |= {f'{key}mesa': statistics.median(m[at] / m[0] for m, _ in pairs),
                 f'{key}ours': statistics.median(o[at] / o[0] for _, o in pairs),
                 f'{key}ratio': statistics.median(m[at] / m[0] / (o[at] / o[0]) for m, o in pairs)}
-    row |= {'raster': raster * row['ours'], 'host': (1 - raster) * row['ours']}
+    row |= {'raster': raster, 'host': host}
     return row
 
 

@@ -19,15 +19,14 @@ void leave(const Context& context) {
 void Drawable::swap() {
   const bool was_front = draws_to_front_;
   draw_to(false);
-  frame.end();
-  show();
+  frame.end([this](const Framebuffer& picture) { show(picture); });
   if (other_ != nullptr) make_front(true);
   draw_to(was_front);
 }
 
 void Drawable::draw_to(bool front) {
   if (single_buffered || front == draws_to_front_) return;
-  if (draws_to_front_) show();  // no swap does
+  if (draws_to_front_) show(frame.picture());  // no swap does
   make_front();
   frame.exchange_colors(*other_);
   draws_to_front_ = front;

@@ -16,15 +16,15 @@
 
 namespace halfplane::gl {
 
-/// A target of contexts: a window, a pbuffer. Made by the window system's side (glx/, egl/), which shows `frame` in show().
+/// A target of contexts: a window, a pbuffer. Made by the window system's side (glx/, egl/), which shows pictures in show().
 struct Drawable {
   Drawable(const Options& options, int width, int height) : frame(options, width, height) {}
-  virtual ~Drawable() = default;
+  virtual ~Drawable() { frame.wait(); }
   Drawable(const Drawable&) = delete;
   Drawable& operator=(const Drawable&) = delete;
 
-  /// Shows the picture of `frame`.
-  virtual void show() {}
+  /// Shows the picture of `frame`. Any thread may call it, one at a time.
+  virtual void show(const Framebuffer& /*picture*/) {}
   /// Ends the frame and shows it; called by glFlush and glFinish where the drawn buffer is the front one.
   virtual void present() {}
   /// Ends the frame of the back buffer and copies it to the front one.

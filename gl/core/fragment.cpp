@@ -286,6 +286,9 @@ void flush(Context& context) {
   if (drawable->single_buffered || is_front(buffer) || is_front_and_back(buffer)) drawable->present();
 }
 
-void finish(Context& context) { flush(context); }
+void finish(Context& context) {
+  flush(context);
+  if (context.drawable != nullptr) context.drawable->frame.wait();
+}
 
 }  // namespace halfplane::gl

@@ -97,6 +97,7 @@ Scene Frame::Memory::empty_scene() const {
 
 void Frame::Memory::resize(int width, int height) {
   if (width == scene.width && height == scene.height) return;
+  wait();
   forget();
   scene.width = width;
   scene.height = height;
@@ -124,7 +125,7 @@ bool Frame::Memory::takes(std::uint32_t state, Topology topology) {
   one.states = {scene.states[state]};
   std::optional<std::uint32_t>& texture = one.states[0].texture;
   try {
-    if (texture && (*texture >= slots.size() || slots[*texture].texture.level.empty()))
+    if (texture && (*texture >= slots.size() || slots[*texture].bytes == 0))
       throw InputError("a draw with a texture that is none");
     texture.reset();
     one.commands.emplace_back(Draw{.topology = topology});
@@ -288,6 +289,7 @@ std::uint32_t Frame::Memory::texture(std::uint64_t key, const std::function<half
     return known->second;
   }
   if (texture_bytes > kMostTextureBytes) {
+    wait();
     drop_textures(kMostTextureBytes / 2, 0);
     if (texture_bytes > kMostTextureBytes && !is_recorded()) {
       rebase();
@@ -305,7 +307,7 @@ std::uint32_t Frame::Memory::texture(std::uint64_t key, const std::function<half
     say_once(std::string("a white texture in place of one: ") + error.what());
     alone.textures = {make_texture(name, {1, 1, {Texel{255, 255, 255, 255}}}, TextureFormat::rgba8888, Mips::none)};
   }
-  const auto is_free = [](const Slot& slot) { return slot.texture.level.empty(); };
+  const auto is_free = [](const Slot& slot) { return slot.bytes == 0; };
   const auto place = static_cast<std::uint32_t>(std::ranges::find_if(slots, is_free) - slots.begin());
   if (place == slots.size()) slots.emplace_back();
   Slot& slot = slots[place];
@@ -322,8 +324,7 @@ std::uint32_t Frame::Memory::texture(std::uint64_t key, const std::function<half
 void Frame::Memory::drop_textures(std::size_t most_bytes, std::uint64_t least_frame) {
   std::vector<std::pair<std::uint64_t, std::uint32_t>> unused;
   for (std::uint32_t i = 0; i < slots.size(); ++i)
-    if (!slots[i].texture.level.empty() && slots[i].frame < std::max(frame, least_frame))
-      unused.emplace_back(slots[i].frame, i);
+    if (slots[i].bytes != 0 && slots[i].frame < std::max(frame, least_frame)) unused.emplace_back(slots[i].frame, i);
   std::ranges::sort(unused);
   for (const auto& [used, i] : unused) {
     if (used >= least_frame && texture_bytes <= most_bytes) return;
@@ -335,11 +336,12 @@ void Frame::Memory::drop_textures(std::size_t most_bytes, std::uint64_t least_fr
 
 // --- drawing ----------------------------------------------------------------------------------------------------------
 
-/// The waiting draws as a scene of their own. Vertices and textures are lent by the frame, and given back at the end.
+/// The waiting draws of a frame as a scene of their own. Vertices and textures are lent, and given back at the end.
 struct Frame::Memory::Part {
-  explicit Part(Memory& memory_) : memory(memory_), scene(memory_.empty_scene()) {
-    Scene& frame = memory.scene;
-    const Mark& from = memory.drawn;
+  Part(Memory& memory_, CollectedFrame& collected_)
+      : memory(memory_), collected(collected_), scene(memory_.empty_scene()) {
+    Scene& frame = collected.scene;
+    const Mark& from = collected.drawn;
     if (from.commands == 0) {
       scene.vertices.swap(frame.vertices);
       scene.indices.swap(frame.indices);
@@ -378,9 +380,9 @@ struct Frame::Memory::Part {
       if (state.texture) state.texture = number[*state.texture];
   }
   ~Part() {
-    if (memory.drawn.commands == 0) {
-      scene.vertices.swap(memory.scene.vertices);
-      scene.indices.swap(memory.scene.indices);
+    if (collected.drawn.commands == 0) {
+      scene.vertices.swap(collected.scene.vertices);
+      scene.indices.swap(collected.scene.indices);
     }
     for (std::size_t i = 0; i < slot.size(); ++i) {
       memory.slots[slot[i]].texture = std::move(scene.textures[i]);
@@ -391,24 +393,31 @@ struct Frame::Memory::Part {
   Part& operator=(const Part&) = delete;
 
   Memory& memory;
+  CollectedFrame& collected;
   Scene scene;
   std::vector<std::uint32_t> slot;  ///< slot of each texture
   std::vector<TexelBlocks> blocks;  ///< blocks of the first textures
 };
 
-/// Renders the waiting draws. Throws InputError; then the picture may hold some of them.
+/// Throws InputError; then the picture may hold some of the draws.
+void Frame::Memory::render(Part& part) {
+  const Stopwatch watch(raster_s);
+  PreparedScene prepared(part.scene, std::move(part.blocks), Footprints::when_known);
+  RenderOptions render;
+  render.onto = picture;
+  render.threads = options.threads;
+  const Rendering& rendering = engine.render(prepared, render);
+  part.blocks = std::move(prepared.textures);
+  picture = &rendering.frame;
+  gl::add(part.collected.counters, rendering.counters);
+  geometry_s += rendering.geometry_s;
+}
+
+/// Renders the waiting draws, as the other one.
 void Frame::Memory::render() {
   {
-    Part part(*this);
-    PreparedScene prepared(part.scene, std::move(part.blocks), Footprints::when_known);
-    RenderOptions render;
-    render.onto = picture;
-    render.threads = options.threads;
-    const Rendering& rendering = engine.render(prepared, render);
-    part.blocks = std::move(prepared.textures);
-    picture = &rendering.frame;
-    gl::add(counters, rendering.counters);
-    geometry_s += rendering.geometry_s;
+    Part part(*this, *this);
+    render(part);
   }
   drawn = end_mark();
 }
@@ -429,10 +438,15 @@ void Frame::Memory::begin() {
 }
 
 void Frame::Memory::flush() {
+  const Stopwatch watch(waited_s, is_timed());
+  wait();
   if (scene.commands.size() == drawn.commands) return;
   if (!has_begun) begin();
   kind = -1;
-  const Stopwatch watch(raster_s);
+  draw_or_recover();
+}
+
+void Frame::Memory::draw_or_recover() {
   try {
     try {
       render();
@@ -444,6 +458,36 @@ void Frame::Memory::flush() {
     scene.commands.resize(drawn.commands);
     drawn = end_mark();
   }
+}
+
+/// Hands the rest of this frame over to `helper`.
+void Frame::Memory::draw_beside(std::function<void(const Counters&)> after) {
+  std::swap<CollectedFrame>(*this, ended.frame);
+  scene.width = ended.frame.scene.width;
+  scene.height = ended.frame.scene.height;
+  ended.after = std::move(after);
+  ended.part = std::make_unique<Part>(*this, ended.frame);
+  helper.start([this] {
+    try {
+      render(*ended.part);
+    } catch (...) {
+      ended.fault = std::current_exception();
+      return;
+    }
+    ended.after(ended.frame.counters);
+  });
+}
+
+void Frame::Memory::wait() {
+  if (ended.part == nullptr) return;
+  helper.wait();
+  ended.part.reset();
+  if (ended.fault == nullptr) return;
+  ended.fault = nullptr;
+  std::swap<CollectedFrame>(*this, ended.frame);
+  draw_or_recover();
+  ended.after(counters);
+  std::swap<CollectedFrame>(*this, ended.frame);
 }
 
 /// Draws the frame again without the draws that the engine refuses.
@@ -582,18 +626,19 @@ void Frame::exchange_colors(Framebuffer& other) {
   memory_->picture = &base;
 }
 
+void Frame::wait() { memory_->wait(); }
+
 std::uint64_t Frame::samples_passed() {
   memory_->flush();
   return memory_->samples + memory_->counters.depth_passed - memory_->counters.alpha_killed;
 }
 
-void Frame::end() {
-  memory_->end();
+void Frame::end(Show show) {
+  memory_->end(std::move(show));
   Memory& m = *memory_;
-  m.samples += m.counters.depth_passed - m.counters.alpha_killed;
   m.forget();
+  m.drop_textures(kMostTextureBytes, std::max(m.frame + 1, kFramesKept) - kFramesKept);
   ++m.frame;
-  m.drop_textures(kMostTextureBytes, m.frame > kFramesKept ? m.frame - kFramesKept : 0);
 }
 
 void Frame::missing(std::string_view what, std::string_view instead) {
@@ -608,7 +653,5 @@ void Frame::missing(std::string_view what, std::string_view instead) {
 }
 
 std::uint64_t Frame::revision() const { return memory_->revision; }
-
-double Frame::raster_seconds() const { return memory_->raster_s; }
 
 }  // namespace halfplane::gl

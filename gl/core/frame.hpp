@@ -64,15 +64,20 @@ class Frame {
   /// Another number after numbers of textures and reported features are forgotten: in the next frame, at least.
   [[nodiscard]] std::uint64_t revision() const;
 
-  /// The picture, after drawing what waits. Valid until the next call.
+  /// The picture, after drawing what waits. Valid until the next call of a function that is not const.
   [[nodiscard]] const Framebuffer& picture();
   /// Takes the colours of another buffer of this size for its own; depths and stencil values stay. A capture of the frame
   /// begins here.
   void exchange_colors(Framebuffer& other);
   /// Samples that passed the depth test since the program began, after rendering the waiting draws: for occlusion queries.
   [[nodiscard]] std::uint64_t samples_passed();
-  /// Ends the frame: renders the waiting draws, then saves and measures as the options ask.
-  void end();
+  /// Ends the frame: renders the waiting draws, then saves and measures as the options ask, and shows the picture by `show`.
+  /// Where nothing but the picture is asked for, all that happens on a thread of its own while the program goes on; a call
+  /// that needs the picture waits for it.
+  using Show = std::function<void(const Framebuffer&)>;
+  void end(Show show = {});
+  /// Waits until the frame that ended last is shown.
+  void wait();
 
   /// Reports once for each `what` that this configuration does not have it, and how it is drawn instead; ends the program
   /// where the options say stop.
@@ -81,9 +86,6 @@ class Frame {
   /// Draws the figures of Options::hud into a picture to be shown: 0xrrggbb, rows from the top. Leaves the frame as
   /// it is; does nothing without the option.
   void draw_hud(std::span<std::uint32_t> xrgb, int width, int height, int pitch_pixels) const;
-
-  /// Seconds spent in the engine since the program began, beside the seconds in the driver.
-  [[nodiscard]] double raster_seconds() const;
 
  private:
   struct Memory;

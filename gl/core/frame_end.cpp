@@ -286,8 +286,15 @@ nlohmann::ordered_json Frame::Memory::figures(int number) const {
   return row;
 }
 
-void Frame::Memory::end() {
-  flush();
+void Frame::Memory::end(Show show) {
+  const bool is_beside =
+      options.threads > 1 && !is_recorded() && !options.hud && scene.commands.size() != drawn.commands;
+  if (is_beside) {
+    const Stopwatch watch(waited_s, is_timed());
+    wait();
+  } else {
+    flush();
+  }
   if (!has_begun) begin();
   const int number = next_frame_number();
   const bool is_asked = number >= options.first_frame && (options.last_frame < 0 || number <= options.last_frame);
@@ -322,18 +329,31 @@ void Frame::Memory::end() {
 
   const Clock::time_point now = Clock::now();
   const double frame_s = std::chrono::duration<double>(now - std::exchange(frame_start, now)).count();
-  const double drawing = raster_s - std::exchange(raster_before_s, raster_s), geometry = std::exchange(geometry_s, 0);
-  const double driver = std::exchange(driver_s, 0);
   // Over the last frames, so that the figure can be read.
   const double rate = 1 / std::max(frame_s, 1e-6);
   frames_per_second = frames_per_second == 0 ? rate : frames_per_second + (rate - frames_per_second) / 8;
-  last_primitives = counters.primitives_in;
-  const auto was_missing = std::exchange(missing, {});
-  if (!is_told || options.results.empty()) return;
-  row["time_s"] = {{"geometry", geometry}, {"raster", drawing - geometry}, {"driver", driver}, {"frame", frame_s}};
-  row["missing"] = was_missing;
-  if (!append_line(options.results, row.dump(-1, ' ', false, Json::error_handler_t::replace)))
-    say_once(options.results + ": cannot be written");
+  if (is_told) {
+    row["time_s"] = {{"geometry", 0}, {"raster", 0}, {"driver", driver_s}, {"waited", waited_s}, {"frame", frame_s}};
+    row["missing"] = missing;
+  }
+  missing.clear();
+  driver_s = waited_s = 0;
+
+  // The helper may call this.
+  auto after = [this, row = std::move(row), show = std::move(show)](const Counters& all) mutable {
+    samples += all.depth_passed - all.alpha_killed;
+    last_primitives = all.primitives_in;
+    const double drawing = raster_s - std::exchange(raster_before_s, raster_s), geometry = std::exchange(geometry_s, 0);
+    if (!row.is_null() && !options.results.empty()) {
+      row.update(counters_json(all));
+      row["time_s"]["geometry"] = geometry;
+      row["time_s"]["raster"] = drawing - geometry;
+      if (!append_line(options.results, row.dump(-1, ' ', false, Json::error_handler_t::replace)))
+        say_once(options.results + ": cannot be written");
+    }
+    if (show) show(*picture);
+  };
+  is_beside ? draw_beside(std::move(after)) : after(counters);
 }
 
 // --- the HUD ----------------------------------------------------------------------------------------------------------

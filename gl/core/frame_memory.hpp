@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <exception>
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -13,6 +14,7 @@
 #include "../../model/draw_states.hpp"
 #include "../../model/engines/functional.hpp"
 #include "frame.hpp"
+#include "helper_thread.hpp"
 
 namespace halfplane::gl {
 
@@ -41,28 +43,8 @@ class Stopwatch {
   Clock::time_point start_;
 };
 
-struct Frame::Memory {
-  Memory(const Options& options_, int width, int height);
-
-  /// Collecting.
-  void resize(int width, int height);
-  void clear(const halfplane::State& state, Clear what);
-  void draw(const halfplane::State& state, Topology topology, std::span<const Vertex> vertices,
-            std::span<const std::uint32_t> indices);
-  [[nodiscard]] std::uint32_t texture(std::uint64_t key, const std::function<halfplane::Texture()>& make);
-
-  /// Renders the waiting draws.
-  void flush();
-  void end();
-
-  const Options options;
-  const Config config;
-  FunctionalEngine engine;
-  const Framebuffer* picture = nullptr;  ///< the engine's
-  double raster_s = 0;                   ///< since the program began
-  std::uint64_t samples = 0;             ///< passed in earlier frames
-
-  // The frame so far. Textures of its states are numbers of slots.
+/// A frame so far. Textures of its states are numbers of Frame::Memory::slots.
+struct CollectedFrame {
   Scene scene;
   std::unordered_map<halfplane::State, std::uint32_t, StateHash> states;  ///< number in `scene`
   std::vector<std::uint8_t> checked, refused;                             ///< by state: primitive types, a bit each
@@ -76,20 +58,47 @@ struct Frame::Memory {
   Mark drawn;
   Counters counters;  ///< of all draws so far
 
-  Framebuffer base;        ///< the picture that the frame continues, where `goes_on`
   bool goes_on = false;    ///< the frame looks at some of the picture before it
   bool has_begun = false;  ///< some of it has been drawn: goes_on is known
   struct Cleared {
     bool color = false, depth = false, stencil = false;
   };
-  Cleared cleared;            ///< buffers cleared as a whole before the first draw
+  Cleared cleared;  ///< buffers cleared as a whole before the first draw
+
+  [[nodiscard]] Mark end_mark() const { return {scene.commands.size(), scene.vertices.size(), scene.indices.size()}; }
+};
+
+struct Frame::Memory : CollectedFrame {
+  Memory(const Options& options_, int width, int height);
+
+  /// Collecting.
+  void resize(int width, int height);
+  void clear(const halfplane::State& state, Clear what);
+  void draw(const halfplane::State& state, Topology topology, std::span<const Vertex> vertices,
+            std::span<const std::uint32_t> indices);
+  [[nodiscard]] std::uint32_t texture(std::uint64_t key, const std::function<halfplane::Texture()>& make);
+
+  /// Renders the waiting draws.
+  void flush();
+  void end(Show show);
+  /// Waits for `ended`.
+  void wait();
+
+  const Options options;
+  const Config config;
+  FunctionalEngine engine;
+  const Framebuffer* picture = nullptr;  ///< the engine's
+  double raster_s = 0;                   ///< since the program began
+  std::uint64_t samples = 0;             ///< passed in earlier frames
+
+  Framebuffer base;           ///< the picture that the frame continues, where `goes_on`
   bool uses_stencil = false;  ///< since the program began
 
   struct Slot {
     std::uint64_t key = 0, frame = 0;  ///< the frame that it was used in last
-    halfplane::Texture texture;        ///< without levels: free
+    halfplane::Texture texture;        ///< without levels while a Part has it
     std::optional<TexelBlocks> blocks;
-    std::size_t bytes = 0;
+    std::size_t bytes = 0;  ///< 0: free
   };
   std::vector<Slot> slots;
   std::unordered_map<std::uint64_t, std::uint32_t> slot_of;
@@ -98,7 +107,8 @@ struct Frame::Memory {
   std::uint64_t revision = 1;  ///< Frame::revision()
 
   // Results and the HUD (frame_end.cpp).
-  double driver_s = 0, geometry_s = 0;  ///< this frame: seconds of collecting, and of the engine's host side
+  // Seconds of this frame: of collecting, of waiting for the one before; of rendering, the engine's host side.
+  double driver_s = 0, waited_s = 0, geometry_s = 0;
   double raster_before_s = 0;
   Clock::time_point frame_start = Clock::now();
   double frames_per_second = 0;
@@ -108,9 +118,19 @@ struct Frame::Memory {
 
   /// The frame as a scene of its own. `restores`: begins with the picture that it was drawn on, where it looks at that.
   [[nodiscard]] Scene whole(bool restores) const;
-  [[nodiscard]] Mark end_mark() const { return {scene.commands.size(), scene.vertices.size(), scene.indices.size()}; }
 
   struct Part;
+
+  /// The frame before this one, while `helper` renders what was left of it. Until wait() only the helper uses the engine, its
+  /// picture, and the figures of rendering.
+  struct Ended {
+    CollectedFrame frame;
+    std::unique_ptr<Part> part;
+    std::function<void(const Counters&)> after;  ///< when it is drawn
+    std::exception_ptr fault;                    ///< it was not
+  };
+  Ended ended;
+  HelperThread helper;
 
   [[nodiscard]] Scene empty_scene() const;
   /// Whether someone reads the seconds of this frame.
@@ -124,6 +144,9 @@ struct Frame::Memory {
   void begin();
   void forget();
   void render();
+  void render(Part& part);
+  void draw_or_recover();
+  void draw_beside(std::function<void(const Counters&)> after);
   void recover();
   void keep_good(const Draw& draw, std::vector<Command>& kept);
   [[nodiscard]] std::string fault_of(const Draw& draw);

@@ -177,7 +177,7 @@ void copy_buffers(EGLDisplay handle, EGLSurface surface_handle, EGLNativePixmapT
   const auto geometry = call.display.server->geometry(static_cast<XID>(pixmap));
   require(geometry.has_value(), EGL_BAD_NATIVE_PIXMAP);
   require(geometry->depth == surface->config->format.visual.depth, EGL_BAD_MATCH);
-  surface->window.show(static_cast<XID>(pixmap));
+  surface->window.show_in(static_cast<XID>(pixmap), surface->window.frame.picture());
 }
 
 void swap_interval(EGLDisplay handle, EGLint interval) {

@@ -131,6 +131,7 @@ Window::Window(DrawableKind what, Server* x_server, XID x_drawable, const PixelF
 }
 
 Window::~Window() {
+  frame.wait();
   if (server == nullptr) return;
   const std::lock_guard lock(server->mutex_);
   free_image();
@@ -139,12 +140,12 @@ Window::~Window() {
 }
 
 void Window::present() {
-  frame.end();
-  show();
+  frame.end([this](const Framebuffer& picture) { show(picture); });
+  frame.wait();
 }
 
-void Window::show() {
-  if (kind != DrawableKind::pbuffer) show(xid);
+void Window::show(const Framebuffer& picture) {
+  if (kind != DrawableKind::pbuffer) show_in(xid, picture);
 }
 
 void Window::swap() {
@@ -211,8 +212,7 @@ bool Window::make_image(int width, int height) {
   return image_ != nullptr;
 }
 
-void Window::show(XID target) {
-  const Framebuffer& picture = frame.picture();
+void Window::show_in(XID target, const Framebuffer& picture) {
   const ColorFormat color_format = frame.options().config.color_format;
   const std::lock_guard lock(server->mutex_);
   const int width = picture.width, height = picture.height;

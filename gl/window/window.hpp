@@ -77,12 +77,12 @@ class Window final : public Drawable {
   Window(DrawableKind what, Server* x_server, XID x_drawable, const PixelFormat& its_format, int width, int height);
   ~Window() override;
 
-  void show() override;
+  void show(const Framebuffer& picture) override;
   void present() override;
   /// Ends the frame, shows it, and takes over the window's size.
   void swap();
   /// Shows the picture in `target`, a window or pixmap of the depth of the format.
-  void show(XID target);
+  void show_in(XID target, const Framebuffer& picture);
   /// Takes over the size of the X window. False: the window is gone.
   bool follow_size();
 

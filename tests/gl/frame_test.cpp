@@ -10,6 +10,7 @@
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <random>
 #include <string>
 
@@ -245,7 +246,8 @@ TEST(GlFrame, BadDrawsAreDroppedAlone) {
   expect_same(bad.picture(), good.picture(), "the frame after it");
 }
 
-/// Any states, topologies and coordinates, looks on the way, frames that go on: every capture is its picture.
+/// Any states, topologies and coordinates, looks on the way, frames that go on: every capture is its picture. And so is what a
+/// frame shows that nobody looks at, which is drawn while the next one is collected.
 TEST(GlFrame, WhateverIsDrawnIsWhatIsSaved) {
   std::mt19937_64 random(11);
   const Chooser choose = chooser(random);
@@ -266,7 +268,9 @@ TEST(GlFrame, WhateverIsDrawnIsWhatIsSaved) {
        {"embedded", "full stencil.bits=8", "tiny target.width=80 target.height=60 guard.band=128"}) {
     const Folder folder;
     const Options options = saving(folder, config);
-    Frame frame(options, kWidth, kHeight);
+    Framebuffer shown, last;  // written until `beside` ends
+    Frame frame(options, kWidth, kHeight), beside(options_of(config), kWidth, kHeight);
+    shown = last = frame.picture();
     for (int number = 0; number < 40; ++number) {
       const std::uint32_t commands = choose(12);
       for (std::uint32_t i = 0; i < commands; ++i) {
@@ -281,9 +285,11 @@ TEST(GlFrame, WhateverIsDrawnIsWhatIsSaved) {
           if (!one_in(4)) clear.color = {{coordinate(true), 50, 100, 255}};
           if (!one_in(4)) clear.depth = one_in(2) ? 1.0 : coordinate(false);
           if (!one_in(4)) clear.stencil = static_cast<std::uint8_t>(choose(3));
-          frame.clear(one_in(3) ? state : halfplane::State{}, clear);
+          const halfplane::State region = one_in(3) ? state : halfplane::State{};
+          frame.clear(region, clear);
+          beside.clear(region, clear);
         }
-        if (one_in(3)) state.texture = frame.texture(choose(4), [] { return chequer(8); });
+        const auto key = one_in(3) ? std::optional(choose(4)) : std::nullopt;
         const bool is_window = state.space == Space::window;
         std::vector<Vertex> vertices(1 + choose(12));
         for (Vertex& v : vertices)
@@ -297,7 +303,11 @@ TEST(GlFrame, WhateverIsDrawnIsWhatIsSaved) {
         std::vector<std::uint32_t> indices(choose(20));
         for (std::uint32_t& index : indices)
           index = one_in(20) ? kRestart : choose(static_cast<std::uint32_t>(vertices.size()));
-        frame.draw(state, static_cast<Topology>(choose(7)), vertices, indices);
+        const auto topology = static_cast<Topology>(choose(7));
+        for (Frame* to : {&frame, &beside}) {
+          if (key) state.texture = to->texture(*key, [] { return chequer(8); });
+          to->draw(state, topology, vertices, indices);
+        }
         if (one_in(8)) (void)frame.picture();
         if (one_in(8)) (void)frame.samples_passed();
       }
@@ -306,6 +316,10 @@ TEST(GlFrame, WhateverIsDrawnIsWhatIsSaved) {
       const Scene saved = last_capture(folder);
       expect_same(render_functional(saved, options.config).frame, picture,
                   std::string(config) + ", frame " + std::to_string(number) + " of " + folder.file(""));
+      beside.wait();
+      expect_same(shown, last, std::string(config) + ", shown before frame " + std::to_string(number));
+      last = picture;
+      beside.end([&shown](const Framebuffer& its) { shown = its; });
       if (::testing::Test::HasFailure()) return;
     }
   }
