@@ -48,7 +48,7 @@ std::vector<Design> read_designs() {
   while (!rest.empty()) {
     const std::string_view line = take_until(rest, '\n');
     if (line.empty() || line.starts_with('#')) continue;
-    if (line == "[presets]" || line == "[designs]") {
+    if (line == "[presets]" || line == "[designs]" || line == "[parts]") {
       table = line;
       continue;
     }

@@ -30,6 +30,7 @@ DESIGNS = {
                                'cache.lines=2', 'cache.queue=8', 'cache.victims=2'], '160x120'),
     'embedded, VGA': ('embedded', [*SCREEN, 'hiz.bits=8', 'cache.lines=64', 'counters.unit=0'], '640x480'),
     'embedded, VGA, textures': ('embedded', [*SCREEN, 'texture.unit=bilinear'], '640x480'),
+    'textured-25f': ('textured-25f', [], '640x480'),
     'full': ('full', [], '1920x1080'),
 }
 # What a part has: places (LUT4), multipliers 18x18, block RAMs; how it is placed.
@@ -49,6 +50,7 @@ RUNS = [
     ('iCE40 HX8K', 'raster_top', 'small'),
     ('iCE40 HX8K', 'halfplane_core', 'small'),
     ('ECP5-25', 'raster_top', 'embedded, VGA'),
+    ('ECP5-25', 'raster_top', 'textured-25f'),
     ('ECP5-25', 'halfplane_core', 'embedded, VGA'),
     ('ECP5-25', 'halfplane_core', 'embedded, VGA, textures'),
     ('ECP5-45', 'halfplane_core', 'embedded, VGA, textures'),

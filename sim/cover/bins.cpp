@@ -154,7 +154,7 @@ const BinRow kBinRows[] = {
     {Event::setup, "hiz.off_by_stencil", "", "tiles are not tested: a sample that fails changes the stencil",
      "hiz.bits stencil.bits", {}, "213", [](const Seen& s) { return one(s.is_hiz_off_by_stencil); }},
     {Event::retire, "hiz.update.*", "none set clear", "a visit leaves its tile's bound, lowers it, or makes it all ones",
-     "hiz.bits", {}, "33 34 112", [](const Seen& s) { return bit(s.retire->update); }},
+     "hiz.bits", {}, "33 34 112", [](const Seen& s) { return bit(s.retire->update, s.config.hiz_bits != 0); }},
     // ---- fine raster
     {Event::stamp, "stamp.*", "empty partial full", "a stamp with no, some, all samples covered", {}, {}, "25",
      [](const Seen& s) {
