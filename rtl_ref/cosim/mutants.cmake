@@ -55,8 +55,8 @@ mutant(22 stages/coarse_raster.sv "context: the last slot is never given"
   [=[used_q != (SLOT + 1)'(SLOTS)]=] [=[used_q != (SLOT + 1)'(SLOTS - 1)]=])
 
 # fine_raster
-mutant(23 lib/edge_columns.sv "tie rule: samples on an edge are outside"
-  [=[value[WIDTH-1]]=] [=[value[WIDTH-1] || value == '0]=])
+mutant(23 lib/edge_columns.sv "tie rule: samples on an edge are outside in a tile's first column"
+  [=[value_i[WIDTH-1]]=] [=[value_i[WIDTH-1] || value_i == '0]=])
 mutant(400 lib/edge_columns.sv "coverage: the last step of the search for an edge's column does not count"
   [=[OFFSET'(i) > column]=] [=[OFFSET'(i) > (column & ~OFFSET'(1))]=])
 mutant(24 stages/fine_raster.sv "scissor: the right side of the box is not looked at"
@@ -255,8 +255,8 @@ mutant(102 lib/beat_bytes.sv "strobes: every byte of a stamp is written"
 mutant_text(103 stages/memory_port.sv "carry: the column of a tile is not added to its row, but ored"
   [=[layout_i.row_stride[STRIDE-1:TILE]);]=]
   [=[layout_i.row_stride[STRIDE-1:TILE]) - (raster_cosim.mutant_q != 16'd103 ? '0 :
-      ((ADDRESS - TILE)'(request_i.tile_y) * (ADDRESS - TILE)'(layout_i.row_stride[STRIDE-1:TILE])) &
-       (ADDRESS - TILE)'(request_i.tile_x));]=])
+      ((ADDRESS - TILE)'(rows_q) * (ADDRESS - TILE)'(layout_i.row_stride[STRIDE-1:TILE])) &
+       (ADDRESS - TILE)'(address_q >> (TILE - PORT)));]=])
 mutant(104 stages/memory_port.sv "answers: stamps are counted, not bursts"
   [=[8'(takes && begins)]=] [=[8'(takes && request_i.is_write)]=])
 mutant(105 stages/memory_port.sv "idle: taken is as good as written"

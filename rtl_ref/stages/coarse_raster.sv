@@ -102,24 +102,28 @@ module coarse_raster (
   logic left_raises_q;  // the primitive's state may raise a depth
   raster_pkg::tile_packet_t  left_q;
   raster_pkg::edge_context_t edges, left_edges_q;
-  logic is_visit, is_dropped, tile_taken, left_is_free;
+  logic is_visit, is_dropped, tile_taken, left_is_free, left_is_empty;
   assign left_behind  = {1'b0, left_bound_q} < left_limit_q;
-  assign is_visit     = left_q.is_visit && !left_behind;
-  assign is_dropped   = left_valid_q && left_behind && !left_q.ends_primitive;
-  assign tile_valid_o = left_valid_q && (is_visit ? is_settled : left_q.ends_primitive);
-  assign tile_taken   = tile_valid_o && tile_ready_i;
-  assign left_is_free = !left_valid_q || is_dropped || tile_taken;
+  assign is_visit      = left_q.is_visit && !left_behind;
+  assign is_dropped    = left_valid_q && left_behind && !left_q.ends_primitive;
+  assign tile_valid_o  = left_valid_q && (is_visit ? is_settled : left_q.ends_primitive);
+  assign tile_taken    = tile_valid_o && tile_ready_i;
+  assign left_is_empty = !left_valid_q || is_dropped;
+  assign left_is_free  = left_is_empty || tile_taken;
 
   // --- The walk. The walk goes on when a tile is outside, or enters that register.
   logic ends_walk, passes_token, enters;
   logic has_bound_q;    // the tile's bound has been read, and no visit has started since or waits to start
   logic has_verdict;
   assign passes_token = (state_q == PREPARE && !has_walk && !clears_bounds) || state_q == PASS;
-  assign has_verdict  = has_bound_q && (!left_valid_q || is_dropped);
+  assign has_verdict  = has_bound_q && left_is_empty;
   assign enters       = state_q == WALK ? (is_outside ? ends_walk && left_is_free :
                                                         is_eligible_q ? has_verdict : left_is_free) :
                                           passes_token && left_is_free;
-  assign steps        = state_q == WALK && (enters || (is_outside && !ends_walk));
+  // The walk enters a tile or goes past one outside. That fine_raster takes a tile is known last: it is asked last.
+  logic steps_at_once;
+  assign steps_at_once = is_outside ? !ends_walk || left_is_empty : is_eligible_q ? has_verdict : left_is_empty;
+  assign steps         = state_q == WALK && (steps_at_once || ((is_outside || !is_eligible_q) && tile_taken));
   assign finishes     = enters && (ends_walk || state_q != WALK);
 
   // From one tile to the next.

@@ -99,14 +99,11 @@ module cull (
   raster_pkg::pixel_box_t box_q;
   logic                       is_empty_q;
   always_comb begin
-    x_min = x0 < x1 ? x0 : x1;
-    x_min = x_min < x2 ? x_min : x2;
-    x_max = x0 < x1 ? x1 : x0;
-    x_max = x_max < x2 ? x2 : x_max;
-    y_min = y0 < y1 ? y0 : y1;
-    y_min = y_min < y2 ? y_min : y2;
-    y_max = y0 < y1 ? y1 : y0;
-    y_max = y_max < y2 ? y2 : y_max;
+    // Three comparisons at once; none waits for another's choice.
+    x_min = x0 < x1 ? (x0 < x2 ? x0 : x2) : (x1 < x2 ? x1 : x2);
+    x_max = x0 < x1 ? (x1 < x2 ? x2 : x1) : (x0 < x2 ? x2 : x0);
+    y_min = y0 < y1 ? (y0 < y2 ? y0 : y2) : (y1 < y2 ? y1 : y2);
+    y_max = y0 < y1 ? (y1 < y2 ? y2 : y1) : (y0 < y2 ? y2 : y0);
   end
   localparam bit HAS_SAMPLES = raster_pkg::MSAA_SAMPLES > 1;  // the box then has every pixel that the triangle touches
   localparam logic signed [B-1:0] TO_FIRST = HAS_SAMPLES ? '0 : HALF - B'(1);

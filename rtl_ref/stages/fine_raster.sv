@@ -129,27 +129,55 @@ module fine_raster (
         else if (row_leaves) value_q <= value_q + (step_y <<< STAMP_SHIFT);
       end
 
-      for (j = 0; j < STAMP; j++) begin : gen_row
-        logic signed [W-1:0] row_value;
-        edge_offset #(
-            .WIDTH (W),
-            .OFFSET(PIXEL)
-        ) u_row (
-            .value_i (value_q),
-            .step_x_i('0),
-            .step_y_i(step_y),
-            .x_i     ('0),
-            .y_i     (PIXEL'(j)),
-            .value_o (row_value)
-        );
-        // At the centres of pixels, or at each of their samples and at the centres.
-        for (k = 0; k < PLACES; k++) begin : gen_place
-          logic [TILE-1:0] outside_columns;
+      // From the first pixel of this row of stamps to the middle of each of its pixel rows: the search for an edge's
+      // column begins there, one sum from `value_q`.
+      localparam int REACH = STEP + PIXEL + 1;
+      logic [STAMP*REACH-1:0] reach;
+      for (j = 0; j < STAMP; j++) begin : gen_reach
+        if (j == 0) begin : gen_first
+          assign reach[j*REACH+:REACH] = REACH'(step_x) << (PIXEL - 1);
+        end else begin : gen_further
+          logic [REACH-1:0] reach_d, reach_q;
+          edge_offset #(
+              .WIDTH (REACH),
+              .OFFSET(PIXEL)
+          ) u_reach (
+              .value_i (REACH'($signed(edges_i.step_x[e*STEP+:STEP])) << (PIXEL - 1)),
+              .step_x_i('0),
+              .step_y_i(REACH'($signed(edges_i.step_y[e*STEP+:STEP]))),
+              .x_i     ('0),
+              .y_i     (PIXEL'(j)),
+              .value_o (reach_d)
+          );
+          always_ff @(posedge clk_i) if (takes_tile) reach_q <= reach_d;
+          assign reach[j*REACH+:REACH] = reach_q;
+        end
+      end
+      // At the centres of pixels, or at each of their samples and at the centres.
+      for (k = 0; k < PLACES; k++) begin : gen_place
+        logic signed [W-1:0] value;  // there, in the first pixel
+        assign value = value_q + place_q[k*W+:W];
+        for (j = 0; j < STAMP; j++) begin : gen_row
+          logic signed [W-1:0] row_value, middle;
+          logic [TILE-1:0]     outside_columns;
+          edge_offset #(
+              .WIDTH (W),
+              .OFFSET(PIXEL)
+          ) u_row (
+              .value_i (value),
+              .step_x_i('0),
+              .step_y_i(step_y),
+              .x_i     ('0),
+              .y_i     (PIXEL'(j)),
+              .value_o (row_value)
+          );
+          assign middle = value + W'($signed(reach[j*REACH+:REACH]));
           edge_columns #(
               .WIDTH (W),
               .OFFSET(PIXEL)
           ) u_columns (
-              .value_i  (row_value + place_q[k*W+:W]),
+              .value_i  (row_value),
+              .middle_i (middle),
               .step_x_i (step_x),
               .outside_o(outside_columns)
           );

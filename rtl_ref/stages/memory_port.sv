@@ -87,13 +87,11 @@ module memory_port (
   logic                     is_color, is_flags, of_pixels;  // of_pixels: one colour per pixel, or flags of such blocks
   logic [ADDRESS-1:0]       address;
   logic [ADDRESS-PLANE-1:0] base, planes;  // buffers of tiles up to this one in its row
-  logic [ADDRESS-TILE-1:0]  above;         // tiles in the rows above
   logic [PLANE-1:0]         color_offset, offset;
   assign is_color = request_i.plane[0];
   assign is_flags = request_i.plane[1];
   assign base     = is_color ? layout_i.color_base[ADDRESS-1:PLANE] : layout_i.depth_base[ADDRESS-1:PLANE];
   assign planes   = base + (ADDRESS - PLANE)'({request_i.tile_x, 1'b0});
-  assign above    = (ADDRESS - TILE)'(request_i.tile_y) * (ADDRESS - TILE)'(layout_i.row_stride[STRIDE-1:TILE]);
   generate
     if (COMPRESSES) begin : gen_pixel_offset
       localparam logic [15:0] IN_BLOCK = 16'((1 << (2 * SIDE_BITS)) - 1);
@@ -219,8 +217,8 @@ module memory_port (
 
   // The output word. While it gathers stamps, it is not complete and not on offer.
   logic               valid_q, gathers_q, is_write_q, is_first_q, in_burst_q, recovers_q;
-  logic [ADDRESS-1:PORT] address_q;  // without the offset of the rows above, a product that is added one step later
-  logic [ADDRESS-TILE-1:0] above_q;
+  logic [ADDRESS-1:PORT] address_q;  // without the offset of the rows above
+  logic [raster_pkg::TILE_Y_BITS-1:0] rows_q;  // rows of tiles above; 0 for flags, whose address is complete
   logic [LENGTH-1:0]  length_q;  // beats left in the burst
   localparam bit SEVERAL = WORD > BYTES;  // beats in a word
   logic [7:0]         more_q;    // beats of the word after the beat on offer
@@ -264,7 +262,7 @@ module memory_port (
         is_write_q <= request_i.is_write;
         is_first_q <= !in_burst_q;
         address_q  <= address[ADDRESS-1:PORT];
-        above_q    <= is_flags ? '0 : above;
+        rows_q     <= is_flags ? '0 : request_i.tile_y;
         length_q   <= length;
       end
     end else if (sends) begin
@@ -278,9 +276,11 @@ module memory_port (
   end
 
   assign beat_valid_o    = valid_q;
+  logic [ADDRESS-TILE-1:0] above;  // tiles in the rows above; the product begins at a register, and the layout stays
+  assign above           = (ADDRESS - TILE)'(rows_q) * (ADDRESS - TILE)'(layout_i.row_stride[STRIDE-1:TILE]);
   assign beat_o.is_write = is_write_q;
   assign beat_o.is_first = is_first_q;
-  assign beat_o.address  = {address_q, PORT'(0)} + {above_q, TILE'(0)};
+  assign beat_o.address  = {address_q, PORT'(0)} + {above, TILE'(0)};
   assign beat_o.length   = length_q;
   assign beat_o.strobe   = strobe_q[BYTES-1:0];
   assign beat_o.data     = data_q[8*BYTES-1:0];

@@ -1,7 +1,8 @@
 
   // The sign of value + column step in every column, in so many bits that no sum wraps; the values of the first and of
-  // the last column fit, so all between them fit.
+  // the last column fit, so all between them fit. The value in the middle is given as what it is.
   localparam int WIDE = WIDTH + OFFSET + 1;
+  always_comb assume (middle_i == value_i + (step_x_i <<< (OFFSET - 1)));
   genvar c;
   generate
     for (c = 0; c < 2 ** OFFSET; c++) begin : gen_proof

@@ -5,7 +5,7 @@
   localparam int WIDE = W + 2;
   localparam logic [STEP-1:0] LOWEST = {1'b1, {(STEP - 1) {1'b0}}};  // not a difference of two coordinates
   localparam logic signed [WIDE-1:0] MOST = 2 ** (TILE_EDGE - 1) + (TILE - STAMP) * (2 ** (STEP - 1) - 1);
-  genvar k, c;
+  genvar k, c, j;
   generate
     for (k = 0; k < 3; k++) begin : gen_proof
       logic signed [WIDE-1:0] at_row, sx, sy;
@@ -15,6 +15,10 @@
       always_comb begin
         assume (edges_q.step_x[k*STEP+:STEP] != LOWEST && edges_q.step_y[k*STEP+:STEP] != LOWEST);
         assume (-MOST <= at_row && at_row <= MOST);
+      end
+      for (j = 0; j < STAMP; j++) begin : gen_proof_reach  // which fine_raster_rows proves, too
+        always_comb assume (WIDE'($signed(gen_edge[k].reach[j*(STEP+PIXEL+1)+:STEP+PIXEL+1])) ==
+                            ((j & 2) ? sy <<< 1 : '0) + ((j & 1) ? sy : '0) + (sx <<< (PIXEL - 1)));
       end
       for (c = 0; c < STAMP * TILE; c++) begin : gen_proof_sample  // row in the stamp, column
         logic signed [WIDE-1:0] exact;
