@@ -232,6 +232,12 @@ std::vector<Setting> all_settings() {
           choice<&Config::reciprocal_kind>("reciprocal.kind",
                                            "what the texture unit divides by 1/w with: a RAM and two multipliers, or "
                                            "subtractions; the same bits and time")),
+      // Cost: 1,001 places less, 21 block RAMs in textured-25f (docs/area.md).
+      unnamed_at_0(no_pixel(number<&Config::queue_block_rams>(
+          "queue.block_ram", "units",
+          "1: the RTL's queues of fragments and its contexts lie in block RAM, whose items are read later in a cycle; "
+          "0: in LUT RAM where that is smaller",
+          0, 1))),
       // Cost: 173 places (docs/area.md).
       unnamed_at_0(
           number<&Config::texture_constants>(

@@ -78,6 +78,7 @@ struct Config {
   int texture_ways = 1;      ///< places in the cache for a block: 1 or 2
   int texture_queue = 32;    ///< samples between their coordinates and their texels; a power of two
   ReciprocalKind reciprocal_kind = ReciprocalKind::table;  ///< of the texture unit
+  int queue_block_rams = 0;                                ///< 1: fragments that wait, and contexts, lie in block RAM
   int texture_constants = 0;                               ///< 1: the RTL's texture unit blends with a constant colour
   int texture_borders = 0;                                 ///< 1: the RTL's texture unit has a border colour
   int alpha_units = 0;    ///< 1: alpha is interpolated for any stored format, and tested

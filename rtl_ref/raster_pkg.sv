@@ -33,6 +33,7 @@ package raster_pkg;
   localparam int TEXTURE_WAYS = 1;  // places of a block in the texture cache: 1, or 2, of which the less recently used is replaced
   localparam int TEXTURE_QUEUE = 32;  // samples that wait for their texels, so that misses overlap; a power of two
   localparam int RECIPROCAL_KIND = 0;  // 0 table, 1 restoring: what the texture unit divides by 1/w with: a RAM and two multipliers, or subtractions; the same bits and time
+  localparam int QUEUE_BLOCK_RAM = 0;  // 1: the RTL's queues of fragments and its contexts lie in block RAM, whose items are read later in a cycle; 0: in LUT RAM where that is smaller
   localparam int TEXTURE_CONSTANT = 0;  // 1: the RTL's texture unit blends with a constant colour (texture_combine blend); 0: it does not
   localparam int TEXTURE_BORDER = 0;  // 1: the RTL's texture unit has a border colour (texture_wrap border and half_border); 0: it has none
   localparam int ALPHA_UNIT = 0;  // 1: the RTL interpolates alpha, whatever color.format keeps, and (blocks, pipelined) tests it; 0: neither
@@ -555,6 +556,7 @@ package raster_pkg;
   localparam int SHADED_STAMPS = COORDINATES == 0 ? 2 : TEXTURE_STAMPS;  // stamps between depth and colour, at most
   localparam int STORE_CONSTANTS_SEPARATELY = COORDINATES != 0 && MSAA_SAMPLES == 1 ? 1 : 0;  // 1: texture constants lie in a RAM, by the triangle's number
   localparam int TRIANGLE_BITS = $clog2(CONTEXT_SLOTS + CACHE_QUEUE + 16);  // bits of that number: one for each triangle between setup and depth test
+  localparam int FRAGMENT_HEADER_BITS = FRAGMENT_PACKET_BITS - PIXELS * ALL_FRAGMENT_BITS - (COLORS_OVER_W != 0 ? 2 * VERTEX_COLOR_BITS : 0) - COORDINATE_FRAME_BITS;  // a fragment from its kind to its state: what is above colours and constants
   localparam int STORED_FRAGMENT_BITS = FRAGMENT_PACKET_BITS - (STORE_CONSTANTS_SEPARATELY != 0 ? COORDINATE_FRAME_BITS - TRIANGLE_BITS + (PIXELS - 1) * (ALL_FRAGMENT_BITS - ALL_AFFINE_CODE_BITS) : 0);  // a fragment as it waits for memory
   localparam int UNIT_WORD_BITS = 43;  // a token's value for light or fog; two bits above it say which
   localparam int CONSTANT_WORD_BIT = 42;  // bit of a token of levels: it is the texture's constant

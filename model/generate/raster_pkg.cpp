@@ -172,6 +172,10 @@ void print_blocks(std::ostream& out, const Config& config) {
            "1: texture constants lie in a RAM, by the triangle's number");
   constant("TRIANGLE_BITS", "$clog2(CONTEXT_SLOTS + CACHE_QUEUE + 16)",
            "bits of that number: one for each triangle between setup and depth test");
+  constant("FRAGMENT_HEADER_BITS",
+           "FRAGMENT_PACKET_BITS - PIXELS * ALL_FRAGMENT_BITS - (COLORS_OVER_W != 0 ? 2 * VERTEX_COLOR_BITS : 0) - "
+           "COORDINATE_FRAME_BITS",
+           "a fragment from its kind to its state: what is above colours and constants");
   constant("STORED_FRAGMENT_BITS",
            "FRAGMENT_PACKET_BITS - (STORE_CONSTANTS_SEPARATELY != 0 ? COORDINATE_FRAME_BITS - TRIANGLE_BITS + (PIXELS "
            "- 1) * "

@@ -20,7 +20,7 @@ module stored_fragment #(
   localparam int PIXELS = raster_pkg::PIXELS;
   localparam int FRAME = raster_pkg::COORDINATE_FRAME_BITS;
   localparam int FRAME_AT = PIXELS * CODES + (raster_pkg::COLORS_OVER_W != 0 ? 2 * raster_pkg::VERTEX_COLOR_BITS : 0);
-  localparam int HEADER = FRAGMENT - FRAME_AT - FRAME;        // from kind to state
+  localparam int HEADER = raster_pkg::FRAGMENT_HEADER_BITS;
   localparam int FIRST = CODES - AFFINE;                      // anchors over w, in the first pixel
   localparam int RANGE = FRAME_AT - PIXELS * CODES;
   localparam int RANGE_AT = PIXELS * AFFINE + FIRST;          // position in the fragment; the codes are below it

@@ -83,9 +83,10 @@ module context_ram #(
       logic [HEAD+KEPT+FRAME-1:0] entering, kept;
       logic [KEPT_STEPS-1:0]      step_x, step_y;
       sram #(
-          .WIDTH(HEAD + KEPT + FRAME),
-          .DEPTH(DEPTH),
-          .READS_OLD(0)
+          .WIDTH    (HEAD + KEPT + FRAME),
+          .DEPTH    (DEPTH),
+          .READS_OLD(0),
+          .BLOCK    (raster_pkg::QUEUE_BLOCK_RAM != 0)
       ) u_context (
           .clk_i,
           .read_i,

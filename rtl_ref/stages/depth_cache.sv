@@ -121,12 +121,14 @@ module depth_cache #(
       .bits_i    (item_stored),
       .fragment_o(item)
   );
-  // With several samples per pixel, depths and colours are most of an item, and are not read before the test.
+  // Depths and colours are not read before the test, and with several samples per pixel are most of an item.
   localparam int FURTHER = PIXELS * (raster_pkg::MSAA_SAMPLES - 1) * Z;
+  localparam int IN_BLOCK_RAM = raster_pkg::QUEUE_BLOCK_RAM != 0 ? STORED - raster_pkg::FRAGMENT_HEADER_BITS :
+                                FURTHER != 0 ? FURTHER + PIXELS * CODES : 0;
   registered_fifo #(
       .WIDTH (raster_pkg::TAG_RESULT_BITS + STORED),
       .DEPTH (raster_pkg::CACHE_QUEUE),
-      .STORED(FURTHER == 0 ? 0 : FURTHER + PIXELS * CODES)
+      .STORED(IN_BLOCK_RAM)
   ) u_items (
       .clk_i,
       .rst_ni,

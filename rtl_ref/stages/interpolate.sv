@@ -260,8 +260,9 @@ module interpolate (
       .fragment_o
   );
   registered_fifo #(
-      .WIDTH(STORED),
-      .DEPTH(ROOM)
+      .WIDTH (STORED),
+      .DEPTH (ROOM),
+      .STORED(raster_pkg::QUEUE_BLOCK_RAM != 0 ? STORED - raster_pkg::FRAGMENT_HEADER_BITS : 0)
   ) u_fragments (
       .clk_i,
       .rst_ni,

@@ -47,7 +47,8 @@ module memory_answers #(
   sram_fifo #(
       .WIDTH(SAMPLES * CODE),
       .DEPTH(QUEUE),
-      .BLOCK(raster_pkg::STORE_CONSTANTS_SEPARATELY == 0)  // separate constants need the block RAMs of an ECP5-25F
+      // Separate constants need the block RAMs of an ECP5-25F, unless queues are to lie there.
+      .BLOCK(raster_pkg::STORE_CONSTANTS_SEPARATELY == 0 || raster_pkg::QUEUE_BLOCK_RAM != 0)
   ) u_answers (
       .clk_i,
       .rst_ni,
