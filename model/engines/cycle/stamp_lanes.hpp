@@ -18,8 +18,11 @@ class StampLanes {
     fits_ = widths.has_samples == 0 && widths.stamps.size == kSize && widths.affine_planes > channels &&
             !has_texture_planes(config) && !packs_at_write(config);
     has_alpha_ = channels == 4;
-    for (std::size_t p = 0; p < kPlanes; ++p)  // a code is in the lower 32 bits of its plane
-      fits_ = fits_ && (std::uint64_t{widths.code_place[p].mask} << widths.code_place[p].shift) >> 32 == 0;
+    for (std::size_t p = 0; p < kPlanes; ++p) {
+      const CodePlace& place = widths.code_place[p];
+      codes_[p] = {place.shift, Lanes{} + place.offset, Lanes{} + place.mask};
+      fits_ = fits_ && (std::uint64_t{place.mask} << place.shift) >> 32 == 0;  // in the lower 32 bits
+    }
   }
 
   /// Whether a primitive is drawn here. `tests_alpha`: by the colour registers.
@@ -66,7 +69,7 @@ class StampLanes {
         const unsigned mask = tile.is_inside ? in_box : bits_of(drawn);
         if (mask == 0) continue;
         const auto code = [&](std::size_t p) {
-          const CodePlace& place = widths_.code_place[p];
+          const Code& place = codes_[p];
           const Lanes value = planes_[p].at(static_cast<std::uint32_t>(tile.anchor[p]), x - half_tile, y - half_tile);
           return ((value >> place.shift) - place.offset) & place.mask;
         };
@@ -125,6 +128,12 @@ class StampLanes {
   };
 
   [[nodiscard]] static std::uint32_t sum(const Lanes& v) { return v[0] + v[1] + v[2] + v[3]; }
+  /// The place of a code in its plane (CodePlace).
+  struct Code {
+    int shift = 0;
+    Lanes offset{}, mask{};
+  };
+
   /// A bit for each lane whose mask is set.
   [[nodiscard]] static unsigned bits_of(const Lanes& mask) {
     const auto rows = reinterpret_cast<Rows>(mask & Lanes{1, 2, 4, 8});
@@ -160,6 +169,7 @@ class StampLanes {
   PrimitiveState state_;
   std::array<Steps, 3> edges_;
   std::array<Steps, kPlanes> planes_;
+  std::array<Code, kPlanes> codes_;
 };
 
 }  // namespace halfplane
