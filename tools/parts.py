@@ -60,8 +60,11 @@ RUNS = [
     ('GW2A-18', 'halfplane_core', 'small'),
     ('GW2A-18', 'raster_top', 'embedded, VGA'),
 ]
-# Multiplexers of five and more inputs would take more places, by how much differs from one netlist to the next.
-SYNTH = {'ecp5': 'synth_ecp5 -nowidelut', 'gowin': 'synth_gowin -family gw2a', 'ice40': area.SYNTH_ICE40.replace(' -top pin_wrapper', '')}
+# Multiplexers of five and more inputs would take more places, by how much differs from one netlist to the next. A wire of an
+# ECP5 is taken for 1 ns (-W 1000), as placed ones are; synth_ecp5 takes it for 0.3.
+SYNTH = {'ecp5': 'synth_ecp5 -nowidelut -run :map_luts; techmap -map +/lattice/latches_map.v; abc9 -maxlut 4 -W 1000; clean; '
+                 'synth_ecp5 -nowidelut -run map_cells:',
+         'gowin': 'synth_gowin -family gw2a', 'ice40': area.SYNTH_ICE40.replace(' -top pin_wrapper', '')}
 # nextpnr for GW2A wants every pin's place; any will do.
 PINS = {'clk_i': 'H11', 'rst_ni': 'T10', 'data_i': 'T3', 'shift_i': 'T2', 'valid_i': 'D7', 'data_o': 'C13'}
 # What nextpnr calls places, multipliers and RAMs; a pattern adds up all that it fits.

@@ -103,7 +103,7 @@ module coarse_raster (
   raster_pkg::tile_packet_t  left_q;
   raster_pkg::edge_context_t edges, left_edges_q;
   logic is_visit, is_dropped, tile_taken, left_is_free, left_is_empty;
-  assign left_behind  = {1'b0, left_bound_q} < left_limit_q;
+  assign left_behind   = {1'b0, left_bound_q} < left_limit_q;
   assign is_visit      = left_q.is_visit && !left_behind;
   assign is_dropped    = left_valid_q && left_behind && !left_q.ends_primitive;
   assign tile_valid_o  = left_valid_q && (is_visit ? is_settled : left_q.ends_primitive);
@@ -124,7 +124,7 @@ module coarse_raster (
   logic steps_at_once;
   assign steps_at_once = is_outside ? !ends_walk || left_is_empty : is_eligible_q ? has_verdict : left_is_empty;
   assign steps         = state_q == WALK && (steps_at_once || ((is_outside || !is_eligible_q) && tile_taken));
-  assign finishes     = enters && (ends_walk || state_q != WALK);
+  assign finishes      = enters && (ends_walk || state_q != WALK);
 
   // From one tile to the next.
   logic [TX-1:0] start_x_q, next_x;  // start of this row, then of the next

@@ -213,16 +213,17 @@ module depth_test (
       assign changes        = takes;
     end
     for (s = 0; s < SAMPLES; s++) begin : gen_sample
-      logic is_less, is_equal;
+      // Two carry chains: gates that find equal depths, behind the RAM and in front of its write, were the longest path.
+      logic is_less, is_at_most;
       localparam int PIXEL = s / N;
       if (s % N == 0) begin : gen_first
         assign depth[s*CODE+:CODE] = fragment_q.code[PIXEL*CODES+:CODE];
       end else begin : gen_further
         assign depth[s*CODE+:CODE] = fragment_q.further_depth[(PIXEL*(N-1)+s%N-1)*CODE+:CODE];
       end
-      assign is_less  = depth[s*CODE+:CODE] < stored_depth_i[s*WORD+:CODE];
-      assign is_equal = depth[s*CODE+:CODE] == stored_depth_i[s*WORD+:CODE];
-      assign is_nearer[s] = is_less ? less_passes : (is_equal ? equal_passes : greater_passes);
+      assign is_less    = depth[s*CODE+:CODE] < stored_depth_i[s*WORD+:CODE];
+      assign is_at_most = {depth[s*CODE+:CODE], 1'b0} < {stored_depth_i[s*WORD+:CODE], 1'b1};
+      assign is_nearer[s] = is_less ? less_passes : (is_at_most ? equal_passes : greater_passes);
       assign write_o.depth[s*WORD+:WORD] = WORD'(depth[s*CODE+:CODE]);
       assign word_o[s*WORD+:CODE] = takes[s] ? depth[s*CODE+:CODE] : stored_depth_i[s*WORD+:CODE];
 
