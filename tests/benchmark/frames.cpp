@@ -1,6 +1,6 @@
 // Draws frames of a built-in scene on one thread, for tools/instructions.py to count: the first allocates memory, later ones
-// only draw. Arguments: engine, scene, width, height, frames; engine functional draws with its AVX2 kernels, cycle with its
-// own memory. Status 77: no AVX2.
+// only draw. Arguments: engine, scene, width, height, frames, samples a pixel; engine functional draws with its AVX2
+// kernels, cycle with its own memory. Status 77: no AVX2.
 #include <algorithm>
 #include <cstdlib>
 #include <string_view>
@@ -20,6 +20,7 @@ int draw_functional(const Scene& scene, Config config, int frames) {
   FunctionalEngine engine(config);
   RenderOptions options;
   options.threads = 1;
+  options.resolved_only = true;
   options.instruction_set = "avx2";
   const auto is_it = [&](const functional::Kernels* kernels) { return kernels->name == options.instruction_set; };
   if (std::ranges::none_of(functional::available_kernels(), is_it)) return 77;
@@ -39,9 +40,10 @@ int draw_cycle(const Scene& scene, const Config& config, int frames) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 6) return 2;
+  if (argc != 7) return 2;
   const Scene scene = make_builtin(argv[2], std::atoi(argv[3]), std::atoi(argv[4]), {}, 1);
-  const Config config = preset("embedded");
+  Config config = preset("embedded");
+  set(config, "msaa.samples", argv[6]);
   const int frames = std::atoi(argv[5]);
   return std::string_view(argv[1]) == "cycle" ? draw_cycle(scene, config, frames)
                                               : draw_functional(scene, config, frames);

@@ -16,8 +16,9 @@ struct LanePositions {
   I16 lane;     ///< its number
   I16 to_sign;  ///< 31 - lane: moves bit number `lane` to the sign
   I16 block_x, block_y;
-  S64 tile_x, tile_y;    ///< of the tiles of a bin, row by row
-  S64 pixel_x, pixel_y;  ///< of the pixels of a tile, block by block
+  S64 tile_x, tile_y;        ///< of the tiles of a bin, row by row
+  S64 pixel_x, pixel_y;      ///< of the pixels of a tile, block by block
+  S64 samples_x, samples_y;  ///< of four samples of a block
   /// Columns (rows) of the left and right (upper and lower) blocks of a tile, from its anchor; also in both halves.
   std::array<I16, 2> column, row, column_pair, row_pair;
   struct Block {
@@ -33,6 +34,8 @@ struct LanePositions {
     tile_y = S64::of([](int i) { return static_cast<std::int16_t>(i / kBinTiles); });
     pixel_x = S64::of([](int i) { return static_cast<std::int16_t>(i / 16 % 2 * kBlockSize + i % 4); });
     pixel_y = S64::of([](int i) { return static_cast<std::int16_t>(i / 32 * kBlockSize + i / 4 % 4); });
+    samples_x = S64::of([](int i) { return static_cast<std::int16_t>(i % 4); });
+    samples_y = S64::of([](int i) { return static_cast<std::int16_t>(i / 4 % 4); });
     lane = I16::of([](int i) { return i; });
     to_sign = I16::of([](int i) { return 31 - i; });
     block_x = I16::of([](int i) { return i % 4; });
@@ -198,11 +201,13 @@ struct TileCutouts {
   Cutout cutout[kMost];                 // GCC 12 takes an access to a std::array of these for one of another array
 };
 
-/// Data of a bin by sample of multisampled pixels, each laid out as BinMemory is; colours of split tiles.
+/// Data of a bin by sample of multisampled pixels: block after block as in BinMemory, each block sample after sample:
+/// Bin::sample_place(). Colours are of split tiles.
 struct SampleMemory {
-  alignas(64) std::int32_t depth[kMaxPixelSamples][kBinPixels];
-  alignas(64) std::uint16_t narrow_depth[kMaxPixelSamples][kBinPixels];
-  alignas(64) std::uint32_t color[kMaxPixelSamples][kBinPixels];
+  static constexpr std::size_t kSamples = std::size_t{kMaxPixelSamples} * kBinPixels;
+  alignas(64) std::array<std::int32_t, kSamples> depth;
+  alignas(64) std::array<std::uint16_t, kSamples> narrow_depth;
+  alignas(64) std::array<std::uint32_t, kSamples> color;
   TileCutouts cutouts[kBinTiles * kBinTiles];
 
   static SampleMemory& of_thread() {
@@ -282,6 +287,10 @@ struct Bin {
   bool is_killed = false;           ///< all colours are known to fail
   std::uint32_t drawn_samples = 1;  ///< of pixels, by the draw's sample mask, a bit each
   bool is_back = false;             ///< the current triangle shows its back; set for draws with a stencil
+  /// Where SampleMemory has sample k of the block that begins with pixel `at`.
+  [[nodiscard]] HALFPLANE_INLINE std::size_t sample_place(unsigned k, std::size_t at) const {
+    return at * samples + k * kBlockPixels;
+  }
   [[nodiscard]] HALFPLANE_INLINE bool sees_surfaces() const { return state.has_surface && state.color_write; }
   std::int32_t low = 0, high = 0;  ///< range of the bin's depths, or wider
   std::int32_t lowest_high = 0;    ///< lowest of its tiles' upper bounds, now or earlier

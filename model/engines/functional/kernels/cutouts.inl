@@ -25,9 +25,10 @@ HALFPLANE_INLINE unsigned samples_of(const Bin& bin) {
 template <unsigned kSamples>
 HALFPLANE_INLINE void store_samples(const Bin& bin, int tile, const PixelsOfSamples& passed, std::size_t block,
                                     const I16& color) {
-  std::uint32_t* const to = bin.sample_memory.color[0] + first_of(tile) + block * kBlockPixels;
-  for (unsigned k = 0; k < samples_of<kSamples>(bin); ++k) {
-    std::uint32_t* const at_sample = to + k * kBinPixels;
+  const unsigned samples = samples_of<kSamples>(bin);
+  std::uint32_t* const to = bin.sample_memory.color.data() + (first_of(tile) + block * kBlockPixels) * samples;
+  for (unsigned k = 0; k < samples; ++k) {
+    std::uint32_t* const at_sample = to + k * kBlockPixels;
     select_by_bits(block_bits(passed[k], block), color, I16::load(at_sample), bin.position.to_sign).store(at_sample);
   }
 }
@@ -76,42 +77,46 @@ struct SampledColors {
 
   HALFPLANE_INLINE SampledColors(Bin& bin_, const BinTriangle& t_) : bin(bin_), t(t_) {}
 
-  HALFPLANE_INLINE const ChannelPairs& gain_at(unsigned m) {
-    if (!has_gains)
-      for (unsigned k = 0; k < samples_of<kSamples>(bin); ++k) gain[k] = color_at_sample(bin, t, k);
+  HALFPLANE_NOINLINE void find_gains() {
+    for (unsigned k = 0; k < samples_of<kSamples>(bin); ++k) gain[k] = color_at_sample(bin, t, k);
     has_gains = true;
+  }
+  HALFPLANE_INLINE const ChannelPairs& gain_at(unsigned m) {
+    if (!has_gains) find_gains();
     return gain[m];
   }
 
   /// Colours of a block's pixels `any`: at the centre, or, if that is not covered, at the first covered sample.
   HALFPLANE_INLINE I16 of_block(const ColorRamp& plane, std::uint64_t centre, const PixelsOfSamples& covered,
                                 std::size_t block, std::uint32_t any, ColorFormat format) {
-    I16 color = block_colors(t.color, plane, block, bin.color_format, format);
+    if (!has_gains) find_gains();
+    std::array<I16, 2> to_place{I16(0), I16(0)};
     std::uint32_t rest = any & ~block_bits(centre, block);
-    for (unsigned m = 0; rest != 0 && m < samples_of<kSamples>(bin); ++m) {
+    for (unsigned m = 0; m < samples_of<kSamples>(bin) && (kSamples != 0 || rest != 0);
+         ++m) {  // of 4 without a branch: it is mispredicted
       const std::uint32_t here = rest & block_bits(covered[m], block);
-      if (here == 0) continue;
       rest &= ~here;
-      const ChannelPairs& to_sample = gain_at(m);
-      const auto pair = [&](std::size_t p) HALFPLANE_LAMBDA {
-        return color_codes(plane[p](block) + as<S32>(I16(to_sample[p])), I16(t.color.low[p]), I16(t.color.high[p]),
-                           bin.color_format);
-      };
-      color = select_by_bits(here, packed(pair(0), pair(1), format), color, bin.position.to_sign);
+      for (std::size_t p = 0; p < 2; ++p)
+        to_place[p] = select_by_bits(here, I16(gain[m][p]), to_place[p], bin.position.to_sign);
     }
-    return color;
+    const auto is_right = static_cast<std::int16_t>(0 - (block & 1)),
+               is_below = static_cast<std::int16_t>(0 - (block >> 1));
+    const auto pair = [&](std::size_t p) HALFPLANE_LAMBDA {
+      const S32 value = plane[p].first + (plane[p].right & is_right) + (plane[p].below & is_below);
+      return color_codes(value + as<S32>(to_place[p]), I16(t.color.low[p]), I16(t.color.high[p]), bin.color_format);
+    };
+    return packed(pair(0), pair(1), format);
   }
 
   /// Stores colours to the samples that have passed. `any`: pixels with such a sample.
   HALFPLANE_INLINE void store(int tile, std::uint64_t centre, const PixelsOfSamples& covered,
                               const PixelsOfSamples& passed, std::uint64_t any) {
     const ColorRamp plane = color_ramp(bin, t.color, color_anchor(bin, t, tile % kBinTiles, tile / kBinTiles));
-    for_each_block([&](auto block) HALFPLANE_LAMBDA {
-      const std::uint32_t here = block_bits(any, block);
-      if (here != 0)
-        store_samples<kSamples>(bin, tile, passed, block,
-                                of_block(plane, centre, covered, block, here, bin.config.color_format));
-    });
+    for (std::uint32_t rest = blocks_with(any); rest != 0; rest &= rest - 1) {
+      const auto block = static_cast<std::size_t>(std::countr_zero(rest));
+      store_samples<kSamples>(bin, tile, passed, block,
+                              of_block(plane, centre, covered, block, block_bits(any, block), bin.config.color_format));
+    }
   }
 };
 
@@ -206,8 +211,8 @@ HALFPLANE_NOINLINE void need_sample_colors(Bin& bin, int tile) {
   if (bin.color_owner[tile] != Bin::kInTarget) return need_color(bin, tile);
   for (unsigned k = 0; k < bin.samples; ++k) {
     const TileBlocks blocks = fetched(bin, tile, false, 0, bin.job.target.samples[k].color);
-    std::uint32_t* const to = bin.sample_memory.color[k] + first_of(tile);
-    for (std::size_t i = 0; i < 4; ++i) blocks[i].store(to + kBlockPixels * i);
+    for (std::size_t i = 0; i < 4; ++i)
+      blocks[i].store(bin.sample_memory.color.data() + bin.sample_place(k, first_of(tile) + kBlockPixels * i));
   }
   bin.color_owner[tile] = Bin::kInMemory;
   bin.split |= std::uint64_t{1} << tile;
@@ -217,9 +222,11 @@ HALFPLANE_NOINLINE void split_tile(Bin& bin, int tile) {
   need_sample_colors(bin, tile);
   if ((bin.split >> tile & 1) != 0) return;
   const std::uint32_t* const from = bin.memory.color.data() + first_of(tile);
-  for (unsigned k = 0; k < bin.samples; ++k)
-    for (std::size_t i = 0; i < 4; ++i)
-      I16::load(from + kBlockPixels * i).store(bin.sample_memory.color[k] + first_of(tile) + kBlockPixels * i);
+  std::uint32_t* const to = bin.sample_memory.color.data() + bin.sample_place(0, first_of(tile));
+  for (std::size_t i = 0; i < 4; ++i) {
+    const I16 color = I16::load(from + i * kBlockPixels);
+    for (std::size_t k = 0; k < bin.samples; ++k) color.store(to + (i * bin.samples + k) * kBlockPixels);
+  }
   bin.split |= std::uint64_t{1} << tile;
 }
 

@@ -119,7 +119,11 @@ HALFPLANE_INLINE void write_color_rows(const Bin& bin, const BinTriangle& left, 
 
 HALFPLANE_INLINE I16 mean_colors(const Bin& bin, std::size_t at) {
   ColorSums sums(bin);
-  for (unsigned k = 0; k < bin.samples; ++k) sums.add(I16::load(bin.sample_memory.color[k] + at));
+  const std::uint32_t* const from = bin.sample_memory.color.data() + bin.sample_place(0, at);
+  if (bin.samples == 4)
+    for (unsigned k = 0; k < 4; ++k) sums.add(I16::load(from + k * kBlockPixels));
+  else
+    for (unsigned k = 0; k < bin.samples; ++k) sums.add(I16::load(from + k * kBlockPixels));
   return sums.mean(bin);
 }
 
@@ -134,7 +138,8 @@ HALFPLANE_INLINE TileBlocks sample_colors(const Bin& bin, int tile, unsigned k) 
   }
   for (std::size_t i = 0; i < 4; ++i) {
     const std::size_t at = static_cast<std::size_t>(first_of(tile)) + kBlockPixels * i;
-    blocks[i] = k == kResolved ? mean_colors(bin, at) : I16::load(bin.sample_memory.color[k] + at);
+    blocks[i] =
+        k == kResolved ? mean_colors(bin, at) : I16::load(bin.sample_memory.color.data() + bin.sample_place(k, at));
   }
   return blocks;
 }

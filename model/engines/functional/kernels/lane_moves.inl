@@ -226,6 +226,55 @@ HALFPLANE_LEAF S16 saturated(const I16& v) {
 }
 #endif
 
+/// Masks of four blocks of a tile, a word of each: of sample k in number k, or of block k. The same words the other way.
+using BlocksOfSamples = std::array<std::uint64_t, 4>;
+HALFPLANE_LEAF BlocksOfSamples transposed(const BlocksOfSamples& words) {
+  BlocksOfSamples r;
+#if HALFPLANE_ISA >= 256
+  // Out of registers: a load of 32 bytes would wait for four stores of eight.
+  const auto word = [&words](std::size_t i) HALFPLANE_LAMBDA { return static_cast<std::int64_t>(words[i]); };
+  const __m256i all = _mm256_set_epi64x(word(3), word(2), word(1), word(0)),
+                order =
+                    _mm256_broadcastsi128_si256(_mm_setr_epi8(0, 1, 8, 9, 2, 3, 10, 11, 4, 5, 12, 13, 6, 7, 14, 15));
+  const __m256i pairs = _mm256_shuffle_epi8(all, order);
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(r.data()),
+                      _mm256_permutevar8x32_epi32(pairs, _mm256_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7)));
+#else
+  for (std::size_t i = 0; i < 4; ++i) {
+    r[i] = 0;
+    for (std::size_t k = 0; k < 4; ++k) r[i] |= (words[k] >> 16 * i & 0xffff) << 16 * k;
+  }
+#endif
+  return r;
+}
+
+/// Four numbers, each in sixteen lanes.
+HALFPLANE_LEAF S64 four_blocks(const std::array<std::int16_t, 4>& of) {
+  S64 r;
+#if HALFPLANE_ISA == 512
+  for (std::size_t i = 0; i < 2; ++i)
+    r.part[i] = (S64::Register)_mm512_inserti64x4(_mm512_set1_epi16(of[2 * i]), _mm256_set1_epi16(of[2 * i + 1]), 1);
+#else
+  for (int i = 0; i < S64::kParts; ++i) r.part[i] = S64::Register{} + of[static_cast<std::size_t>(4 * i / S64::kParts)];
+#endif
+  return r;
+}
+/// Four times sixteen lanes, to 16 bits, saturating.
+HALFPLANE_LEAF S64 four_blocks(const std::array<I16, 4>& of) {
+  S64 r;
+#if HALFPLANE_ISA == 512
+  const __m512i order = _mm512_setr_epi64(0, 2, 4, 6, 1, 3, 5, 7);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const __m512i both = _mm512_packs_epi32((__m512i)of[2 * i].part[0], (__m512i)of[2 * i + 1].part[0]);
+    r.part[i] = (S64::Register)_mm512_permutexvar_epi64(order, both);
+  }
+#else
+  for (int i = 0; i < S64::kParts; ++i)
+    r.part[i] = saturated(of[static_cast<std::size_t>(4 * i / S64::kParts)]).part[i % S16::kParts];
+#endif
+  return r;
+}
+
 /// Eight lanes of `left` and eight of `right` alternating, to signed bytes, saturating.
 HALFPLANE_LEAF B64 saturated(const S32& left, const S32& right) {
   B64 r;
@@ -398,6 +447,40 @@ HALFPLANE_LEAF I16 select_by_bits(std::uint32_t bits, const I16& a, const I16& b
   return r;
 #else
   return select_by_sign(I16(static_cast<std::int32_t>(bits)) << to_sign, a, b);
+#endif
+}
+
+/// The same for four numbers of 16 bits a pixel, of which a block's left half has eight and its right half eight.
+HALFPLANE_LEAF void replace_by_bits(std::uint32_t bits, const S32& with, S32& left, S32& right,
+                                    [[maybe_unused]] const I16& to_sign) {
+#if HALFPLANE_ISA == 512
+  const __m512i all = _mm512_set1_epi64(static_cast<std::int64_t>(bits)),
+                of_left = _mm512_setr_epi64(1, 2, 1 << 4, 2 << 4, 1 << 8, 2 << 8, 1 << 12, 2 << 12);
+  const auto replace = [&](S32& half, const __m512i& place) HALFPLANE_LAMBDA {
+    half.part[0] = (S32::Register)_mm512_mask_mov_epi64((__m512i)half.part[0], _mm512_test_epi64_mask(all, place),
+                                                        (__m512i)with.part[0]);
+  };
+  replace(left, of_left);
+  replace(right, _mm512_slli_epi64(of_left, 2));
+#else
+  const I16 signs = I16(static_cast<std::int32_t>(bits)) << to_sign;
+  for (int i = 0; i < S32::kParts; ++i) {
+#if HALFPLANE_ISA == 256
+    const auto mask = (__m256i)signs.part[i];
+    const auto replaced = [&](const S32& half, const __m256i& of) HALFPLANE_LAMBDA {
+      return (S32::Register)_mm256_blendv_ps((__m256)half.part[i], (__m256)with.part[i], (__m256)of);
+    };
+    left.part[i] = replaced(left, _mm256_unpacklo_epi32(mask, mask));
+    right.part[i] = replaced(right, _mm256_unpackhi_epi32(mask, mask));
+#else
+    const I16::Register mask = signs.part[i] < 0;
+    const auto replaced = [&](const S32& half, const I16::Register& of) HALFPLANE_LAMBDA {
+      return (half.part[i] & ~(S32::Register)of) | (with.part[i] & (S32::Register)of);
+    };
+    left.part[i] = replaced(left, __builtin_shufflevector(mask, mask, 0, 0, 1, 1));
+    right.part[i] = replaced(right, __builtin_shufflevector(mask, mask, 2, 2, 3, 3));
+#endif
+  }
 #endif
 }
 

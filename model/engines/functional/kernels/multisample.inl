@@ -94,6 +94,29 @@ struct PixelColors {
   }
 };
 
+/// Depths of a block's pixels at four samples: a LongRamp over block and samples.
+struct FourSamples {
+  S64 upper;
+  U64 lower;
+
+  HALFPLANE_INLINE FourSamples() = default;
+  /// Steps and increments to the samples in units of the ramp.
+  HALFPLANE_INLINE void set(const Bin& bin, const LongRamp<Over::pixels>& ramp, std::int32_t step_x,
+                            std::int32_t step_y, const std::array<std::int32_t, 4>& gain) {
+    std::array<std::int16_t, 4> gain_upper, gain_lower;
+    for (std::size_t k = 0; k < 4; ++k) {
+      gain_upper[k] = ramp.upper_of(gain[k]);
+      gain_lower[k] = static_cast<std::int16_t>(ramp.lower_of(gain[k]));
+    }
+    const S64 &x = bin.position.samples_x, &y = bin.position.samples_y;
+    upper = x * ramp.upper_of(step_x) + y * ramp.upper_of(step_y) + four_blocks(gain_upper);
+    lower = as<U64>(x) * ramp.lower_of(step_x) + as<U64>(y) * ramp.lower_of(step_y) + as<U64>(four_blocks(gain_lower));
+  }
+  HALFPLANE_INLINE S64 operator()(const LongRamp<Over::pixels>& ramp, std::int32_t first) const {
+    return upper + ramp.upper_of(first) + as<S64>((lower + ramp.lower_of(first)) >> ramp.fraction);
+  }
+};
+
 /// One triangle in its tiles. `kSamples`: how many a pixel has, or 0, if Bin::samples gives the number.
 template <unsigned kSamples>
 struct SampledTriangle {
@@ -105,12 +128,21 @@ struct SampledTriangle {
   const TileConstants constants;
   SampledColors<kSamples> planes;
   std::array<std::int32_t, kMaxPixelSamples> surface{};  ///< surface number by shading sample; 0: none yet
-  bool can_wait;                                         ///< its colours may be deferred
-  std::int16_t plane_number = -1;                        ///< into BinMemory::planes, once pending
+  FourSamples
+      depth_of_four[(kSamples != 0 ? kSamples : kMaxPixelSamples) / 4];  ///< if is_narrow; as TileCutouts::cutout
+  bool can_wait;                                                         ///< its colours may be deferred
+  std::int16_t plane_number = -1;                                        ///< into BinMemory::planes, once pending
 
   HALFPLANE_INLINE SampledTriangle(Bin& bin_, const Slice& slice_, const Record& record_, const BinTriangle& t_,
                                    const SeveralSamples& at_)
       : bin(bin_), slice(slice_), record(record_), t(t_), at(at_), constants(bin_, t_), planes(bin_, t_) {
+    const int up = bin.depth_format.up;
+    if (constants.is_narrow)
+      for (unsigned k = 0; k + 4 <= count(); k += 4) {
+        const auto gain = [&](unsigned i) HALFPLANE_LAMBDA { return at.depth[k + i] >> up; };
+        depth_of_four[k / 4].set(bin, constants.depth, t.z_step_x >> up, t.z_step_y >> up,
+                                 {gain(0), gain(1), gain(2), gain(3)});
+      }
     can_wait = bin.state.color_write && bin.skip.attributes && !bin.has_operations && t.surface == 0;
   }
 
@@ -152,11 +184,43 @@ struct SampledTriangle {
     const EdgeWords smallest = constants.edge + constants.to_smallest + (y * constants.tile_dx - x * constants.tile_dy);
     const FirstValues first = first_values(smallest);
     const auto at_least = stored(smallest + at.edge_least);
-    for (std::size_t e = 0; e < 3; ++e)
-      if (at_least[e] < 0) leave_out(e, first, pixels);
+    std::uint32_t cut = 0;  // a bit an edge: a loop over them has fewer mispredicted branches than three tests
+    for (std::size_t e = 0; e < 3; ++e) cut |= at_least[e] < 0 ? 1U << e : 0;
+    for (; cut != 0; cut &= cut - 1) leave_out(static_cast<std::size_t>(std::countr_zero(cut)), first, pixels);
     std::uint64_t any = 0;
     for (unsigned k = 0; k < count(); ++k) any |= pixels.covered[k];
     return any != 0;
+  }
+
+  /// Tests four samples of a block at a time. `anchor`: the depth of the tile's first pixel.
+  template <class Fragments>
+  HALFPLANE_INLINE void test_by_fours(int tile, std::int32_t anchor, SamplePixels& pixels) const {
+    const DepthLanes limits(constants.z_low, constants.z_high, constants.middle);
+    const bool writes = bin.state.depth_write;
+    const std::int32_t to_right = kBlockSize * (t.z_step_x >> bin.depth_format.up),
+                       to_below = kBlockSize * (t.z_step_y >> bin.depth_format.up);
+    for (unsigned first = 0; first < count(); first += 4) {
+      std::uint64_t any = 0;
+      BlocksOfSamples covered, passed{};  // number k, of sample k
+      for (unsigned k = 0; k < 4; ++k) {
+        covered[k] = (at.drawn >> (first + k) & 1) != 0 ? pixels.covered[first + k] : 0;
+        any |= covered[k];
+      }
+      const BlocksOfSamples of_block = transposed(covered);
+      for (std::uint32_t rest = blocks_with(any); rest != 0; rest &= rest - 1) {
+        const auto block = static_cast<std::size_t>(std::countr_zero(rest));
+        const auto right = static_cast<std::int32_t>(block & 1), below = static_cast<std::int32_t>(block >> 1);
+        std::uint16_t* const to =
+            bin.sample_memory.narrow_depth.data() + bin.sample_place(first, first_of(tile) + block * kBlockPixels);
+        const S64 depth = depth_of_four[first / 4](constants.depth, anchor + right * to_right + below * to_below);
+        const TestedTile result =
+            tested_by_bits<Fragments>(bin.state, limits.clamped(depth), of_block[block], U64::load(to));
+        for (std::size_t k = 0; k < 4; ++k)
+          passed[k] |= (result.passed >> (kBlockPixels * k) & 0xffff) << (kBlockPixels * block);
+        if (writes) result.now.store(to);
+      }
+      for (unsigned k = 0; k < 4; ++k) pixels.passed[first + k] = passed[k];
+    }
   }
 
   template <class Fragments>
@@ -164,33 +228,14 @@ struct SampledTriangle {
     for (unsigned k = 0; k < count(); ++k) pixels.passed[k] = 0;
     if (bin.depth_owner[tile] != Bin::kInMemory) need_sample_depths(bin, tile);
     const std::int32_t anchor = depth_anchor(bin, t, tile % kBinTiles, tile / kBinTiles);
-    const auto first = static_cast<std::size_t>(first_of(tile));
     const bool writes = bin.state.depth_write;
-    if (constants.is_narrow) {
-      std::uint16_t* const depths = bin.sample_memory.narrow_depth[0] + first;
-      const DepthLanes limits(constants.z_low, constants.z_high, constants.middle);
-      const unsigned samples = count();
-      U64 low(0xffff), high(0);
-      for (unsigned k = 0; k < samples; ++k) {
-        std::uint16_t* const to = depths + k * kBinPixels;
-        const U64 stored = U64::load(to);
-        U64 now = stored;
-        if ((at.drawn >> k & 1) != 0) {
-          const TestedTile result = tested_by_bits<Fragments>(bin, constants, limits, wrapped_sum(anchor, at.depth[k]),
-                                                              pixels.covered[k], stored);
-          pixels.passed[k] = result.passed;
-          now = result.now;
-          if (writes && result.passed != 0) now.store(to);
-        }
-        low = min(low, now);
-        high = max(high, now);
-      }
+    if (constants.is_narrow && count() % 4 == 0) {
+      test_by_fours<Fragments>(tile, (anchor >> bin.depth_format.up) + constants.z_first, pixels);
       pixels.find_any_and_all(count());
-      if (!writes || pixels.any == 0) return;
-      bin.tile_low[tile] = static_cast<std::uint16_t>(min_lane(low));
-      bin.tile_high[tile] = static_cast<std::uint16_t>(max_lane(high));
+      if (writes && pixels.any != 0) find_sample_range(bin, tile);
       return;
     }
+    const auto first = static_cast<std::size_t>(first_of(tile));
     for (unsigned k = 0; k < count(); ++k) {
       if ((at.drawn >> k & 1) == 0) continue;
       const BlockRamp<I16> plane = depth_ramp(bin, t, wrapped_sum(anchor, at.depth[k]));
@@ -333,7 +378,8 @@ struct SampledTriangle {
     split_tile(bin, tile);
     for (unsigned k = 0; k < count(); ++k)
       if (pixels.passed[k] != 0)
-        store_colors(bin, bin.sample_memory.color[k] + first_of(tile), pixels.passed[k], colors);
+        store_colors(bin, bin.sample_memory.color.data() + bin.sample_place(k, first_of(tile)), pixels.passed[k],
+                     colors, bin.samples * kBlockPixels);
   }
 
   /// Its number among the pending triangles.

@@ -11,6 +11,7 @@
 #include "small_batch.inl"
 #include "small_setup.inl"
 #include "tile_memory.inl"
+#include "tiles.inl"
 
 namespace halfplane::functional::HALFPLANE_ISA_NAME {
 namespace {
@@ -95,7 +96,7 @@ struct QuadEdges<false> {
 struct SampledCoverage {
   Coverage any;
   alignas(64) Coverage::Blocks centre;
-  alignas(64) std::array<Coverage::Blocks, kMaxPixelSamples> sample;
+  alignas(64) std::array<std::uint16_t, Coverage::kMost * Quad::kBlocks * kMaxPixelSamples> sample;  ///< block by block
   std::uint64_t samples = 0;  ///< covered and drawn samples
 
   HALFPLANE_INLINE SampledCoverage() = default;
@@ -104,6 +105,7 @@ struct SampledCoverage {
 template <unsigned kSamples, bool kShort>
 HALFPLANE_INLINE void find_sampled(const Bin& bin, const SmallSamples& samples, std::uint64_t quads,
                                    SampledCoverage& covered) {
+  const std::size_t count = samples_of<kSamples>(bin);
   std::size_t at = 0;
   std::uint64_t sum = 0;
   for (; quads != 0; quads &= quads - 1) {
@@ -111,11 +113,20 @@ HALFPLANE_INLINE void find_sampled(const Bin& bin, const SmallSamples& samples, 
     const std::uint64_t in_box = kWindowQuads.in_box[static_cast<std::size_t>(bin.small.columns_rows[i])][q];
     const QuadEdges<kShort> edges(bin, i, q);
     std::uint64_t any = 0;
-    for (std::size_t k = 0; k < samples_of<kSamples>(bin); ++k) {
+    std::array<std::uint64_t, kMaxPixelSamples> pixels;
+    for (std::size_t k = 0; k < count; ++k) {
       const std::uint64_t bits = in_box & ~edges.outside(samples.edge[k], i);
-      Coverage::set_blocks(covered.sample[k], at, bits);
+      pixels[k] = bits;
       any |= bits;
       if ((bin.drawn_samples >> k & 1) != 0) sum += static_cast<unsigned>(std::popcount(bits));
+    }
+    if constexpr (kSamples == 4) {
+      const BlocksOfSamples blocks = transposed({pixels[0], pixels[1], pixels[2], pixels[3]});
+      for (std::size_t k = 0; k < Quad::kBlocks; ++k) Coverage::set_blocks(covered.sample, 4 * at + k, blocks[k]);
+    } else {
+      std::uint16_t* const to = covered.sample.data() + at * Quad::kBlocks * count;
+      for (std::size_t k = 0; k < Quad::kBlocks * count; ++k)
+        to[k] = static_cast<std::uint16_t>(block_bits(pixels[k % count], k / count));
     }
     Coverage::set_blocks(covered.centre, at, in_box & ~edges.outside(bin.small.edge, i));
     covered.any.set(at, i, bin.small.first_block[i] + kWindowQuads.first[q], any);
@@ -132,6 +143,16 @@ HALFPLANE_INLINE void find_sampled(Bin& bin, const SmallSamples& samples, Sample
   bin.job.counters.samples_tested += Quad::kPixels * bin.samples * static_cast<unsigned>(std::popcount(quads));
 }
 
+/// Words of four samples of a block, the first lowest.
+HALFPLANE_INLINE std::uint64_t four_words(const std::uint16_t* from) {
+  if constexpr (std::endian::native == std::endian::little) {
+    std::uint64_t words;
+    std::memcpy(&words, from, sizeof words);
+    return words;
+  }
+  return from[0] | std::uint64_t{from[1]} << 16 | std::uint64_t{from[2]} << 32 | std::uint64_t{from[3]} << 48;
+}
+
 /// Colours of a block of lane i: at the centre, or, if that is not covered, at the first covered sample.
 template <unsigned kSamples>
 HALFPLANE_INLINE I16 sampled_colors(const Bin& bin, const SmallSamples& samples, const SampledCoverage& covered,
@@ -139,82 +160,40 @@ HALFPLANE_INLINE I16 sampled_colors(const Bin& bin, const SmallSamples& samples,
                                     const LanePositions::Block& block, int down) {
   const SmallBatch& batch = bin.small;
   const S32 step_x = repeated(batch.c_step_x[i]), step_y = repeated(batch.c_step_y[i]);
-  const S32 left = block_plane(block.channel_column, block.channel_row, step_x, step_y, step_y * block_rows<S32>,
-                               repeated(tile.color[i])),
-            right = left + (step_x << 1);
-  const I16 low(batch.c_low[i]), high(batch.c_high[i]);
-  I16 rgba = ColorRange::clamped(saturated(left >> down, right >> down), low, high);
+  S32 left = block_plane(block.channel_column, block.channel_row, step_x, step_y, step_y * block_rows<S32>,
+                         repeated(tile.color[i])),
+      right = left + (step_x << 1);
   std::uint32_t rest = covered.any.block[number] & ~std::uint32_t{covered.centre[number]};
-  for (std::size_t k = 0; rest != 0 && k < samples_of<kSamples>(bin); ++k) {
-    const std::uint32_t here = rest & covered.sample[k][number];
+  S32 gain_left(0), gain_right(0);
+  for (std::size_t k = 0; k < samples_of<kSamples>(bin) && (kSamples != 0 || rest != 0);
+       ++k) {  // of 4 without a branch: it is mispredicted
+    const std::uint32_t here = rest & covered.sample[number * samples_of<kSamples>(bin) + k];
     rest &= ~here;
-    const S32 gain = repeated(samples.color[k][i]);
-    const I16 at_sample = ColorRange::clamped(saturated((left + gain) >> down, (right + gain) >> down), low, high);
-    rgba = select_by_bits(here, at_sample, rgba, bin.position.to_sign);
+    replace_by_bits(here, repeated(samples.color[k][i]), gain_left, gain_right, bin.position.to_sign);
   }
+  left += gain_left;
+  right += gain_right;
+  const I16 low(batch.c_low[i]), high(batch.c_high[i]),
+      rgba = ColorRange::clamped(saturated(left >> down, right >> down), low, high);
   return bin.config.color_format == ColorFormat::rgba8888 ? rgba : packed(rgba, bin.config.color_format);
 }
 
-#if HALFPLANE_ISA == 512
-/// NarrowTest for larger registers: the codes of a block are half a register, masks are bits.
-struct NarrowSamples {
-  static constexpr unsigned kCount = 1;
-  using Passed = std::uint32_t;
-  const Bin& bin;
-  std::uint16_t* depths;
-  __m256i bias;
-
-  HALFPLANE_INLINE NarrowSamples(const Bin& bin_, SampleMemory& memory)
-      : bin(bin_),
-        depths(memory.narrow_depth[0]),
-        bias(_mm256_set1_epi16(static_cast<std::int16_t>(bin_.depth_format.bias))) {}
-  HALFPLANE_INLINE static __m256i codes(const I16& code, std::int32_t low, std::int32_t high) {
-    const __m256i saturated = _mm512_cvtsepi32_epi16((__m512i)code.part[0]);
-    return _mm256_min_epi16(_mm256_max_epi16(saturated, _mm256_set1_epi16(static_cast<std::int16_t>(low))),
-                            _mm256_set1_epi16(static_cast<std::int16_t>(high)));
-  }
-  HALFPLANE_INLINE __m256i load(std::size_t at) const {
-    return _mm256_sub_epi16(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(depths + at)), bias);
-  }
-  HALFPLANE_INLINE void store(std::size_t at, const __m256i& depth) const {
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(depths + at), _mm256_add_epi16(depth, bias));
-  }
-  template <class Fragments>
-  HALFPLANE_INLINE static std::uint32_t passed(const SliceState& state, std::uint32_t covered, const __m256i& depth,
-                                               const __m256i& stored) {
-    if (Fragments::kIsLess) return _mm256_mask_cmplt_epi16_mask(static_cast<__mmask16>(covered), depth, stored);
-    const auto lanes = [](const __m256i& of) HALFPLANE_LAMBDA {
-      I16 r;
-      r.part[0] = (I16::Register)_mm512_cvtepi16_epi32(of);
-      return r;
-    };
-    return covered & bits_of(Fragments::passes(state, lanes(depth), lanes(stored)));
-  }
-  HALFPLANE_INLINE static unsigned count(std::uint32_t pixels) { return static_cast<unsigned>(std::popcount(pixels)); }
-  HALFPLANE_INLINE static __m256i choose(std::uint32_t pixels, const __m256i& a, const __m256i& b) {
-    return _mm256_mask_mov_epi16(b, static_cast<__mmask16>(pixels), a);
-  }
-  HALFPLANE_INLINE I16 choose_color(std::uint32_t pixels, const I16& a, const I16& b) const {
-    return select_by_bits(pixels, a, b, bin.position.to_sign);
-  }
-};
-#else
-using NarrowSamples = NarrowTest;
-#endif
-
-/// Depth, test and colour of the blocks with covered samples.
-template <class Fragments, class Test, unsigned kSamples>
+/// Depth, test and colour of the blocks with covered samples. `kByFours`: four samples in 16 bits, at once.
+template <class Fragments, class Test, unsigned kSamples, bool kByFours>
 HALFPLANE_NOINLINE void draw_sampled_blocks(Bin& bin, const SmallSamples& samples, const SampledCoverage& covered) {
   const SmallBatch& batch = bin.small;
   const SliceState state = bin.state;
   const LanePositions& position = bin.position;
   SampleMemory& memory = bin.sample_memory;
   const Test test(bin, memory);
-  std::uint32_t* const colors = memory.color[0];
+  std::uint32_t* const colors = memory.color.data();
   const int depth_down = bin.centred_depth.down, color_down = bin.centred_color.down;
   const std::size_t count = samples_of<kSamples>(bin);
   const std::uint32_t drawn = bin.drawn_samples;
   const bool has_depth = state.depth_write, has_color = state.color_write;
+  std::uint64_t drawn_bits = 0;  // of four samples, sixteen each
+  for (std::size_t k = 0; k < 4; ++k) drawn_bits |= std::uint64_t{0xffff * (drawn >> k & 1U)} << 16 * k;
+  const S64 bias(static_cast<std::int16_t>(bin.depth_format.bias));
   unsigned passed_pixels = 0;
   for (std::size_t first = 0; first < covered.any.quads; first += 16)
     for (std::uint64_t rest = covered.any.blocks(first); rest != 0; rest &= rest - 1) {
@@ -226,23 +205,44 @@ HALFPLANE_NOINLINE void draw_sampled_blocks(Bin& bin, const SmallSamples& sample
       const auto at = static_cast<std::size_t>(batch.place[i]) + in_window.place;
       const I16 value = block_plane(block.column, block.row, I16(batch.z_step_x[i]), I16(batch.z_step_y[i]),
                                     I16(batch.z_step_below[i]), I16(tile.depth[i]));
-      typename Test::Passed passed[kMaxPixelSamples];
-      unsigned some = 0;
-      for (std::size_t k = 0; k < count; ++k) {
-        const std::uint32_t bits = covered.sample[k][number] & (0U - (drawn >> k & 1U));
-        const std::size_t to = k * kBinPixels + at;
-        const auto stored = test.load(to),
-                   depth = test.codes((value + samples.depth[k][i]) >> depth_down, batch.z_low[i], batch.z_high[i]);
-        passed[k] = test.template passed<Fragments>(state, bits, depth, stored);
-        some += test.count(passed[k]);
-        if (has_depth) test.store(to, test.choose(passed[k], depth, stored));
-      }
-      passed_pixels += some;
-      if (some == 0 || !has_color) continue;
-      const I16 color = sampled_colors<kSamples>(bin, samples, covered, number, i, tile, block, color_down);
-      for (std::size_t k = 0; k < count; ++k) {
-        std::uint32_t* const to = colors + k * kBinPixels + at;
-        test.choose_color(passed[k], color, I16::load(to)).store(to);
+      const std::size_t place = at * count;
+      const std::uint16_t* const of_samples = covered.sample.data() + number * count;
+      if constexpr (kByFours) {
+        std::array<I16, 4> codes;
+        for (std::size_t k = 0; k < 4; ++k) codes[k] = (value + samples.depth[k][i]) >> depth_down;
+        const S64 low(static_cast<std::int16_t>(batch.z_low[i])), high(static_cast<std::int16_t>(batch.z_high[i]));
+        const U64 depth = as<U64>(min(max(four_blocks(codes), low), high) + bias);
+        std::uint16_t* const to = memory.narrow_depth.data() + place;
+        const TestedTile result =
+            tested_by_bits<Fragments>(state, depth, four_words(of_samples) & drawn_bits, U64::load(to));
+        if (result.passed == 0) continue;
+        if (has_depth) result.now.store(to);
+        passed_pixels += Test::kCount * static_cast<unsigned>(std::popcount(result.passed));
+        if (!has_color) continue;
+        const I16 color = sampled_colors<kSamples>(bin, samples, covered, number, i, tile, block, color_down);
+        for (std::size_t k = 0; k < 4; ++k) {
+          std::uint32_t* const pixels = colors + place + k * kBlockPixels;
+          select_by_bits(block_bits(result.passed, k), color, I16::load(pixels), position.to_sign).store(pixels);
+        }
+      } else {
+        typename Test::Passed passed[kMaxPixelSamples];
+        unsigned some = 0;
+        for (std::size_t k = 0; k < count; ++k) {
+          const std::uint32_t bits = of_samples[k] & (0U - (drawn >> k & 1U));
+          const std::size_t to = place + k * kBlockPixels;
+          const auto stored = test.load(to),
+                     depth = test.codes((value + samples.depth[k][i]) >> depth_down, batch.z_low[i], batch.z_high[i]);
+          passed[k] = test.template passed<Fragments>(state, bits, depth, stored);
+          some += test.count(passed[k]);
+          if (has_depth) test.store(to, test.choose(passed[k], depth, stored));
+        }
+        passed_pixels += some;
+        if (some == 0 || !has_color) continue;
+        const I16 color = sampled_colors<kSamples>(bin, samples, covered, number, i, tile, block, color_down);
+        for (std::size_t k = 0; k < count; ++k) {
+          std::uint32_t* const to = colors + place + k * kBlockPixels;
+          test.choose_color(passed[k], color, I16::load(to)).store(to);
+        }
       }
     }
   count_fragments(bin, covered.samples, passed_pixels / Test::kCount);
@@ -253,8 +253,8 @@ template <class Fragments, unsigned kSamples>
 HALFPLANE_NOINLINE void draw_sampled(Bin& bin, const SmallSamples& samples) {
   SampledCoverage covered;
   find_sampled<kSamples>(bin, samples, covered);
-  bin.is_narrow ? draw_sampled_blocks<Fragments, NarrowSamples, kSamples>(bin, samples, covered)
-                : draw_sampled_blocks<Fragments, WideTest, kSamples>(bin, samples, covered);
+  bin.is_narrow ? draw_sampled_blocks<Fragments, NarrowTest, kSamples, kSamples == 4>(bin, samples, covered)
+                : draw_sampled_blocks<Fragments, WideTest, kSamples, false>(bin, samples, covered);
 }
 
 /// Draws a loaded batch, without operations and surfaces.

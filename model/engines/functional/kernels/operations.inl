@@ -228,9 +228,10 @@ HALFPLANE_INLINE void write_depths(Bin& bin, const BinTriangle& t, int tile, std
   find_range(bin, tile);
 }
 
-/// Operates colours of `pixels` upon the stored ones, of a tile's 64: store_color().
+/// Operates colours of `pixels` upon the stored ones, of a tile's 64, block after block at `stride`: store_color().
 template <class Colors>
-HALFPLANE_INLINE void store_colors(Bin& bin, std::uint32_t* to, std::uint64_t pixels, const Colors& colors) {
+HALFPLANE_INLINE void store_colors(Bin& bin, std::uint32_t* to, std::uint64_t pixels, const Colors& colors,
+                                   std::size_t stride = kBlockPixels) {
   const ColorOps& ops = bin.ops->color;
   const ColorFormat format = bin.config.color_format;
   const bool has_alpha = format == ColorFormat::rgba8888, blends = ops.blends(), dithers = ops.dithers;
@@ -239,7 +240,7 @@ HALFPLANE_INLINE void store_colors(Bin& bin, std::uint32_t* to, std::uint64_t pi
   const auto written = writes_some ? static_cast<std::int32_t>(written_bits(ops, format)) : 0;
   const S32 thresholds = dithers ? block_thresholds() : S32(0);
   const LogicLanes logic(ops.logic);
-  store_pixels(bin, to, pixels, bin.skip.operations_early_z, [&](auto block, const I16& stored) HALFPLANE_LAMBDA {
+  const auto code_of = [&](auto block, const I16& stored) HALFPLANE_LAMBDA {
     const auto mixed = [&]() HALFPLANE_LAMBDA {
       if (!blends) return colors[block];
       return BlendLanes(ops, colors[block], widened(stored, format))(has_alpha);
@@ -247,7 +248,8 @@ HALFPLANE_INLINE void store_colors(Bin& bin, std::uint32_t* to, std::uint64_t pi
     I16 code = dithers ? packed_dithered(mixed, thresholds) : packed(mixed.red_blue, mixed.green_alpha, format);
     if (has_logic) code = logic(code, stored);
     return writes_all ? code : (code & written) | (stored & ~written);
-  });
+  };
+  store_pixels(bin, to, pixels, bin.skip.operations_early_z, code_of, stride);
 }
 
 /// A draw with is_over() and no alpha test.

@@ -80,7 +80,8 @@ struct Coverage {
 
   HALFPLANE_INLINE Coverage() = default;
 
-  HALFPLANE_INLINE static void set_blocks(Blocks& blocks, std::size_t quad, std::uint64_t bits) {
+  template <class Words>
+  HALFPLANE_INLINE static void set_blocks(Words& blocks, std::size_t quad, std::uint64_t bits) {
     std::uint16_t* const to = &blocks[Quad::kBlocks * quad];
     if constexpr (std::endian::native == std::endian::little)
       std::memcpy(to, &bits, sizeof bits);
@@ -190,16 +191,6 @@ HALFPLANE_INLINE void find_covered(Bin& bin, Coverage& covered) {
   bin.job.counters.samples_tested += Quad::kPixels * covered.quads;
 }
 
-/// Depths of the bin's pixels, or of their first samples.
-template <class Depth, std::size_t N>
-HALFPLANE_INLINE Depth* first_depth(std::array<Depth, N>& pixels) {
-  return pixels.data();
-}
-template <class Depth, std::size_t N>
-HALFPLANE_INLINE Depth* first_depth(Depth (*samples)[N]) {
-  return samples[0];
-}
-
 /// A block's depths in lanes of 32 bits while they are tested. `Memory`: BinMemory or SampleMemory.
 struct WideTest {
   static constexpr unsigned kCount = 1;  ///< bits of count() per pixel
@@ -214,8 +205,8 @@ struct WideTest {
       : bin(bin_),
         bias(bin_.depth_format.bias),
         is_narrow(bin_.is_narrow),
-        narrow(first_depth(memory.narrow_depth)),
-        wide(first_depth(memory.depth)) {}
+        narrow(memory.narrow_depth.data()),
+        wide(memory.depth.data()) {}
   /// All three values centred.
   HALFPLANE_INLINE I16 codes(const I16& code, std::int32_t low, std::int32_t high) const {
     return min(max(code, I16(low)), I16(high)) + bias;
@@ -283,7 +274,7 @@ struct NarrowTest {
 
   template <class Memory>
   HALFPLANE_INLINE NarrowTest(const Bin& bin, Memory& memory)
-      : depths(first_depth(memory.narrow_depth)), bias(static_cast<std::int16_t>(bin.depth_format.bias)) {}
+      : depths(memory.narrow_depth.data()), bias(static_cast<std::int16_t>(bin.depth_format.bias)) {}
   /// `low`, `high`: in both halves.
   HALFPLANE_INLINE static S16 codes(const I16& code, std::int32_t low, std::int32_t high) {
     return min(max(saturated(code), repeated<S16>(low)), repeated<S16>(high));

@@ -176,14 +176,16 @@ HALFPLANE_INLINE void set_range(Bin& bin, int tile, std::int32_t low, std::int32
 /// Depths of sample k in the block that begins with pixel `at`.
 HALFPLANE_INLINE I16 load_sample(const Bin& bin, unsigned k, std::size_t at) {
   const SampleMemory& memory = bin.sample_memory;
-  return bin.is_narrow ? load_narrow(memory.narrow_depth[k] + at) : I16::load(memory.depth[k] + at);
+  const std::size_t place = bin.sample_place(k, at);
+  return bin.is_narrow ? load_narrow(memory.narrow_depth.data() + place) : I16::load(memory.depth.data() + place);
 }
 HALFPLANE_INLINE void store_sample(const Bin& bin, unsigned k, std::size_t at, const I16& depths) {
   SampleMemory& memory = bin.sample_memory;
+  const std::size_t place = bin.sample_place(k, at);
   if (bin.is_narrow)
-    store_narrow(depths, memory.narrow_depth[k] + at);
+    store_narrow(depths, memory.narrow_depth.data() + place);
   else
-    depths.store(memory.depth[k] + at);
+    depths.store(memory.depth.data() + place);
 }
 
 /// A tile's depths at sample k, from any owner.
@@ -208,6 +210,18 @@ HALFPLANE_INLINE TileBlocks sample_depths(const Bin& bin, int tile, unsigned k) 
 }
 
 HALFPLANE_INLINE void find_sample_range(Bin& bin, int tile) {
+  if (bin.is_narrow) {
+    const std::uint16_t* const from = bin.sample_memory.narrow_depth.data() + bin.sample_place(0, first_of(tile));
+    U64 low = U64::load(from), high = low;
+    for (unsigned k = 1; k < bin.samples; ++k) {
+      const U64 depths = U64::load(from + k * kTilePixels);
+      low = min(low, depths);
+      high = max(high, depths);
+    }
+    bin.tile_low[tile] = static_cast<std::uint16_t>(min_lane(low));
+    bin.tile_high[tile] = static_cast<std::uint16_t>(max_lane(high));
+    return;
+  }
   I16 low(0x7fffffff), high(0);
   for (unsigned k = 0; k < bin.samples; ++k)
     for (std::size_t i = 0; i < 4; ++i) {

@@ -62,8 +62,6 @@ struct LongRamp {
   HALFPLANE_INLINE S64 operator()(std::int64_t first) const {
     return upper(upper_of(first)) + as<S64>(lower(lower_of(first)) >> fraction);
   }
-
- private:
   HALFPLANE_INLINE std::int16_t upper_of(std::int64_t v) const { return static_cast<std::int16_t>(v >> fraction); }
   HALFPLANE_INLINE std::uint16_t lower_of(std::int64_t v) const {
     return static_cast<std::uint16_t>(v & ((1 << fraction) - 1));
@@ -256,27 +254,24 @@ struct TestedTile {
   std::uint64_t passed;
 };
 
-/// Depth test of a tile with codes of 16 bits.
+/// Depth test of 64 pixels or samples with codes of 16 bits.
 template <class Fragments>
-HALFPLANE_INLINE TestedTile tested(const Bin& bin, const TileConstants& t, const DepthLanes& limits,
-                                   std::int32_t anchor, const S64& outside, const U64& stored) {
-  const U64 depth = limits.clamped(t.depth((anchor >> bin.depth_format.up) + t.z_first));
+HALFPLANE_INLINE TestedTile tested(const SliceState& state, const U64& depth, const S64& outside, const U64& stored) {
   if constexpr (Fragments::kIsLess) {
     const U64 now = min(depth | as<U64>(outside), stored);  // `outside` is a mask
     return {now, ~bits_equal(now, stored)};
   } else {
-    const S64 passes = ~outside & Fragments::passes(bin.state, depth, stored);
+    const S64 passes = ~outside & Fragments::passes(state, depth, stored);
     return {select(passes, depth, stored), bits_of(passes)};
   }
 }
 
-/// The same for the pixels whose bits are set.
+/// The same for those whose bits are set.
 template <class Fragments>
-HALFPLANE_INLINE TestedTile tested_by_bits(const Bin& bin, const TileConstants& t, const DepthLanes& limits,
-                                           std::int32_t anchor, std::uint64_t covered, const U64& stored) {
+HALFPLANE_INLINE TestedTile tested_by_bits(const SliceState& state, const U64& depth, std::uint64_t covered,
+                                           const U64& stored) {
 #if HALFPLANE_ISA == 512
   if constexpr (Fragments::kIsLess) {
-    const U64 depth = limits.clamped(t.depth((anchor >> bin.depth_format.up) + t.z_first));
     U64 now;
     std::uint64_t passed = 0;
     for (int i = 0; i < 2; ++i) {
@@ -288,7 +283,7 @@ HALFPLANE_INLINE TestedTile tested_by_bits(const Bin& bin, const TileConstants& 
     return {now, passed};
   }
 #endif
-  return tested<Fragments>(bin, t, limits, anchor, ~lanes_of(covered), stored);
+  return tested<Fragments>(state, depth, ~lanes_of(covered), stored);
 }
 
 /// The same in memory, or in a cleared tile. Returns the pixels that passed.
@@ -298,8 +293,9 @@ HALFPLANE_INLINE std::uint64_t test_narrow(Bin& bin, const TileConstants& t, int
   if (bin.depth_owner[tile] != Bin::kCleared) need_depth(bin, tile);
   std::uint16_t* const at = bin.memory.narrow_depth.data() + first_of(tile);
   const U64 stored = U64::load(bin.depth_owner[tile] == Bin::kCleared ? bin.cleared_depths.data() : at);
-  const auto [now, passed] =
-      tested<Fragments>(bin, t, DepthLanes(t.z_low, t.z_high, t.middle), anchor, outside, stored);
+  const U64 depth =
+      DepthLanes(t.z_low, t.z_high, t.middle).clamped(t.depth((anchor >> bin.depth_format.up) + t.z_first));
+  const auto [now, passed] = tested<Fragments>(bin.state, depth, outside, stored);
   if (passed == 0 || !bin.state.depth_write) return passed;
   now.store(at);
   bin.depth_owner[tile] = Bin::kInMemory;
