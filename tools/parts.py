@@ -69,7 +69,8 @@ SYNTH = {'ecp5': 'synth_ecp5 -nowidelut -run :map_luts; techmap -map +/lattice/l
 PINS = {'clk_i': 'H11', 'rst_ni': 'T10', 'data_i': 'T3', 'shift_i': 'T2', 'valid_i': 'D7', 'data_o': 'C13'}
 # What nextpnr calls places, multipliers and RAMs; a pattern adds up all that it fits.
 USED = {'ice40': ('ICESTORM_LC', 'none', 'ICESTORM_RAM'), 'ecp5': ('TRELLIS_COMB', 'MULT18X18D', 'DP16KD'),
-        'gowin': ('LUT4|ALU', 'MULT18X18', 'BSRAM')}
+        'gowin': ('LUT4|ALU|RAM16SDP4', 'MULT18X18', 'BSRAM')}
+SITES = {'RAM16SDP4': 4}  # places that a cell takes, where it is not one
 # Cells of a netlist by what they take of a part: places each, multipliers, RAMs.
 CELLS = {
     'ecp5': {'LUT4': (1, 0, 0), 'CCU2C': (2, 0, 0), 'TRELLIS_DPR16X4': (6, 0, 0), 'MULT18X18D': (0, 1, 0), 'DP16KD': (0, 0, 1)},
@@ -178,7 +179,7 @@ def place(part, top, json_file, name, seed):
     if not step(command, [json_file], report):
         return None
     result = json.loads(report.read_text(encoding='utf-8'))
-    used = [sum(cell['used'] for name, cell in result['utilization'].items() if re.fullmatch(names, name))
+    used = [sum(cell['used'] * SITES.get(name, 1) for name, cell in result['utilization'].items() if re.fullmatch(names, name))
             for names in USED[kind.family]]
     return *used, min(clock['achieved'] for clock in result['fmax'].values())
 

