@@ -81,7 +81,8 @@ void Surface::set_texture(const Triangle& triangle, const State& state, const Te
   constant_ = state.texture_constant;
   TextureCoordinates coordinates = texture_coordinates(
       {triangle.surface[order_[0]], triangle.surface[order_[1]], triangle.surface[order_[2]]}, state, texture, format_);
-  texture_divisor_ = make_divisor(coordinates.q);
+  const bool has_q_of_colors = color_divisor_ && state.texture_interp == TextureInterp::perspective;
+  texture_divisor_ = has_q_of_colors ? *color_divisor_ : make_divisor(coordinates.q);
   for (const std::size_t axis : {0U, 1U})
     coordinate_[axis] = {
         coordinates.over_w[axis],
