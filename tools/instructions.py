@@ -16,8 +16,8 @@ import subprocess
 import sys
 import tempfile
 
-# Engine, scene, size, samples a pixel, the things that count and their number, instructions that each may take: what was
-# measured with g++ 12, and a twentieth.
+# Engine, scene, size, samples a pixel, the things that count and their number, instructions that each may take: what
+# was measured with g++ 12, and a twentieth.
 GATES = [
     ('functional', 'dust:250000', (640, 360), 1, 'triangle', 249_630, 343),
     ('functional', 'ball', (1280, 720), 1, 'triangle', 51_200, 781),
