@@ -292,7 +292,7 @@ PROOFS = [
           is_bounded=True, depth=10, starts=(('lib/sram.sv', 'block_cache_start'),), joins=JOINED, inputs='block_cache_inputs',
           file='block_cache_whole', package=(*BLOCKS, ('FRAME_CLEARS', 1)), presets=TINY, twins=(70, 73, 76), twin_depth=10),
     Proof('memory_port_stream', 'f', 'stages/memory_port.sv', 'bursts as long as they say; each answer counted; a reset leaves '
-          'nothing stale; no deadlock', has_reset=False, inputs='memory_port_inputs', k=2, quick=TINY, cover_depth=9, cuts=MULTIPLIERS,
+          'nothing stale; no deadlock', has_reset=False, inputs='memory_port_inputs', k=2, quick=TINY, cover_depth=9,
           twins=(104, 105, 106, 107, ("recovers_q <= !rst_ni ||", "recovers_q <= rst_ni &&"), ("length_q   <= length_q - 1'b1;", ''))),
     Proof('memory_port_data', 'f', 'stages/memory_port.sv', 'each byte of a stamp goes out once, to its address; what is read is what '
           'memory answered', has_reset=False, inputs='memory_port_inputs memory_port_stream', k=2, cover_depth=9,

@@ -1,12 +1,12 @@
 #!/bin/sh
-# Random scenes are equal, and a fault of the RTL is caught: samples on an edge count as outside.
+# Random scenes are equal, and a fault of the RTL is caught: samples on an edge count as outside in a tile's first column.
 # usage: test.sh HALFPLANE LIBRARY FOLDER [CONFIG]
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 halfplane=$1 library=$2 folder=$3 config=${4:-tiny}
 rm -rf "$folder"
 mkdir -p "$folder/own"
-sed 's/value\[WIDTH-1\]/(value[WIDTH-1] || (value == '"'0"' \&\& $test$plusargs("fault") != 0))/' "$here/../../rtl_ref/lib/edge_columns.sv" >"$folder/own/edge_columns.sv"
+sed 's/value_i\[WIDTH-1\]/(value_i[WIDTH-1] || (value_i == '"'0"' \&\& $test$plusargs("fault") != 0))/' "$here/../../rtl_ref/lib/edge_columns.sv" >"$folder/own/edge_columns.sv"
 grep -q plusargs "$folder/own/edge_columns.sv"
 # A file of up to 50 primitives each.
 "$halfplane" convert --random 200 --config "$config" --quiet -o "$folder/scene.hpt"

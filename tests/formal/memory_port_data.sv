@@ -15,14 +15,6 @@
     assume (any_sample < SAMPLES);
     if (request_valid_i) assume (32'(any_byte) < (request_i.plane[0] ? raster_pkg::COLOR_SAMPLE_BYTES : raster_pkg::DEPTH_SAMPLE_BYTES));
   end
-  // From the host: the layout stays while anything is under way.
-  logic                       is_used_q;
-  raster_pkg::memory_layout_t layout_q;
-  always_ff @(posedge clk_i) begin
-    is_used_q <= takes || valid_q || gathers_q;
-    layout_q  <= layout_i;
-  end
-  always_comb if (runs_q && is_used_q) assume (layout_i == layout_q);
   // A run is within one tile: a stamp that joins a gathering beat belongs to that beat.
   always_comb if (runs_q && request_valid_i && gathers_q)
     assume (address[ADDRESS-1:PORT] == address_q && (is_flags ? '0 : request_i.tile_y) == rows_q);

@@ -31,6 +31,14 @@
       else if (answers && stale_q != '0) stale_q <= stale_q - 1'b1;
     end
   end
+  // From the host: the layout stays while anything is under way.
+  logic                       is_used_q;
+  raster_pkg::memory_layout_t layout_q;
+  always_ff @(posedge clk_i) begin
+    is_used_q <= takes || valid_q || gathers_q;
+    layout_q  <= layout_i;
+  end
+  always_comb if (runs_q && is_used_q) assume (layout_i == layout_q);
   // A request comes with its data as they lie in memory.
   logic [8*raster_pkg::REQUEST_BYTES-1:0] data_bytes;
   request_bytes u_data_bytes (
