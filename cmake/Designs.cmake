@@ -1,5 +1,6 @@
 # What model/designs.toml lists, for CMake. Out: HALFPLANE_DESIGNS, the names of presets and designs in the order of the file;
-# HALFPLANE_PARTS, those of [parts]; HALFPLANE_LABEL_<name>, a preset and the settings that differ from it: "embedded stamp.size=4".
+# HALFPLANE_PARTS, those of [parts]; HALFPLANE_LABEL_<name>, a preset and the settings that differ from it:
+# "embedded stamp.size=4".
 file(STRINGS "${PROJECT_SOURCE_DIR}/model/designs.toml" lines REGEX "^(\\[|[a-z])")
 set(HALFPLANE_DESIGNS "")
 set(HALFPLANE_PARTS "")

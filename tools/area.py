@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """./dev area: what rtl_ref costs in cells, into the tables of docs/area.md. Yosys of PyPI, Debian's beside it.
 
-Runs in the repository's root. Half an hour of processor time; build/gates keeps what each unit costs, so that a later run
+Runs in the repository's root. An hour of processor time at first; build/gates keeps what each unit costs, so that a later run
 synthesises only what has changed. What fits which part, placed and routed, is tools/parts.py.
 """
 import argparse
@@ -48,10 +48,13 @@ BINS = [*SAMPLES, 'frame.order=bins', 'frame.store=color']
 BILINEAR = ['hiz.bits=8', 'texture.unit=bilinear']
 CHANGES = [
     ('hiz.bits=0', '12', HIZ), ('hiz.lag=4', '16', HIZ), ('hiz.lag=32', '16', HIZ), ('context.slots=8', '4', HIZ),
-    ('cache.queue=64', '32', HIZ), ('cache.victims=16', '8', HIZ), ('cache.victims=2', '8', HIZ), ('frame.clears=flags', 'resolve', HIZ),
+    ('cache.queue=64', '32', HIZ), ('cache.victims=16', '8', HIZ), ('cache.victims=2', '8', HIZ),
+    ('frame.clears=flags', 'resolve', HIZ),
     ('memory.port_bits=128', '64', HIZ), ('color.format=rgba8888', 'rgb565', HIZ), ('plane.local_guard_bits=8', '6', HIZ),
-    ('reciprocal.extra_bits=8', '4', HIZ), ('counters.unit=0', '1', HIZ), ('counters.bits=16', '32', HIZ), ('lines.unit=0', '1', HIZ),
-    ('guard.band=4096', '2048', HIZ), ('target.width=960', '1920', HIZ), ('target.height=540', '1080', HIZ), ('tile.size=16', '8', HIZ),
+    ('reciprocal.extra_bits=8', '4', HIZ), ('counters.unit=0', '1', HIZ), ('counters.bits=16', '32', HIZ),
+    ('lines.unit=0', '1', HIZ),
+    ('guard.band=4096', '2048', HIZ), ('target.width=960', '1920', HIZ), ('target.height=540', '1080', HIZ),
+    ('tile.size=16', '8', HIZ),
     ('key.primitive_bits=8', '16', HIZ), ('setup.kind=serial', 'pipelined', HIZ), ('queue.block_ram=1', '0', HIZ),
     (TWO_BY_TWO, 'standard', SAMPLES), ('resolve.unit=1', '0', BINS),
     ('perspective.bits=18', '22', NEAREST), ('perspective.mantissa_bits=14', '18', NEAREST), ('texture.queue=64', '32', NEAREST),

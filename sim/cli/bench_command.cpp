@@ -351,8 +351,9 @@ void add_bench_command(CLI::App& app, Action& selected) {
       ->allow_extra_args(false)
       ->type_name("KEY=LIST");
   command
-      ->add_option("--threads", options->thread_counts,
-                   "numbers of threads: a row of each, for functional, cycle and llvmpipe; the first for --skips and --growth")
+      ->add_option(
+          "--threads", options->thread_counts,
+          "numbers of threads: a row of each, for functional, cycle and llvmpipe; the first for --skips and --growth")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(whole_number(1, 1024))

@@ -24,7 +24,7 @@ template <class Whole>
   return validator;
 }
 
-/// A text, or several, of which none is empty; `type` is its placeholder in the help.
+/// A text, or several, of which none is empty; the help has `type` in its place.
 template <class Text>
 CLI::Option* add_text_option(CLI::App& app, const std::string& name, Text& text, const std::string& meaning,
                              const std::string& type = "TEXT") {

@@ -100,9 +100,9 @@ class BlockTiming {
   /// When the colour stage took the last fragment.
   [[nodiscard]] Cycle colored() const { return colored_; }
 
-  /// A fragment that the tags took in `moved`, or a line that was read then; `texture`: with a texture unit. ask.read(cycle, plane, stamp): a request, in
-  /// `cycle` at the earliest; returns PortTimes. ask.write(cycle, plane, first stamp, run): a burst, a request a cycle;
-  /// returns when the last is taken.
+  /// A fragment that the tags took in `moved`, or a line that was read then; `texture` counts with a texture unit.
+  /// ask.read(cycle, plane, stamp): a request, in `cycle` at the earliest; returns PortTimes. ask.write(cycle, plane,
+  /// first stamp, run): a burst, a request a cycle; returns when the last is taken.
   template <class Ask>
   void take(Cycle moved, const TagResult& tags, const BlockItem& item, const TextureWork& texture, Ask&& ask) {
     const bool reads = tags.source == DepthSource::memory, reads_color = tags.color_source == DepthSource::memory;

@@ -261,8 +261,7 @@ class BitsAndTimes final : public CycleModel {
     steps().lookups.insert(steps().lookups.end(), fate.lookups.begin(), fate.lookups.end());
     if (!fate.shaded.any()) return;
     if (fragment_.coordinates.divides_colors) texture.work.divided = path_.units()->texture.groups(fate.shaded);
-    if (path_.units()->light.is_lit(fragment_.kind == PrimitiveKind::triangle))
-      texture.work.lit = fate.shaded.count();
+    if (path_.units()->light.is_lit(fragment_.kind == PrimitiveKind::triangle)) texture.work.lit = fate.shaded.count();
   }
 
   /// The images and the texture memory, as the fragment path sees them.

@@ -106,8 +106,8 @@ class PortTiming {
     return {BeatShare(shift, widths_.memory.port, address >> shift), address};
   }
 
-  /// A stamp, the number `in_beat` of its beat; if it begins a burst, `request.run` counts
-  /// the stamps of the burst. Returns when it is taken.
+  /// A stamp, the number `in_beat` of its beat; if it begins a burst, `request.run` counts the stamps of the burst.
+  /// Returns when it is taken.
   Cycle write(const PortRequest& request, const BeatShare& share, std::uint32_t address, int in_beat, Cycle cycle) {
     const bool begins = left_ == 0;
     if (begins) {
