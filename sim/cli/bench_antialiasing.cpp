@@ -6,8 +6,8 @@
 #include "sim/cli/progress.hpp"
 #include "sim/show/report/page.hpp"
 #include "sim/study/antialiasing/study.hpp"
-#include "sim/study/space/front.hpp"
 #include "sim/study/space/gates.hpp"
+#include "sim/study/space/points.hpp"
 
 namespace halfplane {
 

@@ -228,9 +228,6 @@ void check_bench_options(const BenchCommand& options) {
     throw InputError(
         "--antialiasing has scenes and engines of its own; only --area and -o go with it: leave the others out");
   check_space_options(options, options.space, options.page);
-  check_output(options.page, ".html");
-  check_distinct({options.json, options.page});
-  for (const std::string& scene : options.scenes) check_distinct({options.json, options.page, scene});
   if (!options.page.empty()) require_chart_library();
 }
 
@@ -338,7 +335,7 @@ int run_bench(const BenchCommand& options) {
 void add_bench_command(CLI::App& app, Action& selected) {
   const auto [command, options] =
       add_command<BenchCommand>(app, selected, "bench", "run time against error, engine by engine", run_bench);
-  command->add_option("SCENES", options->scenes, "names or files (default: teapot city)");
+  command->add_option("SCENES", options->scenes, "names or files (default: teapot city)")->each(claim_input);
   add_output_options(*command, *options);
   command->add_option("--engines", options->engines, "some of functional, scalar, golden, cycle, rtl, llvmpipe")
       ->delimiter(',')
@@ -376,7 +373,7 @@ void add_bench_command(CLI::App& app, Action& selected) {
       "pixel, supersampling and smooth lines; with --area gates, too");
   command->add_flag("--all", options->wants_all, "rows of SCENES, and --skips and --growth on scenes of their own");
   add_space_options(*command, options->space);
-  add_file_option(*command, "-o", options->page, "everything as one HTML page, .html");
+  add_file_option(*command, "-o", options->page, "everything as one HTML page, .html", ".html");
   command->footer(
       "\nExamples:\n  halfplane bench teapot --vary subpixel.bits=0,4,8 --vary depth.bits=16,24 -o bench.html\n  "
       "halfplane "

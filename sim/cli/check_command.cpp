@@ -122,10 +122,6 @@ void print_judgement(std::ostream& out, const vectors::VectorFile& file, const v
 
 int run(const CheckOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  check_output(options.json);
-  check_output(options.junit);
-  check_output(options.coverage, ".json");
-  check_distinct({options.file, options.vectors, options.json, options.junit, options.coverage});
   (void)vectors::judged_stage(options.stage);
   const vectors::VectorFile file = checked_file(options);
   vectors::Judgement judgement;
@@ -166,14 +162,16 @@ void add_check_command(CLI::App& app, Action& selected) {
   const auto [command, options] =
       add_command<CheckOptions>(app, selected, "check", "judges the outputs of another implementation of a stage", run);
   command->add_option("FILE", options->file, "vectors whose `out` is yours: jsonl, csv, or a folder of hex")
-      ->required();
+      ->required()
+      ->each(claim_input);
   add_output_options(*command, *options);
   command->remove_option(command->get_option("--config"));  // the header contains it
   command->remove_option(command->get_option("--set"));
   add_text_option(*command, "--stage", options->stage, "the stage: cull, triangle_setup, coarse_raster ...", "NAME")
       ->required();
   add_text_option(*command, "--vectors", options->vectors, "take the inputs from this file; FILE then needs only `out`",
-                  "FILE");
+                  "FILE")
+      ->each(claim_input);
   add_file_option(*command, "--junit", options->junit, "result as JUnit XML");
   add_coverage_option(*command, options->coverage);
   command->footer(

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim/cli/options.hpp"
+#include "sim/cli/study_options.hpp"
 #include "sim/cosim/junit.hpp"
 #include "sim/show/image/panel.hpp"
 #include "sim/study/compare/against.hpp"
@@ -46,5 +47,19 @@ struct JudgedImage {
 
 /// One case: the image is equal, or the pixels differ.
 [[nodiscard]] JunitCase against_case(const JudgedImage& judged);
+
+// `compare FOLDER --against FOLDER`: each scene of a folder against another rasterizer's image of the same name.
+
+/// What `compare` was told about it.
+struct CompareFolder {
+  const CommonOptions& common;
+  const StudyOptions& study;
+  const AgainstWords& against;
+  const std::string& junit_path;
+};
+
+/// Compares every scene file of the folder with NAME.png, NAME.npy, or both. An image that is missing, or of another size,
+/// is a failure of its scene, and so is a bound that the model breaks. Returns the exit status.
+[[nodiscard]] int compare_folder(const CompareFolder& options);
 
 }  // namespace halfplane

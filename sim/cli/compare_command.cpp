@@ -9,7 +9,6 @@
 
 #include "sim/cli/commands.hpp"
 #include "sim/cli/compare_against.hpp"
-#include "sim/cli/compare_folder.hpp"
 #include "sim/cli/option_kinds.hpp"
 #include "sim/cli/progress.hpp"
 #include "sim/cli/study_options.hpp"
@@ -306,16 +305,11 @@ void write_compare_junit(const CompareCommand& options, const Config& config, co
 /// Checks the options before a scene is read.
 void check_compare(const CompareCommand& options, const Config& config) {
   if (!options.against.path.empty()) require_one_sample(config, "compare --against");
-  for (const std::string* path : {&options.sheet_path, &options.model_path, &options.golden_path})
-    check_output(*path, ".png");
-  check_output(options.junit_path);
   if (!options.panels.empty() && options.sheet_path.empty())
     throw InputError("--panels: there is no sheet to choose from; add -o FILE.png");
   for (const std::string& name : options.panels)
     if (options.against.path.empty() && std::ranges::find(kAgainstPanelNames, name) != kAgainstPanelNames.end())
       throw InputError("--panels: " + name + " is about another image; add --against FILE");
-  check_distinct({options.against.path, options.sheet_path, options.model_path, options.golden_path, options.json,
-                  options.junit_path});
 }
 
 int run_folder(const CompareCommand& options) {
@@ -325,8 +319,6 @@ int run_folder(const CompareCommand& options) {
        {std::pair(!options.sheet_path.empty(), "-o"), std::pair(!options.model_path.empty(), "--model"),
         std::pair(!options.golden_path.empty(), "--golden-picture"), std::pair(!options.panels.empty(), "--panels")})
     if (is_given) throw InputError(std::string(name) + ": it is of one scene, and SCENE is a folder; leave it out");
-  check_output(options.junit_path);
-  check_distinct({options.json, options.junit_path});
   return compare_folder({options, options.study, options.against, options.junit_path});
 }
 
@@ -471,12 +463,12 @@ void add_compare_command(CLI::App& app, Action& selected) {
   add_study_options(*command, options->study);
   add_interpolation_option(*command, options->study);
   add_file_option(*command, "-o", options->sheet_path,
-                  "one sheet: model, golden, coverage, depth and colour difference, .png");
+                  "one sheet: model, golden, coverage, depth and colour difference, .png", ".png");
   command->add_option("--panels", options->panels, "which panels of the sheet, and their order: model,depth")
       ->delimiter(',')
       ->check(CLI::IsMember(panel_names()));
-  add_file_option(*command, "--model", options->model_path, "the model's picture alone, .png");
-  add_file_option(*command, "--golden-picture", options->golden_path, "the golden's picture alone, .png");
+  add_file_option(*command, "--model", options->model_path, "the model's picture alone, .png", ".png");
+  add_file_option(*command, "--golden-picture", options->golden_path, "the golden's picture alone, .png", ".png");
   add_against_options(*command, options->against);
   add_file_option(*command, "--junit", options->junit_path, "result as JUnit XML");
   command->footer("\nExample:\n  halfplane compare teapot --config full -o compare.png --json=compare.json");

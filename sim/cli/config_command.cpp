@@ -102,8 +102,6 @@ struct ConfigOptions : CommonOptions {
 int run(const ConfigOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   const Config config = effective_config(options);
-  check_output(options.path, options.path.empty() ? "" : ".toml");
-  check_distinct({options.config, options.json, options.path});
   if (options.path == "-" && (options.toml || options.sv || options.taps || options.dpi || options.c_header))
     throw InputError("-o - and another output both write to stdout; leave one of them out");
   std::ostream& out = human(options);
@@ -163,6 +161,7 @@ void add_config_command(CLI::App& app, Action& selected) {
   const auto [command, options] = add_command<ConfigOptions>(
       app, selected, "config", "shows or lists the settings and the widths derived from them", run);
   add_output_options(*command, *options);
+  command->get_option("--config")->each(claim_input);
   command->add_flag("--list", options->list, "every setting with its range and meaning");
   command->add_flag("--widths", options->widths, "every derived width with its bound");
   command->add_flag("--stages", options->stages, "latency and interval of every stage, in cycles");
@@ -178,7 +177,7 @@ void add_config_command(CLI::App& app, Action& selected) {
     for (const std::string& other : others) option->excludes(other);
     others.emplace_back(name);
   }
-  add_file_option(*command, "-o", options->path, "writes this configuration as --config reads it, .toml");
+  add_file_option(*command, "-o", options->path, "writes this configuration as --config reads it, .toml", ".toml");
   command->footer(
       "\nExample:\n  halfplane config --set depth.bits=20 -o mine.toml\n  halfplane config --list\n  halfplane config "
       "--config full --set depth.bits=20 --widths");

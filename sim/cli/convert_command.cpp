@@ -31,7 +31,6 @@ SceneSource scenes_of(const ConvertOptions& options, const Config& config) {
 int run(const ConvertOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   check_random_options(options, options, "convert");
-  check_distinct({options.scene, options.output, options.json});
   if (is_trace(options.scene)) {
     Json result = result_head("convert", options, effective_config(options));
     result["seed"] = options.seed;
@@ -83,10 +82,11 @@ void add_convert_command(CLI::App& app, Action& selected) {
       1'000'000'000);
   command->add_option("--frame", options->frames, "of a FILE.trace: frame N, or A to B, counted from 0 (default: all)")
       ->type_name("N|A..B");
-  add_file_option(*command, "-o", options->output,
-                  "the capture, .hpt, or - for stdout; of a FILE.trace with several frames FILE-0000.hpt and on, or a "
-                  "folder for them");
-  command->get_option("-o")->required();
+  add_output_option(
+      *command, "-o", options->output,
+      "the capture, .hpt, or - for stdout; of a FILE.trace with several frames FILE-0000.hpt and on, or a "
+      "folder for them")
+      ->required();
   command->footer(
       "\nA mesh is written as its camera sees it, in clip space, in the convention gl. --set depth.mapping is not\n"
       "written: give it to the command that draws the capture.\n"

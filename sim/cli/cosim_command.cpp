@@ -214,11 +214,6 @@ int run(const CosimOptions& options) {
   check_random_options(options, options, "run");
   const Config config = effective_config(options);
   require_sampled_hardware(config, "the RTL");
-  check_output(options.save_path, ".hpt");
-  check_distinct(
-      {options.scene, options.json, options.save_path, options.junit_path, options.trace_path, options.coverage});
-  check_output(options.coverage, ".json");
-  check_output(options.junit_path);
   (void)trace_window(options);
   if (!options.trace_path.empty()) (void)PartFile(options.trace_path);  // before a long run
   const DutFactory& factory = dut_for(options, config);
@@ -316,7 +311,8 @@ void add_cosim_command(CLI::App& app, Action& selected) {
   add_cosim_options(*command, *options);
   add_text_option(*command, "--trace-cycles", options->trace_cycles,
                   "FIRST:LAST: cycles of a run without a mismatch that --trace records (default 0:9999)", "WINDOW");
-  add_file_option(*command, "--save", options->save_path, "capture of a mismatch, .hpt (default out/cosim-NAME.hpt)");
+  add_file_option(*command, "--save", options->save_path, "capture of a mismatch, .hpt (default out/cosim-NAME.hpt)",
+                  ".hpt");
   add_file_option(*command, "--junit", options->junit_path, "result as JUnit XML");
   add_coverage_option(*command, options->coverage);
   command->footer(

@@ -59,7 +59,8 @@ void add_cosim_options(CLI::App& app, CosimOptions& options) {
                     "number of times that each scene is started and cut off by a reset before it runs");
   add_file_option(app, "--trace", options.trace_path,
                   "waveform, .fst: around a mismatch (default: next to the saved capture); with cosim also of a run "
-                  "without a mismatch");
+                  "without a mismatch",
+                  ".fst");
 }
 
 const DutFactory& dut_for(const CosimOptions& options, const Config& config) {
@@ -78,7 +79,6 @@ const DutFactory& dut_for(const CosimOptions& options, const Config& config) {
                            .append(name)
                            .append(" out, or give a SCENE in place of --random"));
   if (options.trace_path == "-") throw InputError("--trace: a waveform cannot go to stdout; give a file, .fst");
-  check_output(options.trace_path, ".fst");
   const DutFactory& factory = find_dut(config);
   if (options.mutant != 0 && !factory.has_mutants)
     throw InputError("--mutant: the RTL of " + factory.name + " has no mutants; use --config embedded");

@@ -24,13 +24,8 @@ void write_as(const std::string& path, const cover::Report& report) {
 
 int run(const CoverOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  for (const std::string& path : options.outputs) {
-    check_output(path);
-    if (path == "-") throw InputError("-o: coverage goes to files; give a name that ends in .json, .html or .dat");
-  }
-  std::vector<std::string> paths = options.outputs;
-  paths.push_back(options.json);
-  check_distinct(paths);
+  if (std::ranges::find(options.outputs, "-") != options.outputs.end())
+    throw InputError("-o: coverage goes to files; give a name that ends in .json, .html or .dat");
   cover::Report report;
   for (const std::string& path : options.files) report.merge(cover::read_coverage(path));
   for (const std::string& path : options.outputs) write_as(path, report);
@@ -52,7 +47,9 @@ void add_cover_command(CLI::App& app, Action& selected) {
   add_text_option(*command, "FILE", options->files, "coverage of runs, as --coverage and -o write it")->required();
   add_text_option(*command, "-o", options->outputs,
                   "writes the merged coverage: .json, .html a page, .dat for verilator_coverage; repeatable", "FILE")
-      ->allow_extra_args(false);
+      ->allow_extra_args(false)
+      ->each([](const std::string& path) { check_output(path); })
+      ->each(claim_output("-o"));
   command->add_flag("--strict", options->is_strict, "status 1 while a bin or a pair that can be hit is not");
   add_result_options(*command, *options);
   command->footer(

@@ -5,7 +5,8 @@ namespace halfplane {
 void add_coverage_option(CLI::App& app, std::string& path) {
   add_file_option(
       app, "--coverage", path,
-      "what the stimulus did to the hardware, as bins, .json: for `halfplane cover` (docs/functional-coverage.md)");
+      "what the stimulus did to the hardware, as bins, .json: for `halfplane cover` (docs/functional-coverage.md)",
+      ".json");
 }
 
 std::string stimulus_text(const CommonOptions& common, const RandomOptions& options) {

@@ -196,8 +196,9 @@ void add_cycle_options(CLI::App& app, CycleCommandOptions& options) {
                   "probability with which each stream is held back in a cycle");
   cycle.add_flag("--explain", options.explain,
                  "try changes that might relieve the bottleneck, and measure what skipping saves");
-  add_file_option(cycle, "--primitives", options.primitives_path, "listing: the cycles of each primitive, .csv");
-  add_file_option(cycle, "--trace", options.trace_path, "timeline for ui.perfetto.dev, .json");
+  add_file_option(cycle, "--primitives", options.primitives_path, "listing: the cycles of each primitive, .csv",
+                  ".csv");
+  add_file_option(cycle, "--trace", options.trace_path, "timeline for ui.perfetto.dev, .json", ".json");
   add_file_option(cycle, "--heat", options.heat_path,
                   "sheet: cycles and draws of each pixel, .png; cycles alone: .npy");
   add_file_option(cycle, "--misses", options.misses_path,
@@ -214,8 +215,6 @@ void check_cycle_options(const CycleCommandOptions& options, const Config& confi
   if (!options.trace_path.empty() && p.triangle_queue + p.setup_queue + p.tile_queue + p.fragment_queue != 0)
     throw InputError(
         "--trace: a timeline shows stages and not the queues between them; leave out --trace, or --timing queue...");
-  check_output(options.primitives_path, ".csv");
-  check_output(options.trace_path, ".json");
   check_output(options.heat_path, options.heat_path.ends_with(".npy") ? ".npy" : ".png");
   check_output(options.misses_path, options.misses_path.ends_with(".npy") ? ".npy" : ".png");
   if (!options.misses_path.empty() && !has_texture_planes(config))

@@ -229,11 +229,6 @@ void check_depth_options(const DepthCommand& options, const Config& config) {
     throw InputError("--camera: there is no scene to look at; add --scene, or leave --camera out");
   if (!options.range.empty() && options.error.empty())
     throw InputError("--range: there is no --error to hold in it; add --error, or leave --range out");
-  check_output(options.paths.page, options.paths.page.empty() ? "" : ".html");
-  check_output(options.paths.heat, options.paths.heat.empty() ? "" : ".png");
-  check_output(options.paths.fights, options.paths.fights.empty() ? "" : ".png");
-  check_output(options.csv_path);
-  check_distinct({options.paths.page, options.paths.heat, options.paths.fights, options.csv_path, options.json});
   if (options.scene.empty() && (!options.paths.heat.empty() || !options.paths.fights.empty()))
     throw InputError("--heat and --fights: there is no scene to show; add --scene, or leave them out");
   if (!options.paths.page.empty()) require_chart_library();
@@ -421,11 +416,12 @@ void add_depth_command(CLI::App& app, Action& selected) {
       ->check(whole_number(1, 1024));
   add_output_options(*command, *options);
   add_file_option(*command, "--csv", options->csv_path, "rows of mapping,format,near,far,z,metric,value; - for stdout");
-  add_file_option(*command, "-o", options->paths.page, "everything as one HTML page, .html");
+  add_file_option(*command, "-o", options->paths.page, "everything as one HTML page, .html", ".html");
   command->add_flag("--sweep", options->sweeps,
                     "with --scene: also how the fights fall with storage and subpixel bits (always with -o)");
-  add_file_option(*command, "--heat", options->paths.heat, "errors of the visible surfaces, side by side, .png");
-  add_file_option(*command, "--fights", options->paths.fights, "where surfaces fight, side by side, .png");
+  add_file_option(*command, "--heat", options->paths.heat, "errors of the visible surfaces, side by side, .png",
+                  ".png");
+  add_file_option(*command, "--fights", options->paths.fights, "where surfaces fight, side by side, .png", ".png");
   command->footer(
       "\nExamples:\n  halfplane depth --near 1 --far 1000 --mapping std,rev,w --format u16,u24,uf4.12 --z 10,100,900 "
       "--csv "

@@ -94,7 +94,6 @@ void check_picture(const ExplainOptions& options) {
   if (options.output == "-") throw InputError("-o: give a file, .png or .html");
   if (!options.output.ends_with(".png") && !is_page(options.output))
     throw InputError("cannot write '" + options.output + "': give a name that ends in .png or .html");
-  check_output(options.output);
 }
 
 std::string explain_repeat(const ExplainOptions& options, const Config& config) {
@@ -175,7 +174,6 @@ int run(const ExplainOptions& options) {
     throw InputError("--box: " + options.box + " is more than " + std::to_string(kMostPixels) +
                      " pixels; give a smaller one");
   if (options.skip != "all") throw InputError("--skip: explain tells what the default leaves out; leave it out");
-  check_distinct({options.scene, options.json, options.output});
   check_picture(options);
   const Config config = drawing_config(options);
   const std::unique_ptr<Dut> dut = explained_rtl(options, config);

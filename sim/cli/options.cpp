@@ -4,7 +4,6 @@
 #include <cctype>
 #include <cstdio>
 #include <filesystem>
-#include <functional>
 #include <iostream>
 #include <sstream>
 #include <string_view>
@@ -33,14 +32,14 @@ std::string& on_stdout() {
   return option;
 }
 
-/// For CLI11: notes that `option` writes to stdout when its value is "-". Only one option may.
-std::function<void(std::string)> claim_stdout(const std::string& option) {
-  return [option](const std::string& path) {
-    if (path != "-") return;
-    if (!on_stdout().empty() && on_stdout() != option)
-      throw InputError(on_stdout() + " and " + option + " both write to stdout; give one of them a file");
-    on_stdout() = option;
-  };
+/// Throws InputError when another option names the file, and one of the two writes it.
+void claim_file(const std::string& path, bool is_read) {
+  static std::vector<std::pair<std::string, bool>> claimed;
+  if (path.empty() || path == "-") return;
+  for (const auto& [other, other_is_read] : claimed)
+    if (other == path && !(is_read && other_is_read))
+      throw InputError("two options name the file '" + path + "', and one would replace the other; give each its own");
+  claimed.emplace_back(path, is_read);
 }
 
 /// The words, each quoted for a shell, the program first.
@@ -63,7 +62,8 @@ bool is_capture(const std::string& name) { return name == "-" || (name.size() > 
 
 void add_result_options(CLI::App& app, CommonOptions& options) {
   app.add_flag("--json{-}", options.json, "result as JSON on stdout, human text on stderr; --json=FILE: to a file")
-      ->each(claim_stdout("--json"));
+      ->each([](const std::string& path) { check_output(path); })
+      ->each(claim_output("--json"));
   app.add_flag("--quiet", options.quiet, "no human text");
 }
 
@@ -80,14 +80,34 @@ void add_seed_option(CLI::App& app, CommonOptions& options, const std::string& m
   app.add_option_function<std::string>("--seed", set_seed, meaning)->default_str("1")->type_name("N");
 }
 
-void add_file_option(CLI::App& app, const std::string& name, std::string& path, const std::string& meaning) {
-  add_text_option(app, name, path, meaning, "FILE")->each(claim_stdout(name));
+CLI::Option* add_output_option(CLI::App& app, const std::string& name, std::string& path, const std::string& meaning) {
+  return add_text_option(app, name, path, meaning, "FILE")->each(claim_output(name));
 }
+
+void add_file_option(CLI::App& app, const std::string& name, std::string& path, const std::string& meaning,
+                     const std::string& extension) {
+  add_output_option(app, name, path, meaning)->each([extension](const std::string& word) {
+    check_output(word, extension);
+  });
+}
+
+std::function<void(std::string)> claim_output(const std::string& option) {
+  return [option](const std::string& path) {
+    claim_file(path, false);
+    if (path != "-") return;
+    if (!on_stdout().empty() && on_stdout() != option)
+      throw InputError(on_stdout() + " and " + option + " both write to stdout; give one of them a file");
+    on_stdout() = option;
+  };
+}
+
+void claim_input(const std::string& path) { claim_file(path, true); }
 
 void add_scene_options(CLI::App& app, CommonOptions& options) {
   app.add_option("SCENE", options.scene,
                  "built-in name (halfplane scenes), a file: .obj, .gltf, .glb, .hpt, or - for a capture on stdin")
-      ->required();
+      ->required()
+      ->each(claim_input);
   add_output_options(app, options);
   add_text_option(app, "--size", options.size, "target, WxH pixels (default 640x480, or what a capture says)");
   app.add_option("--camera", options.camera,
@@ -169,7 +189,6 @@ bool chooses_depth_bits(const CommonOptions& options, const Config& config) {
 }  // namespace
 
 Config effective_config(const CommonOptions& options) {
-  check_output(options.json);
   Config config = config_from_option(options.config);
   for (const std::string& setting : options.settings) {
     const auto equals = setting.find('=');
@@ -368,14 +387,6 @@ std::string refuse_empty(const std::string& text) { return text.empty() ? "the v
 
 std::string is_number(const std::string& text) {
   return std::isalpha(static_cast<unsigned char>(text.back())) != 0 ? "'" + text + "' is no number" : "";
-}
-
-void check_distinct(const std::vector<std::string>& paths) {
-  for (std::size_t i = 0; i < paths.size(); ++i)
-    for (std::size_t j = i + 1; j < paths.size(); ++j)
-      if (!paths[i].empty() && paths[i] != "-" && paths[i] == paths[j])
-        throw InputError("two options name the file '" + paths[i] +
-                         "', and one would replace the other; give each its own");
 }
 
 std::string left_aligned(std::string text, std::size_t width) {

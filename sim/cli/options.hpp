@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <iosfwd>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -78,9 +79,17 @@ void add_output_options(CLI::App& app, CommonOptions& options);
 
 void add_seed_option(CLI::App& app, CommonOptions& options, const std::string& meaning);
 
-/// Adds an option that takes the name of a file to write, or - for stdout; an empty name is refused, and a second
-/// output on stdout.
-void add_file_option(CLI::App& app, const std::string& name, std::string& path, const std::string& meaning);
+/// Adds an option that takes the name of a file or folder to write, or - for stdout, with claim_output().
+CLI::Option* add_output_option(CLI::App& app, const std::string& name, std::string& path, const std::string& meaning);
+
+/// The same for a file, with check_output().
+void add_file_option(CLI::App& app, const std::string& name, std::string& path, const std::string& meaning,
+                     const std::string& extension = "");
+
+/// For CLI11: notes a file that is read, and what `option` writes. Throws InputError for a file that is written and has
+/// another option's name, and for a second output on stdout.
+void claim_input(const std::string& path);
+[[nodiscard]] std::function<void(std::string)> claim_output(const std::string& option);
 
 /// Adds SCENE and every common option.
 void add_scene_options(CLI::App& app, CommonOptions& options);
@@ -200,9 +209,6 @@ template <class Range>
 
 /// A check for CLI11, whose Range accepts NaN.
 [[nodiscard]] std::string is_number(const std::string& text);
-
-/// Throws InputError when two of the files, read or written, have the same name; no name is valid.
-void check_distinct(const std::vector<std::string>& paths);
 
 /// `text` padded to `width` with blanks after it, and before it.
 [[nodiscard]] std::string left_aligned(std::string text, std::size_t width);

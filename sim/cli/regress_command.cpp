@@ -271,9 +271,6 @@ class Regression {
 
 int run_plan(const RegressOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  check_output(options.json);
-  check_output(options.junit_path);
-  check_distinct({options.plan, options.json, options.junit_path});
   if (!options.until.empty()) (void)parse_duration(options.until, "--until");  // before a folder is made
   Regression regression(options);
   regression.open_folder();
@@ -310,7 +307,7 @@ int run(const RegressOptions& options) {
 void add_regress_command(CLI::App& app, Action& selected) {
   const auto [command, options] = add_command<RegressOptions>(
       app, selected, "regress", "a plan of co-simulations: scenes, configurations, seeds", run);
-  add_text_option(*command, "PLAN", options->plan, "the plan, .toml (docs/random.md)")->required();
+  add_text_option(*command, "PLAN", options->plan, "the plan, .toml (docs/random.md)")->required()->each(claim_input);
   add_result_options(*command, *options);
   add_number_option(*command, "-j,--jobs", options->jobs, 1, 1024, "cases at a time");
   add_text_option(*command, "--until", options->until, "start no case after this time: 90s, 30m, 8h", "TIME");

@@ -124,14 +124,6 @@ void check_options(const RenderCommand& options, const Config& config) {
   if (!options.depth_path.empty() && config.frame_store == FrameStore::color)
     throw InputError("--depth: with frame.store=color no depth is stored; leave out --depth, or use frame.store=all");
   if (!options.depth_path.empty()) check_depth_path(options.depth_path, stored_format(config).bits);
-  check_distinct({options.scene, options.json, options.color_path, options.depth_path, options.count_path,
-                  options.ids_path, options.draws_path, options.cycle.primitives_path, options.cycle.trace_path,
-                  options.cycle.heat_path, options.cycle.misses_path, options.csv_path, options.chart_path});
-  check_output(options.color_path, ".png");
-  check_output(options.depth_path);
-  check_output(options.count_path, ".npy");
-  check_output(options.ids_path, ".npy");
-  check_output(options.draws_path, ".png");
   check_frames(options);
 }
 
@@ -353,12 +345,13 @@ void add_render_command(CLI::App& app, Action& selected) {
   add_clipping_option(*command, options->study);
   add_interpolation_option(*command, options->study);
   add_cycle_options(*command, options->cycle);
-  add_file_option(*command, "-o", options->color_path, "colour picture, .png");
+  add_file_option(*command, "-o", options->color_path, "colour picture, .png", ".png");
   add_file_option(*command, "--depth", options->depth_path, "depth codes, .npy or (up to 16 bits) .png");
-  add_file_option(*command, "--count", options->count_path, "covered samples per pixel before the depth test, .npy");
-  add_file_option(*command, "--ids", options->ids_path, "visible primitive per pixel, -1 for none, .npy");
+  add_file_option(*command, "--count", options->count_path, "covered samples per pixel before the depth test, .npy",
+                  ".npy");
+  add_file_option(*command, "--ids", options->ids_path, "visible primitive per pixel, -1 for none, .npy", ".npy");
   add_file_option(*command, "--draws", options->draws_path,
-                  "sheet: the picture, and how often each sample was drawn, .png");
+                  "sheet: the picture, and how often each sample was drawn, .png", ".png");
   command
       ->add_option("--supersample", options->supersample,
                    "NxN or NxN:rotated: the mean of N*N pictures, each moved by a part of a pixel; depth and ids are "

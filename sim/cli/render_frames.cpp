@@ -210,8 +210,8 @@ void add_frames_options(CLI::App& app, RenderCommand& options) {
                  "N pictures of a moving scene: --time A..B of its animation (default: all of it), --camera orbit; or "
                  "the first N frames of a capture with `frame` lines, or all of them; files are numbered")
       ->transform(CLI::Validator(number, "N or all"));
-  add_file_option(app, "--csv", options.csv_path, "of --frames: a row of figures for each, .csv");
-  add_file_option(app, "--chart", options.chart_path, "of --frames: the figures over time, .html");
+  add_file_option(app, "--csv", options.csv_path, "of --frames: a row of figures for each, .csv", ".csv");
+  add_file_option(app, "--chart", options.chart_path, "of --frames: the figures over time, .html", ".html");
 }
 
 void check_frames(const RenderCommand& options) {
@@ -226,8 +226,6 @@ void check_frames(const RenderCommand& options) {
   for (const std::string* path :
        {&options.color_path, &options.depth_path, &options.count_path, &options.ids_path, &options.draws_path})
     if (*path == "-") throw InputError("--frames: several files do not fit on stdout; give a name in place of -");
-  check_output(options.csv_path, ".csv");
-  check_output(options.chart_path, ".html");
   if (!options.chart_path.empty()) require_chart_library();
 }
 

@@ -230,10 +230,6 @@ int run(const RunCommand& options) {
     throw InputError("-o: the capture of --save N; add that, or use --save-all DIR");
   for (const std::string* path : {&options.save_path, &options.csv_path, &options.chart_path})
     if (*path == "-") throw InputError("run: stdout is the program's; give a file in place of -");
-  check_output(options.save_path, ".hpt");
-  check_output(options.csv_path, ".csv");
-  check_output(options.chart_path, ".html");
-  check_distinct({options.json, options.save_path, options.csv_path, options.chart_path});
   if (!options.chart_path.empty()) require_chart_library();
   make_folder("--save-all", options.save_folder);
 
@@ -315,14 +311,14 @@ void add_run_command(CLI::App& app, Action& selected) {
       ->check(whole_number(0, 1'000'000'000))
       ->type_name("N");
   add_text_option(*command, "--save-all", options->save_folder, "every frame as a capture in this folder", "DIR");
-  add_file_option(*command, "-o", options->save_path, "the capture of --save, .hpt (default frame-N.hpt)");
+  add_file_option(*command, "-o", options->save_path, "the capture of --save, .hpt (default frame-N.hpt)", ".hpt");
   command->add_flag("--hud", options->hud, "frames a second and cycles in a corner of the window");
   add_choice_option(*command, "--on-missing", options->on_missing, {"host", "warn", "stop"},
                     "a draw that this hardware cannot do: is drawn on the host (host), the same with a warning (warn), "
                     "or ends the program (stop)");
   add_number_option(*command, "--threads", options->threads, 1, 1024, "threads that draw");
-  add_file_option(*command, "--csv", options->csv_path, "a row of figures for each frame, .csv");
-  add_file_option(*command, "--chart", options->chart_path, "the figures over time, .html");
+  add_file_option(*command, "--csv", options->csv_path, "a row of figures for each frame, .csv", ".csv");
+  add_file_option(*command, "--chart", options->chart_path, "the figures over time, .html", ".html");
   command->add_option("PROGRAM", options->program, "the program and its arguments, after --")->required();
   command->footer(
       "\nExample:\n  halfplane run --config full --hud -- glxgears\n"

@@ -205,9 +205,7 @@ int run(const StressCommand& options) {
     throw InputError("--unit: units are numbered within a case; add the --case of the unit");
   if (options.unit >= 0 && (options.quick || options.seconds > 0))
     throw InputError("--unit: runs a single unit; leave out --quick and --seconds");
-  check_output(options.junit_path);
   make_folder("--captures", options.captures);
-  check_distinct({options.json, options.junit_path});
   const Config config = effective_config(options);
   if (config.depth_format != DepthFormat{} || config.depth_mapping != DepthMapping::projection)
     throw InputError("stress: its cases test interpolated planes; leave depth.format and depth.mapping as they are");

@@ -47,8 +47,6 @@ int run(const VectorsOptions& options) {
   if (format == vectors::Format::hex && options.output == "-")
     throw InputError("-o: hex vectors are a folder, which cannot go to stdout; give its name");
   if (format != vectors::Format::hex) check_output(options.output);
-  check_distinct({options.scene, options.output, options.json, options.coverage});
-  check_output(options.coverage, ".json");
   const Config config = effective_config(options);
   const vectors::JudgedStage& stage = vectors::judged_stage(options.stage);
   vectors::require_stage(stage, config);
@@ -110,8 +108,7 @@ void add_vectors_command(CLI::App& app, Action& selected) {
   add_choice_option(*command, "--format", options->format,
                     std::vector<std::string>(vectors::kFormats.begin(), vectors::kFormats.end()),
                     "how they are written");
-  add_file_option(*command, "-o", options->output, "the file, or for hex the folder; - for stdout");
-  command->get_option("-o")->required();
+  add_output_option(*command, "-o", options->output, "the file, or for hex the folder; - for stdout")->required();
   add_coverage_option(*command, options->coverage);
   command->footer(
       "\nThe hardware model runs from reset. Judge the outputs of your implementation with `halfplane check`.\n"

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <bit>
-#include <sstream>
+
+#include "sim/words.hpp"
 
 namespace halfplane::cover {
 namespace {
@@ -316,15 +317,11 @@ const BinRow kBinRows[] = {
 // clang-format on
 
 /// The words of a row's family.
-std::vector<std::string> words_of(const BinRow& row) {
+std::vector<std::string> members_of(const BinRow& row) {
   if (row.members.empty()) return {""};
+  if (row.members != "@streams") return words_of(row.members, ' ');
   std::vector<std::string> words;
-  if (row.members == "@streams") {
-    for (const Arrow arrow : kStreams) words.emplace_back(info(arrow).name);
-    return words;
-  }
-  std::istringstream stream{std::string(row.members)};
-  for (std::string word; stream >> word;) words.push_back(word);
+  for (const Arrow arrow : kStreams) words.emplace_back(info(arrow).name);
   return words;
 }
 
@@ -344,7 +341,7 @@ const std::vector<Bin>& bins() {
     std::vector<Bin> all;
     for (const BinRow& row : kBinRows) {
       unsigned member = 0;
-      for (const std::string& word : words_of(row))
+      for (const std::string& word : members_of(row))
         all.push_back({&row, member++, filled(row.name, word), filled(row.what, word),
                        filled(row.hit_by.empty() ? "--random 20000" : row.hit_by, word)});
     }
@@ -354,11 +351,9 @@ const std::vector<Bin>& bins() {
 }
 
 std::string missing_setting(const BinRow& row, const Config& config) {
-  std::istringstream needs{std::string(row.needs)};
-  for (std::string need; needs >> need;) {
+  for (const std::string& need : words_of(row.needs, ' ')) {
     bool has_one = false;
-    std::istringstream choices(need);
-    for (std::string choice; std::getline(choices, choice, '|');) {
+    for (const std::string& choice : split(need, '|')) {
       const std::size_t equals = choice.find('=');
       const std::string key = choice.substr(0, equals);
       const auto setting = std::ranges::find(settings(), key, &Setting::key);

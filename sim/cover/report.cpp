@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 #include <ostream>
 #include <set>
-#include <sstream>
 
 #include "model/capture/capture.hpp"
 #include "model/capture/capture_states.hpp"
@@ -15,6 +14,7 @@
 #include "sim/cover/bins.hpp"
 #include "sim/show/image/whole_file.hpp"
 #include "sim/show/report/page.hpp"
+#include "sim/words.hpp"
 
 namespace halfplane::cover {
 namespace {
@@ -154,13 +154,6 @@ std::vector<PairResult> pairs_of(const Hits& hits, const Config& config, bool is
   return pairs;
 }
 
-std::vector<std::string> words(const std::string& text) {
-  std::istringstream stream(text);
-  std::vector<std::string> list;
-  for (std::string word; stream >> word;) list.push_back(word);
-  return list;
-}
-
 template <class Visit>
 void for_each_pair(const PairResult& pair, Visit&& visit) {
   for (std::size_t n = 0; n < pair.hits.size(); ++n)
@@ -241,7 +234,7 @@ Totals totals_of(const Report& report) {
     totals.hit += bin.hits != 0 ? 1 : 0;
     totals.holes += bin.is_hole() ? 1 : 0;
     totals.excluded += bin.excluded.empty() ? 0 : 1;
-    for (const std::string& fault : words(bin.faults)) faults[fault] |= bin.hits != 0;
+    for (const std::string& fault : words_of(bin.faults, ' ')) faults[fault] |= bin.hits != 0;
   }
   for (const PairResult& pair : report.pairs)
     for_each_pair(pair, [&](const std::string&, const std::string&, std::uint64_t hits) {
@@ -272,7 +265,7 @@ Json coverage_json(const Report& report) {
   json["bins"] = Json::array();
   for (const BinResult& bin : report.bins) {
     Json faults = Json::array();
-    for (const std::string& fault : words(bin.faults)) faults.push_back(std::stoi(fault));
+    for (const std::string& fault : words_of(bin.faults, ' ')) faults.push_back(std::stoi(fault));
     json["bins"].push_back({{"name", bin.name},
                             {"what", bin.what},
                             {"hits", bin.hits},

@@ -37,6 +37,11 @@ std::optional<JsonPlace> JsonPlace::find(std::string_view key) const {
   return JsonPlace(*found, *file_, (path_.empty() ? "" : path_ + ".") + std::string(key));
 }
 
+std::optional<JsonPlace> JsonPlace::extension(std::string_view name) const {
+  const std::optional<JsonPlace> all = find("extensions");
+  return all ? all->find(name) : std::nullopt;
+}
+
 JsonPlace JsonPlace::at(std::string_view key) const {
   std::optional<JsonPlace> found = find(key);
   if (!found) fail("no " + std::string(key), "add it, or export the file again");
@@ -309,13 +314,11 @@ std::string GltfFile::resource(const JsonPlace& uri) const {
 }
 
 ByteSpan GltfFile::view(const JsonPlace& view_place) {
-  const std::optional<JsonPlace> extensions = view_place.find("extensions");
-  const std::optional<JsonPlace> packed = extensions ? extensions->find(kMeshopt) : std::nullopt;
+  const std::optional<JsonPlace> packed = view_place.extension(kMeshopt);
   if (packed && can_read(GltfCodec::meshopt)) return unpacked_view(view_place, *packed);
   if (packed) {  // optional for the file: then the same bytes are in its buffer
     const JsonPlace holder = follow(view_place.at("buffer"), "buffers");
-    const std::optional<JsonPlace> of_holder = holder.find("extensions");
-    if (!holder.find("uri") && of_holder && of_holder->find(kMeshopt))
+    if (!holder.find("uri") && holder.extension(kMeshopt))
       view_place.fail("compressed with " + std::string(kMeshopt) + ", which this build does not read",
                       way_without(kMeshopt));
   }
@@ -343,8 +346,7 @@ ByteSpan GltfFile::unpacked_view(const JsonPlace& view_place, const JsonPlace& p
 }
 
 void GltfFile::unpack(const JsonPlace& primitive) {
-  const std::optional<JsonPlace> extensions = primitive.find("extensions");
-  const std::optional<JsonPlace> packed = extensions ? extensions->find(kDraco) : std::nullopt;
+  const std::optional<JsonPlace> packed = primitive.extension(kDraco);
   if (!packed) return;
   const JsonPlace attributes = primitive.at("attributes");
   if (follow(attributes.at("POSITION"), "accessors").find("bufferView")) return;  // it is also there uncompressed

@@ -30,6 +30,8 @@ class JsonPlace {
 
   /// A member of this object, or none.
   [[nodiscard]] std::optional<JsonPlace> find(std::string_view key) const;
+  /// An extension of this object, or none.
+  [[nodiscard]] std::optional<JsonPlace> extension(std::string_view name) const;
   /// A member that must be there.
   [[nodiscard]] JsonPlace at(std::string_view key) const;
   /// The names of this object's members.

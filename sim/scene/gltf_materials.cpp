@@ -91,7 +91,7 @@ GltfMaterial GltfMaterials::of(const JsonPlace& primitive) const {
   if (!index) return result;
   const JsonPlace place = file_.follow(*index, "materials");
   result.is_two_sided = place.flag_or("doubleSided", false);
-  if (const auto extensions = place.find("extensions")) result.is_lit = !extensions->find("KHR_materials_unlit");
+  result.is_lit = !place.extension("KHR_materials_unlit");
   const std::string alpha = place.text_or("alphaMode", "OPAQUE");
   if (alpha != "OPAQUE" && alpha != "MASK" && alpha != "BLEND")
     warn_("alphaMode " + in_quotes(alpha) + " is none of glTF 2.0: drawn opaque");
@@ -120,8 +120,7 @@ void GltfMaterials::read_base_color(const JsonPlace& shading, GltfMaterial& mate
   material.texture = texture->at("index");
   constexpr std::uint64_t kMostSets = 999;
   std::uint64_t set = texture->whole_or("texCoord", kMostSets, 0);
-  const std::optional<JsonPlace> extensions = texture->find("extensions");
-  if (const auto transform = extensions ? extensions->find("KHR_texture_transform") : std::nullopt) {
+  if (const auto transform = texture->extension("KHR_texture_transform")) {
     read_transform(*transform, material);
     set = transform->whole_or("texCoord", kMostSets, set);
   }
@@ -133,9 +132,7 @@ std::optional<MeshSampler> GltfMaterials::sampler(const GltfMaterial& material) 
   const JsonPlace texture = file_.follow(*material.texture, "textures");
   MeshSampler sampler;
   if (const auto index = texture.find("sampler")) sampler = read_sampler(file_.follow(*index, "samplers"));
-  const std::optional<JsonPlace> extensions = texture.find("extensions");
-  const std::optional<JsonPlace> webp =
-      extensions && can_read(GltfCodec::webp) ? extensions->find("EXT_texture_webp") : std::nullopt;
+  const auto webp = can_read(GltfCodec::webp) ? texture.extension("EXT_texture_webp") : std::nullopt;
   const std::optional<JsonPlace> source = webp ? webp->find("source") : texture.find("source");
   const std::string kind = source ? file_.follow(*source, "images").text_or("mimeType", "image/png") : "";
   if (kind != "image/png" && kind != "image/jpeg" && (kind != "image/webp" || !can_read(GltfCodec::webp))) {

@@ -193,19 +193,15 @@ class Walker {
     made.number = entry.node;
     made.parent = entry.parent;
     read_local(node, made);
-    const std::optional<JsonPlace> extensions = node.find("extensions");
-    const auto extension = [&extensions](std::string_view name) {
-      return extensions ? extensions->find(name) : std::optional<JsonPlace>();
-    };
-    const auto visibility = extension("KHR_node_visibility");
+    const auto visibility = node.extension("KHR_node_visibility");
     const bool is_hidden = entry.is_hidden || (visibility && !visibility->flag_or("visible", true));
     const std::optional<JsonPlace> mesh = node.find("mesh");
     if (mesh && !is_hidden) {
-      const auto copies = extension("EXT_mesh_gpu_instancing");
+      const auto copies = node.extension("EXT_mesh_gpu_instancing");
       copies ? add_copies(*copies, node, *mesh, number) : add_mesh(node, *mesh, number);
     }
     if (const std::optional<JsonPlace> index = node.find("camera")) add_camera(node, *index, number);
-    if (const auto punctual = extension("KHR_lights_punctual"); punctual && !is_hidden)
+    if (const auto punctual = node.extension("KHR_lights_punctual"); punctual && !is_hidden)
       add_light(punctual->at("light"), number);
     if (const std::optional<JsonPlace> children = node.find("children")) push(*children, number, is_hidden);
   }
@@ -257,8 +253,7 @@ class Walker {
   }
 
   void add_light(const JsonPlace& index, std::size_t number) {
-    const auto all = file_.root().find("extensions");
-    const auto punctual = all ? all->find("KHR_lights_punctual") : std::nullopt;
+    const auto punctual = file_.root().extension("KHR_lights_punctual");
     const auto lights = punctual ? punctual->find("lights") : std::nullopt;
     if (!lights) index.fail("a light of a file without KHR_lights_punctual.lights", "export the file again");
     result_.lights.push_back({number, read_light((*lights)[index.index(lights->size(), "lights")])});

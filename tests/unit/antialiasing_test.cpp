@@ -10,7 +10,6 @@
 #include "sim/scene/builtin.hpp"
 #include "sim/scene/random.hpp"
 #include "sim/scene/scene_builder.hpp"
-#include "sim/study/antialiasing/exact_area.hpp"
 #include "sim/study/antialiasing/study.hpp"
 
 namespace halfplane::antialiasing::antialiasing_test {

@@ -14,7 +14,7 @@
 #include "model/golden/line.hpp"
 #include "model/host/line_setup.hpp"
 #include "model/host/smooth_raster.hpp"
-#include "sim/study/antialiasing/exact_area.hpp"
+#include "sim/study/antialiasing/study.hpp"
 #include "sim/study/compare/compare.hpp"
 
 namespace halfplane::smooth_test {

@@ -9,7 +9,6 @@
 #include "model/golden/exact.hpp"
 #include "sim/study/stress/check.hpp"
 #include "sim/study/stress/grid.hpp"
-#include "sim/study/stress/independent.hpp"
 #include "sim/study/stress/run.hpp"
 #include "sim/study/stress/search.hpp"
 #include "sim/study/stress/shapes.hpp"

@@ -57,27 +57,20 @@ const std::string& PrimitiveSpans::finish() {
 }
 namespace {
 
-/// By Timeline::Track: stage and track name.
-struct TrackName {
-  Stage stage;
-  std::string_view part;
-};
-constexpr std::array kTracks{TrackName{Stage::cull, ""},
-                             TrackName{Stage::cull, ", second"},
-                             TrackName{Stage::triangle_setup, ""},
-                             TrackName{Stage::triangle_setup, ", second"},
-                             TrackName{Stage::triangle_setup, ", third"},
-                             TrackName{Stage::triangle_setup, ", fourth"},
-                             TrackName{Stage::triangle_setup, ", fifth"},
-                             TrackName{Stage::triangle_setup, ", sixth"},
-                             TrackName{Stage::coarse_raster, ""},
-                             TrackName{Stage::coarse_raster, ", second"},
-                             TrackName{Stage::fine_raster, ""},
-                             TrackName{Stage::line_raster, ""},
-                             TrackName{Stage::depth_test, ""},
-                             TrackName{Stage::framebuffer, ""},
-                             TrackName{Stage::memory, ", depth"},
-                             TrackName{Stage::memory, ", colour"}};
+/// By Timeline::Track: the stage, or two tracks of memory.
+constexpr std::array kTracks{Stage::cull,           Stage::cull,           Stage::triangle_setup, Stage::triangle_setup,
+                             Stage::triangle_setup, Stage::triangle_setup, Stage::triangle_setup, Stage::triangle_setup,
+                             Stage::coarse_raster,  Stage::coarse_raster,  Stage::fine_raster,    Stage::line_raster,
+                             Stage::depth_test,     Stage::framebuffer,    Stage::memory,         Stage::memory};
+
+/// "cull", "cull, second"; "memory, depth".
+std::string track_name(std::size_t track) {
+  constexpr std::array<const char*, 6> kNumbers{"", ", second", ", third", ", fourth", ", fifth", ", sixth"};
+  const Stage stage = kTracks[track];
+  const auto first = static_cast<std::size_t>(std::ranges::find(kTracks, stage) - kTracks.begin());
+  const char* const part = stage != Stage::memory ? kNumbers[track - first] : track == first ? ", depth" : ", colour";
+  return std::string(info(stage).name) + part;
+}
 
 std::string tile_text(int x, int y) { return "tile (" + std::to_string(x) + ", " + std::to_string(y) + ")"; }
 
@@ -94,7 +87,7 @@ Timeline::Timeline(const std::string& title)
   text_ += metadata("process_name", 0, "name", title);
   for (std::size_t i = 0; i < kTracks.size(); ++i) {
     const int track = static_cast<int>(i);
-    add_track(track, kOrder * track, std::string(info(kTracks[i].stage).name) + std::string(kTracks[i].part));
+    add_track(track, kOrder * track, track_name(i));
   }
 }
 
@@ -112,7 +105,7 @@ void Timeline::slice(int track, const std::string& name, Cycle from, Cycle to) {
 void Timeline::slice_in(std::vector<Lane>& lanes, Cycle from, Cycle to) {
   auto lane = std::find_if(lanes.begin(), lanes.end(), [&](const Lane& free) { return free.end <= from; });
   if (lane == lanes.end()) {
-    const Stage stage = kTracks[static_cast<std::size_t>(lanes.front().track)].stage;
+    const Stage stage = kTracks[static_cast<std::size_t>(lanes.front().track)];
     lane = lanes.insert(lanes.end(), {tracks_++, 0, lanes.back().order + 1});
     add_track(lane->track, lane->order, std::string(info(stage).name) + ", number " + std::to_string(lanes.size()));
   }

@@ -51,24 +51,7 @@ class Timeline final : public TransferSink {
   [[nodiscard]] const std::string& finish();
 
  private:
-  enum Track : int {
-    cull_1,
-    cull_2,
-    setup_1,
-    setup_2,
-    setup_3,
-    setup_4,
-    setup_5,
-    setup_6,
-    coarse_1,
-    coarse_2,
-    fine,
-    lines,
-    depth,
-    framebuffer,
-    memory_depth,
-    memory_color
-  };
+  enum Track : int { cull, setup = 2, coarse = 8, fine = 10, lines, depth, framebuffer, memory_depth, memory_color };
   static constexpr int kOrder = 64;  ///< distance of tracks: room for more lanes of a stage
   /// One of the tracks of a stage with several primitives under way.
   struct Lane {
@@ -90,9 +73,9 @@ class Timeline final : public TransferSink {
   bool has_tile_ = false, has_stamps_ = false, has_fragments_ = false, has_setup_ = false, has_line_ = false;
   Cycle taken_ = 0, triangle_ = 0, setup_ = 0, last_tile_ = 0, tile_ = 0, first_stamp_ = 0, last_stamp_ = 0,
         first_fragment_ = 0, last_fragment_ = 0, line_ = 0, last_pixel_ = 0;
-  std::vector<Lane> cull_lanes_{{cull_1}, {cull_2}},
-      setup_lanes_{{setup_1}, {setup_2}, {setup_3}, {setup_4}, {setup_5}, {setup_6}},
-      coarse_lanes_{{coarse_1}, {coarse_2}};
+  std::vector<Lane> cull_lanes_{{cull}, {cull + 1}},
+      setup_lanes_{{setup}, {setup + 1}, {setup + 2}, {setup + 3}, {setup + 4}, {setup + 5}},
+      coarse_lanes_{{coarse}, {coarse + 1}};
   int tracks_ = memory_color + 1;  ///< the tracks above, and the lanes for deeper configurations
 };
 

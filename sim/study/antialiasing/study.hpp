@@ -7,6 +7,7 @@
 // and one lane that blends.
 #pragma once
 
+#include <gmpxx.h>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "model/config.hpp"
+#include "model/packets/packets.hpp"
 #include "model/scene.hpp"
 #include "sim/study/antialiasing/supersample.hpp"
 
@@ -54,5 +56,18 @@ struct AreaStudy {
 /// measured of each.
 [[nodiscard]] AreaStudy measure_areas(const Scene& scene, const Config& config, int repeat,
                                       const std::function<void(double)>& progress);
+
+// The exact area reference: the part of a pixel that a triangle covers, in rationals.
+//
+// The triangle is the snapped one. It is clipped against the four sides of the pixel, as a polygon whose corners are
+// rational, and measured by the shoelace formula: no sample, no rounding, no code of the engines.
+
+/// The area of the triangle inside pixel (x, y), 0 to 1 pixels^2. Coordinates of 2^-grid_bits pixel; either orientation.
+[[nodiscard]] mpq_class covered_area(const Triangle& triangle, int x, int y, int grid_bits);
+
+/// The sum of covered_area() over triangles in every pixel of a target, width * height, rows from the top. For disjoint
+/// triangles it is their coverage of the pixel.
+[[nodiscard]] std::vector<double> covered_areas(const std::vector<Triangle>& triangles, int width, int height,
+                                                int grid_bits);
 
 }  // namespace halfplane::antialiasing

@@ -8,13 +8,13 @@
 
 #include "eye_depth.hpp"
 #include "fragment_frame.hpp"
-#include "line_coverage.hpp"
 #include "model/engines/functional.hpp"
 #include "model/engines/scalar.hpp"
 #include "model/engines/tapped_fragment.hpp"
 #include "model/golden/exact_line.hpp"
 #include "model/stages/depth_encode.hpp"
 #include "model/stages/fragment_ops.hpp"
+#include "sim/study/compare/coverage.hpp"
 #include "sim/study/compare/fragment_judge.hpp"
 
 namespace halfplane {

@@ -13,14 +13,14 @@
 
 #include "../../show/image/coverage_class.hpp"
 #include "coverage.hpp"
-#include "fragment_verdict.hpp"
 #include "layers.hpp"
 #include "model/config.hpp"
 #include "model/engines/render.hpp"
 #include "model/golden/golden.hpp"
 #include "model/scene.hpp"
 #include "per_vertex.hpp"
-#include "sim/study/compare/surface_errors.hpp"
+#include "sim/study/compare/fragment_judge.hpp"
+#include "sim/study/compare/surface_oracle.hpp"
 #include "statistics.hpp"
 
 namespace halfplane {

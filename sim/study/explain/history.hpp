@@ -24,7 +24,7 @@
 #include "model/stages/surface.hpp"
 #include "model/stages/tile_walk.hpp"
 #include "model/study/rules.hpp"
-#include "sim/study/compare/surface_errors.hpp"
+#include "sim/study/compare/surface_oracle.hpp"
 
 namespace halfplane::explain {
 

@@ -29,11 +29,18 @@ std::string hex(std::uint64_t value) {
 class Checks {
  public:
   explicit Checks(Explanation& result) : result_(result) {}
-  void same(std::uint64_t a, std::uint64_t b, const std::string& place, const char* what) {
+  void same(std::uint64_t a, std::uint64_t b, const std::string& place, const std::string& what) {
     ++result_.checks;
     if (a != b) result_.differences.push_back(place + ": " + what + ", " + hex(a) + " and " + hex(b));
   }
-  void holds(bool holds, const std::string& place, const char* what) {
+  /// `whose`: "model and RTL".
+  void stored(const Stored& a, const Stored& b, const std::string& place, const std::string& whose,
+              bool has_depth = true, bool has_stencil = true) {
+    if (has_depth) same(a.depth, b.depth, place, "stored depths of " + whose + " differ");
+    same(a.color, b.color, place, "stored colours of " + whose + " differ");
+    if (has_stencil) same(a.stencil, b.stencil, place, "stored stencil values of " + whose + " differ");
+  }
+  void holds(bool holds, const std::string& place, const std::string& what) {
     ++result_.checks;
     if (!holds) result_.differences.push_back(place + ": " + what);
   }
@@ -235,10 +242,7 @@ void verify(const Config& config, Explanation& result) {
       checks.holds(entry.oracle->covers == (has_fragment(verdict) || verdict == Verdict::scissor || entry.is_left_out),
                    place_of(pixel, entry), "the oracle decides otherwise whether the sample is covered");
     }
-    checks.same(pixel.model.depth, pixel.engine.depth, place, "stored depths of specification and engine differ");
-    checks.same(pixel.model.color, pixel.engine.color, place, "stored colours of specification and engine differ");
-    checks.same(pixel.model.stencil, pixel.engine.stencil, place,
-                "stored stencil values of specification and engine differ");
+    checks.stored(pixel.model, pixel.engine, place, "specification and engine");
     checks.same(static_cast<std::uint32_t>(pixel.model.owner), static_cast<std::uint32_t>(pixel.engine.owner), place,
                 "owners of the pixel in specification and engine differ");
     if (pixel.resolved) {
@@ -249,25 +253,12 @@ void verify(const Config& config, Explanation& result) {
       checks.same(static_cast<std::uint32_t>(model.owner), static_cast<std::uint32_t>(engine.owner), place,
                   "the pixel's owners in specification and engine differ");
     }
-    if (pixel.hardware) {
-      if (config.frame_store == FrameStore::all)
-        checks.same(pixel.model.depth, pixel.hardware->depth, place,
-                    "stored depths of specification and hardware differ");
-      if (config.frame_store == FrameStore::all && has_stencil(config))
-        checks.same(pixel.model.stencil, pixel.hardware->stencil, place,
-                    "stored stencil values of specification and hardware differ");
-      checks.same(pixel.model.color, pixel.hardware->color, place,
-                  "stored colours of specification and hardware differ");
-    }
-    if (pixel.rtl) {
-      has_rtl = true;
-      if (config.frame_store == FrameStore::all)
-        checks.same(pixel.hardware->depth, pixel.rtl->depth, place, "stored depths of model and RTL differ");
-      if (config.frame_store == FrameStore::all)
-        checks.same(pixel.hardware->stencil, pixel.rtl->stencil, place,
-                    "stored stencil values of model and RTL differ");
-      checks.same(pixel.hardware->color, pixel.rtl->color, place, "stored colours of model and RTL differ");
-    }
+    const bool has_depth = config.frame_store == FrameStore::all;
+    if (pixel.hardware)
+      checks.stored(pixel.model, *pixel.hardware, place, "specification and hardware", has_depth,
+                    has_depth && has_stencil(config));
+    has_rtl = has_rtl || pixel.rtl;
+    if (pixel.rtl) checks.stored(*pixel.hardware, *pixel.rtl, place, "model and RTL", has_depth, has_depth);
   }
   if (!has_rtl) return;
   for (const auto& [id, packet] : result.packets) {
@@ -277,7 +268,7 @@ void verify(const Config& config, Explanation& result) {
     checks.holds(!packet.rtl.empty(), place, "the RTL never sends this packet");
     if (packet.rtl.empty()) continue;
     for (const std::string& field : differing_fields(id, packet, widths))
-      checks.holds(false, place, ("model and RTL differ in " + field).c_str());
+      checks.holds(false, place, "model and RTL differ in " + field);
     if (packet.model_cycle && packet.rtl_cycle)
       checks.same(*packet.model_cycle, *packet.rtl_cycle, place, "cycles of model and RTL differ");
   }

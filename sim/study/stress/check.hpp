@@ -1,8 +1,10 @@
 // Checks of a drawn scene: coverage sample by sample, depth and colour fragment by fragment, counts.
 #pragma once
 
+#include <optional>
 #include <span>
 
+#include "sim/study/compare/compare.hpp"
 #include "sim/study/compare/fragment_judge.hpp"
 #include "sim/study/stress/unit.hpp"
 
@@ -64,5 +66,14 @@ void expect_same_image(Unit& unit, const Scene& scene, const Rendering& a, const
 
 /// The options of every scene drawn here: counts, visible triangles.
 [[nodiscard]] RenderOptions render_options();
+
+// The independent checker: depth errors of a drawn scene in GMP rationals, from the vertices as given. Its own snap, its own
+// plane (normal and point, not barycentric weights), no code of the stages, the oracle or the other checks.
+
+/// The largest |stored depth - exact plane through the snapped vertices| over the pixels that show a triangle, in LSB.
+/// None if the scene has unsupported features: clip space, other topologies than lists of triangles, polygon offset,
+/// another depth format than `plane`, conventions.
+[[nodiscard]] std::optional<double> measured_depth_error(const Scene& scene, const Config& config,
+                                                         const Engine& engine);
 
 }  // namespace halfplane::stress

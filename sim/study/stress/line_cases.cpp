@@ -1,7 +1,7 @@
 // Lines and points: every pixel against the exact oracle, depth and colour against the exact quotients.
 #include <algorithm>
 
-#include "sim/study/compare/line_coverage.hpp"
+#include "sim/study/compare/coverage.hpp"
 #include "sim/study/stress/cases.hpp"
 #include "sim/study/stress/grid.hpp"
 #include "sim/study/stress/line_check.hpp"

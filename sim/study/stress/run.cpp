@@ -10,7 +10,6 @@
 #include "sim/interrupt.hpp"
 #include "sim/study/stress/check.hpp"
 #include "sim/study/stress/grid.hpp"
-#include "sim/study/stress/independent.hpp"
 
 namespace halfplane::stress {
 namespace {

@@ -8,7 +8,7 @@
 #include "model/stages/fragment_ops.hpp"
 #include "model/stages/interpolate.hpp"
 #include "sim/study/stress/cases.hpp"
-#include "sim/study/stress/independent.hpp"
+#include "sim/study/stress/check.hpp"
 #include "sim/study/stress/shapes.hpp"
 
 namespace halfplane::stress {
