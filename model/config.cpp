@@ -286,6 +286,7 @@ std::vector<Setting> all_settings() {
       number<&Config::fog_units>("fog.unit", "units",
                                  "1: the RTL fogs triangles, downstream of its texture unit; 0: it has no fog", 0, 1)
           .ability_named("fog")
+          .that_executes({"fog", "texture.unit=nearest", true})
           .only_with(
               has_texture_unit,
               "fog reads the plane of 1/w, which only a texture unit has: use texture.unit=nearest, or fog.unit=0"),

@@ -132,6 +132,13 @@ struct Need {
   std::string_view message;  ///< what the unit takes from the other one, and what to write instead
 };
 
+/// The draw state that a unit in the stream of stamps executes, where a triangle's colours are written.
+struct ExecutedState {
+  std::string_view name;  ///< in the table of draw states; empty: none
+  std::string_view with;  ///< what the unit takes, for a message: "texture.unit=nearest"
+  bool reads_w = false;   ///< the plane of 1/w, which a triangle has once
+};
+
 /// One setting: its key in TOML and `--set`, its values, and access to its member of Config.
 struct Setting {
   std::string_view key;                      ///< "depth.bits"
@@ -145,6 +152,7 @@ struct Setting {
   bool may_change_pixels = true;             ///< false: it affects time and area only
   std::string_view ability = {};             ///< name among a design's abilities, where more is better; empty: none
   std::vector<Need> needs = {};              ///< what must hold unless its value is 0
+  ExecutedState executed = {};               ///< by the unit that this setting counts
   bool is_unnamed_at_0 = false;              ///< at 0 it is no part of CONFIG_ID: IDs are older than the setting
   std::string (*read)(const Config&, const Setting&) = nullptr;
   void (*write)(Config&, const Setting&, std::string_view) = nullptr;
@@ -155,6 +163,10 @@ struct Setting {
   }
   [[nodiscard]] Setting only_with(bool (*holds)(const Config&), std::string_view message) && {
     needs.push_back({holds, message});
+    return std::move(*this);
+  }
+  [[nodiscard]] Setting that_executes(ExecutedState state) && {
+    executed = state;
     return std::move(*this);
   }
   [[nodiscard]] bool is_number() const { return max > min; }

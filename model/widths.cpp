@@ -127,8 +127,10 @@ void derive_texture(Widths& w, const Config& config) {
   w.coordinate_reach = exact("coordinate reach", "x <= 20", {0, 20});
   w.coordinate_reference =
       exact("coordinate reference", "u_ref: +-2^22, beyond which no clamp can tell", symmetric(int128{1} << 22));
-  w.fog_octaves = config.fog_units;
-  w.fog_octave = exact("fog octave", "of a table of 16 at most, that of Q = 1; held, for Q < 2^32", {-32, 31});
+  for (const UnitValue& value : kUnitValues) {
+    w.*value.count = config.*value.units;
+    w.*value.width = exact(value.name, value.bound, value.range);
+  }
   const bool has_colors = has_colors_over_w(config);
   const int color_bits = color_over_w_bits(config);  // N_C
   w.colors_over_w = has_colors ? w.color_planes : 0;
@@ -367,8 +369,9 @@ std::vector<const Width*> Widths::all() const& {
   add_of_attributes({&A::code, &A::delta, &A::numerator});
   add({&reciprocal, &reciprocal_shift});
   for (const auto member : {&A::reciprocal, &A::product, &A::plane, &A::local}) add_of_attributes({member});
-  add({&coordinate_shift, &coordinate_reach, &coordinate_reference, &fog_octave, &color_shift, &color_reach,
-       &written_color, &shaded_color, &texture_byte, &texture_beats});
+  add({&coordinate_shift, &coordinate_reach, &coordinate_reference});
+  for (const UnitValue& value : kUnitValues) list.push_back(&(this->*value.width));
+  add({&color_shift, &color_reach, &written_color, &shaded_color, &texture_byte, &texture_beats});
   add({&primitive_id,   &slot,          &tile_x,       &tile_y,     &tile_pixel,   &stamp_index,  &sample_mask,
        &stored_color,   &stored_depth,  &kind,         &flag,       &depth_func,   &cull_mode,    &pixel_x,
        &pixel_y,        &vertex_color,  &hiz_code,     &hiz_update, &tile_plane,   &depth_source, &memory_lane,

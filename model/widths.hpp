@@ -179,6 +179,21 @@ struct Widths {
   std::vector<const Width*> all() const&& = delete;  // the pointers would outlive the widths
 };
 
+/// A value that a triangle brings a unit in the stream of stamps.
+struct UnitValue {
+  Width Widths::*width;
+  int Widths::*count;  ///< of a triangle: as many as there are units
+  int Config::*units;
+  const char *name, *bound;
+  Interval range;
+};
+inline constexpr std::array kUnitValues{UnitValue{&Widths::fog_octave,
+                                                  &Widths::fog_octaves,
+                                                  &Config::fog_units,
+                                                  "fog octave",
+                                                  "of a table of 16 at most, that of Q = 1; held, for Q < 2^32",
+                                                  {-32, 31}}};
+
 /// Whether states bypass the setup of triangles: where a texture unit's planes make setup long, and states frequent.
 [[nodiscard]] inline bool has_state_lane(const Widths& widths) { return widths.coordinates != 0; }
 

@@ -1,4 +1,5 @@
 // The scenes that this hardware supports.
+#include "../draw_states.hpp"
 #include "../stages/depth_encode.hpp"
 #include "../stages/fragment_ops.hpp"
 #include "../stages/stencil_packets.hpp"
@@ -9,6 +10,27 @@
 namespace halfplane {
 namespace {
 
+/// A unit in the stream of stamps, and the draw state that it executes.
+struct UnitOfState {
+  const Setting& setting;
+  const DrawState& state;
+
+  [[nodiscard]] bool is_used_by(const State& of) const {
+    static const State kDefault;
+    return of.color_write && !state.is_same(of, kDefault);
+  }
+};
+
+const std::vector<UnitOfState>& units_of_states() {
+  static const std::vector<UnitOfState> kUnits = [] {
+    std::vector<UnitOfState> units;
+    for (const Setting& setting : settings())
+      if (!setting.executed.name.empty()) units.push_back({setting, draw_state(setting.executed.name)});
+    return units;
+  }();
+  return kUnits;
+}
+
 /// The missing feature of this hardware for a textured draw, or a draw with colours over w; empty: none.
 std::string surface_fault(const Scene& scene, const State& state, const Config& config) {
   if (state.shade == Shade::phong && state.color_write && !has_normals(config))
@@ -18,9 +40,12 @@ std::string surface_fault(const Scene& scene, const State& state, const Config& 
     return "color_interp perspective: this hardware divides no colours by w; set texture.unit=nearest and "
            "perspective.colors=1";
   const bool is_affine = state.texture && state.texture_interp == TextureInterp::affine;
-  if (state.fog && state.color_write && is_affine)
-    return "fog over a texture_interp affine: both look at one plane of 1/w, which is not the same; use texture_interp "
-           "perspective, or fog off";
+  for (const UnitOfState& unit : units_of_states())
+    if (is_affine && unit.setting.executed.reads_w && unit.is_used_by(state)) {
+      const std::string name(unit.state.name);
+      return name + " over a texture_interp affine: both look at one plane of 1/w, which is not the same; use " +
+             "texture_interp perspective, or " + name + " off";
+    }
   if (state.shade == Shade::phong && state.color_write && is_affine)
     return "shade phong under a texture_interp affine: normals and coordinates start where one plane of 1/w says, "
            "which is not the same; use texture_interp perspective, or shade smooth";
@@ -67,9 +92,10 @@ std::string fragment_fault(const State& state, const Config& config) {
     return "stencil, but this hardware keeps none; set stencil.bits=8 (with cache.kind=blocks, "
            "setup.kind=pipelined and depth.bits up to 24), or leave it out";
   if (!ops.state.color_write) return {};
-  if (state.fog && config.fog_units == 0)
-    return "fog, but this hardware has no unit for it; set fog.unit=1 (with texture.unit=nearest), or leave it "
-           "out";
+  for (const auto& [setting, executed] : units_of_states())
+    if (get(config, setting) == "0" && UnitOfState{setting, executed}.is_used_by(state))
+      return std::string(executed.name) + ", but this hardware has no unit for it; set " + std::string(setting.key) +
+             "=1 (with " + std::string(setting.executed.with) + "), or leave it out";
   if (ops.color.logic != LogicOp::copy && config.logic_units == 0)
     return "logic_op" + unit("logic.unit=1 and blend.lanes=4");
   if (ops.color.blends() && config.blend_lanes == 0) return "blend" + unit("blend.lanes=4");

@@ -1,7 +1,6 @@
 #include "unit_words.hpp"
 
-#include <array>
-#include <vector>
+#include <algorithm>
 
 #include "../stages/fog_unit.hpp"
 #include "../stages/light_unit.hpp"
@@ -29,26 +28,17 @@ void UnitSignatures::add(const UnitWords& units, SignatureHash& hash) {
       hash.add(static_cast<std::uint64_t>(part));
       hash.add(static_cast<std::uint64_t>(part >> 64));
     }
-  hash.add(units.looks_at_fog);
-  if (units.fog != nullptr) {
-    hash.add(fog_.signature_of(units.fog, [](const FogTable& fog, SignatureHash& table) {
-      table.add(static_cast<std::uint64_t>(fog.octave_bits()));
-      for (const std::uint8_t channel : fog.color()) table.add(channel);
-      for (const FogLine& entry : fog.lines()) {
-        table.add(static_cast<std::uint64_t>(entry.start));
-        table.add(static_cast<std::uint64_t>(entry.rise));
-      }
-    }));
-  }
-  hash.add(units.looks_at_light);
-  if (units.light != nullptr) {
-    hash.add(light_.signature_of(units.light, [](const PhongLight& light, SignatureHash& registers) {
-      for (const std::uint64_t word : light_words(light.registers())) registers.add(word);
-      for (const FallingLine& entry : light.lines()) {
-        registers.add(static_cast<std::uint64_t>(entry.start));
-        registers.add(static_cast<std::uint64_t>(entry.fall));
-      }
-    }));
+  for (std::size_t n = 0; n < units.tables.size(); ++n) {
+    const RegisterWords& words = units.tables[n];
+    hash.add(words != nullptr);
+    if (words == nullptr) continue;
+    Known& known = known_[n];
+    if (known.words != words) {
+      SignatureHash of_words;
+      for (const std::uint64_t word : *words) of_words.add(word);
+      known = {words, of_words.signature()};
+    }
+    hash.add(known.signature);
   }
   for (const auto& word : {units.colors.ops, units.colors.constant, units.colors.alpha}) add_optional(word);
   for (const std::size_t side : {0U, 1U}) {
@@ -70,29 +60,63 @@ class HostUnits::Impl {
 
   void fill(const DrawContext& context, const Triangle& triangle, bool is_compared, HostPrimitive& out) {
     const State& state = context.state;
-    out.units.looks_at_fog = config_.fog_units != 0 && state.color_write;
-    if (out.units.looks_at_fog && state.fog) out.units.fog = context.fog;
-    out.units.looks_at_light = config_.shade_units != 0 && state.color_write;
-    if (out.units.looks_at_light) out.units.light = context.phong;
+    const bool reads_light = config_.shade_units != 0 && state.color_write;
+    const bool reads_fog = config_.fog_units != 0 && state.color_write;
+    if (reads_light) out.units.tables[kLight] = light_.of(context.phong);
+    if (reads_fog) out.units.tables[kFog] = fog_.of(context.fog);
     if (textures_ && state.texture) {
       set_coordinates(context, triangle, out);
       if (is_compared) out.units.texels = texels_of(*state.texture);
     }
     if (state.color_interp == ColorInterp::perspective) set_colors_over_w(context, triangle, out.packet);
-    if (out.units.fog) set_distance(context, triangle, out);
-    if (out.units.light) set_normals(context, triangle, out.packet);
+    if (reads_fog && context.fog) set_distance(context, triangle, out);
+    if (reads_light && context.phong) set_normals(context, triangle, out.packet);
   }
 
   void set_for(PrimitiveKind kind, const UnitWords& units, const Send& send) {
     set_colors(units, send);
     set_stencil(units, send);
     if (!textures_ || kind != PrimitiveKind::triangle) return;
-    set_light(units, send);
+    set_table(kLight, units, send);
     set_texture(units, send);
-    set_fog(units, send);
+    set_table(kFog, units, send);
   }
 
  private:
+  enum Table : std::size_t { kLight, kFog };  ///< indices of UnitWords::tables
+
+  static std::vector<std::uint64_t> words_of(const FogTable* fog) {
+    if (fog == nullptr) return {FogState{}.pack()};
+    std::vector<std::uint64_t> words{FogState{true, fog->octave_bits(), fog->color()}.pack()};
+    for (const FogLine& line : fog->lines()) words.push_back(fog_line_word(words.size() - 1, line));
+    return words;
+  }
+
+  static std::vector<std::uint64_t> words_of(const PhongLight* light) {
+    if (light == nullptr) return {no_light_word()};
+    const auto registers = light_words(light->registers());
+    std::vector<std::uint64_t> words(registers.begin(), registers.end());
+    for (const FallingLine& line : light->lines())
+      words.push_back(light_line_word(words.size() - registers.size(), line));
+    return words;
+  }
+
+  /// The words of a unit for the last table, or none, of which they were asked.
+  template <class Table>
+  class LastWords {
+   public:
+    const RegisterWords& of(const std::shared_ptr<const Table>& table) {
+      if (words_ == nullptr || table != table_)
+        words_ = std::make_shared<const std::vector<std::uint64_t>>(words_of(table.get()));
+      table_ = table;
+      return words_;
+    }
+
+   private:
+    std::shared_ptr<const Table> table_;
+    RegisterWords words_;
+  };
+
   /// Writes codes of a plane at the vertices, in the bits of the packet's field.
   void set_plane(std::size_t plane, const auto& codes, PrimitivePacket& packet) const {
     for (std::size_t i = 0; i < 3; ++i)
@@ -257,35 +281,18 @@ class HostUnits::Impl {
       send(StateRegister::texture_lines, line_part(*units.texture_lines, part_bits, n));
   }
 
-  /// Sets the fog of a triangle: only lines of its table that differ from the unit's.
-  void set_fog(const UnitWords& units, const Send& send) {
-    if (!units.looks_at_fog) return;
-    const FogTable* table = units.fog.get();
-    const FogState next = table != nullptr ? FogState{true, table->octave_bits(), table->color()} : FogState{};
-    if (fog_state_ != next) send(StateRegister::texture_levels, next.pack());
-    fog_state_ = next;
-    if (table == nullptr) return;
-    for (std::size_t n = 0; n < table->lines().size(); ++n) {
-      if (fog_line_[n] == table->lines()[n]) continue;
-      fog_line_[n] = table->lines()[n];
-      send(StateRegister::texture_levels, fog_line_word(n, *fog_line_[n]));
+  /// Sets a unit for a triangle: only words that differ from the unit's.
+  void set_table(Table unit, const UnitWords& units, const Send& send) {
+    const RegisterWords& wanted = units.tables[unit];
+    if (wanted == nullptr || wanted == set_[unit]) return;
+    set_[unit] = wanted;
+    auto& held = table_[unit];
+    held.resize(std::max(held.size(), wanted->size()));
+    for (std::size_t n = 0; n < wanted->size(); ++n) {
+      if (held[n] == (*wanted)[n]) continue;
+      held[n] = (*wanted)[n];
+      send(StateRegister::texture_levels, held[n]);
     }
-  }
-
-  /// Sets the light of a triangle: only registers and lines of its table that differ from the unit's.
-  void set_light(const UnitWords& units, const Send& send) {
-    if (!units.looks_at_light) return;
-    const PhongLight* light = units.light.get();
-    const auto set = [&](auto& held, const auto& wanted, std::uint64_t word) {
-      if (held == wanted) return;
-      held = wanted;
-      send(StateRegister::texture_levels, word);
-    };
-    if (light == nullptr) return set(light_word_[0], no_light_word(), no_light_word());
-    const auto words = light_words(light->registers());
-    for (std::size_t n = 0; n < words.size(); ++n) set(light_word_[n], words[n], words[n]);
-    for (std::size_t n = 0; n < light->lines().size(); ++n)
-      set(light_line_[n], light->lines()[n], light_line_word(n, light->lines()[n]));
   }
 
   const Scene& scene_;
@@ -294,16 +301,16 @@ class HostUnits::Impl {
   const PerspectiveFormat format_;
   std::optional<TextureMemory> textures_;         ///< with a texture unit
   std::vector<std::optional<Signature>> texels_;  ///< of each texture
+  LastWords<PhongLight> light_;
+  LastWords<FogTable> fog_;
   // Registers that have been set.
   ColorWords colors_;
   StencilWords stencil_;
   std::optional<std::uint64_t> texture_state_, texture_constant_, texture_border_;
   std::optional<std::uint32_t> texture_levels_;
   std::optional<TextureLines> texture_lines_;
-  std::optional<FogState> fog_state_;
-  std::array<std::optional<FogLine>, std::size_t{1} << kFogLines> fog_line_{};
-  std::array<std::optional<std::uint64_t>, kLightWords> light_word_{};
-  std::array<std::optional<FallingLine>, std::size_t{1} << kPowerLines> light_line_{};
+  std::array<RegisterWords, kMostUnitTables> set_;                 ///< the last ones
+  std::array<std::vector<std::uint64_t>, kMostUnitTables> table_;  ///< 0: unknown; no word is 0
 };
 
 HostUnits::HostUnits(const Scene& scene, const Config& config, const Widths& widths)

@@ -2,22 +2,28 @@
 // frames in bins keep and compare, and the hardware receives as tokens.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "../packets/state_packets.hpp"
 #include "../signature.hpp"
 
 namespace halfplane {
 
-class FogTable;        // stages/fog.hpp
-class PhongLight;      // stages/phong.hpp
 struct DrawContext;    // primitives.hpp
 struct HostPrimitive;  // host_primitive.hpp
 struct Scene;
 struct Triangle;
+
+/// The words of a unit's registers and table, each with a register of its own; shared by the primitives of a draw. Of a
+/// unit that is off the first one alone.
+using RegisterWords = std::shared_ptr<const std::vector<std::uint64_t>>;
+
+inline constexpr std::size_t kMostUnitTables = 4;
 
 /// The unit registers that a primitive needs, as words of tokens.
 struct UnitWords {
@@ -26,33 +32,11 @@ struct UnitWords {
   std::optional<TextureLines> texture_lines{};      ///< if its samples have a level of detail
   std::optional<std::uint64_t> texture_constant{};  ///< if it blends by its texels: TextureConstant
   std::optional<std::uint64_t> texture_border{};    ///< if a side of it has one: TextureBorder
-  bool looks_at_fog = false;                        ///< triangle whose colours are written, with a fog unit
-  std::shared_ptr<const FogTable> fog{};            ///< then: its fog; null: none
-  bool looks_at_light = false;                      ///< likewise
-  std::shared_ptr<const PhongLight> light{};        ///< then: its light; null: none
-  ColorWords colors{};                              ///< of the draw
-  StencilWords stencil{};                           ///< likewise; for a fast clear: its value
-  Signature texels{};                               ///< of the texture of a triangle, where bins are compared
-};
-
-/// The signature of data shared by draws, computed again only when the data change.
-template <class Shared>
-class SharedSignature {
- public:
-  /// `add`: adds the data that count to a hash.
-  [[nodiscard]] const Signature& signature_of(const std::shared_ptr<const Shared>& shared, const auto& add) {
-    if (shared != last_) {
-      last_ = shared;
-      SignatureHash hash;
-      add(*shared, hash);
-      signature_ = hash.signature();
-    }
-    return signature_;
-  }
-
- private:
-  std::shared_ptr<const Shared> last_;
-  Signature signature_;
+  /// Of the units beside the texture in the order of their tokens; null: the primitive does not read that unit.
+  std::array<RegisterWords, kMostUnitTables> tables{};
+  ColorWords colors{};     ///< of the draw
+  StencilWords stencil{};  ///< likewise; for a fast clear: its value
+  Signature texels{};      ///< of the texture of a triangle, where bins are compared
 };
 
 /// Adds everything that pixels depend on to a hash.
@@ -61,8 +45,12 @@ class UnitSignatures {
   void add(const UnitWords& units, SignatureHash& hash);
 
  private:
-  SharedSignature<FogTable> fog_;
-  SharedSignature<PhongLight> light_;
+  /// The signature of words is computed again only when they are others.
+  struct Known {
+    RegisterWords words;
+    Signature signature;
+  };
+  std::array<Known, kMostUnitTables> known_;
 };
 
 /// The host's part of the units in the stream of stamps: what a triangle needs of them, and the registers that the host

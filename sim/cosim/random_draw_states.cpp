@@ -121,6 +121,9 @@ void Passes::set_units() {
     add(states_named({"blend", "blend", "blend_equation", "blend_color", "color_mask"}));
   if (config_.dither_units != 0) add(states_named({"dither"}));
   if (tests_alpha(config_)) add(states_named({"alpha_test"}));
+  for (const Setting& setting : settings())  // fogs have a pass of their own
+    if (const auto name = setting.executed.name; !name.empty() && name != "fog" && get(config_, setting) != "0")
+      add(states_named({name}));
   Random random(seed_ ^ 0xb1e4du);
   bool has_units = false;
   for (State& state : scene_.states) {

@@ -91,34 +91,22 @@ class Registers {
     } else if (which == StateRegister::texture_levels && kind == LevelsWord::levels) {
       levels_ = static_cast<std::uint32_t>(word);
     } else if (which == StateRegister::texture_levels && kind == LevelsWord::fog) {
-      fog_state_ = FogState::unpack(word);
+      fog_word_ = word;
     } else if (which == StateRegister::texture_levels && kind == LevelsWord::fog_line) {
-      const auto start = static_cast<std::int32_t>(wrap_signed(static_cast<std::int64_t>(word >> 17), 18));
-      fog_line_[word >> 35 & 255] = FogLine{start, static_cast<std::int32_t>(word & 0x1ffff)};
+      fog_line_[word >> 35 & 255] = word;
     } else if (which == StateRegister::texture_levels && kind == LevelsWord::constant) {
       constant_ = word;
     } else if (which == StateRegister::texture_levels && kind == LevelsWord::border) {
       border_ = word;
     } else if (which == StateRegister::texture_levels) {
-      const auto kind_of_light = static_cast<std::size_t>(word >> kLightWordBit & 7);
-      if (kind_of_light < kLightWords)
-        light_word_[kind_of_light] = word;
-      else
-        light_line_[word >> 27 & 255] = word;
+      light_register(word) = word;
     }
   }
 
   [[nodiscard]] std::uint64_t line_tokens() const { return line_tokens_; }
 
-  [[nodiscard]] bool has_light(const PhongLight* light) const {
-    if (light == nullptr) return light_word_[0] == no_light_word();
-    for (std::size_t n = 0; n < light_line_.size(); ++n)
-      if (light_line_[n] != light_line_word(n, light->lines()[n])) return false;
-    return light_word_ == light_words(light->registers());
-  }
-
   /// A difference from what a packet needs, or an empty text.
-  [[nodiscard]] std::string difference(const Wanted& wanted) const {
+  [[nodiscard]] std::string difference(const Wanted& wanted) {
     const auto& [colors, stencil] = std::tie(wanted.units.colors, wanted.units.stencil);
     if (colors.ops && colors.ops != ops_) return "color_ops";
     if (colors.constant && *colors.constant != pack(colors_.ops.constant)) return "blend_constant";
@@ -135,14 +123,23 @@ class Registers {
     if (wanted.units.texture_constant && wanted.units.texture_constant != constant_) return "texture_constant";
     if (wanted.units.texture_border && wanted.units.texture_border != border_) return "texture_border";
     if (wanted.units.texture_lines && *wanted.units.texture_lines != lines_.lines()) return "texture_lines";
-    if (wanted.units.looks_at_light && !has_light(wanted.units.light.get())) return "light";
-    if (!wanted.units.looks_at_fog) return "";
-    const FogTable* fog = wanted.units.fog.get();
-    if (fog_state_ != (fog != nullptr ? FogState{true, fog->octave_bits(), fog->color()} : FogState{})) return "fog";
-    return fog != nullptr && fog_line_ != fog->lines() ? "lines of the fog" : "";
+    for (const RegisterWords& words : wanted.units.tables)
+      for (std::size_t n = 0; words != nullptr && n < words->size(); ++n) {
+        const std::uint64_t word = (*words)[n];
+        const LevelsWord kind = levels_word(word);
+        if (kind == LevelsWord::fog && word != fog_word_) return "fog";
+        if (kind == LevelsWord::fog_line && word != fog_line_[n - 1]) return "lines of the fog";
+        if (kind == LevelsWord::light && word != light_register(word)) return "light";
+      }
+    return "";
   }
 
  private:
+  std::uint64_t& light_register(std::uint64_t word) {
+    const auto kind = static_cast<std::size_t>(word >> kLightWordBit & 7);
+    return kind < kLightWords ? light_word_[kind] : light_line_[word >> 27 & 255];
+  }
+
   const Config& config_;
   const Widths& widths_;
   ColorState colors_;
@@ -156,8 +153,8 @@ class Registers {
   std::uint64_t line_tokens_ = 0;
   std::array<std::uint64_t, kLightWords> light_word_{};
   std::array<std::uint64_t, std::size_t{1} << kPowerLines> light_line_{};
-  std::optional<FogState> fog_state_;
-  std::vector<FogLine> fog_line_ = std::vector<FogLine>(256);
+  std::uint64_t fog_word_ = 0;
+  std::array<std::uint64_t, 256> fog_line_{};
 };
 
 std::string difference(const DecodedPrimitive& driver, const DecodedPrimitive& model, const Widths& widths) {

@@ -37,7 +37,6 @@ constexpr std::array kByConstruction{&Widths::primitive_id,
                                      &Widths::color_shift,
                                      &Widths::color_reach,
                                      &Widths::coordinate_reference,
-                                     &Widths::fog_octave,
                                      &Widths::written_color,
                                      &Widths::shaded_color,
                                      &Widths::texture_byte,
@@ -91,6 +90,7 @@ WidthObserver::WidthObserver(const Config& config)
   }
   std::sort(place_.begin(), place_.end());
   for (const auto member : kByConstruction) is_observed_[place_of(widths_.*member)] = false;
+  for (const UnitValue& value : kUnitValues) is_observed_[place_of(widths_.*value.width)] = false;
   for (int a = 0; a < widths_.attributes.attributes; ++a) {  // planes over w: not in probes
     const AttributeWidths& w = widths_.attribute[static_cast<std::size_t>(a)];
     if (w.affine_code.bits != 0) continue;
