@@ -90,7 +90,7 @@ class HostStream::Host {
   void send_clear(const Clear& command);
   void send_triangle(const Triangle& triangle, bool is_culled);
   [[nodiscard]] HostPrimitive state_token(StateRegister which, uint128 word, const HostPrimitive& in_front_of) const;
-  [[nodiscard]] std::optional<HostPrimitive> next_primitive();
+  void take_next(std::optional<HostPrimitive>& out);
   void send_line(const LinePrimitive& line);
   [[nodiscard]] PrimitivePacket draw_packet(PrimitiveKind kind, const PixelBounds& box) const;
   [[nodiscard]] PrimitivePacket fast_clear() const;
@@ -100,7 +100,8 @@ class HostStream::Host {
   void send_clears();
   void note_words(const PrimitiveState& state);
   [[nodiscard]] HostPrimitive host_primitive(const PrimitivePacket& packet, std::uint32_t primitive) const;
-  [[nodiscard]] HostPrimitive drawn_primitive(const PrimitivePacket& packet, std::uint32_t primitive) const;
+  [[nodiscard]] HostPrimitive drawn_primitive(PrimitiveKind kind, const PixelBounds& box,
+                                              std::uint32_t primitive) const;
   void send(const HostPrimitive& primitive);
 
   const Scene& scene_;
@@ -153,18 +154,18 @@ HostStream::Host::Host(const Scene& scene, const Config& config, BinContents* he
 }
 
 std::optional<HostPrimitive> HostStream::Host::next() {
+  std::optional<HostPrimitive> next;  // the returned one: a primitive is expensive to copy
   if (in_front_.empty()) {
-    std::optional<HostPrimitive> primitive = next_primitive();
-    if (!primitive) return primitive;
-    units_.set_for(primitive->packet.kind, primitive->units, [&](StateRegister which, uint128 word) {
-      in_front_.push_back(state_token(which, word, *primitive));
-    });
-    if (in_front_.empty()) return primitive;
-    in_front_.push_back(std::move(*primitive));
+    take_next(next);
+    if (!next) return next;
+    units_.set_for(next->packet.kind, next->units,
+                   [&](StateRegister which, uint128 word) { in_front_.push_back(state_token(which, word, *next)); });
+    if (in_front_.empty()) return next;
+    in_front_.push_back(*next);
   }
-  HostPrimitive first = std::move(in_front_.front());
+  next = in_front_.front();
   in_front_.pop_front();
-  return first;
+  return next;
 }
 
 /// A token that sets a register of a unit from here on.
@@ -178,16 +179,16 @@ HostPrimitive HostStream::Host::state_token(StateRegister which, uint128 word, c
   return out;
 }
 
-std::optional<HostPrimitive> HostStream::Host::next_primitive() {
+/// The next primitive without the tokens in front of it, into `out`; none: there is no other.
+void HostStream::Host::take_next(std::optional<HostPrimitive>& out) {
   while (pending_first_ == pending_.size()) {
-    if (bins_)
-      if (auto part = bins_->next()) return part;
-    if (is_finished_) return std::nullopt;
+    if (bins_ && (out = bins_->next())) return;
+    if (is_finished_) return;
     pending_.clear();
     pending_first_ = 0;
     advance();
   }
-  return pending_[pending_first_++];
+  out = pending_[pending_first_++];
 }
 
 /// Does the next piece of work; it may send nothing.
@@ -293,16 +294,15 @@ void HostStream::Host::send_outline(const AssembledPrimitive& assembled) {
   for (const Triangle& triangle : outline_.triangles) send_triangle(triangle, true);
   for (const PointPrimitive& point : outline_.points)
     for_each_run(point, widths_.grid_bits, [&](const PixelBounds& box) {
-      PrimitivePacket packet = draw_packet(PrimitiveKind::point, box);
-      packet.vertex.code.fill(point.drawn.at.code);
-      send(drawn_primitive(packet, primitive_));
+      HostPrimitive drawn = drawn_primitive(PrimitiveKind::point, box, primitive_);
+      drawn.packet.vertex.code.fill(point.drawn.at.code);
+      send(drawn);
     });
 }
 
 void HostStream::Host::send_line(const LinePrimitive& line) {
   const LineSetup& setup = line.setup;
-  HostPrimitive place =
-      drawn_primitive(draw_packet(PrimitiveKind::line, {setup.x, setup.y, setup.x, setup.y}), primitive_);
+  HostPrimitive place = drawn_primitive(PrimitiveKind::line, {setup.x, setup.y, setup.x, setup.y}, primitive_);
   if (bins_) {
     const Rect& rect = context_->rect;
     bins_->add(place, {line.drawn.start,
@@ -333,12 +333,11 @@ PrimitivePacket HostStream::Host::draw_packet(PrimitiveKind kind, const PixelBou
 void HostStream::Host::send_triangle(const Triangle& triangle, bool is_culled) {
   const State& state = context_->state;
   const Rect& rect = context_->rect;
-  PrimitivePacket packet =
-      draw_packet(PrimitiveKind::triangle, {rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1});
-  packet.cull = is_culled ? Cull::none : state.cull;
-  packet.front_cw = state.front == FrontFace::cw;
-  set_vertices(packet.vertex, triangle.v);
-  HostPrimitive out = drawn_primitive(packet, triangle.primitive);
+  HostPrimitive out = drawn_primitive(
+      PrimitiveKind::triangle, {rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1}, triangle.primitive);
+  out.packet.cull = is_culled ? Cull::none : state.cull;
+  out.packet.front_cw = state.front == FrontFace::cw;
+  set_vertices(out.packet.vertex, triangle.v);
   units_.fill(*context_, triangle, held_ != nullptr, out);
   send(out);
 }
@@ -408,12 +407,14 @@ HostPrimitive HostStream::Host::host_primitive(const PrimitivePacket& packet, st
   return out;
 }
 
-/// A primitive of the current draw.
-HostPrimitive HostStream::Host::drawn_primitive(const PrimitivePacket& packet, std::uint32_t primitive) const {
-  HostPrimitive out = host_primitive(packet, primitive);
+/// A primitive of the current draw, without its vertices.
+HostPrimitive HostStream::Host::drawn_primitive(PrimitiveKind kind, const PixelBounds& box,
+                                                std::uint32_t primitive) const {
+  HostPrimitive out{draw_packet(kind, box), {}, primitive, static_cast<std::uint32_t>(command_ - 1), false};
+  out.packet.primitive_id = static_cast<std::uint32_t>(wrap_unsigned(primitive, widths_.primitive_id.bits));
   const FragmentOps& ops = context_->fragment_ops;
   out.units.colors = color_words(ops, config_);
-  if (packet.state.tests_stencil) out.units.stencil = stencil_words(*ops.stencil);
+  if (out.packet.state.tests_stencil) out.units.stencil = stencil_words(*ops.stencil);
   return out;
 }
 

@@ -55,7 +55,9 @@ class CacheTags {
 
   /// A fragment with covered samples; `is_full`: it covers all of its stamp.
   TagResult access(const StampAddress& at, const PrimitiveState& state, bool is_full) {
-    const BlockStamp place = block_stamp(at, widths_);
+    return access(block_stamp(at, widths_), state, is_full);
+  }
+  TagResult access(const BlockStamp& place, const PrimitiveState& state, bool is_full) {
     const std::uint64_t stamp = std::uint64_t{1} << place.stamp;
     TagResult result;
     result.line = line_of(place.block);

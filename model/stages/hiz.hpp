@@ -64,7 +64,7 @@ class Hiz {
   /// The visit has retired: the next visit sees the update of the visit `lag` visits before it.
   void retire(const RetirePacket& retired) {
     unseen_[newest_] = retired;
-    newest_ = (newest_ + 1) % unseen_.size();
+    if (++newest_ == unseen_.size()) newest_ = 0;
     RetirePacket& seen = unseen_[newest_];
     if (seen.update != HizUpdate::none) code_[index(seen.key.tile_x, seen.key.tile_y)] = seen.hiz_code;
     seen = {};

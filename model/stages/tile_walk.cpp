@@ -32,8 +32,11 @@ TilePacket make_tile_packet(const SetupPacket& setup, int tile_x, int tile_y, st
   packet.box = {inside_tile(setup.box.left, tile_x), inside_tile(setup.box.top, tile_y),
                 inside_tile(setup.box.right, tile_x), inside_tile(setup.box.bottom, tile_y)};
   const EdgeValues value = edges_at_tile(setup, tile_x, tile_y, widths);
-  packet.is_inside = classify(setup.dx, setup.dy, moved_by_samples(value, setup.dx, setup.dy, false, widths),
-                              1 << widths.tile_shift) == TileClass::inside;
+  const EdgeValues inwards = moved_by_samples(value, setup.dx, setup.dy, false, widths);
+  packet.is_inside = true;
+  for (std::size_t i = 0; i < 3; ++i)
+    packet.is_inside =
+        packet.is_inside && smallest_in_tile(inwards[i], setup.dx[i], setup.dy[i], 1 << widths.tile_shift) >= 0;
   for (std::size_t i = 0; i < 3; ++i) packet.edge_value[i] = saturate_tile_edge(value[i], widths);
   const int dx = tile_x - (setup.box.left >> widths.tile_shift), dy = tile_y - (setup.box.top >> widths.tile_shift);
   for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p)

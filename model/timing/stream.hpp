@@ -27,6 +27,12 @@ class Stream {
     count(offered, moved);
     return moved;
   }
+  /// The same where nothing stalls.
+  Cycle move(Cycle offered, Cycle room) {
+    const Cycle moved = std::max(offered, room);
+    count(offered, moved);
+    return moved;
+  }
   /// Counts an item that moved together with an item of another stream.
   void count(Cycle offered, Cycle moved) {
     ++items_;

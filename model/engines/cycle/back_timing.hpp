@@ -31,8 +31,11 @@ struct FragmentPlace {
   bool depth_write = false;
 };
 
+template <class Run>
 class BackTiming {
  public:
+  static constexpr bool is_plain = Run::is_plain;
+
   /// `memory` and `sink`, which may be null, must outlive this.
   BackTiming(const Config& config, const Widths& widths, const Stalls& stalls, MemoryTiming& memory, TransferSink* sink,
              const MemorySettings& textures)
@@ -95,8 +98,8 @@ class BackTiming {
 
   /// A stamp without a covered sample, on offer to depth_test from `offered` on. Returns when it moves.
   Cycle pass(Cycle offered, unsigned others = 0) {
-    if (blocks_) return access(offered, {}, {}, {}, others);
-    const Cycle moved = stream(Arrow::fragment).transfer(offered, 0, others);
+    if (has_blocks()) return access(offered, {}, {}, {}, others);
+    const Cycle moved = move(Arrow::fragment, offered, 0, others);
     note(Arrow::fragment, moved);
     last_fragment_ = moved;
     last_place_ = {};
@@ -132,14 +135,14 @@ class BackTiming {
   Cycle access(Cycle offered, const TagResult& tags, const BlockItem& item, const TextureWork& texture,
                unsigned others = 0) {
     const unsigned streams = stream(Arrow::fragment).streams() | others;
-    Cycle moved = stalls_.next_free(streams, std::max(offered, blocks_->room()));
-    while (blocks_->is_busy(moved, tags, item)) moved = stalls_.next_free(streams, moved + 1);
+    Cycle moved = next_free(streams, std::max(offered, blocks_->room()));
+    while (blocks_->is_busy(moved, tags, item)) moved = next_free(streams, moved + 1);
     stream(Arrow::fragment).count(offered, moved);
     note(Arrow::fragment, moved);
     last_fragment_ = moved;
     blocks_->take(moved, tags, item, texture, BlockPort{*this});
-    work(Stage::texture_unit, texture.lookups.size());
-    if (textures_ && item.is_shaded) note(Arrow::color, blocks_->colored());
+    if (!Run::is_plain) work(Stage::texture_unit, texture.lookups.size());
+    if (!Run::is_plain && textures_ && item.is_shaded) note(Arrow::color, blocks_->colored());
     if (!item.mask.any()) return moved;
     totals_.last_write = blocks_->tested() + 1;
     note(Arrow::write, totals_.last_write);
@@ -229,14 +232,24 @@ class BackTiming {
 
   void note(Arrow boundary, Cycle cycle) {
     totals_.last = std::max(totals_.last, cycle);
-    if (sink_ != nullptr) sink_->transfer(boundary, cycle);
+    if (!Run::is_plain && sink_ != nullptr) sink_->transfer(boundary, cycle);
   }
 
+  /// The first cycle from `cycle` on in which none of these streams is stalled.
+  [[nodiscard]] Cycle next_free(unsigned streams, Cycle cycle) const {
+    return Run::is_plain ? cycle : stalls_.next_free(streams, cycle);
+  }
+  /// The next item of an elastic arrow moves (Stream::transfer).
+  Cycle move(Arrow arrow, Cycle offered, Cycle room, unsigned others = 0) {
+    return Run::is_plain ? stream(arrow).move(offered, room) : stream(arrow).transfer(offered, room, others);
+  }
+
+  [[nodiscard]] bool has_blocks() const { return Run::is_plain || blocks_.has_value(); }
   void work(Stage stage, std::uint64_t cycles) { totals_.works[index(stage)] += cycles; }
 
   /// The visit of the last fragment has ended.
   void retire() {
-    last_retire_ = (blocks_ ? blocks_->tested() : last_fragment_) + 2;
+    last_retire_ = (has_blocks() ? blocks_->tested() : last_fragment_) + 2;
     note(Arrow::retire, last_retire_);
   }
 
@@ -263,7 +276,8 @@ class BackTiming {
   Cycle write_run(Cycle cycle, TilePlane plane, const StampAddress& at, int run, MoveCause cause) {
     const std::uint64_t beats = port_.beats();
     const RunTimes times = port_.take_run({true, plane, at.tile_x, at.tile_y, at.stamp, run}, cycle, [&](Cycle asked) {
-      if (sink_ != nullptr) sink_->move(cause, is_of_color(plane), at.tile_x, at.tile_y, asked, asked + 1);
+      if (!Run::is_plain && sink_ != nullptr)
+        sink_->move(cause, is_of_color(plane), at.tile_x, at.tile_y, asked, asked + 1);
     });
     totals_.memory_cycles += times.waited;
     count_beats(port_.beats() - beats, plane, cause);
@@ -306,7 +320,7 @@ class BackTiming {
   /// The same for a framebuffer of blocks.
   PortTimes ask_of_block(Cycle cycle, TilePlane plane, const StampAddress& at, int run, MoveCause cause) {
     const PortTimes times = ask(cycle, plane, at, run, cause);
-    if (sink_ != nullptr)
+    if (!Run::is_plain && sink_ != nullptr)
       sink_->move(cause, is_of_color(plane), at.tile_x, at.tile_y, times.asked,
                   std::max(times.asked, times.answered) + 1);
     return times;
@@ -418,14 +432,14 @@ class BackTiming {
   }
 
   Streams streams_;
-  PortTiming port_;
+  PortTiming<Run> port_;
   TransferSink* sink_;
   Widths widths_;
   Station line_raster_;
   bool resolves_;    ///< frame.clears
   bool compresses_;  ///< compress.unit
   OneColor has_one_color_;
-  std::optional<BlockTiming> blocks_;       ///< with cache.kind blocks
+  std::optional<BlockTiming<Run>> blocks_;  ///< with cache.kind blocks
   std::unique_ptr<MemoryTiming> textures_;  ///< with a texture unit: its memory
   std::optional<TexturePort> texture_port_;
   Cycle next_line_ = 0, first_pixel_ = 0;

@@ -33,7 +33,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <deque>
 #include <optional>
 #include <utility>
 
@@ -41,6 +40,7 @@
 #include "../../stages/pixel_colors.hpp"
 #include "../../stages/texture_packets.hpp"
 #include "../../timing/station.hpp"
+#include "run_kind.hpp"
 #include "shade_timing.hpp"
 #include "texture_timing.hpp"
 
@@ -68,6 +68,7 @@ struct BlockItem {
   bool is_shaded = false;                         ///< with a texture unit: a sample is live there
 };
 
+template <class Run = AnyRun>
 class BlockTiming {
  public:
   BlockTiming(const Config& config, const Widths& widths)
@@ -77,6 +78,7 @@ class BlockTiming {
         items_(config.cache_queue, 2, 1),
         orders_(config.cache_queue, 1, 1),
         slots_(static_cast<std::size_t>(config.cache_victims)),
+        victims_(slots_.size()),
         dirty_(static_cast<std::size_t>(config.cache_lines)),
         compresses_(config.compress_units != 0),
         dirty_colors_(compresses_ ? dirty_.size() * static_cast<std::size_t>(widths.blocks.stamps()) : 0),
@@ -111,7 +113,7 @@ class BlockTiming {
     last_block_.reset();
     if (item.mask.any()) last_block_ = tags.block;
     const Answers answers = is_order ? order(t, tags.writes, tags, ask) : Answers{};
-    Cycle x = std::max({items_.ready(t), tested_ + 1, texture_ ? texture_->room() : behind_.room()});
+    Cycle x = std::max({items_.ready(t), tested_ + 1, has_texture() ? texture_->room() : behind_.room()});
     if (reads) x = std::max(x, answers.depth + 1);
     if (tags.source == DepthSource::chip || tags.eviction) x = std::max(x, depth_free_);
     x = std::max(x, late_room(tags, item));
@@ -124,18 +126,18 @@ class BlockTiming {
     items_.leave(x);
     tested_ = x;
     const Cycle shaded_at = shaded(texture, ask);
-    const Cycle fogged_at = fog_ ? fog_->take(shaded_at) : shaded_at;
+    const Cycle fogged_at = has_fog() ? fog_->take(shaded_at) : shaded_at;
     const Cycle color_ready = color(tags, item, fogged_at, answers.color);
-    if (item.is_late && item.mask.any()) {
+    if (has_texture() && item.is_late && item.mask.any()) {
       late_[late_place(tags.line, tags.stamp)] = colored_;
       last_late_ = colored_;
     }
-    if (texture_)
+    if (has_texture())
       texture_->leave(fog_ ? fog_->taken() : colored_, colored_);
     else
       behind_.leave(colored_);
-    if (fog_) fog_->leave(colored_);
-    if (tags.eviction) victims_.push_back(victim(*tags.eviction, std::max(depth_ready, color_ready), ask));
+    if (has_fog()) fog_->leave(colored_);
+    if (tags.eviction) note_victim(*tags.eviction, std::max(depth_ready, color_ready), ask);
     note_writes(tags, item);
   }
 
@@ -164,6 +166,11 @@ class BlockTiming {
   }
 
  private:
+  [[nodiscard]] bool has_texture() const { return !Run::is_plain && texture_.has_value(); }
+  [[nodiscard]] bool has_fog() const { return !Run::is_plain && fog_.has_value(); }
+  [[nodiscard]] bool compresses() const { return !Run::is_plain && compresses_; }
+  [[nodiscard]] Cycle write_clocks() const { return Run::is_plain ? 1 : write_clocks_; }
+
   /// The tags: the line read in `moved` is compared, then leaves. Returns the cycle in which it leaves.
   Cycle leave(Cycle moved, bool falls) {
     looked_ = std::max(moved + 1, left_);
@@ -178,8 +185,7 @@ class BlockTiming {
   struct Victim {
     BlockAddress block;
     std::array<std::uint64_t, 2> stamps;  ///< to be written, by buffer
-    std::size_t slot;
-    Cycle ready;  ///< when all of it is in the slot
+    Cycle ready;                          ///< when all of it is in the slot
     LeavingColors colors;
   };
 
@@ -202,7 +208,7 @@ class BlockTiming {
 
   /// The first cycle in which the depth stage can let an item go, as far as late items decide it.
   [[nodiscard]] Cycle late_room(const TagResult& tags, const BlockItem& item) const {
-    if (!texture_) return 0;  // no item is late
+    if (!has_texture()) return 0;  // no item is late
     Cycle room = 0;
     if (item.mask.any()) room = item.is_late ? late_[late_place(tags.line, tags.stamp)] + 1 : last_late_ + 1;
     for (int stamp = 0; tags.eviction && stamp < widths_.blocks.stamps(); ++stamp)
@@ -213,7 +219,7 @@ class BlockTiming {
   /// The cycle in which an item that the depth stage has finished is offered to the colour stage.
   template <class Ask>
   Cycle shaded(const TextureWork& work, Ask&& ask) {
-    if (!texture_) return tested_ + 2;
+    if (!has_texture()) return tested_ + 2;
     const Cycle x = light_ ? light_->take(tested_, work.lit, work.sets_light) : tested_;
     if (work.sets == StateRegister::texture_lines) return texture_->set_lines(x);
     if (work.sets) return texture_->set(x, work.invalidates);
@@ -278,7 +284,7 @@ class BlockTiming {
     Cycle w = std::max(offered, colored_ + 1), ready = 0;
     if (tags.eviction) {
       for (const ColorWrite& write : color_writes_)
-        if (write.samples.any() && write.line == tags.line) w = std::max(w, write.taken + write_clocks_ + 1);
+        if (write.samples.any() && write.line == tags.line) w = std::max(w, write.taken + write_clocks() + 1);
       if (reads_.has_two()) w = std::max(w, reads_.first_done());
       reads_.pass(w);
       reads_.begin(w, tags.line, tags.eviction->stamps[1]);
@@ -297,7 +303,7 @@ class BlockTiming {
   Cycle write_colors(Cycle w, std::size_t line, const BlockItem& item, bool writes_all) {
     SampleMask writes;  // samples written with the first group: no group reads the writes of another
     if (writes_all) writes = SampleMask(SampleMask::all(widths_.samples).bits() & ~item.colors.bits());
-    if (!item.blends) {
+    if (Run::is_plain || !item.blends) {
       note_color_write({w, line, writes | item.colors});
       return w;
     }
@@ -324,13 +330,13 @@ class BlockTiming {
     Cycle cycle = std::max(ordered_ + 1, orders_.ready(pushed));
     Answers answers;
     for (; writes > 0; --writes) {
-      const Victim& v = victims_.front();
+      const Victim& v = victims_[oldest_];
       cycle = std::max(cycle, v.ready);
       Cycle behind = cycle + 1;  // finding nothing to write takes a cycle too
       for (const TilePlane plane : kTilePlanes) {
         std::uint64_t left = v.stamps[static_cast<std::size_t>(plane)];
         ColorMove move = ColorMove::samples;
-        if (compresses_ && plane == TilePlane::color && left != 0) {
+        if (compresses() && plane == TilePlane::color && left != 0) {
           ++cycle;  // the bit is read
           move = color_move(v.colors, of_pixels_.is_set(v.block));
           of_pixels_.set(v.block, move == ColorMove::pixels);
@@ -348,8 +354,8 @@ class BlockTiming {
         }
       }
       cycle = behind;
-      slots_[v.slot] = cycle;
-      victims_.pop_front();
+      slots_[oldest_] = cycle;
+      oldest_ = slot_after(oldest_);
     }
     const auto read = [&](TilePlane plane) {
       const auto [asked, answered] = ask.read(cycle, plane, stamp_address({tags.block, tags.stamp}, widths_));
@@ -359,8 +365,8 @@ class BlockTiming {
     };
     if (tags.source == DepthSource::memory) answers.depth = read(TilePlane::depth);
     if (tags.color_source == DepthSource::memory) {
-      if (compresses_) ++cycle;  // the bit is read
-      answers.color = read(compresses_ && of_pixels_.is_set(tags.block) ? TilePlane::pixel_color : TilePlane::color);
+      if (compresses()) ++cycle;  // the bit is read
+      answers.color = read(compresses() && of_pixels_.is_set(tags.block) ? TilePlane::pixel_color : TilePlane::color);
     }
     ordered_ = cycle - 1;
     orders_.leave(ordered_);
@@ -381,12 +387,16 @@ class BlockTiming {
 
   [[nodiscard]] std::uint64_t all_stamps() const { return ~std::uint64_t{0} >> (64 - widths_.blocks.stamps()); }
 
+  [[nodiscard]] std::size_t slot_after(std::size_t slot) const { return slot + 1 == slots_.size() ? 0 : slot + 1; }
+
+  /// Into the next slot.
   template <class Ask>
-  [[nodiscard]] Victim victim(const Eviction& e, Cycle ready, Ask&& ask) {
-    Victim v{e.block, {}, next_slot_, ready, {}};
-    next_slot_ = (next_slot_ + 1) % slots_.size();
+  void note_victim(const Eviction& e, Cycle ready, Ask&& ask) {
+    Victim& v = victims_[next_slot_];
+    v = {e.block, {}, ready, {}};
+    next_slot_ = slot_after(next_slot_);
     for (const std::size_t p : {0U, 1U}) v.stamps[p] = e.fills[p] ? all_stamps() : e.stamps[p] & dirty_[e.line][p];
-    if (!compresses_) return v;
+    if (!compresses()) return;
     v.colors = {e.fills[1], true, v.stamps[1] == all_stamps()};
     for (std::uint64_t left = v.stamps[1]; left != 0; left &= left - 1) {
       const int stamp = std::countr_zero(left);
@@ -395,7 +405,6 @@ class BlockTiming {
       v.colors.is_whole = v.colors.is_whole && mask == all;
       v.colors.is_uniform = v.colors.is_uniform && ask.has_one_color(stamp_address({e.block, stamp}, widths_), mask);
     }
-    return v;
   }
 
   [[nodiscard]] std::size_t color_place(std::size_t line, int stamp) const {
@@ -415,7 +424,7 @@ class BlockTiming {
     };
     note(dirty_[tags.line][0], starts_depth, item.wrote_depth);
     note(dirty_[tags.line][1], tags.starts_color, item.colors.any());
-    if (!compresses_) return;
+    if (!compresses()) return;
     SampleMask& dirty = dirty_colors_[color_place(tags.line, tags.stamp)];
     dirty = tags.starts_color ? item.colors : dirty | item.colors;
   }
@@ -440,10 +449,10 @@ class BlockTiming {
   std::array<ColorWrite, kBlendClocks> color_writes_{};  ///< the last writes
   std::size_t next_write_ = 0;
   std::size_t last_line_ = 0;
-  bool last_writes_ = false;  ///< the last fragment may have written depths
-  std::vector<Cycle> slots_;  ///< of victims: the cycle from which on each is free
-  std::size_t next_slot_ = 0;
-  std::deque<Victim> victims_;
+  bool last_writes_ = false;     ///< the last fragment may have written depths
+  std::vector<Cycle> slots_;     ///< of victims: the cycle from which on each is free
+  std::vector<Victim> victims_;  ///< by slot
+  std::size_t next_slot_ = 0, oldest_ = 0;
   std::vector<std::array<std::uint64_t, 2>> dirty_;  ///< by line and plane: stamps that differ from memory
   bool compresses_;                                  ///< compress.unit
   std::vector<SampleMask>

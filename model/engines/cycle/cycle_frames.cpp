@@ -35,9 +35,7 @@ CycleFrames::CycleFrames(const Config& config, MemoryTiming& memory, const Cycle
 
 CycleRendering CycleFrames::draw(const Scene& scene, const RenderOptions& render) {
   if (!render.skip.bins) held_.forget();
-  CycleRendering result = draw(scene, render, &held_);
-  model_->rendering().frame = result.rendering.frame;  // kept where the next frame does not draw
-  return result;
+  return draw(scene, render, &held_);
 }
 
 CycleRendering CycleFrames::draw(const Scene& scene, const RenderOptions& render, BinContents* held) {
@@ -52,9 +50,13 @@ CycleRendering CycleFrames::draw(const Scene& scene, const RenderOptions& render
     drawn.add(*primitive, model_->run(*primitive));
     if (render.progress && ++sent % 256 == 0) render.progress(host.progress());
   }
-  model_->complete();
+  model_->end();
   resolve(model_->rendering().frame, config_.color_format);
+  Framebuffer kept;  // where the next frame does not draw
+  if (held != nullptr) kept = model_->rendering().frame;
+  model_->complete();
   CycleRendering result{std::move(model_->rendering()), {}, std::move(model_->cost()), std::move(model_->misses())};
+  model_->rendering().frame = std::move(kept);
   result.rendering.counters = host.counters();
   count_hardware(since(model_->counters(), counted_), drawn.count(), result.rendering.counters);
   result.rendering.raster_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();

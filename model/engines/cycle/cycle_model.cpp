@@ -28,7 +28,7 @@ bool is_negative_when_sorted(const std::array<SnappedVertex, 3>& v, std::int64_t
   return (area < 0) != (swaps_first != swaps_again);
 }
 
-PrimitiveWork work_of(const PrimitivePacket& packet, bool is_dropped) {
+PrimitiveWork work_of(const PrimitivePacket& packet, bool is_dropped, bool is_serial) {
   PrimitiveWork work;
   const PrimitiveKind kind = packet.kind;
   work.is_triangle = kind == PrimitiveKind::triangle;
@@ -36,7 +36,7 @@ PrimitiveWork work_of(const PrimitivePacket& packet, bool is_dropped) {
   work.is_state = kind == PrimitiveKind::state;
   work.is_counted = is_counted(kind);
   work.is_dropped = is_dropped;
-  if (!work.is_triangle) return work;
+  if (!work.is_triangle || !is_serial) return work;  // the time of a pipelined stage depends on no values
   const auto v = to_snapped(packet.vertex);
   const std::int64_t area = signed_area(v[0], v[1], v[2]);
   const auto size = static_cast<std::uint64_t>(area < 0 ? -area : area);
@@ -91,6 +91,8 @@ class BitsAndTimes final : public CycleModel {
     return DrawnCount::dropped(counters_) == dropped;
   }
 
+  void end() override { queue_.hand_over(); }
+
   void complete() override {
     queue_.complete();
     const CounterPacket& moves = times_->counters();
@@ -138,7 +140,8 @@ class BitsAndTimes final : public CycleModel {
   void send(const HostPrimitive& host, const PrimitivePacket& primitive) {
     const auto triangle = cull(primitive, widths_, counters_, config_.setup_kind == SetupKind::pipelined);
     steps().add(StepKind::take);
-    steps().primitives.push_back({work_of(primitive, !triangle), triangle ? triangle->state : PrimitiveState{}});
+    steps().primitives.push_back({work_of(primitive, !triangle, config_.setup_kind == SetupKind::serial),
+                                  triangle ? triangle->state : PrimitiveState{}});
     if (!triangle) return added();
     switch (triangle->kind) {
       case PrimitiveKind::fast_clear: fast_clear(*triangle); return;
@@ -363,56 +366,29 @@ class BitsAndTimes final : public CycleModel {
   }
 
   /// The step of a visit, without its stamps.
-  TileVisitWork& add_visit(const TilePacket& tile) {
-    const StampGrid& stamps = widths_.stamps;
-    const int first_stamp = stamps.stamp_at(tile.box.left, tile.box.top),
-              last_stamp = stamps.stamp_at(tile.box.right, tile.box.bottom);
-    VisitStep& step = steps().visits.emplace_back();
-    step.tile_x = tile.key.tile_x;
-    step.tile_y = tile.key.tile_y;
-    step.box = to_bounds(tile.box);
-    step.work.ends_primitive = tile.ends_primitive;
-    step.work.first_row = stamps.row_of(first_stamp);
-    step.work.last_row = stamps.row_of(last_stamp);
-    step.work.first_column = stamps.column_of(first_stamp);
-    step.work.last_column = stamps.column_of(last_stamp);
-    return step.work;
-  }
-  void note_stamp(int number, TileVisitWork& work) const {
-    work.columns[static_cast<std::size_t>(widths_.stamps.row_of(number))] |= 1U << widths_.stamps.column_of(number);
+  void add_visit(StepKind kind, const TilePacket& tile, std::size_t stamps) {
+    steps().add(kind, stamps);
+    steps().visits.push_back({tile.key.tile_x, tile.key.tile_y, tile.box, tile.ends_primitive});
   }
 
   void visit_in_lanes(const TilePacket& tile) {
-    TileVisitWork& work = add_visit(tile);
-    const PrimitiveState& state = lanes_.state();
-    std::vector<StampStep>& stamps = steps().stamps;
+    std::vector<LaneStamp>& stamps = steps().lane_stamps;
     const std::size_t stamps_before = stamps.size();
-    StampStep step;
-    step.item.depth_write = state.writes_word();
-    step.item.color_write = state.color_write;
-    step.at = {tile.key.tile_x, tile.key.tile_y, 0};
     const RetirePacket retired =
-        lanes_.draw(tile, rendering_.frame, counters_, [&](int number, SampleMask covered, SampleMask passed) {
-          note_stamp(number, work);
-          step.at.stamp = static_cast<std::uint16_t>(number);
-          step.item.mask = covered;
-          step.item.wrote_depth = state.depth_write && passed.any();
-          if (state.color_write) step.item.colors = passed;
-          step.is_dirty = passed.any();
-          stamps.push_back(step);
+        lanes_.draw(tile, rendering_.frame, counters_, [&](int number, unsigned covered, unsigned passed) {
+          stamps.push_back({static_cast<std::uint16_t>(number), static_cast<std::uint8_t>(covered),
+                            static_cast<std::uint8_t>(passed)});
         });
-    steps().add(StepKind::visit, stamps.size() - stamps_before);
+    add_visit(StepKind::lane_visit, tile, stamps.size() - stamps_before);
     if (config_.hiz_bits != 0) hiz_.retire(retired);
   }
 
   void visit(const TilePacket& tile, const EdgeContext& edges, const StampEdges& places, const ContextPacket& context,
              std::uint32_t primitive) {
-    TileVisitWork& work = add_visit(tile);
     StampPacket stamp = empty_stamp(tile);
     start_fragment(stamp, context, widths_, fragment_);
     const std::size_t stamps_before = steps().stamps.size();
     cover_tile(tile, edges, places, widths_, [&](int number, SampleMask samples, SampleMask centres) {
-      note_stamp(number, work);
       stamp.stamp = static_cast<std::uint16_t>(number);
       stamp.mask = samples;
       stamp.centre = centres;
@@ -423,7 +399,7 @@ class BitsAndTimes final : public CycleModel {
       const StampFate fate = shade(&stamp, &context, primitive);
       note_fate(fate, fate.passed.any(), sent);
     });
-    steps().add(StepKind::visit, steps().stamps.size() - stamps_before);
+    add_visit(StepKind::visit, tile, steps().stamps.size() - stamps_before);
     if (config_.hiz_bits != 0) hiz_.retire(path_.retire(fragment_));
   }
 

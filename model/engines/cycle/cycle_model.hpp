@@ -38,6 +38,8 @@ class CycleModel {
   virtual void hold_textures(const Scene& scene) = 0;
   /// Runs one primitive, to its last write. With a sink its times have been seen then. Returns false if cull dropped it.
   virtual bool run(const HostPrimitive& primitive) = 0;
+  /// No primitive follows in this frame: rendering() is complete, and times may still be under way.
+  virtual void end() = 0;
   /// The times of all primitives so far. What follows is up to this. Throws what the memory throws, as run() may.
   virtual void complete() = 0;
   [[nodiscard]] virtual const CounterPacket& counters() const = 0;  ///< as the RTL's, since reset

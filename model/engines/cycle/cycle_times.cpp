@@ -24,6 +24,8 @@ class TimesOf final : public CycleTimes {
       blocks_.emplace(config, widths_);
     else
       tiles_.emplace(config, widths_);
+    for (int stamp = 0; stamp < widths_.stamps.stamps(); ++stamp)
+      places_.push_back(block_stamp({0, 0, static_cast<std::uint16_t>(stamp)}, widths_));
     if (options.layout) timing_.set_layout(*options.layout);
     if (config.compress_units == 0) return;
     even_.resize(
@@ -49,6 +51,7 @@ class TimesOf final : public CycleTimes {
     primitive_ = steps.primitives.data();
     visit_ = steps.visits.data();
     stamp_ = steps.stamps.data();
+    lane_stamp_ = steps.lane_stamps.data();
     tags_ = steps.tags.data();
     area_ = steps.areas.data();
     texture_ = steps.textures.data();
@@ -75,7 +78,14 @@ class TimesOf final : public CycleTimes {
       case StepKind::read_bound: timing_.read_bound(); return;
       case StepKind::behind: timing_.skip_behind(); return;
       case StepKind::end_walk: timing_.end_walk([&](Cycle offered) { return timing_.pass(offered); }); return;
-      case StepKind::visit: visit(*visit_++, step.count); return;
+      case StepKind::visit:
+        visit(*visit_++, {stamp_, step.count});
+        stamp_ += step.count;
+        return;
+      case StepKind::lane_visit:
+        lane_visit(*visit_++, {lane_stamp_, step.count});
+        lane_stamp_ += step.count;
+        return;
       case StepKind::line_pixels: pass_line(step.count); return;
       case StepKind::set_tags:
         if (blocks_) blocks_->set(tags_->reads_color, tags_->tests_alpha, tags_->replaces_stencil);
@@ -89,21 +99,79 @@ class TimesOf final : public CycleTimes {
     }
   }
 
-  void visit(const VisitStep& step, std::uint32_t stamps) {
-    const StampStep* const first = stamp_;
+  /// The work in fine_raster of a visit with these stamps.
+  template <class Stamp>
+  [[nodiscard]] const TileVisitWork& work_of(const VisitStep& step, std::span<const Stamp> stamps) {
+    const StampGrid& grid = widths_.stamps;
+    const int first = grid.stamp_at(step.box.left, step.box.top), last = grid.stamp_at(step.box.right, step.box.bottom);
+    work_.ends_primitive = step.ends_primitive;
+    work_.first_row = grid.row_of(first);
+    work_.last_row = grid.row_of(last);
+    work_.first_column = grid.column_of(first);
+    work_.last_column = grid.column_of(last);
+    for (int row = work_.first_row; row <= work_.last_row; ++row) work_.columns[static_cast<std::size_t>(row)] = 0;
+    for (const Stamp& stamp : stamps) {
+      const int n = number_of(stamp);
+      work_.columns[static_cast<std::size_t>(grid.row_of(n))] |= 1U << grid.column_of(n);
+    }
+    return work_;
+  }
+  [[nodiscard]] static int number_of(const StampStep& step) { return step.at.stamp; }
+  [[nodiscard]] static int number_of(const LaneStamp& stamp) { return stamp.stamp; }
+
+  void visit(const VisitStep& step, std::span<const StampStep> stamps) {
+    const StampStep* stamp = stamps.data();
     const Cycle before = timing_.last_fragment();
     if (sink_ != nullptr) sink_->visit(step.tile_x, step.tile_y);
     is_resident_ = false;
-    timing_.visit(step.work, [&](Cycle offered, int /*row*/, int column) {
-      return column < 0 ? timing_.pass(offered) : next_stamp(offered, 0);
+    timing_.visit(work_of(step, stamps), [&](Cycle offered, int /*row*/, int column) {
+      return column < 0 ? timing_.pass(offered) : enter(*stamp++, offered, 0);
     });
-    if (want_cost_) share_cost(step, {first, stamps}, static_cast<float>(timing_.last_fragment() - before));
+    if (want_cost_) share_cost(step, stamps, static_cast<float>(timing_.last_fragment() - before));
   }
 
-  /// The next stamp in depth_test, on offer from `offered` on. Returns when it moves. Half of the model's time is here, a
-  /// twelfth of it in calls unless they are inlined.
-  [[gnu::flatten]] Cycle next_stamp(Cycle offered, unsigned others) {
-    const StampStep& stamp = *stamp_++;
+  /// A visit of stamps that were drawn in lanes. Half of the model's time is here, a part of it in calls unless they are
+  /// inlined.
+  [[gnu::flatten]] void lane_visit(const VisitStep& step, std::span<const LaneStamp> stamps) {
+    if constexpr (Timing::is_plain) {
+      BlockItem item;
+      item.depth_write = state_.writes_word();
+      item.color_write = state_.color_write;
+      const int per_tile = widths_.blocks.per_tile_log2, first_x = step.tile_x << per_tile,
+                first_y = step.tile_y << per_tile;
+      const LaneStamp* stamp = stamps.data();
+      timing_.visit(work_of(step, stamps), [&](Cycle offered, int /*row*/, int column) {
+        if (column < 0) return timing_.pass(offered);
+        const auto [number, covered, passed] = *stamp++;
+        BlockStamp place = places_[number];
+        place.block.x = static_cast<std::uint16_t>(place.block.x + first_x);
+        place.block.y = static_cast<std::uint16_t>(place.block.y + first_y);
+        item.mask = SampleMask(covered);
+        item.wrote_depth = state_.depth_write && passed != 0;
+        if (item.color_write) item.colors = SampleMask(passed);
+        return timing_.access(offered, blocks_->access(place, state_, item.mask == all_samples_), item, shading_);
+      });
+    } else {
+      expanded_.clear();
+      for (const LaneStamp& stamp : stamps) expanded_.push_back(expanded(step, stamp));
+      visit(step, expanded_);
+    }
+  }
+
+  [[nodiscard]] StampStep expanded(const VisitStep& visit, const LaneStamp& stamp) const {
+    StampStep step;
+    step.at = {visit.tile_x, visit.tile_y, stamp.stamp};
+    step.is_dirty = stamp.passed != 0;
+    step.item.mask = SampleMask(stamp.covered);
+    step.item.depth_write = state_.writes_word();
+    step.item.color_write = state_.color_write;
+    step.item.wrote_depth = state_.depth_write && stamp.passed != 0;
+    if (state_.color_write) step.item.colors = SampleMask(stamp.passed);
+    return step;
+  }
+
+  /// A stamp in depth_test, on offer from `offered` on. Returns when it moves.
+  [[gnu::flatten]] Cycle enter(const StampStep& stamp, Cycle offered, unsigned others) {
     if (!stamp.item.mask.any()) return timing_.pass(offered, others);  // no sample is drawn
     if (blocks_) {
       if (!even_.empty()) even_[place_of(stamp.at)] = stamp.even;
@@ -121,12 +189,12 @@ class TimesOf final : public CycleTimes {
 
   /// The work of the next stamp or token in the shading units.
   [[nodiscard]] const TextureWork& texture() {
-    if (!has_texture_) return work_;
-    work_ = texture_->work;
-    work_.lookups = {lookup_, texture_->lookups};
+    if (!has_texture_) return shading_;
+    shading_ = texture_->work;
+    shading_.lookups = {lookup_, texture_->lookups};
     lookup_ += texture_->lookups;
     ++texture_;
-    return work_;
+    return shading_;
   }
 
   void pass_line(std::uint32_t pixels) {
@@ -135,7 +203,7 @@ class TimesOf final : public CycleTimes {
     timing_.end_token([&](Cycle offered) {
       return timing_.take_pixels(offered, pixels, [&](Cycle at, unsigned others) {
         is_resident_ = false;  // each pixel looks its tile up
-        return next_stamp(at, others);
+        return enter(*stamp_++, at, others);
       });
     });
     if (!want_cost_) return;
@@ -177,11 +245,12 @@ class TimesOf final : public CycleTimes {
     std::uint64_t covered = 0;
     if (widths_.has_samples == 0)
       for (const StampStep& stamp : stamps) covered += static_cast<std::uint64_t>(stamp.item.mask.count());
-    const float share = cycles / static_cast<float>(covered == 0 ? visit.box.samples() : covered);
+    const PixelBounds box = to_bounds(visit.box);
+    const float share = cycles / static_cast<float>(covered == 0 ? box.samples() : covered);
     if (covered == 0) {
       const int left = visit.tile_x << widths_.tile_shift, top = visit.tile_y << widths_.tile_shift;
-      for (int y = visit.box.top; y <= visit.box.bottom; ++y)
-        for (int x = visit.box.left; x <= visit.box.right; ++x) cost_[plain_index(left + x, top + y)] += share;
+      for (int y = box.top; y <= box.bottom; ++y)
+        for (int x = box.left; x <= box.right; ++x) cost_[plain_index(left + x, top + y)] += share;
       return;
     }
     for (const StampStep& stamp : stamps)
@@ -213,15 +282,19 @@ class TimesOf final : public CycleTimes {
   TransferSink* sink_;
   bool want_cost_, has_texture_;
   int width_ = 0, height_ = 0;
-  PrimitiveState state_;          ///< of the current primitive
-  TextureWork work_;              ///< of the current stamp or token
-  bool is_resident_ = false;      ///< the tile of the current visit, in a cache of tiles
-  std::vector<SampleMask> even_;  ///< StampStep::even of the last write, by place
+  PrimitiveState state_;             ///< of the current primitive
+  TextureWork shading_;              ///< of the current stamp or token
+  TileVisitWork work_;               ///< of the current visit
+  std::vector<StampStep> expanded_;  ///< likewise, if it was drawn in lanes
+  std::vector<BlockStamp> places_;   ///< of the stamps of tile (0, 0)
+  bool is_resident_ = false;         ///< the tile of the current visit, in a cache of tiles
+  std::vector<SampleMask> even_;     ///< StampStep::even of the last write, by place
   std::vector<float> cost_;
   // The next of the current batch.
   const PrimitiveStep* primitive_ = nullptr;
   const VisitStep* visit_ = nullptr;
   const StampStep* stamp_ = nullptr;
+  const LaneStamp* lane_stamp_ = nullptr;
   const TagsStep* tags_ = nullptr;
   const AreaStep* area_ = nullptr;
   const TextureStep* texture_ = nullptr;
@@ -231,8 +304,13 @@ class TimesOf final : public CycleTimes {
 }  // namespace
 
 std::unique_ptr<CycleTimes> make_cycle_times(const Config& config, MemoryTiming& memory, const CycleOptions& options) {
+  const bool is_plain = config.cache_kind == CacheKind::blocks && !has_texture_planes(config) &&
+                        config.blend_lanes == 0 && config.compress_units == 0 && options.stalls.threshold == 0 &&
+                        options.sink == nullptr && !options.want_cost;
+  if (config.setup_kind == SetupKind::pipelined && is_plain)
+    return std::make_unique<TimesOf<PipelinedTiming<PlainRun>>>(config, memory, options);
   if (config.setup_kind == SetupKind::pipelined)
-    return std::make_unique<TimesOf<PipelinedTiming>>(config, memory, options);
+    return std::make_unique<TimesOf<PipelinedTiming<AnyRun>>>(config, memory, options);
   return std::make_unique<TimesOf<SerialTiming>>(config, memory, options);
 }
 

@@ -12,11 +12,16 @@
 
 namespace halfplane {
 
-class PipelinedTiming : public BackTiming {
+template <class Run>
+class PipelinedTiming : public BackTiming<Run> {
+  using Base = BackTiming<Run>;
+  using Base::last_fragment_, Base::last_retire_, Base::totals_;
+  using Base::move, Base::note, Base::work, Base::retire;
+
  public:
   PipelinedTiming(const Config& config, const Widths& widths, const Stalls& stalls, MemoryTiming& memory,
                   const TimingParameters& parameters, TransferSink* sink, const MemorySettings& textures)
-      : BackTiming(config, widths, stalls, memory, sink, textures),
+      : Base(config, widths, stalls, memory, sink, textures),
         setup_(config, widths, parameters.divide_bits),
         parts_(static_cast<std::size_t>(setup_.parts), Station(1, setup_.part, 0)),
         offer_setup_(1, setup_.last, 1),
@@ -31,15 +36,15 @@ class PipelinedTiming : public BackTiming {
   /// The host offers its next primitive from `cycle` on.
   void begin(Cycle cycle) {
     offer_ = std::max(offer_, cycle);
-    begin_scene();
+    this->begin_scene();
   }
 
   /// Takes the next primitive, through cull and triangle_setup to coarse_raster; a dropped one goes only into cull.
   void take(const PrimitiveWork& primitive) {
-    const Cycle taken = stream(Arrow::primitive).transfer(offer_, sort_.room());
+    const Cycle taken = this->stream(Arrow::primitive).transfer(offer_, sort_.room());
     note(Arrow::primitive, taken);
-    if (primitive.is_counted) count_primitive(taken);
-    if (primitive.is_line) take_line(offer_);
+    if (primitive.is_counted) this->count_primitive(taken);
+    if (primitive.is_line) this->take_line(offer_);
     offer_ = taken + 1;
     const bool is_beside = primitive.is_state && setup_.has_state_lane;
     const Cycle sorted = std::max(is_beside ? taken + PipelinedCycles::cull_state : sort_.ready(taken), decide_.room());
@@ -50,8 +55,8 @@ class PipelinedTiming : public BackTiming {
       decide_.leave(decided);
       return;
     }
-    const Passage triangle =
-        triangle_queue_.pass(stream(Arrow::triangle), decided, is_beside ? states_.room() : parts_.front().room());
+    const Passage triangle = triangle_queue_.pass(this->stream(Arrow::triangle), decided,
+                                                  is_beside ? states_.room() : parts_.front().room());
     decide_.leave(triangle.left);
     note(Arrow::triangle, triangle.taken);
     work(Stage::triangle_setup, static_cast<std::uint64_t>(is_beside ? 1 : setup_.part));
@@ -62,7 +67,7 @@ class PipelinedTiming : public BackTiming {
       lane.leave(joined);
       ready = joined_.ready(joined);
     }
-    const Passage setup = setup_queue_.pass(stream(Arrow::setup), ready, std::max(coarse_.room(), slots_.room()));
+    const Passage setup = setup_queue_.pass(this->stream(Arrow::setup), ready, std::max(coarse_.room(), slots_.room()));
     (setup_.has_state_lane ? joined_ : lane).leave(setup.left);
     note(Arrow::setup, setup.taken);
     if (slots_.room() > std::max(ready, coarse_.room()))
@@ -108,7 +113,7 @@ class PipelinedTiming : public BackTiming {
   void end_walk(Shade&& shade) {
     const Cycle offered = std::max(walk_, tile_left_ + 1);
     coarse_.leave(offered - 1);
-    const auto [left, taken] = tile_queue_.pass(stream(Arrow::tile), offered, rows_.room());
+    const auto [left, taken] = tile_queue_.pass(this->stream(Arrow::tile), offered, rows_.room());
     note(Arrow::tile, taken);
     tile_left_ = left;
     const Cycle row = std::max(rows_.ready(taken), coverage_.room());
@@ -116,6 +121,7 @@ class PipelinedTiming : public BackTiming {
     const Cycle sent = std::max(coverage_.ready(row), stamps_.room());
     coverage_.leave(sent);
     stamps_.leave(send(stamps_.ready(sent), true, shade));
+    work(Stage::interpolate, 1);
   }
 
   /// The end of a token, likewise.
@@ -130,7 +136,7 @@ class PipelinedTiming : public BackTiming {
     const Cycle decided = std::max(walk_, tile_left_) + 1;
     const Cycle offered = std::max(decided, visits_.room());
     totals_.visit_cycles += offered - decided;
-    const auto [left, taken] = tile_queue_.pass(stream(Arrow::tile), offered, rows_.room());
+    const auto [left, taken] = tile_queue_.pass(this->stream(Arrow::tile), offered, rows_.room());
     note(Arrow::tile, taken);
     if (tile.ends_primitive) coarse_.leave(decided - 1);
     walk_ = decided;
@@ -138,6 +144,7 @@ class PipelinedTiming : public BackTiming {
     if (reads_bounds_) work(Stage::coarse_raster, PipelinedCycles::read_again);
     work(Stage::coarse_raster, 1);
     Cycle row_at = rows_.ready(taken);
+    std::uint64_t sent = 0, empty = 0;  // stamps; rows without one
     for (int row = tile.first_row;; ++row, ++row_at) {
       const bool is_last = row == tile.last_row;
       std::uint32_t columns = tile.columns[static_cast<std::size_t>(row)];
@@ -147,7 +154,7 @@ class PipelinedTiming : public BackTiming {
       if (is_sent) leaves = std::max(leaves, stamps_.room());
       coverage_.leave(leaves);
       if (!is_sent) {
-        work(Stage::fine_raster, 1);
+        ++empty;
         continue;
       }
       Cycle at = stamps_.ready(leaves);
@@ -155,13 +162,15 @@ class PipelinedTiming : public BackTiming {
         const int column = columns == 0 ? -1 : std::countr_zero(columns);
         columns &= columns - 1;
         const bool ends = tile.ends_primitive && is_last && columns == 0;
-        work(Stage::fine_raster, 1);
+        ++sent;
         at = send(at, ends, [&](Cycle shaded) { return shade(shaded, row, column); }) + 1;
       } while (columns != 0);
       stamps_.leave(at - 1);
       if (is_last) break;
     }
     rows_.leave(row_at);
+    work(Stage::fine_raster, sent + empty);
+    work(Stage::interpolate, sent);
     retire();
     visits_.leave(last_retire_);
   }
@@ -182,9 +191,8 @@ class PipelinedTiming : public BackTiming {
   /// A stamp on offer by fine_raster from `offered` on, through interpolate and its FIFO. Returns when it moves.
   template <class Shade>
   Cycle send(Cycle offered, bool ends_primitive, Shade&& shade) {
-    const Cycle taken = stream(Arrow::stamp).transfer(offered, interpolate_.room());
+    const Cycle taken = move(Arrow::stamp, offered, interpolate_.room());
     note(Arrow::stamp, taken);
-    work(Stage::interpolate, 1);
     if (ends_primitive) slots_.leave(taken + 1);
     last_left_ = fragment_queue_.pass(std::max(interpolate_.ready(taken), last_left_ + 1), last_fragment_ + 1, shade);
     interpolate_.leave(last_left_);

@@ -18,6 +18,7 @@
 #include "../../timing/memory.hpp"
 #include "../../timing/station.hpp"
 #include "../../timing/stream.hpp"
+#include "run_kind.hpp"
 #include "streams.hpp"
 
 namespace halfplane {
@@ -39,6 +40,7 @@ struct RunTimes {
   Cycle last = 0, waited = 0;
 };
 
+template <class Run = AnyRun>
 class PortTiming {
  public:
   static constexpr int kUnanswered = 255;  ///< write bursts
@@ -53,12 +55,25 @@ class PortTiming {
         streams_(streams),
         sink_(sink),
         unanswered_(kUnanswered, 0, 1) {
-    for (std::size_t plane = 0; plane < offsets_.size(); ++plane)
+    for (std::size_t plane = 0; plane < offsets_.size(); ++plane) {
+      const int shift = item_shift(static_cast<TilePlane>(plane), widths.memory);
+      places_.push_back({shift, BeatShare(shift, widths.memory.port, 0)});
       for (int stamp = 0; stamp < widths.stamps.stamps(); ++stamp)
         offsets_[plane].push_back(stamp_offset(static_cast<TilePlane>(plane), stamp, widths));
+    }
+    set_layout(layout_);
   }
 
-  void set_layout(const MemoryLayout& layout) { layout_ = layout; }
+  void set_layout(const MemoryLayout& layout) {
+    layout_ = layout;
+    for (std::size_t plane = 0; plane < places_.size(); ++plane) {
+      const auto first_of_row = [&](int y) {
+        return byte_address(static_cast<TilePlane>(plane), 0, y, 0, layout, widths_);
+      };
+      places_[plane].base = first_of_row(0);
+      places_[plane].row = first_of_row(1) - first_of_row(0);
+    }
+  }
   /// Beats moved, for writes and reads.
   [[nodiscard]] std::uint64_t beats() const { return beats_; }
   /// The last cycle in which an item crossed.
@@ -68,8 +83,8 @@ class PortTiming {
   PortTimes take(const PortRequest& request, Cycle cycle) {
     const auto [share, address] = place_of(request);
     if (!request.is_write)
-      return request.run == 1 && stalls_.threshold == 0 && sink_ == nullptr ? read_at_once(share, address, cycle)
-                                                                            : read(request, share, address, cycle);
+      return request.run == 1 && moves_freely() ? read_at_once(share, address, cycle)
+                                                : read(request, share, address, cycle);
     return {write(request, share, address, share.first, cycle), 0};
   }
 
@@ -78,8 +93,7 @@ class PortTiming {
   template <class Watch>
   RunTimes take_run(const PortRequest& request, Cycle cycle, Watch&& watch) {
     const auto [share, address] = place_of(request);
-    if (left_ == 0 && stalls_.threshold == 0 && sink_ == nullptr && share.per_beat == 1)
-      return write_at_once(request, share, address, cycle);
+    if (left_ == 0 && moves_freely() && share.per_beat == 1) return write_at_once(request, share, address, cycle);
     RunTimes times;
     for (int n = 0; n < request.run; ++n) {
       times.last = write(request, share, address, (share.first + n) & (share.per_beat - 1), cycle);
@@ -96,15 +110,23 @@ class PortTiming {
     std::uint32_t address;  ///< of the first byte
   };
   [[nodiscard]] Place place_of(const PortRequest& request) const {
-    const int shift = item_shift(request.plane, widths_.memory);
-    std::uint32_t address = 0;
-    if (is_flags(request.plane))
-      address = byte_address(request.plane, request.tile_x, request.tile_y, request.stamp, layout_, widths_);
-    else
-      address = byte_address(request.plane, request.tile_x, request.tile_y, 0, layout_, widths_) +
-                offsets_[number(request.plane)][static_cast<std::size_t>(request.stamp)];
-    return {BeatShare(shift, widths_.memory.port, address >> shift), address};
+    if (is_flags(request.plane)) {
+      const int shift = item_shift(request.plane, widths_.memory);
+      const std::uint32_t address =
+          byte_address(request.plane, request.tile_x, request.tile_y, request.stamp, layout_, widths_);
+      return {BeatShare(shift, widths_.memory.port, address >> shift), address};
+    }
+    const PlanePlace& plane = places_[number(request.plane)];
+    Place place{plane.share, plane.base + static_cast<std::uint32_t>(request.tile_y) * plane.row +
+                                 (static_cast<std::uint32_t>(request.tile_x) << widths_.memory.tile()) +
+                                 offsets_[number(request.plane)][static_cast<std::size_t>(request.stamp)]};
+    place.share.first =
+        static_cast<int>((place.address >> plane.shift) & static_cast<std::uint32_t>(place.share.per_beat - 1));
+    return place;
   }
+
+  /// Whether nothing holds the streams back or watches them.
+  [[nodiscard]] bool moves_freely() const { return Run::is_plain || (stalls_.threshold == 0 && sink_ == nullptr); }
 
   /// A stamp, the number `in_beat` of its beat; if it begins a burst, `request.run` counts the stamps of the burst.
   /// Returns when it is taken.
@@ -198,7 +220,8 @@ class PortTiming {
   }
 
   Cycle moves(Arrow arrow, Cycle offered, Cycle room) {
-    const Cycle moved = streams_[index(arrow)].transfer(offered, room);
+    Stream& stream = streams_[index(arrow)];
+    const Cycle moved = Run::is_plain ? stream.move(offered, room) : stream.transfer(offered, room);
     note(arrow, moved);
     return moved;
   }
@@ -208,7 +231,7 @@ class PortTiming {
   }
   void note(Arrow arrow, Cycle cycle) {
     last_ = std::max(last_, cycle);
-    if (sink_ != nullptr) sink_->transfer(arrow, cycle);
+    if (!Run::is_plain && sink_ != nullptr) sink_->transfer(arrow, cycle);
   }
 
   Widths widths_;
@@ -217,9 +240,16 @@ class PortTiming {
   MemoryTiming& memory_;
   std::array<Stream, kArrows>& streams_;
   TransferSink* sink_;
-  Station unanswered_;                                 ///< write bursts
-  MemoryBurst burst_;                                  ///< the burst being written
-  int left_ = 0;                                       ///< stamps of it that have not come
+  Station unanswered_;  ///< write bursts
+  MemoryBurst burst_;   ///< the burst being written
+  int left_ = 0;        ///< stamps of it that have not come
+  /// A buffer in memory, and how its stamps share beats.
+  struct PlanePlace {
+    int shift;  ///< log2 of the bytes of a stamp
+    BeatShare share;
+    std::uint32_t base = 0, row = 0;  ///< of tile (0, 0); from a row of tiles to the next
+  };
+  std::vector<PlanePlace> places_;                     ///< by plane, not those of flags
   std::array<std::vector<std::uint32_t>, 6> offsets_;  ///< stamp_offset() by plane, but for flags
   bool has_sent_ = false;                              ///< a beat of it has been sent
   Cycle room_ = 0, answered_ = 0;

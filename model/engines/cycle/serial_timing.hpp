@@ -9,7 +9,7 @@
 
 namespace halfplane {
 
-class SerialTiming : public BackTiming {
+class SerialTiming : public BackTiming<AnyRun> {
  public:
   SerialTiming(const Config& config, const Widths& widths, const Stalls& stalls, MemoryTiming& memory,
                const TimingParameters& parameters, TransferSink* sink, const MemorySettings& textures)

@@ -69,7 +69,7 @@ StageRow memory_port_of(const Config& config, const Widths& widths) {
   return {Stage::memory_port, "1, and the memory's",
           "1 a beat of " + text(static_cast<std::uint64_t>(config.memory_port_bits)) + " bits: for a stamp of depth " +
               beats(depth) + ", of colour " + beats(color),
-          "1 stamp or beat, " + text(PortTiming::kUnanswered) + " bursts that are being written"};
+          "1 stamp or beat, " + text(PortTiming<>::kUnanswered) + " bursts that are being written"};
 }
 
 }  // namespace

@@ -42,8 +42,8 @@ class StampLanes {
   /// Of the primitive.
   [[nodiscard]] const PrimitiveState& state() const { return state_; }
 
-  /// Draws a tile: visit(stamp, covered, passed) for each stamp with a covered sample, row by row. Returns the end of
-  /// the visit.
+  /// Draws a tile: visit(stamp, covered, passed) for each stamp with a covered sample, row by row, with a bit for each
+  /// sample. Returns the end of the visit.
   template <class Visit>
   RetirePacket draw(const TilePacket& tile, Framebuffer& frame, CounterPacket& counters, Visit&& visit) {
     const StampGrid& stamps = widths_.stamps;
@@ -61,13 +61,13 @@ class StampLanes {
           frame.at((tile.key.tile_x << widths_.tile_shift) + x, (tile.key.tile_y << widths_.tile_shift) + y);
       for (; x <= box.right; x += kSize, at += kSize) {
         const unsigned in_box = rows & ((x >= box.left ? 5U : 0U) | (x + 1 <= box.right ? 10U : 0U));
-        Lanes drawn = kLanesOf[in_box];
+        unsigned mask = in_box;
         if (!tile.is_inside) {
-          drawn &= ~lane_mask<Lanes>(reinterpret_cast<SignedLanes>(edge[0] | edge[1] | edge[2]) < 0);
+          mask &= ~bits_of(lane_mask<Lanes>(reinterpret_cast<SignedLanes>(edge[0] | edge[1] | edge[2]) < 0));
           for (std::size_t e = 0; e < 3; ++e) edge[e] += edges_[e].stamp_x;
         }
-        const unsigned mask = tile.is_inside ? in_box : bits_of(drawn);
         if (mask == 0) continue;
+        const Lanes& drawn = kLanesOf[mask];
         const auto code = [&](std::size_t p) {
           const Code& place = codes_[p];
           const Lanes value = planes_[p].at(static_cast<std::uint32_t>(tile.anchor[p]), x - half_tile, y - half_tile);
@@ -91,7 +91,7 @@ class StampLanes {
         }
         covered -= drawn;  // 1 more where the mask is set
         passed -= pass;
-        visit(stamps.stamp_at(x, y), SampleMask(mask), SampleMask(bits));
+        visit(stamps.stamp_at(x, y), mask, bits);
       }
     }
     if (is_counted(tile.kind)) {

@@ -8,7 +8,7 @@ void StepQueue::begin(int threads) {
   if (threads <= 1 || thread_.joinable()) return;
   ends_ = false;
   try {
-    thread_ = std::thread([this] { work(); });
+    thread_ = launch_([this] { work(); });
   } catch (const std::system_error&) {  // none is to be had, as in WebAssembly: batches run on this one
   }
 }
@@ -19,50 +19,60 @@ void StepQueue::hand_over() {
     filling().clear();
     return;
   }
-  std::unique_lock lock(mutex_);
   ++filled_;
-  changed_.notify_all();
-  changed_.wait(lock, [this] { return filled_ - run_ < ring_.size(); });  // the next place of the ring is free
-  if (error_) std::rethrow_exception(error_);
+  notify();
+  wait_until([this] { return filled_ - run_ < ring_.size(); });  // the next place of the ring is free
+  rethrow();
   filling().clear();
 }
 
 void StepQueue::complete() {
   hand_over();
   stop(false);
-  if (error_) std::rethrow_exception(error_);
+  rethrow();
 }
 
 void StepQueue::work() {
-  std::unique_lock lock(mutex_);
   for (;;) {
-    changed_.wait(lock, [this] { return filled_ != run_ || ends_; });
+    wait_until([this] { return filled_ != run_ || ends_; });
     if (filled_ == run_ || drops_rest_) return;
-    const Steps& steps = ring_[run_ % ring_.size()];
-    const bool runs = !error_;
-    lock.unlock();
-    std::exception_ptr error;
     try {
-      if (runs) runner_.run(steps);
+      if (!has_failed_) runner_.run(ring_[run_ % ring_.size()]);
     } catch (...) {
-      error = std::current_exception();
+      error_ = std::current_exception();
+      has_failed_ = true;
     }
-    lock.lock();
-    if (error) error_ = error;
     ++run_;
-    changed_.notify_all();
+    notify();
   }
 }
 
 void StepQueue::stop(bool drops_rest) {
   if (!thread_.joinable()) return;
-  {
-    const std::lock_guard lock(mutex_);
-    ends_ = true;
-    drops_rest_ = drops_rest;
-  }
-  changed_.notify_all();
+  drops_rest_ = drops_rest;
+  ends_ = true;
+  notify();
   thread_.join();
+}
+
+void StepQueue::rethrow() const {
+  if (has_failed_) std::rethrow_exception(error_);
+}
+
+void StepQueue::notify() {
+  { const std::lock_guard lock(mutex_); }  // the other thread is not between its last look and its sleep
+  changed_.notify_one();
+}
+
+template <class Ready>
+void StepQueue::wait_until(Ready&& ready) {
+  constexpr int kLooks = 64;  // some 30 us: a batch takes about as long, so a sleep is rarely worth its wake-up
+  for (int n = 0; n < kLooks; ++n) {
+    if (ready()) return;
+    std::this_thread::yield();
+  }
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, ready);
 }
 
 }  // namespace halfplane

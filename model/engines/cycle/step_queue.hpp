@@ -3,8 +3,10 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <condition_variable>
 #include <exception>
+#include <functional>
 #include <mutex>
 #include <thread>
 
@@ -23,13 +25,17 @@ class StepRunner {
 
 class StepQueue {
  public:
+  /// Starts a thread with that function. Throws std::system_error when none is to be had.
+  using Launch = std::function<std::thread(std::function<void()>)>;
   /// `runner` must outlive this.
-  explicit StepQueue(StepRunner& runner) : runner_(runner) {}
+  explicit StepQueue(
+      StepRunner& runner, Launch launch = [](std::function<void()> work) { return std::thread(std::move(work)); })
+      : runner_(runner), launch_(std::move(launch)) {}
   StepQueue(const StepQueue&) = delete;
   StepQueue& operator=(const StepQueue&) = delete;
   ~StepQueue() { stop(true); }
 
-  /// With more than one thread batches run on a thread of their own, until complete().
+  /// With more than one thread batches run on a thread of their own, until complete(); where none is to be had, on this.
   void begin(int threads);
   /// The batch that is being filled.
   [[nodiscard]] Steps& filling() { return ring_[filled_ % ring_.size()]; }
@@ -41,15 +47,21 @@ class StepQueue {
  private:
   void work();
   void stop(bool drops_rest);
+  void rethrow() const;
+  void notify();
+  template <class Ready>
+  void wait_until(Ready&& ready);
 
   StepRunner& runner_;
+  Launch launch_;
   std::array<Steps, 4> ring_;  ///< one is filled, one runs
   std::thread thread_;
-  std::mutex mutex_;  ///< of all that follows; filled_ is written by the filling thread alone
+  std::atomic<std::size_t> filled_ = 0, run_ = 0;  ///< batches; each is written by one of the threads
+  std::atomic<bool> ends_ = false, drops_rest_ = false;
+  std::atomic<bool> has_failed_ = false;
+  std::exception_ptr error_;  ///< then
+  std::mutex mutex_;          ///< of a thread that waits for one of these to change
   std::condition_variable changed_;
-  std::size_t filled_ = 0, run_ = 0;  ///< batches
-  bool ends_ = false, drops_rest_ = false;
-  std::exception_ptr error_;
 };
 
 }  // namespace halfplane

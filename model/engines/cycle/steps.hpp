@@ -21,6 +21,7 @@ enum class StepKind : std::uint8_t {
   behind,       ///< that tile is behind it
   end_walk,     ///< the primitive ends without a visit
   visit,        ///< the next of Steps::visits, with the next `count` of Steps::stamps
+  lane_visit,   ///< the same with Steps::lane_stamps
   line_pixels,  ///< the next `count` of Steps::stamps are the pixels of a line
   set_tags,     ///< the next of Steps::tags
   set_state,    ///< a token in the shading units; with a texture unit the next of Steps::textures
@@ -34,9 +35,9 @@ struct PrimitiveStep {
 };
 
 struct VisitStep {
-  TileVisitWork work;
-  int tile_x = 0, tile_y = 0;
-  PixelBounds box;  ///< in pixels of the tile
+  std::uint16_t tile_x = 0, tile_y = 0;
+  TileBox box;
+  bool ends_primitive = false;
 };
 
 /// A stamp in the framebuffer. Without covered samples it passes.
@@ -46,6 +47,12 @@ struct StampStep {
   std::uint8_t pixel = 0;  ///< of a line: its number in the stamp
   bool is_dirty = false;   ///< for a cache of tiles: some sample may have been written
   SampleMask even;         ///< with compress.unit: pixels that are stored with one colour in all samples
+};
+
+/// A stamp with covered samples that was drawn in lanes (stamp_lanes.hpp): the rest of its StampStep is the primitive's.
+struct LaneStamp {
+  std::uint16_t stamp = 0;
+  std::uint8_t covered = 0, passed = 0;
 };
 
 /// Arguments of CacheTags::set().
@@ -76,6 +83,7 @@ struct Steps {
   std::vector<PrimitiveStep> primitives;
   std::vector<VisitStep> visits;
   std::vector<StampStep> stamps;
+  std::vector<LaneStamp> lane_stamps;
   std::vector<TagsStep> tags;
   std::vector<AreaStep> areas;
   std::vector<TextureStep> textures;  ///< with a texture unit: one for each stamp with covered samples, and each token
@@ -89,12 +97,13 @@ struct Steps {
       add(StepKind::outside);
   }
   /// Long enough to be worth a hand-over between threads, and short enough for a second-level cache.
-  [[nodiscard]] bool is_full() const { return stamps.size() >= 1024 || order.size() >= 4096; }
+  [[nodiscard]] bool is_full() const { return stamps.size() + lane_stamps.size() >= 1024 || order.size() >= 4096; }
   void clear() {
     order.clear();
     primitives.clear();
     visits.clear();
     stamps.clear();
+    lane_stamps.clear();
     tags.clear();
     areas.clear();
     textures.clear();
