@@ -138,7 +138,7 @@ class BackTiming {
     Cycle moved = next_free(streams, std::max(offered, blocks_->room()));
     while (blocks_->is_busy(moved, tags, item)) moved = next_free(streams, moved + 1);
     stream(Arrow::fragment).count(offered, moved);
-    note(Arrow::fragment, moved);
+    if (!Run::is_plain || !item.mask.any()) note(Arrow::fragment, moved);  // its write below is later
     last_fragment_ = moved;
     blocks_->take(moved, tags, item, texture, BlockPort{*this});
     if (!Run::is_plain) work(Stage::texture_unit, texture.lookups.size());

@@ -93,7 +93,7 @@ class BlockTiming {
   [[nodiscard]] Cycle room() const { return looked_; }
   /// In `cycle` the word of a falling flag is read, and the fragment needs its own.
   [[nodiscard]] bool is_busy(Cycle cycle, const TagResult& tags, const BlockItem& item) const {
-    return item.mask.any() && last_block_ != tags.block && (cycle == fall_reads_[0] || cycle == fall_reads_[1]);
+    return (cycle == fall_reads_[0] || cycle == fall_reads_[1]) && item.mask.any() && last_block_ != tags.block;
   }
   /// When the tags are empty.
   [[nodiscard]] Cycle is_empty() const { return left_ + 1; }
@@ -322,7 +322,8 @@ class BlockTiming {
 
   void note_color_write(const ColorWrite& write) {
     color_writes_[next_write_] = write;
-    if (++next_write_ == color_writes_.size()) next_write_ = 0;
+    // Without blending only the last write can hold back the next: w(m-1) + 1 is the bound of all others.
+    if (!Run::is_plain && ++next_write_ == color_writes_.size()) next_write_ = 0;
   }
 
   template <class Ask>

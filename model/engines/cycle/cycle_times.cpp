@@ -99,22 +99,21 @@ class TimesOf final : public CycleTimes {
     }
   }
 
-  /// The work in fine_raster of a visit with these stamps.
-  template <class Stamp>
-  [[nodiscard]] const TileVisitWork& work_of(const VisitStep& step, std::span<const Stamp> stamps) {
+  /// The work of a visit in fine_raster.
+  [[nodiscard]] TileVisitWork work_of(const VisitStep& step) const {
     const StampGrid& grid = widths_.stamps;
     const int first = grid.stamp_at(step.box.left, step.box.top), last = grid.stamp_at(step.box.right, step.box.bottom);
-    work_.ends_primitive = step.ends_primitive;
-    work_.first_row = grid.row_of(first);
-    work_.last_row = grid.row_of(last);
-    work_.first_column = grid.column_of(first);
-    work_.last_column = grid.column_of(last);
-    for (int row = work_.first_row; row <= work_.last_row; ++row) work_.columns[static_cast<std::size_t>(row)] = 0;
-    for (const Stamp& stamp : stamps) {
-      const int n = number_of(stamp);
-      work_.columns[static_cast<std::size_t>(grid.row_of(n))] |= 1U << grid.column_of(n);
-    }
-    return work_;
+    return {step.ends_primitive, grid.row_of(first), grid.row_of(last), grid.column_of(first), grid.column_of(last)};
+  }
+  /// Gives the columns of a visit's stamps, row by row.
+  template <class Stamp>
+  [[nodiscard]] auto columns_of(std::span<const Stamp> stamps) const {
+    return [grid = widths_.stamps, next = stamps.data(), end = stamps.data() + stamps.size()](int row) mutable {
+      std::uint32_t columns = 0;
+      for (; next != end && grid.row_of(number_of(*next)) == row; ++next)
+        columns |= 1U << grid.column_of(number_of(*next));
+      return columns;
+    };
   }
   [[nodiscard]] static int number_of(const StampStep& step) { return step.at.stamp; }
   [[nodiscard]] static int number_of(const LaneStamp& stamp) { return stamp.stamp; }
@@ -124,7 +123,7 @@ class TimesOf final : public CycleTimes {
     const Cycle before = timing_.last_fragment();
     if (sink_ != nullptr) sink_->visit(step.tile_x, step.tile_y);
     is_resident_ = false;
-    timing_.visit(work_of(step, stamps), [&](Cycle offered, int /*row*/, int column) {
+    timing_.visit(work_of(step), columns_of(stamps), [&](Cycle offered, int column) {
       return column < 0 ? timing_.pass(offered) : enter(*stamp++, offered, 0);
     });
     if (want_cost_) share_cost(step, stamps, static_cast<float>(timing_.last_fragment() - before));
@@ -140,7 +139,7 @@ class TimesOf final : public CycleTimes {
       const int per_tile = widths_.blocks.per_tile_log2, first_x = step.tile_x << per_tile,
                 first_y = step.tile_y << per_tile;
       const LaneStamp* stamp = stamps.data();
-      timing_.visit(work_of(step, stamps), [&](Cycle offered, int /*row*/, int column) {
+      timing_.visit(work_of(step), columns_of(stamps), [&](Cycle offered, int column) {
         if (column < 0) return timing_.pass(offered);
         const auto [number, covered, passed] = *stamp++;
         BlockStamp place = places_[number];
@@ -154,7 +153,7 @@ class TimesOf final : public CycleTimes {
     } else {
       expanded_.clear();
       for (const LaneStamp& stamp : stamps) expanded_.push_back(expanded(step, stamp));
-      visit(step, expanded_);
+      visit(step, std::span<const StampStep>(expanded_));
     }
   }
 
@@ -284,8 +283,7 @@ class TimesOf final : public CycleTimes {
   int width_ = 0, height_ = 0;
   PrimitiveState state_;             ///< of the current primitive
   TextureWork shading_;              ///< of the current stamp or token
-  TileVisitWork work_;               ///< of the current visit
-  std::vector<StampStep> expanded_;  ///< likewise, if it was drawn in lanes
+  std::vector<StampStep> expanded_;  ///< of the current visit, if it was drawn in lanes
   std::vector<BlockStamp> places_;   ///< of the stamps of tile (0, 0)
   bool is_resident_ = false;         ///< the tile of the current visit, in a cache of tiles
   std::vector<SampleMask> even_;     ///< StampStep::even of the last write, by place

@@ -130,9 +130,10 @@ class PipelinedTiming : public BackTiming<Run> {
     end_walk(shade);
   }
 
-  /// A visit of a tile. shade(offered, row, column): a stamp of it in depth_test.
-  template <class Shade>
-  void visit(const TileVisitWork& tile, Shade&& shade) {
+  /// A visit of a tile. columns_of(row), row by row: a bit for each stamp of the row with a covered sample.
+  /// shade(offered, column): a stamp in depth_test, in this order; column -1: an empty stamp.
+  template <class Columns, class Shade>
+  void visit(const TileVisitWork& tile, Columns&& columns_of, Shade&& shade) {
     const Cycle decided = std::max(walk_, tile_left_) + 1;
     const Cycle offered = std::max(decided, visits_.room());
     totals_.visit_cycles += offered - decided;
@@ -147,7 +148,7 @@ class PipelinedTiming : public BackTiming<Run> {
     std::uint64_t sent = 0, empty = 0;  // stamps; rows without one
     for (int row = tile.first_row;; ++row, ++row_at) {
       const bool is_last = row == tile.last_row;
-      std::uint32_t columns = tile.columns[static_cast<std::size_t>(row)];
+      std::uint32_t columns = columns_of(row);
       row_at = std::max(row_at, coverage_.room());
       Cycle leaves = coverage_.ready(row_at);
       const bool is_sent = columns != 0 || is_last;
@@ -163,7 +164,7 @@ class PipelinedTiming : public BackTiming<Run> {
         columns &= columns - 1;
         const bool ends = tile.ends_primitive && is_last && columns == 0;
         ++sent;
-        at = send(at, ends, [&](Cycle shaded) { return shade(shaded, row, column); }) + 1;
+        at = send(at, ends, [&](Cycle shaded) { return shade(shaded, column); }) + 1;
       } while (columns != 0);
       stamps_.leave(at - 1);
       if (is_last) break;

@@ -95,8 +95,8 @@ class SerialTiming : public BackTiming<AnyRun> {
     end(walk_ + 1, shade);
   }
 
-  template <class Shade>
-  void visit(const TileVisitWork& tile, Shade&& shade) {
+  template <class Columns, class Shade>
+  void visit(const TileVisitWork& tile, Columns&& columns_of, Shade&& shade) {
     const Cycle starts = has_bound_ ? walk_ : std::max(walk_, visits_.room());
     totals_.visit_cycles += starts - walk_;
     const Cycle offered = starts + 1;
@@ -106,18 +106,21 @@ class SerialTiming : public BackTiming<AnyRun> {
     const int waits = tile.first_column == tile.last_column ? 1 : 0;
     Cycle at = stalls_.next_free(kTile, std::max(offered, fine_.room())) + 1 +
                static_cast<Cycle>(tile.first_column + 2 * tile.first_row + waits);
-    for (int row = tile.first_row; row < tile.last_row; ++row, at += static_cast<Cycle>(waits))
+    for (int row = tile.first_row; row < tile.last_row; ++row, at += static_cast<Cycle>(waits)) {
+      const std::uint32_t columns = columns_of(row);
       for (int column = tile.first_column; column <= tile.last_column; ++column, ++at)
-        if (is_covered(tile, row, column)) at = send(at, 0, 0, [&](Cycle t) { return shade(t, row, column); });
+        if ((columns >> column & 1) != 0) at = send(at, 0, 0, [&](Cycle t) { return shade(t, column); });
+    }
+    const std::uint32_t columns = columns_of(tile.last_row);
     int held = -1;  // column of the last covered stamp of the last row so far
     for (int column = tile.first_column; column <= tile.last_column; ++column, ++at) {
-      if (!is_covered(tile, tile.last_row, column)) continue;
-      if (held >= 0) at = send(at, 0, 0, [&](Cycle t) { return shade(t, tile.last_row, held); });
+      if ((columns >> column & 1) == 0) continue;
+      if (held >= 0) at = send(at, 0, 0, [&](Cycle t) { return shade(t, held); });
       if (held >= 0 && column == tile.last_column) ++at;  // it waits there for the last stamp
       held = column;
     }
     --at;
-    const Cycle taken = send(at, kTile, 0, [&](Cycle t) { return shade(t, tile.last_row, held); });
+    const Cycle taken = send(at, kTile, 0, [&](Cycle t) { return shade(t, held); });
     stream(Arrow::tile).count(offered, taken);
     note(Arrow::tile, taken);
     fine_.leave(taken);
@@ -142,10 +145,6 @@ class SerialTiming : public BackTiming<AnyRun> {
     note(Arrow::tile, taken);
     fine_.leave(taken);
     coarse_.leave(taken);
-  }
-
-  static bool is_covered(const TileVisitWork& tile, int row, int column) {
-    return (tile.columns[static_cast<std::size_t>(row)] >> column & 1) != 0;
   }
 
   void take_primitive(const PrimitiveWork& work, Cycle taken) {

@@ -136,9 +136,14 @@ class StampLanes {
 
   /// A bit for each lane whose mask is set.
   [[nodiscard]] static unsigned bits_of(const Lanes& mask) {
+#ifdef __SSE__
+    using Floats __attribute__((vector_size(16))) = float;
+    return static_cast<unsigned>(__builtin_ia32_movmskps(reinterpret_cast<Floats>(mask)));
+#else
     const auto rows = reinterpret_cast<Rows>(mask & Lanes{1, 2, 4, 8});
     const std::uint64_t both = rows[0] | rows[1];
     return static_cast<unsigned>(both | both >> 32);
+#endif
   }
   /// The inverse.
   static constexpr std::array<Lanes, 16> kLanesOf = [] {

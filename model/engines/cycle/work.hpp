@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 
 #include "../../config.hpp"
@@ -39,7 +38,6 @@ struct PrimitiveWork {
 struct TileVisitWork {
   bool ends_primitive = false;
   int first_row = 0, last_row = 0, first_column = 0, last_column = 0;  ///< of stamps, in the box
-  std::array<std::uint32_t, 32> columns{};  ///< by row of stamps: a bit for each stamp with a covered sample
 };
 
 /// The phases of the pipelined triangle_setup, a cycle each, and its parts, with a triangle each.
