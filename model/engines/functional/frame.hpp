@@ -113,6 +113,7 @@ struct Slice {
   /// its own: three in a row for each triangle.
   std::uint32_t low_index = 0, high_index = 0;
   bool is_wide = false;
+  bool is_in_view = false;  ///< the vertices of all parts lie inside the view volume, each with its w above 0
   std::vector<VertexRow> vertices;
   /// Attributes of each vertex, where the state has surfaces; normals where fragments are lit. They are the prepared
   /// scene's, if the slice has exactly these vertices.

@@ -425,12 +425,36 @@ Slice& FrameRenderer::add_slice(const DrawContext& context) {
   slice.outlines.clear();
   slice.triangles = 0;
   slice.is_lines = false;
+  slice.is_in_view = true;
   slice.low_index = ~0U;
   slice.high_index = 0;
   slice.counters = {};
   is_stencil_zero_ = is_stencil_zero_ && !ops.stencil;
   pending_rises_ |= ops.state.depth_write && can_raise_depth(ops.state.depth_test);
   return slice;
+}
+
+/// Window positions of two corners of a draw's box.
+std::array<WindowPosition, 2> FrameRenderer::ends_of_box(const DrawContext& context,
+                                                         const PreparedScene::DrawChunks& draw) {
+  const auto corner = [&](const std::array<double, 3>& p) {
+    return to_window({p[0], p[1], p[2], 1, {}, 0, 0}, context.state, context.viewport);
+  };
+  return {corner(draw.low), corner(draw.high)};
+}
+
+/// Whether the clipper cuts nothing of the draw and refuses no vertex.
+bool FrameRenderer::is_uncut(const DrawContext& context, const PreparedScene::DrawChunks& draw) const {
+  const double limit = config_.guard_band - 2, near = context.state.clip_z == ClipZ::zero_one ? 0 : -1, hair = 1e-9;
+  const auto is_inside = [limit](const WindowPosition& p) { return std::abs(p.x) < limit && std::abs(p.y) < limit; };
+  return draw.has_box && std::ranges::all_of(ends_of_box(context, draw), is_inside) && draw.low[2] > near + hair &&
+         draw.high[2] < 1 - hair;
+}
+
+/// Slice::is_in_view, of one part. The volume that culls is a pixel wider than the box that is tested.
+bool FrameRenderer::is_in_view(const DrawContext& context, const PreparedScene::DrawChunks& draw) const {
+  return context.state.space == Space::clip && is_uncut(context, draw) && std::min(draw.low[0], draw.low[1]) >= -1 &&
+         std::max(draw.high[0], draw.high[1]) <= 1;
 }
 
 /// Whether every fragment of the draw would fail against the depths drawn so far. Pending triangles may only lower
@@ -440,16 +464,9 @@ bool FrameRenderer::is_behind(const DrawContext& context, const PreparedScene::D
   const DepthFunc func = context.fragment_ops.state.depth_test;
   const bool falls = func == DepthFunc::less || func == DepthFunc::lequal;
   if (!is_opaque_ || context.fragment_ops.stencil || context.rect.width <= 0 || context.rect.height <= 0) return false;
-  if (!draw.has_box || !falls || pending_rises_ || state.polygon_offset != std::array<double, 2>{0.0, 0.0})
-    return false;
-  const auto corner = [&](const std::array<double, 3>& p) {
-    return to_window({p[0], p[1], p[2], 1, {}, 0, 0}, state, context.viewport);
-  };
-  const WindowPosition a = corner(draw.low), b = corner(draw.high);
-  // No draw that the clipper would cut, or with a refused vertex: its corners and errors are not the box's.
-  const double limit = config_.guard_band - 2, near = state.clip_z == ClipZ::zero_one ? 0 : -1, hair = 1e-9;
-  const auto is_inside = [limit](const WindowPosition& p) { return std::abs(p.x) < limit && std::abs(p.y) < limit; };
-  if (!is_inside(a) || !is_inside(b) || !(draw.low[2] > near + hair && draw.high[2] < 1 - hair)) return false;
+  if (!falls || pending_rises_ || state.polygon_offset != std::array<double, 2>{0.0, 0.0}) return false;
+  if (!is_uncut(context, draw)) return false;  // corners and errors of a cut draw are not the box's
+  const auto [a, b] = ends_of_box(context, draw);
   // One pixel and one code more: the snap, and the rounding of the plane.
   const Rect& rect = context.rect;
   const auto tile = [](double pixel, int first, int last) {
@@ -510,6 +527,7 @@ void FrameRenderer::draw_prepared(std::uint32_t command) {
     }
     open_->parts.push_back({chunk.first, chunk.count, command, primitive_});
     open_->triangles += chunk.count;
+    open_->is_in_view &= is_in_view(*open_->context, chunks);
     if (open_->state.is_masked) rendering_.counters.skipped.masked_draws += chunk.count;
     open_->low_index = std::min(open_->low_index, chunk.low_index);
     open_->high_index = std::max(open_->high_index, chunk.high_index);

@@ -42,6 +42,10 @@ class FrameRenderer {
   void clear_whole(const Clear& command);
   void draw(std::uint32_t command);
   void draw_prepared(std::uint32_t command);
+  [[nodiscard]] static std::array<WindowPosition, 2> ends_of_box(const DrawContext& context,
+                                                                 const PreparedScene::DrawChunks& draw);
+  [[nodiscard]] bool is_uncut(const DrawContext& context, const PreparedScene::DrawChunks& draw) const;
+  [[nodiscard]] bool is_in_view(const DrawContext& context, const PreparedScene::DrawChunks& draw) const;
   [[nodiscard]] bool is_behind(const DrawContext& context, const PreparedScene::DrawChunks& draw) const;
   void draw_outlines(const DrawContext& context);
   void flush(bool is_last = false);

@@ -220,44 +220,51 @@ void FrameRenderer::build_outlines(Slice& slice) const {
   }
 }
 
-/// The records of each bin, in order: a counting sort. Most records lie in one bin.
+/// The records of each bin, in order: a counting sort of runs. Most records lie in one bin, that of the record before.
 void FrameRenderer::fill_bins(Slice& slice) const {
-  struct Entry {
-    std::uint32_t bin, record;
+  struct Run {  // records that follow each other
+    std::uint32_t bin, first, end;
   };
   const auto bins = static_cast<std::size_t>(bins_x_) * static_cast<std::size_t>(bins_y_);
   static thread_local std::vector<std::uint32_t> next;
-  static thread_local std::vector<Entry> entries;
+  static thread_local std::vector<Run> runs;
   next.assign(bins, 0);
-  entries.resize(std::max(entries.size(), slice.record_count));  // one per record, more where it lies in several bins
-  Entry* entry = entries.data();
-  std::uint32_t* const in_bin = next.data();
-  std::size_t count = 0;
+  const std::span records(slice.records.data(), slice.record_count);
+  runs.resize(
+      std::max(runs.size(), records.size() + 1));  // a run begins with each record, more where it lies in several bins
+  Run* run = runs.data();
+  std::size_t count = 0;  // and run[0] is unused
   const auto bin_at = [this](int x, int y) {
     return static_cast<std::uint32_t>((y >> kBinShift) * bins_x_ + (x >> kBinShift));
   };
-  const std::span records(slice.records.data(), slice.record_count);
+  constexpr std::uint32_t kNone = ~0U;
+  std::uint32_t in_run = kNone, run_first = 0;  // in registers: memory would be read back at once
   for (std::size_t i = 0; i < records.size(); ++i) {
     const Record& record = records[i];
-    const auto add = [&](std::uint32_t bin) {
-      entry[count++] = {bin, static_cast<std::uint32_t>(i)};
-      ++in_bin[bin];
-    };
+    const auto number = static_cast<std::uint32_t>(i);
     const std::uint32_t first = bin_at(record.left(), record.top());
-    add(first);
+    const bool is_new = first != in_run;
+    count += is_new ? 1 : 0;
+    run_first = is_new ? number : run_first;
+    in_run = first;
+    run[count] = {first, run_first, number + 1};
     constexpr auto kInBin = static_cast<std::int32_t>((kBinSize - 1) * 0x10001);
     if (((record.left_top ^ record.right_bottom) & ~kInBin) == 0) continue;
+    in_run = kNone;
     const std::uint32_t last = bin_at(record.right(), record.bottom());
-    if (const std::size_t room = count + bins + records.size() - i; entries.size() < room) {
-      entries.resize(2 * room);
-      entry = entries.data();
+    if (const std::size_t room = count + bins + records.size() - i; runs.size() <= room) {
+      runs.resize(2 * room);
+      run = runs.data();
     }
+    const auto add = [&](std::uint32_t bin) { run[++count] = {bin, number, number + 1}; };
     const std::uint32_t columns = bin_at(record.right(), record.top()) - first;
     for (std::uint32_t bin = first + 1; bin <= first + columns; ++bin) add(bin);
     for (std::uint32_t end = first + static_cast<std::uint32_t>(bins_x_) + columns; end <= last;
          end += static_cast<std::uint32_t>(bins_x_))
       for (std::uint32_t bin = end - columns; bin <= end; ++bin) add(bin);
   }
+  const std::span all(run + 1, count);
+  for (const Run& one : all) next[one.bin] += one.end - one.first;
   slice.bin_first.resize(bins + 1);
   std::uint32_t sum = 0;
   for (std::size_t bin = 0; bin < bins; ++bin) {
@@ -266,7 +273,10 @@ void FrameRenderer::fill_bins(Slice& slice) const {
   }
   slice.bin_first[bins] = sum;
   slice.bin_records.resize(sum);
-  for (std::size_t i = 0; i < count; ++i) slice.bin_records[in_bin[entry[i].bin]++] = entry[i].record;
+  for (const Run& one : all) {
+    std::uint32_t& to = next[one.bin];
+    for (std::uint32_t record = one.first; record < one.end; ++record) slice.bin_records[to++] = record;
+  }
 }
 
 }  // namespace halfplane::functional

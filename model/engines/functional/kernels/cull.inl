@@ -245,10 +245,12 @@ struct CullLanes {
     // Culled, but Skip forbids to drop it: its record goes on if its box contains a pixel.
     const std::uint32_t dropped = ((frame.skip.zero_area ? 0 : sets.zero) | (frame.skip.backface ? 0 : sets.culled)) &
                                   ~bits_of((t.left > t.right) | (t.top > t.bottom));
+    std::uint32_t rest = (sets.drawn & ~sets.sampleless) | dropped | sets.slow;
+    if (rest == 0) return;  // back faces come in runs
     alignas(64) Records records;
     make_records(t, few, dropped, records);
     Record* out = slice.records.data() + slice.record_count;
-    for (std::uint32_t rest = (sets.drawn & ~sets.sampleless) | dropped | sets.slow; rest != 0; rest &= rest - 1) {
+    for (; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
       if ((sets.slow >> i & 1) != 0) {
         slice.record_count = static_cast<std::size_t>(out - slice.records.data());

@@ -72,7 +72,7 @@ struct OctantLanes {
   }
 };
 
-/// Records of lines that lie completely inside the scissor; the others take the slow path.
+/// Records of lines that surely have a pixel inside the scissor; the others take the slow path.
 static void cull_lines(const FrameContext& frame, Slice& slice, SlowPath slow) {
   const DrawContext& context = *slice.context;
   const Widths& widths = frame.widths;
@@ -80,6 +80,7 @@ static void cull_lines(const FrameContext& frame, Slice& slice, SlowPath slow) {
   const int s = rules.grid_bits;
   const Rect& rect = context.rect;
   const PixelBounds limit{rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1};
+  constexpr int kFromEnd = 3;  // pixels
   // LineBatch has 64 bits for a gradient times an offset inside the first pixel.
   const bool fits = frame.config.depth_bits + 2 * s + widths.line_guard_bits + 2 <= 62;
   std::size_t number = 0;
@@ -110,10 +111,17 @@ static void cull_lines(const FrameContext& frame, Slice& slice, SlowPath slow) {
                 top = select(line.is_x_major, of_minor(true), of_major(true)),
                 bottom = select(line.is_x_major, of_minor(false), of_major(false));
       const std::uint32_t covers = bits_of(last >= line.first) & lanes;
-      const std::uint32_t is_whole =
-          bits_of((left > limit.left) & (right < limit.right) & (top > limit.top) & (bottom < limit.bottom));
+      // Or its first or last pixel does, less than kFromEnd pixels from the end.
+      const auto is_inside = [&](const SnappedLanes& point) HALFPLANE_LAMBDA {
+        const I16 x = point.x >> s, y = point.y >> s;
+        return (x > limit.left + kFromEnd) & (x < limit.right - kFromEnd) & (y > limit.top + kFromEnd) &
+               (y < limit.bottom - kFromEnd);
+      };
+      const std::uint32_t is_seen =
+          bits_of(is_inside(start) | is_inside(end) |
+                  ((left > limit.left) & (right < limit.right) & (top > limit.top) & (bottom < limit.bottom)));
       const std::uint32_t slow_bits =
-          (fits ? bits_of((codes & static_cast<int>(Slice::kSlow)) != 0) | (covers & ~is_whole) : 0xffffU) & lanes;
+          (fits ? bits_of((codes & static_cast<int>(Slice::kSlow)) != 0) | (covers & ~is_seen) : 0xffffU) & lanes;
       const std::uint32_t drawn = covers & ~slow_bits;
       const auto counted = [](std::uint32_t bits)
                                HALFPLANE_LAMBDA { return static_cast<unsigned>(std::popcount(bits)); };
@@ -125,8 +133,9 @@ static void cull_lines(const FrameContext& frame, Slice& slice, SlowPath slow) {
       std::int32_t* const words = reinterpret_cast<std::int32_t*>(lane.data());
       store_rows({v[0], v[1], v[2], min(start.z, end.z)}, words, sizeof(Record));
       constexpr auto kTraits = static_cast<std::int32_t>(RecordKind::whole_line);
-      store_rows({max(start.z, end.z), pairs(left, top), pairs(right, bottom), I16(kTraits)}, words + 4,
-                 sizeof(Record));
+      store_rows({max(start.z, end.z), pairs(max(left, I16(limit.left)), max(top, I16(limit.top))),
+                  pairs(min(right, I16(limit.right)), min(bottom, I16(limit.bottom))), I16(kTraits)},
+                 words + 4, sizeof(Record));
       for (std::uint32_t rest = drawn | slow_bits; rest != 0; rest &= rest - 1) {
         const auto i = static_cast<std::size_t>(std::countr_zero(rest));
         if ((slow_bits >> i & 1) != 0)

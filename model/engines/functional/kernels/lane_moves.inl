@@ -500,6 +500,23 @@ HALFPLANE_LEAF I16 gather(const void* base, const I16& index) {
   return r;
 }
 
+/// Numbers of a table of 64.
+HALFPLANE_LEAF I16 looked_up(const std::uint16_t* numbers, const I16& index) {
+#if HALFPLANE_ISA == 512
+  const U64 table = U64::load(numbers);
+  const __m512i at = _mm512_castsi256_si512(_mm512_cvtepi32_epi16((__m512i)index.part[0])),
+                found = _mm512_permutex2var_epi16((__m512i)table.part[0], at, (__m512i)table.part[1]);
+  I16 r;
+  r.part[0] = (I16::Register)_mm512_cvtepu16_epi32(_mm512_castsi512_si256(found));
+  return r;
+#else
+  alignas(64) std::array<std::int32_t, 16> at, found;
+  index.store(at.data());
+  for (std::size_t i = 0; i < 16; ++i) found[i] = numbers[at[i]];
+  return I16::load(found.data());
+#endif
+}
+
 /// One number in the lower eight lanes, another in the upper.
 HALFPLANE_LEAF I16 halves(std::int32_t low, std::int32_t high) {
   I16 r;

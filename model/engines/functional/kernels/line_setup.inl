@@ -85,9 +85,9 @@ struct LineWay {
   I16 low;     ///< the first step in the bin
 };
 
-/// Pixels and positions of a batch.
+/// Pixels and positions of a batch. `rect`: the scissor.
 HALFPLANE_INLINE LineWay set_up_way(LineBatch& batch, const OctantLanes& line, const LineRules& rules, int first_x,
-                                    int first_y) {
+                                    int first_y, const Rect& rect) {
   // Q, as in stages/line_setup: n columns on, the line is in row floor((Q + n d) / D) from the start's.
   const int s = rules.grid_bits, half = 1 << (s - 1);
   const I16 offset = (line.first << s) + half - line.a0, base_row = line.b0 >> s;
@@ -97,17 +97,28 @@ HALFPLANE_INLINE LineWay set_up_way(LineBatch& batch, const OctantLanes& line, c
                         convert<std::int64_t>(~line.tie_moves(rules));
   const D16 Q = convert<double>(numerator >> s);
 
-  // Steps whose column and row lie in the bin.
-  const auto bin_range = [](const I16& from, const I16& is_negative, bool is_low) HALFPLANE_LAMBDA {
-    const I16 to = from + (kBinSize - 1);
+  // Steps whose column and row lie in the bin and in the scissor.
+  struct Range {
+    std::int32_t from, to;
+  };
+  const Range columns{std::max(first_x, rect.x), std::min(first_x + kBinSize, rect.x + rect.width) - 1},
+      rows{std::max(first_y, rect.y), std::min(first_y + kBinSize, rect.y + rect.height) - 1};
+  const auto range = [](const I16& choose, const Range& a, const Range& b, const I16& is_negative,
+                        bool is_low) HALFPLANE_LAMBDA {
+    const I16 from = select(choose, I16(a.from), I16(b.from)), to = select(choose, I16(a.to), I16(b.to));
     return select(is_negative, is_low ? ~to : ~from, is_low ? from : to);
+  };
+  const auto of_major = [&](bool is_low) HALFPLANE_LAMBDA {
+    return range(line.is_x_major, columns, rows, line.is_major_negative, is_low);
+  };
+  const auto of_minor = [&](bool is_low) HALFPLANE_LAMBDA {
+    return range(line.is_x_major, rows, columns, line.is_minor_negative, is_low);
   };
   const I16 bin_major = select(line.is_x_major, I16(first_x), I16(first_y)),
             bin_minor = select(line.is_x_major, I16(first_y), I16(first_x));
-  I16 low = max(bin_range(bin_major, line.is_major_negative, true) - line.first, I16(0));
-  I16 high = min(bin_range(bin_major, line.is_major_negative, false), line.end - 1) - line.first;
-  const D16 top = convert<double>(bin_range(bin_minor, line.is_minor_negative, true) - base_row),
-            bottom = convert<double>(bin_range(bin_minor, line.is_minor_negative, false) - base_row);
+  I16 low = max(of_major(true) - line.first, I16(0));
+  I16 high = min(of_major(false), line.end - 1) - line.first;
+  const D16 top = convert<double>(of_minor(true) - base_row), bottom = convert<double>(of_minor(false) - base_row);
   const D16 never(1 << 20), some_d = max(d, D16(1.0));
   const L16 is_level = d == 0.0;
   const D16 missing = top * D - Q;                  // until the first row of the bin
@@ -152,7 +163,7 @@ HALFPLANE_NOINLINE void set_up_lines(LineBatch& batch, const Slice& slice, const
                          HALFPLANE_LAMBDA { return load_rows(slice.vertices.data(), batch.v[k].data()); };
   const SnappedLanes start = fetch(0), end = fetch(1);
   const OctantLanes line(start.x, start.y, end.x, end.y, rules);
-  const LineWay way = set_up_way(batch, line, rules, first_x, first_y);
+  const LineWay way = set_up_way(batch, line, rules, first_x, first_y, slice.context->rect);
   ReciprocalLanes reciprocal(quotient_lanes(line.major, widths.reciprocal_bits()), 0);
   reciprocal.value = select(line.a1 == line.a0, I16(0), reciprocal.value);
   const int s = rules.grid_bits, guard_bits = widths.line_guard_bits;

@@ -80,14 +80,19 @@ HALFPLANE_INLINE I16 clip_codes(const VertexLanes& v, const Projection& p) {
   return volume | bit(near & far & convert<std::int32_t>(in_band & is_small), Slice::kSlow);
 }
 
-/// Projects and snaps sixteen vertices; returns their codes.
+/// Projects and snaps sixteen vertices; returns their codes. `kInView`: Slice::is_in_view, so that all codes are 0.
+/// Vertices of other draws among them may become any rows.
+template <bool kInView>
 HALFPLANE_INLINE I16 project_lanes(const VertexLanes& v, const Projection& p, int target_height, VertexRow* out) {
   D16 x, y, z;
   I16 codes(0);
-  if (p.is_clip_space) {
-    codes = clip_codes(v, p);
-    const L16 is_fine = convert<std::int64_t>(codes < static_cast<int>(Slice::kSlow));
-    const D16 w = select(is_fine, v.w, D16(1.0));  // others are not used
+  if (kInView || p.is_clip_space) {
+    D16 w = v.w;
+    if constexpr (!kInView) {
+      codes = clip_codes(v, p);
+      const L16 is_fine = convert<std::int64_t>(codes < static_cast<int>(Slice::kSlow));
+      w = select(is_fine, w, D16(1.0));  // others are not used
+    }
     const D16 nx = v.x / w, ny = v.y / w, nz = v.z / w;
     const D16 depth = p.is_zero_one ? nz : (nz + 1.0) * 0.5;  // halves are exact
     x = p.viewport.x + (nx + 1.0) * 0.5 * p.viewport.width;
@@ -99,11 +104,14 @@ HALFPLANE_INLINE I16 project_lanes(const VertexLanes& v, const Projection& p, in
     if (p.scale_y < 0) y = static_cast<double>(target_height) - y;
     z = v.z;
   }
-  // A coarse bound: larger values do not fit the conversions.
-  const L16 fits = (max(x, -x) <= p.reach) & (max(y, -y) <= p.reach) & (z >= -1.0) & (z <= 2.0);
-  x = select(fits, x, D16(0.0));
-  y = select(fits, y, D16(0.0));
-  z = select(fits, z, D16(0.0));
+  L16 fits;
+  if constexpr (!kInView) {
+    // A coarse bound: larger values do not fit the conversions.
+    fits = (max(x, -x) <= p.reach) & (max(y, -y) <= p.reach) & (z >= -1.0) & (z <= 2.0);
+    x = select(fits, x, D16(0.0));
+    y = select(fits, y, D16(0.0));
+    z = select(fits, z, D16(0.0));
+  }
   if (p.grid_origin != 0) {
     x = x - p.grid_origin;
     y = y - p.grid_origin;
@@ -115,28 +123,41 @@ HALFPLANE_INLINE I16 project_lanes(const VertexLanes& v, const Projection& p, in
     sy = sy + half;
   }
   const I16 sz = snap_lanes(z, p.codes);
+  if constexpr (kInView) {
+    store_rows({sx, sy, sz, v.rgba}, out, sizeof(VertexRow));
+    return codes;
+  }
   const I16 is_legal = (sx >= -p.limit) & (sx < p.limit) & (sy >= -p.limit) & (sy < p.limit) & (sz >= 0) &
                        (sz <= static_cast<std::int32_t>(p.codes)) & convert<std::int32_t>(fits);
   store_rows({sx, sy, sz, v.rgba}, out, sizeof(VertexRow));
   return codes | (~is_legal & static_cast<int>(Slice::kSlow));
 }
 
-/// Slice::vertices, codes and any_code; both vectors are large enough for sixteen more than there are vertices.
+/// Slice::vertices, any_code, and, unless all vertices are in view, codes. Both vectors are large enough for sixteen more
+/// than there are vertices.
 static void project(const FrameContext& frame, Slice& slice) {
   const DrawContext& context = *slice.context;
   const PreparedScene& from = frame.prepared;
   const Projection projection(context, frame.widths);
   I16 any(0);
   const auto put = [&](const VertexLanes& lanes, std::size_t to) HALFPLANE_LAMBDA {
-    const I16 codes = project_lanes(lanes, projection, context.scene.height, slice.vertices.data() + to);
+    const I16 codes = project_lanes<false>(lanes, projection, context.scene.height, slice.vertices.data() + to);
     codes.store(slice.codes.data() + to);
     any |= codes;
   };
   if (!slice.is_wide) {
-    for (std::size_t i = slice.low_index, to = 0; i <= slice.high_index; i += 16, to += 16)
-      put({D16::load(&from.x[i]), D16::load(&from.y[i]), D16::load(&from.z[i]), D16::load(&from.w[i]),
-           I16::load(&from.rgba[i])},
-          to);
+    const auto vertices_at = [&from](std::size_t i) HALFPLANE_LAMBDA {
+      return VertexLanes{D16::load(&from.x[i]), D16::load(&from.y[i]), D16::load(&from.z[i]), D16::load(&from.w[i]),
+                         I16::load(&from.rgba[i])};
+    };
+    if (slice.is_in_view) {
+      VertexRow* to = slice.vertices.data();
+      for (std::size_t i = slice.low_index; i <= slice.high_index; i += 16, to += 16)
+        (void)project_lanes<true>(vertices_at(i), projection, context.scene.height, to);
+      slice.any_code = 0;
+      return;
+    }
+    for (std::size_t i = slice.low_index, to = 0; i <= slice.high_index; i += 16, to += 16) put(vertices_at(i), to);
   } else {
     std::size_t to = 0;
     for (const Slice::Part& part : slice.parts)

@@ -118,12 +118,9 @@ HALFPLANE_INLINE bool draw_sixteen(Bin& bin, const Slice& slice, const std::uint
     const auto tile_of = [](const I16& pixel, int bin_first)
                              HALFPLANE_LAMBDA { return max(pixel - bin_first, I16(0)) >> kTileShift; };
     const I16& left_top = upper.second;
-    alignas(64) SmallBatch::Lane tile, low;
-    (tile_of(left_top >> 16, bin.first_y) * kBinTiles + tile_of(left_top << 16 >> 16, bin.first_x)).store(tile.data());
-    (lower.fourth >> bin.range_bits_dropped).store(low.data());
-    bool are_near = Fragments::kIsLess;
-    for (std::size_t i = 0; i < 16; ++i) are_near &= low[i] < bin.tile_high[tile[i]];
-    if (!are_near) return false;
+    const I16 tile = tile_of(left_top >> 16, bin.first_y) * kBinTiles + tile_of(left_top << 16 >> 16, bin.first_x),
+              low = lower.fourth >> bin.range_bits_dropped;
+    if (!Fragments::kIsLess || is_any(looked_up(bin.tile_high, tile) <= low)) return false;
   }
   batch.window.fill(0);
   batch.count = 16;
