@@ -217,17 +217,20 @@ def main():
     parser.add_argument('--program', default='build/halfplane', help='the halfplane program')
     parser.add_argument('--part', help='rows of this part alone, printed and not written')
     parser.add_argument('--design', help='rows of this configuration alone, printed and not written')
+    parser.add_argument('--module', choices=('raster_top', 'halfplane_core'),
+                        help='rows of this module alone, printed and not written')
     parser.add_argument('--seeds', type=int, default=1, metavar='N',
                         help='placed and routed N times, the median of the clocks (1); 0: synthesis alone, printed and not written')
     options = parser.parse_args()
     BUILD.mkdir(parents=True, exist_ok=True)
-    chosen = [run for run in RUNS if options.part in (None, run[0]) and options.design in (None, run[2])]
+    chosen = [run for run in RUNS if options.part in (None, run[0]) and options.design in (None, run[2]) and
+              options.module in (None, run[1])]
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         rows = list(pool.map(lambda run: row(options.program, options.seeds, *run), chosen))
     lines = area.table(['part', 'module', 'configuration', 'places', 'multipliers', 'block RAMs', 'MHz', '`teapot`, frames a second'],
                        rows)
     print('\n'.join(lines))
-    if options.part is None and options.design is None and options.seeds:
+    if (options.part, options.design, options.module) == (None, None, None) and options.seeds:
         text = PAGE.read_text(encoding='utf-8')
         head, rest = text.split(BEGIN)
         PAGE.write_text(head + BEGIN + '\n'.join(lines[1:]) + rest[rest.index(END):], encoding='utf-8')

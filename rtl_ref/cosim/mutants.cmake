@@ -70,7 +70,7 @@ mutant(26 stages/fine_raster.sv "dropped stall: a row moves on before its stamps
 mutant(27 stages/interpolate.sv "offset: half of all codes stays in a code"
   [=[{!value_q[L+B-1], value_q[L+:B-1]}]=] [=[value_q[L+:B]]=])
 mutant(28 stages/interpolate.sv "dropped stall: a stamp enters without a place for its fragment"
-  [=[used_q != USED'(ROOM)]=] [=[used_q != '1]=])
+  [=[used_q == USED'(ROOM - 1)]=] [=[used_q == '1]=])
 mutant(29 stages/interpolate.sv "sign: rows of stamps above the tile's centre count as below"
   [=[PIXEL'(row) << STAMP_SHIFT]=] [=[PIXEL'(row[PER_ROW_BITS-2:0]) << STAMP_SHIFT]=])
 mutant(30 lib/fifo.sv "dropped stall: a full queue takes one more"
@@ -86,7 +86,7 @@ mutant(32 lib/passing_orders.sv "depth test: gequal fails on equal codes"
 mutant(33 stages/depth_test.sv "HiZ: the bound comes from the stamp's first sample"
   [=[is_bottom ? (is_right ? pixel_11 : pixel_10) : (is_right ? pixel_01 : pixel_00)]=] [=[pixel_00]=])
 mutant(34 stages/depth_test.sv "stale HiZ: greater and its like leave the bound as it was"
-  [=[fragment_q.state.depth_write && greater_passes && any_passed]=] [=[1'b0]=])
+  [=[may_clear_q && any_passed]=] [=[1'b0]=])
 mutant(35 stages/depth_test.sv "counter: samples count as written with both masks off"
   [=[is_counted && writes]=] [=[is_counted]=])
 
@@ -280,7 +280,7 @@ mutant(113 stages/triangle_setup.sv "phases: a part is free when its triangle is
 mutant(91 stages/cache_tags.sv "bins: once lost, depth is lost in frames that store it too"
   [=[drops_depth && is_clear]=] [=[drops_depth_q || (drops_depth && is_clear)]=])
 mutant(92 stages/cache_tags.sv "bins: the flag of a block falls though its depth is lost"
-  [=[{line_colored != '0, line_depth != '0}]=] [=[{line_colored != '0, line_has_depth}]=])
+  [=[{line_has_color, line_depth != '0}]=] [=[{line_has_color, line_has_depth}]=])
 mutant(93 stages/cache_tags.sv "bins: a block begins with the depths of the one that was lost"
   [=[hits_q ? line_known : '0]=] [=[hits_q || drops_depth_q ? line_known : '0]=])
 mutant(94 stages/cache_tags.sv "flush: the flags of depth that is lost are written"

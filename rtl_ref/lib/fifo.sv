@@ -2,7 +2,8 @@
 // leaves is free from the next cycle on. The memory is read without a clock, as LUT RAM is.
 module fifo #(
     parameter int WIDTH = 1,  // bits of an item
-    parameter int DEPTH = 2   // items; a power of two
+    parameter int DEPTH = 2,  // items; a power of two
+    parameter int AHEAD = 0   // the lowest so many bits of the item on offer stand in a register: long paths start there
 ) (
     input logic clk_i,
     input logic rst_ni,
@@ -26,7 +27,6 @@ module fifo #(
 
   assign ready_o = head_q != (tail_q ^ {1'b1, {INDEX{1'b0}}});
   assign valid_o = head_q != tail_q;
-  assign data_o  = memory_q[head_q[INDEX-1:0]];
   assign enters  = valid_i && ready_o;
   assign leaves  = valid_o && ready_i;
 
@@ -41,5 +41,24 @@ module fifo #(
   end
 
   always_ff @(posedge clk_i) if (enters) memory_q[tail_q[INDEX-1:0]] <= data_i;
+
+  logic [WIDTH-1:0] item;
+  assign item = memory_q[head_q[INDEX-1:0]];
+  generate
+    if (AHEAD == 0) begin : gen_memory
+      assign data_o = item;
+    end else begin : gen_ahead
+      logic [INDEX:0]   next;     // place of the item after the one on offer
+      logic [AHEAD-1:0] waiting, offered_q;  // of that item, of the one on offer
+      assign next    = head_q + 1'b1;
+      assign waiting = memory_q[next[INDEX-1:0]][AHEAD-1:0];
+      always_ff @(posedge clk_i)
+        if (!valid_o || ready_i) offered_q <= !valid_o || tail_q == next ? data_i[AHEAD-1:0] : waiting;
+      always_comb begin
+        data_o            = item;
+        data_o[AHEAD-1:0] = offered_q;
+      end
+    end
+  endgenerate
 
 endmodule

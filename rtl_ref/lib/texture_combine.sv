@@ -53,8 +53,24 @@ module texture_combine #(
         assign left  = is_decal ? texel_i[31:24] : is_blended ? texel : is_modulated ? color : '0;
         assign right = $signed({1'b0, is_blended ? constant_i[8*n+:8] : texel}) -
                        $signed({1'b0, color & {8{is_decal || is_blended}}});
-        // 255 times a colour: 256 times less once.
-        assign rounded = {whole, 8'd128} - {8'd0, whole} + product[15:0];
+        // 255 times a colour: 256 times less once. Two chains: a sum of three at once waits for the product with all of it.
+        logic [15:0] share;
+        add_or_subtract #(
+            .WIDTH(16)
+        ) u_share (
+            .subtracts_i(1'b1),
+            .a_i        ({whole, 8'd128}),
+            .b_i        ({8'd0, whole}),
+            .sum_o      (share)
+        );
+        add_or_subtract #(
+            .WIDTH(16)
+        ) u_rounded (
+            .subtracts_i(1'b0),
+            .a_i        (share),
+            .b_i        (product[15:0]),
+            .sum_o      (rounded)
+        );
         assign color_o[8*n+:8] = quotient[15:8];
       end else begin : gen_alpha
         assign whole   = is_replaced && has_alpha_i ? texel : color;

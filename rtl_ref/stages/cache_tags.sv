@@ -74,7 +74,7 @@ module cache_tags #(
   localparam int WORD = raster_pkg::FLAG_WORD;
   localparam int BIT = $clog2(WORD);
   localparam int KNOWN = raster_pkg::BLEND_LANES == 0 ? 0 : STAMPS;  // blending: stamps with their colours on the chip
-  localparam int REST = 3 + TAG_X + TAG_Y + 2 * STAMPS + 3;
+  localparam int REST = 3 + TAG_X + TAG_Y + 2 * STAMPS + 4;
   localparam int STATE = REST + KNOWN;  // bits of a line's state
   localparam bit TESTS_ALPHA = raster_pkg::ALPHA_UNIT != 0 && raster_pkg::SETUP_KIND == 0;
   localparam logic [LINE-1:0] LINE_X_MASK = LINE'((1 << LINE_X) - 1);
@@ -180,7 +180,7 @@ module cache_tags #(
   logic [LINE-1:0]    line_above_x;
   logic [BLOCK_X-1:0] block_x, line_x;
   logic [BLOCK_Y-1:0] block_y, line_y;
-  logic               line_valid, line_dirty, line_falls, line_has_depth;
+  logic               line_valid, line_dirty, line_falls, line_has_depth, line_has_color;
   logic [TAG_X-1:0]   tag_x;
   logic [TAG_Y-1:0]   tag_y;
   logic [STAMPS-1:0]  line_known, line_colored;
@@ -230,9 +230,10 @@ module cache_tags #(
   assign is_next    = (is_access || (valid_q && walks_q)) && line_q == read_line_q;
   assign read_state = is_next ? line_new : is_forwarded_q ? forward_q : line_read;
   always_ff @(posedge clk_i) if (moves) line_state_q <= read_state;
-  // line_dirty and line_falls are derived from the other fields and stored with them, to be known at once: samples may
-  // have been written; an eviction clears flags.
-  assign {line_valid, line_dirty, line_falls, tag_x, tag_y, line_known, line_colored, line_has_depth, line_cleared} = line_state_q[STATE-1-:REST];
+  // line_dirty, line_falls and line_has_color are derived from the other fields and stored with them, to be known at once:
+  // samples may have been written; an eviction clears flags; a stamp has colours.
+  assign {line_valid, line_dirty, line_falls, tag_x, tag_y, line_known, line_colored, line_has_depth, line_has_color,
+          line_cleared} = line_state_q[STATE-1-:REST];
   assign line_x = (BLOCK_X'(tag_x) << LINE_X) | (BLOCK_X'(line_q) & BLOCK_X'((1 << LINE_X) - 1));
   assign line_above_x = line_q >> LINE_X;
   assign line_y = (BLOCK_Y'(tag_y) << LINE_Y) | BLOCK_Y'(line_above_x);
@@ -296,9 +297,9 @@ module cache_tags #(
   assign stamp_bit  = STAMPS'(1) << stamp;
   assign stores_depth = line_has_depth && !drops_depth_q;
   assign line_depth   = stores_depth ? line_known : '0;
-  assign is_dirty     = line_valid && (drops_depth_q ? line_colored != '0 : line_dirty);
+  assign is_dirty     = line_valid && (drops_depth_q ? line_has_color : line_dirty);
   assign evicts       = is_dirty && leaves_line_q;
-  assign fills        = line_cleared & {line_colored != '0, line_depth != '0};
+  assign fills        = line_cleared & {line_has_color, line_depth != '0};
   assign falls        = valid_q && evicts && (drops_depth_q ? fills[1] : line_falls);
 
   assign cleared      = hits_q ? line_cleared : cleared_q;
@@ -403,7 +404,7 @@ module cache_tags #(
   always_comb begin
     line_rest = {
       1'b1, has_depth_new || colored_new != '0, (cleared & {colored_new != '0, has_depth_new && known_new != '0}) != '0,
-      TAG_X'(block_x >> LINE_X), TAG_Y'(block_y >> LINE_Y), known_new, colored_new, has_depth_new, cleared
+      TAG_X'(block_x >> LINE_X), TAG_Y'(block_y >> LINE_Y), known_new, colored_new, has_depth_new, colored_new != '0, cleared
     };
     if (walks_q || state_q == MARK) line_rest[REST-1] = 1'b0;
   end
@@ -416,12 +417,16 @@ module cache_tags #(
   logic [VICTIM-1:0]   next_victim;
   logic                orders_all;
 
-  // Each slot is compared in its place; then the results are ordered by age, oldest first.
-  logic [VICTIMS-1:0] is_same, is_same_by_age;
+  // Each slot is compared in its place as the fragment moves; then the results are ordered by age, oldest first.
+  logic [VICTIMS-1:0] is_same_q, is_same_by_age;
+  logic               adds_victim;
+  assign adds_victim    = leaves && evicts;
   assign next_victim    = oldest_q + VICTIM'(waiting_q);
-  assign is_same_by_age = VICTIMS'({is_same, is_same} >> oldest_q);
-  always_comb begin
-    for (int v = 0; v < VICTIMS; v++) is_same[v] = victim_x_q[v] == block_x && victim_y_q[v] == block_y;
+  assign is_same_by_age = VICTIMS'({is_same_q, is_same_q} >> oldest_q);
+  always_ff @(posedge clk_i) begin
+    for (int v = 0; v < VICTIMS; v++)
+      if (moves) is_same_q[v] <= adds_victim && next_victim == VICTIM'(v) ? line_x == read_x && line_y == read_y :
+                                                                            victim_x_q[v] == read_x && victim_y_q[v] == read_y;
   end
   always_comb begin
     wanted = '0;
@@ -444,7 +449,7 @@ module cache_tags #(
   end
 
   always_ff @(posedge clk_i) begin
-    if (leaves && evicts) begin
+    if (adds_victim) begin
       victim_x_q[next_victim] <= line_x;
       victim_y_q[next_victim] <= line_y;
     end

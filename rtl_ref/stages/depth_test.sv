@@ -302,17 +302,19 @@ module depth_test (
       assign retire_o.hiz_code = '0;
     end else begin : gen_hiz
       // State of the visit before this stamp. The visit covers its tile when the last of STAMPS full stamps comes.
+      // What depends on the test is counted a cycle late, with the retirement: the test's result is late.
       logic [STAMP_BITS-1:0] full_stamps_q;
       logic                  any_passed_q;
       logic [HIZ-1:0]        max_q;
-      logic                  is_full, any_passed, covers_tile;
+      logic                  in_visit, in_visit_q, is_full_q, any_kept_q, writes_depth_q, may_clear_q;
+      logic                  any_passed, covers_tile;
       logic [HIZ-1:0]        max;
-      logic                  sets, clears, sets_q, clears_q;  // the visit sets its tile's bound, clears it
+      logic                  sets, clears;  // the visit that retires sets its tile's bound, clears it
       logic [HIZ-1:0]        max_of_visit_q;
 
-      assign is_full     = kept == '1 && !is_late;
-      assign any_passed  = any_passed_q || kept != '0;
-      assign covers_tile = is_full && full_stamps_q == STAMP_BITS'(STAMPS - 1);
+      assign in_visit    = is_stamp && !fragment_q.kind[1];  // a pixel of a line belongs to no visit
+      assign any_passed  = any_passed_q || any_kept_q;
+      assign covers_tile = is_full_q && full_stamps_q == STAMP_BITS'(STAMPS - 1);
 
       // The codes of a covered tile are a plane, rounded and clamped, which keeps their order: the largest is at a
       // corner of the tile. So one pixel of a stamp is enough, the pixel towards the tile's corner on the stamp's side;
@@ -345,33 +347,39 @@ module depth_test (
         assign corner    = farthest(is_bottom ? (is_right ? pixel_11 : pixel_10) : (is_right ? pixel_01 : pixel_00));
       end
       assign max    = corner > max_q ? corner : max_q;
-      assign sets   = fragment_q.state.depth_write && covers_tile;
-      assign clears = fragment_q.state.depth_write && greater_passes && any_passed;
+      assign sets   = writes_depth_q && covers_tile;
+      assign clears = may_clear_q && any_passed;
 
       always_ff @(posedge clk_i or negedge rst_ni) begin
         if (!rst_ni) begin
           full_stamps_q <= '0;
           any_passed_q  <= 1'b0;
           max_q         <= '0;
-        end else if (valid_q && fragment_q.ends_visit) begin
-          full_stamps_q <= '0;
-          any_passed_q  <= 1'b0;
-          max_q         <= '0;
-        end else if (is_stamp && !fragment_q.kind[1]) begin  // a pixel of a line belongs to no visit
-          full_stamps_q <= full_stamps_q + STAMP_BITS'(is_full);
-          any_passed_q  <= any_passed;
-          max_q         <= max;
+          in_visit_q    <= 1'b0;
+        end else begin
+          in_visit_q <= in_visit;
+          if (retire_valid_o) begin
+            full_stamps_q <= '0;
+            any_passed_q  <= 1'b0;
+          end else if (in_visit_q) begin
+            full_stamps_q <= full_stamps_q + STAMP_BITS'(is_full_q);
+            any_passed_q  <= any_passed;
+          end
+          if (valid_q && fragment_q.ends_visit) max_q <= '0;
+          else if (in_visit) max_q <= max;
         end
       end
 
       always_ff @(posedge clk_i) begin
-        sets_q         <= sets;
-        clears_q       <= clears;
+        is_full_q      <= kept == '1 && !is_late;
+        any_kept_q     <= kept != '0;
+        writes_depth_q <= fragment_q.state.depth_write;
+        may_clear_q    <= fragment_q.state.depth_write && greater_passes;
         max_of_visit_q <= max;
       end
-      assign retire_o.update   = sets_q ? raster_pkg::HIZ_UPDATE_SET :
-                                 clears_q ? raster_pkg::HIZ_UPDATE_CLEAR : raster_pkg::HIZ_UPDATE_NONE;
-      assign retire_o.hiz_code = sets_q ? max_of_visit_q : {HIZ{clears_q}};
+      assign retire_o.update   = sets ? raster_pkg::HIZ_UPDATE_SET :
+                                 clears ? raster_pkg::HIZ_UPDATE_CLEAR : raster_pkg::HIZ_UPDATE_NONE;
+      assign retire_o.hiz_code = sets ? max_of_visit_q : {HIZ{clears}};
     end
   endgenerate
 

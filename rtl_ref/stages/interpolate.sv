@@ -60,7 +60,8 @@ module interpolate (
   localparam int USED = $clog2(ROOM + 1);
   logic [USED-1:0] used_q;
   logic            takes, leaves;
-  assign stamp_ready_o  = used_q != USED'(ROOM);
+  logic            has_room_q;  // used_q is below ROOM: long paths start from it
+  assign stamp_ready_o  = has_room_q;
   assign takes          = stamp_valid_i && stamp_ready_o;
   assign leaves         = fragment_valid_o && fragment_ready_i;
   assign context_read_o = takes;
@@ -74,6 +75,7 @@ module interpolate (
       samples_valid_q <= 1'b0;
       slot_free_o     <= 1'b0;
       used_q          <= '0;
+      has_room_q      <= 1'b1;
     end else begin
       context_valid_q <= takes;
       x_valid_q       <= context_valid_q;
@@ -81,6 +83,7 @@ module interpolate (
       samples_valid_q <= y_valid_q;
       slot_free_o     <= context_valid_q && context_stamp_q.ends_primitive;
       used_q          <= used_q + USED'(takes) - USED'(leaves);
+      has_room_q      <= leaves || (has_room_q && !(takes && used_q == USED'(ROOM - 1)));
     end
   end
 

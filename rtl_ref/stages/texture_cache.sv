@@ -114,9 +114,11 @@ module texture_cache #(
   assign is_occupied  = issued_q != read_q;
   assign is_known     = same_place_q ? same_line_q : tag_valid && tag == t_address_q;
   assign is_hit       = is_known;
-  // Counted back from this sample: no farther than the oldest in the queue.
-  assign is_referenced = is_occupied &&
-                         NUMBER'(group - (same_place_q ? last_group : tag_group)) <= NUMBER'(group - oldest_group);
+  // From the oldest in the queue to this sample, in numbers that wrap: by two comparisons at once, behind the RAM.
+  function automatic is_in_queue(input [NUMBER-1:0] number);
+    is_in_queue = oldest_group > group ? number >= oldest_group || number <= group : number >= oldest_group && number <= group;
+  endfunction
+  assign is_referenced = is_occupied && (same_place_q ? is_in_queue(last_group) : is_in_queue(tag_group));
   assign waits  = !waiting_ready ||
                   (!is_hit && (is_referenced || !may_ask));
   assign t_goes = t_valid_q && !waits;

@@ -241,7 +241,8 @@ module texture_unit #(
   );
   fifo #(
       .WIDTH(PAYLOAD + SAMPLES * (1 + COLOR) + FLAGS + COMBINE + 1),
-      .DEPTH(QUEUE)
+      .DEPTH(QUEUE),
+      .AHEAD(SAMPLES * COLOR + FLAGS + COMBINE + 1)
   ) u_stamps (
       .clk_i,
       .rst_ni,

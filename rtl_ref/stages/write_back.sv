@@ -82,7 +82,8 @@ module write_back #(
   raster_pkg::block_order_t order;
   fifo #(
       .WIDTH(raster_pkg::BLOCK_ORDER_BITS),
-      .DEPTH(raster_pkg::CACHE_QUEUE)
+      .DEPTH(raster_pkg::CACHE_QUEUE),
+      .AHEAD(raster_pkg::BLOCK_ORDER_BITS)
   ) u_orders (
       .clk_i,
       .rst_ni,
@@ -103,6 +104,7 @@ module write_back #(
   logic [STAMPS-1:0] depth_left_q[0:VICTIMS-1];  // stamps still to be written
   logic [STAMPS-1:0] color_left_q[0:VICTIMS-1];
   logic [SLOT-1:0]   oldest_q;  // slot of the next block to be written
+  logic [STAMPS-1:0] oldest_depth_q, oldest_color_q;  // depth_left_q and color_left_q of it: long paths start from them
   logic [SLOT:0]     depth_ready_q, color_ready_q;  // blocks whose depths, and colours, are complete
   logic              is_ready;
   logic [WRITES-1:0] written_q;  // blocks written of the order at the head
@@ -120,8 +122,8 @@ module write_back #(
   logic [SAMPLES-1:0]       sent_depth_strobe, sent_color_strobe;
 
   assign leaving     = victim_q[oldest_q];
-  assign depth_left  = depth_left_q[oldest_q];
-  assign color_left  = color_left_q[oldest_q];
+  assign depth_left  = oldest_depth_q;
+  assign color_left  = oldest_color_q;
   assign wants_write = order_valid && written_q != order.writes;
   assign wants_read  = order_valid && written_q == order.writes;  // an order that reads nothing ends with its writes
   assign is_ready    = depth_ready_q != '0 && color_ready_q != '0;
@@ -181,24 +183,35 @@ module write_back #(
   end
 
   genvar s, v;
+  // The stamps left in a slot after what comes into it in this cycle.
+  function automatic [STAMPS-1:0] depth_after(input [SLOT-1:0] slot, input [STAMPS-1:0] left);
+    depth_after = left;
+    if (depth_valid_i && depth_i.slot == slot && depth_i.strobe != '0) depth_after = left | (STAMPS'(1) << depth_i.stamp);
+    if (evicts_i && eviction_i.slot == slot) depth_after = {STAMPS{eviction_i.fills[0]}};
+  endfunction
+  function automatic [STAMPS-1:0] color_after(input [SLOT-1:0] slot, input [STAMPS-1:0] left);
+    color_after = left;
+    if (color_valid_i && color_i.slot == slot && color_i.strobe != '0) color_after = left | (STAMPS'(1) << color_i.stamp);
+    if (evicts_i && eviction_i.slot == slot) color_after = {STAMPS{eviction_i.fills[1]}};
+  endfunction
+  // Of the oldest slot, and of the one after it, which is the oldest when the former is finished.
+  logic [SLOT-1:0]   second;
+  logic [STAMPS-1:0] oldest_depth, oldest_color;
+  assign second = oldest_q + 1'b1;
+  always_comb begin
+    oldest_depth = depth_after(oldest_q, depth_left & ~(sends && takes_request && !is_color ? sent : '0));
+    oldest_color = color_after(oldest_q, color_left & ~(sends && takes_request && is_color ? sent : '0));
+    if (takes_merged && !colors_known) oldest_color = '1;
+  end
+  always_ff @(posedge clk_i) begin
+    oldest_depth_q <= finishes ? depth_after(second, depth_left_q[second]) : oldest_depth;
+    oldest_color_q <= finishes ? color_after(second, color_left_q[second]) : oldest_color;
+  end
   generate
     for (v = 0; v < VICTIMS; v++) begin : gen_left
-      logic begins, is_sent;
-      assign begins  = evicts_i && eviction_i.slot == SLOT'(v);
-      assign is_sent = sends && takes_request && oldest_q == SLOT'(v);
       always_ff @(posedge clk_i) begin
-        if (begins) begin
-          depth_left_q[v] <= {STAMPS{eviction_i.fills[0]}};
-          color_left_q[v] <= {STAMPS{eviction_i.fills[1]}};
-        end else begin
-          if (depth_valid_i && depth_i.slot == SLOT'(v) && depth_i.strobe != '0)
-            depth_left_q[v] <= depth_left_q[v] | (STAMPS'(1) << depth_i.stamp);
-          if (color_valid_i && color_i.slot == SLOT'(v) && color_i.strobe != '0)
-            color_left_q[v] <= color_left_q[v] | (STAMPS'(1) << color_i.stamp);
-          if (is_sent && !is_color) depth_left_q[v] <= depth_left_q[v] & ~sent;
-          if (is_sent && is_color) color_left_q[v] <= color_left_q[v] & ~sent;
-          if (takes_merged && !colors_known && oldest_q == SLOT'(v)) color_left_q[v] <= '1;
-        end
+        depth_left_q[v] <= oldest_q == SLOT'(v) ? oldest_depth : depth_after(SLOT'(v), depth_left_q[v]);
+        color_left_q[v] <= oldest_q == SLOT'(v) ? oldest_color : color_after(SLOT'(v), color_left_q[v]);
       end
     end
     for (s = 0; s < SAMPLES; s++) begin : gen_lent

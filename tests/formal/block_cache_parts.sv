@@ -122,6 +122,7 @@
   assign {slot_x, slot_y, here_depth_any, here_color_any} = victim_q[any_slot];
   always_comb if (runs_q) begin
     assert (taken_q <= (SLOT + 1)'(VICTIMS));
+    if (taken_q != '0) assert (oldest_depth_q == depth_left_q[oldest_q] && oldest_color_q == color_left_q[oldest_q]);
     assert (SLOT'(taken_q) == SLOT'(slot_q - oldest_q));
     assert (SLOT'(evictions_behind) == SLOT'(slot_q - w_slot_q) && 32'(evictions_behind) <= 32'(taken_q));
     assert (32'(depth_ready_q) + 32'(v_valid_q) == 32'(taken_q));

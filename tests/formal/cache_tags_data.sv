@@ -145,7 +145,7 @@
 
   // The line's word. A read in the cycle of its write is not used.
   logic [STATE-1:0]   word_q, read_word_q;
-  logic               word_valid, word_dirty, word_falls, word_has_depth, is_marking, reads_it_q, collided_q, line_stays_q;
+  logic               word_valid, word_dirty, word_falls, word_has_depth, word_has_color, is_marking, reads_it_q, collided_q, line_stays_q;
   logic [TAG_X-1:0]   word_tag_x;
   logic [TAG_Y-1:0]   word_tag_y;
   logic [STAMPS-1:0]  word_known, word_colored;
@@ -153,7 +153,8 @@
   logic [BLOCK_X-1:0] word_x;
   logic [BLOCK_Y-1:0] word_y;
   logic [STATE-1:0]   line_before_q;
-  assign {word_valid, word_dirty, word_falls, word_tag_x, word_tag_y, word_known, word_colored, word_has_depth, word_cleared} = word_q[STATE-1-:REST];
+  assign {word_valid, word_dirty, word_falls, word_tag_x, word_tag_y, word_known, word_colored, word_has_depth, word_has_color, word_cleared} =
+      word_q[STATE-1-:REST];
   assign word_x     = (BLOCK_X'(word_tag_x) << LINE_X) | (any_x & BLOCK_X'((1 << LINE_X) - 1));
   assign word_y     = (BLOCK_Y'(word_tag_y) << LINE_Y) | (any_y & BLOCK_Y'((1 << LINE_Y) - 1));
   assign is_marking = state_q == MARK || ((state_q == READ || state_q == DONE) && is_clear);
@@ -223,6 +224,8 @@
     if (read_valid_q && !read_walks_q) assert (read_line_q == line_of(read_x, read_y) && (read_q.mask != '0 || !is_asked_q));
     if (valid_q && !walks_q) assert (line_q == line_of(block_x, block_y) && leaves_line_q == (fragment_q.mask != '0 && !hits_q));
     if (valid_q && walks_q) assert (leaves_line_q);
+    for (int v = 0; v < VICTIMS; v++)
+      if (valid_q) assert (is_same_q[v] == (victim_x_q[v] == block_x && victim_y_q[v] == block_y));
     if (has_read_q) assert ((state_q == SERVE || serves_q) && read_q.mask != '0 && !read_walks_q);
     if (state_q == DONE) assert (!serves_q);
     if (has_read_q && state_q == SERVE && read_is_it && !read_valid_q) assert (valid_q ? is_it : here_q);
@@ -266,6 +269,7 @@
       else if (is_access && word_valid) assert (hits_q == (word_x == block_x && word_y == block_y));
     end
     if (is_known_q && word_valid) begin
+      assert (word_has_color == (word_colored != '0));
       assert (word_dirty == (word_has_depth || word_colored != '0));
       assert (word_falls == ((word_cleared & {word_colored != '0, word_has_depth && word_known != '0}) != '0));
     end

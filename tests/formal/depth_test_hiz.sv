@@ -41,21 +41,30 @@
   always_comb if (runs_q && valid_q)
     assert (next_q == (fragment_q.ends_visit ? '0 : holds_stamp ? (STAMP_BITS + 1)'(fragment_q.stamp) + 1'b1 : before_q));
   logic [STAMP_BITS:0] done;
-  assign done = valid_q ? before_q : next_q;  // the position that full_stamps_q and max_q include
+  assign done = valid_q ? before_q : next_q;  // the position that max_q and `full_stamps` include
+  // What is counted a cycle late, as it is with the stamp in fragment_q.
+  logic [STAMP_BITS-1:0] full_stamps;
+  logic any_passed, sets, clears, sets_q, clears_q;
+  assign full_stamps = retire_valid_o ? '0 : gen_hiz.full_stamps_q + STAMP_BITS'(gen_hiz.in_visit_q && gen_hiz.is_full_q);
+  assign any_passed  = !retire_valid_o && (gen_hiz.any_passed_q || (gen_hiz.in_visit_q && gen_hiz.any_kept_q));
+  assign sets        = fragment_q.state.depth_write && kept == '1 && !is_late && full_stamps == STAMP_BITS'(LAST);
+  assign clears      = fragment_q.state.depth_write && greater_passes && (any_passed || kept != '0);
+  always_ff @(posedge clk_i) {sets_q, clears_q} <= {sets, clears};
   always_comb if (runs_q) begin
     assert (next_q <= (STAMP_BITS + 1)'(STAMPS));
-    assert ((STAMP_BITS + 1)'(gen_hiz.full_stamps_q) <= done);
+    if (retire_valid_o) assert (gen_hiz.sets == sets_q && gen_hiz.clears == clears_q);
+    assert ((STAMP_BITS + 1)'(full_stamps) <= done);
     // For the corners that have come.
-    if ((STAMP_BITS + 1)'(gen_hiz.full_stamps_q) == done && done <= (STAMP_BITS + 1)'(LAST)) begin
+    if ((STAMP_BITS + 1)'(full_stamps) == done && done <= (STAMP_BITS + 1)'(LAST)) begin
       if (32'(done) > 0) assert (gen_hiz.max_q >= h00);
       if (32'(done) > PER_ROW - 1) assert (gen_hiz.max_q >= h01);
       if (32'(done) > LAST - (PER_ROW - 1)) assert (gen_hiz.max_q >= h10);
     end
-    if (valid_q && fragment_q.ends_visit && gen_hiz.sets)
+    if (valid_q && fragment_q.ends_visit && sets)
       assert (gen_hiz.max >= h00 && gen_hiz.max >= h01 && gen_hiz.max >= h10 && gen_hiz.max >= h11);
     // A visit that can raise a depth without setting the bound clears it.
-    if (valid_q && fragment_q.ends_visit && fragment_q.state.depth_write && greater_passes && (passed != '0 || gen_hiz.any_passed_q))
-      assert (gen_hiz.sets || gen_hiz.clears);
+    if (valid_q && fragment_q.ends_visit && fragment_q.state.depth_write && greater_passes && (passed != '0 || any_passed))
+      assert (sets || clears);
     if (retire_o.update == raster_pkg::HIZ_UPDATE_CLEAR) assert (retire_o.hiz_code == '1);
     assert (done <= (STAMP_BITS + 1)'(STAMPS));
   end

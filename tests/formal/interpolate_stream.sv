@@ -27,7 +27,7 @@
   assign valid = {samples_valid_q, y_valid_q, x_valid_q, context_valid_q};
   always_comb if (runs_q) begin
     assert (used_q == held_q + USED'(valid[0]) + USED'(valid[1]) + USED'(valid[2]) + USED'(valid[3]));
-    assert (used_q <= USED'(ROOM) && held_q <= USED'(ROOM));
+    assert (used_q <= USED'(ROOM) && held_q <= USED'(ROOM) && has_room_q == (used_q != USED'(ROOM)));
     if (samples_valid_q) assert (made_ready);
     assert ((at_q & (at_q - 4'd1)) == '0 && (at_q & ~valid) == '0 && !(done_q && at_q != '0));
     if (at_q[0]) assert (context_stamp_q == g_q);

@@ -55,7 +55,7 @@ texture_fault(texture_cache 7 [=[(!is_miss || has_come)]=] [=[1'b1]=])
 texture_fault(texture_cache 8 [=[{fill_line, fill_place}]=] [=[{fill_line, ~fill_place}]=])
 texture_fault(texture_cache 9 [=[drop_i || (sweeps_q && sweep_q != '1)]=] [=[sweeps_q && sweep_q != '1]=])
 texture_fault(texture_answers 10 [=[answer_valid_i && !discards]=] [=[answer_valid_i && rst_ni]=])
-texture_fault(texture_cache 11 [=[NUMBER'(group - (same_place_q ? last_group : tag_group)) <= NUMBER'(group - oldest_group)]=] [=[1'b0]=])
+texture_fault(texture_cache 11 [=[same_place_q ? is_in_queue(last_group) : is_in_queue(tag_group)]=] [=[1'b0]=])
 texture_fault(texture_cache 12 [=[t_goes && line_i == t_line_q]=] [=[1'b0]=])
 texture_fault(texture_cache 13 [=[sweeps_q ? last_group : group]=] [=[sweeps_q ? group - NUMBER'(64) : group]=])
 # Colour: saturation, a channel's bits.
