@@ -63,13 +63,14 @@ class HostUnits::Impl {
     const bool reads_light = config_.shade_units != 0 && state.color_write;
     const bool reads_fog = config_.fog_units != 0 && state.color_write;
     if (reads_light) out.units.tables[kLight] = light_.of(context.phong);
-    if (reads_fog) out.units.tables[kFog] = fog_.of(context.fog);
+    const std::shared_ptr<const FogTable> fog = state.fog ? context.fog : nullptr;
+    if (reads_fog) out.units.tables[kFog] = fog_.of(fog);
     if (textures_ && state.texture) {
       set_coordinates(context, triangle, out);
       if (is_compared) out.units.texels = texels_of(*state.texture);
     }
     if (state.color_interp == ColorInterp::perspective) set_colors_over_w(context, triangle, out.packet);
-    if (reads_fog && context.fog) set_distance(context, triangle, out);
+    if (reads_fog && fog) set_distance(context, triangle, out);
     if (reads_light && context.phong) set_normals(context, triangle, out.packet);
   }
 
