@@ -90,7 +90,7 @@ class HostStream::Host {
   void send_clear(const Clear& command);
   void send_triangle(const Triangle& triangle, bool is_culled);
   [[nodiscard]] HostPrimitive state_token(StateRegister which, uint128 word, const HostPrimitive& in_front_of) const;
-  void take_next(std::optional<HostPrimitive>& out);
+  [[nodiscard]] const HostPrimitive* next_primitive();
   void send_line(const LinePrimitive& line);
   [[nodiscard]] PrimitivePacket draw_packet(PrimitiveKind kind, const PixelBounds& box) const;
   [[nodiscard]] PrimitivePacket fast_clear() const;
@@ -120,6 +120,7 @@ class HostStream::Host {
   std::optional<FrameBins> bins_;              ///< with frame.order bins: primitives that wait for the end of the frame
   BinContents* held_ = nullptr;                ///< if bins are compared; then the initial clears wait
   std::vector<HostPrimitive> clears_;
+  std::optional<HostPrimitive> part_;   ///< the last one of the bins
   std::vector<HostPrimitive> pending_;  ///< made but not yet pulled
   std::size_t pending_first_ = 0;
   HostUnits units_;
@@ -154,18 +155,18 @@ HostStream::Host::Host(const Scene& scene, const Config& config, BinContents* he
 }
 
 std::optional<HostPrimitive> HostStream::Host::next() {
-  std::optional<HostPrimitive> next;  // the returned one: a primitive is expensive to copy
   if (in_front_.empty()) {
-    take_next(next);
-    if (!next) return next;
-    units_.set_for(next->packet.kind, next->units,
-                   [&](StateRegister which, uint128 word) { in_front_.push_back(state_token(which, word, *next)); });
-    if (in_front_.empty()) return next;
-    in_front_.push_back(*next);
+    const HostPrimitive* const primitive = next_primitive();
+    if (primitive == nullptr) return std::nullopt;
+    units_.set_for(primitive->packet.kind, primitive->units, [&](StateRegister which, uint128 word) {
+      in_front_.push_back(state_token(which, word, *primitive));
+    });
+    if (in_front_.empty()) return *primitive;
+    in_front_.push_back(*primitive);
   }
-  next = in_front_.front();
+  HostPrimitive first = std::move(in_front_.front());
   in_front_.pop_front();
-  return next;
+  return first;
 }
 
 /// A token that sets a register of a unit from here on.
@@ -179,16 +180,16 @@ HostPrimitive HostStream::Host::state_token(StateRegister which, uint128 word, c
   return out;
 }
 
-/// The next primitive without the tokens in front of it, into `out`; none: there is no other.
-void HostStream::Host::take_next(std::optional<HostPrimitive>& out) {
+/// The next primitive without the tokens in front of it, until the next call; null: there is no other.
+const HostPrimitive* HostStream::Host::next_primitive() {
   while (pending_first_ == pending_.size()) {
-    if (bins_ && (out = bins_->next())) return;
-    if (is_finished_) return;
+    if (bins_ && (part_ = bins_->next())) return &*part_;
+    if (is_finished_) return nullptr;
     pending_.clear();
     pending_first_ = 0;
     advance();
   }
-  out = pending_[pending_first_++];
+  return &pending_[pending_first_++];
 }
 
 /// Does the next piece of work; it may send nothing.
