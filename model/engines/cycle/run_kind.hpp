@@ -1,5 +1,5 @@
-// The runs that a timing is compiled for. Half of the model's time is in times, and what a plain run never has takes a tenth
-// of their instructions, even where it is only asked for.
+// The runs that a timing is compiled for. Half of the model's time is in times, and asking each stamp for what a plain run
+// never has is a part of it.
 #pragma once
 
 namespace halfplane {

@@ -66,9 +66,6 @@ void StepQueue::notify() {
 
 template <class Ready>
 void StepQueue::wait_until(Ready&& ready) {
-  constexpr int kLooks = 4096;  // some 10 us: a batch takes about 50, so a sleep is often not worth its wake-up
-  for (int n = 0; n < kLooks; ++n)
-    if (ready()) return;
   std::unique_lock lock(mutex_);
   changed_.wait(lock, ready);
 }
