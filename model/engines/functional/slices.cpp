@@ -10,6 +10,8 @@
 namespace halfplane::functional {
 namespace {
 
+constexpr std::size_t kPadding = 16;  // kernels write whole rows of lanes
+
 Record record_of(const std::array<std::uint32_t, 3>& v, std::int64_t z_low, std::int64_t z_high, const PixelBounds& box,
                  RecordKind kind) {
   Record record;
@@ -69,7 +71,8 @@ void draw_slowly(const FrameContext& frame, Slice& slice, const Slice::Part& par
   const std::size_t at = part.first + triangle;
   geometry(context, cache, {index[0][at], index[1][at], index[2][at]},
            part.primitive + static_cast<std::uint32_t>(triangle), frame.skip, slice.counters, pieces);
-  for (const Triangle& piece : pieces) add_triangle(slice, piece, context.rect, frame.widths, slice.triangles);
+  for (const Triangle& piece : pieces)
+    add_triangle(slice, piece, context.rect, frame.widths, slice.triangles + kPadding);
 }
 
 /// Finds the attributes over w of a slice's vertices.
@@ -151,10 +154,10 @@ void FrameRenderer::build(Slice& slice) const {
     const std::size_t range = std::size_t{slice.high_index} - slice.low_index + 1, corners = 3 * slice.triangles;
     slice.is_wide = range > corners;
     const std::size_t vertices = slice.is_wide ? corners : range;
-    slice.vertices.resize(vertices + 16);
-    slice.codes.resize(vertices + 16);
+    slice.vertices.resize(vertices + kPadding);
+    slice.codes.resize(vertices + kPadding);
     if (slice.state.has_surface) find_surface_vertices(frame, slice);
-    if (slice.records.size() < slice.triangles) slice.records.resize(slice.triangles);
+    if (slice.records.size() < slice.triangles + kPadding) slice.records.resize(slice.triangles + kPadding);
     // Polygon offset is a property of the triangle, not of vertices.
     if (!slice.is_lines && slice.context->state.polygon_offset != std::array<double, 2>{0.0, 0.0}) {
       for (const Slice::Part& part : slice.parts)
@@ -230,12 +233,12 @@ void FrameRenderer::fill_bins(Slice& slice) const {
   static thread_local std::vector<Run> runs;
   next.assign(bins, 0);
   const std::span records(slice.records.data(), slice.record_count);
-  runs.resize(
-      std::max(runs.size(), records.size() + 1));  // a run begins with each record, more where it lies in several bins
+  // At most a run for each record, and more where it lies in several bins.
+  runs.resize(std::max(runs.size(), records.size() + 1));
   Run* run = runs.data();
   std::size_t count = 0;  // and run[0] is unused
-  const auto bin_at = [this](int x, int y) {
-    return static_cast<std::uint32_t>((y >> kBinShift) * bins_x_ + (x >> kBinShift));
+  const auto bin_at = [in_row = bins_x_](int x, int y) {
+    return static_cast<std::uint32_t>((y >> kBinShift) * in_row + (x >> kBinShift));
   };
   constexpr std::uint32_t kNone = ~0U;
   std::uint32_t in_run = kNone, run_first = 0;  // in registers: memory would be read back at once
@@ -274,8 +277,11 @@ void FrameRenderer::fill_bins(Slice& slice) const {
   slice.bin_first[bins] = sum;
   slice.bin_records.resize(sum);
   for (const Run& one : all) {
-    std::uint32_t& to = next[one.bin];
-    for (std::uint32_t record = one.first; record < one.end; ++record) slice.bin_records[to++] = record;
+    std::uint32_t* const to = slice.bin_records.data() + next[one.bin];
+    const std::uint32_t length = one.end - one.first;
+    next[one.bin] += length;
+    to[0] = one.first;  // often all of it
+    for (std::uint32_t i = 1; i < length; ++i) to[i] = one.first + i;
   }
 }
 

@@ -206,10 +206,10 @@ struct CullLanes {
     counters.skipped.no_sample += count_of(sets.sampleless);
   }
 
-  using Records = std::array<Record, 16>;
+  /// Makes records: with packed_columns() of the triangles in `kept`, one after the other, else of all sixteen.
   /// `dropped`: a bit for each triangle that draws nothing.
   HALFPLANE_INLINE void make_records(const CullTriangles& t, const SampleLanes& few, std::uint32_t dropped,
-                                     Records& records) const {
+                                     [[maybe_unused]] std::uint32_t kept, Record* records) const {
     const I16 z_low = min(min(t.z[0], t.z[1]), t.z[2]), z_high = max(max(t.z[0], t.z[1]), t.z[2]);
     const std::uint32_t whole =
         bits_of((t.left > limit.left) & (t.top > limit.top) & (t.right < limit.right) & (t.bottom < limit.bottom));
@@ -224,13 +224,20 @@ struct CullLanes {
     };
     const I16 is_whole = bits_to_lanes(whole), is_dropped = bits_to_lanes(dropped);
     const I16 is_small = is_whole & fits(small), is_medium = is_small | (is_whole & fits(medium));
-    std::int32_t* const words = reinterpret_cast<std::int32_t*>(records.data());
+    std::int32_t* const words = reinterpret_cast<std::int32_t*>(records);
     static_assert(static_cast<int>(RecordKind::triangle) == 0);
-    store_rows({t.v[0], t.v[1], t.v[2], z_low}, words, sizeof(Record));
-    store_rows({z_high, pairs(t.left, t.top), pairs(t.right, t.bottom),
-                ((few.samples & is_small & ~is_dropped) << Record::kSamplesShift) | (is_whole & Record::kWhole) |
-                    (is_small & Record::kSmall) | (is_medium & Record::kMedium) | (is_dropped & Record::kDrawsNothing)},
-               words + 4, sizeof(Record));
+    const auto store = [&](const Columns& four, std::int32_t* to) HALFPLANE_LAMBDA {
+#if HALFPLANE_ISA == 512
+      store_rows(packed_columns(four, kept), to, sizeof(Record));
+#else
+      store_rows(four, to, sizeof(Record));
+#endif
+    };
+    store({t.v[0], t.v[1], t.v[2], z_low}, words);
+    store({z_high, pairs(t.left, t.top), pairs(t.right, t.bottom),
+           ((few.samples & is_small & ~is_dropped) << Record::kSamplesShift) | (is_whole & Record::kWhole) |
+               (is_small & Record::kSmall) | (is_medium & Record::kMedium) | (is_dropped & Record::kDrawsNothing)},
+          words + 4);
   }
 
   /// Culls the triangles of `part` from `first` on, `many` or sixteen of them. `number`: of the first, in the slice.
@@ -247,9 +254,16 @@ struct CullLanes {
                                   ~bits_of((t.left > t.right) | (t.top > t.bottom));
     std::uint32_t rest = (sets.drawn & ~sets.sampleless) | dropped | sets.slow;
     if (rest == 0) return;  // back faces come in runs
-    alignas(64) Records records;
-    make_records(t, few, dropped, records);
     Record* out = slice.records.data() + slice.record_count;
+#if HALFPLANE_ISA == 512
+    if (sets.slow == 0) {
+      make_records(t, few, dropped, rest, out);
+      slice.record_count += static_cast<unsigned>(std::popcount(rest));
+      return;
+    }
+#endif
+    alignas(64) std::array<Record, 16> records;
+    make_records(t, few, dropped, 0xffff, records.data());
     for (; rest != 0; rest &= rest - 1) {
       const int i = std::countr_zero(rest);
       if ((sets.slow >> i & 1) != 0) {

@@ -143,6 +143,18 @@ HALFPLANE_LEAF void store_rows(const Columns& from, void* to, std::size_t stride
              [=](int i) HALFPLANE_LAMBDA { return static_cast<char*>(to) + static_cast<std::size_t>(i) * stride; });
 }
 
+#if HALFPLANE_ISA == 512
+/// The lanes whose bits are set, one after the other; any lanes after them.
+HALFPLANE_LEAF Columns packed_columns(const Columns& from, std::uint32_t bits) {
+  const auto packed = [bits](const I16& v) HALFPLANE_LAMBDA {
+    I16 r;
+    r.part[0] = (I16::Register)_mm512_maskz_compress_epi32(static_cast<__mmask16>(bits), (__m512i)v.part[0]);
+    return r;
+  };
+  return {packed(from.first), packed(from.second), packed(from.third), packed(from.fourth)};
+}
+#endif
+
 /// Four columns of sixteen rows of four numbers.
 struct DoubleColumns {
   D16 first, second, third, fourth;

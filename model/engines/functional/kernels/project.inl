@@ -93,7 +93,12 @@ HALFPLANE_INLINE I16 project_lanes(const VertexLanes& v, const Projection& p, in
       const L16 is_fine = convert<std::int64_t>(codes < static_cast<int>(Slice::kSlow));
       w = select(is_fine, w, D16(1.0));  // others are not used
     }
-    const D16 nx = v.x / w, ny = v.y / w, nz = v.z / w;
+    D16 nx = v.x, ny = v.y, nz = v.z;
+    if (is_any(convert<std::int32_t>(w != 1.0))) {  // of two-dimensional programs all are 1
+      nx = nx / w;
+      ny = ny / w;
+      nz = nz / w;
+    }
     const D16 depth = p.is_zero_one ? nz : (nz + 1.0) * 0.5;  // halves are exact
     x = p.viewport.x + (nx + 1.0) * 0.5 * p.viewport.width;
     y = p.viewport.y + (1.0 - ny) * 0.5 * p.viewport.height;

@@ -110,10 +110,15 @@ HALFPLANE_INLINE void draw_alone(Bin& bin, const Slice& slice, const Record& rec
 template <class Fragments>
 HALFPLANE_INLINE bool draw_sixteen(Bin& bin, const Slice& slice, const std::uint32_t* first) {
   SmallBatch& batch = bin.small;
-  for (std::size_t i = 0; i < 16; ++i) batch.records[i] = &slice.records[first[i]];
-  const Columns upper = words_of(batch, 4);
+  const Record* const records = slice.records.data();
+  if (first[15] - first[0] != 15 || bin.sees_surfaces())
+    for (std::size_t i = 0; i < 16; ++i) batch.records[i] = records + first[i];
+  const auto words = [&](int from) HALFPLANE_LAMBDA {
+    return first[15] - first[0] == 15 ? words_of(records + first[0], from) : words_of(batch, from);  // they ascend
+  };
+  const Columns upper = words(4);
   if (is_any((upper.fourth & Record::kSmall) == 0)) return false;
-  const Columns lower = words_of(batch, 0);
+  const Columns lower = words(0);
   if (bin.skip.tiles_hiz) {
     const auto tile_of = [](const I16& pixel, int bin_first)
                              HALFPLANE_LAMBDA { return max(pixel - bin_first, I16(0)) >> kTileShift; };

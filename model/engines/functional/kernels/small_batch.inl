@@ -76,6 +76,12 @@ HALFPLANE_INLINE Columns words_of(const SmallBatch& batch, int from) {
   });
 }
 
+/// Of sixteen records that follow each other.
+HALFPLANE_INLINE Columns words_of(const Record* records, int from) {
+  return turned_rows([records, from](int i)
+                         HALFPLANE_LAMBDA { return reinterpret_cast<const std::int32_t*>(records + i) + from; });
+}
+
 /// Stores the words of its records in a batch; sets live.
 HALFPLANE_INLINE void place_records(SmallBatch& batch, const Columns& lower, const Columns& upper, int first_x,
                                     int first_y) {
