@@ -275,6 +275,26 @@ TEST(Functional, EveryAlphaTestOfAlphaThatFadesIsTheSameOnEveryPath) {
     }
 }
 
+/// Large, small and tiny triangles, textured or not, blended ones and lines.
+TEST(Functional, DitheredDrawsLeaveOutWhatOthersLeaveOut) {
+  const Config config = config_with(ColorFormat::rgb565);
+  for (const char* name : {"layers:24", "layers_glass:24", "layers_linear:6", "ball:40", "ball_linear:40", "dust:20000",
+                           "scratches:200", "city"}) {
+    SCOPED_TRACE(name);
+    const Scene plain = make_builtin(name, 192, 130, {}, 1);
+    Scene dithered = plain;
+    for (State& state : dithered.states) state.dither = true;
+    expect_all_same(dithered, config);
+    const Rendering with = render_functional(dithered, config), without = render_functional(plain, config);
+    EXPECT_NE(with.frame.color, without.frame.color);
+    const Counters::Skipped &of = with.counters.skipped, &expected = without.counters.skipped;
+    EXPECT_EQ(of.attributes, expected.attributes);
+    EXPECT_EQ(of.trivially_accepted, expected.trivially_accepted);
+    EXPECT_EQ(of.tiles_hiz, expected.tiles_hiz);
+    EXPECT_EQ(of.operations_early_z, expected.operations_early_z);
+  }
+}
+
 TEST(Functional, BlendsOfOpaqueTrianglesAreDrawnAsIfNothingWereBlended) {
   const Config config = config_with(ColorFormat::rgba8888);
   const Scene glass = glass_of("layers:24", true, [](std::size_t) { return 255.0; });

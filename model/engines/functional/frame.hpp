@@ -46,6 +46,12 @@ struct SliceState : FragmentState {
   bool is_masked = false;    ///< no colour channel is written or read
 };
 
+/// A draw's colour operations but for dithering: where pixels have one sample, that is only a way to store colours.
+[[nodiscard]] constexpr ColorOps undithered(ColorOps ops, int pixel_samples) {
+  ops.dithers = ops.dithers && pixel_samples > 1;
+  return ops;
+}
+
 /// A vertex in the engine's own layout, independent of SnappedVertex: the values that every draw needs are a row of
 /// four words, of which lanes take sixteen at a time, a column each. A further attribute becomes an array of its own in
 /// Slice.

@@ -417,8 +417,10 @@ Slice& FrameRenderer::add_slice(const DrawContext& context) {
   slice.context = &context;
   const FragmentOps& ops = context.fragment_ops;
   const bool is_masked = !ops.state.color_write && ops.alpha.func == DepthFunc::always && !ops.stencil;
+  FragmentOps rest = ops;
+  rest.color = undithered(ops.color, widths_.pixel_samples);
   slice.state = {ops.state, state.shade == Shade::flat,
-                 is_opaque_ && ops.is_plain() && (!is_masked || skip_.masked_draws), false,
+                 is_opaque_ && rest.is_plain() && (!is_masked || skip_.masked_draws), false,
                  is_masked && skip_.masked_draws};
   slice.state.color_write |= ops.alpha.func != DepthFunc::always;
   slice.parts.clear();

@@ -100,6 +100,7 @@ struct BinTriangle {
   std::array<std::int64_t, 4> c_anchor, c_tile_x, c_tile_y;  ///< the same for colours, channel by channel
   ColorSteps color;
   std::int32_t surface;  ///< index into BinMemory::seen, where its colours are; 0: none
+  Packing packing;       ///< of its colours
 };
 
 /// A surface whose colours are being computed.
@@ -107,6 +108,7 @@ struct DrawnSurface {
   SurfaceConstants constants;
   BinTriangle colors;                   ///< affine ones
   std::unique_ptr<StageSurface> stage;  ///< where lanes lack a feature of the surface
+  Packing packing;
 };
 
 /// A visible textured primitive, set up when its first pixel is shaded.
@@ -280,6 +282,11 @@ struct Bin {
   SampleMemory& sample_memory;  ///< not of_thread() in a loop: that is an opaque call for the compiler
   SliceState state;
   const FragmentOps* ops = nullptr;  ///< of the slice
+  Packing packing{};                 ///< of its colours
+  /// How colours of a draw are stored.
+  [[nodiscard]] HALFPLANE_INLINE Packing packing_of(const FragmentOps& of) const {
+    return {config.color_format, of.color.dithers};
+  }
   // State of the current primitive after its alpha test:
   bool has_operations = false;      ///< operations that are more than plain: operations.inl
   bool lays_over = false;           ///< the only operation is blending by alpha

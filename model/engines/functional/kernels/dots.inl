@@ -19,8 +19,7 @@ HALFPLANE_INLINE bool is_dot(const Bin& bin, const Slice& slice, const Record& r
 /// Whether dots may be operated on in lanes, where no two of them are at one pixel.
 HALFPLANE_INLINE bool takes_dots_in_lanes(const Bin& bin) {
   const FragmentOps& ops = *bin.ops;
-  return !ops.stencil && ops.alpha.func == DepthFunc::always && !ops.color.dithers && !ops.state.depth_write &&
-         ops.state.color_write;
+  return !ops.stencil && ops.alpha.func == DepthFunc::always && !ops.state.depth_write && ops.state.color_write;
 }
 
 /// The first `count` of such fragments; returns how many passed.
@@ -44,7 +43,7 @@ HALFPLANE_INLINE unsigned operate_on_dots(Bin& bin, const FragmentLanes& group, 
   const ColorPairs mixed =
       ops.blends() ? BlendLanes(ops, source, widened(stored, format))(format == ColorFormat::rgba8888) : source;
   const auto written = static_cast<std::int32_t>(written_bits(ops, format));
-  I16 code = packed(mixed.red_blue, mixed.green_alpha, format);
+  I16 code = packed(mixed.red_blue, mixed.green_alpha, bin.packing, thresholds_at(I16::load(group.place.data())));
   if (ops.logic != LogicOp::copy) code = LogicLanes(ops.logic)(code, stored);
   ((code & written) | (stored & ~written)).store(color.data());
   for (std::uint32_t left = passed; left != 0; left &= left - 1) {
@@ -71,7 +70,7 @@ struct SeenPixels {
 template <class Fragments>
 HALFPLANE_NOINLINE const std::uint32_t* draw_dots(Bin& bin, const Slice& slice, const std::uint32_t* first,
                                                   const std::uint32_t* last) {
-  const ColorFormat format = Fragments::format(bin.config);
+  const Packing packing = Fragments::packing(bin);
   const typename Fragments::Writer write(bin);
   std::uint64_t dots = 0, passed = 0, tiles = 0;
   alignas(64) FragmentLanes::Lane x{}, y{}, rgba{};
@@ -93,7 +92,7 @@ HALFPLANE_NOINLINE const std::uint32_t* draw_dots(Bin& bin, const Slice& slice, 
     }
     const I16 at = place_of(I16::load(x.data()), I16::load(y.data()));
     at.store(group.place.data());
-    packed(I16::load(rgba.data()), format).store(group.color.data());
+    packed_at(at, I16::load(rgba.data()), packing).store(group.color.data());
     const std::uint64_t touched = or_of_bits(I16(1), at >> 6, (1U << count) - 1);
     tiles |= touched;
     if ((touched & ~bin.line_tiles) != 0) touch_line_tiles<Fragments>(bin, touched & ~bin.line_tiles);

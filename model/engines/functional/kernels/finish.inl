@@ -101,7 +101,10 @@ HALFPLANE_INLINE void write_color_rows(const Bin& bin, const BinTriangle& left, 
   const auto column = as<S32>(pairs(x, x));
   std::array<S32, 2> value, step_y, low, high;
   const LaneFormat format = bin.color_format;
-  const ColorFormat pixels = bin.config.color_format;
+  const Packing plain{bin.config.color_format, false}, dithered{plain.format, true};
+  const bool is_dithered = left.packing.dithers || right.packing.dithers;
+  const I16 dithers =
+      halves(-static_cast<std::int32_t>(left.packing.dithers), -static_cast<std::int32_t>(right.packing.dithers));
   for (std::size_t p = 0; p < 2; ++p) {
     step_y[p] = both([p](const ColorSteps& t) HALFPLANE_LAMBDA { return t.step_y[p]; });
     low[p] = both([p](const ColorSteps& t) HALFPLANE_LAMBDA { return t.low[p]; });
@@ -109,10 +112,15 @@ HALFPLANE_INLINE void write_color_rows(const Bin& bin, const BinTriangle& left, 
     value[p] = column * both([p](const ColorSteps& t) HALFPLANE_LAMBDA { return t.step_x[p]; }) -
                (step_y[p] << (kTileShift - 1)) + as<S32>(halves(at_left[p], at_right[p]));
   }
+  I16 place = bin.position.lane & 3;  // of the row's pixels in their blocks
   for (auto& row : rows) {
     const auto pair = [&](std::size_t p)
                           HALFPLANE_LAMBDA { return color_codes(value[p], as<I16>(low[p]), as<I16>(high[p]), format); };
-    packed(pair(0), pair(1), pixels).store(row.data() + to);
+    const I16 red_blue = pair(0), green_alpha = pair(1);
+    I16 code = packed(red_blue, green_alpha, plain.format);
+    if (is_dithered) code = select(dithers, packed(red_blue, green_alpha, dithered, thresholds_at(place)), code);
+    code.store(row.data() + to);
+    place += I16(kBlockSize);
     for (std::size_t p = 0; p < 2; ++p) value[p] += step_y[p];
   }
 }

@@ -118,7 +118,7 @@ struct OpaqueFragments {
   }
 
   /// Colours are packed before the test.
-  HALFPLANE_INLINE static ColorFormat format(const Config& config) { return config.color_format; }
+  HALFPLANE_INLINE static Packing packing(const Bin& bin) { return bin.packing; }
 
   /// Writes consecutive fragments. The compiler must assume that stores change the bin: hence copies.
   struct Writer {
@@ -160,7 +160,7 @@ struct GeneralFragments {
   static constexpr bool kIsOpaque = false, kIsLess = false;
 
   /// A colour's codes, R lowest: packed when they are written.
-  HALFPLANE_INLINE static ColorFormat format(const Config&) { return ColorFormat::rgba8888; }
+  HALFPLANE_INLINE static Packing packing(const Bin&) { return kUnpacked; }
 
   /// Draws the fragments whose bit is set, one after the other. Returns the number that passed.
   HALFPLANE_NOINLINE static unsigned draw_some(Bin& bin, const FragmentLanes& fragments, std::uint32_t covered) {

@@ -24,7 +24,6 @@ HALFPLANE_NOINLINE void draw_tile_general(Bin& bin, const BinTriangle& t, int ti
   const bool needs_colors = bin.state.color_write || bin.ops->alpha.func != DepthFunc::always;
   const ColorRamp color_plane =
       needs_colors ? color_ramp(bin, t.color, color_anchor(bin, t, tile_x, tile_y)) : ColorRamp{};
-  const ColorFormat format = GeneralFragments::format(bin.config);
   std::uint64_t covered_pixels = 0, passed_pixels = 0;
   for (std::size_t block = 0; block < 4; ++block) {
     const I16 column = bin.position.block_x + static_cast<int>(block & 1) * kBlockSize,
@@ -36,7 +35,9 @@ HALFPLANE_NOINLINE void draw_tile_general(Bin& bin, const BinTriangle& t, int ti
     FragmentLanes fragments;
     (bin.position.lane + (first_of(tile) + static_cast<int>(block) * kBlockPixels)).store(fragments.place.data());
     block_depths(bin, t, depth_plane, block).store(fragments.depth.data());
-    if (needs_colors) block_colors(t.color, color_plane, block, bin.color_format, format).store(fragments.color.data());
+    if (needs_colors)
+      block_colors(t.color, color_plane, block, bin.color_format, GeneralFragments::packing(bin))
+          .store(fragments.color.data());
     covered_pixels += static_cast<unsigned>(std::popcount(covered));
     passed_pixels += GeneralFragments::draw_some(bin, fragments, covered);
   }

@@ -227,10 +227,10 @@ HALFPLANE_LEAF Result lanes_from(const Vector& low, const Vector& high, std::ind
   return __builtin_shufflevector(low, high, (First + static_cast<int>(I))...);
 }
 
-/// Every second lane of `low` and `high`, from the first on.
-template <class Result, class Vector, std::size_t... I>
+/// Every second lane of `low` and `high`, from lane `First` on.
+template <class Result, int First = 0, class Vector, std::size_t... I>
 HALFPLANE_LEAF Result even_lanes(const Vector& low, const Vector& high, std::index_sequence<I...>) {
-  return __builtin_shufflevector(low, high, (2 * static_cast<int>(I))...);
+  return __builtin_shufflevector(low, high, (2 * static_cast<int>(I) + First)...);
 }
 
 /// Converts lane by lane as static_cast does; where one type is twice as wide, half a register at a time.
@@ -344,13 +344,33 @@ HALFPLANE_LEAF I16 upper_halves(const L16& v) {
   const I16 odd = I16::of([](int i) { return 2 * i + 1; });
   r.part[0] = (I16::Register)_mm512_permutex2var_epi32((__m512i)v.part[0], (__m512i)odd.part[0], (__m512i)v.part[1]);
   return r;
+#elif HALFPLANE_ISA == 256
+  I16 r;
+  for (int i = 0; i < I16::kParts; ++i)
+    r.part[i] = even_lanes<I16::Register, 1>((I16::Register)v.part[2 * i], (I16::Register)v.part[2 * i + 1],
+                                             std::make_index_sequence<I16::kLanes>{});
+  return r;
 #else
   return convert<std::int32_t>(shift_right_logical(v, 32));
 #endif
 }
 
-/// Two values of 16 bits in the halves of each lane.
-HALFPLANE_LEAF I16 pairs(const I16& low, const I16& high) { return (low & 0xffff) | (high << 16); }
+/// The lower half of each lane from `low`, the upper one from `high`.
+HALFPLANE_LEAF I16 joined_halves(const I16& low, const I16& high) {
+#if HALFPLANE_ISA == 256
+  I16 r;
+  for (int i = 0; i < 2; ++i)
+    r.part[i] = (I16::Register)_mm256_blend_epi16((__m256i)low.part[i], (__m256i)high.part[i], 0xaa);
+  return r;
+#else
+  return (low & 0xffff) | (high & static_cast<std::int32_t>(0xffff0000U));
+#endif
+}
+/// Two values of 16 bits in the halves of each lane: the lower halves of both, or the upper ones.
+HALFPLANE_LEAF I16 pairs(const I16& low, const I16& high) { return joined_halves(low, high << 16); }
+HALFPLANE_LEAF I16 upper_pairs(const I16& low, const I16& high) {
+  return joined_halves(shift_right_logical(low, 16), high);
+}
 
 /// The upper halves of unsigned products.
 HALFPLANE_LEAF S32 multiply_upper(const S32& a, std::uint16_t b) {

@@ -18,15 +18,19 @@ namespace {
 
 /// src_alpha, one_minus_src_alpha, added, for all channels: the most common blending. The two factors sum to 255.
 /// Alpha, where stored, uses the same factors, or one as the first.
-[[nodiscard]] inline bool is_over(const ColorOps& ops, ColorFormat format) {
+[[nodiscard]] inline bool has_over_factors(const ColorOps& ops, ColorFormat format) {
   const BlendFactors& f = ops.factors;
   if (f.src != BlendFactor::src_alpha || f.dst != BlendFactor::one_minus_src_alpha ||
-      ops.equation[0] != BlendEquation::add || ops.dithers || ops.logic != LogicOp::copy ||
-      ops.writes != ColorOps{}.writes)
+      ops.equation[0] != BlendEquation::add)
     return false;
   return format != ColorFormat::rgba8888 ||
          ((f.src_alpha == BlendFactor::src_alpha || f.src_alpha == BlendFactor::one) &&
           f.dst_alpha == BlendFactor::one_minus_src_alpha && ops.equation[1] == BlendEquation::add);
+}
+
+/// The same, without other operations.
+[[nodiscard]] inline bool is_over(const ColorOps& ops, ColorFormat format) {
+  return has_over_factors(ops, format) && !ops.dithers && ops.logic == LogicOp::copy && ops.writes == ColorOps{}.writes;
 }
 
 /// The bits that replace alpha as its own first factor, where that is one.
@@ -35,9 +39,7 @@ HALFPLANE_INLINE std::int32_t own_factor_bits(const ColorOps& ops) {
 }
 
 /// Alpha in both halves.
-HALFPLANE_INLINE S32 alpha_pairs(const I16& green_alpha) {
-  return as<S32>(shift_right_logical(green_alpha, 16) | (green_alpha & static_cast<std::int32_t>(0xffff0000U)));
-}
+HALFPLANE_INLINE S32 alpha_pairs(const I16& green_alpha) { return as<S32>(upper_pairs(green_alpha, green_alpha)); }
 
 /// The stored colour as codes of 8 bits: widen_color(). Five bits r become 33 r >> 2, six g 65 g >> 4: here as the
 /// upper halves of products, r 2^11 times 264 and g 2^10 times 260.
@@ -66,6 +68,7 @@ struct Layer {
   ChannelPairs low, high;                                                                    ///< codes of the vertices
   std::uint64_t is_clamped;  ///< tiles whose values may leave this range
   std::int32_t own_factor;
+  bool dithers;
 };
 
 /// The layers of a thread's bin; Bin::layer_count of them.
@@ -168,7 +171,8 @@ HALFPLANE_INLINE void lay(const Layer& layer, int tile, std::size_t block, int d
     over.red_blue = as<S32>(mixed.red_blue);
     over.green_alpha = as<S32>(mixed.green_alpha);
   } else {  // each layer is stored
-    const ColorPairs stored = widened(packed(mixed.red_blue, mixed.green_alpha, kFormat), kFormat);
+    const I16 code = packed(mixed.red_blue, mixed.green_alpha, Packing{kFormat, layer.dithers});
+    const ColorPairs stored = widened(code, kFormat);
     over.red_blue = as<S32>(stored.red_blue);
     over.green_alpha = as<S32>(stored.green_alpha);
   }
@@ -242,6 +246,7 @@ HALFPLANE_NOINLINE void add_layer(Bin& bin, const BinTriangle& t, std::uint64_t 
   layer.low = t.color.low;
   layer.high = t.color.high;
   layer.own_factor = own_factor_bits(bin.ops->color);
+  layer.dithers = bin.packing.dithers;
   layer.is_clamped = 0;
   for (std::size_t p = 0; p < 2; ++p) layer.is_clamped |= set_layer_anchors(bin, t, layer, p);
   for (std::uint64_t rest = tiles & ~layered_tiles(bin); rest != 0; rest &= rest - 1) {

@@ -27,6 +27,11 @@ HALFPLANE_LEAF I16 magnitude(const I16& v) { return max(v, -v); }
 /// -v where the mask is set.
 HALFPLANE_LEAF I16 turned(const I16& v, const I16& mask) { return (v ^ mask) - mask; }
 
+HALFPLANE_LEAF L16 turned(const L16& v, const I16& mask) {
+  const auto wide = convert<std::int64_t>(mask);
+  return (v ^ wide) - wide;
+}
+
 /// How the values of a tile are held and read: in the upper bits of a lane, so that they wrap by overflow.
 struct LaneFormat {
   int drop;       ///< from a plane's value at the anchor to a tile's
@@ -48,6 +53,16 @@ struct LaneFormat {
     anchor_bias = plane_bias(attribute, widths);
     to_centred = std::uint64_t{1} << (attribute.code.bits + widths.plane_fraction);
   }
+
+  /// Without a bias, of signed planes.
+  LaneFormat(int drop_, int up_, int grid_bits)
+      : drop(drop_),
+        up(up_),
+        down(0),
+        step_drop(drop - grid_bits),
+        bias(0),
+        anchor_bias(std::uint64_t{1} << (drop - 1)),
+        to_centred(0) {}
 
   /// With centred anchors.
   [[nodiscard]] LaneFormat centred() const {
@@ -103,6 +118,51 @@ HALFPLANE_LEAF I16 decode(const I16& value, const LaneFormat& format, const I16&
 /// R lowest, A highest.
 [[nodiscard]] HALFPLANE_LEAF I16 packed(const I16& rgba, ColorFormat format) {
   return packed(rgba & 0xff00ff, shift_right_logical(rgba, 8) & 0xff00ff, format);
+}
+
+/// How a draw's colours are stored.
+struct Packing {
+  ColorFormat format;
+  bool dithers;  ///< rgb565 alone
+};
+inline constexpr Packing kUnpacked{ColorFormat::rgba8888, false};
+
+/// dither_threshold() in both halves. `place`: of pixels in a bin's memory, whose lowest bits are column and row in a
+/// block; a block has the side of the matrix.
+HALFPLANE_LEAF S32 thresholds_at(const I16& place) {
+  const I16 across = place ^ shift_right_logical(place, 2);  // x ^ y
+  const I16 bayer = ((across & 1) << 3) | (place & 4) | (across & 2) | (shift_right_logical(place, 3) & 1),
+            threshold = bayer ^ 15;
+  return as<S32>(threshold | (threshold << 16));
+}
+/// Of the pixels of a block.
+HALFPLANE_LEAF S32 block_thresholds() {
+  return as<S32>(I16::of([](int i) {
+    const auto t = static_cast<std::int32_t>(dither_threshold(i % 4, i / 4));
+    return t | t << 16;
+  }));
+}
+
+/// Colours in a draw's packing; the last: thresholds of the pixels.
+[[nodiscard]] HALFPLANE_LEAF I16 packed(const I16& red_blue, const I16& green_alpha, const Packing& to,
+                                        const S32& threshold) {
+  if (!to.dithers) return packed(red_blue, green_alpha, to.format);
+  const auto rounded = [&threshold](const I16& codes, std::int16_t factor, int drop) HALFPLANE_LAMBDA {
+    const S32 at_threshold = (threshold << (drop - 4)) + static_cast<std::int16_t>(1 << (drop - 5));
+    return as<I16>(shift_right_logical(as<S32>(codes) * factor + at_threshold, drop));
+  };
+  return multiply_add_pairs(rounded(red_blue, 249, 11), I16(1 << 16 | 1 << 11)) |
+         multiply_add_pairs(rounded(green_alpha, 253, 10), I16(1 << 5));
+}
+/// R lowest, A highest; of pixels at these places.
+[[nodiscard]] HALFPLANE_LEAF I16 packed_at(const I16& place, const I16& rgba, const Packing& to) {
+  if (to.format == ColorFormat::rgba8888) return rgba;
+  if (!to.dithers) return packed(rgba, to.format);
+  return packed(rgba & 0xff00ff, shift_right_logical(rgba, 8) & 0xff00ff, to, thresholds_at(place));
+}
+/// The same for the pixels of a block.
+[[nodiscard]] HALFPLANE_LEAF I16 packed(const I16& red_blue, const I16& green_alpha, const Packing& to) {
+  return packed(red_blue, green_alpha, to, block_thresholds());
 }
 
 /// area_quotient() by a division in binary64, corrected by its remainder: exact.
@@ -188,6 +248,9 @@ struct SplitLanes {
   }
   HALFPLANE_LEAF friend SplitLanes operator<<(const SplitLanes& a, int bits) {
     return {a.upper << bits, a.lower << bits};
+  }
+  HALFPLANE_LEAF friend SplitLanes turned(const SplitLanes& v, const I16& mask) {
+    return {turned(v.upper, mask), turned(v.lower, mask)};
   }
 };
 

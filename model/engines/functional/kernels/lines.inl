@@ -25,20 +25,19 @@ HALFPLANE_NOINLINE void touch_line_tiles(Bin& bin, std::uint64_t tiles) {
 /// Colours along a line, from its first pixel.
 struct LineColors {
   I16 first[4], step[4];
-  ColorFormat format;
+  Packing packing;
 
-  HALFPLANE_INLINE LineColors(const LineBatch& line, std::size_t i, ColorFormat format_) : format(format_) {
+  HALFPLANE_INLINE LineColors(const LineBatch& line, std::size_t i, const Packing& packing_) : packing(packing_) {
     for (std::size_t c = 0; c < 4; ++c) {
       first[c] = I16(line.color[c][i]);
       step[c] = I16(line.color_step[c][i]);
     }
   }
 
-  /// Of the pixels `n`.
-  HALFPLANE_INLINE I16 operator()(const I16& n) const {
+  /// Of the pixels `n`, at these places.
+  HALFPLANE_INLINE I16 operator()(const I16& n, const I16& place) const {
     const auto channel = [&](std::size_t c) HALFPLANE_LAMBDA { return n * step[c] + first[c]; };
-    const I16 rgba = highest_bytes(channel(0), channel(1), channel(2), channel(3));
-    return format == ColorFormat::rgba8888 ? rgba : packed(rgba, format);
+    return packed_at(place, highest_bytes(channel(0), channel(1), channel(2), channel(3)), packing);
   }
 };
 
@@ -101,7 +100,7 @@ HALFPLANE_NOINLINE void draw_pixels(Bin& bin, const LineBatch& lines, std::size_
   constexpr int kDepthBits = 8 * static_cast<int>(sizeof(Depth)), kGroup = 16;
   const int depth_down = kDepthBits - bin.config.depth_bits;
   const bool has_color = bin.state.color_write;
-  const ColorFormat format = Fragments::format(bin.config);
+  const Packing packing = Fragments::packing(bin);
   const std::int32_t* const places = bin.line_positions.place.data();
   const typename Fragments::Writer write(bin);
   const I16 lane = bin.position.lane;
@@ -114,7 +113,7 @@ HALFPLANE_NOINLINE void draw_pixels(Bin& bin, const LineBatch& lines, std::size_
     const auto depth_of = [](std::int64_t value)
                               HALFPLANE_LAMBDA { return static_cast<Depth>(value >> (64 - kDepthBits)); };
     const Pack<Depth, 16> first_depth(depth_of(lines.depth[i])), depth_step(depth_of(lines.depth_step[i]));
-    const LineColors color(lines, i, format);
+    const LineColors color(lines, i, packing);
     const LinePlaces place(places, lines, i);
     TileVisits tiles;
     for (int first = 0; first < pixels_left; first += kGroup) {
@@ -128,10 +127,10 @@ HALFPLANE_NOINLINE void draw_pixels(Bin& bin, const LineBatch& lines, std::size_
           touch_line_tiles<Fragments>(bin, touched);
       const Pack<Depth, 16> depth = convert<Depth>(n) * depth_step + first_depth;
       convert<std::int32_t>(shift_right_logical(depth, depth_down)).store(group.depth.data());
-      if (has_color) color(n).store(group.color.data());
+      if (has_color) color(n, at).store(group.color.data());
       if (first == 0 && lines.shows_start[i] != 0) {
         group.depth[0] = lines.depth_start[i];
-        if (has_color) group.color[0] = packed(I16(lines.color_start[i]), format).part[0][0];
+        if (has_color) group.color[0] = packed_at(at, I16(lines.color_start[i]), packing).part[0][0];
       }
       passed_pixels += write(group, pixels);
     }

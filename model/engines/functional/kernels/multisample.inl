@@ -280,7 +280,8 @@ struct SampledTriangle {
   HALFPLANE_NOINLINE void find_colors(int tile, const SamplePixels& pixels, ColorFormat format, PixelColors& colors) {
     if (t.surface != 0) {
       const auto set = [&](std::int32_t number, std::uint64_t here) {
-        shade(bin, drawn_surface(bin, static_cast<std::size_t>(number)), tile, here, colors.code.data(), format);
+        shade(bin, drawn_surface(bin, static_cast<std::size_t>(number)), tile, here, colors.code.data(),
+              Packing{format, false});
       };
       if ((pixels.any & pixels.centre) != 0) set(t.surface, pixels.any & pixels.centre);
       return for_each_place(pixels, [&](unsigned m, std::uint64_t here) { set(surface_at(m), here); });

@@ -94,25 +94,9 @@ struct BlendLanes {
               green = pair(source.green_alpha, stored.green_alpha, 1, 3, false);
     if (!has_alpha) return ColorPairs(red_blue, green);
     const I16 alpha = pair(source.green_alpha, stored.green_alpha, 1, 3, true);
-    return ColorPairs(red_blue, (green & 0xffff) | (alpha & static_cast<std::int32_t>(0xffff0000U)));
+    return ColorPairs(red_blue, joined_halves(green, alpha));
   }
 };
-
-/// Codes of 8 bits to rgb565, each pixel with its threshold in both halves: pack_rgb565_dithered().
-HALFPLANE_INLINE I16 packed_dithered(const ColorPairs& c, const S32& threshold) {
-  const I16 red_blue = as<I16>(shift_right_logical(
-                as<S32>(c.red_blue) * std::int16_t{249} + threshold * std::int16_t{128} + std::int16_t{64}, 11)),
-            green = as<I16>(shift_right_logical(
-                as<S32>(c.green_alpha) * std::int16_t{253} + threshold * std::int16_t{64} + std::int16_t{32}, 10));
-  return multiply_add_pairs(red_blue, I16(1 << 16 | 1 << 11)) | multiply_add_pairs(green, I16(1 << 5));
-}
-/// The thresholds of a block, whose side is that of the matrix.
-HALFPLANE_INLINE S32 block_thresholds() {
-  return as<S32>(I16::of([](int i) {
-    const auto t = static_cast<std::int32_t>(dither_threshold(i % 4, i / 4));
-    return t | t << 16;
-  }));
-}
 
 /// The colours of a tile's pixels before they are stored: computed on demand, or a surface's.
 struct TileColors {
@@ -126,8 +110,7 @@ struct TileColors {
       : steps(t.color), format(bin.color_format), is_surface(t.surface != 0) {
     if (is_surface) {
       rgba.fill(0);
-      shade(bin, drawn_surface(bin, static_cast<std::size_t>(t.surface)), tile, pixels, rgba.data(),
-            ColorFormat::rgba8888);
+      shade(bin, drawn_surface(bin, static_cast<std::size_t>(t.surface)), tile, pixels, rgba.data(), kUnpacked);
     } else {
       const ColorRamp ramp = color_ramp(bin, t.color, color_anchor(bin, t, tile % kBinTiles, tile / kBinTiles));
       for (std::size_t p = 0; p < ramp.size(); ++p) plane[p] = ramp[p];
@@ -234,35 +217,25 @@ HALFPLANE_INLINE void store_colors(Bin& bin, std::uint32_t* to, std::uint64_t pi
                                    std::size_t stride = kBlockPixels) {
   const ColorOps& ops = bin.ops->color;
   const ColorFormat format = bin.config.color_format;
-  const bool has_alpha = format == ColorFormat::rgba8888, blends = ops.blends(), dithers = ops.dithers;
+  const bool has_alpha = format == ColorFormat::rgba8888, blends = ops.blends(),
+             is_over = has_over_factors(ops, format);
+  const std::int32_t own_factor = own_factor_bits(ops);
   const bool writes_some = bin.ops->state.color_write,  // false only without Skip::masked_draws
       has_logic = ops.logic != LogicOp::copy, writes_all = writes_some && !has_logic && ops.writes == ColorOps{}.writes;
   const auto written = writes_some ? static_cast<std::int32_t>(written_bits(ops, format)) : 0;
-  const S32 thresholds = dithers ? block_thresholds() : S32(0);
+  const Packing packing = bin.packing;
   const LogicLanes logic(ops.logic);
   const auto code_of = [&](auto block, const I16& stored) HALFPLANE_LAMBDA {
     const auto mixed = [&]() HALFPLANE_LAMBDA {
       if (!blends) return colors[block];
+      if (is_over) return laid_over(colors[block], widened(stored, format), own_factor);
       return BlendLanes(ops, colors[block], widened(stored, format))(has_alpha);
     }();
-    I16 code = dithers ? packed_dithered(mixed, thresholds) : packed(mixed.red_blue, mixed.green_alpha, format);
+    I16 code = packed(mixed.red_blue, mixed.green_alpha, packing);
     if (has_logic) code = logic(code, stored);
     return writes_all ? code : (code & written) | (stored & ~written);
   };
   store_pixels(bin, to, pixels, bin.skip.operations_early_z, code_of, stride);
-}
-
-/// A draw with is_over() and no alpha test.
-template <ColorFormat kFormat>
-HALFPLANE_NOINLINE void lay_over(Bin& bin, const BinTriangle& t, int tile, std::uint64_t pixels) {
-  const TileColors colors(bin, t, tile, pixels);
-  need_color(bin, tile);
-  const std::int32_t own_factor = own_factor_bits(bin.ops->color);
-  std::uint32_t* const to = bin.memory.color.data() + first_of(tile);
-  store_pixels(bin, to, pixels, bin.skip.operations_early_z, [&](auto block, const I16& stored) HALFPLANE_LAMBDA {
-    const ColorPairs mixed = laid_over(colors[block], widened(stored, kFormat), own_factor);
-    return packed(mixed.red_blue, mixed.green_alpha, kFormat);
-  });
 }
 
 /// The outcome of the alpha test for all pixels of a tile whose corners a textured triangle covers, as far as the
@@ -350,9 +323,6 @@ HALFPLANE_NOINLINE void operate_on_tile(Bin& bin, const BinTriangle& t, int tile
     ++bin.job.counters.skipped.alpha_tiles;
     return;
   }
-  if (bin.lays_over)
-    return bin.config.color_format == ColorFormat::rgb565 ? lay_over<ColorFormat::rgb565>(bin, t, tile, passed)
-                                                          : lay_over<ColorFormat::rgba8888>(bin, t, tile, passed);
   std::uint64_t kept = passed;
   const auto keep = [&](std::uint64_t those) HALFPLANE_LAMBDA {
     kept = those;
@@ -361,7 +331,8 @@ HALFPLANE_NOINLINE void operate_on_tile(Bin& bin, const BinTriangle& t, int tile
   };
   // A passing pixel replaces the stored values: its colour is deferred like any other surface's, and computed if
   // visible. bin.state.color_write also says that alpha is read.
-  if (t.surface != 0 && bin.samples == 1 && bin.skip.attributes && ops.state.color_write && ops.color.is_plain()) {
+  if (t.surface != 0 && bin.samples == 1 && bin.skip.attributes && ops.state.color_write &&
+      undithered(ops.color, 1).is_plain()) {
     if (alpha == Outcome::some_pass) {
       const DrawnSurface& surface = drawn_surface(bin, static_cast<std::size_t>(t.surface));
       keep(has_alpha_alone(surface) ? test_linear_alpha(bin, surface, tile, passed)

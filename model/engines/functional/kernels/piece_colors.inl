@@ -114,8 +114,8 @@ class BlockPieces {
 #endif
 
 /// over_q(), `value`: P. Lanes hold the members of LaneAttribute. `is_tame`: as there, for all.
-HALFPLANE_INLINE I16 over_q(const I16& value, const ReciprocalsOfQ& q, const I16& narrow, const I16& drop, bool is_tame,
-                            const LaneOverW& format) {
+HALFPLANE_LEAF I16 over_q(const I16& value, const ReciprocalsOfQ& q, const I16& narrow, const I16& drop, bool is_tame,
+                          const LaneOverW& format) {
   const I16 down = q.exponent + narrow - PieceScale::kNarrowLess;
   I16 number;
   if (is_tame) {
@@ -152,7 +152,7 @@ HALFPLANE_NOINLINE void shade_pieces(Bin& bin, const SurfaceStyle& style, int ti
   const PieceConstants& constants = bin.memory.constants.front();
   const PieceConstants::Tile& of_tile =
       constants.tile[static_cast<std::size_t>((tile & 1) | (tile / kBinTiles & 1) << 1)];
-  const ColorFormat format = bin.config.color_format;
+  const Packing packing = bin.packing_of(style.context->fragment_ops);
   const bool is_tame = style.is_tame;
   const int color_down = bin.centred_color.down;
   BlockPieces pieces[4];
@@ -222,14 +222,13 @@ HALFPLANE_NOINLINE void shade_pieces(Bin& bin, const SurfaceStyle& style, int ti
     };
     const I16 red_green = pair(from.first, step.first, step.third, 0),
               blue_alpha = pair(from.second, step.second, step.fourth, 1);
-    const ColorPairs own(pairs(red_green, blue_alpha),
-                         shift_right_logical(red_green, 16) | (blue_alpha & static_cast<std::int32_t>(0xffff0000U)));
+    const ColorPairs own(pairs(red_green, blue_alpha), upper_pairs(red_green, blue_alpha));
     const ColorPairs texels = [&]() HALFPLANE_LAMBDA {
       if constexpr (kSampling == Sampling::nearest) return ColorPairs(I16::load(nearest.data() + block * kBlockPixels));
       return ColorPairs(red_blue[block], green_alpha[block]);
     }();
     const ColorPairs mixed = combined(own, texels, texture);
-    return packed(mixed.red_blue, mixed.green_alpha, format);
+    return packed(mixed.red_blue, mixed.green_alpha, packing);
   });
 }
 HALFPLANE_INLINE void shade_pieces(Bin& bin, const SurfaceStyle& style, int tile, const TilePieces& shown,

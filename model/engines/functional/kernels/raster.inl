@@ -99,6 +99,7 @@ HALFPLANE_INLINE void draw_alone(Bin& bin, const Slice& slice, const Record& rec
   BinTriangle triangle;
   triangle.box = box;
   triangle.is_whole = record.has(Record::kWhole);
+  triangle.packing = bin.packing;
   if (bin.samples > 1)
     draw_large<Fragments, SeveralSamples>(bin, slice, record, live, triangle);
   else
@@ -250,10 +251,11 @@ struct RecordWays {
     const bool keeps_alpha = !state.texture || state.texture_combine == TextureCombine::decal ||
                              !has_alpha(of.context->scene.textures[*state.texture].format);
     knows_alpha = keeps_alpha;
-    is_plain = !ops.state.color_write || ops.color.is_plain();
-    replaces = ops.state.color_write && bin.skip.opaque_blends && replaces_where_opaque(ops.color, format);
-    lays_over = ops.state.color_write && !of.state.has_surface && are_short_anchors(bin.color_format) &&
-                is_over(ops.color, format);
+    const ColorOps color = undithered(ops.color, bin.widths.pixel_samples);
+    is_plain = !ops.state.color_write || color.is_plain();
+    replaces = ops.state.color_write && bin.skip.opaque_blends && replaces_where_opaque(color, format);
+    lays_over =
+        ops.state.color_write && !of.state.has_surface && are_short_anchors(bin.color_format) && is_over(color, format);
   }
 
   HALFPLANE_INLINE RecordWay operator()(const Bin& bin, const Record& record) const {
@@ -346,6 +348,7 @@ static void raster(BinJob& job) {
     if (first == last) continue;
     bin.state = slice.state;
     bin.ops = &slice.context->fragment_ops;
+    bin.packing = bin.packing_of(*bin.ops);
     bin.drawn_samples = drawn_samples(slice.context->state) & ((1U << bin.samples) - 1);
     bin.is_range_old = true;
     bin.falls = bin.state.depth_test == DepthFunc::less || bin.state.depth_test == DepthFunc::lequal;

@@ -325,13 +325,14 @@ HALFPLANE_INLINE I16 small_colors(const Bin& bin, std::size_t i, const SmallBatc
             right = left + (step_x << 1);
   const I16 rgba =
       ColorRange::clamped(saturated(left >> down, right >> down), I16(batch.c_low[i]), I16(batch.c_high[i]));
-  return kColor == Writes::other ? packed(rgba, bin.config.color_format) : rgba;
+  return kColor == Writes::other ? packed_at(bin.position.lane, rgba, bin.packing) : rgba;
 }
 
 /// Colours of a draw with is_over(), blended upon the stored ones.
-HALFPLANE_INLINE I16 blended_colors(const I16& rgba, const I16& stored, std::int32_t own_factor, ColorFormat format) {
-  const ColorPairs mixed = laid_over(ColorPairs(rgba), widened(stored, format), own_factor);
-  return packed(mixed.red_blue, mixed.green_alpha, format);
+HALFPLANE_INLINE I16 blended_colors(const I16& rgba, const I16& stored, std::int32_t own_factor,
+                                    const Packing& packing) {
+  const ColorPairs mixed = laid_over(ColorPairs(rgba), widened(stored, packing.format), own_factor);
+  return packed(mixed.red_blue, mixed.green_alpha, packing);
 }
 
 /// Depth, test and colour of the partially covered blocks. The state says which buffers are written.
@@ -345,7 +346,7 @@ HALFPLANE_INLINE void draw_blocks(Bin& bin, const Coverage& covered) {
   std::uint16_t* const surfaces = bin.memory.surface.data();
   const int depth_down = bin.centred_depth.down, color_down = bin.centred_color.down;
   const bool is_skipping = kColor == Writes::laid_over ? bin.skip.operations_early_z : bin.skip.fragments_early_z;
-  const ColorFormat format = bin.config.color_format;
+  const Packing packing = bin.packing;
   const std::int32_t own_factor = own_factor_bits(bin.ops->color);
   unsigned passed_pixels = 0;
   for (std::size_t first = 0; first < covered.quads; first += 16)
@@ -371,7 +372,7 @@ HALFPLANE_INLINE void draw_blocks(Bin& bin, const Coverage& covered) {
       }
       const I16 color = small_colors<kColor>(bin, i, tile, block, color_down), old = I16::load(colors + at);
       if constexpr (kColor == Writes::laid_over)
-        test.choose_color(passed, blended_colors(color, old, own_factor, format), old).store(colors + at);
+        test.choose_color(passed, blended_colors(color, old, own_factor, packing), old).store(colors + at);
       else
         test.choose_color(passed, color, old).store(colors + at);
     }

@@ -17,9 +17,8 @@ HALFPLANE_INLINE S32 divide_by_255(const S32& value) { return multiply_upper(val
 
 /// combined().
 HALFPLANE_INLINE ColorPairs combined(const ColorPairs& color, const ColorPairs& texel, const LaneTexture& texture) {
-  constexpr auto kAlpha = static_cast<std::int32_t>(0xffff0000U);
   const auto with_alpha = [](const ColorPairs& rgb, const I16& green_alpha) HALFPLANE_LAMBDA {
-    return ColorPairs(rgb.red_blue, (rgb.green_alpha & 0xffff) | (green_alpha & kAlpha));
+    return ColorPairs(rgb.red_blue, joined_halves(rgb.green_alpha, green_alpha));
   };
   const auto by_channel = [&](auto&& of) HALFPLANE_LAMBDA {
     return ColorPairs(as<I16>(of(as<S32>(color.red_blue), as<S32>(texel.red_blue))),
@@ -30,7 +29,7 @@ HALFPLANE_INLINE ColorPairs combined(const ColorPairs& color, const ColorPairs& 
     case TextureCombine::modulate: return by_channel(product);
     case TextureCombine::replace: return texture.has_alpha ? texel : with_alpha(texel, color.green_alpha);
     case TextureCombine::decal: {
-      const auto part = as<S32>(shift_right_logical(texel.green_alpha, 16) | (texel.green_alpha & kAlpha));
+      const auto part = as<S32>(upper_pairs(texel.green_alpha, texel.green_alpha));
       const auto mixed = by_channel([&](const S32& a, const S32& b)
                                         HALFPLANE_LAMBDA { return divide_by_255(a * (255 - part) + b * part); });
       return with_alpha(mixed, color.green_alpha);
@@ -120,7 +119,7 @@ HALFPLANE_INLINE ColorPairs texels_at(const LaneTexture& texture, const Coordina
 /// each other, and would hide the loads of the next block from the scheduler.
 template <Sampling kSampling>
 HALFPLANE_NOINLINE void shade(Bin& bin, const DrawnSurface& surface, int tile, std::uint64_t pixels,
-                              std::uint32_t* const colors, ColorFormat format) {
+                              std::uint32_t* const colors, const Packing& packing) {
   constexpr bool kHasTexture = kSampling != Sampling::none;
   const SurfaceConstants& of = surface.constants;
   const SurfaceRamps<kSampling> ramps(bin, surface, tile % kBinTiles, tile / kBinTiles, of.has_color);
@@ -155,54 +154,56 @@ HALFPLANE_NOINLINE void shade(Bin& bin, const DrawnSurface& surface, int tile, s
       }();
       return of.has_color ? combined(ramps.own(bin, surface, block), texels, of.texture) : texels;
     }();
-    return packed(pairs.red_blue, pairs.green_alpha, format);
+    return packed(pairs.red_blue, pairs.green_alpha, packing);
   });
 }
 
 /// The same pixel by pixel, by the stages.
 HALFPLANE_NOINLINE void shade_by_stages(Bin& bin, const Surface& surface, int tile, std::uint64_t pixels,
-                                        std::uint32_t* const colors, ColorFormat format) {
+                                        std::uint32_t* const colors, const Packing& packing) {
   const int left = bin.first_x + tile % kBinTiles * kTileSize, top = bin.first_y + tile / kBinTiles * kTileSize;
   for (; pixels != 0; pixels &= pixels - 1) {
     const auto at = static_cast<std::size_t>(std::countr_zero(pixels));
     const int block = static_cast<int>(at) / kBlockPixels, pixel = static_cast<int>(at) % kBlockPixels;
     const int x = block % 2 * kBlockSize + pixel % kBlockSize, y = block / 2 * kBlockSize + pixel / kBlockSize;
-    colors[at] = pack_color(format, surface.color(left + x, top + y));
+    const std::array<std::uint8_t, 4> c = surface.color(left + x, top + y);
+    colors[at] = packing.dithers ? pack_rgb565_dithered<std::uint32_t>(c[0], c[1], c[2], dither_threshold(x, y))
+                                 : pack_color(packing.format, c);
   }
 }
 
 /// The textures alone, or colours without light.
 HALFPLANE_INLINE void shade_unlit(Bin& bin, const DrawnSurface& surface, int tile, std::uint64_t pixels,
-                                  std::uint32_t* const colors, ColorFormat format) {
+                                  std::uint32_t* const colors, const Packing& packing) {
   switch (sampling_of(surface.constants)) {
-    case Sampling::none: return shade<Sampling::none>(bin, surface, tile, pixels, colors, format);
-    case Sampling::nearest: return shade<Sampling::nearest>(bin, surface, tile, pixels, colors, format);
-    case Sampling::linear: return shade<Sampling::linear>(bin, surface, tile, pixels, colors, format);
-    case Sampling::any: return shade<Sampling::any>(bin, surface, tile, pixels, colors, format);
+    case Sampling::none: return shade<Sampling::none>(bin, surface, tile, pixels, colors, packing);
+    case Sampling::nearest: return shade<Sampling::nearest>(bin, surface, tile, pixels, colors, packing);
+    case Sampling::linear: return shade<Sampling::linear>(bin, surface, tile, pixels, colors, packing);
+    case Sampling::any: return shade<Sampling::any>(bin, surface, tile, pixels, colors, packing);
   }
 }
 
 /// Lit colours: texels first, if there are some, in 8 bits a channel.
 HALFPLANE_NOINLINE void shade_lit(Bin& bin, const DrawnSurface& surface, int tile, std::uint64_t pixels,
-                                  std::uint32_t* const colors, ColorFormat format) {
+                                  std::uint32_t* const colors, const Packing& packing) {
   const SurfaceConstants& of = surface.constants;
   alignas(64) std::array<std::uint32_t, kTilePixels> texels{};
-  if (of.has_texture) shade_unlit(bin, surface, tile, pixels, texels.data(), ColorFormat::rgba8888);
+  if (of.has_texture) shade_unlit(bin, surface, tile, pixels, texels.data(), kUnpacked);
   const SurfaceRamps<Sampling::none> ramps(bin, surface, tile % kBinTiles, tile / kBinTiles, true);
   const NormalRamps normals(bin, *of.light, tile % kBinTiles, tile / kBinTiles);
   store_pixels(bin, colors, pixels, true, [&](auto block, const I16&) HALFPLANE_LAMBDA {
     const ColorPairs lit = LightLanes(normals, *of.light, block).lit(ramps.own(bin, surface, block), *of.light);
     const ColorPairs pairs =
         of.has_texture ? combined(lit, ColorPairs(I16::load(texels.data() + block * kBlockPixels)), of.texture) : lit;
-    return packed(pairs.red_blue, pairs.green_alpha, format);
+    return packed(pairs.red_blue, pairs.green_alpha, packing);
   });
 }
 
 /// All that lanes do, except fog.
 HALFPLANE_INLINE void shade_in_lanes(Bin& bin, const DrawnSurface& surface, int tile, std::uint64_t pixels,
-                                     std::uint32_t* const colors, ColorFormat format) {
-  if (surface.constants.light) return shade_lit(bin, surface, tile, pixels, colors, format);
-  shade_unlit(bin, surface, tile, pixels, colors, format);
+                                     std::uint32_t* const colors, const Packing& packing) {
+  if (surface.constants.light) return shade_lit(bin, surface, tile, pixels, colors, packing);
+  shade_unlit(bin, surface, tile, pixels, colors, packing);
 }
 
 /// f of pixels, 2^-12: FogTable::factor().
@@ -228,28 +229,28 @@ HALFPLANE_INLINE ColorPairs in_fog(const ColorPairs& color, const I16& factor, c
 
 /// The same with fog, a pass of its own over colours of 8 bits: no cost without fog.
 HALFPLANE_NOINLINE void shade_in_fog(Bin& bin, const DrawnSurface& surface, int tile, std::uint64_t pixels,
-                                     std::uint32_t* const colors, ColorFormat format) {
+                                     std::uint32_t* const colors, const Packing& packing) {
   alignas(64) std::array<std::uint32_t, kTilePixels> clear{};
-  shade_in_lanes(bin, surface, tile, pixels, clear.data(), ColorFormat::rgba8888);
+  shade_in_lanes(bin, surface, tile, pixels, clear.data(), kUnpacked);
   const LaneFog& fog = surface.constants.fog;
   const BlockRamp<I16> q = over_w_ramp(bin, fog.q, tile % kBinTiles, tile / kBinTiles);
   store_pixels(bin, colors, pixels, true, [&](auto block, const I16&) HALFPLANE_LAMBDA {
     const I16 factors = fog_factors(q(block), fog, surface.constants.division.up);
     const ColorPairs pairs = in_fog(ColorPairs(I16::load(clear.data() + block * kBlockPixels)), factors, fog);
-    return packed(pairs.red_blue, pairs.green_alpha, format);
+    return packed(pairs.red_blue, pairs.green_alpha, packing);
   });
 }
 
 /// Writes colours of a tile's `pixels`, in a format, to their places among the tile's 64.
 HALFPLANE_INLINE void shade(Bin& bin, const DrawnSurface& surface, int tile, std::uint64_t pixels,
-                            std::uint32_t* const colors, ColorFormat format) {
-  if (surface.stage) return shade_by_stages(bin, surface.stage->surface, tile, pixels, colors, format);
-  if (surface.constants.has_fog) return shade_in_fog(bin, surface, tile, pixels, colors, format);
-  shade_in_lanes(bin, surface, tile, pixels, colors, format);
+                            std::uint32_t* const colors, const Packing& packing) {
+  if (surface.stage) return shade_by_stages(bin, surface.stage->surface, tile, pixels, colors, packing);
+  if (surface.constants.has_fog) return shade_in_fog(bin, surface, tile, pixels, colors, packing);
+  shade_in_lanes(bin, surface, tile, pixels, colors, packing);
 }
 /// Writes them to memory, in the stored format.
 HALFPLANE_INLINE void shade(Bin& bin, const DrawnSurface& surface, int tile, std::uint64_t pixels) {
-  shade(bin, surface, tile, pixels, bin.memory.color.data() + first_of(tile), bin.config.color_format);
+  shade(bin, surface, tile, pixels, bin.memory.color.data() + first_of(tile), surface.packing);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ struct CoordinateLanes {
 /// The coordinate along an axis from a quotient of over_q(). Far beyond the image all texels are equal, and so 32 bits
 /// hold twice that.
 template <class Reference>
-HALFPLANE_INLINE I16 on_axis(const LaneTexture& texture, std::size_t axis, const I16& u, const Reference& reference) {
+HALFPLANE_LEAF I16 on_axis(const LaneTexture& texture, std::size_t axis, const I16& u, const Reference& reference) {
   const I16 sum = (texture.up == 0 ? u : u << texture.up) + reference;
   constexpr std::int32_t kFar = 1 << 22;
   return texture.wrap[axis] == TextureWrap::clamp ? min(max(sum, I16(-kFar)), I16(kFar)) : sum;
@@ -270,9 +270,8 @@ HALFPLANE_INLINE ChannelSums linear_sums(const LaneTexture& texture, const Coord
                    below = row(texels.lower_left, texels.lower_right);
   const auto first = [&](const I16& upper, const I16& lower)
                          HALFPLANE_LAMBDA { return weighted(pairs(upper, lower), down, drop); };
-  const auto second = [&](const I16& upper, const I16& lower) HALFPLANE_LAMBDA {
-    return weighted(shift_right_logical(upper, 16) | (lower & static_cast<std::int32_t>(0xffff0000U)), down, drop);
-  };
+  const auto second = [&](const I16& upper, const I16& lower)
+                          HALFPLANE_LAMBDA { return weighted(upper_pairs(upper, lower), down, drop); };
   return {{first(above.red_blue, below.red_blue), first(above.green_alpha, below.green_alpha),
            second(above.red_blue, below.red_blue), second(above.green_alpha, below.green_alpha)}};
 }
@@ -287,7 +286,7 @@ HALFPLANE_INLINE I16 linear_alpha(const LaneTexture& texture, const CoordinateLa
 
 /// Integer parts of sums with 16 fraction bits.
 HALFPLANE_INLINE ColorPairs integers_of(const ChannelSums& sum) {
-  return {(sum.of[0] >> 16) | (sum.of[2] & 0xff0000), (sum.of[1] >> 16) | (sum.of[3] & 0xff0000)};
+  return {upper_pairs(sum.of[0], sum.of[2]), upper_pairs(sum.of[1], sum.of[3])};
 }
 
 template <class Level>

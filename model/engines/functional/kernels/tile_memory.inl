@@ -99,8 +99,7 @@ HALFPLANE_INLINE TileBlocks colors_of(const Bin& bin, int tile) {
   if (owner >= 0) {
     const BinTriangle& t = bin.memory.planes[static_cast<std::size_t>(owner)];
     const auto ramp = color_ramp(bin, t.color, color_anchor(bin, t, tile % kBinTiles, tile / kBinTiles));
-    for (std::size_t i = 0; i < 4; ++i)
-      blocks[i] = block_colors(t.color, ramp, i, bin.color_format, bin.config.color_format);
+    for (std::size_t i = 0; i < 4; ++i) blocks[i] = block_colors(t.color, ramp, i, bin.color_format, t.packing);
   } else {
     const std::uint32_t* from = bin.memory.color.data() + first_of(tile);
     for (std::size_t i = 0; i < 4; ++i) blocks[i] = I16::load(from + kBlockPixels * i);

@@ -344,7 +344,7 @@ HALFPLANE_INLINE void color_tile(Bin& bin, const BinTriangle& t, int tile, const
   std::uint32_t* const pixels = bin.memory.color.data() + first_of(tile);
   const ColorSteps steps = t.color;
   const LaneFormat format = bin.color_format;
-  const ColorFormat pixel_format = bin.config.color_format;
+  const Packing packing = t.packing;
   const bool skips = bin.skip.fragments_early_z;
   for_each_block([&](auto block) HALFPLANE_LAMBDA {
     std::uint32_t* const at = pixels + block * kBlockPixels;
@@ -353,7 +353,7 @@ HALFPLANE_INLINE void color_tile(Bin& bin, const BinTriangle& t, int tile, const
       if (is_cleared) stored.store(at);
       return;
     }
-    const I16 color = block_colors(steps, plane, block, format, pixel_format);
+    const I16 color = block_colors(steps, plane, block, format, packing);
     select_by_bits(block_bits(passed, block), color, stored, bin.position.to_sign).store(at);
   });
 }

@@ -113,8 +113,7 @@ HALFPLANE_NOINLINE void set_up_samples(Bin& bin, const Slice& slice, SampleRound
   for (std::size_t r = 0; r < rounds.count; ++r) {
     const B64 channels = turns_of_halves(saturated(S32::load(red_green[r].data()), S32::load(blue_alpha[r].data())));
     const I16 rgba = ColorRange::clamped(channels, range.low, range.high);
-    (bin.config.color_format == ColorFormat::rgba8888 ? rgba : packed(rgba, bin.config.color_format))
-        .store(rounds.color[r].data());
+    packed_at(I16::load(rounds.place[r].data()), rgba, bin.packing).store(rounds.color[r].data());
   }
 }
 

@@ -137,7 +137,7 @@ HALFPLANE_INLINE I16 block_depths(const Bin& bin, const BinTriangle& t, const Bl
 }
 /// Packed colours.
 HALFPLANE_INLINE I16 block_colors(const ColorSteps& t, const ColorRamp& ramp, std::size_t block,
-                                  const LaneFormat& format, ColorFormat pixels) {
+                                  const LaneFormat& format, const Packing& pixels) {
   const auto pair = [&](std::size_t p)
                         HALFPLANE_LAMBDA { return color_codes(ramp[p](block), I16(t.low[p]), I16(t.high[p]), format); };
   return packed(pair(0), pair(1), pixels);
