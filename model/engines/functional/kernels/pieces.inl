@@ -17,32 +17,18 @@ HALFPLANE_INLINE I16 exponent_field(const D16& v) { return upper_halves(as<L16>(
 HALFPLANE_INLINE D16 power_of_field(const I16& field) { return as<D16>(convert<std::int64_t>(field) << 52); }
 constexpr std::int32_t kDoubleBias = 1023;
 
-/// snap(): floor(v + 1/2). Where that sum itself rounds, it rounds down, which does not change its floor.
-HALFPLANE_INLINE D16 snapped(const D16& v) {
+/// snap(): floor(v + 1/2) is half of floor(2 v) + 1, rounded down, where v + 1/2 itself would be rounded. `twice`: 2 v.
+HALFPLANE_INLINE I16 snapped_codes(const D16& twice) {
 #if HALFPLANE_ISA == 512
-  D16 r;
-  for (int i = 0; i < D16::kParts; ++i)
-    r.part[i] = (D16::Register)_mm512_add_round_pd((__m512d)v.part[i], _mm512_set1_pd(0.5),
-                                                   _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
-  return floor(r);
-#else
-  const D16 whole = floor(v);  // or the compiler drops it
-  return whole + as<D16>(as<L16>(D16(1.0)) & (v - whole >= 0.5));
-#endif
-}
-/// The same in 32 bits.
-HALFPLANE_INLINE I16 snapped_codes(const D16& v) {
-#if HALFPLANE_ISA == 512
-  const auto half = [&v](int i) HALFPLANE_LAMBDA {
-    constexpr int kDown = _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC;
-    return _mm512_cvt_roundpd_epi32(_mm512_add_round_pd((__m512d)v.part[i], _mm512_set1_pd(0.5), kDown), kDown);
+  const auto half = [&twice](int i) HALFPLANE_LAMBDA {
+    return _mm512_cvt_roundpd_epi32((__m512d)twice.part[i], _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
   };
-  I16 r;
-  r.part[0] = (I16::Register)_mm512_inserti64x4(_mm512_castsi256_si512(half(0)), half(1), 1);
-  return r;
+  I16 whole;
+  whole.part[0] = (I16::Register)_mm512_inserti64x4(_mm512_castsi256_si512(half(0)), half(1), 1);
 #else
-  return convert<std::int32_t>(snapped(v));
+  const auto whole = convert<std::int32_t>(floor(twice));
 #endif
+  return (whole + 1) >> 1;
 }
 
 /// The values of an attribute at the three corners.
@@ -79,13 +65,13 @@ struct QLanes {
     const D16 a = inverse.a * scale, b = inverse.b * scale, c = inverse.c * scale;
     // Rounding may carry to one more bit.
     const D16 whole(static_cast<double>(std::int64_t{1} << bits) - 0.5);
-    const D16 fit = select(max(max(a, b), c) >= whole, D16(0.5), D16(1.0));
-    number.a = max(snapped(a * fit), D16(1.0));
-    number.b = max(snapped(b * fit), D16(1.0));
-    number.c = max(snapped(c * fit), D16(1.0));
-    code.a = convert<std::int32_t>(number.a);
-    code.b = convert<std::int32_t>(number.b);
-    code.c = convert<std::int32_t>(number.c);
+    const D16 twice = select(max(max(a, b), c) >= whole, D16(1.0), D16(2.0));
+    code.a = max(snapped_codes(a * twice), I16(1));
+    code.b = max(snapped_codes(b * twice), I16(1));
+    code.c = max(snapped_codes(c * twice), I16(1));
+    number.a = convert<double>(code.a);
+    number.b = convert<double>(code.b);
+    number.c = convert<double>(code.c);
   }
 };
 
@@ -98,17 +84,22 @@ struct OverWLanes {
   HALFPLANE_INLINE OverWLanes(const OfCorners<D16>& texels, const QLanes& q, const OverWFormat& format) {
     const D16 low = least_of(texels), high = max(max(texels.a, texels.b), texels.c);
     reference = floor(low * 0.5 + high * 0.5);
-    constexpr double limit = kFarthestCoordinate;
-    const auto from_reference = [&](const D16& of)
-                                    HALFPLANE_LAMBDA { return min(max(of - reference, D16(-limit)), D16(limit)); };
-    const D16 ua = from_reference(texels.a), ub = from_reference(texels.b), uc = from_reference(texels.c);
-    const D16 a = ua * q.number.a, b = ub * q.number.b, c = uc * q.number.c;
+    D16 ua = texels.a - reference, ub = texels.b - reference, uc = texels.c - reference;
     const auto bits_above_point = [](const D16& number)
                                       HALFPLANE_LAMBDA { return exponent_field(number) - (kDoubleBias - 1); };
-    reach = max(bits_above_point(largest_magnitude({ua, ub, uc}) * (1 + 0x1p-10)), I16(0));
+    const auto find_reach = [&](const D16& farthest)
+                                HALFPLANE_LAMBDA { reach = max(bits_above_point(farthest * (1 + 0x1p-10)), I16(0)); };
+    const D16 farthest = max(high - reference, reference - low);
+    find_reach(farthest);
+    if (is_any(reach >= kMaxReach)) [[unlikely]] {
+      constexpr double limit = kFarthestCoordinate;
+      for (D16* const u : {&ua, &ub, &uc}) *u = min(max(*u, D16(-limit)), D16(limit));
+      find_reach(min(farthest, D16(limit)));
+    }
+    const D16 a = ua * q.number.a, b = ub * q.number.b, c = uc * q.number.c;
     exponent = max(bits_above_point(largest_magnitude({a, b, c})), reach - 1) - format.bits;
     const auto find_codes = [&]() HALFPLANE_LAMBDA {
-      const D16 scale = power_of_field(kDoubleBias - exponent);
+      const D16 scale = power_of_field(kDoubleBias + 1 - exponent);  // twice
       p.a = snapped_codes(a * scale);
       p.b = snapped_codes(b * scale);
       p.c = snapped_codes(c * scale);
@@ -238,44 +229,48 @@ HALFPLANE_NOINLINE std::uint32_t set_up_levels(const SmallCorners& corners, cons
   return bits_of(~is_flat & convert<std::int32_t>(largest < 0x1p-500));
 }
 
-/// Planes over w of sixteen triangles, at the anchors of their windows' tiles.
+/// Planes over w of sixteen triangles, at the anchors of their windows' tiles. `Gradient`: GradientLanes, or
+/// ExactGradientLanes where are_exact_planes().
+template <class Gradient>
 struct PiecePlanes {
   const Widths& widths;
-  const PerspectiveFormat& format;
-  L16 ax, ay, bx, by;             ///< corners from the base
-  L16 to_x, to_y;                 ///< from the base to the anchor of the tile of even column and row
-  L16 is_odd_column, is_odd_row;  ///< masks: column and row of the window's first tile
-  GradientLanes gradient;
+  int guard_bits;
+  TwoCorners corner;              ///< from the base
+  FromOrigin to;                  ///< from the base to the anchor of the tile of even column and row
+  I16 is_odd_column, is_odd_row;  ///< masks: column and row of the window's first tile
+  const Gradient& gradient;
 
   /// Plane in lanes, with `up` bits below its values.
   struct Plane {
-    I16 at[4];  ///< at the anchors of PieceConstants::tile
+    Anchors at;  ///< at the anchors of PieceConstants::tile
     I16 step_x, step_y;
   };
 
   HALFPLANE_INLINE Plane operator()(const OfCorners<I16>& code, int up) const {
-    const L16 ac = convert<std::int64_t>(code.b - code.a), bc = convert<std::int64_t>(code.c - code.a);
-    const L16 step_x = gradient(multiply_narrow(ac, by) - multiply_narrow(bc, ay)),
-              step_y = gradient(multiply_narrow(ax, bc) - multiply_narrow(bx, ac));
-    const int fraction = widths.plane_fraction, drop = fraction - format.guard_bits,
-              to_tile = kTileShift + widths.grid_bits;
-    const auto turned_where = [](const L16& v, const L16& mask) HALFPLANE_LAMBDA { return (v ^ mask) - mask; };
-    const L16 aside = turned_where(step_x << to_tile, is_odd_column),
-              below = turned_where(step_y << to_tile, is_odd_row);
-    const L16 first =
-        (convert<std::int64_t>(code.a) << fraction) + step_x * to_x + step_y * to_y + (std::int64_t{1} << (drop - 1));
-    const auto narrow = [drop, up](const L16& v)
-                            HALFPLANE_LAMBDA { return convert<std::int32_t>(shift_right_logical(v, drop)) << up; };
-    Plane plane;
-    plane.at[0] = narrow(first);
-    plane.at[1] = narrow(first + aside);
-    plane.at[2] = narrow(first + below);
-    plane.at[3] = narrow(first + aside + below);
-    plane.step_x = round_shift_lanes(step_x, drop - widths.grid_bits) << up;
-    plane.step_y = round_shift_lanes(step_y, drop - widths.grid_bits) << up;
-    return plane;
+    using Numerator = std::conditional_t<std::is_same_v<Gradient, ExactGradientLanes>, D16, L16>;
+    const int to_tile = kTileShift + widths.grid_bits;
+    const LaneFormat format(widths.plane_fraction - guard_bits, up, widths.grid_bits);
+    const auto steps = gradients_by<Numerator>(code.b - code.a, code.c - code.a, corner, gradient);
+    const auto& [step_x, step_y] = steps;
+    const auto first = plane_at(to, widths.plane_fraction, code.a, step_x, step_y, format);
+    const auto aside = turned(step_x << to_tile, is_odd_column), lower = first + turned(step_y << to_tile, is_odd_row);
+    return {{narrowed(first, format), narrowed(first + aside, format), narrowed(lower, format),
+             narrowed(lower + aside, format)},
+            local_step(step_x, format),
+            local_step(step_y, format)};
   }
 };
+
+/// Whether ExactGradientLanes and SplitLanes hold planes over w. The area between three codes within a range and three
+/// corners is below the product of both; half a unit is added to its quotients, which are below 2^51.
+HALFPLANE_INLINE bool are_exact_planes(const PerspectiveFormat& format, const Widths& widths, const I16& area,
+                                       std::uint32_t live) {
+  const int numerator = std::max(format.q_bits, format.coordinate.bits + 1) + extent_bits(kMediumPixelBits, widths);
+  const int area_bits = numerator + widths.plane_fraction - 51;  // that every area must have
+  return numerator + format.reciprocal_bits < 53 && area_bits < 16 &&
+         fits_split(LaneFormat(widths.plane_fraction - format.guard_bits, 0, widths.grid_bits), widths) &&
+         (bits_of((area >> std::max(area_bits, 0)) == 0) & live) == 0;
+}
 
 /// Division of a coordinate's P: LaneAttribute.
 struct PieceScale {
@@ -388,7 +383,6 @@ HALFPLANE_NOINLINE void set_up_pieces(Bin& bin, std::size_t number) {
   const auto x = order.turned_to_base(corners.a.x, corners.b.x, corners.c.x),
              y = order.turned_to_base(corners.a.y, corners.b.y, corners.c.y);
   const int tile = kTileSize << widths.grid_bits;
-  const auto wide = [](const I16& lanes) HALFPLANE_LAMBDA { return convert<std::int64_t>(lanes); };
   const int bits = style.format.reciprocal_bits, less = widths.reciprocal_bits() - bits;
   I16 reciprocal, shift;
   const auto take = [&](const QuotientLanes& quotient, int dropped) HALFPLANE_LAMBDA {
@@ -398,28 +392,33 @@ HALFPLANE_NOINLINE void set_up_pieces(Bin& bin, std::size_t number) {
   };
   if (less >= 0)
     take(planes.quotient, less);
+  else if (is_exact_division(2 * extent_bits(kMediumPixelBits, widths), bits))
+    take(exact_quotient_lanes(corners.area, bits), 0);
   else
     take(quotient_lanes(corners.area, bits), 0);
-  const PiecePlanes over_w{widths,
-                           style.format,
-                           wide(x.b - x.a),
-                           wide(y.b - y.a),
-                           wide(x.c - x.a),
-                           wide(y.c - y.a),
-                           wide(from_origin.x + corners.origin.x - x.a + (is_odd_column & tile)),
-                           wide(from_origin.y + corners.origin.y - y.a + (is_odd_row & tile)),
-                           wide(is_odd_column),
-                           wide(is_odd_row),
-                           {reciprocal, shift}};
   const auto turn = [&order](const OfCorners<I16>& of)
                         HALFPLANE_LAMBDA { return order.turned_to_base(of.a, of.b, of.c); };
-  const PiecePlanes::Plane of_q = over_w(turn(q.code), style.division.up),
-                           of_u = over_w(turn(along_u.p), style.of_coordinate.up),
-                           of_v = over_w(turn(along_v.p), style.of_coordinate.up);
-  store_row({of_q.step_x, of_u.step_x, of_v.step_x, drops}, to.step_x);
-  store_row({of_q.step_y, of_u.step_y, of_v.step_y, reference_u}, to.step_y);
-  for (std::size_t i = 0; i < 4; ++i)
-    store_row({of_q.at[i], of_u.at[i], of_v.at[i], reference_v}, to.tile[i].coordinates);
+  const auto store_planes = [&](const auto& gradient) HALFPLANE_LAMBDA {
+    const PiecePlanes<std::remove_cvref_t<decltype(gradient)>> over_w{
+        widths,
+        style.format.guard_bits,
+        {x.b - x.a, y.b - y.a, x.c - x.a, y.c - y.a},
+        {from_origin.x + corners.origin.x - x.a + (is_odd_column & tile),
+         from_origin.y + corners.origin.y - y.a + (is_odd_row & tile)},
+        is_odd_column,
+        is_odd_row,
+        gradient};
+    const auto of_q = over_w(turn(q.code), style.division.up), of_u = over_w(turn(along_u.p), style.of_coordinate.up),
+               of_v = over_w(turn(along_v.p), style.of_coordinate.up);
+    store_row({of_q.step_x, of_u.step_x, of_v.step_x, drops}, to.step_x);
+    store_row({of_q.step_y, of_u.step_y, of_v.step_y, reference_u}, to.step_y);
+    for (std::size_t i = 0; i < 4; ++i)
+      store_row({of_q.at[i], of_u.at[i], of_v.at[i], reference_v}, to.tile[i].coordinates);
+  };
+  if (are_exact_planes(style.format, widths, corners.area, group.live))
+    store_planes(ExactGradientLanes(reciprocal, shift, widths.plane_fraction - style.format.guard_bits));
+  else
+    store_planes(GradientLanes(reciprocal, shift));
   group.alone = alone & group.live;
   group.is_set_up = true;
 }

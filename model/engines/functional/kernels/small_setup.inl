@@ -82,10 +82,15 @@ struct Gradients {
 template <class Step>
 Gradients(Step, Step) -> Gradients<Step>;  // clang 14 does not deduce it
 
-/// Gradients of depth. `Gradient`: GradientLanes or ExactGradientLanes; `Numerator`: I16, L16 or D16.
+/// Two corners from the first.
+struct TwoCorners {
+  I16 ax, ay, bx, by;
+};
+
+/// Gradients of a plane, which is `az` and `bz` larger at these corners. `Gradient`: GradientLanes or
+/// ExactGradientLanes; `Numerator`: I16, L16 or D16.
 template <class Numerator, class Gradient>
-HALFPLANE_INLINE auto depth_gradients_by(const SmallCorners& t, const Gradient& gradient) {
-  const I16 az = t.b.z - t.a.z, bz = t.c.z - t.a.z;
+HALFPLANE_INLINE auto gradients_by(const I16& az, const I16& bz, const TwoCorners& t, const Gradient& gradient) {
   const auto product = [](const I16& m, const I16& n) HALFPLANE_LAMBDA {
     if constexpr (std::is_same_v<Numerator, I16>)
       return m * n;
@@ -195,9 +200,11 @@ struct SmallPlanes {
   /// Gradients of depth, in x and in y.
   [[nodiscard]] HALFPLANE_INLINE auto depth_gradients(const LaneFormat& format) const {
     const auto gradient = depth(format);
+    const I16 az = corners.b.z - corners.a.z, bz = corners.c.z - corners.a.z;
+    const TwoCorners from_a{corners.ax, corners.ay, corners.bx, corners.by};
     return is_any(corners.z_high - corners.z_low >= steep_)
-               ? depth_gradients_by<typename Arithmetic::WideNumerator>(corners, gradient)
-               : depth_gradients_by<I16>(corners, gradient);
+               ? gradients_by<typename Arithmetic::WideNumerator>(az, bz, from_a, gradient)
+               : gradients_by<I16>(az, bz, from_a, gradient);
   }
   [[nodiscard]] HALFPLANE_INLINE typename Arithmetic::ColorGradient color() const {
     const auto [reciprocal, k] = factor(widths.color());
