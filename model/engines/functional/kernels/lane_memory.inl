@@ -30,6 +30,26 @@ HALFPLANE_LEAF void store_narrow(const I16& value, std::uint16_t* to) {
 #endif
 }
 
+/// Numbers of a table of sixteen, without a gather.
+HALFPLANE_LEAF I16 looked_up(const std::array<std::int32_t, 16>& table, const I16& index) {
+  I16 r;
+#if HALFPLANE_ISA == 512
+  r.part[0] = (I16::Register)_mm512_permutexvar_epi32((__m512i)index.part[0], _mm512_loadu_si512(table.data()));
+#elif HALFPLANE_ISA == 256
+  const auto* const half = reinterpret_cast<const __m256i*>(table.data());
+  const __m256i low = _mm256_loadu_si256(half), high = _mm256_loadu_si256(half + 1);
+  for (int i = 0; i < 2; ++i) {
+    const auto at = (__m256i)index.part[i];
+    r.part[i] = (I16::Register)_mm256_blendv_ps((__m256)_mm256_permutevar8x32_epi32(low, at),
+                                                (__m256)_mm256_permutevar8x32_epi32(high, at),
+                                                (__m256)_mm256_slli_epi32(at, 28));  // bit 3 as the sign
+  }
+#else
+  for (int i = 0; i < 16; ++i) r.part[i / 4][i % 4] = table[static_cast<std::size_t>(index.part[i / 4][i % 4]) & 15];
+#endif
+  return r;
+}
+
 /// Four columns of sixteen rows of four numbers.
 struct Columns {
   I16 first, second, third, fourth;

@@ -52,7 +52,7 @@ struct LaneLevel {
       last_texel[axis] = I16(texture.last[axis]) >> down[axis];
     }
     to_row = max(texture.bits[0] - level, I16(2));
-    first_texel = gather(texture.first.data(), level);
+    first_texel = looked_up(texture.first, level);
   }
   template <std::size_t kAxis>
   HALFPLANE_INLINE I16 cut(const I16& coordinate) const {
