@@ -197,7 +197,8 @@ TEST(TexelBlocks, AlphaRangesHoldEveryTexel) {
     const std::array<int, 2> side{1 << random.index(7), 1 << random.index(7)};
     const Texture texture = noise(random, side[0], side[1], TextureFormat::rgba8888, Mips::none);
     TexelBlocks texels(texture);
-    texels.add_alphas();
+    texels.add_alpha_ranges();
+    texels.add_alpha_quads();
     ASSERT_NE(texels.alpha_ranges(), nullptr);
     std::array<TextureWrap, 2> wrap;
     std::array<std::int32_t, 2> low, high;
@@ -482,10 +483,14 @@ TEST(FunctionalSurface, SmallTrianglesOfUsualDrawsAreSetUpInLanes) {
     return functional::SurfaceStyle(frame, context).is_in_lanes;
   };
   const auto keep = [](State&) {};
-  for (const char* name : {"tiny", "small", "embedded"}) EXPECT_TRUE(is_in_lanes(name, 64, keep)) << name;
-  EXPECT_FALSE(is_in_lanes("full", 64, keep));  // numerators of more than 64 bits
+  const auto over_w = [](State& s) { s.color_interp = ColorInterp::perspective; };
+  EXPECT_FALSE(is_in_lanes("full", 64, keep));  // P takes all bits of a lane
+  for (const char* name : {"tiny", "small", "embedded"}) {
+    EXPECT_TRUE(is_in_lanes(name, 64, keep)) << name;
+    EXPECT_TRUE(is_in_lanes(name, 64, over_w)) << name;
+  }
   EXPECT_FALSE(is_in_lanes("embedded", 60, keep));
-  EXPECT_FALSE(is_in_lanes("embedded", 64, [](State& s) { s.color_interp = ColorInterp::perspective; }));
+  EXPECT_FALSE(is_in_lanes("embedded", 64, [&](State& s) { over_w(s), s.texture_interp = TextureInterp::affine; }));
   EXPECT_FALSE(is_in_lanes("embedded", 64, [](State& s) { s.fog = Fog{}; }));
 }
 

@@ -67,8 +67,11 @@ PreparedScene::PreparedScene(const Scene& scene, std::vector<TexelBlocks> known,
   for (const State& state : scene.states)
     if (state.texture) {
       const bool is_seen_again = footprints == Footprints::at_once || *state.texture < known_textures;
-      if (is_linear(state) && is_seen_again) textures[*state.texture].add_quads(state.texture_wrap);
-      if (state.alpha_test.func != DepthFunc::always) textures[*state.texture].add_alphas();
+      const bool tests_alpha = state.alpha_test.func != DepthFunc::always;
+      TexelBlocks& texels = textures[*state.texture];
+      if (is_linear(state) && is_seen_again) texels.add_quads(state.texture_wrap);
+      if (tests_alpha || (state.blend && is_seen_again && !texels.is_opaque)) texels.add_alpha_ranges();
+      if (tests_alpha) texels.add_alpha_quads();
     }
   constexpr std::size_t kSpare = 16;
   const std::size_t vertices = scene.vertices.size();

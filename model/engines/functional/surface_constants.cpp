@@ -127,18 +127,21 @@ SurfaceStyle::SurfaceStyle(const FrameContext& frame, const DrawContext& draw)
     : context(&draw),
       format(perspective_format(frame.config)),
       division(format),
-      of_coordinate(format.coordinate, format) {
+      of_coordinate(format.coordinate, format),
+      of_color(format.color, format) {
   const State& state = draw.state;
-  if (!state.texture || state.color_interp == ColorInterp::perspective || draw.fog || draw.phong) return;
+  is_affine = state.texture_interp == TextureInterp::affine;
+  is_color_over_w = state.color_interp == ColorInterp::perspective;
+  if (!state.texture || (is_color_over_w && is_affine) || draw.fog || draw.phong) return;
   const Widths& widths = frame.widths;
-  const int numerator = std::max(format.q_bits, format.coordinate.bits) + 2 + extent_bits(kMediumPixelBits, widths),
-            gained = std::max(widths.plane_fraction - format.reciprocal_bits, 0);
+  const int numerator =
+      std::max({format.q_bits, format.coordinate.bits, format.color.bits}) + 2 + extent_bits(kMediumPixelBits, widths);
+  const int gained = std::max(widths.plane_fraction - format.reciprocal_bits, 0);
   if (numerator + format.reciprocal_bits + gained > 61 || division.up < 1 || of_coordinate.up < 1) return;
   const Sampler sampler(draw.scene.textures[*state.texture], state);
   for (const TextureAxis& axis : sampler.axes)
     if (!axis.is_power_of_two()) return;
   is_in_lanes = true;
-  is_affine = state.texture_interp == TextureInterp::affine;
   for (std::size_t axis = 0; axis < 2; ++axis) size[axis] = sampler.axes[axis].size;
   texture = texture_lanes(sampler, frame.prepared.textures[*state.texture], state.texture_combine,
                           state.texture_constant, format.coordinate.fraction_bits);

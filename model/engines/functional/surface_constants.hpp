@@ -139,19 +139,21 @@ enum class Sampling { none, nearest, linear, any };
                                         const std::array<std::uint8_t, 3>& constant, int fraction_bits);
 
 /// Constants common to the surfaces of a draw, where lanes set up sixteen surfaces at a time and shade pixels of any of
-/// them: one texture and affine colours.
+/// them: one texture, and colours that are affine or over the same w as its coordinates.
 struct SurfaceStyle {
   SurfaceStyle(const FrameContext& frame, const DrawContext& draw);
 
   const DrawContext* context;
   bool is_in_lanes = false;  ///< false: the other members are unused
   Sampling sampling = Sampling::none;
-  bool is_affine = false;            ///< w does not change coordinates
+  bool is_affine = false;  ///< w does not change coordinates
+  bool is_color_over_w = false;
   bool is_tame = true;               ///< the coordinates of all surfaces set up so far are tame: LaneAttribute
+  bool may_gain = false;             ///< a channel over w of one of them may: LaneAttribute
   std::array<double, 2> size{1, 1};  ///< texels along the texture's sides
   PerspectiveFormat format;
   LaneDivision division;
-  LaneOverW of_coordinate;
+  LaneOverW of_coordinate, of_color;
   LaneTexture texture;
 };
 

@@ -49,6 +49,7 @@ TexelBlocks::TexelBlocks(const Texture& texture) {
     count += static_cast<std::size_t>(blocks_along(level.width)) * static_cast<std::size_t>(blocks_along(level.height));
   }
   blocks.resize(count);
+  std::uint32_t all = ~0U;
   with_decoder(texture, [&](const auto& decode) {
     for (std::size_t n = 0; n < texture.level.size(); ++n) {
       const TextureLevel& level = texture.level[n];
@@ -56,10 +57,11 @@ TexelBlocks::TexelBlocks(const Texture& texture) {
       for (int y = 0; y < level.height; ++y)
         for (int x = 0; x < level.width; x += kSize) {
           std::uint32_t* const row = row_of(n, x, y);
-          for (int i = 0; i < std::min(kSize, level.width - x); ++i) row[i] = decode(*code++);
+          for (int i = 0; i < std::min(kSize, level.width - x); ++i) all &= row[i] = decode(*code++);
         }
     }
   });
+  is_opaque = all >> 24 == 255;
 }
 
 std::size_t TexelBlocks::place_of(std::size_t level, int x, int y) const {
@@ -98,13 +100,16 @@ const std::uint32_t* TexelBlocks::alpha_quads(const std::array<TextureWrap, 2>& 
   return is_mirrored(wrap) || alphas.empty() ? nullptr : alphas.data();
 }
 
-void TexelBlocks::add_alphas() {
+void TexelBlocks::add_alpha_quads() {
   for (std::size_t i = 0; i < quads_.size(); ++i) {
     if (alpha_quads_[i].size() == quads_[i].size()) continue;
     alpha_quads_[i].clear();
     for (const Quad& quad : quads_[i])
       alpha_quads_[i].push_back(quad[0] >> 24 | quad[1] >> 24 << 8 | quad[2] >> 24 << 16 | quad[3] >> 24 << 24);
   }
+}
+
+void TexelBlocks::add_alpha_ranges() {
   const auto [width, height] = size_[0];
   const auto is_power = [](int side) { return std::has_single_bit(static_cast<unsigned>(side)); };
   if (alpha_ranges_ || !is_power(width) || !is_power(height)) return;

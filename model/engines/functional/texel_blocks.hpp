@@ -52,14 +52,17 @@ class TexelBlocks {
     std::array<int, 2> bits_;
     std::vector<std::vector<Range>> squares_;  ///< ranges of squares of 4, 8, ... texels, row after row
   };
-  /// Makes the ranges, if sides are powers of two; and separate alphas of existing footprints.
-  void add_alphas();
+  /// Makes the ranges, if sides are powers of two.
+  void add_alpha_ranges();
+  /// Makes separate alphas of existing footprints.
+  void add_alpha_quads();
   /// The four alphas of a footprint in a word, indexed like `blocks`; null if there are none.
   [[nodiscard]] const std::uint32_t* alpha_quads(const std::array<TextureWrap, 2>& wrap) const;
   [[nodiscard]] const AlphaRanges* alpha_ranges() const { return alpha_ranges_ ? &*alpha_ranges_ : nullptr; }
 
   std::vector<Block> blocks;                  ///< level after level, row of blocks after row
   std::array<std::int32_t, kLevels> first{};  ///< first texel of each level
+  bool is_opaque = true;                      ///< the alpha of all texels is 255
 
  private:
   struct Size {

@@ -151,6 +151,13 @@ struct PieceConstants {
   std::array<Tile, 4> tile;  ///< by the lowest bit of its column, and that of its row
 };
 
+/// The same for colours over w, red, green, blue and alpha: steps of P, and its anchors in tiles.
+struct PieceColors {
+  PieceRow step_x, step_y;
+  PieceRow scale;  ///< LaneAttribute::narrow and drop, codes of the vertices, lowest, highest: a byte a channel
+  std::array<PieceRow, 4> tile;
+};
+
 /// The same for the level of detail: lines of u and v along y, and along x.
 struct PieceLevels {
   PieceRow at_zero, step;
@@ -174,6 +181,7 @@ struct BinMemory {
   std::vector<PieceGroup> groups;         ///< kGroups, if there are any
   std::vector<PieceConstants> constants;  ///< likewise; group 0 is unused
   std::vector<PieceLevels> levels;        ///< likewise, if a style needs them
+  std::vector<PieceColors> colors;        ///< likewise
   std::vector<SurfaceStyle> styles;
 
   static BinMemory& of_thread() {

@@ -162,8 +162,10 @@ inline bool has_style(Bin& bin, const Slice& slice) {
     memory.groups.resize(BinMemory::kGroups);
     memory.constants.resize(BinMemory::kGroups);
   }
-  if (memory.styles.back().sampling == Sampling::any && memory.levels.empty()) memory.levels.resize(BinMemory::kGroups);
-  return memory.styles.back().is_in_lanes;
+  const SurfaceStyle& style = memory.styles.back();
+  if (style.sampling == Sampling::any && memory.levels.empty()) memory.levels.resize(BinMemory::kGroups);
+  if (style.is_color_over_w && memory.colors.empty()) memory.colors.resize(BinMemory::kGroups);
+  return style.is_in_lanes;
 }
 
 /// Numbers the triangles of a batch: as a group of pieces, or one by one where lanes cannot set up their draw.

@@ -238,17 +238,22 @@ HALFPLANE_INLINE void store_colors(Bin& bin, std::uint32_t* to, std::uint64_t pi
   store_pixels(bin, to, pixels, bin.skip.operations_early_z, code_of, stride);
 }
 
-/// The outcome of the alpha test for all pixels of a tile whose corners a textured triangle covers, as far as the
-/// alphas of all reachable texels decide it: level 0 only.
-HALFPLANE_NOINLINE Outcome texture_outcome(Bin& bin, const BinTriangle& t, int tile, std::uint64_t pixels) {
+/// Alphas from `low` to `high`.
+struct Alphas {
+  std::uint32_t low = 0, high = 255;
+};
+
+/// The alphas that pixels of a tile whose corners a textured triangle covers may have, by all reachable texels: level 0
+/// only.
+HALFPLANE_NOINLINE Alphas texture_alphas(Bin& bin, const BinTriangle& t, int tile, std::uint64_t pixels) {
   constexpr std::uint64_t kCorners =
       1 | std::uint64_t{1} << (kBlockPixels + 3) | std::uint64_t{1} << (2 * kBlockPixels + 12) | std::uint64_t{1} << 63;
-  if ((pixels & kCorners) != kCorners || bin.samples != 1) return Outcome::some_pass;
+  if ((pixels & kCorners) != kCorners || bin.samples != 1) return {};
   const SurfaceConstants& of = drawn_surface(bin, static_cast<std::size_t>(t.surface)).constants;
   const LaneTexture& texture = of.texture;
-  if (!of.are_in_lanes || !of.has_texture || of.light || texture.alpha_ranges == nullptr) return Outcome::some_pass;
+  if (!of.are_in_lanes || !of.has_texture || of.light || texture.alpha_ranges == nullptr) return {};
   const Sampling sampling = sampling_of(texture);
-  if (sampling == Sampling::any) return Outcome::some_pass;
+  if (sampling == Sampling::any) return {};
   const int tile_x = (bin.first_x >> kTileShift) + tile % kBinTiles,
             tile_y = (bin.first_y >> kTileShift) + tile / kBinTiles;
   // The corners, repeated.
@@ -278,8 +283,7 @@ HALFPLANE_NOINLINE Outcome texture_outcome(Bin& bin, const BinTriangle& t, int t
       default: return halfplane::divide_by_255(own * of_texel);
     }
   };
-  return test_outcome(bin.ops->alpha.func, bin.ops->alpha.reference, result(of.color_low[3], texel.low),
-                      result(of.color_high[3], texel.high));
+  return {result(of.color_low[3], texel.low), result(of.color_high[3], texel.high)};
 }
 
 /// The outcome of the alpha test for all pixels of a tile, as far as the alpha of a triangle's plane decides it: as
@@ -288,7 +292,10 @@ HALFPLANE_INLINE Outcome alpha_outcome(Bin& bin, const BinTriangle& t, int tile,
   if (!bin.tests_alpha) return Outcome::all_pass;
   if (bin.is_killed) return Outcome::none_passes;
   if (!bin.skip.alpha_tiles) return Outcome::some_pass;
-  if (t.surface != 0) return texture_outcome(bin, t, tile, pixels);
+  if (t.surface != 0) {
+    const Alphas alphas = texture_alphas(bin, t, tile, pixels);
+    return test_outcome(bin.ops->alpha.func, bin.ops->alpha.reference, alphas.low, alphas.high);
+  }
   const LaneFormat& format = bin.color_format;
   const auto upper = [](std::int32_t pair) HALFPLANE_LAMBDA { return pair >> 16; };
   const int step_x = upper(t.color.step_x[1]), step_y = upper(t.color.step_y[1]);
@@ -309,6 +316,16 @@ HALFPLANE_INLINE Outcome alpha_outcome(Bin& bin, const BinTriangle& t, int tile,
                       static_cast<std::uint32_t>(high));
 }
 
+/// Whether a source of alpha 0 leaves the stored colour as it is, for all values of both.
+inline bool keeps_where_transparent(const ColorOps& ops) {
+  const auto is_zero = [](BlendFactor f) { return f == BlendFactor::zero || f == BlendFactor::src_alpha; };
+  const auto is_one = [](BlendFactor f) { return f == BlendFactor::one || f == BlendFactor::one_minus_src_alpha; };
+  const auto adds = [](BlendEquation e) { return e == BlendEquation::add; };
+  const BlendFactors& f = ops.factors;
+  return is_zero(f.src) && is_one(f.dst) && is_one(f.dst_alpha) && adds(ops.equation[0]) && adds(ops.equation[1]) &&
+         !ops.dithers && ops.logic == LogicOp::copy;
+}
+
 /// Operates on a tile's pixels that have passed the depth test; the alpha test may still drop them.
 HALFPLANE_NOINLINE void operate_on_tile(Bin& bin, const BinTriangle& t, int tile, std::uint64_t passed) {
   const FragmentOps& ops = *bin.ops;
@@ -320,6 +337,11 @@ HALFPLANE_NOINLINE void operate_on_tile(Bin& bin, const BinTriangle& t, int tile
   const Outcome alpha = alpha_outcome(bin, t, tile, passed);
   if (alpha == Outcome::none_passes) {
     count_killed(bin, static_cast<unsigned>(std::popcount(passed)));
+    ++bin.job.counters.skipped.alpha_tiles;
+    return;
+  }
+  const bool may_be_transparent = t.surface != 0 && !bin.tests_alpha && bin.skip.alpha_tiles;
+  if (may_be_transparent && keeps_where_transparent(ops.color) && texture_alphas(bin, t, tile, passed).high == 0) {
     ++bin.job.counters.skipped.alpha_tiles;
     return;
   }

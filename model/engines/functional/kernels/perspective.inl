@@ -17,8 +17,10 @@ struct ReciprocalsOfQ {
   I16 exponent;    ///< e + kFloatBias
   I16 reciprocal;  ///< r
 
+  HALFPLANE_INLINE ReciprocalsOfQ() = default;
+  HALFPLANE_INLINE ReciprocalsOfQ(const I16& value, const LaneDivision& by) { set(value, by); }
   /// `value`: of Q's plane. For an uncovered pixel the result is undefined.
-  HALFPLANE_INLINE ReciprocalsOfQ(const I16& value, const LaneDivision& by) {
+  HALFPLANE_INLINE void set(const I16& value, const LaneDivision& by) {
     bits = float_bits(shift_right_logical(value, by.up));
     exponent = bits >> kFloatFraction;
     const I16 divisor = (bits & by.mantissa_mask) | by.middle;  // d 2^-k, in [1, 2)

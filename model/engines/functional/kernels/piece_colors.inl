@@ -113,17 +113,20 @@ class BlockPieces {
 };
 #endif
 
-/// over_q(), `value`: P. Lanes hold the members of LaneAttribute. `is_tame`: as there, for all.
+/// over_q(), `value`: P. Lanes hold the members of LaneAttribute. `is_tame`, `may_gain`: as there, for all.
 HALFPLANE_LEAF I16 over_q(const I16& value, const ReciprocalsOfQ& q, const I16& narrow, const I16& drop, bool is_tame,
-                          const LaneOverW& format) {
+                          bool may_gain, const LaneOverW& format) {
   const I16 down = q.exponent + narrow - PieceScale::kNarrowLess;
+  const auto held = [&format](const I16& p)
+                        HALFPLANE_LAMBDA { return min(max((p + 1) >> 1, I16(format.lowest)), I16(format.highest)); };
   I16 number;
   if (is_tame) {
     number = ((value >> down) + 1) >> 1;
-  } else {
+  } else if (may_gain) {
     const I16 dropped = down - format.up;
-    const I16 p = with_more_bits(value >> format.up, max(-dropped, I16(0))) >> min(max(dropped, I16(0)), I16(31));
-    number = min(max((p + 1) >> 1, I16(format.lowest)), I16(format.highest));
+    number = held(with_more_bits(value >> format.up, max(-dropped, I16(0))) >> min(max(dropped, I16(0)), I16(31)));
+  } else {
+    number = held(value >> as<I16>(min(as<W16>(down), W16(31))));
   }
   const I16 lower = q.reciprocal & format.lower_bits;
   const I16 product = number * (q.reciprocal >> format.split) + ((number * lower) >> format.split);
@@ -150,14 +153,15 @@ HALFPLANE_NOINLINE void shade_pieces(Bin& bin, const SurfaceStyle& style, int ti
   const std::uint16_t* const numbers = bin.memory.surface.data() + first_of(tile);
   std::uint32_t* const colors = bin.memory.color.data() + first_of(tile);
   const PieceConstants& constants = bin.memory.constants.front();
-  const PieceConstants::Tile& of_tile =
-      constants.tile[static_cast<std::size_t>((tile & 1) | (tile / kBinTiles & 1) << 1)];
+  const auto place = static_cast<std::size_t>((tile & 1) | (tile / kBinTiles & 1) << 1);
+  const PieceConstants::Tile& of_tile = constants.tile[place];
   const Packing packing = bin.packing_of(style.context->fragment_ops);
   const bool is_tame = style.is_tame;
   const int color_down = bin.centred_color.down;
   BlockPieces pieces[4];
   alignas(64) std::array<std::uint32_t, kTilePixels> nearest;
   CoordinateLanes at[4];
+  ReciprocalsOfQ reciprocals[4];
   I16 lod[4], red_blue[4], green_alpha[4];
   for_each_block([&](auto block) HALFPLANE_LAMBDA {
     if (block_bits(pixels, block) != 0)
@@ -171,10 +175,12 @@ HALFPLANE_NOINLINE void shade_pieces(Bin& bin, const SurfaceStyle& style, int ti
     const Columns &step_x = rows.row[0], &step_y = rows.row[1], &anchor = rows.row[2];
     const std::size_t right = block & 1, below = block >> 1;
     const I16 &column = position.column[right], &line = position.row[below];
-    const ReciprocalsOfQ q(anchor.first + column * step_x.first + line * step_y.first, style.division);
+    ReciprocalsOfQ& q = reciprocals[block];
+    q.set(anchor.first + column * step_x.first + line * step_y.first, style.division);
     const auto along = [&](const I16& at_anchor, const I16& of_x, const I16& of_y, const I16& narrow, const I16& drop,
                            const I16& reference, std::size_t axis) HALFPLANE_LAMBDA {
-      const I16 u = over_q(at_anchor + column * of_x + line * of_y, q, narrow, drop, is_tame, style.of_coordinate);
+      const I16 u =
+          over_q(at_anchor + column * of_x + line * of_y, q, narrow, drop, is_tame, true, style.of_coordinate);
       return on_axis(texture, axis, u, reference);
     };
     const I16& drops = step_x.fourth;
@@ -208,7 +214,25 @@ HALFPLANE_NOINLINE void shade_pieces(Bin& bin, const SurfaceStyle& style, int ti
       green_alpha[block] = texels.green_alpha;
     });
   }
-  store_pixels(bin, colors, pixels, true, [&](auto block, const I16&) HALFPLANE_LAMBDA {
+  const auto over_w = [&](auto block) HALFPLANE_LAMBDA {
+    const PieceColors& of = bin.memory.colors.front();
+    ColumnsOfRows<4> rows;
+    pieces[block].rows({&of.step_x, &of.step_y, &of.tile[place], &of.scale}, sizeof of, rows);
+    const Columns &step_x = rows.row[0], &step_y = rows.row[1], &anchor = rows.row[2], &scale = rows.row[3];
+    const I16 &column = position.column[block & 1], &line = position.row[block >> 1];
+    const auto channel = [&](std::size_t c, const I16& at_anchor, const I16& of_x, const I16& of_y) HALFPLANE_LAMBDA {
+      const int up = 24 - static_cast<int>(8 * c);
+      const I16 code = over_q(at_anchor + column * of_x + line * of_y, reciprocals[block], scale.first << up >> 24,
+                              scale.second << up >> 24, false, style.may_gain, style.of_color);
+      return min(max(code, byte_of(scale.third, c)), byte_of(scale.fourth, c));
+    };
+    const I16 red = channel(0, anchor.first, step_x.first, step_y.first),
+              green = channel(1, anchor.second, step_x.second, step_y.second),
+              blue = channel(2, anchor.third, step_x.third, step_y.third),
+              alpha = channel(3, anchor.fourth, step_x.fourth, step_y.fourth);
+    return ColorPairs(red | (blue << 16), green | (alpha << 16));
+  };
+  const auto affine = [&](auto block) HALFPLANE_LAMBDA {
     const std::size_t right = block & 1, below = block >> 1;
     ColumnsOfRows<2> rows;
     pieces[block].rows({&constants.color, &of_tile.colors}, sizeof constants, rows);
@@ -222,7 +246,10 @@ HALFPLANE_NOINLINE void shade_pieces(Bin& bin, const SurfaceStyle& style, int ti
     };
     const I16 red_green = pair(from.first, step.first, step.third, 0),
               blue_alpha = pair(from.second, step.second, step.fourth, 1);
-    const ColorPairs own(pairs(red_green, blue_alpha), upper_pairs(red_green, blue_alpha));
+    return ColorPairs(pairs(red_green, blue_alpha), upper_pairs(red_green, blue_alpha));
+  };
+  store_pixels(bin, colors, pixels, true, [&](auto block, const I16&) HALFPLANE_LAMBDA {
+    const ColorPairs own = style.is_color_over_w ? over_w(block) : affine(block);
     const ColorPairs texels = [&]() HALFPLANE_LAMBDA {
       if constexpr (kSampling == Sampling::nearest) return ColorPairs(I16::load(nearest.data() + block * kBlockPixels));
       return ColorPairs(red_blue[block], green_alpha[block]);

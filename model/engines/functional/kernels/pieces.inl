@@ -75,16 +75,16 @@ struct QLanes {
   }
 };
 
-/// quantize_over_w() for a coordinate.
+/// quantize_over_w().
 struct OverWLanes {
   OfCorners<I16> p;
   I16 reach, exponent;
   D16 reference;
 
-  HALFPLANE_INLINE OverWLanes(const OfCorners<D16>& texels, const QLanes& q, const OverWFormat& format) {
-    const D16 low = least_of(texels), high = max(max(texels.a, texels.b), texels.c);
-    reference = floor(low * 0.5 + high * 0.5);
-    D16 ua = texels.a - reference, ub = texels.b - reference, uc = texels.c - reference;
+  HALFPLANE_INLINE OverWLanes(const OfCorners<D16>& value, const QLanes& q, const OverWFormat& format) {
+    const D16 low = least_of(value), high = max(max(value.a, value.b), value.c);
+    reference = format.is_centred ? floor(low * 0.5 + high * 0.5) : D16(0.0);
+    D16 ua = value.a - reference, ub = value.b - reference, uc = value.c - reference;
     const auto bits_above_point = [](const D16& number)
                                       HALFPLANE_LAMBDA { return exponent_field(number) - (kDoubleBias - 1); };
     const auto find_reach = [&](const D16& farthest)
@@ -265,37 +265,69 @@ struct PiecePlanes {
 /// corners is below the product of both; half a unit is added to its quotients, which are below 2^51.
 HALFPLANE_INLINE bool are_exact_planes(const PerspectiveFormat& format, const Widths& widths, const I16& area,
                                        std::uint32_t live) {
-  const int numerator = std::max(format.q_bits, format.coordinate.bits + 1) + extent_bits(kMediumPixelBits, widths);
+  const int numerator =
+      std::max({format.q_bits, format.coordinate.bits + 1, format.color.bits}) + extent_bits(kMediumPixelBits, widths);
   const int area_bits = numerator + widths.plane_fraction - 51;  // that every area must have
   return numerator + format.reciprocal_bits < 53 && area_bits < 16 &&
          fits_split(LaneFormat(widths.plane_fraction - format.guard_bits, 0, widths.grid_bits), widths) &&
          (bits_of((area >> std::max(area_bits, 0)) == 0) & live) == 0;
 }
 
-/// Division of a coordinate's P: LaneAttribute.
+/// Division of P: LaneAttribute.
 struct PieceScale {
-  I16 narrow;   ///< without kNarrowLess
-  I16 drop;     ///< minus 1
-  I16 is_tame;  ///< a mask
+  I16 narrow;             ///< without kNarrowLess
+  I16 drop;               ///< minus 1
+  I16 may_gain, is_tame;  ///< masks
   static constexpr std::int32_t kNarrowLess = 128;
 
-  HALFPLANE_INLINE PieceScale(const OverWLanes& of, const OfCorners<D16>& q, const SurfaceStyle& style) {
-    const PerspectiveFormat& all = style.format;
-    const OverWFormat& format = all.coordinate;
+  HALFPLANE_INLINE PieceScale(const OverWLanes& of, const OfCorners<D16>& q, const PerspectiveFormat& all,
+                              const OverWFormat& format, const LaneOverW& lanes) {
     const I16 to_narrow = of.reach - of.exponent + (1 - format.narrow_bits);
-    narrow = to_narrow + (style.of_coordinate.up - 1 - kFloatBias + kNarrowLess);
-    drop = (all.mantissa_bits + format.narrow_bits - 2 - format.fraction_bits - style.of_coordinate.split) - of.reach;
+    narrow = to_narrow + (lanes.up - 1 - kFloatBias + kNarrowLess);
+    drop = (all.mantissa_bits + format.narrow_bits - 2 - format.fraction_bits - lanes.split) - of.reach;
     const D16 least = least_of(q), most = max(max(q.a, q.b), q.c);
     const I16 smallest = exponent_field(least) - (kDoubleBias - all.guard_bits + 1),
               largest = exponent_field(most) - (kDoubleBias - all.guard_bits - 1);
     constexpr int kNarrowBits = 12, kReciprocalBits = 14, kCodes = 11;  // SurfaceConstants::is_never_held()
     const bool may_be = format.narrow_bits >= kNarrowBits && all.reciprocal_bits >= kReciprocalBits;
     const std::int32_t enough = std::int32_t{1} << (kCodes + all.q_bits - format.bits);
-    is_tame = may_be ? (smallest + to_narrow >= 1) & (largest + to_narrow <= 32 - style.of_coordinate.up) &
-                           (convert<std::int32_t>(least) >= enough)
-                     : I16(0);
+    may_gain = smallest + to_narrow < 1;
+    is_tame =
+        may_be ? ~may_gain & (largest + to_narrow <= 32 - lanes.up) & (convert<std::int32_t>(least) >= enough) : I16(0);
   }
 };
+
+/// Byte `at` of each lane.
+HALFPLANE_INLINE I16 byte_of(const I16& lanes, std::size_t at) { return (lanes >> static_cast<int>(8 * at)) & 255; }
+
+/// Colours over w of a group. Returns the lanes that it cannot set up, a bit each.
+template <class Planes>
+HALFPLANE_NOINLINE std::uint32_t set_up_colors_over_w(const SmallCorners& corners, bool is_flat,
+                                                      const PieceOrder& order, const QLanes& q, const Planes& over_w,
+                                                      std::uint32_t live, SurfaceStyle& style, PieceColors& to) {
+  const OverWFormat& format = style.format.color;
+  const ColorRange range(corners, is_flat);
+  I16 narrow(0), drop(0);
+  std::uint32_t alone = 0;
+  const auto plane_of = [&](std::size_t c) HALFPLANE_LAMBDA {
+    const auto code = [&](const SnappedLanes& corner)
+                          HALFPLANE_LAMBDA { return convert<double>(byte_of(corner.rgba, c)); };
+    const D16 first = code(corners.a);
+    const OverWLanes along({first, is_flat ? first : code(corners.b), is_flat ? first : code(corners.c)}, q, format);
+    const PieceScale scale(along, q.number, style.format, format, style.of_color);
+    alone |= bits_of(scale.drop < 0) & live;
+    style.may_gain = style.may_gain || (bits_of(scale.may_gain) & live) != 0;
+    narrow = narrow | ((scale.narrow & 255) << static_cast<int>(8 * c));
+    drop = drop | ((scale.drop & 255) << static_cast<int>(8 * c));
+    return over_w(order.turned_to_base(along.p.a, along.p.b, along.p.c), style.of_color.up);
+  };
+  const auto red = plane_of(0), green = plane_of(1), blue = plane_of(2), alpha = plane_of(3);
+  store_row({red.step_x, green.step_x, blue.step_x, alpha.step_x}, to.step_x);
+  store_row({red.step_y, green.step_y, blue.step_y, alpha.step_y}, to.step_y);
+  store_row({narrow, drop, range.low, range.high}, to.scale);
+  for (std::size_t i = 0; i < 4; ++i) store_row({red.at[i], green.at[i], blue.at[i], alpha.at[i]}, to.tile[i]);
+  return alone;
+}
 
 /// Constants of a group. Triangles that lanes cannot set up become PieceGroup::alone.
 template <class Arithmetic>
@@ -317,7 +349,7 @@ HALFPLANE_NOINLINE void set_up_pieces(Bin& bin, std::size_t number) {
   const FromOrigin from_origin = anchor_from_origin(corners, left, top, widths.grid_bits, bin.first_x, bin.first_y);
   const auto is_odd = [](const I16& pixel) HALFPLANE_LAMBDA { return -((pixel >> kTileShift) & 1); };
   const I16 is_odd_column = is_odd(left), is_odd_row = is_odd(top);
-  {
+  if (!style.is_color_over_w) {
     const ColorRange range(corners, slice.state.is_flat);
     std::array<SmallChannels, 2> colors;
     OnlyCentres centres;
@@ -359,7 +391,10 @@ HALFPLANE_NOINLINE void set_up_pieces(Bin& bin, std::size_t number) {
   }
   const QLanes q(w, inverse, style.format.q_bits);
   const OverWLanes along_u(u, q, style.format.coordinate), along_v(v, q, style.format.coordinate);
-  const PieceScale scale_u(along_u, q.number, style), scale_v(along_v, q.number, style);
+  const auto scale_of = [&](const OverWLanes& along) HALFPLANE_LAMBDA {
+    return PieceScale(along, q.number, style.format, style.format.coordinate, style.of_coordinate);
+  };
+  const PieceScale scale_u = scale_of(along_u), scale_v = scale_of(along_v);
   alone |= bits_of((scale_u.drop < 0) | (scale_v.drop < 0));
   style.is_tame = style.is_tame && (~(bits_of(scale_u.is_tame & scale_v.is_tame) | alone) & group.live) == 0;
 
@@ -414,6 +449,9 @@ HALFPLANE_NOINLINE void set_up_pieces(Bin& bin, std::size_t number) {
     store_row({of_q.step_y, of_u.step_y, of_v.step_y, reference_u}, to.step_y);
     for (std::size_t i = 0; i < 4; ++i)
       store_row({of_q.at[i], of_u.at[i], of_v.at[i], reference_v}, to.tile[i].coordinates);
+    if (style.is_color_over_w)
+      alone |= set_up_colors_over_w(corners, slice.state.is_flat, order, q, over_w, group.live, style,
+                                    memory.colors[number]);
   };
   if (are_exact_planes(style.format, widths, corners.area, group.live))
     store_planes(ExactGradientLanes(reciprocal, shift, widths.plane_fraction - style.format.guard_bits));

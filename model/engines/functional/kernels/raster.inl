@@ -242,15 +242,19 @@ struct RecordWays {
   const Slice& slice;
   const FragmentOps& ops;
   bool tests_alpha, knows_alpha, lays_over, replaces, is_plain;
+  bool is_opaque_texel;  ///< alpha is that of a texel, which is opaque
 
   RecordWays(const Bin& bin, const Slice& of) : slice(of), ops(of.context->fragment_ops) {
     const ColorFormat format = bin.config.color_format;
     tests_alpha = ops.alpha.func != DepthFunc::always;
-    // The alpha of a texture is unknown.
+    // The alpha of a texture is unknown, unless all of its texels are opaque.
     const State& state = of.context->state;
-    const bool keeps_alpha = !state.texture || state.texture_combine == TextureCombine::decal ||
-                             !has_alpha(of.context->scene.textures[*state.texture].format);
-    knows_alpha = keeps_alpha;
+    const bool has_texel_alpha = state.texture && state.texture_combine != TextureCombine::decal &&
+                                 has_alpha(of.context->scene.textures[*state.texture].format);
+    is_opaque_texel = has_texel_alpha && bin.job.frame.prepared.textures[*state.texture].is_opaque &&
+                      !has_border(state.texture_wrap[0]) && !has_border(state.texture_wrap[1]);
+    knows_alpha = !has_texel_alpha || is_opaque_texel;
+    is_opaque_texel = is_opaque_texel && state.texture_combine == TextureCombine::replace;
     const ColorOps color = undithered(ops.color, bin.widths.pixel_samples);
     is_plain = !ops.state.color_write || color.is_plain();
     replaces = ops.state.color_write && bin.skip.opaque_blends && replaces_where_opaque(color, format);
@@ -263,13 +267,16 @@ struct RecordWays {
     if (is_dot(bin, slice, record)) return RecordWay::general;
     const bool is_line = kind == RecordKind::whole_line || kind == RecordKind::cut_line;
     const RecordWay otherwise = is_line ? RecordWay::general : RecordWay::operated;
-    if (!knows_alpha || kind == RecordKind::cut_line)
+    if (!knows_alpha || kind == RecordKind::cut_line || (is_line && is_opaque_texel))
       return lays_over && !tests_alpha && !is_line ? RecordWay::laid_over : otherwise;
-    std::uint32_t low = 255, high = 0;
-    for (const std::uint32_t at : record.v) {
-      const std::uint32_t alpha = slice.vertices[slice.state.is_flat ? record.v[flat_corner(kind)] : at].rgba >> 24;
-      low = std::min(low, alpha);
-      high = std::max(high, alpha);
+    std::uint32_t low = 255, high = 255;
+    if (!is_opaque_texel) {
+      high = 0;
+      for (const std::uint32_t at : record.v) {
+        const std::uint32_t alpha = slice.vertices[slice.state.is_flat ? record.v[flat_corner(kind)] : at].rgba >> 24;
+        low = std::min(low, alpha);
+        high = std::max(high, alpha);
+      }
     }
     const Outcome outcome = !tests_alpha           ? Outcome::all_pass
                             : bin.skip.alpha_tiles ? test_outcome(ops.alpha.func, ops.alpha.reference, low, high)
