@@ -10,6 +10,7 @@ point does follows from its name by the rules below. --check compares and writes
 import pathlib
 import re
 import sys
+import textwrap
 import xml.etree.ElementTree
 
 DESKTOP = [f"GL_VERSION_1_{minor}" for minor in range(6)]
@@ -20,7 +21,7 @@ def snake(name):
     return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower()
 
 
-# Name without "gl", count, type and v -> command, arguments before the components, how integers are read.
+# Name without "gl", count, type and v -> command, argument before the components, how integers are read.
 COMPONENTS = {
     "Vertex": ("vertex", "", "real"),
     "Normal": ("normal", "", "norm"),
@@ -198,6 +199,34 @@ def components(base, count, is_fixed, is_vector, names, commands):
     return f"{issued(command)}<&{command}>({', '.join(([first] if first else []) + values)})"
 
 
+TYPES = {"b": "GLbyte", "d": "GLdouble", "f": "GLfloat", "i": "GLint", "s": "GLshort", "ub": "GLubyte", "ui": "GLuint",
+         "us": "GLushort"}
+
+
+def families(rows):
+    """Takes out the rows of commands that differ in the type of their components alone, each with its v: the calls of
+    add_variants() in their place."""
+    found = {}
+    for name in rows:
+        if parts := re.fullmatch(r"gl([A-Za-z]+)([1-4]?)(b|s|i|f|d|ub|us|ui)", name):
+            base, count, letters = parts.groups()
+            family = next((key for key in (base, base + count) if key in COMPONENTS), None)
+            if family and name + "v" in rows:
+                found.setdefault((family, base + count), []).append(letters)
+    calls = []
+    for (family, stem), letters in sorted(found.items(), key=lambda item: item[0][1]):
+        for one in letters:
+            del rows[f"gl{stem}{one}"], rows[f"gl{stem}{one}v"]
+        command, first, read = COMPONENTS[family]
+        inside = "allowed" if issued(command).endswith("_inside") else "refused"
+        before = {"": "nothing", "$1": "given"}.get(first, "first_unit")
+        count = COUNTS.get(family) or int(stem[-1])
+        calls.append(f"add_variants<&{command}, InsideBegin::{inside}, Components::"
+                     f"{'normalized' if read == 'norm' else 'real'}, Before::{before}, {count}, "
+                     f"{', '.join(TYPES[one] for one in letters)}>(to, \"gl{stem}\");")
+    return calls
+
+
 def arguments(given, wanted):
     """An argument where the command has a double is read as one; the rest has the type of the command already."""
     assert len(given) == len(wanted), (given, wanted)
@@ -238,25 +267,37 @@ def generate(path):
                if name not in rows and alias in rows and len(parameters) == len(registry[alias][1])}
     aliases.update((name, name.removesuffix("EXT")) for name in SAME_WITHOUT_EXT)
 
+    calls = families(rows)
+    by_suffix, others = {}, {}
+    for name, of in sorted(aliases.items()):
+        suffix = name.removeprefix(of)
+        if name == of + suffix and re.fullmatch("[A-Z]+", suffix):
+            by_suffix.setdefault(suffix, []).append(of.removeprefix("gl"))
+        else:
+            others[name] = of
+    assert not others, others
+
     lines = ["// Written by gl/entry_points.py from Khronos' gl.xml and core/commands.hpp: change that, not this.",
-             "// clang-format off", '#include "entry_points.hpp"', "", "#include <algorithm>", "#include <array>", "",
-             '#include "embedded.hpp"',
-             '#include "entry_conversions.hpp"', "", "namespace halfplane::gl {", "namespace {", "",
-             "struct EntryPoint {", "  std::string_view name;", "  const void* function;", "};", "struct Alias {",
-             "  std::string_view name, of;", "};", "",
-             "// The address of a lambda without captures, with the calling convention of C.", "template <class Lambda>",
-             "const void* function(Lambda lambda) {", "  return reinterpret_cast<const void*>(+lambda);", "}", "",
-             "// Sorted by name.", "const std::array entry_points{std::to_array<EntryPoint>({"]
-    lines += ["  " + rows[name] for name in sorted(rows)]
-    lines += ["})};", "", "// Sorted by name.", "constexpr std::array aliases{std::to_array<Alias>({"]
-    lines += [f'  {{"{name}", "{aliases[name]}"}},' for name in sorted(aliases)]
-    lines += ["})};", "", "template <class Table>", "auto find(const Table& table, std::string_view name) {",
-              "  const auto at = std::ranges::lower_bound(table, name, {}, [](const auto& row) { return row.name; });",
-              "  return at != table.end() && at->name == name ? &*at : nullptr;", "}", "", "}  // namespace", "",
-              "const void* entry_point(std::string_view name) {",
-              "  if (const Alias* alias = find(aliases, name)) name = alias->of;",
-              "  const EntryPoint* found = find(entry_points, name);",
-              "  return found != nullptr ? found->function : nullptr;", "}", "", "}  // namespace halfplane::gl", ""]
+             "// clang-format off", '#include "entry_points.hpp"', "", "#include <array>", "",
+             '#include "embedded.hpp"', '#include "entry_variants.hpp"', "", "namespace halfplane::gl {", "namespace {", "",
+             "void add_families(EntryPoints& to) {"]
+    lines += ["  " + call for call in calls]
+    lines += ["}", "", "void add_others(EntryPoints& to) {", "  to.insert({"]
+    lines += ["    " + rows[name] for name in sorted(rows)]
+    lines += ["  });", "}", "", "// Names of extensions: those of commands with a suffix.",
+              "struct Suffixed {", "  std::string_view suffix, names;", "};", "constexpr std::array kSuffixed{"]
+    for suffix, stems in by_suffix.items():
+        wrapped = textwrap.wrap(" ".join(stems), 110)
+        lines += [f'  Suffixed{{"{suffix}",'] + [f'    "{line} "' for line in wrapped]
+        lines[-1] += "},"
+    lines += ["};", "", "EntryPoints all_entry_points() {", "  EntryPoints all;", "  add_families(all);", "  add_others(all);",
+              "  for (auto [suffix, names] : kSuffixed)",
+              "    for (; !names.empty(); names.remove_prefix(names.find(' ') + 1)) {",
+              '      const std::string name = "gl" + std::string(names.substr(0, names.find(\' \')));',
+              "      all.emplace(name + std::string(suffix), all.at(name));", "    }", "  return all;", "}", "",
+              "}  // namespace", "", "const void* entry_point(std::string_view name) {",
+              "  static const EntryPoints all = all_entry_points();", "  const auto found = all.find(name);",
+              "  return found != all.end() ? found->second : nullptr;", "}", "", "}  // namespace halfplane::gl", ""]
     names = ["// Written by gl/entry_points.py: the commands of OpenGL 1.5."]
     names += [f"HALFPLANE_ENTRY({name})" for name in sorted(desktop)]
     return {"entry_points.cpp": "\n".join(lines), "entry_names.inc": "\n".join(names) + "\n"}
