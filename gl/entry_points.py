@@ -279,7 +279,8 @@ def generate(path):
 
     lines = ["// Written by gl/entry_points.py from Khronos' gl.xml and core/commands.hpp: change that, not this.",
              "// clang-format off", '#include "entry_points.hpp"', "", "#include <array>", "",
-             '#include "embedded.hpp"', '#include "entry_variants.hpp"', "", "namespace halfplane::gl {", "namespace {", "",
+             '#include "embedded.hpp"', '#include "entry_variants.hpp"', "", "namespace halfplane::gl {", "namespace {",
+             "",
              "void add_families(EntryPoints& to) {"]
     lines += ["  " + call for call in calls]
     lines += ["}", "", "void add_others(EntryPoints& to) {", "  to.insert({"]
@@ -290,7 +291,8 @@ def generate(path):
         wrapped = textwrap.wrap(" ".join(stems), 110)
         lines += [f'  Suffixed{{"{suffix}",'] + [f'    "{line} "' for line in wrapped]
         lines[-1] += "},"
-    lines += ["};", "", "EntryPoints all_entry_points() {", "  EntryPoints all;", "  add_families(all);", "  add_others(all);",
+    lines += ["};", "", "EntryPoints all_entry_points() {", "  EntryPoints all;", "  add_families(all);",
+              "  add_others(all);",
               "  for (auto [suffix, names] : kSuffixed)",
               "    for (; !names.empty(); names.remove_prefix(names.find(' ') + 1)) {",
               '      const std::string name = "gl" + std::string(names.substr(0, names.find(\' \')));',
