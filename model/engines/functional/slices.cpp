@@ -225,15 +225,15 @@ void FrameRenderer::build_outlines(Slice& slice) const {
 
 /// The records of each bin, in order: a counting sort of runs. Most records lie in one bin, that of the record before.
 void FrameRenderer::fill_bins(Slice& slice) const {
-  struct Run {  // records that follow each other
-    std::uint32_t bin, first, end;
+  struct Run {  // records that follow each other in a bin, or one record in bins side by side
+    std::uint32_t bin, bins, first, end;
   };
   const auto bins = static_cast<std::size_t>(bins_x_) * static_cast<std::size_t>(bins_y_);
   static thread_local std::vector<std::uint32_t> next;
   static thread_local std::vector<Run> runs;
   next.assign(bins, 0);
   const std::span records(slice.records.data(), slice.record_count);
-  // At most a run for each record, and more where it lies in several bins.
+  // At most a run for each record, and more where it lies in several rows of bins.
   runs.resize(std::max(runs.size(), records.size() + 1));
   Run* run = runs.data();
   std::size_t count = 0;  // and run[0] is unused
@@ -246,28 +246,29 @@ void FrameRenderer::fill_bins(Slice& slice) const {
     const Record& record = records[i];
     const auto number = static_cast<std::uint32_t>(i);
     const std::uint32_t first = bin_at(record.left(), record.top());
-    const bool is_new = first != in_run;
-    count += is_new ? 1 : 0;
-    run_first = is_new ? number : run_first;
-    in_run = first;
-    run[count] = {first, run_first, number + 1};
     constexpr auto kInBin = static_cast<std::int32_t>((kBinSize - 1) * 0x10001);
-    if (((record.left_top ^ record.right_bottom) & ~kInBin) == 0) continue;
+    if (((record.left_top ^ record.right_bottom) & ~kInBin) == 0) {
+      const bool is_new = first != in_run;
+      count += is_new ? 1 : 0;
+      run_first = is_new ? number : run_first;
+      in_run = first;
+      run[count] = {first, 1, run_first, number + 1};
+      continue;
+    }
     in_run = kNone;
-    const std::uint32_t last = bin_at(record.right(), record.bottom());
+    const std::uint32_t last = bin_at(record.left(), record.bottom()),
+                        columns = bin_at(record.right(), record.top()) - first + 1;
     if (const std::size_t room = count + bins + records.size() - i; runs.size() <= room) {
       runs.resize(2 * room);
       run = runs.data();
     }
-    const auto add = [&](std::uint32_t bin) { run[++count] = {bin, number, number + 1}; };
-    const std::uint32_t columns = bin_at(record.right(), record.top()) - first;
-    for (std::uint32_t bin = first + 1; bin <= first + columns; ++bin) add(bin);
-    for (std::uint32_t end = first + static_cast<std::uint32_t>(bins_x_) + columns; end <= last;
-         end += static_cast<std::uint32_t>(bins_x_))
-      for (std::uint32_t bin = end - columns; bin <= end; ++bin) add(bin);
+    for (std::uint32_t bin = first; bin <= last; bin += static_cast<std::uint32_t>(bins_x_))
+      run[++count] = {bin, columns, number, number + 1};
   }
   const std::span all(run + 1, count);
-  for (const Run& one : all) next[one.bin] += one.end - one.first;
+  std::uint32_t* const in_bin = next.data();
+  for (const Run& one : all)
+    for (std::uint32_t bin = one.bin; bin < one.bin + one.bins; ++bin) in_bin[bin] += one.end - one.first;
   slice.bin_first.resize(bins + 1);
   std::uint32_t sum = 0;
   for (std::size_t bin = 0; bin < bins; ++bin) {
@@ -276,12 +277,16 @@ void FrameRenderer::fill_bins(Slice& slice) const {
   }
   slice.bin_first[bins] = sum;
   slice.bin_records.resize(sum);
+  std::uint32_t* const listed = slice.bin_records.data();
   for (const Run& one : all) {
-    std::uint32_t* const to = slice.bin_records.data() + next[one.bin];
     const std::uint32_t length = one.end - one.first;
-    next[one.bin] += length;
-    to[0] = one.first;  // often all of it
-    for (std::uint32_t i = 1; i < length; ++i) to[i] = one.first + i;
+    if (length == 1) {
+      for (std::uint32_t bin = one.bin; bin < one.bin + one.bins; ++bin) listed[in_bin[bin]++] = one.first;
+      continue;
+    }
+    std::uint32_t* const to = listed + in_bin[one.bin];
+    in_bin[one.bin] += length;
+    for (std::uint32_t i = 0; i < length; ++i) to[i] = one.first + i;
   }
 }
 
