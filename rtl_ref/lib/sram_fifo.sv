@@ -3,7 +3,8 @@
 module sram_fifo #(
     parameter int WIDTH = 1,  // bits of an item
     parameter int DEPTH = 2,  // a power of two
-    parameter bit BLOCK = 1   // in block RAM even if that is mostly empty
+    parameter bit BLOCK = 1,  // in block RAM even if that is mostly empty
+    parameter int AHEAD = 0   // 1: data_o is a register: a block RAM answers late, and long paths start there
 ) (
     input logic clk_i,
     input logic rst_ni,
@@ -39,7 +40,32 @@ module sram_fifo #(
     end
   end
 
-  // An item that is read has been written in an earlier cycle.
+  // The RAM is read as an item leaves: that item, or with AHEAD the one after it, which is on offer next.
+  logic [INDEX-1:0] place;
+  logic [WIDTH-1:0] item;
+  generate
+    if (AHEAD == 0) begin : gen_late
+      assign place  = head_q[INDEX-1:0];
+      assign data_o = item;
+    end else begin : gen_ahead
+      // An item that enters as the last one leaves, or an empty queue, passes the RAM.
+      logic [INDEX:0]   next;
+      logic             is_last, passes_q;
+      logic [WIDTH-1:0] passed_q;
+      assign next    = head_q + 1'b1;
+      assign is_last = tail_q == next;
+      assign place   = next[INDEX-1:0];
+      always_ff @(posedge clk_i) begin
+        if (!valid_o || ready_i) begin
+          passes_q <= !valid_o || is_last;
+          passed_q <= data_i;
+        end
+        if (leaves) data_o <= passes_q ? passed_q : item;
+      end
+    end
+  endgenerate
+
+  // An item that is used has been written in an earlier cycle than it was read.
   sram #(
       .WIDTH    (WIDTH),
       .DEPTH    (DEPTH),
@@ -48,8 +74,8 @@ module sram_fifo #(
   ) u_items (
       .clk_i,
       .read_i         (leaves),
-      .read_address_i (head_q[INDEX-1:0]),
-      .data_o,
+      .read_address_i (place),
+      .data_o         (item),
       .write_i        (enters),
       .write_address_i(tail_q[INDEX-1:0]),
       .data_i

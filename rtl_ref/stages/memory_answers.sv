@@ -48,7 +48,8 @@ module memory_answers #(
       .WIDTH(SAMPLES * CODE),
       .DEPTH(QUEUE),
       // Separate constants need the block RAMs of an ECP5-25F, unless queues are to lie there.
-      .BLOCK(raster_pkg::STORE_CONSTANTS_SEPARATELY == 0 || raster_pkg::QUEUE_BLOCK_RAM != 0)
+      .BLOCK(raster_pkg::STORE_CONSTANTS_SEPARATELY == 0 || raster_pkg::QUEUE_BLOCK_RAM != 0),
+      .AHEAD(1)  // depths go on to late_test and into a RAM in the same cycle
   ) u_answers (
       .clk_i,
       .rst_ni,

@@ -28,15 +28,15 @@
     if (enters && tail_q[INDEX-1:0] == any_place) word_q <= data_i;
     if (leaves && head_q[INDEX-1:0] == any_place) answer_q <= word_q;
   end
-  logic [INDEX-1:0] place;
-  assign place = head_q[INDEX-1:0] + ahead_q[INDEX-1:0];
+  logic [INDEX-1:0] its_place;
+  assign its_place = head_q[INDEX-1:0] + ahead_q[INDEX-1:0];
   always_comb begin
     if (enters && is_chosen && !was_chosen_q) assume (data_i == any_data && tail_q[INDEX-1:0] == any_place);
-    if (reads_it_q) assume (data_o == answer_q);
+    if (reads_it_q) assume (item == answer_q);
     if (runs_q) begin
       assert (count_q == tail_q - head_q && count_q <= (INDEX + 1)'(DEPTH));
       assert (valid_o == (count_q != '0) && ready_o == (count_q != (INDEX + 1)'(DEPTH)));  // room for DEPTH, and no deadlock
-      if (under_way_q) assert (ahead_q < count_q && place == any_place && word_q == any_data && was_chosen_q);
+      if (under_way_q) assert (ahead_q < count_q && its_place == any_place && word_q == any_data && was_chosen_q);
       if (is_out_q) assert (reads_it_q && answer_q == any_data && data_o == any_data);
       cover (is_out_q && count_q == (INDEX + 1)'(DEPTH));
     end
