@@ -73,8 +73,8 @@ mutant(28 stages/interpolate.sv "dropped stall: a stamp enters without a place f
   [=[used_q == USED'(ROOM - 1)]=] [=[used_q == '1]=])
 mutant(29 stages/interpolate.sv "sign: rows of stamps above the tile's centre count as below"
   [=[PIXEL'(row) << STAMP_SHIFT]=] [=[PIXEL'(row[PER_ROW_BITS-2:0]) << STAMP_SHIFT]=])
-mutant(30 lib/fifo.sv "dropped stall: a full queue takes one more"
-  [=[head_q != (tail_q ^ {1'b1, {INDEX{1'b0}}})]=] [=[1'b1]=])
+mutant(30 lib/fifo.sv "dropped stall: a full queue takes what it refuses, too"
+  [=[valid_i && ready_o]=] [=[valid_i]=])
 
 # depth_test and rop
 mutant(31 stages/depth_test.sv "hazard: the mask of the stamp ahead is ignored, its depth is not seen"
