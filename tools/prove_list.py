@@ -174,7 +174,7 @@ PROOFS = [
           cover_depth=9, quick=TINY, presets=TINY, parameters=(('WIDTH', 8), ('DEPTH', 4)), cuts=SRAMS,
           twins=(('tail_q ^ {1\'b1, {INDEX{1\'b0}}}', 'tail_q'), ('(INDEX + 1)\'(leaves)', '(INDEX + 1)\'(ready_i)'))),
     Proof('sram_fifo_ahead_stream', 'f', 'lib/sram_fifo.sv', 'the same where the item taken stands in a register', k=2, cover_depth=9,
-          quick=TINY, presets=TINY, parameters=(('WIDTH', 8), ('DEPTH', 4), ('AHEAD', 1)), cuts=SRAMS,
+          quick=TINY, presets=TINY, parameters=(('WIDTH', 8), ('DEPTH', 4), ('AHEAD', 1)), cuts=SRAMS, file='sram_fifo_stream',
           twins=(('passes_q <= !valid_o || is_last;', 'passes_q <= !valid_o;'), ('!valid_o || ready_i', 'ready_i'))),
     Proof('registered_fifo_stream', 'f', 'lib/registered_fifo.sv', 'the same, the item on offer in a register', k=2, cover_depth=9,
           quick=TINY, presets=TINY, parameters=(('WIDTH', 8), ('DEPTH', 4)), cuts=('*fifo*',),

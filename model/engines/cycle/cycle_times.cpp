@@ -151,10 +151,15 @@ class TimesOf final : public CycleTimes {
         return timing_.access(offered, blocks_->access(place, state_, item.mask == all_samples_), item, shading_);
       });
     } else {
-      expanded_.clear();
-      for (const LaneStamp& stamp : stamps) expanded_.push_back(expanded(step, stamp));
-      visit(step, std::span<const StampStep>(expanded_));
+      expanded_visit(step, stamps);
     }
+  }
+
+  /// Not inlined, for visit() would be compiled twice.
+  [[gnu::noinline]] void expanded_visit(const VisitStep& step, std::span<const LaneStamp> stamps) {
+    expanded_.clear();
+    for (const LaneStamp& stamp : stamps) expanded_.push_back(expanded(step, stamp));
+    visit(step, std::span<const StampStep>(expanded_));
   }
 
   [[nodiscard]] StampStep expanded(const VisitStep& visit, const LaneStamp& stamp) const {

@@ -251,10 +251,10 @@ struct RecordWays {
     const State& state = of.context->state;
     const bool has_texel_alpha = state.texture && state.texture_combine != TextureCombine::decal &&
                                  has_alpha(of.context->scene.textures[*state.texture].format);
-    is_opaque_texel = has_texel_alpha && bin.job.frame.prepared.textures[*state.texture].is_opaque &&
-                      !has_border(state.texture_wrap[0]) && !has_border(state.texture_wrap[1]);
-    knows_alpha = !has_texel_alpha || is_opaque_texel;
-    is_opaque_texel = is_opaque_texel && state.texture_combine == TextureCombine::replace;
+    const bool are_texels_opaque = has_texel_alpha && bin.job.frame.prepared.textures[*state.texture].is_opaque &&
+                                   !has_border(state.texture_wrap[0]) && !has_border(state.texture_wrap[1]);
+    knows_alpha = !has_texel_alpha || are_texels_opaque;
+    is_opaque_texel = are_texels_opaque && state.texture_combine == TextureCombine::replace;
     const ColorOps color = undithered(ops.color, bin.widths.pixel_samples);
     is_plain = !ops.state.color_write || color.is_plain();
     replaces = ops.state.color_write && bin.skip.opaque_blends && replaces_where_opaque(color, format);
