@@ -23,12 +23,12 @@ demo_rtl() {
 
 # The kernels of the functional engine that this machine runs, for CMake.
 best_kernels() {
-  if [[ ! -r /proc/cpuinfo ]]; then
-    echo 'avx2;avx512'
-  elif grep -qw avx512bw /proc/cpuinfo; then
+  if grep -qsw avx512bw /proc/cpuinfo; then
     echo avx512
-  else
+  elif grep -qsw avx2 /proc/cpuinfo; then
     echo avx2
+  else
+    echo 'portable;avx2;avx512'
   fi
 }
 

@@ -1,5 +1,6 @@
 #include "kernels.hpp"
 
+#include <stdexcept>
 #include <vector>
 
 namespace halfplane::functional {
@@ -20,7 +21,11 @@ std::span<const Kernels* const> available_kernels() {
     if (has_avx2) kernels.push_back(&kAvx2Kernels);
 #endif
 #endif
+#ifndef HALFPLANE_WITHOUT_PORTABLE
     kernels.push_back(&kPortableKernels);
+#endif
+    if (kernels.empty())
+      throw std::runtime_error("the functional engine was built for another processor (HALFPLANE_KERNELS); run ./dev build");
     return kernels;
   }();
   return found;
