@@ -6,6 +6,7 @@
   programs.py window -o FOLDER [NAME...]    replays each recording on both in a window and compares every frame, names the
                                             differences of the worst one by `halfplane compare`: window.md, window.png
   programs.py speed -o FOLDER [NAME...]     replays each recording on both in turn, --runs times: speed.md
+  programs.py page -o FOLDER [NAME...]      `compare` and `speed` in one table of all programs: page.md, sheet.png
   programs.py list                          the programs, and whether they are installed
 
 `record --first N` keeps the first N frames of a recording, so that `window` and `speed` have as many of each program.
@@ -414,6 +415,29 @@ def speed_table(rows):
     return '\n'.join(out) + '\n'
 
 
+def page_table(rows):
+    """A row a program: picture and speed. Programs without a frame of one of the two come last, with what was said."""
+    out = ['| program | pixels | frame | differ by more than 8, % | mean of 255 | frames replayed | llvmpipe, CPU ms | '
+           'Halfplane, CPU ms | times less CPU |', '| --- ' * 9 + '|']
+    for row in sorted(rows, key=lambda row: bool(row['error'])):
+        if row['error']:
+            out.append(f'| {row["name"]} ' + '| ' * 7 + f'| {row["error"][:100]} |')
+            continue
+        blank = ' (blank)' if is_blank(row['mesa']) and is_blank(row['ours']) else ''
+        out.append(f'| {row["name"]} | {row["ours"].width}x{row["ours"].height} | {row["frame"]}{blank} | '
+                   f'{100 * row["seen"]:.2f} | {row["mean"]:.2f} | {row["frames"]} | {1e3 * row["used_mesa"]:.2f} | '
+                   f'{1e3 * row["used_ours"]:.2f} | {row["used_ratio"]:.2f} |')
+    return '\n'.join(out) + '\n'
+
+
+def on_page(name, folder, env, options):
+    row = compare(name, folder, env, options)
+    if not row['error']:
+        pictures = {key: row[key] for key in ('mesa', 'ours', 'frame', 'seen', 'mean')}  # speed has other `mesa` and `ours`
+        row = speed(name, folder, env, options) | pictures
+    return row
+
+
 def measure_speed(names, folder, env, options):
     rows = []
     for name in names:
@@ -426,7 +450,7 @@ def measure_speed(names, folder, env, options):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('what', choices=['record', 'compare', 'window', 'speed', 'list'])
+    parser.add_argument('what', choices=['record', 'compare', 'window', 'speed', 'page', 'list'])
     parser.add_argument('names', nargs='*', metavar='NAME')
     parser.add_argument('-o', '--output', type=pathlib.Path, default=ROOT / 'out/programs')
     parser.add_argument('--seconds', type=float, default=6, help='of a recording')
@@ -436,13 +460,13 @@ def main():
     parser.add_argument('--config', default='full')
     parser.add_argument('--set', action='append', default=[], help='key=value; stencil.bits=8 without one')
     parser.add_argument('--most', type=float, default=100, help='percent of differing pixels that is let through')
-    parser.add_argument('--runs', type=int, default=3, help='of `speed`, on each of the two')
+    parser.add_argument('--runs', type=int, default=3, help='of `speed` and `page`, on each of the two')
     parser.add_argument('--threads', type=int, default=2, help='of `speed`, likewise; of the driver in `window`')
     parser.add_argument('-j', '--jobs', type=int, default=1)
     options = parser.parse_intermixed_args()
-    # `window`, `speed`: what a driver has that nobody has configured (gl/core/options.cpp).
+    # `window`, `speed`, `page`: what a driver has that nobody has configured (gl/core/options.cpp).
     options.set = options.set or ['stencil.bits=8'] + ['perspective.colors=1', 'texture.unit=trilinear', 'alpha.unit=1',
-                                                       'blend.lanes=4', 'fog.unit=1'] * (options.what in ('window', 'speed'))
+                                                       'blend.lanes=4', 'fog.unit=1'] * (options.what != 'compare')
     look_for_savers()
     unknown = [name for name in options.names if name not in PROGRAMS]
     if unknown:
@@ -463,16 +487,21 @@ def main():
         env = environment(display.name, folder)
         if options.what == 'speed':
             return measure_speed(names, folder, env, options)
-        look, lines = (compare_all, window_table) if options.what == 'window' else (compare, table)
+        look, lines = {'window': (compare_all, window_table), 'page': (on_page, page_table)}.get(options.what, (compare, table))
         rows = []
         for row in pool.map(lambda name: look(name, folder, env, options), names):
             rows.append(row)
             print(lines([row]).splitlines()[-1], flush=True)
-    text, image = ('window.md', 'window.png') if options.what == 'window' else ('table.md', 'sheet.png')
+    text, image = {'window': ('window.md', 'window.png'), 'page': ('page.md', 'sheet.png')}.get(options.what,
+                                                                                                ('table.md', 'sheet.png'))
     (folder / text).write_text(lines(rows), encoding='utf-8')
     groups = [[row.get('mesa'), row.get('ours')] for row in rows]
     if options.what == 'window':  # with their differences, four times as large
         groups = [[a, b, gaps_of(a, b).point(lambda v: min(4 * v, 255))] if a and b else [a, b] for a, b in groups]
+    if options.what == 'page':
+        pairs = [pair for pair, row in zip(groups, rows) if all(pair) and not (is_blank(pair[0]) and is_blank(pair[1]))]
+        sheet(pairs, columns=8, width=88, height=66, gap=3).quantize(64).save(folder / image)
+        return int(any(row['error'] for row in rows))
     sheet(groups, columns=4 if options.what == 'compare' else 2).quantize(128).save(folder / image)
     return int(any(row['error'] or 100 * row['seen'] > options.most for row in rows))
 
