@@ -484,8 +484,7 @@ TEST(FunctionalSurface, SmallTrianglesOfUsualDrawsAreSetUpInLanes) {
   };
   const auto keep = [](State&) {};
   const auto over_w = [](State& s) { s.color_interp = ColorInterp::perspective; };
-  EXPECT_FALSE(is_in_lanes("full", 64, keep));  // P takes all bits of a lane
-  for (const char* name : {"tiny", "small", "embedded"}) {
+  for (const char* name : {"tiny", "small", "embedded", "full"}) {
     EXPECT_TRUE(is_in_lanes(name, 64, keep)) << name;
     EXPECT_TRUE(is_in_lanes(name, 64, over_w)) << name;
   }

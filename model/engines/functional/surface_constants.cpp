@@ -121,8 +121,8 @@ LaneTexture texture_lanes(const Sampler& sampler, const TexelBlocks& texels, Tex
   return lanes;
 }
 
-/// The bounds: P less P of another vertex has a bit more than P, a numerator is the difference of two products of such
-/// a number and a side, and the reciprocal is at most 2^r. If a product gains bits, these are the bits of F beyond r.
+/// The bound: P less P of another vertex has a bit more than P, and a numerator is the difference of two products of such
+/// a number and a side.
 SurfaceStyle::SurfaceStyle(const FrameContext& frame, const DrawContext& draw)
     : context(&draw),
       format(perspective_format(frame.config)),
@@ -136,8 +136,7 @@ SurfaceStyle::SurfaceStyle(const FrameContext& frame, const DrawContext& draw)
   const Widths& widths = frame.widths;
   const int numerator =
       std::max({format.q_bits, format.coordinate.bits, format.color.bits}) + 2 + extent_bits(kMediumPixelBits, widths);
-  const int gained = std::max(widths.plane_fraction - format.reciprocal_bits, 0);
-  if (numerator + format.reciprocal_bits + gained > 61 || division.up < 1 || of_coordinate.up < 1) return;
+  if (numerator > kMostNumeratorBits || division.up < 1) return;
   const Sampler sampler(draw.scene.textures[*state.texture], state);
   for (const TextureAxis& axis : sampler.axes)
     if (!axis.is_power_of_two()) return;

@@ -138,6 +138,9 @@ enum class Sampling { none, nearest, linear, any };
 [[nodiscard]] LaneTexture texture_lanes(const Sampler& sampler, const TexelBlocks& texels, TextureCombine combine,
                                         const std::array<std::uint8_t, 3>& constant, int fraction_bits);
 
+/// Numerators of gradients over w that lanes multiply, in magnitude below 2^46.
+inline constexpr int kMostNumeratorBits = 46;
+
 /// Constants common to the surfaces of a draw, where lanes set up sixteen surfaces at a time and shade pixels of any of
 /// them: one texture, and colours that are affine or over the same w as its coordinates.
 struct SurfaceStyle {

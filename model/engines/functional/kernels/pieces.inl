@@ -229,13 +229,38 @@ HALFPLANE_NOINLINE std::uint32_t set_up_levels(const SmallCorners& corners, cons
   return bits_of(~is_flat & convert<std::int32_t>(largest < 0x1p-500));
 }
 
-/// Planes over w of sixteen triangles, at the anchors of their windows' tiles. `Gradient`: GradientLanes, or
+/// GradientLanes where products exceed 64 bits, for numerators of kMostNumeratorBits and reciprocals that are not negative:
+/// the bits of a numerator from kSplit on and those below them are multiplied apart, and gradients wrap in 64 bits.
+struct WideGradientLanes {
+  static constexpr int kSplit = kMostNumeratorBits - 30;
+  L16 reciprocal, half;
+  L16 upper_left, lower_right, lower_left, right;  ///< shifts of the two products, and of their sum
+  L16 lowered;
+
+  HALFPLANE_INLINE WideGradientLanes(const I16& reciprocal_, const I16& k)
+      : reciprocal(convert<std::int64_t>(reciprocal_)),
+        half(shift_right_logical(L16(1) << convert<std::int64_t>(max(k, I16(0))), 1)),
+        upper_left(convert<std::int64_t>(max(kSplit - k, I16(0)))),
+        lower_right(convert<std::int64_t>(min(max(k, I16(0)), I16(kSplit)))),
+        lower_left(convert<std::int64_t>(max(-k, I16(0)))),
+        right(convert<std::int64_t>(max(k - kSplit, I16(0)))),
+        lowered(shift_right_logical(L16(GradientLanes::kRaise), right)) {}
+
+  HALFPLANE_INLINE L16 operator()(const L16& numerator) const {
+    const L16 upper = multiply_narrow(numerator >> kSplit, reciprocal) << upper_left,
+              lower = multiply_narrow(numerator & ((1 << kSplit) - 1), reciprocal) + half;
+    const L16 sum = upper + (shift_right_logical(lower, lower_right) << lower_left);
+    return shift_right_logical(sum + GradientLanes::kRaise, right) - lowered;
+  }
+};
+
+/// Planes over w of sixteen triangles, at the anchors of their windows' tiles. `Gradient`: WideGradientLanes, or
 /// ExactGradientLanes where are_exact_planes().
 template <class Gradient>
 struct PiecePlanes {
   const Widths& widths;
   int guard_bits;
-  TwoCorners corner;              ///< from the base
+  TwoCorners corner;              ///< from the base, with the sign of the area
   FromOrigin to;                  ///< from the base to the anchor of the tile of even column and row
   I16 is_odd_column, is_odd_row;  ///< masks: column and row of the window's first tile
   const Gradient& gradient;
@@ -422,7 +447,7 @@ HALFPLANE_NOINLINE void set_up_pieces(Bin& bin, std::size_t number) {
   I16 reciprocal, shift;
   const auto take = [&](const QuotientLanes& quotient, int dropped) HALFPLANE_LAMBDA {
     const ReciprocalLanes of(quotient, dropped);
-    reciprocal = turned(of.value, corners.is_turned);
+    reciprocal = of.value;
     shift = of.shift - widths.plane_fraction;
   };
   if (less >= 0)
@@ -433,11 +458,13 @@ HALFPLANE_NOINLINE void set_up_pieces(Bin& bin, std::size_t number) {
     take(quotient_lanes(corners.area, bits), 0);
   const auto turn = [&order](const OfCorners<I16>& of)
                         HALFPLANE_LAMBDA { return order.turned_to_base(of.a, of.b, of.c); };
+  const auto side = [&corners](const I16& to_corner, const I16& from)
+                        HALFPLANE_LAMBDA { return turned(to_corner - from, corners.is_turned); };
   const auto store_planes = [&](const auto& gradient) HALFPLANE_LAMBDA {
     const PiecePlanes<std::remove_cvref_t<decltype(gradient)>> over_w{
         widths,
         style.format.guard_bits,
-        {x.b - x.a, y.b - y.a, x.c - x.a, y.c - y.a},
+        {side(x.b, x.a), side(y.b, y.a), side(x.c, x.a), side(y.c, y.a)},
         {from_origin.x + corners.origin.x - x.a + (is_odd_column & tile),
          from_origin.y + corners.origin.y - y.a + (is_odd_row & tile)},
         is_odd_column,
@@ -456,7 +483,7 @@ HALFPLANE_NOINLINE void set_up_pieces(Bin& bin, std::size_t number) {
   if (are_exact_planes(style.format, widths, corners.area, group.live))
     store_planes(ExactGradientLanes(reciprocal, shift, widths.plane_fraction - style.format.guard_bits));
   else
-    store_planes(GradientLanes(reciprocal, shift));
+    store_planes(WideGradientLanes(reciprocal, shift));
   group.alone = alone & group.live;
   group.is_set_up = true;
 }
