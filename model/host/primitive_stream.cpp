@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <deque>
 #include <utility>
 #include <vector>
 
@@ -78,7 +77,7 @@ class HostStream::Host {
   Host(const Scene& scene, const Config& config, BinContents* held);
   Host(const Host&) = delete;  // context_ points into config_
   Host& operator=(const Host&) = delete;
-  [[nodiscard]] std::optional<HostPrimitive> next();
+  [[nodiscard]] const HostPrimitive* pull();
   [[nodiscard]] const Counters& counters() const { return counters_; }
   [[nodiscard]] double progress() const;
 
@@ -88,6 +87,8 @@ class HostStream::Host {
   void send_next_primitive();
   void send_outline(const AssembledPrimitive& assembled);
   void send_clear(const Clear& command);
+  [[nodiscard]] const HostPrimitive* next_plain();
+  [[nodiscard]] HostPrimitive triangle_primitive(const Triangle& triangle, bool is_culled);
   void send_triangle(const Triangle& triangle, bool is_culled);
   [[nodiscard]] HostPrimitive state_token(StateRegister which, uint128 word, const HostPrimitive& in_front_of) const;
   [[nodiscard]] const HostPrimitive* next_primitive();
@@ -99,6 +100,10 @@ class HostStream::Host {
   void close_bins();
   void send_clears();
   void note_words(const PrimitiveState& state);
+  void set_number(HostPrimitive& out, std::uint32_t primitive) const {
+    out.primitive = primitive;
+    out.packet.primitive_id = static_cast<std::uint32_t>(wrap_unsigned(primitive, widths_.primitive_id.bits));
+  }
   [[nodiscard]] HostPrimitive host_primitive(const PrimitivePacket& packet, std::uint32_t primitive) const;
   [[nodiscard]] HostPrimitive drawn_primitive(PrimitiveKind kind, const PixelBounds& box,
                                               std::uint32_t primitive) const;
@@ -126,7 +131,12 @@ class HostStream::Host {
   HostUnits units_;
   std::optional<double> depth_everywhere_ = 1.0;                      ///< value of every pixel, if the host knows it
   std::optional<std::uint8_t> stencil_everywhere_ = std::uint8_t{0};  ///< likewise
-  std::deque<HostPrimitive> in_front_;  ///< tokens to be sent first, and the triangle that waits for them
+  /// The last plain triangle of the draw, if it has such: only vertices and numbers differ from one to the next.
+  std::optional<HostPrimitive> plain_;
+  bool sets_plain_ = false;                 ///< the registers for the draw's plain triangles have been set
+  const HostPrimitive* waiting_ = nullptr;  ///< the primitive that waits for its tokens
+  std::vector<HostPrimitive> tokens_;       ///< these
+  std::size_t tokens_first_ = 0;            ///< the next of them
 };
 
 HostStream::Host::Host(const Scene& scene, const Config& config, BinContents* held)
@@ -154,19 +164,19 @@ HostStream::Host::Host(const Scene& scene, const Config& config, BinContents* he
   send(out);
 }
 
-std::optional<HostPrimitive> HostStream::Host::next() {
-  if (in_front_.empty()) {
-    const HostPrimitive* const primitive = next_primitive();
-    if (primitive == nullptr) return std::nullopt;
-    units_.set_for(primitive->packet.kind, primitive->units, [&](StateRegister which, uint128 word) {
-      in_front_.push_back(state_token(which, word, *primitive));
-    });
-    if (in_front_.empty()) return *primitive;
-    in_front_.push_back(*primitive);
+const HostPrimitive* HostStream::Host::pull() {
+  if (waiting_ == nullptr) {
+    waiting_ = next_primitive();
+    if (waiting_ == nullptr) return nullptr;
+    const bool is_plain = plain_ && waiting_ == &*plain_;
+    if (is_plain && std::exchange(sets_plain_, true)) return std::exchange(waiting_, nullptr);
+    tokens_.clear();
+    tokens_first_ = 0;
+    units_.set_for(waiting_->packet.kind, waiting_->units,
+                   [&](StateRegister which, uint128 word) { tokens_.push_back(state_token(which, word, *waiting_)); });
   }
-  HostPrimitive first = std::move(in_front_.front());
-  in_front_.pop_front();
-  return first;
+  if (tokens_first_ < tokens_.size()) return &tokens_[tokens_first_++];
+  return std::exchange(waiting_, nullptr);
 }
 
 /// A token that sets a register of a unit from here on.
@@ -185,11 +195,34 @@ const HostPrimitive* HostStream::Host::next_primitive() {
   while (pending_first_ == pending_.size()) {
     if (bins_ && (part_ = bins_->next())) return &*part_;
     if (is_finished_) return nullptr;
+    if (const HostPrimitive* const plain = next_plain()) return plain;
     pending_.clear();
     pending_first_ = 0;
     advance();
   }
   return &pending_[pending_first_++];
+}
+
+/// The next triangle of the draw, if it is plain: it needs no work of the host but its vertices'.
+const HostPrimitive* HostStream::Host::next_plain() {
+  if (!plain_ || assembled_next_ == assembled_.size()) return nullptr;
+  const auto& index = assembled_[assembled_next_].index;
+  std::array<const VertexCache::Entry*, 3> v;
+  for (std::size_t i = 0; i < 3; ++i) v[i] = &vertices_.get(*context_, index[i]);
+  if ((v[0]->outside_frustum & v[1]->outside_frustum & v[2]->outside_frustum) != 0) return nullptr;
+  if ((v[0]->outside_guard_band | v[1]->outside_guard_band | v[2]->outside_guard_band) != 0) return nullptr;
+  TriangleVertices& vertex = plain_->packet.vertex;
+  for (std::size_t i = 0; i < 3; ++i) {
+    vertex.x[i] = v[i]->snapped.x;
+    vertex.y[i] = v[i]->snapped.y;
+    vertex.code[i] = v[i]->snapped.code;
+    if (context_->state.shade == Shade::flat) copy_color(vertex.code[i], v[0]->snapped.code, config_);
+  }
+  set_number(*plain_, primitive_++);
+  ++assembled_next_;
+  ++counters_.primitives_in;
+  ++counters_.pairs;
+  return &*plain_;
 }
 
 /// Does the next piece of work; it may send nothing.
@@ -267,6 +300,12 @@ void HostStream::Host::start_draw(const Draw& draw) {
   assembled_next_ = 0;
   for_each_primitive(scene_, draw, context_->state.provoking,
                      [this](const AssembledPrimitive& assembled) { assembled_.push_back(assembled); });
+  plain_.reset();
+  sets_plain_ = false;
+  const State& state = context_->state;
+  if (!bins_ && drawn_as(state, draw.topology) == PrimitiveType::triangle && !has_surface(state) &&
+      state.polygon_offset == std::array<double, 2>{} && context_->rect.width > 0 && context_->rect.height > 0)
+    plain_ = triangle_primitive({}, false);
 }
 
 void HostStream::Host::send_next_primitive() {
@@ -331,7 +370,7 @@ PrimitivePacket HostStream::Host::draw_packet(PrimitiveKind kind, const PixelBou
   return packet;
 }
 
-void HostStream::Host::send_triangle(const Triangle& triangle, bool is_culled) {
+HostPrimitive HostStream::Host::triangle_primitive(const Triangle& triangle, bool is_culled) {
   const State& state = context_->state;
   const Rect& rect = context_->rect;
   HostPrimitive out = drawn_primitive(
@@ -340,7 +379,11 @@ void HostStream::Host::send_triangle(const Triangle& triangle, bool is_culled) {
   out.packet.front_cw = state.front == FrontFace::cw;
   set_vertices(out.packet.vertex, triangle.v);
   units_.fill(*context_, triangle, held_ != nullptr, out);
-  send(out);
+  return out;
+}
+
+void HostStream::Host::send_triangle(const Triangle& triangle, bool is_culled) {
+  send(triangle_primitive(triangle, is_culled));
 }
 
 /// A fast clear of the whole target; of no buffer so far.
@@ -404,7 +447,7 @@ void HostStream::Host::note_words(const PrimitiveState& state) {
 
 HostPrimitive HostStream::Host::host_primitive(const PrimitivePacket& packet, std::uint32_t primitive) const {
   HostPrimitive out{packet, {}, primitive, static_cast<std::uint32_t>(command_ - 1), false};
-  out.packet.primitive_id = static_cast<std::uint32_t>(wrap_unsigned(primitive, widths_.primitive_id.bits));
+  set_number(out, primitive);
   return out;
 }
 
@@ -412,7 +455,7 @@ HostPrimitive HostStream::Host::host_primitive(const PrimitivePacket& packet, st
 HostPrimitive HostStream::Host::drawn_primitive(PrimitiveKind kind, const PixelBounds& box,
                                                 std::uint32_t primitive) const {
   HostPrimitive out{draw_packet(kind, box), {}, primitive, static_cast<std::uint32_t>(command_ - 1), false};
-  out.packet.primitive_id = static_cast<std::uint32_t>(wrap_unsigned(primitive, widths_.primitive_id.bits));
+  set_number(out, primitive);
   const FragmentOps& ops = context_->fragment_ops;
   out.units.colors = color_words(ops, config_);
   if (out.packet.state.tests_stencil) out.units.stencil = stencil_words(*ops.stencil);
@@ -447,7 +490,11 @@ double HostStream::Host::progress() const {
 HostStream::HostStream(const Scene& scene, const Config& config, BinContents* held)
     : host_(std::make_unique<Host>(scene, config, held)) {}
 HostStream::~HostStream() = default;
-std::optional<HostPrimitive> HostStream::next() { return host_->next(); }
+const HostPrimitive* HostStream::pull() { return host_->pull(); }
+std::optional<HostPrimitive> HostStream::next() {
+  const HostPrimitive* const primitive = pull();
+  return primitive == nullptr ? std::nullopt : std::optional(*primitive);
+}
 const Counters& HostStream::counters() const { return host_->counters(); }
 double HostStream::progress() const { return host_->progress(); }
 

@@ -436,10 +436,9 @@ void require_positive_w(const DrawContext& context, const Triangle& triangle) {
                    "texture_interp and color_interp affine, fog off, shade smooth and w 1");
 }
 
-const VertexCache::Entry& VertexCache::get(const DrawContext& context, std::uint32_t index) {
+const VertexCache::Entry& VertexCache::make(const DrawContext& context, std::uint32_t index) {
   if (is_ring_) next_ = (next_ + 1) % entries_.size();
   Entry& entry = entries_[is_ring_ ? next_ : index];
-  if (!is_ring_ && entry.state == context.draw.state) return entry;
   const Vertex& v = context.scene.vertices[index];
   if (context.state.space == Space::clip) {
     require_finite_distances(v, context, index);

@@ -57,9 +57,14 @@ class VertexCache {
   };
   /// `vertices` of the scene; 0: remembers only the last three, for callers without shared vertices.
   explicit VertexCache(std::size_t vertices) : entries_(vertices == 0 ? 3 : vertices), is_ring_(vertices == 0) {}
-  [[nodiscard]] const Entry& get(const DrawContext& context, std::uint32_t index);
+  [[nodiscard]] const Entry& get(const DrawContext& context, std::uint32_t index) {
+    if (!is_ring_ && entries_[index].state == context.draw.state) return entries_[index];
+    return make(context, index);
+  }
 
  private:
+  const Entry& make(const DrawContext& context, std::uint32_t index);
+
   std::vector<Entry> entries_;
   bool is_ring_;
   std::size_t next_ = 0;

@@ -46,6 +46,9 @@ class CacheTags {
       : widths_(widths),
         victims_(static_cast<std::size_t>(config.cache_victims)),
         has_stencil_(config.stencil_bits != 0),
+        line_x_bits_(widths.line_x_bits),
+        line_x_mask_((std::size_t{1} << widths.line_x_bits) - 1),
+        line_y_mask_((std::size_t{1} << widths.line_y_bits) - 1),
         lines_(static_cast<std::size_t>(config.cache_lines)),
         flags_(widths) {
     unwritten_.reserve(victims_);
@@ -170,15 +173,14 @@ class CacheTags {
   /// Whether a fragment reads its stored words. With a stencil a write keeps a part of them, unless both parts are
   /// replaced.
   [[nodiscard]] bool looks_at_depth(const PrimitiveState& state, bool is_full) const {
+    if (state.depth_test != DepthFunc::always || !is_full || (tests_alpha_ && state.writes_word())) return true;
     const bool replaces = state.depth_write && state.tests_stencil && replaces_stencil_[state.is_back ? 1 : 0];
-    return state.depth_test != DepthFunc::always || !is_full || (tests_alpha_ && state.writes_word()) ||
-           (has_stencil_ && (state.tests_stencil || state.depth_write) && !replaces);
+    return has_stencil_ && (state.tests_stencil || state.depth_write) && !replaces;
   }
   /// Index of a word in a row of blocks.
   [[nodiscard]] int word_of(int x) const { return x / widths_.blocks.flag_word; }
   [[nodiscard]] std::size_t line_of(const BlockAddress& block) const {
-    const auto low = [](int value, int bits) { return static_cast<std::size_t>(value & ((1 << bits) - 1)); };
-    return low(block.y, widths_.line_y_bits) << widths_.line_x_bits | low(block.x, widths_.line_x_bits);
+    return (block.y & line_y_mask_) << line_x_bits_ | (block.x & line_x_mask_);
   }
 
   /// A needed block may still be on its way to memory: the number of evictions that must go first, up to its newest
@@ -213,6 +215,8 @@ class CacheTags {
   Widths widths_;
   std::size_t victims_;
   bool has_stencil_;
+  int line_x_bits_;
+  std::size_t line_x_mask_, line_y_mask_;
   bool drops_depth_ = false;
   bool reads_color_ = false, tests_alpha_ = false;
   std::array<bool, 2> replaces_stencil_{};  ///< front, back

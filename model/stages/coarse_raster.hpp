@@ -49,6 +49,7 @@ void coarse_raster(const SetupPacket& setup, std::uint8_t slot, Hiz& hiz, const 
   TileWalk walk(first_x, first_y, last_x, last_y, setup.dy);
   bool has_ended = false;
   unsigned outside = 0;
+  TilePacket packet;
   if (asks_hiz) watch.read_ahead();
   do {
     ++count.tiles_visited;
@@ -65,7 +66,7 @@ void coarse_raster(const SetupPacket& setup, std::uint8_t slot, Hiz& hiz, const 
       watch.skip_behind();
     } else {
       has_ended = walk.is_last();
-      const TilePacket packet = make_tile_packet(setup, walk.x(), walk.y(), slot, has_ended, widths);
+      make_tile_packet(setup, edges, walk.x(), walk.y(), slot, has_ended, widths, packet);
       hiz.begin_visit(setup.state);
       if (packet.is_inside != 0)
         ++count.trivially_accepted;

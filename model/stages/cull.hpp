@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "../packets/packets.hpp"
 #include "../scene.hpp"
@@ -55,12 +56,18 @@ struct PixelBounds {
   }
 };
 
+/// The smallest and the largest of three numbers; std::minmax of a list is a call.
+template <class Number>
+[[nodiscard]] constexpr std::pair<Number, Number> range_of(Number a, Number b, Number c) {
+  return {std::min(std::min(a, b), c), std::max(std::max(a, b), c)};
+}
+
 /// The pixels whose centres lie in the triangle's bounding box and in `limit`.
 [[nodiscard]] inline PixelBounds pixel_bounds(const std::array<SnappedVertex, 3>& v, const PixelBounds& limit,
                                               int grid_bits) {
   const std::int32_t half = std::int32_t{1} << (grid_bits - 1);
-  const auto [x_min, x_max] = std::minmax({v[0].x, v[1].x, v[2].x});
-  const auto [y_min, y_max] = std::minmax({v[0].y, v[1].y, v[2].y});
+  const auto [x_min, x_max] = range_of(v[0].x, v[1].x, v[2].x);
+  const auto [y_min, y_max] = range_of(v[0].y, v[1].y, v[2].y);
   // First pixel whose centre is >= min, last whose centre is <= max.
   return {std::max(limit.left, (x_min + half - 1) >> grid_bits), std::max(limit.top, (y_min + half - 1) >> grid_bits),
           std::min(limit.right, (x_max - half) >> grid_bits), std::min(limit.bottom, (y_max - half) >> grid_bits)};
@@ -70,8 +77,8 @@ struct PixelBounds {
 [[nodiscard]] inline PixelBounds sample_bounds(const std::array<SnappedVertex, 3>& v, const PixelBounds& limit,
                                                int grid_bits, int samples) {
   if (samples == 1) return pixel_bounds(v, limit, grid_bits);
-  const auto [x_min, x_max] = std::minmax({v[0].x, v[1].x, v[2].x});
-  const auto [y_min, y_max] = std::minmax({v[0].y, v[1].y, v[2].y});
+  const auto [x_min, x_max] = range_of(v[0].x, v[1].x, v[2].x);
+  const auto [y_min, y_max] = range_of(v[0].y, v[1].y, v[2].y);
   return {std::max(limit.left, x_min >> grid_bits), std::max(limit.top, y_min >> grid_bits),
           std::min(limit.right, x_max >> grid_bits), std::min(limit.bottom, y_max >> grid_bits)};
 }
@@ -80,7 +87,8 @@ struct PixelBounds {
 /// order.
 [[nodiscard]] inline std::array<std::size_t, 3> canonical_order(const std::array<SnappedVertex, 3>& v,
                                                                 std::int64_t area) {
-  const auto first = static_cast<std::size_t>(std::min_element(v.begin(), v.end(), canonically_before) - v.begin());
+  std::size_t first = canonically_before(v[1], v[0]) ? 1 : 0;
+  if (canonically_before(v[2], v[first])) first = 2;
   const std::size_t next = (first + 1) % 3, last = (first + 2) % 3;
   return area < 0 ? std::array{first, last, next} : std::array{first, next, last};
 }
@@ -140,42 +148,49 @@ template <class Box>
 }
 
 /// The stage. Each dropped triangle is counted once, by the first reason that holds. `looks_at_samples`: true for the
-/// pipelined hardware, false for the serial one.
-[[nodiscard]] inline std::optional<TrianglePacket> cull(const PrimitivePacket& in, const Widths& widths,
-                                                        CounterPacket& counters, bool looks_at_samples = false) {
-  std::optional<TrianglePacket> kept;  // the returned one: a packet is expensive to copy
-  const auto keep = [&](const PixelBox& box) -> TrianglePacket& {
-    TrianglePacket& out = kept.emplace();
+/// pipelined hardware, false for the serial one. Returns whether the primitive is kept; then all of `out` is set, a packet
+/// for one primitive after the other.
+[[nodiscard]] inline bool cull(const PrimitivePacket& in, const Widths& widths, CounterPacket& counters,
+                               bool looks_at_samples, TrianglePacket& out) {
+  const auto keep = [&](const PixelBox& box) {
     out.kind = in.kind;
     out.primitive_id = in.primitive_id;
     out.state = in.state;
     out.coordinates = in.coordinates;
     out.box = box;
-    return out;
   };
   if (is_counted(in.kind)) ++counters.primitives_in;
   if (in.kind != PrimitiveKind::triangle) {
-    if (to_bounds(in.box).is_empty())
+    if (to_bounds(in.box).is_empty()) {
       counters.empty += is_counted(in.kind) ? 1 : 0;
-    else if (in.kind == PrimitiveKind::state && has_state_lane(widths))
-      keep(in.box).vertex.code[2] = in.vertex.code[2];
+      return false;
+    }
+    out = {};
+    keep(in.box);
+    if (in.kind == PrimitiveKind::state && has_state_lane(widths))
+      out.vertex.code[2] = in.vertex.code[2];
     else
-      keep(in.box).vertex = in.vertex;
-    return kept;
+      out.vertex = in.vertex;
+    return true;
   }
-  const auto v = to_snapped(in.vertex);
+  std::array<SnappedVertex, 3> v;  // of the codes depth alone, which orders them
+  for (std::size_t i = 0; i < 3; ++i) {
+    v[i].x = in.vertex.x[i];
+    v[i].y = in.vertex.y[i];
+    v[i].depth() = in.vertex.code[i][kDepthPlane];
+  }
   const std::int64_t area = signed_area(v[0], v[1], v[2]);
   const CullResult result = cull(area, in.cull, in.front_cw ? FrontFace::cw : FrontFace::ccw);
   if (result != CullResult::keep) {
     ++(result == CullResult::zero_area ? counters.zero_area : counters.backface);
-    return kept;
+    return false;
   }
   const PixelBounds bounds = sample_bounds(v, to_bounds(in.box), widths.grid_bits, widths.pixel_samples);
   if (bounds.is_empty()) {
     ++counters.empty;
-    return kept;
+    return false;
   }
-  TrianglePacket& out = keep(to_box(bounds));
+  keep(to_box(bounds));
   out.state.is_back = in.state.tests_stencil && shows_back(area, in.front_cw ? FrontFace::cw : FrontFace::ccw);
   const auto order = canonical_order(v, area);
   const int first_x = bounds.left >> widths.tile_shift << widths.tile_shift;  // first pixel of the first tile
@@ -192,8 +207,15 @@ template <class Box>
   out.area = static_cast<std::uint64_t>(area < 0 ? -area : area);
   if (looks_at_samples && widths.has_samples == 0 && provably_covers_no_sample(out, v, widths)) {
     ++counters.no_sample;
-    kept.reset();
+    return false;
   }
+  return true;
+}
+
+[[nodiscard]] inline std::optional<TrianglePacket> cull(const PrimitivePacket& in, const Widths& widths,
+                                                        CounterPacket& counters, bool looks_at_samples = false) {
+  std::optional<TrianglePacket> kept(std::in_place);
+  if (!cull(in, widths, counters, looks_at_samples, *kept)) kept.reset();
   return kept;
 }
 

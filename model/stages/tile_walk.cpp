@@ -17,13 +17,12 @@ std::int64_t local_anchor(const SetupPacket& setup, std::size_t p, int dx, int d
 
 }  // namespace
 
-TilePacket make_tile_packet(const SetupPacket& setup, int tile_x, int tile_y, std::uint8_t slot, bool ends,
-                            const Widths& widths) {
+void make_tile_packet(const SetupPacket& setup, const EdgeValues& value, int tile_x, int tile_y, std::uint8_t slot,
+                      bool ends, const Widths& widths, TilePacket& packet) {
   const int last = (1 << widths.tile_shift) - 1;
   const auto inside_tile = [&](int pixel, int tile) {
     return static_cast<std::uint8_t>(std::clamp(pixel - (tile << widths.tile_shift), 0, last));
   };
-  TilePacket packet;
   packet.kind = setup.kind;
   packet.is_visit = true;
   packet.ends_primitive = ends;
@@ -31,7 +30,6 @@ TilePacket make_tile_packet(const SetupPacket& setup, int tile_x, int tile_y, st
   packet.slot = slot;
   packet.box = {inside_tile(setup.box.left, tile_x), inside_tile(setup.box.top, tile_y),
                 inside_tile(setup.box.right, tile_x), inside_tile(setup.box.bottom, tile_y)};
-  const EdgeValues value = edges_at_tile(setup, tile_x, tile_y, widths);
   const EdgeValues inwards = moved_by_samples(value, setup.dx, setup.dy, false, widths);
   packet.is_inside = true;
   for (std::size_t i = 0; i < 3; ++i)
@@ -41,22 +39,31 @@ TilePacket make_tile_packet(const SetupPacket& setup, int tile_x, int tile_y, st
   const int dx = tile_x - (setup.box.left >> widths.tile_shift), dy = tile_y - (setup.box.top >> widths.tile_shift);
   for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p)
     packet.anchor[p] = local_anchor(setup, p, dx, dy, widths);
+}
+
+TilePacket make_tile_packet(const SetupPacket& setup, int tile_x, int tile_y, std::uint8_t slot, bool ends,
+                            const Widths& widths) {
+  TilePacket packet;
+  make_tile_packet(setup, edges_at_tile(setup, tile_x, tile_y, widths), tile_x, tile_y, slot, ends, widths, packet);
   return packet;
 }
 
-ContextPacket make_context(const SetupPacket& setup, const Widths& widths) {
-  ContextPacket context;
+void make_context(const SetupPacket& setup, const Widths& widths, ContextPacket& context) {
   context.state = setup.state;
   context.range = setup.range;
   context.coordinates = setup.coordinates;
   for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p) {
-    const Width &plane = widths.of_plane(p).plane, &local = widths.of_plane(p).local;
-    const auto per_pixel = [&](std::int64_t step) {  // rounded
-      return wrap_signed(round_shift(step, plane.bits - local.bits - widths.grid_bits), widths.of_plane(p).step.bits);
-    };
+    const AttributeWidths& attribute = widths.of_plane(p);
+    const int drop = attribute.plane.bits - attribute.local.bits - widths.grid_bits, bits = attribute.step.bits;
+    const auto per_pixel = [&](std::int64_t step) { return wrap_signed(round_shift(step, drop), bits); };  // rounded
     context.step_x[p] = per_pixel(setup.step_x[p]);
     context.step_y[p] = per_pixel(setup.step_y[p]);
   }
+}
+
+ContextPacket make_context(const SetupPacket& setup, const Widths& widths) {
+  ContextPacket context;
+  make_context(setup, widths, context);
   return context;
 }
 

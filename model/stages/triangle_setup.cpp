@@ -49,6 +49,35 @@ std::int64_t code_value(const SnappedVertex& v, std::size_t p, const Widths& wid
   return code.is_signed ? wrap_signed(v.code[p], code.bits) : std::int64_t{v.code[p]};
 }
 
+/// The planes of a triangle with these vertices in canonical order and that area: plane(p, Plane) for each.
+template <class Put>
+void for_each_plane(const std::array<SnappedVertex, 3>& v, std::int64_t area, int first_x, int first_y,
+                    const Config& config, const Widths& widths, Put&& plane) {
+  const int significant_bits = widths.reciprocal_bits();
+  const AreaQuotient quotient = area_quotient(area, significant_bits);
+  const auto made = [&](std::size_t p, std::int64_t from, std::int64_t next, std::int64_t last,
+                        const PlaneFrame& frame) {
+    const AttributeWidths& attribute = widths.of_plane(p);
+    plane(p, setup_plane(from, next, last, frame, reciprocal(quotient, significant_bits - attribute.reciprocal_bits()),
+                         attribute.plane.bits));
+  };
+  const PlaneFrame frame = plane_frame(v[0], v[1], v[2], first_x, first_y, config.tile_size, widths);
+  for (std::size_t p = 0; p < static_cast<std::size_t>(widths.affine_planes); ++p)
+    made(p, v[0].code[p], v[1].code[p], v[2].code[p], frame);
+  if (widths.coordinates == 0) return;
+  const std::size_t q = widths.q_plane, base = base_vertex({v[0].code[q], v[1].code[q], v[2].code[q]});
+  const SnappedVertex &from = v[base], &next = v[(base + 1) % 3], &last = v[(base + 2) % 3];
+  const PlaneFrame over_w = plane_frame(from, next, last, first_x, first_y, config.tile_size, widths);
+  for (std::size_t p = q; p < static_cast<std::size_t>(widths.planes); ++p)
+    made(p, code_value(from, p, widths), code_value(next, p, widths), code_value(last, p, widths), over_w);
+}
+
+/// The ranges of a triangle's affine codes.
+void set_range(CodeRange& range, const std::array<SnappedVertex, 3>& v, const Widths& widths) {
+  for (std::size_t p = 0; p < static_cast<std::size_t>(widths.affine_planes); ++p)
+    std::tie(range.low[p], range.high[p]) = range_of(v[0].code[p], v[1].code[p], v[2].code[p]);
+}
+
 /// All constants that follow from the vertices in canonical order, their area and the box.
 void finish_setup(TriangleSetup& setup, const std::array<SnappedVertex, 3>& v, const Config& config,
                   const Widths& widths) {
@@ -61,27 +90,9 @@ void finish_setup(TriangleSetup& setup, const std::array<SnappedVertex, 3>& v, c
     setup.edge[i] = {to.x - from.x, to.y - from.y, edge_function(from, to, first_x, first_y, s)};
     if (widths.has_samples != 0) setup.edge[i].low = static_cast<std::uint16_t>(edge_low(from, to, s));
   }
-
-  const PlaneFrame frame = plane_frame(v[0], v[1], v[2], first_x, first_y, config.tile_size, widths);
-  const int significant_bits = widths.reciprocal_bits();
-  const AreaQuotient quotient = area_quotient(setup.area, significant_bits);
-  for (std::size_t p = 0; p < static_cast<std::size_t>(widths.affine_planes); ++p) {
-    const std::uint32_t c0 = v[0].code[p], c1 = v[1].code[p], c2 = v[2].code[p];
-    const AttributeWidths& attribute = widths.of_plane(p);
-    setup.plane[p] = setup_plane(
-        c0, c1, c2, frame, reciprocal(quotient, significant_bits - attribute.reciprocal_bits()), attribute.plane.bits);
-    std::tie(setup.range.low[p], setup.range.high[p]) = std::minmax({c0, c1, c2});
-  }
-  if (widths.coordinates == 0) return;
-  const std::size_t q = widths.q_plane, base = base_vertex({v[0].code[q], v[1].code[q], v[2].code[q]});
-  const SnappedVertex &from = v[base], &next = v[(base + 1) % 3], &last = v[(base + 2) % 3];
-  const PlaneFrame over_w = plane_frame(from, next, last, first_x, first_y, config.tile_size, widths);
-  for (std::size_t p = q; p < static_cast<std::size_t>(widths.planes); ++p) {
-    const AttributeWidths& attribute = widths.of_plane(p);
-    setup.plane[p] =
-        setup_plane(code_value(from, p, widths), code_value(next, p, widths), code_value(last, p, widths), over_w,
-                    reciprocal(quotient, significant_bits - attribute.reciprocal_bits()), attribute.plane.bits);
-  }
+  for_each_plane(v, setup.area, first_x, first_y, config, widths,
+                 [&](std::size_t p, const Plane& plane) { setup.plane[p] = plane; });
+  set_range(setup.range, v, widths);
 }
 
 /// The constants of a primitive with one code per plane and no edges.
@@ -121,8 +132,7 @@ TriangleSetup setup_outline(const Triangle& triangle, const Widths& widths, cons
   setup.top = box.top;
   setup.right = box.right;
   setup.bottom = box.bottom;
-  for (std::size_t p = 0; p < static_cast<std::size_t>(widths.affine_planes); ++p)
-    std::tie(setup.range.low[p], setup.range.high[p]) = std::minmax({v[0].code[p], v[1].code[p], v[2].code[p]});
+  set_range(setup.range, v, widths);
   return setup;
 }
 
@@ -148,6 +158,18 @@ std::uint64_t plane_bias(const AttributeWidths& attribute, const Widths& widths)
   return (std::uint64_t{1} << (drop - 1)) + ((to_window + half) << drop);
 }
 
+namespace {
+
+void set_plane(SetupPacket& packet, std::size_t p, const Plane& plane, const Widths& widths) {
+  const AttributeWidths& attribute = widths.of_plane(p);
+  const std::uint64_t biased = static_cast<std::uint64_t>(plane.value) + plane_bias(attribute, widths);
+  packet.value[p] = wrap_signed(static_cast<std::int64_t>(biased), attribute.plane.bits);
+  packet.step_x[p] = plane.step_x;
+  packet.step_y[p] = plane.step_y;
+}
+
+}  // namespace
+
 SetupPacket to_setup_packet(const TriangleSetup& setup, const Widths& widths) {
   SetupPacket packet;
   packet.box = to_box({setup.left, setup.top, setup.right, setup.bottom});
@@ -158,13 +180,8 @@ SetupPacket to_setup_packet(const TriangleSetup& setup, const Widths& widths) {
     packet.edge_value[i] = setup.edge[i].value;
     packet.edge_low[i] = setup.edge[i].low;
   }
-  for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p) {
-    const AttributeWidths& attribute = widths.of_plane(p);
-    const std::uint64_t biased = static_cast<std::uint64_t>(setup.plane[p].value) + plane_bias(attribute, widths);
-    packet.value[p] = wrap_signed(static_cast<std::int64_t>(biased), attribute.plane.bits);
-    packet.step_x[p] = setup.plane[p].step_x;
-    packet.step_y[p] = setup.plane[p].step_y;
-  }
+  for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p)
+    set_plane(packet, p, setup.plane[p], widths);
   packet.range = setup.range;
   return packet;
 }
@@ -186,11 +203,34 @@ TriangleSetup setup_primitive(const TrianglePacket& primitive, const Config& con
   return setup;
 }
 
-SetupPacket setup_packet(const TrianglePacket& primitive, const Config& config, const Widths& widths) {
-  SetupPacket packet = to_setup_packet(setup_primitive(primitive, config, widths), widths);
+void setup_packet(const TrianglePacket& primitive, const Config& config, const Widths& widths, SetupPacket& packet) {
+  if (primitive.kind == PrimitiveKind::triangle) {
+    const auto v = to_snapped(primitive.vertex);
+    packet.box = primitive.box;
+    packet.primitive_id = static_cast<std::uint32_t>(wrap_unsigned(primitive.primitive_id, widths.primitive_id.bits));
+    for (std::size_t i = 0; i < 3; ++i) {
+      const SnappedVertex &from = v[i], &to = v[(i + 1) % 3];
+      packet.dx[i] = to.x - from.x;
+      packet.dy[i] = to.y - from.y;
+      packet.edge_value[i] = primitive.edge_value[i];
+      packet.edge_low[i] = primitive.edge_low[i];
+    }
+    for_each_plane(v, static_cast<std::int64_t>(primitive.area),
+                   primitive.box.left >> widths.tile_shift << widths.tile_shift,
+                   primitive.box.top >> widths.tile_shift << widths.tile_shift, config, widths,
+                   [&](std::size_t p, const Plane& plane) { set_plane(packet, p, plane, widths); });
+    set_range(packet.range, v, widths);
+  } else {
+    packet = to_setup_packet(setup_primitive(primitive, config, widths), widths);
+  }
   packet.state = primitive.state;
   packet.kind = primitive.kind;
   packet.coordinates = primitive.coordinates;
+}
+
+SetupPacket setup_packet(const TrianglePacket& primitive, const Config& config, const Widths& widths) {
+  SetupPacket packet;
+  setup_packet(primitive, config, widths, packet);
   return packet;
 }
 

@@ -68,6 +68,9 @@ class FixedMemory final : public SharedMemory {
         latency_(static_cast<Cycle>(latency)),
         port_bytes_(static_cast<std::uint64_t>(config.memory_port_bits / 8)) {}
   [[nodiscard]] Cycle room() const override { return 0; }
+  [[nodiscard]] std::optional<Cycle> ideal_latency() const override {
+    return is_shared() ? std::nullopt : std::optional(latency_);
+  }
   BurstAnswer accept(const MemoryBurst& burst, Cycle cycle_taken) override {
     serve_others(cycle_taken * cycle());
     if (!is_shared() || burst.is_write) return {cycle_taken + latency_, 1, 1, 0};

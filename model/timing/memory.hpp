@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -45,6 +46,9 @@ class MemoryTiming {
   virtual void show(int, int) {}
   /// Traffic of other masters up to the last burst.
   [[nodiscard]] virtual MemoryUse use() const { return {}; }
+  /// Of an ideal memory with one master: room() is always 0, and each beat is answered so many cycles after the last beat
+  /// that was taken, or one after the beat before, whatever other bursts there are. None of others.
+  [[nodiscard]] virtual std::optional<Cycle> ideal_latency() const { return std::nullopt; }
 };
 
 enum class MemoryKind : std::uint8_t {

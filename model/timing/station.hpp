@@ -9,6 +9,7 @@
 // So time is a max-plus recurrence over the items; there is no clock loop.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "stalls.hpp"
@@ -40,6 +41,22 @@ class Station {
   Cycle latency_, turnaround_;
   std::size_t capacity_;
   std::vector<Cycle> free_at_;  ///< ring: when the place of item n - capacity is free
+  std::size_t next_ = 0;
+};
+
+/// The same with numbers that the compiler knows.
+template <std::size_t kCapacity, Cycle kLatency, Cycle kTurnaround>
+class FixedStation {
+ public:
+  [[nodiscard]] Cycle room() const { return free_at_[next_]; }
+  [[nodiscard]] static constexpr Cycle ready(Cycle entered) { return entered + kLatency; }
+  void leave(Cycle cycle) {
+    free_at_[next_] = cycle + kTurnaround;
+    if (kCapacity != 1) next_ = next_ + 1 == kCapacity ? 0 : next_ + 1;
+  }
+
+ private:
+  std::array<Cycle, kCapacity> free_at_{};
   std::size_t next_ = 0;
 };
 

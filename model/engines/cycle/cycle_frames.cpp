@@ -46,7 +46,7 @@ CycleRendering CycleFrames::draw(const Scene& scene, const RenderOptions& render
   model_->begin(scene.width, scene.height, start_, render.threads);
   DrawnCount drawn;
   std::uint32_t sent = 0;
-  while (const auto primitive = host.next()) {
+  while (const HostPrimitive* const primitive = host.pull()) {
     drawn.add(*primitive, model_->run(*primitive));
     if (render.progress && ++sent % 256 == 0) render.progress(host.progress());
   }

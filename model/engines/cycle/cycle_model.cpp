@@ -138,26 +138,30 @@ class BitsAndTimes final : public CycleModel {
 
   /// Sends a primitive of the host down the pipeline as `primitive`.
   void send(const HostPrimitive& host, const PrimitivePacket& primitive) {
-    const auto triangle = cull(primitive, widths_, counters_, config_.setup_kind == SetupKind::pipelined);
+    TrianglePacket& triangle = triangle_;
+    const bool is_kept = cull(primitive, widths_, counters_, config_.setup_kind == SetupKind::pipelined, triangle);
     steps().add(StepKind::take);
-    steps().primitives.push_back({work_of(primitive, !triangle, config_.setup_kind == SetupKind::serial),
-                                  triangle ? triangle->state : PrimitiveState{}});
-    if (!triangle) return added();
-    switch (triangle->kind) {
-      case PrimitiveKind::fast_clear: fast_clear(*triangle); return;
+    steps().primitives.push_back({work_of(primitive, !is_kept, config_.setup_kind == SetupKind::serial),
+                                  is_kept ? triangle.state : PrimitiveState{}});
+    if (!is_kept) return added();
+    switch (triangle.kind) {
+      case PrimitiveKind::fast_clear: fast_clear(triangle); return;
       case PrimitiveKind::flush:
         steps().add(StepKind::flush);
-        steps().areas.push_back(area_of(*triangle));
+        steps().areas.push_back(area_of(triangle));
         added();
         return;
       case PrimitiveKind::state:
-        set_state(*triangle);
+        set_state(triangle);
         added();
         return;
-      case PrimitiveKind::line: draw_line(*triangle, *host.line, host.primitive); return;
+      case PrimitiveKind::line: draw_line(triangle, *host.line, host.primitive); return;
       case PrimitiveKind::triangle:
       case PrimitiveKind::rectangle:
-      case PrimitiveKind::point: draw(setup_packet(*triangle, config_, widths_), host.primitive); return;
+      case PrimitiveKind::point:
+        setup_packet(triangle, config_, widths_, setup_);
+        draw(setup_, host.primitive);
+        return;
     }
   }
 
@@ -342,7 +346,8 @@ class BitsAndTimes final : public CycleModel {
 
   /// Runs coarse_raster, and for each visit the rest of the pipeline.
   void draw(const SetupPacket& setup, std::uint32_t primitive) {
-    const ContextPacket context = make_context(setup, widths_);
+    make_context(setup, widths_, context_);
+    const ContextPacket& context = context_;
     const EdgeContext edges = make_edge_context(setup);
     const bool is_in_lanes =
         !options_.want_count && !options_.want_ids && lanes_.draws(setup.state, path_.colors().tests_alpha());
@@ -442,7 +447,11 @@ class BitsAndTimes final : public CycleModel {
   Hiz hiz_;
   FragmentPath path_;
   StampLanes lanes_;
-  bool blends_ = false;                ///< by the current colour operations
+  bool blends_ = false;  ///< by the current colour operations
+  // Of the current primitive.
+  TrianglePacket triangle_;
+  SetupPacket setup_;
+  ContextPacket context_;
   FragmentPacket fragment_;            ///< the current one; holds only codes that have been requested
   std::optional<StampImages> images_;  ///< of the current frame, at the stamp of this fragment
   TextureMemory texels_;

@@ -105,15 +105,26 @@ class TimesOf final : public CycleTimes {
     const int first = grid.stamp_at(step.box.left, step.box.top), last = grid.stamp_at(step.box.right, step.box.bottom);
     return {step.ends_primitive, grid.row_of(first), grid.row_of(last), grid.column_of(first), grid.column_of(last)};
   }
-  /// Gives the columns of a visit's stamps, row by row.
+  /// A visit's stamps, row by row.
   template <class Stamp>
-  [[nodiscard]] auto columns_of(std::span<const Stamp> stamps) const {
-    return [grid = widths_.stamps, next = stamps.data(), end = stamps.data() + stamps.size()](int row) mutable {
+  struct StampRows {
+    const StampGrid& grid;
+    const Stamp *next, *end;
+    /// The number of stamps in the next row; a bit for each of them.
+    [[nodiscard]] int count(int row) {
+      const Stamp* const first = next;
+      for (const int below = grid.stamp_number(0, row + 1); next != end && number_of(*next) < below;) ++next;
+      return static_cast<int>(next - first);
+    }
+    [[nodiscard]] std::uint32_t columns(int row) {
       std::uint32_t columns = 0;
-      for (; next != end && grid.row_of(number_of(*next)) == row; ++next)
-        columns |= 1U << grid.column_of(number_of(*next));
+      for (int left = count(row); left > 0; --left) columns |= 1U << grid.column_of(number_of(next[-left]));
       return columns;
-    };
+    }
+  };
+  template <class Stamp>
+  [[nodiscard]] StampRows<Stamp> rows_of(std::span<const Stamp> stamps) const {
+    return {widths_.stamps, stamps.data(), stamps.data() + stamps.size()};
   }
   [[nodiscard]] static int number_of(const StampStep& step) { return step.at.stamp; }
   [[nodiscard]] static int number_of(const LaneStamp& stamp) { return stamp.stamp; }
@@ -123,8 +134,8 @@ class TimesOf final : public CycleTimes {
     const Cycle before = timing_.last_fragment();
     if (sink_ != nullptr) sink_->visit(step.tile_x, step.tile_y);
     is_resident_ = false;
-    timing_.visit(work_of(step), columns_of(stamps), [&](Cycle offered, int column) {
-      return column < 0 ? timing_.pass(offered) : enter(*stamp++, offered, 0);
+    timing_.visit(work_of(step), rows_of(stamps), [&](Cycle offered, bool is_covered) {
+      return is_covered ? enter(*stamp++, offered, 0) : timing_.pass(offered);
     });
     if (want_cost_) share_cost(step, stamps, static_cast<float>(timing_.last_fragment() - before));
   }
@@ -139,8 +150,8 @@ class TimesOf final : public CycleTimes {
       const int per_tile = widths_.blocks.per_tile_log2, first_x = step.tile_x << per_tile,
                 first_y = step.tile_y << per_tile;
       const LaneStamp* stamp = stamps.data();
-      timing_.visit(work_of(step), columns_of(stamps), [&](Cycle offered, int column) {
-        if (column < 0) return timing_.pass(offered);
+      timing_.visit(work_of(step), rows_of(stamps), [&](Cycle offered, bool is_covered) {
+        if (!is_covered) return timing_.pass(offered);
         const auto [number, covered, passed] = *stamp++;
         BlockStamp place = places_[number];
         place.block.x = static_cast<std::uint16_t>(place.block.x + first_x);

@@ -2,7 +2,6 @@
 // Each register, unit and buffer of the .sv is a Station here; the lines after a transfer are the stage's own time.
 #pragma once
 
-#include <bit>
 #include <vector>
 
 #include "../../timing/queue.hpp"
@@ -130,10 +129,10 @@ class PipelinedTiming : public BackTiming<Run> {
     end_walk(shade);
   }
 
-  /// A visit of a tile. columns_of(row), row by row: a bit for each stamp of the row with a covered sample.
-  /// shade(offered, column): a stamp in depth_test, in this order; column -1: an empty stamp.
-  template <class Columns, class Shade>
-  void visit(const TileVisitWork& tile, Columns&& columns_of, Shade&& shade) {
+  /// A visit of a tile. stamps.count(row), row by row: the stamps of the row with a covered sample.
+  /// shade(offered, is_covered): a stamp in depth_test, in this order; not covered: an empty stamp.
+  template <class Stamps, class Shade>
+  void visit(const TileVisitWork& tile, Stamps&& stamps, Shade&& shade) {
     const Cycle decided = std::max(walk_, tile_left_) + 1;
     const Cycle offered = std::max(decided, visits_.room());
     totals_.visit_cycles += offered - decided;
@@ -148,10 +147,10 @@ class PipelinedTiming : public BackTiming<Run> {
     std::uint64_t sent = 0, empty = 0;  // stamps; rows without one
     for (int row = tile.first_row;; ++row, ++row_at) {
       const bool is_last = row == tile.last_row;
-      std::uint32_t columns = columns_of(row);
+      int left_in_row = stamps.count(row);
       row_at = std::max(row_at, coverage_.room());
       Cycle leaves = coverage_.ready(row_at);
-      const bool is_sent = columns != 0 || is_last;
+      const bool is_covered = left_in_row != 0, is_sent = is_covered || is_last;
       if (is_sent) leaves = std::max(leaves, stamps_.room());
       coverage_.leave(leaves);
       if (!is_sent) {
@@ -160,12 +159,11 @@ class PipelinedTiming : public BackTiming<Run> {
       }
       Cycle at = stamps_.ready(leaves);
       do {
-        const int column = columns == 0 ? -1 : std::countr_zero(columns);
-        columns &= columns - 1;
-        const bool ends = tile.ends_primitive && is_last && columns == 0;
+        --left_in_row;
+        const bool ends = tile.ends_primitive && is_last && left_in_row <= 0;
         ++sent;
-        at = send(at, ends, [&](Cycle shaded) { return shade(shaded, column); }) + 1;
-      } while (columns != 0);
+        at = send(at, ends, [&](Cycle shaded) { return shade(shaded, is_covered); }) + 1;
+      } while (left_in_row > 0);
       stamps_.leave(at - 1);
       if (is_last) break;
     }
@@ -193,20 +191,23 @@ class PipelinedTiming : public BackTiming<Run> {
   template <class Shade>
   Cycle send(Cycle offered, bool ends_primitive, Shade&& shade) {
     const Cycle taken = move(Arrow::stamp, offered, interpolate_.room());
-    note(Arrow::stamp, taken);
+    if (!Run::is_plain) note(Arrow::stamp, taken);  // what it becomes is later
     if (ends_primitive) slots_.leave(taken + 1);
     last_left_ = fragment_queue_.pass(std::max(interpolate_.ready(taken), last_left_ + 1), last_fragment_ + 1, shade);
     interpolate_.leave(last_left_);
     return taken;
   }
 
-  Station sort_{1, PipelinedCycles::cull_sort, 0}, decide_{1, PipelinedCycles::cull_decide, 0};
+  FixedStation<1, PipelinedCycles::cull_sort, 0> sort_;
+  FixedStation<1, PipelinedCycles::cull_decide, 0> decide_;
   SetupCycles setup_;
   std::vector<Station> parts_;                                    ///< of triangle_setup, without the last
   Station offer_setup_;                                           ///< the last part
   Station states_{SetupCycles::kStates, 1, 1}, joined_{1, 1, 0};  ///< lane of states; output register of both
-  Station coarse_{1, 0, 1}, slots_, visits_;
-  Station rows_{1, 1, 0}, coverage_{1, 1, 0}, stamps_{1, 1, 0}, interpolate_;  ///< the first three: fine_raster
+  FixedStation<1, 0, 1> coarse_;
+  Station slots_, visits_;
+  FixedStation<1, 1, 0> rows_, coverage_, stamps_;  ///< of fine_raster
+  Station interpolate_;
   Queue triangle_queue_, setup_queue_, tile_queue_, fragment_queue_;
   Cycle offer_ = 0, last_left_ = 0;
   Cycle walk_ = 0;                        ///< when coarse_raster's walk is at the next tile

@@ -52,9 +52,9 @@ class PortTiming {
         layout_(default_layout(widths)),
         stalls_(stalls),
         memory_(memory),
+        ideal_(memory.ideal_latency()),
         streams_(streams),
-        sink_(sink),
-        unanswered_(kUnanswered, 0, 1) {
+        sink_(sink) {
     for (std::size_t plane = 0; plane < offsets_.size(); ++plane) {
       const int shift = item_shift(static_cast<TilePlane>(plane), widths.memory);
       places_.push_back({shift, BeatShare(shift, widths.memory.port, 0)});
@@ -128,6 +128,8 @@ class PortTiming {
   /// Whether nothing holds the streams back or watches them.
   [[nodiscard]] bool moves_freely() const { return Run::is_plain || (stalls_.threshold == 0 && sink_ == nullptr); }
 
+  [[nodiscard]] Cycle memory_room() const { return ideal_ ? 0 : memory_.room(); }
+
   /// A stamp, the number `in_beat` of its beat; if it begins a burst, `request.run` counts the stamps of the burst.
   /// Returns when it is taken.
   Cycle write(const PortRequest& request, const BeatShare& share, std::uint32_t address, int in_beat, Cycle cycle) {
@@ -156,7 +158,7 @@ class PortTiming {
   /// wait for memory; then each stamp is taken with the last beat of the one before.
   RunTimes write_at_once(const PortRequest& request, const BeatShare& share, std::uint32_t address, Cycle cycle) {
     const auto beats = static_cast<Cycle>(share.per_stamp), others = static_cast<Cycle>(request.run - 1);
-    const Cycle first = std::max({cycle, room_, unanswered_.room()}), sent = std::max(first + 1, memory_.room());
+    const Cycle first = std::max({cycle, room_, unanswered_.room()}), sent = std::max(first + 1, memory_room());
     const Cycle second = sent + beats - 1;  // with the last beat of the first stamp
     RunTimes times{first, first - cycle};
     if (others != 0) {
@@ -174,18 +176,23 @@ class PortTiming {
 
   /// The last beat of a burst of writes has been sent in `beat`.
   void end_burst(const MemoryBurst& burst, Cycle beat) {
-    answered_ = moves(Arrow::answer, std::max(memory_.accept(burst, beat).at(0), answered_ + 1), 0);
+    const Cycle answer = ideal_ ? beat + *ideal_ : memory_.accept(burst, beat).at(0);
+    answered_ = moves(Arrow::answer, std::max(answer, answered_ + 1), 0);
     unanswered_.leave(answered_);
   }
 
   /// A read of a stamp where nothing holds the streams back.
   PortTimes read_at_once(const BeatShare& share, std::uint32_t address, Cycle cycle) {
     const Cycle asked = std::max(cycle, room_);
-    room_ = std::max(asked + 1, memory_.room());
-    const MemoryBurst burst{false, address >> widths_.memory.port << widths_.memory.port, share.per_stamp};
-    const BurstAnswer answer = memory_.accept(burst, room_);
-    for (int n = 0; n < burst.beats; ++n) answered_ = std::max(answer.at(n), answered_ + 1);
-    const auto beats = static_cast<std::uint64_t>(burst.beats);
+    room_ = std::max(asked + 1, memory_room());
+    const auto beats = static_cast<std::uint64_t>(share.per_stamp);
+    if (ideal_) {
+      answered_ = std::max(room_ + *ideal_ + beats - 1, answered_ + beats);
+    } else {
+      const MemoryBurst burst{false, address >> widths_.memory.port << widths_.memory.port, share.per_stamp};
+      const BurstAnswer answer = memory_.accept(burst, room_);
+      for (int n = 0; n < burst.beats; ++n) answered_ = std::max(answer.at(n), answered_ + 1);
+    }
     beats_ += beats;
     streams_[index(Arrow::request)].count_run(1, asked - cycle);
     streams_[index(Arrow::beat)].count_run(1, room_ - asked - 1);
@@ -238,11 +245,12 @@ class PortTiming {
   MemoryLayout layout_;
   Stalls stalls_;
   MemoryTiming& memory_;
+  std::optional<Cycle> ideal_;  ///< MemoryTiming::ideal_latency(): then nothing is asked of it
   std::array<Stream, kArrows>& streams_;
   TransferSink* sink_;
-  Station unanswered_;  ///< write bursts
-  MemoryBurst burst_;   ///< the burst being written
-  int left_ = 0;        ///< stamps of it that have not come
+  FixedStation<kUnanswered, 0, 1> unanswered_;  ///< write bursts
+  MemoryBurst burst_;                           ///< the burst being written
+  int left_ = 0;                                ///< stamps of it that have not come
   /// A buffer in memory, and how its stamps share beats.
   struct PlanePlace {
     int shift;  ///< log2 of the bytes of a stamp

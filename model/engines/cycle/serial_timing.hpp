@@ -95,8 +95,8 @@ class SerialTiming : public BackTiming<AnyRun> {
     end(walk_ + 1, shade);
   }
 
-  template <class Columns, class Shade>
-  void visit(const TileVisitWork& tile, Columns&& columns_of, Shade&& shade) {
+  template <class Stamps, class Shade>
+  void visit(const TileVisitWork& tile, Stamps&& stamps, Shade&& shade) {
     const Cycle starts = has_bound_ ? walk_ : std::max(walk_, visits_.room());
     totals_.visit_cycles += starts - walk_;
     const Cycle offered = starts + 1;
@@ -107,20 +107,20 @@ class SerialTiming : public BackTiming<AnyRun> {
     Cycle at = stalls_.next_free(kTile, std::max(offered, fine_.room())) + 1 +
                static_cast<Cycle>(tile.first_column + 2 * tile.first_row + waits);
     for (int row = tile.first_row; row < tile.last_row; ++row, at += static_cast<Cycle>(waits)) {
-      const std::uint32_t columns = columns_of(row);
+      const std::uint32_t columns = stamps.columns(row);
       for (int column = tile.first_column; column <= tile.last_column; ++column, ++at)
-        if ((columns >> column & 1) != 0) at = send(at, 0, 0, [&](Cycle t) { return shade(t, column); });
+        if ((columns >> column & 1) != 0) at = send(at, 0, 0, [&](Cycle t) { return shade(t, true); });
     }
-    const std::uint32_t columns = columns_of(tile.last_row);
+    const std::uint32_t columns = stamps.columns(tile.last_row);
     int held = -1;  // column of the last covered stamp of the last row so far
     for (int column = tile.first_column; column <= tile.last_column; ++column, ++at) {
       if ((columns >> column & 1) == 0) continue;
-      if (held >= 0) at = send(at, 0, 0, [&](Cycle t) { return shade(t, held); });
+      if (held >= 0) at = send(at, 0, 0, [&](Cycle t) { return shade(t, true); });
       if (held >= 0 && column == tile.last_column) ++at;  // it waits there for the last stamp
       held = column;
     }
     --at;
-    const Cycle taken = send(at, kTile, 0, [&](Cycle t) { return shade(t, held); });
+    const Cycle taken = send(at, kTile, 0, [&](Cycle t) { return shade(t, held >= 0); });
     stream(Arrow::tile).count(offered, taken);
     note(Arrow::tile, taken);
     fine_.leave(taken);
