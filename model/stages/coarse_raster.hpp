@@ -43,8 +43,7 @@ void coarse_raster(const SetupPacket& setup, std::uint8_t slot, Hiz& hiz, const 
     emit_end(last_x, last_y);
     return;
   }
-  CounterPacket uncounted;
-  CounterPacket& count = kind == PrimitiveKind::triangle ? counters : uncounted;
+  std::uint64_t visited = 0, outside_tiles = 0, behind = 0, inside = 0, tested = 0;  // counted for triangles
   const bool asks_hiz = hiz.is_eligible(setup, widths);
   TileWalk walk(first_x, first_y, last_x, last_y, setup.dy);
   bool has_ended = false;
@@ -52,30 +51,37 @@ void coarse_raster(const SetupPacket& setup, std::uint8_t slot, Hiz& hiz, const 
   TilePacket packet;
   if (asks_hiz) watch.read_ahead();
   do {
-    ++count.tiles_visited;
+    ++visited;
     const EdgeValues edges = edges_at_tile(setup, walk.x(), walk.y(), widths);
     outside = outside_edges(setup.dx, setup.dy, moved_by_samples(edges, setup.dx, setup.dy, true, widths),
                             1 << widths.tile_shift);
     if (!watch.rejects) outside = 0;
     if (asks_hiz && outside == 0) watch.read_bound();
     if (outside != 0) {
-      ++count.tiles_outside;
+      ++outside_tiles;
       watch.skip_outside();
     } else if (asks_hiz && hiz.rejects(setup, walk.x(), walk.y())) {
-      ++count.tiles_hiz;
+      ++behind;
       watch.skip_behind();
     } else {
       has_ended = walk.is_last();
       make_tile_packet(setup, edges, walk.x(), walk.y(), slot, has_ended, widths, packet);
       hiz.begin_visit(setup.state);
       if (packet.is_inside != 0)
-        ++count.trivially_accepted;
+        ++inside;
       else
-        count.samples_tested += to_bounds(packet.box).samples() * static_cast<std::uint64_t>(widths.pixel_samples);
+        tested += to_bounds(packet.box).samples() * static_cast<std::uint64_t>(widths.pixel_samples);
       emit(packet);
       if (asks_hiz && !has_ended) watch.read_ahead();
     }
   } while (walk.next(outside));
+  if (kind == PrimitiveKind::triangle) {
+    counters.tiles_visited += visited;
+    counters.tiles_outside += outside_tiles;
+    counters.tiles_hiz += behind;
+    counters.trivially_accepted += inside;
+    counters.samples_tested += tested;
+  }
   if (!has_ended) emit_end(walk.x(), walk.y());
 }
 

@@ -377,14 +377,16 @@ class BitsAndTimes final : public CycleModel {
   }
 
   void visit_in_lanes(const TilePacket& tile) {
-    std::vector<LaneStamp>& stamps = steps().lane_stamps;
-    const std::size_t stamps_before = stamps.size();
+    LaneStamp* const first = steps().lane_stamps.room(static_cast<std::size_t>(widths_.stamps.stamps()));
+    LaneStamp* next = first;
     const RetirePacket retired =
         lanes_.draw(tile, rendering_.frame, counters_, [&](int number, unsigned covered, unsigned passed) {
-          stamps.push_back({static_cast<std::uint16_t>(number), static_cast<std::uint8_t>(covered),
-                            static_cast<std::uint8_t>(passed)});
+          *next++ = {static_cast<std::uint16_t>(number), static_cast<std::uint8_t>(covered),
+                     static_cast<std::uint8_t>(passed)};
         });
-    add_visit(StepKind::lane_visit, tile, stamps.size() - stamps_before);
+    const auto stamps = static_cast<std::size_t>(next - first);
+    steps().lane_stamps.add(stamps);
+    add_visit(StepKind::lane_visit, tile, stamps);
     if (config_.hiz_bits != 0) hiz_.retire(retired);
   }
 

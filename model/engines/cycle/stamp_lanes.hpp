@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstring>
+#include <type_traits>
 
 #include "../../stages/depth_test.hpp"
 #include "../../stages/fine_raster.hpp"
@@ -18,6 +19,7 @@ class StampLanes {
     fits_ = widths.has_samples == 0 && widths.stamps.size == kSize && widths.affine_planes > channels &&
             !has_texture_planes(config) && !packs_at_write(config);
     has_alpha_ = channels == 4;
+    fits_ = fits_ && widths.code_place[kDepthPlane].mask >> 31 == 0;  // passes()
     for (std::size_t p = 0; p < kPlanes; ++p) {
       const CodePlace& place = widths.code_place[p];
       codes_[p] = {place.shift, Lanes{} + place.offset, Lanes{} + place.mask};
@@ -35,12 +37,16 @@ class StampLanes {
     state_ = context.state;
     for (std::size_t e = 0; e < 3; ++e)
       edges_[e] = Steps(static_cast<std::uint32_t>(edges.step_x[e]), static_cast<std::uint32_t>(edges.step_y[e]));
-    for (std::size_t p = 0; p < kPlanes; ++p)
+    Lanes x, y;
+    for (std::size_t p = 0; p < kPlanes; ++p) {
       planes_[p] = Steps(static_cast<std::uint32_t>(context.step_x[p]), static_cast<std::uint32_t>(context.step_y[p]));
+      if (p < kFirstPlanes) x[p] = planes_[p].x, y[p] = planes_[p].y;
+    }
+    stamp_x_ = x << 1;
+    stamp_y_ = y << 1;
+    to_corner_ = -((x + y) << (widths_.tile_shift - 1));
+    passes_ = DepthOutcomes(state_.depth_test);
   }
-
-  /// Of the primitive.
-  [[nodiscard]] const PrimitiveState& state() const { return state_; }
 
   /// Draws a tile: visit(stamp, covered, passed) for each stamp with a covered sample, row by row, with a bit for each
   /// sample. Returns the end of the visit.
@@ -48,66 +54,90 @@ class StampLanes {
   RetirePacket draw(const TilePacket& tile, Framebuffer& frame, CounterPacket& counters, Visit&& visit) {
     const StampGrid& stamps = widths_.stamps;
     const PixelBounds box = to_bounds(tile.box);
-    const int half_tile = 1 << (widths_.tile_shift - 1);
-    const DepthOutcomes passes(state_.depth_test);
+    const int left = box.left & -kSize, top = box.top & -kSize;
+    const std::uint64_t columns_in_box = ((std::uint64_t{2} << (box.right - box.left)) - 1) << (box.left - left);
+    std::array<Lanes, 3> row_edge{};
+    for (std::size_t e = 0; e < 3; ++e)
+      row_edge[e] = edges_[e].at(static_cast<std::uint32_t>(tile.edge_value[e]), left, top);
+    Lanes row_planes = to_corner_;  // a lane for each of the first planes, at the first pixel of a stamp
+    for (std::size_t p = 0; p < kFirstPlanes; ++p) row_planes[p] += static_cast<std::uint32_t>(tile.anchor[p]);
+    row_planes +=
+        stamp_x_ * static_cast<std::uint32_t>(left / kSize) + stamp_y_ * static_cast<std::uint32_t>(top / kSize);
+    const auto row_stride = static_cast<std::size_t>(kSize * frame.stride);
+    std::size_t row_at =
+        frame.at((tile.key.tile_x << widths_.tile_shift) + left, (tile.key.tile_y << widths_.tile_shift) + top);
+    int row_number = stamps.stamp_at(left, top);
+    unsigned covered = 0, passed = 0;
     int full = 0;
-    Lanes covered{}, passed{}, largest{};  // the first two: counts
-    for (int y = box.top & -kSize; y <= box.bottom; y += kSize) {
+    Lanes largest{};
+    for (int y = top; y <= box.bottom; y += kSize) {
       const unsigned rows = (y >= box.top ? 3U : 0U) | (y + 1 <= box.bottom ? 12U : 0U);
-      int x = box.left & -kSize;
-      std::array<Lanes, 3> edge;
-      for (std::size_t e = 0; e < 3; ++e) edge[e] = edges_[e].at(static_cast<std::uint32_t>(tile.edge_value[e]), x, y);
-      std::size_t at =
-          frame.at((tile.key.tile_x << widths_.tile_shift) + x, (tile.key.tile_y << widths_.tile_shift) + y);
-      for (; x <= box.right; x += kSize, at += kSize) {
-        const unsigned in_box = rows & ((x >= box.left ? 5U : 0U) | (x + 1 <= box.right ? 10U : 0U));
-        unsigned mask = in_box;
+      std::array<Lanes, 3> edge = row_edge;
+      Lanes planes = row_planes;
+      std::size_t at = row_at;
+      int number = row_number;
+      for (std::uint64_t columns = columns_in_box; columns != 0; columns >>= kSize) {
+        unsigned mask = rows & static_cast<unsigned>(columns & 3) * 5;  // a column has bits 0 and 2, or 1 and 3
         if (!tile.is_inside) {
           mask &= ~bits_of(lane_mask<Lanes>(reinterpret_cast<SignedLanes>(edge[0] | edge[1] | edge[2]) < 0));
           for (std::size_t e = 0; e < 3; ++e) edge[e] += edges_[e].stamp_x;
         }
-        if (mask == 0) continue;
-        const Lanes& drawn = kLanesOf[mask];
-        const auto code = [&](std::size_t p) {
-          const Code& place = codes_[p];
-          const Lanes value = planes_[p].at(static_cast<std::uint32_t>(tile.anchor[p]), x - half_tile, y - half_tile);
-          return ((value >> place.shift) - place.offset) & place.mask;
-        };
-        const Lanes depth = code(kDepthPlane), stored = load(frame.depth, at, frame.stride);
-        const Lanes pass = passes(depth, stored) & drawn;
-        const unsigned bits = bits_of(pass);
-        if (bits != 0) {
-          if (state_.depth_write) store(write_where(pass, depth, stored), frame.depth, at, frame.stride);
-          if (state_.color_write) {
-            const Channels<Lanes> channels{code(kColorPlane), code(kColorPlane + 1), code(kColorPlane + 2),
-                                           has_alpha_ ? code(kColorPlane + 3) : Lanes{}};
-            const Lanes color = pack_color<Lanes>(config_.color_format, channels);
-            store(write_where(pass, color, load(frame.color, at, frame.stride)), frame.color, at, frame.stride);
+        if (mask != 0) {
+          const auto code = [&](auto plane) {
+            constexpr std::size_t p = decltype(plane)::value;
+            const Code& place = codes_[p];
+            const Lanes value = __builtin_shuffle(planes, Lanes{p, p, p, p}) + planes_[p].in_stamp;
+            return ((value >> place.shift) - place.offset) & place.mask;
+          };
+          const Lanes depth = code(Plane<kDepthPlane>()), stored = load(frame.depth, at, frame.stride);
+          const Lanes pass = passes(depth, stored) & kLanesOf[mask];
+          const unsigned bits = bits_of(pass);
+          if (bits != 0) {
+            if (state_.depth_write) store(write_where(pass, depth, stored), frame.depth, at, frame.stride);
+            if (state_.color_write) {
+              const Channels<Lanes> channels{code(Plane<kColorPlane>()), code(Plane<kColorPlane + 1>()),
+                                             code(Plane<kColorPlane + 2>()),
+                                             has_alpha_ ? alpha(tile, number) : Lanes{}};
+              const Lanes color = pack_color<Lanes>(config_.color_format, channels);
+              store(write_where(pass, color, load(frame.color, at, frame.stride)), frame.color, at, frame.stride);
+            }
+            if (bits == 15) {
+              ++full;
+              largest = halfplane::largest(largest, depth);
+            }
           }
-          if (bits == 15) {
-            ++full;
-            largest = halfplane::largest(largest, depth);
-          }
+          covered += kCountOf[mask];
+          passed += kCountOf[bits];
+          visit(number, mask, bits);
         }
-        covered -= drawn;  // 1 more where the mask is set
-        passed -= pass;
-        visit(stamps.stamp_at(x, y), mask, bits);
+        planes += stamp_x_;
+        at += kSize;
+        ++number;
       }
+      for (std::size_t e = 0; e < 3; ++e) row_edge[e] += edges_[e].stamp_y;
+      row_planes += stamp_y_;
+      row_at += row_stride;
+      row_number += stamps.stamps_per_row;
     }
     if (is_counted(tile.kind)) {
-      counters.covered += sum(covered);
-      counters.depth_passed += sum(passed);
-      if (state_.writes()) counters.written += sum(passed);
+      counters.covered += covered;
+      counters.depth_passed += passed;
+      if (state_.writes()) counters.written += passed;
     }
     RetirePacket retired;
     retired.key = tile.key;
-    set_hiz_update(retired, state_, full == stamps.stamps(), sum(passed) != 0,
-                   std::max({largest[0], largest[1], largest[2], largest[3]}), config_, widths_);
+    const bool is_full = full == stamps.stamps();
+    set_hiz_update(retired, state_, is_full, passed != 0,
+                   is_full ? std::max({largest[0], largest[1], largest[2], largest[3]}) : 0, config_, widths_);
     return retired;
   }
 
  private:
-  static constexpr int kSize = 2, kPlanes = 5;  ///< pixels along a stamp; depth and the colours
+  static constexpr int kSize = 2;  ///< pixels along a stamp
+  /// Depth and the colours; and of these all but alpha, which step from stamp to stamp in one vector.
+  static constexpr std::size_t kPlanes = 5, kFirstPlanes = 4;
+  template <std::size_t p>
+  using Plane = std::integral_constant<std::uint32_t, p>;
   /// A lane for each pixel of a stamp, row by row.
   using Lanes __attribute__((vector_size(16))) = std::uint32_t;
   using SignedLanes __attribute__((vector_size(16))) = std::int32_t;
@@ -116,23 +146,37 @@ class StampLanes {
   /// A value that is linear over the pixels of a tile.
   struct Steps {
     std::uint32_t x = 0, y = 0;  ///< per pixel
-    Lanes stamp_x{};             ///< from a stamp to the next
+    Lanes stamp_x{}, stamp_y{};  ///< from a stamp to the next one to the right, and below
     Lanes in_stamp{};            ///< from the first pixel of a stamp to each
     Steps() = default;
     Steps(std::uint32_t x_, std::uint32_t y_)
-        : x(x_), y(y_), stamp_x(Lanes{} + kSize * x_), in_stamp{0, x_, y_, x_ + y_} {}
+        : x(x_), y(y_), stamp_x(Lanes{} + kSize * x_), stamp_y(Lanes{} + kSize * y_), in_stamp{0, x_, y_, x_ + y_} {}
     /// At the pixels of the stamp that lies i and j pixels from a pixel with value `from`.
     [[nodiscard]] Lanes at(std::uint32_t from, int i, int j) const {
       return (Lanes{} + (from + static_cast<std::uint32_t>(i) * x + static_cast<std::uint32_t>(j) * y)) + in_stamp;
     }
   };
 
-  [[nodiscard]] static std::uint32_t sum(const Lanes& v) { return v[0] + v[1] + v[2] + v[3]; }
   /// The place of a code in its plane (CodePlace).
   struct Code {
     int shift = 0;
     Lanes offset{}, mask{};
   };
+
+  [[nodiscard]] Lanes alpha(const TilePacket& tile, int stamp) const {
+    constexpr std::size_t p = kFirstPlanes;
+    const PixelOffset at = widths_.stamps.origin_of(stamp);
+    const int half_tile = 1 << (widths_.tile_shift - 1);
+    const Lanes value = planes_[p].at(static_cast<std::uint32_t>(tile.anchor[p]), at.x - half_tile, at.y - half_tile);
+    return ((value >> codes_[p].shift) - codes_[p].offset) & codes_[p].mask;
+  }
+
+  /// DepthOutcomes of depths below 2^31.
+  [[nodiscard]] Lanes passes(const Lanes& depth, const Lanes& stored) const {
+    const auto d = reinterpret_cast<SignedLanes>(depth), s = reinterpret_cast<SignedLanes>(stored);
+    return (reinterpret_cast<Lanes>(d < s) & passes_.less) | (reinterpret_cast<Lanes>(d == s) & passes_.equal) |
+           (reinterpret_cast<Lanes>(d > s) & passes_.greater);
+  }
 
   /// A bit for each lane whose mask is set.
   [[nodiscard]] static unsigned bits_of(const Lanes& mask) {
@@ -145,7 +189,7 @@ class StampLanes {
     return static_cast<unsigned>(both | both >> 32);
 #endif
   }
-  /// The inverse.
+  /// The inverse, and the number of bits.
   static constexpr std::array<Lanes, 16> kLanesOf = [] {
     std::array<Lanes, 16> lanes{};
     for (unsigned bits = 0; bits < 16; ++bits) {
@@ -154,6 +198,7 @@ class StampLanes {
     }
     return lanes;
   }();
+  static constexpr std::array<std::uint8_t, 16> kCountOf{0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4};
 
   [[nodiscard]] static Lanes load(const Framebuffer::Image& image, std::size_t at, int stride) {
     std::array<std::uint64_t, kSize> rows;
@@ -172,8 +217,12 @@ class StampLanes {
   Widths widths_;
   bool fits_ = false, has_alpha_ = false;
   PrimitiveState state_;
+  DepthOutcomes passes_{DepthFunc::less};
   std::array<Steps, 3> edges_;
   std::array<Steps, kPlanes> planes_;
+  // A lane for each of the first planes: from a stamp to the next one to the right, and below; from the anchor of a tile
+  // to its first pixel.
+  Lanes stamp_x_{}, stamp_y_{}, to_corner_{};
   std::array<Code, kPlanes> codes_;
 };
 

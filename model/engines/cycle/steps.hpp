@@ -55,6 +55,24 @@ struct LaneStamp {
   std::uint8_t covered = 0, passed = 0;
 };
 
+/// A batch's stamps of this kind.
+class LaneStamps {
+ public:
+  /// Where the next `most` stamps at most are written; add() says how many have been.
+  [[nodiscard]] LaneStamp* room(std::size_t most) {
+    if (stamps_.size() < size_ + most) stamps_.resize(2 * (size_ + most));
+    return stamps_.data() + size_;
+  }
+  void add(std::size_t stamps) { size_ += stamps; }
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] const LaneStamp* data() const { return stamps_.data(); }
+  void clear() { size_ = 0; }
+
+ private:
+  std::vector<LaneStamp> stamps_;
+  std::size_t size_ = 0;
+};
+
 /// Arguments of CacheTags::set().
 struct TagsStep {
   bool reads_color = false, tests_alpha = false;
@@ -83,7 +101,7 @@ struct Steps {
   std::vector<PrimitiveStep> primitives;
   std::vector<VisitStep> visits;
   std::vector<StampStep> stamps;
-  std::vector<LaneStamp> lane_stamps;
+  LaneStamps lane_stamps;
   std::vector<TagsStep> tags;
   std::vector<AreaStep> areas;
   std::vector<TextureStep> textures;  ///< with a texture unit: one for each stamp with covered samples, and each token
