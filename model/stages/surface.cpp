@@ -5,9 +5,11 @@
 #include "cull.hpp"
 
 namespace halfplane {
+namespace {
 
-TextureCoordinates texture_coordinates(const std::array<SurfaceVertex, 3>& surface, const State& state,
-                                       const Texture& texture, const PerspectiveFormat& format) {
+/// texture_coordinates(). `q`: the codes of the vertices' w, if they are known.
+TextureCoordinates coordinates_over_w(const std::array<SurfaceVertex, 3>& surface, const State& state,
+                                      const Texture& texture, const PerspectiveFormat& format, const QCodes* q) {
   const bool is_affine = state.texture_interp == TextureInterp::affine;
   TextureCoordinates result;
   std::array<double, 3> w{1, 1, 1};
@@ -16,7 +18,7 @@ TextureCoordinates texture_coordinates(const std::array<SurfaceVertex, 3>& surfa
     result.texels[0][i] = surface[i].u * texture.width();
     result.texels[1][i] = surface[i].v * texture.height();
   }
-  result.q = quantize_q(w, format.q_bits);
+  result.q = q != nullptr ? *q : quantize_q(w, format.q_bits);
   const TextureAxes axes{TextureAxis{texture.width(), state.texture_wrap[0]},
                          TextureAxis{texture.height(), state.texture_wrap[1]}};
   for (const std::size_t axis : {0U, 1U}) {
@@ -24,6 +26,13 @@ TextureCoordinates texture_coordinates(const std::array<SurfaceVertex, 3>& surfa
     result.reference[axis] = wrapped_reference(result.over_w[axis].reference, axes[axis]);
   }
   return result;
+}
+
+}  // namespace
+
+TextureCoordinates texture_coordinates(const std::array<SurfaceVertex, 3>& surface, const State& state,
+                                       const Texture& texture, const PerspectiveFormat& format) {
+  return coordinates_over_w(surface, state, texture, format, nullptr);
 }
 
 Surface::Surface(const Triangle& triangle, const TriangleSetup& setup, const State& state, const Texture* texture,
@@ -40,6 +49,10 @@ Surface::Surface(const Triangle& triangle, const TriangleSetup& setup, const Sta
     color_divisor_ = make_divisor(quantize_q(w, format_.q_bits));
     for (std::size_t c = 0; c < static_cast<std::size_t>(widths.color_planes); ++c) {
       const std::size_t p = kColorPlane + c;
+      if (setup.range.low[p] == setup.range.high[p]) {  // the clamp alone gives the code: the plane is that of 0
+        color_[c].over_w.exponent = -1 - format_.color.bits;
+        continue;
+      }
       const std::array value{static_cast<double>(vertex_[0].code[p]), static_cast<double>(vertex_[1].code[p]),
                              static_cast<double>(vertex_[2].code[p])};
       color_[c] = make_attribute(value, *color_divisor_, format_.color);
@@ -56,6 +69,7 @@ Surface::Surface(const Triangle& triangle, const TriangleSetup& setup, const Sta
 
 /// All planes over w have the guard bits of Q.
 Plane Surface::at_sample(const Plane& plane) const {
+  if (offset_ == SampleOffset{}) return plane;
   return plane_at_sample(plane, format_.guard_bits, offset_, widths_);
 }
 
@@ -79,9 +93,10 @@ void Surface::set_texture(const Triangle& triangle, const State& state, const Te
   sampler_ = Sampler(texture, state);
   combine_ = state.texture_combine;
   constant_ = state.texture_constant;
-  TextureCoordinates coordinates = texture_coordinates(
-      {triangle.surface[order_[0]], triangle.surface[order_[1]], triangle.surface[order_[2]]}, state, texture, format_);
   const bool has_q_of_colors = color_divisor_ && state.texture_interp == TextureInterp::perspective;
+  TextureCoordinates coordinates =
+      coordinates_over_w({triangle.surface[order_[0]], triangle.surface[order_[1]], triangle.surface[order_[2]]}, state,
+                         texture, format_, has_q_of_colors ? &color_divisor_->q : nullptr);
   texture_divisor_ = has_q_of_colors ? *color_divisor_ : make_divisor(coordinates.q);
   for (const std::size_t axis : {0U, 1U})
     coordinate_[axis] = {
