@@ -106,6 +106,10 @@ void Frame::Memory::resize(int width, int height) {
 
 std::uint32_t Frame::Memory::state_number(const halfplane::State& state) {
   if (last_state < scene.states.size() && scene.states[last_state] == state) return last_state;
+  // Cheaper than their hash: a frame's draws mostly alternate between a few states.
+  constexpr std::size_t kFew = 8;
+  for (std::size_t i = 0; i < std::min(kFew, scene.states.size()); ++i)
+    if (scene.states[i] == state) return last_state = static_cast<std::uint32_t>(i);
   const auto [at, is_new] = states.try_emplace(state, static_cast<std::uint32_t>(scene.states.size()));
   if (is_new) {
     scene.states.push_back(state);
