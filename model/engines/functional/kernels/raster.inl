@@ -63,9 +63,9 @@ HALFPLANE_INLINE int first_tile(const Bin& bin, const Record& record) {
   return (y >> kTileShift) * kBinTiles + (x >> kTileShift);
 }
 
-/// Prefetches data for the next records.
+/// Prefetches data for the next records: of lines, those of the batch after the next, and vertices of the next.
 HALFPLANE_INLINE void fetch_records(const Slice& slice, const std::uint32_t* first, const std::uint32_t* last) {
-  constexpr std::ptrdiff_t kAhead = 8;
+  constexpr std::ptrdiff_t kAhead = 32;
   if (last - first <= kAhead) return;
   __builtin_prefetch(&slice.records[first[kAhead]]);
   if (const Record& near = slice.records[first[kAhead / 2]]; near.kind() == RecordKind::whole_line)
