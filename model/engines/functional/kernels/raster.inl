@@ -109,9 +109,13 @@ HALFPLANE_INLINE void draw_alone(Bin& bin, const Slice& slice, const Record& rec
 /// Sixteen records at once, if all are small and each is nearer than the bound of its first tile: a batch without tests
 /// of single records. Nothing may be pending.
 template <class Fragments>
-HALFPLANE_INLINE bool draw_sixteen(Bin& bin, const Slice& slice, const std::uint32_t* first) {
+HALFPLANE_INLINE bool draw_sixteen(Bin& bin, const Slice& slice, const std::uint32_t* first,
+                                   const std::uint32_t* last) {
   SmallBatch& batch = bin.small;
   const Record* const records = slice.records.data();
+  constexpr int kAhead = 32, kLine = 2;  // records; in a cache line
+  if (last - first > kAhead)             // mostly records that follow each other
+    for (int i = 0; i < 16; i += kLine) __builtin_prefetch(records + first[kAhead] + i);
   if (first[15] - first[0] != 15 || bin.sees_surfaces())
     for (std::size_t i = 0; i < 16; ++i) batch.records[i] = records + first[i];
   const auto words = [&](int from) HALFPLANE_LAMBDA {
@@ -150,7 +154,7 @@ void draw_records(Bin& bin, const Slice& slice, const std::uint32_t* first, cons
     const Record& record = slice.records[*first];
     if (bin.small.count == 0 && record.has(Record::kSmall) && first >= next_sixteen && last - first >= 16) {
       next_sixteen = first + 16;
-      if (draw_sixteen<Fragments>(bin, slice, first)) {
+      if (draw_sixteen<Fragments>(bin, slice, first, last)) {
         first = next_sixteen;
         continue;
       }
