@@ -209,15 +209,15 @@ class BackTiming {
     } else {
       for (const TilePlane plane : kTilePlanes) {
         if (plane == TilePlane::depth && directory.drops_depth()) continue;
-        directory.for_each_flag_word(plane, last_x, last_y, [&](int word, int y, std::uint64_t bits) {
-          cycle = plane == TilePlane::color && resolves_ ? resolve_word(cycle + 2, word, y, bits)
-                                                         : write_flag_word(cycle + 1, plane, word, words, y);
-        });
+        if (plane == TilePlane::color && resolves_)
+          directory.for_each_flag_word(plane, last_x, last_y, [&](int word, int y, std::uint64_t bits) {
+            cycle = resolve_word(cycle + 2, word, y, bits);
+          });
+        else
+          cycle = write_flags(cycle, plane, words, last_y);
       }
       if (resolves_) directory.resolve(TilePlane::color, last_x, last_y);
-      for (int y = 0; compresses_ && y < (last_y + 1) * widths_.blocks.per_tile; ++y)
-        for (int word = 0; word < words; ++word)
-          cycle = write_flag_word(cycle + 1, TilePlane::pixel_color, word, words, y);
+      if (compresses_) cycle = write_flags(cycle, TilePlane::pixel_color, words, last_y);
     }
     directory.drop_depth(is_clear && state.drops_depth());
     const Cycle moved = stream(Arrow::fragment).transfer(offered, cycle);
@@ -331,6 +331,12 @@ class BackTiming {
   Cycle write_flag_word(Cycle cycle, TilePlane plane, int word, int words, int y) {
     const StampAddress at = flag_word_address(word, y, widths_);
     return ask_of_block(cycle, flags_of(plane), at, words - word, MoveCause::clear).asked + 1;
+  }
+  /// All words, up to the tiles of row last_y.
+  Cycle write_flags(Cycle cycle, TilePlane plane, int words, int last_y) {
+    for (int y = 0; y < (last_y + 1) * widths_.blocks.per_tile; ++y)
+      for (int word = 0; word < words; ++word) cycle = write_flag_word(cycle + 1, plane, word, words, y);
+    return cycle;
   }
   Cycle resolve_word(Cycle cycle, int word, int y, std::uint64_t bits) {
     if (bits == 0) ++cycle;

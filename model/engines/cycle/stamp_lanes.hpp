@@ -38,10 +38,16 @@ class StampLanes {
     for (std::size_t e = 0; e < 3; ++e)
       edges_[e] = Steps(static_cast<std::uint32_t>(edges.step_x[e]), static_cast<std::uint32_t>(edges.step_y[e]));
     Lanes x, y;
-    for (std::size_t p = 0; p < kPlanes; ++p) {
-      planes_[p] = Steps(static_cast<std::uint32_t>(context.step_x[p]), static_cast<std::uint32_t>(context.step_y[p]));
-      if (p < kFirstPlanes) x[p] = planes_[p].x, y[p] = planes_[p].y;
+    for (std::size_t p = 0; p < kFirstPlanes; ++p) {
+      const auto step_x = static_cast<std::uint32_t>(context.step_x[p]),
+                 step_y = static_cast<std::uint32_t>(context.step_y[p]);
+      in_stamp_[p] = Lanes{0, step_x, step_y, step_x + step_y};
+      x[p] = step_x;
+      y[p] = step_y;
     }
+    if (has_alpha_)
+      alpha_ = Steps(static_cast<std::uint32_t>(context.step_x[kFirstPlanes]),
+                     static_cast<std::uint32_t>(context.step_y[kFirstPlanes]));
     stamp_x_ = x << 1;
     stamp_y_ = y << 1;
     to_corner_ = -((x + y) << (widths_.tile_shift - 1));
@@ -86,7 +92,7 @@ class StampLanes {
           const auto code = [&](auto plane) {
             constexpr std::size_t p = decltype(plane)::value;
             const Code& place = codes_[p];
-            const Lanes value = __builtin_shuffle(planes, Lanes{p, p, p, p}) + planes_[p].in_stamp;
+            const Lanes value = __builtin_shuffle(planes, Lanes{p, p, p, p}) + in_stamp_[p];
             return ((value >> place.shift) - place.offset) & place.mask;
           };
           const Lanes depth = code(Plane<kDepthPlane>()), stored = load(frame.depth, at, frame.stride);
@@ -167,7 +173,7 @@ class StampLanes {
     constexpr std::size_t p = kFirstPlanes;
     const PixelOffset at = widths_.stamps.origin_of(stamp);
     const int half_tile = 1 << (widths_.tile_shift - 1);
-    const Lanes value = planes_[p].at(static_cast<std::uint32_t>(tile.anchor[p]), at.x - half_tile, at.y - half_tile);
+    const Lanes value = alpha_.at(static_cast<std::uint32_t>(tile.anchor[p]), at.x - half_tile, at.y - half_tile);
     return ((value >> codes_[p].shift) - codes_[p].offset) & codes_[p].mask;
   }
 
@@ -219,7 +225,8 @@ class StampLanes {
   PrimitiveState state_;
   DepthOutcomes passes_{DepthFunc::less};
   std::array<Steps, 3> edges_;
-  std::array<Steps, kPlanes> planes_;
+  std::array<Lanes, kFirstPlanes> in_stamp_{};  ///< of a plane, from the first pixel of a stamp to each
+  Steps alpha_;
   // A lane for each of the first planes: from a stamp to the next one to the right, and below; from the anchor of a tile
   // to its first pixel.
   Lanes stamp_x_{}, stamp_y_{}, to_corner_{};

@@ -19,6 +19,7 @@ void StepQueue::hand_over() {
     filling().clear();
     return;
   }
+  filling_ = &ring_[(filled_ + 1) % ring_.size()];
   ++filled_;
   notify();
   wait_until([this] { return filled_ - run_ < ring_.size(); });  // the next place of the ring is free

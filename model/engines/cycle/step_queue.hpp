@@ -38,7 +38,7 @@ class StepQueue {
   /// With more than one thread batches run on a thread of their own, until complete(); where none is to be had, on this.
   void begin(int threads);
   /// The batch that is being filled.
-  [[nodiscard]] Steps& filling() { return ring_[filled_ % ring_.size()]; }
+  [[nodiscard]] Steps& filling() { return *filling_; }
   /// Hands it over. Throws what the runner threw.
   void hand_over();
   /// Likewise, and waits until all have run. Nothing runs after it.
@@ -54,7 +54,8 @@ class StepQueue {
 
   StepRunner& runner_;
   Launch launch_;
-  std::array<Steps, 4> ring_;  ///< one is filled, one runs
+  std::array<Steps, 4> ring_;      ///< one is filled, one runs
+  Steps* filling_ = ring_.data();  ///< the one that is filled: of batch filled_
   std::thread thread_;
   std::atomic<std::size_t> filled_ = 0, run_ = 0;  ///< batches; each is written by one of the threads
   std::atomic<bool> ends_ = false, drops_rest_ = false;
