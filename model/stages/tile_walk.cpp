@@ -4,15 +4,15 @@ namespace halfplane {
 namespace {
 
 /// Plane `p` at a tile `dx`, `dy` tiles from the first one, as a local anchor.
-std::int64_t local_anchor(const SetupPacket& setup, std::size_t p, int dx, int dy, const Widths& widths) {
-  const Width &plane = widths.of_plane(p).plane, &local = widths.of_plane(p).local;
-  const int to_subpixels = widths.tile_shift + widths.grid_bits;
-  const auto moved = [to_subpixels](std::int64_t step, int tiles) {  // modulo 2^64
-    return static_cast<std::uint64_t>(step) * (static_cast<std::uint64_t>(std::int64_t{tiles}) << to_subpixels);
-  };
+std::int64_t local_anchor(const SetupPacket& setup, std::size_t p, std::uint64_t dx, std::uint64_t dy,
+                          const Widths& widths) {
+  const AttributeWidths& attribute = widths.of_plane(p);
+  const int local_bits = attribute.local.bits;
+  const std::uint64_t moved =  // modulo 2^64
+      static_cast<std::uint64_t>(setup.step_x[p]) * dx + static_cast<std::uint64_t>(setup.step_y[p]) * dy;
   const auto stepped = static_cast<std::int64_t>(static_cast<std::uint64_t>(setup.value[p]) +
-                                                 moved(setup.step_x[p], dx) + moved(setup.step_y[p], dy));
-  return wrap_signed(stepped >> (plane.bits - local.bits), local.bits);
+                                                 (moved << (widths.tile_shift + widths.grid_bits)));
+  return wrap_signed(stepped >> (attribute.plane.bits - local_bits), local_bits);
 }
 
 }  // namespace
@@ -36,7 +36,8 @@ void make_tile_packet(const SetupPacket& setup, const EdgeValues& value, int til
     packet.is_inside =
         packet.is_inside && smallest_in_tile(inwards[i], setup.dx[i], setup.dy[i], 1 << widths.tile_shift) >= 0;
   for (std::size_t i = 0; i < 3; ++i) packet.edge_value[i] = saturate_tile_edge(value[i], widths);
-  const int dx = tile_x - (setup.box.left >> widths.tile_shift), dy = tile_y - (setup.box.top >> widths.tile_shift);
+  const auto dx = static_cast<std::uint64_t>(std::int64_t{tile_x - (setup.box.left >> widths.tile_shift)});
+  const auto dy = static_cast<std::uint64_t>(std::int64_t{tile_y - (setup.box.top >> widths.tile_shift)});
   for (std::size_t p = 0; p < static_cast<std::size_t>(widths.planes); ++p)
     packet.anchor[p] = local_anchor(setup, p, dx, dy, widths);
 }

@@ -2,14 +2,18 @@
 // of monotony.
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <set>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "../hardware_scene.hpp"
 #include "../scene_builder.hpp"
 #include "model/engines/cycle/cycle_model.hpp"
 #include "model/engines/functional.hpp"
+#include "model/host/primitive_stream.hpp"
 #include "sim/scene/builtin.hpp"
 #include "sim/show/report/hardware.hpp"
 
@@ -215,6 +219,69 @@ TEST(CycleModel, AnErrorEndsTheThreadOfTheTimes) {
   EXPECT_THROW((void)render_cycle(scene, config, memory, wanted), InputError);
   wanted.progress = [](double) { throw InputError("stopped"); };
   EXPECT_THROW((void)render(scene, config, {}, {}, wanted), InputError);
+}
+
+/// A memory of which nothing is known but its answers.
+class AskedMemory final : public MemoryTiming {
+ public:
+  explicit AskedMemory(const Config& config) : memory_(make_memory({}, config)) {}
+  [[nodiscard]] Cycle room() const override { return memory_->room(); }
+  BurstAnswer accept(const MemoryBurst& burst, Cycle cycle) override { return memory_->accept(burst, cycle); }
+
+ private:
+  std::unique_ptr<MemoryTiming> memory_;
+};
+
+TEST(CycleModel, AnIdealMemoryAnswersWithoutBeingAskedAsItWould) {
+  using Setting = std::pair<const char*, const char*>;
+  for (const Setting& setting : {Setting{"memory.port_bits", "32"}, Setting{"memory.port_bits", "64"},
+                                 Setting{"memory.port_bits", "128"}, Setting{"setup.kind", "serial"}}) {
+    const Config config = with("embedded", {setting});
+    for (const std::string_view name : {"city", "layers_glass"}) {
+      SCOPED_TRACE(std::string(name) + ' ' + setting.first + '=' + setting.second);
+      const Scene scene = scene_for(name, config);
+      if (!takes(scene, config)) continue;
+      AskedMemory asked(config);
+      const CycleRun expected = render_cycle(scene, config, asked).run, run = render(scene, config).run;
+      EXPECT_EQ(run.cycles, expected.cycles);
+      EXPECT_EQ(run.totals.memory_cycles, expected.totals.memory_cycles);
+      EXPECT_EQ(run.totals.beats, expected.totals.beats);
+      for (const Arrow arrow : kElastic) {
+        EXPECT_EQ(run.use[index(arrow)].busy, expected.use[index(arrow)].busy);
+        EXPECT_EQ(run.use[index(arrow)].stalled, expected.use[index(arrow)].stalled);
+      }
+    }
+  }
+}
+
+TEST(CycleModel, PlainTrianglesAreThoseOfTheHostsLongWay) {
+  const Config config = preset("embedded");
+  for (const std::string_view name : {"city", "teapot", "layers"}) {
+    SCOPED_TRACE(name);
+    const Scene plain = scene_for(name, config);
+    Scene offset = plain;
+    for (State& state : offset.states) state.polygon_offset = {0, 0.25};  // of a code: it is rounded to none
+    HostStream stream(plain, config), expected(offset, config);
+    std::size_t triangles = 0;
+    for (;;) {
+      const HostPrimitive* const one = stream.pull();
+      const auto other = expected.next();
+      ASSERT_EQ(one == nullptr, !other);
+      if (one == nullptr) break;
+      const auto parts = [](const HostPrimitive& host) {
+        const PrimitivePacket& p = host.packet;
+        return std::tuple(p.kind, p.primitive_id, p.vertex.x, p.vertex.y, p.vertex.code, p.state.depth_test,
+                          p.state.depth_write, p.state.color_write, p.box.left, p.box.top, p.box.right, p.box.bottom,
+                          p.cull, p.front_cw, host.primitive, host.command, host.units.colors.ops);
+      };
+      EXPECT_TRUE(parts(*one) == parts(*other)) << "primitive " << one->primitive;
+      triangles += one->packet.kind == PrimitiveKind::triangle ? 1 : 0;
+    }
+    EXPECT_GT(triangles, 0U);
+    EXPECT_EQ(stream.counters().primitives_in, expected.counters().primitives_in);
+    EXPECT_EQ(stream.counters().culled, expected.counters().culled);
+    EXPECT_EQ(stream.counters().pairs, expected.counters().pairs);
+  }
 }
 
 TEST(CycleModel, StallsCostCyclesAndNoBits) {

@@ -63,7 +63,7 @@ class StampLanes {
     const int left = box.left & -kSize, top = box.top & -kSize;
     const std::uint64_t columns_in_box = ((std::uint64_t{2} << (box.right - box.left)) - 1) << (box.left - left);
     std::array<Lanes, 3> row_edge{};
-    for (std::size_t e = 0; e < 3; ++e)
+    for (std::size_t e = 0; e < 3 && !tile.is_inside; ++e)
       row_edge[e] = edges_[e].at(static_cast<std::uint32_t>(tile.edge_value[e]), left, top);
     Lanes row_planes = to_corner_;  // a lane for each of the first planes, at the first pixel of a stamp
     for (std::size_t p = 0; p < kFirstPlanes; ++p) row_planes[p] += static_cast<std::uint32_t>(tile.anchor[p]);
