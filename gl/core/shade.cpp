@@ -61,9 +61,10 @@ struct Arrived {
 /// The colours of a vertex (OpenGL 1.5, 2.14.1). `normal` in eye space.
 void light_vertex(const Context& context, const Vec3& normal, ShadedVertex& vertex) {
   ShadingConstants& constants = *context.shading;
-  if (constants.lit && constants.lit->normal == normal) {
-    vertex.color = constants.lit->color;
-    vertex.secondary = constants.lit->secondary;
+  ShadingConstants::Lit& lit = constants.lit;
+  if (lit.is_known && lit.normal == normal) {
+    vertex.color = lit.color;
+    vertex.secondary = lit.secondary;
     return;
   }
   const LightingState& state = context.state.lighting;
@@ -103,20 +104,25 @@ void light_vertex(const Context& context, const Vec3& normal, ShadedVertex& vert
     arrived[side].specular = sum(arrived[side].specular, scaled(light.specular, strength * shine));
   }
   const bool separate = state.color_control == GL_SEPARATE_SPECULAR_COLOR;
+  // Number by number to all places: a copy would load pairs of numbers just stored one by one, and wait for them.
+  const auto put = [&](std::size_t side, std::size_t i, double color, double secondary) {
+    for (std::size_t to = side; to < (sides == 1 ? 2 : side + 1); ++to) {
+      vertex.color[to][i] = lit.color[to][i] = color;
+      vertex.secondary[to][i] = lit.secondary[to][i] = secondary;
+    }
+  };
   for (std::size_t side = 0; side < sides; ++side) {
     const Material& material = state.material[side];
-    Vec4 &color = vertex.color[side], &secondary = vertex.secondary[side];
     for (std::size_t i = 0; i < 3; ++i) {
       const double shine = material.specular[i] * arrived[side].specular[i];
-      color[i] = held(material.emission[i] + material.ambient[i] * ambient[i] +
-                      material.diffuse[i] * arrived[side].diffuse[i] + (separate ? 0 : shine));
-      secondary[i] = separate ? held(shine) : 0;
+      const double color = material.emission[i] + material.ambient[i] * ambient[i] +
+                           material.diffuse[i] * arrived[side].diffuse[i] + (separate ? 0 : shine);
+      put(side, i, held(color), separate ? held(shine) : 0);
     }
-    color[3] = held(material.diffuse[3]);
-    secondary[3] = 0;
+    put(side, 3, held(material.diffuse[3]), 0);
   }
-  if (sides == 1) vertex.color[1] = vertex.color[0], vertex.secondary[1] = vertex.secondary[0];
-  if (constants.depends_on_normal_alone) constants.lit = {normal, vertex.color, vertex.secondary};
+  lit.is_known = constants.depends_on_normal_alone;
+  lit.normal = normal;
 }
 
 /// Coordinates as glTexGen makes them (OpenGL 1.5, 2.11.4).
@@ -230,7 +236,7 @@ void update_shading(Context& context) {
       constants.lights.push_back(constants_of(state.lighting.light[i]));
   constants.depends_on_normal_alone =
       !state.lighting.local_viewer && std::ranges::none_of(constants.lights, &LightConstants::is_positional);
-  constants.lit.reset();
+  constants.lit.is_known = false;
   constants.is_attenuated = state.point.attenuation != Vec3{1, 0, 0};
 }
 

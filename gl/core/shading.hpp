@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -33,16 +32,17 @@ struct ShadingConstants {
 
   /// The colours of the vertex before: they are the next one's where the normal is all that they depend on.
   struct Lit {
+    bool is_known = false;  ///< not after a change of a material
     Vec3 normal{};
     std::array<Vec4, 2> color{}, secondary{};
   };
   bool depends_on_normal_alone = false;  ///< every light directional, the viewer at infinity
-  std::optional<Lit> lit;                ///< none after a change of a material
+  Lit lit;
 };
 
 /// After a change of a material, which glBegin allows and which therefore raises no revision.
 inline void forget_lit(Context& context) {
-  if (context.shading) context.shading->lit.reset();
+  if (context.shading) context.shading->lit.is_known = false;
 }
 
 /// Brings Context::shading up to date; to be called before the first vertex after a change of state.

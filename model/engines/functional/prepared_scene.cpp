@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "../../host/primitives.hpp"
@@ -19,19 +20,30 @@ void find_box(PreparedScene::DrawChunks& draw, const PreparedScene& prepared, st
   if (draw.primitives < kFew) return;
   draw.low.fill(std::numeric_limits<double>::infinity());
   draw.high.fill(-std::numeric_limits<double>::infinity());
-  for (const auto& corner : prepared.index)
-    for (std::size_t t = first; t < first + draw.primitives; ++t) {
-      const std::size_t v = corner[t];
-      for (const double c : {prepared.x[v], prepared.y[v], prepared.z[v], prepared.w[v]})
-        if (!(std::abs(c) <= 1e300)) return;
-      if (!(prepared.w[v] > 0)) return;
-      const std::array<double, 3> at{prepared.x[v] / prepared.w[v], prepared.y[v] / prepared.w[v],
-                                     prepared.z[v] / prepared.w[v]};
-      for (std::size_t i = 0; i < 3; ++i) {
-        draw.low[i] = std::min(draw.low[i], at[i]);
-        draw.high[i] = std::max(draw.high[i], at[i]);
-      }
+  const auto take = [&](std::size_t v) {
+    for (const double c : {prepared.x[v], prepared.y[v], prepared.z[v], prepared.w[v]})
+      if (!(std::abs(c) <= 1e300)) return false;
+    if (!(prepared.w[v] > 0)) return false;
+    const std::array<double, 3> at{prepared.x[v] / prepared.w[v], prepared.y[v] / prepared.w[v],
+                                   prepared.z[v] / prepared.w[v]};
+    for (std::size_t i = 0; i < 3; ++i) {
+      draw.low[i] = std::min(draw.low[i], at[i]);
+      draw.high[i] = std::max(draw.high[i], at[i]);
     }
+    return true;
+  };
+  // Each vertex of their range once, where these are fewer than the corners.
+  const auto chunks = std::span(prepared.chunks).subspan(draw.first, draw.count);
+  const std::uint32_t low = std::ranges::min(chunks, {}, &PreparedScene::Chunk::low_index).low_index,
+                      high = std::ranges::max(chunks, {}, &PreparedScene::Chunk::high_index).high_index;
+  if (high - low < 3 * draw.primitives) {
+    for (std::size_t v = low; v <= high; ++v)
+      if (!take(v)) return;
+  } else {
+    for (const auto& corner : prepared.index)
+      for (std::size_t t = first; t < first + draw.primitives; ++t)
+        if (!take(corner[t])) return;
+  }
   draw.has_box = true;
 }
 
