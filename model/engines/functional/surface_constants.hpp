@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "../../binary64.hpp"
 #include "../../stages/multisample.hpp"
 #include "../../stages/surface.hpp"
 #include "frame.hpp"
@@ -128,8 +129,8 @@ enum class Sampling { none, nearest, linear, any };
 /// rounding; twice that, and a last bit each.
 [[nodiscard]] inline std::int32_t coordinates_margin(int reach, const PerspectiveFormat& format) {
   const int k = format.mantissa_bits, narrow = format.coordinate.narrow_bits;
-  const double off = std::ldexp(1.0, reach) * (std::ldexp(1.0, 2 - k) + std::ldexp(1.0, 1 - narrow)) +
-                     std::ldexp(1.0, -format.coordinate.fraction_bits);
+  const double off = power_of_two(reach) * (power_of_two(2 - k) + power_of_two(1 - narrow)) +
+                     power_of_two(-format.coordinate.fraction_bits);
   return static_cast<std::int32_t>(std::ceil(2 * off * (1 << kTexelFraction))) + 2;
 }
 

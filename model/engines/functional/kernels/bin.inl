@@ -105,8 +105,11 @@ struct BinTriangle {
 
 /// A surface whose colours are being computed.
 struct DrawnSurface {
+  DrawnSurface(const StageSurface& from, const FrameContext& frame, const TexelBlocks* texels, const Packing& packing_)
+      : constants(from, frame, texels), packing(packing_) {}
+
   SurfaceConstants constants;
-  BinTriangle colors;                   ///< affine ones
+  BinTriangle colors;                   ///< affine ones, if needed
   std::unique_ptr<StageSurface> stage;  ///< where lanes lack a feature of the surface
   Packing packing;
 };

@@ -36,11 +36,8 @@ inline const DrawnSurface& drawn_surface(Bin& bin, std::size_t number) {
   const FrameContext& frame = bin.job.frame;
   const StageSurface stage(frame, *seen.slice, *seen.record, seen.place, false);
   const auto& texture = seen.slice->context->state.texture;
-  DrawnSurface& drawn = memory.drawn.emplace_back(
-      DrawnSurface{SurfaceConstants(stage, frame, texture ? &frame.prepared.textures[*texture] : nullptr),
-                   {},
-                   nullptr,
-                   bin.packing_of(seen.slice->context->fragment_ops)});
+  DrawnSurface& drawn = memory.drawn.emplace_back(stage, frame, texture ? &frame.prepared.textures[*texture] : nullptr,
+                                                  bin.packing_of(seen.slice->context->fragment_ops));
   if (!drawn.constants.are_in_lanes)
     drawn.stage = std::make_unique<StageSurface>(frame, *seen.slice, *seen.record, seen.place, true);
   else if ((drawn.constants.has_color || drawn.constants.light) && !drawn.constants.is_color_over_w)

@@ -87,8 +87,9 @@ struct SurfaceRamps {
     }
     const ReciprocalsOfQ q(color_over_w.q(block), of.division);
     const auto channel = [&](std::size_t c) HALFPLANE_LAMBDA {
-      const I16 code = over_q(color_over_w.p[c](block), q, of.color.attribute[c], of.of_color);
       const auto low = static_cast<std::int32_t>(of.color_low[c]), high = static_cast<std::int32_t>(of.color_high[c]);
+      if (low == high) return I16(low);
+      const I16 code = over_q(color_over_w.p[c](block), q, of.color.attribute[c], of.of_color);
       return min(max(code, I16(low)), I16(high));
     };
     return {channel(0) | (channel(2) << 16), channel(1) | (channel(3) << 16)};
