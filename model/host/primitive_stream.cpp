@@ -131,8 +131,7 @@ class HostStream::Host {
   HostUnits units_;
   std::optional<double> depth_everywhere_ = 1.0;                      ///< value of every pixel, if the host knows it
   std::optional<std::uint8_t> stencil_everywhere_ = std::uint8_t{0};  ///< likewise
-  /// The last plain triangle of the draw, if it has such: only vertices and numbers differ from one to the next.
-  std::optional<HostPrimitive> plain_;
+  std::optional<HostPrimitive> plain_;      ///< the last plain triangle of the draw, if it can have such
   bool sets_plain_ = false;                 ///< the registers for the draw's plain triangles have been set
   const HostPrimitive* waiting_ = nullptr;  ///< the primitive that waits for its tokens
   std::vector<HostPrimitive> tokens_;       ///< these
@@ -206,9 +205,8 @@ const HostPrimitive* HostStream::Host::next_primitive() {
 /// The next triangle of the draw, if it is plain: it needs no work of the host but its vertices'.
 const HostPrimitive* HostStream::Host::next_plain() {
   if (!plain_ || assembled_next_ == assembled_.size()) return nullptr;
-  const auto& index = assembled_[assembled_next_].index;
   std::array<const VertexCache::Entry*, 3> v;
-  for (std::size_t i = 0; i < 3; ++i) v[i] = &vertices_.get(*context_, index[i]);
+  for (std::size_t i = 0; i < 3; ++i) v[i] = &vertices_.get(*context_, assembled_[assembled_next_].index[i]);
   if ((v[0]->outside_frustum & v[1]->outside_frustum & v[2]->outside_frustum) != 0) return nullptr;
   if ((v[0]->outside_guard_band | v[1]->outside_guard_band | v[2]->outside_guard_band) != 0) return nullptr;
   TriangleVertices& vertex = plain_->packet.vertex;
