@@ -63,11 +63,13 @@ HALFPLANE_INLINE int first_tile(const Bin& bin, const Record& record) {
   return (y >> kTileShift) * kBinTiles + (x >> kTileShift);
 }
 
-/// Prefetches data for the next records: of lines, those of the batch after the next, and vertices of the next.
+/// Records that are prefetched before they are read: two batches.
+constexpr std::ptrdiff_t kAhead = 32;
+
+/// Prefetches data for the next records: of lines, also the vertices of the next batch.
 HALFPLANE_INLINE void fetch_records(const Slice& slice, const std::uint32_t* first, const std::uint32_t* last) {
-  constexpr std::ptrdiff_t kAhead = 32;
-  if (last - first <= kAhead) return;
-  __builtin_prefetch(&slice.records[first[kAhead]]);
+  if (last - first > kAhead) __builtin_prefetch(&slice.records[first[kAhead]]);
+  if (!slice.is_lines || last - first <= kAhead / 2) return;
   if (const Record& near = slice.records[first[kAhead / 2]]; near.kind() == RecordKind::whole_line)
     for (std::size_t k = 0; k < 2; ++k) __builtin_prefetch(&slice.vertices[near.v[k]]);
 }
@@ -113,8 +115,8 @@ HALFPLANE_INLINE bool draw_sixteen(Bin& bin, const Slice& slice, const std::uint
                                    const std::uint32_t* last) {
   SmallBatch& batch = bin.small;
   const Record* const records = slice.records.data();
-  constexpr int kAhead = 32, kLine = 2;  // records; in a cache line
-  if (last - first > kAhead)             // mostly records that follow each other
+  constexpr int kLine = 2;    // records in a cache line
+  if (last - first > kAhead)  // mostly records that follow each other
     for (int i = 0; i < 16; i += kLine) __builtin_prefetch(records + first[kAhead] + i);
   if (first[15] - first[0] != 15 || bin.sees_surfaces())
     for (std::size_t i = 0; i < 16; ++i) batch.records[i] = records + first[i];
@@ -149,6 +151,8 @@ void draw_records(Bin& bin, const Slice& slice, const std::uint32_t* first, cons
     bin.line_tiles = 0;
     bin.line_state = bin.state;
   }
+  if (slice.is_lines)  // of a bin they are scattered
+    for (std::ptrdiff_t i = 0; i < std::min(last - first, kAhead); ++i) __builtin_prefetch(&slice.records[first[i]]);
   const std::uint32_t* next_sixteen = first;  // the next record at which it is worth a try
   while (first != last) {
     const Record& record = slice.records[*first];
