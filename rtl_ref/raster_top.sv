@@ -365,7 +365,8 @@ module raster_top (
   logic                         tested_ready, access_valid, access_ready;
   raster_pkg::fragment_packet_t access;
   logic [raster_pkg::STORED_COLOR_BITS-1:0] access_color;
-  logic [DEPTHS-1:0]            stored_depth;
+  logic [DEPTHS-1:0]            stored_depth, held_depth;
+  logic [raster_pkg::SAMPLES-1:0] depth_is_held;
   depth_test u_depth_test (
       .clk_i,
       .rst_ni,
@@ -377,6 +378,8 @@ module raster_top (
       .access_o        (access),
       .access_color_o  (access_color),
       .stored_depth_i  (stored_depth),
+      .is_held_i       (depth_is_held),
+      .held_depth_i    (held_depth),
       .write_valid_o   (write_valid),
       .write_o         (write_data),
       .word_o          (write_word),
@@ -464,6 +467,8 @@ module raster_top (
           .request_i(request_data),
           .bytes_o  (request_bytes)
       );
+      assign depth_is_held = '0;
+      assign held_depth    = '0;
       assign written    = tested_written;
       assign killed     = tested_killed;
       assign flush_ends = access_valid && access_ready && access.kind == raster_pkg::PRIMITIVE_KIND_FLUSH;
@@ -515,6 +520,8 @@ module raster_top (
           .tested_valid_o  (tested_valid),
           .tested_o        (tested),
           .stored_depth_o  (stored_depth),
+          .is_held_o       (depth_is_held),
+          .held_depth_o    (held_depth),
           .write_valid_i   (write_valid),
           .write_i         (write_data),
           .word_i          (write_word),

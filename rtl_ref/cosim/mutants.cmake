@@ -183,7 +183,7 @@ mutant(61 stages/triangle_setup.sv "numerators: the first plane's product comes 
 
 # the tile walk
 mutant(65 stages/coarse_raster.sv "tile walk: what lies to the left of a row's start is left out"
-  [=[start_x_q != s_q.box.left[PX-1:TS]]=] [=[1'b0]=])
+  [=[start_x != s_q.box.left[PX-1:TS]]=] [=[1'b0]=])
 mutant(66 stages/coarse_raster.sv "tile walk: a row ends at an upright edge that has not been met"
   [=[(dy[D-1] || dy == '0)]=] [=[1'b1]=])
 mutant(67 stages/coarse_raster.sv "tile walk: the first tile to the left of the start has the planes of the start"

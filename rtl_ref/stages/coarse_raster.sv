@@ -134,22 +134,27 @@ module coarse_raster (
   logic          is_empty_q;     // every tile of the row so far was outside
   logic          is_leftmost, is_rightmost, exits, must_return, turns_back, row_ends, moves_left, moves_start;
   logic          is_last_column_q, is_last_row_q;  // known a cycle ahead, as edge_is_outside_q is
+  logic          is_start_q;        // this tile is the row's start, which is noted in this cycle
+  logic          moved_start_q;     // and its column, which another tile had
+  logic [TX-1:0] start_x;
   logic          clears;     // the bounds of a group of tiles each cycle
   logic [TX-1:0] group_end;  // its last tile
   logic [2:0]    edge_is_outside_q, no_better_left_q, no_better_right_q;
+  logic [2:0]    no_better_ahead_q;  // in the direction of the walk
   assign clears         = state_q == CLEAR;
   assign is_leftmost    = tile_x_q == s_q.box.left[PX-1:TS];
   assign is_rightmost   = tile_x_q == s_q.box.right[PX-1:TS];
   assign group_end      = tile_x_q | TX'((1 << raster_pkg::HIZ_GROUP_BITS) - 1);
   assign is_last_tile   = is_last_column_q && !must_return_q && is_last_row_q;
   assign must_return    = must_return_q && (edge_is_outside_q & no_better_left_q) == '0;
-  assign exits          = is_last_column_q || (edge_is_outside_q & (goes_left_q ? no_better_left_q : no_better_right_q)) != '0;
+  assign exits          = is_last_column_q || (edge_is_outside_q & no_better_ahead_q) != '0;
   assign turns_back     = exits && must_return;
   assign row_ends       = exits && !must_return;
   assign ends_walk      = row_ends && is_last_row_q;
   assign moves_left     = goes_left_q || turns_back;
+  assign start_x        = moved_start_q ? tile_x_q : start_x_q;
   assign moves_start    = is_empty_q && is_outside;  // or moves all of it down
-  assign next_x         = exits ? start_x_q - TX'(turns_back) : goes_left_q ? tile_x_q - TX'(1) : (clears ? group_end : tile_x_q) + TX'(1);
+  assign next_x         = exits ? start_x - TX'(turns_back) : goes_left_q ? tile_x_q - TX'(1) : (clears ? group_end : tile_x_q) + TX'(1);
   assign next_y         = tile_y_q + TY'(row_ends);
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -180,7 +185,7 @@ module coarse_raster (
   assign starts      = state_q == PREPARE;
   assign at_x        = starts ? tile_x_q : next_x;
   assign at_y        = starts ? tile_y_q : next_y;
-  assign returns     = exits && !starts;
+  assign returns     = exits && !starts && !is_start_q;
   assign moves_right = !starts && !row_ends && !moves_left;
   assign notes_start = starts || (goes_on && (row_ends || moves_start));
   assign goes_on = steps || (clears && !is_last_tile);  // the last step has no effect
@@ -203,15 +208,18 @@ module coarse_raster (
     end else if (clears) begin
       tile_x_q <= s_q.box.right[PX-1:TS];  // from the last group to the last tile
     end
+    // That the walk goes on is late, and reaches all registers of the tile: the row's start is noted from them, a cycle later.
+    is_start_q    <= notes_start;
+    moved_start_q <= goes_on && moves_start;
+    if (state_q == IDLE) start_x_q <= setup_i.box.left[PX-1:TS];
+    else if (moved_start_q) start_x_q <= tile_x_q;
     if (state_q == IDLE) begin
-      start_x_q     <= setup_i.box.left[PX-1:TS];
       goes_left_q   <= 1'b0;
       must_return_q <= 1'b0;
       is_empty_q    <= 1'b1;
     end else if (goes_on) begin
-      if (moves_start) start_x_q <= next_x;
       goes_left_q   <= moves_left && !row_ends;
-      must_return_q <= row_ends ? start_x_q != s_q.box.left[PX-1:TS] : must_return && !turns_back;
+      must_return_q <= row_ends ? start_x != s_q.box.left[PX-1:TS] : must_return && !turns_back;
       is_empty_q    <= row_ends || moves_start;
     end
     if (starts) is_eligible_q <= is_eligible;
@@ -271,12 +279,14 @@ module coarse_raster (
         if (state_q == IDLE) begin
           value_q <= setup_i.edge_value[i*V+:V];
         end else if (goes_on) value_q <= next;
-        if (notes_start) row_q <= next;
+        if (is_start_q) row_q <= value_q;
         if (starts || goes_on) edge_is_outside_q[i] <= next_is_outside[i];
-        if (state_q == PREPARE) begin
+        if (starts) begin
           no_better_left_q[i]  <= (dy[D-1] || dy == '0);
           no_better_right_q[i] <= !dy[D-1];
         end
+        if (starts) no_better_ahead_q[i] <= !dy[D-1];
+        else if (goes_on) no_better_ahead_q[i] <= moves_left && !row_ends ? no_better_left_q[i] : no_better_right_q[i];
       end
 
       if (V > TE) begin : gen_saturate
@@ -324,7 +334,7 @@ module coarse_raster (
         if (state_q == IDLE) begin
           value_q <= value[P-1-:M];
         end else if (goes_on) value_q <= next;
-        if (notes_start) row_q <= next;
+        if (is_start_q) row_q <= value_q;
       end
       assign anchor[LOCAL+:B]           = value_q[M-1-:B];
       assign context_o.step_x[STEP+:SB] = SB'($signed(step_x) >>> NARROW) + SB'(step_x[NARROW-1]);

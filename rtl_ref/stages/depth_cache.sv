@@ -33,12 +33,15 @@ module depth_cache #(
     output logic                    takes_answer_o,
     input  logic [SAMPLES*CODE-1:0] answer_i,
 
-    // To depth_test, which never waits; the stored depths follow in the next cycle
+    // To depth_test, which never waits; the stored depths follow in the next cycle, from the RAM, or held here
     output logic                         tested_valid_o,
     output raster_pkg::fragment_packet_t tested_o,
     output logic [SAMPLES*CODE-1:0]      stored_depth_o,
+    output logic [SAMPLES-1:0]           is_held_o,
+    output logic [SAMPLES*CODE-1:0]      held_depth_o,
 
-    // From depth_test: the write of the fragment of the cycle before, and the new stored words of its samples
+    // From depth_test: the write of the fragment of the cycle before, and the new stored words of its samples that
+    // are written or held
     input logic                      write_valid_i,
     input raster_pkg::write_packet_t write_i,
     input logic [SAMPLES*CODE-1:0]   word_i,
@@ -242,18 +245,19 @@ module depth_cache #(
   assign x1_on_chip = x1_q.source == raster_pkg::DEPTH_SOURCE_CHIP;
   generate
     for (s = 0; s < SAMPLES; s++) begin : gen_depth
-      logic [CODE-1:0] code, stored, held_q;
+      logic [CODE-1:0] code, held_q;
       logic            dirty, writes, is_forwarded, in_ram_q;
       logic [CODE:0]   word;
-      assign stored       = in_ram_q ? code : x1_q.source == raster_pkg::DEPTH_SOURCE_MEMORY ? answer_i[s*CODE+:CODE] : held_q;
       assign is_forwarded = is_again && writes;  // not from a late fragment: no later fragment of its place passes it
       always_ff @(posedge clk_i) begin
         in_ram_q <= on_chip && !is_forwarded;
-        held_q   <= is_forwarded ? word_i[s*CODE+:CODE] : clear_depth_i;
+        held_q   <= is_again ? word_i[s*CODE+:CODE] : clear_depth_i;
       end
       assign writes = write_i.write_depth[s] || (!x1_on_chip && x1_q.source != raster_pkg::DEPTH_SOURCE_NONE);
       assign word = late_valid_i ? late_word_i[s*(CODE+1)+:CODE+1] : {write_i.write_depth[s], word_i[s*CODE+:CODE]};
-      assign stored_depth_o[s*CODE+:CODE] = stored;
+      assign is_held_o[s]                 = !in_ram_q;
+      assign stored_depth_o[s*CODE+:CODE] = code;
+      assign held_depth_o[s*CODE+:CODE]   = x1_q.source == raster_pkg::DEPTH_SOURCE_MEMORY ? answer_i[s*CODE+:CODE] : held_q;
       sram #(
           .WIDTH    (CODE + 1),
           .DEPTH    (1 << (LINE + STAMP)),
@@ -346,7 +350,9 @@ module depth_cache #(
       assign stamp_o.writes     = x1_item_q.state.depth_write || x1_item_q.state.color_write;
       assign stamp_o.passed     = write_i.passed;
       assign stamp_o.word       = word_i;
-      assign stamp_o.stored     = stored_depth_o;
+      for (s = 0; s < SAMPLES; s++) begin : gen_stored
+        assign stamp_o.stored[s*CODE+:CODE] = is_held_o[s] ? held_depth_o[s*CODE+:CODE] : stored_depth_o[s*CODE+:CODE];
+      end
     end else begin : gen_early
       assign waits_for_late = 1'b0;
       assign tests_alpha    = 1'b0;

@@ -18,12 +18,15 @@ module depth_test (
     input  logic                                                    access_ready_i,
     output raster_pkg::fragment_packet_t                            access_o,
     output logic [raster_pkg::STORED_COLOR_BITS-1:0]                access_color_o,  // stored colour 0, a cycle later
+    // Stored words: of the framebuffer's RAM, late in the cycle, or, of samples with is_held_i, held_depth_i
     input  logic [raster_pkg::SAMPLES*raster_pkg::STORED_DEPTH_BITS-1:0] stored_depth_i,
+    input  logic [raster_pkg::SAMPLES-1:0]                               is_held_i,
+    input  logic [raster_pkg::SAMPLES*raster_pkg::STORED_DEPTH_BITS-1:0] held_depth_i,
 
     // To framebuffer; never waits. The depths of the packet are the fragment's
     output logic                      write_valid_o,
     output raster_pkg::write_packet_t write_o,
-    // New stored word of each sample, written or not
+    // New stored word of each sample that is written or held
     output logic [raster_pkg::SAMPLES*raster_pkg::STORED_DEPTH_BITS-1:0] word_o,
 
     // To coarse_raster; never waits
@@ -204,7 +207,7 @@ module depth_test (
       );
       assign passes_stencil = side_passes | {SAMPLES{!fragment_q.state.tests_stencil}};
       for (s = 0; s < SAMPLES; s++) begin : gen_word
-        assign stored[8*s+:8]         = stored_depth_i[s*WORD+CODE+:8];
+        assign stored[8*s+:8]         = is_held_i[s] ? held_depth_i[s*WORD+CODE+:8] : stored_depth_i[s*WORD+CODE+:8];
         assign word_o[s*WORD+CODE+:8] = result[8*s+:8];
       end
       assign changes = takes | marks;
@@ -213,19 +216,45 @@ module depth_test (
       assign changes        = takes;
     end
     for (s = 0; s < SAMPLES; s++) begin : gen_sample
-      // Two carry chains: gates that find equal depths, behind the RAM and in front of its write, were the longest path.
-      logic is_less, is_at_most;
+      // Each source has its own comparison: the RAM is read, compared and written in one cycle.
+      logic passes_stored, passes_held;
       localparam int PIXEL = s / N;
       if (s % N == 0) begin : gen_first
         assign depth[s*CODE+:CODE] = fragment_q.code[PIXEL*CODES+:CODE];
       end else begin : gen_further
         assign depth[s*CODE+:CODE] = fragment_q.further_depth[(PIXEL*(N-1)+s%N-1)*CODE+:CODE];
       end
-      assign is_less    = depth[s*CODE+:CODE] < stored_depth_i[s*WORD+:CODE];
-      assign is_at_most = {depth[s*CODE+:CODE], 1'b0} < {stored_depth_i[s*WORD+:CODE], 1'b1};
-      assign is_nearer[s] = is_less ? less_passes : (is_at_most ? equal_passes : greater_passes);
+      order_test #(
+          .WIDTH(CODE)
+      ) u_stored (
+          .less_i   (less_passes),
+          .equal_i  (equal_passes),
+          .greater_i(greater_passes),
+          .value_i  (depth[s*CODE+:CODE]),
+          .other_i  (stored_depth_i[s*WORD+:CODE]),
+          .passes_o (passes_stored)
+      );
+      order_test #(
+          .WIDTH(CODE)
+      ) u_held (
+          .less_i   (less_passes),
+          .equal_i  (equal_passes),
+          .greater_i(greater_passes),
+          .value_i  (depth[s*CODE+:CODE]),
+          .other_i  (held_depth_i[s*WORD+:CODE]),
+          .passes_o (passes_held)
+      );
+      assign is_nearer[s] = is_held_i[s] ? passes_held : passes_stored;
       assign write_o.depth[s*WORD+:WORD] = WORD'(depth[s*CODE+:CODE]);
-      assign word_o[s*WORD+:CODE] = takes[s] ? depth[s*CODE+:CODE] : stored_depth_i[s*WORD+:CODE];
+      if (raster_pkg::STENCIL_BITS != 0) begin : gen_new_word
+        logic [CODE-1:0] code;
+        assign code = is_held_i[s] ? held_depth_i[s*WORD+:CODE] : stored_depth_i[s*WORD+:CODE];
+        assign word_o[s*WORD+:CODE] = takes[s] ? depth[s*CODE+:CODE] : code;
+      end else begin : gen_new_depth  // what is in the RAM and not taken is not written: no word waits for its comparison
+        logic keeps_held;
+        assign keeps_held = is_held_i[s] && !(fragment_q.mask[s] && passes_held && opaque[s] && fragment_q.state.depth_write);
+        assign word_o[s*WORD+:CODE] = keeps_held ? held_depth_i[s*WORD+:CODE] : depth[s*CODE+:CODE];
+      end
 
       if (raster_pkg::COORDINATES == 0 && raster_pkg::BLEND_LANES == 0 && raster_pkg::DITHER_UNIT == 0 &&
           (raster_pkg::CACHE_KIND == 0 || raster_pkg::ALPHA_UNIT != 0)) begin : gen_rop

@@ -54,8 +54,9 @@ module line_raster (
   logic [PY-1:0]       step_y;
   assign step_stay = E'(line_q.step_stay);
   assign step_move = E'($signed(line_q.step_move));
-  assign step_x    = line_q.is_x_negative ? '1 : PX'(1);
-  assign step_y    = line_q.is_y_negative ? '1 : PY'(1);
+  // A step of 0 where the pixel stays: that it moves does not wait for pixel_ready_i, which comes late.
+  assign step_x    = !line_q.is_x_major && !moves ? '0 : line_q.is_x_negative ? '1 : PX'(1);
+  assign step_y    = line_q.is_x_major && !moves ? '0 : line_q.is_y_negative ? '1 : PY'(1);
 
   always_ff @(posedge clk_i) begin
     if (takes) begin
@@ -66,8 +67,8 @@ module line_raster (
       remaining_q       <= line_i.remaining;
       is_before_start_q <= line_i.is_before_start;
     end else if (pixel_ready_i) begin
-      if (line_q.is_x_major || moves) x_q <= x_q + step_x;
-      if (!line_q.is_x_major || moves) y_q <= y_q + step_y;
+      x_q               <= x_q + step_x;
+      y_q               <= y_q + step_y;
       error_q           <= error_q + (moves ? step_move : step_stay);
       remaining_q       <= remaining_q - 1'b1;
       is_before_start_q <= 1'b0;

@@ -50,7 +50,8 @@
     assume ((write_i.write_depth & (tested_q.state.depth_write ? write_i.passed : '0)) == (tested_q.state.depth_write ? write_i.passed : '0));
     if (!tested_marks) assume ((write_i.write_depth & ~write_i.passed) == '0);
     for (int i = 0; i < SAMPLES; i++)
-      assume (word_i[i*CODE+:CODE] == (write_i.write_depth[i] ? write_i.depth[i*CODE+:CODE] : stored_depth_o[i*CODE+:CODE]));
+      if (write_i.write_depth[i] || depth_is_held[i])
+        assume (word_i[i*CODE+:CODE] == (write_i.write_depth[i] ? write_i.depth[i*CODE+:CODE] : stored_depth_o[i*CODE+:CODE]));
     assume (write_i.write_color == (tested_q.state.color_write ? write_i.passed : '0));
     if (response_valid_i) assume (unanswered_q != '0);
   end

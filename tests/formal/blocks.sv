@@ -80,6 +80,11 @@ module blocks (
   logic                      never;
   logic [SAMPLES-1:0]        no_samples, all_samples;
   logic [SAMPLES*(CODE+1)-1:0] no_words;
+  logic [SAMPLES*CODE-1:0]   ram_depth, held_depth;
+  logic [SAMPLES-1:0]        depth_is_held;
+  always_comb
+    for (int s = 0; s < SAMPLES; s++)
+      stored_depth_o[s*CODE+:CODE] = depth_is_held[s] ? held_depth[s*CODE+:CODE] : ram_depth[s*CODE+:CODE];
   assign never       = 1'b0;
   assign no_samples  = '0;
   assign all_samples = '1;
@@ -97,7 +102,9 @@ module blocks (
       .answer_i        (answer),
       .tested_valid_o  (tested_valid_o),
       .tested_o        (tested_o),
-      .stored_depth_o  (stored_depth_o),
+      .stored_depth_o  (ram_depth),
+      .is_held_o       (depth_is_held),
+      .held_depth_o    (held_depth),
       .write_valid_i   (write_valid_i),
       .write_i         (write_i),
       .word_i          (word_i),

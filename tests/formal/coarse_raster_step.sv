@@ -19,11 +19,11 @@
   end
   logic walks;
   assign walks = runs_q && state_q == WALK && has_walk;
-  always_comb if (walks) assert (s_q == g_q && tile_x_q == tile_x_g && tile_y_q == tile_y_g && start_x_q == start_x_g);
+  always_comb if (walks) assert (s_q == g_q && tile_x_q == tile_x_g && tile_y_q == tile_y_g && start_x == start_x_g);
   always_comb if (runs_q && state_q != IDLE) assert (s_q == g_q);
   always_comb if (runs_q && state_q == WALK) assert (has_walk);
   always_comb if (runs_q && state_q == PREPARE && has_walk)
-    assert (tile_x_q == tile_x_g && tile_y_q == tile_y_g && start_x_q == start_x_g);
+    assert (tile_x_q == tile_x_g && tile_y_q == tile_y_g && start_x == start_x_g);
   genvar k;
   generate
     for (k = 0; k < 3; k++) begin : gen_proof
@@ -42,7 +42,7 @@
         end
       end
       always_comb if (runs_q && (walks || (state_q == PREPARE && has_walk)))
-        assert (gen_edge[k].value_q == $signed(tile_q) && (starts ? row_first_q == tile_q : gen_edge[k].row_q == $signed(row_first_q)));
+        assert (gen_edge[k].value_q == $signed(tile_q) && (starts || is_start_q ? row_first_q == tile_q : gen_edge[k].row_q == $signed(row_first_q)));
       // The increment to the tile's best corner: T - 1 times that of a pixel (coarse_raster_corners). The verdict that was
       // made a cycle ahead is that of this tile.
       logic signed [TE-1:0] best;
@@ -73,7 +73,7 @@
         end
       end
       always_comb if (runs_q && (walks || (state_q == PREPARE && has_walk)))
-        assert (gen_plane[k].value_q == tile_q[P-1-:M] && (starts ? row_first_q == tile_q : gen_plane[k].row_q == row_first_q[P-1-:M]));
+        assert (gen_plane[k].value_q == tile_q[P-1-:M] && (starts || is_start_q ? row_first_q == tile_q : gen_plane[k].row_q == row_first_q[P-1-:M]));
       // The offer is the tile that the walk has left.
       logic [B-1:0] left_g;
       always_ff @(posedge clk_i) if (left_is_free) left_g <= tile_q[P-1-:B];

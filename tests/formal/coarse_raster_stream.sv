@@ -46,12 +46,13 @@
     if (state_q == WALK) assert (has_walk);
     if (walked_q) begin
       assert (tile_y_q <= s_q.box.bottom[PY-1:TS] && tile_x_q >= s_q.box.left[PX-1:TS] && tile_x_q <= s_q.box.right[PX-1:TS]);
-      assert (start_x_q >= s_q.box.left[PX-1:TS] && start_x_q <= s_q.box.right[PX-1:TS]);
-      if (must_return_q) assert (start_x_q != s_q.box.left[PX-1:TS] && !goes_left_q);
-      if (!has_walk) assert (start_x_q == s_q.box.left[PX-1:TS] && !goes_left_q && !must_return_q);
+      assert (start_x >= s_q.box.left[PX-1:TS] && start_x <= s_q.box.right[PX-1:TS]);
+      if (must_return_q) assert (start_x != s_q.box.left[PX-1:TS] && !goes_left_q);
+      if (!has_walk) assert (start_x == s_q.box.left[PX-1:TS] && !goes_left_q && !must_return_q);
     end
     // What is known a cycle ahead is so of the tile then.
     if (state_q == WALK) assert (is_last_column_q == (goes_left_q ? is_leftmost : is_rightmost) && is_last_row_q == is_last_row);
+    if (state_q == WALK) assert (no_better_ahead_q == (goes_left_q ? no_better_left_q : no_better_right_q));
     if (clears)
       assert (is_last_column_q == ((tile_x_q ^ s_q.box.right[PX-1:TS]) >> raster_pkg::HIZ_GROUP_BITS == '0) &&
               is_last_row_q == is_last_row);
@@ -80,7 +81,7 @@
   generate
     for (k = 0; k < 3; k++) begin : gen_proof
       always_comb if (runs_q && state_q != IDLE && !is_triangle) begin
-        assert (gen_edge[k].value_q == '0 && (starts || gen_edge[k].row_q == '0) && s_q.dx[k*D+:D] == '0 && s_q.dy[k*D+:D] == '0);
+        assert (gen_edge[k].value_q == '0 && (starts || is_start_q || gen_edge[k].row_q == '0) && s_q.dx[k*D+:D] == '0 && s_q.dy[k*D+:D] == '0);
         if (!starts) assert (!edge_is_outside_q[k]);
       end
     end

@@ -8,7 +8,7 @@
       logic [WORD-1:0] old_word, new_word;
       logic            is_written, is_new_depth;
       logic [7:0]      mask;
-      assign old_word     = stored_depth_i[f*WORD+:WORD];
+      assign old_word     = is_held_i[f] ? held_depth_i[f*WORD+:WORD] : stored_depth_i[f*WORD+:WORD];
       assign new_word     = word_o[f*WORD+:WORD];
       assign is_written   = write_o.write_depth[f];
       assign is_new_depth = write_o.passed[f] && fragment_q.state.depth_write;

@@ -48,7 +48,8 @@
     for (k = 0; k < SAMPLES; k++) begin : gen_proof
       always_comb if (runs_q && write_valid_o) begin
         assert (write_o.depth[k*CODE+:CODE] == before_q.code[k*CODES+:CODE]);
-        assert (word_o[k*CODE+:CODE] == (write_o.write_depth[k] ? write_o.depth[k*CODE+:CODE] : stored_depth_i[k*CODE+:CODE]));
+        if (write_o.write_depth[k] || is_held_i[k])
+          assert (word_o[k*CODE+:CODE] == (write_o.write_depth[k] ? write_o.depth[k*CODE+:CODE] : held_depth_i[k*CODE+:CODE]));
       end
     end
   endgenerate
