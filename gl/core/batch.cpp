@@ -176,7 +176,8 @@ BatchTraits traits_of(std::span<const ShadedVertex> vertices, std::size_t unit) 
   BatchTraits traits;
   const ShadedVertex& first = vertices.front();
   for (const ShadedVertex& v : vertices) {
-    traits.has_one_color &= v.color[0] == first.color[0] && v.secondary[0] == first.secondary[0];
+    if (traits.has_one_color)
+      traits.has_one_color = v.color[0] == first.color[0] && v.secondary[0] == first.secondary[0];
     traits.has_one_w &= v.clip[3] == first.clip[3];
     traits.has_one_q &= v.tex_coord[unit][3] == first.tex_coord[unit][3];
     traits.has_positive_q &= v.tex_coord[unit][3] > 0;

@@ -180,14 +180,14 @@ void Frame::Memory::draw(const halfplane::State& state, Topology topology, std::
   const double band = state.space == Space::window ? std::min(kPlain, guard_band_limit(config) - 1) : kPlain;
   const bool needs_w = state.space == Space::window && has_surface(state);
   bool is_plain = true;
-  for (Vertex vertex : vertices) {
+  scene.vertices.insert(scene.vertices.end(), vertices.begin(), vertices.end());
+  for (Vertex& vertex : std::span(scene.vertices).subspan(first_vertex)) {
     if (state.space == Space::window) vertex.z = within(vertex.z, 0, 1);
     for (double& channel : vertex.rgba) channel = within(channel, 0, 255);
     for (double* coordinate : {&vertex.u, &vertex.v})
       if (!std::isfinite(*coordinate)) *coordinate = 0;
     is_plain &= std::abs(vertex.x) <= band && std::abs(vertex.y) <= band && std::abs(vertex.z) <= kPlain &&
                 std::abs(vertex.w) <= kPlain && (!needs_w || vertex.w > 0);
-    scene.vertices.push_back(vertex);
   }
   for (const std::uint32_t index : indices) {
     if (index != kRestart && index >= vertices.size()) {

@@ -10,7 +10,8 @@ namespace halfplane::gl {
 
 /// Into low...high, NaN as low.
 [[nodiscard]] constexpr double held(double value, double low = 0, double high = 1) {
-  return value > low ? (value < high ? value : high) : low;
+  const double raised = value > low ? value : low;  // one after the other: a maximum and a minimum, without a branch
+  return raised < high ? raised : high;
 }
 [[nodiscard]] constexpr Vec4 held_color(const Vec4& v, double low = 0) {
   return {held(v[0], low), held(v[1], low), held(v[2], low), held(v[3], low)};

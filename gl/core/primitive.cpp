@@ -313,6 +313,19 @@ Shape shape_of(GLenum mode) {
   return mode == GL_POINTS ? Shape::point : mode <= GL_LINE_STRIP ? Shape::line : Shape::polygon;
 }
 
+/// Whether all vertices lie beyond one plane of the view volume.
+bool is_outside_view(std::span<const ShadedVertex> vertices) {
+  unsigned beyond = ~0U;
+  for (const ShadedVertex& v : vertices) {
+    const auto& [x, y, z, w] = v.clip;
+    unsigned of_vertex = 0;
+    for (const double c : {x, y, z}) of_vertex = of_vertex << 2 | (c < -w ? 2U : 0U) | (c > w ? 1U : 0U);
+    beyond &= of_vertex;
+    if (beyond == 0) return false;
+  }
+  return true;
+}
+
 bool is_taken_apart(Context& context, Shape shape, std::span<const ShadedVertex> vertices,
                     std::span<const std::uint32_t> indices, const BatchTraits& traits) {
   const gl::State& state = context.state;
@@ -337,6 +350,10 @@ void draw_primitives(Context& context, GLenum mode, std::span<const ShadedVertex
   if (context.render_mode == GL_RENDER && context.drawable == nullptr) return;
   const Assembly& assembly = kAssemblies[mode];
   const Shape shape = shape_of(mode);
+  const auto is_fill = [](GLenum of_side) { return of_side == GL_FILL; };
+  if (shape == Shape::polygon && std::ranges::all_of(context.state.polygon.mode, is_fill) &&
+      context.render_mode == GL_RENDER && !context.drawable->frame.options().is_recorded() && is_outside_view(vertices))
+    return;  // no pixel, and nobody counts it
   const BatchTraits traits = traits_of(vertices, draw_setup(context).unit);
   const char* const beyond = context.render_mode == GL_RENDER ? why_shaded(context, traits) : nullptr;
   if (beyond != nullptr) context.drawable->frame.missing(beyond, "the host shades its fragments");
