@@ -144,6 +144,10 @@ def is_blank(picture):
     return all(low == high for low, high in picture.getextrema())
 
 
+def is_blank_in_both(row):
+    return is_blank(row['mesa']) and is_blank(row['ours'])
+
+
 def gaps_of(a, b):
     """Differences of what both have, from the bottom left, where OpenGL's window begins."""
     width, height = min(a.width, b.width), min(a.height, b.height)
@@ -228,7 +232,7 @@ def compare(name, folder, env, options):
         row['mesa'] = in_mesa(name, folder, calls[row['frame']], env)
         row['ours'], row['seconds'], row['said'] = in_halfplane(name, folder, row['frame'], options)
         row['seen'], row['mean'] = differences(row['mesa'], row['ours'])
-        if is_blank(row['mesa']) and is_blank(row['ours']):
+        if is_blank_in_both(row):
             row['said'].insert(0, 'both blank: says nothing')
     except (RuntimeError, OSError) as error:
         row['error'] = str(error)
@@ -416,14 +420,13 @@ def speed_table(rows):
 
 
 def page_table(rows):
-    """A row a program: picture and speed. Programs without a frame of one of the two come last, with what was said."""
     out = ['| program | pixels | frame | differ by more than 8, % | mean of 255 | frames replayed | llvmpipe, CPU ms | '
            'Halfplane, CPU ms | times less CPU |', '| --- ' * 9 + '|']
-    for row in sorted(rows, key=lambda row: bool(row['error'])):
+    for row in sorted(rows, key=lambda row: bool(row['error'])):  # programs without a frame come last
         if row['error']:
             out.append(f'| {row["name"]} ' + '| ' * 7 + f'| {row["error"][:100]} |')
             continue
-        blank = ' (blank)' if is_blank(row['mesa']) and is_blank(row['ours']) else ''
+        blank = ' (blank)' if is_blank_in_both(row) else ''
         out.append(f'| {row["name"]} | {row["ours"].width}x{row["ours"].height} | {row["frame"]}{blank} | '
                    f'{100 * row["seen"]:.2f} | {row["mean"]:.2f} | {row["frames"]} | {1e3 * row["used_mesa"]:.2f} | '
                    f'{1e3 * row["used_ours"]:.2f} | {row["used_ratio"]:.2f} |')
@@ -446,6 +449,12 @@ def measure_speed(names, folder, env, options):
     (folder / 'speed.md').write_text(speed_table(rows), encoding='utf-8')
     print(speed_table(rows).splitlines()[-1])
     return int(any(row['error'] for row in rows))
+
+
+# What looks at a recording, the table of its rows, files, and the layout of the sheet.
+VIEWS = {'compare': (compare, table, 'table.md', 'sheet.png', {}),
+         'window': (compare_all, window_table, 'window.md', 'window.png', {'columns': 2}),
+         'page': (on_page, page_table, 'page.md', 'sheet.png', {'columns': 8, 'width': 88, 'height': 66, 'gap': 3})}
 
 
 def main():
@@ -487,22 +496,17 @@ def main():
         env = environment(display.name, folder)
         if options.what == 'speed':
             return measure_speed(names, folder, env, options)
-        look, lines = {'window': (compare_all, window_table), 'page': (on_page, page_table)}.get(options.what, (compare, table))
+        look, lines, text, image, layout = VIEWS[options.what]
         rows = []
         for row in pool.map(lambda name: look(name, folder, env, options), names):
             rows.append(row)
             print(lines([row]).splitlines()[-1], flush=True)
-    text, image = {'window': ('window.md', 'window.png'), 'page': ('page.md', 'sheet.png')}.get(options.what,
-                                                                                                ('table.md', 'sheet.png'))
     (folder / text).write_text(lines(rows), encoding='utf-8')
-    groups = [[row.get('mesa'), row.get('ours')] for row in rows]
+    groups = [[row.get('mesa'), row.get('ours')] for row in rows
+              if options.what != 'page' or not row['error'] and not is_blank_in_both(row)]
     if options.what == 'window':  # with their differences, four times as large
         groups = [[a, b, gaps_of(a, b).point(lambda v: min(4 * v, 255))] if a and b else [a, b] for a, b in groups]
-    if options.what == 'page':
-        pairs = [pair for pair, row in zip(groups, rows) if all(pair) and not (is_blank(pair[0]) and is_blank(pair[1]))]
-        sheet(pairs, columns=8, width=88, height=66, gap=3).quantize(64).save(folder / image)
-        return int(any(row['error'] for row in rows))
-    sheet(groups, columns=4 if options.what == 'compare' else 2).quantize(128).save(folder / image)
+    sheet(groups, **layout).quantize(128).save(folder / image)
     return int(any(row['error'] or 100 * row['seen'] > options.most for row in rows))
 
 
