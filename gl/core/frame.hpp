@@ -33,8 +33,8 @@ struct Options {
   std::string save_to;    ///< path of `save`, or the folder of all frames
   bool save_all = false;
   std::string results;  ///< file that takes one line of JSON for each frame; empty: none
-  /// Whether a frame becomes a capture or is counted: all of its draws are kept.
-  [[nodiscard]] bool is_recorded() const { return save_all || !save.empty() || cycles; }
+  /// Whether frames become captures or figures, of which draws outside the view are a part.
+  [[nodiscard]] bool keeps_draws() const { return save_all || !save.empty() || cycles || !results.empty(); }
 };
 /// The options of HALFPLANE_GL, or the defaults. Throws InputError.
 [[nodiscard]] Options options_from_environment();

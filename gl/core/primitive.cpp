@@ -352,7 +352,7 @@ void draw_primitives(Context& context, GLenum mode, std::span<const ShadedVertex
   const Shape shape = shape_of(mode);
   const auto is_fill = [](GLenum of_side) { return of_side == GL_FILL; };
   if (shape == Shape::polygon && std::ranges::all_of(context.state.polygon.mode, is_fill) &&
-      context.render_mode == GL_RENDER && !context.drawable->frame.options().is_recorded() && is_outside_view(vertices))
+      context.render_mode == GL_RENDER && !context.drawable->frame.options().keeps_draws() && is_outside_view(vertices))
     return;  // no pixel, and nobody counts it
   const BatchTraits traits = traits_of(vertices, draw_setup(context).unit);
   const char* const beyond = context.render_mode == GL_RENDER ? why_shaded(context, traits) : nullptr;

@@ -14,6 +14,8 @@
 #include <random>
 #include <string>
 
+#include "gl/core/commands.hpp"
+#include "gl/core/context.hpp"
 #include "model/capture/capture.hpp"
 #include "model/engines/functional.hpp"
 #include "sim/scene/random_state.hpp"
@@ -378,6 +380,44 @@ TEST(GlFrame, CyclesAreMeasuredWhereTheHardwareDrawsIt) {
   EXPECT_TRUE(rows[0]["lacks"].is_null());
   EXPECT_TRUE(rows[1]["cycles"].is_null());
   EXPECT_NE(rows[1]["lacks"].get<std::string>().find("blend"), std::string::npos);
+}
+
+/// Random triangles and quadrilaterals around the eye.
+void draw_around(Context& context, Drawable& drawable, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> place(-3, 3), channel(0, 1);
+  context.drawable = context.read_drawable = &drawable;
+  viewport(context, 0, 0, kWidth, kHeight);
+  matrix_mode(context, GL_PROJECTION);
+  frustum(context, -0.5, 0.5, -0.5, 0.5, 0.5, 4);
+  enable(context, GL_DEPTH_TEST, true);
+  ++context.revision;
+  for (int i = 0; i < 100; ++i) {
+    begin(context, i % 2 == 0 ? GL_TRIANGLES : GL_QUADS);
+    const double x = place(random), y = place(random), z = place(random) - 2;
+    for (int corner = 0; corner < 12; ++corner) {
+      color(context, channel(random), channel(random), channel(random), 1);
+      vertex(context, x + place(random) / 3, y + place(random) / 3, z + place(random) / 3, 1);
+    }
+    end(context);
+  }
+}
+
+TEST(GlFrame, WhatIsOutsideTheViewIsMissingInNoPicture) {
+  const Folder folder;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    Options options = options_of("full");
+    Drawable drawable(options, kWidth, kHeight);
+    options.results = folder.file("results" + std::to_string(seed));  // all draws are kept
+    Drawable keeping(options, kWidth, kHeight);
+    Context context, of_keeping;
+    draw_around(context, drawable, seed);
+    draw_around(of_keeping, keeping, seed);
+    expect_same(drawable.frame.picture(), keeping.frame.picture(), "seed " + std::to_string(seed));
+    keeping.frame.end();
+    keeping.frame.wait();
+    EXPECT_GT(results_of(options).at(0)["primitives"]["culled"], 50) << "nothing outside, seed " << seed;
+  }
 }
 
 TEST(GlFrame, ResizesAndKeepsWithinTheConfiguration) {
