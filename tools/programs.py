@@ -421,7 +421,7 @@ def speed_table(rows):
 
 def page_table(rows):
     out = ['| program | pixels | frame | differ by more than 8, % | mean of 255 | frames replayed | llvmpipe, CPU ms | '
-           'Halfplane, CPU ms | times less CPU |', '| --- ' * 9 + '|']
+           'Halfplane, CPU ms | llvmpipe / Halfplane |', '| --- ' * 9 + '|']
     for row in sorted(rows, key=lambda row: bool(row['error'])):  # programs without a frame come last
         if row['error']:
             out.append(f'| {row["name"]} ' + '| ' * 7 + f'| {row["error"][:100]} |')
@@ -451,7 +451,7 @@ def measure_speed(names, folder, env, options):
     return int(any(row['error'] for row in rows))
 
 
-# What looks at a recording, the table of its rows, files, and the layout of the sheet.
+# Of each view: the function for a recording, the function for the table, the two files, the arguments of sheet().
 VIEWS = {'compare': (compare, table, 'table.md', 'sheet.png', {}),
          'window': (compare_all, window_table, 'window.md', 'window.png', {'columns': 2}),
          'page': (on_page, page_table, 'page.md', 'sheet.png', {'columns': 8, 'width': 88, 'height': 66, 'gap': 3})}

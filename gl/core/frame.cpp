@@ -106,7 +106,7 @@ void Frame::Memory::resize(int width, int height) {
 
 std::uint32_t Frame::Memory::state_number(const halfplane::State& state) {
   if (last_state < scene.states.size() && scene.states[last_state] == state) return last_state;
-  // Cheaper than their hash: a frame's draws mostly alternate between a few states.
+  // The first states of the frame: comparing is cheaper than a hash, and draws mostly alternate between a few.
   constexpr std::size_t kFew = 8;
   for (std::size_t i = 0; i < std::min(kFew, scene.states.size()); ++i)
     if (scene.states[i] == state) return last_state = static_cast<std::uint32_t>(i);

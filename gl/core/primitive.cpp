@@ -353,7 +353,7 @@ void draw_primitives(Context& context, GLenum mode, std::span<const ShadedVertex
   const auto is_fill = [](GLenum of_side) { return of_side == GL_FILL; };
   if (shape == Shape::polygon && std::ranges::all_of(context.state.polygon.mode, is_fill) &&
       context.render_mode == GL_RENDER && !context.drawable->frame.options().keeps_draws() && is_outside_view(vertices))
-    return;  // no pixel, and nobody counts it
+    return;  // it draws no pixel, and is no part of a capture or a figure
   const BatchTraits traits = traits_of(vertices, draw_setup(context).unit);
   const char* const beyond = context.render_mode == GL_RENDER ? why_shaded(context, traits) : nullptr;
   if (beyond != nullptr) context.drawable->frame.missing(beyond, "the host shades its fragments");

@@ -104,7 +104,7 @@ void light_vertex(const Context& context, const Vec3& normal, ShadedVertex& vert
     arrived[side].specular = sum(arrived[side].specular, scaled(light.specular, strength * shine));
   }
   const bool separate = state.color_control == GL_SEPARATE_SPECULAR_COLOR;
-  // Number by number to all places: a copy would load pairs of numbers just stored one by one, and wait for them.
+  // Number by number to all places: a copy would load pairs of numbers that were stored one by one, and stall.
   const auto put = [&](std::size_t side, std::size_t i, double color, double secondary) {
     for (std::size_t to = side; to < (sides == 1 ? 2 : side + 1); ++to) {
       vertex.color[to][i] = lit.color[to][i] = color;

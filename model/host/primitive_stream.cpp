@@ -131,10 +131,10 @@ class HostStream::Host {
   HostUnits units_;
   std::optional<double> depth_everywhere_ = 1.0;                      ///< value of every pixel, if the host knows it
   std::optional<std::uint8_t> stencil_everywhere_ = std::uint8_t{0};  ///< likewise
-  std::optional<HostPrimitive> plain_;      ///< the last plain triangle of the draw, if it can have such
+  std::optional<HostPrimitive> plain_;      ///< the draw's triangles without surface, offset, bins or cuts
   bool sets_plain_ = false;                 ///< the registers for the draw's plain triangles have been set
   const HostPrimitive* waiting_ = nullptr;  ///< the primitive that waits for its tokens
-  std::vector<HostPrimitive> tokens_;       ///< these
+  std::vector<HostPrimitive> tokens_;       ///< which are sent before it
   std::size_t tokens_first_ = 0;            ///< the next of them
 };
 

@@ -34,9 +34,9 @@ class HostStream {
   HostStream(const Scene& scene, const Config& config, BinContents* held = nullptr);
   ~HostStream();
 
-  /// The next primitive, until the next call; null after the flush. Throws InputError for a vertex that cannot be snapped.
+  /// The next primitive, valid until the next call of pull() or next(); null after the flush. Throws InputError for a vertex that cannot be snapped.
   [[nodiscard]] const HostPrimitive* pull();
-  /// A copy of it.
+  /// A copy of the next primitive; none after the flush.
   [[nodiscard]] std::optional<HostPrimitive> next();
 
   /// The host's own counts so far: primitives_in, clipped, and culled primitives, by reason; bins and pairs.

@@ -148,8 +148,8 @@ template <class Box>
 }
 
 /// The stage. Each dropped triangle is counted once, by the first reason that holds. `looks_at_samples`: true for the
-/// pipelined hardware, false for the serial one. Returns whether the primitive is kept; then all of `out` is set, a packet
-/// for one primitive after the other.
+/// pipelined hardware, false for the serial one. Returns whether the primitive is kept; then every field of `out`
+/// that `widths` uses is set, so that one packet serves for one primitive after the other.
 [[nodiscard]] inline bool cull(const PrimitivePacket& in, const Widths& widths, CounterPacket& counters,
                                bool looks_at_samples, TrianglePacket& out) {
   const auto keep = [&](const PixelBox& box) {
@@ -173,7 +173,7 @@ template <class Box>
       out.vertex = in.vertex;
     return true;
   }
-  std::array<SnappedVertex, 3> v;  // of the codes depth alone, which orders them
+  std::array<SnappedVertex, 3> v;  // positions and depth: all that the order needs
   for (std::size_t i = 0; i < 3; ++i) {
     v[i].x = in.vertex.x[i];
     v[i].y = in.vertex.y[i];

@@ -49,7 +49,7 @@ Surface::Surface(const Triangle& triangle, const TriangleSetup& setup, const Sta
     color_divisor_ = make_divisor(quantize_q(w, format_.q_bits));
     for (std::size_t c = 0; c < static_cast<std::size_t>(widths.color_planes); ++c) {
       const std::size_t p = kColorPlane + c;
-      if (setup.range.low[p] == setup.range.high[p]) {  // the clamp alone gives the code: the plane is that of 0
+      if (setup.range.low[p] == setup.range.high[p]) {  // the clamp alone gives the code; the plane stays 0
         color_[c].over_w.exponent = -1 - format_.color.bits;
         continue;
       }

@@ -142,14 +142,13 @@ class TileWalk {
 }
 
 /// The packet of a visit to tile (tile_x, tile_y). `slot` is the context slot of the primitive; `ends`: no other follows.
-/// The first form sets all of a packet that is used for one tile after the other; `value`: edges_at_tile().
+/// The first form sets every field that `widths` uses, so that one packet serves for one tile after the other; `value`: edges_at_tile().
 void make_tile_packet(const SetupPacket& setup, const EdgeValues& value, int tile_x, int tile_y, std::uint8_t slot,
                       bool ends, const Widths& widths, TilePacket& packet);
 [[nodiscard]] TilePacket make_tile_packet(const SetupPacket& setup, int tile_x, int tile_y, std::uint8_t slot,
                                           bool ends, const Widths& widths);
 
-/// The content of the context RAM for a primitive. The first form sets all of a context that is used for one primitive
-/// after the other.
+/// The content of the context RAM for a primitive. The first form sets every field that `widths` uses, as above.
 void make_context(const SetupPacket& setup, const Widths& widths, ContextPacket& context);
 [[nodiscard]] ContextPacket make_context(const SetupPacket& setup, const Widths& widths);
 

@@ -103,7 +103,8 @@ struct PlaneFrame {
 [[nodiscard]] TriangleSetup setup_primitive(const TrianglePacket& primitive, const Config& config,
                                             const Widths& widths);
 
-/// The stage: any kind of primitive. The first form sets all of a packet that is used for one primitive after the other.
+/// The stage: any kind of primitive. The first form sets every field that `widths` uses, so
+/// that one packet serves for one primitive after the other.
 void setup_packet(const TrianglePacket& primitive, const Config& config, const Widths& widths, SetupPacket& packet);
 [[nodiscard]] SetupPacket setup_packet(const TrianglePacket& primitive, const Config& config, const Widths& widths);
 

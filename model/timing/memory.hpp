@@ -46,8 +46,8 @@ class MemoryTiming {
   virtual void show(int, int) {}
   /// Traffic of other masters up to the last burst.
   [[nodiscard]] virtual MemoryUse use() const { return {}; }
-  /// Of an ideal memory with one master: room() is always 0, and each beat is answered so many cycles after the last beat
-  /// that was taken, or one after the beat before, whatever other bursts there are. None of others.
+  /// Cycles from the last beat of a burst to its answer, in a memory with one master that always has room. None of other
+  /// memories. Where it has a value, the engine may leave out room() and accept(): beats follow by one a cycle.
   [[nodiscard]] virtual std::optional<Cycle> ideal_latency() const { return std::nullopt; }
 };
 

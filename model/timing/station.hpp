@@ -44,7 +44,7 @@ class Station {
   std::size_t next_ = 0;
 };
 
-/// The same with numbers that the compiler knows.
+/// A Station whose capacity, latency and turnaround are constants of the compiler.
 template <std::size_t kCapacity, Cycle kLatency, Cycle kTurnaround>
 class FixedStation {
  public:

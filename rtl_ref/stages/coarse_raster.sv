@@ -134,8 +134,8 @@ module coarse_raster (
   logic          is_empty_q;     // every tile of the row so far was outside
   logic          is_leftmost, is_rightmost, exits, must_return, turns_back, row_ends, moves_left, moves_start;
   logic          is_last_column_q, is_last_row_q;  // known a cycle ahead, as edge_is_outside_q is
-  logic          is_start_q;        // this tile is the row's start, which is noted in this cycle
-  logic          moved_start_q;     // and its column, which another tile had
+  logic          is_start_q;        // this tile starts the row: row_q of edges and planes copies it now
+  logic          moved_start_q;     // the row's start has moved to tile_x_q; start_x_q follows
   logic [TX-1:0] start_x;
   logic          clears;     // the bounds of a group of tiles each cycle
   logic [TX-1:0] group_end;  // its last tile
@@ -177,8 +177,7 @@ module coarse_raster (
     end
   end
 
-  // The values at the row's start take the same path as all others; those of the first row in PREPARE, with a step of
-  // 0.
+  // In PREPARE the step is 0: next_is_outside is that of the first tile.
   logic goes_on, starts, returns, notes_start, moves_right;
   logic [TX-1:0] at_x;  // of the next tile, or of the first one
   logic [TY-1:0] at_y;
@@ -208,7 +207,7 @@ module coarse_raster (
     end else if (clears) begin
       tile_x_q <= s_q.box.right[PX-1:TS];  // from the last group to the last tile
     end
-    // That the walk goes on is late, and reaches all registers of the tile: the row's start is noted from them, a cycle later.
+    // goes_on settles late and enables every register of the tile: the row's start is copied from them a cycle later.
     is_start_q    <= notes_start;
     moved_start_q <= goes_on && moves_start;
     if (state_q == IDLE) start_x_q <= setup_i.box.left[PX-1:TS];

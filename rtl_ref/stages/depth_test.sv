@@ -18,7 +18,7 @@ module depth_test (
     input  logic                                                    access_ready_i,
     output raster_pkg::fragment_packet_t                            access_o,
     output logic [raster_pkg::STORED_COLOR_BITS-1:0]                access_color_o,  // stored colour 0, a cycle later
-    // Stored words: of the framebuffer's RAM, late in the cycle, or, of samples with is_held_i, held_depth_i
+    // Stored words: stored_depth_i from the framebuffer's RAM, late in the cycle; held_depth_i of samples with is_held_i
     input  logic [raster_pkg::SAMPLES*raster_pkg::STORED_DEPTH_BITS-1:0] stored_depth_i,
     input  logic [raster_pkg::SAMPLES-1:0]                               is_held_i,
     input  logic [raster_pkg::SAMPLES*raster_pkg::STORED_DEPTH_BITS-1:0] held_depth_i,
@@ -250,7 +250,7 @@ module depth_test (
         logic [CODE-1:0] code;
         assign code = is_held_i[s] ? held_depth_i[s*WORD+:CODE] : stored_depth_i[s*WORD+:CODE];
         assign word_o[s*WORD+:CODE] = takes[s] ? depth[s*CODE+:CODE] : code;
-      end else begin : gen_new_depth  // what is in the RAM and not taken is not written: no word waits for its comparison
+      end else begin : gen_new_depth  // a word of the RAM that stays is not written: word_o does not wait for its comparison
         logic keeps_held;
         assign keeps_held = is_held_i[s] && !(fragment_q.mask[s] && passes_held && opaque[s] && fragment_q.state.depth_write);
         assign word_o[s*WORD+:CODE] = keeps_held ? held_depth_i[s*WORD+:CODE] : depth[s*CODE+:CODE];

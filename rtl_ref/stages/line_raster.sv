@@ -54,7 +54,7 @@ module line_raster (
   logic [PY-1:0]       step_y;
   assign step_stay = E'(line_q.step_stay);
   assign step_move = E'($signed(line_q.step_move));
-  // A step of 0 where the pixel stays: that it moves does not wait for pixel_ready_i, which comes late.
+  // The step is 0 where the pixel stays: `moves` is not in the clock enable, where pixel_ready_i is late.
   assign step_x    = !line_q.is_x_major && !moves ? '0 : line_q.is_x_negative ? '1 : PX'(1);
   assign step_y    = line_q.is_x_major && !moves ? '0 : line_q.is_y_negative ? '1 : PY'(1);
 

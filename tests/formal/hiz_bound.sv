@@ -162,7 +162,7 @@
     else if (passes_i && setup_i.kind == raster_pkg::PRIMITIVE_KIND_LINE && line_raises) raised_q <= 1'b1;
   end
   always_comb if (runs_q && raised_q) assert (!gen_hiz.bounds_hold_q && !is_eligible_o);
-  (* anyseq *) logic [SAMPLES*CODE-1:0] any_fragment, any_stored;
+  (* anyseq *) logic [SAMPLES*CODE-1:0] any_fragment, any_stored, any_held_depth;
   (* anyseq *) logic [SAMPLES-1:0] any_held;
   raster_pkg::fragment_packet_t fragment, access;
   raster_pkg::write_packet_t    write;
@@ -178,7 +178,7 @@
       .clk_i, .rst_ni,
       .fragment_valid_i(1'b1), .fragment_ready_o(fragment_ready), .fragment_i(fragment),
       .access_valid_o(access_valid), .access_ready_i(1'b1), .access_o(access), .access_color_o(), .stored_depth_i(any_stored),
-      .is_held_i(any_held), .held_depth_i(any_stored),
+      .is_held_i(any_held), .held_depth_i(any_held_depth),
       .write_valid_o(write_valid), .write_o(write), .retire_valid_o(retire_valid), .retire_o(retire),
       .covered_o(), .passed_o(), .written_o()
   );
@@ -194,7 +194,7 @@
     for (k = 0; k < SAMPLES; k++) begin : gen_proof
       always_comb begin
         assume (any_fragment[k*CODE+:CODE] >= setup_i.range.low[0+:CODE]);
-        assume (any_stored[k*CODE+:CODE] <= farthest_q);
+        assume (any_stored[k*CODE+:CODE] <= farthest_q && any_held_depth[k*CODE+:CODE] <= farthest_q);
       end
     end
   endgenerate

@@ -191,7 +191,7 @@ class PipelinedTiming : public BackTiming<Run> {
   template <class Shade>
   Cycle send(Cycle offered, bool ends_primitive, Shade&& shade) {
     const Cycle taken = move(Arrow::stamp, offered, interpolate_.room());
-    if (!Run::is_plain) note(Arrow::stamp, taken);  // what it becomes is later
+    if (!Run::is_plain) note(Arrow::stamp, taken);  // the transfer of its fragment is later
     if (ends_primitive) slots_.leave(taken + 1);
     last_left_ = fragment_queue_.pass(std::max(interpolate_.ready(taken), last_left_ + 1), last_fragment_ + 1, shade);
     interpolate_.leave(last_left_);

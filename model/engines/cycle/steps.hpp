@@ -55,10 +55,10 @@ struct LaneStamp {
   std::uint8_t covered = 0, passed = 0;
 };
 
-/// A batch's stamps of this kind.
+/// The lane stamps of a batch.
 class LaneStamps {
  public:
-  /// Where the next `most` stamps at most are written; add() says how many have been.
+  /// Room for `most` stamps more; add() says how many were written.
   [[nodiscard]] LaneStamp* room(std::size_t most) {
     if (stamps_.size() < size_ + most) stamps_.resize(2 * (size_ + most));
     return stamps_.data() + size_;

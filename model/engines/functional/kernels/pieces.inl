@@ -229,7 +229,7 @@ HALFPLANE_NOINLINE std::uint32_t set_up_levels(const SmallCorners& corners, cons
   return bits_of(~is_flat & convert<std::int32_t>(largest < 0x1p-500));
 }
 
-/// GradientLanes where products exceed 64 bits, for numerators of kMostNumeratorBits and reciprocals that are not negative:
+/// GradientLanes where products exceed 64 bits, for numerators of kMostNumeratorBits and reciprocals of 0 to 2^31:
 /// the bits of a numerator from kSplit on and those below them are multiplied apart, and gradients wrap in 64 bits.
 struct WideGradientLanes {
   static constexpr int kSplit = kMostNumeratorBits - 30;
