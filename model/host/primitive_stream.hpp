@@ -34,7 +34,8 @@ class HostStream {
   HostStream(const Scene& scene, const Config& config, BinContents* held = nullptr);
   ~HostStream();
 
-  /// The next primitive, valid until the next call of pull() or next(); null after the flush. Throws InputError for a vertex that cannot be snapped.
+  /// The next primitive, valid until the next call of pull() or next(); null after the flush.
+  /// Throws InputError for a vertex that cannot be snapped.
   [[nodiscard]] const HostPrimitive* pull();
   /// A copy of the next primitive; none after the flush.
   [[nodiscard]] std::optional<HostPrimitive> next();

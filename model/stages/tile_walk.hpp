@@ -142,7 +142,8 @@ class TileWalk {
 }
 
 /// The packet of a visit to tile (tile_x, tile_y). `slot` is the context slot of the primitive; `ends`: no other follows.
-/// The first form sets every field that `widths` uses, so that one packet serves for one tile after the other; `value`: edges_at_tile().
+/// The first form sets every field that `widths` uses, so that one packet serves for one tile after
+/// the other; `value`: edges_at_tile().
 void make_tile_packet(const SetupPacket& setup, const EdgeValues& value, int tile_x, int tile_y, std::uint8_t slot,
                       bool ends, const Widths& widths, TilePacket& packet);
 [[nodiscard]] TilePacket make_tile_packet(const SetupPacket& setup, int tile_x, int tile_y, std::uint8_t slot,
