@@ -506,7 +506,8 @@ def main():
               if options.what != 'page' or not row['error'] and not is_blank_in_both(row)]
     if options.what == 'window':  # with their differences, four times as large
         groups = [[a, b, gaps_of(a, b).point(lambda v: min(4 * v, 255))] if a and b else [a, b] for a, b in groups]
-    sheet(groups, **layout).quantize(128).save(folder / image)
+    if groups:
+        sheet(groups, **layout).quantize(128).save(folder / image)
     return int(any(row['error'] or 100 * row['seen'] > options.most for row in rows))
 
 

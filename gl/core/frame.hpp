@@ -33,8 +33,10 @@ struct Options {
   std::string save_to;    ///< path of `save`, or the folder of all frames
   bool save_all = false;
   std::string results;  ///< file that takes one line of JSON for each frame; empty: none
-  /// Whether frames become captures or figures, of which draws outside the view are a part.
-  [[nodiscard]] bool keeps_draws() const { return save_all || !save.empty() || cycles || !results.empty(); }
+  /// Whether frames become captures, or are drawn by the cycle engine as well.
+  [[nodiscard]] bool is_recorded() const { return save_all || !save.empty() || cycles; }
+  /// Whether draws outside the view are part of what is asked for: a capture or figures.
+  [[nodiscard]] bool keeps_draws() const { return is_recorded() || !results.empty(); }
 };
 /// The options of HALFPLANE_GL, or the defaults. Throws InputError.
 [[nodiscard]] Options options_from_environment();

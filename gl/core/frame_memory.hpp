@@ -135,7 +135,7 @@ struct Frame::Memory : CollectedFrame {
   [[nodiscard]] Scene empty_scene() const;
   /// Whether someone reads the seconds of this frame.
   [[nodiscard]] bool is_timed() const { return !options.results.empty(); }
-  [[nodiscard]] bool is_recorded() const { return options.save_all || !options.save.empty() || options.cycles; }
+  [[nodiscard]] bool is_recorded() const { return options.is_recorded(); }
   [[nodiscard]] std::uint32_t state_number(const halfplane::State& state);
   [[nodiscard]] bool takes(std::uint32_t state, Topology topology);
   [[nodiscard]] bool can_draw(const halfplane::State& state, std::span<const std::uint32_t> primitive) const;

@@ -313,6 +313,9 @@ Shape shape_of(GLenum mode) {
   return mode == GL_POINTS ? Shape::point : mode <= GL_LINE_STRIP ? Shape::line : Shape::polygon;
 }
 
+/// Whether polygons are filled, on both sides.
+bool is_filled(const PolygonState& polygon) { return polygon.mode == std::array<GLenum, 2>{GL_FILL, GL_FILL}; }
+
 /// Whether all vertices lie beyond one plane of the view volume.
 bool is_outside_view(std::span<const ShadedVertex> vertices) {
   unsigned beyond = ~0U;
@@ -331,9 +334,7 @@ bool is_taken_apart(Context& context, Shape shape, std::span<const ShadedVertex>
   const gl::State& state = context.state;
   const auto is_set = [](bool b) { return b; };
   if (context.render_mode != GL_RENDER || std::ranges::any_of(state.transform.clip_enabled, is_set)) return true;
-  if (shape == Shape::polygon)
-    return state.polygon.mode != std::array<GLenum, 2>{GL_FILL, GL_FILL} || state.polygon.stipple ||
-           traits.is_two_sided;
+  if (shape == Shape::polygon) return !is_filled(state.polygon) || state.polygon.stipple || traits.is_two_sided;
   if (draw_setup(context).units != 0) return true;
   const auto bends = [&](std::uint32_t a, std::uint32_t b) { return fog_bends(state.fog, vertices[a], vertices[b]); };
   if (shape == Shape::line && state.fog.enabled && std::ranges::adjacent_find(indices, bends) != indices.end())
@@ -350,9 +351,8 @@ void draw_primitives(Context& context, GLenum mode, std::span<const ShadedVertex
   if (context.render_mode == GL_RENDER && context.drawable == nullptr) return;
   const Assembly& assembly = kAssemblies[mode];
   const Shape shape = shape_of(mode);
-  const auto is_fill = [](GLenum of_side) { return of_side == GL_FILL; };
-  if (shape == Shape::polygon && std::ranges::all_of(context.state.polygon.mode, is_fill) &&
-      context.render_mode == GL_RENDER && !context.drawable->frame.options().keeps_draws() && is_outside_view(vertices))
+  if (shape == Shape::polygon && is_filled(context.state.polygon) && context.render_mode == GL_RENDER &&
+      !context.drawable->frame.options().keeps_draws() && is_outside_view(vertices))
     return;  // it draws no pixel, and is no part of a capture or a figure
   const BatchTraits traits = traits_of(vertices, draw_setup(context).unit);
   const char* const beyond = context.render_mode == GL_RENDER ? why_shaded(context, traits) : nullptr;
