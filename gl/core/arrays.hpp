@@ -27,7 +27,6 @@ struct ArrayKind {
   unsigned types;
   bool is_normalized;
 };
-// clang-format off: a table
 /// By Array.
 inline constexpr std::array<ArrayKind, kArrayKinds> kArrayTable{
     {{GL_VERTEX_ARRAY, GL_VERTEX_ARRAY_POINTER, GL_VERTEX_ARRAY_STRIDE, GL_VERTEX_ARRAY_BUFFER_BINDING,
@@ -50,7 +49,6 @@ inline constexpr std::array<ArrayKind, kArrayKinds> kArrayTable{
      {GL_TEXTURE_COORD_ARRAY, GL_TEXTURE_COORD_ARRAY_POINTER, GL_TEXTURE_COORD_ARRAY_STRIDE,
       GL_TEXTURE_COORD_ARRAY_BUFFER_BINDING, GL_TEXTURE_COORD_ARRAY_TYPE, GL_TEXTURE_COORD_ARRAY_SIZE, 1, 4,
       kLargeTypes, false}}};
-// clang-format on
 
 /// What the array at a place of ClientState::array is.
 constexpr const ArrayKind& array_kind(std::size_t place) { return kArrayTable[std::min(place, kArrayKinds - 1)]; }

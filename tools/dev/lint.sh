@@ -1,7 +1,7 @@
 # shellcheck shell=bash
 # Part of ./dev: lint and format.
 
-sources() { find model sim tests tools -name '*.[ch]pp' -o -name '*.inl' | sort; }
+sources() { find capi examples gl model sim tests tools web -name '*.[ch]pp' -o -name '*.inl' | sort; }
 
 # Files that differ from the last commit; all of them where git cannot tell.
 changed_sources() {
@@ -70,7 +70,7 @@ lint() {
   insist build sim test rtl lint
   local changed
   local kernels='^model/engines/functional/(kernel_headers\.hpp|kernels/.*)'
-  mapfile -t changed < <(changed_sources "$@" | grep -E "^(model|sim|tests)/.*\.cpp\$|$kernels")
+  mapfile -t changed < <(changed_sources "$@" | grep -E "^(capi|gl|model|sim|tests)/.*\.cpp\$|$kernels")
   mkdir -p build/lint
   step 'shellcheck' shellcheck --external-sources --check-sourced dev .ci/run tools/mesa/run
   step "clang-format's switches" format_switches
@@ -84,7 +84,7 @@ lint() {
   step 'verible-verilog-lint' verible_rtl
   ((${#changed[@]} > 0)) || return 0
   # clang-tidy refuses options that only GCC knows.
-  sed -E 's/ -mmem(cpy|set)-strategy=[^ ]*//g' build/release/compile_commands.json >build/lint/compile_commands.json
+  sed -E 's/ (--param=[^ ]*|-mmem(cpy|set)-strategy=[^ ]*|-Wno-restrict)//g' build/release/compile_commands.json >build/lint/compile_commands.json
   step "clang-tidy: ${#changed[@]} files" xargs -a <(printf '%s\n' "${changed[@]}") -n 1 -P "$(jobs)" \
     clang-tidy --quiet -p build/lint --warnings-as-errors='*'
 }

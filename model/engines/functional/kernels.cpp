@@ -25,7 +25,8 @@ std::span<const Kernels* const> available_kernels() {
     kernels.push_back(&kPortableKernels);
 #endif
     if (kernels.empty())
-      throw std::runtime_error("the functional engine was built for another processor (HALFPLANE_KERNELS); run ./dev build");
+      throw std::runtime_error(
+          "the functional engine was built for another processor (HALFPLANE_KERNELS); run ./dev build");
     return kernels;
   }();
   return found;
