@@ -70,7 +70,7 @@ lint() {
   insist build sim test rtl lint
   local changed
   local kernels='^model/engines/functional/(kernel_headers\.hpp|kernels/.*)'
-  mapfile -t changed < <(changed_sources "$@" | grep -E "^(capi|gl|model|sim|tests)/.*\.cpp\$|$kernels")
+  mapfile -t changed < <(changed_sources "$@" | grep -E "^(gl|model|sim|tests)/.*\.cpp\$|$kernels")
   mkdir -p build/lint
   step 'shellcheck' shellcheck --external-sources --check-sourced dev .ci/run tools/mesa/run
   step "clang-format's switches" format_switches
