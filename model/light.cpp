@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fixed.hpp"
+
 namespace halfplane {
 namespace {
 

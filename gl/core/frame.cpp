@@ -373,7 +373,8 @@ struct Frame::Memory::Part {
     // Textures with prepared texels come first: only the others are decoded.
     for (const halfplane::State& state : scene.states)
       if (state.texture && std::ranges::find(slot, *state.texture) == slot.end()) slot.push_back(*state.texture);
-    std::ranges::stable_partition(slot, [this](std::uint32_t i) { return memory.slots[i].blocks.has_value(); });
+    std::stable_partition(slot.begin(), slot.end(),
+                          [this](std::uint32_t i) { return memory.slots[i].blocks.has_value(); });
     std::vector<std::uint32_t> number(memory.slots.size());
     for (const std::uint32_t i : slot) {
       number[i] = static_cast<std::uint32_t>(scene.textures.size());

@@ -5,8 +5,8 @@
 #include <GL/glext.h>
 
 #include <algorithm>
-#include <array>
 #include <cstring>
+#include <iterator>
 #include <tuple>
 #include <utility>
 
@@ -37,7 +37,7 @@ struct Row {
   Caller caller;
 };
 
-constexpr std::array kCalls{
+constexpr Row kCalls[]{
 #define HALFPLANE_ENTRY(name) Row{#name, &Typed<decltype(::name)>::call},
 #include "../core/entry_names.inc"
 #undef HALFPLANE_ENTRY
@@ -61,9 +61,9 @@ std::vector<std::byte>& Arguments::hold(std::size_t size) {
 }
 
 bool call_entry(std::string_view name, const void* entry, Arguments& arguments) {
-  const auto row =
-      std::lower_bound(kCalls.begin(), kCalls.end(), name, [](const Row& a, std::string_view b) { return a.name < b; });
-  return row != kCalls.end() && row->name == name && row->caller(entry, arguments);
+  const auto row = std::lower_bound(std::begin(kCalls), std::end(kCalls), name,
+                                    [](const Row& a, std::string_view b) { return a.name < b; });
+  return row != std::end(kCalls) && row->name == name && row->caller(entry, arguments);
 }
 
 }  // namespace halfplane::gl

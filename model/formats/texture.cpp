@@ -57,8 +57,7 @@ std::uint32_t nearest_entry(const Texel& texel, std::span<const Texel> palette) 
 std::vector<Texel> palette_of(const std::string& name, const TexelImage& image, TextureFormat format) {
   std::vector<Texel> colors = image.texel;
   std::ranges::sort(colors);
-  const auto repeated = std::ranges::unique(colors);
-  colors.erase(repeated.begin(), repeated.end());
+  colors.erase(std::unique(colors.begin(), colors.end()), colors.end());
   if (colors.size() > palette_size(format))
     throw InputError("texture " + name + ": " + std::to_string(colors.size()) + " colours, but " +
                      std::string(kTextureFormats[static_cast<std::size_t>(format)]) + " holds " +

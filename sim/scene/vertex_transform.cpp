@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "model/fixed.hpp"
+#include "model/input_error.hpp"
 #include "sim/scene/text_cursor.hpp"
 
 namespace halfplane {

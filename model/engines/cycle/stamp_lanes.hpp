@@ -92,7 +92,7 @@ class StampLanes {
           const auto code = [&](auto plane) {
             constexpr std::size_t p = decltype(plane)::value;
             const Code& place = codes_[p];
-            const Lanes value = __builtin_shuffle(planes, Lanes{p, p, p, p}) + in_stamp_[p];
+            const Lanes value = __builtin_shufflevector(planes, planes, p, p, p, p) + in_stamp_[p];
             return ((value >> place.shift) - place.offset) & place.mask;
           };
           const Lanes depth = code(Plane<kDepthPlane>()), stored = load(frame.depth, at, frame.stride);

@@ -11,6 +11,8 @@
 #include <iostream>
 #include <system_error>
 
+#include "model/input_error.hpp"
+
 namespace halfplane {
 namespace {
 
