@@ -126,6 +126,63 @@ TEST_F(MesaPeerTest, StatesMeanTheSame) {
   }
 }
 
+// Images to a quarter of their side beyond them, with a border of another colour and alpha.
+TEST_F(MesaPeerTest, BordersOfTexturesMeanTheSame) {
+  for (const char* filter : {"linear", "nearest"})
+    for (const char* wrap : {"border border", "half_border half_border", "clamp half_border", "border repeat"}) {
+      std::string text =
+          "halfplane 1\ntarget 96 64\nclear color 20 20 30 255 depth 1\nspace window\n"
+          "texture cells pattern chequer 8 8 format rgba8888\nstate texture cells\nstate texture_combine modulate\n"
+          "state texture_border 255 40 0 90\nstate blend src_alpha one_minus_src_alpha\n";
+      text.append("state texture_min ").append(filter).append("\nstate texture_mag ").append(filter);
+      text.append("\nstate texture_wrap ").append(wrap);
+      text +=
+          "\nv 5 3 0.5 1 255 255 255 255 -0.27 -0.26\nv 90 3 0.5 1 255 200 255 255 1.24 -0.26\n"
+          "v 90 60 0.5 1 255 255 90 255 1.24 1.25\nv 5 60 0.5 1 255 255 255 99 -0.27 1.25\nt 0 1 2 0 2 3\n";
+      const Scene scene = read_capture(text, "border.hpt");
+      EXPECT_LE(differing(scene), 12) << filter << ", " << wrap;
+    }
+  report("borders");
+}
+
+// OpenGL leaves the coverage of smooth lines and points to the implementation: both resemble the area, and are far nearer to
+// each other than to what is not smooth.
+TEST_F(MesaPeerTest, SmoothLinesAndPointsCoverAboutTheSame) {
+  const auto picture_of = [](const std::string& smooth, const char* width) {
+    std::string text =
+        "halfplane 1\ntarget 96 64\nclear color 20 20 30 255 depth 1\nspace window\n"
+        "state depth_test always\nstate depth_write off\nstate blend src_alpha one\n";
+    for (int i = 0; i < 16; ++i) {
+      const double angle = 0.1 + i * 0.39;
+      text += "v " + std::to_string(48.3 + 9 * std::cos(angle)) + " " + std::to_string(32.2 + 9 * std::sin(angle)) +
+              " 0.5 1 50 220 60 255\nv " + std::to_string(48.3 + 29 * std::cos(angle)) + " " +
+              std::to_string(32.2 + 29 * std::sin(angle)) + " 0.5 1 50 220 60 255\n";
+    }
+    text.append(smooth).append("state line_width ").append(width).append("\nstate point_size ").append(width);
+    for (int i = 0; i < 16; ++i) text += "\nl " + std::to_string(2 * i) + " " + std::to_string(2 * i + 1);
+    for (int i = 0; i < 16; i += 3) text += "\np " + std::to_string(2 * i);
+    return read_capture(text + "\n", "smooth.hpt");
+  };
+  const auto difference = [this](const Scene& there, const Scene& here) {
+    peer_->upload(there);
+    EXPECT_GT(peer_->render(), 0);
+    const std::vector<std::uint32_t> theirs = peer_->color();
+    Config config = preset("full");
+    config.color_format = ColorFormat::rgba8888;
+    const Picture ours = color_picture(render_functional(here, config).frame, config.color_format);
+    long sum = 0;
+    for (std::size_t i = 0; i < theirs.size(); ++i)
+      sum += std::abs(static_cast<int>(theirs[i] >> 8 & 255U) - ours.rgb[3 * i + 1]);
+    return sum;
+  };
+  for (const char* width : {"1", "2", "3.5", "6"}) {
+    const Scene smooth = picture_of("state smooth on\nstate point_shape round\n", width), plain = picture_of("", width);
+    const long off = difference(smooth, smooth);
+    EXPECT_LT(2 * off, difference(smooth, plain)) << width;
+    EXPECT_LT(2 * off, difference(plain, smooth)) << width;
+  }
+}
+
 // llvmpipe has the standard places of four samples, and draws lines with several samples as rectangles. One colour: with
 // several samples its colours are computed at a place beside the pixel's centre.
 TEST_F(MesaPeerTest, RectanglesOfLinesHaveTheSameSamples) {
@@ -229,6 +286,9 @@ TEST_F(MesaPeerTest, WhatItDoesNotHaveIsRefusedByName) {
     EXPECT_NE(std::string(error.what()).find("line_rule midpoint"), std::string::npos) << error.what();
   }
   EXPECT_THROW((void)peer_->render(), std::runtime_error);  // there is no scene now
+  const std::string head = "halfplane 1\ntarget 96 64\nspace window\nv 9 9 0.5 1\n";
+  EXPECT_THROW(peer_->upload(read_capture(head + "state point_shape round\np 0\n", "round.hpt")), InputError);
+  EXPECT_THROW(peer_->upload(read_capture(head + "state smooth on\np 0\n", "square.hpt")), InputError);
 }
 
 TEST_F(MesaPeerTest, PeersOfDifferentThreadCountsLiveSideBySide) {

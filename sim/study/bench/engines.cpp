@@ -49,6 +49,7 @@ Frame rtl_frame(std::shared_ptr<const Scene> scene, const Config& config, const 
 Frame llvmpipe_frame(const Scene& scene, const Config& config, int threads) {
   auto peer = std::make_shared<MesaPeer>(scene.width, scene.height, config.depth_bits, threads, config.msaa_samples);
   peer->upload(scene);
+  (void)peer->render();  // compiles shaders: a frame of many states would pass for a slow one
   return [peer] { return FrameCost{peer->render(), 0}; };
 }
 

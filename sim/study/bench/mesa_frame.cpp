@@ -171,19 +171,23 @@ void MesaFrame::check_draw_state(const State& state, Topology topology) const {
   const bool is_triangle = primitive_type(topology) == PrimitiveType::triangle;
   if (state.shade == Shade::phong && drawn_as(state, topology) == PrimitiveType::triangle) refuse("shade phong");
   if (state.fog && drawn_as(state, topology) == PrimitiveType::line) refuse("fog at the ends of lines");
-  if (state.texture && (has_border(state.texture_wrap[0]) || has_border(state.texture_wrap[1])))
-    refuse("texture_wrap border or half_border");
   const bool is_line = is_triangle ? state.polygon_mode == PolygonMode::line : topology != Topology::points;
-  if (drawn_as(state, topology) == PrimitiveType::point && state.point_shape == PointShape::round)
-    refuse("point_shape round");
-  if (drawn_as(state, topology) != PrimitiveType::triangle && state.smooth && samples_ == 1)
-    refuse("smooth as an exact area");
-  if (!is_line) return;
+  if (drawn_as(state, topology) == PrimitiveType::point) {
+    const bool is_round = state.point_shape == PointShape::round, is_smooth = state.smooth && samples_ == 1;
+    if (is_round && !is_smooth) refuse("point_shape round without smooth");
+    if (is_smooth && !is_round) refuse("smooth points that are square");
+  }
+  if (!is_line || is_smooth_line(state, topology)) return;
   if (state.line_rule == LineRule::midpoint) refuse("line_rule midpoint");
   if (state.line_rule == LineRule::bresenham) refuse("line_rule bresenham");
   if (state.line_rule == LineRule::rectangle && samples_ == 1) refuse("line_rule rectangle with one sample a pixel");
   if (state.line_rule != LineRule::rectangle && samples_ > 1) refuse("thin lines with several samples a pixel");
   if (state.line_last.value_or(false)) refuse("line_last on");
+}
+
+/// Whether GL_LINE_SMOOTH draws it: a coverage that resembles the area which `smooth` means.
+bool MesaFrame::is_smooth_line(const State& state, Topology topology) const {
+  return state.smooth && samples_ == 1 && drawn_as(state, topology) == PrimitiveType::line;
 }
 
 void MesaFrame::add_draw(const Scene& scene, const Draw& draw) {
@@ -266,6 +270,11 @@ void MesaFrame::apply(const Call& call) const {
   gl_.polygon_offset(static_cast<float>(state.polygon_offset[0]), static_cast<float>(state.polygon_offset[1]));
   gl_.line_width(static_cast<float>(state.line_width));
   gl_.point_size(static_cast<float>(state.point_size));
+  is_smooth_line(state, call.draw.topology) ? gl_.enable(gl::kLineSmooth) : gl_.disable(gl::kLineSmooth);
+  // Sprites are squares of the exact size, as the core profile's points are.
+  const bool is_round = state.smooth && samples_ == 1 && state.point_shape == PointShape::round;
+  is_round ? gl_.enable(gl::kPointSmooth) : gl_.disable(gl::kPointSmooth);
+  is_round ? gl_.disable(gl::kPointSprite) : gl_.enable(gl::kPointSprite);
   gl_.provoking_vertex(state.provoking == Provoking::first ? gl::kFirstVertex : gl::kLastVertex);
   gl_.use_program(call.program);
   if (call.texture != 0) gl::apply_texture(gl_, call.texture, state);

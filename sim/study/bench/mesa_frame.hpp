@@ -41,6 +41,7 @@ class MesaFrame {
 
   [[nodiscard]] gl::Name make_target(int samples) const;
   void check_draw_state(const State& state, Topology topology) const;
+  [[nodiscard]] bool is_smooth_line(const State& state, Topology topology) const;
   [[nodiscard]] gl::Name program_of(const State& state);
   void make_vertices(const Scene& scene, Space space);
   void add_draw(const Scene& scene, const Draw& draw);

@@ -39,8 +39,18 @@ Functions start_osmesa() {
   const auto create = symbol<void* (*)(const int*, void*)>(library, "OSMesaCreateContextAttribs");
   const auto make_current = symbol<unsigned char (*)(void*, void*, Enum, int, int)>(library, "OSMesaMakeCurrent");
   const Finder find(symbol<GetProcAddress>(library, "OSMesaGetProcAddress"));
-  const std::vector<int> attributes{
-      kOsFormat, static_cast<int>(kRgba), kOsDepthBits, 0, kOsProfile, kOsCoreProfile, kOsMajor, 3, kOsMinor, 3, 0};
+  // Smooth lines and points and GL_CLAMP are of the compatibility profile alone.
+  const std::vector<int> attributes{kOsFormat,
+                                    static_cast<int>(kRgba),
+                                    kOsDepthBits,
+                                    0,
+                                    kOsProfile,
+                                    kOsCompatibilityProfile,
+                                    kOsMajor,
+                                    3,
+                                    kOsMinor,
+                                    3,
+                                    0};
   void* context = create(attributes.data(), nullptr);
   static std::vector<std::uint8_t> window(4UL * 16 * 16);  // required; frames go to a framebuffer object
   if (context == nullptr || make_current(context, window.data(), kUnsignedByte, 16, 16) == 0)

@@ -18,6 +18,7 @@ inline constexpr Enum kCw = 0x900, kCcw = 0x901;                                
 inline constexpr Enum kPoint = 0x1b00, kLine = 0x1b01, kFill = 0x1b02;                      // PolygonMode
 inline constexpr Enum kCullFace = 0xb44, kDepthTest = 0xb71, kDither = 0xbd0;               // Enable
 inline constexpr Enum kScissorTest = 0xc11, kPrimitiveRestart = 0x8f9d;                     // likewise
+inline constexpr Enum kPointSmooth = 0xb10, kLineSmooth = 0xb20, kPointSprite = 0x8861;     // likewise
 inline constexpr Enum kBlend = 0xbe2, kColorLogicOp = 0xbf2, kStencilTest = 0xb90;          // likewise
 inline constexpr Enum kOffsetPoint = 0x2a01, kOffsetLine = 0x2a02, kOffsetFill = 0x8037;
 inline constexpr Enum kFirstVertex = 0x8e4d, kLastVertex = 0x8e4e;                        // ProvokingVertex
@@ -27,6 +28,7 @@ inline constexpr Enum kTexture2d = 0xde1, kMagFilter = 0x2800, kMinFilter = 0x28
 inline constexpr Enum kMinLod = 0x813a, kMaxLod = 0x813b, kLodBias = 0x8501, kMaxLevel = 0x813d;  // TexParameter
 inline constexpr Enum kNearest = 0x2600, kLinear = 0x2601, kNearestMipmapNearest = 0x2700;  // three more follow it
 inline constexpr Enum kRepeat = 0x2901, kClampToEdge = 0x812f, kMirroredRepeat = 0x8370;
+inline constexpr Enum kClampToBorder = 0x812d, kClamp = 0x2900, kBorderColor = 0x1004;
 inline constexpr Enum kRgba8 = 0x8058, kDepth16 = 0x81a5, kDepth24Stencil8 = 0x88f0;
 inline constexpr Enum kRenderer = 0x1f01;
 inline constexpr Enum kArrayBuffer = 0x8892, kElementBuffer = 0x8893, kStaticDraw = 0x88e4;
@@ -36,8 +38,8 @@ inline constexpr Enum kReadFramebuffer = 0x8ca8, kDrawFramebuffer = 0x8ca9;
 inline constexpr Enum kColorAttachment = 0x8ce0, kDepthAttachment = 0x8d00, kDepthStencilAttachment = 0x821a;
 
 // OSMesaCreateContextAttribs; each is followed by its value, the list ends with 0.
-inline constexpr int kOsFormat = 0x22, kOsDepthBits = 0x30, kOsProfile = 0x33, kOsCoreProfile = 0x34, kOsMajor = 0x36,
-                     kOsMinor = 0x37;
+inline constexpr int kOsFormat = 0x22, kOsDepthBits = 0x30, kOsProfile = 0x33, kOsCompatibilityProfile = 0x35,
+                     kOsMajor = 0x36, kOsMinor = 0x37;
 
 using AnyFunction = void (*)();
 
@@ -97,6 +99,7 @@ struct Functions {
   void (*tex_image_2d)(Enum, int, int, int, int, int, Enum, Enum, const void*) = find("glTexImage2D");
   void (*tex_parameteri)(Enum, Enum, int) = find("glTexParameteri");
   void (*tex_parameterf)(Enum, Enum, float) = find("glTexParameterf");
+  void (*tex_parameterfv)(Enum, Enum, const float*) = find("glTexParameterfv");
   void (*finish)() = find("glFinish");
   void (*read_pixels)(int, int, int, int, Enum, Enum, void*) = find("glReadPixels");
   void (*gen_buffers)(int, Name*) = find("glGenBuffers");

@@ -42,7 +42,7 @@ std::vector<Name> make_textures(const Functions& gl, const Scene& scene) {
 }
 
 void apply_texture(const Functions& gl, Name texture, const State& state) {
-  constexpr std::array kWraps{kRepeat, kClampToEdge, kMirroredRepeat};
+  constexpr std::array kWraps{kRepeat, kClampToEdge, kMirroredRepeat, kClampToBorder, kClamp};
   gl.bind_texture(kTexture2d, texture);
   gl.tex_parameteri(kTexture2d, kMinFilter, static_cast<int>(min_filter(state.texture_min)));
   gl.tex_parameteri(kTexture2d, kMagFilter,
@@ -50,6 +50,11 @@ void apply_texture(const Functions& gl, Name texture, const State& state) {
   for (std::size_t axis = 0; axis < 2; ++axis)
     gl.tex_parameteri(kTexture2d, kWrapS + static_cast<Enum>(axis),
                       static_cast<int>(kWraps[static_cast<std::size_t>(state.texture_wrap[axis])]));
+  if (has_border(state.texture_wrap[0]) || has_border(state.texture_wrap[1])) {
+    std::array<float, 4> border{};
+    for (std::size_t c = 0; c < border.size(); ++c) border[c] = static_cast<float>(state.texture_border[c]) / 255;
+    gl.tex_parameterfv(kTexture2d, kBorderColor, border.data());
+  }
   constexpr std::array kLods{kLodBias, kMinLod, kMaxLod};
   for (std::size_t i = 0; i < kLods.size(); ++i)
     gl.tex_parameterf(kTexture2d, kLods[i], static_cast<float>(state.texture_lod[i]));
