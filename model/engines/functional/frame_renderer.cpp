@@ -91,7 +91,6 @@ bool has_plain_samples(const Scene& scene, const Widths& widths, const RenderOpt
 bool is_supported(const Scene& scene, const Config& config, const RenderOptions& options) {
   if (options.want_count || options.want_ids || options.keeps_triangles() || options.pixel_tap) return false;
   if (options.rules != StudyRules{} || config.tile_size != kTileSize) return false;
-  if (std::ranges::any_of(scene.states, [](const State& s) { return s.stencil && has_surface(s); })) return false;
   if (std::ranges::any_of(scene.states, has_surface) && !has_plain_surfaces(scene, options)) return false;
   const Widths widths = derive_widths(config);
   if (widths.has_samples != 0 && !has_plain_samples(scene, widths, options)) return false;

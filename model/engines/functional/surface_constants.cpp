@@ -130,13 +130,17 @@ SurfaceStyle::SurfaceStyle(const FrameContext& frame, const DrawContext& draw)
       of_coordinate(format.coordinate, format),
       of_color(format.color, format) {
   const State& state = draw.state;
-  is_affine = state.texture_interp == TextureInterp::affine;
+  is_affine = state.texture && state.texture_interp == TextureInterp::affine;
   is_color_over_w = state.color_interp == ColorInterp::perspective;
-  if (!state.texture || (is_color_over_w && is_affine) || draw.fog || draw.phong) return;
+  if ((is_color_over_w && is_affine) || draw.fog || draw.phong) return;
   const Widths& widths = frame.widths;
   const int numerator =
       std::max({format.q_bits, format.coordinate.bits, format.color.bits}) + 2 + extent_bits(kMediumPixelBits, widths);
   if (numerator > kMostNumeratorBits || division.up < 1) return;
+  if (!state.texture) {
+    is_in_lanes = is_color_over_w;
+    return;
+  }
   const Sampler sampler(draw.scene.textures[*state.texture], state);
   for (const TextureAxis& axis : sampler.axes)
     if (!axis.is_power_of_two()) return;

@@ -143,7 +143,7 @@ enum class Sampling { none, nearest, linear, any };
 inline constexpr int kMostNumeratorBits = 46;
 
 /// Constants common to the surfaces of a draw, where lanes set up sixteen surfaces at a time and shade pixels of any of
-/// them: one texture, and colours that are affine or over the same w as its coordinates.
+/// them: one texture, and colours that are affine or over the same w as its coordinates; or such colours alone.
 struct SurfaceStyle {
   SurfaceStyle(const FrameContext& frame, const DrawContext& draw);
 

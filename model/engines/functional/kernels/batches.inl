@@ -9,6 +9,7 @@
 #include "small_setup.inl"
 #include "tile_memory.inl"
 #include "tiny.inl"
+#include "waiting.inl"
 
 namespace halfplane::functional::HALFPLANE_ISA_NAME {
 namespace {
@@ -36,7 +37,13 @@ HALFPLANE_NOINLINE void draw_loaded(Bin& bin, const Slice& slice) {
     find_covered(bin, covered);
     bin.is_narrow ? draw_blocks<Fragments, NarrowTest>(bin, covered) : draw_blocks<Fragments, WideTest>(bin, covered);
   }
-  if (bin.sees_surfaces() && !bin.skip.attributes) shade_tiles(bin, tiles);
+  if (bin.is_operated()) {
+    operate_on_all_waiting(bin, tiles);
+    if (bin.batch_surface > static_cast<std::int32_t>(BinMemory::kFirstPiece))
+      --bin.group_count;  // nobody waits for it
+  } else if (bin.sees_surfaces() && !bin.skip.attributes) {
+    shade_tiles(bin, tiles);
+  }
   bin.small.count = 0;
   // With less, a bound that is too high is valid.
   if (is_changed || (!Fragments::kIsLess && bin.state.depth_write)) find_bin_range(bin);

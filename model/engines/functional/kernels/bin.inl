@@ -174,6 +174,7 @@ struct BinMemory {
   alignas(64) std::array<std::uint16_t, kBinPixels> narrow_depth;
   alignas(64) std::array<std::uint32_t, kBinPixels> color;
   alignas(64) std::array<BinTriangle, kPlanes> planes;
+  alignas(64) std::array<std::uint32_t, kBinPixels> source;  ///< colours of waiting pixels: waiting.inl
   static constexpr std::size_t kSurfaces = 8192;  ///< limit of pending surfaces: twice the pixels that can show one
   alignas(64) std::array<std::uint16_t, kBinPixels> surface;  ///< into `seen`, 0: the colour is in memory
   std::array<SeenSurface, kSurfaces> seen;                    ///< from 1 on
@@ -294,6 +295,8 @@ struct Bin {
   SliceState state;
   const FragmentOps* ops = nullptr;  ///< of the slice
   Packing packing{};                 ///< of its colours
+  /// Whether passing pixels of a batch wait to be operated upon.
+  [[nodiscard]] HALFPLANE_INLINE bool is_operated() const { return has_operations && !lays_over; }
   /// How colours of a draw are stored.
   [[nodiscard]] HALFPLANE_INLINE Packing packing_of(const FragmentOps& of) const {
     return {config.color_format, of.color.dithers};
@@ -303,6 +306,7 @@ struct Bin {
   bool lays_over = false;           ///< the only operation is blending by alpha
   bool tests_alpha = false;         ///< colours are not known to pass
   bool is_killed = false;           ///< all colours are known to fail
+  bool tests_stencil = false;       ///< its tiles are drawn by stencil.inl
   std::uint32_t drawn_samples = 1;  ///< of pixels, by the draw's sample mask, a bit each
   bool is_back = false;             ///< the current triangle shows its back; set for draws with a stencil
   /// Where SampleMemory has sample k of the block that begins with pixel `at`.
@@ -333,7 +337,8 @@ struct Bin {
   int cutouts_saved = 1;
   std::uint64_t split = 0;      ///< tiles whose pixels may have samples of different colours
   std::uint64_t in_memory = 0;  ///< tiles with depths and colours in memory, as far as small triangles know
-  std::array<std::uint8_t, kTiles> touches{};  ///< by tile: touches by batches since its range was found
+  std::array<std::uint64_t, kTiles> waiting{};  ///< pixels of each tile, a bit each: waiting.inl
+  std::array<std::uint8_t, kTiles> touches{};   ///< by tile: touches by batches since its range was found
   alignas(64) std::array<std::int16_t, kTiles> depth_owner, color_owner;
   // Clear values, readable as if they were in memory: a tile if 16 bits suffice, a block.
   alignas(64) std::array<std::uint16_t, kTilePixels> cleared_depths;

@@ -80,17 +80,18 @@ HALFPLANE_NOINLINE std::uint64_t without_lone(Bin& bin, PieceGroup& group, std::
   return pixels;
 }
 
-/// Shades the `pixels` of a tile that show pieces; returns the others.
-HALFPLANE_NOINLINE std::uint64_t shade_pieces_of(Bin& bin, int tile, std::uint64_t pixels) {
+/// Shades the `pixels` of a tile that show pieces; returns the others. `colors`, `packing`: as in shade_numbered().
+HALFPLANE_NOINLINE std::uint64_t shade_pieces_of(Bin& bin, int tile, std::uint64_t pixels, std::uint32_t* const colors,
+                                                 const Packing* packing) {
   BinMemory& memory = bin.memory;
   std::uint16_t* const numbers = memory.surface.data() + first_of(tile);
   const U64 surface = U64::load(numbers), group = surface & U64(0xfff0);
   TilePieces shown;
   std::uint64_t pieces = 0;
-  for (std::uint64_t rest = pixels_of_pieces(bin, surface); rest != 0;) {
+  for (std::uint64_t rest = pixels_of_pieces(bin, surface) & pixels; rest != 0;) {
     const auto first = static_cast<std::uint16_t>(numbers[std::countr_zero(rest)] & 0xfff0);
     const std::size_t number = (first - BinMemory::kFirstPiece) / 16;
-    std::uint64_t here = bits_equal(group, U64(first));
+    std::uint64_t here = bits_equal(group, U64(first)) & pixels;
     rest &= ~here;
     if (group_set_up(bin, number).alone != 0) here = without_lone(bin, memory.groups[number], numbers, here);
     if (here == 0) continue;
@@ -105,10 +106,28 @@ HALFPLANE_NOINLINE std::uint64_t shade_pieces_of(Bin& bin, int tile, std::uint64
     std::uint64_t here = 0;
     for (std::size_t k = i; k < shown.count; ++k)
       if (style_of(k) == style) here |= shown.pixels[k];
-    shade_pieces(bin, memory.styles[style], tile, shown, here);
+    const SurfaceStyle& of = memory.styles[style];
+    shade_pieces(bin, of, tile, shown, here, colors,
+                 packing != nullptr ? *packing : bin.packing_of(of.context->fragment_ops));
     rest &= ~here;
   }
   return pixels & ~pieces;
+}
+
+/// Shades `pixels` of a tile by the numbers of their surfaces, to `colors` of its 64. `packing`: of them all; null: each
+/// surface's own.
+HALFPLANE_NOINLINE void shade_numbered(Bin& bin, int tile, std::uint64_t pixels, std::uint32_t* const colors,
+                                       const Packing* packing) {
+  if (bin.group_count != 0) pixels = shade_pieces_of(bin, tile, pixels, colors, packing);
+  const std::uint16_t* const numbers = bin.memory.surface.data() + first_of(tile);
+  const U64 surface = U64::load(numbers);
+  while (pixels != 0) {
+    const std::uint16_t number = numbers[std::countr_zero(pixels)];
+    const std::uint64_t here = bits_equal(surface, U64(number)) & pixels;
+    const DrawnSurface& drawn = drawn_surface(bin, number);
+    shade(bin, drawn, tile, here, colors, packing != nullptr ? *packing : drawn.packing);
+    pixels &= ~here;
+  }
 }
 
 /// Brings colours of a tile with deferred pixels to memory.
@@ -119,15 +138,7 @@ HALFPLANE_NOINLINE void shade_tile(Bin& bin, int tile) {
     return shade(bin, drawn_surface(bin, static_cast<std::size_t>(number)), tile, ~std::uint64_t{0});
   }
   const std::uint16_t* const numbers = bin.memory.surface.data() + first_of(tile);
-  std::uint64_t rest = ~bits_equal(U64::load(numbers), U64(0));
-  if (bin.group_count != 0) rest = shade_pieces_of(bin, tile, rest);
-  const U64 surface = U64::load(numbers);
-  while (rest != 0) {
-    const std::uint16_t number = numbers[std::countr_zero(rest)];
-    const std::uint64_t pixels = bits_equal(surface, U64(number));
-    shade(bin, drawn_surface(bin, number), tile, pixels);
-    rest &= ~pixels;
-  }
+  shade_numbered(bin, tile, ~bits_equal(U64::load(numbers), U64(0)), bin.memory.color.data() + first_of(tile), nullptr);
 }
 
 inline void shade_tiles(Bin& bin, std::uint64_t tiles) {

@@ -1,6 +1,5 @@
-// Fragments with operations that neither opaque fragments nor operations.inl have: one by one, tile after tile, nothing
-// skipped or deferred. A triangle of any size is set up alone. For draws with a stencil;
-// RenderOptions::general_fragments uses it for all.
+// Fragments one by one, tile after tile, nothing skipped or deferred. A triangle of any size is set up alone. For lines and
+// dots with operations that lanes do not have; RenderOptions::general_fragments uses it for all.
 #pragma once
 
 #include "bin.inl"
@@ -8,6 +7,7 @@
 #include "fragments.inl"
 #include "lines.inl"
 #include "setup.inl"
+#include "stencil.inl"
 #include "tile_memory.inl"
 #include "values.inl"
 
@@ -44,15 +44,6 @@ HALFPLANE_NOINLINE void draw_tile_general(Bin& bin, const BinTriangle& t, int ti
   bin.job.counters.samples_tested += kTilePixels;
   count_fragments(bin, covered_pixels, passed_pixels);
   if (bin.state.depth_write && passed_pixels != 0) find_range(bin, tile);
-}
-
-/// Whether a triangle shows its back, where the stencil has two sides. The rotation of vertices in records keeps the
-/// sign of the area.
-inline bool shows_back(const Bin& bin, const Slice& slice, const Record& record) {
-  if (!bin.ops->stencil || record.kind() != RecordKind::triangle) return false;
-  const VertexRow &a = slice.vertices[record.v[0]], &b = slice.vertices[record.v[1]], &c = slice.vertices[record.v[2]];
-  const std::int64_t area = signed_area({a.x, a.y, {}}, {b.x, b.y, {}}, {c.x, c.y, {}});
-  return halfplane::shows_back(area, slice.context->state.front);
 }
 
 inline void draw_triangle_general(Bin& bin, const BinTriangle& t) {

@@ -143,19 +143,17 @@ HALFPLANE_INLINE I16 piece_lod(const Columns& at_zero, const Columns& step, cons
   return log2_code_of(max(to_right, down)) - (log2_code(q) << 1) + offset;
 }
 
-/// The colours of a tile's pixels that show pieces of one style. Each step runs for all four blocks before the next, as in
+/// The colours of a tile's pixels that show pieces of one style, to `colors` of its 64. Each step runs for all four blocks before the next, as in
 /// shade(): the four dependency chains overlap.
 template <Sampling kSampling>
 HALFPLANE_NOINLINE void shade_pieces(Bin& bin, const SurfaceStyle& style, int tile, const TilePieces& shown,
-                                     std::uint64_t pixels) {
+                                     std::uint64_t pixels, std::uint32_t* const colors, const Packing& packing) {
   const LaneTexture& texture = style.texture;
   const LanePositions& position = bin.position;
   const std::uint16_t* const numbers = bin.memory.surface.data() + first_of(tile);
-  std::uint32_t* const colors = bin.memory.color.data() + first_of(tile);
   const PieceConstants& constants = bin.memory.constants.front();
   const auto place = static_cast<std::size_t>((tile & 1) | (tile / kBinTiles & 1) << 1);
   const PieceConstants::Tile& of_tile = constants.tile[place];
-  const Packing packing = bin.packing_of(style.context->fragment_ops);
   const bool is_tame = style.is_tame;
   const int color_down = bin.centred_color.down;
   BlockPieces pieces[4];
@@ -177,6 +175,7 @@ HALFPLANE_NOINLINE void shade_pieces(Bin& bin, const SurfaceStyle& style, int ti
     const I16 &column = position.column[right], &line = position.row[below];
     ReciprocalsOfQ& q = reciprocals[block];
     q.set(anchor.first + column * step_x.first + line * step_y.first, style.division);
+    if constexpr (kSampling == Sampling::none) return;
     const auto along = [&](const I16& at_anchor, const I16& of_x, const I16& of_y, const I16& narrow, const I16& drop,
                            const I16& reference, std::size_t axis) HALFPLANE_LAMBDA {
       const I16 u =
@@ -206,7 +205,7 @@ HALFPLANE_NOINLINE void shade_pieces(Bin& bin, const SurfaceStyle& style, int ti
       std::uint32_t* const of_block = nearest.data() + block * kBlockPixels;
       fetch_texels(texture.texels, of_block, of_block);
     });
-  } else {
+  } else if constexpr (kSampling != Sampling::none) {
     for_each_block([&](auto block) HALFPLANE_LAMBDA {
       if (block_bits(pixels, block) == 0) return;
       const ColorPairs texels = texels_at<kSampling>(texture, at[block], lod[block]);
@@ -250,6 +249,7 @@ HALFPLANE_NOINLINE void shade_pieces(Bin& bin, const SurfaceStyle& style, int ti
   };
   store_pixels(bin, colors, pixels, true, [&](auto block, const I16&) HALFPLANE_LAMBDA {
     const ColorPairs own = style.is_color_over_w ? over_w(block) : affine(block);
+    if constexpr (kSampling == Sampling::none) return packed(own.red_blue, own.green_alpha, packing);
     const ColorPairs texels = [&]() HALFPLANE_LAMBDA {
       if constexpr (kSampling == Sampling::nearest) return ColorPairs(I16::load(nearest.data() + block * kBlockPixels));
       return ColorPairs(red_blue[block], green_alpha[block]);
@@ -259,11 +259,12 @@ HALFPLANE_NOINLINE void shade_pieces(Bin& bin, const SurfaceStyle& style, int ti
   });
 }
 HALFPLANE_INLINE void shade_pieces(Bin& bin, const SurfaceStyle& style, int tile, const TilePieces& shown,
-                                   std::uint64_t pixels) {
+                                   std::uint64_t pixels, std::uint32_t* const colors, const Packing& packing) {
   switch (style.sampling) {
-    case Sampling::nearest: return shade_pieces<Sampling::nearest>(bin, style, tile, shown, pixels);
-    case Sampling::linear: return shade_pieces<Sampling::linear>(bin, style, tile, shown, pixels);
-    default: return shade_pieces<Sampling::any>(bin, style, tile, shown, pixels);
+    case Sampling::none: return shade_pieces<Sampling::none>(bin, style, tile, shown, pixels, colors, packing);
+    case Sampling::nearest: return shade_pieces<Sampling::nearest>(bin, style, tile, shown, pixels, colors, packing);
+    case Sampling::linear: return shade_pieces<Sampling::linear>(bin, style, tile, shown, pixels, colors, packing);
+    default: return shade_pieces<Sampling::any>(bin, style, tile, shown, pixels, colors, packing);
   }
 }
 

@@ -25,6 +25,7 @@
 #include "lines.inl"
 #include "multisample.inl"
 #include "small_batch.inl"
+#include "stencil.inl"
 #include "tile_memory.inl"
 #include "tiles.inl"
 
@@ -213,9 +214,11 @@ HALFPLANE_NOINLINE void draw_records_in_order(Bin& bin, const Slice& slice, cons
     fetch_records(slice, first++, last);
     const BinBounds box = box_of(bin, record);
     const std::uint64_t live = seen_tiles<Fragments>(bin, record, box);
+    bin.is_back = shows_back(bin, slice, record);
     if (live != 0) draw_alone<Fragments>(bin, slice, record, box, live);
     bin.is_range_old = true;
   }
+  bin.is_back = false;
   bin.closed_from = Bin::kOpen;
 }
 
@@ -275,6 +278,7 @@ struct RecordWays {
     if (is_dot(bin, slice, record)) return RecordWay::general;
     const bool is_line = kind == RecordKind::whole_line || kind == RecordKind::cut_line;
     const RecordWay otherwise = is_line ? RecordWay::general : RecordWay::operated;
+    if (ops.stencil) return otherwise;
     if (!knows_alpha || kind == RecordKind::cut_line || (is_line && is_opaque_texel))
       return lays_over && !tests_alpha && !is_line ? RecordWay::laid_over : otherwise;
     std::uint32_t low = 255, high = 255;
@@ -321,12 +325,18 @@ HALFPLANE_NOINLINE void draw_run(Bin& bin, const Slice& slice, RecordWay way, co
   bin.lays_over = way == RecordWay::laid_over;
   bin.is_killed = way == RecordWay::killed;
   bin.tests_alpha = way == RecordWay::killed || (way == RecordWay::operated && ops.alpha.func != DepthFunc::always);
-  bin.skip.tiles_hiz = bin.job.frame.skip.tiles_hiz && bin.skip.operations_early_z;
+  bin.tests_stencil = ops.stencil.has_value();
+  bin.skip.tiles_hiz =
+      bin.job.frame.skip.tiles_hiz && bin.skip.operations_early_z && (!ops.stencil || keeps_where_hidden(*ops.stencil));
   if (bin.tests_alpha) bin.state.depth_write = false;  // depths are written after the alpha test
-  bin.lays_over ? draw_records(bin, slice, first, last)
+  const bool reads_alpha_first = bin.tests_alpha && ops.state.depth_write;
+  const bool takes_batches =
+      bin.lays_over || (way == RecordWay::operated && !bin.tests_stencil && !reads_alpha_first &&
+                        ops.state.color_write && bin.skip.attributes && bin.skip.operations_early_z);
+  takes_batches ? draw_records(bin, slice, first, last)
                 : draw_records_in_order<OpaqueFragments<false>>(bin, slice, first, last);
   skipped.operations_early_z += skipped.tiles_hiz - behind;  // 0 without Skip::operations_early_z
-  bin.has_operations = bin.lays_over = bin.is_killed = bin.tests_alpha = false;
+  bin.has_operations = bin.lays_over = bin.is_killed = bin.tests_alpha = bin.tests_stencil = false;
   bin.skip = bin.job.frame.skip;
 }
 
@@ -370,7 +380,7 @@ static void raster(BinJob& job) {
     bin.rises = bin.state.depth_test == DepthFunc::greater || bin.state.depth_test == DepthFunc::gequal;
     if (bin.state.is_opaque)
       draw_records(bin, slice, first, last);
-    else if (job.frame.takes_one_by_one || bin.ops->stencil)
+    else if (job.frame.takes_one_by_one)
       draw_records_general(bin, slice, first, last);
     else
       draw_records_by_way(bin, slice, first, last);

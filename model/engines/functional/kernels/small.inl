@@ -10,6 +10,7 @@
 #include "texture.inl"
 #include "tile_memory.inl"
 #include "tiny.inl"
+#include "waiting.inl"
 
 namespace halfplane::functional::HALFPLANE_ISA_NAME {
 namespace {
@@ -57,14 +58,14 @@ HALFPLANE_INLINE bool widen_ranges(Bin& bin, std::uint64_t tiles, Find&& find) {
 /// Brings the tiles of a batch to memory. Returns whether the range of one was found again.
 template <class Fragments>
 HALFPLANE_INLINE bool touch_tiles(Bin& bin, std::uint64_t tiles) {
-  const bool is_color = bin.state.color_write && !bin.state.has_surface;
+  const bool is_color = bin.state.color_write && (!bin.state.has_surface || bin.has_operations);
   for (std::uint64_t rest = tiles & ~bin.in_memory; rest != 0; rest &= rest - 1) {
     const int at = std::countr_zero(rest);
     need_depth(bin, at);
     if (is_color) need_color(bin, at);
   }
   if (is_color) bin.in_memory |= tiles;
-  if (bin.sees_surfaces())
+  if (bin.sees_surfaces() && !bin.has_operations)
     for (std::uint64_t rest = tiles; rest != 0; rest &= rest - 1) need_numbers(bin, std::countr_zero(rest));
   return widen_ranges<Fragments>(bin, tiles, [&bin](int tile) HALFPLANE_LAMBDA { find_range(bin, tile); });
 }
@@ -230,6 +231,7 @@ struct WideTest {
     return covered & bits_of(Fragments::passes(state, depth, stored));
   }
   HALFPLANE_INLINE static unsigned count(std::uint32_t pixels) { return static_cast<unsigned>(std::popcount(pixels)); }
+  HALFPLANE_INLINE static std::uint32_t bits(std::uint32_t pixels) { return pixels; }
   HALFPLANE_INLINE I16 choose(std::uint32_t pixels, const I16& a, const I16& b) const {
     return select_by_bits(pixels, a, b, bin.position.to_sign);
   }
@@ -248,6 +250,7 @@ struct WideTest {
   HALFPLANE_INLINE static unsigned count(const I16& pixels) {
     return static_cast<unsigned>(std::popcount(bits_of(pixels)));
   }
+  HALFPLANE_INLINE static std::uint32_t bits(const I16& pixels) { return bits_of(pixels); }
   HALFPLANE_INLINE static I16 choose(const I16& pixels, const I16& a, const I16& b) {
     return select_by_sign(pixels, a, b);
   }
@@ -287,6 +290,7 @@ struct NarrowTest {
     return block_lanes_of(covered) & Fragments::passes(state, depth, stored);
   }
   HALFPLANE_INLINE static unsigned count(const S16& pixels) { return count_of(pixels); }
+  HALFPLANE_INLINE static std::uint32_t bits(const S16& pixels) { return bits_of(widened(pixels)); }
   HALFPLANE_INLINE static S16 choose(const S16& pixels, const S16& a, const S16& b) { return select(pixels, a, b); }
   HALFPLANE_INLINE static I16 choose_color(const S16& pixels, const I16& a, const I16& b) {
     return select(widened(pixels), a, b);
@@ -345,7 +349,9 @@ HALFPLANE_INLINE void draw_blocks(Bin& bin, const Coverage& covered) {
   std::uint32_t* const colors = bin.memory.color.data();
   std::uint16_t* const surfaces = bin.memory.surface.data();
   const int depth_down = bin.centred_depth.down, color_down = bin.centred_color.down;
-  const bool is_skipping = kColor == Writes::laid_over ? bin.skip.operations_early_z : bin.skip.fragments_early_z;
+  std::uint32_t* const sources = bin.memory.source.data();
+  const bool is_skipping = kColor == Writes::laid_over || kColor == Writes::operated ? bin.skip.operations_early_z
+                                                                                     : bin.skip.fragments_early_z;
   const Packing packing = bin.packing;
   const std::int32_t own_factor = own_factor_bits(bin.ops->color);
   unsigned passed_pixels = 0;
@@ -366,21 +372,24 @@ HALFPLANE_INLINE void draw_blocks(Bin& bin, const Coverage& covered) {
       if (count == 0 && is_skipping) continue;
       if (kDepth) test.store(at, test.choose(passed, depth, stored));
       if (kColor == Writes::nothing) continue;
-      if (kColor == Writes::surface) {
+      if (kColor == Writes::operated) wait_for_operations(bin, at, test.bits(passed));
+      if (kColor == Writes::surface || (kColor == Writes::operated && state.has_surface)) {
         test.put_number(passed, bin.batch_surface + static_cast<std::int32_t>(i), surfaces + at);
         continue;
       }
-      const I16 color = small_colors<kColor>(bin, i, tile, block, color_down), old = I16::load(colors + at);
+      std::uint32_t* const to = (kColor == Writes::operated ? sources : colors) + at;
+      const I16 color = small_colors<kColor>(bin, i, tile, block, color_down), old = I16::load(to);
       if constexpr (kColor == Writes::laid_over)
-        test.choose_color(passed, blended_colors(color, old, own_factor, packing), old).store(colors + at);
+        test.choose_color(passed, blended_colors(color, old, own_factor, packing), old).store(to);
       else
-        test.choose_color(passed, color, old).store(colors + at);
+        test.choose_color(passed, color, old).store(to);
     }
   count_fragments(bin, covered.pixels, passed_pixels / Test::kCount);
 }
 template <class Fragments, class Test, bool kDepth>
 HALFPLANE_INLINE void draw_blocks(Bin& bin, const Coverage& covered) {
   if (!bin.state.color_write) return draw_blocks<Fragments, Test, kDepth, Writes::nothing>(bin, covered);
+  if (bin.is_operated()) return draw_blocks<Fragments, Test, kDepth, Writes::operated>(bin, covered);
   if (bin.has_operations) return draw_blocks<Fragments, Test, kDepth, Writes::laid_over>(bin, covered);
   if (bin.state.has_surface) return draw_blocks<Fragments, Test, kDepth, Writes::surface>(bin, covered);
   bin.config.color_format == ColorFormat::rgba8888

@@ -9,6 +9,7 @@
 #include "layers.inl"
 #include "operations.inl"
 #include "setup.inl"
+#include "stencil.inl"
 #include "tile_memory.inl"
 #include "values.inl"
 
@@ -380,6 +381,11 @@ HALFPLANE_INLINE void draw_tile(Bin& bin, const BinTriangle& t, const TileConsta
   if (!constants.is_whole) outside |= outside_box(bin, t.box, tile_x, tile_y);
   const std::uint64_t covered = ~bits_of(outside);
   if (covered == 0) return;
+  pixels.covered += static_cast<unsigned>(std::popcount(covered));
+  if (bin.tests_stencil) {
+    pixels.passed += static_cast<unsigned>(std::popcount(draw_tile_by_stencil(bin, t, tile, covered)));
+    return;
+  }
   if (!constants.is_narrow) need_depth(bin, tile);
   const std::int32_t anchor = depth_anchor(bin, t, tile_x, tile_y);
   const std::uint64_t passed = constants.is_narrow ? test_narrow<Fragments>(bin, constants, tile, anchor, outside >> 15)
@@ -391,7 +397,6 @@ HALFPLANE_INLINE void draw_tile(Bin& bin, const BinTriangle& t, const TileConsta
   } else if (bin.state.color_write && (passed != 0 || !bin.skip.fragments_early_z)) {
     color_tile(bin, t, tile, color_anchor(bin, t, tile_x, tile_y), passed);
   }
-  pixels.covered += static_cast<unsigned>(std::popcount(covered));
   pixels.passed += static_cast<unsigned>(std::popcount(passed));
 }
 
@@ -475,7 +480,7 @@ HALFPLANE_INLINE void draw_large(Bin& bin, const Slice& slice, const Record& rec
   if (bin.skip.trivially_accepted) full = live & tiles.full & (t.is_whole ? ~std::uint64_t{0} : tiles_inside(t.box));
   if (full != 0 && bin.skip.attributes && !bin.has_operations && (bin.state.depth_write || bin.state.color_write))
     taken = full & samples.takeable() & Fragments::tiles_in_front(bin, depths);
-  if (full != 0 && bin.has_operations && (!bin.tests_alpha || bin.is_killed)) {
+  if (full != 0 && bin.has_operations && !bin.tests_stencil && (!bin.tests_alpha || bin.is_killed)) {
     in_front = full & samples.as_one(bin) & Fragments::tiles_in_front(bin, depths);
     if (in_front != 0 && bin.lays_over && t.surface == 0 && bin.skip.attributes) {
       add_layer(bin, t, in_front);

@@ -12,7 +12,7 @@ namespace halfplane::functional::HALFPLANE_ISA_NAME {
 namespace {
 
 /// Format of written colours; for surfaces numbers are written. laid_over: part of has_operations.
-enum class Writes { nothing, rgba8888, other, surface, laid_over };
+enum class Writes { nothing, rgba8888, other, surface, laid_over, operated };
 
 /// The samples of triangles with few samples, in rounds: one sample of each triangle per round.
 struct SampleRounds {
