@@ -279,10 +279,10 @@ class OutlineBuilder {
 
   /// Adds a point of one pixel for each pixel that the rectangle covers in part.
   void add_smooth(const DrawnLine& line, const std::array<SnappedVertex, 4>& corners, bool crosses) {
-    for (const SmoothPixel& pixel : smooth_raster(corners, bounds_of(context_.rect), widths_.grid_bits)) {
-      add_pixel(pixel, codes_beside(line.start, line.end, pixel.x, pixel.y, widths_));
-      is_cut |= crosses;
-    }
+    const std::vector<SmoothPixel> pixels = smooth_raster(corners, bounds_of(context_.rect), widths_.grid_bits);
+    is_cut |= crosses && !pixels.empty();
+    const CodesBeside codes(line.start, line.end, widths_);
+    for (const SmoothPixel& pixel : pixels) add_pixel(pixel, codes(pixel.x, pixel.y));
   }
 
   /// Adds a pixel of a smooth primitive: a point of its own.
@@ -290,6 +290,10 @@ class OutlineBuilder {
     if (widths_.color_planes == 4) {
       std::uint32_t& alpha = code[kColorPlane + 3];
       alpha = (alpha * pixel.coverage + kWholePixel / 2) / kWholePixel;
+    }
+    if (out_.keeps_pixels) {
+      out_.pixels.push_back({pixel.x, pixel.y, code});
+      return;
     }
     const std::int32_t whole = std::int32_t{1} << widths_.grid_bits;
     SnappedVertex at;

@@ -100,18 +100,27 @@ void for_each_run(const PointPrimitive& point, int grid_bits, Visit&& visit) {
   for_each_run(drawn.at, drawn.size, drawn.shape, point.box, grid_bits, visit);
 }
 
+/// A pixel of a smooth primitive.
+struct SmoothPoint {
+  int x = 0, y = 0;
+  PerPlane<std::uint32_t> code{};
+};
+
 /// The result for one primitive that is not filled.
 struct Outline {
   std::vector<LinePrimitive> lines;
   std::vector<Triangle> triangles;  ///< for lines that are rectangles: each with a sample position in its box
   std::vector<PointPrimitive> points;
+  std::vector<SmoothPoint> pixels;  ///< of smooth primitives, if these are wanted apart from points
+  bool keeps_pixels = false;        ///< they are
 
   void clear() {
+    pixels.clear();
     lines.clear();
     triangles.clear();
     points.clear();
   }
-  [[nodiscard]] std::size_t size() const { return lines.size() + triangles.size() + points.size(); }
+  [[nodiscard]] std::size_t size() const { return lines.size() + triangles.size() + points.size() + pixels.size(); }
 };
 
 /// The type that the primitives of a draw are finally drawn as.

@@ -16,6 +16,7 @@ struct Point {
 struct Side {
   double a = 0, b = 0, c = 0;
   double reach = 0;  ///< the largest distance of a pixel's corner from the line through its centre
+  double flat = 0, steep = 0, doubled_product = 0;  ///< the smaller and the larger of |a| and |b|, and 2 |a| |b|
   [[nodiscard]] double distance(const Point& p) const { return a * p.x + b * p.y + c; }
 };
 
@@ -68,8 +69,15 @@ Sides sides_of(const std::array<SnappedVertex, 4>& corners, int grid_bits) {
     const double dx = static_cast<double>(to.x) - from.x, dy = static_cast<double>(to.y) - from.y;
     const double length = std::sqrt(dx * dx + dy * dy);
     const double c = std::ldexp(dy * from.x - dx * from.y, -grid_bits);
-    sides[i] = {-sign * dy / length, sign * dx / length, sign * c / length};
-    sides[i].reach = (std::abs(sides[i].a) + std::abs(sides[i].b)) / 2;
+    Side& side = sides[i];
+    side.a = -sign * dy / length;
+    side.b = sign * dx / length;
+    side.c = sign * c / length;
+    const double a = std::abs(side.a), b = std::abs(side.b);
+    side.reach = (a + b) / 2;
+    side.flat = std::min(a, b);
+    side.steep = std::max(a, b);
+    side.doubled_product = 2 * a * b;
   }
   return sides;
 }
@@ -77,42 +85,58 @@ Sides sides_of(const std::array<SnappedVertex, 4>& corners, int grid_bits) {
 /// The part of a pixel inside one line, at `distance` from its centre and less than `reach`: all but a triangle or a trapezoid
 /// where that is positive.
 double part_inside(const Side& side, double distance) {
-  const double a = std::abs(side.a), b = std::abs(side.b), flat = std::min(a, b);
   const double height = side.reach - std::abs(distance);  // of the smaller part, from the line to its corner
-  const double smaller = height < flat ? height * height / (2 * a * b) : (height - flat / 2) / std::max(a, b);
+  const double smaller =
+      height < side.flat ? height * height / side.doubled_product : (height - side.flat / 2) / side.steep;
   return distance < 0 ? smaller : 1 - smaller;
 }
 
-double area_at(const Sides& sides, int x, int y) {
-  const Point centre{x + 0.5, y + 0.5};
-  std::array<double, 4> distance{};
-  std::array<bool, 4> cuts{};
-  bool is_outside = false;
-  for (std::size_t i = 0; i < 4; ++i) {
-    distance[i] = sides[i].distance(centre);
-    is_outside |= distance[i] <= -sides[i].reach;
-    cuts[i] = distance[i] < sides[i].reach;
+/// The area of the pixels of a row.
+class RowAreas {
+ public:
+  RowAreas(const Sides& sides, int y) : sides_(sides) { start(y); }
+  void start(int y) {
+    for (std::size_t i = 0; i < 4; ++i) of_row_[i] = sides_[i].b * (y + 0.5);
   }
-  if (is_outside) return 0;
-  // Sides opposite each other cut off parts that do not meet.
-  for (const std::size_t i : {0U, 1U}) {
-    if (cuts[1 - i] || cuts[3 - i]) continue;
+
+  [[nodiscard]] double operator()(int x) const {
+    std::array<double, 4> distance;
+    unsigned cuts = 0;  // a bit each
+    for (std::size_t i = 0; i < 4; ++i) {
+      distance[i] = sides_[i].a * (x + 0.5) + of_row_[i] + sides_[i].c;
+      if (distance[i] <= -sides_[i].reach) return 0;
+      cuts |= (distance[i] < sides_[i].reach ? 1U : 0U) << i;
+    }
+    // Sides opposite each other cut off parts that do not meet.
+    constexpr unsigned kFirstAndThird = 5;
+    if ((cuts & kFirstAndThird) != 0 && (cuts & ~kFirstAndThird) != 0) return area_where_sides_meet(distance, cuts);
     double area = 1;
-    for (const std::size_t k : {i, i + 2})
-      if (cuts[k]) area -= 1 - part_inside(sides[k], distance[k]);
+    for (std::size_t i = 0; i < 4; ++i)
+      if ((cuts >> i & 1) != 0) area -= 1 - part_inside(sides_[i], distance[i]);
     return std::max(area, 0.0);
   }
-  std::array<Polygon, 2> polygon;  // by turns
-  std::ranges::copy(kSquare, polygon[0].corner.begin());
-  polygon[0].size = kSquare.size();
-  std::size_t now = 0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    if (!cuts[i]) continue;
-    cut(polygon[now], {sides[i].a, sides[i].b, distance[i]}, polygon[1 - now]);
-    now = 1 - now;
+
+ private:
+  [[nodiscard]] double area_where_sides_meet(const std::array<double, 4>& distance, unsigned cuts) const {
+    std::array<Polygon, 2> polygon;  // by turns
+    std::ranges::copy(kSquare, polygon[0].corner.begin());
+    polygon[0].size = kSquare.size();
+    std::size_t now = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      if ((cuts >> i & 1) == 0) continue;
+      Side side;
+      side.a = sides_[i].a;
+      side.b = sides_[i].b;
+      side.c = distance[i];
+      cut(polygon[now], side, polygon[1 - now]);
+      now = 1 - now;
+    }
+    return area_of(polygon[now]);
   }
-  return area_of(polygon[now]);
-}
+
+  Sides sides_;
+  std::array<double, 4> of_row_{};
+};
 
 /// To the nearest, halves up; of a number that is not negative.
 std::uint32_t rounded(double value) {
@@ -120,7 +144,7 @@ std::uint32_t rounded(double value) {
   return whole + (value - whole >= 0.5 ? 1 : 0);
 }
 
-/// The columns that may have an area in a row: outside, area_at() is 0. A column is spared on each side for rounding.
+/// The columns that may have an area in a row: outside, it is 0. A column is spared on each side for rounding.
 class Columns {
  public:
   explicit Columns(const Sides& sides) {
@@ -176,7 +200,7 @@ double shared(double from, double to) { return std::max(0.0, std::min(1.0, to) -
 }  // namespace
 
 double area_in_pixel(const std::array<SnappedVertex, 4>& corners, int x, int y, int grid_bits) {
-  return area_at(sides_of(corners, grid_bits), x, y);
+  return RowAreas(sides_of(corners, grid_bits), y)(x);
 }
 
 std::vector<SmoothPixel> smooth_raster(const std::array<SnappedVertex, 4>& corners, const PixelBounds& limit,
@@ -186,9 +210,15 @@ std::vector<SmoothPixel> smooth_raster(const std::array<SnappedVertex, 4>& corne
   const auto [top, bottom] = std::minmax({corners[0].y, corners[1].y, corners[2].y, corners[3].y});
   const PixelBounds box{std::max(limit.left, left >> grid_bits), std::max(limit.top, top >> grid_bits),
                         std::min(limit.right, right >> grid_bits), std::min(limit.bottom, bottom >> grid_bits)};
+  const Columns columns(sides);
+  RowAreas areas(sides, box.top);
   return pixels_of(
-      box, [&, columns = Columns(sides)](int y) { return columns(y, box.left, box.right); },
-      [&](int x, int y) { return area_at(sides, x, y); });
+      box,
+      [&](int y) {
+        areas.start(y);
+        return columns(y, box.left, box.right);
+      },
+      [&](int x, int) { return areas(x); });
 }
 
 double area_in_pixel(const SnappedVertex& point, std::int32_t size, PointShape shape, int x, int y, int grid_bits) {
@@ -220,30 +250,42 @@ std::vector<SmoothPixel> smooth_raster(const SnappedVertex& point, std::int32_t 
       [&](int x, int y) { return area_in_pixel(point, size, shape, x, y, grid_bits); });
 }
 
-PerPlane<std::uint32_t> codes_beside(const SnappedVertex& start, const SnappedVertex& end, int x, int y,
-                                     const Widths& widths) {
+CodesBeside::CodesBeside(const SnappedVertex& start, const SnappedVertex& end, const Widths& widths)
+    : start_(start.code), end_(end.code) {
   const int s = widths.grid_bits;
-  const auto centre = [s](int i) { return (2 * std::int64_t{i} + 1) * (std::int64_t{1} << (s - 1)); };
-  const std::int64_t dx = std::int64_t{end.x} - start.x, dy = std::int64_t{end.y} - start.y;
-  const std::int64_t whole = dx * dx + dy * dy;
-  const std::int64_t part = std::clamp<std::int64_t>((centre(x) - start.x) * dx + (centre(y) - start.y) * dy, 0, whole);
-  PerPlane<std::uint32_t> code{};
-  for (std::size_t p = 0; p < static_cast<std::size_t>(widths.affine_planes); ++p) {
-    const std::uint32_t largest = std::max(start.code[p], end.code[p]);
-    if (start.code[p] == end.code[p]) {
-      code[p] = largest;
-      continue;
-    }
-    // Both are weights of non-negative codes: the division rounds down.
-    if (std::bit_width(largest) + std::bit_width(static_cast<std::uint64_t>(whole)) <= 61) {
-      const std::int64_t sum = std::int64_t{start.code[p]} * (whole - part) + std::int64_t{end.code[p]} * part;
-      code[p] = static_cast<std::uint32_t>((2 * sum + whole) / (2 * whole));
-      continue;
-    }
-    const int128 sum = int128{start.code[p]} * (whole - part) + int128{end.code[p]} * part;
-    code[p] = static_cast<std::uint32_t>((2 * sum + whole) / (2 * int128{whole}));
+  const std::int64_t half = std::int64_t{1} << (s - 1), dx = std::int64_t{end.x} - start.x,
+                     dy = std::int64_t{end.y} - start.y;
+  at_zero_ = (half - start.x) * dx + (half - start.y) * dy;
+  per_x_ = dx * 2 * half;
+  per_y_ = dy * 2 * half;
+  whole_ = dx * dx + dy * dy;
+  for (std::size_t p = 0; p < start_.size(); ++p) {
+    if (p >= static_cast<std::size_t>(widths.affine_planes)) start_[p] = end_[p] = 0;
+    if (start_[p] != end_[p]) changing_[changing_count_++] = p;
   }
-  return code;
+}
+
+PerPlane<std::uint32_t> CodesBeside::operator()(int x, int y) const {
+  const std::int64_t part = std::clamp<std::int64_t>(at_zero_ + x * per_x_ + y * per_y_, 0, whole_);
+  PerPlane<std::uint32_t> codes = start_;
+  if (changing_count_ == 0) return codes;
+  const double ratio = static_cast<double>(part) / static_cast<double>(whole_);
+  for (std::size_t i = 0; i < changing_count_; ++i) codes[changing_[i]] = code(changing_[i], part, ratio);
+  return codes;
+}
+
+/// (start (whole - part) + end part) / whole, rounded to the nearest.
+std::uint32_t CodesBeside::code(std::size_t plane, std::int64_t part, double ratio) const {
+  const std::int64_t start = start_[plane], way = std::int64_t{end_[plane]} - start;
+  if (std::bit_width(std::max(start_[plane], end_[plane])) + std::bit_width(static_cast<std::uint64_t>(whole_)) > 61) {
+    const int128 sum = int128{start} * (whole_ - part) + int128{end_[plane]} * part;
+    return static_cast<std::uint32_t>((2 * sum + whole_) / (2 * int128{whole_}));
+  }
+  // What binary64 rounds is at most one code off: what is left over says it.
+  auto code = static_cast<std::int64_t>(static_cast<double>(start) + static_cast<double>(way) * ratio + 0.5);
+  const std::int64_t left = 2 * way * part + whole_ - (code - start) * 2 * whole_;
+  code += left >= 2 * whole_ ? 1 : left < 0 ? -1 : 0;
+  return static_cast<std::uint32_t>(code);
 }
 
 }  // namespace halfplane

@@ -51,7 +51,19 @@ inline constexpr std::uint32_t kWholePixel = 255;
 
 /// The codes of a line at a nearby pixel: at the point of the segment nearest to the pixel's centre, interpolated
 /// between the ends' codes and rounded to the nearest. The ends must not coincide.
-[[nodiscard]] PerPlane<std::uint32_t> codes_beside(const SnappedVertex& start, const SnappedVertex& end, int x, int y,
-                                                   const Widths& widths);
+class CodesBeside {
+ public:
+  CodesBeside(const SnappedVertex& start, const SnappedVertex& end, const Widths& widths);
+  [[nodiscard]] PerPlane<std::uint32_t> operator()(int x, int y) const;
+
+ private:
+  [[nodiscard]] std::uint32_t code(std::size_t plane, std::int64_t part, double ratio) const;
+
+  PerPlane<std::uint32_t> start_, end_;
+  // Of the way from the start to the end, times its length: at pixel 0, from pixel to pixel, and at the end.
+  std::int64_t at_zero_, per_x_, per_y_, whole_;
+  PerPlane<std::size_t> changing_{};  ///< planes whose codes differ
+  std::size_t changing_count_ = 0;
+};
 
 }  // namespace halfplane

@@ -83,7 +83,7 @@ TEST(SmoothRaster, CodesBesideALineAreTheNearestPointsRounded) {
         (((x + 0.5) * step - start.x) * dx + ((y + 0.5) * step - start.y) * dy) / (dx * dx + dy * dy), 0.0, 1.0);
     const double exact =
         start.code[kDepthPlane] + t * (static_cast<double>(end.code[kDepthPlane]) - start.code[kDepthPlane]);
-    EXPECT_NEAR(codes_beside(start, end, x, y, widths)[kDepthPlane], exact, 0.5 + 1e-6);
+    EXPECT_NEAR(CodesBeside(start, end, widths)(x, y)[kDepthPlane], exact, 0.5 + 1e-6);
   }
 }
 

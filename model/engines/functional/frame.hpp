@@ -72,6 +72,13 @@ static_assert(sizeof(VertexRow) == 16 && offsetof(VertexRow, y) == 4 && offsetof
 /// The only place where a snapped vertex of the host side becomes a row.
 [[nodiscard]] inline VertexRow row_of(const SnappedVertex& v) { return {v.x, v.y, v.depth(), packed_channels(v.code)}; }
 
+/// A point of one pixel: four words, of which lanes take sixteen at a time.
+struct Dot {
+  std::int32_t x = 0, y = 0;  ///< pixel
+  std::uint32_t z = 0, rgba = 0;
+};
+static_assert(sizeof(Dot) == 16 && offsetof(Dot, z) == 8 && offsetof(Dot, rgba) == 12);
+
 enum class RecordKind : std::uint8_t { triangle, whole_line, cut_line, rectangle };
 
 /// A primitive with at least one pixel in its box. Eight words: kernels make and take sixteen at a time, a column each.
@@ -113,6 +120,7 @@ struct Slice {
   std::vector<Part> parts;
   std::size_t triangles = 0;                 ///< triangles of all parts
   bool is_lines = false;                     ///< the triangles are lines
+  bool has_dots = false;                     ///< `dots` are what it draws
   std::vector<AssembledPrimitive> outlines;  ///< or primitives not for lanes: points, polygon modes; then of one part
 
   /// Range of the triangles' vertices: each is projected once. If the range is too wide, every corner is a vertex of
@@ -132,7 +140,8 @@ struct Slice {
   std::vector<Record> records;
   std::size_t record_count = 0;
   std::vector<LineSetup> lines;
-  std::vector<std::uint32_t> bin_first;    ///< into bin_records, one more than there are bins
+  std::vector<Dot> dots;                   ///< instead of records, if all primitives are such points: bin by bin
+  std::vector<std::uint32_t> bin_first;    ///< into bin_records or dots, one more than there are bins
   std::vector<std::uint32_t> bin_records;  ///< into records, by bin
   Signature state_signature;               ///< where bins are compared; likewise of each record
   std::vector<Signature> signatures;

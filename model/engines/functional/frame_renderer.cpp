@@ -5,6 +5,8 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <chrono>
 #include <cmath>
 #include <exception>
@@ -562,7 +564,11 @@ Signature FrameRenderer::signature_of_bin(std::size_t bin, const std::vector<con
     if (first == end) continue;
     if (before == nullptr || slice->state_signature != before->state_signature) hash.add(slice->state_signature);
     before = slice;
-    for (std::uint32_t i = first; i < end; ++i) hash.add(slice->signatures[slice->bin_records[i]]);
+    if (slice->has_dots)
+      for (const Dot& dot : std::span(slice->dots).subspan(first, end - first))
+        for (const std::uint64_t pair : std::bit_cast<std::array<std::uint64_t, 2>>(dot)) hash.add(pair);
+    else
+      for (std::uint32_t i = first; i < end; ++i) hash.add(slice->signatures[slice->bin_records[i]]);
   }
   return hash.signature();
 }

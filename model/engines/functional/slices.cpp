@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "../../draw_states.hpp"
+#include "../../host/smooth_raster.hpp"
 #include "../../packets/packet_words.hpp"
 #include "frame_renderer.hpp"
 
@@ -107,6 +108,26 @@ PixelBounds line_box(const LineSetup& line) {
   return {std::min(line.x, end_x), std::min(line.y, end_y), std::max(line.x, end_x), std::max(line.y, end_y)};
 }
 
+/// Whether a draw's primitives are points of one pixel each: smooth ones, and points that are no larger.
+bool are_all_dots(const DrawContext& context, const Widths& widths) {
+  if (widths.has_samples != 0) return false;
+  if (is_smooth(context.state, context.config)) return true;
+  return drawn_as(context.state, context.draw.topology) == PrimitiveType::point && context.state.point_size == 1 &&
+         context.state.point_shape == PointShape::square;
+}
+
+/// The points of such a draw, in order.
+void find_dots(const Outline& outline, std::vector<Dot>& dots) {
+  for (const SmoothPoint& pixel : outline.pixels)
+    dots.push_back({pixel.x, pixel.y, pixel.code[kDepthPlane], packed_channels(pixel.code)});
+  for (const PointPrimitive& point : outline.points) {
+    const SnappedVertex& at = point.drawn.at;
+    for (int y = point.box.top; y <= point.box.bottom; ++y)
+      for (int x = point.box.left; x <= point.box.right; ++x)
+        dots.push_back({x, y, at.depth(), packed_channels(at.code)});
+  }
+}
+
 /// Appends a line or point of the host side.
 void add_outline(Slice& slice, const Outline& outline, const Rect& rect, const Widths& widths, std::size_t room) {
   for (const Triangle& triangle : outline.triangles) add_triangle(slice, triangle, rect, widths, room);
@@ -145,6 +166,7 @@ void draw_line_slowly(const FrameContext& frame, Slice& slice, const Slice::Part
 
 void FrameRenderer::build(Slice& slice) const {
   slice.record_count = 0;
+  slice.has_dots = false;
   slice.lines.clear();
   if (!slice.outlines.empty()) {
     slice.vertices.clear();
@@ -167,7 +189,7 @@ void FrameRenderer::build(Slice& slice) const {
       slice.is_lines ? kernels_->cull_lines(frame, slice, draw_line_slowly) : kernels_->cull(frame, slice, draw_slowly);
     }
   }
-  fill_bins(slice);
+  if (!slice.has_dots) fill_bins(slice);
   if (compares_) sign(slice);
 }
 
@@ -216,11 +238,32 @@ void FrameRenderer::build_outlines(Slice& slice) const {
   VertexCache cache(0);
   Outline outline;
   std::uint32_t number = slice.parts.front().primitive;
+  static thread_local std::vector<Dot> dots;
+  dots.clear();
+  outline.keeps_pixels = are_all_dots(context, widths_);
   for (const AssembledPrimitive& assembled : slice.outlines) {
     outline.clear();
     geometry(context, widths_, cache, assembled, number++, slice.counters, outline);
-    add_outline(slice, outline, context.rect, widths_, 0);
+    outline.keeps_pixels ? find_dots(outline, dots) : add_outline(slice, outline, context.rect, widths_, 0);
   }
+  slice.has_dots = outline.keeps_pixels;
+  if (slice.has_dots) fill_bins(slice, dots);
+}
+
+/// The same as for records: a counting sort.
+void FrameRenderer::fill_bins(Slice& slice, const std::vector<Dot>& dots) const {
+  const auto bins = static_cast<std::size_t>(bins_x_) * static_cast<std::size_t>(bins_y_);
+  const auto bin_of = [in_row = bins_x_](const Dot& dot) {
+    return static_cast<std::size_t>((dot.y >> kBinShift) * in_row + (dot.x >> kBinShift));
+  };
+  slice.bin_first.assign(bins + 1, 0);
+  std::uint32_t* const first = slice.bin_first.data();
+  for (const Dot& dot : dots) ++first[bin_of(dot) + 1];
+  for (std::size_t bin = 0; bin < bins; ++bin) first[bin + 1] += first[bin];
+  slice.dots.resize(dots.size());
+  static thread_local std::vector<std::uint32_t> next;
+  next.assign(first, first + bins);
+  for (const Dot& dot : dots) slice.dots[next[bin_of(dot)]++] = dot;
 }
 
 /// The records of each bin, in order: a counting sort of runs. Most records lie in one bin, that of the record before.

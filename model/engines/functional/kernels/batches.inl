@@ -39,8 +39,8 @@ HALFPLANE_NOINLINE void draw_loaded(Bin& bin, const Slice& slice) {
   }
   if (bin.is_operated()) {
     operate_on_all_waiting(bin, tiles);
-    if (bin.batch_surface > static_cast<std::int32_t>(BinMemory::kFirstPiece))
-      --bin.group_count;  // nobody waits for it
+    const bool is_group = bin.sees_surfaces() && bin.batch_surface > static_cast<std::int32_t>(BinMemory::kFirstPiece);
+    if (is_group) --bin.group_count;  // nobody waits for it
   } else if (bin.sees_surfaces() && !bin.skip.attributes) {
     shade_tiles(bin, tiles);
   }

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "bin.inl"
-#include "dots.inl"
 #include "fragments.inl"
 #include "lines.inl"
 #include "setup.inl"
@@ -68,10 +67,6 @@ HALFPLANE_NOINLINE void draw_records_general(Bin& bin, const Slice& slice, const
       continue;
     }
     draw_lines<GeneralFragments>(bin, slice);
-    if (is_dot(bin, slice, record)) {
-      first = draw_dots<GeneralFragments>(bin, slice, first, last) - 1;
-      continue;
-    }
     BinTriangle triangle;
     triangle.box = box_of(bin, record);
     triangle.is_whole = false;

@@ -18,6 +18,7 @@
 #include "bin.inl"
 #include "cutouts.inl"
 #include "deferred.inl"
+#include "dots.inl"
 #include "finish.inl"
 #include "fragments.inl"
 #include "general.inl"
@@ -181,13 +182,6 @@ void draw_records(Bin& bin, const Slice& slice, const std::uint32_t* first, cons
       if (bin.lines.add(record) || !slice.is_lines) draw_lines<Fragments>(bin, slice);
       continue;
     }
-    if (Fragments::kIsOpaque && !bin.has_operations && is_dot(bin, slice, record)) {
-      bin.small_run = 0;
-      draw_batch<Fragments>(bin, slice);
-      draw_lines<Fragments>(bin, slice);
-      first = draw_dots<Fragments>(bin, slice, first - 1, last);
-      continue;
-    }
     const BinBounds box = box_of(bin, record);
     const std::uint64_t live = seen_tiles<Fragments>(bin, record, box);
     if (live == 0) continue;
@@ -246,7 +240,7 @@ enum class RecordWay {
   laid_over,  ///< only blended by alpha
   killed,     ///< fails the alpha test
   operated,   ///< full operations.inl
-  general     ///< lines and dots, one fragment after the other
+  general     ///< lines, one fragment after the other
 };
 
 struct RecordWays {
@@ -275,7 +269,6 @@ struct RecordWays {
 
   HALFPLANE_INLINE RecordWay operator()(const Bin& bin, const Record& record) const {
     const RecordKind kind = record.kind();
-    if (is_dot(bin, slice, record)) return RecordWay::general;
     const bool is_line = kind == RecordKind::whole_line || kind == RecordKind::cut_line;
     const RecordWay otherwise = is_line ? RecordWay::general : RecordWay::operated;
     if (ops.stencil) return otherwise;
@@ -353,6 +346,15 @@ HALFPLANE_NOINLINE void draw_records_by_way(Bin& bin, const Slice& slice, const 
   }
 }
 
+/// Dots of one slice.
+HALFPLANE_INLINE void draw_dots(Bin& bin, const Slice& slice, std::uint32_t begin, std::uint32_t end) {
+  const Dot *const first = slice.dots.data() + begin, *const last = slice.dots.data() + end;
+  bin.line_tiles = 0;
+  bin.closed_from = Bin::kOpen;
+  if (!bin.state.is_opaque) return draw_dots<GeneralFragments>(bin, first, last);
+  draw_dots<OpaqueFragments<false>>(bin, first, last);
+}
+
 /// Bin::compute_deferred.
 HALFPLANE_NOINLINE void compute_deferred_colors(Bin& bin, int tile) {
   const std::int32_t owner = bin.color_owner[tile];
@@ -368,9 +370,8 @@ static void raster(BinJob& job) {
   const auto number = static_cast<std::size_t>(job.bin);
   for (const Slice* const at : job.slices) {
     const Slice& slice = *at;
-    const std::uint32_t* first = slice.bin_records.data() + slice.bin_first[number];
-    const std::uint32_t* last = slice.bin_records.data() + slice.bin_first[number + 1];
-    if (first == last) continue;
+    const std::uint32_t begin = slice.bin_first[number], end = slice.bin_first[number + 1];
+    if (begin == end) continue;
     bin.state = slice.state;
     bin.ops = &slice.context->fragment_ops;
     bin.packing = bin.packing_of(*bin.ops);
@@ -378,6 +379,11 @@ static void raster(BinJob& job) {
     bin.is_range_old = true;
     bin.falls = bin.state.depth_test == DepthFunc::less || bin.state.depth_test == DepthFunc::lequal;
     bin.rises = bin.state.depth_test == DepthFunc::greater || bin.state.depth_test == DepthFunc::gequal;
+    if (slice.has_dots) {
+      draw_dots(bin, slice, begin, end);
+      continue;
+    }
+    const std::uint32_t *const first = slice.bin_records.data() + begin, *const last = slice.bin_records.data() + end;
     if (bin.state.is_opaque)
       draw_records(bin, slice, first, last);
     else if (job.frame.takes_one_by_one)
