@@ -9,6 +9,7 @@
 #include "config.hpp"
 #include "draw_states.hpp"
 #include "known_textures.hpp"
+#include "vertex_bounds.hpp"
 
 namespace halfplane {
 namespace {
@@ -40,6 +41,11 @@ bool is_color(const std::array<double, 4>& rgba) {
 
 void check_vertices(const Scene& scene, const Place& place) {
   if (scene.vertices.size() >= kRestart) place.fail("more vertices than indices can name; give fewer than 4294967295");
+  VertexNumbers low, high;
+  std::size_t number = 0;
+  for (const VertexPart& part : kVertexParts)
+    for (; number < part.end; ++number) low[number] = part.low, high[number] = part.high;
+  if (are_within(scene.vertices, low, high)) return;
   for (std::size_t i = 0; i < scene.vertices.size(); ++i) {
     const VertexPart* const part = part_out_of_bounds(numbers_of(scene.vertices[i]));
     if (part == nullptr) continue;
@@ -128,7 +134,11 @@ void check_draw(const Scene& scene, std::size_t command, const Draw& draw, const
   if (draw.first > indices || draw.count > indices - draw.first)
     fail("indices " + std::to_string(draw.first) + " and " + std::to_string(draw.count) + " more, but there are " +
          std::to_string(indices));
-  for (const std::uint32_t index : std::span(scene.indices).subspan(draw.first, draw.count))
+  const auto named = std::span(scene.indices).subspan(draw.first, draw.count);
+  std::uint32_t largest = 0;  // without an early end, so that the compiler takes indices in lanes
+  for (const std::uint32_t index : named) largest = std::max(largest, index == kRestart ? 0 : index);
+  if (largest < scene.vertices.size() || named.empty()) return;
+  for (const std::uint32_t index : named)
     if (index >= scene.vertices.size() && index != kRestart)
       fail("index " + std::to_string(index) + ", but there are " + std::to_string(scene.vertices.size()) + " vertices");
 }

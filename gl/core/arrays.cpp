@@ -98,11 +98,12 @@ struct Stream {
   [[nodiscard]] std::size_t elements() const {
     return read == nullptr || memory.bytes < element_bytes ? 0 : (memory.bytes - element_bytes) / stride + 1;
   }
-  /// Leaves `to` as it is for elements beyond the end of a buffer.
-  void get(std::uint32_t i, double* to) const {
-    if (read == nullptr) return;
+  /// 0 0 0 1 for elements beyond the end of a buffer, as far as `to` has numbers.
+  void get(std::uint32_t i, double* to, std::size_t numbers) const {
     const std::byte* const from = memory.at(i * stride, element_bytes);
-    if (from != nullptr) read(from, size, to);
+    if (from != nullptr) return read(from, size, to);
+    constexpr Vec4 kNone{0, 0, 0, 1};
+    std::copy_n(kNone.begin(), numbers, to);
   }
 };
 
@@ -131,7 +132,7 @@ struct Streams {
       const Stream& from = stream[static_cast<std::size_t>(array) + unit];
       if (from.read == nullptr) return;
       Vec4 value{0, 0, 0, 1};
-      from.get(i, value.data());
+      from.get(i, value.data(), value.size());
       command(value);
     };
     constexpr auto kAllowed = InsideBegin::allowed;
@@ -144,7 +145,10 @@ struct Streams {
       };
       with(Array::tex_coord, command, unit);
     }
-    with(Array::point_size, [&](const Vec4& v) { context.state.point.size = v[0]; });
+    with(Array::point_size, [&](const Vec4& v) {
+      context.state.point.size = v[0];
+      if (context.inside_begin()) context.input.set(Attribute::point_size, std::array{v[0]});
+    });
     with(Array::fog_coord, [&](const Vec4& v) { issue<&gl::fog_coord, kAllowed>(context, v[0]); });
     with(Array::index, [&](const Vec4& v) { issue<&gl::index, kAllowed>(context, v[0]); });
     with(Array::secondary_color,
@@ -153,17 +157,57 @@ struct Streams {
     with(Array::normal, [&](const Vec4& v) { issue<&gl::normal, kAllowed>(context, v[0], v[1], v[2]); });
   }
 
-  [[nodiscard]] Vec4 position(std::uint32_t i) const {
-    Vec4 value{0, 0, 0, 1};
-    (*this)[Array::vertex].get(i, value.data());
-    return value;
-  }
   void issue_vertex(Context& context, std::uint32_t i) const {
     issue_attributes(context, i);
     if ((*this)[Array::vertex].read == nullptr) return;
-    const auto& [x, y, z, w] = position(i);
+    Vec4 position{0, 0, 0, 1};
+    (*this)[Array::vertex].get(i, position.data(), position.size());
+    const auto& [x, y, z, w] = position;
     issue<&gl::vertex, InsideBegin::allowed>(context, x, y, z, w);
   }
+};
+
+/// Elements of the arrays as vertices of Context::input, whose other attributes are the current ones.
+class ElementReader {
+ public:
+  ElementReader(const Streams& streams, Context& context) : input_(context.input) {
+    input_.begin(context.state);
+    // An index has no column: it colours nothing.
+    constexpr std::array<std::pair<Array, Attribute>, 8> kColumns{{{Array::vertex, Attribute::position},
+                                                                   {Array::normal, Attribute::normal},
+                                                                   {Array::color, Attribute::color},
+                                                                   {Array::secondary_color, Attribute::secondary},
+                                                                   {Array::edge_flag, Attribute::edge_flag},
+                                                                   {Array::fog_coord, Attribute::fog_coord},
+                                                                   {Array::point_size, Attribute::point_size},
+                                                                   {Array::tex_coord, Attribute::tex_coord}}};
+    for (const auto& [array, attribute] : kColumns)
+      for (std::size_t unit = 0; unit < (array == Array::tex_coord ? kTextureUnits : 1); ++unit) {
+        const Stream& stream = streams.stream[static_cast<std::size_t>(array) + unit];
+        if (stream.read == nullptr) continue;
+        const std::size_t which = static_cast<std::size_t>(attribute) + unit;
+        const std::size_t numbers = kInputNumber[which + 1] - kInputNumber[which];
+        if (attribute != Attribute::position) input_.vary(which);
+        double* const to = input_.next(kInputNumber[which]);
+        constexpr Vec4 kMissing{0, 0, 0, 1};  // of arrays with fewer numbers
+        std::copy_n(kMissing.begin(), numbers, to);
+        part_[parts_++] = {&stream, to, numbers};
+      }
+  }
+  void add(std::uint32_t element) const {
+    for (const Part& part : std::span(part_).first(parts_)) part.from->get(element, part.to, part.numbers);
+    input_.add();
+  }
+
+ private:
+  struct Part {
+    const Stream* from;
+    double* to;
+    std::size_t numbers;
+  };
+  InputVertices& input_;
+  std::array<Part, kAttributes> part_;
+  std::size_t parts_ = 0;
 };
 
 /// A draw's errors; false: it has one. Within glBegin and glEnd a list takes it, and it is refused when it is played.
@@ -198,6 +242,7 @@ std::shared_ptr<const DisplayList> compiled(Context& context, const Streams& str
   issue<&end, InsideBegin::allowed>(context);
   context.compiling = outer;
   context.compiles_and_executes = executes;
+  list->join_vertices();
   return list;
 }
 
@@ -209,18 +254,14 @@ void draw(Context& context, const Streams& streams, GLenum mode, std::uint32_t f
   if (context.compiling != nullptr) return issue<&play>(context, compiled(context, streams, mode, first, indices));
   if (indices.empty()) return;
   update_shading(context);
-  const CurrentKept kept(context);
-  context.vertices.clear();
-  const auto shade_element = [&](std::uint32_t i) {
-    streams.issue_attributes(context, first + i);
-    shade_current(context, streams.position(first + i), context.vertices.emplace_back());
-  };
+  context.shaded.clear();
+  const ElementReader reader(streams, context);
   // The place of each element of the range; a sparse range is shaded index by index instead.
   constexpr auto kNowhere = std::numeric_limits<std::uint32_t>::max();
   const auto [low, high] = std::ranges::minmax(are_distinct ? indices.first(1) : indices);
   if (are_distinct || (high - low) / 8 > indices.size()) {
-    for (const std::uint32_t i : indices) shade_element(i);
-    return draw_primitives(context, mode, context.vertices, counting(indices.size()));
+    for (const std::uint32_t i : indices) reader.add(first + i);
+    return draw_vertices(context, mode, context.input, context.input.values(), counting(indices.size()));
   }
   thread_local std::vector<std::uint32_t> place, placed;
   place.assign(std::size_t{high} - low + 1, kNowhere);
@@ -228,12 +269,12 @@ void draw(Context& context, const Streams& streams, GLenum mode, std::uint32_t f
   for (const std::uint32_t i : indices) {
     std::uint32_t& at = place[i - low];
     if (at == kNowhere) {
-      at = static_cast<std::uint32_t>(context.vertices.size());
-      shade_element(i);
+      at = static_cast<std::uint32_t>(context.input.size());
+      reader.add(first + i);
     }
     placed.push_back(at);
   }
-  draw_primitives(context, mode, context.vertices, placed);
+  draw_vertices(context, mode, context.input, context.input.values(), placed);
 }
 
 /// Names that are not in use; they are from now on.

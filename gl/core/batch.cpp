@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "../../model/attributes.hpp"
@@ -10,6 +11,7 @@
 #include "context.hpp"
 #include "host_shader.hpp"
 #include "matrix.hpp"
+#include "shade_kernels.hpp"
 
 namespace halfplane::gl {
 namespace {
@@ -29,7 +31,7 @@ const DrawSetup::OfKind& setup_of(Context& context, DrawSetup& setup, DrawKind k
 /// Draws vertices in their first colour.
 class Batch {
  public:
-  Batch(Context& context, const BatchKind& group, std::span<const ShadedVertex> vertices,
+  Batch(Context& context, const BatchKind& group, const ShadedVertices& vertices,
         std::span<const std::uint32_t> indices, const BatchTraits& traits)
       : context_(context), group_(group), vertices_(vertices), indices_(indices), traits_(traits) {}
 
@@ -52,7 +54,8 @@ class Batch {
     has_host_fog_ = fog.enabled && !(state_.fog && traits_.is_fogged_by_w);
     if (has_host_fog_) state_.fog.reset();
     if (group_.is_shaded)
-      return draw_shaded(context_, state_, vertices_, {.has_fog = has_host_fog_, .is_stippled = group_.is_stippled});
+      return draw_shaded(context_, state_, vertices_.rows(),
+                         {.has_fog = has_host_fog_, .is_stippled = group_.is_stippled});
     if (has_host_fog_ && traits_.has_one_color) state_.shade = Shade::smooth;  // fog has not one colour
     const bool colors_differ = !traits_.has_one_color || (has_host_fog_ && !is_textured_);
     // As exact, and hardware of any configuration has it.
@@ -63,9 +66,7 @@ class Batch {
       missing("colours over w", "they are affine in the window; perspective.colors=1 has them");
       state_.color_interp = ColorInterp::affine;
     }
-    place();
-    paint([this](const ShadedVertex& v) { return main_color(v); });
-    draw_in(context_, state_, group_.topology, model_, indices_);
+    draw_in(context_, state_, group_.topology, model_vertices(), indices_);
   }
 
  private:
@@ -88,50 +89,71 @@ class Batch {
     cut.y = std::min(cut.y, kLargestViewport);
   }
 
+  /// Numbers of the model's vertices, in their order, in columns as those of ShadedVertices.
+  using ModelBlock = std::array<Column, VertexNumbers().size()>;
+  static constexpr std::size_t kModelColor = 4, kModelU = 8, kModelV = 9;
+
+  [[nodiscard]] std::span<Vertex> model_vertices() const {
+    const std::span<Vertex> model = scratch<Vertex>(vertices_.size());  // one batch is drawn at a time
+    std::size_t at = 0;
+    ModelBlock to{};
+    for (const ShadedVertices::Block& from : vertices_.blocks()) {
+      place(from, to);
+      paint(from, to);
+      for (std::size_t lane = 0; lane < std::min(kVertexLanes, model.size() - at); ++lane) {
+        VertexNumbers numbers;
+        for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = to[i][lane];
+        model[at + lane] = vertex_of(numbers);
+      }
+      at += kVertexLanes;
+    }
+    return model;
+  }
+
   /// Positions and texture coordinates. Where q differs, x y z w divided by q are the same place, and what is interpolated
   /// over w / q is the projected coordinate.
-  void place() {
-    const bool divides_w = is_textured_ && !traits_.has_one_q && traits_.has_positive_q;
-    model_.reserve(vertices_.size());
-    for (const ShadedVertex& v : vertices_) {
-      Vec4 at = v.clip;
-      const Vec4& tex = v.tex_coord[unit_];
-      const double q = tex[3] > 0 || (traits_.has_one_q && tex[3] != 0) ? tex[3] : 1;
-      if (divides_w)
-        for (std::size_t c = group_.is_window ? 3 : 0; c < 4; ++c) at[c] /= q;
-      Vertex& out = model_.emplace_back();
-      out.x = at[0], out.y = at[1], out.z = at[2], out.w = at[3];
-      if (group_.is_stippled) {
-        out.u = at[0] / 32, out.v = at[1] / 32;
-      } else if (is_textured_) {
-        out.u = tex[0] / q, out.v = tex[1] / q;
-        if (!std::isfinite(out.u)) out.u = 0;
-        if (!std::isfinite(out.v)) out.v = 0;
+  void place(const ShadedVertices::Block& from, ModelBlock& to) const {
+    for (std::size_t c = 0; c < 4; ++c) to[c] = from[ShadedVertices::kClip + c];
+    if (group_.is_stippled)
+      for (std::size_t c = 0; c < 2; ++c)
+        for (std::size_t i = 0; i < kVertexLanes; ++i) to[kModelU + c][i] = to[c][i] / 32;
+    if (!is_textured_) return;
+    const Column* const tex = &from[ShadedVertices::kTexCoord + 4 * unit_];
+    Column q;
+    for (std::size_t i = 0; i < kVertexLanes; ++i)
+      q[i] = tex[3][i] > 0 || (traits_.has_one_q && tex[3][i] != 0) ? tex[3][i] : 1;
+    if (!traits_.has_one_q && traits_.has_positive_q)
+      for (std::size_t c = group_.is_window ? 3 : 0; c < 4; ++c)
+        for (std::size_t i = 0; i < kVertexLanes; ++i) to[c][i] /= q[i];
+    if (group_.is_stippled) return;
+    for (std::size_t c = 0; c < 2; ++c)
+      for (std::size_t i = 0; i < kVertexLanes; ++i) {
+        const double coordinate = tex[c][i] / q[i];
+        to[kModelU + c][i] = std::abs(coordinate) <= std::numeric_limits<double>::max() ? coordinate : 0;
       }
-    }
   }
 
-  template <class ColorOf>
-  void paint(const ColorOf& color_of) {
-    for (std::size_t i = 0; i < vertices_.size(); ++i) {
-      const Vec4 color = color_of(vertices_[i]);
-      for (std::size_t c = 0; c < 4; ++c) model_[i].rgba[c] = 255 * held(color[c]);
-    }
-  }
-
-  [[nodiscard]] Vec4 main_color(const ShadedVertex& v) const {
-    Vec4 color = v.color[0];
+  void paint(const ShadedVertices::Block& from, ModelBlock& to) const {
     const Vec4& fog = context_.state.fog.color;
-    const double f = has_host_fog_ && !is_textured_ ? fog_factor(context_.state.fog, v.fog_distance) : 1;
-    for (std::size_t c = 0; c < 3; ++c) {
-      if (!is_textured_) color[c] = held(color[c] + v.secondary[0][c]);
-      if (f < 1) color[c] = f * color[c] + (1 - f) * fog[c];
-      if (is_textured_ && use_.replaces_rgb) color[c] = 1;
+    Column factor;
+    const bool is_fogged = has_host_fog_ && !is_textured_;
+    if (is_fogged)
+      for (std::size_t i = 0; i < kVertexLanes; ++i)
+        factor[i] = fog_factor(context_.state.fog, from[ShadedVertices::kFogDistance][i]);
+    for (std::size_t c = 0; c < 4; ++c) {
+      Column& channel = to[kModelColor + c];
+      channel = from[ShadedVertices::kColor + c];
+      if (c < 3 && !is_textured_)
+        for (std::size_t i = 0; i < kVertexLanes; ++i)
+          channel[i] = held(channel[i] + from[ShadedVertices::kSecondary + c][i]);
+      if (c < 3 && is_fogged)
+        for (std::size_t i = 0; i < kVertexLanes; ++i)
+          if (factor[i] < 1) channel[i] = factor[i] * channel[i] + (1 - factor[i]) * fog[c];
+      if (is_textured_ && (c < 3 ? use_.replaces_rgb : use_.replaces_alpha)) channel.fill(1);
+      // A texel of the stipple is alpha: this one must tell it from none.
+      const double least = c == 3 && group_.is_stippled ? 1 / 255.0 : 0;
+      for (double& value : channel) value = 255 * held(value, least);
     }
-    if (is_textured_ && use_.replaces_alpha) color[3] = 1;
-    // A texel of the stipple is alpha: this one must tell it from none.
-    if (group_.is_stippled && color[3] < 1 / 255.0) color[3] = 1 / 255.0;
-    return color;
   }
 
   /// The pattern as a texture over the window, whose zeros the alpha test drops.
@@ -160,32 +182,19 @@ class Batch {
 
   Context& context_;
   BatchKind group_;
-  std::span<const ShadedVertex> vertices_;
+  const ShadedVertices& vertices_;
   std::span<const std::uint32_t> indices_;
   BatchTraits traits_;
   std::size_t unit_ = 0;  ///< DrawSetup::unit
   halfplane::State state_;
   TextureUse use_;
   bool is_textured_ = false, has_host_fog_ = false;
-  std::vector<Vertex>& model_ = empty_scratch<Vertex>();  // one batch is drawn at a time
 };
 
 }  // namespace
 
-BatchTraits traits_of(std::span<const ShadedVertex> vertices, std::size_t unit) {
-  BatchTraits traits;
-  const ShadedVertex& first = vertices.front();
-  for (const ShadedVertex& v : vertices) {
-    if (traits.has_one_color)
-      traits.has_one_color = v.color[0] == first.color[0] && v.secondary[0] == first.secondary[0];
-    traits.has_one_w &= v.clip[3] == first.clip[3];
-    traits.has_one_q &= v.tex_coord[unit][3] == first.tex_coord[unit][3];
-    traits.has_positive_q &= v.tex_coord[unit][3] > 0;
-    for (std::size_t c = 0; c < 3; ++c) traits.has_secondary |= v.secondary[0][c] != 0;
-    traits.is_fogged_by_w &= std::abs(std::abs(v.clip[3]) - v.fog_distance) <= 1e-6 * v.fog_distance;
-    traits.is_two_sided |= v.color[0] != v.color[1] || v.secondary[0] != v.secondary[1];
-  }
-  return traits;
+BatchTraits traits_of(const ShadedVertices& vertices, std::size_t unit) {
+  return shade_kernels().traits(vertices.blocks(), unit);
 }
 
 DrawSetup& draw_setup(Context& context) {
@@ -224,7 +233,7 @@ bool fog_bends(const FogState& fog, const ShadedVertex& a, const ShadedVertex& b
   return std::abs(fog_factor(fog, a.fog_distance) - fog_factor(fog, b.fog_distance)) > kMost;
 }
 
-void draw_batch(Context& context, const BatchKind& group, std::span<const ShadedVertex> vertices,
+void draw_batch(Context& context, const BatchKind& group, const ShadedVertices& vertices,
                 std::span<const std::uint32_t> indices, const BatchTraits& traits) {
   if (!vertices.empty() && !indices.empty()) Batch(context, group, vertices, indices, traits).draw();
 }

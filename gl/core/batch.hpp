@@ -30,7 +30,7 @@ struct BatchTraits {
   bool is_two_sided = false;   ///< the back has other colours
 };
 /// `unit`: DrawSetup::unit.
-[[nodiscard]] BatchTraits traits_of(std::span<const ShadedVertex> vertices, std::size_t unit);
+[[nodiscard]] BatchTraits traits_of(const ShadedVertices& vertices, std::size_t unit);
 
 /// What the context's state says of draws, found once for each Context::revision and Frame::revision().
 struct DrawSetup {
@@ -57,6 +57,14 @@ std::vector<Element>& empty_scratch() {
   return elements;
 }
 
+/// `count` elements of it, whatever their values.
+template <class Element>
+std::span<Element> scratch(std::size_t count) {
+  thread_local std::vector<Element> elements;
+  if (elements.size() < count) elements.resize(count);
+  return {elements.data(), count};
+}
+
 /// Why the host has to shade the fragments of such vertices; null: the model's units have all that it takes.
 [[nodiscard]] const char* why_shaded(Context& context, const BatchTraits& traits);
 
@@ -64,7 +72,7 @@ std::vector<Element>& empty_scratch() {
 [[nodiscard]] bool fog_bends(const FogState& fog, const ShadedVertex& a, const ShadedVertex& b);
 
 /// Draws vertices in their first colour.
-void draw_batch(Context& context, const BatchKind& group, std::span<const ShadedVertex> vertices,
+void draw_batch(Context& context, const BatchKind& group, const ShadedVertices& vertices,
                 std::span<const std::uint32_t> indices, const BatchTraits& traits);
 
 }  // namespace halfplane::gl

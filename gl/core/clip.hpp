@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "../../model/host/clip.hpp"
-#include "shade.hpp"
+#include "vertices.hpp"
 
 namespace halfplane::gl {
 

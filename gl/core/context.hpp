@@ -11,8 +11,8 @@
 
 #include "frame.hpp"
 #include "objects.hpp"
-#include "shade.hpp"
 #include "state.hpp"
+#include "vertices.hpp"
 
 namespace halfplane::gl {
 
@@ -70,7 +70,8 @@ struct Query {
   std::uint64_t begun_at = 0, samples = 0;
 };
 
-struct DrawSetup;  // batch.hpp
+struct DrawSetup;         // batch.hpp
+struct ShadingConstants;  // shading.hpp
 
 struct Context {
   explicit Context(std::shared_ptr<SharedObjects> shared_objects = std::make_shared<SharedObjects>());
@@ -100,13 +101,14 @@ struct Context {
   // Between glBegin and glEnd (vertex.cpp).
   static constexpr GLenum kNoPrimitive = ~0U;
   GLenum primitive = kNoPrimitive;
-  std::vector<ShadedVertex> vertices;
+  InputVertices input;    ///< the vertices since glBegin
+  ShadedVertices shaded;  ///< those of them that are shaded
   [[nodiscard]] bool inside_begin() const { return primitive != kNoPrimitive; }
 
   /// Raised by every command that is not a vertex or an attribute of one, so that values derived from state are computed once.
   std::uint64_t revision = 1;
-  std::unique_ptr<ShadingConstants, ShadingConstantsDeleter> shading;  ///< shade.cpp
-  std::shared_ptr<DrawSetup> draw_setup;                               ///< batch.cpp
+  std::shared_ptr<ShadingConstants> shading;  ///< shade.cpp
+  std::shared_ptr<DrawSetup> draw_setup;      ///< batch.cpp
 
   std::map<GLenum, EvaluatorMap> maps;              ///< by GL_MAP1_... and GL_MAP2_...
   std::map<GLenum, std::vector<float>> pixel_maps;  ///< by GL_PIXEL_MAP_...

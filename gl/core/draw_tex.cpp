@@ -40,7 +40,7 @@ void draw_tex(Context& context, double x, double y, double z, double width, doub
   context.state.transform.clip_enabled = {};
   ++context.revision;
   constexpr std::array<std::uint32_t, 4> kCorners{0, 1, 2, 3};
-  draw_primitives(context, GL_TRIANGLE_FAN, corners, kCorners);
+  draw_primitives(context, GL_TRIANGLE_FAN, ShadedVertices(corners), kCorners);
   context.state = saved;
   ++context.revision;
 }

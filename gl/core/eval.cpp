@@ -100,12 +100,14 @@ void eval_coord(Context& context, GLenum first_target, const std::array<bool, kK
   if (enabled[kIndex]) index(context, point_of(kIndex).value[0]);
   for (std::size_t kind = kTexture4; kind >= kTexture1; --kind)
     if (enabled[kind]) {
-      context.state.current.tex_coord[0] = point_of(kind).value;
+      const auto& [s, t, r, q] = point_of(kind).value;
+      tex_coord(context, GL_TEXTURE0, s, t, r, q);
       break;
     }
   const Point point = point_of(enabled[kVertex4] ? kVertex4 : kVertex3);
   if (is_map2(first_target) && context.state.eval.auto_normal) {
-    context.state.current.normal = normal_of(point);
+    const auto& [nx, ny, nz] = normal_of(point);
+    normal(context, nx, ny, nz);
   } else if (enabled[kNormal]) {
     const Vec4 value = point_of(kNormal).value;
     normal(context, value[0], value[1], value[2]);

@@ -11,6 +11,7 @@
 #include "../../model/host/clip.hpp"
 #include "../../model/host/primitives.hpp"
 #include "../../model/stages/surface.hpp"
+#include "../../model/vertex_bounds.hpp"
 #include "frame_memory.hpp"
 
 namespace halfplane::gl {
@@ -174,30 +175,35 @@ void Frame::Memory::draw(const halfplane::State& state, Topology topology, std::
   const std::uint32_t number = state_number(state);
   if (!takes(number, topology)) return;
   kind = kind_of(state);
+  std::uint32_t largest = 0;
+  bool restarts = false;
+  for (const std::uint32_t index : indices) {
+    largest = std::max(largest, index == kRestart ? 0 : index);
+    restarts |= index == kRestart;
+  }
+  if (largest >= vertices.size()) return say_once("not drawn: an index without a vertex");
+
   const auto first_vertex = static_cast<std::uint32_t>(scene.vertices.size());
   Draw draw{.state = number, .topology = topology, .first = scene.indices.size(), .count = indices.size()};
-  constexpr double kPlain = 1e6;  // coordinates that nothing can go wrong with
-  const double band = state.space == Space::window ? std::min(kPlain, guard_band_limit(config) - 1) : kPlain;
-  const bool needs_w = state.space == Space::window && has_surface(state);
-  bool is_plain = true;
+  for (const std::uint32_t index : indices) scene.indices.push_back(index == kRestart ? index : first_vertex + index);
   scene.vertices.insert(scene.vertices.end(), vertices.begin(), vertices.end());
-  for (Vertex& vertex : std::span(scene.vertices).subspan(first_vertex)) {
-    if (state.space == Space::window) vertex.z = within(vertex.z, 0, 1);
-    for (double& channel : vertex.rgba) channel = within(channel, 0, 255);
-    for (double* coordinate : {&vertex.u, &vertex.v})
-      if (!std::isfinite(*coordinate)) *coordinate = 0;
-    is_plain &= std::abs(vertex.x) <= band && std::abs(vertex.y) <= band && std::abs(vertex.z) <= kPlain &&
-                std::abs(vertex.w) <= kPlain && (!needs_w || vertex.w > 0);
-  }
-  for (const std::uint32_t index : indices) {
-    if (index != kRestart && index >= vertices.size()) {
-      scene.vertices.resize(first_vertex);
-      scene.indices.resize(draw.first);
-      return say_once("not drawn: an index without a vertex");
+  bool is_plain = !restarts || !is_list(topology);
+
+  constexpr double kPlain = 1e6;  // coordinates that nothing can go wrong with
+  constexpr double kMost = std::numeric_limits<double>::max(), kLeast = std::numeric_limits<double>::denorm_min();
+  const bool is_window = state.space == Space::window, needs_w = is_window && has_surface(state);
+  const double band = is_window ? std::min(kPlain, guard_band_limit(config) - 1) : kPlain;
+  if (!are_within(vertices,
+                  {-band, -band, is_window ? 0 : -kPlain, needs_w ? kLeast : -kPlain, 0, 0, 0, 0, -kMost, -kMost},
+                  {band, band, is_window ? 1 : kPlain, kPlain, 255, 255, 255, 255, kMost, kMost}))
+    for (Vertex& vertex : std::span(scene.vertices).subspan(first_vertex)) {
+      if (is_window) vertex.z = within(vertex.z, 0, 1);
+      for (double& channel : vertex.rgba) channel = within(channel, 0, 255);
+      for (double* coordinate : {&vertex.u, &vertex.v})
+        if (!std::isfinite(*coordinate)) *coordinate = 0;
+      is_plain &= std::abs(vertex.x) <= band && std::abs(vertex.y) <= band && std::abs(vertex.z) <= kPlain &&
+                  std::abs(vertex.w) <= kPlain && (!needs_w || vertex.w > 0);
     }
-    is_plain &= index != kRestart || !is_list(topology);
-    scene.indices.push_back(index == kRestart ? index : first_vertex + index);
-  }
   if (!is_plain) draw = as_list(draw, true);
   // A scene must not hold coordinates that are not finite, even undrawn ones.
   if (!is_plain)

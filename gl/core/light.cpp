@@ -116,13 +116,13 @@ void light_model(Context& context, GLenum pname, Params params) {
 void material(Context& context, GLenum face, GLenum pname, Params params) {
   std::array<bool, 2> faces;
   if (!faces_of(context, face, faces)) return;
+  if (context.inside_begin()) shade_pending(context);
   for (std::size_t i = 0; i < 2; ++i) {
     if (!faces[i]) continue;
     Material& material = context.state.lighting.material[i];
     if (!set_parameter(context, material_place(material, pname), params)) return;
     if (pname == GL_AMBIENT_AND_DIFFUSE) material.diffuse = material.ambient;
   }
-  forget_lit(context);
   track_color(context);
 }
 
@@ -146,7 +146,6 @@ void color_material(Context& context, GLenum face, GLenum mode) {
 void track_color(Context& context) {
   LightingState& lighting = context.state.lighting;
   if (!lighting.color_material) return;
-  forget_lit(context);
   const Vec4& color = context.state.current.color;
   const GLenum face = lighting.color_material_face, mode = lighting.color_material_mode;
   for (std::size_t i = 0; i < 2; ++i) {

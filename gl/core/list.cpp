@@ -6,27 +6,69 @@
 #include <cstring>
 
 #include "entry_conversions.hpp"
+#include "primitive.hpp"
 
 namespace halfplane::gl {
 
-void* DisplayList::add(Play call, std::size_t bytes) {
+void* DisplayList::add(Play call, std::size_t bytes, CallKind kind) {
   const std::size_t padded = (bytes + kAlignment - 1) / kAlignment * kAlignment, at = calls_.size();
   calls_.resize(at + sizeof(Header) + padded);
-  new (&calls_[at]) Header{call, padded};
+  new (&calls_[at]) Header{call, static_cast<std::uint32_t>(padded), kind};
   return calls_.data() + at + sizeof(Header);
 }
 
 void DisplayList::play(Context& context) const {
   auto owned = owned_.begin();
   for (std::size_t at = 0; at < calls_.size();) {
-    const auto* header = reinterpret_cast<const Header*>(&calls_[at]);
-    at += sizeof(Header);
-    if (header->play != nullptr)
-      header->play(context, calls_.data() + at);
-    else
+    const Header& call = header(at);
+    const void* const arguments = calls_.data() + at + sizeof(Header);
+    at = after(at);
+    if (call.kind == CallKind::run) {
+      if (context.inside_begin()) continue;
+      const Run& run = *static_cast<const Run*>(arguments);
+      draw_run(context, runs_[run.which].mode, runs_[run.which].vertices);
+      at += run.bytes;
+    } else if (call.play != nullptr) {
+      call.play(context, arguments);
+    } else {
       (*owned++)(context);
-    at += header->bytes;
+    }
   }
+}
+
+std::optional<std::size_t> DisplayList::end_of_vertices(std::size_t at, Context& collector) const {
+  collector.primitive = Context::kNoPrimitive;
+  collector.error = GL_NO_ERROR;
+  for (; at < calls_.size(); at = after(at)) {
+    const CallKind kind = header(at).kind;
+    if (kind == CallKind::other || kind == CallKind::run) return std::nullopt;
+    if (kind == CallKind::end) break;
+    header(at).play(collector, calls_.data() + at + sizeof(Header));
+  }
+  const bool is_whole = at < calls_.size() && collector.error == GL_NO_ERROR && collector.input.is_complete();
+  return is_whole ? std::optional(after(at)) : std::nullopt;
+}
+
+void DisplayList::join_vertices() {
+  DisplayList joined;
+  Context collector;
+  std::size_t copied = 0;
+  const auto copy_to = [&](std::size_t end) {
+    const auto at = [&](std::size_t place) { return calls_.begin() + static_cast<std::ptrdiff_t>(place); };
+    joined.calls_.insert(joined.calls_.end(), at(copied), at(end));
+    copied = end;
+  };
+  for (std::size_t at = 0; at < calls_.size();) {
+    const auto end = header(at).kind == CallKind::begin ? end_of_vertices(at, collector) : std::nullopt;
+    if (end) {
+      copy_to(at);
+      new (joined.add(nullptr, sizeof(Run), CallKind::run)) Run{runs_.size(), *end - at};
+      runs_.push_back({collector.primitive, collector.input});
+    }
+    at = end ? *end : after(at);
+  }
+  copy_to(calls_.size());
+  calls_ = std::move(joined.calls_);
 }
 
 void new_list(Context& context, GLuint name, GLenum mode) {
@@ -40,6 +82,7 @@ void new_list(Context& context, GLuint name, GLenum mode) {
 
 void end_list(Context& context) {
   if (context.compiling == nullptr) return context.fail(GL_INVALID_OPERATION);
+  context.compiling->join_vertices();
   const std::lock_guard lock(context.shared->mutex);
   context.shared->lists[context.compiling_name] = std::exchange(context.compiling, nullptr);
 }

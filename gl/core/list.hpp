@@ -5,19 +5,44 @@
 #include <cstdint>
 #include <functional>
 #include <new>
+#include <optional>
 #include <tuple>
 #include <type_traits>
 #include <vector>
 
+#include "commands.hpp"
 #include "context.hpp"
 
 namespace halfplane::gl {
+
+/// What a call is for DisplayList::join_vertices().
+enum class CallKind : std::uint32_t { other, begin, end, vertex_or_attribute, run };
+template <auto Command>
+inline constexpr CallKind kCallKind = CallKind::other;
+template <>
+inline constexpr CallKind kCallKind<&begin> = CallKind::begin;
+template <>
+inline constexpr CallKind kCallKind<&end> = CallKind::end;
+template <>
+inline constexpr CallKind kCallKind<&vertex> = CallKind::vertex_or_attribute;
+template <>
+inline constexpr CallKind kCallKind<&normal> = CallKind::vertex_or_attribute;
+template <>
+inline constexpr CallKind kCallKind<&color> = CallKind::vertex_or_attribute;
+template <>
+inline constexpr CallKind kCallKind<&secondary_color> = CallKind::vertex_or_attribute;
+template <>
+inline constexpr CallKind kCallKind<&tex_coord> = CallKind::vertex_or_attribute;
+template <>
+inline constexpr CallKind kCallKind<&fog_coord> = CallKind::vertex_or_attribute;
+template <>
+inline constexpr CallKind kCallKind<&edge_flag> = CallKind::vertex_or_attribute;
 
 /// A row of calls in memory, each a function and its arguments. Arguments that own memory (images, tables) lie apart.
 class DisplayList {
  public:
   template <auto Command, class... Args>
-  void record(const Args&... args) {
+  void record(CallKind kind, const Args&... args) {
     using Call = std::tuple<Args...>;
     if constexpr ((std::is_trivially_copyable_v<Args> && ...)) {
       static_assert(alignof(Call) <= kAlignment);
@@ -25,29 +50,48 @@ class DisplayList {
           [](Context& context, const void* call) {
             std::apply([&](const Args&... a) { Command(context, a...); }, *static_cast<const Call*>(call));
           },
-          sizeof(Call));
+          sizeof(Call), kind);
       new (at) Call(args...);
     } else {
       owned_.push_back([call = Call(args...)](Context& context) {
         std::apply([&](const Args&... a) { Command(context, a...); }, call);
       });
-      add(nullptr, 0);  // the next one of owned_
+      add(nullptr, 0, kind);  // the next one of owned_
     }
   }
   void play(Context& context) const;
+  /// Keeps the vertices between a glBegin and a glEnd as InputVertices, which are drawn at once where the calls would be
+  /// played. The calls stay for lists that are called within a primitive. To be called when the list is complete.
+  void join_vertices();
 
  private:
   static constexpr std::size_t kAlignment = 16;
   using Play = void (*)(Context&, const void*);
   struct alignas(kAlignment) Header {
     Play play;            ///< null: the next one of owned_
-    std::uint64_t bytes;  ///< of the arguments that follow it, a multiple of kAlignment
+    std::uint32_t bytes;  ///< of the arguments that follow it, a multiple of kAlignment
+    CallKind kind;
+  };
+  /// Arguments of CallKind::run, before the calls that it stands for.
+  struct alignas(kAlignment) Run {
+    std::size_t which;  ///< of runs_
+    std::size_t bytes;  ///< of the calls
+  };
+  struct JoinedVertices {
+    GLenum mode;
+    InputVertices vertices;
   };
   /// The place of the arguments. Valid until the next call.
-  void* add(Play play, std::size_t bytes);
+  void* add(Play play, std::size_t bytes, CallKind kind);
+  /// Collects the vertices of the glBegin at a place in `collector`. The place after its glEnd; none: there are other calls
+  /// between them, or an attribute that the first vertex takes from outside.
+  [[nodiscard]] std::optional<std::size_t> end_of_vertices(std::size_t at, Context& collector) const;
+  [[nodiscard]] const Header& header(std::size_t at) const { return *reinterpret_cast<const Header*>(&calls_[at]); }
+  [[nodiscard]] std::size_t after(std::size_t at) const { return at + sizeof(Header) + header(at).bytes; }
 
   std::vector<std::byte> calls_;
   std::vector<std::function<void(Context&)>> owned_;
+  std::vector<JoinedVertices> runs_;
 };
 
 /// Whether a command is refused or allowed between glBegin and glEnd.
@@ -66,7 +110,7 @@ void run(Context& context, const Args&... args) {
 template <auto Command, InsideBegin Inside = InsideBegin::refused, class... Args>
 void issue(Context& context, const Args&... args) {
   if (context.compiling != nullptr) {
-    context.compiling->record<&run<Command, Inside, Args...>>(args...);
+    context.compiling->record<&run<Command, Inside, Args...>>(kCallKind<Command>, args...);
     if (!context.compiles_and_executes) return;
   }
   run<Command, Inside>(context, args...);

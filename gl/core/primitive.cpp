@@ -54,7 +54,7 @@ class Pipeline {
   void add(const BatchKind& group, const Vertices& vertices) {
     if (group != group_) flush();
     group_ = group;
-    pending_.insert(pending_.end(), vertices.begin(), vertices.end());
+    for (const ShadedVertex& v : vertices) pending_.push_back(v);
   }
 
   /// Triangles of a polygon, each with the vertex `last` at its end.
@@ -260,7 +260,7 @@ class Pipeline {
   std::vector<Plane> user_planes_;
   std::uint64_t stipple_at_ = 0;  ///< pixels since the stipple was reset
   BatchKind group_;
-  Vertices pending_;
+  ShadedVertices pending_;
   std::vector<std::uint32_t> indices_;
 };
 
@@ -316,20 +316,7 @@ Shape shape_of(GLenum mode) {
 /// Whether polygons are filled, on both sides.
 bool is_filled(const PolygonState& polygon) { return polygon.mode == std::array<GLenum, 2>{GL_FILL, GL_FILL}; }
 
-/// Whether all vertices lie beyond one plane of the view volume.
-bool is_outside_view(std::span<const ShadedVertex> vertices) {
-  unsigned beyond = ~0U;
-  for (const ShadedVertex& v : vertices) {
-    const auto& [x, y, z, w] = v.clip;
-    unsigned of_vertex = 0;
-    for (const double c : {x, y, z}) of_vertex = of_vertex << 2 | (c < -w ? 2U : 0U) | (c > w ? 1U : 0U);
-    beyond &= of_vertex;
-    if (beyond == 0) return false;
-  }
-  return true;
-}
-
-bool is_taken_apart(Context& context, Shape shape, std::span<const ShadedVertex> vertices,
+bool is_taken_apart(Context& context, Shape shape, const ShadedVertices& vertices,
                     std::span<const std::uint32_t> indices, const BatchTraits& traits) {
   const gl::State& state = context.state;
   const auto is_set = [](bool b) { return b; };
@@ -339,21 +326,32 @@ bool is_taken_apart(Context& context, Shape shape, std::span<const ShadedVertex>
   const auto bends = [&](std::uint32_t a, std::uint32_t b) { return fog_bends(state.fog, vertices[a], vertices[b]); };
   if (shape == Shape::line && state.fog.enabled && std::ranges::adjacent_find(indices, bends) != indices.end())
     return true;
-  const auto other_size = [&](const ShadedVertex& v) { return v.point_size != vertices.front().point_size; };
-  return shape == Shape::line ? state.line.stipple : std::ranges::any_of(vertices, other_size);
+  if (shape == Shape::line) return state.line.stipple;
+  const auto size = [&](std::uint32_t i) { return vertices.number(i, ShadedVertices::kPointSize); };
+  return std::ranges::any_of(indices, [&](std::uint32_t i) { return size(i) != size(indices[0]); });
 }
 
 }  // namespace
 
-void draw_primitives(Context& context, GLenum mode, std::span<const ShadedVertex> vertices,
+void draw_vertices(Context& context, GLenum mode, const InputVertices& vertices, const InputVertices::Values& values,
+                   std::span<const std::uint32_t> indices) {
+  if (mode > GL_POLYGON || vertices.empty() || indices.empty()) return;
+  const bool is_drawn = context.render_mode == GL_RENDER;
+  if (is_drawn && context.drawable == nullptr) return;
+  const bool is_outside = place_vertices(context, vertices, context.shaded) && context.shaded.empty();
+  if (is_outside && is_drawn && shape_of(mode) == Shape::polygon && is_filled(context.state.polygon) &&
+      !context.drawable->frame.options().keeps_draws())
+    return;  // it draws no pixel, and is no part of a capture or a figure
+  finish_vertices(context, vertices, values, context.shaded);
+  draw_primitives(context, mode, context.shaded, indices);
+}
+
+void draw_primitives(Context& context, GLenum mode, const ShadedVertices& vertices,
                      std::span<const std::uint32_t> indices) {
   if (mode > GL_POLYGON || vertices.empty() || indices.empty()) return;
   if (context.render_mode == GL_RENDER && context.drawable == nullptr) return;
   const Assembly& assembly = kAssemblies[mode];
   const Shape shape = shape_of(mode);
-  if (shape == Shape::polygon && is_filled(context.state.polygon) && context.render_mode == GL_RENDER &&
-      !context.drawable->frame.options().keeps_draws() && is_outside_view(vertices))
-    return;  // it draws no pixel, and is no part of a capture or a figure
   const BatchTraits traits = traits_of(vertices, draw_setup(context).unit);
   const char* const beyond = context.render_mode == GL_RENDER ? why_shaded(context, traits) : nullptr;
   if (beyond != nullptr) context.drawable->frame.missing(beyond, "the host shades its fragments");
@@ -392,15 +390,16 @@ void draw_fragments(Context& context, std::span<const WindowFragment> fragments)
   if (context.drawable == nullptr) return;
   const Frame& frame = context.drawable->frame;
   constexpr std::size_t kMost = 4096;  // vertices are large
-  Vertices vertices;
+  ShadedVertices vertices;
   std::vector<std::uint32_t> indices;
   for (std::size_t i = 0; i < fragments.size(); ++i) {
     const WindowFragment& f = fragments[i];
     if (f.x >= 0 && f.x < frame.width() && f.y >= 0 && f.y < frame.height()) {
-      ShadedVertex& v = vertices.emplace_back();
+      ShadedVertex v;
       v.clip = {f.x + 0.5, f.y + 0.5, held(f.z), f.w};
       v.color.fill(f.color);
       v.fog_distance = f.w;
+      vertices.push_back(v);
       indices.push_back(static_cast<std::uint32_t>(indices.size()));
     }
     if (vertices.size() < kMost && i + 1 < fragments.size()) continue;

@@ -6,8 +6,8 @@
 #include <span>
 
 #include "../../model/scene.hpp"
-#include "shade.hpp"
 #include "texture.hpp"
+#include "vertices.hpp"
 
 namespace halfplane::gl {
 
@@ -15,8 +15,14 @@ struct Context;
 
 /// Draws glBegin(mode) with vertices[indices[0]], vertices[indices[1]], ...: clip planes, two-sided light, polygon
 /// modes, stipples, selection and feedback; then Frame::draw in the state of the context.
-void draw_primitives(Context& context, GLenum mode, std::span<const ShadedVertex> vertices,
+void draw_primitives(Context& context, GLenum mode, const ShadedVertices& vertices,
                      std::span<const std::uint32_t> indices);
+/// Likewise with vertices that are shaded here, but for those of Context::shaded, and have `values` where they do not vary.
+/// Precondition: update_shading().
+void draw_vertices(Context& context, GLenum mode, const InputVertices& vertices, const InputVertices::Values& values,
+                   std::span<const std::uint32_t> indices);
+/// What glBegin(mode), the vertices and glEnd do together. Precondition: vertices.is_complete(), outside glBegin and glEnd.
+void draw_run(Context& context, GLenum mode, const InputVertices& vertices);
 
 /// Pixels of the window as points, for glBitmap and pixels without a faster way: x and y from the bottom left, the centre of a
 /// pixel at one half, with z in 0...1 and colours in 0...1. They pass fog, for which w is the distance, and the fragment

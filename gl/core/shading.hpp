@@ -1,4 +1,5 @@
-// The state as shading reads it (shade.cpp), for the sources of vertices: vertex.cpp, arrays.cpp, eval.cpp.
+// The state as shading reads it (shade.cpp), for the sources of vertices: vertex.cpp, arrays.cpp, eval.cpp; from a vertex
+// as the program gives it to one as primitives take it (OpenGL 1.5, 2.11 to 2.14).
 #pragma once
 
 #include <cstdint>
@@ -20,6 +21,13 @@ struct LightConstants {
   bool is_positional = false, is_spot = false, is_attenuated = false;
 };
 
+/// What follows from a material for all vertices.
+struct MaterialUse {
+  enum Part : std::uint8_t { ambient, diffuse, specular, emission };
+  std::array<bool, 4> follows_color{};  ///< GL_COLOR_MATERIAL, by Part
+  bool is_shiny = false;                ///< has a specular part
+};
+
 struct ShadingConstants {
   std::uint64_t revision = 0;  ///< of the context when these were made, and its render mode
   GLenum render_mode = GL_RENDER;
@@ -30,26 +38,24 @@ struct ShadingConstants {
   std::array<bool, kTextureUnits> has_texture{}, has_texgen{}, has_texture_matrix{};
   bool needs_normal = false, is_attenuated = false;  ///< attenuated: the size of points
 
-  /// The colours of the vertex before: they are the next one's where the normal is all that they depend on.
-  struct Lit {
-    bool is_known = false;  ///< not after a change of a material
-    Vec3 normal{};
-    std::array<Vec4, 2> color{}, secondary{};
-  };
-  bool depends_on_normal_alone = false;  ///< every light directional, the viewer at infinity
-  Lit lit;
+  std::array<MaterialUse, 2> material;  ///< of front and back, at the last finish_vertices()
 };
 
-/// After a change of a material, which glBegin allows and which therefore raises no revision.
-inline void forget_lit(Context& context) {
-  if (context.shading) context.shading->lit.is_known = false;
-}
+inline constexpr Vec3 kTowardsViewer{0, 0, 1};  ///< for a viewer at infinity
 
 /// Brings Context::shading up to date; to be called before the first vertex after a change of state.
 void update_shading(Context& context);
-/// The vertex at `position` with the current attributes. `all_textures`: texture coordinates also where no texture is on.
-/// Precondition: update_shading().
-void shade_current(const Context& context, const Vec4& position, ShadedVertex& vertex, bool all_textures = false);
+
+// Vertices from shaded.size() on are shaded, in two steps. Precondition: update_shading().
+
+/// Their positions in clip space. Whether all of them lie beyond one plane of the view volume.
+bool place_vertices(const Context& context, const InputVertices& vertices, ShadedVertices& shaded);
+/// Everything else. Material is that of Context::state, attributes that do not vary are of `values`. `all_textures`: texture
+/// coordinates also where no texture is on.
+void finish_vertices(Context& context, const InputVertices& vertices, const InputVertices::Values& values,
+                     ShadedVertices& shaded, bool all_textures = false);
+/// Both for the vertices since glBegin, before a change of the material.
+void shade_pending(Context& context);
 
 /// 0, 1, ..., count - 1. Valid until the next call in this thread.
 [[nodiscard]] std::span<const std::uint32_t> counting(std::size_t count);
@@ -66,7 +72,7 @@ class CurrentKept {
     context_.state.current = current_;
     context_.state.lighting.material = material_;
     context_.state.point.size = size_;
-    forget_lit(context_);
+    if (context_.inside_begin()) context_.input.load(context_.state);
   }
   CurrentKept(const CurrentKept&) = delete;
   CurrentKept& operator=(const CurrentKept&) = delete;

@@ -28,13 +28,20 @@ bool is_inside(const Context& context, const ShadedVertex& vertex) {
   return true;
 }
 
+/// Sets an attribute of the next vertices, and says whether there is a primitive that has them.
+bool set_attribute(Context& context, Attribute attribute, std::span<const double> value, std::size_t unit = 0) {
+  if (context.inside_begin()) context.input.set(attribute, value, unit);
+  return context.inside_begin();
+}
+
 }  // namespace
 
 void begin(Context& context, GLenum mode) {
   if (context.inside_begin()) return context.fail(GL_INVALID_OPERATION);
   if (mode > GL_POLYGON) return context.fail(GL_INVALID_ENUM);
   update_shading(context);
-  context.vertices.clear();
+  context.input.begin(context.state);
+  context.shaded.clear();
   context.primitive = mode;
 }
 
@@ -42,32 +49,56 @@ void end(Context& context) {
   if (!context.inside_begin()) return context.fail(GL_INVALID_OPERATION);
   const GLenum mode = context.primitive;
   context.primitive = Context::kNoPrimitive;
-  draw_primitives(context, mode, context.vertices, counting(context.vertices.size()));
+  draw_vertices(context, mode, context.input, context.input.values(), counting(context.input.size()));
+  track_color(context);
+}
+
+void draw_run(Context& context, GLenum mode, const InputVertices& vertices) {
+  update_shading(context);
+  context.input.begin(context.state);
+  context.shaded.clear();
+  draw_vertices(context, mode, vertices, context.input.values(), counting(vertices.size()));
+  vertices.store(context.state);
+  track_color(context);
 }
 
 void vertex(Context& context, double x, double y, double z, double w) {
-  if (!context.inside_begin()) return;
-  shade_current(context, {x, y, z, w}, context.vertices.emplace_back());
+  if (context.inside_begin()) context.input.add({x, y, z, w});
 }
 
-void normal(Context& context, double x, double y, double z) { context.state.current.normal = {x, y, z}; }
+void normal(Context& context, double x, double y, double z) {
+  context.state.current.normal = {x, y, z};
+  set_attribute(context, Attribute::normal, context.state.current.normal);
+}
 
 void color(Context& context, double r, double g, double b, double a) {
   context.state.current.color = {r, g, b, a};
-  if (context.state.lighting.color_material) track_color(context);
+  if (!set_attribute(context, Attribute::color, context.state.current.color)) track_color(context);
 }
 
-void secondary_color(Context& context, double r, double g, double b) { context.state.current.secondary = {r, g, b, 1}; }
+void secondary_color(Context& context, double r, double g, double b) {
+  context.state.current.secondary = {r, g, b, 1};
+  set_attribute(context, Attribute::secondary, std::array{r, g, b});
+}
 
 void index(Context& context, double value) { context.state.current.index = value; }
 
 void tex_coord(Context& context, GLenum unit, double s, double t, double r, double q) {
   if (unit < GL_TEXTURE0 || unit >= GL_TEXTURE0 + kTextureUnits) return context.fail(GL_INVALID_ENUM);
-  context.state.current.tex_coord[unit - GL_TEXTURE0] = {s, t, r, q};
+  Vec4& current = context.state.current.tex_coord[unit - GL_TEXTURE0];
+  current = {s, t, r, q};
+  set_attribute(context, Attribute::tex_coord, current, unit - GL_TEXTURE0);
 }
 
-void fog_coord(Context& context, double value) { context.state.current.fog_coord = value; }
-void edge_flag(Context& context, GLboolean flag) { context.state.current.edge_flag = flag != GL_FALSE; }
+void fog_coord(Context& context, double value) {
+  context.state.current.fog_coord = value;
+  set_attribute(context, Attribute::fog_coord, std::array{value});
+}
+
+void edge_flag(Context& context, GLboolean flag) {
+  context.state.current.edge_flag = flag != GL_FALSE;
+  set_attribute(context, Attribute::edge_flag, std::array{flag != GL_FALSE ? 1.0 : 0.0});
+}
 
 void rect(Context& context, double x1, double y1, double x2, double y2) {
   begin(context, GL_POLYGON);
@@ -80,8 +111,13 @@ void rect(Context& context, double x1, double y1, double x2, double y2) {
 
 void raster_pos(Context& context, double x, double y, double z, double w) {
   update_shading(context);
-  ShadedVertex vertex;
-  shade_current(context, {x, y, z, w}, vertex, true);
+  InputVertices given;
+  given.begin(context.state);
+  given.add({x, y, z, w});
+  ShadedVertices shaded;
+  place_vertices(context, given, shaded);
+  finish_vertices(context, given, given.values(), shaded, true);
+  const ShadedVertex vertex = shaded[0];
   RasterPosition& raster = context.state.current.raster;
   raster.valid = is_inside(context, vertex);
   if (!raster.valid) return;

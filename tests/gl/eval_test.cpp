@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "gl/core/commands.hpp"
+#include "gl/core/shading.hpp"
 
 namespace halfplane::gl::eval_test {
 namespace {
@@ -24,7 +25,8 @@ struct Evaluators : testing::Test {
     begin(context, GL_POINTS);
     draw();
     context.primitive = Context::kNoPrimitive;
-    return context.vertices;
+    shade_pending(context);
+    return context.shaded.rows();
   }
 };
 

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "gl/core/commands.hpp"
+#include "gl/core/shading.hpp"
 
 namespace halfplane::gl::light_test {
 namespace {
@@ -83,9 +84,9 @@ struct Lighting : testing::Test {
     ++context.revision;
     begin(context, GL_POINTS);
     vertex(context, position[0], position[1], position[2], position[3]);
-    const ShadedVertex shaded = context.vertices.back();
     context.primitive = Context::kNoPrimitive;
-    return shaded;
+    shade_pending(context);
+    return context.shaded[0];
   }
 };
 
@@ -184,9 +185,10 @@ TEST_F(Lighting, ColorMaterialFollowsTheColor) {
   vertex(context, 0, 0, 0, 1);
   gl::color(context, 0, 0.5, 0, 1);
   vertex(context, 0, 0, 0, 1);
-  EXPECT_EQ(context.vertices[0].color[0][0], 0.5);
-  EXPECT_EQ(context.vertices[1].color[0][1], 0.5);
-  EXPECT_EQ(context.vertices[1].color[1][0], 0);
+  shade_pending(context);
+  EXPECT_EQ(context.shaded[0].color[0][0], 0.5);
+  EXPECT_EQ(context.shaded[1].color[0][1], 0.5);
+  EXPECT_EQ(context.shaded[1].color[1][0], 0);
 }
 
 TEST_F(Lighting, AMaterialThatChangesBetweenVerticesOfOneNormalChangesTheirColors) {
@@ -204,14 +206,15 @@ TEST_F(Lighting, AMaterialThatChangesBetweenVerticesOfOneNormalChangesTheirColor
   vertex(context, 1, 0, 0, 1);
   normal(context, 0, 0, -1);
   vertex(context, 1, 0, 0, 1);
-  for (std::size_t i = 0; i < context.vertices.size(); ++i) {
+  shade_pending(context);
+  for (std::size_t i = 0; i < context.shaded.size(); ++i) {
     const Vec3 at{0, 0, i == 7 ? -1.0 : 1.0};
     Material then = state.material[0];
     if (i < 6) then.emission = emission[i / 2], then.diffuse = Material().diffuse;
-    const Lit lit = formula(state, then, context.vertices[i].eye, at);
+    const Lit lit = formula(state, then, context.shaded[i].eye, at);
     for (std::size_t c = 0; c < 3; ++c)
-      EXPECT_NEAR(context.vertices[i].color[0][c], std::min(lit.primary[c], 1.0), 1e-12) << i << ' ' << c;
-    EXPECT_EQ(context.vertices[i].color[0][3], then.diffuse[3]) << i;
+      EXPECT_NEAR(context.shaded[i].color[0][c], std::min(lit.primary[c], 1.0), 1e-12) << i << ' ' << c;
+    EXPECT_EQ(context.shaded[i].color[0][3], then.diffuse[3]) << i;
   }
 }
 

@@ -131,7 +131,7 @@ TEST(GlPrimitive, TheBackHasItsColorAndMode) {
   const std::vector<std::uint32_t> front{0, 1, 2}, back{0, 2, 1};
   const auto draw = [&](const std::vector<std::uint32_t>& indices) {
     picture.black();
-    draw_primitives(picture.context, GL_TRIANGLES, triangle, indices);
+    draw_primitives(picture.context, GL_TRIANGLES, ShadedVertices(triangle), indices);
     return picture.rgb(10, 10);
   };
   EXPECT_EQ(draw(front), kRed);
@@ -261,7 +261,7 @@ TEST(GlPrimitive, PointsHaveTheirOwnSizes) {
     points[i].point_size = i == 0 ? 4 : 6.2;
   }
   const std::vector<std::uint32_t> indices{0, 1};
-  draw_primitives(picture.context, GL_POINTS, points, indices);
+  draw_primitives(picture.context, GL_POINTS, ShadedVertices(points), indices);
   EXPECT_EQ(picture.drawn_pixels(), 16 + 36);
 }
 

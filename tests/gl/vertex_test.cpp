@@ -8,6 +8,7 @@
 #include "gl/core/commands.hpp"
 #include "gl/core/list.hpp"
 #include "gl/core/matrix.hpp"
+#include "gl/core/shading.hpp"
 
 namespace halfplane::gl::vertex_test {
 namespace {
@@ -25,9 +26,9 @@ struct Vertices : testing::Test {
     ++context.revision;
     begin(context, GL_POINTS);
     vertex(context, position[0], position[1], position[2], position[3]);
-    const ShadedVertex shaded = context.vertices.back();
     context.primitive = Context::kNoPrimitive;
-    return shaded;
+    shade_pending(context);
+    return context.shaded[0];
   }
 };
 
@@ -188,7 +189,7 @@ TEST_F(Vertices, BeginAndEnd) {
   EXPECT_FALSE(context.inside_begin());
   vertex(context, 1, 2, 3, 4);  // a vertex without a primitive
   begin(context, GL_LINES);
-  EXPECT_TRUE(context.vertices.empty());
+  EXPECT_TRUE(context.input.empty());
   EXPECT_EQ(error_of([&] { begin(context, GL_LINES); }), GLenum{GL_INVALID_OPERATION});
   EXPECT_EQ(error_of([&] { draw_arrays(context, GL_LINES, 0, 2); }), GLenum{GL_INVALID_OPERATION});
   end(context);
@@ -296,7 +297,7 @@ TEST_F(Arrays, OfAListAreRefusedWithinAPrimitive) {
     EXPECT_EQ(get_error(context), GLenum{GL_NO_ERROR});
     begin(context, GL_POINTS);
     EXPECT_EQ(error_of([&] { call_list(context, 1); }), GLenum{GL_INVALID_OPERATION});
-    EXPECT_TRUE(context.vertices.empty());
+    EXPECT_TRUE(context.input.empty());
     end(context);
     (void)get_error(context);
   }
@@ -392,7 +393,8 @@ TEST_F(Arrays, IntegersOfColorsAreFractions) {
   begin(context, GL_POINTS);
   array_element(context, 0);
   expect_near(context.state.current.color, {1, 0, 32768 / 65535.0, 1});
-  EXPECT_EQ(context.vertices.at(0).eye, (Vec4{-3, 7, 0, 1}));
+  shade_pending(context);
+  EXPECT_EQ(context.shaded[0].eye, (Vec4{-3, 7, 0, 1}));
   end(context);
   // Fixed-point numbers are OpenGL ES's alone.
   const std::array<GLfixed, 4> fixed{1 << 16, -(1 << 15), 0, 1};

@@ -95,7 +95,11 @@ PreparedScene::PreparedScene(const Scene& scene, std::vector<TexelBlocks> known,
     y[i] = v.y;
     z[i] = v.z;
     w[i] = v.w;
-    for (std::size_t c = 0; c < 4; ++c) rgba[i] |= std::uint32_t{snap_color(v.rgba[c])} << 8 * c;
+    // As snap_color() of each channel, which is within its bounds: half of what rounds down from 2 c + 1.
+    std::uint32_t code = 0;
+    for (std::size_t c = 0; c < 4; ++c)
+      code |= ((static_cast<std::uint32_t>(static_cast<int>(2 * v.rgba[c])) + 1) >> 1) << 8 * c;
+    rgba[i] = code;
   }
   find_surface(*this, kSpare);
   for (std::size_t i = 0; i < scene.commands.size(); ++i) {
