@@ -51,7 +51,7 @@ class CacheTags {
         line_y_mask_((std::size_t{1} << widths.line_y_bits) - 1),
         lines_(static_cast<std::size_t>(config.cache_lines)),
         flags_(widths) {
-    unwritten_.reserve(victims_);
+    unwritten_.reserve(4 * victims_);
   }
 
   [[nodiscard]] std::size_t lines() const { return lines_.size(); }
@@ -120,8 +120,9 @@ class CacheTags {
 
   /// All evictions go to memory; returns their number.
   int write_all() {
-    const auto writes = static_cast<int>(unwritten_.size());
+    const auto writes = static_cast<int>(unwritten_.size() - oldest_);
     unwritten_.clear();
+    oldest_ = 0;
     return writes;
   }
 
@@ -186,11 +187,8 @@ class CacheTags {
   /// A needed block may still be on its way to memory: the number of evictions that must go first, up to its newest
   /// one.
   int write_up_to(const BlockAddress& block) {
-    for (std::size_t n = unwritten_.size(); n > 0; --n) {
-      if (unwritten_[n - 1] != block) continue;
-      unwritten_.erase(unwritten_.begin(), unwritten_.begin() + static_cast<std::ptrdiff_t>(n));
-      return static_cast<int>(n);
-    }
+    for (std::size_t n = unwritten_.size(); n > oldest_; --n)
+      if (unwritten_[n - 1] == block) return static_cast<int>(n - std::exchange(oldest_, n));
     return 0;
   }
 
@@ -205,9 +203,13 @@ class CacheTags {
       e.fills[number(plane)] = e.stamps[number(plane)] != 0 && line.is_cleared[number(plane)];
       if (e.fills[number(plane)]) flags_.fall(plane, line.block);
     }
-    if (unwritten_.size() == victims_) {
-      unwritten_.erase(unwritten_.begin());
+    if (unwritten_.size() - oldest_ == victims_) {
+      ++oldest_;
       ++result.writes;
+    }
+    if (unwritten_.size() == 4 * victims_) {
+      unwritten_.erase(unwritten_.begin(), unwritten_.begin() + static_cast<std::ptrdiff_t>(oldest_));
+      oldest_ = 0;
     }
     unwritten_.push_back(line.block);
   }
@@ -221,7 +223,8 @@ class CacheTags {
   bool reads_color_ = false, tests_alpha_ = false;
   std::array<bool, 2> replaces_stencil_{};  ///< front, back
   std::vector<Line> lines_;
-  std::vector<BlockAddress> unwritten_;  ///< evictions whose data wait, oldest first
+  std::vector<BlockAddress> unwritten_;  ///< from oldest_ on: evictions whose data wait, oldest first
+  std::size_t oldest_ = 0;
   ClearFlags flags_;
 };
 

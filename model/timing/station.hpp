@@ -22,40 +22,44 @@ class Station {
   Station(int capacity, int latency, int turnaround)
       : latency_(static_cast<Cycle>(latency)),
         turnaround_(static_cast<Cycle>(turnaround)),
-        capacity_(static_cast<std::size_t>(capacity)),
-        free_at_(capacity_) {}
+        free_at_(static_cast<std::size_t>(capacity)),
+        next_(free_at_.data()),
+        end_(next_ + capacity) {}
+  Station(Station&&) = default;  // the places stay where they are
+  Station& operator=(Station&&) = default;
 
   /// The first cycle in which the next item can enter, as far as earlier items decide.
-  [[nodiscard]] Cycle room() const { return free_at_[next_]; }
+  [[nodiscard]] Cycle room() const { return *next_; }
   /// The first cycle in which an item that entered in `entered` can leave.
   [[nodiscard]] Cycle ready(Cycle entered) const { return entered + latency_; }
   /// The next item leaves. Call once for every item, in order, before room() for the item `capacity` after it.
   void leave(Cycle cycle) {
-    free_at_[next_] = cycle + turnaround_;
-    if (++next_ == capacity_) next_ = 0;
+    *next_ = cycle + turnaround_;
+    if (++next_ == end_) next_ = free_at_.data();
   }
   /// The cycle from which on all items have left, turnaround included.
-  [[nodiscard]] Cycle empty() const { return free_at_[next_ == 0 ? capacity_ - 1 : next_ - 1]; }
+  [[nodiscard]] Cycle empty() const { return (next_ == free_at_.data() ? end_ : next_)[-1]; }
 
  private:
   Cycle latency_, turnaround_;
-  std::size_t capacity_;
   std::vector<Cycle> free_at_;  ///< ring: when the place of item n - capacity is free
-  std::size_t next_ = 0;
+  Cycle *next_, *end_;          ///< in it
 };
 
 /// A Station whose capacity, latency and turnaround are constants of the compiler.
 template <std::size_t kCapacity, Cycle kLatency, Cycle kTurnaround>
 class FixedStation {
  public:
-  [[nodiscard]] Cycle room() const { return free_at_[next_]; }
+  [[nodiscard]] Cycle room() const { return free_at_[next()]; }
   [[nodiscard]] static constexpr Cycle ready(Cycle entered) { return entered + kLatency; }
   void leave(Cycle cycle) {
-    free_at_[next_] = cycle + kTurnaround;
+    free_at_[next()] = cycle + kTurnaround;
     if (kCapacity != 1) next_ = next_ + 1 == kCapacity ? 0 : next_ + 1;
   }
 
  private:
+  [[nodiscard]] std::size_t next() const { return kCapacity == 1 ? 0 : next_; }
+
   std::array<Cycle, kCapacity> free_at_{};
   std::size_t next_ = 0;
 };

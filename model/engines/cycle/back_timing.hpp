@@ -58,7 +58,12 @@ class BackTiming {
   /// With compress.unit: has_one_color() of a stamp's stored samples.
   using OneColor = std::function<bool(const StampAddress&, SampleMask)>;
   void look_at_colors(OneColor has_one_color) { has_one_color_ = std::move(has_one_color); }
-  [[nodiscard]] const TimingTotals& totals() const { return totals_; }
+  [[nodiscard]] TimingTotals totals() const {
+    TimingTotals totals = totals_;
+    totals.last = std::max(totals.last, port_.last());
+    for (const auto& of_cause : totals.beats) totals.works[index(Stage::memory_port)] += of_cause[0] + of_cause[1];
+    return totals;
+  }
   /// The cycle in which the last fragment moved.
   [[nodiscard]] Cycle last_fragment() const { return last_fragment_; }
   /// The stream of an elastic arrow.
@@ -143,11 +148,13 @@ class BackTiming {
     blocks_->take(moved, tags, item, texture, BlockPort{*this});
     if (!Run::is_plain) work(Stage::texture_unit, texture.lookups.size());
     if (!Run::is_plain && textures_ && item.is_shaded) note(Arrow::color, blocks_->colored());
-    if (!item.mask.any()) return moved;
+    return moved;
+  }
+  /// The last stamp had covered samples. Several in a row may be noted at once, by the last of them, if nothing watches.
+  void note_write() {
     totals_.last_write = blocks_->tested() + 1;
     note(Arrow::write, totals_.last_write);
     if (totals_.has_primitive) totals_.tile_cycles = moving_;
-    return moved;
   }
 
   /// The pixels of a line, whose place is on offer from `offered` on. take(offered, others): the next one in
@@ -263,31 +270,32 @@ class BackTiming {
 
  private:
   /// Sends a request, in `cycle` at the earliest.
-  PortTimes ask(Cycle cycle, TilePlane plane, const StampAddress& at, int run, MoveCause cause) {
+  template <class At>
+  PortTimes ask(Cycle cycle, TilePlane plane, const At& at, int run, MoveCause cause) {
     const bool is_read = cause == MoveCause::fill;
-    const std::uint64_t beats = port_.beats();
-    const PortTimes times = port_.take({!is_read, plane, at.tile_x, at.tile_y, at.stamp, run}, cycle);
+    const PortTimes times = port_.take(PortRequest<At>{!is_read, plane, at, run}, cycle, beats(plane, cause));
     totals_.memory_cycles += times.asked - cycle;
-    count_beats(port_.beats() - beats, plane, cause);
     return times;
   }
 
   /// Writes `run` stamps of a block, from `at` on: a request a cycle, from `cycle` on. Returns when the last is taken.
-  Cycle write_run(Cycle cycle, TilePlane plane, const StampAddress& at, int run, MoveCause cause) {
-    const std::uint64_t beats = port_.beats();
-    const RunTimes times = port_.take_run({true, plane, at.tile_x, at.tile_y, at.stamp, run}, cycle, [&](Cycle asked) {
-      if (!Run::is_plain && sink_ != nullptr)
-        sink_->move(cause, is_of_color(plane), at.tile_x, at.tile_y, asked, asked + 1);
-    });
+  Cycle write_run(Cycle cycle, TilePlane plane, const BlockStamp& at, int run, MoveCause cause) {
+    const PortRequest<BlockStamp> request{true, plane, at, run};
+    const RunTimes times = port_.take_run(request, cycle, beats(plane, cause),
+                                          [&](Cycle asked) { note_move(cause, plane, at, asked, asked + 1); });
     totals_.memory_cycles += times.waited;
-    count_beats(port_.beats() - beats, plane, cause);
     return times.last;
   }
 
-  void count_beats(std::uint64_t beats, TilePlane plane, MoveCause cause) {
-    totals_.beats[static_cast<std::size_t>(cause)][is_of_color(plane) ? 1 : 0] += beats;
-    totals_.last = std::max(totals_.last, port_.last());
-    work(Stage::memory_port, beats);
+  [[nodiscard]] std::uint64_t& beats(TilePlane plane, MoveCause cause) {
+    return totals_.beats[static_cast<std::size_t>(cause)][is_of_color(plane) ? 1 : 0];
+  }
+  /// A request of a framebuffer of blocks.
+  template <class At>
+  void note_move(MoveCause cause, TilePlane plane, const At& at, Cycle from, Cycle to) {
+    if (Run::is_plain || sink_ == nullptr) return;
+    const StampAddress stamp = port_.address_of(at);
+    sink_->move(cause, is_of_color(plane), stamp.tile_x, stamp.tile_y, from, to);
   }
 
   /// Requests a line for the texture unit, which takes its beats as they come.
@@ -306,23 +314,22 @@ class BackTiming {
     LineTimes texture(Cycle cycle, std::uint32_t address, int beats) const {
       return timing.ask_for_texels(cycle, address, beats);
     }
-    PortTimes read(Cycle cycle, TilePlane plane, const StampAddress& at) const {
+    PortTimes read(Cycle cycle, TilePlane plane, const BlockStamp& at) const {
       return timing.ask_of_block(cycle, plane, at, 1, MoveCause::fill);
     }
-    Cycle write(Cycle cycle, TilePlane plane, const StampAddress& at, int run) const {
+    Cycle write(Cycle cycle, TilePlane plane, const BlockStamp& at, int run) const {
       return timing.write_run(cycle, plane, at, run, MoveCause::evict);
     }
-    [[nodiscard]] bool has_one_color(const StampAddress& at, SampleMask mask) const {
-      return timing.has_one_color_(at, mask);
+    [[nodiscard]] bool has_one_color(const BlockStamp& at, SampleMask mask) const {
+      return timing.has_one_color_(timing.port_.address_of(at), mask);
     }
   };
 
   /// The same for a framebuffer of blocks.
-  PortTimes ask_of_block(Cycle cycle, TilePlane plane, const StampAddress& at, int run, MoveCause cause) {
+  template <class At>
+  PortTimes ask_of_block(Cycle cycle, TilePlane plane, const At& at, int run, MoveCause cause) {
     const PortTimes times = ask(cycle, plane, at, run, cause);
-    if (!Run::is_plain && sink_ != nullptr)
-      sink_->move(cause, is_of_color(plane), at.tile_x, at.tile_y, times.asked,
-                  std::max(times.asked, times.answered) + 1);
+    note_move(cause, plane, at, times.asked, std::max(times.asked, times.answered) + 1);
     return times;
   }
 
@@ -347,8 +354,7 @@ class BackTiming {
       }
       const BlockAddress block{static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
       const TilePlane plane = compresses_ ? TilePlane::pixel_color : TilePlane::color;
-      const StampAddress at = stamp_address({block, 0}, widths_);
-      cycle = write_run(cycle, plane, at, widths_.blocks.stamps(), MoveCause::clear) + 1;
+      cycle = write_run(cycle, plane, {block, 0}, widths_.blocks.stamps(), MoveCause::clear) + 1;
       if (compresses_) blocks_->of_pixels().set(block, true);
     }
     return cycle;

@@ -72,7 +72,10 @@ template <class Run = AnyRun>
 class BlockTiming {
  public:
   BlockTiming(const Config& config, const Widths& widths)
-      : widths_(widths),
+      : all_samples_(SampleMask::all(widths.samples)),
+        stamps_(widths.blocks.stamps()),
+        all_stamps_(~std::uint64_t{0} >> (64 - stamps_)),
+        samples_(widths.samples),
         lanes_(std::min(config.blend_lanes, widths.samples)),
         write_clocks_(lanes_ == 0 ? 1 : kBlendClocks),
         items_(config.cache_queue, 2, 1),
@@ -93,7 +96,8 @@ class BlockTiming {
   [[nodiscard]] Cycle room() const { return looked_; }
   /// In `cycle` the word of a falling flag is read, and the fragment needs its own.
   [[nodiscard]] bool is_busy(Cycle cycle, const TagResult& tags, const BlockItem& item) const {
-    return (cycle == fall_reads_[0] || cycle == fall_reads_[1]) && item.mask.any() && last_block_ != tags.block;
+    return cycle <= fall_reads_[0] && (cycle == fall_reads_[0] || cycle == fall_reads_[1]) && item.mask.any() &&
+           last_block_ != tags.block;
   }
   /// When the tags are empty.
   [[nodiscard]] Cycle is_empty() const { return left_ + 1; }
@@ -103,8 +107,8 @@ class BlockTiming {
   [[nodiscard]] Cycle colored() const { return colored_; }
 
   /// A fragment that the tags took in `moved`, or a line that was read then; `texture` counts with a texture unit.
-  /// ask.read(cycle, plane, stamp): a request, in `cycle` at the earliest; returns PortTimes. ask.write(cycle, plane,
-  /// first stamp, run): a burst, a request a cycle; returns when the last is taken.
+  /// ask.read(cycle, plane, BlockStamp): a request, in `cycle` at the earliest; returns PortTimes. ask.write(cycle, plane,
+  /// first BlockStamp, run): a burst, a request a cycle; returns when the last is taken.
   template <class Ask>
   void take(Cycle moved, const TagResult& tags, const BlockItem& item, const TextureWork& texture, Ask&& ask) {
     const bool reads = tags.source == DepthSource::memory, reads_color = tags.color_source == DepthSource::memory;
@@ -120,7 +124,7 @@ class BlockTiming {
     if (tags.eviction) {
       x = std::max(x, slots_[next_slot_]);
       if (last_line_ == tags.line && last_writes_) x = std::max(x, tested_ + 2);
-      depth_free_ = x + static_cast<Cycle>(std::popcount(tags.eviction->stamps[0]));
+      depth_free_ = x + static_cast<Cycle>(count_of(tags.eviction->stamps[0]));
     }
     const Cycle depth_ready = depth_free_ + 1;
     items_.leave(x);
@@ -182,6 +186,14 @@ class BlockTiming {
     return left_;
   }
 
+  /// The number of stamps of a block, a bit each: mostly four of them, and std::popcount is a call.
+  [[nodiscard]] static int count_of(std::uint64_t stamps) {
+    int count = 0;
+    for (; stamps != 0; stamps >>= 4) count += kCountOf4[stamps & 15];
+    return count;
+  }
+  static constexpr std::array<std::uint8_t, 16> kCountOf4{0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4};
+
   struct Victim {
     BlockAddress block;
     std::array<std::uint64_t, 2> stamps;  ///< to be written, by buffer
@@ -199,11 +211,13 @@ class BlockTiming {
     std::size_t line = 0;
     SampleMask samples;
   };
-  static constexpr Cycle kBlendClocks = 3;       ///< from the colour stage to the RAM, with blending
+  static constexpr Cycle kBlendClocks = 3;  ///< from the colour stage to the RAM, with blending
+  /// Without blending only the last write can hold back the next: w(m-1) + 1 is the bound of all others.
+  static constexpr std::size_t kWritesInFlight = Run::is_plain ? 1 : kBlendClocks;
   static constexpr std::size_t kLateLines = 16;  ///< lines whose late fragments the depth stage distinguishes, modulo
 
   [[nodiscard]] std::size_t late_place(std::size_t line, int stamp) const {
-    return line % kLateLines * static_cast<std::size_t>(widths_.blocks.stamps()) + static_cast<std::size_t>(stamp);
+    return line % kLateLines * static_cast<std::size_t>(stamps_) + static_cast<std::size_t>(stamp);
   }
 
   /// The first cycle in which the depth stage can let an item go, as far as late items decide it.
@@ -211,7 +225,7 @@ class BlockTiming {
     if (!has_texture()) return 0;  // no item is late
     Cycle room = 0;
     if (item.mask.any()) room = item.is_late ? late_[late_place(tags.line, tags.stamp)] + 1 : last_late_ + 1;
-    for (int stamp = 0; tags.eviction && stamp < widths_.blocks.stamps(); ++stamp)
+    for (int stamp = 0; tags.eviction && stamp < stamps_; ++stamp)
       room = std::max(room, late_[late_place(tags.line, stamp)] + 1);
     return room;
   }
@@ -236,12 +250,13 @@ class BlockTiming {
    public:
     [[nodiscard]] bool has_two() const { return has_two_; }
     /// When the older eviction has been read, if no stamp of it is read earlier; then the next can begin.
-    [[nodiscard]] Cycle first_done() const { return at_ + static_cast<Cycle>(std::popcount(left_[0])); }
+    [[nodiscard]] Cycle first_done() const { return at_ + static_cast<Cycle>(count_of(left_[0])); }
     /// When both have been read.
-    [[nodiscard]] Cycle all_done() const { return first_done() + static_cast<Cycle>(std::popcount(left_[1])); }
+    [[nodiscard]] Cycle all_done() const { return first_done() + static_cast<Cycle>(count_of(left_[1])); }
 
-    /// Reads before `cycle`.
+    /// Reads before `cycle`. Calls do not go back in time.
     void pass(Cycle cycle) {
+      if (left_[0] == 0) return;
       while (left_[0] != 0 && at_ < cycle) remove(0, left_[0] & (~left_[0] + 1));
       at_ = std::max(at_, cycle);
     }
@@ -255,6 +270,7 @@ class BlockTiming {
     }
     /// A stamp that is overwritten in this cycle, if still to be read.
     void read(std::size_t line, std::uint64_t stamp) {
+      if (left_[0] == 0) return;
       for (const std::size_t place : {0U, 1U})
         if (line_[place] == line && (left_[place] & stamp) != 0) return remove(place, stamp);
     }
@@ -278,7 +294,7 @@ class BlockTiming {
   /// The colour stage: the colours of that item, on offer from `offered` on, the stored ones from `answer` on. Returns
   /// when the colours of its eviction are reported in their slot, which does not depend on later items.
   Cycle color(const TagResult& tags, const BlockItem& item, Cycle offered, Cycle answer) {
-    const DepthSource source = tags.color_source;
+    const DepthSource source = Run::is_plain ? DepthSource::none : tags.color_source;
     const bool fetches = source == DepthSource::clear || source == DepthSource::memory;
     const bool writes_all = tags.starts_color || fetches;
     Cycle w = std::max(offered, colored_ + 1), ready = 0;
@@ -288,7 +304,7 @@ class BlockTiming {
       if (reads_.has_two()) w = std::max(w, reads_.first_done());
       reads_.pass(w);
       reads_.begin(w, tags.line, tags.eviction->stamps[1]);
-      ready = w + 3 * static_cast<Cycle>(widths_.blocks.stamps()) + 1;
+      ready = w + 3 * static_cast<Cycle>(stamps_) + 1;
     }
     if (source == DepthSource::memory) w = std::max(w, answer + 1);
     if (source != DepthSource::none && !tags.starts_color) w = std::max(w, reads_.all_done());  // reads the RAM
@@ -301,13 +317,13 @@ class BlockTiming {
   /// The clocks in which an item passes the colour stage from `w` on: one for each group of lanes with a sample to blend.
   /// Returns the last.
   Cycle write_colors(Cycle w, std::size_t line, const BlockItem& item, bool writes_all) {
-    SampleMask writes;  // samples written with the first group: no group reads the writes of another
-    if (writes_all) writes = SampleMask(SampleMask::all(widths_.samples).bits() & ~item.colors.bits());
     if (Run::is_plain || !item.blends) {
-      note_color_write({w, line, writes | item.colors});
+      note_color_write({w, line, writes_all ? all_samples_ : item.colors});
       return w;
     }
-    const int groups = widths_.samples / lanes_, size = lanes_;
+    SampleMask writes;  // samples written with the first group: no group reads the writes of another
+    if (writes_all) writes = SampleMask(all_samples_.bits() & ~item.colors.bits());
+    const int groups = samples_ / lanes_, size = lanes_;
     bool has_gone = false;
     for (int group = 0; group < groups; ++group) {
       const SampleMask own = item.colors & SampleMask((SampleMask::all(size).bits()) << group * size);
@@ -321,8 +337,7 @@ class BlockTiming {
   }
 
   void note_color_write(const ColorWrite& write) {
-    color_writes_[next_write_] = write;
-    // Without blending only the last write can hold back the next: w(m-1) + 1 is the bound of all others.
+    color_writes_[Run::is_plain ? 0 : next_write_] = write;
     if (!Run::is_plain && ++next_write_ == color_writes_.size()) next_write_ = 0;
   }
 
@@ -344,12 +359,12 @@ class BlockTiming {
         }
         if (move == ColorMove::merge) {
           cycle = merge(cycle, v.block, ask);
-          left = all_stamps();
+          left = all_stamps_;
         }
         while (left != 0) {
           const int stamp = std::countr_zero(left), run = std::countr_one(left >> stamp);
-          const StampAddress at = stamp_address({v.block, stamp}, widths_);
-          behind = ask.write(cycle, move == ColorMove::pixels ? TilePlane::pixel_color : plane, at, run) + 1;
+          const TilePlane stored = move == ColorMove::pixels ? TilePlane::pixel_color : plane;
+          behind = ask.write(cycle, stored, {v.block, stamp}, run) + 1;
           cycle = behind;
           left &= left + (std::uint64_t{1} << stamp);  // clears the lowest run of ones
         }
@@ -359,7 +374,7 @@ class BlockTiming {
       oldest_ = slot_after(oldest_);
     }
     const auto read = [&](TilePlane plane) {
-      const auto [asked, answered] = ask.read(cycle, plane, stamp_address({tags.block, tags.stamp}, widths_));
+      const auto [asked, answered] = ask.read(cycle, plane, {tags.block, tags.stamp});
       cycle = asked + 1;
       answered_ = answered;
       return answered;
@@ -378,15 +393,13 @@ class BlockTiming {
   template <class Ask>
   Cycle merge(Cycle cycle, const BlockAddress& block, Ask&& ask) {
     cycle = std::max(cycle, answered_ + 1);
-    for (int stamp = 0; stamp < widths_.blocks.stamps(); ++stamp) {
-      const auto [asked, answered] = ask.read(cycle, TilePlane::pixel_color, stamp_address({block, stamp}, widths_));
+    for (int stamp = 0; stamp < stamps_; ++stamp) {
+      const auto [asked, answered] = ask.read(cycle, TilePlane::pixel_color, {block, stamp});
       cycle = asked + 1;
       answered_ = answered;
     }
     return answered_ + 1;
   }
-
-  [[nodiscard]] std::uint64_t all_stamps() const { return ~std::uint64_t{0} >> (64 - widths_.blocks.stamps()); }
 
   [[nodiscard]] std::size_t slot_after(std::size_t slot) const { return slot + 1 == slots_.size() ? 0 : slot + 1; }
 
@@ -396,20 +409,19 @@ class BlockTiming {
     Victim& v = victims_[next_slot_];
     v = {e.block, {}, ready, {}};
     next_slot_ = slot_after(next_slot_);
-    for (const std::size_t p : {0U, 1U}) v.stamps[p] = e.fills[p] ? all_stamps() : e.stamps[p] & dirty_[e.line][p];
+    for (const std::size_t p : {0U, 1U}) v.stamps[p] = e.fills[p] ? all_stamps_ : e.stamps[p] & dirty_[e.line][p];
     if (!compresses()) return;
-    v.colors = {e.fills[1], true, v.stamps[1] == all_stamps()};
+    v.colors = {e.fills[1], true, v.stamps[1] == all_stamps_};
     for (std::uint64_t left = v.stamps[1]; left != 0; left &= left - 1) {
       const int stamp = std::countr_zero(left);
-      const SampleMask all = SampleMask::all(widths_.samples),
-                       mask = e.fills[1] ? all : dirty_colors_[color_place(e.line, stamp)];
+      const SampleMask all = all_samples_, mask = e.fills[1] ? all : dirty_colors_[color_place(e.line, stamp)];
       v.colors.is_whole = v.colors.is_whole && mask == all;
-      v.colors.is_uniform = v.colors.is_uniform && ask.has_one_color(stamp_address({e.block, stamp}, widths_), mask);
+      v.colors.is_uniform = v.colors.is_uniform && ask.has_one_color({e.block, stamp}, mask);
     }
   }
 
   [[nodiscard]] std::size_t color_place(std::size_t line, int stamp) const {
-    return line * static_cast<std::size_t>(widths_.blocks.stamps()) + static_cast<std::size_t>(stamp);
+    return line * static_cast<std::size_t>(stamps_) + static_cast<std::size_t>(stamp);
   }
 
   void note_writes(const TagResult& tags, const BlockItem& item) {
@@ -420,8 +432,10 @@ class BlockTiming {
     if (!item.mask.any()) return;
     const std::uint64_t bit = std::uint64_t{1} << tags.stamp;
     const auto note = [&](std::uint64_t& dirty, bool starts, bool writes) {
-      if (starts) dirty &= ~bit;
-      if (writes) dirty |= bit;
+      if (writes)
+        dirty |= bit;
+      else if (starts)
+        dirty &= ~bit;
     };
     note(dirty_[tags.line][0], starts_depth, item.wrote_depth);
     note(dirty_[tags.line][1], tags.starts_color, item.colors.any());
@@ -430,11 +444,14 @@ class BlockTiming {
     dirty = tags.starts_color ? item.colors : dirty | item.colors;
   }
 
-  Widths widths_;
-  int lanes_;           ///< samples blended per clock; 0: no blending
-  Cycle write_clocks_;  ///< from the colour stage to the RAM
+  SampleMask all_samples_;
+  int stamps_;                ///< of a block
+  std::uint64_t all_stamps_;  ///< a bit for each
+  int samples_;               ///< of a stamp
+  int lanes_;                 ///< samples blended per clock; 0: no blending
+  Cycle write_clocks_;        ///< from the colour stage to the RAM
   Station items_, orders_;
-  Station behind_{2, 0, 0};  ///< between the depth stage and the colour stage; or the shading units
+  FixedStation<2, 0, 0> behind_;  ///< between the depth stage and the colour stage; or the shading units
   std::optional<TextureTiming> texture_;
   std::optional<FogTiming> fog_;
   std::optional<LightTiming> light_;
@@ -447,7 +464,7 @@ class BlockTiming {
   std::optional<BlockAddress> last_block_;  ///< block of the last fragment, if it has samples and no token came since
   Cycle depth_free_ = 0;                    ///< when the depth RAM has been read for the last eviction
   ColorReads reads_;
-  std::array<ColorWrite, kBlendClocks> color_writes_{};  ///< the last writes
+  std::array<ColorWrite, kWritesInFlight> color_writes_{};  ///< the last writes
   std::size_t next_write_ = 0;
   std::size_t last_line_ = 0;
   bool last_writes_ = false;     ///< the last fragment may have written depths

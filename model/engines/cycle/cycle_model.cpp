@@ -103,7 +103,7 @@ class BitsAndTimes final : public CycleModel {
   }
 
   [[nodiscard]] const CounterPacket& counters() const override { return all_counters_; }
-  [[nodiscard]] const TimingTotals& totals() const override { return times_->totals(); }
+  [[nodiscard]] TimingTotals totals() const override { return times_->totals(); }
   [[nodiscard]] const Stream& stream(Arrow boundary) const override { return times_->stream(boundary); }
   [[nodiscard]] Rendering& rendering() override { return rendering_; }
   [[nodiscard]] std::vector<float>& cost() override { return times_->cost(); }
@@ -378,14 +378,19 @@ class BitsAndTimes final : public CycleModel {
 
   void visit_in_lanes(const TilePacket& tile) {
     LaneStamp* const first = steps().lane_stamps.room(static_cast<std::size_t>(widths_.stamps.stamps()));
-    LaneStamp* next = first;
-    const RetirePacket retired =
-        lanes_.draw(tile, rendering_.frame, counters_, [&](int number, unsigned covered, unsigned passed) {
+    std::uint8_t* const first_row = steps().lane_rows.room(static_cast<std::size_t>(widths_.stamps.stamps_per_row));
+    LaneStamp *next = first, *begins_row = first;
+    std::uint8_t* row = first_row;
+    const RetirePacket retired = lanes_.draw(
+        tile, rendering_.frame, counters_,
+        [&](int number, unsigned covered, unsigned passed) {
           *next++ = {static_cast<std::uint16_t>(number), static_cast<std::uint8_t>(covered),
                      static_cast<std::uint8_t>(passed)};
-        });
+        },
+        [&] { *row++ = static_cast<std::uint8_t>(next - std::exchange(begins_row, next)); });
     const auto stamps = static_cast<std::size_t>(next - first);
     steps().lane_stamps.add(stamps);
+    steps().lane_rows.add(static_cast<std::size_t>(row - first_row));
     add_visit(StepKind::lane_visit, tile, stamps);
     if (config_.hiz_bits != 0) hiz_.retire(retired);
   }

@@ -43,7 +43,7 @@ class CycleModel {
   /// The times of all primitives so far. What follows is up to this. Throws what the memory throws, as run() may.
   virtual void complete() = 0;
   [[nodiscard]] virtual const CounterPacket& counters() const = 0;  ///< as the RTL's, since reset
-  [[nodiscard]] virtual const TimingTotals& totals() const = 0;
+  [[nodiscard]] virtual TimingTotals totals() const = 0;
   [[nodiscard]] virtual const Stream& stream(Arrow boundary) const = 0;
   /// The frame; count and ids since begin().
   [[nodiscard]] virtual Rendering& rendering() = 0;

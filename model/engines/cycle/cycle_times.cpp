@@ -52,6 +52,7 @@ class TimesOf final : public CycleTimes {
     visit_ = steps.visits.data();
     stamp_ = steps.stamps.data();
     lane_stamp_ = steps.lane_stamps.data();
+    lane_row_ = steps.lane_rows.data();
     tags_ = steps.tags.data();
     area_ = steps.areas.data();
     texture_ = steps.textures.data();
@@ -60,7 +61,7 @@ class TimesOf final : public CycleTimes {
   }
 
   [[nodiscard]] const CounterPacket& counters() const override { return counters_; }
-  [[nodiscard]] const TimingTotals& totals() const override { return timing_.totals(); }
+  [[nodiscard]] TimingTotals totals() const override { return timing_.totals(); }
   [[nodiscard]] const Stream& stream(Arrow boundary) const override { return timing_.stream(boundary); }
   [[nodiscard]] std::vector<float>& cost() override { return cost_; }
 
@@ -106,35 +107,33 @@ class TimesOf final : public CycleTimes {
     return {step.ends_primitive, grid.row_of(first), grid.row_of(last), grid.column_of(first), grid.column_of(last)};
   }
   /// A visit's stamps, row by row.
-  template <class Stamp>
   struct StampRows {
     const StampGrid& grid;
-    const Stamp *next, *end;
+    const StampStep *next, *end;
     /// The number of stamps in the next row; a bit for each of them.
     [[nodiscard]] int count(int row) {
-      const Stamp* const first = next;
-      for (const int below = grid.stamp_number(0, row + 1); next != end && number_of(*next) < below;) ++next;
+      const StampStep* const first = next;
+      for (const int below = grid.stamp_number(0, row + 1); next != end && next->at.stamp < below;) ++next;
       return static_cast<int>(next - first);
     }
     [[nodiscard]] std::uint32_t columns(int row) {
       std::uint32_t columns = 0;
-      for (int left = count(row); left > 0; --left) columns |= 1U << grid.column_of(number_of(next[-left]));
+      for (int left = count(row); left > 0; --left) columns |= 1U << grid.column_of(next[-left].at.stamp);
       return columns;
     }
   };
-  template <class Stamp>
-  [[nodiscard]] StampRows<Stamp> rows_of(std::span<const Stamp> stamps) const {
-    return {widths_.stamps, stamps.data(), stamps.data() + stamps.size()};
-  }
-  [[nodiscard]] static int number_of(const StampStep& step) { return step.at.stamp; }
-  [[nodiscard]] static int number_of(const LaneStamp& stamp) { return stamp.stamp; }
-
+  /// The same of a visit in lanes, whose rows are counted.
+  struct LaneRows {
+    const std::uint8_t*& next;
+    [[nodiscard]] int count(int /*row*/) { return *next++; }
+  };
   void visit(const VisitStep& step, std::span<const StampStep> stamps) {
     const StampStep* stamp = stamps.data();
     const Cycle before = timing_.last_fragment();
     if (sink_ != nullptr) sink_->visit(step.tile_x, step.tile_y);
     is_resident_ = false;
-    timing_.visit(work_of(step), rows_of(stamps), [&](Cycle offered, bool is_covered) {
+    StampRows rows{widths_.stamps, stamps.data(), stamps.data() + stamps.size()};
+    timing_.visit(work_of(step), rows, [&](Cycle offered, bool is_covered) {
       return is_covered ? enter(*stamp++, offered, 0) : timing_.pass(offered);
     });
     if (want_cost_) share_cost(step, stamps, static_cast<float>(timing_.last_fragment() - before));
@@ -149,19 +148,29 @@ class TimesOf final : public CycleTimes {
       item.color_write = state_.color_write;
       const int per_tile = widths_.blocks.per_tile_log2, first_x = step.tile_x << per_tile,
                 first_y = step.tile_y << per_tile;
+      const bool writes_depth = state_.depth_write;
+      const std::uint8_t writes_color = state_.color_write ? 0xff : 0;
       const LaneStamp* stamp = stamps.data();
-      timing_.visit(work_of(step), rows_of(stamps), [&](Cycle offered, bool is_covered) {
-        if (!is_covered) return timing_.pass(offered);
+      bool is_noted = stamps.empty();
+      timing_.visit(work_of(step), LaneRows{lane_row_}, [&](Cycle offered, bool is_covered) {
+        if (!is_covered) {  // it ends the visit
+          if (!std::exchange(is_noted, true)) timing_.note_write();
+          return timing_.pass(offered);
+        }
         const auto [number, covered, passed] = *stamp++;
+        if (covered == 0) __builtin_unreachable();
         BlockStamp place = places_[number];
         place.block.x = static_cast<std::uint16_t>(place.block.x + first_x);
         place.block.y = static_cast<std::uint16_t>(place.block.y + first_y);
         item.mask = SampleMask(covered);
-        item.wrote_depth = state_.depth_write && passed != 0;
-        if (item.color_write) item.colors = SampleMask(passed);
+        item.wrote_depth = writes_depth && passed != 0;
+        item.colors = SampleMask(passed & writes_color);
         return timing_.access(offered, blocks_->access(place, state_, item.mask == all_samples_), item, shading_);
       });
+      if (!is_noted) timing_.note_write();
     } else {
+      const TileVisitWork work = work_of(step);
+      lane_row_ += work.last_row - work.first_row + 1;
       expanded_visit(step, stamps);
     }
   }
@@ -191,7 +200,9 @@ class TimesOf final : public CycleTimes {
     if (blocks_) {
       if (!even_.empty()) even_[place_of(stamp.at)] = stamp.even;
       const TagResult tags = blocks_->access(stamp.at, state_, stamp.item.mask == all_samples_);
-      return timing_.access(offered, tags, stamp.item, texture(), others);
+      const Cycle moved = timing_.access(offered, tags, stamp.item, texture(), others);
+      timing_.note_write();
+      return moved;
     }
     const FragmentPlace place{stamp.at.tile_x, stamp.at.tile_y, stamp.at.stamp, stamp.item.mask, state_.depth_write};
     const auto look_up = [&](auto& mover) {
@@ -309,6 +320,7 @@ class TimesOf final : public CycleTimes {
   const VisitStep* visit_ = nullptr;
   const StampStep* stamp_ = nullptr;
   const LaneStamp* lane_stamp_ = nullptr;
+  const std::uint8_t* lane_row_ = nullptr;
   const TagsStep* tags_ = nullptr;
   const AreaStep* area_ = nullptr;
   const TextureStep* texture_ = nullptr;

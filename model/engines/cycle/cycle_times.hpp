@@ -19,7 +19,7 @@ class CycleTimes : public StepRunner {
   virtual void begin(int width, int height, Cycle cycle) = 0;
   /// Of tiles or blocks: those that the caches count.
   [[nodiscard]] virtual const CounterPacket& counters() const = 0;
-  [[nodiscard]] virtual const TimingTotals& totals() const = 0;
+  [[nodiscard]] virtual TimingTotals totals() const = 0;
   [[nodiscard]] virtual const Stream& stream(Arrow boundary) const = 0;
   [[nodiscard]] virtual std::vector<float>& cost() = 0;
 };

@@ -22,7 +22,6 @@ class PipelinedTiming : public BackTiming<Run> {
                   const TimingParameters& parameters, TransferSink* sink, const MemorySettings& textures)
       : Base(config, widths, stalls, memory, sink, textures),
         setup_(config, widths, parameters.divide_bits),
-        parts_(static_cast<std::size_t>(setup_.parts), Station(1, setup_.part, 0)),
         offer_setup_(1, setup_.last, 1),
         slots_(config.context_slots, 0, 2),
         visits_(config.hiz_lag, 0, kVisitIsSeen),
@@ -30,7 +29,9 @@ class PipelinedTiming : public BackTiming<Run> {
         triangle_queue_(parameters.triangle_queue),
         setup_queue_(parameters.setup_queue),
         tile_queue_(parameters.tile_queue),
-        fragment_queue_(parameters.fragment_queue) {}
+        fragment_queue_(parameters.fragment_queue) {
+    for (int part = 0; part < setup_.parts; ++part) parts_.emplace_back(1, setup_.part, 0);
+  }
 
   /// The host offers its next primitive from `cycle` on.
   void begin(Cycle cycle) {

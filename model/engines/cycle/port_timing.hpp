@@ -23,11 +23,13 @@
 
 namespace halfplane {
 
-/// The subject of a request (MemoryRequest).
+/// The subject of a request (MemoryRequest). At: StampAddress or BlockStamp.
+template <class At>
 struct PortRequest {
   bool is_write = false;
   TilePlane plane = TilePlane::depth;
-  int tile_x = 0, tile_y = 0, stamp = 0, run = 1;
+  At at;
+  int run = 1;
 };
 
 /// The cycle in which a request was taken, and the cycle of the last response to it.
@@ -74,29 +76,31 @@ class PortTiming {
       places_[plane].row = first_of_row(1) - first_of_row(0);
     }
   }
-  /// Beats moved, for writes and reads.
-  [[nodiscard]] std::uint64_t beats() const { return beats_; }
-  /// The last cycle in which an item crossed.
-  [[nodiscard]] Cycle last() const { return last_; }
+  /// A stamp, by its tile.
+  [[nodiscard]] const StampAddress& address_of(const StampAddress& at) const { return at; }
+  [[nodiscard]] StampAddress address_of(const BlockStamp& at) const { return stamp_address(at, widths_); }
+  /// The last cycle in which an item crossed: where nothing holds the streams back, the last answer.
+  [[nodiscard]] Cycle last() const { return std::max(last_, answered_); }
 
-  /// A request on offer from `cycle` on.
-  PortTimes take(const PortRequest& request, Cycle cycle) {
+  /// A request on offer from `cycle` on. Its beats are added to `beats`.
+  template <class At>
+  PortTimes take(const PortRequest<At>& request, Cycle cycle, std::uint64_t& beats) {
+    if (!request.is_write && request.run == 1 && moves_freely()) return read_at_once(request, cycle, beats);
     const auto [share, address] = place_of(request);
-    if (!request.is_write)
-      return request.run == 1 && moves_freely() ? read_at_once(share, address, cycle)
-                                                : read(request, share, address, cycle);
-    return {write(request, share, address, share.first, cycle), 0};
+    if (!request.is_write) return read(request, share, address, cycle, beats);
+    return {write(request, share, address, share.first, cycle, beats), 0};
   }
 
   /// The `run` requests of a burst of writes: the first on offer from `cycle` on, each other from the cycle after the one
   /// before was taken. watch(asked): of each, if there is a sink.
-  template <class Watch>
-  RunTimes take_run(const PortRequest& request, Cycle cycle, Watch&& watch) {
+  template <class At, class Watch>
+  RunTimes take_run(const PortRequest<At>& request, Cycle cycle, std::uint64_t& beats, Watch&& watch) {
+    if (left_ == 0 && moves_freely() && places_[number(request.plane)].share.per_beat == 1)
+      return write_at_once(request, cycle, beats);
     const auto [share, address] = place_of(request);
-    if (left_ == 0 && moves_freely() && share.per_beat == 1) return write_at_once(request, share, address, cycle);
     RunTimes times;
     for (int n = 0; n < request.run; ++n) {
-      times.last = write(request, share, address, (share.first + n) & (share.per_beat - 1), cycle);
+      times.last = write(request, share, address, (share.first + n) & (share.per_beat - 1), cycle, beats);
       times.waited += times.last - cycle;
       cycle = times.last + 1;
       watch(times.last);
@@ -109,20 +113,27 @@ class PortTiming {
     BeatShare share;
     std::uint32_t address;  ///< of the first byte
   };
-  [[nodiscard]] Place place_of(const PortRequest& request) const {
+  template <class At>
+  [[nodiscard]] Place place_of(const PortRequest<At>& request) const {
+    const StampAddress at = address_of(request.at);
     if (is_flags(request.plane)) {
       const int shift = item_shift(request.plane, widths_.memory);
-      const std::uint32_t address =
-          byte_address(request.plane, request.tile_x, request.tile_y, request.stamp, layout_, widths_);
+      const std::uint32_t address = byte_address(request.plane, at.tile_x, at.tile_y, at.stamp, layout_, widths_);
       return {BeatShare(shift, widths_.memory.port, address >> shift), address};
     }
     const PlanePlace& plane = places_[number(request.plane)];
-    Place place{plane.share, plane.base + static_cast<std::uint32_t>(request.tile_y) * plane.row +
-                                 (static_cast<std::uint32_t>(request.tile_x) << widths_.memory.tile()) +
-                                 offsets_[number(request.plane)][static_cast<std::size_t>(request.stamp)]};
+    Place place{plane.share, plane.base + std::uint32_t{at.tile_y} * plane.row +
+                                 (std::uint32_t{at.tile_x} << widths_.memory.tile()) +
+                                 offsets_[number(request.plane)][at.stamp]};
     place.share.first =
         static_cast<int>((place.address >> plane.shift) & static_cast<std::uint32_t>(place.share.per_beat - 1));
     return place;
+  }
+
+  /// The address of the first beat.
+  template <class At>
+  [[nodiscard]] std::uint64_t beat_address(const PortRequest<At>& request) const {
+    return place_of(request).address >> widths_.memory.port << widths_.memory.port;
   }
 
   /// Whether nothing holds the streams back or watches them.
@@ -132,7 +143,9 @@ class PortTiming {
 
   /// A stamp, the number `in_beat` of its beat; if it begins a burst, `request.run` counts the stamps of the burst.
   /// Returns when it is taken.
-  Cycle write(const PortRequest& request, const BeatShare& share, std::uint32_t address, int in_beat, Cycle cycle) {
+  template <class At>
+  Cycle write(const PortRequest<At>& request, const BeatShare& share, std::uint32_t address, int in_beat, Cycle cycle,
+              std::uint64_t& beats) {
     const bool begins = left_ == 0;
     if (begins) {
       left_ = request.run;
@@ -149,14 +162,16 @@ class PortTiming {
       has_sent_ = true;
     }
     room_ = beat;
-    beats_ += static_cast<std::uint64_t>(share.per_stamp);
-    if (left_ == 0) end_burst(burst_, beat);
+    beats += static_cast<std::uint64_t>(share.per_stamp);
+    if (left_ == 0) end_burst(beat, [&] { return burst_; });
     return asked;
   }
 
   /// A burst of writes in closed form, where nothing holds the streams back and no stamps share a beat: its first beat may
   /// wait for memory; then each stamp is taken with the last beat of the one before.
-  RunTimes write_at_once(const PortRequest& request, const BeatShare& share, std::uint32_t address, Cycle cycle) {
+  template <class At>
+  RunTimes write_at_once(const PortRequest<At>& request, Cycle cycle, std::uint64_t& counted) {
+    const BeatShare& share = places_[number(request.plane)].share;
     const auto beats = static_cast<Cycle>(share.per_stamp), others = static_cast<Cycle>(request.run - 1);
     const Cycle first = std::max({cycle, room_, unanswered_.room()}), sent = std::max(first + 1, memory_room());
     const Cycle second = sent + beats - 1;  // with the last beat of the first stamp
@@ -166,48 +181,51 @@ class PortTiming {
       times.waited += second - first - 1 + (others - 1) * (beats - 1);
     }
     room_ = second + others * beats;
-    beats_ += (others + 1) * beats;
+    counted += (others + 1) * beats;
     streams_[index(Arrow::request)].count_run(others + 1, times.waited);
     streams_[index(Arrow::beat)].count_run((others + 1) * beats, sent - first - 1);
-    const MemoryBurst burst{true, address >> widths_.memory.port << widths_.memory.port, share.beats(request.run)};
-    end_burst(burst, room_);
+    end_burst(room_, [&] { return MemoryBurst{true, beat_address(request), share.beats(request.run)}; });
     return times;
   }
 
-  /// The last beat of a burst of writes has been sent in `beat`.
-  void end_burst(const MemoryBurst& burst, Cycle beat) {
-    const Cycle answer = ideal_ ? beat + *ideal_ : memory_.accept(burst, beat).at(0);
+  /// The last beat of the burst of writes `burst()` has been sent in `beat`.
+  template <class Burst>
+  void end_burst(Cycle beat, Burst&& burst) {
+    const Cycle answer = ideal_ ? beat + *ideal_ : memory_.accept(burst(), beat).at(0);
     answered_ = moves(Arrow::answer, std::max(answer, answered_ + 1), 0);
     unanswered_.leave(answered_);
   }
 
   /// A read of a stamp where nothing holds the streams back.
-  PortTimes read_at_once(const BeatShare& share, std::uint32_t address, Cycle cycle) {
+  template <class At>
+  PortTimes read_at_once(const PortRequest<At>& request, Cycle cycle, std::uint64_t& counted) {
     const Cycle asked = std::max(cycle, room_);
     room_ = std::max(asked + 1, memory_room());
-    const auto beats = static_cast<std::uint64_t>(share.per_stamp);
+    const int per_stamp = places_[number(request.plane)].share.per_stamp;
+    const auto beats = static_cast<std::uint64_t>(per_stamp);
     if (ideal_) {
       answered_ = std::max(room_ + *ideal_ + beats - 1, answered_ + beats);
     } else {
-      const MemoryBurst burst{false, address >> widths_.memory.port << widths_.memory.port, share.per_stamp};
+      const MemoryBurst burst{false, beat_address(request), per_stamp};
       const BurstAnswer answer = memory_.accept(burst, room_);
       for (int n = 0; n < burst.beats; ++n) answered_ = std::max(answer.at(n), answered_ + 1);
     }
-    beats_ += beats;
+    counted += beats;
     streams_[index(Arrow::request)].count_run(1, asked - cycle);
     streams_[index(Arrow::beat)].count_run(1, room_ - asked - 1);
     streams_[index(Arrow::answer)].count_run(beats, 0);
     streams_[index(Arrow::response)].count_run(1, 0);
-    last_ = std::max({last_, room_, answered_});
     return {asked, answered_};
   }
 
-  PortTimes read(const PortRequest& request, const BeatShare& share, std::uint32_t address, Cycle cycle) {
+  template <class At>
+  PortTimes read(const PortRequest<At>& request, const BeatShare& share, std::uint32_t address, Cycle cycle,
+                 std::uint64_t& beats) {
     const Cycle asked = moves(Arrow::request, cycle, room_);
     room_ = moves(Arrow::beat, asked + 1, memory_.room());
     const MemoryBurst burst{false, address >> widths_.memory.port << widths_.memory.port, share.beats(request.run)};
     const BurstAnswer answer = memory_.accept(burst, room_);
-    beats_ += static_cast<std::uint64_t>(burst.beats);
+    beats += static_cast<std::uint64_t>(burst.beats);
     const unsigned both = streams_[index(Arrow::answer)].streams() | streams_[index(Arrow::response)].streams();
     int stamps = request.run, next = share.first;
     for (int n = 0; n < burst.beats; ++n) {
@@ -229,7 +247,7 @@ class PortTiming {
   Cycle moves(Arrow arrow, Cycle offered, Cycle room) {
     Stream& stream = streams_[index(arrow)];
     const Cycle moved = Run::is_plain ? stream.move(offered, room) : stream.transfer(offered, room);
-    note(arrow, moved);
+    if (!Run::is_plain) note(arrow, moved);  // its answer is later
     return moved;
   }
   void count(Arrow arrow, Cycle offered, Cycle moved) {
@@ -261,7 +279,6 @@ class PortTiming {
   std::array<std::vector<std::uint32_t>, 6> offsets_;  ///< stamp_offset() by plane, but for flags
   bool has_sent_ = false;                              ///< a beat of it has been sent
   Cycle room_ = 0, answered_ = 0;
-  std::uint64_t beats_ = 0;
   Cycle last_ = 0;
 };
 

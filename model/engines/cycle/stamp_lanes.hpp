@@ -54,10 +54,11 @@ class StampLanes {
     passes_ = DepthOutcomes(state_.depth_test);
   }
 
-  /// Draws a tile: visit(stamp, covered, passed) for each stamp with a covered sample, row by row, with a bit for each
-  /// sample. Returns the end of the visit.
-  template <class Visit>
-  RetirePacket draw(const TilePacket& tile, Framebuffer& frame, CounterPacket& counters, Visit&& visit) {
+  /// Draws a tile: visit(stamp, covered, passed) for each stamp with a covered sample, with a bit for each sample, and
+  /// end_row() after each row of stamps in the box. Returns the end of the visit.
+  template <class Visit, class EndRow>
+  RetirePacket draw(const TilePacket& tile, Framebuffer& frame, CounterPacket& counters, Visit&& visit,
+                    EndRow&& end_row) {
     const StampGrid& stamps = widths_.stamps;
     const PixelBounds box = to_bounds(tile.box);
     const int left = box.left & -kSize, top = box.top & -kSize;
@@ -120,6 +121,7 @@ class StampLanes {
         at += kSize;
         ++number;
       }
+      end_row();
       for (std::size_t e = 0; e < 3; ++e) row_edge[e] += edges_[e].stamp_y;
       row_planes += stamp_y_;
       row_at += row_stride;

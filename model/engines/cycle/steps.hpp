@@ -14,14 +14,14 @@
 namespace halfplane {
 
 enum class StepKind : std::uint8_t {
-  take,         ///< cull takes the next of Steps::primitives
-  outside,      ///< the walk skips `count` tiles outside an edge
-  read_ahead,   ///< bounds are read from here on
-  read_bound,   ///< the bound of the next tile
-  behind,       ///< that tile is behind it
-  end_walk,     ///< the primitive ends without a visit
-  visit,        ///< the next of Steps::visits, with the next `count` of Steps::stamps
-  lane_visit,   ///< the same with Steps::lane_stamps
+  take,        ///< cull takes the next of Steps::primitives
+  outside,     ///< the walk skips `count` tiles outside an edge
+  read_ahead,  ///< bounds are read from here on
+  read_bound,  ///< the bound of the next tile
+  behind,      ///< that tile is behind it
+  end_walk,    ///< the primitive ends without a visit
+  visit,       ///< the next of Steps::visits, with the next `count` of Steps::stamps
+  lane_visit,  ///< the same with Steps::lane_stamps, and the next of Steps::lane_rows for each row of stamps in its box
   line_pixels,  ///< the next `count` of Steps::stamps are the pixels of a line
   set_tags,     ///< the next of Steps::tags
   set_state,    ///< a token in the shading units; with a texture unit the next of Steps::textures
@@ -55,21 +55,22 @@ struct LaneStamp {
   std::uint8_t covered = 0, passed = 0;
 };
 
-/// The lane stamps of a batch.
-class LaneStamps {
+/// Items of a batch that are written where they stay.
+template <class Item>
+class StepItems {
  public:
-  /// Room for `most` stamps more; add() says how many were written.
-  [[nodiscard]] LaneStamp* room(std::size_t most) {
-    if (stamps_.size() < size_ + most) stamps_.resize(2 * (size_ + most));
-    return stamps_.data() + size_;
+  /// Room for `most` items more; add() says how many were written.
+  [[nodiscard]] Item* room(std::size_t most) {
+    if (items_.size() < size_ + most) items_.resize(2 * (size_ + most));
+    return items_.data() + size_;
   }
-  void add(std::size_t stamps) { size_ += stamps; }
+  void add(std::size_t items) { size_ += items; }
   [[nodiscard]] std::size_t size() const { return size_; }
-  [[nodiscard]] const LaneStamp* data() const { return stamps_.data(); }
+  [[nodiscard]] const Item* data() const { return items_.data(); }
   void clear() { size_ = 0; }
 
  private:
-  std::vector<LaneStamp> stamps_;
+  std::vector<Item> items_;
   std::size_t size_ = 0;
 };
 
@@ -101,7 +102,8 @@ struct Steps {
   std::vector<PrimitiveStep> primitives;
   std::vector<VisitStep> visits;
   std::vector<StampStep> stamps;
-  LaneStamps lane_stamps;
+  StepItems<LaneStamp> lane_stamps;
+  StepItems<std::uint8_t> lane_rows;  ///< the number of a row's lane stamps
   std::vector<TagsStep> tags;
   std::vector<AreaStep> areas;
   std::vector<TextureStep> textures;  ///< with a texture unit: one for each stamp with covered samples, and each token
@@ -122,6 +124,7 @@ struct Steps {
     visits.clear();
     stamps.clear();
     lane_stamps.clear();
+    lane_rows.clear();
     tags.clear();
     areas.clear();
     textures.clear();
