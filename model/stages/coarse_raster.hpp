@@ -18,10 +18,9 @@ namespace halfplane {
 /// Watches the steps of a walk; the cycle model has a watch that gives them times.
 struct UnwatchedWalk {
   static constexpr bool rejects = true;  ///< false: tiles outside an edge are processed like all others
-  void read_ahead() const {}             ///< the next tile's bound is about to be read
   void skip_outside() const {}           ///< a tile is outside
-  void read_bound() const {}
-  void skip_behind() const {}  ///< a tile is behind its bound
+  void read_bound() const {}             ///< the bound of the tile is read
+  void skip_behind() const {}            ///< a tile is behind its bound
 };
 
 /// The stage: calls emit(TilePacket) in the order of the walk; emit retires the visit.
@@ -46,15 +45,14 @@ void coarse_raster(const SetupPacket& setup, std::uint8_t slot, Hiz& hiz, const 
   std::uint64_t visited = 0, outside_tiles = 0, behind = 0, inside = 0, tested = 0;  // counted for triangles
   const bool asks_hiz = hiz.is_eligible(setup, widths);
   TileWalk walk(first_x, first_y, last_x, last_y, setup.dy);
+  const TileReach reach = tile_reach(setup.dx, setup.dy, widths);
   bool has_ended = false;
   unsigned outside = 0;
   TilePacket packet;
-  if (asks_hiz) watch.read_ahead();
   do {
     ++visited;
     const EdgeValues edges = edges_at_tile(setup, walk.x(), walk.y(), widths);
-    outside = outside_edges(setup.dx, setup.dy, moved_by_samples(edges, setup.dx, setup.dy, true, widths),
-                            1 << widths.tile_shift);
+    outside = outside_edges(edges, reach);
     if (!watch.rejects) outside = 0;
     if (asks_hiz && outside == 0) watch.read_bound();
     if (outside != 0) {
@@ -65,14 +63,13 @@ void coarse_raster(const SetupPacket& setup, std::uint8_t slot, Hiz& hiz, const 
       watch.skip_behind();
     } else {
       has_ended = walk.is_last();
-      make_tile_packet(setup, edges, walk.x(), walk.y(), slot, has_ended, widths, packet);
+      make_tile_packet(setup, edges, reach, walk.x(), walk.y(), slot, has_ended, widths, packet);
       hiz.begin_visit(setup.state);
       if (packet.is_inside != 0)
         ++inside;
       else
         tested += to_bounds(packet.box).samples() * static_cast<std::uint64_t>(widths.pixel_samples);
       emit(packet);
-      if (asks_hiz && !has_ended) watch.read_ahead();
     }
   } while (walk.next(outside));
   if (kind == PrimitiveKind::triangle) {

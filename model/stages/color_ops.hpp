@@ -52,7 +52,7 @@ template <class Lane>
 // --- the stored format ----------------------------------------------------------------------------------------------
 
 /// The nearest 5- or 6-bit code of an 8-bit one: floor(c * 31 / 255 + 1/2), or with 63, as one multiply, add and shift
-/// (exact for all 256 inputs; tested).
+/// (exact for all 256 inputs; tested). The sums have 16 bits.
 template <class Lane>
 [[nodiscard]] constexpr Lane to_5_bits(const Lane& c) {
   return (c * 249 + 1014) >> 11;

@@ -136,22 +136,28 @@ template <class Box>
     const std::int32_t dx = to.x - from.x, dy = to.y - from.y;
     if (dx < -limit || dx >= limit || dy < -limit || dy >= limit) return false;
   }
-  const auto corner = to_snapped(triangle.vertex);
-  for (int y = box.top; y <= box.bottom; ++y)
-    for (int x = box.left; x <= box.right; ++x) {
-      bool is_covered = true;
-      for (std::size_t i = 0; i < 3; ++i)
-        is_covered = is_covered && edge_function(corner[i], corner[(i + 1) % 3], x, y, widths.grid_bits) >= 0;
-      if (is_covered) return false;
-    }
-  return true;
+  const TriangleVertices& corner = triangle.vertex;
+  const int in_tile = (1 << widths.tile_shift) - 1;
+  const EdgeValue x = box.left & in_tile, y = box.top & in_tile;  // from the pixel of the edge values
+  std::array<EdgeValue, 4> any{};                                 // pixels of the box: negative outside some edge
+  for (std::size_t i = 0; i < 3; ++i) {
+    const EdgeValue dx = corner.x[(i + 1) % 3] - corner.x[i], dy = corner.y[(i + 1) % 3] - corner.y[i];
+    const EdgeValue first = triangle.edge_value[i] + y * dx - x * dy;
+    any[0] |= first;
+    any[1] |= first - dy;
+    any[2] |= first + dx;
+    any[3] |= first + dx - dy;
+  }
+  const bool has_two_columns = box.right != box.left, has_two_rows = box.bottom != box.top;
+  return any[0] < 0 && (!has_two_columns || any[1] < 0) && (!has_two_rows || any[2] < 0) &&
+         (!has_two_columns || !has_two_rows || any[3] < 0);
 }
 
 /// The stage. Each dropped triangle is counted once, by the first reason that holds. `looks_at_samples`: true for the
 /// pipelined hardware, false for the serial one. Returns whether the primitive is kept; then every field of `out`
 /// that `widths` uses is set, so that one packet serves for one primitive after the other.
-[[nodiscard]] inline bool cull(const PrimitivePacket& in, const Widths& widths, CounterPacket& counters,
-                               bool looks_at_samples, TrianglePacket& out) {
+[[nodiscard, gnu::flatten]] inline bool cull(const PrimitivePacket& in, const Widths& widths, CounterPacket& counters,
+                                             bool looks_at_samples, TrianglePacket& out) {
   const auto keep = [&](const PixelBox& box) {
     out.kind = in.kind;
     out.primitive_id = in.primitive_id;

@@ -31,7 +31,20 @@ enum class TileClass { outside, cut, inside };
   return result;
 }
 
+/// From an edge's value at the first pixel of a tile to its largest and smallest over the tile: the same in all tiles.
+struct TileReach {
+  EdgeValues largest, smallest;
+};
+/// With several samples per pixel as far out, or in, as a sample may lie.
+[[nodiscard]] inline TileReach tile_reach(const EdgeDeltas& dx, const EdgeDeltas& dy, const Widths& widths);
+
 /// The edges that a tile lies outside of, a bit each.
+[[nodiscard]] constexpr unsigned outside_edges(const EdgeValues& value, const TileReach& reach) {
+  unsigned edges = 0;
+  for (std::size_t i = 0; i < 3; ++i) edges |= value[i] + reach.largest[i] < 0 ? 1U << i : 0;
+  return edges;
+}
+/// The same without samples beside the pixels' centres.
 [[nodiscard]] constexpr unsigned outside_edges(const EdgeDeltas& edge_dx, const EdgeDeltas& edge_dy,
                                                const EdgeValues& value, int tile_size) {
   unsigned edges = 0;
@@ -50,6 +63,15 @@ enum class TileClass { outside, cut, inside };
     value[i] += outwards ? reach : -reach;
   }
   return value;
+}
+
+inline TileReach tile_reach(const EdgeDeltas& dx, const EdgeDeltas& dy, const Widths& widths) {
+  TileReach reach{moved_by_samples({}, dx, dy, true, widths), moved_by_samples({}, dx, dy, false, widths)};
+  for (std::size_t i = 0; i < 3; ++i) {
+    reach.largest[i] = largest_in_tile(reach.largest[i], dx[i], dy[i], 1 << widths.tile_shift);
+    reach.smallest[i] = smallest_in_tile(reach.smallest[i], dx[i], dy[i], 1 << widths.tile_shift);
+  }
+  return reach;
 }
 
 /// The way through the tiles of a primitive's box. A row is walked to the right from its start, then from there to the
@@ -143,9 +165,9 @@ class TileWalk {
 
 /// The packet of a visit to tile (tile_x, tile_y). `slot` is the context slot of the primitive; `ends`: no other follows.
 /// The first form sets every field that `widths` uses, so that one packet serves for one tile after
-/// the other; `value`: edges_at_tile().
-void make_tile_packet(const SetupPacket& setup, const EdgeValues& value, int tile_x, int tile_y, std::uint8_t slot,
-                      bool ends, const Widths& widths, TilePacket& packet);
+/// the other; `value`: edges_at_tile(), `reach`: tile_reach().
+void make_tile_packet(const SetupPacket& setup, const EdgeValues& value, const TileReach& reach, int tile_x, int tile_y,
+                      std::uint8_t slot, bool ends, const Widths& widths, TilePacket& packet);
 [[nodiscard]] TilePacket make_tile_packet(const SetupPacket& setup, int tile_x, int tile_y, std::uint8_t slot,
                                           bool ends, const Widths& widths);
 

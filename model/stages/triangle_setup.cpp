@@ -203,7 +203,8 @@ TriangleSetup setup_primitive(const TrianglePacket& primitive, const Config& con
   return setup;
 }
 
-void setup_packet(const TrianglePacket& primitive, const Config& config, const Widths& widths, SetupPacket& packet) {
+[[gnu::flatten]] void setup_packet(const TrianglePacket& primitive, const Config& config, const Widths& widths,
+                                   SetupPacket& packet) {
   if (primitive.kind == PrimitiveKind::triangle) {
     const auto v = to_snapped(primitive.vertex);
     packet.box = primitive.box;

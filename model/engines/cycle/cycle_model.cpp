@@ -141,8 +141,8 @@ class BitsAndTimes final : public CycleModel {
     TrianglePacket& triangle = triangle_;
     const bool is_kept = cull(primitive, widths_, counters_, config_.setup_kind == SetupKind::pipelined, triangle);
     steps().add(StepKind::take);
-    steps().primitives.push_back({work_of(primitive, !is_kept, config_.setup_kind == SetupKind::serial),
-                                  is_kept ? triangle.state : PrimitiveState{}});
+    steps().primitives.add_item({work_of(primitive, !is_kept, config_.setup_kind == SetupKind::serial),
+                                 is_kept ? triangle.state : PrimitiveState{}});
     if (!is_kept) return added();
     switch (triangle.kind) {
       case PrimitiveKind::fast_clear: fast_clear(triangle); return;
@@ -242,9 +242,10 @@ class BitsAndTimes final : public CycleModel {
 
   /// A step for the current fragment, which passes.
   [[nodiscard]] StampStep& add_stamp() {
-    StampStep& step = steps().stamps.emplace_back();
+    StampStep step;
     step.at = {fragment_.key.tile_x, fragment_.key.tile_y, fragment_.stamp};
-    return step;
+    steps().stamps.add_item(step);
+    return steps().stamps.last();
   }
 
   /// The current fragment's fate, for its times.
@@ -338,10 +339,12 @@ class BitsAndTimes final : public CycleModel {
   struct WalkWatch {
     BitsAndTimes& model;
     bool rejects;
-    void read_ahead() const { model.steps().add(StepKind::read_ahead); }
     void skip_outside() const { model.steps().add_outside(); }
-    void read_bound() const { model.steps().add(StepKind::read_bound); }
-    void skip_behind() const { model.steps().add(StepKind::behind); }
+    void read_bound() const { model.reads_bound_ = true; }
+    void skip_behind() const {
+      model.steps().add(StepKind::behind);
+      model.reads_bound_ = false;
+    }
   };
 
   /// Runs coarse_raster, and for each visit the rest of the pipeline.
@@ -351,11 +354,10 @@ class BitsAndTimes final : public CycleModel {
     const EdgeContext edges = make_edge_context(setup);
     const bool is_in_lanes =
         !options_.want_count && !options_.want_ids && lanes_.draws(setup.state, path_.colors().tests_alpha());
-    std::optional<StampEdges> places;
     if (is_in_lanes)
       lanes_.begin(context, edges);
     else
-      places.emplace(edges, widths_);
+      places_.emplace(edges, widths_);
     coarse_raster(
         setup, 0, hiz_, widths_, counters_,
         [&](const TilePacket& tile) {
@@ -364,7 +366,7 @@ class BitsAndTimes final : public CycleModel {
           else if (is_in_lanes)
             visit_in_lanes(tile);
           else
-            visit(tile, edges, *places, context, primitive);
+            visit(tile, edges, *places_, context, primitive);
           added();
         },
         WalkWatch{*this, options_.parameters.rejects != 0});
@@ -372,22 +374,16 @@ class BitsAndTimes final : public CycleModel {
 
   /// The step of a visit, without its stamps.
   void add_visit(StepKind kind, const TilePacket& tile, std::size_t stamps) {
-    steps().add(kind, stamps);
-    steps().visits.push_back({tile.key.tile_x, tile.key.tile_y, tile.box, tile.ends_primitive});
+    steps().add(kind, stamps, std::exchange(reads_bound_, false));
+    steps().visits.add_item({tile.key.tile_x, tile.key.tile_y, tile.box, tile.ends_primitive});
   }
 
   void visit_in_lanes(const TilePacket& tile) {
     LaneStamp* const first = steps().lane_stamps.room(static_cast<std::size_t>(widths_.stamps.stamps()));
     std::uint8_t* const first_row = steps().lane_rows.room(static_cast<std::size_t>(widths_.stamps.stamps_per_row));
-    LaneStamp *next = first, *begins_row = first;
+    LaneStamp* next = first;
     std::uint8_t* row = first_row;
-    const RetirePacket retired = lanes_.draw(
-        tile, rendering_.frame, counters_,
-        [&](int number, unsigned covered, unsigned passed) {
-          *next++ = {static_cast<std::uint16_t>(number), static_cast<std::uint8_t>(covered),
-                     static_cast<std::uint8_t>(passed)};
-        },
-        [&] { *row++ = static_cast<std::uint8_t>(next - std::exchange(begins_row, next)); });
+    const RetirePacket retired = lanes_.draw(tile, rendering_.frame, counters_, next, row);
     const auto stamps = static_cast<std::size_t>(next - first);
     steps().lane_stamps.add(stamps);
     steps().lane_rows.add(static_cast<std::size_t>(row - first_row));
@@ -459,6 +455,8 @@ class BitsAndTimes final : public CycleModel {
   TrianglePacket triangle_;
   SetupPacket setup_;
   ContextPacket context_;
+  std::optional<StampEdges> places_;   ///< where it is not drawn in lanes
+  bool reads_bound_ = false;           ///< of the next tile
   FragmentPacket fragment_;            ///< the current one; holds only codes that have been requested
   std::optional<StampImages> images_;  ///< of the current frame, at the stamp of this fragment
   TextureMemory texels_;

@@ -57,7 +57,7 @@ class TimesOf final : public CycleTimes {
     area_ = steps.areas.data();
     texture_ = steps.textures.data();
     lookup_ = steps.lookups.data();
-    for (const Steps::Step& step : steps.order) run(step);
+    for (const Steps::Step& step : steps.order.items()) run(step);
   }
 
   [[nodiscard]] const CounterPacket& counters() const override { return counters_; }
@@ -75,15 +75,18 @@ class TimesOf final : public CycleTimes {
       case StepKind::outside:
         for (std::uint32_t n = 0; n < step.count; ++n) timing_.skip_outside();
         return;
-      case StepKind::read_ahead: timing_.read_ahead(); return;
-      case StepKind::read_bound: timing_.read_bound(); return;
-      case StepKind::behind: timing_.skip_behind(); return;
+      case StepKind::behind:
+        timing_.read_bound();
+        timing_.skip_behind();
+        return;
       case StepKind::end_walk: timing_.end_walk([&](Cycle offered) { return timing_.pass(offered); }); return;
       case StepKind::visit:
+        if (step.reads_bound) timing_.read_bound();
         visit(*visit_++, {stamp_, step.count});
         stamp_ += step.count;
         return;
       case StepKind::lane_visit:
+        if (step.reads_bound) timing_.read_bound();
         lane_visit(*visit_++, {lane_stamp_, step.count});
         lane_stamp_ += step.count;
         return;
@@ -157,7 +160,7 @@ class TimesOf final : public CycleTimes {
           if (!std::exchange(is_noted, true)) timing_.note_write();
           return timing_.pass(offered);
         }
-        const auto [number, covered, passed] = *stamp++;
+        const auto& [number, covered, passed] = *stamp++;
         if (covered == 0) __builtin_unreachable();
         BlockStamp place = places_[number];
         place.block.x = static_cast<std::uint16_t>(place.block.x + first_x);

@@ -40,7 +40,7 @@ class PipelinedTiming : public BackTiming<Run> {
   }
 
   /// Takes the next primitive, through cull and triangle_setup to coarse_raster; a dropped one goes only into cull.
-  void take(const PrimitiveWork& primitive) {
+  [[gnu::flatten]] void take(const PrimitiveWork& primitive) {
     const Cycle taken = this->stream(Arrow::primitive).transfer(offer_, sort_.room());
     note(Arrow::primitive, taken);
     if (primitive.is_counted) this->count_primitive(taken);
@@ -91,11 +91,9 @@ class PipelinedTiming : public BackTiming<Run> {
     work(Stage::coarse_raster, 1);
   }
 
-  /// From here on bounds are read, each on the way to its tile.
-  void read_ahead() { reads_bounds_ = true; }
-
   /// The tile goes on with its bound, which was read after the last visit and includes the visit hiz.lag before.
   void read_bound() {
+    reads_bounds_ = true;
     const Cycle unread = std::max(walk_, visit_left_ + 2), ready = std::max(unread, visits_.room() + 1);
     totals_.bound_cycles += ready - unread;
     walk_ = std::max(ready, tile_left_ + 1);

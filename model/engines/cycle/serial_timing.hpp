@@ -72,7 +72,6 @@ class SerialTiming : public BackTiming<AnyRun> {
     walk_ += 1 + SerialCycles::turn;
     work(Stage::coarse_raster, 1 + SerialCycles::turn);
   }
-  void read_ahead() {}
   void read_bound() {
     const Cycle read = std::max(walk_, visits_.room());
     totals_.bound_cycles += read - walk_;

@@ -9,6 +9,7 @@
 #include "../../stages/depth_test.hpp"
 #include "../../stages/fine_raster.hpp"
 #include "../../stages/framebuffer.hpp"
+#include "steps.hpp"
 
 namespace halfplane {
 
@@ -22,7 +23,8 @@ class StampLanes {
     fits_ = fits_ && widths.code_place[kDepthPlane].mask >> 31 == 0;  // passes()
     for (std::size_t p = 0; p < kPlanes; ++p) {
       const CodePlace& place = widths.code_place[p];
-      codes_[p] = {place.shift, Lanes{} + place.offset, Lanes{} + place.mask};
+      codes_[p] = {place.shift, Lanes{} + place.mask};
+      if (p < kFirstPlanes) offsets_[p] = 0U - (place.offset << place.shift);
       fits_ = fits_ && (std::uint64_t{place.mask} << place.shift) >> 32 == 0;  // in the lower 32 bits
     }
   }
@@ -50,15 +52,17 @@ class StampLanes {
                      static_cast<std::uint32_t>(context.step_y[kFirstPlanes]));
     stamp_x_ = x << 1;
     stamp_y_ = y << 1;
-    to_corner_ = -((x + y) << (widths_.tile_shift - 1));
-    passes_ = DepthOutcomes(state_.depth_test);
+    to_corner_ = offsets_ - ((x + y) << (widths_.tile_shift - 1));
+    const DepthOutcomes passes(state_.depth_test);
+    greater_ = Lanes{} + passes.greater;
+    less_ = greater_ ^ passes.less;
+    equal_ = greater_ ^ passes.equal;
   }
 
-  /// Draws a tile: visit(stamp, covered, passed) for each stamp with a covered sample, with a bit for each sample, and
-  /// end_row() after each row of stamps in the box. Returns the end of the visit.
-  template <class Visit, class EndRow>
-  RetirePacket draw(const TilePacket& tile, Framebuffer& frame, CounterPacket& counters, Visit&& visit,
-                    EndRow&& end_row) {
+  /// Draws a tile. Its stamps go to `next`, and how many there are in each row of stamps in the box to `row`. Returns the
+  /// end of the visit.
+  [[gnu::always_inline]] RetirePacket draw(const TilePacket& tile, Framebuffer& frame, CounterPacket& counters,
+                                           LaneStamp*& next, std::uint8_t*& row) {
     const StampGrid& stamps = widths_.stamps;
     const PixelBounds box = to_bounds(tile.box);
     const int left = box.left & -kSize, top = box.top & -kSize;
@@ -68,8 +72,9 @@ class StampLanes {
       row_edge[e] = edges_[e].at(static_cast<std::uint32_t>(tile.edge_value[e]), left, top);
     Lanes row_planes = to_corner_;  // a lane for each of the first planes, at the first pixel of a stamp
     for (std::size_t p = 0; p < kFirstPlanes; ++p) row_planes[p] += static_cast<std::uint32_t>(tile.anchor[p]);
-    row_planes +=
-        stamp_x_ * static_cast<std::uint32_t>(left / kSize) + stamp_y_ * static_cast<std::uint32_t>(top / kSize);
+    if ((left | top) != 0)
+      row_planes +=
+          stamp_x_ * static_cast<std::uint32_t>(left / kSize) + stamp_y_ * static_cast<std::uint32_t>(top / kSize);
     const auto row_stride = static_cast<std::size_t>(kSize * frame.stride);
     std::size_t row_at =
         frame.at((tile.key.tile_x << widths_.tile_shift) + left, (tile.key.tile_y << widths_.tile_shift) + top);
@@ -78,6 +83,7 @@ class StampLanes {
     int full = 0;
     Lanes largest{};
     for (int y = top; y <= box.bottom; y += kSize) {
+      const LaneStamp* const first = next;
       const unsigned rows = (y >= box.top ? 3U : 0U) | (y + 1 <= box.bottom ? 12U : 0U);
       std::array<Lanes, 3> edge = row_edge;
       Lanes planes = row_planes;
@@ -94,7 +100,7 @@ class StampLanes {
             constexpr std::size_t p = decltype(plane)::value;
             const Code& place = codes_[p];
             const Lanes value = __builtin_shufflevector(planes, planes, p, p, p, p) + in_stamp_[p];
-            return ((value >> place.shift) - place.offset) & place.mask;
+            return (value >> place.shift) & place.mask;
           };
           const Lanes depth = code(Plane<kDepthPlane>()), stored = load(frame.depth, at, frame.stride);
           const Lanes pass = passes(depth, stored) & kLanesOf[mask];
@@ -105,7 +111,7 @@ class StampLanes {
               const Channels<Lanes> channels{code(Plane<kColorPlane>()), code(Plane<kColorPlane + 1>()),
                                              code(Plane<kColorPlane + 2>()),
                                              has_alpha_ ? alpha(tile, number) : Lanes{}};
-              const Lanes color = pack_color<Lanes>(config_.color_format, channels);
+              const Lanes color = pack(channels);
               store(write_where(pass, color, load(frame.color, at, frame.stride)), frame.color, at, frame.stride);
             }
             if (bits == 15) {
@@ -115,13 +121,14 @@ class StampLanes {
           }
           covered += kCountOf[mask];
           passed += kCountOf[bits];
-          visit(number, mask, bits);
+          *next++ = {static_cast<std::uint16_t>(number), static_cast<std::uint8_t>(mask),
+                     static_cast<std::uint8_t>(bits)};
         }
         planes += stamp_x_;
         at += kSize;
         ++number;
       }
-      end_row();
+      *row++ = static_cast<std::uint8_t>(next - first);
       for (std::size_t e = 0; e < 3; ++e) row_edge[e] += edges_[e].stamp_y;
       row_planes += stamp_y_;
       row_at += row_stride;
@@ -149,6 +156,7 @@ class StampLanes {
   /// A lane for each pixel of a stamp, row by row.
   using Lanes __attribute__((vector_size(16))) = std::uint32_t;
   using SignedLanes __attribute__((vector_size(16))) = std::int32_t;
+  using Halves __attribute__((vector_size(16))) = std::uint16_t;
   using Rows __attribute__((vector_size(16))) = std::uint64_t;
 
   /// A value that is linear over the pixels of a tile.
@@ -165,25 +173,32 @@ class StampLanes {
     }
   };
 
-  /// The place of a code in its plane (CodePlace).
+  /// The place of a code in its plane (CodePlace); its offset is taken off in front of the shift.
   struct Code {
     int shift = 0;
-    Lanes offset{}, mask{};
+    Lanes mask{};
   };
 
   [[nodiscard]] Lanes alpha(const TilePacket& tile, int stamp) const {
     constexpr std::size_t p = kFirstPlanes;
     const PixelOffset at = widths_.stamps.origin_of(stamp);
     const int half_tile = 1 << (widths_.tile_shift - 1);
-    const Lanes value = alpha_.at(static_cast<std::uint32_t>(tile.anchor[p]), at.x - half_tile, at.y - half_tile);
-    return ((value >> codes_[p].shift) - codes_[p].offset) & codes_[p].mask;
+    const std::uint32_t anchor =
+        static_cast<std::uint32_t>(tile.anchor[p]) - (widths_.code_place[p].offset << codes_[p].shift);
+    return (alpha_.at(anchor, at.x - half_tile, at.y - half_tile) >> codes_[p].shift) & codes_[p].mask;
+  }
+
+  /// pack_color(). The sums of rgb565 have 16 bits, for which SSE2 has a multiplication.
+  [[nodiscard]] Lanes pack(const Channels<Lanes>& c) const {
+    if (config_.color_format != ColorFormat::rgb565) return pack_color<Lanes>(config_.color_format, c);
+    const auto halves = [](const Lanes& lanes) { return reinterpret_cast<Halves>(lanes); };
+    return reinterpret_cast<Lanes>(pack_rgb565<Halves>(halves(c[0]), halves(c[1]), halves(c[2])));
   }
 
   /// DepthOutcomes of depths below 2^31.
   [[nodiscard]] Lanes passes(const Lanes& depth, const Lanes& stored) const {
     const auto d = reinterpret_cast<SignedLanes>(depth), s = reinterpret_cast<SignedLanes>(stored);
-    return (reinterpret_cast<Lanes>(d < s) & passes_.less) | (reinterpret_cast<Lanes>(d == s) & passes_.equal) |
-           (reinterpret_cast<Lanes>(d > s) & passes_.greater);
+    return greater_ ^ (reinterpret_cast<Lanes>(d < s) & less_) ^ (reinterpret_cast<Lanes>(d == s) & equal_);
   }
 
   /// A bit for each lane whose mask is set.
@@ -225,13 +240,14 @@ class StampLanes {
   Widths widths_;
   bool fits_ = false, has_alpha_ = false;
   PrimitiveState state_;
-  DepthOutcomes passes_{DepthFunc::less};
+  Lanes greater_{}, less_{}, equal_{};  ///< DepthOutcomes: the first, and where the others differ from it
   std::array<Steps, 3> edges_;
   std::array<Lanes, kFirstPlanes> in_stamp_{};  ///< of a plane, from the first pixel of a stamp to each
   Steps alpha_;
   // A lane for each of the first planes: from a stamp to the next one to the right, and below; from the anchor of a tile
   // to its first pixel.
   Lanes stamp_x_{}, stamp_y_{}, to_corner_{};
+  Lanes offsets_{};  ///< of their codes, negative
   std::array<Code, kPlanes> codes_;
 };
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "../../packets/packets.hpp"
@@ -16,9 +17,7 @@ namespace halfplane {
 enum class StepKind : std::uint8_t {
   take,        ///< cull takes the next of Steps::primitives
   outside,     ///< the walk skips `count` tiles outside an edge
-  read_ahead,  ///< bounds are read from here on
-  read_bound,  ///< the bound of the next tile
-  behind,      ///< that tile is behind it
+  behind,      ///< the bound of the next tile, and that the tile is behind it
   end_walk,    ///< the primitive ends without a visit
   visit,       ///< the next of Steps::visits, with the next `count` of Steps::stamps
   lane_visit,  ///< the same with Steps::lane_stamps, and the next of Steps::lane_rows for each row of stamps in its box
@@ -55,21 +54,29 @@ struct LaneStamp {
   std::uint8_t covered = 0, passed = 0;
 };
 
-/// Items of a batch that are written where they stay.
+/// Items of a batch, in the memory of the batch before.
 template <class Item>
 class StepItems {
  public:
+  void add_item(const Item& item) {
+    *room(1) = item;
+    ++size_;
+  }
   /// Room for `most` items more; add() says how many were written.
   [[nodiscard]] Item* room(std::size_t most) {
-    if (items_.size() < size_ + most) items_.resize(2 * (size_ + most));
+    if (items_.size() < size_ + most) grow(most);
     return items_.data() + size_;
   }
   void add(std::size_t items) { size_ += items; }
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] const Item* data() const { return items_.data(); }
+  [[nodiscard]] std::span<const Item> items() const { return {items_.data(), size_}; }
+  [[nodiscard]] Item& last() { return items_[size_ - 1]; }
   void clear() { size_ = 0; }
 
  private:
+  [[gnu::noinline]] void grow(std::size_t most) { items_.resize(2 * (size_ + most)); }
+
   std::vector<Item> items_;
   std::size_t size_ = 0;
 };
@@ -96,12 +103,13 @@ struct TextureStep {
 struct Steps {
   struct Step {
     StepKind kind;
+    bool reads_bound = false;  ///< of a visit: the bound of its tile has been read
     std::uint32_t count = 1;
   };
-  std::vector<Step> order;
-  std::vector<PrimitiveStep> primitives;
-  std::vector<VisitStep> visits;
-  std::vector<StampStep> stamps;
+  StepItems<Step> order;
+  StepItems<PrimitiveStep> primitives;
+  StepItems<VisitStep> visits;
+  StepItems<StampStep> stamps;
   StepItems<LaneStamp> lane_stamps;
   StepItems<std::uint8_t> lane_rows;  ///< the number of a row's lane stamps
   std::vector<TagsStep> tags;
@@ -109,10 +117,12 @@ struct Steps {
   std::vector<TextureStep> textures;  ///< with a texture unit: one for each stamp with covered samples, and each token
   std::vector<TextureLookup> lookups;
 
-  void add(StepKind kind, std::size_t count = 1) { order.push_back({kind, static_cast<std::uint32_t>(count)}); }
+  void add(StepKind kind, std::size_t count = 1, bool reads_bound = false) {
+    order.add_item({kind, reads_bound, static_cast<std::uint32_t>(count)});
+  }
   void add_outside() {
-    if (!order.empty() && order.back().kind == StepKind::outside)
-      ++order.back().count;
+    if (order.size() != 0 && order.last().kind == StepKind::outside)
+      ++order.last().count;
     else
       add(StepKind::outside);
   }
