@@ -586,7 +586,7 @@ mutant(284 stages/colors_over_w.sv "texture, colours over w: all channels have t
 mutant(285 stages/colors_over_w.sv "texture, colours over w: the range is that of the next sample's triangle"
   [=[range_ram_q[index_q[6*INDEX+:INDEX]]]=] [=[range_ram_q[index_q[5*INDEX+:INDEX]]]=])
 mutant(287 stages/texture_unit.sv "texture, colours over w: a texel is combined with the affine colour"
-  [=[stamp_divides ? divided : color_of(stamp_color, e_group_q)]=] [=[color_of(stamp_color, e_group_q)]=])
+  [=[stamp_divides ? divided : own_color_q]=] [=[own_color_q]=])
 mutant(288 stages/texture_unit.sv "texture, colours over w: a quotient overwrites the stamp before"
   [=[divided_valid && is_free]=] [=[divided_valid]=])
 mutant(289 stages/texture_unit.sv "texture, colours over w: behind a texel the quotient stays"

@@ -3,7 +3,8 @@
 module fifo #(
     parameter int WIDTH = 1,  // bits of an item
     parameter int DEPTH = 2,  // items; a power of two
-    parameter int AHEAD = 0   // the lowest so many bits of the item on offer stand in a register: long paths start there
+    parameter int AHEAD = 0,  // the lowest so many bits of the item on offer stand in a register: long paths start there
+    parameter int NEXT = 0    // so many of these, the lowest, are given of the item after it as well; at most AHEAD
 ) (
     input logic clk_i,
     input logic rst_ni,
@@ -14,9 +15,9 @@ module fifo #(
     input  logic [WIDTH-1:0] data_i,
 
     // To the consumer
-    output logic             valid_o,
-    input  logic             ready_i,
-    output logic [WIDTH-1:0] data_o
+    output logic                  valid_o,
+    input  logic                  ready_i,
+    output logic [WIDTH+NEXT-1:0] data_o  // above the item what NEXT gives: undefined where nothing has been stored there
 );
 
   localparam int INDEX = $clog2(DEPTH);
@@ -35,8 +36,8 @@ module fifo #(
       head_q <= '0;
       tail_q <= '0;
     end else begin
-      head_q <= head_q + (INDEX + 1)'(leaves);
-      tail_q <= tail_q + (INDEX + 1)'(enters);
+      if (leaves) head_q <= head_q + 1'b1;
+      if (enters) tail_q <= tail_q + 1'b1;
     end
   end
 
@@ -55,7 +56,7 @@ module fifo #(
       always_ff @(posedge clk_i)
         if (!valid_o || ready_i) offered_q <= !valid_o || tail_q == next ? data_i[AHEAD-1:0] : waiting;
       always_comb begin
-        data_o            = item;
+        data_o            = (WIDTH + NEXT)'({waiting, item});
         data_o[AHEAD-1:0] = offered_q;
       end
     end

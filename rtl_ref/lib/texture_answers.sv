@@ -50,7 +50,7 @@ module texture_answers #(
   logic                  request_valid_q, recovers_q, discards, is_done, fills_ready, takes;
   logic [27:0]           request_address_q;
   logic [1:0]            request_size_q;
-  logic [UNANSWERED-1:0] unanswered_q;
+  logic [UNANSWERED-1:0] unanswered_q, left;
   logic [BEATS-1:0]      beat_q, last_beat;
   logic                  fills_valid;
 
@@ -60,6 +60,7 @@ module texture_answers #(
   assign request_beats_o   = 6'(6'd1 << request_size_q) << (4 - BYTES);
   assign answer_ready_o    = 1'b1;
   assign discards          = recovers_q || !rst_ni;
+  assign left              = unanswered_q - UNANSWERED'(answer_valid_i);
   assign is_done           = !request_valid_q && unanswered_q == '0;
   assign idle_o            = !discards && is_done;
 
@@ -70,8 +71,7 @@ module texture_answers #(
       recovers_q      <= 1'b0;
     end else begin
       request_valid_q <= asks_i || (request_valid_q && !request_ready_i);
-      unanswered_q    <= unanswered_q + (asks_i ? UNANSWERED'(1) << (3'(size_i) + 3'(4 - BYTES)) : '0) -
-                         UNANSWERED'(answer_valid_i);
+      unanswered_q    <= asks_i ? left + (UNANSWERED'(1) << (3'(size_i) + 3'(4 - BYTES))) : left;  // asks_i comes late
       recovers_q      <= !rst_ni || (recovers_q && !is_done);
     end
   end

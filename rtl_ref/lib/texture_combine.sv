@@ -1,6 +1,7 @@
 // Combines a texel's colour with the primitive's. Combinational.
 //
-// Every mode is one product and one division by 255, floor((s + 128 + ((s + 128) >> 8)) >> 8):
+// Every mode is one product and one division by 255, floor((s + 128 + ((s + 128) >> 8)) >> 8), which is
+// floor(257 (s + 128) / 65536): the multiplier gives 257 times the product, its left factor being written twice.
 //   modulate  s = c t            replace  s = 255 t
 //   decal     s = 255 c + a (t - c)
 //   add       s = 255 min(c + t, 255), alpha as modulate
@@ -8,7 +9,6 @@
 // Specification: combined of model/stages/texture_filter.hpp.
 module texture_combine #(
     parameter int CHANNELS = 4,  // of the primitive's colour: 3 or 4
-    parameter int SOFT = 0,      // this many channels, R first, have no multiplier
     parameter int CONSTANT = 0   // 1: blend exists
 ) (
     input  logic [31:0]           texel_i,      // 8 bits a channel, R lowest
@@ -32,20 +32,11 @@ module texture_combine #(
       logic [7:0]         color, texel, whole;
       logic [7:0]         left;  // left factor of the product
       logic signed [8:0]  right;
-      logic signed [16:0] product;
-      logic [15:0]        rounded, quotient;
-      assign color    = color_i[8*n+:8];
-      assign texel    = texel_i[8*n+:8];
-      assign quotient = rounded + {8'd0, rounded[15:8]};
-      if (n < SOFT) begin : gen_soft
-        soft_product u_product (
-            .left_i   (left),
-            .right_i  (right),
-            .product_o(product)
-        );
-      end else begin : gen_multiplier
-        assign product = 17'($signed({1'b0, left}) * right);
-      end
+      logic signed [25:0] product;  // 257 times
+      logic [23:0]        quotient;  // with 16 bits behind the point
+      assign color   = color_i[8*n+:8];
+      assign texel   = texel_i[8*n+:8];
+      assign product = 26'($signed({1'b0, left, left}) * right);
       if (n < 3) begin : gen_color
         logic [8:0] sum;
         assign sum   = {1'b0, color} + {1'b0, texel};
@@ -53,31 +44,32 @@ module texture_combine #(
         assign left  = is_decal ? texel_i[31:24] : is_blended ? texel : is_modulated ? color : '0;
         assign right = $signed({1'b0, is_blended ? constant_i[8*n+:8] : texel}) -
                        $signed({1'b0, color & {8{is_decal || is_blended}}});
-        // 255 times a colour: 256 times less once. Two chains: a sum of three at once waits for the product with all of it.
-        logic [15:0] share;
+        // 257 (255 times a colour + 128): 65536 times the colour, 128 * 257 less once the colour below that. Two chains: a sum
+        // of three at once waits for the product with all of it.
+        logic [8:0] below;
         add_or_subtract #(
-            .WIDTH(16)
-        ) u_share (
+            .WIDTH(9)
+        ) u_below (
             .subtracts_i(1'b1),
-            .a_i        ({whole, 8'd128}),
-            .b_i        ({8'd0, whole}),
-            .sum_o      (share)
+            .a_i        (9'd128),
+            .b_i        ({1'b0, whole}),
+            .sum_o      (below)
         );
         add_or_subtract #(
-            .WIDTH(16)
-        ) u_rounded (
+            .WIDTH(24)
+        ) u_quotient (
             .subtracts_i(1'b0),
-            .a_i        (share),
-            .b_i        (product[15:0]),
-            .sum_o      (rounded)
+            .a_i        ({whole, !below[8], {7{below[8]}}, below[7:0]}),
+            .b_i        (product[23:0]),
+            .sum_o      (quotient)
         );
-        assign color_o[8*n+:8] = quotient[15:8];
+        assign color_o[8*n+:8] = quotient[23:16];
       end else begin : gen_alpha
-        assign whole   = is_replaced && has_alpha_i ? texel : color;
-        assign left    = color;
-        assign right   = $signed({1'b0, texel});
-        assign rounded = product[15:0] + 16'd128;
-        assign color_o[8*n+:8] = is_modulated || is_added || is_blended ? quotient[15:8] : whole;
+        assign whole    = is_replaced && has_alpha_i ? texel : color;
+        assign left     = color;
+        assign right    = $signed({1'b0, texel});
+        assign quotient = product[23:0] + 24'(257 * 128);
+        assign color_o[8*n+:8] = is_modulated || is_added || is_blended ? quotient[23:16] : whole;
       end
     end
     if (CHANNELS == 3) begin : gen_opaque

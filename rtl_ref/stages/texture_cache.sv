@@ -68,7 +68,7 @@ module texture_cache #(
   endfunction
 
   // -------------------------------------------------------------------------------------------------------------------- tags
-  logic              t_valid_q, t_enters, t_goes, is_hit, waits, is_occupied, is_referenced;
+  logic              t_valid_q, t_enters, t_goes, is_occupied, may_take_any, may_take, is_below, is_above;
   logic              same_place_q, same_line_q;  // same place or line as the sample before
   logic [27:0]       t_address_q, tag;
   logic [LINE-1:0]   t_line_q;
@@ -76,7 +76,7 @@ module texture_cache #(
   logic [2:0]        t_format_q;
   logic [TAIL-1:0]   t_tail_q;
   logic [NUMBER-1:0] tag_group, last_group, group, oldest_group;
-  logic              tag_valid, is_known;
+  logic              tag_valid, tag_fits, is_known;
   logic              sweeps_q;
   logic [LINE-1:0]   sweep_q;
   logic [LINE-1:0]   tag_write_line;
@@ -112,18 +112,24 @@ module texture_cache #(
   assign group        = issued_q[COUNT-1:GROUP];
   assign oldest_group = read_q[COUNT-1:GROUP];
   assign is_occupied  = issued_q != read_q;
-  assign is_known     = same_place_q ? same_line_q : tag_valid && tag == t_address_q;
-  assign is_hit       = is_known;
-  // From the oldest in the queue to this sample, in numbers that wrap: by two comparisons at once, behind the RAM.
-  function automatic is_in_queue(input [NUMBER-1:0] number);
-    is_in_queue = oldest_group > group ? number >= oldest_group || number <= group : number >= oldest_group && number <= group;
-  endfunction
-  assign is_referenced = is_occupied && (same_place_q ? is_in_queue(last_group) : is_in_queue(tag_group));
-  assign waits  = !waiting_ready ||
-                  (!is_hit && (is_referenced || !may_ask));
-  assign t_goes = t_valid_q && !waits;
-  assign hit_o  = t_goes && is_hit;
-  assign miss_o = t_goes && !is_hit;
+  assign is_known     = same_place_q ? same_line_q : tag_fits;
+  same_word #(
+      .WIDTH(29)
+  ) u_tag_fits (
+      .a_i   ({tag_valid, tag}),
+      .b_i   ({1'b1, t_address_q}),
+      .same_o(tag_fits)
+  );
+  // A miss may take the place: no sample in the queue was found in it. In numbers that wrap that is a number outside the oldest
+  // one's to this one's, by two comparisons at once behind the RAM; where it is known without them, a bit above their operands
+  // decides. The sample before is in the queue unless the queue is empty.
+  assign may_take_any = may_ask && !is_occupied;
+  assign is_below     = {!may_ask, tag_group} < {may_take_any, oldest_group};
+  assign is_above     = {may_take_any, tag_group} > {!may_ask, group};
+  assign may_take     = oldest_group > group ? is_below && is_above : is_below || is_above;
+  assign t_goes       = t_valid_q && waiting_ready && (same_place_q ? same_line_q || may_take_any : tag_fits || may_take);
+  assign hit_o        = t_goes && is_known;
+  assign miss_o       = t_goes && !is_known;
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
@@ -136,8 +142,8 @@ module texture_cache #(
       t_valid_q <= t_enters || (t_valid_q && !t_goes);
       sweeps_q  <= drop_i || (sweeps_q && sweep_q != '1);
       sweep_q   <= drop_i ? '0 : sweep_q + LINE'(sweeps_q);
-      issued_q  <= issued_q + COUNT'(t_goes);
-      read_q    <= read_q + COUNT'(reads);
+      if (t_goes) issued_q <= issued_q + 1'b1;
+      if (reads) read_q <= read_q + 1'b1;
     end
   end
   always_ff @(posedge clk_i)
@@ -220,7 +226,7 @@ module texture_cache #(
       .rst_ni,
       .valid_i(t_goes),
       .ready_o(waiting_ready),
-      .data_i ({!is_hit, t_line_q, t_texel_q, t_format_q, t_tail_q}),
+      .data_i ({!is_known, t_line_q, t_texel_q, t_format_q, t_tail_q}),
       .valid_o(waiting_valid),
       .ready_i(reads),
       .data_o ({is_miss, line, texel, format, tail})

@@ -24,7 +24,6 @@ module texture_unit #(
     parameter int REACH_BITS = 5,       // bits of x
     parameter int REFERENCE_BITS = 24,  // bits of u_ref, signed
     parameter int CHANNELS = 4,         // channels of a colour
-    parameter int SOFT = 0,             // this many channels are combined without a multiplier
     parameter int FILTER = 0,           // 0 nearest, 1 linear as well, 2 levels as well
     parameter int RECIPROCAL = 0,       // 0 from a table, 1 by division
     parameter int PAYLOAD = 1,          // bits that a stamp carries along
@@ -239,10 +238,13 @@ module texture_unit #(
       .ready_i(takes),
       .data_o ({waiting_token, waiting_mask, waiting})
   );
+  localparam int SHADES = SAMPLES * COLOR + FLAGS + COMBINE + 1;  // bits of a stamp that long paths start from
+  logic [SHADES-1:0] next_stamp;
   fifo #(
-      .WIDTH(PAYLOAD + SAMPLES * (1 + COLOR) + FLAGS + COMBINE + 1),
+      .WIDTH(PAYLOAD + SAMPLES + SHADES),
       .DEPTH(QUEUE),
-      .AHEAD(SAMPLES * COLOR + FLAGS + COMBINE + 1)
+      .AHEAD(SHADES),
+      .NEXT (SHADES)
   ) u_stamps (
       .clk_i,
       .rst_ni,
@@ -251,7 +253,7 @@ module texture_unit #(
       .data_i ({payload_i, door_mask, entering_color, door_flags, door_combine_q, has_alpha}),
       .valid_o(stamp_waits),
       .ready_i(stamp_leaves),
-      .data_o ({stamp_payload, stamp_mask, stamp_color, stamp_flags, stamp_combine, stamp_has_alpha})
+      .data_o ({next_stamp, stamp_payload, stamp_mask, stamp_color, stamp_flags, stamp_combine, stamp_has_alpha})
   );
 
   // --------------------------------------------------------------------------------------------------------------- the split
@@ -266,7 +268,7 @@ module texture_unit #(
     place_of = left[GROUP_PLACE-1:0];
   endfunction
 
-  logic               splits, can_set, sets_state, sets_border, moves_in, is_last, leaves_queue, tags_are_empty;
+  logic               splits, comes, can_set, sets_state, sets_border, moves_in, is_last, leaves_queue, tags_are_empty;
   logic [GROUPS-1:0]  done_q, left;  // groups of the stamp that are complete; groups left
   logic [GROUP-1:0]   group;
   logic [4:0]         ahead_q;
@@ -278,6 +280,7 @@ module texture_unit #(
   assign group      = lowest(left);
   assign is_last    = (left & (left - 1'b1)) == '0;
   assign splits     = waits && !is_token && ahead_q != 5'(AHEAD);  // 0 after a state that disables the texture
+  assign comes      = splits && waiting_is_textured;
   assign can_set    = waits && is_state && ahead_q == '0 && tags_are_empty;
   assign sets_state = can_set && waiting_token[0];
   assign takes      = can_set || sets_border || moves_in || (splits && is_last);
@@ -292,7 +295,7 @@ module texture_unit #(
       split_q   <= '0;
     end else begin
       if (splits) done_q <= is_last ? '0 : done_q | GROUPS'(1) << group;
-      ahead_q   <= ahead_q + 5'(splits && waiting_is_textured) - 5'(leaves_queue);
+      ahead_q   <= leaves_queue ? ahead_q - 5'(!comes) : ahead_q + 5'(comes);  // two sums: leaves_queue comes late
       entered_q <= entered_q + INDEX'(enters);
       split_q   <= split_q + INDEX'(splits && is_last);
     end
@@ -351,7 +354,7 @@ module texture_unit #(
   logic                       shares;
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) valid_q <= '0;
-    else valid_q <= {valid_q[CLOCKS-1:0], splits && waiting_is_textured};
+    else valid_q <= {valid_q[CLOCKS-1:0], comes};
   end
   generate
     if (LANES != 1) begin : gen_tails
@@ -486,7 +489,7 @@ module texture_unit #(
       assign leaves       = texel_valid && texel_ready && texel_ends;
       always_ff @(posedge clk_i or negedge rst_ni) begin
         if (!rst_ni) inside_q <= '0;
-        else inside_q <= inside_q + INSIDE'(splits && waiting_is_textured) - INSIDE'(leaves);
+        else inside_q <= inside_q + INSIDE'(comes) - INSIDE'(leaves);
       end
       always_ff @(posedge clk_i) if (sets_border) border_q <= waiting[31:0];
     end else begin : gen_no_border
@@ -722,10 +725,10 @@ module texture_unit #(
 
   // ------------------------------------------------------------------------------------- combine, and the stamp on its way out
   logic                     e_valid_q, e_last_q, e_moves, is_free, out_valid_q;
-  logic [GROUP-1:0]         e_group_q;
+  logic [GROUP-1:0]         e_group_q, coming_group;
   logic [LANES-1:0]         e_lanes_q;
   logic                     e_ends_q;
-  logic [LANES*COLOR-1:0]   e_color, combined;
+  logic [LANES*COLOR-1:0]   e_color, own_color_q, combined;
   logic [PAYLOAD-1:0]       payload_q;
 
   function automatic [LANES*COLOR-1:0] color_of(input [SAMPLES*COLOR-1:0] all, input [GROUP-1:0] of_group);
@@ -738,12 +741,17 @@ module texture_unit #(
 
   // A sample's own colour is divided before its texel comes: the division takes fewer clocks.
   logic d_moves;  // a sample without texture whose colour is divided
-  assign e_color = stamp_divides ? divided : color_of(stamp_color, e_group_q);
+  assign e_color = stamp_divides ? divided : own_color_q;
+  // The primitive's colours of the samples in `e`, chosen as they come and as a stamp leaves: long paths start here.
+  assign coming_group = e_valid_q && !stamp_is_textured ? e_group_q : texel_tail[GROUP-1:0];
+  always_ff @(posedge clk_i)
+    if (texel_ready || stamp_leaves)
+      own_color_q <= stamp_leaves ? color_of(next_stamp[SHADES-1-:SAMPLES*COLOR], coming_group) :
+                                    color_of(stamp_color, coming_group);
   generate
     for (s = 0; s < LANES; s++) begin : gen_combine
       texture_combine #(
           .CHANNELS(CHANNELS),
-          .SOFT    (SOFT),
           .CONSTANT(CONSTANT)
       ) u_combine (
           .texel_i    (e_texel_q[s*32+:32]),

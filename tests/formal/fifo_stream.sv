@@ -29,10 +29,16 @@
       assert (count_q == tail_q - head_q && count_q <= (INDEX + 1)'(DEPTH));
       assert (valid_o == (count_q != '0) && ready_o == (count_q != (INDEX + 1)'(DEPTH)));  // room for DEPTH, and no deadlock
       if (under_way_q) assert (ahead_q < count_q && memory_q[place] == any_data && was_chosen_q);
-      if (under_way_q && ahead_q == '0) assert (valid_o && data_o == any_data);
+      if (under_way_q && ahead_q == '0) assert (valid_o && data_o[WIDTH-1:0] == any_data);
       cover (leaves && under_way_q && ahead_q == '0 && count_q == (INDEX + 1)'(DEPTH));
     end
   end
   always_ff @(posedge clk_i) if (runs_q && $past(runs_q) && $past(valid_o && !ready_i)) begin
-    assert (valid_o && data_o == $past(data_o));
+    assert (valid_o && data_o[WIDTH-1:0] == $past(data_o[WIDTH-1:0]));
   end
+  generate
+    if (NEXT != 0) begin : gen_next
+      always_comb
+        if (runs_q && under_way_q && ahead_q == (INDEX + 1)'(1)) assert (data_o[WIDTH+NEXT-1:WIDTH] == any_data[NEXT-1:0]);
+    end
+  endgenerate

@@ -35,7 +35,7 @@
   always_ff @(posedge clk_i) begin
     waits_q <= rst_ni ? waits_q + COUNTED'(t_goes) - COUNTED'(reads) : '0;
     for (int i = 0; i < IN_FLIGHT; i++) begin
-      if (t_goes && COUNTED'(i) == waits_q - COUNTED'(reads)) wait_q[i] <= {!is_hit, t_line_q, t_texel_q, t_format_q, t_tail_q};
+      if (t_goes && COUNTED'(i) == waits_q - COUNTED'(reads)) wait_q[i] <= {!is_known, t_line_q, t_texel_q, t_format_q, t_tail_q};
       else if (reads && i + 1 < IN_FLIGHT) wait_q[i] <= wait_q[(i+1)%IN_FLIGHT];
     end
   end
@@ -209,6 +209,6 @@
     if (idle_o) assert (sample_ready_o);
     cover (code_valid_o && d_claims_q && any_size == 2'd1 && fills_q != '0 && hit_o);
     cover (code_valid_o && d_claims_q && code_tail_o[TAIL-1] && old_word != new_word && waits_it[0] && waits_q == COUNTED'(2));
-    cover (t_valid_q && t_line_q == any_line && !is_hit && is_referenced && may_ask && waits_it[0]);
+    cover (t_valid_q && t_line_q == any_line && !is_known && !may_take && may_ask && waits_it[0]);
     cover (waits_q == COUNTED'(IN_FLIGHT) && cell_is_it && waits_miss[0] && here_before[1] && misses_before[IN_FLIGHT] == COUNTED'(3));
   end
