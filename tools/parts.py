@@ -143,6 +143,9 @@ def netlist(program, family, top, design):
               f'tee -q -o {stat} stat')
     if not step([yosys, '-q', '-p', script], sources, json_file):
         sys.exit(f'parts: Yosys failed, see {json_file.with_suffix(".log")}')
+    if family == 'ecp5':
+        whole, json_file = json_file, BUILD / f'{name}_chains.json'
+        step([sys.executable, 'tools/carry_chains.py', whole, json_file], [whole, 'tools/carry_chains.py'], json_file)
     return json_file, stat
 
 
