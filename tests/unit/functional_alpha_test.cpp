@@ -9,6 +9,7 @@
 #include "../functional_case.hpp"
 #include "../scene_builder.hpp"
 #include "model/engines/functional/frame_renderer.hpp"
+#include "sim/scene/random_state.hpp"
 
 namespace halfplane::functional_alpha_test {
 namespace {
@@ -130,6 +131,43 @@ TEST(FunctionalAlpha, TransparentTexelsDrawNothingWhereTheBlendKeepsWhatIsStored
       EXPECT_EQ(tiles > 0, one.keeps);
       EXPECT_EQ(without, 0U);
     }
+}
+
+/// Small triangles with operations, textured and plain ones by turns, side by side and over each other: their pixels wait.
+TEST(FunctionalAlpha, OperatedTrianglesWithAndWithoutTexturesAreTheSameOnEveryPath) {
+  for (std::uint32_t seed = 1; seed <= 12; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    SceneBuilder builder(150, 100);
+    Scene& scene = builder.scene;
+    scene.textures.push_back(texture_of(random, [&random](int, int) { return random.index(256); }));
+    const StateRows rows = states_named({"alpha_test", "blend", "blend_equation", "color_mask", "dither"});
+    for (std::uint32_t n = 0; n < 24; ++n) {
+      State state = random_state(SceneBuilder::window_state(), rows, chooser(random));
+      if (!state.blend) state.blend = BlendFactors{BlendFactor::src_alpha, BlendFactor::one};
+      state.depth_write = random.index(2) == 0;
+      state.depth_test = random.index(2) == 0 ? DepthFunc::always : DepthFunc::lequal;
+      if (n % 2 == 0) state.texture = 0;
+      scene.states.push_back(state);
+      const double size = seed % 2 == 0 ? 3 : 12;
+      for (int i = 0; i < 40; ++i) {
+        const double left = random.between(-8, 150), top = random.between(-8, 100);
+        const auto corner = [&] {
+          Vertex v = test::at(left + size * random.unit(), top + size * random.unit(), random.unit());
+          v.u = random.unit();
+          v.v = random.unit();
+          for (double& channel : v.rgba) channel = random.index(256);
+          return v;
+        };
+        builder.triangle(corner(), corner(), corner());
+      }
+    }
+    for (const ColorFormat format : {ColorFormat::rgba8888, ColorFormat::rgb565}) {
+      Config config = preset(seed % 3 == 0 ? "full" : "embedded");
+      config.color_format = format;
+      expect_all_same(scene, config);
+    }
+  }
 }
 
 }  // namespace

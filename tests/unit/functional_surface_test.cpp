@@ -153,35 +153,6 @@ TEST(FunctionalSurface, FragmentOperationsOnSurfacesAreTheSameOnEveryPath) {
   EXPECT_GT(killed, 1000U);
 }
 
-/// Small triangles with operations, textured and plain ones by turns, also over each other.
-TEST(FunctionalSurface, OperatedTrianglesWithAndWithoutTexturesAreTheSameOnEveryPath) {
-  for (const char* name : {"embedded", "full"})
-    for (std::uint32_t seed = 1; seed <= 8; ++seed) {
-      SCOPED_TRACE(std::string(name) + ", seed " + std::to_string(seed));
-      Random random(seed);
-      SceneBuilder builder(kWidth, kHeight);
-      builder.scene.textures.push_back(noise(random, 16, 16, TextureFormat::rgba8888, Mips::none));
-      const StateRows rows = states_named({"alpha_test", "blend", "blend_equation", "color_mask", "dither"});
-      for (std::uint32_t n = 0; n < 24; ++n) {
-        State state = random_state(random_surface(random), rows, chooser(random));
-        if (!state.blend) state.blend = BlendFactors{BlendFactor::src_alpha, BlendFactor::one};
-        state.depth_write = random.index(2) == 0;
-        state.depth_test = random.index(2) == 0 ? DepthFunc::always : DepthFunc::lequal;
-        if (n % 2 == 0)
-          state.texture = 0;
-        else
-          state.color_interp = ColorInterp::affine;
-        builder.scene.states.push_back(state);
-        add_triangles(builder.scene, random, 40, seed % 2 == 0 ? 3 : 12, 0.0, 2.0);
-      }
-      for (const ColorFormat format : {ColorFormat::rgba8888, ColorFormat::rgb565}) {
-        Config config = with_colors(name);
-        config.color_format = format;
-        expect_all_same(builder.scene, config);
-      }
-    }
-}
-
 /// Patches of texels that are clear or not: then whole tiles pass an alpha test, and whole tiles fail.
 TEST(FunctionalSurface, AlphaOfPatchesIsTheSameOnEveryPath) {
   std::uint64_t tiles = 0, without = 0;
