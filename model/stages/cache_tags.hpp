@@ -67,14 +67,7 @@ class CacheTags {
     result.block = place.block;
     result.stamp = place.stamp;
     Line& line = lines_[result.line];
-    if (!line.is_valid || line.block != place.block) {
-      result.writes = write_up_to(place.block);
-      evict(line, result);
-      line = {};
-      line.is_valid = true;
-      line.block = place.block;
-      line.is_cleared = {flags_.is_set(TilePlane::depth, place.block), flags_.is_set(TilePlane::color, place.block)};
-    }
+    if (!line.is_valid || line.block != place.block) replace(line, result);
     if ((line.known & stamp) != 0)
       result.source = DepthSource::chip;
     else if (looks_at_depth(state, is_full))
@@ -182,6 +175,16 @@ class CacheTags {
   [[nodiscard]] int word_of(int x) const { return x / widths_.blocks.flag_word; }
   [[nodiscard]] std::size_t line_of(const BlockAddress& block) const {
     return (block.y & line_y_mask_) << line_x_bits_ | (block.x & line_x_mask_);
+  }
+
+  /// Another block comes into the line. Not inlined: what follows has its registers.
+  [[gnu::noinline]] void replace(Line& line, TagResult& result) {
+    result.writes = write_up_to(result.block);
+    evict(line, result);
+    line = {};
+    line.is_valid = true;
+    line.block = result.block;
+    line.is_cleared = {flags_.is_set(TilePlane::depth, line.block), flags_.is_set(TilePlane::color, line.block)};
   }
 
   /// A needed block may still be on its way to memory: the number of evictions that must go first, up to its newest

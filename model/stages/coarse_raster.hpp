@@ -45,14 +45,14 @@ void coarse_raster(const SetupPacket& setup, std::uint8_t slot, Hiz& hiz, const 
   std::uint64_t visited = 0, outside_tiles = 0, behind = 0, inside = 0, tested = 0;  // counted for triangles
   const bool asks_hiz = hiz.is_eligible(setup, widths);
   TileWalk walk(first_x, first_y, last_x, last_y, setup.dy);
-  const TileReach reach = tile_reach(setup.dx, setup.dy, widths);
+  const TileConstants constants(setup, widths);
   bool has_ended = false;
   unsigned outside = 0;
   TilePacket packet;
   do {
     ++visited;
     const EdgeValues edges = edges_at_tile(setup, walk.x(), walk.y(), widths);
-    outside = outside_edges(edges, reach);
+    outside = constants.outside(edges);
     if (!watch.rejects) outside = 0;
     if (asks_hiz && outside == 0) watch.read_bound();
     if (outside != 0) {
@@ -63,7 +63,7 @@ void coarse_raster(const SetupPacket& setup, std::uint8_t slot, Hiz& hiz, const 
       watch.skip_behind();
     } else {
       has_ended = walk.is_last();
-      make_tile_packet(setup, edges, reach, walk.x(), walk.y(), slot, has_ended, widths, packet);
+      make_tile_packet(setup, constants, edges, walk.x(), walk.y(), slot, has_ended, widths, packet);
       hiz.begin_visit(setup.state);
       if (packet.is_inside != 0)
         ++inside;

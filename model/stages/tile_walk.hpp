@@ -31,20 +31,7 @@ enum class TileClass { outside, cut, inside };
   return result;
 }
 
-/// From an edge's value at the first pixel of a tile to its largest and smallest over the tile: the same in all tiles.
-struct TileReach {
-  EdgeValues largest, smallest;
-};
-/// With several samples per pixel as far out, or in, as a sample may lie.
-[[nodiscard]] inline TileReach tile_reach(const EdgeDeltas& dx, const EdgeDeltas& dy, const Widths& widths);
-
 /// The edges that a tile lies outside of, a bit each.
-[[nodiscard]] constexpr unsigned outside_edges(const EdgeValues& value, const TileReach& reach) {
-  unsigned edges = 0;
-  for (std::size_t i = 0; i < 3; ++i) edges |= value[i] + reach.largest[i] < 0 ? 1U << i : 0;
-  return edges;
-}
-/// The same without samples beside the pixels' centres.
 [[nodiscard]] constexpr unsigned outside_edges(const EdgeDeltas& edge_dx, const EdgeDeltas& edge_dy,
                                                const EdgeValues& value, int tile_size) {
   unsigned edges = 0;
@@ -65,14 +52,34 @@ struct TileReach {
   return value;
 }
 
-inline TileReach tile_reach(const EdgeDeltas& dx, const EdgeDeltas& dy, const Widths& widths) {
-  TileReach reach{moved_by_samples({}, dx, dy, true, widths), moved_by_samples({}, dx, dy, false, widths)};
-  for (std::size_t i = 0; i < 3; ++i) {
-    reach.largest[i] = largest_in_tile(reach.largest[i], dx[i], dy[i], 1 << widths.tile_shift);
-    reach.smallest[i] = smallest_in_tile(reach.smallest[i], dx[i], dy[i], 1 << widths.tile_shift);
+/// What the tiles of a primitive have in common.
+class TileConstants {
+ public:
+  TileConstants(const SetupPacket& setup, const Widths& widths);
+
+  /// outside_edges() and whether the tile is inside all of them, with several samples as far as a sample may lie.
+  /// `value`: of the edges at the tile's first pixel.
+  [[nodiscard]] unsigned outside(const EdgeValues& value) const {
+    unsigned edges = 0;
+    for (std::size_t i = 0; i < 3; ++i) edges |= value[i] + largest_[i] < 0 ? 1U << i : 0;
+    return edges;
   }
-  return reach;
-}
+  [[nodiscard]] bool is_inside(const EdgeValues& value) const {
+    return ((value[0] + smallest_[0]) | (value[1] + smallest_[1]) | (value[2] + smallest_[2])) >= 0;
+  }
+  /// The local anchors of the planes, `right` and `down` tiles from the first one.
+  void set_anchors(int right, int down, PerPlane<std::int64_t>& anchor) const {
+    const auto x = static_cast<std::uint64_t>(std::int64_t{right}), y = static_cast<std::uint64_t>(std::int64_t{down});
+    for (std::size_t p = 0; p < planes_; ++p)
+      anchor[p] = static_cast<std::int64_t>(value_[p] + step_x_[p] * x + step_y_[p] * y) >> unused_[p];
+  }
+
+ private:
+  EdgeValues largest_, smallest_;  ///< over a tile, from the value at its first pixel
+  std::size_t planes_;
+  PerPlane<std::uint64_t> value_, step_x_, step_y_;  ///< of planes, per tile: their bits are the upper ones
+  PerPlane<std::uint8_t> unused_;                    ///< bits of 64 that a local anchor does not have
+};
 
 /// The way through the tiles of a primitive's box. A row is walked to the right from its start, then from there to the
 /// left, each way until the tile is outside an edge whose value does not grow in that direction, so no tile is missed
@@ -165,9 +172,9 @@ class TileWalk {
 
 /// The packet of a visit to tile (tile_x, tile_y). `slot` is the context slot of the primitive; `ends`: no other follows.
 /// The first form sets every field that `widths` uses, so that one packet serves for one tile after
-/// the other; `value`: edges_at_tile(), `reach`: tile_reach().
-void make_tile_packet(const SetupPacket& setup, const EdgeValues& value, const TileReach& reach, int tile_x, int tile_y,
-                      std::uint8_t slot, bool ends, const Widths& widths, TilePacket& packet);
+/// the other; `value`: edges_at_tile().
+void make_tile_packet(const SetupPacket& setup, const TileConstants& constants, const EdgeValues& value, int tile_x,
+                      int tile_y, std::uint8_t slot, bool ends, const Widths& widths, TilePacket& packet);
 [[nodiscard]] TilePacket make_tile_packet(const SetupPacket& setup, int tile_x, int tile_y, std::uint8_t slot,
                                           bool ends, const Widths& widths);
 

@@ -12,15 +12,15 @@ namespace {
 /// A memory that nothing is asked of.
 struct NoMemory {
   LineTimes texture(Cycle, std::uint32_t, int) const { return {}; }
-  PortTimes read(Cycle, TilePlane, const StampAddress&) const {
+  PortTimes read(Cycle, TilePlane, const BlockStamp&) const {
     ADD_FAILURE() << "read";
     return {};
   }
-  Cycle write(Cycle, TilePlane, const StampAddress&, int) const {
+  Cycle write(Cycle, TilePlane, const BlockStamp&, int) const {
     ADD_FAILURE() << "written";
     return 0;
   }
-  [[nodiscard]] bool has_one_color(const StampAddress&, SampleMask) const { return false; }
+  [[nodiscard]] bool has_one_color(const BlockStamp&, SampleMask) const { return false; }
 };
 
 // Equal for the same stamp and for different stamps; with one lane a clock for each of its samples.

@@ -15,7 +15,7 @@ constexpr std::uint32_t kBatches = 100;
 /// Notes the number of each batch, the count of its only step, and the threads that ran them.
 struct Notes final : StepRunner {
   void run(const Steps& steps) override {
-    numbers.push_back(steps.order.at(0).count);
+    numbers.push_back(steps.order.items()[0].count);
     is_elsewhere = is_elsewhere || std::this_thread::get_id() != here;
     if (numbers.size() == fails_at) throw std::runtime_error("the memory refuses");
   }
