@@ -111,11 +111,13 @@ class BlockTiming {
   /// first BlockStamp, run): a burst, a request a cycle; returns when the last is taken.
   template <class Ask>
   void take(Cycle moved, const TagResult& tags, const BlockItem& item, const TextureWork& texture, Ask&& ask) {
-    const bool reads = tags.source == DepthSource::memory, reads_color = tags.color_source == DepthSource::memory;
+    const bool reads = tags.source == DepthSource::memory, reads_color = !Run::is_plain && tags.color_source == DepthSource::memory;
     const bool is_order = reads || reads_color || tags.writes > 0;
     const Cycle t = leave(moved, tags.falls());
-    last_block_.reset();
-    if (item.mask.any()) last_block_ = tags.block;
+    if (item.mask.any())
+      last_block_ = tags.block;
+    else
+      last_block_.reset();
     const Answers answers = is_order ? order(t, tags.writes, tags, ask) : Answers{};
     Cycle x = std::max({items_.ready(t), tested_ + 1, has_texture() ? texture_->room() : behind_.room()});
     if (reads) x = std::max(x, answers.depth + 1);
@@ -380,7 +382,7 @@ class BlockTiming {
       return answered;
     };
     if (tags.source == DepthSource::memory) answers.depth = read(TilePlane::depth);
-    if (tags.color_source == DepthSource::memory) {
+    if (!Run::is_plain && tags.color_source == DepthSource::memory) {
       if (compresses()) ++cycle;  // the bit is read
       answers.color = read(compresses() && of_pixels_.is_set(tags.block) ? TilePlane::pixel_color : TilePlane::color);
     }
