@@ -111,7 +111,8 @@ class BlockTiming {
   /// first BlockStamp, run): a burst, a request a cycle; returns when the last is taken.
   template <class Ask>
   void take(Cycle moved, const TagResult& tags, const BlockItem& item, const TextureWork& texture, Ask&& ask) {
-    const bool reads = tags.source == DepthSource::memory, reads_color = !Run::is_plain && tags.color_source == DepthSource::memory;
+    const bool reads = tags.source == DepthSource::memory,
+               reads_color = !Run::is_plain && tags.color_source == DepthSource::memory;
     const bool is_order = reads || reads_color || tags.writes > 0;
     const Cycle t = leave(moved, tags.falls());
     if (item.mask.any())
