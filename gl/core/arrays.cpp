@@ -167,11 +167,11 @@ struct Streams {
   }
 };
 
-/// Elements of the arrays as vertices of Context::input, whose other attributes are the current ones.
+/// Elements of the arrays as vertices, whose other attributes are the current ones.
 class ElementReader {
  public:
-  ElementReader(const Streams& streams, Context& context) : input_(context.input) {
-    input_.begin(context.state);
+  ElementReader(const Streams& streams, const State& state, InputVertices& vertices) : input_(vertices) {
+    input_.begin(state);
     // An index has no column: it colours nothing.
     constexpr std::array<std::pair<Array, Attribute>, 8> kColumns{{{Array::vertex, Attribute::position},
                                                                    {Array::normal, Attribute::normal},
@@ -231,37 +231,17 @@ void play(Context& context, const std::shared_ptr<const DisplayList>& list) {
   list->play(context);
 }
 
-/// A draw as a list of its own, for one that is being compiled: within glBegin and glEnd it is refused as a whole.
-std::shared_ptr<const DisplayList> compiled(Context& context, const Streams& streams, GLenum mode, std::uint32_t first,
-                                            std::span<const std::uint32_t> indices) {
-  const auto list = std::make_shared<DisplayList>();
-  const auto outer = std::exchange(context.compiling, list);
-  const bool executes = std::exchange(context.compiles_and_executes, false);
-  issue<&begin, InsideBegin::allowed>(context, mode);
-  for (const std::uint32_t i : indices) streams.issue_vertex(context, first + i);
-  issue<&end, InsideBegin::allowed>(context);
-  context.compiling = outer;
-  context.compiles_and_executes = executes;
-  list->join_vertices();
-  return list;
-}
-
-/// Draws elements first + indices[0], first + indices[1], ..., each shaded once. `are_distinct`: they are so already.
-void draw(Context& context, const Streams& streams, GLenum mode, std::uint32_t first,
-          std::span<const std::uint32_t> indices, bool are_distinct) {
-  if (!streams.is_readable) return context.fail(GL_INVALID_OPERATION);
-  if (streams[Array::vertex].elements() == 0) indices = {};
-  if (context.compiling != nullptr) return issue<&play>(context, compiled(context, streams, mode, first, indices));
-  if (indices.empty()) return;
-  update_shading(context);
-  context.shaded.clear();
-  const ElementReader reader(streams, context);
-  // The place of each element of the range; a sparse range is shaded index by index instead.
+/// Reads elements first + indices[0], first + indices[1], ..., each once, and says at which place each one is. `are_distinct`:
+/// they are so already. The places are valid until the next call.
+std::span<const std::uint32_t> read_elements(const ElementReader& reader, const InputVertices& vertices,
+                                             std::uint32_t first, std::span<const std::uint32_t> indices,
+                                             bool are_distinct) {
+  if (indices.empty()) return indices;
   constexpr auto kNowhere = std::numeric_limits<std::uint32_t>::max();
   const auto [low, high] = std::ranges::minmax(are_distinct ? indices.first(1) : indices);
-  if (are_distinct || (high - low) / 8 > indices.size()) {
+  if (are_distinct || (high - low) / 8 > indices.size()) {  // of a sparse range index by index
     for (const std::uint32_t i : indices) reader.add(first + i);
-    return draw_vertices(context, mode, context.input, context.input.values(), counting(indices.size()));
+    return counting(indices.size());
   }
   thread_local std::vector<std::uint32_t> place, placed;
   place.assign(std::size_t{high} - low + 1, kNowhere);
@@ -269,12 +249,34 @@ void draw(Context& context, const Streams& streams, GLenum mode, std::uint32_t f
   for (const std::uint32_t i : indices) {
     std::uint32_t& at = place[i - low];
     if (at == kNowhere) {
-      at = static_cast<std::uint32_t>(context.input.size());
+      at = static_cast<std::uint32_t>(vertices.size());
       reader.add(first + i);
     }
     placed.push_back(at);
   }
-  draw_vertices(context, mode, context.input, context.input.values(), placed);
+  return placed;
+}
+
+/// Draws elements as read_elements() reads them; as a list of its own in one that is being compiled, so that it is refused as
+/// a whole within glBegin and glEnd.
+void draw(Context& context, const Streams& streams, GLenum mode, std::uint32_t first,
+          std::span<const std::uint32_t> indices, bool are_distinct) {
+  if (!streams.is_readable) return context.fail(GL_INVALID_OPERATION);
+  if (streams[Array::vertex].elements() == 0) indices = {};
+  const bool is_compiled = context.compiling != nullptr;
+  if (indices.empty() && !is_compiled) return;
+  InputVertices of_list;
+  InputVertices& vertices = is_compiled ? of_list : context.input;
+  const ElementReader reader(streams, context.state, vertices);
+  const auto places = read_elements(reader, vertices, first, indices, are_distinct);
+  if (is_compiled) {
+    const auto list = std::make_shared<DisplayList>();
+    list->add_vertices(mode, vertices, places);
+    return issue<&play>(context, std::shared_ptr<const DisplayList>(list));
+  }
+  update_shading(context);
+  context.shaded.clear();
+  draw_vertices(context, mode, vertices, vertices.values(), places);
 }
 
 /// Names that are not in use; they are from now on.

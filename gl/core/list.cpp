@@ -7,6 +7,7 @@
 
 #include "entry_conversions.hpp"
 #include "primitive.hpp"
+#include "shading.hpp"
 
 namespace halfplane::gl {
 
@@ -15,6 +16,11 @@ void* DisplayList::add(Play call, std::size_t bytes, CallKind kind) {
   calls_.resize(at + sizeof(Header) + padded);
   new (&calls_[at]) Header{call, static_cast<std::uint32_t>(padded), kind};
   return calls_.data() + at + sizeof(Header);
+}
+
+void DisplayList::add_vertices(GLenum mode, const InputVertices& vertices, std::span<const std::uint32_t> indices) {
+  new (add(nullptr, sizeof(Run), CallKind::run)) Run{runs_.size(), 0};
+  runs_.push_back({mode, vertices, {indices.begin(), indices.end()}});
 }
 
 void DisplayList::play(Context& context) const {
@@ -26,7 +32,8 @@ void DisplayList::play(Context& context) const {
     if (call.kind == CallKind::run) {
       if (context.inside_begin()) continue;
       const Run& run = *static_cast<const Run*>(arguments);
-      draw_run(context, runs_[run.which].mode, runs_[run.which].vertices);
+      const auto& [mode, vertices, indices] = runs_[run.which];
+      draw_run(context, mode, vertices, indices);
       at += run.bytes;
     } else if (call.play != nullptr) {
       call.play(context, arguments);
@@ -63,7 +70,8 @@ void DisplayList::join_vertices() {
     if (end) {
       copy_to(at);
       new (joined.add(nullptr, sizeof(Run), CallKind::run)) Run{runs_.size(), *end - at};
-      runs_.push_back({collector.primitive, collector.input});
+      const auto all = counting(collector.input.size());
+      runs_.push_back({collector.primitive, collector.input, {all.begin(), all.end()}});
     }
     at = end ? *end : after(at);
   }

@@ -6,6 +6,7 @@
 #include <functional>
 #include <new>
 #include <optional>
+#include <span>
 #include <tuple>
 #include <type_traits>
 #include <vector>
@@ -59,6 +60,8 @@ class DisplayList {
       add(nullptr, 0, kind);  // the next one of owned_
     }
   }
+  /// Draws vertices[indices[0]], vertices[indices[1]], ... when it is played outside glBegin and glEnd.
+  void add_vertices(GLenum mode, const InputVertices& vertices, std::span<const std::uint32_t> indices);
   void play(Context& context) const;
   /// Keeps the vertices between a glBegin and a glEnd as InputVertices, which are drawn at once where the calls would be
   /// played. The calls stay for lists that are called within a primitive. To be called when the list is complete.
@@ -80,6 +83,7 @@ class DisplayList {
   struct JoinedVertices {
     GLenum mode;
     InputVertices vertices;
+    std::vector<std::uint32_t> indices;
   };
   /// The place of the arguments. Valid until the next call.
   void* add(Play play, std::size_t bytes, CallKind kind);

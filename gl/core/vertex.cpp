@@ -53,11 +53,11 @@ void end(Context& context) {
   track_color(context);
 }
 
-void draw_run(Context& context, GLenum mode, const InputVertices& vertices) {
+void draw_run(Context& context, GLenum mode, const InputVertices& vertices, std::span<const std::uint32_t> indices) {
   update_shading(context);
   context.input.begin(context.state);
   context.shaded.clear();
-  draw_vertices(context, mode, vertices, context.input.values(), counting(vertices.size()));
+  draw_vertices(context, mode, vertices, context.input.values(), indices);
   vertices.store(context.state);
   track_color(context);
 }

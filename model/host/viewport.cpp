@@ -79,7 +79,7 @@ WindowPosition to_window(const Vertex& v, const State& state, const Viewport& vi
 PerPlane<std::uint32_t> snap_codes(double z, const Vertex& vertex, const Config& config) {
   PerPlane<std::uint32_t> code{};
   code[kDepthPlane] = snap_depth(z, config.depth_bits);
-  const std::size_t colors = needs_alpha(config) ? 4 : 3;  // color_planes(), without making the list for each vertex
+  const std::size_t colors = color_channels_of(config);
   for (std::size_t c = 0; c < colors; ++c) code[kColorPlane + c] = snap_color(vertex.rgba[c]);
   return code;
 }
@@ -87,7 +87,7 @@ PerPlane<std::uint32_t> snap_codes(double z, const Vertex& vertex, const Config&
 Vertex vertex_of_codes(const PerPlane<std::uint32_t>& code, const Config& config) {
   Vertex vertex;
   vertex.z = code[kDepthPlane] / (std::ldexp(1.0, config.depth_bits) - 1);
-  const std::size_t colors = needs_alpha(config) ? 4 : 3;  // color_planes(), without making the list for each vertex
+  const std::size_t colors = color_channels_of(config);
   for (std::size_t c = 0; c < colors; ++c) vertex.rgba[c] = code[kColorPlane + c];
   return vertex;
 }

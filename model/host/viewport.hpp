@@ -54,9 +54,12 @@ struct VertexSource {
 /// A vertex of window space that snaps to these codes; its position is left at 0.
 [[nodiscard]] Vertex vertex_of_codes(const PerPlane<std::uint32_t>& code, const Config& config);
 
+/// color_planes(), without making the list for each vertex.
+[[nodiscard]] constexpr std::size_t color_channels_of(const Config& config) { return needs_alpha(config) ? 4 : 3; }
+
 /// Gives `to` the colour of `from`.
 constexpr void copy_color(PerPlane<std::uint32_t>& to, const PerPlane<std::uint32_t>& from, const Config& config) {
-  const auto colors = static_cast<std::size_t>(color_planes(attributes_of(config)));
+  const std::size_t colors = color_channels_of(config);
   for (std::size_t p = kColorPlane; p < kColorPlane + colors; ++p) to[p] = from[p];
 }
 

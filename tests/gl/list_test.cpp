@@ -182,5 +182,49 @@ TEST_F(Lists, BeginMayBeInOneAndEndInAnother) {
   EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
 }
 
+TEST_F(Lists, VerticesTakeFromTheCallWhatTheListDoesNotSet) {
+  const std::array<void (*)(), 2> calls{
+      [] {  // all vertices have a coordinate of the list's
+        HALFPLANE_GL(glBegin)(GL_POINTS);
+        HALFPLANE_GL(glTexCoord2f)(1, 2);
+        HALFPLANE_GL(glVertex2f)(0, 0);
+        HALFPLANE_GL(glVertex2f)(0.5F, 0);
+        HALFPLANE_GL(glTexCoord2f)(3, 4);
+        HALFPLANE_GL(glEnd)();
+      },
+      [] {  // the first one has the current one
+        HALFPLANE_GL(glBegin)(GL_POINTS);
+        HALFPLANE_GL(glVertex2f)(0, 0);
+        HALFPLANE_GL(glTexCoord2f)(3, 4);
+        HALFPLANE_GL(glVertex2f)(0.5F, 0);
+        HALFPLANE_GL(glEnd)();
+      }};
+  const auto fed = [&](const auto& draw) {
+    std::vector<float> buffer(64);
+    HALFPLANE_GL(glFeedbackBuffer)(64, GL_4D_COLOR_TEXTURE, buffer.data());
+    HALFPLANE_GL(glRenderMode)(GL_FEEDBACK);
+    HALFPLANE_GL(glColor3f)(0.5F, 0.25F, 1);
+    HALFPLANE_GL(glTexCoord2f)(5, 6);
+    draw();
+    EXPECT_EQ(context.state.current.tex_coord[0], (Vec4{3, 4, 0, 1}));
+    buffer.resize(static_cast<std::size_t>(HALFPLANE_GL(glRenderMode)(GL_RENDER)));
+    return buffer;
+  };
+  HALFPLANE_GL(glViewport)(0, 0, 8, 8);
+  for (GLuint list = 1; list <= 2; ++list) {
+    compile(list, calls[list - 1]);
+    const std::vector<float> at_once = fed(calls[list - 1]);
+    EXPECT_EQ(at_once.size(), 2U * 13);
+    EXPECT_EQ(fed([&] { HALFPLANE_GL(glCallList)(list); }), at_once);
+    // Within a primitive its glBegin is an error, and the vertices and glEnd are that primitive's.
+    HALFPLANE_GL(glBegin)(GL_POINTS);
+    HALFPLANE_GL(glVertex2f)(0, 0);
+    HALFPLANE_GL(glCallList)(list);
+    EXPECT_EQ(context.input.size(), 3U);
+    EXPECT_FALSE(context.inside_begin());
+    EXPECT_EQ(error(), GLenum{GL_INVALID_OPERATION});
+  }
+}
+
 }  // namespace
 }  // namespace halfplane::gl::list_test

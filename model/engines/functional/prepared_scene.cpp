@@ -115,10 +115,12 @@ PreparedScene::PreparedScene(const Scene& scene, std::vector<TexelBlocks> known,
       continue;
     }
     const std::size_t first = index[0].size();
-    const auto add = [this](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-      index[0].push_back(a);
-      index[1].push_back(b);
-      index[2].push_back(c);
+    std::size_t last = first;
+    for (auto& corner : index) corner.resize(first + draw->count);  // an index makes at most one primitive
+    const auto add = [this, &last](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+      index[0][last] = a;
+      index[1][last] = b;
+      index[2][last++] = c;
     };
     if (type == PrimitiveType::triangle)
       for_each_triangle(scene, *draw, state.provoking, add);
@@ -126,7 +128,8 @@ PreparedScene::PreparedScene(const Scene& scene, std::vector<TexelBlocks> known,
       for_each_line(scene, *draw, [&](std::uint32_t start, std::uint32_t end) {
         add(start, end, state.provoking == Provoking::last ? end : start);
       });
-    of_draw.primitives = index[0].size() - first;
+    for (auto& corner : index) corner.resize(last);
+    of_draw.primitives = last - first;
     for (std::size_t at = first; at < index[0].size(); at += kChunk) {
       Chunk chunk{at, std::min(kChunk, index[0].size() - at), ~0U, 0};
       for (const auto& corner : index)
