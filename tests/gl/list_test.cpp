@@ -183,22 +183,21 @@ TEST_F(Lists, BeginMayBeInOneAndEndInAnother) {
 }
 
 TEST_F(Lists, VerticesTakeFromTheCallWhatTheListDoesNotSet) {
-  const std::array<void (*)(), 2> calls{
-      [] {  // all vertices have a coordinate of the list's
-        HALFPLANE_GL(glBegin)(GL_POINTS);
-        HALFPLANE_GL(glTexCoord2f)(1, 2);
-        HALFPLANE_GL(glVertex2f)(0, 0);
-        HALFPLANE_GL(glVertex2f)(0.5F, 0);
-        HALFPLANE_GL(glTexCoord2f)(3, 4);
-        HALFPLANE_GL(glEnd)();
-      },
-      [] {  // the first one has the current one
-        HALFPLANE_GL(glBegin)(GL_POINTS);
-        HALFPLANE_GL(glVertex2f)(0, 0);
-        HALFPLANE_GL(glTexCoord2f)(3, 4);
-        HALFPLANE_GL(glVertex2f)(0.5F, 0);
-        HALFPLANE_GL(glEnd)();
-      }};
+  const std::array<void (*)(), 2> calls{[] {  // all vertices have a coordinate of the list's
+                                          HALFPLANE_GL(glBegin)(GL_POINTS);
+                                          HALFPLANE_GL(glTexCoord2f)(1, 2);
+                                          HALFPLANE_GL(glVertex2f)(0, 0);
+                                          HALFPLANE_GL(glVertex2f)(0.5F, 0);
+                                          HALFPLANE_GL(glTexCoord2f)(3, 4);
+                                          HALFPLANE_GL(glEnd)();
+                                        },
+                                        [] {  // the first one has the current one
+                                          HALFPLANE_GL(glBegin)(GL_POINTS);
+                                          HALFPLANE_GL(glVertex2f)(0, 0);
+                                          HALFPLANE_GL(glTexCoord2f)(3, 4);
+                                          HALFPLANE_GL(glVertex2f)(0.5F, 0);
+                                          HALFPLANE_GL(glEnd)();
+                                        }};
   const auto fed = [&](const auto& draw) {
     std::vector<float> buffer(64);
     HALFPLANE_GL(glFeedbackBuffer)(64, GL_4D_COLOR_TEXTURE, buffer.data());
