@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Carry chains of a netlist by synth_ecp5 without the places that only feed them: carry_chains.py NETLIST.json RESULT.json.
+"""Carry chains of a netlist by synth_ecp5 without the places that only feed them: carry_chains.py NETLIST RESULT (JSON).
 
-nextpnr-ecp5 puts a cell in front of a chain whose carry-in is a constant, and one behind a chain whose carry-out is connected,
-even if nobody reads it; each takes two places. Here a carry-out that nobody reads is disconnected, and where the last half of
-a chain's last cell is free, the chain moves up by a half: the first one then gives the constant, whatever its carry-in is.
-The function of the netlist stays (tests/area/carry_chains_test.py).
+nextpnr-ecp5 puts a cell in front of a chain whose carry-in is a constant, and one behind a chain whose carry-out is
+connected, even if nobody reads it; each takes two places. Here a carry-out that nobody reads is disconnected, and where
+the last half of a chain's last cell is free, the chain moves up by a half: the first one then gives the constant,
+whatever its carry-in is. The function of the netlist stays (tests/area/carry_chains_test.py).
 """
 import collections
 import json
@@ -16,7 +16,8 @@ GIVES = {'0': f'{0x0000:016b}', '1': f'{0x000f:016b}'}
 
 
 def half(cell, k):
-    return [cell['connections'][f'{port}{k}'] for port in HALF[:5]] + [cell['parameters'][f'{name}{k}'] for name in HALF[5:]]
+    ports = [cell['connections'][f'{port}{k}'] for port in HALF[:5]]
+    return ports + [cell['parameters'][f'{name}{k}'] for name in HALF[5:]]
 
 
 def set_half(cell, k, values):
@@ -29,7 +30,10 @@ def set_half(cell, k, values):
 def without_feeding(module):
     """Changes the module's chains; the number of constants and carry-outs that no longer take a cell."""
     cells = module['cells'].values()
-    readers = collections.Counter(bit for port in module['ports'].values() if port['direction'] == 'output' for bit in port['bits'])
+    readers = collections.Counter()
+    for port in module['ports'].values():
+        if port['direction'] == 'output':
+            readers.update(port['bits'])
     for cell in cells:
         for port, bits in cell['connections'].items():
             if cell['port_directions'][port] == 'input':

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""tools/carry_chains.py keeps a netlist's function, and takes the feeding it says it takes: Yosys proves both netlists equal
-with its models of the cells, whatever a carry-in that nobody gives is.
+"""tools/carry_chains.py keeps a netlist's function, and takes away what it says: Yosys proves both netlists equal with
+its models of the cells, whatever a carry-in that nobody gives is.
 
   tests/area/carry_chains_test.py YOSYS FOLDER
 """
@@ -12,10 +12,11 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / 'tools'))
 import carry_chains  # noqa: E402
 
-# Chains of odd and even lengths, with either constant and with a signal as carry-in, with and without a reader of the carry-out.
+# Chains of odd and even lengths, with either constant and with a signal as carry-in, with a reader of the carry-out and
+# without.
 DESIGN = '''
-module chains (input [8:0] a, b, input c, output [6:0] odd, output [7:0] even, output [6:0] minus, output [7:0] even_minus,
-               output [5:0] carried, output less, output [7:0] out);
+module chains (input [8:0] a, b, input c, output [6:0] odd, output [7:0] even, output [6:0] minus,
+               output [7:0] even_minus, output [5:0] carried, output less, output [7:0] out);
   assign odd = a[6:0] + b[8:2];
   assign even = a[7:0] + b[8:1];
   assign minus = b[6:0] - a[8:2];
@@ -35,8 +36,9 @@ def yosys(program, script, folder):
 def equal(program, folder, before, after):
     """Whether Yosys proves that the netlists have one function."""
     read = '; '.join(f'read_json {name}.json; rename chains {name}' for name in (before, after))
-    run = yosys(program, f'{read}; read_verilog -overwrite +/ecp5/cells_sim.v; hierarchy -check; proc; flatten; miter -equiv -make_outputs '
-                f'{before} {after} both; flatten both; opt_clean; sat -verify -prove trigger 0 -show-inputs both', folder)
+    run = yosys(program, f'{read}; read_verilog -overwrite +/ecp5/cells_sim.v; hierarchy -check; proc; flatten; '
+                f'miter -equiv -make_outputs {before} {after} both; flatten both; opt_clean; '
+                'sat -verify -prove trigger 0 -show-inputs both', folder)
     if run.returncode and 'proof did fail' not in run.stdout + run.stderr:
         sys.exit(run.stdout + run.stderr)
     return run.returncode == 0
@@ -46,7 +48,8 @@ def changed(folder, name, netlist, change):
     module = json.loads(json.dumps(netlist))['modules']['chains']
     module['attributes'] = {}  # none is the top
     change(module)
-    (folder / f'{name}.json').write_text(json.dumps({'creator': 'test', 'modules': {'chains': module}}), encoding='utf-8')
+    text = json.dumps({'creator': 'test', 'modules': {'chains': module}})
+    (folder / f'{name}.json').write_text(text, encoding='utf-8')
 
 
 def open_carries(value):
