@@ -425,7 +425,7 @@ void get_pointer(Context& context, GLenum pname, void** params) {
 
 void get_polygon_stipple(Context& context, GLubyte* mask) {
   const PixelStore& store = context.client.pack;
-  const int bits = store.row_length > 0 ? store.row_length : 32, bytes = (bits + 7) / 8;
+  const std::ptrdiff_t bytes = ((store.row_length > 0 ? std::ptrdiff_t{store.row_length} : 32) + 7) / 8;
   const std::ptrdiff_t pitch = (bytes + store.alignment - 1) / store.alignment * store.alignment;
   for (int y = 0; y < 32; ++y)
     for (int x = 0; x < 32; ++x) {

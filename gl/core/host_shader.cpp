@@ -178,11 +178,11 @@ class Shader {
 class Packer {
  public:
   /// `part`: of the target, no wider and no higher than a texture.
-  Packer(Context& context, halfplane::State state, const Shading& shading, const PixelBox& part)
+  Packer(Context& context, const halfplane::State& state, const Shading& shading, const PixelBox& part)
       : context_(context),
         frame_(context.drawable->frame),
         config_(frame_.options().config),
-        state_(std::move(state)),
+        state_(state),
         window_{state_.space, state_.viewport.value_or(Viewport{})},
         shader_(context, shading, state_.alpha_test),
         // Snapping moves an edge by half a subpixel; one of several samples may be covered where the centre is not.

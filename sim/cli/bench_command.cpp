@@ -16,6 +16,7 @@
 #include "sim/cli/progress.hpp"
 #include "sim/cli/space_study.hpp"
 #include "sim/config_file.hpp"
+#include "sim/interrupt.hpp"
 #include "sim/show/report/page.hpp"
 #include "sim/study/bench/engines.hpp"
 #include "sim/study/space/gates.hpp"
