@@ -11,7 +11,7 @@
 
 namespace halfplane::functional {
 
-/// Whether the fast path supports the scene, configuration and options.
+/// Whether the fast path supports the scene, which is valid, the configuration and the options.
 [[nodiscard]] bool is_supported(const Scene& scene, const Config& config, const RenderOptions& options);
 
 /// Renders frames; reuses its memory from frame to frame.

@@ -31,6 +31,7 @@ FunctionalEngine::FunctionalEngine(const Config& config) {
 FunctionalEngine::~FunctionalEngine() = default;
 
 const Rendering& FunctionalEngine::render(const Scene& scene, const RenderOptions& options) {
+  validate(scene);
   if (functional::is_supported(scene, memory_->config, options))
     return memory_->fast.render(PreparedScene(scene), options);
   memory_->plain = render_by_stages(scene, memory_->config, options);
@@ -44,6 +45,7 @@ const Rendering& FunctionalEngine::render(const PreparedScene& prepared, const R
 
 Rendering render_functional(const Scene& scene, const Config& config, const RenderOptions& options) {
   validate(config);
+  validate(scene);
   if (!functional::is_supported(scene, config, options)) return render_by_stages(scene, config, options);
   functional::FrameRenderer renderer(config);
   (void)renderer.render(PreparedScene(scene), options);
