@@ -11,7 +11,8 @@ import json
 import sys
 
 HALF = ('A', 'B', 'C', 'D', 'S', 'INIT', 'INJECT1_')
-# A half whose sum is 0: its carry-out is its INIT's lowest bits, which A and B select. C and D are 1.
+# A half that propagates nothing: its LUT4 is 0, so its carry-out is its LUT2, the lowest bits of INIT, which A and B select.
+# A to D are 1; its sum is not read.
 GIVES = {'0': f'{0x0000:016b}', '1': f'{0x000f:016b}'}
 
 

@@ -1,4 +1,5 @@
 // Vertex arrays, buffer objects and occlusion queries (OpenGL 1.5, 2.8, 2.9, 4.1.7).
+#include <algorithm>
 #include <cstring>
 #include <limits>
 #include <utility>

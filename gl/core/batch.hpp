@@ -57,7 +57,7 @@ std::vector<Element>& empty_scratch() {
   return elements;
 }
 
-/// `count` elements of it, whatever their values.
+/// `count` elements with any values, in memory of this thread that the next call takes again; not that of empty_scratch().
 template <class Element>
 std::span<Element> scratch(std::size_t count) {
   thread_local std::vector<Element> elements;

@@ -101,8 +101,8 @@ struct Context {
   // Between glBegin and glEnd (vertex.cpp).
   static constexpr GLenum kNoPrimitive = ~0U;
   GLenum primitive = kNoPrimitive;
-  InputVertices input;    ///< the vertices since glBegin
-  ShadedVertices shaded;  ///< those of them that are shaded
+  InputVertices input;    ///< the vertices since glBegin, or of a draw of arrays
+  ShadedVertices shaded;  ///< of the current primitive, draw or list
   [[nodiscard]] bool inside_begin() const { return primitive != kNoPrimitive; }
 
   /// Raised by every command that is not a vertex or an attribute of one, so that values derived from state are computed once.

@@ -41,11 +41,9 @@ Topology list_of(PrimitiveType type) {
 
 bool is_list(Topology topology) { return list_of(primitive_type(topology)) == topology; }
 
-/// Draws of one kind may be in one scene: the engine takes its fast path for all of them or for none.
-int kind_of(const halfplane::State& state) {
-  if (!has_surface(state)) return 0;
-  return state.stencil ? 2 : state.space == Space::window ? 1 : 0;
-}
+/// Draws of one kind may be in one scene: the engine takes its fast path for all of them or for none, and surfaces in window
+/// coordinates may keep it from that by a w that is not positive.
+int kind_of(const halfplane::State& state) { return has_surface(state) && state.space == Space::window ? 1 : 0; }
 
 double within(double value, double low, double high) { return std::isnan(value) ? low : std::clamp(value, low, high); }
 

@@ -58,7 +58,7 @@ std::optional<std::size_t> DisplayList::end_of_vertices(std::size_t at, Context&
 
 void DisplayList::join_vertices() {
   DisplayList joined;
-  Context collector;
+  std::optional<Context> collector;  // for most lists none: it is large
   std::size_t copied = 0;
   const auto copy_to = [&](std::size_t end) {
     const auto at = [&](std::size_t place) { return calls_.begin() + static_cast<std::ptrdiff_t>(place); };
@@ -66,12 +66,14 @@ void DisplayList::join_vertices() {
     copied = end;
   };
   for (std::size_t at = 0; at < calls_.size();) {
-    const auto end = header(at).kind == CallKind::begin ? end_of_vertices(at, collector) : std::nullopt;
+    const bool begins = header(at).kind == CallKind::begin;
+    if (begins && !collector) collector.emplace();
+    const auto end = begins ? end_of_vertices(at, *collector) : std::nullopt;
     if (end) {
       copy_to(at);
       new (joined.add(nullptr, sizeof(Run), CallKind::run)) Run{runs_.size(), *end - at};
-      const auto all = counting(collector.input.size());
-      runs_.push_back({collector.primitive, collector.input, {all.begin(), all.end()}});
+      const auto all = counting(collector->input.size());
+      runs_.push_back({collector->primitive, collector->input, {all.begin(), all.end()}});
     }
     at = end ? *end : after(at);
   }

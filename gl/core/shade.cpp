@@ -1,6 +1,7 @@
 // What vertices are shaded with, and the order of that; the arithmetic is in shade_lanes.inl.
 #include "shade_kernels.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -113,8 +114,12 @@ void finish_vertices(Context& context, const InputVertices& vertices, const Inpu
   ShadedVertices::Block before;
   if (kept != 0) before = blocks[block];
   shade_kernels().finish(context, vertices, values, block, blocks, all_textures);
-  if (kept != 0)
-    for (std::size_t i = 0; i < before.size(); ++i) std::copy_n(before[i].begin(), kept, blocks[block][i].begin());
+  const std::size_t in_block = std::min(vertices.size() - block * kVertexLanes, kVertexLanes);
+  for (std::size_t i = 0; kept != 0 && i < before.size(); ++i) {
+    Column& column = blocks[block][i];
+    std::copy_n(before[i].begin(), kept, column.begin());
+    std::fill(column.begin() + in_block, column.end(), column[0]);
+  }
   shaded.resize(vertices.size());
 }
 

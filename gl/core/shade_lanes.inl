@@ -2,6 +2,8 @@
 // the instruction set of the unit that includes this.
 #pragma once
 
+#include <limits>
+
 #include "../../model/engines/functional/kernels/lanes.inl"
 #include "shade_kernels.hpp"
 

@@ -1,5 +1,5 @@
-// The state as shading reads it (shade.cpp), for the sources of vertices: vertex.cpp, arrays.cpp, eval.cpp; from a vertex
-// as the program gives it to one as primitives take it (OpenGL 1.5, 2.11 to 2.14).
+// The state as shading reads it, and shading itself (shade.cpp): vertices as a program gives them become vertices as primitives
+// take them (OpenGL 1.5, 2.11 to 2.14). For the sources of vertices: vertex.cpp, arrays.cpp, list.cpp.
 #pragma once
 
 #include <cstdint>

@@ -54,7 +54,8 @@ void InputVertices::store(State& state) const {
   for_each_current(state, [&](double& current, std::size_t number) {
     if (column_of_[number] != kOneValue) current = value_[number];
   });
-  state.current.edge_flag = value_[input_number(Attribute::edge_flag)] != 0;
+  constexpr std::size_t kEdgeFlag = input_number(Attribute::edge_flag);
+  if (column_of_[kEdgeFlag] != kOneValue) state.current.edge_flag = value_[kEdgeFlag] != 0;
 }
 
 void InputVertices::vary(std::size_t attribute) {

@@ -100,8 +100,8 @@ void for_each_run(const PointPrimitive& point, int grid_bits, Visit&& visit) {
   for_each_run(drawn.at, drawn.size, drawn.shape, point.box, grid_bits, visit);
 }
 
-/// A pixel of a smooth primitive.
-struct SmoothPoint {
+/// A pixel of a smooth primitive with its codes, alpha times coverage.
+struct PixelCodes {
   int x = 0, y = 0;
   PerPlane<std::uint32_t> code{};
 };
@@ -111,8 +111,8 @@ struct Outline {
   std::vector<LinePrimitive> lines;
   std::vector<Triangle> triangles;  ///< for lines that are rectangles: each with a sample position in its box
   std::vector<PointPrimitive> points;
-  std::vector<SmoothPoint> pixels;  ///< of smooth primitives, if these are wanted apart from points
-  bool keeps_pixels = false;        ///< they are
+  std::vector<PixelCodes> pixels;  ///< of smooth primitives, if `keeps_pixels`
+  bool keeps_pixels = false;       ///< set by who wants them here and not in `points`; clear() leaves it
 
   void clear() {
     pixels.clear();

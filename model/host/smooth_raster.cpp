@@ -281,7 +281,7 @@ std::uint32_t CodesBeside::code(std::size_t plane, std::int64_t part, double rat
     const int128 sum = int128{start} * (whole_ - part) + int128{end_[plane]} * part;
     return static_cast<std::uint32_t>((2 * sum + whole_) / (2 * int128{whole_}));
   }
-  // Rounded down, and what binary64 rounds: at most one code off. What is left over says it.
+  // binary64 may be one code off. `left` is 2 whole_ (exact - code + 1/2): the code is right where that is 0 ... 2 whole_ - 1.
   auto code = static_cast<std::int64_t>(static_cast<double>(start) + static_cast<double>(way) * ratio);
   const std::int64_t left = 2 * way * part + whole_ - (code - start) * 2 * whole_;
   code += left >= 2 * whole_ ? 1 : left < 0 ? -1 : 0;

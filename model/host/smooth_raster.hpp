@@ -60,7 +60,8 @@ class CodesBeside {
   [[nodiscard]] std::uint32_t code(std::size_t plane, std::int64_t part, double ratio) const;
 
   PerPlane<std::uint32_t> start_, end_;
-  // Of the way from the start to the end, times its length: at pixel 0, from pixel to pixel, and at the end.
+  // (pixel centre - start) . (end - start), subpixels squared: at pixel (0, 0), its steps to the next pixel in x and in y, and
+  // at the end of the line.
   std::int64_t at_zero_, per_x_, per_y_, whole_;
   PerPlane<std::size_t> changing_{};  ///< planes whose codes differ
   std::size_t changing_count_ = 0;

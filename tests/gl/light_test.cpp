@@ -218,6 +218,18 @@ TEST_F(Lighting, AMaterialThatChangesBetweenVerticesOfOneNormalChangesTheirColor
   }
 }
 
+TEST_F(Lighting, LanesWithoutAVertexRepeatOneWhateverTheMaterialIsNow) {
+  context.state.lighting.enabled = true;
+  begin(context, GL_POINTS);
+  vertex(context, 0, 0, 0, 1);
+  material(context, GL_FRONT, GL_EMISSION, vector({0.5, 0, 0, 1}));
+  vertex(context, 1, 0, 0, 1);
+  shade_pending(context);
+  const Column& red = context.shaded.blocks()[0][ShadedVertices::kColor];
+  EXPECT_NE(red[0], red[1]);
+  for (std::size_t lane = 2; lane < kVertexLanes; ++lane) EXPECT_EQ(red[lane], red[0]) << lane;
+}
+
 TEST_F(Lighting, LightsAreKeptInEyeSpace) {
   translate(context, 1, 2, 3);
   rotate(context, 90, 0, 0, 1);

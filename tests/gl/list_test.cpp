@@ -182,6 +182,17 @@ TEST_F(Lists, BeginMayBeInOneAndEndInAnother) {
   EXPECT_EQ(error(), GLenum{GL_NO_ERROR});
 }
 
+TEST_F(Lists, VerticesLeaveWhatTheListDoesNotSet) {
+  compile(1, [] {
+    HALFPLANE_GL(glBegin)(GL_POINTS);
+    HALFPLANE_GL(glVertex2f)(0, 0);
+    HALFPLANE_GL(glEnd)();
+  });
+  HALFPLANE_GL(glEdgeFlag)(GL_FALSE);
+  HALFPLANE_GL(glCallList)(1);
+  EXPECT_FALSE(context.state.current.edge_flag);
+}
+
 TEST_F(Lists, VerticesTakeFromTheCallWhatTheListDoesNotSet) {
   const std::array<void (*)(), 2> calls{[] {  // all vertices have a coordinate of the list's
                                           HALFPLANE_GL(glBegin)(GL_POINTS);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 #include "../../host/viewport.hpp"
 #include "../../packets/state_packets.hpp"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "../../stages/pixel_colors.hpp"
 #include "pipelined_timing.hpp"
@@ -161,7 +162,7 @@ class TimesOf final : public CycleTimes {
           return timing_.pass(offered);
         }
         const auto& [number, covered, passed] = *stamp++;
-        if (covered == 0) __builtin_unreachable();
+        if (covered == 0) __builtin_unreachable();  // a stamp from the lanes has covered samples: no test of item.mask
         BlockStamp place = places_[number];
         place.block.x = static_cast<std::uint16_t>(place.block.x + first_x);
         place.block.y = static_cast<std::uint16_t>(place.block.y + first_y);

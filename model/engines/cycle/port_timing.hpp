@@ -247,7 +247,7 @@ class PortTiming {
   Cycle moves(Arrow arrow, Cycle offered, Cycle room) {
     Stream& stream = streams_[index(arrow)];
     const Cycle moved = Run::is_plain ? stream.move(offered, room) : stream.transfer(offered, room);
-    if (!Run::is_plain) note(arrow, moved);  // its answer is later
+    if (!Run::is_plain) note(arrow, moved);  // plain runs ask for last() alone, and the answer is later
     return moved;
   }
   void count(Arrow arrow, Cycle offered, Cycle moved) {

@@ -173,7 +173,7 @@ class StampLanes {
     }
   };
 
-  /// The place of a code in its plane (CodePlace); its offset is taken off in front of the shift.
+  /// The place of a code in its plane (CodePlace); its offset is subtracted before the shift.
   struct Code {
     int shift = 0;
     Lanes mask{};

@@ -31,24 +31,22 @@ FunctionalEngine::FunctionalEngine(const Config& config) {
 FunctionalEngine::~FunctionalEngine() = default;
 
 const Rendering& FunctionalEngine::render(const Scene& scene, const RenderOptions& options) {
-  validate(scene);
-  if (functional::is_supported(scene, memory_->config, options))
-    return memory_->fast.render(PreparedScene(scene), options);
-  memory_->plain = render_by_stages(scene, memory_->config, options);
-  return memory_->plain;
+  return render(PreparedScene(scene), options);
 }
 
 const Rendering& FunctionalEngine::render(const PreparedScene& prepared, const RenderOptions& options) {
-  if (!functional::is_supported(prepared.scene(), memory_->config, options)) return render(prepared.scene(), options);
-  return memory_->fast.render(prepared, options);
+  if (functional::is_supported(prepared.scene(), memory_->config, options))
+    return memory_->fast.render(prepared, options);
+  memory_->plain = render_by_stages(prepared.scene(), memory_->config, options);
+  return memory_->plain;
 }
 
 Rendering render_functional(const Scene& scene, const Config& config, const RenderOptions& options) {
   validate(config);
-  validate(scene);
+  const PreparedScene prepared(scene);  // refuses a scene that is not valid
   if (!functional::is_supported(scene, config, options)) return render_by_stages(scene, config, options);
   functional::FrameRenderer renderer(config);
-  (void)renderer.render(PreparedScene(scene), options);
+  (void)renderer.render(prepared, options);
   return renderer.take();
 }
 

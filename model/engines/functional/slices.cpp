@@ -118,7 +118,7 @@ bool are_all_dots(const DrawContext& context, const Widths& widths) {
 
 /// The points of such a draw, in order.
 void find_dots(const Outline& outline, std::vector<Dot>& dots) {
-  for (const SmoothPoint& pixel : outline.pixels)
+  for (const PixelCodes& pixel : outline.pixels)
     dots.push_back({pixel.x, pixel.y, pixel.code[kDepthPlane], packed_channels(pixel.code)});
   for (const PointPrimitive& point : outline.points) {
     const SnappedVertex& at = point.drawn.at;

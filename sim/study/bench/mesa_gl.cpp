@@ -39,7 +39,7 @@ Functions start_osmesa() {
   const auto create = symbol<void* (*)(const int*, void*)>(library, "OSMesaCreateContextAttribs");
   const auto make_current = symbol<unsigned char (*)(void*, void*, Enum, int, int)>(library, "OSMesaMakeCurrent");
   const Finder find(symbol<GetProcAddress>(library, "OSMesaGetProcAddress"));
-  // Smooth lines and points and GL_CLAMP are of the compatibility profile alone.
+  // GL_POINT_SMOOTH, GL_POINT_SPRITE and GL_CLAMP are of the compatibility profile alone.
   const std::vector<int> attributes{kOsFormat,
                                     static_cast<int>(kRgba),
                                     kOsDepthBits,

@@ -324,7 +324,7 @@ struct Bin {
   int small_run = 0;               ///< records in a row that were small or medium
   const LinePositions& line_positions = line_places();
   LineBatch lines;
-  std::uint64_t line_tiles = 0;  ///< touched by lines and dots of line_state since triangles were last drawn
+  std::uint64_t line_tiles = 0;  ///< touched by lines of line_state since triangles were last drawn
   SliceState line_state;
   bool falls = false, rises = false;  ///< direction in which a passing depth may change the stored one
   std::size_t plane_count = 0;

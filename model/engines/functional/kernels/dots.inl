@@ -1,10 +1,9 @@
-// Points of one pixel, sixteen at a time: the pixels of smooth lines. One after the other in program order, without tests of
-// whole tiles, as lines are.
+// Points of one pixel, sixteen at a time: the pixels of smooth lines and points, and square points of size 1. In program order,
+// without tests of whole tiles, as lines are.
 #pragma once
 
 #include "bin.inl"
 #include "fragments.inl"
-#include "lines.inl"
 #include "operations.inl"
 #include "tile_memory.inl"
 

@@ -1,5 +1,5 @@
-// Fragments one by one, tile after tile, nothing skipped or deferred. A triangle of any size is set up alone. For lines and
-// dots with operations that lanes do not have; RenderOptions::general_fragments uses it for all.
+// Fragments one by one, tile after tile, nothing skipped or deferred. A triangle of any size is set up alone. For lines
+// with operations, and dots with those that dots.inl does not have in lanes; RenderOptions::general_fragments uses it for all.
 #pragma once
 
 #include "bin.inl"

@@ -143,8 +143,8 @@ HALFPLANE_INLINE I16 piece_lod(const Columns& at_zero, const Columns& step, cons
   return log2_code_of(max(to_right, down)) - (log2_code(q) << 1) + offset;
 }
 
-/// The colours of a tile's pixels that show pieces of one style, to `colors` of its 64. Each step runs for all four blocks before the next, as in
-/// shade(): the four dependency chains overlap.
+/// The colours of a tile's pixels that show pieces of one style, to `colors` of its 64. Each step runs for all four blocks
+/// before the next, as in shade(): the four dependency chains overlap.
 template <Sampling kSampling>
 HALFPLANE_NOINLINE void shade_pieces(Bin& bin, const SurfaceStyle& style, int tile, const TilePieces& shown,
                                      std::uint64_t pixels, std::uint32_t* const colors, const Packing& packing) {

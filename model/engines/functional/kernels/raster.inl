@@ -199,7 +199,8 @@ void draw_records(Bin& bin, const Slice& slice, const std::uint32_t* first, cons
   draw_lines<Fragments>(bin, slice);
 }
 
-/// Records whose fragments read stored values, or whose pixels have several samples: one after the other.
+/// Records that batches do not take, one after the other: under a stencil, where an alpha test decides about a depth, and with
+/// several samples those with operations or deferred colours.
 template <class Fragments>
 HALFPLANE_NOINLINE void draw_records_in_order(Bin& bin, const Slice& slice, const std::uint32_t* first,
                                               const std::uint32_t* last) {
