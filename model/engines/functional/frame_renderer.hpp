@@ -19,8 +19,8 @@ class FrameRenderer {
  public:
   explicit FrameRenderer(const Config& config);
 
-  /// Precondition: is_supported(). The result lives until the next call.
-  [[nodiscard]] const Rendering& render(const PreparedScene& prepared, const RenderOptions& options);
+  /// Precondition: is_supported(). The result lives until the next call. Not inlined: tools/instructions.py counts what is in it.
+  [[nodiscard, gnu::noinline]] const Rendering& render(const PreparedScene& prepared, const RenderOptions& options);
 
   /// Moves the last result out: the next frame allocates its own memory.
   [[nodiscard]] Rendering take();
