@@ -19,8 +19,8 @@ void* DisplayList::add(Play call, std::size_t bytes, CallKind kind) {
 }
 
 void DisplayList::add_vertices(GLenum mode, const InputVertices& vertices, std::span<const std::uint32_t> indices) {
-  new (add(nullptr, sizeof(Run), CallKind::run)) Run{runs_.size(), 0};
-  runs_.push_back({mode, vertices, {indices.begin(), indices.end()}});
+  new (add(nullptr, sizeof(Joined), CallKind::joined)) Joined{joined_.size(), 0};
+  joined_.push_back({mode, vertices, {indices.begin(), indices.end()}});
 }
 
 void DisplayList::play(Context& context) const {
@@ -29,12 +29,12 @@ void DisplayList::play(Context& context) const {
     const Header& call = header(at);
     const void* const arguments = calls_.data() + at + sizeof(Header);
     at = after(at);
-    if (call.kind == CallKind::run) {
+    if (call.kind == CallKind::joined) {
       if (context.inside_begin()) continue;
-      const Run& run = *static_cast<const Run*>(arguments);
-      const auto& [mode, vertices, indices] = runs_[run.which];
-      draw_run(context, mode, vertices, indices);
-      at += run.bytes;
+      const Joined& joined = *static_cast<const Joined*>(arguments);
+      const auto& [mode, vertices, indices] = joined_[joined.which];
+      draw_joined(context, mode, vertices, indices);
+      at += joined.bytes;
     } else if (call.play != nullptr) {
       call.play(context, arguments);
     } else {
@@ -48,7 +48,7 @@ std::optional<std::size_t> DisplayList::end_of_vertices(std::size_t at, Context&
   collector.error = GL_NO_ERROR;
   for (; at < calls_.size(); at = after(at)) {
     const CallKind kind = header(at).kind;
-    if (kind == CallKind::other || kind == CallKind::run) return std::nullopt;
+    if (kind == CallKind::other || kind == CallKind::joined) return std::nullopt;
     if (kind == CallKind::end) break;
     header(at).play(collector, calls_.data() + at + sizeof(Header));
   }
@@ -71,9 +71,9 @@ void DisplayList::join_vertices() {
     const auto end = begins ? end_of_vertices(at, *collector) : std::nullopt;
     if (end) {
       copy_to(at);
-      new (joined.add(nullptr, sizeof(Run), CallKind::run)) Run{runs_.size(), *end - at};
+      new (joined.add(nullptr, sizeof(Joined), CallKind::joined)) Joined{joined_.size(), *end - at};
       const auto all = counting(collector->input.size());
-      runs_.push_back({collector->primitive, collector->input, {all.begin(), all.end()}});
+      joined_.push_back({collector->primitive, collector->input, {all.begin(), all.end()}});
     }
     at = end ? *end : after(at);
   }

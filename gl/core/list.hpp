@@ -17,27 +17,18 @@
 namespace halfplane::gl {
 
 /// What a call is for DisplayList::join_vertices().
-enum class CallKind : std::uint32_t { other, begin, end, vertex_or_attribute, run };
+enum class CallKind : std::uint32_t { other, begin, end, vertex_or_attribute, joined };
+template <auto Command, auto... These>
+inline constexpr bool kIsOneOf = (std::is_same_v<std::integral_constant<decltype(Command), Command>,
+                                                 std::integral_constant<decltype(These), These>> ||
+                                  ...);
 template <auto Command>
-inline constexpr CallKind kCallKind = CallKind::other;
-template <>
-inline constexpr CallKind kCallKind<&begin> = CallKind::begin;
-template <>
-inline constexpr CallKind kCallKind<&end> = CallKind::end;
-template <>
-inline constexpr CallKind kCallKind<&vertex> = CallKind::vertex_or_attribute;
-template <>
-inline constexpr CallKind kCallKind<&normal> = CallKind::vertex_or_attribute;
-template <>
-inline constexpr CallKind kCallKind<&color> = CallKind::vertex_or_attribute;
-template <>
-inline constexpr CallKind kCallKind<&secondary_color> = CallKind::vertex_or_attribute;
-template <>
-inline constexpr CallKind kCallKind<&tex_coord> = CallKind::vertex_or_attribute;
-template <>
-inline constexpr CallKind kCallKind<&fog_coord> = CallKind::vertex_or_attribute;
-template <>
-inline constexpr CallKind kCallKind<&edge_flag> = CallKind::vertex_or_attribute;
+inline constexpr CallKind kCallKind =
+    kIsOneOf<Command, &begin> ? CallKind::begin
+    : kIsOneOf<Command, &end> ? CallKind::end
+    : kIsOneOf<Command, &vertex, &normal, &color, &secondary_color, &tex_coord, &fog_coord, &edge_flag>
+        ? CallKind::vertex_or_attribute
+        : CallKind::other;
 
 /// A row of calls in memory, each a function and its arguments. Arguments that own memory (images, tables) lie apart.
 class DisplayList {
@@ -75,9 +66,9 @@ class DisplayList {
     std::uint32_t bytes;  ///< of the arguments that follow it, a multiple of kAlignment
     CallKind kind;
   };
-  /// Arguments of CallKind::run, before the calls that it stands for.
-  struct alignas(kAlignment) Run {
-    std::size_t which;  ///< of runs_
+  /// Arguments of CallKind::joined, before the calls that it stands for.
+  struct alignas(kAlignment) Joined {
+    std::size_t which;  ///< of joined_
     std::size_t bytes;  ///< of the calls
   };
   struct JoinedVertices {
@@ -95,7 +86,7 @@ class DisplayList {
 
   std::vector<std::byte> calls_;
   std::vector<std::function<void(Context&)>> owned_;
-  std::vector<JoinedVertices> runs_;
+  std::vector<JoinedVertices> joined_;
 };
 
 /// Whether a command is refused or allowed between glBegin and glEnd.

@@ -57,6 +57,13 @@ struct SharedObjects {
   std::map<GLuint, std::shared_ptr<TextureObject>> textures;
   std::map<GLuint, std::shared_ptr<DisplayList>> lists;
   std::map<GLuint, std::shared_ptr<BufferObject>> buffers;  ///< null: a name without an object yet
+
+  /// The buffer of a name; null: none. Not while `mutex` is held.
+  [[nodiscard]] std::shared_ptr<BufferObject> buffer(GLuint name) {
+    const std::lock_guard lock(mutex);
+    const auto found = buffers.find(name);
+    return found == buffers.end() ? nullptr : found->second;
+  }
 };
 
 }  // namespace halfplane::gl

@@ -22,7 +22,7 @@ void draw_primitives(Context& context, GLenum mode, const ShadedVertices& vertic
 void draw_vertices(Context& context, GLenum mode, const InputVertices& vertices, const InputVertices::Values& values,
                    std::span<const std::uint32_t> indices);
 /// What glBegin(mode), the vertices and glEnd do together. Precondition: vertices.is_complete(), outside glBegin and glEnd.
-void draw_run(Context& context, GLenum mode, const InputVertices& vertices, std::span<const std::uint32_t> indices);
+void draw_joined(Context& context, GLenum mode, const InputVertices& vertices, std::span<const std::uint32_t> indices);
 
 /// Pixels of the window as points, for glBitmap and pixels without a faster way: x and y from the bottom left, the centre of a
 /// pixel at one half, with z in 0...1 and colours in 0...1. They pass fog, for which w is the distance, and the fragment

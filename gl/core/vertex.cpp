@@ -53,7 +53,7 @@ void end(Context& context) {
   track_color(context);
 }
 
-void draw_run(Context& context, GLenum mode, const InputVertices& vertices, std::span<const std::uint32_t> indices) {
+void draw_joined(Context& context, GLenum mode, const InputVertices& vertices, std::span<const std::uint32_t> indices) {
   update_shading(context);
   context.input.begin(context.state);
   context.shaded.clear();
