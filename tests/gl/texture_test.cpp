@@ -315,6 +315,28 @@ TEST_F(GlTexture, GeneratedLevelsAreMeans) {
   EXPECT_TRUE(is_complete(texture));
 }
 
+/// What the engine keeps of small textured triangles ends with their frame, also where none of them is seen.
+TEST_F(GlTexture, ATextureAfterAStippleThatDrawsNothing) {
+  upload(0, GL_RGBA, filled(4, 4, kRed));
+  nearest();
+  const auto square = [&] {
+    ++context.revision;
+    rect(context, -0.9, -0.9, -0.6, -0.6);
+    return color(5, 5);
+  };
+  polygon_stipple(context, {});
+  for (int frame = 0; frame < 2; ++frame) {
+    enable(context, GL_POLYGON_STIPPLE, true);
+    enable(context, GL_TEXTURE_2D, false);
+    EXPECT_NE(square(), kRed);
+    enable(context, GL_POLYGON_STIPPLE, false);
+    enable(context, GL_TEXTURE_2D, true);
+    EXPECT_EQ(square(), kRed);
+    ++context.revision;
+    clear(context, GL_COLOR_BUFFER_BIT);
+  }
+}
+
 TEST_F(GlTexture, OneDimensionAndWraps) {
   enable(context, GL_TEXTURE_1D, true);
   const auto row = image(2, 1, {kRed, kBlue});

@@ -177,6 +177,7 @@ HALFPLANE_NOINLINE void finish_samples(Bin& bin, int first, int columns) {
 /// Writes all new data to the target, a row of tiles at a time.
 inline void finish(Bin& bin) {
   if (bin.surface_count + bin.group_count != 0) shade_all(bin);
+  bin.memory.styles.clear();  // also of batches none of which was seen: the next frame's slices are other ones
   if (bin.layer_count != 0) lay_all(bin);
   const int columns = tiles_along(bin.job.target.width - bin.first_x),
             rows = tiles_along(bin.job.target.height - bin.first_y);
