@@ -33,8 +33,8 @@ import time
 
 try:
     from PIL import Image, ImageChops, ImageStat
-except ImportError:
-    sys.exit("programs.py: this Python has no Pillow; install python3-pil")
+except ImportError:  # piglit.py needs none
+    Image = None
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 # Name: the command and its package. Screen savers are added by look_for_savers().
@@ -473,6 +473,8 @@ def main():
     parser.add_argument('--threads', type=int, default=2, help='of `speed`, likewise; of the driver in `window`')
     parser.add_argument('-j', '--jobs', type=int, default=1)
     options = parser.parse_intermixed_args()
+    if Image is None:
+        sys.exit('programs.py: this Python has no Pillow; install python3-pil')
     # `window`, `speed`, `page`: what a driver has that nobody has configured (gl/core/options.cpp).
     options.set = options.set or ['stencil.bits=8'] + ['perspective.colors=1', 'texture.unit=trilinear', 'alpha.unit=1',
                                                        'blend.lanes=4', 'fog.unit=1'] * (options.what != 'compare')
