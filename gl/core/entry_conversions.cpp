@@ -7,14 +7,15 @@ namespace {
 
 constexpr GLsizei kLargestImage = kLargestTexture + 2;  // with its border
 
-// Unpacks an image and hands it to `command`, or issues an error.
+// Unpacks an image and hands it to `command`, or issues an error. `dimensions`: of a texture; 0: for none.
 template <class Command>
 void with_image(Context& context, std::array<GLsizei, 3> size, GLenum format, GLenum type, const void* pixels,
-                const Command& command, bool is_3d = false) {
+                const Command& command, int dimensions = 0) {
   const auto [width, height, depth] = size;
   if (width < 0 || height < 0 || depth < 0) return list_error(context, GL_INVALID_VALUE);
   if (const GLenum error = check_format(format, type); error != GL_NO_ERROR) return list_error(context, error);
-  command(std::make_shared<const Image>(unpack(context, width, height, depth, format, type, pixels, is_3d)));
+  command(std::make_shared<const Image>(
+      unpack(context, width, height, depth, format, type, pixels, dimensions == 3, dimensions != 0)));
 }
 
 bool is_proxy(GLenum target) {
@@ -69,7 +70,7 @@ void enter_tex_image(Context& context, int dimensions, GLenum target, GLint leve
     else  // at once, also where a list is compiled
       tex_image(context, dimensions, target, level, internal_format, width, height, depth, border, nullptr);
   };
-  with_image(context, {width, height, depth}, format, type, pixels, command, dimensions == 3);
+  with_image(context, {width, height, depth}, format, type, pixels, command, dimensions);
 }
 
 void enter_tex_sub_image(Context& context, int dimensions, GLenum target, GLint level, GLint x, GLint y, GLint z,
@@ -78,7 +79,7 @@ void enter_tex_sub_image(Context& context, int dimensions, GLenum target, GLint 
   const auto command = [&](const std::shared_ptr<const Image>& image) {
     issue<&tex_sub_image>(context, dimensions, target, level, x, y, z, image);
   };
-  with_image(context, {width, height, depth}, format, type, pixels, command, dimensions == 3);
+  with_image(context, {width, height, depth}, format, type, pixels, command, dimensions);
 }
 
 void enter_call_lists(Context& context, GLsizei n, GLenum type, const void* lists) {

@@ -5,6 +5,8 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
+#include <utility>
 
 #include "context.hpp"
 #include "matrix.hpp"
@@ -78,6 +80,10 @@ constexpr std::uint32_t largest(int bits) { return bits >= 32 ? ~0U : (1U << bit
 
 std::uint32_t load(const std::byte* at, int bytes, bool is_swapped) {
   std::uint32_t value = 0;
+  if (bytes == 4 && !is_swapped) {  // in one instruction
+    std::memcpy(&value, at, sizeof value);
+    return value;
+  }
   for (int i = 0; i < bytes; ++i) {
     const bool is_upward = (std::endian::native == std::endian::little) != is_swapped;
     value |= std::to_integer<std::uint32_t>(at[i]) << 8 * (is_upward ? i : bytes - 1 - i);
@@ -189,44 +195,65 @@ GLenum check_format(GLenum format, GLenum type) {
 }
 
 Image unpack(const Context& context, int width, int height, int depth, GLenum format, GLenum type, const void* pixels,
-             bool is_3d) {
+             bool is_3d, bool keeps_bytes) {
   const PixelFormat& f = *row_of(kFormats, format);
   const PixelType& t = *row_of(kTypes, type);
   const bool is_color = !f.is_index() && format != GL_DEPTH_COMPONENT;
   Image image{width, height, depth, is_color ? GL_RGBA : format, {}};
   if (pixels == nullptr) return image;
-  image.pixel.assign(pixel_count(width, height, depth), {0, 0, 0, is_color ? 1.0F : 0.0F});
   const PixelStore& store = context.client.unpack;
-  const auto put = [&f](std::array<float, 4>& to, std::size_t component, float value) {
-    const int channel = f.channel[component];
+  // The component that each channel comes from.
+  constexpr int kNone = -1;
+  std::array<int, 4> source{kNone, kNone, kNone, kNone};
+  for (int i = 0; i < f.components; ++i) {
+    const int channel = f.channel[static_cast<std::size_t>(i)];
     if (channel == kLuminance)
-      to[0] = to[1] = to[2] = value;
+      source[0] = source[1] = source[2] = i;
     else
-      to[static_cast<std::size_t>(channel)] = value;
+      source[static_cast<std::size_t>(channel)] = i;
+  }
+  const auto read_to = [&]<class Pixel>(std::vector<Pixel>& to, const Pixel& missing, const auto& component) {
+    to.resize(pixel_count(width, height, depth));
+    walk(store, {width, height, depth}, is_3d, t, f.components, static_cast<const std::byte*>(pixels),
+         [&](std::size_t index, const std::byte* at, int bit) {
+           Pixel pixel = missing;
+           for (std::size_t c = 0; c < 4; ++c)
+             if (source[c] != kNone) pixel[c] = component(at, bit, source[c]);
+           to[index] = pixel;
+         });
   };
+  const auto read = [&](const auto& component) { read_to(image.pixel, {0, 0, 0, is_color ? 1.0F : 0.0F}, component); };
   std::array<int, 4> shift{};
   for (std::size_t i = 0; t.is_packed() && i < 4; ++i) shift[i] = shift_of(t, i);
-  std::array<float, 256> bytes;  // most pixels are of these
-  for (std::uint32_t i = 0; i < bytes.size(); ++i) bytes[i] = decoded(i, {0, 1, TypeKind::whole}, f.is_index());
-  const auto components = static_cast<std::size_t>(f.components);
-  walk(store, {width, height, depth}, is_3d, t, f.components, static_cast<const std::byte*>(pixels),
-       [&](std::size_t index, const std::byte* at, int bit) {
-         std::array<float, 4>& to = image.pixel[index];
-         if (t.kind == TypeKind::bits) {
-           to[0] = static_cast<float>(std::to_integer<int>(*at >> bit & std::byte{1}));
-         } else if (t.is_packed()) {
-           const std::uint32_t word = load(at, t.bytes, store.swap_bytes);
-           for (std::size_t i = 0; i < components; ++i) {
-             const std::uint32_t top = largest(t.bits[i]);
-             put(to, i, static_cast<float>(word >> shift[i] & top) / static_cast<float>(top));
-           }
-         } else if (t.name == GL_UNSIGNED_BYTE) {
-           for (std::size_t i = 0; i < components; ++i) put(to, i, bytes[std::to_integer<std::size_t>(at[i])]);
-         } else {
-           for (std::size_t i = 0; i < components; ++i, at += t.bytes)
-             put(to, i, decoded(load(at, t.bytes, store.swap_bytes), t, f.is_index()));
-         }
-       });
+  const auto packed = [&](const std::byte* at, int component) {
+    const auto i = static_cast<std::size_t>(component);
+    return load(at, t.bytes, store.swap_bytes) >> shift[i] & largest(t.bits[i]);
+  };
+  const bool is_byte = t.name == GL_UNSIGNED_BYTE, is_four_bytes = t.bits == std::array{8, 8, 8, 8};
+  if (keeps_bytes && is_color && is_byte) {  // most images
+    read_to(image.byte, {0, 0, 0, 255},
+            [](const std::byte* at, int, int component) { return std::to_integer<std::uint8_t>(at[component]); });
+  } else if (keeps_bytes && is_four_bytes) {
+    read_to(image.byte, {0, 0, 0, 255},
+            [&](const std::byte* at, int, int component) { return static_cast<std::uint8_t>(packed(at, component)); });
+  } else if (t.is_packed()) {
+    read([&](const std::byte* at, int, int component) {
+      return static_cast<float>(packed(at, component)) /
+             static_cast<float>(largest(t.bits[static_cast<std::size_t>(component)]));
+    });
+  } else if (t.kind == TypeKind::bits) {
+    read([](const std::byte* at, int bit, int) {
+      return static_cast<float>(std::to_integer<int>(*at >> bit & std::byte{1}));
+    });
+  } else if (is_byte) {
+    std::array<float, 256> value;
+    for (std::uint32_t i = 0; i < value.size(); ++i) value[i] = decoded(i, t, f.is_index());
+    read([&](const std::byte* at, int, int component) { return value[std::to_integer<std::size_t>(at[component])]; });
+  } else {
+    read([&](const std::byte* at, int, int component) {
+      return decoded(load(at + component * t.bytes, t.bytes, store.swap_bytes), t, f.is_index());
+    });
+  }
   return image;
 }
 
@@ -235,6 +262,10 @@ std::shared_ptr<const Image> transferred(const Context& context, std::shared_ptr
   const bool is_scaled = state.scale != Vec4{1, 1, 1, 1} || state.bias != Vec4{};
   if (image->format == GL_RGBA && !is_scaled && !state.map_color) return image;
   auto result = std::make_shared<Image>(*image);
+  for (const Texel& byte : std::exchange(result->byte, {})) {
+    std::array<float, 4>& pixel = result->pixel.emplace_back();
+    for (std::size_t c = 0; c < 4; ++c) pixel[c] = decoded(byte[c], kTypes[0], false);
+  }
   const auto tables = [&context](GLenum first) {  // of red, green, blue and alpha
     return std::array{map_table(context, first), map_table(context, first + 1), map_table(context, first + 2),
                       map_table(context, first + 3)};

@@ -98,9 +98,7 @@ GLint kept_format(GLint internal_format) {
 }
 
 /// A base format's components: which channel each comes from, and where the texel holds them (TextureImage).
-Texel stored_texel(GLenum base, const std::array<float, 4>& color) {
-  if (base == GL_DEPTH_COMPONENT) return texel_of_depth(color[0]);
-  const Texel t = texel_of(color);
+Texel stored_texel(GLenum base, const Texel& t) {
   switch (base) {
     case GL_ALPHA: return {255, 255, 255, t[3]};
     case GL_LUMINANCE: return {t[0], t[0], t[0], 255};
@@ -109,6 +107,12 @@ Texel stored_texel(GLenum base, const std::array<float, 4>& color) {
     case GL_RGB: return {t[0], t[1], t[2], 255};
     default: return t;
   }
+}
+Texel stored_texel(GLenum base, const std::array<float, 4>& color) {
+  return base == GL_DEPTH_COMPONENT ? texel_of_depth(color[0]) : stored_texel(base, texel_of(color));
+}
+Texel stored_texel(GLenum base, const Image& image, std::size_t i) {
+  return image.byte.empty() ? stored_texel(base, image.pixel[i]) : stored_texel(base, image.byte[i]);
 }
 /// The way back, for glGetTexImage (table 6.1; a luminance is the red component alone).
 std::array<float, 4> read_texel(GLenum base, const Texel& texel) {
@@ -307,13 +311,13 @@ TextureImage* sub_image_of(Context& context, int dimensions, GLenum name, GLint 
 /// Texels of a border are left out.
 void store_sub_image(Context& context, GLenum name, GLint level, TextureImage& to, const std::array<GLint, 3>& offset,
                      const Image& image) {
-  if (image.pixel.empty()) return;
+  if (image.empty()) return;
   std::size_t i = 0;
   for (int z = offset[2]; z < offset[2] + image.depth; ++z)
     for (int y = offset[1]; y < offset[1] + image.height; ++y)
       for (int x = offset[0]; x < offset[0] + image.width; ++x, ++i)
         if (x >= 0 && y >= 0 && z >= 0 && x < to.width && y < to.height && z < to.depth)
-          to.texel[texel_at(to.width, to.height, x, y, z)] = stored_texel(to.base_format, image.pixel[i]);
+          to.texel[texel_at(to.width, to.height, x, y, z)] = stored_texel(to.base_format, image, i);
   const ImageTarget& target = *image_target(context, name, 0);
   changed(object_of(context, target.index), target.face, level);
 }
@@ -369,7 +373,7 @@ std::optional<TextureImage> stored_image(const Image& image, GLint internal_form
     for (int y = 0; y < stored.height; ++y)
       for (int x = 0; x < stored.width; ++x)
         stored.texel.push_back(
-            stored_texel(base, image.pixel[texel_at(image.width, image.height, x + cut[0], y + cut[1], z + cut[2])]));
+            stored_texel(base, image, texel_at(image.width, image.height, x + cut[0], y + cut[1], z + cut[2])));
   return stored;
 }
 
@@ -437,12 +441,12 @@ void tex_image(Context& context, int dimensions, GLenum target, GLint level, GLi
   if (fit == SizeCheck::refused || !takes_base(context, *to, base)) return;
   if (image != nullptr && !go_together(context, image->format, base)) return;
   if (fit == SizeCheck::too_large) return store_image(context, *to, level, {});
-  if (to->is_proxy || image == nullptr || image->pixel.empty()) {
+  if (to->is_proxy || image == nullptr || image->empty()) {
     const std::array<int, 3> cut{border_along(width, border), border_along(height, border),
                                  border_along(depth, border)};
     TextureImage blank{
         width - 2 * cut[0], height - 2 * cut[1], depth - 2 * cut[2], border, kept_format(internal_format), base, {}};
-    if (!to->is_proxy) blank.texel.resize(texel_count(blank), stored_texel(base, {0, 0, 0, 1}));
+    if (!to->is_proxy) blank.texel.resize(texel_count(blank), stored_texel(base, std::array<float, 4>{0, 0, 0, 1}));
     return store_image(context, *to, level, std::move(blank));
   }
   store_image(context, *to, level, *stored_image(*transferred(context, std::move(image)), internal_format, border));
