@@ -162,12 +162,13 @@ SurfaceConstants::SurfaceConstants(const StageSurface& from, const FrameContext&
     color_low[c] = is_stored ? from.setup.range.low[kColorPlane + c] : 255;
     color_high[c] = is_stored ? from.setup.range.high[kColorPlane + c] : 255;
   }
+  has_constant_color = color_low == color_high;
   if (has_texture) set_texture(from, frame.widths, *texels);
   has_fog = from.surface.fog_divisor().has_value();
   if (has_fog) set_fog(from, frame.widths);
   const bool is_lit = from.surface.is_lit();
   has_color = !has_texture || (!is_lit && !sees_texture_alone(from));
-  if ((has_color || is_lit) && is_color_over_w) set_color(from, frame.widths);
+  if ((has_color || is_lit) && is_color_over_w && !has_constant_color) set_color(from, frame.widths);
   if (is_lit) set_light(from, frame.widths);
 }
 
@@ -234,6 +235,15 @@ void SurfaceConstants::set_texture(const StageSurface& from, const Widths& width
     texture.reference[axis] = surface.reference(axis) * (1 << kTexelFraction);
   }
   texture.lod = surface.lod();
+  is_upright = has_upright_texels();
+}
+
+bool SurfaceConstants::has_upright_texels() const {
+  const auto is_constant = [](const LodLine& line) { return line.step == 0; };
+  const LanePlane& q = coordinate.q;
+  return sampling_of(texture) != Sampling::nearest && q.step_x == 0 && q.step_y == 0 &&
+         coordinate.attribute[0].p.step_y == 0 && coordinate.attribute[1].p.step_x == 0 &&
+         std::ranges::all_of(texture.lod.along_x, is_constant) && std::ranges::all_of(texture.lod.along_y, is_constant);
 }
 
 void SurfaceConstants::set_light(const StageSurface& from, const Widths& widths) {

@@ -40,7 +40,8 @@ inline const DrawnSurface& drawn_surface(Bin& bin, std::size_t number) {
                                                   bin.packing_of(seen.slice->context->fragment_ops));
   if (!drawn.constants.are_in_lanes)
     drawn.stage = std::make_unique<StageSurface>(frame, *seen.slice, *seen.record, seen.place, true);
-  else if ((drawn.constants.has_color || drawn.constants.light) && !drawn.constants.is_color_over_w)
+  else if ((drawn.constants.has_color || drawn.constants.light) && !drawn.constants.is_color_over_w &&
+           !drawn.constants.has_constant_color)
     set_up_surface_colors(bin, seen, drawn.colors);
   return drawn;
 }

@@ -281,6 +281,58 @@ HALFPLANE_LEAF void store_blocks(Element* to, int stride, const I16& left, const
 #endif
 }
 
+/// The channels of eight texels, 16 bits each: of the lower lanes, or of the upper ones.
+template <bool kUpper>
+HALFPLANE_LEAF S32 channels_of_eight(const I16& texels) {
+  S32 r;
+#if HALFPLANE_ISA == 512
+  r.part[0] = (S32::Register)_mm512_cvtepu8_epi16(_mm512_extracti64x4_epi64((__m512i)texels.part[0], kUpper ? 1 : 0));
+#elif HALFPLANE_ISA == 256
+  const auto eight = (__m256i)texels.part[kUpper ? 1 : 0];
+  r.part[0] = (S32::Register)_mm256_cvtepu8_epi16(_mm256_castsi256_si128(eight));
+  r.part[1] = (S32::Register)_mm256_cvtepu8_epi16(_mm256_extracti128_si256(eight, 1));
+#else
+  for (int i = 0; i < 32; ++i) {
+    const auto texel = static_cast<std::uint32_t>(texels.part[(kUpper ? 2 : 0) + i / 16][i / 4 % 4]);
+    r.part[i / 8][i % 8] = static_cast<std::int16_t>(texel >> 8 * (i % 4) & 255);
+  }
+#endif
+  return r;
+}
+
+/// The inverse, for channels below 256: four rows of eight texels to two blocks, one after the other.
+HALFPLANE_LEAF void store_rows_as_blocks(const S32& a, const S32& b, const S32& c, const S32& d, std::uint32_t* to) {
+#if HALFPLANE_ISA == 512
+  const auto two = [](const S32& p, const S32& q)  // by two texels: p 0, q 0, p 1, q 1, ...
+      HALFPLANE_LAMBDA { return _mm512_packus_epi16((__m512i)p.part[0], (__m512i)q.part[0]); };
+  const __m512i upper = two(a, b), lower = two(c, d);
+  _mm512_storeu_si512(to, _mm512_permutex2var_epi64(upper, _mm512_setr_epi64(0, 2, 1, 3, 8, 10, 9, 11), lower));
+  _mm512_storeu_si512(to + kBlockPixels,
+                      _mm512_permutex2var_epi64(upper, _mm512_setr_epi64(4, 6, 5, 7, 12, 14, 13, 15), lower));
+#elif HALFPLANE_ISA == 256
+  for (int side = 0; side < 2; ++side) {
+    const auto two = [&](const S32& p, const S32& q) HALFPLANE_LAMBDA {
+      return _mm256_permute4x64_epi64(_mm256_packus_epi16((__m256i)p.part[side], (__m256i)q.part[side]), 0xd8);
+    };
+    auto* const block = reinterpret_cast<__m256i*>(to + side * kBlockPixels);
+    _mm256_storeu_si256(block, two(a, b));
+    _mm256_storeu_si256(block + 1, two(c, d));
+  }
+#else
+  const auto store = [](const S32& row, std::uint32_t* at) {
+    for (int i = 0; i < 8; ++i) {
+      std::uint32_t texel = 0;
+      for (int k = 3; k >= 0; --k) texel = texel << 8 | static_cast<std::uint16_t>(row.part[i / 2][i % 2 * 4 + k]);
+      at[i / 4 * kBlockPixels + i % 4] = texel;
+    }
+  };
+  store(a, to);
+  store(b, to + 4);
+  store(c, to + 8);
+  store(d, to + 12);
+#endif
+}
+
 /// Sixteen pixels past the caches to the beginning of a cache line: a line that is written whole need not be read
 /// first. Call finish_lines() after the last.
 template <class Element>

@@ -7,6 +7,7 @@
 #include "perspective.inl"
 #include "texture.inl"
 #include "tile_memory.inl"
+#include "upright.inl"
 #include "values.inl"
 
 namespace halfplane::functional::HALFPLANE_ISA_NAME {
@@ -66,7 +67,7 @@ struct SurfaceRamps {
     const SurfaceConstants& of = surface.constants;
     if constexpr (kSampling != Sampling::none) coordinate.set(bin, of.coordinate, tile_x, tile_y);
     if constexpr (kSampling == Sampling::any) lod.set(bin, of.texture.lod, tile_x, tile_y);
-    if (!has_color) return;
+    if (!has_color || of.has_constant_color) return;
     if (of.is_color_over_w) {
       color_over_w.set(bin, of.color, tile_x, tile_y);
       return;
@@ -78,6 +79,12 @@ struct SurfaceRamps {
   /// The primitive's own colours in a block.
   HALFPLANE_INLINE ColorPairs own(const Bin& bin, const DrawnSurface& surface, std::size_t block) const {
     const SurfaceConstants& of = surface.constants;
+    if (of.has_constant_color) {
+      const auto constant = [&](std::size_t c) HALFPLANE_LAMBDA {
+        return I16(static_cast<int>(of.color_low[c] | of.color_low[c + 2] << 16));
+      };
+      return {constant(0), constant(1)};
+    }
     if (!of.is_color_over_w) {
       const ColorSteps& steps = surface.colors.color;
       const auto pair = [&](std::size_t p) HALFPLANE_LAMBDA {
@@ -159,6 +166,19 @@ HALFPLANE_NOINLINE void shade(Bin& bin, const DrawnSurface& surface, int tile, s
   });
 }
 
+/// The same for the texels of a tile, R lowest.
+HALFPLANE_NOINLINE void combine_texels(Bin& bin, const DrawnSurface& surface, int tile, std::uint64_t pixels,
+                                       const std::uint32_t* texels, std::uint32_t* const colors,
+                                       const Packing& packing) {
+  const SurfaceConstants& of = surface.constants;
+  const SurfaceRamps<Sampling::none> ramps(bin, surface, tile % kBinTiles, tile / kBinTiles, of.has_color);
+  store_pixels(bin, colors, pixels, true, [&](auto block, const I16&) HALFPLANE_LAMBDA {
+    const ColorPairs texel(I16::load(texels + block * kBlockPixels));
+    const ColorPairs mixed = of.has_color ? combined(ramps.own(bin, surface, block), texel, of.texture) : texel;
+    return packed(mixed.red_blue, mixed.green_alpha, packing);
+  });
+}
+
 /// The same pixel by pixel, by the stages.
 HALFPLANE_NOINLINE void shade_by_stages(Bin& bin, const Surface& surface, int tile, std::uint64_t pixels,
                                         std::uint32_t* const colors, const Packing& packing) {
@@ -176,6 +196,11 @@ HALFPLANE_NOINLINE void shade_by_stages(Bin& bin, const Surface& surface, int ti
 /// The textures alone, or colours without light.
 HALFPLANE_INLINE void shade_unlit(Bin& bin, const DrawnSurface& surface, int tile, std::uint64_t pixels,
                                   std::uint32_t* const colors, const Packing& packing) {
+  if (surface.constants.is_upright) {
+    alignas(64) std::array<std::uint32_t, kTilePixels> texels;
+    if (find_upright_texels(bin, surface.constants, tile, texels.data()))
+      return combine_texels(bin, surface, tile, pixels, texels.data(), colors, packing);
+  }
   switch (sampling_of(surface.constants)) {
     case Sampling::none: return shade<Sampling::none>(bin, surface, tile, pixels, colors, packing);
     case Sampling::nearest: return shade<Sampling::nearest>(bin, surface, tile, pixels, colors, packing);

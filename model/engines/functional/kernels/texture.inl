@@ -242,9 +242,12 @@ struct ChannelSums {
 
 /// low * (256 - part) + high * part + 2^(drop - 1) for 16-bit numbers, lane by lane. `lanes`: low and high; `weights`:
 /// of both; `drop`: bits to be rounded.
+HALFPLANE_INLINE I16 weighted_centred(const I16& less_2_15, const I16& weights, int drop) {
+  return multiply_add_pairs(less_2_15, weights) + ((1 << 23) + (1 << (drop - 1)));
+}
 HALFPLANE_INLINE I16 weighted(const I16& lanes, const I16& weights, int drop) {
   constexpr auto kCentre = static_cast<std::int32_t>(0x80008000U);  // for a signed multiply
-  return multiply_add_pairs(lanes ^ kCentre, weights) + ((1 << 23) + (1 << (drop - 1)));
+  return weighted_centred(lanes ^ kCentre, weights, drop);
 }
 HALFPLANE_INLINE I16 weights_of(const I16& part) { return (256 - part) | (part << 16); }
 
@@ -338,12 +341,14 @@ HALFPLANE_INLINE ColorPairs filtered_base(const LaneTexture& texture, const Coor
   return is_linear ? filter_linear(texture, at, level) : ColorPairs(filter_nearest(texture, at, level));
 }
 
+/// The one level nearest to lambda: nearest_level().
+HALFPLANE_INLINE I16 nearest_levels(const LaneTexture& texture, const I16& lod) {
+  return min(max((lod + 127) >> kLodFraction, I16(0)), I16(texture.last_level));
+}
+
 /// Filters as texture_min says.
 HALFPLANE_INLINE ColorPairs minified(const LaneTexture& texture, const CoordinateLanes& at, const I16& lod) {
-  const auto nearest_level = [&]() HALFPLANE_LAMBDA {
-    const I16 level = min(max((lod + 127) >> kLodFraction, I16(0)), I16(texture.last_level));
-    return LaneLevel(texture, level);
-  };
+  const auto nearest_level = [&]() HALFPLANE_LAMBDA { return LaneLevel(texture, nearest_levels(texture, lod)); };
   switch (texture.min) {
     case TextureMin::nearest_mipmap_nearest: return ColorPairs(filter_nearest(texture, at, nearest_level()));
     case TextureMin::linear_mipmap_nearest: return filter_linear(texture, at, nearest_level());
