@@ -281,18 +281,17 @@ class OutlineBuilder {
   void add_smooth(const DrawnLine& line, const std::array<SnappedVertex, 4>& corners, bool crosses) {
     const std::vector<SmoothPixel> pixels = smooth_raster(corners, bounds_of(context_.rect), widths_.grid_bits);
     is_cut |= crosses && !pixels.empty();
-    const CodesBeside codes(line.start, line.end, widths_);
+    CodesBeside codes(line.start, line.end, widths_);
     for (const SmoothPixel& pixel : pixels) add_pixel(pixel, codes(pixel.x, pixel.y));
   }
 
   /// Adds a pixel of a smooth primitive: a point of its own.
-  void add_pixel(const SmoothPixel& pixel, PerPlane<std::uint32_t> code) {
-    if (widths_.color_planes == 4) {
-      std::uint32_t& alpha = code[kColorPlane + 3];
-      alpha = (alpha * pixel.coverage + kWholePixel / 2) / kWholePixel;
-    }
-    if (out_.keeps_pixels) {
-      out_.pixels.push_back({pixel.x, pixel.y, code});
+  void add_pixel(const SmoothPixel& pixel, const PerPlane<std::uint32_t>& code) {
+    std::uint32_t alpha = code[kColorPlane + 3];
+    if (widths_.color_planes == 4) alpha = (alpha * pixel.coverage + kWholePixel / 2) / kWholePixel;
+    if (out_.keeps_dots) {
+      constexpr std::uint32_t kColors = 0xffffff;
+      out_.dots.push_back({pixel.x, pixel.y, code[kDepthPlane], (packed_channels(code) & kColors) | alpha << 24});
       return;
     }
     const std::int32_t whole = std::int32_t{1} << widths_.grid_bits;
@@ -300,6 +299,7 @@ class OutlineBuilder {
     at.x = pixel.x * whole + whole / 2;
     at.y = pixel.y * whole + whole / 2;
     at.code = code;
+    at.code[kColorPlane + 3] = alpha;
     out_.points.push_back(
         {{number_, context_.command, at, whole, PointShape::square}, {pixel.x, pixel.y, pixel.x, pixel.y}});
   }
@@ -321,6 +321,7 @@ class OutlineBuilder {
       return;
     }
     const PixelBounds box = point_bounds(point.at, point.size, bounds_of(context_.rect), widths_.grid_bits);
+    if (out_.keeps_dots) return add_dots(box, {0, 0, point.at.depth(), packed_channels(point.at.code)}, out_.dots);
     bool is_drawn = false;
     const PointPrimitive primitive{point, box};
     for_each_run(primitive, widths_.grid_bits, [&is_drawn](const PixelBounds&) { is_drawn = true; });

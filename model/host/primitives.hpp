@@ -100,27 +100,39 @@ void for_each_run(const PointPrimitive& point, int grid_bits, Visit&& visit) {
   for_each_run(drawn.at, drawn.size, drawn.shape, point.box, grid_bits, visit);
 }
 
-/// A pixel of a smooth primitive with its codes, alpha times coverage.
-struct PixelCodes {
-  int x = 0, y = 0;
-  PerPlane<std::uint32_t> code{};
+/// The colour planes in a word: 8 bits a channel, R lowest.
+[[nodiscard]] inline std::uint32_t packed_channels(const PerPlane<std::uint32_t>& code) {
+  const auto channel = color_channels(code);
+  return channel[0] | channel[1] << 8 | channel[2] << 16 | channel[3] << 24;
+}
+
+/// A point of one pixel: of a smooth primitive with its alpha times coverage, or of a point.
+struct Dot {
+  std::int32_t x = 0, y = 0;
+  std::uint32_t z = 0, rgba = 0;  ///< depth code; packed_channels()
 };
+
+/// Appends a dot for each pixel of a box.
+inline void add_dots(const PixelBounds& box, Dot dot, std::vector<Dot>& out) {
+  for (dot.y = box.top; dot.y <= box.bottom; ++dot.y)
+    for (dot.x = box.left; dot.x <= box.right; ++dot.x) out.push_back(dot);
+}
 
 /// The result for one primitive that is not filled.
 struct Outline {
   std::vector<LinePrimitive> lines;
   std::vector<Triangle> triangles;  ///< for lines that are rectangles: each with a sample position in its box
   std::vector<PointPrimitive> points;
-  std::vector<PixelCodes> pixels;  ///< of smooth primitives, if `keeps_pixels`
-  bool keeps_pixels = false;       ///< set by who wants them here and not in `points`; clear() leaves it
+  std::vector<Dot> dots;            ///< with `keeps_dots`: the pixels of smooth primitives and of square points
+  bool keeps_dots = false;          ///< set by who wants them here and not in `points`; clear() leaves it
 
   void clear() {
-    pixels.clear();
+    dots.clear();
     lines.clear();
     triangles.clear();
     points.clear();
   }
-  [[nodiscard]] std::size_t size() const { return lines.size() + triangles.size() + points.size() + pixels.size(); }
+  [[nodiscard]] std::size_t size() const { return lines.size() + triangles.size() + points.size() + dots.size(); }
 };
 
 /// The type that the primitives of a draw are finally drawn as.

@@ -263,15 +263,15 @@ CodesBeside::CodesBeside(const SnappedVertex& start, const SnappedVertex& end, c
     if (p >= static_cast<std::size_t>(widths.affine_planes)) start_[p] = end_[p] = 0;
     if (start_[p] != end_[p]) changing_[changing_count_++] = p;
   }
+  codes_ = start_;
 }
 
-PerPlane<std::uint32_t> CodesBeside::operator()(int x, int y) const {
+const PerPlane<std::uint32_t>& CodesBeside::operator()(int x, int y) {
+  if (changing_count_ == 0) return codes_;
   const std::int64_t part = std::clamp<std::int64_t>(at_zero_ + x * per_x_ + y * per_y_, 0, whole_);
-  PerPlane<std::uint32_t> codes = start_;
-  if (changing_count_ == 0) return codes;
   const double ratio = static_cast<double>(part) / static_cast<double>(whole_);
-  for (std::size_t i = 0; i < changing_count_; ++i) codes[changing_[i]] = code(changing_[i], part, ratio);
-  return codes;
+  for (std::size_t i = 0; i < changing_count_; ++i) codes_[changing_[i]] = code(changing_[i], part, ratio);
+  return codes_;
 }
 
 /// (start (whole - part) + end part) / whole, rounded to the nearest.

@@ -54,12 +54,13 @@ inline constexpr std::uint32_t kWholePixel = 255;
 class CodesBeside {
  public:
   CodesBeside(const SnappedVertex& start, const SnappedVertex& end, const Widths& widths);
-  [[nodiscard]] PerPlane<std::uint32_t> operator()(int x, int y) const;
+  /// Until the next call.
+  [[nodiscard]] const PerPlane<std::uint32_t>& operator()(int x, int y);
 
  private:
   [[nodiscard]] std::uint32_t code(std::size_t plane, std::int64_t part, double ratio) const;
 
-  PerPlane<std::uint32_t> start_, end_;
+  PerPlane<std::uint32_t> start_, end_, codes_;
   // (pixel centre - start) . (end - start), subpixels squared: at pixel (0, 0), its steps to the next pixel in x and in y, and
   // at the end of the line.
   std::int64_t at_zero_, per_x_, per_y_, whole_;

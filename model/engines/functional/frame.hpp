@@ -63,20 +63,19 @@ struct VertexRow {
 static_assert(sizeof(VertexRow) == 16 && offsetof(VertexRow, y) == 4 && offsetof(VertexRow, z) == 8 &&
               offsetof(VertexRow, rgba) == 12);
 
-/// The colour planes packed into a word of this engine: 8 bits a channel, R lowest.
-[[nodiscard]] inline std::uint32_t packed_channels(const PerPlane<std::uint32_t>& code) {
-  const auto channel = color_channels(code);
-  return channel[0] | channel[1] << 8 | channel[2] << 16 | channel[3] << 24;
-}
-
 /// The only place where a snapped vertex of the host side becomes a row.
 [[nodiscard]] inline VertexRow row_of(const SnappedVertex& v) { return {v.x, v.y, v.depth(), packed_channels(v.code)}; }
 
-/// A point of one pixel: four words, of which lanes take sixteen at a time.
-struct Dot {
-  std::int32_t x = 0, y = 0;  ///< pixel
-  std::uint32_t z = 0, rgba = 0;
-};
+/// Square points of at most this many pixels along a side are drawn as a dot for each pixel.
+inline constexpr int kLargestDots = 4;
+
+/// Whether a state's points are drawn so.
+[[nodiscard]] inline bool are_dots(const State& state, const Widths& widths) {
+  return widths.has_samples == 0 && !state.smooth && state.point_shape == PointShape::square &&
+         state.point_size <= kLargestDots;
+}
+
+// Lanes take sixteen dots at a time.
 static_assert(sizeof(Dot) == 16 && offsetof(Dot, z) == 8 && offsetof(Dot, rgba) == 12);
 
 enum class RecordKind : std::uint8_t { triangle, whole_line, cut_line, rectangle };
@@ -120,7 +119,7 @@ struct Slice {
   std::vector<Part> parts;
   std::size_t triangles = 0;                 ///< triangles of all parts
   bool is_lines = false;                     ///< the triangles are lines
-  bool has_dots = false;                     ///< `dots` are what it draws
+  bool has_dots = false;                     ///< it draws `dots`: the triangles are points, or all outlines are dots
   std::vector<AssembledPrimitive> outlines;  ///< or primitives not for lanes: points, polygon modes; then of one part
 
   /// Range of the triangles' vertices: each is projected once. If the range is too wide, every corner is a vertex of
@@ -147,7 +146,7 @@ struct Slice {
   std::vector<Signature> signatures;
   Counters counters;
 
-  static constexpr std::uint32_t kVolume = 0x3f;  ///< outside that plane of DrawContext::frustum
+  static constexpr std::uint32_t kVolume = 0x3f;  ///< outside that plane of DrawContext::frustum, of points view_volume
   static constexpr std::uint32_t kSlow = 0x40;    ///< outside the guard band, or not a vertex that may be drawn
 };
 

@@ -394,7 +394,7 @@ void FrameRenderer::draw(std::uint32_t command) {
   const Draw& draw = std::get<Draw>(scene_->commands[command]);
   entries_done_ += draw.count;
   const PrimitiveType type = primitive_type(draw.topology);
-  const bool is_prepared = type != PrimitiveType::point && drawn_as(scene_->states[draw.state], draw.topology) == type;
+  const bool is_prepared = drawn_as(scene_->states[draw.state], draw.topology) == type;
   if (draw.outside != 0) {
     const std::size_t count = is_prepared ? prepared_->draws[command].primitives : primitive_count(*scene_, draw);
     primitive_ += static_cast<std::uint32_t>(count);
@@ -402,10 +402,11 @@ void FrameRenderer::draw(std::uint32_t command) {
     rendering_.counters.culled += count;
     return;
   }
-  // The lanes take lines of one pixel that are not fogged: the host side fogs line ends.
+  // The lanes take lines of one pixel and small points that are not fogged: the host side fogs ends of lines and points.
   const State& state = scene_->states[draw.state];
-  const bool is_thin = state.line_rule != LineRule::rectangle && !state.smooth && strands_of(state.line_width) == 1;
-  const bool is_plain = type != PrimitiveType::line || (!state.fog && is_thin);
+  const bool is_thin = state.line_rule != LineRule::rectangle && !state.smooth && strands_of(state.line_width) == 1,
+             is_plain = type == PrimitiveType::triangle ||
+                        (!state.fog && (type == PrimitiveType::line ? is_thin : are_dots(state, widths_)));
   if (is_prepared && is_plain) return draw_prepared(command);
   open_ = nullptr;
   draw_outlines(contexts_.emplace_back(*scene_, config_, draw, command));
@@ -427,7 +428,7 @@ Slice& FrameRenderer::add_slice(const DrawContext& context) {
   slice.parts.clear();
   slice.outlines.clear();
   slice.triangles = 0;
-  slice.is_lines = false;
+  slice.is_lines = slice.has_dots = false;
   slice.is_in_view = true;
   slice.low_index = ~0U;
   slice.high_index = 0;
@@ -497,7 +498,8 @@ bool FrameRenderer::is_behind(const DrawContext& context, const PreparedScene::D
 void FrameRenderer::draw_prepared(std::uint32_t command) {
   const Draw& draw = std::get<Draw>(scene_->commands[command]);
   const PreparedScene::DrawChunks& chunks = prepared_->draws[command];
-  const bool is_lines = primitive_type(draw.topology) == PrimitiveType::line;
+  const PrimitiveType type = primitive_type(draw.topology);
+  const bool is_lines = type == PrimitiveType::line, has_dots = type == PrimitiveType::point;
   if (skip_.objects_hiz && chunks.has_box && !compares_) {
     // Occluders must be drawn to be known: before the first draw that is worth it, and from time to time.
     constexpr std::size_t kMany = 512, kStale = 1 << 15;
@@ -522,11 +524,12 @@ void FrameRenderer::draw_prepared(std::uint32_t command) {
     const PreparedScene::Chunk& chunk = prepared_->chunks[i];
     if (pending_primitives_ >= kBatchPrimitives && !compares_) flush();
     if (open_ == nullptr || open_state_ != draw.state || open_->is_lines != is_lines ||
-        open_->triangles + chunk.count > slice_limit) {
+        open_->has_dots != has_dots || open_->triangles + chunk.count > slice_limit) {
       open_ = &add_slice(contexts_.emplace_back(*scene_, config_, draw, command));
       open_state_ = draw.state;
       open_->is_lines = is_lines;
-      open_->state.has_surface = !is_lines && has_surface(open_->context->state);
+      open_->has_dots = has_dots;
+      open_->state.has_surface = type == PrimitiveType::triangle && has_surface(open_->context->state);
     }
     open_->parts.push_back({chunk.first, chunk.count, command, primitive_});
     open_->triangles += chunk.count;

@@ -107,7 +107,7 @@ PreparedScene::PreparedScene(const Scene& scene, std::vector<TexelBlocks> known,
     if (draw == nullptr) continue;
     const State& state = scene.states[draw->state];
     const PrimitiveType type = primitive_type(draw->topology);
-    if (type == PrimitiveType::point || drawn_as(state, draw->topology) != type) continue;
+    if (drawn_as(state, draw->topology) != type) continue;
     DrawChunks& of_draw = draws[i];
     of_draw.first = chunks.size();
     if (draw->outside != 0) {  // numbered, but not drawn
@@ -124,6 +124,8 @@ PreparedScene::PreparedScene(const Scene& scene, std::vector<TexelBlocks> known,
     };
     if (type == PrimitiveType::triangle)
       for_each_triangle(scene, *draw, state.provoking, add);
+    else if (type == PrimitiveType::point)
+      for_each_point(scene, *draw, [&](std::uint32_t at) { add(at, at, at); });
     else
       for_each_line(scene, *draw, [&](std::uint32_t start, std::uint32_t end) {
         add(start, end, state.provoking == Provoking::last ? end : start);

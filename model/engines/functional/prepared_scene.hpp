@@ -47,8 +47,8 @@ class PreparedScene {
   std::vector<std::uint32_t> rgba;  ///< snapped, R lowest
   std::vector<SurfaceRow> surface;  ///< where a state has surfaces
   std::vector<Normal> normals;      ///< where a state lights fragments
-  // Triangles of filled draws, the provoking vertex first; lines of line draws: start, end, the provoking vertex.
-  // Padded likewise.
+  // Triangles of filled draws, the provoking vertex first; lines of line draws: start, end, the provoking vertex; points:
+  // their vertex three times. Padded likewise.
   std::array<std::vector<std::uint32_t>, 3> index;
   struct DrawChunks {
     std::size_t first = 0, count = 0;  ///< into `chunks`

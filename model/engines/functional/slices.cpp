@@ -1,6 +1,7 @@
 // Building a slice: its vertices, its records, its bin lists.
 #include <algorithm>
 #include <bit>
+#include <optional>
 #include <utility>
 
 #include "../../draw_states.hpp"
@@ -108,23 +109,48 @@ PixelBounds line_box(const LineSetup& line) {
   return {std::min(line.x, end_x), std::min(line.y, end_y), std::max(line.x, end_x), std::max(line.y, end_y)};
 }
 
-/// Whether a draw's primitives are points of one pixel each: smooth ones, and points that are no larger.
+/// Whether a draw's primitives are drawn as dots: smooth ones, and small points.
 bool are_all_dots(const DrawContext& context, const Widths& widths) {
   if (widths.has_samples != 0) return false;
   if (is_smooth(context.state, context.config)) return true;
-  return drawn_as(context.state, context.draw.topology) == PrimitiveType::point && context.state.point_size == 1 &&
-         context.state.point_shape == PointShape::square;
+  return drawn_as(context.state, context.draw.topology) == PrimitiveType::point && are_dots(context.state, widths);
 }
 
-/// The points of such a draw, in order.
-void find_dots(const Outline& outline, std::vector<Dot>& dots) {
-  for (const PixelCodes& pixel : outline.pixels)
-    dots.push_back({pixel.x, pixel.y, pixel.code[kDepthPlane], packed_channels(pixel.code)});
-  for (const PointPrimitive& point : outline.points) {
-    const SnappedVertex& at = point.drawn.at;
-    for (int y = point.box.top; y <= point.box.bottom; ++y)
-      for (int x = point.box.left; x <= point.box.right; ++x)
-        dots.push_back({x, y, at.depth(), packed_channels(at.code)});
+/// Finds the dots of a slice of points, whose vertices are projected.
+void find_dots(const FrameContext& frame, Slice& slice, Outline& outline) {
+  const DrawContext& context = *slice.context;
+  const Scene& scene = frame.prepared.scene();
+  const Rect& rect = context.rect;
+  const PixelBounds limit{rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1};
+  const int grid_bits = frame.widths.grid_bits;
+  const double pixel = static_cast<double>(std::int64_t{1} << grid_bits);
+  const auto size = static_cast<std::int32_t>(snap(context.state.point_size, pixel));
+  const std::uint32_t outside = context.state.point_clip == PointClip::center ? Slice::kVolume : 0;
+  std::size_t number = 0;
+  SnappedVertex place;
+  for (const Slice::Part& part : slice.parts) {
+    std::optional<DrawContext> of_part;
+    for (std::size_t i = part.first; i < part.first + part.count; ++i, ++number) {
+      const std::uint32_t index = frame.prepared.index[0][i];
+      const std::size_t at = slice.is_wide ? 3 * number : index - slice.low_index;
+      const std::uint32_t code = slice.any_code == 0 ? 0 : slice.codes[at];
+      if ((code & Slice::kSlow) != 0) {  // outside the guard band, or refused
+        if (!of_part) of_part.emplace(scene, frame.config, std::get<Draw>(scene.commands[part.command]), part.command);
+        VertexCache cache(0);
+        geometry(*of_part, frame.widths, cache, {PrimitiveType::point, {index, index, index}},
+                 part.primitive + static_cast<std::uint32_t>(i - part.first), slice.counters, outline);
+        continue;
+      }
+      const VertexRow& v = slice.vertices[at];
+      place.x = v.x;
+      place.y = v.y;
+      const PixelBounds box = point_bounds(place, size, limit, grid_bits);
+      const bool is_drawn = !box.is_empty() && (code & outside) == 0;
+      if (is_drawn) add_dots(box, {0, 0, v.z, v.rgba}, outline.dots);
+      ++slice.counters.primitives_in;
+      ++(is_drawn ? slice.counters.drawn : slice.counters.culled);
+      slice.counters.skipped.empty += is_drawn ? 0 : 1;
+    }
   }
 }
 
@@ -166,7 +192,6 @@ void draw_line_slowly(const FrameContext& frame, Slice& slice, const Slice::Part
 
 void FrameRenderer::build(Slice& slice) const {
   slice.record_count = 0;
-  slice.has_dots = false;
   slice.lines.clear();
   if (!slice.outlines.empty()) {
     slice.vertices.clear();
@@ -181,7 +206,14 @@ void FrameRenderer::build(Slice& slice) const {
     if (slice.state.has_surface) find_surface_vertices(frame, slice);
     if (slice.records.size() < slice.triangles + kPadding) slice.records.resize(slice.triangles + kPadding);
     // Polygon offset is a property of the triangle, not of vertices.
-    if (!slice.is_lines && slice.context->state.polygon_offset != std::array<double, 2>{0.0, 0.0}) {
+    if (slice.has_dots) {
+      kernels_->project(frame, slice);
+      static thread_local Outline outline;
+      outline.clear();
+      outline.keeps_dots = true;
+      find_dots(frame, slice, outline);
+      fill_bins(slice, outline.dots);
+    } else if (!slice.is_lines && slice.context->state.polygon_offset != std::array<double, 2>{0.0, 0.0}) {
       for (const Slice::Part& part : slice.parts)
         for (std::size_t i = 0; i < part.count; ++i) draw_slowly(frame, slice, part, i);
     } else {
@@ -236,18 +268,18 @@ void FrameRenderer::sign(Slice& slice) const {
 void FrameRenderer::build_outlines(Slice& slice) const {
   const DrawContext& context = *slice.context;
   VertexCache cache(0);
-  Outline outline;
+  static thread_local Outline outline;
+  outline.clear();
+  outline.keeps_dots = are_all_dots(context, widths_);
   std::uint32_t number = slice.parts.front().primitive;
-  static thread_local std::vector<Dot> dots;
-  dots.clear();
-  outline.keeps_pixels = are_all_dots(context, widths_);
   for (const AssembledPrimitive& assembled : slice.outlines) {
-    outline.clear();
     geometry(context, widths_, cache, assembled, number++, slice.counters, outline);
-    outline.keeps_pixels ? find_dots(outline, dots) : add_outline(slice, outline, context.rect, widths_, 0);
+    if (outline.keeps_dots) continue;
+    add_outline(slice, outline, context.rect, widths_, 0);
+    outline.clear();
   }
-  slice.has_dots = outline.keeps_pixels;
-  if (slice.has_dots) fill_bins(slice, dots);
+  slice.has_dots = outline.keeps_dots;
+  if (slice.has_dots) fill_bins(slice, outline.dots);
 }
 
 /// The same as for records: a counting sort.

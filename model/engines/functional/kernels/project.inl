@@ -27,7 +27,7 @@ struct Projection {
   Viewport viewport;
   double near_z, near_w;         ///< distance to near: near_z z + near_w w
   std::array<double, 4> band_w;  ///< the guard band's planes: left, right, top, bottom
-  double side_x, side_y;         ///< the frustum's planes: w times this
+  double side_x, side_y;         ///< the frustum's planes, of points those of the view volume itself: w times this
   double half_width, half_height;
   bool is_zero_one;
   double range_from, range_by;
@@ -46,8 +46,9 @@ struct Projection {
     near_z = context.guard_band[0].c;
     near_w = context.guard_band[0].d;
     for (std::size_t i = 0; i < 4; ++i) band_w[i] = context.guard_band[2 + i].d;
-    side_x = context.frustum[2].d;
-    side_y = context.frustum[4].d;
+    const ClipPlanes& volume = context.draw.topology == Topology::points ? context.view_volume : context.frustum;
+    side_x = volume[2].d;
+    side_y = volume[4].d;
     half_width = context.guard_band[2].a;
     half_height = context.guard_band[5].b;
     is_zero_one = state.clip_z == ClipZ::zero_one;
