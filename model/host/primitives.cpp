@@ -279,14 +279,15 @@ class OutlineBuilder {
 
   /// Adds a point of one pixel for each pixel that the rectangle covers in part.
   void add_smooth(const DrawnLine& line, const std::array<SnappedVertex, 4>& corners, bool crosses) {
-    const std::vector<SmoothPixel> pixels = smooth_raster(corners, bounds_of(context_.rect), widths_.grid_bits);
+    const std::vector<SmoothPixel> pixels =
+        smooth_raster(corners, bounds_of(context_.rect), widths_.grid_bits, out_.smooth_lanes);
     is_cut |= crosses && !pixels.empty();
     CodesBeside codes(line.start, line.end, widths_);
     for (const SmoothPixel& pixel : pixels) add_pixel(pixel, codes(pixel.x, pixel.y));
   }
 
-  /// Adds a pixel of a smooth primitive: a point of its own.
-  void add_pixel(const SmoothPixel& pixel, const PerPlane<std::uint32_t>& code) {
+  /// Adds a pixel of a smooth primitive: a point of its own. Inlined into the loops over them.
+  [[gnu::always_inline]] void add_pixel(const SmoothPixel& pixel, const PerPlane<std::uint32_t>& code) {
     std::uint32_t alpha = code[kColorPlane + 3];
     if (widths_.color_planes == 4) alpha = (alpha * pixel.coverage + kWholePixel / 2) / kWholePixel;
     if (out_.keeps_dots) {

@@ -18,6 +18,7 @@
 #include "line_setup.hpp"
 #include "point_raster.hpp"
 #include "primitive_assembly.hpp"
+#include "smooth_raster.hpp"
 #include "viewport.hpp"
 
 namespace halfplane {
@@ -123,8 +124,10 @@ struct Outline {
   std::vector<LinePrimitive> lines;
   std::vector<Triangle> triangles;  ///< for lines that are rectangles: each with a sample position in its box
   std::vector<PointPrimitive> points;
-  std::vector<Dot> dots;            ///< with `keeps_dots`: the pixels of smooth primitives and of square points
-  bool keeps_dots = false;          ///< set by who wants them here and not in `points`; clear() leaves it
+  std::vector<Dot> dots;  ///< with `keeps_dots`: the pixels of smooth primitives and of square points
+  // Set by who wants that; clear() leaves them.
+  bool keeps_dots = false;             ///< here, and not in `points`
+  SmoothLanes smooth_lanes = nullptr;  ///< of smooth_raster()
 
   void clear() {
     dots.clear();

@@ -12,13 +12,10 @@ struct Point {
   double x, y;
 };
 
-/// A line: inside where a x + b y + c >= 0, which is the distance from it.
-struct Side {
-  double a = 0, b = 0, c = 0;
-  double reach = 0;  ///< the largest distance of a pixel's corner from the line through its centre
-  double flat = 0, steep = 0, doubled_product = 0;  ///< the smaller and the larger of |a| and |b|, and 2 |a| |b|
-  [[nodiscard]] double distance(const Point& p) const { return a * p.x + b * p.y + c; }
-};
+using Side = SmoothSide;
+using Sides = SmoothSides;
+
+double distance_from(const Side& side, const Point& p) { return side.a * p.x + side.b * p.y + side.c; }
 
 /// A square cut by four lines has at most eight corners.
 struct Polygon {
@@ -35,12 +32,12 @@ constexpr std::array<Point, 4> kSquare{{{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {
 void cut(const Polygon& polygon, const Side& side, Polygon& kept) {
   kept.size = 0;
   if (polygon.size == 0) return;
-  const double d_first = side.distance(polygon.corner[0]);
+  const double d_first = distance_from(side, polygon.corner[0]);
   double d_from = d_first;
   for (std::size_t i = 0; i < polygon.size; ++i) {
     const bool is_last = i + 1 == polygon.size;
     const Point &from = polygon.corner[i], &to = polygon.corner[is_last ? 0 : i + 1];
-    const double d_to = is_last ? d_first : side.distance(to);
+    const double d_to = is_last ? d_first : distance_from(side, to);
     if (d_from >= 0) kept.add(from);
     if ((d_from < 0) != (d_to < 0)) {
       const double t = d_from / (d_from - d_to);
@@ -58,8 +55,6 @@ double area_of(const Polygon& polygon) {
   }
   return std::abs(doubled) / 2;
 }
-
-using Sides = std::array<Side, 4>;
 
 Sides sides_of(const std::array<SnappedVertex, 4>& corners, int grid_bits) {
   const double sign = signed_area(corners[0], corners[1], corners[2]) < 0 ? -1 : 1;
@@ -134,7 +129,7 @@ class RowAreas {
     return area_of(polygon[now]);
   }
 
-  Sides sides_;
+  const Sides& sides_;
   std::array<double, 4> of_row_{};
 };
 
@@ -194,6 +189,35 @@ std::vector<SmoothPixel> pixels_of(const PixelBounds& box, Columns&& columns, Ar
   return pixels;
 }
 
+/// The same for a parallelogram, its pixels in lanes.
+std::vector<SmoothPixel> pixels_in_lanes(const Sides& sides, const PixelBounds& box, const Columns& columns,
+                                         SmoothLanes lanes) {
+  static thread_local std::vector<std::int32_t> at_x, at_y, coverage;
+  std::size_t count = 0, drawn = 0;
+  for (int y = box.top; y <= box.bottom; ++y) {
+    const auto [from, to] = columns(y, box.left, box.right);
+    const int first = std::max(from, box.left), last = std::min(to, box.right);
+    if (first > last) continue;
+    const auto length = static_cast<std::size_t>(last - first) + 1;
+    constexpr std::size_t kSpare = 16;
+    if (at_x.size() < count + length + kSpare)
+      for (auto* const of_pixels : {&at_x, &at_y, &coverage}) of_pixels->resize(2 * (count + length + kSpare));
+    for (std::size_t i = 0; i < length; ++i) at_x[count + i] = first + static_cast<int>(i);
+    std::fill_n(at_y.begin() + static_cast<std::ptrdiff_t>(count), length, y);
+    count += length;
+  }
+  std::vector<SmoothPixel> pixels(count);
+  if (count != 0) lanes(sides, at_x.data(), at_y.data(), count, coverage.data());
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t part = coverage[i] >= 0 ? static_cast<std::uint32_t>(coverage[i])
+                                                : rounded(RowAreas(sides, at_y[i])(at_x[i]) * kWholePixel);
+    pixels[drawn] = {at_x[i], at_y[i], part};
+    drawn += part != 0 ? 1 : 0;
+  }
+  pixels.resize(drawn);
+  return pixels;
+}
+
 /// The length of the overlap of [from, to] with a pixel, [0, 1].
 double shared(double from, double to) { return std::max(0.0, std::min(1.0, to) - std::max(0.0, from)); }
 
@@ -204,13 +228,14 @@ double area_in_pixel(const std::array<SnappedVertex, 4>& corners, int x, int y, 
 }
 
 std::vector<SmoothPixel> smooth_raster(const std::array<SnappedVertex, 4>& corners, const PixelBounds& limit,
-                                       int grid_bits) {
+                                       int grid_bits, SmoothLanes lanes) {
   const Sides sides = sides_of(corners, grid_bits);
   const auto [left, right] = std::minmax({corners[0].x, corners[1].x, corners[2].x, corners[3].x});
   const auto [top, bottom] = std::minmax({corners[0].y, corners[1].y, corners[2].y, corners[3].y});
   const PixelBounds box{std::max(limit.left, left >> grid_bits), std::max(limit.top, top >> grid_bits),
                         std::min(limit.right, right >> grid_bits), std::min(limit.bottom, bottom >> grid_bits)};
   const Columns columns(sides);
+  if (lanes != nullptr) return pixels_in_lanes(sides, box, columns, lanes);
   RowAreas areas(sides, box.top);
   return pixels_of(
       box,

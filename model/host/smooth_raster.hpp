@@ -36,9 +36,24 @@ inline constexpr std::uint32_t kWholePixel = 255;
 /// grid of 2^-grid_bits pixel.
 [[nodiscard]] double area_in_pixel(const std::array<SnappedVertex, 4>& corners, int x, int y, int grid_bits);
 
-/// The pixels of `limit` (inclusive) whose area covered by a parallelogram does not round to 0, row by row.
+/// A side of a parallelogram: inside where a x + b y + c >= 0, which is the distance from it.
+struct SmoothSide {
+  double a = 0, b = 0, c = 0;
+  double reach = 0;  ///< the largest distance of a pixel's corner from the line through its centre
+  double flat = 0, steep = 0, doubled_product = 0;  ///< the smaller and the larger of |a| and |b|, and 2 |a| |b|
+};
+using SmoothSides = std::array<SmoothSide, 4>;
+
+/// The coverage of `count` pixels, 0 to kWholePixel; -1 where sides meet that are not opposite each other. `x`, `y` and
+/// `coverage` have room for 16 more.
+using SmoothLanes = void (*)(const SmoothSides& sides, const std::int32_t* x, const std::int32_t* y, std::size_t count,
+                             std::int32_t* coverage);
+
+/// The pixels of `limit` (inclusive) whose area covered by a parallelogram does not round to 0, row by row. `lanes`: null, or
+/// computes the same many pixels at a time.
 [[nodiscard]] std::vector<SmoothPixel> smooth_raster(const std::array<SnappedVertex, 4>& corners,
-                                                     const PixelBounds& limit, int grid_bits);
+                                                     const PixelBounds& limit, int grid_bits,
+                                                     SmoothLanes lanes = nullptr);
 
 /// The area of a point in pixel (x, y), 0 to 1: of its square, or of the disc in it, whose extent is summed over 64 rows of
 /// the pixel. `size`: as of point_bounds().

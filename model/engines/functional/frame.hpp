@@ -193,7 +193,8 @@ struct Kernels {
   void (*project)(const FrameContext&, Slice&);         ///< vertices and codes
   void (*cull)(const FrameContext&, Slice&, SlowPath);  ///< records
   void (*cull_lines)(const FrameContext&, Slice&, SlowPath);
-  void (*raster)(BinJob&);  ///< a bin's records, drawn
+  void (*raster)(BinJob&);      ///< a bin's records, drawn
+  SmoothLanes smooth_coverage;  ///< of the pixels of smooth lines
 };
 
 }  // namespace halfplane::functional

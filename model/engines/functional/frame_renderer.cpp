@@ -523,8 +523,8 @@ void FrameRenderer::draw_prepared(std::uint32_t command) {
   for (std::size_t i = chunks.first; i < chunks.first + chunks.count; ++i) {
     const PreparedScene::Chunk& chunk = prepared_->chunks[i];
     if (pending_primitives_ >= kBatchPrimitives && !compares_) flush();
-    if (open_ == nullptr || open_state_ != draw.state || open_->is_lines != is_lines ||
-        open_->has_dots != has_dots || open_->triangles + chunk.count > slice_limit) {
+    if (open_ == nullptr || open_state_ != draw.state || open_->is_lines != is_lines || open_->has_dots != has_dots ||
+        open_->triangles + chunk.count > slice_limit) {
       open_ = &add_slice(contexts_.emplace_back(*scene_, config_, draw, command));
       open_state_ = draw.state;
       open_->is_lines = is_lines;

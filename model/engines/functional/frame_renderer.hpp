@@ -59,7 +59,7 @@ class FrameRenderer {
   [[nodiscard]] bool compares(const RenderOptions& options) const;
   [[nodiscard]] Signature signature_of_bin(std::size_t bin, const std::vector<const Slice*>& slices) const;
   void fill_bins(Slice& slice) const;
-  void fill_bins(Slice& slice, const std::vector<Dot>& dots) const;
+  void fill_bins(Slice& slice, std::span<const Dot> dots) const;
 
   /// A depth in the precision of tile ranges.
   [[nodiscard]] std::uint16_t range_of(std::uint32_t code) const {

@@ -9,11 +9,12 @@
 #include "kernels/cull_lines.inl"
 #include "kernels/project.inl"
 #include "kernels/raster.inl"
+#include "kernels/smooth.inl"
 #pragma GCC pop_options
 
 namespace halfplane::functional {
 
-const Kernels kAvx2Kernels{"avx2", avx2::project, avx2::cull, avx2::cull_lines, avx2::raster};
+const Kernels kAvx2Kernels{"avx2", avx2::project, avx2::cull, avx2::cull_lines, avx2::raster, avx2::smooth_coverage};
 
 }  // namespace halfplane::functional
 #endif

@@ -9,11 +9,13 @@
 #include "kernels/cull_lines.inl"
 #include "kernels/project.inl"
 #include "kernels/raster.inl"
+#include "kernels/smooth.inl"
 #pragma GCC pop_options
 
 namespace halfplane::functional {
 
-const Kernels kAvx512Kernels{"avx512", avx512::project, avx512::cull, avx512::cull_lines, avx512::raster};
+const Kernels kAvx512Kernels{"avx512",           avx512::project, avx512::cull,
+                             avx512::cull_lines, avx512::raster,  avx512::smooth_coverage};
 
 }  // namespace halfplane::functional
 #endif

@@ -271,6 +271,7 @@ void FrameRenderer::build_outlines(Slice& slice) const {
   static thread_local Outline outline;
   outline.clear();
   outline.keeps_dots = are_all_dots(context, widths_);
+  outline.smooth_lanes = kernels_->smooth_coverage;
   std::uint32_t number = slice.parts.front().primitive;
   for (const AssembledPrimitive& assembled : slice.outlines) {
     geometry(context, widths_, cache, assembled, number++, slice.counters, outline);
@@ -282,20 +283,29 @@ void FrameRenderer::build_outlines(Slice& slice) const {
   if (slice.has_dots) fill_bins(slice, outline.dots);
 }
 
-/// The same as for records: a counting sort.
-void FrameRenderer::fill_bins(Slice& slice, const std::vector<Dot>& dots) const {
+/// The same as for records: a counting sort of runs.
+void FrameRenderer::fill_bins(Slice& slice, std::span<const Dot> dots) const {
   const auto bins = static_cast<std::size_t>(bins_x_) * static_cast<std::size_t>(bins_y_);
-  const auto bin_of = [in_row = bins_x_](const Dot& dot) {
-    return static_cast<std::size_t>((dot.y >> kBinShift) * in_row + (dot.x >> kBinShift));
-  };
+  const auto for_each_run =
+      [&](auto&& visit) {  // visit(bin, dots): a counter for each dot would wait for the store before
+        for (std::size_t first = 0, end; first < dots.size(); first = end) {
+          const int x = dots[first].x >> kBinShift, y = dots[first].y >> kBinShift;
+          for (end = first + 1; end < dots.size() && dots[end].x >> kBinShift == x && dots[end].y >> kBinShift == y;)
+            ++end;
+          visit(static_cast<std::size_t>(y * bins_x_ + x), dots.subspan(first, end - first));
+        }
+      };
   slice.bin_first.assign(bins + 1, 0);
   std::uint32_t* const first = slice.bin_first.data();
-  for (const Dot& dot : dots) ++first[bin_of(dot) + 1];
+  for_each_run([&](std::size_t bin, auto run) { first[bin + 1] += static_cast<std::uint32_t>(run.size()); });
   for (std::size_t bin = 0; bin < bins; ++bin) first[bin + 1] += first[bin];
   slice.dots.resize(dots.size());
   static thread_local std::vector<std::uint32_t> next;
   next.assign(first, first + bins);
-  for (const Dot& dot : dots) slice.dots[next[bin_of(dot)]++] = dot;
+  for_each_run([&](std::size_t bin, auto run) {
+    std::ranges::copy(run, slice.dots.begin() + next[bin]);
+    next[bin] += static_cast<std::uint32_t>(run.size());
+  });
 }
 
 /// The records of each bin, in order: a counting sort of runs. Most records lie in one bin, that of the record before.

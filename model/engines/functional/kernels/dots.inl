@@ -13,13 +13,15 @@ namespace {
 /// Whether dots may be operated on in lanes, where no two of them are at one pixel.
 HALFPLANE_INLINE bool takes_dots_in_lanes(const Bin& bin) {
   const FragmentOps& ops = *bin.ops;
-  return !ops.stencil && ops.alpha.func == DepthFunc::always && !ops.state.depth_write && ops.state.color_write;
+  return !ops.stencil && ops.alpha.func == DepthFunc::always && ops.state.color_write;
 }
 
-/// Whether such dots look at stored depths.
-HALFPLANE_INLINE bool tests_depth(const Bin& bin) { return bin.state.depth_test != DepthFunc::always; }
+/// Whether such dots look at stored depths, or write them.
+HALFPLANE_INLINE bool sees_depth(const Bin& bin) {
+  return bin.state.depth_test != DepthFunc::always || bin.state.depth_write;
+}
 
-/// Those of the first `count` fragments that pass the depth test, a bit each.
+/// The depth test of the first `count` fragments, and its writes: those that pass, a bit each.
 HALFPLANE_INLINE std::uint32_t passing_dots(Bin& bin, const FragmentLanes& group, int count) {
   const DepthFunc func = bin.state.depth_test;
   const DepthPixels depths(bin);
@@ -27,6 +29,10 @@ HALFPLANE_INLINE std::uint32_t passing_dots(Bin& bin, const FragmentLanes& group
   for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
     const auto stored = static_cast<std::uint32_t>(depths.at(static_cast<std::size_t>(group.place[k])));
     passed |= (depth_passes(func, static_cast<std::uint32_t>(group.depth[k]), stored) ? 1U : 0U) << k;
+  }
+  for (std::uint32_t left = bin.state.depth_write ? passed : 0; left != 0; left &= left - 1) {
+    const auto k = static_cast<std::size_t>(std::countr_zero(left));
+    depths.set(static_cast<std::size_t>(group.place[k]), group.depth[k]);
   }
   return passed;
 }
@@ -38,7 +44,7 @@ HALFPLANE_INLINE unsigned operate_on_dots(Bin& bin, const FragmentLanes& group, 
   std::uint32_t* const pixels = bin.memory.color.data();
   alignas(64) FragmentLanes::Lane color{};
   std::uint32_t passed = (1U << count) - 1;
-  if (tests_depth(bin)) passed = passing_dots(bin, group, count);
+  if (sees_depth(bin)) passed = passing_dots(bin, group, count);
   for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k)
     color[k] = static_cast<std::int32_t>(pixels[static_cast<std::size_t>(group.place[k])]);
   const I16 stored = I16::load(color.data());
@@ -93,7 +99,7 @@ HALFPLANE_NOINLINE void draw_dots(Bin& bin, const Dot* first, const Dot* last) {
   std::uint64_t passed = 0, tiles = 0;
   FragmentLanes group;
   const bool is_in_lanes = !Fragments::kIsOpaque && takes_dots_in_lanes(bin),
-             are_apart = is_in_lanes || Fragments::kIsOpaque, reads_depths = !is_in_lanes || tests_depth(bin);
+             are_apart = is_in_lanes || Fragments::kIsOpaque, reads_depths = !is_in_lanes || sees_depth(bin);
   while (first != last) {
     const auto most = static_cast<int>(std::min<std::ptrdiff_t>(last - first, kBlockPixels));
     const Columns of = turned_rows([&](int i) HALFPLANE_LAMBDA { return first + std::min(i, most - 1); });
