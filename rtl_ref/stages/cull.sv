@@ -1,7 +1,7 @@
 // Cull: tests the signed area (facing), the box (whether it contains a sample), and for small triangles the samples
 // themselves.
 //
-// In: a primitive packet. Out: a triangle packet in canonical order (positive area, smallest (Y, X, Z) first), with its
+// In: a primitive packet. Out: a triangle packet in canonical order (positive area, smallest (Y, X) first), with its
 // box and its three edge functions at the first pixel of the box's first tile: their sum is twice the area, so that no
 // multiplication serves the decision only.
 //
@@ -35,8 +35,7 @@ module cull (
 
   localparam int C = raster_pkg::COORDINATE_BITS;
   localparam int D = raster_pkg::DELTA_BITS;
-  localparam int Z = raster_pkg::DEPTH_CODE_BITS;
-  localparam int CODES = raster_pkg::ALL_CODE_BITS;  // bits of a vertex's codes; the lowest code is its depth, Z
+  localparam int CODES = raster_pkg::ALL_CODE_BITS;  // bits of a vertex's codes
   localparam int S = raster_pkg::GRID_BITS;
   localparam int TS = raster_pkg::TILE_SHIFT;
   localparam int PX = raster_pkg::PIXEL_X_BITS;
@@ -44,7 +43,7 @@ module cull (
   localparam int E = raster_pkg::EDGE_PRODUCT_BITS + 1;  // an exact edge function; its sign is valid either way round
   localparam int A = raster_pkg::AREA_BITS;
   localparam int V = raster_pkg::EDGE_VALUE_BITS;
-  localparam int KEY = 2 * C + Z;  // (Y, X, Z) as one unsigned number
+  localparam int KEY = 2 * C;  // (Y, X) as one unsigned number
   localparam int N = S + 3;        // a side of less than 4 pixels, subpixels
   localparam int NV = S + 7;       // bits of the edge function of such a triangle, at a sample of its box
 
@@ -81,12 +80,13 @@ module cull (
   assign y1 = p_q.vertex.y[C+:C];
   assign y2 = p_q.vertex.y[2*C+:C];
 
-  // --- Step 0: the smallest (Y, X, Z) leads. Flipping the sign bits makes signed numbers comparable as unsigned ones.
+  // --- Step 0: the smallest (Y, X) leads. Flipping the sign bits makes signed numbers comparable as unsigned ones. Depths
+  // of equal ones do not matter: a triangle without area is dropped, and the vertices of a token stay where they are.
   logic [KEY-1:0] key0, key1, key2;
   logic           is_0_first, is_1_first;
-  assign key0 = {~y0[C-1], y0[0+:C-1], ~x0[C-1], x0[0+:C-1], p_q.vertex.code[0+:Z]};
-  assign key1 = {~y1[C-1], y1[0+:C-1], ~x1[C-1], x1[0+:C-1], p_q.vertex.code[CODES+:Z]};
-  assign key2 = {~y2[C-1], y2[0+:C-1], ~x2[C-1], x2[0+:C-1], p_q.vertex.code[2*CODES+:Z]};
+  assign key0 = {~y0[C-1], y0[0+:C-1], ~x0[C-1], x0[0+:C-1]};
+  assign key1 = {~y1[C-1], y1[0+:C-1], ~x1[C-1], x1[0+:C-1]};
+  assign key2 = {~y2[C-1], y2[0+:C-1], ~x2[C-1], x2[0+:C-1]};
   assign is_0_first = !(key1 < key0) && !(key2 < key0);  // <= would need a comparator for equality, not just a carry
   assign is_1_first = !(key2 < key1);
 
