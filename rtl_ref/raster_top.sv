@@ -761,14 +761,18 @@ module raster_top (
   // -------------------------------------------------------------------------------------------------------- idle, and counters
   // Primitives between the host and the end of their last stamp.
   localparam int UNDER_WAY = $clog2(raster_pkg::CONTEXT_SLOTS + 24);
-  logic [UNDER_WAY-1:0] under_way_q;
-  logic                 enters, ends;
+  logic [UNDER_WAY-1:0] under_way_q;  // one more where the last stamp has been taken in the cycle before, which is known late
+  logic                 enters, ends_q;
   assign enters = primitive_valid_i && primitive_ready_o;
-  assign ends   = fragment_valid && fragment_accepted && fragment_data.ends_primitive;
-  assign idle_o = under_way_q == '0 && visits_are_done && framebuffer_idle && port_idle && lines_are_done;
+  assign idle_o = under_way_q == UNDER_WAY'(ends_q) && visits_are_done && framebuffer_idle && port_idle && lines_are_done;
   always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) under_way_q <= '0;
-    else under_way_q <= under_way_q + UNDER_WAY'(enters) - UNDER_WAY'(ends) - UNDER_WAY'(is_dropped);
+    if (!rst_ni) begin
+      under_way_q <= '0;
+      ends_q      <= 1'b0;
+    end else begin
+      under_way_q <= under_way_q + UNDER_WAY'(enters) - UNDER_WAY'(ends_q) - UNDER_WAY'(is_dropped);
+      ends_q      <= fragment_valid && fragment_accepted && fragment_data.ends_primitive;
+    end
   end
   performance_counters u_counters (
       .clk_i,

@@ -68,9 +68,7 @@ module coarse_raster_serial (
   logic [1:0] turn_q;     // cycle of TURN
   logic       is_new_q;   // TURN for the first tile, without a step
 
-  raster_pkg::setup_packet_t s_q;  // its box complemented, as cull holds it
-  raster_pkg::pixel_box_t bounds;
-  raster_pkg::setup_packet_t setup;  // the setup packet as it was taken
+  raster_pkg::setup_packet_t s_q;
   logic [TX-1:0]   tile_x_q;
   logic [TY-1:0]   tile_y_q;
   logic [SLOT-1:0] slot_q;   // of the primitive in s_q
@@ -84,11 +82,6 @@ module coarse_raster_serial (
   logic is_behind, is_settled, visits_are_done, is_skipped, tile_taken;
   logic outside_q, inside_q;      // some edge, all edges
   logic ends_way_q, ends_left_q;  // outside an edge whose value does not grow in this direction, to the left
-  assign bounds         = ~s_q.box;
-  always_comb begin
-    setup     = s_q;
-    setup.box = bounds;
-  end
   assign is_triangle    = s_q.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE;
   assign is_fast_clear  = s_q.kind == raster_pkg::PRIMITIVE_KIND_FAST_CLEAR;
   assign is_token       = s_q.kind[1];  // fast clear, flush, line
@@ -116,12 +109,12 @@ module coarse_raster_serial (
   logic          was_left_q;         // direction before the move
   logic [TX-1:0] group_end;  // the last tile of the group that is cleared
   logic          is_last_group, is_leftmost, is_rightmost, exits, must_return, turns_back, row_ends, goes_down;
-  assign is_leftmost    = tile_x_q == bounds.left[PX-1:TS];
-  assign is_rightmost   = tile_x_q == bounds.right[PX-1:TS];
-  assign is_last_group  = (tile_x_q ^ bounds.right[PX-1:TS]) >> raster_pkg::HIZ_GROUP_BITS == '0;
+  assign is_leftmost    = tile_x_q == s_q.box.left[PX-1:TS];
+  assign is_rightmost   = tile_x_q == s_q.box.right[PX-1:TS];
+  assign is_last_group  = (tile_x_q ^ s_q.box.right[PX-1:TS]) >> raster_pkg::HIZ_GROUP_BITS == '0;
   assign group_end      = tile_x_q | TX'((1 << raster_pkg::HIZ_GROUP_BITS) - 1);
   assign is_last_column = goes_left_q ? is_leftmost : (clears ? is_last_group : is_rightmost);
-  assign is_last_row    = tile_y_q == bounds.bottom[PY-1:TS];
+  assign is_last_row    = tile_y_q == s_q.box.bottom[PY-1:TS];
   assign is_last_tile   = is_last_column && !must_return_q && is_last_row;
   assign must_return    = must_return_q && !ends_left_q;
   assign exits          = is_last_column || ends_way_q;
@@ -164,17 +157,16 @@ module coarse_raster_serial (
 
     if (takes) begin
       s_q      <= setup_i;
-      s_q.box  <= ~setup_i.box;
       tile_x_q <= setup_i.box.left[PX-1:TS];
       tile_y_q <= setup_i.box.top[PY-1:TS];
     end else if (turns_end && is_token && !clears_bounds) begin
-      tile_x_q <= bounds.right[PX-1:TS];  // nothing to clear here
-      tile_y_q <= bounds.bottom[PY-1:TS];
+      tile_x_q <= s_q.box.right[PX-1:TS];  // nothing to clear here
+      tile_y_q <= s_q.box.bottom[PY-1:TS];
     end else if ((turns_end && !is_new_q) || (clears && !is_last_tile)) begin
       tile_x_q <= next_x;
       tile_y_q <= tile_y_q + TY'(goes_down);
     end else if (clears) begin
-      tile_x_q <= bounds.right[PX-1:TS];  // from the last group to the last tile
+      tile_x_q <= s_q.box.right[PX-1:TS];  // from the last group to the last tile
     end
 
     if (takes) begin
@@ -189,7 +181,7 @@ module coarse_raster_serial (
     end else if (steps) begin
       was_left_q    <= goes_left_q;
       goes_left_q   <= (goes_left_q || turns_back) && !row_ends;
-      must_return_q <= row_ends ? start_x_q != bounds.left[PX-1:TS] : must_return && !turns_back;
+      must_return_q <= row_ends ? start_x_q != s_q.box.left[PX-1:TS] : must_return && !turns_back;
       is_empty_q    <= row_ends || (is_empty_q && outside_q);
       goes_down_q   <= row_ends;
       turns_back_q  <= turns_back;
@@ -335,7 +327,7 @@ module coarse_raster_serial (
   hiz u_hiz (
       .clk_i,
       .rst_ni,
-      .setup_i          (setup),
+      .setup_i          (s_q),
       .tile_x_i         (tile_x_q),
       .tile_y_i         (tile_y_q),
       .passes_i         (turns_end),
@@ -357,10 +349,10 @@ module coarse_raster_serial (
   // ----------------------------------------------------------------------------------------------------------- result
   // The tile's part of the box comes a cycle after the tile's coordinates, before a packet is offered.
   raster_pkg::tile_box_t box, box_q;
-  assign box.left   = is_leftmost ? bounds.left[TS-1:0] : '0;
-  assign box.top    = tile_y_q == bounds.top[PY-1:TS] ? bounds.top[TS-1:0] : '0;
-  assign box.right  = is_rightmost ? bounds.right[TS-1:0] : '1;
-  assign box.bottom = is_last_row ? bounds.bottom[TS-1:0] : '1;
+  assign box.left   = is_leftmost ? s_q.box.left[TS-1:0] : '0;
+  assign box.top    = tile_y_q == s_q.box.top[PY-1:TS] ? s_q.box.top[TS-1:0] : '0;
+  assign box.right  = is_rightmost ? s_q.box.right[TS-1:0] : '1;
+  assign box.bottom = is_last_row ? s_q.box.bottom[TS-1:0] : '1;
   always_ff @(posedge clk_i) box_q <= box;
 
   assign tile_o.kind           = s_q.kind;

@@ -1,7 +1,7 @@
 // Cull for the smallest parts: the same bits as cull.sv, from one comparator and one bit-serial cross product.
 //
 // The vertices stand in a ring of three. Two moves bring them into any order: turn (0 <- 1 <- 2 <- 0) and swap (0 <-> 1).
-//   SORT   the smallest (Y, X, Z) to the front: compare, swap, turn twice, compare, swap
+//   SORT   the smallest (Y, X) to the front: compare, swap, turn twice, compare, swap
 //   BOX    pixel centres within the bounds, cut by the scissor, one vertex a cycle
 //   AREA   edge 0 at vertex 2, which is twice the area; a negative one swaps vertices 1 and 2 (FLIP) and is repeated
 //   EDGES  the edge functions at the first pixel of the box's first tile
@@ -32,15 +32,14 @@ module cull_serial (
 
   localparam int C = raster_pkg::COORDINATE_BITS;
   localparam int D = raster_pkg::DELTA_BITS;
-  localparam int Z = raster_pkg::DEPTH_CODE_BITS;
-  localparam int CODES = raster_pkg::ALL_CODE_BITS;  // bits of a vertex's codes; the lowest code is its depth, Z
+  localparam int CODES = raster_pkg::ALL_CODE_BITS;  // bits of a vertex's codes
   localparam int S = raster_pkg::GRID_BITS;
   localparam int TS = raster_pkg::TILE_SHIFT;
   localparam int PX = raster_pkg::PIXEL_X_BITS;
   localparam int PY = raster_pkg::PIXEL_Y_BITS;
   localparam int A = raster_pkg::AREA_BITS;
   localparam int V = raster_pkg::EDGE_VALUE_BITS;
-  localparam int KEY = 2 * C + Z;  // (Y, X, Z) as one unsigned number
+  localparam int KEY = 2 * C;  // (Y, X) as one unsigned number
   localparam int LAST = A > S + V - 1 ? A : S + V - 1;  // the highest significant bit of a product; A: its sign
   localparam int COUNT = $clog2(LAST + 2);
 
@@ -94,11 +93,12 @@ module cull_serial (
   assign y0    = ~not_y0_q;
   assign code0 = ~not_code0_q;
 
-  // Flipping the sign bits makes signed numbers comparable as unsigned ones. Equal keys: no area, dropped in any order.
+  // Flipping the sign bits makes signed numbers comparable as unsigned ones. Equal keys, whatever the depths: a triangle
+  // without area, dropped in any order, or a token, whose vertices stay where they are.
   logic [KEY-1:0] key0, key1;
   logic           is_1_first_q;  // in the cycle before
-  assign key0 = {~y0[C-1], y0[0+:C-1], ~x0[C-1], x0[0+:C-1], code0[0+:Z]};
-  assign key1 = {~y1_q[C-1], y1_q[0+:C-1], ~x1_q[C-1], x1_q[0+:C-1], code1_q[0+:Z]};
+  assign key0 = {~y0[C-1], y0[0+:C-1], ~x0[C-1], x0[0+:C-1]};
+  assign key1 = {~y1_q[C-1], y1_q[0+:C-1], ~x1_q[C-1], x1_q[0+:C-1]};
 
   assign turns = (state_q == SORT && count_q[1]) || (state_q == BOX && count_q < COUNT'(3)) || state_q == FLIP ||
                  (state_q == EDGES && product_ends);
@@ -132,14 +132,9 @@ module cull_serial (
   localparam logic signed [B-1:0] HALF = B'(1 << (S - 1));
   logic signed [B-1:0] above_x, below_x, above_y, below_y;
   logic signed [N-1:0] first_x, last_x, first_y, last_y, scissor_left, scissor_top, scissor_right, scissor_bottom;
-  logic signed [N-1:0] held_left, held_right, held_top, held_bottom;
+  logic signed [N-1:0] left_q, right_q, top_q, bottom_q;
   logic                cuts_left, cuts_right, cuts_top, cuts_bottom;
-  logic        [N-1:0] not_left_q, not_right_q, not_top_q, not_bottom_q;  // complements as well
   logic                is_first, is_empty, is_empty_q;
-  assign held_left         = ~not_left_q;
-  assign held_right        = ~not_right_q;
-  assign held_top          = ~not_top_q;
-  assign held_bottom       = ~not_bottom_q;
   // x0 + HALF - 1 and x0 - HALF, from the complement.
   assign above_x        = ~(B'($signed(not_x0_q)) - (HALF - B'(1)));
   assign below_x        = ~(B'($signed(not_x0_q)) + HALF);
@@ -149,30 +144,37 @@ module cull_serial (
   assign last_x         = below_x[B-1:S];
   assign first_y        = above_y[B-1:S];
   assign last_y         = below_y[B-1:S];
+  // From the vertex to the centre of a held pixel, less half a pixel, in whole half pixels: negative where the vertex is at
+  // the centre or beyond it. That compares the held pixel with the vertex's own one beside the sums above, not behind them;
+  // where both are the same pixel, either answer does.
+  logic signed [N+1:0] to_left, to_right, to_bottom;
+  assign to_left        = (N + 2)'($signed({left_q, 1'b1})) + (N + 2)'($signed(not_x0_q[C-1:S-1]));
+  assign to_right       = (N + 2)'($signed({right_q, 1'b1})) + (N + 2)'($signed(not_x0_q[C-1:S-1]));
+  assign to_bottom      = (N + 2)'($signed({bottom_q, 1'b1})) + (N + 2)'($signed(not_y0_q[C-1:S-1]));
   assign scissor_left   = N'(primitive_i.box.left);
   assign scissor_top    = N'(primitive_i.box.top);
   assign scissor_right  = N'(primitive_i.box.right);
   assign scissor_bottom = N'(primitive_i.box.bottom);
-  assign cuts_left      = !is_triangle || !(held_left > scissor_left);
-  assign cuts_top       = !is_triangle || !(held_top > scissor_top);
-  assign cuts_right     = !is_triangle || held_right >= scissor_right;
-  assign cuts_bottom    = !is_triangle || held_bottom >= scissor_bottom;
+  assign cuts_left      = !is_triangle || !(left_q > scissor_left);
+  assign cuts_top       = !is_triangle || !(top_q > scissor_top);
+  assign cuts_right     = !is_triangle || right_q >= scissor_right;
+  assign cuts_bottom    = !is_triangle || bottom_q >= scissor_bottom;
   assign is_first       = count_q == '0;
-  assign is_empty       = held_left > held_right || held_top > held_bottom;
+  assign is_empty       = left_q > right_q || top_q > bottom_q;
 
   always_ff @(posedge clk_i) begin
     is_empty_q <= is_empty;
     if (state_q == BOX && count_q < COUNT'(3)) begin
-      if (is_first || first_x < held_left) not_left_q <= ~first_x;
-      if (is_first || !(held_right >= last_x)) not_right_q <= ~last_x;
-      if (is_first) not_top_q <= ~first_y;  // vertex 0 is the highest
-      if (is_first || !(held_bottom >= last_y)) not_bottom_q <= ~last_y;
+      if (is_first || !to_left[N+1]) left_q <= first_x;
+      if (is_first || to_right[N+1]) right_q <= last_x;
+      if (is_first) top_q <= first_y;  // vertex 0 is the highest
+      if (is_first || to_bottom[N+1]) bottom_q <= last_y;
     end
     if (state_q == BOX && count_q == COUNT'(3)) begin
-      if (cuts_left) not_left_q <= ~scissor_left;
-      if (cuts_right) not_right_q <= ~scissor_right;
-      if (cuts_top) not_top_q <= ~scissor_top;
-      if (cuts_bottom) not_bottom_q <= ~scissor_bottom;
+      if (cuts_left) left_q <= scissor_left;
+      if (cuts_right) right_q <= scissor_right;
+      if (cuts_top) top_q <= scissor_top;
+      if (cuts_bottom) bottom_q <= scissor_bottom;
     end
   end
 
@@ -188,8 +190,8 @@ module cull_serial (
   assign starts = multiplies && count_q == '0;
   assign dx     = D'($signed(x1_q)) - D'($signed(x0));
   assign dy     = D'($signed(y1_q)) - D'($signed(y0));
-  assign x      = state_q == AREA ? D'($signed(x2_q)) : D'({held_left[PX-1:TS], {TS{1'b0}}}) << S | D'(1 << (S - 1));
-  assign y      = state_q == AREA ? D'($signed(y2_q)) : D'({held_top[PY-1:TS], {TS{1'b0}}}) << S | D'(1 << (S - 1));
+  assign x      = state_q == AREA ? D'($signed(x2_q)) : D'({left_q[PX-1:TS], {TS{1'b0}}}) << S | D'(1 << (S - 1));
+  assign y      = state_q == AREA ? D'($signed(y2_q)) : D'({top_q[PY-1:TS], {TS{1'b0}}}) << S | D'(1 << (S - 1));
 
   assign wide_dx   = (D + 1)'(dx);
   assign wide_dy   = (D + 1)'(dy);
@@ -256,10 +258,10 @@ module cull_serial (
   assign triangle_valid_o        = state_q == OFFER && primitive_valid_i && !is_empty_q;
   assign triangle_o.kind         = primitive_i.kind;
   assign triangle_o.primitive_id = primitive_i.primitive_id;
-  assign triangle_o.box.left     = PX'(held_left);
-  assign triangle_o.box.top      = PY'(held_top);
-  assign triangle_o.box.right    = PX'(held_right);
-  assign triangle_o.box.bottom   = PY'(held_bottom);
+  assign triangle_o.box.left     = PX'(left_q);
+  assign triangle_o.box.top      = PY'(top_q);
+  assign triangle_o.box.right    = PX'(right_q);
+  assign triangle_o.box.bottom   = PY'(bottom_q);
   assign triangle_o.state        = primitive_i.state;
   assign triangle_o.vertex.x     = {x2_q, x1_q, x0};
   assign triangle_o.vertex.y     = {y2_q, y1_q, y0};

@@ -39,8 +39,9 @@ module fine_raster_serial (
   localparam logic [1:0] IDLE = 2'd0, RIGHT = 2'd1, DOWN = 2'd2, SCAN = 2'd3;
   (* fsm_encoding = "none" *) logic [1:0] state_q;  // RIGHT, DOWN: on the way to the first stamp of the box
   logic [COLUMN-1:0] column_q, row_q;  // position of the stamp whose edge values are held
-  logic [COLUMN-1:0] first_column, last_column, first_row, last_row, next_column, next_row;
-  logic              scans, is_first_column, is_last_column, is_last_row, is_end, starts, passes, is_way_down, moves, tile_leaves;
+  logic [COLUMN-1:0] first_column, last_column, first_row, last_row, next_column, next_row, column_after, row_after;
+  logic              scans, is_first_column, is_end, starts, passes, is_way_down, moves, tile_leaves;
+  logic              is_last_column_q, is_last_row_q;  // of the box; with the position, as the end of the tile comes late
   logic              has_below_q;  // below_q is the row below this one
   assign first_column   = COLUMN'(tile_i.box.left >> STAMP_SHIFT);
   assign last_column    = COLUMN'(tile_i.box.right >> STAMP_SHIFT);
@@ -48,15 +49,18 @@ module fine_raster_serial (
   assign last_row       = COLUMN'(tile_i.box.bottom >> STAMP_SHIFT);
   assign next_column    = column_q + COLUMN'(1);
   assign next_row       = row_q + COLUMN'(1);
-  assign scans           = state_q == SCAN && (has_below_q || !is_last_column);
+  assign scans           = state_q == SCAN && (has_below_q || !is_last_column_q);
   assign is_first_column = column_q == first_column;
-  assign is_last_column  = column_q == last_column;
-  assign is_last_row    = row_q == last_row;
-  assign is_end         = is_last_column && is_last_row;
+  assign is_end         = is_last_column_q && is_last_row_q;
 
   // Which way depends on the position only: whether the stamp is taken comes late.
   assign starts      = state_q == IDLE && tile_valid_i && tile_i.is_visit;
-  assign is_way_down = state_q == DOWN || (state_q == SCAN && is_last_column);
+  assign is_way_down = state_q == DOWN || (state_q == SCAN && is_last_column_q);
+  always_comb begin
+    column_after = is_way_down ? first_column : next_column;
+    row_after    = is_way_down ? next_row : row_q;
+    if (starts) {column_after, row_after} = '0;
+  end
   assign moves       = state_q == RIGHT || (state_q == DOWN && has_below_q) || passes;
   assign tile_leaves = tile_valid_i && tile_ready_o;
 
@@ -73,12 +77,11 @@ module fine_raster_serial (
   end
 
   always_ff @(posedge clk_i) begin
-    if (starts) begin
-      column_q <= '0;
-      row_q    <= '0;
-    end else begin
-      if (moves) column_q <= is_way_down ? first_column : next_column;
-      if (moves && is_way_down) row_q <= next_row;
+    if (starts || moves) begin
+      column_q         <= column_after;
+      row_q            <= row_after;
+      is_last_column_q <= column_after == last_column;
+      is_last_row_q    <= row_after == last_row;
     end
     has_below_q <= !starts && !(moves && (is_way_down || state_q == RIGHT)) && (has_below_q || is_first_column);
   end
@@ -142,8 +145,8 @@ module fine_raster_serial (
   logic [SAMPLES-1:0] held_mask_q;
   logic               is_covered, sends_now, sends_held, sends_end, sends_token, uses_held;
   assign is_covered  = mask != '0;
-  assign sends_now   = is_covered && !is_last_row;
-  assign sends_held  = is_covered && is_last_row && held_valid_q;
+  assign sends_now   = is_covered && !is_last_row_q;
+  assign sends_held  = is_covered && is_last_row_q && held_valid_q;
   assign sends_end   = scans && is_end && !sends_held;
   assign sends_token = state_q == IDLE && !tile_i.is_visit;
   assign uses_held   = scans && held_valid_q && (sends_held || !is_covered);
@@ -155,7 +158,7 @@ module fine_raster_serial (
 
   always_ff @(posedge clk_i) begin
     if (starts || (sends_held && is_end && stamp_ready_i)) held_valid_q <= 1'b0;
-    else if (passes && is_covered && is_last_row) begin
+    else if (passes && is_covered && is_last_row_q) begin
       held_valid_q  <= 1'b1;
       held_column_q <= column_q;
       held_mask_q   <= mask;

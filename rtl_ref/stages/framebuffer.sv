@@ -168,7 +168,7 @@ module framebuffer (
 
   always_ff @(posedge clk_i) begin
     if (state_q == SERVE) line_q <= is_token ? '0 : access_line;
-    else if (state_q == CHECK && state_d == CHECK) line_q <= line_q + 1'b1;
+    else if (state_q == CHECK && is_token && !line_depth_dirty && !line_color_dirty && !is_last_line) line_q <= line_q + 1'b1;
     if (state_q == SERVE || state_q == CHECK) plane_q <= state_q == CHECK && !line_depth_dirty && line_color_dirty;
     else if (walks && ends_walk) plane_q <= 1'b1;
   end
@@ -211,7 +211,7 @@ module framebuffer (
   logic [SAMPLES-1:0]      strobe_q, strobe;
   logic [ROWS*SAMPLES-1:0] stamps_q, dirty_row;
   logic [2*ROWS*SAMPLES-1:0] dirty_rows;  // colour, depth
-  logic [ROW_BITS:0]       row_q, row;    // the next row
+  logic [ROW_BITS:0]       row_q, row, dirty_row_number;  // the next row; that of dirty bits
   logic [ROWS-1:0]         left, one;
   logic [RUN-1:0]          run, run_q;    // stamps of the burst from this one on
   logic                    gap;
@@ -242,6 +242,8 @@ module framebuffer (
   assign takes_all = state_q != EVICT || (plane_q ? flag_color : flag_depth);
   assign dirty_row = plane_q ? dirty_rows[ROWS*SAMPLES+:ROWS*SAMPLES] : dirty_rows[0+:ROWS*SAMPLES];
   assign begins_fill = state_q == CHECK && !line_depth_dirty && !line_color_dirty && !is_token;
+  // Dirty bits count in an eviction alone: their address does not wait for the flags that say whether a fill runs.
+  assign dirty_row_number = state_q == EVICT ? row_q + (ROW_BITS + 1)'(left == '0 || (is_free && left == one)) : '0;
   assign row       = begins_fill ? (ROW_BITS + 1)'(ROWS) : (runs ? row_q : '0) + (ROW_BITS + 1)'(loads);
   assign ends_plane      = left == '0 && row_q == (ROW_BITS + 1)'(ROWS) && is_free;
   assign request_valid_o = offers_q || sends;
@@ -397,7 +399,7 @@ module framebuffer (
   // Next to them a bit per sample and buffer: written since the tile came in. A word is a row of stamps.
   logic [ROW_ADDRESS-1:0] dirty_read_address, dirty_write_address;
   logic [ROWS-1:0]        column;  // column of the written stamp
-  assign dirty_read_address  = (ROW_ADDRESS'(line_q) << ROW_BITS) | (ROW_ADDRESS'(row) & ROW_ADDRESS'(ROWS - 1));
+  assign dirty_read_address  = (ROW_ADDRESS'(line_q) << ROW_BITS) | (ROW_ADDRESS'(dirty_row_number) & ROW_ADDRESS'(ROWS - 1));
   assign dirty_write_address = (ROW_ADDRESS'(new_line) << ROW_BITS) | ROW_ADDRESS'(new_row);
   always_comb
     for (int i = 0; i < ROWS; i++) column[i] = (write_i.stamp & COLUMN_MASK) == STAMP_BITS'(i);

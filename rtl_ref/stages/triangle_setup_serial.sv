@@ -66,10 +66,10 @@ module triangle_setup_serial (
   logic [UNIT-1:0]  unit_q;  // plane, or word of the ring
   logic [COUNT-1:0] bit_q, last_bit, shift_q;  // shift_q: SHIFT + LEAD - 1
   logic             keeps_q;  // GRADIENT: the dropped bits have passed
-  logic             waits_q, has_moved;  // the kept bits have passed too, but not the whole numerator
+  logic             waits_q, has_moved_q;  // the kept bits have passed too, but not the whole numerator
   logic [UNIT-1:0]  last_unit;
   logic [COUNT-1:0] code_bits, last_of_plane;  // of the plane
-  logic [MOVED-1:0] all_moved;                 // bits of its numerator, with LEAD zeros
+  logic [MOVED-1:0] last_moved;                // the last bit of its numerator, after LEAD zeros
   logic             is_numerator, is_gradient, is_value, is_turn, is_last_bit, unit_ends, state_ends, load;
 
   assign is_numerator = state_q == FIRST || state_q == SECOND;
@@ -80,12 +80,12 @@ module triangle_setup_serial (
   always_comb begin
     code_bits     = COUNT'(CODE_BITS_OF[0+:32]);
     last_of_plane = COUNT'(PLANE_BITS_OF[0+:32] - 1);
-    all_moved     = MOVED'(PLANE_BITS_OF[0+:32] + LEAD);
+    last_moved    = MOVED'(PLANE_BITS_OF[0+:32] + LEAD - 1);
     for (int i = 1; i < PLANES; i++) begin
       if (unit_q == UNIT'(i)) begin
         code_bits     = COUNT'(CODE_BITS_OF[32*i+:32]);
         last_of_plane = COUNT'(PLANE_BITS_OF[32*i+:32] - 1);
-        all_moved     = MOVED'(PLANE_BITS_OF[32*i+:32] + LEAD);
+        last_moved    = MOVED'(PLANE_BITS_OF[32*i+:32] + LEAD - 1);
       end
     end
   end
@@ -104,7 +104,7 @@ module triangle_setup_serial (
   assign is_last_bit = bit_q == last_bit;
   always_comb begin
     unit_ends = is_last_bit;
-    if (is_gradient) unit_ends = waits_q ? has_moved : keeps_q && is_last_bit && (LEAD < 2 || has_moved);
+    if (is_gradient) unit_ends = waits_q ? has_moved_q : keeps_q && is_last_bit && (LEAD < 2 || has_moved_q);
   end
   assign state_ends  = unit_ends && unit_q == last_unit;
 
@@ -296,8 +296,7 @@ module triangle_setup_serial (
   logic [ACC+1:0]     total;  // its lowest bit only makes the carry
   logic [ACC-1:0]     acc_q;
 
-  assign has_moved       = moved_q == all_moved;
-  assign moves_numerator = is_gradient && moved_q >= MOVED'(LEAD) && !has_moved;
+  assign moves_numerator = is_gradient && moved_q >= MOVED'(LEAD) && !has_moved_q;
   always_comb begin
     case (state_q)
       FIRST: factor = bc;
@@ -324,11 +323,13 @@ module triangle_setup_serial (
       sign_q  <= 1'b0;
       acc_q   <= '0;
       moved_q <= '0;
+      has_moved_q <= 1'b0;
       carry_q <= negates;
     end else begin
       sign_q <= factor;
       acc_q  <= total[ACC+1:2];
-      if (!has_moved) moved_q <= moved_q + MOVED'(1);
+      if (!has_moved_q) moved_q <= moved_q + MOVED'(1);
+      has_moved_q <= has_moved_q || moved_q == last_moved;
       if (is_gradient && !keeps_q) carry_q <= product;  // the last dropped bit rounds
       else carry_q <= addend ? (product ^ negates) || carry_q : (product ^ negates) && carry_q;
     end
