@@ -45,8 +45,8 @@ def result(words, display, halfplane):
     if not os.path.exists(words[0]):
         return 'not in the package'
     configuration = ['--config', 'full', *(word for unit in UNITS for word in ('--set', unit))]
-    process = subprocess.Popen([str(halfplane), 'run', *configuration, '--', *words], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
-                               text=True, errors='replace', env=env, start_new_session=True)
+    process = subprocess.Popen([str(halfplane), 'run', *configuration, '--', *words], stdout=subprocess.PIPE,
+                               stderr=subprocess.DEVNULL, text=True, errors='replace', env=env, start_new_session=True)
     try:
         said = re.findall(r'PIGLIT: \{"result": "(\w+)"', process.communicate(timeout=SECONDS)[0])
     except subprocess.TimeoutExpired:
