@@ -324,7 +324,7 @@ TEST(Functional, TheWidestReciprocalsAreTheSameOnEveryPath) {
 }
 
 /// Hard places of lines: on borders of bins, tiles, pixels and rows, along the axes and the diagonals, shorter than a
-/// pixel, over the whole depth range. `step`: pixels between the coordinates' neighbours.
+/// pixel, over the whole depth range; wide, fogged and flat ones, too. `step`: pixels between the coordinates' neighbours.
 Scene hard_lines(std::uint32_t seed, int width, int height, double step) {
   test::Random random(seed);
   test::SceneBuilder builder(width, height);
@@ -339,6 +339,9 @@ Scene hard_lines(std::uint32_t seed, int width, int height, double step) {
     state.depth_test = random.index(2) == 0 ? DepthFunc::always : DepthFunc::less;
     state.line_rule =
         std::array{LineRule::diamond, LineRule::midpoint, LineRule::bresenham}[static_cast<std::size_t>(n % 3)];
+    if (n >= 9) state.line_width = n - 7;  // the others go through the host's geometry, too, with fog
+    if (n >= 6 && n < 9) state.fog = Fog{FogKind::linear, 0, 2};
+    if (n % 2 == 0) state.shade = Shade::flat;
     scene.states.push_back(state);
     scene.commands.push_back(
         Draw{static_cast<std::uint32_t>(scene.states.size() - 1), 0, Topology::lines, scene.indices.size(), 60, 0});

@@ -78,6 +78,11 @@ inline constexpr int kLargestDots = 4;
 // Lanes take sixteen dots at a time.
 static_assert(sizeof(Dot) == 16 && offsetof(Dot, z) == 8 && offsetof(Dot, rgba) == 12);
 
+/// Whether LineBatch sets up lines: it has 64 bits for a gradient times an offset inside the first pixel.
+[[nodiscard]] inline bool lanes_hold_lines(const Config& config, const Widths& widths) {
+  return config.depth_bits + 2 * widths.grid_bits + widths.line_guard_bits + 2 <= 62;
+}
+
 enum class RecordKind : std::uint8_t { triangle, whole_line, cut_line, rectangle };
 
 /// A primitive with at least one pixel in its box. Eight words: kernels make and take sixteen at a time, a column each.

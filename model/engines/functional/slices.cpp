@@ -155,13 +155,20 @@ void find_dots(const FrameContext& frame, Slice& slice, Outline& outline) {
 }
 
 /// Appends a line or point of the host side.
-void add_outline(Slice& slice, const Outline& outline, const Rect& rect, const Widths& widths, std::size_t room) {
+void add_outline(Slice& slice, const Outline& outline, const Rect& rect, const Config& config, const Widths& widths,
+                 std::size_t room) {
   for (const Triangle& triangle : outline.triangles) add_triangle(slice, triangle, rect, widths, room);
   for (const LinePrimitive& line : outline.lines) {
     const auto [low, high] = std::minmax({line.drawn.start.depth(), line.drawn.end.depth()});
-    const auto at = static_cast<std::uint32_t>(slice.lines.size());
-    add_record(slice, record_of({at, 0, 0}, low, high, line_box(line.setup), RecordKind::cut_line), room);
-    slice.lines.push_back(line.setup);
+    if (lanes_hold_lines(config, widths)) {
+      const auto at = static_cast<std::uint32_t>(slice.vertices.size());
+      add_record(slice, record_of({at, at + 1, at}, low, high, line_box(line.setup), RecordKind::whole_line), room);
+      for (const SnappedVertex& end : {line.drawn.start, line.drawn.end}) slice.vertices.push_back(row_of(end));
+    } else {
+      const auto at = static_cast<std::uint32_t>(slice.lines.size());
+      add_record(slice, record_of({at, 0, 0}, low, high, line_box(line.setup), RecordKind::cut_line), room);
+      slice.lines.push_back(line.setup);
+    }
   }
   const std::size_t most = slice.record_count + outline.points.size() + room;
   if (slice.records.size() < most) slice.records.resize(2 * most);
@@ -185,7 +192,7 @@ void draw_line_slowly(const FrameContext& frame, Slice& slice, const Slice::Part
   const std::uint32_t start = frame.prepared.index[0][at], end = frame.prepared.index[1][at];
   geometry(context, frame.widths, cache, {PrimitiveType::line, {start, end, end}},
            part.primitive + static_cast<std::uint32_t>(line), slice.counters, outline);
-  add_outline(slice, outline, context.rect, frame.widths, slice.triangles);
+  add_outline(slice, outline, context.rect, frame.config, frame.widths, slice.triangles);
 }
 
 }  // namespace
@@ -272,11 +279,14 @@ void FrameRenderer::build_outlines(Slice& slice) const {
   outline.clear();
   outline.keeps_dots = are_all_dots(context, widths_);
   outline.smooth_lanes = kernels_->smooth_coverage;
+  slice.state.is_flat = false;  // the vertices have the colour of the provoking one
+  slice.is_lines = !outline.keeps_dots;
   std::uint32_t number = slice.parts.front().primitive;
   for (const AssembledPrimitive& assembled : slice.outlines) {
     geometry(context, widths_, cache, assembled, number++, slice.counters, outline);
     if (outline.keeps_dots) continue;
-    add_outline(slice, outline, context.rect, widths_, 0);
+    slice.is_lines &= outline.triangles.empty() && outline.points.empty();
+    add_outline(slice, outline, context.rect, config_, widths_, 0);
     outline.clear();
   }
   slice.has_dots = outline.keeps_dots;

@@ -81,8 +81,7 @@ static void cull_lines(const FrameContext& frame, Slice& slice, SlowPath slow) {
   const Rect& rect = context.rect;
   const PixelBounds limit{rect.x, rect.y, rect.x + rect.width - 1, rect.y + rect.height - 1};
   constexpr int kFromEnd = 3;  // pixels
-  // LineBatch has 64 bits for a gradient times an offset inside the first pixel.
-  const bool fits = frame.config.depth_bits + 2 * s + widths.line_guard_bits + 2 <= 62;
+  const bool fits = lanes_hold_lines(frame.config, widths);
   std::size_t number = 0;
   for (const Slice::Part& part : slice.parts)
     for (std::size_t first = 0; first < part.count; first += 16) {
