@@ -362,37 +362,6 @@ Scene hard_lines(std::uint32_t seed, int width, int height, double step) {
   return scene;
 }
 
-TEST(Functional, PointsAreTheSameOnEveryPath) {
-  test::Random random(31);
-  for (const double size : {1.0, 1.5, 2.0, 3.0, 4.0, 4.5})
-    for (const PointClip clip : {PointClip::pixel, PointClip::center})
-      for (const std::size_t every : {1U, 9U}) {  // all vertices in order, or few of them
-        test::SceneBuilder builder(150, 110);
-        Scene& scene = builder.scene;
-        State state;
-        state.point_size = size;
-        state.point_clip = clip;
-        scene.states.push_back(state);
-        for (std::size_t i = 0; i < 1500; ++i) {
-          const double w = random.between(-0.1, 1), reach = 1.05 * w;
-          scene.vertices.push_back({random.between(-reach, reach),
-                                    random.between(-reach, reach),
-                                    random.between(-reach, reach),
-                                    w,
-                                    {10, 20, 30, 255},
-                                    0,
-                                    0});
-          for (double& channel : scene.vertices.back().rgba) channel = random.index(256);
-          if (i % every == 0) scene.indices.push_back(static_cast<std::uint32_t>(i));
-        }
-        scene.commands.push_back(
-            Draw{static_cast<std::uint32_t>(scene.states.size() - 1), 0, Topology::points, 0, scene.indices.size(), 0});
-        SCOPED_TRACE("size " + std::to_string(size) + ", one of " + std::to_string(every));
-        expect_all_same(scene, preset("embedded"));
-        EXPECT_GT(render_functional(scene, preset("embedded")).counters.written, 50U);
-      }
-}
-
 TEST(Functional, LinesOnBordersAndShorterThanAPixelAreTheSameOnEveryPath) {
   for (const auto& [name, depth_bits, subpixel_bits] :
        {std::tuple{"embedded", 16, 4}, {"embedded", 18, 0}, {"embedded", 24, 1}, {"small", 16, 2}, {"full", 24, 8}})
