@@ -235,14 +235,14 @@ void SurfaceConstants::set_texture(const StageSurface& from, const Widths& width
     texture.reference[axis] = surface.reference(axis) * (1 << kTexelFraction);
   }
   texture.lod = surface.lod();
-  is_upright = has_upright_texels();
+  is_flat = has_one_w();
+  is_upright = is_flat && sampling_of(texture) != Sampling::nearest && coordinate.attribute[0].p.step_y == 0 &&
+               coordinate.attribute[1].p.step_x == 0;
 }
 
-bool SurfaceConstants::has_upright_texels() const {
+bool SurfaceConstants::has_one_w() const {
   const auto is_constant = [](const LodLine& line) { return line.step == 0; };
-  const LanePlane& q = coordinate.q;
-  return sampling_of(texture) != Sampling::nearest && q.step_x == 0 && q.step_y == 0 &&
-         coordinate.attribute[0].p.step_y == 0 && coordinate.attribute[1].p.step_x == 0 &&
+  return coordinate.q.step_x == 0 && coordinate.q.step_y == 0 &&
          std::ranges::all_of(texture.lod.along_x, is_constant) && std::ranges::all_of(texture.lod.along_y, is_constant);
 }
 

@@ -189,7 +189,8 @@ struct SurfaceConstants {
   bool has_color = true;     ///< false: only the texture's colour counts, except for lit surfaces
   bool is_color_over_w = false;
   bool has_constant_color = false;  ///< color_low is its colour
-  bool is_upright = false;          ///< upright.inl: filtered linearly, w constant, u along columns, v along rows
+  bool is_flat = false;             ///< textured, with one w: the level of detail is constant as well
+  bool is_upright = false;          ///< upright.inl: flat, not all nearest, u along columns, v along rows
   bool has_fog = false;
   LaneDivision division;
   LaneOverW of_coordinate, of_color;
@@ -206,7 +207,7 @@ struct SurfaceConstants {
   void set_fog(const StageSurface& from, const Widths& widths);
   void set_light(const StageSurface& from, const Widths& widths);
   [[nodiscard]] bool sees_texture_alone(const StageSurface& from) const;
-  [[nodiscard]] bool has_upright_texels() const;
+  [[nodiscard]] bool has_one_w() const;
   [[nodiscard]] static bool is_never_held(const OverWFormat& format, const PerspectiveFormat& all, const QCodes& q);
   [[nodiscard]] LaneAttribute attribute_of(const Surface::Attribute& from, const OverWFormat& format,
                                            const LaneOverW& lanes, const Surface::Divisor& divisor,

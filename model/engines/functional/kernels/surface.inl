@@ -58,6 +58,8 @@ HALFPLANE_INLINE Sampling sampling_of(const SurfaceConstants& of) {
 template <Sampling kSampling>
 struct SurfaceRamps {
   QuotientRamps<2> coordinate;
+  ReciprocalsOfQ flat_q;  ///< of all pixels, if SurfaceConstants::is_flat; likewise lambda
+  I16 flat_lod;
   QuotientRamps<4> color_over_w;
   ColorRamp color;
   LodRamps lod;
@@ -65,8 +67,14 @@ struct SurfaceRamps {
   /// `has_color`: whether own() will be called.
   HALFPLANE_INLINE SurfaceRamps(const Bin& bin, const DrawnSurface& surface, int tile_x, int tile_y, bool has_color) {
     const SurfaceConstants& of = surface.constants;
-    if constexpr (kSampling != Sampling::none) coordinate.set(bin, of.coordinate, tile_x, tile_y);
-    if constexpr (kSampling == Sampling::any) lod.set(bin, of.texture.lod, tile_x, tile_y);
+    if constexpr (kSampling != Sampling::none) {
+      coordinate.set(bin, of.coordinate, tile_x, tile_y);
+      if constexpr (kSampling == Sampling::any) lod.set(bin, of.texture.lod, tile_x, tile_y);
+      if (of.is_flat) {
+        flat_q.set(coordinate.q.first, of.division);
+        if constexpr (kSampling == Sampling::any) flat_lod = lod(of.texture.lod, 0, flat_q.bits);
+      }
+    }
     if (!has_color || of.has_constant_color) return;
     if (of.is_color_over_w) {
       color_over_w.set(bin, of.color, tile_x, tile_y);
@@ -105,14 +113,16 @@ struct SurfaceRamps {
   /// Coordinates of a block's pixels on the texture. Returns lambda, if needed.
   HALFPLANE_INLINE I16 find_coordinates(const SurfaceConstants& of, std::size_t block, CoordinateLanes& at) const {
     const LaneTexture& texture = of.texture;
-    const ReciprocalsOfQ q(coordinate.q(block), of.division);
+    ReciprocalsOfQ varying;
+    if (!of.is_flat) varying.set(coordinate.q(block), of.division);
+    const ReciprocalsOfQ& q = of.is_flat ? flat_q : varying;
     const auto along = [&](std::size_t axis) HALFPLANE_LAMBDA {
       const I16 u = over_q(coordinate.p[axis](block), q, of.coordinate.attribute[axis], of.of_coordinate);
       return on_axis(texture, axis, u, texture.reference[axis]);
     };
     at.u = along(0);
     at.v = along(1);
-    if constexpr (kSampling == Sampling::any) return lod(texture.lod, block, q.bits);
+    if constexpr (kSampling == Sampling::any) return of.is_flat ? flat_lod : lod(texture.lod, block, q.bits);
     return I16(0);
   }
 };
@@ -142,12 +152,17 @@ HALFPLANE_NOINLINE void shade(Bin& bin, const DrawnSurface& surface, int tile, s
       fetch_texels(of.texture.texels, places.place.data(), nearest.data() + block * kBlockPixels);
     });
   } else if constexpr (kHasTexture) {
+    BlockSample<kSampling == Sampling::any> usual[4];
+    bool is_usual[4];
     for_each_block([&](auto block) HALFPLANE_LAMBDA {
-      if (block_bits(pixels, block) != 0) lod[block] = ramps.find_coordinates(of, block, at[block]);
+      if (block_bits(pixels, block) == 0) return;
+      lod[block] = ramps.find_coordinates(of, block, at[block]);
+      is_usual[block] = usual[block].set(of.texture, at[block], lod[block]);
     });
     for_each_block([&](auto block) HALFPLANE_LAMBDA {
       if (block_bits(pixels, block) == 0) return;
-      const ColorPairs texels = texels_at<kSampling>(of.texture, at[block], lod[block]);
+      const ColorPairs texels =
+          is_usual[block] ? usual[block].texels(of.texture) : texels_at<kSampling>(of.texture, at[block], lod[block]);
       red_blue[block] = texels.red_blue;
       green_alpha[block] = texels.green_alpha;
     });

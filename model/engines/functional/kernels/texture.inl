@@ -178,20 +178,35 @@ HALFPLANE_INLINE I16 footprint_places(const LaneTexture& texture, const Coordina
   return level.first() + column_place(x) + row_place(y, level.pitch());
 }
 
-/// All four at once.
+/// A linear filter before its loads: places of footprints in bytes, and weights. Computed for several blocks before the
+/// loads of the first, which then need not wait for them.
+struct FootprintPlaces {
+  alignas(64) std::array<std::uint32_t, 16> place;
+  I16 across, down;
+
+  HALFPLANE_INLINE FootprintPlaces() = default;
+  /// `from_middle`: less half a texel.
+  template <class Level>
+  HALFPLANE_INLINE void set(const LaneTexture& texture, const CoordinateLanes& from_middle, const Level& level) {
+    constexpr int kQuadShift = 4;  // bytes
+    (footprint_places(texture, from_middle, level) << kQuadShift).store(place.data());
+    across = part_of(from_middle.u, texture.wrap[0]);
+    down = part_of(from_middle.v, texture.wrap[1]);
+  }
+  /// All four texels at once.
+  HALFPLANE_INLINE Footprints fetched(const LaneTexture& texture) const {
+    const auto* const quads = reinterpret_cast<const char*>(texture.quads);
+    const Columns texels = turned_rows([&](int i) HALFPLANE_LAMBDA { return quads + word_at(place.data(), i); });
+    return {texels.first, texels.second, texels.third, texels.fourth, across, down};
+  }
+};
+
 template <class Level>
 HALFPLANE_INLINE Footprints footprints_of_quads(const LaneTexture& texture, const CoordinateLanes& from_middle,
                                                 const Level& level) {
-  constexpr int kQuadShift = 4;  // bytes
-  const Places place(footprint_places(texture, from_middle, level) << kQuadShift);
-  const auto* const quads = reinterpret_cast<const char*>(texture.quads);
-  const Columns texels = turned_rows([&](int i) HALFPLANE_LAMBDA { return quads + place[i]; });
-  return {texels.first,
-          texels.second,
-          texels.third,
-          texels.fourth,
-          part_of(from_middle.u, texture.wrap[0]),
-          part_of(from_middle.v, texture.wrap[1])};
+  FootprintPlaces places;
+  places.set(texture, from_middle, level);
+  return places.fetched(texture);
 }
 
 /// The coordinate of half_border, from the middle of a texel.
@@ -251,14 +266,14 @@ HALFPLANE_INLINE I16 weighted(const I16& lanes, const I16& weights, int drop) {
 }
 HALFPLANE_INLINE I16 weights_of(const I16& part) { return (256 - part) | (part << 16); }
 
-/// linear_sums(), to be rounded by `drop` bits.
+/// A block's coordinates on a level, less half a texel.
 template <class Level>
-HALFPLANE_INLINE ChannelSums linear_sums(const LaneTexture& texture, const CoordinateLanes& at, const Level& level,
-                                         int drop) {
-  const CoordinateLanes from_middle{level.template rounded<0>(at.u) - 128, level.template rounded<1>(at.v) - 128};
-  const Footprints texels = texture.has_border         ? bordered_footprints(texture, from_middle, level)
-                            : texture.quads != nullptr ? footprints_of_quads(texture, from_middle, level)
-                                                       : gathered_footprints(texture, from_middle, level);
+HALFPLANE_INLINE CoordinateLanes from_middle_of(const CoordinateLanes& at, const Level& level) {
+  return {level.template rounded<0>(at.u) - 128, level.template rounded<1>(at.v) - 128};
+}
+
+/// linear_sums(), to be rounded by `drop` bits.
+HALFPLANE_INLINE ChannelSums linear_sums(const Footprints& texels, int drop) {
   const auto across = as<S32>(doubled(texels.across));
   // Two channels of a row: at most 255 * 256.
   const auto mixed = [&across](const S32& left, const S32& right)
@@ -277,6 +292,16 @@ HALFPLANE_INLINE ChannelSums linear_sums(const LaneTexture& texture, const Coord
                           HALFPLANE_LAMBDA { return weighted(upper_pairs(upper, lower), down, drop); };
   return {{first(above.red_blue, below.red_blue), first(above.green_alpha, below.green_alpha),
            second(above.red_blue, below.red_blue), second(above.green_alpha, below.green_alpha)}};
+}
+
+template <class Level>
+HALFPLANE_INLINE ChannelSums linear_sums(const LaneTexture& texture, const CoordinateLanes& at, const Level& level,
+                                         int drop) {
+  const CoordinateLanes from_middle = from_middle_of(at, level);
+  return linear_sums(texture.has_border         ? bordered_footprints(texture, from_middle, level)
+                     : texture.quads != nullptr ? footprints_of_quads(texture, from_middle, level)
+                                                : gathered_footprints(texture, from_middle, level),
+                     drop);
 }
 
 /// linear_sums() of alpha alone, as an integer. `quads`: of the lanes' footprints; `from_middle`: their coordinates.
@@ -316,14 +341,18 @@ struct LevelPairLanes {
   }
 };
 
+/// Sums with 8 fraction bits.
+HALFPLANE_INLINE ColorPairs blend_sums(ChannelSums& lower, ChannelSums& upper, const I16& part) {
+  for (I16& channel : lower.of) channel = channel >> 8;
+  for (I16& channel : upper.of) channel = channel >> 8;
+  return blend_levels(lower, upper, part);
+}
+
 HALFPLANE_INLINE ColorPairs filter_trilinear(const LaneTexture& texture, const CoordinateLanes& at,
                                              const LevelPairLanes& levels) {
-  const auto sums = [&](const I16& level) HALFPLANE_LAMBDA {
-    ChannelSums sum = linear_sums(texture, at, LaneLevel(texture, level), 8);
-    for (I16& channel : sum.of) channel = channel >> 8;
-    return sum;
-  };
-  return blend_levels(sums(levels.lower), sums(levels.upper), levels.part);
+  ChannelSums lower = linear_sums(texture, at, LaneLevel(texture, levels.lower), 8),
+              upper = linear_sums(texture, at, LaneLevel(texture, levels.upper), 8);
+  return blend_sums(lower, upper, levels.part);
 }
 
 HALFPLANE_INLINE ColorPairs filter_between_nearest(const LaneTexture& texture, const CoordinateLanes& at,
@@ -360,9 +389,14 @@ HALFPLANE_INLINE ColorPairs minified(const LaneTexture& texture, const Coordinat
   }
 }
 
+/// lambda with bias and bounds.
+HALFPLANE_INLINE I16 bounded_lod(const LaneTexture& texture, const I16& lod) {
+  return min(max(lod + texture.bias, I16(texture.least)), I16(texture.largest));
+}
+
 /// sample(). `lod`: without bias and bounds.
 HALFPLANE_NOINLINE ColorPairs sample(const LaneTexture& texture, const CoordinateLanes& at, const I16& lod) {
-  const I16 level = min(max(lod + texture.bias, I16(texture.least)), I16(texture.largest));
+  const I16 level = bounded_lod(texture, lod);
   const I16 is_magnified = level <= texture.magnified;
   const std::uint32_t magnified = bits_of(is_magnified);
   if (magnified == 0) return minified(texture, at, level);
@@ -372,6 +406,37 @@ HALFPLANE_NOINLINE ColorPairs sample(const LaneTexture& texture, const Coordinat
   return {select(is_magnified, base.red_blue, small.red_blue),
           select(is_magnified, base.green_alpha, small.green_alpha)};
 }
+
+/// The usual samples of a block by footprints, in two steps: linear ones of level 0, and those between two levels.
+template <bool kBetween>
+struct BlockSample {
+  FootprintPlaces lower, upper;
+  I16 part;
+
+  HALFPLANE_INLINE BlockSample() = default;
+  /// False for other samples: sample() has them.
+  HALFPLANE_INLINE bool set(const LaneTexture& texture, const CoordinateLanes& at, const I16& lod) {
+    if (texture.has_border || texture.quads == nullptr) return false;
+    const auto on_level = [&](FootprintPlaces& places, const auto& level)
+                              HALFPLANE_LAMBDA { places.set(texture, from_middle_of(at, level), level); };
+    if constexpr (!kBetween) {
+      on_level(lower, BaseLevel(texture));
+    } else {
+      const I16 level = bounded_lod(texture, lod);
+      if (texture.min != TextureMin::linear_mipmap_linear || bits_of(level <= texture.magnified) != 0) return false;
+      const LevelPairLanes levels(level, texture.last_level);
+      on_level(lower, LaneLevel(texture, levels.lower));
+      on_level(upper, LaneLevel(texture, levels.upper));
+      part = levels.part;
+    }
+    return true;
+  }
+  HALFPLANE_INLINE ColorPairs texels(const LaneTexture& texture) const {
+    if constexpr (!kBetween) return integers_of(linear_sums(lower.fetched(texture), 16));
+    ChannelSums first = linear_sums(lower.fetched(texture), 8), second = linear_sums(upper.fetched(texture), 8);
+    return blend_sums(first, second, part);
+  }
+};
 
 }  // namespace
 }  // namespace halfplane::functional::HALFPLANE_ISA_NAME
