@@ -370,14 +370,12 @@ HALFPLANE_INLINE ColorPairs filtered_base(const LaneTexture& texture, const Coor
   return is_linear ? filter_linear(texture, at, level) : ColorPairs(filter_nearest(texture, at, level));
 }
 
-/// The one level nearest to lambda: nearest_level().
-HALFPLANE_INLINE I16 nearest_levels(const LaneTexture& texture, const I16& lod) {
-  return min(max((lod + 127) >> kLodFraction, I16(0)), I16(texture.last_level));
-}
-
 /// Filters as texture_min says.
 HALFPLANE_INLINE ColorPairs minified(const LaneTexture& texture, const CoordinateLanes& at, const I16& lod) {
-  const auto nearest_level = [&]() HALFPLANE_LAMBDA { return LaneLevel(texture, nearest_levels(texture, lod)); };
+  const auto nearest_level = [&]() HALFPLANE_LAMBDA {
+    const I16 level = min(max((lod + 127) >> kLodFraction, I16(0)), I16(texture.last_level));
+    return LaneLevel(texture, level);
+  };
   switch (texture.min) {
     case TextureMin::nearest_mipmap_nearest: return ColorPairs(filter_nearest(texture, at, nearest_level()));
     case TextureMin::linear_mipmap_nearest: return filter_linear(texture, at, nearest_level());

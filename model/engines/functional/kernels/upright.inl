@@ -5,7 +5,6 @@
 #pragma once
 
 #include "bin.inl"
-#include "level_of_detail.inl"
 #include "perspective.inl"
 #include "texture.inl"
 
@@ -15,12 +14,10 @@ namespace {
 /// u of a tile's columns and v of its rows, each twice: in lanes 0 to 7 and 8 to 15.
 struct UprightPlaces {
   CoordinateLanes at;
-  I16 q;  ///< float_bits() of Q
 
-  HALFPLANE_INLINE UprightPlaces(const Bin& bin, const SurfaceConstants& of, int tile) {
-    const int tile_x = (bin.first_x >> kTileShift) + tile % kBinTiles,
-              tile_y = (bin.first_y >> kTileShift) + tile / kBinTiles;
-    const ReciprocalsOfQ reciprocal(I16(of.coordinate.q.anchor(tile_x, tile_y)), of.division);
+  /// `tile_x`, `tile_y`: of the target; `q`: in a lane.
+  HALFPLANE_INLINE UprightPlaces(const Bin& bin, const SurfaceConstants& of, int tile_x, int tile_y, std::int32_t q) {
+    const ReciprocalsOfQ reciprocal(I16(q), of.division);
     const I16 steps = bin.position.pair_x - kTileSize / 2;
     const auto along = [&](std::size_t axis, std::int32_t step) HALFPLANE_LAMBDA {
       const LaneAttribute& attribute = of.coordinate.attribute[axis];
@@ -29,7 +26,6 @@ struct UprightPlaces {
     };
     at.u = along(0, of.coordinate.attribute[0].p.step_x);
     at.v = along(1, of.coordinate.attribute[1].p.step_y);
-    q = reciprocal.bits;
   }
 };
 
@@ -130,23 +126,27 @@ HALFPLANE_NOINLINE void upright_trilinear(const Bin& bin, const LaneTexture& tex
 /// The texels at a tile's pixels, R lowest; false if the filter is not linear.
 HALFPLANE_NOINLINE bool find_upright_texels(const Bin& bin, const SurfaceConstants& of, int tile, std::uint32_t* to) {
   const LaneTexture& texture = of.texture;
-  const UprightPlaces places(bin, of, tile);
+  const int tile_x = (bin.first_x >> kTileShift) + tile % kBinTiles,
+            tile_y = (bin.first_y >> kTileShift) + tile / kBinTiles;
+  const std::int32_t q = of.coordinate.q.anchor(tile_x, tile_y);
+  const UprightPlaces places(bin, of, tile_x, tile_y, q);
   const auto base = [&](bool is_linear) HALFPLANE_LAMBDA {
     if (is_linear) upright_linear(bin, texture, places.at, BaseLevel(texture), to);
     return is_linear;
   };
   if (sampling_of(texture) == Sampling::linear) return base(true);
-  LodRamps ramps;
-  ramps.set(bin, texture.lod, tile % kBinTiles, tile / kBinTiles);
-  const I16 lod = min(max(ramps(texture.lod, 0, places.q) + texture.bias, I16(texture.least)), I16(texture.largest));
-  if ((bits_of(lod <= I16(texture.magnified)) & 1) != 0) return base(texture.mag == TextureMag::linear);
+  const Lod lambda = level_of_detail(texture.lod, static_cast<std::uint32_t>(q) >> of.division.up, tile_x << kTileShift,
+                                     tile_y << kTileShift);
+  const Lod lod = std::clamp(lambda + texture.bias, texture.least, texture.largest);
+  if (lod <= texture.magnified) return base(texture.mag == TextureMag::linear);
   switch (texture.min) {
     case TextureMin::linear: return base(true);
     case TextureMin::linear_mipmap_nearest:
-      upright_linear(bin, texture, places.at, LaneLevel(texture, nearest_levels(texture, lod)), to);
+      upright_linear(bin, texture, places.at,
+                     LaneLevel(texture, I16(halfplane::nearest_level(lod, texture.last_level))), to);
       return true;
     case TextureMin::linear_mipmap_linear:
-      upright_trilinear(bin, texture, places.at, LevelPairLanes(lod, texture.last_level), to);
+      upright_trilinear(bin, texture, places.at, LevelPairLanes(I16(lod), texture.last_level), to);
       return true;
     default: return false;
   }
