@@ -189,7 +189,14 @@ module coarse_raster (
   assign notes_start = starts || (goes_on && (row_ends || moves_start));
   assign goes_on = steps || (clears && !is_last_tile);  // the last step has no effect
 
-  always_ff @(posedge clk_i) begin
+  logic clk;  // of the walk and of the tile it has produced
+  clock_gate u_clock_gate (
+      .clk_i,
+      .enable_i(takes || starts || clears || goes_on || is_start_q || moved_start_q || enters),
+      .clk_o   (clk)
+  );
+
+  always_ff @(posedge clk) begin
     if (state_q == IDLE) begin
       s_q <= setup_i;
       // A token goes straight to its last tile, unless it clears bounds group by group.
@@ -274,7 +281,7 @@ module coarse_raster (
       assign next_is_outside[i] = largest[V];
       assign edge_is_inside[i]  = !smallest[V];
 
-      always_ff @(posedge clk_i) begin
+      always_ff @(posedge clk) begin
         if (state_q == IDLE) begin
           value_q <= setup_i.edge_value[i*V+:V];
         end else if (goes_on) value_q <= next;
@@ -329,7 +336,7 @@ module coarse_raster (
           .b_i        (step),
           .sum_o      (next)
       );
-      always_ff @(posedge clk_i) begin
+      always_ff @(posedge clk) begin
         if (state_q == IDLE) begin
           value_q <= value[P-1-:M];
         end else if (goes_on) value_q <= next;
@@ -407,7 +414,7 @@ module coarse_raster (
     if (!rst_ni) left_valid_q <= 1'b0;
     else if (left_is_free) left_valid_q <= enters;
   end
-  always_ff @(posedge clk_i) begin
+  always_ff @(posedge clk) begin
     if (left_is_free) begin
       left_bound_q               <= bound;
       left_limit_q               <= state_q == WALK && !is_outside && is_eligible_q ? limit : '0;

@@ -51,7 +51,7 @@ module cull (
   raster_pkg::primitive_packet_t p_q;
   logic       sort_busy_q;
   logic [1:0] sort_step_q;
-  logic       sort_moves, hands_over, decide_ready;
+  logic       sort_moves, decide_moves, hands_over, decide_ready;
   logic       is_triangle, is_state, is_sorted;
 
   // Where states overtake the setup of triangles they stay one cycle in each part.
@@ -62,7 +62,15 @@ module cull (
   assign primitive_ready_o = !sort_busy_q || hands_over;
   assign is_triangle       = p_q.kind == raster_pkg::PRIMITIVE_KIND_TRIANGLE;
 
-  always_ff @(posedge clk_i or negedge rst_ni) begin
+  logic leaves;  // from the next part
+  logic clk;
+  clock_gate u_clock_gate (
+      .clk_i,
+      .enable_i((primitive_valid_i && primitive_ready_o) || sort_moves || decide_moves || leaves),
+      .clk_o   (clk)
+  );
+
+  always_ff @(posedge clk or negedge rst_ni) begin
     if (!rst_ni) begin
       sort_busy_q <= 1'b0;
       sort_step_q <= '0;
@@ -149,7 +157,7 @@ module cull (
   assign to_cx = (N + 1)'({box_q.left, CENTRE}) - from_x_q[N:0];
   assign to_cy = (N + 1)'({box_q.top, CENTRE}) - from_y_q[N:0];
 
-  always_ff @(posedge clk_i) begin
+  always_ff @(posedge clk) begin
     if (primitive_ready_o) p_q <= primitive_i;
     if (sort_moves && sort_step_q == 2'd0) begin
       from_q  <= is_0_first ? 2'd0 : is_1_first ? 2'd1 : 2'd2;
@@ -177,7 +185,6 @@ module cull (
   // ----------------------------------------------------------------------------------------------------------- decide
   logic       decide_busy_q;
   logic [1:0] decide_step_q;
-  logic       decide_moves, leaves;
   raster_pkg::primitive_kind_t          kind_q;
   logic [raster_pkg::PRIMITIVE_ID_BITS-1:0] id_q;
   raster_pkg::primitive_state_t         state_q;
@@ -193,7 +200,7 @@ module cull (
   assign leaves       = decide_busy_q && is_decided && (triangle_ready_i || is_dropped);
   assign decide_ready = !decide_busy_q || leaves;
 
-  always_ff @(posedge clk_i or negedge rst_ni) begin
+  always_ff @(posedge clk or negedge rst_ni) begin
     if (!rst_ni) begin
       decide_busy_q <= 1'b0;
       decide_step_q <= '0;
@@ -215,7 +222,7 @@ module cull (
       .D_BITS  (D),
       .OUT_BITS(E)
   ) u_edge_function (
-      .clk_i,
+      .clk_i   (clk),
       .enable_i(sort_moves || decide_moves),
       .a_i     (dx_q),
       .b_i     (dy_q),
@@ -232,7 +239,7 @@ module cull (
       .D_BITS  (N + 1),
       .OUT_BITS(S + NV)
   ) u_corner (
-      .clk_i,
+      .clk_i   (clk),
       .enable_i(sort_moves || decide_moves),
       .a_i     (dx_q[N-1:0]),
       .b_i     (dy_q[N-1:0]),
@@ -276,7 +283,7 @@ module cull (
   assign has_inside  = has_inside_q | ~signs;
   assign has_outside = has_outside_q | signs;
 
-  always_ff @(posedge clk_i) begin
+  always_ff @(posedge clk) begin
     if (sort_moves || decide_moves) begin
       bias_q          <= is_biased;
       edge_bias_q     <= bias_q;
@@ -330,7 +337,7 @@ module cull (
 
   assign columns       = d_box_q.right[2:0] - d_box_q.left[2:0];
   assign rows          = d_box_q.bottom[2:0] - d_box_q.top[2:0];
-  always_ff @(posedge clk_i) begin  // known in the steps before
+  always_ff @(posedge clk) begin  // known in the steps before
     has_2x2_q    <= d_is_triangle && columns <= 3'd1 && rows <= 3'd1;
     has_column_q <= columns != 3'd0;
     has_row_q    <= rows != 3'd0;
@@ -360,14 +367,14 @@ module cull (
     if (HAS_SAMPLES) begin : gen_edge_lows
       logic [3*S-1:0] low_q;  // before orientation; the newest edge is the highest
       genvar l;
-      always_ff @(posedge clk_i) if (decide_moves && d_is_triangle) low_q <= {edge_value[0+:S], low_q[S+:2*S]};
+      always_ff @(posedge clk) if (decide_moves && d_is_triangle) low_q <= {edge_value[0+:S], low_q[S+:2*S]};
       for (l = 0; l < 3; l++) begin : gen_edge
         assign triangle_o.edge_low[l*S+:S] = !d_is_triangle ? '0 : is_negative ? ~low_q[(2-l)*S+:S] : low_q[l*S+:S];
       end
     end
     if (raster_pkg::COORDINATES != 0) begin : gen_coordinates
       logic [raster_pkg::COORDINATE_FRAME_BITS-1:0] coordinates_q;
-      always_ff @(posedge clk_i) if (decide_ready) coordinates_q <= p_q.coordinates;
+      always_ff @(posedge clk) if (decide_ready) coordinates_q <= p_q.coordinates;
       assign triangle_o.coordinates = raster_pkg::COORDINATE_FRAME_BITS'(coordinates_q);
     end
   endgenerate

@@ -63,12 +63,19 @@ module fine_raster (
   assign tile_ready_o = !row_valid_q || (coverage_ready && is_last_row);
   assign takes_tile   = tile_valid_i && tile_ready_o;
 
-  always_ff @(posedge clk_i or negedge rst_ni) begin
+  logic clk;  // of this part
+  clock_gate u_clock_gate (
+      .clk_i,
+      .enable_i(takes_tile || row_leaves),
+      .clk_o   (clk)
+  );
+
+  always_ff @(posedge clk or negedge rst_ni) begin
     if (!rst_ni) row_valid_q <= 1'b0;
     else if (tile_ready_o) row_valid_q <= tile_valid_i;
   end
 
-  always_ff @(posedge clk_i) begin
+  always_ff @(posedge clk) begin
     if (takes_tile) begin
       tile_q  <= tile_i;
       edges_q <= edges_i;
@@ -119,12 +126,12 @@ module fine_raster (
           logic signed [WIDE-1:0] gained;
           assign gained = $signed(ways[k*WIDE+:WIDE]) >>> S;
           logic signed [W-1:0] moved_q;
-          always_ff @(posedge clk_i) if (takes_tile) moved_q <= W'(gained);
+          always_ff @(posedge clk) if (takes_tile) moved_q <= W'(gained);
           assign place_q[k*W+:W] = moved_q;
         end
       end
 
-      always_ff @(posedge clk_i) begin
+      always_ff @(posedge clk) begin
         if (takes_tile) value_q <= start;
         else if (row_leaves) value_q <= value_q + (step_y <<< STAMP_SHIFT);
       end
@@ -149,7 +156,7 @@ module fine_raster (
               .y_i     (PIXEL'(j)),
               .value_o (reach_d)
           );
-          always_ff @(posedge clk_i) if (takes_tile) reach_q <= reach_d;
+          always_ff @(posedge clk) if (takes_tile) reach_q <= reach_d;
           assign reach[j*REACH+:REACH] = reach_q;
         end
       end

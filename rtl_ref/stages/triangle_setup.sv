@@ -109,7 +109,14 @@ module triangle_setup (
   end
   assign leaves = at_q[OFFER] && made_ready;
 
-  always_ff @(posedge clk_i or negedge rst_ni) begin
+  logic clk;
+  clock_gate u_clock_gate (
+      .clk_i,
+      .enable_i(takes || leaves || moves != '0),
+      .clk_o   (clk)
+  );
+
+  always_ff @(posedge clk or negedge rst_ni) begin
     if (!rst_ni) begin
       at_q    <= '0;
       ready_q <= '1;
@@ -129,7 +136,7 @@ module triangle_setup (
   assign anchor_packet = packets_q[(MOVE-CLOCKS)/STEPS*T+:T];
   assign base_packet   = packets_q[(PLANES>AFFINE?BASE/STEPS:0)*T+:T];
   assign last_packet   = packets_q[LAST_PART*T+:T];
-  always_ff @(posedge clk_i) begin
+  always_ff @(posedge clk) begin
     if (ready_q[0]) packets_q[0+:T] <= triangle_i;
     for (int i = 1; i < PARTS; i++) if (ready_q[i]) packets_q[i*T+:T] <= packets_q[(i-1)*T+:T];
   end
@@ -188,7 +195,7 @@ module triangle_setup (
       end
       assign bits_d      = BITS'({bits_q, newest});
       assign remainder_d = {gen_bit[BITS_PER_CYCLE-1].rest, 1'b0};
-      always_ff @(posedge clk_i) begin
+      always_ff @(posedge clk) begin
         if (loads) begin
           area_q      <= packets_q[d*T+AREA_AT+:A];
           remainder_q <= start;
@@ -203,7 +210,7 @@ module triangle_setup (
         logic [HEAD-1:0] head_q;
         assign start                          = remainders[(d-1)*REMAINDER+:REMAINDER];
         assign quotients[d*QUOTIENT+:QUOTIENT] = QUOTIENT'({head_q, bits_d});
-        always_ff @(posedge clk_i) if (loads) head_q <= quotients[(d-1)*QUOTIENT+:HEAD];
+        always_ff @(posedge clk) if (loads) head_q <= quotients[(d-1)*QUOTIENT+:HEAD];
       end
     end
   endgenerate
@@ -238,7 +245,7 @@ module triangle_setup (
     end
   end
   assign reciprocal = upper + half;
-  always_ff @(posedge clk_i) begin
+  always_ff @(posedge clk) begin
     if (moves[ROUND-1]) quotient_q <= quotients[(DIVIDERS-1)*QUOTIENT+:QUOTIENT];
     if (flows[ROUND]) reciprocal_q <= reciprocal;
   end
@@ -272,7 +279,7 @@ module triangle_setup (
     if (PLANES > AFFINE) begin : gen_base
       assign differs_over_w = plane_differs[PLANES-1:AFFINE] != '0;
       assign differs_in_w   = plane_differs[AFFINE];
-      always_ff @(posedge clk_i) if (moves[DELTA+CLOCKS*AFFINE+CLOCKS-1]) base_q <= base;
+      always_ff @(posedge clk) if (moves[DELTA+CLOCKS*AFFINE+CLOCKS-1]) base_q <= base;
     end else begin : gen_no_base
       assign differs_over_w = 1'b0;
       assign differs_in_w   = 1'b0;
@@ -305,7 +312,7 @@ module triangle_setup (
     c0 = '0;
     for (int i = 0; i < PLANES; i++) if (plane_differs[i]) c0 = c0 | codes_0[i*CZ+:CZ];
   end
-  always_ff @(posedge clk_i) begin
+  always_ff @(posedge clk) begin
     if (starts) start_q[0+:Z+1] <= start;
     for (int i = 1; i < TO_START; i++)
       if (flows[DELTA+CLOCKS-1+i]) start_q[i*(Z+1)+:Z+1] <= start_q[(i-1)*(Z+1)+:Z+1];
@@ -339,7 +346,7 @@ module triangle_setup (
       assign vertex       = differs_in_w ? base : base_q & {2{differs_over_w}};
       assign start        = vertex[1] ? c2 : vertex[0] ? c1 : window_of(c0, plane_differs);
       assign starts       = flows[DELTA];
-      always_ff @(posedge clk_i) begin
+      always_ff @(posedge clk) begin
         if (flows[DELTA]) begin
           ac_q <= ac;
           bc_q <= bc;
@@ -373,7 +380,7 @@ module triangle_setup (
       assign starts_at_2  = differs_in_w ? is_least : base_q[1];
       assign start        = differs_over_w && (is_second || starts_at_1) ? other : window_of(c0, plane_differs);
       assign starts       = flows[DELTA] && (!is_second || (differs_over_w && starts_at_2));
-      always_ff @(posedge clk_i) begin
+      always_ff @(posedge clk) begin
         if (flows[DELTA]) begin
           if (is_second) begin
             pair_a_q <= first_q;
@@ -391,7 +398,7 @@ module triangle_setup (
         assign ac_q = pair_a_q;
         assign bc_q = pair_b_q;
       end else begin : gen_waits
-        always_ff @(posedge clk_i) begin
+        always_ff @(posedge clk) begin
           if (flows[NUMERATOR-1]) begin
             ac_q <= pair_a_q;
             bc_q <= pair_b_q;
@@ -412,7 +419,7 @@ module triangle_setup (
     finds_range = 1'b0;
     for (int i = 0; i < AFFINE; i++) finds_range = finds_range | moves[DELTA+CLOCKS*i+CLOCKS-1];
   end
-  always_ff @(posedge clk_i) begin
+  always_ff @(posedge clk) begin
     if (finds_range) begin
       low_q  <= {low[ZA-1:0], low_q[(AFFINE-1)*ZA-1:ZA]};
       high_q <= {high[ZA-1:0], high_q[(AFFINE-1)*ZA-1:ZA]};
@@ -429,7 +436,7 @@ module triangle_setup (
   logic [LANES*N-1:0]        numerator;
   logic                      multiplies;
   assign multiplies = flows[NUMERATOR] || flows[NUMERATOR+1];
-  always_ff @(posedge clk_i) begin
+  always_ff @(posedge clk) begin
     if (moves[CORNERS-1]) begin
       minus_ax_q <= D'($signed(corner_packet.vertex.x[0+:C])) - D'($signed(corner_packet.vertex.x[C+:C]));
       ay_q       <= D'($signed(corner_packet.vertex.y[C+:C])) - D'($signed(corner_packet.vertex.y[0+:C]));
@@ -451,7 +458,7 @@ module triangle_setup (
     end else begin : gen_shared_factors
       logic [2*D-1:0] factors_q;
       assign factors = factors_q;
-      always_ff @(posedge clk_i)
+      always_ff @(posedge clk)
         if (flows[NUMERATOR-1])
           factors_q <= is_y_in(at_q[NUMERATOR-1+:STEPS]) ? {minus_bx_q, minus_ax_q} : {by_q, ay_q};
     end
@@ -461,7 +468,7 @@ module triangle_setup (
           .D_BITS  (D),
           .OUT_BITS(N)
       ) u_numerator (
-          .clk_i,
+          .clk_i   (clk),
           .enable_i(multiplies),
           .a_i     (ac_q),
           .b_i     (bc_q),
@@ -476,7 +483,7 @@ module triangle_setup (
   // The directions of the edges, in the part that is entered meanwhile and in later ones.
   localparam int EDGE_PART = CORNERS / STEPS + 1;
   logic [(PARTS-EDGE_PART)*6*D-1:0] edges_q;
-  always_ff @(posedge clk_i) begin
+  always_ff @(posedge clk) begin
     for (int i = EDGE_PART; i < PARTS; i++) begin
       if (ready_q[i]) begin
         if (i == EDGE_PART)
@@ -501,7 +508,7 @@ module triangle_setup (
   logic [LANES*PRODUCT_BITS-1:0]      product_q;
   logic [LANES*P-1:0]                 step_q;  // gradient per subpixel
 
-  always_ff @(posedge clk_i) begin
+  always_ff @(posedge clk) begin
     if (moves[1]) log2_q[0+:M] <= log2_area;
     for (int i = 1; i <= LOG2_PART; i++) if (ready_q[i]) log2_q[i*M+:M] <= log2_q[(i-1)*M+:M];
     if (moves[SHIFT-1]) shift_q <= SHIFT_BITS'(log2_q[LOG2_PART*M+:M]) + SHIFT_BITS'(SHIFT_BASE);
@@ -521,7 +528,7 @@ module triangle_setup (
           .product_o(product)
       );
       assign shifted = $signed({product_q[lane*PRODUCT_BITS+:PRODUCT_BITS], {LEFT{1'b0}}}) >>> shift_q;
-      always_ff @(posedge clk_i) begin
+      always_ff @(posedge clk) begin
         if (flows[PRODUCT]) product_q[lane*PRODUCT_BITS+:PRODUCT_BITS] <= product;
         if (flows[SHIFT]) step_q[lane*P+:P] <= shifted[1+:P] + P'(shifted[0]);
       end
@@ -570,11 +577,11 @@ module triangle_setup (
           .right_i  (to[lane*D+:D]),
           .product_o(move)
       );
-      always_ff @(posedge clk_i) if (flows[MOVE]) move_q[lane*P+:P] <= move;
+      always_ff @(posedge clk) if (flows[MOVE]) move_q[lane*P+:P] <= move;
     end
     if (CLOCKS == 1) begin : gen_values
       logic signed [D-1:0] to_anchor_x_q, to_anchor_y_q;
-      always_ff @(posedge clk_i) begin
+      always_ff @(posedge clk) begin
         if (moves[MOVE-1]) begin
           to_anchor_x_q <= D'(anchor_x) - D'($signed(anchor_packet.vertex.x[0+:C]));
           to_anchor_y_q <= D'(anchor_y) - D'($signed(anchor_packet.vertex.y[0+:C]));
@@ -591,7 +598,7 @@ module triangle_setup (
                               base_q[0] ? base_packet.vertex.y[C+:C] : base_packet.vertex.y[0+:C];
         assign moves_over_w = at_q[MOVE+AFFINE+:PLANES-AFFINE] != '0;
         assign to           = moves_over_w ? {to_base_y_q, to_base_x_q} : {to_anchor_y_q, to_anchor_x_q};
-        always_ff @(posedge clk_i) begin
+        always_ff @(posedge clk) begin
           if (moves[BASE]) begin
             to_base_x_q <= D'(centre_x(base_packet.box.left[PX-1:TS])) - D'(base_x);
             to_base_y_q <= D'(centre_y(base_packet.box.top[PY-1:TS])) - D'(base_y);
@@ -637,7 +644,7 @@ module triangle_setup (
       end else begin : gen_vertex_0
         assign from = from_0;
       end
-      always_ff @(posedge clk_i) begin
+      always_ff @(posedge clk) begin
         if (moves[WAY-1]) begin
           corners_q <= {anchor_packet.vertex.y[2*C+:C], anchor_packet.vertex.x[2*C+:C],
                         anchor_packet.vertex.y[C+:C], anchor_packet.vertex.x[C+:C],
@@ -655,13 +662,13 @@ module triangle_setup (
       end
       assign sum  = rest_q + move_q;
       assign sums = flows[SUM] && is_y_in(at_q[SUM+:STEPS]);
-      always_ff @(posedge clk_i) begin
+      always_ff @(posedge clk) begin
         if (begins) rest_q <= start_value;
         else if (flows[SUM]) rest_q <= sum;
       end
     end
   endgenerate
-  always_ff @(posedge clk_i) begin
+  always_ff @(posedge clk) begin
     if (flows[MOVE]) steps_q <= {step_q, steps_q[2*PLANES*P-1:LANES*P]};
     if (sums) sums_q <= {sum, sums_q[(PLANES-1)*P-1:P]};
   end
@@ -669,7 +676,7 @@ module triangle_setup (
   // ------------------------------------------------------------------------------------------------------------ packet
   logic [2*PLANES*P-1:0] setup_steps_q;
   logic [PLANES*P-1:0]   setup_values_q;
-  always_ff @(posedge clk_i) begin
+  always_ff @(posedge clk) begin
     if (moves[OFFER-1]) begin
       setup_steps_q  <= steps_q;
       setup_values_q <= {sum, sums_q};
