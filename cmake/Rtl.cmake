@@ -90,7 +90,7 @@ function(halfplane_verilate target)
   set(optimised -O1)
   if(RTL_FAST)
     list(APPEND arguments -DCLOCK_GATES)
-    set(optimised -O2)
+    set(optimised -O2 -fpeel-loops)  # short loops over the clocks
   endif()
   if(HALFPLANE_RTL_COVERAGE)
     # Packets of up to 1,024 bits count as well.
