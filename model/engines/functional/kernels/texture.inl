@@ -255,11 +255,12 @@ struct ChannelSums {
   I16 of[4];
 };
 
+/// weighted() of numbers less 2^15.
+HALFPLANE_INLINE I16 weighted_centred(const I16& lanes, const I16& weights, int drop) {
+  return multiply_add_pairs(lanes, weights) + ((1 << 23) + (1 << (drop - 1)));
+}
 /// low * (256 - part) + high * part + 2^(drop - 1) for 16-bit numbers, lane by lane. `lanes`: low and high; `weights`:
 /// of both; `drop`: bits to be rounded.
-HALFPLANE_INLINE I16 weighted_centred(const I16& less_2_15, const I16& weights, int drop) {
-  return multiply_add_pairs(less_2_15, weights) + ((1 << 23) + (1 << (drop - 1)));
-}
 HALFPLANE_INLINE I16 weighted(const I16& lanes, const I16& weights, int drop) {
   constexpr auto kCentre = static_cast<std::int32_t>(0x80008000U);  // for a signed multiply
   return weighted_centred(lanes ^ kCentre, weights, drop);
