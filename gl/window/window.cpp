@@ -11,6 +11,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "../../model/stages/color_ops.hpp"
 
@@ -128,6 +129,9 @@ Window::Window(DrawableKind what, Server* x_server, XID x_drawable, const PixelF
                int height)
     : Drawable(options(), width, height), kind(what), server(x_server), xid(x_drawable), format(its_format) {
   single_buffered = !format.double_buffered || kind == DrawableKind::pixmap;
+  if (kind != DrawableKind::window) return;
+  const std::lock_guard lock(server->mutex_);
+  XSelectInput(server->display_, xid, StructureNotifyMask);
 }
 
 Window::~Window() {
@@ -141,7 +145,18 @@ Window::~Window() {
 
 void Window::present() {
   frame.end([this](const Framebuffer& picture) { show(picture); });
-  frame.wait();
+  finish();
+}
+
+void Window::finish() {
+  Drawable::finish();
+  if (server == nullptr) return;
+  const std::lock_guard lock(server->mutex_);
+  wait_for_server();
+}
+
+void Window::wait_for_server() {
+  if (std::exchange(is_sent_, false)) XSync(server->display_, 0);
 }
 
 void Window::show(const Framebuffer& picture) {
@@ -151,7 +166,15 @@ void Window::show(const Framebuffer& picture) {
 void Window::swap() {
   if (single_buffered) return;
   Drawable::swap();
-  follow_size();
+  if (has_changed()) follow_size();
+}
+
+bool Window::has_changed() {
+  if (kind != DrawableKind::window) return false;
+  const std::lock_guard lock(server->mutex_);
+  bool has = false;
+  for (XEvent event; XCheckWindowEvent(server->display_, xid, StructureNotifyMask, &event) != 0;) has = true;
+  return has;
 }
 
 bool Window::follow_size() {
@@ -217,6 +240,7 @@ void Window::show_in(XID target, const Framebuffer& picture) {
   const std::lock_guard lock(server->mutex_);
   const int width = picture.width, height = picture.height;
   if (!make_image(width, height)) return;
+  wait_for_server();
   const bool is_direct = is_little_endian_argb(*image_);
   const int pitch = is_direct ? image_->bytes_per_line / 4 : width;
   std::vector<std::uint32_t> converted(is_direct ? 0 : static_cast<std::size_t>(pitch) * static_cast<unsigned>(height));
@@ -250,7 +274,8 @@ void Window::show_in(XID target, const Framebuffer& picture) {
     XShmPutImage(display, target, gc_, image_, 0, 0, 0, 0, w, h, 0);
   else
     XPutImage(display, target, gc_, image_, 0, 0, 0, 0, w, h);
-  XSync(display, 0);  // the image is free again, and glFinish has to wait for the server
+  XFlush(display);  // the server copies it beside the next frame
+  is_sent_ = true;
 }
 
 }  // namespace halfplane::gl
