@@ -264,7 +264,7 @@ std::shared_ptr<const Image> transferred(const Context& context, std::shared_ptr
   auto result = std::make_shared<Image>(*image);
   for (const Texel& byte : std::exchange(result->byte, {})) {
     std::array<float, 4>& pixel = result->pixel.emplace_back();
-    for (std::size_t c = 0; c < 4; ++c) pixel[c] = decoded(byte[c], kTypes[0], false);
+    for (std::size_t c = 0; c < 4; ++c) pixel[c] = decoded(byte[c], *row_of(kTypes, GL_UNSIGNED_BYTE), false);
   }
   const auto tables = [&context](GLenum first) {  // of red, green, blue and alpha
     return std::array{map_table(context, first), map_table(context, first + 1), map_table(context, first + 2),

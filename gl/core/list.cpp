@@ -19,7 +19,7 @@ void* DisplayList::add(Play call, std::size_t bytes, CallKind kind) {
 }
 
 void DisplayList::add_vertices(GLenum mode, const InputVertices& vertices, std::span<const std::uint32_t> indices) {
-  new (add(nullptr, sizeof(Joined), CallKind::joined)) Joined{joined_.size(), 0};
+  new (add(nullptr, sizeof(JoinedCall), CallKind::joined)) JoinedCall{joined_.size(), 0};
   joined_.push_back({mode, vertices, {indices.begin(), indices.end()}});
 }
 
@@ -31,7 +31,7 @@ void DisplayList::play(Context& context) const {
     at = after(at);
     if (call.kind == CallKind::joined) {
       if (context.inside_begin()) continue;
-      const Joined& joined = *static_cast<const Joined*>(arguments);
+      const JoinedCall& joined = *static_cast<const JoinedCall*>(arguments);
       const auto& [mode, vertices, indices] = joined_[joined.which];
       draw_joined(context, mode, vertices, indices);
       at += joined.bytes;
@@ -71,7 +71,7 @@ void DisplayList::join_vertices() {
     const auto end = begins ? end_of_vertices(at, *collector) : std::nullopt;
     if (end) {
       copy_to(at);
-      new (joined.add(nullptr, sizeof(Joined), CallKind::joined)) Joined{joined_.size(), *end - at};
+      new (joined.add(nullptr, sizeof(JoinedCall), CallKind::joined)) JoinedCall{joined_.size(), *end - at};
       const auto all = counting(collector->input.size());
       joined_.push_back({collector->primitive, collector->input, {all.begin(), all.end()}});
     }

@@ -67,7 +67,7 @@ class DisplayList {
     CallKind kind;
   };
   /// Arguments of CallKind::joined, before the calls that it stands for.
-  struct alignas(kAlignment) Joined {
+  struct alignas(kAlignment) JoinedCall {
     std::size_t which;  ///< of joined_
     std::size_t bytes;  ///< of the calls
   };

@@ -26,7 +26,8 @@ extern "C" int __cxa_atexit(void (*)(void*), void*, void*) { return 0; }  // NOL
 namespace halfplane::gl {
 namespace {
 
-/// X errors on connections of the driver's own. Each request that can fail is followed by XSync() in the same thread.
+/// X errors on connections of the driver's own, in the thread that reads them. Who looks at them calls XSync() before and after
+/// the request.
 thread_local int g_errors = 0;
 
 int count_error(Display*, xError*, XExtCodes*, int* result_of_reply) {
@@ -129,15 +130,13 @@ Window::Window(DrawableKind what, Server* x_server, XID x_drawable, const PixelF
                int height)
     : Drawable(options(), width, height), kind(what), server(x_server), xid(x_drawable), format(its_format) {
   single_buffered = !format.double_buffered || kind == DrawableKind::pixmap;
-  if (kind != DrawableKind::window) return;
-  const std::lock_guard lock(server->mutex_);
-  XSelectInput(server->display_, xid, StructureNotifyMask);
 }
 
 Window::~Window() {
   frame.wait();
   if (server == nullptr) return;
   const std::lock_guard lock(server->mutex_);
+  if (kind == DrawableKind::window) XSelectInput(server->display_, xid, NoEventMask);
   free_image();
   if (gc_ != nullptr) XFreeGC(server->display_, gc_);
   XSync(server->display_, 0);
@@ -179,6 +178,10 @@ bool Window::has_changed() {
 
 bool Window::follow_size() {
   if (kind != DrawableKind::window) return true;
+  if (!single_buffered) {  // has_changed() asks for these events; again, as another window may have this one's id now
+    const std::lock_guard lock(server->mutex_);
+    XSelectInput(server->display_, xid, StructureNotifyMask);
+  }
   const std::optional<Server::Geometry> now = server->geometry(xid);
   if (!now) return false;
   if (now->width != frame.width() || now->height != frame.height()) {
@@ -218,6 +221,7 @@ bool Window::make_image(int width, int height) {
     if (memory != nullptr && reinterpret_cast<std::intptr_t>(memory) != -1) {
       segment_.shmaddr = image_->data = static_cast<char*>(memory);
       segment_.readOnly = 1;
+      XSync(display, 0);  // errors of earlier requests
       g_errors = 0;
       XShmAttach(display, &segment_);
       XSync(display, 0);

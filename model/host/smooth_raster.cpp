@@ -224,7 +224,8 @@ double shared(double from, double to) { return std::max(0.0, std::min(1.0, to) -
 }  // namespace
 
 double area_in_pixel(const std::array<SnappedVertex, 4>& corners, int x, int y, int grid_bits) {
-  return RowAreas(sides_of(corners, grid_bits), y)(x);
+  const Sides sides = sides_of(corners, grid_bits);
+  return RowAreas(sides, y)(x);
 }
 
 std::vector<SmoothPixel> smooth_raster(const std::array<SnappedVertex, 4>& corners, const PixelBounds& limit,

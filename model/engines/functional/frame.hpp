@@ -122,10 +122,11 @@ struct Slice {
   const DrawContext* context = nullptr;  ///< of its first part; all parts have the same state
   SliceState state;
   std::vector<Part> parts;
-  std::size_t triangles = 0;                 ///< triangles of all parts
-  bool is_lines = false;                     ///< the triangles are lines
-  bool has_dots = false;                     ///< it draws `dots`: the triangles are points, or all outlines are dots
-  std::vector<AssembledPrimitive> outlines;  ///< or primitives not for lanes: points, polygon modes; then of one part
+  std::size_t triangles = 0;  ///< triangles of all parts
+  bool is_lines = false;      ///< the triangles are lines
+  bool has_dots = false;      ///< it draws `dots`: the triangles are points, or all outlines are dots
+  std::vector<AssembledPrimitive>
+      outlines;  ///< or primitives not for lanes: large points, polygon modes; then of one part
 
   /// Range of the triangles' vertices: each is projected once. If the range is too wide, every corner is a vertex of
   /// its own: three in a row for each triangle.

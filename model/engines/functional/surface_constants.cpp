@@ -235,8 +235,8 @@ void SurfaceConstants::set_texture(const StageSurface& from, const Widths& width
     texture.reference[axis] = surface.reference(axis) * (1 << kTexelFraction);
   }
   texture.lod = surface.lod();
-  is_flat = has_one_w();
-  is_upright = is_flat && sampling_of(texture) != Sampling::nearest && coordinate.attribute[0].p.step_y == 0 &&
+  has_constant_w = has_one_w();
+  is_upright = has_constant_w && sampling_of(texture) != Sampling::nearest && coordinate.attribute[0].p.step_y == 0 &&
                coordinate.attribute[1].p.step_x == 0;
 }
 

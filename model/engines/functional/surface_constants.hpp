@@ -189,7 +189,7 @@ struct SurfaceConstants {
   bool has_color = true;     ///< false: only the texture's colour counts, except for lit surfaces
   bool is_color_over_w = false;
   bool has_constant_color = false;  ///< color_low is its colour
-  bool is_flat = false;             ///< textured, with one w: the level of detail is constant as well
+  bool has_constant_w = false;      ///< textured, with one w: the level of detail is constant as well
   bool is_upright = false;          ///< upright.inl: flat, not all nearest, u along columns, v along rows
   bool has_fog = false;
   LaneDivision division;

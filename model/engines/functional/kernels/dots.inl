@@ -1,5 +1,5 @@
-// Points of one pixel, sixteen at a time: the pixels of smooth lines and points, and square points of size 1. In program order,
-// without tests of whole tiles, as lines are.
+// Points of one pixel, sixteen at a time: the pixels of smooth lines and points, and of square points up to kLargestDots wide.
+// In program order, without tests of whole tiles, as lines are.
 #pragma once
 
 #include "bin.inl"

@@ -70,7 +70,7 @@ struct SurfaceRamps {
     if constexpr (kSampling != Sampling::none) {
       coordinate.set(bin, of.coordinate, tile_x, tile_y);
       if constexpr (kSampling == Sampling::any) lod.set(bin, of.texture.lod, tile_x, tile_y);
-      if (of.is_flat) {
+      if (of.has_constant_w) {
         flat_q.set(coordinate.q.first, of.division);
         if constexpr (kSampling == Sampling::any) flat_lod = lod(of.texture.lod, 0, flat_q.bits);
       }
@@ -114,15 +114,15 @@ struct SurfaceRamps {
   HALFPLANE_INLINE I16 find_coordinates(const SurfaceConstants& of, std::size_t block, CoordinateLanes& at) const {
     const LaneTexture& texture = of.texture;
     ReciprocalsOfQ varying;
-    if (!of.is_flat) varying.set(coordinate.q(block), of.division);
-    const ReciprocalsOfQ& q = of.is_flat ? flat_q : varying;
+    if (!of.has_constant_w) varying.set(coordinate.q(block), of.division);
+    const ReciprocalsOfQ& q = of.has_constant_w ? flat_q : varying;
     const auto along = [&](std::size_t axis) HALFPLANE_LAMBDA {
       const I16 u = over_q(coordinate.p[axis](block), q, of.coordinate.attribute[axis], of.of_coordinate);
       return on_axis(texture, axis, u, texture.reference[axis]);
     };
     at.u = along(0);
     at.v = along(1);
-    if constexpr (kSampling == Sampling::any) return of.is_flat ? flat_lod : lod(texture.lod, block, q.bits);
+    if constexpr (kSampling == Sampling::any) return of.has_constant_w ? flat_lod : lod(texture.lod, block, q.bits);
     return I16(0);
   }
 };
