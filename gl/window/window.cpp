@@ -11,7 +11,6 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <utility>
 
 #include "../../model/stages/color_ops.hpp"
 
@@ -26,8 +25,7 @@ extern "C" int __cxa_atexit(void (*)(void*), void*, void*) { return 0; }  // NOL
 namespace halfplane::gl {
 namespace {
 
-/// X errors on connections of the driver's own, in the thread that reads them. Who looks at them calls XSync() before and after
-/// the request.
+/// X errors on connections of the driver's own. Each request that can fail is followed by XSync() in the same thread.
 thread_local int g_errors = 0;
 
 int count_error(Display*, xError*, XExtCodes*, int* result_of_reply) {
@@ -136,7 +134,6 @@ Window::~Window() {
   frame.wait();
   if (server == nullptr) return;
   const std::lock_guard lock(server->mutex_);
-  if (kind == DrawableKind::window) XSelectInput(server->display_, xid, NoEventMask);
   free_image();
   if (gc_ != nullptr) XFreeGC(server->display_, gc_);
   XSync(server->display_, 0);
@@ -144,18 +141,7 @@ Window::~Window() {
 
 void Window::present() {
   frame.end([this](const Framebuffer& picture) { show(picture); });
-  finish();
-}
-
-void Window::finish() {
-  Drawable::finish();
-  if (server == nullptr) return;
-  const std::lock_guard lock(server->mutex_);
-  wait_for_server();
-}
-
-void Window::wait_for_server() {
-  if (std::exchange(is_sent_, false)) XSync(server->display_, 0);
+  frame.wait();
 }
 
 void Window::show(const Framebuffer& picture) {
@@ -165,23 +151,11 @@ void Window::show(const Framebuffer& picture) {
 void Window::swap() {
   if (single_buffered) return;
   Drawable::swap();
-  if (has_changed()) follow_size();
-}
-
-bool Window::has_changed() {
-  if (kind != DrawableKind::window) return false;
-  const std::lock_guard lock(server->mutex_);
-  bool has = false;
-  for (XEvent event; XCheckWindowEvent(server->display_, xid, StructureNotifyMask, &event) != 0;) has = true;
-  return has;
+  follow_size();
 }
 
 bool Window::follow_size() {
   if (kind != DrawableKind::window) return true;
-  if (!single_buffered) {  // has_changed() asks for these events; again, as another window may have this one's id now
-    const std::lock_guard lock(server->mutex_);
-    XSelectInput(server->display_, xid, StructureNotifyMask);
-  }
   const std::optional<Server::Geometry> now = server->geometry(xid);
   if (!now) return false;
   if (now->width != frame.width() || now->height != frame.height()) {
@@ -221,7 +195,6 @@ bool Window::make_image(int width, int height) {
     if (memory != nullptr && reinterpret_cast<std::intptr_t>(memory) != -1) {
       segment_.shmaddr = image_->data = static_cast<char*>(memory);
       segment_.readOnly = 1;
-      XSync(display, 0);  // errors of earlier requests
       g_errors = 0;
       XShmAttach(display, &segment_);
       XSync(display, 0);
@@ -244,7 +217,6 @@ void Window::show_in(XID target, const Framebuffer& picture) {
   const std::lock_guard lock(server->mutex_);
   const int width = picture.width, height = picture.height;
   if (!make_image(width, height)) return;
-  wait_for_server();
   const bool is_direct = is_little_endian_argb(*image_);
   const int pitch = is_direct ? image_->bytes_per_line / 4 : width;
   std::vector<std::uint32_t> converted(is_direct ? 0 : static_cast<std::size_t>(pitch) * static_cast<unsigned>(height));
@@ -278,8 +250,7 @@ void Window::show_in(XID target, const Framebuffer& picture) {
     XShmPutImage(display, target, gc_, image_, 0, 0, 0, 0, w, h, 0);
   else
     XPutImage(display, target, gc_, image_, 0, 0, 0, 0, w, h);
-  XFlush(display);  // the server copies it beside the next frame
-  is_sent_ = true;
+  XSync(display, 0);  // the image is free again, and glFinish has to wait for the server
 }
 
 }  // namespace halfplane::gl

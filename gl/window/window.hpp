@@ -79,10 +79,9 @@ class Window final : public Drawable {
 
   void show(const Framebuffer& picture) override;
   void present() override;
-  void finish() override;
   /// Ends the frame, shows it, and takes over the window's size.
   void swap();
-  /// Shows the picture in `target`, a window or pixmap of the depth of the format. It is seen after finish().
+  /// Shows the picture in `target`, a window or pixmap of the depth of the format.
   void show_in(XID target, const Framebuffer& picture);
   /// Takes over the size of the X window. False: the window is gone.
   bool follow_size();
@@ -95,10 +94,6 @@ class Window final : public Drawable {
   unsigned long event_mask = 0;  ///< glXSelectEvent; no pbuffer is ever clobbered
 
  private:
-  /// Whether the server has told of a change of the window since the last call.
-  [[nodiscard]] bool has_changed();
-  /// Waits until the server has taken the picture that was sent last. The caller holds the server's mutex.
-  void wait_for_server();
   /// Makes image_ one of the size of the frame. False: no memory.
   bool make_image(int width, int height);
   void free_image();
@@ -106,7 +101,6 @@ class Window final : public Drawable {
   XImage* image_ = nullptr;
   XShmSegmentInfo segment_{};  // shmaddr null: image_ has memory of its own
   GC gc_ = nullptr;
-  bool is_sent_ = false;  ///< the server may still read image_
 };
 
 /// A pbuffer by `make(width, height)`. One that is to be the largest is halved until there is memory. Throws as make() does.
