@@ -262,6 +262,7 @@ std::shared_ptr<const Image> transferred(const Context& context, std::shared_ptr
   const bool is_scaled = state.scale != Vec4{1, 1, 1, 1} || state.bias != Vec4{};
   if (image->format == GL_RGBA && !is_scaled && !state.map_color) return image;
   auto result = std::make_shared<Image>(*image);
+  result->pixel.reserve(std::max(result->pixel.size(), result->byte.size()));
   for (const Texel& byte : std::exchange(result->byte, {})) {
     std::array<float, 4>& pixel = result->pixel.emplace_back();
     for (std::size_t c = 0; c < 4; ++c) pixel[c] = decoded(byte[c], *row_of(kTypes, GL_UNSIGNED_BYTE), false);

@@ -202,7 +202,8 @@ struct ColorOps {
   bool operator==(const ColorOps&) const = default;
 
   /// The stored code is that of the fragment's colour: no operation has an effect.
-  [[nodiscard]] constexpr bool is_plain() const { return *this == ColorOps{}; }
+  /// blends() is asked first: mostly that decides, and without a call.
+  [[nodiscard]] constexpr bool is_plain() const { return !blends() && *this == ColorOps{}; }
   [[nodiscard]] constexpr bool blends() const {
     return factors != BlendFactors{} || equation != std::array<BlendEquation, 2>{};
   }

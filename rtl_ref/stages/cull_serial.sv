@@ -145,7 +145,7 @@ module cull_serial (
   assign first_y        = above_y[B-1:S];
   assign last_y         = below_y[B-1:S];
   // From the vertex to the centre of a held pixel, less half a pixel, in whole half pixels: negative where the vertex is at
-  // the centre or beyond it. That compares the held pixel with the vertex's own one beside the sums above, not behind them;
+  // the centre or beyond it. So the held pixel is compared with the vertex's own one without waiting for the sums above;
   // where both are the same pixel, either answer does.
   logic signed [N+1:0] to_left, to_right, to_bottom;
   assign to_left        = (N + 2)'($signed({left_q, 1'b1})) + (N + 2)'($signed(not_x0_q[C-1:S-1]));

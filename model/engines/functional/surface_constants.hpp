@@ -190,7 +190,7 @@ struct SurfaceConstants {
   bool is_color_over_w = false;
   bool has_constant_color = false;  ///< color_low is its colour
   bool has_constant_w = false;      ///< textured, with one w: the level of detail is constant as well
-  bool is_upright = false;          ///< upright.inl: flat, not all nearest, u along columns, v along rows
+  bool is_upright = false;          ///< upright.inl: one w, u along columns, v along rows, a linear filter
   bool has_fog = false;
   LaneDivision division;
   LaneOverW of_coordinate, of_color;

@@ -353,7 +353,7 @@ HALFPLANE_NOINLINE void operate_on_tile(Bin& bin, const BinTriangle& t, int tile
   };
   // A passing pixel replaces the stored values: its colour is deferred like any other surface's, and computed if
   // visible. bin.state.color_write also says that alpha is read.
-  if (t.surface != 0 && bin.samples == 1 && bin.skip.attributes && ops.state.color_write && !ops.color.blends() &&
+  if (t.surface != 0 && bin.samples == 1 && bin.skip.attributes && ops.state.color_write &&
       undithered(ops.color, 1).is_plain()) {
     if (alpha == Outcome::some_pass) {
       const DrawnSurface& surface = drawn_surface(bin, static_cast<std::size_t>(t.surface));

@@ -58,8 +58,8 @@ HALFPLANE_INLINE Sampling sampling_of(const SurfaceConstants& of) {
 template <Sampling kSampling>
 struct SurfaceRamps {
   QuotientRamps<2> coordinate;
-  ReciprocalsOfQ flat_q;  ///< of all pixels, if SurfaceConstants::is_flat; likewise lambda
-  I16 flat_lod;
+  ReciprocalsOfQ constant_q;  ///< of all pixels, if SurfaceConstants::has_constant_w; likewise lambda
+  I16 constant_lod;
   QuotientRamps<4> color_over_w;
   ColorRamp color;
   LodRamps lod;
@@ -71,8 +71,8 @@ struct SurfaceRamps {
       coordinate.set(bin, of.coordinate, tile_x, tile_y);
       if constexpr (kSampling == Sampling::any) lod.set(bin, of.texture.lod, tile_x, tile_y);
       if (of.has_constant_w) {
-        flat_q.set(coordinate.q.first, of.division);
-        if constexpr (kSampling == Sampling::any) flat_lod = lod(of.texture.lod, 0, flat_q.bits);
+        constant_q.set(coordinate.q.first, of.division);
+        if constexpr (kSampling == Sampling::any) constant_lod = lod(of.texture.lod, 0, constant_q.bits);
       }
     }
     if (!has_color || of.has_constant_color) return;
@@ -115,14 +115,14 @@ struct SurfaceRamps {
     const LaneTexture& texture = of.texture;
     ReciprocalsOfQ varying;
     if (!of.has_constant_w) varying.set(coordinate.q(block), of.division);
-    const ReciprocalsOfQ& q = of.has_constant_w ? flat_q : varying;
+    const ReciprocalsOfQ& q = of.has_constant_w ? constant_q : varying;
     const auto along = [&](std::size_t axis) HALFPLANE_LAMBDA {
       const I16 u = over_q(coordinate.p[axis](block), q, of.coordinate.attribute[axis], of.of_coordinate);
       return on_axis(texture, axis, u, texture.reference[axis]);
     };
     at.u = along(0);
     at.v = along(1);
-    if constexpr (kSampling == Sampling::any) return of.has_constant_w ? flat_lod : lod(texture.lod, block, q.bits);
+    if constexpr (kSampling == Sampling::any) return of.has_constant_w ? constant_lod : lod(texture.lod, block, q.bits);
     return I16(0);
   }
 };
@@ -181,7 +181,7 @@ HALFPLANE_NOINLINE void shade(Bin& bin, const DrawnSurface& surface, int tile, s
   });
 }
 
-/// The same for the texels of a tile, R lowest.
+/// shade() with the tile's texels known, R lowest: combines them with the primitive's own colours.
 HALFPLANE_NOINLINE void combine_texels(Bin& bin, const DrawnSurface& surface, int tile, std::uint64_t pixels,
                                        const std::uint32_t* texels, std::uint32_t* const colors,
                                        const Packing& packing) {
