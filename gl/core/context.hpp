@@ -27,6 +27,8 @@ struct Drawable {
   virtual void show(const Framebuffer& /*picture*/) {}
   /// Ends the frame and shows it; called by glFlush and glFinish where the drawn buffer is the front one.
   virtual void present() {}
+  /// Waits until all frames that have ended are drawn, and seen where they are shown.
+  virtual void finish() { frame.wait(); }
   /// Ends the frame of the back buffer and copies it to the front one.
   void swap();
 

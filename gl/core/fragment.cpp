@@ -288,7 +288,7 @@ void flush(Context& context) {
 
 void finish(Context& context) {
   flush(context);
-  if (context.drawable != nullptr) context.drawable->frame.wait();
+  if (context.drawable != nullptr) context.drawable->finish();
 }
 
 }  // namespace halfplane::gl

@@ -14,6 +14,7 @@
 
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
+#include <X11/Xlib.h>
 
 namespace halfplane::gl::egl {
 

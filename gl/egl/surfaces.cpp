@@ -178,6 +178,7 @@ void copy_buffers(EGLDisplay handle, EGLSurface surface_handle, EGLNativePixmapT
   require(geometry.has_value(), EGL_BAD_NATIVE_PIXMAP);
   require(geometry->depth == surface->config->format.visual.depth, EGL_BAD_MATCH);
   surface->window.show_in(static_cast<XID>(pixmap), surface->window.frame.picture());
+  surface->window.finish();
 }
 
 void swap_interval(EGLDisplay handle, EGLint interval) {

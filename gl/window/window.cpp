@@ -14,10 +14,6 @@
 
 #include "../../model/stages/color_ops.hpp"
 
-#include <X11/Xlibint.h>
-#undef min
-#undef max
-
 /// A thread of the program may draw while another ends the process, so nothing static of this library (the symbol does not
 /// leave it) is ever destroyed.
 extern "C" int __cxa_atexit(void (*)(void*), void*, void*) { return 0; }  // NOLINT: the name is the runtime's
@@ -25,31 +21,23 @@ extern "C" int __cxa_atexit(void (*)(void*), void*, void*) { return 0; }  // NOL
 namespace halfplane::gl {
 namespace {
 
-/// X errors on connections of the driver's own. Each request that can fail is followed by XSync() in the same thread.
-thread_local int g_errors = 0;
+/// An answer or event of the server's.
+template <class T>
+using Reply = std::unique_ptr<T, decltype([](T* reply) { std::free(reply); })>;
 
-int count_error(Display*, xError*, XExtCodes*, int* result_of_reply) {
-  ++g_errors;
-  *result_of_reply = 0;
-  return 1;  // handled
-}
-
-std::vector<PixelFormat> true_color_formats(Display* display, int screen) {
-  XVisualInfo wanted{};
-  wanted.screen = screen;
-  wanted.c_class = TrueColor;
-  int count = 0;
-  XVisualInfo* const found = XGetVisualInfo(display, VisualScreenMask | VisualClassMask, &wanted, &count);
-  std::vector<XVisualInfo> visuals(found, found + count);
-  if (found != nullptr) XFree(found);
-  const VisualID usual = XVisualIDFromVisual(DefaultVisual(display, screen));
-  std::ranges::stable_sort(visuals, {}, [&](const XVisualInfo& v) {
-    return v.visualid == usual ? -1 : v.depth > 24 ? 100 + v.depth : 24 - v.depth;
+std::vector<PixelFormat> true_color_formats(xcb_screen_t* screen) {
+  std::vector<Visual> visuals;
+  for (auto depth = xcb_screen_allowed_depths_iterator(screen); depth.rem != 0; xcb_depth_next(&depth))
+    for (auto it = xcb_depth_visuals_iterator(depth.data); it.rem != 0; xcb_visualtype_next(&it))
+      if (const xcb_visualtype_t& v = *it.data; v._class == XCB_VISUAL_CLASS_TRUE_COLOR && depth.data->depth >= 8)
+        visuals.push_back({v.visual_id, depth.data->depth, v.red_mask, v.green_mask, v.blue_mask});
+  std::ranges::stable_sort(visuals, {}, [&](const Visual& v) {
+    return v.visualid == screen->root_visual ? -1 : v.depth > 24 ? 100 + v.depth : 24 - v.depth;
   });
   std::vector<PixelFormat> formats;
   std::map<int, int> of_depth;  // visuals so far
-  for (const XVisualInfo& visual : visuals) formats.push_back({visual, ++of_depth[visual.depth] != 2});
-  for (const XVisualInfo& visual : visuals)
+  for (const Visual& visual : visuals) formats.push_back({visual, ++of_depth[visual.depth] != 2});
+  for (const Visual& visual : visuals)
     if (of_depth[visual.depth] == 1) formats.push_back({visual, false});
   return formats;
 }
@@ -61,15 +49,10 @@ constexpr std::uint32_t argb(ColorFormat format, std::uint32_t code) {
 }
 
 /// An 8-bit channel as one of as many bits as `mask` has.
-unsigned long in_mask(std::uint32_t channel, unsigned long mask) {
+std::uint32_t in_mask(std::uint32_t channel, std::uint32_t mask) {
   if (mask == 0) return 0;
-  const int shift = __builtin_ctzl(mask);
+  const int shift = std::countr_zero(mask);
   return (channel * (mask >> shift) + 127) / 255 << shift;
-}
-
-bool is_little_endian_argb(const XImage& image) {
-  return image.bits_per_pixel == 32 && image.byte_order == LSBFirst && image.red_mask == 0xff0000 &&
-         image.green_mask == 0xff00 && image.blue_mask == 0xff && std::endian::native == std::endian::little;
 }
 
 }  // namespace
@@ -97,31 +80,56 @@ Server* Server::open(const char* name) {
   static std::mutex mutex;
   static std::map<std::string, std::unique_ptr<Server>>* servers = new std::map<std::string, std::unique_ptr<Server>>;
   const std::lock_guard lock(mutex);
-  std::unique_ptr<Server>& server = (*servers)[XDisplayName(name)];
-  if (server == nullptr)
-    if (Display* const display = XOpenDisplay(name); display != nullptr) server.reset(new Server(display));
+  if (name == nullptr || *name == 0) name = std::getenv("DISPLAY");
+  std::unique_ptr<Server>& server = (*servers)[name == nullptr ? "" : name];
+  if (server == nullptr) {
+    int screen = 0;
+    xcb_connection_t* const connection = xcb_connect(name, &screen);
+    if (xcb_connection_has_error(connection) == 0)
+      server.reset(new Server(connection, screen));
+    else
+      xcb_disconnect(connection);
+  }
   return server.get();
 }
 
-Server::Server(Display* display) : display_(display), has_shm_(XShmQueryExtension(display) != 0) {
-  if (const XExtCodes* codes = XAddExtension(display); codes != nullptr)
-    XESetError(display, codes->extension, count_error);
-  for (int screen = 0; screen < ScreenCount(display); ++screen) formats_.push_back(true_color_formats(display, screen));
+Server::Server(xcb_connection_t* connection, int default_screen)
+    : connection_(connection),
+      default_screen_(default_screen),
+      has_shm_(xcb_get_extension_data(connection, &xcb_shm_id)->present != 0) {
+  for (auto it = xcb_setup_roots_iterator(xcb_get_setup(connection)); it.rem != 0; xcb_screen_next(&it))
+    formats_.push_back(true_color_formats(it.data));
 }
 
-std::optional<Server::Geometry> Server::geometry(XID drawable, bool must_be_window) {
+std::optional<Server::Geometry> Server::geometry(XID drawable, bool must_be_window) const {
+  const auto id = static_cast<xcb_drawable_t>(drawable);
+  if (id == 0) return std::nullopt;
+  if (must_be_window) {
+    const auto asked = xcb_get_window_attributes(connection_, id);
+    if (!Reply<xcb_get_window_attributes_reply_t>(xcb_get_window_attributes_reply(connection_, asked, nullptr)))
+      return std::nullopt;
+  }
+  const auto asked = xcb_get_geometry(connection_, id);
+  const Reply<xcb_get_geometry_reply_t> has(xcb_get_geometry_reply(connection_, asked, nullptr));
+  if (has == nullptr) return std::nullopt;
+  int screen = 0;
+  for (auto it = xcb_setup_roots_iterator(xcb_get_setup(connection_)); it.rem != 0; xcb_screen_next(&it), ++screen)
+    if (it.data->root == has->root) return Geometry{screen, has->depth, has->width, has->height};
+  return std::nullopt;
+}
+
+void Server::watch(XID window) const {
+  const std::uint32_t events = XCB_EVENT_MASK_STRUCTURE_NOTIFY;
+  xcb_change_window_attributes(connection_, static_cast<xcb_window_t>(window), XCB_CW_EVENT_MASK, &events);
+}
+
+bool Server::has_changed(XID window) {
   const std::lock_guard lock(mutex_);
-  ::Window root = 0;
-  int x = 0, y = 0;
-  unsigned width = 0, height = 0, border = 0, depth = 0;
-  XWindowAttributes attributes;
-  if (drawable == 0 || (must_be_window && XGetWindowAttributes(display_, drawable, &attributes) == 0) ||
-      XGetGeometry(display_, drawable, &root, &x, &y, &width, &height, &border, &depth) == 0)
-    return std::nullopt;
-  Geometry result{0, static_cast<int>(depth), static_cast<int>(width), static_cast<int>(height)};
-  for (int screen = 0; screen < screens(); ++screen)
-    if (RootWindow(display_, screen) == root) result.screen = screen;
-  return result;
+  // Errors come this way as well: of windows that are gone, which is no matter.
+  while (const Reply<xcb_generic_event_t> event{xcb_poll_for_event(connection_)})
+    if ((event->response_type & 0x7f) == XCB_CONFIGURE_NOTIFY)
+      changed_.insert(reinterpret_cast<const xcb_configure_notify_event_t*>(event.get())->window);
+  return changed_.erase(window) != 0;
 }
 
 Window::Window(DrawableKind what, Server* x_server, XID x_drawable, const PixelFormat& its_format, int width,
@@ -133,15 +141,25 @@ Window::Window(DrawableKind what, Server* x_server, XID x_drawable, const PixelF
 Window::~Window() {
   frame.wait();
   if (server == nullptr) return;
-  const std::lock_guard lock(server->mutex_);
   free_image();
-  if (gc_ != nullptr) XFreeGC(server->display_, gc_);
-  XSync(server->display_, 0);
+  if (gc_ != 0) xcb_free_gc(server->connection_, gc_);
+  xcb_flush(server->connection_);
 }
 
 void Window::present() {
   frame.end([this](const Framebuffer& picture) { show(picture); });
-  frame.wait();
+  finish();
+}
+
+void Window::finish() {
+  Drawable::finish();
+  wait_for_server();
+}
+
+void Window::wait_for_server() {
+  if (!sent_) return;
+  Reply<xcb_get_input_focus_reply_t>(xcb_get_input_focus_reply(server->connection_, *sent_, nullptr));
+  sent_.reset();
 }
 
 void Window::show(const Framebuffer& picture) {
@@ -151,11 +169,12 @@ void Window::show(const Framebuffer& picture) {
 void Window::swap() {
   if (single_buffered) return;
   Drawable::swap();
-  follow_size();
+  if (kind == DrawableKind::window && server->has_changed(xid)) follow_size();
 }
 
 bool Window::follow_size() {
   if (kind != DrawableKind::window) return true;
+  server->watch(xid);  // again: another window may have this one's id now
   const std::optional<Server::Geometry> now = server->geometry(xid);
   if (!now) return false;
   if (now->width != frame.width() || now->height != frame.height()) {
@@ -169,58 +188,60 @@ bool Window::follow_size() {
 }
 
 void Window::free_image() {
-  if (image_ == nullptr) return;
-  if (segment_.shmaddr != nullptr) {
-    XShmDetach(server->display_, &segment_);
-    XSync(server->display_, 0);
-    image_->data = nullptr;
-    shmdt(segment_.shmaddr);
-    segment_ = {};
+  wait_for_server();
+  if (segment_ != 0) {
+    xcb_shm_detach(server->connection_, segment_);
+    shmdt(bytes_);
   }
-  XDestroyImage(image_);
-  image_ = nullptr;
+  bytes_ = nullptr;
+  segment_ = 0;
 }
 
-bool Window::make_image(int width, int height) {
-  if (image_ != nullptr && image_->width == width && image_->height == height) return true;
+void Window::make_image(int width, int height) {
+  if (bytes_ != nullptr && width_ == width && height_ == height) return;
   free_image();
-  Display* const display = server->display_;
-  const auto w = static_cast<unsigned>(width), h = static_cast<unsigned>(height);
-  const auto depth = static_cast<unsigned>(format.visual.depth);
-  const auto bytes = [&] { return static_cast<std::size_t>(image_->bytes_per_line) * h; };
+  xcb_connection_t* const connection = server->connection_;
+  int padding = 32;
+  for (auto it = xcb_setup_pixmap_formats_iterator(xcb_get_setup(connection)); it.rem != 0; xcb_format_next(&it))
+    if (it.data->depth == format.visual.depth)
+      bits_per_pixel_ = it.data->bits_per_pixel, padding = it.data->scanline_pad;
+  width_ = width, height_ = height;
+  pitch_ = static_cast<std::size_t>((width * bits_per_pixel_ + padding - 1) / padding * padding / 8);
+  const std::size_t size = pitch_ * static_cast<std::size_t>(height);
   if (server->has_shm_) {
-    image_ = XShmCreateImage(display, format.visual.visual, depth, ZPixmap, nullptr, &segment_, w, h);
-    segment_.shmid = image_ == nullptr ? -1 : shmget(IPC_PRIVATE, bytes(), IPC_CREAT | 0600);
-    void* const memory = segment_.shmid < 0 ? nullptr : shmat(segment_.shmid, nullptr, 0);
+    const int id = shmget(IPC_PRIVATE, size, IPC_CREAT | 0600);
+    void* const memory = id < 0 ? nullptr : shmat(id, nullptr, 0);
     if (memory != nullptr && reinterpret_cast<std::intptr_t>(memory) != -1) {
-      segment_.shmaddr = image_->data = static_cast<char*>(memory);
-      segment_.readOnly = 1;
-      g_errors = 0;
-      XShmAttach(display, &segment_);
-      XSync(display, 0);
+      segment_ = xcb_generate_id(connection);
+      bytes_ = static_cast<std::uint8_t*>(memory);
+      const auto asked = xcb_shm_attach_checked(connection, segment_, static_cast<std::uint32_t>(id), 1);
+      if (const Reply<xcb_generic_error_t> error{xcb_request_check(connection, asked)}) {
+        shmdt(memory);
+        segment_ = 0;
+      }
     }
-    if (segment_.shmid >= 0) shmctl(segment_.shmid, IPC_RMID, nullptr);  // goes with the last process that has it
-    if (segment_.shmaddr != nullptr && g_errors == 0) return true;
+    if (id >= 0) shmctl(id, IPC_RMID, nullptr);  // goes with the last process that has it
+    if (segment_ != 0) return;
     server->has_shm_ = false;  // a server on another machine
-    free_image();
-    segment_ = {};
   }
-  image_ = XCreateImage(display, format.visual.visual, depth, ZPixmap, 0, nullptr, w, h, 32, 0);
-  if (image_ == nullptr) return false;
-  image_->data = static_cast<char*>(std::malloc(bytes()));
-  if (image_->data == nullptr) free_image();
-  return image_ != nullptr;
+  own_.resize(size);
+  bytes_ = own_.data();
 }
 
 void Window::show_in(XID target, const Framebuffer& picture) {
   const ColorFormat color_format = frame.options().config.color_format;
-  const std::lock_guard lock(server->mutex_);
   const int width = picture.width, height = picture.height;
-  if (!make_image(width, height)) return;
-  const bool is_direct = is_little_endian_argb(*image_);
-  const int pitch = is_direct ? image_->bytes_per_line / 4 : width;
+  xcb_connection_t* const connection = server->connection_;
+  const Visual& visual = format.visual;
+  const bool is_lsb_first = xcb_get_setup(connection)->image_byte_order == XCB_IMAGE_ORDER_LSB_FIRST;
+  wait_for_server();
+  make_image(width, height);
+  const bool is_direct = bits_per_pixel_ == 32 && is_lsb_first && visual.red_mask == 0xff0000 &&
+                         visual.green_mask == 0xff00 && visual.blue_mask == 0xff &&
+                         std::endian::native == std::endian::little;
+  const int pitch = is_direct ? static_cast<int>(pitch_ / 4) : width;
   std::vector<std::uint32_t> converted(is_direct ? 0 : static_cast<std::size_t>(pitch) * static_cast<unsigned>(height));
-  const std::span<std::uint32_t> pixels(is_direct ? reinterpret_cast<std::uint32_t*>(image_->data) : converted.data(),
+  const std::span<std::uint32_t> pixels(is_direct ? reinterpret_cast<std::uint32_t*>(bytes_) : converted.data(),
                                         static_cast<std::size_t>(pitch) * static_cast<unsigned>(height));
   for (int y = 0; y < height; ++y) {
     const auto row = pixels.begin() + static_cast<std::ptrdiff_t>(y) * pitch;
@@ -232,25 +253,40 @@ void Window::show_in(XID target, const Framebuffer& picture) {
   }
   frame.draw_hud(pixels, width, height, pitch);
   if (!is_direct) {
-    const unsigned long others = ~(image_->red_mask | image_->green_mask | image_->blue_mask);
-    const unsigned long alpha_mask = format.visual.depth == 32 ? others & 0xffffffff : 0;
-    for (int y = 0; y < height; ++y)
-      for (int x = 0; x < width; ++x) {
-        const std::uint32_t c =
-            pixels[static_cast<std::size_t>(y) * static_cast<unsigned>(pitch) + static_cast<unsigned>(x)];
-        XPutPixel(image_, x, y,
-                  in_mask(c >> 16 & 255, image_->red_mask) | in_mask(c >> 8 & 255, image_->green_mask) |
-                      in_mask(c & 255, image_->blue_mask) | in_mask(c >> 24, alpha_mask));
+    const std::uint32_t alpha_mask = visual.depth == 32 ? ~(visual.red_mask | visual.green_mask | visual.blue_mask) : 0;
+    const int bytes = bits_per_pixel_ / 8;
+    for (int y = 0; y < height; ++y) {
+      std::uint8_t* to = bytes_ + static_cast<std::size_t>(y) * pitch_;
+      for (const std::uint32_t c : pixels.subspan(static_cast<std::size_t>(y) * static_cast<unsigned>(width))
+                                       .first(static_cast<unsigned>(width))) {
+        const std::uint32_t value = in_mask(c >> 16 & 255, visual.red_mask) | in_mask(c >> 8 & 255, visual.green_mask) |
+                                    in_mask(c & 255, visual.blue_mask) | in_mask(c >> 24, alpha_mask);
+        for (int i = 0; i < bytes; ++i)
+          *to++ = static_cast<std::uint8_t>(value >> 8 * (is_lsb_first ? i : bytes - 1 - i));
       }
+    }
   }
-  Display* const display = server->display_;
-  if (gc_ == nullptr) gc_ = XCreateGC(display, target, 0, nullptr);
-  const auto w = static_cast<unsigned>(width), h = static_cast<unsigned>(height);
-  if (segment_.shmaddr != nullptr)
-    XShmPutImage(display, target, gc_, image_, 0, 0, 0, 0, w, h, 0);
-  else
-    XPutImage(display, target, gc_, image_, 0, 0, 0, 0, w, h);
-  XSync(display, 0);  // the image is free again, and glFinish has to wait for the server
+  const auto to = static_cast<xcb_drawable_t>(target);
+  const auto w = static_cast<std::uint16_t>(width), depth = static_cast<std::uint16_t>(visual.depth);
+  if (gc_ == 0) xcb_create_gc(connection, gc_ = xcb_generate_id(connection), to, 0, nullptr);
+  if (segment_ != 0) {
+    const auto h = static_cast<std::uint16_t>(height);
+    xcb_shm_put_image(connection, to, gc_, w, h, 0, 0, w, h, 0, 0, static_cast<std::uint8_t>(depth),
+                      XCB_IMAGE_FORMAT_Z_PIXMAP, 0, segment_, 0);
+  } else {
+    const std::size_t most =
+        xcb_get_maximum_request_length(connection) * std::size_t{4} - sizeof(xcb_put_image_request_t) - 4;
+    const int rows = static_cast<int>(std::clamp<std::size_t>(most / pitch_, 1, static_cast<unsigned>(height)));
+    for (int y = 0; y < height; y += rows) {
+      const int count = std::min(rows, height - y);
+      xcb_put_image(connection, XCB_IMAGE_FORMAT_Z_PIXMAP, to, gc_, w, static_cast<std::uint16_t>(count), 0,
+                    static_cast<std::int16_t>(y), 0, static_cast<std::uint8_t>(depth),
+                    static_cast<std::uint32_t>(pitch_) * static_cast<unsigned>(count),
+                    bytes_ + static_cast<std::size_t>(y) * pitch_);
+    }
+  }
+  sent_ = xcb_get_input_focus(connection);  // the server reads the picture beside the next frame
+  xcb_flush(connection);
 }
 
 }  // namespace halfplane::gl

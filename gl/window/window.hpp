@@ -2,18 +2,19 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <climits>
 #include <cstdint>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <vector>
 
 #include "../core/context.hpp"
 
-#include <X11/Xlib.h>
-#include <X11/Xutil.h>
-#include <X11/extensions/XShm.h>
+#include <X11/X.h>
+#include <xcb/shm.h>
 
 namespace halfplane::gl {
 
@@ -32,21 +33,27 @@ inline constexpr int kColorBits = 8;  ///< of each of R, G, B, A
 inline constexpr int kDepthBits = 24, kStencilBits = 8;
 inline constexpr int kAccumBits = 16;  ///< of each of R, G, B, A
 
+struct Visual {
+  VisualID visualid = 0;  ///< 0: no visual
+  int depth = 0;
+  std::uint32_t red_mask = 0, green_mask = 0, blue_mask = 0;
+};
+
 /// Buffers that go with a visual.
 struct PixelFormat {
-  XVisualInfo visual{};  ///< its pointer is one of the driver's own connection; visualid 0: no visual
+  Visual visual;
   bool double_buffered = true;
 };
 
-/// A connection of the driver's own to an X server: its errors (a window that is gone) reach no handler of the
-/// program. Any thread may use it.
+/// A connection of the driver's own to an X server, by XCB: Xlib would hand errors (a window that is gone) to the program's
+/// handler wherever it reads them without a reply. Any thread may use it.
 class Server {
  public:
   /// The server of a display's name, null for that of the environment. Kept until the process ends. Null: no server answers.
   [[nodiscard]] static Server* open(const char* name);
 
   [[nodiscard]] int screens() const { return static_cast<int>(formats_.size()); }
-  [[nodiscard]] int default_screen() const { return DefaultScreen(display_); }
+  [[nodiscard]] int default_screen() const { return default_screen_; }
   /// A screen's TrueColor visuals. The default visual comes first, visuals with alpha last. The second visual of each
   /// depth is single-buffered; where there is none, the first stands for both.
   [[nodiscard]] const std::vector<PixelFormat>& formats(int screen) const {
@@ -57,16 +64,23 @@ class Server {
     int screen = 0, depth = 0, width = 0, height = 0;
   };
   /// The geometry of a window or pixmap, or of a window alone. None: there is no such drawable.
-  [[nodiscard]] std::optional<Geometry> geometry(XID drawable, bool must_be_window = false);
+  [[nodiscard]] std::optional<Geometry> geometry(XID drawable, bool must_be_window = false) const;
+
+  /// From now on changes of the window's size are seen.
+  void watch(XID window) const;
+  /// Whether the size may have changed since the last call. Asks nobody: the server tells.
+  [[nodiscard]] bool has_changed(XID window);
 
  private:
   friend class Window;
-  explicit Server(Display* display);
+  Server(xcb_connection_t* connection, int default_screen);
 
-  Display* display_;
-  std::mutex mutex_;
-  bool has_shm_;
+  xcb_connection_t* connection_;
+  int default_screen_;
+  std::atomic<bool> has_shm_;
   std::vector<std::vector<PixelFormat>> formats_;  // by screen
+  std::mutex mutex_;
+  std::set<XID> changed_;
 };
 
 enum class DrawableKind { window, pixmap, pbuffer };
@@ -79,6 +93,7 @@ class Window final : public Drawable {
 
   void show(const Framebuffer& picture) override;
   void present() override;
+  void finish() override;
   /// Ends the frame, shows it, and takes over the window's size.
   void swap();
   /// Shows the picture in `target`, a window or pixmap of the depth of the format.
@@ -94,13 +109,18 @@ class Window final : public Drawable {
   unsigned long event_mask = 0;  ///< glXSelectEvent; no pbuffer is ever clobbered
 
  private:
-  /// Makes image_ one of the size of the frame. False: no memory.
-  bool make_image(int width, int height);
+  void make_image(int width, int height);
   void free_image();
+  void wait_for_server();
 
-  XImage* image_ = nullptr;
-  XShmSegmentInfo segment_{};  // shmaddr null: image_ has memory of its own
-  GC gc_ = nullptr;
+  // The picture as the server reads it.
+  int width_ = 0, height_ = 0, bits_per_pixel_ = 0;
+  std::size_t pitch_ = 0;          // bytes of a row
+  std::uint8_t* bytes_ = nullptr;  // null: none yet
+  xcb_shm_seg_t segment_ = 0;      // 0: in own_
+  std::vector<std::uint8_t> own_;
+  xcb_gcontext_t gc_ = 0;
+  std::optional<xcb_get_input_focus_cookie_t> sent_;  // answered when the server has read the last picture
 };
 
 /// A pbuffer by `make(width, height)`. One that is to be the largest is halved until there is memory. Throws as make() does.

@@ -107,7 +107,7 @@ int convert_trace(const CommonOptions& options, const ConvertTraceOptions& trace
 int convert_trace(const CommonOptions& options, const ConvertTraceOptions&, Json&) {
   std::cerr
       << "halfplane: " << options.scene
-      << ": this build reads no traces; install libglvnd-dev, libx11-dev, libxext-dev and libsnappy-dev and build "
+      << ": this build reads no traces; install libglvnd-dev, libx11-dev, libxcb-shm0-dev and libsnappy-dev and build "
          "again\n";
   return exit_missing;
 }

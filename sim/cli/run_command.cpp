@@ -62,7 +62,7 @@ std::filesystem::path driver_folder() {
     if (std::filesystem::exists(here / folder / "libGLX_halfplane.so.0"))
       return std::filesystem::canonical(here / folder);
   throw std::runtime_error(
-      "run: this build has no OpenGL driver (libGLX_halfplane.so.0); install libglvnd-dev, libx11-dev and libxext-dev, "
+      "run: this build has no OpenGL driver (libGLX_halfplane.so.0); install libglvnd-dev, libx11-dev and libxcb-shm0-dev, "
       "and build again");
 }
 

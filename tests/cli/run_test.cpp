@@ -116,5 +116,17 @@ TEST_F(Run, MissingStatesEndTheProgramIfAsked) {
 }
 #endif
 
+#ifdef HALFPLANE_WINDOW_PROGRAM
+/// Windows of an X server: pictures, sizes, a window that is gone. The program's status names the check that does not hold.
+TEST_F(Run, WindowsShowWhatIsDrawn) {
+  const Outcome outcome = paste(
+      "Xvfb -displayfd 1 -screen 0 320x240x24 -nolisten tcp >display.txt 2>xvfb.txt & server=$!\n"
+      "while kill -0 $server && ! [ -s display.txt ]; do sleep 0.02; done\n"
+      "DISPLAY=:$(cat display.txt) '" HALFPLANE_PROGRAM "' run --quiet -- '" HALFPLANE_WINDOW_PROGRAM
+      "'; status=$?; kill $server; exit $status");
+  EXPECT_EQ(outcome.status, 0) << outcome.out << outcome.err;
+}
+#endif
+
 }  // namespace
 }  // namespace halfplane::cli::run_test

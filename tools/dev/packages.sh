@@ -25,7 +25,8 @@ libglvnd-dev         gl    glvnd/libglxabi.h
 khronos-api          gl    /usr/share/khronos-api/gl.xml
 libx11-dev           gl    X11/Xlib.h
 libsnappy-dev        gl    snappy.h
-libxext-dev          gl    X11/extensions/XShm.h
+libxcb-shm0-dev      gl    xcb/shm.h
+xvfb                 test  Xvfb
 libgtest-dev         test  gtest/gtest.h
 python3-jsonschema   test  /usr/lib/python3/dist-packages/jsonschema/__init__.py
 python3              coverage python3
