@@ -129,13 +129,10 @@ struct Streams {
       from.get(i, value.data(), value.size());
       command(value);
     };
-    constexpr auto kAllowed = InsideBegin::allowed;
-    with(Array::edge_flag, [&](const Vec4& v) {
-      issue<&gl::edge_flag, kAllowed>(context, static_cast<GLboolean>(v[0] != 0 ? GL_TRUE : GL_FALSE));
-    });
+    with(Array::edge_flag, [&](const Vec4& v) { issue<&gl::edge_flag>(context, static_cast<GLboolean>(v[0] != 0)); });
     for (std::size_t unit = 0; unit < kTextureUnits; ++unit) {
       const auto command = [&](const Vec4& v) {
-        issue<&gl::tex_coord, kAllowed>(context, static_cast<GLenum>(GL_TEXTURE0 + unit), v[0], v[1], v[2], v[3]);
+        issue<&gl::tex_coord>(context, static_cast<GLenum>(GL_TEXTURE0 + unit), v[0], v[1], v[2], v[3]);
       };
       with(Array::tex_coord, command, unit);
     }
@@ -143,12 +140,11 @@ struct Streams {
       context.state.point.size = v[0];
       if (context.inside_begin()) context.input.set(Attribute::point_size, std::array{v[0]});
     });
-    with(Array::fog_coord, [&](const Vec4& v) { issue<&gl::fog_coord, kAllowed>(context, v[0]); });
-    with(Array::index, [&](const Vec4& v) { issue<&gl::index, kAllowed>(context, v[0]); });
-    with(Array::secondary_color,
-         [&](const Vec4& v) { issue<&gl::secondary_color, kAllowed>(context, v[0], v[1], v[2]); });
-    with(Array::color, [&](const Vec4& v) { issue<&gl::color, kAllowed>(context, v[0], v[1], v[2], v[3]); });
-    with(Array::normal, [&](const Vec4& v) { issue<&gl::normal, kAllowed>(context, v[0], v[1], v[2]); });
+    with(Array::fog_coord, [&](const Vec4& v) { issue<&gl::fog_coord>(context, v[0]); });
+    with(Array::index, [&](const Vec4& v) { issue<&gl::index>(context, v[0]); });
+    with(Array::secondary_color, [&](const Vec4& v) { issue<&gl::secondary_color>(context, v[0], v[1], v[2]); });
+    with(Array::color, [&](const Vec4& v) { issue<&gl::color>(context, v[0], v[1], v[2], v[3]); });
+    with(Array::normal, [&](const Vec4& v) { issue<&gl::normal>(context, v[0], v[1], v[2]); });
   }
 
   void issue_vertex(Context& context, std::uint32_t i) const {
@@ -157,7 +153,7 @@ struct Streams {
     Vec4 position{0, 0, 0, 1};
     (*this)[Array::vertex].get(i, position.data(), position.size());
     const auto& [x, y, z, w] = position;
-    issue<&gl::vertex, InsideBegin::allowed>(context, x, y, z, w);
+    issue<&gl::vertex>(context, x, y, z, w);
   }
 };
 
@@ -266,7 +262,7 @@ void draw(Context& context, const Streams& streams, GLenum mode, std::uint32_t f
   if (is_compiled) {
     const auto list = std::make_shared<DisplayList>();
     list->add_vertices(mode, vertices, places);
-    return issue<&play>(context, std::shared_ptr<const DisplayList>(list));
+    return issue<&play>(context, list);
   }
   update_shading(context);
   context.shaded.clear();

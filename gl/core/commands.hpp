@@ -1,5 +1,5 @@
 // Every command of OpenGL 1.5, once for all its variants: coordinates are doubles, colours are doubles with 1 as the largest
-// integer, arrays of a known length are arrays. Entry points (entry_points.py) convert to these. Each takes the context that
+// integer, arrays of a known length are arrays. Entry points (entry_points.cpp) convert to these. Each takes the context that
 // it works on and reports errors by Context::fail(), as the specification has them. "List": commands of display lists;
 // the others are carried out at once (OpenGL 1.5, 5.4).
 #pragma once

@@ -1,5 +1,5 @@
 // A context: the state of OpenGL 1.5, objects shared with other contexts, and its drawable. Commands are functions on it
-// (commands.hpp); entry points are generated from gl.xml (entry_points.py).
+// (commands.hpp); entry points are a table of them (entry_points.cpp).
 #pragma once
 
 #include <array>

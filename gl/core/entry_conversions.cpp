@@ -83,14 +83,14 @@ void enter_tex_sub_image(Context& context, int dimensions, GLenum target, GLint 
 }
 
 void enter_call_lists(Context& context, GLsizei n, GLenum type, const void* lists) {
-  if (const auto names = list_names(context, n, type, lists)) issue<&call_lists, InsideBegin::allowed>(context, names);
+  if (const auto names = list_names(context, n, type, lists)) issue<&call_lists>(context, names);
 }
 
 void enter_prioritize_textures(Context& context, GLsizei n, const GLuint* names, const GLfloat* priorities) {
   if (n < 0) return list_error(context, GL_INVALID_VALUE);
   auto pairs = std::make_shared<std::vector<std::pair<GLuint, double>>>();
   for (GLsizei i = 0; i < n; ++i) pairs->emplace_back(names[i], priorities[i]);
-  issue<&prioritize_textures>(context, std::shared_ptr<const std::vector<std::pair<GLuint, double>>>(pairs));
+  issue<&prioritize_textures>(context, pairs);
 }
 
 void enter_delete_textures(Context& context, GLsizei n, const GLuint* names) {

@@ -7,6 +7,7 @@
 #include <exception>
 #include <limits>
 #include <memory>
+#include <span>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -28,17 +29,7 @@ auto with_context(const Body& body) -> decltype(body(std::declval<Context&>())) 
   return decltype(body(std::declval<Context&>()))();
 }
 
-/// A command that goes into display lists, refused between glBegin and glEnd.
-template <auto Command, class... Args>
-void listed(const Args&... args) {
-  with_context([&](Context& context) { issue<Command>(context, args...); });
-}
-/// The same, allowed there.
-template <auto Command, class... Args>
-void listed_inside(const Args&... args) {
-  with_context([&](Context& context) { issue<Command, InsideBegin::allowed>(context, args...); });
-}
-/// For commands that no list holds: calls `body` with the context, not between glBegin and glEnd.
+/// Calls `body` with the context, not between glBegin and glEnd.
 template <class Body>
 auto outside_begin(const Body& body) {
   return with_context([&](Context& context) {
@@ -47,23 +38,47 @@ auto outside_begin(const Body& body) {
     return decltype(body(context))();
   });
 }
-/// A command that is carried out at once, refused between glBegin and glEnd.
-template <auto Command, class... Args>
-auto now(const Args&... args) {
-  return outside_begin([&](Context& context) { return Command(context, args...); });
-}
-/// The same, allowed there.
-template <auto Command, class... Args>
-void now_inside(const Args&... args) {
-  with_context([&](Context& context) { Command(context, args...); });
-}
+
+// Commands as functions of their arguments but for the context.
+
+/// A command that goes into display lists.
+template <auto Command>
+constexpr auto listed =
+    [](const auto&... args) { with_context([&](Context& context) { issue<Command>(context, args...); }); };
+/// A command that is carried out at once.
+template <auto Command>
+constexpr auto now = [](const auto&... args) {
+  const auto body = [&](Context& context) { return Command(context, args...); };
+  if constexpr (kIsAllowedInside<Command>)
+    return with_context(body);
+  else
+    return outside_begin(body);
+};
+/// A function that issues a command itself.
+template <auto Function>
+constexpr auto entered =
+    [](const auto&... args) { with_context([&](Context& context) { Function(context, args...); }); };
 
 /// An error as a command: where a list is compiled, it comes when the list is called.
 inline void fail(Context& context, GLenum error) { context.fail(error); }
 inline void list_error(Context& context, GLenum error) { issue<&fail>(context, error); }
 
-constexpr double real(double value) { return value; }
-constexpr double fixed(GLfixed value) { return value / 65536.0; }
+/// The 16.16 numbers of OpenGL ES, in place of their type, which is that of an integer.
+struct Fixed;
+/// The type that numbers are passed by.
+template <class T>
+using Raw = std::conditional_t<std::is_same_v<T, Fixed>, GLfixed, T>;
+
+/// The type of an entry point's parameter where a command has a P, and its value.
+template <class P, class T>
+using Given = std::conditional_t<std::is_same_v<P, double>, Raw<T>, P>;
+template <class P, class T>
+constexpr P read(Given<P, T> value) {
+  if constexpr (std::is_same_v<P, double> && std::is_same_v<T, Fixed>)
+    return value / 65536.0;
+  else
+    return static_cast<P>(value);
+}
 /// Integers as colours and normals (table 2.6).
 template <class T>
 constexpr double norm(T value) {
@@ -75,43 +90,24 @@ constexpr double norm(T value) {
     return (2.0 * value + 1) / static_cast<double>(std::numeric_limits<std::make_unsigned_t<T>>::max());
 }
 
-template <class T>
-Params scalar(GLenum, T value) {
-  return {{static_cast<double>(value)}, std::is_integral_v<T>, false};
-}
-template <class T>
-Params vector(GLenum pname, const T* values) {
-  Params params{{}, std::is_integral_v<T>, true};
-  std::copy_n(values, param_count(pname), params.value.begin());
-  return params;
-}
 /// Whether the values of `pname` are enums or booleans, which OpenGL ES does not scale in its x variants.
 [[nodiscard]] bool is_unscaled(GLenum pname);
-inline Params scaled(GLenum pname, Params params) {
-  params.is_integer = is_unscaled(pname);
-  if (!params.is_integer)
+template <class T>
+Params params_of(GLenum pname, std::span<const Raw<T>> values, bool is_vector) {
+  Params params{{}, std::is_integral_v<Raw<T>>, is_vector};
+  std::ranges::copy(values, params.value.begin());
+  if (std::is_same_v<T, Fixed>) params.is_integer = is_unscaled(pname);
+  if (std::is_same_v<T, Fixed> && !params.is_integer)
     for (double& value : params.value) value /= 65536;
   return params;
 }
-inline Params scalar_fixed(GLenum pname, GLfixed value) { return scaled(pname, scalar(pname, value)); }
-inline Params vector_fixed(GLenum pname, const GLfixed* values) { return scaled(pname, vector(pname, values)); }
 
-template <class T>
-Mat4 matrix(const T* m) {
-  Mat4 result;
-  std::copy_n(m, result.size(), result.begin());
+template <std::size_t N, class T>
+std::array<double, N> read_all(const Raw<T>* values) {
+  std::array<double, N> result;
+  std::transform(values, values + N, result.begin(), read<double, T>);
   return result;
 }
-inline Mat4 matrix_fixed(const GLfixed* m) {
-  Mat4 result;
-  std::transform(m, m + result.size(), result.begin(), fixed);
-  return result;
-}
-template <class T>
-Vec4 vec4(const T* v) {
-  return {real(v[0]), real(v[1]), real(v[2]), real(v[3])};
-}
-inline Vec4 vec4_fixed(const GLfixed* v) { return {fixed(v[0]), fixed(v[1]), fixed(v[2]), fixed(v[3])}; }
 
 /// A value of state as T (6.1.2).
 template <class T>
@@ -133,18 +129,11 @@ T converted(double value, ValueKind kind) {
   }
 }
 template <class T>
-void store(const Values& values, T* to) {
-  for (const double value : values.value) *to++ = converted<T>(value, values.kind);
-}
-inline void store_fixed(const Values& values, GLfixed* to) {
-  const bool is_scaled = values.kind == ValueKind::real || values.kind == ValueKind::color;
+void store(const Values& values, Raw<T>* to) {
+  const bool is_real = values.kind == ValueKind::real || values.kind == ValueKind::color;
   for (const double value : values.value)
-    *to++ = converted<GLfixed>(is_scaled ? value * 65536 : value, ValueKind::real);
-}
-/// glGetFixedv scales integers, too.
-inline void store_state_fixed(Values values, GLfixed* to) {
-  values.kind = ValueKind::real;
-  store_fixed(values, to);
+    *to++ = std::is_same_v<T, Fixed> ? converted<Raw<T>>(is_real ? value * 65536 : value, ValueKind::real)
+                                     : converted<Raw<T>>(value, values.kind);
 }
 /// `equation` keeps its values where `plane` is none.
 template <class T>
@@ -155,7 +144,7 @@ void store_clip_plane(Context& context, GLenum plane, T* equation) {
     *equation++ = static_cast<T>(std::is_integral_v<T> ? std::clamp(part * 65536, -2147483648.0, 2147483647.0) : part);
 }
 
-// Commands with arrays, and others without a simple row in entry_points.py (entry_conversions.cpp). Each is called at any time.
+// Commands with arrays, and others without a simple row in the table of entry points (entry_conversions.cpp). Each is called at any time.
 void enter_draw_pixels(Context& context, GLsizei width, GLsizei height, GLenum format, GLenum type, const void* pixels);
 void enter_bitmap(Context& context, GLsizei width, GLsizei height, double x_origin, double y_origin, double x_move,
                   double y_move, const GLubyte* bits);
@@ -175,7 +164,7 @@ void enter_pixel_map(Context& context, GLenum map, GLsizei size, const T* values
   std::vector<float> table(static_cast<std::size_t>(size));
   const bool is_index = map == GL_PIXEL_MAP_I_TO_I || map == GL_PIXEL_MAP_S_TO_S;
   std::transform(values, values + size, table.begin(),
-                 [&](T value) { return static_cast<float>(is_index ? real(value) : norm(value)); });
+                 [&](T value) { return static_cast<float>(is_index ? static_cast<double>(value) : norm(value)); });
   issue<&pixel_map>(context, map, std::make_shared<const std::vector<float>>(std::move(table)));
 }
 
@@ -202,13 +191,13 @@ std::shared_ptr<const std::vector<double>> control_points(Context& context, GLen
 template <class T>
 void enter_map1(Context& context, GLenum target, T u1, T u2, GLint stride, GLint order, const T* points) {
   const auto packed = control_points(context, target, {stride, order}, {kEvalOrder, 1}, points);
-  if (packed != nullptr) issue<&map1>(context, target, real(u1), real(u2), order, packed);
+  if (packed != nullptr) issue<&map1>(context, target, u1, u2, order, packed);
 }
 template <class T>
 void enter_map2(Context& context, GLenum target, T u1, T u2, GLint ustride, GLint uorder, T v1, T v2, GLint vstride,
                 GLint vorder, const T* points) {
   const auto packed = control_points(context, target, {ustride, uorder}, {vstride, vorder}, points);
-  if (packed != nullptr) issue<&map2>(context, target, real(u1), real(u2), uorder, real(v1), real(v2), vorder, packed);
+  if (packed != nullptr) issue<&map2>(context, target, u1, u2, uorder, v1, v2, vorder, packed);
 }
 
 }  // namespace halfplane::gl

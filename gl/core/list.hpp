@@ -89,26 +89,36 @@ class DisplayList {
   std::vector<JoinedVertices> joined_;
 };
 
-/// Whether a command is refused or allowed between glBegin and glEnd.
-enum class InsideBegin { refused, allowed };
+/// Commands that are allowed between glBegin and glEnd (OpenGL 1.5, 2.6.3). A draw of arrays refuses itself when it is carried
+/// out: a list may hold it there.
+template <auto Command>
+inline constexpr bool kIsAllowedInside =
+    kCallKind<Command> != CallKind::other ||
+    kIsOneOf<Command, &index, &material, &eval_coord1, &eval_coord2, &eval_point1, &eval_point2, &call_list,
+             &call_lists, &array_element, &draw_arrays, &draw_elements, &draw_range_elements, &multi_draw_arrays,
+             &multi_draw_elements>;
 
-template <auto Command, InsideBegin Inside, class... Args>
+template <auto Command, class... Args>
 void run(Context& context, const Args&... args) {
-  if constexpr (Inside == InsideBegin::refused) {
+  if constexpr (!kIsAllowedInside<Command>) {
     if (context.inside_begin()) return context.fail(GL_INVALID_OPERATION);
     ++context.revision;
   }
   Command(context, args...);
 }
 
-/// Entry of commands that go into display lists.
-template <auto Command, InsideBegin Inside = InsideBegin::refused, class... Args>
-void issue(Context& context, const Args&... args) {
+template <auto Command, class... Args>
+void issue_as(void (*)(Context&, Args...), Context& context, const std::type_identity_t<Args>&... args) {
   if (context.compiling != nullptr) {
-    context.compiling->record<&run<Command, Inside, Args...>>(kCallKind<Command>, args...);
+    context.compiling->record<&run<Command, std::remove_cvref_t<Args>...>>(kCallKind<Command>, args...);
     if (!context.compiles_and_executes) return;
   }
-  run<Command, Inside>(context, args...);
+  run<Command>(context, args...);
+}
+/// Entry of commands that go into display lists.
+template <auto Command, class... Args>
+void issue(Context& context, const Args&... args) {
+  issue_as<Command>(Command, context, args...);
 }
 
 }  // namespace halfplane::gl

@@ -30,8 +30,7 @@ void compile_character(Context& context, Display* display, GC gc, Pixmap pixmap,
             XGetPixel(image, x, y) != 0;
     XDestroyImage(image);
   }
-  issue<&bitmap>(context, std::shared_ptr<const Bitmap>(bits), -static_cast<double>(box.lbearing),
-                 static_cast<double>(box.descent), static_cast<double>(box.width), 0.0);
+  issue<&bitmap>(context, bits, -box.lbearing, box.descent, box.width, 0);
 }
 
 }  // namespace

@@ -1,69 +1,58 @@
 #include "calls.hpp"
 
-#define GL_GLEXT_PROTOTYPES
-#include <GL/gl.h>
-#include <GL/glext.h>
-
 #include <algorithm>
+#include <array>
 #include <cstring>
-#include <iterator>
-#include <tuple>
-#include <utility>
 
 namespace halfplane::gl {
 namespace {
 
-using Caller = bool (*)(const void* entry, Arguments& arguments);
+/// Writes a number as an entry point takes it, or reads it from memory; bytes lie from the lowest on.
+void put(const TraceValue& value, const Parameter& type, void* to) {
+  const auto single = static_cast<float>(value.real);
+  const void* const from = !type.is_real                 ? static_cast<const void*>(&value.integer)
+                           : type.bytes == sizeof single ? static_cast<const void*>(&single)
+                                                         : &value.real;
+  std::memcpy(to, from, type.bytes);
+}
 
-template <class Function>
-struct Typed;
-template <class R, class... A>
-struct Typed<R(A...)> {
-  static bool call(const void* entry, Arguments& arguments) {
-    if (arguments.size() != sizeof...(A)) return false;
-    const auto function = reinterpret_cast<R (*)(A...)>(const_cast<void*>(entry));
-    const auto typed = [&]<std::size_t... I>(std::index_sequence<I...>) {
-      return std::tuple<A...>{arguments.get<A>(I)...};
-    }
-    (std::index_sequence_for<A...>());
-    if (arguments.has_wild_pointer()) return false;
-    std::apply(function, typed);
-    return true;
+/// The memory that a pointer's argument holds.
+std::vector<std::byte> memory_of(const TraceValue& value, const Parameter& type, std::size_t reach) {
+  const bool is_array = value.kind == TraceValue::Kind::array;
+  const std::size_t size = is_array ? value.items.size() * type.bytes : value.bytes.size();
+  std::vector<std::byte> memory(std::max(size + 1, reach));  // a string ends in 0
+  std::byte* to = memory.data();
+  if (!is_array) std::memcpy(to, value.bytes.data(), size);
+  for (const TraceValue& item : value.items) {
+    put(item, type, to);
+    to += type.bytes;
   }
-};
-
-struct Row {
-  std::string_view name;
-  Caller caller;
-};
-
-constexpr Row kCalls[]{
-#define HALFPLANE_ENTRY(name) Row{#name, &Typed<decltype(::name)>::call},
-#include "../core/entry_names.inc"
-#undef HALFPLANE_ENTRY
-};
+  return memory;
+}
 
 }  // namespace
 
-void* Arguments::memory(const TraceValue& value) {
-  if (value.kind != TraceValue::Kind::bytes) {
-    const bool is_null = value.kind == TraceValue::Kind::null;
-    wild_ = wild_ || addresses_ == Addresses::none || (!is_null && addresses_ != Addresses::offsets);
-    return reinterpret_cast<void*>(value.integer);
+bool call_entry(const EntryPoint& entry, const std::vector<TraceValue>& values, std::size_t reach, Addresses addresses,
+                HeldMemory& held) {
+  std::array<std::uint64_t, 16> arguments{};
+  if (values.size() != entry.parameters.size() || values.size() > arguments.size()) return false;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const TraceValue& value = values[i];
+    const Parameter& type = entry.parameters[i];
+    const bool has_memory =
+        value.kind == TraceValue::Kind::bytes || (value.kind == TraceValue::Kind::array && type.bytes != 0);
+    if (!type.is_pointer) {
+      put(value, type, &arguments[i]);
+    } else if (has_memory) {
+      arguments[i] = reinterpret_cast<std::uintptr_t>(held.emplace_back(memory_of(value, type, reach)).data());
+    } else {
+      const bool is_null = value.kind == TraceValue::Kind::null;
+      if (addresses == Addresses::none || (!is_null && addresses != Addresses::offsets)) return false;
+      arguments[i] = static_cast<std::uint64_t>(value.integer);
+    }
   }
-  std::vector<std::byte>& bytes = hold(value.bytes.size());
-  std::memcpy(bytes.data(), value.bytes.data(), value.bytes.size());
-  return bytes.data();
-}
-
-std::vector<std::byte>& Arguments::hold(std::size_t size) {
-  return held_.emplace_back(std::max(size + 1, reach_));  // a string ends in 0
-}
-
-bool call_entry(std::string_view name, const void* entry, Arguments& arguments) {
-  const auto row = std::lower_bound(std::begin(kCalls), std::end(kCalls), name,
-                                    [](const Row& a, std::string_view b) { return a.name < b; });
-  return row != std::end(kCalls) && row->name == name && row->caller(entry, arguments);
+  entry.call(entry.function, arguments.data());
+  return true;
 }
 
 }  // namespace halfplane::gl

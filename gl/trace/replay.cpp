@@ -16,7 +16,6 @@
 
 #include "../core/arrays.hpp"
 #include "../core/commands.hpp"
-#include "../core/entry_points.hpp"
 #include "calls.hpp"
 #include "trace_file.hpp"
 
@@ -35,7 +34,7 @@ bool begins_with_one_of(std::string_view name, std::initializer_list<std::string
 
 /// glDrawArraysEXT as glDrawArrays.
 std::string_view core_name(std::string_view name) {
-  for (const std::string_view suffix : {"ARB", "EXT"})
+  for (const std::string_view suffix : {"ARB", "EXT", "OES"})
     if (name.ends_with(suffix)) return name.substr(0, name.size() - suffix.size());
   return name;
 }
@@ -155,7 +154,7 @@ class Replay {
   std::uint64_t thread_ = 0;                   ///< whose binding is the current one
   std::set<std::string> warned_;
   /// Memory that commands keep pointers to, until the same command of the same context and unit points elsewhere.
-  std::map<std::tuple<const Context*, std::string, int>, std::list<std::vector<std::byte>>> kept_;
+  std::map<std::tuple<const Context*, std::string, int>, HeldMemory> kept_;
   /// Buffers by the address that they were mapped at when the program ran.
   struct Mapped {
     std::weak_ptr<SharedObjects> shared;
@@ -246,8 +245,8 @@ bool Replay::carry_out(const TraceCall& call, Context& context) {
   const std::string_view name = core_name(call.function());
   if (name.starts_with("glMultiDraw")) return multi_draw(call, context);
   if (is_one_of(name, {"glMapBuffer", "glUnmapBuffer"})) return map(call, context);
-  const void* entry = entry_point(call.function());
-  if (entry == nullptr) return false;
+  const auto entry = entry_points().find(call.function());
+  if (entry == entry_points().end()) return false;
 
   const bool is_pointer = name.ends_with("Pointer") || name == "glInterleavedArrays";
   const bool is_elements = name.ends_with("Elements");
@@ -279,12 +278,10 @@ bool Replay::carry_out(const TraceCall& call, Context& context) {
   const bool is_offset =
       (is_pointer && context.client.array_buffer != 0) || (is_elements && context.client.element_buffer != 0);
   const bool is_optional = is_pointer || name.starts_with("glTexImage") || name == "glBufferData";
-  Arguments arguments(call.arguments, static_cast<std::size_t>(bytes),
-                      is_offset     ? Addresses::offsets
-                      : is_optional ? Addresses::null
-                                    : Addresses::none);
-  if (!call_entry(name, entry, arguments)) return false;
-  if (is_pointer) kept_[{&context, std::string(name), context.client.active_texture}] = std::move(arguments.held());
+  const Addresses addresses = is_offset ? Addresses::offsets : is_optional ? Addresses::null : Addresses::none;
+  HeldMemory held;
+  if (!call_entry(entry->second, call.arguments, static_cast<std::size_t>(bytes), addresses, held)) return false;
+  if (is_pointer) kept_[{&context, std::string(name), context.client.active_texture}] = std::move(held);
   return true;
 }
 

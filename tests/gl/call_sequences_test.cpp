@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdlib>
 #include <cstring>
 #include <iostream>
@@ -58,13 +59,9 @@ class Caller {
       std::memcpy(&pools_.numbers[i], &bits, 8);
     }
     for (std::size_t i = 0; i < pools_.indices.size(); i += 4) pools_.indices[i] = static_cast<std::byte>(i / 4 % 16);
-#define HALFPLANE_ENTRY(name) Typed<decltype(::name)>::command(#name),
-    commands_ = {
-#include "gl/core/entry_names.inc"
-    };
-#undef HALFPLANE_ENTRY
-    // Its pointers lie in memory, where bits of any kind are none.
-    std::erase_if(commands_, [](const Command& command) { return command.name == "glMultiDrawElements"; });
+    for (const auto& [name, entry] : entry_points())
+      if (!name.starts_with("glMultiDrawElements"))  // its pointers lie in memory, where bits of any kind are none
+        commands_.push_back({name, entry});
   }
 
   /// One sequence on contexts of its own.
@@ -99,56 +96,24 @@ class Caller {
 
   struct Command {
     std::string_view name;
-    std::size_t count;  ///< of arguments
-    Arguments (*fresh)(Caller&, std::string_view name);
-    void (*call)(const void* entry, const Arguments&);
+    EntryPoint entry;
     std::vector<Arguments> accepted{};
   };
 
-  /// All that depends on a command's type.
-  template <class Function>
-  struct Typed;
-  template <class R, class... A>
-  struct Typed<R(A...)> {
-    static Arguments fresh([[maybe_unused]] Caller& caller, [[maybe_unused]] std::string_view name) {
-      [[maybe_unused]] const bool has_pointer = (std::is_pointer_v<A> || ...);
-      return {bits(caller.value<std::remove_const_t<A>>(name, has_pointer))...};
-    }
-    static void call(const void* entry, [[maybe_unused]] const Arguments& arguments) {
-      [&]<std::size_t... I>(std::index_sequence<I...>) {
-        reinterpret_cast<R (*)(A...)>(const_cast<void*>(entry))(from_bits<std::remove_const_t<A>>(arguments[I])...);
-      }
-      (std::index_sequence_for<A...>());
-    }
-    static Command command(std::string_view name) { return {name, sizeof...(A), fresh, call}; }
-  };
-
-  template <class T>
-  static std::uint64_t bits(T value) {
-    std::uint64_t word = 0;
-    std::memcpy(&word, &value, sizeof value);
-    return word;
-  }
-  template <class T>
-  static T from_bits(std::uint64_t word) {
-    T value;
-    std::memcpy(&value, &word, sizeof value);
-    return value;
-  }
-
   void call(Command& command) {
-    const void* entry = entry_point(command.name);
-    ASSERT_NE(entry, nullptr) << command.name;
-    Arguments arguments = command.fresh(*this, command.name);
+    const auto parameters = command.entry.parameters;
+    const bool has_pointer = std::ranges::any_of(parameters, &Parameter::is_pointer);
+    Arguments arguments{};
+    for (std::size_t i = 0; i < parameters.size(); ++i) arguments[i] = bits(command.name, parameters[i], has_pointer);
     if (!command.accepted.empty() && random_.next() % 4 != 0) {
       const Arguments fresh = arguments;
       arguments = command.accepted[random_.next() % command.accepted.size()];
-      const std::size_t changed = command.count == 0 ? 0 : random_.next() % (command.count + 1);
-      if (changed < command.count) arguments[changed] = fresh[changed];
+      const std::size_t changed = random_.next() % (parameters.size() + 1);
+      if (changed < parameters.size()) arguments[changed] = fresh[changed];
     }
     Context* context = current();
     const GLenum before = std::exchange(context->error, GL_NO_ERROR);
-    command.call(entry, arguments);
+    command.entry.call(command.entry.function, arguments.data());
     if (context->error == GL_NO_ERROR && context->compiling == nullptr) {
       if (command.accepted.size() < kMost)
         command.accepted.push_back(arguments);
@@ -158,20 +123,19 @@ class Caller {
     if (before != GL_NO_ERROR) context->error = before;
   }
 
-  template <class T>
-  T value(std::string_view name, bool has_pointer) {
-    if constexpr (std::is_floating_point_v<T>) {
-      return static_cast<T>(real(name.starts_with("glPixelStore")));
-    } else if constexpr (std::is_pointer_v<T>) {
-      return static_cast<T>(pointer(name, std::is_const_v<std::remove_pointer_t<T>>));
-    } else {
-      const bool takes_enum = std::is_unsigned_v<T> && sizeof(T) == sizeof(GLenum);
-      if (sizeof(T) < sizeof(int)) return static_cast<T>(random_.next());
-      if (takes_enum ? random_.next() % 3 != 0 : !has_pointer && random_.next() % 4 == 0 && has_integer_enums(name))
-        return static_cast<T>(any_enum());
-      if (takes_enum && random_.next() % 8 == 0) return static_cast<T>(random_.next());
-      return static_cast<T>(static_cast<int>(random_.next() % (kLargest + 3)) - 2);
+  std::uint64_t bits(std::string_view name, const Parameter& type, bool has_pointer) {
+    if (type.is_pointer) return reinterpret_cast<std::uintptr_t>(pointer(name, type.is_const));
+    if (type.is_real) {
+      const double value = real(name.starts_with("glPixelStore"));
+      return type.bytes == sizeof value ? std::bit_cast<std::uint64_t>(value)
+                                        : std::bit_cast<std::uint32_t>(static_cast<float>(value));
     }
+    if (type.bytes < sizeof(int)) return random_.next();
+    const bool takes_enum = !type.is_signed && type.bytes == sizeof(GLenum);
+    if (takes_enum ? random_.next() % 3 != 0 : !has_pointer && random_.next() % 4 == 0 && has_integer_enums(name))
+      return any_enum();
+    if (takes_enum && random_.next() % 8 == 0) return random_.next();
+    return random_.next() % (kLargest + 3) - 2;
   }
   static bool has_integer_enums(std::string_view name) {
     constexpr std::array kOf{"glTex", "glLight", "glMaterial", "glFog", "glPoint", "glPixelTransfer"};
