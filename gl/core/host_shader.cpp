@@ -11,70 +11,11 @@
 #include "../../model/stages/fragment_ops.hpp"
 #include "clip.hpp"
 #include "context.hpp"
+#include "environment.hpp"
 #include "matrix.hpp"
 
 namespace halfplane::gl {
 namespace {
-
-// ---- environments
-
-struct EnvironmentInputs {
-  const TextureUnit& unit;
-  const std::array<Vec4, kTextureUnits>& textures;
-  std::size_t own;
-  const Vec4 &primary, &previous;
-};
-
-const Vec4& source_color(const EnvironmentInputs& in, GLenum source) {
-  if (source == GL_CONSTANT) return in.unit.env_color;
-  if (source == GL_PRIMARY_COLOR) return in.primary;
-  if (source == GL_PREVIOUS) return in.previous;
-  return in.textures[source == GL_TEXTURE ? in.own : source - GL_TEXTURE0];
-}
-
-/// Tables 3.24 and 3.25.
-double argument(const EnvironmentInputs& in, const TextureCombiner& combiner, std::size_t i, std::size_t channel) {
-  const GLenum operand = combiner.operand[i];
-  const bool takes_alpha = operand == GL_SRC_ALPHA || operand == GL_ONE_MINUS_SRC_ALPHA;
-  const double value = source_color(in, combiner.source[i])[takes_alpha ? 3 : channel];
-  return operand == GL_ONE_MINUS_SRC_COLOR || operand == GL_ONE_MINUS_SRC_ALPHA ? 1 - value : value;
-}
-
-/// Table 3.23, a channel of it.
-double combined(const EnvironmentInputs& in, const TextureCombiner& combiner, std::size_t channel) {
-  const auto arg = [&](std::size_t i) { return argument(in, combiner, i, channel); };
-  double value = 0;
-  switch (combiner.function) {
-    case GL_REPLACE: value = arg(0); break;
-    case GL_MODULATE: value = arg(0) * arg(1); break;
-    case GL_ADD: value = arg(0) + arg(1); break;
-    case GL_ADD_SIGNED: value = arg(0) + arg(1) - 0.5; break;
-    case GL_SUBTRACT: value = arg(0) - arg(1); break;
-    case GL_INTERPOLATE: value = arg(0) * arg(2) + arg(1) * (1 - arg(2)); break;
-    default:  // the dot products
-      for (std::size_t c = 0; c < 3; ++c)
-        value += 4 * (argument(in, combiner, 0, c) - 0.5) * (argument(in, combiner, 1, c) - 0.5);
-  }
-  return held(value * combiner.scale);
-}
-
-/// Tables 3.21 and 3.22, a channel of them.
-double plain(const EnvironmentInputs& in, GLenum base, std::size_t channel) {
-  const bool is_opaque = base == GL_RGB || base == GL_LUMINANCE, is_color = channel < 3;
-  const double f = in.previous[channel], t = in.textures[in.own][channel], alpha = in.textures[in.own][3];
-  if (base == GL_ALPHA && is_color) return f;
-  if (is_opaque && !is_color) return f;
-  const bool adds = is_color || base == GL_INTENSITY;  // an intensity is a colour in all channels
-  switch (in.unit.env_mode) {
-    case GL_REPLACE: return t;
-    case GL_DECAL: return !is_color ? f : is_opaque ? t : f * (1 - alpha) + t * alpha;
-    case GL_ADD: return adds ? held(f + t) : f * t;
-    case GL_BLEND: return adds ? f * (1 - t) + in.unit.env_color[channel] * t : f * t;
-    default: return f * t;
-  }
-}
-
-// ---- triangles
 
 /// a x + b y + c of pixels.
 using Linear = std::array<double, 3>;
@@ -395,12 +336,21 @@ Vec4 TextureEnvironments::operator()(const Vec4& primary, const std::array<Textu
   for (std::size_t unit = 0; unit < kTextureUnits; ++unit) {
     if (!sampler_[unit]) continue;
     const Vec4 previous = color;
-    const EnvironmentInputs in{state_.unit[unit], textures, unit, primary, previous};
-    const auto& [rgb, alpha] = in.unit.combine;
-    for (std::size_t c = 0; c < 4; ++c)
-      color[c] = in.unit.env_mode != GL_COMBINE          ? plain(in, sampler_[unit]->base(), c)
-                 : c < 3 || rgb.function == GL_DOT3_RGBA ? combined(in, rgb, c)
-                                                         : combined(in, alpha, c);
+    const TextureUnit& state = state_.unit[unit];
+    const auto source = [&](GLenum name, std::size_t channel, std::size_t) {
+      const Vec4& of = name == GL_CONSTANT        ? state.env_color
+                       : name == GL_PRIMARY_COLOR ? primary
+                       : name == GL_PREVIOUS      ? previous
+                                                  : textures[name == GL_TEXTURE ? unit : name - GL_TEXTURE0];
+      return of[channel];
+    };
+    const auto& [rgb, alpha] = state.combine;
+    for (std::size_t c = 0; c < 4; ++c) {
+      const TextureCombiner& combiner = c < 3 || rgb.function == GL_DOT3_RGBA ? rgb : alpha;
+      color[c] = held(state.env_mode == GL_COMBINE
+                          ? combined<double>(combiner, c, source) * combiner.scale
+                          : plain<double>(state, sampler_[unit]->base(), c, previous[c], textures[unit]));
+    }
   }
   return color;
 }

@@ -97,17 +97,7 @@ GLint kept_format(GLint internal_format) {
   return is_compressed ? static_cast<GLint>(base_format(internal_format)) : internal_format;
 }
 
-/// A base format's components: which channel each comes from, and where the texel holds them (TextureImage).
-Texel stored_texel(GLenum base, const Texel& t) {
-  switch (base) {
-    case GL_ALPHA: return {255, 255, 255, t[3]};
-    case GL_LUMINANCE: return {t[0], t[0], t[0], 255};
-    case GL_LUMINANCE_ALPHA: return {t[0], t[0], t[0], t[3]};
-    case GL_INTENSITY: return {t[0], t[0], t[0], t[0]};
-    case GL_RGB: return {t[0], t[1], t[2], 255};
-    default: return t;
-  }
-}
+using gl::stored_texel;
 Texel stored_texel(GLenum base, const std::array<float, 4>& color) {
   return base == GL_DEPTH_COMPONENT ? texel_of_depth(color[0]) : stored_texel(base, texel_of(color));
 }
@@ -342,6 +332,17 @@ Texel texel_of(const std::array<float, 4>& color) {
   for (std::size_t c = 0; c < 4; ++c)
     texel[c] = static_cast<std::uint8_t>(static_cast<int>(held(color[c]) * 510 + 1) / 2);
   return texel;
+}
+
+Texel stored_texel(GLenum base, const Texel& t) {
+  switch (base) {
+    case GL_ALPHA: return {255, 255, 255, t[3]};
+    case GL_LUMINANCE: return {t[0], t[0], t[0], 255};
+    case GL_LUMINANCE_ALPHA: return {t[0], t[0], t[0], t[3]};
+    case GL_INTENSITY: return {t[0], t[0], t[0], t[0]};
+    case GL_RGB: return {t[0], t[1], t[2], 255};
+    default: return t;
+  }
 }
 
 Texel texel_of_depth(double depth) {

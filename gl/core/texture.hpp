@@ -22,6 +22,8 @@ struct Context;
 /// Depth textures keep 32 bits in the four channels of a texel, the highest in the first.
 [[nodiscard]] Texel texel_of_depth(double depth);
 [[nodiscard]] double depth_of_texel(const Texel& texel);
+/// A colour as a texel of a base format (TextureImage).
+[[nodiscard]] Texel stored_texel(GLenum base, const Texel& color);
 /// The border's colour as a texel of the base format.
 [[nodiscard]] Texel border_texel(const TextureObject& texture);
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "context.hpp"
+#include "environment.hpp"
 #include "matrix.hpp"
 #include "sampler.hpp"
 #include "texture.hpp"
@@ -29,100 +30,42 @@ struct Fit {
 
 /// One channel of an environment's result for one texel: a times the vertex's, plus b.
 struct Affine {
+  Affine(double number = 0) : b(number) {}  // NOLINT(google-explicit-constructor): one that the vertex has no part in
+  Affine(double a_, double b_, bool is_exact_ = true) : a(a_), b(b_), is_exact(is_exact_) {}
   double a = 0, b = 0;
   bool is_exact = true;  ///< else it has another form
 };
+Affine operator+(const Affine& x, const Affine& y) { return {x.a + y.a, x.b + y.b, x.is_exact && y.is_exact}; }
+Affine operator-(const Affine& x, const Affine& y) { return {x.a - y.a, x.b - y.b, x.is_exact && y.is_exact}; }
+Affine operator*(const Affine& x, const Affine& y) {
+  if (x.a != 0 && y.a != 0) return {0, 0, false};
+  return {x.a * y.b + y.a * x.b, x.b * y.b, x.is_exact && y.is_exact};
+}
 using Result = std::array<Affine, 4>;
 
 constexpr double kTolerance = 1.0 / 512;
 bool is_near(double x, double y) { return std::abs(x - y) < kTolerance; }
 
-Affine sum(const Affine& x, const Affine& y, double factor, double bias) {
-  return {x.a + factor * y.a, x.b + factor * y.b + bias, x.is_exact && y.is_exact};
-}
-Affine product(const Affine& x, const Affine& y) {
-  if (x.a != 0 && y.a != 0) return {0, 0, false};
-  return {x.a * y.b + y.a * x.b, x.b * y.b, x.is_exact && y.is_exact};
-}
-Affine complement(const Affine& x) { return {-x.a, 1 - x.b, x.is_exact}; }
-
-/// What an environment sees: the texture's color as table 3.20 fills it in, and the constant.
-struct Inputs {
-  Vec4 texel, constant;
-};
-
-/// An argument of GL_COMBINE in one channel (tables 3.24 and 3.25).
-Affine argument(const TextureCombiner& combiner, std::size_t i, std::size_t channel, const Inputs& inputs) {
-  const GLenum source = combiner.source[i], operand = combiner.operand[i];
-  const bool takes_alpha = operand == GL_SRC_ALPHA || operand == GL_ONE_MINUS_SRC_ALPHA;
-  const std::size_t c = takes_alpha ? 3 : channel;
-  Affine value;
-  if (source == GL_CONSTANT)
-    value.b = inputs.constant[c];
-  else if (source == GL_PRIMARY_COLOR || source == GL_PREVIOUS)  // the first unit's previous color is the primary one
-    value = {1, 0, c == channel};
-  else
-    value.b = inputs.texel[c];
-  return operand == GL_ONE_MINUS_SRC_COLOR || operand == GL_ONE_MINUS_SRC_ALPHA ? complement(value) : value;
-}
-
-/// Table 3.23. `channel`: of RGB or alpha.
-Affine combined(const TextureCombiner& combiner, std::size_t channel, const Inputs& inputs) {
-  const auto arg = [&](std::size_t i, std::size_t c) { return argument(combiner, i, c, inputs); };
-  Affine result = arg(0, channel);
-  switch (combiner.function) {
-    case GL_MODULATE: result = product(result, arg(1, channel)); break;
-    case GL_ADD: result = sum(result, arg(1, channel), 1, 0); break;
-    case GL_ADD_SIGNED: result = sum(result, arg(1, channel), 1, -0.5); break;
-    case GL_SUBTRACT: result = sum(result, arg(1, channel), -1, 0); break;
-    case GL_INTERPOLATE: {
-      const Affine part = arg(2, channel);
-      result = sum(product(result, part), product(arg(1, channel), complement(part)), 1, 0);
-      break;
-    }
-    case GL_DOT3_RGB:
-    case GL_DOT3_RGBA: {
-      result = {};
-      for (std::size_t c = 0; c < 3; ++c)
-        result = sum(result, product(sum(arg(0, c), {}, 0, -0.5), sum(arg(1, c), {}, 0, -0.5)), 4, 0);
-      result.is_exact = result.is_exact && result.a == 0;  // sum over all channels
-      break;
-    }
-    default: break;
-  }
-  result.a *= combiner.scale;
-  result.b *= combiner.scale;
-  if (result.a == 0) result.b = held(result.b);
-  return result;
-}
-
-/// The environment of a unit: tables 3.21 and 3.22, and GL_COMBINE. `texel`: as it is stored, in 0...1.
+/// The environment of a unit. `texel`: as it is stored, in 0...1.
 Result environment(const TextureUnit& unit, GLenum base, const Vec4& texel) {
   Result result;
-  if (unit.env_mode == GL_COMBINE) {
-    Inputs inputs{texel, unit.env_color};
-    if (base == GL_ALPHA) inputs.texel[0] = inputs.texel[1] = inputs.texel[2] = 0;
-    const auto& [rgb, alpha] = unit.combine;
-    for (std::size_t c = 0; c < 3; ++c) result[c] = combined(rgb, c, inputs);
-    result[3] = rgb.function == GL_DOT3_RGBA ? result[0] : combined(alpha, 3, inputs);
-    return result;
-  }
-  const bool is_opaque = base == GL_RGB || base == GL_LUMINANCE;
+  const auto source = [&](GLenum name, std::size_t c, std::size_t to) -> Affine {
+    // The first unit's previous color is the primary one.
+    if (name == GL_PRIMARY_COLOR || name == GL_PREVIOUS) return {1, 0, c == to};
+    return name == GL_CONSTANT ? unit.env_color[c] : base == GL_ALPHA && c < 3 ? 0 : texel[c];
+  };
+  const auto& [rgb, alpha] = unit.combine;
   for (std::size_t c = 0; c < 4; ++c) {
-    const double t = texel[c];
-    const Affine kept{1, 0}, product{t, 0};
-    const bool is_alpha = c == 3 && base != GL_INTENSITY;  // alpha is then a color in all channels, but for GL_DECAL
-    switch (unit.env_mode) {
-      case GL_REPLACE: result[c] = (c == 3 ? is_opaque : base == GL_ALPHA) ? kept : Affine{0, t}; break;
-      case GL_DECAL:
-        result[c] = c == 3 || base == GL_ALPHA ? kept : is_opaque ? Affine{0, t} : Affine{1 - texel[3], t * texel[3]};
-        break;
-      case GL_ADD: result[c] = is_alpha ? product : base == GL_ALPHA ? kept : Affine{1, t}; break;
-      case GL_BLEND:
-        result[c] = is_alpha ? product : base == GL_ALPHA ? kept : Affine{1 - t, unit.env_color[c] * t};
-        break;
-      default: result[c] = product; break;
+    if (unit.env_mode != GL_COMBINE) {
+      result[c] = plain<Affine>(unit, base, c, {1, 0}, texel);
+      continue;
     }
+    const TextureCombiner& combiner = c < 3 || rgb.function == GL_DOT3_RGBA ? rgb : alpha;
+    Affine& value = result[c] = combined<Affine>(combiner, c, source);
+    const bool is_sum_of_channels = combiner.function == GL_DOT3_RGB || combiner.function == GL_DOT3_RGBA;
+    value = value * combiner.scale;
+    value.is_exact = value.is_exact && (!is_sum_of_channels || value.a == 0);
+    if (value.a == 0) value.b = held(value.b);
   }
   return result;
 }
@@ -162,9 +105,7 @@ struct Sampled {
     const Texel& t = level(l).texel[i];
     if (level(l).base_format != GL_DEPTH_COMPONENT) return t;
     const auto depth = static_cast<std::uint8_t>(std::lround(255 * depth_of_texel(t)));
-    return base == GL_ALPHA       ? Texel{255, 255, 255, depth}
-           : base == GL_INTENSITY ? Texel{depth, depth, depth, depth}
-                                  : Texel{depth, depth, depth, 255};
+    return stored_texel(base, {depth, depth, depth, depth});
   }
   [[nodiscard]] Texel border() const { return border_texel(texture); }
   /// Texels of one level.
@@ -358,16 +299,10 @@ TextureWrap wrap_of(GLenum wrap, bool shows_border) {
 Texel border_texel(const TextureObject& texture) {
   std::array<float, 4> color{};
   std::ranges::transform(texture.border_color, color.begin(), [](double c) { return static_cast<float>(c); });
-  const Texel t = texel_of(color);
-  const bool is_depth = texture.face[0][static_cast<std::size_t>(texture.base_level)].base_format == GL_DEPTH_COMPONENT;
-  switch (base_of(texture)) {
-    case GL_ALPHA: return {255, 255, 255, is_depth ? t[0] : t[3]};
-    case GL_INTENSITY: return {t[0], t[0], t[0], t[0]};
-    case GL_LUMINANCE: return {t[0], t[0], t[0], 255};
-    case GL_LUMINANCE_ALPHA: return {t[0], t[0], t[0], t[3]};
-    case GL_RGB: return {t[0], t[1], t[2], 255};
-    default: return t;
-  }
+  Texel texel = texel_of(color);
+  if (texture.face[0][static_cast<std::size_t>(texture.base_level)].base_format == GL_DEPTH_COMPONENT)
+    texel.fill(texel[0]);
+  return stored_texel(base_of(texture), texel);
 }
 
 const char* beyond_texture_unit(Context& context, unsigned units) {
