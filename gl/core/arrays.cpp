@@ -303,6 +303,11 @@ ClientState::ClientState() {
 }
 
 std::size_t array_type_bytes(GLenum type) { return number_type_of(type).bytes; }
+double array_number(GLenum type, const std::byte* at) {
+  double number = 0;
+  number_type_of(type).plain(at, 1, &number);
+  return number;
+}
 
 void array_pointer(Context& context, Array which, GLint size, GLenum type, GLsizei stride, const void* pointer) {
   const std::size_t place = array_place(context.client, static_cast<std::size_t>(which));

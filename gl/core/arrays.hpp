@@ -65,5 +65,7 @@ inline std::size_t find_array(const ClientState& client, GLenum ArrayKind::*memb
 
 /// Bytes of a number of an array; 1 for unknown types.
 [[nodiscard]] std::size_t array_type_bytes(GLenum type);
+/// A number of a known type.
+[[nodiscard]] double array_number(GLenum type, const std::byte* at);
 
 }  // namespace halfplane::gl

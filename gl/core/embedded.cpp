@@ -9,30 +9,6 @@
 namespace halfplane::gl {
 namespace {
 
-// OpenGL ES 1.1, table 6.
-constexpr std::array kEnables{GL_ALPHA_TEST,
-                              GL_BLEND,
-                              GL_COLOR_LOGIC_OP,
-                              GL_COLOR_MATERIAL,
-                              GL_CULL_FACE,
-                              GL_DEPTH_TEST,
-                              GL_DITHER,
-                              GL_FOG,
-                              GL_LIGHTING,
-                              GL_LINE_SMOOTH,
-                              GL_MULTISAMPLE,
-                              GL_NORMALIZE,
-                              GL_POINT_SMOOTH,
-                              GL_POINT_SPRITE,
-                              GL_POLYGON_OFFSET_FILL,
-                              GL_RESCALE_NORMAL,
-                              GL_SAMPLE_ALPHA_TO_COVERAGE,
-                              GL_SAMPLE_ALPHA_TO_ONE,
-                              GL_SAMPLE_COVERAGE,
-                              GL_SCISSOR_TEST,
-                              GL_STENCIL_TEST,
-                              GL_TEXTURE_2D};
-
 /// Entries of a palette, as glTexImage2D takes them.
 struct PaletteFormat {
   GLenum format, type;
@@ -46,11 +22,6 @@ constexpr std::array<PaletteFormat, kPalettes / 2> kPaletteFormats{{{GL_RGB, GL_
                                                                     {GL_RGBA, GL_UNSIGNED_SHORT_5_5_5_1, 2}}};
 
 }  // namespace
-
-bool takes_enable(const Context& context, GLenum cap) {
-  return !context.is_embedded || cap - GL_CLIP_PLANE0 < GLuint{kClipPlanes} || cap - GL_LIGHT0 < GLuint{kLights} ||
-         std::ranges::find(kEnables, static_cast<int>(cap)) != kEnables.end();
-}
 
 bool takes_array_type(GLenum type, bool is_color) {
   if (type == GL_FLOAT || type == GL_FIXED) return true;

@@ -23,7 +23,7 @@ inline constexpr const char* kEmbeddedExtensions =
     "GL_OES_read_format GL_OES_single_precision GL_OES_stencil_wrap GL_OES_texture_env_crossbar "
     "GL_OES_texture_mirrored_repeat";
 
-/// Whether a context takes `cap` in glEnable: every cap that OpenGL has, or one of OpenGL ES.
+/// Whether a context takes `cap` in glEnable: any, or one of OpenGL ES (get.cpp).
 [[nodiscard]] bool takes_enable(const Context& context, GLenum cap);
 /// Whether OpenGL ES takes the type of an array; `is_color`: of colours.
 [[nodiscard]] bool takes_array_type(GLenum type, bool is_color);

@@ -259,51 +259,53 @@ const StateRow kStateRows[] = {
     {GL_ACCUM_RED_BITS, 4, [](const Context&, std::size_t) -> Numbers { return 16; }},
 };
 
-// A row of flags: `first`, `first` + 1, ... of glEnable.
+// A row of flags: `first`, `first` + 1, ... of glEnable, and whether OpenGL ES has them (OpenGL ES 1.1, table 6).
 struct Enable {
   GLenum first;
   GLuint count;
+  bool is_embedded;
   bool* (*flag)(State& s, std::size_t i);
 };
 TextureUnit& active_unit(State& state) { return state.texture.unit[static_cast<std::size_t>(state.texture.active)]; }
 constexpr Enable kEnables[] = {
-    {GL_ALPHA_TEST, 1, [](State& s, std::size_t) { return &s.color.alpha_test; }},
-    {GL_AUTO_NORMAL, 1, [](State& s, std::size_t) { return &s.eval.auto_normal; }},
-    {GL_BLEND, 1, [](State& s, std::size_t) { return &s.color.blend; }},
-    {GL_CLIP_PLANE0, kClipPlanes, [](State& s, std::size_t i) { return &s.transform.clip_enabled[i]; }},
-    {GL_COLOR_LOGIC_OP, 1, [](State& s, std::size_t) { return &s.color.logic_op; }},
-    {GL_COLOR_MATERIAL, 1, [](State& s, std::size_t) { return &s.lighting.color_material; }},
-    {GL_COLOR_SUM, 1, [](State& s, std::size_t) { return &s.fog.color_sum; }},
-    {GL_CULL_FACE, 1, [](State& s, std::size_t) { return &s.polygon.cull; }},
-    {GL_DEPTH_TEST, 1, [](State& s, std::size_t) { return &s.depth.test; }},
-    {GL_DITHER, 1, [](State& s, std::size_t) { return &s.color.dither; }},
-    {GL_FOG, 1, [](State& s, std::size_t) { return &s.fog.enabled; }},
-    {GL_INDEX_LOGIC_OP, 1, [](State& s, std::size_t) { return &s.color.index_logic_op; }},
-    {GL_LIGHT0, kLights, [](State& s, std::size_t i) { return &s.lighting.light_enabled[i]; }},
-    {GL_LIGHTING, 1, [](State& s, std::size_t) { return &s.lighting.enabled; }},
-    {GL_LINE_SMOOTH, 1, [](State& s, std::size_t) { return &s.line.smooth; }},
-    {GL_LINE_STIPPLE, 1, [](State& s, std::size_t) { return &s.line.stipple; }},
-    {GL_MAP1_COLOR_4, 9, [](State& s, std::size_t i) { return &s.eval.map1[i]; }},
-    {GL_MAP2_COLOR_4, 9, [](State& s, std::size_t i) { return &s.eval.map2[i]; }},
-    {GL_MULTISAMPLE, 1, [](State& s, std::size_t) { return &s.multisample.enabled; }},
-    {GL_NORMALIZE, 1, [](State& s, std::size_t) { return &s.transform.normalize; }},
-    {GL_POINT_SPRITE, 1, [](State& s, std::size_t) { return &s.point.sprite; }},
-    {GL_POINT_SMOOTH, 1, [](State& s, std::size_t) { return &s.point.smooth; }},
-    {GL_POLYGON_OFFSET_FILL, 1, [](State& s, std::size_t) { return &s.polygon.offset_fill; }},
-    {GL_POLYGON_OFFSET_LINE, 1, [](State& s, std::size_t) { return &s.polygon.offset_line; }},
-    {GL_POLYGON_OFFSET_POINT, 1, [](State& s, std::size_t) { return &s.polygon.offset_point; }},
-    {GL_POLYGON_SMOOTH, 1, [](State& s, std::size_t) { return &s.polygon.smooth; }},
-    {GL_POLYGON_STIPPLE, 1, [](State& s, std::size_t) { return &s.polygon.stipple; }},
-    {GL_RESCALE_NORMAL, 1, [](State& s, std::size_t) { return &s.transform.rescale_normal; }},
-    {GL_SAMPLE_ALPHA_TO_COVERAGE, 1, [](State& s, std::size_t) { return &s.multisample.alpha_to_coverage; }},
-    {GL_SAMPLE_ALPHA_TO_ONE, 1, [](State& s, std::size_t) { return &s.multisample.alpha_to_one; }},
-    {GL_SAMPLE_COVERAGE, 1, [](State& s, std::size_t) { return &s.multisample.coverage; }},
-    {GL_SCISSOR_TEST, 1, [](State& s, std::size_t) { return &s.scissor.test; }},
-    {GL_STENCIL_TEST, 1, [](State& s, std::size_t) { return &s.stencil.test; }},
-    {GL_TEXTURE_1D, 2, [](State& s, std::size_t i) { return &active_unit(s).enabled[i]; }},
-    {GL_TEXTURE_3D, 1, [](State& s, std::size_t) { return &active_unit(s).enabled[2]; }},
-    {GL_TEXTURE_CUBE_MAP, 1, [](State& s, std::size_t) { return &active_unit(s).enabled[3]; }},
-    {GL_TEXTURE_GEN_S, 4, [](State& s, std::size_t i) { return &active_unit(s).gen[i].enabled; }},
+    {GL_ALPHA_TEST, 1, true, [](State& s, std::size_t) { return &s.color.alpha_test; }},
+    {GL_AUTO_NORMAL, 1, false, [](State& s, std::size_t) { return &s.eval.auto_normal; }},
+    {GL_BLEND, 1, true, [](State& s, std::size_t) { return &s.color.blend; }},
+    {GL_CLIP_PLANE0, kClipPlanes, true, [](State& s, std::size_t i) { return &s.transform.clip_enabled[i]; }},
+    {GL_COLOR_LOGIC_OP, 1, true, [](State& s, std::size_t) { return &s.color.logic_op; }},
+    {GL_COLOR_MATERIAL, 1, true, [](State& s, std::size_t) { return &s.lighting.color_material; }},
+    {GL_COLOR_SUM, 1, false, [](State& s, std::size_t) { return &s.fog.color_sum; }},
+    {GL_CULL_FACE, 1, true, [](State& s, std::size_t) { return &s.polygon.cull; }},
+    {GL_DEPTH_TEST, 1, true, [](State& s, std::size_t) { return &s.depth.test; }},
+    {GL_DITHER, 1, true, [](State& s, std::size_t) { return &s.color.dither; }},
+    {GL_FOG, 1, true, [](State& s, std::size_t) { return &s.fog.enabled; }},
+    {GL_INDEX_LOGIC_OP, 1, false, [](State& s, std::size_t) { return &s.color.index_logic_op; }},
+    {GL_LIGHT0, kLights, true, [](State& s, std::size_t i) { return &s.lighting.light_enabled[i]; }},
+    {GL_LIGHTING, 1, true, [](State& s, std::size_t) { return &s.lighting.enabled; }},
+    {GL_LINE_SMOOTH, 1, true, [](State& s, std::size_t) { return &s.line.smooth; }},
+    {GL_LINE_STIPPLE, 1, false, [](State& s, std::size_t) { return &s.line.stipple; }},
+    {GL_MAP1_COLOR_4, 9, false, [](State& s, std::size_t i) { return &s.eval.map1[i]; }},
+    {GL_MAP2_COLOR_4, 9, false, [](State& s, std::size_t i) { return &s.eval.map2[i]; }},
+    {GL_MULTISAMPLE, 1, true, [](State& s, std::size_t) { return &s.multisample.enabled; }},
+    {GL_NORMALIZE, 1, true, [](State& s, std::size_t) { return &s.transform.normalize; }},
+    {GL_POINT_SPRITE, 1, true, [](State& s, std::size_t) { return &s.point.sprite; }},
+    {GL_POINT_SMOOTH, 1, true, [](State& s, std::size_t) { return &s.point.smooth; }},
+    {GL_POLYGON_OFFSET_FILL, 1, true, [](State& s, std::size_t) { return &s.polygon.offset_fill; }},
+    {GL_POLYGON_OFFSET_LINE, 1, false, [](State& s, std::size_t) { return &s.polygon.offset_line; }},
+    {GL_POLYGON_OFFSET_POINT, 1, false, [](State& s, std::size_t) { return &s.polygon.offset_point; }},
+    {GL_POLYGON_SMOOTH, 1, false, [](State& s, std::size_t) { return &s.polygon.smooth; }},
+    {GL_POLYGON_STIPPLE, 1, false, [](State& s, std::size_t) { return &s.polygon.stipple; }},
+    {GL_RESCALE_NORMAL, 1, true, [](State& s, std::size_t) { return &s.transform.rescale_normal; }},
+    {GL_SAMPLE_ALPHA_TO_COVERAGE, 1, true, [](State& s, std::size_t) { return &s.multisample.alpha_to_coverage; }},
+    {GL_SAMPLE_ALPHA_TO_ONE, 1, true, [](State& s, std::size_t) { return &s.multisample.alpha_to_one; }},
+    {GL_SAMPLE_COVERAGE, 1, true, [](State& s, std::size_t) { return &s.multisample.coverage; }},
+    {GL_SCISSOR_TEST, 1, true, [](State& s, std::size_t) { return &s.scissor.test; }},
+    {GL_STENCIL_TEST, 1, true, [](State& s, std::size_t) { return &s.stencil.test; }},
+    {GL_TEXTURE_1D, 1, false, [](State& s, std::size_t) { return &active_unit(s).enabled[0]; }},
+    {GL_TEXTURE_2D, 1, true, [](State& s, std::size_t) { return &active_unit(s).enabled[1]; }},
+    {GL_TEXTURE_3D, 1, false, [](State& s, std::size_t) { return &active_unit(s).enabled[2]; }},
+    {GL_TEXTURE_CUBE_MAP, 1, false, [](State& s, std::size_t) { return &active_unit(s).enabled[3]; }},
+    {GL_TEXTURE_GEN_S, 4, false, [](State& s, std::size_t i) { return &active_unit(s).gen[i].enabled; }},
 };
 
 constexpr GLuint kPixelMaps = 10;  // from GL_PIXEL_MAP_I_TO_I on
@@ -361,6 +363,12 @@ bool* enable_flag(State& state, GLenum cap) {
   for (const Enable& row : kEnables)
     if (cap - row.first < row.count) return row.flag(state, cap - row.first);
   return nullptr;
+}
+
+bool takes_enable(const Context& context, GLenum cap) {
+  return !context.is_embedded || std::ranges::any_of(kEnables, [cap](const Enable& row) {
+    return row.is_embedded && cap - row.first < row.count;
+  });
 }
 
 void copy_enables(State& to, State from) {

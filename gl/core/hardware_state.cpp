@@ -25,35 +25,26 @@ To find(const Table<To>& table, GLenum key) {
   return at == table.end() ? table.begin()->second : at->second;
 }
 
-DepthFunc compare_of(GLenum func) {
-  return find<DepthFunc>({{GL_ALWAYS, DepthFunc::always},
-                          {GL_NEVER, DepthFunc::never},
-                          {GL_LESS, DepthFunc::less},
-                          {GL_EQUAL, DepthFunc::equal},
-                          {GL_LEQUAL, DepthFunc::lequal},
-                          {GL_GREATER, DepthFunc::greater},
-                          {GL_NOTEQUAL, DepthFunc::notequal},
-                          {GL_GEQUAL, DepthFunc::gequal}},
-                         func);
-}
+/// From GL_NEVER on.
+constexpr auto kComparisons = [] {
+  using enum DepthFunc;
+  return std::array{never, less, equal, lequal, greater, notequal, gequal, always};
+}();
+DepthFunc compare_of(GLenum func) { return kComparisons[func - GL_NEVER]; }
 
+/// From GL_SRC_COLOR and from GL_CONSTANT_COLOR on.
+constexpr auto kFactors = [] {
+  using enum BlendFactor;
+  return std::array{src_color,           one_minus_src_color, src_alpha,           one_minus_src_alpha, dst_alpha,
+                    one_minus_dst_alpha, dst_color,           one_minus_dst_color, src_alpha_saturate};
+}();
+constexpr auto kConstantFactors = [] {
+  using enum BlendFactor;
+  return std::array{constant_color, one_minus_constant_color, constant_alpha, one_minus_constant_alpha};
+}();
 BlendFactor factor_of(GLenum factor) {
-  return find<BlendFactor>({{GL_ZERO, BlendFactor::zero},
-                            {GL_ONE, BlendFactor::one},
-                            {GL_SRC_COLOR, BlendFactor::src_color},
-                            {GL_ONE_MINUS_SRC_COLOR, BlendFactor::one_minus_src_color},
-                            {GL_DST_COLOR, BlendFactor::dst_color},
-                            {GL_ONE_MINUS_DST_COLOR, BlendFactor::one_minus_dst_color},
-                            {GL_SRC_ALPHA, BlendFactor::src_alpha},
-                            {GL_ONE_MINUS_SRC_ALPHA, BlendFactor::one_minus_src_alpha},
-                            {GL_DST_ALPHA, BlendFactor::dst_alpha},
-                            {GL_ONE_MINUS_DST_ALPHA, BlendFactor::one_minus_dst_alpha},
-                            {GL_CONSTANT_COLOR, BlendFactor::constant_color},
-                            {GL_ONE_MINUS_CONSTANT_COLOR, BlendFactor::one_minus_constant_color},
-                            {GL_CONSTANT_ALPHA, BlendFactor::constant_alpha},
-                            {GL_ONE_MINUS_CONSTANT_ALPHA, BlendFactor::one_minus_constant_alpha},
-                            {GL_SRC_ALPHA_SATURATE, BlendFactor::src_alpha_saturate}},
-                           factor);
+  if (factor <= GL_ONE) return factor == GL_ZERO ? BlendFactor::zero : BlendFactor::one;
+  return factor < GL_CONSTANT_COLOR ? kFactors[factor - GL_SRC_COLOR] : kConstantFactors[factor - GL_CONSTANT_COLOR];
 }
 
 StencilOp stencil_op_of(GLenum op) {

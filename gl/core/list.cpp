@@ -1,10 +1,9 @@
 #include "list.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstring>
 
+#include "arrays.hpp"
 #include "entry_conversions.hpp"
 #include "primitive.hpp"
 #include "shading.hpp"
@@ -158,49 +157,20 @@ GLboolean is_list(Context& context, GLuint name) {
   return context.shared->lists.contains(name);
 }
 
-namespace {
-
-template <class T>
-GLuint name_at(const std::byte* at) {
-  T value;
-  std::memcpy(&value, at, sizeof value);
-  if constexpr (std::is_floating_point_v<T>)
-    return converted<GLuint>(std::trunc(static_cast<double>(value)), ValueKind::integer);
-  else
-    return static_cast<GLuint>(value);
-}
-// GL_2_BYTES and so on: the first byte is the highest.
-template <std::size_t Bytes>
-GLuint name_of_bytes(const std::byte* at) {
-  GLuint name = 0;
-  for (std::size_t i = 0; i < Bytes; ++i) name = name << 8 | std::to_integer<GLuint>(at[i]);
-  return name;
-}
-
-struct NameType {
-  std::size_t bytes;
-  GLuint (*name)(const std::byte* at);
-};
-constexpr std::array<NameType, 10> kNameTypes{{{1, name_at<GLbyte>},  // from GL_BYTE on
-                                               {1, name_at<GLubyte>},
-                                               {2, name_at<GLshort>},
-                                               {2, name_at<GLushort>},
-                                               {4, name_at<GLint>},
-                                               {4, name_at<GLuint>},
-                                               {4, name_at<GLfloat>},
-                                               {2, name_of_bytes<2>},
-                                               {3, name_of_bytes<3>},
-                                               {4, name_of_bytes<4>}}};
-
-}  // namespace
-
 std::shared_ptr<const std::vector<GLuint>> list_names(Context& context, GLsizei n, GLenum type, const void* lists) {
-  if (type - GL_BYTE >= kNameTypes.size()) return list_error(context, GL_INVALID_ENUM), nullptr;
+  if (type < GL_BYTE || type > GL_4_BYTES) return list_error(context, GL_INVALID_ENUM), nullptr;
   if (n < 0) return list_error(context, GL_INVALID_VALUE), nullptr;
-  const NameType& how = kNameTypes[type - GL_BYTE];
+  const bool is_bytes = type >= GL_2_BYTES;  // and so on: the first byte is the highest
+  const std::size_t size = is_bytes ? type - GL_2_BYTES + 2 : array_type_bytes(type);
   auto names = std::make_shared<std::vector<GLuint>>();
   const auto* at = static_cast<const std::byte*>(lists);
-  for (GLsizei i = 0; i < n; ++i, at += how.bytes) names->push_back(how.name(at));
+  for (GLsizei i = 0; i < n; ++i, at += size) {
+    GLuint& name = names->emplace_back(0);
+    if (is_bytes)
+      for (std::size_t b = 0; b < size; ++b) name = name << 8 | std::to_integer<GLuint>(at[b]);
+    else
+      name = converted<GLuint>(std::trunc(array_number(type, at)), ValueKind::integer);
+  }
   return names;
 }
 

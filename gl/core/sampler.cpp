@@ -71,16 +71,9 @@ Span span_of(GLenum wrap, double coordinate, int size, bool is_linear) {
   return {{wrapped(wrap, first, size), wrapped(wrap, first + 1, size)}, at - first};
 }
 
+/// GL_NEVER and the numbers after it have a bit for each of less, equal and greater.
 bool passes(GLenum func, double reference, double depth) {
-  switch (func) {
-    case GL_LEQUAL: return reference <= depth;
-    case GL_GEQUAL: return reference >= depth;
-    case GL_LESS: return reference < depth;
-    case GL_GREATER: return reference > depth;
-    case GL_EQUAL: return reference == depth;
-    case GL_NOTEQUAL: return reference != depth;
-    default: return func == GL_ALWAYS;
-  }
+  return ((func - GL_NEVER) & (reference < depth ? 1U : reference == depth ? 2U : 4U)) != 0;
 }
 
 /// Texels from a pixel to the next, of those coordinates that the texture has.
