@@ -3,7 +3,7 @@
 triangles and lines, with AVX2, and the cycle engine on the cycles of a frame.
 
 Time on a shared machine says little, and instructions do not lie about how much work there is: a gate that a slow
-neighbour cannot close. Counted is a frame whose memory is there from the frame before: three frames less one, halved.
+neighbour cannot close. Counted is a frame whose memory is there from the frame before: the second of two.
 
   tools/instructions.py PROGRAM ENGINE [--valgrind FILE]     PROGRAM: halfplane_frames, of a release build
 
@@ -32,11 +32,11 @@ COUNTED = {
 }
 
 
-def instructions(program, valgrind, engine, scene, size, samples, frames):
-    """Of all frames, inside the engine."""
+def instructions(program, valgrind, engine, scene, size, samples):
+    """Of the second frame, inside the engine."""
     with tempfile.TemporaryDirectory() as folder:
         command = [valgrind, '--tool=callgrind', f'--callgrind-out-file={folder}/out',
-                   f'--toggle-collect={COUNTED[engine]}', program, engine, scene, *map(str, (*size, frames, samples))]
+                   f'--toggle-collect={COUNTED[engine]}', program, engine, scene, *map(str, (*size, 2, samples))]
         run = subprocess.run(command, capture_output=True, text=True, check=False)
         if run.returncode == 77:
             print('this machine has no AVX2, whose instructions are counted')
@@ -59,9 +59,7 @@ def main():
     for engine, scene, size, samples, thing, count, bound in GATES:
         if engine != options.engine:
             continue
-        one, three = (instructions(options.program, options.valgrind, engine, scene, size, samples, frames)
-                      for frames in (1, 3))
-        each = (three - one) / 2 / count
+        each = instructions(options.program, options.valgrind, engine, scene, size, samples) / count
         within &= each <= bound
         print(f'{scene:12} {size[0]}x{size[1]}  {samples} a pixel  {each:7.1f} instructions a {thing}, at most {bound}')
     return 0 if within else 1

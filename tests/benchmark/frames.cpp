@@ -1,6 +1,8 @@
-// Draws frames of a built-in scene on one thread, for tools/instructions.py to count: the first allocates memory, later ones
-// only draw. Arguments: engine, scene, width, height, frames, samples a pixel; engine functional draws with its AVX2
-// kernels, cycle with its own memory. Status 77: no AVX2.
+// Draws frames of a built-in scene on one thread, for tools/instructions.py: the first allocates memory, later ones only
+// draw, and callgrind counts the last. Arguments: engine, scene, width, height, frames, samples a pixel; engine functional
+// draws with its AVX2 kernels, cycle with its own memory. Status 77: no AVX2.
+#include <valgrind/callgrind.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <string_view>
@@ -25,7 +27,10 @@ int draw_functional(const Scene& scene, Config config, int frames) {
   const auto is_it = [&](const functional::Kernels* kernels) { return kernels->name == options.instruction_set; };
   if (std::ranges::none_of(functional::available_kernels(), is_it)) return 77;
   std::uint64_t written = 0;
-  for (int frame = 0; frame < frames; ++frame) written = engine.render(prepared, options).counters.written;
+  for (int frame = 0; frame < frames; ++frame) {
+    CALLGRIND_ZERO_STATS;
+    written = engine.render(prepared, options).counters.written;
+  }
   return written != 0 ? 0 : 1;
 }
 
@@ -33,7 +38,10 @@ int draw_cycle(const Scene& scene, const Config& config, int frames) {
   const auto memory = make_memory({}, config);
   CycleFrames engine(config, *memory);
   Cycle cycles = 0;
-  for (int frame = 0; frame < frames; ++frame) cycles = engine.draw(scene).run.cycles;
+  for (int frame = 0; frame < frames; ++frame) {
+    CALLGRIND_ZERO_STATS;
+    cycles = engine.draw(scene).run.cycles;
+  }
   return cycles != 0 ? 0 : 1;
 }
 
