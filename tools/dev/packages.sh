@@ -22,7 +22,6 @@ libmeshoptimizer-dev gltf  meshoptimizer.h
 libwebp-dev          gltf  webp/decode.h
 libjs-chart.js       report /usr/share/javascript/chart.js/chart.min.js
 libglvnd-dev         gl    glvnd/libglxabi.h
-khronos-api          gl    /usr/share/khronos-api/gl.xml
 libx11-dev           gl    X11/Xlib.h
 libsnappy-dev        gl    snappy.h
 libxcb-shm0-dev      gl    xcb/shm.h
